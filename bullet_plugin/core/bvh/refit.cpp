@@ -1,0 +1,99 @@
+#include "refit.h"
+
+#include "kernels/lib/dop.h"
+
+namespace drape
+{
+namespace
+{
+constexpr std::size_t kGroup = 64;
+// A height of at most this many nodes is cheaper in the climb of one group than as a launch (3 µs on an H200).
+constexpr std::size_t kClimbGroup = 128;
+
+void refitLeafOnHost(BvhNode& node, const Triangle& triangle, const float* start, const float* end, float radius,
+                     std::size_t& invalidNodes)
+{
+    Dop dop;
+    dopClear(&dop);
+    if (radius >= 0.0f)
+    {
+        triangleVolume(&dop, &triangle, start, end, radius);
+        for (int i = 0; i < 3; ++i)
+        {
+            if (!(triangle.m_owned & DRAPE_OWNS_VERTEX(i))) continue;
+            const bool finite = vec3IsFinite(vec3Load(start, triangle.m_vertices[i])) &&
+                                vec3IsFinite(vec3Load(end, triangle.m_vertices[i]));
+            if (!finite) ++invalidNodes;
+        }
+    }
+    dopStore(&node, &dop);
+}
+}  // namespace
+
+void refitOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const std::vector<std::uint32_t>& order,
+                 const std::vector<Triangle>& triangles, const float* start, const float* end,
+                 const std::vector<float>& meshRadius, std::size_t& invalidNodes)
+{
+    const std::uint32_t leafCount = layout.leafCount();
+    for (std::uint32_t leaf = 0; leaf < leafCount; ++leaf)
+    {
+        const Triangle& triangle = triangles[order[leaf]];
+        refitLeafOnHost(nodes[leaf], triangle, start, end, meshRadius[triangle.m_mesh], invalidNodes);
+    }
+    for (std::uint32_t node = leafCount; node < layout.nodeCount(); ++node) dopMergeChildren(nodes.data(), node);
+}
+
+void RefitStage::create(Device& device, const cl::Program& program)
+{
+    m_leaves.create(device, program, "refitLeaves");
+    m_level.create(device, program, "refitLevel");
+    m_top.create(device, program, "refitTop");
+}
+
+void RefitStage::makeLevels(Device& device, const BvhLayout& layout, Levels& levels) const
+{
+    levels.m_launched = 0;
+    std::vector<cl_uint> table;
+    for (std::size_t height = 1; height < layout.m_heights.size(); ++height)
+    {
+        const BvhHeight& level = layout.m_heights[height];
+        if (level.m_count > 2 * kClimbGroup)
+        {
+            levels.m_launched = height;
+            continue;
+        }
+        table.push_back(level.m_first);
+        table.push_back(level.m_count);
+    }
+    levels.m_climbed = table.size() / 2;
+    levels.m_table.assign(device, table);
+    device.wait();  // table is a local; topology changes are rare
+}
+
+void RefitStage::enqueue(Device& device, const BvhLayout& layout, Levels& levels, Buffer<BvhNode>& nodes,
+                         Buffer<cl_uint>& order, Buffer<Triangle>& triangles, Buffer<float>& start, Buffer<float>& end,
+                         Buffer<float>& meshRadius, Buffer<StepCounters>& counters)
+{
+    const cl_uint leafCount = layout.leafCount();
+    m_leaves.launch(device, leafCount, kGroup, nodes.handle(), order.handle(), triangles.handle(), start.handle(),
+                    end.handle(), meshRadius.handle(), counters.handle(), leafCount);
+    for (std::size_t height = 1; height <= levels.m_launched; ++height)
+    {
+        const BvhHeight& level = layout.m_heights[height];
+        m_level.launch(device, level.m_count, kGroup, nodes.handle(), cl_uint(level.m_first), cl_uint(level.m_count));
+    }
+    if (levels.m_climbed > 0)
+    {
+        m_top.launch(device, kClimbGroup, kClimbGroup, nodes.handle(), levels.m_table.handle(), cl_uint(levels.m_climbed));
+    }
+}
+
+void RefitStage::warmUp(Device& device, Buffer<BvhNode>& nodes)
+{
+    Buffer<cl_uint> table;
+    table.reserve(device, 2);
+    m_level.launch(device, kGroup, kGroup, nodes.handle(), cl_uint(0), cl_uint(0));
+    m_top.launch(device, kClimbGroup, kClimbGroup, nodes.handle(), table.handle(), cl_uint(0));
+    device.wait();
+}
+}  // namespace drape

@@ -1,0 +1,44 @@
+// Refit: new volumes for a hierarchy whose topology stays, on the device or the host. Volumes are exact minima and maxima
+// of the padded leaves, so both give the same bits.
+#pragma once
+
+#include <vector>
+
+#include "bullet_plugin/core/device/buffer.h"
+#include "bullet_plugin/core/device/program.h"
+#include "bvh_layout.h"
+
+namespace drape
+{
+// nodes: links set. order: triangle per leaf. start, end: m, x y z per vertex (may be the same). meshRadius: m per mesh slot,
+// negative to leave a mesh out. Adds NaN and infinite vertices to invalidNodes.
+void refitOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const std::vector<std::uint32_t>& order,
+                 const std::vector<Triangle>& triangles, const float* start, const float* end,
+                 const std::vector<float>& meshRadius, std::size_t& invalidNodes);
+
+class RefitStage
+{
+public:
+    void create(Device& device, const cl::Program& program);
+
+    // The heights of a layout as the device reads them, and where the one-group climb begins.
+    struct Levels
+    {
+        Buffer<cl_uint> m_table;
+        std::size_t m_launched = 0;  // heights 1 … m_launched get a launch each
+        std::size_t m_climbed = 0;   // the rest, in one group
+    };
+    void makeLevels(Device& device, const BvhLayout& layout, Levels& levels) const;
+
+    // Returns after enqueueing. Adds to counters' invalid nodes.
+    void enqueue(Device& device, const BvhLayout& layout, Levels& levels, Buffer<BvhNode>& nodes, Buffer<cl_uint>& order,
+                 Buffer<Triangle>& triangles, Buffer<float>& start, Buffer<float>& end, Buffer<float>& meshRadius,
+                 Buffer<StepCounters>& counters);
+
+    // Runs the kernels that a small hierarchy does not need, on no nodes.
+    void warmUp(Device& device, Buffer<BvhNode>& nodes);
+
+private:
+    Kernel m_leaves, m_level, m_top;
+};
+}  // namespace drape

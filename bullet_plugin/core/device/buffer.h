@@ -1,0 +1,118 @@
+// Device memory that grows, and host memory that the device can copy fast.
+#pragma once
+
+#include <cstring>
+#include <vector>
+
+#include "device.h"
+
+namespace drape
+{
+// An array of T on the device. Capacity only grows. Element counts, not bytes. Does not outlive its device.
+template <typename T>
+class Buffer
+{
+public:
+    std::size_t capacity() const { return m_capacity; }
+    cl::Buffer& handle() { return m_buffer; }
+
+    // Makes room for count elements (at least one). Contents are lost when it grows; returns whether it did.
+    bool reserve(Device& device, std::size_t count)
+    {
+        if (m_capacity >= count && m_capacity > 0) return false;
+        const std::size_t wanted = count == 0 ? 1 : count;
+        cl_int code = CL_SUCCESS;
+        m_buffer = cl::Buffer(device.context(), CL_MEM_READ_WRITE, wanted * sizeof(T), nullptr, &code);
+        device.check(code, "clCreateBuffer", std::to_string(wanted * sizeof(T)) + " bytes");
+        m_capacity = device.failed() ? 0 : wanted;
+        return true;
+    }
+
+    // Enqueue a copy; the source must stay unchanged until the device was waited for.
+    void write(Device& device, const T* source, std::size_t count, std::size_t offset = 0)
+    {
+        if (device.failed() || count == 0) return;
+        device.check(device.queue().enqueueWriteBuffer(m_buffer, CL_FALSE, offset * sizeof(T), count * sizeof(T), source),
+                     "clEnqueueWriteBuffer");
+    }
+    void assign(Device& device, const std::vector<T>& source)
+    {
+        reserve(device, source.size());
+        write(device, source.data(), source.size());
+    }
+    void read(Device& device, T* target, std::size_t count, std::size_t offset = 0)
+    {
+        if (device.failed() || count == 0) return;
+        device.check(device.queue().enqueueReadBuffer(m_buffer, CL_FALSE, offset * sizeof(T), count * sizeof(T), target),
+                     "clEnqueueReadBuffer");
+    }
+    // Fills every element's bytes with copies of a 32-bit pattern.
+    void fill(Device& device, cl_uint pattern, std::size_t count)
+    {
+        if (device.failed() || count == 0) return;
+        device.check(device.queue().enqueueFillBuffer(m_buffer, pattern, 0, count * sizeof(T)), "clEnqueueFillBuffer");
+    }
+
+private:
+    cl::Buffer m_buffer;
+    std::size_t m_capacity = 0;
+};
+
+// Host memory for transfers: pinned where a device is given, plain otherwise. Contents are lost when it grows.
+template <typename T>
+class Staging
+{
+public:
+    Staging() = default;
+    Staging(const Staging&) = delete;
+    Staging& operator=(const Staging&) = delete;
+    ~Staging() { release(); }
+
+    T* data() { return m_data; }
+    const T* data() const { return m_data; }
+    std::size_t capacity() const { return m_capacity; }
+
+    // device may be null. The memory must not be in use by a transfer.
+    void reserve(Device* device, std::size_t count)
+    {
+        if (m_capacity >= count && m_capacity > 0) return;
+        release();
+        const std::size_t wanted = count == 0 ? 1 : count;
+        if (device && !device->failed()) mapPinned(*device, wanted);
+        if (!m_data)
+        {
+            m_plain.resize(wanted);
+            m_data = m_plain.data();
+        }
+        m_capacity = wanted;
+    }
+
+private:
+    void mapPinned(Device& device, std::size_t count)
+    {
+        cl_int code = CL_SUCCESS;
+        m_pinned = cl::Buffer(device.context(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, count * sizeof(T), nullptr, &code);
+        if (code != CL_SUCCESS) return;  // pinned memory is scarce: plain memory works too
+        void* mapped = device.queue().enqueueMapBuffer(m_pinned, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0,
+                                                       count * sizeof(T), nullptr, nullptr, &code);
+        if (code != CL_SUCCESS) return;
+        m_data = static_cast<T*>(mapped);
+        m_queue = device.queue();
+    }
+    void release()
+    {
+        if (m_queue()) m_queue.enqueueUnmapMemObject(m_pinned, m_data);
+        m_queue = cl::CommandQueue();
+        m_pinned = cl::Buffer();
+        m_plain.clear();
+        m_data = nullptr;
+        m_capacity = 0;
+    }
+
+    cl::Buffer m_pinned;
+    cl::CommandQueue m_queue;
+    std::vector<T> m_plain;
+    T* m_data = nullptr;
+    std::size_t m_capacity = 0;
+};
+}  // namespace drape

@@ -1,0 +1,103 @@
+#include "device.h"
+
+namespace drape
+{
+namespace
+{
+struct FoundDevice
+{
+    cl::Device m_device;
+    DeviceInfo m_info;
+};
+
+void appendDevices(const cl::Platform& platform, std::vector<FoundDevice>& found)
+{
+    std::vector<cl::Device> devices;
+    if (platform.getDevices(CL_DEVICE_TYPE_ALL, &devices) != CL_SUCCESS) return;
+    for (const cl::Device& device : devices)
+    {
+        if (!device.getInfo<CL_DEVICE_AVAILABLE>() || !device.getInfo<CL_DEVICE_COMPILER_AVAILABLE>()) continue;
+        if (!device.getInfo<CL_DEVICE_ENDIAN_LITTLE>()) continue;
+        FoundDevice entry;
+        entry.m_device = device;
+        entry.m_info.m_platform = platform.getInfo<CL_PLATFORM_NAME>();
+        entry.m_info.m_name = device.getInfo<CL_DEVICE_NAME>();
+        entry.m_info.m_driver = device.getInfo<CL_DRIVER_VERSION>();
+        entry.m_info.m_isGpu = (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_GPU) != 0;
+        found.push_back(entry);
+    }
+}
+
+// GPUs first, otherwise in the loader's order.
+std::vector<FoundDevice> findDevices()
+{
+    std::vector<cl::Platform> platforms;
+    std::vector<FoundDevice> all, sorted;
+    if (cl::Platform::get(&platforms) != CL_SUCCESS) return sorted;
+    for (const cl::Platform& platform : platforms) appendDevices(platform, all);
+    for (int wantGpu = 1; wantGpu >= 0; --wantGpu)
+    {
+        for (const FoundDevice& entry : all)
+        {
+            if (entry.m_info.m_isGpu == (wantGpu == 1)) sorted.push_back(entry);
+        }
+    }
+    return sorted;
+}
+}  // namespace
+
+std::vector<DeviceInfo> listDevices()
+{
+    std::vector<DeviceInfo> infos;
+    for (const FoundDevice& entry : findDevices()) infos.push_back(entry.m_info);
+    return infos;
+}
+
+std::unique_ptr<Device> Device::open(std::size_t index, Error& error)
+{
+    const std::vector<FoundDevice> found = findDevices();
+    if (index >= found.size())
+    {
+        error.m_call = "the OpenCL device is gone";
+        return nullptr;
+    }
+    std::unique_ptr<Device> device(new Device);
+    device->m_info = found[index].m_info;
+    device->m_device = found[index].m_device;
+    cl_int code = CL_SUCCESS;
+    device->m_context = cl::Context(device->m_device, nullptr, nullptr, nullptr, &code);
+    if (device->check(code, "clCreateContext"))
+    {
+        device->m_queue = cl::CommandQueue(device->m_context, device->m_device, 0, &code);
+        device->check(code, "clCreateCommandQueue");
+    }
+    if (device->failed())
+    {
+        error = device->error();
+        return nullptr;
+    }
+    device->m_maxAllocationBytes = device->m_device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+    device->m_computeUnits = device->m_device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+    return device;
+}
+
+bool Device::check(cl_int code, const std::string& call, const std::string& detail)
+{
+    if (code != CL_SUCCESS && !m_error.failed())
+    {
+        m_error.m_call = call + " failed with OpenCL code " + std::to_string(code) + " on " + m_info.m_name;
+        m_error.m_detail = detail;
+    }
+    return !m_error.failed();
+}
+
+void Device::flush()
+{
+    if (!failed()) check(m_queue.flush(), "clFlush");
+}
+
+void Device::wait()
+{
+    if (!failed()) check(m_queue.finish(), "clFinish");
+}
+}  // namespace drape

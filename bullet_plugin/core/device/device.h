@@ -1,0 +1,68 @@
+// An OpenCL device with its context and in-order queue, and the choice among those there are.
+//
+// Errors are sticky: after the first failure every later call on the device is a no-op and error() says what failed, with
+// which code and log. The pipeline checks once a step. Not thread-safe. The only folder that includes OpenCL headers is
+// this one.
+#pragma once
+
+#include <CL/opencl.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "drape/error.h"
+#include "drape/report.h"
+#include "drape/settings.h"
+
+namespace drape
+{
+class Device
+{
+public:
+    // Opens the index-th device of listDevices(). Null, with error filled, when the context or queue cannot be made.
+    static std::unique_ptr<Device> open(std::size_t index, Error& error);
+
+    const DeviceInfo& info() const { return m_info; }
+    bool isGpu() const { return m_info.m_isGpu; }
+    bool failed() const { return m_error.failed(); }
+    const Error& error() const { return m_error; }
+
+    // Records a failure when code is not CL_SUCCESS. Returns whether the device is still good.
+    bool check(cl_int code, const std::string& call, const std::string& detail = std::string());
+
+    cl::Context& context() { return m_context; }
+    cl::CommandQueue& queue() { return m_queue; }
+    cl::Device& handle() { return m_device; }
+
+    // Starts the work enqueued so far; does not wait.
+    void flush();
+    // Waits for all work enqueued so far.
+    void wait();
+
+    std::size_t maxAllocationBytes() const { return m_maxAllocationBytes; }
+    std::size_t computeUnits() const { return m_computeUnits; }
+
+private:
+    Device() = default;
+
+    DeviceInfo m_info;
+    cl::Device m_device;
+    cl::Context m_context;
+    cl::CommandQueue m_queue;
+    std::size_t m_maxAllocationBytes = 0;
+    std::size_t m_computeUnits = 1;
+    Error m_error;
+};
+
+// What settings (and DRAPE_DEVICE) come to on this machine.
+struct DeviceChoice
+{
+    bool m_onHost = true;
+    std::size_t m_index = 0;  // into listDevices(), unless on the host
+    std::string m_reason;
+};
+
+// error is filled when a device was asked for that is not there; its detail lists those that are.
+DeviceChoice chooseDevice(const Settings& settings, Error& error);
+}  // namespace drape

@@ -1,0 +1,76 @@
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+
+#include "device.h"
+
+namespace drape
+{
+namespace
+{
+std::string lowered(std::string text)
+{
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return text;
+}
+
+std::string describe(const DeviceInfo& info)
+{
+    return info.m_name + " (" + info.m_platform + (info.m_isGpu ? ", GPU)" : ")");
+}
+
+std::string listing(const std::vector<DeviceInfo>& devices)
+{
+    std::string text = "devices there are: host";
+    for (const DeviceInfo& info : devices) text += ", " + describe(info);
+    return text;
+}
+
+DeviceChoice chooseByName(const std::vector<DeviceInfo>& devices, const std::string& wanted, const std::string& origin,
+                          Error& error)
+{
+    DeviceChoice choice;
+    for (std::size_t i = 0; i < devices.size(); ++i)
+    {
+        const std::string text = lowered(devices[i].m_name + " " + devices[i].m_platform);
+        if (text.find(lowered(wanted)) == std::string::npos) continue;
+        choice.m_onHost = false;
+        choice.m_index = i;
+        choice.m_reason = "named by " + origin + " \"" + wanted + "\"";
+        return choice;
+    }
+    error.m_call = "no OpenCL device matches " + origin + " \"" + wanted + "\"";
+    error.m_detail = listing(devices);
+    return choice;
+}
+}  // namespace
+
+DeviceChoice chooseDevice(const Settings& settings, Error& error)
+{
+    DeviceChoice choice;
+    const char* variable = std::getenv("DRAPE_DEVICE");
+    const bool fromVariable = settings.m_device.empty() && variable && *variable;
+    const std::string wanted = fromVariable ? variable : settings.m_device;
+    const std::string origin = fromVariable ? "DRAPE_DEVICE" : "the device option";
+    if (settings.m_backend == Backend::Host || lowered(wanted) == "host")
+    {
+        choice.m_reason = settings.m_backend == Backend::Host ? "the host back end was asked for" : "named by " + origin;
+        return choice;
+    }
+    const std::vector<DeviceInfo> devices = listDevices();
+    if (!wanted.empty()) return chooseByName(devices, wanted, origin, error);
+    if (devices.empty())
+    {
+        choice.m_reason = "no OpenCL device was found";
+        if (settings.m_backend == Backend::OpenCl)
+        {
+            error.m_call = "an OpenCL device was asked for, and none was found";
+            error.m_detail = "install a driver, for example pocl-opencl-icd";
+        }
+        return choice;
+    }
+    choice.m_onHost = false;
+    choice.m_reason = devices[0].m_isGpu ? "the first GPU" : "no GPU was found; the first OpenCL device";
+    return choice;
+}
+}  // namespace drape

@@ -1,0 +1,148 @@
+#include "program.h"
+
+#include <cstring>
+#include <set>
+
+#include "embedded_kernels.h"
+#include "program_cache.h"
+
+namespace drape
+{
+namespace
+{
+// Contraction is off by pragma too: options can be ignored, and half of all dot products differ with it.
+constexpr const char* kPreamble = "#pragma OPENCL FP_CONTRACT OFF\n";
+constexpr const char* kOptions = "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt";
+
+const char* findText(const std::string& path)
+{
+    for (std::size_t i = 0; i < kEmbeddedFileCount; ++i)
+    {
+        if (path == kEmbeddedFiles[i].m_path) return kEmbeddedFiles[i].m_text;
+    }
+    return nullptr;
+}
+
+// "kernels/lib" and "../shared/types.h" give "kernels/shared/types.h".
+std::string joinPath(std::string folder, std::string file)
+{
+    while (file.compare(0, 3, "../") == 0)
+    {
+        file.erase(0, 3);
+        const std::size_t slash = folder.rfind('/');
+        folder.erase(slash == std::string::npos ? 0 : slash);
+    }
+    return folder.empty() ? file : folder + "/" + file;
+}
+
+std::string lineDirective(std::size_t line, const std::string& path)
+{
+    return "#line " + std::to_string(line) + " \"" + path + "\"\n";
+}
+
+void append(const std::string& path, std::set<std::string>& seen, std::string& source)
+{
+    const char* text = findText(path);
+    if (!text)
+    {
+        source += "#error cannot find " + path + "\n";
+        return;
+    }
+    const std::size_t slash = path.rfind('/');
+    const std::string folder = slash == std::string::npos ? "" : path.substr(0, slash);
+    source += lineDirective(1, path);
+    std::size_t line = 0;
+    for (const char* begin = text; *begin != '\0';)
+    {
+        const char* end = std::strchr(begin, '\n');
+        const std::string content = end ? std::string(begin, end) : std::string(begin);
+        ++line;
+        const std::string keyword = "#include \"";
+        if (content.compare(0, keyword.size(), keyword) == 0)
+        {
+            const std::string file = content.substr(keyword.size(), content.rfind('"') - keyword.size());
+            const std::string included = joinPath(folder, file);
+            if (seen.insert(included).second) append(included, seen, source);
+            source += lineDirective(line + 1, path);
+        }
+        else
+        {
+            source += content + "\n";
+        }
+        begin = end ? end + 1 : begin + content.size();
+    }
+}
+
+bool build(Device& device, cl::Program& program, const std::string& name)
+{
+    const cl_int code = program.build(std::vector<cl::Device>{device.handle()}, kOptions);
+    if (code == CL_SUCCESS) return true;
+    std::string log;
+    program.getBuildInfo(device.handle(), CL_PROGRAM_BUILD_LOG, &log);
+    device.check(code, "building kernels/" + name + ".cl", log);
+    return false;
+}
+}  // namespace
+
+std::string assembleSource(const std::string& path)
+{
+    if (!findText(path)) return std::string();
+    std::set<std::string> seen;
+    std::string source = kPreamble;
+    append(path, seen, source);
+    return source;
+}
+
+cl::Program compileSource(Device& device, const std::string& name, const std::string& source)
+{
+    cl_int code = CL_SUCCESS;
+    cl::Program program(device.context(), source, false, &code);
+    if (device.check(code, "clCreateProgramWithSource", name)) build(device, program, name);
+    return program;
+}
+
+cl::Program buildProgram(Device& device, const std::string& name, const std::string& cacheFolder, ProgramBuild& result)
+{
+    result.m_fromCache = false;
+    if (device.failed()) return cl::Program();
+    const std::string source = assembleSource("kernels/" + name + ".cl");
+    const ProgramCache cache(cacheFolder);
+    const std::string key = cache.key(source, kOptions, device.info());
+    std::vector<unsigned char> binary;
+    if (cache.load(key, binary))
+    {
+        cl_int code = CL_SUCCESS;
+        cl::Program program(device.context(), {device.handle()}, cl::Program::Binaries{binary}, nullptr, &code);
+        if (code == CL_SUCCESS && program.build(std::vector<cl::Device>{device.handle()}, kOptions) == CL_SUCCESS)
+        {
+            result.m_fromCache = true;
+            return program;
+        }
+    }
+    cl::Program program = compileSource(device, name, source);
+    if (device.failed()) return program;
+    std::vector<std::vector<unsigned char>> binaries;
+    if (program.getInfo(CL_PROGRAM_BINARIES, &binaries) == CL_SUCCESS && binaries.size() == 1)
+    {
+        cache.store(key, binaries[0]);
+    }
+    return program;
+}
+
+void Kernel::create(Device& device, const cl::Program& program, const char* name)
+{
+    m_name = name;
+    if (device.failed()) return;
+    cl_int code = CL_SUCCESS;
+    m_kernel = cl::Kernel(program, name, &code);
+    device.check(code, "clCreateKernel", name);
+}
+
+void Kernel::enqueue(Device& device, std::size_t globalSize, std::size_t localSize)
+{
+    if (device.failed()) return;
+    const std::size_t rounded = (globalSize + localSize - 1) / localSize * localSize;
+    device.check(device.queue().enqueueNDRangeKernel(m_kernel, cl::NullRange, cl::NDRange(rounded), cl::NDRange(localSize)),
+                 "clEnqueueNDRangeKernel", m_name);
+}
+}  // namespace drape

@@ -1,0 +1,55 @@
+// Programs of the embedded kernels: source with includes resolved, built for a device or taken from the cache on disk.
+#pragma once
+
+#include <string>
+
+#include "device.h"
+
+namespace drape
+{
+// The text of kernels/<file> with every include replaced by the included text once. Line directives keep each line's own
+// file and number, so a compiler's message names the .cl or .h file. Empty when the file is not embedded.
+std::string assembleSource(const std::string& path);
+
+struct ProgramBuild
+{
+    bool m_fromCache = false;
+};
+
+// Builds "kernels/<name>.cl" with contraction off and correctly rounded ÷ and √. cacheFolder empty: the user's cache; "none":
+// no cache. A failed build puts the file and the whole log into the device's error. Cache trouble means a build, never a
+// failure.
+cl::Program buildProgram(Device& device, const std::string& name, const std::string& cacheFolder, ProgramBuild& build);
+
+// Builds a source text as given, for tests of the log.
+cl::Program compileSource(Device& device, const std::string& name, const std::string& source);
+
+// A kernel with its name, for messages. Launches are enqueued; nothing waits.
+class Kernel
+{
+public:
+    void create(Device& device, const cl::Program& program, const char* name);
+
+    // Sets all arguments in order and enqueues globalSize work-items, rounded up to groups of localSize. Nothing is
+    // launched for zero work-items.
+    template <typename... Arguments>
+    void launch(Device& device, std::size_t globalSize, std::size_t localSize, Arguments&&... arguments)
+    {
+        if (device.failed() || globalSize == 0) return;
+        cl_uint index = 0;
+        (set(device, index++, arguments), ...);
+        enqueue(device, globalSize, localSize);
+    }
+
+private:
+    template <typename T>
+    void set(Device& device, cl_uint index, const T& value)
+    {
+        device.check(m_kernel.setArg(index, value), "clSetKernelArg " + std::to_string(index), m_name);
+    }
+    void enqueue(Device& device, std::size_t globalSize, std::size_t localSize);
+
+    cl::Kernel m_kernel;
+    std::string m_name;
+};
+}  // namespace drape

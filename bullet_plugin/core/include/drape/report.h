@@ -1,0 +1,58 @@
+// What Drape tells about itself: the device it runs on and why, and what the last step did and cost.
+// Times are milliseconds of wall time. C++11, no OpenCL header needed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace drape
+{
+struct DeviceInfo
+{
+    std::string m_platform;
+    std::string m_name;
+    std::string m_driver;
+    bool m_isGpu = false;
+};
+
+struct DeviceReport
+{
+    bool m_onHost = true;  // the host back end computes
+    DeviceInfo m_device;   // its name is "host" then
+    std::string m_reason;  // one line: why this device and no other
+    double m_buildMs = 0;  // making the kernels ready, warm-up included
+    bool m_fromCache = false;
+};
+
+// Every OpenCL device there is, in the order in which Drape would choose. Empty when there is none.
+std::vector<DeviceInfo> listDevices();
+
+// Bits of StepStatistics::m_status. Zero is a good step.
+enum StepStatusBits : std::uint32_t
+{
+    kStepGood = 0,
+    kStepInvalidNodes = 1u << 0,   // NaN or infinite nodes were left out
+    kStepDeviceFailed = 1u << 1,   // the device failed; this and later steps run on the host
+    kStepContactLimit = 1u << 2    // a buffer reached what the device can hold; the step ran on the host
+};
+
+struct StepStatistics
+{
+    std::uint32_t m_status = kStepGood;
+    std::size_t m_clothTriangles = 0;
+    std::size_t m_obstacleTriangles = 0;
+    std::size_t m_candidates = 0;     // triangle pairs the broad phase could not separate
+    std::size_t m_contacts = 0;       // contacts published
+    std::size_t m_intersections = 0;  // only with Settings::m_reportIntersections
+    std::size_t m_invalidNodes = 0;   // NaN or infinite
+    std::size_t m_retries = 0;        // stages run again because a buffer was too small
+    bool m_skipped = false;           // nothing to do: no pair, or nothing that could touch
+    double m_uploadMs = 0;            // mirroring nodes and enqueueing
+    double m_waitMs = 0;              // waiting for the device (all the work, on the host back end)
+    double m_writeMs = 0;             // writing the contacts into Bullet
+    double m_finishMs = 0;            // the closing contact pass after Bullet's solver
+    double collisionMs() const { return m_uploadMs + m_waitMs + m_writeMs + m_finishMs; }
+};
+}  // namespace drape

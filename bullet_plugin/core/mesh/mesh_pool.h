@@ -1,0 +1,63 @@
+// All meshes of one side (cloths or obstacles) as one: vertices, triangles, edges and leaf order joined end to end.
+//
+// Job: keep the meshes, and after some came or went renumber everything into joined arrays; revision() tells that it
+// happened. A mesh keeps its id; its slot is its place in the joined arrays, which update() makes current. Host memory only.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bullet_plugin/core/pipeline.h"
+#include "topology.h"
+
+namespace drape
+{
+struct PooledMesh
+{
+    MeshId m_id = kNoMesh;
+    Topology m_topology;
+    std::vector<float> m_positions;        // m, as last given
+    std::vector<NormalCone> m_vertexCones;  // obstacles only
+    std::vector<NormalCone> m_edgeCones;
+    std::vector<std::uint32_t> m_order;  // leaf order, local triangles
+    std::uint32_t m_firstVertex = 0;
+    std::uint32_t m_firstTriangle = 0;
+    std::uint32_t m_firstEdge = 0;
+};
+
+class MeshPool
+{
+public:
+    void add(PooledMesh mesh);
+    // Returns false when the id is not of this pool.
+    bool remove(MeshId id);
+
+    std::size_t meshCount() const { return m_meshes.size(); }
+    PooledMesh& mesh(std::size_t slot) { return m_meshes[slot]; }
+    const PooledMesh& mesh(std::size_t slot) const { return m_meshes[slot]; }
+    // meshCount() when the id is not of this pool.
+    std::size_t slot(MeshId id) const;
+    // Slots of the meshes that hold a joined vertex or edge.
+    std::size_t slotOfVertex(std::uint32_t vertex) const;
+    std::size_t slotOfEdge(std::uint32_t edge) const;
+
+    // Joins what came and went since the last call; the joined arrays are valid after it. Free when nothing did.
+    void update();
+    // Counts up with every update that changed something.
+    std::uint32_t revision() const { return m_revision; }
+
+    std::size_t vertexCount() const { return m_vertexCount; }
+    const std::vector<Triangle>& triangles() const { return m_triangles; }
+    const std::vector<Edge>& edges() const { return m_edges; }
+    const std::vector<std::uint32_t>& order() const { return m_order; }
+
+private:
+    std::vector<PooledMesh> m_meshes;
+    std::vector<Triangle> m_triangles;
+    std::vector<Edge> m_edges;
+    std::vector<std::uint32_t> m_order;
+    std::size_t m_vertexCount = 0;
+    std::uint32_t m_revision = 0;
+    bool m_changed = false;
+};
+}  // namespace drape

@@ -1,0 +1,18 @@
+// Normal cones of an obstacle's vertices and edges: where a surface near them can be approached from.
+//
+// A point outside a surface has its closest point on a vertex or edge only if its direction from there lies between the
+// normals of the adjacent triangles. The cones hold those normals, with two degrees added for rounding. Where the
+// surroundings bound nothing (an open boundary, more than two triangles at an edge, zero areas) the cone admits every
+// direction. Two-sided: the opposite directions are in the cone too (see coneAdmits). O(n).
+#pragma once
+
+#include <vector>
+
+#include "topology.h"
+
+namespace drape
+{
+// positions: m, x y z per vertex. Outputs one cone per vertex and per edge.
+void computeNormalCones(const Topology& topology, const float* positions, std::vector<NormalCone>& vertexCones,
+                        std::vector<NormalCone>& edgeCones);
+}  // namespace drape

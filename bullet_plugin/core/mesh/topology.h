@@ -1,0 +1,28 @@
+// Edges, owners and opposite vertices of a triangle mesh.
+//
+// Input: indices and a vertex count. Output: Triangle and Edge records with indices local to the mesh. Triangles that repeat
+// an index are left out. Every vertex and every edge that a triangle uses is owned by exactly one triangle, the first.
+// Edges are numbered by their first use, so the result depends on the input alone. O(n) expected.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "kernels/shared/mesh.h"
+
+namespace drape
+{
+struct Topology
+{
+    std::vector<Triangle> m_triangles;
+    std::vector<Edge> m_edges;
+    std::vector<std::uint32_t> m_sourceTriangle;  // index as given, per kept triangle
+    std::vector<std::uint32_t> m_edgeTriangle;    // a kept triangle per edge: its owner
+    std::vector<std::uint32_t> m_vertexTriangle;  // a kept triangle per vertex; 0xffffffff when unused
+    std::vector<std::uint8_t> m_edgeUses;         // triangles per edge, 255 for more
+    std::size_t m_vertexCount = 0;
+};
+
+// triangles: 3 indices each, in [0, vertexCount).
+Topology buildTopology(const std::int32_t* triangles, std::size_t triangleCount, std::size_t vertexCount);
+}  // namespace drape

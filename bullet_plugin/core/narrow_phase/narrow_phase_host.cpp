@@ -1,0 +1,110 @@
+#include <algorithm>
+#include <tuple>
+
+#include "kernels/lib/triangle_triangle.h"
+#include "narrow_phase.h"
+
+namespace drape
+{
+namespace
+{
+bool isDeeper(const Contact& a, const Contact& b)
+{
+    const std::uint32_t rankA = contactRank(a.m_gap1), rankB = contactRank(b.m_gap1);
+    return rankA != rankB ? rankA < rankB : a.m_obstacleFeature < b.m_obstacleFeature;
+}
+}  // namespace
+
+void ContactReduction::resize(std::size_t slotCount)
+{
+    m_slotHit.assign(slotCount, DRAPE_NO_CONTACT);
+    m_hits.clear();
+}
+
+void ContactReduction::add(const Contact& contact)
+{
+    std::uint32_t& place = m_slotHit[contact.m_slot];
+    if (place == DRAPE_NO_CONTACT)
+    {
+        place = std::uint32_t(m_hits.size());
+        m_hits.push_back(contact);
+    }
+    else if (isDeeper(contact, m_hits[place]))
+    {
+        m_hits[place] = contact;
+    }
+}
+
+void ContactReduction::take(std::vector<Contact>& contacts)
+{
+    for (const Contact& hit : m_hits) m_slotHit[hit.m_slot] = DRAPE_NO_CONTACT;
+    contacts.swap(m_hits);
+    m_hits.clear();
+    sortContacts(contacts);
+}
+
+void narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth, const ObstacleView& obstacle,
+                       const NarrowPhaseSettings& settings, ContactReduction& reduction, std::vector<Contact>& contacts)
+{
+    contacts.clear();
+    for (const Candidate& candidate : candidates)
+    {
+        const Triangle* clothTriangle = cloth.m_triangles + candidate.m_cloth;
+        const Triangle* obstacleTriangle = obstacle.m_triangles + candidate.m_obstacle;
+        const float reach =
+            settings.m_thickness[clothTriangle->m_mesh * settings.m_obstacleMeshes + obstacleTriangle->m_mesh] *
+            settings.m_reachScale;
+        PairGeometry pair;
+        loadPair(&pair, &cloth, clothTriangle, &obstacle, obstacleTriangle);
+        for (int test = 0; test < DRAPE_FEATURE_TESTS; ++test)
+        {
+            Contact contact;
+            if (!pairContact(test, &pair, &cloth, &obstacle, candidate, reach, &contact)) continue;
+            if (settings.m_allContacts)
+            {
+                contacts.push_back(contact);
+            }
+            else
+            {
+                reduction.add(contact);
+            }
+        }
+    }
+    if (settings.m_allContacts)
+    {
+        sortContacts(contacts);
+    }
+    else
+    {
+        reduction.take(contacts);
+    }
+}
+
+void intersectOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth, const ObstacleView& obstacle,
+                     std::vector<Candidate>& pairs)
+{
+    pairs.clear();
+    for (const Candidate& candidate : candidates)
+    {
+        PairGeometry pair;
+        loadPair(&pair, &cloth, cloth.m_triangles + candidate.m_cloth, &obstacle,
+                 obstacle.m_triangles + candidate.m_obstacle);
+        if (trianglesIntersect(featureTriangle(pair.m_cloth0), featureTriangle(pair.m_obstacle))) pairs.push_back(candidate);
+    }
+    sortCandidates(pairs);
+}
+
+void sortContacts(std::vector<Contact>& contacts)
+{
+    std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) {
+        return std::tie(a.m_slot, a.m_obstacleFeature) < std::tie(b.m_slot, b.m_obstacleFeature);
+    });
+}
+
+void sortCandidates(std::vector<Candidate>& candidates)
+{
+    std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+        return std::tie(a.m_cloth, a.m_obstacle) < std::tie(b.m_cloth, b.m_obstacle);
+    });
+}
+}  // namespace drape

@@ -1,0 +1,94 @@
+// The collision pipeline: mirrors cloths and obstacles, and once a step finds their contacts on the chosen back end.
+//
+// Job: hold every cloth and obstacle as one 18-DOP hierarchy per side; each step refit, broad phase, narrow phase,
+// reduction, compaction. Input: node positions at the step's start and end, obstacle positions when they change, and the
+// pairs to test. Output: contacts in canonical order in host memory. Guarantee: same input, same contacts, bit for bit,
+// on every back end; a buffer that is too small grows and the stage runs again. Cost: one submission, one wait a step.
+// Knows no Bullet. Lengths in metres, world frame. Not thread-safe: one pipeline belongs to one thread.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "drape/error.h"
+#include "drape/report.h"
+#include "drape/settings.h"
+#include "kernels/shared/contact.h"
+
+namespace drape
+{
+// Triangles over vertices. Indices must lie in [0, vertexCount); triangles that repeat an index are ignored.
+struct MeshDescription
+{
+    const std::int32_t* m_triangles = nullptr;  // 3 per triangle
+    std::size_t m_triangleCount = 0;
+    const float* m_positions = nullptr;  // x y z per vertex, m; copied
+    std::size_t m_vertexCount = 0;
+};
+
+using MeshId = std::uint32_t;  // never reused while the pipeline lives
+constexpr MeshId kNoMesh = 0xffffffffu;
+
+// A contact with its pool-wide indices resolved to meshes: what a solver needs.
+struct ContactView
+{
+    MeshId m_cloth;
+    MeshId m_obstacle;
+    std::uint32_t m_kind;         // DRAPE_NODE_FACE …
+    std::int32_t m_nodes[3];      // nodes of the cloth feature, indices in that cloth; -1 where unused
+    std::int32_t m_triangle;      // a cloth triangle that holds the feature, index as given to addCloth
+    float m_weights[3];           // of m_nodes, sum 1
+    float m_normal[3];            // unit, from the obstacle to the side the cloth came from
+    float m_point[3];             // m, on the obstacle
+    float m_gap0, m_gap1;         // m, along the normal at the step's start and end, thickness not subtracted
+    float m_thickness;            // m, of the pair
+    float m_time;                 // time of impact in [0, 1]
+};
+
+class Pipeline
+{
+public:
+    // Chooses the device and makes its kernels ready. Returns null and fills error when settings ask for what is not there.
+    static std::unique_ptr<Pipeline> create(const Settings& settings, Error& error);
+    ~Pipeline();
+    Pipeline(const Pipeline&) = delete;
+    Pipeline& operator=(const Pipeline&) = delete;
+
+    const DeviceReport& deviceReport() const;
+
+    // Both copy what they are given and build the hierarchy. Topology is fixed until remove().
+    MeshId addCloth(const MeshDescription& mesh);
+    MeshId addObstacle(const MeshDescription& mesh);
+    void remove(MeshId mesh);
+
+    // New world positions (x y z per vertex) of an obstacle that moved or was deformed; its hierarchy is refitted.
+    // Counts as a teleport: the motion between old and new is not swept.
+    void moveObstacle(MeshId obstacle, const float* positions);
+
+    // Where the caller writes a cloth's nodes for the coming step: x y z per vertex at the step's start and end. The
+    // memory is the pipeline's (pinned where the device has it), valid until addCloth, remove or submit.
+    float* clothStart(MeshId cloth);
+    float* clothEnd(MeshId cloth);
+
+    // Names a pair for the coming step; thickness in m > 0. A cloth without a pair costs nothing.
+    void addPair(MeshId cloth, MeshId obstacle, float thickness);
+
+    // Enqueues the step for the pairs named since the last finish(); returns without waiting.
+    void submit();
+    // Waits, grows buffers and repeats where needed. Contacts are valid until the next submit().
+    const std::vector<Contact>& finish();
+    // With statistics of that step (upload and wait times, counts, status; the adapter adds its own).
+    const StepStatistics& statistics() const;
+    // Message of the device's failure when the status says so.
+    const Error& lastError() const;
+
+    // Resolves a contact of the last finish().
+    ContactView view(const Contact& contact) const;
+
+private:
+    Pipeline();
+    struct Implementation;
+    std::unique_ptr<Implementation> m_implementation;
+};
+}  // namespace drape

@@ -1,0 +1,255 @@
+#include "device_backend.h"
+
+#include <algorithm>
+
+namespace drape
+{
+namespace
+{
+// First guesses; they grow to what scenes need.
+constexpr std::size_t kFirstCandidates = 1 << 16;
+constexpr std::size_t kFirstHits = 1 << 15;
+constexpr std::size_t kFirstContacts = 1 << 12;
+
+std::size_t withHeadroom(std::size_t count) { return count + count / 4 + 1024; }
+}  // namespace
+
+DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& settings)
+    : m_device(std::move(device)), m_settings(settings)
+{
+    m_refit.create(*m_device, program("refit"));
+    m_mortonOrder.create(*m_device, program("morton_order"));
+    m_broadPhase.create(*m_device, program("broad_phase"));
+    const cl::Program narrowPhase = program("narrow_phase");
+    m_narrowPhase.create(*m_device, narrowPhase, program("compaction"));
+    m_candidates.reserve(*m_device, kFirstCandidates);
+    m_narrowPhase.reserveHits(*m_device, kFirstHits);
+    m_narrowPhase.reserveContacts(*m_device, kFirstContacts);
+    m_narrowPhase.reserveIntersections(*m_device, 1);
+    m_counters.reserve(*m_device, 1);
+    m_countersRead.reserve(m_device.get(), 1);
+    m_contactsRead.reserve(m_device.get(), kFirstContacts);
+    warmUp();
+}
+
+DeviceBackend::~DeviceBackend()
+{
+    // Transfers into host memory that is about to go must have ended.
+    m_device->wait();
+}
+
+cl::Program DeviceBackend::program(const char* name)
+{
+    ProgramBuild build;
+    const cl::Program built = buildProgram(*m_device, name, m_settings.m_cacheFolder, build);
+    m_fromCache = m_fromCache && build.m_fromCache;
+    return built;
+}
+
+// A step of one triangle over another: some drivers compile a kernel again at its first launch with a group size.
+void DeviceBackend::warmUp()
+{
+    const std::int32_t indices[3] = {0, 1, 2};
+    const std::vector<float> above = {0, 0, 0.5f, 1, 0, 0.5f, 0, 1, 0.5f}, below = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    Scene scene;
+    for (MeshPool* pool : {&scene.m_cloths, &scene.m_obstacles})
+    {
+        PooledMesh mesh;
+        mesh.m_id = 0;
+        mesh.m_topology = buildTopology(indices, 1, 3);
+        mesh.m_order = order(mesh.m_topology.m_triangles, below.data(), 3);
+        if (m_device->failed()) return;
+        pool->add(std::move(mesh));
+        pool->update();
+    }
+    scene.m_clothLayout = makeBvhLayout(1);
+    scene.m_obstacleLayout = makeBvhLayout(1);
+    scene.m_clothStart.reserve(nullptr, 9);
+    scene.m_clothEnd.reserve(nullptr, 9);
+    std::copy(above.begin(), above.end(), scene.m_clothStart.data());
+    std::copy(below.begin(), below.end(), scene.m_clothEnd.data());
+    scene.m_obstaclePositions = below;
+    scene.m_vertexCones.assign(3, NormalCone{{0, 0, 1}, -1});
+    scene.m_edgeCones.assign(3, NormalCone{{0, 0, 1}, -1});
+    StepPairs pairs;
+    pairs.m_thickness = {0.1f};
+    pairs.m_clothRadius = {0.1f};
+    pairs.m_any = true;
+    StepResult result;
+    submit(scene, pairs);
+    finish(scene, pairs, result);
+    m_refit.warmUp(*m_device, m_cloth.m_nodes);
+    m_device->wait();
+    m_cloth.m_revision = m_obstacle.m_revision = 0;
+    m_sentThickness.clear();
+    m_sentRadius.clear();
+}
+
+std::vector<std::uint32_t> DeviceBackend::order(const std::vector<Triangle>& triangles, const float* positions,
+                                                std::size_t vertexCount)
+{
+    return m_mortonOrder.order(*m_device, triangles, positions, vertexCount);
+}
+
+void DeviceBackend::uploadSide(const MeshPool& pool, const BvhLayout& layout, Side& side)
+{
+    side.m_revision = pool.revision();
+    const std::vector<BvhNode> nodes = makeBvhNodes(layout);
+    side.m_nodes.assign(*m_device, nodes);
+    side.m_order.assign(*m_device, pool.order());
+    side.m_triangles.assign(*m_device, pool.triangles());
+    m_refit.makeLevels(*m_device, layout, side.m_levels);
+    m_device->wait();  // nodes is a local; topology changes are rare
+}
+
+void DeviceBackend::updateTopology(const Scene& scene)
+{
+    if (m_cloth.m_revision != scene.m_cloths.revision())
+    {
+        uploadSide(scene.m_cloths, scene.m_clothLayout, m_cloth);
+        m_clothEdges.assign(*m_device, scene.m_cloths.edges());
+        m_clothStart.reserve(*m_device, 3 * scene.m_cloths.vertexCount());
+        m_clothEnd.reserve(*m_device, 3 * scene.m_cloths.vertexCount());
+        m_narrowPhase.resizeSlots(*m_device, scene.slotCount());
+    }
+    const bool newObstacles = m_obstacle.m_revision != scene.m_obstacles.revision();
+    if (newObstacles) uploadSide(scene.m_obstacles, scene.m_obstacleLayout, m_obstacle);
+    if (newObstacles || m_obstacleMotion != scene.m_obstacleMotion) updateObstacles(scene);
+}
+
+void DeviceBackend::updateObstacles(const Scene& scene)
+{
+    m_obstacleMotion = scene.m_obstacleMotion;
+    m_obstaclePositions.assign(*m_device, scene.m_obstaclePositions);
+    m_vertexCones.assign(*m_device, scene.m_vertexCones);
+    m_edgeCones.assign(*m_device, scene.m_edgeCones);
+    const std::vector<float> noRadius(scene.m_obstacles.meshCount(), 0.0f);
+    m_obstacle.m_radius.assign(*m_device, noRadius);
+    m_refit.enqueue(*m_device, scene.m_obstacleLayout, m_obstacle.m_levels, m_obstacle.m_nodes, m_obstacle.m_order,
+                    m_obstacle.m_triangles, m_obstaclePositions, m_obstaclePositions, m_obstacle.m_radius, m_counters);
+    m_device->wait();  // noRadius is a local
+}
+
+void DeviceBackend::uploadStep(const Scene& scene, const StepPairs& pairs)
+{
+    const std::size_t floats = 3 * scene.m_cloths.vertexCount();
+    m_clothStart.write(*m_device, scene.m_clothStart.data(), floats);
+    m_clothEnd.write(*m_device, scene.m_clothEnd.data(), floats);
+    if (m_sentThickness != pairs.m_thickness)
+    {
+        m_sentThickness = pairs.m_thickness;
+        m_thickness.assign(*m_device, m_sentThickness);
+    }
+    if (m_sentRadius != pairs.m_clothRadius)
+    {
+        m_sentRadius = pairs.m_clothRadius;
+        m_cloth.m_radius.assign(*m_device, m_sentRadius);
+    }
+}
+
+NarrowPhaseBuffers DeviceBackend::narrowPhaseBuffers()
+{
+    return {m_clothStart,           m_clothEnd,    m_cloth.m_triangles, m_clothEdges, m_obstaclePositions,
+            m_obstacle.m_triangles, m_vertexCones, m_edgeCones,         m_thickness};
+}
+
+void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
+{
+    const std::size_t obstacleMeshes = scene.m_obstacles.meshCount();
+    m_counters.fill(*m_device, 0, 1);
+    m_refit.enqueue(*m_device, scene.m_clothLayout, m_cloth.m_levels, m_cloth.m_nodes, m_cloth.m_order,
+                    m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, m_counters);
+    m_broadPhase.enqueue(*m_device, {m_cloth.m_nodes, m_cloth.m_order, m_cloth.m_triangles, scene.m_clothLayout},
+                         {m_obstacle.m_nodes, m_obstacle.m_order, m_obstacle.m_triangles, scene.m_obstacleLayout},
+                         m_thickness, obstacleMeshes, m_candidates, m_counters);
+    const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacleMeshes, 1.0f + m_settings.m_activation,
+                                        m_settings.m_allContacts};
+    m_narrowPhase.enqueue(*m_device, narrowPhaseBuffers(), scene.m_cloths.vertexCount(), scene.m_cloths.triangles().size(),
+                          narrow, m_candidates, m_counters);
+    if (m_settings.m_reportIntersections)
+    {
+        m_narrowPhase.enqueueIntersect(*m_device, narrowPhaseBuffers(), m_candidates, m_counters);
+    }
+    m_counters.read(*m_device, m_countersRead.data(), 1);
+    m_narrowPhase.contacts().read(*m_device, m_contactsRead.data(), m_contactsAsked);
+    m_device->flush();
+}
+
+void DeviceBackend::submit(const Scene& scene, const StepPairs& pairs)
+{
+    m_limitReached = false;
+    updateTopology(scene);
+    uploadStep(scene, pairs);
+    enqueueStep(scene, pairs);
+}
+
+bool DeviceBackend::grow()
+{
+    const StepCounters counters = *m_countersRead.data();
+    const std::size_t largest = m_device->maxAllocationBytes();
+    bool again = false;
+    const auto demand = [&](std::size_t wanted, std::size_t capacity, std::size_t elementBytes, auto reserve) {
+        if (wanted <= capacity) return;
+        again = true;
+        if (withHeadroom(wanted) * elementBytes > largest)
+        {
+            m_limitReached = true;
+            return;
+        }
+        reserve(withHeadroom(wanted));
+    };
+    Device& device = *m_device;
+    demand(counters.m_candidates, m_candidates.capacity(), sizeof(Candidate),
+           [&](std::size_t count) { m_candidates.reserve(device, count); });
+    demand(counters.m_hits, m_narrowPhase.hits().capacity(), sizeof(Contact),
+           [&](std::size_t count) { m_narrowPhase.reserveHits(device, count); });
+    demand(counters.m_contacts, m_narrowPhase.contacts().capacity(), sizeof(Contact),
+           [&](std::size_t count) { m_narrowPhase.reserveContacts(device, count); });
+    demand(counters.m_intersections, m_narrowPhase.intersections().capacity(), sizeof(Candidate),
+           [&](std::size_t count) { m_narrowPhase.reserveIntersections(device, count); });
+    if (again) m_narrowPhase.clearSlots(device);
+    return again;
+}
+
+bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResult& result)
+{
+    result = StepResult();
+    m_device->wait();
+    while (!m_device->failed() && grow())
+    {
+        if (m_limitReached) return false;
+        ++result.m_retries;
+        enqueueStep(scene, pairs);
+        m_device->wait();
+    }
+    if (m_device->failed()) return false;
+    readAll(scene, result);
+    return !m_device->failed();
+}
+
+void DeviceBackend::readAll(const Scene&, StepResult& result)
+{
+    const StepCounters counters = *m_countersRead.data();
+    result.m_candidates = counters.m_candidates;
+    result.m_invalidNodes = counters.m_invalidNodes;
+    result.m_intersectionCount = counters.m_intersections;
+    if (m_settings.m_reportIntersections)
+    {
+        result.m_intersections.resize(counters.m_intersections);
+        m_narrowPhase.intersections().read(*m_device, result.m_intersections.data(), counters.m_intersections);
+    }
+    Buffer<Contact>& source = m_settings.m_allContacts ? m_narrowPhase.hits() : m_narrowPhase.contacts();
+    const std::size_t count = m_settings.m_allContacts ? counters.m_hits : counters.m_contacts;
+    const bool inHand = !m_settings.m_allContacts && count <= m_contactsAsked;
+    if (!inHand)
+    {
+        m_contactsRead.reserve(m_device.get(), withHeadroom(count));
+        source.read(*m_device, m_contactsRead.data(), count);
+    }
+    if (!inHand || m_settings.m_reportIntersections) m_device->wait();
+    result.m_contacts.assign(m_contactsRead.data(), m_contactsRead.data() + count);
+    m_contactsAsked = std::min({withHeadroom(count), m_contactsRead.capacity(), m_narrowPhase.contacts().capacity()});
+    if (m_settings.m_allContacts) sortContacts(result.m_contacts);
+    sortCandidates(result.m_intersections);
+}
+}  // namespace drape

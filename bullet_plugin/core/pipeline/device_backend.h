@@ -1,0 +1,80 @@
+// The step on an OpenCL device: one submission, one wait. A buffer that turns out too small grows and the step runs again.
+#pragma once
+
+#include <memory>
+
+#include "bullet_plugin/core/broad_phase/broad_phase.h"
+#include "bullet_plugin/core/bvh/morton_order.h"
+#include "bullet_plugin/core/bvh/refit.h"
+#include "drape/settings.h"
+#include "step.h"
+
+namespace drape
+{
+class DeviceBackend
+{
+public:
+    // Builds the kernels and runs each once. On failure device().failed() tells and the error holds the log.
+    DeviceBackend(std::unique_ptr<Device> device, const Settings& settings);
+    ~DeviceBackend();
+
+    Device& device() { return *m_device; }
+    bool fromCache() const { return m_fromCache; }
+
+    // See morton_order.h.
+    std::vector<std::uint32_t> order(const std::vector<Triangle>& triangles, const float* positions,
+                                     std::size_t vertexCount);
+
+    // Returns after enqueueing. The scene and the pairs must stay as they are until finish().
+    void submit(const Scene& scene, const StepPairs& pairs);
+    // Waits. False when the device failed or cannot hold what the step needs (then limitReached()).
+    bool finish(const Scene& scene, const StepPairs& pairs, StepResult& result);
+    bool limitReached() const { return m_limitReached; }
+
+private:
+    // One side's data on the device.
+    struct Side
+    {
+        Buffer<BvhNode> m_nodes;
+        Buffer<cl_uint> m_order;
+        Buffer<Triangle> m_triangles;
+        Buffer<float> m_radius;
+        RefitStage::Levels m_levels;
+        std::uint32_t m_revision = 0;
+    };
+
+    cl::Program program(const char* name);
+    void warmUp();
+    void uploadSide(const MeshPool& pool, const BvhLayout& layout, Side& side);
+    void updateTopology(const Scene& scene);
+    void updateObstacles(const Scene& scene);
+    void uploadStep(const Scene& scene, const StepPairs& pairs);
+    void enqueueStep(const Scene& scene, const StepPairs& pairs);
+    NarrowPhaseBuffers narrowPhaseBuffers();
+    // Makes room for what the last run demanded. Returns whether the step must run again.
+    bool grow();
+    void readAll(const Scene& scene, StepResult& result);
+
+    std::unique_ptr<Device> m_device;
+    Settings m_settings;
+    bool m_fromCache = true;
+    bool m_limitReached = false;
+
+    RefitStage m_refit;
+    MortonOrderStage m_mortonOrder;
+    BroadPhaseStage m_broadPhase;
+    NarrowPhaseStage m_narrowPhase;
+
+    Side m_cloth, m_obstacle;
+    Buffer<float> m_clothStart, m_clothEnd, m_obstaclePositions, m_thickness;
+    Buffer<Edge> m_clothEdges;
+    Buffer<NormalCone> m_vertexCones, m_edgeCones;
+    Buffer<Candidate> m_candidates;
+    Buffer<StepCounters> m_counters;
+    Staging<StepCounters> m_countersRead;
+    Staging<Contact> m_contactsRead;
+    std::size_t m_contactsAsked = 0;
+    std::vector<float> m_sentThickness, m_sentRadius;
+    std::uint32_t m_obstacleMotion = 0;
+};
+}  // namespace drape

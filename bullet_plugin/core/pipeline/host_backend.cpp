@@ -1,0 +1,59 @@
+#include "host_backend.h"
+
+#include "bullet_plugin/core/broad_phase/broad_phase.h"
+#include "bullet_plugin/core/bvh/refit.h"
+
+namespace drape
+{
+void HostBackend::update(const Scene& scene)
+{
+    if (m_clothRevision != scene.m_cloths.revision())
+    {
+        m_clothRevision = scene.m_cloths.revision();
+        m_clothNodes = makeBvhNodes(scene.m_clothLayout);
+        m_reduction.resize(scene.slotCount());
+    }
+    const bool newObstacles = m_obstacleRevision != scene.m_obstacles.revision();
+    if (newObstacles)
+    {
+        m_obstacleRevision = scene.m_obstacles.revision();
+        m_obstacleNodes = makeBvhNodes(scene.m_obstacleLayout);
+    }
+    if (newObstacles || m_obstacleMotion != scene.m_obstacleMotion)
+    {
+        m_obstacleMotion = scene.m_obstacleMotion;
+        const float* positions = scene.m_obstaclePositions.data();
+        const std::vector<float> noRadius(scene.m_obstacles.meshCount(), 0.0f);
+        std::size_t ignored = 0;  // the adapter reports bad obstacles when it mirrors them
+        refitOnHost(m_obstacleNodes, scene.m_obstacleLayout, scene.m_obstacles.order(), scene.m_obstacles.triangles(),
+                    positions, positions, noRadius, ignored);
+    }
+}
+
+void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result)
+{
+    update(scene);
+    const MeshPool& cloths = scene.m_cloths;
+    const MeshPool& obstacles = scene.m_obstacles;
+    result = StepResult();
+    refitOnHost(m_clothNodes, scene.m_clothLayout, cloths.order(), cloths.triangles(), scene.m_clothStart.data(),
+                scene.m_clothEnd.data(), pairs.m_clothRadius, result.m_invalidNodes);
+    broadPhaseOnHost({m_clothNodes, scene.m_clothLayout, cloths.order(), cloths.triangles()},
+                     {m_obstacleNodes, scene.m_obstacleLayout, obstacles.order(), obstacles.triangles()},
+                     pairs.m_thickness, obstacles.meshCount(), m_candidates);
+    result.m_candidates = m_candidates.size();
+    const ClothView cloth = {scene.m_clothStart.data(),
+                             scene.m_clothEnd.data(),
+                             cloths.triangles().data(),
+                             cloths.edges().data(),
+                             std::uint32_t(cloths.vertexCount()),
+                             std::uint32_t(cloths.triangles().size())};
+    const ObstacleView obstacle = {scene.m_obstaclePositions.data(), obstacles.triangles().data(),
+                                   scene.m_vertexCones.data(), scene.m_edgeCones.data()};
+    const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacles.meshCount(), 1.0f + settings.m_activation,
+                                        settings.m_allContacts};
+    narrowPhaseOnHost(m_candidates, cloth, obstacle, narrow, m_reduction, result.m_contacts);
+    if (settings.m_reportIntersections) intersectOnHost(m_candidates, cloth, obstacle, result.m_intersections);
+    result.m_intersectionCount = result.m_intersections.size();
+}
+}  // namespace drape

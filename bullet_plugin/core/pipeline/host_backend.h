@@ -1,0 +1,23 @@
+// The step on the calling thread, with the kernels' own pure functions. Needs no OpenCL device.
+#pragma once
+
+#include "drape/settings.h"
+#include "step.h"
+
+namespace drape
+{
+class HostBackend
+{
+public:
+    // Runs the whole step.
+    void run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
+
+private:
+    void update(const Scene& scene);
+
+    std::vector<BvhNode> m_clothNodes, m_obstacleNodes;
+    std::vector<Candidate> m_candidates;
+    ContactReduction m_reduction;
+    std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0, m_obstacleMotion = 0;
+};
+}  // namespace drape

@@ -1,0 +1,341 @@
+#include "bullet_plugin/core/pipeline.h"
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+
+#include "bullet_plugin/core/mesh/normal_cones.h"
+#include "device_backend.h"
+#include "host_backend.h"
+
+namespace drape
+{
+namespace
+{
+using Clock = std::chrono::steady_clock;
+
+double millisecondsSince(Clock::time_point start)
+{
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+struct Pair
+{
+    MeshId m_cloth;
+    MeshId m_obstacle;
+    float m_thickness;
+};
+}  // namespace
+
+struct Pipeline::Implementation
+{
+    Settings m_settings;
+    DeviceReport m_report;
+    Error m_error;
+    Scene m_scene;  // before the back ends: they may still read its memory while they end
+    std::unique_ptr<DeviceBackend> m_deviceBackend;
+    HostBackend m_hostBackend;
+    std::vector<Pair> m_pairs;
+    StepPairs m_stepPairs;
+    StepResult m_result;
+    StepStatistics m_statistics;
+    MeshId m_nextId = 0;
+    std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
+    bool m_submitted = false;
+
+    Device* device() { return m_deviceBackend ? &m_deviceBackend->device() : nullptr; }
+    PooledMesh makeMesh(const MeshDescription& description);
+    void joinScene();
+    void joinObstacles();
+    void collectPairs();
+    void leaveDevice();
+    void runOnHost();
+};
+
+PooledMesh Pipeline::Implementation::makeMesh(const MeshDescription& description)
+{
+    PooledMesh mesh;
+    mesh.m_id = m_nextId++;
+    mesh.m_topology = buildTopology(description.m_triangles, description.m_triangleCount, description.m_vertexCount);
+    mesh.m_positions.assign(description.m_positions, description.m_positions + 3 * description.m_vertexCount);
+    if (m_deviceBackend)
+    {
+        mesh.m_order = m_deviceBackend->order(mesh.m_topology.m_triangles, mesh.m_positions.data(), description.m_vertexCount);
+        if (m_deviceBackend->device().failed()) leaveDevice();
+    }
+    if (mesh.m_order.size() != mesh.m_topology.m_triangles.size())
+    {
+        mesh.m_order = mortonOrderOnHost(mesh.m_topology.m_triangles, mesh.m_positions.data());
+    }
+    return mesh;
+}
+
+void Pipeline::Implementation::joinObstacles()
+{
+    MeshPool& pool = m_scene.m_obstacles;
+    m_scene.m_obstaclePositions.clear();
+    m_scene.m_vertexCones.clear();
+    m_scene.m_edgeCones.clear();
+    for (std::size_t slot = 0; slot < pool.meshCount(); ++slot)
+    {
+        const PooledMesh& mesh = pool.mesh(slot);
+        m_scene.m_obstaclePositions.insert(m_scene.m_obstaclePositions.end(), mesh.m_positions.begin(), mesh.m_positions.end());
+        m_scene.m_vertexCones.insert(m_scene.m_vertexCones.end(), mesh.m_vertexCones.begin(), mesh.m_vertexCones.end());
+        m_scene.m_edgeCones.insert(m_scene.m_edgeCones.end(), mesh.m_edgeCones.begin(), mesh.m_edgeCones.end());
+    }
+}
+
+void Pipeline::Implementation::joinScene()
+{
+    MeshPool& cloths = m_scene.m_cloths;
+    MeshPool& obstacles = m_scene.m_obstacles;
+    cloths.update();
+    obstacles.update();
+    if (m_clothRevision != cloths.revision())
+    {
+        m_clothRevision = cloths.revision();
+        m_scene.m_clothLayout = makeBvhLayout(std::uint32_t(cloths.order().size()));
+        m_scene.m_clothStart.reserve(device(), 3 * cloths.vertexCount());
+        m_scene.m_clothEnd.reserve(device(), 3 * cloths.vertexCount());
+        for (std::size_t slot = 0; slot < cloths.meshCount(); ++slot)
+        {
+            const PooledMesh& mesh = cloths.mesh(slot);
+            for (float* target : {m_scene.m_clothStart.data(), m_scene.m_clothEnd.data()})
+            {
+                std::copy(mesh.m_positions.begin(), mesh.m_positions.end(), target + 3 * std::size_t(mesh.m_firstVertex));
+            }
+        }
+    }
+    if (m_obstacleRevision != obstacles.revision())
+    {
+        m_obstacleRevision = obstacles.revision();
+        m_scene.m_obstacleLayout = makeBvhLayout(std::uint32_t(obstacles.order().size()));
+        joinObstacles();
+    }
+}
+
+void Pipeline::Implementation::collectPairs()
+{
+    const std::size_t obstacleMeshes = m_scene.m_obstacles.meshCount();
+    m_stepPairs.m_thickness.assign(m_scene.m_cloths.meshCount() * obstacleMeshes, -1.0f);
+    m_stepPairs.m_clothRadius.assign(m_scene.m_cloths.meshCount(), -1.0f);
+    m_stepPairs.m_any = false;
+    for (const Pair& pair : m_pairs)
+    {
+        const std::size_t cloth = m_scene.m_cloths.slot(pair.m_cloth);
+        const std::size_t obstacle = m_scene.m_obstacles.slot(pair.m_obstacle);
+        assert(cloth < m_scene.m_cloths.meshCount() && obstacle < obstacleMeshes && pair.m_thickness > 0.0f);
+        m_stepPairs.m_thickness[cloth * obstacleMeshes + obstacle] = pair.m_thickness;
+        float& radius = m_stepPairs.m_clothRadius[cloth];
+        radius = std::max(radius, pair.m_thickness * (1.0f + m_settings.m_activation));
+        m_stepPairs.m_any = true;
+    }
+    m_pairs.clear();
+    const std::size_t clothTriangles = m_scene.m_cloths.triangles().size();
+    const std::size_t obstacleTriangles = m_scene.m_obstacles.triangles().size();
+    m_statistics.m_clothTriangles = clothTriangles;
+    m_statistics.m_obstacleTriangles = obstacleTriangles;
+    if (clothTriangles == 0 || obstacleTriangles == 0) m_stepPairs.m_any = false;
+}
+
+// After a failure everything goes on, on the host.
+void Pipeline::Implementation::leaveDevice()
+{
+    m_error = m_deviceBackend->device().error();
+    m_report.m_reason = "the host, since " + m_report.m_device.m_name + " failed: " + m_error.m_call;
+    m_report.m_onHost = true;
+    m_report.m_device = DeviceInfo();
+    m_report.m_device.m_name = "host";
+    m_statistics.m_status |= kStepDeviceFailed;
+    // The backend stays: the scene's pinned memory is its context's.
+}
+
+void Pipeline::Implementation::runOnHost()
+{
+    m_hostBackend.run(m_scene, m_stepPairs, m_settings, m_result);
+}
+
+Pipeline::Pipeline() : m_implementation(new Implementation) {}
+Pipeline::~Pipeline() = default;
+
+std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& error)
+{
+    const Clock::time_point start = Clock::now();
+    error = Error();
+    const DeviceChoice choice = chooseDevice(settings, error);
+    if (error.failed()) return nullptr;
+    std::unique_ptr<Pipeline> pipeline(new Pipeline);
+    Implementation& self = *pipeline->m_implementation;
+    self.m_settings = settings;
+    self.m_report.m_reason = choice.m_reason;
+    self.m_report.m_device.m_name = "host";
+    self.m_report.m_onHost = choice.m_onHost;
+    if (choice.m_onHost) return pipeline;
+    std::unique_ptr<Device> device = Device::open(choice.m_index, error);
+    if (!device) return nullptr;
+    self.m_report.m_device = device->info();
+    self.m_deviceBackend.reset(new DeviceBackend(std::move(device), settings));
+    if (self.m_deviceBackend->device().failed())
+    {
+        error = self.m_deviceBackend->device().error();
+        return nullptr;
+    }
+    self.m_report.m_fromCache = self.m_deviceBackend->fromCache();
+    self.m_report.m_buildMs = millisecondsSince(start);
+    return pipeline;
+}
+
+const DeviceReport& Pipeline::deviceReport() const { return m_implementation->m_report; }
+
+MeshId Pipeline::addCloth(const MeshDescription& description)
+{
+    PooledMesh mesh = m_implementation->makeMesh(description);
+    const MeshId id = mesh.m_id;
+    m_implementation->m_scene.m_cloths.add(std::move(mesh));
+    return id;
+}
+
+MeshId Pipeline::addObstacle(const MeshDescription& description)
+{
+    PooledMesh mesh = m_implementation->makeMesh(description);
+    const MeshId id = mesh.m_id;
+    computeNormalCones(mesh.m_topology, mesh.m_positions.data(), mesh.m_vertexCones, mesh.m_edgeCones);
+    m_implementation->m_scene.m_obstacles.add(std::move(mesh));
+    return id;
+}
+
+void Pipeline::remove(MeshId id)
+{
+    assert(!m_implementation->m_submitted);
+    Scene& scene = m_implementation->m_scene;
+    if (!scene.m_cloths.remove(id)) scene.m_obstacles.remove(id);
+}
+
+void Pipeline::moveObstacle(MeshId id, const float* positions)
+{
+    Scene& scene = m_implementation->m_scene;
+    m_implementation->joinScene();
+    PooledMesh& mesh = scene.m_obstacles.mesh(scene.m_obstacles.slot(id));
+    std::copy(positions, positions + mesh.m_positions.size(), mesh.m_positions.begin());
+    computeNormalCones(mesh.m_topology, mesh.m_positions.data(), mesh.m_vertexCones, mesh.m_edgeCones);
+    ++scene.m_obstacleMotion;
+    m_implementation->joinObstacles();
+}
+
+float* Pipeline::clothStart(MeshId id)
+{
+    m_implementation->joinScene();
+    Scene& scene = m_implementation->m_scene;
+    return scene.m_clothStart.data() + 3 * std::size_t(scene.m_cloths.mesh(scene.m_cloths.slot(id)).m_firstVertex);
+}
+
+float* Pipeline::clothEnd(MeshId id)
+{
+    m_implementation->joinScene();
+    Scene& scene = m_implementation->m_scene;
+    return scene.m_clothEnd.data() + 3 * std::size_t(scene.m_cloths.mesh(scene.m_cloths.slot(id)).m_firstVertex);
+}
+
+void Pipeline::addPair(MeshId cloth, MeshId obstacle, float thickness)
+{
+    m_implementation->m_pairs.push_back(Pair{cloth, obstacle, thickness});
+}
+
+void Pipeline::submit()
+{
+    Implementation& self = *m_implementation;
+    const Clock::time_point start = Clock::now();
+    self.m_statistics = StepStatistics();
+    self.joinScene();
+    self.collectPairs();
+    self.m_submitted = true;
+    if (self.m_stepPairs.m_any && !self.m_report.m_onHost) self.m_deviceBackend->submit(self.m_scene, self.m_stepPairs);
+    self.m_statistics.m_uploadMs = millisecondsSince(start);
+}
+
+const std::vector<Contact>& Pipeline::finish()
+{
+    Implementation& self = *m_implementation;
+    const Clock::time_point start = Clock::now();
+    StepStatistics& statistics = self.m_statistics;
+    if (!self.m_stepPairs.m_any || !self.m_submitted)
+    {
+        self.m_result = StepResult();
+        statistics.m_skipped = true;
+    }
+    else if (self.m_report.m_onHost)
+    {
+        self.runOnHost();
+    }
+    else if (!self.m_deviceBackend->finish(self.m_scene, self.m_stepPairs, self.m_result))
+    {
+        if (self.m_deviceBackend->limitReached()) statistics.m_status |= kStepContactLimit;
+        if (self.m_deviceBackend->device().failed()) self.leaveDevice();
+        self.runOnHost();
+    }
+    self.m_submitted = false;
+    statistics.m_candidates = self.m_result.m_candidates;
+    statistics.m_contacts = self.m_result.m_contacts.size();
+    statistics.m_intersections = self.m_result.m_intersectionCount;
+    statistics.m_invalidNodes = self.m_result.m_invalidNodes;
+    statistics.m_retries = self.m_result.m_retries;
+    if (statistics.m_invalidNodes > 0) statistics.m_status |= kStepInvalidNodes;
+    statistics.m_waitMs = millisecondsSince(start);
+    return self.m_result.m_contacts;
+}
+
+const StepStatistics& Pipeline::statistics() const { return m_implementation->m_statistics; }
+const Error& Pipeline::lastError() const { return m_implementation->m_error; }
+
+ContactView Pipeline::view(const Contact& contact) const
+{
+    const Implementation& self = *m_implementation;
+    const MeshPool& cloths = self.m_scene.m_cloths;
+    const MeshPool& obstacles = self.m_scene.m_obstacles;
+    ContactView view;
+    view.m_kind = contact.m_kind;
+    std::size_t clothSlot = 0, obstacleSlot = 0;
+    std::uint32_t nodes[3] = {~0u, ~0u, ~0u};
+    if (contact.m_kind == DRAPE_NODE_FACE)
+    {
+        clothSlot = cloths.slotOfVertex(contact.m_clothFeature);
+        obstacleSlot = obstacles.triangles()[contact.m_obstacleFeature].m_mesh;
+        nodes[0] = contact.m_clothFeature;
+    }
+    else if (contact.m_kind == DRAPE_FACE_VERTEX)
+    {
+        const Triangle& triangle = cloths.triangles()[contact.m_clothFeature];
+        clothSlot = triangle.m_mesh;
+        obstacleSlot = obstacles.slotOfVertex(contact.m_obstacleFeature);
+        std::copy(triangle.m_vertices, triangle.m_vertices + 3, nodes);
+    }
+    else
+    {
+        clothSlot = cloths.slotOfEdge(contact.m_clothFeature);
+        obstacleSlot = obstacles.slotOfEdge(contact.m_obstacleFeature);
+        std::copy(cloths.edges()[contact.m_clothFeature].m_vertices, cloths.edges()[contact.m_clothFeature].m_vertices + 2, nodes);
+    }
+    const PooledMesh& cloth = cloths.mesh(clothSlot);
+    const Topology& topology = cloth.m_topology;
+    const std::uint32_t kept = contact.m_kind == DRAPE_NODE_FACE
+                                   ? topology.m_vertexTriangle[contact.m_clothFeature - cloth.m_firstVertex]
+                                   : contact.m_kind == DRAPE_FACE_VERTEX
+                                         ? contact.m_clothFeature - cloth.m_firstTriangle
+                                         : topology.m_edgeTriangle[contact.m_clothFeature - cloth.m_firstEdge];
+    view.m_triangle = std::int32_t(topology.m_sourceTriangle[kept]);
+    view.m_cloth = cloth.m_id;
+    view.m_obstacle = obstacles.mesh(obstacleSlot).m_id;
+    for (int i = 0; i < 3; ++i)
+    {
+        view.m_nodes[i] = nodes[i] == ~0u ? -1 : std::int32_t(nodes[i] - cloth.m_firstVertex);
+        view.m_weights[i] = contact.m_weights[i];
+        view.m_normal[i] = contact.m_normal[i];
+        view.m_point[i] = contact.m_point[i];
+    }
+    view.m_gap0 = contact.m_gap0;
+    view.m_gap1 = contact.m_gap1;
+    view.m_time = contact.m_time;
+    view.m_thickness = self.m_stepPairs.m_thickness[clothSlot * obstacles.meshCount() + obstacleSlot];
+    return view;
+}
+}  // namespace drape

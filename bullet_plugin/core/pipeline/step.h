@@ -1,0 +1,51 @@
+// What a step reads and what it gives, common to the host and the device back end.
+#pragma once
+
+#include <vector>
+
+#include "bullet_plugin/core/bvh/bvh_layout.h"
+#include "bullet_plugin/core/device/buffer.h"
+#include "bullet_plugin/core/mesh/mesh_pool.h"
+#include "bullet_plugin/core/narrow_phase/narrow_phase.h"
+
+namespace drape
+{
+// Both sides' meshes and, per side, the data that belongs to the joined arrays.
+struct Scene
+{
+    MeshPool m_cloths;
+    MeshPool m_obstacles;
+    BvhLayout m_clothLayout;
+    BvhLayout m_obstacleLayout;
+    Staging<float> m_clothStart;  // m, x y z per joined cloth node
+    Staging<float> m_clothEnd;
+    std::vector<float> m_obstaclePositions;  // m, joined
+    std::vector<NormalCone> m_vertexCones;   // joined
+    std::vector<NormalCone> m_edgeCones;
+    std::uint32_t m_obstacleMotion = 0;  // counts up when an obstacle's positions change
+
+    std::size_t slotCount() const
+    {
+        return (m_cloths.vertexCount() + m_cloths.triangles().size() + m_cloths.edges().size()) *
+               DRAPE_CONTACT_DIRECTIONS;
+    }
+};
+
+// The pairs of one step.
+struct StepPairs
+{
+    std::vector<float> m_thickness;    // m, cloth slots × obstacle slots, -1 where there is no pair
+    std::vector<float> m_clothRadius;  // m, per cloth slot: the largest reach of its pairs, -1 without one
+    bool m_any = false;
+};
+
+struct StepResult
+{
+    std::vector<Contact> m_contacts;
+    std::vector<Candidate> m_intersections;
+    std::size_t m_candidates = 0;
+    std::size_t m_invalidNodes = 0;
+    std::size_t m_retries = 0;
+    std::size_t m_intersectionCount = 0;
+};
+}  // namespace drape

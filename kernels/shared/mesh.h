@@ -1,0 +1,71 @@
+// Topology and hierarchy records that host and device share. 32-bit scalars only, no padding.
+#ifndef DRAPE_SHARED_MESH_H
+#define DRAPE_SHARED_MESH_H
+
+#include "types.h"
+
+DRAPE_NAMESPACE_BEGIN
+
+// Bit i of Triangle::m_owned: the triangle owns its vertex i; bit 3 + i: it owns its edge i. Every vertex and edge has one
+// owner, so a feature pair is tested in exactly one pair of triangles.
+#define DRAPE_OWNS_VERTEX(i) (1u << (i))
+#define DRAPE_OWNS_EDGE(i) (8u << (i))
+
+typedef struct Triangle
+{
+    DRAPE_UINT m_vertices[3];  // over all meshes of the side
+    DRAPE_UINT m_edges[3];     // edge i joins vertices i and (i + 1) % 3
+    DRAPE_UINT m_owned;
+    DRAPE_UINT m_mesh;  // slot of the mesh in this side's pool
+} Triangle;
+
+// An edge and the third vertices of two triangles that share it (both the same for a boundary edge).
+typedef struct Edge
+{
+    DRAPE_UINT m_vertices[2];
+    DRAPE_UINT m_opposite[2];
+} Edge;
+
+// Directions in which a surface can face at a vertex or edge: all within the half-angle of the axis or of its opposite.
+// A cosine of -1 admits every direction (boundary, non-manifold or degenerate surroundings).
+typedef struct NormalCone
+{
+    Vec3 m_axis;     // unit
+    float m_cosine;  // of the half-angle
+} NormalCone;
+
+#define DRAPE_DOP_DIRECTIONS 9
+
+// A node's volume is the interval [m_low, m_high] in each direction. Children are adjacent: m_first … m_first + m_count - 1.
+// A leaf has m_count 0 and m_first is its place in the order of primitives.
+typedef struct BvhNode
+{
+    float m_low[DRAPE_DOP_DIRECTIONS];
+    float m_high[DRAPE_DOP_DIRECTIONS];
+    DRAPE_UINT m_first;
+    DRAPE_UINT m_count;
+} BvhNode;
+
+// Depth of a traversal's stack: a binary hierarchy over 2^32 primitives needs 32.
+#define DRAPE_STACK_DEPTH 40
+
+typedef struct Candidate
+{
+    DRAPE_UINT m_cloth;     // triangle
+    DRAPE_UINT m_obstacle;  // triangle
+} Candidate;
+
+// What a step counts on the device. Demands count on when a buffer is full, so the host learns the true size.
+typedef struct StepCounters
+{
+    DRAPE_UINT m_candidates;
+    DRAPE_UINT m_hits;
+    DRAPE_UINT m_contacts;
+    DRAPE_UINT m_invalidNodes;
+    DRAPE_UINT m_intersections;
+    DRAPE_UINT m_reserved[3];
+} StepCounters;
+
+DRAPE_NAMESPACE_END
+
+#endif

@@ -1,0 +1,36 @@
+// Spelling of the shared declarations in C++ and OpenCL C. In C++ they live in namespace drape.
+#ifndef DRAPE_SHARED_TYPES_H
+#define DRAPE_SHARED_TYPES_H
+
+#ifdef __OPENCL_VERSION__
+#define DRAPE_UINT uint
+#define DRAPE_INT int
+#define DRAPE_GLOBAL __global
+#define DRAPE_FUNCTION static inline
+#define DRAPE_NAMESPACE_BEGIN
+#define DRAPE_NAMESPACE_END
+#else
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#define DRAPE_UINT std::uint32_t
+#define DRAPE_INT std::int32_t
+#define DRAPE_GLOBAL
+#define DRAPE_FUNCTION inline
+#define DRAPE_NAMESPACE_BEGIN \
+    namespace drape           \
+    {
+#define DRAPE_NAMESPACE_END }
+#endif
+
+DRAPE_NAMESPACE_BEGIN
+
+// Packed: OpenCL's float3 is as large as a float4.
+typedef struct Vec3
+{
+    float x, y, z;
+} Vec3;
+
+DRAPE_NAMESPACE_END
+
+#endif
