@@ -54,12 +54,15 @@ __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, con
         __global const Triangle* obstacleTriangle = obstacleTriangles + candidate.m_obstacle;
         const float reach =
             thickness[clothTriangle->m_mesh * obstacleMeshes + obstacleTriangle->m_mesh] * reachScale;
+        const uint tests = ownedTests(clothTriangle->m_owned, obstacleTriangle->m_owned);
         PairGeometry pair;
         loadPair(&pair, &cloth, clothTriangle, &obstacle, obstacleTriangle);
+        if (!preparePair(&pair, reach)) continue;
         for (int test = 0; test < DRAPE_FEATURE_TESTS; ++test)
         {
             Contact contact;
-            if (!pairContact(test, &pair, &cloth, &obstacle, candidate, reach, &contact)) continue;
+            if (!(tests & (1u << test))) continue;
+            if (!pairContact(test, &pair, &cloth, &obstacle, candidate, &contact)) continue;
             const uint rank = contactRank(contact.m_gap1);
             if (!keepAll && rank > slotRank[contact.m_slot]) continue;
             atomic_min(slotRank + contact.m_slot, rank);
@@ -118,7 +121,7 @@ __kernel void narrowPhaseIntersect(__global const Candidate* restrict candidates
         PairGeometry pair;
         loadPair(&pair, &cloth, clothTriangles + candidates[i].m_cloth, &obstacle,
                  obstacleTriangles + candidates[i].m_obstacle);
-        if (!trianglesIntersect(featureTriangle(pair.m_cloth0), featureTriangle(pair.m_obstacle))) continue;
+        if (!trianglesIntersect(pair.m_face.m_start, pair.m_resting.m_corners)) continue;
         const uint place = atomic_inc(&counters->m_intersections);
         if (place < pairCapacity) pairs[place] = candidates[i];
     }

@@ -4,6 +4,7 @@
 #define DRAPE_LIB_PAIR_CONTACT_H
 
 #include "contact_slot.h"
+#include "dop.h"
 #include "feature_contact.h"
 
 DRAPE_NAMESPACE_BEGIN
@@ -28,13 +29,13 @@ typedef struct ObstacleView
     const DRAPE_GLOBAL NormalCone* m_edgeCones;
 } ObstacleView;
 
-// The positions of one candidate, relative to the first vertex of the obstacle's triangle.
+// The positions of one candidate, relative to the first vertex of the obstacle's triangle, and what its tests share.
 typedef struct PairGeometry
 {
     Vec3 m_origin;
-    Vec3 m_cloth0[3];
-    Vec3 m_cloth1[3];
-    Vec3 m_obstacle[3];
+    MovingFace m_face;
+    RestingFace m_resting;
+    PairBounds m_bounds;
 } PairGeometry;
 
 DRAPE_FUNCTION void loadPair(PairGeometry* pair, const ClothView* cloth, const DRAPE_GLOBAL Triangle* clothTriangle,
@@ -44,86 +45,111 @@ DRAPE_FUNCTION void loadPair(PairGeometry* pair, const ClothView* cloth, const D
     for (int i = 0; i < 3; ++i)
     {
         const DRAPE_UINT node = clothTriangle->m_vertices[i];
-        pair->m_cloth0[i] = vec3Sub(vec3Load(cloth->m_start, node), pair->m_origin);
-        pair->m_cloth1[i] = vec3Sub(vec3Load(cloth->m_end, node), pair->m_origin);
-        pair->m_obstacle[i] =
+        pair->m_face.m_start.m_p[i] = vec3Sub(vec3Load(cloth->m_start, node), pair->m_origin);
+        pair->m_face.m_end.m_p[i] = vec3Sub(vec3Load(cloth->m_end, node), pair->m_origin);
+        pair->m_resting.m_corners.m_p[i] =
             vec3Sub(vec3Load(obstacle->m_positions, obstacleTriangle->m_vertices[i]), pair->m_origin);
     }
 }
 
-DRAPE_FUNCTION FeatureTriangle featureTriangle(const Vec3* p)
+// Least and greatest n·(p - base) over the candidate's cloth at the step's start and end.
+DRAPE_FUNCTION void clothInterval(const PairGeometry* pair, Vec3 n, Vec3 base, float* low, float* high)
 {
-    FeatureTriangle f;
-    f.m_a = p[0];
-    f.m_b = p[1];
-    f.m_c = p[2];
-    return f;
+    *low = DRAPE_INFINITY;
+    *high = -DRAPE_INFINITY;
+    for (int i = 0; i < 3; ++i)
+    {
+        const float s0 = vec3Dot(n, vec3Sub(pair->m_face.m_start.m_p[i], base));
+        const float s1 = vec3Dot(n, vec3Sub(pair->m_face.m_end.m_p[i], base));
+        *low = drapeMin(*low, drapeMin(s0, s1));
+        *high = drapeMax(*high, drapeMax(s0, s1));
+    }
 }
 
-DRAPE_FUNCTION FeatureEdge featureEdge(const Vec3* p, int i)
+// Prepares the tests; returns false when the obstacle's or the cloth's plane proves the whole pair out of reach.
+DRAPE_FUNCTION int preparePair(PairGeometry* pair, float reach)
 {
-    FeatureEdge e;
-    e.m_a = p[i];
-    e.m_b = p[i == 2 ? 0 : i + 1];
-    return e;
+    const FeatureTriangle resting = pair->m_resting.m_corners;
+    const FeatureTriangle start = pair->m_face.m_start, end = pair->m_face.m_end;
+    const float extent = drapeMax(drapeMax(triangleExtent(start), triangleExtent(end)), triangleExtent(resting));
+    const float slack = reach * 1.001f + DRAPE_SEAM * extent;
+    pair->m_bounds.m_extent = extent;
+    pair->m_bounds.m_reach = reach;
+    pair->m_bounds.m_reachSlack = slack;
+    float low, high;
+
+    const Vec3 area = triangleNormal(resting);
+    const float areaLength = vec3Length(area);
+    clothInterval(pair, area, resting.m_p[0], &low, &high);
+    if (low > areaLength * slack || -high > areaLength * slack) return 0;
+
+    const Vec3 endArea = triangleNormal(end);
+    const float endLength = vec3Length(endArea);
+    clothInterval(pair, endArea, end.m_p[0], &low, &high);
+    const float d0 = vec3Dot(endArea, vec3Sub(resting.m_p[0], end.m_p[0]));
+    const float d1 = vec3Dot(endArea, vec3Sub(resting.m_p[1], end.m_p[0]));
+    const float d2 = vec3Dot(endArea, vec3Sub(resting.m_p[2], end.m_p[0]));
+    if (drapeMin(drapeMin(d0, d1), d2) - high > endLength * slack) return 0;
+    if (low - drapeMax(drapeMax(d0, d1), d2) > endLength * slack) return 0;
+
+    pair->m_resting.m_area = area;
+    pair->m_resting.m_areaLength = areaLength;
+    pair->m_face.m_areaStart = triangleNormal(start);
+    pair->m_face.m_areaEnd = endArea;
+    pair->m_face.m_areaEndLength = endLength;
+    return 1;
 }
 
-// Third vertex, at the step's end, of the triangle on the other side of edge i; the triangle's own at a boundary.
-DRAPE_FUNCTION Vec3 clothBeyond(const PairGeometry* pair, const ClothView* cloth, const DRAPE_GLOBAL Triangle* triangle,
-                                int i)
+// Third vertex of the triangle on the other side of edge i; the triangle's own at a boundary.
+DRAPE_FUNCTION DRAPE_UINT vertexBeyond(const ClothView* cloth, const DRAPE_GLOBAL Triangle* triangle, int i)
 {
     const DRAPE_UINT own = triangle->m_vertices[i == 0 ? 2 : i - 1];
     const DRAPE_GLOBAL Edge* edge = cloth->m_edges + triangle->m_edges[i];
-    const DRAPE_UINT other = edge->m_opposite[0] == own ? edge->m_opposite[1] : edge->m_opposite[0];
-    return vec3Sub(vec3Load(cloth->m_end, other), pair->m_origin);
+    return edge->m_opposite[0] == own ? edge->m_opposite[1] : edge->m_opposite[0];
 }
 
 DRAPE_FUNCTION int pairNodeFace(int i, const PairGeometry* pair, const ClothView* cloth, const ObstacleView* obstacle,
-                                Candidate candidate, float reach, Contact* contact)
+                                Candidate candidate, Contact* contact)
 {
     const DRAPE_GLOBAL Triangle* triangle = cloth->m_triangles + candidate.m_cloth;
-    if (!(triangle->m_owned & DRAPE_OWNS_VERTEX(i))) return 0;
     contact->m_kind = DRAPE_NODE_FACE;
     contact->m_clothFeature = triangle->m_vertices[i];
     contact->m_obstacleFeature = candidate.m_obstacle;
     contact->m_slot = contact->m_clothFeature;
-    return nodeFaceContact(pair->m_cloth0[i], pair->m_cloth1[i], featureTriangle(pair->m_obstacle),
+    return nodeFaceContact(pair->m_face.m_start.m_p[i], pair->m_face.m_end.m_p[i], &pair->m_resting,
                            obstacle->m_triangles + candidate.m_obstacle, obstacle->m_vertexCones, obstacle->m_edgeCones,
-                           reach, contact);
+                           pair->m_bounds, contact);
 }
 
 DRAPE_FUNCTION int pairFaceVertex(int i, const PairGeometry* pair, const ClothView* cloth, const ObstacleView* obstacle,
-                                  Candidate candidate, float reach, Contact* contact)
+                                  Candidate candidate, Contact* contact)
 {
     const DRAPE_GLOBAL Triangle* clothTriangle = cloth->m_triangles + candidate.m_cloth;
     const DRAPE_GLOBAL Triangle* triangle = obstacle->m_triangles + candidate.m_obstacle;
-    if (!(triangle->m_owned & DRAPE_OWNS_VERTEX(i))) return 0;
-    FeatureTriangle beyond;
-    beyond.m_a = clothBeyond(pair, cloth, clothTriangle, 0);
-    beyond.m_b = clothBeyond(pair, cloth, clothTriangle, 1);
-    beyond.m_c = clothBeyond(pair, cloth, clothTriangle, 2);
+    DRAPE_UINT beyond[3];
+    for (int edge = 0; edge < 3; ++edge) beyond[edge] = vertexBeyond(cloth, clothTriangle, edge);
     contact->m_kind = DRAPE_FACE_VERTEX;
     contact->m_clothFeature = candidate.m_cloth;
     contact->m_obstacleFeature = triangle->m_vertices[i];
     contact->m_slot = cloth->m_nodeCount + contact->m_clothFeature;
-    return faceVertexContact(featureTriangle(pair->m_cloth0), featureTriangle(pair->m_cloth1), beyond,
-                             pair->m_obstacle[i], obstacle->m_vertexCones[triangle->m_vertices[i]], reach, contact);
+    return faceVertexContact(&pair->m_face, beyond, cloth->m_end, pair->m_origin, pair->m_resting.m_corners.m_p[i],
+                             obstacle->m_vertexCones[triangle->m_vertices[i]], pair->m_bounds, contact);
 }
 
 DRAPE_FUNCTION int pairEdgeEdge(int i, int j, const PairGeometry* pair, const ClothView* cloth,
-                                const ObstacleView* obstacle, Candidate candidate, float reach, Contact* contact)
+                                const ObstacleView* obstacle, Candidate candidate, Contact* contact)
 {
     const DRAPE_GLOBAL Triangle* clothTriangle = cloth->m_triangles + candidate.m_cloth;
     const DRAPE_GLOBAL Triangle* triangle = obstacle->m_triangles + candidate.m_obstacle;
-    if (!(clothTriangle->m_owned & DRAPE_OWNS_EDGE(i)) || !(triangle->m_owned & DRAPE_OWNS_EDGE(j))) return 0;
-    const Vec3 own = pair->m_cloth1[i == 0 ? 2 : i - 1];
+    const DRAPE_UINT opposites[2] = {cloth->m_edges[clothTriangle->m_edges[i]].m_opposite[0],
+                                     cloth->m_edges[clothTriangle->m_edges[i]].m_opposite[1]};
     contact->m_kind = DRAPE_EDGE_EDGE;
     contact->m_clothFeature = clothTriangle->m_edges[i];
     contact->m_obstacleFeature = triangle->m_edges[j];
     contact->m_slot = cloth->m_nodeCount + cloth->m_triangleCount + contact->m_clothFeature;
-    return edgeEdgeContact(featureEdge(pair->m_cloth0, i), featureEdge(pair->m_cloth1, i), own,
-                           clothBeyond(pair, cloth, clothTriangle, i), featureEdge(pair->m_obstacle, j),
-                           obstacle->m_edgeCones[triangle->m_edges[j]], reach, contact);
+    return edgeEdgeContact(triangleEdge(&pair->m_face.m_start, i), triangleEdge(&pair->m_face.m_end, i), opposites, cloth->m_end,
+                           pair->m_origin, triangleEdge(&pair->m_resting.m_corners, j),
+                           obstacle->m_edgeCones[triangle->m_edges[j]], pair->m_bounds, contact);
 }
 
 // Makes the stored weights follow the cloth edge's own direction, which its owner may walk backwards.
@@ -136,23 +162,35 @@ DRAPE_FUNCTION void orientEdgeWeights(const ClothView* cloth, Candidate candidat
     contact->m_weights[1] = first;
 }
 
-// Runs one of the candidate's feature tests, 0 ≤ test < DRAPE_FEATURE_TESTS. Returns whether it gives a contact; reach in m.
+// The tests that this pair of triangles owns, as bits.
+DRAPE_FUNCTION DRAPE_UINT ownedTests(DRAPE_UINT clothOwned, DRAPE_UINT obstacleOwned)
+{
+    const DRAPE_UINT obstacleEdges = obstacleOwned >> 3;
+    DRAPE_UINT tests = (clothOwned & 7u) | ((obstacleOwned & 7u) << 3);
+    for (int i = 0; i < 3; ++i)
+    {
+        if (clothOwned & DRAPE_OWNS_EDGE(i)) tests |= obstacleEdges << (6 + 3 * i);
+    }
+    return tests;
+}
+
+// Runs one of the candidate's feature tests, 0 ≤ test < DRAPE_FEATURE_TESTS. Returns whether it gives a contact.
 DRAPE_FUNCTION int pairContact(int test, const PairGeometry* pair, const ClothView* cloth, const ObstacleView* obstacle,
-                               Candidate candidate, float reach, Contact* contact)
+                               Candidate candidate, Contact* contact)
 {
     int found;
     if (test < 3)
     {
-        found = pairNodeFace(test, pair, cloth, obstacle, candidate, reach, contact);
+        found = pairNodeFace(test, pair, cloth, obstacle, candidate, contact);
     }
     else if (test < 6)
     {
-        found = pairFaceVertex(test - 3, pair, cloth, obstacle, candidate, reach, contact);
+        found = pairFaceVertex(test - 3, pair, cloth, obstacle, candidate, contact);
     }
     else
     {
         const int i = (test - 6) / 3;
-        found = pairEdgeEdge(i, (test - 6) % 3, pair, cloth, obstacle, candidate, reach, contact);
+        found = pairEdgeEdge(i, (test - 6) % 3, pair, cloth, obstacle, candidate, contact);
         if (found) orientEdgeWeights(cloth, candidate, i, contact);
     }
     if (!found || !drapeIsFinite(contact->m_gap1)) return 0;

@@ -10,8 +10,8 @@ DRAPE_NAMESPACE_BEGIN
 
 DRAPE_FUNCTION int axisSeparates(Vec3 n, FeatureTriangle a, FeatureTriangle b, float extent)
 {
-    const float a0 = vec3Dot(n, a.m_a), a1 = vec3Dot(n, a.m_b), a2 = vec3Dot(n, a.m_c);
-    const float b0 = vec3Dot(n, b.m_a), b1 = vec3Dot(n, b.m_b), b2 = vec3Dot(n, b.m_c);
+    const float a0 = vec3Dot(n, a.m_p[0]), a1 = vec3Dot(n, a.m_p[1]), a2 = vec3Dot(n, a.m_p[2]);
+    const float b0 = vec3Dot(n, b.m_p[0]), b1 = vec3Dot(n, b.m_p[1]), b2 = vec3Dot(n, b.m_p[2]);
     const float lowA = drapeMin(drapeMin(a0, a1), a2), highA = drapeMax(drapeMax(a0, a1), a2);
     const float lowB = drapeMin(drapeMin(b0, b1), b2), highB = drapeMax(drapeMax(b0, b1), b2);
     const float gap = drapeMax(lowA - highB, lowB - highA);
@@ -23,8 +23,8 @@ DRAPE_FUNCTION int trianglesIntersect(FeatureTriangle a, FeatureTriangle b)
 {
     const float extent = drapeMax(triangleExtent(a), triangleExtent(b));
     const Vec3 normals[2] = {triangleNormal(a), triangleNormal(b)};
-    const Vec3 edgesA[3] = {vec3Sub(a.m_b, a.m_a), vec3Sub(a.m_c, a.m_b), vec3Sub(a.m_a, a.m_c)};
-    const Vec3 edgesB[3] = {vec3Sub(b.m_b, b.m_a), vec3Sub(b.m_c, b.m_b), vec3Sub(b.m_a, b.m_c)};
+    const Vec3 edgesA[3] = {vec3Sub(a.m_p[1], a.m_p[0]), vec3Sub(a.m_p[2], a.m_p[1]), vec3Sub(a.m_p[0], a.m_p[2])};
+    const Vec3 edgesB[3] = {vec3Sub(b.m_p[1], b.m_p[0]), vec3Sub(b.m_p[2], b.m_p[1]), vec3Sub(b.m_p[0], b.m_p[2])};
     if (axisSeparates(normals[0], a, b, extent) || axisSeparates(normals[1], a, b, extent)) return 0;
     for (int i = 0; i < 3; ++i)
     {

@@ -54,12 +54,15 @@ void narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView
         const float reach =
             settings.m_thickness[clothTriangle->m_mesh * settings.m_obstacleMeshes + obstacleTriangle->m_mesh] *
             settings.m_reachScale;
+        const std::uint32_t tests = ownedTests(clothTriangle->m_owned, obstacleTriangle->m_owned);
         PairGeometry pair;
         loadPair(&pair, &cloth, clothTriangle, &obstacle, obstacleTriangle);
+        if (!preparePair(&pair, reach)) continue;
         for (int test = 0; test < DRAPE_FEATURE_TESTS; ++test)
         {
             Contact contact;
-            if (!pairContact(test, &pair, &cloth, &obstacle, candidate, reach, &contact)) continue;
+            if (!(tests & (1u << test))) continue;
+            if (!pairContact(test, &pair, &cloth, &obstacle, candidate, &contact)) continue;
             if (settings.m_allContacts)
             {
                 contacts.push_back(contact);
@@ -89,7 +92,7 @@ void intersectOnHost(const std::vector<Candidate>& candidates, const ClothView& 
         PairGeometry pair;
         loadPair(&pair, &cloth, cloth.m_triangles + candidate.m_cloth, &obstacle,
                  obstacle.m_triangles + candidate.m_obstacle);
-        if (trianglesIntersect(featureTriangle(pair.m_cloth0), featureTriangle(pair.m_obstacle))) pairs.push_back(candidate);
+        if (trianglesIntersect(pair.m_face.m_start, pair.m_resting.m_corners)) pairs.push_back(candidate);
     }
     sortCandidates(pairs);
 }
