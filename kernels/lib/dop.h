@@ -63,15 +63,6 @@ DRAPE_FUNCTION void dopStore(DRAPE_GLOBAL BvhNode* node, const Dop* dop)
     }
 }
 
-DRAPE_FUNCTION void dopLoad(Dop* dop, const DRAPE_GLOBAL BvhNode* node)
-{
-    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
-    {
-        dop->m_low[i] = node->m_low[i];
-        dop->m_high[i] = node->m_high[i];
-    }
-}
-
 // Recomputes the volume of an inner node from its children.
 DRAPE_FUNCTION void dopMergeChildren(DRAPE_GLOBAL BvhNode* nodes, DRAPE_UINT index)
 {
@@ -90,7 +81,7 @@ DRAPE_FUNCTION void dopMergeChildren(DRAPE_GLOBAL BvhNode* nodes, DRAPE_UINT ind
 }
 
 // Not proved separate. An empty volume (+∞, -∞) overlaps nothing; volumes never hold NaN (see triangleVolume).
-DRAPE_FUNCTION int dopOverlaps(const Dop* a, const DRAPE_GLOBAL BvhNode* b)
+DRAPE_FUNCTION int nodesOverlap(const DRAPE_GLOBAL BvhNode* a, const DRAPE_GLOBAL BvhNode* b)
 {
     int separate = 0;
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
@@ -98,6 +89,19 @@ DRAPE_FUNCTION int dopOverlaps(const Dop* a, const DRAPE_GLOBAL BvhNode* b)
         separate |= (a->m_low[i] > b->m_high[i]) | (a->m_high[i] < b->m_low[i]);
     }
     return !separate;
+}
+
+DRAPE_FUNCTION float nodeExtent(const DRAPE_GLOBAL BvhNode* node)
+{
+    return (node->m_high[0] - node->m_low[0]) + (node->m_high[1] - node->m_low[1]) + (node->m_high[2] - node->m_low[2]);
+}
+
+// Of two overlapping nodes that are not both leaves, whether a traversal opens a: the larger one, so that both sides shrink
+// together.
+DRAPE_FUNCTION int opensFirst(const DRAPE_GLOBAL BvhNode* a, const DRAPE_GLOBAL BvhNode* b)
+{
+    if (a->m_count == 0) return 0;
+    return b->m_count == 0 || nodeExtent(a) > nodeExtent(b);
 }
 
 // Volume of a triangle over a step of linear motion, grown by the radius. Leaves the volume empty when a position is NaN

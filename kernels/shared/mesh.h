@@ -46,8 +46,9 @@ typedef struct BvhNode
     DRAPE_UINT m_count;
 } BvhNode;
 
-// Depth of a traversal's stack: a binary hierarchy over 2^32 primitives needs 32.
-#define DRAPE_STACK_DEPTH 40
+// Depth of a traversal's stack. Each step opens one node of a pair and leaves at most one pair behind, and two binary
+// hierarchies over fewer than 2^32 primitives have 64 heights together.
+#define DRAPE_STACK_DEPTH 72
 
 typedef struct Candidate
 {

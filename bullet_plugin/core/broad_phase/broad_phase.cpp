@@ -6,38 +6,31 @@ namespace drape
 {
 namespace
 {
-constexpr std::size_t kGroup = 64;
-// Work-items that fill one compute unit of a GPU; a leaf's traversal is split among subtrees until there are that many.
-constexpr std::size_t kItemsPerUnit = 1024;
+constexpr std::size_t kGroup = 32;
+// Work-items that keep one compute unit busy: a GPU hides latency with many, a CPU evens out unequal subtrees with some.
+constexpr std::size_t kItemsPerUnitGpu = 1024;
+constexpr std::size_t kItemsPerUnitCpu = 128;
 
-void traverseOnHost(const Dop& dop, std::uint32_t cloth, const BroadPhaseSide& obstacle, const float* pairs,
-                    std::vector<Candidate>& candidates)
+struct NodePair
 {
-    std::uint32_t stack[DRAPE_STACK_DEPTH];
-    std::uint32_t depth = 0;
-    stack[depth++] = obstacle.m_layout.root();
-    while (depth > 0)
-    {
-        const BvhNode& node = obstacle.m_nodes[stack[--depth]];
-        if (!dopOverlaps(&dop, &node)) continue;
-        if (node.m_count > 0)
-        {
-            for (std::uint32_t i = node.m_count; i > 0; --i) stack[depth++] = node.m_first + i - 1;
-            continue;
-        }
-        const std::uint32_t triangle = obstacle.m_order[node.m_first];
-        if (pairs[obstacle.m_triangles[triangle].m_mesh] >= 0.0f) candidates.push_back(Candidate{cloth, triangle});
-    }
-}
+    std::uint32_t m_cloth;
+    std::uint32_t m_obstacle;
+};
 
-// The height at which traversals start: the root on a CPU, on a GPU the first with enough subtrees to fill it.
-std::size_t startHeight(const Device& device, const BvhLayout& cloth, const BvhLayout& obstacle)
+// The heights whose node pairs are the traversals' starts: down from the roots until there are enough, cloth first.
+struct StartHeights
 {
-    std::size_t height = obstacle.m_heights.size() - 1;
-    if (!device.isGpu()) return height;
-    const std::size_t wanted = kItemsPerUnit * device.computeUnits();
-    while (height > 0 && std::size_t(cloth.leafCount()) * obstacle.m_heights[height].m_count < wanted) --height;
-    return height;
+    BvhHeight m_cloth;
+    BvhHeight m_obstacle;
+};
+
+StartHeights startHeights(const Device& device, const BvhLayout& cloth, const BvhLayout& obstacle)
+{
+    const std::size_t wanted = device.computeUnits() * (device.isGpu() ? kItemsPerUnitGpu : kItemsPerUnitCpu);
+    std::size_t a = cloth.m_heights.size() - 1, b = obstacle.m_heights.size() - 1;
+    while (a > 0 && cloth.m_heights[a].m_count < wanted) --a;
+    while (b > 0 && std::size_t(cloth.m_heights[a].m_count) * obstacle.m_heights[b].m_count < wanted) --b;
+    return {cloth.m_heights[a], obstacle.m_heights[b]};
 }
 }  // namespace
 
@@ -45,14 +38,32 @@ void broadPhaseOnHost(const BroadPhaseSide& cloth, const BroadPhaseSide& obstacl
                       std::size_t obstacleMeshes, std::vector<Candidate>& candidates)
 {
     candidates.clear();
-    if (obstacle.m_layout.nodeCount() == 0) return;
-    for (std::uint32_t leaf = 0; leaf < cloth.m_layout.leafCount(); ++leaf)
+    if (cloth.m_layout.nodeCount() == 0 || obstacle.m_layout.nodeCount() == 0) return;
+    NodePair stack[DRAPE_STACK_DEPTH];
+    std::uint32_t depth = 0;
+    stack[depth++] = NodePair{cloth.m_layout.root(), obstacle.m_layout.root()};
+    while (depth > 0)
     {
-        Dop dop;
-        dopLoad(&dop, &cloth.m_nodes[leaf]);
-        const std::uint32_t triangle = cloth.m_order[leaf];
-        const float* pairs = thickness.data() + cloth.m_triangles[triangle].m_mesh * obstacleMeshes;
-        traverseOnHost(dop, triangle, obstacle, pairs, candidates);
+        const NodePair pair = stack[--depth];
+        const BvhNode& a = cloth.m_nodes[pair.m_cloth];
+        const BvhNode& b = obstacle.m_nodes[pair.m_obstacle];
+        if (!nodesOverlap(&a, &b)) continue;
+        if (a.m_count == 0 && b.m_count == 0)
+        {
+            const Candidate candidate = {cloth.m_order[a.m_first], obstacle.m_order[b.m_first]};
+            const std::size_t clothMesh = cloth.m_triangles[candidate.m_cloth].m_mesh;
+            const std::size_t obstacleMesh = obstacle.m_triangles[candidate.m_obstacle].m_mesh;
+            if (thickness[clothMesh * obstacleMeshes + obstacleMesh] >= 0.0f) candidates.push_back(candidate);
+            continue;
+        }
+        if (opensFirst(&a, &b))
+        {
+            for (std::uint32_t i = 0; i < a.m_count; ++i) stack[depth++] = NodePair{a.m_first + i, pair.m_obstacle};
+        }
+        else
+        {
+            for (std::uint32_t i = 0; i < b.m_count; ++i) stack[depth++] = NodePair{pair.m_cloth, b.m_first + i};
+        }
     }
 }
 
@@ -66,11 +77,12 @@ void BroadPhaseStage::enqueue(Device& device, BroadPhaseBuffers cloth, BroadPhas
                               Buffer<StepCounters>& counters)
 {
     if (cloth.m_layout.leafCount() == 0 || obstacle.m_layout.leafCount() == 0) return;
-    const BvhHeight& start = obstacle.m_layout.m_heights[startHeight(device, cloth.m_layout, obstacle.m_layout)];
-    const cl_uint leaves = cloth.m_layout.leafCount();
-    m_traverse.launch(device, std::size_t(leaves) * start.m_count, kGroup, cloth.m_nodes.handle(), cloth.m_order.handle(),
-                      cloth.m_triangles.handle(), leaves, obstacle.m_nodes.handle(), obstacle.m_order.handle(),
-                      obstacle.m_triangles.handle(), cl_uint(start.m_first), cl_uint(start.m_count), thickness.handle(),
-                      cl_uint(obstacleMeshes), candidates.handle(), counters.handle(), cl_uint(candidates.capacity()));
+    const StartHeights start = startHeights(device, cloth.m_layout, obstacle.m_layout);
+    m_traverse.launch(device, std::size_t(start.m_cloth.m_count) * start.m_obstacle.m_count, kGroup, cloth.m_nodes.handle(),
+                      cloth.m_order.handle(), cloth.m_triangles.handle(), cl_uint(start.m_cloth.m_first),
+                      cl_uint(start.m_cloth.m_count), obstacle.m_nodes.handle(), obstacle.m_order.handle(),
+                      obstacle.m_triangles.handle(), cl_uint(start.m_obstacle.m_first), cl_uint(start.m_obstacle.m_count),
+                      thickness.handle(), cl_uint(obstacleMeshes), candidates.handle(), counters.handle(),
+                      cl_uint(candidates.capacity()));
 }
 }  // namespace drape

@@ -1,12 +1,10 @@
-#include "bullet_plugin/core/pipeline.h"
+#include "implementation.h"
 
 #include <algorithm>
 #include <cassert>
 #include <chrono>
 
 #include "bullet_plugin/core/mesh/normal_cones.h"
-#include "device_backend.h"
-#include "host_backend.h"
 
 namespace drape
 {
@@ -18,39 +16,7 @@ double millisecondsSince(Clock::time_point start)
 {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
-
-struct Pair
-{
-    MeshId m_cloth;
-    MeshId m_obstacle;
-    float m_thickness;
-};
 }  // namespace
-
-struct Pipeline::Implementation
-{
-    Settings m_settings;
-    DeviceReport m_report;
-    Error m_error;
-    Scene m_scene;  // before the back ends: they may still read its memory while they end
-    std::unique_ptr<DeviceBackend> m_deviceBackend;
-    HostBackend m_hostBackend;
-    std::vector<Pair> m_pairs;
-    StepPairs m_stepPairs;
-    StepResult m_result;
-    StepStatistics m_statistics;
-    MeshId m_nextId = 0;
-    std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
-    bool m_submitted = false;
-
-    Device* device() { return m_deviceBackend ? &m_deviceBackend->device() : nullptr; }
-    PooledMesh makeMesh(const MeshDescription& description);
-    void joinScene();
-    void joinObstacles();
-    void collectPairs();
-    void leaveDevice();
-    void runOnHost();
-};
 
 PooledMesh Pipeline::Implementation::makeMesh(const MeshDescription& description)
 {
@@ -120,7 +86,7 @@ void Pipeline::Implementation::collectPairs()
     m_stepPairs.m_thickness.assign(m_scene.m_cloths.meshCount() * obstacleMeshes, -1.0f);
     m_stepPairs.m_clothRadius.assign(m_scene.m_cloths.meshCount(), -1.0f);
     m_stepPairs.m_any = false;
-    for (const Pair& pair : m_pairs)
+    for (const NamedPair& pair : m_pairs)
     {
         const std::size_t cloth = m_scene.m_cloths.slot(pair.m_cloth);
         const std::size_t obstacle = m_scene.m_obstacles.slot(pair.m_obstacle);
@@ -238,7 +204,7 @@ float* Pipeline::clothEnd(MeshId id)
 
 void Pipeline::addPair(MeshId cloth, MeshId obstacle, float thickness)
 {
-    m_implementation->m_pairs.push_back(Pair{cloth, obstacle, thickness});
+    m_implementation->m_pairs.push_back(NamedPair{cloth, obstacle, thickness});
 }
 
 void Pipeline::submit()
@@ -286,56 +252,4 @@ const std::vector<Contact>& Pipeline::finish()
 
 const StepStatistics& Pipeline::statistics() const { return m_implementation->m_statistics; }
 const Error& Pipeline::lastError() const { return m_implementation->m_error; }
-
-ContactView Pipeline::view(const Contact& contact) const
-{
-    const Implementation& self = *m_implementation;
-    const MeshPool& cloths = self.m_scene.m_cloths;
-    const MeshPool& obstacles = self.m_scene.m_obstacles;
-    ContactView view;
-    view.m_kind = contact.m_kind;
-    std::size_t clothSlot = 0, obstacleSlot = 0;
-    std::uint32_t nodes[3] = {~0u, ~0u, ~0u};
-    if (contact.m_kind == DRAPE_NODE_FACE)
-    {
-        clothSlot = cloths.slotOfVertex(contact.m_clothFeature);
-        obstacleSlot = obstacles.triangles()[contact.m_obstacleFeature].m_mesh;
-        nodes[0] = contact.m_clothFeature;
-    }
-    else if (contact.m_kind == DRAPE_FACE_VERTEX)
-    {
-        const Triangle& triangle = cloths.triangles()[contact.m_clothFeature];
-        clothSlot = triangle.m_mesh;
-        obstacleSlot = obstacles.slotOfVertex(contact.m_obstacleFeature);
-        std::copy(triangle.m_vertices, triangle.m_vertices + 3, nodes);
-    }
-    else
-    {
-        clothSlot = cloths.slotOfEdge(contact.m_clothFeature);
-        obstacleSlot = obstacles.slotOfEdge(contact.m_obstacleFeature);
-        std::copy(cloths.edges()[contact.m_clothFeature].m_vertices, cloths.edges()[contact.m_clothFeature].m_vertices + 2, nodes);
-    }
-    const PooledMesh& cloth = cloths.mesh(clothSlot);
-    const Topology& topology = cloth.m_topology;
-    const std::uint32_t kept = contact.m_kind == DRAPE_NODE_FACE
-                                   ? topology.m_vertexTriangle[contact.m_clothFeature - cloth.m_firstVertex]
-                                   : contact.m_kind == DRAPE_FACE_VERTEX
-                                         ? contact.m_clothFeature - cloth.m_firstTriangle
-                                         : topology.m_edgeTriangle[contact.m_clothFeature - cloth.m_firstEdge];
-    view.m_triangle = std::int32_t(topology.m_sourceTriangle[kept]);
-    view.m_cloth = cloth.m_id;
-    view.m_obstacle = obstacles.mesh(obstacleSlot).m_id;
-    for (int i = 0; i < 3; ++i)
-    {
-        view.m_nodes[i] = nodes[i] == ~0u ? -1 : std::int32_t(nodes[i] - cloth.m_firstVertex);
-        view.m_weights[i] = contact.m_weights[i];
-        view.m_normal[i] = contact.m_normal[i];
-        view.m_point[i] = contact.m_point[i];
-    }
-    view.m_gap0 = contact.m_gap0;
-    view.m_gap1 = contact.m_gap1;
-    view.m_time = contact.m_time;
-    view.m_thickness = self.m_stepPairs.m_thickness[clothSlot * obstacles.meshCount() + obstacleSlot];
-    return view;
-}
 }  // namespace drape

@@ -1,0 +1,80 @@
+// Resolves contacts from indices over all meshes to meshes, nodes and triangles as the caller numbered them.
+#include <algorithm>
+
+#include "implementation.h"
+
+namespace drape
+{
+namespace
+{
+struct ClothFeature
+{
+    std::size_t m_slot = 0;                                // of the mesh
+    std::uint32_t m_keptTriangle = 0;                      // in the mesh's topology
+    std::uint32_t m_nodes[3] = {kNoMesh, kNoMesh, kNoMesh};  // over all meshes
+};
+
+ClothFeature clothFeature(const MeshPool& cloths, const Contact& contact)
+{
+    ClothFeature feature;
+    const std::uint32_t index = contact.m_clothFeature;
+    if (contact.m_kind == DRAPE_NODE_FACE)
+    {
+        feature.m_slot = cloths.slotOfVertex(index);
+        const PooledMesh& mesh = cloths.mesh(feature.m_slot);
+        feature.m_keptTriangle = mesh.m_topology.m_vertexTriangle[index - mesh.m_firstVertex];
+        feature.m_nodes[0] = index;
+    }
+    else if (contact.m_kind == DRAPE_FACE_VERTEX)
+    {
+        const Triangle& triangle = cloths.triangles()[index];
+        feature.m_slot = triangle.m_mesh;
+        feature.m_keptTriangle = index - cloths.mesh(feature.m_slot).m_firstTriangle;
+        std::copy(triangle.m_vertices, triangle.m_vertices + 3, feature.m_nodes);
+    }
+    else
+    {
+        feature.m_slot = cloths.slotOfEdge(index);
+        const PooledMesh& mesh = cloths.mesh(feature.m_slot);
+        feature.m_keptTriangle = mesh.m_topology.m_edgeTriangle[index - mesh.m_firstEdge];
+        const Edge& edge = cloths.edges()[index];
+        std::copy(edge.m_vertices, edge.m_vertices + 2, feature.m_nodes);
+    }
+    return feature;
+}
+
+std::size_t obstacleSlot(const MeshPool& obstacles, const Contact& contact)
+{
+    if (contact.m_kind == DRAPE_NODE_FACE) return obstacles.triangles()[contact.m_obstacleFeature].m_mesh;
+    if (contact.m_kind == DRAPE_FACE_VERTEX) return obstacles.slotOfVertex(contact.m_obstacleFeature);
+    return obstacles.slotOfEdge(contact.m_obstacleFeature);
+}
+}  // namespace
+
+ContactView Pipeline::view(const Contact& contact) const
+{
+    const Implementation& self = *m_implementation;
+    const MeshPool& cloths = self.m_scene.m_cloths;
+    const MeshPool& obstacles = self.m_scene.m_obstacles;
+    const ClothFeature feature = clothFeature(cloths, contact);
+    const std::size_t obstacle = obstacleSlot(obstacles, contact);
+    const PooledMesh& cloth = cloths.mesh(feature.m_slot);
+    ContactView view;
+    view.m_cloth = cloth.m_id;
+    view.m_obstacle = obstacles.mesh(obstacle).m_id;
+    view.m_kind = contact.m_kind;
+    view.m_triangle = std::int32_t(cloth.m_topology.m_sourceTriangle[feature.m_keptTriangle]);
+    for (int i = 0; i < 3; ++i)
+    {
+        view.m_nodes[i] = feature.m_nodes[i] == kNoMesh ? -1 : std::int32_t(feature.m_nodes[i] - cloth.m_firstVertex);
+        view.m_weights[i] = contact.m_weights[i];
+        view.m_normal[i] = contact.m_normal[i];
+        view.m_point[i] = contact.m_point[i];
+    }
+    view.m_gap0 = contact.m_gap0;
+    view.m_gap1 = contact.m_gap1;
+    view.m_time = contact.m_time;
+    view.m_thickness = self.m_stepPairs.m_thickness[feature.m_slot * obstacles.meshCount() + obstacle];
+    return view;
+}
+}  // namespace drape

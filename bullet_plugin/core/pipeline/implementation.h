@@ -1,0 +1,45 @@
+// What a Pipeline holds: the scene, both back ends, and the step under way.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "bullet_plugin/core/pipeline.h"
+#include "device_backend.h"
+#include "host_backend.h"
+
+namespace drape
+{
+// A pair named for the coming step; thickness in m.
+struct NamedPair
+{
+    MeshId m_cloth;
+    MeshId m_obstacle;
+    float m_thickness;
+};
+
+struct Pipeline::Implementation
+{
+    Settings m_settings;
+    DeviceReport m_report;
+    Error m_error;
+    Scene m_scene;  // before the back ends: they may still read its memory while they end
+    std::unique_ptr<DeviceBackend> m_deviceBackend;
+    HostBackend m_hostBackend;
+    std::vector<NamedPair> m_pairs;
+    StepPairs m_stepPairs;
+    StepResult m_result;
+    StepStatistics m_statistics;
+    MeshId m_nextId = 0;
+    std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
+    bool m_submitted = false;
+
+    Device* device() { return m_deviceBackend ? &m_deviceBackend->device() : nullptr; }
+    PooledMesh makeMesh(const MeshDescription& description);
+    void joinScene();
+    void joinObstacles();
+    void collectPairs();
+    void leaveDevice();
+    void runOnHost();
+};
+}  // namespace drape
