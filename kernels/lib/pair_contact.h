@@ -5,7 +5,9 @@
 
 #include "contact_slot.h"
 #include "dop.h"
-#include "feature_contact.h"
+#include "edge_edge_contact.h"
+#include "face_vertex_contact.h"
+#include "node_face_contact.h"
 
 DRAPE_NAMESPACE_BEGIN
 

@@ -1,0 +1,124 @@
+// A cloth edge against an edge of the obstacle.
+// See feature_contact.h for what a contact is and for the frame.
+#ifndef DRAPE_LIB_EDGE_EDGE_CONTACT_H
+#define DRAPE_LIB_EDGE_EDGE_CONTACT_H
+
+#include "feature_contact.h"
+
+DRAPE_NAMESPACE_BEGIN
+
+DRAPE_FUNCTION FeatureEdge edgeMix(FeatureEdge from, FeatureEdge to, float t)
+{
+    FeatureEdge r;
+    r.m_a = vec3Mix(from.m_a, to.m_a, t);
+    r.m_b = vec3Mix(from.m_b, to.m_b, t);
+    return r;
+}
+
+// Six times the signed volume of two edges; zero when they are coplanar.
+DRAPE_FUNCTION float edgeEdgeVolume(FeatureEdge e, FeatureEdge o)
+{
+    return vec3Dot(vec3Cross(vec3Sub(e.m_b, e.m_a), vec3Sub(o.m_b, o.m_a)), vec3Sub(o.m_a, e.m_a));
+}
+
+// An edge that swept over the obstacle's edge. v0, v1: the volumes at the step's start and end, of opposite sign.
+DRAPE_FUNCTION int edgeEdgePassed(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, float v0, float v1, PairBounds bounds,
+                                  Contact* contact)
+{
+    // Lines that become coplanar seldom belong to edges that meet.
+    const Vec3 least = vec3Least(vec3Least(e0.m_a, e0.m_b), vec3Least(e1.m_a, e1.m_b));
+    const Vec3 most = vec3Most(vec3Most(e0.m_a, e0.m_b), vec3Most(e1.m_a, e1.m_b));
+    const float slack = 0.1f * bounds.m_reachSlack;
+    if (boxesApart(least, most, vec3Least(o.m_a, o.m_b), vec3Most(o.m_a, o.m_b), slack)) return 0;
+
+    const float side = v0 < 0.0f ? -1.0f : 1.0f;
+    float low = 0.0f, high = 1.0f, time = 0.0f;
+    for (int i = 0; i < 4; ++i)
+    {
+        time = low + (high - low) * (v0 / (v0 - v1));
+        const float v = edgeEdgeVolume(edgeMix(e0, e1, time), o);
+        if (side * v < 0.0f)
+        {
+            high = time;
+            v1 = v;
+        }
+        else
+        {
+            low = time;
+            v0 = v;
+        }
+        if (v0 == v1) break;
+    }
+    const FeatureEdge e = edgeMix(e0, e1, time);
+    float s, t;
+    closestOnSegments(e.m_a, e.m_b, o.m_a, o.m_b, &s, &t);
+    const int inside = s > 0.0f && s < 1.0f && t > 0.0f && t < 1.0f;
+    const Vec3 point = vec3Mix(o.m_a, o.m_b, t);
+    const float miss = vec3Length(vec3Sub(vec3Mix(e.m_a, e.m_b, s), point));
+    if (miss > (inside ? 0.1f * bounds.m_reach : DRAPE_SEAM * bounds.m_extent)) return 0;
+    const Vec3 direction = vec3Cross(vec3Sub(e.m_b, e.m_a), vec3Sub(o.m_b, o.m_a));
+    const float length = vec3Length(direction);
+    if (length <= DRAPE_SEAM * vec3Length(vec3Sub(e.m_b, e.m_a)) * vec3Length(vec3Sub(o.m_b, o.m_a))) return 0;
+    const Vec3 normal = vec3Scale(direction, -side / length);
+    const float gap1 = vec3Dot(normal, vec3Sub(vec3Mix(e1.m_a, e1.m_b, s), point));
+    storeContact(contact, normal, point, vec3(1.0f - s, s, 0.0f),
+                 vec3Dot(normal, vec3Sub(vec3Mix(e0.m_a, e0.m_b, s), point)), gap1, time);
+    return gap1 < bounds.m_reach;
+}
+
+// Edge moving from e0 to e1 against a resting edge with the given normal cone; both closest points inside their edges.
+// opposites: third vertices of the cloth's two triangles at this edge, into end, positions at the step's end; origin: of
+// the local frame. The first comparisons drop most pairs and need neither division nor root.
+DRAPE_FUNCTION int edgeEdgeContact(FeatureEdge e0, FeatureEdge e1, const DRAPE_UINT* opposites,
+                                   const DRAPE_GLOBAL float* end, Vec3 origin, FeatureEdge o, NormalCone cone,
+                                   PairBounds bounds, Contact* contact)
+{
+    const Vec3 along = vec3Sub(o.m_b, o.m_a);
+    const Vec3 across = vec3Sub(e1.m_b, e1.m_a);
+    const Vec3 direction = vec3Cross(across, along);
+    const float v0 = edgeEdgeVolume(e0, o);
+    const float v1 = vec3Dot(direction, vec3Sub(o.m_a, e1.m_a));
+    if ((v0 < 0.0f && v1 > 0.0f) || (v0 > 0.0f && v1 < 0.0f)) return edgeEdgePassed(e0, e1, o, v0, v1, bounds, contact);
+    const float squared = vec3Dot(direction, direction);
+    // Inside both edges the offset is parallel to the direction (or the edges are parallel, and it may be any).
+    const int parallel = squared <= DRAPE_SEAM * DRAPE_SEAM * vec3Dot(across, across) * vec3Dot(along, along);
+    if (!parallel)
+    {
+        const float facing = vec3Dot(cone.m_axis, direction);
+        if (cone.m_cosine > 0.0f && facing * facing < cone.m_cosine * cone.m_cosine * squared) return 0;
+        if (v1 * v1 > squared * (bounds.m_reachSlack * bounds.m_reachSlack)) return 0;
+    }
+    float s, t;
+    closestOnSegments(e1.m_a, e1.m_b, o.m_a, o.m_b, &s, &t);
+    if (!(s > 0.0f && s < 1.0f && t > 0.0f && t < 1.0f)) return 0;
+    const Vec3 point = vec3Mix(o.m_a, o.m_b, t);
+    const Vec3 x1 = vec3Mix(e1.m_a, e1.m_b, s);
+    const Vec3 offset = vec3Sub(x1, point);
+    const float lowCloth = drapeMin(vec3Dot(offset, e1.m_a), vec3Dot(offset, e1.m_b));
+    const float highObstacle = drapeMax(vec3Dot(offset, o.m_a), vec3Dot(offset, o.m_b));
+    if (provenApart(offset, lowCloth, highObstacle, bounds)) return 0;
+    const float distance = vec3Length(offset);
+    Vec3 normal;
+    if (distance > DRAPE_SEAM * bounds.m_extent)
+    {
+        normal = vec3Scale(offset, 1.0f / distance);
+        const Vec3 toObstacle = vec3Scale(offset, -1.0f);
+        for (int i = 0; i < 2; ++i)
+        {
+            if (!leansAway(toObstacle, vec3Sub(vec3Load(end, opposites[i]), origin), x1)) return 0;
+        }
+        if (parallel && !coneAdmits(cone, normal)) return 0;
+    }
+    else
+    {
+        if (parallel) return 0;  // touching along a line: the ends report it
+        normal = vec3Scale(direction, (v0 < 0.0f ? 1.0f : -1.0f) / drapeSqrt(squared));
+    }
+    storeContact(contact, normal, point, vec3(1.0f - s, s, 0.0f),
+                 vec3Dot(normal, vec3Sub(vec3Mix(e0.m_a, e0.m_b, s), point)), vec3Dot(normal, offset), 1.0f);
+    return 1;
+}
+
+DRAPE_NAMESPACE_END
+
+#endif

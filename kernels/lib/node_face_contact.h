@@ -1,0 +1,75 @@
+// A cloth node against a face of the obstacle, its edges and vertices included.
+// See feature_contact.h for what a contact is and for the frame.
+#ifndef DRAPE_LIB_NODE_FACE_CONTACT_H
+#define DRAPE_LIB_NODE_FACE_CONTACT_H
+
+#include "feature_contact.h"
+
+DRAPE_NAMESPACE_BEGIN
+
+// The cone of the obstacle feature on which the closest point with these weights lies; a face admits its own normal only
+// and needs none.
+DRAPE_FUNCTION NormalCone closestFeatureCone(Vec3 weights, const DRAPE_GLOBAL Triangle* triangle,
+                                             const DRAPE_GLOBAL NormalCone* vertexCones,
+                                             const DRAPE_GLOBAL NormalCone* edgeCones)
+{
+    if (weights.x == 1.0f) return vertexCones[triangle->m_vertices[0]];
+    if (weights.y == 1.0f) return vertexCones[triangle->m_vertices[1]];
+    if (weights.z == 1.0f) return vertexCones[triangle->m_vertices[2]];
+    if (weights.z == 0.0f) return edgeCones[triangle->m_edges[0]];
+    if (weights.x == 0.0f) return edgeCones[triangle->m_edges[1]];
+    return edgeCones[triangle->m_edges[2]];
+}
+
+// Node moving from x0 to x1 against a resting face. Returns whether there is a contact.
+DRAPE_FUNCTION int nodeFaceContact(Vec3 x0, Vec3 x1, const RestingFace* resting, const DRAPE_GLOBAL Triangle* triangle,
+                                   const DRAPE_GLOBAL NormalCone* vertexCones,
+                                   const DRAPE_GLOBAL NormalCone* edgeCones, PairBounds bounds, Contact* contact)
+{
+    const FeatureTriangle face = resting->m_corners;
+    const float areaLength = resting->m_areaLength;
+    const float s0 = vec3Dot(resting->m_area, vec3Sub(x0, face.m_p[0]));
+    const float s1 = vec3Dot(resting->m_area, vec3Sub(x1, face.m_p[0]));
+    const float side = s0 < 0.0f ? -1.0f : 1.0f;
+    const int passed = side * s1 < 0.0f;
+    // |s1| / |area| is a lower bound of the distance.
+    if (!passed && drapeAbs(s1) > areaLength * bounds.m_reachSlack) return 0;
+    Vec3 normal = vec3Scale(resting->m_area, side * drapeRatio(1.0f, areaLength));
+
+    if (passed)  // the path went through the face's plane
+    {
+        const float time = s0 / (s0 - s1);
+        const Vec3 hit = vec3Mix(x0, x1, time);
+        const Vec3 weights = closestOnTriangle(hit, face.m_p[0], face.m_p[1], face.m_p[2]);
+        const Vec3 point = featurePoint(face, weights);
+        if (vec3Length(vec3Sub(hit, point)) > DRAPE_SEAM * bounds.m_extent) return 0;
+        storeContact(contact, normal, point, vec3(1.0f, 0.0f, 0.0f), vec3Dot(normal, vec3Sub(x0, point)),
+                     vec3Dot(normal, vec3Sub(x1, point)), time);
+        return 1;
+    }
+
+    const Vec3 weights = closestOnTriangle(x1, face.m_p[0], face.m_p[1], face.m_p[2]);
+    const Vec3 point = featurePoint(face, weights);
+    const Vec3 offset = vec3Sub(x1, point);
+    const float highFace =
+        drapeMax(drapeMax(vec3Dot(offset, face.m_p[0]), vec3Dot(offset, face.m_p[1])), vec3Dot(offset, face.m_p[2]));
+    if (provenApart(offset, vec3Dot(offset, x1), highFace, bounds)) return 0;
+    const float distance = vec3Length(offset);
+    const int onFace = weights.x > 0.0f && weights.y > 0.0f && weights.z > 0.0f;
+    if (distance > DRAPE_SEAM * bounds.m_extent && (!onFace || areaLength == 0.0f))
+    {
+        normal = vec3Scale(offset, 1.0f / distance);
+        if (!coneAdmits(closestFeatureCone(weights, triangle, vertexCones, edgeCones), normal)) return 0;
+    }
+    else if (areaLength == 0.0f)
+    {
+        return 0;  // touching a face without a direction: its neighbours report it
+    }
+    storeContact(contact, normal, point, vec3(1.0f, 0.0f, 0.0f), vec3Dot(normal, vec3Sub(x0, point)),
+                 vec3Dot(normal, offset), 1.0f);
+    return 1;
+}
+
+DRAPE_NAMESPACE_END
+
+#endif
