@@ -1,66 +1,92 @@
-// Compaction: winners of the slots, in slot order, which is the canonical order of contacts. Three launches: count per
-// block, scan of the blocks by one group, write.
-#include "lib/contact_slot.h"
+// Compaction: hits into canonical order, by slot (cloth feature) and then obstacle feature. A counting sort over the slots:
+// sums per block, scan of the blocks by one group, first place of every slot, members of every slot, and the place of each
+// hit among them.
 #include "lib/group_scan.h"
+#include "shared/contact.h"
 #include "shared/mesh.h"
 
 // Slots a work-group handles. Each work-item takes DRAPE_BLOCK / group size adjacent ones.
 #define DRAPE_BLOCK 1024
 
-// A work-group counts the winners of one block of slots.
-__kernel void compactionCount(__global const uint* restrict slotFeature, const uint slotCount,
-                              __global uint* restrict blockCount, __local uint* scratch)
+static uint countShare(__global const uint* slotCount, const uint slots, uint* first, uint* last)
 {
     const uint share = DRAPE_BLOCK / get_local_size(0);
-    const uint first = get_group_id(0) * DRAPE_BLOCK + get_local_id(0) * share;
-    uint winners = 0;
-    for (uint slot = first; slot < first + share && slot < slotCount; ++slot)
-    {
-        winners += slotFeature[slot] != DRAPE_NO_CONTACT;
-    }
-    uint total;
-    groupPrefix(scratch, winners, &total);
+    *first = min(slots, (uint)(get_group_id(0) * DRAPE_BLOCK + get_local_id(0) * share));
+    *last = min(slots, *first + share);
+    uint sum = 0;
+    for (uint slot = *first; slot < *last; ++slot) sum += slotCount[slot];
+    return sum;
+}
+
+// A work-group sums the hits of one block of slots. scratch: one uint per work-item.
+__kernel void compactionCount(__global const uint* restrict slotCount, const uint slots,
+                              __global uint* restrict blockCount, __local uint* scratch)
+{
+    uint first, last, total;
+    groupPrefix(scratch, countShare(slotCount, slots, &first, &last), &total);
     if (get_local_id(0) == 0) blockCount[get_group_id(0)] = total;
 }
 
-// One work-group replaces the counts by the sums before them and stores the total.
-__kernel void compactionScan(__global uint* restrict blockCount, const uint blockTotal,
-                             __global StepCounters* restrict counters, __local uint* scratch)
+// One work-group replaces the sums by the sums before them.
+__kernel void compactionScan(__global uint* restrict blockCount, const uint blocks, __local uint* scratch)
 {
     uint base = 0;
-    for (uint first = 0; first < blockTotal; first += get_local_size(0))
+    for (uint first = 0; first < blocks; first += get_local_size(0))
     {
         const uint block = first + get_local_id(0);
         uint total;
-        const uint before = groupPrefix(scratch, block < blockTotal ? blockCount[block] : 0, &total);
-        if (block < blockTotal) blockCount[block] = base + before;
+        const uint before = groupPrefix(scratch, block < blocks ? blockCount[block] : 0, &total);
+        if (block < blocks) blockCount[block] = base + before;
         base += total;
     }
-    if (get_local_id(0) == 0) counters->m_contacts = base;
 }
 
-// A work-group writes the contacts of one block and empties its slots for the next step.
-__kernel void compactionWrite(__global uint* restrict slotRank, __global uint* restrict slotFeature,
-                              __global const uint* restrict slotHit, const uint slotCount,
-                              __global const uint* restrict blockCount, __global const Contact* restrict hits,
-                              __global Contact* restrict contacts, const uint capacity, __local uint* scratch)
+// A work-group writes where the hits of each slot of its block begin.
+__kernel void compactionPlace(__global const uint* restrict slotCount, const uint slots,
+                              __global const uint* restrict blockCount, __global uint* restrict slotFirst,
+                              __local uint* scratch)
 {
-    const uint share = DRAPE_BLOCK / get_local_size(0);
-    const uint first = get_group_id(0) * DRAPE_BLOCK + get_local_id(0) * share;
-    uint winners = 0;
-    for (uint slot = first; slot < first + share && slot < slotCount; ++slot)
+    uint first, last, total;
+    uint place = blockCount[get_group_id(0)];
+    place += groupPrefix(scratch, countShare(slotCount, slots, &first, &last), &total);
+    for (uint slot = first; slot < last; ++slot)
     {
-        winners += slotFeature[slot] != DRAPE_NO_CONTACT;
+        slotFirst[slot] = place;
+        place += slotCount[slot];
     }
-    uint total;
-    uint place = blockCount[get_group_id(0)] + groupPrefix(scratch, winners, &total);
-    if (winners == 0) return;
-    for (uint slot = first; slot < first + share && slot < slotCount; ++slot)
+}
+
+// A work-item takes every stride-th hit and lists it among its slot's members, last to first as the items come; the atomic
+// gives each a place of its own. Leaves slotCount zero for the next step.
+__kernel void compactionGather(__global const Contact* restrict hits, const uint hitCapacity,
+                               __global volatile uint* slotCount, __global const uint* restrict slotFirst,
+                               __global uint* restrict members, __global const StepCounters* restrict counters)
+{
+    const uint count = min(counters->m_hits, hitCapacity);
+    for (uint i = get_global_id(0); i < count; i += get_global_size(0))
     {
-        if (slotFeature[slot] == DRAPE_NO_CONTACT) continue;
-        if (place < capacity) contacts[place] = hits[slotHit[slot]];
-        ++place;
-        slotRank[slot] = DRAPE_NO_CONTACT;
-        slotFeature[slot] = DRAPE_NO_CONTACT;
+        const uint slot = hits[i].m_slot;
+        members[slotFirst[slot] + atomic_dec(slotCount + slot) - 1] = i;
+    }
+}
+
+// A work-item takes every stride-th place of the members' list, counts the members of the same slot with a lesser obstacle
+// feature, and writes the hit where that number puts it. A feature pair is tested once, so features of a slot differ and
+// every place is written once.
+__kernel void compactionWrite(__global const Contact* restrict hits, const uint hitCapacity,
+                              __global const uint* restrict slotFirst, __global const uint* restrict members,
+                              __global Contact* restrict contacts, __global const StepCounters* restrict counters)
+{
+    const uint count = min(counters->m_hits, hitCapacity);
+    for (uint i = get_global_id(0); i < count; i += get_global_size(0))
+    {
+        const Contact hit = hits[members[i]];
+        const uint first = slotFirst[hit.m_slot];
+        uint before = 0;
+        for (uint j = first; j < count && hits[members[j]].m_slot == hit.m_slot; ++j)
+        {
+            before += hits[members[j]].m_obstacleFeature < hit.m_obstacleFeature;
+        }
+        contacts[first + before] = hit;
     }
 }

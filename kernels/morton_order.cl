@@ -1,5 +1,4 @@
 // Leaf order: Morton codes of the triangles' centroids and a stable radix sort, four bits a pass.
-#include "lib/contact_slot.h"
 #include "lib/group_scan.h"
 #include "lib/triangle_order.h"
 
@@ -7,7 +6,15 @@
 #define DRAPE_SORT_SHARE 8  // adjacent elements a work-item sorts
 #define DRAPE_DIGITS 16
 
-// A work-item takes every stride-th triangle. bounds holds the ranks (see contactRank) of the least and greatest centroid,
+// Maps floats to unsigned integers in the same order, and back.
+static uint floatRank(const float value)
+{
+    const uint bits = as_uint(value);
+    return (bits & 0x80000000u) ? ~bits : bits | 0x80000000u;
+}
+static float unrank(const uint rank) { return as_float((rank & 0x80000000u) ? rank & 0x7fffffffu : ~rank); }
+
+// A work-item takes every stride-th triangle. bounds holds the ranks (see floatRank) of the least and greatest centroid,
 // three each; all ones and zeros before. Minima and maxima do not depend on the order of the atomics.
 __kernel void mortonBounds(__global const Triangle* restrict triangles, __global const float* restrict positions,
                            const uint triangleCount, __global volatile uint* bounds)
@@ -16,16 +23,14 @@ __kernel void mortonBounds(__global const Triangle* restrict triangles, __global
     {
         const Vec3 p = triangleCentroid(triangles + i, positions);
         if (!vec3IsFinite(p)) continue;
-        atomic_min(bounds + 0, contactRank(p.x));
-        atomic_min(bounds + 1, contactRank(p.y));
-        atomic_min(bounds + 2, contactRank(p.z));
-        atomic_max(bounds + 3, contactRank(p.x));
-        atomic_max(bounds + 4, contactRank(p.y));
-        atomic_max(bounds + 5, contactRank(p.z));
+        atomic_min(bounds + 0, floatRank(p.x));
+        atomic_min(bounds + 1, floatRank(p.y));
+        atomic_min(bounds + 2, floatRank(p.z));
+        atomic_max(bounds + 3, floatRank(p.x));
+        atomic_max(bounds + 4, floatRank(p.y));
+        atomic_max(bounds + 5, floatRank(p.z));
     }
 }
-
-static float unrank(const uint rank) { return as_float((rank & 0x80000000u) ? rank & 0x7fffffffu : ~rank); }
 
 // A work-item is a triangle: writes its code and its number.
 __kernel void mortonCodes(__global const Triangle* restrict triangles, __global const float* restrict positions,

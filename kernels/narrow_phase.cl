@@ -1,6 +1,5 @@
-// Narrow phase: contacts of the candidates' features, and for each slot (cloth feature × direction) the deepest one.
-// A slot's winner has the least gap at the step's end and, among equals, the least obstacle feature, so it does not depend
-// on the order of execution. Launches have a fixed width and walk the list in strides: its length is only on the device.
+// Narrow phase: contacts of the candidates' features. Launches have a fixed width and walk the list in strides: its length
+// is only on the device.
 #include "lib/pair_contact.h"
 #include "lib/triangle_triangle.h"
 
@@ -28,9 +27,9 @@ static ObstacleView obstacleView(__global const float* positions, __global const
     return view;
 }
 
-// A work-item takes every stride-th candidate and runs its feature tests. Writes hits and the least rank per slot
-// (slotRank, DRAPE_NO_CONTACT before). With keepAll zero a hit that is behind its slot's rank already is not written: ranks
-// only fall, so it cannot win. counters->m_hits must be zero before; it counts on when the list is full.
+// A work-item takes every stride-th candidate, runs its feature tests and writes the hits in no particular order. slotCount
+// counts those written per cloth feature; it and counters->m_hits must be zero before. m_hits counts on when the list is
+// full.
 __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, const uint candidateCapacity,
                               __global const float* restrict clothStart, __global const float* restrict clothEnd,
                               __global const Triangle* restrict clothTriangles, __global const Edge* restrict clothEdges,
@@ -40,8 +39,8 @@ __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, con
                               __global const NormalCone* restrict vertexCones,
                               __global const NormalCone* restrict edgeCones, __global const float* restrict thickness,
                               const uint obstacleMeshes, const float reachScale, __global Contact* restrict hits,
-                              const uint hitCapacity, __global volatile uint* slotRank,
-                              __global StepCounters* restrict counters, const uint keepAll)
+                              const uint hitCapacity, __global volatile uint* slotCount,
+                              __global StepCounters* restrict counters)
 {
     const ClothView cloth =
         clothView(clothStart, clothEnd, clothTriangles, clothEdges, nodeCount, triangleCount);
@@ -63,42 +62,10 @@ __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, con
             Contact contact;
             if (!(tests & (1u << test))) continue;
             if (!pairContact(test, &pair, &cloth, &obstacle, candidate, &contact)) continue;
-            const uint rank = contactRank(contact.m_gap1);
-            if (!keepAll && rank > slotRank[contact.m_slot]) continue;
-            atomic_min(slotRank + contact.m_slot, rank);
             const uint place = atomic_inc(&counters->m_hits);
-            if (place < hitCapacity) hits[place] = contact;
-        }
-    }
-}
-
-// A work-item takes every stride-th hit. Among those of a slot's least rank, keeps the least obstacle feature (slotFeature,
-// DRAPE_NO_CONTACT before).
-__kernel void narrowPhaseTie(__global const Contact* restrict hits, const uint hitCapacity,
-                             __global const uint* restrict slotRank, __global volatile uint* slotFeature,
-                             __global const StepCounters* restrict counters)
-{
-    const uint count = min(counters->m_hits, hitCapacity);
-    for (uint i = get_global_id(0); i < count; i += get_global_size(0))
-    {
-        const uint slot = hits[i].m_slot;
-        if (contactRank(hits[i].m_gap1) == slotRank[slot]) atomic_min(slotFeature + slot, hits[i].m_obstacleFeature);
-    }
-}
-
-// A work-item takes every stride-th hit and, when it won its slot, leaves its place there. One hit wins a slot, since a
-// feature pair is tested once, so no two items write one place.
-__kernel void narrowPhaseWin(__global const Contact* restrict hits, const uint hitCapacity,
-                             __global const uint* restrict slotRank, __global const uint* restrict slotFeature,
-                             __global uint* restrict slotHit, __global const StepCounters* restrict counters)
-{
-    const uint count = min(counters->m_hits, hitCapacity);
-    for (uint i = get_global_id(0); i < count; i += get_global_size(0))
-    {
-        const uint slot = hits[i].m_slot;
-        if (contactRank(hits[i].m_gap1) == slotRank[slot] && hits[i].m_obstacleFeature == slotFeature[slot])
-        {
-            slotHit[slot] = i;
+            if (place >= hitCapacity) continue;
+            hits[place] = contact;
+            atomic_inc(slotCount + contact.m_slot);
         }
     }
 }

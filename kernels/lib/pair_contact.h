@@ -3,7 +3,6 @@
 #ifndef DRAPE_LIB_PAIR_CONTACT_H
 #define DRAPE_LIB_PAIR_CONTACT_H
 
-#include "contact_slot.h"
 #include "dop.h"
 #include "edge_edge_contact.h"
 #include "face_vertex_contact.h"
@@ -199,8 +198,6 @@ DRAPE_FUNCTION int pairContact(int test, const PairGeometry* pair, const ClothVi
     contact->m_point[0] += pair->m_origin.x;
     contact->m_point[1] += pair->m_origin.y;
     contact->m_point[2] += pair->m_origin.z;
-    const Vec3 normal = vec3(contact->m_normal[0], contact->m_normal[1], contact->m_normal[2]);
-    contact->m_slot = contact->m_slot * DRAPE_CONTACT_DIRECTIONS + contactDirection(normal);
     return 1;
 }
 

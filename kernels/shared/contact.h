@@ -12,11 +12,11 @@ DRAPE_NAMESPACE_BEGIN
 #define DRAPE_FACE_VERTEX 1u
 #define DRAPE_EDGE_EDGE 2u
 
-// Canonical order of contacts: slot, then obstacle feature. A slot is a cloth feature (nodes, then faces, then edges)
-// times kDirections plus the direction its normal points to; see kernels/lib/contact_slot.h.
+// Canonical order of contacts: slot, then obstacle feature. A slot is a cloth feature: first all nodes, then all faces, then
+// all edges.
 typedef struct Contact
 {
-    DRAPE_UINT m_slot;          // cloth feature × directions + direction, over all cloths
+    DRAPE_UINT m_slot;          // cloth feature of any kind, over all cloths
     DRAPE_UINT m_kind;          // DRAPE_NODE_FACE, DRAPE_FACE_VERTEX or DRAPE_EDGE_EDGE
     DRAPE_UINT m_clothFeature;  // node, triangle or edge, index over all cloths
     DRAPE_UINT m_obstacleFeature;  // triangle, vertex or edge, index over all obstacles

@@ -61,10 +61,8 @@ typedef struct StepCounters
 {
     DRAPE_UINT m_candidates;
     DRAPE_UINT m_hits;
-    DRAPE_UINT m_contacts;
     DRAPE_UINT m_invalidNodes;
     DRAPE_UINT m_intersections;
-    DRAPE_UINT m_reserved[3];
 } StepCounters;
 
 DRAPE_NAMESPACE_END

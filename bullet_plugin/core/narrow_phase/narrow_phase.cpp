@@ -13,28 +13,28 @@ constexpr std::size_t kItemsPerUnitCpu = 256;   // four groups per core, so that
 void NarrowPhaseStage::create(Device& device, const cl::Program& narrowPhase, const cl::Program& compaction)
 {
     m_test.create(device, narrowPhase, "narrowPhaseTest");
-    m_tie.create(device, narrowPhase, "narrowPhaseTie");
-    m_win.create(device, narrowPhase, "narrowPhaseWin");
     m_intersect.create(device, narrowPhase, "narrowPhaseIntersect");
     m_count.create(device, compaction, "compactionCount");
     m_scan.create(device, compaction, "compactionScan");
+    m_place.create(device, compaction, "compactionPlace");
+    m_gather.create(device, compaction, "compactionGather");
     m_write.create(device, compaction, "compactionWrite");
 }
 
 void NarrowPhaseStage::resizeSlots(Device& device, std::size_t slotCount)
 {
-    m_slotCount = slotCount;
-    m_slotRank.reserve(device, slotCount);
-    m_slotFeature.reserve(device, slotCount);
-    m_slotHit.reserve(device, slotCount);
+    m_slots = slotCount;
+    m_slotCount.reserve(device, slotCount);
+    m_slotFirst.reserve(device, slotCount);
     m_blockCount.reserve(device, (slotCount + kBlock - 1) / kBlock);
-    clearSlots(device);
+    m_slotCount.fill(device, 0, slotCount);  // every step leaves it so
 }
 
-void NarrowPhaseStage::clearSlots(Device& device)
+void NarrowPhaseStage::reserveHits(Device& device, std::size_t count)
 {
-    m_slotRank.fill(device, DRAPE_NO_CONTACT, m_slotCount);
-    m_slotFeature.fill(device, DRAPE_NO_CONTACT, m_slotCount);
+    m_hits.reserve(device, count);
+    m_contacts.reserve(device, count);
+    m_members.reserve(device, count);
 }
 
 std::size_t NarrowPhaseStage::listWidth(const Device& device) const
@@ -53,23 +53,25 @@ void NarrowPhaseStage::enqueue(Device& device, NarrowPhaseBuffers sides, std::si
                   cl_uint(nodeCount), cl_uint(triangleCount), sides.m_obstaclePositions.handle(),
                   sides.m_obstacleTriangles.handle(), sides.m_vertexCones.handle(), sides.m_edgeCones.handle(),
                   sides.m_thickness.handle(), cl_uint(settings.m_obstacleMeshes), settings.m_reachScale, m_hits.handle(),
-                  hitCapacity, m_slotRank.handle(), counters.handle(), cl_uint(settings.m_allContacts));
-    m_tie.launch(device, width, kGroup, m_hits.handle(), hitCapacity, m_slotRank.handle(), m_slotFeature.handle(),
-                 counters.handle());
-    m_win.launch(device, width, kGroup, m_hits.handle(), hitCapacity, m_slotRank.handle(), m_slotFeature.handle(),
-                 m_slotHit.handle(), counters.handle());
+                  hitCapacity, m_slotCount.handle(), counters.handle());
     enqueueCompaction(device, counters);
 }
 
 void NarrowPhaseStage::enqueueCompaction(Device& device, Buffer<StepCounters>& counters)
 {
-    const cl_uint slots = cl_uint(m_slotCount);
-    const std::size_t blocks = (m_slotCount + kBlock - 1) / kBlock;
+    const cl_uint slots = cl_uint(m_slots);
+    const cl_uint hitCapacity = cl_uint(m_hits.capacity());
+    const std::size_t blocks = (m_slots + kBlock - 1) / kBlock;
+    const std::size_t width = listWidth(device);
     const cl::LocalSpaceArg scratch = cl::Local(kGroup * sizeof(cl_uint));
-    m_count.launch(device, blocks * kGroup, kGroup, m_slotFeature.handle(), slots, m_blockCount.handle(), scratch);
-    m_scan.launch(device, kGroup, kGroup, m_blockCount.handle(), cl_uint(blocks), counters.handle(), scratch);
-    m_write.launch(device, blocks * kGroup, kGroup, m_slotRank.handle(), m_slotFeature.handle(), m_slotHit.handle(), slots,
-                   m_blockCount.handle(), m_hits.handle(), m_contacts.handle(), cl_uint(m_contacts.capacity()), scratch);
+    m_count.launch(device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_blockCount.handle(), scratch);
+    m_scan.launch(device, kGroup, kGroup, m_blockCount.handle(), cl_uint(blocks), scratch);
+    m_place.launch(device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_blockCount.handle(),
+                   m_slotFirst.handle(), scratch);
+    m_gather.launch(device, width, kGroup, m_hits.handle(), hitCapacity, m_slotCount.handle(), m_slotFirst.handle(),
+                    m_members.handle(), counters.handle());
+    m_write.launch(device, width, kGroup, m_hits.handle(), hitCapacity, m_slotFirst.handle(), m_members.handle(),
+                   m_contacts.handle(), counters.handle());
 }
 
 void NarrowPhaseStage::enqueueIntersect(Device& device, NarrowPhaseBuffers sides, Buffer<Candidate>& candidates,

@@ -8,43 +8,16 @@ namespace drape
 {
 namespace
 {
-bool isDeeper(const Contact& a, const Contact& b)
+void sortContacts(std::vector<Contact>& contacts)
 {
-    const std::uint32_t rankA = contactRank(a.m_gap1), rankB = contactRank(b.m_gap1);
-    return rankA != rankB ? rankA < rankB : a.m_obstacleFeature < b.m_obstacleFeature;
+    std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) {
+        return std::tie(a.m_slot, a.m_obstacleFeature) < std::tie(b.m_slot, b.m_obstacleFeature);
+    });
 }
 }  // namespace
 
-void ContactReduction::resize(std::size_t slotCount)
-{
-    m_slotHit.assign(slotCount, DRAPE_NO_CONTACT);
-    m_hits.clear();
-}
-
-void ContactReduction::add(const Contact& contact)
-{
-    std::uint32_t& place = m_slotHit[contact.m_slot];
-    if (place == DRAPE_NO_CONTACT)
-    {
-        place = std::uint32_t(m_hits.size());
-        m_hits.push_back(contact);
-    }
-    else if (isDeeper(contact, m_hits[place]))
-    {
-        m_hits[place] = contact;
-    }
-}
-
-void ContactReduction::take(std::vector<Contact>& contacts)
-{
-    for (const Contact& hit : m_hits) m_slotHit[hit.m_slot] = DRAPE_NO_CONTACT;
-    contacts.swap(m_hits);
-    m_hits.clear();
-    sortContacts(contacts);
-}
-
 void narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth, const ObstacleView& obstacle,
-                       const NarrowPhaseSettings& settings, ContactReduction& reduction, std::vector<Contact>& contacts)
+                       const NarrowPhaseSettings& settings, std::vector<Contact>& contacts)
 {
     contacts.clear();
     for (const Candidate& candidate : candidates)
@@ -62,25 +35,10 @@ void narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView
         {
             Contact contact;
             if (!(tests & (1u << test))) continue;
-            if (!pairContact(test, &pair, &cloth, &obstacle, candidate, &contact)) continue;
-            if (settings.m_allContacts)
-            {
-                contacts.push_back(contact);
-            }
-            else
-            {
-                reduction.add(contact);
-            }
+            if (pairContact(test, &pair, &cloth, &obstacle, candidate, &contact)) contacts.push_back(contact);
         }
     }
-    if (settings.m_allContacts)
-    {
-        sortContacts(contacts);
-    }
-    else
-    {
-        reduction.take(contacts);
-    }
+    sortContacts(contacts);
 }
 
 void intersectOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth, const ObstacleView& obstacle,
@@ -95,13 +53,6 @@ void intersectOnHost(const std::vector<Candidate>& candidates, const ClothView& 
         if (trianglesIntersect(pair.m_face.m_start, pair.m_resting.m_corners)) pairs.push_back(candidate);
     }
     sortCandidates(pairs);
-}
-
-void sortContacts(std::vector<Contact>& contacts)
-{
-    std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) {
-        return std::tie(a.m_slot, a.m_obstacleFeature) < std::tie(b.m_slot, b.m_obstacleFeature);
-    });
 }
 
 void sortCandidates(std::vector<Candidate>& candidates)

@@ -8,8 +8,7 @@ namespace
 {
 // First guesses; they grow to what scenes need.
 constexpr std::size_t kFirstCandidates = 1 << 16;
-constexpr std::size_t kFirstHits = 1 << 15;
-constexpr std::size_t kFirstContacts = 1 << 12;
+constexpr std::size_t kFirstHits = 1 << 13;
 
 std::size_t withHeadroom(std::size_t count) { return count + count / 4 + 1024; }
 }  // namespace
@@ -24,11 +23,10 @@ DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& set
     m_narrowPhase.create(*m_device, narrowPhase, program("compaction"));
     m_candidates.reserve(*m_device, kFirstCandidates);
     m_narrowPhase.reserveHits(*m_device, kFirstHits);
-    m_narrowPhase.reserveContacts(*m_device, kFirstContacts);
     m_narrowPhase.reserveIntersections(*m_device, 1);
     m_counters.reserve(*m_device, 1);
     m_countersRead.reserve(m_device.get(), 1);
-    m_contactsRead.reserve(m_device.get(), kFirstContacts);
+    m_contactsRead.reserve(m_device.get(), kFirstHits);
     warmUp();
 }
 
@@ -162,8 +160,7 @@ void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
     m_broadPhase.enqueue(*m_device, {m_cloth.m_nodes, m_cloth.m_order, m_cloth.m_triangles, scene.m_clothLayout},
                          {m_obstacle.m_nodes, m_obstacle.m_order, m_obstacle.m_triangles, scene.m_obstacleLayout},
                          m_thickness, obstacleMeshes, m_candidates, m_counters);
-    const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacleMeshes, 1.0f + m_settings.m_activation,
-                                        m_settings.m_allContacts};
+    const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacleMeshes, 1.0f + m_settings.m_activation};
     m_narrowPhase.enqueue(*m_device, narrowPhaseBuffers(), scene.m_cloths.vertexCount(), scene.m_cloths.triangles().size(),
                           narrow, m_candidates, m_counters);
     if (m_settings.m_reportIntersections)
@@ -201,13 +198,10 @@ bool DeviceBackend::grow()
     Device& device = *m_device;
     demand(counters.m_candidates, m_candidates.capacity(), sizeof(Candidate),
            [&](std::size_t count) { m_candidates.reserve(device, count); });
-    demand(counters.m_hits, m_narrowPhase.hits().capacity(), sizeof(Contact),
+    demand(counters.m_hits, m_narrowPhase.hitCapacity(), sizeof(Contact),
            [&](std::size_t count) { m_narrowPhase.reserveHits(device, count); });
-    demand(counters.m_contacts, m_narrowPhase.contacts().capacity(), sizeof(Contact),
-           [&](std::size_t count) { m_narrowPhase.reserveContacts(device, count); });
     demand(counters.m_intersections, m_narrowPhase.intersections().capacity(), sizeof(Candidate),
            [&](std::size_t count) { m_narrowPhase.reserveIntersections(device, count); });
-    if (again) m_narrowPhase.clearSlots(device);
     return again;
 }
 
@@ -223,11 +217,11 @@ bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResul
         m_device->wait();
     }
     if (m_device->failed()) return false;
-    readAll(scene, result);
+    readAll(result);
     return !m_device->failed();
 }
 
-void DeviceBackend::readAll(const Scene&, StepResult& result)
+void DeviceBackend::readAll(StepResult& result)
 {
     const StepCounters counters = *m_countersRead.data();
     result.m_candidates = counters.m_candidates;
@@ -238,18 +232,16 @@ void DeviceBackend::readAll(const Scene&, StepResult& result)
         result.m_intersections.resize(counters.m_intersections);
         m_narrowPhase.intersections().read(*m_device, result.m_intersections.data(), counters.m_intersections);
     }
-    Buffer<Contact>& source = m_settings.m_allContacts ? m_narrowPhase.hits() : m_narrowPhase.contacts();
-    const std::size_t count = m_settings.m_allContacts ? counters.m_hits : counters.m_contacts;
-    const bool inHand = !m_settings.m_allContacts && count <= m_contactsAsked;
+    const std::size_t count = counters.m_hits;
+    const bool inHand = count <= m_contactsAsked;
     if (!inHand)
     {
         m_contactsRead.reserve(m_device.get(), withHeadroom(count));
-        source.read(*m_device, m_contactsRead.data(), count);
+        m_narrowPhase.contacts().read(*m_device, m_contactsRead.data(), count);
     }
     if (!inHand || m_settings.m_reportIntersections) m_device->wait();
     result.m_contacts.assign(m_contactsRead.data(), m_contactsRead.data() + count);
-    m_contactsAsked = std::min({withHeadroom(count), m_contactsRead.capacity(), m_narrowPhase.contacts().capacity()});
-    if (m_settings.m_allContacts) sortContacts(result.m_contacts);
+    m_contactsAsked = std::min({withHeadroom(count), m_contactsRead.capacity(), m_narrowPhase.hitCapacity()});
     sortCandidates(result.m_intersections);
 }
 }  // namespace drape

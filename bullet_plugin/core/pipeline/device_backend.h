@@ -53,7 +53,7 @@ private:
     NarrowPhaseBuffers narrowPhaseBuffers();
     // Makes room for what the last run demanded. Returns whether the step must run again.
     bool grow();
-    void readAll(const Scene& scene, StepResult& result);
+    void readAll(StepResult& result);
 
     std::unique_ptr<Device> m_device;
     Settings m_settings;

@@ -11,7 +11,6 @@ void HostBackend::update(const Scene& scene)
     {
         m_clothRevision = scene.m_cloths.revision();
         m_clothNodes = makeBvhNodes(scene.m_clothLayout);
-        m_reduction.resize(scene.slotCount());
     }
     const bool newObstacles = m_obstacleRevision != scene.m_obstacles.revision();
     if (newObstacles)
@@ -50,9 +49,8 @@ void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings
                              std::uint32_t(cloths.triangles().size())};
     const ObstacleView obstacle = {scene.m_obstaclePositions.data(), obstacles.triangles().data(),
                                    scene.m_vertexCones.data(), scene.m_edgeCones.data()};
-    const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacles.meshCount(), 1.0f + settings.m_activation,
-                                        settings.m_allContacts};
-    narrowPhaseOnHost(m_candidates, cloth, obstacle, narrow, m_reduction, result.m_contacts);
+    const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacles.meshCount(), 1.0f + settings.m_activation};
+    narrowPhaseOnHost(m_candidates, cloth, obstacle, narrow, result.m_contacts);
     if (settings.m_reportIntersections) intersectOnHost(m_candidates, cloth, obstacle, result.m_intersections);
     result.m_intersectionCount = result.m_intersections.size();
 }

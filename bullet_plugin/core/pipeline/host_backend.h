@@ -17,7 +17,6 @@ private:
 
     std::vector<BvhNode> m_clothNodes, m_obstacleNodes;
     std::vector<Candidate> m_candidates;
-    ContactReduction m_reduction;
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0, m_obstacleMotion = 0;
 };
 }  // namespace drape

@@ -12,6 +12,10 @@ namespace
 {
 using Clock = std::chrono::steady_clock;
 
+// Volumes reach a little further than the feature tests, by more than those round, so that which pairs were candidates never
+// decides whether a pair is a contact.
+constexpr float kReachPad = 1.001f;
+
 double millisecondsSince(Clock::time_point start)
 {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -93,7 +97,7 @@ void Pipeline::Implementation::collectPairs()
         assert(cloth < m_scene.m_cloths.meshCount() && obstacle < obstacleMeshes && pair.m_thickness > 0.0f);
         m_stepPairs.m_thickness[cloth * obstacleMeshes + obstacle] = pair.m_thickness;
         float& radius = m_stepPairs.m_clothRadius[cloth];
-        radius = std::max(radius, pair.m_thickness * (1.0f + m_settings.m_activation));
+        radius = std::max(radius, pair.m_thickness * (1.0f + m_settings.m_activation) * kReachPad);
         m_stepPairs.m_any = true;
     }
     m_pairs.clear();

@@ -26,8 +26,7 @@ struct Scene
 
     std::size_t slotCount() const
     {
-        return (m_cloths.vertexCount() + m_cloths.triangles().size() + m_cloths.edges().size()) *
-               DRAPE_CONTACT_DIRECTIONS;
+        return m_cloths.vertexCount() + m_cloths.triangles().size() + m_cloths.edges().size();
     }
 };
 

@@ -25,9 +25,6 @@ struct Settings
     // the thickness is violated. Range 0 to 4. Larger: safer under stiff links, more contacts.
     float m_activation = 0.5f;
 
-    // Report every pair within reach instead of the deepest one per cloth feature and direction. For tests and studies.
-    bool m_allContacts = false;
-
     // Also list the cloth and obstacle triangles that intersect at the step's start. Costs a kernel.
     bool m_reportIntersections = false;
 
