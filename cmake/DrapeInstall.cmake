@@ -1,0 +1,31 @@
+# Installs Drape::drape: library, public headers, CMake package and pkg-config file. Test: install.consumer.
+include(CMakePackageConfigHelpers)
+set(DRAPE_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/Drape)
+
+install(TARGETS drape EXPORT DrapeTargets
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(DIRECTORY bullet_plugin/core/include/drape bullet_plugin/adapter/include/drape
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+install(EXPORT DrapeTargets NAMESPACE Drape:: DESTINATION ${DRAPE_CMAKE_DIR})
+
+get_target_property(DRAPE_LIBRARY_TYPE drape TYPE)
+configure_package_config_file(cmake/DrapeConfig.cmake.in ${PROJECT_BINARY_DIR}/package/DrapeConfig.cmake
+  INSTALL_DESTINATION ${DRAPE_CMAKE_DIR})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/DrapeConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/package/DrapeConfig.cmake ${PROJECT_BINARY_DIR}/package/DrapeConfigVersion.cmake
+  cmake/FindDrapeBullet.cmake DESTINATION ${DRAPE_CMAKE_DIR})
+
+if(DRAPE_BULLET_DOUBLE)
+  set(DRAPE_PC_BULLET bullet-float64)
+else()
+  set(DRAPE_PC_BULLET bullet)
+endif()
+# Relative to the .pc file, so that cmake --install --prefix and a moved tree stay right.
+set(pc_dir ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig)
+file(RELATIVE_PATH DRAPE_PC_PREFIX ${pc_dir} ${CMAKE_INSTALL_PREFIX})
+file(RELATIVE_PATH DRAPE_PC_INCLUDEDIR ${pc_dir} ${CMAKE_INSTALL_FULL_INCLUDEDIR})
+configure_file(cmake/drape.pc.in ${PROJECT_BINARY_DIR}/package/drape.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/package/drape.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -1,0 +1,23 @@
+# drape_target(<target>): how every target of this project is compiled. Nothing of it reaches a user of Drape::drape.
+#
+# Floating-point contraction is off everywhere: the host must round as the devices do, or contacts differ in their bits.
+function(drape_target target)
+  target_compile_features(${target} PRIVATE cxx_std_17)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/bullet_plugin/core/include)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -ffp-contract=off)
+  if(DRAPE_SANITIZE)
+    target_compile_options(${target} PRIVATE
+      -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    # Public, so that whatever links a library that calls the sanitizers' run time links that run time too.
+    target_link_options(${target} PUBLIC -fsanitize=address,undefined)
+  endif()
+endfunction()
+
+# drape_uses_opencl(<target>): for code that includes core/device headers. clhpp in Debian 12 compiles only when both of
+# its version macros say 1.2.
+function(drape_uses_opencl target)
+  target_compile_definitions(${target} PRIVATE
+    CL_TARGET_OPENCL_VERSION=120 CL_HPP_TARGET_OPENCL_VERSION=120 CL_HPP_MINIMUM_OPENCL_VERSION=120)
+  target_link_libraries(${target} PRIVATE OpenCL::OpenCL)
+endfunction()

@@ -1,0 +1,54 @@
+#!/usr/bin/env bash
+# Installs the Debian 12 / Ubuntu 24.04 packages that Drape's build, tools and tests need: install_packages.sh
+#
+# Calls apt only when dpkg says that something is missing, with sudo when not root. Fails, naming the packages, when
+# something is missing and cannot be installed. The one list of packages.
+set -euo pipefail
+
+packages=(
+  # build
+  g++ cmake make ninja-build pkgconf
+  # library
+  libbullet-dev ocl-icd-opencl-dev opencl-c-headers opencl-clhpp-headers
+  # an OpenCL device on any machine
+  pocl-opencl-icd
+  # tools: arguments, meshes, JSON, PNG, rays; exact arithmetic for the independent check
+  libcli11-dev libassimp-dev nlohmann-json3-dev libpng-dev libembree-dev libgmp-dev
+  # tests
+  libgtest-dev
+  # data: the bunny; unpacking
+  glmark2-data xz-utils
+)
+
+if ! command -v dpkg-query >/dev/null; then
+  echo "No dpkg here: cannot check for these packages (Debian names): ${packages[*]}" >&2
+  exit 0
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+  status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
+  [[ $status == installed* ]] || missing+=("$package")
+done
+[[ ${#missing[@]} -gt 0 ]] || exit 0
+
+as_root=()
+if [[ $(id -u) != 0 ]]; then
+  # sudo without a password, or one that can ask for it.
+  if command -v sudo >/dev/null && { sudo -n true 2>/dev/null || [[ -t 0 ]]; }; then
+    as_root=(sudo)
+  else
+    echo "These packages are missing and need root or sudo to install:" >&2
+    echo "  apt-get install ${missing[*]}" >&2
+    exit 1
+  fi
+fi
+
+echo "Installing ${missing[*]}" >&2
+apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300)
+# An update that fails for one source may still be good enough: let the installation decide.
+"${apt[@]}" update -q >&2 || echo "apt-get update failed; trying with the lists that are there" >&2
+if ! "${apt[@]}" install -q -y --no-install-recommends "${missing[@]}" >&2; then
+  echo "Could not install: ${missing[*]}" >&2
+  exit 1
+fi
