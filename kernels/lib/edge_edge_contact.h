@@ -66,12 +66,11 @@ DRAPE_FUNCTION int edgeEdgePassed(FeatureEdge e0, FeatureEdge e1, FeatureEdge o,
     return gap1 < bounds.m_reach;
 }
 
-// Edge moving from e0 to e1 against a resting edge with the given normal cone; both closest points inside their edges.
-// opposites: third vertices of the cloth's two triangles at this edge, into end, positions at the step's end; origin: of
-// the local frame. The first comparisons drop most pairs and need neither division nor root.
-DRAPE_FUNCTION int edgeEdgeContact(FeatureEdge e0, FeatureEdge e1, const DRAPE_UINT* opposites,
-                                   const DRAPE_GLOBAL float* end, Vec3 origin, FeatureEdge o, NormalCone cone,
-                                   PairBounds bounds, Contact* contact)
+// Edge moving from e0 to e1 against a resting edge with the given normal cone; both closest points inside their edges. That
+// the cloth's own faces may come nearer beside the edge is no reason to drop it: where cloth bends over a sharp edge of the
+// obstacle, every crossing counts. The first comparisons drop most pairs and need neither division nor root.
+DRAPE_FUNCTION int edgeEdgeContact(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, NormalCone cone, PairBounds bounds,
+                                   Contact* contact)
 {
     const Vec3 along = vec3Sub(o.m_b, o.m_a);
     const Vec3 across = vec3Sub(e1.m_b, e1.m_a);
@@ -102,11 +101,6 @@ DRAPE_FUNCTION int edgeEdgeContact(FeatureEdge e0, FeatureEdge e1, const DRAPE_U
     if (distance > DRAPE_SEAM * bounds.m_extent)
     {
         normal = vec3Scale(offset, 1.0f / distance);
-        const Vec3 toObstacle = vec3Scale(offset, -1.0f);
-        for (int i = 0; i < 2; ++i)
-        {
-            if (!leansAway(toObstacle, vec3Sub(vec3Load(end, opposites[i]), origin), x1)) return 0;
-        }
         if (parallel && !coneAdmits(cone, normal)) return 0;
     }
     else

@@ -3,9 +3,8 @@
 //
 // A contact is reported when (a) the node, face or edge passed through the other feature during the step, and then its
 // normal points to the side the cloth came from and the gap at the end is negative; or (b) the two are within reach at the
-// step's end and locally closest: the direction between them lies in the obstacle's normal cone and, for edges, in the
-// cloth's Voronoi region. The second condition drops pairs whose neighbours are nearer and whose normals would push
-// sideways. Pairs are dropped for distance only on proof (provenApart).
+// step's end and locally closest on the obstacle: the direction between them lies in the obstacle feature's normal cone.
+// The second condition drops pairs whose neighbours are nearer and whose normals would push sideways. Pairs are dropped for distance only on proof (provenApart).
 //
 // All positions are in a local frame: the caller has subtracted a vertex of the obstacle's triangle, so that rounding scales
 // with the size of the pair and not with its distance from the world's origin.

@@ -142,15 +142,13 @@ DRAPE_FUNCTION int pairEdgeEdge(int i, int j, const PairGeometry* pair, const Cl
 {
     const DRAPE_GLOBAL Triangle* clothTriangle = cloth->m_triangles + candidate.m_cloth;
     const DRAPE_GLOBAL Triangle* triangle = obstacle->m_triangles + candidate.m_obstacle;
-    const DRAPE_UINT opposites[2] = {cloth->m_edges[clothTriangle->m_edges[i]].m_opposite[0],
-                                     cloth->m_edges[clothTriangle->m_edges[i]].m_opposite[1]};
     contact->m_kind = DRAPE_EDGE_EDGE;
     contact->m_clothFeature = clothTriangle->m_edges[i];
     contact->m_obstacleFeature = triangle->m_edges[j];
     contact->m_slot = cloth->m_nodeCount + cloth->m_triangleCount + contact->m_clothFeature;
-    return edgeEdgeContact(triangleEdge(&pair->m_face.m_start, i), triangleEdge(&pair->m_face.m_end, i), opposites, cloth->m_end,
-                           pair->m_origin, triangleEdge(&pair->m_resting.m_corners, j),
-                           obstacle->m_edgeCones[triangle->m_edges[j]], pair->m_bounds, contact);
+    return edgeEdgeContact(triangleEdge(&pair->m_face.m_start, i), triangleEdge(&pair->m_face.m_end, i),
+                           triangleEdge(&pair->m_resting.m_corners, j), obstacle->m_edgeCones[triangle->m_edges[j]],
+                           pair->m_bounds, contact);
 }
 
 // Makes the stored weights follow the cloth edge's own direction, which its owner may walk backwards.

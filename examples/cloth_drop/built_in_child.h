@@ -1,0 +1,21 @@
+// Runs Bullet's built-in collision in a child process, since it can stall for minutes in one step, and collects what it
+// measured until it ended or the cap did.
+//
+// The child is this program with --backend bullet and a hidden option; it writes a line before and after every step to
+// its standard output. The cap counts stepping only, not measuring. The child is always gone when the functions return.
+#pragma once
+
+#include <string>
+
+#include "examples/cloth_drop/options.h"
+#include "examples/cloth_drop/run_record.h"
+
+namespace drape
+{
+// In the parent. False with one line in `error` when the child could not be started or failed.
+bool runBuiltInChild(const Options& options, BulletMode mode, const DropScene& scene, RunRecord& record,
+                     std::string& error);
+
+// In the child: runs and streams. Does not return: Bullet's own clean-up could take minutes.
+[[noreturn]] void streamBuiltIn(const Options& options, const DropScene& scene);
+}  // namespace drape

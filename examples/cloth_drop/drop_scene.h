@@ -1,0 +1,23 @@
+// The scene that every back end is given: an obstacle standing on y = 0 and a flat cloth above it. Knows no Bullet.
+#pragma once
+
+#include <string>
+
+#include "examples/cloth_drop/options.h"
+#include "scenes/cloth_grid.h"
+#include "scenes/mesh.h"
+
+namespace drape
+{
+struct DropScene
+{
+    TriangleMesh m_obstacle;
+    ClothGrid m_cloth;
+    double m_dt = 0;         // s
+    double m_thickness = 0;  // m; each side's margin is half of it
+    double m_mass = 1.0;     // kg, of the cloth
+};
+
+// False, with one line in `error`, when the obstacle cannot be had.
+bool makeDropScene(const Options& options, DropScene& scene, std::string& error);
+}  // namespace drape

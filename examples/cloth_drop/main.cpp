@@ -1,0 +1,116 @@
+// cloth_drop: drops a cloth on an obstacle in Bullet, with Drape or Bullet's built-in collision, and reports.
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+
+#include "examples/cloth_drop/built_in_child.h"
+#include "examples/cloth_drop/outputs.h"
+#include "examples/cloth_drop/picture.h"
+#include "examples/cloth_drop/progress.h"
+#include "examples/cloth_drop/runner.h"
+
+namespace drape
+{
+namespace
+{
+int fail(int exitCode, const std::string& reason)
+{
+    std::cerr << "cloth_drop: " << reason << std::endl;
+    return exitCode;
+}
+
+// Runs the chosen back end. A built-in world is left alive: Bullet's clean-up of its distance field can take minutes.
+int runChosen(const Options& options, const DropScene& scene, NamedRun& run, TriangleMesh& lastFrame)
+{
+    std::string error;
+    int exitCode = kExitFailed;
+    std::unique_ptr<Simulation> simulation = options.usesDrape() ? makeDrapeSimulation(scene, options, error, exitCode)
+                                                                 : makeBulletSimulation(scene, options.m_bulletMode);
+    if (!simulation) return fail(exitCode, error);
+    Progress progress(simulation->backend(), options.m_steps, options.m_quiet);
+    RunHooks hooks;
+    hooks.m_afterStep = [&](int number, const StepRecord&) { progress.show(number); };
+    const bool ran =
+        runSimulation(*simulation, scene, options.m_steps, options.m_frames, hooks, run.m_record, lastFrame, error);
+    if (!options.usesDrape()) static_cast<void>(simulation.release());
+    return ran ? kExitGood : fail(kExitFailed, error);
+}
+
+bool runBuiltIns(const Options& options, const DropScene& scene, std::vector<NamedRun>& runs, std::string& error)
+{
+    std::vector<std::pair<const char*, BulletMode>> modes = {{"bullet_stock", BulletMode::Stock},
+                                                             {"bullet_tuned", BulletMode::Tuned}};
+    if (options.m_compareSoftPair) modes.emplace_back("bullet_vfss", BulletMode::SoftPair);
+    for (const auto& mode : modes)
+    {
+        NamedRun run{mode.first, {}};
+        std::string problem;
+        if (!runBuiltInChild(options, mode.second, scene, run.m_record, problem))
+        {
+            run.m_record.m_trouble = problem;
+            error = problem;
+        }
+        runs.push_back(std::move(run));
+    }
+    return error.empty();
+}
+
+int judge(const Options& options, const std::vector<NamedRun>& runs)
+{
+    const RunSummary summary = summarise(runs.front().m_record);
+    if (!options.m_validateHash.empty() && hashText(summary.m_hash) != options.m_validateHash)
+        return fail(kExitOtherHash, "hash is " + hashText(summary.m_hash) + ", not " + options.m_validateHash);
+    if (summary.m_invalidNodes > 0)
+        return fail(kExitFailed, std::to_string(summary.m_invalidNodes) + " cloth nodes became NaN or infinite");
+    return kExitGood;
+}
+
+int run(const Options& options)
+{
+    if (options.m_listDevices)
+    {
+        printDevices();
+        return kExitGood;
+    }
+    DropScene scene;
+    std::string error;
+    if (!makeDropScene(options, scene, error)) return fail(kExitBadInput, error);
+    if (options.m_streamSteps) streamBuiltIn(options, scene);
+    if (!prepareOutputs(options, error)) return fail(kExitFailed, error);
+    std::vector<NamedRun> runs(1);
+    runs[0].m_name = options.usesDrape() ? "drape" : "bullet";
+    TriangleMesh lastFrame;
+    const int exitCode = runChosen(options, scene, runs[0], lastFrame);
+    if (exitCode != kExitGood) return exitCode;
+    bool good = options.m_picture.empty() || writePicture(options.m_picture, lastFrame, scene.m_obstacle, error);
+    if (options.m_compare) good = runBuiltIns(options, scene, runs, error) && good;
+    std::string writeError;
+    if (!writeOutputs(options, runs, writeError)) return fail(kExitFailed, writeError);
+    return good ? judge(options, runs) : fail(kExitFailed, error);
+}
+
+int guardedRun(const Options& options)
+{
+    try
+    {
+        return run(options);
+    }
+    catch (const std::bad_alloc&)
+    {
+        return fail(kExitFailed, "out of memory");
+    }
+    catch (const std::exception& exception)
+    {
+        return fail(kExitFailed, exception.what());
+    }
+}
+}  // namespace
+}  // namespace drape
+
+int main(int argc, char** argv)
+{
+    drape::Options options;
+    int exitCode = drape::kExitGood;
+    if (!drape::parseOptions(argc, argv, options, exitCode)) return exitCode;
+    return drape::guardedRun(options);
+}

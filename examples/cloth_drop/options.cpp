@@ -1,0 +1,166 @@
+#include "examples/cloth_drop/options.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <map>
+
+#include <CLI/CLI.hpp>
+
+#include "scenes/shapes.h"
+
+namespace drape
+{
+namespace
+{
+constexpr int kMostNodesASide = 4096;  // 16.8 million nodes: beyond what a step can hold, below any overflow
+
+std::string asNumber(const std::string& text, double& value)
+{
+    try
+    {
+        std::size_t end = 0;
+        value = std::stod(text, &end);
+        if (end == text.size() && std::isfinite(value)) return "";
+    }
+    catch (const std::exception&)
+    {
+    }
+    return "'" + text + "' is not a finite number";
+}
+
+// A validator of CLI11: "" when good, else the reason.
+std::function<std::string(std::string&)> numberAbove(double least, bool inclusive, const char* what)
+{
+    return [=](std::string& text) -> std::string
+    {
+        double value = 0;
+        const std::string problem = asNumber(text, value);
+        if (!problem.empty()) return problem;
+        return value > least || (inclusive && value >= least) ? "" : "'" + text + "' must be " + what;
+    };
+}
+
+std::string grid(std::string& text)
+{
+    const std::size_t split = text.find_first_of("xX");
+    const bool digits = split != std::string::npos && split > 0 && split + 1 < text.size() && text.size() <= 11 &&
+                        std::count_if(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; }) ==
+                            static_cast<std::ptrdiff_t>(text.size()) - 1;
+    if (!digits) return "'" + text + "' is not of the form NxM, such as 33x33";
+    const int columns = std::stoi(text.substr(0, split)), rows = std::stoi(text.substr(split + 1));
+    if (std::min(columns, rows) < 2 || std::max(columns, rows) > kMostNodesASide)
+        return "'" + text + "' needs 2 to " + std::to_string(kMostNodesASide) + " nodes a side";
+    return "";
+}
+
+std::string hash(std::string& text)
+{
+    if (text.size() != 16 || text.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos)
+        return "'" + text + "' is not a hash of 16 hex digits";
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return "";
+}
+
+std::string shapeList()
+{
+    std::string list;
+    for (const std::string& name : shapeNames())
+        list += (list.empty() ? "" : ", ") + name;
+    return list;
+}
+
+void addSceneOptions(CLI::App& app, Options& options, std::string& cloth)
+{
+    const auto positive = CLI::Validator(numberAbove(0, false, "more than 0"), "");
+    app.add_option("--obstacle", options.m_obstacle, "mesh file (OBJ, PLY, STL, glTF) or one of: " + shapeList())
+        ->type_name("FILE|SHAPE");
+    app.add_option("--obstacle-size", options.m_obstacleSize, "largest extent of the obstacle, m")->check(positive);
+    app.add_option("--cloth", cloth, "cloth nodes along x and z")->type_name("NxM")->check(CLI::Validator(grid, ""));
+    app.add_option("--cloth-size", options.m_clothSize, "longer side of the cloth, m")->check(positive);
+    app.add_option("--drop-height", options.m_dropHeight, "free fall before the thickness is reached, m")
+        ->check(CLI::Validator(numberAbove(0, true, "0 or more"), ""));
+    app.add_option("--steps", options.m_steps, "simulation steps")->check(positive);
+    app.add_option("--dt", options.m_dt, "seconds a step")->check(positive);
+    app.add_option("--thickness", options.m_thickness,
+                   "gap at rest: half is the cloth's margin, half the obstacle's, m")
+        ->check(positive);
+}
+
+void addBackendOptions(CLI::App& app, Options& options, std::string& mode)
+{
+    app.add_option("--backend", options.m_backend,
+                   "auto: a GPU, else any OpenCL device, else the host; bullet: built in")
+        ->check(CLI::IsMember({"auto", "opencl", "host", "bullet"}));
+    app.add_option("--bullet-mode", mode, "distance field of --backend bullet, or the obstacle as a soft body")
+        ->check(CLI::IsMember({"stock", "tuned", "vfss"}));
+    app.add_option("--device", options.m_device, "part of an OpenCL device's or platform's name")->type_name("TEXT");
+    app.add_flag("--list-devices", options.m_listDevices, "list the OpenCL devices and leave");
+    app.add_flag("--compare", options.m_compare, "then run Bullet's built-in collision on the same scene");
+    app.add_flag("--compare-vfss", options.m_compareSoftPair, "with --compare: also two soft bodies (VF_SS)");
+    app.add_option("--compare-cap", options.m_compareCap, "seconds of stepping after which a built-in run is ended")
+        ->check(CLI::Validator(numberAbove(0, false, "more than 0"), ""));
+}
+
+void addOutputOptions(CLI::App& app, Options& options)
+{
+    app.add_option("--csv", options.m_csv, "write a row a step")->type_name("FILE");
+    app.add_option("--json", options.m_json, "write the summary; - is standard output")->type_name("FILE");
+    app.add_option("--frames", options.m_frames, "write obstacle.ply and a cloth_NNNN.ply a step")->type_name("DIR");
+    app.add_option("--picture", options.m_picture, "write a shaded picture of the last frame")->type_name("FILE.png");
+    app.add_option("--validate-hash", options.m_validateHash, "exit with 3 unless the run's hash is this")
+        ->type_name("H")
+        ->check(CLI::Validator(hash, ""));
+    app.add_flag("--quiet", options.m_quiet, "no progress and no summary");
+    app.add_flag("--stream-steps", options.m_streamSteps, "")->group("");
+}
+
+std::string conflict(const Options& options)
+{
+    if (!options.usesDrape() && options.m_compare) return "--compare needs a back end of Drape, not --backend bullet";
+    if (!options.usesDrape() && !options.m_device.empty()) return "--device means nothing with --backend bullet";
+    if (options.m_compareSoftPair && !options.m_compare) return "--compare-vfss needs --compare";
+    if (options.m_obstacle.empty()) return "--obstacle is empty";
+    return "";
+}
+}  // namespace
+
+bool parseOptions(int argc, const char* const* argv, Options& options, int& exitCode)
+{
+    CLI::App app("Drops a cloth on an obstacle in Bullet and reports what happened.", "cloth_drop");
+    std::string cloth = "33x33", mode = "stock";
+    app.option_defaults()->always_capture_default();
+    addSceneOptions(app, options, cloth);
+    addBackendOptions(app, options, mode);
+    addOutputOptions(app, options);
+    std::string problem;
+    try
+    {
+        app.parse(argc, argv);
+        problem = conflict(options);
+    }
+    catch (const CLI::CallForHelp&)
+    {
+        std::cout << app.help();
+        exitCode = kExitGood;
+        return false;
+    }
+    catch (const CLI::ParseError& error)
+    {
+        problem = error.what();
+    }
+    if (!problem.empty())
+    {
+        std::cerr << "cloth_drop: " << problem << "\n";
+        exitCode = kExitBadInput;
+        return false;
+    }
+    std::sscanf(cloth.c_str(), "%d%*c%d", &options.m_clothColumns, &options.m_clothRows);
+    static const std::map<std::string, BulletMode> modes = {
+        {"stock", BulletMode::Stock}, {"tuned", BulletMode::Tuned}, {"vfss", BulletMode::SoftPair}};
+    options.m_bulletMode = modes.at(mode);
+    return true;
+}
+}  // namespace drape

@@ -1,0 +1,18 @@
+// The files a run leaves: checked before the run, so that an hour's work is not lost to a mistyped folder, written
+// after.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "examples/cloth_drop/options.h"
+#include "examples/cloth_drop/report.h"
+
+namespace drape
+{
+// Makes the frames' folder and checks that each named file could be written. False with one line in `error`.
+bool prepareOutputs(const Options& options, std::string& error);
+
+// Writes CSV (of the first run), JSON and the table. Tries all, reports the first failure in `error`.
+bool writeOutputs(const Options& options, const std::vector<NamedRun>& runs, std::string& error);
+}  // namespace drape

@@ -1,0 +1,28 @@
+// Shows how far a run is, on standard error: a bar when that is a terminal, else a line every tenth of the way.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace drape
+{
+class Progress
+{
+public:
+    // Silent when `quiet`.
+    Progress(std::string title, int steps, bool quiet);
+    ~Progress();
+    void show(int step);
+
+private:
+    void drawBar(int step) const;
+
+    std::string m_title;
+    int m_steps;
+    bool m_quiet;
+    bool m_terminal;
+    int m_tenths = 0;
+    bool m_lineOpen = false;
+    std::chrono::steady_clock::time_point m_start, m_drawn;
+};
+}  // namespace drape

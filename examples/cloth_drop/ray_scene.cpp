@@ -1,0 +1,120 @@
+#include "examples/cloth_drop/ray_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+namespace drape
+{
+namespace
+{
+// Corners whose smooth normal leans farther than 40 degrees from the face are creases and are drawn flat.
+constexpr double kCreaseCosine = 0.766;
+
+RTCRay makeRay(const Vector3& origin, const Vector3& direction, double distance)
+{
+    RTCRay ray{};
+    ray.org_x = static_cast<float>(origin.x);
+    ray.org_y = static_cast<float>(origin.y);
+    ray.org_z = static_cast<float>(origin.z);
+    ray.dir_x = static_cast<float>(direction.x);
+    ray.dir_y = static_cast<float>(direction.y);
+    ray.dir_z = static_cast<float>(direction.z);
+    ray.tfar = static_cast<float>(distance);
+    ray.mask = 0xffffffffu;
+    return ray;
+}
+}  // namespace
+
+RayScene::RayScene(ShadedMesh cloth, ShadedMesh obstacle) : m_meshes{std::move(cloth), std::move(obstacle)}
+{
+    m_device = rtcNewDevice(nullptr);
+    if (m_device == nullptr) return;
+    m_scene = rtcNewScene(m_device);
+    Bounds all = boundsOf(m_meshes[1].m_mesh);
+    const Bounds clothBounds = boundsOf(m_meshes[0].m_mesh);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        all.m_low[axis] = std::min(all.m_low[axis], clothBounds.m_low[axis]);
+        all.m_high[axis] = std::max(all.m_high[axis], clothBounds.m_high[axis]);
+    }
+    for (int index = 0; index < 2; ++index)
+        addMesh(m_meshes[index].m_mesh, index);
+    rtcCommitScene(m_scene);
+    const Vector3 low = {all.m_low[0], all.m_low[1], all.m_low[2]},
+                  high = {all.m_high[0], all.m_high[1], all.m_high[2]};
+    m_centre = 0.5 * (low + high);
+    m_radius = std::max(0.5 * length(high - low), 1e-6);
+    m_floor = low.y;
+    m_good = rtcGetDeviceError(m_device) == RTC_ERROR_NONE;
+}
+
+RayScene::~RayScene()
+{
+    if (m_scene != nullptr) rtcReleaseScene(m_scene);
+    if (m_device != nullptr) rtcReleaseDevice(m_device);
+}
+
+void RayScene::addMesh(const TriangleMesh& mesh, int index)
+{
+    RTCGeometry geometry = rtcNewGeometry(m_device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                             mesh.vertexCount());
+    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned),
+                                            mesh.triangleCount());
+    if (vertices != nullptr) std::memcpy(vertices, mesh.m_positions.data(), mesh.m_positions.size() * sizeof(float));
+    if (indices != nullptr)
+        std::memcpy(indices, mesh.m_triangles.data(), mesh.m_triangles.size() * sizeof(std::int32_t));
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(m_scene, geometry, static_cast<unsigned>(index));
+    rtcReleaseGeometry(geometry);
+}
+
+SurfacePoint RayScene::trace(const Vector3& origin, const Vector3& direction) const
+{
+    RTCRayHit query{};
+    query.ray = makeRay(origin, direction, std::numeric_limits<float>::infinity());
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(m_scene, &context, &query);
+    SurfacePoint hit;
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+    {
+        const double toFloor = direction.y < 0 ? (m_floor - origin.y) / direction.y : -1;
+        if (toFloor <= 0) return hit;
+        hit.m_surface = Surface::Floor;
+        hit.m_point = origin + toFloor * direction;
+        hit.m_normal = hit.m_flat = {0, 1, 0};
+        return hit;
+    }
+    const ShadedMesh& shaded = m_meshes[query.hit.geomID];
+    const std::int32_t* corner = &shaded.m_mesh.m_triangles[3 * static_cast<std::size_t>(query.hit.primID)];
+    const double weights[3] = {1.0 - query.hit.u - query.hit.v, query.hit.u, query.hit.v};
+    hit.m_flat = normalized({query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z});
+    for (int i = 0; i < 3; ++i)
+    {
+        const Vector3& smooth = shaded.m_normals[static_cast<std::size_t>(corner[i])];
+        const bool flat = shaded.m_creases && dot(smooth, hit.m_flat) < kCreaseCosine;
+        hit.m_normal += weights[i] * (flat ? hit.m_flat : smooth);
+    }
+    hit.m_surface = query.hit.geomID == 0 ? Surface::Cloth : Surface::Obstacle;
+    hit.m_point = origin + static_cast<double>(query.ray.tfar) * direction;
+    hit.m_back = dot(hit.m_flat, direction) > 0;
+    const double towards = hit.m_back ? -1 : 1;
+    hit.m_flat = towards * hit.m_flat;
+    hit.m_normal = towards * normalized(hit.m_normal);
+    return hit;
+}
+
+bool RayScene::blocked(const Vector3& origin, const Vector3& direction, double distance) const
+{
+    RTCRay ray = makeRay(origin, direction, distance);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(m_scene, &context, &ray);
+    return ray.tfar < 0;
+}
+}  // namespace drape

@@ -1,0 +1,58 @@
+// Cloth, obstacle and floor as Embree sees them: rays in, surface points out. Metres; threads may trace at the same
+// time.
+#pragma once
+
+#include <vector>
+
+#include <embree3/rtcore.h>
+
+#include "examples/cloth_drop/smooth_mesh.h"
+#include "scenes/mesh.h"
+#include "scenes/vector3.h"
+
+namespace drape
+{
+enum class Surface
+{
+    None,
+    Cloth,
+    Obstacle,
+    Floor
+};
+
+struct SurfacePoint
+{
+    Surface m_surface = Surface::None;
+    Vector3 m_point;
+    Vector3 m_normal;     // smooth, towards the ray's origin
+    Vector3 m_flat;       // of the triangle, towards the ray's origin
+    bool m_back = false;  // seen from the triangle's back
+};
+
+class RayScene
+{
+public:
+    RayScene(ShadedMesh cloth, ShadedMesh obstacle);
+    ~RayScene();
+    RayScene(const RayScene&) = delete;
+    RayScene& operator=(const RayScene&) = delete;
+
+    bool good() const { return m_good; }
+
+    SurfacePoint trace(const Vector3& origin, const Vector3& direction) const;
+    bool blocked(const Vector3& origin, const Vector3& direction, double distance) const;
+
+    const Vector3& centre() const { return m_centre; }
+    double radius() const { return m_radius; }  // of a ball around cloth and obstacle
+
+private:
+    void addMesh(const TriangleMesh& mesh, int index);
+
+    RTCDevice m_device = nullptr;
+    RTCScene m_scene = nullptr;
+    ShadedMesh m_meshes[2];  // cloth, obstacle
+    Vector3 m_centre;
+    double m_radius = 1, m_floor = 0;
+    bool m_good = false;
+};
+}  // namespace drape

@@ -1,0 +1,173 @@
+#include "examples/cloth_drop/report.h"
+
+#include <cstdio>
+#include <functional>
+
+namespace drape
+{
+namespace
+{
+using Json = nlohmann::ordered_json;
+
+Json asJson(const TimeSummary& times)
+{
+    return {{"first", times.m_first}, {"median", times.m_median}, {"p95", times.m_p95}, {"max", times.m_max}};
+}
+
+Json asJson(const RunRecord& record)
+{
+    const RunSummary summary = summarise(record);
+    Json json;
+    json["backend"] = record.m_backend;
+    json["device"] = record.m_device;
+    json["device_reason"] = record.m_deviceReason;
+    json["prepare_ms"] = record.m_prepareMs;
+    json["steps"] = record.m_steps.size();
+    json["steps_in_contact"] = summary.m_stepsInContact;
+    json["cloth_triangles"] = record.m_clothTriangles;
+    json["obstacle_triangles"] = record.m_obstacleTriangles;
+    json["thickness_m"] = record.m_thickness;
+    json["step_ms"] = asJson(summary.m_step);
+    json["collision_ms"] = asJson(summary.m_collision);
+    json["contacts_max"] = summary.m_contactsMax;
+    json["penetration_max_m"] = summary.m_penetrationMax;
+    json["penetration_p99_m"] = summary.m_penetrationP99;
+    json["gap_min_m"] = summary.m_gapMin;
+    json["nodes_below_surface"] = summary.m_nodesBelow;
+    json["intersecting_pairs_end"] = summary.m_intersectingPairsEnd;
+    json["nan_nodes"] = summary.m_invalidNodes;
+    json["hash"] = hashText(summary.m_hash);
+    if (record.m_cappedAtStep > 0) json["capped_at_step"] = record.m_cappedAtStep;
+    if (!record.m_trouble.empty()) json["trouble"] = record.m_trouble;
+    return json;
+}
+
+double ratio(const RunSummary& other, const RunSummary& own)
+{
+    return own.m_collision.m_median > 0 ? other.m_collision.m_median / own.m_collision.m_median : 0;
+}
+
+std::string text(const char* format, double value)
+{
+    char buffer[64];
+    std::snprintf(buffer, sizeof buffer, format, value);
+    return buffer;
+}
+
+std::string count(std::size_t value)
+{
+    return std::to_string(value);
+}
+
+std::string row(const std::string& label, const std::vector<std::string>& cells)
+{
+    const auto pad = [](const std::string& cell, std::size_t width)
+    { return cell.size() < width ? std::string(width - cell.size(), ' ') : std::string(); };
+    std::string line = label + pad(label, 34);
+    for (const std::string& cell : cells)
+        line += "  " + pad(cell, 14) + cell;
+    return line + "\n";
+}
+
+void addTimes(std::string& table, const std::string& label, const std::vector<RunSummary>& summaries,
+              const TimeSummary RunSummary::*times)
+{
+    const std::pair<const char*, double TimeSummary::*> parts[4] = {{"first", &TimeSummary::m_first},
+                                                                    {"median", &TimeSummary::m_median},
+                                                                    {"p95", &TimeSummary::m_p95},
+                                                                    {"max", &TimeSummary::m_max}};
+    for (const auto& part : parts)
+    {
+        std::vector<std::string> cells;
+        for (const RunSummary& summary : summaries)
+            cells.push_back(text("%.3f", summary.*times.*part.second));
+        table += row(label + ", " + part.first, cells);
+    }
+}
+
+std::string heading(const std::vector<NamedRun>& runs)
+{
+    const RunRecord& first = runs.front().m_record;
+    std::string head = "cloth " + count(first.m_clothTriangles) + " triangles on obstacle of " +
+                       count(first.m_obstacleTriangles) + ", thickness " + text("%g", 1000 * first.m_thickness) +
+                       " mm\n";
+    for (const NamedRun& run : runs)
+    {
+        const RunRecord& record = run.m_record;
+        head += run.m_name + ": " + record.m_backend + " on " + record.m_device + " (" + record.m_deviceReason + ")";
+        if (record.m_prepareMs > 0) head += ", ready after " + text("%.0f", record.m_prepareMs) + " ms";
+        if (record.m_cappedAtStep > 0) head += "; ended by the cap in step " + std::to_string(record.m_cappedAtStep);
+        if (!record.m_trouble.empty()) head += "; " + record.m_trouble;
+        head += "\n";
+    }
+    return head;
+}
+}  // namespace
+
+Json asJson(const std::vector<NamedRun>& runs)
+{
+    if (runs.size() == 1) return asJson(runs.front().m_record);
+    Json json;
+    const RunSummary first = summarise(runs.front().m_record);
+    for (const NamedRun& run : runs)
+        json[run.m_name] = asJson(run.m_record);
+    for (std::size_t i = 1; i < runs.size(); ++i)
+    {
+        const std::string& name = runs[i].m_name;
+        json["ratio_" + name.substr(name.find('_') + 1)] = ratio(summarise(runs[i].m_record), first);
+    }
+    return json;
+}
+
+std::string asCsv(const RunRecord& record, double dt)
+{
+    std::string csv =
+        "step,time_s,step_ms,collision_ms,contacts,penetration_max_m,gap_min_m,nodes_below_surface,"
+        "intersecting_pairs,nan_nodes\n";
+    char line[256];
+    for (std::size_t i = 0; i < record.m_steps.size(); ++i)
+    {
+        const StepRecord& step = record.m_steps[i];
+        std::snprintf(line, sizeof line, "%zu,%.9g,%.6f,%.6f,%zu,%.9g,%.9g,%zu,%zu,%zu\n", i + 1,
+                      static_cast<double>(i + 1) * dt, step.m_times.m_stepMs, step.m_times.m_collisionMs,
+                      step.m_times.m_contacts, step.m_measure.m_penetrationMax, step.m_measure.m_gapMin,
+                      step.m_measure.nodesBelow(), step.m_measure.m_intersectingPairs, step.m_measure.m_invalidNodes);
+        csv += line;
+    }
+    return csv;
+}
+
+std::string asTable(const std::vector<NamedRun>& runs)
+{
+    std::vector<RunSummary> summaries;
+    std::vector<std::string> names;
+    for (const NamedRun& run : runs)
+    {
+        summaries.push_back(summarise(run.m_record));
+        names.push_back(run.m_name);
+    }
+    std::string table = heading(runs) + row("", names);
+    const auto add = [&](const std::string& label, const std::function<std::string(std::size_t)>& cell)
+    {
+        std::vector<std::string> cells;
+        for (std::size_t i = 0; i < runs.size(); ++i)
+            cells.push_back(cell(i));
+        table += row(label, cells);
+    };
+    add("steps (in contact)", [&](std::size_t i)
+        { return count(runs[i].m_record.m_steps.size()) + " (" + count(summaries[i].m_stepsInContact) + ")"; });
+    addTimes(table, "step, ms", summaries, &RunSummary::m_step);
+    addTimes(table, "collision, ms", summaries, &RunSummary::m_collision);
+    add("contacts, most", [&](std::size_t i) { return count(summaries[i].m_contactsMax); });
+    add("penetration, most, mm", [&](std::size_t i) { return text("%.3f", 1000 * summaries[i].m_penetrationMax); });
+    add("penetration, p99, mm", [&](std::size_t i) { return text("%.3f", 1000 * summaries[i].m_penetrationP99); });
+    add("gap, least, mm", [&](std::size_t i) { return text("%.3f", 1000 * summaries[i].m_gapMin); });
+    add("nodes below surface, end", [&](std::size_t i) { return count(summaries[i].m_nodesBelow); });
+    add("intersecting pairs, end", [&](std::size_t i) { return count(summaries[i].m_intersectingPairsEnd); });
+    add("NaN nodes", [&](std::size_t i) { return count(summaries[i].m_invalidNodes); });
+    add("hash", [&](std::size_t i) { return hashText(summaries[i].m_hash); });
+    if (runs.size() > 1)
+        add("collision median, ratio", [&](std::size_t i) { return text("%.1f", ratio(summaries[i], summaries[0])); });
+    return table;
+}
+}  // namespace drape

@@ -1,0 +1,91 @@
+#include "examples/cloth_drop/run_record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+namespace drape
+{
+namespace
+{
+// The value below which the given share of the sorted values lies (nearest rank).
+double percentile(const std::vector<double>& sorted, double share)
+{
+    if (sorted.empty()) return 0;
+    const double rank = std::ceil(share * static_cast<double>(sorted.size()));
+    return sorted[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
+}
+
+TimeSummary summariseTimes(std::vector<double> times)
+{
+    TimeSummary summary;
+    if (times.empty()) return summary;
+    summary.m_first = times.front();
+    std::sort(times.begin(), times.end());
+    const std::size_t half = times.size() / 2;
+    summary.m_median = times.size() % 2 ? times[half] : 0.5 * (times[half - 1] + times[half]);
+    summary.m_p95 = percentile(times, 0.95);
+    summary.m_max = times.back();
+    return summary;
+}
+
+// Percentile of depths among `samples` values of which all that are not listed are 0.
+double depthPercentile(std::vector<double> depths, std::size_t samples, double share)
+{
+    const auto above = static_cast<std::size_t>(static_cast<double>(samples) * (1 - share));
+    if (depths.size() <= above) return 0;
+    std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(above), depths.end(),
+                     std::greater<>());
+    return depths[above];
+}
+}  // namespace
+
+RunSummary summarise(const RunRecord& record)
+{
+    RunSummary summary;
+    std::vector<double> steps, collisions, depths;
+    for (std::size_t i = 0; i < record.m_steps.size(); ++i)
+    {
+        const StepRecord& step = record.m_steps[i];
+        const StepMeasure& measure = step.m_measure;
+        summary.m_contactsMax = std::max(summary.m_contactsMax, step.m_times.m_contacts);
+        summary.m_penetrationMax = std::max(summary.m_penetrationMax, measure.m_penetrationMax);
+        summary.m_gapMin = i == 0 ? measure.m_gapMin : std::min(summary.m_gapMin, measure.m_gapMin);
+        summary.m_invalidNodes = std::max(summary.m_invalidNodes, measure.m_invalidNodes);
+        depths.insert(depths.end(), measure.m_nodeDepths.begin(), measure.m_nodeDepths.end());
+        if (step.m_times.m_contacts == 0) continue;
+        ++summary.m_stepsInContact;
+        steps.push_back(step.m_times.m_stepMs);
+        collisions.push_back(step.m_times.m_collisionMs);
+    }
+    summary.m_step = summariseTimes(std::move(steps));
+    summary.m_collision = summariseTimes(std::move(collisions));
+    summary.m_penetrationP99 = depthPercentile(std::move(depths), summary.m_stepsInContact * record.m_clothNodes, 0.99);
+    if (record.m_steps.empty()) return summary;
+    const StepRecord& last = record.m_steps.back();
+    summary.m_nodesBelow = last.m_measure.nodesBelow();
+    summary.m_intersectingPairsEnd = last.m_measure.m_intersectingPairs;
+    summary.m_hash = last.m_hash;
+    return summary;
+}
+
+std::uint64_t hashFloats(std::uint64_t hash, const std::vector<float>& values)
+{
+    for (const float value : values)
+    {
+        std::uint32_t bits = 0;
+        std::memcpy(&bits, &value, sizeof bits);
+        for (int shift = 0; shift < 32; shift += 8)
+            hash = (hash ^ ((bits >> shift) & 0xffu)) * 0x100000001b3ull;
+    }
+    return hash;
+}
+
+std::string hashText(std::uint64_t hash)
+{
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+    return text;
+}
+}  // namespace drape

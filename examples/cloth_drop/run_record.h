@@ -1,0 +1,57 @@
+// What was measured in a run, step by step, and its summary. Times in ms, lengths in metres.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "examples/cloth_drop/simulation.h"
+#include "scenes/measure.h"
+
+namespace drape
+{
+struct StepRecord
+{
+    StepTimes m_times;
+    StepMeasure m_measure;
+    std::uint64_t m_hash = 0;  // of all positions up to and with this step
+};
+
+struct RunRecord
+{
+    std::string m_backend, m_device, m_deviceReason;
+    double m_prepareMs = 0;
+    std::size_t m_clothTriangles = 0, m_clothNodes = 0, m_obstacleTriangles = 0;
+    double m_thickness = 0;
+    std::vector<StepRecord> m_steps;
+    int m_cappedAtStep = 0;  // the step, from 1, that the cap ended; 0: none
+    std::string m_trouble;   // one line, or empty
+};
+
+// Of the steps that had contacts; the first of them is `m_first`. All 0 when there was none.
+struct TimeSummary
+{
+    double m_first = 0, m_median = 0, m_p95 = 0, m_max = 0;
+};
+
+struct RunSummary
+{
+    std::size_t m_stepsInContact = 0;
+    TimeSummary m_step, m_collision;
+    std::size_t m_contactsMax = 0;
+    double m_penetrationMax = 0;
+    double m_penetrationP99 = 0;  // over every cloth node in every step in contact; nodes that are not below count as 0
+    double m_gapMin = 0;
+    std::size_t m_nodesBelow = 0;            // after the last step
+    std::size_t m_intersectingPairsEnd = 0;  // after the last step
+    std::size_t m_invalidNodes = 0;          // most in any step
+    std::uint64_t m_hash = 0;
+};
+
+RunSummary summarise(const RunRecord& record);
+
+// FNV-1a, 64 bits, over the bits of the floats, least significant byte first.
+constexpr std::uint64_t kHashStart = 0xcbf29ce484222325ull;
+std::uint64_t hashFloats(std::uint64_t hash, const std::vector<float>& values);
+std::string hashText(std::uint64_t hash);
+}  // namespace drape

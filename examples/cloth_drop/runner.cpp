@@ -1,0 +1,51 @@
+#include "examples/cloth_drop/runner.h"
+
+#include "scenes/mesh_writer.h"
+
+namespace drape
+{
+namespace
+{
+RunRecord startRecord(const Simulation& simulation, const DropScene& scene)
+{
+    RunRecord record;
+    record.m_backend = simulation.backend();
+    record.m_device = simulation.device();
+    record.m_deviceReason = simulation.deviceReason();
+    record.m_prepareMs = simulation.prepareMs();
+    record.m_clothTriangles = scene.m_cloth.m_mesh.triangleCount();
+    record.m_clothNodes = scene.m_cloth.m_mesh.vertexCount();
+    record.m_obstacleTriangles = scene.m_obstacle.triangleCount();
+    record.m_thickness = scene.m_thickness;
+    return record;
+}
+}  // namespace
+
+bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, const std::string& framesFolder,
+                   const RunHooks& hooks, RunRecord& record, TriangleMesh& lastFrame, std::string& error)
+{
+    record = startRecord(simulation, scene);
+    lastFrame = scene.m_cloth.m_mesh;
+    PenetrationMeter meter(scene.m_obstacle, scene.m_cloth.m_mesh);
+    std::uint64_t hash = kHashStart;
+    const bool frames = !framesFolder.empty();
+    if (frames && !(writeMesh(framesFolder + "/obstacle.ply", scene.m_obstacle, error) &&
+                    writeMesh(frameName(framesFolder, "cloth", 0), lastFrame, error)))
+        return false;
+    for (int number = 1; number <= steps; ++number)
+    {
+        if (hooks.m_beforeStep) hooks.m_beforeStep(number);
+        StepRecord step;
+        step.m_times = simulation.step();
+        if (hooks.m_stepped) hooks.m_stepped(number);
+        lastFrame.m_positions = simulation.positions();
+        step.m_measure = meter.measure(lastFrame.m_positions.data());
+        step.m_hash = hash = hashFloats(hash, lastFrame.m_positions);
+        if (frames && !writeMesh(frameName(framesFolder, "cloth", number), lastFrame, error)) return false;
+        if (hooks.m_afterStep) hooks.m_afterStep(number, step);
+        record.m_steps.push_back(std::move(step));
+    }
+    record.m_trouble = simulation.trouble();
+    return true;
+}
+}  // namespace drape

@@ -1,0 +1,22 @@
+// Steps a simulation, measures after every step (outside of the step's time), writes frames and tells the caller.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "examples/cloth_drop/run_record.h"
+
+namespace drape
+{
+struct RunHooks  // any may be empty
+{
+    std::function<void(int)> m_beforeStep;                    // step from 1
+    std::function<void(int)> m_stepped;                       // stepped, not measured yet
+    std::function<void(int, const StepRecord&)> m_afterStep;  // measured too
+};
+
+// False, with one line in `error`, when a frame could not be written. `framesFolder` empty: no frames. `lastFrame` is
+// the cloth as it is after the last step.
+bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, const std::string& framesFolder,
+                   const RunHooks& hooks, RunRecord& record, TriangleMesh& lastFrame, std::string& error);
+}  // namespace drape

@@ -1,0 +1,158 @@
+#include "scenes/mesh_loader.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <assimp/DefaultLogger.hpp>
+#include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include "scenes/mesh_scan.h"
+
+namespace drape
+{
+namespace
+{
+std::string endingOf(const std::string& path)
+{
+    std::string ending = std::filesystem::path(path).extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+    return ending;
+}
+
+// "" and the file's bytes, or why they cannot be had.
+std::string readBytes(const std::string& path, std::string& bytes)
+{
+    std::error_code code;
+    if (std::filesystem::is_directory(path, code)) return "is a folder, not a mesh";
+    errno = 0;
+    std::ifstream file(path, std::ios::binary);
+    if (!file) return errno == ENOENT ? "no such file" : std::string("cannot be read: ") + std::strerror(errno);
+    bytes.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+    if (file.bad()) return std::string("cannot be read: ") + std::strerror(errno);
+    return bytes.empty() ? "is empty, not a mesh" : "";
+}
+
+std::string oneLine(std::string text)
+{
+    for (char& c : text)
+        if (c == '\n' || c == '\r') c = ' ';
+    while (!text.empty() && text.back() == ' ')
+        text.pop_back();
+    return text;
+}
+
+std::string appendMesh(const aiMesh& part, const aiMatrix4x4& toWorld, TriangleMesh& mesh)
+{
+    const std::size_t first = mesh.vertexCount();
+    for (unsigned int v = 0; v < part.mNumVertices; ++v)
+    {
+        const aiVector3D position = toWorld * part.mVertices[v];
+        for (const float value : {position.x, position.y, position.z})
+        {
+            const std::string problem = coordinateProblem(static_cast<double>(value));
+            if (!problem.empty()) return "vertex " + std::to_string(first + v + 1) + ": " + problem;
+            mesh.m_positions.push_back(value);
+        }
+    }
+    for (unsigned int f = 0; f < part.mNumFaces; ++f)
+    {
+        const aiFace& face = part.mFaces[f];
+        if (face.mNumIndices != 3) continue;  // points and lines carry no surface
+        for (int corner = 0; corner < 3; ++corner)
+        {
+            if (face.mIndices[corner] >= part.mNumVertices)
+                return "face " + std::to_string(f + 1) + ": index " + std::to_string(face.mIndices[corner]) +
+                       " is out of range (" + std::to_string(part.mNumVertices) + " vertices)";
+            mesh.m_triangles.push_back(static_cast<std::int32_t>(first + face.mIndices[corner]));
+        }
+    }
+    return "";
+}
+
+std::string appendNode(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent, TriangleMesh& mesh)
+{
+    const aiMatrix4x4 toWorld = parent * node.mTransformation;
+    for (unsigned int i = 0; i < node.mNumMeshes; ++i)
+    {
+        const std::string problem = appendMesh(*scene.mMeshes[node.mMeshes[i]], toWorld, mesh);
+        if (!problem.empty()) return problem;
+    }
+    for (unsigned int i = 0; i < node.mNumChildren; ++i)
+    {
+        const std::string problem = appendNode(scene, *node.mChildren[i], toWorld, mesh);
+        if (!problem.empty()) return problem;
+    }
+    return "";
+}
+
+// Assimp drops glTF faces with bad indices and only says so in its log: listens to that while it lives.
+class LogListener
+{
+public:
+    LogListener()
+    {
+        Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
+        Assimp::DefaultLogger::get()->attachStream(new Stream(m_problem), Assimp::Logger::Warn | Assimp::Logger::Err);
+    }
+    ~LogListener() { Assimp::DefaultLogger::kill(); }  // the logger owns the stream
+    LogListener(const LogListener&) = delete;
+    LogListener& operator=(const LogListener&) = delete;
+
+    // "" or what was dropped.
+    const std::string& problem() const { return m_problem; }
+
+private:
+    struct Stream : Assimp::LogStream
+    {
+        explicit Stream(std::string& problem) : m_problem(problem) {}
+        void write(const char* message) override
+        {
+            const std::string text = message;
+            if (text.find("out-of-range") != std::string::npos || text.find("out of range") != std::string::npos)
+                m_problem = "face index is out of range";
+        }
+        std::string& m_problem;
+    };
+    std::string m_problem;
+};
+
+std::string importMesh(const std::string& path, TriangleMesh& mesh)
+{
+    const LogListener listener;
+    Assimp::Importer importer;
+    const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
+    if (!listener.problem().empty()) return listener.problem();
+    if (scene == nullptr || scene->mRootNode == nullptr) return "not a mesh: " + oneLine(importer.GetErrorString());
+    return appendNode(*scene, *scene->mRootNode, aiMatrix4x4(), mesh);
+}
+}  // namespace
+
+bool loadMesh(const std::string& path, TriangleMesh& mesh, std::string& error)
+{
+    std::string bytes;
+    std::string problem = readBytes(path, bytes);
+    const std::string ending = endingOf(path);
+    if (problem.empty() && ending == ".obj") problem = scanObj(bytes);
+    if (problem.empty() && ending == ".ply") problem = scanPly(bytes);
+    TriangleMesh loaded;
+    if (problem.empty()) problem = importMesh(path, loaded);
+    if (problem.empty()) joinVertices(loaded);
+    if (problem.empty() && loaded.triangleCount() == 0) problem = "no triangles";
+    if (!problem.empty())
+    {
+        error = path + ": " + problem;
+        return false;
+    }
+    mesh = std::move(loaded);
+    return true;
+}
+}  // namespace drape
