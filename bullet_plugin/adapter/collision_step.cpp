@@ -1,0 +1,146 @@
+#include "bullet_plugin/adapter/collision_step.h"
+
+namespace drape
+{
+namespace
+{
+btVector3 vectorOf(const float v[3])
+{
+    return btVector3(btScalar(v[0]), btScalar(v[1]), btScalar(v[2]));
+}
+
+btScalar gapAt(const btSoftBody& body, const StepContact& contact, btVector3 btSoftBody::Node::*member)
+{
+    btVector3 at(0, 0, 0);
+    for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+        at += body.m_nodes[contact.m_nodes[k]].*member * contact.m_weights[k];
+    return contact.m_normal.dot(at - contact.m_point) - contact.m_thickness;
+}
+
+// Both gaps, along the contact's normal. A feature that slid around an edge of the obstacle began behind the plane of
+// its contact without having been inside the obstacle: then the depth at the predicted end is all that is known.
+void setGaps(const btSoftBody& body, StepContact& contact)
+{
+    contact.m_endGap = gapAt(body, contact, &btSoftBody::Node::m_x);
+    contact.m_startGap = gapAt(body, contact, &btSoftBody::Node::m_q);
+    if (contact.m_startGap < -contact.m_thickness && contact.m_startGap < contact.m_endGap)
+        contact.m_startGap = contact.m_endGap;
+    contact.m_targetGap = closingTarget(contact.m_startGap, body.m_cfg.kKHR, contact.m_thickness);
+}
+
+ContactInfo infoOf(const btSoftBody& body, const StepContact& contact)
+{
+    ContactInfo info;
+    info.m_cloth = &body;
+    info.m_obstacle = contact.m_object;
+    for (int k = 0; k < 3; ++k)
+    {
+        info.m_nodes[k] = contact.m_nodes[k];
+        info.m_weights[k] = static_cast<float>(contact.m_weights[k]);
+        info.m_normal[k] = static_cast<float>(contact.m_normal[k]);
+        info.m_point[k] = static_cast<float>(contact.m_point[k]);
+    }
+    info.m_gap = static_cast<float>(contact.m_endGap);
+    info.m_thickness = static_cast<float>(contact.m_thickness);
+    return info;
+}
+}  // namespace
+
+BodyContacts* CollisionStep::bodyOf(MeshId cloth)
+{
+    for (BodyContacts& body : m_bodies)
+        if (body.m_cloth == cloth) return &body;
+    return nullptr;
+}
+
+const btCollisionObject* CollisionStep::objectOf(MeshId obstacle) const
+{
+    for (const Obstacle& entry : m_obstacles)
+        if (entry.m_mesh == obstacle) return entry.m_object;
+    return nullptr;
+}
+
+void CollisionStep::addPair(const PairNote& note)
+{
+    ClothMirror& cloth = m_state.clothMirror(note);
+    const MeshId clothId = bodyOf(cloth.id()) ? cloth.id() : cloth.refresh(m_state.pipeline());
+    const MeshId obstacleId = m_state.obstacleMirror(note).refresh(m_state.pipeline(), note.m_pose);
+    if (clothId == kNoMesh || obstacleId == kNoMesh) return;
+    if (!bodyOf(clothId))
+    {
+        BodyContacts body;
+        body.m_cloth = clothId;
+        body.m_body = note.m_cloth;
+        m_bodies.push_back(body);
+        m_mirrors.push_back(&cloth);
+    }
+    if (!objectOf(obstacleId)) m_obstacles.push_back(Obstacle{obstacleId, note.m_obstacle.m_object});
+    for (const Pair& pair : m_pairs)
+        if (pair.m_cloth == clothId && pair.m_obstacle == obstacleId) return;
+    m_pairs.push_back(Pair{clothId, obstacleId, note.m_thickness});
+    btVector3 low, high;
+    note.m_obstacle.m_shape->getAabb(note.m_pose, low, high);
+    bodyOf(clothId)->m_limit.addObstacle(low, high, note.m_thickness, btScalar(m_state.settings().m_activation));
+}
+
+void CollisionStep::uploadNodes()
+{
+    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+    {
+        const MeshId cloth = m_bodies[i].m_cloth;
+        m_bodies[i].m_limit.record(*m_bodies[i].m_body);
+        m_mirrors[i]->writeNodes(m_state.pipeline().clothStart(cloth), m_state.pipeline().clothEnd(cloth));
+    }
+}
+
+void CollisionStep::begin(const std::vector<PairNote>& notes)
+{
+    // Adding and removing meshes moves the memory that nodes are written to: mirrors first, nodes after.
+    m_state.dropOldMirrors();
+    for (const PairNote& note : notes)
+        addPair(note);
+    if (m_pairs.empty()) return;
+    uploadNodes();
+    for (const Pair& pair : m_pairs)
+        m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_thickness));
+    m_state.pipeline().submit();
+}
+
+void CollisionStep::receive(const ContactView& view)
+{
+    BodyContacts* body = bodyOf(view.m_cloth);
+    const btCollisionObject* object = objectOf(view.m_obstacle);
+    if (!body || !object) return;
+    StepContact contact;
+    contact.m_object = object;
+    contact.m_kind = view.m_kind;
+    contact.m_face = view.m_triangle;
+    for (int k = 0; k < 3; ++k)
+    {
+        contact.m_nodes[k] = view.m_nodes[k];
+        contact.m_weights[k] = view.m_nodes[k] >= 0 ? btScalar(view.m_weights[k]) : btScalar(0);
+    }
+    contact.m_normal = vectorOf(view.m_normal);
+    contact.m_point = vectorOf(view.m_point);
+    contact.m_thickness = view.m_thickness;
+    contact.m_friction = body->m_body->m_cfg.kDF * object->getFriction();
+    setGaps(*body->m_body, contact);
+    for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+        body->m_limit.addContactNode(contact.m_nodes[k]);
+    body->m_contacts.push_back(contact);
+    m_state.m_contacts.push_back(infoOf(*body->m_body, contact));
+}
+
+void CollisionStep::finish()
+{
+    m_state.m_contacts.clear();
+    m_state.m_statistics = StepStatistics();
+    m_state.m_statistics.m_skipped = m_pairs.empty();
+    if (m_pairs.empty()) return;
+    const std::vector<Contact>& contacts = m_state.pipeline().finish();
+    m_state.m_statistics = m_state.pipeline().statistics();
+    m_state.m_contacts.reserve(contacts.size());
+    for (const Contact& contact : contacts)
+        receive(m_state.pipeline().view(contact));
+}
+}  // namespace drape

@@ -1,0 +1,56 @@
+#include "bullet_plugin/adapter/eligibility.h"
+
+#include "BulletCollision/BroadphaseCollision/btBroadphaseProxy.h"
+#include "BulletSoftBody/btSoftBodySolvers.h"
+#include "bullet_plugin/adapter/mesh_reader.h"
+#include "bullet_plugin/adapter/plugin_state.h"
+
+namespace drape
+{
+namespace
+{
+const char* reasonFromCloth(const PluginState& state, const btSoftBody& cloth)
+{
+    const btSoftBodySolver* solver = cloth.getSoftBodySolver();
+    if (solver && (solver->getSolverType() == btSoftBodySolver::DEFORMABLE_SOLVER ||
+                   solver->getSolverType() == btSoftBodySolver::REDUCED_DEFORMABLE_SOLVER))
+        return "the soft body lives in a deformable world";
+    if (!state.ownsSolver(solver)) return "the world's soft body solver is not a drape::SoftBodySolver of this plugin";
+    if (cloth.m_reducedModel) return "the soft body is a reduced deformable model";
+    if (cloth.m_cfg.collisions & btSoftBody::fCollision::SDF_RD)
+        return "the soft body collides as a deformable (SDF_RD)";
+    if (!(cloth.m_cfg.collisions & btSoftBody::fCollision::SDF_RS))
+        return "the soft body does not collide by its nodes (SDF_RS is off, cluster mode)";
+    if (cloth.m_faces.size() == 0) return "the soft body has no faces";
+    return nullptr;
+}
+
+const char* reasonFromObstacle(const btCollisionObject& obstacle, const btCollisionShape& shape)
+{
+    if (shape.getShapeType() == GIMPACT_SHAPE_PROXYTYPE) return "the obstacle is a GImpact shape";
+    if (!isMeshShape(shape.getShapeType())) return "the obstacle is not a triangle mesh shape";
+    if (obstacle.isKinematicObject()) return "the obstacle is kinematic; only static obstacles are handled";
+    if (!obstacle.isStaticObject()) return "the obstacle is dynamic; only static obstacles are handled";
+    return nullptr;
+}
+
+bool disabledFor(const btSoftBody& cloth, const btCollisionObject& obstacle)
+{
+    return cloth.m_collisionDisabledObjects.findLinearSearch(&obstacle) != cloth.m_collisionDisabledObjects.size();
+}
+}  // namespace
+
+const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
+                           const btCollisionShape& shape)
+{
+    if (!state.ready()) return "Drape could not start; see Plugin::error()";
+    if (const char* reason = reasonFromCloth(state, cloth)) return reason;
+    return reasonFromObstacle(obstacle, shape);
+}
+
+bool wantsContacts(const btSoftBody& cloth, const btCollisionObject& obstacle)
+{
+    return cloth.isActive() && cloth.hasContactResponse() && obstacle.hasContactResponse() &&
+           !disabledFor(cloth, obstacle);
+}
+}  // namespace drape

@@ -1,0 +1,18 @@
+// Which pairs Drape handles. Every other pair goes to Bullet's own algorithm, with one of these reasons.
+#pragma once
+
+#include "BulletSoftBody/btSoftBody.h"
+
+namespace drape
+{
+class PluginState;
+
+// Null when Drape handles the pair, else the reason in words. `shape` is the shape that meets the cloth: the object's
+// own, or the child of its compound. Cost: a few comparisons.
+const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
+                           const btCollisionShape& shape);
+
+// Whether contacts are wanted from a pair that Drape handles: not between objects that ignore each other, not for
+// sleeping cloth, not where either side has no contact response.
+bool wantsContacts(const btSoftBody& cloth, const btCollisionObject& obstacle);
+}  // namespace drape

@@ -1,0 +1,27 @@
+// Bullet's soft body collision configuration with cloth against triangle meshes handed to Drape.
+//
+// Use it in place of btSoftBodyRigidBodyCollisionConfiguration when the dispatcher is built. Pairs that Drape does not
+// handle (Plugin::whyStock tells) get Bullet's own algorithm, decided anew at every step. C++11.
+#pragma once
+
+#include <memory>
+
+#include "BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h"
+
+namespace drape
+{
+class Plugin;
+class PluginState;
+
+class CollisionConfiguration : public btSoftBodyRigidBodyCollisionConfiguration
+{
+public:
+    explicit CollisionConfiguration(
+        Plugin& plugin, const btDefaultCollisionConstructionInfo& info = btDefaultCollisionConstructionInfo());
+
+    btCollisionAlgorithmCreateFunc* getCollisionAlgorithmCreateFunc(int proxyType0, int proxyType1) override;
+
+private:
+    std::shared_ptr<PluginState> m_state;
+};
+}  // namespace drape

@@ -1,0 +1,71 @@
+// The plugin: one Drape pipeline with its device, and everything an app may ask it.
+//
+// Job: choose the device, keep the mirrors of cloths and obstacles, answer questions about the last step. Input:
+// Settings. Guarantee: no exception leaves this class; when Drape cannot start, error() says why and every pair goes to
+// Bullet's own algorithm. Make it before the collision configuration and the solver; they keep its state alive, so the
+// order of destruction does not matter as long as Bullet's own rule holds (configuration and solver outlive the world).
+// One plugin serves one thread; it may serve several worlds of that thread. SI units, world frame. C++11.
+//
+// The thickness of a pair, at which cloth comes to rest, is the soft body's collision margin plus the mesh shape's
+// margin (body->getCollisionShape()->getMargin() + shape->getMargin()); at least 0.1 mm.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "drape/report.h"
+#include "drape/settings.h"
+
+class btCollisionObject;
+class btCollisionShape;
+class btSoftBody;
+
+namespace drape
+{
+class PluginState;
+
+// One contact of the last step, for debugging and drawing. The pointers are those of that step: do not keep them.
+struct ContactInfo
+{
+    const btSoftBody* m_cloth;
+    const btCollisionObject* m_obstacle;
+    int m_nodes[3];      // of the cloth feature, indices into m_cloth->m_nodes; -1 where unused
+    float m_weights[3];  // of these nodes, sum 1
+    float m_normal[3];   // unit, from the obstacle to the cloth
+    float m_point[3];    // m, on the obstacle
+    float m_gap;         // m, at the predicted end of the step, thickness subtracted; negative: Bullet was given it
+    float m_thickness;   // m
+};
+
+class Plugin
+{
+public:
+    explicit Plugin(const Settings& settings = Settings());
+    ~Plugin();
+    Plugin(const Plugin&) = delete;
+    Plugin& operator=(const Plugin&) = delete;
+
+    bool ready() const;         // false: every pair goes to Bullet's own algorithm
+    std::string error() const;  // what failed, with the whole log; empty when nothing did
+
+    const DeviceReport& device() const;
+    const StepStatistics& statistics() const;   // of the last step that one of this plugin's solvers solved
+    std::vector<ContactInfo> contacts() const;  // of that step, in canonical order; a copy
+    std::string report() const;                 // device and last step in one line
+
+    // Empty when Drape handles the pair, else the reason why Bullet's own algorithm does. For a compound the first
+    // child that Drape does not handle gives the reason.
+    std::string whyStock(const btCollisionObject* objectA, const btCollisionObject* objectB) const;
+
+    // Tells that vertices of a mesh shape were moved in place. Refits (a changed bounding box), scaling and changes
+    // that touch one of the vertices that are sampled each step are noticed without it.
+    void obstacleChanged(const btCollisionShape* shape);
+
+    // For the other classes of this library.
+    const std::shared_ptr<PluginState>& state() const { return m_state; }
+
+private:
+    std::shared_ptr<PluginState> m_state;
+};
+}  // namespace drape

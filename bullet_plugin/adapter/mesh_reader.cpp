@@ -1,0 +1,214 @@
+#include "bullet_plugin/adapter/mesh_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "BulletCollision/BroadphaseCollision/btBroadphaseProxy.h"
+#include "BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h"
+#include "BulletCollision/CollisionShapes/btScaledBvhTriangleMeshShape.h"
+#include "BulletCollision/CollisionShapes/btStridingMeshInterface.h"
+
+namespace drape
+{
+namespace
+{
+// Vertices of a part that meshSignature() looks at: enough that a deformation of a whole mesh is seen, few enough that
+// looking costs a microsecond.
+constexpr int kSamplesPerPart = 32;
+
+// FNV-1a over 64-bit words (Fowler, Noll, Vo); only equality matters here.
+class Hash
+{
+public:
+    void add(std::uint64_t word) { m_value = (m_value ^ word) * 1099511628211ull; }
+    void add(double value)
+    {
+        std::uint64_t word;
+        std::memcpy(&word, &value, sizeof(word));
+        add(word);
+    }
+    void add(const btVector3& v)
+    {
+        for (int axis = 0; axis < 3; ++axis)
+            add(static_cast<double>(v[axis]));
+    }
+    std::uint64_t value() const { return m_value; }
+
+private:
+    std::uint64_t m_value = 14695981039346656037ull;
+};
+
+// One part of a striding mesh, locked for reading while this object lives.
+class LockedPart
+{
+public:
+    LockedPart(const btStridingMeshInterface& mesh, int part) : m_mesh(mesh), m_part(part)
+    {
+        mesh.getLockedReadOnlyVertexIndexBase(&m_vertices, m_vertexCount, m_vertexType, m_vertexStride, &m_indices,
+                                              m_indexStride, m_triangleCount, m_indexType, part);
+    }
+    ~LockedPart() { m_mesh.unLockReadOnlyVertexBase(m_part); }
+    LockedPart(const LockedPart&) = delete;
+    LockedPart& operator=(const LockedPart&) = delete;
+
+    int vertexCount() const { return m_vertexCount; }
+    int triangleCount() const { return m_triangleCount; }
+    const void* vertices() const { return m_vertices; }
+    const void* indices() const { return m_indices; }
+
+    btVector3 vertex(int i) const
+    {
+        const unsigned char* at = m_vertices + static_cast<std::ptrdiff_t>(i) * m_vertexStride;
+        return m_vertexType == PHY_DOUBLE ? load<double>(at) : load<float>(at);
+    }
+    std::int64_t index(int triangle, int corner) const
+    {
+        const unsigned char* at = m_indices + static_cast<std::ptrdiff_t>(triangle) * m_indexStride;
+        if (m_indexType == PHY_SHORT) return integer<std::uint16_t>(at, corner);
+        if (m_indexType == PHY_UCHAR) return integer<std::uint8_t>(at, corner);
+        return integer<std::int32_t>(at, corner);
+    }
+
+private:
+    template <typename Real>
+    static btVector3 load(const unsigned char* at)
+    {
+        Real value[3];
+        std::memcpy(value, at, sizeof(value));
+        return btVector3(btScalar(value[0]), btScalar(value[1]), btScalar(value[2]));
+    }
+    template <typename Integer>
+    static std::int64_t integer(const unsigned char* at, int corner)
+    {
+        Integer value;
+        std::memcpy(&value, at + corner * sizeof(Integer), sizeof(value));
+        return value;
+    }
+
+    const btStridingMeshInterface& m_mesh;
+    const int m_part;
+    const unsigned char* m_vertices = nullptr;
+    const unsigned char* m_indices = nullptr;
+    int m_vertexCount = 0, m_vertexStride = 0, m_triangleCount = 0, m_indexStride = 0;
+    PHY_ScalarType m_vertexType = PHY_FLOAT, m_indexType = PHY_INTEGER;
+};
+
+// The mesh behind a shape and the scaling that the shape and the mesh apply together.
+struct ScaledMesh
+{
+    const btBvhTriangleMeshShape* m_shape;
+    btVector3 m_scaling;
+
+    const btStridingMeshInterface& mesh() const { return *m_shape->getMeshInterface(); }
+};
+
+ScaledMesh resolve(const btCollisionShape& shape)
+{
+    if (shape.getShapeType() == SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE)
+    {
+        const btScaledBvhTriangleMeshShape& scaled = static_cast<const btScaledBvhTriangleMeshShape&>(shape);
+        const btBvhTriangleMeshShape* child = scaled.getChildShape();
+        return ScaledMesh{child, child->getMeshInterface()->getScaling() * scaled.getLocalScaling()};
+    }
+    const btBvhTriangleMeshShape& bvh = static_cast<const btBvhTriangleMeshShape&>(shape);
+    return ScaledMesh{&bvh, bvh.getMeshInterface()->getScaling()};
+}
+
+void appendVertices(const LockedPart& part, const btVector3& scaling, const btTransform& pose, WorldMesh& mesh)
+{
+    for (int i = 0; i < part.vertexCount(); ++i)
+    {
+        const btVector3 world = pose * (part.vertex(i) * scaling);
+        for (int axis = 0; axis < 3; ++axis)
+            mesh.m_positions.push_back(static_cast<float>(world[axis]));
+    }
+}
+
+bool usable(const WorldMesh& mesh, std::int64_t first, int count, const std::int64_t corner[3])
+{
+    for (int k = 0; k < 3; ++k)
+    {
+        if (corner[k] < 0 || corner[k] >= count) return false;
+        const float* at = &mesh.m_positions[static_cast<std::size_t>(3 * (first + corner[k]))];
+        if (!std::isfinite(at[0]) || !std::isfinite(at[1]) || !std::isfinite(at[2])) return false;
+    }
+    return true;
+}
+
+void appendTriangles(const LockedPart& part, std::int64_t first, WorldMesh& mesh)
+{
+    for (int t = 0; t < part.triangleCount(); ++t)
+    {
+        const std::int64_t corner[3] = {part.index(t, 0), part.index(t, 1), part.index(t, 2)};
+        if (!usable(mesh, first, part.vertexCount(), corner)) continue;
+        for (int k = 0; k < 3; ++k)
+            mesh.m_triangles.push_back(static_cast<std::int32_t>(first + corner[k]));
+    }
+}
+
+// A vertex that is not finite belongs to no triangle any more; zero keeps it out of every minimum and maximum.
+void clearInvalid(std::vector<float>& positions)
+{
+    for (float& value : positions)
+        if (!std::isfinite(value)) value = 0;
+}
+}  // namespace
+
+bool isMeshShape(int shapeType)
+{
+    return shapeType == TRIANGLE_MESH_SHAPE_PROXYTYPE || shapeType == SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE ||
+           shapeType == MULTIMATERIAL_TRIANGLE_MESH_PROXYTYPE;
+}
+
+const btCollisionShape* meshShapeOf(const btCollisionShape& shape)
+{
+    return resolve(shape).m_shape;
+}
+
+void readMesh(const btCollisionShape& shape, const btTransform& pose, WorldMesh& mesh)
+{
+    const ScaledMesh source = resolve(shape);
+    mesh.m_triangles.clear();
+    mesh.m_positions.clear();
+    for (int p = 0; p < source.mesh().getNumSubParts(); ++p)
+    {
+        const LockedPart part(source.mesh(), p);
+        const std::int64_t first = static_cast<std::int64_t>(mesh.m_positions.size() / 3);
+        appendVertices(part, source.m_scaling, pose, mesh);
+        appendTriangles(part, first, mesh);
+    }
+    clearInvalid(mesh.m_positions);
+
+    Hash topology, positions;
+    topology.add(std::uint64_t(mesh.m_positions.size()));
+    for (std::int32_t index : mesh.m_triangles)
+        topology.add(std::uint64_t(index));
+    for (float value : mesh.m_positions)
+        positions.add(double(value));
+    mesh.m_topologyHash = topology.value();
+    mesh.m_positionHash = positions.value();
+}
+
+std::uint64_t meshSignature(const btCollisionShape& shape)
+{
+    const ScaledMesh source = resolve(shape);
+    Hash hash;
+    hash.add(std::uint64_t(reinterpret_cast<std::uintptr_t>(&source.mesh())));
+    hash.add(source.m_scaling);
+    hash.add(source.m_shape->getLocalAabbMin());
+    hash.add(source.m_shape->getLocalAabbMax());
+    for (int p = 0; p < source.mesh().getNumSubParts(); ++p)
+    {
+        const LockedPart part(source.mesh(), p);
+        hash.add(std::uint64_t(reinterpret_cast<std::uintptr_t>(part.vertices())));
+        hash.add(std::uint64_t(reinterpret_cast<std::uintptr_t>(part.indices())));
+        hash.add(std::uint64_t(part.vertexCount()));
+        hash.add(std::uint64_t(part.triangleCount()));
+        const int stride = std::max(1, part.vertexCount() / kSamplesPerPart);
+        for (int i = 0; i < part.vertexCount(); i += stride)
+            hash.add(part.vertex(i));
+    }
+    return hash.value();
+}
+}  // namespace drape

@@ -1,0 +1,35 @@
+// Reading a Bullet triangle mesh shape: all parts, strides, float or double vertices, 8, 16 or 32 bit indices, scaling.
+//
+// Input: a shape that isMeshShape() accepts and a pose. Output: triangles and world positions (m) as the core takes
+// them, transformed in btScalar before they are rounded to float. Triangles with an index out of range or a vertex that
+// is not finite are left out. Cost: one pass over the mesh; meshSignature() looks at a bounded number of vertices only.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "LinearMath/btTransform.h"
+
+class btCollisionShape;
+
+namespace drape
+{
+struct WorldMesh
+{
+    std::vector<std::int32_t> m_triangles;  // 3 per triangle
+    std::vector<float> m_positions;         // x y z per vertex, m, world frame
+    std::uint64_t m_topologyHash = 0;       // of the triangles and the number of vertices
+    std::uint64_t m_positionHash = 0;
+};
+
+// btBvhTriangleMeshShape, btScaledBvhTriangleMeshShape, btMultimaterialTriangleMeshShape.
+bool isMeshShape(int shapeType);
+
+// The shape that owns the triangles: the child of a scaled shape, else the shape itself.
+const btCollisionShape* meshShapeOf(const btCollisionShape& shape);
+
+void readMesh(const btCollisionShape& shape, const btTransform& pose, WorldMesh& mesh);
+
+// Changes when the mesh's arrays, counts, scaling, bounding box or one of the sampled vertices change.
+std::uint64_t meshSignature(const btCollisionShape& shape);
+}  // namespace drape

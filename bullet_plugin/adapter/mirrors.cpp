@@ -1,0 +1,134 @@
+#include "bullet_plugin/adapter/mirrors.h"
+
+#include <algorithm>
+
+#include "bullet_plugin/adapter/mesh_reader.h"
+
+namespace drape
+{
+namespace
+{
+// Faces whose indices are compared in one step. Every change that Bullet's own functions make (appendFace, cutLink,
+// refine) alters a count or an array and is seen at once; shuffling faces in place, as randomizeConstraints does, is
+// seen within faces / 32768 steps, and the contact writer checks the face that it is about to use.
+constexpr int kFacesPerCheck = 32768;
+
+int nodeIndex(const btSoftBody& body, const btSoftBody::Node* node)
+{
+    return static_cast<int>(node - &body.m_nodes[0]);
+}
+
+void writePosition(const btVector3& position, float*& out)
+{
+    for (int axis = 0; axis < 3; ++axis)
+        *out++ = static_cast<float>(position[axis]);
+}
+}  // namespace
+
+bool ClothMirror::sameFaces(int begin, int end) const
+{
+    for (int f = begin; f < end; ++f)
+        for (int k = 0; k < 3; ++k)
+            if (nodeIndex(*m_body, m_body->m_faces[f].m_n[k]) != m_triangles[static_cast<std::size_t>(3 * f + k)])
+                return false;
+    return true;
+}
+
+bool ClothMirror::topologyChanged()
+{
+    const int faces = m_body->m_faces.size();
+    if (m_body->m_nodes.size() != m_nodeCount || static_cast<std::size_t>(3 * faces) != m_triangles.size()) return true;
+    if (faces == 0) return false;
+    const bool all = m_fullCheck || m_nodeArray != &m_body->m_nodes[0] || m_faceArray != &m_body->m_faces[0];
+    m_fullCheck = false;
+    m_nodeArray = &m_body->m_nodes[0];
+    m_faceArray = &m_body->m_faces[0];
+    if (all) return !sameFaces(0, faces);
+    const int begin = m_cursor < faces ? m_cursor : 0;
+    const int end = std::min(faces, begin + kFacesPerCheck);
+    m_cursor = end;
+    return !sameFaces(begin, end);
+}
+
+void ClothMirror::readTopology()
+{
+    const int faces = m_body->m_faces.size();
+    m_nodeCount = m_body->m_nodes.size();
+    m_triangles.resize(static_cast<std::size_t>(3 * faces));
+    for (int f = 0; f < faces; ++f)
+        for (int k = 0; k < 3; ++k)
+            m_triangles[static_cast<std::size_t>(3 * f + k)] = nodeIndex(*m_body, m_body->m_faces[f].m_n[k]);
+    m_nodeArray = m_nodeCount > 0 ? &m_body->m_nodes[0] : nullptr;
+    m_faceArray = faces > 0 ? &m_body->m_faces[0] : nullptr;
+    m_fullCheck = false;
+    m_cursor = 0;
+}
+
+MeshId ClothMirror::refresh(Pipeline& pipeline)
+{
+    if (!topologyChanged() && (m_id != kNoMesh || m_triangles.empty())) return m_id;
+    if (m_id != kNoMesh) pipeline.remove(m_id);
+    m_id = kNoMesh;
+    readTopology();
+    if (m_triangles.empty() || m_nodeCount == 0) return m_id;
+
+    std::vector<float> positions(static_cast<std::size_t>(3 * m_nodeCount));
+    float* out = positions.data();
+    for (int i = 0; i < m_nodeCount; ++i)
+        writePosition(m_body->m_nodes[i].m_x, out);
+    MeshDescription mesh;
+    mesh.m_triangles = m_triangles.data();
+    mesh.m_triangleCount = m_triangles.size() / 3;
+    mesh.m_positions = positions.data();
+    mesh.m_vertexCount = static_cast<std::size_t>(m_nodeCount);
+    m_id = pipeline.addCloth(mesh);
+    return m_id;
+}
+
+void ClothMirror::writeNodes(float* start, float* end) const
+{
+    for (int i = 0; i < m_nodeCount; ++i)
+    {
+        const btSoftBody::Node& node = m_body->m_nodes[i];
+        writePosition(node.m_q, start);
+        writePosition(node.m_x, end);
+    }
+}
+
+void ObstacleMirror::reload(Pipeline& pipeline, const btTransform& pose)
+{
+    WorldMesh mesh;
+    readMesh(*m_key.m_shape, pose, mesh);
+    if (m_id != kNoMesh && mesh.m_topologyHash == m_topologyHash)
+    {
+        if (mesh.m_positionHash != m_positionHash) pipeline.moveObstacle(m_id, mesh.m_positions.data());
+    }
+    else
+    {
+        if (m_id != kNoMesh) pipeline.remove(m_id);
+        m_id = kNoMesh;
+        if (!mesh.m_triangles.empty())
+        {
+            MeshDescription description;
+            description.m_triangles = mesh.m_triangles.data();
+            description.m_triangleCount = mesh.m_triangles.size() / 3;
+            description.m_positions = mesh.m_positions.data();
+            description.m_vertexCount = mesh.m_positions.size() / 3;
+            m_id = pipeline.addObstacle(description);
+        }
+    }
+    m_topologyHash = mesh.m_topologyHash;
+    m_positionHash = mesh.m_positionHash;
+}
+
+MeshId ObstacleMirror::refresh(Pipeline& pipeline, const btTransform& pose)
+{
+    const std::uint64_t signature = meshSignature(*m_key.m_shape);
+    if (!m_read || signature != m_signature || !(pose == m_pose)) reload(pipeline, pose);
+    m_meshShape = meshShapeOf(*m_key.m_shape);
+    m_signature = signature;
+    m_pose = pose;
+    m_read = true;
+    return m_id;
+}
+}  // namespace drape

@@ -1,0 +1,90 @@
+// What the pipeline holds of one soft body and of one obstacle, kept up to date with Bullet.
+//
+// Input: the live body or shape of the current step, never one remembered from before. Output: the pipeline's mesh id,
+// or kNoMesh for a mesh without triangles. Guarantee: a cloth whose faces or nodes were replaced, cut, refined or
+// shuffled is rebuilt; an obstacle that moved, was scaled or deformed is moved, and rebuilt when its triangles changed.
+// An unchanged obstacle costs meshSignature(), an unchanged cloth a comparison of its indices. Metres, world frame.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "BulletSoftBody/btSoftBody.h"
+#include "LinearMath/btTransform.h"
+#include "bullet_plugin/core/pipeline.h"
+
+namespace drape
+{
+// An obstacle as Bullet's dispatch sees it: a compound gives one for each child, told apart by the chain of child
+// indices.
+struct ObstacleKey
+{
+    const btCollisionObject* m_object;
+    const btCollisionShape* m_shape;
+    std::uint64_t m_child;
+
+    bool operator==(const ObstacleKey& other) const
+    {
+        return m_object == other.m_object && m_shape == other.m_shape && m_child == other.m_child;
+    }
+};
+
+class ClothMirror
+{
+public:
+    explicit ClothMirror(const btSoftBody* body) : m_body(body) {}
+
+    const btSoftBody* body() const { return m_body; }
+    MeshId id() const { return m_id; }
+
+    // Adds the body to the pipeline, or replaces what is there when the topology changed.
+    MeshId refresh(Pipeline& pipeline);
+    // Writes the nodes' positions at the step's start (m_q) and predicted end (m_x).
+    void writeNodes(float* start, float* end) const;
+    void requireFullCheck() { m_fullCheck = true; }
+
+    int m_owners = 0;              // algorithms alive that use this mirror
+    std::uint64_t m_lastSeen = 0;  // step
+
+private:
+    bool topologyChanged();
+    bool sameFaces(int begin, int end) const;
+    void readTopology();
+
+    const btSoftBody* m_body;  // followed only while a pair of the current step names it
+    MeshId m_id = kNoMesh;
+    std::vector<std::int32_t> m_triangles;
+    int m_nodeCount = 0;
+    const void* m_nodeArray = nullptr;
+    const void* m_faceArray = nullptr;
+    int m_cursor = 0;
+    bool m_fullCheck = true;
+};
+
+class ObstacleMirror
+{
+public:
+    explicit ObstacleMirror(const ObstacleKey& key) : m_key(key) {}
+
+    const ObstacleKey& key() const { return m_key; }
+    MeshId id() const { return m_id; }
+
+    MeshId refresh(Pipeline& pipeline, const btTransform& pose);
+    // True for the shape itself and for the mesh shape that a scaled shape shows, as they were last refreshed.
+    bool uses(const btCollisionShape* shape) const { return shape == m_key.m_shape || shape == m_meshShape; }
+    void requireReading() { m_read = false; }
+
+    int m_owners = 0;
+    std::uint64_t m_lastSeen = 0;
+
+private:
+    void reload(Pipeline& pipeline, const btTransform& pose);
+
+    ObstacleKey m_key;
+    const btCollisionShape* m_meshShape = nullptr;  // compared, never followed
+    MeshId m_id = kNoMesh;
+    btTransform m_pose = btTransform::getIdentity();
+    std::uint64_t m_signature = 0, m_topologyHash = 0, m_positionHash = 0;
+    bool m_read = false;  // the pipeline holds what the shape held when it was last read
+};
+}  // namespace drape

@@ -1,0 +1,80 @@
+#include "bullet_plugin/adapter/motion_limit.h"
+
+#include <algorithm>
+
+namespace drape
+{
+namespace
+{
+// Where on the way from start to end, 0 to 1, the point is nearest.
+btScalar closestOnPath(const btVector3& start, const btVector3& end, const btVector3& point)
+{
+    const btVector3 way = end - start;
+    const btScalar length2 = way.length2();
+    if (!(length2 > 0)) return 1;
+    return std::min(btScalar(1), std::max(btScalar(0), (point - start).dot(way) / length2));
+}
+}  // namespace
+
+void MotionLimit::addObstacle(const btVector3& low, const btVector3& high, btScalar thickness, btScalar activation)
+{
+    const btScalar reach = thickness * (1 + activation);
+    const btVector3 margin(reach, reach, reach);
+    const btScalar least = thickness * std::max(kLeastShare, std::min(activation, kMostStartShare));
+    m_regions.push_back(Region{low - margin, high + margin, Allowance{least, kFreeShare * reach}});
+}
+
+void MotionLimit::record(const btSoftBody& body)
+{
+    const std::size_t count = static_cast<std::size_t>(body.m_nodes.size());
+    m_start.resize(count);
+    m_end.resize(count);
+    m_hasContact.assign(count, 0);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        m_start[i] = body.m_nodes[static_cast<int>(i)].m_q;
+        m_end[i] = body.m_nodes[static_cast<int>(i)].m_x;
+    }
+}
+
+MotionLimit::Allowance MotionLimit::allowance(std::size_t node, const btVector3& to) const
+{
+    btVector3 low = m_end[node], high = m_end[node];
+    low.setMin(to);
+    high.setMax(to);
+    Allowance least{SIMD_INFINITY, SIMD_INFINITY};
+    for (const Region& region : m_regions)
+    {
+        bool near = true;
+        for (int axis = 0; axis < 3; ++axis)
+            near = near && low[axis] <= region.m_high[axis] && high[axis] >= region.m_low[axis];
+        if (!near) continue;
+        const Allowance& own = region.m_allowance;
+        least.m_start = std::min(least.m_start, own.m_start);
+        least.m_end = std::min(least.m_end, m_hasContact[node] ? own.m_start : own.m_end);
+    }
+    return least;
+}
+
+void MotionLimit::apply(btSoftBody& body) const
+{
+    const btScalar velocityScale = body.m_sst.isdt * (1 - body.m_cfg.kDP);
+    const int count = std::min(body.m_nodes.size(), static_cast<int>(m_end.size()));
+    for (int i = 0; i < count; ++i)
+    {
+        btSoftBody::Node& node = body.m_nodes[i];
+        if (!(node.m_im > 0) || node.m_battach) continue;
+        const std::size_t at = static_cast<std::size_t>(i);
+        const Allowance allowed = allowance(at, node.m_x);
+        if (allowed.m_end == SIMD_INFINITY) continue;
+        const btScalar t = closestOnPath(m_start[at], m_end[at], node.m_x);
+        const btVector3 off = node.m_x - (m_start[at] + (m_end[at] - m_start[at]) * t);
+        const btScalar radius = allowed.m_start + (allowed.m_end - allowed.m_start) * t;
+        const btScalar distance = off.length();
+        if (!(distance > radius)) continue;
+        const btVector3 shift = off * (radius / distance - 1);
+        node.m_x += shift;
+        node.m_v += shift * velocityScale;
+    }
+}
+}  // namespace drape

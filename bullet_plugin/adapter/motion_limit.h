@@ -1,0 +1,60 @@
+// Keeps nodes near obstacles where detection has looked.
+//
+// Why: contacts are found along the predicted motion and within the reach (thickness and activation) of its end.
+// Bullet's links can pull a node several times as far in one step, through a surface that nothing was reported of; the
+// next step would then take the wrong side for its own. Rule: near an obstacle a node ends close to the straight path
+// of its prediction. A node that has contacts may leave it by the activation distance, so that all surfaces it can come
+// too close to are among its contacts. A node without contacts is farther from every surface than the reach at the
+// path's end, and may leave that end by most of it; towards the path's start, where only the thickness is known to be
+// free, it may leave by less. What links could not do in this step they do in the next. The velocity follows the
+// position, as in Bullet's own update, so that no energy comes from it. Nodes away from every obstacle are not touched.
+// Metres, world frame. Cost: linear in the nodes.
+#pragma once
+
+#include <vector>
+
+#include "BulletSoftBody/btSoftBody.h"
+
+namespace drape
+{
+// Share of the reach that a node without contacts may go; the rest is for rounding and the detection's own tolerances.
+constexpr btScalar kFreeShare = btScalar(0.9);
+
+// Least distance that a node with contacts may go, as a share of the thickness, when the activation is set to less.
+constexpr btScalar kLeastShare = btScalar(0.1);
+
+// Most that a node may leave the path's start, as a share of the thickness, which is what is known to be free there.
+constexpr btScalar kMostStartShare = btScalar(0.8);
+
+class MotionLimit
+{
+public:
+    // Box of an obstacle that the body has a pair with, the pair's thickness, and the activation as a share of it.
+    // Nodes whose way from the predicted to the solved position misses every box are free.
+    void addObstacle(const btVector3& low, const btVector3& high, btScalar thickness, btScalar activation);
+    // Call before Bullet solves: remembers the prediction.
+    void record(const btSoftBody& body);
+    // A node of a contact; after record().
+    void addContactNode(int node) { m_hasContact[static_cast<std::size_t>(node)] = 1; }
+    // Brings nodes that left their path too far back; the nearest point of the allowed region.
+    void apply(btSoftBody& body) const;
+
+private:
+    // Distances from the path's start and end that a node may go.
+    struct Allowance
+    {
+        btScalar m_start, m_end;
+    };
+    struct Region
+    {
+        btVector3 m_low, m_high;
+        Allowance m_allowance;
+    };
+
+    Allowance allowance(std::size_t node, const btVector3& to) const;
+
+    std::vector<Region> m_regions;
+    std::vector<btVector3> m_start, m_end;
+    std::vector<unsigned char> m_hasContact;
+};
+}  // namespace drape

@@ -1,0 +1,95 @@
+#include "bullet_plugin/adapter/pair_algorithm.h"
+
+#include <new>
+
+#include "BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h"
+#include "BulletSoftBody/btSoftBodyConcaveCollisionAlgorithm.h"
+#include "bullet_plugin/adapter/eligibility.h"
+#include "bullet_plugin/adapter/plugin_state.h"
+
+namespace drape
+{
+static_assert(sizeof(PairAlgorithm) <= sizeof(btSoftBodyConcaveCollisionAlgorithm),
+              "the dispatcher's pool holds elements of that size");
+
+namespace
+{
+// Bullet's concave algorithm reads its triangles from the object's root shape, which it takes for the mesh: given a
+// compound's child it would call functions that the compound does not have.
+bool stockCanTake(const btCollisionObjectWrapper& obstacle)
+{
+    return obstacle.getCollisionShape() == obstacle.getCollisionObject()->getCollisionShape();
+}
+}  // namespace
+
+PairAlgorithm::PairAlgorithm(const btCollisionAlgorithmConstructionInfo& info, PluginState& state, bool swapped)
+    : btCollisionAlgorithm(info), m_state(state), m_swapped(swapped)
+{
+}
+
+PairAlgorithm::~PairAlgorithm()
+{
+    dropStock();
+    m_state.forget(this);
+}
+
+void PairAlgorithm::processCollision(const btCollisionObjectWrapper* wrapA, const btCollisionObjectWrapper* wrapB,
+                                     const btDispatcherInfo& info, btManifoldResult* result)
+{
+    const btCollisionObjectWrapper& clothWrap = m_swapped ? *wrapB : *wrapA;
+    const btCollisionObjectWrapper& obstacleWrap = m_swapped ? *wrapA : *wrapB;
+    btSoftBody* cloth = const_cast<btSoftBody*>(btSoftBody::upcast(clothWrap.getCollisionObject()));
+    if (!cloth) return;
+    if (reasonForStock(m_state, *cloth, *obstacleWrap.getCollisionObject(), *obstacleWrap.getCollisionShape()))
+    {
+        m_state.forget(this);
+        if (stockCanTake(obstacleWrap)) processStock(wrapA, wrapB, info, result);
+        return;
+    }
+    dropStock();
+    if (wantsContacts(*cloth, *obstacleWrap.getCollisionObject())) m_state.note(this, *cloth, obstacleWrap);
+}
+
+void PairAlgorithm::processStock(const btCollisionObjectWrapper* wrapA, const btCollisionObjectWrapper* wrapB,
+                                 const btDispatcherInfo& info, btManifoldResult* result)
+{
+    if (!m_stock)
+    {
+        btCollisionAlgorithmConstructionInfo construction(m_dispatcher, 0);
+        m_stock = m_state.stockCreateFunction(m_swapped).CreateCollisionAlgorithm(construction, wrapA, wrapB);
+    }
+    if (m_stock) m_stock->processCollision(wrapA, wrapB, info, result);
+}
+
+void PairAlgorithm::dropStock()
+{
+    if (!m_stock) return;
+    m_stock->~btCollisionAlgorithm();
+    m_dispatcher->freeCollisionAlgorithm(m_stock);
+    m_stock = nullptr;
+}
+
+btScalar PairAlgorithm::calculateTimeOfImpact(btCollisionObject* objectA, btCollisionObject* objectB,
+                                              const btDispatcherInfo& info, btManifoldResult* result)
+{
+    return m_stock ? m_stock->calculateTimeOfImpact(objectA, objectB, info, result) : btScalar(1);
+}
+
+void PairAlgorithm::getAllContactManifolds(btManifoldArray& manifolds)
+{
+    if (m_stock) m_stock->getAllContactManifolds(manifolds);
+}
+
+PairCreateFunction::PairCreateFunction(PluginState& state, bool swapped) : m_state(state)
+{
+    m_swapped = swapped;
+}
+
+btCollisionAlgorithm* PairCreateFunction::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                                   const btCollisionObjectWrapper*,
+                                                                   const btCollisionObjectWrapper*)
+{
+    void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(PairAlgorithm));
+    return new (memory) PairAlgorithm(info, m_state, m_swapped);
+}
+}  // namespace drape

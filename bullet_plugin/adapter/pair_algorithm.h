@@ -1,0 +1,49 @@
+// Bullet's collision algorithm for one (soft body, triangle mesh) pair: notes the pair for the coming solve, or passes
+// it on to Bullet's own algorithm, which is made only when needed.
+//
+// Guarantee: no collision work of Drape's happens here. The object fits the dispatcher's pool, whose elements are as
+// large as Bullet's own concave algorithm and which only asserts.
+#pragma once
+
+#include "BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h"
+#include "BulletCollision/CollisionDispatch/btCollisionCreateFunc.h"
+
+namespace drape
+{
+class PluginState;
+
+class PairAlgorithm : public btCollisionAlgorithm
+{
+public:
+    PairAlgorithm(const btCollisionAlgorithmConstructionInfo& info, PluginState& state, bool swapped);
+    ~PairAlgorithm() override;
+
+    void processCollision(const btCollisionObjectWrapper* wrapA, const btCollisionObjectWrapper* wrapB,
+                          const btDispatcherInfo& info, btManifoldResult* result) override;
+    btScalar calculateTimeOfImpact(btCollisionObject* objectA, btCollisionObject* objectB, const btDispatcherInfo& info,
+                                   btManifoldResult* result) override;
+    void getAllContactManifolds(btManifoldArray& manifolds) override;
+
+private:
+    void processStock(const btCollisionObjectWrapper* wrapA, const btCollisionObjectWrapper* wrapB,
+                      const btDispatcherInfo& info, btManifoldResult* result);
+    void dropStock();
+
+    PluginState& m_state;
+    btCollisionAlgorithm* m_stock = nullptr;  // from the dispatcher's pool
+    const bool m_swapped;                     // the mesh is the first of the pair
+};
+
+// What the dispatcher calls for a new pair. `swapped`: the mesh comes first.
+class PairCreateFunction : public btCollisionAlgorithmCreateFunc
+{
+public:
+    PairCreateFunction(PluginState& state, bool swapped);
+    btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                   const btCollisionObjectWrapper* wrapA,
+                                                   const btCollisionObjectWrapper* wrapB) override;
+
+private:
+    PluginState& m_state;
+};
+}  // namespace drape

@@ -1,0 +1,90 @@
+#include "drape/plugin.h"
+
+#include <cstdio>
+
+#include "BulletCollision/CollisionShapes/btCompoundShape.h"
+#include "bullet_plugin/adapter/eligibility.h"
+#include "bullet_plugin/adapter/plugin_state.h"
+
+namespace drape
+{
+namespace
+{
+// First reason among the leaves of a shape; empty when every leaf is handled.
+std::string reasonInShape(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
+                          const btCollisionShape& shape)
+{
+    if (shape.getShapeType() != COMPOUND_SHAPE_PROXYTYPE)
+    {
+        const char* reason = reasonForStock(state, cloth, obstacle, shape);
+        return reason ? reason : "";
+    }
+    const btCompoundShape& compound = static_cast<const btCompoundShape&>(shape);
+    for (int i = 0; i < compound.getNumChildShapes(); ++i)
+    {
+        const std::string reason = reasonInShape(state, cloth, obstacle, *compound.getChildShape(i));
+        if (!reason.empty()) return "child " + std::to_string(i) + " of the compound: " + reason;
+    }
+    return std::string();
+}
+}  // namespace
+
+Plugin::Plugin(const Settings& settings) : m_state(std::make_shared<PluginState>(settings)) {}
+
+Plugin::~Plugin() = default;
+
+bool Plugin::ready() const
+{
+    return m_state->ready();
+}
+
+std::string Plugin::error() const
+{
+    return m_state->error().failed() ? m_state->error().text() : std::string();
+}
+
+const DeviceReport& Plugin::device() const
+{
+    return m_state->device();
+}
+
+const StepStatistics& Plugin::statistics() const
+{
+    return m_state->m_statistics;
+}
+
+std::vector<ContactInfo> Plugin::contacts() const
+{
+    return m_state->m_contacts;
+}
+
+std::string Plugin::whyStock(const btCollisionObject* objectA, const btCollisionObject* objectB) const
+{
+    const btSoftBody* cloth = btSoftBody::upcast(objectA);
+    const btCollisionObject* obstacle = objectB;
+    if (!cloth)
+    {
+        cloth = btSoftBody::upcast(objectB);
+        obstacle = objectA;
+    }
+    if (!cloth) return "neither object is a soft body";
+    if (btSoftBody::upcast(obstacle)) return "both objects are soft bodies";
+    return reasonInShape(*m_state, *cloth, *obstacle, *obstacle->getCollisionShape());
+}
+
+void Plugin::obstacleChanged(const btCollisionShape* shape)
+{
+    m_state->obstacleChanged(shape);
+}
+
+std::string Plugin::report() const
+{
+    if (!ready()) return "Drape is off: " + m_state->error().m_call;
+    const StepStatistics& step = statistics();
+    char line[256];
+    std::snprintf(line, sizeof(line), ": %zu cloth and %zu obstacle triangles, %zu candidates, %zu contacts, %.3f ms%s",
+                  step.m_clothTriangles, step.m_obstacleTriangles, step.m_candidates, step.m_contacts,
+                  step.collisionMs(), step.m_skipped ? " (nothing to do)" : "");
+    return "Drape on " + device().m_device.m_name + line;
+}
+}  // namespace drape

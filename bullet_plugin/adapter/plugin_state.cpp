@@ -1,0 +1,213 @@
+#include "bullet_plugin/adapter/plugin_state.h"
+
+#include <algorithm>
+#include <exception>
+
+#include "BulletSoftBody/btSoftBodySolvers.h"
+
+namespace drape
+{
+namespace
+{
+// Steps that a mirror without a pair is kept: two seconds at 60 steps a second.
+constexpr std::uint64_t kKeepSteps = 120;
+
+// Least thickness, m: both margins may be zero, the pipeline needs a positive one.
+constexpr btScalar kMinThickness = btScalar(1e-4);
+
+// Tells a compound's children apart, through nested compounds.
+std::uint64_t childOf(const btCollisionObjectWrapper& wrap)
+{
+    std::uint64_t child = 0;
+    for (const btCollisionObjectWrapper* w = &wrap; w->m_parent; w = w->m_parent)
+        child = child * 1099511628211ull + static_cast<std::uint64_t>(static_cast<std::int64_t>(w->m_index) + 2);
+    return child;
+}
+}  // namespace
+
+PluginState::PluginState(const Settings& settings)
+    : m_settings(settings), m_create(*this, false), m_createSwapped(*this, true)
+{
+    m_stockCreateSwapped.m_swapped = true;
+    try
+    {
+        m_pipeline = Pipeline::create(settings, m_error);
+    }
+    catch (const std::exception& exception)
+    {
+        m_error.m_call = "drape::Plugin";
+        m_error.m_detail = exception.what();
+    }
+    if (!m_pipeline && !m_error.failed()) m_error.m_call = "drape::Plugin";
+    m_failedDevice.m_device.m_name = "none";
+    m_failedDevice.m_reason = m_error.m_call;
+}
+
+const DeviceReport& PluginState::device() const
+{
+    return m_pipeline ? m_pipeline->deviceReport() : m_failedDevice;
+}
+
+void PluginState::fail(const std::string& call, const std::string& detail)
+{
+    m_error.m_call = call;
+    m_error.m_detail = detail;
+    m_failedDevice.m_reason = call;
+    m_notes.clear();
+    m_owned.clear();
+    m_cloths.clear();
+    m_obstacles.clear();
+    m_contacts.clear();
+    m_pipeline.reset();
+}
+
+btCollisionAlgorithmCreateFunc& PluginState::stockCreateFunction(bool swapped)
+{
+    if (swapped) return m_stockCreateSwapped;
+    return m_stockCreate;
+}
+
+void PluginState::addSolver(const btSoftBodySolver* solver)
+{
+    m_solvers.push_back(solver);
+}
+
+void PluginState::removeSolver(const btSoftBodySolver* solver)
+{
+    dropNotes(solver);
+    m_solvers.erase(std::remove(m_solvers.begin(), m_solvers.end(), solver), m_solvers.end());
+}
+
+bool PluginState::ownsSolver(const btSoftBodySolver* solver) const
+{
+    return std::find(m_solvers.begin(), m_solvers.end(), solver) != m_solvers.end();
+}
+
+void PluginState::note(const void* owner, btSoftBody& cloth, const btCollisionObjectWrapper& obstacle)
+{
+    PairNote note;
+    note.m_owner = owner;
+    note.m_solver = cloth.getSoftBodySolver();
+    note.m_cloth = &cloth;
+    note.m_obstacle = ObstacleKey{obstacle.getCollisionObject(), obstacle.getCollisionShape(), childOf(obstacle)};
+    note.m_pose = obstacle.getWorldTransform();
+    note.m_thickness =
+        std::max(kMinThickness, cloth.getCollisionShape()->getMargin() + obstacle.getCollisionShape()->getMargin());
+    for (PairNote& old : m_notes)
+        if (old.m_owner == owner)
+        {
+            old = note;
+            return;
+        }
+    m_notes.push_back(note);
+}
+
+void PluginState::forget(const void* owner)
+{
+    m_notes.erase(
+        std::remove_if(m_notes.begin(), m_notes.end(), [owner](const PairNote& n) { return n.m_owner == owner; }),
+        m_notes.end());
+    const auto found = m_owned.find(owner);
+    if (found == m_owned.end()) return;
+    disown(found->second);
+    m_owned.erase(found);
+}
+
+void PluginState::disown(const Owned& owned)
+{
+    if (ClothMirror* cloth = findCloth(owned.m_cloth)) --cloth->m_owners;
+    if (ObstacleMirror* obstacle = findObstacle(owned.m_obstacle)) --obstacle->m_owners;
+}
+
+void PluginState::obstacleChanged(const btCollisionShape* shape)
+{
+    for (const std::unique_ptr<ObstacleMirror>& mirror : m_obstacles)
+        if (mirror->uses(shape)) mirror->requireReading();
+}
+
+void PluginState::dropNotes(const btSoftBodySolver* solver)
+{
+    m_notes.erase(
+        std::remove_if(m_notes.begin(), m_notes.end(), [solver](const PairNote& n) { return n.m_solver == solver; }),
+        m_notes.end());
+}
+
+std::vector<PairNote> PluginState::takeNotes(const btSoftBodySolver* solver)
+{
+    std::vector<PairNote> taken;
+    for (const PairNote& note : m_notes)
+        if (note.m_solver == solver && note.m_cloth->isActive()) taken.push_back(note);
+    dropNotes(solver);
+    ++m_step;
+    for (const PairNote& note : taken)
+        adopt(note);
+    return taken;
+}
+
+// Makes the mirrors of a pair, and counts its algorithm among their owners.
+void PluginState::adopt(const PairNote& note)
+{
+    if (!findCloth(note.m_cloth)) m_cloths.emplace_back(new ClothMirror(note.m_cloth));
+    if (!findObstacle(note.m_obstacle)) m_obstacles.emplace_back(new ObstacleMirror(note.m_obstacle));
+    ClothMirror& cloth = *findCloth(note.m_cloth);
+    ObstacleMirror& obstacle = *findObstacle(note.m_obstacle);
+    cloth.m_lastSeen = obstacle.m_lastSeen = m_step;
+    if (cloth.m_owners == 0) cloth.requireFullCheck();
+    if (obstacle.m_owners == 0) obstacle.requireReading();
+
+    const auto found = m_owned.find(note.m_owner);
+    if (found != m_owned.end())
+    {
+        if (found->second.m_cloth == note.m_cloth && found->second.m_obstacle == note.m_obstacle) return;
+        disown(found->second);
+    }
+    m_owned[note.m_owner] = Owned{note.m_cloth, note.m_obstacle};
+    ++cloth.m_owners;
+    ++obstacle.m_owners;
+}
+
+ClothMirror* PluginState::findCloth(const btSoftBody* body)
+{
+    for (const std::unique_ptr<ClothMirror>& mirror : m_cloths)
+        if (mirror->body() == body) return mirror.get();
+    return nullptr;
+}
+
+ObstacleMirror* PluginState::findObstacle(const ObstacleKey& key)
+{
+    for (const std::unique_ptr<ObstacleMirror>& mirror : m_obstacles)
+        if (mirror->key() == key) return mirror.get();
+    return nullptr;
+}
+
+ClothMirror& PluginState::clothMirror(const PairNote& note)
+{
+    return *findCloth(note.m_cloth);
+}
+
+ObstacleMirror& PluginState::obstacleMirror(const PairNote& note)
+{
+    return *findObstacle(note.m_obstacle);
+}
+
+template <typename Mirror>
+static void dropOld(std::vector<std::unique_ptr<Mirror>>& mirrors, Pipeline& pipeline, std::uint64_t step)
+{
+    for (std::size_t i = 0; i < mirrors.size();)
+    {
+        if (mirrors[i]->m_owners > 0 || mirrors[i]->m_lastSeen + kKeepSteps > step)
+        {
+            ++i;
+            continue;
+        }
+        if (mirrors[i]->id() != kNoMesh) pipeline.remove(mirrors[i]->id());
+        mirrors.erase(mirrors.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+}
+
+void PluginState::dropOldMirrors()
+{
+    dropOld(m_cloths, *m_pipeline, m_step);
+    dropOld(m_obstacles, *m_pipeline, m_step);
+}
+}  // namespace drape

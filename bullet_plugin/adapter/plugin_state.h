@@ -1,0 +1,100 @@
+// What Plugin, CollisionConfiguration, SoftBodySolver and the pair algorithms share: the pipeline, the pairs noted
+// since the last solve, and the mirrors of the bodies and meshes in them.
+//
+// Life of a pair: its algorithm notes it during dispatch (note), a solver takes the notes of its bodies
+// (CollisionStep), the algorithm's end forgets it. Notes are kept by algorithm, so that they cannot pile up, and
+// dropped when a step begins. Mirrors outlive their pairs by kKeepSteps, because cloth that bounces makes and loses its
+// pair again and again; without an algorithm alive their pointers are only compared, never followed, and what they hold
+// is checked in full before it is used.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h"
+#include "BulletSoftBody/btSoftBodyConcaveCollisionAlgorithm.h"
+#include "drape/plugin.h"
+#include "bullet_plugin/adapter/mirrors.h"
+#include "bullet_plugin/adapter/pair_algorithm.h"
+#include "bullet_plugin/core/pipeline.h"
+
+class btSoftBodySolver;
+
+namespace drape
+{
+struct PairNote
+{
+    const void* m_owner;  // the algorithm
+    const btSoftBodySolver* m_solver;
+    btSoftBody* m_cloth;
+    ObstacleKey m_obstacle;
+    btTransform m_pose;
+    btScalar m_thickness;
+};
+
+class PluginState
+{
+public:
+    explicit PluginState(const Settings& settings);
+    PluginState(const PluginState&) = delete;
+    PluginState& operator=(const PluginState&) = delete;
+
+    bool ready() const { return m_pipeline != nullptr; }
+    const Error& error() const { return m_error; }
+    const DeviceReport& device() const;
+    Pipeline& pipeline() { return *m_pipeline; }
+    const Settings& settings() const { return m_settings; }
+    // After a failure that the pipeline could not contain: every pair goes to Bullet from now on.
+    void fail(const std::string& call, const std::string& detail);
+
+    btCollisionAlgorithmCreateFunc& createFunction(bool swapped) { return swapped ? m_createSwapped : m_create; }
+    btCollisionAlgorithmCreateFunc& stockCreateFunction(bool swapped);
+
+    void addSolver(const btSoftBodySolver* solver);
+    void removeSolver(const btSoftBodySolver* solver);
+    bool ownsSolver(const btSoftBodySolver* solver) const;
+
+    void note(const void* owner, btSoftBody& cloth, const btCollisionObjectWrapper& obstacle);
+    void forget(const void* owner);
+    void obstacleChanged(const btCollisionShape* shape);
+    void dropNotes(const btSoftBodySolver* solver);
+    std::vector<PairNote> takeNotes(const btSoftBodySolver* solver);
+
+    // The mirrors of a noted pair, made when there are none. Counts the step for dropOldMirrors().
+    ClothMirror& clothMirror(const PairNote& note);
+    ObstacleMirror& obstacleMirror(const PairNote& note);
+    void dropOldMirrors();
+
+    StepStatistics m_statistics;
+    std::vector<ContactInfo> m_contacts;
+
+private:
+    struct Owned
+    {
+        const btSoftBody* m_cloth;
+        ObstacleKey m_obstacle;
+    };
+
+    ClothMirror* findCloth(const btSoftBody* body);
+    ObstacleMirror* findObstacle(const ObstacleKey& key);
+    void adopt(const PairNote& note);
+    void disown(const Owned& owned);
+
+    const Settings m_settings;
+    std::unique_ptr<Pipeline> m_pipeline;
+    Error m_error;
+    DeviceReport m_failedDevice;
+    PairCreateFunction m_create, m_createSwapped;
+    btSoftBodyConcaveCollisionAlgorithm::CreateFunc m_stockCreate;
+    btSoftBodyConcaveCollisionAlgorithm::SwappedCreateFunc m_stockCreateSwapped;
+
+    std::vector<const btSoftBodySolver*> m_solvers;
+    std::vector<PairNote> m_notes;  // in the order of dispatch
+    std::unordered_map<const void*, Owned> m_owned;
+    std::vector<std::unique_ptr<ClothMirror>> m_cloths;
+    std::vector<std::unique_ptr<ObstacleMirror>> m_obstacles;
+    std::uint64_t m_step = 0;
+};
+}  // namespace drape
