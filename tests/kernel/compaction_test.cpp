@@ -1,0 +1,118 @@
+// Compaction by itself: hits in any order come out by slot and obstacle feature, whatever the sizes and the crowding.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "bullet_plugin/core/device/program.h"
+#include "tests/support/cases.h"
+#include "tests/support/device_side.h"
+
+namespace drape::test
+{
+namespace
+{
+constexpr std::size_t kGroup = 64;
+constexpr std::size_t kBlock = 1024;  // as in kernels/compaction.cl
+
+// Hits with distinct features per slot, in random order. crowded: most of them in one slot.
+std::vector<Contact> randomHits(std::size_t count, std::uint32_t slots, bool crowded, Random& random)
+{
+    std::vector<Contact> hits(count);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        hits[i].m_slot = crowded && i % 8 ? slots / 2 : random.below(slots);
+        hits[i].m_obstacleFeature = std::uint32_t(i) * 2654435761u;
+        hits[i].m_gap1 = float(i);
+    }
+    for (std::size_t i = count; i > 1; --i)
+        std::swap(hits[i - 1], hits[random.below(std::uint32_t(i))]);
+    return hits;
+}
+
+class Compaction
+{
+public:
+    explicit Compaction(Device& device) : m_device(device)
+    {
+        const cl::Program program = programOf(device, "compaction");
+        m_count.create(device, program, "compactionCount");
+        m_scan.create(device, program, "compactionScan");
+        m_place.create(device, program, "compactionPlace");
+        m_gather.create(device, program, "compactionGather");
+        m_write.create(device, program, "compactionWrite");
+    }
+
+    std::vector<Contact> run(const std::vector<Contact>& hits, std::uint32_t slots)
+    {
+        std::vector<cl_uint> slotCount(slots, 0);
+        for (const Contact& hit : hits)
+            ++slotCount[hit.m_slot];
+        std::vector<StepCounters> start(1);
+        start[0].m_hits = cl_uint(hits.size());
+        const std::size_t blocks = (slots + kBlock - 1) / kBlock;
+        const cl_uint capacity = cl_uint(std::max<std::size_t>(1, hits.size()));
+        guardCopy(m_device, m_hits, hits);
+        guardCopy(m_device, m_slotCount, slotCount);
+        guardCopy(m_device, m_counters, start);
+        guard(m_device, m_slotFirst, slots);
+        guard(m_device, m_blockCount, blocks);
+        guard(m_device, m_members, capacity);
+        guard(m_device, m_contacts, capacity);
+        const cl::LocalSpaceArg scratch = cl::Local(kGroup * sizeof(cl_uint));
+        m_count.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_blockCount.handle(), scratch);
+        m_scan.launch(m_device, kGroup, kGroup, m_blockCount.handle(), cl_uint(blocks), scratch);
+        m_place.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_blockCount.handle(),
+                       m_slotFirst.handle(), scratch);
+        m_gather.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotCount.handle(),
+                        m_slotFirst.handle(), m_members.handle(), m_counters.handle());
+        m_write.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotFirst.handle(),
+                       m_members.handle(), m_contacts.handle(), m_counters.handle());
+        const std::vector<cl_uint> left = contents(m_device, m_slotCount, slots);
+        EXPECT_EQ(std::count(left.begin(), left.end(), 0u), std::ptrdiff_t(slots)) << "slots are clean after";
+        EXPECT_TRUE(intact(m_device, m_hits) && intact(m_device, m_slotCount) && intact(m_device, m_slotFirst) &&
+                    intact(m_device, m_blockCount) && intact(m_device, m_members) && intact(m_device, m_contacts));
+        return contents(m_device, m_contacts, hits.size());
+    }
+
+private:
+    Device& m_device;
+    Kernel m_count, m_scan, m_place, m_gather, m_write;
+    Buffer<Contact> m_hits, m_contacts;
+    Buffer<cl_uint> m_slotCount, m_slotFirst, m_blockCount, m_members;
+    Buffer<StepCounters> m_counters;
+};
+}  // namespace
+
+class CompactionTest : public BackendTest
+{
+};
+
+TEST_P(CompactionTest, OrdersBySlotAndFeature)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    Compaction compaction(*device);
+    Random random(90);
+    for (std::uint32_t slots : {1u, 63u, 64u, 65u, 1023u, 1024u, 1025u, 3001u, 70001u})
+    {
+        for (std::size_t count : {0u, 1u, 63u, 65u, 2999u})
+        {
+            for (bool crowded : {false, true})
+            {
+                SCOPED_TRACE("seed 90, " + std::to_string(slots) + " slots, " + std::to_string(count) + " hits");
+                std::vector<Contact> hits = randomHits(count, slots, crowded, random);
+                const std::vector<Contact> found = compaction.run(hits, slots);
+                std::sort(hits.begin(), hits.end(),
+                          [](const Contact& a, const Contact& b) {
+                              return std::tie(a.m_slot, a.m_obstacleFeature) < std::tie(b.m_slot, b.m_obstacleFeature);
+                          });
+                ASSERT_TRUE(sameBytes(found, hits)) << difference(found, hits);
+            }
+        }
+    }
+    EXPECT_FALSE(device->failed()) << device->error().text();
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, CompactionTest, testing::ValuesIn(openClBackends()), backendName);
+}  // namespace drape::test

@@ -1,0 +1,150 @@
+// Refit and leaf order on a device: the host's bits, nothing written past the end, at sizes around the groups'.
+#include "bullet_plugin/core/bvh/refit.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "bullet_plugin/core/bvh/morton_order.h"
+#include "scenes/shapes.h"
+#include "tests/support/cases.h"
+#include "tests/support/device_side.h"
+
+namespace drape::test
+{
+namespace
+{
+// Around the work-groups of 64 and 128 and the sort's stretch of 512, and odd thousands.
+const int kSizes[] = {1, 2, 3, 63, 64, 65, 127, 128, 129, 255, 257, 511, 512, 513, 1023, 3001, 20011};
+
+Side movingSoup(int count, std::uint32_t seed)
+{
+    Random random(seed);
+    Side side = makeSide({makeSoup(1.0f, 0.1f, count, seed)});
+    disturb(side.m_end, 0.1f, random);
+    return side;
+}
+
+void spoil(std::vector<float>& positions, Random& random)
+{
+    const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e38f,
+                         1e-40f};
+    for (std::size_t i = 0; i < positions.size() / 50 + 1; ++i)
+    {
+        positions[random.below(std::uint32_t(positions.size()))] = bad[random.below(4)];
+    }
+}
+}  // namespace
+
+class RefitTest : public BackendTest
+{
+protected:
+    void expectSameAsHost(Side& side, const std::vector<float>& radius)
+    {
+        const std::unique_ptr<Device> device = openDevice(GetParam());
+        ASSERT_TRUE(device);
+        RefitStage stage;
+        stage.create(*device, programOf(*device, "refit"));
+        DeviceSide buffers;
+        buffers.upload(*device, side);
+        RefitStage::Levels levels;
+        stage.makeLevels(*device, side.m_layout, levels);
+        Buffer<float> meshRadius;
+        guardCopy(*device, meshRadius, radius);
+        Buffer<StepCounters> counters;
+        clearCounters(*device, counters);
+        stage.enqueue(*device, side.m_layout, levels, buffers.m_nodes, buffers.m_order, buffers.m_triangles,
+                      buffers.m_start, buffers.m_end, meshRadius, counters);
+        const std::size_t invalid = refitSide(side, radius);
+        EXPECT_TRUE(sameBytes(contents(*device, buffers.m_nodes, side.m_nodes.size()), side.m_nodes));
+        EXPECT_EQ(readCounters(*device, counters).m_invalidNodes, invalid);
+        EXPECT_TRUE(buffers.allIntact(*device) && intact(*device, meshRadius) && intact(*device, counters));
+        EXPECT_FALSE(device->failed()) << device->error().text();
+    }
+};
+
+TEST_P(RefitTest, SameBitsAsTheHostAtEverySize)
+{
+    for (int size : kSizes)
+    {
+        SCOPED_TRACE("soup of " + std::to_string(size) + ", seed " + std::to_string(size));
+        Side side = movingSoup(size, std::uint32_t(size));
+        expectSameAsHost(side, {0.013f});
+    }
+}
+
+TEST_P(RefitTest, SeveralMeshesWithOneLeftOutAndInvalidNodes)
+{
+    Random random(9);
+    SCOPED_TRACE("seed 9");
+    Side side = makeSide({makeSoup(1, 0.1f, 300, 1), makeSphere(0.5f, 2), makeSoup(1, 0.1f, 77, 2)});
+    disturb(side.m_end, 0.05f, random);
+    spoil(side.m_start, random);
+    spoil(side.m_end, random);
+    expectSameAsHost(side, {0.01f, -1.0f, 0.03f});
+}
+
+TEST_P(RefitTest, NoLeavesLaunchNothing)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    RefitStage stage;
+    stage.create(*device, programOf(*device, "refit"));
+    Side side = makeSide({});
+    DeviceSide buffers;
+    buffers.upload(*device, side);
+    RefitStage::Levels levels;
+    stage.makeLevels(*device, side.m_layout, levels);
+    Buffer<float> radius;
+    guard(*device, radius, 0);
+    Buffer<StepCounters> counters;
+    clearCounters(*device, counters);
+    stage.enqueue(*device, side.m_layout, levels, buffers.m_nodes, buffers.m_order, buffers.m_triangles,
+                  buffers.m_start, buffers.m_end, radius, counters);
+    device->wait();
+    EXPECT_TRUE(buffers.allIntact(*device));
+    EXPECT_FALSE(device->failed()) << device->error().text();
+}
+
+TEST_P(RefitTest, LeafOrderSameAsTheHost)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    MortonOrderStage stage;
+    stage.create(*device, programOf(*device, "morton_order"));
+    EXPECT_TRUE(stage.order(*device, {}, nullptr, 0).empty());
+    for (bool spoiled : {false, true})
+    {
+        for (int size : kSizes)
+        {
+            SCOPED_TRACE("soup of " + std::to_string(size) + ", seed " + std::to_string(size));
+            Random random{std::uint32_t(size)};
+            Side side = movingSoup(size, std::uint32_t(size));
+            if (spoiled) spoil(side.m_start, random);
+            const std::vector<Triangle>& triangles = side.m_pool.triangles();
+            EXPECT_EQ(stage.order(*device, triangles, side.m_start.data(), side.m_pool.vertexCount()),
+                      mortonOrderOnHost(triangles, side.m_start.data()));
+        }
+    }
+    EXPECT_FALSE(device->failed()) << device->error().text();
+}
+
+TEST_P(RefitTest, LeafOrderOfEqualCentroidsIsByNumber)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    MortonOrderStage stage;
+    stage.create(*device, programOf(*device, "morton_order"));
+    std::vector<float> corners;
+    for (int i = 0; i < 1000; ++i)
+        corners.insert(corners.end(), {0, 0, 0, 1, 0, 0, 0, 1, 0});
+    const Side side = makeSide({looseTriangles(corners)});
+    const std::vector<std::uint32_t> order =
+        stage.order(*device, side.m_pool.triangles(), side.m_start.data(), side.m_pool.vertexCount());
+    ASSERT_EQ(order.size(), 1000u);
+    for (std::uint32_t i = 0; i < 1000; ++i)
+        ASSERT_EQ(order[i], i);
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, RefitTest, testing::ValuesIn(openClBackends()), backendName);
+}  // namespace drape::test

@@ -1,0 +1,214 @@
+// The pipeline as a caller sees it: views, pairs, refit against rebuild, contacts that are consistent in themselves.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "scenes/shapes.h"
+#include "tests/support/backends.h"
+#include "tests/support/oracle.h"
+#include "tests/support/pipeline_driver.h"
+#include "tests/support/side.h"
+
+namespace drape::test
+{
+class PipelineTest : public BackendTest
+{
+protected:
+    std::unique_ptr<Pipeline> make() { return makePipeline(GetParam().m_settings); }
+};
+
+// A contact's own data fit together: weights, gaps and point give the nodes' places.
+TEST_P(PipelineTest, ContactsAreConsistent)
+{
+    for (const StepCase& step : {fallingCase("bowl", 24, 0.03f, 700), soupCase(200, 200, true, 701)})
+    {
+        SCOPED_TRACE(step.trace());
+        const std::unique_ptr<Pipeline> pipeline = make();
+        ASSERT_TRUE(pipeline);
+        const std::vector<Contact> contacts = runCase(*pipeline, step);
+        EXPECT_GT(contacts.size(), 100u);
+        for (const Contact& contact : contacts)
+        {
+            const ContactView view = pipeline->view(contact);
+            const Vector3 normal = {view.m_normal[0], view.m_normal[1], view.m_normal[2]};
+            const Vector3 point = {view.m_point[0], view.m_point[1], view.m_point[2]};
+            Vector3 start, end;
+            double sum = 0;
+            for (int i = 0; i < 3; ++i)
+            {
+                if (view.m_nodes[i] < 0)
+                {
+                    EXPECT_EQ(view.m_weights[i], 0.0f);
+                    continue;
+                }
+                EXPECT_GE(view.m_weights[i], 0.0f);
+                sum += view.m_weights[i];
+                start += double(view.m_weights[i]) * position(step.m_cloth.m_positions, std::uint32_t(view.m_nodes[i]));
+                end += double(view.m_weights[i]) * position(step.m_end, std::uint32_t(view.m_nodes[i]));
+            }
+            EXPECT_NEAR(sum, 1.0, 1e-6);
+            EXPECT_NEAR(length(normal), 1.0, 1e-6);
+            EXPECT_NEAR(dot(normal, start - point), view.m_gap0, 2e-6) << describe(contact);
+            EXPECT_NEAR(dot(normal, end - point), view.m_gap1, 2e-6) << describe(contact);
+            EXPECT_TRUE(view.m_time >= 0 && view.m_time <= 1);
+        }
+    }
+}
+
+TEST_P(PipelineTest, ContactsComeInCanonicalOrderAndOnce)
+{
+    const std::unique_ptr<Pipeline> pipeline = make();
+    ASSERT_TRUE(pipeline);
+    const std::vector<Contact> contacts = runCase(*pipeline, fallingCase("torus", 24, 0.03f, 702));
+    ASSERT_GT(contacts.size(), 100u);
+    for (std::size_t i = 1; i < contacts.size(); ++i)
+    {
+        const Contact &a = contacts[i - 1], &b = contacts[i];
+        ASSERT_TRUE(a.m_slot < b.m_slot || (a.m_slot == b.m_slot && a.m_obstacleFeature < b.m_obstacleFeature));
+        ASSERT_LE(a.m_kind, b.m_kind);
+    }
+    EXPECT_EQ(pipeline->statistics().m_contacts, contacts.size());
+    EXPECT_GE(pipeline->statistics().m_candidates, contacts.size() / 15);
+    EXPECT_EQ(pipeline->statistics().m_status, std::uint32_t(kStepGood));
+}
+
+namespace
+{
+// Numbers differ by what stands before in the joined arrays; all else must be the same.
+std::vector<Contact> withoutNumbers(std::vector<Contact> contacts)
+{
+    for (Contact& contact : contacts)
+        contact.m_slot = contact.m_clothFeature = contact.m_obstacleFeature = 0;
+    return contacts;
+}
+
+std::vector<Contact> contactsOfPair(const Pipeline& pipeline, const std::vector<Contact>& all, MeshId cloth,
+                                    MeshId obstacle, float thickness)
+{
+    std::vector<Contact> found;
+    for (const Contact& contact : all)
+    {
+        const ContactView view = pipeline.view(contact);
+        if (view.m_cloth != cloth || view.m_obstacle != obstacle) continue;
+        EXPECT_EQ(view.m_thickness, thickness);
+        found.push_back(contact);
+    }
+    return found;
+}
+}  // namespace
+
+// Each pair of several alone gives what it gives among the others. The last cloth has no pair, the first has two.
+TEST_P(PipelineTest, PairsAreIndependent)
+{
+    const std::unique_ptr<Pipeline> together = make();
+    ASSERT_TRUE(together);
+    const std::vector<StepCase> cases = {fallingCase("sphere", 12, 0.03f, 710), fallingCase("torus", 14, 0.02f, 711),
+                                         fallingCase("box", 10, 0.04f, 712)};
+    std::vector<MeshId> cloths, obstacles;
+    for (const StepCase& step : cases)
+    {
+        cloths.push_back(addCloth(*together, step.m_cloth));
+        obstacles.push_back(addObstacle(*together, step.m_obstacle));
+    }
+    for (std::size_t i = 0; i < cases.size(); ++i)
+    {
+        setMotion(*together, cloths[i], cases[i].m_cloth.m_positions, cases[i].m_end);
+    }
+    const struct
+    {
+        std::size_t m_cloth, m_obstacle;
+        float m_thickness;
+    } pairs[] = {{0, 0, 0.01f}, {0, 1, 0.02f}, {1, 1, 0.03f}};
+    for (const auto& pair : pairs)
+        together->addPair(cloths[pair.m_cloth], obstacles[pair.m_obstacle], pair.m_thickness);
+    const std::vector<Contact> all = runStep(*together);
+    std::size_t matched = 0;
+    for (const auto& pair : pairs)
+    {
+        StepCase alone = cases[pair.m_cloth];
+        alone.m_obstacle = cases[pair.m_obstacle].m_obstacle;
+        alone.m_thickness = pair.m_thickness;
+        const std::unique_ptr<Pipeline> single = make();
+        ASSERT_TRUE(single);
+        const std::vector<Contact> expected = withoutNumbers(runCase(*single, alone));
+        const std::vector<Contact> found = withoutNumbers(
+            contactsOfPair(*together, all, cloths[pair.m_cloth], obstacles[pair.m_obstacle], pair.m_thickness));
+        EXPECT_FALSE(expected.empty());
+        EXPECT_TRUE(sameBytes(found, expected)) << difference(found, expected);
+        matched += found.size();
+    }
+    EXPECT_EQ(matched, all.size());
+}
+
+// A hierarchy that was built long ago and refitted finds what a new one finds.
+TEST_P(PipelineTest, RefitEqualsRebuild)
+{
+    const std::unique_ptr<Pipeline> old = make();
+    ASSERT_TRUE(old);
+    const StepCase first = fallingCase("sphere", 16, 0.03f, 720);
+    const MeshId cloth = addCloth(*old, first.m_cloth), obstacle = addObstacle(*old, first.m_obstacle);
+    Random random(721);
+    for (int step = 0; step < 5; ++step)
+    {
+        StepCase now = first;
+        now.m_seed = std::uint32_t(721 + step);
+        SCOPED_TRACE(now.trace());
+        translate(now.m_obstacle.m_positions, random.uniform(-0.2f, 0.2f), random.uniform(-0.05f, 0.05f),
+                  random.uniform(-0.2f, 0.2f));
+        disturb(now.m_obstacle.m_positions, 0.01f, random);
+        disturb(now.m_cloth.m_positions, 0.05f, random);
+        disturb(now.m_end, 0.05f, random);
+        old->moveObstacle(obstacle, now.m_obstacle.m_positions.data());
+        setMotion(*old, cloth, now.m_cloth.m_positions, now.m_end);
+        old->addPair(cloth, obstacle, now.m_thickness);
+        const std::vector<Contact> refitted = runStep(*old);
+        const std::unique_ptr<Pipeline> fresh = make();
+        ASSERT_TRUE(fresh);
+        const std::vector<Contact> rebuilt = runCase(*fresh, now);
+        EXPECT_TRUE(sameBytes(refitted, rebuilt)) << difference(refitted, rebuilt);
+        EXPECT_GT(rebuilt.size(), 50u);
+    }
+}
+
+TEST_P(PipelineTest, StepsWithoutPairsAreSkipped)
+{
+    const std::unique_ptr<Pipeline> pipeline = make();
+    ASSERT_TRUE(pipeline);
+    EXPECT_TRUE(runStep(*pipeline).empty());
+    EXPECT_TRUE(pipeline->statistics().m_skipped);
+    const StepCase step = fallingCase("box", 12, 0.03f, 730);
+    EXPECT_FALSE(runCase(*pipeline, step).empty());
+    EXPECT_FALSE(pipeline->statistics().m_skipped);
+    EXPECT_TRUE(runStep(*pipeline).empty()) << "pairs are named anew for each step";
+    EXPECT_TRUE(pipeline->statistics().m_skipped);
+}
+
+TEST_P(PipelineTest, SourceTrianglesSurviveDroppedOnes)
+{
+    const std::unique_ptr<Pipeline> pipeline = make();
+    ASSERT_TRUE(pipeline);
+    StepCase step = fallingCase("box", 12, 0.03f, 740);
+    // Triangles that repeat an index, in front and between: they are ignored, and the numbers given stay those given.
+    std::vector<std::int32_t> triangles = {0, 0, 1};
+    for (std::size_t i = 0; i < step.m_cloth.m_triangles.size(); i += 3)
+    {
+        triangles.insert(triangles.end(), &step.m_cloth.m_triangles[i], &step.m_cloth.m_triangles[i] + 3);
+        if (i % 9 == 0) triangles.insert(triangles.end(), {3, 4, 3});
+    }
+    step.m_cloth.m_triangles = triangles;
+    const std::vector<Contact> contacts = runCase(*pipeline, step);
+    ASSERT_FALSE(contacts.empty());
+    for (const Contact& contact : contacts)
+    {
+        const ContactView view = pipeline->view(contact);
+        ASSERT_TRUE(view.m_triangle >= 0 && std::size_t(view.m_triangle) < step.m_cloth.triangleCount());
+        const std::int32_t* corners = &triangles[3 * std::size_t(view.m_triangle)];
+        for (std::int32_t node : view.m_nodes)
+        {
+            EXPECT_TRUE(node < 0 || std::find(corners, corners + 3, node) != corners + 3) << describe(contact);
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, PipelineTest, testing::ValuesIn(allBackends()), backendName);
+}  // namespace drape::test

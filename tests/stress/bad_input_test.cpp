@@ -1,0 +1,199 @@
+// Nodes that are NaN, infinite, huge or denormal; cloths without extent; meshes that are empty or repeat themselves.
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+
+#include "scenes/cloth_grid.h"
+#include "scenes/shapes.h"
+#include "tests/support/backends.h"
+#include "tests/support/pipeline_driver.h"
+#include "tests/support/side.h"
+
+namespace drape::test
+{
+namespace
+{
+const float kInfinity = std::numeric_limits<float>::infinity();
+const float kNan = std::numeric_limits<float>::quiet_NaN();
+
+void expectFinite(const std::vector<Contact>& contacts)
+{
+    for (const Contact& contact : contacts)
+    {
+        for (int i = 0; i < 3; ++i)
+        {
+            ASSERT_TRUE(std::isfinite(contact.m_normal[i]) && std::isfinite(contact.m_point[i]) &&
+                        std::isfinite(contact.m_weights[i]))
+                << describe(contact);
+        }
+        ASSERT_TRUE(std::isfinite(contact.m_gap0) && std::isfinite(contact.m_gap1) && std::isfinite(contact.m_time))
+            << describe(contact);
+    }
+}
+
+// Whether a contact's cloth feature uses one of the nodes.
+bool touches(const Pipeline& pipeline, const Contact& contact, const std::set<std::int32_t>& nodes)
+{
+    const ContactView view = pipeline.view(contact);
+    for (std::int32_t node : view.m_nodes)
+    {
+        if (nodes.count(node)) return true;
+    }
+    return false;
+}
+}  // namespace
+
+class BadInputTest : public BackendTest
+{
+protected:
+    std::vector<Contact> run(const StepCase& step)
+    {
+        m_pipeline = makePipeline(GetParam().m_settings);
+        if (!m_pipeline) return {};
+        const std::vector<Contact> contacts = runCase(*m_pipeline, step);
+        expectFinite(contacts);
+        EXPECT_FALSE(m_pipeline->statistics().m_status & kStepDeviceFailed) << m_pipeline->lastError().text();
+        return contacts;
+    }
+
+    std::unique_ptr<Pipeline> m_pipeline;
+};
+
+TEST_P(BadInputTest, NanAndInfiniteNodesAreIsolatedAndCounted)
+{
+    StepCase step = fallingCase("sphere", 20, 0.03f, 900);
+    SCOPED_TRACE(step.trace());
+    const std::vector<Contact> sound = run(step);
+    EXPECT_EQ(m_pipeline->statistics().m_invalidNodes, 0u);
+    const std::set<std::int32_t> bad = {0, 205, 210, 250};
+    step.m_end[3 * 0] = kNan;
+    step.m_end[3 * 205 + 1] = kInfinity;
+    step.m_cloth.m_positions[3 * 210 + 2] = -kInfinity;
+    step.m_cloth.m_positions[3 * 250] = kNan;
+    const std::vector<Contact> contacts = run(step);
+    EXPECT_EQ(m_pipeline->statistics().m_invalidNodes, bad.size());
+    EXPECT_TRUE(m_pipeline->statistics().m_status & kStepInvalidNodes);
+    for (const Contact& contact : contacts)
+        EXPECT_FALSE(touches(*m_pipeline, contact, bad)) << describe(contact);
+    // Away from them nothing is lost: triangles of the bad nodes and their neighbours' edges aside.
+    EXPECT_GT(contacts.size(), sound.size() * 8 / 10);
+    EXPECT_LT(m_pipeline->statistics().m_candidates, 100000u);
+}
+
+TEST_P(BadInputTest, EveryNodeInvalid)
+{
+    StepCase step = fallingCase("sphere", 10, 0.03f, 901);
+    for (float value : {kNan, kInfinity, -kInfinity})
+    {
+        step.m_end.assign(step.m_end.size(), value);
+        EXPECT_TRUE(run(step).empty());
+        EXPECT_EQ(m_pipeline->statistics().m_invalidNodes, step.m_cloth.vertexCount());
+        EXPECT_EQ(m_pipeline->statistics().m_candidates, 0u);
+    }
+}
+
+TEST_P(BadInputTest, InvalidObstacleVerticesAreIsolated)
+{
+    StepCase step = fallingCase("sphere", 20, 0.03f, 902);
+    step.m_obstacle.m_positions[3 * 5] = kNan;
+    step.m_obstacle.m_positions[3 * 77 + 1] = kInfinity;
+    EXPECT_GT(run(step).size(), 100u);
+    EXPECT_LT(m_pipeline->statistics().m_candidates, 100000u);
+}
+
+TEST_P(BadInputTest, HugeAndDenormalNodesStayFinite)
+{
+    for (float value : {1e38f, -1e38f, 3.4e38f, 1e20f, 1e-40f, -1e-45f})
+    {
+        SCOPED_TRACE("seed 903, value " + std::to_string(value));
+        StepCase step = fallingCase("sphere", 20, 0.03f, 903);
+        for (std::size_t at : {0u, 600u, 601u, 602u, 700u})
+            step.m_end[at] = value;
+        const std::vector<Contact> contacts = run(step);
+        EXPECT_GT(contacts.size(), 100u);
+        EXPECT_EQ(m_pipeline->statistics().m_invalidNodes, 0u);
+    }
+}
+
+TEST_P(BadInputTest, ClothCollapsedToAPointOrALine)
+{
+    for (bool line : {false, true})
+    {
+        for (float height : {0.51f, 0.49f})
+        {
+            StepCase step = fallingCase("sphere", 12, 0.03f, 904);
+            SCOPED_TRACE(step.trace());
+            for (std::size_t node = 0; node < step.m_cloth.vertexCount(); ++node)
+            {
+                const float x = line ? 0.001f * float(node) : 0.0f;
+                for (std::vector<float>* positions : {&step.m_cloth.m_positions, &step.m_end})
+                {
+                    float* p = &(*positions)[3 * node];
+                    p[0] = x;
+                    p[1] = positions == &step.m_end ? height : 0.55f;
+                    p[2] = 0.0f;
+                }
+            }
+            // Every node is near the pole or below it.
+            std::set<std::uint32_t> nodes;
+            for (const Contact& contact : run(step))
+            {
+                if (contact.m_kind == DRAPE_NODE_FACE) nodes.insert(contact.m_clothFeature);
+            }
+            EXPECT_GE(nodes.size(), line ? 20u : step.m_cloth.vertexCount());
+        }
+    }
+}
+
+TEST_P(BadInputTest, EmptyAndTinyMeshes)
+{
+    const TriangleMesh one = looseTriangles({-1, 0, -1, 1, 0, -1, 0, 0, 1});
+    TriangleMesh two = looseTriangles({-1, 0, -1, 1, 0, -1, 0, 0, 1, 0, 0, -3});
+    two.m_triangles = {0, 1, 2, 1, 0, 3};
+    TriangleMesh unused = looseTriangles({9, 9, 9, -1, 0, -1, 1, 0, -1, 0, 0, 1, 7, 7, 7});
+    unused.m_triangles = {1, 2, 3};
+    TriangleMesh repeated = one;
+    repeated.m_triangles = {0, 0, 1};
+    const TriangleMesh meshes[] = {one, two, unused, TriangleMesh(), repeated};
+    constexpr int kWithTriangles = 3;  // of the meshes, the first
+    for (int i = 0; i < 5; ++i)
+    {
+        for (int j = 0; j < 5; ++j)
+        {
+            const TriangleMesh &cloth = meshes[i], &obstacle = meshes[j];
+            StepCase step = {"tiny meshes", 0, cloth, obstacle, cloth.m_positions, 0.1f};
+            translate(step.m_cloth.m_positions, 0.05f, 0.2f, 0.0f);
+            translate(step.m_end, 0.05f, 0.04f, 0.0f);
+            const std::vector<Contact> contacts = run(step);
+            EXPECT_EQ(contacts.empty(), i >= kWithTriangles || j >= kWithTriangles);
+            // 4 cm above each other, or beside each other's border and farther, up to one and a half thicknesses.
+            for (const Contact& contact : contacts)
+            {
+                EXPECT_TRUE(contact.m_gap1 > 0.0399f && contact.m_gap1 < 0.1501f) << describe(contact);
+            }
+        }
+    }
+}
+
+TEST_P(BadInputTest, TwoIdenticalMeshes)
+{
+    const TriangleMesh mesh = makeSphere(0.5f, 2);
+    StepCase step = {"identical meshes", 0, mesh, mesh, mesh.m_positions, 0.01f};
+    Settings settings = GetParam().m_settings;
+    settings.m_reportIntersections = true;
+    const std::unique_ptr<Pipeline> pipeline = makePipeline(settings);
+    ASSERT_TRUE(pipeline);
+    const std::vector<Contact> contacts = runCase(*pipeline, step);
+    expectFinite(contacts);
+    EXPECT_GE(pipeline->statistics().m_intersections, mesh.triangleCount()) << "each with itself at least";
+    std::set<std::uint32_t> nodes;
+    for (const Contact& contact : contacts)
+    {
+        if (contact.m_kind == DRAPE_NODE_FACE) nodes.insert(contact.m_clothFeature);
+    }
+    EXPECT_EQ(nodes.size(), mesh.vertexCount());
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, BadInputTest, testing::ValuesIn(allBackends()), backendName);
+}  // namespace drape::test

@@ -1,0 +1,163 @@
+// Loads that break what is built for the usual: crowds of coincident triangles, extreme speed, many steps.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <set>
+
+#include "scenes/cloth_grid.h"
+#include "scenes/shapes.h"
+#include "tests/support/backends.h"
+#include "tests/support/pipeline_driver.h"
+#include "tests/support/side.h"
+
+namespace drape::test
+{
+namespace
+{
+TriangleMesh coincident(int count, float y)
+{
+    std::vector<float> corners;
+    for (int i = 0; i < count; ++i)
+        corners.insert(corners.end(), {0, y, 0, 1, y, 0, 0, y, 1});
+    return looseTriangles(corners);
+}
+
+// Growth that is no leak: allocators and drivers keep some pages, and the address sanitizer keeps what was freed, 256
+// MiB of it. A leak of one contact list a step would be 50 MB and more; with the sanitizer its leak check finds it.
+#ifdef __SANITIZE_ADDRESS__
+constexpr std::size_t kGrowthBytes = 300u << 20;
+#else
+constexpr std::size_t kGrowthBytes = 16u << 20;
+#endif
+
+std::size_t residentBytes()
+{
+    std::ifstream file("/proc/self/statm");
+    std::size_t total = 0, resident = 0;
+    file >> total >> resident;
+    return resident * std::size_t(sysconf(_SC_PAGESIZE));
+}
+}  // namespace
+
+class LoadTest : public BackendTest
+{
+};
+
+// Every pair is a candidate. The numbers are exact, buffers grow in one repetition a kind, and the step ends.
+TEST_P(LoadTest, CoincidentTriangles)
+{
+    constexpr int kClothTriangles = 600, kObstacleTriangles = 250;
+    const std::unique_ptr<Pipeline> pipeline = makePipeline(GetParam().m_settings);
+    ASSERT_TRUE(pipeline);
+    StepCase step = {
+        "coincident triangles", 0, coincident(kClothTriangles, 0.02f), coincident(kObstacleTriangles, 0.0f), {}, 0.1f};
+    step.m_end = step.m_cloth.m_positions;
+    const std::vector<Contact> contacts = runCase(*pipeline, step);
+    const StepStatistics& statistics = pipeline->statistics();
+    EXPECT_EQ(statistics.m_candidates, std::size_t(kClothTriangles) * kObstacleTriangles);
+    EXPECT_LE(statistics.m_retries, 3u);
+    EXPECT_EQ(statistics.m_retries > 0, !pipeline->deviceReport().m_onHost);
+    // Three nodes of every cloth triangle against every obstacle triangle at least.
+    EXPECT_GE(contacts.size(), 3u * kClothTriangles * kObstacleTriangles);
+    EXPECT_EQ(statistics.m_status, std::uint32_t(kStepGood));
+    // The next step has room already and gives the same.
+    pipeline->addPair(0, 1, step.m_thickness);
+    const std::vector<Contact> again = runStep(*pipeline);
+    EXPECT_EQ(pipeline->statistics().m_retries, 0u);
+    EXPECT_TRUE(sameBytes(again, contacts)) << difference(again, contacts);
+}
+
+// 1,000 m/s at 60 steps a second: 16.7 m in a step, through a sheet without thickness, from either side and at a slant.
+TEST_P(LoadTest, ThousandMetresASecondThroughAThinSheet)
+{
+    const TriangleMesh sheet = makeClothGrid(21, 21, 40.0f, 0.0f).m_mesh;
+    Random random(950);
+    for (int direction = 0; direction < 12; ++direction)
+    {
+        SCOPED_TRACE("seed 950, direction " + std::to_string(direction));
+        const std::unique_ptr<Pipeline> pipeline = makePipeline(GetParam().m_settings);
+        ASSERT_TRUE(pipeline);
+        StepCase step = {"fast cloth", 950, makeClothGrid(15, 15, 1.0f, 0.0f).m_mesh, sheet, {}, 0.01f};
+        const float side = direction % 2 ? -1.0f : 1.0f;
+        const float above = side * random.uniform(0.5f, 12.0f), below = side * -random.uniform(0.5f, 12.0f);
+        const float motion[3] = {random.uniform(-10, 10), below - above, random.uniform(-10, 10)};
+        disturb(step.m_cloth.m_positions, 0.3f, random);
+        step.m_end = step.m_cloth.m_positions;
+        translate(step.m_cloth.m_positions, 0, above, 0);
+        translate(step.m_end, motion[0], below, motion[2]);
+        std::set<std::uint32_t> caught;
+        for (const Contact& contact : runCase(*pipeline, step))
+        {
+            // Against the motion; the sheet's own normal, where it is the sheet's.
+            EXPECT_LT(
+                contact.m_normal[0] * motion[0] + contact.m_normal[1] * motion[1] + contact.m_normal[2] * motion[2],
+                0.0f)
+                << describe(contact);
+            EXPECT_TRUE(contact.m_gap0 > 0.0f && contact.m_gap1 < 0.0f) << describe(contact);
+            if (contact.m_kind != DRAPE_NODE_FACE) continue;
+            EXPECT_GT(side * contact.m_normal[1], 0.99f) << describe(contact);
+            caught.insert(contact.m_clothFeature);
+        }
+        EXPECT_EQ(caught.size(), step.m_cloth.vertexCount()) << "every node crossed the sheet";
+    }
+}
+
+// The cloth rests, the sheet's spikes are small: vertices that a fast cloth face passes are caught as well.
+TEST_P(LoadTest, FastFacesOverLoneVertices)
+{
+    const std::unique_ptr<Pipeline> pipeline = makePipeline(GetParam().m_settings);
+    ASSERT_TRUE(pipeline);
+    Random random(960);
+    // Needles that point up, each far smaller than a cloth face.
+    std::vector<float> corners;
+    for (int i = 0; i < 50; ++i)
+    {
+        const float x = random.uniform(-1.5f, 1.5f), z = random.uniform(-1.5f, 1.5f);
+        corners.insert(corners.end(), {x, 0, z, x + 0.01f, -0.1f, z, x, -0.1f, z + 0.01f});
+    }
+    StepCase step = {"needles", 960, makeClothGrid(5, 5, 4.0f, 0.0f).m_mesh, looseTriangles(corners), {}, 0.01f};
+    step.m_end = step.m_cloth.m_positions;
+    translate(step.m_cloth.m_positions, 0, 8.0f, 0);
+    translate(step.m_end, 0, -8.0f, 0);
+    std::set<std::uint32_t> tips;
+    for (const Contact& contact : runCase(*pipeline, step))
+    {
+        if (contact.m_kind != DRAPE_FACE_VERTEX) continue;
+        EXPECT_GT(contact.m_normal[1], 0.99f) << describe(contact);
+        if (contact.m_obstacleFeature % 3 == 0) tips.insert(contact.m_obstacleFeature);
+    }
+    EXPECT_EQ(tips.size(), 50u);
+}
+
+TEST_P(LoadTest, ManyStepsHoldTheirMemory)
+{
+    const std::unique_ptr<Pipeline> pipeline = makePipeline(GetParam().m_settings);
+    ASSERT_TRUE(pipeline);
+    const StepCase step = fallingCase("sphere", 24, 0.03f, 970);
+    SCOPED_TRACE(step.trace());
+    const MeshId obstacle = addObstacle(*pipeline, step.m_obstacle);
+    MeshId cloth = addCloth(*pipeline, step.m_cloth);
+    std::vector<Contact> first;
+    std::size_t before = 0;
+    constexpr int kWarmUp = 100, kSteps = 700;
+    for (int i = 0; i < kSteps; ++i)
+    {
+        if (i == kWarmUp) before = residentBytes();
+        if (i % 10 == 9)  // meshes come and go
+        {
+            pipeline->remove(cloth);
+            cloth = addCloth(*pipeline, step.m_cloth);
+        }
+        if (i % 7 == 0) pipeline->moveObstacle(obstacle, step.m_obstacle.m_positions.data());
+        setMotion(*pipeline, cloth, step.m_cloth.m_positions, step.m_end);
+        pipeline->addPair(cloth, obstacle, step.m_thickness);
+        const std::vector<Contact> contacts = runStep(*pipeline);
+        if (i == 0) first = contacts;
+        ASSERT_TRUE(sameBytes(contacts, first)) << "step " << i << ": " << difference(contacts, first);
+    }
+    EXPECT_LT(residentBytes(), before + kGrowthBytes);
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, LoadTest, testing::ValuesIn(allBackends()), backendName);
+}  // namespace drape::test

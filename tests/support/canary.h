@@ -1,0 +1,64 @@
+// A known pattern behind a device buffer, to see whether a kernel writes past the end.
+//
+// guard() enlarges the memory behind a Buffer without telling it: its capacity stays what was asked for, and what a
+// kernel writes beyond lands in the pattern. Contents of the buffer are lost. intact() waits for the device.
+#pragma once
+
+#include <vector>
+
+#include "bullet_plugin/core/device/buffer.h"
+
+namespace drape::test
+{
+constexpr std::size_t kCanaryWords = 256;
+constexpr cl_uint kCanaryPattern = 0xc0ffee11u;
+
+template <typename T>
+void guard(Device& device, Buffer<T>& buffer, std::size_t count)
+{
+    static_assert(sizeof(T) % sizeof(cl_uint) == 0, "canaries are 32-bit words");
+    buffer = Buffer<T>();
+    buffer.reserve(device, count);
+    const std::size_t bytes = buffer.capacity() * sizeof(T);
+    cl_int code = CL_SUCCESS;
+    buffer.handle() =
+        cl::Buffer(device.context(), CL_MEM_READ_WRITE, bytes + kCanaryWords * sizeof(cl_uint), nullptr, &code);
+    device.check(code, "clCreateBuffer", "with canary");
+    device.check(
+        device.queue().enqueueFillBuffer(buffer.handle(), kCanaryPattern, bytes, kCanaryWords * sizeof(cl_uint)),
+        "clEnqueueFillBuffer");
+}
+
+// As guard(), filled with the source.
+template <typename T>
+void guardCopy(Device& device, Buffer<T>& buffer, const std::vector<T>& source)
+{
+    guard(device, buffer, source.size());
+    buffer.write(device, source.data(), source.size());
+    device.wait();
+}
+
+template <typename T>
+bool intact(Device& device, Buffer<T>& buffer)
+{
+    std::vector<cl_uint> words(kCanaryWords, 0);
+    const std::size_t bytes = buffer.capacity() * sizeof(T);
+    device.check(
+        device.queue().enqueueReadBuffer(buffer.handle(), CL_TRUE, bytes, kCanaryWords * sizeof(cl_uint), words.data()),
+        "clEnqueueReadBuffer");
+    for (cl_uint word : words)
+    {
+        if (word != kCanaryPattern) return false;
+    }
+    return !device.failed();
+}
+
+template <typename T>
+std::vector<T> contents(Device& device, Buffer<T>& buffer, std::size_t count)
+{
+    std::vector<T> values(count);
+    buffer.read(device, values.data(), count);
+    device.wait();
+    return values;
+}
+}  // namespace drape::test

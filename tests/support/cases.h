@@ -1,0 +1,63 @@
+// Seeded random meshes, cloths and motions. The same seed gives the same case on every machine.
+//
+// Lengths in metres. A case's name and seed belong into SCOPED_TRACE, so that a failure says how to repeat it.
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "scenes/mesh.h"
+
+namespace drape::test
+{
+// std::mt19937 is the same everywhere; the standard's distributions are not, so numbers are made here.
+class Random
+{
+public:
+    explicit Random(std::uint32_t seed) : m_engine(seed) {}
+
+    float uniform(float low, float high) { return low + (high - low) * (float(m_engine() >> 8) / 16777216.0f); }
+    std::uint32_t below(std::uint32_t count) { return std::uint32_t(m_engine()) % count; }
+
+private:
+    std::mt19937 m_engine;
+};
+
+// One step of one cloth over one obstacle at rest.
+struct StepCase
+{
+    std::string m_name;
+    std::uint32_t m_seed;
+    TriangleMesh m_cloth;  // positions at the step's start
+    TriangleMesh m_obstacle;
+    std::vector<float> m_end;  // the cloth's positions at the step's end
+    float m_thickness;         // m
+
+    std::string trace() const { return m_name + ", seed " + std::to_string(m_seed); }
+};
+
+TriangleMesh shapeNamed(const std::string& name);
+
+// A mesh of one triangle or more: corners in order, none shared.
+TriangleMesh looseTriangles(const std::vector<float>& corners);
+
+// Lays the cloth's nodes onto the highest surface below or above each of them: at heights of gapLow … gapHigh above it,
+// at random. Nodes beside the obstacle keep their height.
+void drapeOver(const TriangleMesh& obstacle, TriangleMesh& cloth, float gapLow, float gapHigh, Random& random);
+
+void translate(std::vector<float>& positions, float x, float y, float z);
+// Adds a random offset of at most `size` in each coordinate.
+void disturb(std::vector<float>& positions, float size, Random& random);
+
+// A cloth of nodes × nodes draped over the shape; ends of the step equal.
+StepCase drapedCase(const std::string& shape, int nodes, float thickness, std::uint32_t seed);
+// The same, falling and shaking through the surface within the step.
+StepCase fallingCase(const std::string& shape, int nodes, float thickness, std::uint32_t seed);
+// Triangles that share nothing, crossing one another; at rest or moving.
+StepCase soupCase(int clothTriangles, int obstacleTriangles, bool moving, std::uint32_t seed);
+
+// The obstacle's triangles over the box of the cloth grown by `margin`; vertices nobody uses are dropped.
+TriangleMesh partNear(const TriangleMesh& obstacle, const std::vector<float>& positions, float margin);
+}  // namespace drape::test

@@ -1,0 +1,48 @@
+#include "tests/support/pipeline_driver.h"
+
+#include <algorithm>
+
+namespace drape::test
+{
+namespace
+{
+MeshDescription describeMesh(const TriangleMesh& mesh)
+{
+    MeshDescription description;
+    description.m_triangles = mesh.m_triangles.data();
+    description.m_triangleCount = mesh.triangleCount();
+    description.m_positions = mesh.m_positions.data();
+    description.m_vertexCount = mesh.vertexCount();
+    return description;
+}
+}  // namespace
+
+MeshId addCloth(Pipeline& pipeline, const TriangleMesh& mesh)
+{
+    return pipeline.addCloth(describeMesh(mesh));
+}
+MeshId addObstacle(Pipeline& pipeline, const TriangleMesh& mesh)
+{
+    return pipeline.addObstacle(describeMesh(mesh));
+}
+
+void setMotion(Pipeline& pipeline, MeshId cloth, const std::vector<float>& start, const std::vector<float>& end)
+{
+    std::copy(start.begin(), start.end(), pipeline.clothStart(cloth));
+    std::copy(end.begin(), end.end(), pipeline.clothEnd(cloth));
+}
+
+std::vector<Contact> runStep(Pipeline& pipeline)
+{
+    pipeline.submit();
+    return pipeline.finish();
+}
+
+std::vector<Contact> runCase(Pipeline& pipeline, const StepCase& step)
+{
+    const MeshId cloth = addCloth(pipeline, step.m_cloth), obstacle = addObstacle(pipeline, step.m_obstacle);
+    setMotion(pipeline, cloth, step.m_cloth.m_positions, step.m_end);
+    pipeline.addPair(cloth, obstacle, step.m_thickness);
+    return runStep(pipeline);
+}
+}  // namespace drape::test

@@ -1,0 +1,78 @@
+// Layout of the hierarchy: every leaf reachable once, links consistent, height logarithmic.
+#include "bullet_plugin/core/bvh/bvh_layout.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace drape::test
+{
+namespace
+{
+// Visits as a traversal does; returns the deepest stack.
+std::size_t countVisits(const BvhLayout& layout, const std::vector<BvhNode>& nodes, std::vector<int>& leafVisits,
+                        std::vector<int>& nodeVisits)
+{
+    std::vector<std::uint32_t> stack = {layout.root()};
+    std::size_t deepest = 0;
+    while (!stack.empty())
+    {
+        deepest = std::max(deepest, stack.size());
+        const std::uint32_t index = stack.back();
+        stack.pop_back();
+        ++nodeVisits[index];
+        const BvhNode& node = nodes[index];
+        if (node.m_count == 0) ++leafVisits[node.m_first];
+        for (std::uint32_t i = 0; i < node.m_count; ++i)
+            stack.push_back(node.m_first + i);
+    }
+    return deepest;
+}
+}  // namespace
+
+class BvhLayoutSizes : public testing::TestWithParam<std::uint32_t>
+{
+};
+
+TEST_P(BvhLayoutSizes, EveryLeafIsReachedOnce)
+{
+    const BvhLayout layout = makeBvhLayout(GetParam());
+    const std::vector<BvhNode> nodes = makeBvhNodes(layout);
+    ASSERT_EQ(nodes.size(), layout.nodeCount());
+    ASSERT_EQ(layout.leafCount(), GetParam());
+    std::vector<int> leafVisits(GetParam(), 0), nodeVisits(nodes.size(), 0);
+    const std::size_t deepest = countVisits(layout, nodes, leafVisits, nodeVisits);
+    for (int visits : leafVisits)
+        ASSERT_EQ(visits, 1);
+    for (int visits : nodeVisits)
+        ASSERT_EQ(visits, 1);
+    EXPECT_LE(deepest, std::size_t(DRAPE_STACK_DEPTH));
+    EXPECT_LE(layout.m_heights.size(), 2 + std::size_t(std::ceil(std::log2(double(GetParam())))));
+    EXPECT_LE(layout.nodeCount(), 2 * GetParam() + layout.m_heights.size());
+    for (std::uint32_t i = 0; i < nodes.size(); ++i)
+    {
+        if (nodes[i].m_count == 0) continue;
+        ASSERT_LE(nodes[i].m_first + nodes[i].m_count, i) << "children come before parents";
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, BvhLayoutSizes,
+                         testing::Values(1, 2, 3, 4, 5, 7, 8, 9, 63, 64, 65, 1023, 1025, 3001, 100003));
+
+TEST(BvhLayout, NoLeavesNoNodes)
+{
+    const BvhLayout layout = makeBvhLayout(0);
+    EXPECT_EQ(layout.nodeCount(), 0u);
+    EXPECT_EQ(layout.leafCount(), 0u);
+    EXPECT_TRUE(makeBvhNodes(layout).empty());
+}
+
+TEST(BvhLayout, VolumesBeginEmpty)
+{
+    for (const BvhNode& node : makeBvhNodes(makeBvhLayout(5)))
+    {
+        for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+            EXPECT_TRUE(std::isinf(node.m_low[i]) && node.m_low[i] > node.m_high[i]);
+    }
+}
+}  // namespace drape::test

@@ -1,0 +1,126 @@
+// Which device settings and DRAPE_DEVICE come to, and what is said about it.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "tests/support/backends.h"
+
+namespace drape::test
+{
+namespace
+{
+// Sets DRAPE_DEVICE for a scope.
+class DeviceVariable
+{
+public:
+    explicit DeviceVariable(const char* value)
+    {
+        const char* previous = std::getenv("DRAPE_DEVICE");
+        m_had = previous != nullptr;
+        if (previous) m_previous = previous;
+        value ? setenv("DRAPE_DEVICE", value, 1) : unsetenv("DRAPE_DEVICE");
+    }
+    ~DeviceVariable() { m_had ? setenv("DRAPE_DEVICE", m_previous.c_str(), 1) : unsetenv("DRAPE_DEVICE"); }
+
+private:
+    bool m_had;
+    std::string m_previous;
+};
+
+Settings named(const std::string& device)
+{
+    Settings settings;
+    settings.m_device = device;
+    return settings;
+}
+}  // namespace
+
+TEST(DeviceChoice, HostByBackendOptionAndVariable)
+{
+    Error error;
+    Settings host;
+    host.m_backend = Backend::Host;
+    EXPECT_TRUE(chooseDevice(host, error).m_onHost);
+    EXPECT_FALSE(chooseDevice(host, error).m_reason.empty());
+    EXPECT_TRUE(chooseDevice(named("Host"), error).m_onHost);
+    const DeviceVariable variable("host");
+    const DeviceChoice choice = chooseDevice(Settings(), error);
+    EXPECT_TRUE(choice.m_onHost);
+    EXPECT_NE(choice.m_reason.find("DRAPE_DEVICE"), std::string::npos) << choice.m_reason;
+    EXPECT_FALSE(error.failed());
+}
+
+TEST(DeviceChoice, UnknownNameListsWhatThereIs)
+{
+    const DeviceVariable none(nullptr);
+    Error error;
+    chooseDevice(named("no such device"), error);
+    ASSERT_TRUE(error.failed());
+    EXPECT_NE(error.m_call.find("no such device"), std::string::npos);
+    EXPECT_NE(error.m_detail.find("host"), std::string::npos);
+    for (const DeviceInfo& info : listDevices())
+        EXPECT_NE(error.m_detail.find(info.m_name), std::string::npos);
+
+    Error fromPipeline;
+    EXPECT_FALSE(Pipeline::create(named("no such device"), fromPipeline));
+    EXPECT_EQ(fromPipeline.text(), error.text());
+}
+
+TEST(DeviceChoice, UnknownVariableIsNamed)
+{
+    const DeviceVariable variable("no such device");
+    Error error;
+    chooseDevice(Settings(), error);
+    EXPECT_NE(error.m_call.find("DRAPE_DEVICE"), std::string::npos) << error.m_call;
+}
+
+class DeviceChoiceTest : public BackendTest
+{
+};
+
+TEST_P(DeviceChoiceTest, NameIsComparedWithoutCaseAndByPart)
+{
+    const DeviceVariable none(nullptr);
+    const DeviceInfo info = listDevices()[std::size_t(GetParam().m_device)];
+    std::string part = info.m_name.substr(0, info.m_name.size() - 1);
+    for (char& letter : part)
+        letter = char(std::toupper(static_cast<unsigned char>(letter)));
+    Error error;
+    const DeviceChoice choice = chooseDevice(named(part), error);
+    EXPECT_FALSE(error.failed()) << error.text();
+    EXPECT_FALSE(choice.m_onHost);
+    EXPECT_EQ(listDevices()[choice.m_index].m_name, info.m_name);
+    EXPECT_NE(choice.m_reason.find("option"), std::string::npos) << choice.m_reason;
+}
+
+TEST_P(DeviceChoiceTest, OptionWinsOverVariable)
+{
+    const DeviceVariable variable("no such device");
+    Error error;
+    EXPECT_FALSE(chooseDevice(GetParam().m_settings, error).m_onHost);
+    EXPECT_FALSE(error.failed()) << error.text();
+}
+
+TEST_P(DeviceChoiceTest, AutomaticChoiceTakesTheFirst)
+{
+    const DeviceVariable none(nullptr);
+    Error error;
+    const DeviceChoice choice = chooseDevice(Settings(), error);
+    EXPECT_FALSE(choice.m_onHost);
+    EXPECT_EQ(choice.m_index, 0u);
+    EXPECT_FALSE(choice.m_reason.empty());
+}
+
+TEST_P(DeviceChoiceTest, PipelineReportsItsDevice)
+{
+    const std::unique_ptr<Pipeline> pipeline = makePipeline(GetParam().m_settings);
+    ASSERT_TRUE(pipeline);
+    const DeviceReport& report = pipeline->deviceReport();
+    EXPECT_FALSE(report.m_onHost);
+    EXPECT_EQ(report.m_device.m_name, listDevices()[std::size_t(GetParam().m_device)].m_name);
+    EXPECT_FALSE(report.m_reason.empty());
+    EXPECT_GT(report.m_buildMs, 0.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, DeviceChoiceTest, testing::ValuesIn(openClBackends()), backendName);
+}  // namespace drape::test

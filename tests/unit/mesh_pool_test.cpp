@@ -1,0 +1,130 @@
+// The mesh pool: ids, joined arrays, removal.
+#include "bullet_plugin/core/mesh/mesh_pool.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "tests/support/cases.h"
+
+namespace drape::test
+{
+namespace
+{
+PooledMesh pooled(MeshId id, const TriangleMesh& mesh)
+{
+    PooledMesh result;
+    result.m_id = id;
+    result.m_topology = buildTopology(mesh.m_triangles.data(), mesh.triangleCount(), mesh.vertexCount());
+    result.m_positions = mesh.m_positions;
+    result.m_order.resize(result.m_topology.m_triangles.size());
+    std::iota(result.m_order.rbegin(), result.m_order.rend(), 0u);
+    return result;
+}
+
+void expectJoined(const MeshPool& pool)
+{
+    std::uint32_t vertex = 0, triangle = 0, edge = 0;
+    for (std::size_t slot = 0; slot < pool.meshCount(); ++slot)
+    {
+        const PooledMesh& mesh = pool.mesh(slot);
+        EXPECT_EQ(pool.slot(mesh.m_id), slot);
+        EXPECT_EQ(mesh.m_firstVertex, vertex);
+        EXPECT_EQ(mesh.m_firstTriangle, triangle);
+        EXPECT_EQ(mesh.m_firstEdge, edge);
+        for (std::size_t t = 0; t < mesh.m_topology.m_triangles.size(); ++t)
+        {
+            const Triangle &joined = pool.triangles()[triangle + t], &local = mesh.m_topology.m_triangles[t];
+            EXPECT_EQ(joined.m_mesh, slot);
+            EXPECT_EQ(joined.m_owned, local.m_owned);
+            EXPECT_EQ(pool.order()[triangle + t], mesh.m_order[t] + triangle);
+            for (int i = 0; i < 3; ++i)
+            {
+                EXPECT_EQ(joined.m_vertices[i], local.m_vertices[i] + vertex);
+                EXPECT_EQ(joined.m_edges[i], local.m_edges[i] + edge);
+                EXPECT_EQ(pool.slotOfVertex(joined.m_vertices[i]), slot);
+                EXPECT_EQ(pool.slotOfEdge(joined.m_edges[i]), slot);
+            }
+        }
+        for (std::size_t e = 0; e < mesh.m_topology.m_edges.size(); ++e)
+        {
+            EXPECT_EQ(pool.edges()[edge + e].m_opposite[1], mesh.m_topology.m_edges[e].m_opposite[1] + vertex);
+        }
+        vertex += std::uint32_t(mesh.m_topology.m_vertexCount);
+        triangle += std::uint32_t(mesh.m_topology.m_triangles.size());
+        edge += std::uint32_t(mesh.m_topology.m_edges.size());
+    }
+    EXPECT_EQ(pool.vertexCount(), vertex);
+    EXPECT_EQ(pool.triangles().size(), triangle);
+    EXPECT_EQ(pool.edges().size(), edge);
+    EXPECT_EQ(pool.order().size(), triangle);
+}
+}  // namespace
+
+TEST(MeshPool, JoinsMeshesEndToEnd)
+{
+    MeshPool pool;
+    pool.add(pooled(3, shapeNamed("box")));
+    pool.add(pooled(5, shapeNamed("sphere")));
+    pool.add(pooled(9, looseTriangles({0, 0, 0, 1, 0, 0, 0, 1, 0})));
+    pool.update();
+    EXPECT_EQ(pool.meshCount(), 3u);
+    expectJoined(pool);
+}
+
+TEST(MeshPool, KeepsIdsWhenOthersGo)
+{
+    MeshPool pool;
+    for (MeshId id : {0u, 2u, 4u, 7u})
+        pool.add(pooled(id, shapeNamed("box")));
+    pool.update();
+    EXPECT_TRUE(pool.remove(2));
+    EXPECT_FALSE(pool.remove(2));
+    EXPECT_FALSE(pool.remove(3));
+    EXPECT_FALSE(pool.remove(kNoMesh));
+    pool.update();
+    EXPECT_EQ(pool.slot(0), 0u);
+    EXPECT_EQ(pool.slot(4), 1u);
+    EXPECT_EQ(pool.slot(7), 2u);
+    EXPECT_EQ(pool.slot(2), pool.meshCount()) << "gone";
+    EXPECT_EQ(pool.slot(100), pool.meshCount());
+    expectJoined(pool);
+    pool.add(pooled(8, shapeNamed("torus")));
+    pool.update();
+    EXPECT_EQ(pool.slot(8), 3u);
+    expectJoined(pool);
+}
+
+TEST(MeshPool, RevisionCountsChangesOnly)
+{
+    MeshPool pool;
+    const std::uint32_t first = pool.revision();
+    pool.update();
+    EXPECT_EQ(pool.revision(), first);
+    pool.add(pooled(0, shapeNamed("box")));
+    pool.add(pooled(1, shapeNamed("box")));
+    pool.update();
+    EXPECT_EQ(pool.revision(), first + 1);
+    pool.update();
+    EXPECT_EQ(pool.revision(), first + 1);
+    pool.remove(1);
+    pool.update();
+    EXPECT_EQ(pool.revision(), first + 2);
+}
+
+TEST(MeshPool, EmptyMeshesAndEmptyPools)
+{
+    MeshPool pool;
+    pool.update();
+    EXPECT_EQ(pool.meshCount() + pool.vertexCount() + pool.triangles().size(), 0u);
+    pool.add(pooled(0, TriangleMesh()));
+    pool.add(pooled(1, shapeNamed("box")));
+    pool.add(pooled(2, TriangleMesh()));
+    pool.update();
+    expectJoined(pool);
+    pool.remove(1);
+    pool.update();
+    EXPECT_EQ(pool.triangles().size(), 0u);
+    EXPECT_EQ(pool.meshCount(), 2u);
+}
+}  // namespace drape::test

@@ -1,0 +1,150 @@
+// Programs: assembled sources with line directives, errors that name file, line and log, and the cache in use.
+#include "bullet_plugin/core/device/program.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <sstream>
+
+#include "bullet_plugin/core/device/buffer.h"
+#include "bullet_plugin/core/device/embedded_kernels.h"
+#include "tests/support/backends.h"
+
+namespace drape::test
+{
+namespace
+{
+std::size_t countOf(const std::string& text, const std::string& part)
+{
+    std::size_t count = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+        ++count;
+    return count;
+}
+
+// Follows the line directives and checks that every line is the one of its file that it claims to be.
+void expectLinesAreWhereTheySay(const std::string& source)
+{
+    std::string path;
+    std::vector<std::string> lines;
+    std::size_t number = 0;
+    std::istringstream text(source);
+    for (std::string line; std::getline(text, line);)
+    {
+        if (line.compare(0, 6, "#line ") == 0)
+        {
+            const std::size_t quote = line.find('"');
+            path = line.substr(quote + 1, line.rfind('"') - quote - 1);
+            number = std::stoul(line.substr(6)) - 1;
+            lines.clear();
+            for (std::size_t i = 0; i < kEmbeddedFileCount; ++i)
+            {
+                if (path != kEmbeddedFiles[i].m_path) continue;
+                std::istringstream file(kEmbeddedFiles[i].m_text);
+                for (std::string fileLine; std::getline(file, fileLine);)
+                    lines.push_back(fileLine);
+            }
+            ASSERT_FALSE(lines.empty()) << path;
+            continue;
+        }
+        if (path.empty()) continue;  // the preamble
+        ASSERT_LT(number, lines.size()) << path;
+        ASSERT_EQ(line, lines[number]) << path << ':' << number + 1;
+        ++number;
+    }
+}
+}  // namespace
+
+TEST(AssembleSource, LineDirectivesAreRight)
+{
+    std::size_t kernels = 0;
+    for (std::size_t i = 0; i < kEmbeddedFileCount; ++i)
+    {
+        const std::string path = kEmbeddedFiles[i].m_path;
+        if (path.size() < 3 || path.compare(path.size() - 3, 3, ".cl") != 0) continue;
+        ++kernels;
+        SCOPED_TRACE(path);
+        const std::string source = assembleSource(path);
+        expectLinesAreWhereTheySay(source);
+        EXPECT_EQ(countOf(source, "#include \""), 0u);
+        EXPECT_EQ(countOf(source, "#error"), 0u);
+        EXPECT_LE(countOf(source, "#line 1 \"kernels/shared/types.h\"\n"), 1u) << "each file once";
+    }
+    EXPECT_GE(kernels, 5u);
+}
+
+TEST(AssembleSource, TurnsContractionOffFirst)
+{
+    EXPECT_EQ(assembleSource("kernels/refit.cl").find("#pragma OPENCL FP_CONTRACT OFF"), 0u);
+}
+
+TEST(AssembleSource, UnknownFileIsEmpty)
+{
+    EXPECT_TRUE(assembleSource("kernels/no_such.cl").empty());
+}
+
+class ProgramTest : public BackendTest
+{
+};
+
+TEST_P(ProgramTest, BrokenKernelNamesFileLineAndLog)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    std::string source = assembleSource("kernels/refit.cl");
+    const std::size_t at = source.find("dopStore(nodes + leaf");
+    ASSERT_NE(at, std::string::npos);
+    source.insert(at, "thisIsNoFunction(7);");
+    // The line of refit.cl that was broken.
+    const std::string before = source.substr(source.rfind("#line", at), at - source.rfind("#line", at));
+    const std::size_t line = std::stoul(before.substr(6)) + countOf(before, "\n") - 1;
+
+    compileSource(*device, "refit", source);
+    ASSERT_TRUE(device->failed());
+    const Error& error = device->error();
+    EXPECT_NE(error.m_call.find("kernels/refit.cl"), std::string::npos) << error.text();
+    EXPECT_NE(error.m_call.find(std::to_string(CL_BUILD_PROGRAM_FAILURE)), std::string::npos) << error.text();
+    EXPECT_NE(error.m_detail.find("thisIsNoFunction"), std::string::npos) << error.text();
+    EXPECT_NE(error.m_detail.find("refit.cl:" + std::to_string(line)), std::string::npos) << error.text();
+}
+
+TEST_P(ProgramTest, SecondBuildComesFromTheCacheAndADamagedOneIsBuiltAnew)
+{
+    namespace fs = std::filesystem;
+    std::string folder = (fs::temp_directory_path() / "drape_programs_XXXXXX").string();
+    ASSERT_NE(mkdtemp(folder.data()), nullptr);
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    ProgramBuild build;
+    buildProgram(*device, "broad_phase", folder, build);
+    EXPECT_FALSE(build.m_fromCache);
+    buildProgram(*device, "broad_phase", folder, build);
+    EXPECT_TRUE(build.m_fromCache);
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+        fs::resize_file(entry.path(), fs::file_size(entry) / 2);
+    buildProgram(*device, "broad_phase", folder, build);
+    EXPECT_FALSE(build.m_fromCache);
+    EXPECT_FALSE(device->failed()) << device->error().text();
+    buildProgram(*device, "broad_phase", "/proc/drape", build);
+    EXPECT_FALSE(build.m_fromCache);
+    EXPECT_FALSE(device->failed()) << device->error().text();
+    fs::remove_all(folder);
+}
+
+TEST_P(ProgramTest, ErrorsAreSticky)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    compileSource(*device, "one", "not a kernel");
+    ASSERT_TRUE(device->failed());
+    const std::string first = device->error().text();
+    compileSource(*device, "two", "neither is this");
+    EXPECT_EQ(device->error().text(), first);
+    Buffer<cl_uint> buffer;
+    buffer.reserve(*device, 10);
+    EXPECT_EQ(buffer.capacity(), 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, ProgramTest, testing::ValuesIn(openClBackends()), backendName);
+}  // namespace drape::test
