@@ -1,10 +1,10 @@
 // The collision pipeline: mirrors cloths and obstacles, and once a step finds their contacts on the chosen back end.
 //
 // Job: hold every cloth and obstacle as one 18-DOP hierarchy per side; each step refit, broad phase, narrow phase,
-// reduction, compaction. Input: node positions at the step's start and end, obstacle positions when they change, and the
-// pairs to test. Output: contacts in canonical order in host memory. Guarantee: same input, same contacts, bit for bit,
-// on every back end; a buffer that is too small grows and the stage runs again. Cost: one submission, one wait a step.
-// Knows no Bullet. Lengths in metres, world frame. Not thread-safe: one pipeline belongs to one thread.
+// reduction, compaction. Input: node positions at the step's start and end, obstacle positions when they change, and
+// the pairs to test. Output: contacts in canonical order in host memory. Guarantee: same input, same contacts, bit for
+// bit, on every back end; a buffer that is too small grows and the stage runs again. Cost: one submission, one wait a
+// step. Knows no Bullet. Lengths in metres, world frame. Not thread-safe: one pipeline belongs to one thread.
 #pragma once
 
 #include <cstdint>
@@ -35,21 +35,22 @@ struct ContactView
 {
     MeshId m_cloth;
     MeshId m_obstacle;
-    std::uint32_t m_kind;         // DRAPE_NODE_FACE …
-    std::int32_t m_nodes[3];      // nodes of the cloth feature, indices in that cloth; -1 where unused
-    std::int32_t m_triangle;      // a cloth triangle that holds the feature, index as given to addCloth
-    float m_weights[3];           // of m_nodes, sum 1
-    float m_normal[3];            // unit, from the obstacle to the side the cloth came from
-    float m_point[3];             // m, on the obstacle
-    float m_gap0, m_gap1;         // m, along the normal at the step's start and end, thickness not subtracted
-    float m_thickness;            // m, of the pair
-    float m_time;                 // time of impact in [0, 1]
+    std::uint32_t m_kind;     // DRAPE_NODE_FACE …
+    std::int32_t m_nodes[3];  // nodes of the cloth feature, indices in that cloth; -1 where unused
+    std::int32_t m_triangle;  // a cloth triangle that holds the feature, index as given to addCloth
+    float m_weights[3];       // of m_nodes, sum 1
+    float m_normal[3];        // unit, from the obstacle to the side the cloth came from
+    float m_point[3];         // m, on the obstacle
+    float m_gap0, m_gap1;     // m, along the normal at the step's start and end, thickness not subtracted
+    float m_thickness;        // m, of the pair
+    float m_time;             // time of impact in [0, 1]
 };
 
 class Pipeline
 {
 public:
-    // Chooses the device and makes its kernels ready. Returns null and fills error when settings ask for what is not there.
+    // Chooses the device and makes its kernels ready. Returns null and fills error when settings ask for what is not
+    // there.
     static std::unique_ptr<Pipeline> create(const Settings& settings, Error& error);
     ~Pipeline();
     Pipeline(const Pipeline&) = delete;

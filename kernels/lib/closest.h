@@ -13,8 +13,8 @@ DRAPE_FUNCTION float drapeRatio(float numerator, float denominator)
     return denominator > 0.0f ? numerator / denominator : 0.0f;
 }
 
-// Barycentric weights of the point of triangle abc that is closest to p. Each in [0, 1]; an unused corner weighs 0, so the
-// number of non-zero weights tells face, edge or vertex.
+// Barycentric weights of the point of triangle abc that is closest to p. Each in [0, 1]; an unused corner weighs 0, so
+// the number of non-zero weights tells face, edge or vertex.
 DRAPE_FUNCTION Vec3 closestOnTriangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c)
 {
     const Vec3 ab = vec3Sub(b, a), ac = vec3Sub(c, a), ap = vec3Sub(p, a);
@@ -68,7 +68,8 @@ DRAPE_FUNCTION void closestOnSegments(Vec3 a, Vec3 b, Vec3 c, Vec3 d, float* s, 
 
 DRAPE_FUNCTION Vec3 trianglePoint(Vec3 a, Vec3 b, Vec3 c, Vec3 weights)
 {
-    return vec3(weights.x * a.x + weights.y * b.x + weights.z * c.x, weights.x * a.y + weights.y * b.y + weights.z * c.y,
+    return vec3(weights.x * a.x + weights.y * b.x + weights.z * c.x,
+                weights.x * a.y + weights.y * b.y + weights.z * c.y,
                 weights.x * a.z + weights.y * b.z + weights.z * c.z);
 }
 

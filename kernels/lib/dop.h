@@ -28,8 +28,8 @@ DRAPE_FUNCTION void dopClear(Dop* dop)
     }
 }
 
-// Grows one interval by the ball of radius r·norm around the projection v. With u = 2^-24 the projection of a point errs
-// by at most 2^-23 |v| … and the shift by u |s|; the pad 2^-23 (|v| + |s|) covers both and the pad's own rounding.
+// Grows one interval by the ball of radius r·norm around the projection v. With u = 2^-24 the projection of a point
+// errs by at most 2^-23 |v| … and the shift by u |s|; the pad 2^-23 (|v| + |s|) covers both and the pad's own rounding.
 DRAPE_FUNCTION void dopAddProjection(Dop* dop, int i, float v, float reach)
 {
     const float pad = 1.1920929e-7f;  // 2^-23
@@ -96,16 +96,17 @@ DRAPE_FUNCTION float nodeExtent(const DRAPE_GLOBAL BvhNode* node)
     return (node->m_high[0] - node->m_low[0]) + (node->m_high[1] - node->m_low[1]) + (node->m_high[2] - node->m_low[2]);
 }
 
-// Of two overlapping nodes that are not both leaves, whether a traversal opens a: the larger one, so that both sides shrink
-// together.
+// Of two overlapping nodes that are not both leaves, whether a traversal opens a: the larger one, so that both sides
+// shrink together.
 DRAPE_FUNCTION int opensFirst(const DRAPE_GLOBAL BvhNode* a, const DRAPE_GLOBAL BvhNode* b)
 {
     if (a->m_count == 0) return 0;
     return b->m_count == 0 || nodeExtent(a) > nodeExtent(b);
 }
 
-// Volume of a triangle over a step of linear motion, grown by the radius. Leaves the volume empty when a position is NaN
-// or infinite, so that one bad node cannot make every ancestor overlap everything. start and end may be the same array.
+// Volume of a triangle over a step of linear motion, grown by the radius. Leaves the volume empty when a position is
+// NaN or infinite, so that one bad node cannot make every ancestor overlap everything. start and end may be the same
+// array.
 DRAPE_FUNCTION void triangleVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
                                    const DRAPE_GLOBAL float* end, float radius)
 {

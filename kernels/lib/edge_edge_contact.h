@@ -66,9 +66,10 @@ DRAPE_FUNCTION int edgeEdgePassed(FeatureEdge e0, FeatureEdge e1, FeatureEdge o,
     return gap1 < bounds.m_reach;
 }
 
-// Edge moving from e0 to e1 against a resting edge with the given normal cone; both closest points inside their edges. That
-// the cloth's own faces may come nearer beside the edge is no reason to drop it: where cloth bends over a sharp edge of the
-// obstacle, every crossing counts. The first comparisons drop most pairs and need neither division nor root.
+// Edge moving from e0 to e1 against a resting edge with the given normal cone; both closest points inside their edges.
+// That the cloth's own faces may come nearer beside the edge is no reason to drop it: where cloth bends over a sharp
+// edge of the obstacle, every crossing counts. The first comparisons drop most pairs and need neither division nor
+// root.
 DRAPE_FUNCTION int edgeEdgeContact(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, NormalCone cone, PairBounds bounds,
                                    Contact* contact)
 {

@@ -59,9 +59,10 @@ DRAPE_FUNCTION int faceVertexPassed(FeatureTriangle f0, FeatureTriangle f1, Vec3
     return 1;
 }
 
-// Moving face against a resting vertex with the given normal cone. A vertex nearest to an edge of the face counts here too
-// (weights with one zero); one nearest to a node is the node's contact. beyond: the third vertices of the neighbours over the
-// face's three edges (m_a … m_c), into end, positions at the step's end; origin: of the local frame.
+// Moving face against a resting vertex with the given normal cone. A vertex nearest to an edge of the face counts here
+// too (weights with one zero); one nearest to a node is the node's contact. beyond: the third vertices of the
+// neighbours over the face's three edges (m_a … m_c), into end, positions at the step's end; origin: of the local
+// frame.
 DRAPE_FUNCTION int faceVertexContact(const MovingFace* face, const DRAPE_UINT* beyond, const DRAPE_GLOBAL float* end,
                                      Vec3 origin, Vec3 vertex, NormalCone cone, PairBounds bounds, Contact* contact)
 {

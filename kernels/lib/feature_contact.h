@@ -1,13 +1,15 @@
-// Contacts of single features: a cloth node against an obstacle face, a cloth face against an obstacle vertex, a cloth edge
-// against an obstacle edge. The cloth moves linearly over the step, the obstacle rests.
+// Contacts of single features: a cloth node against an obstacle face, a cloth face against an obstacle vertex, a cloth
+// edge against an obstacle edge. The cloth moves linearly over the step, the obstacle rests.
 //
 // A contact is reported when (a) the node, face or edge passed through the other feature during the step, and then its
-// normal points to the side the cloth came from and the gap at the end is negative; or (b) the two are within reach at the
-// step's end and locally closest on the obstacle: the direction between them lies in the obstacle feature's normal cone.
-// The second condition drops pairs whose neighbours are nearer and whose normals would push sideways. Pairs are dropped for distance only on proof (provenApart).
+// normal points to the side the cloth came from and the gap at the end is negative; or (b) the two are within reach at
+// the step's end and locally closest: the direction between them lies in the obstacle feature's normal cone and, where
+// a vertex is nearest to a face's edge, no neighbouring face is nearer. The second condition drops pairs whose
+// neighbours are nearer and whose normals would push sideways. Pairs are dropped for distance only on proof
+// (provenApart).
 //
-// All positions are in a local frame: the caller has subtracted a vertex of the obstacle's triangle, so that rounding scales
-// with the size of the pair and not with its distance from the world's origin.
+// All positions are in a local frame: the caller has subtracted a vertex of the obstacle's triangle, so that rounding
+// scales with the size of the pair and not with its distance from the world's origin.
 #ifndef DRAPE_LIB_FEATURE_CONTACT_H
 #define DRAPE_LIB_FEATURE_CONTACT_H
 
@@ -17,8 +19,8 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// Relative size of a distance at which its direction is rounding noise, and width of the seam between neighbouring features
-// in which a path that hits both, or by rounding neither, still counts as a hit.
+// Relative size of a distance at which its direction is rounding noise, and width of the seam between neighbouring
+// features in which a path that hits both, or by rounding neither, still counts as a hit.
 #define DRAPE_SEAM 1e-5f
 
 typedef struct FeatureTriangle
@@ -47,10 +49,19 @@ DRAPE_FUNCTION int boxesApart(Vec3 lowA, Vec3 highA, Vec3 lowB, Vec3 highB, floa
            lowB.y - highA.y > slack || lowA.z - highB.z > slack || lowB.z - highA.z > slack;
 }
 
-DRAPE_FUNCTION Vec3 vec3Least(Vec3 a, Vec3 b) { return vec3(drapeMin(a.x, b.x), drapeMin(a.y, b.y), drapeMin(a.z, b.z)); }
-DRAPE_FUNCTION Vec3 vec3Most(Vec3 a, Vec3 b) { return vec3(drapeMax(a.x, b.x), drapeMax(a.y, b.y), drapeMax(a.z, b.z)); }
+DRAPE_FUNCTION Vec3 vec3Least(Vec3 a, Vec3 b)
+{
+    return vec3(drapeMin(a.x, b.x), drapeMin(a.y, b.y), drapeMin(a.z, b.z));
+}
+DRAPE_FUNCTION Vec3 vec3Most(Vec3 a, Vec3 b)
+{
+    return vec3(drapeMax(a.x, b.x), drapeMax(a.y, b.y), drapeMax(a.z, b.z));
+}
 
-DRAPE_FUNCTION Vec3 triangleNormal(FeatureTriangle f) { return vec3Cross(vec3Sub(f.m_p[1], f.m_p[0]), vec3Sub(f.m_p[2], f.m_p[0])); }
+DRAPE_FUNCTION Vec3 triangleNormal(FeatureTriangle f)
+{
+    return vec3Cross(vec3Sub(f.m_p[1], f.m_p[0]), vec3Sub(f.m_p[2], f.m_p[0]));
+}
 
 DRAPE_FUNCTION FeatureTriangle triangleMix(FeatureTriangle f, FeatureTriangle g, float t)
 {
@@ -95,9 +106,8 @@ typedef struct PairBounds
     float m_reachSlack;  // reach grown by more than the rounding of a distance and its normal
 } PairBounds;
 
-// True when the support gap along n proves a distance above reach. lowA: least n·a over one set; highB: greatest n·b over
-// the other. With u = 2^-24: three products, two sums and the frame's shift err by at
-// most 12 u |n|₁ extent.
+// True when the support gap along n proves a distance above reach. lowA: least n·a over one set; highB: greatest n·b
+// over the other. With u = 2^-24: three products, two sums and the frame's shift err by at most 12 u |n|₁ extent.
 DRAPE_FUNCTION int provenApart(Vec3 n, float lowA, float highB, PairBounds bounds)
 {
     const float twelveUnits = 7.1525574e-7f;
@@ -127,8 +137,8 @@ DRAPE_FUNCTION void storeContact(Contact* contact, Vec3 normal, Vec3 point, Vec3
     contact->m_time = time;
 }
 
-// True when q, a point of the edge, sees the point nearer than the face beyond the edge does: their offset does not lean
-// towards that face's third vertex.
+// True when q, a point of the edge, sees the point nearer than the face beyond the edge does: their offset does not
+// lean towards that face's third vertex.
 DRAPE_FUNCTION int leansAway(Vec3 offset, Vec3 opposite, Vec3 q)
 {
     const Vec3 inward = vec3Sub(opposite, q);

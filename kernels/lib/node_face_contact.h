@@ -7,8 +7,8 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// The cone of the obstacle feature on which the closest point with these weights lies; a face admits its own normal only
-// and needs none.
+// The cone of the obstacle feature on which the closest point with these weights lies; a face admits its own normal
+// only and needs none.
 DRAPE_FUNCTION NormalCone closestFeatureCone(Vec3 weights, const DRAPE_GLOBAL Triangle* triangle,
                                              const DRAPE_GLOBAL NormalCone* vertexCones,
                                              const DRAPE_GLOBAL NormalCone* edgeCones)
@@ -23,8 +23,8 @@ DRAPE_FUNCTION NormalCone closestFeatureCone(Vec3 weights, const DRAPE_GLOBAL Tr
 
 // Node moving from x0 to x1 against a resting face. Returns whether there is a contact.
 DRAPE_FUNCTION int nodeFaceContact(Vec3 x0, Vec3 x1, const RestingFace* resting, const DRAPE_GLOBAL Triangle* triangle,
-                                   const DRAPE_GLOBAL NormalCone* vertexCones,
-                                   const DRAPE_GLOBAL NormalCone* edgeCones, PairBounds bounds, Contact* contact)
+                                   const DRAPE_GLOBAL NormalCone* vertexCones, const DRAPE_GLOBAL NormalCone* edgeCones,
+                                   PairBounds bounds, Contact* contact)
 {
     const FeatureTriangle face = resting->m_corners;
     const float areaLength = resting->m_areaLength;

@@ -128,7 +128,8 @@ DRAPE_FUNCTION int pairFaceVertex(int i, const PairGeometry* pair, const ClothVi
     const DRAPE_GLOBAL Triangle* clothTriangle = cloth->m_triangles + candidate.m_cloth;
     const DRAPE_GLOBAL Triangle* triangle = obstacle->m_triangles + candidate.m_obstacle;
     DRAPE_UINT beyond[3];
-    for (int edge = 0; edge < 3; ++edge) beyond[edge] = vertexBeyond(cloth, clothTriangle, edge);
+    for (int edge = 0; edge < 3; ++edge)
+        beyond[edge] = vertexBeyond(cloth, clothTriangle, edge);
     contact->m_kind = DRAPE_FACE_VERTEX;
     contact->m_clothFeature = candidate.m_cloth;
     contact->m_obstacleFeature = triangle->m_vertices[i];
@@ -149,16 +150,6 @@ DRAPE_FUNCTION int pairEdgeEdge(int i, int j, const PairGeometry* pair, const Cl
     return edgeEdgeContact(triangleEdge(&pair->m_face.m_start, i), triangleEdge(&pair->m_face.m_end, i),
                            triangleEdge(&pair->m_resting.m_corners, j), obstacle->m_edgeCones[triangle->m_edges[j]],
                            pair->m_bounds, contact);
-}
-
-// Makes the stored weights follow the cloth edge's own direction, which its owner may walk backwards.
-DRAPE_FUNCTION void orientEdgeWeights(const ClothView* cloth, Candidate candidate, int i, Contact* contact)
-{
-    const DRAPE_GLOBAL Edge* edge = cloth->m_edges + contact->m_clothFeature;
-    if (edge->m_vertices[0] == cloth->m_triangles[candidate.m_cloth].m_vertices[i]) return;
-    const float first = contact->m_weights[0];
-    contact->m_weights[0] = contact->m_weights[1];
-    contact->m_weights[1] = first;
 }
 
 // The tests that this pair of triangles owns, as bits.
@@ -188,9 +179,8 @@ DRAPE_FUNCTION int pairContact(int test, const PairGeometry* pair, const ClothVi
     }
     else
     {
-        const int i = (test - 6) / 3;
-        found = pairEdgeEdge(i, (test - 6) % 3, pair, cloth, obstacle, candidate, contact);
-        if (found) orientEdgeWeights(cloth, candidate, i, contact);
+        // The owner of an edge walks it in its own direction, so the weights are in the order of its nodes.
+        found = pairEdgeEdge((test - 6) / 3, (test - 6) % 3, pair, cloth, obstacle, candidate, contact);
     }
     if (!found || !drapeIsFinite(contact->m_gap1)) return 0;
     contact->m_point[0] += pair->m_origin.x;

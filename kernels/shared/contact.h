@@ -12,20 +12,20 @@ DRAPE_NAMESPACE_BEGIN
 #define DRAPE_FACE_VERTEX 1u
 #define DRAPE_EDGE_EDGE 2u
 
-// Canonical order of contacts: slot, then obstacle feature. A slot is a cloth feature: first all nodes, then all faces, then
-// all edges.
+// Canonical order of contacts: slot, then obstacle feature. A slot is a cloth feature: first all nodes, then all faces,
+// then all edges.
 typedef struct Contact
 {
-    DRAPE_UINT m_slot;          // cloth feature of any kind, over all cloths
-    DRAPE_UINT m_kind;          // DRAPE_NODE_FACE, DRAPE_FACE_VERTEX or DRAPE_EDGE_EDGE
-    DRAPE_UINT m_clothFeature;  // node, triangle or edge, index over all cloths
+    DRAPE_UINT m_slot;             // cloth feature of any kind, over all cloths
+    DRAPE_UINT m_kind;             // DRAPE_NODE_FACE, DRAPE_FACE_VERTEX or DRAPE_EDGE_EDGE
+    DRAPE_UINT m_clothFeature;     // node, triangle or edge, index over all cloths
     DRAPE_UINT m_obstacleFeature;  // triangle, vertex or edge, index over all obstacles
-    float m_normal[3];          // unit, from the obstacle to the side the cloth came from
-    float m_gap1;               // m, signed distance along the normal at the step's end, thickness not subtracted
-    float m_point[3];           // m, contact point on the obstacle, world frame
-    float m_gap0;               // m, the same at the step's start
-    float m_weights[3];         // of the cloth feature's nodes; sum 1; unused ones 0
-    float m_time;               // time of impact in [0, 1]; 1 when the surfaces are near at the step's end
+    float m_normal[3];             // unit, from the obstacle to the side the cloth came from
+    float m_gap1;                  // m, signed distance along the normal at the step's end, thickness not subtracted
+    float m_point[3];              // m, contact point on the obstacle, world frame
+    float m_gap0;                  // m, the same at the step's start
+    float m_weights[3];            // of the cloth feature's nodes; sum 1; unused ones 0
+    float m_time;                  // time of impact in [0, 1]; 1 when the surfaces are near at the step's end
 } Contact;
 
 DRAPE_NAMESPACE_END

@@ -6,8 +6,8 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// Bit i of Triangle::m_owned: the triangle owns its vertex i; bit 3 + i: it owns its edge i. Every vertex and edge has one
-// owner, so a feature pair is tested in exactly one pair of triangles.
+// Bit i of Triangle::m_owned: the triangle owns its vertex i; bit 3 + i: it owns its edge i. Every vertex and edge has
+// one owner, so a feature pair is tested in exactly one pair of triangles.
 #define DRAPE_OWNS_VERTEX(i) (1u << (i))
 #define DRAPE_OWNS_EDGE(i) (8u << (i))
 
@@ -36,8 +36,8 @@ typedef struct NormalCone
 
 #define DRAPE_DOP_DIRECTIONS 9
 
-// A node's volume is the interval [m_low, m_high] in each direction. Children are adjacent: m_first … m_first + m_count - 1.
-// A leaf has m_count 0 and m_first is its place in the order of primitives.
+// A node's volume is the interval [m_low, m_high] in each direction. Children are adjacent: m_first … m_first + m_count
+// - 1. A leaf has m_count 0 and m_first is its place in the order of primitives.
 typedef struct BvhNode
 {
     float m_low[DRAPE_DOP_DIRECTIONS];

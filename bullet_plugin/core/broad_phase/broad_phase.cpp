@@ -7,7 +7,8 @@ namespace drape
 namespace
 {
 constexpr std::size_t kGroup = 32;
-// Work-items that keep one compute unit busy: a GPU hides latency with many, a CPU evens out unequal subtrees with some.
+// Work-items that keep one compute unit busy: a GPU hides latency with many, a CPU evens out unequal subtrees with
+// some.
 constexpr std::size_t kItemsPerUnitGpu = 1024;
 constexpr std::size_t kItemsPerUnitCpu = 128;
 
@@ -28,8 +29,10 @@ StartHeights startHeights(const Device& device, const BvhLayout& cloth, const Bv
 {
     const std::size_t wanted = device.computeUnits() * (device.isGpu() ? kItemsPerUnitGpu : kItemsPerUnitCpu);
     std::size_t a = cloth.m_heights.size() - 1, b = obstacle.m_heights.size() - 1;
-    while (a > 0 && cloth.m_heights[a].m_count < wanted) --a;
-    while (b > 0 && std::size_t(cloth.m_heights[a].m_count) * obstacle.m_heights[b].m_count < wanted) --b;
+    while (a > 0 && cloth.m_heights[a].m_count < wanted)
+        --a;
+    while (b > 0 && std::size_t(cloth.m_heights[a].m_count) * obstacle.m_heights[b].m_count < wanted)
+        --b;
     return {cloth.m_heights[a], obstacle.m_heights[b]};
 }
 }  // namespace
@@ -58,11 +61,13 @@ void broadPhaseOnHost(const BroadPhaseSide& cloth, const BroadPhaseSide& obstacl
         }
         if (opensFirst(&a, &b))
         {
-            for (std::uint32_t i = 0; i < a.m_count; ++i) stack[depth++] = NodePair{a.m_first + i, pair.m_obstacle};
+            for (std::uint32_t i = 0; i < a.m_count; ++i)
+                stack[depth++] = NodePair{a.m_first + i, pair.m_obstacle};
         }
         else
         {
-            for (std::uint32_t i = 0; i < b.m_count; ++i) stack[depth++] = NodePair{pair.m_cloth, b.m_first + i};
+            for (std::uint32_t i = 0; i < b.m_count; ++i)
+                stack[depth++] = NodePair{pair.m_cloth, b.m_first + i};
         }
     }
 }
@@ -78,11 +83,11 @@ void BroadPhaseStage::enqueue(Device& device, BroadPhaseBuffers cloth, BroadPhas
 {
     if (cloth.m_layout.leafCount() == 0 || obstacle.m_layout.leafCount() == 0) return;
     const StartHeights start = startHeights(device, cloth.m_layout, obstacle.m_layout);
-    m_traverse.launch(device, std::size_t(start.m_cloth.m_count) * start.m_obstacle.m_count, kGroup, cloth.m_nodes.handle(),
-                      cloth.m_order.handle(), cloth.m_triangles.handle(), cl_uint(start.m_cloth.m_first),
-                      cl_uint(start.m_cloth.m_count), obstacle.m_nodes.handle(), obstacle.m_order.handle(),
-                      obstacle.m_triangles.handle(), cl_uint(start.m_obstacle.m_first), cl_uint(start.m_obstacle.m_count),
-                      thickness.handle(), cl_uint(obstacleMeshes), candidates.handle(), counters.handle(),
-                      cl_uint(candidates.capacity()));
+    m_traverse.launch(device, std::size_t(start.m_cloth.m_count) * start.m_obstacle.m_count, kGroup,
+                      cloth.m_nodes.handle(), cloth.m_order.handle(), cloth.m_triangles.handle(),
+                      cl_uint(start.m_cloth.m_first), cl_uint(start.m_cloth.m_count), obstacle.m_nodes.handle(),
+                      obstacle.m_order.handle(), obstacle.m_triangles.handle(), cl_uint(start.m_obstacle.m_first),
+                      cl_uint(start.m_obstacle.m_count), thickness.handle(), cl_uint(obstacleMeshes),
+                      candidates.handle(), counters.handle(), cl_uint(candidates.capacity()));
 }
 }  // namespace drape

@@ -1,5 +1,6 @@
-// Broad phase: all pairs of a cloth and an obstacle triangle whose volumes overlap and whose meshes are paired. The set is
-// the same on device and host, and equal to testing every pair of leaf volumes; its order is not defined on a device.
+// Broad phase: all pairs of a cloth and an obstacle triangle whose volumes overlap and whose meshes are paired. The set
+// is the same on device and host, and equal to testing every pair of leaf volumes; its order is not defined on a
+// device.
 #pragma once
 
 #include <vector>
@@ -36,7 +37,8 @@ class BroadPhaseStage
 public:
     void create(Device& device, const cl::Program& program);
 
-    // Returns after enqueueing. counters' candidates must be zero; they count the demand, also past the list's capacity.
+    // Returns after enqueueing. counters' candidates must be zero; they count the demand, also past the list's
+    // capacity.
     void enqueue(Device& device, BroadPhaseBuffers cloth, BroadPhaseBuffers obstacle, Buffer<float>& thickness,
                  std::size_t obstacleMeshes, Buffer<Candidate>& candidates, Buffer<StepCounters>& counters);
 

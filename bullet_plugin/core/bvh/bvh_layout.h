@@ -1,8 +1,8 @@
 // The topology of a hierarchy over leaves in a given order: pairs of neighbours, height by height.
 //
-// Nodes lie by height: the leaves first, then the parents of leaves 2j and 2j + 1, and so on up to the root, which is last.
-// A height with an odd count leaves its last node alone under its parent. A function of the leaf count only, so host and
-// device agree, and a tree over n leaves is ⌈log2 n⌉ high. 2 n + O(log n) nodes.
+// Nodes lie by height: the leaves first, then the parents of leaves 2j and 2j + 1, and so on up to the root, which is
+// last. A height with an odd count leaves its last node alone under its parent. A function of the leaf count only, so
+// host and device agree, and a tree over n leaves is ⌈log2 n⌉ high. 2 n + O(log n) nodes.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,10 @@ struct BvhLayout
 {
     std::vector<BvhHeight> m_heights;  // leaves first; empty for no leaves
 
-    std::uint32_t nodeCount() const { return m_heights.empty() ? 0 : m_heights.back().m_first + m_heights.back().m_count; }
+    std::uint32_t nodeCount() const
+    {
+        return m_heights.empty() ? 0 : m_heights.back().m_first + m_heights.back().m_count;
+    }
     std::uint32_t leafCount() const { return m_heights.empty() ? 0 : m_heights[0].m_count; }
     std::uint32_t root() const { return nodeCount() - 1; }
 };

@@ -55,7 +55,8 @@ void MortonOrderStage::sort(Device& device, cl_uint count)
     m_groupCounts.reserve(device, counts);
     for (cl_uint shift = 0; shift < kCodeBits; shift += kDigitBits)
     {
-        m_count.launch(device, groups * kSortGroup, kSortGroup, m_codesA.handle(), count, shift, m_groupCounts.handle());
+        m_count.launch(device, groups * kSortGroup, kSortGroup, m_codesA.handle(), count, shift,
+                       m_groupCounts.handle());
         m_scan.launch(device, kSortGroup, kSortGroup, m_groupCounts.handle(), counts);
         m_scatter.launch(device, groups * kSortGroup, kSortGroup, m_codesA.handle(), m_numbersA.handle(), count, shift,
                          m_groupCounts.handle(), m_codesB.handle(), m_numbersB.handle());
@@ -70,7 +71,8 @@ std::vector<std::uint32_t> MortonOrderStage::order(Device& device, const std::ve
     const cl_uint count = cl_uint(triangles.size());
     std::vector<std::uint32_t> order(count);
     if (count == 0) return order;
-    for (Buffer<cl_uint>* buffer : {&m_codesA, &m_codesB, &m_numbersA, &m_numbersB}) buffer->reserve(device, count);
+    for (Buffer<cl_uint>* buffer : {&m_codesA, &m_codesB, &m_numbersA, &m_numbersB})
+        buffer->reserve(device, count);
     m_triangleBuffer.assign(device, triangles);
     m_positionBuffer.reserve(device, 3 * vertexCount);
     m_positionBuffer.write(device, positions, 3 * vertexCount);

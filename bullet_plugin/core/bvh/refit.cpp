@@ -40,7 +40,8 @@ void refitOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const std
         const Triangle& triangle = triangles[order[leaf]];
         refitLeafOnHost(nodes[leaf], triangle, start, end, meshRadius[triangle.m_mesh], invalidNodes);
     }
-    for (std::uint32_t node = leafCount; node < layout.nodeCount(); ++node) dopMergeChildren(nodes.data(), node);
+    for (std::uint32_t node = leafCount; node < layout.nodeCount(); ++node)
+        dopMergeChildren(nodes.data(), node);
 }
 
 void RefitStage::create(Device& device, const cl::Program& program)
@@ -84,7 +85,8 @@ void RefitStage::enqueue(Device& device, const BvhLayout& layout, Levels& levels
     }
     if (levels.m_climbed > 0)
     {
-        m_top.launch(device, kClimbGroup, kClimbGroup, nodes.handle(), levels.m_table.handle(), cl_uint(levels.m_climbed));
+        m_top.launch(device, kClimbGroup, kClimbGroup, nodes.handle(), levels.m_table.handle(),
+                     cl_uint(levels.m_climbed));
     }
 }
 

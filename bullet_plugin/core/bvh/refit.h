@@ -1,5 +1,5 @@
-// Refit: new volumes for a hierarchy whose topology stays, on the device or the host. Volumes are exact minima and maxima
-// of the padded leaves, so both give the same bits.
+// Refit: new volumes for a hierarchy whose topology stays, on the device or the host. Volumes are exact minima and
+// maxima of the padded leaves, so both give the same bits.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,8 @@
 
 namespace drape
 {
-// nodes: links set. order: triangle per leaf. start, end: m, x y z per vertex (may be the same). meshRadius: m per mesh slot,
-// negative to leave a mesh out. Adds NaN and infinite vertices to invalidNodes.
+// nodes: links set. order: triangle per leaf. start, end: m, x y z per vertex (may be the same). meshRadius: m per mesh
+// slot, negative to leave a mesh out. Adds NaN and infinite vertices to invalidNodes.
 void refitOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const std::vector<std::uint32_t>& order,
                  const std::vector<Triangle>& triangles, const float* start, const float* end,
                  const std::vector<float>& meshRadius, std::size_t& invalidNodes);
@@ -31,9 +31,9 @@ public:
     void makeLevels(Device& device, const BvhLayout& layout, Levels& levels) const;
 
     // Returns after enqueueing. Adds to counters' invalid nodes.
-    void enqueue(Device& device, const BvhLayout& layout, Levels& levels, Buffer<BvhNode>& nodes, Buffer<cl_uint>& order,
-                 Buffer<Triangle>& triangles, Buffer<float>& start, Buffer<float>& end, Buffer<float>& meshRadius,
-                 Buffer<StepCounters>& counters);
+    void enqueue(Device& device, const BvhLayout& layout, Levels& levels, Buffer<BvhNode>& nodes,
+                 Buffer<cl_uint>& order, Buffer<Triangle>& triangles, Buffer<float>& start, Buffer<float>& end,
+                 Buffer<float>& meshRadius, Buffer<StepCounters>& counters);
 
     // Runs the kernels that a small hierarchy does not need, on no nodes.
     void warmUp(Device& device, Buffer<BvhNode>& nodes);

@@ -32,8 +32,9 @@ public:
     void write(Device& device, const T* source, std::size_t count, std::size_t offset = 0)
     {
         if (device.failed() || count == 0) return;
-        device.check(device.queue().enqueueWriteBuffer(m_buffer, CL_FALSE, offset * sizeof(T), count * sizeof(T), source),
-                     "clEnqueueWriteBuffer");
+        device.check(
+            device.queue().enqueueWriteBuffer(m_buffer, CL_FALSE, offset * sizeof(T), count * sizeof(T), source),
+            "clEnqueueWriteBuffer");
     }
     void assign(Device& device, const std::vector<T>& source)
     {
@@ -43,8 +44,9 @@ public:
     void read(Device& device, T* target, std::size_t count, std::size_t offset = 0)
     {
         if (device.failed() || count == 0) return;
-        device.check(device.queue().enqueueReadBuffer(m_buffer, CL_FALSE, offset * sizeof(T), count * sizeof(T), target),
-                     "clEnqueueReadBuffer");
+        device.check(
+            device.queue().enqueueReadBuffer(m_buffer, CL_FALSE, offset * sizeof(T), count * sizeof(T), target),
+            "clEnqueueReadBuffer");
     }
     // Fills every element's bytes with copies of a 32-bit pattern.
     void fill(Device& device, cl_uint pattern, std::size_t count)
@@ -91,7 +93,8 @@ private:
     void mapPinned(Device& device, std::size_t count)
     {
         cl_int code = CL_SUCCESS;
-        m_pinned = cl::Buffer(device.context(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, count * sizeof(T), nullptr, &code);
+        m_pinned =
+            cl::Buffer(device.context(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, count * sizeof(T), nullptr, &code);
         if (code != CL_SUCCESS) return;  // pinned memory is scarce: plain memory works too
         void* mapped = device.queue().enqueueMapBuffer(m_pinned, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0,
                                                        count * sizeof(T), nullptr, nullptr, &code);

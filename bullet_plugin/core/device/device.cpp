@@ -34,7 +34,8 @@ std::vector<FoundDevice> findDevices()
     std::vector<cl::Platform> platforms;
     std::vector<FoundDevice> all, sorted;
     if (cl::Platform::get(&platforms) != CL_SUCCESS) return sorted;
-    for (const cl::Platform& platform : platforms) appendDevices(platform, all);
+    for (const cl::Platform& platform : platforms)
+        appendDevices(platform, all);
     for (int wantGpu = 1; wantGpu >= 0; --wantGpu)
     {
         for (const FoundDevice& entry : all)
@@ -49,7 +50,8 @@ std::vector<FoundDevice> findDevices()
 std::vector<DeviceInfo> listDevices()
 {
     std::vector<DeviceInfo> infos;
-    for (const FoundDevice& entry : findDevices()) infos.push_back(entry.m_info);
+    for (const FoundDevice& entry : findDevices())
+        infos.push_back(entry.m_info);
     return infos;
 }
 

@@ -1,8 +1,8 @@
 // An OpenCL device with its context and in-order queue, and the choice among those there are.
 //
-// Errors are sticky: after the first failure every later call on the device is a no-op and error() says what failed, with
-// which code and log. The pipeline checks once a step. Not thread-safe. The only folder that includes OpenCL headers is
-// this one.
+// Errors are sticky: after the first failure every later call on the device is a no-op and error() says what failed,
+// with which code and log. The pipeline checks once a step. Not thread-safe. The only folder that includes OpenCL
+// headers is this one.
 #pragma once
 
 #include <CL/opencl.hpp>

@@ -22,7 +22,8 @@ std::string describe(const DeviceInfo& info)
 std::string listing(const std::vector<DeviceInfo>& devices)
 {
     std::string text = "devices there are: host";
-    for (const DeviceInfo& info : devices) text += ", " + describe(info);
+    for (const DeviceInfo& info : devices)
+        text += ", " + describe(info);
     return text;
 }
 
@@ -54,7 +55,8 @@ DeviceChoice chooseDevice(const Settings& settings, Error& error)
     const std::string origin = fromVariable ? "DRAPE_DEVICE" : "the device option";
     if (settings.m_backend == Backend::Host || lowered(wanted) == "host")
     {
-        choice.m_reason = settings.m_backend == Backend::Host ? "the host back end was asked for" : "named by " + origin;
+        choice.m_reason =
+            settings.m_backend == Backend::Host ? "the host back end was asked for" : "named by " + origin;
         return choice;
     }
     const std::vector<DeviceInfo> devices = listDevices();

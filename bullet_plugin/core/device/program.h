@@ -7,8 +7,8 @@
 
 namespace drape
 {
-// The text of kernels/<file> with every include replaced by the included text once. Line directives keep each line's own
-// file and number, so a compiler's message names the .cl or .h file. Empty when the file is not embedded.
+// The text of kernels/<file> with every include replaced by the included text once. Line directives keep each line's
+// own file and number, so a compiler's message names the .cl or .h file. Empty when the file is not embedded.
 std::string assembleSource(const std::string& path);
 
 struct ProgramBuild
@@ -16,9 +16,9 @@ struct ProgramBuild
     bool m_fromCache = false;
 };
 
-// Builds "kernels/<name>.cl" with contraction off and correctly rounded ÷ and √. cacheFolder empty: the user's cache; "none":
-// no cache. A failed build puts the file and the whole log into the device's error. Cache trouble means a build, never a
-// failure.
+// Builds "kernels/<name>.cl" with contraction off and correctly rounded ÷ and √. cacheFolder empty: the user's cache;
+// "none": no cache. A failed build puts the file and the whole log into the device's error. Cache trouble means a
+// build, never a failure.
 cl::Program buildProgram(Device& device, const std::string& name, const std::string& cacheFolder, ProgramBuild& build);
 
 // Builds a source text as given, for tests of the log.

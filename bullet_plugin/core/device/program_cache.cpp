@@ -25,7 +25,8 @@ std::uint64_t hashBytes(const void* bytes, std::size_t count, std::uint64_t hash
 std::string hex(std::uint64_t value)
 {
     std::string text;
-    for (int shift = 60; shift >= 0; shift -= 4) text += "0123456789abcdef"[(value >> shift) & 15];
+    for (int shift = 60; shift >= 0; shift -= 4)
+        text += "0123456789abcdef"[(value >> shift) & 15];
     return text;
 }
 
@@ -54,7 +55,8 @@ ProgramCache::ProgramCache(const std::string& folder) : m_folder(folder.empty() 
 
 std::string ProgramCache::key(const std::string& source, const std::string& options, const DeviceInfo& device) const
 {
-    const std::string text = source + '\1' + options + '\1' + device.m_platform + '\1' + device.m_name + '\1' + device.m_driver;
+    const std::string text =
+        source + '\1' + options + '\1' + device.m_platform + '\1' + device.m_name + '\1' + device.m_driver;
     return hex(hashBytes(text.data(), text.size())) + hex(hashBytes(text.data(), text.size(), text.size()));
 }
 

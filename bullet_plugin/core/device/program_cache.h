@@ -1,5 +1,5 @@
-// Compiled programs on disk, one file each. Every trouble (no folder, no space, a damaged or foreign file) reads as "not
-// there"; nothing here fails.
+// Compiled programs on disk, one file each. Every trouble (no folder, no space, a damaged or foreign file) reads as
+// "not there"; nothing here fails.
 #pragma once
 
 #include <string>

@@ -59,18 +59,23 @@ void MeshPool::update()
         mesh.m_firstEdge = std::uint32_t(m_edges.size());
         for (Triangle triangle : mesh.m_topology.m_triangles)
         {
-            for (std::uint32_t& vertex : triangle.m_vertices) vertex += mesh.m_firstVertex;
-            for (std::uint32_t& edge : triangle.m_edges) edge += mesh.m_firstEdge;
+            for (std::uint32_t& vertex : triangle.m_vertices)
+                vertex += mesh.m_firstVertex;
+            for (std::uint32_t& edge : triangle.m_edges)
+                edge += mesh.m_firstEdge;
             triangle.m_mesh = std::uint32_t(slot);
             m_triangles.push_back(triangle);
         }
         for (Edge edge : mesh.m_topology.m_edges)
         {
-            for (std::uint32_t& vertex : edge.m_vertices) vertex += mesh.m_firstVertex;
-            for (std::uint32_t& vertex : edge.m_opposite) vertex += mesh.m_firstVertex;
+            for (std::uint32_t& vertex : edge.m_vertices)
+                vertex += mesh.m_firstVertex;
+            for (std::uint32_t& vertex : edge.m_opposite)
+                vertex += mesh.m_firstVertex;
             m_edges.push_back(edge);
         }
-        for (std::uint32_t triangle : mesh.m_order) m_order.push_back(triangle + mesh.m_firstTriangle);
+        for (std::uint32_t triangle : mesh.m_order)
+            m_order.push_back(triangle + mesh.m_firstTriangle);
         m_vertexCount += mesh.m_topology.m_vertexCount;
     }
 }

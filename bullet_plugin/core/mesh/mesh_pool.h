@@ -1,7 +1,8 @@
 // All meshes of one side (cloths or obstacles) as one: vertices, triangles, edges and leaf order joined end to end.
 //
 // Job: keep the meshes, and after some came or went renumber everything into joined arrays; revision() tells that it
-// happened. A mesh keeps its id; its slot is its place in the joined arrays, which update() makes current. Host memory only.
+// happened. A mesh keeps its id; its slot is its place in the joined arrays, which update() makes current. Host memory
+// only.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,7 @@ struct PooledMesh
 {
     MeshId m_id = kNoMesh;
     Topology m_topology;
-    std::vector<float> m_positions;        // m, as last given
+    std::vector<float> m_positions;         // m, as last given
     std::vector<NormalCone> m_vertexCones;  // obstacles only
     std::vector<NormalCone> m_edgeCones;
     std::vector<std::uint32_t> m_order;  // leaf order, local triangles

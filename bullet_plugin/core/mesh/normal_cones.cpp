@@ -35,7 +35,8 @@ Direction unitNormal(const Triangle& triangle, const float* positions)
     double p[3][3];
     for (int i = 0; i < 3; ++i)
     {
-        for (int k = 0; k < 3; ++k) p[i][k] = positions[3 * std::size_t(triangle.m_vertices[i]) + k];
+        for (int k = 0; k < 3; ++k)
+            p[i][k] = positions[3 * std::size_t(triangle.m_vertices[i]) + k];
     }
     const double u[3] = {p[1][0] - p[0][0], p[1][1] - p[0][1], p[1][2] - p[0][2]};
     const double v[3] = {p[2][0] - p[0][0], p[2][1] - p[0][1], p[2][2] - p[0][2]};
@@ -68,8 +69,8 @@ public:
     NormalCone cone(std::size_t feature) const
     {
         // Two degrees for rounding, and more at sharper features: contacts are found at the predicted end of the step,
-        // cloth turns while Bullet solves, and a sharp feature has no neighbours that would take over. Measured on stairs:
-        // without the share a corner passed a face that turned by 20 degrees.
+        // cloth turns while Bullet solves, and a sharp feature has no neighbours that would take over. Measured on
+        // stairs: without the share a corner passed a face that turned by 20 degrees.
         constexpr double kPad = 0.035;
         constexpr double kTurnShare = 0.35;
         const Direction& axis = m_axes[feature];
@@ -107,24 +108,29 @@ void computeNormalCones(const Topology& topology, const float* positions, std::v
 {
     std::vector<Direction> normals;
     normals.reserve(topology.m_triangles.size());
-    for (const Triangle& triangle : topology.m_triangles) normals.push_back(unitNormal(triangle, positions));
+    for (const Triangle& triangle : topology.m_triangles)
+        normals.push_back(unitNormal(triangle, positions));
 
     ConeBuilder vertices(topology.m_vertexCount), edges(topology.m_edges.size());
-    visitCorners(topology, normals, [&](std::uint32_t vertex, std::uint32_t edge, const Direction& normal) {
-        vertices.addNormal(vertex, normal);
-        edges.addNormal(edge, normal);
-        if (normal.dot(normal) == 0.0)
-        {
-            vertices.open(vertex);
-            edges.open(edge);
-        }
-    });
+    visitCorners(topology, normals,
+                 [&](std::uint32_t vertex, std::uint32_t edge, const Direction& normal)
+                 {
+                     vertices.addNormal(vertex, normal);
+                     edges.addNormal(edge, normal);
+                     if (normal.dot(normal) == 0.0)
+                     {
+                         vertices.open(vertex);
+                         edges.open(edge);
+                     }
+                 });
     vertices.normalizeAxes();
     edges.normalizeAxes();
-    visitCorners(topology, normals, [&](std::uint32_t vertex, std::uint32_t edge, const Direction& normal) {
-        vertices.widen(vertex, normal);
-        edges.widen(edge, normal);
-    });
+    visitCorners(topology, normals,
+                 [&](std::uint32_t vertex, std::uint32_t edge, const Direction& normal)
+                 {
+                     vertices.widen(vertex, normal);
+                     edges.widen(edge, normal);
+                 });
     for (std::size_t e = 0; e < topology.m_edges.size(); ++e)
     {
         if (topology.m_edgeUses[e] == 2) continue;
@@ -134,7 +140,9 @@ void computeNormalCones(const Topology& topology, const float* positions, std::v
     }
     vertexCones.clear();
     edgeCones.clear();
-    for (std::size_t v = 0; v < topology.m_vertexCount; ++v) vertexCones.push_back(vertices.cone(v));
-    for (std::size_t e = 0; e < topology.m_edges.size(); ++e) edgeCones.push_back(edges.cone(e));
+    for (std::size_t v = 0; v < topology.m_vertexCount; ++v)
+        vertexCones.push_back(vertices.cone(v));
+    for (std::size_t e = 0; e < topology.m_edges.size(); ++e)
+        edgeCones.push_back(edges.cone(e));
 }
 }  // namespace drape

@@ -62,7 +62,8 @@ Topology buildTopology(const std::int32_t* triangles, std::size_t triangleCount,
         }
         topology.m_triangles.push_back(triangle);
         topology.m_sourceTriangle.push_back(std::uint32_t(source));
-        for (int i = 0; i < 3; ++i) addEdge(topology, known, index, i);
+        for (int i = 0; i < 3; ++i)
+            addEdge(topology, known, index, i);
     }
     return topology;
 }

@@ -5,7 +5,7 @@ namespace drape
 namespace
 {
 constexpr std::size_t kGroup = 64;
-constexpr std::size_t kBlock = 1024;          // slots per work-group, as in kernels/compaction.cl
+constexpr std::size_t kBlock = 1024;            // slots per work-group, as in kernels/compaction.cl
 constexpr std::size_t kItemsPerUnitGpu = 1024;  // work-items per compute unit that hide a GPU's latency
 constexpr std::size_t kItemsPerUnitCpu = 256;   // four groups per core, so that uneven ones even out
 }  // namespace
@@ -42,18 +42,18 @@ std::size_t NarrowPhaseStage::listWidth(const Device& device) const
     return device.computeUnits() * (device.isGpu() ? kItemsPerUnitGpu : kItemsPerUnitCpu);
 }
 
-void NarrowPhaseStage::enqueue(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
-                               const NarrowPhaseSettings& settings, Buffer<Candidate>& candidates,
-                               Buffer<StepCounters>& counters)
+void NarrowPhaseStage::enqueue(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount,
+                               std::size_t triangleCount, const NarrowPhaseSettings& settings,
+                               Buffer<Candidate>& candidates, Buffer<StepCounters>& counters)
 {
     const std::size_t width = listWidth(device);
     const cl_uint hitCapacity = cl_uint(m_hits.capacity());
-    m_test.launch(device, width, kGroup, candidates.handle(), cl_uint(candidates.capacity()), sides.m_clothStart.handle(),
-                  sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(), sides.m_clothEdges.handle(),
-                  cl_uint(nodeCount), cl_uint(triangleCount), sides.m_obstaclePositions.handle(),
-                  sides.m_obstacleTriangles.handle(), sides.m_vertexCones.handle(), sides.m_edgeCones.handle(),
-                  sides.m_thickness.handle(), cl_uint(settings.m_obstacleMeshes), settings.m_reachScale, m_hits.handle(),
-                  hitCapacity, m_slotCount.handle(), counters.handle());
+    m_test.launch(device, width, kGroup, candidates.handle(), cl_uint(candidates.capacity()),
+                  sides.m_clothStart.handle(), sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(),
+                  sides.m_clothEdges.handle(), cl_uint(nodeCount), cl_uint(triangleCount),
+                  sides.m_obstaclePositions.handle(), sides.m_obstacleTriangles.handle(), sides.m_vertexCones.handle(),
+                  sides.m_edgeCones.handle(), sides.m_thickness.handle(), cl_uint(settings.m_obstacleMeshes),
+                  settings.m_reachScale, m_hits.handle(), hitCapacity, m_slotCount.handle(), counters.handle());
     enqueueCompaction(device, counters);
 }
 
@@ -79,7 +79,7 @@ void NarrowPhaseStage::enqueueIntersect(Device& device, NarrowPhaseBuffers sides
 {
     m_intersect.launch(device, listWidth(device), kGroup, candidates.handle(), cl_uint(candidates.capacity()),
                        sides.m_clothStart.handle(), sides.m_clothTriangles.handle(), sides.m_obstaclePositions.handle(),
-                       sides.m_obstacleTriangles.handle(), m_intersections.handle(), cl_uint(m_intersections.capacity()),
-                       counters.handle());
+                       sides.m_obstacleTriangles.handle(), m_intersections.handle(),
+                       cl_uint(m_intersections.capacity()), counters.handle());
 }
 }  // namespace drape

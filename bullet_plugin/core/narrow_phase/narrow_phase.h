@@ -10,7 +10,8 @@
 
 namespace drape
 {
-// Options and per-pair data of a step. thickness: m, cloth slots × obstacle slots. Contacts reach to thickness × reachScale.
+// Options and per-pair data of a step. thickness: m, cloth slots × obstacle slots. Contacts reach to thickness ×
+// reachScale.
 struct NarrowPhaseSettings
 {
     const std::vector<float>& m_thickness;

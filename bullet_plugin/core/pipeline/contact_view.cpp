@@ -9,8 +9,8 @@ namespace
 {
 struct ClothFeature
 {
-    std::size_t m_slot = 0;                                // of the mesh
-    std::uint32_t m_keptTriangle = 0;                      // in the mesh's topology
+    std::size_t m_slot = 0;                                  // of the mesh
+    std::uint32_t m_keptTriangle = 0;                        // in the mesh's topology
     std::uint32_t m_nodes[3] = {kNoMesh, kNoMesh, kNoMesh};  // over all meshes
 };
 

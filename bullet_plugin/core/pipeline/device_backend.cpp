@@ -10,7 +10,10 @@ namespace
 constexpr std::size_t kFirstCandidates = 1 << 16;
 constexpr std::size_t kFirstHits = 1 << 13;
 
-std::size_t withHeadroom(std::size_t count) { return count + count / 4 + 1024; }
+std::size_t withHeadroom(std::size_t count)
+{
+    return count + count / 4 + 1024;
+}
 }  // namespace
 
 DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& settings)
@@ -161,8 +164,8 @@ void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
                          {m_obstacle.m_nodes, m_obstacle.m_order, m_obstacle.m_triangles, scene.m_obstacleLayout},
                          m_thickness, obstacleMeshes, m_candidates, m_counters);
     const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacleMeshes, 1.0f + m_settings.m_activation};
-    m_narrowPhase.enqueue(*m_device, narrowPhaseBuffers(), scene.m_cloths.vertexCount(), scene.m_cloths.triangles().size(),
-                          narrow, m_candidates, m_counters);
+    m_narrowPhase.enqueue(*m_device, narrowPhaseBuffers(), scene.m_cloths.vertexCount(),
+                          scene.m_cloths.triangles().size(), narrow, m_candidates, m_counters);
     if (m_settings.m_reportIntersections)
     {
         m_narrowPhase.enqueueIntersect(*m_device, narrowPhaseBuffers(), m_candidates, m_counters);
@@ -185,7 +188,8 @@ bool DeviceBackend::grow()
     const StepCounters counters = *m_countersRead.data();
     const std::size_t largest = m_device->maxAllocationBytes();
     bool again = false;
-    const auto demand = [&](std::size_t wanted, std::size_t capacity, std::size_t elementBytes, auto reserve) {
+    const auto demand = [&](std::size_t wanted, std::size_t capacity, std::size_t elementBytes, auto reserve)
+    {
         if (wanted <= capacity) return;
         again = true;
         if (withHeadroom(wanted) * elementBytes > largest)

@@ -1,4 +1,5 @@
-// The step on an OpenCL device: one submission, one wait. A buffer that turns out too small grows and the step runs again.
+// The step on an OpenCL device: one submission, one wait. A buffer that turns out too small grows and the step runs
+// again.
 #pragma once
 
 #include <memory>

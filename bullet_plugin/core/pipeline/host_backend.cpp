@@ -41,12 +41,9 @@ void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings
                      {m_obstacleNodes, scene.m_obstacleLayout, obstacles.order(), obstacles.triangles()},
                      pairs.m_thickness, obstacles.meshCount(), m_candidates);
     result.m_candidates = m_candidates.size();
-    const ClothView cloth = {scene.m_clothStart.data(),
-                             scene.m_clothEnd.data(),
-                             cloths.triangles().data(),
-                             cloths.edges().data(),
-                             std::uint32_t(cloths.vertexCount()),
-                             std::uint32_t(cloths.triangles().size())};
+    const ClothView cloth = {scene.m_clothStart.data(),           scene.m_clothEnd.data(),
+                             cloths.triangles().data(),           cloths.edges().data(),
+                             std::uint32_t(cloths.vertexCount()), std::uint32_t(cloths.triangles().size())};
     const ObstacleView obstacle = {scene.m_obstaclePositions.data(), obstacles.triangles().data(),
                                    scene.m_vertexCones.data(), scene.m_edgeCones.data()};
     const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacles.meshCount(), 1.0f + settings.m_activation};

@@ -12,8 +12,8 @@ namespace
 {
 using Clock = std::chrono::steady_clock;
 
-// Volumes reach a little further than the feature tests, by more than those round, so that which pairs were candidates never
-// decides whether a pair is a contact.
+// Volumes reach a little further than the feature tests, by more than those round, so that which pairs were candidates
+// never decides whether a pair is a contact.
 constexpr float kReachPad = 1.001f;
 
 double millisecondsSince(Clock::time_point start)
@@ -30,7 +30,8 @@ PooledMesh Pipeline::Implementation::makeMesh(const MeshDescription& description
     mesh.m_positions.assign(description.m_positions, description.m_positions + 3 * description.m_vertexCount);
     if (m_deviceBackend)
     {
-        mesh.m_order = m_deviceBackend->order(mesh.m_topology.m_triangles, mesh.m_positions.data(), description.m_vertexCount);
+        mesh.m_order =
+            m_deviceBackend->order(mesh.m_topology.m_triangles, mesh.m_positions.data(), description.m_vertexCount);
         if (m_deviceBackend->device().failed()) leaveDevice();
     }
     if (mesh.m_order.size() != mesh.m_topology.m_triangles.size())
@@ -49,7 +50,8 @@ void Pipeline::Implementation::joinObstacles()
     for (std::size_t slot = 0; slot < pool.meshCount(); ++slot)
     {
         const PooledMesh& mesh = pool.mesh(slot);
-        m_scene.m_obstaclePositions.insert(m_scene.m_obstaclePositions.end(), mesh.m_positions.begin(), mesh.m_positions.end());
+        m_scene.m_obstaclePositions.insert(m_scene.m_obstaclePositions.end(), mesh.m_positions.begin(),
+                                           mesh.m_positions.end());
         m_scene.m_vertexCones.insert(m_scene.m_vertexCones.end(), mesh.m_vertexCones.begin(), mesh.m_vertexCones.end());
         m_scene.m_edgeCones.insert(m_scene.m_edgeCones.end(), mesh.m_edgeCones.begin(), mesh.m_edgeCones.end());
     }
@@ -72,7 +74,8 @@ void Pipeline::Implementation::joinScene()
             const PooledMesh& mesh = cloths.mesh(slot);
             for (float* target : {m_scene.m_clothStart.data(), m_scene.m_clothEnd.data()})
             {
-                std::copy(mesh.m_positions.begin(), mesh.m_positions.end(), target + 3 * std::size_t(mesh.m_firstVertex));
+                std::copy(mesh.m_positions.begin(), mesh.m_positions.end(),
+                          target + 3 * std::size_t(mesh.m_firstVertex));
             }
         }
     }
@@ -155,7 +158,10 @@ std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& erro
     return pipeline;
 }
 
-const DeviceReport& Pipeline::deviceReport() const { return m_implementation->m_report; }
+const DeviceReport& Pipeline::deviceReport() const
+{
+    return m_implementation->m_report;
+}
 
 MeshId Pipeline::addCloth(const MeshDescription& description)
 {
@@ -254,6 +260,12 @@ const std::vector<Contact>& Pipeline::finish()
     return self.m_result.m_contacts;
 }
 
-const StepStatistics& Pipeline::statistics() const { return m_implementation->m_statistics; }
-const Error& Pipeline::lastError() const { return m_implementation->m_error; }
+const StepStatistics& Pipeline::statistics() const
+{
+    return m_implementation->m_statistics;
+}
+const Error& Pipeline::lastError() const
+{
+    return m_implementation->m_error;
+}
 }  // namespace drape

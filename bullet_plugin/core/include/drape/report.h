@@ -33,9 +33,9 @@ std::vector<DeviceInfo> listDevices();
 enum StepStatusBits : std::uint32_t
 {
     kStepGood = 0,
-    kStepInvalidNodes = 1u << 0,   // NaN or infinite nodes were left out
-    kStepDeviceFailed = 1u << 1,   // the device failed; this and later steps run on the host
-    kStepContactLimit = 1u << 2    // a buffer reached what the device can hold; the step ran on the host
+    kStepInvalidNodes = 1u << 0,  // NaN or infinite nodes were left out
+    kStepDeviceFailed = 1u << 1,  // the device failed; this and later steps run on the host
+    kStepContactLimit = 1u << 2   // a buffer reached what the device can hold; the step ran on the host
 };
 
 struct StepStatistics
