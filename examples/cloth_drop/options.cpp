@@ -112,7 +112,7 @@ void addOutputOptions(CLI::App& app, Options& options)
     app.add_option("--picture", options.m_picture, "write a shaded picture of the last frame")->type_name("FILE.png");
     app.add_option("--validate-hash", options.m_validateHash, "exit with 3 unless the run's hash is this")
         ->type_name("H")
-        ->check(CLI::Validator(hash, ""));
+        ->transform(CLI::Validator(hash, ""));
     app.add_flag("--quiet", options.m_quiet, "no progress and no summary");
     app.add_flag("--stream-steps", options.m_streamSteps, "")->group("");
 }

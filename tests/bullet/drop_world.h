@@ -1,0 +1,108 @@
+// A small Bullet world for the tests: cloths, obstacles and what there is to know of them after a step.
+//
+// Input: a plugin, or none for Bullet's built-in collision. Owns everything that it makes and takes it down in the
+// order that Bullet demands. Metres, seconds, kilograms; y is up; steps are 1/60 s.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "BulletSoftBody/btSoftBody.h"
+#include "BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h"
+#include "BulletSoftBody/btSoftRigidDynamicsWorld.h"
+#include "btBulletDynamicsCommon.h"
+#include <drape/drape.h>
+
+#include "scenes/measure.h"
+#include "scenes/mesh.h"
+
+namespace drape::test
+{
+constexpr float kMargin = 0.01f;            // m, of each cloth and each obstacle
+constexpr float kThickness = 2 * kMargin;   // m, the gap at which they rest
+constexpr btScalar kDt = btScalar(1) / 60;  // s
+
+struct ClothSpec
+{
+    int m_nodes = 17;           // along either side
+    float m_size = 1.0f;        // m
+    btVector3 m_centre;         // m
+    bool m_springs = true;      // false: nodes and faces only
+    btScalar m_damping = 0.1f;  // share of the velocity lost in a step, 0 to 1
+};
+
+// A mesh as Bullet's static shape; owns the arrays that the shape reads. The shape's margin is kMargin.
+class MeshShape
+{
+public:
+    explicit MeshShape(const TriangleMesh& mesh);
+    btBvhTriangleMeshShape& shape() { return *m_shape; }
+    std::vector<float>& positions() { return m_mesh.m_positions; }
+
+private:
+    TriangleMesh m_mesh;
+    btTriangleIndexVertexArray m_arrays;
+    std::unique_ptr<btBvhTriangleMeshShape> m_shape;
+};
+
+enum class Wiring
+{
+    Configuration,  // drape::CollisionConfiguration
+    SolverOnly      // Bullet's configuration: install() has to follow
+};
+
+class DropWorld
+{
+public:
+    explicit DropWorld(Plugin* plugin, Wiring wiring = Wiring::Configuration);
+    ~DropWorld();
+
+    btSoftBody& addCloth(const ClothSpec& spec, int group = 1, int mask = -1);
+    // The shape stays the caller's and must outlive the object.
+    btCollisionObject& addObstacle(btCollisionShape& shape, const btTransform& pose = btTransform::getIdentity());
+    void remove(btSoftBody& cloth);            // and frees it
+    void remove(btCollisionObject& obstacle);  // and frees it
+    void step(int count = 1);
+
+    btSoftRigidDynamicsWorld& world() { return m_world; }
+    btCollisionDispatcher& dispatcher() { return m_dispatcher; }
+
+private:
+    std::unique_ptr<btCollisionConfiguration> m_configuration;
+    std::unique_ptr<btSoftBodySolver> m_solver;  // null: Bullet's default
+    btCollisionDispatcher m_dispatcher;
+    btDbvtBroadphase m_broadphase;
+    btSequentialImpulseConstraintSolver m_rigidSolver;
+    btSoftRigidDynamicsWorld m_world;
+    std::vector<std::unique_ptr<btCollisionObject>> m_obstacles;
+    std::vector<std::unique_ptr<btSoftBody>> m_cloths;
+};
+
+Settings hostSettings();
+
+std::vector<float> positionsOf(const btSoftBody& cloth);  // x y z per node
+TriangleMesh meshOf(const btSoftBody& cloth);
+btScalar lowestOf(const btSoftBody& cloth);  // m, least y of a node
+double rmsSpeed(const btSoftBody& cloth);    // m/s
+int contactsHeld(const btSoftBody& cloth);   // constraints that the body has for Bullet's solver
+
+// The mesh with its vertices scaled, then moved by the pose.
+TriangleMesh placed(const TriangleMesh& mesh, const btTransform& pose, const btVector3& scaling = btVector3(1, 1, 1));
+
+// FNV-1a over the bits of all positions so far; start with kHashStart.
+constexpr std::uint64_t kHashStart = 0xcbf29ce484222325ull;
+std::uint64_t hashOf(const btSoftBody& cloth, std::uint64_t hash = kHashStart);
+
+// What the independent check saw over a number of steps.
+struct Course
+{
+    double m_penetrationMax = 0;  // m, of all steps
+    StepMeasure m_end;            // after the last step
+    std::uint64_t m_hash = kHashStart;
+};
+Course runMeasured(DropWorld& world, btSoftBody& cloth, const TriangleMesh& obstacle, int steps);
+
+// Fails the test unless nothing ever got below the surface and nothing intersects at the end.
+void expectClean(const Course& course);
+}  // namespace drape::test

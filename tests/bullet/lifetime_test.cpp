@@ -1,0 +1,202 @@
+// Cloths and obstacles that come and go, many of them at once, and steps that are not like the others.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "scenes/shapes.h"
+#include "tests/bullet/drop_world.h"
+#include "tests/support/backends.h"
+
+namespace drape::test
+{
+namespace
+{
+ClothSpec small(const btVector3& centre)
+{
+    ClothSpec spec;
+    spec.m_nodes = 9;
+    spec.m_size = 0.5f;
+    spec.m_centre = centre;
+    return spec;
+}
+
+btVector3 at(double x, double y, double z)
+{
+    return btVector3(btScalar(x), btScalar(y), btScalar(z));
+}
+
+bool shareFace(const btSoftBody& cloth, int one, int other)
+{
+    for (int f = 0; f < cloth.m_faces.size(); ++f)
+    {
+        bool has[2] = {false, false};
+        for (const btSoftBody::Node* node : cloth.m_faces[f].m_n)
+        {
+            has[0] = has[0] || node == &cloth.m_nodes[one];
+            has[1] = has[1] || node == &cloth.m_nodes[other];
+        }
+        if (has[0] && has[1]) return true;
+    }
+    return false;
+}
+}  // namespace
+
+class Lifetime : public BackendTest
+{
+};
+
+TEST_P(Lifetime, clothsAreAddedAndRemovedWhileRunning)
+{
+    Plugin plugin(GetParam().m_settings);
+    const TriangleMesh mesh = makeSphere(0.3f, 2);
+    MeshShape shape(mesh);
+    DropWorld world(&plugin);
+    world.addObstacle(shape.shape());
+    for (int round = 0; round < 4; ++round)
+    {
+        btSoftBody& first = world.addCloth(small(at(0, 0.35, 0)));
+        world.step(10);
+        btSoftBody& second = world.addCloth(small(at(0.05, 0.42, 0)));
+        const Course course = runMeasured(world, second, mesh, 40);
+        expectClean(course);
+        EXPECT_GT(plugin.statistics().m_contacts, 0u);
+        world.remove(first);
+        world.step(5);
+        EXPECT_GT(plugin.statistics().m_contacts, 0u);
+        for (const ContactInfo& contact : plugin.contacts())
+            ASSERT_EQ(contact.m_cloth, &second);
+        world.remove(second);
+        world.step(2);
+        EXPECT_EQ(plugin.statistics().m_contacts, 0u);
+        EXPECT_TRUE(plugin.contacts().empty());
+    }
+}
+
+TEST_P(Lifetime, obstaclesAreAddedAndRemovedWhileRunning)
+{
+    Plugin plugin(GetParam().m_settings);
+    DropWorld world(&plugin);
+    btSoftBody& cloth = world.addCloth(small(at(0, 0.26, 0)));
+    for (int round = 0; round < 3; ++round)
+    {
+        const float shift = -0.3f * static_cast<float>(round);
+        auto shape = std::make_unique<MeshShape>(makeBox(2.0f, 0.4f + 0.1f * static_cast<float>(round), 2.0f));
+        btCollisionObject& box =
+            world.addObstacle(shape->shape(), btTransform(btQuaternion::getIdentity(), at(0, double(shift), 0)));
+        world.step(60);
+        const double top = 0.2 + 0.05 * round + double(shift);
+        EXPECT_NEAR(static_cast<double>(lowestOf(cloth)) - top, kThickness, 0.05 * kThickness) << "round " << round;
+        world.remove(box);  // and then its shape and arrays
+    }
+    world.step(20);
+    EXPECT_EQ(plugin.statistics().m_contacts, 0u);
+}
+
+TEST_P(Lifetime, severalClothsAndObstaclesAtOnce)
+{
+    Plugin plugin(GetParam().m_settings);
+    const TriangleMesh floor = makeBox(4.0f, 0.2f, 4.0f), sphere = makeSphere(0.3f, 2);
+    MeshShape floorShape(floor), sphereShape(sphere);
+    DropWorld world(&plugin);
+    world.addObstacle(floorShape.shape());
+    const btTransform left(btQuaternion::getIdentity(), at(-0.8, 0.4, 0)),
+        right(btQuaternion::getIdentity(), at(0.8, 0.4, 0));
+    world.addObstacle(sphereShape.shape(), left);
+    world.addObstacle(sphereShape.shape(), right);
+    btSoftBody* cloths[3] = {&world.addCloth(small(at(-0.8, 0.75, 0))), &world.addCloth(small(at(0.7, 0.75, 0.1))),
+                             &world.addCloth(small(at(0, 0.3, 0)))};
+    const TriangleMesh obstacles[3] = {floor, placed(sphere, left), placed(sphere, right)};
+    std::vector<PenetrationMeter> meters;
+    for (const btSoftBody* cloth : cloths)
+        for (const TriangleMesh& obstacle : obstacles)
+            meters.emplace_back(obstacle, meshOf(*cloth));
+    for (int step = 0; step < 90; ++step)
+    {
+        world.step();
+        for (std::size_t i = 0; i < meters.size(); ++i)
+        {
+            const StepMeasure measure = meters[i].measure(positionsOf(*cloths[i / 3]).data());
+            ASSERT_EQ(measure.m_penetrationMax, 0) << "step " << step << ", pair " << i;
+            ASSERT_EQ(measure.m_intersectingPairs, 0u) << "step " << step << ", pair " << i;
+        }
+    }
+    for (const btSoftBody* cloth : cloths)
+        EXPECT_GT(cloth->m_rcontacts.size(), 0);
+}
+
+// Nodes without springs, so that only Drape could carry the bad node's place to others.
+TEST_P(Lifetime, aNodeThatIsNoNumberIsCountedAndKeptToItself)
+{
+    Plugin plugin(GetParam().m_settings);
+    MeshShape shape(makeBox(2.0f, 0.4f, 2.0f));
+    DropWorld world(&plugin);
+    world.addObstacle(shape.shape());
+    ClothSpec loose = small(at(0, 0.23, 0));
+    loose.m_springs = false;
+    btSoftBody& cloth = world.addCloth(loose);
+    world.step(30);
+    const int bad = 40;
+    const btScalar nan = std::numeric_limits<btScalar>::quiet_NaN();
+    cloth.m_nodes[bad].m_x = cloth.m_nodes[bad].m_q = btVector3(nan, nan, nan);
+    for (int step = 0; step < 30; ++step)
+    {
+        world.step();
+        ASSERT_EQ(plugin.statistics().m_invalidNodes, 1u) << "step " << step;
+        ASSERT_TRUE(plugin.statistics().m_status & kStepInvalidNodes);
+        ASSERT_GT(plugin.statistics().m_contacts, 0u);
+    }
+    for (int i = 0; i < cloth.m_nodes.size(); ++i)
+    {
+        const btScalar y = cloth.m_nodes[i].m_x.y();
+        EXPECT_EQ(std::isfinite(y), i != bad) << "node " << i;
+        if (shareFace(cloth, i, bad)) continue;  // faces of a bad node collide with nothing
+        EXPECT_NEAR(static_cast<double>(y) - 0.2, kThickness, 0.05 * kThickness) << "node " << i;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Backend, Lifetime, testing::ValuesIn(allBackends()), backendName);
+
+TEST(Lifetime, aStepWithoutTimeMovesNothing)
+{
+    Plugin plugin(hostSettings());
+    const TriangleMesh box = makeBox(2.0f, 0.4f, 2.0f);
+    MeshShape shape(box);
+    DropWorld world(&plugin);
+    world.addObstacle(shape.shape());
+    btSoftBody& cloth = world.addCloth(small(at(0, 0.23, 0)));
+    world.step(30);
+    const std::uint64_t hash = hashOf(cloth);
+    world.world().stepSimulation(0, 0);
+    world.world().stepSimulation(0, 1);
+    EXPECT_EQ(hashOf(cloth), hash);
+    expectClean(runMeasured(world, cloth, box, 30));
+}
+
+TEST(Lifetime, theWholeWorldMayGoBeforeThePlugin)
+{
+    Plugin plugin(hostSettings());
+    for (int round = 0; round < 3; ++round)
+    {
+        MeshShape shape(makeSphere(0.3f, 1));
+        DropWorld world(&plugin);
+        world.addObstacle(shape.shape());
+        world.addCloth(small(at(0, 0.35, 0)));
+        world.step(20);
+        EXPECT_GT(plugin.statistics().m_contacts, 0u) << "round " << round;
+    }
+}
+
+TEST(Lifetime, thePluginMayGoBeforeTheWorld)
+{
+    auto plugin = std::make_unique<Plugin>(hostSettings());
+    MeshShape shape(makeBox(2.0f, 0.4f, 2.0f));
+    DropWorld world(plugin.get());
+    world.addObstacle(shape.shape());
+    btSoftBody& cloth = world.addCloth(small(at(0, 0.23, 0)));
+    world.step(20);
+    plugin.reset();
+    world.step(40);
+    EXPECT_NEAR(static_cast<double>(lowestOf(cloth)) - 0.2, kThickness, 0.05 * kThickness);
+}
+}  // namespace drape::test

@@ -1,0 +1,183 @@
+// Pairs that Drape leaves to Bullet: the reason it gives, and that Bullet's own algorithm really has them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "BulletCollision/Gimpact/btGImpactShape.h"
+#include "scenes/shapes.h"
+#include "tests/bullet/drop_world.h"
+
+namespace drape::test
+{
+namespace
+{
+class Stock : public testing::Test
+{
+protected:
+    Stock() : m_plugin(hostSettings()), m_shape(makeBox(2.0f, 0.4f, 2.0f)), m_world(&m_plugin) {}
+
+    btSoftBody& addCloth()
+    {
+        ClothSpec spec;
+        spec.m_nodes = 9;
+        spec.m_size = 0.6f;
+        spec.m_centre = btVector3(0, btScalar(0.25), 0);
+        return m_world.addCloth(spec);
+    }
+
+    void expectReason(const btSoftBody& cloth, const btCollisionObject& obstacle, const std::string& word) const
+    {
+        const std::string reason = m_plugin.whyStock(&cloth, &obstacle);
+        EXPECT_NE(reason.find(word), std::string::npos) << "'" << reason << "' does not speak of '" << word << "'";
+        EXPECT_EQ(reason, m_plugin.whyStock(&obstacle, &cloth));
+        EXPECT_EQ(reason.find('\n'), std::string::npos);
+    }
+
+    // Bullet's algorithm finds contacts in this many steps, and Drape has no part in it.
+    void expectBulletHasIt(const btSoftBody& cloth, int steps)
+    {
+        int most = 0;
+        for (int i = 0; i < steps; ++i)
+        {
+            m_world.step();
+            most = std::max(most, contactsHeld(cloth));
+            ASSERT_EQ(m_plugin.statistics().m_contacts, 0u);
+        }
+        EXPECT_GT(most, 0);
+    }
+
+    Plugin m_plugin;
+    MeshShape m_shape;
+    DropWorld m_world;
+};
+}  // namespace
+
+TEST_F(Stock, nothingStandsInTheWayOfAStaticMesh)
+{
+    EXPECT_EQ(m_plugin.whyStock(&addCloth(), &m_world.addObstacle(m_shape.shape())), "");
+}
+
+TEST_F(Stock, boxShapeHoldsTheCloth)
+{
+    btBoxShape box(btVector3(1, btScalar(0.2), 1));
+    btCollisionObject& object = m_world.addObstacle(box);
+    btSoftBody& cloth = addCloth();
+    expectReason(cloth, object, "not a triangle mesh");
+    expectBulletHasIt(cloth, 90);
+    EXPECT_GT(lowestOf(cloth), btScalar(0.19));
+}
+
+TEST_F(Stock, kinematicMesh)
+{
+    btCollisionObject& object = m_world.addObstacle(m_shape.shape());
+    object.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+    btSoftBody& cloth = addCloth();
+    expectReason(cloth, object, "kinematic");
+    expectBulletHasIt(cloth, 20);
+}
+
+TEST_F(Stock, dynamicMesh)
+{
+    btRigidBody body(btScalar(1), nullptr, &m_shape.shape(), btVector3(1, 1, 1));
+    expectReason(addCloth(), body, "dynamic");
+}
+
+TEST_F(Stock, aMeshThatTurnsKinematicAndBackChangesHandsBothTimes)
+{
+    btCollisionObject& object = m_world.addObstacle(m_shape.shape());
+    btSoftBody& cloth = addCloth();
+    m_world.step(60);
+    EXPECT_GT(m_plugin.statistics().m_contacts, 0u);
+    object.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+    expectBulletHasIt(cloth, 3);
+    object.setCollisionFlags(btCollisionObject::CF_STATIC_OBJECT);
+    m_world.step(3);
+    EXPECT_GT(m_plugin.statistics().m_contacts, 0u);
+}
+
+TEST_F(Stock, clusterMode)
+{
+    btCollisionObject& object = m_world.addObstacle(m_shape.shape());
+    btSoftBody& cloth = addCloth();
+    cloth.generateClusters(4);
+    cloth.m_cfg.collisions = btSoftBody::fCollision::CL_RS;
+    expectReason(cloth, object, "cluster");
+    m_world.step(10);
+    EXPECT_EQ(m_plugin.statistics().m_contacts, 0u);
+}
+
+TEST_F(Stock, gimpactShape)
+{
+    btTriangleMesh triangles;
+    triangles.addTriangle(btVector3(-1, 0, -1), btVector3(0, 0, 1), btVector3(1, 0, -1));
+    btGImpactMeshShape shape(&triangles);
+    shape.updateBound();
+    expectReason(addCloth(), m_world.addObstacle(shape), "GImpact");
+}
+
+TEST_F(Stock, compoundNamesTheChild)
+{
+    btBoxShape box(btVector3(1, 1, 1));
+    btCompoundShape compound;
+    compound.addChildShape(btTransform::getIdentity(), &m_shape.shape());
+    compound.addChildShape(btTransform::getIdentity(), &box);
+    expectReason(addCloth(), m_world.addObstacle(compound), "child 1");
+}
+
+TEST_F(Stock, pairsThatAreNotClothAndObstacle)
+{
+    btCollisionObject& object = m_world.addObstacle(m_shape.shape());
+    btSoftBody &one = addCloth(), &two = addCloth();
+    EXPECT_NE(m_plugin.whyStock(&object, &object), "");
+    EXPECT_NE(m_plugin.whyStock(&one, &two), "");
+}
+
+TEST_F(Stock, worldWithoutDrapesSolver)
+{
+    DropWorld other(nullptr);
+    btCollisionObject& object = other.addObstacle(m_shape.shape());
+    expectReason(other.addCloth(ClothSpec()), object, "solver");
+}
+
+TEST(StockWithoutDevice, anUnknownDeviceIsAnErrorThatListsThoseThereAre)
+{
+    Settings settings;
+    settings.m_device = "no device has this name";
+    for (const Backend backend : {Backend::Auto, Backend::OpenCl})
+    {
+        settings.m_backend = backend;
+        const Plugin plugin(settings);
+        EXPECT_FALSE(plugin.ready());
+        EXPECT_NE(plugin.error().find(settings.m_device), std::string::npos) << plugin.error();
+        for (const DeviceInfo& device : listDevices())
+            EXPECT_NE(plugin.error().find(device.m_name), std::string::npos) << plugin.error();
+        EXPECT_FALSE(plugin.report().empty());
+    }
+}
+
+TEST(StockWithoutDevice, theAppRunsOnWithBulletsOwnCollision)
+{
+    Settings settings;
+    settings.m_device = "no device has this name";
+    Plugin plugin(settings);
+    MeshShape shape(makeBox(2.0f, 0.4f, 2.0f));
+    DropWorld world(&plugin), plain(nullptr);
+    btCollisionObject& object = world.addObstacle(shape.shape());
+    plain.addObstacle(shape.shape());
+    ClothSpec spec;
+    spec.m_nodes = 9;
+    spec.m_centre = btVector3(0, btScalar(0.25), 0);
+    btSoftBody &cloth = world.addCloth(spec), &same = plain.addCloth(spec);
+    EXPECT_NE(plugin.whyStock(&cloth, &object).find("could not start"), std::string::npos);
+    int contacts = 0;
+    for (int i = 0; i < 30; ++i)
+    {
+        world.step();
+        plain.step();
+        contacts = std::max(contacts, contactsHeld(cloth));
+        ASSERT_EQ(hashOf(cloth), hashOf(same)) << "step " << i;
+    }
+    EXPECT_GT(contacts, 0);
+}
+}  // namespace drape::test

@@ -1,0 +1,165 @@
+// How Drape gets into a Bullet world, and which place of an obstacle it takes for real.
+#include <gtest/gtest.h>
+
+#include "BulletCollision/CollisionShapes/btScaledBvhTriangleMeshShape.h"
+#include "scenes/shapes.h"
+#include "tests/bullet/drop_world.h"
+
+namespace drape::test
+{
+namespace
+{
+constexpr int kSteps = 60;
+
+ClothSpec clothAt(const btVector3& centre)
+{
+    ClothSpec spec;
+    spec.m_nodes = 13;
+    spec.m_centre = centre;
+    return spec;
+}
+
+const ClothSpec kAboveSphere = clothAt(btVector3(btScalar(0.02), btScalar(0.5), btScalar(-0.03)));
+
+btTransform tilted()
+{
+    return btTransform(btQuaternion(btVector3(1, 2, 3).normalized(), btScalar(0.7)),
+                       btVector3(btScalar(0.3), btScalar(-0.2), btScalar(0.1)));
+}
+
+// Drops a cloth on the shape at the pose; `mesh` is where its triangles then are.
+void expectHeld(btCollisionShape& shape, const btTransform& pose, const TriangleMesh& mesh)
+{
+    Plugin plugin(hostSettings());
+    DropWorld world(&plugin);
+    btCollisionObject& object = world.addObstacle(shape, pose);
+    const Bounds bounds = boundsOf(mesh);
+    btSoftBody& cloth = world.addCloth(
+        clothAt(btVector3(btScalar(0.5f * (bounds.m_low[0] + bounds.m_high[0])), btScalar(bounds.m_high[1] + 0.1f),
+                          btScalar(0.5f * (bounds.m_low[2] + bounds.m_high[2])))));
+    EXPECT_EQ(plugin.whyStock(&cloth, &object), "");
+    const Course course = runMeasured(world, cloth, mesh, kSteps);
+    expectClean(course);
+    EXPECT_GT(plugin.statistics().m_contacts, 0u);
+    EXPECT_NEAR(course.m_end.m_gapMin, kThickness, 0.1 * kThickness);
+    for (const ContactInfo& contact : plugin.contacts())
+        ASSERT_EQ(contact.m_obstacle, &object);
+}
+}  // namespace
+
+TEST(Wiring, installOnALivingDispatcherIsAsGoodAsTheConfiguration)
+{
+    MeshShape shape(makeSphere(0.4f, 2));
+    Plugin configured(hostSettings()), installed(hostSettings());
+    DropWorld first(&configured), second(&installed, Wiring::SolverOnly);
+    install(installed, second.dispatcher(), second.world());
+    first.addObstacle(shape.shape());
+    second.addObstacle(shape.shape());
+    btSoftBody& one = first.addCloth(kAboveSphere);
+    btSoftBody& two = second.addCloth(kAboveSphere);
+    first.step(kSteps);
+    second.step(kSteps);
+    EXPECT_GT(installed.statistics().m_contacts, 0u);
+    EXPECT_EQ(hashOf(one), hashOf(two));
+}
+
+TEST(Wiring, installTakesOverPairsThatExist)
+{
+    const TriangleMesh mesh = makeBox(3.0f, 0.4f, 3.0f);
+    MeshShape shape(mesh);
+    Plugin plugin(hostSettings());
+    DropWorld world(&plugin, Wiring::SolverOnly);
+    world.addObstacle(shape.shape());
+    btSoftBody& cloth = world.addCloth(clothAt(btVector3(0, btScalar(0.23), 0)));
+    world.step(2);
+    EXPECT_EQ(plugin.statistics().m_contacts, 0u) << "Bullet's own algorithm has the pair";
+    install(plugin, world.dispatcher(), world.world());
+    expectClean(runMeasured(world, cloth, mesh, kSteps));
+    EXPECT_GT(plugin.statistics().m_contacts, 0u);
+}
+
+// Bullet orders a pair by the age of its members, so the order of adding gives both.
+TEST(Wiring, bothOrdersOfAPairGiveTheSameMotion)
+{
+    MeshShape shape(makeSphere(0.4f, 2));
+    Plugin plugin(hostSettings());
+    DropWorld meshFirst(&plugin), clothFirst(&plugin);
+    meshFirst.addObstacle(shape.shape());
+    btSoftBody& one = meshFirst.addCloth(kAboveSphere);
+    btSoftBody& two = clothFirst.addCloth(kAboveSphere);
+    clothFirst.addObstacle(shape.shape());
+    meshFirst.step(kSteps);
+    EXPECT_GT(plugin.statistics().m_contacts, 0u);
+    clothFirst.step(kSteps);
+    EXPECT_GT(plugin.statistics().m_contacts, 0u);
+    EXPECT_EQ(hashOf(one), hashOf(two));
+}
+
+TEST(Wiring, poseOfTheObject)
+{
+    const TriangleMesh mesh = makeStairs(1.0f, 0.5f, 1.0f, 3);
+    MeshShape shape(mesh);
+    expectHeld(shape.shape(), tilted(), placed(mesh, tilted()));
+}
+
+TEST(Wiring, childOfACompoundWithATransform)
+{
+    const TriangleMesh mesh = makeTorus(0.4f, 0.15f, 24, 12);
+    MeshShape shape(mesh);
+    const btTransform child(btQuaternion(btVector3(0, 0, 1), btScalar(1.1)), btVector3(btScalar(-0.4), 1, 0));
+    btCompoundShape compound;
+    compound.addChildShape(child, &shape.shape());
+    expectHeld(compound, tilted(), placed(mesh, tilted() * child));
+}
+
+TEST(Wiring, twoChildrenOfTheSameShapeAreTwoObstacles)
+{
+    const TriangleMesh mesh = makeSphere(0.2f, 2);
+    MeshShape shape(mesh);
+    btCompoundShape compound;
+    TriangleMesh both;
+    for (const btScalar x : {btScalar(-0.3), btScalar(0.3)})
+    {
+        const btTransform child(btQuaternion::getIdentity(), btVector3(x, 0, 0));
+        compound.addChildShape(child, &shape.shape());
+        const TriangleMesh moved = placed(mesh, child);
+        const std::int32_t offset = static_cast<std::int32_t>(both.vertexCount());
+        both.m_positions.insert(both.m_positions.end(), moved.m_positions.begin(), moved.m_positions.end());
+        for (std::int32_t index : moved.m_triangles)
+            both.m_triangles.push_back(offset + index);
+    }
+    expectHeld(compound, btTransform::getIdentity(), both);
+}
+
+TEST(Wiring, scaledAndMirroredShapes)
+{
+    const TriangleMesh mesh = makeStairs(1.0f, 0.5f, 1.0f, 3);
+    for (const btVector3& scaling : {btVector3(btScalar(0.7), btScalar(1.3), btScalar(0.9)),
+                                     btVector3(btScalar(-0.8), btScalar(1.1), 1), btVector3(-1, 1, btScalar(-0.9))})
+    {
+        SCOPED_TRACE(testing::Message() << scaling.x() << " " << scaling.y() << " " << scaling.z());
+        MeshShape shape(mesh);
+        btScaledBvhTriangleMeshShape scaled(&shape.shape(), scaling);
+        scaled.setMargin(kMargin);
+        expectHeld(scaled, tilted(), placed(mesh, tilted(), scaling));
+    }
+}
+
+TEST(Wiring, verticesMovedInPlaceAreNoticed)
+{
+    const TriangleMesh mesh = makeBox(3.0f, 0.4f, 3.0f);
+    MeshShape shape(mesh);
+    Plugin plugin(hostSettings());
+    DropWorld world(&plugin);
+    btCollisionObject& object = world.addObstacle(shape.shape());
+    btSoftBody& cloth = world.addCloth(clothAt(btVector3(0, btScalar(0.24), 0)));
+    world.step(kSteps);
+    for (std::size_t i = 1; i < shape.positions().size(); i += 3)
+        shape.positions()[i] -= 0.1f;
+    shape.shape().refitTree(btVector3(-2, -1, -2), btVector3(2, 1, 2));
+    world.world().updateSingleAabb(&object);
+    plugin.obstacleChanged(&shape.shape());
+    world.step(2 * kSteps);
+    EXPECT_NEAR(static_cast<double>(lowestOf(cloth)) - 0.1, kThickness, 0.1 * kThickness);
+}
+}  // namespace drape::test

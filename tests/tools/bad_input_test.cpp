@@ -1,0 +1,111 @@
+// What cloth_drop refuses: one clear line and exit code 2, nothing run, nothing written.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "bullet_plugin/core/pipeline.h"
+#include "tests/tools/tool.h"
+
+namespace drape::test
+{
+using BadInput = ToolTest;
+
+TEST_F(BadInput, missingFile)
+{
+    expectRefused(runSmall({"--obstacle", path("nowhere.obj")}), {"nowhere.obj", "no such file"});
+}
+
+TEST_F(BadInput, folder)
+{
+    expectRefused(runSmall({"--obstacle", path("")}), {"folder"});
+}
+
+TEST_F(BadInput, notAMesh)
+{
+    expectRefused(runSmall({"--obstacle", write("letter.txt", "Dear reader,\n")}), {"letter.txt", "not a mesh"});
+    expectRefused(runSmall({"--obstacle", write("empty.ply", "")}), {"empty.ply", "empty"});
+    expectRefused(runSmall({"--obstacle", write("broken.ply", "ply\nformat ascii 1.0\nelement")}), {"broken.ply"});
+    expectRefused(runSmall({"--obstacle", write("broken.stl", "sol")}), {"broken.stl", "not a mesh"});
+}
+
+TEST_F(BadInput, noTriangles)
+{
+    expectRefused(runSmall({"--obstacle", write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n")}), {"points.obj"});
+    expectRefused(runSmall({"--obstacle", write("repeats.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2\n")}),
+                  {"repeats.obj", "no triangles"});
+}
+
+TEST_F(BadInput, indexOutOfRange)
+{
+    const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    expectRefused(runSmall({"--obstacle", write("high.obj", vertices + "f 1 2 4\n")}), {"high.obj", "out of range"});
+    expectRefused(runSmall({"--obstacle", write("low.obj", vertices + "f 1 2 -4\n")}), {"low.obj", "out of range"});
+    const std::string ply =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+    expectRefused(runSmall({"--obstacle", write("high.ply", ply + "3 0 1 3\n")}),
+                  {"high.ply", "face 1", "out of range"});
+    expectRefused(runSmall({"--obstacle", write("low.ply", ply + "3 0 1 -1\n")}),
+                  {"low.ply", "face 1", "out of range"});
+}
+
+TEST_F(BadInput, vertexThatIsNoNumber)
+{
+    for (const char* bad : {"nan", "inf", "-inf", "1e39", "x"})
+    {
+        SCOPED_TRACE(bad);
+        const std::string text = std::string("v 0 0 0\nv 1 ") + bad + " 0\nv 0 1 0\nf 1 2 3\n";
+        expectRefused(runSmall({"--obstacle", write("bad.obj", text)}), {"bad.obj", "vertex 2"});
+    }
+}
+
+TEST_F(BadInput, numbers)
+{
+    for (const char* option : {"--obstacle-size", "--cloth-size", "--steps", "--dt", "--thickness"})
+        for (const char* value : {"-1", "0", "nan", "inf", "two", ""})
+        {
+            SCOPED_TRACE(std::string(option) + " " + value);
+            expectRefused(runSmall({option, value}), {option});
+        }
+    expectRefused(runSmall({"--drop-height", "-0.1"}), {"--drop-height"});
+    expectRefused(runSmall({"--steps", "2.5"}), {"--steps"});
+}
+
+TEST_F(BadInput, clothSizes)
+{
+    for (const char* value : {"9", "9x", "x9", "1x9", "9x1", "0x0", "-9x9", "9x9x9", "99999x9"})
+    {
+        SCOPED_TRACE(value);
+        expectRefused(runSmall({"--cloth", value}), {"--cloth"});
+    }
+}
+
+TEST_F(BadInput, optionsThatDoNotExistOrContradict)
+{
+    expectRefused(runSmall({"--no-such-option"}), {"--no-such-option"});
+    expectRefused(runSmall({"--backend", "abacus"}), {"abacus"});
+    expectRefused(runSmall({"--backend", "bullet", "--compare"}), {"--compare"});
+    expectRefused(runSmall({"--backend", "host", "--device", "gpu"}), {"--device"});
+    expectRefused(runSmall({"--validate-hash", "12"}), {"12"});
+}
+
+TEST_F(BadInput, unknownDeviceListsThoseThereAre)
+{
+    DRAPE_NEED_DEVICE();
+    std::vector<std::string> words = {"no such device"};
+    for (const DeviceInfo& device : listDevices())
+        words.push_back(device.m_name);
+    expectRefused(runSmall({"--device", "no such device"}), words);
+    expectRefused(runSmall({"--backend", "opencl", "--device", "no such device"}), words);
+}
+
+TEST_F(BadInput, writesNothing)
+{
+    expectRefused(runSmall({"--obstacle", path("nowhere.obj"), "--json", path("a.json"), "--csv", path("a.csv"),
+                            "--frames", path("frames"), "--picture", path("a.png")}),
+                  {"nowhere.obj"});
+    for (const char* name : {"a.json", "a.csv", "frames", "a.png"})
+        EXPECT_FALSE(std::filesystem::exists(path(name))) << name;
+}
+}  // namespace drape::test

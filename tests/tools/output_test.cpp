@@ -1,0 +1,201 @@
+// What cloth_drop writes and how it ends.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "bullet_plugin/core/pipeline.h"
+#include "scenes/mesh_loader.h"
+#include "tests/tools/tool.h"
+
+namespace drape::test
+{
+namespace
+{
+using Json = nlohmann::json;
+
+bool isHash(const std::string& text)
+{
+    return text.size() == 16 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+// Every key of a run, each with its type.
+void expectRun(const Json& run, int steps)
+{
+    for (const char* key : {"backend", "device", "device_reason", "hash"})
+        EXPECT_TRUE(run.at(key).is_string()) << key;
+    for (const char* key : {"steps", "cloth_triangles", "obstacle_triangles", "contacts_max", "nodes_below_surface",
+                            "intersecting_pairs_end", "nan_nodes"})
+        EXPECT_TRUE(run.at(key).is_number_unsigned()) << key;
+    for (const char* key : {"thickness_m", "penetration_max_m", "penetration_p99_m", "gap_min_m"})
+        EXPECT_TRUE(run.at(key).is_number()) << key;
+    for (const char* key : {"step_ms", "collision_ms"})
+        for (const char* part : {"first", "median", "p95", "max"})
+            EXPECT_TRUE(run.at(key).at(part).is_number()) << key << " " << part;
+    EXPECT_EQ(run.at("steps"), steps);
+    EXPECT_EQ(run.at("cloth_triangles"), 128);
+    EXPECT_TRUE(isHash(run.at("hash"))) << run.at("hash");
+}
+
+std::uint32_t bigEndian(const std::string& bytes, std::size_t at)
+{
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+        value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+    return value;
+}
+}  // namespace
+
+using Outputs = ToolTest;
+
+TEST_F(Outputs, jsonHasEveryKey)
+{
+    const Json run = Json::parse(summaryOf({}));
+    expectRun(run, 10);
+    EXPECT_EQ(run.at("backend"), "host");
+    EXPECT_GT(run.at("contacts_max"), 0);
+    EXPECT_GT(run.at("collision_ms").at("median"), 0);
+    EXPECT_LE(run.at("collision_ms").at("median"), run.at("collision_ms").at("max"));
+    EXPECT_EQ(run.at("penetration_max_m"), 0);
+    EXPECT_EQ(run.at("nodes_below_surface"), 0);
+    EXPECT_EQ(run.at("intersecting_pairs_end"), 0);
+    EXPECT_EQ(run.at("nan_nodes"), 0);
+    EXPECT_NEAR(run.at("thickness_m"), 0.02, 1e-9);
+}
+
+TEST_F(Outputs, hostAndOpenClGiveTheSameHash)
+{
+    DRAPE_NEED_DEVICE();
+    const Json host = Json::parse(summaryOf({"--backend", "host"}));
+    const Json device = Json::parse(summaryOf({"--backend", "opencl"}));
+    EXPECT_EQ(host.at("backend"), "host");
+    EXPECT_EQ(device.at("backend"), "opencl");
+    EXPECT_EQ(host.at("hash"), device.at("hash"));
+    EXPECT_GT(device.at("contacts_max"), 0);
+}
+
+TEST_F(Outputs, validateHashDecidesTheExitCode)
+{
+    std::string hash = Json::parse(summaryOf({})).at("hash");
+    EXPECT_EQ(runSmall({"--validate-hash", hash}).m_exitCode, 0);
+    std::transform(hash.begin(), hash.end(), hash.begin(), [](unsigned char c) { return std::toupper(c); });
+    EXPECT_EQ(runSmall({"--validate-hash", hash}).m_exitCode, 0);
+    const ToolRun other = runSmall({"--validate-hash", "0123456789abcdef", "--json", path("still.json")});
+    EXPECT_EQ(other.m_exitCode, 3);
+    EXPECT_NE(other.m_err.find("0123456789abcdef"), std::string::npos) << other.m_err;
+    EXPECT_TRUE(Json::accept(readAll(path("still.json")))) << "the results are written all the same";
+}
+
+TEST_F(Outputs, csvHasARowAStep)
+{
+    ASSERT_EQ(runSmall({"--csv", path("steps.csv")}).m_exitCode, 0);
+    const std::string csv = readAll(path("steps.csv"));
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 11);
+    const std::string heading = csv.substr(0, csv.find('\n'));
+    const std::ptrdiff_t commas = std::count(heading.begin(), heading.end(), ',');
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), ','), 11 * commas);
+    EXPECT_NE(csv.find("\n10,"), std::string::npos);
+}
+
+TEST_F(Outputs, framesAreMeshesOneAStep)
+{
+    ASSERT_EQ(runSmall({"--frames", path("frames")}).m_exitCode, 0);
+    int cloths = 0, others = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(path("frames")))
+        ++(entry.path().filename().string().rfind("cloth_", 0) == 0 ? cloths : others);
+    EXPECT_EQ(cloths, 11);  // the start and each step
+    EXPECT_EQ(others, 1);   // the obstacle
+    TriangleMesh mesh;
+    std::string error;
+    ASSERT_TRUE(loadMesh(path("frames/cloth_0010.ply"), mesh, error)) << error;
+    EXPECT_EQ(mesh.triangleCount(), 128u);
+    ASSERT_TRUE(loadMesh(path("frames/obstacle.ply"), mesh, error)) << error;
+}
+
+TEST_F(Outputs, pictureIsAPng)
+{
+    ASSERT_EQ(runSmall({"--steps", "2", "--picture", path("last.png")}).m_exitCode, 0);
+    const std::string png = readAll(path("last.png"));
+    ASSERT_GT(png.size(), 1000u);
+    EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
+    EXPECT_EQ(png.substr(12, 4), "IHDR");
+    EXPECT_EQ(png.substr(png.size() - 8, 4), "IEND");
+    for (const std::size_t at : {16u, 20u})
+    {
+        EXPECT_GE(bigEndian(png, at), 200u);
+        EXPECT_LE(bigEndian(png, at), 10000u);
+    }
+}
+
+TEST_F(Outputs, whatCannotBeWrittenIsAFailedRun)
+{
+    for (const char* option : {"--json", "--csv", "--picture"})
+    {
+        SCOPED_TRACE(option);
+        const ToolRun run = runSmall({option, path("no/such/folder/file.png")});
+        EXPECT_EQ(run.m_exitCode, 1);
+        EXPECT_NE(run.m_err.find("no/such/folder"), std::string::npos) << run.m_err;
+    }
+    write("file", "");
+    EXPECT_EQ(runSmall({"--frames", path("file")}).m_exitCode, 1);
+}
+
+TEST_F(Outputs, quietSaysNothingAndHelpIsGood)
+{
+    const ToolRun quiet = runSmall({});
+    EXPECT_EQ(quiet.m_exitCode, 0);
+    EXPECT_EQ(quiet.m_out + quiet.m_err, "");
+    const ToolRun help = run({"--help"});
+    EXPECT_EQ(help.m_exitCode, 0);
+    for (const char* option : {"--obstacle", "--cloth", "--backend", "--compare", "--validate-hash", "--picture"})
+        EXPECT_NE(help.m_out.find(option), std::string::npos) << option;
+}
+
+TEST_F(Outputs, listDevicesNamesThemAll)
+{
+    const ToolRun result = run({"--list-devices"});
+    EXPECT_EQ(result.m_exitCode, 0);
+    EXPECT_FALSE(result.m_out.empty());
+    for (const DeviceInfo& device : listDevices())
+        EXPECT_NE(result.m_out.find(device.m_name), std::string::npos) << result.m_out;
+}
+
+TEST_F(Outputs, everyShapeRuns)
+{
+    for (const char* shape : {"sphere", "bowl", "stairs"})
+    {
+        SCOPED_TRACE(shape);
+        const Json run = Json::parse(summaryOf({"--obstacle", shape, "--cloth", "9x9"}));
+        expectRun(run, 10);
+        EXPECT_EQ(run.at("penetration_max_m"), 0);
+    }
+}
+
+TEST_F(Outputs, builtInBackEndAlone)
+{
+    const Json run = Json::parse(summaryOf({"--backend", "bullet", "--obstacle", "stairs", "--steps", "3"}));
+    expectRun(run, 3);
+    EXPECT_NE(std::string(run.at("backend")).find("bullet"), std::string::npos);
+}
+
+TEST_F(Outputs, compareHasThreeRunsAndTwoRatios)
+{
+    const Json all = Json::parse(summaryOf({"--obstacle", "stairs", "--compare", "--compare-cap", "10"}));
+    for (const char* name : {"drape", "bullet_stock", "bullet_tuned"})
+    {
+        SCOPED_TRACE(name);
+        const Json& run = all.at(name);
+        if (!run.contains("capped_at_step")) expectRun(run, 10);
+    }
+    EXPECT_FALSE(all.at("drape").contains("capped_at_step"));
+    EXPECT_EQ(all.at("drape").at("penetration_max_m"), 0);
+    for (const char* ratio : {"ratio_stock", "ratio_tuned"})
+    {
+        ASSERT_TRUE(all.at(ratio).is_number()) << ratio;
+        EXPECT_GT(all.at(ratio), 0) << ratio;
+    }
+}
+}  // namespace drape::test

@@ -1,0 +1,52 @@
+// Runs cloth_drop as a user would and keeps what it said.
+//
+// Input: the environment variable DRAPE_CLOTH_DROP names the program. Each test gets a folder of its own that is gone
+// afterwards.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace drape::test
+{
+struct ToolRun
+{
+    int m_exitCode = -1;  // −1: it did not end by itself
+    std::string m_out, m_err;
+};
+
+class ToolTest : public testing::Test
+{
+protected:
+    void SetUp() override;
+    void TearDown() override;
+
+    ToolRun run(const std::vector<std::string>& arguments) const;
+    // A 9×9 cloth on the sphere for 10 steps on the host, quiet; `more` follows and wins.
+    ToolRun runSmall(const std::vector<std::string>& more) const;
+    // The summary of such a run, as JSON text; fails the test when the run fails.
+    std::string summaryOf(const std::vector<std::string>& more) const;
+
+    std::string path(const std::string& name) const { return m_folder + "/" + name; }
+    std::string write(const std::string& name, const std::string& text) const;  // returns the path
+
+    // Exit code 2 and one line on stderr that holds every one of the words.
+    static void expectRefused(const ToolRun& run, const std::vector<std::string>& words);
+
+private:
+    std::string m_program, m_folder;
+};
+
+std::string readAll(const std::string& path);
+
+// Ends the test as skipped where no OpenCL device is expected (DRAPE_TEST_NO_DEVICE=1), as failed where one is missing.
+#define DRAPE_NEED_DEVICE()                                                                        \
+    if (listDevices().empty())                                                                     \
+    {                                                                                              \
+        const char* allowed = std::getenv("DRAPE_TEST_NO_DEVICE");                                 \
+        if (allowed && std::string(allowed) == "1") GTEST_SKIP() << "no OpenCL device, as agreed"; \
+        GTEST_FAIL() << "no OpenCL device was found";                                              \
+    }
+}  // namespace drape::test
