@@ -26,6 +26,24 @@ RTCRay makeRay(const Vector3& origin, const Vector3& direction, double distance)
     ray.mask = 0xffffffffu;
     return ray;
 }
+// Embree 4 dropped the context that version 3 asks for.
+#if RTC_VERSION_MAJOR >= 4
+void intersect(RTCScene scene, RTCRayHit& query) { rtcIntersect1(scene, &query); }
+void occlude(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray); }
+#else
+void intersect(RTCScene scene, RTCRayHit& query)
+{
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(scene, &context, &query);
+}
+void occlude(RTCScene scene, RTCRay& ray)
+{
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(scene, &context, &ray);
+}
+#endif
 }  // namespace
 
 RayScene::RayScene(ShadedMesh cloth, ShadedMesh obstacle) : m_meshes{std::move(cloth), std::move(obstacle)}
@@ -77,9 +95,7 @@ SurfacePoint RayScene::trace(const Vector3& origin, const Vector3& direction) co
     RTCRayHit query{};
     query.ray = makeRay(origin, direction, std::numeric_limits<float>::infinity());
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(m_scene, &context, &query);
+    intersect(m_scene, query);
     SurfacePoint hit;
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
     {
@@ -112,9 +128,7 @@ SurfacePoint RayScene::trace(const Vector3& origin, const Vector3& direction) co
 bool RayScene::blocked(const Vector3& origin, const Vector3& direction, double distance) const
 {
     RTCRay ray = makeRay(origin, direction, distance);
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(m_scene, &context, &ray);
+    occlude(m_scene, ray);
     return ray.tfar < 0;
 }
 }  // namespace drape

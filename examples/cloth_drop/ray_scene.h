@@ -4,7 +4,11 @@
 
 #include <vector>
 
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 
 #include "examples/cloth_drop/smooth_mesh.h"
 #include "scenes/mesh.h"
