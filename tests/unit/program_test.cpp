@@ -84,6 +84,29 @@ TEST(AssembleSource, UnknownFileIsEmpty)
     EXPECT_TRUE(assembleSource("kernels/no_such.cl").empty());
 }
 
+// For drivers that ignore line directives: a marker in the assembled source, named by its own line, is found in its
+// file.
+TEST(TranslateLog, NamesFileAndLineOfEveryKernelLine)
+{
+    const std::string source = assembleSource("kernels/refit.cl");
+    for (const char* text : {"__kernel void refitLeaves", "DRAPE_FUNCTION void dopClear", "__kernel void refitTop"})
+    {
+        SCOPED_TRACE(text);
+        const std::size_t at = source.find(text);
+        ASSERT_NE(at, std::string::npos);
+        const std::size_t physical = 1 + countOf(source.substr(0, at), "\n");
+        const std::size_t directive = source.rfind("#line ", at);
+        const std::size_t quote = source.find('"', directive);
+        const std::string file = source.substr(quote + 1, source.find('"', quote + 1) - quote - 1);
+        const std::size_t line =
+            std::stoul(source.substr(directive + 6)) + countOf(source.substr(directive, at - directive), "\n") - 1;
+        EXPECT_EQ(translateLog("<kernel>:" + std::to_string(physical) + ":5: error: x", source),
+                  file + ":" + std::to_string(line) + ":5: error: x");
+    }
+    EXPECT_EQ(translateLog("kernels/refit.cl:3: error", source), "kernels/refit.cl:3: error");
+    EXPECT_EQ(translateLog("<kernel>: no number", source), "<kernel>: no number");
+}
+
 class ProgramTest : public BackendTest
 {
 };

@@ -1,7 +1,9 @@
 #include "program.h"
 
+#include <cctype>
 #include <cstring>
 #include <set>
+#include <sstream>
 
 #include "embedded_kernels.h"
 #include "program_cache.h"
@@ -73,13 +75,30 @@ void append(const std::string& path, std::set<std::string>& seen, std::string& s
     }
 }
 
-bool build(Device& device, cl::Program& program, const std::string& name)
+// "kernels/refit.cl:26" for a line of an assembled source, counted from 1 with the directives.
+std::string originOfLine(const std::string& source, std::size_t wanted)
+{
+    std::istringstream lines(source);
+    std::string text, file;
+    std::size_t line = 0;
+    for (std::size_t physical = 1; physical <= wanted && std::getline(lines, text); ++physical, ++line)
+    {
+        const std::string keyword = "#line ";
+        if (text.compare(0, keyword.size(), keyword) != 0) continue;
+        const std::size_t quote = text.find('"');
+        line = std::stoul(text.substr(keyword.size())) - 1;  // of the directive: the next line has the number it names
+        file = text.substr(quote + 1, text.rfind('"') - quote - 1);
+    }
+    return file + ":" + std::to_string(line - 1);
+}
+
+bool build(Device& device, cl::Program& program, const std::string& name, const std::string& source)
 {
     const cl_int code = program.build(std::vector<cl::Device>{device.handle()}, kOptions);
     if (code == CL_SUCCESS) return true;
     std::string log;
     program.getBuildInfo(device.handle(), CL_PROGRAM_BUILD_LOG, &log);
-    device.check(code, "building kernels/" + name + ".cl", log);
+    device.check(code, "building kernels/" + name + ".cl", translateLog(log, source));
     return false;
 }
 }  // namespace
@@ -93,11 +112,29 @@ std::string assembleSource(const std::string& path)
     return source;
 }
 
+std::string translateLog(const std::string& log, const std::string& source)
+{
+    const std::string mark = "<kernel>:";
+    std::string translated;
+    std::size_t from = 0;
+    for (std::size_t at = log.find(mark); at != std::string::npos; at = log.find(mark, from))
+    {
+        const std::size_t number = at + mark.size();
+        std::size_t end = number;
+        while (end < log.size() && end < number + 9 && std::isdigit(static_cast<unsigned char>(log[end])))
+            ++end;
+        translated += log.substr(from, at - from);
+        translated += end > number ? originOfLine(source, std::stoul(log.substr(number, end - number))) : mark;
+        from = end;
+    }
+    return translated + log.substr(from);
+}
+
 cl::Program compileSource(Device& device, const std::string& name, const std::string& source)
 {
     cl_int code = CL_SUCCESS;
     cl::Program program(device.context(), source, false, &code);
-    if (device.check(code, "clCreateProgramWithSource", name)) build(device, program, name);
+    if (device.check(code, "clCreateProgramWithSource", name)) build(device, program, name, source);
     return program;
 }
 

@@ -11,6 +11,10 @@ namespace drape
 // own file and number, so a compiler's message names the .cl or .h file. Empty when the file is not embedded.
 std::string assembleSource(const std::string& path);
 
+// A compiler's log with every "<kernel>:line", as drivers write that ignore line directives, replaced by the file and line
+// of the kernels that this line of the assembled source came from.
+std::string translateLog(const std::string& log, const std::string& source);
+
 struct ProgramBuild
 {
     bool m_fromCache = false;
