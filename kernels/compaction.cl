@@ -3,7 +3,7 @@
 // hit among them.
 #include "lib/group_scan.h"
 #include "shared/contact.h"
-#include "shared/mesh.h"
+#include "shared/patch.h"
 
 // Slots a work-group handles. Each work-item takes DRAPE_BLOCK / group size adjacent ones.
 #define DRAPE_BLOCK 1024
@@ -27,8 +27,9 @@ __kernel void compactionCount(__global const uint* restrict slotCount, const uin
     if (get_local_id(0) == 0) blockCount[get_group_id(0)] = total;
 }
 
-// One work-group replaces the sums by the sums before them.
-__kernel void compactionScan(__global uint* restrict blockCount, const uint blocks, __local uint* scratch)
+// One work-group replaces the sums by the sums before them and stores their total as counters->m_hits.
+__kernel void compactionScan(__global uint* restrict blockCount, const uint blocks,
+                             __global StepCounters* restrict counters, __local uint* scratch)
 {
     uint base = 0;
     for (uint first = 0; first < blocks; first += get_local_size(0))
@@ -39,6 +40,7 @@ __kernel void compactionScan(__global uint* restrict blockCount, const uint bloc
         if (block < blocks) blockCount[block] = base + before;
         base += total;
     }
+    if (get_local_id(0) == 0) counters->m_hits = base;
 }
 
 // A work-group writes where the hits of each slot of its block begin.
@@ -56,16 +58,17 @@ __kernel void compactionPlace(__global const uint* restrict slotCount, const uin
     }
 }
 
-// A work-item takes every stride-th hit and lists it among its slot's members, last to first as the items come; the atomic
-// gives each a place of its own. Leaves slotCount zero for the next step.
+// A work-item takes every stride-th place of the hits' list and lists a hit among its slot's members, last to first as the
+// items come; the atomic gives each a place of its own. Places whose slot is DRAPE_NO_FEATURE hold no hit. Leaves slotCount zero for the next step.
 __kernel void compactionGather(__global const Contact* restrict hits, const uint hitCapacity,
                                __global volatile uint* slotCount, __global const uint* restrict slotFirst,
                                __global uint* restrict members, __global const StepCounters* restrict counters)
 {
-    const uint count = min(counters->m_hits, hitCapacity);
+    const uint count = min(counters->m_listed, hitCapacity);
     for (uint i = get_global_id(0); i < count; i += get_global_size(0))
     {
         const uint slot = hits[i].m_slot;
+        if (slot == DRAPE_NO_FEATURE) continue;
         members[slotFirst[slot] + atomic_dec(slotCount + slot) - 1] = i;
     }
 }

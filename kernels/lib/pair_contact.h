@@ -1,5 +1,4 @@
-// The fifteen feature tests of a candidate: three nodes × face, face × three vertices, three edges × three edges. Each
-// feature pair is tested only in the pair of triangles that own both features.
+// The contacts of pairs of features, by where their positions are: see feature_contact.h for what a contact is.
 #ifndef DRAPE_LIB_PAIR_CONTACT_H
 #define DRAPE_LIB_PAIR_CONTACT_H
 
@@ -30,75 +29,47 @@ typedef struct ObstacleView
     const DRAPE_GLOBAL NormalCone* m_edgeCones;
 } ObstacleView;
 
-// The positions of one candidate, relative to the first vertex of the obstacle's triangle, and what its tests share.
-typedef struct PairGeometry
+// Contacts are a function of the two features alone: whichever way a pair of features is found, its numbers are the
+// same. The frame's origin is the obstacle feature's first position.
+DRAPE_FUNCTION PairBounds pairBounds(float extent, float reach)
 {
-    Vec3 m_origin;
-    MovingFace m_face;
-    RestingFace m_resting;
-    PairBounds m_bounds;
-} PairGeometry;
-
-DRAPE_FUNCTION void loadPair(PairGeometry* pair, const ClothView* cloth, const DRAPE_GLOBAL Triangle* clothTriangle,
-                             const ObstacleView* obstacle, const DRAPE_GLOBAL Triangle* obstacleTriangle)
-{
-    pair->m_origin = vec3Load(obstacle->m_positions, obstacleTriangle->m_vertices[0]);
-    for (int i = 0; i < 3; ++i)
-    {
-        const DRAPE_UINT node = clothTriangle->m_vertices[i];
-        pair->m_face.m_start.m_p[i] = vec3Sub(vec3Load(cloth->m_start, node), pair->m_origin);
-        pair->m_face.m_end.m_p[i] = vec3Sub(vec3Load(cloth->m_end, node), pair->m_origin);
-        pair->m_resting.m_corners.m_p[i] =
-            vec3Sub(vec3Load(obstacle->m_positions, obstacleTriangle->m_vertices[i]), pair->m_origin);
-    }
+    PairBounds bounds;
+    bounds.m_extent = extent;
+    bounds.m_reach = reach;
+    bounds.m_reachSlack = reach * 1.001f + DRAPE_SEAM * extent;
+    return bounds;
 }
 
-// Least and greatest n·(p - base) over the candidate's cloth at the step's start and end.
-DRAPE_FUNCTION void clothInterval(const PairGeometry* pair, Vec3 n, Vec3 base, float* low, float* high)
+DRAPE_FUNCTION int finishContact(int found, Vec3 origin, Contact* contact)
 {
-    *low = DRAPE_INFINITY;
-    *high = -DRAPE_INFINITY;
-    for (int i = 0; i < 3; ++i)
-    {
-        const float s0 = vec3Dot(n, vec3Sub(pair->m_face.m_start.m_p[i], base));
-        const float s1 = vec3Dot(n, vec3Sub(pair->m_face.m_end.m_p[i], base));
-        *low = drapeMin(*low, drapeMin(s0, s1));
-        *high = drapeMax(*high, drapeMax(s0, s1));
-    }
-}
-
-// Prepares the tests; returns false when the obstacle's or the cloth's plane proves the whole pair out of reach.
-DRAPE_FUNCTION int preparePair(PairGeometry* pair, float reach)
-{
-    const FeatureTriangle resting = pair->m_resting.m_corners;
-    const FeatureTriangle start = pair->m_face.m_start, end = pair->m_face.m_end;
-    const float extent = drapeMax(drapeMax(triangleExtent(start), triangleExtent(end)), triangleExtent(resting));
-    const float slack = reach * 1.001f + DRAPE_SEAM * extent;
-    pair->m_bounds.m_extent = extent;
-    pair->m_bounds.m_reach = reach;
-    pair->m_bounds.m_reachSlack = slack;
-    float low, high;
-
-    const Vec3 area = triangleNormal(resting);
-    const float areaLength = vec3Length(area);
-    clothInterval(pair, area, resting.m_p[0], &low, &high);
-    if (low > areaLength * slack || -high > areaLength * slack) return 0;
-
-    const Vec3 endArea = triangleNormal(end);
-    const float endLength = vec3Length(endArea);
-    clothInterval(pair, endArea, end.m_p[0], &low, &high);
-    const float d0 = vec3Dot(endArea, vec3Sub(resting.m_p[0], end.m_p[0]));
-    const float d1 = vec3Dot(endArea, vec3Sub(resting.m_p[1], end.m_p[0]));
-    const float d2 = vec3Dot(endArea, vec3Sub(resting.m_p[2], end.m_p[0]));
-    if (drapeMin(drapeMin(d0, d1), d2) - high > endLength * slack) return 0;
-    if (low - drapeMax(drapeMax(d0, d1), d2) > endLength * slack) return 0;
-
-    pair->m_resting.m_area = area;
-    pair->m_resting.m_areaLength = areaLength;
-    pair->m_face.m_areaStart = triangleNormal(start);
-    pair->m_face.m_areaEnd = endArea;
-    pair->m_face.m_areaEndLength = endLength;
+    if (!found || !drapeIsFinite(contact->m_gap1)) return 0;
+    contact->m_point[0] += origin.x;
+    contact->m_point[1] += origin.y;
+    contact->m_point[2] += origin.z;
     return 1;
+}
+
+// Node i of the cloth triangle against the obstacle's triangle with corners a, b, c.
+DRAPE_FUNCTION int pairNodeFace(int i, const ClothView* cloth, DRAPE_UINT clothTriangle, Vec3 a, Vec3 b, Vec3 c,
+                                const ObstacleView* obstacle, DRAPE_UINT obstacleTriangle, float reach,
+                                Contact* contact)
+{
+    const DRAPE_UINT node = cloth->m_triangles[clothTriangle].m_vertices[i];
+    const Vec3 x0 = vec3Sub(vec3Load(cloth->m_start, node), a), x1 = vec3Sub(vec3Load(cloth->m_end, node), a);
+    RestingFace face;
+    face.m_corners.m_p[0] = vec3(0.0f, 0.0f, 0.0f);
+    face.m_corners.m_p[1] = vec3Sub(b, a);
+    face.m_corners.m_p[2] = vec3Sub(c, a);
+    face.m_area = triangleNormal(face.m_corners);
+    face.m_areaLength = vec3Length(face.m_area);
+    const float extent = drapeMax(drapeMax(vec3NormMax(x0), vec3NormMax(x1)), triangleExtent(face.m_corners));
+    contact->m_kind = DRAPE_NODE_FACE;
+    contact->m_clothFeature = node;
+    contact->m_obstacleFeature = obstacleTriangle;
+    contact->m_slot = node;
+    const int found = nodeFaceContact(x0, x1, &face, obstacle->m_triangles + obstacleTriangle, obstacle->m_vertexCones,
+                                      obstacle->m_edgeCones, pairBounds(extent, reach), contact);
+    return finishContact(found, a, contact);
 }
 
 // Third vertex of the triangle on the other side of edge i; the triangle's own at a boundary.
@@ -109,50 +80,59 @@ DRAPE_FUNCTION DRAPE_UINT vertexBeyond(const ClothView* cloth, const DRAPE_GLOBA
     return edge->m_opposite[0] == own ? edge->m_opposite[1] : edge->m_opposite[0];
 }
 
-DRAPE_FUNCTION int pairNodeFace(int i, const PairGeometry* pair, const ClothView* cloth, const ObstacleView* obstacle,
-                                Candidate candidate, Contact* contact)
+// The cloth triangle against the obstacle's vertex.
+DRAPE_FUNCTION int pairFaceVertex(const ClothView* cloth, DRAPE_UINT clothTriangle, Vec3 vertex, NormalCone cone,
+                                  DRAPE_UINT obstacleVertex, float reach, Contact* contact)
 {
-    const DRAPE_GLOBAL Triangle* triangle = cloth->m_triangles + candidate.m_cloth;
-    contact->m_kind = DRAPE_NODE_FACE;
-    contact->m_clothFeature = triangle->m_vertices[i];
-    contact->m_obstacleFeature = candidate.m_obstacle;
-    contact->m_slot = contact->m_clothFeature;
-    return nodeFaceContact(pair->m_face.m_start.m_p[i], pair->m_face.m_end.m_p[i], &pair->m_resting,
-                           obstacle->m_triangles + candidate.m_obstacle, obstacle->m_vertexCones, obstacle->m_edgeCones,
-                           pair->m_bounds, contact);
-}
-
-DRAPE_FUNCTION int pairFaceVertex(int i, const PairGeometry* pair, const ClothView* cloth, const ObstacleView* obstacle,
-                                  Candidate candidate, Contact* contact)
-{
-    const DRAPE_GLOBAL Triangle* clothTriangle = cloth->m_triangles + candidate.m_cloth;
-    const DRAPE_GLOBAL Triangle* triangle = obstacle->m_triangles + candidate.m_obstacle;
+    const DRAPE_GLOBAL Triangle* triangle = cloth->m_triangles + clothTriangle;
+    MovingFace face;
+    for (int i = 0; i < 3; ++i)
+    {
+        face.m_start.m_p[i] = vec3Sub(vec3Load(cloth->m_start, triangle->m_vertices[i]), vertex);
+        face.m_end.m_p[i] = vec3Sub(vec3Load(cloth->m_end, triangle->m_vertices[i]), vertex);
+    }
+    face.m_areaStart = triangleNormal(face.m_start);
+    face.m_areaEnd = triangleNormal(face.m_end);
+    face.m_areaEndLength = vec3Length(face.m_areaEnd);
+    const float extent = drapeMax(triangleExtent(face.m_start), triangleExtent(face.m_end));
     DRAPE_UINT beyond[3];
     for (int edge = 0; edge < 3; ++edge)
-        beyond[edge] = vertexBeyond(cloth, clothTriangle, edge);
+        beyond[edge] = vertexBeyond(cloth, triangle, edge);
     contact->m_kind = DRAPE_FACE_VERTEX;
-    contact->m_clothFeature = candidate.m_cloth;
-    contact->m_obstacleFeature = triangle->m_vertices[i];
-    contact->m_slot = cloth->m_nodeCount + contact->m_clothFeature;
-    return faceVertexContact(&pair->m_face, beyond, cloth->m_end, pair->m_origin, pair->m_resting.m_corners.m_p[i],
-                             obstacle->m_vertexCones[triangle->m_vertices[i]], pair->m_bounds, contact);
+    contact->m_clothFeature = clothTriangle;
+    contact->m_obstacleFeature = obstacleVertex;
+    contact->m_slot = cloth->m_nodeCount + clothTriangle;
+    const int found = faceVertexContact(&face, beyond, cloth->m_end, vertex, vec3(0.0f, 0.0f, 0.0f), cone,
+                                        pairBounds(extent, reach), contact);
+    return finishContact(found, vertex, contact);
 }
 
-DRAPE_FUNCTION int pairEdgeEdge(int i, int j, const PairGeometry* pair, const ClothView* cloth,
-                                const ObstacleView* obstacle, Candidate candidate, Contact* contact)
+// Edge i of the cloth triangle against the obstacle's edge from a to b. The owner of an edge walks it in its own
+// direction, so the weights are in the order of its nodes.
+DRAPE_FUNCTION int pairEdgeEdge(int i, const ClothView* cloth, DRAPE_UINT clothTriangle, Vec3 a, Vec3 b,
+                                NormalCone cone, DRAPE_UINT obstacleEdge, float reach, Contact* contact)
 {
-    const DRAPE_GLOBAL Triangle* clothTriangle = cloth->m_triangles + candidate.m_cloth;
-    const DRAPE_GLOBAL Triangle* triangle = obstacle->m_triangles + candidate.m_obstacle;
+    const DRAPE_GLOBAL Triangle* triangle = cloth->m_triangles + clothTriangle;
+    const DRAPE_UINT first = triangle->m_vertices[i], second = triangle->m_vertices[i == 2 ? 0 : i + 1];
+    FeatureEdge e0, e1, o;
+    e0.m_a = vec3Sub(vec3Load(cloth->m_start, first), a);
+    e0.m_b = vec3Sub(vec3Load(cloth->m_start, second), a);
+    e1.m_a = vec3Sub(vec3Load(cloth->m_end, first), a);
+    e1.m_b = vec3Sub(vec3Load(cloth->m_end, second), a);
+    o.m_a = vec3(0.0f, 0.0f, 0.0f);
+    o.m_b = vec3Sub(b, a);
+    const float extent = drapeMax(drapeMax(drapeMax(vec3NormMax(e0.m_a), vec3NormMax(e0.m_b)),
+                                           drapeMax(vec3NormMax(e1.m_a), vec3NormMax(e1.m_b))),
+                                  vec3NormMax(o.m_b));
     contact->m_kind = DRAPE_EDGE_EDGE;
-    contact->m_clothFeature = clothTriangle->m_edges[i];
-    contact->m_obstacleFeature = triangle->m_edges[j];
+    contact->m_clothFeature = triangle->m_edges[i];
+    contact->m_obstacleFeature = obstacleEdge;
     contact->m_slot = cloth->m_nodeCount + cloth->m_triangleCount + contact->m_clothFeature;
-    return edgeEdgeContact(triangleEdge(&pair->m_face.m_start, i), triangleEdge(&pair->m_face.m_end, i),
-                           triangleEdge(&pair->m_resting.m_corners, j), obstacle->m_edgeCones[triangle->m_edges[j]],
-                           pair->m_bounds, contact);
+    return finishContact(edgeEdgeContact(e0, e1, o, cone, pairBounds(extent, reach), contact), a, contact);
 }
 
-// The tests that this pair of triangles owns, as bits.
+// The tests that a pair of triangles owns, as bits: three nodes × face, face × three vertices, three edges × three
+// edges. Each feature pair is tested only in the pair of triangles that own both features.
 DRAPE_FUNCTION DRAPE_UINT ownedTests(DRAPE_UINT clothOwned, DRAPE_UINT obstacleOwned)
 {
     const DRAPE_UINT obstacleEdges = obstacleOwned >> 3;
@@ -165,28 +145,77 @@ DRAPE_FUNCTION DRAPE_UINT ownedTests(DRAPE_UINT clothOwned, DRAPE_UINT obstacleO
 }
 
 // Runs one of the candidate's feature tests, 0 ≤ test < DRAPE_FEATURE_TESTS. Returns whether it gives a contact.
-DRAPE_FUNCTION int pairContact(int test, const PairGeometry* pair, const ClothView* cloth, const ObstacleView* obstacle,
-                               Candidate candidate, Contact* contact)
+DRAPE_FUNCTION int pairContact(int test, const ClothView* cloth, const ObstacleView* obstacle, Candidate candidate,
+                               float reach, Contact* contact)
 {
-    int found;
+    const DRAPE_GLOBAL Triangle* triangle = obstacle->m_triangles + candidate.m_obstacle;
     if (test < 3)
     {
-        found = pairNodeFace(test, pair, cloth, obstacle, candidate, contact);
+        return pairNodeFace(test, cloth, candidate.m_cloth, vec3Load(obstacle->m_positions, triangle->m_vertices[0]),
+                            vec3Load(obstacle->m_positions, triangle->m_vertices[1]),
+                            vec3Load(obstacle->m_positions, triangle->m_vertices[2]), obstacle, candidate.m_obstacle,
+                            reach, contact);
     }
-    else if (test < 6)
+    const int place = test < 6 ? test - 3 : (test - 6) % 3;
+    const DRAPE_UINT vertex = triangle->m_vertices[place];
+    const Vec3 a = vec3Load(obstacle->m_positions, vertex);
+    if (test < 6)
     {
-        found = pairFaceVertex(test - 3, pair, cloth, obstacle, candidate, contact);
+        return pairFaceVertex(cloth, candidate.m_cloth, a, obstacle->m_vertexCones[vertex], vertex, reach, contact);
     }
-    else
+    const Vec3 b = vec3Load(obstacle->m_positions, triangle->m_vertices[place == 2 ? 0 : place + 1]);
+    const DRAPE_UINT edge = triangle->m_edges[place];
+    return pairEdgeEdge((test - 6) / 3, cloth, candidate.m_cloth, a, b, obstacle->m_edgeCones[edge], edge, reach,
+                        contact);
+}
+
+// The positions of a candidate, relative to the first vertex of the obstacle's triangle.
+typedef struct PairTriangles
+{
+    FeatureTriangle m_start, m_end, m_resting;
+} PairTriangles;
+
+DRAPE_FUNCTION void loadPair(PairTriangles* pair, const ClothView* cloth, const ObstacleView* obstacle,
+                             Candidate candidate)
+{
+    const DRAPE_GLOBAL Triangle* clothTriangle = cloth->m_triangles + candidate.m_cloth;
+    const DRAPE_GLOBAL Triangle* obstacleTriangle = obstacle->m_triangles + candidate.m_obstacle;
+    const Vec3 origin = vec3Load(obstacle->m_positions, obstacleTriangle->m_vertices[0]);
+    for (int i = 0; i < 3; ++i)
     {
-        // The owner of an edge walks it in its own direction, so the weights are in the order of its nodes.
-        found = pairEdgeEdge((test - 6) / 3, (test - 6) % 3, pair, cloth, obstacle, candidate, contact);
+        const DRAPE_UINT node = clothTriangle->m_vertices[i];
+        pair->m_start.m_p[i] = vec3Sub(vec3Load(cloth->m_start, node), origin);
+        pair->m_end.m_p[i] = vec3Sub(vec3Load(cloth->m_end, node), origin);
+        pair->m_resting.m_p[i] = vec3Sub(vec3Load(obstacle->m_positions, obstacleTriangle->m_vertices[i]), origin);
     }
-    if (!found || !drapeIsFinite(contact->m_gap1)) return 0;
-    contact->m_point[0] += pair->m_origin.x;
-    contact->m_point[1] += pair->m_origin.y;
-    contact->m_point[2] += pair->m_origin.z;
-    return 1;
+}
+
+// Proves that a pair of triangles is out of reach by the planes of the two, where the cloth's is taken at the step's
+// end. The slack is far above any rounding: what is dropped here gives no contact.
+DRAPE_FUNCTION int pairApart(const ClothView* cloth, const ObstacleView* obstacle, Candidate candidate, float reach)
+{
+    PairTriangles pair;
+    loadPair(&pair, cloth, obstacle, candidate);
+    const FeatureTriangle start = pair.m_start, end = pair.m_end, resting = pair.m_resting;
+    const float extent = drapeMax(drapeMax(triangleExtent(start), triangleExtent(end)), triangleExtent(resting));
+    const float slack = reach * 1.01f + 1e-3f * extent;
+    const Vec3 normals[2] = {triangleNormal(resting), triangleNormal(end)};
+    for (int k = 0; k < 2; ++k)
+    {
+        const Vec3 n = normals[k];
+        float low = DRAPE_INFINITY, high = -DRAPE_INFINITY, lowResting = DRAPE_INFINITY, highResting = -DRAPE_INFINITY;
+        for (int i = 0; i < 3; ++i)
+        {
+            const float s0 = vec3Dot(n, start.m_p[i]), s1 = vec3Dot(n, end.m_p[i]), r = vec3Dot(n, resting.m_p[i]);
+            low = drapeMin(low, drapeMin(s0, s1));
+            high = drapeMax(high, drapeMax(s0, s1));
+            lowResting = drapeMin(lowResting, r);
+            highResting = drapeMax(highResting, r);
+        }
+        const float gap = drapeMax(low - highResting, lowResting - high);
+        if (gap > vec3Length(n) * slack) return 1;
+    }
+    return 0;
 }
 
 DRAPE_NAMESPACE_END

@@ -60,6 +60,7 @@ typedef struct Candidate
 typedef struct StepCounters
 {
     DRAPE_UINT m_candidates;
+    DRAPE_UINT m_listed;  // places of the list of hits, those without a hit included
     DRAPE_UINT m_hits;
     DRAPE_UINT m_invalidNodes;
     DRAPE_UINT m_intersections;

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "bullet_plugin/core/device/program.h"
+#include "kernels/shared/patch.h"
 #include "tests/support/cases.h"
 #include "tests/support/device_side.h"
 
@@ -47,9 +48,9 @@ public:
     {
         std::vector<cl_uint> slotCount(slots, 0);
         for (const Contact& hit : hits)
-            ++slotCount[hit.m_slot];
+            if (hit.m_slot != DRAPE_NO_FEATURE) ++slotCount[hit.m_slot];
         std::vector<StepCounters> start(1);
-        start[0].m_hits = cl_uint(hits.size());
+        start[0].m_listed = cl_uint(hits.size());
         const std::size_t blocks = (slots + kBlock - 1) / kBlock;
         const cl_uint capacity = cl_uint(std::max<std::size_t>(1, hits.size()));
         guardCopy(m_device, m_hits, hits);
@@ -61,7 +62,7 @@ public:
         guard(m_device, m_contacts, capacity);
         const cl::LocalSpaceArg scratch = cl::Local(kGroup * sizeof(cl_uint));
         m_count.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_blockCount.handle(), scratch);
-        m_scan.launch(m_device, kGroup, kGroup, m_blockCount.handle(), cl_uint(blocks), scratch);
+        m_scan.launch(m_device, kGroup, kGroup, m_blockCount.handle(), cl_uint(blocks), m_counters.handle(), scratch);
         m_place.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_blockCount.handle(),
                        m_slotFirst.handle(), scratch);
         m_gather.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotCount.handle(),
@@ -72,7 +73,8 @@ public:
         EXPECT_EQ(std::count(left.begin(), left.end(), 0u), std::ptrdiff_t(slots)) << "slots are clean after";
         EXPECT_TRUE(intact(m_device, m_hits) && intact(m_device, m_slotCount) && intact(m_device, m_slotFirst) &&
                     intact(m_device, m_blockCount) && intact(m_device, m_members) && intact(m_device, m_contacts));
-        return contents(m_device, m_contacts, hits.size());
+        const std::size_t count = contents(m_device, m_counters, 1)[0].m_hits;
+        return contents(m_device, m_contacts, std::min(count, hits.size()));
     }
 
 private:
@@ -112,6 +114,30 @@ TEST_P(CompactionTest, OrdersBySlotAndFeature)
         }
     }
     EXPECT_FALSE(device->failed()) << device->error().text();
+}
+
+TEST_P(CompactionTest, LeavesOutPlacesWithoutAHit)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    Compaction compaction(*device);
+    Random random(91);
+    for (std::uint32_t one : {1u, 2u, 7u})  // in so many places there is a hit
+    {
+        std::vector<Contact> places = randomHits(1999, 301, false, random), hits;
+        for (Contact& place : places)
+        {
+            if (random.below(one) == 0)
+                hits.push_back(place);
+            else
+                place.m_slot = DRAPE_NO_FEATURE;
+        }
+        std::sort(hits.begin(), hits.end(),
+                  [](const Contact& a, const Contact& b)
+                  { return std::tie(a.m_slot, a.m_obstacleFeature) < std::tie(b.m_slot, b.m_obstacleFeature); });
+        const std::vector<Contact> found = compaction.run(places, 301);
+        ASSERT_TRUE(sameBytes(found, hits)) << "seed 91, one in " << one << ": " << difference(found, hits);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, CompactionTest, testing::ValuesIn(openClBackends()), backendName);

@@ -154,7 +154,7 @@ TEST_P(NarrowPhaseTest, FullListsCountOnAndTheNextStepIsClean)
         stage.m_stage.reserveHits(*m_device, capacity);
         StepCounters counters;
         stage.run(all, counters);
-        EXPECT_EQ(counters.m_hits, host.size());
+        EXPECT_EQ(counters.m_listed, host.size());
     }
     stage.m_stage.reserveHits(*m_device, host.size());
     for (int step = 0; step < 3; ++step)

@@ -5,7 +5,7 @@
 
 #include "bullet_plugin/core/device/program.h"
 #include "kernels/shared/contact.h"
-#include "kernels/shared/mesh.h"
+#include "kernels/shared/patch.h"
 #include "tests/support/backends.h"
 #include "tests/support/canary.h"
 
@@ -41,6 +41,8 @@ std::vector<Field> fields()
             DRAPE_TEST_SIZE(Candidate),
             DRAPE_TEST_SIZE(StepCounters),
             DRAPE_TEST_SIZE(Contact),
+            DRAPE_TEST_SIZE(Patch),
+            DRAPE_TEST_SIZE(FeatureTest),
             DRAPE_TEST_OFFSET(Vec3, z),
             DRAPE_TEST_OFFSET(Triangle, m_vertices),
             DRAPE_TEST_OFFSET(Triangle, m_edges),
@@ -57,6 +59,7 @@ std::vector<Field> fields()
             DRAPE_TEST_OFFSET(Candidate, m_cloth),
             DRAPE_TEST_OFFSET(Candidate, m_obstacle),
             DRAPE_TEST_OFFSET(StepCounters, m_candidates),
+            DRAPE_TEST_OFFSET(StepCounters, m_listed),
             DRAPE_TEST_OFFSET(StepCounters, m_hits),
             DRAPE_TEST_OFFSET(StepCounters, m_invalidNodes),
             DRAPE_TEST_OFFSET(StepCounters, m_intersections),
@@ -69,7 +72,11 @@ std::vector<Field> fields()
             DRAPE_TEST_OFFSET(Contact, m_point),
             DRAPE_TEST_OFFSET(Contact, m_gap0),
             DRAPE_TEST_OFFSET(Contact, m_weights),
-            DRAPE_TEST_OFFSET(Contact, m_time)};
+            DRAPE_TEST_OFFSET(Contact, m_time),
+            DRAPE_TEST_OFFSET(Patch, m_edgeBlocks),
+            DRAPE_TEST_OFFSET(Patch, m_mesh),
+            DRAPE_TEST_OFFSET(FeatureTest, m_lane),
+            DRAPE_TEST_OFFSET(FeatureTest, m_reach)};
 }
 }  // namespace
 
@@ -84,8 +91,8 @@ TEST_P(RecordsTest, DeviceAndHostAgree)
     // An embedded kernel brings the shared headers; the test's kernel follows it.
     std::string source = assembleSource("kernels/narrow_phase.cl");
     source += "\n__kernel void reportRecords(__global uint* values)\n{\n";
-    for (const char* type :
-         {"Vec3", "Triangle", "Edge", "NormalCone", "BvhNode", "Candidate", "StepCounters", "Contact"})
+    for (const char* type : {"Vec3", "Triangle", "Edge", "NormalCone", "BvhNode", "Candidate", "StepCounters",
+                             "Contact", "Patch", "FeatureTest"})
     {
         source += std::string("    ") + type + " a" + type + ";\n";
     }

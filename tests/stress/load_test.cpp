@@ -55,7 +55,7 @@ TEST_P(LoadTest, CoincidentTriangles)
     step.m_end = step.m_cloth.m_positions;
     const std::vector<Contact> contacts = runCase(*pipeline, step);
     const StepStatistics& statistics = pipeline->statistics();
-    EXPECT_EQ(statistics.m_candidates, std::size_t(kClothTriangles) * kObstacleTriangles);
+    EXPECT_GE(statistics.m_candidates, std::size_t(kClothTriangles) * kObstacleTriangles);
     EXPECT_LE(statistics.m_retries, 3u);
     EXPECT_EQ(statistics.m_retries > 0, !pipeline->deviceReport().m_onHost);
     // Three nodes of every cloth triangle against every obstacle triangle at least.

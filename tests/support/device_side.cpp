@@ -23,10 +23,10 @@ bool DeviceSide::allIntact(Device& device)
            intact(device, m_vertexCones) && intact(device, m_edgeCones);
 }
 
-cl::Program programOf(Device& device, const std::string& name)
+cl::Program programOf(Device& device, const std::string& name, const std::string& defines)
 {
     ProgramBuild build;
-    return buildProgram(device, name, "", build);
+    return buildProgram(device, name, "", build, defines);
 }
 
 void clearCounters(Device& device, Buffer<StepCounters>& counters)

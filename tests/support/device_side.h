@@ -23,7 +23,7 @@ struct DeviceSide
 };
 
 // The program of kernels/<name>.cl from the tests' cache.
-cl::Program programOf(Device& device, const std::string& name);
+cl::Program programOf(Device& device, const std::string& name, const std::string& defines = std::string());
 
 // Zeroed counters on the device, and reading them back.
 void clearCounters(Device& device, Buffer<StepCounters>& counters);

@@ -138,11 +138,12 @@ cl::Program compileSource(Device& device, const std::string& name, const std::st
     return program;
 }
 
-cl::Program buildProgram(Device& device, const std::string& name, const std::string& cacheFolder, ProgramBuild& result)
+cl::Program buildProgram(Device& device, const std::string& name, const std::string& cacheFolder, ProgramBuild& result,
+                         const std::string& defines)
 {
     result.m_fromCache = false;
     if (device.failed()) return cl::Program();
-    const std::string source = assembleSource("kernels/" + name + ".cl");
+    const std::string source = defines + assembleSource("kernels/" + name + ".cl");
     const ProgramCache cache(cacheFolder);
     const std::string key = cache.key(source, kOptions, device.info());
     std::vector<unsigned char> binary;

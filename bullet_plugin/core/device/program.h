@@ -11,8 +11,8 @@ namespace drape
 // own file and number, so a compiler's message names the .cl or .h file. Empty when the file is not embedded.
 std::string assembleSource(const std::string& path);
 
-// A compiler's log with every "<kernel>:line", as drivers write that ignore line directives, replaced by the file and line
-// of the kernels that this line of the assembled source came from.
+// A compiler's log with every "<kernel>:line", as drivers write that ignore line directives, replaced by the file and
+// line of the kernels that this line of the assembled source came from.
 std::string translateLog(const std::string& log, const std::string& source);
 
 struct ProgramBuild
@@ -23,7 +23,9 @@ struct ProgramBuild
 // Builds "kernels/<name>.cl" with contraction off and correctly rounded ÷ and √. cacheFolder empty: the user's cache;
 // "none": no cache. A failed build puts the file and the whole log into the device's error. Cache trouble means a
 // build, never a failure.
-cl::Program buildProgram(Device& device, const std::string& name, const std::string& cacheFolder, ProgramBuild& build);
+// defines: lines of text put before the source.
+cl::Program buildProgram(Device& device, const std::string& name, const std::string& cacheFolder, ProgramBuild& build,
+                         const std::string& defines = std::string());
 
 // Builds a source text as given, for tests of the log.
 cl::Program compileSource(Device& device, const std::string& name, const std::string& source);

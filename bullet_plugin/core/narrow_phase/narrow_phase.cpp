@@ -13,6 +13,7 @@ constexpr std::size_t kItemsPerUnitCpu = 256;   // four groups per core, so that
 void NarrowPhaseStage::create(Device& device, const cl::Program& narrowPhase, const cl::Program& compaction)
 {
     m_test.create(device, narrowPhase, "narrowPhaseTest");
+    m_feature.create(device, narrowPhase, "narrowPhaseFeature");
     m_intersect.create(device, narrowPhase, "narrowPhaseIntersect");
     m_count.create(device, compaction, "compactionCount");
     m_scan.create(device, compaction, "compactionScan");
@@ -57,6 +58,20 @@ void NarrowPhaseStage::enqueue(Device& device, NarrowPhaseBuffers sides, std::si
     enqueueCompaction(device, counters);
 }
 
+void NarrowPhaseStage::enqueueFeatures(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount,
+                                       std::size_t triangleCount, PatchCullStage& cull, Buffer<StepCounters>& counters)
+{
+    PatchCullStage::Features features = cull.features();
+    m_feature.launch(device, listWidth(device), kGroup, cull.tests().handle(), cl_uint(cull.tests().capacity()),
+                     sides.m_clothStart.handle(), sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(),
+                     sides.m_clothEdges.handle(), cl_uint(nodeCount), cl_uint(triangleCount),
+                     sides.m_obstacleTriangles.handle(), sides.m_vertexCones.handle(), sides.m_edgeCones.handle(),
+                     features.m_faces.handle(), features.m_vertices.handle(), features.m_edges.handle(),
+                     features.m_faceIds.handle(), features.m_vertexIds.handle(), features.m_edgeIds.handle(),
+                     m_hits.handle(), m_slotCount.handle(), counters.handle());
+    enqueueCompaction(device, counters);
+}
+
 void NarrowPhaseStage::enqueueCompaction(Device& device, Buffer<StepCounters>& counters)
 {
     const cl_uint slots = cl_uint(m_slots);
@@ -65,7 +80,7 @@ void NarrowPhaseStage::enqueueCompaction(Device& device, Buffer<StepCounters>& c
     const std::size_t width = listWidth(device);
     const cl::LocalSpaceArg scratch = cl::Local(kGroup * sizeof(cl_uint));
     m_count.launch(device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_blockCount.handle(), scratch);
-    m_scan.launch(device, kGroup, kGroup, m_blockCount.handle(), cl_uint(blocks), scratch);
+    m_scan.launch(device, kGroup, kGroup, m_blockCount.handle(), cl_uint(blocks), counters.handle(), scratch);
     m_place.launch(device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_blockCount.handle(),
                    m_slotFirst.handle(), scratch);
     m_gather.launch(device, width, kGroup, m_hits.handle(), hitCapacity, m_slotCount.handle(), m_slotFirst.handle(),

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "bullet_plugin/core/broad_phase/patch_cull.h"
 #include "bullet_plugin/core/device/buffer.h"
 #include "bullet_plugin/core/device/program.h"
 #include "kernels/lib/pair_contact.h"
@@ -50,16 +51,19 @@ public:
     // Room for the slots of a cloth side: its nodes, faces and edges.
     void resizeSlots(Device& device, std::size_t slotCount);
 
-    // Room for hits and as many contacts.
+    // Room for a list of hits and as many contacts.
     void reserveHits(Device& device, std::size_t count);
     void reserveIntersections(Device& device, std::size_t count) { m_intersections.reserve(device, count); }
     std::size_t hitCapacity() const { return m_hits.capacity(); }
     Buffer<Contact>& contacts() { return m_contacts; }
     Buffer<Candidate>& intersections() { return m_intersections; }
 
-    // Returns after enqueueing. counters' hits and intersections must be zero before.
+    // Contacts of pairs of triangles. Returns after enqueueing. counters' places and intersections must be zero before.
     void enqueue(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
                  const NarrowPhaseSettings& settings, Buffer<Candidate>& candidates, Buffer<StepCounters>& counters);
+    // Contacts of the feature tests that a cull left. There must be room for as many hits as tests.
+    void enqueueFeatures(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
+                         PatchCullStage& cull, Buffer<StepCounters>& counters);
     void enqueueIntersect(Device& device, NarrowPhaseBuffers sides, Buffer<Candidate>& candidates,
                           Buffer<StepCounters>& counters);
 
@@ -67,7 +71,7 @@ private:
     void enqueueCompaction(Device& device, Buffer<StepCounters>& counters);
     std::size_t listWidth(const Device& device) const;
 
-    Kernel m_test, m_intersect, m_count, m_scan, m_place, m_gather, m_write;
+    Kernel m_test, m_feature, m_intersect, m_count, m_scan, m_place, m_gather, m_write;
     Buffer<Contact> m_hits, m_contacts;
     Buffer<Candidate> m_intersections;
     Buffer<cl_uint> m_slotCount, m_slotFirst, m_blockCount, m_members;

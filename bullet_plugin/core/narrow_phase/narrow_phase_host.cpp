@@ -28,14 +28,12 @@ void narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView
             settings.m_thickness[clothTriangle->m_mesh * settings.m_obstacleMeshes + obstacleTriangle->m_mesh] *
             settings.m_reachScale;
         const std::uint32_t tests = ownedTests(clothTriangle->m_owned, obstacleTriangle->m_owned);
-        PairGeometry pair;
-        loadPair(&pair, &cloth, clothTriangle, &obstacle, obstacleTriangle);
-        if (!preparePair(&pair, reach)) continue;
+        if (pairApart(&cloth, &obstacle, candidate, reach)) continue;
         for (int test = 0; test < DRAPE_FEATURE_TESTS; ++test)
         {
             Contact contact;
             if (!(tests & (1u << test))) continue;
-            if (pairContact(test, &pair, &cloth, &obstacle, candidate, &contact)) contacts.push_back(contact);
+            if (pairContact(test, &cloth, &obstacle, candidate, reach, &contact)) contacts.push_back(contact);
         }
     }
     sortContacts(contacts);
@@ -47,10 +45,9 @@ void intersectOnHost(const std::vector<Candidate>& candidates, const ClothView& 
     pairs.clear();
     for (const Candidate& candidate : candidates)
     {
-        PairGeometry pair;
-        loadPair(&pair, &cloth, cloth.m_triangles + candidate.m_cloth, &obstacle,
-                 obstacle.m_triangles + candidate.m_obstacle);
-        if (trianglesIntersect(pair.m_face.m_start, pair.m_resting.m_corners)) pairs.push_back(candidate);
+        PairTriangles pair;
+        loadPair(&pair, &cloth, &obstacle, candidate);
+        if (trianglesIntersect(pair.m_start, pair.m_resting)) pairs.push_back(candidate);
     }
     sortCandidates(pairs);
 }

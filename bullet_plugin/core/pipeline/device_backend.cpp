@@ -8,7 +8,7 @@ namespace
 {
 // First guesses; they grow to what scenes need.
 constexpr std::size_t kFirstCandidates = 1 << 16;
-constexpr std::size_t kFirstHits = 1 << 13;
+constexpr std::size_t kFirstContacts = 1 << 13;
 
 std::size_t withHeadroom(std::size_t count)
 {
@@ -22,14 +22,16 @@ DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& set
     m_refit.create(*m_device, program("refit"));
     m_mortonOrder.create(*m_device, program("morton_order"));
     m_broadPhase.create(*m_device, program("broad_phase"));
-    const cl::Program narrowPhase = program("narrow_phase");
+    m_patchCull.create(*m_device, program("patch_cull", PatchCullStage::defines(*m_device)));
+    const cl::Program narrowPhase = program("narrow_phase", PatchCullStage::defines(*m_device));
     m_narrowPhase.create(*m_device, narrowPhase, program("compaction"));
-    m_candidates.reserve(*m_device, kFirstCandidates);
-    m_narrowPhase.reserveHits(*m_device, kFirstHits);
+    m_candidates.reserve(*m_device, 1);
+    m_patchCull.reserveTests(*m_device, kFirstCandidates);
+    m_narrowPhase.reserveHits(*m_device, kFirstCandidates);
     m_narrowPhase.reserveIntersections(*m_device, 1);
     m_counters.reserve(*m_device, 1);
     m_countersRead.reserve(m_device.get(), 1);
-    m_contactsRead.reserve(m_device.get(), kFirstHits);
+    m_contactsRead.reserve(m_device.get(), kFirstContacts);
     warmUp();
 }
 
@@ -39,10 +41,10 @@ DeviceBackend::~DeviceBackend()
     m_device->wait();
 }
 
-cl::Program DeviceBackend::program(const char* name)
+cl::Program DeviceBackend::program(const char* name, const std::string& defines)
 {
     ProgramBuild build;
-    const cl::Program built = buildProgram(*m_device, name, m_settings.m_cacheFolder, build);
+    const cl::Program built = buildProgram(*m_device, name, m_settings.m_cacheFolder, build, defines);
     m_fromCache = m_fromCache && build.m_fromCache;
     return built;
 }
@@ -114,7 +116,11 @@ void DeviceBackend::updateTopology(const Scene& scene)
         m_narrowPhase.resizeSlots(*m_device, scene.slotCount());
     }
     const bool newObstacles = m_obstacle.m_revision != scene.m_obstacles.revision();
-    if (newObstacles) uploadSide(scene.m_obstacles, scene.m_obstacleLayout, m_obstacle);
+    if (newObstacles)
+    {
+        uploadSide(scene.m_obstacles, scene.m_obstacleLayout, m_obstacle);
+        m_patchCull.setTopology(*m_device, scene.m_obstacles);
+    }
     if (newObstacles || m_obstacleMotion != scene.m_obstacleMotion) updateObstacles(scene);
 }
 
@@ -128,7 +134,12 @@ void DeviceBackend::updateObstacles(const Scene& scene)
     m_obstacle.m_radius.assign(*m_device, noRadius);
     m_refit.enqueue(*m_device, scene.m_obstacleLayout, m_obstacle.m_levels, m_obstacle.m_nodes, m_obstacle.m_order,
                     m_obstacle.m_triangles, m_obstaclePositions, m_obstaclePositions, m_obstacle.m_radius, m_counters);
-    m_device->wait();  // noRadius is a local
+    const std::vector<float> spreads = faceSpreads(scene.m_obstacles.triangles(), scene.m_obstaclePositions.data(),
+                                                   scene.m_vertexCones, scene.m_edgeCones);
+    m_obstacleSpreads.assign(*m_device, spreads);
+    m_patchCull.pack(*m_device, m_obstacle.m_triangles, m_obstaclePositions, m_obstacleSpreads, m_vertexCones,
+                     m_edgeCones);
+    m_device->wait();  // noRadius and spreads are locals
 }
 
 void DeviceBackend::uploadStep(const Scene& scene, const StepPairs& pairs)
@@ -158,14 +169,27 @@ void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
 {
     const std::size_t obstacleMeshes = scene.m_obstacles.meshCount();
     m_counters.fill(*m_device, 0, 1);
-    m_refit.enqueue(*m_device, scene.m_clothLayout, m_cloth.m_levels, m_cloth.m_nodes, m_cloth.m_order,
-                    m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, m_counters);
-    m_broadPhase.enqueue(*m_device, {m_cloth.m_nodes, m_cloth.m_order, m_cloth.m_triangles, scene.m_clothLayout},
-                         {m_obstacle.m_nodes, m_obstacle.m_order, m_obstacle.m_triangles, scene.m_obstacleLayout},
-                         m_thickness, obstacleMeshes, m_candidates, m_counters);
-    const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacleMeshes, 1.0f + m_settings.m_activation};
-    m_narrowPhase.enqueue(*m_device, narrowPhaseBuffers(), scene.m_cloths.vertexCount(),
-                          scene.m_cloths.triangles().size(), narrow, m_candidates, m_counters);
+    if (patches())
+    {
+        m_patchCull.enqueue(
+            *m_device,
+            {m_cloth.m_order, m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, m_thickness,
+             scene.m_cloths.triangles().size(), obstacleMeshes, 1.0f + m_settings.m_activation},
+            m_counters);
+        m_narrowPhase.enqueueFeatures(*m_device, narrowPhaseBuffers(), scene.m_cloths.vertexCount(),
+                                      scene.m_cloths.triangles().size(), m_patchCull, m_counters);
+    }
+    else
+    {
+        m_refit.enqueue(*m_device, scene.m_clothLayout, m_cloth.m_levels, m_cloth.m_nodes, m_cloth.m_order,
+                        m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, m_counters);
+        m_broadPhase.enqueue(*m_device, {m_cloth.m_nodes, m_cloth.m_order, m_cloth.m_triangles, scene.m_clothLayout},
+                             {m_obstacle.m_nodes, m_obstacle.m_order, m_obstacle.m_triangles, scene.m_obstacleLayout},
+                             m_thickness, obstacleMeshes, m_candidates, m_counters);
+        const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacleMeshes, 1.0f + m_settings.m_activation};
+        m_narrowPhase.enqueue(*m_device, narrowPhaseBuffers(), scene.m_cloths.vertexCount(),
+                              scene.m_cloths.triangles().size(), narrow, m_candidates, m_counters);
+    }
     if (m_settings.m_reportIntersections)
     {
         m_narrowPhase.enqueueIntersect(*m_device, narrowPhaseBuffers(), m_candidates, m_counters);
@@ -200,10 +224,22 @@ bool DeviceBackend::grow()
         reserve(withHeadroom(wanted));
     };
     Device& device = *m_device;
-    demand(counters.m_candidates, m_candidates.capacity(), sizeof(Candidate),
-           [&](std::size_t count) { m_candidates.reserve(device, count); });
-    demand(counters.m_hits, m_narrowPhase.hitCapacity(), sizeof(Contact),
-           [&](std::size_t count) { m_narrowPhase.reserveHits(device, count); });
+    if (patches())
+    {
+        demand(counters.m_candidates, m_patchCull.tests().capacity(), sizeof(Contact),
+               [&](std::size_t count)
+               {
+                   m_patchCull.reserveTests(device, count);
+                   m_narrowPhase.reserveHits(device, count);
+               });
+    }
+    else
+    {
+        demand(counters.m_candidates, m_candidates.capacity(), sizeof(Candidate),
+               [&](std::size_t count) { m_candidates.reserve(device, count); });
+        demand(counters.m_listed, m_narrowPhase.hitCapacity(), sizeof(Contact),
+               [&](std::size_t count) { m_narrowPhase.reserveHits(device, count); });
+    }
     demand(counters.m_intersections, m_narrowPhase.intersections().capacity(), sizeof(Candidate),
            [&](std::size_t count) { m_narrowPhase.reserveIntersections(device, count); });
     return again;

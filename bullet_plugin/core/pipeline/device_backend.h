@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "bullet_plugin/core/broad_phase/broad_phase.h"
+#include "bullet_plugin/core/broad_phase/patch_cull.h"
 #include "bullet_plugin/core/bvh/morton_order.h"
 #include "bullet_plugin/core/bvh/refit.h"
 #include "drape/settings.h"
@@ -44,13 +45,15 @@ private:
         std::uint32_t m_revision = 0;
     };
 
-    cl::Program program(const char* name);
+    cl::Program program(const char* name, const std::string& defines = std::string());
     void warmUp();
     void uploadSide(const MeshPool& pool, const BvhLayout& layout, Side& side);
     void updateTopology(const Scene& scene);
     void updateObstacles(const Scene& scene);
     void uploadStep(const Scene& scene, const StepPairs& pairs);
     void enqueueStep(const Scene& scene, const StepPairs& pairs);
+    // Whether the step goes over patches; intersections are found among pairs of triangles.
+    bool patches() const { return !m_settings.m_reportIntersections; }
     NarrowPhaseBuffers narrowPhaseBuffers();
     // Makes room for what the last run demanded. Returns whether the step must run again.
     bool grow();
@@ -64,10 +67,11 @@ private:
     RefitStage m_refit;
     MortonOrderStage m_mortonOrder;
     BroadPhaseStage m_broadPhase;
+    PatchCullStage m_patchCull;
     NarrowPhaseStage m_narrowPhase;
 
     Side m_cloth, m_obstacle;
-    Buffer<float> m_clothStart, m_clothEnd, m_obstaclePositions, m_thickness;
+    Buffer<float> m_clothStart, m_clothEnd, m_obstaclePositions, m_obstacleSpreads, m_thickness;
     Buffer<Edge> m_clothEdges;
     Buffer<NormalCone> m_vertexCones, m_edgeCones;
     Buffer<Candidate> m_candidates;

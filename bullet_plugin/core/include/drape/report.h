@@ -43,8 +43,8 @@ struct StepStatistics
     std::uint32_t m_status = kStepGood;
     std::size_t m_clothTriangles = 0;
     std::size_t m_obstacleTriangles = 0;
-    std::size_t m_candidates = 0;     // triangle pairs the broad phase could not separate
-    std::size_t m_contacts = 0;       // contacts published
+    std::size_t m_candidates = 0;  // what the broad phase left: pairs of features on a device, of triangles on the host
+    std::size_t m_contacts = 0;    // contacts published
     std::size_t m_intersections = 0;  // only with Settings::m_reportIntersections
     std::size_t m_invalidNodes = 0;   // NaN or infinite
     std::size_t m_retries = 0;        // stages run again because a buffer was too small

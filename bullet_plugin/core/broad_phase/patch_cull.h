@@ -1,0 +1,71 @@
+// Broad phase over patches: lists the feature tests of cloth triangles and obstacle features that may give a contact.
+//
+// Job: keep the obstacles' patches and the wide tree over them on the device; each step walk it with every cloth
+// triangle and drop what is surely apart, a block of features at a time (kernels/patch_cull.cl). Output: feature tests
+// in no particular order, each at most once. Guarantee: no test that gives a contact is dropped. Cost: one launch a
+// step.
+#pragma once
+
+#include "bullet_plugin/core/device/buffer.h"
+#include "bullet_plugin/core/device/program.h"
+#include "bullet_plugin/core/mesh/patches.h"
+
+namespace drape
+{
+class PatchCullStage
+{
+public:
+    // Lanes in a block on this device.
+    static std::uint32_t width(const Device& device);
+    // Definitions with which kernels/patch_cull.cl is built.
+    static std::string defines(const Device& device);
+
+    void create(Device& device, const cl::Program& program);
+
+    // New obstacle topology. Waits for the upload.
+    void setTopology(Device& device, const MeshPool& obstacles);
+    // Packs the features at new positions. The buffers are the joined obstacles'; returns after enqueueing.
+    void pack(Device& device, Buffer<Triangle>& triangles, Buffer<float>& positions, Buffer<float>& spreads,
+              Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones);
+
+    // What a step reads of the cloths and pairs.
+    struct Cloths
+    {
+        Buffer<cl_uint>& m_order;
+        Buffer<Triangle>& m_triangles;
+        Buffer<float>& m_start;
+        Buffer<float>& m_end;
+        Buffer<float>& m_radius;
+        Buffer<float>& m_thickness;
+        std::size_t m_count;  // triangles
+        std::size_t m_obstacleMeshes;
+        float m_reachScale;
+    };
+    // Returns after enqueueing. counters' candidates and invalid nodes must be zero before.
+    void enqueue(Device& device, Cloths cloths, Buffer<StepCounters>& counters);
+
+    // The list of the last step, and room in it.
+    Buffer<FeatureTest>& tests() { return m_tests; }
+    void reserveTests(Device& device, std::size_t count) { m_tests.reserve(device, count); }
+
+    // The packed features; ids tell a lane's triangle, vertex or edge.
+    struct Features
+    {
+        Buffer<float>& m_faces;
+        Buffer<float>& m_vertices;
+        Buffer<float>& m_edges;
+        Buffer<cl_uint>& m_faceIds;
+        Buffer<cl_uint>& m_vertexIds;
+        Buffer<cl_uint>& m_edgeIds;
+    };
+    Features features() { return {m_faces, m_vertices, m_edges, m_faceOwners, m_vertexIds, m_edgeIds}; }
+
+private:
+    Kernel m_cull, m_packFaces, m_packVertices, m_packEdges, m_volumes, m_widen;
+    Patches m_layout;
+    Buffer<Patch> m_patches;
+    Buffer<cl_uint> m_faceOwners, m_vertexOwners, m_edgeOwners, m_vertexIds, m_edgeIds, m_levels;
+    Buffer<FeatureTest> m_tests;
+    Buffer<float> m_faces, m_vertices, m_edges, m_sizes, m_wideNodes;
+};
+}  // namespace drape

@@ -1,0 +1,114 @@
+#include "patches.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/lib/vec3.h"
+
+namespace drape
+{
+namespace
+{
+// Spread of a face that nothing bounds: larger than any scene, small enough for products.
+constexpr float kUnbounded = 1e18f;
+// Directions steeper than this beside a face are taken as unbounded: the tangent grows without limit.
+constexpr double kSteepest = 1.4;
+// Radians that the direction of a cone and a face may be off by.
+constexpr double kAngleSlack = 2e-3;
+
+void padBlock(std::vector<std::uint32_t>& owners, std::uint32_t width)
+{
+    while (owners.size() % width != 0)
+        owners.push_back(DRAPE_NO_FEATURE);
+}
+
+// Triangles [first, last) of the leaf order.
+void appendPatch(Patches& patches, const MeshPool& pool, std::size_t first, std::size_t last, std::uint32_t width)
+{
+    Patch patch = {};
+    patch.m_mesh = pool.triangles()[pool.order()[first]].m_mesh;
+    patch.m_vertexBlock = std::uint32_t(patches.m_vertexOwners.size()) / width;
+    patch.m_edgeBlock = std::uint32_t(patches.m_edgeOwners.size()) / width;
+    for (std::size_t leaf = first; leaf < last; ++leaf)
+    {
+        const std::uint32_t index = pool.order()[leaf];
+        const std::uint32_t owned = pool.triangles()[index].m_owned;
+        patches.m_faceOwners.push_back(index);
+        for (std::uint32_t place = 0; place < 3; ++place)
+        {
+            const std::uint32_t feature = index | (place << DRAPE_PLACE_SHIFT);
+            if (owned & DRAPE_OWNS_VERTEX(place)) patches.m_vertexOwners.push_back(feature);
+            if (owned & DRAPE_OWNS_EDGE(place)) patches.m_edgeOwners.push_back(feature);
+        }
+    }
+    padBlock(patches.m_faceOwners, width);
+    padBlock(patches.m_vertexOwners, width);
+    padBlock(patches.m_edgeOwners, width);
+    patch.m_vertexBlocks = std::uint32_t(patches.m_vertexOwners.size()) / width - patch.m_vertexBlock;
+    patch.m_edgeBlocks = std::uint32_t(patches.m_edgeOwners.size()) / width - patch.m_edgeBlock;
+    patches.m_patches.push_back(patch);
+}
+
+double angleBetween(Vec3 a, Vec3 b)
+{
+    return std::acos(std::min(1.0, double(drapeAbs(vec3Dot(a, b)))));
+}
+
+float spreadOf(const Triangle& triangle, const float* positions, const std::vector<NormalCone>& vertexCones,
+               const std::vector<NormalCone>& edgeCones)
+{
+    const Vec3 a = vec3Load(positions, triangle.m_vertices[0]);
+    const Vec3 area = vec3Cross(vec3Sub(vec3Load(positions, triangle.m_vertices[1]), a),
+                                vec3Sub(vec3Load(positions, triangle.m_vertices[2]), a));
+    const float length = vec3Length(area);
+    if (!(length > 0.0f)) return kUnbounded;
+    const Vec3 normal = vec3Scale(area, 1.0f / length);
+    double steepest = 0;
+    for (int i = 0; i < 3; ++i)
+    {
+        for (const NormalCone& cone : {vertexCones[triangle.m_vertices[i]], edgeCones[triangle.m_edges[i]]})
+        {
+            if (!(cone.m_cosine > 0.0f)) return kUnbounded;
+            const double halfAngle = std::acos(std::min(1.0, double(cone.m_cosine)));
+            steepest = std::max(steepest, angleBetween(cone.m_axis, normal) + halfAngle + kAngleSlack);
+        }
+    }
+    return steepest < kSteepest ? float(std::tan(steepest)) : kUnbounded;
+}
+}  // namespace
+
+Patches makePatches(const MeshPool& obstacles, std::uint32_t width)
+{
+    Patches patches;
+    const std::vector<std::uint32_t>& order = obstacles.order();
+    for (std::size_t first = 0; first < order.size();)
+    {
+        std::size_t last = first + 1;
+        const std::uint32_t mesh = obstacles.triangles()[order[first]].m_mesh;
+        while (last < order.size() && last - first < width && obstacles.triangles()[order[last]].m_mesh == mesh)
+            ++last;
+        appendPatch(patches, obstacles, first, last, width);
+        first = last;
+    }
+    std::uint32_t nodes = 0;
+    for (std::size_t count = patches.m_patches.size(); count > 0;)
+    {
+        count = (count + width - 1) / width;
+        patches.m_levels.push_back(nodes);
+        nodes += std::uint32_t(count);
+        if (count == 1) break;
+    }
+    patches.m_levels.push_back(nodes);
+    return patches;
+}
+
+std::vector<float> faceSpreads(const std::vector<Triangle>& triangles, const float* positions,
+                               const std::vector<NormalCone>& vertexCones, const std::vector<NormalCone>& edgeCones)
+{
+    std::vector<float> spreads;
+    spreads.reserve(triangles.size());
+    for (const Triangle& triangle : triangles)
+        spreads.push_back(spreadOf(triangle, positions, vertexCones, edgeCones));
+    return spreads;
+}
+}  // namespace drape

@@ -1,0 +1,32 @@
+// Patches of the obstacles: runs of triangles in leaf order, and the lists of features that they own (see
+// kernels/shared/patch.h).
+//
+// Input: the joined triangles, leaf order and mesh slots. Output: per patch its blocks, per lane the feature. A patch
+// never holds triangles of two meshes. Every triangle, and every vertex and edge of one, is in exactly one lane. O(n).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "kernels/shared/patch.h"
+#include "mesh_pool.h"
+
+namespace drape
+{
+struct Patches
+{
+    std::vector<Patch> m_patches;
+    std::vector<std::uint32_t> m_faceOwners;    // one block a patch
+    std::vector<std::uint32_t> m_vertexOwners;  // blocks in the patches' order
+    std::vector<std::uint32_t> m_edgeOwners;
+    std::vector<std::uint32_t> m_levels;  // first wide node of each level, lowest first, then the number of nodes
+};
+
+// width: lanes in a block.
+Patches makePatches(const MeshPool& obstacles, std::uint32_t width);
+
+// Per triangle: how far beside it, over how far above it, a node can be that one of its edges' or corners' cones
+// admits; a large number where nothing bounds it.
+std::vector<float> faceSpreads(const std::vector<Triangle>& triangles, const float* positions,
+                               const std::vector<NormalCone>& vertexCones, const std::vector<NormalCone>& edgeCones);
+}  // namespace drape

@@ -1,0 +1,241 @@
+// Drops feature tests of one cloth triangle against a block of obstacle features, a lane each: what is kept is a superset of
+// what gives a contact (pair_contact.h), and little more.
+//
+// Every comparison is loosened by kSlackShare of the pair's size, some thousand roundings. A feature whose shape makes a
+// direction worse than that (thin triangles, edges that are nearly parallel) is kept by its distance alone. Lanes with NaN
+// positions are dropped: each result depends on a comparison of theirs that must hold.
+#ifndef DRAPE_LIB_FEATURE_CULL_H
+#define DRAPE_LIB_FEATURE_CULL_H
+
+#include "feature_contact.h"
+#include "lanes.h"
+
+DRAPE_NAMESPACE_BEGIN
+
+// Share of the pair's size by which distances are loosened. A unit normal of a triangle that is not thin errs by less.
+#define DRAPE_CULL_SLACK 2e-4f
+// A triangle whose doubled area is below this share of its longest edge squared is thin, edges whose directions have a sine
+// below it are parallel. Then 3 roundings of a cross product turn it by less than 2e-5.
+#define DRAPE_CULL_THIN 0.01f
+
+// A cloth triangle over the step, relative to m_origin.
+typedef struct CullTriangle
+{
+    Vec3 m_origin;
+    Vec3 m_start[3], m_end[3];  // m
+    Vec3 m_normal0, m_normal1;  // unit normals at the step's start and end
+    Vec3 m_inward[3];           // unit, in the plane at the end, from edge i to the inside
+    Vec3 m_along[3];            // unit, along edge i at the end
+    float m_edgeLength[3];      // m, at the end
+    float m_diameter;           // m, of all six positions
+    float m_motion;             // m, of the fastest corner
+    int m_thinStart, m_thinEnd;
+} CullTriangle;
+
+// Reach of a cull, m. m_slack: loosens every comparison; m_near: distance at the end; m_passed: distance at the end of
+// features that may have passed each other.
+typedef struct CullReach
+{
+    float m_slack, m_near, m_passed;
+} CullReach;
+
+DRAPE_FUNCTION int cullNormal(const Vec3* p, Vec3* normal)
+{
+    const Vec3 e0 = vec3Sub(p[1], p[0]), e1 = vec3Sub(p[2], p[0]), e2 = vec3Sub(p[2], p[1]);
+    const Vec3 area = vec3Cross(e0, e1);
+    const float length = vec3Length(area);
+    const float longest = drapeMax(drapeMax(vec3Dot(e0, e0), vec3Dot(e1, e1)), vec3Dot(e2, e2));
+    *normal = vec3Scale(area, drapeRatio(1.0f, length));
+    return !(length > DRAPE_CULL_THIN * longest);
+}
+
+DRAPE_FUNCTION void prepareCull(CullTriangle* cull, const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end,
+                                const DRAPE_GLOBAL Triangle* triangle)
+{
+    cull->m_origin = vec3Load(end, triangle->m_vertices[0]);
+    cull->m_diameter = cull->m_motion = 0.0f;
+    for (int i = 0; i < 3; ++i)
+    {
+        cull->m_start[i] = vec3Sub(vec3Load(start, triangle->m_vertices[i]), cull->m_origin);
+        cull->m_end[i] = vec3Sub(vec3Load(end, triangle->m_vertices[i]), cull->m_origin);
+        cull->m_motion = drapeMax(cull->m_motion, vec3Length(vec3Sub(cull->m_end[i], cull->m_start[i])));
+    }
+    cull->m_motion *= 1.0f + DRAPE_CULL_SLACK;
+    cull->m_thinStart = cullNormal(cull->m_start, &cull->m_normal0);
+    cull->m_thinEnd = cullNormal(cull->m_end, &cull->m_normal1);
+    for (int i = 0; i < 3; ++i)
+    {
+        const Vec3 edge = vec3Sub(cull->m_end[i == 2 ? 0 : i + 1], cull->m_end[i]);
+        cull->m_edgeLength[i] = vec3Length(edge);
+        cull->m_diameter = drapeMax(cull->m_diameter, cull->m_edgeLength[i]);
+        cull->m_along[i] = vec3Scale(edge, drapeRatio(1.0f, cull->m_edgeLength[i]));
+        cull->m_inward[i] = vec3Cross(cull->m_normal1, cull->m_along[i]);
+    }
+    cull->m_diameter += 2.0f * cull->m_motion;
+}
+
+// size: m, of the block's features together.
+DRAPE_FUNCTION CullReach cullReach(const CullTriangle* cull, float reach, float size)
+{
+    CullReach result;
+    result.m_slack = DRAPE_CULL_SLACK * (cull->m_diameter + size + 2.0f * reach);
+    result.m_near = reach * 1.001f + result.m_slack;
+    result.m_passed = result.m_near + cull->m_motion;
+    return result;
+}
+
+// Lanes whose signed distances from a moving plane changed sign in the step, or might have.
+DRAPE_FUNCTION LaneMask cullPassed(Lanes before, Lanes after, Lanes slack)
+{
+    return (before * after <= 0.0f) | (lanesMin(lanesAbs(before), lanesAbs(after)) <= slack);
+}
+
+// Vertices whose nearest point of the cloth triangle at the step's end is a corner, surely.
+DRAPE_FUNCTION LaneMask cullAtNode(const CullTriangle* cull, LanesVec3 v, float slack)
+{
+    const Lanes place0 = lanesDotUniform(v, cull->m_along[0]);
+    const Lanes place1 = lanesDotUniform(lanesSubUniform(v, cull->m_end[1]), cull->m_along[1]);
+    const Lanes place2 = lanesDotUniform(lanesSubUniform(v, cull->m_end[2]), cull->m_along[2]);
+    const Lanes before = lanesSplat(-slack);
+    return ((place0 < before) & (place2 > lanesSplat(cull->m_edgeLength[2] + slack))) |
+           ((place1 < before) & (place0 > lanesSplat(cull->m_edgeLength[0] + slack))) |
+           ((place2 < before) & (place1 > lanesSplat(cull->m_edgeLength[1] + slack)));
+}
+
+// The cloth face against vertices.
+DRAPE_FUNCTION LaneMask cullFaceVertex(const CullTriangle* cull, CullReach reach, const DRAPE_GLOBAL float* block)
+{
+    const LanesVec3 v = lanesSubUniform(lanesLoadVec3(block, 0), cull->m_origin);
+    if (cull->m_thinEnd)
+    {
+        const float far = reach.m_passed + cull->m_diameter;
+        return lanesDot(v, v) <= lanesSplat(far * far);
+    }
+    const LanesVec3 fromStart = lanesSubUniform(v, cull->m_start[0]);
+    const Lanes height = lanesDotUniform(v, cull->m_normal1);
+    const Lanes before = lanesDotUniform(fromStart, cull->m_normal0);
+    const Lanes out0 = -lanesDotUniform(v, cull->m_inward[0]);
+    const Lanes out1 = -lanesDotUniform(lanesSubUniform(v, cull->m_end[1]), cull->m_inward[1]);
+    const Lanes out2 = -lanesDotUniform(v, cull->m_inward[2]);
+    const Lanes most01 = lanesMax(out0, out1), least01 = lanesMin(out0, out1);
+    const Lanes outside = lanesMax(most01, out2);
+    const Lanes second = lanesMax(least01, lanesMin(most01, out2));
+    const Lanes distance = lanesMax(outside, lanesSplat(0.0f));
+    const Lanes depth = lanesAbs(height);
+    const Lanes squared = distance * distance + depth * depth;
+
+    // The direction from the vertex to the nearest point, or close to it, against the vertex's cone.
+    const LanesVec3 axis = lanesLoadVec3(block, 3);
+    const Lanes cosine = lanesLoad(block, 6);
+    const Lanes lean = lanesSelect(out2 >= most01, lanesDotUniform(axis, cull->m_inward[2]),
+                                   lanesSelect(out1 >= out0, lanesDotUniform(axis, cull->m_inward[1]),
+                                               lanesDotUniform(axis, cull->m_inward[0])));
+    const Lanes facing = lanesAbs(height * lanesDotUniform(axis, cull->m_normal1) - distance * lean);
+    const LaneMask admitted = facing + 4.0f * reach.m_slack >= cosine * lanesSqrt(squared);
+    // Nearest to a node: the node's contact. Outside of two edges else, at an obtuse angle: nearest to either.
+    const LaneMask atNode = cullAtNode(cull, v, reach.m_slack);
+    const LaneMask direction = lanesNot(atNode) & (admitted | (second > lanesSplat(reach.m_slack)));
+    const LaneMask near = direction & (squared <= lanesSplat(reach.m_near * reach.m_near));
+    const LaneMask passed = (cullPassed(before, height, lanesSplat(reach.m_slack)) | lanesMaskSplat(cull->m_thinStart)) &
+                            (depth <= lanesSplat(reach.m_passed)) & (distance <= lanesSplat(reach.m_passed));
+    return near | passed;
+}
+
+// Cloth node i against faces. Compares squares of distances times the face's area or edge, so that no lane needs a root.
+DRAPE_FUNCTION LaneMask cullNodeFace(const CullTriangle* cull, int i, CullReach reach, const DRAPE_GLOBAL float* block)
+{
+    const LanesVec3 a = lanesLoadVec3(block, 0), b = lanesLoadVec3(block, 3), c = lanesLoadVec3(block, 6);
+    const LanesVec3 corner = lanesSubUniform(a, cull->m_origin);
+    const LanesVec3 x1 = lanesFromUniform(cull->m_end[i], corner), x0 = lanesFromUniform(cull->m_start[i], corner);
+    const LanesVec3 ab = lanesSub(b, a), bc = lanesSub(c, b), ca = lanesSub(a, c);
+    const Lanes squareAB = lanesDot(ab, ab), squareBC = lanesDot(bc, bc), squareCA = lanesDot(ca, ca);
+    const Lanes longest = lanesMax(lanesMax(squareAB, squareBC), squareCA);
+    const LanesVec3 area = lanesCross(ca, ab);
+    const Lanes square = lanesDot(area, area);
+    // (x + y)² ≤ 2 (x² + y²)
+    const LaneMask around = lanesDot(x1, x1) <= 2.0f * (longest + reach.m_passed * reach.m_passed);
+    const LaneMask thin = square <= DRAPE_CULL_THIN * DRAPE_CULL_THIN * longest * longest;
+
+    const Lanes height = lanesDot(area, x1), before = lanesDot(area, x0);
+    const Lanes depth = height * height;
+    const LaneMask passed = (before * height <= 0.0f) |
+                            (lanesMin(depth, before * before) <= reach.m_slack * reach.m_slack * square);
+    const float motion = reach.m_passed - reach.m_near;
+    const LaneMask level = depth <= square * lanesSelect(passed, lanesSplat(reach.m_passed * reach.m_passed),
+                                                         lanesSplat(reach.m_near * reach.m_near));
+    // How far outside an edge the node may be: where the edge's or a corner's cone still admits the direction to it, or as
+    // far as it can have moved since it passed. (x + y)² ≤ 1.1 x² + 11 y².
+    const Lanes spread = lanesLoad(block, 9);
+    const Lanes slope = lanesMin(depth * spread * spread, square * (reach.m_near * reach.m_near));
+    const Lanes moved = lanesSelect(passed, square * (motion * motion), lanesSplat(0.0f));
+    const Lanes allowed = 1.1f * lanesMax(slope, moved) + 44.0f * reach.m_slack * reach.m_slack * square;
+    const Lanes outAB = lanesMax(lanesDot(lanesCross(ab, area), x1), lanesSplat(0.0f));
+    const Lanes outBC = lanesMax(lanesDot(lanesCross(bc, area), lanesSub(x1, ab)), lanesSplat(0.0f));
+    const Lanes outCA = lanesMax(lanesDot(lanesCross(ca, area), x1), lanesSplat(0.0f));
+    const LaneMask inside =
+        (outAB * outAB <= allowed * squareAB) & (outBC * outBC <= allowed * squareBC) & (outCA * outCA <= allowed * squareCA);
+    return around & (thin | (level & inside));
+}
+
+// What the tests of a block of edges share.
+typedef struct CullEdges
+{
+    LanesVec3 m_a, m_along, m_axis;
+    Lanes m_cosine;  // of the cone, loosened, squared with its sign
+    Lanes m_length, m_square;
+} CullEdges;
+
+DRAPE_FUNCTION CullEdges loadCullEdges(const CullTriangle* cull, const DRAPE_GLOBAL float* block)
+{
+    CullEdges edges;
+    edges.m_a = lanesSubUniform(lanesLoadVec3(block, 0), cull->m_origin);
+    edges.m_along = lanesSub(lanesLoadVec3(block, 3), lanesLoadVec3(block, 0));
+    edges.m_axis = lanesLoadVec3(block, 6);
+    const Lanes cosine = lanesLoad(block, 9) - DRAPE_CULL_SLACK;
+    edges.m_cosine = cosine * lanesAbs(cosine);
+    edges.m_square = lanesDot(edges.m_along, edges.m_along);
+    edges.m_length = lanesSqrt(edges.m_square);
+    return edges;
+}
+
+// Cloth edge i against edges.
+DRAPE_FUNCTION LaneMask cullEdgeEdge(const CullTriangle* cull, int i, CullReach reach, const CullEdges* edges)
+{
+    const int j = i == 2 ? 0 : i + 1;
+    const Vec3 across = vec3Sub(cull->m_end[j], cull->m_end[i]);
+    const float acrossLength = cull->m_edgeLength[i];
+    const LanesVec3 along = edges->m_along, offset = lanesSubUniform(edges->m_a, cull->m_end[i]);
+    const LanesVec3 direction = lanesCrossUniform(across, along);
+    const Lanes square = lanesDot(direction, direction);
+    const Lanes lengths = acrossLength * edges->m_length;
+
+    const Lanes after = lanesDot(direction, offset);
+    const LanesVec3 direction0 = lanesCrossUniform(vec3Sub(cull->m_start[j], cull->m_start[i]), along);
+    const Lanes before = lanesDot(direction0, lanesSubUniform(edges->m_a, cull->m_start[i]));
+    const LaneMask passed = cullPassed(before, after, (0.1f * reach.m_slack) * lengths);
+    const float passing = reach.m_passed - 0.9f * reach.m_near;  // passing contacts are a tenth of the reach away
+    const float farthest = drapeMax(passing, reach.m_near);
+    const LaneMask near = after * after <= square * lanesSelect(passed, lanesSplat(farthest * farthest),
+                                                                lanesSplat(reach.m_near * reach.m_near));
+    const Lanes facing = lanesDot(edges->m_axis, direction);
+    const LaneMask admitted = facing * facing >= edges->m_cosine * square;
+
+    // Places of the closest points of the two lines, times the square; loosened by rounding, and where the edges may have
+    // passed each other by how far they can have moved since.
+    const Lanes s = lanesDot(lanesCross(offset, along), direction);
+    const Lanes t = lanesDot(lanesCrossUniform(across, offset), direction);
+    const Lanes size = lanesNorm1(offset) + edges->m_length + acrossLength;
+    const Lanes loose = lengths * (4e-6f * size + lanesSelect(passed, lanesSplat(passing), lanesSplat(0.0f)));
+    const LaneMask inside = (lanesMin(s, square - s) >= -loose * edges->m_length) &
+                            (lanesMin(-t, square + t) >= -loose * acrossLength);
+
+    // (x + y)² ≤ 2 (x² + y²)
+    const float far = reach.m_passed + acrossLength;
+    const LaneMask around = lanesDot(offset, offset) <= 2.0f * (edges->m_square + far * far);
+    const LaneMask parallel = square <= (DRAPE_CULL_THIN * DRAPE_CULL_THIN) * lengths * lengths;
+    return around & (parallel | (near & inside & (admitted | passed)));
+}
+
+DRAPE_NAMESPACE_END
+
+#endif

@@ -1,0 +1,104 @@
+// One value per lane: a vector of DRAPE_LANES floats where a work-item computes a whole block by itself (CPUs), a float
+// where each work-item of a group is a lane (GPUs) and in C++, where a block is one lane. For what is compared with a slack
+// only: fma and the built-in functions do not round alike everywhere.
+#ifndef DRAPE_LIB_LANES_H
+#define DRAPE_LIB_LANES_H
+
+#include "../shared/patch.h"
+#include "vec3.h"
+
+DRAPE_NAMESPACE_BEGIN
+
+#if defined(__OPENCL_VERSION__) && DRAPE_LANES > 1
+#define DRAPE_PASTE(a, b) a##b
+#define DRAPE_VECTOR(type, lanes) DRAPE_PASTE(type, lanes)
+typedef DRAPE_VECTOR(float, DRAPE_LANES) Lanes;
+typedef DRAPE_VECTOR(int, DRAPE_LANES) LaneMask;
+#define lanesLoad(block, component) DRAPE_VECTOR(vload, DRAPE_LANES)(component, block)
+#define lanesSelect(mask, yes, no) select((Lanes)(no), (Lanes)(yes), mask)
+#define lanesNot(mask) (~(mask))
+#define lanesSplat(a) ((Lanes)(a))
+#define lanesMaskSplat(a) ((LaneMask)(-(a)))
+#else
+typedef float Lanes;
+typedef int LaneMask;
+#ifdef __OPENCL_VERSION__
+#define lanesLoad(block, component) ((block)[DRAPE_PATCH_WIDTH * (component) + get_local_id(0) % DRAPE_PATCH_WIDTH])
+#else
+#define lanesLoad(block, component) ((block)[component])
+#endif
+#define lanesSelect(mask, yes, no) ((mask) ? (yes) : (no))
+#define lanesNot(mask) (!(mask))
+#define lanesSplat(a) (a)
+#define lanesMaskSplat(a) (a)
+#endif
+
+#ifdef __OPENCL_VERSION__
+#define lanesMax(a, b) fmax(a, b)
+#define lanesMin(a, b) fmin(a, b)
+#define lanesAbs(a) fabs(a)
+#define lanesSqrt(a) sqrt(a)
+#define lanesFma(a, b, c) fma(a, b, c)
+#else
+#define lanesMax(a, b) drapeMax(a, b)
+#define lanesMin(a, b) drapeMin(a, b)
+#define lanesAbs(a) drapeAbs(a)
+#define lanesSqrt(a) drapeSqrt(a)
+#define lanesFma(a, b, c) ((a) * (b) + (c))
+#endif
+
+typedef struct LanesVec3
+{
+    Lanes x, y, z;
+} LanesVec3;
+
+DRAPE_FUNCTION LanesVec3 lanesVec3(Lanes x, Lanes y, Lanes z)
+{
+    LanesVec3 v;
+    v.x = x;
+    v.y = y;
+    v.z = z;
+    return v;
+}
+// Three components of a block, from component first on.
+DRAPE_FUNCTION LanesVec3 lanesLoadVec3(const DRAPE_GLOBAL float* block, int first)
+{
+    return lanesVec3(lanesLoad(block, first), lanesLoad(block, first + 1), lanesLoad(block, first + 2));
+}
+DRAPE_FUNCTION LanesVec3 lanesSubUniform(LanesVec3 a, Vec3 b)
+{
+    return lanesVec3(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+DRAPE_FUNCTION LanesVec3 lanesFromUniform(Vec3 a, LanesVec3 b)
+{
+    return lanesVec3(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+DRAPE_FUNCTION LanesVec3 lanesSub(LanesVec3 a, LanesVec3 b)
+{
+    return lanesVec3(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+DRAPE_FUNCTION Lanes lanesDot(LanesVec3 a, LanesVec3 b)
+{
+    return lanesFma(a.x, b.x, lanesFma(a.y, b.y, a.z * b.z));
+}
+DRAPE_FUNCTION Lanes lanesDotUniform(LanesVec3 a, Vec3 b)
+{
+    return lanesFma(a.x, lanesSplat(b.x), lanesFma(a.y, lanesSplat(b.y), a.z * b.z));
+}
+DRAPE_FUNCTION LanesVec3 lanesCross(LanesVec3 a, LanesVec3 b)
+{
+    return lanesVec3(lanesFma(a.y, b.z, -a.z * b.y), lanesFma(a.z, b.x, -a.x * b.z), lanesFma(a.x, b.y, -a.y * b.x));
+}
+DRAPE_FUNCTION LanesVec3 lanesCrossUniform(Vec3 a, LanesVec3 b)
+{
+    return lanesVec3(lanesFma(lanesSplat(a.y), b.z, -a.z * b.y), lanesFma(lanesSplat(a.z), b.x, -a.x * b.z),
+                     lanesFma(lanesSplat(a.x), b.y, -a.y * b.x));
+}
+DRAPE_FUNCTION Lanes lanesNorm1(LanesVec3 a)
+{
+    return lanesAbs(a.x) + lanesAbs(a.y) + lanesAbs(a.z);
+}
+
+DRAPE_NAMESPACE_END
+
+#endif

@@ -1,0 +1,361 @@
+// Broad phase over patches: every cloth triangle walks the wide tree of the obstacles' patches, tests the features of those
+// it may touch a block of lanes at a time, and lists the feature tests that are left.
+//
+// A team does this for one cloth triangle: one work-item with vectors of lanes (DRAPE_LANES 8 or 16), or one work-group whose
+// work-items are the lanes (DRAPE_LANES 1). Which of the two is a build option; the text is the same.
+#include "lib/dop.h"
+#include "lib/feature_cull.h"
+
+// Levels of the wide tree over 2^28 triangles, each of which can leave all but one of a node's children on the stack.
+#define DRAPE_TEAM_STACK (10 * DRAPE_PATCH_WIDTH)
+// Feature tests gathered before room is reserved for them with one atomic.
+#define DRAPE_TEAM_KEPT (4 * DRAPE_PATCH_WIDTH)
+// Stack entries: level in the high bits, 0 for a patch.
+#define DRAPE_LEVEL_SHIFT 28
+
+typedef struct Team
+{
+    uint m_stack[DRAPE_TEAM_STACK];
+    uint m_depth;
+    FeatureTest m_kept[DRAPE_TEAM_KEPT];
+    uint m_keptCount;
+    uint m_place;
+} Team;
+
+#if DRAPE_LANES > 1
+#define DRAPE_TEAM
+#define teamIndex() get_global_id(0)
+#define teamLane() 0
+#define teamWidth() 1
+#define teamSync()
+
+// Bit i: lane i's mask.
+static uint laneBits(const LaneMask mask)
+{
+#if DRAPE_LANES == 16
+    const int16 all = mask & (int16)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768);
+    const int8 half8 = all.lo | all.hi;
+#else
+    const int8 half8 = mask & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
+#endif
+    const int4 half4 = half8.lo | half8.hi;
+    const int2 half2 = half4.lo | half4.hi;
+    return (uint)(half2.lo | half2.hi);
+}
+
+#define forLanes(lane, mask) \
+    for (uint bits = laneBits(mask), lane = 31 - clz(bits & -bits); bits; bits &= bits - 1, lane = 31 - clz(bits & -bits))
+#define teamAdd(counter) ((counter)++)
+#else
+#define DRAPE_TEAM __local
+#define teamIndex() get_group_id(0)
+#define teamLane() get_local_id(0)
+#define teamWidth() DRAPE_PATCH_WIDTH
+#define teamSync() barrier(CLK_LOCAL_MEM_FENCE)
+#define forLanes(lane, mask) for (uint lane = get_local_id(0), once = (mask) != 0; once; once = 0)
+#define teamAdd(counter) atomic_inc(&(counter))
+#endif
+
+// Moves what the team kept to the list. The demand counts on past the capacity; what does not fit is not written, and the
+// host repeats the step with a larger list.
+static void teamFlush(DRAPE_TEAM Team* team, __global FeatureTest* restrict tests, const uint capacity,
+                      __global StepCounters* restrict counters)
+{
+    teamSync();
+    const uint count = team->m_keptCount;
+    if (teamLane() == 0) team->m_place = atomic_add(&counters->m_candidates, count);
+    teamSync();
+    const uint place = team->m_place;
+    for (uint i = teamLane(); i < count; i += teamWidth())
+    {
+        if (place + i < capacity) tests[place + i] = team->m_kept[i];
+    }
+    teamSync();
+    if (teamLane() == 0) team->m_keptCount = 0;
+    teamSync();
+}
+
+// Keeps the lanes' tests. first: lane 0 of the block.
+static void teamKeep(DRAPE_TEAM Team* team, const LaneMask mask, const uint cloth, const uint test, const uint first, const float reach,
+                     __global FeatureTest* restrict tests, const uint capacity, __global StepCounters* restrict counters)
+{
+    teamSync();
+    const uint count = team->m_keptCount;
+    teamSync();
+    if (count > DRAPE_TEAM_KEPT - DRAPE_PATCH_WIDTH) teamFlush(team, tests, capacity, counters);
+    forLanes(lane, mask)
+    {
+        FeatureTest kept;
+        kept.m_cloth = cloth | (test << DRAPE_TEST_SHIFT);
+        kept.m_lane = first + lane;
+        kept.m_reach = reach;
+        team->m_kept[teamAdd(team->m_keptCount)] = kept;
+    }
+}
+
+// The lanes of a wide node whose volumes are not proved separate from the triangle's.
+static LaneMask wideOverlap(__global const float* restrict node, const Dop* dop)
+{
+    LaneMask overlap = (lanesLoad(node, 0) <= lanesSplat(dop->m_high[0])) &
+                       (lanesLoad(node, DRAPE_DOP_DIRECTIONS) >= lanesSplat(dop->m_low[0]));
+    for (int i = 1; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        overlap &= (lanesLoad(node, i) <= lanesSplat(dop->m_high[i])) &
+                   (lanesLoad(node, DRAPE_DOP_DIRECTIONS + i) >= lanesSplat(dop->m_low[i]));
+    }
+    return overlap;
+}
+
+typedef struct PatchArrays
+{
+    __global const Patch* m_patches;
+    __global const float* m_faces;
+    __global const float* m_vertices;
+    __global const float* m_edges;
+} PatchArrays;
+
+// The feature tests of one cloth triangle and one patch.
+static void cullPatch(DRAPE_TEAM Team* team, const PatchArrays* arrays, const uint index, const CullTriangle* cull,
+                      const CullReach reach, const float contactReach,
+                      const uint cloth, const uint owned, __global FeatureTest* restrict tests,
+                      const uint capacity, __global StepCounters* restrict counters)
+{
+    __global const Patch* patch = arrays->m_patches + index;
+    for (int i = 0; i < 3; ++i)
+    {
+        if (!(owned & DRAPE_OWNS_VERTEX(i))) continue;
+        const LaneMask mask =
+            cullNodeFace(cull, i, reach, arrays->m_faces + index * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH);
+        teamKeep(team, mask, cloth, DRAPE_TEST_NODE + i, index * DRAPE_PATCH_WIDTH, contactReach, tests, capacity, counters);
+    }
+    for (uint block = patch->m_vertexBlock; block < patch->m_vertexBlock + patch->m_vertexBlocks; ++block)
+    {
+        const LaneMask mask =
+            cullFaceVertex(cull, reach, arrays->m_vertices + block * DRAPE_VERTEX_FLOATS * DRAPE_PATCH_WIDTH);
+        teamKeep(team, mask, cloth, DRAPE_TEST_FACE, block * DRAPE_PATCH_WIDTH, contactReach, tests, capacity, counters);
+    }
+    if (!(owned & (DRAPE_OWNS_EDGE(0) | DRAPE_OWNS_EDGE(1) | DRAPE_OWNS_EDGE(2)))) return;
+    for (uint block = patch->m_edgeBlock; block < patch->m_edgeBlock + patch->m_edgeBlocks; ++block)
+    {
+        const CullEdges edges = loadCullEdges(cull, arrays->m_edges + block * DRAPE_EDGE_FLOATS * DRAPE_PATCH_WIDTH);
+        for (int i = 0; i < 3; ++i)
+        {
+            if (!(owned & DRAPE_OWNS_EDGE(i))) continue;
+            const LaneMask mask = cullEdgeEdge(cull, i, reach, &edges);
+            teamKeep(team, mask, cloth, DRAPE_TEST_EDGE + i, block * DRAPE_PATCH_WIDTH, contactReach, tests, capacity, counters);
+        }
+    }
+}
+
+static void countInvalid(__global const Triangle* triangle, __global const float* restrict start,
+                         __global const float* restrict end, __global StepCounters* restrict counters)
+{
+    for (int i = 0; i < 3; ++i)
+    {
+        const uint vertex = triangle->m_vertices[i];
+        if ((triangle->m_owned & DRAPE_OWNS_VERTEX(i)) &&
+            !(vec3IsFinite(vec3Load(start, vertex)) && vec3IsFinite(vec3Load(end, vertex))))
+        {
+            atomic_inc(&counters->m_invalidNodes);
+        }
+    }
+}
+
+// A team takes one cloth triangle, in leaf order. levels holds the first node of each of levelCount levels of the wide tree,
+// lowest first. radius: m, per cloth; thickness: cloths × obstacles, negative where the pair is not tested. counters'
+// candidates and invalid nodes must be zero before; the atomic reserves disjoint ranges, whose order does not matter.
+__kernel void patchCull(__global const uint* restrict clothOrder, __global const Triangle* restrict clothTriangles,
+                        const uint clothCount, __global const float* restrict start, __global const float* restrict end,
+                        __global const float* restrict radius, __global const float* restrict wideNodes,
+                        __global const uint* restrict levels, const uint levelCount, __global const Patch* restrict patches,
+                        __global const float* restrict patchSizes, __global const float* restrict faces,
+                        __global const float* restrict vertices, __global const float* restrict edges,
+                        __global const float* restrict thickness,
+                        const uint obstacleMeshes, const float reachScale, __global FeatureTest* restrict tests,
+                        const uint capacity, __global StepCounters* restrict counters)
+{
+#if DRAPE_LANES > 1
+    Team space;
+#else
+    __local Team space;
+#endif
+    DRAPE_TEAM Team* team = &space;
+    const uint leaf = teamIndex();
+    if (leaf >= clothCount) return;
+    const uint cloth = clothOrder[leaf];
+    __global const Triangle* triangle = clothTriangles + cloth;
+    if (radius[triangle->m_mesh] < 0.0f) return;
+    if (teamLane() == 0) countInvalid(triangle, start, end, counters);
+    Dop dop;
+    triangleVolume(&dop, triangle, start, end, radius[triangle->m_mesh]);
+    if (!(dop.m_low[0] <= dop.m_high[0])) return;
+    CullTriangle cull;
+    int prepared = 0;
+    const PatchArrays arrays = {patches, faces, vertices, edges};
+    if (teamLane() == 0)
+    {
+        team->m_stack[0] = levelCount << DRAPE_LEVEL_SHIFT;
+        team->m_depth = 1;
+        team->m_keptCount = 0;
+    }
+    teamSync();
+    while (team->m_depth > 0)
+    {
+        const uint entry = team->m_stack[team->m_depth - 1];
+        teamSync();
+        if (teamLane() == 0) --team->m_depth;
+        teamSync();
+        const uint level = entry >> DRAPE_LEVEL_SHIFT, index = entry & ((1u << DRAPE_LEVEL_SHIFT) - 1u);
+        if (level == 0)
+        {
+            const float pairThickness = thickness[triangle->m_mesh * obstacleMeshes + patches[index].m_mesh];
+            if (pairThickness < 0.0f) continue;
+            if (!prepared) prepareCull(&cull, start, end, triangle);
+            prepared = 1;
+            const float contactReach = pairThickness * reachScale;
+            const CullReach reach = cullReach(&cull, contactReach, patchSizes[index]);
+            cullPatch(team, &arrays, index, &cull, reach, contactReach, cloth, triangle->m_owned, tests, capacity, counters);
+            continue;
+        }
+        const LaneMask overlap =
+            wideOverlap(wideNodes + (levels[level - 1] + index) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH, &dop);
+        const uint children = ((level - 1) << DRAPE_LEVEL_SHIFT) + index * DRAPE_PATCH_WIDTH;
+        forLanes(lane, overlap)
+        {
+            team->m_stack[teamAdd(team->m_depth)] = children + lane;
+        }
+        teamSync();
+    }
+    teamFlush(team, tests, capacity, counters);
+}
+
+// Packing, when an obstacle came or moved. A work-item is a lane of a face block. Triangles with a position that is NaN or
+// infinite are left out, with the features they own.
+__kernel void patchPackFaces(__global const uint* restrict owners, const uint lanes,
+                             __global const Triangle* restrict triangles, __global const float* restrict positions,
+                             __global const float* restrict spreads, __global float* restrict faces)
+{
+    const uint i = get_global_id(0);
+    if (i >= lanes) return;
+    const uint owner = owners[i];
+    __global float* out = faces + (i / DRAPE_PATCH_WIDTH) * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
+    const int valid = owner != DRAPE_NO_FEATURE;
+    for (int k = 0; k < 3; ++k)
+    {
+        const Vec3 p = valid ? vec3Load(positions, triangles[owner].m_vertices[k]) : vec3(NAN, NAN, NAN);
+        out[(3 * k) * DRAPE_PATCH_WIDTH] = p.x;
+        out[(3 * k + 1) * DRAPE_PATCH_WIDTH] = p.y;
+        out[(3 * k + 2) * DRAPE_PATCH_WIDTH] = p.z;
+    }
+    out[9 * DRAPE_PATCH_WIDTH] = valid ? spreads[owner] : 0.0f;
+}
+
+static int triangleIsFinite(__global const Triangle* triangle, __global const float* positions)
+{
+    return vec3IsFinite(vec3Load(positions, triangle->m_vertices[0])) &&
+           vec3IsFinite(vec3Load(positions, triangle->m_vertices[1])) &&
+           vec3IsFinite(vec3Load(positions, triangle->m_vertices[2]));
+}
+
+// A work-item is a lane of a vertex block. ids: the vertex of each lane.
+__kernel void patchPackVertices(__global const uint* restrict owners, const uint lanes,
+                                __global const Triangle* restrict triangles, __global const float* restrict positions,
+                                __global const NormalCone* restrict cones, __global float* restrict vertices,
+                                __global uint* restrict ids)
+{
+    const uint i = get_global_id(0);
+    if (i >= lanes) return;
+    __global float* out =
+        vertices + (i / DRAPE_PATCH_WIDTH) * DRAPE_VERTEX_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
+    const uint owner = owners[i] & ((1u << DRAPE_PLACE_SHIFT) - 1u), place = owners[i] >> DRAPE_PLACE_SHIFT;
+    const int valid = owners[i] != DRAPE_NO_FEATURE && triangleIsFinite(triangles + owner, positions);
+    const uint vertex = valid ? triangles[owner].m_vertices[place] : 0;
+    const Vec3 p = valid ? vec3Load(positions, vertex) : vec3(NAN, NAN, NAN);
+    ids[i] = vertex;
+    const NormalCone cone = cones[vertex];
+    const float values[DRAPE_VERTEX_FLOATS] = {p.x, p.y, p.z, cone.m_axis.x, cone.m_axis.y, cone.m_axis.z, cone.m_cosine};
+    for (int k = 0; k < DRAPE_VERTEX_FLOATS; ++k) out[k * DRAPE_PATCH_WIDTH] = values[k];
+}
+
+// A work-item is a lane of an edge block. ids: the edge of each lane.
+__kernel void patchPackEdges(__global const uint* restrict owners, const uint lanes,
+                             __global const Triangle* restrict triangles, __global const float* restrict positions,
+                             __global const NormalCone* restrict cones, __global float* restrict edges,
+                             __global uint* restrict ids)
+{
+    const uint i = get_global_id(0);
+    if (i >= lanes) return;
+    __global float* out = edges + (i / DRAPE_PATCH_WIDTH) * DRAPE_EDGE_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
+    const uint owner = owners[i] & ((1u << DRAPE_PLACE_SHIFT) - 1u), place = owners[i] >> DRAPE_PLACE_SHIFT;
+    const int valid = owners[i] != DRAPE_NO_FEATURE && triangleIsFinite(triangles + owner, positions);
+    const Vec3 none = vec3(NAN, NAN, NAN);
+    const Vec3 a = valid ? vec3Load(positions, triangles[owner].m_vertices[place]) : none;
+    const Vec3 b = valid ? vec3Load(positions, triangles[owner].m_vertices[place == 2 ? 0 : place + 1]) : none;
+    const uint edge = valid ? triangles[owner].m_edges[place] : 0;
+    ids[i] = edge;
+    const NormalCone cone = cones[edge];
+    const float values[DRAPE_EDGE_FLOATS] = {a.x,           a.y, a.z, b.x, b.y, b.z, cone.m_axis.x, cone.m_axis.y,
+                                             cone.m_axis.z, cone.m_cosine};
+    for (int k = 0; k < DRAPE_EDGE_FLOATS; ++k) out[k * DRAPE_PATCH_WIDTH] = values[k];
+}
+
+static void wideStore(__global float* restrict wideNodes, const uint child, const Dop* dop)
+{
+    __global float* out = wideNodes + (child / DRAPE_PATCH_WIDTH) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH +
+                          child % DRAPE_PATCH_WIDTH;
+    for (int k = 0; k < DRAPE_DOP_DIRECTIONS; ++k)
+    {
+        out[k * DRAPE_PATCH_WIDTH] = dop->m_low[k];
+        out[(DRAPE_DOP_DIRECTIONS + k) * DRAPE_PATCH_WIDTH] = dop->m_high[k];
+    }
+}
+
+// A work-item is a child place of the wide tree's lowest level: a patch, or none from patchCount on. Writes its volume and its
+// size, m.
+__kernel void patchVolumes(__global const uint* restrict faceOwners, const uint patchCount, const uint places,
+                           __global const Triangle* restrict triangles, __global const float* restrict positions,
+                           __global float* restrict wideNodes, __global float* restrict patchSizes)
+{
+    const uint patch = get_global_id(0);
+    if (patch >= places) return;
+    Dop dop;
+    dopClear(&dop);
+    for (uint lane = 0; lane < DRAPE_PATCH_WIDTH && patch < patchCount; ++lane)
+    {
+        const uint owner = faceOwners[patch * DRAPE_PATCH_WIDTH + lane];
+        if (owner == DRAPE_NO_FEATURE) break;
+        Dop one;
+        triangleVolume(&one, triangles + owner, positions, positions, 0.0f);
+        for (int k = 0; k < DRAPE_DOP_DIRECTIONS; ++k)
+        {
+            dop.m_low[k] = drapeMin(dop.m_low[k], one.m_low[k]);
+            dop.m_high[k] = drapeMax(dop.m_high[k], one.m_high[k]);
+        }
+    }
+    wideStore(wideNodes, patch, &dop);
+    if (patch >= patchCount) return;
+    float size = 0.0f;
+    for (int k = 0; k < 3; ++k) size += drapeMax(dop.m_high[k] - dop.m_low[k], 0.0f);
+    patchSizes[patch] = size;
+}
+
+// A work-item is a child place of one level: a node of the level below, or none from nodeCount on. below and level: that
+// level's nodes and this one's.
+__kernel void patchWiden(__global float* restrict wideNodes, const uint below, const uint nodeCount, const uint level,
+                         const uint places)
+{
+    const uint node = get_global_id(0);
+    if (node >= places) return;
+    Dop dop;
+    dopClear(&dop);
+    __global const float* lanes = wideNodes + (below + node) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH;
+    for (uint lane = 0; lane < DRAPE_PATCH_WIDTH && node < nodeCount; ++lane)
+    {
+        for (int k = 0; k < DRAPE_DOP_DIRECTIONS; ++k)
+        {
+            dop.m_low[k] = drapeMin(dop.m_low[k], lanes[k * DRAPE_PATCH_WIDTH + lane]);
+            dop.m_high[k] = drapeMax(dop.m_high[k], lanes[(DRAPE_DOP_DIRECTIONS + k) * DRAPE_PATCH_WIDTH + lane]);
+        }
+    }
+    wideStore(wideNodes + level * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH, node, &dop);
+}

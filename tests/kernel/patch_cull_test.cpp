@@ -1,0 +1,188 @@
+// The cull over patches: every feature test that gives a contact is listed, each at most once, and what is listed is
+// the demand past a full list.
+#include "bullet_plugin/core/broad_phase/patch_cull.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "bullet_plugin/core/narrow_phase/narrow_phase.h"
+#include "tests/support/cases.h"
+#include "tests/support/device_side.h"
+
+namespace drape::test
+{
+namespace
+{
+constexpr float kReachScale = 1.5f;
+
+// A contact's feature pair: kind, cloth feature, obstacle feature.
+using Pair = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;
+
+class DeviceCull
+{
+public:
+    DeviceCull(Device& device, const StepCase& step)
+        : m_device(device), m_cloth(makeSide({step.m_cloth})), m_obstacle(makeSide({step.m_obstacle}))
+    {
+        m_cloth.m_end = step.m_end;
+        m_thickness = {step.m_thickness};
+        m_stage.create(device, programOf(device, "patch_cull", PatchCullStage::defines(device)));
+        m_clothBuffers.upload(device, m_cloth);
+        m_obstacleBuffers.upload(device, m_obstacle);
+        guardCopy(device, m_thicknessBuffer, m_thickness);
+        guardCopy(device, m_radius, std::vector<float>{step.m_thickness * kReachScale * 1.001f});
+        guardCopy(device, m_spreads,
+                  faceSpreads(m_obstacle.m_pool.triangles(), m_obstacle.m_start.data(), m_obstacle.m_vertexCones,
+                              m_obstacle.m_edgeCones));
+        m_stage.setTopology(device, m_obstacle.m_pool);
+        m_stage.pack(device, m_obstacleBuffers.m_triangles, m_obstacleBuffers.m_start, m_spreads,
+                     m_obstacleBuffers.m_vertexCones, m_obstacleBuffers.m_edgeCones);
+    }
+
+    // What fits of the list.
+    std::vector<FeatureTest> run(std::size_t capacity, StepCounters& counters)
+    {
+        Buffer<StepCounters> counterBuffer;
+        clearCounters(m_device, counterBuffer);
+        guard(m_device, m_stage.tests(), capacity);
+        m_stage.enqueue(
+            m_device,
+            {m_clothBuffers.m_order, m_clothBuffers.m_triangles, m_clothBuffers.m_start, m_clothBuffers.m_end, m_radius,
+             m_thicknessBuffer, m_cloth.m_pool.triangles().size(), 1, kReachScale},
+            counterBuffer);
+        counters = readCounters(m_device, counterBuffer);
+        const std::size_t count = std::min<std::size_t>(counters.m_candidates, m_stage.tests().capacity());
+        std::vector<FeatureTest> tests = contents(m_device, m_stage.tests(), count);
+        EXPECT_TRUE(intact(m_device, m_stage.tests()) && intact(m_device, counterBuffer));
+        EXPECT_TRUE(m_clothBuffers.allIntact(m_device) && m_obstacleBuffers.allIntact(m_device));
+        EXPECT_FALSE(m_device.failed()) << m_device.error().text();
+        return tests;
+    }
+
+    Pair pairOf(const FeatureTest& test)
+    {
+        const std::uint32_t kind = test.m_cloth >> DRAPE_TEST_SHIFT;
+        const Triangle& cloth = m_cloth.m_pool.triangles()[test.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u)];
+        if (kind < DRAPE_TEST_FACE)
+            return {DRAPE_NODE_FACE, cloth.m_vertices[kind], id(m_stage.features().m_faceIds, test)};
+        if (kind == DRAPE_TEST_FACE)
+        {
+            return {DRAPE_FACE_VERTEX, std::uint32_t(&cloth - m_cloth.m_pool.triangles().data()),
+                    id(m_stage.features().m_vertexIds, test)};
+        }
+        return {DRAPE_EDGE_EDGE, cloth.m_edges[kind - DRAPE_TEST_EDGE], id(m_stage.features().m_edgeIds, test)};
+    }
+
+    std::vector<Contact> hostContacts() const
+    {
+        std::vector<Contact> contacts;
+        narrowPhaseOnHost(allPairs(m_cloth, m_obstacle), m_cloth.cloth(), m_obstacle.obstacle(),
+                          {m_thickness, 1, kReachScale}, contacts);
+        return contacts;
+    }
+
+    std::size_t featurePairs() const
+    {
+        const MeshPool &a = m_cloth.m_pool, &b = m_obstacle.m_pool;
+        return a.vertexCount() * b.triangles().size() + a.triangles().size() * b.vertexCount() +
+               a.edges().size() * b.edges().size();
+    }
+
+private:
+    std::uint32_t id(Buffer<cl_uint>& ids, const FeatureTest& test)
+    {
+        std::vector<cl_uint>& copy = m_ids[&ids];
+        if (copy.empty()) copy = contents(m_device, ids, ids.capacity());
+        return copy[test.m_lane];
+    }
+
+    Device& m_device;
+    Side m_cloth, m_obstacle;
+    PatchCullStage m_stage;
+    DeviceSide m_clothBuffers, m_obstacleBuffers;
+    std::vector<float> m_thickness;
+    Buffer<float> m_thicknessBuffer, m_radius, m_spreads;
+    std::map<Buffer<cl_uint>*, std::vector<cl_uint>> m_ids;
+};
+
+// Every contact's test is listed once; most of all feature pairs are not.
+void expectContactsListed(Device& device, const StepCase& step)
+{
+    DeviceCull cull(device, step);
+    StepCounters counters;
+    cull.run(1, counters);
+    std::map<Pair, int> listed;
+    for (const FeatureTest& test : cull.run(counters.m_candidates, counters))
+        ++listed[cull.pairOf(test)];
+    for (const auto& entry : listed)
+        EXPECT_EQ(entry.second, 1);
+    const std::vector<Contact> contacts = cull.hostContacts();
+    for (const Contact& contact : contacts)
+    {
+        const Pair pair = {contact.m_kind, contact.m_clothFeature, contact.m_obstacleFeature};
+        EXPECT_EQ(listed.count(pair), 1u) << "kind " << contact.m_kind << " cloth " << contact.m_clothFeature
+                                          << " obstacle " << contact.m_obstacleFeature;
+    }
+    EXPECT_GT(contacts.size(), 0u);
+    EXPECT_LT(counters.m_candidates, cull.featurePairs() / 2);
+}
+}  // namespace
+
+class PatchCullTest : public BackendTest
+{
+protected:
+    void SetUp() override
+    {
+        BackendTest::SetUp();
+        if (HasFatalFailure() || IsSkipped()) return;
+        m_device = openDevice(GetParam());
+        ASSERT_TRUE(m_device);
+    }
+
+    std::unique_ptr<Device> m_device;
+};
+
+TEST_P(PatchCullTest, ListsEveryContactOfSoups)
+{
+    const int sizes[][2] = {{65, 15}, {63, 16}, {64, 17}, {31, 257}, {161, 183}, {33, 1023}};
+    std::uint32_t seed = 300;
+    for (const auto& size : sizes)
+    {
+        for (bool moving : {false, true})
+        {
+            const StepCase step = soupCase(size[0], size[1], moving, ++seed);
+            SCOPED_TRACE(step.trace() + ", " + std::to_string(size[0]) + " and " + std::to_string(size[1]) +
+                         " triangles");
+            expectContactsListed(*m_device, step);
+        }
+    }
+}
+
+TEST_P(PatchCullTest, ListsEveryContactOfShapes)
+{
+    for (const char* shape : {"sphere", "torus", "bowl", "stairs", "box"})
+    {
+        const StepCase step = fallingCase(shape, 14, 0.03f, 320);
+        SCOPED_TRACE(step.trace());
+        expectContactsListed(*m_device, step);
+    }
+}
+
+TEST_P(PatchCullTest, FullListCountsOn)
+{
+    DeviceCull cull(*m_device, fallingCase("sphere", 12, 0.03f, 330));
+    StepCounters whole, counters;
+    cull.run(1, whole);
+    ASSERT_GT(whole.m_candidates, 100u);
+    for (std::size_t capacity : {std::size_t(1), std::size_t(63), std::size_t(whole.m_candidates - 1)})
+    {
+        EXPECT_EQ(cull.run(capacity, counters).size(), capacity);
+        EXPECT_EQ(counters.m_candidates, whole.m_candidates);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, PatchCullTest, testing::ValuesIn(openClBackends()), backendName);
+}  // namespace drape::test
