@@ -56,19 +56,30 @@ static uint laneBits(const LaneMask mask)
 #define teamAdd(counter) atomic_inc(&(counter))
 #endif
 
+typedef struct TestList
+{
+    __global FeatureTest* m_tests;
+    uint m_capacity, m_limit;
+    __global StepCounters* m_counters;
+} TestList;
+
 // Moves what the team kept to the list. The demand counts on past the capacity; what does not fit is not written, and the
-// host repeats the step with a larger list.
-static void teamFlush(DRAPE_TEAM Team* team, __global FeatureTest* restrict tests, const uint capacity,
-                      __global StepCounters* restrict counters)
+// host repeats the step with a larger list. Past the limit the team ends: the step is over it whatever follows, and a count
+// that ran on could wrap around.
+static void teamFlush(DRAPE_TEAM Team* team, const TestList* list)
 {
     teamSync();
     const uint count = team->m_keptCount;
-    if (teamLane() == 0) team->m_place = atomic_add(&counters->m_candidates, count);
+    if (teamLane() == 0)
+    {
+        team->m_place = atomic_add(&list->m_counters->m_candidates, count);
+        if (team->m_place > list->m_limit) team->m_depth = 0;
+    }
     teamSync();
     const uint place = team->m_place;
     for (uint i = teamLane(); i < count; i += teamWidth())
     {
-        if (place + i < capacity) tests[place + i] = team->m_kept[i];
+        if (place + i < list->m_capacity) list->m_tests[place + i] = team->m_kept[i];
     }
     teamSync();
     if (teamLane() == 0) team->m_keptCount = 0;
@@ -77,12 +88,12 @@ static void teamFlush(DRAPE_TEAM Team* team, __global FeatureTest* restrict test
 
 // Keeps the lanes' tests. first: lane 0 of the block.
 static void teamKeep(DRAPE_TEAM Team* team, const LaneMask mask, const uint cloth, const uint test, const uint first, const float reach,
-                     __global FeatureTest* restrict tests, const uint capacity, __global StepCounters* restrict counters)
+                     const TestList* list)
 {
     teamSync();
     const uint count = team->m_keptCount;
     teamSync();
-    if (count > DRAPE_TEAM_KEPT - DRAPE_PATCH_WIDTH) teamFlush(team, tests, capacity, counters);
+    if (count > DRAPE_TEAM_KEPT - DRAPE_PATCH_WIDTH) teamFlush(team, list);
     forLanes(lane, mask)
     {
         FeatureTest kept;
@@ -117,22 +128,23 @@ typedef struct PatchArrays
 // The feature tests of one cloth triangle and one patch.
 static void cullPatch(DRAPE_TEAM Team* team, const PatchArrays* arrays, const uint index, const CullTriangle* cull,
                       const CullReach reach, const float contactReach,
-                      const uint cloth, const uint owned, __global FeatureTest* restrict tests,
-                      const uint capacity, __global StepCounters* restrict counters)
+                      const uint cloth, const uint triangleOwned, const uint valid, const TestList* list)
 {
     __global const Patch* patch = arrays->m_patches + index;
+    const uint owned = triangleOwned & valid;
     for (int i = 0; i < 3; ++i)
     {
         if (!(owned & DRAPE_OWNS_VERTEX(i))) continue;
         const LaneMask mask =
             cullNodeFace(cull, i, reach, arrays->m_faces + index * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH);
-        teamKeep(team, mask, cloth, DRAPE_TEST_NODE + i, index * DRAPE_PATCH_WIDTH, contactReach, tests, capacity, counters);
+        teamKeep(team, mask, cloth, DRAPE_TEST_NODE + i, index * DRAPE_PATCH_WIDTH, contactReach, list);
     }
-    for (uint block = patch->m_vertexBlock; block < patch->m_vertexBlock + patch->m_vertexBlocks; ++block)
+    for (uint block = patch->m_vertexBlock;
+         valid == DRAPE_ALL_FEATURES && block < patch->m_vertexBlock + patch->m_vertexBlocks; ++block)
     {
         const LaneMask mask =
             cullFaceVertex(cull, reach, arrays->m_vertices + block * DRAPE_VERTEX_FLOATS * DRAPE_PATCH_WIDTH);
-        teamKeep(team, mask, cloth, DRAPE_TEST_FACE, block * DRAPE_PATCH_WIDTH, contactReach, tests, capacity, counters);
+        teamKeep(team, mask, cloth, DRAPE_TEST_FACE, block * DRAPE_PATCH_WIDTH, contactReach, list);
     }
     if (!(owned & (DRAPE_OWNS_EDGE(0) | DRAPE_OWNS_EDGE(1) | DRAPE_OWNS_EDGE(2)))) return;
     for (uint block = patch->m_edgeBlock; block < patch->m_edgeBlock + patch->m_edgeBlocks; ++block)
@@ -142,7 +154,7 @@ static void cullPatch(DRAPE_TEAM Team* team, const PatchArrays* arrays, const ui
         {
             if (!(owned & DRAPE_OWNS_EDGE(i))) continue;
             const LaneMask mask = cullEdgeEdge(cull, i, reach, &edges);
-            teamKeep(team, mask, cloth, DRAPE_TEST_EDGE + i, block * DRAPE_PATCH_WIDTH, contactReach, tests, capacity, counters);
+            teamKeep(team, mask, cloth, DRAPE_TEST_EDGE + i, block * DRAPE_PATCH_WIDTH, contactReach, list);
         }
     }
 }
@@ -172,7 +184,7 @@ __kernel void patchCull(__global const uint* restrict clothOrder, __global const
                         __global const float* restrict vertices, __global const float* restrict edges,
                         __global const float* restrict thickness,
                         const uint obstacleMeshes, const float reachScale, __global FeatureTest* restrict tests,
-                        const uint capacity, __global StepCounters* restrict counters)
+                        const uint capacity, const uint limit, __global StepCounters* restrict counters)
 {
 #if DRAPE_LANES > 1
     Team space;
@@ -190,7 +202,8 @@ __kernel void patchCull(__global const uint* restrict clothOrder, __global const
     triangleVolume(&dop, triangle, start, end, radius[triangle->m_mesh]);
     if (!(dop.m_low[0] <= dop.m_high[0])) return;
     CullTriangle cull;
-    int prepared = 0;
+    uint valid = 0;
+    const TestList list = {tests, capacity, limit, counters};
     const PatchArrays arrays = {patches, faces, vertices, edges};
     if (teamLane() == 0)
     {
@@ -210,11 +223,11 @@ __kernel void patchCull(__global const uint* restrict clothOrder, __global const
         {
             const float pairThickness = thickness[triangle->m_mesh * obstacleMeshes + patches[index].m_mesh];
             if (pairThickness < 0.0f) continue;
-            if (!prepared) prepareCull(&cull, start, end, triangle);
-            prepared = 1;
+            if (valid == 0) valid = prepareCull(&cull, start, end, triangle);
             const float contactReach = pairThickness * reachScale;
             const CullReach reach = cullReach(&cull, contactReach, patchSizes[index]);
-            cullPatch(team, &arrays, index, &cull, reach, contactReach, cloth, triangle->m_owned, tests, capacity, counters);
+            cullPatch(team, &arrays, index, &cull, reach, contactReach, cloth, triangle->m_owned, valid,
+                      &list);
             continue;
         }
         const LaneMask overlap =
@@ -226,11 +239,10 @@ __kernel void patchCull(__global const uint* restrict clothOrder, __global const
         }
         teamSync();
     }
-    teamFlush(team, tests, capacity, counters);
+    teamFlush(team, &list);
 }
 
-// Packing, when an obstacle came or moved. A work-item is a lane of a face block. Triangles with a position that is NaN or
-// infinite are left out, with the features they own.
+// Packing, when an obstacle came or moved. A work-item is a lane of a face block.
 __kernel void patchPackFaces(__global const uint* restrict owners, const uint lanes,
                              __global const Triangle* restrict triangles, __global const float* restrict positions,
                              __global const float* restrict spreads, __global float* restrict faces)
@@ -239,22 +251,15 @@ __kernel void patchPackFaces(__global const uint* restrict owners, const uint la
     if (i >= lanes) return;
     const uint owner = owners[i];
     __global float* out = faces + (i / DRAPE_PATCH_WIDTH) * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
-    const int valid = owner != DRAPE_NO_FEATURE;
+    const int used = owner != DRAPE_NO_FEATURE;
     for (int k = 0; k < 3; ++k)
     {
-        const Vec3 p = valid ? vec3Load(positions, triangles[owner].m_vertices[k]) : vec3(NAN, NAN, NAN);
+        const Vec3 p = used ? vec3Load(positions, triangles[owner].m_vertices[k]) : vec3(NAN, NAN, NAN);
         out[(3 * k) * DRAPE_PATCH_WIDTH] = p.x;
         out[(3 * k + 1) * DRAPE_PATCH_WIDTH] = p.y;
         out[(3 * k + 2) * DRAPE_PATCH_WIDTH] = p.z;
     }
-    out[9 * DRAPE_PATCH_WIDTH] = valid ? spreads[owner] : 0.0f;
-}
-
-static int triangleIsFinite(__global const Triangle* triangle, __global const float* positions)
-{
-    return vec3IsFinite(vec3Load(positions, triangle->m_vertices[0])) &&
-           vec3IsFinite(vec3Load(positions, triangle->m_vertices[1])) &&
-           vec3IsFinite(vec3Load(positions, triangle->m_vertices[2]));
+    out[9 * DRAPE_PATCH_WIDTH] = used ? spreads[owner] : 0.0f;
 }
 
 // A work-item is a lane of a vertex block. ids: the vertex of each lane.
@@ -268,9 +273,9 @@ __kernel void patchPackVertices(__global const uint* restrict owners, const uint
     __global float* out =
         vertices + (i / DRAPE_PATCH_WIDTH) * DRAPE_VERTEX_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
     const uint owner = owners[i] & ((1u << DRAPE_PLACE_SHIFT) - 1u), place = owners[i] >> DRAPE_PLACE_SHIFT;
-    const int valid = owners[i] != DRAPE_NO_FEATURE && triangleIsFinite(triangles + owner, positions);
-    const uint vertex = valid ? triangles[owner].m_vertices[place] : 0;
-    const Vec3 p = valid ? vec3Load(positions, vertex) : vec3(NAN, NAN, NAN);
+    const int used = owners[i] != DRAPE_NO_FEATURE;
+    const uint vertex = used ? triangles[owner].m_vertices[place] : 0;
+    const Vec3 p = used ? vec3Load(positions, vertex) : vec3(NAN, NAN, NAN);
     ids[i] = vertex;
     const NormalCone cone = cones[vertex];
     const float values[DRAPE_VERTEX_FLOATS] = {p.x, p.y, p.z, cone.m_axis.x, cone.m_axis.y, cone.m_axis.z, cone.m_cosine};
@@ -287,11 +292,11 @@ __kernel void patchPackEdges(__global const uint* restrict owners, const uint la
     if (i >= lanes) return;
     __global float* out = edges + (i / DRAPE_PATCH_WIDTH) * DRAPE_EDGE_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
     const uint owner = owners[i] & ((1u << DRAPE_PLACE_SHIFT) - 1u), place = owners[i] >> DRAPE_PLACE_SHIFT;
-    const int valid = owners[i] != DRAPE_NO_FEATURE && triangleIsFinite(triangles + owner, positions);
+    const int used = owners[i] != DRAPE_NO_FEATURE;
     const Vec3 none = vec3(NAN, NAN, NAN);
-    const Vec3 a = valid ? vec3Load(positions, triangles[owner].m_vertices[place]) : none;
-    const Vec3 b = valid ? vec3Load(positions, triangles[owner].m_vertices[place == 2 ? 0 : place + 1]) : none;
-    const uint edge = valid ? triangles[owner].m_edges[place] : 0;
+    const Vec3 a = used ? vec3Load(positions, triangles[owner].m_vertices[place]) : none;
+    const Vec3 b = used ? vec3Load(positions, triangles[owner].m_vertices[place == 2 ? 0 : place + 1]) : none;
+    const uint edge = used ? triangles[owner].m_edges[place] : 0;
     ids[i] = edge;
     const NormalCone cone = cones[edge];
     const float values[DRAPE_EDGE_FLOATS] = {a.x,           a.y, a.z, b.x, b.y, b.z, cone.m_axis.x, cone.m_axis.y,

@@ -8,6 +8,7 @@
 #define DRAPE_LIB_FEATURE_CULL_H
 
 #include "feature_contact.h"
+#include "finite_corners.h"
 #include "lanes.h"
 
 DRAPE_NAMESPACE_BEGIN
@@ -49,15 +50,22 @@ DRAPE_FUNCTION int cullNormal(const Vec3* p, Vec3* normal)
     return !(length > DRAPE_CULL_THIN * longest);
 }
 
-DRAPE_FUNCTION void prepareCull(CullTriangle* cull, const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end,
-                                const DRAPE_GLOBAL Triangle* triangle)
+// Returns the triangle's features that are valid, bits as in Triangle::m_owned (see finite_corners.h).
+DRAPE_FUNCTION DRAPE_UINT prepareCull(CullTriangle* cull, const DRAPE_GLOBAL float* start,
+                                      const DRAPE_GLOBAL float* end, const DRAPE_GLOBAL Triangle* triangle)
 {
-    cull->m_origin = vec3Load(end, triangle->m_vertices[0]);
+    for (int i = 0; i < 3; ++i)
+    {
+        cull->m_start[i] = vec3Load(start, triangle->m_vertices[i]);
+        cull->m_end[i] = vec3Load(end, triangle->m_vertices[i]);
+    }
+    const DRAPE_UINT valid = replaceInvalidCorners(cull->m_start, cull->m_end);
+    cull->m_origin = cull->m_end[0];
     cull->m_diameter = cull->m_motion = 0.0f;
     for (int i = 0; i < 3; ++i)
     {
-        cull->m_start[i] = vec3Sub(vec3Load(start, triangle->m_vertices[i]), cull->m_origin);
-        cull->m_end[i] = vec3Sub(vec3Load(end, triangle->m_vertices[i]), cull->m_origin);
+        cull->m_start[i] = vec3Sub(cull->m_start[i], cull->m_origin);
+        cull->m_end[i] = vec3Sub(cull->m_end[i], cull->m_origin);
         cull->m_motion = drapeMax(cull->m_motion, vec3Length(vec3Sub(cull->m_end[i], cull->m_start[i])));
     }
     cull->m_motion *= 1.0f + DRAPE_CULL_SLACK;
@@ -72,6 +80,7 @@ DRAPE_FUNCTION void prepareCull(CullTriangle* cull, const DRAPE_GLOBAL float* st
         cull->m_inward[i] = vec3Cross(cull->m_normal1, cull->m_along[i]);
     }
     cull->m_diameter += 2.0f * cull->m_motion;
+    return valid;
 }
 
 // size: m, of the block's features together.

@@ -5,6 +5,7 @@
 #include "dop.h"
 #include "edge_edge_contact.h"
 #include "face_vertex_contact.h"
+#include "finite_corners.h"
 #include "node_face_contact.h"
 
 DRAPE_NAMESPACE_BEGIN
@@ -40,9 +41,10 @@ DRAPE_FUNCTION PairBounds pairBounds(float extent, float reach)
     return bounds;
 }
 
+// A position that is NaN or infinite, at the step's start or end, gives a gap that is not finite: no contact.
 DRAPE_FUNCTION int finishContact(int found, Vec3 origin, Contact* contact)
 {
-    if (!found || !drapeIsFinite(contact->m_gap1)) return 0;
+    if (!found || !drapeIsFinite(contact->m_gap0) || !drapeIsFinite(contact->m_gap1)) return 0;
     contact->m_point[0] += origin.x;
     contact->m_point[1] += origin.y;
     contact->m_point[2] += origin.z;
@@ -102,7 +104,7 @@ DRAPE_FUNCTION int pairFaceVertex(const ClothView* cloth, DRAPE_UINT clothTriang
     contact->m_clothFeature = clothTriangle;
     contact->m_obstacleFeature = obstacleVertex;
     contact->m_slot = cloth->m_nodeCount + clothTriangle;
-    const int found = faceVertexContact(&face, beyond, cloth->m_end, vertex, vec3(0.0f, 0.0f, 0.0f), cone,
+    const int found = faceVertexContact(&face, beyond, cloth->m_start, cloth->m_end, vertex, vec3(0.0f, 0.0f, 0.0f), cone,
                                         pairBounds(extent, reach), contact);
     return finishContact(found, vertex, contact);
 }
@@ -169,7 +171,8 @@ DRAPE_FUNCTION int pairContact(int test, const ClothView* cloth, const ObstacleV
                         contact);
 }
 
-// The positions of a candidate, relative to the first vertex of the obstacle's triangle.
+// The positions of a candidate, relative to the first vertex of the obstacle's triangle. Corners that are NaN or infinite
+// are replaced (finite_corners.h).
 typedef struct PairTriangles
 {
     FeatureTriangle m_start, m_end, m_resting;
@@ -180,13 +183,20 @@ DRAPE_FUNCTION void loadPair(PairTriangles* pair, const ClothView* cloth, const 
 {
     const DRAPE_GLOBAL Triangle* clothTriangle = cloth->m_triangles + candidate.m_cloth;
     const DRAPE_GLOBAL Triangle* obstacleTriangle = obstacle->m_triangles + candidate.m_obstacle;
-    const Vec3 origin = vec3Load(obstacle->m_positions, obstacleTriangle->m_vertices[0]);
     for (int i = 0; i < 3; ++i)
     {
-        const DRAPE_UINT node = clothTriangle->m_vertices[i];
-        pair->m_start.m_p[i] = vec3Sub(vec3Load(cloth->m_start, node), origin);
-        pair->m_end.m_p[i] = vec3Sub(vec3Load(cloth->m_end, node), origin);
-        pair->m_resting.m_p[i] = vec3Sub(vec3Load(obstacle->m_positions, obstacleTriangle->m_vertices[i]), origin);
+        pair->m_start.m_p[i] = vec3Load(cloth->m_start, clothTriangle->m_vertices[i]);
+        pair->m_end.m_p[i] = vec3Load(cloth->m_end, clothTriangle->m_vertices[i]);
+        pair->m_resting.m_p[i] = vec3Load(obstacle->m_positions, obstacleTriangle->m_vertices[i]);
+    }
+    replaceInvalidCorners(pair->m_start.m_p, pair->m_end.m_p);
+    replaceInvalidCorners(pair->m_resting.m_p, pair->m_resting.m_p);
+    const Vec3 origin = pair->m_resting.m_p[0];
+    for (int i = 0; i < 3; ++i)
+    {
+        pair->m_start.m_p[i] = vec3Sub(pair->m_start.m_p[i], origin);
+        pair->m_end.m_p[i] = vec3Sub(pair->m_end.m_p[i], origin);
+        pair->m_resting.m_p[i] = vec3Sub(pair->m_resting.m_p[i], origin);
     }
 }
 

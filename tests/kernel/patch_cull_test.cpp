@@ -51,7 +51,7 @@ public:
         m_stage.enqueue(
             m_device,
             {m_clothBuffers.m_order, m_clothBuffers.m_triangles, m_clothBuffers.m_start, m_clothBuffers.m_end, m_radius,
-             m_thicknessBuffer, m_cloth.m_pool.triangles().size(), 1, kReachScale},
+             m_thicknessBuffer, m_cloth.m_pool.triangles().size(), 1, kReachScale, 1u << 30},
             counterBuffer);
         counters = readCounters(m_device, counterBuffer);
         const std::size_t count = std::min<std::size_t>(counters.m_candidates, m_stage.tests().capacity());

@@ -90,6 +90,6 @@ void PatchCullStage::enqueue(Device& device, Cloths cloths, Buffer<StepCounters>
                   m_levels.handle(), cl_uint(m_layout.m_levels.size() - 1), m_patches.handle(), m_sizes.handle(),
                   m_faces.handle(), m_vertices.handle(), m_edges.handle(), cloths.m_thickness.handle(),
                   cl_uint(cloths.m_obstacleMeshes), cloths.m_reachScale, m_tests.handle(), cl_uint(m_tests.capacity()),
-                  counters.handle());
+                  cl_uint(cloths.m_limit), counters.handle());
 }
 }  // namespace drape

@@ -36,10 +36,17 @@ struct Pipeline::Implementation
 
     Device* device() { return m_deviceBackend ? &m_deviceBackend->device() : nullptr; }
     PooledMesh makeMesh(const MeshDescription& description);
+    // What depends on an obstacle's positions.
+    static void measureObstacle(PooledMesh& mesh);
     void joinScene();
     void joinObstacles();
     void collectPairs();
     void leaveDevice();
     void runOnHost();
+    // The step of the pairs that are left, on the back end in use.
+    void enqueue();
+    void complete();
+    // Takes cloths out of the step until what is left is within the limits.
+    void leaveOutCloths();
 };
 }  // namespace drape

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <chrono>
+#include <cmath>
+#include <limits>
 
 #include "bullet_plugin/core/mesh/normal_cones.h"
 
@@ -39,6 +41,17 @@ PooledMesh Pipeline::Implementation::makeMesh(const MeshDescription& description
         mesh.m_order = mortonOrderOnHost(mesh.m_topology.m_triangles, mesh.m_positions.data());
     }
     return mesh;
+}
+
+void Pipeline::Implementation::measureObstacle(PooledMesh& mesh)
+{
+    computeNormalCones(mesh.m_topology, mesh.m_positions.data(), mesh.m_vertexCones, mesh.m_edgeCones);
+    float farthest = 0;
+    for (float coordinate : mesh.m_positions)
+    {
+        if (std::isfinite(coordinate)) farthest = std::max(farthest, std::fabs(coordinate));
+    }
+    mesh.m_coordinateStep = std::nextafter(farthest, std::numeric_limits<float>::infinity()) - farthest;
 }
 
 void Pipeline::Implementation::joinObstacles()
@@ -99,6 +112,8 @@ void Pipeline::Implementation::collectPairs()
         const std::size_t obstacle = m_scene.m_obstacles.slot(pair.m_obstacle);
         assert(cloth < m_scene.m_cloths.meshCount() && obstacle < obstacleMeshes && pair.m_thickness > 0.0f);
         m_stepPairs.m_thickness[cloth * obstacleMeshes + obstacle] = pair.m_thickness;
+        if (m_scene.m_obstacles.mesh(obstacle).m_coordinateStep > pair.m_thickness)
+            m_statistics.m_status |= kStepCoarsePositions;
         float& radius = m_stepPairs.m_clothRadius[cloth];
         radius = std::max(radius, pair.m_thickness * (1.0f + m_settings.m_activation) * kReachPad);
         m_stepPairs.m_any = true;
@@ -121,11 +136,6 @@ void Pipeline::Implementation::leaveDevice()
     m_report.m_device.m_name = "host";
     m_statistics.m_status |= kStepDeviceFailed;
     // The backend stays: the scene's pinned memory is its context's.
-}
-
-void Pipeline::Implementation::runOnHost()
-{
-    m_hostBackend.run(m_scene, m_stepPairs, m_settings, m_result);
 }
 
 Pipeline::Pipeline() : m_implementation(new Implementation) {}
@@ -175,7 +185,7 @@ MeshId Pipeline::addObstacle(const MeshDescription& description)
 {
     PooledMesh mesh = m_implementation->makeMesh(description);
     const MeshId id = mesh.m_id;
-    computeNormalCones(mesh.m_topology, mesh.m_positions.data(), mesh.m_vertexCones, mesh.m_edgeCones);
+    m_implementation->measureObstacle(mesh);
     m_implementation->m_scene.m_obstacles.add(std::move(mesh));
     return id;
 }
@@ -193,7 +203,7 @@ void Pipeline::moveObstacle(MeshId id, const float* positions)
     m_implementation->joinScene();
     PooledMesh& mesh = scene.m_obstacles.mesh(scene.m_obstacles.slot(id));
     std::copy(positions, positions + mesh.m_positions.size(), mesh.m_positions.begin());
-    computeNormalCones(mesh.m_topology, mesh.m_positions.data(), mesh.m_vertexCones, mesh.m_edgeCones);
+    m_implementation->measureObstacle(mesh);
     ++scene.m_obstacleMotion;
     m_implementation->joinObstacles();
 }
@@ -225,7 +235,7 @@ void Pipeline::submit()
     self.joinScene();
     self.collectPairs();
     self.m_submitted = true;
-    if (self.m_stepPairs.m_any && !self.m_report.m_onHost) self.m_deviceBackend->submit(self.m_scene, self.m_stepPairs);
+    self.enqueue();
     self.m_statistics.m_uploadMs = millisecondsSince(start);
 }
 
@@ -239,18 +249,18 @@ const std::vector<Contact>& Pipeline::finish()
         self.m_result = StepResult();
         statistics.m_skipped = true;
     }
-    else if (self.m_report.m_onHost)
+    else
     {
-        self.runOnHost();
-    }
-    else if (!self.m_deviceBackend->finish(self.m_scene, self.m_stepPairs, self.m_result))
-    {
-        if (self.m_deviceBackend->limitReached()) statistics.m_status |= kStepContactLimit;
-        if (self.m_deviceBackend->device().failed()) self.leaveDevice();
-        self.runOnHost();
+        self.complete();
+        while (self.m_result.m_overLimit)
+        {
+            self.leaveOutCloths();
+            self.enqueue();
+            self.complete();
+        }
     }
     self.m_submitted = false;
-    statistics.m_candidates = self.m_result.m_candidates;
+    statistics.m_candidates += self.m_result.m_candidates;
     statistics.m_contacts = self.m_result.m_contacts.size();
     statistics.m_intersections = self.m_result.m_intersectionCount;
     statistics.m_invalidNodes = self.m_result.m_invalidNodes;
