@@ -5,21 +5,23 @@
 #define DRAPE_GATHER 16
 
 // Moves gathered candidates to the list. The demand counts on past the capacity; what does not fit is not written, and the
-// host repeats the step with a larger list.
-static void flushCandidates(__global Candidate* restrict candidates, __global StepCounters* restrict counters,
-                            const uint capacity, const Candidate* gathered, const uint count)
+// host repeats the step with a larger list. Returns 0 when more than limit were counted: then the traversal may end, since
+// the step is over its limit whatever follows, and a count that ran on could wrap around.
+static int flushCandidates(__global Candidate* restrict candidates, __global StepCounters* restrict counters,
+                            const uint capacity, const uint limit, const Candidate* gathered, const uint count)
 {
     const uint place = atomic_add(&counters->m_candidates, count);
     for (uint i = 0; i < count; ++i)
     {
         if (place + i < capacity) candidates[place + i] = gathered[i];
     }
+    return place < limit;
 }
 
 // A work-item is a pair of subtrees: one of clothCount nodes from clothFirst, one of obstacleCount nodes from obstacleFirst,
 // each a whole height of its hierarchy, so that few triangles still fill a wide device. thickness holds cloths × obstacles
 // values, negative where the pair is not tested. counters->m_candidates must be zero before; its atomic reserves disjoint
-// ranges, whose order does not matter.
+// ranges, whose order does not matter. Up to limit candidates the count is exact; beyond it only says that there are more.
 __kernel void broadPhaseTraverse(__global const BvhNode* restrict clothNodes, __global const uint* restrict clothOrder,
                                  __global const Triangle* restrict clothTriangles, const uint clothFirst,
                                  const uint clothCount, __global const BvhNode* restrict obstacleNodes,
@@ -27,7 +29,7 @@ __kernel void broadPhaseTraverse(__global const BvhNode* restrict clothNodes, __
                                  __global const Triangle* restrict obstacleTriangles, const uint obstacleFirst,
                                  const uint obstacleCount, __global const float* restrict thickness,
                                  const uint obstacleMeshes, __global Candidate* restrict candidates,
-                                 __global StepCounters* restrict counters, const uint capacity)
+                                 __global StepCounters* restrict counters, const uint capacity, const uint limit)
 {
     const uint item = get_global_id(0);
     if (item >= clothCount * obstacleCount) return;
@@ -57,7 +59,7 @@ __kernel void broadPhaseTraverse(__global const BvhNode* restrict clothNodes, __
             gathered[gatheredCount++] = candidate;
             if (gatheredCount == DRAPE_GATHER)
             {
-                flushCandidates(candidates, counters, capacity, gathered, gatheredCount);
+                if (!flushCandidates(candidates, counters, capacity, limit, gathered, gatheredCount)) return;
                 gatheredCount = 0;
             }
             continue;
@@ -72,5 +74,5 @@ __kernel void broadPhaseTraverse(__global const BvhNode* restrict clothNodes, __
             ++depth;
         }
     }
-    if (gatheredCount > 0) flushCandidates(candidates, counters, capacity, gathered, gatheredCount);
+    if (gatheredCount > 0) flushCandidates(candidates, counters, capacity, limit, gathered, gatheredCount);
 }

@@ -1,5 +1,6 @@
 #include "drape/plugin.h"
 
+#include <cinttypes>
 #include <cstdio>
 
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
@@ -81,10 +82,13 @@ std::string Plugin::report() const
 {
     if (!ready()) return "Drape is off: " + m_state->error().m_call;
     const StepStatistics& step = statistics();
-    char line[256];
-    std::snprintf(line, sizeof(line), ": %zu cloth and %zu obstacle triangles, %zu candidates, %zu contacts, %.3f ms%s",
-                  step.m_clothTriangles, step.m_obstacleTriangles, step.m_candidates, step.m_contacts,
-                  step.collisionMs(), step.m_skipped ? " (nothing to do)" : "");
+    char line[320];
+    std::snprintf(
+        line, sizeof(line), ": %zu cloth and %zu obstacle triangles, %" PRIu64 " candidates, %zu contacts, %.3f ms%s",
+        step.m_clothTriangles, step.m_obstacleTriangles, step.m_candidates, step.m_contacts, step.collisionMs(),
+        step.m_skipped                       ? " (nothing to do)"
+        : step.m_status & kStepClothsLeftOut ? " (cloths with too many candidates left out)"
+                                             : "");
     return "Drape on " + device().m_device.m_name + line;
 }
 }  // namespace drape

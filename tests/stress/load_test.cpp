@@ -1,5 +1,6 @@
 // Loads that break what is built for the usual: crowds of coincident triangles, extreme speed, many steps.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -38,6 +39,14 @@ std::size_t residentBytes()
     file >> total >> resident;
     return resident * std::size_t(sysconf(_SC_PAGESIZE));
 }
+
+// The most there ever was.
+std::size_t peakResidentBytes()
+{
+    rusage usage = {};
+    getrusage(RUSAGE_SELF, &usage);
+    return std::size_t(usage.ru_maxrss) * 1024;
+}
 }  // namespace
 
 class LoadTest : public BackendTest
@@ -66,6 +75,91 @@ TEST_P(LoadTest, CoincidentTriangles)
     const std::vector<Contact> again = runStep(*pipeline);
     EXPECT_EQ(pipeline->statistics().m_retries, 0u);
     EXPECT_TRUE(sameBytes(again, contacts)) << difference(again, contacts);
+}
+
+// Row 11 of the stress table. Five thousand million pairs, more than fit into memory or into 32 bits: the step says so,
+// with the exact number, leaves that cloth out and does the rest as if it were alone. Bounded in memory and time.
+TEST_P(LoadTest, HundredThousandCoincidentTriangles)
+{
+    constexpr int kClothTriangles = 100000, kObstacleTriangles = 50000;
+    const StepCase sound = fallingCase("sphere", 20, 0.03f, 940);
+    SCOPED_TRACE(sound.trace());
+    const std::unique_ptr<Pipeline> pipeline = makePipeline(GetParam().m_settings);
+    ASSERT_TRUE(pipeline);
+    const std::vector<Contact> alone = runCase(*pipeline, sound);
+    const std::size_t soundCandidates = pipeline->statistics().m_candidates;
+    ASSERT_GT(alone.size(), 100u);
+
+    const TriangleMesh crowd = coincident(kClothTriangles, 5.02f);
+    const MeshId cloth = addCloth(*pipeline, crowd);
+    const MeshId obstacle = addObstacle(*pipeline, coincident(kObstacleTriangles, 5.0f));
+    const std::size_t before = peakResidentBytes();
+    for (int repetition = 0; repetition < 2; ++repetition)
+    {
+        setMotion(*pipeline, 0, sound.m_cloth.m_positions, sound.m_end);
+        setMotion(*pipeline, cloth, crowd.m_positions, crowd.m_positions);
+        pipeline->addPair(0, 1, sound.m_thickness);
+        pipeline->addPair(cloth, obstacle, 0.1f);
+        const std::vector<Contact> contacts = runStep(*pipeline);
+        const StepStatistics& statistics = pipeline->statistics();
+        EXPECT_EQ(statistics.m_candidates, std::uint64_t(kClothTriangles) * kObstacleTriangles + soundCandidates);
+        EXPECT_EQ(statistics.m_status, std::uint32_t(kStepClothsLeftOut)) << pipeline->lastError().text();
+        EXPECT_EQ(statistics.m_clothsLeftOut, 1u);
+        ASSERT_EQ(contacts.size(), alone.size());
+        for (std::size_t i = 0; i < contacts.size(); ++i)
+        {
+            // Slots are counted over all cloths, features of the first one stay.
+            EXPECT_EQ(contacts[i].m_obstacleFeature, alone[i].m_obstacleFeature);
+            EXPECT_EQ(std::memcmp(contacts[i].m_normal, alone[i].m_normal, sizeof(Contact) - 4 * sizeof(std::uint32_t)),
+                      0)
+                << describe(contacts[i]) << "\n"
+                << describe(alone[i]);
+        }
+    }
+    // One list of candidates, grown by doubling on the host, and what the meshes take.
+    EXPECT_LT(peakResidentBytes(), before + 12 * Settings().m_candidateLimit + kGrowthBytes);
+    // Without the crowd's pair the step is good again.
+    pipeline->addPair(0, 1, sound.m_thickness);
+    EXPECT_EQ(runStep(*pipeline).size(), alone.size());
+    EXPECT_EQ(pipeline->statistics().m_status, std::uint32_t(kStepGood));
+}
+
+// The limits are settings: cloths are left out from the one with the most candidates down, the same on every back end,
+// and what is left is as if the others were not there.
+TEST_P(LoadTest, LimitsLeaveOutTheLargestCloths)
+{
+    const StepCase step = fallingCase("sphere", 20, 0.03f, 941);
+    SCOPED_TRACE(step.trace());
+    const std::unique_ptr<Pipeline> unlimited = makePipeline(GetParam().m_settings);
+    ASSERT_TRUE(unlimited);
+    const std::vector<Contact> alone = runCase(*unlimited, step);
+    const std::uint64_t candidates = unlimited->statistics().m_candidates;
+    for (const bool byContacts : {false, true})
+    {
+        SCOPED_TRACE(byContacts ? "contacts" : "candidates");
+        Settings settings = GetParam().m_settings;
+        // Room for one of three equal cloths, with something to spare.
+        (byContacts ? settings.m_contactLimit : settings.m_candidateLimit) =
+            byContacts ? alone.size() * 3 / 2 : std::size_t(candidates) * 3 / 2;
+        const std::unique_ptr<Pipeline> pipeline = makePipeline(settings);
+        ASSERT_TRUE(pipeline);
+        const MeshId obstacle = addObstacle(*pipeline, step.m_obstacle);
+        for (int i = 0; i < 3; ++i)
+        {
+            const MeshId cloth = addCloth(*pipeline, step.m_cloth);
+            setMotion(*pipeline, cloth, step.m_cloth.m_positions, step.m_end);
+            pipeline->addPair(cloth, obstacle, step.m_thickness);
+        }
+        for (std::uint32_t cloth = 0; cloth < 3; ++cloth)
+            setMotion(*pipeline, cloth + 1, step.m_cloth.m_positions, step.m_end);
+        const std::vector<Contact> contacts = runStep(*pipeline);
+        EXPECT_EQ(pipeline->statistics().m_clothsLeftOut, 2u);
+        EXPECT_EQ(pipeline->statistics().m_status, std::uint32_t(kStepClothsLeftOut));
+        EXPECT_EQ(pipeline->statistics().m_candidates, 3 * candidates);
+        EXPECT_EQ(contacts.size(), alone.size());
+        for (const Contact& contact : contacts)
+            EXPECT_EQ(pipeline->view(contact).m_cloth, 1u) << "of equal cloths the first stays";
+    }
 }
 
 // 1,000 m/s at 60 steps a second: 16.7 m in a step, through a sheet without thickness, from either side and at a slant.

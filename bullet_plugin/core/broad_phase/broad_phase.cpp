@@ -37,11 +37,11 @@ StartHeights startHeights(const Device& device, const BvhLayout& cloth, const Bv
 }
 }  // namespace
 
-void broadPhaseOnHost(const BroadPhaseSide& cloth, const BroadPhaseSide& obstacle, const std::vector<float>& thickness,
-                      std::size_t obstacleMeshes, std::vector<Candidate>& candidates)
+bool broadPhaseOnHost(const BroadPhaseSide& cloth, const BroadPhaseSide& obstacle, const std::vector<float>& thickness,
+                      std::size_t obstacleMeshes, std::vector<Candidate>& candidates, std::size_t limit)
 {
     candidates.clear();
-    if (cloth.m_layout.nodeCount() == 0 || obstacle.m_layout.nodeCount() == 0) return;
+    if (cloth.m_layout.nodeCount() == 0 || obstacle.m_layout.nodeCount() == 0) return true;
     NodePair stack[DRAPE_STACK_DEPTH];
     std::uint32_t depth = 0;
     stack[depth++] = NodePair{cloth.m_layout.root(), obstacle.m_layout.root()};
@@ -56,7 +56,9 @@ void broadPhaseOnHost(const BroadPhaseSide& cloth, const BroadPhaseSide& obstacl
             const Candidate candidate = {cloth.m_order[a.m_first], obstacle.m_order[b.m_first]};
             const std::size_t clothMesh = cloth.m_triangles[candidate.m_cloth].m_mesh;
             const std::size_t obstacleMesh = obstacle.m_triangles[candidate.m_obstacle].m_mesh;
-            if (thickness[clothMesh * obstacleMeshes + obstacleMesh] >= 0.0f) candidates.push_back(candidate);
+            if (thickness[clothMesh * obstacleMeshes + obstacleMesh] < 0.0f) continue;
+            if (candidates.size() == limit) return false;
+            candidates.push_back(candidate);
             continue;
         }
         if (opensFirst(&a, &b))
@@ -70,6 +72,7 @@ void broadPhaseOnHost(const BroadPhaseSide& cloth, const BroadPhaseSide& obstacl
                 stack[depth++] = NodePair{pair.m_cloth, b.m_first + i};
         }
     }
+    return true;
 }
 
 void BroadPhaseStage::create(Device& device, const cl::Program& program)
@@ -79,7 +82,7 @@ void BroadPhaseStage::create(Device& device, const cl::Program& program)
 
 void BroadPhaseStage::enqueue(Device& device, BroadPhaseBuffers cloth, BroadPhaseBuffers obstacle,
                               Buffer<float>& thickness, std::size_t obstacleMeshes, Buffer<Candidate>& candidates,
-                              Buffer<StepCounters>& counters)
+                              Buffer<StepCounters>& counters, std::size_t limit)
 {
     if (cloth.m_layout.leafCount() == 0 || obstacle.m_layout.leafCount() == 0) return;
     const StartHeights start = startHeights(device, cloth.m_layout, obstacle.m_layout);
@@ -88,6 +91,6 @@ void BroadPhaseStage::enqueue(Device& device, BroadPhaseBuffers cloth, BroadPhas
                       cl_uint(start.m_cloth.m_first), cl_uint(start.m_cloth.m_count), obstacle.m_nodes.handle(),
                       obstacle.m_order.handle(), obstacle.m_triangles.handle(), cl_uint(start.m_obstacle.m_first),
                       cl_uint(start.m_obstacle.m_count), thickness.handle(), cl_uint(obstacleMeshes),
-                      candidates.handle(), counters.handle(), cl_uint(candidates.capacity()));
+                      candidates.handle(), counters.handle(), cl_uint(candidates.capacity()), cl_uint(limit));
 }
 }  // namespace drape

@@ -20,9 +20,14 @@ struct BroadPhaseSide
     const std::vector<Triangle>& m_triangles;
 };
 
-// thickness: m, cloth slots × obstacle slots, negative where the pair is not tested.
-void broadPhaseOnHost(const BroadPhaseSide& cloth, const BroadPhaseSide& obstacle, const std::vector<float>& thickness,
-                      std::size_t obstacleMeshes, std::vector<Candidate>& candidates);
+// Most candidates that a step can have: all fifteen feature tests of each stay countable in 32 bits.
+constexpr std::size_t kMostCandidates = std::size_t(1) << 28;
+
+// thickness: m, cloth slots × obstacle slots, negative where the pair is not tested. False when there are more than
+// limit candidates; the list is incomplete then.
+bool broadPhaseOnHost(const BroadPhaseSide& cloth, const BroadPhaseSide& obstacle, const std::vector<float>& thickness,
+                      std::size_t obstacleMeshes, std::vector<Candidate>& candidates,
+                      std::size_t limit = kMostCandidates);
 
 struct BroadPhaseBuffers
 {
@@ -38,9 +43,10 @@ public:
     void create(Device& device, const cl::Program& program);
 
     // Returns after enqueueing. counters' candidates must be zero; they count the demand, also past the list's
-    // capacity.
+    // capacity. The count is exact up to limit; a greater one says only that there are more.
     void enqueue(Device& device, BroadPhaseBuffers cloth, BroadPhaseBuffers obstacle, Buffer<float>& thickness,
-                 std::size_t obstacleMeshes, Buffer<Candidate>& candidates, Buffer<StepCounters>& counters);
+                 std::size_t obstacleMeshes, Buffer<Candidate>& candidates, Buffer<StepCounters>& counters,
+                 std::size_t limit = kMostCandidates);
 
 private:
     Kernel m_traverse;

@@ -2,6 +2,7 @@
 // kernels/shared/contact.h). Host and device give the same contacts, bit for bit.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "bullet_plugin/core/device/buffer.h"
@@ -19,8 +20,10 @@ struct NarrowPhaseSettings
     float m_reachScale;
 };
 
-void narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth, const ObstacleView& obstacle,
-                       const NarrowPhaseSettings& settings, std::vector<Contact>& contacts);
+// Returns how many contacts there are; with more than limit, the list is left empty.
+std::uint64_t narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth,
+                                const ObstacleView& obstacle, const NarrowPhaseSettings& settings,
+                                std::vector<Contact>& contacts, std::size_t limit = SIZE_MAX);
 
 // Pairs whose triangles intersect at the step's start, in order of cloth and obstacle triangle.
 void intersectOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth, const ObstacleView& obstacle,

@@ -16,10 +16,12 @@ void sortContacts(std::vector<Contact>& contacts)
 }
 }  // namespace
 
-void narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth, const ObstacleView& obstacle,
-                       const NarrowPhaseSettings& settings, std::vector<Contact>& contacts)
+std::uint64_t narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth,
+                                const ObstacleView& obstacle, const NarrowPhaseSettings& settings,
+                                std::vector<Contact>& contacts, std::size_t limit)
 {
     contacts.clear();
+    std::uint64_t found = 0;
     for (const Candidate& candidate : candidates)
     {
         const Triangle* clothTriangle = cloth.m_triangles + candidate.m_cloth;
@@ -35,10 +37,13 @@ void narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView
         {
             Contact contact;
             if (!(tests & (1u << test))) continue;
-            if (pairContact(test, &pair, &cloth, &obstacle, candidate, &contact)) contacts.push_back(contact);
+            if (!pairContact(test, &pair, &cloth, &obstacle, candidate, &contact)) continue;
+            if (++found <= limit) contacts.push_back(contact);
         }
     }
+    if (found > limit) std::vector<Contact>().swap(contacts);
     sortContacts(contacts);
+    return found;
 }
 
 void intersectOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth, const ObstacleView& obstacle,

@@ -162,7 +162,7 @@ void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
                     m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, m_counters);
     m_broadPhase.enqueue(*m_device, {m_cloth.m_nodes, m_cloth.m_order, m_cloth.m_triangles, scene.m_clothLayout},
                          {m_obstacle.m_nodes, m_obstacle.m_order, m_obstacle.m_triangles, scene.m_obstacleLayout},
-                         m_thickness, obstacleMeshes, m_candidates, m_counters);
+                         m_thickness, obstacleMeshes, m_candidates, m_counters, StepLimits(m_settings).m_candidates);
     const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacleMeshes, 1.0f + m_settings.m_activation};
     m_narrowPhase.enqueue(*m_device, narrowPhaseBuffers(), scene.m_cloths.vertexCount(),
                           scene.m_cloths.triangles().size(), narrow, m_candidates, m_counters);
@@ -181,6 +181,22 @@ void DeviceBackend::submit(const Scene& scene, const StepPairs& pairs)
     updateTopology(scene);
     uploadStep(scene, pairs);
     enqueueStep(scene, pairs);
+}
+
+bool DeviceBackend::overLimit(StepResult& result)
+{
+    const StepCounters counters = *m_countersRead.data();
+    const StepLimits limits(m_settings);
+    // Hits are all of them only where every candidate was there to be tested.
+    const bool allTested = counters.m_candidates <= m_candidates.capacity();
+    if (counters.m_candidates > limits.m_candidates)
+        result.m_overLimit = true;
+    else if (allTested && counters.m_hits > limits.m_contacts)
+    {
+        result.m_overLimit = true;
+        result.m_contactDemand = counters.m_hits;
+    }
+    return result.m_overLimit;
 }
 
 bool DeviceBackend::grow()
@@ -202,8 +218,8 @@ bool DeviceBackend::grow()
     Device& device = *m_device;
     demand(counters.m_candidates, m_candidates.capacity(), sizeof(Candidate),
            [&](std::size_t count) { m_candidates.reserve(device, count); });
-    demand(counters.m_hits, m_narrowPhase.hitCapacity(), sizeof(Contact),
-           [&](std::size_t count) { m_narrowPhase.reserveHits(device, count); });
+    demand(std::min(std::size_t(counters.m_hits), StepLimits(m_settings).m_contacts), m_narrowPhase.hitCapacity(),
+           sizeof(Contact), [&](std::size_t count) { m_narrowPhase.reserveHits(device, count); });
     demand(counters.m_intersections, m_narrowPhase.intersections().capacity(), sizeof(Candidate),
            [&](std::size_t count) { m_narrowPhase.reserveIntersections(device, count); });
     return again;
@@ -213,8 +229,10 @@ bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResul
 {
     result = StepResult();
     m_device->wait();
-    while (!m_device->failed() && grow())
+    while (!m_device->failed())
     {
+        if (overLimit(result)) return true;
+        if (!grow()) break;
         if (m_limitReached) return false;
         ++result.m_retries;
         enqueueStep(scene, pairs);

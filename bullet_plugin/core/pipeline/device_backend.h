@@ -28,7 +28,8 @@ public:
 
     // Returns after enqueueing. The scene and the pairs must stay as they are until finish().
     void submit(const Scene& scene, const StepPairs& pairs);
-    // Waits. False when the device failed or cannot hold what the step needs (then limitReached()).
+    // Waits. False when the device failed or cannot hold what the step needs (then limitReached()). The result says
+    // when the step is over the settings' limits.
     bool finish(const Scene& scene, const StepPairs& pairs, StepResult& result);
     bool limitReached() const { return m_limitReached; }
 
@@ -52,6 +53,8 @@ private:
     void uploadStep(const Scene& scene, const StepPairs& pairs);
     void enqueueStep(const Scene& scene, const StepPairs& pairs);
     NarrowPhaseBuffers narrowPhaseBuffers();
+    // Whether the last run demanded more than the settings allow; the result says what.
+    bool overLimit(StepResult& result);
     // Makes room for what the last run demanded. Returns whether the step must run again.
     bool grow();
     void readAll(StepResult& result);

@@ -1,6 +1,6 @@
 #include "host_backend.h"
 
-#include "bullet_plugin/core/broad_phase/broad_phase.h"
+#include "bullet_plugin/core/broad_phase/candidate_count.h"
 #include "bullet_plugin/core/bvh/refit.h"
 
 namespace drape
@@ -29,17 +29,46 @@ void HostBackend::update(const Scene& scene)
     }
 }
 
-void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result)
+std::size_t HostBackend::refitCloths(const Scene& scene, const StepPairs& pairs)
 {
     update(scene);
+    std::size_t invalidNodes = 0;
+    refitOnHost(m_clothNodes, scene.m_clothLayout, scene.m_cloths.order(), scene.m_cloths.triangles(),
+                scene.m_clothStart.data(), scene.m_clothEnd.data(), pairs.m_clothRadius, invalidNodes);
+    return invalidNodes;
+}
+
+BroadPhaseSide HostBackend::clothSide(const Scene& scene) const
+{
+    return {m_clothNodes, scene.m_clothLayout, scene.m_cloths.order(), scene.m_cloths.triangles()};
+}
+
+BroadPhaseSide HostBackend::obstacleSide(const Scene& scene) const
+{
+    return {m_obstacleNodes, scene.m_obstacleLayout, scene.m_obstacles.order(), scene.m_obstacles.triangles()};
+}
+
+std::vector<std::uint64_t> HostBackend::countCandidates(const Scene& scene, const StepPairs& pairs)
+{
+    refitCloths(scene, pairs);
+    return drape::countCandidates(clothSide(scene), obstacleSide(scene), pairs.m_thickness, scene.m_cloths.meshCount(),
+                                  scene.m_obstacles.meshCount());
+}
+
+void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result)
+{
     const MeshPool& cloths = scene.m_cloths;
     const MeshPool& obstacles = scene.m_obstacles;
     result = StepResult();
-    refitOnHost(m_clothNodes, scene.m_clothLayout, cloths.order(), cloths.triangles(), scene.m_clothStart.data(),
-                scene.m_clothEnd.data(), pairs.m_clothRadius, result.m_invalidNodes);
-    broadPhaseOnHost({m_clothNodes, scene.m_clothLayout, cloths.order(), cloths.triangles()},
-                     {m_obstacleNodes, scene.m_obstacleLayout, obstacles.order(), obstacles.triangles()},
-                     pairs.m_thickness, obstacles.meshCount(), m_candidates);
+    const StepLimits limits(settings);
+    result.m_invalidNodes = refitCloths(scene, pairs);
+    if (!broadPhaseOnHost(clothSide(scene), obstacleSide(scene), pairs.m_thickness, obstacles.meshCount(), m_candidates,
+                          limits.m_candidates))
+    {
+        std::vector<Candidate>().swap(m_candidates);
+        result.m_overLimit = true;
+        return;
+    }
     result.m_candidates = m_candidates.size();
     const ClothView cloth = {scene.m_clothStart.data(),           scene.m_clothEnd.data(),
                              cloths.triangles().data(),           cloths.edges().data(),
@@ -47,7 +76,14 @@ void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings
     const ObstacleView obstacle = {scene.m_obstaclePositions.data(), obstacles.triangles().data(),
                                    scene.m_vertexCones.data(), scene.m_edgeCones.data()};
     const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacles.meshCount(), 1.0f + settings.m_activation};
-    narrowPhaseOnHost(m_candidates, cloth, obstacle, narrow, result.m_contacts);
+    const std::uint64_t contacts =
+        narrowPhaseOnHost(m_candidates, cloth, obstacle, narrow, result.m_contacts, limits.m_contacts);
+    if (contacts > limits.m_contacts)
+    {
+        result.m_overLimit = true;
+        result.m_contactDemand = contacts;
+        return;
+    }
     if (settings.m_reportIntersections) intersectOnHost(m_candidates, cloth, obstacle, result.m_intersections);
     result.m_intersectionCount = result.m_intersections.size();
 }

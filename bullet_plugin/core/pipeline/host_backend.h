@@ -12,8 +12,15 @@ public:
     // Runs the whole step.
     void run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
 
+    // The step's candidates per cloth slot, exact, however many.
+    std::vector<std::uint64_t> countCandidates(const Scene& scene, const StepPairs& pairs);
+
 private:
     void update(const Scene& scene);
+    // Returns the invalid nodes.
+    std::size_t refitCloths(const Scene& scene, const StepPairs& pairs);
+    BroadPhaseSide clothSide(const Scene& scene) const;
+    BroadPhaseSide obstacleSide(const Scene& scene) const;
 
     std::vector<BvhNode> m_clothNodes, m_obstacleNodes;
     std::vector<Candidate> m_candidates;

@@ -41,5 +41,10 @@ struct Pipeline::Implementation
     void collectPairs();
     void leaveDevice();
     void runOnHost();
+    // The step of the pairs that are left, on the back end in use.
+    void enqueue();
+    void complete();
+    // Takes cloths out of the step until what is left is within the limits.
+    void leaveOutCloths();
 };
 }  // namespace drape

@@ -123,11 +123,6 @@ void Pipeline::Implementation::leaveDevice()
     // The backend stays: the scene's pinned memory is its context's.
 }
 
-void Pipeline::Implementation::runOnHost()
-{
-    m_hostBackend.run(m_scene, m_stepPairs, m_settings, m_result);
-}
-
 Pipeline::Pipeline() : m_implementation(new Implementation) {}
 Pipeline::~Pipeline() = default;
 
@@ -225,7 +220,7 @@ void Pipeline::submit()
     self.joinScene();
     self.collectPairs();
     self.m_submitted = true;
-    if (self.m_stepPairs.m_any && !self.m_report.m_onHost) self.m_deviceBackend->submit(self.m_scene, self.m_stepPairs);
+    self.enqueue();
     self.m_statistics.m_uploadMs = millisecondsSince(start);
 }
 
@@ -239,18 +234,18 @@ const std::vector<Contact>& Pipeline::finish()
         self.m_result = StepResult();
         statistics.m_skipped = true;
     }
-    else if (self.m_report.m_onHost)
+    else
     {
-        self.runOnHost();
-    }
-    else if (!self.m_deviceBackend->finish(self.m_scene, self.m_stepPairs, self.m_result))
-    {
-        if (self.m_deviceBackend->limitReached()) statistics.m_status |= kStepContactLimit;
-        if (self.m_deviceBackend->device().failed()) self.leaveDevice();
-        self.runOnHost();
+        self.complete();
+        while (self.m_result.m_overLimit)
+        {
+            self.leaveOutCloths();
+            self.enqueue();
+            self.complete();
+        }
     }
     self.m_submitted = false;
-    statistics.m_candidates = self.m_result.m_candidates;
+    statistics.m_candidates += self.m_result.m_candidates;
     statistics.m_contacts = self.m_result.m_contacts.size();
     statistics.m_intersections = self.m_result.m_intersectionCount;
     statistics.m_invalidNodes = self.m_result.m_invalidNodes;

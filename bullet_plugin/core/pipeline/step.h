@@ -1,12 +1,16 @@
 // What a step reads and what it gives, common to the host and the device back end.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <vector>
 
+#include "bullet_plugin/core/broad_phase/broad_phase.h"
 #include "bullet_plugin/core/bvh/bvh_layout.h"
 #include "bullet_plugin/core/device/buffer.h"
 #include "bullet_plugin/core/mesh/mesh_pool.h"
 #include "bullet_plugin/core/narrow_phase/narrow_phase.h"
+#include "drape/settings.h"
 
 namespace drape
 {
@@ -30,18 +34,42 @@ struct Scene
     }
 };
 
+// The most that a step may list.
+struct StepLimits
+{
+    explicit StepLimits(const Settings& settings)
+        : m_candidates(std::min(settings.m_candidateLimit, kMostCandidates)),
+          m_contacts(std::min(settings.m_contactLimit, kMostCandidates))
+    {
+    }
+    std::size_t m_candidates;
+    std::size_t m_contacts;
+};
+
 // The pairs of one step.
 struct StepPairs
 {
     std::vector<float> m_thickness;    // m, cloth slots × obstacle slots, -1 where there is no pair
     std::vector<float> m_clothRadius;  // m, per cloth slot: the largest reach of its pairs, -1 without one
     bool m_any = false;
+
+    // Takes a cloth out of the step.
+    void leaveOut(std::size_t cloth)
+    {
+        const std::size_t obstacles = m_thickness.size() / m_clothRadius.size();
+        std::fill_n(m_thickness.begin() + std::ptrdiff_t(cloth * obstacles), obstacles, -1.0f);
+        m_clothRadius[cloth] = -1.0f;
+        m_any = std::any_of(m_clothRadius.begin(), m_clothRadius.end(), [](float radius) { return radius >= 0.0f; });
+    }
 };
 
 struct StepResult
 {
     std::vector<Contact> m_contacts;
     std::vector<Candidate> m_intersections;
+    // More candidates or contacts than the settings allow: nothing else of the result counts then but m_contactDemand.
+    bool m_overLimit = false;
+    std::uint64_t m_contactDemand = 0;  // where contacts were too many: how many; 0 where candidates were
     std::size_t m_candidates = 0;
     std::size_t m_invalidNodes = 0;
     std::size_t m_retries = 0;

@@ -35,7 +35,8 @@ enum StepStatusBits : std::uint32_t
     kStepGood = 0,
     kStepInvalidNodes = 1u << 0,  // NaN or infinite nodes were left out
     kStepDeviceFailed = 1u << 1,  // the device failed; this and later steps run on the host
-    kStepContactLimit = 1u << 2   // a buffer reached what the device can hold; the step ran on the host
+    kStepContactLimit = 1u << 2,  // a buffer reached what the device can hold; the step ran on the host
+    kStepClothsLeftOut = 1u << 3  // more than Settings::m_candidateLimit or m_contactLimit: the largest cloths left out
 };
 
 struct StepStatistics
@@ -43,7 +44,8 @@ struct StepStatistics
     std::uint32_t m_status = kStepGood;
     std::size_t m_clothTriangles = 0;
     std::size_t m_obstacleTriangles = 0;
-    std::size_t m_candidates = 0;     // triangle pairs the broad phase could not separate
+    std::uint64_t m_candidates = 0;   // triangle pairs the broad phase could not separate; also of cloths left out
+    std::size_t m_clothsLeftOut = 0;  // with kStepClothsLeftOut
     std::size_t m_contacts = 0;       // contacts published
     std::size_t m_intersections = 0;  // only with Settings::m_reportIntersections
     std::size_t m_invalidNodes = 0;   // NaN or infinite

@@ -2,6 +2,7 @@
 // Every field has a working default. Lengths are metres. C++11, no OpenCL header needed.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace drape
@@ -27,6 +28,13 @@ struct Settings
 
     // Also list the cloth and obstacle triangles that intersect at the step's start. Costs a kernel.
     bool m_reportIntersections = false;
+
+    // Most triangle pairs that a step may list (8 bytes each), up to 2^28, and most contacts (132 bytes each on a
+    // device and as many on the host, and up to 792 in Bullet). Steps of two million cloth triangles need a third of
+    // either. A step with more leaves out the cloths that have most of them, until the rest fits, and says so in its
+    // status: those cloths collide with nothing in that step.
+    std::size_t m_candidateLimit = std::size_t(1) << 27;
+    std::size_t m_contactLimit = std::size_t(1) << 24;
 
     // Folder of compiled kernels. Empty: $XDG_CACHE_HOME/drape or ~/.cache/drape. "none": do not cache.
     std::string m_cacheFolder;
