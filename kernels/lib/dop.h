@@ -104,23 +104,21 @@ DRAPE_FUNCTION int opensFirst(const DRAPE_GLOBAL BvhNode* a, const DRAPE_GLOBAL 
     return b->m_count == 0 || nodeExtent(a) > nodeExtent(b);
 }
 
-// Volume of a triangle over a step of linear motion, grown by the radius. Leaves the volume empty when a position is
-// NaN or infinite, so that one bad node cannot make every ancestor overlap everything. start and end may be the same
-// array.
+// Volume of a triangle over a step of linear motion, grown by the radius. Corners that are NaN or infinite stay out of
+// it, so that one bad node cannot make every ancestor overlap everything and features of the others are still found
+// (see finite_corners.h); without a finite corner the volume is empty. start and end may be the same array.
 DRAPE_FUNCTION void triangleVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
                                    const DRAPE_GLOBAL float* end, float radius)
 {
     dopClear(dop);
-    int finite = 1;
     for (int i = 0; i < 3; ++i)
     {
         const Vec3 p0 = vec3Load(start, triangle->m_vertices[i]);
         const Vec3 p1 = vec3Load(end, triangle->m_vertices[i]);
-        finite = finite && vec3IsFinite(p0) && vec3IsFinite(p1);
+        if (!vec3IsFinite(p0) || !vec3IsFinite(p1)) continue;
         dopAddPoint(dop, p0, radius);
         dopAddPoint(dop, p1, radius);
     }
-    if (!finite) dopClear(dop);
 }
 
 DRAPE_NAMESPACE_END

@@ -6,6 +6,7 @@
 #include "dop.h"
 #include "edge_edge_contact.h"
 #include "face_vertex_contact.h"
+#include "finite_corners.h"
 #include "node_face_contact.h"
 
 DRAPE_NAMESPACE_BEGIN
@@ -37,19 +38,51 @@ typedef struct PairGeometry
     MovingFace m_face;
     RestingFace m_resting;
     PairBounds m_bounds;
+    DRAPE_UINT m_validTests;  // bits of those that may be run
 } PairGeometry;
+
+// The tests that this pair of triangles owns, as bits.
+DRAPE_FUNCTION DRAPE_UINT ownedTests(DRAPE_UINT clothOwned, DRAPE_UINT obstacleOwned)
+{
+    const DRAPE_UINT obstacleEdges = obstacleOwned >> 3;
+    DRAPE_UINT tests = (clothOwned & 7u) | ((obstacleOwned & 7u) << 3);
+    for (int i = 0; i < 3; ++i)
+    {
+        if (clothOwned & DRAPE_OWNS_EDGE(i)) tests |= obstacleEdges << (6 + 3 * i);
+    }
+    return tests;
+}
+
+// The tests without a NaN or infinite position, given the valid features of both triangles.
+DRAPE_FUNCTION DRAPE_UINT validTests(DRAPE_UINT clothValid, DRAPE_UINT obstacleValid)
+{
+    DRAPE_UINT tests = ownedTests(clothValid, obstacleValid);
+    if (obstacleValid != DRAPE_ALL_FEATURES) tests &= ~7u;      // node-face
+    if (clothValid != DRAPE_ALL_FEATURES) tests &= ~(7u << 3);  // face-vertex
+    return tests;
+}
 
 DRAPE_FUNCTION void loadPair(PairGeometry* pair, const ClothView* cloth, const DRAPE_GLOBAL Triangle* clothTriangle,
                              const ObstacleView* obstacle, const DRAPE_GLOBAL Triangle* obstacleTriangle)
 {
-    pair->m_origin = vec3Load(obstacle->m_positions, obstacleTriangle->m_vertices[0]);
+    Vec3* start = pair->m_face.m_start.m_p;
+    Vec3* end = pair->m_face.m_end.m_p;
+    Vec3* corners = pair->m_resting.m_corners.m_p;
     for (int i = 0; i < 3; ++i)
     {
-        const DRAPE_UINT node = clothTriangle->m_vertices[i];
-        pair->m_face.m_start.m_p[i] = vec3Sub(vec3Load(cloth->m_start, node), pair->m_origin);
-        pair->m_face.m_end.m_p[i] = vec3Sub(vec3Load(cloth->m_end, node), pair->m_origin);
-        pair->m_resting.m_corners.m_p[i] =
-            vec3Sub(vec3Load(obstacle->m_positions, obstacleTriangle->m_vertices[i]), pair->m_origin);
+        start[i] = vec3Load(cloth->m_start, clothTriangle->m_vertices[i]);
+        end[i] = vec3Load(cloth->m_end, clothTriangle->m_vertices[i]);
+        corners[i] = vec3Load(obstacle->m_positions, obstacleTriangle->m_vertices[i]);
+    }
+    const DRAPE_UINT clothValid = replaceInvalidCorners(start, end);
+    const DRAPE_UINT obstacleValid = replaceInvalidCorners(corners, corners);
+    pair->m_validTests = validTests(clothValid, obstacleValid);
+    pair->m_origin = corners[0];
+    for (int i = 0; i < 3; ++i)
+    {
+        start[i] = vec3Sub(start[i], pair->m_origin);
+        end[i] = vec3Sub(end[i], pair->m_origin);
+        corners[i] = vec3Sub(corners[i], pair->m_origin);
     }
 }
 
@@ -134,8 +167,9 @@ DRAPE_FUNCTION int pairFaceVertex(int i, const PairGeometry* pair, const ClothVi
     contact->m_clothFeature = candidate.m_cloth;
     contact->m_obstacleFeature = triangle->m_vertices[i];
     contact->m_slot = cloth->m_nodeCount + contact->m_clothFeature;
-    return faceVertexContact(&pair->m_face, beyond, cloth->m_end, pair->m_origin, pair->m_resting.m_corners.m_p[i],
-                             obstacle->m_vertexCones[triangle->m_vertices[i]], pair->m_bounds, contact);
+    return faceVertexContact(&pair->m_face, beyond, cloth->m_start, cloth->m_end, pair->m_origin,
+                             pair->m_resting.m_corners.m_p[i], obstacle->m_vertexCones[triangle->m_vertices[i]],
+                             pair->m_bounds, contact);
 }
 
 DRAPE_FUNCTION int pairEdgeEdge(int i, int j, const PairGeometry* pair, const ClothView* cloth,
@@ -152,23 +186,12 @@ DRAPE_FUNCTION int pairEdgeEdge(int i, int j, const PairGeometry* pair, const Cl
                            pair->m_bounds, contact);
 }
 
-// The tests that this pair of triangles owns, as bits.
-DRAPE_FUNCTION DRAPE_UINT ownedTests(DRAPE_UINT clothOwned, DRAPE_UINT obstacleOwned)
-{
-    const DRAPE_UINT obstacleEdges = obstacleOwned >> 3;
-    DRAPE_UINT tests = (clothOwned & 7u) | ((obstacleOwned & 7u) << 3);
-    for (int i = 0; i < 3; ++i)
-    {
-        if (clothOwned & DRAPE_OWNS_EDGE(i)) tests |= obstacleEdges << (6 + 3 * i);
-    }
-    return tests;
-}
-
 // Runs one of the candidate's feature tests, 0 ≤ test < DRAPE_FEATURE_TESTS. Returns whether it gives a contact.
 DRAPE_FUNCTION int pairContact(int test, const PairGeometry* pair, const ClothView* cloth, const ObstacleView* obstacle,
                                Candidate candidate, Contact* contact)
 {
     int found;
+    if (!(pair->m_validTests & (1u << test))) return 0;
     if (test < 3)
     {
         found = pairNodeFace(test, pair, cloth, obstacle, candidate, contact);

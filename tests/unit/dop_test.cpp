@@ -126,32 +126,48 @@ TEST(Dop, DiagonalsSeparateWhatBoxesDoNot)
     EXPECT_FALSE(nodesOverlap(&a, &b));
 }
 
-TEST(Dop, InvalidPositionsEmptyTheVolume)
+TEST(Dop, InvalidPositionsStayOutOfTheVolume)
 {
     const float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
     const TriangleMesh good = looseTriangles({0, 0, 0, 1, 0, 0, 0, 1, 0});
-    const BvhNode sound = nodeOf(volumeOf(good, good.m_positions, 0, 0.1f));
     for (float bad : {nan, infinity, -infinity})
     {
         for (std::size_t at = 0; at < 9; ++at)
         {
             for (bool atEnd : {false, true})
             {
-                TriangleMesh mesh = good;
+                TriangleMesh mesh = good, left = good;
                 std::vector<float> end = good.m_positions;
                 (atEnd ? end : mesh.m_positions)[at] = bad;
-                const Dop dop = volumeOf(mesh, end, 0, 0.1f);
-                const BvhNode node = nodeOf(dop);
-                for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
-                {
-                    ASSERT_EQ(dop.m_low[i], infinity);
-                    ASSERT_EQ(dop.m_high[i], -infinity);
-                }
-                ASSERT_FALSE(nodesOverlap(&sound, &node));
-                ASSERT_FALSE(nodesOverlap(&node, &node)) << "not even itself";
+                // The same volume as of a triangle whose bad corner lies on another one.
+                const std::size_t corner = at / 3, other = (corner + 1) % 3;
+                std::copy_n(&good.m_positions[3 * other], 3, &left.m_positions[3 * corner]);
+                const Dop dop = volumeOf(mesh, end, 0, 0.1f), expected = volumeOf(left, left.m_positions, 0, 0.1f);
+                ASSERT_EQ(std::memcmp(&dop, &expected, sizeof dop), 0) << "coordinate " << at;
             }
         }
     }
+}
+
+TEST(Dop, NoValidPositionMakesAnEmptyVolume)
+{
+    const float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+    const TriangleMesh good = looseTriangles({0, 0, 0, 1, 0, 0, 0, 1, 0});
+    const BvhNode sound = nodeOf(volumeOf(good, good.m_positions, 0, 0.1f));
+    TriangleMesh mesh = good;
+    std::vector<float> end = good.m_positions;
+    mesh.m_positions[1] = nan;
+    mesh.m_positions[5] = infinity;
+    end[6] = -infinity;
+    const Dop dop = volumeOf(mesh, end, 0, 0.1f);
+    const BvhNode node = nodeOf(dop);
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        ASSERT_EQ(dop.m_low[i], infinity);
+        ASSERT_EQ(dop.m_high[i], -infinity);
+    }
+    EXPECT_FALSE(nodesOverlap(&sound, &node));
+    EXPECT_FALSE(nodesOverlap(&node, &node)) << "not even itself";
 }
 
 TEST(Dop, MergeIsTheExactUnion)
