@@ -8,7 +8,7 @@
 #include "scenes/cloth_grid.h"
 #include "scenes/shapes.h"
 #include "tests/support/backends.h"
-#include "tests/support/pipeline_driver.h"
+#include "tests/support/pair_batch.h"
 #include "tests/support/side.h"
 
 namespace drape::test
@@ -17,21 +17,6 @@ namespace
 {
 const float kInfinity = std::numeric_limits<float>::infinity();
 const float kNan = std::numeric_limits<float>::quiet_NaN();
-
-void expectFinite(const std::vector<Contact>& contacts)
-{
-    for (const Contact& contact : contacts)
-    {
-        for (int i = 0; i < 3; ++i)
-        {
-            ASSERT_TRUE(std::isfinite(contact.m_normal[i]) && std::isfinite(contact.m_point[i]) &&
-                        std::isfinite(contact.m_weights[i]))
-                << describe(contact);
-        }
-        ASSERT_TRUE(std::isfinite(contact.m_gap0) && std::isfinite(contact.m_gap1) && std::isfinite(contact.m_time))
-            << describe(contact);
-    }
-}
 
 // Whether a contact's cloth feature uses one of the nodes.
 bool touches(const Pipeline& pipeline, const Contact& contact, const std::set<std::int32_t>& nodes)

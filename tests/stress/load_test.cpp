@@ -1,14 +1,12 @@
 // Loads that break what is built for the usual: crowds of coincident triangles, extreme speed, many steps.
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
-#include <fstream>
 #include <set>
 
 #include "scenes/cloth_grid.h"
 #include "scenes/shapes.h"
 #include "tests/support/backends.h"
+#include "tests/support/memory.h"
 #include "tests/support/pipeline_driver.h"
 #include "tests/support/side.h"
 
@@ -22,30 +20,6 @@ TriangleMesh coincident(int count, float y)
     for (int i = 0; i < count; ++i)
         corners.insert(corners.end(), {0, y, 0, 1, y, 0, 0, y, 1});
     return looseTriangles(corners);
-}
-
-// Growth that is no leak: allocators and drivers keep some pages, and the address sanitizer keeps what was freed, 256
-// MiB of it. A leak of one contact list a step would be 50 MB and more; with the sanitizer its leak check finds it.
-#ifdef __SANITIZE_ADDRESS__
-constexpr std::size_t kGrowthBytes = 300u << 20;
-#else
-constexpr std::size_t kGrowthBytes = 16u << 20;
-#endif
-
-std::size_t residentBytes()
-{
-    std::ifstream file("/proc/self/statm");
-    std::size_t total = 0, resident = 0;
-    file >> total >> resident;
-    return resident * std::size_t(sysconf(_SC_PAGESIZE));
-}
-
-// The most there ever was.
-std::size_t peakResidentBytes()
-{
-    rusage usage = {};
-    getrusage(RUSAGE_SELF, &usage);
-    return std::size_t(usage.ru_maxrss) * 1024;
 }
 }  // namespace
 

@@ -18,6 +18,7 @@ struct PooledMesh
     MeshId m_id = kNoMesh;
     Topology m_topology;
     std::vector<float> m_positions;         // m, as last given
+    float m_coordinateStep = 0;             // m, obstacles only: distance of floats where it reaches farthest out
     std::vector<NormalCone> m_vertexCones;  // obstacles only
     std::vector<NormalCone> m_edgeCones;
     std::vector<std::uint32_t> m_order;  // leaf order, local triangles

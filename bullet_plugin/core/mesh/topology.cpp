@@ -1,6 +1,9 @@
 #include "topology.h"
 
+#include <algorithm>
+#include <array>
 #include <cassert>
+#include <set>
 #include <unordered_map>
 
 namespace drape
@@ -14,7 +17,30 @@ std::uint64_t edgeKey(std::uint32_t a, std::uint32_t b)
     return a < b ? (std::uint64_t(a) << 32 | b) : (std::uint64_t(b) << 32 | a);
 }
 
-void addEdge(Topology& topology, std::unordered_map<std::uint64_t, std::uint32_t>& known, std::uint32_t index, int i)
+using EdgeNumbers = std::unordered_map<std::uint64_t, std::uint32_t>;
+using CrowdedTriangles = std::set<std::array<std::uint32_t, 3>>;
+
+// Whether a triangle of the same three vertices was added before. An edge remembers the third vertices of its first two
+// triangles; a triangle that is a later one at all its edges is remembered in `crowded`.
+bool repeatsTriangle(const Topology& topology, const EdgeNumbers& known, CrowdedTriangles& crowded,
+                     const std::uint32_t* v)
+{
+    int leastUses = 255;
+    for (int i = 0; i < 3; ++i)
+    {
+        const auto edge = known.find(edgeKey(v[i], v[(i + 1) % 3]));
+        if (edge == known.end()) return false;
+        const std::uint32_t* opposite = topology.m_edges[edge->second].m_opposite;
+        if (opposite[0] == v[(i + 2) % 3] || opposite[1] == v[(i + 2) % 3]) return true;
+        leastUses = std::min(leastUses, int(topology.m_edgeUses[edge->second]));
+    }
+    if (leastUses < 2) return false;
+    std::array<std::uint32_t, 3> key = {v[0], v[1], v[2]};
+    std::sort(key.begin(), key.end());
+    return !crowded.insert(key).second;
+}
+
+void addEdge(Topology& topology, EdgeNumbers& known, std::uint32_t index, int i)
 {
     Triangle& triangle = topology.m_triangles[index];
     const std::uint32_t a = triangle.m_vertices[i], b = triangle.m_vertices[(i + 1) % 3];
@@ -41,7 +67,8 @@ Topology buildTopology(const std::int32_t* triangles, std::size_t triangleCount,
     topology.m_vertexCount = vertexCount;
     topology.m_vertexTriangle.assign(vertexCount, kNone);
     topology.m_triangles.reserve(triangleCount);
-    std::unordered_map<std::uint64_t, std::uint32_t> known;
+    EdgeNumbers known;
+    CrowdedTriangles crowded;
     known.reserve(triangleCount * 3 / 2 + 1);
     for (std::size_t source = 0; source < triangleCount; ++source)
     {
@@ -53,6 +80,7 @@ Topology buildTopology(const std::int32_t* triangles, std::size_t triangleCount,
         }
         const std::uint32_t* v = triangle.m_vertices;
         if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
+        if (repeatsTriangle(topology, known, crowded, v)) continue;
         const std::uint32_t index = std::uint32_t(topology.m_triangles.size());
         for (int i = 0; i < 3; ++i)
         {

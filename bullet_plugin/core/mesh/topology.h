@@ -1,8 +1,9 @@
 // Edges, owners and opposite vertices of a triangle mesh.
 //
 // Input: indices and a vertex count. Output: Triangle and Edge records with indices local to the mesh. Triangles that
-// repeat an index are left out. Every vertex and every edge that a triangle uses is owned by exactly one triangle, the
-// first. Edges are numbered by their first use, so the result depends on the input alone. O(n) expected.
+// repeat an index, or all three vertices of an earlier triangle, are left out. Every vertex and every edge that a
+// triangle uses is owned by exactly one triangle, the first. Edges are numbered by their first use, so the result
+// depends on the input alone. O(n) expected.
 #pragma once
 
 #include <cstdint>

@@ -36,6 +36,8 @@ struct Pipeline::Implementation
 
     Device* device() { return m_deviceBackend ? &m_deviceBackend->device() : nullptr; }
     PooledMesh makeMesh(const MeshDescription& description);
+    // What depends on an obstacle's positions.
+    static void measureObstacle(PooledMesh& mesh);
     void joinScene();
     void joinObstacles();
     void collectPairs();

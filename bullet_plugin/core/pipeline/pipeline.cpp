@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <chrono>
+#include <cmath>
+#include <limits>
 
 #include "bullet_plugin/core/mesh/normal_cones.h"
 
@@ -39,6 +41,17 @@ PooledMesh Pipeline::Implementation::makeMesh(const MeshDescription& description
         mesh.m_order = mortonOrderOnHost(mesh.m_topology.m_triangles, mesh.m_positions.data());
     }
     return mesh;
+}
+
+void Pipeline::Implementation::measureObstacle(PooledMesh& mesh)
+{
+    computeNormalCones(mesh.m_topology, mesh.m_positions.data(), mesh.m_vertexCones, mesh.m_edgeCones);
+    float farthest = 0;
+    for (float coordinate : mesh.m_positions)
+    {
+        if (std::isfinite(coordinate)) farthest = std::max(farthest, std::fabs(coordinate));
+    }
+    mesh.m_coordinateStep = std::nextafter(farthest, std::numeric_limits<float>::infinity()) - farthest;
 }
 
 void Pipeline::Implementation::joinObstacles()
@@ -99,6 +112,8 @@ void Pipeline::Implementation::collectPairs()
         const std::size_t obstacle = m_scene.m_obstacles.slot(pair.m_obstacle);
         assert(cloth < m_scene.m_cloths.meshCount() && obstacle < obstacleMeshes && pair.m_thickness > 0.0f);
         m_stepPairs.m_thickness[cloth * obstacleMeshes + obstacle] = pair.m_thickness;
+        if (m_scene.m_obstacles.mesh(obstacle).m_coordinateStep > pair.m_thickness)
+            m_statistics.m_status |= kStepCoarsePositions;
         float& radius = m_stepPairs.m_clothRadius[cloth];
         radius = std::max(radius, pair.m_thickness * (1.0f + m_settings.m_activation) * kReachPad);
         m_stepPairs.m_any = true;
@@ -170,7 +185,7 @@ MeshId Pipeline::addObstacle(const MeshDescription& description)
 {
     PooledMesh mesh = m_implementation->makeMesh(description);
     const MeshId id = mesh.m_id;
-    computeNormalCones(mesh.m_topology, mesh.m_positions.data(), mesh.m_vertexCones, mesh.m_edgeCones);
+    m_implementation->measureObstacle(mesh);
     m_implementation->m_scene.m_obstacles.add(std::move(mesh));
     return id;
 }
@@ -188,7 +203,7 @@ void Pipeline::moveObstacle(MeshId id, const float* positions)
     m_implementation->joinScene();
     PooledMesh& mesh = scene.m_obstacles.mesh(scene.m_obstacles.slot(id));
     std::copy(positions, positions + mesh.m_positions.size(), mesh.m_positions.begin());
-    computeNormalCones(mesh.m_topology, mesh.m_positions.data(), mesh.m_vertexCones, mesh.m_edgeCones);
+    m_implementation->measureObstacle(mesh);
     ++scene.m_obstacleMotion;
     m_implementation->joinObstacles();
 }

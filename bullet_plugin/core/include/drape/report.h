@@ -36,7 +36,10 @@ enum StepStatusBits : std::uint32_t
     kStepInvalidNodes = 1u << 0,  // NaN or infinite nodes were left out
     kStepDeviceFailed = 1u << 1,  // the device failed; this and later steps run on the host
     kStepContactLimit = 1u << 2,  // a buffer reached what the device can hold; the step ran on the host
-    kStepClothsLeftOut = 1u << 3  // more than Settings::m_candidateLimit or m_contactLimit: the largest cloths left out
+    kStepClothsLeftOut =
+        1u << 3,  // more than Settings::m_candidateLimit or m_contactLimit: the largest cloths left out
+    kStepCoarsePositions =
+        1u << 4  // an obstacle reaches so far out that neighbouring floats are a thickness apart there
 };
 
 struct StepStatistics

@@ -1,0 +1,231 @@
+// Rows of the stress table that need a whole Bullet world. tests/README.md has the table.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/shapes.h"
+#include "tests/bullet/drop_world.h"
+#include "tests/support/backends.h"
+#include "tests/support/memory.h"
+
+namespace drape::test
+{
+namespace
+{
+constexpr btScalar kTop = btScalar(0.2);  // m, of the box
+
+ClothSpec smallCloth(btScalar height)
+{
+    ClothSpec spec;
+    spec.m_nodes = 9;
+    spec.m_size = 0.5f;
+    spec.m_centre = btVector3(0, height, 0);
+    return spec;
+}
+
+btTransform at(double x, double y, double z)
+{
+    return btTransform(btQuaternion::getIdentity(), btVector3(btScalar(x), btScalar(y), btScalar(z)));
+}
+
+bool allFinite(const btSoftBody& cloth)
+{
+    const std::vector<float> positions = positionsOf(cloth);
+    return std::all_of(positions.begin(), positions.end(), [](float value) { return std::isfinite(value); });
+}
+
+double fastest(const btSoftBody& cloth)
+{
+    double speed = 0;
+    for (int i = 0; i < cloth.m_nodes.size(); ++i)
+        speed = std::max(speed, double(cloth.m_nodes[i].m_v.length()));
+    return speed;
+}
+}  // namespace
+
+class WorldRows : public BackendTest
+{
+protected:
+    WorldRows() : m_box(makeBox(3.0f, 0.4f, 3.0f)), m_boxShape(m_box) {}
+
+    TriangleMesh m_box;
+    MeshShape m_boxShape;
+};
+
+// An obstacle that jumps from one side of the cloth to the other sweeps nothing: the cloth does what it does without
+// it.
+TEST_P(WorldRows, Row15TeleportSweepsNothing)
+{
+    MeshShape sphere(makeSphere(0.3f, 2));
+    std::uint64_t hashes[2];
+    for (const bool jumping : {false, true})
+    {
+        Plugin plugin(GetParam().m_settings);
+        DropWorld world(&plugin);
+        world.addObstacle(m_boxShape.shape());
+        btSoftBody& cloth = world.addCloth(smallCloth(kTop + btScalar(0.5)));
+        btCollisionObject& ball = world.addObstacle(sphere.shape(), at(0, 3, 0));
+        std::uint64_t hash = kHashStart;
+        for (int step = 0; step < 60; ++step)
+        {
+            // Above the cloth, far below it, and beside it, each jump through it.
+            if (jumping) ball.setWorldTransform(at(step % 3 == 2 ? 2 : 0, step % 3 == 1 ? -3 : 3, 0));
+            world.step();
+            hash = hashOf(cloth, hash);
+        }
+        EXPECT_GT(plugin.statistics().m_contacts, 0u);
+        hashes[jumping] = hash;
+    }
+    EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+// Into the middle of the cloth: what is pushed out is pushed gently.
+TEST_P(WorldRows, Row15TeleportIntoTheClothGivesNoGiantImpulse)
+{
+    MeshShape sphere(makeSphere(0.15f, 2));
+    Plugin plugin(GetParam().m_settings);
+    DropWorld world(&plugin);
+    world.addObstacle(m_boxShape.shape());
+    btSoftBody& cloth = world.addCloth(smallCloth(kTop + btScalar(0.03)));
+    btCollisionObject& ball = world.addObstacle(sphere.shape(), at(0, 5, 0));
+    world.step(60);
+    double speed = 0;
+    for (int jump = 0; jump < 6; ++jump)
+    {
+        ball.setWorldTransform(at(0.1 * jump - 0.25, double(kTop) + 0.1, 0));
+        for (int step = 0; step < 5; ++step)
+        {
+            world.step();
+            ASSERT_TRUE(allFinite(cloth));
+            speed = std::max(speed, fastest(cloth));
+        }
+        ball.setWorldTransform(at(0, 5, 0));
+        world.step(5);
+    }
+    // The ball's radius in one step would be 9 m/s.
+    EXPECT_LT(speed, 9.0);
+    world.step(120);
+    EXPECT_GT(lowestOf(cloth), kTop);
+}
+
+TEST_P(WorldRows, Row16HugeTimeStepsStayFinite)
+{
+    for (const btScalar dt : {btScalar(1), btScalar(10), btScalar(1000)})
+    {
+        SCOPED_TRACE(dt);
+        Plugin plugin(GetParam().m_settings);
+        DropWorld world(&plugin);
+        world.addObstacle(m_boxShape.shape());
+        btSoftBody& cloth = world.addCloth(smallCloth(kTop + btScalar(0.1)));
+        for (int step = 0; step < 3; ++step)
+        {
+            world.world().stepSimulation(dt, 1, dt);
+            ASSERT_TRUE(allFinite(cloth));
+            // At most each feature of the cloth with each of the box, in fact far fewer.
+            EXPECT_LT(plugin.statistics().m_contacts, 10000u);
+            EXPECT_EQ(plugin.statistics().m_status, std::uint32_t(kStepGood));
+        }
+    }
+}
+
+// Pinned cloth on a static obstacle: nothing can move, nothing is written, nothing becomes NaN; masses that come back
+// bring the contacts back.
+TEST_P(WorldRows, Row17BothSidesPinned)
+{
+    Plugin plugin(GetParam().m_settings);
+    DropWorld world(&plugin);
+    world.addObstacle(m_boxShape.shape());
+    btSoftBody& cloth = world.addCloth(smallCloth(kTop + btScalar(0.01)));
+    for (int i = 0; i < cloth.m_nodes.size(); ++i)
+        cloth.setMass(i, 0);
+    const std::uint64_t hash = hashOf(cloth);
+    for (int step = 0; step < 20; ++step)
+    {
+        world.step();
+        ASSERT_EQ(contactsHeld(cloth), 0);
+    }
+    EXPECT_EQ(hashOf(cloth), hash);
+    for (int i = 0; i < cloth.m_nodes.size(); ++i)
+        cloth.setMass(i, btScalar(1) / btScalar(cloth.m_nodes.size()));
+    world.step(60);
+    EXPECT_TRUE(allFinite(cloth));
+    EXPECT_NEAR(double(lowestOf(cloth)) - double(kTop), kThickness, 0.05 * kThickness);
+}
+
+// Faces come and go while the cloth lies on the box. Each change is seen in the same step: what has no face has no
+// contact on its own face, what got one has.
+TEST_P(WorldRows, Row24NodesAndFacesAddedAndRemoved)
+{
+    Plugin plugin(GetParam().m_settings);
+    DropWorld world(&plugin);
+    world.addObstacle(m_boxShape.shape());
+    btSoftBody& cloth = world.addCloth(smallCloth(kTop + btScalar(0.03)));
+    world.step(30);
+    const int facesBefore = cloth.m_faces.size();
+    for (int round = 0; round < 12; ++round)
+    {
+        SCOPED_TRACE("round " + std::to_string(round));
+        // A new corner beside the cloth's first edge, with a face to it.
+        const btVector3 place = cloth.m_nodes[0].m_x + btVector3(btScalar(-0.06), 0, btScalar(0.02) * btScalar(round));
+        cloth.appendNode(place, btScalar(0.01));
+        cloth.appendLink(0, cloth.m_nodes.size() - 1);
+        cloth.appendFace(0, 1, cloth.m_nodes.size() - 1);
+        world.step();
+        const std::vector<ContactInfo> contacts = plugin.contacts();
+        EXPECT_TRUE(std::any_of(contacts.begin(), contacts.end(),
+                                [&](const ContactInfo& contact)
+                                { return contact.m_nodes[0] == cloth.m_nodes.size() - 1; }));
+        for (const ContactInfo& contact : contacts)
+            for (int node : contact.m_nodes)
+                ASSERT_LT(node, cloth.m_nodes.size());
+        if (round % 3 == 2)
+        {
+            // Cutting a link doubles its nodes and faces.
+            const int nodes = cloth.m_nodes.size();
+            cloth.cutLink(10 + round, 11 + round, btScalar(0.5));
+            EXPECT_GE(cloth.m_nodes.size(), nodes);
+        }
+        world.step(5);
+        ASSERT_TRUE(allFinite(cloth));
+        EXPECT_GT(lowestOf(cloth), kTop);
+    }
+    while (cloth.m_faces.size() > facesBefore / 2)
+        cloth.m_faces.pop_back();
+    world.step(10);
+    EXPECT_TRUE(allFinite(cloth));
+    while (cloth.m_faces.size() > 0)
+        cloth.m_faces.pop_back();
+    world.step(2);
+    EXPECT_EQ(plugin.statistics().m_contacts, 0u);
+}
+
+// No drift, no growth of memory, and the cloth lies still.
+TEST_P(WorldRows, Row25TenThousandStepsAtRest)
+{
+    constexpr int kSettle = 300, kSteps = 10000;
+    constexpr double kStill = 0.01;  // m/s, RMS; a step of free fall adds 0.16
+    Plugin plugin(GetParam().m_settings);
+    DropWorld world(&plugin);
+    world.addObstacle(m_boxShape.shape());
+    btSoftBody& cloth = world.addCloth(smallCloth(kTop + btScalar(0.03)));
+    world.step(kSettle);
+    const std::vector<float> before = positionsOf(cloth);
+    const std::size_t memory = residentBytes(), contacts = plugin.statistics().m_contacts;
+    ASSERT_GT(contacts, 0u);
+    double jitter = 0;
+    for (int step = 0; step < kSteps; ++step)
+    {
+        world.step();
+        jitter = std::max(jitter, rmsSpeed(cloth));
+    }
+    EXPECT_LT(jitter, kStill);
+    EXPECT_LT(residentBytes(), memory + kGrowthBytes);
+    EXPECT_LT(plugin.statistics().m_contacts, 2 * contacts);
+    const std::vector<float> after = positionsOf(cloth);
+    for (std::size_t i = 0; i < before.size(); ++i)
+        ASSERT_NEAR(after[i], before[i], 0.1f * kThickness) << "coordinate " << i;
+}
+
+INSTANTIATE_TEST_SUITE_P(Backend, WorldRows, testing::ValuesIn(allBackends()), backendName);
+}  // namespace drape::test

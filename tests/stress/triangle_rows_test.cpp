@@ -1,0 +1,238 @@
+// Rows of the stress table that are about single triangles: each through a whole pipeline, on every back end.
+// tests/README.md has the table.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/cloth_grid.h"
+#include "scenes/exact_predicates.h"
+#include "scenes/shapes.h"
+#include "tests/support/backends.h"
+#include "tests/support/pair_batch.h"
+#include "tests/support/side.h"
+
+namespace drape::test
+{
+namespace
+{
+constexpr float kThickness = 0.01f;  // m
+
+const Corners kFace = {0, 0, 0, 4, 0, 0, 0, 0, 4};
+
+bool exactlyIntersect(const TrianglePair& pair)
+{
+    Vector3 a[3], b[3];
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        a[i] = {pair.m_cloth[3 * i], pair.m_cloth[3 * i + 1], pair.m_cloth[3 * i + 2]};
+        b[i] = {pair.m_obstacle[3 * i], pair.m_obstacle[3 * i + 1], pair.m_obstacle[3 * i + 2]};
+    }
+    return drape::trianglesIntersect(a, b);
+}
+
+// Whether the pair has a node-face or face-vertex contact with a gap of at most `gap` (m).
+bool touchesWithin(const std::vector<Contact>& contacts, float gap)
+{
+    return std::any_of(contacts.begin(), contacts.end(),
+                       [&](const Contact& contact)
+                       { return contact.m_kind != DRAPE_EDGE_EDGE && std::fabs(contact.m_gap1) <= gap; });
+}
+}  // namespace
+
+class StressRows : public BackendTest
+{
+protected:
+    BatchResult run(const std::vector<TrianglePair>& pairs, float thickness = kThickness)
+    {
+        const BatchResult result = runBatch(GetParam().m_settings, pairs, thickness);
+        expectFinite(result.m_all);
+        return result;
+    }
+    void expectAllHit(const TrianglePair& pair)
+    {
+        const std::vector<TrianglePair> pairs = allOrders(pair);
+        EXPECT_EQ(run(pairs).m_intersecting, pairs.size());
+    }
+    void expectNoneHit(const TrianglePair& pair) { EXPECT_EQ(run(allOrders(pair)).m_intersecting, 0u); }
+};
+
+TEST_P(StressRows, Row01CoplanarOverlappingAndDisjoint)
+{
+    const TrianglePair overlapping = {{0.5f, 0, 0.5f, 2, 0, 2, 0.5f, 0, 2}, kFace};
+    const TrianglePair disjoint = {{4, 0, 4, 5, 0, 4, 4, 0, 5}, kFace};
+    expectAllHit(overlapping);
+    expectNoneHit(disjoint);
+    for (const std::vector<Contact>& contacts : run(allOrders(overlapping)).m_contacts)
+        EXPECT_TRUE(touchesWithin(contacts, 0.0f)) << "the cloth's nodes lie in the face";
+    EXPECT_TRUE(run(allOrders(disjoint)).m_all.empty());
+}
+
+// One vertex in common, two, or all, in meshes that know nothing of each other. (Pairs that share a vertex by index are
+// of one mesh with itself.)
+TEST_P(StressRows, Row02SharedByPositionTouchesAtDistanceZero)
+{
+    const TrianglePair vertex = {{0, 0, 0, -1, 1, 0, -1, 1, -1}, kFace};
+    const TrianglePair edge = {{0, 0, 0, 4, 0, 0, 2, 3, -1}, kFace};
+    for (const TrianglePair& pair : {vertex, edge, TrianglePair{kFace, kFace}})
+    {
+        expectAllHit(pair);
+        for (const std::vector<Contact>& contacts : run(allOrders(pair)).m_contacts)
+        {
+            EXPECT_TRUE(std::any_of(contacts.begin(), contacts.end(),
+                                    [](const Contact& contact) { return std::fabs(contact.m_gap1) < 1e-6f; }));
+        }
+    }
+}
+
+TEST_P(StressRows, Row03VertexExactlyOnAFaceInAllOrders)
+{
+    const TrianglePair touching = {{1, 0, 1, 1, 2, 2, 2, 3, 1}, kFace};
+    expectAllHit(touching);
+    for (const std::vector<Contact>& contacts : run(allOrders(touching)).m_contacts)
+        EXPECT_TRUE(touchesWithin(contacts, 0.0f));
+    // And an obstacle's vertex on the cloth's face.
+    expectAllHit({kFace, touching.m_cloth});
+}
+
+TEST_P(StressRows, Row04InTheOthersPlaneButOutside)
+{
+    expectNoneHit({{3, 0, 3, 3, 1, 3, 4, 1, 3}, kFace});
+    expectNoneHit({{-1, 0, -1, -1, 1, -1, -2, -1, -2}, kFace});
+    EXPECT_TRUE(run(allOrders({{3, 0, 3, 3, 1, 3, 4, 1, 3}, kFace})).m_all.empty());
+}
+
+TEST_P(StressRows, Row05NeedlesZeroAreasAndDuplicateVertices)
+{
+    const Corners needle = {1, -1, 1, 1, 1, 1, 1, 1, 1.00000001f}, thinner = {1, -1, 1, 1, 1, 1, 1 + 1e-7f, 1, 1};
+    const Corners segment = {1, -1, 1, 1, 0.5f, 1, 1, 1, 1}, doubled = {1, -1, 1, 1, 1, 1, 1, 1, 1};
+    const Corners point = {1, 0, 1, 1, 0, 1, 1, 0, 1};
+    for (const Corners& shape : {needle, thinner, segment, doubled, point})
+    {
+        expectAllHit({shape, kFace});
+        expectAllHit({kFace, shape});
+        Corners away = shape;
+        for (std::size_t i = 0; i < 9; i += 3)
+            away[i] -= 3;
+        expectNoneHit({away, kFace});
+        expectNoneHit({kFace, away});
+    }
+    // Near, not touching: the segment's end and the point are within the thickness.
+    for (const Corners& shape : {segment, doubled, point})
+    {
+        Corners above = shape;
+        for (std::size_t i = 1; i < 9; i += 3)
+            above[i] = std::max(above[i], 0.0f) + 0.5f * kThickness;
+        for (const std::vector<Contact>& contacts : run(allOrders({above, kFace})).m_contacts)
+            EXPECT_TRUE(touchesWithin(contacts, 0.5001f * kThickness));
+    }
+    // At random: no needle that truly meets the face is missed.
+    Random random(1005);
+    std::vector<TrianglePair> meeting;
+    while (meeting.size() < 200)
+    {
+        TrianglePair pair = {{}, kFace};
+        for (float& coordinate : pair.m_cloth)
+            coordinate = random.uniform(-1, 3);
+        for (std::size_t i = 0; i < 3; ++i)
+            pair.m_cloth[6 + i] = pair.m_cloth[3 + i] + random.uniform(-1e-8f, 1e-8f);
+        if (exactlyIntersect(pair)) meeting.push_back(pair);
+    }
+    EXPECT_EQ(run(meeting).m_intersecting, meeting.size()) << "seed 1005";
+}
+
+// Zero and less is a hit, a proved distance none; in between either answer is good, but it is the same each time, and
+// the contact within the thickness is there in any case.
+TEST_P(StressRows, Row06GapOfOneUlp)
+{
+    Settings host;
+    host.m_backend = Backend::Host;
+    for (const float height : {1.0f, 1000.0f, 1e-3f})
+    {
+        SCOPED_TRACE(height);
+        const float above = std::nextafter(height, 2 * height);
+        const auto pairAt = [&](float cloth) {
+            return TrianglePair{{1, cloth, 1, 2, cloth, 1, 1, cloth, 2}, {0, height, 0, 4, height, 0, 0, height, 4}};
+        };
+        expectAllHit(pairAt(height));
+        expectNoneHit(pairAt(height + 1e-4f * std::max(4.0f, height)));
+        const std::vector<TrianglePair> pairs = allOrders(pairAt(above));
+        const BatchResult first = run(pairs), second = run(pairs), onHost = runBatch(host, pairs, kThickness);
+        EXPECT_EQ(first.m_intersecting, second.m_intersecting);
+        EXPECT_EQ(first.m_intersecting, onHost.m_intersecting);
+        EXPECT_TRUE(sameBytes(first.m_all, second.m_all) && sameBytes(first.m_all, onHost.m_all));
+        for (const std::vector<Contact>& contacts : first.m_contacts)
+            EXPECT_TRUE(touchesWithin(contacts, 2 * (above - height)));
+    }
+}
+
+// Five layers of 1 cm edges, 1 mm apart, each shifted and turned a little: nothing intersects, everything is near.
+TEST_P(StressRows, Row07LayersOneMillimetreApart)
+{
+    Settings settings = GetParam().m_settings;
+    settings.m_reportIntersections = true;
+    for (const float offset : {0.0f, 100.0f})
+    {
+        const std::unique_ptr<Pipeline> pipeline = makePipeline(settings);
+        ASSERT_TRUE(pipeline);
+        Random random(1007);
+        SCOPED_TRACE("seed 1007, offset " + std::to_string(offset));
+        const auto layer = [&](int number)
+        {
+            TriangleMesh mesh = makeClothGrid(21, 21, 0.2f, 0.001f * float(number)).m_mesh;
+            translate(mesh.m_positions, offset + random.uniform(-0.01f, 0.01f), 0, random.uniform(-0.01f, 0.01f));
+            return mesh;
+        };
+        const MeshId obstacle = addObstacle(*pipeline, layer(0));
+        std::vector<TriangleMesh> layers;
+        std::vector<MeshId> cloths;
+        for (int i = 1; i < 5; ++i)
+        {
+            layers.push_back(layer(i));
+            cloths.push_back(addCloth(*pipeline, layers.back()));
+        }
+        for (std::size_t i = 0; i < cloths.size(); ++i)
+        {
+            setMotion(*pipeline, cloths[i], layers[i].m_positions, layers[i].m_positions);
+            pipeline->addPair(cloths[i], obstacle, 0.01f);
+        }
+        expectFinite(runStep(*pipeline));
+        EXPECT_EQ(pipeline->statistics().m_intersections, 0u);
+        EXPECT_GT(pipeline->statistics().m_contacts, 4u * 21 * 21 / 2);
+        EXPECT_GT(pipeline->statistics().m_candidates, 4u * 800);
+    }
+}
+
+TEST_P(StressRows, Row10TwoIdenticalMeshesMeetInEveryPair)
+{
+    const TriangleMesh mesh = makeSphere(0.5f, 2);
+    std::vector<TrianglePair> pairs;
+    for (std::size_t t = 0; t < mesh.triangleCount(); ++t)
+    {
+        Corners corners;
+        for (std::size_t i = 0; i < 3; ++i)
+            std::copy_n(&mesh.m_positions[3 * std::size_t(mesh.m_triangles[3 * t + i])], 3, &corners[3 * i]);
+        pairs.push_back({corners, corners});
+    }
+    EXPECT_EQ(run(pairs).m_intersecting, mesh.triangleCount());
+}
+
+TEST_P(StressRows, Row21ParallelAndCollinearEdges)
+{
+    // Edges on one line that overlap in part, wholly, or in one point, with faces to opposite sides.
+    expectAllHit({{1, 0, 0, 3, 0, 0, 2, 1, -1}, kFace});
+    expectAllHit({{-1, 0, 0, 5, 0, 0, 2, 1, -1}, kFace});
+    expectAllHit({{4, 0, 0, 6, 0, 0, 5, 1, -1}, kFace});
+    expectNoneHit({{4.01f, 0, 0, 6, 0, 0, 5, 1, -1}, kFace});
+    // Parallel, half a thickness apart.
+    for (const std::vector<Contact>& contacts :
+         run(allOrders({{1, 0, -0.005f, 3, 0, -0.005f, 2, 1, -1}, kFace})).m_contacts)
+    {
+        ASSERT_FALSE(contacts.empty());
+        for (const Contact& contact : contacts)
+            EXPECT_NEAR(contact.m_gap1, 0.005f, 1e-5f) << describe(contact);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, StressRows, testing::ValuesIn(allBackends()), backendName);
+}  // namespace drape::test
