@@ -54,8 +54,11 @@ __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, con
         __global const Triangle* obstacleTriangle = obstacleTriangles + candidate.m_obstacle;
         const float reach =
             thickness[clothTriangle->m_mesh * obstacleMeshes + obstacleTriangle->m_mesh] * reachScale;
-        const uint tests = ownedTests(clothTriangle->m_owned, obstacleTriangle->m_owned);
-        if (pairApart(&cloth, &obstacle, candidate, reach)) continue;
+        uint tests = ownedTests(clothTriangle->m_owned, obstacleTriangle->m_owned);
+        PairTriangles pair;
+        loadPair(&pair, &cloth, &obstacle, candidate);
+        if (pairApart(&pair, reach)) continue;
+        tests &= pair.m_tests;
         for (int test = 0; test < DRAPE_FEATURE_TESTS; ++test)
         {
             Contact contact;

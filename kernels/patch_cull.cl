@@ -166,7 +166,7 @@ static void countInvalid(__global const Triangle* triangle, __global const float
     {
         const uint vertex = triangle->m_vertices[i];
         if ((triangle->m_owned & DRAPE_OWNS_VERTEX(i)) &&
-            !(vec3IsFinite(vec3Load(start, vertex)) && vec3IsFinite(vec3Load(end, vertex))))
+            !(positionIsValid(vec3Load(start, vertex)) && positionIsValid(vec3Load(end, vertex))))
         {
             atomic_inc(&counters->m_invalidNodes);
         }
@@ -242,23 +242,32 @@ __kernel void patchCull(__global const uint* restrict clothOrder, __global const
     teamFlush(team, &list);
 }
 
-// Packing, when an obstacle came or moved. A work-item is a lane of a face block.
+// Packing, when an obstacle came or moved: positions that are invalid become NaN. A work-item is a lane of a face block.
+static Vec3 packedPosition(__global const float* restrict positions, const uint vertex, const int used)
+{
+    const Vec3 none = vec3(NAN, NAN, NAN);
+    if (!used) return none;
+    const Vec3 p = vec3Load(positions, vertex);
+    return positionIsValid(p) ? p : none;
+}
+
+static void packVec3(__global float* restrict out, const uint first, const Vec3 v)
+{
+    out[first * DRAPE_PATCH_WIDTH] = v.x;
+    out[(first + 1) * DRAPE_PATCH_WIDTH] = v.y;
+    out[(first + 2) * DRAPE_PATCH_WIDTH] = v.z;
+}
+
 __kernel void patchPackFaces(__global const uint* restrict owners, const uint lanes,
                              __global const Triangle* restrict triangles, __global const float* restrict positions,
                              __global const float* restrict spreads, __global float* restrict faces)
 {
     const uint i = get_global_id(0);
     if (i >= lanes) return;
-    const uint owner = owners[i];
+    const int used = owners[i] != DRAPE_NO_FEATURE;
+    const uint owner = used ? owners[i] : 0;
     __global float* out = faces + (i / DRAPE_PATCH_WIDTH) * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
-    const int used = owner != DRAPE_NO_FEATURE;
-    for (int k = 0; k < 3; ++k)
-    {
-        const Vec3 p = used ? vec3Load(positions, triangles[owner].m_vertices[k]) : vec3(NAN, NAN, NAN);
-        out[(3 * k) * DRAPE_PATCH_WIDTH] = p.x;
-        out[(3 * k + 1) * DRAPE_PATCH_WIDTH] = p.y;
-        out[(3 * k + 2) * DRAPE_PATCH_WIDTH] = p.z;
-    }
+    for (int k = 0; k < 3; ++k) packVec3(out, 3 * k, packedPosition(positions, triangles[owner].m_vertices[k], used));
     out[9 * DRAPE_PATCH_WIDTH] = used ? spreads[owner] : 0.0f;
 }
 
@@ -275,11 +284,10 @@ __kernel void patchPackVertices(__global const uint* restrict owners, const uint
     const uint owner = owners[i] & ((1u << DRAPE_PLACE_SHIFT) - 1u), place = owners[i] >> DRAPE_PLACE_SHIFT;
     const int used = owners[i] != DRAPE_NO_FEATURE;
     const uint vertex = used ? triangles[owner].m_vertices[place] : 0;
-    const Vec3 p = used ? vec3Load(positions, vertex) : vec3(NAN, NAN, NAN);
     ids[i] = vertex;
-    const NormalCone cone = cones[vertex];
-    const float values[DRAPE_VERTEX_FLOATS] = {p.x, p.y, p.z, cone.m_axis.x, cone.m_axis.y, cone.m_axis.z, cone.m_cosine};
-    for (int k = 0; k < DRAPE_VERTEX_FLOATS; ++k) out[k * DRAPE_PATCH_WIDTH] = values[k];
+    packVec3(out, 0, packedPosition(positions, vertex, used));
+    packVec3(out, 3, cones[vertex].m_axis);
+    out[6 * DRAPE_PATCH_WIDTH] = cones[vertex].m_cosine;
 }
 
 // A work-item is a lane of an edge block. ids: the edge of each lane.
@@ -291,17 +299,15 @@ __kernel void patchPackEdges(__global const uint* restrict owners, const uint la
     const uint i = get_global_id(0);
     if (i >= lanes) return;
     __global float* out = edges + (i / DRAPE_PATCH_WIDTH) * DRAPE_EDGE_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
-    const uint owner = owners[i] & ((1u << DRAPE_PLACE_SHIFT) - 1u), place = owners[i] >> DRAPE_PLACE_SHIFT;
     const int used = owners[i] != DRAPE_NO_FEATURE;
-    const Vec3 none = vec3(NAN, NAN, NAN);
-    const Vec3 a = used ? vec3Load(positions, triangles[owner].m_vertices[place]) : none;
-    const Vec3 b = used ? vec3Load(positions, triangles[owner].m_vertices[place == 2 ? 0 : place + 1]) : none;
-    const uint edge = used ? triangles[owner].m_edges[place] : 0;
+    const uint owner = used ? owners[i] & ((1u << DRAPE_PLACE_SHIFT) - 1u) : 0;
+    const uint place = used ? owners[i] >> DRAPE_PLACE_SHIFT : 0;
+    const uint edge = triangles[owner].m_edges[place];
     ids[i] = edge;
-    const NormalCone cone = cones[edge];
-    const float values[DRAPE_EDGE_FLOATS] = {a.x,           a.y, a.z, b.x, b.y, b.z, cone.m_axis.x, cone.m_axis.y,
-                                             cone.m_axis.z, cone.m_cosine};
-    for (int k = 0; k < DRAPE_EDGE_FLOATS; ++k) out[k * DRAPE_PATCH_WIDTH] = values[k];
+    packVec3(out, 0, packedPosition(positions, triangles[owner].m_vertices[place], used));
+    packVec3(out, 3, packedPosition(positions, triangles[owner].m_vertices[place == 2 ? 0 : place + 1], used));
+    packVec3(out, 6, cones[edge].m_axis);
+    out[9 * DRAPE_PATCH_WIDTH] = cones[edge].m_cosine;
 }
 
 static void wideStore(__global float* restrict wideNodes, const uint child, const Dop* dop)

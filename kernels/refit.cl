@@ -2,8 +2,8 @@
 #include "lib/dop.h"
 
 // A work-item is a leaf. Reads the triangle's vertices at the step's start and end, writes the leaf's volume, grown by the
-// mesh's radius (m). A negative radius takes the mesh out of the step: its leaves get empty volumes. Positions that are NaN
-// or infinite are counted by the triangle that owns the vertex. counters must be zero before; its atomic only counts.
+// mesh's radius (m). A negative radius takes the mesh out of the step: its leaves get empty volumes. Positions that are invalid
+// (positionIsValid) are counted by the triangle that owns the vertex. counters must be zero before; its atomic only counts.
 __kernel void refitLeaves(__global BvhNode* restrict nodes, __global const uint* restrict order,
                           __global const Triangle* restrict triangles, __global const float* restrict start,
                           __global const float* restrict end, __global const float* restrict meshRadius,
@@ -25,7 +25,7 @@ __kernel void refitLeaves(__global BvhNode* restrict nodes, __global const uint*
         {
             const uint vertex = triangle->m_vertices[i];
             if ((triangle->m_owned & DRAPE_OWNS_VERTEX(i)) &&
-                !(vec3IsFinite(vec3Load(start, vertex)) && vec3IsFinite(vec3Load(end, vertex))))
+                !(positionIsValid(vec3Load(start, vertex)) && positionIsValid(vec3Load(end, vertex))))
             {
                 atomic_inc(&counters->m_invalidNodes);
             }

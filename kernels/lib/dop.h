@@ -104,9 +104,9 @@ DRAPE_FUNCTION int opensFirst(const DRAPE_GLOBAL BvhNode* a, const DRAPE_GLOBAL 
     return b->m_count == 0 || nodeExtent(a) > nodeExtent(b);
 }
 
-// Volume of a triangle over a step of linear motion, grown by the radius. Corners that are NaN or infinite stay out of
+// Volume of a triangle over a step of linear motion, grown by the radius. Invalid corners (positionIsValid) stay out of
 // it, so that one bad node cannot make every ancestor overlap everything and features of the others are still found
-// (see finite_corners.h); without a finite corner the volume is empty. start and end may be the same array.
+// (see finite_corners.h); without a valid corner the volume is empty. start and end may be the same array.
 DRAPE_FUNCTION void triangleVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
                                    const DRAPE_GLOBAL float* end, float radius)
 {
@@ -115,7 +115,7 @@ DRAPE_FUNCTION void triangleVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triang
     {
         const Vec3 p0 = vec3Load(start, triangle->m_vertices[i]);
         const Vec3 p1 = vec3Load(end, triangle->m_vertices[i]);
-        if (!vec3IsFinite(p0) || !vec3IsFinite(p1)) continue;
+        if (!positionIsValid(p0) || !positionIsValid(p1)) continue;
         dopAddPoint(dop, p0, radius);
         dopAddPoint(dop, p1, radius);
     }

@@ -62,7 +62,7 @@ DRAPE_FUNCTION int faceVertexPassed(FeatureTriangle f0, FeatureTriangle f1, Vec3
 // Moving face against a resting vertex with the given normal cone. A vertex nearest to an edge of the face counts here
 // too (weights with one zero); one nearest to a node is the node's contact. beyond: the third vertices of the
 // neighbours over the face's three edges (m_a … m_c), into start and end, positions at the step's start and end; a
-// neighbour whose third vertex is NaN or infinite makes no contacts and counts as absent. origin: of the local frame.
+// neighbour whose third vertex is invalid makes no contacts and counts as absent. origin: of the local frame.
 DRAPE_FUNCTION int faceVertexContact(const MovingFace* face, const DRAPE_UINT* beyond, const DRAPE_GLOBAL float* start,
                                      const DRAPE_GLOBAL float* end, Vec3 origin, Vec3 vertex, NormalCone cone,
                                      PairBounds bounds, Contact* contact)
@@ -92,8 +92,8 @@ DRAPE_FUNCTION int faceVertexContact(const MovingFace* face, const DRAPE_UINT* b
         if (!coneAdmits(cone, normal)) return 0;
         const DRAPE_UINT neighbour = weights.z == 0.0f ? beyond[0] : weights.x == 0.0f ? beyond[1] : beyond[2];
         const Vec3 opposite = vec3Load(end, neighbour);
-        if (!leansAway(vec3Scale(offset, -1.0f), vec3Sub(opposite, origin), point) && vec3IsFinite(opposite) &&
-            vec3IsFinite(vec3Load(start, neighbour)))
+        if (!leansAway(vec3Scale(offset, -1.0f), vec3Sub(opposite, origin), point) && positionIsValid(opposite) &&
+            positionIsValid(vec3Load(start, neighbour)))
         {
             return 0;
         }

@@ -1,9 +1,9 @@
-// Drops feature tests of one cloth triangle against a block of obstacle features, a lane each: what is kept is a superset of
-// what gives a contact (pair_contact.h), and little more.
+// Drops feature tests of one cloth triangle against a block of obstacle features, a lane each: what is kept is a
+// superset of what gives a contact (pair_contact.h), and little more.
 //
-// Every comparison is loosened by kSlackShare of the pair's size, some thousand roundings. A feature whose shape makes a
-// direction worse than that (thin triangles, edges that are nearly parallel) is kept by its distance alone. Lanes with NaN
-// positions are dropped: each result depends on a comparison of theirs that must hold.
+// Every comparison is loosened by kSlackShare of the pair's size, some thousand roundings. A feature whose shape makes
+// a direction worse than that (thin triangles, edges that are nearly parallel) is kept by its distance alone. Lanes
+// with NaN positions are dropped: each result depends on a comparison of theirs that must hold.
 #ifndef DRAPE_LIB_FEATURE_CULL_H
 #define DRAPE_LIB_FEATURE_CULL_H
 
@@ -15,8 +15,8 @@ DRAPE_NAMESPACE_BEGIN
 
 // Share of the pair's size by which distances are loosened. A unit normal of a triangle that is not thin errs by less.
 #define DRAPE_CULL_SLACK 2e-4f
-// A triangle whose doubled area is below this share of its longest edge squared is thin, edges whose directions have a sine
-// below it are parallel. Then 3 roundings of a cross product turn it by less than 2e-5.
+// A triangle whose doubled area is below this share of its longest edge squared is thin, edges whose directions have a
+// sine below it are parallel. Then 3 roundings of a cross product turn it by less than 2e-5.
 #define DRAPE_CULL_THIN 0.01f
 
 // A cloth triangle over the step, relative to m_origin.
@@ -136,21 +136,23 @@ DRAPE_FUNCTION LaneMask cullFaceVertex(const CullTriangle* cull, CullReach reach
     // The direction from the vertex to the nearest point, or close to it, against the vertex's cone.
     const LanesVec3 axis = lanesLoadVec3(block, 3);
     const Lanes cosine = lanesLoad(block, 6);
-    const Lanes lean = lanesSelect(out2 >= most01, lanesDotUniform(axis, cull->m_inward[2]),
-                                   lanesSelect(out1 >= out0, lanesDotUniform(axis, cull->m_inward[1]),
-                                               lanesDotUniform(axis, cull->m_inward[0])));
+    const Lanes lean = lanesSelect(
+        out2 >= most01, lanesDotUniform(axis, cull->m_inward[2]),
+        lanesSelect(out1 >= out0, lanesDotUniform(axis, cull->m_inward[1]), lanesDotUniform(axis, cull->m_inward[0])));
     const Lanes facing = lanesAbs(height * lanesDotUniform(axis, cull->m_normal1) - distance * lean);
     const LaneMask admitted = facing + 4.0f * reach.m_slack >= cosine * lanesSqrt(squared);
     // Nearest to a node: the node's contact. Outside of two edges else, at an obtuse angle: nearest to either.
     const LaneMask atNode = cullAtNode(cull, v, reach.m_slack);
     const LaneMask direction = lanesNot(atNode) & (admitted | (second > lanesSplat(reach.m_slack)));
     const LaneMask near = direction & (squared <= lanesSplat(reach.m_near * reach.m_near));
-    const LaneMask passed = (cullPassed(before, height, lanesSplat(reach.m_slack)) | lanesMaskSplat(cull->m_thinStart)) &
-                            (depth <= lanesSplat(reach.m_passed)) & (distance <= lanesSplat(reach.m_passed));
+    const LaneMask passed =
+        (cullPassed(before, height, lanesSplat(reach.m_slack)) | lanesMaskSplat(cull->m_thinStart)) &
+        (depth <= lanesSplat(reach.m_passed)) & (distance <= lanesSplat(reach.m_passed));
     return near | passed;
 }
 
-// Cloth node i against faces. Compares squares of distances times the face's area or edge, so that no lane needs a root.
+// Cloth node i against faces. Compares squares of distances times the face's area or edge, so that no lane needs a
+// root.
 DRAPE_FUNCTION LaneMask cullNodeFace(const CullTriangle* cull, int i, CullReach reach, const DRAPE_GLOBAL float* block)
 {
     const LanesVec3 a = lanesLoadVec3(block, 0), b = lanesLoadVec3(block, 3), c = lanesLoadVec3(block, 6);
@@ -167,13 +169,13 @@ DRAPE_FUNCTION LaneMask cullNodeFace(const CullTriangle* cull, int i, CullReach 
 
     const Lanes height = lanesDot(area, x1), before = lanesDot(area, x0);
     const Lanes depth = height * height;
-    const LaneMask passed = (before * height <= 0.0f) |
-                            (lanesMin(depth, before * before) <= reach.m_slack * reach.m_slack * square);
+    const LaneMask passed =
+        (before * height <= 0.0f) | (lanesMin(depth, before * before) <= reach.m_slack * reach.m_slack * square);
     const float motion = reach.m_passed - reach.m_near;
     const LaneMask level = depth <= square * lanesSelect(passed, lanesSplat(reach.m_passed * reach.m_passed),
                                                          lanesSplat(reach.m_near * reach.m_near));
-    // How far outside an edge the node may be: where the edge's or a corner's cone still admits the direction to it, or as
-    // far as it can have moved since it passed. (x + y)² ≤ 1.1 x² + 11 y².
+    // How far outside an edge the node may be: where the edge's or a corner's cone still admits the direction to it, or
+    // as far as it can have moved since it passed. (x + y)² ≤ 1.1 x² + 11 y².
     const Lanes spread = lanesLoad(block, 9);
     const Lanes slope = lanesMin(depth * spread * spread, square * (reach.m_near * reach.m_near));
     const Lanes moved = lanesSelect(passed, square * (motion * motion), lanesSplat(0.0f));
@@ -181,8 +183,8 @@ DRAPE_FUNCTION LaneMask cullNodeFace(const CullTriangle* cull, int i, CullReach 
     const Lanes outAB = lanesMax(lanesDot(lanesCross(ab, area), x1), lanesSplat(0.0f));
     const Lanes outBC = lanesMax(lanesDot(lanesCross(bc, area), lanesSub(x1, ab)), lanesSplat(0.0f));
     const Lanes outCA = lanesMax(lanesDot(lanesCross(ca, area), x1), lanesSplat(0.0f));
-    const LaneMask inside =
-        (outAB * outAB <= allowed * squareAB) & (outBC * outBC <= allowed * squareBC) & (outCA * outCA <= allowed * squareCA);
+    const LaneMask inside = (outAB * outAB <= allowed * squareAB) & (outBC * outBC <= allowed * squareBC) &
+                            (outCA * outCA <= allowed * squareCA);
     return around & (thin | (level & inside));
 }
 
@@ -229,14 +231,14 @@ DRAPE_FUNCTION LaneMask cullEdgeEdge(const CullTriangle* cull, int i, CullReach 
     const Lanes facing = lanesDot(edges->m_axis, direction);
     const LaneMask admitted = facing * facing >= edges->m_cosine * square;
 
-    // Places of the closest points of the two lines, times the square; loosened by rounding, and where the edges may have
-    // passed each other by how far they can have moved since.
+    // Places of the closest points of the two lines, times the square; loosened by rounding, and where the edges may
+    // have passed each other by how far they can have moved since.
     const Lanes s = lanesDot(lanesCross(offset, along), direction);
     const Lanes t = lanesDot(lanesCrossUniform(across, offset), direction);
     const Lanes size = lanesNorm1(offset) + edges->m_length + acrossLength;
     const Lanes loose = lengths * (4e-6f * size + lanesSelect(passed, lanesSplat(passing), lanesSplat(0.0f)));
-    const LaneMask inside = (lanesMin(s, square - s) >= -loose * edges->m_length) &
-                            (lanesMin(-t, square + t) >= -loose * acrossLength);
+    const LaneMask inside =
+        (lanesMin(s, square - s) >= -loose * edges->m_length) & (lanesMin(-t, square + t) >= -loose * acrossLength);
 
     // (x + y)² ≤ 2 (x² + y²)
     const float far = reach.m_passed + acrossLength;

@@ -1,7 +1,7 @@
-// What is left of a triangle when corners of it are NaN or infinite.
+// What is left of a triangle when corners of it are invalid: NaN, infinite or too far out (see positionIsValid).
 //
 // A triangle with an invalid corner still owns features of its other corners (DRAPE_OWNS_VERTEX), which must be tested:
-// it acts as the segment or point that its finite corners span, and what uses an invalid corner makes no contact.
+// it acts as the segment or point that its valid corners span, and what uses an invalid corner makes no contact.
 #ifndef DRAPE_LIB_FINITE_CORNERS_H
 #define DRAPE_LIB_FINITE_CORNERS_H
 
@@ -15,21 +15,21 @@ DRAPE_NAMESPACE_BEGIN
 
 DRAPE_FUNCTION float cornersSum(const Vec3* p)
 {
-    return ((p[0].x + p[0].y) + (p[0].z + p[1].x)) + ((p[1].y + p[1].z) + (p[2].x + (p[2].y + p[2].z)));
+    return (vec3Norm1(p[0]) + vec3Norm1(p[1])) + vec3Norm1(p[2]);
 }
 
-// Puts a finite corner in the place of each that is not finite at the step's start and end (m, three each; may be the
-// same array). Returns the features that are valid, bits as in Triangle::m_owned: the finite corners and the edges
+// Puts a valid corner in the place of each that is not valid at the step's start and end (m, three each; may be the
+// same array). Returns the features that are valid, bits as in Triangle::m_owned: the valid corners and the edges
 // between them; without any, the corners stay as they are.
 DRAPE_FUNCTION DRAPE_UINT replaceInvalidCorners(Vec3* start, Vec3* end)
 {
-    // Whatever is not finite makes the sum so. A sum may overflow: then the slow way finds nothing to replace.
-    if (drapeIsFinite(cornersSum(start) + cornersSum(end))) return DRAPE_ALL_FEATURES;
+    // Quick for the usual: a sum that has NaN or something too large in it fails the comparison.
+    if (cornersSum(start) + cornersSum(end) <= DRAPE_FARTHEST) return DRAPE_ALL_FEATURES;
     DRAPE_UINT valid = 0;
     int stand = -1;
     for (int i = 0; i < 3; ++i)
     {
-        if (!vec3IsFinite(start[i]) || !vec3IsFinite(end[i])) continue;
+        if (!positionIsValid(start[i]) || !positionIsValid(end[i])) continue;
         valid |= DRAPE_OWNS_VERTEX(i);
         stand = i;
     }

@@ -104,8 +104,8 @@ DRAPE_FUNCTION int pairFaceVertex(const ClothView* cloth, DRAPE_UINT clothTriang
     contact->m_clothFeature = clothTriangle;
     contact->m_obstacleFeature = obstacleVertex;
     contact->m_slot = cloth->m_nodeCount + clothTriangle;
-    const int found = faceVertexContact(&face, beyond, cloth->m_start, cloth->m_end, vertex, vec3(0.0f, 0.0f, 0.0f), cone,
-                                        pairBounds(extent, reach), contact);
+    const int found = faceVertexContact(&face, beyond, cloth->m_start, cloth->m_end, vertex, vec3(0.0f, 0.0f, 0.0f),
+                                        cone, pairBounds(extent, reach), contact);
     return finishContact(found, vertex, contact);
 }
 
@@ -146,6 +146,15 @@ DRAPE_FUNCTION DRAPE_UINT ownedTests(DRAPE_UINT clothOwned, DRAPE_UINT obstacleO
     return tests;
 }
 
+// The tests without an invalid position, given the valid features of both triangles.
+DRAPE_FUNCTION DRAPE_UINT validTests(DRAPE_UINT clothValid, DRAPE_UINT obstacleValid)
+{
+    DRAPE_UINT tests = ownedTests(clothValid, obstacleValid);
+    if (obstacleValid != DRAPE_ALL_FEATURES) tests &= ~7u;      // node-face
+    if (clothValid != DRAPE_ALL_FEATURES) tests &= ~(7u << 3);  // face-vertex
+    return tests;
+}
+
 // Runs one of the candidate's feature tests, 0 ≤ test < DRAPE_FEATURE_TESTS. Returns whether it gives a contact.
 DRAPE_FUNCTION int pairContact(int test, const ClothView* cloth, const ObstacleView* obstacle, Candidate candidate,
                                float reach, Contact* contact)
@@ -171,11 +180,12 @@ DRAPE_FUNCTION int pairContact(int test, const ClothView* cloth, const ObstacleV
                         contact);
 }
 
-// The positions of a candidate, relative to the first vertex of the obstacle's triangle. Corners that are NaN or infinite
-// are replaced (finite_corners.h).
+// The positions of a candidate, relative to the first vertex of the obstacle's triangle. Corners that are invalid are
+// replaced (finite_corners.h); m_tests: those without an invalid position, as bits.
 typedef struct PairTriangles
 {
     FeatureTriangle m_start, m_end, m_resting;
+    DRAPE_UINT m_tests;
 } PairTriangles;
 
 DRAPE_FUNCTION void loadPair(PairTriangles* pair, const ClothView* cloth, const ObstacleView* obstacle,
@@ -189,8 +199,8 @@ DRAPE_FUNCTION void loadPair(PairTriangles* pair, const ClothView* cloth, const 
         pair->m_end.m_p[i] = vec3Load(cloth->m_end, clothTriangle->m_vertices[i]);
         pair->m_resting.m_p[i] = vec3Load(obstacle->m_positions, obstacleTriangle->m_vertices[i]);
     }
-    replaceInvalidCorners(pair->m_start.m_p, pair->m_end.m_p);
-    replaceInvalidCorners(pair->m_resting.m_p, pair->m_resting.m_p);
+    const DRAPE_UINT clothValid = replaceInvalidCorners(pair->m_start.m_p, pair->m_end.m_p);
+    pair->m_tests = validTests(clothValid, replaceInvalidCorners(pair->m_resting.m_p, pair->m_resting.m_p));
     const Vec3 origin = pair->m_resting.m_p[0];
     for (int i = 0; i < 3; ++i)
     {
@@ -202,11 +212,9 @@ DRAPE_FUNCTION void loadPair(PairTriangles* pair, const ClothView* cloth, const 
 
 // Proves that a pair of triangles is out of reach by the planes of the two, where the cloth's is taken at the step's
 // end. The slack is far above any rounding: what is dropped here gives no contact.
-DRAPE_FUNCTION int pairApart(const ClothView* cloth, const ObstacleView* obstacle, Candidate candidate, float reach)
+DRAPE_FUNCTION int pairApart(const PairTriangles* pair, float reach)
 {
-    PairTriangles pair;
-    loadPair(&pair, cloth, obstacle, candidate);
-    const FeatureTriangle start = pair.m_start, end = pair.m_end, resting = pair.m_resting;
+    const FeatureTriangle start = pair->m_start, end = pair->m_end, resting = pair->m_resting;
     const float extent = drapeMax(drapeMax(triangleExtent(start), triangleExtent(end)), triangleExtent(resting));
     const float slack = reach * 1.01f + 1e-3f * extent;
     const Vec3 normals[2] = {triangleNormal(resting), triangleNormal(end)};

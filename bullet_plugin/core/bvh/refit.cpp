@@ -21,9 +21,9 @@ void refitLeafOnHost(BvhNode& node, const Triangle& triangle, const float* start
         for (int i = 0; i < 3; ++i)
         {
             if (!(triangle.m_owned & DRAPE_OWNS_VERTEX(i))) continue;
-            const bool finite = vec3IsFinite(vec3Load(start, triangle.m_vertices[i])) &&
-                                vec3IsFinite(vec3Load(end, triangle.m_vertices[i]));
-            if (!finite) ++invalidNodes;
+            const bool valid = positionIsValid(vec3Load(start, triangle.m_vertices[i])) &&
+                               positionIsValid(vec3Load(end, triangle.m_vertices[i]));
+            if (!valid) ++invalidNodes;
         }
     }
     dopStore(&node, &dop);

@@ -11,7 +11,7 @@
 namespace drape
 {
 // nodes: links set. order: triangle per leaf. start, end: m, x y z per vertex (may be the same). meshRadius: m per mesh
-// slot, negative to leave a mesh out. Adds NaN and infinite vertices to invalidNodes.
+// slot, negative to leave a mesh out. Adds invalid vertices (positionIsValid) to invalidNodes.
 void refitOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const std::vector<std::uint32_t>& order,
                  const std::vector<Triangle>& triangles, const float* start, const float* end,
                  const std::vector<float>& meshRadius, std::size_t& invalidNodes);

@@ -29,8 +29,11 @@ std::uint64_t narrowPhaseOnHost(const std::vector<Candidate>& candidates, const 
         const float reach =
             settings.m_thickness[clothTriangle->m_mesh * settings.m_obstacleMeshes + obstacleTriangle->m_mesh] *
             settings.m_reachScale;
-        const std::uint32_t tests = ownedTests(clothTriangle->m_owned, obstacleTriangle->m_owned);
-        if (pairApart(&cloth, &obstacle, candidate, reach)) continue;
+        std::uint32_t tests = ownedTests(clothTriangle->m_owned, obstacleTriangle->m_owned);
+        PairTriangles pair;
+        loadPair(&pair, &cloth, &obstacle, candidate);
+        if (pairApart(&pair, reach)) continue;
+        tests &= pair.m_tests;
         for (int test = 0; test < DRAPE_FEATURE_TESTS; ++test)
         {
             Contact contact;

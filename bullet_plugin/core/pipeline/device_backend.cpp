@@ -171,12 +171,11 @@ void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
     m_counters.fill(*m_device, 0, 1);
     if (patches())
     {
-        m_patchCull.enqueue(
-            *m_device,
-            {m_cloth.m_order, m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, m_thickness,
-             scene.m_cloths.triangles().size(), obstacleMeshes, 1.0f + m_settings.m_activation,
-             StepLimits(m_settings).m_candidates},
-            m_counters);
+        m_patchCull.enqueue(*m_device,
+                            {m_cloth.m_order, m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius,
+                             m_thickness, scene.m_cloths.triangles().size(), obstacleMeshes,
+                             1.0f + m_settings.m_activation, StepLimits(m_settings).m_candidates},
+                            m_counters);
         m_narrowPhase.enqueueFeatures(*m_device, narrowPhaseBuffers(), scene.m_cloths.vertexCount(),
                                       scene.m_cloths.triangles().size(), m_patchCull, m_counters);
     }
@@ -257,8 +256,7 @@ bool DeviceBackend::grow()
         demand(counters.m_candidates, m_candidates.capacity(), sizeof(Candidate),
                [&](std::size_t count) { m_candidates.reserve(device, count); });
         demand(std::min(std::size_t(counters.m_listed), StepLimits(m_settings).m_contacts), m_narrowPhase.hitCapacity(),
-               sizeof(Contact),
-               [&](std::size_t count) { m_narrowPhase.reserveHits(device, count); });
+               sizeof(Contact), [&](std::size_t count) { m_narrowPhase.reserveHits(device, count); });
     }
     demand(counters.m_intersections, m_narrowPhase.intersections().capacity(), sizeof(Candidate),
            [&](std::size_t count) { m_narrowPhase.reserveIntersections(device, count); });

@@ -33,7 +33,7 @@ std::vector<DeviceInfo> listDevices();
 enum StepStatusBits : std::uint32_t
 {
     kStepGood = 0,
-    kStepInvalidNodes = 1u << 0,  // NaN or infinite nodes were left out
+    kStepInvalidNodes = 1u << 0,  // nodes that are NaN, infinite or beyond 2^30 m were left out
     kStepDeviceFailed = 1u << 1,  // the device failed; this and later steps run on the host
     kStepContactLimit = 1u << 2,  // a buffer reached what the device can hold; the step ran on the host
     kStepClothsLeftOut =
@@ -52,7 +52,7 @@ struct StepStatistics
     std::size_t m_clothsLeftOut = 0;  // with kStepClothsLeftOut
     std::size_t m_contacts = 0;       // contacts published
     std::size_t m_intersections = 0;  // only with Settings::m_reportIntersections
-    std::size_t m_invalidNodes = 0;   // NaN or infinite
+    std::size_t m_invalidNodes = 0;   // with kStepInvalidNodes
     std::size_t m_retries = 0;        // stages run again because a buffer was too small
     bool m_skipped = false;           // nothing to do: no pair, or nothing that could touch
     double m_uploadMs = 0;            // mirroring nodes and enqueueing
