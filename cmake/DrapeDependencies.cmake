@@ -28,7 +28,7 @@ if(NOT DRAPE_WITH_BULLET)
   message(STATUS "Without Bullet: only the core and its tests are built; nothing is installed")
 endif()
 
-if(DRAPE_TOOLS OR DRAPE_TESTS)
+if(DRAPE_TOOLS OR DRAPE_TESTS OR DRAPE_BUILD_FUZZERS)
   find_package(PkgConfig REQUIRED)
   # By pkg-config: the CMake files of Debian's assimp ask for packages that a user of it does not need.
   pkg_check_modules(assimp REQUIRED IMPORTED_TARGET assimp)

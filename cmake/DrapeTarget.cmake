@@ -9,6 +9,9 @@ function(drape_target target)
   if(DRAPE_SANITIZE)
     target_compile_options(${target} PRIVATE
       -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    if(DRAPE_BUILD_FUZZERS)
+      target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)  # tells libFuzzer what an input reached
+    endif()
     # Public, so that whatever links a library that calls the sanitizers' run time links that run time too.
     target_link_options(${target} PUBLIC -fsanitize=address,undefined)
   endif()
