@@ -7,7 +7,9 @@
 #ifndef DRAPE_LIB_TRIANGLE_PAIR_H
 #define DRAPE_LIB_TRIANGLE_PAIR_H
 
+#include "../shared/query.h"
 #include "local_frame.h"
+#include "moller.h"
 #include "triangle_triangle.h"
 
 DRAPE_NAMESPACE_BEGIN
@@ -93,6 +95,31 @@ DRAPE_FUNCTION DRAPE_UINT trianglePairTest(const Vec3 a[3], const Vec3 b[3], flo
     bounds.m_reach = radius * pair.m_scale;
     bounds.m_reachSlack = bounds.m_reach;
     return meets || featuresNear(&pair, bounds) ? meets | DRAPE_PAIR_NEAR : 0u;
+}
+
+DRAPE_FUNCTION PairAnswer trianglePairAnswer(Candidate pair, const DRAPE_GLOBAL float* positionsA,
+                                             const DRAPE_GLOBAL Triangle* trianglesA,
+                                             const DRAPE_GLOBAL float* positionsB,
+                                             const DRAPE_GLOBAL Triangle* trianglesB, float radius)
+{
+    Vec3 a[3], b[3];
+    for (int i = 0; i < 3; ++i)
+    {
+        a[i] = vec3Load(positionsA, trianglesA[pair.m_cloth].m_vertices[i]);
+        b[i] = vec3Load(positionsB, trianglesB[pair.m_obstacle].m_vertices[i]);
+    }
+    PairAnswer answer;
+    answer.m_a = pair.m_cloth;
+    answer.m_b = pair.m_obstacle;
+    answer.m_bits = trianglePairTest(a, b, radius);
+    return answer;
+}
+
+// Whether the triangles of a query meet, by the test asked for.
+DRAPE_FUNCTION DRAPE_UINT triangleQuery(FeatureTriangle a, FeatureTriangle b, DRAPE_UINT test)
+{
+    if (test == DRAPE_TEST_MOLLER) return mollerIntersect(a, b) ? 1u : 0u;
+    return trianglePairTest(a.m_p, b.m_p, -1.0f) & DRAPE_PAIR_MEETS;
 }
 
 DRAPE_NAMESPACE_END
