@@ -8,9 +8,10 @@ namespace drape
 {
 namespace
 {
+// Where a vertex is at the start and at the end of a motion.
 struct PositionKey
 {
-    std::array<std::uint32_t, 3> m_bits;
+    std::array<std::uint32_t, 6> m_bits;
     bool operator==(const PositionKey& other) const { return m_bits == other.m_bits; }
 };
 
@@ -25,13 +26,13 @@ struct PositionHash
     }
 };
 
-PositionKey keyOf(const float* position)
+PositionKey keyOf(const float* start, const float* end)
 {
     PositionKey key{};
-    for (int axis = 0; axis < 3; ++axis)
+    for (int i = 0; i < 6; ++i)
     {
-        const float value = position[axis] + 0.0f;  // −0 + 0 is +0
-        std::memcpy(&key.m_bits[axis], &value, sizeof value);
+        const float value = (i < 3 ? start[i] : end[i - 3]) + 0.0f;  // −0 + 0 is +0
+        std::memcpy(&key.m_bits[i], &value, sizeof value);
     }
     return key;
 }
@@ -69,30 +70,43 @@ void placeOnFloor(TriangleMesh& mesh, float size)
 
 std::size_t joinVertices(TriangleMesh& mesh)
 {
+    std::vector<float> end = mesh.m_positions;
+    return joinVertices(mesh, end);
+}
+
+std::size_t joinVertices(TriangleMesh& mesh, std::vector<float>& end)
+{
     TriangleMesh joined;
+    std::vector<float> joinedEnd;
     joined.m_triangles.reserve(mesh.m_triangles.size());
     std::unordered_map<PositionKey, std::int32_t, PositionHash> known;
     known.reserve(mesh.vertexCount());
     for (std::size_t t = 0; t < mesh.triangleCount(); ++t)
     {
         PositionKey keys[3];
+        const float* corners[3][2];
         for (int corner = 0; corner < 3; ++corner)
-            keys[corner] = keyOf(&mesh.m_positions[3 * static_cast<std::size_t>(mesh.m_triangles[3 * t + corner])]);
+        {
+            const std::size_t vertex = static_cast<std::size_t>(mesh.m_triangles[3 * t + corner]);
+            corners[corner][0] = &mesh.m_positions[3 * vertex];
+            corners[corner][1] = &end[3 * vertex];
+            keys[corner] = keyOf(corners[corner][0], corners[corner][1]);
+        }
         if (keys[0] == keys[1] || keys[1] == keys[2] || keys[2] == keys[0]) continue;
         for (int corner = 0; corner < 3; ++corner)
         {
             const auto found = known.emplace(keys[corner], static_cast<std::int32_t>(joined.vertexCount()));
             if (found.second)
             {
-                const float* position =
-                    &mesh.m_positions[3 * static_cast<std::size_t>(mesh.m_triangles[3 * t + corner])];
-                joined.m_positions.insert(joined.m_positions.end(), position, position + 3);
+                joined.m_positions.insert(joined.m_positions.end(), corners[corner][0], corners[corner][0] + 3);
+                joinedEnd.insert(joinedEnd.end(), corners[corner][1], corners[corner][1] + 3);
             }
             joined.m_triangles.push_back(found.first->second);
         }
     }
     const std::size_t dropped = mesh.triangleCount() - joined.triangleCount();
     mesh = std::move(joined);
+    end = std::move(joinedEnd);
     return dropped;
 }
 

@@ -2,11 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
@@ -16,6 +12,7 @@
 #include <assimp/scene.h>
 
 #include "scenes/mesh_scan.h"
+#include "scenes/read_file.h"
 
 namespace drape
 {
@@ -26,19 +23,6 @@ std::string endingOf(const std::string& path)
     std::string ending = std::filesystem::path(path).extension().string();
     std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
     return ending;
-}
-
-// "" and the file's bytes, or why they cannot be had.
-std::string readBytes(const std::string& path, std::string& bytes)
-{
-    std::error_code code;
-    if (std::filesystem::is_directory(path, code)) return "is a folder, not a mesh";
-    errno = 0;
-    std::ifstream file(path, std::ios::binary);
-    if (!file) return errno == ENOENT ? "no such file" : std::string("cannot be read: ") + std::strerror(errno);
-    bytes.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
-    if (file.bad()) return std::string("cannot be read: ") + std::strerror(errno);
-    return bytes.empty() ? "is empty, not a mesh" : "";
 }
 
 std::string oneLine(std::string text)
@@ -134,25 +118,50 @@ std::string importMesh(const std::string& path, TriangleMesh& mesh)
     if (scene == nullptr || scene->mRootNode == nullptr) return "not a mesh: " + oneLine(importer.GetErrorString());
     return appendNode(*scene, *scene->mRootNode, aiMatrix4x4(), mesh);
 }
+
+// The mesh as the file has it, or why it cannot be had.
+std::string readMesh(const std::string& path, TriangleMesh& mesh)
+{
+    std::string bytes;
+    std::string problem = readWholeFile(path, "mesh", bytes);
+    const std::string ending = endingOf(path);
+    if (problem.empty() && ending == ".obj") problem = scanObj(bytes);
+    if (problem.empty() && ending == ".ply") problem = scanPly(bytes);
+    if (problem.empty()) problem = importMesh(path, mesh);
+    return problem.empty() ? "" : path + ": " + problem;
+}
 }  // namespace
 
 bool loadMesh(const std::string& path, TriangleMesh& mesh, std::string& error)
 {
-    std::string bytes;
-    std::string problem = readBytes(path, bytes);
-    const std::string ending = endingOf(path);
-    if (problem.empty() && ending == ".obj") problem = scanObj(bytes);
-    if (problem.empty() && ending == ".ply") problem = scanPly(bytes);
     TriangleMesh loaded;
-    if (problem.empty()) problem = importMesh(path, loaded);
+    std::string problem = readMesh(path, loaded);
     if (problem.empty()) joinVertices(loaded);
-    if (problem.empty() && loaded.triangleCount() == 0) problem = "no triangles";
-    if (!problem.empty())
+    if (problem.empty() && loaded.triangleCount() == 0) problem = path + ": no triangles";
+    if (problem.empty())
+        mesh = std::move(loaded);
+    else
+        error = problem;
+    return problem.empty();
+}
+
+bool loadMotion(const std::string& startPath, const std::string& endPath, TriangleMesh& mesh, std::vector<float>& end,
+                std::string& error)
+{
+    TriangleMesh first, last;
+    std::string problem = readMesh(startPath, first);
+    if (problem.empty()) problem = readMesh(endPath, last);
+    if (problem.empty() && (first.vertexCount() != last.vertexCount() || first.m_triangles != last.m_triangles))
+        problem = endPath + ": has not the vertices and triangles of " + startPath;
+    if (problem.empty()) joinVertices(first, last.m_positions);
+    if (problem.empty() && first.triangleCount() == 0) problem = startPath + ": no triangles";
+    if (problem.empty())
     {
-        error = path + ": " + problem;
-        return false;
+        mesh = std::move(first);
+        end = std::move(last.m_positions);
     }
-    mesh = std::move(loaded);
-    return true;
+    else
+        error = problem;
+    return problem.empty();
 }
 }  // namespace drape

@@ -6,10 +6,16 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "scenes/mesh.h"
 
 namespace drape
 {
 bool loadMesh(const std::string& path, TriangleMesh& mesh, std::string& error);
+
+// A mesh that moves: the same vertices and triangles in both files, positions at the start and at the end (x y z per
+// vertex). Vertices that are at one place in both are joined.
+bool loadMotion(const std::string& startPath, const std::string& endPath, TriangleMesh& mesh, std::vector<float>& end,
+                std::string& error);
 }  // namespace drape

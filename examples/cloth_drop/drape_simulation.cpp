@@ -1,13 +1,9 @@
-#include <algorithm>
-#include <cctype>
-#include <cstdlib>
-#include <iostream>
-
 #include <drape/drape.h>
 
 #include "examples/cloth_drop/drop_world.h"
 #include "examples/cloth_drop/node_positions.h"
 #include "examples/cloth_drop/simulation.h"
+#include "tools/common/device_option.h"
 
 namespace drape
 {
@@ -60,61 +56,18 @@ private:
     std::uint32_t m_status = 0;
     std::vector<float> m_positions;
 };
-
-std::string lowerCase(std::string text)
-{
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-    return text;
-}
-
-std::string describe(const DeviceInfo& device)
-{
-    return device.m_name + " (" + device.m_platform + ", driver " + device.m_driver + (device.m_isGpu ? ", GPU)" : ")");
-}
-
-// "" when a device with this text in its name is there, or the text asks for the host; else why not, with the list.
-std::string deviceProblem(const std::string& text, bool demanded)
-{
-    if (!demanded && (text.empty() || lowerCase(text) == "host")) return "";
-    const std::vector<DeviceInfo> devices = listDevices();
-    for (const DeviceInfo& device : devices)
-        if (lowerCase(device.m_name + "\n" + device.m_platform).find(lowerCase(text)) != std::string::npos) return "";
-    if (devices.empty()) return "there is no OpenCL device on this machine";
-    std::string list;
-    for (const DeviceInfo& device : devices)
-        list += (list.empty() ? "" : "; ") + describe(device);
-    return "unknown device '" + text + "'; there are: " + list;
-}
 }  // namespace
 
 std::unique_ptr<Simulation> makeDrapeSimulation(const DropScene& scene, const Options& options, std::string& error,
                                                 int& exitCode)
 {
     Settings settings;
-    settings.m_backend = options.m_backend == "host"     ? Backend::Host
-                         : options.m_backend == "opencl" ? Backend::OpenCl
-                                                         : Backend::Auto;
-    settings.m_device = options.m_device;
-    const char* environment = std::getenv("DRAPE_DEVICE");
-    const std::string wanted = !options.m_device.empty() || environment == nullptr ? options.m_device : environment;
     exitCode = kExitBadInput;
-    if (settings.m_backend == Backend::Host && !options.m_device.empty() && lowerCase(options.m_device) != "host")
-        error = "--device " + options.m_device + " contradicts --backend host";
-    else if (settings.m_backend != Backend::Host)
-        error = deviceProblem(wanted, settings.m_backend == Backend::OpenCl);
-    if (!error.empty()) return nullptr;
+    if (!deviceSettings(options.m_backend, options.m_device, settings, error)) return nullptr;
     auto simulation = std::make_unique<DrapeSimulation>(scene, settings);
     if (simulation->plugin().ready()) return simulation;
     exitCode = kExitFailed;
     error = simulation->plugin().error();
     return nullptr;
-}
-
-void printDevices()
-{
-    const std::vector<DeviceInfo> devices = listDevices();
-    for (const DeviceInfo& device : devices)
-        std::cout << describe(device) << "\n";
-    if (devices.empty()) std::cout << "no OpenCL device; Drape would run on the host\n";
 }
 }  // namespace drape

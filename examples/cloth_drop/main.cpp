@@ -1,13 +1,11 @@
 // cloth_drop: drops a cloth on an obstacle in Bullet, with Drape or Bullet's built-in collision, and reports.
-#include <cstdlib>
-#include <exception>
-#include <iostream>
-
 #include "examples/cloth_drop/built_in_child.h"
 #include "examples/cloth_drop/outputs.h"
 #include "examples/cloth_drop/picture.h"
 #include "examples/cloth_drop/progress.h"
 #include "examples/cloth_drop/runner.h"
+#include "tools/common/arguments.h"
+#include "tools/common/device_option.h"
 
 namespace drape
 {
@@ -15,8 +13,7 @@ namespace
 {
 int fail(int exitCode, const std::string& reason)
 {
-    std::cerr << "cloth_drop: " << reason << std::endl;
-    return exitCode;
+    return drape::fail("cloth_drop", exitCode, reason);
 }
 
 // Runs the chosen back end. A built-in world is left alive: Bullet's clean-up of its distance field can take minutes.
@@ -88,29 +85,10 @@ int run(const Options& options)
     if (!writeOutputs(options, runs, writeError)) return fail(kExitFailed, writeError);
     return good ? judge(options, runs) : fail(kExitFailed, error);
 }
-
-int guardedRun(const Options& options)
-{
-    try
-    {
-        return run(options);
-    }
-    catch (const std::bad_alloc&)
-    {
-        return fail(kExitFailed, "out of memory");
-    }
-    catch (const std::exception& exception)
-    {
-        return fail(kExitFailed, exception.what());
-    }
-}
 }  // namespace
 }  // namespace drape
 
 int main(int argc, char** argv)
 {
-    drape::Options options;
-    int exitCode = drape::kExitGood;
-    if (!drape::parseOptions(argc, argv, options, exitCode)) return exitCode;
-    return drape::guardedRun(options);
+    return drape::runProgram("cloth_drop", argc, argv, drape::parseOptions, drape::run);
 }

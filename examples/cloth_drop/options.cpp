@@ -2,46 +2,17 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <cstdio>
-#include <iostream>
 #include <map>
 
-#include <CLI/CLI.hpp>
-
 #include "scenes/shapes.h"
+#include "tools/common/arguments.h"
 
 namespace drape
 {
 namespace
 {
 constexpr int kMostNodesASide = 4096;  // 16.8 million nodes: beyond what a step can hold, below any overflow
-
-std::string asNumber(const std::string& text, double& value)
-{
-    try
-    {
-        std::size_t end = 0;
-        value = std::stod(text, &end);
-        if (end == text.size() && std::isfinite(value)) return "";
-    }
-    catch (const std::exception&)
-    {
-    }
-    return "'" + text + "' is not a finite number";
-}
-
-// A validator of CLI11: "" when good, else the reason.
-std::function<std::string(std::string&)> numberAbove(double least, bool inclusive, const char* what)
-{
-    return [=](std::string& text) -> std::string
-    {
-        double value = 0;
-        const std::string problem = asNumber(text, value);
-        if (!problem.empty()) return problem;
-        return value > least || (inclusive && value >= least) ? "" : "'" + text + "' must be " + what;
-    };
-}
 
 std::string grid(std::string& text)
 {
@@ -135,28 +106,9 @@ bool parseOptions(int argc, const char* const* argv, Options& options, int& exit
     addSceneOptions(app, options, cloth);
     addBackendOptions(app, options, mode);
     addOutputOptions(app, options);
-    std::string problem;
-    try
-    {
-        app.parse(argc, argv);
-        problem = conflict(options);
-    }
-    catch (const CLI::CallForHelp&)
-    {
-        std::cout << app.help();
-        exitCode = kExitGood;
+    if (!parseArguments(
+            app, argc, argv, [&options] { return conflict(options); }, exitCode))
         return false;
-    }
-    catch (const CLI::ParseError& error)
-    {
-        problem = error.what();
-    }
-    if (!problem.empty())
-    {
-        std::cerr << "cloth_drop: " << problem << "\n";
-        exitCode = kExitBadInput;
-        return false;
-    }
     std::sscanf(cloth.c_str(), "%d%*c%d", &options.m_clothColumns, &options.m_clothRows);
     static const std::map<std::string, BulletMode> modes = {
         {"stock", BulletMode::Stock}, {"tuned", BulletMode::Tuned}, {"vfss", BulletMode::SoftPair}};

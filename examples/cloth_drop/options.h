@@ -4,16 +4,10 @@
 
 #include <string>
 
+#include "tools/common/program.h"
+
 namespace drape
 {
-enum ExitCode
-{
-    kExitGood = 0,
-    kExitFailed = 1,    // the run failed, or something could not be written
-    kExitBadInput = 2,  // arguments, files or device
-    kExitOtherHash = 3  // --validate-hash differs
-};
-
 enum class BulletMode
 {
     Stock,    // the sparse distance field as Bullet sets it up

@@ -11,30 +11,12 @@
 
 namespace drape
 {
-namespace
-{
-namespace fs = std::filesystem;
-
-bool couldWrite(const std::string& path, std::string& error)
-{
-    if (path.empty() || path == "-") return true;
-    std::error_code code;
-    const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
-    if (fs::is_directory(path, code))
-        error = path + ": cannot write: is a folder";
-    else if (!fs::is_directory(folder, code))
-        error = path + ": cannot write: no folder " + folder.string();
-    else if (::access(folder.c_str(), W_OK) != 0)
-        error = path + ": cannot write: " + std::strerror(errno);
-    return error.empty();
-}
-}  // namespace
-
 bool prepareOutputs(const Options& options, std::string& error)
 {
     for (const std::string* path : {&options.m_csv, &options.m_json, &options.m_picture})
         if (!couldWrite(*path, error)) return false;
     if (options.m_frames.empty()) return true;
+    namespace fs = std::filesystem;
     std::error_code code;
     fs::create_directories(options.m_frames, code);
     if (!fs::is_directory(options.m_frames) || ::access(options.m_frames.c_str(), W_OK) != 0)
@@ -54,8 +36,6 @@ bool writeOutputs(const Options& options, const std::vector<NamedRun>& runs, std
     if (options.m_json != "-") write(options.m_json, json);
     if (!options.m_quiet && options.m_json != "-") std::cout << asTable(runs);
     if (options.m_json == "-") std::cout << json;
-    std::cout.flush();
-    if (!std::cout && error.empty()) error = "standard output: cannot write";
-    return error.empty();
+    return flushOutput(error);
 }
 }  // namespace drape

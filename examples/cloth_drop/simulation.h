@@ -46,7 +46,4 @@ std::unique_ptr<Simulation> makeBulletSimulation(const DropScene& scene, BulletM
 // Drape on the back end that the options name. Null with the reason in `error` and the exit code when it cannot start.
 std::unique_ptr<Simulation> makeDrapeSimulation(const DropScene& scene, const Options& options, std::string& error,
                                                 int& exitCode);
-
-// Prints every OpenCL device in the order of choice.
-void printDevices();
 }  // namespace drape

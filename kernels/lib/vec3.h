@@ -9,6 +9,7 @@ DRAPE_NAMESPACE_BEGIN
 #ifdef __OPENCL_VERSION__
 #define drapeSqrt(a) sqrt(a)
 #define drapeBits(a) as_uint(a)
+#define drapeFromBits(a) as_float(a)
 #else
 inline float drapeSqrt(float a)
 {
@@ -19,6 +20,12 @@ inline std::uint32_t drapeBits(float a)
     std::uint32_t bits;
     std::memcpy(&bits, &a, sizeof bits);
     return bits;
+}
+inline float drapeFromBits(std::uint32_t bits)
+{
+    float a;
+    std::memcpy(&a, &bits, sizeof a);
+    return a;
 }
 #endif
 

@@ -4,6 +4,7 @@
 
 #ifdef __OPENCL_VERSION__
 #define DRAPE_UINT uint
+#define DRAPE_ULONG ulong
 #define DRAPE_INT int
 #define DRAPE_GLOBAL __global
 #define DRAPE_FUNCTION static inline
@@ -14,6 +15,7 @@
 #include <cstdint>
 #include <cstring>
 #define DRAPE_UINT std::uint32_t
+#define DRAPE_ULONG std::uint64_t
 #define DRAPE_INT std::int32_t
 #define DRAPE_GLOBAL
 #define DRAPE_FUNCTION inline

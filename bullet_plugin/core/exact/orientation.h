@@ -1,0 +1,19 @@
+// Exact signs of areas and volumes of points with float coordinates.
+//
+// Signs come from doubles where an error bound (Shewchuk 1997, stage A) says that they can, else from expansions: never
+// wrong for finite floats. Cost: some nanoseconds, microseconds where the points are (nearly) in one plane.
+#pragma once
+
+#include <array>
+
+namespace drape
+{
+// Coordinates are floats, widened.
+using ExactPoint = std::array<double, 3>;
+
+// Sign of the volume of (a, b, c, d): 0 when the four lie in one plane, negated when two points are swapped.
+int orientation3(const ExactPoint& a, const ExactPoint& b, const ExactPoint& c, const ExactPoint& d);
+
+// Sign of the area of (a, b, c) in the view along an axis: 0 when they are in line there.
+int orientation2(const ExactPoint& a, const ExactPoint& b, const ExactPoint& c, int along);
+}  // namespace drape

@@ -1,0 +1,85 @@
+// Questions outside a cloth's step, on the chosen back end: do moving features touch, do triangles intersect, which
+// pairs of two meshes are near, which features of a moving mesh touch one another.
+//
+// Job: batches of single pairs, and whole meshes with their own hierarchies, made for the call. Guarantee: no true pair
+// is denied; the same answers, bit for bit, on every back end; lists grow or the work is done in batches, nothing is
+// lost. Cost: each call uploads, computes and waits. Lengths in metres. Knows no Bullet. Not thread-safe.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "bullet_plugin/core/pipeline.h"
+#include "kernels/shared/mesh.h"
+#include "kernels/shared/query.h"
+
+namespace drape
+{
+// Working defaults of continuous collision; see kernels/lib/ccd.h.
+CcdSettings defaultCcdSettings();
+
+enum class TriangleTest
+{
+    Certified,  // no pair that intersects is denied; a few that nearly touch are reported
+    Exact,      // the truth: what the certified test reports is decided on the host without rounding
+    Moller      // with an absolute tolerance, for comparison: misses pairs and reports others
+};
+
+// Triangles are named by their index as given.
+struct MeshPairs
+{
+    std::uint64_t m_candidates = 0;         // pairs whose volumes overlap
+    std::vector<Candidate> m_within;        // distance ≤ the radius, decided in double precision; sorted
+    std::vector<Candidate> m_intersecting;  // exact; sorted
+};
+
+// Two features that touch during a step, by their vertices: a vertex and a face, or two edges (see CcdQuery).
+struct TouchingFeatures
+{
+    std::uint32_t m_kind;  // DRAPE_VERTEX_FACE or DRAPE_EDGES
+    std::uint32_t m_vertices[4];
+    float m_time;  // of impact, part of the step
+};
+
+struct MeshMotion
+{
+    std::uint64_t m_trianglePairs = 0;
+    std::uint64_t m_vertexFaceCandidates = 0;  // pairs whose own volumes over the step overlap
+    std::uint64_t m_edgeCandidates = 0;
+    std::vector<TouchingFeatures> m_touching;  // vertices and faces first
+};
+
+class Queries
+{
+public:
+    // Chooses the device and makes its kernels ready. Returns null and fills error when settings ask for what is not
+    // there.
+    static std::unique_ptr<Queries> create(const Settings& settings, Error& error);
+    ~Queries();
+    Queries(const Queries&) = delete;
+    Queries& operator=(const Queries&) = delete;
+
+    const DeviceReport& deviceReport() const;
+
+    // Each returns false when the device failed; error() says how.
+    const Error& error() const;
+
+    // results: count of them.
+    bool motions(const CcdQuery* queries, std::size_t count, const CcdSettings& settings, CcdResult* results);
+
+    // results: 1 for each pair that intersects, else 0.
+    bool triangles(const TriangleQuery* queries, std::size_t count, TriangleTest test, std::uint32_t* results);
+
+    // Pairs of a's triangles with b's; b null: with a's own that share no vertex. radius ≥ 0.
+    bool meshPairs(const MeshDescription& a, const MeshDescription* b, float radius, MeshPairs& found);
+
+    // Which features of the mesh touch one another while it moves from its positions to `end` (x y z per vertex).
+    bool meshMotion(const MeshDescription& mesh, const float* end, const CcdSettings& settings, MeshMotion& found);
+
+private:
+    Queries();
+    struct Implementation;
+    std::unique_ptr<Implementation> m_implementation;
+};
+}  // namespace drape

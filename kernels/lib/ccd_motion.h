@@ -1,0 +1,248 @@
+// The motion of a vertex and a face, or of two edges, over a step, as F(t,u,v) = D(t) - u E(t) - v G(t): the offset
+// between the place (u,v) on the features at the time t, with D, E and G differences of vertices that are linear in t.
+// F is linear in each of t, u and v, so over a box its extremes are at the box's corners; this holds along any
+// direction, and what a direction proves holds whatever the direction. See ccd.h for the search that uses it.
+#ifndef DRAPE_LIB_CCD_MOTION_H
+#define DRAPE_LIB_CCD_MOTION_H
+
+#include "local_frame.h"
+
+DRAPE_NAMESPACE_BEGIN
+
+// D, E and G at the step's start and end, in the pair's own frame.
+typedef struct CcdVectors
+{
+    Vec3 m_d0, m_d1, m_e0, m_e1, m_g0, m_g1;
+} CcdVectors;
+
+// F seen along several directions, each taken as exact: along x, y and z; along the features' common normal, where F
+// does not vary with u and v; and along the two where it does not vary with t and v, or with t and u.
+#define DRAPE_CCD_VIEWS 6
+#define DRAPE_CCD_NORMAL 3
+#define DRAPE_CCD_ALONG_U 4
+#define DRAPE_CCD_ALONG_V 5
+
+typedef struct CcdMotion
+{
+    CcdVectors m_vectors;
+    float m_scale;
+    float m_d0[DRAPE_CCD_VIEWS], m_d1[DRAPE_CCD_VIEWS];  // D, E and G in each view at the step's ends
+    float m_e0[DRAPE_CCD_VIEWS], m_e1[DRAPE_CCD_VIEWS];
+    float m_g0[DRAPE_CCD_VIEWS], m_g1[DRAPE_CCD_VIEWS];
+    float m_slack[DRAPE_CCD_VIEWS];  // more than F's bounds err by rounding
+    float m_reach[DRAPE_CCD_VIEWS];  // slack and separation: bounds beyond it prove F beyond the separation
+    float m_separation;              // in the frame
+    float m_rates[3];                // most that F varies along the whole of t, u, v, on any axis
+    int m_triangular;                // u + v ≤ 1
+    int m_independent;               // the skew views' directions span space; see ccdAim
+} CcdMotion;
+
+// A box [x, x + width] in each of t, u, v; corners and widths are dyadic and exact.
+typedef struct CcdBox
+{
+    float m_low[3];
+    float m_width[3];
+} CcdBox;
+
+DRAPE_FUNCTION float ccdMost(float a, float b)
+{
+    return drapeMax(drapeAbs(a), drapeAbs(b));
+}
+
+// With u = 2^-24 and M_D, M_E, M_G the largest |D|, |E|, |G| at the step's ends: each end is one rounding of a
+// difference (u M), each value between is two products and a sum (2 u M), u E and v G are products (u M), and the two
+// last sums round at most M_D + M_E + M_G each. Together 6 u (M_D + M_E + M_G); 7 u covers the second-order terms and
+// the rounding of the slack. Flushed denormals add 2^-126 each, before scaling (12 coordinates and their differences)
+// and after it.
+DRAPE_FUNCTION float ccdSlack(const CcdMotion* m, int i)
+{
+    const float sevenUnits = 4.1723251e-7f;
+    const float most =
+        ccdMost(m->m_d0[i], m->m_d1[i]) + ccdMost(m->m_e0[i], m->m_e1[i]) + ccdMost(m->m_g0[i], m->m_g1[i]);
+    return sevenUnits * most + 32.0f * DRAPE_FLUSH * (1.0f + m->m_scale);
+}
+
+DRAPE_FUNCTION float ccdExtent(const CcdVectors* v)
+{
+    const float ends0 = drapeMax(drapeMax(vec3NormMax(v->m_d0), vec3NormMax(v->m_e0)), vec3NormMax(v->m_g0));
+    const float ends1 = drapeMax(drapeMax(vec3NormMax(v->m_d1), vec3NormMax(v->m_e1)), vec3NormMax(v->m_g1));
+    return drapeMax(ends0, ends1);
+}
+
+// Along an axis, n is a unit vector: the products are exact.
+DRAPE_FUNCTION void ccdProject(CcdMotion* m, int i, Vec3 n)
+{
+    const CcdVectors* v = &m->m_vectors;
+    m->m_d0[i] = vec3Dot(n, v->m_d0);
+    m->m_d1[i] = vec3Dot(n, v->m_d1);
+    m->m_e0[i] = vec3Dot(n, v->m_e0);
+    m->m_e1[i] = vec3Dot(n, v->m_e1);
+    m->m_g0[i] = vec3Dot(n, v->m_g0);
+    m->m_g1[i] = vec3Dot(n, v->m_g1);
+}
+
+DRAPE_FUNCTION void ccdAddAxis(CcdMotion* m, int i, Vec3 unit)
+{
+    ccdProject(m, i, unit);
+    m->m_slack[i] = ccdSlack(m, i);
+    m->m_reach[i] = m->m_separation + m->m_slack[i];
+}
+
+// A view along any direction. It is made of the vectors' rounded coordinates: to the slack of the view itself comes,
+// for each vector, u |n|₁ M for its rounding and 3 u |n|₁ M for the dot product, M ≤ 1 in the frame: for D, E and G
+// together 12 u |n|₁, and their flushed products.
+DRAPE_FUNCTION Vec3 ccdAddSkewView(CcdMotion* m, int i, Vec3 direction)
+{
+    const float twelveUnits = 7.1525574e-7f;
+    const Vec3 n = vec3Scale(direction, localScale(vec3NormMax(direction)));
+    ccdProject(m, i, n);
+    m->m_slack[i] = ccdSlack(m, i) + twelveUnits * vec3Norm1(n) * (1.0f + twelveUnits);
+    m->m_reach[i] = m->m_separation * vec3Length(n) * (1.0f + twelveUnits) + m->m_slack[i];
+    return n;
+}
+
+// Aims the skew views at what F does in the middle of a box: there each varies with t, u or v alone. What they prove
+// holds everywhere. Directions whose volume is below 1e-5, far above its rounding, count as dependent.
+DRAPE_FUNCTION void ccdAim(CcdMotion* m, const CcdBox* box)
+{
+    const CcdVectors* v = &m->m_vectors;
+    const float t = box->m_low[0] + 0.5f * box->m_width[0];
+    const float alongE = -(box->m_low[1] + 0.5f * box->m_width[1]);
+    const float alongG = -(box->m_low[2] + 0.5f * box->m_width[2]);
+    const Vec3 e = vec3Mix(v->m_e0, v->m_e1, t);
+    const Vec3 g = vec3Mix(v->m_g0, v->m_g1, t);
+    Vec3 rate = vec3Sub(v->m_d1, v->m_d0);
+    rate = vec3AddScaled(rate, vec3Sub(v->m_e1, v->m_e0), alongE);
+    rate = vec3AddScaled(rate, vec3Sub(v->m_g1, v->m_g0), alongG);
+    const Vec3 n3 = ccdAddSkewView(m, DRAPE_CCD_NORMAL, vec3Cross(e, g));
+    const Vec3 n4 = ccdAddSkewView(m, DRAPE_CCD_ALONG_U, vec3Cross(g, rate));
+    const Vec3 n5 = ccdAddSkewView(m, DRAPE_CCD_ALONG_V, vec3Cross(e, rate));
+    m->m_independent = drapeAbs(vec3Dot(n3, vec3Cross(n4, n5))) > 1e-5f;
+}
+
+// Scales the differences, given prescaled, so that the largest is in [1/2, 1), and derives the rest. Returns whether
+// they are finite.
+DRAPE_FUNCTION int ccdPrepare(CcdMotion* m, float separation)
+{
+    CcdVectors* v = &m->m_vectors;
+    const int finite = vec3IsFinite(v->m_d0) && vec3IsFinite(v->m_d1) && vec3IsFinite(v->m_e0) &&
+                       vec3IsFinite(v->m_e1) && vec3IsFinite(v->m_g0) && vec3IsFinite(v->m_g1);
+    if (!finite) return 0;
+    const float scale = localScale(ccdExtent(v));
+    v->m_d0 = vec3Scale(v->m_d0, scale);
+    v->m_d1 = vec3Scale(v->m_d1, scale);
+    v->m_e0 = vec3Scale(v->m_e0, scale);
+    v->m_e1 = vec3Scale(v->m_e1, scale);
+    v->m_g0 = vec3Scale(v->m_g0, scale);
+    v->m_g1 = vec3Scale(v->m_g1, scale);
+    m->m_separation = separation * DRAPE_PRESCALE * scale;
+    m->m_scale = scale;
+    ccdAddAxis(m, 0, vec3(1.0f, 0.0f, 0.0f));
+    ccdAddAxis(m, 1, vec3(0.0f, 1.0f, 0.0f));
+    ccdAddAxis(m, 2, vec3(0.0f, 0.0f, 1.0f));
+    m->m_rates[1] = drapeMax(vec3NormMax(v->m_e0), vec3NormMax(v->m_e1));
+    m->m_rates[2] = drapeMax(vec3NormMax(v->m_g0), vec3NormMax(v->m_g1));
+    m->m_rates[0] = vec3NormMax(vec3Sub(v->m_d1, v->m_d0)) + vec3NormMax(vec3Sub(v->m_e1, v->m_e0)) +
+                    vec3NormMax(vec3Sub(v->m_g1, v->m_g0));
+    return 1;
+}
+
+// Least and greatest F in each view over the box, at its first time and at its last.
+typedef struct CcdRanges
+{
+    float m_low0[DRAPE_CCD_VIEWS], m_high0[DRAPE_CCD_VIEWS];
+    float m_low1[DRAPE_CCD_VIEWS], m_high1[DRAPE_CCD_VIEWS];
+} CcdRanges;
+
+DRAPE_FUNCTION void ccdBounds(const CcdMotion* m, const CcdBox* box, CcdRanges* r)
+{
+    const float u0 = box->m_low[1], u1 = box->m_low[1] + box->m_width[1];
+    const float v0 = box->m_low[2], v1 = box->m_low[2] + box->m_width[2];
+    const float t0 = box->m_low[0], t1 = box->m_low[0] + box->m_width[0];
+    const float s0 = 1.0f - t0, s1 = 1.0f - t1;
+    for (int i = 0; i < DRAPE_CCD_VIEWS; ++i)
+    {
+        const float d = s0 * m->m_d0[i] + t0 * m->m_d1[i];
+        const float e = s0 * m->m_e0[i] + t0 * m->m_e1[i];
+        const float g = s0 * m->m_g0[i] + t0 * m->m_g1[i];
+        r->m_low0[i] = d - drapeMax(u0 * e, u1 * e) - drapeMax(v0 * g, v1 * g);
+        r->m_high0[i] = d - drapeMin(u0 * e, u1 * e) - drapeMin(v0 * g, v1 * g);
+    }
+    for (int i = 0; i < DRAPE_CCD_VIEWS; ++i)
+    {
+        const float d = s1 * m->m_d0[i] + t1 * m->m_d1[i];
+        const float e = s1 * m->m_e0[i] + t1 * m->m_e1[i];
+        const float g = s1 * m->m_g0[i] + t1 * m->m_g1[i];
+        r->m_low1[i] = d - drapeMax(u0 * e, u1 * e) - drapeMax(v0 * g, v1 * g);
+        r->m_high1[i] = d - drapeMin(u0 * e, u1 * e) - drapeMin(v0 * g, v1 * g);
+    }
+}
+
+#define DRAPE_CCD_APART 0
+#define DRAPE_CCD_OPEN 1
+#define DRAPE_CCD_WITHIN 2
+
+// Whether F stays beyond the separation over the whole box (proved), or within it (to rounding), or neither.
+DRAPE_FUNCTION int ccdTest(const CcdMotion* m, const CcdRanges* r)
+{
+    int apart = 0;
+    for (int i = 0; i < DRAPE_CCD_VIEWS; ++i)
+    {
+        const float low = drapeMin(r->m_low0[i], r->m_low1[i]), high = drapeMax(r->m_high0[i], r->m_high1[i]);
+        apart |= (low > m->m_reach[i]) | (-high > m->m_reach[i]);
+    }
+    if (apart) return DRAPE_CCD_APART;
+    float gaps = 0.0f;
+    int within = 1;
+    for (int i = 0; i < 3; ++i)
+    {
+        const float low = drapeMin(r->m_low0[i], r->m_low1[i]), high = drapeMax(r->m_high0[i], r->m_high1[i]);
+        const float gap = drapeMax(drapeMax(low, -high) - m->m_slack[i], 0.0f);
+        gaps += gap * gap;
+        // A cube with this half-width lies in the ball of the separation.
+        within = within && drapeMax(-low, high) <= m->m_slack[i] + 0.57735f * m->m_separation;
+    }
+    // The box of F's values may miss the ball of the separation though not the ball's box. 8 u covers the roundings.
+    const float ball = m->m_separation * m->m_separation * 1.0000005f + DRAPE_FLUSH;
+    if (m->m_separation > 0.0f && gaps > ball) return DRAPE_CCD_APART;
+    return within ? DRAPE_CCD_WITHIN : DRAPE_CCD_OPEN;
+}
+
+// Whether F changes sign from one end of the box to the other in view i, everywhere: between the ranges there.
+DRAPE_FUNCTION int ccdCrosses(float low0, float high0, float low1, float high1, float slack)
+{
+    return (high0 < -slack && low1 > slack) || (low0 > slack && high1 < -slack);
+}
+
+// Ranges in view i at the lower end of u (or v) and at the upper, over all of t and of the other.
+DRAPE_FUNCTION int ccdCrossesSide(const CcdMotion* m, const CcdBox* box, int i, int axis)
+{
+    float low[2], high[2];
+    for (int end = 0; end < 2; ++end)
+    {
+        CcdBox side = *box;
+        CcdRanges r;
+        side.m_low[axis] += end ? side.m_width[axis] : 0.0f;
+        side.m_width[axis] = 0.0f;
+        ccdBounds(m, &side, &r);
+        low[end] = drapeMin(r.m_low0[i], r.m_low1[i]);
+        high[end] = drapeMax(r.m_high0[i], r.m_high1[i]);
+    }
+    return ccdCrosses(low[0], high[0], low[1], high[1], m->m_slack[i]);
+}
+
+// Proof that F vanishes somewhere in the box: three views that span space, each of which changes sign between opposite
+// sides of the box (Poincaré and Miranda's theorem). Not finding it proves nothing.
+DRAPE_FUNCTION int ccdHolds(const CcdMotion* m, const CcdBox* box, const CcdRanges* r)
+{
+    const int n = DRAPE_CCD_NORMAL;
+    if (!m->m_independent) return 0;
+    if (!ccdCrosses(r->m_low0[n], r->m_high0[n], r->m_low1[n], r->m_high1[n], m->m_slack[n])) return 0;
+    const float farthest = box->m_low[1] + box->m_width[1] + box->m_low[2] + box->m_width[2];
+    if (m->m_triangular && farthest > 1.0f) return 0;
+    return ccdCrossesSide(m, box, DRAPE_CCD_ALONG_U, 1) && ccdCrossesSide(m, box, DRAPE_CCD_ALONG_V, 2);
+}
+
+DRAPE_NAMESPACE_END
+
+#endif

@@ -1,0 +1,120 @@
+// Self collision: a moving mesh against itself. Volumes of its vertices, pairs of its triangles, pairs of features, and
+// which of these touch during the step. Lists are filled in no particular order; their demands must be zero before, and
+// count on when a list is full (see SelfCounters).
+#include "lib/self_collision.h"
+
+// Pairs a work-item gathers before it reserves room for them with one atomic.
+#define DRAPE_SELF_GATHER 16
+
+// Reserves room for count entries of a list. Returns false when the demand is beyond what is counted.
+static int reserveEntries(__global volatile uint* demand, const uint count, uint* place)
+{
+    if (*demand >= DRAPE_DEMAND_LIMIT) return 0;
+    *place = atomic_add(demand, count);
+    return 1;
+}
+
+static int flushPairs(__global Candidate* restrict pairs, const uint capacity, __global SelfCounters* restrict counters,
+                      const Candidate* gathered, const uint count)
+{
+    uint place;
+    if (!reserveEntries(&counters->m_pairs, count, &place)) return 0;
+    for (uint i = 0; i < count; ++i)
+    {
+        if (place + i < capacity) pairs[place + i] = gathered[i];
+    }
+    return 1;
+}
+
+// A work-item is a vertex: writes its volume over the step.
+__kernel void selfVolumes(__global const float* restrict start, __global const float* restrict end, const uint vertexCount,
+                          const float radius, __global Dop* restrict volumes)
+{
+    const uint i = get_global_id(0);
+    if (i >= vertexCount) return;
+    Dop dop;
+    vertexVolume(&dop, start, end, i, radius);
+    volumes[i] = dop;
+}
+
+static WalkSide walkSide(__global const BvhNode* nodes, __global const uint* order, __global const Triangle* triangles)
+{
+    WalkSide side;
+    side.m_nodes = nodes;
+    side.m_order = order;
+    side.m_triangles = triangles;
+    return side;
+}
+
+// A work-item is one of leafCount leaves of side a from firstLeaf: lists the pairs of its triangle with those of the
+// leaves of tree b whose volumes overlap, as kind (DRAPE_WALK_…) says. For a mesh with itself, a and b are the same.
+__kernel void leafTraverse(__global const BvhNode* nodesA, __global const uint* orderA,
+                           __global const Triangle* trianglesA, const uint firstLeaf, const uint leafCount,
+                           __global const BvhNode* nodesB, __global const uint* orderB,
+                           __global const Triangle* trianglesB, const uint root, __global const uint* lastLeaf,
+                           const uint kind, __global Candidate* restrict pairs, const uint capacity,
+                           __global SelfCounters* restrict counters)
+{
+    if (get_global_id(0) >= leafCount) return;
+    const WalkSide a = walkSide(nodesA, orderA, trianglesA), b = walkSide(nodesB, orderB, trianglesB);
+    Candidate gathered[DRAPE_SELF_GATHER];
+    uint count = 0;
+    LeafWalk walk;
+    leafWalkStart(&walk, firstLeaf + get_global_id(0), root);
+    while (leafWalkNext(&walk, &a, &b, kind, lastLeaf, gathered + count))
+    {
+        if (++count < DRAPE_SELF_GATHER) continue;
+        if (!flushPairs(pairs, capacity, counters, gathered, count)) return;
+        count = 0;
+    }
+    if (count > 0) flushPairs(pairs, capacity, counters, gathered, count);
+    if (walk.m_tooDeep) atomic_inc(&counters->m_tooDeep);
+}
+
+static void storePairs(__global FeaturePair* restrict list, const uint capacity, __global volatile uint* demand,
+                       const FeaturePair* pairs, const uint count)
+{
+    uint place;
+    if (count == 0 || !reserveEntries(demand, count, &place)) return;
+    for (uint i = 0; i < count; ++i)
+    {
+        if (place + i < capacity) list[place + i] = pairs[i];
+    }
+}
+
+// A work-item takes every stride-th pair of triangles and lists the pairs of features that it owns and that overlap.
+__kernel void selfFeatures(__global const Candidate* restrict pairs, const uint pairCapacity,
+                           __global const Triangle* restrict triangles, __global const Dop* restrict volumes,
+                           __global FeaturePair* restrict vertexFace, const uint vertexFaceCapacity,
+                           __global FeaturePair* restrict edges, const uint edgesCapacity,
+                           __global SelfCounters* restrict counters)
+{
+    const uint count = min(counters->m_pairs, pairCapacity);
+    for (uint i = get_global_id(0); i < count; i += get_global_size(0))
+    {
+        FeaturePairs found;
+        collectFeaturePairs(&found, triangles, pairs[i], volumes);
+        storePairs(vertexFace, vertexFaceCapacity, &counters->m_vertexFace, found.m_vertexFace, found.m_vertexFaceCount);
+        storePairs(edges, edgesCapacity, &counters->m_edgeEdge, found.m_edges, found.m_edgesCount);
+    }
+}
+
+// A work-item takes every stride-th pair of one kind and lists those that touch during the step.
+__kernel void selfTest(const uint kind, __global const FeaturePair* restrict pairs, const uint pairCapacity,
+                       __global const Triangle* restrict triangles, __global const Edge* restrict edges,
+                       __global const float* restrict start, __global const float* restrict end, const float separation,
+                       const float tolerance, const float timeTolerance, const uint boxLimit,
+                       __global FeatureHit* restrict hits, const uint hitCapacity,
+                       __global SelfCounters* restrict counters)
+{
+    const CcdSettings settings = ccdSettings(separation, tolerance, timeTolerance, boxLimit);
+    const uint demand = kind == DRAPE_VERTEX_FACE ? counters->m_vertexFace : counters->m_edgeEdge;
+    const uint count = min(demand, pairCapacity);
+    for (uint i = get_global_id(0); i < count; i += get_global_size(0))
+    {
+        FeatureHit hit;
+        if (!featurePairHit(kind, pairs[i], triangles, edges, start, end, settings, &hit)) continue;
+        const uint place = atomic_inc(&counters->m_hits);
+        if (place < hitCapacity) hits[place] = hit;
+    }
+}

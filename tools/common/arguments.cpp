@@ -1,0 +1,59 @@
+#include "tools/common/arguments.h"
+
+#include <cmath>
+#include <iostream>
+
+namespace drape
+{
+namespace
+{
+std::string asNumber(const std::string& text, double& value)
+{
+    try
+    {
+        std::size_t end = 0;
+        value = std::stod(text, &end);
+        if (end == text.size() && std::isfinite(value)) return "";
+    }
+    catch (const std::exception&)
+    {
+    }
+    return "'" + text + "' is not a finite number";
+}
+}  // namespace
+
+std::function<std::string(std::string&)> numberAbove(double least, bool inclusive, const char* what)
+{
+    return [=](std::string& text) -> std::string
+    {
+        double value = 0;
+        const std::string problem = asNumber(text, value);
+        if (!problem.empty()) return problem;
+        return value > least || (inclusive && value >= least) ? "" : "'" + text + "' must be " + what;
+    };
+}
+
+bool parseArguments(CLI::App& app, int argc, const char* const* argv, const std::function<std::string()>& conflict,
+                    int& exitCode)
+{
+    std::string problem;
+    try
+    {
+        app.parse(argc, argv);
+        problem = conflict();
+    }
+    catch (const CLI::CallForHelp&)
+    {
+        std::cout << app.help();
+        exitCode = kExitGood;
+        return false;
+    }
+    catch (const CLI::ParseError& error)
+    {
+        problem = error.what();
+    }
+    if (problem.empty()) return true;
+    exitCode = fail(app.get_name().c_str(), kExitBadInput, problem);
+    return false;
+}
+}  // namespace drape

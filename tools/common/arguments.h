@@ -1,0 +1,32 @@
+// Command lines of Drape's programs, on CLI11.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "tools/common/program.h"
+
+namespace drape
+{
+// Checks for CLI11: "" when the text is a finite number above `least` (or equal, when inclusive), else the reason,
+// which says `what` it must be.
+std::function<std::string(std::string&)> numberAbove(double least, bool inclusive, const char* what);
+
+// Parses; `conflict` then tells what is wrong with the whole ("" for nothing). True: go on. False: leave with
+// `exitCode`; what there was to say has been printed (help, or one line on standard error).
+bool parseArguments(CLI::App& app, int argc, const char* const* argv, const std::function<std::string()>& conflict,
+                    int& exitCode);
+
+// A program's main: `parse` fills the options as parseArguments does, `run` does the work and gives the exit code.
+template <typename Options>
+int runProgram(const char* program, int argc, char** argv, bool (*parse)(int, const char* const*, Options&, int&),
+               int (*run)(const Options&))
+{
+    Options options;
+    int exitCode = kExitGood;
+    if (!parse(argc, argv, options, exitCode)) return exitCode;
+    return runGuarded(program, [&] { return run(options); });
+}
+}  // namespace drape

@@ -1,0 +1,29 @@
+// How Drape's programs end: exit codes, one line on standard error, nothing thrown out of main.
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace drape
+{
+enum ExitCode
+{
+    kExitGood = 0,
+    kExitFailed = 1,    // the run failed, or something could not be written
+    kExitBadInput = 2,  // arguments, files or device
+    kExitOtherHash = 3  // --validate-hash differs
+};
+
+// Prints "program: reason" and returns the code.
+int fail(const char* program, int exitCode, const std::string& reason);
+
+// Runs a program's work; what it throws becomes a failure.
+int runGuarded(const char* program, const std::function<int()>& work);
+
+// Flushes standard output. False, with a line in `error` unless there is one, when it could not be written.
+bool flushOutput(std::string& error);
+
+// Whether a file could be written there (- and an empty path always), told before the work is done. Else one line in
+// `error`.
+bool couldWrite(const std::string& path, std::string& error);
+}  // namespace drape

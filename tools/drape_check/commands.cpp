@@ -1,0 +1,174 @@
+#include "tools/drape_check/commands.h"
+
+#include <chrono>
+
+#include "scenes/mesh_loader.h"
+#include "tools/common/device_option.h"
+#include "tools/drape_check/records.h"
+
+namespace drape
+{
+namespace
+{
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+double microsecondsSince(Clock::time_point start)
+{
+    return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
+// Null, with `error` and `exitCode`, when the back end that was asked for cannot be had.
+std::unique_ptr<Queries> openQueries(const Options& options, Json& answer, std::string& error, int& exitCode)
+{
+    Settings settings;
+    exitCode = kExitBadInput;
+    if (!deviceSettings(options.m_backend, options.m_device, settings, error)) return nullptr;
+    Error problem;
+    std::unique_ptr<Queries> queries = Queries::create(settings, problem);
+    exitCode = kExitFailed;
+    error = problem.text();
+    if (!queries) return nullptr;
+    const DeviceReport& report = queries->deviceReport();
+    answer["backend"] = report.m_onHost ? "host" : "opencl";
+    answer["device"] = report.m_device.m_name;
+    answer["prepare_ms"] = report.m_buildMs;
+    return queries;
+}
+
+CcdSettings ccdSettingsOf(const Options& options)
+{
+    CcdSettings settings = defaultCcdSettings();
+    settings.m_separation = float(options.m_separation);
+    settings.m_tolerance = float(options.m_tolerance);
+    settings.m_timeTolerance = float(options.m_timeTolerance);
+    return settings;
+}
+
+MeshDescription describe(const TriangleMesh& mesh)
+{
+    return {mesh.m_triangles.data(), mesh.triangleCount(), mesh.m_positions.data(), mesh.vertexCount()};
+}
+
+// Answers all queries twice, since drivers may compile at the first launch, and times the second; counts what differs
+// from the truth. hit(i) tells the answer.
+template <typename AnswerAll, typename Hit>
+bool score(const std::vector<bool>& truth, AnswerAll answerAll, Hit hit, Json& answer)
+{
+    if (!answerAll()) return false;
+    const Clock::time_point start = Clock::now();
+    if (!answerAll()) return false;
+    const double time = microsecondsSince(start);
+    std::size_t misses = 0, falseHits = 0;
+    for (std::size_t i = 0; i < truth.size(); ++i)
+    {
+        misses += truth[i] && !hit(i);
+        falseHits += !truth[i] && hit(i);
+    }
+    answer["queries"] = truth.size();
+    answer["misses"] = misses;
+    answer["false_hits"] = falseHits;
+    answer["us_per_query"] = time / double(truth.size());
+    return true;
+}
+
+bool answerCcd(const Options& options, Json& answer, std::string& error, int& exitCode)
+{
+    MotionRecords records;
+    exitCode = kExitBadInput;
+    if (!readRecords(options.m_first, records, error)) return false;
+    const std::unique_ptr<Queries> queries = openQueries(options, answer, error, exitCode);
+    if (!queries) return false;
+    std::vector<CcdResult> results(records.m_queries.size());
+    const CcdSettings settings = ccdSettingsOf(options);
+    const auto answerAll = [&]
+    { return queries->motions(records.m_queries.data(), results.size(), settings, results.data()); };
+    const auto hit = [&](std::size_t i) { return results[i].m_hit != 0; };
+    if (score(records.m_truth, answerAll, hit, answer)) return true;
+    error = queries->error().text();
+    return false;
+}
+
+bool answerTriangles(const Options& options, Json& answer, std::string& error, int& exitCode)
+{
+    TriangleRecords records;
+    exitCode = kExitBadInput;
+    if (!readRecords(options.m_first, records, error)) return false;
+    const std::unique_ptr<Queries> queries = openQueries(options, answer, error, exitCode);
+    if (!queries) return false;
+    std::vector<std::uint32_t> results(records.m_queries.size());
+    const auto answerAll = [&]
+    { return queries->triangles(records.m_queries.data(), results.size(), options.m_test, results.data()); };
+    const auto hit = [&](std::size_t i) { return results[i] != 0; };
+    if (score(records.m_truth, answerAll, hit, answer)) return true;
+    error = queries->error().text();
+    return false;
+}
+
+bool answerPairs(const Options& options, Json& answer, std::string& error, int& exitCode)
+{
+    const bool two = !options.m_second.empty();
+    TriangleMesh a, b;
+    exitCode = kExitBadInput;
+    if (!loadMesh(options.m_first, a, error) || (two && !loadMesh(options.m_second, b, error))) return false;
+    const std::unique_ptr<Queries> queries = openQueries(options, answer, error, exitCode);
+    if (!queries) return false;
+    const MeshDescription second = describe(b);
+    MeshPairs found;
+    const Clock::time_point start = Clock::now();
+    if (!queries->meshPairs(describe(a), two ? &second : nullptr, float(options.m_thickness), found))
+    {
+        error = queries->error().text();
+        return false;
+    }
+    answer["candidates"] = found.m_candidates;
+    answer["pairs_within"] = found.m_within.size();
+    answer["intersecting_pairs"] = found.m_intersecting.size();
+    answer["ms"] = microsecondsSince(start) / 1000;
+    return true;
+}
+
+bool answerStep(const Options& options, Json& answer, std::string& error, int& exitCode)
+{
+    TriangleMesh mesh;
+    std::vector<float> end;
+    exitCode = kExitBadInput;
+    if (!loadMotion(options.m_first, options.m_second, mesh, end, error)) return false;
+    const std::unique_ptr<Queries> queries = openQueries(options, answer, error, exitCode);
+    if (!queries) return false;
+    MeshMotion found;
+    const Clock::time_point start = Clock::now();
+    if (!queries->meshMotion(describe(mesh), end.data(), ccdSettingsOf(options), found))
+    {
+        error = queries->error().text();
+        return false;
+    }
+    std::size_t hits[2] = {0, 0};
+    for (const TouchingFeatures& touching : found.m_touching)
+        ++hits[touching.m_kind == DRAPE_EDGES];
+    answer["triangle_pairs"] = found.m_trianglePairs;
+    answer["vf_candidates"] = found.m_vertexFaceCandidates;
+    answer["vf_hits"] = hits[0];
+    answer["ee_candidates"] = found.m_edgeCandidates;
+    answer["ee_hits"] = hits[1];
+    answer["ms"] = microsecondsSince(start) / 1000;
+    return true;
+}
+}  // namespace
+
+bool runCommand(const Options& options, Json& answer, std::string& error, int& exitCode)
+{
+    switch (options.m_command)
+    {
+        case Command::Ccd:
+            return answerCcd(options, answer, error, exitCode);
+        case Command::Triangles:
+            return answerTriangles(options, answer, error, exitCode);
+        case Command::Pairs:
+            return answerPairs(options, answer, error, exitCode);
+        case Command::Step:
+            return answerStep(options, answer, error, exitCode);
+    }
+    return false;
+}
+}  // namespace drape

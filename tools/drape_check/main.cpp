@@ -1,0 +1,49 @@
+// drape_check: asks Drape collision questions outside a simulation, and where the truth is known counts its errors.
+#include <iostream>
+
+#include "scenes/atomic_file.h"
+#include "tools/common/arguments.h"
+#include "tools/common/device_option.h"
+#include "tools/drape_check/commands.h"
+
+namespace drape
+{
+namespace
+{
+bool writeAnswer(const Options& options, const nlohmann::ordered_json& answer, std::string& error)
+{
+    const std::string json = answer.dump(2) + "\n";
+    if (options.m_json == "-")
+        std::cout << json;
+    else if (!options.m_json.empty() && !writeFileAtomically(options.m_json, json, error))
+        return false;
+    if (!options.m_quiet && options.m_json != "-")
+    {
+        for (const auto& item : answer.items())
+            std::cout << item.key() << " "
+                      << (item.value().is_string() ? item.value().get<std::string>() : item.value().dump()) << "\n";
+    }
+    return flushOutput(error);
+}
+
+int run(const Options& options)
+{
+    if (options.m_listDevices)
+    {
+        printDevices();
+        return kExitGood;
+    }
+    std::string error;
+    if (!couldWrite(options.m_json, error)) return fail("drape_check", kExitFailed, error);
+    nlohmann::ordered_json answer;
+    int exitCode = kExitFailed;
+    if (!runCommand(options, answer, error, exitCode)) return fail("drape_check", exitCode, error);
+    return writeAnswer(options, answer, error) ? kExitGood : fail("drape_check", kExitFailed, error);
+}
+}  // namespace
+}  // namespace drape
+
+int main(int argc, char** argv)
+{
+    return drape::runProgram("drape_check", argc, argv, drape::parseOptions, drape::run);
+}

@@ -1,0 +1,90 @@
+#include "tools/drape_check/options.h"
+
+#include "tools/common/arguments.h"
+
+namespace drape
+{
+namespace
+{
+void addFile(CLI::App& command, const char* name, std::string& target, const char* what, bool needed = true)
+{
+    CLI::Option* option = command.add_option(name, target, what)->type_name("PATH");
+    if (needed) option->required();
+}
+
+void addMotionOptions(CLI::App& command, Options& options)
+{
+    command.add_option("--separation", options.m_separation, "features this near count as touching, m")
+        ->check(CLI::Validator(numberAbove(0, true, "0 or more"), ""));
+    command
+        .add_option("--tolerance", options.m_tolerance,
+                    "of the distance, relative to the pair's extent: the search ends there")
+        ->check(CLI::Validator(numberAbove(0, false, "more than 0"), ""));
+    command
+        .add_option("--time-tolerance", options.m_timeTolerance,
+                    "of the step: the time of impact is searched to this; 1: whether, not when")
+        ->check(CLI::Validator(numberAbove(0, false, "more than 0"), ""));
+}
+
+void addCcd(CLI::App& app, Options& options)
+{
+    CLI::App& command = *app.add_subcommand("ccd", "do moving vertices, faces and edges touch? Records with answers");
+    addFile(command, "FILE", options.m_first, "records of 104 bytes: 24 floats, kind, answer");
+    addMotionOptions(command, options);
+    command.callback([&options] { options.m_command = Command::Ccd; });
+}
+
+void addTriangles(CLI::App& app, Options& options, std::string& mode)
+{
+    CLI::App& command = *app.add_subcommand("triangles", "do triangles intersect? Records with answers");
+    addFile(command, "FILE", options.m_first, "records of 76 bytes: 18 floats, answer");
+    command
+        .add_option("--mode", mode,
+                    "fast: never misses, reports a few that nearly touch; exact; moller: the thesis's, for comparison")
+        ->check(CLI::IsMember({"fast", "exact", "moller"}));
+    command.callback([&options] { options.m_command = Command::Triangles; });
+}
+
+void addMeshes(CLI::App& app, Options& options)
+{
+    CLI::App& pairs = *app.add_subcommand("pairs", "which triangles of two meshes, or of one, are near or intersect?");
+    addFile(pairs, "A", options.m_first, "mesh file");
+    addFile(pairs, "B", options.m_second, "mesh file; without it A with itself, less pairs that share a vertex", false);
+    pairs.add_option("--thickness", options.m_thickness, "near means no farther than this, m")
+        ->check(CLI::Validator(numberAbove(0, true, "0 or more"), ""));
+    pairs.callback([&options] { options.m_command = Command::Pairs; });
+
+    CLI::App& step = *app.add_subcommand("step", "which features of a moving mesh touch one another during a step?");
+    addFile(step, "A0", options.m_first, "mesh file: the start");
+    addFile(step, "A1", options.m_second, "mesh file: the end, with the same vertices and triangles");
+    addMotionOptions(step, options);
+    step.callback([&options] { options.m_command = Command::Step; });
+}
+}  // namespace
+
+bool parseOptions(int argc, const char* const* argv, Options& options, int& exitCode)
+{
+    CLI::App app("Answers collision questions with Drape and says how often it was wrong.", "drape_check");
+    std::string mode = "fast";
+    options.m_tolerance = defaultCcdSettings().m_tolerance;
+    app.option_defaults()->always_capture_default();
+    app.fallthrough();
+    app.add_option("--backend", options.m_backend, "auto: a GPU, else any OpenCL device, else the host")
+        ->check(CLI::IsMember({"auto", "opencl", "host"}));
+    app.add_option("--device", options.m_device, "part of an OpenCL device's or platform's name")->type_name("TEXT");
+    app.add_option("--json", options.m_json, "write the answer; - is standard output")->type_name("FILE");
+    app.add_flag("--list-devices", options.m_listDevices, "list the OpenCL devices and leave");
+    app.add_flag("--quiet", options.m_quiet, "print nothing");
+    addCcd(app, options);
+    addTriangles(app, options, mode);
+    addMeshes(app, options);
+    app.require_subcommand(0, 1);
+    const auto conflict = [&]() -> std::string
+    { return options.m_listDevices || !app.get_subcommands().empty() ? "" : "a command is needed; see --help"; };
+    if (!parseArguments(app, argc, argv, conflict, exitCode)) return false;
+    options.m_test = mode == "exact"    ? TriangleTest::Exact
+                     : mode == "moller" ? TriangleTest::Moller
+                                        : TriangleTest::Certified;
+    return true;
+}
+}  // namespace drape
