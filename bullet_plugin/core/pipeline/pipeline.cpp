@@ -144,7 +144,7 @@ std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& erro
     self.m_report.m_device.m_name = "host";
     self.m_report.m_onHost = choice.m_onHost;
     if (choice.m_onHost) return pipeline;
-    std::unique_ptr<Device> device = Device::open(choice.m_index, error);
+    std::unique_ptr<Device> device = Device::open(choice.m_index, error, settings.m_profileKernels);
     if (!device) return nullptr;
     self.m_report.m_device = device->info();
     self.m_deviceBackend.reset(new DeviceBackend(std::move(device), settings));
@@ -263,6 +263,13 @@ const std::vector<Contact>& Pipeline::finish()
 const StepStatistics& Pipeline::statistics() const
 {
     return m_implementation->m_statistics;
+}
+std::vector<KernelTime> Pipeline::takeKernelTimes()
+{
+    Device* device = m_implementation->device();
+    if (!device || !device->profiler()) return {};
+    device->wait();
+    return device->profiler()->take();
 }
 const Error& Pipeline::lastError() const
 {

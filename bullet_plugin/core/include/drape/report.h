@@ -38,6 +38,14 @@ enum StepStatusBits : std::uint32_t
     kStepContactLimit = 1u << 2   // a buffer reached what the device can hold; the step ran on the host
 };
 
+// One kernel launch as the device timed it; only with Settings::m_profileKernels.
+struct KernelTime
+{
+    std::string m_kernel;
+    double m_startMs = 0;  // since the first launch of the same list began
+    double m_ms = 0;       // from its start to its end
+};
+
 struct StepStatistics
 {
     std::uint32_t m_status = kStepGood;

@@ -28,6 +28,9 @@ struct Settings
     // Also list the cloth and obstacle triangles that intersect at the step's start. Costs a kernel.
     bool m_reportIntersections = false;
 
+    // Have the device time every kernel launch, for Pipeline::takeKernelTimes(). Costs some microseconds a launch.
+    bool m_profileKernels = false;
+
     // Folder of compiled kernels. Empty: $XDG_CACHE_HOME/drape or ~/.cache/drape. "none": do not cache.
     std::string m_cacheFolder;
 };
