@@ -14,6 +14,7 @@
 #include "drape/error.h"
 #include "drape/report.h"
 #include "drape/settings.h"
+#include "memory_ledger.h"
 #include "profiler.h"
 
 namespace drape
@@ -36,6 +37,7 @@ public:
     cl::Context& context() { return m_context; }
     cl::CommandQueue& queue() { return m_queue; }
     cl::Device& handle() { return m_device; }
+    MemoryLedger& memory() { return m_memory; }
     // Null unless the device was opened profiled.
     Profiler* profiler() { return m_profiler.get(); }
 
@@ -57,6 +59,7 @@ private:
     std::size_t m_maxAllocationBytes = 0;
     std::size_t m_computeUnits = 1;
     std::unique_ptr<Profiler> m_profiler;
+    MemoryLedger m_memory;
     Error m_error;
 };
 

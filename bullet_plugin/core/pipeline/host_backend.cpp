@@ -1,10 +1,26 @@
 #include "host_backend.h"
 
+#include <chrono>
+
 #include "bullet_plugin/core/broad_phase/broad_phase.h"
 #include "bullet_plugin/core/bvh/refit.h"
 
 namespace drape
 {
+namespace
+{
+using Clock = std::chrono::steady_clock;
+
+// Milliseconds since `from`, which becomes now.
+double lap(Clock::time_point& from)
+{
+    const Clock::time_point now = Clock::now();
+    const double ms = std::chrono::duration<double, std::milli>(now - from).count();
+    from = now;
+    return ms;
+}
+}  // namespace
+
 void HostBackend::update(const Scene& scene)
 {
     if (m_clothRevision != scene.m_cloths.revision())
@@ -35,12 +51,15 @@ void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings
     const MeshPool& cloths = scene.m_cloths;
     const MeshPool& obstacles = scene.m_obstacles;
     result = StepResult();
+    Clock::time_point stage = Clock::now();
     refitOnHost(m_clothNodes, scene.m_clothLayout, cloths.order(), cloths.triangles(), scene.m_clothStart.data(),
                 scene.m_clothEnd.data(), pairs.m_clothRadius, result.m_invalidNodes);
+    result.m_refitMs = lap(stage);
     broadPhaseOnHost({m_clothNodes, scene.m_clothLayout, cloths.order(), cloths.triangles()},
                      {m_obstacleNodes, scene.m_obstacleLayout, obstacles.order(), obstacles.triangles()},
                      pairs.m_thickness, obstacles.meshCount(), m_candidates);
     result.m_candidates = m_candidates.size();
+    result.m_broadMs = lap(stage);
     const ClothView cloth = {scene.m_clothStart.data(),           scene.m_clothEnd.data(),
                              cloths.triangles().data(),           cloths.edges().data(),
                              std::uint32_t(cloths.vertexCount()), std::uint32_t(cloths.triangles().size())};
@@ -48,6 +67,7 @@ void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings
                                    scene.m_vertexCones.data(), scene.m_edgeCones.data()};
     const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacles.meshCount(), 1.0f + settings.m_activation};
     narrowPhaseOnHost(m_candidates, cloth, obstacle, narrow, result.m_contacts);
+    result.m_narrowMs = lap(stage);
     if (settings.m_reportIntersections) intersectOnHost(m_candidates, cloth, obstacle, result.m_intersections);
     result.m_intersectionCount = result.m_intersections.size();
 }

@@ -255,6 +255,9 @@ const std::vector<Contact>& Pipeline::finish()
     statistics.m_intersections = self.m_result.m_intersectionCount;
     statistics.m_invalidNodes = self.m_result.m_invalidNodes;
     statistics.m_retries = self.m_result.m_retries;
+    statistics.m_refitMs = self.m_result.m_refitMs;
+    statistics.m_broadMs = self.m_result.m_broadMs;
+    statistics.m_narrowMs = self.m_result.m_narrowMs;
     if (statistics.m_invalidNodes > 0) statistics.m_status |= kStepInvalidNodes;
     statistics.m_waitMs = millisecondsSince(start);
     return self.m_result.m_contacts;
@@ -270,6 +273,11 @@ std::vector<KernelTime> Pipeline::takeKernelTimes()
     if (!device || !device->profiler()) return {};
     device->wait();
     return device->profiler()->take();
+}
+std::vector<MemoryUse> Pipeline::deviceMemory() const
+{
+    Device* device = m_implementation->device();
+    return device ? device->memory().list() : std::vector<MemoryUse>();
 }
 const Error& Pipeline::lastError() const
 {
