@@ -4,14 +4,9 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
 #include "benchmarks/bench_step/peer_scene.h"
-#include "benchmarks/bench_step/step_method.h"
+#include "benchmarks/bench_step/peer_methods.h"
+#include "benchmarks/support/embree.h"
 #include "benchmarks/support/result_hash.h"
 #include "benchmarks/support/samples.h"
 

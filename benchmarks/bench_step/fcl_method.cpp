@@ -2,47 +2,31 @@
 #include <cmath>
 #include <limits>
 
-#include <fcl/math/bv/utility.h>
-#include <fcl/geometry/bvh/BVH_model.h>
+#include "benchmarks/support/fcl_model.h"
+
 #include <fcl/narrowphase/detail/traversal/collision/mesh_collision_traversal_node.h>
 #include <fcl/narrowphase/detail/traversal/traversal_recurse.h>
 
 #include "benchmarks/bench_step/peer_scene.h"
-#include "benchmarks/bench_step/step_method.h"
+#include "benchmarks/bench_step/peer_methods.h"
 #include "benchmarks/support/samples.h"
 
 namespace drape::bench
 {
 namespace
 {
-using Volume = fcl::KDOP<float, 18>;
-using Model = fcl::BVHModel<Volume>;
-using Vector = fcl::Vector3<float>;
-
-std::vector<Vector> vectors(const float* positions, std::size_t count)
+void build(FclModel& model, const std::vector<Triangle>& triangles, const float* positions, std::size_t vertices)
 {
-    std::vector<Vector> result(count);
-    for (std::size_t i = 0; i < count; ++i)
-        result[i] = Vector(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
-    return result;
-}
-
-void build(Model& model, const std::vector<Triangle>& triangles, const float* positions, std::size_t count)
-{
-    std::vector<fcl::Triangle> indices;
-    for (const Triangle& triangle : triangles)
-        indices.emplace_back(triangle.m_vertices[0], triangle.m_vertices[1], triangle.m_vertices[2]);
-    model.beginModel(static_cast<int>(indices.size()), static_cast<int>(count));
-    model.addSubModel(vectors(positions, count), indices);
-    model.endModel();
+    buildFclModel(
+        model, triangles.size(), [&](std::size_t t) { return triangles[t].m_vertices; }, positions, vertices);
 }
 
 // Grows every volume of a tree: the same as growing the triangles first.
-void grow(Model& model, float reach)
+void grow(FclModel& model, float reach)
 {
     for (int i = 0; i < model.getNumBVs(); ++i)
     {
-        Volume& volume = model.getBV(i).bv;
+        FclVolume& volume = model.getBV(i).bv;
         for (std::size_t d = 0; d < 9; ++d)
         {
             const float by = d < 3 ? reach : reach * 1.4142137f;  // √2 rounded up: the diagonal directions' length
@@ -53,7 +37,7 @@ void grow(Model& model, float reach)
 }
 
 // Takes the pairs whose volumes overlap instead of testing the triangles.
-class PairNode : public fcl::detail::MeshCollisionTraversalNode<Volume>
+class PairNode : public fcl::detail::MeshCollisionTraversalNode<FclVolume>
 {
 public:
     void leafTesting(int a, int b) const override
@@ -84,20 +68,17 @@ public:
     {
         StepOutcome outcome;
         const Clock::time_point begin = Clock::now();
-        const std::vector<Vector> now = vectors(end, m_nodes);
         if (m_grown)
         {
             // The update keeps the nodes of the step before, at which this one starts: its volumes hold the motion.
             m_cloth.beginUpdateModel();
-            m_cloth.updateSubModel(now);
+            m_cloth.updateSubModel(fclVectors(end, m_nodes));
             m_cloth.endUpdateModel(true, true);
             grow(m_cloth, m_reach);
         }
         else
         {
-            m_cloth.beginReplaceModel();
-            m_cloth.replaceSubModel(now);
-            m_cloth.endReplaceModel(true, true);
+            refitFclModel(m_cloth, end, m_nodes);
         }
         const double refitMs = millisecondsSince(begin);
         m_grown ? collectPairs(outcome) : intersect(outcome);
@@ -121,7 +102,7 @@ private:
         fcl::CollisionRequest<float> request;
         request.num_max_contacts = std::numeric_limits<std::size_t>::max();
         fcl::CollisionResult<float> result;
-        fcl::detail::MeshCollisionTraversalNode<Volume> node;
+        fcl::detail::MeshCollisionTraversalNode<FclVolume> node;
         traverse(node, request, result);
         outcome.m_candidates = static_cast<std::size_t>(node.num_leaf_tests);
         outcome.m_contacts = result.numContacts();
@@ -135,7 +116,7 @@ private:
         outcome.m_candidates = node.m_pairs.size();
     }
 
-    void traverse(fcl::detail::MeshCollisionTraversalNode<Volume>& node, const fcl::CollisionRequest<float>& request,
+    void traverse(fcl::detail::MeshCollisionTraversalNode<FclVolume>& node, const fcl::CollisionRequest<float>& request,
                   fcl::CollisionResult<float>& result)
     {
         fcl::Transform3<float> still = fcl::Transform3<float>::Identity(), stillToo = still;
@@ -148,7 +129,7 @@ private:
     bool m_grown;
     float m_reach;
     std::size_t m_nodes = 0;
-    Model m_cloth, m_obstacle;
+    FclModel m_cloth, m_obstacle;
     double m_buildMs = 0;
 };
 }  // namespace

@@ -10,6 +10,9 @@ namespace drape::bench
 {
 namespace
 {
+constexpr int kWarmUpSteps = 2;  // buffers have grown to what the scene needs then, and the first one built the trees
+const std::string kNoHash = "none yet";
+
 void addStages(MethodRun& run, const StepOutcome& outcome)
 {
     for (const StageTime& stage : outcome.m_stages)
@@ -50,25 +53,27 @@ Row inputRow(const StepScene& scene)
 MethodRun runMethod(StepMethod& method, const StepScene& scene, const MeasureSettings& settings)
 {
     MethodRun run;
-    std::vector<std::string> hashes;
-    for (int step = 0; step < scene.period(); ++step)
+    const int period = scene.period();
+    std::vector<std::string> hashes(static_cast<std::size_t>(period), kNoHash);
+    Clock::time_point begin;
+    for (int step = 0; step < kWarmUpSteps + settings.m_repeats * period; ++step)
     {
+        if (step == kWarmUpSteps) begin = Clock::now();
+        if (step >= kWarmUpSteps + period && millisecondsSince(begin) > 1000 * settings.m_seconds) break;
         const StepOutcome outcome = method.step(scene.start(step), scene.end(step));
         if (step == 0) run.m_firstMs = outcome.m_stages.front().m_ms;
-        hashes.push_back(outcome.m_hash);
-        run.m_candidates += static_cast<double>(outcome.m_candidates) / scene.period();
-        run.m_contacts += static_cast<double>(outcome.m_contacts) / scene.period();
+        if (step >= kWarmUpSteps) addStages(run, outcome);
+        std::string& hash = hashes[static_cast<std::size_t>(step % period)];
+        if (hash != kNoHash)
+        {
+            if (hash != outcome.m_hash) run.m_hash = "changed in step " + std::to_string(step);
+            continue;
+        }
+        hash = outcome.m_hash;
+        run.m_candidates += static_cast<double>(outcome.m_candidates) / period;
+        run.m_contacts += static_cast<double>(outcome.m_contacts) / period;
     }
-    run.m_hash = periodHash(hashes);
-    const Clock::time_point begin = Clock::now();
-    for (int step = 0; step < settings.m_repeats * scene.period(); ++step)
-    {
-        if (step >= scene.period() && millisecondsSince(begin) > 1000 * settings.m_seconds) break;
-        const StepOutcome outcome = method.step(scene.start(step), scene.end(step));
-        addStages(run, outcome);
-        if (outcome.m_hash != hashes[static_cast<std::size_t>(step % scene.period())])
-            run.m_hash = "changed in step " + std::to_string(scene.period() + step);
-    }
+    if (run.m_hash.empty()) run.m_hash = periodHash(hashes);
     method.describe(run.m_description);
     return run;
 }

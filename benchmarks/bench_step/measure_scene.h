@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "benchmarks/bench_step/step_method.h"
+#include "benchmarks/bench_step/peer_methods.h"
 #include "benchmarks/support/table.h"
 
 namespace drape::bench

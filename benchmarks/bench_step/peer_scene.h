@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "benchmarks/bench_step/step_scene.h"
+#include "benchmarks/support/step_scene.h"
 #include "bullet_plugin/core/mesh/mesh_pool.h"
 #include "bullet_plugin/core/narrow_phase/narrow_phase.h"
 

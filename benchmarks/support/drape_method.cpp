@@ -1,7 +1,8 @@
 // Drape's pipeline as a caller sees it.
 #include <algorithm>
+#include <map>
 
-#include "benchmarks/bench_step/step_method.h"
+#include "benchmarks/support/step_method.h"
 #include "benchmarks/support/machine.h"
 #include "benchmarks/support/result_hash.h"
 #include "benchmarks/support/samples.h"
@@ -11,11 +12,23 @@ namespace drape::bench
 {
 namespace
 {
+// Kernels are called stageAction; those of the broad phase have many names.
+std::string stageOfKernel(const std::string& kernel)
+{
+    const std::pair<const char*, const char*> stages[] = {
+        {"refit", "refit"}, {"narrowPhase", "narrow"}, {"compaction", "order"}};
+    for (const auto& stage : stages)
+    {
+        if (kernel.rfind(stage.first, 0) == 0) return stage.second;
+    }
+    return "broad";
+}
+
 class DrapeMethod : public StepMethod
 {
 public:
-    DrapeMethod(std::unique_ptr<Pipeline> pipeline, const StepScene& scene)
-        : m_pipeline(std::move(pipeline)), m_thickness(scene.m_thickness)
+    DrapeMethod(std::unique_ptr<Pipeline> pipeline, const StepScene& scene, bool profiled)
+        : m_pipeline(std::move(pipeline)), m_thickness(scene.m_thickness), m_profiled(profiled)
     {
         const Clock::time_point start = Clock::now();
         m_obstacle = m_pipeline->addObstacle(describeMesh(scene.m_obstacle));
@@ -43,8 +56,7 @@ public:
         const std::vector<Contact>& contacts = m_pipeline->finish();
         outcome.m_stages.push_back({"step", millisecondsSince(begin)});
         const StepStatistics& statistics = m_pipeline->statistics();
-        outcome.m_stages.push_back({"submit", statistics.m_uploadMs});
-        outcome.m_stages.push_back({"wait", statistics.m_waitMs});
+        addStages(statistics, outcome);
         outcome.m_candidates = statistics.m_candidates;
         outcome.m_contacts = contacts.size();
         outcome.m_hash = hashText(hashOf(contacts));
@@ -63,13 +75,46 @@ public:
         row["kernels_ms"] = report.m_buildMs;
     }
 
+    std::vector<Row> extraRows() const override
+    {
+        std::vector<Row> rows;
+        if (m_profiled) return rows;  // the same as without
+        for (const MemoryUse& use : m_pipeline->deviceMemory())
+            rows.push_back({{"stage", "memory: " + use.m_name}, {"bytes", use.m_bytes}});
+        return rows;
+    }
+
 private:
+    void addStages(const StepStatistics& statistics, StepOutcome& outcome)
+    {
+        if (m_pipeline->deviceReport().m_onHost)
+        {
+            outcome.m_stages.push_back({"refit", statistics.m_refitMs});
+            outcome.m_stages.push_back({"broad", statistics.m_broadMs});
+            outcome.m_stages.push_back({"narrow", statistics.m_narrowMs});
+            return;
+        }
+        outcome.m_stages.push_back({"submit", statistics.m_uploadMs});
+        outcome.m_stages.push_back({"wait", statistics.m_waitMs});
+        // Profiled: each kernel's launches together, each stage's kernels, and all.
+        std::map<std::string, double> kernels;
+        for (const KernelTime& launch : m_pipeline->takeKernelTimes())
+        {
+            kernels["kernel: " + launch.m_kernel] += launch.m_ms;
+            kernels[stageOfKernel(launch.m_kernel)] += launch.m_ms;
+            kernels["kernels"] += launch.m_ms;
+        }
+        for (const auto& kernel : kernels)
+            outcome.m_stages.push_back({kernel.first, kernel.second});
+    }
+
     std::unique_ptr<Pipeline> m_pipeline;
     MeshId m_obstacle = kNoMesh;
     std::vector<MeshId> m_cloths;
     std::vector<std::size_t> m_floats;
     float m_thickness;
     double m_prepareMs = 0;
+    bool m_profiled;
 };
 }  // namespace
 
@@ -82,7 +127,7 @@ std::unique_ptr<StepMethod> makeDrapeMethod(const StepScene& scene, const Settin
         error = problem.text();
         return nullptr;
     }
-    return std::make_unique<DrapeMethod>(std::move(pipeline), scene);
+    return std::make_unique<DrapeMethod>(std::move(pipeline), scene, settings.m_profileKernels);
 }
 
 float contactReach(const StepScene& scene)

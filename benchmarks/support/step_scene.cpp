@@ -1,4 +1,4 @@
-#include "benchmarks/bench_step/step_scene.h"
+#include "benchmarks/support/step_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -55,9 +55,10 @@ std::vector<SceneSpec> makeSpecs()
 }
 
 // Steps until the motion repeats. Large scenes repeat sooner: their host reference takes seconds a step.
-int periodOf(const SceneSpec& spec)
+int periodOf(const SceneSpec& spec, std::size_t obstacleTriangles)
 {
     if (spec.m_quick) return 3;
+    if (spec.clothTriangles() > 40000 && obstacleTriangles > 500000) return 4;
     return spec.clothTriangles() <= 40000 ? 12 : spec.clothTriangles() <= 300000 ? 8 : 4;
 }
 
@@ -102,7 +103,7 @@ StepScene makeStepScene(const SceneSpec& spec, const TriangleMesh& obstacle)
         scene.m_cloths.push_back(drapeCloth(field, next));
         rest.insert(rest.end(), scene.m_cloths.back().m_positions.begin(), scene.m_cloths.back().m_positions.end());
     }
-    const ClothMotion motion = {periodOf(spec), kWay * scene.m_thickness};
+    const ClothMotion motion = {periodOf(spec, obstacle.triangleCount()), kWay * scene.m_thickness};
     for (int step = 0; step < motion.m_period; ++step)
     {
         scene.m_frames.emplace_back(rest.size());

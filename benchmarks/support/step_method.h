@@ -2,12 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "benchmarks/bench_step/step_scene.h"
+#include "benchmarks/support/step_scene.h"
 #include "benchmarks/support/table.h"
 #include "drape/settings.h"
 
@@ -42,25 +41,8 @@ public:
     virtual std::vector<Row> extraRows() const { return {}; }
 };
 
-// A method by the name that rows carry. m_make returns null with one line in `error` when it cannot run here.
-struct MethodEntry
-{
-    std::string m_name;
-    std::function<std::unique_ptr<StepMethod>(const StepScene& scene, std::string& error)> m_make;
-};
-
 // The pipeline, host to host. Its contacts' hash is the reference where the settings ask for the host.
 std::unique_ptr<StepMethod> makeDrapeMethod(const StepScene& scene, const Settings& settings, std::string& error);
-
-// Embree: user geometry with a box per triangle over the step's motion, grown by `reach` m, refitted and collided.
-// With contacts: followed by Drape's host narrow phase over its candidates, on the same threads. reach must then be
-// contactReach().
-std::unique_ptr<StepMethod> makeEmbreeMethod(const StepScene& scene, int threads, float reach, bool contacts,
-                                             std::string& error);
-
-// FCL: 18-DOP trees in float, refitted and collided by one thread. grown: volumes over the step's motion, grown by
-// contactReach(), pairs of triangles out; else as FCL does it: the triangles that intersect at the step's end.
-std::unique_ptr<StepMethod> makeFclMethod(const StepScene& scene, bool grown, std::string& error);
 
 // How far Drape looks with default settings: thickness and activation.
 float contactReach(const StepScene& scene);
