@@ -142,7 +142,7 @@ def built_in_line(folder, rows):
 
 def pictures(folder):
     names = sorted(name for name in os.listdir(folder) if name.endswith(".png"))
-    relative = os.path.relpath(folder, HERE)
+    relative = "results/" + os.path.basename(folder)
     return "".join(f"![{name[:-4]}]({relative}/{name})\n" for name in names) + "\n" if names else ""
 
 
@@ -161,7 +161,7 @@ def machine_text(folder):
 
 def main():
     readme = sys.argv[1] if len(sys.argv) > 1 else os.path.join(HERE, "README.md")
-    results = os.path.join(HERE, "results")
+    results = os.path.join(os.path.dirname(os.path.abspath(readme)), "results")
     folders = sorted(entry.path for entry in os.scandir(results) if entry.is_dir())
     folders = [folder for folder in folders
                if any(os.path.exists(os.path.join(folder, name + ".json")) for name in ("bench_step", "study"))]

@@ -32,6 +32,15 @@ const std::vector<Part>& studyParts();
 // Peers' construction and refit per model: rows of the parts "construction" and "refit".
 void studyPeerTrees(const StudyOptions& options, Table& table);
 
+// The tree builders per model, compaction's share and time per level: parts "construction", "compaction" and "levels".
+void studyConstruction(const StudyOptions& options, Table& table);
+
+// Refits of one tree per model: parts "refit" and "refit_levels".
+void studyRefit(const StudyOptions& options, Table& table);
+
+// Cost, volume and visits of the builders' trees; takes the times from the rows of "construction".
+void studyQuality(const StudyOptions& options, Table& table);
+
 // Every traversal over a cloth's descent onto the bunny, step by step: figures 4.6, 4.8 and 4.9.
 void studyTraversals(const StudyOptions& options, Table& table);
 

@@ -93,7 +93,7 @@ class BenchStep(ProgramTest):
             self.assertTrue(mine, "no rows of " + name)
             self.assertTrue(all(row["valid"] in ("yes", "") for row in mine))
             self.assertTrue(any(row["valid"] == "yes" for row in mine))
-        self.assertTrue(any(row["stage"].startswith("kernel: refit") for row in rows))
+        self.assertTrue(any(row["stage"].startswith("kernel: narrowPhase") for row in rows))
         self.assertTrue(any(row["stage"] == "memory: cloth triangles" and int(row["bytes"]) > 0 for row in rows))
 
     def test_a_wrong_hash_voids_the_row(self):
@@ -121,6 +121,81 @@ class BenchStep(ProgramTest):
             result = run("bench_step", *arguments)
             self.assertEqual(result.returncode, 2, arguments)
             self.assertTrue(result.stderr)
+
+
+class Study(ProgramTest):
+    def test_every_part_has_rows(self):
+        rows = self.quick("study")
+        listed = run("study", "--list").stdout
+        self.assertIn("traversal: ", listed)
+        parts = {row["part"] for row in rows}
+        for part in ("construction", "refit", "traversal"):
+            self.assertIn(part, parts)
+        for row in rows:
+            self.assertNotEqual(row["valid"], "no")
+            for column in ("median_ms", "kernel_median_ms", "broad_ms"):
+                if row.get(column):
+                    self.assertGreaterEqual(float(row[column]), 0)
+        peers = {(row["variant"], row["threads"]) for row in rows if row["part"] == "construction"}
+        for peer in ("embree_morton", "embree_sah", "fcl"):
+            self.assertIn((peer, "1"), peers)
+
+    def test_every_traversal_finds_the_hosts_contacts(self):
+        rows = [row for row in self.quick("study", "--part", "traversal") if row["part"] == "traversal"]
+        host = {row["step"]: row for row in rows if row["variant"] == "host"}
+        self.assertTrue(host)
+        self.assertGreater(len({row["contacts"] for row in host.values()}), 1, "the cloth comes down")
+        for row in rows:
+            self.assertEqual(row["valid"], "yes")
+            self.assertEqual(row["hash"], host[row["step"]]["hash"])
+
+    def test_bad_input_is_refused(self):
+        self.assertEqual(run("study", "--part", "no_such_part").returncode, 2)
+
+
+class Reports(ProgramTest):
+    """Plots and tables of quick runs; void rows do not reach them."""
+
+    def script(self, name, *arguments):
+        path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "benchmarks", name)
+        result = subprocess.run([sys.executable, path, *arguments], capture_output=True, text=True, timeout=300)
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def results(self):
+        folder = self.path("results/machine")
+        os.makedirs(folder)
+        for program in ("bench_step", "study"):
+            self.quick(program)
+            for ending in ("csv", "json"):
+                os.rename(self.path("rows." + ending), f"{folder}/{program}.{ending}")
+        return folder
+
+    def test_plots_and_tables(self):
+        try:
+            import matplotlib  # noqa: F401
+        except ModuleNotFoundError:
+            self.skipTest("python3-matplotlib is not installed")
+        folder = self.results()
+        self.script("plot.py", folder)
+        pictures = [name for name in os.listdir(folder) if name.endswith(".png")]
+        self.assertIn("step_shares.png", pictures)
+        self.assertIn("study_construction.png", pictures)
+
+    def test_summary_replaces_what_is_between_the_markers(self):
+        self.results()
+        readme = self.path("README.md")
+        with open(readme, "w") as file:
+            file.write("before\n<!-- results: made by summary.py -->\nold\n<!-- end of results -->\nafter\n")
+        self.script("summary.py", readme)
+        with open(readme) as file:
+            text = file.read()
+        self.assertTrue(text.startswith("before\n") and text.endswith("after\n"))
+        self.assertNotIn("old", text)
+        for words in ("### machine", "fcl, 1 thread", "thesis: Quadro"):
+            self.assertIn(words, text)
+        self.script("summary.py", readme)
+        with open(readme) as file:
+            self.assertEqual(file.read(), text, "a second run changes nothing")
 
 
 if __name__ == "__main__":
