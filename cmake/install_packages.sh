@@ -14,6 +14,8 @@ packages=(
   pocl-opencl-icd
   # tools: arguments, meshes, JSON, PNG, rays; exact arithmetic for the independent check
   libcli11-dev libassimp-dev nlohmann-json3-dev libpng-dev libembree-dev libgmp-dev
+  # benchmarks: peers, plots
+  libfcl-dev libtbb-dev python3-matplotlib
   # tests; fuzzing
   libgtest-dev clang libclang-rt-14-dev
   # data: the bunny; unpacking

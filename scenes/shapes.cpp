@@ -3,30 +3,13 @@
 #include <cmath>
 
 #include "scenes/mesh_builder.h"
+#include "scenes/random.h"
 
 namespace drape
 {
 namespace
 {
 constexpr double kPi = 3.14159265358979323846;
-
-// xorshift32 (Marsaglia 2003, triple 13-17-5) after a multiplicative mix, so that small seeds differ at once.
-class Random
-{
-public:
-    explicit Random(std::uint32_t seed) : m_state((seed * 2654435761u) ^ 0x5bd1e995u) { m_state += m_state == 0; }
-    double unit()
-    {
-        m_state ^= m_state << 13;
-        m_state ^= m_state >> 17;
-        m_state ^= m_state << 5;
-        return m_state * (1.0 / 4294967296.0);
-    }
-    double within(double low, double high) { return low + (high - low) * unit(); }
-
-private:
-    std::uint32_t m_state;
-};
 
 void spreadOverSphere(TriangleMesh& mesh, double radius)
 {

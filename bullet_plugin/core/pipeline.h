@@ -81,6 +81,11 @@ public:
     const std::vector<Contact>& finish();
     // With statistics of that step (upload and wait times, counts, status; the adapter adds its own).
     const StepStatistics& statistics() const;
+    // The kernel launches since the last call, with Settings::m_profileKernels; empty on the host. Waits for the
+    // device.
+    std::vector<KernelTime> takeKernelTimes();
+    // What the device's buffers hold, by name; empty on the host.
+    std::vector<MemoryUse> deviceMemory() const;
     // Message of the device's failure when the status says so.
     const Error& lastError() const;
 

@@ -2,21 +2,10 @@
 
 #include <algorithm>
 
+#include "scenes/describe_mesh.h"
+
 namespace drape::test
 {
-namespace
-{
-MeshDescription describeMesh(const TriangleMesh& mesh)
-{
-    MeshDescription description;
-    description.m_triangles = mesh.m_triangles.data();
-    description.m_triangleCount = mesh.triangleCount();
-    description.m_positions = mesh.m_positions.data();
-    description.m_vertexCount = mesh.vertexCount();
-    return description;
-}
-}  // namespace
-
 MeshId addCloth(Pipeline& pipeline, const TriangleMesh& mesh)
 {
     return pipeline.addCloth(describeMesh(mesh));

@@ -64,9 +64,12 @@ public:
 private:
     Kernel m_cull, m_packFaces, m_packVertices, m_packEdges, m_volumes, m_widen;
     Patches m_layout;
-    Buffer<Patch> m_patches;
-    Buffer<cl_uint> m_faceOwners, m_vertexOwners, m_edgeOwners, m_vertexIds, m_edgeIds, m_levels;
-    Buffer<FeatureTest> m_tests;
-    Buffer<float> m_faces, m_vertices, m_edges, m_sizes, m_wideNodes;
+    Buffer<Patch> m_patches{"obstacle patches"};
+    Buffer<cl_uint> m_faceOwners{"obstacle patches"}, m_vertexOwners{"obstacle patches"};
+    Buffer<cl_uint> m_edgeOwners{"obstacle patches"}, m_vertexIds{"obstacle patches"}, m_edgeIds{"obstacle patches"};
+    Buffer<cl_uint> m_levels{"obstacle wide nodes"};
+    Buffer<FeatureTest> m_tests{"step candidates"};
+    Buffer<float> m_faces{"obstacle features"}, m_vertices{"obstacle features"}, m_edges{"obstacle features"};
+    Buffer<float> m_sizes{"obstacle patches"}, m_wideNodes{"obstacle wide nodes"};
 };
 }  // namespace drape

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <cstring>
+#include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "device.h"
@@ -13,6 +16,9 @@ template <typename T>
 class Buffer
 {
 public:
+    // The name is for reports of memory; buffers may share one.
+    explicit Buffer(std::string name = "other") : m_name(std::move(name)) {}
+
     std::size_t capacity() const { return m_capacity; }
     cl::Buffer& handle() { return m_buffer; }
 
@@ -25,6 +31,7 @@ public:
         m_buffer = cl::Buffer(device.context(), CL_MEM_READ_WRITE, wanted * sizeof(T), nullptr, &code);
         device.check(code, "clCreateBuffer", std::to_string(wanted * sizeof(T)) + " bytes");
         m_capacity = device.failed() ? 0 : wanted;
+        m_entry = device.memory().enter(m_name, m_capacity * sizeof(T));
         return true;
     }
 
@@ -56,7 +63,9 @@ public:
     }
 
 private:
+    std::string m_name;
     cl::Buffer m_buffer;
+    std::shared_ptr<const void> m_entry;
     std::size_t m_capacity = 0;
 };
 

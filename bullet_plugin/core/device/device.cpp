@@ -55,7 +55,7 @@ std::vector<DeviceInfo> listDevices()
     return infos;
 }
 
-std::unique_ptr<Device> Device::open(std::size_t index, Error& error)
+std::unique_ptr<Device> Device::open(std::size_t index, Error& error, bool profiled)
 {
     const std::vector<FoundDevice> found = findDevices();
     if (index >= found.size())
@@ -70,7 +70,9 @@ std::unique_ptr<Device> Device::open(std::size_t index, Error& error)
     device->m_context = cl::Context(device->m_device, nullptr, nullptr, nullptr, &code);
     if (device->check(code, "clCreateContext"))
     {
-        device->m_queue = cl::CommandQueue(device->m_context, device->m_device, 0, &code);
+        const cl_command_queue_properties properties = profiled ? CL_QUEUE_PROFILING_ENABLE : 0;
+        device->m_queue = cl::CommandQueue(device->m_context, device->m_device, properties, &code);
+        if (profiled) device->m_profiler.reset(new Profiler);
         device->check(code, "clCreateCommandQueue");
     }
     if (device->failed())

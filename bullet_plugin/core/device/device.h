@@ -14,6 +14,8 @@
 #include "drape/error.h"
 #include "drape/report.h"
 #include "drape/settings.h"
+#include "memory_ledger.h"
+#include "profiler.h"
 
 namespace drape
 {
@@ -21,7 +23,8 @@ class Device
 {
 public:
     // Opens the index-th device of listDevices(). Null, with error filled, when the context or queue cannot be made.
-    static std::unique_ptr<Device> open(std::size_t index, Error& error);
+    // profiled: the queue takes every launch's time, see profiler.h.
+    static std::unique_ptr<Device> open(std::size_t index, Error& error, bool profiled = false);
 
     const DeviceInfo& info() const { return m_info; }
     bool isGpu() const { return m_info.m_isGpu; }
@@ -34,6 +37,9 @@ public:
     cl::Context& context() { return m_context; }
     cl::CommandQueue& queue() { return m_queue; }
     cl::Device& handle() { return m_device; }
+    MemoryLedger& memory() { return m_memory; }
+    // Null unless the device was opened profiled.
+    Profiler* profiler() { return m_profiler.get(); }
 
     // Starts the work enqueued so far; does not wait.
     void flush();
@@ -52,6 +58,8 @@ private:
     cl::CommandQueue m_queue;
     std::size_t m_maxAllocationBytes = 0;
     std::size_t m_computeUnits = 1;
+    std::unique_ptr<Profiler> m_profiler;
+    MemoryLedger m_memory;
     Error m_error;
 };
 

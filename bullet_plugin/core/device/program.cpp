@@ -180,8 +180,9 @@ void Kernel::enqueue(Device& device, std::size_t globalSize, std::size_t localSi
 {
     if (device.failed()) return;
     const std::size_t rounded = (globalSize + localSize - 1) / localSize * localSize;
-    device.check(
-        device.queue().enqueueNDRangeKernel(m_kernel, cl::NullRange, cl::NDRange(rounded), cl::NDRange(localSize)),
-        "clEnqueueNDRangeKernel", m_name);
+    cl::Event* event = device.profiler() ? device.profiler()->add(m_name) : nullptr;
+    device.check(device.queue().enqueueNDRangeKernel(m_kernel, cl::NullRange, cl::NDRange(rounded),
+                                                     cl::NDRange(localSize), nullptr, event),
+                 "clEnqueueNDRangeKernel", m_name);
 }
 }  // namespace drape

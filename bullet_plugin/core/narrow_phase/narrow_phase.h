@@ -75,9 +75,10 @@ private:
     std::size_t listWidth(const Device& device) const;
 
     Kernel m_test, m_feature, m_intersect, m_count, m_scan, m_place, m_gather, m_write;
-    Buffer<Contact> m_hits, m_contacts;
+    Buffer<Contact> m_hits{"step hits"}, m_contacts{"step contacts"};
     Buffer<Candidate> m_intersections;
-    Buffer<cl_uint> m_slotCount, m_slotFirst, m_blockCount, m_members;
+    Buffer<cl_uint> m_slotCount{"cloth slots"}, m_slotFirst{"cloth slots"}, m_blockCount{"cloth slots"};
+    Buffer<cl_uint> m_members{"step hits"};
     std::size_t m_slots = 0;
 };
 }  // namespace drape

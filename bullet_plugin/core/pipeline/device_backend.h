@@ -38,6 +38,10 @@ private:
     // One side's data on the device.
     struct Side
     {
+        explicit Side(const std::string& side)
+            : m_nodes(side + " nodes"), m_order(side + " order"), m_triangles(side + " triangles")
+        {
+        }
         Buffer<BvhNode> m_nodes;
         Buffer<cl_uint> m_order;
         Buffer<Triangle> m_triangles;
@@ -73,11 +77,12 @@ private:
     PatchCullStage m_patchCull;
     NarrowPhaseStage m_narrowPhase;
 
-    Side m_cloth, m_obstacle;
-    Buffer<float> m_clothStart, m_clothEnd, m_obstaclePositions, m_obstacleSpreads, m_thickness;
-    Buffer<Edge> m_clothEdges;
-    Buffer<NormalCone> m_vertexCones, m_edgeCones;
-    Buffer<Candidate> m_candidates;
+    Side m_cloth{"cloth"}, m_obstacle{"obstacle"};
+    Buffer<float> m_clothStart{"cloth positions"}, m_clothEnd{"cloth positions"};
+    Buffer<float> m_obstaclePositions{"obstacle positions"}, m_obstacleSpreads{"obstacle positions"}, m_thickness;
+    Buffer<Edge> m_clothEdges{"cloth edges"};
+    Buffer<NormalCone> m_vertexCones{"obstacle cones"}, m_edgeCones{"obstacle cones"};
+    Buffer<Candidate> m_candidates{"step candidates"};
     Buffer<StepCounters> m_counters;
     Staging<StepCounters> m_countersRead;
     Staging<Contact> m_contactsRead;

@@ -1,10 +1,26 @@
 #include "host_backend.h"
 
+#include <chrono>
+
 #include "bullet_plugin/core/broad_phase/candidate_count.h"
 #include "bullet_plugin/core/bvh/refit.h"
 
 namespace drape
 {
+namespace
+{
+using Clock = std::chrono::steady_clock;
+
+// Milliseconds since `from`, which becomes now.
+double lap(Clock::time_point& from)
+{
+    const Clock::time_point now = Clock::now();
+    const double ms = std::chrono::duration<double, std::milli>(now - from).count();
+    from = now;
+    return ms;
+}
+}  // namespace
+
 void HostBackend::update(const Scene& scene)
 {
     if (m_clothRevision != scene.m_cloths.revision())
@@ -60,8 +76,10 @@ void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings
     const MeshPool& cloths = scene.m_cloths;
     const MeshPool& obstacles = scene.m_obstacles;
     result = StepResult();
+    Clock::time_point stage = Clock::now();
     const StepLimits limits(settings);
     result.m_invalidNodes = refitCloths(scene, pairs);
+    result.m_refitMs = lap(stage);
     if (!broadPhaseOnHost(clothSide(scene), obstacleSide(scene), pairs.m_thickness, obstacles.meshCount(), m_candidates,
                           limits.m_candidates))
     {
@@ -70,6 +88,7 @@ void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings
         return;
     }
     result.m_candidates = m_candidates.size();
+    result.m_broadMs = lap(stage);
     const ClothView cloth = {scene.m_clothStart.data(),           scene.m_clothEnd.data(),
                              cloths.triangles().data(),           cloths.edges().data(),
                              std::uint32_t(cloths.vertexCount()), std::uint32_t(cloths.triangles().size())};
@@ -78,6 +97,7 @@ void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings
     const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacles.meshCount(), 1.0f + settings.m_activation};
     const std::uint64_t contacts =
         narrowPhaseOnHost(m_candidates, cloth, obstacle, narrow, result.m_contacts, limits.m_contacts);
+    result.m_narrowMs = lap(stage);
     if (contacts > limits.m_contacts)
     {
         result.m_overLimit = true;

@@ -154,7 +154,7 @@ std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& erro
     self.m_report.m_device.m_name = "host";
     self.m_report.m_onHost = choice.m_onHost;
     if (choice.m_onHost) return pipeline;
-    std::unique_ptr<Device> device = Device::open(choice.m_index, error);
+    std::unique_ptr<Device> device = Device::open(choice.m_index, error, settings.m_profileKernels);
     if (!device) return nullptr;
     self.m_report.m_device = device->info();
     self.m_deviceBackend.reset(new DeviceBackend(std::move(device), settings));
@@ -265,6 +265,9 @@ const std::vector<Contact>& Pipeline::finish()
     statistics.m_intersections = self.m_result.m_intersectionCount;
     statistics.m_invalidNodes = self.m_result.m_invalidNodes;
     statistics.m_retries = self.m_result.m_retries;
+    statistics.m_refitMs = self.m_result.m_refitMs;
+    statistics.m_broadMs = self.m_result.m_broadMs;
+    statistics.m_narrowMs = self.m_result.m_narrowMs;
     if (statistics.m_invalidNodes > 0) statistics.m_status |= kStepInvalidNodes;
     statistics.m_waitMs = millisecondsSince(start);
     return self.m_result.m_contacts;
@@ -273,6 +276,18 @@ const std::vector<Contact>& Pipeline::finish()
 const StepStatistics& Pipeline::statistics() const
 {
     return m_implementation->m_statistics;
+}
+std::vector<KernelTime> Pipeline::takeKernelTimes()
+{
+    Device* device = m_implementation->device();
+    if (!device || !device->profiler()) return {};
+    device->wait();
+    return device->profiler()->take();
+}
+std::vector<MemoryUse> Pipeline::deviceMemory() const
+{
+    Device* device = m_implementation->device();
+    return device ? device->memory().list() : std::vector<MemoryUse>();
 }
 const Error& Pipeline::lastError() const
 {

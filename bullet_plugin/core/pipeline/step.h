@@ -74,5 +74,6 @@ struct StepResult
     std::size_t m_invalidNodes = 0;
     std::size_t m_retries = 0;
     std::size_t m_intersectionCount = 0;
+    double m_refitMs = 0, m_broadMs = 0, m_narrowMs = 0;  // on the host back end
 };
 }  // namespace drape

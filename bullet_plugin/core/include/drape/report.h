@@ -42,6 +42,21 @@ enum StepStatusBits : std::uint32_t
         1u << 4  // an obstacle reaches so far out that neighbouring floats are a thickness apart there
 };
 
+// One kernel launch as the device timed it; only with Settings::m_profileKernels.
+struct KernelTime
+{
+    std::string m_kernel;
+    double m_startMs = 0;  // since the first launch of the same list began
+    double m_ms = 0;       // from its start to its end
+};
+
+// Memory that a device holds for one purpose.
+struct MemoryUse
+{
+    std::string m_name;
+    std::size_t m_bytes = 0;
+};
+
 struct StepStatistics
 {
     std::uint32_t m_status = kStepGood;
@@ -57,6 +72,9 @@ struct StepStatistics
     bool m_skipped = false;           // nothing to do: no pair, or nothing that could touch
     double m_uploadMs = 0;            // mirroring nodes and enqueueing
     double m_waitMs = 0;              // waiting for the device (all the work, on the host back end)
+    double m_refitMs = 0;             // of the wait, on the host back end; a device's kernels are timed one by one
+    double m_broadMs = 0;             // likewise
+    double m_narrowMs = 0;            // likewise, with the canonical order
     double m_writeMs = 0;             // writing the contacts into Bullet
     double m_finishMs = 0;            // the closing contact pass after Bullet's solver
     double collisionMs() const { return m_uploadMs + m_waitMs + m_writeMs + m_finishMs; }

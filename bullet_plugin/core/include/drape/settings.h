@@ -36,6 +36,9 @@ struct Settings
     std::size_t m_candidateLimit = std::size_t(1) << 27;
     std::size_t m_contactLimit = std::size_t(1) << 24;
 
+    // Have the device time every kernel launch, for Pipeline::takeKernelTimes(). Costs some microseconds a launch.
+    bool m_profileKernels = false;
+
     // Folder of compiled kernels. Empty: $XDG_CACHE_HOME/drape or ~/.cache/drape. "none": do not cache.
     std::string m_cacheFolder;
 };

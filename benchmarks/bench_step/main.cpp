@@ -1,0 +1,171 @@
+// bench_step: whole collision steps, host to host, of Drape and its peers over scenes of many sizes.
+//
+// Every scene is run by Drape's host back end first: the hash of its contacts is what all others must have. A row whose
+// hash differs is void, and the program ends with 3.
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <map>
+
+#include "benchmarks/bench_step/measure_scene.h"
+#include "benchmarks/support/arguments.h"
+#include "benchmarks/support/models.h"
+#include "benchmarks/support/samples.h"
+
+namespace drape::bench
+{
+namespace
+{
+struct Options : CommonOptions
+{
+    std::vector<std::string> m_scenes, m_methods;
+    std::string m_reference;
+};
+
+bool contains(const std::vector<std::string>& list, const std::string& text)
+{
+    return std::find(list.begin(), list.end(), text) != list.end();
+}
+
+// The host first: it is the reference.
+std::vector<MethodEntry> allMethods(const Options& options)
+{
+    Settings host;
+    host.m_backend = Backend::Host;
+    const Settings device = options.settings();
+    std::vector<MethodEntry> entries;
+    const auto add = [&entries](const std::string& name, auto make) { entries.push_back({name, make}); };
+    const auto drape = [](Settings settings) {
+        return [settings](const StepScene& scene, std::string& error)
+        { return makeDrapeMethod(scene, settings, error); };
+    };
+    add("drape_host", drape(host));
+    if (device.m_backend != Backend::Host)
+    {
+        add("drape", drape(device));
+        Settings profiled = device;
+        profiled.m_profileKernels = true;  // apart, since it costs time of its own
+        add("drape_kernels", drape(profiled));
+    }
+    for (const int threads : {2, 1})
+    {
+        const std::string suffix = "_" + std::to_string(threads);
+        add("embree_contacts" + suffix, [threads](const StepScene& scene, std::string& error)
+            { return makeEmbreeMethod(scene, threads, contactReach(scene), true, error); });
+        add("embree_pairs" + suffix, [threads](const StepScene& scene, std::string& error)
+            { return makeEmbreeMethod(scene, threads, scene.m_thickness, false, error); });
+    }
+    add("fcl_pairs", [](const StepScene& scene, std::string& error) { return makeFclMethod(scene, true, error); });
+    add("fcl_collide", [](const StepScene& scene, std::string& error) { return makeFclMethod(scene, false, error); });
+    return entries;
+}
+
+// The reference stays even where it was not asked for: without it nothing is checked but against --reference.
+std::vector<MethodEntry> chosenMethods(const Options& options)
+{
+    std::vector<MethodEntry> entries = allMethods(options);
+    if (options.m_methods.empty()) return entries;
+    entries.erase(std::remove_if(entries.begin() + 1, entries.end(),
+                                 [&](const MethodEntry& entry) { return !contains(options.m_methods, entry.m_name); }),
+                  entries.end());
+    return entries;
+}
+
+std::vector<SceneSpec> chosenScenes(const Options& options)
+{
+    std::vector<SceneSpec> chosen;
+    for (const SceneSpec& spec : sceneSpecs())
+    {
+        const bool wanted = options.m_scenes.empty()
+                                ? spec.m_quick == options.m_quick
+                                : contains(options.m_scenes, spec.m_name) || contains(options.m_scenes, spec.m_sweep);
+        if (wanted) chosen.push_back(spec);
+    }
+    return chosen;
+}
+
+// Hash of each scene in the JSON of an earlier run. Throws what the JSON library throws.
+std::map<std::string, std::string> readReference(const std::string& path)
+{
+    std::map<std::string, std::string> hashes;
+    if (path.empty()) return hashes;
+    std::ifstream file(path);
+    const Row all = Row::parse(file);
+    for (const Row& row : all.at("rows"))
+    {
+        if (row.value("valid", "") == "yes") hashes[row.at("scene")] = row.at("hash");
+    }
+    return hashes;
+}
+
+void list(const Options& options)
+{
+    for (const SceneSpec& spec : sceneSpecs())
+        std::cout << "scene " << spec.m_name << (spec.m_sweep.empty() ? "" : ", sweep " + spec.m_sweep) << ": "
+                  << spec.m_cloths << " cloth(s), " << spec.clothTriangles() << " triangles, on " << spec.m_model
+                  << "\n";
+    for (const MethodEntry& entry : allMethods(options))
+        std::cout << "method " << entry.m_name << "\n";
+}
+
+int measure(const Options& options)
+{
+    const std::vector<SceneSpec> scenes = chosenScenes(options);
+    if (scenes.empty()) return fail("bench_step", kExitBadInput, "no such scene; --list names them");
+    const std::map<std::string, std::string> reference = readReference(options.m_reference);
+    const std::vector<MethodEntry> methods = chosenMethods(options);
+    const std::vector<std::string> folders = modelFolders(options.m_models);
+    const Clock::time_point begin = Clock::now();
+    Table table;
+    bool good = true;
+    for (const SceneSpec& spec : scenes)
+    {
+        TriangleMesh obstacle;
+        std::string error;
+        if (millisecondsSince(begin) > 60000 * options.m_minutes) error = "left out: the time is used up";
+        if (!error.empty() || !makeModel(spec.m_model, folders, obstacle, error))
+        {
+            std::cerr << "bench_step: " << spec.m_name << ": " << error << std::endl;
+            continue;
+        }
+        std::cerr << "bench_step: " << spec.m_name << std::endl;
+        MeasureSettings settings = {options.m_repeats, options.m_seconds, ""};
+        std::vector<MethodEntry> chosen = methods;
+        const auto known = reference.find(spec.m_name);
+        if (known != reference.end())
+        {
+            settings.m_expected = known->second;
+            // The host need not be run for the reference then, which takes minutes on the largest scenes.
+            if (!options.m_methods.empty() && !contains(options.m_methods, chosen.front().m_name))
+                chosen.erase(chosen.begin());
+        }
+        good = measureScene(makeStepScene(spec, obstacle), chosen, settings, table) && good;
+    }
+    const int exitCode = finishTable("bench_step", table, options);
+    if (table.rows().empty()) return fail("bench_step", kExitFailed, "nothing was measured");
+    return exitCode == kExitGood && !good ? kExitFailed : exitCode;
+}
+
+int run(int argc, char** argv)
+{
+    Options options;
+    CLI::App app("Measures whole collision steps of Drape and its peers.", "bench_step");
+    addCommonOptions(app, options);
+    app.add_option("--scene", options.m_scenes, "only these scenes or sweeps");
+    app.add_option("--method", options.m_methods, "only these methods, and the reference");
+    app.add_option("--reference", options.m_reference, "JSON of an earlier run: contacts must have its hashes")
+        ->type_name("FILE")
+        ->check(CLI::ExistingFile);
+    int exitCode = kExitGood;
+    if (!parseArguments(app, argc, argv, exitCode)) return exitCode;
+    if (!options.m_list) return measure(options);
+    list(options);
+    return kExitGood;
+}
+}  // namespace
+}  // namespace drape::bench
+
+int main(int argc, char** argv)
+{
+    return drape::bench::guarded("bench_step", [&] { return drape::bench::run(argc, argv); });
+}

@@ -1,0 +1,81 @@
+#include "benchmarks/bench_step/peer_scene.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+#include <tbb/task_arena.h>
+
+#include "bullet_plugin/core/mesh/normal_cones.h"
+#include "drape/settings.h"
+
+namespace drape::bench
+{
+namespace
+{
+// Shares a thread takes: some more than one each, so that uneven ones even out.
+constexpr std::size_t kSharesPerThread = 8;
+
+void addMesh(MeshPool& pool, const TriangleMesh& mesh, MeshId id)
+{
+    PooledMesh pooled;
+    pooled.m_id = id;
+    pooled.m_topology = buildTopology(mesh.m_triangles.data(), mesh.triangleCount(), mesh.vertexCount());
+    pool.add(std::move(pooled));
+}
+}  // namespace
+
+PeerScene::PeerScene(const StepScene& scene) : m_positions(scene.m_obstacle.m_positions)
+{
+    for (const TriangleMesh& cloth : scene.m_cloths)
+        addMesh(m_cloths, cloth, static_cast<MeshId>(m_cloths.meshCount()));
+    addMesh(m_obstacles, scene.m_obstacle, 0);
+    m_cloths.update();
+    m_obstacles.update();
+    computeNormalCones(m_obstacles.mesh(0).m_topology, m_positions.data(), m_vertexCones, m_edgeCones);
+    m_thickness.assign(m_cloths.meshCount(), scene.m_thickness);
+}
+
+void PeerScene::narrowPhase(const std::vector<Candidate>& candidates, const float* start, const float* end, int threads,
+                            std::vector<Contact>& contacts) const
+{
+    const ClothView cloth = {start,
+                             end,
+                             m_cloths.triangles().data(),
+                             m_cloths.edges().data(),
+                             static_cast<std::uint32_t>(m_cloths.vertexCount()),
+                             static_cast<std::uint32_t>(m_cloths.triangles().size())};
+    const ObstacleView obstacle = {m_positions.data(), m_obstacles.triangles().data(), m_vertexCones.data(),
+                                   m_edgeCones.data()};
+    const NarrowPhaseSettings settings = {m_thickness, 1, 1.0f + Settings().m_activation};
+    if (threads == 1)
+    {
+        narrowPhaseOnHost(candidates, cloth, obstacle, settings, contacts);
+        return;
+    }
+    const std::size_t shares = kSharesPerThread * static_cast<std::size_t>(threads);
+    std::vector<std::vector<Contact>> parts(shares);
+    tbb::task_arena arena(threads);
+    arena.execute(
+        [&]
+        {
+            tbb::parallel_for(std::size_t(0), shares,
+                              [&](std::size_t share)
+                              {
+                                  const std::size_t first = candidates.size() * share / shares;
+                                  const std::size_t last = candidates.size() * (share + 1) / shares;
+                                  const std::vector<Candidate> part(candidates.begin() + std::ptrdiff_t(first),
+                                                                    candidates.begin() + std::ptrdiff_t(last));
+                                  narrowPhaseOnHost(part, cloth, obstacle, settings, parts[share]);
+                              });
+            contacts.clear();
+            for (const std::vector<Contact>& part : parts)
+                contacts.insert(contacts.end(), part.begin(), part.end());
+            tbb::parallel_sort(
+                contacts.begin(), contacts.end(),
+                [](const Contact& a, const Contact& b)
+                { return std::tie(a.m_slot, a.m_obstacleFeature) < std::tie(b.m_slot, b.m_obstacleFeature); });
+        });
+}
+}  // namespace drape::bench

@@ -1,0 +1,33 @@
+// A scene as the peers and Drape's host narrow phase take it: joined topology, cones, and the step's positions.
+#pragma once
+
+#include <vector>
+
+#include "benchmarks/support/step_scene.h"
+#include "bullet_plugin/core/mesh/mesh_pool.h"
+#include "bullet_plugin/core/narrow_phase/narrow_phase.h"
+
+namespace drape::bench
+{
+class PeerScene
+{
+public:
+    explicit PeerScene(const StepScene& scene);
+
+    const std::vector<Triangle>& clothTriangles() const { return m_cloths.triangles(); }
+    const std::vector<Triangle>& obstacleTriangles() const { return m_obstacles.triangles(); }
+    std::size_t clothNodes() const { return m_cloths.vertexCount(); }
+    const std::vector<float>& obstaclePositions() const { return m_positions; }
+
+    // The contacts of the candidates, each pair of the scene's thickness, in canonical order, on up to `threads`
+    // threads. start and end: x y z per cloth node.
+    void narrowPhase(const std::vector<Candidate>& candidates, const float* start, const float* end, int threads,
+                     std::vector<Contact>& contacts) const;
+
+private:
+    MeshPool m_cloths, m_obstacles;
+    std::vector<float> m_positions;  // of the obstacle
+    std::vector<NormalCone> m_vertexCones, m_edgeCones;
+    std::vector<float> m_thickness;
+};
+}  // namespace drape::bench

@@ -1,0 +1,78 @@
+#!/usr/bin/env bash
+# Measures everything on this machine: run_all.sh [options] OUT_DIR
+#
+#   --device NAME    part of an OpenCL device's name (default: the first GPU, else the first device)
+#   --models DIR     folder of bunny_69k.obj, dragon_871k.ply, spot_6k.obj; what is not there is left out
+#   --bin DIR        folder of the programs (default: build/release/bin)
+#   --minutes N      time to spend (default 60); what does not fit is named and left out
+#   --commit TEXT    what is measured (default: git describe)
+#   --reference DIR  OUT_DIR of an earlier run: contacts must have its hashes, and the host and the peers are not
+#                    measured again
+#   --quick          small inputs only
+#
+# Writes bench_step.csv and .json, study.csv and .json, and cloth_drop.json where that program and the bunny are; then the
+# plots beside them, and the tables in README.md where OUT_DIR lies under results/ here. Measure on an idle machine.
+# Ends with 3 when a row is void, with 1 when something could not be measured.
+set -uo pipefail
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+bin=$here/../build/release/bin
+commit=$(git -C "$here" describe --always --dirty 2>/dev/null || echo unknown)
+minutes=60 device='' models='' reference='' quick='' out=''
+while [[ $# -gt 0 ]]; do
+  case $1 in
+    --device) device=$2; shift ;;
+    --models) models=$2; shift ;;
+    --bin) bin=$2; shift ;;
+    --minutes) minutes=$2; shift ;;
+    --commit) commit=$2; shift ;;
+    --reference) reference=$2; shift ;;
+    --quick) quick=yes ;;
+    -*) echo "run_all.sh: unknown option $1" >&2; exit 2 ;;
+    *) out=$1 ;;
+  esac
+  shift
+done
+[[ -n $out ]] || { sed -n '2,16s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 2; }
+mkdir -p "$out" || exit 1
+
+common=(--commit "$commit")
+[[ -z $device ]] || common+=(--device "$device")
+[[ -z $models ]] || common+=(--models "$models")
+[[ -z $quick ]] || common+=(--quick)
+
+worst=0
+# measure NAME SHARE_OF_THE_MINUTES ARGUMENTS…
+measure() {
+  local name=$1 share=$2 code
+  shift 2
+  "$bin/$name" "${common[@]}" --minutes "$(awk "BEGIN { print $minutes * $share }")" \
+    --csv "$out/$name.csv" --json "$out/$name.json" "$@"
+  code=$?
+  [[ $code == 0 || ($worst == 3 && $code == 1) ]] || worst=$code
+}
+
+step=()
+if [[ -n $reference ]]; then
+  step=(--reference "$reference/bench_step.json" --method drape --method drape_kernels)
+fi
+measure bench_step 0.6 "${step[@]}"
+measure study 0.35
+
+bunny=/usr/share/glmark2/models/bunny.obj
+[[ -z $models || ! -f $models/bunny_69k.obj ]] || bunny=$models/bunny_69k.obj
+if [[ -z $quick && -x $bin/cloth_drop && -f $bunny ]]; then
+  "$bin/cloth_drop" --obstacle "$bunny" --compare --quiet ${device:+--device "$device"} \
+    --json "$out/cloth_drop.json" || worst=1
+fi
+
+# Debian's interpreter first: its matplotlib is not seen by others.
+python=/usr/bin/python3
+[[ -x $python ]] || python=python3
+if "$python" -c 'import matplotlib' 2>/dev/null; then
+  "$python" "$here/plot.py" "$out" || worst=1
+  if [[ $(cd "$out" && pwd) == "$here"/results/* ]]; then "$python" "$here/summary.py" || worst=1; fi
+else
+  echo "run_all.sh: no python3-matplotlib here; run plot.py and summary.py on $out elsewhere" >&2
+fi
+exit "$worst"

@@ -1,0 +1,76 @@
+// study: the thesis's tables and figures on any device, with today's methods and the peers beside its own.
+//
+// Every row carries a hash of its result; where it is not that of the host's version, the row is void and the program
+// ends with 3.
+#include <algorithm>
+#include <iostream>
+
+#include "benchmarks/study/study.h"
+#include "benchmarks/support/models.h"
+
+namespace drape::bench
+{
+bool StudyOptions::wants(const std::string& model) const
+{
+    return m_only.empty() || std::find(m_only.begin(), m_only.end(), model) != m_only.end();
+}
+
+bool StudyOptions::tooLate(const std::string& what) const
+{
+    if (millisecondsSince(m_begin) <= 60000 * m_minutes) return false;
+    std::cerr << "study: " << what << ": left out: the time is used up" << std::endl;
+    return true;
+}
+
+std::vector<std::string> studyModels(bool quick)
+{
+    if (quick) return {"sphere_1k", "terrain_6272"};
+    return {"spot", "terrain_6272", "torus_16301", "bunny", "torus_345944", "dragon", "bunny_1m"};
+}
+
+void forEachModel(const StudyOptions& options, const std::function<void(const std::string&, const TriangleMesh&)>& body)
+{
+    for (const std::string& model : studyModels(options.m_quick))
+    {
+        if (!options.wants(model) || options.tooLate(model)) continue;
+        TriangleMesh mesh;
+        std::string error;
+        if (makeModel(model, modelFolders(options.m_models), mesh, error))
+            body(model, mesh);
+        else
+            std::cerr << "study: " << error << std::endl;
+    }
+}
+
+namespace
+{
+int run(int argc, char** argv)
+{
+    StudyOptions options;
+    CLI::App app("The thesis's tables and figures, with today's methods beside its own.", "study");
+    addCommonOptions(app, options);
+    app.add_option("--part", options.m_parts, "only these parts");
+    app.add_option("--only", options.m_only, "only these models and scenes");
+    int exitCode = kExitGood;
+    if (!parseArguments(app, argc, argv, exitCode)) return exitCode;
+    Table table;
+    for (const Part& part : studyParts())
+    {
+        if (options.m_list) std::cout << part.m_name << ": " << part.m_title << "\n";
+        const bool wanted = options.m_parts.empty() || std::find(options.m_parts.begin(), options.m_parts.end(),
+                                                                 part.m_name) != options.m_parts.end();
+        if (options.m_list || !wanted) continue;
+        std::cerr << "study: " << part.m_name << std::endl;
+        part.m_run(options, table);
+    }
+    if (options.m_list) return kExitGood;
+    if (table.rows().empty()) return fail("study", kExitBadInput, "nothing to measure; --list names the parts");
+    return finishTable("study", table, options);
+}
+}  // namespace
+}  // namespace drape::bench
+
+int main(int argc, char** argv)
+{
+    return drape::bench::guarded("study", [&] { return drape::bench::run(argc, argv); });
+}

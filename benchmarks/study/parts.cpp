@@ -1,0 +1,53 @@
+#include "benchmarks/study/peer_trees.h"
+#include "benchmarks/study/study.h"
+
+namespace drape::bench
+{
+namespace
+{
+void addPeerRow(const PeerTree& tree, const char* part, const Samples& samples, const std::string& model,
+                std::size_t triangles, Table& table)
+{
+    if (samples.empty()) return;
+    Row row;
+    row["part"] = part;
+    row["model"] = model;
+    row["triangles"] = triangles;
+    row["variant"] = tree.m_name;
+    row["backend"] = tree.m_name.substr(0, tree.m_name.find('_'));
+    row["device"] = "host";
+    row["driver"] = tree.m_driver;
+    row["threads"] = tree.m_threads;
+    samples.fill(row);
+    table.add(row);
+}
+}  // namespace
+
+void studyPeerTrees(const StudyOptions& options, Table& table)
+{
+    forEachModel(options,
+                 [&](const std::string& model, const TriangleMesh& mesh)
+                 {
+                     std::vector<PeerTree> trees = measureEmbreeTrees(mesh, options.m_repeats, options.m_seconds);
+                     trees.push_back(measureFclTree(mesh, options.m_repeats, options.m_seconds));
+                     for (const PeerTree& tree : trees)
+                     {
+                         addPeerRow(tree, "construction", tree.m_build, model, mesh.triangleCount(), table);
+                         addPeerRow(tree, "refit", tree.m_refit, model, mesh.triangleCount(), table);
+                     }
+                 });
+}
+
+const std::vector<Part>& studyParts()
+{
+    static const std::vector<Part> parts = {
+        {"peers", "construction and refit by Embree and FCL, beside tables 4.2 to 4.4", studyPeerTrees},
+#ifdef DRAPE_STUDY_TREES
+        {"construction", "every builder: tables 4.2 and 4.3, figures 4.2 to 4.5", studyConstruction},
+        {"refit", "every refit: table 4.4 and figure 4.10", studyRefit},
+        {"quality", "the trees' quality against the time to build them", studyQuality},
+#endif
+        {"traversal", "every traversal step by step as a cloth comes down: figures 4.6, 4.8 and 4.9", studyTraversals}};
+    return parts;
+}
+}  // namespace drape::bench

@@ -1,0 +1,27 @@
+// Construction and refit of the peers' hierarchies over a mesh, timed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "benchmarks/support/samples.h"
+#include "scenes/mesh.h"
+
+namespace drape::bench
+{
+struct PeerTree
+{
+    std::string m_name;    // embree_morton, embree_sah, fcl
+    std::string m_driver;  // with its version
+    int m_threads = 1;
+    Samples m_build;  // from positions and triangles in memory
+    Samples m_refit;  // from new positions in memory; the same as before here, since it makes no difference to the time
+};
+
+// Embree's triangle geometry by its Morton and its SAH builder, on one and on two threads. repeats: at most, within
+// seconds each; two at least.
+std::vector<PeerTree> measureEmbreeTrees(const TriangleMesh& mesh, int repeats, double seconds);
+
+// FCL's float 18-DOP tree; likewise.
+PeerTree measureFclTree(const TriangleMesh& mesh, int repeats, double seconds);
+}  // namespace drape::bench

@@ -1,0 +1,53 @@
+// The parts of the study. Each adds its rows to the table; a row's "part" says which it is.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "benchmarks/support/arguments.h"
+#include "benchmarks/support/samples.h"
+#include "scenes/mesh.h"
+
+namespace drape::bench
+{
+struct StudyOptions : CommonOptions
+{
+    std::vector<std::string> m_parts, m_only;  // empty: all; only: models and scenes
+    Clock::time_point m_begin = Clock::now();
+
+    bool wants(const std::string& model) const;
+    // Whether the time is used up; says so on standard error, naming what is left out.
+    bool tooLate(const std::string& what) const;
+};
+
+struct Part
+{
+    std::string m_name;
+    std::string m_title;  // with the thesis's tables and figures that it is for
+    std::function<void(const StudyOptions&, Table&)> m_run;
+};
+const std::vector<Part>& studyParts();
+
+// Peers' construction and refit per model: rows of the parts "construction" and "refit".
+void studyPeerTrees(const StudyOptions& options, Table& table);
+
+// The tree builders per model, compaction's share and time per level: parts "construction", "compaction" and "levels".
+void studyConstruction(const StudyOptions& options, Table& table);
+
+// Refits of one tree per model: parts "refit" and "refit_levels".
+void studyRefit(const StudyOptions& options, Table& table);
+
+// Cost, volume and visits of the builders' trees; takes the times from the rows of "construction".
+void studyQuality(const StudyOptions& options, Table& table);
+
+// Every traversal over a cloth's descent onto the bunny, step by step: figures 4.6, 4.8 and 4.9.
+void studyTraversals(const StudyOptions& options, Table& table);
+
+// Models in the order of their size; quick: two small ones.
+std::vector<std::string> studyModels(bool quick);
+
+// Loads a model and calls body, unless it is unwanted, missing or too late.
+void forEachModel(const StudyOptions& options,
+                  const std::function<void(const std::string&, const TriangleMesh&)>& body);
+}  // namespace drape::bench

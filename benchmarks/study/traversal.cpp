@@ -1,0 +1,138 @@
+// A cloth comes down on an obstacle, a step at a time, so that overlaps grow from none to those at rest.
+#include <algorithm>
+#include <iostream>
+#include <map>
+
+#include "benchmarks/study/study.h"
+#include "benchmarks/support/models.h"
+#include "benchmarks/support/step_method.h"
+
+namespace drape::bench
+{
+namespace
+{
+struct Variant
+{
+    std::string m_name;
+    Settings m_settings;
+};
+
+// The host is the reference, so it is first.
+std::vector<Variant> variants(const StudyOptions& options)
+{
+    Variant host{"host", Settings()};
+    host.m_settings.m_backend = Backend::Host;
+    Variant device{"default", options.settings()};
+    device.m_settings.m_profileKernels = true;
+    std::vector<Variant> all = {host};
+    if (options.m_backend != "host") all.push_back(device);
+    return all;
+}
+
+// The scene's cloths from above: each step comes down by `kFall` thicknesses, the last one ends at rest.
+constexpr float kFall = 0.15f;  // 3 mm at 20 mm, as fast as the motion of the scenes
+
+void descend(StepScene& scene, int steps)
+{
+    const std::vector<float> rest = scene.m_frames.front();
+    scene.m_frames.assign(static_cast<std::size_t>(steps) + 1, rest);
+    for (int step = 0; step < steps; ++step)
+    {
+        std::vector<float>& frame = scene.m_frames[static_cast<std::size_t>(step)];
+        for (std::size_t i = 1; i < frame.size(); i += 3)
+            frame[i] += kFall * scene.m_thickness * static_cast<float>(steps - step);
+    }
+}
+
+// One variant over the descent: times by step and stage over the passes, and the last outcome of each step.
+struct Descent
+{
+    std::vector<std::map<std::string, Samples>> m_times;
+    std::vector<StepOutcome> m_outcomes;
+};
+
+Descent run(StepMethod& method, const StepScene& scene, const StudyOptions& options)
+{
+    const std::size_t steps = scene.m_frames.size() - 1;
+    Descent descent;
+    descent.m_times.resize(steps);
+    descent.m_outcomes.resize(steps);
+    const Clock::time_point begin = Clock::now();
+    // The first pass lets buffers grow.
+    for (int pass = 0; pass <= options.m_repeats; ++pass)
+    {
+        if (pass > 1 && millisecondsSince(begin) > 1000 * options.m_seconds) break;
+        for (std::size_t step = 0; step < steps; ++step)
+        {
+            const StepOutcome outcome = method.step(scene.m_frames[step].data(), scene.m_frames[step + 1].data());
+            std::string& hash = descent.m_outcomes[step].m_hash;
+            const bool changed = pass > 0 && hash != outcome.m_hash;
+            descent.m_outcomes[step] = outcome;
+            if (changed) hash = "changed in pass " + std::to_string(pass);
+            if (pass == 0) continue;
+            for (const StageTime& stage : outcome.m_stages)
+                descent.m_times[step][stage.m_name].add(stage.m_ms);
+        }
+    }
+    return descent;
+}
+
+void addRows(const StepScene& scene, const Variant& variant, const StepMethod& method, const Descent& descent,
+             const Descent& reference, Table& table)
+{
+    for (std::size_t step = 0; step < descent.m_times.size(); ++step)
+    {
+        const StepOutcome& outcome = descent.m_outcomes[step];
+        Row row;
+        row["part"] = "traversal";
+        row["model"] = scene.m_spec.m_name;
+        row["cloth_triangles"] = scene.m_spec.clothTriangles();
+        row["triangles"] = scene.m_obstacle.triangleCount();
+        row["variant"] = variant.m_name;
+        method.describe(row);
+        row["step"] = step;
+        row["candidates"] = outcome.m_candidates;
+        row["contacts"] = outcome.m_contacts;
+        for (const char* stage : {"step", "refit", "broad", "narrow", "order"})
+        {
+            const auto found = descent.m_times[step].find(stage);
+            if (found != descent.m_times[step].end()) row[std::string(stage) + "_ms"] = found->second.median();
+        }
+        row["hash"] = outcome.m_hash;
+        judgeRow(row, reference.m_outcomes[step].m_hash);
+        table.add(row);
+    }
+}
+}  // namespace
+
+void studyTraversals(const StudyOptions& options, Table& table)
+{
+    constexpr int kSteps = 40;
+    constexpr int kQuickSteps = 6;
+    for (const SceneSpec& spec : sceneSpecs())
+    {
+        const bool studied =
+            options.m_quick ? spec.m_name == "quick_one" : spec.m_name == "thesis" || spec.m_name == "fine";
+        TriangleMesh obstacle;
+        std::string error;
+        if (!studied || !options.wants(spec.m_name)) continue;
+        if (!makeModel(spec.m_model, modelFolders(options.m_models), obstacle, error))
+        {
+            std::cerr << "study: " << error << std::endl;
+            continue;
+        }
+        StepScene scene = makeStepScene(spec, obstacle);
+        descend(scene, options.m_quick ? kQuickSteps : kSteps);
+        Descent reference;
+        for (const Variant& variant : variants(options))
+        {
+            if (options.tooLate(spec.m_name + ", " + variant.m_name)) continue;
+            const std::unique_ptr<StepMethod> method = makeDrapeMethod(scene, variant.m_settings, error);
+            if (!method) throw std::runtime_error(error);
+            const Descent descent = run(*method, scene, options);
+            if (reference.m_outcomes.empty()) reference = descent;
+            addRows(scene, variant, *method, descent, reference, table);
+        }
+    }
+}
+}  // namespace drape::bench

@@ -1,0 +1,156 @@
+// Construction: tables 4.2 and 4.3, figures 4.2 to 4.5.
+#include <algorithm>
+#include <stdexcept>
+
+#include "benchmarks/study/trees/tree_input.h"
+#include "benchmarks/support/machine.h"
+
+namespace drape::bench
+{
+namespace
+{
+// What repeated builds of one variant took.
+struct Builds
+{
+    Samples m_host;                                   // from host memory to the finished tree, ms
+    Samples m_kernels;                                // all kernels of a build, ms
+    std::vector<std::vector<KernelTime>> m_launches;  // a build
+    std::vector<TopDownLevel> m_levels;
+    std::string m_hash;
+};
+
+// The first build lets buffers grow and drivers compile; it is not counted.
+Builds build(Device& device, TreeInput& input, const TreeMethods& methods, const StudyOptions& options)
+{
+    TreeBuilderStage stage;
+    stage.create(device, studyPrograms(device), methods);
+    DeviceTree tree;
+    const auto once = [&]
+    {
+        device.profiler()->take();
+        const Clock::time_point start = Clock::now();
+        input.upload(device);
+        stage.enqueue(device, input.m_triangleBuffer, input.m_positionBuffer, cl_uint(input.triangleCount()), 1, tree);
+        device.wait();
+        return millisecondsSince(start);
+    };
+    once();
+    Builds builds;
+    builds.m_host = repeat(2, std::size_t(options.m_repeats), options.m_seconds,
+                           [&]
+                           {
+                               const double ms = once();
+                               builds.m_launches.push_back(device.profiler()->take());
+                               builds.m_kernels.add(totalMs(builds.m_launches.back()));
+                               return ms;
+                           });
+    builds.m_levels = stage.topDownLevels();
+    builds.m_hash = treeHash(tree.download(device));
+    if (device.failed()) throw std::runtime_error(device.error().text());
+    return builds;
+}
+
+// Share of the compaction in the kernels' time (figure 4.5).
+void addCompaction(const Builds& builds, Row row, Table& table)
+{
+    Samples shares;
+    for (const std::vector<KernelTime>& launches : builds.m_launches)
+    {
+        double compaction = 0;
+        for (const KernelTime& launch : launches)
+            compaction += launch.m_kernel.rfind("topDownCompact", 0) == 0 ? launch.m_ms : 0;
+        shares.add(compaction / totalMs(launches));
+    }
+    row["part"] = "compaction";
+    row["share"] = shares.median();
+    table.add(row);
+}
+
+// Time per level (figures 4.2 to 4.4): a level's launches follow one another, and the stage says how many each had.
+void addLevels(const Builds& builds, const Row& input, Table& table)
+{
+    std::size_t counted = 0, first = 0;
+    for (const TopDownLevel& level : builds.m_levels)
+        counted += level.m_launches;
+    for (std::size_t depth = 0; depth < builds.m_levels.size(); ++depth)
+    {
+        const TopDownLevel& level = builds.m_levels[depth];
+        Samples times;
+        for (const std::vector<KernelTime>& launches : builds.m_launches)
+        {
+            double sum = 0;
+            for (std::size_t i = first; i < std::min(first + level.m_launches, launches.size()); ++i)
+                sum += launches[i].m_ms;
+            times.add(sum);
+        }
+        first += level.m_launches;
+        Row row = input;
+        row["part"] = "levels";
+        row["level"] = depth;
+        row["nodes"] = level.m_nodes;
+        row["group_size"] = level.m_groupSize;
+        row["large_nodes"] = level.m_largeNodes;
+        times.fill(row, "kernel_");
+        table.add(row);
+    }
+}
+
+std::map<std::string, std::string> buildOnHost(const std::string& model, const TreeInput& input,
+                                               const StudyOptions& options, Table& table)
+{
+    std::map<std::string, std::string> hashes;
+    for (const TreeVariant& rule : treeRules(options.m_quick))
+    {
+        Tree tree;
+        const Samples times =
+            repeat(1, std::size_t(options.m_repeats), options.m_seconds,
+                   [&]
+                   {
+                       const Clock::time_point start = Clock::now();
+                       tree = buildTreeOnHost(rule.m_methods, input.m_triangles, input.m_positions.data(), 1);
+                       return millisecondsSince(start);
+                   });
+        hashes[rule.m_rule] = treeHash(tree);
+        Row row = treeRow("construction", model, input.triangleCount(), "host, " + rule.m_rule);
+        row["backend"] = "host";
+        row["device"] = "host";
+        row["threads"] = 1;
+        times.fill(row);
+        row["hash"] = hashes[rule.m_rule];
+        row["valid"] = "yes";
+        table.add(row);
+    }
+    return hashes;
+}
+}  // namespace
+
+void studyConstruction(const StudyOptions& options, Table& table)
+{
+    const std::unique_ptr<Device> device = openStudyDevice(options);
+    const auto measure = [&](const std::string& model, const TriangleMesh& mesh)
+    {
+        TreeInput input(mesh);
+        const std::map<std::string, std::string> hashes = buildOnHost(model, input, options, table);
+        if (!device) return;
+        for (const TreeVariant& variant : treeVariants(options.m_quick))
+        {
+            if (options.tooLate(model + ", " + variant.m_name)) continue;
+            const Builds builds = build(*device, input, variant.m_methods, options);
+            Row row = treeRow("construction", model, input.triangleCount(), variant.m_name);
+            row["backend"] = "opencl";
+            fillDevice(row, device->info());
+            row["threads"] = 0;
+            row["hash"] = builds.m_hash;
+            Row times = row;
+            builds.m_host.fill(times);
+            builds.m_kernels.fill(times, "kernel_");
+            judgeRow(times, hashes.at(variant.m_rule));
+            table.add(times);
+            if (times["valid"] == "no" || builds.m_levels.empty()) continue;
+            addLevels(builds, row, table);
+            if (variant.m_name == "thesis: all optimisations") addCompaction(builds, row, table);
+        }
+    };
+    forEachModel(options, measure);
+}
+}  // namespace drape::bench

@@ -1,0 +1,129 @@
+// Refit: table 4.4 and figure 4.10.
+#include <stdexcept>
+
+#include "benchmarks/study/trees/tree_input.h"
+#include "benchmarks/support/machine.h"
+
+namespace drape::bench
+{
+namespace
+{
+// Refits one tree on a device.
+class DeviceRefit
+{
+public:
+    DeviceRefit(Device& device, TreeInput& input, const Tree& tree) : m_device(device), m_input(input)
+    {
+        m_stage.create(device, studyPrograms(device));
+        m_tree.upload(device, tree);
+        m_stage.listTops(device, m_tree);
+        m_stage.uploadHeights(device, heightsOf(tree), m_heights);
+        m_radius.assign(device, std::vector<float>(1, 0.0f));
+        m_counters.reserve(device, 1);
+        m_counters.fill(device, 0, 1);
+        m_input.upload(device);
+        m_device.wait();
+    }
+
+    // Positions to the device, and a refit; waits. Host-to-host ms.
+    double run(bool byHeight)
+    {
+        m_device.profiler()->take();
+        const Clock::time_point start = Clock::now();
+        m_input.m_positionBuffer.write(m_device, m_input.m_positions.data(), m_input.m_positions.size());
+        const LeafBuffers leaves = {m_input.m_triangleBuffer, m_input.m_positionBuffer, m_input.m_positionBuffer,
+                                    m_radius, m_counters};
+        if (byHeight)
+            m_stage.enqueueByHeight(m_device, m_tree, leaves, m_heights);
+        else
+            m_stage.enqueue(m_device, m_tree, leaves, WorkShape::Device);
+        m_device.wait();
+        const double ms = millisecondsSince(start);
+        m_launches = m_device.profiler()->take();
+        if (m_device.failed()) throw std::runtime_error(m_device.error().text());
+        return ms;
+    }
+
+    const std::vector<KernelTime>& launches() const { return m_launches; }
+    std::string hash() { return treeHash(m_tree.download(m_device)); }
+
+private:
+    Device& m_device;
+    TreeInput& m_input;
+    TreeRefitStage m_stage;
+    DeviceTree m_tree;
+    TreeRefitStage::Heights m_heights;
+    Buffer<float> m_radius;
+    Buffer<StepCounters> m_counters;
+    std::vector<KernelTime> m_launches;
+};
+
+void refitOnDevice(Device& device, TreeInput& input, const Tree& tree, const std::string& model, bool byHeight,
+                   const StudyOptions& options, Table& table)
+{
+    DeviceRefit refit(device, input, tree);
+    refit.run(byHeight);  // some drivers compile at the first launch
+    Samples kernels;
+    std::vector<Samples> levels;
+    const Samples host = repeat(2, std::size_t(options.m_repeats), options.m_seconds,
+                                [&]
+                                {
+                                    const double ms = refit.run(byHeight);
+                                    kernels.add(totalMs(refit.launches()));
+                                    levels.resize(refit.launches().size());
+                                    for (std::size_t i = 0; i < levels.size(); ++i)
+                                        levels[i].add(refit.launches()[i].m_ms);
+                                    return ms;
+                                });
+    Row row = treeRow("refit", model, input.triangleCount(), byHeight ? "thesis: launch per level" : "subtrees");
+    row["backend"] = "opencl";
+    fillDevice(row, device.info());
+    row["threads"] = 0;
+    row["hash"] = refit.hash();
+    host.fill(row);
+    kernels.fill(row, "kernel_");
+    judgeRow(row, treeHash(tree));
+    table.add(row);
+    for (std::size_t level = 0; byHeight && level < levels.size(); ++level)
+    {
+        Row each = treeRow("refit_levels", model, input.triangleCount(), "thesis: launch per level");
+        each["level"] = level;
+        levels[level].fill(each, "kernel_");
+        table.add(each);
+    }
+}
+}  // namespace
+
+void studyRefit(const StudyOptions& options, Table& table)
+{
+    const std::unique_ptr<Device> device = openStudyDevice(options);
+    const auto measure = [&](const std::string& model, const TriangleMesh& mesh)
+    {
+        TreeInput input(mesh);
+        Tree tree = buildTreeOnHost(TreeMethods(), input.m_triangles, input.m_positions.data(), 1);
+        const std::string built = treeHash(tree);
+        const std::vector<float> noRadius(1, 0.0f);
+        std::size_t ignored = 0;
+        const Samples times = repeat(2, std::size_t(options.m_repeats), options.m_seconds,
+                                     [&]
+                                     {
+                                         const Clock::time_point start = Clock::now();
+                                         refitTreeOnHost(tree, input.m_triangles, input.m_positions.data(),
+                                                         input.m_positions.data(), noRadius, ignored);
+                                         return millisecondsSince(start);
+                                     });
+        Row row = treeRow("refit", model, input.triangleCount(), "host");
+        row["backend"] = "host";
+        row["device"] = "host";
+        row["threads"] = 1;
+        row["hash"] = treeHash(tree);
+        times.fill(row);
+        judgeRow(row, built);
+        table.add(row);
+        if (!device) return;
+        for (const bool byHeight : {true, false})
+            refitOnDevice(*device, input, tree, model, byHeight, options, table);
+    };
+    forEachModel(options, measure);
+}
+}  // namespace drape::bench

@@ -1,0 +1,108 @@
+#include "benchmarks/study/trees/tree_input.h"
+
+#include <stdexcept>
+
+#include "benchmarks/support/result_hash.h"
+#include "bullet_plugin/core/mesh/topology.h"
+
+namespace drape::bench
+{
+namespace
+{
+TreeVariant topDown(const std::string& name, bool adaptive, bool small, bool large, bool median)
+{
+    TreeVariant variant;
+    variant.m_name = name;
+    variant.m_methods.m_builder = TreeBuilder::TopDown;
+    variant.m_methods.m_topDown.m_adaptiveGroups = adaptive;
+    variant.m_methods.m_topDown.m_smallSplits = small;
+    variant.m_methods.m_topDown.m_largeNodes = large;
+    variant.m_methods.m_topDown.m_medianSplit = median;
+    variant.m_rule = median ? "top-down median" : "top-down";
+    return variant;
+}
+
+TreeVariant builder(const std::string& name, TreeBuilder which, std::uint32_t bits)
+{
+    TreeVariant variant;
+    variant.m_name = name;
+    variant.m_methods.m_builder = which;
+    variant.m_methods.m_mortonBits = bits;
+    variant.m_rule = name;
+    return variant;
+}
+}  // namespace
+
+std::vector<TreeVariant> treeVariants(bool quick)
+{
+    if (quick)
+        return {topDown("thesis: normal", false, false, false, false),
+                builder("radix, 30 bits", TreeBuilder::Radix, 30), builder("ploc", TreeBuilder::Ploc, 30)};
+    return {topDown("thesis: normal", false, false, false, false),
+            topDown("thesis: adaptive groups", true, false, false, false),
+            topDown("thesis: and small splits", true, true, false, false),
+            topDown("thesis: all optimisations", true, true, true, false),
+            topDown("thesis: all, median split", true, true, true, true),
+            builder("balanced", TreeBuilder::Balanced, 30),
+            builder("radix, 30 bits", TreeBuilder::Radix, 30),
+            builder("radix, 63 bits", TreeBuilder::Radix, 63),
+            builder("ploc", TreeBuilder::Ploc, 30)};
+}
+
+std::vector<TreeVariant> treeRules(bool quick)
+{
+    std::vector<TreeVariant> rules;
+    for (const TreeVariant& variant : treeVariants(quick))
+    {
+        if (rules.empty() || rules.back().m_rule != variant.m_rule) rules.push_back(variant);
+    }
+    return rules;
+}
+
+std::unique_ptr<Device> openStudyDevice(const StudyOptions& options)
+{
+    Error error;
+    const DeviceChoice choice = chooseDevice(options.settings(), error);
+    if (error.failed()) throw std::runtime_error(error.text());
+    if (choice.m_onHost) return nullptr;
+    std::unique_ptr<Device> device = Device::open(choice.m_index, error, true);
+    if (!device) throw std::runtime_error(error.text());
+    return device;
+}
+
+ProgramLoader studyPrograms(Device& device)
+{
+    return [&device](const char* name)
+    {
+        ProgramBuild build;
+        return buildProgram(device, name, "", build);
+    };
+}
+
+TreeInput::TreeInput(const TriangleMesh& mesh)
+    : m_triangles(buildTopology(mesh.m_triangles.data(), mesh.triangleCount(), mesh.vertexCount()).m_triangles),
+      m_positions(mesh.m_positions)
+{
+}
+
+void TreeInput::upload(Device& device)
+{
+    m_triangleBuffer.assign(device, m_triangles);
+    m_positionBuffer.assign(device, m_positions);
+}
+
+std::string treeHash(const Tree& tree)
+{
+    return hashText(hashOf(tree.m_nodes, hashOf(tree.m_order)));
+}
+
+Row treeRow(const char* part, const std::string& model, std::size_t triangles, const std::string& variant)
+{
+    Row row;
+    row["part"] = part;
+    row["model"] = model;
+    row["triangles"] = triangles;
+    row["variant"] = variant;
+    return row;
+}
+}  // namespace drape::bench

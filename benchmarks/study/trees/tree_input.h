@@ -1,0 +1,52 @@
+// A mesh and a device as the tree builders take them, and the ways of building that are compared.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "benchmarks/study/study.h"
+#include "bullet_plugin/core/bvh/tree_builder.h"
+#include "bullet_plugin/core/device/profiler.h"
+#include "scenes/mesh.h"
+
+namespace drape::bench
+{
+struct TreeVariant
+{
+    std::string m_name;
+    TreeMethods m_methods;
+    std::string m_rule;  // variants of one rule make the same tree
+};
+
+// The thesis's construction with its optimisations one after the other, and today's builders. quick: one of each
+// builder, since PoCL compiles the thesis's kernels again for each of their group sizes.
+std::vector<TreeVariant> treeVariants(bool quick);
+// One variant of each rule.
+std::vector<TreeVariant> treeRules(bool quick);
+
+// A profiled device as the options name it; null for the host. Throws where it was asked for and is not there.
+std::unique_ptr<Device> openStudyDevice(const StudyOptions& options);
+ProgramLoader studyPrograms(Device& device);
+
+struct TreeInput
+{
+    explicit TreeInput(const TriangleMesh& mesh);
+
+    std::size_t triangleCount() const { return m_triangles.size(); }
+    // To the device, enqueued.
+    void upload(Device& device);
+
+    std::vector<Triangle> m_triangles;
+    std::vector<float> m_positions;  // m, x y z per vertex
+    Buffer<Triangle> m_triangleBuffer;
+    Buffer<float> m_positionBuffer;
+};
+
+// Of order and nodes: links and volumes, bit for bit.
+std::string treeHash(const Tree& tree);
+
+// A row's input columns.
+Row treeRow(const char* part, const std::string& model, std::size_t triangles, const std::string& variant);
+}  // namespace drape::bench

@@ -1,0 +1,105 @@
+"""Tables of study.csv beside the thesis's own figures."""
+import csv
+import os
+
+from results import in_order, select
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+
+# The models of the thesis and those that stand in for them.
+THESIS_MODELS = {
+    "terrain_6272": "Biplane",
+    "torus_16301": "Small Bunny",
+    "bunny": "Large Bunny",
+    "torus_345944": "Armadillo",
+    "dragon": "Dragon",
+    "bunny_1m": "Happy Buddha",
+}
+
+
+def thesis(table, what):
+    with open(os.path.join(HERE, "thesis.csv"), newline="") as file:
+        return {row["model"]: float(row["ms"]) for row in csv.DictReader(file)
+                if row["table"] == table and row["what"] == what}
+
+
+def time_text(row, figure):
+    """Kernel time and host-to-host time where both were taken, else wall time."""
+    if "kernel_median_ms" in row:
+        return f"{figure(row['kernel_median_ms'])} / {figure(row['median_ms'])}"
+    return figure(row["median_ms"])
+
+
+def by_model(rows, part, title, thesis_columns, table, figure):
+    mine = [row for row in select(rows, part=part) if "median_ms" in row]
+    models = in_order(mine, "model")
+    if not models:
+        return ""
+    lines = []
+    for variant in in_order(mine, "variant"):
+        for threads in in_order(select(mine, variant=variant), "threads"):
+            chosen = {row["model"]: row for row in select(mine, variant=variant, threads=threads)}
+            name = variant.replace("_", " ") + (f", {threads:.0f} thread" + "s" * (threads > 1) if threads else "")
+            lines.append([name] + [time_text(chosen[model], figure) if model in chosen else "–" for model in models])
+    for label, source, what in thesis_columns:
+        figures = thesis(source, what)
+        lines.append([f"*thesis: {label}*"] + [
+            f"*{figures[THESIS_MODELS[model]]:,.0f}*" if model in THESIS_MODELS else "–" for model in models])
+    triangles = {row["model"]: row["triangles"] for row in mine}
+    head = [""] + [f"{model.replace('_', ' ')} ({triangles[model]:,.0f})" for model in models]
+    return title + "\n\n" + table(head, lines)
+
+
+def descent_table(rows, table, figure):
+    text = ""
+    for scene in in_order(select(rows, part="traversal"), "model"):
+        mine = select(rows, part="traversal", model=scene)
+        lines = []
+        for variant in in_order(mine, "variant"):
+            steps = [row for row in select(mine, variant=variant) if row["step"] > 0 and "broad_ms" in row]
+            if not steps:
+                continue
+            total = [sum(row.get(stage + "_ms", 0) for row in steps) / len(steps)
+                     for stage in ("refit", "broad", "narrow", "order")]
+            tests = [row["volume_tests"] for row in steps if row.get("volume_tests")]
+            lines.append([variant] + [figure(value) for value in total]
+                         + [f"{sum(tests) / len(tests):,.0f}" if tests else "–"])
+        text += (f"Descent of the {scene} scene's cloth onto the bunny, mean of its steps, ms (kernel time on a device), "
+                 "figures 4.6, 4.8 and 4.9:\n\n"
+                 + table(["traversal", "refit", "broad phase", "narrow phase", "order", "volume tests"], lines))
+    return text
+
+
+def compaction_table(rows, table):
+    mine = select(rows, part="compaction")
+    if not mine:
+        return ""
+    lines = [[row["model"], f"{100 * row['share']:.1f} %"] for row in mine]
+    return ("Share of the compaction in the thesis's construction with all optimisations, kernel time (figure 4.5; the "
+            "thesis calls it small and shrinking with the model):\n\n" + table(["model", "share"], lines))
+
+
+def quality_table(rows, table, figure):
+    text = ""
+    for model in in_order(select(rows, part="quality"), "model"):
+        lines = [[row["variant"], time_text(row, figure), f"{row['cost']:,.1f}", f"{row['volume_m3']:.3g}",
+                  f"{row['height']:.0f}", f"{row['visits']:,.0f}"]
+                 for row in select(rows, part="quality", model=model) if "median_ms" in row]
+        text += f"Trees of the {model}: build time (kernel / host to host, ms) against quality.\n\n" + table(
+            ["builder", "build", "SAH cost", "volume, m³", "height", "volume tests a step"], lines)
+    return text
+
+
+def text(rows, table, figure):
+    if not rows:
+        return ""
+    return (by_model(rows, "construction",
+                     "Construction (tables 4.2 and 4.3), ms: kernel time / host to host for a device; wall time for "
+                     "CPU threads.",
+                     [("CPU", "4.2", "cpu"), ("Quadro FX 3800, normal, kernels", "4.2", "quadro_normal"),
+                      ("Quadro FX 3800, optimised, kernels", "4.2", "quadro_optimised"),
+                      ("Tesla C2050, optimised, kernels", "4.3", "tesla_optimised")], table, figure)
+            + compaction_table(rows, table)
+            + by_model(rows, "refit", "Refit (table 4.4), ms, likewise.",
+                       [("CPU", "4.4", "cpu"), ("Quadro FX 3800, kernels", "4.4", "quadro")], table, figure)
+            + quality_table(rows, table, figure) + descent_table(rows, table, figure))

@@ -1,0 +1,179 @@
+#!/usr/bin/env python3
+"""Writes the tables of all measured results into benchmarks/README.md, between its markers: summary.py [README]
+
+Every folder of results/ is a machine. What stands outside of the markers is written by hand.
+"""
+import os
+import sys
+
+import study_tables
+from results import STAGES, SWEEPS, count_void, fit_exponent, in_order, read_json, read_machine, read_rows, select
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+BEGIN = "<!-- results: made by summary.py -->"
+END = "<!-- end of results -->"
+
+SCENES = {
+    "thesis": "2,048 on the bunny",
+    "fine": "131,072 on the bunny",
+    "fine_on_coarse": "131,072 on a sphere of 1,280",
+    "many_200": "200 × 512 on the bunny",
+    "static_1m": "2,048 on the bunny in 1.1 M",
+    "static_1m_fine": "131,072 on the bunny in 1.1 M",
+}
+METHODS = {
+    "drape": "Drape, OpenCL",
+    "drape_host": "Drape, host",
+    "embree_contacts_2": "Embree + narrow phase, 2 threads",
+    "embree_contacts_1": "the same, 1 thread",
+    "embree_pairs_2": "Embree, pairs only, 2 threads",
+    "embree_pairs_1": "the same, 1 thread",
+    "fcl_pairs": "FCL, pairs only",
+    "fcl_collide": "FCL, thickness 0",
+}
+
+
+def figure(value):
+    """Three digits, no exponent."""
+    if value is None:
+        return "–"
+    digits = 0 if value >= 100 else 1 if value >= 10 else 2 if value >= 1 else 3
+    return f"{value:,.{digits}f}"
+
+
+def table(head, lines):
+    text = "| " + " | ".join(head) + " |\n|" + "---|" * len(head) + "\n"
+    return text + "".join("| " + " | ".join(line) + " |\n" for line in lines) + "\n"
+
+
+def cell_of(rows, **wanted):
+    found = select(rows, **wanted)
+    if not found or "median_ms" not in found[0]:
+        return "–"
+    return f"{figure(found[0]['median_ms'])} ({figure(found[0]['p95_ms'])})"
+
+
+def step_table(rows):
+    scenes = [scene for scene in SCENES if select(rows, scene=scene)]
+    if not scenes:
+        return ""
+    methods = [method for method in METHODS if select(rows, method=method)]
+    lines = [[METHODS[method]] + [cell_of(rows, scene=scene, method=method, stage="step") for scene in scenes]
+             for method in methods]
+    for what in ("candidates", "contacts"):
+        counts = [select(rows, scene=scene, method="drape_host", stage="step") for scene in scenes]
+        lines.append([what + " a step"] + [f"{row[0][what]:,.0f}" if row else "–" for row in counts])
+    return ("Whole step, host to host, ms: median (95th percentile). Same scene, same step, same process.\n\n"
+            + table([""] + [SCENES[scene] for scene in scenes], lines))
+
+
+def stage_table(rows):
+    scenes = [scene for scene in SCENES if select(rows, scene=scene, method="drape_kernels")]
+    if not scenes:
+        return ""
+    kernels = in_order([row for row in select(rows, method="drape_kernels")
+                        if str(row["stage"]).startswith("kernel")], "stage")
+    lines = [[kernel.replace("kernel: ", "")] + [figure(next((row.get("median_ms") for row in select(
+        rows, scene=scene, method="drape_kernels", stage=kernel)), None)) for scene in scenes] for kernel in kernels]
+    return "Kernel time a step, ms, medians, of a run with a profiled queue:\n\n" + table(
+        [""] + [SCENES[scene] for scene in scenes], lines)
+
+
+def exponent_table(rows):
+    lines = []
+    for sweep, (size, label) in SWEEPS.items():
+        for method in ("drape", "drape_kernels", "drape_host", "embree_contacts_2", "fcl_pairs"):
+            mine = select(rows, sweep=sweep, method=method)
+            for stage in in_order(mine, "stage"):
+                points = [(size(row), row["median_ms"]) for row in select(mine, stage=stage) if "median_ms" in row]
+                wanted = stage in STAGES or stage in ("step", "kernels")
+                if not wanted or len(points) < 3 or (method == "drape_kernels" and stage == "step"):
+                    continue
+                found = select(mine, stage=stage)
+                work = [(row.get("candidates", 0), row["median_ms"]) for row in found if "median_ms" in row]
+                lines.append([label, METHODS.get(method, "kernels"), stage,
+                              f"{fit_exponent(points):.2f}", exponent(work)])
+    if not lines:
+        return ""
+    return ("How times grow: exponent p of the fit time ~ sizeᵖ over each sweep (n log n is about 1.1 over these sizes), "
+            "and over the candidates of its scenes.\n\n"
+            "<details><summary>exponents</summary>\n\n"
+            + table(["size", "method", "stage", "p, size", "p, candidates"], lines) + "</details>\n\n")
+
+
+def exponent(points):
+    value = fit_exponent(points)
+    return "–" if value is None else f"{value:.2f}"
+
+
+def memory_table(rows):
+    memory = [row for row in select(rows, method="drape") if str(row["stage"]).startswith("memory: ")]
+    scenes = [scene for scene in ("thesis", "fine", "static_1m_fine") if select(memory, scene=scene)]
+    if not scenes:
+        return ""
+    lines, sums = [], {}
+    for stage in in_order(memory, "stage"):
+        name = stage[len("memory: "):]
+        line = [name]
+        for scene in scenes:
+            row = next(iter(select(memory, scene=scene, stage=stage)), None)
+            side = "obstacle" if name.startswith("obstacle") else "cloth"
+            each = row and row["bytes"] / row[side + "_triangles"]
+            line.append("–" if row is None else f"{each:,.1f}")
+            sums[scene, side] = sums.get((scene, side), 0) + (each or 0)
+        lines.append(line)
+    for side in ("cloth", "obstacle"):
+        lines.append([f"**sum, a triangle of the {side}**"] + [f"**{sums[scene, side]:,.0f}**" for scene in scenes])
+    return ("Device memory, bytes a triangle of its side. Lists of a step, build memory and what has no name count to the "
+            "cloth.\n\n" + table([""] + [SCENES[scene] for scene in scenes], lines))
+
+
+def built_in_line(folder, rows):
+    runs = read_json(folder, "cloth_drop")
+    if not runs:
+        return ""
+    parts = []
+    for name, label in (("drape", "Drape"), ("bullet_stock", "stock"), ("bullet_tuned", "tuned")):
+        if name in runs and "collision_ms" in runs[name]:
+            parts.append(f"{label} {figure(runs[name]['collision_ms']['median'])} ms")
+    return ("Bullet's built-in collision in a simulation of the thesis scene (`cloth_drop --compare`), collision a step in "
+            "contact, medians: " + ", ".join(parts) + ".\n\n")
+
+
+def pictures(folder):
+    names = sorted(name for name in os.listdir(folder) if name.endswith(".png"))
+    relative = "results/" + os.path.basename(folder)
+    return "".join(f"![{name[:-4]}]({relative}/{name})\n" for name in names) + "\n" if names else ""
+
+
+def machine_text(folder):
+    rows = read_rows(folder, "bench_step")
+    machine = read_machine(folder, "bench_step" if rows else "study")
+    devices = ", ".join(f"{device['device']} (driver {device['driver']})" for device in machine["devices"]) or "none"
+    text = f"### {os.path.basename(folder)}\n\n"
+    text += (f"{machine['processor']}, {machine['cores']:.0f} cores; OpenCL devices: {devices}. "
+             f"Measured {machine['date']} at commit {machine['commit']}. ")
+    text += f"Void rows: {count_void(folder, 'bench_step') + count_void(folder, 'study')}.\n\n"
+    text += step_table(rows) + built_in_line(folder, rows) + stage_table(rows)
+    text += study_tables.text(read_rows(folder, "study"), table, figure)
+    return text + exponent_table(rows) + memory_table(rows) + pictures(folder)
+
+
+def main():
+    readme = sys.argv[1] if len(sys.argv) > 1 else os.path.join(HERE, "README.md")
+    results = os.path.join(os.path.dirname(os.path.abspath(readme)), "results")
+    folders = sorted(entry.path for entry in os.scandir(results) if entry.is_dir())
+    folders = [folder for folder in folders
+               if any(os.path.exists(os.path.join(folder, name + ".json")) for name in ("bench_step", "study"))]
+    with open(readme) as file:
+        before, _, rest = file.read().partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not end:
+        sys.exit(f"{readme} has no markers")
+    text = "".join(machine_text(folder) for folder in folders)
+    with open(readme, "w") as file:
+        file.write(before + BEGIN + "\n\n" + text + END + after)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,84 @@
+#include "benchmarks/support/arguments.h"
+
+#include <iostream>
+
+#include "benchmarks/support/machine.h"
+
+namespace drape::bench
+{
+Settings CommonOptions::settings() const
+{
+    Settings settings;
+    settings.m_device = m_device;
+    settings.m_backend = m_backend == "host" ? Backend::Host : m_backend == "opencl" ? Backend::OpenCl : Backend::Auto;
+    return settings;
+}
+
+void addCommonOptions(CLI::App& app, CommonOptions& options)
+{
+    app.option_defaults()->always_capture_default();
+    app.add_option("--device", options.m_device, "part of an OpenCL device's or platform's name")->type_name("TEXT");
+    app.add_option("--backend", options.m_backend, "auto: a GPU, else any OpenCL device, else the host")
+        ->check(CLI::IsMember({"auto", "opencl", "host"}));
+    app.add_option("--models", options.m_models, "folder of bunny_69k.obj, dragon_871k.ply, spot_6k.obj")
+        ->type_name("DIR");
+    app.add_option("--csv", options.m_csv, "write the rows; - is standard output")->type_name("FILE");
+    app.add_option("--json", options.m_json, "write machine and rows; - is standard output")->type_name("FILE");
+    app.add_option("--commit", options.m_commit, "what was measured, for the record");
+    app.add_flag("--quick", options.m_quick, "small inputs only, some seconds");
+    app.add_flag("--list", options.m_list, "list what can be measured and leave");
+    app.add_option("--repeats", options.m_repeats, "times a measurement is repeated, at most")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--seconds", options.m_seconds, "for the repeats of one measurement")->check(CLI::PositiveNumber);
+    app.add_option("--minutes", options.m_minutes, "for all; what does not fit is named and left out")
+        ->check(CLI::PositiveNumber);
+}
+
+bool parseArguments(CLI::App& app, int argc, const char* const* argv, int& exitCode)
+{
+    try
+    {
+        app.parse(argc, argv);
+        return true;
+    }
+    catch (const CLI::CallForHelp&)
+    {
+        std::cout << app.help();
+        exitCode = kExitGood;
+    }
+    catch (const CLI::ParseError& error)
+    {
+        exitCode = fail(app.get_name(), kExitBadInput, error.what());
+    }
+    return false;
+}
+
+int fail(const std::string& program, int exitCode, const std::string& reason)
+{
+    std::cerr << program << ": " << reason << std::endl;
+    return exitCode;
+}
+
+int guarded(const std::string& program, const std::function<int()>& body)
+{
+    try
+    {
+        return body();
+    }
+    catch (const std::exception& exception)
+    {
+        return fail(program, kExitFailed, exception.what());
+    }
+}
+
+int finishTable(const std::string& program, const Table& table, const CommonOptions& options)
+{
+    std::string error;
+    const bool nowhere = options.m_csv.empty() && options.m_json.empty();
+    if (!writeText(nowhere ? "-" : options.m_csv, table.csv(), error) ||
+        !writeText(options.m_json, table.json(describeMachine(options.m_commit)), error))
+        return fail(program, kExitFailed, error);
+    if (table.anyVoid()) return fail(program, kExitOtherHash, "rows are void: their results are not the reference's");
+    return kExitGood;
+}
+}  // namespace drape::bench

@@ -1,0 +1,138 @@
+// Drape's pipeline as a caller sees it.
+#include <algorithm>
+#include <map>
+
+#include "benchmarks/support/step_method.h"
+#include "benchmarks/support/machine.h"
+#include "benchmarks/support/result_hash.h"
+#include "benchmarks/support/samples.h"
+#include "scenes/describe_mesh.h"
+
+namespace drape::bench
+{
+namespace
+{
+// Kernels are called stageAction; those of the broad phase have many names.
+std::string stageOfKernel(const std::string& kernel)
+{
+    const std::pair<const char*, const char*> stages[] = {
+        {"refit", "refit"}, {"narrowPhase", "narrow"}, {"compaction", "order"}};
+    for (const auto& stage : stages)
+    {
+        if (kernel.rfind(stage.first, 0) == 0) return stage.second;
+    }
+    return "broad";
+}
+
+class DrapeMethod : public StepMethod
+{
+public:
+    DrapeMethod(std::unique_ptr<Pipeline> pipeline, const StepScene& scene, bool profiled)
+        : m_pipeline(std::move(pipeline)), m_thickness(scene.m_thickness), m_profiled(profiled)
+    {
+        const Clock::time_point start = Clock::now();
+        m_obstacle = m_pipeline->addObstacle(describeMesh(scene.m_obstacle));
+        for (const TriangleMesh& cloth : scene.m_cloths)
+        {
+            m_cloths.push_back(m_pipeline->addCloth(describeMesh(cloth)));
+            m_floats.push_back(cloth.m_positions.size());
+        }
+        m_prepareMs = millisecondsSince(start);
+    }
+
+    StepOutcome step(const float* start, const float* end) override
+    {
+        StepOutcome outcome;
+        const Clock::time_point begin = Clock::now();
+        std::size_t first = 0;
+        for (std::size_t i = 0; i < m_cloths.size(); ++i)
+        {
+            std::copy(start + first, start + first + m_floats[i], m_pipeline->clothStart(m_cloths[i]));
+            std::copy(end + first, end + first + m_floats[i], m_pipeline->clothEnd(m_cloths[i]));
+            m_pipeline->addPair(m_cloths[i], m_obstacle, m_thickness);
+            first += m_floats[i];
+        }
+        m_pipeline->submit();
+        const std::vector<Contact>& contacts = m_pipeline->finish();
+        outcome.m_stages.push_back({"step", millisecondsSince(begin)});
+        const StepStatistics& statistics = m_pipeline->statistics();
+        addStages(statistics, outcome);
+        outcome.m_candidates = statistics.m_candidates;
+        outcome.m_contacts = contacts.size();
+        outcome.m_hash = hashText(hashOf(contacts));
+        // A step that left its device is no measurement of it.
+        if (statistics.m_status & (kStepDeviceFailed | kStepContactLimit)) outcome.m_hash = "left the device";
+        return outcome;
+    }
+
+    void describe(Row& row) const override
+    {
+        const DeviceReport& report = m_pipeline->deviceReport();
+        row["backend"] = report.m_onHost ? "host" : "opencl";
+        fillDevice(row, report.m_device);
+        row["threads"] = report.m_onHost ? 1 : 0;
+        row["prepare_ms"] = m_prepareMs;
+        row["kernels_ms"] = report.m_buildMs;
+    }
+
+    std::vector<Row> extraRows() const override
+    {
+        std::vector<Row> rows;
+        if (m_profiled) return rows;  // the same as without
+        for (const MemoryUse& use : m_pipeline->deviceMemory())
+            rows.push_back({{"stage", "memory: " + use.m_name}, {"bytes", use.m_bytes}});
+        return rows;
+    }
+
+private:
+    void addStages(const StepStatistics& statistics, StepOutcome& outcome)
+    {
+        if (m_pipeline->deviceReport().m_onHost)
+        {
+            outcome.m_stages.push_back({"refit", statistics.m_refitMs});
+            outcome.m_stages.push_back({"broad", statistics.m_broadMs});
+            outcome.m_stages.push_back({"narrow", statistics.m_narrowMs});
+            return;
+        }
+        outcome.m_stages.push_back({"submit", statistics.m_uploadMs});
+        outcome.m_stages.push_back({"wait", statistics.m_waitMs});
+        // Profiled: each kernel's launches together, each stage's kernels, and all.
+        std::map<std::string, double> kernels;
+        for (const KernelTime& launch : m_pipeline->takeKernelTimes())
+        {
+            kernels["kernel: " + launch.m_kernel] += launch.m_ms;
+            kernels[stageOfKernel(launch.m_kernel)] += launch.m_ms;
+            kernels["kernels"] += launch.m_ms;
+        }
+        for (const auto& kernel : kernels)
+            outcome.m_stages.push_back({kernel.first, kernel.second});
+    }
+
+    std::unique_ptr<Pipeline> m_pipeline;
+    MeshId m_obstacle = kNoMesh;
+    std::vector<MeshId> m_cloths;
+    std::vector<std::size_t> m_floats;
+    float m_thickness;
+    double m_prepareMs = 0;
+    bool m_profiled;
+};
+}  // namespace
+
+std::unique_ptr<StepMethod> makeDrapeMethod(const StepScene& scene, const Settings& settings, std::string& error)
+{
+    Error problem;
+    std::unique_ptr<Pipeline> pipeline = Pipeline::create(settings, problem);
+    if (!pipeline)
+    {
+        error = problem.text();
+        return nullptr;
+    }
+    return std::make_unique<DrapeMethod>(std::move(pipeline), scene, settings.m_profileKernels);
+}
+
+float contactReach(const StepScene& scene)
+{
+    // A thousandth more than the feature tests look, as the pipeline takes it, for the rounding of both.
+    return scene.m_thickness * (1.0f + Settings().m_activation) * 1.001f;
+}
+}  // namespace drape::bench

@@ -1,0 +1,41 @@
+// Rows of measurements, written as CSV and JSON.
+//
+// A row holds values by column name; the table's columns are those of its rows in the order of first use. A void row
+// (its result's hash was not the expected one) keeps what says what it was, and loses its figures: see voidRow().
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace drape::bench
+{
+using Row = nlohmann::ordered_json;
+
+class Table
+{
+public:
+    void add(const Row& row);
+    const std::vector<Row>& rows() const { return m_rows; }
+    // Whether a row is void.
+    bool anyVoid() const;
+
+    // A header line and a line a row; texts with commas or quotes are quoted. Missing values are empty.
+    std::string csv() const;
+    // {"machine": …, "rows": […]}.
+    std::string json(const Row& machine) const;
+
+private:
+    std::vector<std::string> m_columns;
+    std::vector<Row> m_rows;
+};
+
+// Compares row["hash"] with the expected one. Where they differ, "valid" becomes "no" and every number except counts of
+// triangles and cloths is removed, so that no figure of a wrong result is ever plotted or quoted; else "valid" is
+// "yes". An empty expected hash leaves the row as it is: nothing to compare with.
+void judgeRow(Row& row, const std::string& expectedHash);
+
+// Writes to a path, or prints for "-"; nothing for an empty path. False with one line in `error`.
+bool writeText(const std::string& path, const std::string& text, std::string& error);
+}  // namespace drape::bench

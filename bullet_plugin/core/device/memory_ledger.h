@@ -1,0 +1,26 @@
+// What the buffers of a device hold, by name: for reports of memory. Not thread-safe. Costs a map entry an allocation.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "drape/report.h"
+
+namespace drape
+{
+class MemoryLedger
+{
+public:
+    // Notes an allocation until the last copy of what is returned is gone; that may outlive the ledger.
+    std::shared_ptr<const void> enter(const std::string& name, std::size_t bytes);
+
+    // The bytes of each name, in alphabetical order; names that hold nothing are left out.
+    std::vector<MemoryUse> list() const;
+
+private:
+    using Bytes = std::map<std::string, std::size_t>;
+    std::shared_ptr<Bytes> m_bytes = std::make_shared<Bytes>();
+};
+}  // namespace drape

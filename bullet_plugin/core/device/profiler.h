@@ -1,0 +1,38 @@
+// Times of kernel launches, as the device's queue took them.
+//
+// Job: hand out an event per launch, and turn the events into milliseconds. Belongs to a device that was opened
+// profiled (Device::profiler()). Cost: an event a launch until take().
+#pragma once
+
+#include <CL/opencl.hpp>
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "drape/report.h"
+
+namespace drape
+{
+class Profiler
+{
+public:
+    // The event that the coming launch of this kernel signals. Valid until take().
+    cl::Event* add(const std::string& kernel);
+
+    // The launches since the last call, in order of submission; launches that failed are left out. The device must have
+    // been waited for.
+    std::vector<KernelTime> take();
+
+private:
+    struct Launch
+    {
+        std::string m_kernel;
+        cl::Event m_event;
+    };
+    std::deque<Launch> m_launches;  // a deque: events keep their address
+};
+
+// Sum of the times, ms.
+double totalMs(const std::vector<KernelTime>& launches);
+}  // namespace drape

@@ -1,0 +1,202 @@
+"""The benchmark programs run, their tables parse, and a wrong hash voids a row.
+
+Usage: programs_test.py FOLDER_OF_PROGRAMS
+"""
+import csv
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAMS = sys.argv.pop(1)
+
+
+def run(program, *arguments):
+    return subprocess.run([os.path.join(PROGRAMS, program), *arguments], capture_output=True, text=True, timeout=600)
+
+
+def read_csv(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file, strict=True))
+
+
+class ProgramTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def quick(self, program, *arguments):
+        """Rows of a quick run; every row has every column, and JSON says the same as CSV."""
+        result = run(program, "--quick", "--repeats", "2", "--csv", self.path("rows.csv"), "--json",
+                     self.path("rows.json"), *arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        rows = read_csv(self.path("rows.csv"))
+        with open(self.path("rows.json")) as file:
+            everything = json.load(file)
+        self.assertTrue(rows)
+        self.assertEqual(len(rows), len(everything["rows"]))
+        self.assertTrue(everything["machine"]["processor"])
+        for row in rows:
+            self.assertNotIn(None, row, "more cells than columns")
+            self.assertNotIn(None, row.values(), "fewer cells than columns")
+        return rows
+
+    def reference_with_other_hash(self):
+        """The JSON of the run before, with one digit of every hash changed."""
+        with open(self.path("rows.json")) as file:
+            everything = json.load(file)
+        for row in everything["rows"]:
+            if row.get("hash"):
+                row["hash"] = ("1" if row["hash"][0] == "0" else "0") + row["hash"][1:]
+        with open(self.path("other.json"), "w") as file:
+            json.dump(everything, file)
+        return self.path("other.json")
+
+
+class BenchStep(ProgramTest):
+    def test_rows_of_every_method(self):
+        rows = self.quick("bench_step")
+        steps = {}
+        for row in rows:
+            if row["stage"] == "step":
+                steps.setdefault(row["scene"], {})[row["method"]] = row
+        self.assertEqual(set(steps), {"quick_one", "quick_many"})
+        for methods in steps.values():
+            for name in ("drape_host", "embree_contacts_1", "embree_contacts_2", "embree_pairs_1", "fcl_pairs",
+                         "fcl_collide"):
+                row = methods[name]
+                self.assertLessEqual(0, float(row["min_ms"]))
+                self.assertLessEqual(float(row["min_ms"]), float(row["median_ms"]))
+                self.assertLessEqual(float(row["median_ms"]), float(row["p95_ms"]))
+                self.assertGreater(float(row["candidates"]), 0)
+            reference = methods["drape_host"]
+            self.assertGreater(float(reference["contacts"]), 100)
+            for row in methods.values():
+                self.assertNotEqual(row["valid"], "no")
+                if row["valid"] == "yes":
+                    self.assertEqual(row["hash"], reference["hash"])
+                    self.assertEqual(row["contacts"], reference["contacts"])
+            # Volumes of the same kind, grown alike: the peer's pairs are the broad phase's.
+            pairs = float(methods["fcl_pairs"]["candidates"])
+            self.assertAlmostEqual(pairs / float(reference["candidates"]), 1, delta=0.01)
+
+    def test_an_opencl_device_gives_the_hosts_hash(self):
+        rows = self.quick("bench_step", "--backend", "opencl", "--method", "drape", "--method", "drape_kernels")
+        for name in ("drape", "drape_kernels"):
+            mine = [row for row in rows if row["method"] == name]
+            self.assertTrue(mine, "no rows of " + name)
+            self.assertTrue(all(row["valid"] in ("yes", "") for row in mine))
+            self.assertTrue(any(row["valid"] == "yes" for row in mine))
+        self.assertTrue(any(row["stage"].startswith("kernel: narrowPhase") for row in rows))
+        self.assertTrue(any(row["stage"] == "memory: cloth triangles" and int(row["bytes"]) > 0 for row in rows))
+
+    def test_a_wrong_hash_voids_the_row(self):
+        self.quick("bench_step", "--backend", "host", "--method", "embree_contacts_1")
+        result = run("bench_step", "--quick", "--backend", "host", "--method", "embree_contacts_1", "--csv",
+                     self.path("void.csv"), "--reference", self.reference_with_other_hash())
+        self.assertEqual(result.returncode, 3, result.stderr)
+        rows = read_csv(self.path("void.csv"))
+        self.assertTrue(rows)
+        for row in rows:
+            self.assertEqual(row["valid"], "no")
+            self.assertEqual(row.get("median_ms", ""), "")
+
+    def test_the_same_reference_is_good(self):
+        self.quick("bench_step", "--backend", "host", "--method", "none")
+        os.rename(self.path("rows.json"), self.path("before.json"))
+        rows = self.quick("bench_step", "--backend", "host", "--method", "embree_contacts_1", "--reference",
+                          self.path("before.json"))
+        self.assertEqual({row["method"] for row in rows}, {"embree_contacts_1"}, "the host is not run again")
+        self.assertTrue(all(row["valid"] == "yes" for row in rows))
+
+    def test_bad_input_is_refused(self):
+        for arguments in (["--scene", "no_such_scene"], ["--backend", "abacus"], ["--repeats", "0"],
+                          ["--reference", self.path("missing.json")]):
+            result = run("bench_step", *arguments)
+            self.assertEqual(result.returncode, 2, arguments)
+            self.assertTrue(result.stderr)
+
+
+class Study(ProgramTest):
+    def test_every_part_has_rows(self):
+        rows = self.quick("study")
+        listed = run("study", "--list").stdout
+        self.assertIn("traversal: ", listed)
+        parts = {row["part"] for row in rows}
+        for part in ("construction", "refit", "traversal"):
+            self.assertIn(part, parts)
+        for row in rows:
+            self.assertNotEqual(row["valid"], "no")
+            for column in ("median_ms", "kernel_median_ms", "broad_ms"):
+                if row.get(column):
+                    self.assertGreaterEqual(float(row[column]), 0)
+        peers = {(row["variant"], row["threads"]) for row in rows if row["part"] == "construction"}
+        for peer in ("embree_morton", "embree_sah", "fcl"):
+            self.assertIn((peer, "1"), peers)
+
+    def test_every_traversal_finds_the_hosts_contacts(self):
+        rows = [row for row in self.quick("study", "--part", "traversal") if row["part"] == "traversal"]
+        host = {row["step"]: row for row in rows if row["variant"] == "host"}
+        self.assertTrue(host)
+        self.assertGreater(len({row["contacts"] for row in host.values()}), 1, "the cloth comes down")
+        for row in rows:
+            self.assertEqual(row["valid"], "yes")
+            self.assertEqual(row["hash"], host[row["step"]]["hash"])
+
+    def test_bad_input_is_refused(self):
+        self.assertEqual(run("study", "--part", "no_such_part").returncode, 2)
+
+
+class Reports(ProgramTest):
+    """Plots and tables of quick runs; void rows do not reach them."""
+
+    def script(self, name, *arguments):
+        path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "benchmarks", name)
+        result = subprocess.run([sys.executable, path, *arguments], capture_output=True, text=True, timeout=300)
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def results(self):
+        folder = self.path("results/machine")
+        os.makedirs(folder)
+        for program in ("bench_step", "study"):
+            self.quick(program)
+            for ending in ("csv", "json"):
+                os.rename(self.path("rows." + ending), f"{folder}/{program}.{ending}")
+        return folder
+
+    def test_plots_and_tables(self):
+        try:
+            import matplotlib  # noqa: F401
+        except ModuleNotFoundError:
+            self.skipTest("python3-matplotlib is not installed")
+        folder = self.results()
+        self.script("plot.py", folder)
+        pictures = [name for name in os.listdir(folder) if name.endswith(".png")]
+        self.assertIn("step_shares.png", pictures)
+        self.assertIn("study_construction.png", pictures)
+
+    def test_summary_replaces_what_is_between_the_markers(self):
+        self.results()
+        readme = self.path("README.md")
+        with open(readme, "w") as file:
+            file.write("before\n<!-- results: made by summary.py -->\nold\n<!-- end of results -->\nafter\n")
+        self.script("summary.py", readme)
+        with open(readme) as file:
+            text = file.read()
+        self.assertTrue(text.startswith("before\n") and text.endswith("after\n"))
+        self.assertNotIn("old", text)
+        for words in ("### machine", "fcl, 1 thread", "thesis: Quadro"):
+            self.assertIn(words, text)
+        self.script("summary.py", readme)
+        with open(readme) as file:
+            self.assertEqual(file.read(), text, "a second run changes nothing")
+
+
+if __name__ == "__main__":
+    unittest.main()
