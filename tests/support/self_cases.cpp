@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "scenes/cloth_grid.h"
 #include "scenes/shapes.h"
 #include "tests/support/cases.h"
@@ -38,6 +40,11 @@ std::vector<SelfCase> selfCases()
     none.m_name = "no triangles";
     none.m_mesh.m_positions = none.m_end = {0, 0, 0, 1, 0, 0};
     cases.push_back(none);
+    // Features of the bad node's neighbours must still be found.
+    SelfCase bad = crumpledCase(9, 106);
+    bad.m_name += ", a node is NaN";
+    bad.m_end[3 * 40 + 1] = std::numeric_limits<float>::quiet_NaN();
+    cases.push_back(bad);
     return cases;
 }
 

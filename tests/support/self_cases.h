@@ -21,7 +21,7 @@ struct SelfCase
 SelfCase soupSelfCase(int triangles, std::uint32_t seed);
 // A cloth of nodes × nodes that crumples: every node goes to a place of its own near a plane.
 SelfCase crumpledCase(int nodes, std::uint32_t seed);
-// The above at several sizes, and a mesh of one, two and no triangles.
+// The above at several sizes, a mesh of one, two and no triangles, and one with a bad node at the end.
 std::vector<SelfCase> selfCases();
 
 // Null, with a failure recorded, when the back end cannot be had.
