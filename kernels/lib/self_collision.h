@@ -83,13 +83,13 @@ DRAPE_FUNCTION int leafWalkNext(LeafWalk* walk, const WalkSide* a, const WalkSid
     return 0;
 }
 
-// The volume of a vertex over the step, grown by the radius (m, ≥ 0). Empty when it is not finite.
+// The volume of a vertex over the step, grown by the radius (m, ≥ 0). Empty when it is not valid.
 DRAPE_FUNCTION void vertexVolume(Dop* dop, const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end,
                                  DRAPE_UINT vertex, float radius)
 {
     const Vec3 p0 = vec3Load(start, vertex), p1 = vec3Load(end, vertex);
     dopClear(dop);
-    if (!vec3IsFinite(p0) || !vec3IsFinite(p1)) return;
+    if (!positionIsValid(p0) || !positionIsValid(p1)) return;
     dopAddPoint(dop, p0, radius);
     dopAddPoint(dop, p1, radius);
 }
@@ -113,9 +113,18 @@ DRAPE_FUNCTION void featureInterval(const DRAPE_GLOBAL Dop* volumes, const Featu
     }
 }
 
-// Not proved apart.
+DRAPE_FUNCTION int featureIsValid(const DRAPE_GLOBAL Dop* volumes, const FeatureVertices* feature)
+{
+    int valid = 1;
+    for (int i = 0; i < feature->m_count; ++i)
+        valid &= volumes[feature->m_vertices[i]].m_low[0] <= volumes[feature->m_vertices[i]].m_high[0];
+    return valid;
+}
+
+// Not proved apart, and all vertices valid.
 DRAPE_FUNCTION int featuresOverlap(const DRAPE_GLOBAL Dop* volumes, const FeatureVertices* a, const FeatureVertices* b)
 {
+    if (!featureIsValid(volumes, a) || !featureIsValid(volumes, b)) return 0;
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
     {
         float lowA, highA, lowB, highB;

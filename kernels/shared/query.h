@@ -25,15 +25,15 @@ typedef struct CcdSettings
     float m_separation;     // m, ≥ 0: features this near count as touching
     float m_tolerance;      // of the offset relative to the pair's extent: what varies less is not halved
     float m_timeTolerance;  // of the step: the time is searched to this; 1: any hit will do and its time is 0
-    DRAPE_UINT m_boxLimit;  // boxes looked at before the search ends with the safe answer
+    DRAPE_UINT m_boxLimit;  // boxes looked at before a search ends with the safe answer, a hit
 } CcdSettings;
 
 typedef struct CcdResult
 {
     DRAPE_UINT m_hit;
     float m_time;        // part of the step, ≤ the true time of impact; 1 without a hit
-    float m_u, m_v;      // where on the features: see ccdVertexFace and ccdEdgeEdge
-    DRAPE_UINT m_boxes;  // looked at; more than the limit: the safe answer was taken
+    float m_u, m_v;      // where on the features: see ccdVectors
+    DRAPE_UINT m_boxes;  // looked at, the cost
 } CcdResult;
 
 typedef struct TriangleQuery

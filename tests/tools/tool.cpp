@@ -31,8 +31,8 @@ std::string readAll(const std::string& path)
 
 void ToolTest::SetUp()
 {
-    const char* program = std::getenv("DRAPE_CLOTH_DROP");
-    ASSERT_TRUE(program != nullptr) << "DRAPE_CLOTH_DROP must name the program";
+    const char* program = std::getenv(programVariable());
+    ASSERT_TRUE(program != nullptr) << programVariable() << " must name the program";
     m_program = program;
     std::string name = (fs::temp_directory_path() / "drape_tools_XXXXXX").string();
     ASSERT_TRUE(::mkdtemp(name.data()) != nullptr);

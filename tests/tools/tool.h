@@ -1,7 +1,7 @@
-// Runs cloth_drop as a user would and keeps what it said.
+// Runs cloth_drop, or another program, as a user would and keeps what it said.
 //
-// Input: the environment variable DRAPE_CLOTH_DROP names the program. Each test gets a folder of its own that is gone
-// afterwards.
+// Input: the environment variable DRAPE_CLOTH_DROP (or what programVariable() says) names the program. Each test gets a
+// folder of its own that is gone afterwards.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,6 +22,8 @@ class ToolTest : public testing::Test
 protected:
     void SetUp() override;
     void TearDown() override;
+    // The environment variable that names the program.
+    virtual const char* programVariable() const { return "DRAPE_CLOTH_DROP"; }
 
     ToolRun run(const std::vector<std::string>& arguments) const;
     // A 9×9 cloth on the sphere for 10 steps on the host, quiet; `more` follows and wins.

@@ -2,9 +2,10 @@
 
 #include <chrono>
 
+#include "scenes/describe_mesh.h"
 #include "scenes/mesh_loader.h"
 #include "tools/common/device_option.h"
-#include "tools/drape_check/records.h"
+#include "scenes/query_records.h"
 
 namespace drape
 {
@@ -43,11 +44,6 @@ CcdSettings ccdSettingsOf(const Options& options)
     settings.m_tolerance = float(options.m_tolerance);
     settings.m_timeTolerance = float(options.m_timeTolerance);
     return settings;
-}
-
-MeshDescription describe(const TriangleMesh& mesh)
-{
-    return {mesh.m_triangles.data(), mesh.triangleCount(), mesh.m_positions.data(), mesh.vertexCount()};
 }
 
 // Answers all queries twice, since drivers may compile at the first launch, and times the second; counts what differs
@@ -113,10 +109,10 @@ bool answerPairs(const Options& options, Json& answer, std::string& error, int& 
     if (!loadMesh(options.m_first, a, error) || (two && !loadMesh(options.m_second, b, error))) return false;
     const std::unique_ptr<Queries> queries = openQueries(options, answer, error, exitCode);
     if (!queries) return false;
-    const MeshDescription second = describe(b);
+    const MeshDescription second = describeMesh(b);
     MeshPairs found;
     const Clock::time_point start = Clock::now();
-    if (!queries->meshPairs(describe(a), two ? &second : nullptr, float(options.m_thickness), found))
+    if (!queries->meshPairs(describeMesh(a), two ? &second : nullptr, float(options.m_thickness), found))
     {
         error = queries->error().text();
         return false;
@@ -138,7 +134,7 @@ bool answerStep(const Options& options, Json& answer, std::string& error, int& e
     if (!queries) return false;
     MeshMotion found;
     const Clock::time_point start = Clock::now();
-    if (!queries->meshMotion(describe(mesh), end.data(), ccdSettingsOf(options), found))
+    if (!queries->meshMotion(describeMesh(mesh), end.data(), ccdSettingsOf(options), found))
     {
         error = queries->error().text();
         return false;

@@ -1,4 +1,4 @@
-#include "tools/drape_check/records.h"
+#include "scenes/query_records.h"
 
 #include <cmath>
 #include <cstring>

@@ -1,0 +1,208 @@
+// drape_check: its numbers on small inputs whose truth is plain, on every back end, and what it refuses.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "bullet_plugin/core/pipeline.h"
+#include "tests/tools/tool.h"
+
+namespace drape::test
+{
+namespace
+{
+using Json = nlohmann::json;
+
+// A record's bytes, as the files have them.
+std::string record(const std::vector<float>& coordinates, const std::vector<std::int32_t>& numbers)
+{
+    std::string bytes(4 * (coordinates.size() + numbers.size()), '\0');
+    std::memcpy(bytes.data(), coordinates.data(), 4 * coordinates.size());
+    std::memcpy(bytes.data() + 4 * coordinates.size(), numbers.data(), 4 * numbers.size());
+    return bytes;
+}
+
+const std::vector<float> kFace = {-3, -3, 0, 3, -3, 0, 0, 3, 0};
+
+// A vertex that goes from z = 1 to `end` over the face at rest, and the answer to give.
+std::string motionRecord(float end, std::int32_t answer)
+{
+    std::vector<float> points = {0, 0, 1};
+    points.insert(points.end(), kFace.begin(), kFace.end());
+    points.insert(points.end(), {0, 0, end});
+    points.insert(points.end(), kFace.begin(), kFace.end());
+    return record(points, {0, answer});
+}
+
+std::string triangleRecord(float height, std::int32_t answer)
+{
+    std::vector<float> corners = kFace;
+    corners.insert(corners.end(), {0, 0, height, 1, 0, height + 1, 0, 1, height + 1});
+    return record(corners, {answer});
+}
+
+// A grid of two triangles, and one loose triangle at a height above them.
+std::string meshAt(float height)
+{
+    const std::string z = std::to_string(height);
+    return "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 1 0.5 " + z + "\nv 3 0.5 " + z + "\nv 3 1.5 " + z +
+           "\nf 1 2 3\nf 1 3 4\nf 5 6 7\n";
+}
+}  // namespace
+
+class Check : public ToolTest
+{
+protected:
+    const char* programVariable() const override { return "DRAPE_CHECK"; }
+
+    // The answers of the back ends, which must be the same but for back end, device and times.
+    Json answer(std::vector<std::string> arguments) const
+    {
+        arguments.insert(arguments.end(), {"--json", "-", "--backend", "host"});
+        const Json host = answerOf(arguments);
+        if (listDevices().empty()) return host;
+        arguments.back() = "opencl";
+        const Json device = answerOf(arguments);
+        EXPECT_EQ(host.value("backend", ""), "host");
+        EXPECT_EQ(device.value("backend", ""), "opencl");
+        EXPECT_EQ(withoutTimes(host), withoutTimes(device));
+        return host;
+    }
+
+private:
+    Json answerOf(const std::vector<std::string>& arguments) const
+    {
+        const ToolRun result = run(arguments);
+        EXPECT_EQ(result.m_exitCode, 0) << result.m_err;
+        return Json::parse(result.m_out, nullptr, false);
+    }
+    static Json withoutTimes(Json json)
+    {
+        for (const char* key : {"backend", "device", "prepare_ms", "ms", "us_per_query"})
+            json.erase(key);
+        return json;
+    }
+};
+
+TEST_F(Check, ccdCountsMissesAndFalseHits)
+{
+    // A hit and a miss that are true, a hit that is said to be none, and a miss that is said to be a hit.
+    const std::string file =
+        write("motions.bin", motionRecord(-1, 1) + motionRecord(0.1f, 0) + motionRecord(-1, 0) + motionRecord(0.1f, 1));
+    const Json json = answer({"ccd", file});
+    EXPECT_EQ(json.at("queries"), 4);
+    EXPECT_EQ(json.at("misses"), 1);
+    EXPECT_EQ(json.at("false_hits"), 1);
+    EXPECT_GT(json.at("us_per_query"), 0);
+    // Within the separation all four touch.
+    const Json near = answer({"ccd", file, "--separation", "0.2"});
+    EXPECT_EQ(near.at("misses"), 0);
+    EXPECT_EQ(near.at("false_hits"), 2);
+    const Json timed = answer({"ccd", file, "--time-tolerance", "0.001", "--tolerance", "1e-5"});
+    EXPECT_EQ(timed.at("misses"), 1);
+}
+
+TEST_F(Check, trianglesInEveryMode)
+{
+    const std::string file = write("pairs.bin", triangleRecord(-0.5f, 1) + triangleRecord(0.001f, 0));
+    for (const char* mode : {"fast", "exact", "moller"})
+    {
+        SCOPED_TRACE(mode);
+        const Json json = answer({"triangles", file, "--mode", mode});
+        EXPECT_EQ(json.at("queries"), 2);
+        EXPECT_EQ(json.at("misses"), 0);
+        EXPECT_EQ(json.at("false_hits"), 0);
+    }
+    // Nearer than the rounding of floats lets the fast mode tell.
+    const std::string close = write("close.bin", triangleRecord(1e-44f, 0));
+    EXPECT_EQ(answer({"triangles", close, "--mode", "exact"}).at("false_hits"), 0);
+}
+
+TEST_F(Check, pairsOfOneMeshAndOfTwo)
+{
+    const std::string near = write("near.obj", meshAt(0.01f)), through = write("through.obj", meshAt(-0.5f));
+    const Json alone = answer({"pairs", near, "--thickness", "0.011"});
+    EXPECT_EQ(alone.at("candidates"), 1);
+    EXPECT_EQ(alone.at("pairs_within"), 1);
+    EXPECT_EQ(alone.at("intersecting_pairs"), 0);
+    EXPECT_EQ(answer({"pairs", near, "--thickness", "0.009"}).at("pairs_within"), 0);
+    // The grid lies in the other's grid: 4 pairs; the loose triangles are 0.51 apart, and 0.01 or 0.5 from the grids.
+    const Json both = answer({"pairs", near, through, "--thickness", "0.02"});
+    EXPECT_EQ(both.at("intersecting_pairs"), 4);
+    EXPECT_EQ(both.at("pairs_within"), 5);
+}
+
+TEST_F(Check, stepFindsWhatPasses)
+{
+    const std::string above = write("above.obj", meshAt(0.5f)), below = write("below.obj", meshAt(-0.5f));
+    const Json passing = answer({"step", above, below});
+    EXPECT_EQ(passing.at("vf_hits"), 3);  // the loose triangle's corners pass the first triangle of the grid
+    EXPECT_EQ(passing.at("ee_hits"), 0);
+    EXPECT_GE(passing.at("vf_candidates"), 3);
+    EXPECT_EQ(answer({"step", above, above}).at("vf_hits"), 0);
+    EXPECT_EQ(answer({"step", above, above, "--separation", "0.6"}).at("vf_hits"), 3);
+}
+
+TEST_F(Check, writesItsAnswer)
+{
+    const std::string file = write("motions.bin", motionRecord(-1, 1));
+    const ToolRun plain = run({"ccd", file, "--backend", "host"});
+    EXPECT_EQ(plain.m_exitCode, 0);
+    for (const char* key : {"queries 1\n", "misses 0\n", "false_hits 0\n", "us_per_query "})
+        EXPECT_NE(plain.m_out.find(key), std::string::npos) << plain.m_out;
+    const ToolRun quiet = run({"--backend", "host", "--quiet", "--json", path("answer.json"), "ccd", file});
+    EXPECT_EQ(quiet.m_exitCode, 0);
+    EXPECT_EQ(quiet.m_out + quiet.m_err, "");
+    EXPECT_EQ(Json::parse(readAll(path("answer.json"))).at("queries"), 1);
+    const ToolRun help = run({"--help"});
+    EXPECT_EQ(help.m_exitCode, 0);
+    for (const char* word : {"ccd", "triangles", "pairs", "step", "--backend", "--device", "--json"})
+        EXPECT_NE(help.m_out.find(word), std::string::npos) << word;
+    EXPECT_EQ(run({"--list-devices"}).m_exitCode, 0);
+}
+
+TEST_F(Check, refusesBadInput)
+{
+    const std::string good = write("good.bin", motionRecord(-1, 1));
+    const std::string mesh = write("mesh.obj", meshAt(1));
+    expectRefused(run({}), {"command"});
+    expectRefused(run({"ccd"}), {"FILE"});
+    expectRefused(run({"ccd", good, "--tolerance", "0"}), {"--tolerance"});
+    expectRefused(run({"ccd", good, "--backend", "abacus"}), {"abacus"});
+    expectRefused(run({"ccd", good, "--backend", "host", "--device", "gpu"}), {"--device"});
+    expectRefused(run({"triangles", good, "--mode", "guess"}), {"guess"});
+    expectRefused(run({"pairs", mesh, "--thickness", "-1"}), {"--thickness"});
+    expectRefused(run({"pairs", path("nowhere.ply")}), {"nowhere.ply", "no such file"});
+    expectRefused(run({"step", mesh}), {"A1"});
+    expectRefused(run({"step", mesh, write("other.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")}),
+                  {"other.obj", "mesh.obj"});
+}
+
+TEST_F(Check, refusesBadRecords)
+{
+    const std::string good = motionRecord(-1, 1);
+    expectRefused(run({"ccd", path("nowhere.bin")}), {"nowhere.bin", "no such file"});
+    expectRefused(run({"ccd", path("")}), {"folder"});
+    expectRefused(run({"ccd", write("empty.bin", "")}), {"empty.bin", "empty"});
+    expectRefused(run({"ccd", write("short.bin", good + "abc")}), {"short.bin", "104"});
+    expectRefused(run({"triangles", write("short.bin", good)}), {"short.bin", "76"});
+    std::string bad = good;
+    bad[96] = 7;
+    expectRefused(run({"ccd", write("kind.bin", good + bad)}), {"kind.bin", "record 2", "kind"});
+    bad = good;
+    bad[100] = 2;
+    expectRefused(run({"ccd", write("truth.bin", bad)}), {"truth.bin", "record 1", "answer"});
+    expectRefused(run({"ccd", write("nan.bin", motionRecord(std::nanf(""), 0))}), {"nan.bin", "finite"});
+}
+
+TEST_F(Check, whatCannotBeWrittenIsAFailedRun)
+{
+    const std::string file = write("motions.bin", motionRecord(-1, 1));
+    const ToolRun result = run({"ccd", file, "--backend", "host", "--json", path("no/such/folder/a.json")});
+    EXPECT_EQ(result.m_exitCode, 1);
+    EXPECT_NE(result.m_err.find("no/such/folder"), std::string::npos) << result.m_err;
+}
+}  // namespace drape::test
