@@ -162,7 +162,8 @@ def machine_text(folder):
 def main():
     readme = sys.argv[1] if len(sys.argv) > 1 else os.path.join(HERE, "README.md")
     results = os.path.join(os.path.dirname(os.path.abspath(readme)), "results")
-    folders = sorted(entry.path for entry in os.scandir(results) if entry.is_dir())
+    names = sorted(os.listdir(results)) if os.path.isdir(results) else []
+    folders = [os.path.join(results, name) for name in names]
     folders = [folder for folder in folders
                if any(os.path.exists(os.path.join(folder, name + ".json")) for name in ("bench_step", "study"))]
     with open(readme) as file:

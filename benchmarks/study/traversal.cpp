@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <iostream>
 #include <map>
+#include <stdexcept>
 
 #include "benchmarks/study/study.h"
 #include "benchmarks/support/models.h"
@@ -25,8 +26,43 @@ std::vector<Variant> variants(const StudyOptions& options)
     Variant device{"default", options.settings()};
     device.m_settings.m_profileKernels = true;
     std::vector<Variant> all = {host};
-    if (options.m_backend != "host") all.push_back(device);
+    if (options.m_backend == "host") return all;
+    all.push_back(device);
+#ifdef DRAPE_STUDY_TRAVERSALS
+    const std::pair<const char*, Traversal> traversals[] = {{"thesis: simple", Traversal::Single},
+                                                            {"thesis: front", Traversal::Front},
+                                                            {"as front, from fixed pairs", Traversal::Groups},
+                                                            {"pairs of subtrees", Traversal::Pairs},
+                                                            {"leaves", Traversal::Leaves},
+                                                            {"leaves, eight wide", Traversal::WideLeaves},
+                                                            {"groups, eight wide", Traversal::WideGroups}};
+    for (const auto& traversal : traversals)
+    {
+        device.m_name = traversal.first;
+        device.m_settings.m_methods.m_traversal = traversal.second;
+        all.push_back(device);
+    }
+#endif
     return all;
+}
+
+// Counting costs an atomic a work-item, so the tests are counted in a pass of its own. One number a step; empty where
+// the variant cannot count.
+std::vector<std::size_t> countTests(const StepScene& scene, Variant variant)
+{
+    std::vector<std::size_t> tests;
+#ifdef DRAPE_STUDY_TRAVERSALS
+    std::string error;
+    variant.m_settings.m_methods.m_countTests = true;
+    const std::unique_ptr<StepMethod> method = makeDrapeMethod(scene, variant.m_settings, error);
+    if (!method) throw std::runtime_error(error);
+    for (std::size_t step = 0; step + 1 < scene.m_frames.size(); ++step)
+        tests.push_back(method->step(scene.m_frames[step].data(), scene.m_frames[step + 1].data()).m_volumeTests);
+#else
+    static_cast<void>(scene);
+    static_cast<void>(variant);
+#endif
+    return tests;
 }
 
 // The scene's cloths from above: each step comes down by `kFall` thicknesses, the last one ends at rest.
@@ -78,7 +114,7 @@ Descent run(StepMethod& method, const StepScene& scene, const StudyOptions& opti
 }
 
 void addRows(const StepScene& scene, const Variant& variant, const StepMethod& method, const Descent& descent,
-             const Descent& reference, Table& table)
+             const Descent& reference, const std::vector<std::size_t>& tests, Table& table)
 {
     for (std::size_t step = 0; step < descent.m_times.size(); ++step)
     {
@@ -93,6 +129,7 @@ void addRows(const StepScene& scene, const Variant& variant, const StepMethod& m
         row["step"] = step;
         row["candidates"] = outcome.m_candidates;
         row["contacts"] = outcome.m_contacts;
+        if (step < tests.size() && tests[step] > 0) row["volume_tests"] = tests[step];
         for (const char* stage : {"step", "refit", "broad", "narrow", "order"})
         {
             const auto found = descent.m_times[step].find(stage);
@@ -131,7 +168,7 @@ void studyTraversals(const StudyOptions& options, Table& table)
             if (!method) throw std::runtime_error(error);
             const Descent descent = run(*method, scene, options);
             if (reference.m_outcomes.empty()) reference = descent;
-            addRows(scene, variant, *method, descent, reference, table);
+            addRows(scene, variant, *method, descent, reference, countTests(scene, variant), table);
         }
     }
 }

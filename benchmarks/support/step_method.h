@@ -23,7 +23,8 @@ struct StepOutcome
     std::vector<StageTime> m_stages;  // "step" is the whole, from positions in host memory to the result in host memory
     std::size_t m_candidates = 0;
     std::size_t m_contacts = 0;
-    std::string m_hash;  // of the contacts, or empty for a method that finds only candidates
+    std::size_t m_volumeTests = 0;  // 0: not counted
+    std::string m_hash;             // of the contacts, or empty for a method that finds only candidates
 };
 
 class StepMethod
