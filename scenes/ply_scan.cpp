@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -79,6 +80,19 @@ public:
     {
     }
 
+    // Text has an element a line, which other readers take for granted. To be called before each element …
+    void startElement()
+    {
+        m_lineEnd = std::min(m_bytes.find('\n', m_bytes.find_first_not_of(kBlanks, m_at)), m_bytes.size());
+    }
+    // … and after it: "", or that there is more on its line.
+    std::string endElement() const
+    {
+        if (m_encoding != Encoding::Text) return "";
+        const std::size_t more = m_bytes.find_first_not_of(kBlanks, m_at);
+        return more < m_lineEnd ? "the line has more numbers than the header says" : "";
+    }
+
     // "" and the next number, or why there is none.
     std::string next(const std::string& type, double& value)
     {
@@ -88,9 +102,9 @@ public:
 private:
     std::string nextWord(double& value)
     {
-        static const char* const kBlanks = " \t\r\n";
         const std::size_t first = m_bytes.find_first_not_of(kBlanks, m_at);
         if (first == std::string::npos) return "the file ends too early";
+        if (first >= m_lineEnd) return "the line ends too early";
         m_at = std::min(m_bytes.find_first_of(kBlanks, first), m_bytes.size());
         const std::string word = m_bytes.substr(first, m_at - first);
         char* end = nullptr;
@@ -110,9 +124,12 @@ private:
         return "";
     }
 
+    static constexpr const char* kBlanks = " \t\r\n";
+
     Encoding m_encoding;
     const std::string& m_bytes;
     std::size_t m_at;
+    std::size_t m_lineEnd = 0;  // text: of the element's line
 };
 
 std::string readProperty(std::istringstream& words, Header& header)
@@ -169,11 +186,13 @@ std::string checkProperty(Numbers& numbers, const Element& element, const Proper
     {
         const std::string problem = numbers.next(property.m_countType, count);
         if (!problem.empty()) return problem;
+        if (!(count >= 0 && count == std::floor(count))) return "the length of a list is not a whole number";
     }
     const bool coordinate = element.m_name == "vertex" && !list && property.m_name.size() == 1 &&
                             std::strchr("xyz", property.m_name[0]) != nullptr;
     const bool index =
         list && element.m_name == "face" && (property.m_name == "vertex_indices" || property.m_name == "vertex_index");
+    if (index && count < 3) return "a face has at least three corners";
     for (double i = 0; i < count; ++i)
     {
         double value = 0;
@@ -185,6 +204,17 @@ std::string checkProperty(Numbers& numbers, const Element& element, const Proper
         if (!problem.empty()) return problem;
     }
     return "";
+}
+
+std::string checkElement(Numbers& numbers, const Element& element, double vertices)
+{
+    numbers.startElement();
+    for (const Property& property : element.m_properties)
+    {
+        const std::string problem = checkProperty(numbers, element, property, vertices);
+        if (!problem.empty()) return problem;
+    }
+    return numbers.endElement();
 }
 }  // namespace
 
@@ -204,12 +234,15 @@ std::string scanPly(const std::string& bytes)
     if (faces == 0) return "no triangles";
     Numbers numbers(header.m_encoding, bytes, bodyStart);
     for (const Element& element : header.m_elements)
+    {
+        if (element.m_properties.empty() && element.m_count > 0)
+            return "not a mesh: element '" + element.m_name + "' has no properties in the PLY header";
         for (std::uint64_t i = 0; i < element.m_count; ++i)
-            for (const Property& property : element.m_properties)
-            {
-                const std::string problem = checkProperty(numbers, element, property, vertices);
-                if (!problem.empty()) return element.m_name + " " + std::to_string(i + 1) + ": " + problem;
-            }
+        {
+            const std::string problem = checkElement(numbers, element, vertices);
+            if (!problem.empty()) return element.m_name + " " + std::to_string(i + 1) + ": " + problem;
+        }
+    }
     return "";
 }
 }  // namespace drape

@@ -1,0 +1,27 @@
+// Nodes that went through the obstacle: those whose way from one step's end to the next met its surface, exactly
+// tested. A node that flew through something thin is not inside of it afterwards, so that depths do not tell. Metres.
+#pragma once
+
+#include <vector>
+
+#include "scenes/mesh.h"
+#include "scenes/triangle_tree.h"
+
+namespace drape::bench
+{
+class Crossings
+{
+public:
+    // positions: x y z per node at the start.
+    Crossings(const TriangleMesh& obstacle, const std::vector<float>& positions);
+
+    // To be called after every step with the nodes' new places; those that are not finite are left out.
+    void follow(const std::vector<float>& positions);
+    std::size_t nodes() const;
+
+private:
+    TriangleTree m_surface;
+    std::vector<Vector3> m_last;
+    std::vector<bool> m_crossed;
+};
+}  // namespace drape::bench

@@ -1,0 +1,97 @@
+#include "benchmarks/error_vs_time/error_scene.h"
+
+#include <cmath>
+
+#include "benchmarks/support/models.h"
+#include "scenes/shapes.h"
+
+namespace drape::bench
+{
+namespace
+{
+constexpr float kPlateHeight = 1.0f;       // m
+constexpr float kPlateThickness = 0.004f;  // m, a fifth of the contact's
+constexpr double kPlateSpeed = 30;         // m/s: half a metre a frame
+constexpr int kBoards = 24;
+constexpr float kBoardThickness = 0.008f;  // m
+constexpr float kBoardPitch = 0.03f;       // m: the gaps are 22 mm wide
+constexpr float kBoardTurn = 0.26f;        // rad, 15 degrees
+
+// Appends the mesh, turned about y and raised.
+void append(TriangleMesh& all, const TriangleMesh& mesh, float turn, float height)
+{
+    const std::int32_t first = std::int32_t(all.vertexCount());
+    const float c = std::cos(turn), s = std::sin(turn);
+    for (std::size_t v = 0; v < mesh.vertexCount(); ++v)
+    {
+        const float* p = &mesh.m_positions[3 * v];
+        all.m_positions.insert(all.m_positions.end(), {c * p[0] + s * p[2], p[1] + height, c * p[2] - s * p[0]});
+    }
+    for (const std::int32_t index : mesh.m_triangles)
+        all.m_triangles.push_back(first + index);
+}
+
+TriangleMesh makePile()
+{
+    TriangleMesh pile;
+    const TriangleMesh board = makeBox(0.9f, kBoardThickness, 0.9f);
+    for (int i = 0; i < kBoards; ++i)
+        append(pile, board, kBoardTurn * float(i), kBoardPitch * (float(i) + 0.5f));
+    return pile;
+}
+
+// The named obstacle, its cloth's side in m, and how far above the top the cloth starts.
+bool makeObstacle(ErrorScene& scene, const std::vector<std::string>& folders, float& clothSize, float& drop,
+                  std::string& error)
+{
+    TriangleMesh& obstacle = scene.m_drop.m_obstacle;
+    clothSize = 2.4f;
+    drop = 0.3f;
+    if (scene.m_name == "bunny" || scene.m_name == "dragon") return makeModel(scene.m_name, folders, obstacle, error);
+    if (scene.m_name == "stairs")
+    {
+        obstacle = makeStairs(2.0f, 1.2f, 2.0f, 6);
+        scene.m_symmetric = true;
+    }
+    else if (scene.m_name == "plate")
+    {
+        append(obstacle, makeBox(1.2f, kPlateThickness, 1.2f), 0, kPlateHeight);
+        clothSize = 1.8f;
+        scene.m_speed = kPlateSpeed;
+        scene.m_symmetric = true;
+    }
+    else if (scene.m_name == "pile")
+    {
+        obstacle = makePile();
+        clothSize = 1.8f;
+    }
+    else
+    {
+        error = "no scene is called " + scene.m_name;
+        return false;
+    }
+    return true;
+}
+}  // namespace
+
+std::vector<std::string> errorSceneNames(bool quick)
+{
+    if (quick) return {"stairs", "plate"};
+    return {"bunny", "stairs", "plate", "pile", "dragon"};
+}
+
+bool makeErrorScene(const std::string& name, bool quick, const std::vector<std::string>& modelFolders,
+                    ErrorScene& scene, std::string& error)
+{
+    scene = ErrorScene();
+    scene.m_name = name;
+    float clothSize = 0, drop = 0;
+    if (!makeObstacle(scene, modelFolders, clothSize, drop, error)) return false;
+    const int nodes = quick ? 13 : 33;
+    const float top = boundsOf(scene.m_drop.m_obstacle).m_high[1];
+    scene.m_drop.m_cloth = makeClothGrid(nodes, nodes, clothSize, top + float(kThickness) + drop);
+    scene.m_drop.m_dt = kFrameTime;
+    scene.m_drop.m_thickness = kThickness;
+    return true;
+}
+}  // namespace drape::bench

@@ -1,0 +1,46 @@
+// Runs a trial in a child process and turns what it streamed into a row.
+//
+// Every trial has a process of its own: Bullet's built-in collision can stall for minutes and take minutes to be
+// destroyed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "benchmarks/error_vs_time/trial.h"
+#include "benchmarks/support/arguments.h"
+#include "benchmarks/support/table.h"
+
+namespace drape::bench
+{
+struct ErrorOptions : CommonOptions
+{
+    std::vector<std::string> m_scenes;
+    std::vector<std::string> m_knobs;  // empty: all
+    double m_capSeconds = 120;         // of stepping, for one trial
+    int m_frames = 0;                  // 0: as many as the scene's kind of run has
+    std::string m_childScene;          // in a child: what to run
+    int m_childTrial = -1;
+
+    int frames() const { return m_frames > 0 ? m_frames : m_quick ? 40 : 240; }
+};
+
+// A trial's row, and where the cloth was at the end (x y z per node; empty when the trial did not get there).
+struct TrialResult
+{
+    Row m_row;
+    std::vector<float> m_final;
+    std::string m_hash;   // of the whole course
+    std::string m_error;  // one line when it could not be run
+};
+
+// In the parent. number: of the trial, as the child makes the same list.
+TrialResult runTrial(const ErrorOptions& options, const std::string& scene, const Trial& trial, int number,
+                     double capSeconds);
+
+// In the child: does not return but with an exit code for what could not be started.
+int streamTrial(const ErrorOptions& options, const ErrorScene& scene, const Trial& trial);
+
+// RMS distance of two courses' last positions, m.
+double shapeDistance(const std::vector<float>& a, const std::vector<float>& b);
+}  // namespace drape::bench

@@ -1,0 +1,143 @@
+#include "benchmarks/error_vs_time/trial_simulation.h"
+
+#include <cmath>
+
+#include <drape/drape.h>
+
+#include "benchmarks/error_vs_time/crossings.h"
+#include "examples/cloth_drop/drop_world.h"
+#include "examples/cloth_drop/node_positions.h"
+
+namespace drape::bench
+{
+namespace
+{
+// Enough cells of the distance field that none is thrown away.
+constexpr int kFieldHashSize = 1048573;
+constexpr int kFieldCells = 16000000;
+
+class WorldSimulation : public TrialSimulation
+{
+public:
+    // plugin: null for Bullet's own collision.
+    WorldSimulation(const ErrorScene& scene, const Trial& trial, std::unique_ptr<Plugin> plugin)
+        : m_plugin(std::move(plugin)),
+          m_world(makeConfiguration(m_plugin.get()), makeSolver(m_plugin.get())),
+          m_crossings(scene.m_drop.m_obstacle, scene.m_drop.m_cloth.m_mesh.m_positions),
+          m_trial(trial),
+          m_dt(kFrameTime / trial.m_substeps)
+    {
+        if (trial.m_voxel > 0) setVoxel(trial.m_voxel);
+        const DropScene drop = sceneOf(scene, trial);
+        m_world.addMeshObstacle(drop);
+        m_world.addCloth(drop, false);
+        btSoftBody& cloth = m_world.cloth();
+        cloth.m_cfg.piterations = trial.m_iterations;
+        // Air drag is a share of the speed a step: the same share of it in a second at any step.
+        cloth.m_cfg.kDP = btScalar(1 - std::pow(1 - double(cloth.m_cfg.kDP), 1.0 / trial.m_substeps));
+        for (int i = 0; i < cloth.m_nodes.size(); ++i)
+            cloth.m_nodes[i].m_v = btVector3(0, btScalar(-scene.m_speed), 0);
+    }
+
+    StepTimes step() override
+    {
+        StepTimes times;
+        times.m_stepMs = m_world.step(m_dt);
+        times.m_collisionMs = m_world.world().collisionMs();
+        const btSoftBody& cloth = m_world.cloth();
+        times.m_contacts = std::size_t(cloth.m_rcontacts.size()) + std::size_t(cloth.m_scontacts.size());
+        if (m_plugin)
+        {
+            times.m_collisionMs += m_plugin->statistics().collisionMs();
+            times.m_contacts = m_plugin->statistics().m_contacts;
+            m_status |= m_plugin->statistics().m_status;
+        }
+        weigh(cloth);
+        return times;
+    }
+
+    // Asked for once after each step, outside of its time.
+    const std::vector<float>& positions() override
+    {
+        copyPositions(m_world.cloth(), m_positions);
+        m_crossings.follow(m_positions);
+        return m_positions;
+    }
+    std::string backend() const override { return m_trial.method(); }
+    std::string device() const override { return m_plugin ? m_plugin->device().m_device.m_name : "host"; }
+    std::string deviceReason() const override { return m_plugin ? m_plugin->device().m_reason : ""; }
+    double prepareMs() const override { return m_plugin ? m_plugin->device().m_buildMs : 0; }
+    std::string trouble() const override { return m_status == kStepGood ? "" : "status " + std::to_string(m_status); }
+    const std::vector<double>& speeds() const override { return m_speeds; }
+    const std::vector<double>& energies() const override { return m_energies; }
+    std::size_t crossed() const override { return m_crossings.nodes(); }
+
+private:
+    static std::unique_ptr<btCollisionConfiguration> makeConfiguration(Plugin* plugin)
+    {
+        if (plugin) return std::make_unique<CollisionConfiguration>(*plugin);
+        return std::make_unique<btSoftBodyRigidBodyCollisionConfiguration>();
+    }
+    static std::unique_ptr<btSoftBodySolver> makeSolver(Plugin* plugin)
+    {
+        if (plugin) return std::make_unique<SoftBodySolver>(*plugin);
+        return nullptr;
+    }
+
+    void setVoxel(double size)
+    {
+        auto& field = m_world.world().getWorldInfo().m_sparsesdf;
+        field.Initialize(kFieldHashSize, kFieldCells);
+        field.setDefaultVoxelsz(btScalar(size));
+        field.Reset();  // only now the voxel size counts
+    }
+
+    void weigh(const btSoftBody& cloth)
+    {
+        double squares = 0, energy = 0;
+        for (int i = 0; i < cloth.m_nodes.size(); ++i)
+        {
+            const btSoftBody::Node& node = cloth.m_nodes[i];
+            const double mass = node.m_im > 0 ? 1 / double(node.m_im) : 0, square = double(node.m_v.length2());
+            squares += square;
+            energy += mass * (0.5 * square + 9.81 * double(node.m_x.y()));
+        }
+        m_speeds.push_back(std::sqrt(squares / cloth.m_nodes.size()));
+        m_energies.push_back(energy);
+    }
+
+    std::unique_ptr<Plugin> m_plugin;  // before the world: it must outlive the configuration's users
+    DropWorld m_world;
+    Crossings m_crossings;
+    Trial m_trial;
+    double m_dt;
+    std::uint32_t m_status = 0;
+    std::vector<float> m_positions;
+    std::vector<double> m_speeds, m_energies;
+};
+}  // namespace
+
+DropScene sceneOf(const ErrorScene& scene, const Trial& trial)
+{
+    DropScene drop = scene.m_drop;
+    drop.m_thickness = trial.m_thickness;
+    drop.m_dt = kFrameTime / trial.m_substeps;
+    return drop;
+}
+
+std::unique_ptr<TrialSimulation> makeTrialSimulation(const ErrorScene& scene, const Trial& trial, Settings settings,
+                                                     std::string& error)
+{
+    if (!trial.isDrape()) return std::make_unique<WorldSimulation>(scene, trial, nullptr);
+    settings.m_activation = float(trial.m_activation);
+    if (trial.m_method == Method::DrapeHost)
+    {
+        settings.m_backend = Backend::Host;
+        settings.m_device.clear();
+    }
+    auto plugin = std::make_unique<Plugin>(settings);
+    error = plugin->ready() ? "" : plugin->error();
+    if (!error.empty()) return nullptr;
+    return std::make_unique<WorldSimulation>(scene, trial, std::move(plugin));
+}
+}  // namespace drape::bench

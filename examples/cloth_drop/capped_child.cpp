@@ -1,0 +1,152 @@
+#include "examples/cloth_drop/capped_child.h"
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <exception>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char** environ;
+
+namespace drape
+{
+namespace
+{
+using Clock = std::chrono::steady_clock;
+using OnLine = std::function<void(int, const std::string&)>;
+
+// Starts the child with its standard output in a pipe; returns the reading end, or −1 with errno.
+int spawnChild(std::vector<std::string>& arguments, pid_t& child)
+{
+    int pipeEnds[2];
+    if (::pipe2(pipeEnds, O_CLOEXEC) != 0) return -1;
+    std::vector<char*> pointers;
+    for (std::string& argument : arguments)
+        pointers.push_back(&argument[0]);
+    pointers.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, pipeEnds[1], STDOUT_FILENO);
+    const int code = posix_spawn(&child, "/proc/self/exe", &actions, nullptr, pointers.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    ::close(pipeEnds[1]);
+    if (code == 0) return pipeEnds[0];
+    ::close(pipeEnds[0]);
+    errno = code;
+    return -1;
+}
+
+// The clock of the cap runs between "step" and "stepped".
+class ChildReader
+{
+public:
+    ChildReader(int pipe, double capSeconds, const OnLine& onLine)
+        : m_pipe(pipe), m_capSeconds(capSeconds), m_onLine(onLine)
+    {
+    }
+
+    // Reads until the child's end (true) or the cap (false).
+    bool follow()
+    {
+        char buffer[65536];
+        for (;;)
+        {
+            const double left = m_capSeconds - m_spent - (m_stepping ? secondsSince(m_stepStart) : 0);
+            if (m_stepping && left <= 0) return false;
+            pollfd waiting = {m_pipe, POLLIN, 0};
+            // Not stepping: loading or measuring, which always ends.
+            const int ready = ::poll(&waiting, 1, m_stepping ? static_cast<int>(left * 1000) + 1 : -1);
+            if (ready < 0 && errno != EINTR) return true;
+            if (ready <= 0) continue;
+            const ssize_t size = ::read(m_pipe, buffer, sizeof buffer);
+            if (size < 0 && errno == EINTR) continue;
+            if (size <= 0) return true;
+            m_text.append(buffer, static_cast<std::size_t>(size));
+            takeLines();
+        }
+    }
+
+    int step() const { return m_step; }
+
+private:
+    static double secondsSince(Clock::time_point start)
+    {
+        return std::chrono::duration<double>(Clock::now() - start).count();
+    }
+
+    void takeLines()
+    {
+        std::size_t start = 0;
+        for (std::size_t end; (end = m_text.find('\n', start)) != std::string::npos; start = end + 1)
+            takeLine(m_text.substr(start, end - start));
+        m_text.erase(0, start);
+    }
+
+    void takeLine(const std::string& line)
+    {
+        if (line == "step")
+        {
+            m_stepping = true;
+            m_stepStart = Clock::now();
+            ++m_step;
+            return;
+        }
+        if (line == "stepped")
+        {
+            m_stepping = false;
+            m_spent += secondsSince(m_stepStart);
+            return;
+        }
+        m_onLine(m_step, line);
+    }
+
+    int m_pipe;
+    double m_capSeconds;
+    const OnLine& m_onLine;
+    std::string m_text;
+    bool m_stepping = false;
+    Clock::time_point m_stepStart;
+    double m_spent = 0;
+    int m_step = 0;
+};
+}  // namespace
+
+ChildEnd runCappedChild(std::vector<std::string> arguments, double capSeconds, const OnLine& onLine)
+{
+    ChildEnd end;
+    pid_t child = 0;
+    const int pipe = spawnChild(arguments, child);
+    if (pipe < 0)
+    {
+        end.m_error = std::string("cannot start the child process: ") + std::strerror(errno);
+        return end;
+    }
+    ChildReader reader(pipe, capSeconds, onLine);
+    try
+    {
+        end.m_capped = !reader.follow();
+    }
+    catch (const std::exception& exception)
+    {
+        end.m_error = std::string("the child process sent what cannot be read: ") + exception.what();
+    }
+    end.m_step = reader.step();
+    if (end.m_capped || !end.m_error.empty()) ::kill(child, SIGKILL);
+    ::close(pipe);
+    int status = 0;
+    while (::waitpid(child, &status, 0) < 0 && errno == EINTR)
+    {
+    }
+    const bool good = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    if (!end.m_capped && end.m_error.empty() && !good)
+        end.m_error = "the child process ended in step " + std::to_string(end.m_step) +
+                      (WIFSIGNALED(status) ? std::string(": ") + ::strsignal(WTERMSIG(status)) : std::string());
+    return end;
+}
+}  // namespace drape

@@ -1,0 +1,25 @@
+// Runs this program again as a child process whose steps may take only so long together, and follows what it writes.
+//
+// Why: Bullet's built-in collision can stall for minutes in one step. The child writes the line "step" to its standard
+// output before every step and "stepped" after it (see step_stream.h); the cap counts the time between them only, not
+// loading or measuring. All other lines go to the caller. The child is always gone when the function returns.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace drape
+{
+struct ChildEnd
+{
+    int m_step = 0;         // the last step that began, from 1; 0: none
+    bool m_capped = false;  // the cap ended it, in that step
+    std::string m_error;    // one line when the child could not be started or failed, else empty
+};
+
+// arguments: the first one names the program. onLine gets the number of the last step and the line; an exception of its
+// own ends the child and becomes the error.
+ChildEnd runCappedChild(std::vector<std::string> arguments, double capSeconds,
+                        const std::function<void(int step, const std::string& line)>& onLine);
+}  // namespace drape

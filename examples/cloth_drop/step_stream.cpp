@@ -1,0 +1,65 @@
+#include "examples/cloth_drop/step_stream.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+#include <nlohmann/json.hpp>
+
+#include "examples/cloth_drop/options.h"
+#include "examples/cloth_drop/runner.h"
+
+namespace drape
+{
+namespace
+{
+using Json = nlohmann::json;
+
+Json asLine(const StepRecord& step)
+{
+    return {{"times", {step.m_times.m_stepMs, step.m_times.m_collisionMs}},
+            {"contacts", step.m_times.m_contacts},
+            {"penetration", step.m_measure.m_penetrationMax},
+            {"gap", step.m_measure.m_gapMin},
+            {"depths", step.m_measure.m_nodeDepths},
+            {"pairs", step.m_measure.m_intersectingPairs},
+            {"invalid", step.m_measure.m_invalidNodes},
+            {"hash", step.m_hash}};
+}
+}  // namespace
+
+StepRecord stepFromLine(const std::string& text)
+{
+    const Json line = Json::parse(text);
+    StepRecord step;
+    step.m_times.m_stepMs = line.at("times").at(0);
+    step.m_times.m_collisionMs = line.at("times").at(1);
+    step.m_times.m_contacts = line.at("contacts");
+    step.m_measure.m_penetrationMax = line.at("penetration");
+    step.m_measure.m_gapMin = line.at("gap").is_null() ? 0.0 : line.at("gap").get<double>();
+    step.m_measure.m_nodeDepths = line.at("depths").get<std::vector<float>>();
+    step.m_measure.m_intersectingPairs = line.at("pairs");
+    step.m_measure.m_invalidNodes = line.at("invalid");
+    step.m_hash = line.at("hash");
+    return step;
+}
+
+void streamRun(Simulation& simulation, const DropScene& scene, int steps, const std::function<std::string()>& lastLine)
+{
+    RunHooks hooks;
+    bool good = true;
+    const auto send = [&good](const std::string& line)
+    {
+        good = good && std::fputs((line + "\n").c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+        if (!good) std::_Exit(kExitFailed);  // the parent is gone
+    };
+    hooks.m_beforeStep = [&](int) { send("step"); };
+    hooks.m_stepped = [&](int) { send("stepped"); };
+    hooks.m_afterStep = [&](int, const StepRecord& step) { send(asLine(step).dump()); };
+    RunRecord record;
+    TriangleMesh lastFrame;
+    std::string error;
+    const bool ran = runSimulation(simulation, scene, steps, "", hooks, record, lastFrame, error);
+    if (ran && lastLine) send(lastLine());
+    std::_Exit(ran ? kExitGood : kExitFailed);
+}
+}  // namespace drape
