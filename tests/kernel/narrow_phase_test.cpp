@@ -95,18 +95,8 @@ public:
 };
 }  // namespace
 
-class NarrowPhaseTest : public BackendTest
+class NarrowPhaseTest : public DeviceTest
 {
-protected:
-    void SetUp() override
-    {
-        BackendTest::SetUp();
-        if (HasFatalFailure() || IsSkipped()) return;
-        m_device = openDevice(GetParam());
-        ASSERT_TRUE(m_device);
-    }
-
-    std::unique_ptr<Device> m_device;
 };
 
 TEST_P(NarrowPhaseTest, ContactsAreTheHostsAtEverySize)

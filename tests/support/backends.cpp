@@ -57,6 +57,14 @@ void BackendTest::SetUp()
     GTEST_FAIL() << "no OpenCL device was found (Debian: pocl-opencl-icd); DRAPE_TEST_NO_DEVICE=1 skips this test";
 }
 
+void DeviceTest::SetUp()
+{
+    BackendTest::SetUp();
+    if (HasFatalFailure() || IsSkipped()) return;
+    m_device = openDevice(GetParam());
+    ASSERT_TRUE(m_device);
+}
+
 std::unique_ptr<Pipeline> makePipeline(const Settings& settings)
 {
     Error error;

@@ -37,6 +37,15 @@ protected:
     void SetUp() override;
 };
 
+// A fixture with the device of an OpenCL back end open.
+class DeviceTest : public BackendTest
+{
+protected:
+    void SetUp() override;
+
+    std::unique_ptr<Device> m_device;
+};
+
 // Null, with a failure recorded, when it cannot be made.
 std::unique_ptr<Pipeline> makePipeline(const Settings& settings);
 // The device of an OpenCL back end; null, with a failure recorded, when it cannot be opened.
