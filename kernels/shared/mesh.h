@@ -64,6 +64,9 @@ typedef struct StepCounters
     DRAPE_UINT m_hits;
     DRAPE_UINT m_invalidNodes;
     DRAPE_UINT m_intersections;
+    DRAPE_UINT m_front;   // pairs of the front for the next step
+    DRAPE_UINT m_spill;   // most pairs that did not fit into a traversal's local queue
+    DRAPE_UINT m_visits;  // volume tests of the broad phase; only in programs built with DRAPE_COUNT_VISITS
 } StepCounters;
 
 DRAPE_NAMESPACE_END

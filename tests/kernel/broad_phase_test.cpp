@@ -1,4 +1,5 @@
-// Broad phase: device, host and brute force over the leaf volumes give one set; the demand is counted past a full list.
+// Broad phase: every traversal, on device and host, and brute force over the leaf volumes give one set; the demand is
+// counted past a full list.
 #include "bullet_plugin/core/broad_phase/broad_phase.h"
 
 #include <gtest/gtest.h>
@@ -7,28 +8,17 @@
 
 #include "scenes/shapes.h"
 #include "tests/support/cases.h"
-#include "tests/support/device_side.h"
+#include "tests/support/traversals.h"
 
 namespace drape::test
 {
 namespace
 {
-struct Sides
-{
-    Side m_cloth, m_obstacle;
-    std::vector<float> m_thickness;
-};
-
-// Refits both; a cloth's volumes reach as far as its largest thickness.
 Sides makeSides(Side cloth, Side obstacle, const std::vector<float>& thickness)
 {
-    const std::size_t obstacles = obstacle.m_pool.meshCount();
-    std::vector<float> radius(cloth.m_pool.meshCount(), -1.0f);
-    for (std::size_t i = 0; i < thickness.size(); ++i)
-        radius[i / obstacles] = std::max(radius[i / obstacles], thickness[i]);
-    refitSide(cloth, radius);
-    refitSide(obstacle, std::vector<float>(obstacles, 0.0f));
-    return {std::move(cloth), std::move(obstacle), thickness};
+    Sides sides = {std::move(cloth), std::move(obstacle), thickness};
+    refitSides(sides);
+    return sides;
 }
 
 Sides makeSides(const StepCase& step)
@@ -38,60 +28,32 @@ Sides makeSides(const StepCase& step)
     return makeSides(std::move(cloth), makeSide({step.m_obstacle}), {step.m_thickness});
 }
 
-std::vector<Candidate> hostCandidates(const Sides& sides)
-{
-    std::vector<Candidate> candidates;
-    broadPhaseOnHost(sides.m_cloth.broadPhase(), sides.m_obstacle.broadPhase(), sides.m_thickness,
-                     sides.m_obstacle.m_pool.meshCount(), candidates);
-    sortCandidates(candidates);
-    return candidates;
-}
 }  // namespace
 
-class BroadPhaseTest : public BackendTest
+class BroadPhaseTest : public DeviceTest
 {
 protected:
-    // What fits of the candidates, sorted; counts the demand.
-    std::vector<Candidate> deviceCandidates(Sides& sides, std::size_t capacity, std::size_t& demand)
-    {
-        const std::unique_ptr<Device> device = openDevice(GetParam());
-        if (!device) return {};
-        BroadPhaseStage stage;
-        stage.create(*device, programOf(*device, "broad_phase"));
-        DeviceSide cloth, obstacle;
-        cloth.upload(*device, sides.m_cloth);
-        obstacle.upload(*device, sides.m_obstacle);
-        Buffer<float> thickness;
-        guardCopy(*device, thickness, sides.m_thickness);
-        Buffer<Candidate> candidates;
-        guard(*device, candidates, capacity);
-        Buffer<StepCounters> counters;
-        clearCounters(*device, counters);
-        stage.enqueue(*device, {cloth.m_nodes, cloth.m_order, cloth.m_triangles, sides.m_cloth.m_layout},
-                      {obstacle.m_nodes, obstacle.m_order, obstacle.m_triangles, sides.m_obstacle.m_layout}, thickness,
-                      sides.m_obstacle.m_pool.meshCount(), candidates, counters);
-        demand = readCounters(*device, counters).m_candidates;
-        std::vector<Candidate> found = contents(*device, candidates, std::min(demand, candidates.capacity()));
-        sortCandidates(found);
-        EXPECT_TRUE(intact(*device, candidates) && intact(*device, counters) && intact(*device, thickness));
-        EXPECT_TRUE(cloth.allIntact(*device) && obstacle.allIntact(*device));
-        EXPECT_FALSE(device->failed()) << device->error().text();
-        return found;
-    }
-
     void expectAllAgree(Sides sides)
     {
-        const std::vector<Candidate> brute = bruteForceCandidates(sides.m_cloth, sides.m_obstacle, sides.m_thickness);
-        EXPECT_TRUE(sameBytes(hostCandidates(sides), brute));
-        std::size_t demand = 0;
-        EXPECT_TRUE(sameBytes(deviceCandidates(sides, brute.size(), demand), brute));
-        EXPECT_EQ(demand, brute.size());
+        const std::vector<Candidate> brute = bruteForce(sides);
+        for (Traversal traversal : allTraversals())
+        {
+            SCOPED_TRACE(traversalName(traversal));
+            HostRun host(traversal);
+            host.setTopology(sides);
+            EXPECT_TRUE(sameBytes(host.run(sides), brute));
+            DeviceRun device(*m_device, traversal);
+            device.setTopology(sides);
+            EXPECT_TRUE(sameBytes(device.run(brute.size()), brute));
+            EXPECT_EQ(device.counters().m_candidates, brute.size());
+        }
     }
 };
 
 TEST_P(BroadPhaseTest, SetsAgreeAtEverySize)
 {
-    const int sizes[][2] = {{1, 1}, {1, 65}, {2, 3}, {31, 33}, {63, 64}, {64, 1}, {65, 129}, {513, 63}, {1023, 3001}};
+    const int sizes[][2] = {{1, 1},   {1, 65}, {2, 3},    {7, 8},    {9, 7},      {31, 33},
+                            {63, 64}, {64, 1}, {65, 129}, {513, 63}, {1023, 3001}};
     std::uint32_t seed = 40;
     for (const auto& size : sizes)
     {
@@ -111,13 +73,24 @@ TEST_P(BroadPhaseTest, SetsAgreeOnShapes)
     }
 }
 
+// Everything overlaps: no traversal can stop early, and each shared stack, local queue and wide node is as full as it
+// gets.
+TEST_P(BroadPhaseTest, EveryPairOverlaps)
+{
+    Sides sides = makeSides(soupCase(257, 601, false, 61));
+    sides.m_thickness[0] = 10.0f;
+    refitSides(sides);
+    ASSERT_EQ(bruteForce(sides).size(), 257u * 601u);
+    expectAllAgree(sides);
+}
+
 TEST_P(BroadPhaseTest, OnlyPairedMeshesMeet)
 {
     const float no = -1.0f;
     Sides sides =
         makeSides(makeSide({makeSoup(1, 0.2f, 90, 1), makeSoup(1, 0.2f, 100, 2), makeSoup(1, 0.2f, 110, 3)}),
                   makeSide({makeSoup(1, 0.2f, 120, 4), makeSoup(1, 0.2f, 130, 5)}), {no, 0.01f, 0.02f, 0.03f, no, no});
-    const std::vector<Candidate> brute = bruteForceCandidates(sides.m_cloth, sides.m_obstacle, sides.m_thickness);
+    const std::vector<Candidate> brute = bruteForce(sides);
     for (const Candidate& candidate : brute)
     {
         const std::uint32_t cloth = sides.m_cloth.m_pool.triangles()[candidate.m_cloth].m_mesh;
@@ -125,6 +98,18 @@ TEST_P(BroadPhaseTest, OnlyPairedMeshesMeet)
         ASSERT_GE(sides.m_thickness[cloth * 2 + obstacle], 0.0f);
     }
     ASSERT_FALSE(brute.empty());
+    expectAllAgree(sides);
+}
+
+// With one obstacle its mesh is not looked up: the cloth without a pair has empty volumes.
+TEST_P(BroadPhaseTest, UnpairedClothMeetsNothing)
+{
+    Sides sides = makeSides(makeSide({makeSoup(1, 0.2f, 90, 1), makeSoup(1, 0.2f, 100, 2)}),
+                            makeSide({makeSoup(1, 0.2f, 120, 4)}), {-1.0f, 0.02f});
+    const std::vector<Candidate> brute = bruteForce(sides);
+    ASSERT_FALSE(brute.empty());
+    for (const Candidate& candidate : brute)
+        ASSERT_EQ(sides.m_cloth.m_pool.triangles()[candidate.m_cloth].m_mesh, 1u);
     expectAllAgree(sides);
 }
 
@@ -139,8 +124,9 @@ TEST_P(BroadPhaseTest, TrianglesWithoutAValidNodeMeetNothing)
         step.m_cloth.m_positions[9 * 44 + at + 1] = std::numeric_limits<float>::infinity();
     }
     step.m_end[9 * 60] = std::numeric_limits<float>::quiet_NaN();
-    Sides sides = makeSides(step);
-    for (const Candidate& candidate : hostCandidates(sides))
+    const Sides sides = makeSides(step);
+    ASSERT_FALSE(bruteForce(sides).empty());
+    for (const Candidate& candidate : bruteForce(sides))
     {
         ASSERT_NE(candidate.m_cloth, 11u);
         ASSERT_NE(candidate.m_cloth, 44u);
@@ -158,17 +144,66 @@ TEST_P(BroadPhaseTest, NothingOnOneSide)
 TEST_P(BroadPhaseTest, FullListCountsOnAndWritesNothingBeyond)
 {
     Sides sides = makeSides(soupCase(700, 900, true, 72));
-    const std::vector<Candidate> brute = bruteForceCandidates(sides.m_cloth, sides.m_obstacle, sides.m_thickness);
+    const std::vector<Candidate> brute = bruteForce(sides);
     ASSERT_GT(brute.size(), 1000u);
-    for (std::size_t capacity : {std::size_t(1), std::size_t(17), brute.size() / 2, brute.size() - 1})
+    for (Traversal traversal : allTraversals())
     {
-        SCOPED_TRACE("capacity " + std::to_string(capacity));
-        std::size_t demand = 0;
-        const std::vector<Candidate> found = deviceCandidates(sides, capacity, demand);
-        EXPECT_EQ(demand, brute.size());
-        EXPECT_EQ(found.size(), capacity);
-        for (const Candidate& candidate : found)
-            ASSERT_TRUE(contains(brute, candidate.m_cloth, candidate.m_obstacle));
+        DeviceRun device(*m_device, traversal);
+        device.setTopology(sides);
+        for (std::size_t capacity : {std::size_t(1), std::size_t(17), brute.size() / 2, brute.size() - 1})
+        {
+            SCOPED_TRACE(traversalName(traversal) + std::string(", capacity ") + std::to_string(capacity));
+            const std::vector<Candidate> found = device.run(capacity);
+            EXPECT_EQ(device.counters().m_candidates, brute.size());
+            EXPECT_EQ(found.size(), capacity);
+            for (const Candidate& candidate : found)
+                ASSERT_TRUE(contains(brute, candidate.m_cloth, candidate.m_obstacle));
+        }
+    }
+}
+
+// Past the limit a traversal may end early, says so by its count, and the next run starts from what is complete.
+TEST_P(BroadPhaseTest, LimitIsExact)
+{
+    Sides sides = makeSides(soupCase(257, 601, false, 74));
+    sides.m_thickness[0] = 10.0f;
+    refitSides(sides);
+    const std::size_t all = 257 * 601;
+    for (Traversal traversal : allTraversals())
+    {
+        SCOPED_TRACE(traversalName(traversal));
+        HostRun host(traversal);
+        host.setTopology(sides);
+        DeviceRun device(*m_device, traversal);
+        device.setTopology(sides);
+        for (const std::size_t limit : {all - 1, std::size_t(100), all})
+        {
+            EXPECT_EQ(host.isWithin(sides, limit), limit == all);
+            device.run(10, limit);
+            EXPECT_EQ(device.counters().m_candidates > limit, limit < all);
+        }
+        EXPECT_EQ(device.counters().m_candidates, all);
+    }
+}
+
+// The counted tests of volumes are those that the host's version of the same traversal makes.
+TEST_P(BroadPhaseTest, CountsTests)
+{
+    Sides sides = makeSides(fallingCase("torus", 33, 0.02f, 73));
+    for (Traversal traversal : {Traversal::Single, Traversal::Leaves, Traversal::WideLeaves, Traversal::WideGroups})
+    {
+        SCOPED_TRACE(traversalName(traversal));
+        HostRun host(traversal);
+        host.setTopology(sides);
+        host.run(sides);
+        DeviceRun device(*m_device, traversal, true), silent(*m_device, traversal);
+        device.setTopology(sides);
+        device.run(1);
+        EXPECT_GT(device.counters().m_visits, 10000u);
+        EXPECT_EQ(device.counters().m_visits, host.volumeTests());
+        silent.setTopology(sides);
+        silent.run(1);
+        EXPECT_EQ(silent.counters().m_visits, 0u);
     }
 }
 

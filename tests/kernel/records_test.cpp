@@ -6,6 +6,7 @@
 #include "bullet_plugin/core/device/program.h"
 #include "kernels/shared/contact.h"
 #include "kernels/shared/patch.h"
+#include "kernels/shared/traversal.h"
 #include "tests/support/backends.h"
 #include "tests/support/canary.h"
 
@@ -43,6 +44,9 @@ std::vector<Field> fields()
             DRAPE_TEST_SIZE(Contact),
             DRAPE_TEST_SIZE(Patch),
             DRAPE_TEST_SIZE(FeatureTest),
+            DRAPE_TEST_SIZE(NodePair),
+            DRAPE_TEST_SIZE(BvhLink),
+            DRAPE_TEST_SIZE(WideNode),
             DRAPE_TEST_OFFSET(Vec3, z),
             DRAPE_TEST_OFFSET(Triangle, m_vertices),
             DRAPE_TEST_OFFSET(Triangle, m_edges),
@@ -63,6 +67,13 @@ std::vector<Field> fields()
             DRAPE_TEST_OFFSET(StepCounters, m_hits),
             DRAPE_TEST_OFFSET(StepCounters, m_invalidNodes),
             DRAPE_TEST_OFFSET(StepCounters, m_intersections),
+            DRAPE_TEST_OFFSET(StepCounters, m_front),
+            DRAPE_TEST_OFFSET(StepCounters, m_spill),
+            DRAPE_TEST_OFFSET(StepCounters, m_visits),
+            DRAPE_TEST_OFFSET(NodePair, m_obstacle),
+            DRAPE_TEST_OFFSET(BvhLink, m_depth),
+            DRAPE_TEST_OFFSET(WideNode, m_high),
+            DRAPE_TEST_OFFSET(WideNode, m_child),
             DRAPE_TEST_OFFSET(Contact, m_slot),
             DRAPE_TEST_OFFSET(Contact, m_kind),
             DRAPE_TEST_OFFSET(Contact, m_clothFeature),
@@ -88,11 +99,11 @@ TEST_P(RecordsTest, DeviceAndHostAgree)
 {
     const std::unique_ptr<Device> device = openDevice(GetParam());
     ASSERT_TRUE(device);
-    // An embedded kernel brings the shared headers; the test's kernel follows it.
-    std::string source = assembleSource("kernels/narrow_phase.cl");
+    // Embedded files bring the shared headers; the test's kernel follows them.
+    std::string source = assembleSource("kernels/narrow_phase.cl") + assembleSource("kernels/shared/traversal.h");
     source += "\n__kernel void reportRecords(__global uint* values)\n{\n";
     for (const char* type : {"Vec3", "Triangle", "Edge", "NormalCone", "BvhNode", "Candidate", "StepCounters",
-                             "Contact", "Patch", "FeatureTest"})
+                             "Contact", "Patch", "FeatureTest", "NodePair", "BvhLink", "WideNode"})
     {
         source += std::string("    ") + type + " a" + type + ";\n";
     }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bullet_plugin/core/broad_phase/broad_phase.h"
+#include "bullet_plugin/core/bvh/bvh_layout.h"
 #include "bullet_plugin/core/mesh/mesh_pool.h"
 #include "bullet_plugin/core/narrow_phase/narrow_phase.h"
 #include "scenes/mesh.h"

@@ -1,54 +1,42 @@
 // Broad phase: all pairs of a cloth and an obstacle triangle whose volumes overlap and whose meshes are paired. The set
-// is the same on device and host, and equal to testing every pair of leaf volumes; its order is not defined on a
-// device.
+// is the same on device and host and for every Traversal, and equal to testing every pair of leaf volumes; its order is
+// not defined on a device.
 #pragma once
 
-#include <vector>
+#include <functional>
+#include <memory>
 
-#include "bullet_plugin/core/bvh/bvh_layout.h"
-#include "bullet_plugin/core/device/buffer.h"
-#include "bullet_plugin/core/device/program.h"
+#include "device_traversal.h"
+#include "drape/methods.h"
+#include "host_traversal.h"
 
 namespace drape
 {
-// One side as the traversal sees it.
-struct BroadPhaseSide
-{
-    const std::vector<BvhNode>& m_nodes;
-    const BvhLayout& m_layout;
-    const std::vector<std::uint32_t>& m_order;
-    const std::vector<Triangle>& m_triangles;
-};
-
-// Most candidates that a step can have: all fifteen feature tests of each stay countable in 32 bits.
-constexpr std::size_t kMostCandidates = std::size_t(1) << 28;
-
-// thickness: m, cloth slots × obstacle slots, negative where the pair is not tested. False when there are more than
-// limit candidates; the list is incomplete then.
-bool broadPhaseOnHost(const BroadPhaseSide& cloth, const BroadPhaseSide& obstacle, const std::vector<float>& thickness,
-                      std::size_t obstacleMeshes, std::vector<Candidate>& candidates,
-                      std::size_t limit = kMostCandidates);
-
-struct BroadPhaseBuffers
-{
-    Buffer<BvhNode>& m_nodes;
-    Buffer<cl_uint>& m_order;
-    Buffer<Triangle>& m_triangles;
-    const BvhLayout& m_layout;
-};
-
 class BroadPhaseStage
 {
 public:
-    void create(Device& device, const cl::Program& program);
+    // Gives the program of kernels/<name>.cl.
+    using Programs = std::function<cl::Program(const char* name)>;
 
-    // Returns after enqueueing. counters' candidates must be zero; they count the demand, also past the list's
-    // capacity. The count is exact up to limit; a greater one says only that there are more.
-    void enqueue(Device& device, BroadPhaseBuffers cloth, BroadPhaseBuffers obstacle, Buffer<float>& thickness,
-                 std::size_t obstacleMeshes, Buffer<Candidate>& candidates, Buffer<StepCounters>& counters,
-                 std::size_t limit = kMostCandidates);
+    // Builds what the traversal needs and nothing else.
+    void create(Device& device, Traversal traversal, const Programs& program);
+
+    // Takes one that was made already.
+    void use(std::unique_ptr<DeviceTraversal> traversal) { m_traversal = std::move(traversal); }
+
+    // As DeviceTraversal; hierarchies may be empty.
+    void setObstacles(Device& device, const Hierarchy& obstacle);
+    void setTopology(Device& device, const Hierarchy& cloth, const Hierarchy& obstacle);
+    void obstaclesRefitted(Device& device, Buffer<BvhNode>& nodes) { m_traversal->obstaclesRefitted(device, nodes); }
+    void enqueue(Device& device, const TraversalStep& step);
+    bool grow(Device& device, const StepCounters& counters, bool& limitReached)
+    {
+        return m_traversal->grow(device, counters, limitReached);
+    }
+    void accept(Device& device, const StepCounters& counters) { m_traversal->accept(device, counters); }
 
 private:
-    Kernel m_traverse;
+    std::unique_ptr<DeviceTraversal> m_traversal;
+    bool m_empty = true;
 };
 }  // namespace drape

@@ -21,8 +21,16 @@ DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& set
 {
     m_refit.create(*m_device, program("refit"));
     m_mortonOrder.create(*m_device, program("morton_order"));
-    m_broadPhase.create(*m_device, program("broad_phase"));
-    m_patchCull.create(*m_device, program("patch_cull", PatchCullStage::defines(*m_device)));
+    if (patches())
+    {
+        m_patchCull.create(*m_device, program("patch_cull", PatchCullStage::defines(*m_device)));
+    }
+    else
+    {
+        const char* const counting = m_settings.m_methods.m_countTests ? "#define DRAPE_COUNT_VISITS\n" : "";
+        m_broadPhase.create(*m_device, m_settings.m_methods.m_traversal,
+                            [&](const char* name) { return program(name, counting); });
+    }
     const cl::Program narrowPhase = program("narrow_phase", PatchCullStage::defines(*m_device));
     m_narrowPhase.create(*m_device, narrowPhase, program("compaction"));
     m_candidates.reserve(*m_device, 1);
@@ -107,7 +115,8 @@ void DeviceBackend::uploadSide(const MeshPool& pool, const BvhLayout& layout, Si
 
 void DeviceBackend::updateTopology(const Scene& scene)
 {
-    if (m_cloth.m_revision != scene.m_cloths.revision())
+    const bool newCloths = m_cloth.m_revision != scene.m_cloths.revision();
+    if (newCloths)
     {
         uploadSide(scene.m_cloths, scene.m_clothLayout, m_cloth);
         m_clothEdges.assign(*m_device, scene.m_cloths.edges());
@@ -119,9 +128,20 @@ void DeviceBackend::updateTopology(const Scene& scene)
     if (newObstacles)
     {
         uploadSide(scene.m_obstacles, scene.m_obstacleLayout, m_obstacle);
-        m_patchCull.setTopology(*m_device, scene.m_obstacles);
+        if (patches()) m_patchCull.setTopology(*m_device, scene.m_obstacles);
     }
+    if (!patches() && (newCloths || newObstacles)) updateTraversal(scene, newObstacles);
     if (newObstacles || m_obstacleMotion != scene.m_obstacleMotion) updateObstacles(scene);
+}
+
+void DeviceBackend::updateTraversal(const Scene& scene, bool newObstacles)
+{
+    const std::vector<BvhNode> clothNodes = makeBvhNodes(scene.m_clothLayout);
+    const std::vector<BvhNode> obstacleNodes = makeBvhNodes(scene.m_obstacleLayout);
+    const Hierarchy cloth = {clothNodes, scene.m_clothLayout.root(), scene.m_cloths.order()};
+    const Hierarchy obstacle = {obstacleNodes, scene.m_obstacleLayout.root(), scene.m_obstacles.order()};
+    if (newObstacles) m_broadPhase.setObstacles(*m_device, obstacle);
+    m_broadPhase.setTopology(*m_device, cloth, obstacle);
 }
 
 void DeviceBackend::updateObstacles(const Scene& scene)
@@ -134,8 +154,16 @@ void DeviceBackend::updateObstacles(const Scene& scene)
     m_obstacle.m_radius.assign(*m_device, noRadius);
     m_refit.enqueue(*m_device, scene.m_obstacleLayout, m_obstacle.m_levels, m_obstacle.m_nodes, m_obstacle.m_order,
                     m_obstacle.m_triangles, m_obstaclePositions, m_obstaclePositions, m_obstacle.m_radius, m_counters);
-    m_patchCull.pack(*m_device, {scene.m_obstacles.triangles(), scene.m_obstaclePositions.data(), scene.m_vertexCones,
-                                 scene.m_edgeCones, m_obstacle.m_triangles, m_obstaclePositions, m_vertexCones, m_edgeCones});
+    if (patches())
+    {
+        m_patchCull.pack(*m_device,
+                         {scene.m_obstacles.triangles(), scene.m_obstaclePositions.data(), scene.m_vertexCones,
+                          scene.m_edgeCones, m_obstacle.m_triangles, m_obstaclePositions, m_vertexCones, m_edgeCones});
+    }
+    else
+    {
+        m_broadPhase.obstaclesRefitted(*m_device, m_obstacle.m_nodes);
+    }
     m_device->wait();  // noRadius is a local
 }
 
@@ -180,10 +208,13 @@ void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
     {
         m_refit.enqueue(*m_device, scene.m_clothLayout, m_cloth.m_levels, m_cloth.m_nodes, m_cloth.m_order,
                         m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, m_counters);
-        m_broadPhase.enqueue(*m_device, {m_cloth.m_nodes, m_cloth.m_order, m_cloth.m_triangles, scene.m_clothLayout},
-                             {m_obstacle.m_nodes, m_obstacle.m_order, m_obstacle.m_triangles, scene.m_obstacleLayout},
-                             m_thickness, obstacleMeshes, m_candidates, m_counters,
-                             StepLimits(m_settings).m_candidates);
+        m_broadPhase.enqueue(*m_device, {{m_cloth.m_nodes, m_cloth.m_order, m_cloth.m_triangles},
+                                         {m_obstacle.m_nodes, m_obstacle.m_order, m_obstacle.m_triangles},
+                                         m_thickness,
+                                         obstacleMeshes,
+                                         m_candidates,
+                                         m_counters,
+                                         StepLimits(m_settings).m_candidates});
         const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacleMeshes, 1.0f + m_settings.m_activation};
         m_narrowPhase.enqueue(*m_device, narrowPhaseBuffers(), scene.m_cloths.vertexCount(),
                               scene.m_cloths.triangles().size(), narrow, m_candidates, m_counters);
@@ -250,6 +281,7 @@ bool DeviceBackend::grow()
     }
     else
     {
+        again = m_broadPhase.grow(device, counters, m_limitReached);
         demand(counters.m_candidates, m_candidates.capacity(), sizeof(Candidate),
                [&](std::size_t count) { m_candidates.reserve(device, count); });
         demand(std::min(std::size_t(counters.m_listed), StepLimits(m_settings).m_contacts), m_narrowPhase.hitCapacity(),
@@ -274,6 +306,7 @@ bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResul
         m_device->wait();
     }
     if (m_device->failed()) return false;
+    if (!patches()) m_broadPhase.accept(*m_device, *m_countersRead.data());
     readAll(result);
     return !m_device->failed();
 }
@@ -282,6 +315,7 @@ void DeviceBackend::readAll(StepResult& result)
 {
     const StepCounters counters = *m_countersRead.data();
     result.m_candidates = counters.m_candidates;
+    result.m_volumeTests = counters.m_visits;
     result.m_invalidNodes = counters.m_invalidNodes;
     result.m_intersectionCount = counters.m_intersections;
     if (m_settings.m_reportIntersections)

@@ -54,11 +54,15 @@ private:
     void warmUp();
     void uploadSide(const MeshPool& pool, const BvhLayout& layout, Side& side);
     void updateTopology(const Scene& scene);
+    void updateTraversal(const Scene& scene, bool newObstacles);
     void updateObstacles(const Scene& scene);
     void uploadStep(const Scene& scene, const StepPairs& pairs);
     void enqueueStep(const Scene& scene, const StepPairs& pairs);
     // Whether the step goes over patches; intersections are found among pairs of triangles.
-    bool patches() const { return !m_settings.m_reportIntersections; }
+    bool patches() const
+    {
+        return !m_settings.m_reportIntersections && m_settings.m_methods.m_traversal == Traversal::Auto;
+    }
     NarrowPhaseBuffers narrowPhaseBuffers();
     // Whether the last run demanded more than the settings allow; the result says what.
     bool overLimit(StepResult& result);

@@ -23,7 +23,8 @@ double lap(Clock::time_point& from)
 
 void HostBackend::update(const Scene& scene)
 {
-    if (m_clothRevision != scene.m_cloths.revision())
+    const bool newCloths = m_clothRevision != scene.m_cloths.revision();
+    if (newCloths)
     {
         m_clothRevision = scene.m_cloths.revision();
         m_clothNodes = makeBvhNodes(scene.m_clothLayout);
@@ -33,7 +34,9 @@ void HostBackend::update(const Scene& scene)
     {
         m_obstacleRevision = scene.m_obstacles.revision();
         m_obstacleNodes = makeBvhNodes(scene.m_obstacleLayout);
+        m_traversal.setObstacles(obstacleSide(scene));
     }
+    if (newCloths || newObstacles) m_traversal.setTopology(clothSide(scene), obstacleSide(scene));
     if (newObstacles || m_obstacleMotion != scene.m_obstacleMotion)
     {
         m_obstacleMotion = scene.m_obstacleMotion;
@@ -42,6 +45,7 @@ void HostBackend::update(const Scene& scene)
         std::size_t ignored = 0;  // the adapter reports bad obstacles when it mirrors them
         refitOnHost(m_obstacleNodes, scene.m_obstacleLayout, scene.m_obstacles.order(), scene.m_obstacles.triangles(),
                     positions, positions, noRadius, ignored);
+        m_traversal.obstaclesRefitted(obstacleSide(scene));
     }
 }
 
@@ -80,14 +84,15 @@ void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings
     const StepLimits limits(settings);
     result.m_invalidNodes = refitCloths(scene, pairs);
     result.m_refitMs = lap(stage);
-    if (!broadPhaseOnHost(clothSide(scene), obstacleSide(scene), pairs.m_thickness, obstacles.meshCount(), m_candidates,
-                          limits.m_candidates))
+    if (!m_traversal.run(clothSide(scene), obstacleSide(scene), pairs.m_thickness, obstacles.meshCount(), m_candidates,
+                         limits.m_candidates))
     {
         std::vector<Candidate>().swap(m_candidates);
         result.m_overLimit = true;
         return;
     }
     result.m_candidates = m_candidates.size();
+    result.m_volumeTests = m_traversal.volumeTests();
     result.m_broadMs = lap(stage);
     const ClothView cloth = {scene.m_clothStart.data(),           scene.m_clothEnd.data(),
                              cloths.triangles().data(),           cloths.edges().data(),

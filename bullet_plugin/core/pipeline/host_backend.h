@@ -1,6 +1,7 @@
 // The step on the calling thread, with the kernels' own pure functions. Needs no OpenCL device.
 #pragma once
 
+#include "bullet_plugin/core/broad_phase/host_traversal.h"
 #include "drape/settings.h"
 #include "step.h"
 
@@ -9,6 +10,8 @@ namespace drape
 class HostBackend
 {
 public:
+    explicit HostBackend(const Methods& methods = Methods()) : m_traversal(methods.m_traversal) {}
+
     // Runs the whole step.
     void run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
 
@@ -23,6 +26,7 @@ private:
     BroadPhaseSide obstacleSide(const Scene& scene) const;
 
     std::vector<BvhNode> m_clothNodes, m_obstacleNodes;
+    HostTraversal m_traversal;
     std::vector<Candidate> m_candidates;
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0, m_obstacleMotion = 0;
 };

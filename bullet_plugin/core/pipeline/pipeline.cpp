@@ -150,6 +150,7 @@ std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& erro
     std::unique_ptr<Pipeline> pipeline(new Pipeline);
     Implementation& self = *pipeline->m_implementation;
     self.m_settings = settings;
+    self.m_hostBackend = HostBackend(settings.m_methods);
     self.m_report.m_reason = choice.m_reason;
     self.m_report.m_device.m_name = "host";
     self.m_report.m_onHost = choice.m_onHost;
@@ -261,6 +262,7 @@ const std::vector<Contact>& Pipeline::finish()
     }
     self.m_submitted = false;
     statistics.m_candidates += self.m_result.m_candidates;
+    statistics.m_volumeTests = self.m_result.m_volumeTests;
     statistics.m_contacts = self.m_result.m_contacts.size();
     statistics.m_intersections = self.m_result.m_intersectionCount;
     statistics.m_invalidNodes = self.m_result.m_invalidNodes;

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <string>
 
+#include "methods.h"
+
 namespace drape
 {
 enum class Backend
@@ -41,5 +43,8 @@ struct Settings
 
     // Folder of compiled kernels. Empty: $XDG_CACHE_HOME/drape or ~/.cache/drape. "none": do not cache.
     std::string m_cacheFolder;
+
+    // Which algorithms; for comparing them. The contacts do not depend on it.
+    Methods m_methods;
 };
 }  // namespace drape

@@ -1,0 +1,247 @@
+#include "host_traversal.h"
+
+#include <algorithm>
+#include <deque>
+
+#include "kernels/lib/traversal.h"
+
+namespace drape
+{
+namespace
+{
+// As on the device, see front_traversal.cpp.
+constexpr std::uint32_t kRaiseInterval = 8;
+}  // namespace
+
+struct HostTraversal::Step
+{
+    const BroadPhaseSide& m_cloth;
+    const BroadPhaseSide& m_obstacle;
+    const std::vector<float>& m_thickness;
+    std::size_t m_obstacleMeshes;
+    std::vector<Candidate>& m_candidates;
+    std::size_t m_limit;
+
+    // Then there is no need to look further.
+    bool overLimit() const { return m_candidates.size() > m_limit; }
+    const BvhNode& clothNode(NodePair pair) const { return m_cloth.m_nodes[pair.m_cloth]; }
+    const BvhNode& obstacleNode(NodePair pair) const { return m_obstacle.m_nodes[pair.m_obstacle]; }
+    bool overlap(NodePair pair) const { return nodesOverlap(&clothNode(pair), &obstacleNode(pair)); }
+    bool isLeaves(NodePair pair) const { return clothNode(pair).m_count == 0 && obstacleNode(pair).m_count == 0; }
+
+    void add(Candidate candidate) const
+    {
+        const std::size_t row = m_cloth.m_triangles[candidate.m_cloth].m_mesh * m_obstacleMeshes;
+        const float thickness = m_thickness[row + m_obstacle.m_triangles[candidate.m_obstacle].m_mesh];
+        if (thickness >= 0.0f) m_candidates.push_back(candidate);
+    }
+    void addLeaves(NodePair pair) const
+    {
+        add({m_cloth.m_order[clothNode(pair).m_first], m_obstacle.m_order[obstacleNode(pair).m_first]});
+    }
+    void pushChildren(NodePair pair, bool openCloth, std::vector<NodePair>& stack) const
+    {
+        const BvhNode& opened = openCloth ? clothNode(pair) : obstacleNode(pair);
+        for (std::uint32_t i = 0; i < opened.m_count; ++i)
+        {
+            const std::uint32_t child = opened.m_first + i;
+            stack.push_back(openCloth ? NodePair{child, pair.m_obstacle} : NodePair{pair.m_cloth, child});
+        }
+    }
+};
+
+HostTraversal::HostTraversal(Traversal traversal)
+    : m_traversal(traversal == Traversal::Auto ? Traversal::WideLeaves : traversal)
+{
+}
+
+void HostTraversal::setObstacles(const BroadPhaseSide& obstacle)
+{
+    if (isWide()) m_wide = makeWideLayout(obstacle.hierarchy());
+}
+
+void HostTraversal::obstaclesRefitted(const BroadPhaseSide& obstacle)
+{
+    gatherWideOnHost(obstacle.m_nodes, m_wide);
+}
+
+void HostTraversal::setTopology(const BroadPhaseSide& cloth, const BroadPhaseSide& obstacle)
+{
+    m_front.clear();
+    if (m_traversal == Traversal::Leaves || isWide()) m_leaves = leafNodes(cloth.hierarchy());
+    if (m_traversal != Traversal::Front && m_traversal != Traversal::Groups) return;
+    m_clothLinks = makeLinks(cloth.hierarchy());
+    m_obstacleLinks = makeLinks(obstacle.hierarchy());
+}
+
+bool HostTraversal::run(const BroadPhaseSide& cloth, const BroadPhaseSide& obstacle,
+                        const std::vector<float>& thickness, std::size_t obstacleMeshes,
+                        std::vector<Candidate>& candidates, std::size_t limit)
+{
+    candidates.clear();
+    m_tests = 0;
+    if (cloth.m_order.empty() || obstacle.m_order.empty()) return true;
+    const Step step = {cloth, obstacle, thickness, obstacleMeshes, candidates, limit};
+    if (m_traversal == Traversal::Pairs)
+        runPairs(step);
+    else if (m_traversal == Traversal::Single)
+        runBothOpen(step);
+    else if (m_traversal == Traversal::Leaves)
+        runLeaves(step);
+    else if (m_traversal == Traversal::Groups)
+        openFrom(step, {cloth.m_layout.root(), obstacle.m_layout.root()}, false);
+    else if (m_traversal == Traversal::Front)
+        runFront(step);
+    else
+        runWide(step);
+    if (step.overLimit()) m_front.clear();
+    return !step.overLimit();
+}
+
+void HostTraversal::runPairs(const Step& step)
+{
+    m_stack.assign(1, NodePair{step.m_cloth.m_layout.root(), step.m_obstacle.m_layout.root()});
+    while (!m_stack.empty() && !step.overLimit())
+    {
+        const NodePair pair = m_stack.back();
+        m_stack.pop_back();
+        ++m_tests;
+        if (!step.overlap(pair)) continue;
+        if (step.isLeaves(pair))
+            step.addLeaves(pair);
+        else
+            step.pushChildren(pair, opensFirst(&step.clothNode(pair), &step.obstacleNode(pair)), m_stack);
+    }
+}
+
+// The thesis's queue: first in, first out, and both nodes of a pair open.
+void HostTraversal::runBothOpen(const Step& step)
+{
+    std::deque<NodePair> queue = {{step.m_cloth.m_layout.root(), step.m_obstacle.m_layout.root()}};
+    for (; !queue.empty() && !step.overLimit(); queue.pop_front())
+    {
+        const NodePair pair = queue.front();
+        const BvhNode &a = step.clothNode(pair), &b = step.obstacleNode(pair);
+        ++m_tests;
+        if (!step.overlap(pair)) continue;
+        if (step.isLeaves(pair))
+        {
+            step.addLeaves(pair);
+            continue;
+        }
+        const std::uint32_t clothCount = std::max(a.m_count, 1u), obstacleCount = std::max(b.m_count, 1u);
+        for (std::uint32_t i = 0; i < clothCount * obstacleCount; ++i)
+        {
+            queue.push_back({a.m_count > 0 ? a.m_first + i % clothCount : pair.m_cloth,
+                             b.m_count > 0 ? b.m_first + i / clothCount : pair.m_obstacle});
+        }
+    }
+}
+
+// Opens by the front's fixed rule; keep: what stops here belongs to the next front.
+void HostTraversal::openFrom(const Step& step, NodePair start, bool keep)
+{
+    m_stack.assign(1, start);
+    while (!m_stack.empty() && !step.overLimit())
+    {
+        const NodePair pair = m_stack.back();
+        m_stack.pop_back();
+        ++m_tests;
+        const bool overlap = step.overlap(pair), leaves = step.isLeaves(pair);
+        if (overlap && !leaves)
+        {
+            const bool openCloth =
+                clothOpens(&step.clothNode(pair), &step.obstacleNode(pair), m_clothLinks[pair.m_cloth].m_depth,
+                           m_obstacleLinks[pair.m_obstacle].m_depth);
+            step.pushChildren(pair, openCloth, m_stack);
+            continue;
+        }
+        if (overlap) step.addLeaves(pair);
+        if (keep) m_nextFront.push_back(pair);
+    }
+}
+
+// As raisePair() in kernels/broad_phase_front.cl, up to the roots.
+bool HostTraversal::raise(const Step& step, NodePair& pair)
+{
+    while (m_clothLinks[pair.m_cloth].m_depth + m_obstacleLinks[pair.m_obstacle].m_depth > 0)
+    {
+        const NodePair parent = parentPair(pair, m_clothLinks.data(), m_obstacleLinks.data());
+        ++m_tests;
+        if (step.overlap(parent)) return true;
+        if (!isFirstChild(pair, parent, step.m_cloth.m_nodes.data(), step.m_obstacle.m_nodes.data())) return false;
+        pair = parent;
+    }
+    return true;
+}
+
+void HostTraversal::runFront(const Step& step)
+{
+    if (m_front.empty()) m_front.push_back({step.m_cloth.m_layout.root(), step.m_obstacle.m_layout.root()});
+    m_nextFront.clear();
+    const bool climb = m_step++ % kRaiseInterval == 0;
+    for (NodePair pair : m_front)
+    {
+        if (!climb || step.overlap(pair))
+        {
+            openFrom(step, pair, true);
+            continue;
+        }
+        ++m_tests;
+        if (raise(step, pair)) m_nextFront.push_back(pair);
+    }
+    m_front.swap(m_nextFront);
+}
+
+void HostTraversal::runLeaves(const Step& step)
+{
+    std::vector<std::uint32_t> stack;
+    for (std::uint32_t leaf : m_leaves)
+    {
+        stack.assign(1, step.m_obstacle.m_layout.root());
+        while (!stack.empty() && !step.overLimit())
+        {
+            const NodePair pair = {leaf, stack.back()};
+            stack.pop_back();
+            ++m_tests;
+            if (!step.overlap(pair)) continue;
+            const BvhNode& node = step.obstacleNode(pair);
+            if (node.m_count == 0) step.addLeaves(pair);
+            for (std::uint32_t i = 0; i < node.m_count; ++i)
+                stack.push_back(node.m_first + i);
+        }
+    }
+}
+
+void HostTraversal::runWide(const Step& step)
+{
+    std::uint32_t stack[DRAPE_WIDE_STACK_DEPTH];
+    for (std::uint32_t leaf : m_leaves)
+    {
+        const BvhNode& node = step.m_cloth.m_nodes[leaf];
+        const std::uint32_t triangle = step.m_cloth.m_order[node.m_first];
+        std::uint32_t depth = 0;
+        stack[depth++] = 0;
+        while (depth > 0 && !step.overLimit())
+        {
+            const WideNode& wide = m_wide.m_nodes[stack[--depth]];
+            m_tests += DRAPE_WIDE;
+            const std::uint32_t overlaps = wideOverlaps(&node, &wide);
+            for (std::uint32_t slot = 0; slot < DRAPE_WIDE; ++slot)
+            {
+                if (!(overlaps & (1u << slot))) continue;
+                if (wide.m_child[slot] & DRAPE_WIDE_LEAF)
+                    step.add({triangle, wide.m_child[slot] & ~DRAPE_WIDE_LEAF});
+                else
+                    stack[depth++] = wide.m_child[slot];
+            }
+        }
+    }
+}
+
+bool broadPhaseOnHost(const BroadPhaseSide& cloth, const BroadPhaseSide& obstacle, const std::vector<float>& thickness,
+                      std::size_t obstacleMeshes, std::vector<Candidate>& candidates, std::size_t limit)
+{
+    return HostTraversal(Traversal::Pairs).run(cloth, obstacle, thickness, obstacleMeshes, candidates, limit);
+}
+}  // namespace drape

@@ -1,0 +1,114 @@
+#include "tests/support/live_scene.h"
+
+#include <gtest/gtest.h>
+
+#include "scenes/cloth_grid.h"
+#include "scenes/shapes.h"
+
+namespace drape::test
+{
+void LiveScene::nextStep()
+{
+    changeMeshes();
+    moveObstacles();
+    moveCloths();
+    namePairs();
+}
+
+void LiveScene::changeMeshes()
+{
+    if (m_cloths.size() < 4 && m_random.below(3) == 0) add(m_cloths, randomCloth(), true);
+    if (m_obstacles.size() < 4 && m_random.below(3) == 0) add(m_obstacles, randomObstacle(), false);
+    if (m_random.below(5) == 0) removeOne(m_cloths);
+    if (m_random.below(5) == 0) removeOne(m_obstacles);
+}
+
+void LiveScene::moveObstacles()
+{
+    for (LiveMesh& obstacle : m_obstacles)
+    {
+        if (m_random.below(4) != 0) continue;
+        translate(obstacle.m_mesh.m_positions, m_random.uniform(-0.05f, 0.05f), m_random.uniform(-0.05f, 0.05f), 0.0f);
+        if (m_teleports && m_random.below(4) == 0) jump(obstacle);
+        for (Pipeline* pipeline : m_pipelines)
+            pipeline->moveObstacle(obstacle.m_id, obstacle.m_mesh.m_positions.data());
+    }
+}
+
+void LiveScene::moveCloths()
+{
+    for (LiveMesh& cloth : m_cloths)
+    {
+        if (m_teleports && m_random.below(6) == 0) jump(cloth);
+        std::vector<float> end = cloth.m_mesh.m_positions;
+        translate(end, 0.0f, m_random.uniform(-0.05f, 0.03f), 0.0f);
+        disturb(end, 0.02f, m_random);
+        for (Pipeline* pipeline : m_pipelines)
+            setMotion(*pipeline, cloth.m_id, cloth.m_mesh.m_positions, end);
+        cloth.m_mesh.m_positions = end;
+    }
+}
+
+void LiveScene::namePairs()
+{
+    for (const LiveMesh& cloth : m_cloths)
+    {
+        for (const LiveMesh& obstacle : m_obstacles)
+        {
+            if (m_random.below(4) == 0) continue;
+            const float thickness = m_random.uniform(0.01f, 0.05f);
+            for (Pipeline* pipeline : m_pipelines)
+                pipeline->addPair(cloth.m_id, obstacle.m_id, thickness);
+        }
+    }
+}
+
+TriangleMesh LiveScene::randomCloth()
+{
+    const int nodes = 3 + int(m_random.below(14));
+    TriangleMesh mesh = makeClothGrid(nodes, nodes + 1, 1.0f, m_random.uniform(0.1f, 0.5f)).m_mesh;
+    if (m_random.below(5) == 0) mesh.m_triangles.clear();
+    return mesh;
+}
+
+TriangleMesh LiveScene::randomObstacle()
+{
+    const char* const shapes[] = {"sphere", "box", "torus", "terrain"};
+    if (m_random.below(6) == 0) return TriangleMesh();
+    if (m_random.below(4) == 0) return makeSoup(1.0f, 0.2f, int(1 + m_random.below(150)), m_random.below(1000));
+    return shapeNamed(shapes[m_random.below(4)]);
+}
+
+void LiveScene::add(std::vector<LiveMesh>& meshes, TriangleMesh mesh, bool cloth)
+{
+    MeshId id = kNoMesh;
+    for (Pipeline* pipeline : m_pipelines)
+    {
+        const MeshId added = cloth ? addCloth(*pipeline, mesh) : addObstacle(*pipeline, mesh);
+        EXPECT_TRUE(id == kNoMesh || id == added);
+        id = added;
+    }
+    const std::vector<float> home = mesh.m_positions;
+    meshes.push_back({id, std::move(mesh), home});
+}
+
+void LiveScene::removeOne(std::vector<LiveMesh>& meshes)
+{
+    if (meshes.empty()) return;
+    const std::ptrdiff_t at = std::ptrdiff_t(m_random.below(std::uint32_t(meshes.size())));
+    for (Pipeline* pipeline : m_pipelines)
+        pipeline->remove(meshes[std::size_t(at)].m_id);
+    meshes.erase(meshes.begin() + at);
+}
+
+void LiveScene::jump(LiveMesh& mesh)
+{
+    if (m_random.below(2) == 0)
+    {
+        mesh.m_mesh.m_positions = mesh.m_home;
+        return;
+    }
+    translate(mesh.m_mesh.m_positions, m_random.uniform(-1.0f, 1.0f), m_random.uniform(-1.0f, 1.0f),
+              m_random.uniform(-1.0f, 1.0f));
+}
+}  // namespace drape::test

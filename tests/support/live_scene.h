@@ -1,0 +1,47 @@
+// One scene of meshes that come, go and move at random, in several pipelines at once.
+//
+// Every pipeline is told the same, so ids agree. nextStep() leaves the pipelines ready to run. Seeded.
+#pragma once
+
+#include <vector>
+
+#include "tests/support/cases.h"
+#include "tests/support/pipeline_driver.h"
+
+namespace drape::test
+{
+class LiveScene
+{
+public:
+    // teleports: now and then a cloth or an obstacle jumps far away, or a cloth back to where it was made.
+    LiveScene(const std::vector<Pipeline*>& pipelines, std::uint32_t seed, bool teleports = false)
+        : m_pipelines(pipelines), m_random(seed), m_teleports(teleports)
+    {
+    }
+
+    void nextStep();
+
+private:
+    struct LiveMesh
+    {
+        MeshId m_id;
+        TriangleMesh m_mesh;
+        std::vector<float> m_home;
+    };
+
+    void changeMeshes();
+    void moveObstacles();
+    void moveCloths();
+    void namePairs();
+    TriangleMesh randomCloth();
+    TriangleMesh randomObstacle();
+    void add(std::vector<LiveMesh>& meshes, TriangleMesh mesh, bool cloth);
+    void removeOne(std::vector<LiveMesh>& meshes);
+    void jump(LiveMesh& mesh);
+
+    std::vector<Pipeline*> m_pipelines;
+    Random m_random;
+    bool m_teleports;
+    std::vector<LiveMesh> m_cloths, m_obstacles;
+};
+}  // namespace drape::test
