@@ -57,8 +57,8 @@ struct StepStatistics
     bool m_skipped = false;           // nothing to do: no pair, or nothing that could touch
     double m_uploadMs = 0;            // mirroring nodes and enqueueing
     double m_waitMs = 0;              // waiting for the device (all the work, on the host back end)
-    double m_writeMs = 0;             // writing the contacts into Bullet
-    double m_finishMs = 0;            // the closing contact pass after Bullet's solver
+    double m_writeMs = 0;             // resolving the contacts to bodies and nodes
+    double m_finishMs = 0;            // contact rounds between and after Bullet's iterations
     double collisionMs() const { return m_uploadMs + m_waitMs + m_writeMs + m_finishMs; }
 };
 }  // namespace drape
