@@ -1,0 +1,50 @@
+#include "bullet_plugin/adapter/impact_cut.h"
+
+#include <algorithm>
+
+namespace drape
+{
+namespace
+{
+// Distance before the surface at which a path ends, as a share of the thickness: near enough for every contact there,
+// far enough from the other side.
+constexpr btScalar kStandOff = btScalar(0.5);
+
+// Share of the path that is left, 1 when the contact cuts nothing.
+btScalar shareLeft(const StepContact& contact)
+{
+    if (!(contact.m_time < 1)) return 1;
+    const btScalar distance = contact.m_startGap + contact.m_thickness;  // at the step's start
+    const btScalar standOff = kStandOff * contact.m_thickness;
+    return distance > standOff ? contact.m_time * (1 - standOff / distance) : btScalar(0);
+}
+}  // namespace
+
+bool cutAtImpacts(btSoftBody& body, const std::vector<StepContact>& contacts, Cut cut)
+{
+    std::vector<btScalar> left(static_cast<std::size_t>(body.m_nodes.size()), btScalar(1));
+    btScalar least = 1;
+    for (const StepContact& contact : contacts)
+    {
+        const btScalar share = shareLeft(contact);
+        least = std::min(least, share);
+        for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+        {
+            btScalar& own = left[static_cast<std::size_t>(contact.m_nodes[k])];
+            own = std::min(own, share);
+        }
+    }
+    if (!(least < 1)) return false;
+    const btScalar velocityScale = body.m_sst.isdt * (1 - body.m_cfg.kDP);
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+    {
+        const btScalar share = cut == Cut::WholeBody ? least : left[static_cast<std::size_t>(i)];
+        btSoftBody::Node& node = body.m_nodes[i];
+        if (!(share < 1) || !(movableInverseMass(node) > 0)) continue;
+        const btVector3 shift = (node.m_x - node.m_q) * (share - 1);
+        node.m_x += shift;
+        node.m_v += shift * velocityScale;
+    }
+    return true;
+}
+}  // namespace drape
