@@ -1,5 +1,7 @@
 #include "bullet_plugin/adapter/collision_step.h"
 
+#include <algorithm>
+
 namespace drape
 {
 namespace
@@ -25,7 +27,7 @@ void setGaps(const btSoftBody& body, StepContact& contact)
     contact.m_startGap = gapAt(body, contact, &btSoftBody::Node::m_q);
     if (contact.m_startGap < -contact.m_thickness && contact.m_startGap < contact.m_endGap)
         contact.m_startGap = contact.m_endGap;
-    contact.m_targetGap = closingTarget(contact.m_startGap, body.m_cfg.kKHR, contact.m_thickness);
+    contact.m_targetGap = targetGap(contact.m_startGap, body.m_cfg.kKHR, contact.m_thickness);
 }
 
 ContactInfo infoOf(const btSoftBody& body, const StepContact& contact)
@@ -50,6 +52,13 @@ BodyContacts* CollisionStep::bodyOf(MeshId cloth)
 {
     for (BodyContacts& body : m_bodies)
         if (body.m_cloth == cloth) return &body;
+    return nullptr;
+}
+
+BodyContacts* CollisionStep::contactsOf(const btSoftBody& body)
+{
+    for (BodyContacts& entry : m_bodies)
+        if (entry.m_body == &body) return &entry;
     return nullptr;
 }
 
@@ -99,7 +108,11 @@ void CollisionStep::begin(const std::vector<PairNote>& notes)
     m_state.dropOldMirrors();
     for (const PairNote& note : notes)
         addPair(note);
-    if (m_pairs.empty()) return;
+    if (!m_pairs.empty()) submit();
+}
+
+void CollisionStep::submit()
+{
     uploadNodes();
     for (const Pair& pair : m_pairs)
         m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_thickness));
@@ -114,7 +127,6 @@ void CollisionStep::receive(const ContactView& view)
     StepContact contact;
     contact.m_object = object;
     contact.m_kind = view.m_kind;
-    contact.m_face = view.m_triangle;
     for (int k = 0; k < 3; ++k)
     {
         contact.m_nodes[k] = view.m_nodes[k];
@@ -123,6 +135,7 @@ void CollisionStep::receive(const ContactView& view)
     contact.m_normal = vectorOf(view.m_normal);
     contact.m_point = vectorOf(view.m_point);
     contact.m_thickness = view.m_thickness;
+    contact.m_time = view.m_time;
     contact.m_friction = body->m_body->m_cfg.kDF * object->getFriction();
     setGaps(*body->m_body, contact);
     for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
@@ -131,16 +144,75 @@ void CollisionStep::receive(const ContactView& view)
     m_state.m_contacts.push_back(infoOf(*body->m_body, contact));
 }
 
+// Waits for the detection under way and takes its contacts in place of any earlier ones of this step.
+void CollisionStep::receiveAll()
+{
+    const StepStatistics before = m_state.m_statistics;
+    for (BodyContacts& body : m_bodies)
+        body.m_contacts.clear();
+    m_state.m_contacts.clear();
+    const std::vector<Contact>& contacts = m_state.pipeline().finish();
+    m_state.m_statistics = m_state.pipeline().statistics();
+    m_state.m_statistics.m_status |= before.m_status;
+    m_state.m_statistics.m_retries += before.m_retries;
+    m_state.m_statistics.m_uploadMs += before.m_uploadMs;
+    m_state.m_statistics.m_waitMs += before.m_waitMs;
+    m_state.m_contacts.reserve(contacts.size());
+    for (const Contact& contact : contacts)
+        receive(m_state.pipeline().view(contact));
+}
+
+bool CollisionStep::cutPaths()
+{
+    bool any = false;
+    for (BodyContacts& body : m_bodies)
+        any =
+            cutAtImpacts(*body.m_body, body.m_contacts, 1 + btScalar(m_state.settings().m_activation), Cut::EachNode) ||
+            any;
+    return any;
+}
+
 void CollisionStep::finish()
 {
     m_state.m_contacts.clear();
     m_state.m_statistics = StepStatistics();
     m_state.m_statistics.m_skipped = m_pairs.empty();
     if (m_pairs.empty()) return;
-    const std::vector<Contact>& contacts = m_state.pipeline().finish();
-    m_state.m_statistics = m_state.pipeline().statistics();
-    m_state.m_contacts.reserve(contacts.size());
-    for (const Contact& contact : contacts)
-        receive(m_state.pipeline().view(contact));
+    receiveAll();
+    for (int detections = 1; detections < kMostDetections && cutPaths(); ++detections)
+    {
+        submit();
+        receiveAll();
+    }
+}
+
+bool CollisionStep::cutStrayed(const std::vector<bool>& strayed, Cut cut)
+{
+    bool any = false;
+    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+        if (strayed[i]) any = cutAtImpacts(*m_bodies[i].m_body, m_bodies[i].m_contacts, 0, cut) || any;
+    return any;
+}
+
+void CollisionStep::checkStrayed()
+{
+    std::vector<bool> strayed;
+    for (const BodyContacts& body : m_bodies)
+        strayed.push_back(body.m_limit.strayed(*body.m_body));
+    if (std::find(strayed.begin(), strayed.end(), true) == strayed.end()) return;
+    const std::vector<ContactInfo> published = m_state.m_contacts;
+    const StepStatistics before = m_state.m_statistics;
+    for (int detections = 1; detections <= kMostDetections; ++detections)
+    {
+        submit();
+        receiveAll();
+        if (!cutStrayed(strayed, detections < kMostDetections ? Cut::EachNode : Cut::WholeBody)) break;
+    }
+    // What is reported stays what the solver was given.
+    m_state.m_contacts = published;
+    m_state.m_statistics.m_contacts = before.m_contacts;
+    m_state.m_statistics.m_candidates = before.m_candidates;
+    m_state.m_statistics.m_writeMs = before.m_writeMs;
+    m_state.m_statistics.m_finishMs = before.m_finishMs;
 }
 }  // namespace drape

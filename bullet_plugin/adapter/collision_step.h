@@ -7,6 +7,7 @@
 
 #include <vector>
 
+#include "bullet_plugin/adapter/impact_cut.h"
 #include "bullet_plugin/adapter/motion_limit.h"
 #include "bullet_plugin/adapter/plugin_state.h"
 #include "bullet_plugin/adapter/step_contact.h"
@@ -19,7 +20,6 @@ struct BodyContacts
     btSoftBody* m_body;
     std::vector<StepContact> m_contacts;
     MotionLimit m_limit;
-    int m_softContactsBefore = 0;  // size of the body's m_scontacts before the writer
 };
 
 class CollisionStep
@@ -29,8 +29,13 @@ public:
 
     void begin(const std::vector<PairNote>& notes);
     void finish();
+    // After the bodies were solved. Where links pulled nodes far off their predicted paths, looks again along the paths
+    // that they really took, and ends them before what they would have passed.
+    void checkStrayed();
 
     std::vector<BodyContacts>& bodies() { return m_bodies; }
+    // Null when the body has no pair in this step.
+    BodyContacts* contactsOf(const btSoftBody& body);
 
 private:
     struct Obstacle
@@ -46,7 +51,11 @@ private:
 
     void addPair(const PairNote& note);
     void uploadNodes();
+    void submit();
+    void receiveAll();
     void receive(const ContactView& view);
+    bool cutPaths();
+    bool cutStrayed(const std::vector<bool>& strayed, Cut cut);
     BodyContacts* bodyOf(MeshId cloth);
     const btCollisionObject* objectOf(MeshId obstacle) const;
 

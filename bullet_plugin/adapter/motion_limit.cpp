@@ -19,6 +19,7 @@ btScalar closestOnPath(const btVector3& start, const btVector3& end, const btVec
 void MotionLimit::addObstacle(const btVector3& low, const btVector3& high, btScalar thickness, btScalar activation)
 {
     const btScalar reach = thickness * (1 + activation);
+    m_leastReach = std::min(m_leastReach, reach);
     const btVector3 margin(reach, reach, reach);
     const btScalar least = thickness * std::max(kLeastShare, std::min(activation, kMostStartShare));
     m_regions.push_back(Region{low - margin, high + margin, Allowance{least, kFreeShare * reach}});
@@ -54,6 +55,15 @@ MotionLimit::Allowance MotionLimit::allowance(std::size_t node, const btVector3&
         least.m_end = std::min(least.m_end, m_hasContact[node] ? own.m_start : own.m_end);
     }
     return least;
+}
+
+bool MotionLimit::strayed(const btSoftBody& body) const
+{
+    const btScalar most = kStrayReaches * m_leastReach;
+    const int count = std::min(body.m_nodes.size(), static_cast<int>(m_end.size()));
+    for (int i = 0; i < count; ++i)
+        if ((body.m_nodes[i].m_x - m_end[static_cast<std::size_t>(i)]).length2() > most * most) return true;
+    return false;
 }
 
 void MotionLimit::apply(btSoftBody& body) const

@@ -26,6 +26,10 @@ constexpr btScalar kLeastShare = btScalar(0.1);
 // Most that a node may leave the path's start, as a share of the thickness, which is what is known to be free there.
 constexpr btScalar kMostStartShare = btScalar(0.8);
 
+// How far from the end of its path a node may end before its body counts as strayed, in reaches: contacts push a node
+// back by no more than the thickness and what of the path lies behind the surface, which impact_cut.h keeps below one.
+constexpr btScalar kStrayReaches = btScalar(2);
+
 class MotionLimit
 {
 public:
@@ -36,6 +40,8 @@ public:
     void record(const btSoftBody& body);
     // A node of a contact; after record().
     void addContactNode(int node) { m_hasContact[static_cast<std::size_t>(node)] = 1; }
+    // Whether a node ended so far back along its path that faces and edges may have taken ways nobody looked at.
+    bool strayed(const btSoftBody& body) const;
     // Brings nodes that left their path too far back; the nearest point of the allowed region.
     void apply(btSoftBody& body) const;
 
@@ -54,6 +60,7 @@ private:
     Allowance allowance(std::size_t node, const btVector3& to) const;
 
     std::vector<Region> m_regions;
+    btScalar m_leastReach = SIMD_INFINITY;
     std::vector<btVector3> m_start, m_end;
     std::vector<unsigned char> m_hasContact;
 };

@@ -1,38 +1,19 @@
 #include "drape/soft_body_solver.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <exception>
 
 #include "BulletSoftBody/btSoftBody.h"
-#include "bullet_plugin/adapter/closing_pass.h"
+#include "bullet_plugin/adapter/body_solver.h"
 #include "bullet_plugin/adapter/collision_step.h"
-#include "bullet_plugin/adapter/contact_writer.h"
 #include "bullet_plugin/adapter/plugin_state.h"
-#include "kernels/shared/contact.h"
+#include "bullet_plugin/adapter/stopwatch.h"
 
 namespace drape
 {
 namespace
 {
-class Stopwatch
-{
-public:
-    // Milliseconds since the last call or the start.
-    double lapMs()
-    {
-        const Clock::time_point now = Clock::now();
-        const double ms = std::chrono::duration<double, std::milli>(now - m_last).count();
-        m_last = now;
-        return ms;
-    }
-
-private:
-    using Clock = std::chrono::steady_clock;
-    Clock::time_point m_last = Clock::now();
-};
-
 bool finite(const btVector3& v)
 {
     return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
@@ -59,24 +40,6 @@ void coverMotion(btSoftBody& body, btScalar reach)
     body.m_bounds[1].setMax(high + margin);
 }
 
-int countSoft(const std::vector<BodyContacts>& bodies)
-{
-    int count = 0;
-    for (const BodyContacts& body : bodies)
-        for (const StepContact& contact : body.m_contacts)
-            if (contact.m_kind != DRAPE_NODE_FACE && contact.violated()) ++count;
-    return count;
-}
-
-void writeContacts(ContactWriter& writer, std::vector<BodyContacts>& bodies)
-{
-    writer.reset(countSoft(bodies));
-    for (BodyContacts& body : bodies)
-    {
-        body.m_softContactsBefore = body.m_body->m_scontacts.size();
-        writer.write(*body.m_body, body.m_contacts);
-    }
-}
 }  // namespace
 
 SoftBodySolver::SoftBodySolver(Plugin& plugin) : m_state(plugin.state())
@@ -101,23 +64,19 @@ void SoftBodySolver::predictMotion(btScalar dt)
             coverMotion(*m_softBodySet[i], reach * m_softBodySet[i]->getCollisionShape()->getMargin());
 }
 
-void SoftBodySolver::solveConstraints(btScalar dt)
+void SoftBodySolver::solveConstraints(btScalar)
 {
     CollisionStep step(*m_state);
-    ContactWriter writer;
-    const bool ready = m_state->ready();
     StepStatistics& statistics = m_state->m_statistics;
     try
     {
-        if (ready)
+        if (m_state->ready())
         {
             Stopwatch watch;
             step.begin(m_state->takeNotes(this));
             const double beginMs = watch.lapMs();
             step.finish();
-            watch.lapMs();
-            writeContacts(writer, step.bodies());
-            statistics.m_writeMs = watch.lapMs();
+            statistics.m_writeMs = watch.lapMs() - statistics.m_waitMs;
             statistics.m_uploadMs = std::max(statistics.m_uploadMs, beginMs);  // mirrors and copying included
         }
     }
@@ -127,15 +86,22 @@ void SoftBodySolver::solveConstraints(btScalar dt)
         m_state->fail("drape::SoftBodySolver::solveConstraints", exception.what());
     }
 
-    btDefaultSoftBodySolver::solveConstraints(dt);
-
-    if (!ready) return;
-    Stopwatch watch;
-    for (BodyContacts& body : step.bodies())
+    for (int i = 0; i < m_softBodySet.size(); ++i)
     {
-        ContactWriter::removeSoftContacts(*body.m_body, body.m_softContactsBefore);
-        closeContacts(*body.m_body, body.m_contacts, body.m_limit);
+        btSoftBody* body = m_softBodySet[i];
+        if (!body->isActive()) continue;
+        if (BodyContacts* contacts = step.contactsOf(*body))
+            statistics.m_finishMs += solveBody(*contacts);
+        else
+            body->solveConstraints();
     }
-    statistics.m_finishMs = watch.lapMs();
+    try
+    {
+        step.checkStrayed();
+    }
+    catch (const std::exception& exception)
+    {
+        m_state->fail("drape::SoftBodySolver::solveConstraints", exception.what());
+    }
 }
 }  // namespace drape

@@ -34,7 +34,7 @@ struct ContactInfo
     float m_weights[3];  // of these nodes, sum 1
     float m_normal[3];   // unit, from the obstacle to the cloth
     float m_point[3];    // m, on the obstacle
-    float m_gap;         // m, at the predicted end of the step, thickness subtracted; negative: Bullet was given it
+    float m_gap;         // m, at the predicted end of the step, thickness subtracted
     float m_thickness;   // m
 };
 

@@ -1,8 +1,11 @@
-// Bullet's default soft body solver with Drape's collision step in front of it and a closing contact pass behind it.
+// Bullet's default soft body solver with Drape's collision step in front of it and contact rounds between its
+// iterations.
 //
 // Give it to btSoftRigidDynamicsWorld's constructor. In solveConstraints it sends the pairs noted during dispatch to
-// the device, waits once, writes the contacts into the bodies, lets Bullet solve, and then moves nodes that Bullet's
-// links pushed back into an obstacle out to the thickness again. Bodies of another solver are left to Bullet. C++11.
+// the device, waits once (again when the paths of fast nodes had to be cut), and lets Bullet solve, iteration by
+// iteration, with a round over the contacts before each and the closing rounds after the last. Bullet's m_rcontacts and
+// m_scontacts hold Bullet's own contacts only; Plugin::contacts() has Drape's. Bodies of another solver are left to
+// Bullet. C++11.
 #pragma once
 
 #include <memory>

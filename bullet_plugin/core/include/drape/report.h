@@ -75,8 +75,8 @@ struct StepStatistics
     double m_refitMs = 0;             // of the wait, on the host back end; a device's kernels are timed one by one
     double m_broadMs = 0;             // likewise
     double m_narrowMs = 0;            // likewise, with the canonical order
-    double m_writeMs = 0;             // writing the contacts into Bullet
-    double m_finishMs = 0;            // the closing contact pass after Bullet's solver
+    double m_writeMs = 0;             // resolving the contacts to bodies and nodes
+    double m_finishMs = 0;            // contact rounds between and after Bullet's iterations
     double collisionMs() const { return m_uploadMs + m_waitMs + m_writeMs + m_finishMs; }
 };
 }  // namespace drape

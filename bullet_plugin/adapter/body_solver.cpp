@@ -1,0 +1,74 @@
+#include "bullet_plugin/adapter/body_solver.h"
+
+#include <algorithm>
+
+#include "bullet_plugin/adapter/contact_rounds.h"
+#include "bullet_plugin/adapter/stopwatch.h"
+
+namespace drape
+{
+namespace
+{
+// Bullet's position iterations may be run one by one: each call derives the velocities anew from the step's start, and
+// nothing else that a call does adds up.
+bool iterationsCanBeSplit(const btSoftBody& body)
+{
+    return body.m_cfg.viterations == 0 && body.m_cfg.diterations == 0 && body.m_clusters.size() == 0 &&
+           body.m_joints.size() == 0;
+}
+
+// Returns the time of the rounds, ms.
+double solveWithBullet(btSoftBody& body, ContactRounds& rounds)
+{
+    double roundsMs = 0;
+    Stopwatch watch;
+    const int iterations = body.m_cfg.piterations;
+    const bool split = iterations > 1 && iterationsCanBeSplit(body);
+    if (split) body.m_cfg.piterations = 1;
+    for (int i = 0; i < (split ? iterations : 1); ++i)
+    {
+        rounds.restart();  // what contacts pushed before the links' last pull is the links' business now
+        rounds.run();
+        roundsMs += watch.lapMs();
+        body.solveConstraints();
+        watch.lapMs();
+    }
+    body.m_cfg.piterations = iterations;
+    return roundsMs;
+}
+
+void close(btSoftBody& body, ContactRounds& rounds, const MotionLimit& limit)
+{
+    limit.apply(body);
+    if (rounds.empty()) return;
+    rounds.restart();
+    const btScalar tolerance = kClosingTolerance * rounds.leastThickness();
+    btScalar worst = rounds.run();
+    for (int i = 1; i < kClosingRounds && worst > tolerance; ++i)
+    {
+        limit.apply(body);
+        worst = rounds.run();
+    }
+    // What does not converge is left to the faces and edges, which a node outside the obstacle keeps from passing in a
+    // later step.
+    if (worst > tolerance) rounds.runNodes();
+    rounds.limitSpeeds();
+}
+}  // namespace
+
+double solveBody(BodyContacts& contacts)
+{
+    btSoftBody& body = *contacts.m_body;
+    if (!(body.m_sst.sdt > 0))
+    {
+        body.solveConstraints();
+        return 0;
+    }
+    Stopwatch watch;
+    ContactRounds rounds(body, contacts.m_contacts);
+    double ms = watch.lapMs() + solveWithBullet(body, rounds);
+    watch.lapMs();
+    close(body, rounds, contacts.m_limit);
+    return ms + watch.lapMs();
+}
+}  // namespace drape
