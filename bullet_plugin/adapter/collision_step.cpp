@@ -166,9 +166,7 @@ bool CollisionStep::cutPaths()
 {
     bool any = false;
     for (BodyContacts& body : m_bodies)
-        any =
-            cutAtImpacts(*body.m_body, body.m_contacts, 1 + btScalar(m_state.settings().m_activation), Cut::EachNode) ||
-            any;
+        any = cutAtImpacts(*body.m_body, body.m_contacts, Cut::EachNode) || any;
     return any;
 }
 
@@ -190,7 +188,7 @@ bool CollisionStep::cutStrayed(const std::vector<bool>& strayed, Cut cut)
 {
     bool any = false;
     for (std::size_t i = 0; i < m_bodies.size(); ++i)
-        if (strayed[i]) any = cutAtImpacts(*m_bodies[i].m_body, m_bodies[i].m_contacts, 0, cut) || any;
+        if (strayed[i]) any = cutAtImpacts(*m_bodies[i].m_body, m_bodies[i].m_contacts, cut) || any;
     return any;
 }
 

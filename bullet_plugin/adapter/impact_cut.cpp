@@ -10,35 +10,23 @@ namespace
 // far enough from the other side.
 constexpr btScalar kStandOff = btScalar(0.5);
 
-// Motion of the contact's cloth point along the present paths.
-btVector3 motionOf(const btSoftBody& body, const StepContact& contact)
-{
-    btVector3 sum(0, 0, 0);
-    for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
-    {
-        const btSoftBody::Node& node = body.m_nodes[contact.m_nodes[k]];
-        sum += (node.m_x - node.m_q) * contact.m_weights[k];
-    }
-    return sum;
-}
-
 // Share of the path that is left, 1 when the contact cuts nothing.
-btScalar shareLeft(const btSoftBody& body, const StepContact& contact, btScalar beyond)
+btScalar shareLeft(const StepContact& contact)
 {
-    if (!(contact.m_time < 1) || !(motionOf(body, contact).length() * (1 - contact.m_time) > beyond)) return 1;
+    if (!(contact.m_time < 1)) return 1;
     const btScalar distance = contact.m_startGap + contact.m_thickness;  // at the step's start
     const btScalar standOff = kStandOff * contact.m_thickness;
     return distance > standOff ? contact.m_time * (1 - standOff / distance) : btScalar(0);
 }
 }  // namespace
 
-bool cutAtImpacts(btSoftBody& body, const std::vector<StepContact>& contacts, btScalar beyond, Cut cut)
+bool cutAtImpacts(btSoftBody& body, const std::vector<StepContact>& contacts, Cut cut)
 {
     std::vector<btScalar> left(static_cast<std::size_t>(body.m_nodes.size()), btScalar(1));
     btScalar least = 1;
     for (const StepContact& contact : contacts)
     {
-        const btScalar share = shareLeft(body, contact, beyond * contact.m_thickness);
+        const btScalar share = shareLeft(contact);
         least = std::min(least, share);
         for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
         {

@@ -1,12 +1,11 @@
-// Ends the predicted path of fast nodes just before the first surface that they, or a face or an edge of theirs, would
-// pass.
+// Ends the predicted path of nodes just before the first surface that they, or a face or an edge of theirs, would pass.
 //
-// Why: contacts are found along the whole predicted path and near its end. For cloth that moves by more than the reach
-// of a contact behind the first surface, all but the first impact are of places that it cannot get to, and their
-// normals push it to any side. After a cut detection runs again, with paths that end near the surfaces that count.
-// Input: a body between predictMotion and solveConstraints and its contacts along the present paths. What a node's path
-// loses is lost for the step, its speed is as if it had come to a halt there. Slow cloth is not touched. Cost: linear
-// in the contacts.
+// Why: contacts are found along the whole predicted path and near its end. Behind the first surface they are of places
+// that the node cannot get to, inside the obstacle or beyond, and push it to any side. After a cut detection runs
+// again, with paths that end near the surfaces that count. Input: a body between predictMotion and solveConstraints and
+// its contacts along the present paths. What a path loses is lost for the step, as if the node had come to a halt
+// there. Cloth that would not pass a surface within the step (it rests, slides, or falls by less than the thickness) is
+// not touched. Cost: linear in the contacts.
 #pragma once
 
 #include <vector>
@@ -25,7 +24,6 @@ enum class Cut
     WholeBody  // every node by the first impact of all: free of impacts for certain, since all keep their order in time
 };
 
-// Returns whether any path was cut. beyond: by how much a path must go on behind the surface to be cut, as a share of
-// the thickness. Velocities follow when the positions are final (Bullet has solved).
-bool cutAtImpacts(btSoftBody& body, const std::vector<StepContact>& contacts, btScalar beyond, Cut cut);
+// Returns whether any path was cut. Velocities follow, for a body that Bullet has solved.
+bool cutAtImpacts(btSoftBody& body, const std::vector<StepContact>& contacts, Cut cut);
 }  // namespace drape

@@ -27,7 +27,7 @@ constexpr btScalar kLeastShare = btScalar(0.1);
 constexpr btScalar kMostStartShare = btScalar(0.8);
 
 // How far from the end of its path a node may end before its body counts as strayed, in reaches: contacts push a node
-// back by no more than the thickness and what of the path lies behind the surface, which impact_cut.h keeps below one.
+// back by little more than the thickness (impact_cut.h).
 constexpr btScalar kStrayReaches = btScalar(2);
 
 class MotionLimit

@@ -53,6 +53,8 @@ std::vector<std::string> childArguments(const Options& options, BulletMode mode)
             exactText(options.m_clothSize),
             "--drop-height",
             exactText(options.m_dropHeight),
+            "--drop-speed",
+            exactText(options.m_dropSpeed),
             "--steps",
             std::to_string(options.m_steps),
             "--dt",

@@ -18,6 +18,7 @@ bool makeDropScene(const Options& options, DropScene& scene, std::string& error)
     const double top = boundsOf(scene.m_obstacle).m_high[1];
     scene.m_cloth = makeClothGrid(options.m_clothColumns, options.m_clothRows, static_cast<float>(options.m_clothSize),
                                   static_cast<float>(top + options.m_thickness + options.m_dropHeight));
+    scene.m_dropSpeed = options.m_dropSpeed;
     scene.m_dt = options.m_dt;
     scene.m_thickness = options.m_thickness;
     return true;

@@ -112,6 +112,7 @@ void DropWorld::addCloth(const DropScene& scene, bool softPairs)
     m_cloth->m_cfg.kDP = kDamping;
     m_cloth->m_cfg.collisions =
         softPairs ? btSoftBody::fCollision::VF_SS : static_cast<int>(btSoftBody::fCollision::SDF_RS);
+    m_cloth->setVelocity(btVector3(0, static_cast<btScalar>(-scene.m_dropSpeed), 0));
     m_world.addSoftBody(m_cloth.get());
 }
 

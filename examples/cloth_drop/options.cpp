@@ -53,6 +53,8 @@ void addSceneOptions(CLI::App& app, Options& options, std::string& cloth)
     app.add_option("--cloth-size", options.m_clothSize, "longer side of the cloth, m")->check(positive);
     app.add_option("--drop-height", options.m_dropHeight, "free fall before the thickness is reached, m")
         ->check(CLI::Validator(numberAbove(0, true, "0 or more"), ""));
+    app.add_option("--drop-speed", options.m_dropSpeed, "speed of the cloth downwards at the start, m/s")
+        ->check(CLI::Validator(numberAbove(0, true, "0 or more"), ""));
     app.add_option("--steps", options.m_steps, "simulation steps")->check(positive);
     app.add_option("--dt", options.m_dt, "seconds a step")->check(positive);
     app.add_option("--thickness", options.m_thickness,

@@ -23,6 +23,7 @@ struct Options
     int m_clothRows = 33;
     double m_clothSize = 2.4;
     double m_dropHeight = 0.3;
+    double m_dropSpeed = 0;
     int m_steps = 240;
     double m_dt = 1.0 / 60.0;
     double m_thickness = 0.02;

@@ -69,6 +69,7 @@ TEST_F(BadInput, numbers)
             expectRefused(runSmall({option, value}), {option});
         }
     expectRefused(runSmall({"--drop-height", "-0.1"}), {"--drop-height"});
+    expectRefused(runSmall({"--drop-speed", "-1"}), {"--drop-speed"});
     expectRefused(runSmall({"--steps", "2.5"}), {"--steps"});
 }
 
