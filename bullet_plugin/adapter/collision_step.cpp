@@ -157,6 +157,9 @@ void CollisionStep::receiveAll()
     m_state.m_statistics.m_retries += before.m_retries;
     m_state.m_statistics.m_uploadMs += before.m_uploadMs;
     m_state.m_statistics.m_waitMs += before.m_waitMs;
+    m_state.m_statistics.m_refitMs += before.m_refitMs;
+    m_state.m_statistics.m_broadMs += before.m_broadMs;
+    m_state.m_statistics.m_narrowMs += before.m_narrowMs;
     m_state.m_contacts.reserve(contacts.size());
     for (const Contact& contact : contacts)
         receive(m_state.pipeline().view(contact));
