@@ -121,7 +121,7 @@ TEST_P(SelfOracle, TouchingFeaturesAreThoseOfAllPairs)
             // The brute force meets edges in another order, which may decide pairs that nearly touch otherwise.
             EXPECT_LE(keys.size(), truth.size() + truth.size() / 500);
             EXPECT_LE(found.m_touching.size(), found.m_vertexFaceCandidates + found.m_edgeCandidates);
-            EXPECT_GE(truth.size(), motion.m_mesh.triangleCount() > 100 ? 100u : 0u);
+            EXPECT_GE(truth.size(), motion.m_mesh.triangleCount() > 100 ? 50u : 0u) << "the case says something";
         }
     }
 }

@@ -21,9 +21,10 @@ struct HostTraversal::Step
     std::size_t m_obstacleMeshes;
     std::vector<Candidate>& m_candidates;
     std::size_t m_limit;
+    bool& m_over;  // one more than the limit was found
 
     // Then there is no need to look further.
-    bool overLimit() const { return m_candidates.size() > m_limit; }
+    bool overLimit() const { return m_over; }
     const BvhNode& clothNode(NodePair pair) const { return m_cloth.m_nodes[pair.m_cloth]; }
     const BvhNode& obstacleNode(NodePair pair) const { return m_obstacle.m_nodes[pair.m_obstacle]; }
     bool overlap(NodePair pair) const { return nodesOverlap(&clothNode(pair), &obstacleNode(pair)); }
@@ -33,7 +34,10 @@ struct HostTraversal::Step
     {
         const std::size_t row = m_cloth.m_triangles[candidate.m_cloth].m_mesh * m_obstacleMeshes;
         const float thickness = m_thickness[row + m_obstacle.m_triangles[candidate.m_obstacle].m_mesh];
-        if (thickness >= 0.0f) m_candidates.push_back(candidate);
+        if (thickness < 0.0f) return;
+        // Not even one too many is stored: the list would double for it.
+        m_over = m_over || m_candidates.size() == m_limit;
+        if (!m_over) m_candidates.push_back(candidate);
     }
     void addLeaves(NodePair pair) const
     {
@@ -81,7 +85,8 @@ bool HostTraversal::run(const BroadPhaseSide& cloth, const BroadPhaseSide& obsta
     candidates.clear();
     m_tests = 0;
     if (cloth.m_order.empty() || obstacle.m_order.empty()) return true;
-    const Step step = {cloth, obstacle, thickness, obstacleMeshes, candidates, limit};
+    bool over = false;
+    const Step step = {cloth, obstacle, thickness, obstacleMeshes, candidates, limit, over};
     if (m_traversal == Traversal::Pairs)
         runPairs(step);
     else if (m_traversal == Traversal::Single)
