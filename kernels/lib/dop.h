@@ -1,4 +1,5 @@
-// 18-DOP volumes: intervals along nine directions. Leaves are padded for every rounding; merging is exact.
+// k-DOP volumes: intervals along k/2 directions, nine in the product. Leaves are padded for every rounding; merging is
+// exact.
 #ifndef DRAPE_LIB_DOP_H
 #define DRAPE_LIB_DOP_H
 
@@ -7,8 +8,15 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// √2 rounded up: the length of the six diagonal directions.
+// Directions: the axes; then x+y x+z y+z x-y x-z y-z for 18 and 26 sides; then x+y+z x+y-z x-y+z x-y-z for 14 and 26.
+#if DRAPE_DOP_DIRECTIONS != 3 && DRAPE_DOP_DIRECTIONS != 7 && DRAPE_DOP_DIRECTIONS != 9 && DRAPE_DOP_DIRECTIONS != 13
+#error DRAPE_DOP_DIRECTIONS must be 3, 7, 9 or 13
+#endif
+#define DRAPE_DOP_EDGES (DRAPE_DOP_DIRECTIONS >= 9 ? 6 : 0)
+
+// √2 and √3 rounded up: lengths of the diagonal directions.
 #define DRAPE_DIAGONAL 1.4142137f
+#define DRAPE_SPACE_DIAGONAL 1.7320509f
 // Smallest normal float, added to a pad so that flushed denormals cannot shrink a volume.
 #define DRAPE_TINY 1.17549435e-38f
 #define DRAPE_INFINITY (1.0f / 0.0f)
@@ -28,30 +36,50 @@ DRAPE_FUNCTION void dopClear(Dop* dop)
     }
 }
 
+// Length of a direction, rounded up.
+DRAPE_FUNCTION float dopNorm(int i)
+{
+    return i < 3 ? 1.0f : i < 3 + DRAPE_DOP_EDGES ? DRAPE_DIAGONAL : DRAPE_SPACE_DIAGONAL;
+}
+
+// p along a direction, rounded.
+DRAPE_FUNCTION float dopProject(Vec3 p, int i)
+{
+    if (i < 3) return i == 0 ? p.x : i == 1 ? p.y : p.z;
+    if (i < 3 + DRAPE_DOP_EDGES)
+    {
+        const int pair = (i - 3) % 3;
+        const float first = pair == 2 ? p.y : p.x;
+        const float second = pair == 0 ? p.y : p.z;
+        return i < 6 ? first + second : first - second;
+    }
+    const int corner = i - 3 - DRAPE_DOP_EDGES;
+    const float sum = corner < 2 ? p.x + p.y : p.x - p.y;
+    return corner % 2 == 0 ? sum + p.z : sum - p.z;
+}
+
 // Grows one interval by the ball of radius r·norm around the projection v. With u = 2^-24 the projection of a point
-// errs by at most 2^-23 |v| … and the shift by u |s|; the pad 2^-23 (|v| + |s|) covers both and the pad's own rounding.
-DRAPE_FUNCTION void dopAddProjection(Dop* dop, int i, float v, float reach)
+// errs by at most u |v| for two terms, and by u (|x| + |y|) more for three; the shift by u |s|. The pad 2^-23 (|v| + |s|)
+// covers these and the pad's own rounding; inner is |x| + |y| where there are three terms, else 0.
+DRAPE_FUNCTION void dopAddProjection(Dop* dop, int i, float v, float reach, float inner)
 {
     const float pad = 1.1920929e-7f;  // 2^-23
     const float low = v - reach;
     const float high = v + reach;
-    dop->m_low[i] = drapeMin(dop->m_low[i], low - (pad * (drapeAbs(v) + drapeAbs(low)) + DRAPE_TINY));
-    dop->m_high[i] = drapeMax(dop->m_high[i], high + (pad * (drapeAbs(v) + drapeAbs(high)) + DRAPE_TINY));
+    const float size = drapeAbs(v) + inner;
+    dop->m_low[i] = drapeMin(dop->m_low[i], low - (pad * (size + drapeAbs(low)) + DRAPE_TINY));
+    dop->m_high[i] = drapeMax(dop->m_high[i], high + (pad * (size + drapeAbs(high)) + DRAPE_TINY));
 }
 
 // Grows the volume to hold the ball of the given radius (m, ≥ 0) around p.
 DRAPE_FUNCTION void dopAddPoint(Dop* dop, Vec3 p, float radius)
 {
-    const float diagonal = radius * DRAPE_DIAGONAL;
-    dopAddProjection(dop, 0, p.x, radius);
-    dopAddProjection(dop, 1, p.y, radius);
-    dopAddProjection(dop, 2, p.z, radius);
-    dopAddProjection(dop, 3, p.x + p.y, diagonal);
-    dopAddProjection(dop, 4, p.x + p.z, diagonal);
-    dopAddProjection(dop, 5, p.y + p.z, diagonal);
-    dopAddProjection(dop, 6, p.x - p.y, diagonal);
-    dopAddProjection(dop, 7, p.x - p.z, diagonal);
-    dopAddProjection(dop, 8, p.y - p.z, diagonal);
+    DRAPE_UNROLL
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        const float inner = i < 3 + DRAPE_DOP_EDGES ? 0.0f : drapeAbs(p.x) + drapeAbs(p.y);
+        dopAddProjection(dop, i, dopProject(p, i), i < 3 ? radius : radius * dopNorm(i), inner);
+    }
 }
 
 DRAPE_FUNCTION void dopStore(DRAPE_GLOBAL BvhNode* node, const Dop* dop)
@@ -119,6 +147,30 @@ DRAPE_FUNCTION void triangleVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triang
         dopAddPoint(dop, p0, radius);
         dopAddPoint(dop, p1, radius);
     }
+}
+
+// A leaf's volume for a step. A negative radius takes the triangle's mesh out of the step: the volume is empty. Returns how
+// many vertices are NaN or infinite, counted by the triangle that owns them.
+DRAPE_FUNCTION DRAPE_UINT leafVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
+                                     const DRAPE_GLOBAL float* end, float radius)
+{
+    DRAPE_UINT invalid = 0;
+    if (radius < 0.0f)
+    {
+        dopClear(dop);
+        return 0;
+    }
+    triangleVolume(dop, triangle, start, end, radius);
+    for (int i = 0; i < 3; ++i)
+    {
+        const DRAPE_UINT vertex = triangle->m_vertices[i];
+        if ((triangle->m_owned & DRAPE_OWNS_VERTEX(i)) &&
+            !(positionIsValid(vec3Load(start, vertex)) && positionIsValid(vec3Load(end, vertex))))
+        {
+            ++invalid;
+        }
+    }
+    return invalid;
 }
 
 DRAPE_NAMESPACE_END
