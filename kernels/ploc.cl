@@ -10,9 +10,7 @@ __kernel void plocLeaves(__global const Triangle* restrict triangles, __global c
 {
     const uint i = get_global_id(0);
     if (i >= leafCount) return;
-    Dop dop;
-    leafVolume(&dop, triangles + mortonOrder[i], positions, positions, 0.0f);
-    boxes[i] = boxOfDop(&dop);
+    boxes[i] = boxOfTriangle(triangles + mortonOrder[i], positions);
     numbers[i] = i;
     sizes[i] = 1;
     if (i == 0)

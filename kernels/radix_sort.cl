@@ -57,6 +57,21 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_RADIX_GROUP, 1, 1))) void rad
     if (get_local_id(0) == 0) totals[get_group_id(0)] = base;
 }
 
+// The same by a work-item per digit, for few tiles.
+__kernel void radixScanDigitsSerial(__global uint* restrict counts, const uint tiles, __global uint* restrict totals)
+{
+    const uint digit = get_global_id(0);
+    if (digit >= DRAPE_RADIX_DIGITS) return;
+    uint base = 0;
+    for (uint i = digit * tiles; i < (digit + 1) * tiles; ++i)
+    {
+        const uint own = counts[i];
+        counts[i] = base;
+        base += own;
+    }
+    totals[digit] = base;
+}
+
 // One stable pass over four bits of a tile in local memory: places of a work-item's keys in the tile.
 static void placesByNibble(const uint* nibbles, const uint own, __local ushort* counters, __local uint* scratch,
                            uint* places)

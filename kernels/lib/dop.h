@@ -9,9 +9,6 @@
 DRAPE_NAMESPACE_BEGIN
 
 // Directions: the axes; then x+y x+z y+z x-y x-z y-z for 18 and 26 sides; then x+y+z x+y-z x-y+z x-y-z for 14 and 26.
-#if DRAPE_DOP_DIRECTIONS != 3 && DRAPE_DOP_DIRECTIONS != 7 && DRAPE_DOP_DIRECTIONS != 9 && DRAPE_DOP_DIRECTIONS != 13
-#error DRAPE_DOP_DIRECTIONS must be 3, 7, 9 or 13
-#endif
 #define DRAPE_DOP_EDGES (DRAPE_DOP_DIRECTIONS >= 9 ? 6 : 0)
 
 // √2 and √3 rounded up: lengths of the diagonal directions.
@@ -58,28 +55,20 @@ DRAPE_FUNCTION float dopProject(Vec3 p, int i)
     return corner % 2 == 0 ? sum + p.z : sum - p.z;
 }
 
-// Grows one interval by the ball of radius r·norm around the projection v. With u = 2^-24 the projection of a point
-// errs by at most u |v| for two terms, and by u (|x| + |y|) more for three; the shift by u |s|. The pad 2^-23 (|v| + |s|)
-// covers these and the pad's own rounding; inner is |x| + |y| where there are three terms, else 0.
-DRAPE_FUNCTION void dopAddProjection(Dop* dop, int i, float v, float reach, float inner)
+// |x| + |y| where a direction's projection has three terms, else 0: what the rounding of the first sum is bounded by.
+DRAPE_FUNCTION float dopInner(Vec3 p, int i) { return i < 3 + DRAPE_DOP_EDGES ? 0.0f : drapeAbs(p.x) + drapeAbs(p.y); }
+
+// Grows one interval to hold the balls of radius r around points whose projections lie in [least, greatest] and whose inner
+// sums are at most `inner`; reach is r times the direction's length. With u = 2^-24 the projection v of a point errs by at
+// most u |v| for two terms, and by u·inner more for three; the shift s = v ∓ reach by u |s|. The pad 2^-23 (|v| + |s|) covers
+// these and its own rounding. It is enough to pad the outermost: v - u |v| rises with v.
+DRAPE_FUNCTION void dopAddInterval(Dop* dop, int i, float least, float greatest, float reach, float inner)
 {
     const float pad = 1.1920929e-7f;  // 2^-23
-    const float low = v - reach;
-    const float high = v + reach;
-    const float size = drapeAbs(v) + inner;
-    dop->m_low[i] = drapeMin(dop->m_low[i], low - (pad * (size + drapeAbs(low)) + DRAPE_TINY));
-    dop->m_high[i] = drapeMax(dop->m_high[i], high + (pad * (size + drapeAbs(high)) + DRAPE_TINY));
-}
-
-// Grows the volume to hold the ball of the given radius (m, ≥ 0) around p.
-DRAPE_FUNCTION void dopAddPoint(Dop* dop, Vec3 p, float radius)
-{
-    DRAPE_UNROLL
-    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
-    {
-        const float inner = i < 3 + DRAPE_DOP_EDGES ? 0.0f : drapeAbs(p.x) + drapeAbs(p.y);
-        dopAddProjection(dop, i, dopProject(p, i), i < 3 ? radius : radius * dopNorm(i), inner);
-    }
+    const float low = least - reach;
+    const float high = greatest + reach;
+    dop->m_low[i] = drapeMin(dop->m_low[i], low - (pad * (drapeAbs(least) + inner + drapeAbs(low)) + DRAPE_TINY));
+    dop->m_high[i] = drapeMax(dop->m_high[i], high + (pad * (drapeAbs(greatest) + inner + drapeAbs(high)) + DRAPE_TINY));
 }
 
 DRAPE_FUNCTION void dopStore(DRAPE_GLOBAL BvhNode* node, const Dop* dop)
@@ -134,19 +123,46 @@ DRAPE_FUNCTION int opensFirst(const DRAPE_GLOBAL BvhNode* a, const DRAPE_GLOBAL 
 
 // Volume of a triangle over a step of linear motion, grown by the radius. Invalid corners (positionIsValid) stay out of
 // it, so that one bad node cannot make every ancestor overlap everything and features of the others are still found
-// (see finite_corners.h); without a valid corner the volume is empty. start and end may be the same array.
-DRAPE_FUNCTION void triangleVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
-                                   const DRAPE_GLOBAL float* end, float radius)
+// (see finite_corners.h); without a valid corner the volume is empty. start and end may be the same array, which takes
+// half the time. Returns whether all corners are valid.
+DRAPE_FUNCTION int triangleVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
+                                  const DRAPE_GLOBAL float* end, float radius)
 {
-    dopClear(dop);
-    for (int i = 0; i < 3; ++i)
+    Vec3 p[6];
+    int valid[3];
+    const int moves = start != end;
+    for (int k = 0; k < 3; ++k)
     {
-        const Vec3 p0 = vec3Load(start, triangle->m_vertices[i]);
-        const Vec3 p1 = vec3Load(end, triangle->m_vertices[i]);
-        if (!positionIsValid(p0) || !positionIsValid(p1)) continue;
-        dopAddPoint(dop, p0, radius);
-        dopAddPoint(dop, p1, radius);
+        p[k] = vec3Load(start, triangle->m_vertices[k]);
+        p[3 + k] = moves ? vec3Load(end, triangle->m_vertices[k]) : p[k];
+        valid[k] = positionIsValid(p[k]) && positionIsValid(p[3 + k]);
     }
+    const int good = valid[0] ? 0 : valid[1] ? 1 : 2;
+    dopClear(dop);
+    if (!valid[good]) return 0;
+    for (int k = 0; k < 3; ++k)
+    {
+        if (valid[k]) continue;
+        p[k] = p[good];
+        p[3 + k] = p[3 + good];
+    }
+    DRAPE_UNROLL
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        float least = dopProject(p[0], i);
+        float greatest = least;
+        float inner = dopInner(p[0], i);
+        for (int k = 1; k < 6; ++k)
+        {
+            if (k >= 3 && !moves) break;
+            const float v = dopProject(p[k], i);
+            least = drapeMin(least, v);
+            greatest = drapeMax(greatest, v);
+            inner = drapeMax(inner, dopInner(p[k], i));
+        }
+        dopAddInterval(dop, i, least, greatest, radius * dopNorm(i), inner);
+    }
+    return valid[0] && valid[1] && valid[2];
 }
 
 // A leaf's volume for a step. A negative radius takes the triangle's mesh out of the step: the volume is empty. Returns how
@@ -160,7 +176,7 @@ DRAPE_FUNCTION DRAPE_UINT leafVolume(Dop* dop, const DRAPE_GLOBAL Triangle* tria
         dopClear(dop);
         return 0;
     }
-    triangleVolume(dop, triangle, start, end, radius);
+    if (triangleVolume(dop, triangle, start, end, radius)) return 0;
     for (int i = 0; i < 3; ++i)
     {
         const DRAPE_UINT vertex = triangle->m_vertices[i];

@@ -17,14 +17,6 @@ typedef struct Box
     Vec3 m_low, m_high;
 } Box;
 
-DRAPE_FUNCTION Box boxOfDop(const Dop* dop)
-{
-    Box box;
-    box.m_low = vec3(dop->m_low[0], dop->m_low[1], dop->m_low[2]);
-    box.m_high = vec3(dop->m_high[0], dop->m_high[1], dop->m_high[2]);
-    return box;
-}
-
 DRAPE_FUNCTION Box boxUnion(const Box* a, const Box* b)
 {
     Box both;
@@ -33,6 +25,23 @@ DRAPE_FUNCTION Box boxUnion(const Box* a, const Box* b)
     both.m_high = vec3(drapeMax(a->m_high.x, b->m_high.x), drapeMax(a->m_high.y, b->m_high.y),
                        drapeMax(a->m_high.z, b->m_high.z));
     return both;
+}
+
+// Of a triangle; one with a NaN or infinite corner has an empty box and merges as anything does.
+DRAPE_FUNCTION Box boxOfTriangle(const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* positions)
+{
+    const Vec3 a = vec3Load(positions, triangle->m_vertices[0]);
+    const Vec3 b = vec3Load(positions, triangle->m_vertices[1]);
+    const Vec3 c = vec3Load(positions, triangle->m_vertices[2]);
+    Box box;
+    box.m_low = vec3(DRAPE_INFINITY, DRAPE_INFINITY, DRAPE_INFINITY);
+    box.m_high = vec3(-DRAPE_INFINITY, -DRAPE_INFINITY, -DRAPE_INFINITY);
+    if (!vec3IsFinite(a) || !vec3IsFinite(b) || !vec3IsFinite(c)) return box;
+    box.m_low = vec3(drapeMin(a.x, drapeMin(b.x, c.x)), drapeMin(a.y, drapeMin(b.y, c.y)),
+                     drapeMin(a.z, drapeMin(b.z, c.z)));
+    box.m_high = vec3(drapeMax(a.x, drapeMax(b.x, c.x)), drapeMax(a.y, drapeMax(b.y, c.y)),
+                      drapeMax(a.z, drapeMax(b.z, c.z)));
+    return box;
 }
 
 // Half the surface of the box around both: the distance of two clusters.

@@ -68,9 +68,7 @@ Tree buildPlocOnHost(const std::vector<Triangle>& triangles, const float* positi
     std::vector<std::uint32_t> sizes(count, 1);
     for (std::uint32_t i = 0; i < count; ++i)
     {
-        Dop dop;
-        leafVolume(&dop, &triangles[sorted.m_order[i]], positions, positions, 0.0f);
-        left.m_boxes.push_back(boxOfDop(&dop));
+        left.m_boxes.push_back(boxOfTriangle(&triangles[sorted.m_order[i]], positions));
         left.m_numbers.push_back(i);
     }
     for (std::uint32_t round = 0; left.m_boxes.size() > 1; ++round)

@@ -28,6 +28,7 @@ void RadixSortStage::create(Device& device, const ProgramLoader& load)
     m_countTiles.create(device, program, "radixCountTiles");
     m_countStretches.create(device, program, "radixCountStretches");
     m_scan.create(device, program, "radixScanDigits");
+    m_scanSerial.create(device, program, "radixScanDigitsSerial");
     m_scatterTiles.create(device, program, "radixScatterTiles");
     m_scatterStretches.create(device, program, "radixScatterStretches");
     m_gather.create(device, program, "radixGather");
@@ -52,7 +53,7 @@ void RadixSortStage::passInStretches(Device& device, Buffer<cl_uint>& keys, Buff
     const cl_uint stretches = (count + length - 1) / length;
     m_counts.reserve(device, std::size_t(stretches) * kDigits);
     m_countStretches.launch(device, stretches, 1, keys.handle(), count, shift, m_counts.handle(), stretches, length);
-    m_scan.launch(device, kDigits * kGroup, kGroup, m_counts.handle(), stretches, m_totals.handle());
+    m_scanSerial.launch(device, kDigits, kGatherGroup, m_counts.handle(), stretches, m_totals.handle());
     m_scatterStretches.launch(device, stretches, 1, keys.handle(), numbers.handle(), count, shift, m_counts.handle(),
                               m_totals.handle(), m_otherKeys.handle(), m_otherNumbers.handle(), stretches, length);
 }

@@ -26,7 +26,7 @@ private:
     void passInTiles(Device& device, Buffer<cl_uint>& keys, Buffer<cl_uint>& numbers, cl_uint count, cl_uint shift);
     void passInStretches(Device& device, Buffer<cl_uint>& keys, Buffer<cl_uint>& numbers, cl_uint count, cl_uint shift);
 
-    Kernel m_countTiles, m_countStretches, m_scan, m_scatterTiles, m_scatterStretches, m_gather;
+    Kernel m_countTiles, m_countStretches, m_scan, m_scanSerial, m_scatterTiles, m_scatterStretches, m_gather;
     Buffer<cl_uint> m_counts, m_totals, m_otherKeys, m_otherNumbers;
 };
 }  // namespace drape
