@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "bullet_plugin/core/bvh/tree_cost.h"
 #include "bullet_plugin/core/bvh/tree_quality.h"
 #include "scenes/mesh_loader.h"
 #include "scenes/shapes.h"
@@ -158,6 +159,11 @@ protected:
         EXPECT_TRUE(built.m_order == host.m_order);
         EXPECT_TRUE(built.m_splits == host.m_splits);
         EXPECT_TRUE(sameBytes(built.m_nodes, host.m_nodes));
+        TreeCostStage cost;
+        cost.create(device, programsOf(device));
+        cost.enqueue(device, tree);
+        device.wait();
+        EXPECT_EQ(cost.cost(), treeCostOnHost(host.m_nodes));
         EXPECT_TRUE(intact(device, tree.m_nodes) && buffers.allIntact(device));
         ASSERT_FALSE(device.failed()) << device.error().text();
     }
