@@ -71,6 +71,17 @@ DRAPE_FUNCTION void dopAddInterval(Dop* dop, int i, float least, float greatest,
     dop->m_high[i] = drapeMax(dop->m_high[i], high + (pad * (drapeAbs(greatest) + inner + drapeAbs(high)) + DRAPE_TINY));
 }
 
+// Grows the volume to hold the ball of the given radius (m, ≥ 0) around p.
+DRAPE_FUNCTION void dopAddPoint(Dop* dop, Vec3 p, float radius)
+{
+    DRAPE_UNROLL
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        const float v = dopProject(p, i);
+        dopAddInterval(dop, i, v, v, radius * dopNorm(i), dopInner(p, i));
+    }
+}
+
 DRAPE_FUNCTION void dopStore(DRAPE_GLOBAL BvhNode* node, const Dop* dop)
 {
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
