@@ -14,23 +14,8 @@ __kernel void refitLeaves(__global BvhNode* restrict nodes, __global const uint*
     __global const Triangle* triangle = triangles + order[leaf];
     const float radius = meshRadius[triangle->m_mesh];
     Dop dop;
-    if (radius < 0.0f)
-    {
-        dopClear(&dop);
-    }
-    else
-    {
-        triangleVolume(&dop, triangle, start, end, radius);
-        for (int i = 0; i < 3; ++i)
-        {
-            const uint vertex = triangle->m_vertices[i];
-            if ((triangle->m_owned & DRAPE_OWNS_VERTEX(i)) &&
-                !(positionIsValid(vec3Load(start, vertex)) && positionIsValid(vec3Load(end, vertex))))
-            {
-                atomic_inc(&counters->m_invalidNodes);
-            }
-        }
-    }
+    const uint invalid = leafVolume(&dop, triangle, start, end, radius);
+    if (invalid > 0) atomic_add(&counters->m_invalidNodes, invalid);
     dopStore(nodes + leaf, &dop);
 }
 

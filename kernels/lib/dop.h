@@ -1,4 +1,5 @@
-// 18-DOP volumes: intervals along nine directions. Leaves are padded for every rounding; merging is exact.
+// k-DOP volumes: intervals along k/2 directions, nine in the product. Leaves are padded for every rounding; merging is
+// exact.
 #ifndef DRAPE_LIB_DOP_H
 #define DRAPE_LIB_DOP_H
 
@@ -7,8 +8,12 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// √2 rounded up: the length of the six diagonal directions.
+// Directions: the axes; then x+y x+z y+z x-y x-z y-z for 18 and 26 sides; then x+y+z x+y-z x-y+z x-y-z for 14 and 26.
+#define DRAPE_DOP_EDGES (DRAPE_DOP_DIRECTIONS >= 9 ? 6 : 0)
+
+// √2 and √3 rounded up: lengths of the diagonal directions.
 #define DRAPE_DIAGONAL 1.4142137f
+#define DRAPE_SPACE_DIAGONAL 1.7320509f
 // Smallest normal float, added to a pad so that flushed denormals cannot shrink a volume.
 #define DRAPE_TINY 1.17549435e-38f
 #define DRAPE_INFINITY (1.0f / 0.0f)
@@ -28,30 +33,53 @@ DRAPE_FUNCTION void dopClear(Dop* dop)
     }
 }
 
-// Grows one interval by the ball of radius r·norm around the projection v. With u = 2^-24 the projection of a point
-// errs by at most 2^-23 |v| … and the shift by u |s|; the pad 2^-23 (|v| + |s|) covers both and the pad's own rounding.
-DRAPE_FUNCTION void dopAddProjection(Dop* dop, int i, float v, float reach)
+// Length of a direction, rounded up.
+DRAPE_FUNCTION float dopNorm(int i)
+{
+    return i < 3 ? 1.0f : i < 3 + DRAPE_DOP_EDGES ? DRAPE_DIAGONAL : DRAPE_SPACE_DIAGONAL;
+}
+
+// p along a direction, rounded.
+DRAPE_FUNCTION float dopProject(Vec3 p, int i)
+{
+    if (i < 3) return i == 0 ? p.x : i == 1 ? p.y : p.z;
+    if (i < 3 + DRAPE_DOP_EDGES)
+    {
+        const int pair = (i - 3) % 3;
+        const float first = pair == 2 ? p.y : p.x;
+        const float second = pair == 0 ? p.y : p.z;
+        return i < 6 ? first + second : first - second;
+    }
+    const int corner = i - 3 - DRAPE_DOP_EDGES;
+    const float sum = corner < 2 ? p.x + p.y : p.x - p.y;
+    return corner % 2 == 0 ? sum + p.z : sum - p.z;
+}
+
+// |x| + |y| where a direction's projection has three terms, else 0: what the rounding of the first sum is bounded by.
+DRAPE_FUNCTION float dopInner(Vec3 p, int i) { return i < 3 + DRAPE_DOP_EDGES ? 0.0f : drapeAbs(p.x) + drapeAbs(p.y); }
+
+// Grows one interval to hold the balls of radius r around points whose projections lie in [least, greatest] and whose inner
+// sums are at most `inner`; reach is r times the direction's length. With u = 2^-24 the projection v of a point errs by at
+// most u |v| for two terms, and by u·inner more for three; the shift s = v ∓ reach by u |s|. The pad 2^-23 (|v| + |s|) covers
+// these and its own rounding. It is enough to pad the outermost: v - u |v| rises with v.
+DRAPE_FUNCTION void dopAddInterval(Dop* dop, int i, float least, float greatest, float reach, float inner)
 {
     const float pad = 1.1920929e-7f;  // 2^-23
-    const float low = v - reach;
-    const float high = v + reach;
-    dop->m_low[i] = drapeMin(dop->m_low[i], low - (pad * (drapeAbs(v) + drapeAbs(low)) + DRAPE_TINY));
-    dop->m_high[i] = drapeMax(dop->m_high[i], high + (pad * (drapeAbs(v) + drapeAbs(high)) + DRAPE_TINY));
+    const float low = least - reach;
+    const float high = greatest + reach;
+    dop->m_low[i] = drapeMin(dop->m_low[i], low - (pad * (drapeAbs(least) + inner + drapeAbs(low)) + DRAPE_TINY));
+    dop->m_high[i] = drapeMax(dop->m_high[i], high + (pad * (drapeAbs(greatest) + inner + drapeAbs(high)) + DRAPE_TINY));
 }
 
 // Grows the volume to hold the ball of the given radius (m, ≥ 0) around p.
 DRAPE_FUNCTION void dopAddPoint(Dop* dop, Vec3 p, float radius)
 {
-    const float diagonal = radius * DRAPE_DIAGONAL;
-    dopAddProjection(dop, 0, p.x, radius);
-    dopAddProjection(dop, 1, p.y, radius);
-    dopAddProjection(dop, 2, p.z, radius);
-    dopAddProjection(dop, 3, p.x + p.y, diagonal);
-    dopAddProjection(dop, 4, p.x + p.z, diagonal);
-    dopAddProjection(dop, 5, p.y + p.z, diagonal);
-    dopAddProjection(dop, 6, p.x - p.y, diagonal);
-    dopAddProjection(dop, 7, p.x - p.z, diagonal);
-    dopAddProjection(dop, 8, p.y - p.z, diagonal);
+    DRAPE_UNROLL
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        const float v = dopProject(p, i);
+        dopAddInterval(dop, i, v, v, radius * dopNorm(i), dopInner(p, i));
+    }
 }
 
 DRAPE_FUNCTION void dopStore(DRAPE_GLOBAL BvhNode* node, const Dop* dop)
@@ -106,19 +134,70 @@ DRAPE_FUNCTION int opensFirst(const DRAPE_GLOBAL BvhNode* a, const DRAPE_GLOBAL 
 
 // Volume of a triangle over a step of linear motion, grown by the radius. Invalid corners (positionIsValid) stay out of
 // it, so that one bad node cannot make every ancestor overlap everything and features of the others are still found
-// (see finite_corners.h); without a valid corner the volume is empty. start and end may be the same array.
-DRAPE_FUNCTION void triangleVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
-                                   const DRAPE_GLOBAL float* end, float radius)
+// (see finite_corners.h); without a valid corner the volume is empty. start and end may be the same array, which takes
+// half the time. Returns whether all corners are valid.
+DRAPE_FUNCTION int triangleVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
+                                  const DRAPE_GLOBAL float* end, float radius)
 {
+    Vec3 p[6];
+    int valid[3];
+    const int moves = start != end;
+    for (int k = 0; k < 3; ++k)
+    {
+        p[k] = vec3Load(start, triangle->m_vertices[k]);
+        p[3 + k] = moves ? vec3Load(end, triangle->m_vertices[k]) : p[k];
+        valid[k] = positionIsValid(p[k]) && positionIsValid(p[3 + k]);
+    }
+    const int good = valid[0] ? 0 : valid[1] ? 1 : 2;
     dopClear(dop);
+    if (!valid[good]) return 0;
+    for (int k = 0; k < 3; ++k)
+    {
+        if (valid[k]) continue;
+        p[k] = p[good];
+        p[3 + k] = p[3 + good];
+    }
+    DRAPE_UNROLL
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        float least = dopProject(p[0], i);
+        float greatest = least;
+        float inner = dopInner(p[0], i);
+        for (int k = 1; k < 6; ++k)
+        {
+            if (k >= 3 && !moves) break;
+            const float v = dopProject(p[k], i);
+            least = drapeMin(least, v);
+            greatest = drapeMax(greatest, v);
+            inner = drapeMax(inner, dopInner(p[k], i));
+        }
+        dopAddInterval(dop, i, least, greatest, radius * dopNorm(i), inner);
+    }
+    return valid[0] && valid[1] && valid[2];
+}
+
+// A leaf's volume for a step. A negative radius takes the triangle's mesh out of the step: the volume is empty. Returns how
+// many vertices are NaN or infinite, counted by the triangle that owns them.
+DRAPE_FUNCTION DRAPE_UINT leafVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
+                                     const DRAPE_GLOBAL float* end, float radius)
+{
+    DRAPE_UINT invalid = 0;
+    if (radius < 0.0f)
+    {
+        dopClear(dop);
+        return 0;
+    }
+    if (triangleVolume(dop, triangle, start, end, radius)) return 0;
     for (int i = 0; i < 3; ++i)
     {
-        const Vec3 p0 = vec3Load(start, triangle->m_vertices[i]);
-        const Vec3 p1 = vec3Load(end, triangle->m_vertices[i]);
-        if (!positionIsValid(p0) || !positionIsValid(p1)) continue;
-        dopAddPoint(dop, p0, radius);
-        dopAddPoint(dop, p1, radius);
+        const DRAPE_UINT vertex = triangle->m_vertices[i];
+        if ((triangle->m_owned & DRAPE_OWNS_VERTEX(i)) &&
+            !(positionIsValid(vec3Load(start, vertex)) && positionIsValid(vec3Load(end, vertex))))
+        {
+            ++invalid;
+        }
     }
+    return invalid;
 }
 
 DRAPE_NAMESPACE_END

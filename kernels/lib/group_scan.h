@@ -11,13 +11,16 @@ static uint groupPrefix(__local uint* scratch, const uint value, uint* total)
     const uint size = get_local_size(0);
     scratch[id] = value;
     barrier(CLK_LOCAL_MEM_FENCE);
-    for (uint step = 1; step < size; step <<= 1)
+    // Loops with barriers run at least once: where they might not, some compilers copy all that follows, once per outcome.
+    uint step = 1;
+    do
     {
         const uint left = id >= step ? scratch[id - step] : 0;
         barrier(CLK_LOCAL_MEM_FENCE);
         scratch[id] += left;
         barrier(CLK_LOCAL_MEM_FENCE);
-    }
+        step <<= 1;
+    } while (step < size);
     *total = scratch[size - 1];
     const uint before = scratch[id] - value;
     barrier(CLK_LOCAL_MEM_FENCE);

@@ -15,19 +15,41 @@ DRAPE_FUNCTION DRAPE_UINT mortonSpread(DRAPE_UINT v)
     return (v | (v << 2)) & 0x09249249u;
 }
 
-DRAPE_FUNCTION DRAPE_UINT mortonCell(float value, float low, float high)
+// The cell of a value among `cells` in [low, high].
+DRAPE_FUNCTION DRAPE_UINT mortonCell(float value, float low, float high, DRAPE_UINT cells)
 {
     const float extent = high - low;
     if (!(extent > 0.0f)) return 0u;  // flat in this axis
-    const float cell = (value - low) / extent * 1024.0f;
-    return cell >= 1023.0f ? 1023u : cell > 0.0f ? (DRAPE_UINT)cell : 0u;  // NaN lands in the first cell
+    const float cell = (value - low) / extent * (float)cells;
+    const float last = (float)(cells - 1u);
+    return cell >= last ? cells - 1u : cell > 0.0f ? (DRAPE_UINT)cell : 0u;  // NaN lands in the first cell
+}
+
+DRAPE_FUNCTION DRAPE_UINT mortonInterleave(DRAPE_UINT x, DRAPE_UINT y, DRAPE_UINT z)
+{
+    return mortonSpread(x) | (mortonSpread(y) << 1) | (mortonSpread(z) << 2);
 }
 
 // 30-bit code of a point in the box [low, high].
 DRAPE_FUNCTION DRAPE_UINT mortonCode(Vec3 p, Vec3 low, Vec3 high)
 {
-    return mortonSpread(mortonCell(p.x, low.x, high.x)) | (mortonSpread(mortonCell(p.y, low.y, high.y)) << 1) |
-           (mortonSpread(mortonCell(p.z, low.z, high.z)) << 2);
+    return mortonInterleave(mortonCell(p.x, low.x, high.x, 1024u), mortonCell(p.y, low.y, high.y, 1024u),
+                            mortonCell(p.z, low.z, high.z, 1024u));
+}
+
+// 63-bit code: the upper 31 bits and the lower 32. 21 bits an axis are fewer than a float's 24.
+DRAPE_FUNCTION void mortonCodeWide(Vec3 p, Vec3 low, Vec3 high, DRAPE_GLOBAL DRAPE_UINT* upper,
+                                   DRAPE_GLOBAL DRAPE_UINT* lower)
+{
+    const DRAPE_UINT cells = 1u << 21;
+    const DRAPE_UINT x = mortonCell(p.x, low.x, high.x, cells);
+    const DRAPE_UINT y = mortonCell(p.y, low.y, high.y, cells);
+    const DRAPE_UINT z = mortonCell(p.z, low.z, high.z, cells);
+    // Bits 0 … 29 from the lowest ten of each axis, 30 … 59 from the next ten, 60 … 62 from the last.
+    const DRAPE_UINT middle = mortonInterleave((x >> 10) & 1023u, (y >> 10) & 1023u, (z >> 10) & 1023u);
+    const DRAPE_UINT top = (x >> 20) | ((y >> 20) << 1) | ((z >> 20) << 2);
+    *lower = mortonInterleave(x & 1023u, y & 1023u, z & 1023u) | (middle << 30);
+    *upper = (middle >> 2) | (top << 28);
 }
 
 DRAPE_NAMESPACE_END

@@ -34,7 +34,11 @@ typedef struct NormalCone
     float m_cosine;  // of the half-angle
 } NormalCone;
 
+// Half the volumes' sides: 9 in the product; 3, 7 and 13 are for studies. An option of the host's build, passed on to the
+// kernels' programs.
+#ifndef DRAPE_DOP_DIRECTIONS
 #define DRAPE_DOP_DIRECTIONS 9
+#endif
 
 // A node's volume is the interval [m_low, m_high] in each direction. Children are adjacent: m_first … m_first + m_count
 // - 1. A leaf has m_count 0 and m_first is its place in the order of primitives.

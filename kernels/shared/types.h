@@ -10,6 +10,8 @@
 #define DRAPE_FUNCTION static inline
 #define DRAPE_NAMESPACE_BEGIN
 #define DRAPE_NAMESPACE_END
+// Before a loop over a volume's directions, whose bodies differ: without it compilers keep the choices in the loop.
+#define DRAPE_UNROLL _Pragma("unroll")
 #else
 #include <cmath>
 #include <cstdint>
@@ -23,6 +25,7 @@
     namespace drape           \
     {
 #define DRAPE_NAMESPACE_END }
+#define DRAPE_UNROLL _Pragma("GCC unroll 13")
 #endif
 
 DRAPE_NAMESPACE_BEGIN

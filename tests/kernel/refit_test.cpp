@@ -111,7 +111,7 @@ TEST_P(RefitTest, LeafOrderSameAsTheHost)
     const std::unique_ptr<Device> device = openDevice(GetParam());
     ASSERT_TRUE(device);
     MortonOrderStage stage;
-    stage.create(*device, programOf(*device, "morton_order"));
+    stage.create(*device, programsOf(*device));
     EXPECT_TRUE(stage.order(*device, {}, nullptr, 0).empty());
     for (bool spoiled : {false, true})
     {
@@ -134,7 +134,7 @@ TEST_P(RefitTest, LeafOrderOfEqualCentroidsIsByNumber)
     const std::unique_ptr<Device> device = openDevice(GetParam());
     ASSERT_TRUE(device);
     MortonOrderStage stage;
-    stage.create(*device, programOf(*device, "morton_order"));
+    stage.create(*device, programsOf(*device));
     std::vector<float> corners;
     for (int i = 0; i < 1000; ++i)
         corners.insert(corners.end(), {0, 0, 0, 1, 0, 0, 0, 1, 0});

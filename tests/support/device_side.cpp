@@ -1,7 +1,5 @@
 #include "tests/support/device_side.h"
 
-#include "bullet_plugin/core/device/program.h"
-
 namespace drape::test
 {
 void DeviceSide::upload(Device& device, const Side& side)
@@ -27,6 +25,11 @@ cl::Program programOf(Device& device, const std::string& name, const std::string
 {
     ProgramBuild build;
     return buildProgram(device, name, "", build, defines);
+}
+
+ProgramLoader programsOf(Device& device)
+{
+    return [&device](const char* name) { return programOf(device, name); };
 }
 
 void clearCounters(Device& device, Buffer<StepCounters>& counters)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bullet_plugin/core/bvh/refit.h"
+#include "bullet_plugin/core/device/program.h"
 #include "tests/support/backends.h"
 #include "tests/support/canary.h"
 #include "tests/support/side.h"
@@ -24,6 +25,8 @@ struct DeviceSide
 
 // The program of kernels/<name>.cl from the tests' cache.
 cl::Program programOf(Device& device, const std::string& name, const std::string& defines = std::string());
+// For stages that need several.
+ProgramLoader programsOf(Device& device);
 
 // Zeroed counters on the device, and reading them back.
 void clearCounters(Device& device, Buffer<StepCounters>& counters);

@@ -10,18 +10,19 @@ namespace drape
 {
 namespace
 {
-// As in kernels/morton_order.cl.
-constexpr std::size_t kSortGroup = 64;
-constexpr std::size_t kSortShare = 8;
-constexpr cl_uint kDigitBits = 4;
-constexpr cl_uint kCodeBits = 32;  // 30 used; an even number of passes ends in the first buffers
-constexpr std::size_t kGroup = 64;
-}  // namespace
+constexpr std::size_t kGroup = 64;  // as in kernels/morton_order.cl
+// Groups per compute unit that look for the bounds: enough to hide latency, few enough to merge.
+constexpr std::size_t kBoundsGroupsPerUnit = 4;
+constexpr cl_uint kShortCodeBits = 30;
+constexpr cl_uint kLowBits = 32, kHighBits = 31;  // the words of a 63-bit code
+// Least and greatest values before any centroid was seen, see kernels/morton_order.cl.
+const cl_uint kNoBounds[6] = {~0u, ~0u, ~0u, 0u, 0u, 0u};
 
-std::vector<std::uint32_t> mortonOrderOnHost(const std::vector<Triangle>& triangles, const float* positions)
+void findBounds(const std::vector<Triangle>& triangles, const float* positions, Vec3& low, Vec3& high)
 {
     const float infinity = std::numeric_limits<float>::infinity();
-    Vec3 low = vec3(infinity, infinity, infinity), high = vec3(-infinity, -infinity, -infinity);
+    low = vec3(infinity, infinity, infinity);
+    high = vec3(-infinity, -infinity, -infinity);
     for (const Triangle& triangle : triangles)
     {
         const Vec3 p = triangleCentroid(&triangle, positions);
@@ -29,40 +30,77 @@ std::vector<std::uint32_t> mortonOrderOnHost(const std::vector<Triangle>& triang
         low = vec3(drapeMin(low.x, p.x), drapeMin(low.y, p.y), drapeMin(low.z, p.z));
         high = vec3(drapeMax(high.x, p.x), drapeMax(high.y, p.y), drapeMax(high.z, p.z));
     }
-    std::vector<std::uint32_t> codes(triangles.size()), order(triangles.size());
-    for (std::size_t i = 0; i < triangles.size(); ++i)
+}
+}  // namespace
+
+MortonOrder sortByMorton(const std::vector<Triangle>& triangles, const float* positions, std::uint32_t codeBits)
+{
+    Vec3 low, high;
+    findBounds(triangles, positions, low, high);
+    const std::size_t count = triangles.size();
+    const bool wide = codeBits != kShortCodeBits;
+    std::vector<std::uint64_t> codes(count);
+    for (std::size_t i = 0; i < count; ++i)
     {
-        codes[i] = mortonCode(triangleCentroid(&triangles[i], positions), low, high);
+        const Vec3 centroid = triangleCentroid(&triangles[i], positions);
+        std::uint32_t upper = 0, lower = 0;
+        if (wide) mortonCodeWide(centroid, low, high, &upper, &lower);
+        codes[i] = wide ? std::uint64_t(upper) << 32 | lower : mortonCode(centroid, low, high);
     }
-    std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return codes[a] < codes[b]; });
-    return order;
+    MortonOrder sorted;
+    sorted.m_order.resize(count);
+    std::iota(sorted.m_order.begin(), sorted.m_order.end(), 0u);
+    std::stable_sort(sorted.m_order.begin(), sorted.m_order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return codes[a] < codes[b]; });
+    for (std::uint32_t i : sorted.m_order)
+    {
+        sorted.m_high.push_back(std::uint32_t(wide ? codes[i] >> 32 : codes[i]));
+        if (wide) sorted.m_low.push_back(std::uint32_t(codes[i]));
+    }
+    return sorted;
 }
 
-void MortonOrderStage::create(Device& device, const cl::Program& program)
+std::vector<std::uint32_t> mortonOrderOnHost(const std::vector<Triangle>& triangles, const float* positions)
 {
+    return sortByMorton(triangles, positions, kShortCodeBits).m_order;
+}
+
+void MortonOrderStage::create(Device& device, const ProgramLoader& load)
+{
+    const cl::Program program = load("morton_order");
     m_bounds.create(device, program, "mortonBounds");
     m_codes.create(device, program, "mortonCodes");
-    m_count.create(device, program, "sortCount");
-    m_scan.create(device, program, "sortScan");
-    m_scatter.create(device, program, "sortScatter");
+    m_sort.create(device, load);
 }
 
-void MortonOrderStage::sort(Device& device, cl_uint count)
+void MortonOrderStage::enqueue(Device& device, Buffer<Triangle>& triangles, Buffer<float>& positions, cl_uint count,
+                               cl_uint codeBits, WorkShape shape, Buffer<cl_uint>& order, Buffer<cl_uint>& high,
+                               Buffer<cl_uint>& low)
 {
-    const std::size_t groups = (count + kSortGroup * kSortShare - 1) / (kSortGroup * kSortShare);
-    const cl_uint counts = cl_uint(groups << kDigitBits);
-    m_groupCounts.reserve(device, counts);
-    for (cl_uint shift = 0; shift < kCodeBits; shift += kDigitBits)
+    const bool wide = codeBits != kShortCodeBits;
+    order.reserve(device, count);
+    high.reserve(device, count);
+    low.reserve(device, wide ? count : 1);
+    m_boundsBuffer.reserve(device, 6);
+    m_boundsBuffer.write(device, kNoBounds, 6);
+    const std::size_t width = std::min<std::size_t>(count, kGroup * kBoundsGroupsPerUnit * device.computeUnits());
+    m_bounds.launch(device, width, kGroup, triangles.handle(), positions.handle(), count, m_boundsBuffer.handle());
+    m_codes.launch(device, count, kGroup, triangles.handle(), positions.handle(), count, m_boundsBuffer.handle(),
+                   codeBits, high.handle(), low.handle(), order.handle());
+    if (!wide)
     {
-        m_count.launch(device, groups * kSortGroup, kSortGroup, m_codesA.handle(), count, shift,
-                       m_groupCounts.handle());
-        m_scan.launch(device, kSortGroup, kSortGroup, m_groupCounts.handle(), counts);
-        m_scatter.launch(device, groups * kSortGroup, kSortGroup, m_codesA.handle(), m_numbersA.handle(), count, shift,
-                         m_groupCounts.handle(), m_codesB.handle(), m_numbersB.handle());
-        std::swap(m_codesA, m_codesB);
-        std::swap(m_numbersA, m_numbersB);
+        m_sort.enqueue(device, high, order, count, kShortCodeBits, shape);
+        return;
     }
+    // By the lower word, then by the upper: the sort is stable.
+    m_unsortedHigh.reserve(device, count);
+    m_unsortedLow.reserve(device, count);
+    device.queue().enqueueCopyBuffer(low.handle(), m_unsortedLow.handle(), 0, 0, count * sizeof(cl_uint));
+    std::swap(high, m_unsortedHigh);
+    m_sort.enqueue(device, low, order, count, kLowBits, shape);
+    m_sort.gather(device, m_unsortedHigh, order, count, high);
+    m_sort.enqueue(device, high, order, count, kHighBits, shape);
+    m_sort.gather(device, m_unsortedLow, order, count, low);
 }
 
 std::vector<std::uint32_t> MortonOrderStage::order(Device& device, const std::vector<Triangle>& triangles,
@@ -71,21 +109,12 @@ std::vector<std::uint32_t> MortonOrderStage::order(Device& device, const std::ve
     const cl_uint count = cl_uint(triangles.size());
     std::vector<std::uint32_t> order(count);
     if (count == 0) return order;
-    for (Buffer<cl_uint>* buffer : {&m_codesA, &m_codesB, &m_numbersA, &m_numbersB})
-        buffer->reserve(device, count);
     m_triangleBuffer.assign(device, triangles);
     m_positionBuffer.reserve(device, 3 * vertexCount);
     m_positionBuffer.write(device, positions, 3 * vertexCount);
-    const cl_uint unset[6] = {~0u, ~0u, ~0u, 0u, 0u, 0u};
-    m_boundsBuffer.reserve(device, 6);
-    m_boundsBuffer.write(device, unset, 6);
-    const std::size_t width = std::min<std::size_t>(count, 64 * device.computeUnits());
-    m_bounds.launch(device, width, kGroup, m_triangleBuffer.handle(), m_positionBuffer.handle(), count,
-                    m_boundsBuffer.handle());
-    m_codes.launch(device, count, kGroup, m_triangleBuffer.handle(), m_positionBuffer.handle(), count,
-                   m_boundsBuffer.handle(), m_codesA.handle(), m_numbersA.handle());
-    sort(device, count);
-    m_numbersA.read(device, order.data(), count);
+    enqueue(device, m_triangleBuffer, m_positionBuffer, count, kShortCodeBits, WorkShape::Device, m_order, m_high,
+            m_low);
+    m_order.read(device, order.data(), count);
     device.wait();
     if (device.failed()) order.clear();
     return order;

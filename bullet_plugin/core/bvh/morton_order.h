@@ -1,5 +1,5 @@
 // The order of a mesh's triangles as leaves: by the Morton code of the centroid, equal codes by number. Host and device
-// give the same order. O(n log n) on the host, eight linear passes on the device.
+// give the same order. O(n log n) on the host, four linear passes on the device (eight for 63-bit codes).
 #pragma once
 
 #include <cstdint>
@@ -8,27 +8,41 @@
 #include "bullet_plugin/core/device/buffer.h"
 #include "bullet_plugin/core/device/program.h"
 #include "kernels/shared/mesh.h"
+#include "radix_sort.h"
 
 namespace drape
 {
-// positions: m, x y z per vertex that triangles refer to. NaN centroids sort by a code of zero.
+// Triangles in order, and their codes: one word of 30 bits, or the upper 31 and the lower 32 of 63.
+struct MortonOrder
+{
+    std::vector<std::uint32_t> m_order;
+    std::vector<std::uint32_t> m_high;
+    std::vector<std::uint32_t> m_low;  // empty for 30 bits
+};
+
+// positions: m, x y z per vertex that triangles refer to. NaN centroids sort by a code of zero. codeBits: 30 or 63.
+MortonOrder sortByMorton(const std::vector<Triangle>& triangles, const float* positions, std::uint32_t codeBits);
 std::vector<std::uint32_t> mortonOrderOnHost(const std::vector<Triangle>& triangles, const float* positions);
 
 class MortonOrderStage
 {
 public:
-    void create(Device& device, const cl::Program& program);
+    void create(Device& device, const ProgramLoader& load);
+
+    // Leaves the triangles' numbers in order and the sorted codes; low is used for 63 bits only. Returns after
+    // enqueueing.
+    void enqueue(Device& device, Buffer<Triangle>& triangles, Buffer<float>& positions, cl_uint count, cl_uint codeBits,
+                 WorkShape shape, Buffer<cl_uint>& order, Buffer<cl_uint>& high, Buffer<cl_uint>& low);
 
     // Waits for the device: meshes come and go rarely. Empty when the device failed.
     std::vector<std::uint32_t> order(Device& device, const std::vector<Triangle>& triangles, const float* positions,
                                      std::size_t vertexCount);
 
 private:
-    void sort(Device& device, cl_uint count);
-
-    Kernel m_bounds, m_codes, m_count, m_scan, m_scatter;
+    Kernel m_bounds, m_codes;
+    RadixSortStage m_sort;
     Buffer<Triangle> m_triangleBuffer;
     Buffer<float> m_positionBuffer;
-    Buffer<cl_uint> m_boundsBuffer, m_groupCounts, m_codesA, m_codesB, m_numbersA, m_numbersB;
+    Buffer<cl_uint> m_boundsBuffer, m_order, m_high, m_low, m_unsortedHigh, m_unsortedLow;
 };
 }  // namespace drape

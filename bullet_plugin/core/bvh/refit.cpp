@@ -9,25 +9,6 @@ namespace
 constexpr std::size_t kGroup = 64;
 // A height of at most this many nodes is cheaper in the climb of one group than as a launch (3 µs on an H200).
 constexpr std::size_t kClimbGroup = 128;
-
-void refitLeafOnHost(BvhNode& node, const Triangle& triangle, const float* start, const float* end, float radius,
-                     std::size_t& invalidNodes)
-{
-    Dop dop;
-    dopClear(&dop);
-    if (radius >= 0.0f)
-    {
-        triangleVolume(&dop, &triangle, start, end, radius);
-        for (int i = 0; i < 3; ++i)
-        {
-            if (!(triangle.m_owned & DRAPE_OWNS_VERTEX(i))) continue;
-            const bool valid = positionIsValid(vec3Load(start, triangle.m_vertices[i])) &&
-                               positionIsValid(vec3Load(end, triangle.m_vertices[i]));
-            if (!valid) ++invalidNodes;
-        }
-    }
-    dopStore(&node, &dop);
-}
 }  // namespace
 
 void refitOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const std::vector<std::uint32_t>& order,
@@ -38,7 +19,9 @@ void refitOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const std
     for (std::uint32_t leaf = 0; leaf < leafCount; ++leaf)
     {
         const Triangle& triangle = triangles[order[leaf]];
-        refitLeafOnHost(nodes[leaf], triangle, start, end, meshRadius[triangle.m_mesh], invalidNodes);
+        Dop dop;
+        invalidNodes += leafVolume(&dop, &triangle, start, end, meshRadius[triangle.m_mesh]);
+        dopStore(&nodes[leaf], &dop);
     }
     for (std::uint32_t node = leafCount; node < layout.nodeCount(); ++node)
         dopMergeChildren(nodes.data(), node);

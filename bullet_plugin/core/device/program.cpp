@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "embedded_kernels.h"
+#include "kernels/shared/mesh.h"
 #include "program_cache.h"
 
 namespace drape
@@ -14,7 +15,13 @@ namespace
 {
 // Contraction is off by pragma too: options can be ignored, and half of all dot products differ with it.
 constexpr const char* kPreamble = "#pragma OPENCL FP_CONTRACT OFF\n";
-constexpr const char* kOptions = "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt";
+#define DRAPE_TEXT_OF(x) #x
+#define DRAPE_TEXT(x) DRAPE_TEXT_OF(x)
+constexpr const char* kOptions =
+    "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -DDRAPE_DOP_DIRECTIONS=" DRAPE_TEXT(DRAPE_DOP_DIRECTIONS);
+static_assert(DRAPE_DOP_DIRECTIONS == 3 || DRAPE_DOP_DIRECTIONS == 7 || DRAPE_DOP_DIRECTIONS == 9 ||
+                  DRAPE_DOP_DIRECTIONS == 13,
+              "volumes have 6, 14, 18 or 26 sides");
 
 const char* findText(const std::string& path)
 {

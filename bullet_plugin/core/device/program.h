@@ -1,6 +1,7 @@
 // Programs of the embedded kernels: source with includes resolved, built for a device or taken from the cache on disk.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "device.h"
@@ -26,6 +27,9 @@ struct ProgramBuild
 // defines: lines of text put before the source.
 cl::Program buildProgram(Device& device, const std::string& name, const std::string& cacheFolder, ProgramBuild& build,
                          const std::string& defines = std::string());
+
+// Gives the program of "kernels/<name>.cl" to a stage that needs several.
+using ProgramLoader = std::function<cl::Program(const char* name)>;
 
 // Builds a source text as given, for tests of the log.
 cl::Program compileSource(Device& device, const std::string& name, const std::string& source);

@@ -20,7 +20,7 @@ DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& set
     : m_device(std::move(device)), m_settings(settings)
 {
     m_refit.create(*m_device, program("refit"));
-    m_mortonOrder.create(*m_device, program("morton_order"));
+    m_mortonOrder.create(*m_device, [this](const char* name) { return program(name); });
     if (patches())
     {
         m_patchCull.create(*m_device, program("patch_cull", PatchCullStage::defines(*m_device)));

@@ -3,8 +3,57 @@
 // needed.
 #pragma once
 
+#include <cstdint>
+
 namespace drape
 {
+enum class TreeBuilder
+{
+    Balanced,  // triangles in Morton order, neighbours paired height by height: the shape depends on the count alone
+    Radix,     // triangles in Morton order, split where the codes' first differing bit is (Karras 2012)
+    TopDown,   // level by level, at the mean or median of the centroids along the longest direction (the thesis)
+    Ploc       // nearest neighbours merged bottom-up (Meister and Bittner 2018): fewest nodes visited, slowest build
+};
+
+enum class RefitMethod
+{
+    Levels,   // a launch per height (the thesis)
+    Subtrees  // whole subtrees per work-group: three launches, two for fewer than 4,097 triangles
+};
+
+// How kernels spread their work; results do not depend on it.
+enum class WorkShape
+{
+    Device,  // groups on a GPU, serial elsewhere
+    Groups,  // many work-items share a stretch through local memory
+    Serial   // a work-item runs through a stretch alone, as a CPU's core likes it
+};
+
+// The thesis's construction and its optimisations, each a switch.
+struct TopDownSettings
+{
+    bool m_medianSplit = false;        // at the median of the centroids instead of the mean
+    bool m_adaptiveGroups = true;      // work-groups shrink with the mean size of a level's nodes
+    bool m_smallSplits = true;         // small nodes get a work-item instead of a work-group
+    bool m_largeNodes = true;          // large nodes get many work-groups
+    std::uint32_t m_leafSize = 1;      // ≥ 1: nodes of at most so many triangles are halved without looking
+    std::uint32_t m_groupSize = 128;   // work-items of a group, a power of two, 16 to 256; the thesis's is 128
+    std::uint32_t m_smallSize = 55;    // triangles up to which a node is small (the thesis's)
+    float m_smallShare = 0.3f;         // share of small nodes from which a level has a work-item per node (its 30 %)
+    std::uint32_t m_largeSize = 8192;  // triangles from which a node is large
+    std::uint32_t m_compactionGroup = 256;  // work-items of the compaction's groups, a power of two, ≤ 256
+};
+
+struct TreeMethods
+{
+    TreeBuilder m_builder = TreeBuilder::Balanced;
+    RefitMethod m_refit = RefitMethod::Subtrees;
+    WorkShape m_workShape = WorkShape::Device;
+    std::uint32_t m_mortonBits = 30;  // 30 or 63; Radix and Ploc
+    std::uint32_t m_plocRadius = 8;   // neighbours looked at on either side; 1 to 32. Larger: better trees, slower
+    TopDownSettings m_topDown;
+};
+
 // How the broad phase finds what may touch.
 enum class Traversal
 {

@@ -1,0 +1,71 @@
+#include "tree_builder.h"
+
+namespace drape
+{
+Tree buildTreeOnHost(const TreeMethods& methods, const std::vector<Triangle>& triangles, const float* positions,
+                     std::size_t meshCount)
+{
+    const std::uint32_t bits = methods.m_mortonBits;
+    Tree tree;
+    if (methods.m_builder == TreeBuilder::TopDown)
+    {
+        tree = buildTopDownOnHost(triangles, positions, methods.m_topDown);
+    }
+    else if (methods.m_builder == TreeBuilder::Ploc)
+    {
+        tree = buildPlocOnHost(triangles, positions, bits, methods.m_plocRadius);
+    }
+    else
+    {
+        tree = buildRadixTreeOnHost(triangles, positions, bits, methods.m_builder == TreeBuilder::Balanced);
+    }
+    std::size_t ignored = 0;
+    const std::vector<float> noRadius(meshCount, 0.0f);
+    refitTreeOnHost(tree, triangles, positions, positions, noRadius, ignored);
+    return tree;
+}
+
+void TreeBuilderStage::create(Device& device, const ProgramLoader& load, const TreeMethods& methods)
+{
+    m_methods = methods;
+    m_refit.create(device, load);
+    switch (methods.m_builder)
+    {
+        case TreeBuilder::TopDown:
+            m_topDown.create(device, load);
+            break;
+        case TreeBuilder::Ploc:
+            m_ploc.create(device, load);
+            break;
+        default:
+            m_radix.create(device, load);
+    }
+}
+
+void TreeBuilderStage::enqueue(Device& device, Buffer<Triangle>& triangles, Buffer<float>& positions, cl_uint count,
+                               std::size_t meshCount, DeviceTree& tree)
+{
+    const WorkShape shape = m_methods.m_workShape;
+    const cl_uint bits = m_methods.m_mortonBits;
+    tree.reserve(device, count);
+    if (count == 0) return;
+    switch (m_methods.m_builder)
+    {
+        case TreeBuilder::TopDown:
+            m_topDown.build(device, triangles, positions, count, m_methods.m_topDown, tree);
+            break;
+        case TreeBuilder::Ploc:
+            m_ploc.build(device, triangles, positions, count, bits, m_methods.m_plocRadius, shape, tree);
+            break;
+        default:
+            m_radix.enqueue(device, triangles, positions, count, bits, m_methods.m_builder == TreeBuilder::Balanced,
+                            shape, tree);
+    }
+    m_refit.listTops(device, tree);
+    m_noRadius.reserve(device, meshCount);
+    m_noRadius.fill(device, 0, meshCount);
+    m_counters.reserve(device, 1);
+    m_counters.fill(device, 0, 1);
+    m_refit.enqueue(device, tree, {triangles, positions, positions, m_noRadius, m_counters}, shape);
+}
+}  // namespace drape

@@ -1,0 +1,41 @@
+// A side's hierarchy by the builder that the settings name: order, links and volumes.
+//
+// Same triangles and positions, same tree, bit for bit, on the host and on every device, in every shape of the work.
+#pragma once
+
+#include "ploc.h"
+#include "radix_tree.h"
+#include "top_down.h"
+#include "tree_refit.h"
+
+namespace drape
+{
+// positions: m, x y z per vertex. meshCount: slots that triangles refer to. Volumes have no radius.
+Tree buildTreeOnHost(const TreeMethods& methods, const std::vector<Triangle>& triangles, const float* positions,
+                     std::size_t meshCount);
+
+class TreeBuilderStage
+{
+public:
+    // Makes the kernels of the one builder that methods name, and those of the refit.
+    void create(Device& device, const ProgramLoader& load, const TreeMethods& methods);
+
+    // Returns after enqueueing where the builder needs no answer in between (Balanced, Radix); TopDown waits once a
+    // level and Ploc once in some rounds.
+    void enqueue(Device& device, Buffer<Triangle>& triangles, Buffer<float>& positions, cl_uint count,
+                 std::size_t meshCount, DeviceTree& tree);
+
+    TreeRefitStage& refit() { return m_refit; }
+    // Of the last build; empty unless the builder is TopDown.
+    const std::vector<TopDownLevel>& topDownLevels() const { return m_topDown.levels(); }
+
+private:
+    TreeMethods m_methods;
+    RadixTreeStage m_radix;
+    TopDownStage m_topDown;
+    PlocStage m_ploc;
+    TreeRefitStage m_refit;
+    Buffer<float> m_noRadius;
+    Buffer<StepCounters> m_counters;
+};
+}  // namespace drape

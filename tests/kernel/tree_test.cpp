@@ -1,0 +1,191 @@
+// Trees of every builder: valid, and the same bits on the host and on devices, in every shape of the work.
+#include "bullet_plugin/core/bvh/tree_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+
+#include "bullet_plugin/core/bvh/tree_cost.h"
+#include "bullet_plugin/core/bvh/tree_quality.h"
+#include "scenes/mesh_loader.h"
+#include "scenes/shapes.h"
+#include "tests/support/cases.h"
+#include "tests/support/device_side.h"
+
+namespace drape::test
+{
+namespace
+{
+// Around the work-groups of 64, 128 and 256, the windows of 64 and 4,096 leaves and the sort's tile of 2,048.
+const int kSizes[] = {1, 2, 3, 63, 64, 65, 127, 128, 129, 255, 257, 2047, 2048, 2049, 4096, 4097, 8195, 20011};
+
+struct NamedMethods
+{
+    std::string m_name;
+    TreeMethods m_methods;
+};
+
+TreeMethods methodsOf(TreeBuilder builder, WorkShape shape)
+{
+    TreeMethods methods;
+    methods.m_builder = builder;
+    methods.m_workShape = shape;
+    return methods;
+}
+
+std::vector<NamedMethods> allMethods()
+{
+    std::vector<NamedMethods> all;
+    for (WorkShape shape : {WorkShape::Serial, WorkShape::Groups})
+    {
+        const std::string suffix = shape == WorkShape::Serial ? ", serial" : ", groups";
+        all.push_back({"balanced" + suffix, methodsOf(TreeBuilder::Balanced, shape)});
+        all.push_back({"radix, 30 bits" + suffix, methodsOf(TreeBuilder::Radix, shape)});
+        all.push_back({"radix, 63 bits" + suffix, methodsOf(TreeBuilder::Radix, shape)});
+        all.back().m_methods.m_mortonBits = 63;
+        all.push_back({"ploc" + suffix, methodsOf(TreeBuilder::Ploc, shape)});
+        all.push_back({"ploc, 63 bits, radius 3" + suffix, methodsOf(TreeBuilder::Ploc, shape)});
+        all.back().m_methods.m_mortonBits = 63;
+        all.back().m_methods.m_plocRadius = 3;
+    }
+    for (bool adaptive : {false, true})
+    {
+        for (bool small : {false, true})
+        {
+            for (bool large : {false, true})
+            {
+                TreeMethods methods = methodsOf(TreeBuilder::TopDown, WorkShape::Device);
+                methods.m_topDown.m_adaptiveGroups = adaptive;
+                methods.m_topDown.m_smallSplits = small;
+                methods.m_topDown.m_largeNodes = large;
+                methods.m_topDown.m_largeSize = 3000;  // so that the tests' meshes have large nodes
+                all.push_back({"top-down, adaptive " + std::to_string(adaptive) + ", small " + std::to_string(small) +
+                                   ", large " + std::to_string(large),
+                               methods});
+            }
+        }
+    }
+    TreeMethods methods = methodsOf(TreeBuilder::TopDown, WorkShape::Device);
+    methods.m_topDown.m_medianSplit = true;
+    methods.m_topDown.m_smallShare = 2.0f;  // small nodes are always put aside
+    methods.m_topDown.m_groupSize = 256;
+    all.push_back({"top-down, median", methods});
+    methods.m_topDown.m_leafSize = 7;
+    methods.m_topDown.m_groupSize = 32;
+    methods.m_topDown.m_compactionGroup = 64;
+    all.push_back({"top-down, median, leaves of 7", methods});
+    return all;
+}
+
+Side sideOf(const TriangleMesh& mesh)
+{
+    return makeSide({mesh});
+}
+
+TriangleMesh repeated(int count, const std::vector<float>& triangle)
+{
+    std::vector<float> corners;
+    for (int i = 0; i < count; ++i)
+        corners.insert(corners.end(), triangle.begin(), triangle.end());
+    return looseTriangles(corners);
+}
+
+// Each triangle's centroid is twice as far as the one before: a mean or a code parts off one triangle at a time.
+TriangleMesh doublingLine(int count)
+{
+    std::vector<float> corners;
+    float x = 1e-30f;
+    for (int i = 0; i < count; ++i, x *= 1.3f)
+        corners.insert(corners.end(), {x, 0, 0, 1.1f * x, 0, 0, x, 1e-3f * x, 0});
+    return looseTriangles(corners);
+}
+
+TriangleMesh evenLine(int count)
+{
+    std::vector<float> corners;
+    for (int i = 0; i < count; ++i)
+        corners.insert(corners.end(), {float(i), 0, 0, i + 1.0f, 0, 0, i + 0.5f, 1, 0});
+    return looseTriangles(corners);
+}
+
+TriangleMesh withBadNodes(TriangleMesh mesh)
+{
+    mesh.m_positions[7] = std::numeric_limits<float>::quiet_NaN();
+    mesh.m_positions[40] = std::numeric_limits<float>::infinity();
+    mesh.m_positions[80] = 3e38f;
+    return mesh;
+}
+
+std::vector<std::pair<std::string, TriangleMesh>> meshes()
+{
+    std::vector<std::pair<std::string, TriangleMesh>> all;
+    for (int size : kSizes)
+        all.emplace_back("soup of " + std::to_string(size), makeSoup(1.0f, 0.1f, size, std::uint32_t(size)));
+    all.emplace_back("equal centroids", repeated(5000, {0, 0, 0, 1, 0, 0, 0, 1, 0}));
+    all.emplace_back("points", repeated(300, {1, 2, 3, 1, 2, 3, 1, 2, 3}));
+    all.emplace_back("doubling line", doublingLine(300));
+    all.emplace_back("even line", evenLine(5000));
+    all.emplace_back("sphere", makeSphere(0.5f, 4));
+    all.emplace_back("terrain", makeTerrain(3.0f, 0.4f, 80, 5));
+    all.emplace_back("bad nodes", withBadNodes(makeSoup(1.0f, 0.1f, 500, 9)));
+    return all;
+}
+
+std::string whyInvalid(const Tree& tree, const Side& side)
+{
+    return drape::whyInvalid(tree.m_nodes, 0, tree.m_order, side.m_pool.triangles(), side.m_start.data(), {0.0f});
+}
+}  // namespace
+
+class TreeTest : public BackendTest
+{
+protected:
+    void expectSameAsHost(Device& device, TreeBuilderStage& stage, const TreeMethods& methods, const Side& side)
+    {
+        DeviceSide buffers;
+        buffers.upload(device, side);
+        DeviceTree tree;
+        const Tree host =
+            buildTreeOnHost(methods, side.m_pool.triangles(), side.m_start.data(), side.m_pool.meshCount());
+        EXPECT_EQ(whyInvalid(host, side), "");
+        tree.m_leafCount = host.leafCount();
+        guard(device, tree.m_nodes, host.m_nodes.size());
+        guard(device, tree.m_splits, host.leafCount());
+        guard(device, tree.m_order, host.leafCount());
+        stage.enqueue(device, buffers.m_triangles, buffers.m_start, host.leafCount(), side.m_pool.meshCount(), tree);
+        const Tree built = tree.download(device);
+        EXPECT_TRUE(built.m_order == host.m_order);
+        EXPECT_TRUE(built.m_splits == host.m_splits);
+        EXPECT_TRUE(sameBytes(built.m_nodes, host.m_nodes));
+        TreeCostStage cost;
+        cost.create(device, programsOf(device));
+        cost.enqueue(device, tree);
+        device.wait();
+        EXPECT_EQ(cost.cost(), treeCostOnHost(host.m_nodes));
+        EXPECT_TRUE(intact(device, tree.m_nodes) && buffers.allIntact(device));
+        ASSERT_FALSE(device.failed()) << device.error().text();
+    }
+};
+
+TEST_P(TreeTest, EveryBuilderMakesTheHostsValidTree)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    const std::vector<std::pair<std::string, TriangleMesh>> cases = meshes();
+    for (const NamedMethods& named : allMethods())
+    {
+        TreeBuilderStage stage;
+        stage.create(*device, programsOf(*device), named.m_methods);
+        for (const auto& [name, mesh] : cases)
+        {
+            SCOPED_TRACE(named.m_name + ": " + name);
+            expectSameAsHost(*device, stage, named.m_methods, sideOf(mesh));
+            if (HasFailure()) return;  // later ones would say the same at length
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, TreeTest, testing::ValuesIn(openClBackends()), backendName);
+}  // namespace drape::test

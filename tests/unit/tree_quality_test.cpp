@@ -1,0 +1,100 @@
+// Validity, cost and width of trees on the host; whyInvalid must find what is wrong.
+#include "bullet_plugin/core/bvh/tree_quality.h"
+
+#include <gtest/gtest.h>
+
+#include "bullet_plugin/core/bvh/tree_builder.h"
+#include "bullet_plugin/core/bvh/tree_cost.h"
+#include "bullet_plugin/core/bvh/wide_nodes.h"
+#include "scenes/shapes.h"
+#include "tests/support/side.h"
+
+namespace drape::test
+{
+namespace
+{
+class TreeQualityTest : public testing::Test
+{
+protected:
+    TreeQualityTest() : m_side(makeSide({makeSoup(1.0f, 0.1f, 333, 4)})) { m_tree = build(TreeBuilder::Radix); }
+
+    Tree build(TreeBuilder builder) const
+    {
+        TreeMethods methods;
+        methods.m_builder = builder;
+        return buildTreeOnHost(methods, m_side.m_pool.triangles(), m_side.m_start.data(), 1);
+    }
+    std::string whyInvalid(const std::vector<BvhNode>& nodes, const std::vector<std::uint32_t>& order) const
+    {
+        return drape::whyInvalid(nodes, 0, order, m_side.m_pool.triangles(), m_side.m_start.data(), {0.0f});
+    }
+
+    Side m_side;
+    Tree m_tree;
+};
+}  // namespace
+
+TEST_F(TreeQualityTest, FaultsAreFound)
+{
+    ASSERT_EQ(whyInvalid(m_tree.m_nodes, m_tree.m_order), "");
+    Tree tree = m_tree;
+    tree.m_nodes[5].m_high[3] += 1e-3f;
+    EXPECT_NE(whyInvalid(tree.m_nodes, tree.m_order), "") << "a volume too large";
+    tree = m_tree;
+    std::swap(tree.m_order[3], tree.m_order[200]);
+    EXPECT_NE(whyInvalid(tree.m_nodes, tree.m_order), "") << "leaves exchanged";
+    tree = m_tree;
+    tree.m_order[3] = tree.m_order[4];
+    EXPECT_NE(whyInvalid(tree.m_nodes, tree.m_order), "") << "a triangle missing";
+    tree = m_tree;
+    tree.m_nodes[2].m_first = tree.m_nodes[1].m_first;
+    EXPECT_NE(whyInvalid(tree.m_nodes, tree.m_order), "") << "a node with two parents";
+}
+
+TEST_F(TreeQualityTest, WideNodesHoldTheSameLeaves)
+{
+    std::vector<BvhNode> wide = collapseToFour(m_tree);
+    EXPECT_EQ(whyInvalid(wide, m_tree.m_order), "");
+    const TreeQuality narrow = measureTree(m_tree.m_nodes, 0), collapsed = measureTree(wide, 0);
+    EXPECT_LT(collapsed.m_nodes, narrow.m_nodes);
+    EXPECT_LE(collapsed.m_height, (narrow.m_height + 1) / 2);
+    const std::vector<BvhNode> before = wide;
+    for (BvhNode& node : wide)
+    {
+        if (node.m_count > 0) node.m_low[0] = 7.0f;
+    }
+    refitWideNodes(wide);
+    EXPECT_TRUE(sameBytes(wide, before));
+    EXPECT_TRUE(collapseToFour(Tree()).empty());
+}
+
+TEST_F(TreeQualityTest, CostIsTheSumOfAreas)
+{
+    // Each of the 665 nodes' shares is rounded down to 2^-30, and its float quotient errs by some 2^-22 of itself.
+    const double cost = measureTree(m_tree.m_nodes, 0).m_cost;
+    EXPECT_NEAR(treeCostOnHost(m_tree.m_nodes), cost, 1e-6 * cost);
+    EXPECT_EQ(treeCostOnHost({}), 0.0);
+}
+
+TEST_F(TreeQualityTest, ScatteringTrianglesDecaysATree)
+{
+    const double atBuild = treeCostOnHost(m_tree.m_nodes);
+    std::vector<float> positions = m_side.m_start;
+    for (std::size_t i = 0; i < positions.size(); i += 18)  // every second triangle moves across
+        for (std::size_t k = i; k < std::min(i + 9, positions.size()); ++k)
+            positions[k] = 1.0f - positions[k];
+    std::size_t invalid = 0;
+    refitTreeOnHost(m_tree, m_side.m_pool.triangles(), positions.data(), positions.data(), {0.0f}, invalid);
+    const double now = treeCostOnHost(m_tree.m_nodes);
+    EXPECT_TRUE(isDecayed(now, atBuild, 1.5f)) << now << " was " << atBuild;
+    EXPECT_FALSE(isDecayed(atBuild, atBuild, 1.5f));
+    EXPECT_FALSE(isDecayed(now, atBuild, 0.0f)) << "never";
+}
+
+TEST_F(TreeQualityTest, BuildersOfQualityCostLess)
+{
+    const double balanced = measureTree(build(TreeBuilder::Balanced).m_nodes, 0).m_cost;
+    EXPECT_LT(measureTree(build(TreeBuilder::Ploc).m_nodes, 0).m_cost, balanced);
+    EXPECT_LT(measureTree(build(TreeBuilder::TopDown).m_nodes, 0).m_cost, balanced);
+}
+}  // namespace drape::test
