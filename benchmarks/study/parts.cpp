@@ -42,11 +42,9 @@ const std::vector<Part>& studyParts()
 {
     static const std::vector<Part> parts = {
         {"peers", "construction and refit by Embree and FCL, beside tables 4.2 to 4.4", studyPeerTrees},
-#ifdef DRAPE_STUDY_TREES
         {"construction", "every builder: tables 4.2 and 4.3, figures 4.2 to 4.5", studyConstruction},
         {"refit", "every refit: table 4.4 and figure 4.10", studyRefit},
         {"quality", "the trees' quality against the time to build them", studyQuality},
-#endif
         {"traversal", "every traversal step by step as a cloth comes down: figures 4.6, 4.8 and 4.9", studyTraversals}};
     return parts;
 }

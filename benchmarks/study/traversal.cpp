@@ -28,7 +28,6 @@ std::vector<Variant> variants(const StudyOptions& options)
     std::vector<Variant> all = {host};
     if (options.m_backend == "host") return all;
     all.push_back(device);
-#ifdef DRAPE_STUDY_TRAVERSALS
     const std::pair<const char*, Traversal> traversals[] = {{"thesis: simple", Traversal::Single},
                                                             {"thesis: front", Traversal::Front},
                                                             {"as front, from fixed pairs", Traversal::Groups},
@@ -42,7 +41,6 @@ std::vector<Variant> variants(const StudyOptions& options)
         device.m_settings.m_methods.m_traversal = traversal.second;
         all.push_back(device);
     }
-#endif
     return all;
 }
 
@@ -51,17 +49,12 @@ std::vector<Variant> variants(const StudyOptions& options)
 std::vector<std::size_t> countTests(const StepScene& scene, Variant variant)
 {
     std::vector<std::size_t> tests;
-#ifdef DRAPE_STUDY_TRAVERSALS
     std::string error;
     variant.m_settings.m_methods.m_countTests = true;
     const std::unique_ptr<StepMethod> method = makeDrapeMethod(scene, variant.m_settings, error);
     if (!method) throw std::runtime_error(error);
     for (std::size_t step = 0; step + 1 < scene.m_frames.size(); ++step)
         tests.push_back(method->step(scene.m_frames[step].data(), scene.m_frames[step + 1].data()).m_volumeTests);
-#else
-    static_cast<void>(scene);
-    static_cast<void>(variant);
-#endif
     return tests;
 }
 

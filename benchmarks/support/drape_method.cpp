@@ -59,9 +59,7 @@ public:
         addStages(statistics, outcome);
         outcome.m_candidates = statistics.m_candidates;
         outcome.m_contacts = contacts.size();
-#ifdef DRAPE_STUDY_TRAVERSALS
         outcome.m_volumeTests = statistics.m_volumeTests;
-#endif
         outcome.m_hash = hashText(hashOf(contacts));
         // A step that left its device is no measurement of it.
         if (statistics.m_status & (kStepDeviceFailed | kStepContactLimit)) outcome.m_hash = "left the device";

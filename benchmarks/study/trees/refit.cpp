@@ -18,7 +18,8 @@ public:
         m_tree.upload(device, tree);
         m_stage.listTops(device, m_tree);
         m_stage.uploadHeights(device, heightsOf(tree), m_heights);
-        m_radius.assign(device, std::vector<float>(1, 0.0f));
+        const std::vector<float> noRadius(1, 0.0f);
+        m_radius.assign(device, noRadius);
         m_counters.reserve(device, 1);
         m_counters.fill(device, 0, 1);
         m_input.upload(device);
