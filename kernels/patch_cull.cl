@@ -180,8 +180,7 @@ __kernel void patchCull(__global const uint* restrict clothOrder, __global const
                         const uint clothCount, __global const float* restrict start, __global const float* restrict end,
                         __global const float* restrict radius, __global const float* restrict wideNodes,
                         __global const uint* restrict levels, const uint levelCount, __global const Patch* restrict patches,
-                        __global const float* restrict patchSizes, __global const PatchFrame* restrict frames,
-                        __global const float* restrict faces,
+                        __global const float* restrict patchSizes, __global const float* restrict faces,
                         __global const float* restrict vertices, __global const float* restrict edges,
                         __global const float* restrict thickness,
                         const uint obstacleMeshes, const float reachScale, __global FeatureTest* restrict tests,
@@ -227,7 +226,6 @@ __kernel void patchCull(__global const uint* restrict clothOrder, __global const
             if (valid == 0) valid = prepareCull(&cull, start, end, triangle);
             const float contactReach = pairThickness * reachScale;
             const CullReach reach = cullReach(&cull, contactReach, patchSizes[index]);
-            if (patchApart(&cull, reach, frames + index)) continue;
             cullPatch(team, &arrays, index, &cull, reach, contactReach, cloth, triangle->m_owned, valid,
                       &list);
             continue;

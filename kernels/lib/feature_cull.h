@@ -7,7 +7,6 @@
 #ifndef DRAPE_LIB_FEATURE_CULL_H
 #define DRAPE_LIB_FEATURE_CULL_H
 
-#include "dop.h"
 #include "feature_contact.h"
 #include "finite_corners.h"
 #include "lanes.h"
@@ -92,53 +91,6 @@ DRAPE_FUNCTION CullReach cullReach(const CullTriangle* cull, float reach, float 
     result.m_near = reach * 1.001f + result.m_slack;
     result.m_passed = result.m_near + cull->m_motion;
     return result;
-}
-
-// Whether the whole patch lies on one side of the cloth triangle's plane, the same at the step's start and end.
-DRAPE_FUNCTION int patchOneSided(const CullTriangle* cull, const Vec3* axes, const DRAPE_GLOBAL float* extents, Vec3 centre,
-                                 float slack)
-{
-    if (cull->m_thinStart || cull->m_thinEnd) return 0;
-    const float height0 = vec3Dot(cull->m_normal0, vec3Sub(centre, cull->m_start[0]));
-    const float height1 = vec3Dot(cull->m_normal1, centre);
-    float radius0 = slack, radius1 = slack;
-    for (int k = 0; k < 3; ++k)
-    {
-        radius0 += extents[k] * drapeAbs(vec3Dot(cull->m_normal0, axes[k]));
-        radius1 += extents[k] * drapeAbs(vec3Dot(cull->m_normal1, axes[k]));
-    }
-    return (height0 > radius0 && height1 > radius1) || (-height0 > radius0 && -height1 > radius1);
-}
-
-// Whether no feature of the patch can give a contact.
-//
-// Cloth that stays on one side of the patch along its axis has no node that passes a face; farther off than a tenth of the
-// reach, no edge that counts as having passed an edge; and where the patch stays on one side of the cloth's plane, no face
-// that passes a vertex. What is left then is contacts at the step's end, along an admitted direction: no farther beside the
-// patch than the reach times the sine of the angle between direction and axis.
-DRAPE_FUNCTION int patchApart(const CullTriangle* cull, CullReach reach, const DRAPE_GLOBAL PatchFrame* frame)
-{
-    const Vec3 centre =
-        vec3Sub(vec3(frame->m_centre[0], frame->m_centre[1], frame->m_centre[2]), cull->m_origin);
-    Vec3 axes[3];
-    float gap[3];
-    for (int k = 0; k < 3; ++k)
-    {
-        axes[k] = vec3(frame->m_axes[k][0], frame->m_axes[k][1], frame->m_axes[k][2]);
-        float low = DRAPE_INFINITY, high = -DRAPE_INFINITY;
-        for (int i = 0; i < 3; ++i)
-        {
-            const float at0 = vec3Dot(axes[k], cull->m_start[i]), at1 = vec3Dot(axes[k], cull->m_end[i]);
-            low = drapeMin(low, k == 0 ? drapeMin(at0, at1) : at1);
-            high = drapeMax(high, k == 0 ? drapeMax(at0, at1) : at1);
-        }
-        const float at = vec3Dot(axes[k], centre);
-        gap[k] = drapeMax(low - at, at - high) - frame->m_half[k] - reach.m_slack;
-    }
-    if (gap[0] > reach.m_near) return 1;
-    if (drapeMax(gap[1], gap[2]) > reach.m_passed) return 1;
-    if (drapeMax(gap[1], gap[2]) <= reach.m_near * frame->m_sine || gap[0] <= 0.1f * reach.m_near) return 0;
-    return patchOneSided(cull, axes, frame->m_half, centre, reach.m_slack);
 }
 
 // Lanes whose signed distances from a moving plane changed sign in the step, or might have.

@@ -22,16 +22,6 @@ typedef struct Patch
     DRAPE_UINT m_mesh;  // slot of the obstacle: a patch never holds two
 } Patch;
 
-// Where a patch is and where it can be touched from. Every direction that the cones of its features admit is within an angle
-// of the axis, or of its opposite.
-typedef struct PatchFrame
-{
-    float m_centre[3];     // m, world frame
-    float m_axes[3][3];    // orthonormal; the first is the cone's axis
-    float m_half[3];       // m, half the patch's extent along each axis
-    float m_sine;          // of the angle; 1 where nothing bounds it
-} PatchFrame;
-
 // Floats per lane of a block.
 // Face: corners a, b, c (x y z each), spread. Vertex: position, cone axis, cone cosine. Edge: ends a, b, cone axis, cosine.
 #define DRAPE_FACE_FLOATS 10

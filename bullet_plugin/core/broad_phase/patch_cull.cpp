@@ -51,37 +51,19 @@ void PatchCullStage::setTopology(Device& device, const MeshPool& obstacles)
     device.wait();
 }
 
-void PatchCullStage::pack(Device& device, Obstacles obstacles)
-{
-    const std::vector<float> spreads =
-        faceSpreads(obstacles.m_triangles, obstacles.m_positions, obstacles.m_vertexCones, obstacles.m_edgeCones);
-    const std::vector<PatchFrame> frames =
-        patchFrames(m_layout, PatchCullStage::width(device), obstacles.m_triangles, obstacles.m_positions,
-                    obstacles.m_vertexCones, obstacles.m_edgeCones);
-    m_spreads.assign(device, spreads);
-    m_frames.assign(device, frames);
-    packFeatures(device, obstacles);
-    packNodes(device, obstacles);
-    device.wait();  // spreads and frames are locals
-}
-
-void PatchCullStage::packFeatures(Device& device, Obstacles& obstacles)
+void PatchCullStage::pack(Device& device, Buffer<Triangle>& triangles, Buffer<float>& positions, Buffer<float>& spreads,
+                          Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones)
 {
     const auto lanes = [](const std::vector<std::uint32_t>& owners) { return cl_uint(owners.size()); };
-    cl::Buffer& triangles = obstacles.m_triangleBuffer.handle();
-    cl::Buffer& positions = obstacles.m_positionBuffer.handle();
     m_packFaces.launch(device, m_layout.m_faceOwners.size(), kGroup, m_faceOwners.handle(),
-                       lanes(m_layout.m_faceOwners), triangles, positions, m_spreads.handle(), m_faces.handle());
+                       lanes(m_layout.m_faceOwners), triangles.handle(), positions.handle(), spreads.handle(),
+                       m_faces.handle());
     m_packVertices.launch(device, m_layout.m_vertexOwners.size(), kGroup, m_vertexOwners.handle(),
-                          lanes(m_layout.m_vertexOwners), triangles, positions, obstacles.m_vertexConeBuffer.handle(),
+                          lanes(m_layout.m_vertexOwners), triangles.handle(), positions.handle(), vertexCones.handle(),
                           m_vertices.handle(), m_vertexIds.handle());
     m_packEdges.launch(device, m_layout.m_edgeOwners.size(), kGroup, m_edgeOwners.handle(),
-                       lanes(m_layout.m_edgeOwners), triangles, positions, obstacles.m_edgeConeBuffer.handle(),
+                       lanes(m_layout.m_edgeOwners), triangles.handle(), positions.handle(), edgeCones.handle(),
                        m_edges.handle(), m_edgeIds.handle());
-}
-
-void PatchCullStage::packNodes(Device& device, Obstacles& obstacles)
-{
     const std::size_t width = PatchCullStage::width(device);
     for (std::size_t level = 0; level + 1 < m_layout.m_levels.size(); ++level)
     {
@@ -90,8 +72,7 @@ void PatchCullStage::packNodes(Device& device, Obstacles& obstacles)
         if (level == 0)
         {
             m_volumes.launch(device, places, kGroup, m_faceOwners.handle(), cl_uint(m_layout.m_patches.size()), places,
-                             obstacles.m_triangleBuffer.handle(), obstacles.m_positionBuffer.handle(), m_wideNodes.handle(),
-                             m_sizes.handle());
+                             triangles.handle(), positions.handle(), m_wideNodes.handle(), m_sizes.handle());
             continue;
         }
         const cl_uint below = m_layout.m_levels[level - 1];
@@ -107,7 +88,7 @@ void PatchCullStage::enqueue(Device& device, Cloths cloths, Buffer<StepCounters>
                   cloths.m_order.handle(), cloths.m_triangles.handle(), cl_uint(cloths.m_count),
                   cloths.m_start.handle(), cloths.m_end.handle(), cloths.m_radius.handle(), m_wideNodes.handle(),
                   m_levels.handle(), cl_uint(m_layout.m_levels.size() - 1), m_patches.handle(), m_sizes.handle(),
-                  m_frames.handle(), m_faces.handle(), m_vertices.handle(), m_edges.handle(), cloths.m_thickness.handle(),
+                  m_faces.handle(), m_vertices.handle(), m_edges.handle(), cloths.m_thickness.handle(),
                   cl_uint(cloths.m_obstacleMeshes), cloths.m_reachScale, m_tests.handle(), cl_uint(m_tests.capacity()),
                   cl_uint(cloths.m_limit), counters.handle());
 }

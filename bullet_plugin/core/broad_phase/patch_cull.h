@@ -24,20 +24,9 @@ public:
 
     // New obstacle topology. Waits for the upload.
     void setTopology(Device& device, const MeshPool& obstacles);
-    // What packing reads: the joined obstacles, on the host and on the device.
-    struct Obstacles
-    {
-        const std::vector<Triangle>& m_triangles;
-        const float* m_positions;
-        const std::vector<NormalCone>& m_vertexCones;
-        const std::vector<NormalCone>& m_edgeCones;
-        Buffer<Triangle>& m_triangleBuffer;
-        Buffer<float>& m_positionBuffer;
-        Buffer<NormalCone>& m_vertexConeBuffer;
-        Buffer<NormalCone>& m_edgeConeBuffer;
-    };
-    // Packs the features at new positions. Waits for the upload.
-    void pack(Device& device, Obstacles obstacles);
+    // Packs the features at new positions. The buffers are the joined obstacles'; returns after enqueueing.
+    void pack(Device& device, Buffer<Triangle>& triangles, Buffer<float>& positions, Buffer<float>& spreads,
+              Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones);
 
     // What a step reads of the cloths and pairs.
     struct Cloths
@@ -73,9 +62,6 @@ public:
     Features features() { return {m_faces, m_vertices, m_edges, m_faceOwners, m_vertexIds, m_edgeIds}; }
 
 private:
-    void packFeatures(Device& device, Obstacles& obstacles);
-    void packNodes(Device& device, Obstacles& obstacles);
-
     Kernel m_cull, m_packFaces, m_packVertices, m_packEdges, m_volumes, m_widen;
     Patches m_layout;
     Buffer<Patch> m_patches{"obstacle patches"};
@@ -84,7 +70,6 @@ private:
     Buffer<cl_uint> m_levels{"obstacle wide nodes"};
     Buffer<FeatureTest> m_tests{"step candidates"};
     Buffer<float> m_faces{"obstacle features"}, m_vertices{"obstacle features"}, m_edges{"obstacle features"};
-    Buffer<PatchFrame> m_frames{"obstacle patches"};
-    Buffer<float> m_sizes{"obstacle patches"}, m_spreads{"obstacle features"}, m_wideNodes{"obstacle wide nodes"};
+    Buffer<float> m_sizes{"obstacle patches"}, m_wideNodes{"obstacle wide nodes"};
 };
 }  // namespace drape

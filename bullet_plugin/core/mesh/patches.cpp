@@ -54,17 +54,12 @@ double angleBetween(Vec3 a, Vec3 b)
     return std::acos(std::min(1.0, double(drapeAbs(vec3Dot(a, b)))));
 }
 
-Vec3 areaVector(const Triangle& triangle, const float* positions)
-{
-    const Vec3 a = vec3Load(positions, triangle.m_vertices[0]);
-    return vec3Cross(vec3Sub(vec3Load(positions, triangle.m_vertices[1]), a),
-                     vec3Sub(vec3Load(positions, triangle.m_vertices[2]), a));
-}
-
 float spreadOf(const Triangle& triangle, const float* positions, const std::vector<NormalCone>& vertexCones,
                const std::vector<NormalCone>& edgeCones)
 {
-    const Vec3 area = areaVector(triangle, positions);
+    const Vec3 a = vec3Load(positions, triangle.m_vertices[0]);
+    const Vec3 area = vec3Cross(vec3Sub(vec3Load(positions, triangle.m_vertices[1]), a),
+                                vec3Sub(vec3Load(positions, triangle.m_vertices[2]), a));
     const float length = vec3Length(area);
     if (!(length > 0.0f)) return kUnbounded;
     const Vec3 normal = vec3Scale(area, 1.0f / length);
@@ -80,105 +75,7 @@ float spreadOf(const Triangle& triangle, const float* positions, const std::vect
     }
     return steepest < kSteepest ? float(std::tan(steepest)) : kUnbounded;
 }
-// Calls visit for each of a patch's triangles.
-template <typename Visit>
-void forTriangles(const Patches& patches, std::uint32_t width, std::size_t patch, Visit visit)
-{
-    for (std::size_t lane = patch * width; lane < (patch + 1) * width; ++lane)
-    {
-        if (patches.m_faceOwners[lane] != DRAPE_NO_FEATURE) visit(patches.m_faceOwners[lane]);
-    }
-}
-
-Vec3 unit(Vec3 v)
-{
-    const float length = vec3Length(v);
-    return length > 0.0f && drapeIsFinite(length) ? vec3Scale(v, 1.0f / length) : vec3(0.0f, 0.0f, 1.0f);
-}
-
-// Greatest angle (radians) between the axis and a direction that a cone admits; kUnbounded when a cone admits all.
-double coneAngle(Vec3 axis, const NormalCone& cone)
-{
-    if (!(cone.m_cosine > 0.0f)) return kUnbounded;
-    return angleBetween(cone.m_axis, axis) + std::acos(std::min(1.0, double(cone.m_cosine)));
-}
-
-// The three axes: of the mean normal, and two across.
-void setAxes(PatchFrame& frame, Vec3 normal)
-{
-    const Vec3 helper = drapeAbs(normal.x) < 0.6f ? vec3(1.0f, 0.0f, 0.0f) : vec3(0.0f, 1.0f, 0.0f);
-    const Vec3 across = unit(vec3Cross(normal, helper));
-    const Vec3 axes[3] = {normal, across, vec3Cross(normal, across)};
-    for (int k = 0; k < 3; ++k)
-    {
-        frame.m_axes[k][0] = axes[k].x;
-        frame.m_axes[k][1] = axes[k].y;
-        frame.m_axes[k][2] = axes[k].z;
-    }
-}
-
-// Centre and half extents of the corners that are valid. The slack of the cull is far above what these round to.
-void setBox(PatchFrame& frame, const std::vector<Vec3>& corners)
-{
-    double centre[3] = {0, 0, 0};
-    for (const Vec3& p : corners)
-    {
-        centre[0] += p.x;
-        centre[1] += p.y;
-        centre[2] += p.z;
-    }
-    const double count = double(std::max<std::size_t>(1, corners.size()));
-    for (int k = 0; k < 3; ++k)
-        frame.m_centre[k] = float(centre[k] / count);
-    const Vec3 origin = vec3(frame.m_centre[0], frame.m_centre[1], frame.m_centre[2]);
-    for (int k = 0; k < 3; ++k)
-    {
-        const Vec3 axis = vec3(frame.m_axes[k][0], frame.m_axes[k][1], frame.m_axes[k][2]);
-        for (const Vec3& p : corners)
-            frame.m_half[k] = std::max(frame.m_half[k], drapeAbs(vec3Dot(axis, vec3Sub(p, origin))));
-    }
-}
 }  // namespace
-
-std::vector<PatchFrame> patchFrames(const Patches& patches, std::uint32_t width, const std::vector<Triangle>& triangles,
-                                    const float* positions, const std::vector<NormalCone>& vertexCones,
-                                    const std::vector<NormalCone>& edgeCones)
-{
-    std::vector<PatchFrame> frames(patches.m_patches.size(), PatchFrame());
-    std::vector<Vec3> corners;
-    for (std::size_t patch = 0; patch < frames.size(); ++patch)
-    {
-        Vec3 normal = vec3(0.0f, 0.0f, 0.0f);
-        corners.clear();
-        forTriangles(patches, width, patch,
-                     [&](std::uint32_t index)
-                     {
-                         normal = vec3Add(normal, areaVector(triangles[index], positions));
-                         for (std::uint32_t vertex : triangles[index].m_vertices)
-                         {
-                             const Vec3 p = vec3Load(positions, vertex);
-                             if (positionIsValid(p)) corners.push_back(p);
-                         }
-                     });
-        normal = unit(normal);
-        double angle = 0;
-        forTriangles(patches, width, patch,
-                     [&](std::uint32_t index)
-                     {
-                         for (int i = 0; i < 3; ++i)
-                         {
-                             angle = std::max(angle, coneAngle(normal, vertexCones[triangles[index].m_vertices[i]]));
-                             angle = std::max(angle, coneAngle(normal, edgeCones[triangles[index].m_edges[i]]));
-                         }
-                     });
-        PatchFrame& frame = frames[patch];
-        setAxes(frame, normal);
-        setBox(frame, corners);
-        // At least 1 where the slack is added to a right angle or beyond.
-        frame.m_sine = angle + kAngleSlack < kSteepest ? float(std::sin(angle + kAngleSlack)) : 1.0f;
-    }
-    return frames;
-}
 
 Patches makePatches(const MeshPool& obstacles, std::uint32_t width)
 {

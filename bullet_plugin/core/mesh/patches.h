@@ -25,11 +25,6 @@ struct Patches
 // width: lanes in a block.
 Patches makePatches(const MeshPool& obstacles, std::uint32_t width);
 
-// Where the patches are and where they can be touched from. Positions and cones are the joined obstacles'.
-std::vector<PatchFrame> patchFrames(const Patches& patches, std::uint32_t width, const std::vector<Triangle>& triangles,
-                                    const float* positions, const std::vector<NormalCone>& vertexCones,
-                                    const std::vector<NormalCone>& edgeCones);
-
 // Per triangle: how far beside it, over how far above it, a node can be that one of its edges' or corners' cones
 // admits; a large number where nothing bounds it.
 std::vector<float> faceSpreads(const std::vector<Triangle>& triangles, const float* positions,

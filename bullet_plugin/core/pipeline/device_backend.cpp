@@ -154,17 +154,19 @@ void DeviceBackend::updateObstacles(const Scene& scene)
     m_obstacle.m_radius.assign(*m_device, noRadius);
     m_refit.enqueue(*m_device, scene.m_obstacleLayout, m_obstacle.m_levels, m_obstacle.m_nodes, m_obstacle.m_order,
                     m_obstacle.m_triangles, m_obstaclePositions, m_obstaclePositions, m_obstacle.m_radius, m_counters);
+    const std::vector<float> spreads = faceSpreads(scene.m_obstacles.triangles(), scene.m_obstaclePositions.data(),
+                                                   scene.m_vertexCones, scene.m_edgeCones);
     if (patches())
     {
-        m_patchCull.pack(*m_device,
-                         {scene.m_obstacles.triangles(), scene.m_obstaclePositions.data(), scene.m_vertexCones,
-                          scene.m_edgeCones, m_obstacle.m_triangles, m_obstaclePositions, m_vertexCones, m_edgeCones});
+        m_obstacleSpreads.assign(*m_device, spreads);
+        m_patchCull.pack(*m_device, m_obstacle.m_triangles, m_obstaclePositions, m_obstacleSpreads, m_vertexCones,
+                         m_edgeCones);
     }
     else
     {
         m_broadPhase.obstaclesRefitted(*m_device, m_obstacle.m_nodes);
     }
-    m_device->wait();  // noRadius is a local
+    m_device->wait();  // noRadius and spreads are locals
 }
 
 void DeviceBackend::uploadStep(const Scene& scene, const StepPairs& pairs)

@@ -83,7 +83,7 @@ private:
 
     Side m_cloth{"cloth"}, m_obstacle{"obstacle"};
     Buffer<float> m_clothStart{"cloth positions"}, m_clothEnd{"cloth positions"};
-    Buffer<float> m_obstaclePositions{"obstacle positions"}, m_thickness;
+    Buffer<float> m_obstaclePositions{"obstacle positions"}, m_obstacleSpreads{"obstacle positions"}, m_thickness;
     Buffer<Edge> m_clothEdges{"cloth edges"};
     Buffer<NormalCone> m_vertexCones{"obstacle cones"}, m_edgeCones{"obstacle cones"};
     Buffer<Candidate> m_candidates{"step candidates"};
