@@ -19,7 +19,6 @@ std::size_t withHeadroom(std::size_t count)
 DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& settings)
     : m_device(std::move(device)), m_settings(settings)
 {
-    m_refit.create(*m_device, program("refit"));
     m_mortonOrder.create(*m_device, [this](const char* name) { return program(name); });
     if (patches())
     {
@@ -27,6 +26,7 @@ DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& set
     }
     else
     {
+        m_refit.create(*m_device, program("refit"));
         const char* const counting = m_settings.m_methods.m_countTests ? "#define DRAPE_COUNT_VISITS\n" : "";
         m_broadPhase.create(*m_device, m_settings.m_methods.m_traversal,
                             [&](const char* name) { return program(name, counting); });
@@ -89,7 +89,7 @@ void DeviceBackend::warmUp()
     StepResult result;
     submit(scene, pairs);
     finish(scene, pairs, result);
-    m_refit.warmUp(*m_device, m_cloth.m_nodes);
+    if (!patches()) m_refit.warmUp(*m_device, m_cloth.m_nodes);
     m_device->wait();
     m_cloth.m_revision = m_obstacle.m_revision = 0;
     m_sentThickness.clear();
@@ -105,11 +105,16 @@ std::vector<std::uint32_t> DeviceBackend::order(const std::vector<Triangle>& tri
 void DeviceBackend::uploadSide(const MeshPool& pool, const BvhLayout& layout, Side& side)
 {
     side.m_revision = pool.revision();
-    const std::vector<BvhNode> nodes = makeBvhNodes(layout);
-    side.m_nodes.assign(*m_device, nodes);
     side.m_order.assign(*m_device, pool.order());
     side.m_triangles.assign(*m_device, pool.triangles());
-    m_refit.makeLevels(*m_device, layout, side.m_levels);
+    // The cull over patches needs no hierarchy of triangles.
+    std::vector<BvhNode> nodes;
+    if (!patches())
+    {
+        nodes = makeBvhNodes(layout);
+        side.m_nodes.assign(*m_device, nodes);
+        m_refit.makeLevels(*m_device, layout, side.m_levels);
+    }
     m_device->wait();  // nodes is a local; topology changes are rare
 }
 
@@ -150,23 +155,22 @@ void DeviceBackend::updateObstacles(const Scene& scene)
     m_obstaclePositions.assign(*m_device, scene.m_obstaclePositions);
     m_vertexCones.assign(*m_device, scene.m_vertexCones);
     m_edgeCones.assign(*m_device, scene.m_edgeCones);
+    if (patches())
+    {
+        const std::vector<float> spreads = faceSpreads(scene.m_obstacles.triangles(), scene.m_obstaclePositions.data(),
+                                                       scene.m_vertexCones, scene.m_edgeCones);
+        m_obstacleSpreads.assign(*m_device, spreads);
+        m_patchCull.pack(*m_device, m_obstacle.m_triangles, m_obstaclePositions, m_obstacleSpreads, m_vertexCones,
+                         m_edgeCones);
+        m_device->wait();  // spreads is a local
+        return;
+    }
     const std::vector<float> noRadius(scene.m_obstacles.meshCount(), 0.0f);
     m_obstacle.m_radius.assign(*m_device, noRadius);
     m_refit.enqueue(*m_device, scene.m_obstacleLayout, m_obstacle.m_levels, m_obstacle.m_nodes, m_obstacle.m_order,
                     m_obstacle.m_triangles, m_obstaclePositions, m_obstaclePositions, m_obstacle.m_radius, m_counters);
-    const std::vector<float> spreads = faceSpreads(scene.m_obstacles.triangles(), scene.m_obstaclePositions.data(),
-                                                   scene.m_vertexCones, scene.m_edgeCones);
-    if (patches())
-    {
-        m_obstacleSpreads.assign(*m_device, spreads);
-        m_patchCull.pack(*m_device, m_obstacle.m_triangles, m_obstaclePositions, m_obstacleSpreads, m_vertexCones,
-                         m_edgeCones);
-    }
-    else
-    {
-        m_broadPhase.obstaclesRefitted(*m_device, m_obstacle.m_nodes);
-    }
-    m_device->wait();  // noRadius and spreads are locals
+    m_broadPhase.obstaclesRefitted(*m_device, m_obstacle.m_nodes);
+    m_device->wait();  // noRadius is a local
 }
 
 void DeviceBackend::uploadStep(const Scene& scene, const StepPairs& pairs)
