@@ -52,12 +52,7 @@ std::string appendMesh(const aiMesh& part, const aiMatrix4x4& toWorld, TriangleM
         const aiFace& face = part.mFaces[f];
         if (face.mNumIndices != 3) continue;  // points and lines carry no surface
         for (int corner = 0; corner < 3; ++corner)
-        {
-            if (face.mIndices[corner] >= part.mNumVertices)
-                return "face " + std::to_string(f + 1) + ": index " + std::to_string(face.mIndices[corner]) +
-                       " is out of range (" + std::to_string(part.mNumVertices) + " vertices)";
             mesh.m_triangles.push_back(static_cast<std::int32_t>(first + face.mIndices[corner]));
-        }
     }
     return "";
 }
@@ -109,12 +104,34 @@ private:
     std::string m_problem;
 };
 
+// What Assimp's steps after reading take for granted, with an assertion: every face has a corner, and each is a vertex.
+std::string faceProblem(const aiScene& scene)
+{
+    for (unsigned int m = 0; m < scene.mNumMeshes; ++m)
+    {
+        const aiMesh& part = *scene.mMeshes[m];
+        for (unsigned int f = 0; f < part.mNumFaces; ++f)
+        {
+            const aiFace& face = part.mFaces[f];
+            if (face.mNumIndices == 0) return "face " + std::to_string(f + 1) + ": no corners";
+            for (unsigned int corner = 0; corner < face.mNumIndices; ++corner)
+                if (face.mIndices[corner] >= part.mNumVertices)
+                    return "face " + std::to_string(f + 1) + ": index " + std::to_string(face.mIndices[corner]) +
+                           " is out of range (" + std::to_string(part.mNumVertices) + " vertices)";
+        }
+    }
+    return "";
+}
+
 std::string importMesh(const std::string& path, TriangleMesh& mesh)
 {
     const LogListener listener;
     Assimp::Importer importer;
-    const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
+    const aiScene* scene = importer.ReadFile(path, 0);
     if (!listener.problem().empty()) return listener.problem();
+    const std::string problem = scene == nullptr ? "" : faceProblem(*scene);
+    if (!problem.empty()) return problem;
+    if (scene != nullptr) scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
     if (scene == nullptr || scene->mRootNode == nullptr) return "not a mesh: " + oneLine(importer.GetErrorString());
     return appendNode(*scene, *scene->mRootNode, aiMatrix4x4(), mesh);
 }

@@ -135,16 +135,40 @@ private:
 std::string readProperty(std::istringstream& words, Header& header)
 {
     Property property;
+    std::string more;
     words >> property.m_type;
     if (property.m_type == "list") words >> property.m_countType >> property.m_type;
     words >> property.m_name;
-    if (header.m_elements.empty() || typeSize(property.m_type) == 0 ||
+    if (header.m_elements.empty() || typeSize(property.m_type) == 0 || property.m_name.empty() || words >> more ||
         (!property.m_countType.empty() && typeSize(property.m_countType) == 0))
         return "not a mesh: bad property '" + property.m_name + "' in the PLY header";
     header.m_elements.back().m_properties.push_back(property);
     return "";
 }
 
+std::string readElement(std::istringstream& words, Header& header)
+{
+    Element element;
+    std::string more;
+    if (!(words >> element.m_name >> element.m_count) || words >> more)
+        return "not a mesh: bad element in the PLY header";
+    header.m_elements.push_back(element);
+    return "";
+}
+
+std::string readFormat(std::istringstream& words, Header& header)
+{
+    std::string encoding;
+    words >> encoding;
+    if (encoding != "ascii" && encoding != "binary_little_endian" && encoding != "binary_big_endian")
+        return "not a mesh: bad format in the PLY header";
+    header.m_encoding = encoding == "ascii"                  ? Encoding::Text
+                        : encoding == "binary_little_endian" ? Encoding::Little
+                                                             : Encoding::Big;
+    return "";
+}
+
+// A line that this reader passed over would be one that Assimp may take for something else: all are known, or refused.
 std::string readHeader(const std::string& bytes, Header& header, std::size_t& bodyStart)
 {
     std::size_t at = 0;
@@ -154,28 +178,27 @@ std::string readHeader(const std::string& bytes, Header& header, std::size_t& bo
         if (end == std::string::npos) return "not a mesh: no PLY header";
         std::istringstream words(bytes.substr(at, end - at));
         at = end + 1;
-        std::string keyword, argument;
+        std::string keyword, problem;
         words >> keyword;
         if (first && keyword != "ply") return "not a mesh: no PLY header";
         if (keyword == "end_header") break;
-        if (keyword == "format" && words >> argument)
-            header.m_encoding = argument == "ascii"                  ? Encoding::Text
-                                : argument == "binary_little_endian" ? Encoding::Little
-                                                                     : Encoding::Big;
-        if (keyword == "element")
-        {
-            Element element;
-            if (!(words >> element.m_name >> element.m_count)) return "not a mesh: bad element in the PLY header";
-            header.m_elements.push_back(element);
-        }
-        if (keyword == "property")
-        {
-            const std::string problem = readProperty(words, header);
-            if (!problem.empty()) return problem;
-        }
+        if (keyword == "format")
+            problem = readFormat(words, header);
+        else if (keyword == "element")
+            problem = readElement(words, header);
+        else if (keyword == "property")
+            problem = readProperty(words, header);
+        else if (!first && keyword != "comment" && keyword != "obj_info")
+            problem = "not a mesh: a line of the PLY header is none of format, comment, element, property";
+        if (!problem.empty()) return problem;
     }
     bodyStart = at;
     return "";
+}
+
+bool isCorners(const Property& property)
+{
+    return !property.m_countType.empty() && (property.m_name == "vertex_indices" || property.m_name == "vertex_index");
 }
 
 std::string checkProperty(Numbers& numbers, const Element& element, const Property& property, double vertices)
@@ -190,8 +213,7 @@ std::string checkProperty(Numbers& numbers, const Element& element, const Proper
     }
     const bool coordinate = element.m_name == "vertex" && !list && property.m_name.size() == 1 &&
                             std::strchr("xyz", property.m_name[0]) != nullptr;
-    const bool index =
-        list && element.m_name == "face" && (property.m_name == "vertex_indices" || property.m_name == "vertex_index");
+    const bool index = element.m_name == "face" && isCorners(property);
     if (index && count < 3) return "a face has at least three corners";
     for (double i = 0; i < count; ++i)
     {
@@ -232,9 +254,13 @@ std::string scanPly(const std::string& bytes)
     }
     if (vertices == 0) return "not a mesh: no vertices";
     if (faces == 0) return "no triangles";
+    if (header.m_encoding == Encoding::Text && bytes.find('\0') != std::string::npos)
+        return "not a mesh: an ASCII PLY file is text, this one has zero bytes";
     Numbers numbers(header.m_encoding, bytes, bodyStart);
     for (const Element& element : header.m_elements)
     {
+        const bool corners = std::any_of(element.m_properties.begin(), element.m_properties.end(), isCorners);
+        if (element.m_name == "face" && !corners) return "not a mesh: faces have no vertex_indices in the PLY header";
         if (element.m_properties.empty() && element.m_count > 0)
             return "not a mesh: element '" + element.m_name + "' has no properties in the PLY header";
         for (std::uint64_t i = 0; i < element.m_count; ++i)
