@@ -174,7 +174,7 @@ static void countInvalid(__global const Triangle* triangle, __global const float
 }
 
 // A team takes one cloth triangle, in leaf order. levels holds the first node of each of levelCount levels of the wide tree,
-// lowest first. radius: m, per cloth; thickness: cloths × obstacles, negative where the pair is not tested. counters'
+// lowest first. mode: DRAPE_DISCRETE …. radius: m, per cloth; thickness: cloths × obstacles, negative where the pair is not tested. counters'
 // candidates and invalid nodes must be zero before; the atomic reserves disjoint ranges, whose order does not matter.
 __kernel void patchCull(__global const uint* restrict clothOrder, __global const Triangle* restrict clothTriangles,
                         const uint clothCount, __global const float* restrict start, __global const float* restrict end,
@@ -183,7 +183,8 @@ __kernel void patchCull(__global const uint* restrict clothOrder, __global const
                         __global const float* restrict patchSizes, __global const float* restrict faces,
                         __global const float* restrict vertices, __global const float* restrict edges,
                         __global const float* restrict thickness,
-                        const uint obstacleMeshes, const float reachScale, __global FeatureTest* restrict tests,
+                        const uint obstacleMeshes, const float reachScale, const uint mode,
+                        __global FeatureTest* restrict tests,
                         const uint capacity, const uint limit, __global StepCounters* restrict counters)
 {
 #if DRAPE_LANES > 1
@@ -199,7 +200,7 @@ __kernel void patchCull(__global const uint* restrict clothOrder, __global const
     if (radius[triangle->m_mesh] < 0.0f) return;
     if (teamLane() == 0) countInvalid(triangle, start, end, counters);
     Dop dop;
-    triangleVolume(&dop, triangle, start, end, radius[triangle->m_mesh]);
+    stepVolume(&dop, triangle, start, end, radius[triangle->m_mesh], mode);
     if (!(dop.m_low[0] <= dop.m_high[0])) return;
     CullTriangle cull;
     uint valid = 0;
@@ -223,9 +224,9 @@ __kernel void patchCull(__global const uint* restrict clothOrder, __global const
         {
             const float pairThickness = thickness[triangle->m_mesh * obstacleMeshes + patches[index].m_mesh];
             if (pairThickness < 0.0f) continue;
-            if (valid == 0) valid = prepareCull(&cull, start, end, triangle);
+            if (valid == 0) valid = prepareCull(&cull, start, end, triangle, mode);
             const float contactReach = pairThickness * reachScale;
-            const CullReach reach = cullReach(&cull, contactReach, patchSizes[index]);
+            const CullReach reach = cullReach(&cull, contactReach, patchSizes[index], mode);
             cullPatch(team, &arrays, index, &cull, reach, contactReach, cloth, triangle->m_owned, valid,
                       &list);
             continue;

@@ -30,6 +30,9 @@ public:
         const StepStatistics& statistics = m_plugin->statistics();
         times.m_collisionMs = m_world.world().collisionMs() + statistics.collisionMs();
         times.m_contacts = statistics.m_contacts;
+        times.m_candidates = statistics.m_candidates;
+        times.m_sweptTests = statistics.m_sweptTests;
+        times.m_skipped = statistics.m_skipped;
         m_status |= statistics.m_status;
         return times;
     }
@@ -64,6 +67,9 @@ std::unique_ptr<Simulation> makeDrapeSimulation(const DropScene& scene, const Op
     Settings settings;
     exitCode = kExitBadInput;
     if (!deviceSettings(options.m_backend, options.m_device, settings, error)) return nullptr;
+    settings.m_mode = options.m_contactMode == "discrete"     ? ContactMode::Discrete
+                      : options.m_contactMode == "continuous" ? ContactMode::Continuous
+                                                              : ContactMode::Automatic;
     auto simulation = std::make_unique<DrapeSimulation>(scene, settings);
     if (simulation->plugin().ready()) return simulation;
     exitCode = kExitFailed;

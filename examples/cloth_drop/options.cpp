@@ -67,6 +67,8 @@ void addBackendOptions(CLI::App& app, Options& options, std::string& mode)
     app.add_option("--backend", options.m_backend,
                    "auto: a GPU, else any OpenCL device, else the host; bullet: built in")
         ->check(CLI::IsMember({"auto", "opencl", "host", "bullet"}));
+    app.add_option("--mode", options.m_contactMode, "how Drape looks at motion within a step")
+        ->check(CLI::IsMember({"discrete", "continuous", "automatic"}));
     app.add_option("--bullet-mode", mode, "distance field of --backend bullet, or the obstacle as a soft body")
         ->check(CLI::IsMember({"stock", "tuned", "vfss"}));
     app.add_option("--device", options.m_device, "part of an OpenCL device's or platform's name")->type_name("TEXT");

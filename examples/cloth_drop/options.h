@@ -28,6 +28,7 @@ struct Options
     double m_dt = 1.0 / 60.0;
     double m_thickness = 0.02;
     std::string m_backend = "auto";
+    std::string m_contactMode = "automatic";  // discrete, continuous or automatic: Settings::m_mode
     BulletMode m_bulletMode = BulletMode::Stock;
     std::string m_device;
     bool m_listDevices = false;

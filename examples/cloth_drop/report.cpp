@@ -14,6 +14,24 @@ Json asJson(const TimeSummary& times)
     return {{"first", times.m_first}, {"median", times.m_median}, {"p95", times.m_p95}, {"max", times.m_max}};
 }
 
+// Sums over the run: what the broad phase left, what needed the continuous test, and steps with nothing to do.
+Json workJson(const RunRecord& record)
+{
+    std::uint64_t candidates = 0, swept = 0;
+    std::size_t skipped = 0;
+    for (const StepRecord& step : record.m_steps)
+    {
+        candidates += step.m_times.m_candidates;
+        swept += step.m_times.m_sweptTests;
+        skipped += step.m_times.m_skipped;
+    }
+    Json json;
+    json["candidates"] = candidates;
+    json["continuous_tests"] = swept;
+    json["steps_skipped"] = skipped;
+    return json;
+}
+
 Json asJson(const RunRecord& record)
 {
     const RunSummary summary = summarise(record);
@@ -29,6 +47,7 @@ Json asJson(const RunRecord& record)
     json["thickness_m"] = record.m_thickness;
     json["step_ms"] = asJson(summary.m_step);
     json["collision_ms"] = asJson(summary.m_collision);
+    if (!record.m_backend.empty() && record.m_backend.rfind("bullet", 0) != 0) json["work"] = workJson(record);
     json["contacts_max"] = summary.m_contactsMax;
     json["penetration_max_m"] = summary.m_penetrationMax;
     json["penetration_p99_m"] = summary.m_penetrationP99;

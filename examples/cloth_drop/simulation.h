@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,6 +18,10 @@ struct StepTimes
     double m_stepMs = 0;       // wall time of stepSimulation
     double m_collisionMs = 0;  // of it: Bullet's collision detection, and all that Drape does
     std::size_t m_contacts = 0;
+    // What Drape did for it, as in StepStatistics; 0 of the built-in.
+    std::uint64_t m_candidates = 0;
+    std::size_t m_sweptTests = 0;
+    bool m_skipped = false;
 };
 
 class Simulation

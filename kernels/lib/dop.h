@@ -56,19 +56,23 @@ DRAPE_FUNCTION float dopProject(Vec3 p, int i)
 }
 
 // |x| + |y| where a direction's projection has three terms, else 0: what the rounding of the first sum is bounded by.
-DRAPE_FUNCTION float dopInner(Vec3 p, int i) { return i < 3 + DRAPE_DOP_EDGES ? 0.0f : drapeAbs(p.x) + drapeAbs(p.y); }
+DRAPE_FUNCTION float dopInner(Vec3 p, int i)
+{
+    return i < 3 + DRAPE_DOP_EDGES ? 0.0f : drapeAbs(p.x) + drapeAbs(p.y);
+}
 
-// Grows one interval to hold the balls of radius r around points whose projections lie in [least, greatest] and whose inner
-// sums are at most `inner`; reach is r times the direction's length. With u = 2^-24 the projection v of a point errs by at
-// most u |v| for two terms, and by u·inner more for three; the shift s = v ∓ reach by u |s|. The pad 2^-23 (|v| + |s|) covers
-// these and its own rounding. It is enough to pad the outermost: v - u |v| rises with v.
+// Grows one interval to hold the balls of radius r around points whose projections lie in [least, greatest] and whose
+// inner sums are at most `inner`; reach is r times the direction's length. With u = 2^-24 the projection v of a point
+// errs by at most u |v| for two terms, and by u·inner more for three; the shift s = v ∓ reach by u |s|. The pad 2^-23
+// (|v| + |s|) covers these and its own rounding. It is enough to pad the outermost: v - u |v| rises with v.
 DRAPE_FUNCTION void dopAddInterval(Dop* dop, int i, float least, float greatest, float reach, float inner)
 {
     const float pad = 1.1920929e-7f;  // 2^-23
     const float low = least - reach;
     const float high = greatest + reach;
     dop->m_low[i] = drapeMin(dop->m_low[i], low - (pad * (drapeAbs(least) + inner + drapeAbs(low)) + DRAPE_TINY));
-    dop->m_high[i] = drapeMax(dop->m_high[i], high + (pad * (drapeAbs(greatest) + inner + drapeAbs(high)) + DRAPE_TINY));
+    dop->m_high[i] =
+        drapeMax(dop->m_high[i], high + (pad * (drapeAbs(greatest) + inner + drapeAbs(high)) + DRAPE_TINY));
 }
 
 // Grows the volume to hold the ball of the given radius (m, ≥ 0) around p.
@@ -176,8 +180,32 @@ DRAPE_FUNCTION int triangleVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangl
     return valid[0] && valid[1] && valid[2];
 }
 
-// A leaf's volume for a step. A negative radius takes the triangle's mesh out of the step: the volume is empty. Returns how
-// many vertices are NaN or infinite, counted by the triangle that owns them.
+// Whether a corner moves further than the distance, m; also where a position is NaN.
+DRAPE_FUNCTION int triangleMovesFar(const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
+                                    const DRAPE_GLOBAL float* end, float distance)
+{
+    for (int k = 0; k < 3; ++k)
+    {
+        const DRAPE_UINT vertex = triangle->m_vertices[k];
+        const Vec3 way = vec3Sub(vec3Load(end, vertex), vec3Load(start, vertex));
+        if (!(vec3Dot(way, way) <= distance * distance)) return 1;
+    }
+    return 0;
+}
+
+// Volume in which to look for what may be in contact with a triangle. mode: DRAPE_DISCRETE …. What a triangle meets
+// that moves less than the radius is within the radius of where it ends: in an automatic step only what moves further
+// is swept.
+DRAPE_FUNCTION int stepVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
+                              const DRAPE_GLOBAL float* end, float radius, DRAPE_UINT mode)
+{
+    const int swept =
+        mode == DRAPE_CONTINUOUS || (mode == DRAPE_AUTOMATIC && triangleMovesFar(triangle, start, end, 0.9f * radius));
+    return triangleVolume(dop, triangle, swept ? start : end, end, radius);
+}
+
+// A leaf's volume for a step. A negative radius takes the triangle's mesh out of the step: the volume is empty. Returns
+// how many vertices are NaN or infinite, counted by the triangle that owns them.
 DRAPE_FUNCTION DRAPE_UINT leafVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
                                      const DRAPE_GLOBAL float* end, float radius)
 {

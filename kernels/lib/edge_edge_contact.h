@@ -3,7 +3,7 @@
 #ifndef DRAPE_LIB_EDGE_EDGE_CONTACT_H
 #define DRAPE_LIB_EDGE_EDGE_CONTACT_H
 
-#include "feature_contact.h"
+#include "feature_meeting.h"
 
 DRAPE_NAMESPACE_BEGIN
 
@@ -21,49 +21,26 @@ DRAPE_FUNCTION float edgeEdgeVolume(FeatureEdge e, FeatureEdge o)
     return vec3Dot(vec3Cross(vec3Sub(e.m_b, e.m_a), vec3Sub(o.m_b, o.m_a)), vec3Sub(o.m_a, e.m_a));
 }
 
-// An edge that swept over the obstacle's edge. v0, v1: the volumes at the step's start and end, of opposite sign.
-DRAPE_FUNCTION int edgeEdgePassed(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, float v0, float v1, PairBounds bounds,
-                                  Contact* contact)
+// An edge that met the obstacle's edge at the given time. v0: the volume at the step's start; crossed: whether it
+// changed sign. Edges that touched and parted again on the side they came from give no contact.
+DRAPE_FUNCTION int edgeEdgeMet(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, float time, float v0, int crossed,
+                               PairBounds bounds, Contact* contact)
 {
-    // Lines that become coplanar seldom belong to edges that meet.
-    const Vec3 least = vec3Least(vec3Least(e0.m_a, e0.m_b), vec3Least(e1.m_a, e1.m_b));
-    const Vec3 most = vec3Most(vec3Most(e0.m_a, e0.m_b), vec3Most(e1.m_a, e1.m_b));
-    const float slack = 0.1f * bounds.m_reachSlack;
-    if (boxesApart(least, most, vec3Least(o.m_a, o.m_b), vec3Most(o.m_a, o.m_b), slack)) return 0;
-
-    const float side = v0 < 0.0f ? -1.0f : 1.0f;
-    float low = 0.0f, high = 1.0f, time = 0.0f;
-    for (int i = 0; i < 4; ++i)
-    {
-        time = low + (high - low) * (v0 / (v0 - v1));
-        const float v = edgeEdgeVolume(edgeMix(e0, e1, time), o);
-        if (side * v < 0.0f)
-        {
-            high = time;
-            v1 = v;
-        }
-        else
-        {
-            low = time;
-            v0 = v;
-        }
-        if (v0 == v1) break;
-    }
     const FeatureEdge e = edgeMix(e0, e1, time);
+    const float side = v0 < 0.0f ? -1.0f : 1.0f;
     float s, t;
     closestOnSegments(e.m_a, e.m_b, o.m_a, o.m_b, &s, &t);
-    const int inside = s > 0.0f && s < 1.0f && t > 0.0f && t < 1.0f;
+    const Vec3 across = vec3Sub(e.m_b, e.m_a), along = vec3Sub(o.m_b, o.m_a);
     const Vec3 point = vec3Mix(o.m_a, o.m_b, t);
-    const float miss = vec3Length(vec3Sub(vec3Mix(e.m_a, e.m_b, s), point));
-    if (miss > (inside ? 0.1f * bounds.m_reach : DRAPE_SEAM * bounds.m_extent)) return 0;
-    const Vec3 direction = vec3Cross(vec3Sub(e.m_b, e.m_a), vec3Sub(o.m_b, o.m_a));
+    const Vec3 direction = vec3Cross(across, along);
     const float length = vec3Length(direction);
-    if (length <= DRAPE_SEAM * vec3Length(vec3Sub(e.m_b, e.m_a)) * vec3Length(vec3Sub(o.m_b, o.m_a))) return 0;
+    if (length <= DRAPE_SEAM * vec3Length(across) * vec3Length(along)) return DRAPE_NO_CONTACT;
     const Vec3 normal = vec3Scale(direction, -side / length);
     const float gap1 = vec3Dot(normal, vec3Sub(vec3Mix(e1.m_a, e1.m_b, s), point));
+    if (!(gap1 < (crossed ? bounds.m_reach : 0.0f))) return DRAPE_NO_CONTACT;
     storeContact(contact, normal, point, vec3(1.0f - s, s, 0.0f),
                  vec3Dot(normal, vec3Sub(vec3Mix(e0.m_a, e0.m_b, s), point)), gap1, time);
-    return gap1 < bounds.m_reach;
+    return DRAPE_IS_CONTACT;
 }
 
 // Edge moving from e0 to e1 against a resting edge with the given normal cone; both closest points inside their edges.
@@ -78,7 +55,14 @@ DRAPE_FUNCTION int edgeEdgeContact(FeatureEdge e0, FeatureEdge e1, FeatureEdge o
     const Vec3 direction = vec3Cross(across, along);
     const float v0 = edgeEdgeVolume(e0, o);
     const float v1 = vec3Dot(direction, vec3Sub(o.m_a, e1.m_a));
-    if ((v0 < 0.0f && v1 > 0.0f) || (v0 > 0.0f && v1 < 0.0f)) return edgeEdgePassed(e0, e1, o, v0, v1, bounds, contact);
+    const int crossed = bounds.m_mode != DRAPE_DISCRETE && ((v0 < 0.0f && v1 > 0.0f) || (v0 > 0.0f && v1 < 0.0f));
+    if (edgeMayMeet(e0, e1, o, v0, v1, bounds))
+    {
+        if (!bounds.m_complete) return DRAPE_UNDECIDED;
+        const CcdResult met = meetEdge(e0, e1, o);
+        if (met.m_hit && edgeEdgeMet(e0, e1, o, met.m_time, v0, crossed, bounds, contact)) return DRAPE_IS_CONTACT;
+    }
+    if (crossed) return DRAPE_NO_CONTACT;
     const float squared = vec3Dot(direction, direction);
     // Inside both edges the offset is parallel to the direction (or the edges are parallel, and it may be any).
     const int parallel = squared <= DRAPE_SEAM * DRAPE_SEAM * vec3Dot(across, across) * vec3Dot(along, along);
@@ -107,7 +91,8 @@ DRAPE_FUNCTION int edgeEdgeContact(FeatureEdge e0, FeatureEdge e1, FeatureEdge o
     else
     {
         if (parallel) return 0;  // touching along a line: the ends report it
-        normal = vec3Scale(direction, (v0 < 0.0f ? 1.0f : -1.0f) / drapeSqrt(squared));
+        const float before = bounds.m_mode == DRAPE_DISCRETE ? v1 : v0;
+        normal = vec3Scale(direction, (before < 0.0f ? 1.0f : -1.0f) / drapeSqrt(squared));
     }
     storeContact(contact, normal, point, vec3(1.0f - s, s, 0.0f),
                  vec3Dot(normal, vec3Sub(vec3Mix(e0.m_a, e0.m_b, s), point)), vec3Dot(normal, offset), 1.0f);

@@ -1,8 +1,8 @@
 // Contacts of single features: a cloth node against an obstacle face, a cloth face against an obstacle vertex, a cloth
 // edge against an obstacle edge. The cloth moves linearly over the step, the obstacle rests.
 //
-// A contact is reported when (a) the node, face or edge passed through the other feature during the step, and then its
-// normal points to the side the cloth came from and the gap at the end is negative; or (b) the two are within reach at
+// A contact is reported when (a) the node, face or edge met the other feature during the step and was beyond it at the
+// end: then its normal points to the side the cloth came from; or (b) the two are within reach at
 // the step's end and locally closest: the direction between them lies in the obstacle feature's normal cone and, where
 // a vertex is nearest to a face's edge, no neighbouring face is nearer. The second condition drops pairs whose
 // neighbours are nearer and whose normals would push sideways. Pairs are dropped for distance only on proof
@@ -104,7 +104,15 @@ typedef struct PairBounds
     float m_extent;
     float m_reach;
     float m_reachSlack;  // reach grown by more than the rounding of a distance and its normal
+    DRAPE_UINT m_mode;   // DRAPE_DISCRETE …
+    int m_complete;      // whether the continuous test is to be run where it is needed
 } PairBounds;
+
+// What a feature test returns: no contact, a contact, or that only the continuous test can tell and m_complete is not
+// set.
+#define DRAPE_NO_CONTACT 0
+#define DRAPE_IS_CONTACT 1
+#define DRAPE_UNDECIDED 2
 
 // True when the support gap along n proves a distance above reach. lowA: least n·a over one set; highB: greatest n·b
 // over the other. With u = 2^-24: three products, two sums and the frame's shift err by at most 12 u |n|₁ extent.

@@ -7,7 +7,7 @@
 #ifndef DRAPE_LIB_FEATURE_CULL_H
 #define DRAPE_LIB_FEATURE_CULL_H
 
-#include "feature_contact.h"
+#include "closest.h"
 #include "finite_corners.h"
 #include "lanes.h"
 
@@ -18,6 +18,8 @@ DRAPE_NAMESPACE_BEGIN
 // A triangle whose doubled area is below this share of its longest edge squared is thin, edges whose directions have a
 // sine below it are parallel. Then 3 roundings of a cross product turn it by less than 2e-5.
 #define DRAPE_CULL_THIN 0.01f
+// A distance that excludes nothing, m.
+#define DRAPE_CULL_ANYWHERE 1e15f
 
 // A cloth triangle over the step, relative to m_origin.
 typedef struct CullTriangle
@@ -33,11 +35,12 @@ typedef struct CullTriangle
     int m_thinStart, m_thinEnd;
 } CullTriangle;
 
-// Reach of a cull, m. m_slack: loosens every comparison; m_near: distance at the end; m_passed: distance at the end of
-// features that may have passed each other.
+// Reach of a cull, m. m_slack: loosens every comparison; m_near: distance at the end; m_met: distance at the start and
+// at the end of features that met in between, as far as the triangle moves; m_before: the same where it counts at the
+// start, anything where every meeting is to be looked for; m_farthest: the larger of m_near and m_met.
 typedef struct CullReach
 {
-    float m_slack, m_near, m_passed;
+    float m_slack, m_near, m_met, m_before, m_farthest;
 } CullReach;
 
 DRAPE_FUNCTION int cullNormal(const Vec3* p, Vec3* normal)
@@ -50,9 +53,11 @@ DRAPE_FUNCTION int cullNormal(const Vec3* p, Vec3* normal)
     return !(length > DRAPE_CULL_THIN * longest);
 }
 
-// Returns the triangle's features that are valid, bits as in Triangle::m_owned (see finite_corners.h).
+// mode: DRAPE_DISCRETE …; a discrete step has no motion. Returns the triangle's features that are valid, bits as in
+// Triangle::m_owned (see finite_corners.h).
 DRAPE_FUNCTION DRAPE_UINT prepareCull(CullTriangle* cull, const DRAPE_GLOBAL float* start,
-                                      const DRAPE_GLOBAL float* end, const DRAPE_GLOBAL Triangle* triangle)
+                                      const DRAPE_GLOBAL float* end, const DRAPE_GLOBAL Triangle* triangle,
+                                      DRAPE_UINT mode)
 {
     for (int i = 0; i < 3; ++i)
     {
@@ -60,6 +65,8 @@ DRAPE_FUNCTION DRAPE_UINT prepareCull(CullTriangle* cull, const DRAPE_GLOBAL flo
         cull->m_end[i] = vec3Load(end, triangle->m_vertices[i]);
     }
     const DRAPE_UINT valid = replaceInvalidCorners(cull->m_start, cull->m_end);
+    for (int i = 0; i < 3 && mode == DRAPE_DISCRETE; ++i)
+        cull->m_start[i] = cull->m_end[i];
     cull->m_origin = cull->m_end[0];
     cull->m_diameter = cull->m_motion = 0.0f;
     for (int i = 0; i < 3; ++i)
@@ -84,19 +91,15 @@ DRAPE_FUNCTION DRAPE_UINT prepareCull(CullTriangle* cull, const DRAPE_GLOBAL flo
 }
 
 // size: m, of the block's features together.
-DRAPE_FUNCTION CullReach cullReach(const CullTriangle* cull, float reach, float size)
+DRAPE_FUNCTION CullReach cullReach(const CullTriangle* cull, float reach, float size, DRAPE_UINT mode)
 {
     CullReach result;
     result.m_slack = DRAPE_CULL_SLACK * (cull->m_diameter + size + 2.0f * reach);
     result.m_near = reach * 1.001f + result.m_slack;
-    result.m_passed = result.m_near + cull->m_motion;
+    result.m_met = cull->m_motion + result.m_slack;
+    result.m_before = mode == DRAPE_CONTINUOUS ? DRAPE_CULL_ANYWHERE : result.m_met;
+    result.m_farthest = drapeMax(result.m_near, result.m_met);
     return result;
-}
-
-// Lanes whose signed distances from a moving plane changed sign in the step, or might have.
-DRAPE_FUNCTION LaneMask cullPassed(Lanes before, Lanes after, Lanes slack)
-{
-    return (before * after <= 0.0f) | (lanesMin(lanesAbs(before), lanesAbs(after)) <= slack);
 }
 
 // Vertices whose nearest point of the cloth triangle at the step's end is a corner, surely.
@@ -117,7 +120,7 @@ DRAPE_FUNCTION LaneMask cullFaceVertex(const CullTriangle* cull, CullReach reach
     const LanesVec3 v = lanesSubUniform(lanesLoadVec3(block, 0), cull->m_origin);
     if (cull->m_thinEnd)
     {
-        const float far = reach.m_passed + cull->m_diameter;
+        const float far = reach.m_farthest + cull->m_diameter;
         return lanesDot(v, v) <= lanesSplat(far * far);
     }
     const LanesVec3 fromStart = lanesSubUniform(v, cull->m_start[0]);
@@ -145,10 +148,9 @@ DRAPE_FUNCTION LaneMask cullFaceVertex(const CullTriangle* cull, CullReach reach
     const LaneMask atNode = cullAtNode(cull, v, reach.m_slack);
     const LaneMask direction = lanesNot(atNode) & (admitted | (second > lanesSplat(reach.m_slack)));
     const LaneMask near = direction & (squared <= lanesSplat(reach.m_near * reach.m_near));
-    const LaneMask passed =
-        (cullPassed(before, height, lanesSplat(reach.m_slack)) | lanesMaskSplat(cull->m_thinStart)) &
-        (depth <= lanesSplat(reach.m_passed)) & (distance <= lanesSplat(reach.m_passed));
-    return near | passed;
+    const LaneMask met = ((lanesAbs(before) <= lanesSplat(reach.m_before)) | lanesMaskSplat(cull->m_thinStart)) &
+                         (squared <= lanesSplat(reach.m_met * reach.m_met));
+    return near | met;
 }
 
 // Cloth node i against faces. Compares squares of distances times the face's area or edge, so that no lane needs a
@@ -164,21 +166,20 @@ DRAPE_FUNCTION LaneMask cullNodeFace(const CullTriangle* cull, int i, CullReach 
     const LanesVec3 area = lanesCross(ca, ab);
     const Lanes square = lanesDot(area, area);
     // (x + y)² ≤ 2 (x² + y²)
-    const LaneMask around = lanesDot(x1, x1) <= 2.0f * (longest + reach.m_passed * reach.m_passed);
+    const LaneMask around = lanesDot(x1, x1) <= 2.0f * (longest + reach.m_farthest * reach.m_farthest);
     const LaneMask thin = square <= DRAPE_CULL_THIN * DRAPE_CULL_THIN * longest * longest;
 
     const Lanes height = lanesDot(area, x1), before = lanesDot(area, x0);
     const Lanes depth = height * height;
     const LaneMask passed =
         (before * height <= 0.0f) | (lanesMin(depth, before * before) <= reach.m_slack * reach.m_slack * square);
-    const float motion = reach.m_passed - reach.m_near;
-    const LaneMask level = depth <= square * lanesSelect(passed, lanesSplat(reach.m_passed * reach.m_passed),
+    const LaneMask level = depth <= square * lanesSelect(passed, lanesSplat(reach.m_farthest * reach.m_farthest),
                                                          lanesSplat(reach.m_near * reach.m_near));
     // How far outside an edge the node may be: where the edge's or a corner's cone still admits the direction to it, or
     // as far as it can have moved since it passed. (x + y)² ≤ 1.1 x² + 11 y².
     const Lanes spread = lanesLoad(block, 9);
     const Lanes slope = lanesMin(depth * spread * spread, square * (reach.m_near * reach.m_near));
-    const Lanes moved = lanesSelect(passed, square * (motion * motion), lanesSplat(0.0f));
+    const Lanes moved = lanesSelect(passed, square * (reach.m_met * reach.m_met), lanesSplat(0.0f));
     const Lanes allowed = 1.1f * lanesMax(slope, moved) + 44.0f * reach.m_slack * reach.m_slack * square;
     const Lanes outAB = lanesMax(lanesDot(lanesCross(ab, area), x1), lanesSplat(0.0f));
     const Lanes outBC = lanesMax(lanesDot(lanesCross(bc, area), lanesSub(x1, ab)), lanesSplat(0.0f));
@@ -223,28 +224,27 @@ DRAPE_FUNCTION LaneMask cullEdgeEdge(const CullTriangle* cull, int i, CullReach 
     const Lanes after = lanesDot(direction, offset);
     const LanesVec3 direction0 = lanesCrossUniform(vec3Sub(cull->m_start[j], cull->m_start[i]), along);
     const Lanes before = lanesDot(direction0, lanesSubUniform(edges->m_a, cull->m_start[i]));
-    const LaneMask passed = cullPassed(before, after, (0.1f * reach.m_slack) * lengths);
-    const float passing = reach.m_passed - 0.9f * reach.m_near;  // passing contacts are a tenth of the reach away
-    const float farthest = drapeMax(passing, reach.m_near);
-    const LaneMask near = after * after <= square * lanesSelect(passed, lanesSplat(farthest * farthest),
-                                                                lanesSplat(reach.m_near * reach.m_near));
+    const LaneMask near = after * after <= square * lanesSplat(reach.m_near * reach.m_near);
+    const LaneMask met = (after * after <= square * lanesSplat(reach.m_met * reach.m_met)) &
+                         (lanesAbs(before) <= reach.m_before * lanesSqrt(lanesDot(direction0, direction0)) +
+                                                  (0.1f * reach.m_slack) * lengths);
     const Lanes facing = lanesDot(edges->m_axis, direction);
     const LaneMask admitted = facing * facing >= edges->m_cosine * square;
 
     // Places of the closest points of the two lines, times the square; loosened by rounding, and where the edges may
-    // have passed each other by how far they can have moved since.
+    // have met by how far they can have moved since.
     const Lanes s = lanesDot(lanesCross(offset, along), direction);
     const Lanes t = lanesDot(lanesCrossUniform(across, offset), direction);
     const Lanes size = lanesNorm1(offset) + edges->m_length + acrossLength;
-    const Lanes loose = lengths * (4e-6f * size + lanesSelect(passed, lanesSplat(passing), lanesSplat(0.0f)));
+    const Lanes loose = lengths * (4e-6f * size + lanesSelect(met, lanesSplat(reach.m_met), lanesSplat(0.0f)));
     const LaneMask inside =
         (lanesMin(s, square - s) >= -loose * edges->m_length) & (lanesMin(-t, square + t) >= -loose * acrossLength);
 
     // (x + y)² ≤ 2 (x² + y²)
-    const float far = reach.m_passed + acrossLength;
+    const float far = reach.m_farthest + acrossLength;
     const LaneMask around = lanesDot(offset, offset) <= 2.0f * (edges->m_square + far * far);
     const LaneMask parallel = square <= (DRAPE_CULL_THIN * DRAPE_CULL_THIN) * lengths * lengths;
-    return around & (parallel | (near & inside & (admitted | passed)));
+    return around & (parallel | (inside & ((near & admitted) | met)));
 }
 
 DRAPE_NAMESPACE_END

@@ -30,7 +30,8 @@ DRAPE_FUNCTION int nodeFaceContact(Vec3 x0, Vec3 x1, const RestingFace* resting,
     const float areaLength = resting->m_areaLength;
     const float s0 = vec3Dot(resting->m_area, vec3Sub(x0, face.m_p[0]));
     const float s1 = vec3Dot(resting->m_area, vec3Sub(x1, face.m_p[0]));
-    const float side = s0 < 0.0f ? -1.0f : 1.0f;
+    const float before = bounds.m_mode == DRAPE_DISCRETE ? s1 : s0;
+    const float side = before < 0.0f ? -1.0f : 1.0f;
     const int passed = side * s1 < 0.0f;
     // |s1| / |area| is a lower bound of the distance.
     if (!passed && drapeAbs(s1) > areaLength * bounds.m_reachSlack) return 0;

@@ -20,6 +20,8 @@ typedef struct ClothView
     const DRAPE_GLOBAL Edge* m_edges;
     DRAPE_UINT m_nodeCount;
     DRAPE_UINT m_triangleCount;
+    DRAPE_UINT m_mode;  // DRAPE_DISCRETE …
+    int m_complete;     // as in PairBounds
 } ClothView;
 
 typedef struct ObstacleView
@@ -32,23 +34,32 @@ typedef struct ObstacleView
 
 // Contacts are a function of the two features alone: whichever way a pair of features is found, its numbers are the
 // same. The frame's origin is the obstacle feature's first position.
-DRAPE_FUNCTION PairBounds pairBounds(float extent, float reach)
+DRAPE_FUNCTION PairBounds pairBounds(const ClothView* cloth, float extent, float reach)
 {
     PairBounds bounds;
     bounds.m_extent = extent;
     bounds.m_reach = reach;
     bounds.m_reachSlack = reach * 1.001f + DRAPE_SEAM * extent;
+    bounds.m_mode = cloth->m_mode;
+    bounds.m_complete = cloth->m_complete;
     return bounds;
+}
+
+// Largest coordinate of a cloth feature, m, from those at the step's start and at its end.
+DRAPE_FUNCTION float stepExtent(const ClothView* cloth, float start, float end)
+{
+    return cloth->m_mode == DRAPE_DISCRETE ? end : drapeMax(start, end);
 }
 
 // A position that is NaN or infinite, at the step's start or end, gives a gap that is not finite: no contact.
 DRAPE_FUNCTION int finishContact(int found, Vec3 origin, Contact* contact)
 {
-    if (!found || !drapeIsFinite(contact->m_gap0) || !drapeIsFinite(contact->m_gap1)) return 0;
+    if (found != DRAPE_IS_CONTACT) return found;
+    if (!drapeIsFinite(contact->m_gap0) || !drapeIsFinite(contact->m_gap1)) return DRAPE_NO_CONTACT;
     contact->m_point[0] += origin.x;
     contact->m_point[1] += origin.y;
     contact->m_point[2] += origin.z;
-    return 1;
+    return DRAPE_IS_CONTACT;
 }
 
 // Node i of the cloth triangle against the obstacle's triangle with corners a, b, c.
@@ -64,13 +75,13 @@ DRAPE_FUNCTION int pairNodeFace(int i, const ClothView* cloth, DRAPE_UINT clothT
     face.m_corners.m_p[2] = vec3Sub(c, a);
     face.m_area = triangleNormal(face.m_corners);
     face.m_areaLength = vec3Length(face.m_area);
-    const float extent = drapeMax(drapeMax(vec3NormMax(x0), vec3NormMax(x1)), triangleExtent(face.m_corners));
+    const float extent = drapeMax(stepExtent(cloth, vec3NormMax(x0), vec3NormMax(x1)), triangleExtent(face.m_corners));
     contact->m_kind = DRAPE_NODE_FACE;
     contact->m_clothFeature = node;
     contact->m_obstacleFeature = obstacleTriangle;
     contact->m_slot = node;
     const int found = nodeFaceContact(x0, x1, &face, obstacle->m_triangles + obstacleTriangle, obstacle->m_vertexCones,
-                                      obstacle->m_edgeCones, pairBounds(extent, reach), contact);
+                                      obstacle->m_edgeCones, pairBounds(cloth, extent, reach), contact);
     return finishContact(found, a, contact);
 }
 
@@ -96,7 +107,7 @@ DRAPE_FUNCTION int pairFaceVertex(const ClothView* cloth, DRAPE_UINT clothTriang
     face.m_areaStart = triangleNormal(face.m_start);
     face.m_areaEnd = triangleNormal(face.m_end);
     face.m_areaEndLength = vec3Length(face.m_areaEnd);
-    const float extent = drapeMax(triangleExtent(face.m_start), triangleExtent(face.m_end));
+    const float extent = stepExtent(cloth, triangleExtent(face.m_start), triangleExtent(face.m_end));
     DRAPE_UINT beyond[3];
     for (int edge = 0; edge < 3; ++edge)
         beyond[edge] = vertexBeyond(cloth, triangle, edge);
@@ -105,7 +116,7 @@ DRAPE_FUNCTION int pairFaceVertex(const ClothView* cloth, DRAPE_UINT clothTriang
     contact->m_obstacleFeature = obstacleVertex;
     contact->m_slot = cloth->m_nodeCount + clothTriangle;
     const int found = faceVertexContact(&face, beyond, cloth->m_start, cloth->m_end, vertex, vec3(0.0f, 0.0f, 0.0f),
-                                        cone, pairBounds(extent, reach), contact);
+                                        cone, pairBounds(cloth, extent, reach), contact);
     return finishContact(found, vertex, contact);
 }
 
@@ -123,14 +134,14 @@ DRAPE_FUNCTION int pairEdgeEdge(int i, const ClothView* cloth, DRAPE_UINT clothT
     e1.m_b = vec3Sub(vec3Load(cloth->m_end, second), a);
     o.m_a = vec3(0.0f, 0.0f, 0.0f);
     o.m_b = vec3Sub(b, a);
-    const float extent = drapeMax(drapeMax(drapeMax(vec3NormMax(e0.m_a), vec3NormMax(e0.m_b)),
-                                           drapeMax(vec3NormMax(e1.m_a), vec3NormMax(e1.m_b))),
+    const float extent = drapeMax(stepExtent(cloth, drapeMax(vec3NormMax(e0.m_a), vec3NormMax(e0.m_b)),
+                                             drapeMax(vec3NormMax(e1.m_a), vec3NormMax(e1.m_b))),
                                   vec3NormMax(o.m_b));
     contact->m_kind = DRAPE_EDGE_EDGE;
     contact->m_clothFeature = triangle->m_edges[i];
     contact->m_obstacleFeature = obstacleEdge;
     contact->m_slot = cloth->m_nodeCount + cloth->m_triangleCount + contact->m_clothFeature;
-    return finishContact(edgeEdgeContact(e0, e1, o, cone, pairBounds(extent, reach), contact), a, contact);
+    return finishContact(edgeEdgeContact(e0, e1, o, cone, pairBounds(cloth, extent, reach), contact), a, contact);
 }
 
 // The tests that a pair of triangles owns, as bits: three nodes × face, face × three vertices, three edges × three
@@ -155,7 +166,7 @@ DRAPE_FUNCTION DRAPE_UINT validTests(DRAPE_UINT clothValid, DRAPE_UINT obstacleV
     return tests;
 }
 
-// Runs one of the candidate's feature tests, 0 ≤ test < DRAPE_FEATURE_TESTS. Returns whether it gives a contact.
+// Runs one of the candidate's feature tests, 0 ≤ test < DRAPE_FEATURE_TESTS. Returns DRAPE_NO_CONTACT, ….
 DRAPE_FUNCTION int pairContact(int test, const ClothView* cloth, const ObstacleView* obstacle, Candidate candidate,
                                float reach, Contact* contact)
 {

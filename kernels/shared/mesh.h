@@ -34,8 +34,8 @@ typedef struct NormalCone
     float m_cosine;  // of the half-angle
 } NormalCone;
 
-// Half the volumes' sides: 9 in the product; 3, 7 and 13 are for studies. An option of the host's build, passed on to the
-// kernels' programs.
+// Half the volumes' sides: 9 in the product; 3, 7 and 13 are for studies. An option of the host's build, passed on to
+// the kernels' programs.
 #ifndef DRAPE_DOP_DIRECTIONS
 #define DRAPE_DOP_DIRECTIONS 9
 #endif
@@ -60,6 +60,11 @@ typedef struct Candidate
     DRAPE_UINT m_obstacle;  // triangle
 } Candidate;
 
+// How a step looks at the cloth's motion; see Settings::m_mode.
+#define DRAPE_DISCRETE 0u
+#define DRAPE_CONTINUOUS 1u
+#define DRAPE_AUTOMATIC 2u
+
 // What a step counts on the device. Demands count on when a buffer is full, so the host learns the true size.
 typedef struct StepCounters
 {
@@ -70,6 +75,7 @@ typedef struct StepCounters
     DRAPE_UINT m_intersections;
     DRAPE_UINT m_front;   // pairs of the front for the next step
     DRAPE_UINT m_spill;   // most pairs that did not fit into a traversal's local queue
+    DRAPE_UINT m_swept;   // pairs of features that the continuous test decided
     DRAPE_UINT m_visits;  // volume tests of the broad phase; only in programs built with DRAPE_COUNT_VISITS
 } StepCounters;
 

@@ -24,8 +24,8 @@ using Pair = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;
 class DeviceCull
 {
 public:
-    DeviceCull(Device& device, const StepCase& step)
-        : m_device(device), m_cloth(makeSide({step.m_cloth})), m_obstacle(makeSide({step.m_obstacle}))
+    DeviceCull(Device& device, const StepCase& step, std::uint32_t mode = DRAPE_AUTOMATIC)
+        : m_device(device), m_mode(mode), m_cloth(makeSide({step.m_cloth})), m_obstacle(makeSide({step.m_obstacle}))
     {
         m_cloth.m_end = step.m_end;
         m_thickness = {step.m_thickness};
@@ -51,7 +51,7 @@ public:
         m_stage.enqueue(
             m_device,
             {m_clothBuffers.m_order, m_clothBuffers.m_triangles, m_clothBuffers.m_start, m_clothBuffers.m_end, m_radius,
-             m_thicknessBuffer, m_cloth.m_pool.triangles().size(), 1, kReachScale, 1u << 30},
+             m_thicknessBuffer, m_cloth.m_pool.triangles().size(), 1, kReachScale, m_mode, 1u << 30},
             counterBuffer);
         counters = readCounters(m_device, counterBuffer);
         const std::size_t count = std::min<std::size_t>(counters.m_candidates, m_stage.tests().capacity());
@@ -80,7 +80,7 @@ public:
     {
         std::vector<Contact> contacts;
         narrowPhaseOnHost(allPairs(m_cloth, m_obstacle), m_cloth.cloth(), m_obstacle.obstacle(),
-                          {m_thickness, 1, kReachScale}, contacts);
+                          {m_thickness, 1, kReachScale, m_mode}, contacts);
         return contacts;
     }
 
@@ -100,6 +100,7 @@ private:
     }
 
     Device& m_device;
+    std::uint32_t m_mode;
     Side m_cloth, m_obstacle;
     PatchCullStage m_stage;
     DeviceSide m_clothBuffers, m_obstacleBuffers;
@@ -109,9 +110,10 @@ private:
 };
 
 // Every contact's test is listed once; most of all feature pairs are not.
-void expectContactsListed(Device& device, const StepCase& step)
+void expectContactsListed(Device& device, const StepCase& step, std::uint32_t mode)
 {
-    DeviceCull cull(device, step);
+    SCOPED_TRACE("mode " + std::to_string(mode));
+    DeviceCull cull(device, step, mode);
     StepCounters counters;
     cull.run(1, counters);
     std::map<Pair, int> listed;
@@ -156,7 +158,8 @@ TEST_P(PatchCullTest, ListsEveryContactOfSoups)
             const StepCase step = soupCase(size[0], size[1], moving, ++seed);
             SCOPED_TRACE(step.trace() + ", " + std::to_string(size[0]) + " and " + std::to_string(size[1]) +
                          " triangles");
-            expectContactsListed(*m_device, step);
+            for (const std::uint32_t mode : {DRAPE_DISCRETE, DRAPE_CONTINUOUS, DRAPE_AUTOMATIC})
+                expectContactsListed(*m_device, step, mode);
         }
     }
 }
@@ -167,7 +170,8 @@ TEST_P(PatchCullTest, ListsEveryContactOfShapes)
     {
         const StepCase step = fallingCase(shape, 14, 0.03f, 320);
         SCOPED_TRACE(step.trace());
-        expectContactsListed(*m_device, step);
+        for (const std::uint32_t mode : {DRAPE_DISCRETE, DRAPE_CONTINUOUS, DRAPE_AUTOMATIC})
+            expectContactsListed(*m_device, step, mode);
     }
 }
 

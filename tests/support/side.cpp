@@ -18,7 +18,9 @@ ClothView Side::cloth() const
             m_pool.triangles().data(),
             m_pool.edges().data(),
             std::uint32_t(m_pool.vertexCount()),
-            std::uint32_t(m_pool.triangles().size())};
+            std::uint32_t(m_pool.triangles().size()),
+            DRAPE_AUTOMATIC,
+            1};
 }
 
 ObstacleView Side::obstacle() const

@@ -89,7 +89,7 @@ void PatchCullStage::enqueue(Device& device, Cloths cloths, Buffer<StepCounters>
                   cloths.m_start.handle(), cloths.m_end.handle(), cloths.m_radius.handle(), m_wideNodes.handle(),
                   m_levels.handle(), cl_uint(m_layout.m_levels.size() - 1), m_patches.handle(), m_sizes.handle(),
                   m_faces.handle(), m_vertices.handle(), m_edges.handle(), cloths.m_thickness.handle(),
-                  cl_uint(cloths.m_obstacleMeshes), cloths.m_reachScale, m_tests.handle(), cl_uint(m_tests.capacity()),
-                  cl_uint(cloths.m_limit), counters.handle());
+                  cl_uint(cloths.m_obstacleMeshes), cloths.m_reachScale, cl_uint(cloths.m_mode), m_tests.handle(),
+                  cl_uint(m_tests.capacity()), cl_uint(cloths.m_limit), counters.handle());
 }
 }  // namespace drape

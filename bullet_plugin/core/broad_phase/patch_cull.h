@@ -40,7 +40,8 @@ public:
         std::size_t m_count;  // triangles
         std::size_t m_obstacleMeshes;
         float m_reachScale;
-        std::size_t m_limit;  // tests; the count is exact up to it, a greater one says only that there are more
+        std::uint32_t m_mode;  // DRAPE_DISCRETE …
+        std::size_t m_limit;   // tests; the count is exact up to it, a greater one says only that there are more
     };
     // Returns after enqueueing. counters' candidates and invalid nodes must be zero before.
     void enqueue(Device& device, Cloths cloths, Buffer<StepCounters>& counters);

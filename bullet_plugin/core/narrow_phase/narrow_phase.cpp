@@ -14,6 +14,7 @@ void NarrowPhaseStage::create(Device& device, const cl::Program& narrowPhase, co
 {
     m_test.create(device, narrowPhase, "narrowPhaseTest");
     m_feature.create(device, narrowPhase, "narrowPhaseFeature");
+    m_swept.create(device, narrowPhase, "narrowPhaseSwept");
     m_intersect.create(device, narrowPhase, "narrowPhaseIntersect");
     m_count.create(device, compaction, "compactionCount");
     m_scan.create(device, compaction, "compactionScan");
@@ -36,6 +37,7 @@ void NarrowPhaseStage::reserveHits(Device& device, std::size_t count)
     m_hits.reserve(device, count);
     m_contacts.reserve(device, count);
     m_members.reserve(device, count);
+    m_sweptTests.reserve(device, count);
 }
 
 std::size_t NarrowPhaseStage::listWidth(const Device& device) const
@@ -54,21 +56,34 @@ void NarrowPhaseStage::enqueue(Device& device, NarrowPhaseBuffers sides, std::si
                   sides.m_clothEdges.handle(), cl_uint(nodeCount), cl_uint(triangleCount),
                   sides.m_obstaclePositions.handle(), sides.m_obstacleTriangles.handle(), sides.m_vertexCones.handle(),
                   sides.m_edgeCones.handle(), sides.m_thickness.handle(), cl_uint(settings.m_obstacleMeshes),
-                  settings.m_reachScale, m_hits.handle(), hitCapacity, m_slotCount.handle(), counters.handle());
+                  settings.m_reachScale, cl_uint(settings.m_mode), m_hits.handle(), hitCapacity, m_slotCount.handle(),
+                  counters.handle());
     enqueueCompaction(device, counters);
 }
 
 void NarrowPhaseStage::enqueueFeatures(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount,
-                                       std::size_t triangleCount, PatchCullStage& cull, Buffer<StepCounters>& counters)
+                                       std::size_t triangleCount, std::uint32_t mode, PatchCullStage& cull,
+                                       Buffer<StepCounters>& counters)
 {
     PatchCullStage::Features features = cull.features();
-    m_feature.launch(device, listWidth(device), kGroup, cull.tests().handle(), cl_uint(cull.tests().capacity()),
+    const std::size_t width = listWidth(device);
+    m_feature.launch(device, width, kGroup, cull.tests().handle(), cl_uint(cull.tests().capacity()),
                      sides.m_clothStart.handle(), sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(),
-                     sides.m_clothEdges.handle(), cl_uint(nodeCount), cl_uint(triangleCount),
+                     sides.m_clothEdges.handle(), cl_uint(nodeCount), cl_uint(triangleCount), cl_uint(mode),
                      sides.m_obstacleTriangles.handle(), sides.m_vertexCones.handle(), sides.m_edgeCones.handle(),
                      features.m_faces.handle(), features.m_vertices.handle(), features.m_edges.handle(),
                      features.m_faceIds.handle(), features.m_vertexIds.handle(), features.m_edgeIds.handle(),
-                     m_hits.handle(), m_slotCount.handle(), counters.handle());
+                     m_hits.handle(), m_sweptTests.handle(), m_slotCount.handle(), counters.handle());
+    if (mode != DRAPE_DISCRETE)
+    {
+        m_swept.launch(device, width, kGroup, cull.tests().handle(), sides.m_clothStart.handle(),
+                       sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(), sides.m_clothEdges.handle(),
+                       cl_uint(nodeCount), cl_uint(triangleCount), cl_uint(mode), sides.m_obstacleTriangles.handle(),
+                       sides.m_vertexCones.handle(), sides.m_edgeCones.handle(), features.m_faces.handle(),
+                       features.m_vertices.handle(), features.m_edges.handle(), features.m_faceIds.handle(),
+                       features.m_vertexIds.handle(), features.m_edgeIds.handle(), m_hits.handle(),
+                       m_sweptTests.handle(), m_slotCount.handle(), counters.handle());
+    }
     enqueueCompaction(device, counters);
 }
 

@@ -12,19 +12,27 @@
 
 namespace drape
 {
-// Options and per-pair data of a step. thickness: m, cloth slots × obstacle slots. Contacts reach to thickness ×
-// reachScale.
+// Options and per-pair data of a step. mode: DRAPE_DISCRETE …. thickness: m, cloth slots × obstacle slots. Contacts
+// reach to thickness × reachScale.
 struct NarrowPhaseSettings
 {
     const std::vector<float>& m_thickness;
     std::size_t m_obstacleMeshes;
     float m_reachScale;
+    std::uint32_t m_mode = DRAPE_AUTOMATIC;
 };
 
-// Returns how many contacts there are; with more than limit, the list is left empty.
-std::uint64_t narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth,
-                                const ObstacleView& obstacle, const NarrowPhaseSettings& settings,
-                                std::vector<Contact>& contacts, std::size_t limit = SIZE_MAX);
+// What the narrow phase counted on the host: contacts, and pairs of features that the continuous test decided.
+struct NarrowPhaseCounts
+{
+    std::uint64_t m_contacts = 0;
+    std::uint64_t m_swept = 0;
+};
+
+// With more contacts than limit the list is left empty.
+NarrowPhaseCounts narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth,
+                                    const ObstacleView& obstacle, const NarrowPhaseSettings& settings,
+                                    std::vector<Contact>& contacts, std::size_t limit = SIZE_MAX);
 
 // Pairs whose triangles intersect at the step's start, in order of cloth and obstacle triangle.
 void intersectOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth, const ObstacleView& obstacle,
@@ -64,9 +72,10 @@ public:
     // Contacts of pairs of triangles. Returns after enqueueing. counters' places and intersections must be zero before.
     void enqueue(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
                  const NarrowPhaseSettings& settings, Buffer<Candidate>& candidates, Buffer<StepCounters>& counters);
-    // Contacts of the feature tests that a cull left. There must be room for as many hits as tests.
+    // Contacts of the feature tests that a cull left. There must be room for as many hits as tests. mode:
+    // DRAPE_DISCRETE …; a discrete step is one launch less.
     void enqueueFeatures(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
-                         PatchCullStage& cull, Buffer<StepCounters>& counters);
+                         std::uint32_t mode, PatchCullStage& cull, Buffer<StepCounters>& counters);
     void enqueueIntersect(Device& device, NarrowPhaseBuffers sides, Buffer<Candidate>& candidates,
                           Buffer<StepCounters>& counters);
 
@@ -74,11 +83,11 @@ private:
     void enqueueCompaction(Device& device, Buffer<StepCounters>& counters);
     std::size_t listWidth(const Device& device) const;
 
-    Kernel m_test, m_feature, m_intersect, m_count, m_scan, m_place, m_gather, m_write;
+    Kernel m_test, m_feature, m_swept, m_intersect, m_count, m_scan, m_place, m_gather, m_write;
     Buffer<Contact> m_hits{"step hits"}, m_contacts{"step contacts"};
     Buffer<Candidate> m_intersections;
     Buffer<cl_uint> m_slotCount{"cloth slots"}, m_slotFirst{"cloth slots"}, m_blockCount{"cloth slots"};
-    Buffer<cl_uint> m_members{"step hits"};
+    Buffer<cl_uint> m_members{"step hits"}, m_sweptTests{"step hits"};
     std::size_t m_slots = 0;
 };
 }  // namespace drape

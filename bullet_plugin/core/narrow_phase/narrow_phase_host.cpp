@@ -16,12 +16,14 @@ void sortContacts(std::vector<Contact>& contacts)
 }
 }  // namespace
 
-std::uint64_t narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth,
-                                const ObstacleView& obstacle, const NarrowPhaseSettings& settings,
-                                std::vector<Contact>& contacts, std::size_t limit)
+NarrowPhaseCounts narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView& clothArrays,
+                                    const ObstacleView& obstacle, const NarrowPhaseSettings& settings,
+                                    std::vector<Contact>& contacts, std::size_t limit)
 {
     contacts.clear();
-    std::uint64_t found = 0;
+    NarrowPhaseCounts counts;
+    ClothView cloth = clothArrays;
+    cloth.m_mode = settings.m_mode;
     for (const Candidate& candidate : candidates)
     {
         const Triangle* clothTriangle = cloth.m_triangles + candidate.m_cloth;
@@ -38,13 +40,18 @@ std::uint64_t narrowPhaseOnHost(const std::vector<Candidate>& candidates, const 
         {
             Contact contact;
             if (!(tests & (1u << test))) continue;
-            if (!pairContact(test, &cloth, &obstacle, candidate, reach, &contact)) continue;
-            if (++found <= limit) contacts.push_back(contact);
+            int found = DRAPE_UNDECIDED;
+            for (cloth.m_complete = 0; found == DRAPE_UNDECIDED; cloth.m_complete = 1)
+            {
+                counts.m_swept += std::uint64_t(cloth.m_complete);
+                found = pairContact(test, &cloth, &obstacle, candidate, reach, &contact);
+            }
+            if (found == DRAPE_IS_CONTACT && ++counts.m_contacts <= limit) contacts.push_back(contact);
         }
     }
-    if (found > limit) std::vector<Contact>().swap(contacts);
+    if (counts.m_contacts > limit) std::vector<Contact>().swap(contacts);
     sortContacts(contacts);
-    return found;
+    return counts;
 }
 
 void intersectOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth, const ObstacleView& obstacle,

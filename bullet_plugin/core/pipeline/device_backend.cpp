@@ -202,13 +202,15 @@ void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
     m_counters.fill(*m_device, 0, 1);
     if (patches())
     {
-        m_patchCull.enqueue(*m_device,
-                            {m_cloth.m_order, m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius,
-                             m_thickness, scene.m_cloths.triangles().size(), obstacleMeshes,
-                             1.0f + m_settings.m_activation, StepLimits(m_settings).m_candidates},
-                            m_counters);
+        m_patchCull.enqueue(
+            *m_device,
+            {m_cloth.m_order, m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, m_thickness,
+             scene.m_cloths.triangles().size(), obstacleMeshes, 1.0f + m_settings.m_activation,
+             std::uint32_t(m_settings.m_mode), StepLimits(m_settings).m_candidates},
+            m_counters);
         m_narrowPhase.enqueueFeatures(*m_device, narrowPhaseBuffers(), scene.m_cloths.vertexCount(),
-                                      scene.m_cloths.triangles().size(), m_patchCull, m_counters);
+                                      scene.m_cloths.triangles().size(), std::uint32_t(m_settings.m_mode), m_patchCull,
+                                      m_counters);
     }
     else
     {
@@ -221,7 +223,8 @@ void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
                                          m_candidates,
                                          m_counters,
                                          StepLimits(m_settings).m_candidates});
-        const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacleMeshes, 1.0f + m_settings.m_activation};
+        const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacleMeshes, 1.0f + m_settings.m_activation,
+                                            std::uint32_t(m_settings.m_mode)};
         m_narrowPhase.enqueue(*m_device, narrowPhaseBuffers(), scene.m_cloths.vertexCount(),
                               scene.m_cloths.triangles().size(), narrow, m_candidates, m_counters);
     }
@@ -322,6 +325,7 @@ void DeviceBackend::readAll(StepResult& result)
     const StepCounters counters = *m_countersRead.data();
     result.m_candidates = counters.m_candidates;
     result.m_volumeTests = counters.m_visits;
+    result.m_sweptTests = counters.m_swept;
     result.m_invalidNodes = counters.m_invalidNodes;
     result.m_intersectionCount = counters.m_intersections;
     if (m_settings.m_reportIntersections)

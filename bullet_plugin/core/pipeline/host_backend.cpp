@@ -94,19 +94,26 @@ void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings
     result.m_candidates = m_candidates.size();
     result.m_volumeTests = m_traversal.volumeTests();
     result.m_broadMs = lap(stage);
-    const ClothView cloth = {scene.m_clothStart.data(),           scene.m_clothEnd.data(),
-                             cloths.triangles().data(),           cloths.edges().data(),
-                             std::uint32_t(cloths.vertexCount()), std::uint32_t(cloths.triangles().size())};
+    const std::uint32_t mode = std::uint32_t(settings.m_mode);
+    const ClothView cloth = {scene.m_clothStart.data(),
+                             scene.m_clothEnd.data(),
+                             cloths.triangles().data(),
+                             cloths.edges().data(),
+                             std::uint32_t(cloths.vertexCount()),
+                             std::uint32_t(cloths.triangles().size()),
+                             mode,
+                             1};
     const ObstacleView obstacle = {scene.m_obstaclePositions.data(), obstacles.triangles().data(),
                                    scene.m_vertexCones.data(), scene.m_edgeCones.data()};
-    const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacles.meshCount(), 1.0f + settings.m_activation};
-    const std::uint64_t contacts =
+    const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacles.meshCount(), 1.0f + settings.m_activation, mode};
+    const NarrowPhaseCounts counts =
         narrowPhaseOnHost(m_candidates, cloth, obstacle, narrow, result.m_contacts, limits.m_contacts);
     result.m_narrowMs = lap(stage);
-    if (contacts > limits.m_contacts)
+    result.m_sweptTests = counts.m_swept;
+    if (counts.m_contacts > limits.m_contacts)
     {
         result.m_overLimit = true;
-        result.m_contactDemand = contacts;
+        result.m_contactDemand = counts.m_contacts;
         return;
     }
     if (settings.m_reportIntersections) intersectOnHost(m_candidates, cloth, obstacle, result.m_intersections);

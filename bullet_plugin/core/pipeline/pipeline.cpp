@@ -263,6 +263,7 @@ const std::vector<Contact>& Pipeline::finish()
     self.m_submitted = false;
     statistics.m_candidates += self.m_result.m_candidates;
     statistics.m_volumeTests = self.m_result.m_volumeTests;
+    statistics.m_sweptTests = self.m_result.m_sweptTests;
     statistics.m_contacts = self.m_result.m_contacts.size();
     statistics.m_intersections = self.m_result.m_intersectionCount;
     statistics.m_invalidNodes = self.m_result.m_invalidNodes;

@@ -72,6 +72,7 @@ struct StepResult
     std::uint64_t m_contactDemand = 0;  // where contacts were too many: how many; 0 where candidates were
     std::size_t m_candidates = 0;
     std::size_t m_volumeTests = 0;
+    std::size_t m_sweptTests = 0;
     std::size_t m_invalidNodes = 0;
     std::size_t m_retries = 0;
     std::size_t m_intersectionCount = 0;

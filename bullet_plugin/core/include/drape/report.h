@@ -65,6 +65,7 @@ struct StepStatistics
     // What the broad phase left: pairs of triangles on the host and of cloths left out, pairs of features on a device.
     std::uint64_t m_candidates = 0;
     std::size_t m_volumeTests = 0;    // over pairs of triangles; on a device see Methods::m_countTests
+    std::size_t m_sweptTests = 0;     // pairs of features that needed the continuous test
     std::size_t m_clothsLeftOut = 0;  // with kStepClothsLeftOut
     std::size_t m_contacts = 0;       // contacts published
     std::size_t m_intersections = 0;  // only with Settings::m_reportIntersections

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include "methods.h"
@@ -16,6 +17,14 @@ enum class Backend
     Host     // the same pure functions, run serially by the calling thread
 };
 
+// How a step looks at the cloth's motion between its start and its end.
+enum class ContactMode : std::uint32_t
+{
+    Discrete,    // only at what is near at the end: the fastest, for cloth that moves less than its thickness in a step
+    Continuous,  // the certified continuous test for every pair of features that the broad phase leaves
+    Automatic    // the same contacts as Continuous, but the test only where motion is large enough to meet something
+};
+
 struct Settings
 {
     Backend m_backend = Backend::Auto;
@@ -27,6 +36,10 @@ struct Settings
     // Contacts are reported up to thickness + m_activation × thickness, so that the solver knows of a surface before
     // the thickness is violated. Range 0 to 4. Larger: safer under stiff links, more contacts.
     float m_activation = 0.5f;
+
+    // Continuous and Automatic find every face and edge that meets a feature of the obstacle on its linear way through
+    // the step, at the earliest time; Discrete may lose what is faster than its thickness.
+    ContactMode m_mode = ContactMode::Automatic;
 
     // Also list the cloth and obstacle triangles that intersect at the step's start. Costs a kernel.
     bool m_reportIntersections = false;

@@ -1,0 +1,84 @@
+// Whether a cloth feature and an obstacle feature meet during the step.
+//
+// The certified search of ccd.h answers it; it is asked only where the features move far enough. Two features that meet
+// are, at the step's start and at its end, no further apart than the cloth's feature moves; the volume that the two
+// span, divided by the area that belongs to it, bounds that distance from below.
+#ifndef DRAPE_LIB_FEATURE_MEETING_H
+#define DRAPE_LIB_FEATURE_MEETING_H
+
+#include "ccd.h"
+#include "feature_contact.h"
+
+DRAPE_NAMESPACE_BEGIN
+
+DRAPE_FUNCTION float distanceMoved(Vec3 from, Vec3 to)
+{
+    return vec3Length(vec3Sub(to, from));
+}
+
+// motion: m, of the fastest corner. Grown by far more than the search's tolerance and all rounding, a share of the
+// pair's extent.
+DRAPE_FUNCTION float meetingDistance(float motion, PairBounds bounds)
+{
+    return motion * (1.0f + DRAPE_SEAM) + DRAPE_SEAM * bounds.m_extent;
+}
+
+// volume: of the two features; area: that of the cloth's feature, or of both edges. The volume is made of three offsets
+// of at most 2 √3 extents each and errs by less than 1.5e-5 cubed extents.
+DRAPE_FUNCTION int volumeAdmitsMeeting(float volume, float area, float distance, PairBounds bounds)
+{
+    const float extent = bounds.m_extent;
+    return drapeAbs(volume) <= area * distance + 10.0f * DRAPE_SEAM * (extent * extent * extent);
+}
+
+// A moving face and a resting vertex. s0, s1: the volumes at the step's start and end.
+DRAPE_FUNCTION int faceMayMeet(const MovingFace* face, Vec3 vertex, float s0, float s1, PairBounds bounds)
+{
+    if (bounds.m_mode != DRAPE_AUTOMATIC) return bounds.m_mode == DRAPE_CONTINUOUS;
+    const FeatureTriangle f0 = face->m_start, f1 = face->m_end;
+    const float motion = drapeMax(drapeMax(distanceMoved(f0.m_p[0], f1.m_p[0]), distanceMoved(f0.m_p[1], f1.m_p[1])),
+                                  distanceMoved(f0.m_p[2], f1.m_p[2]));
+    const float distance = meetingDistance(motion, bounds);
+    if (!volumeAdmitsMeeting(s0, vec3Length(face->m_areaStart), distance, bounds) ||
+        !volumeAdmitsMeeting(s1, face->m_areaEndLength, distance, bounds))
+        return 0;
+    const Vec3 least = vec3Least(vec3Least(vec3Least(f0.m_p[0], f0.m_p[1]), vec3Least(f0.m_p[2], f1.m_p[0])),
+                                 vec3Least(f1.m_p[1], f1.m_p[2]));
+    const Vec3 most = vec3Most(vec3Most(vec3Most(f0.m_p[0], f0.m_p[1]), vec3Most(f0.m_p[2], f1.m_p[0])),
+                               vec3Most(f1.m_p[1], f1.m_p[2]));
+    return !boxesApart(least, most, vertex, vertex, DRAPE_SEAM * bounds.m_extent);
+}
+
+// An edge moving from e0 to e1 and a resting edge. v0, v1: the volumes at the step's start and end.
+DRAPE_FUNCTION int edgeMayMeet(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, float v0, float v1, PairBounds bounds)
+{
+    if (bounds.m_mode != DRAPE_AUTOMATIC) return bounds.m_mode == DRAPE_CONTINUOUS;
+    const Vec3 along = vec3Sub(o.m_b, o.m_a);
+    const float motion = drapeMax(distanceMoved(e0.m_a, e1.m_a), distanceMoved(e0.m_b, e1.m_b));
+    const float distance = meetingDistance(motion, bounds);
+    const float area0 = vec3Length(vec3Cross(vec3Sub(e0.m_b, e0.m_a), along));
+    const float area1 = vec3Length(vec3Cross(vec3Sub(e1.m_b, e1.m_a), along));
+    if (!volumeAdmitsMeeting(v0, area0, distance, bounds) || !volumeAdmitsMeeting(v1, area1, distance, bounds))
+        return 0;
+    const Vec3 least = vec3Least(vec3Least(e0.m_a, e0.m_b), vec3Least(e1.m_a, e1.m_b));
+    const Vec3 most = vec3Most(vec3Most(e0.m_a, e0.m_b), vec3Most(e1.m_a, e1.m_b));
+    return !boxesApart(least, most, vec3Least(o.m_a, o.m_b), vec3Most(o.m_a, o.m_b), DRAPE_SEAM * bounds.m_extent);
+}
+
+DRAPE_FUNCTION CcdResult meetFace(const MovingFace* face, Vec3 vertex)
+{
+    const Vec3 start[4] = {vertex, face->m_start.m_p[0], face->m_start.m_p[1], face->m_start.m_p[2]};
+    const Vec3 end[4] = {vertex, face->m_end.m_p[0], face->m_end.m_p[1], face->m_end.m_p[2]};
+    return ccdOfKind(DRAPE_VERTEX_FACE, start, end, ccdDefaults());
+}
+
+DRAPE_FUNCTION CcdResult meetEdge(FeatureEdge e0, FeatureEdge e1, FeatureEdge o)
+{
+    const Vec3 start[4] = {e0.m_a, e0.m_b, o.m_a, o.m_b};
+    const Vec3 end[4] = {e1.m_a, e1.m_b, o.m_a, o.m_b};
+    return ccdOfKind(DRAPE_EDGES, start, end, ccdDefaults());
+}
+
+DRAPE_NAMESPACE_END
+
+#endif

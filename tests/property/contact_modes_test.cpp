@@ -1,0 +1,150 @@
+// The three ways to look at motion (Settings::m_mode): automatic steps give the contacts of continuous ones and run the
+// continuous test less often, discrete ones see nothing but the end.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "tests/support/backends.h"
+#include "tests/support/oracle.h"
+#include "tests/support/pipeline_driver.h"
+
+namespace drape::test
+{
+namespace
+{
+struct Outcome
+{
+    std::vector<Contact> m_contacts;
+    std::size_t m_swept = 0;
+};
+
+bool sameContacts(const std::vector<Contact>& a, const std::vector<Contact>& b)
+{
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Contact)) == 0);
+}
+
+// The case with its motion scaled about the step's end.
+StepCase faster(StepCase step, float factor)
+{
+    for (std::size_t i = 0; i < step.m_end.size(); ++i)
+    {
+        float& start = step.m_cloth.m_positions[i];
+        start = step.m_end[i] + factor * (start - step.m_end[i]);
+    }
+    step.m_name += " times " + std::to_string(factor);
+    return step;
+}
+
+std::vector<StepCase> movingCases()
+{
+    std::vector<StepCase> cases;
+    std::uint32_t seed = 900;
+    for (const char* shape : {"sphere", "torus", "bowl", "stairs", "box"})
+        for (const float factor : {0.05f, 1.0f, 20.0f})
+            cases.push_back(faster(fallingCase(shape, 20, 0.03f, ++seed), factor));
+    for (const float factor : {0.02f, 1.0f, 5.0f})
+        cases.push_back(faster(soupCase(120, 150, true, ++seed), factor));
+    return cases;
+}
+
+// A pyramid whose apex, vertex 4, is the origin.
+TriangleMesh pyramid()
+{
+    TriangleMesh mesh = looseTriangles({-1, -2, -1, 1, -2, -1, 1, -2, 1, -1, -2, 1, 0, 0, 0});
+    mesh.m_triangles = {1, 0, 4, 2, 1, 4, 3, 2, 4, 0, 3, 4, 0, 1, 2, 0, 2, 3};
+    return mesh;
+}
+}  // namespace
+
+class ContactModesTest : public BackendTest
+{
+protected:
+    Outcome run(const StepCase& step, ContactMode mode)
+    {
+        Settings settings = GetParam().m_settings;
+        settings.m_mode = mode;
+        const std::unique_ptr<Pipeline> pipeline = makePipeline(settings);
+        if (!pipeline) return {};
+        Outcome outcome;
+        outcome.m_contacts = runCase(*pipeline, step);
+        outcome.m_swept = pipeline->statistics().m_sweptTests;
+        return outcome;
+    }
+};
+
+TEST_P(ContactModesTest, AutomaticGivesTheContactsOfContinuousForLess)
+{
+    std::size_t contacts = 0, swept = 0, sweptAlways = 0;
+    for (const StepCase& step : movingCases())
+    {
+        SCOPED_TRACE(step.trace());
+        const Outcome automatic = run(step, ContactMode::Automatic), continuous = run(step, ContactMode::Continuous);
+        EXPECT_TRUE(sameContacts(automatic.m_contacts, continuous.m_contacts))
+            << automatic.m_contacts.size() << " and " << continuous.m_contacts.size();
+        EXPECT_LE(automatic.m_swept, continuous.m_swept);
+        contacts += continuous.m_contacts.size();
+        swept += automatic.m_swept;
+        sweptAlways += continuous.m_swept;
+    }
+    EXPECT_GT(contacts, 10000u);
+    EXPECT_LT(2 * swept, sweptAlways);
+}
+
+TEST_P(ContactModesTest, DiscreteSeesTheEndOnly)
+{
+    for (StepCase step : movingCases())
+    {
+        SCOPED_TRACE(step.trace());
+        const Outcome moving = run(step, ContactMode::Discrete);
+        EXPECT_EQ(moving.m_swept, 0u);
+        for (const Contact& contact : moving.m_contacts)
+            EXPECT_EQ(contact.m_time, 1.0f);
+        // At rest where it ends, it gives the same contacts but for where the nodes were.
+        step.m_cloth.m_positions = step.m_end;
+        std::vector<Contact> resting = run(step, ContactMode::Discrete).m_contacts;
+        ASSERT_EQ(resting.size(), moving.m_contacts.size());
+        for (std::size_t i = 0; i < resting.size(); ++i)
+            resting[i].m_gap0 = moving.m_contacts[i].m_gap0;
+        EXPECT_TRUE(sameContacts(resting, moving.m_contacts));
+    }
+}
+
+TEST_P(ContactModesTest, RestingClothNeedsNoContinuousTest)
+{
+    for (const char* shape : {"sphere", "stairs", "torus"})
+    {
+        const StepCase step = drapedCase(shape, 20, 0.03f, 950);
+        SCOPED_TRACE(step.trace());
+        const Outcome automatic = run(step, ContactMode::Automatic), continuous = run(step, ContactMode::Continuous);
+        EXPECT_TRUE(sameContacts(automatic.m_contacts, continuous.m_contacts));
+        EXPECT_GT(continuous.m_swept, 100u);
+        EXPECT_LT(20 * automatic.m_swept, continuous.m_swept);
+    }
+}
+
+// A face whose plane crosses the apex twice, once within the face and once outside of it: the signs of the volumes at
+// the step's two ends are the same, and yet the face went past.
+TEST_P(ContactModesTest, FaceThatPassesAndTiltsBackIsFound)
+{
+    StepCase step = {"tilting face", 0, looseTriangles({-1, 0.1f, -1, 1, 0.1f, -1, 0, 0.1f, 1}), pyramid(), {}, 0.02f};
+    step.m_end = {-3, -1, -1, -1, -0.2f, -1, -2, -0.6f, 1};
+    for (const ContactMode mode : {ContactMode::Automatic, ContactMode::Continuous})
+    {
+        int found = 0;
+        for (const Contact& contact : run(step, mode).m_contacts)
+        {
+            if (contact.m_kind != DRAPE_FACE_VERTEX || contact.m_obstacleFeature != 4) continue;
+            ++found;
+            // 0.1 - 0.7 t + 0.8 t² = 0; see kernels/lib/ccd.h for how early a time may be.
+            EXPECT_LE(contact.m_time, 0.179844f + 1e-5f);
+            EXPECT_GT(contact.m_time, 0.179844f - 2e-4f);
+            EXPECT_GT(contact.m_normal[1], 0.9f);
+            EXPECT_GT(contact.m_gap0, 0.05f);  // along the tilted normal
+            EXPECT_LT(contact.m_gap1, -0.1f);
+        }
+        EXPECT_EQ(found, 1);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, ContactModesTest, testing::ValuesIn(allBackends()), backendName);
+}  // namespace drape::test
