@@ -72,64 +72,91 @@ static void stretchOfWindow(__global const uint* restrict splits, const uint fro
     barrier(CLK_LOCAL_MEM_FENCE);
 }
 
-// Where a volume lies in a group's local memory: leaves first, then the nodes by their split.
+// A group's volumes while they are made: leaves first, then the nodes by their split. A row holds one word of a node; its
+// length is odd, so that neither a row nor a column of it falls on one bank.
+#define DRAPE_SUBTREE_PLACES (2 * DRAPE_SUBTREE_GROUP)
+#define DRAPE_SUBTREE_ROW (DRAPE_SUBTREE_PLACES + 1)
+#define DRAPE_DOP_WORDS (2 * DRAPE_DOP_DIRECTIONS)
+#define DRAPE_NODE_WORDS (DRAPE_DOP_WORDS + 2)
+#define DRAPE_NO_PLACE 0xffffu
+
 static uint localIndex(__global const BvhNode* node, const uint first)
 {
     return node->m_count == 0u ? node->m_first - first : DRAPE_SUBTREE_GROUP + splitOfPair(node->m_first) - first;
 }
 
-static void storeVolume(__global BvhNode* node, __local const float* volumes, const uint index)
+static void keepVolume(__local float* volumes, const uint index, const Dop* dop)
 {
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
     {
-        node->m_low[i] = volumes[2 * i * 2 * DRAPE_SUBTREE_GROUP + index];
-        node->m_high[i] = volumes[(2 * i + 1) * 2 * DRAPE_SUBTREE_GROUP + index];
+        volumes[i * DRAPE_SUBTREE_ROW + index] = dop->m_low[i];
+        volumes[(DRAPE_DOP_DIRECTIONS + i) * DRAPE_SUBTREE_ROW + index] = dop->m_high[i];
+    }
+}
+
+static void mergeVolumes(__local float* volumes, const uint index, const uint left, const uint right)
+{
+    for (int i = 0; i < DRAPE_DOP_WORDS; ++i)
+    {
+        __local float* row = volumes + i * DRAPE_SUBTREE_ROW;
+        row[index] = i < DRAPE_DOP_DIRECTIONS ? drapeMin(row[left], row[right]) : drapeMax(row[left], row[right]);
+    }
+}
+
+// Writes volumes word by word, so that neighbouring work-items write neighbouring words: the nodes of a stretch of leaves lie
+// side by side. indexOfPlace: of the places from `base` on.
+static void storeStretch(__global BvhNode* nodes, const uint base, const uint places, __local const float* volumes,
+                         __local const ushort* indexOfPlace)
+{
+    __global float* words = (__global float*)(nodes + base);
+    for (uint i = get_local_id(0); i < places * DRAPE_NODE_WORDS; i += get_local_size(0))
+    {
+        const uint index = indexOfPlace[i / DRAPE_NODE_WORDS], word = i % DRAPE_NODE_WORDS;
+        if (index != DRAPE_NO_PLACE && word < DRAPE_DOP_WORDS) words[i] = volumes[word * DRAPE_SUBTREE_ROW + index];
     }
 }
 
 // A work-group is a window of leaves; it refits the subtrees that begin in it. A work-item has one leaf and the split behind
-// it, and merges when both children are there. Volumes stay in local memory until they are complete; they are minima and
+// it, and merges when both children are there. Volumes stay in local memory until all are there; they are minima and
 // maxima, so the order of merging does not show.
 __kernel __attribute__((reqd_work_group_size(DRAPE_SUBTREE_GROUP, 1, 1))) void refitSubtreesGroups(
     __global BvhNode* restrict nodes, __global const uint* restrict splits, __global const uint* restrict order,
     __global const Triangle* restrict triangles, __global const float* restrict start, __global const float* restrict end,
     __global const float* restrict meshRadius, __global StepCounters* restrict counters, const uint leafCount)
 {
-    __local float volumes[2 * DRAPE_DOP_DIRECTIONS * 2 * DRAPE_SUBTREE_GROUP];
-    __local uchar done[2 * DRAPE_SUBTREE_GROUP];
+    __local float volumes[DRAPE_DOP_WORDS * DRAPE_SUBTREE_ROW];
+    __local ushort indexOfPlace[DRAPE_SUBTREE_PLACES];
+    __local uchar done[DRAPE_SUBTREE_PLACES];
     __local uint stretch[2];
     __local uint pending;
-    const uint item = get_local_id(0);
-    const uint window = get_group_id(0) * DRAPE_SUBTREE_LEAVES;
+    const uint item = get_local_id(0), window = get_group_id(0) * DRAPE_SUBTREE_LEAVES;
     if (item == 0) pending = 0;
     stretchOfWindow(splits, window, DRAPE_SUBTREE_LEAVES, leafCount, 0u, stretch);
-    const uint first = stretch[0];
-    const uint count = stretch[1] - first;
+    const uint first = stretch[0], count = stretch[1] - first;
     if (first >= window + DRAPE_SUBTREE_LEAVES || count == 0) return;
 
     const uint leaf = first + item;
     int waits = 0;
-    uint word = 0, left = 0, right = 0;
+    uint left = 0, right = 0;
     done[item] = 1;
     done[DRAPE_SUBTREE_GROUP + item] = 0;
+    indexOfPlace[item] = indexOfPlace[DRAPE_SUBTREE_GROUP + item] = DRAPE_NO_PLACE;
+    barrier(CLK_LOCAL_MEM_FENCE);
     if (item < count)
     {
         __global const Triangle* triangle = triangles + order[leaf];
         Dop dop;
         const uint invalid = leafVolume(&dop, triangle, start, end, meshRadius[triangle->m_mesh]);
         if (invalid > 0) atomic_add(&counters->m_invalidNodes, invalid);
-        for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
-        {
-            volumes[2 * i * 2 * DRAPE_SUBTREE_GROUP + item] = dop.m_low[i];
-            volumes[(2 * i + 1) * 2 * DRAPE_SUBTREE_GROUP + item] = dop.m_high[i];
-        }
-        dopStore(nodes + leafPlace(nodes, leaf, leafCount), &dop);
-        if (item + 1 < count) word = splits[leaf];
+        keepVolume(volumes, item, &dop);
+        indexOfPlace[leafPlace(nodes, leaf, leafCount) - 2 * first] = (ushort)item;
+        const uint word = item + 1 < count ? splits[leaf] : 0u;
         if (item + 1 < count && splitTier(word) == 0u)
         {
             waits = 1;
             left = localIndex(nodes + 2 * leaf + 1, first);
             right = localIndex(nodes + 2 * leaf + 2, first);
+            indexOfPlace[splitPlace(word) - 2 * first] = (ushort)(DRAPE_SUBTREE_GROUP + item);
             atomic_inc(&pending);
         }
     }
@@ -139,12 +166,7 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_SUBTREE_GROUP, 1, 1))) void r
         const int ready = waits && done[left] && done[right];
         if (ready)
         {
-            for (int i = 0; i < 2 * DRAPE_DOP_DIRECTIONS; ++i)
-            {
-                __local float* row = volumes + i * 2 * DRAPE_SUBTREE_GROUP;
-                row[DRAPE_SUBTREE_GROUP + item] =
-                    (i & 1) ? drapeMax(row[left], row[right]) : drapeMin(row[left], row[right]);
-            }
+            mergeVolumes(volumes, DRAPE_SUBTREE_GROUP + item, left, right);
             waits = 0;
         }
         barrier(CLK_LOCAL_MEM_FENCE);
@@ -152,10 +174,10 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_SUBTREE_GROUP, 1, 1))) void r
         {
             done[DRAPE_SUBTREE_GROUP + item] = 1;
             atomic_dec(&pending);
-            storeVolume(nodes + splitPlace(word), volumes, DRAPE_SUBTREE_GROUP + item);
         }
         barrier(CLK_LOCAL_MEM_FENCE);
     }
+    storeStretch(nodes, 2 * first, 2 * count, volumes, indexOfPlace);
 }
 
 // Volumes never hold NaN, so a NaN low end marks a node that is not complete yet.
