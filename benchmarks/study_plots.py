@@ -5,7 +5,7 @@ from results import in_order, select
 
 
 def descent(rows, scene, folder, save):
-    """Figures 4.6, 4.8 (traversal) and 4.9 (narrow phase) over a cloth's descent."""
+    """Figures 4.6 and 4.8 (traversal) over a cloth's descent, and its narrow phase."""
     mine = select(rows, part="traversal", model=scene)
     if not mine:
         return
@@ -20,18 +20,36 @@ def descent(rows, scene, folder, save):
         by_overlaps.plot(*zip(*overlaps), ".-", markersize=4, linewidth=0.8, label=label)
         by_step.plot([row["step"] for row in steps], [row["broad_ms"] for row in steps], label=label)
         pairs = sorted((row["candidates"], row["narrow_ms"]) for row in steps if row["candidates"] > 0)
-        if pairs and (variant in ("host", "default") or "oeller" in variant):
+        if pairs and variant in ("host", "default"):
             narrow.plot(*zip(*pairs), ".-", markersize=4, linewidth=0.8, label=label)
     by_overlaps.set(xlabel="overlaps found", ylabel="broad phase, ms", yscale="log",
                     title="traversal against overlaps (figure 4.6)")
     by_step.set(xlabel="step of the descent", ylabel="broad phase, ms", yscale="log",
                 title="traversals over a simulation (figure 4.8)")
     narrow.set(xlabel="pairs tested", ylabel="narrow phase, ms", xscale="log", yscale="log",
-               title="narrow phase against pairs (figure 4.9)")
+               title="narrow phase against pairs")
     for axes in (by_overlaps, by_step, narrow):
         axes.grid(True, alpha=0.25)
         axes.legend(fontsize=7)
     save(figure, folder, "study_descent_" + scene)
+
+
+def triangle_tests(rows, folder, save):
+    """Figure 4.9: tests of triangle pairs against their number."""
+    mine = [row for row in select(rows, part="triangle_tests") if time_of(row) is not None]
+    if not mine:
+        return
+    figure, axes = plt.subplots(figsize=(7, 4.5))
+    for backend in in_order(mine, "backend"):
+        for variant in in_order(mine, "variant"):
+            points = sorted((row["pairs"], time_of(row)) for row in select(mine, backend=backend, variant=variant))
+            label = variant + (", host, 1 thread" if backend == "host" else "")
+            axes.plot(*zip(*points), "-" if backend == "opencl" else "--", marker=".", label=label)
+    axes.set(xscale="log", yscale="log", xlabel="pairs of triangles", ylabel="ms (kernel time; wall time of the host)",
+             title="tests of triangle pairs (figure 4.9)")
+    axes.grid(True, which="both", alpha=0.25)
+    axes.legend(fontsize=8)
+    save(figure, folder, "study_triangle_tests")
 
 
 def levels(rows, folder, save):
@@ -105,3 +123,4 @@ def draw(rows, folder, save):
     by_model(rows, "construction", "construction (tables 4.2 and 4.3)", folder, save)
     by_model(rows, "refit", "refit (table 4.4)", folder, save)
     quality(rows, folder, save)
+    triangle_tests(rows, folder, save)

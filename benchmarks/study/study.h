@@ -41,7 +41,10 @@ void studyRefit(const StudyOptions& options, Table& table);
 // Cost, volume and visits of the builders' trees; takes the times from the rows of "construction".
 void studyQuality(const StudyOptions& options, Table& table);
 
-// Every traversal over a cloth's descent onto the bunny, step by step: figures 4.6, 4.8 and 4.9.
+// Möller's test and the certified one over pairs of triangles: figure 4.9, part "triangle_tests".
+void studyTriangleTests(const StudyOptions& options, Table& table);
+
+// Every traversal over a cloth's descent onto the bunny, step by step: figures 4.6 and 4.8.
 void studyTraversals(const StudyOptions& options, Table& table);
 
 // Models in the order of their size; quick: two small ones.

@@ -134,7 +134,7 @@ class Study(ProgramTest):
         listed = run("study", "--list").stdout
         self.assertIn("traversal: ", listed)
         parts = {row["part"] for row in rows}
-        for part in ("construction", "refit", "traversal"):
+        for part in ("construction", "refit", "traversal", "triangle_tests"):
             self.assertIn(part, parts)
         for row in rows:
             self.assertNotEqual(row["valid"], "no")
