@@ -14,6 +14,7 @@ static ClothView clothView(__global const float* start, __global const float* en
     view.m_edges = edges;
     view.m_nodeCount = nodeCount;
     view.m_triangleCount = triangleCount;
+    view.m_motion = 0;
     return view;
 }
 
@@ -28,8 +29,8 @@ static ObstacleView obstacleView(__global const float* positions, __global const
     return view;
 }
 
-// A work-item takes every stride-th candidate, runs its feature tests and writes the hits in no particular order. slotCount
-// counts those written per cloth feature; it and counters->m_listed must be zero before. m_listed counts on when the list
+// A work-item takes every stride-th candidate, runs its feature tests and writes the hits in no particular order. motions: of
+// the obstacles that move in the step. slotCount counts those written per cloth feature; it and counters->m_listed must be zero before. m_listed counts on when the list
 // is full.
 __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, const uint candidateCapacity,
                               __global const float* restrict clothStart, __global const float* restrict clothEnd,
@@ -39,12 +40,13 @@ __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, con
                               __global const Triangle* restrict obstacleTriangles,
                               __global const NormalCone* restrict vertexCones,
                               __global const NormalCone* restrict edgeCones, __global const float* restrict thickness,
-                              const uint obstacleMeshes, const float reachScale, __global Contact* restrict hits,
+                              const uint obstacleMeshes, const float reachScale,
+                              __global const ObstacleMotion* restrict motions, const uint motionCount,
+                              __global Contact* restrict hits,
                               const uint hitCapacity, __global volatile uint* slotCount,
                               __global StepCounters* restrict counters)
 {
-    const ClothView cloth =
-        clothView(clothStart, clothEnd, clothTriangles, clothEdges, nodeCount, triangleCount);
+    ClothView cloth = clothView(clothStart, clothEnd, clothTriangles, clothEdges, nodeCount, triangleCount);
     const ObstacleView obstacle = obstacleView(obstaclePositions, obstacleTriangles, vertexCones, edgeCones);
     const uint count = min(counters->m_candidates, candidateCapacity);
     for (uint i = get_global_id(0); i < count; i += get_global_size(0))
@@ -54,6 +56,7 @@ __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, con
         __global const Triangle* obstacleTriangle = obstacleTriangles + candidate.m_obstacle;
         const float reach =
             thickness[clothTriangle->m_mesh * obstacleMeshes + obstacleTriangle->m_mesh] * reachScale;
+        cloth.m_motion = findMotion(motions, motionCount, obstacleTriangle->m_mesh);
         uint tests = ownedTests(clothTriangle->m_owned, obstacleTriangle->m_owned);
         PairTriangles pair;
         loadPair(&pair, &cloth, &obstacle, candidate);
@@ -100,11 +103,11 @@ __kernel void narrowPhaseFeature(__global const FeatureTest* restrict tests, con
                                  __global const NormalCone* restrict edgeCones, __global const float* restrict faces,
                                  __global const float* restrict vertices, __global const float* restrict edges,
                                  __global const uint* restrict faceIds, __global const uint* restrict vertexIds,
-                                 __global const uint* restrict edgeIds, __global Contact* restrict hits,
+                                 __global const uint* restrict edgeIds,
+                                 __global const ObstacleMotion* restrict motions, __global Contact* restrict hits,
                                  __global volatile uint* slotCount, __global StepCounters* restrict counters)
 {
-    const ClothView cloth =
-        clothView(clothStart, clothEnd, clothTriangles, clothEdges, nodeCount, triangleCount);
+    ClothView cloth = clothView(clothStart, clothEnd, clothTriangles, clothEdges, nodeCount, triangleCount);
     const ObstacleView obstacle = obstacleView(0, obstacleTriangles, vertexCones, edgeCones);
     const uint count = min(counters->m_candidates, testCapacity);
     if (get_global_id(0) == 0) counters->m_listed = count;
@@ -113,6 +116,7 @@ __kernel void narrowPhaseFeature(__global const FeatureTest* restrict tests, con
         const FeatureTest feature = tests[i];
         const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT, lane = feature.m_lane;
         const uint triangle = feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u);
+        cloth.m_motion = feature.m_motion == 0 ? 0 : motions + (feature.m_motion - 1);
         Contact contact;
         int found;
         if (test < DRAPE_TEST_FACE)
@@ -149,14 +153,16 @@ __kernel void narrowPhaseIntersect(__global const Candidate* restrict candidates
                                    __global const Triangle* restrict clothTriangles,
                                    __global const float* restrict obstaclePositions,
                                    __global const Triangle* restrict obstacleTriangles,
+                                   __global const ObstacleMotion* restrict motions, const uint motionCount,
                                    __global Candidate* restrict pairs, const uint pairCapacity,
                                    __global StepCounters* restrict counters)
 {
-    const ClothView cloth = clothView(clothStart, clothStart, clothTriangles, 0, 0, 0);
+    ClothView cloth = clothView(clothStart, clothStart, clothTriangles, 0, 0, 0);
     const ObstacleView obstacle = obstacleView(obstaclePositions, obstacleTriangles, 0, 0);
     const uint count = min(counters->m_candidates, candidateCapacity);
     for (uint i = get_global_id(0); i < count; i += get_global_size(0))
     {
+        cloth.m_motion = findMotion(motions, motionCount, obstacleTriangles[candidates[i].m_obstacle].m_mesh);
         PairTriangles pair;
         loadPair(&pair, &cloth, &obstacle, candidates[i]);
         if (!trianglesIntersect(pair.m_start, pair.m_resting)) continue;

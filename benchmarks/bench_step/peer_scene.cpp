@@ -45,7 +45,8 @@ void PeerScene::narrowPhase(const std::vector<Candidate>& candidates, const floa
                              m_cloths.triangles().data(),
                              m_cloths.edges().data(),
                              static_cast<std::uint32_t>(m_cloths.vertexCount()),
-                             static_cast<std::uint32_t>(m_cloths.triangles().size())};
+                             static_cast<std::uint32_t>(m_cloths.triangles().size()),
+                             nullptr};
     const ObstacleView obstacle = {m_positions.data(), m_obstacles.triangles().data(), m_vertexCones.data(),
                                    m_edgeCones.data()};
     const NarrowPhaseSettings settings = {m_thickness, 1, 1.0f + Settings().m_activation};

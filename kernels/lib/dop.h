@@ -56,19 +56,23 @@ DRAPE_FUNCTION float dopProject(Vec3 p, int i)
 }
 
 // |x| + |y| where a direction's projection has three terms, else 0: what the rounding of the first sum is bounded by.
-DRAPE_FUNCTION float dopInner(Vec3 p, int i) { return i < 3 + DRAPE_DOP_EDGES ? 0.0f : drapeAbs(p.x) + drapeAbs(p.y); }
+DRAPE_FUNCTION float dopInner(Vec3 p, int i)
+{
+    return i < 3 + DRAPE_DOP_EDGES ? 0.0f : drapeAbs(p.x) + drapeAbs(p.y);
+}
 
-// Grows one interval to hold the balls of radius r around points whose projections lie in [least, greatest] and whose inner
-// sums are at most `inner`; reach is r times the direction's length. With u = 2^-24 the projection v of a point errs by at
-// most u |v| for two terms, and by u·inner more for three; the shift s = v ∓ reach by u |s|. The pad 2^-23 (|v| + |s|) covers
-// these and its own rounding. It is enough to pad the outermost: v - u |v| rises with v.
+// Grows one interval to hold the balls of radius r around points whose projections lie in [least, greatest] and whose
+// inner sums are at most `inner`; reach is r times the direction's length. With u = 2^-24 the projection v of a point
+// errs by at most u |v| for two terms, and by u·inner more for three; the shift s = v ∓ reach by u |s|. The pad 2^-23
+// (|v| + |s|) covers these and its own rounding. It is enough to pad the outermost: v - u |v| rises with v.
 DRAPE_FUNCTION void dopAddInterval(Dop* dop, int i, float least, float greatest, float reach, float inner)
 {
     const float pad = 1.1920929e-7f;  // 2^-23
     const float low = least - reach;
     const float high = greatest + reach;
     dop->m_low[i] = drapeMin(dop->m_low[i], low - (pad * (drapeAbs(least) + inner + drapeAbs(low)) + DRAPE_TINY));
-    dop->m_high[i] = drapeMax(dop->m_high[i], high + (pad * (drapeAbs(greatest) + inner + drapeAbs(high)) + DRAPE_TINY));
+    dop->m_high[i] =
+        drapeMax(dop->m_high[i], high + (pad * (drapeAbs(greatest) + inner + drapeAbs(high)) + DRAPE_TINY));
 }
 
 // Grows the volume to hold the ball of the given radius (m, ≥ 0) around p.
@@ -132,22 +136,15 @@ DRAPE_FUNCTION int opensFirst(const DRAPE_GLOBAL BvhNode* a, const DRAPE_GLOBAL 
     return b->m_count == 0 || nodeExtent(a) > nodeExtent(b);
 }
 
-// Volume of a triangle over a step of linear motion, grown by the radius. Invalid corners (positionIsValid) stay out of
-// it, so that one bad node cannot make every ancestor overlap everything and features of the others are still found
-// (see finite_corners.h); without a valid corner the volume is empty. start and end may be the same array, which takes
-// half the time. Returns whether all corners are valid.
-DRAPE_FUNCTION int triangleVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
-                                  const DRAPE_GLOBAL float* end, float radius)
+// Volume of a triangle over a step of linear motion, grown by the radius. p: its corners at the step's start, then at
+// its end; without `moves` only the first three count. Invalid corners (positionIsValid) stay out of it, so that one
+// bad node cannot make every ancestor overlap everything and features of the others are still found (see
+// finite_corners.h); without a valid corner the volume is empty. Returns whether all corners are valid.
+DRAPE_FUNCTION int cornersVolume(Dop* dop, Vec3* p, int moves, float radius)
 {
-    Vec3 p[6];
     int valid[3];
-    const int moves = start != end;
     for (int k = 0; k < 3; ++k)
-    {
-        p[k] = vec3Load(start, triangle->m_vertices[k]);
-        p[3 + k] = moves ? vec3Load(end, triangle->m_vertices[k]) : p[k];
         valid[k] = positionIsValid(p[k]) && positionIsValid(p[3 + k]);
-    }
     const int good = valid[0] ? 0 : valid[1] ? 1 : 2;
     dopClear(dop);
     if (!valid[good]) return 0;
@@ -176,8 +173,22 @@ DRAPE_FUNCTION int triangleVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangl
     return valid[0] && valid[1] && valid[2];
 }
 
-// A leaf's volume for a step. A negative radius takes the triangle's mesh out of the step: the volume is empty. Returns how
-// many vertices are NaN or infinite, counted by the triangle that owns them.
+// The same of positions at the step's start and end. They may be the same array, which takes half the time.
+DRAPE_FUNCTION int triangleVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
+                                  const DRAPE_GLOBAL float* end, float radius)
+{
+    Vec3 p[6];
+    const int moves = start != end;
+    for (int k = 0; k < 3; ++k)
+    {
+        p[k] = vec3Load(start, triangle->m_vertices[k]);
+        p[3 + k] = moves ? vec3Load(end, triangle->m_vertices[k]) : p[k];
+    }
+    return cornersVolume(dop, p, moves, radius);
+}
+
+// A leaf's volume for a step. A negative radius takes the triangle's mesh out of the step: the volume is empty. Returns
+// how many vertices are NaN or infinite, counted by the triangle that owns them.
 DRAPE_FUNCTION DRAPE_UINT leafVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
                                      const DRAPE_GLOBAL float* end, float radius)
 {

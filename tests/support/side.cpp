@@ -18,7 +18,8 @@ ClothView Side::cloth() const
             m_pool.triangles().data(),
             m_pool.edges().data(),
             std::uint32_t(m_pool.vertexCount()),
-            std::uint32_t(m_pool.triangles().size())};
+            std::uint32_t(m_pool.triangles().size()),
+            nullptr};
 }
 
 ObstacleView Side::obstacle() const

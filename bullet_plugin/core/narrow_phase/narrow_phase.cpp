@@ -54,7 +54,8 @@ void NarrowPhaseStage::enqueue(Device& device, NarrowPhaseBuffers sides, std::si
                   sides.m_clothEdges.handle(), cl_uint(nodeCount), cl_uint(triangleCount),
                   sides.m_obstaclePositions.handle(), sides.m_obstacleTriangles.handle(), sides.m_vertexCones.handle(),
                   sides.m_edgeCones.handle(), sides.m_thickness.handle(), cl_uint(settings.m_obstacleMeshes),
-                  settings.m_reachScale, m_hits.handle(), hitCapacity, m_slotCount.handle(), counters.handle());
+                  settings.m_reachScale, sides.m_motions.handle(), cl_uint(sides.m_motionCount), m_hits.handle(),
+                  hitCapacity, m_slotCount.handle(), counters.handle());
     enqueueCompaction(device, counters);
 }
 
@@ -68,7 +69,7 @@ void NarrowPhaseStage::enqueueFeatures(Device& device, NarrowPhaseBuffers sides,
                      sides.m_obstacleTriangles.handle(), sides.m_vertexCones.handle(), sides.m_edgeCones.handle(),
                      features.m_faces.handle(), features.m_vertices.handle(), features.m_edges.handle(),
                      features.m_faceIds.handle(), features.m_vertexIds.handle(), features.m_edgeIds.handle(),
-                     m_hits.handle(), m_slotCount.handle(), counters.handle());
+                     sides.m_motions.handle(), m_hits.handle(), m_slotCount.handle(), counters.handle());
     enqueueCompaction(device, counters);
 }
 
@@ -94,7 +95,7 @@ void NarrowPhaseStage::enqueueIntersect(Device& device, NarrowPhaseBuffers sides
 {
     m_intersect.launch(device, listWidth(device), kGroup, candidates.handle(), cl_uint(candidates.capacity()),
                        sides.m_clothStart.handle(), sides.m_clothTriangles.handle(), sides.m_obstaclePositions.handle(),
-                       sides.m_obstacleTriangles.handle(), m_intersections.handle(),
-                       cl_uint(m_intersections.capacity()), counters.handle());
+                       sides.m_obstacleTriangles.handle(), sides.m_motions.handle(), cl_uint(sides.m_motionCount),
+                       m_intersections.handle(), cl_uint(m_intersections.capacity()), counters.handle());
 }
 }  // namespace drape

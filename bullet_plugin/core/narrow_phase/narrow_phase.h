@@ -12,6 +12,15 @@
 
 namespace drape
 {
+// Motions of the obstacles that move in the step, in the order of slots.
+struct MotionList
+{
+    const ObstacleMotion* m_motions = nullptr;
+    std::uint32_t m_count = 0;
+
+    const ObstacleMotion* find(std::uint32_t mesh) const { return findMotion(m_motions, m_count, mesh); }
+};
+
 // Options and per-pair data of a step. thickness: m, cloth slots × obstacle slots. Contacts reach to thickness ×
 // reachScale.
 struct NarrowPhaseSettings
@@ -19,6 +28,7 @@ struct NarrowPhaseSettings
     const std::vector<float>& m_thickness;
     std::size_t m_obstacleMeshes;
     float m_reachScale;
+    MotionList m_motions = {};  // on the host
 };
 
 // Returns how many contacts there are; with more than limit, the list is left empty.
@@ -28,7 +38,7 @@ std::uint64_t narrowPhaseOnHost(const std::vector<Candidate>& candidates, const 
 
 // Pairs whose triangles intersect at the step's start, in order of cloth and obstacle triangle.
 void intersectOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth, const ObstacleView& obstacle,
-                     std::vector<Candidate>& pairs);
+                     const MotionList& motions, std::vector<Candidate>& pairs);
 
 void sortCandidates(std::vector<Candidate>& candidates);
 
@@ -44,6 +54,8 @@ struct NarrowPhaseBuffers
     Buffer<NormalCone>& m_vertexCones;
     Buffer<NormalCone>& m_edgeCones;
     Buffer<float>& m_thickness;
+    Buffer<ObstacleMotion>& m_motions;
+    std::size_t m_motionCount = 0;
 };
 
 class NarrowPhaseStage

@@ -22,6 +22,7 @@ std::uint64_t narrowPhaseOnHost(const std::vector<Candidate>& candidates, const 
 {
     contacts.clear();
     std::uint64_t found = 0;
+    ClothView seen = cloth;
     for (const Candidate& candidate : candidates)
     {
         const Triangle* clothTriangle = cloth.m_triangles + candidate.m_cloth;
@@ -31,14 +32,15 @@ std::uint64_t narrowPhaseOnHost(const std::vector<Candidate>& candidates, const 
             settings.m_reachScale;
         std::uint32_t tests = ownedTests(clothTriangle->m_owned, obstacleTriangle->m_owned);
         PairTriangles pair;
-        loadPair(&pair, &cloth, &obstacle, candidate);
+        seen.m_motion = settings.m_motions.find(obstacleTriangle->m_mesh);
+        loadPair(&pair, &seen, &obstacle, candidate);
         if (pairApart(&pair, reach)) continue;
         tests &= pair.m_tests;
         for (int test = 0; test < DRAPE_FEATURE_TESTS; ++test)
         {
             Contact contact;
             if (!(tests & (1u << test))) continue;
-            if (!pairContact(test, &cloth, &obstacle, candidate, reach, &contact)) continue;
+            if (!pairContact(test, &seen, &obstacle, candidate, reach, &contact)) continue;
             if (++found <= limit) contacts.push_back(contact);
         }
     }
@@ -48,13 +50,15 @@ std::uint64_t narrowPhaseOnHost(const std::vector<Candidate>& candidates, const 
 }
 
 void intersectOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth, const ObstacleView& obstacle,
-                     std::vector<Candidate>& pairs)
+                     const MotionList& motions, std::vector<Candidate>& pairs)
 {
     pairs.clear();
+    ClothView seen = cloth;
     for (const Candidate& candidate : candidates)
     {
         PairTriangles pair;
-        loadPair(&pair, &cloth, &obstacle, candidate);
+        seen.m_motion = motions.find(obstacle.m_triangles[candidate.m_obstacle].m_mesh);
+        loadPair(&pair, &seen, &obstacle, candidate);
         if (trianglesIntersect(pair.m_start, pair.m_resting)) pairs.push_back(candidate);
     }
     sortCandidates(pairs);
