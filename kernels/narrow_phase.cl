@@ -17,6 +17,7 @@ static ClothView clothView(__global const float* start, __global const float* en
     view.m_triangleCount = triangleCount;
     view.m_mode = mode;
     view.m_complete = complete;
+    view.m_motion = 0;
     return view;
 }
 
@@ -31,9 +32,9 @@ static ObstacleView obstacleView(__global const float* positions, __global const
     return view;
 }
 
-// A work-item takes every stride-th candidate, runs its feature tests and writes the hits in no particular order. slotCount
-// counts those written per cloth feature; it and counters' listed and swept must be zero before. m_listed counts on when the
-// list is full.
+// A work-item takes every stride-th candidate, runs its feature tests and writes the hits in no particular order. motions: of
+// the obstacles that move in the step. slotCount counts the hits written per cloth feature; it and counters' listed and swept
+// must be zero before. m_listed counts on when the list is full.
 __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, const uint candidateCapacity,
                               __global const float* restrict clothStart, __global const float* restrict clothEnd,
                               __global const Triangle* restrict clothTriangles, __global const Edge* restrict clothEdges,
@@ -43,6 +44,7 @@ __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, con
                               __global const NormalCone* restrict vertexCones,
                               __global const NormalCone* restrict edgeCones, __global const float* restrict thickness,
                               const uint obstacleMeshes, const float reachScale, const uint mode,
+                              __global const ObstacleMotion* restrict motions, const uint motionCount,
                               __global Contact* restrict hits, const uint hitCapacity,
                               __global volatile uint* slotCount, __global StepCounters* restrict counters)
 {
@@ -57,6 +59,7 @@ __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, con
         __global const Triangle* obstacleTriangle = obstacleTriangles + candidate.m_obstacle;
         const float reach =
             thickness[clothTriangle->m_mesh * obstacleMeshes + obstacleTriangle->m_mesh] * reachScale;
+        cloth.m_motion = findMotion(motions, motionCount, obstacleTriangle->m_mesh);
         uint tests = ownedTests(clothTriangle->m_owned, obstacleTriangle->m_owned);
         PairTriangles pair;
         loadPair(&pair, &cloth, &obstacle, candidate);
@@ -108,6 +111,12 @@ typedef struct PackedFeatures
     __global const uint* m_edgeIds;
 } PackedFeatures;
 
+// The motion of a test's obstacle; null where it rests.
+static __global const ObstacleMotion* motionOfTest(__global const ObstacleMotion* motions, const FeatureTest test)
+{
+    return test.m_motion == 0 ? 0 : motions + (test.m_motion - 1);
+}
+
 static int featureContact(const FeatureTest feature, const ClothView* cloth, const ObstacleView* obstacle,
                           const PackedFeatures* packed, Contact* contact)
 {
@@ -146,11 +155,12 @@ __kernel void narrowPhaseFeature(__global const FeatureTest* restrict tests, con
                                  __global const NormalCone* restrict edgeCones, __global const float* restrict faces,
                                  __global const float* restrict vertices, __global const float* restrict edges,
                                  __global const uint* restrict faceIds, __global const uint* restrict vertexIds,
-                                 __global const uint* restrict edgeIds, __global Contact* restrict hits,
+                                 __global const uint* restrict edgeIds,
+                                 __global const ObstacleMotion* restrict motions, __global Contact* restrict hits,
                                  __global uint* restrict swept, __global volatile uint* slotCount,
                                  __global StepCounters* restrict counters)
 {
-    const ClothView cloth =
+    ClothView cloth =
         clothView(clothStart, clothEnd, clothTriangles, clothEdges, nodeCount, triangleCount, mode, 0);
     const ObstacleView obstacle = obstacleView(0, obstacleTriangles, vertexCones, edgeCones);
     const PackedFeatures packed = {faces, vertices, edges, faceIds, vertexIds, edgeIds};
@@ -158,6 +168,7 @@ __kernel void narrowPhaseFeature(__global const FeatureTest* restrict tests, con
     if (get_global_id(0) == 0) counters->m_listed = count;
     for (uint i = get_global_id(0); i < count; i += get_global_size(0))
     {
+        cloth.m_motion = motionOfTest(motions, tests[i]);
         Contact contact;
         const int found = featureContact(tests[i], &cloth, &obstacle, &packed, &contact);
         if (found != DRAPE_IS_CONTACT)
@@ -181,11 +192,12 @@ __kernel void narrowPhaseSwept(__global const FeatureTest* restrict tests,
                                __global const NormalCone* restrict edgeCones, __global const float* restrict faces,
                                __global const float* restrict vertices, __global const float* restrict edges,
                                __global const uint* restrict faceIds, __global const uint* restrict vertexIds,
-                               __global const uint* restrict edgeIds, __global Contact* restrict hits,
+                               __global const uint* restrict edgeIds,
+                               __global const ObstacleMotion* restrict motions, __global Contact* restrict hits,
                                __global const uint* restrict swept, __global volatile uint* slotCount,
                                __global const StepCounters* restrict counters)
 {
-    const ClothView cloth =
+    ClothView cloth =
         clothView(clothStart, clothEnd, clothTriangles, clothEdges, nodeCount, triangleCount, mode, 1);
     const ObstacleView obstacle = obstacleView(0, obstacleTriangles, vertexCones, edgeCones);
     const PackedFeatures packed = {faces, vertices, edges, faceIds, vertexIds, edgeIds};
@@ -193,6 +205,7 @@ __kernel void narrowPhaseSwept(__global const FeatureTest* restrict tests,
     {
         const uint place = swept[i];
         Contact contact;
+        cloth.m_motion = motionOfTest(motions, tests[place]);
         if (featureContact(tests[place], &cloth, &obstacle, &packed, &contact) != DRAPE_IS_CONTACT) continue;
         atomic_inc(slotCount + contact.m_slot);
         hits[place] = contact;
@@ -206,14 +219,16 @@ __kernel void narrowPhaseIntersect(__global const Candidate* restrict candidates
                                    __global const Triangle* restrict clothTriangles,
                                    __global const float* restrict obstaclePositions,
                                    __global const Triangle* restrict obstacleTriangles,
+                                   __global const ObstacleMotion* restrict motions, const uint motionCount,
                                    __global Candidate* restrict pairs, const uint pairCapacity,
                                    __global StepCounters* restrict counters)
 {
-    const ClothView cloth = clothView(clothStart, clothStart, clothTriangles, 0, 0, 0, DRAPE_DISCRETE, 0);
+    ClothView cloth = clothView(clothStart, clothStart, clothTriangles, 0, 0, 0, DRAPE_DISCRETE, 0);
     const ObstacleView obstacle = obstacleView(obstaclePositions, obstacleTriangles, 0, 0);
     const uint count = min(counters->m_candidates, candidateCapacity);
     for (uint i = get_global_id(0); i < count; i += get_global_size(0))
     {
+        cloth.m_motion = findMotion(motions, motionCount, obstacleTriangles[candidates[i].m_obstacle].m_mesh);
         PairTriangles pair;
         loadPair(&pair, &cloth, &obstacle, candidates[i]);
         if (!trianglesIntersect(pair.m_start, pair.m_resting)) continue;

@@ -5,6 +5,7 @@
 // work-items are the lanes (DRAPE_LANES 1). Which of the two is a build option; the text is the same.
 #include "lib/dop.h"
 #include "lib/feature_cull.h"
+#include "lib/rigid_motion.h"
 
 // Levels of the wide tree over 2^28 triangles, each of which can leave all but one of a node's children on the stack.
 #define DRAPE_TEAM_STACK (10 * DRAPE_PATCH_WIDTH)
@@ -61,6 +62,7 @@ typedef struct TestList
     __global FeatureTest* m_tests;
     uint m_capacity, m_limit;
     __global StepCounters* m_counters;
+    uint m_motion;  // of the tests that are being kept
 } TestList;
 
 // Moves what the team kept to the list. The demand counts on past the capacity; what does not fit is not written, and the
@@ -100,6 +102,7 @@ static void teamKeep(DRAPE_TEAM Team* team, const LaneMask mask, const uint clot
         kept.m_cloth = cloth | (test << DRAPE_TEST_SHIFT);
         kept.m_lane = first + lane;
         kept.m_reach = reach;
+        kept.m_motion = list->m_motion;
         team->m_kept[teamAdd(team->m_keptCount)] = kept;
     }
 }
@@ -119,7 +122,11 @@ static LaneMask wideOverlap(__global const float* restrict node, const Dop* dop)
 
 typedef struct PatchArrays
 {
+    __global const float* m_wideNodes;
+    __global const uint* m_levels;  // first node of each level of the wide tree, lowest first
+    uint m_levelCount;
     __global const Patch* m_patches;
+    __global const float* m_sizes;
     __global const float* m_faces;
     __global const float* m_vertices;
     __global const float* m_edges;
@@ -173,9 +180,67 @@ static void countInvalid(__global const Triangle* triangle, __global const float
     }
 }
 
+// A cloth triangle's walk: over the obstacles that rest, or over one that moves.
+typedef struct Walk
+{
+    __global const float* m_start;
+    __global const float* m_end;
+    __global const Triangle* m_triangle;
+    uint m_cloth;
+    __global const float* m_thickness;  // of its cloth, per obstacle
+    float m_reachScale;
+    uint m_mode;
+    __global const ObstacleMotion* m_motions;
+    uint m_motionCount;
+    __global const ObstacleMotion* m_motion;  // null for those that rest
+} Walk;
+
+// Lists the tests of the walk's obstacles. dop: the triangle's volume as they see it.
+static void teamWalk(DRAPE_TEAM Team* team, const PatchArrays* arrays, const Walk* walk, const Dop* dop, const TestList* list)
+{
+    CullTriangle cull;
+    uint valid = 0;
+    teamSync();
+    if (teamLane() == 0)
+    {
+        team->m_stack[0] = arrays->m_levelCount << DRAPE_LEVEL_SHIFT;
+        team->m_depth = 1;
+    }
+    teamSync();
+    while (team->m_depth > 0)
+    {
+        const uint entry = team->m_stack[team->m_depth - 1];
+        teamSync();
+        if (teamLane() == 0) --team->m_depth;
+        teamSync();
+        const uint level = entry >> DRAPE_LEVEL_SHIFT, index = entry & ((1u << DRAPE_LEVEL_SHIFT) - 1u);
+        if (level == 0)
+        {
+            const uint mesh = arrays->m_patches[index].m_mesh;
+            const float pairThickness = walk->m_thickness[mesh];
+            if (pairThickness < 0.0f || findMotion(walk->m_motions, walk->m_motionCount, mesh) != walk->m_motion) continue;
+            if (valid == 0) valid = prepareCull(&cull, walk->m_start, walk->m_end, walk->m_triangle, walk->m_mode, walk->m_motion);
+            const float contactReach = pairThickness * walk->m_reachScale;
+            const CullReach reach = cullReach(&cull, contactReach, arrays->m_sizes[index], walk->m_mode);
+            cullPatch(team, arrays, index, &cull, reach, contactReach, walk->m_cloth, walk->m_triangle->m_owned, valid, list);
+            continue;
+        }
+        const uint node = arrays->m_levels[level - 1] + index;
+        const LaneMask overlap =
+            wideOverlap(arrays->m_wideNodes + node * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH, dop);
+        const uint children = ((level - 1) << DRAPE_LEVEL_SHIFT) + index * DRAPE_PATCH_WIDTH;
+        forLanes(lane, overlap)
+        {
+            team->m_stack[teamAdd(team->m_depth)] = children + lane;
+        }
+        teamSync();
+    }
+}
+
 // A team takes one cloth triangle, in leaf order. levels holds the first node of each of levelCount levels of the wide tree,
-// lowest first. mode: DRAPE_DISCRETE …. radius: m, per cloth; thickness: cloths × obstacles, negative where the pair is not tested. counters'
-// candidates and invalid nodes must be zero before; the atomic reserves disjoint ranges, whose order does not matter.
+// lowest first. mode: DRAPE_DISCRETE …. radius: m, per cloth; thickness: cloths × obstacles, negative where the pair is not
+// tested. motions: of the obstacles that move in the step. counters' candidates and invalid nodes must be zero before; the
+// atomic reserves disjoint ranges, whose order does not matter.
 __kernel void patchCull(__global const uint* restrict clothOrder, __global const Triangle* restrict clothTriangles,
                         const uint clothCount, __global const float* restrict start, __global const float* restrict end,
                         __global const float* restrict radius, __global const float* restrict wideNodes,
@@ -184,6 +249,7 @@ __kernel void patchCull(__global const uint* restrict clothOrder, __global const
                         __global const float* restrict vertices, __global const float* restrict edges,
                         __global const float* restrict thickness,
                         const uint obstacleMeshes, const float reachScale, const uint mode,
+                        __global const ObstacleMotion* restrict motions, const uint motionCount,
                         __global FeatureTest* restrict tests,
                         const uint capacity, const uint limit, __global StepCounters* restrict counters)
 {
@@ -197,53 +263,34 @@ __kernel void patchCull(__global const uint* restrict clothOrder, __global const
     if (leaf >= clothCount) return;
     const uint cloth = clothOrder[leaf];
     __global const Triangle* triangle = clothTriangles + cloth;
-    if (radius[triangle->m_mesh] < 0.0f) return;
-    if (teamLane() == 0) countInvalid(triangle, start, end, counters);
-    Dop dop;
-    stepVolume(&dop, triangle, start, end, radius[triangle->m_mesh], mode);
-    if (!(dop.m_low[0] <= dop.m_high[0])) return;
-    CullTriangle cull;
-    uint valid = 0;
-    const TestList list = {tests, capacity, limit, counters};
-    const PatchArrays arrays = {patches, faces, vertices, edges};
+    const float clothRadius = radius[triangle->m_mesh];
+    if (clothRadius < 0.0f) return;
     if (teamLane() == 0)
     {
-        team->m_stack[0] = levelCount << DRAPE_LEVEL_SHIFT;
-        team->m_depth = 1;
+        countInvalid(triangle, start, end, counters);
         team->m_keptCount = 0;
+        team->m_place = 0;
     }
-    teamSync();
-    while (team->m_depth > 0)
+    const PatchArrays arrays = {wideNodes, levels, levelCount, patches, patchSizes, faces, vertices, edges};
+    TestList list = {tests, capacity, limit, counters, 0};
+    Walk walk = {start, end, triangle, cloth, thickness + triangle->m_mesh * obstacleMeshes, reachScale, mode, motions,
+                 motionCount, 0};
+    Dop dop;
+    stepVolume(&dop, triangle, start, end, clothRadius, mode);
+    if (dop.m_low[0] <= dop.m_high[0]) teamWalk(team, &arrays, &walk, &dop, &list);
+    for (list.m_motion = 1; list.m_motion <= motionCount; ++list.m_motion)
     {
-        const uint entry = team->m_stack[team->m_depth - 1];
         teamSync();
-        if (teamLane() == 0) --team->m_depth;
-        teamSync();
-        const uint level = entry >> DRAPE_LEVEL_SHIFT, index = entry & ((1u << DRAPE_LEVEL_SHIFT) - 1u);
-        if (level == 0)
-        {
-            const float pairThickness = thickness[triangle->m_mesh * obstacleMeshes + patches[index].m_mesh];
-            if (pairThickness < 0.0f) continue;
-            if (valid == 0) valid = prepareCull(&cull, start, end, triangle, mode);
-            const float contactReach = pairThickness * reachScale;
-            const CullReach reach = cullReach(&cull, contactReach, patchSizes[index], mode);
-            cullPatch(team, &arrays, index, &cull, reach, contactReach, cloth, triangle->m_owned, valid,
-                      &list);
-            continue;
-        }
-        const LaneMask overlap =
-            wideOverlap(wideNodes + (levels[level - 1] + index) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH, &dop);
-        const uint children = ((level - 1) << DRAPE_LEVEL_SHIFT) + index * DRAPE_PATCH_WIDTH;
-        forLanes(lane, overlap)
-        {
-            team->m_stack[teamAdd(team->m_depth)] = children + lane;
-        }
-        teamSync();
+        if (team->m_place > limit) break;
+        walk.m_motion = motions + (list.m_motion - 1);
+        if (walk.m_thickness[walk.m_motion->m_mesh] < 0.0f) continue;
+        if (volumeSeen(&dop, walk.m_motion, triangle, start, end, clothRadius)) teamWalk(team, &arrays, &walk, &dop, &list);
     }
     teamFlush(team, &list);
 }
 
-// Packing, when an obstacle came or moved: positions that are invalid become NaN. A work-item is a lane of a face block.
+// Packing, when an obstacle came or moved: positions that are invalid become NaN. A work-item is a lane of a face block, of
+// those from first up to last.
 static Vec3 packedPosition(__global const float* restrict positions, const uint vertex, const int used)
 {
     const Vec3 none = vec3(NAN, NAN, NAN);
@@ -259,12 +306,12 @@ static void packVec3(__global float* restrict out, const uint first, const Vec3 
     out[(first + 2) * DRAPE_PATCH_WIDTH] = v.z;
 }
 
-__kernel void patchPackFaces(__global const uint* restrict owners, const uint lanes,
+__kernel void patchPackFaces(__global const uint* restrict owners, const uint first, const uint last,
                              __global const Triangle* restrict triangles, __global const float* restrict positions,
                              __global const float* restrict spreads, __global float* restrict faces)
 {
-    const uint i = get_global_id(0);
-    if (i >= lanes) return;
+    const uint i = first + get_global_id(0);
+    if (i >= last) return;
     const int used = owners[i] != DRAPE_NO_FEATURE;
     const uint owner = used ? owners[i] : 0;
     __global float* out = faces + (i / DRAPE_PATCH_WIDTH) * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
@@ -273,13 +320,13 @@ __kernel void patchPackFaces(__global const uint* restrict owners, const uint la
 }
 
 // A work-item is a lane of a vertex block. ids: the vertex of each lane.
-__kernel void patchPackVertices(__global const uint* restrict owners, const uint lanes,
+__kernel void patchPackVertices(__global const uint* restrict owners, const uint first, const uint last,
                                 __global const Triangle* restrict triangles, __global const float* restrict positions,
                                 __global const NormalCone* restrict cones, __global float* restrict vertices,
                                 __global uint* restrict ids)
 {
-    const uint i = get_global_id(0);
-    if (i >= lanes) return;
+    const uint i = first + get_global_id(0);
+    if (i >= last) return;
     __global float* out =
         vertices + (i / DRAPE_PATCH_WIDTH) * DRAPE_VERTEX_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
     const uint owner = owners[i] & ((1u << DRAPE_PLACE_SHIFT) - 1u), place = owners[i] >> DRAPE_PLACE_SHIFT;
@@ -292,13 +339,13 @@ __kernel void patchPackVertices(__global const uint* restrict owners, const uint
 }
 
 // A work-item is a lane of an edge block. ids: the edge of each lane.
-__kernel void patchPackEdges(__global const uint* restrict owners, const uint lanes,
+__kernel void patchPackEdges(__global const uint* restrict owners, const uint first, const uint last,
                              __global const Triangle* restrict triangles, __global const float* restrict positions,
                              __global const NormalCone* restrict cones, __global float* restrict edges,
                              __global uint* restrict ids)
 {
-    const uint i = get_global_id(0);
-    if (i >= lanes) return;
+    const uint i = first + get_global_id(0);
+    if (i >= last) return;
     __global float* out = edges + (i / DRAPE_PATCH_WIDTH) * DRAPE_EDGE_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
     const int used = owners[i] != DRAPE_NO_FEATURE;
     const uint owner = used ? owners[i] & ((1u << DRAPE_PLACE_SHIFT) - 1u) : 0;
@@ -322,14 +369,14 @@ static void wideStore(__global float* restrict wideNodes, const uint child, cons
     }
 }
 
-// A work-item is a child place of the wide tree's lowest level: a patch, or none from patchCount on. Writes its volume and its
+// A work-item is a child place of the wide tree's lowest level, of those from first up to last: a patch, or none from patchCount on. Writes its volume and its
 // size, m.
-__kernel void patchVolumes(__global const uint* restrict faceOwners, const uint patchCount, const uint places,
+__kernel void patchVolumes(__global const uint* restrict faceOwners, const uint patchCount, const uint first, const uint last,
                            __global const Triangle* restrict triangles, __global const float* restrict positions,
                            __global float* restrict wideNodes, __global float* restrict patchSizes)
 {
-    const uint patch = get_global_id(0);
-    if (patch >= places) return;
+    const uint patch = first + get_global_id(0);
+    if (patch >= last) return;
     Dop dop;
     dopClear(&dop);
     for (uint lane = 0; lane < DRAPE_PATCH_WIDTH && patch < patchCount; ++lane)
@@ -354,10 +401,10 @@ __kernel void patchVolumes(__global const uint* restrict faceOwners, const uint 
 // A work-item is a child place of one level: a node of the level below, or none from nodeCount on. below and level: that
 // level's nodes and this one's.
 __kernel void patchWiden(__global float* restrict wideNodes, const uint below, const uint nodeCount, const uint level,
-                         const uint places)
+                         const uint first, const uint last)
 {
-    const uint node = get_global_id(0);
-    if (node >= places) return;
+    const uint node = first + get_global_id(0);
+    if (node >= last) return;
     Dop dop;
     dopClear(&dop);
     __global const float* lanes = wideNodes + (below + node) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH;

@@ -47,7 +47,8 @@ void PeerScene::narrowPhase(const std::vector<Candidate>& candidates, const floa
                              static_cast<std::uint32_t>(m_cloths.vertexCount()),
                              static_cast<std::uint32_t>(m_cloths.triangles().size()),
                              DRAPE_AUTOMATIC,
-                             1};
+                             1,
+                             nullptr};
     const ObstacleView obstacle = {m_positions.data(), m_obstacles.triangles().data(), m_vertexCones.data(),
                                    m_edgeCones.data()};
     const NarrowPhaseSettings settings = {m_thickness, 1, 1.0f + Settings().m_activation};

@@ -41,9 +41,10 @@ struct ContactView
     float m_weights[3];       // of m_nodes, sum 1
     float m_normal[3];        // unit, from the obstacle to the side the cloth came from
     float m_point[3];         // m, on the obstacle
-    float m_gap0, m_gap1;     // m, along the normal at the step's start and end, thickness not subtracted
-    float m_thickness;        // m, of the pair
-    float m_time;             // time of impact in [0, 1]
+    float m_gap0, m_gap1;  // m, along the normal at the step's start and end as the obstacle sees them, thickness not
+                           // subtracted
+    float m_thickness;     // m, of the pair
+    float m_time;          // time of impact in [0, 1]
 };
 
 class Pipeline
@@ -63,9 +64,17 @@ public:
     MeshId addObstacle(const MeshDescription& mesh);
     void remove(MeshId mesh);
 
-    // New world positions (x y z per vertex) of an obstacle that moved or was deformed; its hierarchy is refitted.
-    // Counts as a teleport: the motion between old and new is not swept.
+    // New positions (x y z per vertex) of an obstacle that moved or was deformed; its hierarchy is refitted. Counts as
+    // a teleport: the motion between old and new is not swept.
     void moveObstacle(MeshId obstacle, const float* positions);
+
+    // Where the obstacle's own frame is at the start and at the end of the coming steps, until the next call: three
+    // rows of three factors and a shift (m), world = pose × position. Poses that differ are a rigid motion over the
+    // step, which counts as the cloth's does: contacts are those at the end pose, their gaps and times those that the
+    // obstacle sees, m_gap0 taken at its start pose. Equal poses: it rests there, and a change since the call before is
+    // a teleport. From the first call on, its positions are those of its own frame. Costs no pass over the vertices on
+    // the host when a device has the pipeline.
+    void placeObstacle(MeshId obstacle, const float startPose[12], const float endPose[12]);
 
     // Where the caller writes a cloth's nodes for the coming step: x y z per vertex at the step's start and end. The
     // memory is the pipeline's (pinned where the device has it), valid until addCloth, remove or submit.

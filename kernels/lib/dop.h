@@ -136,22 +136,15 @@ DRAPE_FUNCTION int opensFirst(const DRAPE_GLOBAL BvhNode* a, const DRAPE_GLOBAL 
     return b->m_count == 0 || nodeExtent(a) > nodeExtent(b);
 }
 
-// Volume of a triangle over a step of linear motion, grown by the radius. Invalid corners (positionIsValid) stay out of
-// it, so that one bad node cannot make every ancestor overlap everything and features of the others are still found
-// (see finite_corners.h); without a valid corner the volume is empty. start and end may be the same array, which takes
-// half the time. Returns whether all corners are valid.
-DRAPE_FUNCTION int triangleVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
-                                  const DRAPE_GLOBAL float* end, float radius)
+// Volume of a triangle over a step of linear motion, grown by the radius. p: its corners at the step's start, then at
+// its end; without `moves` only the first three count. Invalid corners (positionIsValid) stay out of it, so that one
+// bad node cannot make every ancestor overlap everything and features of the others are still found (see
+// finite_corners.h); without a valid corner the volume is empty. Returns whether all corners are valid.
+DRAPE_FUNCTION int cornersVolume(Dop* dop, Vec3* p, int moves, float radius)
 {
-    Vec3 p[6];
     int valid[3];
-    const int moves = start != end;
     for (int k = 0; k < 3; ++k)
-    {
-        p[k] = vec3Load(start, triangle->m_vertices[k]);
-        p[3 + k] = moves ? vec3Load(end, triangle->m_vertices[k]) : p[k];
         valid[k] = positionIsValid(p[k]) && positionIsValid(p[3 + k]);
-    }
     const int good = valid[0] ? 0 : valid[1] ? 1 : 2;
     dopClear(dop);
     if (!valid[good]) return 0;
@@ -178,6 +171,20 @@ DRAPE_FUNCTION int triangleVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangl
         dopAddInterval(dop, i, least, greatest, radius * dopNorm(i), inner);
     }
     return valid[0] && valid[1] && valid[2];
+}
+
+// The same of positions at the step's start and end. They may be the same array, which takes half the time.
+DRAPE_FUNCTION int triangleVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
+                                  const DRAPE_GLOBAL float* end, float radius)
+{
+    Vec3 p[6];
+    const int moves = start != end;
+    for (int k = 0; k < 3; ++k)
+    {
+        p[k] = vec3Load(start, triangle->m_vertices[k]);
+        p[3 + k] = moves ? vec3Load(end, triangle->m_vertices[k]) : p[k];
+    }
+    return cornersVolume(dop, p, moves, radius);
 }
 
 // Whether a corner moves further than the distance, m; also where a position is NaN.

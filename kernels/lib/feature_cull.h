@@ -10,6 +10,7 @@
 #include "closest.h"
 #include "finite_corners.h"
 #include "lanes.h"
+#include "rigid_motion.h"
 
 DRAPE_NAMESPACE_BEGIN
 
@@ -21,7 +22,7 @@ DRAPE_NAMESPACE_BEGIN
 // A distance that excludes nothing, m.
 #define DRAPE_CULL_ANYWHERE 1e15f
 
-// A cloth triangle over the step, relative to m_origin.
+// A cloth triangle over the step as the obstacle sees it, relative to m_origin.
 typedef struct CullTriangle
 {
     Vec3 m_origin;
@@ -53,15 +54,15 @@ DRAPE_FUNCTION int cullNormal(const Vec3* p, Vec3* normal)
     return !(length > DRAPE_CULL_THIN * longest);
 }
 
-// mode: DRAPE_DISCRETE …; a discrete step has no motion. Returns the triangle's features that are valid, bits as in
-// Triangle::m_owned (see finite_corners.h).
+// mode: DRAPE_DISCRETE …; a discrete step has no motion. motion: the obstacle's, null where it rests. Returns the
+// triangle's features that are valid, bits as in Triangle::m_owned (see finite_corners.h).
 DRAPE_FUNCTION DRAPE_UINT prepareCull(CullTriangle* cull, const DRAPE_GLOBAL float* start,
                                       const DRAPE_GLOBAL float* end, const DRAPE_GLOBAL Triangle* triangle,
-                                      DRAPE_UINT mode)
+                                      DRAPE_UINT mode, const DRAPE_GLOBAL ObstacleMotion* motion)
 {
     for (int i = 0; i < 3; ++i)
     {
-        cull->m_start[i] = vec3Load(start, triangle->m_vertices[i]);
+        cull->m_start[i] = startSeen(motion, vec3Load(start, triangle->m_vertices[i]));
         cull->m_end[i] = vec3Load(end, triangle->m_vertices[i]);
     }
     const DRAPE_UINT valid = replaceInvalidCorners(cull->m_start, cull->m_end);

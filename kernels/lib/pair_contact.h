@@ -7,6 +7,7 @@
 #include "face_vertex_contact.h"
 #include "finite_corners.h"
 #include "node_face_contact.h"
+#include "rigid_motion.h"
 
 DRAPE_NAMESPACE_BEGIN
 
@@ -20,8 +21,9 @@ typedef struct ClothView
     const DRAPE_GLOBAL Edge* m_edges;
     DRAPE_UINT m_nodeCount;
     DRAPE_UINT m_triangleCount;
-    DRAPE_UINT m_mode;  // DRAPE_DISCRETE …
-    int m_complete;     // as in PairBounds
+    DRAPE_UINT m_mode;                            // DRAPE_DISCRETE …
+    int m_complete;                               // as in PairBounds
+    const DRAPE_GLOBAL ObstacleMotion* m_motion;  // of the obstacle at hand; null where it rests
 } ClothView;
 
 typedef struct ObstacleView
@@ -31,6 +33,12 @@ typedef struct ObstacleView
     const DRAPE_GLOBAL NormalCone* m_vertexCones;
     const DRAPE_GLOBAL NormalCone* m_edgeCones;
 } ObstacleView;
+
+// A node at the step's start, as the obstacle at hand sees it.
+DRAPE_FUNCTION Vec3 nodeStart(const ClothView* cloth, DRAPE_UINT node)
+{
+    return startSeen(cloth->m_motion, vec3Load(cloth->m_start, node));
+}
 
 // Contacts are a function of the two features alone: whichever way a pair of features is found, its numbers are the
 // same. The frame's origin is the obstacle feature's first position.
@@ -68,7 +76,7 @@ DRAPE_FUNCTION int pairNodeFace(int i, const ClothView* cloth, DRAPE_UINT clothT
                                 Contact* contact)
 {
     const DRAPE_UINT node = cloth->m_triangles[clothTriangle].m_vertices[i];
-    const Vec3 x0 = vec3Sub(vec3Load(cloth->m_start, node), a), x1 = vec3Sub(vec3Load(cloth->m_end, node), a);
+    const Vec3 x0 = vec3Sub(nodeStart(cloth, node), a), x1 = vec3Sub(vec3Load(cloth->m_end, node), a);
     RestingFace face;
     face.m_corners.m_p[0] = vec3(0.0f, 0.0f, 0.0f);
     face.m_corners.m_p[1] = vec3Sub(b, a);
@@ -101,7 +109,7 @@ DRAPE_FUNCTION int pairFaceVertex(const ClothView* cloth, DRAPE_UINT clothTriang
     MovingFace face;
     for (int i = 0; i < 3; ++i)
     {
-        face.m_start.m_p[i] = vec3Sub(vec3Load(cloth->m_start, triangle->m_vertices[i]), vertex);
+        face.m_start.m_p[i] = vec3Sub(nodeStart(cloth, triangle->m_vertices[i]), vertex);
         face.m_end.m_p[i] = vec3Sub(vec3Load(cloth->m_end, triangle->m_vertices[i]), vertex);
     }
     face.m_areaStart = triangleNormal(face.m_start);
@@ -128,8 +136,8 @@ DRAPE_FUNCTION int pairEdgeEdge(int i, const ClothView* cloth, DRAPE_UINT clothT
     const DRAPE_GLOBAL Triangle* triangle = cloth->m_triangles + clothTriangle;
     const DRAPE_UINT first = triangle->m_vertices[i], second = triangle->m_vertices[i == 2 ? 0 : i + 1];
     FeatureEdge e0, e1, o;
-    e0.m_a = vec3Sub(vec3Load(cloth->m_start, first), a);
-    e0.m_b = vec3Sub(vec3Load(cloth->m_start, second), a);
+    e0.m_a = vec3Sub(nodeStart(cloth, first), a);
+    e0.m_b = vec3Sub(nodeStart(cloth, second), a);
     e1.m_a = vec3Sub(vec3Load(cloth->m_end, first), a);
     e1.m_b = vec3Sub(vec3Load(cloth->m_end, second), a);
     o.m_a = vec3(0.0f, 0.0f, 0.0f);
@@ -206,7 +214,7 @@ DRAPE_FUNCTION void loadPair(PairTriangles* pair, const ClothView* cloth, const 
     const DRAPE_GLOBAL Triangle* obstacleTriangle = obstacle->m_triangles + candidate.m_obstacle;
     for (int i = 0; i < 3; ++i)
     {
-        pair->m_start.m_p[i] = vec3Load(cloth->m_start, clothTriangle->m_vertices[i]);
+        pair->m_start.m_p[i] = nodeStart(cloth, clothTriangle->m_vertices[i]);
         pair->m_end.m_p[i] = vec3Load(cloth->m_end, clothTriangle->m_vertices[i]);
         pair->m_resting.m_p[i] = vec3Load(obstacle->m_positions, obstacleTriangle->m_vertices[i]);
     }

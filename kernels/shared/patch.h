@@ -1,6 +1,6 @@
-// Patches: runs of obstacle triangles that lie near each other, with their features packed side by side, and the wide tree
-// over them. All lists come in blocks of DRAPE_PATCH_WIDTH lanes, component by component, so that a work-group's lanes, or a
-// vector's, read adjacent words.
+// Patches: runs of obstacle triangles that lie near each other, with their features packed side by side, and the wide
+// tree over them. All lists come in blocks of DRAPE_PATCH_WIDTH lanes, component by component, so that a work-group's
+// lanes, or a vector's, read adjacent words.
 #ifndef DRAPE_SHARED_PATCH_H
 #define DRAPE_SHARED_PATCH_H
 
@@ -23,25 +23,27 @@ typedef struct Patch
 } Patch;
 
 // Floats per lane of a block.
-// Face: corners a, b, c (x y z each), spread. Vertex: position, cone axis, cone cosine. Edge: ends a, b, cone axis, cosine.
+// Face: corners a, b, c (x y z each), spread. Vertex: position, cone axis, cone cosine. Edge: ends a, b, cone axis,
+// cosine.
 #define DRAPE_FACE_FLOATS 10
 #define DRAPE_VERTEX_FLOATS 7
 #define DRAPE_EDGE_FLOATS 10
 // Low and high of every direction.
 #define DRAPE_WIDE_NODE_FLOATS (2 * DRAPE_DOP_DIRECTIONS)
 
-// A lane's owner: a triangle that owns its feature in the low bits, the feature's place in that triangle above. Lanes that
-// are not used hold DRAPE_NO_FEATURE and positions that are NaN, which no test keeps.
+// A lane's owner: a triangle that owns its feature in the low bits, the feature's place in that triangle above. Lanes
+// that are not used hold DRAPE_NO_FEATURE and positions that are NaN, which no test keeps.
 #define DRAPE_PLACE_SHIFT 30
 #define DRAPE_NO_FEATURE 0xffffffffu
 
-// A feature test that the cull could not drop: a cloth triangle with the test above it, and a lane of the faces (tests 0 to
-// 2: corner of the cloth triangle), vertices (3) or edges (4 to 6: edge of the cloth triangle).
+// A feature test that the cull could not drop: a cloth triangle with the test above it, and a lane of the faces (tests
+// 0 to 2: corner of the cloth triangle), vertices (3) or edges (4 to 6: edge of the cloth triangle).
 typedef struct FeatureTest
 {
     DRAPE_UINT m_cloth;
     DRAPE_UINT m_lane;
-    float m_reach;  // m
+    float m_reach;        // m
+    DRAPE_UINT m_motion;  // 1 + place of the obstacle's motion in the step's list; 0 where it rests
 } FeatureTest;
 #define DRAPE_TEST_SHIFT 29
 #define DRAPE_TEST_NODE 0u

@@ -79,9 +79,16 @@ public:
     NarrowPhaseSettings settings() const { return {m_thickness, 1, 1.5f}; }
     NarrowPhaseBuffers sides()
     {
-        return {m_clothBuffers.m_start,          m_clothBuffers.m_end,          m_clothBuffers.m_triangles,
-                m_clothBuffers.m_edges,          m_obstacleBuffers.m_start,     m_obstacleBuffers.m_triangles,
-                m_obstacleBuffers.m_vertexCones, m_obstacleBuffers.m_edgeCones, m_thicknessBuffer};
+        return {m_clothBuffers.m_start,
+                m_clothBuffers.m_end,
+                m_clothBuffers.m_triangles,
+                m_clothBuffers.m_edges,
+                m_obstacleBuffers.m_start,
+                m_obstacleBuffers.m_triangles,
+                m_obstacleBuffers.m_vertexCones,
+                m_obstacleBuffers.m_edgeCones,
+                m_thicknessBuffer,
+                m_motions};
     }
 
     Device& m_device;
@@ -91,6 +98,7 @@ public:
     std::vector<float> m_thickness;
     std::vector<Candidate> m_pairs;
     Buffer<float> m_thicknessBuffer;
+    Buffer<ObstacleMotion> m_motions;  // none
     Buffer<Candidate> m_candidates;
 };
 }  // namespace
@@ -161,7 +169,7 @@ TEST_P(NarrowPhaseTest, IntersectionsAreTheHosts)
 {
     DeviceNarrowPhase stage(*m_device, soupCase(60, 70, false, 83));
     std::vector<Candidate> host;
-    intersectOnHost(stage.m_pairs, stage.m_cloth.cloth(), stage.m_obstacle.obstacle(), host);
+    intersectOnHost(stage.m_pairs, stage.m_cloth.cloth(), stage.m_obstacle.obstacle(), {}, host);
     ASSERT_GT(host.size(), 5u);
     std::size_t demand = 0;
     EXPECT_TRUE(sameBytes(stage.intersections(host.size(), demand), host));

@@ -38,8 +38,8 @@ public:
                   faceSpreads(m_obstacle.m_pool.triangles(), m_obstacle.m_start.data(), m_obstacle.m_vertexCones,
                               m_obstacle.m_edgeCones));
         m_stage.setTopology(device, m_obstacle.m_pool);
-        m_stage.pack(device, m_obstacleBuffers.m_triangles, m_obstacleBuffers.m_start, m_spreads,
-                     m_obstacleBuffers.m_vertexCones, m_obstacleBuffers.m_edgeCones);
+        m_stage.pack(device, PatchCullStage::allSlots(), m_obstacleBuffers.m_triangles, m_obstacleBuffers.m_start,
+                     m_spreads, m_obstacleBuffers.m_vertexCones, m_obstacleBuffers.m_edgeCones);
     }
 
     // What fits of the list.
@@ -51,7 +51,7 @@ public:
         m_stage.enqueue(
             m_device,
             {m_clothBuffers.m_order, m_clothBuffers.m_triangles, m_clothBuffers.m_start, m_clothBuffers.m_end, m_radius,
-             m_thicknessBuffer, m_cloth.m_pool.triangles().size(), 1, kReachScale, m_mode, 1u << 30},
+             m_thicknessBuffer, m_cloth.m_pool.triangles().size(), 1, kReachScale, m_mode, m_motions, 0, 1u << 30},
             counterBuffer);
         counters = readCounters(m_device, counterBuffer);
         const std::size_t count = std::min<std::size_t>(counters.m_candidates, m_stage.tests().capacity());
@@ -106,6 +106,7 @@ private:
     DeviceSide m_clothBuffers, m_obstacleBuffers;
     std::vector<float> m_thickness;
     Buffer<float> m_thicknessBuffer, m_radius, m_spreads;
+    Buffer<ObstacleMotion> m_motions;  // none
     std::map<Buffer<cl_uint>*, std::vector<cl_uint>> m_ids;
 };
 

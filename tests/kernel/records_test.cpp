@@ -5,6 +5,7 @@
 
 #include "bullet_plugin/core/device/program.h"
 #include "kernels/shared/contact.h"
+#include "kernels/shared/motion.h"
 #include "kernels/shared/patch.h"
 #include "kernels/shared/traversal.h"
 #include "tests/support/backends.h"
@@ -44,6 +45,8 @@ std::vector<Field> fields()
             DRAPE_TEST_SIZE(Contact),
             DRAPE_TEST_SIZE(Patch),
             DRAPE_TEST_SIZE(FeatureTest),
+            DRAPE_TEST_SIZE(ObstaclePlace),
+            DRAPE_TEST_SIZE(ObstacleMotion),
             DRAPE_TEST_SIZE(NodePair),
             DRAPE_TEST_SIZE(BvhLink),
             DRAPE_TEST_SIZE(WideNode),
@@ -87,7 +90,12 @@ std::vector<Field> fields()
             DRAPE_TEST_OFFSET(Patch, m_edgeBlocks),
             DRAPE_TEST_OFFSET(Patch, m_mesh),
             DRAPE_TEST_OFFSET(FeatureTest, m_lane),
-            DRAPE_TEST_OFFSET(FeatureTest, m_reach)};
+            DRAPE_TEST_OFFSET(FeatureTest, m_reach),
+            DRAPE_TEST_OFFSET(FeatureTest, m_motion),
+            DRAPE_TEST_OFFSET(ObstaclePlace, m_posed),
+            DRAPE_TEST_OFFSET(ObstaclePlace, m_firstEdge),
+            DRAPE_TEST_OFFSET(ObstacleMotion, m_low),
+            DRAPE_TEST_OFFSET(ObstacleMotion, m_mesh)};
 }
 }  // namespace
 
@@ -102,8 +110,9 @@ TEST_P(RecordsTest, DeviceAndHostAgree)
     // Embedded files bring the shared headers; the test's kernel follows them.
     std::string source = assembleSource("kernels/narrow_phase.cl") + assembleSource("kernels/shared/traversal.h");
     source += "\n__kernel void reportRecords(__global uint* values)\n{\n";
-    for (const char* type : {"Vec3", "Triangle", "Edge", "NormalCone", "BvhNode", "Candidate", "StepCounters",
-                             "Contact", "Patch", "FeatureTest", "NodePair", "BvhLink", "WideNode"})
+    for (const char* type :
+         {"Vec3", "Triangle", "Edge", "NormalCone", "BvhNode", "Candidate", "StepCounters", "Contact", "Patch",
+          "FeatureTest", "ObstaclePlace", "ObstacleMotion", "NodePair", "BvhLink", "WideNode"})
     {
         source += std::string("    ") + type + " a" + type + ";\n";
     }

@@ -20,7 +20,8 @@ ClothView Side::cloth() const
             std::uint32_t(m_pool.vertexCount()),
             std::uint32_t(m_pool.triangles().size()),
             DRAPE_AUTOMATIC,
-            1};
+            1,
+            nullptr};
 }
 
 ObstacleView Side::obstacle() const

@@ -1,5 +1,7 @@
 #include "patch_cull.h"
 
+#include <algorithm>
+
 namespace drape
 {
 namespace
@@ -51,32 +53,61 @@ void PatchCullStage::setTopology(Device& device, const MeshPool& obstacles)
     device.wait();
 }
 
-void PatchCullStage::pack(Device& device, Buffer<Triangle>& triangles, Buffer<float>& positions, Buffer<float>& spreads,
-                          Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones)
+// Patches are in the order of slots.
+PatchCullStage::Range PatchCullStage::patchesOf(Slots slots) const
 {
-    const auto lanes = [](const std::vector<std::uint32_t>& owners) { return cl_uint(owners.size()); };
-    m_packFaces.launch(device, m_layout.m_faceOwners.size(), kGroup, m_faceOwners.handle(),
-                       lanes(m_layout.m_faceOwners), triangles.handle(), positions.handle(), spreads.handle(),
-                       m_faces.handle());
-    m_packVertices.launch(device, m_layout.m_vertexOwners.size(), kGroup, m_vertexOwners.handle(),
-                          lanes(m_layout.m_vertexOwners), triangles.handle(), positions.handle(), vertexCones.handle(),
-                          m_vertices.handle(), m_vertexIds.handle());
-    m_packEdges.launch(device, m_layout.m_edgeOwners.size(), kGroup, m_edgeOwners.handle(),
-                       lanes(m_layout.m_edgeOwners), triangles.handle(), positions.handle(), edgeCones.handle(),
-                       m_edges.handle(), m_edgeIds.handle());
+    const auto before = [](const Patch& patch, std::size_t slot) { return patch.m_mesh < slot; };
+    const auto first = std::lower_bound(m_layout.m_patches.begin(), m_layout.m_patches.end(), slots.m_first, before);
+    const auto last = std::lower_bound(first, m_layout.m_patches.end(), slots.m_last, before);
+    return {std::size_t(first - m_layout.m_patches.begin()), std::size_t(last - m_layout.m_patches.begin())};
+}
+
+void PatchCullStage::pack(Device& device, Slots slots, Buffer<Triangle>& triangles, Buffer<float>& positions,
+                          Buffer<float>& spreads, Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones)
+{
+    const Range patches = patchesOf(slots);
+    if (patches.count() == 0) return;
     const std::size_t width = PatchCullStage::width(device);
+    const Patch &front = m_layout.m_patches[patches.m_first], &back = m_layout.m_patches[patches.m_last - 1];
+    const Range faces = {patches.m_first * width, patches.m_last * width};
+    const Range vertices = {front.m_vertexBlock * width, (back.m_vertexBlock + back.m_vertexBlocks) * width};
+    const Range edges = {front.m_edgeBlock * width, (back.m_edgeBlock + back.m_edgeBlocks) * width};
+    m_packFaces.launch(device, faces.count(), kGroup, m_faceOwners.handle(), faces.first(), faces.last(),
+                       triangles.handle(), positions.handle(), spreads.handle(), m_faces.handle());
+    m_packVertices.launch(device, vertices.count(), kGroup, m_vertexOwners.handle(), vertices.first(), vertices.last(),
+                          triangles.handle(), positions.handle(), vertexCones.handle(), m_vertices.handle(),
+                          m_vertexIds.handle());
+    m_packEdges.launch(device, edges.count(), kGroup, m_edgeOwners.handle(), edges.first(), edges.last(),
+                       triangles.handle(), positions.handle(), edgeCones.handle(), m_edges.handle(),
+                       m_edgeIds.handle());
+    packVolumes(device, patches, triangles, positions);
+}
+
+// Volumes of the patches and of the wide nodes above them. With the last patch go the places behind it, which are
+// empty.
+void PatchCullStage::packVolumes(Device& device, Range patches, Buffer<Triangle>& triangles, Buffer<float>& positions)
+{
+    const std::size_t width = PatchCullStage::width(device), patchCount = m_layout.m_patches.size();
+    Range changed = patches;
+    std::size_t children = patchCount;
     for (std::size_t level = 0; level + 1 < m_layout.m_levels.size(); ++level)
     {
-        const cl_uint first = m_layout.m_levels[level];
-        const cl_uint places = cl_uint((m_layout.m_levels[level + 1] - first) * width);
+        const std::size_t first = m_layout.m_levels[level];
+        if (changed.m_last == children) changed.m_last = (m_layout.m_levels[level + 1] - first) * width;
         if (level == 0)
         {
-            m_volumes.launch(device, places, kGroup, m_faceOwners.handle(), cl_uint(m_layout.m_patches.size()), places,
-                             triangles.handle(), positions.handle(), m_wideNodes.handle(), m_sizes.handle());
-            continue;
+            m_volumes.launch(device, changed.count(), kGroup, m_faceOwners.handle(), cl_uint(patchCount),
+                             changed.first(), changed.last(), triangles.handle(), positions.handle(),
+                             m_wideNodes.handle(), m_sizes.handle());
         }
-        const cl_uint below = m_layout.m_levels[level - 1];
-        m_widen.launch(device, places, kGroup, m_wideNodes.handle(), below, first - below, first, places);
+        else
+        {
+            const std::size_t below = m_layout.m_levels[level - 1];
+            m_widen.launch(device, changed.count(), kGroup, m_wideNodes.handle(), cl_uint(below),
+                           cl_uint(first - below), cl_uint(first), changed.first(), changed.last());
+        }
+        children = m_layout.m_levels[level + 1] - first;
+        changed = {changed.m_first / width, (changed.m_last + width - 1) / width};
     }
 }
 
@@ -89,7 +120,8 @@ void PatchCullStage::enqueue(Device& device, Cloths cloths, Buffer<StepCounters>
                   cloths.m_start.handle(), cloths.m_end.handle(), cloths.m_radius.handle(), m_wideNodes.handle(),
                   m_levels.handle(), cl_uint(m_layout.m_levels.size() - 1), m_patches.handle(), m_sizes.handle(),
                   m_faces.handle(), m_vertices.handle(), m_edges.handle(), cloths.m_thickness.handle(),
-                  cl_uint(cloths.m_obstacleMeshes), cloths.m_reachScale, cl_uint(cloths.m_mode), m_tests.handle(),
+                  cl_uint(cloths.m_obstacleMeshes), cloths.m_reachScale, cl_uint(cloths.m_mode),
+                  cloths.m_motions.handle(), cl_uint(cloths.m_motionCount), m_tests.handle(),
                   cl_uint(m_tests.capacity()), cl_uint(cloths.m_limit), counters.handle());
 }
 }  // namespace drape

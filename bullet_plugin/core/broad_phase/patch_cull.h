@@ -9,6 +9,7 @@
 #include "bullet_plugin/core/device/buffer.h"
 #include "bullet_plugin/core/device/program.h"
 #include "bullet_plugin/core/mesh/patches.h"
+#include "kernels/shared/motion.h"
 
 namespace drape
 {
@@ -24,9 +25,16 @@ public:
 
     // New obstacle topology. Waits for the upload.
     void setTopology(Device& device, const MeshPool& obstacles);
-    // Packs the features at new positions. The buffers are the joined obstacles'; returns after enqueueing.
-    void pack(Device& device, Buffer<Triangle>& triangles, Buffer<float>& positions, Buffer<float>& spreads,
-              Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones);
+    // Obstacle slots from m_first up to m_last.
+    struct Slots
+    {
+        std::size_t m_first, m_last;
+    };
+    // Packs the features of those obstacles at new positions; all must have been packed once. The buffers are the
+    // joined obstacles'; returns after enqueueing.
+    void pack(Device& device, Slots slots, Buffer<Triangle>& triangles, Buffer<float>& positions,
+              Buffer<float>& spreads, Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones);
+    static Slots allSlots() { return {0, SIZE_MAX}; }
 
     // What a step reads of the cloths and pairs.
     struct Cloths
@@ -40,8 +48,10 @@ public:
         std::size_t m_count;  // triangles
         std::size_t m_obstacleMeshes;
         float m_reachScale;
-        std::uint32_t m_mode;  // DRAPE_DISCRETE …
-        std::size_t m_limit;   // tests; the count is exact up to it, a greater one says only that there are more
+        std::uint32_t m_mode;               // DRAPE_DISCRETE …
+        Buffer<ObstacleMotion>& m_motions;  // of the obstacles that move in the step, in the order of slots
+        std::size_t m_motionCount;
+        std::size_t m_limit;  // tests; the count is exact up to it, a greater one says only that there are more
     };
     // Returns after enqueueing. counters' candidates and invalid nodes must be zero before.
     void enqueue(Device& device, Cloths cloths, Buffer<StepCounters>& counters);
@@ -63,6 +73,17 @@ public:
     Features features() { return {m_faces, m_vertices, m_edges, m_faceOwners, m_vertexIds, m_edgeIds}; }
 
 private:
+    // Work-items from m_first up to m_last.
+    struct Range
+    {
+        std::size_t m_first, m_last;
+        std::size_t count() const { return m_last - m_first; }
+        cl_uint first() const { return cl_uint(m_first); }
+        cl_uint last() const { return cl_uint(m_last); }
+    };
+    Range patchesOf(Slots slots) const;
+    void packVolumes(Device& device, Range patches, Buffer<Triangle>& triangles, Buffer<float>& positions);
+
     Kernel m_cull, m_packFaces, m_packVertices, m_packEdges, m_volumes, m_widen;
     Patches m_layout;
     Buffer<Patch> m_patches{"obstacle patches"};

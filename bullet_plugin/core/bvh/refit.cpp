@@ -1,6 +1,6 @@
 #include "refit.h"
 
-#include "kernels/lib/dop.h"
+#include "kernels/lib/rigid_motion.h"
 
 namespace drape
 {
@@ -27,9 +27,29 @@ void refitOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const std
         dopMergeChildren(nodes.data(), node);
 }
 
+void growByMotionsOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const std::vector<std::uint32_t>& order,
+                         const std::vector<Triangle>& triangles, const float* start, const float* end,
+                         const std::vector<float>& meshRadius, const std::vector<ObstacleMotion>& motions,
+                         const std::vector<float>& thickness, std::size_t obstacleMeshes)
+{
+    if (motions.empty()) return;
+    const std::uint32_t leafCount = layout.leafCount();
+    for (std::uint32_t leaf = 0; leaf < leafCount; ++leaf)
+    {
+        const Triangle& triangle = triangles[order[leaf]];
+        const float radius = meshRadius[triangle.m_mesh];
+        if (radius < 0.0f) continue;
+        growByMotions(&nodes[leaf], motions.data(), std::uint32_t(motions.size()),
+                      &thickness[triangle.m_mesh * obstacleMeshes], &triangle, start, end, radius);
+    }
+    for (std::uint32_t node = leafCount; node < layout.nodeCount(); ++node)
+        dopMergeChildren(nodes.data(), node);
+}
+
 void RefitStage::create(Device& device, const cl::Program& program)
 {
     m_leaves.create(device, program, "refitLeaves");
+    m_movingLeaves.create(device, program, "refitMovingLeaves");
     m_level.create(device, program, "refitLevel");
     m_top.create(device, program, "refitTop");
 }
@@ -56,11 +76,18 @@ void RefitStage::makeLevels(Device& device, const BvhLayout& layout, Levels& lev
 
 void RefitStage::enqueue(Device& device, const BvhLayout& layout, Levels& levels, Buffer<BvhNode>& nodes,
                          Buffer<cl_uint>& order, Buffer<Triangle>& triangles, Buffer<float>& start, Buffer<float>& end,
-                         Buffer<float>& meshRadius, Buffer<StepCounters>& counters)
+                         Buffer<float>& meshRadius, Buffer<StepCounters>& counters, Motions* motions)
 {
     const cl_uint leafCount = layout.leafCount();
     m_leaves.launch(device, leafCount, kGroup, nodes.handle(), order.handle(), triangles.handle(), start.handle(),
                     end.handle(), meshRadius.handle(), counters.handle(), leafCount);
+    if (motions)
+    {
+        m_movingLeaves.launch(device, leafCount, kGroup, nodes.handle(), order.handle(), triangles.handle(),
+                              start.handle(), end.handle(), meshRadius.handle(), motions->m_motions.handle(),
+                              cl_uint(motions->m_count), motions->m_thickness.handle(),
+                              cl_uint(motions->m_obstacleMeshes), leafCount);
+    }
     for (std::size_t height = 1; height <= levels.m_launched; ++height)
     {
         const BvhHeight& level = layout.m_heights[height];

@@ -7,6 +7,7 @@
 #include "bullet_plugin/core/device/buffer.h"
 #include "bullet_plugin/core/device/program.h"
 #include "bvh_layout.h"
+#include "kernels/shared/motion.h"
 
 namespace drape
 {
@@ -15,6 +16,13 @@ namespace drape
 void refitOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const std::vector<std::uint32_t>& order,
                  const std::vector<Triangle>& triangles, const float* start, const float* end,
                  const std::vector<float>& meshRadius, std::size_t& invalidNodes);
+
+// Grows the leaves of such a hierarchy to what the obstacles that move see of the cloths' motion, and the nodes above
+// them. thickness: m, mesh slots × obstacleMeshes, negative where there is no pair.
+void growByMotionsOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const std::vector<std::uint32_t>& order,
+                         const std::vector<Triangle>& triangles, const float* start, const float* end,
+                         const std::vector<float>& meshRadius, const std::vector<ObstacleMotion>& motions,
+                         const std::vector<float>& thickness, std::size_t obstacleMeshes);
 
 class RefitStage
 {
@@ -30,15 +38,23 @@ public:
     };
     void makeLevels(Device& device, const BvhLayout& layout, Levels& levels) const;
 
-    // Returns after enqueueing. Adds to counters' invalid nodes.
+    // Obstacles that move in the step, as for growByMotionsOnHost().
+    struct Motions
+    {
+        Buffer<ObstacleMotion>& m_motions;
+        std::size_t m_count;
+        Buffer<float>& m_thickness;
+        std::size_t m_obstacleMeshes;
+    };
+    // Returns after enqueueing. Adds to counters' invalid nodes. motions: null where none moves.
     void enqueue(Device& device, const BvhLayout& layout, Levels& levels, Buffer<BvhNode>& nodes,
                  Buffer<cl_uint>& order, Buffer<Triangle>& triangles, Buffer<float>& start, Buffer<float>& end,
-                 Buffer<float>& meshRadius, Buffer<StepCounters>& counters);
+                 Buffer<float>& meshRadius, Buffer<StepCounters>& counters, Motions* motions = nullptr);
 
     // Runs the kernels that a small hierarchy does not need, on no nodes.
     void warmUp(Device& device, Buffer<BvhNode>& nodes);
 
 private:
-    Kernel m_leaves, m_level, m_top;
+    Kernel m_leaves, m_movingLeaves, m_level, m_top;
 };
 }  // namespace drape

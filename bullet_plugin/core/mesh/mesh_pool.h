@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bullet_plugin/core/pipeline.h"
+#include "obstacle_placing.h"
 #include "topology.h"
 
 namespace drape
@@ -17,10 +18,12 @@ struct PooledMesh
 {
     MeshId m_id = kNoMesh;
     Topology m_topology;
-    std::vector<float> m_positions;         // m, as last given
+    std::vector<float> m_positions;         // m, as last given: in its own frame where it has a place, else the world's
     float m_coordinateStep = 0;             // m, obstacles only: distance of floats where it reaches farthest out
     std::vector<NormalCone> m_vertexCones;  // obstacles only
     std::vector<NormalCone> m_edgeCones;
+    MeshBox m_box = {};                  // m, of the positions, obstacles only
+    ObstaclePlacing m_placing;           // obstacles only
     std::vector<std::uint32_t> m_order;  // leaf order, local triangles
     std::uint32_t m_firstVertex = 0;
     std::uint32_t m_firstTriangle = 0;

@@ -56,8 +56,8 @@ void NarrowPhaseStage::enqueue(Device& device, NarrowPhaseBuffers sides, std::si
                   sides.m_clothEdges.handle(), cl_uint(nodeCount), cl_uint(triangleCount),
                   sides.m_obstaclePositions.handle(), sides.m_obstacleTriangles.handle(), sides.m_vertexCones.handle(),
                   sides.m_edgeCones.handle(), sides.m_thickness.handle(), cl_uint(settings.m_obstacleMeshes),
-                  settings.m_reachScale, cl_uint(settings.m_mode), m_hits.handle(), hitCapacity, m_slotCount.handle(),
-                  counters.handle());
+                  settings.m_reachScale, cl_uint(settings.m_mode), sides.m_motions.handle(),
+                  cl_uint(sides.m_motionCount), m_hits.handle(), hitCapacity, m_slotCount.handle(), counters.handle());
     enqueueCompaction(device, counters);
 }
 
@@ -67,13 +67,13 @@ void NarrowPhaseStage::enqueueFeatures(Device& device, NarrowPhaseBuffers sides,
 {
     PatchCullStage::Features features = cull.features();
     const std::size_t width = listWidth(device);
-    m_feature.launch(device, width, kGroup, cull.tests().handle(), cl_uint(cull.tests().capacity()),
-                     sides.m_clothStart.handle(), sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(),
-                     sides.m_clothEdges.handle(), cl_uint(nodeCount), cl_uint(triangleCount), cl_uint(mode),
-                     sides.m_obstacleTriangles.handle(), sides.m_vertexCones.handle(), sides.m_edgeCones.handle(),
-                     features.m_faces.handle(), features.m_vertices.handle(), features.m_edges.handle(),
-                     features.m_faceIds.handle(), features.m_vertexIds.handle(), features.m_edgeIds.handle(),
-                     m_hits.handle(), m_sweptTests.handle(), m_slotCount.handle(), counters.handle());
+    m_feature.launch(
+        device, width, kGroup, cull.tests().handle(), cl_uint(cull.tests().capacity()), sides.m_clothStart.handle(),
+        sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(), sides.m_clothEdges.handle(), cl_uint(nodeCount),
+        cl_uint(triangleCount), cl_uint(mode), sides.m_obstacleTriangles.handle(), sides.m_vertexCones.handle(),
+        sides.m_edgeCones.handle(), features.m_faces.handle(), features.m_vertices.handle(), features.m_edges.handle(),
+        features.m_faceIds.handle(), features.m_vertexIds.handle(), features.m_edgeIds.handle(),
+        sides.m_motions.handle(), m_hits.handle(), m_sweptTests.handle(), m_slotCount.handle(), counters.handle());
     if (mode != DRAPE_DISCRETE)
     {
         m_swept.launch(device, width, kGroup, cull.tests().handle(), sides.m_clothStart.handle(),
@@ -81,8 +81,8 @@ void NarrowPhaseStage::enqueueFeatures(Device& device, NarrowPhaseBuffers sides,
                        cl_uint(nodeCount), cl_uint(triangleCount), cl_uint(mode), sides.m_obstacleTriangles.handle(),
                        sides.m_vertexCones.handle(), sides.m_edgeCones.handle(), features.m_faces.handle(),
                        features.m_vertices.handle(), features.m_edges.handle(), features.m_faceIds.handle(),
-                       features.m_vertexIds.handle(), features.m_edgeIds.handle(), m_hits.handle(),
-                       m_sweptTests.handle(), m_slotCount.handle(), counters.handle());
+                       features.m_vertexIds.handle(), features.m_edgeIds.handle(), sides.m_motions.handle(),
+                       m_hits.handle(), m_sweptTests.handle(), m_slotCount.handle(), counters.handle());
     }
     enqueueCompaction(device, counters);
 }
@@ -109,7 +109,7 @@ void NarrowPhaseStage::enqueueIntersect(Device& device, NarrowPhaseBuffers sides
 {
     m_intersect.launch(device, listWidth(device), kGroup, candidates.handle(), cl_uint(candidates.capacity()),
                        sides.m_clothStart.handle(), sides.m_clothTriangles.handle(), sides.m_obstaclePositions.handle(),
-                       sides.m_obstacleTriangles.handle(), m_intersections.handle(),
-                       cl_uint(m_intersections.capacity()), counters.handle());
+                       sides.m_obstacleTriangles.handle(), sides.m_motions.handle(), cl_uint(sides.m_motionCount),
+                       m_intersections.handle(), cl_uint(m_intersections.capacity()), counters.handle());
 }
 }  // namespace drape

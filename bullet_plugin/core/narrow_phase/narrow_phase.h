@@ -12,6 +12,15 @@
 
 namespace drape
 {
+// Motions of the obstacles that move in the step, in the order of slots.
+struct MotionList
+{
+    const ObstacleMotion* m_motions = nullptr;
+    std::uint32_t m_count = 0;
+
+    const ObstacleMotion* find(std::uint32_t mesh) const { return findMotion(m_motions, m_count, mesh); }
+};
+
 // Options and per-pair data of a step. mode: DRAPE_DISCRETE …. thickness: m, cloth slots × obstacle slots. Contacts
 // reach to thickness × reachScale.
 struct NarrowPhaseSettings
@@ -20,6 +29,7 @@ struct NarrowPhaseSettings
     std::size_t m_obstacleMeshes;
     float m_reachScale;
     std::uint32_t m_mode = DRAPE_AUTOMATIC;
+    MotionList m_motions = {};  // on the host
 };
 
 // What the narrow phase counted on the host: contacts, and pairs of features that the continuous test decided.
@@ -36,7 +46,7 @@ NarrowPhaseCounts narrowPhaseOnHost(const std::vector<Candidate>& candidates, co
 
 // Pairs whose triangles intersect at the step's start, in order of cloth and obstacle triangle.
 void intersectOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth, const ObstacleView& obstacle,
-                     std::vector<Candidate>& pairs);
+                     const MotionList& motions, std::vector<Candidate>& pairs);
 
 void sortCandidates(std::vector<Candidate>& candidates);
 
@@ -52,6 +62,8 @@ struct NarrowPhaseBuffers
     Buffer<NormalCone>& m_vertexCones;
     Buffer<NormalCone>& m_edgeCones;
     Buffer<float>& m_thickness;
+    Buffer<ObstacleMotion>& m_motions;
+    std::size_t m_motionCount = 0;
 };
 
 class NarrowPhaseStage

@@ -16,14 +16,14 @@ void sortContacts(std::vector<Contact>& contacts)
 }
 }  // namespace
 
-NarrowPhaseCounts narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView& clothArrays,
+NarrowPhaseCounts narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth,
                                     const ObstacleView& obstacle, const NarrowPhaseSettings& settings,
                                     std::vector<Contact>& contacts, std::size_t limit)
 {
     contacts.clear();
     NarrowPhaseCounts counts;
-    ClothView cloth = clothArrays;
-    cloth.m_mode = settings.m_mode;
+    ClothView seen = cloth;
+    seen.m_mode = settings.m_mode;
     for (const Candidate& candidate : candidates)
     {
         const Triangle* clothTriangle = cloth.m_triangles + candidate.m_cloth;
@@ -33,7 +33,8 @@ NarrowPhaseCounts narrowPhaseOnHost(const std::vector<Candidate>& candidates, co
             settings.m_reachScale;
         std::uint32_t tests = ownedTests(clothTriangle->m_owned, obstacleTriangle->m_owned);
         PairTriangles pair;
-        loadPair(&pair, &cloth, &obstacle, candidate);
+        seen.m_motion = settings.m_motions.find(obstacleTriangle->m_mesh);
+        loadPair(&pair, &seen, &obstacle, candidate);
         if (pairApart(&pair, reach)) continue;
         tests &= pair.m_tests;
         for (int test = 0; test < DRAPE_FEATURE_TESTS; ++test)
@@ -41,10 +42,10 @@ NarrowPhaseCounts narrowPhaseOnHost(const std::vector<Candidate>& candidates, co
             Contact contact;
             if (!(tests & (1u << test))) continue;
             int found = DRAPE_UNDECIDED;
-            for (cloth.m_complete = 0; found == DRAPE_UNDECIDED; cloth.m_complete = 1)
+            for (seen.m_complete = 0; found == DRAPE_UNDECIDED; seen.m_complete = 1)
             {
-                counts.m_swept += std::uint64_t(cloth.m_complete);
-                found = pairContact(test, &cloth, &obstacle, candidate, reach, &contact);
+                counts.m_swept += std::uint64_t(seen.m_complete);
+                found = pairContact(test, &seen, &obstacle, candidate, reach, &contact);
             }
             if (found == DRAPE_IS_CONTACT && ++counts.m_contacts <= limit) contacts.push_back(contact);
         }
@@ -55,13 +56,15 @@ NarrowPhaseCounts narrowPhaseOnHost(const std::vector<Candidate>& candidates, co
 }
 
 void intersectOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth, const ObstacleView& obstacle,
-                     std::vector<Candidate>& pairs)
+                     const MotionList& motions, std::vector<Candidate>& pairs)
 {
     pairs.clear();
+    ClothView seen = cloth;
     for (const Candidate& candidate : candidates)
     {
         PairTriangles pair;
-        loadPair(&pair, &cloth, &obstacle, candidate);
+        seen.m_motion = motions.find(obstacle.m_triangles[candidate.m_obstacle].m_mesh);
+        loadPair(&pair, &seen, &obstacle, candidate);
         if (trianglesIntersect(pair.m_start, pair.m_resting)) pairs.push_back(candidate);
     }
     sortCandidates(pairs);

@@ -1,6 +1,7 @@
 #include "device_backend.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace drape
 {
@@ -9,6 +10,7 @@ namespace
 // First guesses; they grow to what scenes need.
 constexpr std::size_t kFirstCandidates = 1 << 16;
 constexpr std::size_t kFirstContacts = 1 << 13;
+constexpr std::size_t kPlaceGroup = 64;
 
 std::size_t withHeadroom(std::size_t count)
 {
@@ -33,6 +35,8 @@ DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& set
     }
     const cl::Program narrowPhase = program("narrow_phase", PatchCullStage::defines(*m_device));
     m_narrowPhase.create(*m_device, narrowPhase, program("compaction"));
+    m_place.create(*m_device, program("place_obstacles"), "placeObstacles");
+    m_motions.reserve(*m_device, 1);
     m_candidates.reserve(*m_device, 1);
     m_patchCull.reserveTests(*m_device, kFirstCandidates);
     m_narrowPhase.reserveHits(*m_device, kFirstCandidates);
@@ -82,7 +86,13 @@ void DeviceBackend::warmUp()
     scene.m_obstaclePositions = below;
     scene.m_vertexCones.assign(3, NormalCone{{0, 0, 1}, -1});
     scene.m_edgeCones.assign(3, NormalCone{{0, 0, 1}, -1});
+    ObstaclePlacing placing;
+    placing.m_posed = true;
+    placing.m_start = placing.m_end = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    scene.m_places = {ObstaclePlace{{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, 1, 0, 0}};
+    scene.m_anyPosed = true;
     StepPairs pairs;
+    pairs.m_motions = {makeMotion(placing, MeshBox{{0, 0, 0}, {1, 1, 0}}, 0)};
     pairs.m_thickness = {0.1f};
     pairs.m_clothRadius = {0.1f};
     pairs.m_any = true;
@@ -94,6 +104,7 @@ void DeviceBackend::warmUp()
     m_cloth.m_revision = m_obstacle.m_revision = 0;
     m_sentThickness.clear();
     m_sentRadius.clear();
+    m_sentPlaces.clear();
 }
 
 std::vector<std::uint32_t> DeviceBackend::order(const std::vector<Triangle>& triangles, const float* positions,
@@ -136,7 +147,10 @@ void DeviceBackend::updateTopology(const Scene& scene)
         if (patches()) m_patchCull.setTopology(*m_device, scene.m_obstacles);
     }
     if (!patches() && (newCloths || newObstacles)) updateTraversal(scene, newObstacles);
-    if (newObstacles || m_obstacleMotion != scene.m_obstacleMotion) updateObstacles(scene);
+    const bool newPositions = newObstacles || m_obstacleMotion != scene.m_obstacleMotion ||
+                              (scene.m_anyPosed && m_sentPlaces.size() != scene.m_places.size());
+    if (newPositions) uploadObstacles(scene);
+    if (newPositions || m_obstaclePlacing != scene.m_obstaclePlacing) placeObstacles(scene, newPositions);
 }
 
 void DeviceBackend::updateTraversal(const Scene& scene, bool newObstacles)
@@ -149,22 +163,76 @@ void DeviceBackend::updateTraversal(const Scene& scene, bool newObstacles)
     m_broadPhase.setTopology(*m_device, cloth, obstacle);
 }
 
-void DeviceBackend::updateObstacles(const Scene& scene)
+void DeviceBackend::uploadObstacles(const Scene& scene)
 {
     m_obstacleMotion = scene.m_obstacleMotion;
-    m_obstaclePositions.assign(*m_device, scene.m_obstaclePositions);
-    m_vertexCones.assign(*m_device, scene.m_vertexCones);
-    m_edgeCones.assign(*m_device, scene.m_edgeCones);
-    if (patches())
+    const bool own = scene.m_anyPosed;
+    (own ? m_ownPositions : m_obstaclePositions).assign(*m_device, scene.m_obstaclePositions);
+    (own ? m_ownVertexCones : m_vertexCones).assign(*m_device, scene.m_vertexCones);
+    (own ? m_ownEdgeCones : m_edgeCones).assign(*m_device, scene.m_edgeCones);
+    if (!own) m_sentPlaces.clear();
+    if (own)
     {
-        const std::vector<float> spreads = faceSpreads(scene.m_obstacles.triangles(), scene.m_obstaclePositions.data(),
-                                                       scene.m_vertexCones, scene.m_edgeCones);
-        m_obstacleSpreads.assign(*m_device, spreads);
-        m_patchCull.pack(*m_device, m_obstacle.m_triangles, m_obstaclePositions, m_obstacleSpreads, m_vertexCones,
-                         m_edgeCones);
-        m_device->wait();  // spreads is a local
+        m_obstaclePositions.reserve(*m_device, scene.m_obstaclePositions.size());
+        m_vertexCones.reserve(*m_device, scene.m_vertexCones.size());
+        m_edgeCones.reserve(*m_device, scene.m_edgeCones.size());
+    }
+    if (!patches()) return;
+    const std::vector<float> spreads = faceSpreads(scene.m_obstacles.triangles(), scene.m_obstaclePositions.data(),
+                                                   scene.m_vertexCones, scene.m_edgeCones);
+    m_obstacleSpreads.assign(*m_device, spreads);
+    m_device->wait();  // spreads is a local
+}
+
+// From the first to the last slot whose place is not the one that was sent.
+PatchCullStage::Slots DeviceBackend::changedPlaces(const Scene& scene) const
+{
+    PatchCullStage::Slots slots = {0, scene.m_places.size()};
+    const auto same = [&](std::size_t slot)
+    { return std::memcmp(&scene.m_places[slot], &m_sentPlaces[slot], sizeof(ObstaclePlace)) == 0; };
+    while (slots.m_first < slots.m_last && same(slots.m_first))
+        ++slots.m_first;
+    while (slots.m_first < slots.m_last && same(slots.m_last - 1))
+        --slots.m_last;
+    return slots;
+}
+
+void DeviceBackend::enqueuePlacing(const Scene& scene, PatchCullStage::Slots slots)
+{
+    const std::size_t count = scene.m_places.size();
+    const bool toEnd = slots.m_last == count;
+    const cl_uint firstVertex = scene.m_places[slots.m_first].m_firstVertex;
+    const cl_uint firstEdge = scene.m_places[slots.m_first].m_firstEdge;
+    const cl_uint lastVertex = toEnd ? cl_uint(scene.m_vertexCones.size()) : scene.m_places[slots.m_last].m_firstVertex;
+    const cl_uint lastEdge = toEnd ? cl_uint(scene.m_edgeCones.size()) : scene.m_places[slots.m_last].m_firstEdge;
+    m_place.launch(*m_device, lastVertex - firstVertex + lastEdge - firstEdge, kPlaceGroup, m_places.handle(),
+                   cl_uint(count), firstVertex, lastVertex - firstVertex, firstEdge, lastEdge - firstEdge,
+                   m_ownPositions.handle(), m_ownVertexCones.handle(), m_ownEdgeCones.handle(),
+                   m_obstaclePositions.handle(), m_vertexCones.handle(), m_edgeCones.handle());
+}
+
+void DeviceBackend::placeObstacles(const Scene& scene, bool all)
+{
+    m_obstaclePlacing = scene.m_obstaclePlacing;
+    const PatchCullStage::Slots slots = all ? PatchCullStage::Slots{0, scene.m_places.size()} : changedPlaces(scene);
+    if (slots.m_first == slots.m_last) return;
+    if (scene.m_anyPosed)
+    {
+        m_sentPlaces = scene.m_places;  // the device has been waited for since they were written last
+        m_places.assign(*m_device, m_sentPlaces);
+        enqueuePlacing(scene, slots);
+    }
+    if (!patches())
+    {
+        refitObstacles(scene);
         return;
     }
+    m_patchCull.pack(*m_device, slots, m_obstacle.m_triangles, m_obstaclePositions, m_obstacleSpreads, m_vertexCones,
+                     m_edgeCones);
+}
+
+void DeviceBackend::refitObstacles(const Scene& scene)
+{
     const std::vector<float> noRadius(scene.m_obstacles.meshCount(), 0.0f);
     m_obstacle.m_radius.assign(*m_device, noRadius);
     m_refit.enqueue(*m_device, scene.m_obstacleLayout, m_obstacle.m_levels, m_obstacle.m_nodes, m_obstacle.m_order,
@@ -183,6 +251,11 @@ void DeviceBackend::uploadStep(const Scene& scene, const StepPairs& pairs)
         m_sentThickness = pairs.m_thickness;
         m_thickness.assign(*m_device, m_sentThickness);
     }
+    if (!pairs.m_motions.empty())
+    {
+        m_sentMotions = pairs.m_motions;
+        m_motions.assign(*m_device, m_sentMotions);
+    }
     if (m_sentRadius != pairs.m_clothRadius)
     {
         m_sentRadius = pairs.m_clothRadius;
@@ -190,10 +263,11 @@ void DeviceBackend::uploadStep(const Scene& scene, const StepPairs& pairs)
     }
 }
 
-NarrowPhaseBuffers DeviceBackend::narrowPhaseBuffers()
+NarrowPhaseBuffers DeviceBackend::narrowPhaseBuffers(const StepPairs& pairs)
 {
     return {m_clothStart,           m_clothEnd,    m_cloth.m_triangles, m_clothEdges, m_obstaclePositions,
-            m_obstacle.m_triangles, m_vertexCones, m_edgeCones,         m_thickness};
+            m_obstacle.m_triangles, m_vertexCones, m_edgeCones,         m_thickness,  m_motions,
+            pairs.m_motions.size()};
 }
 
 void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
@@ -206,16 +280,18 @@ void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
             *m_device,
             {m_cloth.m_order, m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, m_thickness,
              scene.m_cloths.triangles().size(), obstacleMeshes, 1.0f + m_settings.m_activation,
-             std::uint32_t(m_settings.m_mode), StepLimits(m_settings).m_candidates},
+             std::uint32_t(m_settings.m_mode), m_motions, pairs.m_motions.size(), StepLimits(m_settings).m_candidates},
             m_counters);
-        m_narrowPhase.enqueueFeatures(*m_device, narrowPhaseBuffers(), scene.m_cloths.vertexCount(),
+        m_narrowPhase.enqueueFeatures(*m_device, narrowPhaseBuffers(pairs), scene.m_cloths.vertexCount(),
                                       scene.m_cloths.triangles().size(), std::uint32_t(m_settings.m_mode), m_patchCull,
                                       m_counters);
     }
     else
     {
+        RefitStage::Motions motions = {m_motions, pairs.m_motions.size(), m_thickness, obstacleMeshes};
         m_refit.enqueue(*m_device, scene.m_clothLayout, m_cloth.m_levels, m_cloth.m_nodes, m_cloth.m_order,
-                        m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, m_counters);
+                        m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, m_counters,
+                        pairs.m_motions.empty() ? nullptr : &motions);
         m_broadPhase.enqueue(*m_device, {{m_cloth.m_nodes, m_cloth.m_order, m_cloth.m_triangles},
                                          {m_obstacle.m_nodes, m_obstacle.m_order, m_obstacle.m_triangles},
                                          m_thickness,
@@ -223,14 +299,14 @@ void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
                                          m_candidates,
                                          m_counters,
                                          StepLimits(m_settings).m_candidates});
-        const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacleMeshes, 1.0f + m_settings.m_activation,
-                                            std::uint32_t(m_settings.m_mode)};
-        m_narrowPhase.enqueue(*m_device, narrowPhaseBuffers(), scene.m_cloths.vertexCount(),
+        const NarrowPhaseSettings narrow = {
+            pairs.m_thickness, obstacleMeshes, 1.0f + m_settings.m_activation, std::uint32_t(m_settings.m_mode), {}};
+        m_narrowPhase.enqueue(*m_device, narrowPhaseBuffers(pairs), scene.m_cloths.vertexCount(),
                               scene.m_cloths.triangles().size(), narrow, m_candidates, m_counters);
     }
     if (m_settings.m_reportIntersections)
     {
-        m_narrowPhase.enqueueIntersect(*m_device, narrowPhaseBuffers(), m_candidates, m_counters);
+        m_narrowPhase.enqueueIntersect(*m_device, narrowPhaseBuffers(pairs), m_candidates, m_counters);
     }
     m_counters.read(*m_device, m_countersRead.data(), 1);
     m_narrowPhase.contacts().read(*m_device, m_contactsRead.data(), m_contactsAsked);

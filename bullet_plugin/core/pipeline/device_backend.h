@@ -55,7 +55,13 @@ private:
     void uploadSide(const MeshPool& pool, const BvhLayout& layout, Side& side);
     void updateTopology(const Scene& scene);
     void updateTraversal(const Scene& scene, bool newObstacles);
-    void updateObstacles(const Scene& scene);
+    void uploadObstacles(const Scene& scene);
+    // Brings the obstacles whose places changed to the world, all of them after an upload, and renews what depends on
+    // it.
+    void placeObstacles(const Scene& scene, bool all);
+    PatchCullStage::Slots changedPlaces(const Scene& scene) const;
+    void enqueuePlacing(const Scene& scene, PatchCullStage::Slots slots);
+    void refitObstacles(const Scene& scene);
     void uploadStep(const Scene& scene, const StepPairs& pairs);
     void enqueueStep(const Scene& scene, const StepPairs& pairs);
     // Whether the step goes over patches; intersections are found among pairs of triangles.
@@ -63,7 +69,7 @@ private:
     {
         return !m_settings.m_reportIntersections && m_settings.m_methods.m_traversal == Traversal::Auto;
     }
-    NarrowPhaseBuffers narrowPhaseBuffers();
+    NarrowPhaseBuffers narrowPhaseBuffers(const StepPairs& pairs);
     // Whether the last run demanded more than the settings allow; the result says what.
     bool overLimit(StepResult& result);
     // Makes room for what the last run demanded. Returns whether the step must run again.
@@ -77,6 +83,7 @@ private:
 
     RefitStage m_refit;
     MortonOrderStage m_mortonOrder;
+    Kernel m_place;
     BroadPhaseStage m_broadPhase;
     PatchCullStage m_patchCull;
     NarrowPhaseStage m_narrowPhase;
@@ -86,12 +93,19 @@ private:
     Buffer<float> m_obstaclePositions{"obstacle positions"}, m_obstacleSpreads{"obstacle positions"}, m_thickness;
     Buffer<Edge> m_clothEdges{"cloth edges"};
     Buffer<NormalCone> m_vertexCones{"obstacle cones"}, m_edgeCones{"obstacle cones"};
+    // In the obstacles' own frames; only where one has a place.
+    Buffer<float> m_ownPositions{"obstacle positions"};
+    Buffer<NormalCone> m_ownVertexCones{"obstacle cones"}, m_ownEdgeCones{"obstacle cones"};
+    Buffer<ObstaclePlace> m_places{"obstacle positions"};
+    Buffer<ObstacleMotion> m_motions{"obstacle positions"};
+    std::vector<ObstaclePlace> m_sentPlaces;
+    std::vector<ObstacleMotion> m_sentMotions;
     Buffer<Candidate> m_candidates{"step candidates"};
     Buffer<StepCounters> m_counters;
     Staging<StepCounters> m_countersRead;
     Staging<Contact> m_contactsRead;
     std::size_t m_contactsAsked = 0;
     std::vector<float> m_sentThickness, m_sentRadius;
-    std::uint32_t m_obstacleMotion = 0;
+    std::uint32_t m_obstacleMotion = 0, m_obstaclePlacing = 0;
 };
 }  // namespace drape

@@ -1,5 +1,6 @@
 #include "host_backend.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "bullet_plugin/core/broad_phase/candidate_count.h"
@@ -37,10 +38,12 @@ void HostBackend::update(const Scene& scene)
         m_traversal.setObstacles(obstacleSide(scene));
     }
     if (newCloths || newObstacles) m_traversal.setTopology(clothSide(scene), obstacleSide(scene));
-    if (newObstacles || m_obstacleMotion != scene.m_obstacleMotion)
+    if (newObstacles || m_obstacleMotion != scene.m_obstacleMotion || m_obstaclePlacing != scene.m_obstaclePlacing)
     {
         m_obstacleMotion = scene.m_obstacleMotion;
-        const float* positions = scene.m_obstaclePositions.data();
+        m_obstaclePlacing = scene.m_obstaclePlacing;
+        if (scene.m_anyPosed) place(scene);
+        const float* positions = obstacleView(scene).m_positions;
         const std::vector<float> noRadius(scene.m_obstacles.meshCount(), 0.0f);
         std::size_t ignored = 0;  // the adapter reports bad obstacles when it mirrors them
         refitOnHost(m_obstacleNodes, scene.m_obstacleLayout, scene.m_obstacles.order(), scene.m_obstacles.triangles(),
@@ -49,12 +52,43 @@ void HostBackend::update(const Scene& scene)
     }
 }
 
+// As kernels/place_obstacles.cl.
+void HostBackend::place(const Scene& scene)
+{
+    const ObstaclePlace* places = scene.m_places.data();
+    const std::uint32_t count = std::uint32_t(scene.m_places.size());
+    m_placed.m_positions.resize(scene.m_obstaclePositions.size());
+    m_placed.m_vertexCones.resize(scene.m_vertexCones.size());
+    m_placed.m_edgeCones.resize(scene.m_edgeCones.size());
+    for (std::uint32_t vertex = 0; vertex < scene.m_vertexCones.size(); ++vertex)
+    {
+        const ObstaclePlace* at = places + placeOfVertex(places, count, vertex);
+        const Vec3 p = placedPosition(at, vec3Load(scene.m_obstaclePositions.data(), vertex));
+        const float coordinates[3] = {p.x, p.y, p.z};
+        std::copy(coordinates, coordinates + 3, &m_placed.m_positions[3 * std::size_t(vertex)]);
+        m_placed.m_vertexCones[vertex] = placedCone(at, scene.m_vertexCones[vertex]);
+    }
+    for (std::uint32_t edge = 0; edge < scene.m_edgeCones.size(); ++edge)
+        m_placed.m_edgeCones[edge] = placedCone(places + placeOfEdge(places, count, edge), scene.m_edgeCones[edge]);
+}
+
+ObstacleView HostBackend::obstacleView(const Scene& scene) const
+{
+    const Triangle* triangles = scene.m_obstacles.triangles().data();
+    if (scene.m_anyPosed)
+        return {m_placed.m_positions.data(), triangles, m_placed.m_vertexCones.data(), m_placed.m_edgeCones.data()};
+    return {scene.m_obstaclePositions.data(), triangles, scene.m_vertexCones.data(), scene.m_edgeCones.data()};
+}
+
 std::size_t HostBackend::refitCloths(const Scene& scene, const StepPairs& pairs)
 {
     update(scene);
     std::size_t invalidNodes = 0;
     refitOnHost(m_clothNodes, scene.m_clothLayout, scene.m_cloths.order(), scene.m_cloths.triangles(),
                 scene.m_clothStart.data(), scene.m_clothEnd.data(), pairs.m_clothRadius, invalidNodes);
+    growByMotionsOnHost(m_clothNodes, scene.m_clothLayout, scene.m_cloths.order(), scene.m_cloths.triangles(),
+                        scene.m_clothStart.data(), scene.m_clothEnd.data(), pairs.m_clothRadius, pairs.m_motions,
+                        pairs.m_thickness, scene.m_obstacles.meshCount());
     return invalidNodes;
 }
 
@@ -102,10 +136,12 @@ void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings
                              std::uint32_t(cloths.vertexCount()),
                              std::uint32_t(cloths.triangles().size()),
                              mode,
-                             1};
-    const ObstacleView obstacle = {scene.m_obstaclePositions.data(), obstacles.triangles().data(),
-                                   scene.m_vertexCones.data(), scene.m_edgeCones.data()};
-    const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacles.meshCount(), 1.0f + settings.m_activation, mode};
+                             1,
+                             nullptr};
+    const ObstacleView obstacle = obstacleView(scene);
+    const MotionList motions = {pairs.m_motions.data(), std::uint32_t(pairs.m_motions.size())};
+    const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacles.meshCount(), 1.0f + settings.m_activation, mode,
+                                        motions};
     const NarrowPhaseCounts counts =
         narrowPhaseOnHost(m_candidates, cloth, obstacle, narrow, result.m_contacts, limits.m_contacts);
     result.m_narrowMs = lap(stage);
@@ -116,7 +152,7 @@ void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings
         result.m_contactDemand = counts.m_contacts;
         return;
     }
-    if (settings.m_reportIntersections) intersectOnHost(m_candidates, cloth, obstacle, result.m_intersections);
+    if (settings.m_reportIntersections) intersectOnHost(m_candidates, cloth, obstacle, motions, result.m_intersections);
     result.m_intersectionCount = result.m_intersections.size();
 }
 }  // namespace drape

@@ -19,7 +19,15 @@ public:
     std::vector<std::uint64_t> countCandidates(const Scene& scene, const StepPairs& pairs);
 
 private:
+    // The obstacles in the world: the scene's own arrays where no obstacle has a place.
+    struct Placed
+    {
+        std::vector<float> m_positions;
+        std::vector<NormalCone> m_vertexCones, m_edgeCones;
+    };
     void update(const Scene& scene);
+    void place(const Scene& scene);
+    ObstacleView obstacleView(const Scene& scene) const;
     // Returns the invalid nodes.
     std::size_t refitCloths(const Scene& scene, const StepPairs& pairs);
     BroadPhaseSide clothSide(const Scene& scene) const;
@@ -28,6 +36,7 @@ private:
     std::vector<BvhNode> m_clothNodes, m_obstacleNodes;
     HostTraversal m_traversal;
     std::vector<Candidate> m_candidates;
-    std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0, m_obstacleMotion = 0;
+    std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0, m_obstacleMotion = 0, m_obstaclePlacing = 0;
+    Placed m_placed;
 };
 }  // namespace drape

@@ -40,7 +40,10 @@ struct Pipeline::Implementation
     static void measureObstacle(PooledMesh& mesh);
     void joinScene();
     void joinObstacles();
+    // What depends on where an obstacle is.
+    void placeMesh(std::size_t slot);
     void collectPairs();
+    void collectMotions();
     void leaveDevice();
     void runOnHost();
     // The step of the pairs that are left, on the back end in use.

@@ -46,10 +46,33 @@ PooledMesh Pipeline::Implementation::makeMesh(const MeshDescription& description
 void Pipeline::Implementation::measureObstacle(PooledMesh& mesh)
 {
     computeNormalCones(mesh.m_topology, mesh.m_positions.data(), mesh.m_vertexCones, mesh.m_edgeCones);
-    float farthest = 0;
-    for (float coordinate : mesh.m_positions)
+    const float infinity = std::numeric_limits<float>::infinity();
+    mesh.m_box = MeshBox{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+    for (std::size_t i = 0; i < mesh.m_positions.size(); ++i)
     {
-        if (std::isfinite(coordinate)) farthest = std::max(farthest, std::fabs(coordinate));
+        const float coordinate = mesh.m_positions[i];
+        if (!std::isfinite(coordinate)) continue;
+        mesh.m_box.m_low[i % 3] = std::min(mesh.m_box.m_low[i % 3], coordinate);
+        mesh.m_box.m_high[i % 3] = std::max(mesh.m_box.m_high[i % 3], coordinate);
+    }
+}
+
+void Pipeline::Implementation::placeMesh(std::size_t slot)
+{
+    PooledMesh& mesh = m_scene.m_obstacles.mesh(slot);
+    const ObstaclePlacing& placing = mesh.m_placing;
+    ObstaclePlace& place = m_scene.m_places[slot];
+    std::copy(placing.m_end.begin(), placing.m_end.end(), place.m_pose);
+    place.m_posed = placing.m_posed;
+    place.m_firstVertex = mesh.m_firstVertex;
+    place.m_firstEdge = mesh.m_firstEdge;
+    m_scene.m_anyPosed = m_scene.m_anyPosed || placing.m_posed;
+    const MeshBox box = placing.m_posed ? placedBox(placing.m_end, mesh.m_box) : mesh.m_box;
+    float farthest = 0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        for (float bound : {box.m_low[axis], box.m_high[axis]})
+            if (std::isfinite(bound)) farthest = std::max(farthest, std::fabs(bound));
     }
     mesh.m_coordinateStep = std::nextafter(farthest, std::numeric_limits<float>::infinity()) - farthest;
 }
@@ -60,6 +83,8 @@ void Pipeline::Implementation::joinObstacles()
     m_scene.m_obstaclePositions.clear();
     m_scene.m_vertexCones.clear();
     m_scene.m_edgeCones.clear();
+    m_scene.m_places.assign(pool.meshCount(), ObstaclePlace{});
+    m_scene.m_anyPosed = false;
     for (std::size_t slot = 0; slot < pool.meshCount(); ++slot)
     {
         const PooledMesh& mesh = pool.mesh(slot);
@@ -67,6 +92,7 @@ void Pipeline::Implementation::joinObstacles()
                                            mesh.m_positions.end());
         m_scene.m_vertexCones.insert(m_scene.m_vertexCones.end(), mesh.m_vertexCones.begin(), mesh.m_vertexCones.end());
         m_scene.m_edgeCones.insert(m_scene.m_edgeCones.end(), mesh.m_edgeCones.begin(), mesh.m_edgeCones.end());
+        placeMesh(slot);
     }
 }
 
@@ -119,11 +145,27 @@ void Pipeline::Implementation::collectPairs()
         m_stepPairs.m_any = true;
     }
     m_pairs.clear();
+    collectMotions();
     const std::size_t clothTriangles = m_scene.m_cloths.triangles().size();
     const std::size_t obstacleTriangles = m_scene.m_obstacles.triangles().size();
     m_statistics.m_clothTriangles = clothTriangles;
     m_statistics.m_obstacleTriangles = obstacleTriangles;
     if (clothTriangles == 0 || obstacleTriangles == 0) m_stepPairs.m_any = false;
+}
+
+void Pipeline::Implementation::collectMotions()
+{
+    const MeshPool& obstacles = m_scene.m_obstacles;
+    m_stepPairs.m_motions.clear();
+    for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
+    {
+        const PooledMesh& mesh = obstacles.mesh(slot);
+        if (!mesh.m_placing.moves()) continue;
+        bool paired = false;
+        for (std::size_t pair = slot; pair < m_stepPairs.m_thickness.size(); pair += obstacles.meshCount())
+            paired = paired || m_stepPairs.m_thickness[pair] >= 0.0f;
+        if (paired) m_stepPairs.m_motions.push_back(makeMotion(mesh.m_placing, mesh.m_box, std::uint32_t(slot)));
+    }
 }
 
 // After a failure everything goes on, on the host.
@@ -207,6 +249,21 @@ void Pipeline::moveObstacle(MeshId id, const float* positions)
     m_implementation->measureObstacle(mesh);
     ++scene.m_obstacleMotion;
     m_implementation->joinObstacles();
+}
+
+void Pipeline::placeObstacle(MeshId id, const float startPose[12], const float endPose[12])
+{
+    Scene& scene = m_implementation->m_scene;
+    m_implementation->joinScene();
+    const std::size_t slot = scene.m_obstacles.slot(id);
+    ObstaclePlacing& placing = scene.m_obstacles.mesh(slot).m_placing;
+    const bool stays = placing.m_posed && std::equal(placing.m_end.begin(), placing.m_end.end(), endPose);
+    placing.m_posed = true;
+    std::copy(startPose, startPose + DRAPE_MAP_FLOATS, placing.m_start.begin());
+    std::copy(endPose, endPose + DRAPE_MAP_FLOATS, placing.m_end.begin());
+    if (stays) return;
+    m_implementation->placeMesh(slot);
+    ++scene.m_obstaclePlacing;
 }
 
 float* Pipeline::clothStart(MeshId id)

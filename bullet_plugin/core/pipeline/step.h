@@ -23,10 +23,13 @@ struct Scene
     BvhLayout m_obstacleLayout;
     Staging<float> m_clothStart;  // m, x y z per joined cloth node
     Staging<float> m_clothEnd;
-    std::vector<float> m_obstaclePositions;  // m, joined
-    std::vector<NormalCone> m_vertexCones;   // joined
+    std::vector<float> m_obstaclePositions;  // m, joined, as given
+    std::vector<NormalCone> m_vertexCones;   // joined, as the positions
     std::vector<NormalCone> m_edgeCones;
-    std::uint32_t m_obstacleMotion = 0;  // counts up when an obstacle's positions change
+    std::uint32_t m_obstacleMotion = 0;   // counts up when positions are given anew
+    std::vector<ObstaclePlace> m_places;  // per obstacle slot
+    std::uint32_t m_obstaclePlacing = 0;  // counts up when a place changes
+    bool m_anyPosed = false;              // false: all positions are the world's
 
     std::size_t slotCount() const
     {
@@ -49,8 +52,9 @@ struct StepLimits
 // The pairs of one step.
 struct StepPairs
 {
-    std::vector<float> m_thickness;    // m, cloth slots × obstacle slots, -1 where there is no pair
-    std::vector<float> m_clothRadius;  // m, per cloth slot: the largest reach of its pairs, -1 without one
+    std::vector<float> m_thickness;         // m, cloth slots × obstacle slots, -1 where there is no pair
+    std::vector<float> m_clothRadius;       // m, per cloth slot: the largest reach of its pairs, -1 without one
+    std::vector<ObstacleMotion> m_motions;  // of the obstacles that have a pair and move, in the order of slots
     bool m_any = false;
 
     // Takes a cloth out of the step.

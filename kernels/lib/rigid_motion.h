@@ -1,0 +1,127 @@
+// Obstacles that move in the step. Their positions are those at the step's end, and the cloth's motion is taken as they
+// see it: a node that starts at x starts at m_map x for them. The path between is a straight line in their frame, exact
+// for motion without rotation; a point at distance r of a rotation by the angle a is off by r (1 - cos(a / 2)) at most.
+#ifndef DRAPE_LIB_RIGID_MOTION_H
+#define DRAPE_LIB_RIGID_MOTION_H
+
+#include "../shared/motion.h"
+#include "dop.h"
+
+DRAPE_NAMESPACE_BEGIN
+
+DRAPE_FUNCTION Vec3 mapDirection(const DRAPE_GLOBAL float* m, Vec3 d)
+{
+    return vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z, m[4] * d.x + m[5] * d.y + m[6] * d.z,
+                m[8] * d.x + m[9] * d.y + m[10] * d.z);
+}
+DRAPE_FUNCTION Vec3 mapPoint(const DRAPE_GLOBAL float* m, Vec3 p)
+{
+    return vec3Add(mapDirection(m, p), vec3(m[3], m[7], m[11]));
+}
+
+// Start of a node as the obstacle sees it; motion is null for one that rests.
+DRAPE_FUNCTION Vec3 startSeen(const DRAPE_GLOBAL ObstacleMotion* motion, Vec3 start)
+{
+    return motion ? mapPoint(motion->m_map, start) : start;
+}
+
+// The motion of a slot among count in the order of slots; null where it rests.
+DRAPE_FUNCTION const DRAPE_GLOBAL ObstacleMotion* findMotion(const DRAPE_GLOBAL ObstacleMotion* motions,
+                                                             DRAPE_UINT count, DRAPE_UINT mesh)
+{
+    DRAPE_UINT low = 0, high = count;
+    while (low < high)
+    {
+        const DRAPE_UINT middle = low + (high - low) / 2;
+        if (motions[middle].m_mesh == mesh) return motions + middle;
+        if (motions[middle].m_mesh < mesh)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return 0;
+}
+
+// The volume of a cloth triangle over the step as the obstacle sees it, see triangleVolume. Returns whether it comes
+// near the obstacle at all; the volume holds the radius, the obstacle's box its positions.
+DRAPE_FUNCTION int volumeSeen(Dop* dop, const DRAPE_GLOBAL ObstacleMotion* motion,
+                              const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
+                              const DRAPE_GLOBAL float* end, float radius)
+{
+    Vec3 p[6];
+    for (int k = 0; k < 3; ++k)
+    {
+        p[k] = startSeen(motion, vec3Load(start, triangle->m_vertices[k]));
+        p[3 + k] = vec3Load(end, triangle->m_vertices[k]);
+    }
+    cornersVolume(dop, p, 1, radius);
+    int near = 1;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        near &= (dop->m_low[axis] <= motion->m_high[axis]) & (dop->m_high[axis] >= motion->m_low[axis]);
+    }
+    return near;
+}
+
+// Grows a leaf's volume to the triangle's paths as every moving obstacle sees them that it has a pair with. thickness:
+// m, per obstacle slot, negative without a pair.
+DRAPE_FUNCTION void growByMotions(DRAPE_GLOBAL BvhNode* leaf, const DRAPE_GLOBAL ObstacleMotion* motions,
+                                  DRAPE_UINT count, const DRAPE_GLOBAL float* thickness,
+                                  const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
+                                  const DRAPE_GLOBAL float* end, float radius)
+{
+    for (DRAPE_UINT k = 0; k < count; ++k)
+    {
+        Dop dop;
+        if (thickness[motions[k].m_mesh] < 0.0f) continue;
+        if (!volumeSeen(&dop, motions + k, triangle, start, end, radius)) continue;
+        for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+        {
+            leaf->m_low[i] = drapeMin(leaf->m_low[i], dop.m_low[i]);
+            leaf->m_high[i] = drapeMax(leaf->m_high[i], dop.m_high[i]);
+        }
+    }
+}
+
+// Slot of a joined vertex or edge, by the slots' firsts (member of ObstaclePlace); slots without any may be among them.
+DRAPE_FUNCTION DRAPE_UINT placeOfVertex(const DRAPE_GLOBAL ObstaclePlace* places, DRAPE_UINT count, DRAPE_UINT vertex)
+{
+    DRAPE_UINT low = 0, high = count;  // low's first is no greater
+    while (high - low > 1)
+    {
+        const DRAPE_UINT middle = low + (high - low) / 2;
+        if (places[middle].m_firstVertex <= vertex)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+DRAPE_FUNCTION DRAPE_UINT placeOfEdge(const DRAPE_GLOBAL ObstaclePlace* places, DRAPE_UINT count, DRAPE_UINT edge)
+{
+    DRAPE_UINT low = 0, high = count;
+    while (high - low > 1)
+    {
+        const DRAPE_UINT middle = low + (high - low) / 2;
+        if (places[middle].m_firstEdge <= edge)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+DRAPE_FUNCTION Vec3 placedPosition(const DRAPE_GLOBAL ObstaclePlace* place, Vec3 own)
+{
+    return place->m_posed ? mapPoint(place->m_pose, own) : own;
+}
+
+DRAPE_FUNCTION NormalCone placedCone(const DRAPE_GLOBAL ObstaclePlace* place, NormalCone own)
+{
+    if (place->m_posed) own.m_axis = mapDirection(place->m_pose, own.m_axis);
+    return own;
+}
+
+DRAPE_NAMESPACE_END
+
+#endif
