@@ -25,6 +25,9 @@ struct MeshDescription
     std::size_t m_triangleCount = 0;
     const float* m_positions = nullptr;  // x y z per vertex, m; copied
     std::size_t m_vertexCount = 0;
+    // Of an obstacle: only its front counts, the side from which its triangles' corners run counter-clockwise. Cloth
+    // behind it is free to come out.
+    bool m_oneSided = false;
 };
 
 using MeshId = std::uint32_t;  // never reused while the pipeline lives

@@ -27,7 +27,8 @@ typedef struct Edge
 } Edge;
 
 // Directions in which a surface can face at a vertex or edge: all within the half-angle of the axis or of its opposite.
-// A cosine of -1 admits every direction (boundary, non-manifold or degenerate surroundings).
+// A cosine of -1 admits every direction (boundary, non-manifold or degenerate surroundings). The axis leans to the front;
+// zero where there is none.
 typedef struct NormalCone
 {
     Vec3 m_axis;     // unit

@@ -59,7 +59,9 @@ public:
     {
         for (std::size_t i = 0; i < m_axes.size(); ++i)
         {
-            if (!m_axes[i].normalize()) m_open[i] = true;
+            if (m_axes[i].normalize()) continue;
+            m_axes[i] = Direction();
+            m_open[i] = true;
         }
     }
     void widen(std::size_t feature, const Direction& normal)
@@ -75,12 +77,8 @@ public:
         constexpr double kTurnShare = 0.35;
         const Direction& axis = m_axes[feature];
         const double half = (1 + kTurnShare) * std::acos(std::clamp(m_cosines[feature], -1.0, 1.0)) + kPad;
-        NormalCone cone = {{0.0f, 0.0f, 0.0f}, -1.0f};
-        if (m_open[feature] || half >= 1.5707) return cone;
-        cone.m_axis.x = float(axis.x);
-        cone.m_axis.y = float(axis.y);
-        cone.m_axis.z = float(axis.z);
-        cone.m_cosine = float(std::cos(half));
+        NormalCone cone = {{float(axis.x), float(axis.y), float(axis.z)}, -1.0f};
+        if (!m_open[feature] && half < 1.5707) cone.m_cosine = float(std::cos(half));
         return cone;
     }
 

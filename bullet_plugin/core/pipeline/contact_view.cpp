@@ -42,6 +42,7 @@ ClothFeature clothFeature(const MeshPool& cloths, const Contact& contact)
     }
     return feature;
 }
+}  // namespace
 
 std::size_t obstacleSlot(const MeshPool& obstacles, const Contact& contact)
 {
@@ -49,7 +50,6 @@ std::size_t obstacleSlot(const MeshPool& obstacles, const Contact& contact)
     if (contact.m_kind == DRAPE_FACE_VERTEX) return obstacles.slotOfVertex(contact.m_obstacleFeature);
     return obstacles.slotOfEdge(contact.m_obstacleFeature);
 }
-}  // namespace
 
 ContactView Pipeline::view(const Contact& contact) const
 {

@@ -18,6 +18,9 @@ struct NamedPair
     float m_thickness;
 };
 
+// Slot of a contact's obstacle.
+std::size_t obstacleSlot(const MeshPool& obstacles, const Contact& contact);
+
 struct Pipeline::Implementation
 {
     Settings m_settings;
@@ -49,6 +52,8 @@ struct Pipeline::Implementation
     // The step of the pairs that are left, on the back end in use.
     void enqueue();
     void complete();
+    // Takes out contacts on the back of one-sided obstacles.
+    void dropBackContacts();
     // Takes cloths out of the step until what is left is within the limits.
     void leaveOutCloths();
 };

@@ -228,6 +228,7 @@ MeshId Pipeline::addObstacle(const MeshDescription& description)
 {
     PooledMesh mesh = m_implementation->makeMesh(description);
     const MeshId id = mesh.m_id;
+    mesh.m_oneSided = description.m_oneSided;
     m_implementation->measureObstacle(mesh);
     m_implementation->m_scene.m_obstacles.add(std::move(mesh));
     return id;
@@ -318,6 +319,7 @@ const std::vector<Contact>& Pipeline::finish()
         }
     }
     self.m_submitted = false;
+    self.dropBackContacts();
     statistics.m_candidates += self.m_result.m_candidates;
     statistics.m_volumeTests = self.m_result.m_volumeTests;
     statistics.m_sweptTests = self.m_result.m_sweptTests;
