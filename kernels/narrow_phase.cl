@@ -30,8 +30,8 @@ static ObstacleView obstacleView(__global const float* positions, __global const
 }
 
 // A work-item takes every stride-th candidate, runs its feature tests and writes the hits in no particular order. motions: of
-// the obstacles that move in the step. slotCount counts those written per cloth feature; it and counters->m_listed must be zero before. m_listed counts on when the list
-// is full.
+// the obstacles that move in the step. slotCount counts those written per cloth feature; it and counters->m_listed must be zero
+// before. m_listed counts on when the list is full.
 __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, const uint candidateCapacity,
                               __global const float* restrict clothStart, __global const float* restrict clothEnd,
                               __global const Triangle* restrict clothTriangles, __global const Edge* restrict clothEdges,
