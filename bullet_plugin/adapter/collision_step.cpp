@@ -11,20 +11,21 @@ btVector3 vectorOf(const float v[3])
     return btVector3(btScalar(v[0]), btScalar(v[1]), btScalar(v[2]));
 }
 
-btScalar gapAt(const btSoftBody& body, const StepContact& contact, btVector3 btSoftBody::Node::*member)
+btScalar gapAt(const btSoftBody& body, const StepContact& contact, btVector3 btSoftBody::Node::*member,
+               const btTransform* carry)
 {
     btVector3 at(0, 0, 0);
     for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
         at += body.m_nodes[contact.m_nodes[k]].*member * contact.m_weights[k];
-    return contact.m_normal.dot(at - contact.m_point) - contact.m_thickness;
+    return contact.m_normal.dot(carried(carry, at) - contact.m_point) - contact.m_thickness;
 }
 
 // Both gaps, along the contact's normal. A feature that slid around an edge of the obstacle began behind the plane of
 // its contact without having been inside the obstacle: then the depth at the predicted end is all that is known.
 void setGaps(const btSoftBody& body, StepContact& contact)
 {
-    contact.m_endGap = gapAt(body, contact, &btSoftBody::Node::m_x);
-    contact.m_startGap = gapAt(body, contact, &btSoftBody::Node::m_q);
+    contact.m_endGap = gapAt(body, contact, &btSoftBody::Node::m_x, nullptr);
+    contact.m_startGap = gapAt(body, contact, &btSoftBody::Node::m_q, contact.m_carry);
     if (contact.m_startGap < -contact.m_thickness && contact.m_startGap < contact.m_endGap)
         contact.m_startGap = contact.m_endGap;
     contact.m_targetGap = targetGap(contact.m_startGap, body.m_cfg.kKHR, contact.m_thickness);
@@ -62,10 +63,10 @@ BodyContacts* CollisionStep::contactsOf(const btSoftBody& body)
     return nullptr;
 }
 
-const btCollisionObject* CollisionStep::objectOf(MeshId obstacle) const
+const CollisionStep::Obstacle* CollisionStep::obstacleOf(MeshId obstacle) const
 {
     for (const Obstacle& entry : m_obstacles)
-        if (entry.m_mesh == obstacle) return entry.m_object;
+        if (entry.m_mesh == obstacle) return &entry;
     return nullptr;
 }
 
@@ -73,7 +74,7 @@ void CollisionStep::addPair(const PairNote& note)
 {
     ClothMirror& cloth = m_state.clothMirror(note);
     const MeshId clothId = bodyOf(cloth.id()) ? cloth.id() : cloth.refresh(m_state.pipeline());
-    const MeshId obstacleId = m_state.obstacleMirror(note).refresh(m_state.pipeline(), note.m_pose);
+    const MeshId obstacleId = m_state.obstacleMirror(note).refresh(m_state.pipeline(), note.m_kinematic, note.m_motion);
     if (clothId == kNoMesh || obstacleId == kNoMesh) return;
     if (!bodyOf(clothId))
     {
@@ -83,13 +84,17 @@ void CollisionStep::addPair(const PairNote& note)
         m_bodies.push_back(body);
         m_mirrors.push_back(&cloth);
     }
-    if (!objectOf(obstacleId)) m_obstacles.push_back(Obstacle{obstacleId, note.m_obstacle.m_object});
+    if (!obstacleOf(obstacleId))
+        m_obstacles.push_back(
+            Obstacle{obstacleId, note.m_obstacle.m_object, note.m_motion.moves(), note.m_motion.map()});
     for (const Pair& pair : m_pairs)
         if (pair.m_cloth == clothId && pair.m_obstacle == obstacleId) return;
     m_pairs.push_back(Pair{clothId, obstacleId, note.m_thickness});
     btVector3 low, high;
-    note.m_obstacle.m_shape->getAabb(note.m_pose, low, high);
-    bodyOf(clothId)->m_limit.addObstacle(low, high, note.m_thickness, btScalar(m_state.settings().m_activation));
+    note.m_obstacle.m_shape->getAabb(note.m_motion.m_end, low, high);
+    const Obstacle& obstacle = *obstacleOf(obstacleId);
+    bodyOf(clothId)->m_limit.addObstacle(low, high, note.m_thickness, btScalar(m_state.settings().m_activation),
+                                         obstacle.m_moves ? &obstacle.m_carry : nullptr);
 }
 
 void CollisionStep::uploadNodes()
@@ -122,10 +127,11 @@ void CollisionStep::submit()
 void CollisionStep::receive(const ContactView& view)
 {
     BodyContacts* body = bodyOf(view.m_cloth);
-    const btCollisionObject* object = objectOf(view.m_obstacle);
-    if (!body || !object) return;
+    const Obstacle* obstacle = obstacleOf(view.m_obstacle);
+    if (!body || !obstacle) return;
     StepContact contact;
-    contact.m_object = object;
+    contact.m_object = obstacle->m_object;
+    contact.m_carry = obstacle->m_moves ? &obstacle->m_carry : nullptr;
     contact.m_kind = view.m_kind;
     for (int k = 0; k < 3; ++k)
     {
@@ -136,7 +142,7 @@ void CollisionStep::receive(const ContactView& view)
     contact.m_point = vectorOf(view.m_point);
     contact.m_thickness = view.m_thickness;
     contact.m_time = view.m_time;
-    contact.m_friction = body->m_body->m_cfg.kDF * object->getFriction();
+    contact.m_friction = body->m_body->m_cfg.kDF * contact.m_object->getFriction();
     setGaps(*body->m_body, contact);
     for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
         body->m_limit.addContactNode(contact.m_nodes[k]);

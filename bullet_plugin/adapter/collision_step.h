@@ -42,6 +42,8 @@ private:
     {
         MeshId m_mesh;
         const btCollisionObject* m_object;
+        bool m_moves;
+        btTransform m_carry;  // see StepContact
     };
     struct Pair
     {
@@ -57,7 +59,7 @@ private:
     bool cutPaths();
     bool cutStrayed(const std::vector<bool>& strayed, Cut cut);
     BodyContacts* bodyOf(MeshId cloth);
-    const btCollisionObject* objectOf(MeshId obstacle) const;
+    const Obstacle* obstacleOf(MeshId obstacle) const;
 
     PluginState& m_state;
     std::vector<BodyContacts> m_bodies;

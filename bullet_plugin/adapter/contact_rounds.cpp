@@ -41,10 +41,21 @@ void ContactRounds::addRow(const StepContact& contact, std::vector<int>& movedOf
     row.m_level = contact.m_normal.dot(contact.m_point) + contact.m_thickness + contact.m_targetGap;
     row.m_friction = contact.m_friction;
     row.m_held.setZero();
+    row.m_carried = carriedBy(row, contact.m_carry);
     row.m_speedLimit = contact.m_startGap < 0
-                           ? std::max(btScalar(0), (contact.m_endGap - contact.m_startGap) * m_body.m_sst.isdt)
+                           ? std::max(btScalar(0), (contact.m_endGap - contact.m_startGap) * m_body.m_sst.isdt) +
+                                 row.m_normal.dot(row.m_carried) * m_body.m_sst.isdt
                            : SIMD_INFINITY;
     m_rows.push_back(row);
+}
+
+btVector3 ContactRounds::carriedBy(const Row& row, const btTransform* carry) const
+{
+    btVector3 start(0, 0, 0);
+    if (!carry) return start;
+    for (int k = 0; k < row.m_count; ++k)
+        start += m_moved[static_cast<std::size_t>(row.m_moved[k])].m_start * row.m_weights[k];
+    return *carry * start - start;
 }
 
 void ContactRounds::restart()
@@ -89,7 +100,7 @@ btScalar ContactRounds::project(Row& row)
 // Friction: takes the contact's motion along the surface back, within the cone.
 void ContactRounds::holdBack(Row& row)
 {
-    btVector3 sliding = pointOf(row);
+    btVector3 sliding = pointOf(row) - row.m_carried;
     for (int k = 0; k < row.m_count; ++k)
         sliding -= m_moved[static_cast<std::size_t>(row.m_moved[k])].m_start * row.m_weights[k];
     sliding -= row.m_normal * row.m_normal.dot(sliding);

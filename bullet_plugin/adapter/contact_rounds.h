@@ -6,11 +6,11 @@
 // far it has pushed and takes back what others have made needless, so that the rounds tend to the smallest correction;
 // pushes that are never taken back lift a node by more than its contacts ask for, and it falls back a step later, for
 // ever. Nodes come before faces and edges in canonical order: most faces and edges are free once their nodes are.
-// Friction holds the motion since the step's start along the surface, up to Coulomb's bound on the push (Macklin et al.
-// 2014, Unified Particle Physics, section 6.1), with Bullet's coefficient, kDF times the obstacle's friction.
-// Velocities follow the positions as in Bullet's own update, (x change)/dt (1 - kDP); limitSpeeds() takes out again
-// what a contact gained by recovering a depth that the step began with. So no energy comes from the rounds. Pinned,
-// massless and anchored nodes stay. Cost: linear in the contacts.
+// Friction holds the motion since the step's start along the surface, relative to the obstacle's, up to Coulomb's bound
+// on the push (Macklin et al. 2014, Unified Particle Physics, section 6.1), with Bullet's coefficient, kDF times the
+// obstacle's friction. Velocities follow the positions as in Bullet's own update, (x change)/dt (1 - kDP);
+// limitSpeeds() takes out again what a contact gained by recovering a depth that the step began with. So no energy
+// comes from the rounds. Pinned, massless and anchored nodes stay. Cost: linear in the contacts.
 #pragma once
 
 #include <vector>
@@ -55,11 +55,13 @@ private:
         btScalar m_friction;
         btScalar m_multiplier;  // pushed in this stage
         btVector3 m_held;       // by friction, in this stage, in units of the multiplier
+        btVector3 m_carried;    // m, what the obstacle's motion in the step does to the contact's start
         btScalar m_speedLimit;  // m/s outwards when it pushed
         bool m_pushed;          // in any stage
     };
 
     void addRow(const StepContact& contact, std::vector<int>& movedOfNode);
+    btVector3 carriedBy(const Row& row, const btTransform* carry) const;
     btScalar runRows(std::size_t count);
     btScalar project(Row& row);
     void holdBack(Row& row);

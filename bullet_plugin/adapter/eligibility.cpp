@@ -29,8 +29,8 @@ const char* reasonFromObstacle(const btCollisionObject& obstacle, const btCollis
 {
     if (shape.getShapeType() == GIMPACT_SHAPE_PROXYTYPE) return "the obstacle is a GImpact shape";
     if (!isMeshShape(shape.getShapeType())) return "the obstacle is not a triangle mesh shape";
-    if (obstacle.isKinematicObject()) return "the obstacle is kinematic; only static obstacles are handled";
-    if (!obstacle.isStaticObject()) return "the obstacle is dynamic; only static obstacles are handled";
+    if (!obstacle.isStaticOrKinematicObject())
+        return "the obstacle is dynamic; only static and kinematic obstacles are handled";
     return nullptr;
 }
 

@@ -18,32 +18,45 @@ btScalar shareLeft(const StepContact& contact)
     const btScalar standOff = kStandOff * contact.m_thickness;
     return distance > standOff ? contact.m_time * (1 - standOff / distance) : btScalar(0);
 }
+
+// What is left of a node's path, as the obstacle of its first impact sees it.
+struct Left
+{
+    btScalar m_share = 1;
+    const btTransform* m_carry = nullptr;
+
+    void take(const Left& other)
+    {
+        if (other.m_share < m_share) *this = other;
+    }
+};
+
+void shorten(btSoftBody::Node& node, const Left& left, btScalar velocityScale)
+{
+    const btVector3 shift = (node.m_x - carried(left.m_carry, node.m_q)) * (left.m_share - 1);
+    node.m_x += shift;
+    node.m_v += shift * velocityScale;
+}
 }  // namespace
 
 bool cutAtImpacts(btSoftBody& body, const std::vector<StepContact>& contacts, Cut cut)
 {
-    std::vector<btScalar> left(static_cast<std::size_t>(body.m_nodes.size()), btScalar(1));
-    btScalar least = 1;
+    std::vector<Left> left(static_cast<std::size_t>(body.m_nodes.size()));
+    Left least;
     for (const StepContact& contact : contacts)
     {
-        const btScalar share = shareLeft(contact);
-        least = std::min(least, share);
+        const Left own{shareLeft(contact), contact.m_carry};
+        least.take(own);
         for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
-        {
-            btScalar& own = left[static_cast<std::size_t>(contact.m_nodes[k])];
-            own = std::min(own, share);
-        }
+            left[static_cast<std::size_t>(contact.m_nodes[k])].take(own);
     }
-    if (!(least < 1)) return false;
+    if (!(least.m_share < 1)) return false;
     const btScalar velocityScale = body.m_sst.isdt * (1 - body.m_cfg.kDP);
     for (int i = 0; i < body.m_nodes.size(); ++i)
     {
-        const btScalar share = cut == Cut::WholeBody ? least : left[static_cast<std::size_t>(i)];
+        const Left& own = cut == Cut::WholeBody ? least : left[static_cast<std::size_t>(i)];
         btSoftBody::Node& node = body.m_nodes[i];
-        if (!(share < 1) || !(movableInverseMass(node) > 0)) continue;
-        const btVector3 shift = (node.m_x - node.m_q) * (share - 1);
-        node.m_x += shift;
-        node.m_v += shift * velocityScale;
+        if (own.m_share < 1 && movableInverseMass(node) > 0) shorten(node, own, velocityScale);
     }
     return true;
 }

@@ -3,9 +3,9 @@
 // Why: contacts are found along the whole predicted path and near its end. Behind the first surface they are of places
 // that the node cannot get to, inside the obstacle or beyond, and push it to any side. After a cut detection runs
 // again, with paths that end near the surfaces that count. Input: a body between predictMotion and solveConstraints and
-// its contacts along the present paths. What a path loses is lost for the step, as if the node had come to a halt
-// there. Cloth that would not pass a surface within the step (it rests, slides, or falls by less than the thickness) is
-// not touched. Cost: linear in the contacts.
+// its contacts along the present paths. Before an obstacle that moves, a path ends where the obstacle carries it. What
+// a path loses is lost for the step, as if the node had come to a halt there. Cloth that would not pass a surface
+// within the step (it rests, slides, or falls by less than the thickness) is not touched. Cost: linear in the contacts.
 #pragma once
 
 #include <vector>
@@ -21,7 +21,8 @@ constexpr int kMostDetections = 6;
 enum class Cut
 {
     EachNode,  // each node by its own first impact
-    WholeBody  // every node by the first impact of all: free of impacts for certain, since all keep their order in time
+    WholeBody  // every node by the first impact of all: free of impacts for certain, since all keep their order in
+               // time; but for obstacles that move otherwise than the one of that impact
 };
 
 // Returns whether any path was cut. Velocities follow, for a body that Bullet has solved.

@@ -23,6 +23,16 @@ void writePosition(const btVector3& position, float*& out)
     for (int axis = 0; axis < 3; ++axis)
         *out++ = static_cast<float>(position[axis]);
 }
+
+// Three rows of the rotation and the shift.
+void writePose(const btTransform& pose, float* out)
+{
+    for (int row = 0; row < 3; ++row)
+    {
+        writePosition(pose.getBasis().getRow(row), out);
+        *out++ = static_cast<float>(pose.getOrigin()[row]);
+    }
+}
 }  // namespace
 
 bool ClothMirror::sameFaces(int begin, int end) const
@@ -121,14 +131,31 @@ void ObstacleMirror::reload(Pipeline& pipeline, const btTransform& pose)
     m_positionHash = mesh.m_positionHash;
 }
 
-MeshId ObstacleMirror::refresh(Pipeline& pipeline, const btTransform& pose)
+void ObstacleMirror::drop(Pipeline& pipeline)
 {
+    if (m_id != kNoMesh) pipeline.remove(m_id);
+    m_id = kNoMesh;
+    m_read = false;
+}
+
+MeshId ObstacleMirror::refresh(Pipeline& pipeline, bool kinematic, const BodyMotion& motion)
+{
+    if (kinematic != m_kinematic) drop(pipeline);
+    m_kinematic = kinematic;
+    const btTransform pose = kinematic ? btTransform::getIdentity() : motion.m_end;
     const std::uint64_t signature = meshSignature(*m_key.m_shape);
     if (!m_read || signature != m_signature || !(pose == m_pose)) reload(pipeline, pose);
     m_meshShape = meshShapeOf(*m_key.m_shape);
     m_signature = signature;
     m_pose = pose;
     m_read = true;
+    if (kinematic && m_id != kNoMesh)
+    {
+        float start[12], end[12];
+        writePose(motion.m_start, start);
+        writePose(motion.m_end, end);
+        pipeline.placeObstacle(m_id, start, end);
+    }
     return m_id;
 }
 }  // namespace drape

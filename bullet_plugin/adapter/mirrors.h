@@ -3,7 +3,8 @@
 // Input: the live body or shape of the current step, never one remembered from before. Output: the pipeline's mesh id,
 // or kNoMesh for a mesh without triangles. Guarantee: a cloth whose faces or nodes were replaced, cut, refined or
 // shuffled is rebuilt; an obstacle that moved, was scaled or deformed is moved, and rebuilt when its triangles changed.
-// An unchanged obstacle costs meshSignature(), an unchanged cloth a comparison of its indices. Metres, world frame.
+// An unchanged obstacle, and a kinematic one that only moved, costs meshSignature(), an unchanged cloth a comparison of
+// its indices. Metres; a kinematic obstacle's positions are in its own frame, all others in the world's.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +12,7 @@
 
 #include "BulletSoftBody/btSoftBody.h"
 #include "LinearMath/btTransform.h"
+#include "bullet_plugin/adapter/kinematic_motion.h"
 #include "bullet_plugin/core/pipeline.h"
 
 namespace drape
@@ -69,7 +71,8 @@ public:
     const ObstacleKey& key() const { return m_key; }
     MeshId id() const { return m_id; }
 
-    MeshId refresh(Pipeline& pipeline, const btTransform& pose);
+    // The obstacle rests at the motion's end unless it is kinematic.
+    MeshId refresh(Pipeline& pipeline, bool kinematic, const BodyMotion& motion);
     // True for the shape itself and for the mesh shape that a scaled shape shows, as they were last refreshed.
     bool uses(const btCollisionShape* shape) const { return shape == m_key.m_shape || shape == m_meshShape; }
     void requireReading() { m_read = false; }
@@ -79,12 +82,14 @@ public:
 
 private:
     void reload(Pipeline& pipeline, const btTransform& pose);
+    void drop(Pipeline& pipeline);
 
     ObstacleKey m_key;
     const btCollisionShape* m_meshShape = nullptr;  // compared, never followed
     MeshId m_id = kNoMesh;
     btTransform m_pose = btTransform::getIdentity();
     std::uint64_t m_signature = 0, m_topologyHash = 0, m_positionHash = 0;
+    bool m_kinematic = false;
     bool m_read = false;  // the pipeline holds what the shape held when it was last read
 };
 }  // namespace drape

@@ -14,15 +14,31 @@ btScalar closestOnPath(const btVector3& start, const btVector3& end, const btVec
     if (!(length2 > 0)) return 1;
     return std::min(btScalar(1), std::max(btScalar(0), (point - start).dot(way) / length2));
 }
+
+// Brings the node back to the path where it is farther off than the radius, which goes from one end's to the other's.
+void keepNear(btSoftBody::Node& node, const btVector3& start, const btVector3& end, btScalar startRadius,
+              btScalar endRadius, btScalar velocityScale)
+{
+    const btScalar t = closestOnPath(start, end, node.m_x);
+    const btVector3 off = node.m_x - (start + (end - start) * t);
+    const btScalar radius = startRadius + (endRadius - startRadius) * t;
+    const btScalar distance = off.length();
+    if (!(distance > radius)) return;
+    const btVector3 shift = off * (radius / distance - 1);
+    node.m_x += shift;
+    node.m_v += shift * velocityScale;
+}
 }  // namespace
 
-void MotionLimit::addObstacle(const btVector3& low, const btVector3& high, btScalar thickness, btScalar activation)
+void MotionLimit::addObstacle(const btVector3& low, const btVector3& high, btScalar thickness, btScalar activation,
+                              const btTransform* carry)
 {
     const btScalar reach = thickness * (1 + activation);
     m_leastReach = std::min(m_leastReach, reach);
     const btVector3 margin(reach, reach, reach);
     const btScalar least = thickness * std::max(kLeastShare, std::min(activation, kMostStartShare));
-    m_regions.push_back(Region{low - margin, high + margin, Allowance{least, kFreeShare * reach}});
+    m_regions.push_back(Region{low - margin, high + margin, Allowance{least, kFreeShare * reach}, carry != nullptr,
+                               carry ? *carry : btTransform::getIdentity()});
 }
 
 void MotionLimit::record(const btSoftBody& body)
@@ -38,21 +54,32 @@ void MotionLimit::record(const btSoftBody& body)
     }
 }
 
-MotionLimit::Allowance MotionLimit::allowance(std::size_t node, const btVector3& to) const
+bool MotionLimit::near(const Region& region, std::size_t node, const btVector3& to) const
 {
     btVector3 low = m_end[node], high = m_end[node];
     low.setMin(to);
     high.setMax(to);
+    bool near = true;
+    for (int axis = 0; axis < 3; ++axis)
+        near = near && low[axis] <= region.m_high[axis] && high[axis] >= region.m_low[axis];
+    return near;
+}
+
+MotionLimit::Allowance MotionLimit::allowance(const Region& region, std::size_t node) const
+{
+    const Allowance& own = region.m_allowance;
+    return Allowance{own.m_start, m_hasContact[node] ? own.m_start : own.m_end};
+}
+
+MotionLimit::Allowance MotionLimit::allowance(std::size_t node, const btVector3& to) const
+{
     Allowance least{SIMD_INFINITY, SIMD_INFINITY};
     for (const Region& region : m_regions)
     {
-        bool near = true;
-        for (int axis = 0; axis < 3; ++axis)
-            near = near && low[axis] <= region.m_high[axis] && high[axis] >= region.m_low[axis];
-        if (!near) continue;
-        const Allowance& own = region.m_allowance;
+        if (region.m_moves || !near(region, node, to)) continue;
+        const Allowance own = allowance(region, node);
         least.m_start = std::min(least.m_start, own.m_start);
-        least.m_end = std::min(least.m_end, m_hasContact[node] ? own.m_start : own.m_end);
+        least.m_end = std::min(least.m_end, own.m_end);
     }
     return least;
 }
@@ -76,15 +103,14 @@ void MotionLimit::apply(btSoftBody& body) const
         if (!(node.m_im > 0) || node.m_battach) continue;
         const std::size_t at = static_cast<std::size_t>(i);
         const Allowance allowed = allowance(at, node.m_x);
-        if (allowed.m_end == SIMD_INFINITY) continue;
-        const btScalar t = closestOnPath(m_start[at], m_end[at], node.m_x);
-        const btVector3 off = node.m_x - (m_start[at] + (m_end[at] - m_start[at]) * t);
-        const btScalar radius = allowed.m_start + (allowed.m_end - allowed.m_start) * t;
-        const btScalar distance = off.length();
-        if (!(distance > radius)) continue;
-        const btVector3 shift = off * (radius / distance - 1);
-        node.m_x += shift;
-        node.m_v += shift * velocityScale;
+        if (allowed.m_end != SIMD_INFINITY)
+            keepNear(node, m_start[at], m_end[at], allowed.m_start, allowed.m_end, velocityScale);
+        for (const Region& region : m_regions)
+        {
+            if (!region.m_moves || !near(region, at, node.m_x)) continue;
+            const Allowance own = allowance(region, at);
+            keepNear(node, region.m_carry * m_start[at], m_end[at], own.m_start, own.m_end, velocityScale);
+        }
     }
 }
 }  // namespace drape

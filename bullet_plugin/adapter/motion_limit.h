@@ -8,7 +8,8 @@
 // path's end, and may leave that end by most of it; towards the path's start, where only the thickness is known to be
 // free, it may leave by less. What links could not do in this step they do in the next. The velocity follows the
 // position, as in Bullet's own update, so that no energy comes from it. Nodes away from every obstacle are not touched.
-// Metres, world frame. Cost: linear in the nodes.
+// Near an obstacle that moves the path is the one that the obstacle sees. Metres, world frame. Cost: linear in the
+// nodes.
 #pragma once
 
 #include <vector>
@@ -34,8 +35,9 @@ class MotionLimit
 {
 public:
     // Box of an obstacle that the body has a pair with, the pair's thickness, and the activation as a share of it.
-    // Nodes whose way from the predicted to the solved position misses every box are free.
-    void addObstacle(const btVector3& low, const btVector3& high, btScalar thickness, btScalar activation);
+    // Nodes whose way from the predicted to the solved position misses every box are free. carry: see StepContact.
+    void addObstacle(const btVector3& low, const btVector3& high, btScalar thickness, btScalar activation,
+                     const btTransform* carry = nullptr);
     // Call before Bullet solves: remembers the prediction.
     void record(const btSoftBody& body);
     // A node of a contact; after record().
@@ -55,9 +57,14 @@ private:
     {
         btVector3 m_low, m_high;
         Allowance m_allowance;
+        bool m_moves;
+        btTransform m_carry;
     };
 
+    bool near(const Region& region, std::size_t node, const btVector3& to) const;
+    // Of the obstacles that rest.
     Allowance allowance(std::size_t node, const btVector3& to) const;
+    Allowance allowance(const Region& region, std::size_t node) const;
 
     std::vector<Region> m_regions;
     btScalar m_leastReach = SIMD_INFINITY;

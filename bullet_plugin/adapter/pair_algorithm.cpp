@@ -47,7 +47,12 @@ void PairAlgorithm::processCollision(const btCollisionObjectWrapper* wrapA, cons
         return;
     }
     dropStock();
-    if (wantsContacts(*cloth, *obstacleWrap.getCollisionObject())) m_state.note(this, *cloth, obstacleWrap);
+    // As Bullet's kinematic objects wake rigid bodies; the cloth takes part from the next step on.
+    const btCollisionObject& obstacle = *obstacleWrap.getCollisionObject();
+    if (wantsContacts(*cloth, obstacle))
+        m_state.note(this, *cloth, obstacleWrap);
+    else if (!cloth->isActive() && obstacle.hasContactResponse() && m_state.moves(*cloth, obstacle))
+        cloth->activate();
 }
 
 void PairAlgorithm::processStock(const btCollisionObjectWrapper* wrapA, const btCollisionObjectWrapper* wrapB,

@@ -23,6 +23,17 @@ std::uint64_t childOf(const btCollisionObjectWrapper& wrap)
         child = child * 1099511628211ull + static_cast<std::uint64_t>(static_cast<std::int64_t>(w->m_index) + 2);
     return child;
 }
+
+// The motion of the object's shape, or of a compound's child.
+BodyMotion motionOfShape(const btCollisionObjectWrapper& wrap, KinematicMotions& motions)
+{
+    const BodyMotion body = motions.observe(*wrap.getCollisionObject());
+    const btTransform& own = wrap.getCollisionObject()->getWorldTransform();
+    const btTransform& pose = wrap.getWorldTransform();
+    if (!body.moves() && body.m_end == own) return BodyMotion{pose, pose};
+    const btTransform child = own.inverse() * pose;
+    return BodyMotion{body.m_start * child, body.m_end == own ? pose : body.m_end * child};
+}
 }  // namespace
 
 PluginState::PluginState(const Settings& settings)
@@ -75,12 +86,19 @@ void PluginState::addSolver(const btSoftBodySolver* solver)
 void PluginState::removeSolver(const btSoftBodySolver* solver)
 {
     dropNotes(solver);
+    m_motions.erase(solver);
     m_solvers.erase(std::remove(m_solvers.begin(), m_solvers.end(), solver), m_solvers.end());
 }
 
 bool PluginState::ownsSolver(const btSoftBodySolver* solver) const
 {
     return std::find(m_solvers.begin(), m_solvers.end(), solver) != m_solvers.end();
+}
+
+bool PluginState::moves(const btSoftBody& cloth, const btCollisionObject& obstacle)
+{
+    return obstacle.isKinematicObject() &&
+           motionsOf(const_cast<btSoftBody&>(cloth).getSoftBodySolver()).observe(obstacle).moves();
 }
 
 void PluginState::note(const void* owner, btSoftBody& cloth, const btCollisionObjectWrapper& obstacle)
@@ -90,7 +108,9 @@ void PluginState::note(const void* owner, btSoftBody& cloth, const btCollisionOb
     note.m_solver = cloth.getSoftBodySolver();
     note.m_cloth = &cloth;
     note.m_obstacle = ObstacleKey{obstacle.getCollisionObject(), obstacle.getCollisionShape(), childOf(obstacle)};
-    note.m_pose = obstacle.getWorldTransform();
+    note.m_kinematic = obstacle.getCollisionObject()->isKinematicObject();
+    note.m_motion = note.m_kinematic ? motionOfShape(obstacle, motionsOf(note.m_solver))
+                                     : BodyMotion{obstacle.getWorldTransform(), obstacle.getWorldTransform()};
     note.m_thickness =
         std::max(kMinThickness, cloth.getCollisionShape()->getMargin() + obstacle.getCollisionShape()->getMargin());
     for (PairNote& old : m_notes)

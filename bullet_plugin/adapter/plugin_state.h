@@ -16,6 +16,7 @@
 #include "BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h"
 #include "BulletSoftBody/btSoftBodyConcaveCollisionAlgorithm.h"
 #include "drape/plugin.h"
+#include "bullet_plugin/adapter/kinematic_motion.h"
 #include "bullet_plugin/adapter/mirrors.h"
 #include "bullet_plugin/adapter/pair_algorithm.h"
 #include "bullet_plugin/core/pipeline.h"
@@ -30,7 +31,8 @@ struct PairNote
     const btSoftBodySolver* m_solver;
     btSoftBody* m_cloth;
     ObstacleKey m_obstacle;
-    btTransform m_pose;
+    bool m_kinematic;     // else the obstacle rests at the motion's end
+    BodyMotion m_motion;  // of the shape, which may be a compound's child
     btScalar m_thickness;
 };
 
@@ -55,7 +57,11 @@ public:
     void addSolver(const btSoftBodySolver* solver);
     void removeSolver(const btSoftBodySolver* solver);
     bool ownsSolver(const btSoftBodySolver* solver) const;
+    // How the kinematic objects of that solver's world move in its step.
+    KinematicMotions& motionsOf(const btSoftBodySolver* solver) { return m_motions[solver]; }
 
+    // Whether the obstacle moves in the step of the cloth's world.
+    bool moves(const btSoftBody& cloth, const btCollisionObject& obstacle);
     void note(const void* owner, btSoftBody& cloth, const btCollisionObjectWrapper& obstacle);
     void forget(const void* owner);
     void obstacleChanged(const btCollisionShape* shape);
@@ -91,6 +97,7 @@ private:
     btSoftBodyConcaveCollisionAlgorithm::SwappedCreateFunc m_stockCreateSwapped;
 
     std::vector<const btSoftBodySolver*> m_solvers;
+    std::unordered_map<const btSoftBodySolver*, KinematicMotions> m_motions;
     std::vector<PairNote> m_notes;  // in the order of dispatch
     std::unordered_map<const void*, Owned> m_owned;
     std::vector<std::unique_ptr<ClothMirror>> m_cloths;

@@ -1,47 +1,17 @@
 #include "drape/soft_body_solver.h"
 
 #include <algorithm>
-#include <cmath>
 #include <exception>
 
 #include "BulletSoftBody/btSoftBody.h"
 #include "bullet_plugin/adapter/body_solver.h"
 #include "bullet_plugin/adapter/collision_step.h"
+#include "bullet_plugin/adapter/motion_bounds.h"
 #include "bullet_plugin/adapter/plugin_state.h"
 #include "bullet_plugin/adapter/stopwatch.h"
 
 namespace drape
 {
-namespace
-{
-bool finite(const btVector3& v)
-{
-    return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
-}
-
-// Widens the bounds, which the broad phase reads next, to the whole motion of the step plus the reach of a contact.
-// Bullet's own bounds come from the node tree of the step before and lag behind fast cloth, which then has no pair when
-// it needs one.
-void coverMotion(btSoftBody& body, btScalar reach)
-{
-    btVector3 low(SIMD_INFINITY, SIMD_INFINITY, SIMD_INFINITY), high = -low;
-    for (int i = 0; i < body.m_nodes.size(); ++i)
-    {
-        const btSoftBody::Node& node = body.m_nodes[i];
-        if (!finite(node.m_x) || !finite(node.m_q)) continue;
-        low.setMin(node.m_x);
-        low.setMin(node.m_q);
-        high.setMax(node.m_x);
-        high.setMax(node.m_q);
-    }
-    if (low.x() > high.x()) return;
-    const btVector3 margin(reach, reach, reach);
-    body.m_bounds[0].setMin(low - margin);
-    body.m_bounds[1].setMax(high + margin);
-}
-
-}  // namespace
-
 SoftBodySolver::SoftBodySolver(Plugin& plugin) : m_state(plugin.state())
 {
     m_state->addSolver(this);
@@ -59,9 +29,15 @@ void SoftBodySolver::predictMotion(btScalar dt)
     if (!m_state->ready()) return;
     // The mesh's own bounds hold its margin; the activation distance beyond the thickness is shared out alike.
     const btScalar reach = 1 + btScalar(m_state->settings().m_activation);
+    KinematicMotions& motions = m_state->motionsOf(this);
+    motions.beginStep(dt);
+    std::vector<MovingObject> moving;  // of one world: a solver has no other
     for (int i = 0; i < m_softBodySet.size(); ++i)
+    {
+        if (i == 0) moving = movingObjects(*m_softBodySet[i], motions);
         if (m_softBodySet[i]->isActive())
-            coverMotion(*m_softBodySet[i], reach * m_softBodySet[i]->getCollisionShape()->getMargin());
+            coverMotion(*m_softBodySet[i], reach * m_softBodySet[i]->getCollisionShape()->getMargin(), moving);
+    }
 }
 
 void SoftBodySolver::solveConstraints(btScalar)

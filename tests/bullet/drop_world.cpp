@@ -107,6 +107,20 @@ btCollisionObject& DropWorld::addObstacle(btCollisionShape& shape, const btTrans
     return object;
 }
 
+btRigidBody& DropWorld::addKinematic(btCollisionShape& shape, const btTransform& pose)
+{
+    btRigidBody::btRigidBodyConstructionInfo info(0, nullptr, &shape);
+    info.m_startWorldTransform = pose;
+    auto body = std::make_unique<btRigidBody>(info);
+    btRigidBody& added = *body;
+    added.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+    added.setActivationState(DISABLE_DEACTIVATION);
+    added.setFriction(1);
+    m_world.addRigidBody(&added);
+    m_obstacles.push_back(std::move(body));
+    return added;
+}
+
 void DropWorld::remove(btSoftBody& cloth)
 {
     m_world.removeSoftBody(&cloth);

@@ -61,6 +61,8 @@ public:
     btSoftBody& addCloth(const ClothSpec& spec, int group = 1, int mask = -1);
     // The shape stays the caller's and must outlive the object.
     btCollisionObject& addObstacle(btCollisionShape& shape, const btTransform& pose = btTransform::getIdentity());
+    // A kinematic body at rest there. Its motion is what setWorldTransform() before a step says.
+    btRigidBody& addKinematic(btCollisionShape& shape, const btTransform& pose = btTransform::getIdentity());
     void remove(btSoftBody& cloth);            // and frees it
     void remove(btCollisionObject& obstacle);  // and frees it
     void step(int count = 1);

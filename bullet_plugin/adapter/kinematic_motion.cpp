@@ -1,0 +1,112 @@
+#include "bullet_plugin/adapter/kinematic_motion.h"
+
+#include <cmath>
+
+#include "BulletCollision/CollisionDispatch/btCollisionObject.h"
+#include "LinearMath/btTransformUtil.h"
+
+namespace drape
+{
+namespace
+{
+// Most substeps of one stepSimulation() whose motion is shared out.
+constexpr btScalar kMostSubsteps = 100;
+
+// Bullet's angles of small rotations are arc cosines in float: below this, radians, they may as well be zero.
+constexpr btScalar kAngleNoise = btScalar(2e-3);
+
+// Shares by which a velocity may miss the change of the pose, and a distance (m) that is rounding.
+constexpr btScalar kShiftSlack = btScalar(0.02);
+constexpr btScalar kTurnSlack = btScalar(0.1);
+constexpr btScalar kShiftNoise = btScalar(1e-4);
+
+struct Turn
+{
+    btVector3 m_axis;
+    btScalar m_angle;  // 0 to π
+};
+
+Turn turnBetween(const btTransform& from, const btTransform& to)
+{
+    Turn turn;
+    btTransformUtil::calculateDiffAxisAngle(from, to, turn.m_axis, turn.m_angle);
+    if (turn.m_angle > SIMD_PI)
+    {
+        turn.m_angle = SIMD_2_PI - turn.m_angle;
+        turn.m_axis = -turn.m_axis;
+    }
+    return turn;
+}
+
+btTransform moved(const btTransform& from, const btVector3& shift, const btVector3& axis, btScalar angle)
+{
+    btTransform to(from.getBasis(), from.getOrigin() + shift);
+    if (angle != 0 && axis.length2() > 0) to.setBasis(btMatrix3x3(btQuaternion(axis, angle)) * from.getBasis());
+    return to;
+}
+
+// Substeps that the velocity takes for the change of the pose, 0 when the two do not fit.
+btScalar substepsBetween(const btTransform& from, const btTransform& to, const Turn& turn, const btVector3& velocity,
+                         const btVector3& angularVelocity, btScalar dt)
+{
+    const btVector3 shift = to.getOrigin() - from.getOrigin();
+    const btScalar speed = velocity.length(), turning = angularVelocity.length();
+    const bool byShift = speed * dt > kShiftNoise || !(turning * dt > 0);
+    const btScalar time = byShift ? shift.length() / speed : turn.m_angle / turning;
+    const btScalar count = std::round(time / dt);
+    if (!(count >= 1) || count > kMostSubsteps) return 0;
+    if ((velocity * (count * dt) - shift).length() > kShiftSlack * shift.length() + kShiftNoise) return 0;
+    if (std::fabs(turning * count * dt - turn.m_angle) > kTurnSlack * turn.m_angle + count * kAngleNoise) return 0;
+    if (turn.m_angle > 10 * kAngleNoise && turn.m_axis.dot(angularVelocity) < (1 - kTurnSlack) * turning) return 0;
+    return count;
+}
+}  // namespace
+
+BodyMotion motionInStep(const btTransform& from, const btTransform& to, const btVector3& linearVelocity,
+                        const btVector3& angularVelocity, btScalar dt)
+{
+    if (from == to || !(dt > 0)) return BodyMotion{to, to};
+    const Turn turn = turnBetween(from, to);
+    if (linearVelocity.length2() == 0 && angularVelocity.length2() == 0)
+    {
+        const bool slowTurn = from.getOrigin() == to.getOrigin() && turn.m_angle < kAngleNoise;
+        return BodyMotion{slowTurn ? from : to, to};
+    }
+    const btScalar substeps = substepsBetween(from, to, turn, linearVelocity, angularVelocity, dt);
+    if (substeps == 1) return BodyMotion{from, to};
+    if (substeps > 1)
+    {
+        const btVector3 shift = (to.getOrigin() - from.getOrigin()) / substeps;
+        return BodyMotion{from, moved(from, shift, turn.m_axis, turn.m_angle / substeps)};
+    }
+    return BodyMotion{moved(to, linearVelocity * -dt, angularVelocity, -angularVelocity.length() * dt), to};
+}
+
+void KinematicMotions::beginStep(btScalar dt)
+{
+    m_dt = dt;
+    for (auto tracked = m_tracked.begin(); tracked != m_tracked.end();)
+        tracked = tracked->second.m_step < m_step ? m_tracked.erase(tracked) : std::next(tracked);
+    ++m_step;
+}
+
+BodyMotion KinematicMotions::observe(const btCollisionObject& object)
+{
+    const btTransform& pose = object.getWorldTransform();
+    const auto found = m_tracked.find(&object);
+    if (found == m_tracked.end())
+    {
+        const BodyMotion rest = {pose, pose};
+        m_tracked[&object] = Tracked{rest, m_step};
+        return rest;
+    }
+    Tracked& tracked = found->second;
+    if (tracked.m_step < m_step)
+    {
+        tracked.m_motion = motionInStep(tracked.m_motion.m_end, pose, object.getInterpolationLinearVelocity(),
+                                        object.getInterpolationAngularVelocity(), m_dt);
+        tracked.m_step = m_step;
+    }
+    return tracked.m_motion;
+}
+}  // namespace drape

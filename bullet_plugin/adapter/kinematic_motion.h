@@ -1,0 +1,56 @@
+// How kinematic objects move in a step, from what Bullet knows of them.
+//
+// Bullet gives a kinematic object its pose at the end of stepSimulation() in the first of its substeps, and a velocity:
+// the difference to its interpolation transform over the time of all substeps (btRigidBody::saveKinematicState). So a
+// pose that changes with a velocity is motion, and a pose that changes without one is a jump: that is how
+// setInterpolationWorldTransform() with the same pose tells a teleport, to Bullet and to Drape.
+//
+// Job: remember where each object was at the end of the step before and say where it is at this one's start and end.
+// The motion of several substeps is shared out among them, at constant velocity. An object that was not there in the
+// step before rests. Where the velocity does not fit the change of the pose (teleported and moved at once), the object
+// comes to its pose with its velocity, over this step alone. O(1) an object.
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+
+#include "LinearMath/btTransform.h"
+
+class btCollisionObject;
+
+namespace drape
+{
+struct BodyMotion
+{
+    btTransform m_start, m_end;
+
+    bool moves() const { return !(m_start == m_end); }
+    // What the motion does to a point of the object.
+    btTransform map() const { return m_end * m_start.inverse(); }
+};
+
+// Motion over the step of `dt` (s) of an object that was at `from` and that Bullet has at `to`, with its velocities in
+// m/s and rad/s.
+BodyMotion motionInStep(const btTransform& from, const btTransform& to, const btVector3& linearVelocity,
+                        const btVector3& angularVelocity, btScalar dt);
+
+class KinematicMotions
+{
+public:
+    // Forgets objects that were not observed in the step before.
+    void beginStep(btScalar dt);
+    // The object's motion in this step; the same until the next begins.
+    BodyMotion observe(const btCollisionObject& object);
+
+private:
+    struct Tracked
+    {
+        BodyMotion m_motion;
+        std::uint64_t m_step;
+    };
+
+    std::unordered_map<const btCollisionObject*, Tracked> m_tracked;  // never followed
+    std::uint64_t m_step = 0;
+    btScalar m_dt = 0;
+};
+}  // namespace drape

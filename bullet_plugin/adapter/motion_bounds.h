@@ -1,0 +1,28 @@
+// Bounds of soft bodies that cover a step's motion, so that Bullet's broad phase makes every pair that Drape needs.
+//
+// Bullet's own bounds come from the node tree of the step before and lag behind fast cloth, and those of a kinematic
+// object hold its pose at the end alone. Input: bodies after predictMotion, before Bullet computes its pairs. Output:
+// wider m_bounds. Cost: linear in the nodes, and in the world's objects, which are asked whether they move.
+#pragma once
+
+#include <vector>
+
+#include "BulletSoftBody/btSoftBody.h"
+#include "bullet_plugin/adapter/kinematic_motion.h"
+
+namespace drape
+{
+struct MovingObject
+{
+    const btCollisionObject* m_object;
+    BodyMotion m_motion;
+};
+
+// The kinematic meshes and compounds of the body's world that move in this step; observes those that rest, too. None
+// where the body's world info names no broad phase.
+std::vector<MovingObject> movingObjects(const btSoftBody& body, KinematicMotions& motions);
+
+// Widens the body's bounds to its nodes' paths, grown by reach (m), and to those paths as moving objects see them,
+// where they come near the object.
+void coverMotion(btSoftBody& body, btScalar reach, const std::vector<MovingObject>& moving);
+}  // namespace drape

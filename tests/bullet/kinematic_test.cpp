@@ -1,0 +1,330 @@
+// Kinematic obstacles: cloth is carried along, pushed and kept outside, whatever their speed.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "bullet_plugin/adapter/kinematic_motion.h"
+#include "scenes/shapes.h"
+#include "tests/bullet/drop_world.h"
+
+namespace drape::test
+{
+namespace
+{
+btTransform shiftedBy(const btVector3& shift)
+{
+    return btTransform(btMatrix3x3::getIdentity(), shift);
+}
+
+btVector3 meanOf(const btSoftBody& cloth)
+{
+    btVector3 sum(0, 0, 0);
+    for (int i = 0; i < cloth.m_nodes.size(); ++i)
+        sum += cloth.m_nodes[i].m_x;
+    return sum / btScalar(cloth.m_nodes.size());
+}
+
+// The cloth as the obstacle sees it.
+std::vector<float> seenFrom(const btTransform& pose, const btSoftBody& cloth)
+{
+    std::vector<float> positions;
+    for (int i = 0; i < cloth.m_nodes.size(); ++i)
+    {
+        const btVector3 seen = pose.inverse() * cloth.m_nodes[i].m_x;
+        for (int axis = 0; axis < 3; ++axis)
+            positions.push_back(static_cast<float>(seen[axis]));
+    }
+    return positions;
+}
+
+// A cloth over a kinematic mesh, with the independent check in the mesh's own frame.
+class KinematicScene
+{
+public:
+    KinematicScene(const TriangleMesh& mesh, const btTransform& pose, float size, const btVector3& centre)
+        : m_plugin(hostSettings()),
+          m_shape(mesh),
+          m_world(&m_plugin),
+          m_body(m_world.addKinematic(m_shape.shape(), pose)),
+          m_cloth(m_world.addCloth(specOf(size, centre))),
+          m_meter(mesh, clothSeen())
+    {
+    }
+
+    void step(const btTransform& pose)
+    {
+        m_body.setWorldTransform(pose);
+        m_world.step();
+        m_most = std::max(m_most, m_plugin.statistics().m_contacts);
+    }
+    // The same, and nothing is on the wrong side afterwards.
+    void checkedStep(const btTransform& pose)
+    {
+        step(pose);
+        const StepMeasure measure = m_meter.measure(seenFrom(pose, m_cloth).data());
+        ASSERT_EQ(measure.nodesBelow(), 0u) << measure.m_penetrationMax;
+        ASSERT_EQ(measure.m_intersectingPairs, 0u);
+        ASSERT_EQ(measure.m_invalidNodes, 0u);
+    }
+
+    Plugin m_plugin;
+    MeshShape m_shape;
+    DropWorld m_world;
+    btRigidBody& m_body;
+    btSoftBody& m_cloth;
+    PenetrationMeter m_meter;
+    std::size_t m_most = 0;  // contacts
+
+private:
+    static ClothSpec specOf(float size, const btVector3& centre)
+    {
+        ClothSpec spec;
+        spec.m_size = size;
+        spec.m_centre = centre;
+        return spec;
+    }
+    TriangleMesh clothSeen() const
+    {
+        TriangleMesh mesh = meshOf(m_cloth);
+        mesh.m_positions = seenFrom(m_body.getWorldTransform(), m_cloth);
+        return mesh;
+    }
+};
+
+// Lets the cloth come to rest on a platform, which then speeds up sideways and goes on.
+btScalar lagAfterRide(KinematicScene& scene, btScalar friction, btScalar& ridden)
+{
+    scene.m_body.setFriction(friction);
+    scene.m_cloth.m_cfg.kDP = btScalar(0.01);  // Bullet's damping is towards rest in the world
+    for (int i = 0; i < 60; ++i)
+        scene.checkedStep(btTransform::getIdentity());
+    const btScalar start = meanOf(scene.m_cloth).x();
+    btScalar speed = 0;
+    ridden = 0;
+    for (int i = 0; i < 90; ++i)
+    {
+        speed = std::min(btScalar(1), speed + btScalar(2) * kDt);
+        ridden += speed * kDt;
+        scene.checkedStep(shiftedBy(btVector3(ridden, 0, 0)));
+    }
+    return ridden - (meanOf(scene.m_cloth).x() - start);
+}
+}  // namespace
+
+TEST(Kinematic, platformCarriesClothAlongByFriction)
+{
+    KinematicScene scene(makeBox(5, 0.2f, 5), btTransform::getIdentity(), 0.8f, btVector3(0, btScalar(0.15), 0));
+    btScalar ridden = 0;
+    const btScalar lag = lagAfterRide(scene, 1, ridden);
+    EXPECT_GT(ridden, btScalar(1.2));
+    EXPECT_NEAR(lag, 0, btScalar(0.03));
+    EXPECT_NEAR(lowestOf(scene.m_cloth), btScalar(0.1) + kThickness, btScalar(0.003));
+}
+
+TEST(Kinematic, platformWithoutFrictionSlipsAway)
+{
+    KinematicScene scene(makeBox(5, 0.2f, 5), btTransform::getIdentity(), 0.8f, btVector3(0, btScalar(0.15), 0));
+    btScalar ridden = 0;
+    const btScalar lag = lagAfterRide(scene, 0, ridden);
+    EXPECT_GT(ridden, btScalar(1.2));
+    EXPECT_NEAR(lag, ridden, btScalar(0.05));
+}
+
+class KinematicPlate : public testing::TestWithParam<int>
+{
+};
+
+// A thin plate comes up under the cloth, takes it along and stops: at no time is anything behind its upper side.
+TEST_P(KinematicPlate, pushesClothAndIsNotPassed)
+{
+    const btScalar speed = btScalar(GetParam());
+    const float thick = 0.02f;
+    btScalar height = -1;
+    KinematicScene scene(makeBox(6, thick, 6), shiftedBy(btVector3(0, height, 0)), 1.0f, btVector3(0, 0, 0));
+    scene.checkedStep(shiftedBy(btVector3(0, height, 0)));
+    for (int i = 0; i < 60; ++i)
+    {
+        SCOPED_TRACE("step " + std::to_string(i));
+        if (height < 1) height += speed * kDt;
+        scene.checkedStep(shiftedBy(btVector3(0, height, 0)));
+        ASSERT_GT(lowestOf(scene.m_cloth), height + btScalar(thick) / 2);
+    }
+    EXPECT_GT(scene.m_most, 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Speeds, KinematicPlate, testing::Values(2, 10, 50, 200),
+                         [](const testing::TestParamInfo<int>& info) { return std::to_string(info.param); });
+
+class KinematicPaddle : public testing::TestWithParam<int>
+{
+};
+
+// The same with a plate that is smaller than the cloth: what hangs over its edges is not torn through it.
+TEST_P(KinematicPaddle, isWrapped)
+{
+    const btScalar speed = btScalar(GetParam());
+    const float thick = 0.05f;
+    btScalar height = -1;
+    KinematicScene scene(makeBox(0.5f, thick, 0.5f), shiftedBy(btVector3(0, height, 0)), 1.0f, btVector3(0, 0, 0));
+    const btSoftBody::Node& middle = scene.m_cloth.m_nodes[scene.m_cloth.m_nodes.size() / 2];
+    scene.checkedStep(shiftedBy(btVector3(0, height, 0)));
+    for (int i = 0; i < 60; ++i)
+    {
+        SCOPED_TRACE("step " + std::to_string(i));
+        if (height < 1) height += speed * kDt;
+        scene.checkedStep(shiftedBy(btVector3(0, height, 0)));
+        if (HasFatalFailure()) return;
+        ASSERT_GT(middle.m_x.y(), height) << middle.m_x.y();
+    }
+    EXPECT_GT(scene.m_most, 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Speeds, KinematicPaddle, testing::Values(2, 10, 50),
+                         [](const testing::TestParamInfo<int>& info) { return std::to_string(info.param); });
+
+// Turns under the cloth, about two axes.
+TEST(Kinematic, turningObstacleKeepsClothOutside)
+{
+    for (const char* name : {"sphere", "torus", "box"})
+    {
+        SCOPED_TRACE(name);
+        TriangleMesh mesh;
+        ASSERT_TRUE(makeShape(name, mesh));
+        KinematicScene scene(mesh, btTransform::getIdentity(), 2.0f, btVector3(0, btScalar(1.2), 0));
+        for (int i = 0; i < 150; ++i)
+        {
+            SCOPED_TRACE("step " + std::to_string(i));
+            const btScalar time = btScalar(i) * kDt;
+            const btQuaternion turn = btQuaternion(btVector3(0, 1, 0), 3 * time) *
+                                      btQuaternion(btVector3(0, 0, 1), std::max(btScalar(0), time - 1));
+            scene.checkedStep(btTransform(turn));
+            if (HasFatalFailure()) return;
+        }
+        EXPECT_GT(scene.m_most, 100u);
+    }
+}
+
+// A beam that turns fast, about the vertical and about a level axis.
+TEST(Kinematic, fastBeamKeepsClothOutside)
+{
+    for (const btVector3& axis : {btVector3(0, 1, 0), btVector3(0, 0, 1)})
+    {
+        SCOPED_TRACE(axis.y() > 0 ? "vertical" : "level");
+        KinematicScene scene(makeBox(1.6f, 0.3f, 0.3f), btTransform::getIdentity(), 1.6f,
+                             btVector3(0, btScalar(1.1), 0));
+        for (int i = 0; i < 120; ++i)
+        {
+            SCOPED_TRACE("step " + std::to_string(i));
+            scene.checkedStep(btTransform(btQuaternion(axis, 20 * btScalar(i) * kDt)));
+            if (HasFatalFailure()) return;
+        }
+        EXPECT_GT(scene.m_most, 50u);
+    }
+}
+
+// With both of Bullet's transforms set there is no velocity and nothing on the way is touched.
+TEST(Kinematic, equalTransformsAreATeleport)
+{
+    KinematicScene scene(makeBox(4, 0.2f, 4), shiftedBy(btVector3(0, -3, 0)), 1.0f, btVector3(0, 0, 0));
+    scene.step(shiftedBy(btVector3(0, -3, 0)));
+    const btTransform above = shiftedBy(btVector3(0, 3, 0));
+    scene.m_body.setInterpolationWorldTransform(above);
+    scene.step(above);
+    EXPECT_EQ(scene.m_most, 0u);
+    EXPECT_LT(meanOf(scene.m_cloth).y(), 0);
+    scene.step(shiftedBy(btVector3(0, -3, 0)));  // and this is motion
+    EXPECT_GT(scene.m_most, 0u);
+    EXPECT_LT(meanOf(scene.m_cloth).y(), btScalar(-3));
+}
+
+// A frame of several substeps is the motion of its parts.
+TEST(Kinematic, substepsShareTheMotion)
+{
+    KinematicScene whole(makeBox(4, 0.2f, 4), btTransform::getIdentity(), 1.0f, btVector3(0, btScalar(0.15), 0));
+    KinematicScene parts(makeBox(4, 0.2f, 4), btTransform::getIdentity(), 1.0f, btVector3(0, btScalar(0.15), 0));
+    // What has just come rests in its first step.
+    whole.step(btTransform::getIdentity());
+    parts.step(btTransform::getIdentity());
+    for (int frame = 1; frame <= 20; ++frame)
+    {
+        const btVector3 shift(btScalar(0.05), btScalar(0.02), 0);
+        whole.m_body.setWorldTransform(shiftedBy(shift * btScalar(frame)));
+        whole.m_world.world().stepSimulation(4 * kDt, 4, kDt);
+        for (int part = 1; part <= 4; ++part)
+            parts.step(shiftedBy(shift * (btScalar(frame - 1) + btScalar(part) / 4)));
+        ASSERT_LT((meanOf(whole.m_cloth) - meanOf(parts.m_cloth)).length(), btScalar(0.005)) << frame;
+    }
+    EXPECT_GT(meanOf(parts.m_cloth).y(), btScalar(0.4));
+    EXPECT_GT(parts.m_most, 0u);
+}
+
+TEST(Kinematic, childOfACompoundMovesWithIt)
+{
+    Plugin plugin(hostSettings());
+    MeshShape mesh(makeBox(3, 0.2f, 3));
+    btCompoundShape compound;
+    const btTransform child(btQuaternion(btVector3(0, 1, 0), btScalar(0.5)), btVector3(0, 1, 0));
+    compound.addChildShape(child, &mesh.shape());
+    DropWorld world(&plugin);
+    btRigidBody& body = world.addKinematic(compound);
+    ClothSpec spec;
+    spec.m_centre = btVector3(0, btScalar(1.15), 0);
+    btSoftBody& cloth = world.addCloth(spec);
+    EXPECT_EQ(plugin.whyStock(&cloth, &body), "");
+    world.step(60);
+    for (int i = 1; i <= 60; ++i)
+    {
+        body.setWorldTransform(shiftedBy(btVector3(0, btScalar(0.1) * btScalar(i), 0)));
+        world.step();
+        ASSERT_GT(lowestOf(cloth), btScalar(1.1) + btScalar(0.1) * btScalar(i)) << i;
+    }
+}
+
+TEST(Kinematic, bodyThatBeginsToMoveWakesCloth)
+{
+    KinematicScene scene(makeBox(4, 0.2f, 4), btTransform::getIdentity(), 1.0f, btVector3(0, btScalar(0.15), 0));
+    for (int i = 0; i < 60; ++i)
+        scene.step(btTransform::getIdentity());
+    scene.m_cloth.forceActivationState(ISLAND_SLEEPING);
+    scene.step(btTransform::getIdentity());
+    EXPECT_FALSE(scene.m_cloth.isActive());
+    for (int i = 1; i <= 3; ++i)
+        scene.step(shiftedBy(btVector3(0, btScalar(0.002) * btScalar(i), 0)));
+    EXPECT_TRUE(scene.m_cloth.isActive());
+}
+
+TEST(KinematicMotion, isWhatVelocityAndPosesSay)
+{
+    const btTransform from = btTransform::getIdentity(), to = shiftedBy(btVector3(3, 0, 0));
+    const btVector3 none(0, 0, 0);
+    EXPECT_FALSE(motionInStep(from, to, none, none, kDt).moves()) << "no velocity: a jump";
+    EXPECT_FALSE(motionInStep(to, to, btVector3(1, 0, 0), none, kDt).moves()) << "there already";
+    const BodyMotion one = motionInStep(from, to, btVector3(3 / kDt, 0, 0), none, kDt);
+    EXPECT_TRUE(one.m_start == from && one.m_end == to);
+    const BodyMotion third = motionInStep(from, to, btVector3(1 / kDt, 0, 0), none, kDt);
+    EXPECT_TRUE(third.m_start == from);
+    EXPECT_NEAR(third.m_end.getOrigin().x(), 1, 1e-5);
+    // Jumped far and moved a little.
+    const BodyMotion mixed = motionInStep(from, to, btVector3(0, 1, 0), none, kDt);
+    EXPECT_TRUE(mixed.m_end == to);
+    EXPECT_NEAR((mixed.m_end.getOrigin() - mixed.m_start.getOrigin()).y(), kDt, 1e-6);
+    EXPECT_NEAR(mixed.m_start.getOrigin().x(), 3, 1e-6);
+}
+
+TEST(KinematicMotion, sharesTurnsAmongSubsteps)
+{
+    const btQuaternion turn(btVector3(0, 1, 0), btScalar(0.8));
+    const btTransform from = btTransform::getIdentity(), to(turn);
+    const btVector3 none(0, 0, 0), spin(0, btScalar(0.8) / (4 * kDt), 0);
+    btTransform at = from;
+    for (int left = 4; left > 0; --left)
+    {
+        const BodyMotion motion = motionInStep(at, to, none, spin, kDt);
+        EXPECT_TRUE(motion.m_start == at);
+        EXPECT_NEAR(motion.m_end.getRotation().angleShortestPath(at.getRotation()), 0.2, 2e-3);
+        at = motion.m_end;
+    }
+    EXPECT_TRUE(at == to);
+}
+}  // namespace drape::test
