@@ -124,6 +124,7 @@ void ObstacleMirror::reload(Pipeline& pipeline, const btTransform& pose)
             description.m_triangleCount = mesh.m_triangles.size() / 3;
             description.m_positions = mesh.m_positions.data();
             description.m_vertexCount = mesh.m_positions.size() / 3;
+            description.m_oneSided = m_oneSided;
             m_id = pipeline.addObstacle(description);
         }
     }
@@ -140,8 +141,9 @@ void ObstacleMirror::drop(Pipeline& pipeline)
 
 MeshId ObstacleMirror::refresh(Pipeline& pipeline, bool kinematic, const BodyMotion& motion)
 {
-    if (kinematic != m_kinematic) drop(pipeline);
+    if (kinematic != m_kinematic || m_oneSided != m_heldOneSided) drop(pipeline);
     m_kinematic = kinematic;
+    m_heldOneSided = m_oneSided;
     const btTransform pose = kinematic ? btTransform::getIdentity() : motion.m_end;
     const std::uint64_t signature = meshSignature(*m_key.m_shape);
     if (!m_read || signature != m_signature || !(pose == m_pose)) reload(pipeline, pose);

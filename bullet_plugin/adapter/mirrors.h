@@ -79,6 +79,7 @@ public:
 
     int m_owners = 0;
     std::uint64_t m_lastSeen = 0;
+    bool m_oneSided = false;  // wanted; the next refresh() heeds it
 
 private:
     void reload(Pipeline& pipeline, const btTransform& pose);
@@ -90,6 +91,7 @@ private:
     btTransform m_pose = btTransform::getIdentity();
     std::uint64_t m_signature = 0, m_topologyHash = 0, m_positionHash = 0;
     bool m_kinematic = false;
-    bool m_read = false;  // the pipeline holds what the shape held when it was last read
+    bool m_heldOneSided = false;  // by the pipeline
+    bool m_read = false;          // the pipeline holds what the shape held when it was last read
 };
 }  // namespace drape

@@ -78,6 +78,11 @@ void Plugin::obstacleChanged(const btCollisionShape* shape)
     m_state->obstacleChanged(shape);
 }
 
+void Plugin::setOneSided(const btCollisionShape* shape, bool oneSided)
+{
+    m_state->setOneSided(shape, oneSided);
+}
+
 std::string Plugin::report() const
 {
     if (!ready()) return "Drape is off: " + m_state->error().m_call;

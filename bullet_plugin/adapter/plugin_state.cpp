@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "BulletSoftBody/btSoftBodySolvers.h"
+#include "bullet_plugin/adapter/mesh_reader.h"
 
 namespace drape
 {
@@ -145,6 +146,14 @@ void PluginState::obstacleChanged(const btCollisionShape* shape)
         if (mirror->uses(shape)) mirror->requireReading();
 }
 
+void PluginState::setOneSided(const btCollisionShape* shape, bool oneSided)
+{
+    if (oneSided)
+        m_oneSided.insert(shape);
+    else
+        m_oneSided.erase(shape);
+}
+
 void PluginState::dropNotes(const btSoftBodySolver* solver)
 {
     m_notes.erase(
@@ -174,6 +183,8 @@ void PluginState::adopt(const PairNote& note)
     cloth.m_lastSeen = obstacle.m_lastSeen = m_step;
     if (cloth.m_owners == 0) cloth.requireFullCheck();
     if (obstacle.m_owners == 0) obstacle.requireReading();
+    obstacle.m_oneSided =
+        m_oneSided.count(note.m_obstacle.m_shape) + m_oneSided.count(meshShapeOf(*note.m_obstacle.m_shape)) > 0;
 
     const auto found = m_owned.find(note.m_owner);
     if (found != m_owned.end())

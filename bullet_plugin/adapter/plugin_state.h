@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <memory>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h"
@@ -65,6 +66,7 @@ public:
     void note(const void* owner, btSoftBody& cloth, const btCollisionObjectWrapper& obstacle);
     void forget(const void* owner);
     void obstacleChanged(const btCollisionShape* shape);
+    void setOneSided(const btCollisionShape* shape, bool oneSided);
     void dropNotes(const btSoftBodySolver* solver);
     std::vector<PairNote> takeNotes(const btSoftBodySolver* solver);
 
@@ -102,6 +104,7 @@ private:
     std::unordered_map<const void*, Owned> m_owned;
     std::vector<std::unique_ptr<ClothMirror>> m_cloths;
     std::vector<std::unique_ptr<ObstacleMirror>> m_obstacles;
+    std::unordered_set<const btCollisionShape*> m_oneSided;  // compared, never followed
     std::uint64_t m_step = 0;
 };
 }  // namespace drape

@@ -66,6 +66,11 @@ public:
     // that touch one of the vertices that are sampled each step are noticed without it.
     void obstacleChanged(const btCollisionShape* shape);
 
+    // Whether only a mesh shape's front is solid, the side from which its triangles' corners run counter-clockwise:
+    // cloth that is behind comes out instead of being caught inside. Off unless it is switched on. The shape (a scaled
+    // one's own, or the mesh shape that it shows) is remembered by its address until it is switched off again.
+    void setOneSided(const btCollisionShape* shape, bool oneSided);
+
     // For the other classes of this library.
     const std::shared_ptr<PluginState>& state() const { return m_state; }
 
