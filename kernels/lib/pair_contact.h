@@ -34,6 +34,35 @@ typedef struct ObstacleView
     const DRAPE_GLOBAL NormalCone* m_edgeCones;
 } ObstacleView;
 
+DRAPE_FUNCTION ClothView clothView(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end,
+                                   const DRAPE_GLOBAL Triangle* triangles, const DRAPE_GLOBAL Edge* edges,
+                                   DRAPE_UINT nodeCount, DRAPE_UINT triangleCount, DRAPE_UINT mode, int complete)
+{
+    ClothView view;
+    view.m_start = start;
+    view.m_end = end;
+    view.m_triangles = triangles;
+    view.m_edges = edges;
+    view.m_nodeCount = nodeCount;
+    view.m_triangleCount = triangleCount;
+    view.m_mode = mode;
+    view.m_complete = complete;
+    view.m_motion = 0;
+    return view;
+}
+
+DRAPE_FUNCTION ObstacleView obstacleView(const DRAPE_GLOBAL float* positions, const DRAPE_GLOBAL Triangle* triangles,
+                                         const DRAPE_GLOBAL NormalCone* vertexCones,
+                                         const DRAPE_GLOBAL NormalCone* edgeCones)
+{
+    ObstacleView view;
+    view.m_positions = positions;
+    view.m_triangles = triangles;
+    view.m_vertexCones = vertexCones;
+    view.m_edgeCones = edgeCones;
+    return view;
+}
+
 // A node at the step's start, as the obstacle at hand sees it.
 DRAPE_FUNCTION Vec3 nodeStart(const ClothView* cloth, DRAPE_UINT node)
 {

@@ -19,7 +19,8 @@ public:
         : m_device(device), m_cloth(makeSide({step.m_cloth})), m_obstacle(makeSide({step.m_obstacle}))
     {
         m_cloth.m_end = step.m_end;
-        m_stage.create(device, programOf(device, "narrow_phase"), programOf(device, "compaction"));
+        m_stage.create(
+            device, [&](const char* name) { return programOf(device, name); }, false);
         m_thickness = {step.m_thickness};
         m_pairs = allPairs(m_cloth, m_obstacle);
         m_stage.resizeSlots(

@@ -10,12 +10,21 @@ constexpr std::size_t kItemsPerUnitGpu = 1024;  // work-items per compute unit t
 constexpr std::size_t kItemsPerUnitCpu = 256;   // four groups per core, so that uneven ones even out
 }  // namespace
 
-void NarrowPhaseStage::create(Device& device, const cl::Program& narrowPhase, const cl::Program& compaction)
+void NarrowPhaseStage::create(Device& device, const ProgramLoader& load, bool features)
 {
-    m_test.create(device, narrowPhase, "narrowPhaseTest");
-    m_feature.create(device, narrowPhase, "narrowPhaseFeature");
-    m_swept.create(device, narrowPhase, "narrowPhaseSwept");
-    m_intersect.create(device, narrowPhase, "narrowPhaseIntersect");
+    if (features)
+    {
+        const cl::Program narrowPhase = load("narrow_phase");
+        m_feature.create(device, narrowPhase, "narrowPhaseFeature");
+        m_swept.create(device, narrowPhase, "narrowPhaseSwept");
+    }
+    else
+    {
+        const cl::Program narrowPhase = load("narrow_phase_pairs");
+        m_test.create(device, narrowPhase, "narrowPhaseTest");
+        m_intersect.create(device, narrowPhase, "narrowPhaseIntersect");
+    }
+    const cl::Program compaction = load("compaction");
     m_count.create(device, compaction, "compactionCount");
     m_scan.create(device, compaction, "compactionScan");
     m_place.create(device, compaction, "compactionPlace");

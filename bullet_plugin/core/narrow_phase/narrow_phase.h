@@ -69,7 +69,8 @@ struct NarrowPhaseBuffers
 class NarrowPhaseStage
 {
 public:
-    void create(Device& device, const cl::Program& narrowPhase, const cl::Program& compaction);
+    // features: for what a cull leaves, else for pairs of triangles; the other's kernels are not built.
+    void create(Device& device, const ProgramLoader& load, bool features);
 
     // Room for the slots of a cloth side: its nodes, faces and edges.
     void resizeSlots(Device& device, std::size_t slotCount);

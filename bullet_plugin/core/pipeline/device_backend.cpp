@@ -33,8 +33,8 @@ DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& set
         m_broadPhase.create(*m_device, m_settings.m_methods.m_traversal,
                             [&](const char* name) { return program(name, counting); });
     }
-    const cl::Program narrowPhase = program("narrow_phase", PatchCullStage::defines(*m_device));
-    m_narrowPhase.create(*m_device, narrowPhase, program("compaction"));
+    m_narrowPhase.create(
+        *m_device, [this](const char* name) { return program(name, PatchCullStage::defines(*m_device)); }, patches());
     m_place.create(*m_device, program("place_obstacles"), "placeObstacles");
     m_motions.reserve(*m_device, 1);
     m_candidates.reserve(*m_device, 1);
