@@ -197,21 +197,31 @@ static void mergeSplits(__global BvhNode* nodes, __global const uint* splits, co
     barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
     while (*pending > 0)
     {
-        uint merged = 0;
-        for (uint i = get_local_id(0); i < count; i += get_local_size(0))
+        // First all look, then all merge: a node that is being written may look complete before it is.
+        for (uint first = 0; first < count; first += 32 * get_local_size(0))
         {
-            const uint split = far ? far[i] : base + near[i];
-            const uint place = splitPlace(splits[split]);
-            if (isComplete(nodes + place) || !isComplete(nodes + 2 * split + 1) || !isComplete(nodes + 2 * split + 2))
+            uint ready = 0;
+            for (uint k = 0; k < 32; ++k)
             {
-                continue;
+                const uint i = first + k * get_local_size(0) + get_local_id(0);
+                if (i >= count) break;
+                const uint split = far ? far[i] : base + near[i];
+                if (!isComplete(nodes + splitPlace(splits[split])) && isComplete(nodes + 2 * split + 1) &&
+                    isComplete(nodes + 2 * split + 2))
+                {
+                    ready |= 1u << k;
+                }
             }
-            mergePair(nodes, split, place);
-            ++merged;
+            barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
+            if (ready != 0) atomic_sub(pending, popcount(ready));
+            for (; ready != 0; ready &= ready - 1)
+            {
+                const uint i = first + (31 - clz(ready & -ready)) * get_local_size(0) + get_local_id(0);
+                const uint split = far ? far[i] : base + near[i];
+                mergePair(nodes, split, splitPlace(splits[split]));
+            }
+            barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
         }
-        barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
-        if (merged > 0) atomic_sub(pending, merged);
-        barrier(CLK_LOCAL_MEM_FENCE);
     }
 }
 

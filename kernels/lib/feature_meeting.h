@@ -1,8 +1,9 @@
 // Whether a cloth feature and an obstacle feature meet during the step.
 //
 // The certified search of ccd.h answers it; it is asked only where the features move far enough. Two features that meet
-// are, at the step's start and at its end, no further apart than the cloth's feature moves; the volume that the two
-// span, divided by the area that belongs to it, bounds that distance from below.
+// are, at the step's start and at its end, no further apart than the cloth's feature moves. That distance is bounded
+// from below by the volume that the two span, divided by the area that belongs to it, and, where the edges are nearly
+// parallel or the vertex is beside the face, by planes between the two at the step's end.
 #ifndef DRAPE_LIB_FEATURE_MEETING_H
 #define DRAPE_LIB_FEATURE_MEETING_H
 
@@ -31,6 +32,13 @@ DRAPE_FUNCTION int volumeAdmitsMeeting(float volume, float area, float distance,
     return drapeAbs(volume) <= area * distance + 10.0f * DRAPE_SEAM * (extent * extent * extent);
 }
 
+// Whether the plane with the given normal (any length) proves two features further apart; see provenApart().
+DRAPE_FUNCTION int furtherApart(Vec3 n, float low, float high, float distance, PairBounds bounds)
+{
+    bounds.m_reach = distance;
+    return provenApart(n, low, high, bounds);
+}
+
 // A moving face and a resting vertex. s0, s1: the volumes at the step's start and end.
 DRAPE_FUNCTION int faceMayMeet(const MovingFace* face, Vec3 vertex, float s0, float s1, PairBounds bounds)
 {
@@ -46,7 +54,12 @@ DRAPE_FUNCTION int faceMayMeet(const MovingFace* face, Vec3 vertex, float s0, fl
                                  vec3Least(f1.m_p[1], f1.m_p[2]));
     const Vec3 most = vec3Most(vec3Most(vec3Most(f0.m_p[0], f0.m_p[1]), vec3Most(f0.m_p[2], f1.m_p[0])),
                                vec3Most(f1.m_p[1], f1.m_p[2]));
-    return !boxesApart(least, most, vertex, vertex, DRAPE_SEAM * bounds.m_extent);
+    if (boxesApart(least, most, vertex, vertex, DRAPE_SEAM * bounds.m_extent)) return 0;
+    const Vec3 weights = closestOnTriangle(vertex, f1.m_p[0], f1.m_p[1], f1.m_p[2]);
+    const Vec3 offset = vec3Sub(featurePoint(f1, weights), vertex);
+    const float low =
+        drapeMin(drapeMin(vec3Dot(offset, f1.m_p[0]), vec3Dot(offset, f1.m_p[1])), vec3Dot(offset, f1.m_p[2]));
+    return !furtherApart(offset, low, vec3Dot(offset, vertex), distance, bounds);
 }
 
 // An edge moving from e0 to e1 and a resting edge. v0, v1: the volumes at the step's start and end.
@@ -62,7 +75,14 @@ DRAPE_FUNCTION int edgeMayMeet(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, fl
         return 0;
     const Vec3 least = vec3Least(vec3Least(e0.m_a, e0.m_b), vec3Least(e1.m_a, e1.m_b));
     const Vec3 most = vec3Most(vec3Most(e0.m_a, e0.m_b), vec3Most(e1.m_a, e1.m_b));
-    return !boxesApart(least, most, vec3Least(o.m_a, o.m_b), vec3Most(o.m_a, o.m_b), DRAPE_SEAM * bounds.m_extent);
+    if (boxesApart(least, most, vec3Least(o.m_a, o.m_b), vec3Most(o.m_a, o.m_b), DRAPE_SEAM * bounds.m_extent))
+        return 0;
+    float s, t;
+    closestOnSegments(e1.m_a, e1.m_b, o.m_a, o.m_b, &s, &t);
+    const Vec3 offset = vec3Sub(vec3Mix(e1.m_a, e1.m_b, s), vec3Mix(o.m_a, o.m_b, t));
+    const float low = drapeMin(vec3Dot(offset, e1.m_a), vec3Dot(offset, e1.m_b));
+    const float high = drapeMax(vec3Dot(offset, o.m_a), vec3Dot(offset, o.m_b));
+    return !furtherApart(offset, low, high, distance, bounds);
 }
 
 DRAPE_FUNCTION CcdResult meetFace(const MovingFace* face, Vec3 vertex)
