@@ -42,6 +42,11 @@ if(DRAPE_BUILD_BENCHMARKS AND (PROJECT_IS_TOP_LEVEL OR NOT DRAPE_BUILD_BENCHMARK
   find_package(nlohmann_json CONFIG ${need})
   if(PKG_CONFIG_FOUND)
     pkg_check_modules(fcl ${need} IMPORTED_TARGET fcl)
+    if(TARGET PkgConfig::fcl)
+      # fcl.pc asks for C++11; CMake 3.28 puts that behind our own C++17, where it would win.
+      list(FILTER fcl_CFLAGS_OTHER EXCLUDE REGEX "^-std=")
+      set_property(TARGET PkgConfig::fcl PROPERTY INTERFACE_COMPILE_OPTIONS ${fcl_CFLAGS_OTHER})
+    endif()
   endif()
   if(DrapeEmbree_FOUND AND TBB_FOUND AND CLI11_FOUND AND nlohmann_json_FOUND AND fcl_FOUND)
     set(DRAPE_WITH_BENCHMARKS ON)

@@ -17,7 +17,7 @@ packages=(
   # benchmarks: peers, plots
   libfcl-dev libtbb-dev python3-matplotlib
   # tests; fuzzing
-  libgtest-dev clang libclang-rt-14-dev
+  libgtest-dev clang libclang-rt-dev
   # data: the bunny; unpacking
   glmark2-data xz-utils
 )
