@@ -271,17 +271,15 @@ __kernel void patchCull(__global const uint* restrict clothOrder, __global const
         team->m_place = 0;
     }
     const PatchArrays arrays = {wideNodes, levels, levelCount, patches, patchSizes, faces, vertices, edges};
-    TestList list = {tests, capacity, limit, counters, 0};
+    TestList list = {tests, capacity, limit, counters, 0};  // those that rest first
     Walk walk = {start, end, triangle, cloth, thickness + triangle->m_mesh * obstacleMeshes, reachScale, motions, motionCount, 0};
-    Dop dop;
-    triangleVolume(&dop, triangle, start, end, clothRadius);
-    if (dop.m_low[0] <= dop.m_high[0]) teamWalk(team, &arrays, &walk, &dop, &list);
-    for (list.m_motion = 1; list.m_motion <= motionCount; ++list.m_motion)
+    for (; list.m_motion <= motionCount; ++list.m_motion)
     {
         teamSync();
         if (team->m_place > limit) break;
-        walk.m_motion = motions + (list.m_motion - 1);
-        if (walk.m_thickness[walk.m_motion->m_mesh] < 0.0f) continue;
+        walk.m_motion = list.m_motion == 0 ? 0 : motions + (list.m_motion - 1);
+        if (walk.m_motion && walk.m_thickness[walk.m_motion->m_mesh] < 0.0f) continue;
+        Dop dop;
         if (volumeSeen(&dop, walk.m_motion, triangle, start, end, clothRadius)) teamWalk(team, &arrays, &walk, &dop, &list);
     }
     teamFlush(team, &list);

@@ -42,8 +42,9 @@ DRAPE_FUNCTION const DRAPE_GLOBAL ObstacleMotion* findMotion(const DRAPE_GLOBAL 
     return 0;
 }
 
-// The volume of a cloth triangle over the step as the obstacle sees it, see triangleVolume. Returns whether it comes
-// near the obstacle at all; the volume holds the radius, the obstacle's box its positions.
+// The volume of a cloth triangle over the step as the obstacle sees it, see cornersVolume; motion is null for one that
+// rests. Returns whether it can come near the obstacle: it has a valid corner, and where the obstacle moves it meets
+// the obstacle's box. The volume holds the radius, the box the obstacle's positions.
 DRAPE_FUNCTION int volumeSeen(Dop* dop, const DRAPE_GLOBAL ObstacleMotion* motion,
                               const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
                               const DRAPE_GLOBAL float* end, float radius)
@@ -55,8 +56,8 @@ DRAPE_FUNCTION int volumeSeen(Dop* dop, const DRAPE_GLOBAL ObstacleMotion* motio
         p[3 + k] = vec3Load(end, triangle->m_vertices[k]);
     }
     cornersVolume(dop, p, 1, radius);
-    int near = 1;
-    for (int axis = 0; axis < 3; ++axis)
+    int near = dop->m_low[0] <= dop->m_high[0];
+    for (int axis = 0; axis < 3 && motion; ++axis)
     {
         near &= (dop->m_low[axis] <= motion->m_high[axis]) & (dop->m_high[axis] >= motion->m_low[axis]);
     }
