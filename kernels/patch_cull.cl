@@ -272,19 +272,18 @@ __kernel void patchCull(__global const uint* restrict clothOrder, __global const
         team->m_place = 0;
     }
     const PatchArrays arrays = {wideNodes, levels, levelCount, patches, patchSizes, faces, vertices, edges};
-    TestList list = {tests, capacity, limit, counters, 0};
+    TestList list = {tests, capacity, limit, counters, 0};  // those that rest first
     Walk walk = {start, end, triangle, cloth, thickness + triangle->m_mesh * obstacleMeshes, reachScale, mode, motions,
                  motionCount, 0};
-    Dop dop;
-    stepVolume(&dop, triangle, start, end, clothRadius, mode);
-    if (dop.m_low[0] <= dop.m_high[0]) teamWalk(team, &arrays, &walk, &dop, &list);
-    for (list.m_motion = 1; list.m_motion <= motionCount; ++list.m_motion)
+    for (; list.m_motion <= motionCount; ++list.m_motion)
     {
         teamSync();
         if (team->m_place > limit) break;
-        walk.m_motion = motions + (list.m_motion - 1);
-        if (walk.m_thickness[walk.m_motion->m_mesh] < 0.0f) continue;
-        if (volumeSeen(&dop, walk.m_motion, triangle, start, end, clothRadius)) teamWalk(team, &arrays, &walk, &dop, &list);
+        walk.m_motion = list.m_motion == 0 ? 0 : motions + (list.m_motion - 1);
+        if (walk.m_motion && walk.m_thickness[walk.m_motion->m_mesh] < 0.0f) continue;
+        Dop dop;
+        if (!volumeSeen(&dop, walk.m_motion, triangle, start, end, clothRadius, mode)) continue;
+        teamWalk(team, &arrays, &walk, &dop, &list);
     }
     teamFlush(team, &list);
 }

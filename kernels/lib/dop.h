@@ -187,30 +187,6 @@ DRAPE_FUNCTION int triangleVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangl
     return cornersVolume(dop, p, moves, radius);
 }
 
-// Whether a corner moves further than the distance, m; also where a position is NaN.
-DRAPE_FUNCTION int triangleMovesFar(const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
-                                    const DRAPE_GLOBAL float* end, float distance)
-{
-    for (int k = 0; k < 3; ++k)
-    {
-        const DRAPE_UINT vertex = triangle->m_vertices[k];
-        const Vec3 way = vec3Sub(vec3Load(end, vertex), vec3Load(start, vertex));
-        if (!(vec3Dot(way, way) <= distance * distance)) return 1;
-    }
-    return 0;
-}
-
-// Volume in which to look for what may be in contact with a triangle. mode: DRAPE_DISCRETE …. What a triangle meets
-// that moves less than the radius is within the radius of where it ends: in an automatic step only what moves further
-// is swept.
-DRAPE_FUNCTION int stepVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
-                              const DRAPE_GLOBAL float* end, float radius, DRAPE_UINT mode)
-{
-    const int swept =
-        mode == DRAPE_CONTINUOUS || (mode == DRAPE_AUTOMATIC && triangleMovesFar(triangle, start, end, 0.9f * radius));
-    return triangleVolume(dop, triangle, swept ? start : end, end, radius);
-}
-
 // A leaf's volume for a step. A negative radius takes the triangle's mesh out of the step: the volume is empty. Returns
 // how many vertices are NaN or infinite, counted by the triangle that owns them.
 DRAPE_FUNCTION DRAPE_UINT leafVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,

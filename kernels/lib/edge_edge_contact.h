@@ -59,7 +59,7 @@ DRAPE_FUNCTION int edgeEdgeContact(FeatureEdge e0, FeatureEdge e1, FeatureEdge o
     if (edgeMayMeet(e0, e1, o, v0, v1, bounds))
     {
         if (!bounds.m_complete) return DRAPE_UNDECIDED;
-        const CcdResult met = meetEdge(e0, e1, o);
+        const CcdResult met = meetEdge(e0, e1, o, bounds);
         if (met.m_hit && edgeEdgeMet(e0, e1, o, met.m_time, v0, crossed, bounds, contact)) return DRAPE_IS_CONTACT;
     }
     if (crossed) return DRAPE_NO_CONTACT;

@@ -46,7 +46,7 @@ DRAPE_FUNCTION int faceVertexContact(const MovingFace* face, const DRAPE_UINT* b
     if (faceMayMeet(face, vertex, s0, s1, bounds))
     {
         if (!bounds.m_complete) return DRAPE_UNDECIDED;
-        const CcdResult met = meetFace(face, vertex);
+        const CcdResult met = meetFace(face, vertex, bounds);
         if (met.m_hit && faceVertexMet(f0, f1, vertex, met.m_time, side, crossed, contact)) return DRAPE_IS_CONTACT;
     }
     if (crossed) return DRAPE_NO_CONTACT;

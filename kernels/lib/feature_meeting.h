@@ -12,9 +12,23 @@
 
 DRAPE_NAMESPACE_BEGIN
 
+// The coarsest search for the time of a meeting, as a part of the step.
+#define DRAPE_MEETING_TIME 0.03125f
+
 DRAPE_FUNCTION float distanceMoved(Vec3 from, Vec3 to)
 {
     return vec3Length(vec3Sub(to, from));
+}
+
+DRAPE_FUNCTION float faceMotion(const MovingFace* face)
+{
+    const FeatureTriangle f0 = face->m_start, f1 = face->m_end;
+    return drapeMax(drapeMax(distanceMoved(f0.m_p[0], f1.m_p[0]), distanceMoved(f0.m_p[1], f1.m_p[1])),
+                    distanceMoved(f0.m_p[2], f1.m_p[2]));
+}
+DRAPE_FUNCTION float edgeMotion(FeatureEdge e0, FeatureEdge e1)
+{
+    return drapeMax(distanceMoved(e0.m_a, e1.m_a), distanceMoved(e0.m_b, e1.m_b));
 }
 
 // motion: m, of the fastest corner. Grown by far more than the search's tolerance and all rounding, a share of the
@@ -44,9 +58,7 @@ DRAPE_FUNCTION int faceMayMeet(const MovingFace* face, Vec3 vertex, float s0, fl
 {
     if (bounds.m_mode != DRAPE_AUTOMATIC) return bounds.m_mode == DRAPE_CONTINUOUS;
     const FeatureTriangle f0 = face->m_start, f1 = face->m_end;
-    const float motion = drapeMax(drapeMax(distanceMoved(f0.m_p[0], f1.m_p[0]), distanceMoved(f0.m_p[1], f1.m_p[1])),
-                                  distanceMoved(f0.m_p[2], f1.m_p[2]));
-    const float distance = meetingDistance(motion, bounds);
+    const float distance = meetingDistance(faceMotion(face), bounds);
     if (!volumeAdmitsMeeting(s0, vec3Length(face->m_areaStart), distance, bounds) ||
         !volumeAdmitsMeeting(s1, face->m_areaEndLength, distance, bounds))
         return 0;
@@ -67,8 +79,7 @@ DRAPE_FUNCTION int edgeMayMeet(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, fl
 {
     if (bounds.m_mode != DRAPE_AUTOMATIC) return bounds.m_mode == DRAPE_CONTINUOUS;
     const Vec3 along = vec3Sub(o.m_b, o.m_a);
-    const float motion = drapeMax(distanceMoved(e0.m_a, e1.m_a), distanceMoved(e0.m_b, e1.m_b));
-    const float distance = meetingDistance(motion, bounds);
+    const float distance = meetingDistance(edgeMotion(e0, e1), bounds);
     const float area0 = vec3Length(vec3Cross(vec3Sub(e0.m_b, e0.m_a), along));
     const float area1 = vec3Length(vec3Cross(vec3Sub(e1.m_b, e1.m_a), along));
     if (!volumeAdmitsMeeting(v0, area0, distance, bounds) || !volumeAdmitsMeeting(v1, area1, distance, bounds))
@@ -85,18 +96,28 @@ DRAPE_FUNCTION int edgeMayMeet(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, fl
     return !furtherApart(offset, low, high, distance, bounds);
 }
 
-DRAPE_FUNCTION CcdResult meetFace(const MovingFace* face, Vec3 vertex)
+// The search for a time costs three times that for a meeting at the defaults of ccd.h. A contact needs its place to a
+// hundredth of the reach, so what moves little needs the time to less.
+DRAPE_FUNCTION CcdSettings meetingSettings(float motion, PairBounds bounds)
+{
+    CcdSettings settings = ccdDefaults();
+    const float wanted = 0.01f * drapeRatio(bounds.m_reach, motion);
+    settings.m_timeTolerance = drapeMax(settings.m_timeTolerance, drapeMin(wanted, DRAPE_MEETING_TIME));
+    return settings;
+}
+
+DRAPE_FUNCTION CcdResult meetFace(const MovingFace* face, Vec3 vertex, PairBounds bounds)
 {
     const Vec3 start[4] = {vertex, face->m_start.m_p[0], face->m_start.m_p[1], face->m_start.m_p[2]};
     const Vec3 end[4] = {vertex, face->m_end.m_p[0], face->m_end.m_p[1], face->m_end.m_p[2]};
-    return ccdOfKind(DRAPE_VERTEX_FACE, start, end, ccdDefaults());
+    return ccdOfKind(DRAPE_VERTEX_FACE, start, end, meetingSettings(faceMotion(face), bounds));
 }
 
-DRAPE_FUNCTION CcdResult meetEdge(FeatureEdge e0, FeatureEdge e1, FeatureEdge o)
+DRAPE_FUNCTION CcdResult meetEdge(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, PairBounds bounds)
 {
     const Vec3 start[4] = {e0.m_a, e0.m_b, o.m_a, o.m_b};
     const Vec3 end[4] = {e1.m_a, e1.m_b, o.m_a, o.m_b};
-    return ccdOfKind(DRAPE_EDGES, start, end, ccdDefaults());
+    return ccdOfKind(DRAPE_EDGES, start, end, meetingSettings(edgeMotion(e0, e1), bounds));
 }
 
 DRAPE_NAMESPACE_END

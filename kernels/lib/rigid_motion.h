@@ -42,11 +42,28 @@ DRAPE_FUNCTION const DRAPE_GLOBAL ObstacleMotion* findMotion(const DRAPE_GLOBAL 
     return 0;
 }
 
-// The volume of a cloth triangle over the step as the obstacle sees it, see triangleVolume. Returns whether it comes
-// near the obstacle at all; the volume holds the radius, the obstacle's box its positions.
+// Whether a step looks at the way of a triangle from its first three corners to its last. What it meets that moves less
+// than the radius is within the radius of where it ends: in an automatic step only what moves further is swept. A NaN
+// position counts as far.
+DRAPE_FUNCTION int isSwept(const Vec3* p, float radius, DRAPE_UINT mode)
+{
+    if (mode != DRAPE_AUTOMATIC) return mode == DRAPE_CONTINUOUS;
+    const float near = 0.9f * radius;
+    for (int k = 0; k < 3; ++k)
+    {
+        const Vec3 way = vec3Sub(p[3 + k], p[k]);
+        if (!(vec3Dot(way, way) <= near * near)) return 1;
+    }
+    return 0;
+}
+
+// The volume in which to look for what may be in contact with a cloth triangle over the step as the obstacle sees it,
+// see cornersVolume; motion is null for one that rests; mode: DRAPE_DISCRETE …. Returns whether it can come near the
+// obstacle: it has a valid corner, and where the obstacle moves it meets the obstacle's box. The volume holds the
+// radius, the box the obstacle's positions.
 DRAPE_FUNCTION int volumeSeen(Dop* dop, const DRAPE_GLOBAL ObstacleMotion* motion,
                               const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
-                              const DRAPE_GLOBAL float* end, float radius)
+                              const DRAPE_GLOBAL float* end, float radius, DRAPE_UINT mode)
 {
     Vec3 p[6];
     for (int k = 0; k < 3; ++k)
@@ -54,9 +71,12 @@ DRAPE_FUNCTION int volumeSeen(Dop* dop, const DRAPE_GLOBAL ObstacleMotion* motio
         p[k] = startSeen(motion, vec3Load(start, triangle->m_vertices[k]));
         p[3 + k] = vec3Load(end, triangle->m_vertices[k]);
     }
-    cornersVolume(dop, p, 1, radius);
-    int near = 1;
-    for (int axis = 0; axis < 3; ++axis)
+    const int swept = isSwept(p, radius, mode);
+    for (int k = 0; k < 3 && !swept; ++k)
+        p[k] = p[3 + k];
+    cornersVolume(dop, p, swept, radius);
+    int near = dop->m_low[0] <= dop->m_high[0];
+    for (int axis = 0; axis < 3 && motion; ++axis)
     {
         near &= (dop->m_low[axis] <= motion->m_high[axis]) & (dop->m_high[axis] >= motion->m_low[axis]);
     }
@@ -74,7 +94,7 @@ DRAPE_FUNCTION void growByMotions(DRAPE_GLOBAL BvhNode* leaf, const DRAPE_GLOBAL
     {
         Dop dop;
         if (thickness[motions[k].m_mesh] < 0.0f) continue;
-        if (!volumeSeen(&dop, motions + k, triangle, start, end, radius)) continue;
+        if (!volumeSeen(&dop, motions + k, triangle, start, end, radius, DRAPE_CONTINUOUS)) continue;
         for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
         {
             leaf->m_low[i] = drapeMin(leaf->m_low[i], dop.m_low[i]);
