@@ -11,7 +11,9 @@
 // linear in the contacts, piterations + kClosingRounds rounds at most.
 #pragma once
 
-#include "bullet_plugin/adapter/collision_step.h"
+#include "bullet_plugin/adapter/body_contacts.h"
+#include "bullet_plugin/adapter/contact_rounds.h"
+#include "bullet_plugin/adapter/found_contacts.h"
 
 namespace drape
 {
@@ -20,6 +22,6 @@ constexpr int kClosingRounds = 8;
 // Worst violation that may be left, as a share of the thickness.
 constexpr btScalar kClosingTolerance = btScalar(0.01);
 
-// Runs the body's solveConstraints() with its contacts. Returns the time of all but Bullet's part, ms.
-double solveBody(BodyContacts& body);
+// Runs the body's solveConstraints() with its contacts. Returns the time of Bullet's part, ms.
+double solveBody(const BodyContacts& contacts, const FoundContacts& found, ContactRounds& rounds);
 }  // namespace drape

@@ -22,6 +22,7 @@ btScalar shareLeft(const StepContact& contact)
 
 bool cutAtImpacts(btSoftBody& body, const std::vector<StepContact>& contacts, Cut cut)
 {
+    if (contacts.empty()) return false;
     std::vector<btScalar> left(static_cast<std::size_t>(body.m_nodes.size()), btScalar(1));
     btScalar least = 1;
     for (const StepContact& contact : contacts)

@@ -16,6 +16,7 @@
 #include "BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h"
 #include "BulletSoftBody/btSoftBodyConcaveCollisionAlgorithm.h"
 #include "drape/plugin.h"
+#include "bullet_plugin/adapter/found_contacts.h"
 #include "bullet_plugin/adapter/mirrors.h"
 #include "bullet_plugin/adapter/pair_algorithm.h"
 #include "bullet_plugin/core/pipeline.h"
@@ -68,7 +69,7 @@ public:
     void dropOldMirrors();
 
     StepStatistics m_statistics;
-    std::vector<ContactInfo> m_contacts;
+    FoundContacts m_found;
 
 private:
     struct Owned

@@ -46,6 +46,13 @@ struct ContactView
     float m_time;             // time of impact in [0, 1]
 };
 
+// The cloth feature of a contact, which all contacts of one slot share.
+struct ClothFeature
+{
+    MeshId m_cloth;
+    std::int32_t m_nodes[3];  // indices in that cloth; -1 where unused
+};
+
 class Pipeline
 {
 public:
@@ -91,6 +98,8 @@ public:
 
     // Resolves a contact of the last finish().
     ContactView view(const Contact& contact) const;
+    // The cloth's part of it, for less.
+    ClothFeature clothFeature(const Contact& contact) const;
 
 private:
     Pipeline();
