@@ -65,7 +65,6 @@ void CollisionStep::uploadNodes()
     for (std::size_t i = 0; i < m_bodies.size(); ++i)
     {
         const MeshId cloth = m_bodies[i].m_cloth;
-        m_bodies[i].m_limit.record(*m_bodies[i].m_body);
         m_mirrors[i]->writeNodes(m_state.pipeline().clothStart(cloth), m_state.pipeline().clothEnd(cloth));
     }
 }
@@ -87,9 +86,12 @@ void CollisionStep::submit()
     for (const Pair& pair : m_pairs)
         m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_thickness));
     m_state.pipeline().submit();
+    // While the device works.
+    for (BodyContacts& body : m_bodies)
+        body.m_limit.record(*body.m_body);
 }
 
-void CollisionStep::receive(const std::vector<Contact>& contacts)
+void CollisionStep::receive(const ContactList& contacts)
 {
     BodyContacts* body = nullptr;
     for (std::size_t i = 0; i < contacts.size();)
@@ -112,7 +114,7 @@ void CollisionStep::receiveAll()
 {
     for (BodyContacts& body : m_bodies)
         body.m_features.clear();
-    const std::vector<Contact>& contacts = m_state.pipeline().finish();
+    const ContactList contacts = m_state.pipeline().finish();
     const StepStatistics before = m_state.m_statistics;
     StepStatistics& all = m_state.m_statistics;
     all = m_state.pipeline().statistics();

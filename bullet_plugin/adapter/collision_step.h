@@ -40,7 +40,7 @@ private:
     void uploadNodes();
     void submit();
     void receiveAll();
-    void receive(const std::vector<Contact>& contacts);
+    void receive(const ContactList& contacts);
     bool cutAtImpactsOf(BodyContacts& body, Cut cut);
     bool cutPaths();
     bool cutStrayed(const std::vector<bool>& strayed, Cut cut);

@@ -82,8 +82,8 @@ int ContactRounds::addMoved(int node)
 {
     const NodePaths& paths = m_contacts->m_limit.paths();
     const std::size_t at = static_cast<std::size_t>(node);
-    m_places.push_back(paths.m_end[at]);
-    m_moved.push_back(Moved{paths.m_start[at], movableInverseMass(m_body->m_nodes[node]), node, false});
+    m_places.push_back(Place{paths.m_end[at], paths.m_start[at]});
+    m_moved.push_back(Moved{paths.m_inverseMass[at], node, false});
     m_farthest =
         std::max(m_farthest, std::max(largestCoordinate(paths.m_start[at]), largestCoordinate(paths.m_end[at])));
     return static_cast<int>(m_moved.size()) - 1;
@@ -99,7 +99,9 @@ ContactRounds::Row ContactRounds::makeRow(const Block& block, int lane) const
         const btScalar weight = contact.m_weights[k];
         row.m_moved[k] = block.m_moved[k];
         row.m_weights[k] = weight;
-        row.m_mobility += weight * weight * m_moved[static_cast<std::size_t>(row.m_moved[k])].m_inverseMass;
+        const btScalar inverseMass = m_moved[static_cast<std::size_t>(row.m_moved[k])].m_inverseMass;
+        row.m_shares[k] = weight * inverseMass;
+        row.m_mobility += weight * weight * inverseMass;
     }
     row.m_normal = contact.m_normal;
     row.m_level = contact.m_normal.dot(contact.m_point) + contact.m_thickness + contact.m_targetGap;
@@ -128,61 +130,63 @@ void ContactRounds::restart()
     m_holding.clear();
 }
 
-btVector3 ContactRounds::pointOf(const Row& row) const
-{
-    btVector3 sum(0, 0, 0);
-    for (int k = 0; k < row.m_count; ++k)
-        sum += m_places[static_cast<std::size_t>(row.m_moved[k])] * row.m_weights[k];
-    return sum;
-}
-
-void ContactRounds::shift(const Row& row, const btVector3& impulse)
-{
-    for (int k = 0; k < row.m_count; ++k)
-    {
-        const std::size_t at = static_cast<std::size_t>(row.m_moved[k]);
-        Moved& moved = m_moved[at];
-        m_places[at] += impulse * (row.m_weights[k] * moved.m_inverseMass);
-        moved.m_shifted = true;
-    }
-}
-
 // Returns whether the contact had anything to do; `worst` grows to its violation.
 bool ContactRounds::project(Row& row, btScalar& worst)
 {
-    if (!(row.m_mobility > 0)) return false;
-    const btScalar violation = row.m_level - row.m_normal.dot(pointOf(row));
+    if (row.m_count == 1) return projectNodes<1>(row, worst);
+    return row.m_count == 2 ? projectNodes<2>(row, worst) : projectNodes<3>(row, worst);
+}
+
+template <int count>
+bool ContactRounds::projectNodes(Row& row, btScalar& worst)
+{
+    Place* places[count];
+    btVector3 x[count], point(0, 0, 0);
+    for (int k = 0; k < count; ++k)
+    {
+        places[k] = &m_places[static_cast<std::size_t>(row.m_moved[k])];
+        x[k] = places[k]->m_x;
+        point += x[k] * row.m_weights[k];
+    }
+    const btVector3 normal = row.m_normal;
+    const btScalar violation = row.m_level - normal.dot(point);
     if (!(violation > 0) && !(row.m_multiplier > 0)) return false;  // also for NaN
     worst = std::max(worst, violation);
     const btScalar pushed = std::max(btScalar(0), row.m_multiplier + violation / row.m_mobility);
-    shift(row, row.m_normal * (pushed - row.m_multiplier));
+    const btVector3 push = normal * (pushed - row.m_multiplier);
+    btVector3 sliding(0, 0, 0);
+    for (int k = 0; k < count; ++k)
+    {
+        x[k] += push * row.m_shares[k];
+        sliding += x[k] * row.m_weights[k];
+    }
+
+    // Friction: takes the contact's motion along the surface back, within the cone.
+    for (int k = 0; k < count; ++k)
+        sliding -= places[k]->m_start * row.m_weights[k];
+    sliding -= normal * normal.dot(sliding);
+    btVector3 held = row.m_held - sliding / row.m_mobility;
+    const btScalar most = row.m_friction * pushed;
+    const btScalar wanted2 = held.length2();
+    if (wanted2 > most * most) held *= most / btSqrt(wanted2);
+    const btVector3 hold = held - row.m_held;
+    for (int k = 0; k < count; ++k)
+    {
+        places[k]->m_x = x[k] + hold * row.m_shares[k];
+        m_moved[static_cast<std::size_t>(row.m_moved[k])].m_shifted = true;
+    }
     row.m_multiplier = pushed;
+    row.m_held = held;
     row.m_pushed = true;
-    holdBack(row);
     return true;
 }
 
-// Friction: takes the contact's motion along the surface back, within the cone.
-void ContactRounds::holdBack(Row& row)
-{
-    btVector3 sliding = pointOf(row);
-    for (int k = 0; k < row.m_count; ++k)
-        sliding -= m_moved[static_cast<std::size_t>(row.m_moved[k])].m_start * row.m_weights[k];
-    sliding -= row.m_normal * row.m_normal.dot(sliding);
-    btVector3 held = row.m_held - sliding / row.m_mobility;
-    const btScalar most = row.m_friction * row.m_multiplier;
-    const btScalar wanted2 = held.length2();
-    if (wanted2 > most * most) held *= most / btSqrt(wanted2);
-    shift(row, held - row.m_held);
-    row.m_held = held;
-}
-
 // The lanes whose contacts may be violated, a bit each: all that are, and some that nearly are.
-unsigned ContactRounds::lanesDue(const Block& block) const
+inline unsigned ContactRounds::lanesDue(const Block& block, const Place* places)
 {
-    const btVector3& a = m_places[static_cast<std::size_t>(block.m_moved[0])];
-    const btVector3& b = m_places[static_cast<std::size_t>(block.m_moved[1])];
-    const btVector3& c = m_places[static_cast<std::size_t>(block.m_moved[2])];
+    const btVector3& a = places[block.m_moved[0]].m_x;
+    const btVector3& b = places[block.m_moved[1]].m_x;
+    const btVector3& c = places[block.m_moved[2]].m_x;
     const float x = float(a.x()), y = float(a.y()), z = float(a.z());
     const float bx = float(b.x()) - x, by = float(b.y()) - y, bz = float(b.z()) - z;
     const float cx = float(c.x()) - x, cy = float(c.y()) - y, cz = float(c.z()) - z;
@@ -219,9 +223,9 @@ btScalar ContactRounds::projectBlock(std::size_t index, unsigned due)
             m_rows.push_back(makeRow(block, lane));
         }
         Row& row = m_rows[static_cast<std::size_t>(state.m_row[lane])];
-        if (!project(row, worst)) continue;
+        if (!(row.m_mobility > 0) || !project(row, worst)) continue;
         state.m_holding |= 1u << lane;
-        if (lane + 1 < block.m_lanes) due |= lanesDue(block);  // its nodes moved
+        if (lane + 1 < block.m_lanes) due |= lanesDue(block, m_places.data());  // its nodes moved
     }
     if (!held && state.m_holding != 0) m_holding.push_back(index);
     return worst;
@@ -231,7 +235,7 @@ btScalar ContactRounds::projectBlock(std::size_t index, unsigned due)
 void ContactRounds::gather()
 {
     for (std::size_t i = 0; i < m_moved.size(); ++i)
-        m_places[i] = m_body->m_nodes[m_moved[i].m_node].m_x;
+        m_places[i].m_x = m_body->m_nodes[m_moved[i].m_node].m_x;
 }
 
 void ContactRounds::scatter()
@@ -243,18 +247,20 @@ void ContactRounds::scatter()
         if (!moved.m_shifted) continue;
         moved.m_shifted = false;
         btSoftBody::Node& node = m_body->m_nodes[moved.m_node];
-        node.m_v += (m_places[i] - node.m_x) * velocityScale;
-        node.m_x = m_places[i];
+        node.m_v += (m_places[i].m_x - node.m_x) * velocityScale;
+        node.m_x = m_places[i].m_x;
     }
 }
 
 btScalar ContactRounds::runBlocks(std::size_t count)
 {
     gather();
+    const Block* const blocks = m_blocks.data();
+    const Place* const places = m_places.data();
     btScalar worst = 0;
     for (std::size_t i = 0; i < count; ++i)
     {
-        const unsigned due = lanesDue(m_blocks[i]) | m_states[i].m_holding;
+        const unsigned due = lanesDue(blocks[i], places) | m_states[i].m_holding;
         if (due != 0) worst = std::max(worst, projectBlock(i, due));
     }
     scatter();

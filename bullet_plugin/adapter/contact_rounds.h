@@ -43,9 +43,12 @@ public:
 
 private:
     // A node that contacts refer to, copied together: Bullet's nodes are far apart.
+    struct Place
+    {
+        btVector3 m_x, m_start;
+    };
     struct Moved
     {
-        btVector3 m_start;
         btScalar m_inverseMass;
         int m_node;
         bool m_shifted;  // in this round
@@ -56,6 +59,8 @@ private:
     // n.(x0 + w1 (x1 - x0) + w2 (x2 - x0)) - level. The level is raised by a margin for rounding.
     struct Block
     {
+        Block() {}  // leaves everything to who adds it
+
         float m_normal[3][kLanes];
         float m_level[kLanes];
         float m_weights[2][kLanes];  // of the second and third node
@@ -76,7 +81,8 @@ private:
         int m_moved[3];
         int m_count;
         btScalar m_weights[3];
-        btScalar m_mobility;  // what a unit multiplier moves the weighted point
+        btScalar m_shares[3];  // of a unit multiplier, by node
+        btScalar m_mobility;   // what a unit multiplier moves the weighted point
         btVector3 m_normal;
         btScalar m_level;  // n.(sum w x) at the target
         btScalar m_friction;
@@ -93,12 +99,11 @@ private:
     void gather();
     void scatter();
     btScalar runBlocks(std::size_t count);
-    unsigned lanesDue(const Block& block) const;
+    static unsigned lanesDue(const Block& block, const Place* places);
     btScalar projectBlock(std::size_t index, unsigned due);
     bool project(Row& row, btScalar& worst);
-    void holdBack(Row& row);
-    btVector3 pointOf(const Row& row) const;
-    void shift(const Row& row, const btVector3& impulse);
+    template <int count>
+    bool projectNodes(Row& row, btScalar& worst);
     void limitSpeed(const Row& row);
 
     const BodyContacts* m_contacts = nullptr;
@@ -106,10 +111,10 @@ private:
     btSoftBody* m_body = nullptr;
     std::vector<int> m_movedOfNode;  // index in m_moved, -1 for none
     std::vector<Moved> m_moved;
-    std::vector<btVector3> m_places;  // of m_moved in this round
-    float m_farthest = 0;             // largest coordinate of a path, m
-    std::vector<Block> m_blocks;      // in canonical order
-    std::vector<State> m_states;      // of each
+    std::vector<Place> m_places;  // of m_moved
+    float m_farthest = 0;         // largest coordinate of a path, m
+    std::vector<Block> m_blocks;  // in canonical order
+    std::vector<State> m_states;  // of each
     std::vector<Row> m_rows;
     std::vector<std::size_t> m_holding;  // blocks with rows that have pushed in this stage
     std::size_t m_nodeBlocks = 0;

@@ -31,10 +31,10 @@ void setGaps(const btSoftBody& body, const NodePaths& paths, StepContact& contac
 }
 }  // namespace
 
-void FoundContacts::set(const Pipeline& pipeline, const std::vector<Contact>& contacts)
+void FoundContacts::set(const Pipeline& pipeline, const ContactList& contacts)
 {
     m_pipeline = &pipeline;
-    m_contacts = &contacts;
+    m_contacts = contacts;
 }
 
 void FoundContacts::keepList()
@@ -83,9 +83,8 @@ std::vector<ContactInfo> FoundContacts::list() const
 {
     if (m_keeps) return m_kept;
     std::vector<ContactInfo> infos;
-    if (!m_contacts) return infos;
-    infos.reserve(m_contacts->size());
-    for (const Contact& contact : *m_contacts)
+    infos.reserve(m_contacts.size());
+    for (const Contact& contact : m_contacts)
         infos.push_back(infoOf(contact));
     return infos;
 }

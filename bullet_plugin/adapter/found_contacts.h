@@ -22,7 +22,7 @@ public:
     void clear() { *this = FoundContacts(); }
     void nameCloth(MeshId cloth, const btSoftBody* body) { m_bodies[cloth] = body; }
     void nameObstacle(MeshId obstacle, const btCollisionObject* object) { m_objects[obstacle] = object; }
-    void set(const Pipeline& pipeline, const std::vector<Contact>& contacts);
+    void set(const Pipeline& pipeline, const ContactList& contacts);
     // list() stays as it is now until clear(), whatever is found later.
     void keepList();
 
@@ -36,7 +36,7 @@ private:
     std::unordered_map<MeshId, const btSoftBody*> m_bodies;
     std::unordered_map<MeshId, const btCollisionObject*> m_objects;
     const Pipeline* m_pipeline = nullptr;
-    const std::vector<Contact>* m_contacts = nullptr;
+    ContactList m_contacts;
     std::vector<ContactInfo> m_kept;
     bool m_keeps = false;
 };

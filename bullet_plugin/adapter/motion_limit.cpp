@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "bullet_plugin/adapter/step_contact.h"
-
 namespace drape
 {
 namespace
@@ -80,7 +78,7 @@ void MotionLimit::apply(btSoftBody& body) const
         btSoftBody::Node& node = body.m_nodes[i];
         const std::size_t at = static_cast<std::size_t>(i);
         const btVector3 &start = m_paths.m_start[at], &end = m_paths.m_end[at];
-        if ((node.m_x - end).length2() <= m_free * m_free || !(movableInverseMass(node) > 0)) continue;
+        if ((node.m_x - end).length2() <= m_free * m_free || !(m_paths.m_inverseMass[at] > 0)) continue;
         const Allowance allowed = allowance(at, node.m_x);
         if (allowed.m_end == SIMD_INFINITY) continue;
         const btScalar t = closestOnPath(start, end, node.m_x);

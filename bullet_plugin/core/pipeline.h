@@ -53,6 +53,18 @@ struct ClothFeature
     std::int32_t m_nodes[3];  // indices in that cloth; -1 where unused
 };
 
+// Contacts where the back end left them.
+struct ContactList
+{
+    const Contact* m_first = nullptr;
+    std::size_t m_count = 0;
+
+    const Contact* begin() const { return m_first; }
+    const Contact* end() const { return m_first + m_count; }
+    std::size_t size() const { return m_count; }
+    const Contact& operator[](std::size_t i) const { return m_first[i]; }
+};
+
 class Pipeline
 {
 public:
@@ -85,7 +97,7 @@ public:
     // Enqueues the step for the pairs named since the last finish(); returns without waiting.
     void submit();
     // Waits, grows buffers and repeats where needed. Contacts are valid until the next submit().
-    const std::vector<Contact>& finish();
+    ContactList finish();
     // With statistics of that step (upload and wait times, counts, status; the adapter adds its own).
     const StepStatistics& statistics() const;
     // The kernel launches since the last call, with Settings::m_profileKernels; empty on the host. Waits for the

@@ -45,6 +45,7 @@ PooledFeature pooledFeature(const MeshPool& cloths, const Contact& contact)
 
 std::size_t obstacleSlot(const MeshPool& obstacles, const Contact& contact)
 {
+    if (obstacles.meshCount() == 1) return 0;
     if (contact.m_kind == DRAPE_NODE_FACE) return obstacles.triangles()[contact.m_obstacleFeature].m_mesh;
     if (contact.m_kind == DRAPE_FACE_VERTEX) return obstacles.slotOfVertex(contact.m_obstacleFeature);
     return obstacles.slotOfEdge(contact.m_obstacleFeature);
