@@ -17,14 +17,16 @@ bool iterationsCanBeSplit(const btSoftBody& body)
 }
 
 // Returns the time of Bullet's part, ms.
-double solveWithBullet(btSoftBody& body, ContactRounds& rounds)
+double solveWithBullet(const BodyContacts& contacts, ContactRounds& rounds)
 {
+    btSoftBody& body = *contacts.m_body;
     double bulletMs = 0;
     const int iterations = body.m_cfg.piterations;
     const bool split = iterations > 1 && iterationsCanBeSplit(body);
     if (split) body.m_cfg.piterations = 1;
     for (int i = 0; i < (split ? iterations : 1); ++i)
     {
+        if (i > 0) contacts.m_limit.apply(body);
         rounds.restart();  // what contacts pushed before the links' last pull is the links' business now
         rounds.run();
         Stopwatch watch;
@@ -66,7 +68,7 @@ double solveBody(const BodyContacts& contacts, const FoundContacts& found, Conta
         return watch.lapMs();
     }
     rounds.start(contacts, found);
-    const double bulletMs = solveWithBullet(body, rounds);
+    const double bulletMs = solveWithBullet(contacts, rounds);
     close(contacts, rounds);
     return bulletMs;
 }
