@@ -53,14 +53,14 @@ public:
             first += m_floats[i];
         }
         m_pipeline->submit();
-        const std::vector<Contact>& contacts = m_pipeline->finish();
+        const ContactList contacts = m_pipeline->finish();
         outcome.m_stages.push_back({"step", millisecondsSince(begin)});
         const StepStatistics& statistics = m_pipeline->statistics();
         addStages(statistics, outcome);
         outcome.m_candidates = statistics.m_candidates;
         outcome.m_contacts = contacts.size();
         outcome.m_volumeTests = statistics.m_volumeTests;
-        outcome.m_hash = hashText(hashOf(contacts));
+        outcome.m_hash = hashText(hashOf(std::vector<Contact>(contacts.begin(), contacts.end())));
         // A step that left its device is no measurement of it.
         if (statistics.m_status & (kStepDeviceFailed | kStepContactLimit)) outcome.m_hash = "left the device";
         return outcome;

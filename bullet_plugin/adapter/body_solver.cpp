@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "bullet_plugin/adapter/contact_rounds.h"
 #include "bullet_plugin/adapter/stopwatch.h"
 
 namespace drape
@@ -17,32 +16,35 @@ bool iterationsCanBeSplit(const btSoftBody& body)
            body.m_joints.size() == 0;
 }
 
-// Returns the time of the rounds, ms.
-double solveWithBullet(btSoftBody& body, ContactRounds& rounds)
+// Returns the time of Bullet's part, ms.
+double solveWithBullet(const BodyContacts& contacts, ContactRounds& rounds)
 {
-    double roundsMs = 0;
-    Stopwatch watch;
+    btSoftBody& body = *contacts.m_body;
+    double bulletMs = 0;
     const int iterations = body.m_cfg.piterations;
     const bool split = iterations > 1 && iterationsCanBeSplit(body);
     if (split) body.m_cfg.piterations = 1;
     for (int i = 0; i < (split ? iterations : 1); ++i)
     {
+        if (i > 0) contacts.m_limit.apply(body);
         rounds.restart();  // what contacts pushed before the links' last pull is the links' business now
         rounds.run();
-        roundsMs += watch.lapMs();
+        Stopwatch watch;
         body.solveConstraints();
-        watch.lapMs();
+        bulletMs += watch.lapMs();
     }
     body.m_cfg.piterations = iterations;
-    return roundsMs;
+    return bulletMs;
 }
 
-void close(btSoftBody& body, ContactRounds& rounds, const MotionLimit& limit)
+void close(const BodyContacts& contacts, ContactRounds& rounds)
 {
+    btSoftBody& body = *contacts.m_body;
+    const MotionLimit& limit = contacts.m_limit;
     limit.apply(body);
     if (rounds.empty()) return;
     rounds.restart();
-    const btScalar tolerance = kClosingTolerance * rounds.leastThickness();
+    const btScalar tolerance = kClosingTolerance * contacts.m_leastThickness;
     btScalar worst = rounds.run();
     for (int i = 1; i < kClosingRounds && worst > tolerance; ++i)
     {
@@ -56,19 +58,18 @@ void close(btSoftBody& body, ContactRounds& rounds, const MotionLimit& limit)
 }
 }  // namespace
 
-double solveBody(BodyContacts& contacts)
+double solveBody(const BodyContacts& contacts, const FoundContacts& found, ContactRounds& rounds)
 {
     btSoftBody& body = *contacts.m_body;
     if (!(body.m_sst.sdt > 0))
     {
+        Stopwatch watch;
         body.solveConstraints();
-        return 0;
+        return watch.lapMs();
     }
-    Stopwatch watch;
-    ContactRounds rounds(body, contacts.m_contacts);
-    double ms = watch.lapMs() + solveWithBullet(body, rounds);
-    watch.lapMs();
-    close(body, rounds, contacts.m_limit);
-    return ms + watch.lapMs();
+    rounds.start(contacts, found);
+    const double bulletMs = solveWithBullet(contacts, rounds);
+    close(contacts, rounds);
+    return bulletMs;
 }
 }  // namespace drape

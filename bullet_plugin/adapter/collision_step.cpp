@@ -1,54 +1,10 @@
 #include "bullet_plugin/adapter/collision_step.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace drape
 {
-namespace
-{
-btVector3 vectorOf(const float v[3])
-{
-    return btVector3(btScalar(v[0]), btScalar(v[1]), btScalar(v[2]));
-}
-
-btScalar gapAt(const btSoftBody& body, const StepContact& contact, btVector3 btSoftBody::Node::*member,
-               const btTransform* carry)
-{
-    btVector3 at(0, 0, 0);
-    for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
-        at += body.m_nodes[contact.m_nodes[k]].*member * contact.m_weights[k];
-    return contact.m_normal.dot(carried(carry, at) - contact.m_point) - contact.m_thickness;
-}
-
-// Both gaps, along the contact's normal. A feature that slid around an edge of the obstacle began behind the plane of
-// its contact without having been inside the obstacle: then the depth at the predicted end is all that is known.
-void setGaps(const btSoftBody& body, StepContact& contact)
-{
-    contact.m_endGap = gapAt(body, contact, &btSoftBody::Node::m_x, nullptr);
-    contact.m_startGap = gapAt(body, contact, &btSoftBody::Node::m_q, contact.m_carry);
-    if (contact.m_startGap < -contact.m_thickness && contact.m_startGap < contact.m_endGap)
-        contact.m_startGap = contact.m_endGap;
-    contact.m_targetGap = targetGap(contact.m_startGap, body.m_cfg.kKHR, contact.m_thickness);
-}
-
-ContactInfo infoOf(const btSoftBody& body, const StepContact& contact)
-{
-    ContactInfo info;
-    info.m_cloth = &body;
-    info.m_obstacle = contact.m_object;
-    for (int k = 0; k < 3; ++k)
-    {
-        info.m_nodes[k] = contact.m_nodes[k];
-        info.m_weights[k] = static_cast<float>(contact.m_weights[k]);
-        info.m_normal[k] = static_cast<float>(contact.m_normal[k]);
-        info.m_point[k] = static_cast<float>(contact.m_point[k]);
-    }
-    info.m_gap = static_cast<float>(contact.m_endGap);
-    info.m_thickness = static_cast<float>(contact.m_thickness);
-    return info;
-}
-}  // namespace
-
 BodyContacts* CollisionStep::bodyOf(MeshId cloth)
 {
     for (BodyContacts& body : m_bodies)
@@ -63,11 +19,21 @@ BodyContacts* CollisionStep::contactsOf(const btSoftBody& body)
     return nullptr;
 }
 
-const CollisionStep::Obstacle* CollisionStep::obstacleOf(MeshId obstacle) const
+BodyContacts& CollisionStep::addBody(MeshId cloth, btSoftBody* body)
 {
-    for (const Obstacle& entry : m_obstacles)
-        if (entry.m_mesh == obstacle) return &entry;
-    return nullptr;
+    if (m_spare.empty()) m_spare.emplace_back();
+    m_bodies.push_back(std::move(m_spare.back()));
+    m_spare.pop_back();
+    m_bodies.back().start(cloth, body);
+    return m_bodies.back();
+}
+
+void CollisionStep::clear()
+{
+    std::move(m_bodies.begin(), m_bodies.end(), std::back_inserter(m_spare));
+    m_bodies.clear();
+    m_pairs.clear();
+    m_mirrors.clear();
 }
 
 void CollisionStep::addPair(const PairNote& note)
@@ -78,23 +44,21 @@ void CollisionStep::addPair(const PairNote& note)
     if (clothId == kNoMesh || obstacleId == kNoMesh) return;
     if (!bodyOf(clothId))
     {
-        BodyContacts body;
-        body.m_cloth = clothId;
-        body.m_body = note.m_cloth;
-        m_bodies.push_back(body);
+        addBody(clothId, note.m_cloth);
         m_mirrors.push_back(&cloth);
+        m_state.m_found.nameCloth(clothId, note.m_cloth);
     }
-    if (!obstacleOf(obstacleId))
-        m_obstacles.push_back(
-            Obstacle{obstacleId, note.m_obstacle.m_object, note.m_motion.moves(), note.m_motion.map()});
+    m_state.m_found.nameObstacle(obstacleId, note.m_obstacle.m_object, note.m_motion);
     for (const Pair& pair : m_pairs)
         if (pair.m_cloth == clothId && pair.m_obstacle == obstacleId) return;
     m_pairs.push_back(Pair{clothId, obstacleId, note.m_thickness});
     btVector3 low, high;
     note.m_obstacle.m_shape->getAabb(note.m_motion.m_end, low, high);
-    const Obstacle& obstacle = *obstacleOf(obstacleId);
-    bodyOf(clothId)->m_limit.addObstacle(low, high, note.m_thickness, btScalar(m_state.settings().m_activation),
-                                         obstacle.m_moves ? &obstacle.m_carry : nullptr);
+    BodyContacts& body = *bodyOf(clothId);
+    body.m_limit.addObstacle(low, high, note.m_thickness, btScalar(m_state.settings().m_activation),
+                             m_state.m_found.carryOf(obstacleId));
+    body.m_leastThickness = std::min(body.m_leastThickness, note.m_thickness);
+    body.m_mostThickness = std::max(body.m_mostThickness, note.m_thickness);
 }
 
 void CollisionStep::uploadNodes()
@@ -102,13 +66,14 @@ void CollisionStep::uploadNodes()
     for (std::size_t i = 0; i < m_bodies.size(); ++i)
     {
         const MeshId cloth = m_bodies[i].m_cloth;
-        m_bodies[i].m_limit.record(*m_bodies[i].m_body);
         m_mirrors[i]->writeNodes(m_state.pipeline().clothStart(cloth), m_state.pipeline().clothEnd(cloth));
     }
 }
 
 void CollisionStep::begin(const std::vector<PairNote>& notes)
 {
+    clear();
+    m_state.m_found.clear();
     // Adding and removing meshes moves the memory that nodes are written to: mirrors first, nodes after.
     m_state.dropOldMirrors();
     for (const PairNote& note : notes)
@@ -122,66 +87,71 @@ void CollisionStep::submit()
     for (const Pair& pair : m_pairs)
         m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_thickness));
     m_state.pipeline().submit();
+    // While the device works.
+    for (BodyContacts& body : m_bodies)
+        body.m_limit.record(*body.m_body);
 }
 
-void CollisionStep::receive(const ContactView& view)
+void CollisionStep::receive(const ContactList& contacts)
 {
-    BodyContacts* body = bodyOf(view.m_cloth);
-    const Obstacle* obstacle = obstacleOf(view.m_obstacle);
-    if (!body || !obstacle) return;
-    StepContact contact;
-    contact.m_object = obstacle->m_object;
-    contact.m_carry = obstacle->m_moves ? &obstacle->m_carry : nullptr;
-    contact.m_kind = view.m_kind;
-    for (int k = 0; k < 3; ++k)
+    BodyContacts* body = nullptr;
+    for (std::size_t i = 0; i < contacts.size();)
     {
-        contact.m_nodes[k] = view.m_nodes[k];
-        contact.m_weights[k] = view.m_nodes[k] >= 0 ? btScalar(view.m_weights[k]) : btScalar(0);
+        const Contact& first = contacts[i];
+        const ClothFeature cloth = m_state.pipeline().clothFeature(first);
+        if (!body || body->m_cloth != cloth.m_cloth) body = bodyOf(cloth.m_cloth);
+        FeatureContacts feature{&first, 0, {cloth.m_nodes[0], cloth.m_nodes[1], cloth.m_nodes[2]}, 1};
+        for (; i < contacts.size() && contacts[i].m_slot == first.m_slot; ++i, ++feature.m_count)
+            feature.m_leastTime = std::min(feature.m_leastTime, contacts[i].m_time);
+        if (!body) continue;
+        for (int k = 0; k < 3 && feature.m_nodes[k] >= 0; ++k)
+            body->m_limit.addContactNode(feature.m_nodes[k]);
+        body->m_features.push_back(feature);
     }
-    contact.m_normal = vectorOf(view.m_normal);
-    contact.m_point = vectorOf(view.m_point);
-    contact.m_thickness = view.m_thickness;
-    contact.m_time = view.m_time;
-    contact.m_friction = body->m_body->m_cfg.kDF * contact.m_object->getFriction();
-    setGaps(*body->m_body, contact);
-    for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
-        body->m_limit.addContactNode(contact.m_nodes[k]);
-    body->m_contacts.push_back(contact);
-    m_state.m_contacts.push_back(infoOf(*body->m_body, contact));
 }
 
 // Waits for the detection under way and takes its contacts in place of any earlier ones of this step.
 void CollisionStep::receiveAll()
 {
-    const StepStatistics before = m_state.m_statistics;
     for (BodyContacts& body : m_bodies)
-        body.m_contacts.clear();
-    m_state.m_contacts.clear();
-    const std::vector<Contact>& contacts = m_state.pipeline().finish();
-    m_state.m_statistics = m_state.pipeline().statistics();
-    m_state.m_statistics.m_status |= before.m_status;
-    m_state.m_statistics.m_retries += before.m_retries;
-    m_state.m_statistics.m_uploadMs += before.m_uploadMs;
-    m_state.m_statistics.m_waitMs += before.m_waitMs;
-    m_state.m_statistics.m_refitMs += before.m_refitMs;
-    m_state.m_statistics.m_broadMs += before.m_broadMs;
-    m_state.m_statistics.m_narrowMs += before.m_narrowMs;
-    m_state.m_contacts.reserve(contacts.size());
-    for (const Contact& contact : contacts)
-        receive(m_state.pipeline().view(contact));
+        body.m_features.clear();
+    const ContactList contacts = m_state.pipeline().finish();
+    const StepStatistics before = m_state.m_statistics;
+    StepStatistics& all = m_state.m_statistics;
+    all = m_state.pipeline().statistics();
+    all.m_status |= before.m_status;
+    all.m_retries += before.m_retries;
+    all.m_waitMs += before.m_waitMs;
+    all.m_refitMs += before.m_refitMs;
+    all.m_broadMs += before.m_broadMs;
+    all.m_narrowMs += before.m_narrowMs;
+    all.m_uploadMs = before.m_uploadMs;  // the solver's to measure, as these are
+    all.m_writeMs = before.m_writeMs;
+    all.m_finishMs = before.m_finishMs;
+    m_state.m_found.set(m_state.pipeline(), contacts);
+    receive(contacts);
+}
+
+bool CollisionStep::cutAtImpactsOf(BodyContacts& body, Cut cut)
+{
+    std::vector<StepContact> impacts;
+    for (const FeatureContacts& feature : body.m_features)
+        for (std::uint32_t i = 0; feature.m_leastTime < 1 && i < feature.m_count; ++i)
+            if (feature.m_contacts[i].m_time < 1)
+                impacts.push_back(m_state.m_found.resolve(*body.m_body, body.m_limit.paths(), feature.m_contacts[i]));
+    return cutAtImpacts(*body.m_body, impacts, cut);
 }
 
 bool CollisionStep::cutPaths()
 {
     bool any = false;
     for (BodyContacts& body : m_bodies)
-        any = cutAtImpacts(*body.m_body, body.m_contacts, Cut::EachNode) || any;
+        any = cutAtImpactsOf(body, Cut::EachNode) || any;
     return any;
 }
 
 void CollisionStep::finish()
 {
-    m_state.m_contacts.clear();
     m_state.m_statistics = StepStatistics();
     m_state.m_statistics.m_skipped = m_pairs.empty();
     if (m_pairs.empty()) return;
@@ -197,7 +167,7 @@ bool CollisionStep::cutStrayed(const std::vector<bool>& strayed, Cut cut)
 {
     bool any = false;
     for (std::size_t i = 0; i < m_bodies.size(); ++i)
-        if (strayed[i]) any = cutAtImpacts(*m_bodies[i].m_body, m_bodies[i].m_contacts, cut) || any;
+        if (strayed[i]) any = cutAtImpactsOf(m_bodies[i], cut) || any;
     return any;
 }
 
@@ -207,7 +177,8 @@ void CollisionStep::checkStrayed()
     for (const BodyContacts& body : m_bodies)
         strayed.push_back(body.m_limit.strayed(*body.m_body));
     if (std::find(strayed.begin(), strayed.end(), true) == strayed.end()) return;
-    const std::vector<ContactInfo> published = m_state.m_contacts;
+    // What is reported stays what the solver was given.
+    m_state.m_found.keepList();
     const StepStatistics before = m_state.m_statistics;
     for (int detections = 1; detections <= kMostDetections; ++detections)
     {
@@ -215,11 +186,7 @@ void CollisionStep::checkStrayed()
         receiveAll();
         if (!cutStrayed(strayed, detections < kMostDetections ? Cut::EachNode : Cut::WholeBody)) break;
     }
-    // What is reported stays what the solver was given.
-    m_state.m_contacts = published;
     m_state.m_statistics.m_contacts = before.m_contacts;
     m_state.m_statistics.m_candidates = before.m_candidates;
-    m_state.m_statistics.m_writeMs = before.m_writeMs;
-    m_state.m_statistics.m_finishMs = before.m_finishMs;
 }
 }  // namespace drape

@@ -1,52 +1,118 @@
 #include "bullet_plugin/adapter/contact_rounds.h"
 
 #include <algorithm>
-
-#include "kernels/shared/contact.h"
+#include <limits>
 
 namespace drape
 {
-ContactRounds::ContactRounds(btSoftBody& body, const std::vector<StepContact>& contacts) : m_body(body)
+namespace
 {
-    std::vector<int> movedOfNode(static_cast<std::size_t>(body.m_nodes.size()), -1);
-    m_rows.reserve(contacts.size());
-    for (const StepContact& contact : contacts)
+// More than what the two ways of computing a violation round apart, as a share of the coordinates.
+constexpr float kRounding = 256 * std::numeric_limits<float>::epsilon();
+
+float largestCoordinate(const btVector3& v)
+{
+    return static_cast<float>(std::max(btFabs(v.x()), std::max(btFabs(v.y()), btFabs(v.z()))));
+}
+}  // namespace
+
+void ContactRounds::start(const BodyContacts& contacts, const FoundContacts& found)
+{
+    m_contacts = &contacts;
+    m_found = &found;
+    m_body = contacts.m_body;
+    m_movedOfNode.assign(static_cast<std::size_t>(m_body->m_nodes.size()), -1);
+    m_moved.clear();
+    m_places.clear();
+    m_farthest = 0;
+    m_blocks.clear();
+    m_rows.clear();
+    m_holding.clear();
+    m_nodeBlocks = 0;
+    for (const FeatureContacts& feature : contacts.m_features)
     {
-        addRow(contact, movedOfNode);
-        if (contact.m_kind == DRAPE_NODE_FACE) m_nodeRows = m_rows.size();
-        m_leastThickness = std::min(m_leastThickness, contact.m_thickness);
+        addFeature(feature);
+        if (feature.m_nodes[1] < 0) m_nodeBlocks = m_blocks.size();
+    }
+    const float margin = kRounding * (m_farthest + static_cast<float>(contacts.m_mostThickness));
+    for (Block& block : m_blocks)
+        for (float& level : block.m_level)
+            level += margin;
+    m_states.assign(m_blocks.size(), State());
+}
+
+void ContactRounds::addFeature(const FeatureContacts& feature)
+{
+    int moved[3], count = 0;
+    for (int k = 0; k < 3; ++k)
+    {
+        const int node = feature.m_nodes[k] >= 0 ? feature.m_nodes[k] : feature.m_nodes[0];
+        int& entry = m_movedOfNode[static_cast<std::size_t>(node)];
+        if (entry < 0) entry = addMoved(node);
+        moved[k] = entry;
+        count += feature.m_nodes[k] >= 0 ? 1 : 0;
+    }
+    for (std::uint32_t first = 0; first < feature.m_count; first += kLanes)
+    {
+        m_blocks.emplace_back();
+        Block& block = m_blocks.back();
+        block.m_contacts = feature.m_contacts + first;
+        block.m_lanes = static_cast<int>(std::min(feature.m_count - first, std::uint32_t(kLanes)));
+        block.m_count = count;
+        std::copy(moved, moved + 3, block.m_moved);
+        for (int lane = 0; lane < kLanes; ++lane)
+            fillLane(block, lane, block.m_contacts[std::min(lane, block.m_lanes - 1)]);
     }
 }
 
-void ContactRounds::addRow(const StepContact& contact, std::vector<int>& movedOfNode)
+void ContactRounds::fillLane(Block& block, int lane, const Contact& contact) const
 {
-    Row row = Row();
-    for (; row.m_count < 3 && contact.m_nodes[row.m_count] >= 0; ++row.m_count)
+    block.m_weights[0][lane] = contact.m_weights[1];
+    block.m_weights[1][lane] = contact.m_weights[2];
+    float level = static_cast<float>(m_contacts->m_mostThickness);
+    for (int axis = 0; axis < 3; ++axis)
     {
-        const int node = contact.m_nodes[row.m_count];
-        int& moved = movedOfNode[static_cast<std::size_t>(node)];
-        if (moved < 0)
-        {
-            moved = static_cast<int>(m_moved.size());
-            const btSoftBody::Node& from = m_body.m_nodes[node];
-            m_moved.push_back(Moved{from.m_x, from.m_q, movableInverseMass(from), node});
-        }
-        const btScalar weight = contact.m_weights[row.m_count];
-        row.m_moved[row.m_count] = moved;
-        row.m_weights[row.m_count] = weight;
-        row.m_mobility += weight * weight * m_moved[static_cast<std::size_t>(moved)].m_inverseMass;
+        block.m_normal[axis][lane] = contact.m_normal[axis];
+        level += contact.m_normal[axis] * contact.m_point[axis];
     }
-    if (!(row.m_mobility > 0)) return;
+    block.m_level[lane] = level;
+}
+
+int ContactRounds::addMoved(int node)
+{
+    const NodePaths& paths = m_contacts->m_limit.paths();
+    const std::size_t at = static_cast<std::size_t>(node);
+    m_places.push_back(Place{paths.m_end[at], paths.m_start[at]});
+    m_moved.push_back(Moved{paths.m_inverseMass[at], node, false});
+    m_farthest =
+        std::max(m_farthest, std::max(largestCoordinate(paths.m_start[at]), largestCoordinate(paths.m_end[at])));
+    return static_cast<int>(m_moved.size()) - 1;
+}
+
+ContactRounds::Row ContactRounds::makeRow(const Block& block, int lane) const
+{
+    const StepContact contact = m_found->resolve(*m_body, m_contacts->m_limit.paths(), block.m_contacts[lane]);
+    Row row = Row();
+    row.m_count = block.m_count;
+    for (int k = 0; k < row.m_count; ++k)
+    {
+        const btScalar weight = contact.m_weights[k];
+        row.m_moved[k] = block.m_moved[k];
+        row.m_weights[k] = weight;
+        const btScalar inverseMass = m_moved[static_cast<std::size_t>(row.m_moved[k])].m_inverseMass;
+        row.m_shares[k] = weight * inverseMass;
+        row.m_mobility += weight * weight * inverseMass;
+    }
     row.m_normal = contact.m_normal;
     row.m_level = contact.m_normal.dot(contact.m_point) + contact.m_thickness + contact.m_targetGap;
     row.m_friction = contact.m_friction;
     row.m_held.setZero();
     row.m_carried = carriedBy(row, contact.m_carry);
     row.m_speedLimit = contact.m_startGap < 0
-                           ? std::max(btScalar(0), (contact.m_endGap - contact.m_startGap) * m_body.m_sst.isdt) +
-                                 row.m_normal.dot(row.m_carried) * m_body.m_sst.isdt
+                           ? std::max(btScalar(0), (contact.m_endGap - contact.m_startGap) * m_body->m_sst.isdt) +
+                                 row.m_normal.dot(row.m_carried) * m_body->m_sst.isdt
                            : SIMD_INFINITY;
-    m_rows.push_back(row);
+    return row;
 }
 
 btVector3 ContactRounds::carriedBy(const Row& row, const btTransform* carry) const
@@ -54,78 +120,162 @@ btVector3 ContactRounds::carriedBy(const Row& row, const btTransform* carry) con
     btVector3 start(0, 0, 0);
     if (!carry) return start;
     for (int k = 0; k < row.m_count; ++k)
-        start += m_moved[static_cast<std::size_t>(row.m_moved[k])].m_start * row.m_weights[k];
+        start += m_places[static_cast<std::size_t>(row.m_moved[k])].m_start * row.m_weights[k];
     return *carry * start - start;
 }
 
 void ContactRounds::restart()
 {
-    for (Row& row : m_rows)
+    for (std::size_t index : m_holding)
     {
-        row.m_multiplier = 0;
-        row.m_held.setZero();
+        State& state = m_states[index];
+        for (int lane = 0; lane < kLanes; ++lane)
+        {
+            if (!(state.m_holding >> lane & 1u)) continue;
+            Row& row = m_rows[static_cast<std::size_t>(state.m_row[lane])];
+            row.m_multiplier = 0;
+            row.m_held.setZero();
+        }
+        state.m_holding = 0;
     }
+    m_holding.clear();
 }
 
-btVector3 ContactRounds::pointOf(const Row& row) const
+// Returns whether the contact had anything to do; `worst` grows to its violation.
+bool ContactRounds::project(Row& row, btScalar& worst)
 {
-    btVector3 sum(0, 0, 0);
-    for (int k = 0; k < row.m_count; ++k)
-        sum += m_moved[static_cast<std::size_t>(row.m_moved[k])].m_x * row.m_weights[k];
-    return sum;
+    if (row.m_count == 1) return projectNodes<1>(row, worst);
+    return row.m_count == 2 ? projectNodes<2>(row, worst) : projectNodes<3>(row, worst);
 }
 
-void ContactRounds::shift(const Row& row, const btVector3& impulse)
+template <int count>
+bool ContactRounds::projectNodes(Row& row, btScalar& worst)
 {
-    for (int k = 0; k < row.m_count; ++k)
+    Place* places[count];
+    btVector3 x[count], point(0, 0, 0);
+    for (int k = 0; k < count; ++k)
     {
-        Moved& moved = m_moved[static_cast<std::size_t>(row.m_moved[k])];
-        moved.m_x += impulse * (row.m_weights[k] * moved.m_inverseMass);
+        places[k] = &m_places[static_cast<std::size_t>(row.m_moved[k])];
+        x[k] = places[k]->m_x;
+        point += x[k] * row.m_weights[k];
     }
-}
-
-// Returns how far the contact was violated, 0 when it was not.
-btScalar ContactRounds::project(Row& row)
-{
-    const btScalar violation = row.m_level - row.m_normal.dot(pointOf(row));
-    if (!(violation > 0) && !(row.m_multiplier > 0)) return 0;  // also for NaN
+    const btVector3 normal = row.m_normal;
+    const btScalar violation = row.m_level - normal.dot(point);
+    if (!(violation > 0) && !(row.m_multiplier > 0)) return false;  // also for NaN
+    worst = std::max(worst, violation);
     const btScalar pushed = std::max(btScalar(0), row.m_multiplier + violation / row.m_mobility);
-    shift(row, row.m_normal * (pushed - row.m_multiplier));
-    row.m_multiplier = pushed;
-    row.m_pushed = true;
-    holdBack(row);
-    return std::max(btScalar(0), violation);
-}
+    const btVector3 push = normal * (pushed - row.m_multiplier);
+    btVector3 sliding(0, 0, 0);
+    for (int k = 0; k < count; ++k)
+    {
+        x[k] += push * row.m_shares[k];
+        sliding += x[k] * row.m_weights[k];
+    }
 
-// Friction: takes the contact's motion along the surface back, within the cone.
-void ContactRounds::holdBack(Row& row)
-{
-    btVector3 sliding = pointOf(row) - row.m_carried;
-    for (int k = 0; k < row.m_count; ++k)
-        sliding -= m_moved[static_cast<std::size_t>(row.m_moved[k])].m_start * row.m_weights[k];
-    sliding -= row.m_normal * row.m_normal.dot(sliding);
+    // Friction: takes the contact's motion along the surface back, within the cone.
+    sliding -= row.m_carried;
+    for (int k = 0; k < count; ++k)
+        sliding -= places[k]->m_start * row.m_weights[k];
+    sliding -= normal * normal.dot(sliding);
     btVector3 held = row.m_held - sliding / row.m_mobility;
-    const btScalar most = row.m_friction * row.m_multiplier;
+    const btScalar most = row.m_friction * pushed;
     const btScalar wanted2 = held.length2();
     if (wanted2 > most * most) held *= most / btSqrt(wanted2);
-    shift(row, held - row.m_held);
+    const btVector3 hold = held - row.m_held;
+    for (int k = 0; k < count; ++k)
+    {
+        places[k]->m_x = x[k] + hold * row.m_shares[k];
+        m_moved[static_cast<std::size_t>(row.m_moved[k])].m_shifted = true;
+    }
+    row.m_multiplier = pushed;
     row.m_held = held;
+    row.m_pushed = true;
+    return true;
 }
 
-btScalar ContactRounds::runRows(std::size_t count)
+// The lanes whose contacts may be violated, a bit each: all that are, and some that nearly are.
+inline unsigned ContactRounds::lanesDue(const Block& block, const Place* places)
 {
-    for (Moved& moved : m_moved)
-        moved.m_x = m_body.m_nodes[moved.m_node].m_x;
+    const btVector3& a = places[block.m_moved[0]].m_x;
+    const btVector3& b = places[block.m_moved[1]].m_x;
+    const btVector3& c = places[block.m_moved[2]].m_x;
+    const float x = float(a.x()), y = float(a.y()), z = float(a.z());
+    const float bx = float(b.x()) - x, by = float(b.y()) - y, bz = float(b.z()) - z;
+    const float cx = float(c.x()) - x, cy = float(c.y()) - y, cz = float(c.z()) - z;
+    float excess[kLanes];
+    for (int lane = 0; lane < kLanes; ++lane)
+    {
+        const float u = block.m_weights[0][lane], v = block.m_weights[1][lane];
+        const float along = block.m_normal[0][lane] * (x + u * bx + v * cx) +
+                            block.m_normal[1][lane] * (y + u * by + v * cy) +
+                            block.m_normal[2][lane] * (z + u * bz + v * cz);
+        excess[lane] = block.m_level[lane] - along;
+    }
+    if (!(std::max(std::max(excess[0], excess[1]), std::max(excess[2], excess[3])) > 0)) return 0;
+    unsigned due = 0;
+    for (int lane = 0; lane < block.m_lanes; ++lane)
+        due |= excess[lane] > 0 ? 1u << lane : 0u;
+    return due;
+}
+
+// Projects the contacts of a block that are due, in order. Returns the worst violation, 0 without one.
+btScalar ContactRounds::projectBlock(std::size_t index, unsigned due)
+{
+    const Block& block = m_blocks[index];
+    State& state = m_states[index];
+    const bool held = state.m_holding != 0;
+    state.m_opened = true;
+    btScalar worst = 0;
+    for (int lane = 0; lane < block.m_lanes; ++lane)
+    {
+        if (!((due | state.m_holding) >> lane & 1u)) continue;
+        if (state.m_row[lane] < 0)
+        {
+            state.m_row[lane] = static_cast<int>(m_rows.size());
+            m_rows.push_back(makeRow(block, lane));
+        }
+        Row& row = m_rows[static_cast<std::size_t>(state.m_row[lane])];
+        if (!(row.m_mobility > 0) || !project(row, worst)) continue;
+        state.m_holding |= 1u << lane;
+        if (lane + 1 < block.m_lanes) due |= lanesDue(block, m_places.data());  // its nodes moved
+    }
+    if (!held && state.m_holding != 0) m_holding.push_back(index);
+    return worst;
+}
+
+// Takes over where the body's nodes are now.
+void ContactRounds::gather()
+{
+    for (std::size_t i = 0; i < m_moved.size(); ++i)
+        m_places[i].m_x = m_body->m_nodes[m_moved[i].m_node].m_x;
+}
+
+void ContactRounds::scatter()
+{
+    const btScalar velocityScale = m_body->m_sst.isdt * (1 - m_body->m_cfg.kDP);
+    for (std::size_t i = 0; i < m_moved.size(); ++i)
+    {
+        Moved& moved = m_moved[i];
+        if (!moved.m_shifted) continue;
+        moved.m_shifted = false;
+        btSoftBody::Node& node = m_body->m_nodes[moved.m_node];
+        node.m_v += (m_places[i].m_x - node.m_x) * velocityScale;
+        node.m_x = m_places[i].m_x;
+    }
+}
+
+btScalar ContactRounds::runBlocks(std::size_t count)
+{
+    gather();
+    const Block* const blocks = m_blocks.data();
+    const Place* const places = m_places.data();
     btScalar worst = 0;
     for (std::size_t i = 0; i < count; ++i)
-        worst = std::max(worst, project(m_rows[i]));
-    const btScalar velocityScale = m_body.m_sst.isdt * (1 - m_body.m_cfg.kDP);
-    for (const Moved& moved : m_moved)
     {
-        btSoftBody::Node& node = m_body.m_nodes[moved.m_node];
-        node.m_v += (moved.m_x - node.m_x) * velocityScale;
-        node.m_x = moved.m_x;
+        const unsigned due = lanesDue(blocks[i], places) | m_states[i].m_holding;
+        if (due != 0) worst = std::max(worst, projectBlock(i, due));
     }
+    scatter();
     return worst;
 }
 
@@ -133,21 +283,23 @@ void ContactRounds::limitSpeed(const Row& row)
 {
     btScalar speed = 0;
     for (int k = 0; k < row.m_count; ++k)
-        speed += m_body.m_nodes[m_moved[static_cast<std::size_t>(row.m_moved[k])].m_node].m_v.dot(row.m_normal) *
+        speed += m_body->m_nodes[m_moved[static_cast<std::size_t>(row.m_moved[k])].m_node].m_v.dot(row.m_normal) *
                  row.m_weights[k];
     const btScalar excess = speed - row.m_speedLimit;
     if (!(excess > 0)) return;
     for (int k = 0; k < row.m_count; ++k)
     {
         const Moved& moved = m_moved[static_cast<std::size_t>(row.m_moved[k])];
-        m_body.m_nodes[moved.m_node].m_v -=
+        m_body->m_nodes[moved.m_node].m_v -=
             row.m_normal * (row.m_weights[k] * moved.m_inverseMass * excess / row.m_mobility);
     }
 }
 
 void ContactRounds::limitSpeeds()
 {
-    for (const Row& row : m_rows)
-        if (row.m_pushed) limitSpeed(row);
+    for (const State& state : m_states)
+        for (int lane = 0; state.m_opened && lane < kLanes; ++lane)
+            if (state.m_row[lane] >= 0 && m_rows[static_cast<std::size_t>(state.m_row[lane])].m_pushed)
+                limitSpeed(m_rows[static_cast<std::size_t>(state.m_row[lane])]);
 }
 }  // namespace drape

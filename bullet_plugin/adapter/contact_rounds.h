@@ -10,46 +10,79 @@
 // on the push (Macklin et al. 2014, Unified Particle Physics, section 6.1), with Bullet's coefficient, kDF times the
 // obstacle's friction. Velocities follow the positions as in Bullet's own update, (x change)/dt (1 - kDP);
 // limitSpeeds() takes out again what a contact gained by recovering a depth that the step began with. So no energy
-// comes from the rounds. Pinned, massless and anchored nodes stay. Cost: linear in the contacts.
+// comes from the rounds. Pinned, massless and anchored nodes stay.
+//
+// Cost: linear in the contacts, but most of them never act in a step. A round looks at contacts by blocks of one cloth
+// feature, in float32 and with a margin for rounding; only for those that may be violated, or push already, there is a
+// row, made when it is first needed. The results are those of projecting every contact.
 #pragma once
 
 #include <vector>
 
-#include "bullet_plugin/adapter/step_contact.h"
+#include "bullet_plugin/adapter/body_contacts.h"
+#include "bullet_plugin/adapter/found_contacts.h"
 
 namespace drape
 {
 class ContactRounds
 {
 public:
-    ContactRounds(btSoftBody& body, const std::vector<StepContact>& contacts);
+    // For another body; memory is kept. Both stay as they are until the last round.
+    void start(const BodyContacts& contacts, const FoundContacts& found);
 
     // Begins a stage: nothing is pushed yet.
     void restart();
     // One round over all contacts. Returns the worst violation met, m.
-    btScalar run() { return runRows(m_rows.size()); }
+    btScalar run() { return runBlocks(m_blocks.size()); }
     // The same over the contacts of nodes alone, which hold exactly afterwards but for nodes with several.
-    void runNodes() { runRows(m_nodeRows); }
+    void runNodes() { runBlocks(m_nodeBlocks); }
     // Once, after the last round.
     void limitSpeeds();
 
-    bool empty() const { return m_rows.empty(); }
-    btScalar leastThickness() const { return m_leastThickness; }
+    bool empty() const { return m_blocks.empty(); }
 
 private:
-    // A node that rows refer to, copied together: Bullet's nodes are far apart.
-    struct Moved
+    // A node that contacts refer to, copied together: Bullet's nodes are far apart.
+    struct Place
     {
         btVector3 m_x, m_start;
+    };
+    struct Moved
+    {
         btScalar m_inverseMass;
         int m_node;
+        bool m_shifted;  // in this round
+    };
+    static constexpr int kLanes = 4;
+
+    // Contacts of one cloth feature side by side; lanes beyond the last one repeat it. The gap is
+    // n.(x0 + w1 (x1 - x0) + w2 (x2 - x0)) - level. The level is raised by a margin for rounding.
+    struct Block
+    {
+        Block() {}  // leaves everything to who adds it
+
+        float m_normal[3][kLanes];
+        float m_level[kLanes];
+        float m_weights[2][kLanes];  // of the second and third node
+        int m_moved[3];              // the first one again where unused
+        int m_count;                 // of nodes
+        int m_lanes;                 // in use
+        const Contact* m_contacts;
+    };
+    // Of a block, in bits and indices by lane.
+    struct State
+    {
+        unsigned m_holding = 0;  // rows that have pushed in this stage
+        bool m_opened = false;   // there is a row
+        int m_row[kLanes] = {-1, -1, -1, -1};
     };
     struct Row
     {
         int m_moved[3];
         int m_count;
         btScalar m_weights[3];
-        btScalar m_mobility;  // what a unit multiplier moves the weighted point
+        btScalar m_shares[3];  // of a unit multiplier, by node
+        btScalar m_mobility;   // what a unit multiplier moves the weighted point
         btVector3 m_normal;
         btScalar m_level;  // n.(sum w x) at the target
         btScalar m_friction;
@@ -60,19 +93,32 @@ private:
         bool m_pushed;          // in any stage
     };
 
-    void addRow(const StepContact& contact, std::vector<int>& movedOfNode);
+    void addFeature(const FeatureContacts& feature);
+    int addMoved(int node);
+    void fillLane(Block& block, int lane, const Contact& contact) const;
+    Row makeRow(const Block& block, int lane) const;
     btVector3 carriedBy(const Row& row, const btTransform* carry) const;
-    btScalar runRows(std::size_t count);
-    btScalar project(Row& row);
-    void holdBack(Row& row);
-    btVector3 pointOf(const Row& row) const;
-    void shift(const Row& row, const btVector3& impulse);
+    void gather();
+    void scatter();
+    btScalar runBlocks(std::size_t count);
+    static unsigned lanesDue(const Block& block, const Place* places);
+    btScalar projectBlock(std::size_t index, unsigned due);
+    bool project(Row& row, btScalar& worst);
+    template <int count>
+    bool projectNodes(Row& row, btScalar& worst);
     void limitSpeed(const Row& row);
 
-    btSoftBody& m_body;
+    const BodyContacts* m_contacts = nullptr;
+    const FoundContacts* m_found = nullptr;
+    btSoftBody* m_body = nullptr;
+    std::vector<int> m_movedOfNode;  // index in m_moved, -1 for none
     std::vector<Moved> m_moved;
+    std::vector<Place> m_places;  // of m_moved
+    float m_farthest = 0;         // largest coordinate of a path, m
+    std::vector<Block> m_blocks;  // in canonical order
+    std::vector<State> m_states;  // of each
     std::vector<Row> m_rows;
-    std::size_t m_nodeRows = 0;
-    btScalar m_leastThickness = SIMD_INFINITY;
+    std::vector<std::size_t> m_holding;  // blocks with rows that have pushed in this stage
+    std::size_t m_nodeBlocks = 0;
 };
 }  // namespace drape

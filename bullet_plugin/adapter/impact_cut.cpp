@@ -41,6 +41,7 @@ void shorten(btSoftBody::Node& node, const Left& left, btScalar velocityScale)
 
 bool cutAtImpacts(btSoftBody& body, const std::vector<StepContact>& contacts, Cut cut)
 {
+    if (contacts.empty()) return false;
     std::vector<Left> left(static_cast<std::size_t>(body.m_nodes.size()));
     Left least;
     for (const StepContact& contact : contacts)

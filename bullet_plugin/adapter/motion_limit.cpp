@@ -6,6 +6,9 @@ namespace drape
 {
 namespace
 {
+// Share of the least distance allowed that needs no closer look; the rest is for rounding.
+constexpr btScalar kSureShare = btScalar(0.99);
+
 // Where on the way from start to end, 0 to 1, the point is nearest.
 btScalar closestOnPath(const btVector3& start, const btVector3& end, const btVector3& point)
 {
@@ -30,6 +33,12 @@ void keepNear(btSoftBody::Node& node, const btVector3& start, const btVector3& e
 }
 }  // namespace
 
+void MotionLimit::clear()
+{
+    m_regions.clear();
+    m_leastReach = m_free = SIMD_INFINITY;
+}
+
 void MotionLimit::addObstacle(const btVector3& low, const btVector3& high, btScalar thickness, btScalar activation,
                               const btTransform* carry)
 {
@@ -37,26 +46,20 @@ void MotionLimit::addObstacle(const btVector3& low, const btVector3& high, btSca
     m_leastReach = std::min(m_leastReach, reach);
     const btVector3 margin(reach, reach, reach);
     const btScalar least = thickness * std::max(kLeastShare, std::min(activation, kMostStartShare));
+    m_free = std::min(m_free, kSureShare * std::min(least, kFreeShare * reach));
     m_regions.push_back(Region{low - margin, high + margin, Allowance{least, kFreeShare * reach}, carry != nullptr,
                                carry ? *carry : btTransform::getIdentity()});
 }
 
 void MotionLimit::record(const btSoftBody& body)
 {
-    const std::size_t count = static_cast<std::size_t>(body.m_nodes.size());
-    m_start.resize(count);
-    m_end.resize(count);
-    m_hasContact.assign(count, 0);
-    for (std::size_t i = 0; i < count; ++i)
-    {
-        m_start[i] = body.m_nodes[static_cast<int>(i)].m_q;
-        m_end[i] = body.m_nodes[static_cast<int>(i)].m_x;
-    }
+    m_paths.record(body);
+    m_hasContact.assign(m_paths.m_end.size(), 0);
 }
 
 bool MotionLimit::near(const Region& region, std::size_t node, const btVector3& to) const
 {
-    btVector3 low = m_end[node], high = m_end[node];
+    btVector3 low = m_paths.m_end[node], high = m_paths.m_end[node];
     low.setMin(to);
     high.setMax(to);
     bool near = true;
@@ -87,29 +90,29 @@ MotionLimit::Allowance MotionLimit::allowance(std::size_t node, const btVector3&
 bool MotionLimit::strayed(const btSoftBody& body) const
 {
     const btScalar most = kStrayReaches * m_leastReach;
-    const int count = std::min(body.m_nodes.size(), static_cast<int>(m_end.size()));
+    const int count = std::min(body.m_nodes.size(), static_cast<int>(m_paths.m_end.size()));
     for (int i = 0; i < count; ++i)
-        if ((body.m_nodes[i].m_x - m_end[static_cast<std::size_t>(i)]).length2() > most * most) return true;
+        if ((body.m_nodes[i].m_x - m_paths.m_end[static_cast<std::size_t>(i)]).length2() > most * most) return true;
     return false;
 }
 
 void MotionLimit::apply(btSoftBody& body) const
 {
     const btScalar velocityScale = body.m_sst.isdt * (1 - body.m_cfg.kDP);
-    const int count = std::min(body.m_nodes.size(), static_cast<int>(m_end.size()));
+    const int count = std::min(body.m_nodes.size(), static_cast<int>(m_paths.m_end.size()));
     for (int i = 0; i < count; ++i)
     {
         btSoftBody::Node& node = body.m_nodes[i];
-        if (!(node.m_im > 0) || node.m_battach) continue;
         const std::size_t at = static_cast<std::size_t>(i);
+        const btVector3 &start = m_paths.m_start[at], &end = m_paths.m_end[at];
+        if ((node.m_x - end).length2() <= m_free * m_free || !(m_paths.m_inverseMass[at] > 0)) continue;
         const Allowance allowed = allowance(at, node.m_x);
-        if (allowed.m_end != SIMD_INFINITY)
-            keepNear(node, m_start[at], m_end[at], allowed.m_start, allowed.m_end, velocityScale);
+        if (allowed.m_end != SIMD_INFINITY) keepNear(node, start, end, allowed.m_start, allowed.m_end, velocityScale);
         for (const Region& region : m_regions)
         {
             if (!region.m_moves || !near(region, at, node.m_x)) continue;
             const Allowance own = allowance(region, at);
-            keepNear(node, region.m_carry * m_start[at], m_end[at], own.m_start, own.m_end, velocityScale);
+            keepNear(node, region.m_carry * start, end, own.m_start, own.m_end, velocityScale);
         }
     }
 }

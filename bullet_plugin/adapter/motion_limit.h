@@ -14,7 +14,7 @@
 
 #include <vector>
 
-#include "BulletSoftBody/btSoftBody.h"
+#include "bullet_plugin/adapter/node_paths.h"
 
 namespace drape
 {
@@ -34,12 +34,15 @@ constexpr btScalar kStrayReaches = btScalar(2);
 class MotionLimit
 {
 public:
+    // Forgets the obstacles; what memory it has stays.
+    void clear();
     // Box of an obstacle that the body has a pair with, the pair's thickness, and the activation as a share of it.
     // Nodes whose way from the predicted to the solved position misses every box are free. carry: see StepContact.
     void addObstacle(const btVector3& low, const btVector3& high, btScalar thickness, btScalar activation,
                      const btTransform* carry = nullptr);
     // Call before Bullet solves: remembers the prediction.
     void record(const btSoftBody& body);
+    const NodePaths& paths() const { return m_paths; }
     // A node of a contact; after record().
     void addContactNode(int node) { m_hasContact[static_cast<std::size_t>(node)] = 1; }
     // Whether a node ended so far back along its path that faces and edges may have taken ways nobody looked at.
@@ -68,7 +71,8 @@ private:
 
     std::vector<Region> m_regions;
     btScalar m_leastReach = SIMD_INFINITY;
-    std::vector<btVector3> m_start, m_end;
+    btScalar m_free = SIMD_INFINITY;  // m, from the end of its path; within it a node is where it may be
+    NodePaths m_paths;
     std::vector<unsigned char> m_hasContact;
 };
 }  // namespace drape

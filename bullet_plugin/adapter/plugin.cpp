@@ -56,7 +56,7 @@ const StepStatistics& Plugin::statistics() const
 
 std::vector<ContactInfo> Plugin::contacts() const
 {
-    return m_state->m_contacts;
+    return m_state->m_found.list();
 }
 
 std::string Plugin::whyStock(const btCollisionObject* objectA, const btCollisionObject* objectB) const

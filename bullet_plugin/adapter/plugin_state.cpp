@@ -69,7 +69,7 @@ void PluginState::fail(const std::string& call, const std::string& detail)
     m_owned.clear();
     m_cloths.clear();
     m_obstacles.clear();
-    m_contacts.clear();
+    m_found.clear();
     m_pipeline.reset();
 }
 

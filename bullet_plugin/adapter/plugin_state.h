@@ -17,6 +17,7 @@
 #include "BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h"
 #include "BulletSoftBody/btSoftBodyConcaveCollisionAlgorithm.h"
 #include "drape/plugin.h"
+#include "bullet_plugin/adapter/found_contacts.h"
 #include "bullet_plugin/adapter/kinematic_motion.h"
 #include "bullet_plugin/adapter/mirrors.h"
 #include "bullet_plugin/adapter/pair_algorithm.h"
@@ -76,7 +77,7 @@ public:
     void dropOldMirrors();
 
     StepStatistics m_statistics;
-    std::vector<ContactInfo> m_contacts;
+    FoundContacts m_found;
 
 private:
     struct Owned

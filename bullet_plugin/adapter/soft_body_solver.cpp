@@ -12,7 +12,17 @@
 
 namespace drape
 {
-SoftBodySolver::SoftBodySolver(Plugin& plugin) : m_state(plugin.state())
+// What is kept from step to step.
+struct SoftBodySolver::Work
+{
+    explicit Work(PluginState& state) : m_step(state) {}
+
+    CollisionStep m_step;
+    ContactRounds m_rounds;
+    double m_predictMs = 0;  // of this class's share in predictMotion
+};
+
+SoftBodySolver::SoftBodySolver(Plugin& plugin) : m_state(plugin.state()), m_work(new Work(*m_state))
 {
     m_state->addSolver(this);
 }
@@ -27,6 +37,7 @@ void SoftBodySolver::predictMotion(btScalar dt)
     m_state->dropNotes(this);  // of a dispatch that no solve followed
     btDefaultSoftBodySolver::predictMotion(dt);
     if (!m_state->ready()) return;
+    Stopwatch watch;
     // The mesh's own bounds hold its margin; the activation distance beyond the thickness is shared out alike.
     const btScalar reach = 1 + btScalar(m_state->settings().m_activation);
     KinematicMotions& motions = m_state->motionsOf(this);
@@ -38,46 +49,70 @@ void SoftBodySolver::predictMotion(btScalar dt)
         if (m_softBodySet[i]->isActive())
             coverMotion(*m_softBodySet[i], reach * m_softBodySet[i]->getCollisionShape()->getMargin(), moving);
     }
+    m_work->m_predictMs = watch.lapMs();
 }
 
-void SoftBodySolver::solveConstraints(btScalar)
+void SoftBodySolver::detect()
 {
-    CollisionStep step(*m_state);
-    StepStatistics& statistics = m_state->m_statistics;
+    m_work->m_step.clear();
+    if (!m_state->ready()) return;
     try
     {
-        if (m_state->ready())
-        {
-            Stopwatch watch;
-            step.begin(m_state->takeNotes(this));
-            const double beginMs = watch.lapMs();
-            step.finish();
-            statistics.m_writeMs = watch.lapMs() - statistics.m_waitMs;
-            statistics.m_uploadMs = std::max(statistics.m_uploadMs, beginMs);  // mirrors and copying included
-        }
+        StepStatistics& statistics = m_state->m_statistics;
+        Stopwatch watch;
+        m_work->m_step.begin(m_state->takeNotes(this));
+        const double beginMs = watch.lapMs();
+        m_work->m_step.finish();
+        statistics.m_uploadMs = m_work->m_predictMs + beginMs;
+        statistics.m_writeMs = watch.lapMs() - statistics.m_waitMs;
     }
     catch (const std::exception& exception)
     {
-        step.bodies().clear();
+        m_work->m_step.clear();
         m_state->fail("drape::SoftBodySolver::solveConstraints", exception.what());
     }
+}
 
+// Returns the time of Bullet's part, ms.
+double SoftBodySolver::solveBodies()
+{
+    double bulletMs = 0;
     for (int i = 0; i < m_softBodySet.size(); ++i)
     {
         btSoftBody* body = m_softBodySet[i];
         if (!body->isActive()) continue;
-        if (BodyContacts* contacts = step.contactsOf(*body))
-            statistics.m_finishMs += solveBody(*contacts);
-        else
-            body->solveConstraints();
+        if (const BodyContacts* contacts = m_work->m_step.contactsOf(*body))
+        {
+            bulletMs += solveBody(*contacts, m_state->m_found, m_work->m_rounds);
+            continue;
+        }
+        Stopwatch watch;
+        body->solveConstraints();
+        bulletMs += watch.lapMs();
     }
+    return bulletMs;
+}
+
+void SoftBodySolver::checkStrayed()
+{
     try
     {
-        step.checkStrayed();
+        m_work->m_step.checkStrayed();
     }
     catch (const std::exception& exception)
     {
         m_state->fail("drape::SoftBodySolver::solveConstraints", exception.what());
     }
+}
+
+void SoftBodySolver::solveConstraints(btScalar)
+{
+    detect();
+    StepStatistics& statistics = m_state->m_statistics;
+    const double waitMs = statistics.m_waitMs;
+    Stopwatch watch;
+    const double bulletMs = solveBodies();
+    checkStrayed();
+    statistics.m_finishMs = watch.lapMs() - bulletMs - (statistics.m_waitMs - waitMs);
 }
 }  // namespace drape

@@ -1,11 +1,7 @@
-// One contact as the adapter works with it between detection and the contact rounds.
+// One contact, resolved: what contact rounds and cuts work with.
 //
 // Lengths in metres, world frame. Gaps have the thickness subtracted: 0 is the resting distance, negative is too close.
-// Node pointers are those of the current step; nothing here outlives SoftBodySolver::solveConstraints except for
-// debugging.
 #pragma once
-
-#include <cstdint>
 
 #include "BulletSoftBody/btSoftBody.h"
 
@@ -13,8 +9,6 @@ namespace drape
 {
 struct StepContact
 {
-    const btCollisionObject* m_object;
-    std::uint32_t m_kind;   // DRAPE_NODE_FACE …
     int m_nodes[3];         // -1 where unused
     btScalar m_weights[3];  // sum 1
     btVector3 m_normal;     // unit, from the obstacle to the cloth

@@ -50,6 +50,25 @@ struct ContactView
     float m_time;          // time of impact in [0, 1]
 };
 
+// The cloth feature of a contact, which all contacts of one slot share.
+struct ClothFeature
+{
+    MeshId m_cloth;
+    std::int32_t m_nodes[3];  // indices in that cloth; -1 where unused
+};
+
+// Contacts where the back end left them.
+struct ContactList
+{
+    const Contact* m_first = nullptr;
+    std::size_t m_count = 0;
+
+    const Contact* begin() const { return m_first; }
+    const Contact* end() const { return m_first + m_count; }
+    std::size_t size() const { return m_count; }
+    const Contact& operator[](std::size_t i) const { return m_first[i]; }
+};
+
 class Pipeline
 {
 public:
@@ -90,7 +109,7 @@ public:
     // Enqueues the step for the pairs named since the last finish(); returns without waiting.
     void submit();
     // Waits, grows buffers and repeats where needed. Contacts are valid until the next submit().
-    const std::vector<Contact>& finish();
+    ContactList finish();
     // With statistics of that step (upload and wait times, counts, status; the adapter adds its own).
     const StepStatistics& statistics() const;
     // The kernel launches since the last call, with Settings::m_profileKernels; empty on the host. Waits for the
@@ -103,6 +122,8 @@ public:
 
     // Resolves a contact of the last finish().
     ContactView view(const Contact& contact) const;
+    // The cloth's part of it, for less.
+    ClothFeature clothFeature(const Contact& contact) const;
 
 private:
     Pipeline();

@@ -142,15 +142,16 @@ std::string asCsv(const RunRecord& record, double dt)
 {
     std::string csv =
         "step,time_s,step_ms,collision_ms,contacts,penetration_max_m,gap_min_m,nodes_below_surface,"
-        "intersecting_pairs,nan_nodes\n";
+        "intersecting_pairs,nan_nodes,speed_rms_m_s\n";
     char line[256];
     for (std::size_t i = 0; i < record.m_steps.size(); ++i)
     {
         const StepRecord& step = record.m_steps[i];
-        std::snprintf(line, sizeof line, "%zu,%.9g,%.6f,%.6f,%zu,%.9g,%.9g,%zu,%zu,%zu\n", i + 1,
+        std::snprintf(line, sizeof line, "%zu,%.9g,%.6f,%.6f,%zu,%.9g,%.9g,%zu,%zu,%zu,%.9g\n", i + 1,
                       static_cast<double>(i + 1) * dt, step.m_times.m_stepMs, step.m_times.m_collisionMs,
                       step.m_times.m_contacts, step.m_measure.m_penetrationMax, step.m_measure.m_gapMin,
-                      step.m_measure.nodesBelow(), step.m_measure.m_intersectingPairs, step.m_measure.m_invalidNodes);
+                      step.m_measure.nodesBelow(), step.m_measure.m_intersectingPairs, step.m_measure.m_invalidNodes,
+                      step.m_speed);
         csv += line;
     }
     return csv;

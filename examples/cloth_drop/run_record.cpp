@@ -70,6 +70,17 @@ RunSummary summarise(const RunRecord& record)
     return summary;
 }
 
+double rmsSpeed(const std::vector<float>& before, const std::vector<float>& after, double dt)
+{
+    double sum = 0;
+    for (std::size_t i = 0; i < after.size(); ++i)
+    {
+        const double way = static_cast<double>(after[i]) - static_cast<double>(before[i]);
+        sum += way * way;
+    }
+    return after.empty() ? 0 : std::sqrt(3 * sum / static_cast<double>(after.size())) / dt;
+}
+
 std::uint64_t hashFloats(std::uint64_t hash, const std::vector<float>& values)
 {
     for (const float value : values)

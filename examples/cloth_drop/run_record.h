@@ -14,6 +14,7 @@ struct StepRecord
 {
     StepTimes m_times;
     StepMeasure m_measure;
+    double m_speed = 0;        // m/s, root mean square of the nodes' speeds over the step
     std::uint64_t m_hash = 0;  // of all positions up to and with this step
 };
 
@@ -49,6 +50,9 @@ struct RunSummary
 };
 
 RunSummary summarise(const RunRecord& record);
+
+// Root mean square, m/s, of the nodes' motion (x y z per node, m) from one to the other within dt seconds.
+double rmsSpeed(const std::vector<float>& before, const std::vector<float>& after, double dt);
 
 // FNV-1a, 64 bits, over the bits of the floats, least significant byte first.
 constexpr std::uint64_t kHashStart = 0xcbf29ce484222325ull;

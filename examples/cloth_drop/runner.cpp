@@ -38,7 +38,9 @@ bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, co
         StepRecord step;
         step.m_times = simulation.step();
         if (hooks.m_stepped) hooks.m_stepped(number);
-        lastFrame.m_positions = simulation.positions();
+        const std::vector<float>& positions = simulation.positions();
+        step.m_speed = rmsSpeed(lastFrame.m_positions, positions, scene.m_dt);
+        lastFrame.m_positions = positions;
         step.m_measure = meter.measure(lastFrame.m_positions.data());
         step.m_hash = hash = hashFloats(hash, lastFrame.m_positions);
         if (frames && !writeMesh(frameName(framesFolder, "cloth", number), lastFrame, error)) return false;

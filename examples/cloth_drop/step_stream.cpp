@@ -23,6 +23,7 @@ Json asLine(const StepRecord& step)
             {"depths", step.m_measure.m_nodeDepths},
             {"pairs", step.m_measure.m_intersectingPairs},
             {"invalid", step.m_measure.m_invalidNodes},
+            {"speed", step.m_speed},
             {"hash", step.m_hash}};
 }
 }  // namespace
@@ -39,6 +40,7 @@ StepRecord stepFromLine(const std::string& text)
     step.m_measure.m_nodeDepths = line.at("depths").get<std::vector<float>>();
     step.m_measure.m_intersectingPairs = line.at("pairs");
     step.m_measure.m_invalidNodes = line.at("invalid");
+    step.m_speed = line.at("speed").is_null() ? 0.0 : line.at("speed").get<double>();
     step.m_hash = line.at("hash");
     return step;
 }

@@ -21,12 +21,12 @@ DRAPE_FUNCTION float edgeEdgeVolume(FeatureEdge e, FeatureEdge o)
     return vec3Dot(vec3Cross(vec3Sub(e.m_b, e.m_a), vec3Sub(o.m_b, o.m_a)), vec3Sub(o.m_a, e.m_a));
 }
 
-// An edge that met the obstacle's edge at the given time. v0: the volume at the step's start; crossed: whether it
+// An edge that met the obstacle's edge. v0: the volume at the step's start; crossed: whether it
 // changed sign. Edges that touched and parted again on the side they came from give no contact.
-DRAPE_FUNCTION int edgeEdgeMet(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, float time, float v0, int crossed,
+DRAPE_FUNCTION int edgeEdgeMet(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, Meeting meeting, float v0, int crossed,
                                PairBounds bounds, Contact* contact)
 {
-    const FeatureEdge e = edgeMix(e0, e1, time);
+    const FeatureEdge e = edgeMix(e0, e1, meeting.m_place);
     const float side = v0 < 0.0f ? -1.0f : 1.0f;
     float s, t;
     closestOnSegments(e.m_a, e.m_b, o.m_a, o.m_b, &s, &t);
@@ -39,7 +39,7 @@ DRAPE_FUNCTION int edgeEdgeMet(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, fl
     const float gap1 = vec3Dot(normal, vec3Sub(vec3Mix(e1.m_a, e1.m_b, s), point));
     if (!(gap1 < (crossed ? bounds.m_reach : 0.0f))) return DRAPE_NO_CONTACT;
     storeContact(contact, normal, point, vec3(1.0f - s, s, 0.0f),
-                 vec3Dot(normal, vec3Sub(vec3Mix(e0.m_a, e0.m_b, s), point)), gap1, time);
+                 vec3Dot(normal, vec3Sub(vec3Mix(e0.m_a, e0.m_b, s), point)), gap1, meeting.m_time);
     return DRAPE_IS_CONTACT;
 }
 
@@ -59,8 +59,8 @@ DRAPE_FUNCTION int edgeEdgeContact(FeatureEdge e0, FeatureEdge e1, FeatureEdge o
     if (edgeMayMeet(e0, e1, o, v0, v1, bounds))
     {
         if (!bounds.m_complete) return DRAPE_UNDECIDED;
-        const CcdResult met = meetEdge(e0, e1, o, bounds);
-        if (met.m_hit && edgeEdgeMet(e0, e1, o, met.m_time, v0, crossed, bounds, contact)) return DRAPE_IS_CONTACT;
+        const Meeting meeting = meetEdge(e0, e1, o, bounds);
+        if (meeting.m_met && edgeEdgeMet(e0, e1, o, meeting, v0, crossed, bounds, contact)) return DRAPE_IS_CONTACT;
     }
     if (crossed) return DRAPE_NO_CONTACT;
     const float squared = vec3Dot(direction, direction);

@@ -7,12 +7,12 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// A face that met the vertex at the given time. side: where the vertex was at the start, +1 in front of the face;
+// A face that met the vertex. side: where the vertex was at the start, +1 in front of the face;
 // crossed: whether it is on the other side at the end. A face that touched the vertex and went back gives no contact.
-DRAPE_FUNCTION int faceVertexMet(FeatureTriangle f0, FeatureTriangle f1, Vec3 vertex, float time, float side,
+DRAPE_FUNCTION int faceVertexMet(FeatureTriangle f0, FeatureTriangle f1, Vec3 vertex, Meeting meeting, float side,
                                  int crossed, Contact* contact)
 {
-    const FeatureTriangle f = triangleMix(f0, f1, time);
+    const FeatureTriangle f = triangleMix(f0, f1, meeting.m_place);
     const Vec3 weights = closestOnTriangle(vertex, f.m_p[0], f.m_p[1], f.m_p[2]);
     const Vec3 end = vec3Sub(featurePoint(f1, weights), vertex);
     Vec3 area = triangleNormal(f);
@@ -24,7 +24,7 @@ DRAPE_FUNCTION int faceVertexMet(FeatureTriangle f0, FeatureTriangle f1, Vec3 ve
     const float gap1 = vec3Dot(normal, end);
     if (!crossed && !(gap1 < 0.0f)) return DRAPE_NO_CONTACT;
     storeContact(contact, normal, vertex, weights, vec3Dot(normal, vec3Sub(featurePoint(f0, weights), vertex)), gap1,
-                 time);
+                 meeting.m_time);
     return DRAPE_IS_CONTACT;
 }
 
@@ -46,8 +46,8 @@ DRAPE_FUNCTION int faceVertexContact(const MovingFace* face, const DRAPE_UINT* b
     if (faceMayMeet(face, vertex, s0, s1, bounds))
     {
         if (!bounds.m_complete) return DRAPE_UNDECIDED;
-        const CcdResult met = meetFace(face, vertex, bounds);
-        if (met.m_hit && faceVertexMet(f0, f1, vertex, met.m_time, side, crossed, contact)) return DRAPE_IS_CONTACT;
+        const Meeting meeting = meetFace(face, vertex, bounds);
+        if (meeting.m_met && faceVertexMet(f0, f1, vertex, meeting, side, crossed, contact)) return DRAPE_IS_CONTACT;
     }
     if (crossed) return DRAPE_NO_CONTACT;
     if (drapeAbs(s1) > areaLength * bounds.m_reachSlack) return 0;

@@ -106,18 +106,74 @@ DRAPE_FUNCTION CcdSettings meetingSettings(float motion, PairBounds bounds)
     return settings;
 }
 
-DRAPE_FUNCTION CcdResult meetFace(const MovingFace* face, Vec3 vertex, PairBounds bounds)
+typedef struct Meeting
+{
+    int m_met;
+    float m_time;   // of the step, never late
+    float m_place;  // of the step, where the features are to be looked at: as near as a few steps come
+} Meeting;
+
+// Six times the signed volume of the features at time t.
+DRAPE_FUNCTION float volumeAt(const CcdVectors* v, float t)
+{
+    return vec3Dot(vec3Mix(v->m_d0, v->m_d1, t), vec3Cross(vec3Mix(v->m_e0, v->m_e1, t), vec3Mix(v->m_g0, v->m_g1, t)));
+}
+
+// The time between two at which the features are in one plane, by a few steps of false position; the middle where the
+// volume does not change sign.
+DRAPE_FUNCTION float coplanarTime(const CcdVectors* v, float low, float high)
+{
+    float before = volumeAt(v, low), after = volumeAt(v, high);
+    const float side = after < 0.0f ? -1.0f : 1.0f;  // products of volumes would underflow for small features
+    if (!(side * before < 0.0f)) return low + 0.5f * (high - low);
+    float time = low;
+    for (int i = 0; i < 4 && before != after; ++i)
+    {
+        time = low + (high - low) * (before / (before - after));
+        const float middle = volumeAt(v, time);
+        if (side * middle > 0.0f)
+        {
+            high = time;
+            after = middle;
+        }
+        else
+        {
+            low = time;
+            before = middle;
+        }
+    }
+    return time;
+}
+
+DRAPE_FUNCTION Meeting meetFeatures(DRAPE_UINT kind, const Vec3 start[4], const Vec3 end[4], float motion,
+                                    PairBounds bounds)
+{
+    const CcdSettings settings = meetingSettings(motion, bounds);
+    const CcdVectors vectors = ccdVectors(kind, start, end);
+    const CcdResult result = ccdRun(&vectors, kind == DRAPE_VERTEX_FACE, settings);
+    Meeting meeting;
+    meeting.m_met = result.m_hit;
+    meeting.m_time = meeting.m_place = result.m_time;
+    if (result.m_hit)
+    {
+        const float latest = drapeMin(1.0f, result.m_time + 2.0f * settings.m_timeTolerance);
+        meeting.m_place = coplanarTime(&vectors, result.m_time, latest);
+    }
+    return meeting;
+}
+
+DRAPE_FUNCTION Meeting meetFace(const MovingFace* face, Vec3 vertex, PairBounds bounds)
 {
     const Vec3 start[4] = {vertex, face->m_start.m_p[0], face->m_start.m_p[1], face->m_start.m_p[2]};
     const Vec3 end[4] = {vertex, face->m_end.m_p[0], face->m_end.m_p[1], face->m_end.m_p[2]};
-    return ccdOfKind(DRAPE_VERTEX_FACE, start, end, meetingSettings(faceMotion(face), bounds));
+    return meetFeatures(DRAPE_VERTEX_FACE, start, end, faceMotion(face), bounds);
 }
 
-DRAPE_FUNCTION CcdResult meetEdge(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, PairBounds bounds)
+DRAPE_FUNCTION Meeting meetEdge(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, PairBounds bounds)
 {
     const Vec3 start[4] = {e0.m_a, e0.m_b, o.m_a, o.m_b};
     const Vec3 end[4] = {e1.m_a, e1.m_b, o.m_a, o.m_b};
-    return ccdOfKind(DRAPE_EDGES, start, end, meetingSettings(edgeMotion(e0, e1), bounds));
+    return meetFeatures(DRAPE_EDGES, start, end, edgeMotion(e0, e1), bounds);
 }
 
 DRAPE_NAMESPACE_END

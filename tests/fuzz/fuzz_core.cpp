@@ -108,8 +108,7 @@ void writeNodes(drape::Pipeline& pipeline, Bytes& bytes, std::vector<Mesh>& clot
     }
 }
 
-void check(const drape::Pipeline& pipeline, const drape::Settings& settings,
-           const std::vector<drape::Contact>& contacts)
+void check(const drape::Pipeline& pipeline, const drape::Settings& settings, const drape::ContactList& contacts)
 {
     require(contacts.size() <= settings.m_contactLimit);
     const drape::Contact* last = nullptr;

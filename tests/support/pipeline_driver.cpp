@@ -24,7 +24,8 @@ void setMotion(Pipeline& pipeline, MeshId cloth, const std::vector<float>& start
 std::vector<Contact> runStep(Pipeline& pipeline)
 {
     pipeline.submit();
-    return pipeline.finish();
+    const ContactList contacts = pipeline.finish();
+    return {contacts.begin(), contacts.end()};
 }
 
 std::vector<Contact> runCase(Pipeline& pipeline, const StepCase& step)

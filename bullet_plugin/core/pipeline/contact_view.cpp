@@ -7,16 +7,16 @@ namespace drape
 {
 namespace
 {
-struct ClothFeature
+struct PooledFeature
 {
     std::size_t m_slot = 0;                                  // of the mesh
     std::uint32_t m_keptTriangle = 0;                        // in the mesh's topology
     std::uint32_t m_nodes[3] = {kNoMesh, kNoMesh, kNoMesh};  // over all meshes
 };
 
-ClothFeature clothFeature(const MeshPool& cloths, const Contact& contact)
+PooledFeature pooledFeature(const MeshPool& cloths, const Contact& contact)
 {
-    ClothFeature feature;
+    PooledFeature feature;
     const std::uint32_t index = contact.m_clothFeature;
     if (contact.m_kind == DRAPE_NODE_FACE)
     {
@@ -42,13 +42,28 @@ ClothFeature clothFeature(const MeshPool& cloths, const Contact& contact)
     }
     return feature;
 }
+
+std::int32_t nodeOf(const PooledFeature& feature, const PooledMesh& cloth, int corner)
+{
+    const std::uint32_t node = feature.m_nodes[corner];
+    return node == kNoMesh ? -1 : std::int32_t(node - cloth.m_firstVertex);
+}
 }  // namespace
 
 std::size_t obstacleSlot(const MeshPool& obstacles, const Contact& contact)
 {
+    if (obstacles.meshCount() == 1) return 0;
     if (contact.m_kind == DRAPE_NODE_FACE) return obstacles.triangles()[contact.m_obstacleFeature].m_mesh;
     if (contact.m_kind == DRAPE_FACE_VERTEX) return obstacles.slotOfVertex(contact.m_obstacleFeature);
     return obstacles.slotOfEdge(contact.m_obstacleFeature);
+}
+
+ClothFeature Pipeline::clothFeature(const Contact& contact) const
+{
+    const MeshPool& cloths = m_implementation->m_scene.m_cloths;
+    const PooledFeature feature = pooledFeature(cloths, contact);
+    const PooledMesh& cloth = cloths.mesh(feature.m_slot);
+    return ClothFeature{cloth.m_id, {nodeOf(feature, cloth, 0), nodeOf(feature, cloth, 1), nodeOf(feature, cloth, 2)}};
 }
 
 ContactView Pipeline::view(const Contact& contact) const
@@ -56,7 +71,7 @@ ContactView Pipeline::view(const Contact& contact) const
     const Implementation& self = *m_implementation;
     const MeshPool& cloths = self.m_scene.m_cloths;
     const MeshPool& obstacles = self.m_scene.m_obstacles;
-    const ClothFeature feature = clothFeature(cloths, contact);
+    const PooledFeature feature = pooledFeature(cloths, contact);
     const std::size_t obstacle = obstacleSlot(obstacles, contact);
     const PooledMesh& cloth = cloths.mesh(feature.m_slot);
     ContactView view;
@@ -66,7 +81,7 @@ ContactView Pipeline::view(const Contact& contact) const
     view.m_triangle = std::int32_t(cloth.m_topology.m_sourceTriangle[feature.m_keptTriangle]);
     for (int i = 0; i < 3; ++i)
     {
-        view.m_nodes[i] = feature.m_nodes[i] == kNoMesh ? -1 : std::int32_t(feature.m_nodes[i] - cloth.m_firstVertex);
+        view.m_nodes[i] = nodeOf(feature, cloth, i);
         view.m_weights[i] = contact.m_weights[i];
         view.m_normal[i] = contact.m_normal[i];
         view.m_point[i] = contact.m_point[i];

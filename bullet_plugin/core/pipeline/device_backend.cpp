@@ -417,7 +417,7 @@ void DeviceBackend::readAll(StepResult& result)
         m_narrowPhase.contacts().read(*m_device, m_contactsRead.data(), count);
     }
     if (!inHand || m_settings.m_reportIntersections) m_device->wait();
-    result.m_contacts.assign(m_contactsRead.data(), m_contactsRead.data() + count);
+    result.m_deviceContacts = ContactList{m_contactsRead.data(), count};
     m_contactsAsked = std::min({withHeadroom(count), m_contactsRead.capacity(), m_narrowPhase.hitCapacity()});
     sortCandidates(result.m_intersections);
 }

@@ -298,7 +298,7 @@ void Pipeline::submit()
     self.m_statistics.m_uploadMs = millisecondsSince(start);
 }
 
-const std::vector<Contact>& Pipeline::finish()
+ContactList Pipeline::finish()
 {
     Implementation& self = *m_implementation;
     const Clock::time_point start = Clock::now();
@@ -323,7 +323,7 @@ const std::vector<Contact>& Pipeline::finish()
     statistics.m_candidates += self.m_result.m_candidates;
     statistics.m_volumeTests = self.m_result.m_volumeTests;
     statistics.m_sweptTests = self.m_result.m_sweptTests;
-    statistics.m_contacts = self.m_result.m_contacts.size();
+    statistics.m_contacts = self.m_result.contacts().size();
     statistics.m_intersections = self.m_result.m_intersectionCount;
     statistics.m_invalidNodes = self.m_result.m_invalidNodes;
     statistics.m_retries = self.m_result.m_retries;
@@ -332,7 +332,7 @@ const std::vector<Contact>& Pipeline::finish()
     statistics.m_narrowMs = self.m_result.m_narrowMs;
     if (statistics.m_invalidNodes > 0) statistics.m_status |= kStepInvalidNodes;
     statistics.m_waitMs = millisecondsSince(start);
-    return self.m_result.m_contacts;
+    return self.m_result.contacts();
 }
 
 const StepStatistics& Pipeline::statistics() const

@@ -1,5 +1,6 @@
 // Obstacles that are solid from one side only.
 #include <algorithm>
+#include <iterator>
 
 #include "implementation.h"
 
@@ -49,7 +50,10 @@ void Pipeline::Implementation::dropBackContacts()
         const std::array<float, 3> front = frontOf(mesh, contact.m_kind, contact.m_obstacleFeature);
         return front[0] * contact.m_normal[0] + front[1] * contact.m_normal[1] + front[2] * contact.m_normal[2] < 0.0f;
     };
-    std::vector<Contact>& contacts = m_result.m_contacts;
-    contacts.erase(std::remove_if(contacts.begin(), contacts.end(), onBack), contacts.end());
+    std::vector<Contact> kept;
+    const ContactList all = m_result.contacts();
+    std::remove_copy_if(all.begin(), all.end(), std::back_inserter(kept), onBack);
+    m_result.m_contacts.swap(kept);
+    m_result.m_deviceContacts = ContactList();
 }
 }  // namespace drape

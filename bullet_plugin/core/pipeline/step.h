@@ -69,7 +69,8 @@ struct StepPairs
 
 struct StepResult
 {
-    std::vector<Contact> m_contacts;
+    std::vector<Contact> m_contacts;  // of the host
+    ContactList m_deviceContacts;     // the device back end's memory, until its next step
     std::vector<Candidate> m_intersections;
     // More candidates or contacts than the settings allow: nothing else of the result counts then but m_contactDemand.
     bool m_overLimit = false;
@@ -81,5 +82,10 @@ struct StepResult
     std::size_t m_retries = 0;
     std::size_t m_intersectionCount = 0;
     double m_refitMs = 0, m_broadMs = 0, m_narrowMs = 0;  // on the host back end
+
+    ContactList contacts() const
+    {
+        return m_contacts.empty() ? m_deviceContacts : ContactList{m_contacts.data(), m_contacts.size()};
+    }
 };
 }  // namespace drape

@@ -55,7 +55,7 @@ public:
 
     const DeviceReport& device() const;
     const StepStatistics& statistics() const;   // of the last step that one of this plugin's solvers solved
-    std::vector<ContactInfo> contacts() const;  // of that step, in canonical order; a copy
+    std::vector<ContactInfo> contacts() const;  // of that step, in canonical order; made by the call
     std::string report() const;                 // device and last step in one line
 
     // Empty when Drape handles the pair, else the reason why Bullet's own algorithm does. For a compound the first

@@ -27,6 +27,13 @@ public:
     void solveConstraints(btScalar dt) override;
 
 private:
+    struct Work;
+
+    void detect();
+    double solveBodies();
+    void checkStrayed();
+
     std::shared_ptr<PluginState> m_state;
+    std::unique_ptr<Work> m_work;
 };
 }  // namespace drape

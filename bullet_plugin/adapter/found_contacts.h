@@ -1,0 +1,53 @@
+// The contacts that detection found last, and what Bullet calls the meshes they name.
+//
+// Job: resolve single contacts for those that work with them, and all of them for Plugin::contacts(), each only when it
+// is asked for. Input: the pipeline's list, which stays the pipeline's: it counts until the pipeline's next submit.
+// Cost: of what is resolved.
+#pragma once
+
+#include <unordered_map>
+#include <vector>
+
+#include "bullet_plugin/adapter/kinematic_motion.h"
+#include "bullet_plugin/adapter/node_paths.h"
+#include "bullet_plugin/adapter/step_contact.h"
+#include "bullet_plugin/core/pipeline.h"
+#include "drape/plugin.h"
+
+namespace drape
+{
+class FoundContacts
+{
+public:
+    // Nothing found, nothing named.
+    void clear() { *this = FoundContacts(); }
+    void nameCloth(MeshId cloth, const btSoftBody* body) { m_bodies[cloth] = body; }
+    void nameObstacle(MeshId obstacle, const btCollisionObject* object, const BodyMotion& motion);
+    // What the obstacle's motion in the step does to its points; null when it rests. Stays where it is until clear().
+    const btTransform* carryOf(MeshId obstacle) const;
+    void set(const Pipeline& pipeline, const ContactList& contacts);
+    // list() stays as it is now until clear(), whatever is found later.
+    void keepList();
+
+    // The contact's places and gaps along the paths of the body's nodes.
+    StepContact resolve(const btSoftBody& body, const NodePaths& paths, const Contact& contact) const;
+    std::vector<ContactInfo> list() const;
+
+private:
+    struct Obstacle
+    {
+        const btCollisionObject* m_object;
+        bool m_moves;
+        btTransform m_carry;
+    };
+
+    ContactInfo infoOf(const Contact& contact) const;
+
+    std::unordered_map<MeshId, const btSoftBody*> m_bodies;
+    std::unordered_map<MeshId, Obstacle> m_obstacles;
+    const Pipeline* m_pipeline = nullptr;
+    ContactList m_contacts;
+    std::vector<ContactInfo> m_kept;
+    bool m_keeps = false;
+};
+}  // namespace drape

@@ -1,0 +1,213 @@
+// Contact rounds that leave most contacts alone against rounds that project every one: equal to the bit.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "bullet_plugin/adapter/contact_rounds.h"
+#include "scenes/cloth_grid.h"
+#include "scenes/shapes.h"
+#include "tests/bullet/drop_world.h"
+#include "tests/support/pipeline_driver.h"
+
+namespace drape::test
+{
+namespace
+{
+// Every contact, in order, without any short cut.
+class PlainRounds
+{
+public:
+    PlainRounds(btSoftBody& body, const NodePaths& paths, std::vector<StepContact> contacts)
+        : m_body(body), m_paths(paths), m_contacts(std::move(contacts)), m_rows(m_contacts.size())
+    {
+    }
+
+    void restart()
+    {
+        for (Row& row : m_rows)
+            row.m_multiplier = 0, row.m_held.setZero();
+    }
+
+    btScalar run()
+    {
+        std::vector<btVector3> x;
+        for (int i = 0; i < m_body.m_nodes.size(); ++i)
+            x.push_back(m_body.m_nodes[i].m_x);
+        btScalar worst = 0;
+        for (std::size_t i = 0; i < m_rows.size(); ++i)
+            worst = std::max(worst, project(m_contacts[i], m_rows[i], x));
+        for (int i = 0; i < m_body.m_nodes.size(); ++i)
+        {
+            btSoftBody::Node& node = m_body.m_nodes[i];
+            const btVector3& end = x[static_cast<std::size_t>(i)];
+            node.m_v += (end - node.m_x) * (m_body.m_sst.isdt * (1 - m_body.m_cfg.kDP));
+            node.m_x = end;
+        }
+        return worst;
+    }
+
+    std::size_t pushed() const
+    {
+        return static_cast<std::size_t>(
+            std::count_if(m_rows.begin(), m_rows.end(), [](const Row& row) { return row.m_multiplier > 0; }));
+    }
+
+private:
+    struct Row
+    {
+        btScalar m_multiplier = 0;
+        btVector3 m_held = btVector3(0, 0, 0);
+    };
+
+    static btVector3 pointOf(const StepContact& contact, const std::vector<btVector3>& x)
+    {
+        btVector3 point(0, 0, 0);
+        for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+            point += x[static_cast<std::size_t>(contact.m_nodes[k])] * contact.m_weights[k];
+        return point;
+    }
+
+    void shift(const StepContact& contact, const btVector3& impulse, std::vector<btVector3>& x) const
+    {
+        for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+            x[static_cast<std::size_t>(contact.m_nodes[k])] +=
+                impulse * (contact.m_weights[k] * movableInverseMass(m_body.m_nodes[contact.m_nodes[k]]));
+    }
+
+    btScalar project(const StepContact& contact, Row& row, std::vector<btVector3>& x) const
+    {
+        const btVector3& normal = contact.m_normal;
+        btScalar mobility = 0;
+        for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+            mobility +=
+                contact.m_weights[k] * contact.m_weights[k] * movableInverseMass(m_body.m_nodes[contact.m_nodes[k]]);
+        const btScalar level = normal.dot(contact.m_point) + contact.m_thickness + contact.m_targetGap;
+        const btScalar violation = level - normal.dot(pointOf(contact, x));
+        if (!(mobility > 0) || (!(violation > 0) && !(row.m_multiplier > 0))) return 0;
+        const btScalar pushed = std::max(btScalar(0), row.m_multiplier + violation / mobility);
+        shift(contact, normal * (pushed - row.m_multiplier), x);
+        row.m_multiplier = pushed;
+        btVector3 sliding = pointOf(contact, x);
+        for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+            sliding -= m_paths.m_start[static_cast<std::size_t>(contact.m_nodes[k])] * contact.m_weights[k];
+        sliding -= normal * normal.dot(sliding);
+        btVector3 held = row.m_held - sliding / mobility;
+        const btScalar most = contact.m_friction * pushed, wanted2 = held.length2();
+        if (wanted2 > most * most) held *= most / btSqrt(wanted2);
+        shift(contact, held - row.m_held, x);
+        row.m_held = held;
+        return violation;
+    }
+
+    btSoftBody& m_body;
+    const NodePaths& m_paths;
+    std::vector<StepContact> m_contacts;
+    std::vector<Row> m_rows;
+};
+
+std::unique_ptr<btSoftBody> makeBody(btSoftBodyWorldInfo& info, const std::vector<float>& start,
+                                     const std::vector<float>& end)
+{
+    std::vector<btVector3> places;
+    std::vector<btScalar> masses;
+    for (std::size_t i = 0; i < end.size(); i += 3)
+    {
+        places.emplace_back(end[i], end[i + 1], end[i + 2]);
+        masses.push_back(i % 21 == 0 ? btScalar(0) : btScalar(0.01));
+    }
+    auto made = std::make_unique<btSoftBody>(&info, static_cast<int>(places.size()), places.data(), masses.data());
+    btSoftBody& body = *made;
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+        body.m_nodes[i].m_q =
+            btVector3(start[std::size_t(3 * i)], start[std::size_t(3 * i + 1)], start[std::size_t(3 * i + 2)]);
+    body.m_sst.sdt = kDt;
+    body.m_sst.isdt = 1 / kDt;
+    body.m_cfg.kDF = btScalar(0.6);
+    return made;
+}
+
+std::vector<FeatureContacts> featuresOf(const Pipeline& pipeline, const std::vector<Contact>& contacts)
+{
+    std::vector<FeatureContacts> features;
+    for (const Contact& contact : contacts)
+    {
+        const ClothFeature cloth = pipeline.clothFeature(contact);
+        if (features.empty() || features.back().m_contacts->m_slot != contact.m_slot)
+            features.push_back({&contact, 0, {cloth.m_nodes[0], cloth.m_nodes[1], cloth.m_nodes[2]}, 1});
+        ++features.back().m_count;
+    }
+    return features;
+}
+
+void expectSameNodes(const btSoftBody& a, const btSoftBody& b)
+{
+    for (int i = 0; i < a.m_nodes.size(); ++i)
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            ASSERT_EQ(a.m_nodes[i].m_x[axis], b.m_nodes[i].m_x[axis]) << "node " << i;
+            ASSERT_EQ(a.m_nodes[i].m_v[axis], b.m_nodes[i].m_v[axis]) << "node " << i;
+        }
+}
+}  // namespace
+
+// Between the rounds nodes are moved at random, as links move them, so that contacts come to act and cease to.
+TEST(ContactRounds, areThoseOverEveryContact)
+{
+    Error error;
+    const std::unique_ptr<Pipeline> pipeline = Pipeline::create(hostSettings(), error);
+    const TriangleMesh grid = makeClothGrid(17, 17, 1.0f, 0.032f).m_mesh;
+    const MeshId cloth = addCloth(*pipeline, grid), ground = addObstacle(*pipeline, makeTerrain(1.2f, 0.01f, 48, 7));
+    std::mt19937 random(20);
+    std::uniform_real_distribution<float> noise(-0.012f, 0.012f);
+    std::vector<float> start = grid.m_positions, end = start;
+    for (float& coordinate : end)
+        coordinate += noise(random);
+    setMotion(*pipeline, cloth, start, end);
+    pipeline->addPair(cloth, ground, kThickness);
+    const std::vector<Contact> contacts = runStep(*pipeline);
+    ASSERT_GT(contacts.size(), 100u);
+
+    btSoftBodyWorldInfo info;
+    const std::unique_ptr<btSoftBody> made = makeBody(info, start, end), plainMade = makeBody(info, start, end);
+    btSoftBody &body = *made, &plainBody = *plainMade;
+    btCollisionObject object;
+    FoundContacts found;
+    found.nameObstacle(ground, &object, BodyMotion{btTransform::getIdentity(), btTransform::getIdentity()});
+    found.set(*pipeline, ContactList{contacts.data(), contacts.size()});
+    BodyContacts bodyContacts;
+    bodyContacts.start(cloth, &body);
+    bodyContacts.m_leastThickness = bodyContacts.m_mostThickness = kThickness;
+    bodyContacts.m_limit.record(body);
+    bodyContacts.m_features = featuresOf(*pipeline, contacts);
+    std::vector<StepContact> all;
+    for (const Contact& contact : contacts)
+        all.push_back(found.resolve(body, bodyContacts.m_limit.paths(), contact));
+
+    ContactRounds rounds;
+    rounds.start(bodyContacts, found);
+    PlainRounds plain(plainBody, bodyContacts.m_limit.paths(), all);
+    for (int round = 0; round < 24; ++round)
+    {
+        SCOPED_TRACE("round " + std::to_string(round));
+        if (round % 4 == 0)
+        {
+            rounds.restart();
+            plain.restart();
+        }
+        for (int i = 0; i < body.m_nodes.size(); ++i)
+        {
+            const btVector3 pull(noise(random), noise(random), noise(random));
+            body.m_nodes[i].m_x += pull;
+            plainBody.m_nodes[i].m_x += pull;
+        }
+        ASSERT_EQ(rounds.run(), plain.run());
+        ASSERT_NO_FATAL_FAILURE(expectSameNodes(body, plainBody));
+        EXPECT_GT(plain.pushed(), contacts.size() / 50);
+        EXPECT_LT(plain.pushed(), contacts.size() / 2);
+    }
+}
+}  // namespace drape::test
