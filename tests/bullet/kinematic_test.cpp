@@ -8,6 +8,7 @@
 #include "bullet_plugin/adapter/motion_limit.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
+#include "tests/support/backends.h"
 
 namespace drape::test
 {
@@ -43,8 +44,9 @@ std::vector<float> seenFrom(const btTransform& pose, const btSoftBody& cloth)
 class KinematicScene
 {
 public:
-    KinematicScene(const TriangleMesh& mesh, const btTransform& pose, float size, const btVector3& centre)
-        : m_plugin(hostSettings()),
+    KinematicScene(const TriangleMesh& mesh, const btTransform& pose, float size, const btVector3& centre,
+                   const Settings& settings = hostSettings())
+        : m_plugin(settings),
           m_shape(mesh),
           m_world(&m_plugin),
           m_body(m_world.addKinematic(m_shape.shape(), pose)),
@@ -204,6 +206,27 @@ TEST(Kinematic, turningObstacleKeepsClothOutside)
         }
         EXPECT_GT(scene.m_most, 100u);
     }
+}
+
+TEST(Kinematic, everyBackEndGivesTheSameTrajectory)
+{
+    std::vector<std::uint64_t> hashes;
+    for (const BackendCase& backend : allBackends())
+    {
+        if (backend.m_missing) continue;
+        KinematicScene scene(makeTorus(0.6f, 0.2f, 40, 20), btTransform::getIdentity(), 1.6f,
+                             btVector3(0, btScalar(0.25), 0), backend.m_settings);
+        std::uint64_t hash = kHashStart;
+        for (int i = 0; i < 60; ++i)
+        {
+            const btScalar time = btScalar(i) * kDt;
+            scene.step(btTransform(btQuaternion(btVector3(1, 2, 0).normalized(), 4 * time), btVector3(time, 0, 0)));
+            hash = hashOf(scene.m_cloth, hash);
+        }
+        EXPECT_GT(scene.m_most, 100u);
+        hashes.push_back(hash);
+    }
+    EXPECT_EQ(std::count(hashes.begin(), hashes.end(), hashes[0]), std::ptrdiff_t(hashes.size()));
 }
 
 // A beam that turns fast, about the vertical and about a level axis.
