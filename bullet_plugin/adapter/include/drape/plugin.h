@@ -9,10 +9,10 @@
 // The thickness of a pair, at which cloth comes to rest, is the soft body's collision margin plus the mesh shape's
 // margin (body->getCollisionShape()->getMargin() + shape->getMargin()); at least 0.1 mm.
 //
-// Kinematic rigid bodies move over the step as the velocity says that Bullet finds when stepSimulation() begins, from the
-// interpolation transform to the world transform (or the motion state's). To teleport one, set both transforms to the
-// new pose. One that sleeps has no velocity for Bullet: give it DISABLE_DEACTIVATION. In the first step in which a body
-// is there it rests. A static object's pose that changes is a teleport.
+// Kinematic rigid bodies move over the step as the velocity says that Bullet finds when stepSimulation() begins, from
+// the interpolation transform to the world transform (or the motion state's). To teleport one, set both transforms to
+// the new pose. One that sleeps has no velocity for Bullet: give it DISABLE_DEACTIVATION. In the first step in which a
+// body is there it rests. A static object's pose that changes is a teleport.
 #pragma once
 
 #include <memory>
