@@ -5,8 +5,10 @@
 #include <string>
 
 #include "bullet_plugin/adapter/kinematic_motion.h"
+#include "bullet_plugin/adapter/motion_limit.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
+#include "tests/support/backends.h"
 
 namespace drape::test
 {
@@ -42,8 +44,9 @@ std::vector<float> seenFrom(const btTransform& pose, const btSoftBody& cloth)
 class KinematicScene
 {
 public:
-    KinematicScene(const TriangleMesh& mesh, const btTransform& pose, float size, const btVector3& centre)
-        : m_plugin(hostSettings()),
+    KinematicScene(const TriangleMesh& mesh, const btTransform& pose, float size, const btVector3& centre,
+                   const Settings& settings = hostSettings())
+        : m_plugin(settings),
           m_shape(mesh),
           m_world(&m_plugin),
           m_body(m_world.addKinematic(m_shape.shape(), pose)),
@@ -205,6 +208,27 @@ TEST(Kinematic, turningObstacleKeepsClothOutside)
     }
 }
 
+TEST(Kinematic, everyBackEndGivesTheSameTrajectory)
+{
+    std::vector<std::uint64_t> hashes;
+    for (const BackendCase& backend : allBackends())
+    {
+        if (backend.m_missing) continue;
+        KinematicScene scene(makeTorus(0.6f, 0.2f, 40, 20), btTransform::getIdentity(), 1.6f,
+                             btVector3(0, btScalar(0.25), 0), backend.m_settings);
+        std::uint64_t hash = kHashStart;
+        for (int i = 0; i < 60; ++i)
+        {
+            const btScalar time = btScalar(i) * kDt;
+            scene.step(btTransform(btQuaternion(btVector3(1, 2, 0).normalized(), 4 * time), btVector3(time, 0, 0)));
+            hash = hashOf(scene.m_cloth, hash);
+        }
+        EXPECT_GT(scene.m_most, 100u);
+        hashes.push_back(hash);
+    }
+    EXPECT_EQ(std::count(hashes.begin(), hashes.end(), hashes[0]), std::ptrdiff_t(hashes.size()));
+}
+
 // A beam that turns fast, about the vertical and about a level axis.
 TEST(Kinematic, fastBeamKeepsClothOutside)
 {
@@ -292,6 +316,38 @@ TEST(Kinematic, bodyThatBeginsToMoveWakesCloth)
     for (int i = 1; i <= 3; ++i)
         scene.step(shiftedBy(btVector3(0, btScalar(0.002) * btScalar(i), 0)));
     EXPECT_TRUE(scene.m_cloth.isActive());
+}
+
+namespace
+{
+// Where a node at rest at the origin may stay that ended at `to`, beside an obstacle that went up by 1 m or rested.
+btVector3 limited(const btVector3& to, bool moves)
+{
+    btSoftBodyWorldInfo info;
+    const btVector3 place(0, 0, 0);
+    const btScalar mass = 1;
+    btSoftBody body(&info, 1, &place, &mass);
+    body.m_sst.isdt = 1 / kDt;
+    const btTransform up = shiftedBy(btVector3(0, 1, 0));
+    MotionLimit limit;
+    limit.addObstacle(btVector3(-2, -2, -2), btVector3(2, 2, 2), kThickness, btScalar(0.5), moves ? &up : nullptr);
+    limit.record(body);
+    limit.addContactNode(0);
+    body.m_nodes[0].m_x = to;
+    limit.apply(body);
+    return body.m_nodes[0].m_x;
+}
+}  // namespace
+
+// A node goes with the obstacle as far as that goes, and no farther from that way than beside one at rest.
+TEST(KinematicMotion, takesTheLimitOfNodesWithIt)
+{
+    const btVector3 half(0, btScalar(0.5), 0), beside(btScalar(0.5), btScalar(0.5), 0), beyond(0, 2, 0);
+    EXPECT_TRUE(limited(half, true) == half);
+    EXPECT_NEAR(limited(half, false).y(), kThickness / 2, 1e-6);
+    EXPECT_NEAR(limited(beside, true).x(), kThickness / 2, 1e-6);
+    EXPECT_NEAR(limited(beside, true).y(), 0.5, 1e-6);
+    EXPECT_NEAR(limited(beyond, true).y(), 1 + kThickness / 2, 1e-6);
 }
 
 TEST(KinematicMotion, isWhatVelocityAndPosesSay)

@@ -11,7 +11,8 @@
 //
 // Kinematic rigid bodies move over the step as the velocity says that Bullet finds when stepSimulation() begins, from
 // the interpolation transform to the world transform (or the motion state's). To teleport one, set both transforms to
-// the new pose. The first step in which a body is there, it rests. A static object's pose that changes is a teleport.
+// the new pose. One that sleeps has no velocity for Bullet: give it DISABLE_DEACTIVATION. In the first step in which a
+// body is there it rests. A static object's pose that changes is a teleport.
 #pragma once
 
 #include <memory>
