@@ -183,7 +183,7 @@ TEST_P(KinematicPaddle, isWrapped)
     EXPECT_GT(scene.m_most, 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Speeds, KinematicPaddle, testing::Values(2, 10, 50),
+INSTANTIATE_TEST_SUITE_P(Speeds, KinematicPaddle, testing::Values(2, 10, 50, 200),
                          [](const testing::TestParamInfo<int>& info) { return std::to_string(info.param); });
 
 // Turns under the cloth, about two axes.
