@@ -1,12 +1,15 @@
 // Compaction: hits into canonical order, by slot (cloth feature) and then obstacle feature. A counting sort over the slots:
 // sums per block, scan of the blocks by one group, first place of every slot, members of every slot, and the place of each
-// hit among them.
+// hit among them: by counting where a slot has few, by a sort where it has many.
 #include "lib/group_scan.h"
 #include "shared/contact.h"
 #include "shared/patch.h"
 
 // Slots a work-group handles. Each work-item takes DRAPE_BLOCK / group size adjacent ones.
 #define DRAPE_BLOCK 1024
+
+// The most members of a slot that are ranked by counting, in quadratic time; a cloth feature at rest has a few dozen.
+#define DRAPE_RANKED 64u
 
 static uint countShare(__global const uint* slotCount, const uint slots, uint* first, uint* last)
 {
@@ -73,9 +76,66 @@ __kernel void compactionGather(__global const Contact* restrict hits, const uint
     }
 }
 
+// Puts one pair of members in order.
+static void orderPair(__global const Contact* hits, __global uint* low, __global uint* high)
+{
+    const uint a = *low, b = *high;
+    if (hits[a].m_obstacleFeature <= hits[b].m_obstacleFeature) return;
+    *low = b;
+    *high = a;
+}
+
+// A work-group sorts count members by obstacle feature, in place: Batcher's bitonic network, its merges begun with a
+// mirrored step so that the lesser always goes to the lower place. So places from count on count as greater than all and
+// need not exist. In a step every place is in one pair; the barrier orders the steps.
+static void sortMembers(__global const Contact* hits, __global uint* members, const uint count)
+{
+    for (uint size = 2; size / 2 < count; size *= 2)
+    {
+        const uint pairs = (count + size - 1) / size * (size / 2);
+        for (uint stride = size / 2; stride > 0; stride /= 2)
+        {
+            for (uint i = get_local_id(0); i < pairs; i += get_local_size(0))
+            {
+                const uint begin = i / stride * stride * 2, offset = i % stride;
+                const uint high = begin + (stride == size / 2 ? size - 1 - offset : stride + offset);
+                if (high < count) orderPair(hits, members + begin + offset, members + high);
+            }
+            barrier(CLK_GLOBAL_MEM_FENCE);
+        }
+    }
+}
+
+// A work-group sorts the members of those slots of its block that have more than compactionWrite ranks.
+__kernel void compactionOrder(__global const Contact* restrict hits, const uint hitCapacity,
+                              __global const uint* restrict slotFirst, const uint slots, __global uint* members,
+                              __global const StepCounters* restrict counters)
+{
+    __local uint crowded[DRAPE_BLOCK];
+    __local uint crowdedCount;
+    const uint count = min(counters->m_hits, hitCapacity);
+    const uint begin = get_group_id(0) * DRAPE_BLOCK;
+    const uint end = min(slots, begin + DRAPE_BLOCK);
+    if (get_local_id(0) == 0) crowdedCount = 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint slot = begin + get_local_id(0); slot < end; slot += get_local_size(0))
+    {
+        const uint last = slot + 1 < slots ? min(slotFirst[slot + 1], count) : count;
+        if (last > slotFirst[slot] + DRAPE_RANKED) crowded[atomic_inc(&crowdedCount)] = slot;
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+    const uint toSort = crowdedCount;
+    for (uint i = 0; i < toSort; ++i)
+    {
+        const uint slot = crowded[i];
+        const uint last = slot + 1 < slots ? min(slotFirst[slot + 1], count) : count;
+        sortMembers(hits, members + slotFirst[slot], last - slotFirst[slot]);
+    }
+}
+
 // A work-item takes every stride-th place of the members' list, counts the members of the same slot with a lesser obstacle
-// feature, and writes the hit where that number puts it. A feature pair is tested once, so features of a slot differ and
-// every place is written once.
+// feature, and writes the hit where that number puts it. Where the slot has more than DRAPE_RANKED members they are sorted
+// and the hit keeps its place. A feature pair is tested once, so features of a slot differ and every place is written once.
 __kernel void compactionWrite(__global const Contact* restrict hits, const uint hitCapacity,
                               __global const uint* restrict slotFirst, __global const uint* restrict members,
                               __global Contact* restrict contacts, __global const StepCounters* restrict counters)
@@ -85,11 +145,13 @@ __kernel void compactionWrite(__global const Contact* restrict hits, const uint 
     {
         const Contact hit = hits[members[i]];
         const uint first = slotFirst[hit.m_slot];
+        const uint last = min(count, first + DRAPE_RANKED + 1);
         uint before = 0;
-        for (uint j = first; j < count && hits[members[j]].m_slot == hit.m_slot; ++j)
+        uint j = first;
+        for (; j < last && hits[members[j]].m_slot == hit.m_slot; ++j)
         {
             before += hits[members[j]].m_obstacleFeature < hit.m_obstacleFeature;
         }
-        contacts[first + before] = hit;
+        contacts[j - first > DRAPE_RANKED ? i : first + before] = hit;
     }
 }

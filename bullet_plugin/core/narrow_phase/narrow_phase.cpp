@@ -5,6 +5,7 @@ namespace drape
 namespace
 {
 constexpr std::size_t kGroup = 64;
+constexpr std::size_t kSortGroup = 256;         // one group sorts a slot, however large
 constexpr std::size_t kBlock = 1024;            // slots per work-group, as in kernels/compaction.cl
 constexpr std::size_t kItemsPerUnitGpu = 1024;  // work-items per compute unit that hide a GPU's latency
 constexpr std::size_t kItemsPerUnitCpu = 256;   // four groups per core, so that uneven ones even out
@@ -29,6 +30,7 @@ void NarrowPhaseStage::create(Device& device, const ProgramLoader& load, bool fe
     m_scan.create(device, compaction, "compactionScan");
     m_place.create(device, compaction, "compactionPlace");
     m_gather.create(device, compaction, "compactionGather");
+    m_order.create(device, compaction, "compactionOrder");
     m_write.create(device, compaction, "compactionWrite");
 }
 
@@ -109,6 +111,8 @@ void NarrowPhaseStage::enqueueCompaction(Device& device, Buffer<StepCounters>& c
                    m_slotFirst.handle(), scratch);
     m_gather.launch(device, width, kGroup, m_hits.handle(), hitCapacity, m_slotCount.handle(), m_slotFirst.handle(),
                     m_members.handle(), counters.handle());
+    m_order.launch(device, blocks * kSortGroup, kSortGroup, m_hits.handle(), hitCapacity, m_slotFirst.handle(), slots,
+                   m_members.handle(), counters.handle());
     m_write.launch(device, width, kGroup, m_hits.handle(), hitCapacity, m_slotFirst.handle(), m_members.handle(),
                    m_contacts.handle(), counters.handle());
 }
