@@ -106,16 +106,17 @@ static void sortMembers(__global const Contact* hits, __global uint* members, co
     }
 }
 
-// A work-group sorts the members of those slots of its block that have more than compactionWrite ranks.
+// A work-group sorts the members of those slots of its block (of at most DRAPE_BLOCK slots) that have more than
+// compactionWrite ranks.
 __kernel void compactionOrder(__global const Contact* restrict hits, const uint hitCapacity,
-                              __global const uint* restrict slotFirst, const uint slots, __global uint* members,
-                              __global const StepCounters* restrict counters)
+                              __global const uint* restrict slotFirst, const uint slots, const uint block,
+                              __global uint* members, __global const StepCounters* restrict counters)
 {
     __local uint crowded[DRAPE_BLOCK];
     __local uint crowdedCount;
     const uint count = min(counters->m_hits, hitCapacity);
-    const uint begin = get_group_id(0) * DRAPE_BLOCK;
-    const uint end = min(slots, begin + DRAPE_BLOCK);
+    const uint begin = get_group_id(0) * block;
+    const uint end = min(slots, begin + block);
     if (get_local_id(0) == 0) crowdedCount = 0;
     barrier(CLK_LOCAL_MEM_FENCE);
     for (uint slot = begin + get_local_id(0); slot < end; slot += get_local_size(0))

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <map>
@@ -83,6 +84,7 @@ public:
     // Text has an element a line, which other readers take for granted. To be called before each element …
     void startElement()
     {
+        if (m_encoding != Encoding::Text) return;
         m_lineEnd = std::min(m_bytes.find('\n', m_bytes.find_first_not_of(kBlanks, m_at)), m_bytes.size());
     }
     // … and after it: "", or that there is more on its line.
@@ -196,6 +198,14 @@ std::string readHeader(const std::string& bytes, Header& header, std::size_t& bo
     return "";
 }
 
+// Of a value that may be any double.
+std::string wholeNumber(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.17g", value);
+    return text;
+}
+
 bool isCorners(const Property& property)
 {
     return !property.m_countType.empty() && (property.m_name == "vertex_indices" || property.m_name == "vertex_index");
@@ -220,9 +230,10 @@ std::string checkProperty(Numbers& numbers, const Element& element, const Proper
         double value = 0;
         std::string problem = numbers.next(property.m_type, value);
         if (problem.empty() && coordinate) problem = coordinateProblem(value);
+        if (problem.empty() && index && !(value == std::floor(value)))
+            problem = "an index is not a whole number";  // also for NaN
         if (problem.empty() && index && !(value >= 0 && value < vertices))
-            problem = "index " + std::to_string(static_cast<long long>(value)) + " is out of range (" +
-                      std::to_string(static_cast<long long>(vertices)) + " vertices)";
+            problem = "index " + wholeNumber(value) + " is out of range (" + wholeNumber(vertices) + " vertices)";
         if (!problem.empty()) return problem;
     }
     return "";

@@ -73,7 +73,7 @@ std::vector<MovingObject> movingObjects(const btSoftBody& body, KinematicMotions
     return collect.m_found;
 }
 
-void coverMotion(btSoftBody& body, btScalar reach, const std::vector<MovingObject>& moving)
+void coverMotion(btSoftBody& body, btScalar activation, const std::vector<MovingObject>& moving)
 {
     Extent start, end;
     for (int i = 0; i < body.m_nodes.size(); ++i)
@@ -87,6 +87,7 @@ void coverMotion(btSoftBody& body, btScalar reach, const std::vector<MovingObjec
     Extent path = start;
     path.add(end.m_low);
     path.add(end.m_high);
+    const btScalar reach = (1 + activation) * body.getCollisionShape()->getMargin();
     widen(body, path, reach);
     for (const MovingObject& object : moving)
     {
@@ -97,8 +98,9 @@ void coverMotion(btSoftBody& body, btScalar reach, const std::vector<MovingObjec
         seen.addMapped(end, pose * object.m_motion.m_end.inverse());
         btVector3 low, high;
         object.m_object->getCollisionShape()->getAabb(pose, low, high);
-        const btVector3 margin(reach, reach, reach);
-        if (TestAabbAgainstAabb2(seen.m_low - margin, seen.m_high + margin, low, high)) widen(body, seen, reach);
+        const btScalar share = reach + activation * object.m_object->getCollisionShape()->getMargin();
+        const btVector3 margin(share, share, share);
+        if (TestAabbAgainstAabb2(seen.m_low - margin, seen.m_high + margin, low, high)) widen(body, seen, share);
     }
 }
 }  // namespace drape

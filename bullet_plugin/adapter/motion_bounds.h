@@ -22,7 +22,8 @@ struct MovingObject
 // where the body's world info names no broad phase.
 std::vector<MovingObject> movingObjects(const btSoftBody& body, KinematicMotions& motions);
 
-// Widens the body's bounds to its nodes' paths, grown by reach (m), and to those paths as moving objects see them,
-// where they come near the object.
-void coverMotion(btSoftBody& body, btScalar reach, const std::vector<MovingObject>& moving);
+// Widens the body's bounds to its nodes' paths, grown by the body's part of the reach of contacts, and to those paths
+// as moving objects see them, where they come near the object; those with the object's part, too, which its own bounds
+// hold but for the activation.
+void coverMotion(btSoftBody& body, btScalar activation, const std::vector<MovingObject>& moving);
 }  // namespace drape

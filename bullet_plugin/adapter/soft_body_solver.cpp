@@ -38,8 +38,6 @@ void SoftBodySolver::predictMotion(btScalar dt)
     btDefaultSoftBodySolver::predictMotion(dt);
     if (!m_state->ready()) return;
     Stopwatch watch;
-    // The mesh's own bounds hold its margin; the activation distance beyond the thickness is shared out alike.
-    const btScalar reach = 1 + btScalar(m_state->settings().m_activation);
     KinematicMotions& motions = m_state->motionsOf(this);
     motions.beginStep(dt);
     std::vector<MovingObject> moving;  // of one world: a solver has no other
@@ -47,7 +45,7 @@ void SoftBodySolver::predictMotion(btScalar dt)
     {
         if (i == 0) moving = movingObjects(*m_softBodySet[i], motions);
         if (m_softBodySet[i]->isActive())
-            coverMotion(*m_softBodySet[i], reach * m_softBodySet[i]->getCollisionShape()->getMargin(), moving);
+            coverMotion(*m_softBodySet[i], btScalar(m_state->settings().m_activation), moving);
     }
     m_work->m_predictMs = watch.lapMs();
 }

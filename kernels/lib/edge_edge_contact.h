@@ -21,25 +21,22 @@ DRAPE_FUNCTION float edgeEdgeVolume(FeatureEdge e, FeatureEdge o)
     return vec3Dot(vec3Cross(vec3Sub(e.m_b, e.m_a), vec3Sub(o.m_b, o.m_a)), vec3Sub(o.m_a, e.m_a));
 }
 
-// An edge that met the obstacle's edge. v0: the volume at the step's start; crossed: whether it
-// changed sign. Edges that touched and parted again on the side they came from give no contact.
-DRAPE_FUNCTION int edgeEdgeMet(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, Meeting meeting, float v0, int crossed,
+// An edge that met the obstacle's edge. v0: the volume at the step's start.
+DRAPE_FUNCTION int edgeEdgeMet(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, Meeting meeting, float v0,
                                PairBounds bounds, Contact* contact)
 {
     const FeatureEdge e = edgeMix(e0, e1, meeting.m_place);
-    const float side = v0 < 0.0f ? -1.0f : 1.0f;
     float s, t;
     closestOnSegments(e.m_a, e.m_b, o.m_a, o.m_b, &s, &t);
     const Vec3 across = vec3Sub(e.m_b, e.m_a), along = vec3Sub(o.m_b, o.m_a);
-    const Vec3 point = vec3Mix(o.m_a, o.m_b, t);
     const Vec3 direction = vec3Cross(across, along);
     const float length = vec3Length(direction);
     if (length <= DRAPE_SEAM * vec3Length(across) * vec3Length(along)) return DRAPE_NO_CONTACT;
-    const Vec3 normal = vec3Scale(direction, -side / length);
-    const float gap1 = vec3Dot(normal, vec3Sub(vec3Mix(e1.m_a, e1.m_b, s), point));
-    if (!(gap1 < (crossed ? bounds.m_reach : 0.0f))) return DRAPE_NO_CONTACT;
-    storeContact(contact, normal, point, vec3(1.0f - s, s, 0.0f),
-                 vec3Dot(normal, vec3Sub(vec3Mix(e0.m_a, e0.m_b, s), point)), gap1, meeting.m_time);
+    const Vec3 point = vec3Mix(o.m_a, o.m_b, t);
+    const Vec3 start = vec3Mix(e0.m_a, e0.m_b, s), end = vec3Mix(e1.m_a, e1.m_b, s);
+    const Vec3 normal = meetingNormal(direction, length, vec3Sub(end, start), v0 < 0.0f ? 1.0f : -1.0f, bounds);
+    storeContact(contact, normal, point, vec3(1.0f - s, s, 0.0f), vec3Dot(normal, vec3Sub(start, point)),
+                 vec3Dot(normal, vec3Sub(end, point)), meeting.m_time);
     return DRAPE_IS_CONTACT;
 }
 
@@ -55,14 +52,19 @@ DRAPE_FUNCTION int edgeEdgeContact(FeatureEdge e0, FeatureEdge e1, FeatureEdge o
     const Vec3 direction = vec3Cross(across, along);
     const float v0 = edgeEdgeVolume(e0, o);
     const float v1 = vec3Dot(direction, vec3Sub(o.m_a, e1.m_a));
-    const int crossed = bounds.m_mode != DRAPE_DISCRETE && ((v0 < 0.0f && v1 > 0.0f) || (v0 > 0.0f && v1 < 0.0f));
-    if (edgeMayMeet(e0, e1, o, v0, v1, bounds))
+    if (bounds.m_mode != DRAPE_DISCRETE)
     {
-        if (!bounds.m_complete) return DRAPE_UNDECIDED;
-        const Meeting meeting = meetEdge(e0, e1, o, bounds);
-        if (meeting.m_met && edgeEdgeMet(e0, e1, o, meeting, v0, crossed, bounds, contact)) return DRAPE_IS_CONTACT;
+        const int mayMeet = edgeMayMeet(e0, e1, o, v0, v1, bounds);
+        if (asksForMeeting(mayMeet, bounds))
+        {
+            if (!bounds.m_complete) return DRAPE_UNDECIDED;
+            const Meeting meeting = meetEdge(e0, e1, o, bounds);
+            if (meeting.m_met && mayMeet && edgeEdgeMet(e0, e1, o, meeting, v0, bounds, contact))
+                return DRAPE_IS_CONTACT;
+        }
+        // The edges' lines passed each other near by: what the edges themselves met tells on which side they belong.
+        if (mayMeet && ((v0 < 0.0f && v1 > 0.0f) || (v0 > 0.0f && v1 < 0.0f))) return DRAPE_NO_CONTACT;
     }
-    if (crossed) return DRAPE_NO_CONTACT;
     const float squared = vec3Dot(direction, direction);
     // Inside both edges the offset is parallel to the direction (or the edges are parallel, and it may be any).
     const int parallel = squared <= DRAPE_SEAM * DRAPE_SEAM * vec3Dot(across, across) * vec3Dot(along, along);

@@ -7,24 +7,19 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// A face that met the vertex. side: where the vertex was at the start, +1 in front of the face;
-// crossed: whether it is on the other side at the end. A face that touched the vertex and went back gives no contact.
+// A face that met the vertex. side: where the vertex was at the start, +1 in front of the face.
 DRAPE_FUNCTION int faceVertexMet(FeatureTriangle f0, FeatureTriangle f1, Vec3 vertex, Meeting meeting, float side,
-                                 int crossed, Contact* contact)
+                                 PairBounds bounds, Contact* contact)
 {
     const FeatureTriangle f = triangleMix(f0, f1, meeting.m_place);
     const Vec3 weights = closestOnTriangle(vertex, f.m_p[0], f.m_p[1], f.m_p[2]);
-    const Vec3 end = vec3Sub(featurePoint(f1, weights), vertex);
-    Vec3 area = triangleNormal(f);
-    // A face that turned as it passed: its normal at the end is the one that the vertex is behind.
-    if (crossed && side * vec3Dot(area, end) < 0.0f) area = triangleNormal(f1);
+    const Vec3 start = featurePoint(f0, weights), end = featurePoint(f1, weights);
+    const Vec3 area = triangleNormal(f);
     const float length = vec3Length(area);
     if (length == 0.0f) return DRAPE_NO_CONTACT;
-    const Vec3 normal = vec3Scale(area, -side / length);
-    const float gap1 = vec3Dot(normal, end);
-    if (!crossed && !(gap1 < 0.0f)) return DRAPE_NO_CONTACT;
-    storeContact(contact, normal, vertex, weights, vec3Dot(normal, vec3Sub(featurePoint(f0, weights), vertex)), gap1,
-                 meeting.m_time);
+    const Vec3 normal = meetingNormal(area, length, vec3Sub(end, start), -side, bounds);
+    storeContact(contact, normal, vertex, weights, vec3Dot(normal, vec3Sub(start, vertex)),
+                 vec3Dot(normal, vec3Sub(end, vertex)), meeting.m_time);
     return DRAPE_IS_CONTACT;
 }
 
@@ -40,16 +35,21 @@ DRAPE_FUNCTION int faceVertexContact(const MovingFace* face, const DRAPE_UINT* b
     const float areaLength = face->m_areaEndLength;
     const float s0 = vec3Dot(face->m_areaStart, vec3Sub(vertex, f0.m_p[0]));
     const float s1 = vec3Dot(face->m_areaEnd, vec3Sub(vertex, f1.m_p[0]));
-    const float before = bounds.m_mode == DRAPE_DISCRETE ? s1 : s0;
-    const float side = before < 0.0f ? -1.0f : 1.0f;
-    const int crossed = side * s1 < 0.0f;
-    if (faceMayMeet(face, vertex, s0, s1, bounds))
+    float side = s1 < 0.0f ? -1.0f : 1.0f;
+    if (bounds.m_mode != DRAPE_DISCRETE)
     {
-        if (!bounds.m_complete) return DRAPE_UNDECIDED;
-        const Meeting meeting = meetFace(face, vertex, bounds);
-        if (meeting.m_met && faceVertexMet(f0, f1, vertex, meeting, side, crossed, contact)) return DRAPE_IS_CONTACT;
+        const int mayMeet = faceMayMeet(face, vertex, s0, s1, bounds);
+        const float sideBefore = s0 < 0.0f ? -1.0f : 1.0f;
+        if (asksForMeeting(mayMeet, bounds))
+        {
+            if (!bounds.m_complete) return DRAPE_UNDECIDED;
+            const Meeting meeting = meetFace(face, vertex, bounds);
+            if (meeting.m_met && mayMeet && faceVertexMet(f0, f1, vertex, meeting, sideBefore, bounds, contact))
+                return DRAPE_IS_CONTACT;
+        }
+        // The face's plane passed the vertex near by: what the face itself met tells on which side it belongs.
+        if (mayMeet && side != sideBefore) return DRAPE_NO_CONTACT;
     }
-    if (crossed) return DRAPE_NO_CONTACT;
     if (drapeAbs(s1) > areaLength * bounds.m_reachSlack) return 0;
 
     const Vec3 weights = closestOnTriangle(vertex, f1.m_p[0], f1.m_p[1], f1.m_p[2]);

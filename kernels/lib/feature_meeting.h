@@ -1,6 +1,7 @@
 // Whether a cloth feature and an obstacle feature meet during the step.
 //
-// The certified search of ccd.h answers it; it is asked only where the features move far enough. Two features that meet
+// The certified search of ccd.h answers it; an automatic step asks it only where the features move far enough, and a
+// continuous one heeds it only there, so that both give the same contacts. Two features that meet
 // are, at the step's start and at its end, no further apart than the cloth's feature moves. That distance is bounded
 // from below by the volume that the two span, divided by the area that belongs to it, and, where the edges are nearly
 // parallel or the vertex is beside the face, by planes between the two at the step's end.
@@ -53,10 +54,25 @@ DRAPE_FUNCTION int furtherApart(Vec3 n, float low, float high, float distance, P
     return provenApart(n, low, high, bounds);
 }
 
+// Whether the mode asks for the search.
+DRAPE_FUNCTION int asksForMeeting(int mayMeet, PairBounds bounds)
+{
+    return bounds.m_mode == DRAPE_CONTINUOUS || mayMeet;
+}
+
+// The unit normal with the given direction on the side that the cloth's point came from. way: of that point in the
+// step, a straight line; where it goes along the surface, `side` tells, 1 for the direction itself.
+DRAPE_FUNCTION Vec3 meetingNormal(Vec3 direction, float length, Vec3 way, float side, PairBounds bounds)
+{
+    const Vec3 normal = vec3Scale(direction, 1.0f / length);
+    const float along = vec3Dot(normal, way);
+    if (drapeAbs(along) > DRAPE_SEAM * bounds.m_extent) side = along < 0.0f ? 1.0f : -1.0f;
+    return vec3Scale(normal, side);
+}
+
 // A moving face and a resting vertex. s0, s1: the volumes at the step's start and end.
 DRAPE_FUNCTION int faceMayMeet(const MovingFace* face, Vec3 vertex, float s0, float s1, PairBounds bounds)
 {
-    if (bounds.m_mode != DRAPE_AUTOMATIC) return bounds.m_mode == DRAPE_CONTINUOUS;
     const FeatureTriangle f0 = face->m_start, f1 = face->m_end;
     const float distance = meetingDistance(faceMotion(face), bounds);
     if (!volumeAdmitsMeeting(s0, vec3Length(face->m_areaStart), distance, bounds) ||
@@ -77,7 +93,6 @@ DRAPE_FUNCTION int faceMayMeet(const MovingFace* face, Vec3 vertex, float s0, fl
 // An edge moving from e0 to e1 and a resting edge. v0, v1: the volumes at the step's start and end.
 DRAPE_FUNCTION int edgeMayMeet(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, float v0, float v1, PairBounds bounds)
 {
-    if (bounds.m_mode != DRAPE_AUTOMATIC) return bounds.m_mode == DRAPE_CONTINUOUS;
     const Vec3 along = vec3Sub(o.m_b, o.m_a);
     const float distance = meetingDistance(edgeMotion(e0, e1), bounds);
     const float area0 = vec3Length(vec3Cross(vec3Sub(e0.m_b, e0.m_a), along));

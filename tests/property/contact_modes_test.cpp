@@ -163,5 +163,56 @@ TEST_P(ContactModesTest, FaceThatPassesAndTiltsBackIsFound)
     }
 }
 
+// The same run backwards: the plane crosses the apex outside of the face first, and then within it. The volume's sign
+// at the start does not tell from which side the face came.
+TEST_P(ContactModesTest, FaceThatTiltsAndThenPassesIsFound)
+{
+    StepCase step = {"tilted face", 0, looseTriangles({-3, -1, -1, -1, -0.2f, -1, -2, -0.6f, 1}), pyramid(), {}, 0.02f};
+    step.m_end = {-1, 0.1f, -1, 1, 0.1f, -1, 0, 0.1f, 1};
+    for (const ContactMode mode : {ContactMode::Automatic, ContactMode::Continuous})
+    {
+        int found = 0;
+        for (const Contact& contact : run(step, mode).m_contacts)
+        {
+            if (contact.m_kind != DRAPE_FACE_VERTEX || contact.m_obstacleFeature != 4) continue;
+            ++found;
+            EXPECT_NEAR(contact.m_time, 1 - 0.179844f, 2e-4f);
+            EXPECT_LT(contact.m_normal[1], -0.9f);  // it came from below
+            EXPECT_GT(contact.m_gap0, 0.0f);
+            EXPECT_LT(contact.m_gap1, -0.01f);
+        }
+        EXPECT_EQ(found, 1);
+    }
+}
+
+// An edge that turns past the direction of the obstacle's edge before it goes through it: its volume has the same sign
+// at the start and at the end.
+TEST_P(ContactModesTest, EdgeThatTurnsAndThenPassesIsFound)
+{
+    StepCase step = {"turning edge",
+                     0,
+                     looseTriangles({-0.5f, -0.01f, 0.7f, 0.5f, 0.01f, 0.7f, 0, 0, 1.7f}),
+                     looseTriangles({-1, 0, 0, 1, 0, 0, 0, -1, -1}),
+                     {},
+                     0.02f};
+    step.m_end = {-0.5f, 0.01f, -0.3f, 0.5f, -0.01f, -0.3f, 0, 0, 0.7f};
+    for (const ContactMode mode : {ContactMode::Automatic, ContactMode::Continuous})
+    {
+        int found = 0;
+        for (const Contact& contact : run(step, mode).m_contacts)
+        {
+            if (contact.m_kind != DRAPE_EDGE_EDGE || !(contact.m_time < 1) || contact.m_weights[0] < 0.3f ||
+                contact.m_weights[0] > 0.7f)
+                continue;
+            ++found;
+            EXPECT_NEAR(contact.m_time, 0.7f, 2e-3f);
+            EXPECT_GT(contact.m_normal[2], 0.9f);
+            EXPECT_NEAR(contact.m_gap0, 0.7f, 0.02f);
+            EXPECT_NEAR(contact.m_gap1, -0.3f, 0.02f);
+        }
+        EXPECT_EQ(found, 1);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Backends, ContactModesTest, testing::ValuesIn(allBackends()), backendName);
 }  // namespace drape::test

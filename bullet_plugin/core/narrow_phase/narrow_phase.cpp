@@ -6,6 +6,7 @@ namespace
 {
 constexpr std::size_t kGroup = 64;
 constexpr std::size_t kSortGroup = 256;         // one group sorts a slot, however large
+constexpr std::size_t kSortBlockGpu = 32;       // slots that a group sorts one after the other; a CPU's take kBlock
 constexpr std::size_t kBlock = 1024;            // slots per work-group, as in kernels/compaction.cl
 constexpr std::size_t kItemsPerUnitGpu = 1024;  // work-items per compute unit that hide a GPU's latency
 constexpr std::size_t kItemsPerUnitCpu = 256;   // four groups per core, so that uneven ones even out
@@ -111,8 +112,10 @@ void NarrowPhaseStage::enqueueCompaction(Device& device, Buffer<StepCounters>& c
                    m_slotFirst.handle(), scratch);
     m_gather.launch(device, width, kGroup, m_hits.handle(), hitCapacity, m_slotCount.handle(), m_slotFirst.handle(),
                     m_members.handle(), counters.handle());
-    m_order.launch(device, blocks * kSortGroup, kSortGroup, m_hits.handle(), hitCapacity, m_slotFirst.handle(), slots,
-                   m_members.handle(), counters.handle());
+    const std::size_t sortBlock = device.isGpu() ? kSortBlockGpu : kBlock;
+    const std::size_t sortGroups = (m_slots + sortBlock - 1) / sortBlock;
+    m_order.launch(device, sortGroups * kSortGroup, kSortGroup, m_hits.handle(), hitCapacity, m_slotFirst.handle(),
+                   slots, cl_uint(sortBlock), m_members.handle(), counters.handle());
     m_write.launch(device, width, kGroup, m_hits.handle(), hitCapacity, m_slotFirst.handle(), m_members.handle(),
                    m_contacts.handle(), counters.handle());
 }

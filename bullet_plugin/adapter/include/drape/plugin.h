@@ -68,8 +68,8 @@ public:
     void obstacleChanged(const btCollisionShape* shape);
 
     // Whether only a mesh shape's front is solid, the side from which its triangles' corners run counter-clockwise:
-    // cloth that is behind comes out instead of being caught inside. Off unless it is switched on. The shape (a scaled
-    // one's own, or the mesh shape that it shows) is remembered by its address until it is switched off again.
+    // cloth that is behind may come out instead of being caught inside. Off unless it is switched on. The shape (a
+    // scaled one's own, or the mesh shape that it shows) is remembered by its address until it is switched off again.
     void setOneSided(const btCollisionShape* shape, bool oneSided);
 
     // For the other classes of this library.
