@@ -15,7 +15,7 @@ DRAPE_FUNCTION int faceVertexMet(FeatureTriangle f0, FeatureTriangle f1, Vec3 ve
     const Vec3 weights = closestOnTriangle(vertex, f.m_p[0], f.m_p[1], f.m_p[2]);
     const Vec3 start = featurePoint(f0, weights), end = featurePoint(f1, weights);
     const Vec3 area = triangleNormal(f);
-    const float length = vec3Length(area);
+    const float length = areaLengthOf(area);
     if (length == 0.0f) return DRAPE_NO_CONTACT;
     const Vec3 normal = meetingNormal(area, length, vec3Sub(end, start), -side, bounds);
     storeContact(contact, normal, vertex, weights, vec3Dot(normal, vec3Sub(start, vertex)),

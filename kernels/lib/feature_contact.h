@@ -63,6 +63,13 @@ DRAPE_FUNCTION Vec3 triangleNormal(FeatureTriangle f)
     return vec3Cross(vec3Sub(f.m_p[1], f.m_p[0]), vec3Sub(f.m_p[2], f.m_p[0]));
 }
 
+// Length of an area vector, m²; 0 where its square is too small for a float to hold it well.
+DRAPE_FUNCTION float areaLengthOf(Vec3 area)
+{
+    const float length = vec3Length(area);
+    return length > 1e-18f ? length : 0.0f;
+}
+
 DRAPE_FUNCTION FeatureTriangle triangleMix(FeatureTriangle f, FeatureTriangle g, float t)
 {
     FeatureTriangle r;

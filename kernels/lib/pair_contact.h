@@ -111,7 +111,7 @@ DRAPE_FUNCTION int pairNodeFace(int i, const ClothView* cloth, DRAPE_UINT clothT
     face.m_corners.m_p[1] = vec3Sub(b, a);
     face.m_corners.m_p[2] = vec3Sub(c, a);
     face.m_area = triangleNormal(face.m_corners);
-    face.m_areaLength = vec3Length(face.m_area);
+    face.m_areaLength = areaLengthOf(face.m_area);
     const float extent = drapeMax(stepExtent(cloth, vec3NormMax(x0), vec3NormMax(x1)), triangleExtent(face.m_corners));
     contact->m_kind = DRAPE_NODE_FACE;
     contact->m_clothFeature = node;
@@ -143,7 +143,7 @@ DRAPE_FUNCTION int pairFaceVertex(const ClothView* cloth, DRAPE_UINT clothTriang
     }
     face.m_areaStart = triangleNormal(face.m_start);
     face.m_areaEnd = triangleNormal(face.m_end);
-    face.m_areaEndLength = vec3Length(face.m_areaEnd);
+    face.m_areaEndLength = areaLengthOf(face.m_areaEnd);
     const float extent = stepExtent(cloth, triangleExtent(face.m_start), triangleExtent(face.m_end));
     DRAPE_UINT beyond[3];
     for (int edge = 0; edge < 3; ++edge)
