@@ -9,7 +9,8 @@
 // Between the iterations, too, nodes go no farther from their paths than the motion limit allows: a contact at the edge
 // of detection's reach then has no say, whether it was found or not. Without it links pull nodes of stretched cloth
 // several times as far in an iteration, contacts that come and go at the edge of the reach take turns to push, and
-// cloth at rest on the bunny stirs at up to 2.6 mm/s (RMS) for ever; with it, at 1.5 and less.
+// cloth at rest on the bunny stirs at up to 2.6 mm/s (RMS) for ever; with it, at 0.3 over 2,000 steps, a slip of 2.5
+// among them.
 //
 // Guarantee: at the end no contact is violated by more than kClosingTolerance where kClosingRounds suffice. A body with
 // velocity or drift iterations or clusters is given to Bullet in one piece, the rounds before and after it. Cost:
