@@ -31,22 +31,15 @@ __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, con
         const float reach =
             thickness[clothTriangle->m_mesh * obstacleMeshes + obstacleTriangle->m_mesh] * reachScale;
         cloth.m_motion = findMotion(motions, motionCount, obstacleTriangle->m_mesh);
-        uint tests = ownedTests(clothTriangle->m_owned, obstacleTriangle->m_owned);
-        PairTriangles pair;
-        loadPair(&pair, &cloth, &obstacle, candidate);
-        if (pairApart(&pair, reach)) continue;
-        tests &= pair.m_tests;
+        const uint tests = testsOfPair(&cloth, &obstacle, candidate, reach);
         for (int test = 0; test < DRAPE_FEATURE_TESTS; ++test)
         {
             Contact contact;
             if (!(tests & (1u << test))) continue;
-            int found = DRAPE_UNDECIDED;
-            for (cloth.m_complete = 0; found == DRAPE_UNDECIDED; cloth.m_complete = 1)
-            {
-                if (cloth.m_complete) atomic_inc(&counters->m_swept);
-                found = pairContact(test, &cloth, &obstacle, candidate, reach, &contact);
-            }
-            if (found != DRAPE_IS_CONTACT) continue;
+            int swept;
+            const int found = decidePairContact(test, &cloth, &obstacle, candidate, reach, &contact, &swept);
+            if (swept) atomic_inc(&counters->m_swept);
+            if (!found) continue;
             const uint place = atomic_inc(&counters->m_listed);
             if (place >= hitCapacity) continue;
             hits[place] = contact;

@@ -15,11 +15,11 @@ __kernel void placeObstacles(__global const ObstaclePlace* restrict places, cons
     if (i >= vertexCount)
     {
         const uint edge = firstEdge + i - vertexCount;
-        edgeCones[edge] = placedCone(places + placeOfEdge(places, placeCount, edge), ownEdgeCones[edge]);
+        edgeCones[edge] = placedCone(places + placeOf(places, placeCount, DRAPE_OF_EDGE, edge), ownEdgeCones[edge]);
         return;
     }
     const uint vertex = firstVertex + i;
-    __global const ObstaclePlace* place = places + placeOfVertex(places, placeCount, vertex);
+    __global const ObstaclePlace* place = places + placeOf(places, placeCount, DRAPE_OF_VERTEX, vertex);
     const Vec3 p = placedPosition(place, vec3Load(ownPositions, vertex));
     positions[3 * vertex] = p.x;
     positions[3 * vertex + 1] = p.y;

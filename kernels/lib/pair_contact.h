@@ -284,6 +284,31 @@ DRAPE_FUNCTION int pairApart(const PairTriangles* pair, float reach)
     return 0;
 }
 
+// The tests of a pair of triangles that may give a contact, as bits: none where the triangles are surely apart.
+DRAPE_FUNCTION DRAPE_UINT testsOfPair(const ClothView* cloth, const ObstacleView* obstacle, Candidate candidate,
+                                      float reach)
+{
+    PairTriangles pair;
+    loadPair(&pair, cloth, obstacle, candidate);
+    if (pairApart(&pair, reach)) return 0;
+    return pair.m_tests & ownedTests(cloth->m_triangles[candidate.m_cloth].m_owned,
+                                     obstacle->m_triangles[candidate.m_obstacle].m_owned);
+}
+
+// pairContact() with the continuous test where it is needed; *swept tells whether it was. Returns whether there is a
+// contact.
+DRAPE_FUNCTION int decidePairContact(int test, ClothView* cloth, const ObstacleView* obstacle, Candidate candidate,
+                                     float reach, Contact* contact, int* swept)
+{
+    int found = DRAPE_UNDECIDED;
+    for (cloth->m_complete = 0; found == DRAPE_UNDECIDED; cloth->m_complete = 1)
+    {
+        *swept = cloth->m_complete;
+        found = pairContact(test, cloth, obstacle, candidate, reach, contact);
+    }
+    return found == DRAPE_IS_CONTACT;
+}
+
 DRAPE_NAMESPACE_END
 
 #endif

@@ -103,27 +103,19 @@ DRAPE_FUNCTION void growByMotions(DRAPE_GLOBAL BvhNode* leaf, const DRAPE_GLOBAL
     }
 }
 
-// Slot of a joined vertex or edge, by the slots' firsts (member of ObstaclePlace); slots without any may be among them.
-DRAPE_FUNCTION DRAPE_UINT placeOfVertex(const DRAPE_GLOBAL ObstaclePlace* places, DRAPE_UINT count, DRAPE_UINT vertex)
+// Slot of a joined vertex or edge, by the slots' firsts (members of ObstaclePlace); slots without any may be among
+// them. kind: whose index it is.
+#define DRAPE_OF_VERTEX 0
+#define DRAPE_OF_EDGE 1
+DRAPE_FUNCTION DRAPE_UINT placeOf(const DRAPE_GLOBAL ObstaclePlace* places, DRAPE_UINT count, int kind,
+                                  DRAPE_UINT index)
 {
     DRAPE_UINT low = 0, high = count;  // low's first is no greater
     while (high - low > 1)
     {
         const DRAPE_UINT middle = low + (high - low) / 2;
-        if (places[middle].m_firstVertex <= vertex)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
-}
-DRAPE_FUNCTION DRAPE_UINT placeOfEdge(const DRAPE_GLOBAL ObstaclePlace* places, DRAPE_UINT count, DRAPE_UINT edge)
-{
-    DRAPE_UINT low = 0, high = count;
-    while (high - low > 1)
-    {
-        const DRAPE_UINT middle = low + (high - low) / 2;
-        if (places[middle].m_firstEdge <= edge)
+        const DRAPE_UINT first = kind == DRAPE_OF_VERTEX ? places[middle].m_firstVertex : places[middle].m_firstEdge;
+        if (first <= index)
             low = middle;
         else
             high = middle;

@@ -33,23 +33,15 @@ struct Field
         "(uint)((const char*)&a" #type "." #field " - (const char*)&a" #type ")", offsetof(type, field) \
     }
 
-std::vector<Field> fields()
+std::vector<Field> meshFields()
 {
     return {DRAPE_TEST_SIZE(Vec3),
             DRAPE_TEST_SIZE(Triangle),
             DRAPE_TEST_SIZE(Edge),
             DRAPE_TEST_SIZE(NormalCone),
-            DRAPE_TEST_SIZE(BvhNode),
-            DRAPE_TEST_SIZE(Candidate),
-            DRAPE_TEST_SIZE(StepCounters),
-            DRAPE_TEST_SIZE(Contact),
             DRAPE_TEST_SIZE(Patch),
-            DRAPE_TEST_SIZE(FeatureTest),
             DRAPE_TEST_SIZE(ObstaclePlace),
             DRAPE_TEST_SIZE(ObstacleMotion),
-            DRAPE_TEST_SIZE(NodePair),
-            DRAPE_TEST_SIZE(BvhLink),
-            DRAPE_TEST_SIZE(WideNode),
             DRAPE_TEST_OFFSET(Vec3, z),
             DRAPE_TEST_OFFSET(Triangle, m_vertices),
             DRAPE_TEST_OFFSET(Triangle, m_edges),
@@ -59,10 +51,37 @@ std::vector<Field> fields()
             DRAPE_TEST_OFFSET(Edge, m_opposite),
             DRAPE_TEST_OFFSET(NormalCone, m_axis),
             DRAPE_TEST_OFFSET(NormalCone, m_cosine),
+            DRAPE_TEST_OFFSET(Patch, m_edgeBlocks),
+            DRAPE_TEST_OFFSET(Patch, m_mesh),
+            DRAPE_TEST_OFFSET(ObstaclePlace, m_posed),
+            DRAPE_TEST_OFFSET(ObstaclePlace, m_firstVertex),
+            DRAPE_TEST_OFFSET(ObstaclePlace, m_firstEdge),
+            DRAPE_TEST_OFFSET(ObstacleMotion, m_low),
+            DRAPE_TEST_OFFSET(ObstacleMotion, m_mesh)};
+}
+
+std::vector<Field> treeFields()
+{
+    return {DRAPE_TEST_SIZE(BvhNode),
+            DRAPE_TEST_SIZE(NodePair),
+            DRAPE_TEST_SIZE(BvhLink),
+            DRAPE_TEST_SIZE(WideNode),
             DRAPE_TEST_OFFSET(BvhNode, m_low),
             DRAPE_TEST_OFFSET(BvhNode, m_high),
             DRAPE_TEST_OFFSET(BvhNode, m_first),
             DRAPE_TEST_OFFSET(BvhNode, m_count),
+            DRAPE_TEST_OFFSET(NodePair, m_obstacle),
+            DRAPE_TEST_OFFSET(BvhLink, m_depth),
+            DRAPE_TEST_OFFSET(WideNode, m_high),
+            DRAPE_TEST_OFFSET(WideNode, m_child)};
+}
+
+std::vector<Field> stepFields()
+{
+    return {DRAPE_TEST_SIZE(Candidate),
+            DRAPE_TEST_SIZE(StepCounters),
+            DRAPE_TEST_SIZE(Contact),
+            DRAPE_TEST_SIZE(FeatureTest),
             DRAPE_TEST_OFFSET(Candidate, m_cloth),
             DRAPE_TEST_OFFSET(Candidate, m_obstacle),
             DRAPE_TEST_OFFSET(StepCounters, m_candidates),
@@ -72,11 +91,8 @@ std::vector<Field> fields()
             DRAPE_TEST_OFFSET(StepCounters, m_intersections),
             DRAPE_TEST_OFFSET(StepCounters, m_front),
             DRAPE_TEST_OFFSET(StepCounters, m_spill),
+            DRAPE_TEST_OFFSET(StepCounters, m_swept),
             DRAPE_TEST_OFFSET(StepCounters, m_visits),
-            DRAPE_TEST_OFFSET(NodePair, m_obstacle),
-            DRAPE_TEST_OFFSET(BvhLink, m_depth),
-            DRAPE_TEST_OFFSET(WideNode, m_high),
-            DRAPE_TEST_OFFSET(WideNode, m_child),
             DRAPE_TEST_OFFSET(Contact, m_slot),
             DRAPE_TEST_OFFSET(Contact, m_kind),
             DRAPE_TEST_OFFSET(Contact, m_clothFeature),
@@ -87,15 +103,17 @@ std::vector<Field> fields()
             DRAPE_TEST_OFFSET(Contact, m_gap0),
             DRAPE_TEST_OFFSET(Contact, m_weights),
             DRAPE_TEST_OFFSET(Contact, m_time),
-            DRAPE_TEST_OFFSET(Patch, m_edgeBlocks),
-            DRAPE_TEST_OFFSET(Patch, m_mesh),
             DRAPE_TEST_OFFSET(FeatureTest, m_lane),
             DRAPE_TEST_OFFSET(FeatureTest, m_reach),
-            DRAPE_TEST_OFFSET(FeatureTest, m_motion),
-            DRAPE_TEST_OFFSET(ObstaclePlace, m_posed),
-            DRAPE_TEST_OFFSET(ObstaclePlace, m_firstEdge),
-            DRAPE_TEST_OFFSET(ObstacleMotion, m_low),
-            DRAPE_TEST_OFFSET(ObstacleMotion, m_mesh)};
+            DRAPE_TEST_OFFSET(FeatureTest, m_motion)};
+}
+
+std::vector<Field> fields()
+{
+    std::vector<Field> all = meshFields();
+    for (const std::vector<Field>& more : {treeFields(), stepFields()})
+        all.insert(all.end(), more.begin(), more.end());
+    return all;
 }
 }  // namespace
 

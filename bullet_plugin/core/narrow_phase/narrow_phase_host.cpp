@@ -31,23 +31,16 @@ NarrowPhaseCounts narrowPhaseOnHost(const std::vector<Candidate>& candidates, co
         const float reach =
             settings.m_thickness[clothTriangle->m_mesh * settings.m_obstacleMeshes + obstacleTriangle->m_mesh] *
             settings.m_reachScale;
-        std::uint32_t tests = ownedTests(clothTriangle->m_owned, obstacleTriangle->m_owned);
-        PairTriangles pair;
         seen.m_motion = settings.m_motions.find(obstacleTriangle->m_mesh);
-        loadPair(&pair, &seen, &obstacle, candidate);
-        if (pairApart(&pair, reach)) continue;
-        tests &= pair.m_tests;
+        const std::uint32_t tests = testsOfPair(&seen, &obstacle, candidate, reach);
         for (int test = 0; test < DRAPE_FEATURE_TESTS; ++test)
         {
             Contact contact;
+            int swept = 0;
             if (!(tests & (1u << test))) continue;
-            int found = DRAPE_UNDECIDED;
-            for (seen.m_complete = 0; found == DRAPE_UNDECIDED; seen.m_complete = 1)
-            {
-                counts.m_swept += std::uint64_t(seen.m_complete);
-                found = pairContact(test, &seen, &obstacle, candidate, reach, &contact);
-            }
-            if (found == DRAPE_IS_CONTACT && ++counts.m_contacts <= limit) contacts.push_back(contact);
+            const bool found = decidePairContact(test, &seen, &obstacle, candidate, reach, &contact, &swept);
+            counts.m_swept += std::uint64_t(swept);
+            if (found && ++counts.m_contacts <= limit) contacts.push_back(contact);
         }
     }
     if (counts.m_contacts > limit) std::vector<Contact>().swap(contacts);

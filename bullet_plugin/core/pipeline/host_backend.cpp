@@ -62,14 +62,15 @@ void HostBackend::place(const Scene& scene)
     m_placed.m_edgeCones.resize(scene.m_edgeCones.size());
     for (std::uint32_t vertex = 0; vertex < scene.m_vertexCones.size(); ++vertex)
     {
-        const ObstaclePlace* at = places + placeOfVertex(places, count, vertex);
+        const ObstaclePlace* at = places + placeOf(places, count, DRAPE_OF_VERTEX, vertex);
         const Vec3 p = placedPosition(at, vec3Load(scene.m_obstaclePositions.data(), vertex));
         const float coordinates[3] = {p.x, p.y, p.z};
         std::copy(coordinates, coordinates + 3, &m_placed.m_positions[3 * std::size_t(vertex)]);
         m_placed.m_vertexCones[vertex] = placedCone(at, scene.m_vertexCones[vertex]);
     }
     for (std::uint32_t edge = 0; edge < scene.m_edgeCones.size(); ++edge)
-        m_placed.m_edgeCones[edge] = placedCone(places + placeOfEdge(places, count, edge), scene.m_edgeCones[edge]);
+        m_placed.m_edgeCones[edge] =
+            placedCone(places + placeOf(places, count, DRAPE_OF_EDGE, edge), scene.m_edgeCones[edge]);
 }
 
 ObstacleView HostBackend::obstacleView(const Scene& scene) const
