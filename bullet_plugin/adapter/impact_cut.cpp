@@ -10,10 +10,10 @@ namespace
 // far enough from the other side.
 constexpr btScalar kStandOff = btScalar(0.5);
 
-// Share of the path that is left, 1 when the contact cuts nothing.
+// Share of the path that is left, 1 when the contact cuts nothing: nothing was met, or the cloth's point moves away.
 btScalar shareLeft(const StepContact& contact)
 {
-    if (!(contact.m_time < 1)) return 1;
+    if (!(contact.m_time < 1) || contact.m_endGap >= contact.m_startGap) return 1;
     const btScalar distance = contact.m_startGap + contact.m_thickness;  // at the step's start
     const btScalar standOff = kStandOff * contact.m_thickness;
     return distance > standOff ? contact.m_time * (1 - standOff / distance) : btScalar(0);

@@ -43,44 +43,60 @@ DRAPE_FUNCTION const DRAPE_GLOBAL ObstacleMotion* findMotion(const DRAPE_GLOBAL 
 }
 
 // Whether a step looks at the way of a triangle from its first three corners to its last. What it meets that moves less
-// than the radius is within the radius of where it ends: in an automatic step only what moves further is swept. A NaN
-// position counts as far.
+// than the radius is within the radius of where it ends: in an automatic step only what moves further is swept. The rest of
+// the radius is for what counts as met, which may be apart by 1e-5 of the pair's size (meetingDistance): the radius holds
+// 1e-4 of the obstacle's longest edge for it. A NaN position counts as far.
 DRAPE_FUNCTION int isSwept(const Vec3* p, float radius, DRAPE_UINT mode)
 {
     if (mode != DRAPE_AUTOMATIC) return mode == DRAPE_CONTINUOUS;
-    const float near = 0.9f * radius;
+    const float near = 0.9f * radius - 2e-5f * (vec3Norm1(vec3Sub(p[4], p[3])) + vec3Norm1(vec3Sub(p[5], p[3])));
     for (int k = 0; k < 3; ++k)
     {
         const Vec3 way = vec3Sub(p[3 + k], p[k]);
         if (!(vec3Dot(way, way) <= near * near)) return 1;
     }
-    return 0;
+    return !(near > 0.0f);
 }
 
-// The volume in which to look for what may be in contact with a cloth triangle over the step as the obstacle sees it,
-// see cornersVolume; motion is null for one that rests; mode: DRAPE_DISCRETE …. Returns whether it can come near the
-// obstacle: it has a valid corner, and where the obstacle moves it meets the obstacle's box. The volume holds the
-// radius, the box the obstacle's positions.
-DRAPE_FUNCTION int volumeSeen(Dop* dop, const DRAPE_GLOBAL ObstacleMotion* motion,
-                              const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
-                              const DRAPE_GLOBAL float* end, float radius, DRAPE_UINT mode)
+// The corners of a cloth triangle at the step's start as the obstacle sees them, then at its end; motion is null for
+// one that rests.
+DRAPE_FUNCTION void cornersSeen(Vec3* p, const DRAPE_GLOBAL ObstacleMotion* motion,
+                                const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
+                                const DRAPE_GLOBAL float* end)
 {
-    Vec3 p[6];
     for (int k = 0; k < 3; ++k)
     {
         p[k] = startSeen(motion, vec3Load(start, triangle->m_vertices[k]));
         p[3 + k] = vec3Load(end, triangle->m_vertices[k]);
     }
+}
+
+// Whether a volume, grown by the radius, can come near the obstacle: it is not empty, and where the obstacle moves it
+// meets the box of the obstacle's positions.
+DRAPE_FUNCTION int mayComeNear(const Dop* dop, float radius, const DRAPE_GLOBAL ObstacleMotion* motion)
+{
+    int near = dop->m_low[0] <= dop->m_high[0];
+    for (int axis = 0; axis < 3 && motion; ++axis)
+    {
+        near &=
+            (dop->m_low[axis] - radius <= motion->m_high[axis]) & (dop->m_high[axis] + radius >= motion->m_low[axis]);
+    }
+    return near;
+}
+
+// The volume in which to look for what may be in contact with a cloth triangle over the step as the obstacle sees it,
+// see cornersVolume; mode: DRAPE_DISCRETE …. The volume holds the radius. Returns mayComeNear().
+DRAPE_FUNCTION int volumeSeen(Dop* dop, const DRAPE_GLOBAL ObstacleMotion* motion,
+                              const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
+                              const DRAPE_GLOBAL float* end, float radius, DRAPE_UINT mode)
+{
+    Vec3 p[6];
+    cornersSeen(p, motion, triangle, start, end);
     const int swept = isSwept(p, radius, mode);
     for (int k = 0; k < 3 && !swept; ++k)
         p[k] = p[3 + k];
     cornersVolume(dop, p, swept, radius);
-    int near = dop->m_low[0] <= dop->m_high[0];
-    for (int axis = 0; axis < 3 && motion; ++axis)
-    {
-        near &= (dop->m_low[axis] <= motion->m_high[axis]) & (dop->m_high[axis] >= motion->m_low[axis]);
-    }
-    return near;
+    return mayComeNear(dop, 0.0f, motion);
 }
 
 // Grows a leaf's volume to the triangle's paths as every moving obstacle sees them that it has a pair with. thickness:

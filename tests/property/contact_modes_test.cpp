@@ -36,11 +36,40 @@ std::vector<StepCase> movingCases()
     std::vector<StepCase> cases;
     std::uint32_t seed = 900;
     for (const char* shape : {"sphere", "torus", "bowl", "stairs", "box"})
-        for (const float factor : {0.05f, 1.0f, 20.0f})
+        for (const float factor : {0.05f, -0.6f, 1.0f, 20.0f})
             cases.push_back(faster(fallingCase(shape, 20, 0.03f, ++seed), factor));
     for (const float factor : {0.02f, 1.0f, 5.0f})
         cases.push_back(faster(soupCase(120, 150, true, ++seed), factor));
     return cases;
+}
+
+// A slope of a kilometre, of two triangles, and cloth beside it whose gap goes from one to the other, m: thin cloth
+// against long edges. Normal (1, 1, 0) / √2.
+StepCase slopeCase(float gapBefore, float gapAfter)
+{
+    StepCase step;
+    step.m_name = "slope, gap from " + std::to_string(gapBefore) + " to " + std::to_string(gapAfter);
+    step.m_seed = 0;
+    step.m_thickness = 0.001f;
+    step.m_obstacle = looseTriangles({500, -500, -500, -500, 500, -500, -500, 500, 500,  //
+                                      500, -500, -500, -500, 500, 500, 500, -500, 500});
+    const float along = 0.70710678f;
+    for (int column = 0; column < 6; ++column)
+    {
+        for (int row = 0; row < 6; ++row)
+        {
+            const float u = 0.02f * float(column) - 0.05f + 0.001f * float(row), v = 0.02f * float(row) - 0.05f;
+            const auto at = [&](float gap) { return std::vector<float>{along * (gap + u), along * (gap - u), v}; };
+            const std::vector<float> before = at(gapBefore), after = at(gapAfter);
+            step.m_cloth.m_positions.insert(step.m_cloth.m_positions.end(), before.begin(), before.end());
+            step.m_end.insert(step.m_end.end(), after.begin(), after.end());
+            if (column == 5 || row == 5) continue;
+            const int first = 6 * column + row;
+            for (const int corner : {first, first + 6, first + 1, first + 1, first + 6, first + 7})
+                step.m_cloth.m_triangles.push_back(corner);
+        }
+    }
+    return step;
 }
 
 // A pyramid whose apex, vertex 4, is the origin.
@@ -89,6 +118,34 @@ TEST_P(ContactModesTest, AutomaticGivesTheContactsOfContinuousForLess)
     }
     EXPECT_GT(contacts, 10000u);
     EXPECT_LT(2 * swept, sweptAlways);
+}
+
+// Ways shorter than the reach, towards an obstacle and away from it, where what counts as met depends on the obstacle's
+// size.
+TEST_P(ContactModesTest, AutomaticGivesTheContactsOfContinuousAtLongEdges)
+{
+    Settings onHost = allBackends()[0].m_settings;
+    onHost.m_mode = ContactMode::Continuous;
+    std::size_t contacts = 0;
+    for (const float gap : {0.0001f, 0.0002f, 0.0005f, 0.001f, 0.0014f, 0.002f, 0.01f, 0.08f})
+    {
+        for (const float way : {0.1f, 0.3f, 0.6f, 0.87f, 0.89f, 0.91f, 1.2f, 70.0f})
+        {
+            for (const float sign : {-1.0f, 1.0f})
+            {
+                const StepCase step = slopeCase(gap, gap + sign * way * 0.0015f);
+                SCOPED_TRACE(step.trace());
+                const Outcome automatic = run(step, ContactMode::Automatic);
+                const Outcome continuous = run(step, ContactMode::Continuous);
+                EXPECT_TRUE(sameBytes(automatic.m_contacts, continuous.m_contacts))
+                    << automatic.m_contacts.size() << " and " << continuous.m_contacts.size();
+                const std::unique_ptr<Pipeline> host = makePipeline(onHost);
+                EXPECT_TRUE(sameBytes(automatic.m_contacts, runCase(*host, step)));
+                contacts += automatic.m_contacts.size();
+            }
+        }
+    }
+    EXPECT_GT(contacts, 1000u);
 }
 
 TEST_P(ContactModesTest, AutomaticGivesTheContactsOfContinuousWhereObstaclesMove)

@@ -24,6 +24,7 @@ struct PooledMesh
     std::vector<NormalCone> m_vertexCones;  // obstacles only
     std::vector<NormalCone> m_edgeCones;
     MeshBox m_box = {};                  // m, of the positions, obstacles only
+    float m_longestEdge = 0;             // m, obstacles only
     ObstaclePlacing m_placing;           // obstacles only
     std::vector<std::uint32_t> m_order;  // leaf order, local triangles
     std::uint32_t m_firstVertex = 0;

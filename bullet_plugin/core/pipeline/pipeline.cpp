@@ -17,6 +17,9 @@ using Clock = std::chrono::steady_clock;
 // Volumes reach a little further than the feature tests, by more than those round, so that which pairs were candidates
 // never decides whether a pair is a contact.
 constexpr float kReachPad = 1.001f;
+// Share of the longest edge of an obstacle by which candidates are looked for farther than contacts reach: the search
+// for meetings takes features for met that are apart by a share of their size (isSwept in kernels/lib/rigid_motion.h).
+constexpr float kEdgePad = 1e-4f;
 
 double millisecondsSince(Clock::time_point start)
 {
@@ -54,6 +57,13 @@ void Pipeline::Implementation::measureObstacle(PooledMesh& mesh)
         if (!std::isfinite(coordinate)) continue;
         mesh.m_box.m_low[i % 3] = std::min(mesh.m_box.m_low[i % 3], coordinate);
         mesh.m_box.m_high[i % 3] = std::max(mesh.m_box.m_high[i % 3], coordinate);
+    }
+    mesh.m_longestEdge = 0;
+    for (const Edge& edge : mesh.m_topology.m_edges)
+    {
+        const Vec3 a = vec3Load(mesh.m_positions.data(), edge.m_vertices[0]);
+        const float length = vec3Length(vec3Sub(vec3Load(mesh.m_positions.data(), edge.m_vertices[1]), a));
+        if (std::isfinite(length)) mesh.m_longestEdge = std::max(mesh.m_longestEdge, length);
     }
 }
 
@@ -141,7 +151,8 @@ void Pipeline::Implementation::collectPairs()
         if (m_scene.m_obstacles.mesh(obstacle).m_coordinateStep > pair.m_thickness)
             m_statistics.m_status |= kStepCoarsePositions;
         float& radius = m_stepPairs.m_clothRadius[cloth];
-        radius = std::max(radius, pair.m_thickness * (1.0f + m_settings.m_activation) * kReachPad);
+        radius = std::max(radius, pair.m_thickness * (1.0f + m_settings.m_activation) * kReachPad +
+                                      kEdgePad * m_scene.m_obstacles.mesh(obstacle).m_longestEdge);
         m_stepPairs.m_any = true;
     }
     m_pairs.clear();
