@@ -61,6 +61,24 @@ __kernel void compactionPlace(__global const uint* restrict slotCount, const uin
     }
 }
 
+// The same in one launch, by one work-group, for slots that are few: each work-item takes adjacent ones.
+__kernel void compactionPlaceFew(__global const uint* restrict slotCount, const uint slots, __global uint* restrict slotFirst,
+                                 __global StepCounters* restrict counters, __local uint* scratch)
+{
+    const uint items = get_local_size(0), item = get_local_id(0);
+    const uint share = (slots + items - 1) / items;
+    const uint first = min(slots, item * share), last = min(slots, first + share);
+    uint sum = 0, total;
+    for (uint slot = first; slot < last; ++slot) sum += slotCount[slot];
+    uint place = groupPrefix(scratch, sum, &total);
+    for (uint slot = first; slot < last; ++slot)
+    {
+        slotFirst[slot] = place;
+        place += slotCount[slot];
+    }
+    if (item == 0) counters->m_hits = total;
+}
+
 // A work-item takes every stride-th place of the hits' list and lists a hit among its slot's members, last to first as the
 // items come; the atomic gives each a place of its own. Places whose slot is DRAPE_NO_FEATURE hold no hit. Leaves slotCount zero for the next step.
 __kernel void compactionGather(__global const Contact* restrict hits, const uint hitCapacity,

@@ -19,6 +19,12 @@ DRAPE_NAMESPACE_BEGIN
 // A triangle whose doubled area is below this share of its longest edge squared is thin, edges whose directions have a
 // sine below it are parallel. Then 3 roundings of a cross product turn it by less than 2e-5.
 #define DRAPE_CULL_THIN 0.01f
+// Share of the pair's size by which the offset of a contact may be off the direction that the cones admit: edges whose
+// directions have a small sine s have places that err by up to 3e-7 / s², and the offset then errs by s times that,
+// which is most, 5.5e-4, where the place errs by the edge.
+#define DRAPE_CULL_NOISE 1e-3f
+// Share of the reach that features may be apart that count as having met, see meetingSettings().
+#define DRAPE_CULL_MET 0.02f
 // A distance that excludes nothing, m.
 #define DRAPE_CULL_ANYWHERE 1e15f
 
@@ -246,6 +252,80 @@ DRAPE_FUNCTION LaneMask cullEdgeEdge(const CullTriangle* cull, int i, CullReach 
     const LaneMask around = lanesDot(offset, offset) <= 2.0f * (edges->m_square + far * far);
     const LaneMask parallel = square <= (DRAPE_CULL_THIN * DRAPE_CULL_THIN) * lengths * lengths;
     return around & (parallel | (inside & ((near & admitted) | met)));
+}
+
+// Where to look for what may be in contact with a cloth triangle over the step. m_volume holds its way where it is
+// swept, else its end; m_radius: m, the largest reach; m_least: m, what is looked for in any direction, however little
+// the cones admit of it (cone_reach.h): as far as an unswept triangle moves, and more than what counts as met.
+typedef struct CullVolume
+{
+    Dop m_volume;
+    float m_radius, m_least;
+} CullVolume;
+
+// Returns whether it may come near the obstacle.
+DRAPE_FUNCTION int cullVolume(CullVolume* cull, const DRAPE_GLOBAL ObstacleMotion* motion,
+                              const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
+                              const DRAPE_GLOBAL float* end, float radius, DRAPE_UINT mode)
+{
+    Vec3 p[6], normal;
+    cornersSeen(p, motion, triangle, start, end);
+    const int swept = isSwept(p, radius, mode);
+    cull->m_radius = radius;
+    float moved = 0.0f;
+    for (int k = 0; k < 3 && !swept; ++k)
+    {
+        if (mode != DRAPE_DISCRETE) moved = drapeMax(moved, vec3Length(vec3Sub(p[3 + k], p[k])));
+        p[k] = p[3 + k];
+    }
+    cull->m_least = moved + DRAPE_CULL_MET * radius;
+    Dop* dop = &cull->m_volume;
+    if (!cornersVolume(dop, p, swept, 0.0f) || cullNormal(p + 3, &normal)) cull->m_least = radius;
+    float size = 2.0f * radius;
+    for (int i = 0; i < 3; ++i)
+        size += drapeMax(dop->m_high[i] - dop->m_low[i], 0.0f);
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        // Four roundings of what the comparison subtracts, and the noise of directions.
+        dop->m_low[i] -= DRAPE_CULL_NOISE * size * dopNorm(i) + 2.4e-7f * drapeAbs(dop->m_low[i]);
+        dop->m_high[i] += DRAPE_CULL_NOISE * size * dopNorm(i) + 2.4e-7f * drapeAbs(dop->m_high[i]);
+    }
+    return mayComeNear(dop, radius, motion);
+}
+
+// A volume that nothing is near.
+DRAPE_FUNCTION void emptyVolume(CullVolume* cull)
+{
+    dopClear(&cull->m_volume);
+    cull->m_radius = cull->m_least = 0.0f;
+}
+
+// Whether the triangle is not proved out of reach of one child of a wide node (patch.h), in its features' directions.
+DRAPE_FUNCTION int cullWideChild(const CullVolume* cull, const DRAPE_GLOBAL float* child)
+{
+    int near = 1;
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        const float share = child[(2 * DRAPE_DOP_DIRECTIONS + i) * DRAPE_PATCH_WIDTH];
+        const float reach = drapeMax(cull->m_radius * share, cull->m_least * dopNorm(i));
+        near &= (child[i * DRAPE_PATCH_WIDTH] - reach <= cull->m_volume.m_high[i]) &
+                (child[(DRAPE_DOP_DIRECTIONS + i) * DRAPE_PATCH_WIDTH] + reach >= cull->m_volume.m_low[i]);
+    }
+    return near;
+}
+
+// The same for all children at once.
+DRAPE_FUNCTION LaneMask cullWideNode(const CullVolume* cull, const DRAPE_GLOBAL float* node)
+{
+    LaneMask near = lanesMaskSplat(1);
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        const Lanes share = lanesLoad(node, 2 * DRAPE_DOP_DIRECTIONS + i);
+        const Lanes reach = lanesMax(cull->m_radius * share, lanesSplat(cull->m_least * dopNorm(i)));
+        near &= (lanesLoad(node, i) - reach <= lanesSplat(cull->m_volume.m_high[i])) &
+                (lanesLoad(node, DRAPE_DOP_DIRECTIONS + i) + reach >= lanesSplat(cull->m_volume.m_low[i]));
+    }
+    return near;
 }
 
 DRAPE_NAMESPACE_END

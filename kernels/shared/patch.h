@@ -28,8 +28,8 @@ typedef struct Patch
 #define DRAPE_FACE_FLOATS 10
 #define DRAPE_VERTEX_FLOATS 7
 #define DRAPE_EDGE_FLOATS 10
-// Low and high of every direction.
-#define DRAPE_WIDE_NODE_FLOATS (2 * DRAPE_DOP_DIRECTIONS)
+// Of every direction: low, high, and how far a contact can reach as a share of the reach (lib/cone_reach.h).
+#define DRAPE_WIDE_NODE_FLOATS (3 * DRAPE_DOP_DIRECTIONS)
 
 // A lane's owner: a triangle that owns its feature in the low bits, the feature's place in that triangle above. Lanes
 // that are not used hold DRAPE_NO_FEATURE and positions that are NaN, which no test keeps.
@@ -37,7 +37,8 @@ typedef struct Patch
 #define DRAPE_NO_FEATURE 0xffffffffu
 
 // A feature test that the cull could not drop: a cloth triangle with the test above it, and a lane of the faces (tests
-// 0 to 2: corner of the cloth triangle), vertices (3) or edges (4 to 6: edge of the cloth triangle).
+// 0 to 2: corner of the cloth triangle), vertices (3) or edges (4 to 6: edge of the cloth triangle). Also a pair of a cloth
+// triangle and a patch, whose index is then in the place of the lane.
 typedef struct FeatureTest
 {
     DRAPE_UINT m_cloth;

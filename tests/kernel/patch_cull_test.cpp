@@ -29,7 +29,8 @@ public:
     {
         m_cloth.m_end = step.m_end;
         m_thickness = {step.m_thickness};
-        m_stage.create(device, programOf(device, "patch_cull", PatchCullStage::defines(device)));
+        m_stage.create(device,
+                       [&](const char* name) { return programOf(device, name, PatchCullStage::defines(device)); });
         m_clothBuffers.upload(device, m_cloth);
         m_obstacleBuffers.upload(device, m_obstacle);
         guardCopy(device, m_thicknessBuffer, m_thickness);

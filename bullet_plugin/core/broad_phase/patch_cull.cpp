@@ -11,6 +11,13 @@ constexpr std::uint32_t kWidthCpu = 16;  // a vector of 512 bits
 constexpr std::size_t kGroup = 64;
 // Cloth triangles per group where a work-item is a team: small groups even out unequal triangles.
 constexpr std::size_t kTeamsPerGroup = 8;
+// On a GPU: nodes that a walk for one triangle looks at together, which shortens it, and the number of triangles from
+// which on walks are for packets of them.
+constexpr std::size_t kWalkNodes = 4;
+constexpr std::size_t kManyTriangles = 1 << 15;
+// Groups that cull pairs: as many as a compute unit holds.
+constexpr std::size_t kPairGroupsPerUnit = 32;
+constexpr std::size_t kFirstPairs = 1 << 16;
 }  // namespace
 
 std::uint32_t PatchCullStage::width(const Device& device)
@@ -24,14 +31,17 @@ std::string PatchCullStage::defines(const Device& device)
            (device.isGpu() ? "1\n" : std::to_string(kWidthCpu) + "\n");
 }
 
-void PatchCullStage::create(Device& device, const cl::Program& program)
+void PatchCullStage::create(Device& device, const ProgramLoader& load)
 {
-    m_cull.create(device, program, "patchCull");
-    m_packFaces.create(device, program, "patchPackFaces");
-    m_packVertices.create(device, program, "patchPackVertices");
-    m_packEdges.create(device, program, "patchPackEdges");
-    m_volumes.create(device, program, "patchVolumes");
-    m_widen.create(device, program, "patchWiden");
+    const cl::Program cull = load(device.isGpu() ? "patch_walk" : "patch_cull"), pack = load("patch_pack");
+    if (device.isGpu()) m_walk.create(device, cull, "patchWalk");
+    m_cull.create(device, cull, device.isGpu() ? "patchCullPairs" : "patchCull");
+    m_pairs.reserve(device, device.isGpu() ? kFirstPairs : 1);
+    m_packFaces.create(device, pack, "patchPackFaces");
+    m_packVertices.create(device, pack, "patchPackVertices");
+    m_packEdges.create(device, pack, "patchPackEdges");
+    m_volumes.create(device, pack, "patchVolumes");
+    m_widen.create(device, pack, "patchWiden");
 }
 
 void PatchCullStage::setTopology(Device& device, const MeshPool& obstacles)
@@ -80,12 +90,13 @@ void PatchCullStage::pack(Device& device, Slots slots, Buffer<Triangle>& triangl
     m_packEdges.launch(device, edges.count(), kGroup, m_edgeOwners.handle(), edges.first(), edges.last(),
                        triangles.handle(), positions.handle(), edgeCones.handle(), m_edges.handle(),
                        m_edgeIds.handle());
-    packVolumes(device, patches, triangles, positions);
+    packVolumes(device, patches, triangles, positions, vertexCones, edgeCones);
 }
 
 // Volumes of the patches and of the wide nodes above them. With the last patch go the places behind it, which are
 // empty.
-void PatchCullStage::packVolumes(Device& device, Range patches, Buffer<Triangle>& triangles, Buffer<float>& positions)
+void PatchCullStage::packVolumes(Device& device, Range patches, Buffer<Triangle>& triangles, Buffer<float>& positions,
+                                 Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones)
 {
     const std::size_t width = PatchCullStage::width(device), patchCount = m_layout.m_patches.size();
     Range changed = patches;
@@ -98,7 +109,7 @@ void PatchCullStage::packVolumes(Device& device, Range patches, Buffer<Triangle>
         {
             m_volumes.launch(device, changed.count(), kGroup, m_faceOwners.handle(), cl_uint(patchCount),
                              changed.first(), changed.last(), triangles.handle(), positions.handle(),
-                             m_wideNodes.handle(), m_sizes.handle());
+                             vertexCones.handle(), edgeCones.handle(), m_wideNodes.handle(), m_sizes.handle());
         }
         else
         {
@@ -111,17 +122,46 @@ void PatchCullStage::packVolumes(Device& device, Range patches, Buffer<Triangle>
     }
 }
 
+void PatchCullStage::enqueueWalk(Device& device, Cloths cloths, Buffer<StepCounters>& counters)
+{
+    const bool many = cloths.m_count >= kManyTriangles;
+    const std::size_t packet = many ? width(device) : 1;
+    const std::size_t groups = (cloths.m_count + packet - 1) / packet;
+    const std::size_t group = width(device) * (many ? 1 : kWalkNodes);
+    m_walk.launch(device, groups * group, group, cloths.m_order.handle(), cloths.m_triangles.handle(),
+                  cl_uint(cloths.m_count), cloths.m_start.handle(), cloths.m_end.handle(), cloths.m_radius.handle(),
+                  cloths.m_thickness.handle(), cl_uint(cloths.m_obstacleMeshes), cloths.m_reachScale,
+                  cl_uint(cloths.m_mode), cloths.m_motions.handle(), cl_uint(cloths.m_motionCount),
+                  m_wideNodes.handle(), m_levels.handle(), cl_uint(m_layout.m_levels.size() - 1), m_patches.handle(),
+                  m_pairs.handle(), cl_uint(m_pairs.capacity()), cl_uint(cloths.m_limit), counters.handle(),
+                  cl_uint(packet));
+}
+
+void PatchCullStage::enqueuePairs(Device& device, Cloths cloths, Buffer<StepCounters>& counters)
+{
+    const std::size_t groups = device.computeUnits() * kPairGroupsPerUnit;
+    m_cull.launch(device, groups * width(device), width(device), m_pairs.handle(), cl_uint(m_pairs.capacity()),
+                  cloths.m_triangles.handle(), cloths.m_start.handle(), cloths.m_end.handle(), cl_uint(cloths.m_mode),
+                  cloths.m_motions.handle(), m_patches.handle(), m_sizes.handle(), m_faces.handle(),
+                  m_vertices.handle(), m_edges.handle(), m_tests.handle(), cl_uint(m_tests.capacity()),
+                  cl_uint(cloths.m_limit), counters.handle());
+}
+
 void PatchCullStage::enqueue(Device& device, Cloths cloths, Buffer<StepCounters>& counters)
 {
     if (m_layout.m_patches.empty() || cloths.m_count == 0) return;
-    const std::size_t teamItems = device.isGpu() ? width(device) : 1;
-    m_cull.launch(device, cloths.m_count * teamItems, device.isGpu() ? teamItems : kTeamsPerGroup,
-                  cloths.m_order.handle(), cloths.m_triangles.handle(), cl_uint(cloths.m_count),
-                  cloths.m_start.handle(), cloths.m_end.handle(), cloths.m_radius.handle(), m_wideNodes.handle(),
-                  m_levels.handle(), cl_uint(m_layout.m_levels.size() - 1), m_patches.handle(), m_sizes.handle(),
-                  m_faces.handle(), m_vertices.handle(), m_edges.handle(), cloths.m_thickness.handle(),
-                  cl_uint(cloths.m_obstacleMeshes), cloths.m_reachScale, cl_uint(cloths.m_mode),
-                  cloths.m_motions.handle(), cl_uint(cloths.m_motionCount), m_tests.handle(),
-                  cl_uint(m_tests.capacity()), cl_uint(cloths.m_limit), counters.handle());
+    if (device.isGpu())
+    {
+        enqueueWalk(device, cloths, counters);
+        enqueuePairs(device, cloths, counters);
+        return;
+    }
+    m_cull.launch(device, cloths.m_count, kTeamsPerGroup, cloths.m_order.handle(), cloths.m_triangles.handle(),
+                  cl_uint(cloths.m_count), cloths.m_start.handle(), cloths.m_end.handle(), cloths.m_radius.handle(),
+                  cloths.m_thickness.handle(), cl_uint(cloths.m_obstacleMeshes), cloths.m_reachScale,
+                  cl_uint(cloths.m_mode), cloths.m_motions.handle(), cl_uint(cloths.m_motionCount),
+                  m_wideNodes.handle(), m_levels.handle(), cl_uint(m_layout.m_levels.size() - 1), m_patches.handle(),
+                  m_tests.handle(), cl_uint(m_tests.capacity()), cl_uint(cloths.m_limit), counters.handle(),
+                  m_sizes.handle(), m_faces.handle(), m_vertices.handle(), m_edges.handle());
 }
 }  // namespace drape

@@ -1,7 +1,8 @@
 // Broad phase over patches: lists the feature tests of cloth triangles and obstacle features that may give a contact.
 //
 // Job: keep the obstacles' patches and the wide tree over them on the device; each step walk it with every cloth
-// triangle and drop what is surely apart, a block of features at a time (kernels/patch_cull.cl). Output: feature tests
+// triangle and drop what is surely apart, a block of features at a time (kernels/patch_cull.cl; on a GPU
+// patch_walk.cl). Output: feature tests
 // in no particular order, each at most once. Guarantee: no test that gives a contact is dropped. Cost: one launch a
 // step.
 #pragma once
@@ -18,10 +19,11 @@ class PatchCullStage
 public:
     // Lanes in a block on this device.
     static std::uint32_t width(const Device& device);
-    // Definitions with which kernels/patch_cull.cl is built.
+    // Definitions with which its kernels are built.
     static std::string defines(const Device& device);
 
-    void create(Device& device, const cl::Program& program);
+    // The programs that it is made of.
+    void create(Device& device, const ProgramLoader& load);
 
     // New obstacle topology. Waits for the upload.
     void setTopology(Device& device, const MeshPool& obstacles);
@@ -59,6 +61,9 @@ public:
     // The list of the last step, and room in it.
     Buffer<FeatureTest>& tests() { return m_tests; }
     void reserveTests(Device& device, std::size_t count) { m_tests.reserve(device, count); }
+    // The list of pairs of cloth triangles and patches on a GPU. Where it was too short, other counts are too low.
+    Buffer<FeatureTest>& pairs() { return m_pairs; }
+    void reservePairs(Device& device, std::size_t count) { m_pairs.reserve(device, count); }
 
     // The packed features; ids tell a lane's triangle, vertex or edge.
     struct Features
@@ -82,15 +87,19 @@ private:
         cl_uint last() const { return cl_uint(m_last); }
     };
     Range patchesOf(Slots slots) const;
-    void packVolumes(Device& device, Range patches, Buffer<Triangle>& triangles, Buffer<float>& positions);
+    void packVolumes(Device& device, Range patches, Buffer<Triangle>& triangles, Buffer<float>& positions,
+                     Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones);
 
-    Kernel m_cull, m_packFaces, m_packVertices, m_packEdges, m_volumes, m_widen;
+    void enqueueWalk(Device& device, Cloths cloths, Buffer<StepCounters>& counters);
+    void enqueuePairs(Device& device, Cloths cloths, Buffer<StepCounters>& counters);
+
+    Kernel m_walk, m_cull, m_packFaces, m_packVertices, m_packEdges, m_volumes, m_widen;
     Patches m_layout;
     Buffer<Patch> m_patches{"obstacle patches"};
     Buffer<cl_uint> m_faceOwners{"obstacle patches"}, m_vertexOwners{"obstacle patches"};
     Buffer<cl_uint> m_edgeOwners{"obstacle patches"}, m_vertexIds{"obstacle patches"}, m_edgeIds{"obstacle patches"};
     Buffer<cl_uint> m_levels{"obstacle wide nodes"};
-    Buffer<FeatureTest> m_tests{"step candidates"};
+    Buffer<FeatureTest> m_tests{"step candidates"}, m_pairs{"step candidates"};
     Buffer<float> m_faces{"obstacle features"}, m_vertices{"obstacle features"}, m_edges{"obstacle features"};
     Buffer<float> m_sizes{"obstacle patches"}, m_wideNodes{"obstacle wide nodes"};
 };

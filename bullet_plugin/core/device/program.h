@@ -55,7 +55,8 @@ private:
     template <typename T>
     void set(Device& device, cl_uint index, const T& value)
     {
-        device.check(m_kernel.setArg(index, value), "clSetKernelArg " + std::to_string(index), m_name);
+        const cl_int code = m_kernel.setArg(index, value);
+        if (code != CL_SUCCESS) device.check(code, "clSetKernelArg " + std::to_string(index), m_name);
     }
     void enqueue(Device& device, std::size_t globalSize, std::size_t localSize);
 

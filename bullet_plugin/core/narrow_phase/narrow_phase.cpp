@@ -5,9 +5,11 @@ namespace drape
 namespace
 {
 constexpr std::size_t kGroup = 64;
-constexpr std::size_t kSortGroup = 256;         // one group sorts a slot, however large
-constexpr std::size_t kSortBlockGpu = 32;       // slots that a group sorts one after the other; a CPU's take kBlock
-constexpr std::size_t kBlock = 1024;            // slots per work-group, as in kernels/compaction.cl
+constexpr std::size_t kSortGroup = 256;     // one group sorts a slot, however large
+constexpr std::size_t kSortBlockGpu = 32;   // slots that a group sorts one after the other; a CPU's take kBlock
+constexpr std::size_t kBlock = 1024;        // slots per work-group, as in kernels/compaction.cl
+constexpr std::size_t kFewSlots = 1 << 14;  // one group places them: fewer launches
+constexpr std::size_t kPlaceGroupGpu = 512;
 constexpr std::size_t kItemsPerUnitGpu = 1024;  // work-items per compute unit that hide a GPU's latency
 constexpr std::size_t kItemsPerUnitCpu = 256;   // four groups per core, so that uneven ones even out
 }  // namespace
@@ -30,6 +32,7 @@ void NarrowPhaseStage::create(Device& device, const ProgramLoader& load, bool fe
     m_count.create(device, compaction, "compactionCount");
     m_scan.create(device, compaction, "compactionScan");
     m_place.create(device, compaction, "compactionPlace");
+    m_placeFew.create(device, compaction, "compactionPlaceFew");
     m_gather.create(device, compaction, "compactionGather");
     m_order.create(device, compaction, "compactionOrder");
     m_write.create(device, compaction, "compactionWrite");
@@ -99,17 +102,31 @@ void NarrowPhaseStage::enqueueFeatures(Device& device, NarrowPhaseBuffers sides,
     enqueueCompaction(device, counters);
 }
 
-void NarrowPhaseStage::enqueueCompaction(Device& device, Buffer<StepCounters>& counters)
+// Where each slot's contacts begin.
+void NarrowPhaseStage::enqueuePlaces(Device& device, Buffer<StepCounters>& counters)
 {
     const cl_uint slots = cl_uint(m_slots);
-    const cl_uint hitCapacity = cl_uint(m_hits.capacity());
+    if (m_slots <= kFewSlots)
+    {
+        const std::size_t group = device.isGpu() ? kPlaceGroupGpu : kGroup;
+        m_placeFew.launch(device, group, group, m_slotCount.handle(), slots, m_slotFirst.handle(), counters.handle(),
+                          cl::Local(group * sizeof(cl_uint)));
+        return;
+    }
     const std::size_t blocks = (m_slots + kBlock - 1) / kBlock;
-    const std::size_t width = listWidth(device);
     const cl::LocalSpaceArg scratch = cl::Local(kGroup * sizeof(cl_uint));
     m_count.launch(device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_blockCount.handle(), scratch);
     m_scan.launch(device, kGroup, kGroup, m_blockCount.handle(), cl_uint(blocks), counters.handle(), scratch);
     m_place.launch(device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_blockCount.handle(),
                    m_slotFirst.handle(), scratch);
+}
+
+void NarrowPhaseStage::enqueueCompaction(Device& device, Buffer<StepCounters>& counters)
+{
+    const cl_uint slots = cl_uint(m_slots);
+    const cl_uint hitCapacity = cl_uint(m_hits.capacity());
+    const std::size_t width = listWidth(device);
+    enqueuePlaces(device, counters);
     m_gather.launch(device, width, kGroup, m_hits.handle(), hitCapacity, m_slotCount.handle(), m_slotFirst.handle(),
                     m_members.handle(), counters.handle());
     const std::size_t sortBlock = device.isGpu() ? kSortBlockGpu : kBlock;

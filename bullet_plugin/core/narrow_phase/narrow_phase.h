@@ -93,10 +93,11 @@ public:
                           Buffer<StepCounters>& counters);
 
 private:
+    void enqueuePlaces(Device& device, Buffer<StepCounters>& counters);
     void enqueueCompaction(Device& device, Buffer<StepCounters>& counters);
     std::size_t listWidth(const Device& device) const;
 
-    Kernel m_test, m_feature, m_swept, m_intersect, m_count, m_scan, m_place, m_gather, m_order, m_write;
+    Kernel m_test, m_feature, m_swept, m_intersect, m_count, m_scan, m_place, m_placeFew, m_gather, m_order, m_write;
     Buffer<Contact> m_hits{"step hits"}, m_contacts{"step contacts"};
     Buffer<Candidate> m_intersections;
     Buffer<cl_uint> m_slotCount{"cloth slots"}, m_slotFirst{"cloth slots"}, m_blockCount{"cloth slots"};

@@ -22,9 +22,11 @@ DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& set
     : m_device(std::move(device)), m_settings(settings)
 {
     m_mortonOrder.create(*m_device, [this](const char* name) { return program(name); });
+    const ProgramLoader ofWidth = [this](const char* name)
+    { return program(name, PatchCullStage::defines(*m_device)); };
     if (patches())
     {
-        m_patchCull.create(*m_device, program("patch_cull", PatchCullStage::defines(*m_device)));
+        m_patchCull.create(*m_device, ofWidth);
     }
     else
     {
@@ -33,8 +35,7 @@ DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& set
         m_broadPhase.create(*m_device, m_settings.m_methods.m_traversal,
                             [&](const char* name) { return program(name, counting); });
     }
-    m_narrowPhase.create(
-        *m_device, [this](const char* name) { return program(name, PatchCullStage::defines(*m_device)); }, patches());
+    m_narrowPhase.create(*m_device, ofWidth, patches());
     m_place.create(*m_device, program("place_obstacles"), "placeObstacles");
     m_motions.reserve(*m_device, 1);
     m_candidates.reserve(*m_device, 1);
@@ -326,11 +327,13 @@ bool DeviceBackend::overLimit(StepResult& result)
     const StepCounters counters = *m_countersRead.data();
     const StepLimits limits(m_settings);
     // Hits are all of them only where every candidate was there to be tested.
-    const std::size_t candidateCapacity = patches() ? m_patchCull.tests().capacity() : m_candidates.capacity();
+    const bool complete = patches() ? counters.m_patchPairs <= m_patchCull.pairs().capacity() &&
+                                          counters.m_candidates <= m_patchCull.tests().capacity()
+                                    : counters.m_candidates <= m_candidates.capacity();
     const std::size_t found = patches() ? counters.m_hits : counters.m_listed;
-    if (counters.m_candidates > limits.m_candidates)
+    if (std::max(counters.m_candidates, counters.m_patchPairs) > limits.m_candidates)
         result.m_overLimit = true;
-    else if (counters.m_candidates <= candidateCapacity && found > limits.m_contacts)
+    else if (complete && found > limits.m_contacts)
     {
         result.m_overLimit = true;
         result.m_contactDemand = found;
@@ -357,6 +360,8 @@ bool DeviceBackend::grow()
     Device& device = *m_device;
     if (patches())
     {
+        demand(counters.m_patchPairs, m_patchCull.pairs().capacity(), sizeof(FeatureTest),
+               [&](std::size_t count) { m_patchCull.reservePairs(device, count); });
         demand(counters.m_candidates, m_patchCull.tests().capacity(), sizeof(Contact),
                [&](std::size_t count)
                {

@@ -1,0 +1,167 @@
+// Pairs of a cloth triangle and a patch of the obstacles: which there are in a step, and the feature tests they leave. For
+// OpenCL C only; see team.h for who does it.
+#ifndef DRAPE_LIB_PATCH_PAIRS_H
+#define DRAPE_LIB_PATCH_PAIRS_H
+
+#include "feature_cull.h"
+#include "rigid_motion.h"
+#include "team.h"
+
+// Entries of a walk's stack are nodes of the wide tree, with their level in the high bits.
+#define DRAPE_LEVEL_SHIFT 28
+// Levels of the wide tree over 2^28 triangles.
+#define DRAPE_LEVELS 7
+
+// The cloths of a step and what their triangles have pairs with. thickness: m, cloths × obstacles, negative where the pair is
+// not tested. mode: DRAPE_DISCRETE …. motions: of the obstacles that move in the step.
+typedef struct StepCloths
+{
+    __global const Triangle* m_triangles;
+    __global const float* m_start;
+    __global const float* m_end;
+    __global const float* m_thickness;
+    uint m_obstacleMeshes;
+    float m_reachScale;
+    uint m_mode;
+    __global const ObstacleMotion* m_motions;
+    uint m_motionCount;
+} StepCloths;
+
+// The wide tree over the patches.
+typedef struct PatchTree
+{
+    __global const float* m_nodes;
+    __global const uint* m_levels;  // first node of each of m_levelCount levels, lowest first
+    uint m_levelCount;
+    __global const Patch* m_patches;
+} PatchTree;
+
+// What kernels that walk read, and the list that they write. radius: m, per cloth, negative for those that are not in the
+// step. limit: see team.h. counters' numbers must be zero before. The order of the list does not matter.
+#define DRAPE_WALK_ARGUMENTS                                                                                                  \
+    __global const uint *restrict clothOrder, __global const Triangle *restrict clothTriangles, const uint clothCount,        \
+        __global const float *restrict start, __global const float *restrict end, __global const float *restrict radius,      \
+        __global const float *restrict thickness, const uint obstacleMeshes, const float reachScale, const uint mode,         \
+        __global const ObstacleMotion *restrict motions, const uint motionCount, __global const float *restrict wideNodes,    \
+        __global const uint *restrict levels, const uint levelCount, __global const Patch *restrict patches,                  \
+        __global FeatureTest *restrict list, const uint capacity, const uint limit, __global StepCounters *restrict counters
+#define DRAPE_STEP_CLOTHS {clothTriangles, start, end, thickness, obstacleMeshes, reachScale, mode, motions, motionCount}
+#define DRAPE_PATCH_TREE {wideNodes, levels, levelCount, patches}
+
+// motion: 0 for none, else 1 + its place.
+static __global const ObstacleMotion* motionOf(const StepCloths* cloths, const uint motion)
+{
+    return motion == 0 ? 0 : cloths->m_motions + (motion - 1);
+}
+
+// The pair's thickness, m; negative where it is not tested.
+static float thicknessWith(const StepCloths* cloths, const uint cloth, const uint mesh)
+{
+    return cloths->m_thickness[cloths->m_triangles[cloth].m_mesh * cloths->m_obstacleMeshes + mesh];
+}
+
+// Whether a cloth triangle is to be tested against a patch of the obstacles that move so (all that rest, or one that moves);
+// then *pair holds what.
+static int pairWith(FeatureTest* pair, const StepCloths* cloths, const PatchTree* tree, const uint cloth, const uint motion,
+                    const uint patch)
+{
+    const uint mesh = tree->m_patches[patch].m_mesh;
+    const float thickness = thicknessWith(cloths, cloth, mesh);
+    if (thickness < 0.0f) return 0;
+    if (findMotion(cloths->m_motions, cloths->m_motionCount, mesh) != motionOf(cloths, motion)) return 0;
+    pair->m_cloth = cloth;
+    pair->m_lane = patch;
+    pair->m_reach = thickness * cloths->m_reachScale;
+    pair->m_motion = motion;
+    return 1;
+}
+
+// Counts the invalid nodes that the triangle owns.
+static void countInvalid(const StepCloths* cloths, const uint cloth, __global StepCounters* counters)
+{
+    __global const Triangle* triangle = cloths->m_triangles + cloth;
+    for (int i = 0; i < 3; ++i)
+    {
+        const uint vertex = triangle->m_vertices[i];
+        if ((triangle->m_owned & DRAPE_OWNS_VERTEX(i)) &&
+            !(positionIsValid(vec3Load(cloths->m_start, vertex)) && positionIsValid(vec3Load(cloths->m_end, vertex))))
+        {
+            atomic_inc(&counters->m_invalidNodes);
+        }
+    }
+}
+
+// A cloth triangle as the features of one obstacle see it.
+typedef struct Looker
+{
+    CullTriangle m_cull;
+    uint m_valid, m_owned;  // its features, bits as in Triangle::m_owned
+    uint m_mode;
+} Looker;
+
+static void look(Looker* looker, const StepCloths* cloths, const uint cloth, const uint motion)
+{
+    looker->m_valid = prepareCull(&looker->m_cull, cloths->m_start, cloths->m_end, cloths->m_triangles + cloth, cloths->m_mode,
+                                  motionOf(cloths, motion));
+    looker->m_owned = cloths->m_triangles[cloth].m_owned;
+    looker->m_mode = cloths->m_mode;
+}
+
+// The obstacles' features in blocks.
+typedef struct PatchFeatures
+{
+    __global const Patch* m_patches;
+    __global const float* m_sizes;
+    __global const float* m_faces;
+    __global const float* m_vertices;
+    __global const float* m_edges;
+} PatchFeatures;
+
+static void keepLanes(DRAPE_TEAM Team* team, const LaneMask mask, FeatureTest test, const uint kind, const uint first,
+                      const TestList* list)
+{
+    test.m_cloth |= kind << DRAPE_TEST_SHIFT;
+    forLanes(lane, mask)
+    {
+        test.m_lane = first + lane;
+        teamKeep(team, list, test);
+    }
+}
+
+// Lists the feature tests of a pair of cloth triangle and patch.
+static void cullPatch(DRAPE_TEAM Team* team, const PatchFeatures* features, const FeatureTest pair, const Looker* looker,
+                      const TestList* list)
+{
+    const uint index = pair.m_lane;
+    __global const Patch* patch = features->m_patches + index;
+    const CullTriangle* cull = &looker->m_cull;
+    const CullReach reach = cullReach(cull, pair.m_reach, features->m_sizes[index], looker->m_mode);
+    const uint owned = looker->m_owned & looker->m_valid;
+    for (int i = 0; i < 3; ++i)
+    {
+        if (!(owned & DRAPE_OWNS_VERTEX(i))) continue;
+        const LaneMask mask =
+            cullNodeFace(cull, i, reach, features->m_faces + index * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH);
+        keepLanes(team, mask, pair, DRAPE_TEST_NODE + i, index * DRAPE_PATCH_WIDTH, list);
+    }
+    for (uint block = patch->m_vertexBlock;
+         looker->m_valid == DRAPE_ALL_FEATURES && block < patch->m_vertexBlock + patch->m_vertexBlocks; ++block)
+    {
+        const LaneMask mask =
+            cullFaceVertex(cull, reach, features->m_vertices + block * DRAPE_VERTEX_FLOATS * DRAPE_PATCH_WIDTH);
+        keepLanes(team, mask, pair, DRAPE_TEST_FACE, block * DRAPE_PATCH_WIDTH, list);
+    }
+    if (!(owned & (DRAPE_OWNS_EDGE(0) | DRAPE_OWNS_EDGE(1) | DRAPE_OWNS_EDGE(2)))) return;
+    for (uint block = patch->m_edgeBlock; block < patch->m_edgeBlock + patch->m_edgeBlocks; ++block)
+    {
+        const CullEdges edges = loadCullEdges(cull, features->m_edges + block * DRAPE_EDGE_FLOATS * DRAPE_PATCH_WIDTH);
+        for (int i = 0; i < 3; ++i)
+        {
+            if (!(owned & DRAPE_OWNS_EDGE(i))) continue;
+            const LaneMask mask = cullEdgeEdge(cull, i, reach, &edges);
+            keepLanes(team, mask, pair, DRAPE_TEST_EDGE + i, block * DRAPE_PATCH_WIDTH, list);
+        }
+    }
+}
+
+#endif

@@ -1,0 +1,114 @@
+// A team does one piece of a cull: one work-item with vectors of lanes (DRAPE_LANES 8 or 16), or one work-group whose
+// work-items are the lanes (DRAPE_LANES 1), of which there are DRAPE_PATCH_WIDTH or a multiple. Which of the two is a build
+// option; the text is the same.
+//
+// What a team finds it gathers and moves to a list with one atomic for many. The list's demand counts on past the capacity;
+// what does not fit is not written, and the host repeats the step with a larger list. Past the limit the team ends: the step
+// is over it whatever follows, and a count that ran on could wrap around. For OpenCL C only.
+#ifndef DRAPE_LIB_TEAM_H
+#define DRAPE_LIB_TEAM_H
+
+#include "../shared/mesh.h"
+#include "lanes.h"
+
+// Records gathered before room is reserved for them; a surplus goes to the list one by one.
+#define DRAPE_TEAM_KEPT (4 * DRAPE_PATCH_WIDTH)
+
+typedef struct Team
+{
+    uint m_depth;  // of a walk's stack, where the lanes share it
+    FeatureTest m_kept[DRAPE_TEAM_KEPT];
+    uint m_keptCount;
+    uint m_place;  // in the list, of what was moved last
+} Team;
+
+typedef struct TestList
+{
+    __global FeatureTest* m_tests;
+    uint m_capacity, m_limit;
+    volatile __global uint* m_count;
+} TestList;
+
+#if DRAPE_LANES > 1
+#define DRAPE_TEAM
+#define teamLane() 0
+#define teamWidth() 1
+#define teamSync()
+
+// Bit i: lane i's mask.
+static uint laneBits(const LaneMask mask)
+{
+#if DRAPE_LANES == 16
+    const int16 all = mask & (int16)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768);
+    const int8 half8 = all.lo | all.hi;
+#else
+    const int8 half8 = mask & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
+#endif
+    const int4 half4 = half8.lo | half8.hi;
+    const int2 half2 = half4.lo | half4.hi;
+    return (uint)(half2.lo | half2.hi);
+}
+
+#define forLanes(lane, mask) \
+    for (uint bits = laneBits(mask), lane = 31 - clz(bits & -bits); bits; bits &= bits - 1, lane = 31 - clz(bits & -bits))
+#define teamAdd(counter) ((counter)++)
+#else
+#define DRAPE_TEAM __local
+#define teamLane() get_local_id(0)
+#define teamWidth() get_local_size(0)
+#define teamSync() barrier(CLK_LOCAL_MEM_FENCE)
+#define forLanes(lane, mask) for (uint lane = get_local_id(0) % DRAPE_PATCH_WIDTH, once = (mask) != 0; once; once = 0)
+#define teamAdd(counter) atomic_inc(&(counter))
+#endif
+
+static void teamStart(DRAPE_TEAM Team* team)
+{
+    if (teamLane() == 0) team->m_keptCount = team->m_place = team->m_depth = 0;
+    teamSync();
+}
+
+// By any lane alone. slot: by which it raised m_keptCount.
+static void teamPut(DRAPE_TEAM Team* team, const TestList* list, const uint slot, const FeatureTest test)
+{
+    if (slot < DRAPE_TEAM_KEPT)
+    {
+        team->m_kept[slot] = test;
+        return;
+    }
+    const uint place = atomic_inc(list->m_count);
+    if (place < list->m_capacity) list->m_tests[place] = test;
+}
+
+static void teamKeep(DRAPE_TEAM Team* team, const TestList* list, const FeatureTest test)
+{
+    teamPut(team, list, teamAdd(team->m_keptCount), test);
+}
+
+// Moves what the team kept to the list; by all lanes together. Returns whether the list is within its limit.
+static int teamFlush(DRAPE_TEAM Team* team, const TestList* list)
+{
+    teamSync();
+    const uint count = min(team->m_keptCount, (uint)DRAPE_TEAM_KEPT);
+    if (teamLane() == 0 && count > 0) team->m_place = atomic_add(list->m_count, count);
+    teamSync();
+    const uint place = team->m_place;
+    for (uint i = teamLane(); i < count; i += teamWidth())
+    {
+        if (place + i < list->m_capacity) list->m_tests[place + i] = team->m_kept[i];
+    }
+    teamSync();
+    if (teamLane() == 0) team->m_keptCount = 0;
+    teamSync();
+    return place <= list->m_limit;
+}
+
+// The same, moving where little room is left.
+static int teamMakeRoom(DRAPE_TEAM Team* team, const TestList* list)
+{
+    teamSync();
+    const uint count = team->m_keptCount;
+    teamSync();
+    return count <= DRAPE_TEAM_KEPT / 2 ? team->m_place <= list->m_limit : teamFlush(team, list);
+}
+
+#endif
