@@ -9,7 +9,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 bunny=/usr/share/glmark2/models/bunny.obj
 
 bash "$root/cmake/install_packages.sh"
-(cd "$root" && bash cmake/build_release.sh cloth_drop)
+(cd "$root" && bash cmake/build_preset.sh release cloth_drop)
 
 obstacle=(--obstacle "$bunny")
 for argument in "$@"; do

@@ -8,10 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 seconds=${1:-60}
 seed=${2:-0}  # 0: libFuzzer chooses, and prints it
 
-generator=()
-if command -v ninja >/dev/null; then generator=(-G Ninja); fi
-cmake --preset fuzz "${generator[@]}" >&2
-cmake --build --preset fuzz --parallel "$(nproc)" --target fuzz_mesh fuzz_core >&2
+bash cmake/build_preset.sh fuzz fuzz_mesh fuzz_core
 
 cd build/fuzz
 for target in mesh core; do

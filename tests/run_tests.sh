@@ -8,7 +8,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 bash cmake/install_packages.sh
-bash cmake/build_release.sh
+bash cmake/build_preset.sh release
 
 archive=${DRAPE_DATA_ARCHIVE:-../shared}
 if [[ -f $archive/unpack.sh ]]; then

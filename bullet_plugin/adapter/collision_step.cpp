@@ -5,6 +5,17 @@
 
 namespace drape
 {
+namespace
+{
+// Whether contacts could move any of its nodes.
+bool mayMove(const btSoftBody& body)
+{
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+        if (movableInverseMass(body.m_nodes[i]) > 0) return true;
+    return false;
+}
+}  // namespace
+
 BodyContacts* CollisionStep::bodyOf(MeshId cloth)
 {
     for (BodyContacts& body : m_bodies)
@@ -77,7 +88,7 @@ void CollisionStep::begin(const std::vector<PairNote>& notes)
     // Adding and removing meshes moves the memory that nodes are written to: mirrors first, nodes after.
     m_state.dropOldMirrors();
     for (const PairNote& note : notes)
-        addPair(note);
+        if (mayMove(*note.m_cloth)) addPair(note);
     if (!m_pairs.empty()) submit();
 }
 

@@ -162,10 +162,7 @@ TEST_P(Soak, tenThousandStepsOfChange)
         ASSERT_LT(statistics.m_contacts, 20000u) << "step " << step;
         inContact += statistics.m_contacts > 0;
         for (const btSoftBody* cloth : zoo.cloths())
-        {
             ASSERT_LT(rmsSpeed(*cloth), 50.0) << "step " << step;  // a NaN fails too
-            ASSERT_LT(cloth->m_rcontacts.size(), 20000) << "step " << step;
-        }
     }
     EXPECT_LT(residentBytes(), memory + kGrowthBytes);
     EXPECT_GT(inContact, std::size_t(kSteps) / 2);

@@ -1,11 +1,13 @@
 // Anything as meshes, motions and settings, on the host back end: some steps with meshes that come, go and move.
 //
-// What must hold: no crash, no undefined behaviour, and contacts that are finite, unit, in canonical order and within
-// the limits. Indices are kept in range, which is the caller's duty; everything else is as the bytes say.
+// What must hold: no crash, no undefined behaviour, contacts that are finite, unit, in canonical order and within the
+// limits, and those of an automatic step are those of a continuous one. Indices are kept in range, which is the
+// caller's duty; everything else is as the bytes say.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <memory>
 #include <tuple>
 #include <vector>
 
@@ -69,8 +71,27 @@ Mesh addMesh(drape::Pipeline& pipeline, Bytes& bytes, bool cloth)
     description.m_triangleCount = triangles;
     description.m_positions = mesh.m_positions.data();
     description.m_vertexCount = vertices;
+    description.m_oneSided = !cloth && bytes.below(4) == 0;
     mesh.m_id = cloth ? pipeline.addCloth(description) : pipeline.addObstacle(description);
     return mesh;
+}
+
+// Two poses of an obstacle; mostly rigid, sometimes not.
+void place(drape::Pipeline& pipeline, Bytes& bytes, const Mesh& obstacle)
+{
+    float poses[2][12] = {};
+    for (float(&pose)[12] : poses)
+    {
+        const float angle = bytes.number(), cosine = std::cos(angle), sine = std::sin(angle);
+        pose[0] = pose[5] = cosine;
+        pose[1] = -sine;
+        pose[4] = sine;
+        pose[10] = 1;
+        for (int axis = 0; axis < 3; ++axis)
+            pose[4 * axis + 3] = bytes.number();
+        if (bytes.below(8) == 0) pose[bytes.below(12)] = bytes.number();
+    }
+    pipeline.placeObstacle(obstacle.m_id, poses[0], poses[1]);
 }
 
 void change(drape::Pipeline& pipeline, Bytes& bytes, std::vector<Mesh>& meshes, bool cloth)
@@ -89,6 +110,7 @@ void change(drape::Pipeline& pipeline, Bytes& bytes, std::vector<Mesh>& meshes, 
         for (float& coordinate : meshes[at].m_positions)
             coordinate = bytes.number();
         pipeline.moveObstacle(meshes[at].m_id, meshes[at].m_positions.data());
+        if (bytes.below(2)) place(pipeline, bytes, meshes[at]);
     }
 }
 
@@ -131,20 +153,26 @@ void check(const drape::Pipeline& pipeline, const drape::Settings& settings, con
         require(view.m_cloth != drape::kNoMesh && view.m_obstacle != drape::kNoMesh && view.m_thickness > 0.0f);
     }
 }
-}  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+drape::Settings settingsFrom(Bytes& bytes)
 {
-    Bytes bytes(data, size);
     drape::Settings settings;
     settings.m_backend = drape::Backend::Host;
+    settings.m_mode = drape::ContactMode(bytes.below(3));
     settings.m_activation = float(bytes.below(17)) / 4.0f;
     settings.m_reportIntersections = bytes.below(2) == 1;
     if (bytes.below(8) == 0) settings.m_candidateLimit = bytes.byte();
     if (bytes.below(8) == 0) settings.m_contactLimit = bytes.byte();
+    return settings;
+}
+
+// Runs the steps that the bytes tell; returns the contacts of all.
+std::vector<drape::Contact> run(Bytes bytes, const drape::Settings& settings)
+{
     drape::Error error;
     const std::unique_ptr<drape::Pipeline> pipeline = drape::Pipeline::create(settings, error);
     require(pipeline != nullptr);
+    std::vector<drape::Contact> all;
     std::vector<Mesh> cloths, obstacles;
     for (int step = 0; step < 6 && (step == 0 || bytes.left()); ++step)
     {
@@ -161,7 +189,24 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             }
         }
         pipeline->submit();
-        check(*pipeline, settings, pipeline->finish());
+        const drape::ContactList contacts = pipeline->finish();
+        check(*pipeline, settings, contacts);
+        all.insert(all.end(), contacts.begin(), contacts.end());
     }
+    return all;
+}
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+    Bytes bytes(data, size);
+    drape::Settings settings = settingsFrom(bytes);
+    const std::vector<drape::Contact> contacts = run(bytes, settings);
+    if (settings.m_mode != drape::ContactMode::Automatic) return 0;
+    settings.m_mode = drape::ContactMode::Continuous;
+    const std::vector<drape::Contact> continuous = run(bytes, settings);
+    require(contacts.size() == continuous.size());
+    require(contacts.empty() ||
+            std::memcmp(contacts.data(), continuous.data(), contacts.size() * sizeof(drape::Contact)) == 0);
     return 0;
 }

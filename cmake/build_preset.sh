@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
-# Configures and builds the release preset: build_release.sh [target…]. Everything when no target is named.
+# Configures and builds a preset: build_preset.sh preset [target…]. Everything when no target is named.
 #
 # Run from the repository's root. Ninja when it is there, make otherwise; an existing build folder keeps what it has.
 # What the tools print goes to standard error, so that a caller's standard output stays its own.
 set -euo pipefail
 
+preset=$1
+shift
 if [[ -z ${CMAKE_GENERATOR:-} ]]; then
   if command -v ninja >/dev/null; then
     export CMAKE_GENERATOR=Ninja
@@ -12,7 +14,7 @@ if [[ -z ${CMAKE_GENERATOR:-} ]]; then
     export CMAKE_GENERATOR="Unix Makefiles"
   fi
 fi
-cmake --preset release >&2
+cmake --preset "$preset" >&2
 targets=()
 [[ $# == 0 ]] || targets=(--target "$@")
-cmake --build --preset release --parallel "$(nproc)" "${targets[@]}" >&2
+cmake --build --preset "$preset" --parallel "$(nproc)" "${targets[@]}" >&2

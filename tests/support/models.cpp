@@ -1,0 +1,21 @@
+#include "tests/support/models.h"
+
+#include <cstdlib>
+#include <fstream>
+#include <vector>
+
+#include "scenes/mesh_loader.h"
+
+namespace drape::test
+{
+std::string loadBunny(TriangleMesh& bunny)
+{
+    std::vector<std::string> paths = {"/usr/share/glmark2/models/bunny.obj"};
+    if (const char* folder = std::getenv("DRAPE_MODELS_DIR"))
+        paths.insert(paths.begin(), std::string(folder) + "/bunny_69k.obj");
+    std::string error = "no bunny: neither DRAPE_MODELS_DIR with a bunny_69k.obj nor Debian's glmark2-data is there";
+    for (const std::string& path : paths)
+        if (std::ifstream(path)) return loadMesh(path, bunny, error) ? std::string() : error;
+    return error;
+}
+}  // namespace drape::test
