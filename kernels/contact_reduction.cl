@@ -77,13 +77,14 @@ static uint deepestLeft(const SlotLists* lists, __global const uint* kept, const
 static void dropImplied(const ReductionView* view, const SlotLists* lists, const ReducedFeature* feature,
                         __global uint* kept, const uint count, __global const Contact* keeper)
 {
+    NodeBounds bounds = noBounds();
     for (uint i = get_local_id(0); i < count; i += get_local_size(0))
     {
         if (kept[i] & (DRAPE_DROPPED | DRAPE_KEEPER)) continue;
         __global const Contact* contact = lists->m_hits + kept[i];
         const uint pair = pairOf(view, feature->m_cloth, contact);
         if (!isReducible(view, contact, pair)) continue;
-        const NodeBounds bounds = nodeBounds(view, lists, feature, contact, pair);
+        boundNodes(view, lists, feature, contact, pair, &bounds);
         if (bounds.m_lack <= 0.0f || (keeper && impliedBy(view, feature, &bounds, contact, pair, keeper)))
             kept[i] |= DRAPE_DROPPED;
     }

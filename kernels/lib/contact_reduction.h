@@ -79,6 +79,8 @@ typedef struct ReducedFeature
 // What the nodes allow along one contact's normal.
 typedef struct NodeBounds
 {
+    Vec3 m_normal;
+    DRAPE_UINT m_pair;  // of meshes
     float m_depth[3];
     float m_height[3];
     float m_lack;  // by which the nodes alone fail to imply the contact, m
@@ -180,19 +182,35 @@ DRAPE_FUNCTION float impliedSlack(const DRAPE_GLOBAL Contact* contact, float thi
     return contact->m_gap1 - thickness + DRAPE_IMPLIED_SHARE * thickness;
 }
 
-DRAPE_FUNCTION NodeBounds nodeBounds(const ReductionView* view, const SlotLists* lists, const ReducedFeature* feature,
-                                     const DRAPE_GLOBAL Contact* contact, DRAPE_UINT pair)
+// Of no contact yet.
+DRAPE_FUNCTION NodeBounds noBounds(void)
 {
     NodeBounds bounds;
-    const Vec3 normal = contactNormal(contact);
-    bounds.m_lack = -impliedSlack(contact, view->m_thickness[pair]);
-    for (int k = 0; k < feature->m_count; ++k)
-    {
-        bounds.m_depth[k] = nodeDepth(view, lists, feature, k, normal, pair);
-        bounds.m_height[k] = view->m_tube[pair] + drapeMax(0.0f, -vec3Dot(normal, feature->m_way[k]));
-        bounds.m_lack += contact->m_weights[k] * bounds.m_depth[k];
-    }
+    bounds.m_normal = vec3(0.0f, 0.0f, 0.0f);
+    bounds.m_pair = 0;
+    bounds.m_lack = 0.0f;
     return bounds;
+}
+
+// What the nodes allow along a contact's normal. The contacts within a face share theirs: *bounds is that of the
+// contact before, or of none.
+DRAPE_FUNCTION void boundNodes(const ReductionView* view, const SlotLists* lists, const ReducedFeature* feature,
+                               const DRAPE_GLOBAL Contact* contact, DRAPE_UINT pair, NodeBounds* bounds)
+{
+    const Vec3 normal = contactNormal(contact), last = bounds->m_normal;
+    if (normal.x != last.x || normal.y != last.y || normal.z != last.z || pair != bounds->m_pair)
+    {
+        bounds->m_normal = normal;
+        bounds->m_pair = pair;
+        for (int k = 0; k < feature->m_count; ++k)
+        {
+            bounds->m_depth[k] = nodeDepth(view, lists, feature, k, normal, pair);
+            bounds->m_height[k] = view->m_tube[pair] + drapeMax(0.0f, -vec3Dot(normal, feature->m_way[k]));
+        }
+    }
+    bounds->m_lack = -impliedSlack(contact, view->m_thickness[pair]);
+    for (int k = 0; k < feature->m_count; ++k)
+        bounds->m_lack += contact->m_weights[k] * bounds->m_depth[k];
 }
 
 // Whether a contact may be dropped at all.
@@ -207,11 +225,15 @@ DRAPE_FUNCTION int impliedBy(const ReductionView* view, const ReducedFeature* fe
 {
     const float thickness = view->m_thickness[pair];
     if (keeper->m_gap0 < DRAPE_STANDS * thickness || pairOf(view, feature->m_cloth, keeper) != pair) return 0;
-    const float down =
-        letsDown(keeper, contactNormal(contact), feature->m_way, feature->m_count, thickness, view->m_tube[pair]);
-    float gain = -down;  // per unit of the share
+    float most = 0.0f;  // of what the nodes let the keeper's point down
     for (int k = 0; k < feature->m_count; ++k)
-        gain += keeper->m_weights[k] * bounds->m_depth[k];
+        most += keeper->m_weights[k] * bounds->m_depth[k];
+    // What the normals' difference may cost at most. Most keepers need no root and no look at the ways.
+    const float tube = view->m_tube[pair], room = most - (keeper->m_gap1 - thickness) - bounds->m_lack;
+    const Vec3 turn = vec3Sub(bounds->m_normal, contactNormal(keeper));
+    if (!(room >= 0.0f) || tube * tube * vec3Dot(turn, turn) > room * room) return 0;
+    const float down = letsDown(keeper, bounds->m_normal, feature->m_way, feature->m_count, thickness, tube);
+    const float gain = most - down;  // per unit of the share
     if (!(gain >= bounds->m_lack)) return 0;
     // The largest share that leaves no node less than nothing, then all of it.
     float share = 1.0f, whole = down;
@@ -238,6 +260,7 @@ DRAPE_FUNCTION DRAPE_UINT reduceSlot(const ReductionView* view, const SlotLists*
 {
     if (count == 0u) return 0u;
     const ReducedFeature feature = reducedFeature(view, lists, lists->m_hits + kept[0]);
+    NodeBounds bounds = noBounds();
     DRAPE_UINT stay = 0;
     for (DRAPE_UINT j = 0; j < count; ++j)
     {
@@ -247,7 +270,7 @@ DRAPE_FUNCTION DRAPE_UINT reduceSlot(const ReductionView* view, const SlotLists*
         int drop = 0;
         if ((j > 0u || feature.m_mayEmpty) && isReducible(view, contact, pair))
         {
-            const NodeBounds bounds = nodeBounds(view, lists, &feature, contact, pair);
+            boundNodes(view, lists, &feature, contact, pair, &bounds);
             drop = bounds.m_lack <= 0.0f;
             for (DRAPE_UINT i = 0; !drop && i < stay && i < DRAPE_KEEPERS; ++i)
                 drop = impliedBy(view, &feature, &bounds, contact, pair, lists->m_hits + kept[i]);
