@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <tuple>
 
 #include "scenes/cloth_grid.h"
 #include "scenes/shapes.h"
