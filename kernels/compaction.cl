@@ -8,9 +8,6 @@
 // Slots a work-group handles. Each work-item takes DRAPE_BLOCK / group size adjacent ones.
 #define DRAPE_BLOCK 1024
 
-// The most members of a slot that are ranked by counting, in quadratic time; a cloth feature at rest has a few dozen.
-#define DRAPE_RANKED 64u
-
 static uint countShare(__global const uint* slotCount, const uint slots, uint* first, uint* last)
 {
     const uint share = DRAPE_BLOCK / get_local_size(0);

@@ -7,11 +7,17 @@ namespace drape
 {
 namespace
 {
-// Whether contacts could move any of its nodes.
-bool mayMove(const btSoftBody& body)
+// Whether contacts could move any of its nodes, or all of them.
+bool anyMoves(const btSoftBody& body)
 {
     for (int i = 0; i < body.m_nodes.size(); ++i)
         if (movableInverseMass(body.m_nodes[i]) > 0) return true;
+    return false;
+}
+bool hasPinnedNode(const btSoftBody& body)
+{
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+        if (!(movableInverseMass(body.m_nodes[i]) > 0)) return true;
     return false;
 }
 }  // namespace
@@ -88,15 +94,23 @@ void CollisionStep::begin(const std::vector<PairNote>& notes)
     // Adding and removing meshes moves the memory that nodes are written to: mirrors first, nodes after.
     m_state.dropOldMirrors();
     for (const PairNote& note : notes)
-        if (mayMove(*note.m_cloth)) addPair(note);
+        if (anyMoves(*note.m_cloth)) addPair(note);
     if (!m_pairs.empty()) submit();
+}
+
+// How far from its path a node of the pair's cloth may be, m; negative where detection is to leave out no contact. One
+// of pinned nodes alone is not held, so that it can stand for no other.
+float CollisionStep::tubeOf(const Pair& pair)
+{
+    if (!m_state.settings().m_reduceContacts || hasPinnedNode(*bodyOf(pair.m_cloth)->m_body)) return -1;
+    return static_cast<float>(MotionLimit::tube(pair.m_thickness, btScalar(m_state.settings().m_activation)));
 }
 
 void CollisionStep::submit()
 {
     uploadNodes();
     for (const Pair& pair : m_pairs)
-        m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_thickness));
+        m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_thickness), tubeOf(pair));
     m_state.pipeline().submit();
     // While the device works.
     for (BodyContacts& body : m_bodies)
@@ -198,6 +212,7 @@ void CollisionStep::checkStrayed()
         if (!cutStrayed(strayed, detections < kMostDetections ? Cut::EachNode : Cut::WholeBody)) break;
     }
     m_state.m_statistics.m_contacts = before.m_contacts;
+    m_state.m_statistics.m_reduced = before.m_reduced;
     m_state.m_statistics.m_candidates = before.m_candidates;
 }
 }  // namespace drape

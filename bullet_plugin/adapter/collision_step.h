@@ -37,6 +37,7 @@ private:
     };
 
     void addPair(const PairNote& note);
+    float tubeOf(const Pair& pair);
     void uploadNodes();
     void submit();
     void receiveAll();

@@ -39,13 +39,18 @@ void MotionLimit::clear()
     m_leastReach = m_free = SIMD_INFINITY;
 }
 
+btScalar MotionLimit::tube(btScalar thickness, btScalar activation)
+{
+    return thickness * std::max(kLeastShare, std::min(activation, kMostStartShare));
+}
+
 void MotionLimit::addObstacle(const btVector3& low, const btVector3& high, btScalar thickness, btScalar activation,
                               const btTransform* carry)
 {
     const btScalar reach = thickness * (1 + activation);
     m_leastReach = std::min(m_leastReach, reach);
     const btVector3 margin(reach, reach, reach);
-    const btScalar least = thickness * std::max(kLeastShare, std::min(activation, kMostStartShare));
+    const btScalar least = tube(thickness, activation);
     m_free = std::min(m_free, kSureShare * std::min(least, kFreeShare * reach));
     m_regions.push_back(Region{low - margin, high + margin, Allowance{least, kFreeShare * reach}, carry != nullptr,
                                carry ? *carry : btTransform::getIdentity()});
@@ -79,7 +84,8 @@ MotionLimit::Allowance MotionLimit::allowance(std::size_t node, const btVector3&
     Allowance least{SIMD_INFINITY, SIMD_INFINITY};
     for (const Region& region : m_regions)
     {
-        if (region.m_moves || !near(region, node, to)) continue;
+        // A node of a face or an edge that is near may itself be away from all boxes.
+        if (region.m_moves || !(m_hasContact[node] || near(region, node, to))) continue;
         const Allowance own = allowance(region, node);
         least.m_start = std::min(least.m_start, own.m_start);
         least.m_end = std::min(least.m_end, own.m_end);

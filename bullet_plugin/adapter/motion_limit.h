@@ -38,10 +38,14 @@ public:
     void clear();
     // Box of an obstacle that the body has a pair with, the pair's thickness, and the activation as a share of it.
     // Nodes whose way from the predicted to the solved position misses every box are free. carry: see StepContact.
+    // While a body's obstacles all rest, a node with contacts ends at most tube() of the thinnest pair from its path:
+    // detection may leave out what others imply there.
     void addObstacle(const btVector3& low, const btVector3& high, btScalar thickness, btScalar activation,
                      const btTransform* carry = nullptr);
     // Call before Bullet solves: remembers the prediction.
     void record(const btSoftBody& body);
+    // Distance from its path that a node with contacts may go, m.
+    static btScalar tube(btScalar thickness, btScalar activation);
     const NodePaths& paths() const { return m_paths; }
     // A node of a contact; after record().
     void addContactNode(int node) { m_hasContact[static_cast<std::size_t>(node)] = 1; }

@@ -104,7 +104,11 @@ public:
     float* clothEnd(MeshId cloth);
 
     // Names a pair for the coming step; thickness in m > 0. A cloth without a pair costs nothing.
-    void addPair(MeshId cloth, MeshId obstacle, float thickness);
+    // tube: m, for a caller that lets no node of the cloth go farther than this from its straight way while it solves:
+    // contacts that the others then keep, up to 2 % of the thickness, are left out (kernels/lib/contact_reduction.h).
+    // Negative: none of that cloth are, nor of one that has a pair with a one-sided obstacle or one that moves in the
+    // step.
+    void addPair(MeshId cloth, MeshId obstacle, float thickness, float tube = -1.0f);
 
     // Enqueues the step for the pairs named since the last finish(); returns without waiting.
     void submit();

@@ -32,6 +32,7 @@ public:
         times.m_contacts = statistics.m_contacts;
         times.m_candidates = statistics.m_candidates;
         times.m_sweptTests = statistics.m_sweptTests;
+        times.m_reduced = statistics.m_reduced;
         times.m_skipped = statistics.m_skipped;
         m_status |= statistics.m_status;
         return times;
@@ -67,6 +68,7 @@ std::unique_ptr<Simulation> makeDrapeSimulation(const DropScene& scene, const Op
     Settings settings;
     exitCode = kExitBadInput;
     if (!deviceSettings(options.m_backend, options.m_device, settings, error)) return nullptr;
+    settings.m_reduceContacts = !options.m_allContacts;
     settings.m_mode = options.m_contactMode == "discrete"     ? ContactMode::Discrete
                       : options.m_contactMode == "continuous" ? ContactMode::Continuous
                                                               : ContactMode::Automatic;

@@ -69,6 +69,7 @@ void addBackendOptions(CLI::App& app, Options& options, std::string& mode)
         ->check(CLI::IsMember({"auto", "opencl", "host", "bullet"}));
     app.add_option("--mode", options.m_contactMode, "how Drape looks at motion within a step")
         ->check(CLI::IsMember({"discrete", "continuous", "automatic"}));
+    app.add_flag("--all-contacts", options.m_allContacts, "solve contacts too that others imply");
     app.add_option("--bullet-mode", mode, "distance field of --backend bullet, or the obstacle as a soft body")
         ->check(CLI::IsMember({"stock", "tuned", "vfss"}));
     app.add_option("--device", options.m_device, "part of an OpenCL device's or platform's name")->type_name("TEXT");

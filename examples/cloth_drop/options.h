@@ -32,6 +32,7 @@ struct Options
     BulletMode m_bulletMode = BulletMode::Stock;
     std::string m_device;
     bool m_listDevices = false;
+    bool m_allContacts = false;  // those that others imply, too
     bool m_compare = false;
     bool m_compareSoftPair = false;
     double m_compareCap = 60.0;

@@ -12,6 +12,10 @@ DRAPE_NAMESPACE_BEGIN
 #define DRAPE_FACE_VERTEX 1u
 #define DRAPE_EDGE_EDGE 2u
 
+// The most contacts of a slot that a work-item handles alone, in quadratic time; a cloth feature at rest has a few
+// dozen.
+#define DRAPE_RANKED 64u
+
 // Canonical order of contacts: slot, then obstacle feature. A slot is a cloth feature: first all nodes, then all faces,
 // then all edges.
 typedef struct Contact

@@ -26,9 +26,17 @@ typedef struct Edge
     DRAPE_UINT m_opposite[2];
 } Edge;
 
+// Where the vertices, triangles and edges of a mesh begin among those of its side, per slot.
+typedef struct MeshFirsts
+{
+    DRAPE_UINT m_vertex;
+    DRAPE_UINT m_triangle;
+    DRAPE_UINT m_edge;
+} MeshFirsts;
+
 // Directions in which a surface can face at a vertex or edge: all within the half-angle of the axis or of its opposite.
-// A cosine of -1 admits every direction (boundary, non-manifold or degenerate surroundings). The axis leans to the front;
-// zero where there is none.
+// A cosine of -1 admits every direction (boundary, non-manifold or degenerate surroundings). The axis leans to the
+// front; zero where there is none.
 typedef struct NormalCone
 {
     Vec3 m_axis;     // unit
@@ -71,7 +79,8 @@ typedef struct StepCounters
 {
     DRAPE_UINT m_candidates;
     DRAPE_UINT m_listed;  // places of the list of hits, those without a hit included
-    DRAPE_UINT m_hits;
+    DRAPE_UINT m_hits;    // without those that were reduced
+    DRAPE_UINT m_found;   // all hits, where hits are reduced
     DRAPE_UINT m_invalidNodes;
     DRAPE_UINT m_intersections;
     DRAPE_UINT m_front;   // pairs of the front for the next step

@@ -9,6 +9,7 @@
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
 #include "tests/support/backends.h"
+#include "tests/support/models.h"
 
 namespace drape::test
 {
@@ -126,6 +127,39 @@ TEST_P(SettledCloth, liesStill)
     EXPECT_LE(motion, kSpeedSettled);
     ASSERT_GT(rest.m_plugin.statistics().m_contacts, 0u);
     const StepMeasure end = PenetrationMeter(mesh, meshOf(cloth)).measure(positionsOf(cloth).data());
+    EXPECT_EQ(end.m_intersectingPairs, 0u);
+    EXPECT_GT(end.m_gapMin, 0.9 * kThickness);
+}
+
+// The cloth of 2,048 triangles (2.4 m) that cloth_drop drops on the bunny of 69,666 (2 m). RMS over all steps: where it
+// hangs off the ears friction lets it slip now and then.
+TEST(SettledCloth, liesStillOnTheBunny)
+{
+    TriangleMesh bunny;
+    const std::string missing = loadBunny(bunny);
+    if (!missing.empty()) GTEST_SKIP() << missing;
+    placeOnFloor(bunny, 2.0f);
+    Rest rest(Settings{});
+    MeshShape shape(bunny);
+    rest.m_world.addObstacle(shape.shape());
+    ClothSpec spec;
+    spec.m_nodes = 33;
+    spec.m_size = 2.4f;
+    spec.m_damping = btScalar(0.02);
+    spec.m_centre = btVector3(0, btScalar(boundsOf(bunny).m_high[1]) + btScalar(0.32), 0);
+    btSoftBody& cloth = rest.m_world.addCloth(spec);
+    cloth.m_cfg.piterations = 5;
+    cloth.m_materials[0]->m_kLST = btScalar(0.9);
+    rest.m_world.step(kStepsToSettle);
+    double sum2 = 0;
+    for (int i = 0; i < kStepsAtRest; ++i)
+    {
+        rest.m_world.step();
+        sum2 += rmsSpeed(cloth) * rmsSpeed(cloth);
+    }
+    EXPECT_LE(std::sqrt(sum2 / kStepsAtRest), kSpeedSettled);
+    ASSERT_GT(rest.m_plugin.statistics().m_contacts, 1000u);
+    const StepMeasure end = PenetrationMeter(bunny, meshOf(cloth)).measure(positionsOf(cloth).data());
     EXPECT_EQ(end.m_intersectingPairs, 0u);
     EXPECT_GT(end.m_gapMin, 0.9 * kThickness);
 }

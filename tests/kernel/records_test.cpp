@@ -87,6 +87,7 @@ std::vector<Field> stepFields()
             DRAPE_TEST_OFFSET(StepCounters, m_candidates),
             DRAPE_TEST_OFFSET(StepCounters, m_listed),
             DRAPE_TEST_OFFSET(StepCounters, m_hits),
+            DRAPE_TEST_OFFSET(StepCounters, m_found),
             DRAPE_TEST_OFFSET(StepCounters, m_invalidNodes),
             DRAPE_TEST_OFFSET(StepCounters, m_intersections),
             DRAPE_TEST_OFFSET(StepCounters, m_front),

@@ -57,8 +57,9 @@ void LiveScene::namePairs()
         {
             if (m_random.below(4) == 0) continue;
             const float thickness = m_random.uniform(0.01f, 0.05f);
+            const float tube = cloth.m_id % 2 == 0 ? 0.5f * thickness : -1.0f;
             for (Pipeline* pipeline : m_pipelines)
-                pipeline->addPair(cloth.m_id, obstacle.m_id, thickness);
+                pipeline->addPair(cloth.m_id, obstacle.m_id, thickness, tube);
         }
     }
 }

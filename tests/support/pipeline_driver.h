@@ -18,6 +18,6 @@ void setMotion(Pipeline& pipeline, MeshId cloth, const std::vector<float>& start
 // submit() and finish().
 std::vector<Contact> runStep(Pipeline& pipeline);
 
-// A pipeline's contacts of one case.
-std::vector<Contact> runCase(Pipeline& pipeline, const StepCase& step);
+// A pipeline's contacts of one case. tube: as of Pipeline::addPair.
+std::vector<Contact> runCase(Pipeline& pipeline, const StepCase& step, float tube = -1.0f);
 }  // namespace drape::test

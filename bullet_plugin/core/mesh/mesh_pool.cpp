@@ -52,6 +52,7 @@ void MeshPool::update()
     m_triangles.clear();
     m_edges.clear();
     m_order.clear();
+    m_firsts.clear();
     m_vertexCount = 0;
     for (std::size_t slot = 0; slot < m_meshes.size(); ++slot)
     {
@@ -59,6 +60,7 @@ void MeshPool::update()
         mesh.m_firstVertex = std::uint32_t(m_vertexCount);
         mesh.m_firstTriangle = std::uint32_t(m_triangles.size());
         mesh.m_firstEdge = std::uint32_t(m_edges.size());
+        m_firsts.push_back(MeshFirsts{mesh.m_firstVertex, mesh.m_firstTriangle, mesh.m_firstEdge});
         for (Triangle triangle : mesh.m_topology.m_triangles)
         {
             for (std::uint32_t& vertex : triangle.m_vertices)

@@ -57,12 +57,14 @@ public:
     const std::vector<Triangle>& triangles() const { return m_triangles; }
     const std::vector<Edge>& edges() const { return m_edges; }
     const std::vector<std::uint32_t>& order() const { return m_order; }
+    const std::vector<MeshFirsts>& firsts() const { return m_firsts; }
 
 private:
     std::vector<PooledMesh> m_meshes;
     std::vector<Triangle> m_triangles;
     std::vector<Edge> m_edges;
     std::vector<std::uint32_t> m_order;
+    std::vector<MeshFirsts> m_firsts;
     std::size_t m_vertexCount = 0;
     std::uint32_t m_revision = 0;
     bool m_changed = false;

@@ -5,8 +5,11 @@ namespace drape
 namespace
 {
 constexpr std::size_t kGroup = 64;
-constexpr std::size_t kSortGroup = 256;     // one group sorts a slot, however large
-constexpr std::size_t kSortBlockGpu = 32;   // slots that a group sorts one after the other; a CPU's take kBlock
+constexpr std::size_t kSortGroup = 256;      // one group sorts a slot, however large
+constexpr std::size_t kSortBlockGpu = 32;    // slots that a group sorts one after the other; a CPU's take kBlock
+constexpr std::size_t kReduceGroup = 64;     // as in kernels/contact_reduction.cl
+constexpr std::size_t kReduceBlockGpu = 64;  // slots of such a group
+constexpr std::size_t kReduceBlockCpu = 256;
 constexpr std::size_t kBlock = 1024;        // slots per work-group, as in kernels/compaction.cl
 constexpr std::size_t kFewSlots = 1 << 14;  // one group places them: fewer launches
 constexpr std::size_t kPlaceGroupGpu = 512;
@@ -14,8 +17,9 @@ constexpr std::size_t kItemsPerUnitGpu = 1024;  // work-items per compute unit t
 constexpr std::size_t kItemsPerUnitCpu = 256;   // four groups per core, so that uneven ones even out
 }  // namespace
 
-void NarrowPhaseStage::create(Device& device, const ProgramLoader& load, bool features)
+void NarrowPhaseStage::create(Device& device, const ProgramLoader& load, bool features, bool reduces)
 {
+    m_reduces = reduces;
     if (features)
     {
         const cl::Program narrowPhase = load("narrow_phase");
@@ -36,6 +40,10 @@ void NarrowPhaseStage::create(Device& device, const ProgramLoader& load, bool fe
     m_gather.create(device, compaction, "compactionGather");
     m_order.create(device, compaction, "compactionOrder");
     m_write.create(device, compaction, "compactionWrite");
+    if (!reduces) return;
+    const cl::Program reduction = load("contact_reduction");
+    m_keep.create(device, reduction, "reductionKeep");
+    m_writeKept.create(device, reduction, "reductionWrite");
 }
 
 void NarrowPhaseStage::resizeSlots(Device& device, std::size_t slotCount)
@@ -43,6 +51,11 @@ void NarrowPhaseStage::resizeSlots(Device& device, std::size_t slotCount)
     m_slots = slotCount;
     m_slotCount.reserve(device, slotCount);
     m_slotFirst.reserve(device, slotCount);
+    if (m_reduces)
+    {
+        m_slotKept.reserve(device, slotCount);
+        m_keptFirst.reserve(device, slotCount);
+    }
     m_blockCount.reserve(device, (slotCount + kBlock - 1) / kBlock);
     m_slotCount.fill(device, 0, slotCount);  // every step leaves it so
 }
@@ -53,6 +66,7 @@ void NarrowPhaseStage::reserveHits(Device& device, std::size_t count)
     m_contacts.reserve(device, count);
     m_members.reserve(device, count);
     m_sweptTests.reserve(device, count);
+    if (m_reduces) m_kept.reserve(device, count);
 }
 
 std::size_t NarrowPhaseStage::listWidth(const Device& device) const
@@ -62,7 +76,8 @@ std::size_t NarrowPhaseStage::listWidth(const Device& device) const
 
 void NarrowPhaseStage::enqueue(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount,
                                std::size_t triangleCount, const NarrowPhaseSettings& settings,
-                               Buffer<Candidate>& candidates, Buffer<StepCounters>& counters)
+                               Buffer<Candidate>& candidates, Buffer<StepCounters>& counters,
+                               const ReductionBuffers* reduction)
 {
     const std::size_t width = listWidth(device);
     const cl_uint hitCapacity = cl_uint(m_hits.capacity());
@@ -73,12 +88,12 @@ void NarrowPhaseStage::enqueue(Device& device, NarrowPhaseBuffers sides, std::si
                   sides.m_edgeCones.handle(), sides.m_thickness.handle(), cl_uint(settings.m_obstacleMeshes),
                   settings.m_reachScale, cl_uint(settings.m_mode), sides.m_motions.handle(),
                   cl_uint(sides.m_motionCount), m_hits.handle(), hitCapacity, m_slotCount.handle(), counters.handle());
-    enqueueCompaction(device, counters);
+    enqueueCompaction(device, sides, counters, reduction);
 }
 
 void NarrowPhaseStage::enqueueFeatures(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount,
                                        std::size_t triangleCount, std::uint32_t mode, PatchCullStage& cull,
-                                       Buffer<StepCounters>& counters)
+                                       Buffer<StepCounters>& counters, const ReductionBuffers* reduction)
 {
     PatchCullStage::Features features = cull.features();
     const std::size_t width = listWidth(device);
@@ -99,42 +114,62 @@ void NarrowPhaseStage::enqueueFeatures(Device& device, NarrowPhaseBuffers sides,
                        features.m_vertexIds.handle(), features.m_edgeIds.handle(), sides.m_motions.handle(),
                        m_hits.handle(), m_sweptTests.handle(), m_slotCount.handle(), counters.handle());
     }
-    enqueueCompaction(device, counters);
+    enqueueCompaction(device, sides, counters, reduction);
 }
 
 // Where each slot's contacts begin.
-void NarrowPhaseStage::enqueuePlaces(Device& device, Buffer<StepCounters>& counters)
+void NarrowPhaseStage::enqueuePlaces(Device& device, Buffer<cl_uint>& slotCount, Buffer<cl_uint>& slotFirst,
+                                     Buffer<StepCounters>& counters)
 {
     const cl_uint slots = cl_uint(m_slots);
     if (m_slots <= kFewSlots)
     {
         const std::size_t group = device.isGpu() ? kPlaceGroupGpu : kGroup;
-        m_placeFew.launch(device, group, group, m_slotCount.handle(), slots, m_slotFirst.handle(), counters.handle(),
+        m_placeFew.launch(device, group, group, slotCount.handle(), slots, slotFirst.handle(), counters.handle(),
                           cl::Local(group * sizeof(cl_uint)));
         return;
     }
     const std::size_t blocks = (m_slots + kBlock - 1) / kBlock;
     const cl::LocalSpaceArg scratch = cl::Local(kGroup * sizeof(cl_uint));
-    m_count.launch(device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_blockCount.handle(), scratch);
+    m_count.launch(device, blocks * kGroup, kGroup, slotCount.handle(), slots, m_blockCount.handle(), scratch);
     m_scan.launch(device, kGroup, kGroup, m_blockCount.handle(), cl_uint(blocks), counters.handle(), scratch);
-    m_place.launch(device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_blockCount.handle(),
-                   m_slotFirst.handle(), scratch);
+    m_place.launch(device, blocks * kGroup, kGroup, slotCount.handle(), slots, m_blockCount.handle(),
+                   slotFirst.handle(), scratch);
 }
 
-void NarrowPhaseStage::enqueueCompaction(Device& device, Buffer<StepCounters>& counters)
+void NarrowPhaseStage::enqueueCompaction(Device& device, NarrowPhaseBuffers sides, Buffer<StepCounters>& counters,
+                                         const ReductionBuffers* reduction)
 {
-    const cl_uint slots = cl_uint(m_slots);
     const cl_uint hitCapacity = cl_uint(m_hits.capacity());
     const std::size_t width = listWidth(device);
-    enqueuePlaces(device, counters);
+    enqueuePlaces(device, m_slotCount, m_slotFirst, counters);
     m_gather.launch(device, width, kGroup, m_hits.handle(), hitCapacity, m_slotCount.handle(), m_slotFirst.handle(),
                     m_members.handle(), counters.handle());
     const std::size_t sortBlock = device.isGpu() ? kSortBlockGpu : kBlock;
     const std::size_t sortGroups = (m_slots + sortBlock - 1) / sortBlock;
     m_order.launch(device, sortGroups * kSortGroup, kSortGroup, m_hits.handle(), hitCapacity, m_slotFirst.handle(),
-                   slots, cl_uint(sortBlock), m_members.handle(), counters.handle());
-    m_write.launch(device, width, kGroup, m_hits.handle(), hitCapacity, m_slotFirst.handle(), m_members.handle(),
-                   m_contacts.handle(), counters.handle());
+                   cl_uint(m_slots), cl_uint(sortBlock), m_members.handle(), counters.handle());
+    if (reduction)
+        enqueueReduction(device, sides, counters, *reduction);
+    else
+        m_write.launch(device, width, kGroup, m_hits.handle(), hitCapacity, m_slotFirst.handle(), m_members.handle(),
+                       m_contacts.handle(), counters.handle());
+}
+
+void NarrowPhaseStage::enqueueReduction(Device& device, NarrowPhaseBuffers sides, Buffer<StepCounters>& counters,
+                                        const ReductionBuffers& reduction)
+{
+    const cl_uint hitCapacity = cl_uint(m_hits.capacity());
+    const std::size_t block = device.isGpu() ? kReduceBlockGpu : kReduceBlockCpu;
+    m_keep.launch(device, (m_slots + block - 1) / block * kReduceGroup, kReduceGroup, m_hits.handle(), hitCapacity,
+                  m_slotFirst.handle(), cl_uint(m_slots), cl_uint(block), m_members.handle(), m_kept.handle(),
+                  m_slotKept.handle(), counters.handle(), sides.m_clothStart.handle(), sides.m_clothEnd.handle(),
+                  sides.m_clothTriangles.handle(), sides.m_clothEdges.handle(), reduction.m_cloths.handle(),
+                  reduction.m_obstacles.handle(), cl_uint(reduction.m_clothCount), cl_uint(reduction.m_obstacleCount),
+                  sides.m_thickness.handle(), reduction.m_tube.handle());
+    enqueuePlaces(device, m_slotKept, m_keptFirst, counters);
+    m_writeKept.launch(device, listWidth(device), kGroup, m_hits.handle(), hitCapacity, m_slotFirst.handle(),
+                       m_kept.handle(), m_keptFirst.handle(), m_contacts.handle(), counters.handle());
 }
 
 void NarrowPhaseStage::enqueueIntersect(Device& device, NarrowPhaseBuffers sides, Buffer<Candidate>& candidates,

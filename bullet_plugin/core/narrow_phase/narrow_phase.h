@@ -8,6 +8,7 @@
 #include "bullet_plugin/core/broad_phase/patch_cull.h"
 #include "bullet_plugin/core/device/buffer.h"
 #include "bullet_plugin/core/device/program.h"
+#include "kernels/lib/contact_reduction.h"
 #include "kernels/lib/pair_contact.h"
 
 namespace drape
@@ -44,6 +45,10 @@ NarrowPhaseCounts narrowPhaseOnHost(const std::vector<Candidate>& candidates, co
                                     const ObstacleView& obstacle, const NarrowPhaseSettings& settings,
                                     std::vector<Contact>& contacts, std::size_t limit = SIZE_MAX);
 
+// Takes out the contacts that others imply (kernels/lib/contact_reduction.h); slotCount: of the cloth side. The others
+// stay in canonical order.
+void reduceOnHost(std::vector<Contact>& contacts, const ReductionView& view, std::size_t slotCount);
+
 // Pairs whose triangles intersect at the step's start, in order of cloth and obstacle triangle.
 void intersectOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth, const ObstacleView& obstacle,
                      const MotionList& motions, std::vector<Candidate>& pairs);
@@ -66,11 +71,22 @@ struct NarrowPhaseBuffers
     std::size_t m_motionCount = 0;
 };
 
+// What reduction reads besides the hits (kernels/lib/contact_reduction.h).
+struct ReductionBuffers
+{
+    Buffer<MeshFirsts>& m_cloths;
+    Buffer<MeshFirsts>& m_obstacles;
+    std::size_t m_clothCount;
+    std::size_t m_obstacleCount;
+    Buffer<float>& m_tube;
+};
+
 class NarrowPhaseStage
 {
 public:
-    // features: for what a cull leaves, else for pairs of triangles; the other's kernels are not built.
-    void create(Device& device, const ProgramLoader& load, bool features);
+    // features: for what a cull leaves, else for pairs of triangles; reduces: whether steps may reduce their contacts.
+    // The kernels of what is not used are not built.
+    void create(Device& device, const ProgramLoader& load, bool features, bool reduces = false);
 
     // Room for the slots of a cloth side: its nodes, faces and edges.
     void resizeSlots(Device& device, std::size_t slotCount);
@@ -83,25 +99,36 @@ public:
     Buffer<Candidate>& intersections() { return m_intersections; }
 
     // Contacts of pairs of triangles. Returns after enqueueing. counters' places and intersections must be zero before.
+    // reduction: null where no contact is to be left out.
     void enqueue(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
-                 const NarrowPhaseSettings& settings, Buffer<Candidate>& candidates, Buffer<StepCounters>& counters);
+                 const NarrowPhaseSettings& settings, Buffer<Candidate>& candidates, Buffer<StepCounters>& counters,
+                 const ReductionBuffers* reduction = nullptr);
     // Contacts of the feature tests that a cull left. There must be room for as many hits as tests. mode:
     // DRAPE_DISCRETE …; a discrete step is one launch less.
     void enqueueFeatures(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
-                         std::uint32_t mode, PatchCullStage& cull, Buffer<StepCounters>& counters);
+                         std::uint32_t mode, PatchCullStage& cull, Buffer<StepCounters>& counters,
+                         const ReductionBuffers* reduction = nullptr);
     void enqueueIntersect(Device& device, NarrowPhaseBuffers sides, Buffer<Candidate>& candidates,
                           Buffer<StepCounters>& counters);
 
 private:
-    void enqueuePlaces(Device& device, Buffer<StepCounters>& counters);
-    void enqueueCompaction(Device& device, Buffer<StepCounters>& counters);
+    void enqueueCompaction(Device& device, NarrowPhaseBuffers sides, Buffer<StepCounters>& counters,
+                           const ReductionBuffers* reduction);
+    void enqueueReduction(Device& device, NarrowPhaseBuffers sides, Buffer<StepCounters>& counters,
+                          const ReductionBuffers& reduction);
+    // Where the hits of each slot begin, from their numbers.
+    void enqueuePlaces(Device& device, Buffer<cl_uint>& slotCount, Buffer<cl_uint>& slotFirst,
+                       Buffer<StepCounters>& counters);
     std::size_t listWidth(const Device& device) const;
 
     Kernel m_test, m_feature, m_swept, m_intersect, m_count, m_scan, m_place, m_placeFew, m_gather, m_order, m_write;
+    Kernel m_keep, m_writeKept;
     Buffer<Contact> m_hits{"step hits"}, m_contacts{"step contacts"};
     Buffer<Candidate> m_intersections;
     Buffer<cl_uint> m_slotCount{"cloth slots"}, m_slotFirst{"cloth slots"}, m_blockCount{"cloth slots"};
-    Buffer<cl_uint> m_members{"step hits"}, m_sweptTests{"step hits"};
+    Buffer<cl_uint> m_slotKept{"cloth slots"}, m_keptFirst{"cloth slots"};  // only where contacts may be reduced
+    Buffer<cl_uint> m_members{"step hits"}, m_sweptTests{"step hits"}, m_kept{"step hits"};
     std::size_t m_slots = 0;
+    bool m_reduces = false;
 };
 }  // namespace drape

@@ -35,7 +35,7 @@ DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& set
         m_broadPhase.create(*m_device, m_settings.m_methods.m_traversal,
                             [&](const char* name) { return program(name, counting); });
     }
-    m_narrowPhase.create(*m_device, ofWidth, patches());
+    m_narrowPhase.create(*m_device, ofWidth, patches(), m_settings.m_reduceContacts);
     m_place.create(*m_device, program("place_obstacles"), "placeObstacles");
     m_motions.reserve(*m_device, 1);
     m_candidates.reserve(*m_device, 1);
@@ -100,10 +100,18 @@ void DeviceBackend::warmUp()
     StepResult result;
     submit(scene, pairs);
     finish(scene, pairs, result);
+    if (m_settings.m_reduceContacts)
+    {
+        pairs.m_tube = {0.1f};
+        pairs.m_anyTube = true;
+        submit(scene, pairs);
+        finish(scene, pairs, result);
+    }
     if (!patches()) m_refit.warmUp(*m_device, m_cloth.m_nodes);
     m_device->wait();
     m_cloth.m_revision = m_obstacle.m_revision = 0;
     m_sentThickness.clear();
+    m_sentTube.clear();
     m_sentRadius.clear();
     m_sentPlaces.clear();
 }
@@ -119,6 +127,7 @@ void DeviceBackend::uploadSide(const MeshPool& pool, const BvhLayout& layout, Si
     side.m_revision = pool.revision();
     side.m_order.assign(*m_device, pool.order());
     side.m_triangles.assign(*m_device, pool.triangles());
+    if (m_settings.m_reduceContacts) side.m_firsts.assign(*m_device, pool.firsts());
     // The cull over patches needs no hierarchy of triangles.
     std::vector<BvhNode> nodes;
     if (!patches())
@@ -252,6 +261,11 @@ void DeviceBackend::uploadStep(const Scene& scene, const StepPairs& pairs)
         m_sentThickness = pairs.m_thickness;
         m_thickness.assign(*m_device, m_sentThickness);
     }
+    if (pairs.m_anyTube && m_sentTube != pairs.m_tube)
+    {
+        m_sentTube = pairs.m_tube;
+        m_tube.assign(*m_device, m_sentTube);
+    }
     if (!pairs.m_motions.empty())
     {
         m_sentMotions = pairs.m_motions;
@@ -275,6 +289,9 @@ void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
 {
     const std::size_t obstacleMeshes = scene.m_obstacles.meshCount();
     m_counters.fill(*m_device, 0, 1);
+    const ReductionBuffers buffers = {m_cloth.m_firsts, m_obstacle.m_firsts, scene.m_cloths.meshCount(), obstacleMeshes,
+                                      m_tube};
+    const ReductionBuffers* const reduction = pairs.m_anyTube ? &buffers : nullptr;
     if (patches())
     {
         m_patchCull.enqueue(
@@ -285,7 +302,7 @@ void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
             m_counters);
         m_narrowPhase.enqueueFeatures(*m_device, narrowPhaseBuffers(pairs), scene.m_cloths.vertexCount(),
                                       scene.m_cloths.triangles().size(), std::uint32_t(m_settings.m_mode), m_patchCull,
-                                      m_counters);
+                                      m_counters, reduction);
     }
     else
     {
@@ -303,7 +320,7 @@ void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
         const NarrowPhaseSettings narrow = {
             pairs.m_thickness, obstacleMeshes, 1.0f + m_settings.m_activation, std::uint32_t(m_settings.m_mode), {}};
         m_narrowPhase.enqueue(*m_device, narrowPhaseBuffers(pairs), scene.m_cloths.vertexCount(),
-                              scene.m_cloths.triangles().size(), narrow, m_candidates, m_counters);
+                              scene.m_cloths.triangles().size(), narrow, m_candidates, m_counters, reduction);
     }
     if (m_settings.m_reportIntersections)
     {
@@ -330,7 +347,8 @@ bool DeviceBackend::overLimit(StepResult& result)
     const bool complete = patches() ? counters.m_patchPairs <= m_patchCull.pairs().capacity() &&
                                           counters.m_candidates <= m_patchCull.tests().capacity()
                                     : counters.m_candidates <= m_candidates.capacity();
-    const std::size_t found = patches() ? counters.m_hits : counters.m_listed;
+    const std::size_t hits = std::max(counters.m_hits, counters.m_found);
+    const std::size_t found = patches() ? hits : counters.m_listed;
     if (std::max(counters.m_candidates, counters.m_patchPairs) > limits.m_candidates)
         result.m_overLimit = true;
     else if (complete && found > limits.m_contacts)
@@ -407,6 +425,7 @@ void DeviceBackend::readAll(StepResult& result)
     result.m_candidates = counters.m_candidates;
     result.m_volumeTests = counters.m_visits;
     result.m_sweptTests = counters.m_swept;
+    result.m_reduced = counters.m_found > counters.m_hits ? counters.m_found - counters.m_hits : 0;
     result.m_invalidNodes = counters.m_invalidNodes;
     result.m_intersectionCount = counters.m_intersections;
     if (m_settings.m_reportIntersections)

@@ -46,6 +46,7 @@ private:
         Buffer<cl_uint> m_order;
         Buffer<Triangle> m_triangles;
         Buffer<float> m_radius;
+        Buffer<MeshFirsts> m_firsts;
         RefitStage::Levels m_levels;
         std::uint32_t m_revision = 0;
     };
@@ -90,7 +91,8 @@ private:
 
     Side m_cloth{"cloth"}, m_obstacle{"obstacle"};
     Buffer<float> m_clothStart{"cloth positions"}, m_clothEnd{"cloth positions"};
-    Buffer<float> m_obstaclePositions{"obstacle positions"}, m_obstacleSpreads{"obstacle positions"}, m_thickness;
+    Buffer<float> m_obstaclePositions{"obstacle positions"}, m_obstacleSpreads{"obstacle positions"};
+    Buffer<float> m_thickness, m_tube;
     Buffer<Edge> m_clothEdges{"cloth edges"};
     Buffer<NormalCone> m_vertexCones{"obstacle cones"}, m_edgeCones{"obstacle cones"};
     // In the obstacles' own frames; only where one has a place.
@@ -105,7 +107,7 @@ private:
     Staging<StepCounters> m_countersRead;
     Staging<Contact> m_contactsRead;
     std::size_t m_contactsAsked = 0;
-    std::vector<float> m_sentThickness, m_sentRadius;
+    std::vector<float> m_sentThickness, m_sentTube, m_sentRadius;
     std::uint32_t m_obstacleMotion = 0, m_obstaclePlacing = 0;
 };
 }  // namespace drape

@@ -93,6 +93,20 @@ std::size_t HostBackend::refitCloths(const Scene& scene, const StepPairs& pairs)
     return invalidNodes;
 }
 
+ReductionView HostBackend::reductionView(const Scene& scene, const StepPairs& pairs)
+{
+    return {scene.m_clothStart.data(),
+            scene.m_clothEnd.data(),
+            scene.m_cloths.triangles().data(),
+            scene.m_cloths.edges().data(),
+            scene.m_cloths.firsts().data(),
+            scene.m_obstacles.firsts().data(),
+            std::uint32_t(scene.m_cloths.meshCount()),
+            std::uint32_t(scene.m_obstacles.meshCount()),
+            pairs.m_thickness.data(),
+            pairs.m_tube.data()};
+}
+
 BroadPhaseSide HostBackend::clothSide(const Scene& scene) const
 {
     return {m_clothNodes, scene.m_clothLayout, scene.m_cloths.order(), scene.m_cloths.triangles()};
@@ -145,7 +159,6 @@ void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings
                                         motions};
     const NarrowPhaseCounts counts =
         narrowPhaseOnHost(m_candidates, cloth, obstacle, narrow, result.m_contacts, limits.m_contacts);
-    result.m_narrowMs = lap(stage);
     result.m_sweptTests = counts.m_swept;
     if (counts.m_contacts > limits.m_contacts)
     {
@@ -153,6 +166,12 @@ void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings
         result.m_contactDemand = counts.m_contacts;
         return;
     }
+    if (pairs.m_anyTube)
+    {
+        reduceOnHost(result.m_contacts, reductionView(scene, pairs), scene.slotCount());
+        result.m_reduced = counts.m_contacts - result.m_contacts.size();
+    }
+    result.m_narrowMs = lap(stage);
     if (settings.m_reportIntersections) intersectOnHost(m_candidates, cloth, obstacle, motions, result.m_intersections);
     result.m_intersectionCount = result.m_intersections.size();
 }

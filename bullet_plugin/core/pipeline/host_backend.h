@@ -28,6 +28,7 @@ private:
     void update(const Scene& scene);
     void place(const Scene& scene);
     ObstacleView obstacleView(const Scene& scene) const;
+    static ReductionView reductionView(const Scene& scene, const StepPairs& pairs);
     // Returns the invalid nodes.
     std::size_t refitCloths(const Scene& scene, const StepPairs& pairs);
     BroadPhaseSide clothSide(const Scene& scene) const;

@@ -16,6 +16,7 @@ struct NamedPair
     MeshId m_cloth;
     MeshId m_obstacle;
     float m_thickness;
+    float m_tube;
 };
 
 // Slot of a contact's obstacle.
@@ -47,6 +48,8 @@ struct Pipeline::Implementation
     void placeMesh(std::size_t slot);
     void collectPairs();
     void collectMotions();
+    // Which pairs' contacts may be reduced, and how far their cloths' nodes stay near their ways.
+    void collectTubes();
     void leaveDevice();
     void runOnHost();
     // The step of the pairs that are left, on the back end in use.

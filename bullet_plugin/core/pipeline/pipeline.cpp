@@ -155,8 +155,9 @@ void Pipeline::Implementation::collectPairs()
                                       kEdgePad * m_scene.m_obstacles.mesh(obstacle).m_longestEdge);
         m_stepPairs.m_any = true;
     }
-    m_pairs.clear();
     collectMotions();
+    collectTubes();
+    m_pairs.clear();
     const std::size_t clothTriangles = m_scene.m_cloths.triangles().size();
     const std::size_t obstacleTriangles = m_scene.m_obstacles.triangles().size();
     m_statistics.m_clothTriangles = clothTriangles;
@@ -176,6 +177,30 @@ void Pipeline::Implementation::collectMotions()
         for (std::size_t pair = slot; pair < m_stepPairs.m_thickness.size(); pair += obstacles.meshCount())
             paired = paired || m_stepPairs.m_thickness[pair] >= 0.0f;
         if (paired) m_stepPairs.m_motions.push_back(makeMotion(mesh.m_placing, mesh.m_box, std::uint32_t(slot)));
+    }
+}
+
+// A cloth's contacts are reduced where all its obstacles rest and are two-sided: the solver keeps a node near its way
+// as each moving obstacle sees it, and contacts on the back of a one-sided one are not held.
+void Pipeline::Implementation::collectTubes()
+{
+    const MeshPool& obstacles = m_scene.m_obstacles;
+    m_stepPairs.m_tube.assign(m_stepPairs.m_thickness.size(), -1.0f);
+    m_stepPairs.m_anyTube = false;
+    if (!m_settings.m_reduceContacts) return;
+    std::vector<bool> exempt(m_scene.m_cloths.meshCount(), false);
+    for (const NamedPair& pair : m_pairs)
+    {
+        const PooledMesh& obstacle = obstacles.mesh(obstacles.slot(pair.m_obstacle));
+        if (obstacle.m_placing.moves() || obstacle.m_oneSided || !(pair.m_tube >= 0.0f))
+            exempt[m_scene.m_cloths.slot(pair.m_cloth)] = true;
+    }
+    for (const NamedPair& pair : m_pairs)
+    {
+        const std::size_t cloth = m_scene.m_cloths.slot(pair.m_cloth);
+        if (exempt[cloth]) continue;
+        m_stepPairs.m_tube[cloth * obstacles.meshCount() + obstacles.slot(pair.m_obstacle)] = pair.m_tube;
+        m_stepPairs.m_anyTube = true;
     }
 }
 
@@ -292,9 +317,9 @@ float* Pipeline::clothEnd(MeshId id)
     return scene.m_clothEnd.data() + 3 * std::size_t(scene.m_cloths.mesh(scene.m_cloths.slot(id)).m_firstVertex);
 }
 
-void Pipeline::addPair(MeshId cloth, MeshId obstacle, float thickness)
+void Pipeline::addPair(MeshId cloth, MeshId obstacle, float thickness, float tube)
 {
-    m_implementation->m_pairs.push_back(NamedPair{cloth, obstacle, thickness});
+    m_implementation->m_pairs.push_back(NamedPair{cloth, obstacle, thickness, tube});
 }
 
 void Pipeline::submit()
@@ -334,6 +359,7 @@ ContactList Pipeline::finish()
     statistics.m_candidates += self.m_result.m_candidates;
     statistics.m_volumeTests = self.m_result.m_volumeTests;
     statistics.m_sweptTests = self.m_result.m_sweptTests;
+    statistics.m_reduced = self.m_result.m_reduced;
     statistics.m_contacts = self.m_result.contacts().size();
     statistics.m_intersections = self.m_result.m_intersectionCount;
     statistics.m_invalidNodes = self.m_result.m_invalidNodes;

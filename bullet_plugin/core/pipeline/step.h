@@ -52,7 +52,9 @@ struct StepLimits
 // The pairs of one step.
 struct StepPairs
 {
-    std::vector<float> m_thickness;         // m, cloth slots × obstacle slots, -1 where there is no pair
+    std::vector<float> m_thickness;  // m, cloth slots × obstacle slots, -1 where there is no pair
+    std::vector<float> m_tube;       // m, likewise; -1 where no contact is left out
+    bool m_anyTube = false;
     std::vector<float> m_clothRadius;       // m, per cloth slot: the largest reach of its pairs, -1 without one
     std::vector<ObstacleMotion> m_motions;  // of the obstacles that have a pair and move, in the order of slots
     bool m_any = false;
@@ -62,6 +64,7 @@ struct StepPairs
     {
         const std::size_t obstacles = m_thickness.size() / m_clothRadius.size();
         std::fill_n(m_thickness.begin() + std::ptrdiff_t(cloth * obstacles), obstacles, -1.0f);
+        std::fill_n(m_tube.begin() + std::ptrdiff_t(cloth * obstacles), obstacles, -1.0f);
         m_clothRadius[cloth] = -1.0f;
         m_any = std::any_of(m_clothRadius.begin(), m_clothRadius.end(), [](float radius) { return radius >= 0.0f; });
     }
@@ -78,6 +81,7 @@ struct StepResult
     std::size_t m_candidates = 0;
     std::size_t m_volumeTests = 0;
     std::size_t m_sweptTests = 0;
+    std::size_t m_reduced = 0;
     std::size_t m_invalidNodes = 0;
     std::size_t m_retries = 0;
     std::size_t m_intersectionCount = 0;

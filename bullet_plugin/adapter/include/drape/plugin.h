@@ -30,7 +30,8 @@ namespace drape
 {
 class PluginState;
 
-// One contact of the last step, for debugging and drawing. The pointers are those of that step: do not keep them.
+// One contact of the last step, for debugging and drawing; those that others imply are left out
+// (Settings::m_reduceContacts). The pointers are those of that step: do not keep them.
 struct ContactInfo
 {
     const btSoftBody* m_cloth;

@@ -68,6 +68,7 @@ struct StepStatistics
     std::size_t m_sweptTests = 0;     // pairs of features that needed the continuous test
     std::size_t m_clothsLeftOut = 0;  // with kStepClothsLeftOut
     std::size_t m_contacts = 0;       // contacts published
+    std::size_t m_reduced = 0;        // contacts left out because others imply them
     std::size_t m_intersections = 0;  // only with Settings::m_reportIntersections
     std::size_t m_invalidNodes = 0;   // with kStepInvalidNodes
     std::size_t m_retries = 0;        // stages run again because a buffer was too small

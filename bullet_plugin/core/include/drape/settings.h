@@ -37,6 +37,11 @@ struct Settings
     // the thickness is violated. Range 0 to 4. Larger: safer under stiff links, more contacts.
     float m_activation = 0.5f;
 
+    // Leave out contacts that others keep anyway, up to 2 % of the thickness, within the distance that nodes may go
+    // from their predicted paths while they are solved. Off: all contacts are solved; the same cloth at rest, but for
+    // that.
+    bool m_reduceContacts = true;
+
     // Continuous and Automatic find every face and edge that meets a feature of the obstacle on its linear way through
     // the step, at the earliest time; Discrete may lose what is faster than its thickness.
     ContactMode m_mode = ContactMode::Automatic;

@@ -1,0 +1,154 @@
+// Friction of Drape's contacts is Bullet's: the cloth's kDF times the obstacle's coefficient; and contacts put no
+// energy in.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/shapes.h"
+#include "tests/bullet/drop_world.h"
+#include "tests/support/backends.h"
+
+namespace drape::test
+{
+namespace
+{
+constexpr double kGravity = 9.81;  // m/s²
+
+// A cloth on a flat box, and gravity that leans: the same as a slope.
+struct Slope
+{
+    Plugin m_plugin;
+    DropWorld m_world;
+    MeshShape m_shape;
+    btSoftBody* m_cloth = nullptr;
+
+    Slope(const Settings& settings, bool springs)
+        : m_plugin(settings), m_world(&m_plugin), m_shape(makeBox(6.0f, 0.4f, 6.0f))
+    {
+        m_world.addObstacle(m_shape.shape());
+        ClothSpec spec;
+        spec.m_nodes = 9;
+        spec.m_size = 0.6f;
+        spec.m_springs = springs;
+        spec.m_damping = 0;
+        spec.m_centre = btVector3(btScalar(0.013), btScalar(0.2 + kThickness), btScalar(0.007));
+        m_cloth = &m_world.addCloth(spec);
+    }
+
+    void lean(double angle)
+    {
+        const btVector3 gravity(btScalar(kGravity * std::sin(angle)), btScalar(-kGravity * std::cos(angle)), 0);
+        m_world.world().setGravity(gravity);
+        m_world.world().getWorldInfo().m_gravity = gravity;
+    }
+
+    double friction() const { return static_cast<double>(m_cloth->m_cfg.kDF); }  // times the obstacle's 1
+
+    // m, of the node that went farthest down the slope, or least far.
+    double farthest(const std::vector<float>& before, bool least) const
+    {
+        double found = least ? 1e9 : -1e9;
+        for (int i = 0; i < m_cloth->m_nodes.size(); ++i)
+        {
+            const double way = static_cast<double>(m_cloth->m_nodes[i].m_x.x()) -
+                               static_cast<double>(before[3 * static_cast<std::size_t>(i)]);
+            found = least ? std::min(found, way) : std::max(found, way);
+        }
+        return found;
+    }
+};
+
+// J, of the nodes' motion and height.
+double energyOf(const btSoftBody& body)
+{
+    double energy = 0;
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+    {
+        const btSoftBody::Node& node = body.m_nodes[i];
+        const double mass = 1 / static_cast<double>(node.m_im);
+        energy += mass * (0.5 * static_cast<double>(node.m_v.length2()) + kGravity * static_cast<double>(node.m_x.y()));
+    }
+    return energy;
+}
+
+struct Fall
+{
+    const char* m_shape;
+    btScalar m_height;  // m, above the obstacle's middle
+};
+
+class Energy : public testing::TestWithParam<Fall>
+{
+};
+}  // namespace
+
+class Friction : public BackendTest
+{
+};
+
+TEST_P(Friction, SticksBelowTheAngle)
+{
+    for (const bool springs : {false, true})
+    {
+        Slope slope(GetParam().m_settings, springs);
+        slope.lean(0.97 * std::atan(slope.friction()));
+        const std::vector<float> before = positionsOf(*slope.m_cloth);
+        slope.m_world.step(60);
+        EXPECT_LT(slope.farthest(before, false), 1e-4) << "springs " << springs;
+    }
+}
+
+// Above the angle it slides, as a block does: with the acceleration g (sin - friction cos).
+TEST_P(Friction, SlidesAboveTheAngle)
+{
+    for (const bool springs : {false, true})
+    {
+        Slope slope(GetParam().m_settings, springs);
+        const double angle = 1.2 * std::atan(slope.friction()), time = 60 * static_cast<double>(kDt);
+        slope.lean(angle);
+        const std::vector<float> before = positionsOf(*slope.m_cloth);
+        slope.m_world.step(60);
+        const double way = 0.5 * kGravity * (std::sin(angle) - slope.friction() * std::cos(angle)) * time * time;
+        EXPECT_NEAR(slope.farthest(before, true), way, 0.05 * way) << "springs " << springs;
+        EXPECT_NEAR(slope.farthest(before, false), way, 0.05 * way) << "springs " << springs;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Backend, Friction, testing::ValuesIn(allBackends()), backendName);
+
+// Nodes without springs or damping: kinetic and potential energy are all there is, and free fall by Bullet's steps only
+// loses some. What grows comes from contacts. All that they may do is bring a node that came too near back to its
+// place, without speed, by a tenth of the thickness a step.
+TEST_P(Energy, NeverGrowsByContacts)
+{
+    Plugin plugin(hostSettings());
+    DropWorld world(&plugin);
+    TriangleMesh mesh;
+    ASSERT_TRUE(makeShape(GetParam().m_shape, mesh));
+    MeshShape shape(mesh);
+    world.addObstacle(shape.shape());
+    ClothSpec spec;
+    spec.m_springs = false;
+    spec.m_damping = 0;
+    spec.m_centre = btVector3(btScalar(0.03), GetParam().m_height, btScalar(0.02));
+    btSoftBody& cloth = world.addCloth(spec);
+    double last = energyOf(cloth), grown = 0;
+    std::size_t inContact = 0;
+    for (int step = 0; step < 150; ++step)
+    {
+        world.step();
+        const double energy = energyOf(cloth);
+        grown = std::max(grown, energy - last);
+        last = energy;
+        inContact += plugin.statistics().m_contacts > 0;
+    }
+    EXPECT_GT(inContact, 30u);
+    EXPECT_LT(grown, kGravity * 0.1 * kThickness / cloth.m_nodes.size()) << "J in a step, of 1 kg";
+}
+
+INSTANTIATE_TEST_SUITE_P(Falls, Energy,
+                         testing::Values(Fall{"sphere", btScalar(0.9)}, Fall{"box", btScalar(0.6)},
+                                         Fall{"stairs", btScalar(1.2)}, Fall{"torus", btScalar(0.5)}),
+                         [](const testing::TestParamInfo<Fall>& info) { return std::string(info.param.m_shape); });
+}  // namespace drape::test
