@@ -70,6 +70,29 @@ def descent_table(rows, table, figure):
     return text
 
 
+def rebuild_table(rows, table, figure):
+    """A line a variant: the whole run, and its second half, in which the cloth keeps its new shape."""
+    mine = [row for row in select(rows, part="rebuild") if "step_ms" in row]
+    if not mine:
+        return ""
+    lines = []
+    for scene in in_order(mine, "model"):
+        for variant in in_order(select(mine, model=scene), "variant"):
+            steps = sorted(select(mine, model=scene, variant=variant), key=lambda row: row["step"])
+            late = steps[len(steps) // 2:]
+            cells = [f"{sum(row.get('rebuilds', 0) for row in steps):.0f}"]
+            for chosen in (steps, late):
+                tests = [row["volume_tests"] for row in chosen if row.get("volume_tests")]
+                cells.append(f"{sum(tests) / len(tests):,.0f}" if tests else "–")
+            for chosen in (steps, late):
+                cells.append(figure(sum(row.get("broad_ms", 0) for row in chosen) / len(chosen)))
+            lines.append([scene, variant] + cells)
+    return ("A cloth that changes its shape in the first half of a run and keeps it in the second, with its hierarchy built "
+            "anew where it decayed and without: means of all steps, and of the second half. Broad phase in ms, kernel time "
+            "on a device.\n\n"
+            + table(["scene", "variant", "rebuilds", "volume tests", "second half", "broad phase", "second half"], lines))
+
+
 def compaction_table(rows, table):
     mine = select(rows, part="compaction")
     if not mine:
@@ -120,4 +143,5 @@ def text(rows, table, figure):
             + by_model(rows, "refit", "Refit (table 4.4), ms, likewise.",
                        [("CPU", "4.4", "cpu"), ("Quadro FX 3800, kernels", "4.4", "quadro")], table, figure)
             + quality_table(rows, table, figure) + descent_table(rows, table, figure)
+            + rebuild_table(rows, table, figure)
             + triangle_test_table(rows, table, figure))

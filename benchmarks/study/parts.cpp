@@ -47,6 +47,7 @@ const std::vector<Part>& studyParts()
         {"quality", "the trees' quality against the time to build them", studyQuality},
         {"traversal", "every traversal step by step as a cloth comes down: figures 4.6 and 4.8", studyTraversals},
         {"triangle_tests", "Möller's test beside the certified one: figure 4.9", studyTriangleTests}};
+        {"rebuild", "traversals of a cloth that changes its shape, its hierarchy rebuilt or not", studyRebuilds},
     return parts;
 }
 }  // namespace drape::bench

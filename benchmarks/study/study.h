@@ -50,6 +50,9 @@ void studyTraversals(const StudyOptions& options, Table& table);
 // Models in the order of their size; quick: two small ones.
 std::vector<std::string> studyModels(bool quick);
 
+// A cloth that changes its shape, with rebuilds of its hierarchy and without: part "rebuild".
+void studyRebuilds(const StudyOptions& options, Table& table);
+
 // Loads a model and calls body, unless it is unwanted, missing or too late.
 void forEachModel(const StudyOptions& options,
                   const std::function<void(const std::string&, const TriangleMesh&)>& body);

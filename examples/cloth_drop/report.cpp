@@ -14,20 +14,23 @@ Json asJson(const TimeSummary& times)
     return {{"first", times.m_first}, {"median", times.m_median}, {"p95", times.m_p95}, {"max", times.m_max}};
 }
 
-// Sums over the run: what the broad phase left, what needed the continuous test, and steps with nothing to do.
+// Sums over the run: what the broad phase left, what needed the continuous test, hierarchies of the cloth built anew,
+// and steps with nothing to do.
 Json workJson(const RunRecord& record)
 {
     std::uint64_t candidates = 0, swept = 0;
-    std::size_t skipped = 0;
+    std::size_t rebuilds = 0, skipped = 0;
     for (const StepRecord& step : record.m_steps)
     {
         candidates += step.m_times.m_candidates;
         swept += step.m_times.m_sweptTests;
+        rebuilds += step.m_times.m_rebuilds;
         skipped += step.m_times.m_skipped;
     }
     Json json;
     json["candidates"] = candidates;
     json["continuous_tests"] = swept;
+    json["hierarchy_rebuilds"] = rebuilds;
     json["steps_skipped"] = skipped;
     return json;
 }

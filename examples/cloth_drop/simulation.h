@@ -21,6 +21,7 @@ struct StepTimes
     // What Drape did for it, as in StepStatistics; 0 of the built-in.
     std::uint64_t m_candidates = 0;
     std::size_t m_sweptTests = 0;
+    std::size_t m_rebuilds = 0;
     bool m_skipped = false;
 };
 

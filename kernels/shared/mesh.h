@@ -27,8 +27,8 @@ typedef struct Edge
 } Edge;
 
 // Directions in which a surface can face at a vertex or edge: all within the half-angle of the axis or of its opposite.
-// A cosine of -1 admits every direction (boundary, non-manifold or degenerate surroundings). The axis leans to the front;
-// zero where there is none.
+// A cosine of -1 admits every direction (boundary, non-manifold or degenerate surroundings). The axis leans to the
+// front; zero where there is none.
 typedef struct NormalCone
 {
     Vec3 m_axis;     // unit
@@ -51,8 +51,8 @@ typedef struct BvhNode
     DRAPE_UINT m_count;
 } BvhNode;
 
-// Depth of a traversal's stack. Each step opens one node of a pair and leaves at most one pair behind, and two binary
-// hierarchies over fewer than 2^32 primitives have 64 heights together.
+// Depth of the stack of a walk down one hierarchy. Each step opens one node and leaves at most one behind, and a
+// balanced hierarchy over fewer than 2^32 primitives is 32 high.
 #define DRAPE_STACK_DEPTH 72
 
 typedef struct Candidate

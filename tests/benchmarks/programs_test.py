@@ -154,6 +154,19 @@ class Study(ProgramTest):
             self.assertEqual(row["valid"], "yes")
             self.assertEqual(row["hash"], host[row["step"]]["hash"])
 
+    def test_a_cloth_that_changes_is_rebuilt_and_one_at_rest_is_not(self):
+        rows = [row for row in self.quick("study", "--part", "rebuild") if row["part"] == "rebuild"]
+        rebuilds = {}
+        for row in rows:
+            self.assertEqual(row["valid"], "yes")
+            key = row["model"], row["variant"]
+            rebuilds[key] = rebuilds.get(key, 0) + int(row["rebuilds"])
+        self.assertTrue(rebuilds)
+        for (model, variant), count in rebuilds.items():
+            if not variant.endswith(", rebuilt") or model.endswith("rest"):
+                self.assertEqual(count, 0, (model, variant))
+        self.assertTrue(any(count > 0 for count in rebuilds.values()))
+
     def test_bad_input_is_refused(self):
         self.assertEqual(run("study", "--part", "no_such_part").returncode, 2)
 

@@ -161,9 +161,9 @@ protected:
         EXPECT_TRUE(sameBytes(built.m_nodes, host.m_nodes));
         TreeCostStage cost;
         cost.create(device, programsOf(device));
-        cost.enqueue(device, tree);
+        cost.enqueue(device, tree.m_nodes, cl_uint(host.m_nodes.size()), 0);
         device.wait();
-        EXPECT_EQ(cost.cost(), treeCostOnHost(host.m_nodes));
+        EXPECT_EQ(cost.cost(), treeCostOnHost(host.m_nodes, 0));
         EXPECT_TRUE(intact(device, tree.m_nodes) && buffers.allIntact(device));
         ASSERT_FALSE(device.failed()) << device.error().text();
     }

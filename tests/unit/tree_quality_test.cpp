@@ -72,20 +72,20 @@ TEST_F(TreeQualityTest, CostIsTheSumOfAreas)
 {
     // Each of the 665 nodes' shares is rounded down to 2^-30, and its float quotient errs by some 2^-22 of itself.
     const double cost = measureTree(m_tree.m_nodes, 0).m_cost;
-    EXPECT_NEAR(treeCostOnHost(m_tree.m_nodes), cost, 1e-6 * cost);
-    EXPECT_EQ(treeCostOnHost({}), 0.0);
+    EXPECT_NEAR(treeCostOnHost(m_tree.m_nodes, 0), cost, 1e-6 * cost);
+    EXPECT_EQ(treeCostOnHost({}, 0), 0.0);
 }
 
 TEST_F(TreeQualityTest, ScatteringTrianglesDecaysATree)
 {
-    const double atBuild = treeCostOnHost(m_tree.m_nodes);
+    const double atBuild = treeCostOnHost(m_tree.m_nodes, 0);
     std::vector<float> positions = m_side.m_start;
     for (std::size_t i = 0; i < positions.size(); i += 18)  // every second triangle moves across
         for (std::size_t k = i; k < std::min(i + 9, positions.size()); ++k)
             positions[k] = 1.0f - positions[k];
     std::size_t invalid = 0;
     refitTreeOnHost(m_tree, m_side.m_pool.triangles(), positions.data(), positions.data(), {0.0f}, invalid);
-    const double now = treeCostOnHost(m_tree.m_nodes);
+    const double now = treeCostOnHost(m_tree.m_nodes, 0);
     EXPECT_TRUE(isDecayed(now, atBuild, 1.5f)) << now << " was " << atBuild;
     EXPECT_FALSE(isDecayed(atBuild, atBuild, 1.5f));
     EXPECT_FALSE(isDecayed(now, atBuild, 0.0f)) << "never";

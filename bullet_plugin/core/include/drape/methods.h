@@ -75,6 +75,15 @@ struct Methods
     Traversal m_traversal = Traversal::Auto;
 
     // Count the broad phase's volume tests (StepStatistics::m_volumeTests). Costs an atomic a work-item.
+    // Who builds the hierarchies that traversals walk; nothing where the step goes over patches. All but Balanced build
+    // on the host whenever meshes come or go, over a side's meshes together, as their positions were given.
+    TreeBuilder m_treeBuilder = TreeBuilder::Balanced;
+
+    // The cloths' hierarchy is built anew, beside the steps, once its nodes' areas over the root's have grown by this
+    // factor since it was built: see core/pipeline/tree_watch.h. 0: never. Only where a traversal walks it (Pairs,
+    // Single, Groups and Front).
+    float m_rebuildDecay = 1.5f;
+
     bool m_countTests = false;
 };
 }  // namespace drape
