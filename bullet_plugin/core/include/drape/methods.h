@@ -17,8 +17,9 @@ enum class TreeBuilder
 
 enum class RefitMethod
 {
-    Levels,   // a launch per height (the thesis)
-    Subtrees  // whole subtrees per work-group: three launches, two for fewer than 4,097 triangles
+    Levels,    // a launch per height (the thesis)
+    Subtrees,  // whole subtrees per work-group: three launches, two for fewer than 4,097 triangles
+    LocalTops  // the same, what lies above subtrees in local memory too; where groups run, see WorkShape
 };
 
 // How kernels spread their work; results do not depend on it.
@@ -74,7 +75,6 @@ struct Methods
 {
     Traversal m_traversal = Traversal::Auto;
 
-    // Count the broad phase's volume tests (StepStatistics::m_volumeTests). Costs an atomic a work-item.
     // Who builds the hierarchies that traversals walk; nothing where the step goes over patches. All but Balanced build
     // on the host whenever meshes come or go, over a side's meshes together, as their positions were given.
     TreeBuilder m_treeBuilder = TreeBuilder::Balanced;
@@ -84,6 +84,7 @@ struct Methods
     // Single, Groups and Front).
     float m_rebuildDecay = 1.5f;
 
+    // Count the broad phase's volume tests (StepStatistics::m_volumeTests). Costs an atomic a work-item.
     bool m_countTests = false;
 };
 }  // namespace drape
