@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "bullet_plugin/core/bvh/refit.h"
 #include "bullet_plugin/core/bvh/tree_builder.h"
 #include "bullet_plugin/core/bvh/tree_cost.h"
 #include "bullet_plugin/core/bvh/wide_nodes.h"
@@ -53,7 +54,7 @@ TEST_F(TreeQualityTest, FaultsAreFound)
 
 TEST_F(TreeQualityTest, WideNodesHoldTheSameLeaves)
 {
-    std::vector<BvhNode> wide = collapseToFour(m_tree);
+    std::vector<BvhNode> wide = reshape(m_tree, 4);
     EXPECT_EQ(whyInvalid(wide, m_tree.m_order), "");
     const TreeQuality narrow = measureTree(m_tree.m_nodes, 0), collapsed = measureTree(wide, 0);
     EXPECT_LT(collapsed.m_nodes, narrow.m_nodes);
@@ -65,7 +66,32 @@ TEST_F(TreeQualityTest, WideNodesHoldTheSameLeaves)
     }
     refitWideNodes(wide);
     EXPECT_TRUE(sameBytes(wide, before));
-    EXPECT_TRUE(collapseToFour(Tree()).empty());
+    EXPECT_TRUE(reshape(Tree(), 4).empty());
+}
+
+// Nodes of any degree are refitted from a layout of theirs, to the bits of the binary tree's.
+TEST_F(TreeQualityTest, EveryShapeHoldsTheSameLeaves)
+{
+    for (const std::uint32_t degree : {2u, 4u})
+    {
+        for (const std::uint32_t bundle : {1u, 2u, 4u, 8u, 16u})
+        {
+            SCOPED_TRACE(std::to_string(degree) + " children, leaves of " + std::to_string(bundle));
+            const std::vector<BvhNode> shaped = reshape(m_tree, degree, bundle);
+            EXPECT_EQ(whyInvalid(shaped, m_tree.m_order), "");
+            for (const BvhNode& node : shaped)
+                EXPECT_LE(node.m_count, std::max(degree, bundle));
+            EXPECT_EQ(shaped.size() < m_tree.m_nodes.size(), degree == 4 || bundle > 2);
+            const BvhLayout layout = makeBvhLayout(shaped, 0);
+            std::vector<BvhNode> nodes = makeBvhNodes(layout);
+            std::size_t invalid = 0;
+            refitOnHost(nodes, layout, m_tree.m_order, m_side.m_pool.triangles(), m_side.m_start.data(),
+                        m_side.m_start.data(), {0.0f}, invalid);
+            EXPECT_EQ(drape::whyInvalid(nodes, layout.root(), m_tree.m_order, m_side.m_pool.triangles(),
+                                        m_side.m_start.data(), {0.0f}),
+                      "");
+        }
+    }
 }
 
 TEST_F(TreeQualityTest, CostIsTheSumOfAreas)
