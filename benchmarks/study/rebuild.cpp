@@ -57,7 +57,7 @@ std::vector<float> tear(StepScene& scene)
     return target;
 }
 
-// x y z per node after the change. Layers of a fold lie half a thickness apart.
+// x y z per node after the change. Layers of a fold lie half a thickness apart, over the middle.
 std::vector<float> changed(const std::vector<float>& rest, Change change, int cells, float thickness)
 {
     std::vector<float> target = rest;
@@ -65,7 +65,8 @@ std::vector<float> changed(const std::vector<float>& rest, Change change, int ce
     for (std::size_t node = 0; change == Change::Fold && node < side * side; ++node)
     {
         const std::size_t row = node / side, layer = row / width, along = row % width;
-        const std::size_t onto = (layer % 2 == 0 ? along : width - 1 - along) * side + node % side;
+        const std::size_t middle = (side - width) / 2, column = node % side;
+        const std::size_t onto = (middle + (layer % 2 == 0 ? along : width - 1 - along)) * side + column;
         std::copy(&rest[3 * onto], &rest[3 * onto] + 3, &target[3 * node]);
         target[3 * node + 1] += 0.5f * thickness * static_cast<float>(layer);
     }

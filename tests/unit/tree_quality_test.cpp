@@ -54,18 +54,11 @@ TEST_F(TreeQualityTest, FaultsAreFound)
 
 TEST_F(TreeQualityTest, WideNodesHoldTheSameLeaves)
 {
-    std::vector<BvhNode> wide = reshape(m_tree, 4);
+    const std::vector<BvhNode> wide = reshape(m_tree, 4);
     EXPECT_EQ(whyInvalid(wide, m_tree.m_order), "");
     const TreeQuality narrow = measureTree(m_tree.m_nodes, 0), collapsed = measureTree(wide, 0);
     EXPECT_LT(collapsed.m_nodes, narrow.m_nodes);
     EXPECT_LE(collapsed.m_height, (narrow.m_height + 1) / 2);
-    const std::vector<BvhNode> before = wide;
-    for (BvhNode& node : wide)
-    {
-        if (node.m_count > 0) node.m_low[0] = 7.0f;
-    }
-    refitWideNodes(wide);
-    EXPECT_TRUE(sameBytes(wide, before));
     EXPECT_TRUE(reshape(Tree(), 4).empty());
 }
 

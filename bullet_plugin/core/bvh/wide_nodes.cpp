@@ -1,7 +1,5 @@
 #include "wide_nodes.h"
 
-#include "kernels/lib/dop.h"
-
 namespace drape
 {
 namespace
@@ -51,13 +49,5 @@ std::vector<BvhNode> reshape(const Tree& tree, std::uint32_t degree, std::uint32
         wide[i].m_count = std::uint32_t(sources.size() - first);
     }
     return wide;
-}
-
-void refitWideNodes(std::vector<BvhNode>& nodes)
-{
-    for (std::size_t i = nodes.size(); i-- > 0;)
-    {
-        if (nodes[i].m_count > 0) dopMergeChildren(nodes.data(), std::uint32_t(i));
-    }
 }
 }  // namespace drape

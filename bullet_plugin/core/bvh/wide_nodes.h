@@ -13,7 +13,4 @@ namespace drape
 // degree: 2, or 4 for every second height left out. bundle: a node over at most so many leaves has them all as its
 // children.
 std::vector<BvhNode> reshape(const Tree& tree, std::uint32_t degree, std::uint32_t bundle = 1);
-
-// New volumes for the inner nodes after the leaves' have changed.
-void refitWideNodes(std::vector<BvhNode>& nodes);
 }  // namespace drape
