@@ -8,8 +8,8 @@
 #define DRAPE_STRETCH_BATCH 8u
 
 // The first begins of a tier at or after `from` and at or after `from + window`. Every work-item of the group calls it.
-static void stretchOfWindow(__global const uint* restrict splits, const uint from, const uint window, const uint leafCount,
-                            const uint tier, __local uint* stretch)
+static void stretchOfWindow(__global const uint* restrict splits, const uint from, const uint window,
+                            const uint leafCount, const uint tier, __local uint* stretch)
 {
     const uint size = get_local_size(0);
     if (get_local_id(0) < 2) stretch[get_local_id(0)] = leafCount;
