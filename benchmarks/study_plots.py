@@ -53,16 +53,17 @@ def triangle_tests(rows, folder, save):
 
 
 def levels(rows, folder, save):
-    """Figures 4.2 to 4.4: construction by level and optimisation; 4.10: refit by level."""
-    build = select(rows, part="levels")
-    refit = select(rows, part="refit_levels")
-    if not build and not refit:
+    """Figures 4.2 to 4.4: construction by level and optimisation; 4.10: refit by level. Of the largest model, as there."""
+    measured = select(rows, part="levels") + select(rows, part="refit_levels")
+    if not measured:
         return
+    model = max(measured, key=lambda row: row["triangles"])["model"]
+    build = select(measured, part="levels", model=model)
+    refit = select(measured, part="refit_levels", model=model)
     figure, (left, right) = plt.subplots(1, 2, figsize=(12, 4.5))
     for variant in in_order(build, "variant"):
         points = sorted((row["level"], row["kernel_median_ms"]) for row in select(build, variant=variant))
         left.plot(*zip(*points), ".-", markersize=4, linewidth=0.9, label=variant)
-    model = build[0]["model"] if build else refit[0]["model"]
     left.set(xlabel="level, root 0", ylabel="kernel time, ms", yscale="log",
              title=f"top-down construction by level, {model} (figures 4.2–4.4)")
     for variant in in_order(refit, "variant"):

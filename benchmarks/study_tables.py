@@ -70,6 +70,65 @@ def descent_table(rows, table, figure):
     return text
 
 
+def shape_table(rows, table, figure):
+    """A line a shape, for every kind of volume that was measured; two columns of times a model."""
+    mine = [row for row in select(rows, part="shape") if "median_ms" in row]
+    models = in_order(mine, "model")
+    lines = []
+    for dop in in_order(mine, "dop"):
+        for backend in in_order(mine, "backend"):
+            for variant in in_order(mine, "variant"):
+                line = [f"{dop:.0f}-DOP, {variant}" + (", host, 1 thread" if backend == "host" else "")]
+                for model in models:
+                    found = select(mine, dop=dop, backend=backend, variant=variant, model=model)
+                    line.append(f"{found[0]['visits']:,.0f} / {figure(found[0]['median_ms'])} / "
+                                f"{figure(found[0]['refit_median_ms'])}" if found else "–")
+                lines.append(line)
+    if not lines:
+        return ""
+    return ("Shapes of a radix tree: volume tests when the thesis's cloth looks for its candidates, ms for that, and ms for a "
+            "refit (kernel time on a device).\n\n" + table(["shape"] + [model.replace("_", " ") for model in models], lines))
+
+
+def refit_kernel_table(rows, table, figure):
+    mine = select(rows, part="refit_kernels")
+    if not mine:
+        return ""
+    models = in_order(mine, "model")
+    lines = []
+    for variant in in_order(mine, "variant"):
+        for kernel in in_order(select(mine, variant=variant), "kernel"):
+            line = [variant, kernel]
+            for model in models:
+                found = select(mine, variant=variant, kernel=kernel, model=model)
+                line.append(figure(found[0]["kernel_median_ms"]) if found else "–")
+            lines.append(line)
+    return "The refits' kernels, ms:\n\n" + table(["refit", "kernel"] + [m.replace("_", " ") for m in models], lines)
+
+
+def rebuild_table(rows, table, figure):
+    """A line a variant: the whole run, and its second half, in which the cloth keeps its new shape."""
+    mine = [row for row in select(rows, part="rebuild") if "step_ms" in row]
+    if not mine:
+        return ""
+    lines = []
+    for scene in in_order(mine, "model"):
+        for variant in in_order(select(mine, model=scene), "variant"):
+            steps = sorted(select(mine, model=scene, variant=variant), key=lambda row: row["step"])
+            late = steps[len(steps) // 2:]
+            cells = [f"{sum(row.get('rebuilds', 0) for row in steps):.0f}"]
+            for chosen in (steps, late):
+                tests = [row["volume_tests"] for row in chosen if row.get("volume_tests")]
+                cells.append(f"{sum(tests) / len(tests):,.0f}" if tests else "–")
+            for chosen in (steps, late):
+                cells.append(figure(sum(row.get("broad_ms", 0) for row in chosen) / len(chosen)))
+            lines.append([scene, variant] + cells)
+    return ("A cloth that changes its shape in the first half of a run and keeps it in the second, with its hierarchy built "
+            "anew where it decayed and without: means of all steps, and of the second half. Broad phase in ms, kernel time "
+            "on a device.\n\n"
+            + table(["scene", "variant", "rebuilds", "volume tests", "second half", "broad phase", "second half"], lines))
+
+
 def compaction_table(rows, table):
     mine = select(rows, part="compaction")
     if not mine:
@@ -119,5 +178,7 @@ def text(rows, table, figure):
             + compaction_table(rows, table)
             + by_model(rows, "refit", "Refit (table 4.4), ms, likewise.",
                        [("CPU", "4.4", "cpu"), ("Quadro FX 3800, kernels", "4.4", "quadro")], table, figure)
-            + quality_table(rows, table, figure) + descent_table(rows, table, figure)
+            + refit_kernel_table(rows, table, figure)
+            + quality_table(rows, table, figure) + shape_table(rows, table, figure) + descent_table(rows, table, figure)
+            + rebuild_table(rows, table, figure)
             + triangle_test_table(rows, table, figure))

@@ -4,6 +4,9 @@
 
 // Candidates a work-item gathers before it reserves room for them with one atomic.
 #define DRAPE_GATHER 16
+// A step opens one node of a pair and leaves the other children behind: three in two 4-wide hierarchies of 24 heights, one in
+// two binary ones of 48, more than builders make.
+#define DRAPE_PAIR_STACK 160
 
 // A work-item is a pair of subtrees; starts holds enough of them that few triangles still fill a wide device.
 // counters->m_candidates must be zero before; up to limit candidates the count is exact, beyond it only says that there are
@@ -23,8 +26,8 @@ __kernel void broadPhaseTraverse(__global const BvhNode* restrict clothNodes, __
     Candidate gathered[DRAPE_GATHER];
     uint gatheredCount = 0;
     uint visits = 0;
-    uint clothStack[DRAPE_STACK_DEPTH];
-    uint obstacleStack[DRAPE_STACK_DEPTH];
+    uint clothStack[DRAPE_PAIR_STACK];
+    uint obstacleStack[DRAPE_PAIR_STACK];
     uint depth = 1;
     clothStack[0] = starts[item].m_cloth;
     obstacleStack[0] = starts[item].m_obstacle;

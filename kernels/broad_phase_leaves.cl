@@ -5,8 +5,8 @@
 // Candidates a work-item gathers before it reserves room for them with one atomic.
 #define DRAPE_GATHER 16
 // A step takes one node and leaves at most four: enough for a 4-wide hierarchy of 24 heights, or a binary one of 48, more
-// than builders make.
-#define DRAPE_LEAF_STACK 80
+// than builders make, and for a bundle of 16 leaves.
+#define DRAPE_LEAF_STACK 96
 
 // A work-item is a cloth leaf; leafNodes names its node. counters->m_candidates must be zero before.
 __kernel void broadPhaseLeaves(__global const BvhNode* restrict clothNodes, __global const uint* restrict clothOrder,

@@ -10,6 +10,7 @@ seed=${2:-0}  # 0: libFuzzer chooses, and prints it
 
 bash cmake/build_preset.sh fuzz fuzz_mesh fuzz_core
 
+export LSAN_OPTIONS=suppressions=$PWD/cmake/lsan.supp:print_suppressions=0
 cd build/fuzz
 for target in mesh core; do
   mkdir -p "corpus/$target"

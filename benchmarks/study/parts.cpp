@@ -45,7 +45,9 @@ const std::vector<Part>& studyParts()
         {"construction", "every builder: tables 4.2 and 4.3, figures 4.2 to 4.5", studyConstruction},
         {"refit", "every refit: table 4.4 and figure 4.10", studyRefit},
         {"quality", "the trees' quality against the time to build them", studyQuality},
+        {"shape", "two or four children, leaves of 1 to 16; volumes of the build's DRAPE_DOP", studyShapes},
         {"traversal", "every traversal step by step as a cloth comes down: figures 4.6 and 4.8", studyTraversals},
+        {"rebuild", "traversals of a cloth that changes its shape, its hierarchy rebuilt or not", studyRebuilds},
         {"triangle_tests", "Möller's test beside the certified one: figure 4.9", studyTriangleTests}};
     return parts;
 }

@@ -41,11 +41,17 @@ void studyRefit(const StudyOptions& options, Table& table);
 // Cost, volume and visits of the builders' trees; takes the times from the rows of "construction".
 void studyQuality(const StudyOptions& options, Table& table);
 
+// Trees of two and four children and of bundles of leaves, in the build's volumes: part "shape".
+void studyShapes(const StudyOptions& options, Table& table);
+
 // Möller's test and the certified one over pairs of triangles: figure 4.9, part "triangle_tests".
 void studyTriangleTests(const StudyOptions& options, Table& table);
 
 // Every traversal over a cloth's descent onto the bunny, step by step: figures 4.6 and 4.8.
 void studyTraversals(const StudyOptions& options, Table& table);
+
+// A cloth that changes its shape, with rebuilds of its hierarchy and without: part "rebuild".
+void studyRebuilds(const StudyOptions& options, Table& table);
 
 // Models in the order of their size; quick: two small ones.
 std::vector<std::string> studyModels(bool quick);

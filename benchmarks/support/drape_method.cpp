@@ -16,7 +16,7 @@ namespace
 std::string stageOfKernel(const std::string& kernel)
 {
     const std::pair<const char*, const char*> stages[] = {
-        {"refit", "refit"}, {"narrowPhase", "narrow"}, {"compaction", "order"}};
+        {"refit", "refit"}, {"treeCost", "refit"}, {"narrowPhase", "narrow"}, {"compaction", "order"}};
     for (const auto& stage : stages)
     {
         if (kernel.rfind(stage.first, 0) == 0) return stage.second;
@@ -60,6 +60,7 @@ public:
         outcome.m_candidates = statistics.m_candidates;
         outcome.m_contacts = contacts.size();
         outcome.m_volumeTests = statistics.m_volumeTests;
+        outcome.m_rebuilds = statistics.m_rebuilds;
         outcome.m_hash = hashText(hashOf(std::vector<Contact>(contacts.begin(), contacts.end())));
         // A step that left its device is no measurement of it.
         if (statistics.m_status & (kStepDeviceFailed | kStepContactLimit)) outcome.m_hash = "left the device";

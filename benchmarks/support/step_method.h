@@ -24,6 +24,7 @@ struct StepOutcome
     std::size_t m_candidates = 0;
     std::size_t m_contacts = 0;
     std::size_t m_volumeTests = 0;  // 0: not counted
+    std::size_t m_rebuilds = 0;     // see StepStatistics
     std::string m_hash;             // of the contacts, or empty for a method that finds only candidates
 };
 

@@ -70,6 +70,8 @@ void addBackendOptions(CLI::App& app, Options& options, std::string& mode)
     app.add_option("--mode", options.m_contactMode, "how Drape looks at motion within a step")
         ->check(CLI::IsMember({"discrete", "continuous", "automatic"}));
     app.add_flag("--all-contacts", options.m_allContacts, "solve contacts too that others imply");
+    app.add_option("--traversal", options.m_traversal, "how Drape's broad phase goes; the contacts are the same")
+        ->check(CLI::IsMember(traversalsByName()));
     app.add_option("--bullet-mode", mode, "distance field of --backend bullet, or the obstacle as a soft body")
         ->check(CLI::IsMember({"stock", "tuned", "vfss"}));
     app.add_option("--device", options.m_device, "part of an OpenCL device's or platform's name")->type_name("TEXT");
@@ -102,6 +104,19 @@ std::string conflict(const Options& options)
     return "";
 }
 }  // namespace
+
+const std::map<std::string, Traversal>& traversalsByName()
+{
+    static const std::map<std::string, Traversal> traversals = {{"auto", Traversal::Auto},
+                                                                {"pairs", Traversal::Pairs},
+                                                                {"single", Traversal::Single},
+                                                                {"groups", Traversal::Groups},
+                                                                {"front", Traversal::Front},
+                                                                {"leaves", Traversal::Leaves},
+                                                                {"wide-leaves", Traversal::WideLeaves},
+                                                                {"wide-groups", Traversal::WideGroups}};
+    return traversals;
+}
 
 bool parseOptions(int argc, const char* const* argv, Options& options, int& exitCode)
 {

@@ -14,18 +14,19 @@ Json asJson(const TimeSummary& times)
     return {{"first", times.m_first}, {"median", times.m_median}, {"p95", times.m_p95}, {"max", times.m_max}};
 }
 
-// Sums over the run: what the broad phase left, what needed the continuous test, contacts solved and left out, and
-// steps with nothing to do.
+// Sums over the run: what the broad phase left, what needed the continuous test, contacts solved and left out,
+// hierarchies of the cloth built anew, and steps with nothing to do.
 Json workJson(const RunRecord& record)
 {
     std::uint64_t candidates = 0, swept = 0, contacts = 0, implied = 0;
-    std::size_t skipped = 0;
+    std::size_t rebuilds = 0, skipped = 0;
     for (const StepRecord& step : record.m_steps)
     {
         candidates += step.m_times.m_candidates;
         swept += step.m_times.m_sweptTests;
         contacts += step.m_times.m_contacts;
         implied += step.m_times.m_reduced;
+        rebuilds += step.m_times.m_rebuilds;
         skipped += step.m_times.m_skipped;
     }
     Json json;
@@ -33,6 +34,7 @@ Json workJson(const RunRecord& record)
     json["continuous_tests"] = swept;
     json["contacts"] = contacts;
     json["contacts_left_out"] = implied;
+    json["hierarchy_rebuilds"] = rebuilds;
     json["steps_skipped"] = skipped;
     return json;
 }

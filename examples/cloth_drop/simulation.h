@@ -22,6 +22,7 @@ struct StepTimes
     std::uint64_t m_candidates = 0;
     std::size_t m_sweptTests = 0;
     std::size_t m_reduced = 0;
+    std::size_t m_rebuilds = 0;
     bool m_skipped = false;
 };
 

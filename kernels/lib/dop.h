@@ -95,11 +95,12 @@ DRAPE_FUNCTION void dopStore(DRAPE_GLOBAL BvhNode* node, const Dop* dop)
     }
 }
 
-// Recomputes the volume of an inner node from its children.
+// Recomputes the volume of an inner node from its children; a leaf stays.
 DRAPE_FUNCTION void dopMergeChildren(DRAPE_GLOBAL BvhNode* nodes, DRAPE_UINT index)
 {
     DRAPE_GLOBAL BvhNode* node = nodes + index;
     Dop dop;
+    if (node->m_count == 0u) return;
     dopClear(&dop);
     for (DRAPE_UINT child = node->m_first; child < node->m_first + node->m_count; ++child)
     {

@@ -59,8 +59,8 @@ typedef struct BvhNode
     DRAPE_UINT m_count;
 } BvhNode;
 
-// Depth of a traversal's stack. Each step opens one node of a pair and leaves at most one pair behind, and two binary
-// hierarchies over fewer than 2^32 primitives have 64 heights together.
+// Depth of the stack of a walk down one hierarchy. Each step opens one node and leaves at most one behind, and a
+// balanced hierarchy over fewer than 2^32 primitives is 32 high.
 #define DRAPE_STACK_DEPTH 72
 
 typedef struct Candidate

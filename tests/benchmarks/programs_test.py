@@ -134,7 +134,7 @@ class Study(ProgramTest):
         listed = run("study", "--list").stdout
         self.assertIn("traversal: ", listed)
         parts = {row["part"] for row in rows}
-        for part in ("construction", "refit", "traversal", "triangle_tests"):
+        for part in ("construction", "refit", "shape", "traversal", "rebuild", "triangle_tests"):
             self.assertIn(part, parts)
         for row in rows:
             self.assertNotEqual(row["valid"], "no")
@@ -153,6 +153,29 @@ class Study(ProgramTest):
         for row in rows:
             self.assertEqual(row["valid"], "yes")
             self.assertEqual(row["hash"], host[row["step"]]["hash"])
+
+    def test_every_shape_of_a_tree_gives_the_same_candidates(self):
+        rows = [row for row in self.quick("study", "--part", "shape") if row["part"] == "shape"]
+        for model in {row["model"] for row in rows}:
+            mine = [row for row in rows if row["model"] == model]
+            self.assertEqual({(row["degree"], row["leaf_size"]) for row in mine},
+                             {(degree, size) for degree in ("2", "4") for size in ("1", "2", "4", "8", "16")})
+            self.assertEqual(len({row["hash"] for row in mine}), 1)
+            self.assertTrue(all(row["valid"] == "yes" and float(row["visits"]) > 0 for row in mine))
+        self.assertTrue(rows)
+
+    def test_a_cloth_that_changes_is_rebuilt_and_one_at_rest_is_not(self):
+        rows = [row for row in self.quick("study", "--part", "rebuild") if row["part"] == "rebuild"]
+        rebuilds = {}
+        for row in rows:
+            self.assertEqual(row["valid"], "yes")
+            key = row["model"], row["variant"]
+            rebuilds[key] = rebuilds.get(key, 0) + int(row["rebuilds"])
+        self.assertTrue(rebuilds)
+        for (model, variant), count in rebuilds.items():
+            if not variant.endswith(", rebuilt") or model.endswith("rest"):
+                self.assertEqual(count, 0, (model, variant))
+        self.assertTrue(any(count > 0 for count in rebuilds.values()))
 
     def test_bad_input_is_refused(self):
         self.assertEqual(run("study", "--part", "no_such_part").returncode, 2)

@@ -50,6 +50,12 @@ std::vector<NamedMethods> allMethods()
         all.back().m_methods.m_mortonBits = 63;
         all.back().m_methods.m_plocRadius = 3;
     }
+    for (TreeBuilder builder : {TreeBuilder::Balanced, TreeBuilder::Radix})
+    {
+        all.push_back({std::string(builder == TreeBuilder::Radix ? "radix" : "balanced") + ", tops in local memory",
+                       methodsOf(builder, WorkShape::Groups)});
+        all.back().m_methods.m_refit = RefitMethod::LocalTops;
+    }
     for (bool adaptive : {false, true})
     {
         for (bool small : {false, true})
@@ -161,9 +167,9 @@ protected:
         EXPECT_TRUE(sameBytes(built.m_nodes, host.m_nodes));
         TreeCostStage cost;
         cost.create(device, programsOf(device));
-        cost.enqueue(device, tree);
+        cost.enqueue(device, tree.m_nodes, cl_uint(host.m_nodes.size()), 0);
         device.wait();
-        EXPECT_EQ(cost.cost(), treeCostOnHost(host.m_nodes));
+        EXPECT_EQ(cost.cost(), treeCostOnHost(host.m_nodes, 0));
         EXPECT_TRUE(intact(device, tree.m_nodes) && buffers.allIntact(device));
         ASSERT_FALSE(device.failed()) << device.error().text();
     }
@@ -184,6 +190,57 @@ TEST_P(TreeTest, EveryBuilderMakesTheHostsValidTree)
             expectSameAsHost(*device, stage, named.m_methods, sideOf(mesh));
             if (HasFailure()) return;  // later ones would say the same at length
         }
+    }
+}
+
+// Scans of up to 871,414 triangles, where the folder of models is named.
+TEST_P(TreeTest, EveryBuilderMakesTheHostsValidTreeOfModels)
+{
+    const char* const folder = std::getenv("DRAPE_MODELS_DIR");
+    if (!folder || !std::filesystem::is_directory(folder)) GTEST_SKIP() << "DRAPE_MODELS_DIR names no folder";
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    std::size_t models = 0;
+    for (TreeBuilder builder : {TreeBuilder::Balanced, TreeBuilder::Radix, TreeBuilder::TopDown, TreeBuilder::Ploc})
+    {
+        const TreeMethods methods = methodsOf(builder, WorkShape::Device);
+        TreeBuilderStage stage;
+        stage.create(*device, programsOf(*device), methods);
+        for (const auto& entry : std::filesystem::directory_iterator(folder))
+        {
+            const std::string path = entry.path().string(), ending = entry.path().extension().string();
+            TriangleMesh mesh;
+            std::string error;
+            if (ending != ".obj" && ending != ".ply") continue;
+            SCOPED_TRACE(path + ", builder " + std::to_string(int(builder)));
+            ASSERT_TRUE(loadMesh(path, mesh, error)) << error;
+            expectSameAsHost(*device, stage, methods, sideOf(mesh));
+            ++models;
+        }
+    }
+    EXPECT_GT(models, 0u);
+}
+
+// Where local memory cannot hold the splits above subtrees, one work-item merges them.
+TEST_P(TreeTest, SplitsThatDoNotFitAreMergedAllTheSame)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    TreeMethods methods = methodsOf(TreeBuilder::Radix, WorkShape::Groups);
+    methods.m_refit = RefitMethod::LocalTops;
+    TreeBuilderStage stage;
+    stage.create(
+        *device,
+        [&](const char* name)
+        {
+            const bool refits = std::string(name) == "tree_refit_local";
+            return programOf(*device, name, refits ? "#define DRAPE_LOCAL_SPLITS 3u\n" : "");
+        },
+        methods);
+    for (int size : {4097, 20011})
+    {
+        SCOPED_TRACE("soup of " + std::to_string(size));
+        expectSameAsHost(*device, stage, methods, sideOf(makeSoup(1.0f, 0.1f, size, std::uint32_t(size))));
     }
 }
 

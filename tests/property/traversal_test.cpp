@@ -54,6 +54,95 @@ TEST_P(TraversalTest, ContactsAreTheSame)
     EXPECT_GT(contacts, 10000u);
 }
 
+// The builder is a choice of time, too: the same contacts from the same candidates with every one.
+TEST_P(TraversalTest, ContactsAreTheSameInTreesOfEveryBuilder)
+{
+    std::size_t contacts = 0;
+    for (const Traversal traversal : allTraversals())
+    {
+        std::vector<std::unique_ptr<Pipeline>> owned;
+        std::vector<Pipeline*> pipelines;
+        for (TreeBuilder builder : {TreeBuilder::Balanced, TreeBuilder::Radix, TreeBuilder::TopDown, TreeBuilder::Ploc})
+        {
+            Settings settings = GetParam().m_settings;
+            settings.m_methods.m_traversal = traversal;
+            settings.m_methods.m_treeBuilder = builder;
+            settings.m_methods.m_rebuildDecay = 1.05f;
+            owned.push_back(makePipeline(settings));
+            ASSERT_TRUE(owned.back());
+            pipelines.push_back(owned.back().get());
+        }
+        LiveScene scene(pipelines, 920 + std::uint32_t(traversal), true);
+        for (int step = 0; step < 30; ++step)
+        {
+            scene.nextStep();
+            const std::vector<Contact> first = runStep(*pipelines[0]);
+            contacts += first.size();
+            for (std::size_t i = 1; i < pipelines.size(); ++i)
+            {
+                SCOPED_TRACE(std::string(traversalName(traversal)) + ", step " + std::to_string(step) + ", builder " +
+                             std::to_string(i));
+                const std::vector<Contact> other = runStep(*pipelines[i]);
+                ASSERT_TRUE(sameBytes(other, first)) << difference(other, first);
+                EXPECT_EQ(pipelines[i]->statistics().m_candidates, pipelines[0]->statistics().m_candidates);
+                EXPECT_EQ(pipelines[i]->statistics().m_status, pipelines[0]->statistics().m_status);
+            }
+        }
+    }
+    EXPECT_GT(contacts, 10000u);
+}
+
+// A cloth of loose triangles that fly to each other's places, and the same at rest.
+TEST_P(TraversalTest, DecayedTreesAreBuiltAnew)
+{
+    StepCase step = soupCase(2000, 600, false, 930);
+    for (float& coordinate : step.m_cloth.m_positions)
+        coordinate *= 3.0f;
+    std::vector<float> strewn = step.m_cloth.m_positions;
+    Random random(931);
+    for (std::size_t i = strewn.size() / 9; i-- > 1;)
+        std::swap_ranges(&strewn[9 * i], &strewn[9 * i] + 9, &strewn[9 * random.below(std::uint32_t(i))]);
+    constexpr int kSteps = 60;
+    for (const bool strews : {true, false})
+    {
+        std::vector<std::unique_ptr<Pipeline>> pipelines;
+        std::vector<MeshId> cloths, obstacles;
+        for (const float decay : {1.5f, 0.0f})
+        {
+            Settings settings = GetParam().m_settings;
+            settings.m_methods.m_traversal = Traversal::Pairs;
+            settings.m_methods.m_rebuildDecay = decay;
+            settings.m_methods.m_countTests = true;
+            pipelines.push_back(makePipeline(settings));
+            ASSERT_TRUE(pipelines.back());
+            cloths.push_back(addCloth(*pipelines.back(), step.m_cloth));
+            obstacles.push_back(addObstacle(*pipelines.back(), step.m_obstacle));
+        }
+        std::size_t rebuilds[2] = {0, 0}, tests[2] = {0, 0};
+        for (int i = 0; i < kSteps; ++i)
+        {
+            SCOPED_TRACE("step " + std::to_string(i));
+            std::vector<float> positions = step.m_cloth.m_positions;
+            for (std::size_t k = 0; strews && k < positions.size(); ++k)
+                positions[k] += float(i) / kSteps * (strewn[k] - positions[k]);
+            std::vector<Contact> contacts[2];
+            for (std::size_t p = 0; p < 2; ++p)
+            {
+                setMotion(*pipelines[p], cloths[p], positions, positions);
+                pipelines[p]->addPair(cloths[p], obstacles[p], step.m_thickness);
+                contacts[p] = runStep(*pipelines[p]);
+                rebuilds[p] += pipelines[p]->statistics().m_rebuilds;
+                tests[p] += pipelines[p]->statistics().m_volumeTests;
+            }
+            ASSERT_TRUE(sameBytes(contacts[0], contacts[1])) << difference(contacts[0], contacts[1]);
+            EXPECT_FALSE(contacts[0].empty());
+        }
+        EXPECT_EQ(rebuilds[0] > 0, strews);
+        EXPECT_EQ(rebuilds[1], 0u) << "never";
+        EXPECT_EQ(tests[0] < tests[1], strews);
+    }
+}
+
 // A front in a pipeline: it is used from the second step on, and drops with a mesh that comes.
 TEST_P(TraversalTest, FrontIsKeptUntilMeshesChange)
 {

@@ -63,6 +63,7 @@ TEST_F(Outputs, jsonHasEveryKey)
     EXPECT_EQ(run.at("nodes_below_surface"), 0);
     EXPECT_EQ(run.at("intersecting_pairs_end"), 0);
     EXPECT_EQ(run.at("nan_nodes"), 0);
+    EXPECT_EQ(run.at("work").at("hierarchy_rebuilds"), 0);
     EXPECT_NEAR(run.at("thickness_m"), 0.02, 1e-9);
 }
 
@@ -74,6 +75,8 @@ TEST_F(Outputs, hostAndOpenClGiveTheSameHash)
     EXPECT_EQ(host.at("backend"), "host");
     EXPECT_EQ(device.at("backend"), "opencl");
     EXPECT_EQ(host.at("hash"), device.at("hash"));
+    const Json front = Json::parse(summaryOf({"--backend", "opencl", "--traversal", "front"}));
+    EXPECT_EQ(front.at("hash"), device.at("hash"));
     EXPECT_GT(device.at("contacts_max"), 0);
 }
 

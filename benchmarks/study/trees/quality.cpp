@@ -2,7 +2,6 @@
 #include <iostream>
 
 #include "benchmarks/study/trees/tree_input.h"
-#include "benchmarks/support/step_method.h"
 #include "bullet_plugin/core/bvh/tree_quality.h"
 #include "kernels/lib/dop.h"
 
@@ -38,24 +37,6 @@ Visits countVisits(const Tree& tree, const std::vector<BvhNode>& queries)
     return visits;
 }
 
-std::vector<BvhNode> clothVolumes(const TriangleMesh& obstacle)
-{
-    SceneSpec spec;
-    spec.m_cells = 32;
-    spec.m_size = 2.4;
-    spec.m_thickness = kThickness;
-    const StepScene scene = makeStepScene(spec, obstacle);
-    const TreeInput cloth(scene.m_cloths.front());
-    std::vector<BvhNode> volumes(cloth.triangleCount());
-    for (std::size_t i = 0; i < volumes.size(); ++i)
-    {
-        Dop dop;
-        triangleVolume(&dop, &cloth.m_triangles[i], scene.start(0), scene.end(0), contactReach(scene));
-        dopStore(&volumes[i], &dop);
-    }
-    return volumes;
-}
-
 // The construction part's row of this variant, for its times; the host's where there is no device.
 const Row* timesOf(const Table& table, const std::string& model, const TreeVariant& variant)
 {
@@ -74,9 +55,9 @@ void studyQuality(const StudyOptions& options, Table& table)
 {
     const auto measure = [&](const std::string& model, const TriangleMesh& mesh)
     {
-        if (!options.m_quick && model != "bunny" && model != "dragon") return;
+        if (!options.m_quick && model != "bunny" && model != "dragon" && model != "spot") return;
         const TreeInput input(mesh);
-        const std::vector<BvhNode> queries = clothVolumes(mesh);
+        const std::vector<BvhNode> queries = clothQueries(mesh).m_nodes;
         std::size_t candidates = 0;
         for (const TreeVariant& rule : treeRules(options.m_quick))
         {

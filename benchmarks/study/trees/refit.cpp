@@ -27,17 +27,17 @@ public:
     }
 
     // Positions to the device, and a refit; waits. Host-to-host ms.
-    double run(bool byHeight)
+    double run(RefitMethod method)
     {
         m_device.profiler()->take();
         const Clock::time_point start = Clock::now();
         m_input.m_positionBuffer.write(m_device, m_input.m_positions.data(), m_input.m_positions.size());
         const LeafBuffers leaves = {m_input.m_triangleBuffer, m_input.m_positionBuffer, m_input.m_positionBuffer,
                                     m_radius, m_counters};
-        if (byHeight)
+        if (method == RefitMethod::Levels)
             m_stage.enqueueByHeight(m_device, m_tree, leaves, m_heights);
         else
-            m_stage.enqueue(m_device, m_tree, leaves, WorkShape::Device);
+            m_stage.enqueue(m_device, m_tree, leaves, WorkShape::Device, method);
         m_device.wait();
         const double ms = millisecondsSince(start);
         m_launches = m_device.profiler()->take();
@@ -59,39 +59,58 @@ private:
     std::vector<KernelTime> m_launches;
 };
 
-void refitOnDevice(Device& device, TreeInput& input, const Tree& tree, const std::string& model, bool byHeight,
-                   const StudyOptions& options, Table& table)
+struct RefitVariant
+{
+    const char* m_name;
+    RefitMethod m_method;
+};
+
+// A launch's times: by height where there is one each (figure 4.10), else by kernel.
+void addLaunches(const RefitVariant& variant, const std::vector<KernelTime>& launches,
+                 const std::vector<Samples>& times, const Row& input, Table& table)
+{
+    const bool byHeight = variant.m_method == RefitMethod::Levels;
+    for (std::size_t launch = 0; launch < times.size(); ++launch)
+    {
+        Row row = input;
+        row["part"] = byHeight ? "refit_levels" : "refit_kernels";
+        if (byHeight)
+            row["level"] = launch;
+        else
+            row["kernel"] = launches[launch].m_kernel;
+        times[launch].fill(row, "kernel_");
+        table.add(row);
+    }
+}
+
+void refitOnDevice(Device& device, TreeInput& input, const Tree& tree, const std::string& model,
+                   const RefitVariant& variant, const StudyOptions& options, Table& table)
 {
     DeviceRefit refit(device, input, tree);
-    refit.run(byHeight);  // some drivers compile at the first launch
+    refit.run(variant.m_method);  // some drivers compile at the first launch
     Samples kernels;
-    std::vector<Samples> levels;
+    std::vector<Samples> launches;
     const Samples host = repeat(2, std::size_t(options.m_repeats), options.m_seconds,
                                 [&]
                                 {
-                                    const double ms = refit.run(byHeight);
+                                    const double ms = refit.run(variant.m_method);
                                     kernels.add(totalMs(refit.launches()));
-                                    levels.resize(refit.launches().size());
-                                    for (std::size_t i = 0; i < levels.size(); ++i)
-                                        levels[i].add(refit.launches()[i].m_ms);
+                                    launches.resize(refit.launches().size());
+                                    for (std::size_t i = 0; i < launches.size(); ++i)
+                                        launches[i].add(refit.launches()[i].m_ms);
                                     return ms;
                                 });
-    Row row = treeRow("refit", model, input.triangleCount(), byHeight ? "thesis: launch per level" : "subtrees");
+    Row row = treeRow("refit", model, input.triangleCount(), variant.m_name);
     row["backend"] = "opencl";
     fillDevice(row, device.info());
     row["threads"] = 0;
     row["hash"] = refit.hash();
+    const Row described = row;
     host.fill(row);
     kernels.fill(row, "kernel_");
     judgeRow(row, treeHash(tree));
     table.add(row);
-    for (std::size_t level = 0; byHeight && level < levels.size(); ++level)
-    {
-        Row each = treeRow("refit_levels", model, input.triangleCount(), "thesis: launch per level");
-        each["level"] = level;
-        levels[level].fill(each, "kernel_");
-        table.add(each);
-    }
+    if (row["valid"] == "yes") addLaunches(variant, refit.launches(), launches, described, table);
 }
 }  // namespace
 
@@ -122,8 +141,14 @@ void studyRefit(const StudyOptions& options, Table& table)
         judgeRow(row, built);
         table.add(row);
         if (!device) return;
-        for (const bool byHeight : {true, false})
-            refitOnDevice(*device, input, tree, model, byHeight, options, table);
+        for (const RefitVariant& variant : {RefitVariant{"thesis: launch per level", RefitMethod::Levels},
+                                            {"subtrees", RefitMethod::Subtrees},
+                                            {"subtrees, above them in local memory", RefitMethod::LocalTops}})
+        {
+            // Without groups there is nothing to keep in local memory.
+            if (variant.m_method == RefitMethod::LocalTops && !device->isGpu()) continue;
+            refitOnDevice(*device, input, tree, model, variant, options, table);
+        }
     };
     forEachModel(options, measure);
 }

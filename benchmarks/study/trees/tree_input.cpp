@@ -3,7 +3,9 @@
 #include <stdexcept>
 
 #include "benchmarks/support/result_hash.h"
+#include "benchmarks/support/step_method.h"
 #include "bullet_plugin/core/mesh/topology.h"
+#include "kernels/lib/dop.h"
 
 namespace drape::bench
 {
@@ -89,6 +91,26 @@ void TreeInput::upload(Device& device)
 {
     m_triangleBuffer.assign(device, m_triangles);
     m_positionBuffer.assign(device, m_positions);
+}
+
+ClothQueries clothQueries(const TriangleMesh& obstacle)
+{
+    SceneSpec spec;
+    spec.m_cells = 32;
+    spec.m_size = 2.4;
+    spec.m_thickness = kThickness;
+    const StepScene scene = makeStepScene(spec, obstacle);
+    ClothQueries queries;
+    queries.m_triangles = TreeInput(scene.m_cloths.front()).m_triangles;
+    queries.m_nodes.resize(queries.m_triangles.size());
+    for (std::size_t i = 0; i < queries.m_nodes.size(); ++i)
+    {
+        Dop dop;
+        triangleVolume(&dop, &queries.m_triangles[i], scene.start(0), scene.end(0), contactReach(scene));
+        dopStore(&queries.m_nodes[i], &dop);
+        queries.m_nodes[i].m_first = std::uint32_t(i);
+    }
+    return queries;
 }
 
 std::string treeHash(const Tree& tree)

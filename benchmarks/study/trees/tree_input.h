@@ -44,6 +44,15 @@ struct TreeInput
     Buffer<float> m_positionBuffer;
 };
 
+// The triangles of the thesis's cloth, draped over a model, as leaves: each one's volume over a step, as far as it
+// looks.
+struct ClothQueries
+{
+    std::vector<BvhNode> m_nodes;
+    std::vector<Triangle> m_triangles;
+};
+ClothQueries clothQueries(const TriangleMesh& obstacle);
+
 // Of order and nodes: links and volumes, bit for bit.
 std::string treeHash(const Tree& tree);
 

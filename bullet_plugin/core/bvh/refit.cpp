@@ -9,22 +9,26 @@ namespace
 constexpr std::size_t kGroup = 64;
 // A height of at most this many nodes is cheaper in the climb of one group than as a launch (3 µs on an H200).
 constexpr std::size_t kClimbGroup = 128;
+
+void mergeUpwards(std::vector<BvhNode>& nodes)
+{
+    for (std::uint32_t node = 0; node < nodes.size(); ++node)
+        dopMergeChildren(nodes.data(), node);
+}
 }  // namespace
 
 void refitOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const std::vector<std::uint32_t>& order,
                  const std::vector<Triangle>& triangles, const float* start, const float* end,
                  const std::vector<float>& meshRadius, std::size_t& invalidNodes)
 {
-    const std::uint32_t leafCount = layout.leafCount();
-    for (std::uint32_t leaf = 0; leaf < leafCount; ++leaf)
+    for (std::uint32_t leaf = 0; leaf < layout.leafCount(); ++leaf)
     {
         const Triangle& triangle = triangles[order[leaf]];
         Dop dop;
         invalidNodes += leafVolume(&dop, &triangle, start, end, meshRadius[triangle.m_mesh]);
-        dopStore(&nodes[leaf], &dop);
+        dopStore(&nodes[layout.leafNode(leaf)], &dop);
     }
-    for (std::uint32_t node = leafCount; node < layout.nodeCount(); ++node)
-        dopMergeChildren(nodes.data(), node);
+    mergeUpwards(nodes);
 }
 
 void growByMotionsOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const std::vector<std::uint32_t>& order,
@@ -33,17 +37,15 @@ void growByMotionsOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, c
                          const std::vector<float>& thickness, std::size_t obstacleMeshes)
 {
     if (motions.empty()) return;
-    const std::uint32_t leafCount = layout.leafCount();
-    for (std::uint32_t leaf = 0; leaf < leafCount; ++leaf)
+    for (std::uint32_t leaf = 0; leaf < layout.leafCount(); ++leaf)
     {
         const Triangle& triangle = triangles[order[leaf]];
         const float radius = meshRadius[triangle.m_mesh];
         if (radius < 0.0f) continue;
-        growByMotions(&nodes[leaf], motions.data(), std::uint32_t(motions.size()),
+        growByMotions(&nodes[layout.leafNode(leaf)], motions.data(), std::uint32_t(motions.size()),
                       &thickness[triangle.m_mesh * obstacleMeshes], &triangle, start, end, radius);
     }
-    for (std::uint32_t node = leafCount; node < layout.nodeCount(); ++node)
-        dopMergeChildren(nodes.data(), node);
+    mergeUpwards(nodes);
 }
 
 void RefitStage::create(Device& device, const cl::Program& program)
@@ -57,21 +59,22 @@ void RefitStage::create(Device& device, const cl::Program& program)
 void RefitStage::makeLevels(Device& device, const BvhLayout& layout, Levels& levels) const
 {
     levels.m_launched = 0;
-    std::vector<cl_uint> table;
     for (std::size_t height = 1; height < layout.m_heights.size(); ++height)
     {
-        const BvhHeight& level = layout.m_heights[height];
-        if (level.m_count > 2 * kClimbGroup)
-        {
-            levels.m_launched = height;
-            continue;
-        }
-        table.push_back(level.m_first);
-        table.push_back(level.m_count);
+        if (layout.m_heights[height].m_count > 2 * kClimbGroup) levels.m_launched = height;
     }
+    std::vector<cl_uint> table, leafNodes(layout.leafCount());
+    for (std::size_t height = levels.m_launched + 1; height < layout.m_heights.size(); ++height)
+    {
+        table.push_back(layout.m_heights[height].m_first);
+        table.push_back(layout.m_heights[height].m_count);
+    }
+    for (std::uint32_t leaf = 0; leaf < leafNodes.size(); ++leaf)
+        leafNodes[leaf] = layout.leafNode(leaf);
     levels.m_climbed = table.size() / 2;
     levels.m_table.assign(device, table);
-    device.wait();  // table is a local; topology changes are rare
+    levels.m_leafNodes.assign(device, leafNodes);
+    device.wait();  // what was sent are locals; topology changes are rare
 }
 
 void RefitStage::enqueue(Device& device, const BvhLayout& layout, Levels& levels, Buffer<BvhNode>& nodes,
@@ -79,13 +82,14 @@ void RefitStage::enqueue(Device& device, const BvhLayout& layout, Levels& levels
                          Buffer<float>& meshRadius, Buffer<StepCounters>& counters, Motions* motions)
 {
     const cl_uint leafCount = layout.leafCount();
-    m_leaves.launch(device, leafCount, kGroup, nodes.handle(), order.handle(), triangles.handle(), start.handle(),
-                    end.handle(), meshRadius.handle(), counters.handle(), leafCount);
+    m_leaves.launch(device, leafCount, kGroup, nodes.handle(), levels.m_leafNodes.handle(), order.handle(),
+                    triangles.handle(), start.handle(), end.handle(), meshRadius.handle(), counters.handle(),
+                    leafCount);
     if (motions)
     {
-        m_movingLeaves.launch(device, leafCount, kGroup, nodes.handle(), order.handle(), triangles.handle(),
-                              start.handle(), end.handle(), meshRadius.handle(), motions->m_motions.handle(),
-                              cl_uint(motions->m_count), motions->m_thickness.handle(),
+        m_movingLeaves.launch(device, leafCount, kGroup, nodes.handle(), levels.m_leafNodes.handle(), order.handle(),
+                              triangles.handle(), start.handle(), end.handle(), meshRadius.handle(),
+                              motions->m_motions.handle(), cl_uint(motions->m_count), motions->m_thickness.handle(),
                               cl_uint(motions->m_obstacleMeshes), leafCount);
     }
     for (std::size_t height = 1; height <= levels.m_launched; ++height)

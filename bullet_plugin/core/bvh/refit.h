@@ -29,10 +29,10 @@ class RefitStage
 public:
     void create(Device& device, const cl::Program& program);
 
-    // The heights of a layout as the device reads them, and where the one-group climb begins.
+    // A layout as the device reads it, and where the one-group climb begins.
     struct Levels
     {
-        Buffer<cl_uint> m_table;
+        Buffer<cl_uint> m_table, m_leafNodes;
         std::size_t m_launched = 0;  // heights 1 … m_launched get a launch each
         std::size_t m_climbed = 0;   // the rest, in one group
     };

@@ -14,11 +14,11 @@ constexpr std::size_t kGroup = 128;
 constexpr std::size_t kGroupsPerUnit = 8;
 }  // namespace
 
-double treeCostOnHost(const std::vector<BvhNode>& nodes)
+double treeCostOnHost(const std::vector<BvhNode>& nodes, std::uint32_t root)
 {
     std::uint64_t sum = 0;
     for (const BvhNode& node : nodes)
-        sum += areaParts(&node, nodes.data());
+        sum += areaParts(&node, &nodes[root]);
     return double(sum) / double(DRAPE_AREA_PARTS);
 }
 
@@ -27,13 +27,12 @@ void TreeCostStage::create(Device& device, const ProgramLoader& load)
     m_sums.create(device, load("tree_cost"), "treeCostSums");
 }
 
-void TreeCostStage::enqueue(Device& device, DeviceTree& tree)
+void TreeCostStage::enqueue(Device& device, Buffer<BvhNode>& nodes, cl_uint nodeCount, cl_uint root)
 {
-    const cl_uint nodes = tree.m_leafCount == 0 ? 0 : 2 * tree.m_leafCount - 1;
-    const std::size_t groups = std::min((nodes + kGroup - 1) / kGroup, kGroupsPerUnit * device.computeUnits());
+    const std::size_t groups = std::min((nodeCount + kGroup - 1) / kGroup, kGroupsPerUnit * device.computeUnits());
     m_partial.reserve(device, groups);
     m_read.assign(groups, 0);
-    m_sums.launch(device, groups * kGroup, kGroup, tree.m_nodes.handle(), nodes, m_partial.handle(),
+    m_sums.launch(device, groups * kGroup, kGroup, nodes.handle(), nodeCount, root, m_partial.handle(),
                   cl::Local(kGroup * sizeof(cl_ulong)));
     m_partial.read(device, m_read.data(), groups);
 }

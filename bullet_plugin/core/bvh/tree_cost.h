@@ -5,11 +5,12 @@
 #pragma once
 
 #include "bullet_plugin/core/device/program.h"
-#include "tree.h"
+#include "bullet_plugin/core/device/buffer.h"
+#include "kernels/shared/mesh.h"
 
 namespace drape
 {
-double treeCostOnHost(const std::vector<BvhNode>& nodes);
+double treeCostOnHost(const std::vector<BvhNode>& nodes, std::uint32_t root);
 
 class TreeCostStage
 {
@@ -17,7 +18,7 @@ public:
     void create(Device& device, const ProgramLoader& load);
 
     // Both return after enqueueing; cost() is valid once the device was waited for.
-    void enqueue(Device& device, DeviceTree& tree);
+    void enqueue(Device& device, Buffer<BvhNode>& nodes, cl_uint nodeCount, cl_uint root);
     double cost() const;
 
 private:

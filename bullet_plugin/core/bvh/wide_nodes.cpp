@@ -1,45 +1,53 @@
 #include "wide_nodes.h"
 
-#include "kernels/lib/dop.h"
-
 namespace drape
 {
 namespace
 {
-// The node itself where it is a leaf, else its children.
-void appendOpened(const std::vector<BvhNode>& from, const BvhNode& node, std::vector<BvhNode>& to)
+// Leaves below every node; a tree's parents need not stand before their children.
+std::vector<std::uint32_t> leavesBelow(const Tree& tree)
 {
-    if (node.m_count == 0) to.push_back(node);
-    for (std::uint32_t child = node.m_first; child < node.m_first + node.m_count; ++child)
-        to.push_back(from[child]);
+    std::vector<std::uint32_t> leaves(tree.m_nodes.size(), 1);
+    forEachFromBelow(tree.m_nodes, tree.m_splits,
+                     [&](std::uint32_t split, std::uint32_t place)
+                     { leaves[place] = leaves[2 * split + 1] + leaves[2 * split + 2]; });
+    return leaves;
+}
+
+// Appends what a node is replaced by: itself, or where `opens` says so what its children are replaced by.
+template <typename Opens>
+void appendOpened(const std::vector<BvhNode>& from, std::uint32_t node, std::uint32_t depth, Opens opens,
+                  std::vector<std::uint32_t>& to)
+{
+    if (from[node].m_count == 0 || !opens(node, depth))
+    {
+        to.push_back(node);
+        return;
+    }
+    for (std::uint32_t child = 0; child < from[node].m_count; ++child)
+        appendOpened(from, from[node].m_first + child, depth + 1, opens, to);
 }
 }  // namespace
 
-std::vector<BvhNode> collapseToFour(const Tree& tree)
+std::vector<BvhNode> reshape(const Tree& tree, std::uint32_t degree, std::uint32_t bundle)
 {
     std::vector<BvhNode> wide;
     if (tree.m_nodes.empty()) return wide;
+    const std::vector<std::uint32_t> leaves = leavesBelow(tree);
     wide.reserve(tree.m_nodes.size());
-    wide.push_back(tree.m_nodes[0]);
-    // Nodes behind i still have the binary tree's links.
-    for (std::size_t i = 0; i < wide.size(); ++i)
+    std::vector<std::uint32_t> sources = {0};
+    for (std::size_t i = 0; i < sources.size(); ++i)
     {
-        const BvhNode node = wide[i];
-        if (node.m_count == 0) continue;
-        const std::size_t first = wide.size();
-        for (std::uint32_t child = node.m_first; child < node.m_first + node.m_count; ++child)
-            appendOpened(tree.m_nodes, tree.m_nodes[child], wide);
+        wide.push_back(tree.m_nodes[sources[i]]);
+        if (wide[i].m_count == 0) continue;
+        const bool bundled = leaves[sources[i]] <= bundle;
+        const auto opens = [&](std::uint32_t node, std::uint32_t depth)
+        { return depth == 0 || bundled || (degree == 4 && depth == 1 && leaves[node] > bundle); };
+        const std::size_t first = sources.size();
+        appendOpened(tree.m_nodes, sources[i], 0, opens, sources);
         wide[i].m_first = std::uint32_t(first);
-        wide[i].m_count = std::uint32_t(wide.size() - first);
+        wide[i].m_count = std::uint32_t(sources.size() - first);
     }
     return wide;
-}
-
-void refitWideNodes(std::vector<BvhNode>& nodes)
-{
-    for (std::size_t i = nodes.size(); i-- > 0;)
-    {
-        if (nodes[i].m_count > 0) dopMergeChildren(nodes.data(), std::uint32_t(i));
-    }
 }
 }  // namespace drape

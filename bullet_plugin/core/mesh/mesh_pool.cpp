@@ -83,4 +83,10 @@ void MeshPool::update()
         m_vertexCount += mesh.m_topology.m_vertexCount;
     }
 }
+
+void MeshPool::reorder(std::vector<std::uint32_t> order)
+{
+    m_order = std::move(order);
+    ++m_revision;
+}
 }  // namespace drape

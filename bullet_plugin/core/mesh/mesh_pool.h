@@ -50,6 +50,8 @@ public:
 
     // Joins what came and went since the last call; the joined arrays are valid after it. Free when nothing did.
     void update();
+    // Another leaf order of the joined triangles, until meshes come or go. Counts as an update that changed something.
+    void reorder(std::vector<std::uint32_t> order);
     // Counts up with every update that changed something.
     std::uint32_t revision() const { return m_revision; }
 

@@ -34,6 +34,8 @@ DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& set
         const char* const counting = m_settings.m_methods.m_countTests ? "#define DRAPE_COUNT_VISITS\n" : "";
         m_broadPhase.create(*m_device, m_settings.m_methods.m_traversal,
                             [&](const char* name) { return program(name, counting); });
+        if (watchesClothTree(m_settings))
+            m_treeCost.create(*m_device, [this](const char* name) { return program(name); });
     }
     m_narrowPhase.create(*m_device, ofWidth, patches(), m_settings.m_reduceContacts);
     m_place.create(*m_device, program("place_obstacles"), "placeObstacles");
@@ -97,6 +99,7 @@ void DeviceBackend::warmUp()
     pairs.m_thickness = {0.1f};
     pairs.m_clothRadius = {0.1f};
     pairs.m_any = true;
+    pairs.m_measureTree = watchesClothTree(m_settings);
     StepResult result;
     submit(scene, pairs);
     finish(scene, pairs, result);
@@ -310,6 +313,10 @@ void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
         m_refit.enqueue(*m_device, scene.m_clothLayout, m_cloth.m_levels, m_cloth.m_nodes, m_cloth.m_order,
                         m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, m_counters,
                         pairs.m_motions.empty() ? nullptr : &motions);
+        if (pairs.m_measureTree)
+        {
+            m_treeCost.enqueue(*m_device, m_cloth.m_nodes, scene.m_clothLayout.nodeCount(), scene.m_clothLayout.root());
+        }
         m_broadPhase.enqueue(*m_device, {{m_cloth.m_nodes, m_cloth.m_order, m_cloth.m_triangles},
                                          {m_obstacle.m_nodes, m_obstacle.m_order, m_obstacle.m_triangles},
                                          m_thickness,
@@ -416,6 +423,7 @@ bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResul
     if (m_device->failed()) return false;
     if (!patches()) m_broadPhase.accept(*m_device, *m_countersRead.data());
     readAll(result);
+    if (pairs.m_measureTree) result.m_treeCost = m_treeCost.cost();
     return !m_device->failed();
 }
 

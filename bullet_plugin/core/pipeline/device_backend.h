@@ -8,8 +8,10 @@
 #include "bullet_plugin/core/broad_phase/patch_cull.h"
 #include "bullet_plugin/core/bvh/morton_order.h"
 #include "bullet_plugin/core/bvh/refit.h"
+#include "bullet_plugin/core/bvh/tree_cost.h"
 #include "drape/settings.h"
 #include "step.h"
+#include "tree_watch.h"
 
 namespace drape
 {
@@ -65,11 +67,7 @@ private:
     void refitObstacles(const Scene& scene);
     void uploadStep(const Scene& scene, const StepPairs& pairs);
     void enqueueStep(const Scene& scene, const StepPairs& pairs);
-    // Whether the step goes over patches; intersections are found among pairs of triangles.
-    bool patches() const
-    {
-        return !m_settings.m_reportIntersections && m_settings.m_methods.m_traversal == Traversal::Auto;
-    }
+    bool patches() const { return goesOverPatches(m_settings); }
     NarrowPhaseBuffers narrowPhaseBuffers(const StepPairs& pairs);
     // Whether the last run demanded more than the settings allow; the result says what.
     bool overLimit(StepResult& result);
@@ -83,6 +81,7 @@ private:
     bool m_limitReached = false;
 
     RefitStage m_refit;
+    TreeCostStage m_treeCost;
     MortonOrderStage m_mortonOrder;
     Kernel m_place;
     BroadPhaseStage m_broadPhase;

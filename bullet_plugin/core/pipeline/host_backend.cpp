@@ -5,6 +5,7 @@
 
 #include "bullet_plugin/core/broad_phase/candidate_count.h"
 #include "bullet_plugin/core/bvh/refit.h"
+#include "bullet_plugin/core/bvh/tree_cost.h"
 
 namespace drape
 {
@@ -132,6 +133,7 @@ void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings
     Clock::time_point stage = Clock::now();
     const StepLimits limits(settings);
     result.m_invalidNodes = refitCloths(scene, pairs);
+    if (pairs.m_measureTree) result.m_treeCost = treeCostOnHost(m_clothNodes, scene.m_clothLayout.root());
     result.m_refitMs = lap(stage);
     if (!m_traversal.run(clothSide(scene), obstacleSide(scene), pairs.m_thickness, obstacles.meshCount(), m_candidates,
                          limits.m_candidates))

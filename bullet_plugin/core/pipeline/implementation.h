@@ -7,6 +7,7 @@
 #include "bullet_plugin/core/pipeline.h"
 #include "device_backend.h"
 #include "host_backend.h"
+#include "tree_watch.h"
 
 namespace drape
 {
@@ -34,6 +35,7 @@ struct Pipeline::Implementation
     StepPairs m_stepPairs;
     StepResult m_result;
     StepStatistics m_statistics;
+    TreeWatch m_treeWatch;
     MeshId m_nextId = 0;
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
     bool m_submitted = false;
@@ -43,7 +45,15 @@ struct Pipeline::Implementation
     // What depends on an obstacle's positions.
     static void measureObstacle(PooledMesh& mesh);
     void joinScene();
+    void joinCloths();
     void joinObstacles();
+    // Links and leaf order of a side's hierarchy by the builder that the settings name. positions: m, joined.
+    void buildHierarchy(MeshPool& pool, const float* positions, BvhLayout& layout) const;
+    void useHierarchy(const Tree& tree, MeshPool& pool, BvhLayout& layout) const;
+    // Uses a hierarchy of the cloths that was built anew.
+    void takeRebuilt();
+    // Has one built where the last step found the cloths' hierarchy decayed.
+    void watchTree();
     // What depends on where an obstacle is.
     void placeMesh(std::size_t slot);
     void collectPairs();

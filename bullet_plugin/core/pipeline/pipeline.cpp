@@ -87,6 +87,21 @@ void Pipeline::Implementation::placeMesh(std::size_t slot)
     mesh.m_coordinateStep = std::nextafter(farthest, std::numeric_limits<float>::infinity()) - farthest;
 }
 
+void Pipeline::Implementation::joinCloths()
+{
+    const MeshPool& cloths = m_scene.m_cloths;
+    m_scene.m_clothStart.reserve(device(), 3 * cloths.vertexCount());
+    m_scene.m_clothEnd.reserve(device(), 3 * cloths.vertexCount());
+    for (std::size_t slot = 0; slot < cloths.meshCount(); ++slot)
+    {
+        const PooledMesh& mesh = cloths.mesh(slot);
+        for (float* target : {m_scene.m_clothStart.data(), m_scene.m_clothEnd.data()})
+        {
+            std::copy(mesh.m_positions.begin(), mesh.m_positions.end(), target + 3 * std::size_t(mesh.m_firstVertex));
+        }
+    }
+}
+
 void Pipeline::Implementation::joinObstacles()
 {
     MeshPool& pool = m_scene.m_obstacles;
@@ -114,25 +129,16 @@ void Pipeline::Implementation::joinScene()
     obstacles.update();
     if (m_clothRevision != cloths.revision())
     {
+        joinCloths();
+        buildHierarchy(cloths, m_scene.m_clothEnd.data(), m_scene.m_clothLayout);
         m_clothRevision = cloths.revision();
-        m_scene.m_clothLayout = makeBvhLayout(std::uint32_t(cloths.order().size()));
-        m_scene.m_clothStart.reserve(device(), 3 * cloths.vertexCount());
-        m_scene.m_clothEnd.reserve(device(), 3 * cloths.vertexCount());
-        for (std::size_t slot = 0; slot < cloths.meshCount(); ++slot)
-        {
-            const PooledMesh& mesh = cloths.mesh(slot);
-            for (float* target : {m_scene.m_clothStart.data(), m_scene.m_clothEnd.data()})
-            {
-                std::copy(mesh.m_positions.begin(), mesh.m_positions.end(),
-                          target + 3 * std::size_t(mesh.m_firstVertex));
-            }
-        }
+        m_treeWatch.begin();
     }
     if (m_obstacleRevision != obstacles.revision())
     {
-        m_obstacleRevision = obstacles.revision();
-        m_scene.m_obstacleLayout = makeBvhLayout(std::uint32_t(obstacles.order().size()));
         joinObstacles();
+        buildHierarchy(obstacles, m_scene.m_obstaclePositions.data(), m_scene.m_obstacleLayout);
+        m_obstacleRevision = obstacles.revision();
     }
 }
 
@@ -155,6 +161,7 @@ void Pipeline::Implementation::collectPairs()
                                       kEdgePad * m_scene.m_obstacles.mesh(obstacle).m_longestEdge);
         m_stepPairs.m_any = true;
     }
+    m_stepPairs.m_measureTree = m_stepPairs.m_any && watchesClothTree(m_settings) && m_treeWatch.isDue();
     collectMotions();
     collectTubes();
     m_pairs.clear();
@@ -328,6 +335,7 @@ void Pipeline::submit()
     const Clock::time_point start = Clock::now();
     self.m_statistics = StepStatistics();
     self.joinScene();
+    self.takeRebuilt();
     self.collectPairs();
     self.m_submitted = true;
     self.enqueue();
@@ -356,6 +364,7 @@ ContactList Pipeline::finish()
     }
     self.m_submitted = false;
     self.dropBackContacts();
+    self.watchTree();
     statistics.m_candidates += self.m_result.m_candidates;
     statistics.m_volumeTests = self.m_result.m_volumeTests;
     statistics.m_sweptTests = self.m_result.m_sweptTests;

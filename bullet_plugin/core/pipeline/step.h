@@ -58,6 +58,7 @@ struct StepPairs
     std::vector<float> m_clothRadius;       // m, per cloth slot: the largest reach of its pairs, -1 without one
     std::vector<ObstacleMotion> m_motions;  // of the obstacles that have a pair and move, in the order of slots
     bool m_any = false;
+    bool m_measureTree = false;  // the result shall have the cost of the cloths' hierarchy
 
     // Takes a cloth out of the step.
     void leaveOut(std::size_t cloth)
@@ -85,6 +86,7 @@ struct StepResult
     std::size_t m_invalidNodes = 0;
     std::size_t m_retries = 0;
     std::size_t m_intersectionCount = 0;
+    double m_treeCost = 0;                                // where it was asked for, see tree_cost.h
     double m_refitMs = 0, m_broadMs = 0, m_narrowMs = 0;  // on the host back end
 
     ContactList contacts() const

@@ -17,8 +17,9 @@ enum class TreeBuilder
 
 enum class RefitMethod
 {
-    Levels,   // a launch per height (the thesis)
-    Subtrees  // whole subtrees per work-group: three launches, two for fewer than 4,097 triangles
+    Levels,    // a launch per height (the thesis)
+    Subtrees,  // whole subtrees per work-group: three launches, two for fewer than 4,097 triangles
+    LocalTops  // the same, what lies above subtrees in local memory too; where groups run, see WorkShape
 };
 
 // How kernels spread their work; results do not depend on it.
@@ -73,6 +74,15 @@ enum class Traversal
 struct Methods
 {
     Traversal m_traversal = Traversal::Auto;
+
+    // Who builds the hierarchies that traversals walk; nothing where the step goes over patches. All but Balanced build
+    // on the host whenever meshes come or go, over a side's meshes together, as their positions were given.
+    TreeBuilder m_treeBuilder = TreeBuilder::Balanced;
+
+    // The cloths' hierarchy is built anew, beside the steps, once its nodes' areas over the root's have grown by this
+    // factor since it was built: see core/pipeline/tree_watch.h. 0: never. Only where a traversal walks it (Pairs,
+    // Single, Groups and Front).
+    float m_rebuildDecay = 1.5f;
 
     // Count the broad phase's volume tests (StepStatistics::m_volumeTests). Costs an atomic a work-item.
     bool m_countTests = false;

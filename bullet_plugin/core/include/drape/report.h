@@ -72,6 +72,7 @@ struct StepStatistics
     std::size_t m_intersections = 0;  // only with Settings::m_reportIntersections
     std::size_t m_invalidNodes = 0;   // with kStepInvalidNodes
     std::size_t m_retries = 0;        // stages run again because a buffer was too small
+    std::size_t m_rebuilds = 0;       // of the cloths' hierarchy, that this step was the first to use
     bool m_skipped = false;           // nothing to do: no pair, or nothing that could touch
     // Together they are all of Drape's time in a solver's predictMotion and solveConstraints, and none of Bullet's.
     double m_uploadMs = 0;  // bounds, mirroring nodes and enqueueing

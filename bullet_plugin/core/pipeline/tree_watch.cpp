@@ -1,0 +1,66 @@
+#include "tree_watch.h"
+
+#include <chrono>
+#include <utility>
+
+#include "bullet_plugin/core/bvh/tree_builder.h"
+#include "bullet_plugin/core/bvh/tree_cost.h"
+
+namespace drape
+{
+namespace
+{
+// Steps from one measurement to the next: cloth changes its shape over tens of steps.
+constexpr std::uint32_t kInterval = 8;
+}  // namespace
+
+bool goesOverPatches(const Settings& settings)
+{
+    return !settings.m_reportIntersections && settings.m_methods.m_traversal == Traversal::Auto;
+}
+
+bool watchesClothTree(const Settings& settings)
+{
+    const Traversal traversal = settings.m_methods.m_traversal;
+    const bool walksIt = traversal == Traversal::Pairs || traversal == Traversal::Single ||
+                         traversal == Traversal::Groups || traversal == Traversal::Front;
+    return walksIt && settings.m_methods.m_rebuildDecay > 0.0f;
+}
+
+void TreeWatch::begin()
+{
+    m_rebuilt = std::future<Tree>();
+    m_costAtBuild = 0;
+    m_step = 0;
+}
+
+bool TreeWatch::isDue()
+{
+    return m_step++ % kInterval == 0;
+}
+
+bool TreeWatch::isDecayed(double cost, float rebuildDecay)
+{
+    if (m_costAtBuild == 0) m_costAtBuild = cost;
+    return !m_rebuilt.valid() && drape::isDecayed(cost, m_costAtBuild, rebuildDecay);
+}
+
+void TreeWatch::rebuild(TreeBuilder builder, std::vector<Triangle> triangles, std::vector<float> positions,
+                        std::size_t meshCount)
+{
+    TreeMethods methods;
+    methods.m_builder = builder;
+    // Where there is no thread to be had, the step that takes the tree builds it.
+    m_rebuilt = std::async(std::launch::async | std::launch::deferred,
+                           [methods, meshCount, triangles = std::move(triangles), positions = std::move(positions)]
+                           { return buildTreeOnHost(methods, triangles, positions.data(), meshCount); });
+}
+
+bool TreeWatch::take(Tree& tree)
+{
+    if (!m_rebuilt.valid() || m_rebuilt.wait_for(std::chrono::seconds(0)) == std::future_status::timeout) return false;
+    tree = m_rebuilt.get();
+    begin();
+    return true;
+}
+}  // namespace drape

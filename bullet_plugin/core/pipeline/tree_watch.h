@@ -1,0 +1,44 @@
+// When the cloths' hierarchy is built anew.
+//
+// A refit keeps the topology, so a hierarchy fits worse the further the cloth is from the shape that it was built for.
+// Every few steps the back end adds up its nodes' areas over the root's (core/bvh/tree_cost.h), with what the step
+// reads back anyway; when the sum has grown past Methods::m_rebuildDecay times the first one, a thread builds a new
+// hierarchy from the step's end positions while the caller's solver goes on, and the first step that finds it done uses
+// it. Steps never wait for it, and contacts do not depend on it. Cost: a launch over the nodes in one step of eight.
+#pragma once
+
+#include <future>
+
+#include "bullet_plugin/core/bvh/tree.h"
+#include "drape/settings.h"
+
+namespace drape
+{
+// Whether the step goes over patches where it has a device; reported intersections are found among pairs of triangles.
+bool goesOverPatches(const Settings& settings);
+// Whether a step's traversal walks the cloths' hierarchy and its decay matters.
+bool watchesClothTree(const Settings& settings);
+
+class TreeWatch
+{
+public:
+    // The hierarchy is new: the next cost is what later ones are held against. Drops a rebuild under way, once it ends.
+    void begin();
+
+    // Once a step: whether its cost is to be measured.
+    bool isDue();
+    // Whether a hierarchy of that cost is to be built anew; false while one is being built.
+    bool isDecayed(double cost, float rebuildDecay);
+
+    // Starts to build from copies of its own. positions: m, x y z per vertex.
+    void rebuild(TreeBuilder builder, std::vector<Triangle> triangles, std::vector<float> positions,
+                 std::size_t meshCount);
+    // Gives the new hierarchy once, when it is there.
+    bool take(Tree& tree);
+
+private:
+    std::future<Tree> m_rebuilt;
+    double m_costAtBuild = 0;  // 0: not measured yet
+    std::uint32_t m_step = 0;
+};
+}  // namespace drape
