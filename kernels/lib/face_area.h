@@ -11,8 +11,8 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// A face whose doubled area is below this share of its longest edge squared is thin. Above it a plane errs by 6e-6 of
-// the extent, less than DRAPE_SEAM.
+// A face whose doubled area is below this share of the squares of its first and last edge is thin. Above it a plane
+// errs by u over the share, 3e-6 of the extent, less than DRAPE_SEAM.
 #define DRAPE_THIN 0.02f
 // Height of a thin face, as a share of its largest coordinate, that is noise: 8 u. Each corner errs by u.
 #define DRAPE_THIN_NOISE 4.8e-7f
@@ -92,18 +92,28 @@ typedef struct FaceArea
     int m_thin;
 } FaceArea;
 
+// length: of the cross product of the two edges.
+DRAPE_FUNCTION int isThin(FeatureTriangle f, float length)
+{
+    const Vec3 ab = vec3Sub(f.m_p[1], f.m_p[0]), ac = vec3Sub(f.m_p[2], f.m_p[0]);
+    return !(length > DRAPE_THIN * (vec3Dot(ab, ab) + vec3Dot(ac, ac)));
+}
+
+DRAPE_RARE_FUNCTION Vec3 thinArea(FeatureTriangle f)
+{
+    const LongFace face = longFace(f);
+    return face.m_swapped ? vec3Cross(face.m_rise, face.m_along) : vec3Cross(face.m_along, face.m_rise);
+}
+
 DRAPE_FUNCTION FaceArea faceArea(FeatureTriangle f)
 {
-    const Vec3 ab = vec3Sub(f.m_p[1], f.m_p[0]), ac = vec3Sub(f.m_p[2], f.m_p[0]), bc = vec3Sub(f.m_p[2], f.m_p[1]);
-    const float longest = drapeMax(drapeMax(vec3Dot(ab, ab), vec3Dot(ac, ac)), vec3Dot(bc, bc));
     FaceArea area;
-    area.m_vector = vec3Cross(ab, ac);
+    area.m_vector = triangleNormal(f);
     area.m_length = areaLengthOf(area.m_vector);
-    area.m_thin = !(area.m_length > DRAPE_THIN * longest);
+    area.m_thin = isThin(f, area.m_length);
     if (area.m_thin)
     {
-        const LongFace face = longFace(f);
-        area.m_vector = face.m_swapped ? vec3Cross(face.m_rise, face.m_along) : vec3Cross(face.m_along, face.m_rise);
+        area.m_vector = thinArea(f);
         area.m_length = areaLengthOf(area.m_vector);
     }
     return area;
@@ -129,7 +139,7 @@ DRAPE_FUNCTION void tryEdge(NearPoint* best, Vec3 p, Vec3 a, Vec3 b, Vec3 unitA,
 }
 
 // As closestOnTriangle(), for a thin face: the nearest of the closest points on the edges and of the foot inside.
-DRAPE_FUNCTION Vec3 closestOnThin(Vec3 p, FeatureTriangle f)
+DRAPE_RARE_FUNCTION Vec3 closestOnThin(Vec3 p, FeatureTriangle f)
 {
     const Vec3 x = vec3(1.0f, 0.0f, 0.0f), y = vec3(0.0f, 1.0f, 0.0f), z = vec3(0.0f, 0.0f, 1.0f);
     NearPoint best;

@@ -33,7 +33,7 @@ DRAPE_FUNCTION int faceVertexContact(const MovingFace* face, const DRAPE_UINT* b
     const FeatureTriangle f0 = face->m_start, f1 = face->m_end;
     const float areaLength = face->m_areaEnd.m_length;
     const int thin = face->m_areaEnd.m_thin;
-    const float s0 = vec3Dot(face->m_areaStart.m_vector, vec3Sub(vertex, f0.m_p[0]));
+    const float s0 = vec3Dot(face->m_areaStart, vec3Sub(vertex, f0.m_p[0]));
     const float s1 = vec3Dot(face->m_areaEnd.m_vector, vec3Sub(vertex, f1.m_p[0]));
     float side = s1 < 0.0f ? -1.0f : 1.0f;
     if (bounds.m_mode != DRAPE_DISCRETE)
@@ -49,7 +49,8 @@ DRAPE_FUNCTION int faceVertexContact(const MovingFace* face, const DRAPE_UINT* b
         }
         // The face's plane passed the vertex near by: what the face itself met tells on which side it belongs. A thin
         // face's plane turns freely about its length and tells nothing.
-        if (mayMeet && side != sideBefore && !thin && !face->m_areaStart.m_thin) return DRAPE_NO_CONTACT;
+        const int sidesTell = !thin && !isThin(f0, vec3Length(face->m_areaStart));
+        if (mayMeet && side != sideBefore && sidesTell) return DRAPE_NO_CONTACT;
     }
     if (drapeAbs(s1) > areaLength * bounds.m_reachSlack) return 0;
 

@@ -77,7 +77,8 @@ typedef struct RestingFace
 typedef struct MovingFace
 {
     FeatureTriangle m_start, m_end;
-    FaceArea m_areaStart, m_areaEnd;
+    Vec3 m_areaStart;  // as triangleNormal() has it
+    FaceArea m_areaEnd;
 } MovingFace;
 
 // Bounds common to a pair of triangles. extent: largest coordinate of all their positions, m. reach: m.

@@ -75,7 +75,7 @@ DRAPE_FUNCTION int faceMayMeet(const MovingFace* face, Vec3 vertex, float s0, fl
 {
     const FeatureTriangle f0 = face->m_start, f1 = face->m_end;
     const float distance = meetingDistance(faceMotion(face), bounds);
-    if (!volumeAdmitsMeeting(s0, vec3Length(face->m_areaStart.m_vector), distance, bounds) ||
+    if (!volumeAdmitsMeeting(s0, vec3Length(face->m_areaStart), distance, bounds) ||
         !volumeAdmitsMeeting(s1, face->m_areaEnd.m_length, distance, bounds))
         return 0;
     const Vec3 least = vec3Least(vec3Least(vec3Least(f0.m_p[0], f0.m_p[1]), vec3Least(f0.m_p[2], f1.m_p[0])),

@@ -140,7 +140,7 @@ DRAPE_FUNCTION int pairFaceVertex(const ClothView* cloth, DRAPE_UINT clothTriang
         face.m_start.m_p[i] = vec3Sub(nodeStart(cloth, triangle->m_vertices[i]), vertex);
         face.m_end.m_p[i] = vec3Sub(vec3Load(cloth->m_end, triangle->m_vertices[i]), vertex);
     }
-    face.m_areaStart = faceArea(face.m_start);
+    face.m_areaStart = triangleNormal(face.m_start);
     face.m_areaEnd = faceArea(face.m_end);
     const float extent = stepExtent(cloth, triangleExtent(face.m_start), triangleExtent(face.m_end));
     DRAPE_UINT beyond[3];
