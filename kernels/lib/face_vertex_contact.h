@@ -12,12 +12,11 @@ DRAPE_FUNCTION int faceVertexMet(FeatureTriangle f0, FeatureTriangle f1, Vec3 ve
                                  PairBounds bounds, Contact* contact)
 {
     const FeatureTriangle f = triangleMix(f0, f1, meeting.m_place);
-    const Vec3 weights = closestOnTriangle(vertex, f.m_p[0], f.m_p[1], f.m_p[2]);
+    const FaceArea area = faceArea(f);
+    const Vec3 weights = closestOnFace(vertex, f, area.m_thin);
     const Vec3 start = featurePoint(f0, weights), end = featurePoint(f1, weights);
-    const Vec3 area = triangleNormal(f);
-    const float length = areaLengthOf(area);
-    if (length == 0.0f) return DRAPE_NO_CONTACT;
-    const Vec3 normal = meetingNormal(area, length, vec3Sub(end, start), -side, bounds);
+    if (area.m_length == 0.0f) return DRAPE_NO_CONTACT;
+    const Vec3 normal = meetingNormal(area.m_vector, area.m_length, vec3Sub(end, start), -side, bounds);
     storeContact(contact, normal, vertex, weights, vec3Dot(normal, vec3Sub(start, vertex)),
                  vec3Dot(normal, vec3Sub(end, vertex)), meeting.m_time);
     return DRAPE_IS_CONTACT;
@@ -32,9 +31,10 @@ DRAPE_FUNCTION int faceVertexContact(const MovingFace* face, const DRAPE_UINT* b
                                      PairBounds bounds, Contact* contact)
 {
     const FeatureTriangle f0 = face->m_start, f1 = face->m_end;
-    const float areaLength = face->m_areaEndLength;
+    const float areaLength = face->m_areaEnd.m_length;
+    const int thin = face->m_areaEnd.m_thin;
     const float s0 = vec3Dot(face->m_areaStart, vec3Sub(vertex, f0.m_p[0]));
-    const float s1 = vec3Dot(face->m_areaEnd, vec3Sub(vertex, f1.m_p[0]));
+    const float s1 = vec3Dot(face->m_areaEnd.m_vector, vec3Sub(vertex, f1.m_p[0]));
     float side = s1 < 0.0f ? -1.0f : 1.0f;
     if (bounds.m_mode != DRAPE_DISCRETE)
     {
@@ -47,35 +47,40 @@ DRAPE_FUNCTION int faceVertexContact(const MovingFace* face, const DRAPE_UINT* b
             if (meeting.m_met && mayMeet && faceVertexMet(f0, f1, vertex, meeting, sideBefore, bounds, contact))
                 return DRAPE_IS_CONTACT;
         }
-        // The face's plane passed the vertex near by: what the face itself met tells on which side it belongs.
-        if (mayMeet && side != sideBefore) return DRAPE_NO_CONTACT;
+        // The face's plane passed the vertex near by: what the face itself met tells on which side it belongs. A thin
+        // face's plane turns freely about its length and tells nothing.
+        const int sidesTell = !thin && !isThin(f0, vec3Length(face->m_areaStart));
+        if (mayMeet && side != sideBefore && sidesTell) return DRAPE_NO_CONTACT;
     }
     if (drapeAbs(s1) > areaLength * bounds.m_reachSlack) return 0;
 
-    const Vec3 weights = closestOnTriangle(vertex, f1.m_p[0], f1.m_p[1], f1.m_p[2]);
+    const Vec3 weights = closestOnFace(vertex, f1, thin);
     const int zeros = (weights.x == 0.0f) + (weights.y == 0.0f) + (weights.z == 0.0f);
     if (zeros == 2) return 0;
-    Vec3 normal = vec3Scale(face->m_areaEnd, -side * drapeRatio(1.0f, areaLength));
-    if (zeros == 0 && areaLength > 0.0f && !coneAdmits(cone, normal)) return 0;
+    Vec3 normal = vec3Scale(face->m_areaEnd.m_vector, -side * drapeRatio(1.0f, areaLength));
+    if (zeros == 0 && !thin && !coneAdmits(cone, normal)) return 0;
     const Vec3 point = featurePoint(f1, weights);
     const Vec3 offset = vec3Sub(point, vertex);
     const float distance = vec3Length(offset);
     const float lowFace =
         drapeMin(drapeMin(vec3Dot(offset, f1.m_p[0]), vec3Dot(offset, f1.m_p[1])), vec3Dot(offset, f1.m_p[2]));
     if (provenApart(offset, lowFace, vec3Dot(offset, vertex), bounds)) return 0;
-    if (distance > DRAPE_SEAM * bounds.m_extent && (zeros == 1 || areaLength == 0.0f))
+    if (distance > DRAPE_SEAM * bounds.m_extent && (zeros == 1 || thin))
     {
         normal = vec3Scale(offset, 1.0f / distance);
         if (!coneAdmits(cone, normal)) return 0;
         const DRAPE_UINT neighbour = weights.z == 0.0f ? beyond[0] : weights.x == 0.0f ? beyond[1] : beyond[2];
         const Vec3 opposite = vec3Load(end, neighbour);
-        if (!leansAway(vec3Scale(offset, -1.0f), vec3Sub(opposite, origin), point) && positionIsValid(opposite) &&
-            positionIsValid(vec3Load(start, neighbour)))
+        // Of a thin face's long edges either may seem the nearer one: distances squared err by 4 u of the square, so
+        // that the offset leans by the root of that.
+        const float seam = thin ? DRAPE_SEAM * bounds.m_extent + 5e-4f * distance : DRAPE_SEAM * distance;
+        if (zeros == 1 && !leansAway(vec3Scale(offset, -1.0f), vec3Sub(opposite, origin), point, seam) &&
+            positionIsValid(opposite) && positionIsValid(vec3Load(start, neighbour)))
         {
             return 0;
         }
     }
-    else if (areaLength == 0.0f)
+    else if (areaLength == 0.0f || (thin && zeros == 0 && !coneAdmits(cone, normal)))
     {
         return 0;
     }

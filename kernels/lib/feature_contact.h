@@ -15,18 +15,13 @@
 
 #include "../shared/contact.h"
 #include "../shared/mesh.h"
-#include "closest.h"
+#include "face_area.h"
 
 DRAPE_NAMESPACE_BEGIN
 
 // Relative size of a distance at which its direction is rounding noise, and width of the seam between neighbouring
 // features in which a path that hits both, or by rounding neither, still counts as a hit.
 #define DRAPE_SEAM 1e-5f
-
-typedef struct FeatureTriangle
-{
-    Vec3 m_p[3];
-} FeatureTriangle;
 
 typedef struct FeatureEdge
 {
@@ -58,18 +53,6 @@ DRAPE_FUNCTION Vec3 vec3Most(Vec3 a, Vec3 b)
     return vec3(drapeMax(a.x, b.x), drapeMax(a.y, b.y), drapeMax(a.z, b.z));
 }
 
-DRAPE_FUNCTION Vec3 triangleNormal(FeatureTriangle f)
-{
-    return vec3Cross(vec3Sub(f.m_p[1], f.m_p[0]), vec3Sub(f.m_p[2], f.m_p[0]));
-}
-
-// Length of an area vector, m²; 0 where its square is too small for a float to hold it well.
-DRAPE_FUNCTION float areaLengthOf(Vec3 area)
-{
-    const float length = vec3Length(area);
-    return length > 1e-18f ? length : 0.0f;
-}
-
 DRAPE_FUNCTION FeatureTriangle triangleMix(FeatureTriangle f, FeatureTriangle g, float t)
 {
     FeatureTriangle r;
@@ -84,25 +67,18 @@ DRAPE_FUNCTION Vec3 featurePoint(FeatureTriangle f, Vec3 weights)
     return trianglePoint(f.m_p[0], f.m_p[1], f.m_p[2], weights);
 }
 
-DRAPE_FUNCTION float triangleExtent(FeatureTriangle f)
-{
-    return drapeMax(drapeMax(vec3NormMax(f.m_p[0]), vec3NormMax(f.m_p[1])), vec3NormMax(f.m_p[2]));
-}
-
-// A resting face with its area vector (twice the area, unit normal times length).
 typedef struct RestingFace
 {
     FeatureTriangle m_corners;
-    Vec3 m_area;
-    float m_areaLength;
+    FaceArea m_area;
 } RestingFace;
 
 // A moving face at the step's start and end.
 typedef struct MovingFace
 {
     FeatureTriangle m_start, m_end;
-    Vec3 m_areaStart, m_areaEnd;
-    float m_areaEndLength;
+    Vec3 m_areaStart;  // as triangleNormal() has it
+    FaceArea m_areaEnd;
 } MovingFace;
 
 // Bounds common to a pair of triangles. extent: largest coordinate of all their positions, m. reach: m.
@@ -153,11 +129,11 @@ DRAPE_FUNCTION void storeContact(Contact* contact, Vec3 normal, Vec3 point, Vec3
 }
 
 // True when q, a point of the edge, sees the point nearer than the face beyond the edge does: their offset does not
-// lean towards that face's third vertex.
-DRAPE_FUNCTION int leansAway(Vec3 offset, Vec3 opposite, Vec3 q)
+// lean towards that face's third vertex by more than the seam's width, m.
+DRAPE_FUNCTION int leansAway(Vec3 offset, Vec3 opposite, Vec3 q, float seam)
 {
     const Vec3 inward = vec3Sub(opposite, q);
-    return vec3Dot(offset, inward) <= DRAPE_SEAM * vec3Length(offset) * vec3Length(inward);
+    return vec3Dot(offset, inward) <= seam * vec3Length(inward);
 }
 
 DRAPE_NAMESPACE_END

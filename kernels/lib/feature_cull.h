@@ -4,6 +4,10 @@
 // Every comparison is loosened by kSlackShare of the pair's size, some thousand roundings. A feature whose shape makes
 // a direction worse than that (thin triangles, edges that are nearly parallel) is kept by its distance alone. Lanes
 // with NaN positions are dropped: each result depends on a comparison of theirs that must hold.
+//
+// Positions are relative to m_origin and err by a rounding of their size. Directions are made of differences before
+// that shift, since the shift would turn a short edge by as much over its length. The narrow phase has a frame of its
+// own, which does turn what is short against the pair: such features are kept by less.
 #ifndef DRAPE_LIB_FEATURE_CULL_H
 #define DRAPE_LIB_FEATURE_CULL_H
 
@@ -37,6 +41,7 @@ typedef struct CullTriangle
     Vec3 m_inward[3];           // unit, in the plane at the end, from edge i to the inside
     Vec3 m_along[3];            // unit, along edge i at the end
     float m_edgeLength[3];      // m, at the end
+    float m_height;             // m, the least altitude at the end
     float m_diameter;           // m, of all six positions
     float m_motion;             // m, of the fastest corner
     int m_thinStart, m_thinEnd;
@@ -50,13 +55,22 @@ typedef struct CullReach
     float m_slack, m_near, m_met, m_before, m_farthest;
 } CullReach;
 
-DRAPE_FUNCTION int cullNormal(const Vec3* p, Vec3* normal)
+// A triangle whose least altitude, or an edge whose length times the sine between edges, is below these shares of the
+// reach or of the pair's size: rounding in the narrow phase's frame turns it by more than the cull's slack covers, or
+// by so much that a place along it means nothing (2 √3 u over the share: 1e-4 and 0.02).
+#define DRAPE_CULL_SMALL 2.5e-3f
+#define DRAPE_CULL_TURNED 2e-3f
+#define DRAPE_CULL_SHORT 1e-5f
+
+// height: m, the least altitude.
+DRAPE_FUNCTION int cullNormal(const Vec3* p, Vec3* normal, float* height)
 {
     const Vec3 e0 = vec3Sub(p[1], p[0]), e1 = vec3Sub(p[2], p[0]), e2 = vec3Sub(p[2], p[1]);
     const Vec3 area = vec3Cross(e0, e1);
     const float length = vec3Length(area);
     const float longest = drapeMax(drapeMax(vec3Dot(e0, e0), vec3Dot(e1, e1)), vec3Dot(e2, e2));
     *normal = vec3Scale(area, drapeRatio(1.0f, length));
+    *height = drapeRatio(length, drapeSqrt(longest));
     return !(length > DRAPE_CULL_THIN * longest);
 }
 
@@ -76,15 +90,8 @@ DRAPE_FUNCTION DRAPE_UINT prepareCull(CullTriangle* cull, const DRAPE_GLOBAL flo
         cull->m_start[i] = cull->m_end[i];
     cull->m_origin = cull->m_end[0];
     cull->m_diameter = cull->m_motion = 0.0f;
-    for (int i = 0; i < 3; ++i)
-    {
-        cull->m_start[i] = vec3Sub(cull->m_start[i], cull->m_origin);
-        cull->m_end[i] = vec3Sub(cull->m_end[i], cull->m_origin);
-        cull->m_motion = drapeMax(cull->m_motion, vec3Length(vec3Sub(cull->m_end[i], cull->m_start[i])));
-    }
-    cull->m_motion *= 1.0f + DRAPE_CULL_SLACK;
-    cull->m_thinStart = cullNormal(cull->m_start, &cull->m_normal0);
-    cull->m_thinEnd = cullNormal(cull->m_end, &cull->m_normal1);
+    cull->m_thinStart = cullNormal(cull->m_start, &cull->m_normal0, &cull->m_height);
+    cull->m_thinEnd = cullNormal(cull->m_end, &cull->m_normal1, &cull->m_height);
     for (int i = 0; i < 3; ++i)
     {
         const Vec3 edge = vec3Sub(cull->m_end[i == 2 ? 0 : i + 1], cull->m_end[i]);
@@ -93,6 +100,13 @@ DRAPE_FUNCTION DRAPE_UINT prepareCull(CullTriangle* cull, const DRAPE_GLOBAL flo
         cull->m_along[i] = vec3Scale(edge, drapeRatio(1.0f, cull->m_edgeLength[i]));
         cull->m_inward[i] = vec3Cross(cull->m_normal1, cull->m_along[i]);
     }
+    for (int i = 0; i < 3; ++i)
+    {
+        cull->m_start[i] = vec3Sub(cull->m_start[i], cull->m_origin);
+        cull->m_end[i] = vec3Sub(cull->m_end[i], cull->m_origin);
+        cull->m_motion = drapeMax(cull->m_motion, vec3Length(vec3Sub(cull->m_end[i], cull->m_start[i])));
+    }
+    cull->m_motion *= 1.0f + DRAPE_CULL_SLACK;
     cull->m_diameter += 2.0f * cull->m_motion;
     return valid;
 }
@@ -125,7 +139,7 @@ DRAPE_FUNCTION LaneMask cullAtNode(const CullTriangle* cull, LanesVec3 v, float 
 DRAPE_FUNCTION LaneMask cullFaceVertex(const CullTriangle* cull, CullReach reach, const DRAPE_GLOBAL float* block)
 {
     const LanesVec3 v = lanesSubUniform(lanesLoadVec3(block, 0), cull->m_origin);
-    if (cull->m_thinEnd)
+    if (cull->m_thinEnd || cull->m_height < DRAPE_CULL_SMALL * reach.m_near)
     {
         const float far = reach.m_farthest + cull->m_diameter;
         return lanesDot(v, v) <= lanesSplat(far * far);
@@ -173,8 +187,11 @@ DRAPE_FUNCTION LaneMask cullNodeFace(const CullTriangle* cull, int i, CullReach 
     const LanesVec3 area = lanesCross(ca, ab);
     const Lanes square = lanesDot(area, area);
     // (x + y)² ≤ 2 (x² + y²)
-    const LaneMask around = lanesDot(x1, x1) <= 2.0f * (longest + reach.m_farthest * reach.m_farthest);
-    const LaneMask thin = square <= DRAPE_CULL_THIN * DRAPE_CULL_THIN * longest * longest;
+    const Lanes away = lanesDot(x1, x1);
+    const LaneMask around = away <= 2.0f * (longest + reach.m_farthest * reach.m_farthest);
+    // Thin, or so small that the products which place a node beside an edge, of |x1|² and the edge, err by 16 u.
+    const LaneMask thin = (square <= DRAPE_CULL_THIN * DRAPE_CULL_THIN * longest * longest) |
+                          (square * (reach.m_slack * reach.m_slack) <= 1e-12f * longest * away * away);
 
     const Lanes height = lanesDot(area, x1), before = lanesDot(area, x0);
     const Lanes depth = height * height;
@@ -221,8 +238,8 @@ DRAPE_FUNCTION CullEdges loadCullEdges(const CullTriangle* cull, const DRAPE_GLO
 DRAPE_FUNCTION LaneMask cullEdgeEdge(const CullTriangle* cull, int i, CullReach reach, const CullEdges* edges)
 {
     const int j = i == 2 ? 0 : i + 1;
-    const Vec3 across = vec3Sub(cull->m_end[j], cull->m_end[i]);
     const float acrossLength = cull->m_edgeLength[i];
+    const Vec3 across = vec3Scale(cull->m_along[i], acrossLength);
     const LanesVec3 along = edges->m_along, offset = lanesSubUniform(edges->m_a, cull->m_end[i]);
     const LanesVec3 direction = lanesCrossUniform(across, along);
     const Lanes square = lanesDot(direction, direction);
@@ -238,12 +255,14 @@ DRAPE_FUNCTION LaneMask cullEdgeEdge(const CullTriangle* cull, int i, CullReach 
     const Lanes facing = lanesDot(edges->m_axis, direction);
     const LaneMask admitted = facing * facing >= edges->m_cosine * square;
 
-    // Places of the closest points of the two lines, times the square; loosened by rounding, and where the edges may
-    // have met by how far they can have moved since.
+    // Places of the closest points of the two lines, times the square; loosened by rounding, which also turns the
+    // cloth's edge, seen over the gap between the lines, and where the edges may have met by how far they can have
+    // moved since.
     const Lanes s = lanesDot(lanesCross(offset, along), direction);
     const Lanes t = lanesDot(lanesCrossUniform(across, offset), direction);
-    const Lanes size = lanesNorm1(offset) + edges->m_length + acrossLength;
-    const Lanes loose = lengths * (4e-6f * size + lanesSelect(met, lanesSplat(reach.m_met), lanesSplat(0.0f)));
+    const Lanes size = lanesNorm1(offset) + edges->m_length + cull->m_diameter;
+    const Lanes loose = edges->m_length * (4e-6f * size * (acrossLength + reach.m_near) +
+                                           lanesSelect(met, lanesSplat(reach.m_met * acrossLength), lanesSplat(0.0f)));
     const LaneMask inside =
         (lanesMin(s, square - s) >= -loose * edges->m_length) & (lanesMin(-t, square + t) >= -loose * acrossLength);
 
@@ -251,7 +270,10 @@ DRAPE_FUNCTION LaneMask cullEdgeEdge(const CullTriangle* cull, int i, CullReach 
     const float far = reach.m_farthest + acrossLength;
     const LaneMask around = lanesDot(offset, offset) <= 2.0f * (edges->m_square + far * far);
     const LaneMask parallel = square <= (DRAPE_CULL_THIN * DRAPE_CULL_THIN) * lengths * lengths;
-    return around & (parallel | (inside & ((near & admitted) | met)));
+    const Lanes noise = size * size * edges->m_square;
+    const LaneMask turned = square <= (DRAPE_CULL_TURNED * DRAPE_CULL_TURNED) * noise;
+    const LaneMask shorter = square <= (DRAPE_CULL_SHORT * DRAPE_CULL_SHORT) * noise;
+    return around & (parallel | (shorter & near) | (inside & ((near & (admitted | turned)) | met)));
 }
 
 // Where to look for what may be in contact with a cloth triangle over the step. m_volume holds its way where it is

@@ -76,14 +76,14 @@ DRAPE_FUNCTION int faceMayMeet(const MovingFace* face, Vec3 vertex, float s0, fl
     const FeatureTriangle f0 = face->m_start, f1 = face->m_end;
     const float distance = meetingDistance(faceMotion(face), bounds);
     if (!volumeAdmitsMeeting(s0, vec3Length(face->m_areaStart), distance, bounds) ||
-        !volumeAdmitsMeeting(s1, face->m_areaEndLength, distance, bounds))
+        !volumeAdmitsMeeting(s1, face->m_areaEnd.m_length, distance, bounds))
         return 0;
     const Vec3 least = vec3Least(vec3Least(vec3Least(f0.m_p[0], f0.m_p[1]), vec3Least(f0.m_p[2], f1.m_p[0])),
                                  vec3Least(f1.m_p[1], f1.m_p[2]));
     const Vec3 most = vec3Most(vec3Most(vec3Most(f0.m_p[0], f0.m_p[1]), vec3Most(f0.m_p[2], f1.m_p[0])),
                                vec3Most(f1.m_p[1], f1.m_p[2]));
     if (boxesApart(least, most, vertex, vertex, DRAPE_SEAM * bounds.m_extent)) return 0;
-    const Vec3 weights = closestOnTriangle(vertex, f1.m_p[0], f1.m_p[1], f1.m_p[2]);
+    const Vec3 weights = closestOnFace(vertex, f1, face->m_areaEnd.m_thin);
     const Vec3 offset = vec3Sub(featurePoint(f1, weights), vertex);
     const float low =
         drapeMin(drapeMin(vec3Dot(offset, f1.m_p[0]), vec3Dot(offset, f1.m_p[1])), vec3Dot(offset, f1.m_p[2]));

@@ -27,30 +27,35 @@ DRAPE_FUNCTION int nodeFaceContact(Vec3 x0, Vec3 x1, const RestingFace* resting,
                                    PairBounds bounds, Contact* contact)
 {
     const FeatureTriangle face = resting->m_corners;
-    const float areaLength = resting->m_areaLength;
-    const float s0 = vec3Dot(resting->m_area, vec3Sub(x0, face.m_p[0]));
-    const float s1 = vec3Dot(resting->m_area, vec3Sub(x1, face.m_p[0]));
+    const Vec3 area = resting->m_area.m_vector;
+    const float areaLength = resting->m_area.m_length;
+    const int thin = resting->m_area.m_thin;
+    const float s0 = vec3Dot(area, vec3Sub(x0, face.m_p[0]));
+    const float s1 = vec3Dot(area, vec3Sub(x1, face.m_p[0]));
     const float before = bounds.m_mode == DRAPE_DISCRETE ? s1 : s0;
     const float side = before < 0.0f ? -1.0f : 1.0f;
     // A face whose area is too small for a length has no side; what is near is told below.
     const int passed = areaLength > 0.0f && side * s1 < 0.0f;
     // |s1| / |area| is a lower bound of the distance.
     if (!passed && drapeAbs(s1) > areaLength * bounds.m_reachSlack) return 0;
-    Vec3 normal = vec3Scale(resting->m_area, side * drapeRatio(1.0f, areaLength));
+    Vec3 normal = vec3Scale(area, side * drapeRatio(1.0f, areaLength));
 
     if (passed)  // the path went through the face's plane
     {
         const float time = s0 / (s0 - s1);
         const Vec3 hit = vec3Mix(x0, x1, time);
-        const Vec3 weights = closestOnTriangle(hit, face.m_p[0], face.m_p[1], face.m_p[2]);
+        const Vec3 weights = closestOnFace(hit, face, thin);
         const Vec3 point = featurePoint(face, weights);
-        if (vec3Length(vec3Sub(hit, point)) > DRAPE_SEAM * bounds.m_extent) return 0;
-        storeContact(contact, normal, point, vec3(1.0f, 0.0f, 0.0f), vec3Dot(normal, vec3Sub(x0, point)),
-                     vec3Dot(normal, vec3Sub(x1, point)), time);
-        return 1;
+        if (vec3Length(vec3Sub(hit, point)) <= DRAPE_SEAM * bounds.m_extent)
+        {
+            storeContact(contact, normal, point, vec3(1.0f, 0.0f, 0.0f), vec3Dot(normal, vec3Sub(x0, point)),
+                         vec3Dot(normal, vec3Sub(x1, point)), time);
+            return 1;
+        }
+        if (!thin) return 0;  // a thin face's plane turns freely about its length: passed beside it, it tells nothing
     }
 
-    const Vec3 weights = closestOnTriangle(x1, face.m_p[0], face.m_p[1], face.m_p[2]);
+    const Vec3 weights = closestOnFace(x1, face, thin);
     const Vec3 point = featurePoint(face, weights);
     const Vec3 offset = vec3Sub(x1, point);
     const float highFace =
@@ -58,10 +63,10 @@ DRAPE_FUNCTION int nodeFaceContact(Vec3 x0, Vec3 x1, const RestingFace* resting,
     if (provenApart(offset, vec3Dot(offset, x1), highFace, bounds)) return 0;
     const float distance = vec3Length(offset);
     const int onFace = weights.x > 0.0f && weights.y > 0.0f && weights.z > 0.0f;
-    if (distance > DRAPE_SEAM * bounds.m_extent && (!onFace || areaLength == 0.0f))
+    if (distance > DRAPE_SEAM * bounds.m_extent && (!onFace || thin))
     {
         normal = vec3Scale(offset, 1.0f / distance);
-        if (!coneAdmits(closestFeatureCone(weights, triangle, vertexCones, edgeCones), normal)) return 0;
+        if (!onFace && !coneAdmits(closestFeatureCone(weights, triangle, vertexCones, edgeCones), normal)) return 0;
     }
     else if (areaLength == 0.0f)
     {

@@ -110,8 +110,7 @@ DRAPE_FUNCTION int pairNodeFace(int i, const ClothView* cloth, DRAPE_UINT clothT
     face.m_corners.m_p[0] = vec3(0.0f, 0.0f, 0.0f);
     face.m_corners.m_p[1] = vec3Sub(b, a);
     face.m_corners.m_p[2] = vec3Sub(c, a);
-    face.m_area = triangleNormal(face.m_corners);
-    face.m_areaLength = areaLengthOf(face.m_area);
+    face.m_area = faceArea(face.m_corners);
     const float extent = drapeMax(stepExtent(cloth, vec3NormMax(x0), vec3NormMax(x1)), triangleExtent(face.m_corners));
     contact->m_kind = DRAPE_NODE_FACE;
     contact->m_clothFeature = node;
@@ -142,8 +141,7 @@ DRAPE_FUNCTION int pairFaceVertex(const ClothView* cloth, DRAPE_UINT clothTriang
         face.m_end.m_p[i] = vec3Sub(vec3Load(cloth->m_end, triangle->m_vertices[i]), vertex);
     }
     face.m_areaStart = triangleNormal(face.m_start);
-    face.m_areaEnd = triangleNormal(face.m_end);
-    face.m_areaEndLength = areaLengthOf(face.m_areaEnd);
+    face.m_areaEnd = faceArea(face.m_end);
     const float extent = stepExtent(cloth, triangleExtent(face.m_start), triangleExtent(face.m_end));
     DRAPE_UINT beyond[3];
     for (int edge = 0; edge < 3; ++edge)

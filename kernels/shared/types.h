@@ -8,6 +8,8 @@
 #define DRAPE_INT int
 #define DRAPE_GLOBAL __global
 #define DRAPE_FUNCTION static inline
+// For what is seldom called: inlined it would cost its callers registers.
+#define DRAPE_RARE_FUNCTION static __attribute__((noinline))
 #define DRAPE_NAMESPACE_BEGIN
 #define DRAPE_NAMESPACE_END
 // Before a loop over a volume's directions, whose bodies differ: without it compilers keep the choices in the loop.
@@ -21,6 +23,7 @@
 #define DRAPE_INT std::int32_t
 #define DRAPE_GLOBAL
 #define DRAPE_FUNCTION inline
+#define DRAPE_RARE_FUNCTION inline
 #define DRAPE_NAMESPACE_BEGIN \
     namespace drape           \
     {

@@ -104,10 +104,11 @@ TEST_P(StressRows, Row04InTheOthersPlaneButOutside)
 
 TEST_P(StressRows, Row05NeedlesZeroAreasAndDuplicateVertices)
 {
-    const Corners needle = {1, -1, 1, 1, 1, 1, 1, 1, 1.00000001f}, thinner = {1, -1, 1, 1, 1, 1, 1 + 1e-7f, 1, 1};
+    const Corners needle = {1, -1, 1, 1, 1, 1, 1, 1, 1.001f},
+                  thinnest = {1, -1, 1, 1, 1, 1, std::nextafter(1.0f, 2.0f), 1, 1};
     const Corners segment = {1, -1, 1, 1, 0.5f, 1, 1, 1, 1}, doubled = {1, -1, 1, 1, 1, 1, 1, 1, 1};
     const Corners point = {1, 0, 1, 1, 0, 1, 1, 0, 1};
-    for (const Corners& shape : {needle, thinner, segment, doubled, point})
+    for (const Corners& shape : {needle, thinnest, segment, doubled, point})
     {
         expectAllHit({shape, kFace});
         expectAllHit({kFace, shape});
@@ -134,8 +135,9 @@ TEST_P(StressRows, Row05NeedlesZeroAreasAndDuplicateVertices)
         TrianglePair pair = {{}, kFace};
         for (float& coordinate : pair.m_cloth)
             coordinate = random.uniform(-1, 3);
+        const float width = std::pow(10.0f, random.uniform(-7, -3));
         for (std::size_t i = 0; i < 3; ++i)
-            pair.m_cloth[6 + i] = pair.m_cloth[3 + i] + random.uniform(-1e-8f, 1e-8f);
+            pair.m_cloth[6 + i] = pair.m_cloth[3 + i] + random.uniform(-width, width);
         if (exactlyIntersect(pair)) meeting.push_back(pair);
     }
     EXPECT_EQ(run(meeting).m_intersecting, meeting.size()) << "seed 1005";

@@ -1,6 +1,7 @@
 #include "tests/support/cases.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "scenes/cloth_grid.h"
 #include "scenes/shapes.h"
@@ -14,6 +15,52 @@ Vector3 cornerOf(const TriangleMesh& mesh, std::size_t triangle, int corner)
 {
     const float* p = &mesh.m_positions[3 * std::size_t(mesh.m_triangles[3 * triangle + std::size_t(corner)])];
     return {p[0], p[1], p[2]};
+}
+
+Vector3 randomDirection(Random& random)
+{
+    Vector3 direction;
+    do
+    {
+        direction = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    } while (length(direction) > 1 || length(direction) < 0.1);
+    return normalized(direction);
+}
+
+// A triangle with its first corner at the origin, a point of it and the direction of its first edge.
+struct RandomTriangle
+{
+    Vector3 m_corners[3], m_point, m_along;
+};
+
+RandomTriangle randomTriangle(float size, bool thin, Random& random)
+{
+    RandomTriangle result;
+    const double longest = size * random.uniform(0.1f, 1.0f);
+    const double width = longest * (thin ? std::pow(10.0, random.uniform(-7.0f, -3.0f)) : random.uniform(0.2f, 0.8f));
+    result.m_along = randomDirection(random);
+    const Vector3 across = normalized(cross(result.m_along, randomDirection(random)));
+    const bool needle = random.below(2) == 0;
+    result.m_corners[1] = longest * result.m_along;
+    result.m_corners[2] =
+        (needle && thin) ? result.m_corners[1] + width * normalized(across + random.uniform(-1, 1) * result.m_along)
+                         : double(random.uniform(0.2f, 0.8f)) * result.m_corners[1] + width * across;
+    if (random.below(2)) std::swap(result.m_corners[1], result.m_corners[2]);
+    const double first = random.uniform(0, 1), second = (1 - first) * random.uniform(0, 1);
+    result.m_point = first * result.m_corners[1] + second * result.m_corners[2];
+    return result;
+}
+
+// Appends the triangle with its point moved to the place, its corners turned by `turn`.
+void append(TriangleMesh& mesh, const RandomTriangle& triangle, const Vector3& place, std::uint32_t turn)
+{
+    for (std::uint32_t i = 0; i < 3; ++i)
+    {
+        const Vector3 p = triangle.m_corners[(i + turn) % 3] + (place - triangle.m_point);
+        mesh.m_triangles.push_back(std::int32_t(mesh.vertexCount()));
+        for (int axis = 0; axis < 3; ++axis)
+            mesh.m_positions.push_back(float(p[axis]));
+    }
 }
 
 // Height of the surface over (x, z), the highest; false when there is none.
@@ -122,6 +169,30 @@ StepCase soupCase(int clothTriangles, int obstacleTriangles, bool moving, std::u
                      0.02f};
     step.m_end = step.m_cloth.m_positions;
     if (moving) disturb(step.m_end, 0.1f, random);
+    return step;
+}
+
+StepCase needleCase(Thin thin, int triangles, float size, bool moving, std::uint32_t seed)
+{
+    Random random(seed);
+    StepCase step = {moving ? "moving needles" : "needles", seed, {}, {}, {}, 0.02f};
+    for (int i = 0; i < triangles; ++i)
+    {
+        const RandomTriangle obstacle = randomTriangle(size, thin != Thin::Cloth, random);
+        const RandomTriangle cloth = randomTriangle(size, thin != Thin::Obstacle, random);
+        const Vector3 place = {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
+        const Vector3 apart =
+            random.below(3) ? normalized(cross(cloth.m_along, obstacle.m_along)) : randomDirection(random);
+        append(step.m_obstacle, obstacle, place, random.below(3));
+        append(step.m_cloth, cloth, place + double(step.m_thickness * random.uniform(0.01f, 1.2f)) * apart,
+               random.below(3));
+        const float far = moving ? 5.0f * step.m_thickness : 0.0f;
+        const float way[3] = {random.uniform(-far, far), random.uniform(-far, far), random.uniform(-far, far)};
+        for (std::size_t k = step.m_end.size(); k < step.m_cloth.m_positions.size(); ++k)
+            step.m_end.push_back(step.m_cloth.m_positions[k] + way[k % 3]);
+    }
+    // What lies near at the step's end is wanted.
+    step.m_end.swap(step.m_cloth.m_positions);
     return step;
 }
 

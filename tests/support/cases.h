@@ -58,6 +58,18 @@ StepCase fallingCase(const std::string& shape, int nodes, float thickness, std::
 // Triangles that share nothing, crossing one another; at rest or moving.
 StepCase soupCase(int clothTriangles, int obstacleTriangles, bool moving, std::uint32_t seed);
 
+// Which side's triangles are needles and caps, turned at random, 10³ to 10⁷ times as long as they are wide before their
+// corners are rounded; the other's are fat.
+enum class Thin
+{
+    Cloth,
+    Obstacle,
+    Both
+};
+// Loose triangles of up to `size` (m), cloth triangle i near obstacle triangle i; at rest, or each of them moving along
+// a line of its own of up to five thicknesses.
+StepCase needleCase(Thin thin, int triangles, float size, bool moving, std::uint32_t seed);
+
 // The obstacle's triangles over the box of the cloth grown by `margin`; vertices nobody uses are dropped.
 TriangleMesh partNear(const TriangleMesh& obstacle, const std::vector<float>& positions, float margin);
 }  // namespace drape::test

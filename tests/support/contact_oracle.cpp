@@ -246,13 +246,19 @@ std::vector<RequiredContact> requiredContacts(const Side& cloth, const Side& obs
     return Finder(cloth, obstacle, reach).run();
 }
 
-double contactDistance(const Contact& contact, const Side& cloth, const Side& obstacle)
+Vector3 contactOffset(const Contact& contact, const Side& cloth, const Side& obstacle)
 {
     const FeaturePair pair = featuresOf(contact, cloth, obstacle);
     const std::vector<Vector3>&p = pair.m_cloth.m_points, &q = pair.m_obstacle.m_points;
-    if (contact.m_kind == DRAPE_NODE_FACE) return nearestOnTriangle(p[0], q.data()).m_distance;
-    if (contact.m_kind == DRAPE_FACE_VERTEX) return nearestOnTriangle(q[0], p.data()).m_distance;
-    return nearestOnSegments(p[0], p[1], q[0], q[1]).m_distance;
+    if (contact.m_kind == DRAPE_NODE_FACE) return p[0] - nearestOnTriangle(p[0], q.data()).m_point;
+    if (contact.m_kind == DRAPE_FACE_VERTEX) return nearestOnTriangle(q[0], p.data()).m_point - q[0];
+    const NearestOnSegments nearest = nearestOnSegments(p[0], p[1], q[0], q[1]);
+    return nearest.m_firstPoint - nearest.m_secondPoint;
+}
+
+double contactDistance(const Contact& contact, const Side& cloth, const Side& obstacle)
+{
+    return length(contactOffset(contact, cloth, obstacle));
 }
 
 double contactExtent(const Contact& contact, const Side& cloth, const Side& obstacle)

@@ -34,6 +34,8 @@ struct RequiredContact
 // Of cloth.m_end against obstacle.m_start; the cloth must not have passed anything. In canonical order.
 std::vector<RequiredContact> requiredContacts(const Side& cloth, const Side& obstacle, double reach);
 
+// From the obstacle's feature to the cloth's, the cloth at its end, between their closest points.
+Vector3 contactOffset(const Contact& contact, const Side& cloth, const Side& obstacle);
 // True distance of the features that a contact names, the cloth at its end.
 double contactDistance(const Contact& contact, const Side& cloth, const Side& obstacle);
 // Largest coordinate of the features that a contact names, relative to one of the obstacle's vertices.

@@ -41,7 +41,15 @@ NearestOnTriangle nearestOnTriangle(const Vector3& p, const Vector3 corners[3])
     const double determinant = uu * vv - uv * uv;
     if (determinant > 1e-24 * uu * vv)
     {
-        const double second = (wu * vv - wv * uv) / determinant, third = (wv * uu - wu * uv) / determinant;
+        double second = (wu * vv - wv * uv) / determinant, third = (wv * uu - wu * uv) / determinant;
+        // The determinant of a thin triangle has lost digits: what is left along its edges is solved for again.
+        for (int round = 0; round < 3; ++round)
+        {
+            const Vector3 left = w - (second * u + third * v);
+            const double leftU = dot(left, u), leftV = dot(left, v);
+            second += (leftU * vv - leftV * uv) / determinant;
+            third += (leftV * uu - leftU * uv) / determinant;
+        }
         if (second > 0 && third > 0 && second + third < 1)
         {
             const Vector3 point = corners[0] + second * u + third * v;
