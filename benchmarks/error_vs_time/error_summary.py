@@ -88,16 +88,14 @@ def knob_cell(row):
 
 def knobs_table(rows):
     """Every setting that was tried, by scene: ms a frame, and what was wrong."""
-    scenes = in_order(rows, "scene")
+    scenes, knobs, methods = in_order(rows, "scene"), in_order(rows, "knob"), list(NAMES)
     lines = {}
-    for row in rows:
-        if row["knob"] in ("fall", "rest"):
-            continue
-        lines.setdefault((NAMES[row["method"]], setting_of(row)), {})[row["scene"]] = knob_cell(row)
-    order = sorted(lines, key=lambda line: list(NAMES.values()).index(line[0]))
+    for row in sorted(rows, key=lambda row: (methods.index(row["method"]), knobs.index(row["knob"]), row["value"])):
+        if row["knob"] not in ("fall", "rest"):
+            lines.setdefault((NAMES[row["method"]], setting_of(row)), {})[row["scene"]] = knob_cell(row)
     return ("Median ms a frame; in brackets what was wrong in any step: d deepest penetration over thickness, p most "
             "intersecting pairs, n nodes through.\n\n") + \
-        table(["method", "knob", *scenes], [[*line, *(lines[line].get(scene, "–") for scene in scenes)] for line in order])
+        table(["method", "knob", *scenes], [[*line, *(lines[line].get(scene, "–") for scene in scenes)] for line in lines])
 
 
 def falls_text(rows):
@@ -147,6 +145,17 @@ def detector_table(rows):
                   "distance off by, of the extent, at most", "normal off by, degrees, 99 %"], lines)
 
 
+def misses_text(rows):
+    """Of queries made at random it can be said how rare a miss is."""
+    made = [row for row in rows if is_drape(row) and row["knob"] == "defaults" and not row["scene"].startswith("published")]
+    named = {row["scene"]: row for row in made}  # of host and device the latter: the same answers
+    pairs = sum(row["true_pairs"] for row in named.values())
+    if not pairs or any(row["misses"] for row in named.values()):
+        return ""
+    return (f"Of the queries made here, the defaults of continuous collision and of the contacts missed none of "
+            f"{pairs:,.0f} true pairs: fewer than {3 / pairs:.1g} of such pairs are missed, at 95 %.\n\n")
+
+
 def left_out_text(rows):
     said = []
     for ended, why in (("left out", "of Bullet's, on scenes where it had stalled three times in a row"),
@@ -172,7 +181,7 @@ def summary(folder, rows):
     if simulations:
         text += scenes_table(simulations) + falls_text(simulations) + rest_text(simulations) + \
             knobs_table(simulations) + left_out_text(simulations)
-    return text + (detector_table(detector) if detector else "") + pictures(folder)
+    return text + (detector_table(detector) + misses_text(detector) if detector else "") + pictures(folder)
 
 
 def write(readme, text):

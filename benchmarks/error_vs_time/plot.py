@@ -41,9 +41,13 @@ SCATTERED = ("fall", "traversal", "mode", "test", "rest")
 
 
 def points_of(rows, error):
-    """(time, low, high, error, name) of the runs that ended and have both."""
+    """(time, low, high, error, name) of the runs that ended and have both, at equal simulated time."""
     points = []
     for row in rows:
+        if (row["knob"] == "rest") != (error == "rest_speed_mm_s"):
+            continue
+        if row["knob"] == "reference" and error == "shape_error":
+            continue  # against itself
         prefix, suffix, _ = TIMES[row["part"]]
         time = row.get(f"{prefix}median{suffix}")
         if row["ended"] == "whole" and error in row and time is not None:
@@ -61,10 +65,18 @@ def pareto(points):
     return hull
 
 
+def base_of(rows, method, knob):
+    """The run in which the knob has its usual value: Bullet's are turned at a voxel of their own."""
+    turned = select(rows, method=method, knob=knob)
+    if method != "bullet" or knob == "voxel" or not turned:
+        return select(rows, method=method, knob="defaults")
+    return select(rows, method=method, knob="voxel", voxel_m=turned[0]["voxel_m"])
+
+
 def draw_knob(axes, rows, method, knob, error, floor):
     points = points_of(select(rows, method=method, knob=knob), error)
     if points and knob not in SCATTERED + ("defaults", "reference"):
-        points += points_of(select(rows, method=method, knob="defaults"), error)
+        points += points_of(base_of(rows, method, knob), error)
     if not points:
         return
     points.sort(key=lambda point: point[0])
@@ -96,7 +108,7 @@ def draw_panel(axes, rows, error):
         for knob in in_order(select(rows, method=method), "knob"):
             draw_knob(axes, rows, method, knob, error, floor)
     for drape, colour in ((True, "C0"), (False, "C3")):
-        hull = pareto(points_of([row for row in rows if is_drape(row) == drape], error))
+        hull = pareto(points_of([row for row in rows if is_drape(row) == drape and row["knob"] != "fall"], error))
         if hull:
             axes.step([x for x, _ in hull], [y or floor for _, y in hull], where="post", color=colour, linewidth=2.5,
                       alpha=0.35)
@@ -104,7 +116,7 @@ def draw_panel(axes, rows, error):
     axes.axhspan(floor / 2, floor * 2, color="0.9")
     axes.text(0.99, 0.02, "zero", transform=axes.transAxes, ha="right", fontsize=7)
     axes.set(xscale="log", yscale="log", title=rows[0]["scene"], xlabel=TIMES[rows[0]["part"]][2])
-    axes.set_ylim(bottom=floor / 2)
+    axes.set_ylim(floor / 2, 3 * max(values, default=1))
     axes.yaxis.set_major_formatter(lambda value, _: "" if value < 2.5 * floor else f"{value:g}")  # the strip is zero
     axes.yaxis.set_minor_formatter(lambda value, _: "")
     axes.grid(True, which="major", alpha=0.25)
