@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Measures error against run time on this machine: run.sh [options of error_vs_time] OUT_DIR
 #
-#   --minutes N    time to spend (default 20); every knob's first value on every scene comes first, and what does not
+#   --minutes N    time to spend (default 22); every knob's first value on every scene comes first, and what does not
 #                  fit is named and left out
 #   --models DIR   folder of bunny_69k.obj and dragon_871k.ply; --device, --backend, --part, --scene, --knob: see --help
 #   --truth DIR    folder of ccd_queries.bin and triangle_pairs.bin, published queries with exact answers; without it
@@ -17,7 +17,7 @@ set -uo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 bin=$here/../../build/release/bin
 commit=$(git -C "$here" describe --always --dirty 2>/dev/null || echo unknown)
-minutes=20 arguments=() out=''
+minutes=22 arguments=() out=''
 while [[ $# -gt 0 ]]; do
   case $1 in
     --bin) bin=$2; shift ;;
