@@ -21,9 +21,9 @@ class ErrorVsTimeTest(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = folder.name
 
-    def rows(self, *arguments, code=0):
+    def rows(self, *arguments, code=0, quick=True):
         path = os.path.join(self.folder, "error_vs_time")
-        result = subprocess.run([PROGRAM, "--quick", "--csv", path + ".csv", "--json", path + ".json", *arguments],
+        result = subprocess.run([PROGRAM, *["--quick"] * quick, "--csv", path + ".csv", "--json", path + ".json", *arguments],
                                 capture_output=True, text=True, timeout=280)
         self.assertEqual(result.returncode, code, result.stderr)
         with open(path + ".json") as file:
@@ -100,11 +100,17 @@ class ErrorVsTimeTest(unittest.TestCase):
 
     def test_capped_runs_have_no_errors_to_show(self):
         rows = self.rows("--part", "simulation", "--scene", "stairs", "--knob", "defaults", "--backend", "host", "--cap",
-                         "0.000001")
+                         "0.000001", "--frames", "2000")
         self.assertTrue(rows)
         for row in rows:
             self.assertEqual(row["ended"], "capped")
             self.assertFalse(row.get("penetration_max"))
+
+    def test_runs_of_the_built_in_are_left_out_where_it_stalls(self):
+        rows = self.rows("--part", "simulation", "--scene", "stairs", "--knob", "voxel", "--backend", "host", "--cap",
+                         "0.000001", "--frames", "2000", quick=False)
+        self.assertEqual([row["ended"] for row in rows if row["method"] == "bullet"],
+                         ["capped", "capped", "capped", "left out"])
 
     def test_what_does_not_fit_into_the_time_is_named(self):
         rows = self.rows("--part", "simulation", "--backend", "host", "--minutes", "0.0001", code=1)
