@@ -11,10 +11,12 @@ SIMULATION_ERRORS = (
     ("nodes_through", "nodes that went through the obstacle", "through"),
     ("late_speed_mm_s", "RMS speed in the last tenth of the run, mm/s", "late_speed"),
     ("rest_speed_mm_s", "RMS speed at rest, mm/s", "rest"),
-    ("energy_gain", "energy that no link had held / energy of the fall", "energy"),
+    ("energy_rise", "rise of kinetic and height energy / energy of the fall", "energy_rise"),
+    ("energy_gain", "rise of energy that no link had held / energy of the fall", "energy"),
     ("shape_error", "shape against small steps / thickness", "shape"),
 )
-IN_TABLE = ("penetration_max", "intersecting_end", "nodes_through", "late_speed_mm_s", "energy_gain", "shape_error")
+IN_TABLE = ("penetration_max", "intersecting_end", "nodes_through", "late_speed_mm_s", "energy_rise", "energy_gain",
+            "shape_error")
 COUNTS = ("intersecting_end", "nodes_through")
 NAMES = {"drape": "Drape, device", "drape_host": "Drape, host", "bullet": "Bullet built in",
          "plain": "closest points, plainly"}

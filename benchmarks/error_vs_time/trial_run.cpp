@@ -33,19 +33,27 @@ std::vector<std::string> childArguments(const ErrorOptions& options, const std::
     return arguments;
 }
 
-// The largest energy of motion that came in from any step to a later one and that no link had held, over what the fall
-// gave.
-double energyGain(const std::vector<ClothEnergy>& energies)
+// Over what the fall gave: the largest rise of the energy of motion from any step to a later one, and how much of such
+// a rise no link had held.
+struct EnergyErrors
 {
-    if (energies.empty()) return 0;
-    double leastMotion = energies.front().m_motion, least = leastMotion + energies.front().m_links, gain = 0;
+    double m_rise = 0, m_gain = 0;
+};
+
+EnergyErrors energyErrors(const std::vector<ClothEnergy>& energies)
+{
+    EnergyErrors errors;
+    if (energies.empty()) return errors;
+    double leastMotion = energies.front().m_motion, least = leastMotion + energies.front().m_links;
     for (const ClothEnergy& energy : energies)
     {
-        gain = std::max(gain, energy.m_motion - least);
+        errors.m_rise = std::max(errors.m_rise, energy.m_motion - leastMotion);
+        errors.m_gain = std::max(errors.m_gain, energy.m_motion - least);
         leastMotion = std::min(leastMotion, energy.m_motion);
         least = std::min(least, energy.m_motion + energy.m_links);
     }
-    return gain / std::max(energies.front().m_motion - leastMotion, 1e-9);
+    const double fall = std::max(energies.front().m_motion - leastMotion, 1e-9);
+    return {errors.m_rise / fall, errors.m_gain / fall};
 }
 
 double lateSpeed(const std::vector<double>& speeds)
@@ -175,7 +183,8 @@ TrialResult runTrial(const ErrorOptions& options, const std::string& scene, cons
     const char* speed = trial.m_knob == "rest" ? "rest_speed_mm_s" : "late_speed_mm_s";
     result.m_row[speed] = 1000 * end.at("late_speed").get<double>();
     result.m_row["nodes_through"] = end.at("crossed");
-    if (end.contains("energy_gain")) result.m_row["energy_gain"] = end.at("energy_gain");
+    for (const char* energy : {"energy_rise", "energy_gain"})
+        if (end.contains(energy)) result.m_row[energy] = end.at(energy);
     result.m_row["device"] = end.at("device");
     result.m_final = end.at("final").get<std::vector<float>>();
     result.m_hash = hashText(steps.back().m_hash);
@@ -198,7 +207,12 @@ int streamTrial(const ErrorOptions& options, const ErrorScene& scene, const Tria
                   end["late_speed"] = lateSpeed(simulation->speeds());
                   end["crossed"] = simulation->crossed();
                   // An obstacle that moves does work.
-                  if (own.m_rise == 0) end["energy_gain"] = energyGain(simulation->energies());
+                  if (own.m_rise == 0)
+                  {
+                      const EnergyErrors errors = energyErrors(simulation->energies());
+                      end["energy_rise"] = errors.m_rise;
+                      end["energy_gain"] = errors.m_gain;
+                  }
                   end["final"] = simulation->positions();
                   return Row{{"end", end}}.dump();
               });

@@ -49,6 +49,8 @@ class ErrorVsTimeTest(unittest.TestCase):
                 self.assertEqual(float(row["shape_error"]), 0)
             # An obstacle that moves brings energy in.
             self.assertEqual(row["energy_gain"] != "", row["scene"] == "stairs")
+            if row["energy_gain"]:
+                self.assertLessEqual(float(row["energy_gain"]), float(row["energy_rise"]))
         # At 30 m/s neither the built-in collision nor the discrete mode sees the plate.
         for wanted in ({"method": "bullet"}, {"setting": "discrete"}):
             through = [row for row in rows if row["scene"] == "plate" and wanted.items() <= row.items()]
