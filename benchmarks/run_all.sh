@@ -4,25 +4,27 @@
 #   --device NAME    part of an OpenCL device's name (default: the first GPU, else the first device)
 #   --models DIR     folder of bunny_69k.obj, dragon_871k.ply, spot_6k.obj; what is not there is left out
 #   --bin DIR        folder of the programs (default: build/release/bin)
-#   --minutes N      time to spend (default 60); what does not fit is named and left out
+#   --minutes N      time to spend (default 80); what does not fit is named and left out
+#   --truth DIR      folder of published queries with exact answers, see error_vs_time/run.sh
 #   --commit TEXT    what is measured (default: git describe)
 #   --reference DIR  OUT_DIR of an earlier run: contacts must have its hashes, and the host and the peers are not
 #                    measured again
 #   --quick          small inputs only
 #
-# Writes bench_step.csv and .json, study.csv and .json, and cloth_drop.json where that program and the bunny are; then the
-# plots beside them, and the tables in README.md where OUT_DIR lies under results/ here. Measure on an idle machine.
-# Ends with 3 when a row is void, with 1 when something could not be measured.
+# Writes bench_step.csv and .json, study.csv and .json, and, where Bullet's part is built, error_vs_time.csv and .json and
+# cloth_drop.json (of the bunny); then the plots beside them, and the tables in README.md where OUT_DIR lies under results/
+# here. Measure on an idle machine. Ends with 3 when a row is void, with 1 when something could not be measured.
 set -uo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 bin=$here/../build/release/bin
 commit=$(git -C "$here" describe --always --dirty 2>/dev/null || echo unknown)
-minutes=60 device='' models='' reference='' quick='' out=''
+minutes=80 device='' models='' truth='' reference='' quick='' out=''
 while [[ $# -gt 0 ]]; do
   case $1 in
     --device) device=$2; shift ;;
     --models) models=$2; shift ;;
+    --truth) truth=$2; shift ;;
     --bin) bin=$2; shift ;;
     --minutes) minutes=$2; shift ;;
     --commit) commit=$2; shift ;;
@@ -33,7 +35,7 @@ while [[ $# -gt 0 ]]; do
   esac
   shift
 done
-[[ -n $out ]] || { sed -n '2,16s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 2; }
+[[ -n $out ]] || { sed -n '2,17s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 2; }
 mkdir -p "$out" || exit 1
 
 common=(--commit "$commit")
@@ -42,28 +44,37 @@ common=(--commit "$commit")
 [[ -z $quick ]] || common+=(--quick)
 
 worst=0
+# minutes_of SHARE
+minutes_of() { awk "BEGIN { print $minutes * $1 }"; }
+# note CODE: remembers the worst
+note() { [[ $1 == 0 || ($worst == 3 && $1 == 1) ]] || worst=$1; }
 # measure NAME SHARE_OF_THE_MINUTES ARGUMENTS…
 measure() {
-  local name=$1 share=$2 code
+  local name=$1 share=$2
   shift 2
-  "$bin/$name" "${common[@]}" --minutes "$(awk "BEGIN { print $minutes * $share }")" \
+  "$bin/$name" "${common[@]}" --minutes "$(minutes_of "$share")" \
     --csv "$out/$name.csv" --json "$out/$name.json" "$@"
-  code=$?
-  [[ $code == 0 || ($worst == 3 && $code == 1) ]] || worst=$code
+  note $?
 }
 
 step=()
 if [[ -n $reference ]]; then
   step=(--reference "$reference/bench_step.json" --method drape --method drape_kernels)
 fi
-measure bench_step 0.6 "${step[@]}"
-measure study 0.35
+measure bench_step 0.45 "${step[@]}"
+measure study 0.27
 
 bunny=/usr/share/glmark2/models/bunny.obj
 [[ -z $models || ! -f $models/bunny_69k.obj ]] || bunny=$models/bunny_69k.obj
 if [[ -z $quick && -x $bin/cloth_drop && -f $bunny ]]; then
   "$bin/cloth_drop" --obstacle "$bunny" --compare --quiet ${device:+--device "$device"} \
     --json "$out/cloth_drop.json" || worst=1
+fi
+
+if [[ -x $bin/error_vs_time ]]; then
+  bash "$here/error_vs_time/run.sh" --bin "$bin" "${common[@]}" --minutes "$(minutes_of 0.25)" \
+    ${truth:+--truth "$truth"} "$out"
+  note $?
 fi
 
 # Debian's interpreter first: its matplotlib is not seen by others.

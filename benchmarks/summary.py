@@ -141,7 +141,7 @@ def built_in_line(folder, rows):
 
 
 def pictures(folder):
-    names = sorted(name for name in os.listdir(folder) if name.endswith(".png"))
+    names = sorted(name for name in os.listdir(folder) if name.endswith(".png") and not name.startswith("error_"))
     relative = "results/" + os.path.basename(folder)
     return "".join(f"![{name[:-4]}]({relative}/{name})\n" for name in names) + "\n" if names else ""
 

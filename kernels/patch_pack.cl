@@ -107,8 +107,9 @@ typedef struct PatchFaces
 static NormalCone faceCone(const PatchFaces* faces, __global const Triangle* triangle)
 {
     Vec3 p[3], normal;
+    float height;
     for (int k = 0; k < 3; ++k) p[k] = vec3Load(faces->m_positions, triangle->m_vertices[k]);
-    const int thin = cullNormal(p, &normal);
+    const int thin = cullNormal(p, &normal, &height);
     const int sure = !thin && cornersSum(p) <= DRAPE_FARTHEST;
     return normalCone(normal, sure ? 1.0f : -1.0f);
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "benchmarks/support/models.h"
+#include "scenes/random.h"
 #include "scenes/shapes.h"
 
 namespace drape::bench
@@ -12,10 +13,14 @@ namespace
 constexpr float kPlateHeight = 1.0f;       // m
 constexpr float kPlateThickness = 0.004f;  // m, a fifth of the contact's
 constexpr double kPlateSpeed = 30;         // m/s: half a metre a frame
+constexpr float kPlateRun = 1.2f;  // m from the plate to the cloth: Bullet knows a body's speed from its second step on
 constexpr int kBoards = 24;
 constexpr float kBoardThickness = 0.008f;  // m
 constexpr float kBoardPitch = 0.03f;       // m: the gaps are 22 mm wide
 constexpr float kBoardTurn = 0.26f;        // rad, 15 degrees
+// How much falls differ: any turn, shifts that leave the obstacle under the cloth, and throws.
+constexpr double kShift = 0.25;  // m
+constexpr double kThrow = 8;     // m/s downwards
 
 // Appends the mesh, turned about y and raised.
 void append(TriangleMesh& all, const TriangleMesh& mesh, float turn, float height)
@@ -57,7 +62,8 @@ bool makeObstacle(ErrorScene& scene, const std::vector<std::string>& folders, fl
     {
         append(obstacle, makeBox(1.2f, kPlateThickness, 1.2f), 0, kPlateHeight);
         clothSize = 1.8f;
-        scene.m_speed = kPlateSpeed;
+        drop = kPlateRun;
+        scene.m_rise = kPlateSpeed;
         scene.m_symmetric = true;
     }
     else if (scene.m_name == "pile")
@@ -93,5 +99,20 @@ bool makeErrorScene(const std::string& name, bool quick, const std::vector<std::
     scene.m_drop.m_dt = kFrameTime;
     scene.m_drop.m_thickness = kThickness;
     return true;
+}
+
+void varyFall(ErrorScene& scene, std::uint32_t seed)
+{
+    Random random(seed);
+    const double turn = random.within(0, 2 * 3.14159265358979), shiftX = random.within(-kShift, kShift),
+                 shiftZ = random.within(-kShift, kShift);
+    std::vector<float>& positions = scene.m_drop.m_cloth.m_mesh.m_positions;
+    for (std::size_t i = 0; i < positions.size(); i += 3)
+    {
+        const double x = positions[i], z = positions[i + 2];
+        positions[i] = float(std::cos(turn) * x + std::sin(turn) * z + shiftX);
+        positions[i + 2] = float(std::cos(turn) * z - std::sin(turn) * x + shiftZ);
+    }
+    scene.m_drop.m_dropSpeed = random.within(0, kThrow);
 }
 }  // namespace drape::bench

@@ -1,31 +1,39 @@
 #!/usr/bin/env bash
 # Measures error against run time on this machine: run.sh [options of error_vs_time] OUT_DIR
 #
-#   --minutes N    time to spend; what does not fit is named and left out (all of it takes two hours or so)
-#   --models DIR   folder of bunny_69k.obj and dragon_871k.ply; --device, --backend, --scene, --knob: see --help
+#   --minutes N    time to spend (default 22); every knob's first value on every scene comes first, and what does not
+#                  fit is named and left out
+#   --models DIR   folder of bunny_69k.obj and dragon_871k.ply; --device, --backend, --part, --scene, --knob: see --help
+#   --truth DIR    folder of ccd_queries.bin and triangle_pairs.bin, published queries with exact answers; without it
+#                  only queries whose answers are made here
+#   --commit TEXT  what is measured (default: git describe)
 #   --bin DIR      folder of the program (default: build/release/bin)
 #
-# Writes error_vs_time.csv and .json and the plots into OUT_DIR, and the table into benchmarks/README.md where OUT_DIR lies
-# under benchmarks/results/. Measure on an idle machine. Ends with 3 when a row is void, with 1 when something is missing.
+# Writes error_vs_time.csv and .json and the plots into OUT_DIR, and the tables into benchmarks/README.md where OUT_DIR
+# lies under benchmarks/results/. Measure on an idle machine. Ends with 3 when a row is void, with 1 when something is
+# missing.
 set -uo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 bin=$here/../../build/release/bin
-arguments=() out=''
+commit=$(git -C "$here" describe --always --dirty 2>/dev/null || echo unknown)
+minutes=22 arguments=() out=''
 while [[ $# -gt 0 ]]; do
   case $1 in
     --bin) bin=$2; shift ;;
+    --commit) commit=$2; shift ;;
+    --minutes) minutes=$2; shift ;;
     --quick) arguments+=("$1") ;;
     -*) arguments+=("$1" "$2"); shift ;;
     *) out=$1 ;;
   esac
   shift
 done
-[[ -n $out ]] || { sed -n '2,11s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 2; }
+[[ -n $out ]] || { sed -n '2,15s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 2; }
 mkdir -p "$out" || exit 1
 
-commit=$(git -C "$here" describe --always --dirty 2>/dev/null || echo unknown)
-"$bin/error_vs_time" --commit "$commit" "${arguments[@]}" --csv "$out/error_vs_time.csv" --json "$out/error_vs_time.json"
+"$bin/error_vs_time" --commit "$commit" --minutes "$minutes" "${arguments[@]}" \
+  --csv "$out/error_vs_time.csv" --json "$out/error_vs_time.json"
 code=$?
 
 # Debian's interpreter first: its matplotlib is not seen by others.
@@ -33,5 +41,9 @@ python=/usr/bin/python3
 [[ -x $python ]] || python=python3
 readme=()
 [[ $(cd "$out" && pwd) != "$(cd "$here/.." && pwd)"/results/* ]] || readme=("$here/../README.md")
-"$python" "$here/plot.py" "$out" "${readme[@]}" || [[ $code != 0 ]] || code=1
+if "$python" -c 'import matplotlib' 2>/dev/null; then
+  "$python" "$here/plot.py" "$out" "${readme[@]}" || [[ $code != 0 ]] || code=1
+else
+  echo "run.sh: no python3-matplotlib here; run error_vs_time/plot.py on $out elsewhere" >&2
+fi
 exit "$code"

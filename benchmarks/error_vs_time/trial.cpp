@@ -1,5 +1,8 @@
 #include "benchmarks/error_vs_time/trial.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace drape::bench
 {
 namespace
@@ -7,17 +10,76 @@ namespace
 constexpr int kReferenceSubsteps = 16;
 // Voxels small enough for the bunny's ears; the knobs beside the voxel are turned at this size.
 constexpr double kSmallVoxel = 0.05;  // m
+// As long as the promise about cloth at rest.
+constexpr int kRestFrames = 2000;
+constexpr int kFallsOfDrape = 8, kFallsOfBullet = 4;
 
+// Drape's ways to find pairs, in the order in which they are tried.
+const std::pair<Traversal, const char*> kTraversals[] = {
+    {Traversal::Front, "front"},
+    {Traversal::Groups, "groups"},
+    {Traversal::WideLeaves, "wide leaves"},
+    {Traversal::WideGroups, "wide groups"},
+    {Traversal::Leaves, "leaves"},
+    {Traversal::Pairs, "pairs"},
+    {Traversal::Single, "single"},
+};
+
+// The values that say most first: each is a round of its own.
 template <typename T>
 void sweep(std::vector<Trial>& trials, Trial base, const char* knob, T Trial::*field, const std::vector<double>& values)
 {
     base.m_knob = knob;
+    base.m_sameContacts = false;
+    base.m_round = 0;
     for (const double value : values)
     {
+        ++base.m_round;
         base.m_value = value;
         base.*field = T(value);
         trials.push_back(base);
     }
+}
+
+// The time of impact of Discrete differs; all else must not.
+void addModes(std::vector<Trial>& trials, Trial base)
+{
+    base.m_knob = "mode";
+    base.m_round = 1;
+    base.m_mode = ContactMode::Continuous;
+    base.m_setting = "continuous";
+    trials.push_back(base);
+    base.m_mode = ContactMode::Discrete;
+    base.m_setting = "discrete";
+    base.m_sameContacts = false;
+    trials.push_back(base);
+}
+
+void addTraversals(std::vector<Trial>& trials, Trial base, bool quick)
+{
+    base.m_knob = "traversal";
+    base.m_round = 0;
+    for (const auto& [traversal, name] : kTraversals)
+    {
+        ++base.m_round;
+        base.m_traversal = traversal;
+        base.m_setting = name;
+        trials.push_back(base);
+        if (quick && base.m_round == 2) return;
+    }
+}
+
+void addFalls(std::vector<Trial>& trials, const Trial& base, int count)
+{
+    std::vector<double> seeds;
+    for (int seed = 1; seed <= count; ++seed)
+        seeds.push_back(seed);
+    sweep(trials, base, "fall", &Trial::m_seed, seeds);
+}
+
+void addRest(std::vector<Trial>& trials, Trial base)
+{
+    sweep(trials, base, "rest", &Trial::m_frames, {kRestFrames});
 }
 }  // namespace
 
@@ -26,34 +88,52 @@ std::string Trial::method() const
     return m_method == Method::Drape ? "drape" : m_method == Method::DrapeHost ? "drape_host" : "bullet";
 }
 
-std::vector<Trial> makeTrials(bool quick, bool withDevice)
+std::vector<Trial> makeTrials(bool quick, bool withDevice, int frames)
 {
     Trial host, drape, stock, tuned;
     host.m_method = Method::DrapeHost;
     drape.m_method = withDevice ? Method::Drape : Method::DrapeHost;
     stock.m_method = tuned.m_method = Method::BuiltIn;
     tuned.m_voxel = kSmallVoxel;
+    for (Trial* base : {&host, &drape, &stock, &tuned})
+        base->m_frames = frames;
     Trial reference = drape;
     reference.m_knob = "reference";
     reference.m_value = reference.m_substeps = quick ? 4 : kReferenceSubsteps;
+    reference.m_sameContacts = false;
 
     std::vector<Trial> trials = {host};
     if (withDevice) trials.push_back(drape);
     trials.push_back(stock);
     trials.push_back(reference);
+    addModes(trials, drape);
+    addTraversals(trials, drape, quick);
     if (quick)
     {
         sweep(trials, drape, "substeps", &Trial::m_substeps, {2});
+        addFalls(trials, drape, 1);
         return trials;
     }
     sweep(trials, drape, "substeps", &Trial::m_substeps, {2, 4, 8});
-    sweep(trials, stock, "voxel", &Trial::m_voxel, {0.1, 0.05, 0.025});
-    sweep(trials, drape, "iterations", &Trial::m_iterations, {1, 2, 10, 20, 40});
+    sweep(trials, drape, "iterations", &Trial::m_iterations, {20, 2, 40});
+    sweep(trials, drape, "thickness", &Trial::m_thickness, {0.01, 0.04, 0.005});
+    sweep(trials, drape, "activation", &Trial::m_activation, {1, 0.25, 2});
+    sweep(trials, stock, "voxel", &Trial::m_voxel, {0.05, 0.1, 0.025});
     sweep(trials, tuned, "substeps", &Trial::m_substeps, {2, 4, 8});
-    sweep(trials, drape, "thickness", &Trial::m_thickness, {0.005, 0.01, 0.04, 0.08});
     sweep(trials, tuned, "margin", &Trial::m_thickness, {0.04, 0.08, 0.16});
-    sweep(trials, drape, "activation", &Trial::m_activation, {0.1, 0.25, 1, 2});
-    sweep(trials, tuned, "iterations", &Trial::m_iterations, {10, 20});
+    sweep(trials, tuned, "iterations", &Trial::m_iterations, {20, 10});
+    addFalls(trials, drape, kFallsOfDrape);
+    addFalls(trials, tuned, kFallsOfBullet);
+    addRest(trials, drape);
+    addRest(trials, tuned);
     return trials;
+}
+
+int roundsOf(const std::vector<Trial>& trials)
+{
+    int rounds = 0;
+    for (const Trial& trial : trials)
+        rounds = std::max(rounds, trial.m_round + 1);
+    return rounds;
 }
 }  // namespace drape::bench

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "benchmarks/error_vs_time/error_scene.h"
+#include "drape/settings.h"
 
 namespace drape::bench
 {
@@ -20,18 +21,28 @@ struct Trial
     Method m_method = Method::Drape;
     std::string m_knob = "defaults";  // what is turned; "reference": the run that shapes are compared with
     double m_value = 0;
+    std::string m_setting;       // the value's name, where it is no number
+    int m_round = 0;             // trials of earlier rounds are run first: those that say most
+    bool m_sameContacts = true;  // of Drape: must give the defaults' course, bit for bit
 
     double m_thickness = kThickness;  // m: both margins
     double m_activation = 0.5;        // Drape, see Settings
-    int m_substeps = 1;               // steps a frame
-    int m_iterations = 5;             // of Bullet's position solver
-    double m_voxel = 0;               // m, of the distance field; 0: as Bullet sets it up
+    ContactMode m_mode = ContactMode::Automatic;
+    Traversal m_traversal = Traversal::Auto;
+    int m_substeps = 1;        // steps a frame
+    int m_iterations = 5;      // of Bullet's position solver
+    double m_voxel = 0;        // m, of the distance field; 0: as Bullet sets it up
+    std::uint32_t m_seed = 0;  // of the fall; 0: flat and from rest
+    int m_frames = 0;          // of 1/60 s
 
     std::string method() const;
     bool isDrape() const { return m_method != Method::BuiltIn; }
 };
 
-// Defaults and reference first, then knob by knob, Drape's and Bullet's in turn. Without a device there is no
-// Method::Drape.
-std::vector<Trial> makeTrials(bool quick, bool withDevice);
+// Defaults and reference first, then Drape's knobs and Bullet's. Without a device there is no Method::Drape. frames:
+// of every trial but those that wait for the cloth to come to rest.
+std::vector<Trial> makeTrials(bool quick, bool withDevice, int frames);
+
+// 1 + the last round of any trial.
+int roundsOf(const std::vector<Trial>& trials);
 }  // namespace drape::bench

@@ -5,6 +5,7 @@
 
 #include "benchmarks/error_vs_time/trial_simulation.h"
 #include "benchmarks/support/samples.h"
+#include "drape/report.h"
 #include "examples/cloth_drop/capped_child.h"
 #include "examples/cloth_drop/step_stream.h"
 
@@ -12,12 +13,12 @@ namespace drape::bench
 {
 namespace
 {
-// Share of the frames, the last ones, over which the speed at rest is taken.
-constexpr double kRestShare = 0.1;
+// Share of the frames, the last ones, over which the cloth's speed is taken.
+constexpr double kLateShare = 0.1;
 
 std::vector<std::string> childArguments(const ErrorOptions& options, const std::string& scene, int number)
 {
-    std::vector<std::string> arguments = {"error_vs_time",
+    std::vector<std::string> arguments = {kProgram,
                                           "--child-scene",
                                           scene,
                                           "--child-trial",
@@ -25,46 +26,65 @@ std::vector<std::string> childArguments(const ErrorOptions& options, const std::
                                           "--backend",
                                           options.m_backend,
                                           "--frames",
-                                          std::to_string(options.frames())};
+                                          std::to_string(options.m_frames)};
     if (!options.m_device.empty()) arguments.insert(arguments.end(), {"--device", options.m_device});
     if (!options.m_models.empty()) arguments.insert(arguments.end(), {"--models", options.m_models});
     if (options.m_quick) arguments.push_back("--quick");
     return arguments;
 }
 
-// Largest rise of the energy from any step to a later one, over what the fall gave.
-double energyGain(const std::vector<double>& energies)
+// Over what the fall gave: the largest rise of the energy of motion from any step to a later one, and how much of such
+// a rise no link had held.
+struct EnergyErrors
 {
-    if (energies.empty()) return 0;
-    double least = energies.front(), gain = 0;
-    for (const double energy : energies)
+    double m_rise = 0, m_gain = 0;
+};
+
+EnergyErrors energyErrors(const std::vector<ClothEnergy>& energies)
+{
+    EnergyErrors errors;
+    if (energies.empty()) return errors;
+    double leastMotion = energies.front().m_motion, least = leastMotion + energies.front().m_links;
+    for (const ClothEnergy& energy : energies)
     {
-        least = std::min(least, energy);
-        gain = std::max(gain, energy - least);
+        errors.m_rise = std::max(errors.m_rise, energy.m_motion - leastMotion);
+        errors.m_gain = std::max(errors.m_gain, energy.m_motion - least);
+        leastMotion = std::min(leastMotion, energy.m_motion);
+        least = std::min(least, energy.m_motion + energy.m_links);
     }
-    return gain / std::max(energies.front() - least, 1e-9);
+    const double fall = std::max(energies.front().m_motion - leastMotion, 1e-9);
+    return {errors.m_rise / fall, errors.m_gain / fall};
 }
 
-double restSpeed(const std::vector<double>& speeds)
+double lateSpeed(const std::vector<double>& speeds)
 {
-    const std::size_t count = std::max<std::size_t>(1, std::size_t(double(speeds.size()) * kRestShare));
+    const std::size_t count = std::max<std::size_t>(1, std::size_t(double(speeds.size()) * kLateShare));
     double squares = 0;
     for (std::size_t i = speeds.size() - count; i < speeds.size(); ++i)
         squares += speeds[i] * speeds[i];
     return std::sqrt(squares / double(count));
 }
 
+const char* modeName(ContactMode mode)
+{
+    return mode == ContactMode::Automatic ? "automatic" : mode == ContactMode::Discrete ? "discrete" : "continuous";
+}
+
 void describe(Row& row, const std::string& scene, const Trial& trial)
 {
+    row["part"] = kSimulationPart;
     row["scene"] = scene;
     row["method"] = trial.method();
     row["knob"] = trial.m_knob;
     row["value"] = trial.m_value;
+    row["setting"] = trial.m_setting;
     row["thickness_m"] = trial.m_thickness;
     row["activation"] = trial.m_activation;
     row["substeps"] = trial.m_substeps;
     row["iterations"] = trial.m_iterations;
     row["voxel_m"] = trial.m_voxel;
+    row["mode"] = trial.isDrape() ? modeName(trial.m_mode) : "";
+    row["seed"] = trial.m_seed;
 }
 
 // Sums of each frame's substeps, of the frames that were in contact; of all, where none was.
@@ -125,6 +145,19 @@ void fillErrors(Row& row, const std::vector<StepRecord>& steps, std::size_t node
 }
 }  // namespace
 
+bool hasDevice(const ErrorOptions& options)
+{
+    return options.m_backend != "host" && options.m_device != "host" && !listDevices().empty();
+}
+
+Row describeTrial(const std::string& scene, const Trial& trial, const std::string& why)
+{
+    Row row;
+    describe(row, scene, trial);
+    row["ended"] = why;
+    return row;
+}
+
 TrialResult runTrial(const ErrorOptions& options, const std::string& scene, const Trial& trial, int number,
                      double capSeconds)
 {
@@ -147,9 +180,11 @@ TrialResult runTrial(const ErrorOptions& options, const std::string& scene, cons
     fillTimes(result.m_row, steps, substeps);
     if (child.m_capped || !child.m_error.empty() || steps.empty() || !end.is_object()) return result;
     fillErrors(result.m_row, steps, end.at("nodes"));
-    result.m_row["rest_speed_mm_s"] = 1000 * end.at("rest_speed").get<double>();
+    const char* speed = trial.m_knob == "rest" ? "rest_speed_mm_s" : "late_speed_mm_s";
+    result.m_row[speed] = 1000 * end.at("late_speed").get<double>();
     result.m_row["nodes_through"] = end.at("crossed");
-    result.m_row["energy_gain"] = end.at("energy_gain");
+    for (const char* energy : {"energy_rise", "energy_gain"})
+        if (end.contains(energy)) result.m_row[energy] = end.at(energy);
     result.m_row["device"] = end.at("device");
     result.m_final = end.at("final").get<std::vector<float>>();
     result.m_hash = hashText(steps.back().m_hash);
@@ -160,17 +195,24 @@ TrialResult runTrial(const ErrorOptions& options, const std::string& scene, cons
 int streamTrial(const ErrorOptions& options, const ErrorScene& scene, const Trial& trial)
 {
     std::string error;
-    const std::unique_ptr<TrialSimulation> simulation = makeTrialSimulation(scene, trial, options.settings(), error);
-    if (!simulation) return fail("error_vs_time", kExitFailed, error);
-    streamRun(*simulation, sceneOf(scene, trial), options.frames() * trial.m_substeps,
+    const ErrorScene own = sceneOf(scene, trial);
+    const std::unique_ptr<TrialSimulation> simulation = makeTrialSimulation(own, trial, options.settings(), error);
+    if (!simulation) return fail(kProgram, kExitFailed, error);
+    streamRun(*simulation, own.m_drop, trial.m_frames * trial.m_substeps,
               [&]
               {
                   Row end;
-                  end["nodes"] = scene.m_drop.m_cloth.m_mesh.vertexCount();
+                  end["nodes"] = own.m_drop.m_cloth.m_mesh.vertexCount();
                   end["device"] = simulation->device();
-                  end["rest_speed"] = restSpeed(simulation->speeds());
+                  end["late_speed"] = lateSpeed(simulation->speeds());
                   end["crossed"] = simulation->crossed();
-                  end["energy_gain"] = energyGain(simulation->energies());
+                  // An obstacle that moves does work.
+                  if (own.m_rise == 0)
+                  {
+                      const EnergyErrors errors = energyErrors(simulation->energies());
+                      end["energy_rise"] = errors.m_rise;
+                      end["energy_gain"] = errors.m_gain;
+                  }
                   end["final"] = simulation->positions();
                   return Row{{"end", end}}.dump();
               });

@@ -13,17 +13,30 @@
 
 namespace drape::bench
 {
+inline constexpr const char* kProgram = "error_vs_time";
+inline constexpr const char* kDetectorPart = "detector";
+inline constexpr const char* kSimulationPart = "simulation";
+
 struct ErrorOptions : CommonOptions
 {
+    std::string m_part;   // empty: all
+    std::string m_truth;  // folder
     std::vector<std::string> m_scenes;
     std::vector<std::string> m_knobs;  // empty: all
-    double m_capSeconds = 120;         // of stepping, for one trial
-    int m_frames = 0;                  // 0: as many as the scene's kind of run has
+    double m_capSeconds = 45;          // of stepping, for one trial
+    int m_frames = 0;                  // 0: as many as the kind of run has
     std::string m_childScene;          // in a child: what to run
     int m_childTrial = -1;
 
-    int frames() const { return m_frames > 0 ? m_frames : m_quick ? 40 : 240; }
+    int frames() const { return m_frames > 0 ? m_frames : m_quick ? 40 : 120; }
+    std::vector<Trial> trials(bool withDevice) const { return makeTrials(m_quick, withDevice, frames()); }
 };
+
+// Whether Drape would run on a device, and not on the host.
+bool hasDevice(const ErrorOptions& options);
+
+// What a row says of itself before, and instead of, being run. why: how it ended.
+Row describeTrial(const std::string& scene, const Trial& trial, const std::string& why);
 
 // A trial's row, and where the cloth was at the end (x y z per node; empty when the trial did not get there).
 struct TrialResult
@@ -38,7 +51,8 @@ struct TrialResult
 TrialResult runTrial(const ErrorOptions& options, const std::string& scene, const Trial& trial, int number,
                      double capSeconds);
 
-// In the child: does not return but with an exit code for what could not be started.
+// In the child, with the scene as it is without the trial: does not return but with an exit code for what could not be
+// started.
 int streamTrial(const ErrorOptions& options, const ErrorScene& scene, const Trial& trial);
 
 // RMS distance of two courses' last positions, m.

@@ -25,23 +25,25 @@ public:
           m_world(makeConfiguration(m_plugin.get()), makeSolver(m_plugin.get())),
           m_crossings(scene.m_drop.m_obstacle, scene.m_drop.m_cloth.m_mesh.m_positions),
           m_trial(trial),
-          m_dt(kFrameTime / trial.m_substeps)
+          m_rise(scene.m_rise),
+          m_dt(scene.m_drop.m_dt)
     {
         if (trial.m_voxel > 0) setVoxel(trial.m_voxel);
-        const DropScene drop = sceneOf(scene, trial);
-        m_world.addMeshObstacle(drop);
-        m_world.addCloth(drop, false);
+        if (m_rise != 0)
+            m_moving = &m_world.addMovingObstacle(scene.m_drop);
+        else
+            m_world.addMeshObstacle(scene.m_drop);
+        m_world.addCloth(scene.m_drop, false);
         btSoftBody& cloth = m_world.cloth();
         cloth.m_cfg.piterations = trial.m_iterations;
         // Air drag is a share of the speed a step: the same share of it in a second at any step.
         cloth.m_cfg.kDP = btScalar(1 - std::pow(1 - double(cloth.m_cfg.kDP), 1.0 / trial.m_substeps));
-        for (int i = 0; i < cloth.m_nodes.size(); ++i)
-            cloth.m_nodes[i].m_v = btVector3(0, btScalar(-scene.m_speed), 0);
     }
 
     StepTimes step() override
     {
         StepTimes times;
+        if (m_moving) moveObstacle();
         times.m_stepMs = m_world.step(m_dt);
         times.m_collisionMs = m_world.world().collisionMs();
         const btSoftBody& cloth = m_world.cloth();
@@ -60,6 +62,12 @@ public:
     const std::vector<float>& positions() override
     {
         copyPositions(m_world.cloth(), m_positions);
+        if (m_moving)
+        {
+            const float height = float(m_moving->getWorldTransform().getOrigin().y());
+            for (std::size_t i = 1; i < m_positions.size(); i += 3)
+                m_positions[i] -= height;
+        }
         m_crossings.follow(m_positions);
         return m_positions;
     }
@@ -69,7 +77,7 @@ public:
     double prepareMs() const override { return m_plugin ? m_plugin->device().m_buildMs : 0; }
     std::string trouble() const override { return m_status == kStepGood ? "" : "status " + std::to_string(m_status); }
     const std::vector<double>& speeds() const override { return m_speeds; }
-    const std::vector<double>& energies() const override { return m_energies; }
+    const std::vector<ClothEnergy>& energies() const override { return m_energies; }
     std::size_t crossed() const override { return m_crossings.nodes(); }
 
 private:
@@ -92,15 +100,40 @@ private:
         field.Reset();  // only now the voxel size counts
     }
 
+    // From where the last step ended to where this one will.
+    void moveObstacle()
+    {
+        m_height += m_rise * m_dt;
+        m_moving->setWorldTransform(btTransform(btMatrix3x3::getIdentity(), btVector3(0, btScalar(m_height), 0)));
+    }
+
+    double linkEnergy(const btSoftBody& cloth) const
+    {
+        double energy = 0;
+        for (int i = 0; i < cloth.m_links.size(); ++i)
+        {
+            const btSoftBody::Link& link = cloth.m_links[i];
+            const double inverseMass = double(link.m_n[0]->m_im) + double(link.m_n[1]->m_im);
+            if (!(inverseMass > 0)) continue;
+            const double stretch = double((link.m_n[0]->m_x - link.m_n[1]->m_x).length()) - double(link.m_rl);
+            const double share = 1 - std::pow(1 - double(link.m_material->m_kLST), m_trial.m_iterations);
+            const double speed = share * stretch / m_dt;
+            energy += 0.5 * speed * speed / inverseMass;
+        }
+        return energy;
+    }
+
     void weigh(const btSoftBody& cloth)
     {
-        double squares = 0, energy = 0;
+        ClothEnergy energy;
+        energy.m_links = linkEnergy(cloth);
+        double squares = 0;
         for (int i = 0; i < cloth.m_nodes.size(); ++i)
         {
             const btSoftBody::Node& node = cloth.m_nodes[i];
             const double mass = node.m_im > 0 ? 1 / double(node.m_im) : 0, square = double(node.m_v.length2());
-            squares += square;
-            energy += mass * (0.5 * square + 9.81 * double(node.m_x.y()));
+            squares += double((node.m_v - btVector3(0, btScalar(m_rise), 0)).length2());
+            energy.m_motion += mass * (0.5 * square + 9.81 * double(node.m_x.y()));
         }
         m_speeds.push_back(std::sqrt(squares / cloth.m_nodes.size()));
         m_energies.push_back(energy);
@@ -110,19 +143,24 @@ private:
     DropWorld m_world;
     Crossings m_crossings;
     Trial m_trial;
+    double m_rise;  // m/s
     double m_dt;
+    btRigidBody* m_moving = nullptr;  // the obstacle, where it moves
+    double m_height = 0;              // m, of it above its start
     std::uint32_t m_status = 0;
     std::vector<float> m_positions;
-    std::vector<double> m_speeds, m_energies;
+    std::vector<double> m_speeds;
+    std::vector<ClothEnergy> m_energies;
 };
 }  // namespace
 
-DropScene sceneOf(const ErrorScene& scene, const Trial& trial)
+ErrorScene sceneOf(const ErrorScene& scene, const Trial& trial)
 {
-    DropScene drop = scene.m_drop;
-    drop.m_thickness = trial.m_thickness;
-    drop.m_dt = kFrameTime / trial.m_substeps;
-    return drop;
+    ErrorScene own = scene;
+    if (trial.m_seed != 0) varyFall(own, trial.m_seed);
+    own.m_drop.m_thickness = trial.m_thickness;
+    own.m_drop.m_dt = kFrameTime / trial.m_substeps;
+    return own;
 }
 
 std::unique_ptr<TrialSimulation> makeTrialSimulation(const ErrorScene& scene, const Trial& trial, Settings settings,
@@ -130,6 +168,8 @@ std::unique_ptr<TrialSimulation> makeTrialSimulation(const ErrorScene& scene, co
 {
     if (!trial.isDrape()) return std::make_unique<WorldSimulation>(scene, trial, nullptr);
     settings.m_activation = float(trial.m_activation);
+    settings.m_mode = trial.m_mode;
+    settings.m_methods.m_traversal = trial.m_traversal;
     if (trial.m_method == Method::DrapeHost)
     {
         settings.m_backend = Backend::Host;

@@ -1,7 +1,7 @@
 // A scene under a trial's method and knobs in a Bullet world, a substep at a time.
 //
-// Beside what every simulation tells (see simulation.h): how fast the cloth still is at the end, and what energy came
-// in.
+// Beside what every simulation tells (see simulation.h): how fast the cloth still is at the end, and what energy it
+// has. Places are as the obstacle sees them, whether it moves or not.
 #pragma once
 
 #include <memory>
@@ -14,21 +14,32 @@
 
 namespace drape::bench
 {
-// What a trial does to its scene: thickness and time step.
-DropScene sceneOf(const ErrorScene& scene, const Trial& trial);
+// What a cloth has after a step, J.
+struct ClothEnergy
+{
+    double m_motion = 0;  // kinetic and of height
+    // At most what the links can turn into motion. They are no springs with an energy of their own: Bullet's solver
+    // moves a link's ends together by a share of its stretch each iteration, so that in a step of dt they get at most
+    // the speed (1 - (1 - stiffness)^iterations) stretch / dt.
+    double m_links = 0;
+};
+
+// What a trial does to its scene: fall, thickness and time step.
+ErrorScene sceneOf(const ErrorScene& scene, const Trial& trial);
 
 class TrialSimulation : public Simulation
 {
 public:
-    // RMS speed (m/s) of the nodes after each step.
+    // RMS speed (m/s) of the nodes after each step, against the obstacle.
     virtual const std::vector<double>& speeds() const = 0;
-    // Kinetic energy and that of height (J) after each step; what the springs hold is not in it.
-    virtual const std::vector<double>& energies() const = 0;
+    // After each step.
+    virtual const std::vector<ClothEnergy>& energies() const = 0;
     // Nodes that went through the obstacle's surface in any step so far.
     virtual std::size_t crossed() const = 0;
 };
 
-// settings: of Drape, but for what the trial sets. Null with one line in `error` when Drape cannot start.
+// scene: as sceneOf() makes it. settings: of Drape, but for what the trial sets. Null with one line in `error` when
+// Drape cannot start.
 std::unique_ptr<TrialSimulation> makeTrialSimulation(const ErrorScene& scene, const Trial& trial, Settings settings,
                                                      std::string& error);
 }  // namespace drape::bench

@@ -68,7 +68,7 @@ DropWorld::~DropWorld()
     if (m_object) m_world.removeCollisionObject(m_object.get());
 }
 
-void DropWorld::addMeshObstacle(const DropScene& scene)
+void DropWorld::makeShape(const DropScene& scene)
 {
     const TriangleMesh& mesh = scene.m_obstacle;
     m_obstaclePositions = mesh.m_positions;
@@ -85,11 +85,29 @@ void DropWorld::addMeshObstacle(const DropScene& scene)
     m_meshInterface->addIndexedMesh(part, PHY_INTEGER);
     m_shape = std::make_unique<btBvhTriangleMeshShape>(m_meshInterface.get(), true);
     m_shape->setMargin(static_cast<btScalar>(0.5 * scene.m_thickness));
+}
+
+void DropWorld::addMeshObstacle(const DropScene& scene)
+{
+    makeShape(scene);
     m_object = std::make_unique<btCollisionObject>();
     m_object->setCollisionShape(m_shape.get());
     m_object->setFriction(1);
     m_world.addCollisionObject(m_object.get(), btBroadphaseProxy::StaticFilter,
                                btBroadphaseProxy::AllFilter ^ btBroadphaseProxy::StaticFilter);
+}
+
+btRigidBody& DropWorld::addMovingObstacle(const DropScene& scene)
+{
+    makeShape(scene);
+    auto owned = std::make_unique<btRigidBody>(btScalar(0), nullptr, m_shape.get());
+    btRigidBody& body = *owned;
+    body.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+    body.setActivationState(DISABLE_DEACTIVATION);
+    body.setFriction(1);
+    m_object = std::move(owned);
+    m_world.addRigidBody(&body);
+    return body;
 }
 
 void DropWorld::addSoftObstacle(const DropScene& scene)

@@ -37,6 +37,8 @@ public:
     ~DropWorld();
 
     void addMeshObstacle(const DropScene& scene);  // a static btBvhTriangleMeshShape
+    // The same as a kinematic body at the origin; its setWorldTransform() before a step says where it goes in the step.
+    btRigidBody& addMovingObstacle(const DropScene& scene);
     void addSoftObstacle(const DropScene& scene);  // a soft body of massless nodes, for VF_SS
     void addCloth(const DropScene& scene, bool softPairs);
 
@@ -47,6 +49,8 @@ public:
     double step(double dt);
 
 private:
+    void makeShape(const DropScene& scene);
+
     std::unique_ptr<btCollisionConfiguration> m_configuration;
     std::unique_ptr<btSoftBodySolver> m_solver;
     btCollisionDispatcher m_dispatcher;

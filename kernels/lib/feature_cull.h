@@ -291,6 +291,7 @@ DRAPE_FUNCTION int cullVolume(CullVolume* cull, const DRAPE_GLOBAL ObstacleMotio
                               const DRAPE_GLOBAL float* end, float radius, DRAPE_UINT mode)
 {
     Vec3 p[6], normal;
+    float height;
     cornersSeen(p, motion, triangle, start, end);
     const int swept = isSwept(p, radius, mode);
     cull->m_radius = radius;
@@ -302,7 +303,9 @@ DRAPE_FUNCTION int cullVolume(CullVolume* cull, const DRAPE_GLOBAL ObstacleMotio
     }
     cull->m_least = moved + DRAPE_CULL_MET * radius;
     Dop* dop = &cull->m_volume;
-    if (!cornersVolume(dop, p, swept, 0.0f) || cullNormal(p + 3, &normal)) cull->m_least = radius;
+    const int valid = cornersVolume(dop, p, swept, 0.0f);
+    const int thin = cullNormal(p + 3, &normal, &height);
+    if (!valid || thin || height < DRAPE_CULL_SMALL * radius) cull->m_least = radius;
     float size = 2.0f * radius;
     for (int i = 0; i < 3; ++i)
         size += drapeMax(dop->m_high[i] - dop->m_low[i], 0.0f);

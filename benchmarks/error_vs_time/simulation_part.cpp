@@ -1,0 +1,138 @@
+#include "benchmarks/error_vs_time/simulation_part.h"
+
+#include <algorithm>
+#include <iostream>
+
+#include "benchmarks/support/models.h"
+#include "benchmarks/support/samples.h"
+
+namespace drape::bench
+{
+namespace
+{
+// So many runs of Bullet's collision on a scene that stalled one after the other, and the rest of them is left out.
+constexpr int kHopeless = 3;
+
+// What the trials of a scene are judged by.
+struct SceneState
+{
+    std::string m_name;
+    bool m_symmetric = false;
+    bool m_moves = false;            // the obstacle does
+    std::string m_hash;              // of Drape's defaults, on the host where that run was whole
+    std::vector<float> m_reference;  // positions at the end of the reference
+    std::vector<TrialResult> m_results;
+    std::vector<bool> m_sameContacts;  // as the results' trials have it
+    int m_stalled = 0;                 // Bullet's latest trials that stalled, without one that did not
+
+    void add(TrialResult result, const Trial& trial)
+    {
+        m_results.push_back(std::move(result));
+        m_sameContacts.push_back(trial.isDrape() && trial.m_sameContacts);
+    }
+};
+
+bool contains(const std::vector<std::string>& list, const std::string& text)
+{
+    return std::find(list.begin(), list.end(), text) != list.end();
+}
+
+// Defaults are always run: the others are compared with them. On what goes on rising nothing comes to rest: after 2,000
+// frames of the plate's a float's last place is worth millimetres a second.
+bool wanted(const ErrorOptions& options, const SceneState& scene, const Trial& trial)
+{
+    if (scene.m_moves && trial.m_knob == "rest") return false;
+    return options.m_knobs.empty() || trial.m_knob == "defaults" || contains(options.m_knobs, trial.m_knob);
+}
+
+void judge(SceneState& state)
+{
+    for (std::size_t i = 0; i < state.m_results.size(); ++i)
+    {
+        TrialResult& result = state.m_results[i];
+        const bool comparable = state.m_symmetric && !result.m_row.value("seed", 0);
+        if (comparable && result.m_final.size() == state.m_reference.size() && !result.m_final.empty())
+            result.m_row["shape_error"] = shapeDistance(result.m_final, state.m_reference) / kThickness;
+        if (state.m_sameContacts[i] && !result.m_hash.empty()) judgeRow(result.m_row, state.m_hash);
+    }
+}
+
+void say(const TrialResult& result)
+{
+    const Row& row = result.m_row;
+    const auto text = [&](const char* key) { return row.contains(key) ? row.at(key).dump() : std::string("-"); };
+    std::cerr << text("scene") << ' ' << text("method") << ' ' << text("knob") << ' ' << text("value") << ' '
+              << text("setting") << ": " << text("ended") << ", frame " << text("frame_median_ms")
+              << " ms, penetration " << text("penetration_max") << ", pairs " << text("intersecting_end")
+              << ", through " << text("nodes_through") << ' ' << result.m_error << std::endl;
+}
+
+// Runs the trial, or says why not. False when something went wrong.
+bool runOrLeave(const ErrorOptions& options, SceneState& scene, const Trial& trial, int number, double secondsLeft)
+{
+    TrialResult result;
+    const bool hopeless = !trial.isDrape() && scene.m_stalled >= kHopeless;
+    if (hopeless || secondsLeft < 1)
+        result.m_row = describeTrial(scene.m_name, trial, hopeless ? "left out" : "no time");
+    else
+        result = runTrial(options, scene.m_name, trial, number, std::min(options.m_capSeconds, secondsLeft));
+    const bool capped = result.m_row["ended"] == "capped";
+    if (!trial.isDrape() && !hopeless) scene.m_stalled = capped ? scene.m_stalled + 1 : 0;
+    if (trial.m_knob == "defaults" && trial.isDrape() && scene.m_hash.empty()) scene.m_hash = result.m_hash;
+    if (trial.m_knob == "reference") scene.m_reference = result.m_final;
+    say(result);
+    const bool good = result.m_error.empty() && (hopeless || secondsLeft >= 1);
+    scene.add(std::move(result), trial);
+    return good;
+}
+
+bool makeStates(const ErrorOptions& options, std::vector<SceneState>& scenes)
+{
+    bool good = true;
+    for (const std::string& name : options.m_scenes.empty() ? errorSceneNames(options.m_quick) : options.m_scenes)
+    {
+        ErrorScene scene;
+        std::string error;
+        if (makeErrorScene(name, options.m_quick, modelFolders(options.m_models), scene, error))
+        {
+            scenes.emplace_back();
+            scenes.back().m_name = name;
+            scenes.back().m_symmetric = scene.m_symmetric;
+            scenes.back().m_moves = scene.m_rise != 0;
+        }
+        else
+            good = fail(kProgram, kExitFailed, error) == kExitGood;
+    }
+    return good;
+}
+}  // namespace
+
+bool measureSimulations(const ErrorOptions& options, Table& table)
+{
+    const Clock::time_point begin = Clock::now();
+    const std::vector<Trial> trials = options.trials(hasDevice(options));
+    std::vector<SceneState> scenes;
+    bool good = makeStates(options, scenes);
+    // Round by round, each on one scene after the other: what does not fit into the time are the later values of every
+    // knob, before a scene, before a knob.
+    for (int round = 0; round < roundsOf(trials); ++round)
+    {
+        for (SceneState& scene : scenes)
+        {
+            for (std::size_t i = 0; i < trials.size(); ++i)
+            {
+                if (trials[i].m_round != round || !wanted(options, scene, trials[i])) continue;
+                const double left = 60 * options.m_minutes - millisecondsSince(begin) / 1000;
+                good = runOrLeave(options, scene, trials[i], int(i), left) && good;
+            }
+        }
+    }
+    for (SceneState& scene : scenes)
+    {
+        judge(scene);
+        for (const TrialResult& result : scene.m_results)
+            table.add(result.m_row);
+    }
+    return good;
+}
+}  // namespace drape::bench
