@@ -1,7 +1,6 @@
 // Refit of a hierarchy in two or three launches: whole subtrees first, then groves of subtrees, then what spans groves.
 // Each launch reads what the one before wrote; nothing is passed between work-groups inside a launch.
 #include "lib/tree_refit.h"
-#include "lib/tree_stretch.h"
 
 // As DRAPE_SUBTREE_LEAVES: a stretch of whole subtrees that begin in a window has fewer than two windows of leaves.
 #define DRAPE_SUBTREE_GROUP 128
@@ -55,6 +54,22 @@ __kernel void refitTopsSerial(__global BvhNode* restrict nodes, __global const u
         climbTier(nodes, splits, elementPlace(nodes, splits, begin, last, leafCount, 2u), 2u);
         begin = last + 1;
     }
+}
+
+// The first begins of a tier at or after `from` and at or after `from + window`. Every work-item of the group calls it.
+static void stretchOfWindow(__global const uint* restrict splits, const uint from, const uint window, const uint leafCount,
+                            const uint tier, __local uint* stretch)
+{
+    if (get_local_id(0) < 2) stretch[get_local_id(0)] = leafCount;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    const uint limit = min(leafCount, from + 2 * window);
+    for (uint leaf = from + get_local_id(0); leaf < limit; leaf += get_local_size(0))
+    {
+        if (!beginsTier(splits, leaf, tier)) continue;
+        atomic_min(stretch + 0, leaf);
+        if (leaf >= from + window) atomic_min(stretch + 1, leaf);
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
 }
 
 // A group's volumes while they are made: leaves first, then the nodes by their split. A row holds one word of a node; its

@@ -210,13 +210,13 @@ class Reports(ProgramTest):
         """The tables replace what is between the markers, and a second run changes nothing."""
         readme = self.path("README.md")
         with open(readme, "w") as file:
-            file.write("before\n<!-- results: made by summary.py -->\nold\n<!-- end of results -->\nafter\n")
+            file.write("before\n<!-- results: made by summary.py -->\nwhat was there\n<!-- end of results -->\nafter\n")
         result = self.script("summary.py", readme)
         self.assertEqual(result.returncode, 0, result.stderr)
         with open(readme) as file:
             text = file.read()
         self.assertTrue(text.startswith("before\n") and text.endswith("after\n"))
-        self.assertNotIn("old", text)
+        self.assertNotIn("what was there", text)
         for words in ("### machine", "fcl, 1 thread", "thesis: Quadro"):
             self.assertIn(words, text)
         self.script("summary.py", readme)

@@ -29,7 +29,7 @@ TEST_P(ProfilerTest, AStepsLaunchesAreTimed)
     double before = 0;
     for (const KernelTime& launch : times)
     {
-        if (launch.m_kernel == "patchCull") ++culls;
+        if (launch.m_kernel.compare(0, 9, "patchCull") == 0) ++culls;  // on a GPU patchCullPairs
         EXPECT_GE(launch.m_ms, 0.0) << launch.m_kernel;
         EXPECT_GE(launch.m_startMs, before) << launch.m_kernel;
         before = launch.m_startMs;

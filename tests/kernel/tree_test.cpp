@@ -50,12 +50,6 @@ std::vector<NamedMethods> allMethods()
         all.back().m_methods.m_mortonBits = 63;
         all.back().m_methods.m_plocRadius = 3;
     }
-    for (TreeBuilder builder : {TreeBuilder::Balanced, TreeBuilder::Radix})
-    {
-        all.push_back({std::string(builder == TreeBuilder::Radix ? "radix" : "balanced") + ", tops in local memory",
-                       methodsOf(builder, WorkShape::Groups)});
-        all.back().m_methods.m_refit = RefitMethod::LocalTops;
-    }
     for (bool adaptive : {false, true})
     {
         for (bool small : {false, true})
@@ -219,29 +213,6 @@ TEST_P(TreeTest, EveryBuilderMakesTheHostsValidTreeOfModels)
         }
     }
     EXPECT_GT(models, 0u);
-}
-
-// Where local memory cannot hold the splits above subtrees, one work-item merges them.
-TEST_P(TreeTest, SplitsThatDoNotFitAreMergedAllTheSame)
-{
-    const std::unique_ptr<Device> device = openDevice(GetParam());
-    ASSERT_TRUE(device);
-    TreeMethods methods = methodsOf(TreeBuilder::Radix, WorkShape::Groups);
-    methods.m_refit = RefitMethod::LocalTops;
-    TreeBuilderStage stage;
-    stage.create(
-        *device,
-        [&](const char* name)
-        {
-            const bool refits = std::string(name) == "tree_refit_local";
-            return programOf(*device, name, refits ? "#define DRAPE_LOCAL_SPLITS 3u\n" : "");
-        },
-        methods);
-    for (int size : {4097, 20011})
-    {
-        SCOPED_TRACE("soup of " + std::to_string(size));
-        expectSameAsHost(*device, stage, methods, sideOf(makeSoup(1.0f, 0.1f, size, std::uint32_t(size))));
-    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, TreeTest, testing::ValuesIn(openClBackends()), backendName);

@@ -37,7 +37,7 @@ public:
         if (method == RefitMethod::Levels)
             m_stage.enqueueByHeight(m_device, m_tree, leaves, m_heights);
         else
-            m_stage.enqueue(m_device, m_tree, leaves, WorkShape::Device, method);
+            m_stage.enqueue(m_device, m_tree, leaves, WorkShape::Device);
         m_device.wait();
         const double ms = millisecondsSince(start);
         m_launches = m_device.profiler()->take();
@@ -141,14 +141,9 @@ void studyRefit(const StudyOptions& options, Table& table)
         judgeRow(row, built);
         table.add(row);
         if (!device) return;
-        for (const RefitVariant& variant : {RefitVariant{"thesis: launch per level", RefitMethod::Levels},
-                                            {"subtrees", RefitMethod::Subtrees},
-                                            {"subtrees, above them in local memory", RefitMethod::LocalTops}})
-        {
-            // Without groups there is nothing to keep in local memory.
-            if (variant.m_method == RefitMethod::LocalTops && !device->isGpu()) continue;
+        for (const RefitVariant& variant :
+             {RefitVariant{"thesis: launch per level", RefitMethod::Levels}, {"subtrees", RefitMethod::Subtrees}})
             refitOnDevice(*device, input, tree, model, variant, options, table);
-        }
     };
     forEachModel(options, measure);
 }

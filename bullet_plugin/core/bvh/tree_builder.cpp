@@ -66,6 +66,6 @@ void TreeBuilderStage::enqueue(Device& device, Buffer<Triangle>& triangles, Buff
     m_noRadius.fill(device, 0, meshCount);
     m_counters.reserve(device, 1);
     m_counters.fill(device, 0, 1);
-    m_refit.enqueue(device, tree, {triangles, positions, positions, m_noRadius, m_counters}, shape, m_methods.m_refit);
+    m_refit.enqueue(device, tree, {triangles, positions, positions, m_noRadius, m_counters}, shape);
 }
 }  // namespace drape

@@ -46,9 +46,6 @@ void TreeRefitStage::create(Device& device, const ProgramLoader& load)
     m_subtreesGroups.create(device, program, "refitSubtreesGroups");
     m_grovesGroups.create(device, program, "refitGrovesGroups");
     m_topsGroup.create(device, program, "refitTopsGroup");
-    const cl::Program inLocal = load("tree_refit_local");
-    m_grovesLocal.create(device, inLocal, "refitGrovesLocal");
-    m_topsLocal.create(device, inLocal, "refitTopsLocal");
     m_countTops.create(device, program, "treeCountTops");
     m_listTops.create(device, program, "treeListTops");
     m_leaves.create(device, program, "refitTreeLeaves");
@@ -66,40 +63,36 @@ void TreeRefitStage::listTops(Device& device, DeviceTree& tree)
                       cl_uint(windows), tree.m_tops.handle());
 }
 
-void TreeRefitStage::enqueue(Device& device, DeviceTree& tree, LeafBuffers leaves, WorkShape shape, RefitMethod method)
+void TreeRefitStage::enqueue(Device& device, DeviceTree& tree, LeafBuffers leaves, WorkShape shape)
 {
     const cl_uint count = tree.m_leafCount;
     const std::size_t windows = windowsOf(count, DRAPE_SUBTREE_LEAVES);
-    const bool groups = runsGroups(device, shape), inLocal = method == RefitMethod::LocalTops;
+    const std::size_t groves = count > DRAPE_SUBTREE_LEAVES ? windowsOf(count, DRAPE_GROVE_LEAVES) : 0;
+    const bool groups = runsGroups(device, shape);
     Kernel& subtrees = groups ? m_subtreesGroups : m_subtreesSerial;
     subtrees.launch(device, groups ? windows * kSubtreeGroup : windows, groups ? kSubtreeGroup : kSerialGroup,
                     tree.m_nodes.handle(), tree.m_splits.handle(), tree.m_order.handle(), leaves.m_triangles.handle(),
                     leaves.m_start.handle(), leaves.m_end.handle(), leaves.m_meshRadius.handle(),
                     leaves.m_counters.handle(), count);
-    if (count > DRAPE_SUBTREE_LEAVES) enqueueGroves(device, tree, groups, inLocal);
-    if (count > DRAPE_GROVE_LEAVES) enqueueTops(device, tree, groups, inLocal);
-}
-
-void TreeRefitStage::enqueueGroves(Device& device, DeviceTree& tree, bool groups, bool inLocal)
-{
-    Kernel& kernel = !groups ? m_grovesSerial : inLocal ? m_grovesLocal : m_grovesGroups;
-    const std::size_t group = groups ? kGroveGroup : 1;
-    kernel.launch(device, windowsOf(tree.m_leafCount, DRAPE_GROVE_LEAVES) * group, group, tree.m_nodes.handle(),
-                  tree.m_splits.handle(), tree.m_leafCount);
-}
-
-void TreeRefitStage::enqueueTops(Device& device, DeviceTree& tree, bool groups, bool inLocal)
-{
-    if (groups && !inLocal)
+    if (groups)
+    {
+        m_grovesGroups.launch(device, groves * kGroveGroup, kGroveGroup, tree.m_nodes.handle(), tree.m_splits.handle(),
+                              count);
+    }
+    else
+    {
+        m_grovesSerial.launch(device, groves, 1, tree.m_nodes.handle(), tree.m_splits.handle(), count);
+    }
+    if (count <= DRAPE_GROVE_LEAVES) return;
+    if (groups)
     {
         m_topsGroup.launch(device, kGroveGroup, kGroveGroup, tree.m_nodes.handle(), tree.m_splits.handle(),
                            tree.m_tops.handle());
-        return;
     }
-    const std::size_t group = groups ? kGroveGroup : 1;
-    (groups ? m_topsLocal : m_topsSerial)
-        .launch(device, group, group, tree.m_nodes.handle(), tree.m_splits.handle(), tree.m_tops.handle(),
-                tree.m_leafCount);
+    else
+    {
+        m_topsSerial.launch(device, 1, 1, tree.m_nodes.handle(), tree.m_splits.handle(), tree.m_tops.handle(), count);
+    }
 }
 
 void TreeRefitStage::uploadHeights(Device& device, const TreeHeights& heights, Heights& uploaded) const

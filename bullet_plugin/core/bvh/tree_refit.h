@@ -33,8 +33,7 @@ public:
     // Lists the splits that the last launch of enqueue() climbs. Once per topology; returns after enqueueing.
     void listTops(Device& device, DeviceTree& tree);
     // Two launches up to 4,096 leaves, else three; one where subtrees suffice. Returns after enqueueing.
-    void enqueue(Device& device, DeviceTree& tree, LeafBuffers leaves, WorkShape shape,
-                 RefitMethod method = RefitMethod::Subtrees);
+    void enqueue(Device& device, DeviceTree& tree, LeafBuffers leaves, WorkShape shape);
 
     // The splits of heightsOf() on the device.
     struct Heights
@@ -47,11 +46,7 @@ public:
     void enqueueByHeight(Device& device, DeviceTree& tree, LeafBuffers leaves, Heights& heights);
 
 private:
-    void enqueueGroves(Device& device, DeviceTree& tree, bool groups, bool inLocal);
-    void enqueueTops(Device& device, DeviceTree& tree, bool groups, bool inLocal);
-
     Kernel m_subtreesSerial, m_grovesSerial, m_topsSerial, m_subtreesGroups, m_grovesGroups, m_topsGroup;
-    Kernel m_grovesLocal, m_topsLocal;
     Kernel m_countTops, m_listTops, m_leaves, m_level;
     Buffer<cl_uint> m_topCounts;
 };

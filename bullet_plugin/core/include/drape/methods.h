@@ -17,9 +17,8 @@ enum class TreeBuilder
 
 enum class RefitMethod
 {
-    Levels,    // a launch per height (the thesis)
-    Subtrees,  // whole subtrees per work-group: three launches, two for fewer than 4,097 triangles
-    LocalTops  // the same, what lies above subtrees in local memory too; where groups run, see WorkShape
+    Levels,   // a launch per height (the thesis)
+    Subtrees  // whole subtrees per work-group: three launches, two for fewer than 4,097 triangles
 };
 
 // How kernels spread their work; results do not depend on it.
