@@ -43,7 +43,7 @@ struct Settings
     bool m_reduceContacts = true;
 
     // Continuous and Automatic find every face and edge that meets a feature of the obstacle on its linear way through
-    // the step, at the earliest time; Discrete may lose what is faster than its thickness.
+    // the step, at the earliest time; Discrete may lose what is faster than its thickness (README: how much it loses).
     ContactMode m_mode = ContactMode::Automatic;
 
     // Also list the cloth and obstacle triangles that intersect at the step's start. Costs a kernel.
