@@ -20,8 +20,13 @@ for speed in 2 10 50 200; do
       *) kind=(--mode "$run" "$@") ;;
     esac
     # Bullet's own collision may not end a step once the cloth has fallen through.
+    status=0
     timeout "${LIMIT:-60}" "$bin/cloth_drop" --obstacle "$bunny" --drop-speed "$speed" --steps 100 --quiet "${kind[@]}" \
-      --json "$work/$speed-$run.json" --csv "$work/$speed-$run.csv" || true
+      --json "$work/$speed-$run.json" --csv "$work/$speed-$run.csv" || status=$?
+    if [ "$status" -ne 0 ] && [ "$status" -ne 124 ]; then
+      echo "drop_speeds.sh: cloth_drop failed ($status) at $speed m/s, $run" >&2
+      exit "$status"
+    fi
   done
 done
 exec python3 - "$work" "$out/drop_speeds.json" <<'PYTHON'
