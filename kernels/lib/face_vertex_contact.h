@@ -22,6 +22,30 @@ DRAPE_FUNCTION int faceVertexMet(FeatureTriangle f0, FeatureTriangle f1, Vec3 ve
     return DRAPE_IS_CONTACT;
 }
 
+// What faceVertexPassed answers when the motion decides nothing: the step's end does.
+#define DRAPE_ASK_THE_END 3
+
+// What the motion alone tells of a face and a vertex. s0, s1: the vertex's distance from the face's plane times the
+// length of the face's area vector, at the step's start and end.
+DRAPE_FUNCTION int faceVertexPassed(const MovingFace* face, Vec3 vertex, float s0, float s1, PairBounds bounds,
+                                    Contact* contact)
+{
+    const FeatureTriangle f0 = face->m_start;
+    const int mayMeet = faceMayMeet(face, vertex, s0, s1, bounds);
+    const float before = s0 < 0.0f ? -1.0f : 1.0f, after = s1 < 0.0f ? -1.0f : 1.0f;
+    if (asksForMeeting(mayMeet, bounds))
+    {
+        if (!bounds.m_complete) return DRAPE_UNDECIDED;
+        const Meeting meeting = meetFace(face, vertex, bounds);
+        if (meeting.m_met && mayMeet && faceVertexMet(f0, face->m_end, vertex, meeting, before, bounds, contact))
+            return DRAPE_IS_CONTACT;
+    }
+    // The face's plane passed the vertex near by: what the face itself met tells on which side it belongs. A thin
+    // face's plane turns freely about its length and tells nothing.
+    const int sidesTell = !face->m_areaEnd.m_thin && !isThin(f0, vec3Length(face->m_areaStart));
+    return mayMeet && after != before && sidesTell ? DRAPE_NO_CONTACT : DRAPE_ASK_THE_END;
+}
+
 // Moving face against a resting vertex with the given normal cone. A vertex nearest to an edge of the face counts here
 // too (weights with one zero); one nearest to a node is the node's contact. beyond: the third vertices of the
 // neighbours over the face's three edges (m_a … m_c), into start and end, positions at the step's start and end; a
@@ -35,22 +59,11 @@ DRAPE_FUNCTION int faceVertexContact(const MovingFace* face, const DRAPE_UINT* b
     const int thin = face->m_areaEnd.m_thin;
     const float s0 = vec3Dot(face->m_areaStart, vec3Sub(vertex, f0.m_p[0]));
     const float s1 = vec3Dot(face->m_areaEnd.m_vector, vec3Sub(vertex, f1.m_p[0]));
-    float side = s1 < 0.0f ? -1.0f : 1.0f;
+    const float side = s1 < 0.0f ? -1.0f : 1.0f;
     if (bounds.m_mode != DRAPE_DISCRETE)
     {
-        const int mayMeet = faceMayMeet(face, vertex, s0, s1, bounds);
-        const float sideBefore = s0 < 0.0f ? -1.0f : 1.0f;
-        if (asksForMeeting(mayMeet, bounds))
-        {
-            if (!bounds.m_complete) return DRAPE_UNDECIDED;
-            const Meeting meeting = meetFace(face, vertex, bounds);
-            if (meeting.m_met && mayMeet && faceVertexMet(f0, f1, vertex, meeting, sideBefore, bounds, contact))
-                return DRAPE_IS_CONTACT;
-        }
-        // The face's plane passed the vertex near by: what the face itself met tells on which side it belongs. A thin
-        // face's plane turns freely about its length and tells nothing.
-        const int sidesTell = !thin && !isThin(f0, vec3Length(face->m_areaStart));
-        if (mayMeet && side != sideBefore && sidesTell) return DRAPE_NO_CONTACT;
+        const int passed = faceVertexPassed(face, vertex, s0, s1, bounds, contact);
+        if (passed != DRAPE_ASK_THE_END) return passed;
     }
     if (drapeAbs(s1) > areaLength * bounds.m_reachSlack) return 0;
 
