@@ -72,112 +72,150 @@ static void stretchOfWindow(__global const uint* restrict splits, const uint fro
     barrier(CLK_LOCAL_MEM_FENCE);
 }
 
-// A group's volumes while they are made: leaves first, then the nodes by their split. A row holds one word of a node; its
-// length is odd, so that neither a row nor a column of it falls on one bank.
+// A group's volumes while they are made: leaves first, then the nodes by their split. A volume's words lie side by side; their
+// number is made odd, so that work-items that each write a volume of their own do not fall on one bank.
 #define DRAPE_SUBTREE_PLACES (2 * DRAPE_SUBTREE_GROUP)
-#define DRAPE_SUBTREE_ROW (DRAPE_SUBTREE_PLACES + 1)
 #define DRAPE_DOP_WORDS (2 * DRAPE_DOP_DIRECTIONS)
+#define DRAPE_VOLUME_STRIDE (DRAPE_DOP_WORDS + 1)
 #define DRAPE_NODE_WORDS (DRAPE_DOP_WORDS + 2)
+// Volumes that a group merges, and nodes that it writes, at once: a work-item for each word.
+#define DRAPE_MERGES_AT_ONCE (DRAPE_SUBTREE_GROUP / DRAPE_DOP_WORDS)
+#define DRAPE_NODES_AT_ONCE (DRAPE_SUBTREE_GROUP / DRAPE_NODE_WORDS)
 #define DRAPE_NO_PLACE 0xffffu
 
-static uint localIndex(__global const BvhNode* node, const uint first)
+// What a group shares. Leaves and splits are numbered from its window's first leaf on.
+typedef struct Subtrees
 {
-    return node->m_count == 0u ? node->m_first - first : DRAPE_SUBTREE_GROUP + splitOfPair(node->m_first) - first;
+    float m_volumes[DRAPE_SUBTREE_PLACES * DRAPE_VOLUME_STRIDE];
+    ushort m_children[DRAPE_SUBTREE_PLACES];      // volumes of each split's pair
+    ushort m_indexOfPlace[DRAPE_SUBTREE_PLACES];  // volume of each node of the stretch
+    uchar m_done[DRAPE_SUBTREE_PLACES];           // of the volumes
+    ushort m_merges[DRAPE_SUBTREE_GROUP];         // splits, in the order in which their pairs are merged
+    uint m_mergeCount, m_mergesBegun;
+    uint m_stretch[2];
+} Subtrees;
+
+// Makes this work-item's split's node the child that its place says. Of a parent that is merged elsewhere nobody asks.
+static void setChild(__local Subtrees* subtrees, const uint place, const uint window)
+{
+    const uint behind = (place + 1u) / 2u;  // the first leaf behind the parent's split; 0: the root has none
+    if (behind <= window) return;
+    subtrees->m_children[2u * (behind - 1u - window) + (place & 1u ? 0u : 1u)] = (ushort)(DRAPE_SUBTREE_GROUP + get_local_id(0));
 }
 
-static void keepVolume(__local float* volumes, const uint index, const Dop* dop)
+static void keepVolume(__local float* volume, const Dop* dop)
 {
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
     {
-        volumes[i * DRAPE_SUBTREE_ROW + index] = dop->m_low[i];
-        volumes[(DRAPE_DOP_DIRECTIONS + i) * DRAPE_SUBTREE_ROW + index] = dop->m_high[i];
+        volume[i] = dop->m_low[i];
+        volume[DRAPE_DOP_DIRECTIONS + i] = dop->m_high[i];
     }
 }
 
-static void mergeVolumes(__local float* volumes, const uint index, const uint left, const uint right)
+// A word of a split's volume, from its pair's.
+static void mergeWord(__local Subtrees* subtrees, const uint split, const uint word)
 {
-    for (int i = 0; i < DRAPE_DOP_WORDS; ++i)
+    const float left = subtrees->m_volumes[subtrees->m_children[2u * split] * DRAPE_VOLUME_STRIDE + word];
+    const float right = subtrees->m_volumes[subtrees->m_children[2u * split + 1u] * DRAPE_VOLUME_STRIDE + word];
+    subtrees->m_volumes[(DRAPE_SUBTREE_GROUP + split) * DRAPE_VOLUME_STRIDE + word] =
+        word < DRAPE_DOP_DIRECTIONS ? drapeMin(left, right) : drapeMax(left, right);
+}
+
+// Merges pairs whose volumes are both there, until all are. waits: whether the work-item's split has a pair to merge. All
+// work-items share the words of the merges of a turn, since the higher ones are few.
+static void mergeSubtrees(__local Subtrees* subtrees, int waits)
+{
+    const uint item = get_local_id(0), turn = item / DRAPE_DOP_WORDS, word = item % DRAPE_DOP_WORDS;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    const uint count = subtrees->m_mergeCount;
+    for (uint merged = 0; merged < count;)
     {
-        __local float* row = volumes + i * DRAPE_SUBTREE_ROW;
-        row[index] = i < DRAPE_DOP_DIRECTIONS ? drapeMin(row[left], row[right]) : drapeMax(row[left], row[right]);
+        const int ready =
+            waits && subtrees->m_done[subtrees->m_children[2u * item]] && subtrees->m_done[subtrees->m_children[2u * item + 1u]];
+        if (ready) subtrees->m_merges[atomic_inc(&subtrees->m_mergesBegun)] = (ushort)item;
+        barrier(CLK_LOCAL_MEM_FENCE);
+        const uint begun = subtrees->m_mergesBegun;
+        for (uint i = merged + turn; i < begun && turn < DRAPE_MERGES_AT_ONCE; i += DRAPE_MERGES_AT_ONCE)
+            mergeWord(subtrees, subtrees->m_merges[i], word);
+        if (ready)
+        {
+            subtrees->m_done[DRAPE_SUBTREE_GROUP + item] = 1;
+            waits = 0;
+        }
+        merged = begun;
+        barrier(CLK_LOCAL_MEM_FENCE);
     }
 }
 
-// Writes volumes word by word, so that neighbouring work-items write neighbouring words: the nodes of a stretch of leaves lie
-// side by side. indexOfPlace: of the places from `base` on.
-static void storeStretch(__global BvhNode* nodes, const uint base, const uint places, __local const float* volumes,
-                         __local const ushort* indexOfPlace)
+// A word of the node at a place: of its volume, or of what treeSetLeaf() and treeSetSplit() wrote, which a memory that is
+// written whole need not be read for.
+static uint nodeWord(__local const Subtrees* subtrees, const uint window, const uint index, const uint word)
 {
-    __global float* words = (__global float*)(nodes + base);
-    for (uint i = get_local_id(0); i < places * DRAPE_NODE_WORDS; i += get_local_size(0))
+    if (word < DRAPE_DOP_WORDS) return as_uint(subtrees->m_volumes[index * DRAPE_VOLUME_STRIDE + word]);
+    const int isLeaf = index < DRAPE_SUBTREE_GROUP;
+    const uint number = window + (isLeaf ? index : index - DRAPE_SUBTREE_GROUP);
+    if (word == DRAPE_DOP_WORDS) return isLeaf ? number : 2u * number + 1u;
+    return isLeaf ? 0u : 2u;
+}
+
+// Writes nodes word by word, so that neighbouring work-items write neighbouring words: the nodes of a stretch of leaves lie
+// side by side, `places` of them from `base` on.
+static void storeStretch(__global BvhNode* nodes, const uint base, const uint places, __local const Subtrees* subtrees,
+                         const uint window)
+{
+    const uint turn = get_local_id(0) / DRAPE_NODE_WORDS, word = get_local_id(0) % DRAPE_NODE_WORDS;
+    __global uint* words = (__global uint*)(nodes + base) + word;
+    for (uint place = turn; place < places && turn < DRAPE_NODES_AT_ONCE; place += DRAPE_NODES_AT_ONCE)
     {
-        const uint index = indexOfPlace[i / DRAPE_NODE_WORDS], word = i % DRAPE_NODE_WORDS;
-        if (index != DRAPE_NO_PLACE && word < DRAPE_DOP_WORDS) words[i] = volumes[word * DRAPE_SUBTREE_ROW + index];
+        const uint index = subtrees->m_indexOfPlace[place];
+        if (index != DRAPE_NO_PLACE) words[place * DRAPE_NODE_WORDS] = nodeWord(subtrees, window, index, word);
     }
 }
 
 // A work-group is a window of leaves; it refits the subtrees that begin in it. A work-item has one leaf and the split behind
-// it, and merges when both children are there. Volumes stay in local memory until all are there; they are minima and
-// maxima, so the order of merging does not show.
+// it. Volumes stay in local memory until all are there; they are minima and maxima, so the order of merging does not show.
 __kernel __attribute__((reqd_work_group_size(DRAPE_SUBTREE_GROUP, 1, 1))) void refitSubtreesGroups(
     __global BvhNode* restrict nodes, __global const uint* restrict splits, __global const uint* restrict order,
     __global const Triangle* restrict triangles, __global const float* restrict start, __global const float* restrict end,
     __global const float* restrict meshRadius, __global StepCounters* restrict counters, const uint leafCount)
 {
-    __local float volumes[DRAPE_DOP_WORDS * DRAPE_SUBTREE_ROW];
-    __local ushort indexOfPlace[DRAPE_SUBTREE_PLACES];
-    __local uchar done[DRAPE_SUBTREE_PLACES];
-    __local uint stretch[2];
-    __local uint pending;
-    const uint item = get_local_id(0), window = get_group_id(0) * DRAPE_SUBTREE_LEAVES;
-    if (item == 0) pending = 0;
-    stretchOfWindow(splits, window, DRAPE_SUBTREE_LEAVES, leafCount, 0u, stretch);
-    const uint first = stretch[0], count = stretch[1] - first;
-    if (first >= window + DRAPE_SUBTREE_LEAVES || count == 0) return;
+    __local Subtrees subtrees;
+    const uint item = get_local_id(0), window = get_group_id(0) * DRAPE_SUBTREE_LEAVES, leaf = window + item;
+    const uint word = leaf + 1u < leafCount ? splits[leaf] : 0xffffffffu;
+    const uint owner = leaf < leafCount ? order[leaf] : 0u;
+    if (item == 0) subtrees.m_mergeCount = subtrees.m_mergesBegun = 0;
+    subtrees.m_children[2u * item] = (ushort)item;  // leaves, where no split's node is
+    subtrees.m_children[2u * item + 1u] = (ushort)(item + 1u);
+    subtrees.m_indexOfPlace[item] = subtrees.m_indexOfPlace[DRAPE_SUBTREE_GROUP + item] = DRAPE_NO_PLACE;
+    subtrees.m_done[item] = 1;
+    subtrees.m_done[DRAPE_SUBTREE_GROUP + item] = 0;
+    stretchOfWindow(splits, window, DRAPE_SUBTREE_LEAVES, leafCount, 0u, subtrees.m_stretch);
+    const uint first = subtrees.m_stretch[0], last = subtrees.m_stretch[1];
+    if (first >= window + DRAPE_SUBTREE_LEAVES || first >= last) return;
 
-    const uint leaf = first + item;
-    int waits = 0;
-    uint left = 0, right = 0;
-    done[item] = 1;
-    done[DRAPE_SUBTREE_GROUP + item] = 0;
-    indexOfPlace[item] = indexOfPlace[DRAPE_SUBTREE_GROUP + item] = DRAPE_NO_PLACE;
-    barrier(CLK_LOCAL_MEM_FENCE);
-    if (item < count)
+    const int present = leaf >= first && leaf < last;
+    const int merges = present && leaf + 1u < last && splitTier(word) == 0u;
+    // The split behind a subtree's last leaf is merged by a later launch.
+    uint place = present && !merges ? leafPlace(nodes, leaf, leafCount) : 0u;
+    if (merges)
     {
-        __global const Triangle* triangle = triangles + order[leaf];
+        setChild(&subtrees, splitPlace(word), window);
+        subtrees.m_indexOfPlace[splitPlace(word) - 2u * first] = (ushort)(DRAPE_SUBTREE_GROUP + item);
+        atomic_inc(&subtrees.m_mergeCount);
+    }
+    if (present)
+    {
+        __global const Triangle* triangle = triangles + owner;
         Dop dop;
         const uint invalid = leafVolume(&dop, triangle, start, end, meshRadius[triangle->m_mesh]);
         if (invalid > 0) atomic_add(&counters->m_invalidNodes, invalid);
-        keepVolume(volumes, item, &dop);
-        indexOfPlace[leafPlace(nodes, leaf, leafCount) - 2 * first] = (ushort)item;
-        const uint word = item + 1 < count ? splits[leaf] : 0u;
-        if (item + 1 < count && splitTier(word) == 0u)
-        {
-            waits = 1;
-            left = localIndex(nodes + 2 * leaf + 1, first);
-            right = localIndex(nodes + 2 * leaf + 2, first);
-            indexOfPlace[splitPlace(word) - 2 * first] = (ushort)(DRAPE_SUBTREE_GROUP + item);
-            atomic_inc(&pending);
-        }
+        keepVolume(subtrees.m_volumes + item * DRAPE_VOLUME_STRIDE, &dop);
     }
     barrier(CLK_LOCAL_MEM_FENCE);
-    while (pending > 0)
-    {
-        const int ready = waits && done[left] && done[right];
-        if (ready)
-        {
-            mergeVolumes(volumes, DRAPE_SUBTREE_GROUP + item, left, right);
-            waits = 0;
-        }
-        barrier(CLK_LOCAL_MEM_FENCE);
-        if (ready)
-        {
-            done[DRAPE_SUBTREE_GROUP + item] = 1;
-            atomic_dec(&pending);
-        }
-        barrier(CLK_LOCAL_MEM_FENCE);
-    }
-    storeStretch(nodes, 2 * first, 2 * count, volumes, indexOfPlace);
+    if (merges) place = subtrees.m_children[2u * item] == item ? 2u * leaf + 1u : 2u * leaf;
+    if (present) subtrees.m_indexOfPlace[place - 2u * first] = (ushort)item;
+    mergeSubtrees(&subtrees, merges);
+    storeStretch(nodes, 2u * first, 2u * (last - first), &subtrees, window);
 }
 
 // Volumes never hold NaN, so a NaN low end marks a node that is not complete yet.

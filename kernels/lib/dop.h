@@ -3,8 +3,7 @@
 #ifndef DRAPE_LIB_DOP_H
 #define DRAPE_LIB_DOP_H
 
-#include "../shared/mesh.h"
-#include "vec3.h"
+#include "finite_corners.h"
 
 DRAPE_NAMESPACE_BEGIN
 
@@ -143,18 +142,9 @@ DRAPE_FUNCTION int opensFirst(const DRAPE_GLOBAL BvhNode* a, const DRAPE_GLOBAL 
 // finite_corners.h); without a valid corner the volume is empty. Returns whether all corners are valid.
 DRAPE_FUNCTION int cornersVolume(Dop* dop, Vec3* p, int moves, float radius)
 {
-    int valid[3];
-    for (int k = 0; k < 3; ++k)
-        valid[k] = positionIsValid(p[k]) && positionIsValid(p[3 + k]);
-    const int good = valid[0] ? 0 : valid[1] ? 1 : 2;
+    const DRAPE_UINT valid = replaceInvalidCorners(p, p + 3);
     dopClear(dop);
-    if (!valid[good]) return 0;
-    for (int k = 0; k < 3; ++k)
-    {
-        if (valid[k]) continue;
-        p[k] = p[good];
-        p[3 + k] = p[3 + good];
-    }
+    if (valid == 0u) return 0;
     DRAPE_UNROLL
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
     {
@@ -171,7 +161,7 @@ DRAPE_FUNCTION int cornersVolume(Dop* dop, Vec3* p, int moves, float radius)
         }
         dopAddInterval(dop, i, least, greatest, radius * dopNorm(i), inner);
     }
-    return valid[0] && valid[1] && valid[2];
+    return valid == DRAPE_ALL_FEATURES;
 }
 
 // The same of positions at the step's start and end. They may be the same array, which takes half the time.

@@ -26,18 +26,21 @@ DRAPE_FUNCTION DRAPE_UINT replaceInvalidCorners(Vec3* start, Vec3* end)
     // Quick for the usual: a sum that has NaN or something too large in it fails the comparison.
     if (cornersSum(start) + cornersSum(end) <= DRAPE_FARTHEST) return DRAPE_ALL_FEATURES;
     DRAPE_UINT valid = 0;
-    int stand = -1;
+    Vec3 startStand = start[0], endStand = end[0];
+    DRAPE_UNROLL
     for (int i = 0; i < 3; ++i)
     {
         if (!positionIsValid(start[i]) || !positionIsValid(end[i])) continue;
         valid |= DRAPE_OWNS_VERTEX(i);
-        stand = i;
+        startStand = start[i];
+        endStand = end[i];
     }
-    for (int i = 0; i < 3 && stand >= 0; ++i)
+    DRAPE_UNROLL
+    for (int i = 0; i < 3; ++i)
     {
-        if (valid & DRAPE_OWNS_VERTEX(i)) continue;
-        start[i] = start[stand];
-        end[i] = end[stand];
+        if (valid == 0u || (valid & DRAPE_OWNS_VERTEX(i))) continue;
+        start[i] = startStand;
+        end[i] = endStand;
     }
     for (int i = 0; i < 3; ++i)
     {
