@@ -178,6 +178,16 @@ __kernel void patchWalk(DRAPE_WALK_ARGUMENTS, const uint packet)
     teamFlush(&walkers.m_team, &pairs);
 }
 
+// Every lane makes the looker, which takes no longer than one does.
+static void lookTogether(__local Looker* looker, const StepCloths* cloths, const FeatureTest pair)
+{
+    Looker own;
+    look(&own, cloths, pair.m_cloth, pair.m_motion);
+    teamSync();
+    if (teamLane() == 0) *looker = own;
+    teamSync();
+}
+
 // Lists the feature tests of the pairs that patchWalk listed, as many as fitted there. Each group takes a stretch of them:
 // most pairs next to each other are of one cloth triangle.
 __kernel void patchCullPairs(__global const FeatureTest* restrict pairs, const uint pairCapacity,
@@ -197,13 +207,13 @@ __kernel void patchCullPairs(__global const FeatureTest* restrict pairs, const u
     const PatchFeatures features = {patches, patchSizes, faces, vertices, edges};
     const TestList tests = {list, capacity, limit, &counters->m_candidates};
     __local Team team;
+    __local Looker looker;
     teamStart(&team);
-    Looker looker;
     for (uint i = first; i < last; ++i)
     {
         const FeatureTest pair = pairs[i];
         const int known = i > first && pairs[i - 1].m_cloth == pair.m_cloth && pairs[i - 1].m_motion == pair.m_motion;
-        if (!known) look(&looker, &cloths, pair.m_cloth, pair.m_motion);
+        if (!known) lookTogether(&looker, &cloths, pair);
         cullPatch(&team, &features, pair, &looker, &tests);
         if (!teamMakeRoom(&team, &tests)) break;
     }

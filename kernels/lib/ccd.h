@@ -83,7 +83,7 @@ DRAPE_FUNCTION void ccdDescend(CcdBox* box, CcdPath* path, int axis)
     path->m_upper &= ~bit;
     path->m_axis[0] = (axis & 1) ? path->m_axis[0] | bit : path->m_axis[0] & ~bit;
     path->m_axis[1] = (axis & 2) ? path->m_axis[1] | bit : path->m_axis[1] & ~bit;
-    box->m_width[axis] *= 0.5f;
+    ccdWidenAlong(box, axis, 0.5f);
 }
 
 // Goes on to the next box that was put off: the upper half of the latest halving of which the lower half is done.
@@ -97,11 +97,11 @@ DRAPE_FUNCTION int ccdNext(CcdBox* box, CcdPath* path)
         if (!(path->m_upper & bit))
         {
             path->m_upper |= bit;
-            box->m_low[axis] += box->m_width[axis];
+            ccdMoveAlong(box, axis, 1.0f);
             return 1;
         }
-        box->m_low[axis] -= box->m_width[axis];
-        box->m_width[axis] *= 2.0f;
+        ccdMoveAlong(box, axis, -1.0f);
+        ccdWidenAlong(box, axis, 2.0f);
         --path->m_depth;
     }
     return 0;

@@ -44,6 +44,22 @@ typedef struct CcdBox
     float m_width[3];
 } CcdBox;
 
+// Moves a box by its widths along an axis, and scales that width. Written so that a GPU keeps the box in registers,
+// which have no index.
+DRAPE_FUNCTION void ccdMoveAlong(CcdBox* box, int axis, float widths)
+{
+    DRAPE_UNROLL
+    for (int i = 0; i < 3; ++i)
+        if (i == axis) box->m_low[i] += widths * box->m_width[i];
+}
+
+DRAPE_FUNCTION void ccdWidenAlong(CcdBox* box, int axis, float factor)
+{
+    DRAPE_UNROLL
+    for (int i = 0; i < 3; ++i)
+        if (i == axis) box->m_width[i] *= factor;
+}
+
 DRAPE_FUNCTION float ccdMost(float a, float b)
 {
     return drapeMax(drapeAbs(a), drapeAbs(b));
@@ -222,8 +238,8 @@ DRAPE_FUNCTION int ccdCrossesSide(const CcdMotion* m, const CcdBox* box, int i, 
     {
         CcdBox side = *box;
         CcdRanges r;
-        side.m_low[axis] += end ? side.m_width[axis] : 0.0f;
-        side.m_width[axis] = 0.0f;
+        ccdMoveAlong(&side, axis, end ? 1.0f : 0.0f);
+        ccdWidenAlong(&side, axis, 0.0f);
         ccdBounds(m, &side, &r);
         low[end] = drapeMin(r.m_low0[i], r.m_low1[i]);
         high[end] = drapeMax(r.m_high0[i], r.m_high1[i]);

@@ -112,7 +112,7 @@ DRAPE_FUNCTION DRAPE_UINT prepareCull(CullTriangle* cull, const DRAPE_GLOBAL flo
 }
 
 // size: m, of the block's features together.
-DRAPE_FUNCTION CullReach cullReach(const CullTriangle* cull, float reach, float size, DRAPE_UINT mode)
+DRAPE_FUNCTION CullReach cullReach(const DRAPE_TEAM CullTriangle* cull, float reach, float size, DRAPE_UINT mode)
 {
     CullReach result;
     result.m_slack = DRAPE_CULL_SLACK * (cull->m_diameter + size + 2.0f * reach);
@@ -124,7 +124,7 @@ DRAPE_FUNCTION CullReach cullReach(const CullTriangle* cull, float reach, float 
 }
 
 // Vertices whose nearest point of the cloth triangle at the step's end is a corner, surely.
-DRAPE_FUNCTION LaneMask cullAtNode(const CullTriangle* cull, LanesVec3 v, float slack)
+DRAPE_FUNCTION LaneMask cullAtNode(const DRAPE_TEAM CullTriangle* cull, LanesVec3 v, float slack)
 {
     const Lanes place0 = lanesDotUniform(v, cull->m_along[0]);
     const Lanes place1 = lanesDotUniform(lanesSubUniform(v, cull->m_end[1]), cull->m_along[1]);
@@ -136,7 +136,8 @@ DRAPE_FUNCTION LaneMask cullAtNode(const CullTriangle* cull, LanesVec3 v, float 
 }
 
 // The cloth face against vertices.
-DRAPE_FUNCTION LaneMask cullFaceVertex(const CullTriangle* cull, CullReach reach, const DRAPE_GLOBAL float* block)
+DRAPE_FUNCTION LaneMask cullFaceVertex(const DRAPE_TEAM CullTriangle* cull, CullReach reach,
+                                       const DRAPE_GLOBAL float* block)
 {
     const LanesVec3 v = lanesSubUniform(lanesLoadVec3(block, 0), cull->m_origin);
     if (cull->m_thinEnd || cull->m_height < DRAPE_CULL_SMALL * reach.m_near)
@@ -176,7 +177,8 @@ DRAPE_FUNCTION LaneMask cullFaceVertex(const CullTriangle* cull, CullReach reach
 
 // Cloth node i against faces. Compares squares of distances times the face's area or edge, so that no lane needs a
 // root.
-DRAPE_FUNCTION LaneMask cullNodeFace(const CullTriangle* cull, int i, CullReach reach, const DRAPE_GLOBAL float* block)
+DRAPE_FUNCTION LaneMask cullNodeFace(const DRAPE_TEAM CullTriangle* cull, int i, CullReach reach,
+                                     const DRAPE_GLOBAL float* block)
 {
     const LanesVec3 a = lanesLoadVec3(block, 0), b = lanesLoadVec3(block, 3), c = lanesLoadVec3(block, 6);
     const LanesVec3 corner = lanesSubUniform(a, cull->m_origin);
@@ -221,7 +223,7 @@ typedef struct CullEdges
     Lanes m_length, m_square;
 } CullEdges;
 
-DRAPE_FUNCTION CullEdges loadCullEdges(const CullTriangle* cull, const DRAPE_GLOBAL float* block)
+DRAPE_FUNCTION CullEdges loadCullEdges(const DRAPE_TEAM CullTriangle* cull, const DRAPE_GLOBAL float* block)
 {
     CullEdges edges;
     edges.m_a = lanesSubUniform(lanesLoadVec3(block, 0), cull->m_origin);
@@ -235,7 +237,8 @@ DRAPE_FUNCTION CullEdges loadCullEdges(const CullTriangle* cull, const DRAPE_GLO
 }
 
 // Cloth edge i against edges.
-DRAPE_FUNCTION LaneMask cullEdgeEdge(const CullTriangle* cull, int i, CullReach reach, const CullEdges* edges)
+DRAPE_FUNCTION LaneMask cullEdgeEdge(const DRAPE_TEAM CullTriangle* cull, int i, CullReach reach,
+                                     const CullEdges* edges)
 {
     const int j = i == 2 ? 0 : i + 1;
     const float acrossLength = cull->m_edgeLength[i];

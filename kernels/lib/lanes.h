@@ -9,6 +9,14 @@
 
 DRAPE_NAMESPACE_BEGIN
 
+// What a team's lanes share (see team.h) lies in memory of its own where they are a group's work-items: private to
+// each, it would be kept as often as there are lanes.
+#if defined(__OPENCL_VERSION__) && DRAPE_LANES == 1
+#define DRAPE_TEAM __local
+#else
+#define DRAPE_TEAM
+#endif
+
 #if defined(__OPENCL_VERSION__) && DRAPE_LANES > 1
 #define DRAPE_PASTE(a, b) a##b
 #define DRAPE_VECTOR(type, lanes) DRAPE_PASTE(type, lanes)

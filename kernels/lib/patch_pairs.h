@@ -1,5 +1,5 @@
-// Pairs of a cloth triangle and a patch of the obstacles: which there are in a step, and the feature tests they leave. For
-// OpenCL C only; see team.h for who does it.
+// Pairs of a cloth triangle and a patch of the obstacles: which there are in a step, and the feature tests they leave.
+// For OpenCL C only; see team.h for who does it.
 #ifndef DRAPE_LIB_PATCH_PAIRS_H
 #define DRAPE_LIB_PATCH_PAIRS_H
 
@@ -12,8 +12,8 @@
 // Levels of the wide tree over 2^28 triangles.
 #define DRAPE_LEVELS 7
 
-// The cloths of a step and what their triangles have pairs with. thickness: m, cloths × obstacles, negative where the pair is
-// not tested. mode: DRAPE_DISCRETE …. motions: of the obstacles that move in the step.
+// The cloths of a step and what their triangles have pairs with. thickness: m, cloths × obstacles, negative where the
+// pair is not tested. mode: DRAPE_DISCRETE …. motions: of the obstacles that move in the step.
 typedef struct StepCloths
 {
     __global const Triangle* m_triangles;
@@ -36,17 +36,24 @@ typedef struct PatchTree
     __global const Patch* m_patches;
 } PatchTree;
 
-// What kernels that walk read, and the list that they write. radius: m, per cloth, negative for those that are not in the
-// step. limit: see team.h. counters' numbers must be zero before. The order of the list does not matter.
-#define DRAPE_WALK_ARGUMENTS                                                                                                  \
-    __global const uint *restrict clothOrder, __global const Triangle *restrict clothTriangles, const uint clothCount,        \
-        __global const float *restrict start, __global const float *restrict end, __global const float *restrict radius,      \
-        __global const float *restrict thickness, const uint obstacleMeshes, const float reachScale, const uint mode,         \
-        __global const ObstacleMotion *restrict motions, const uint motionCount, __global const float *restrict wideNodes,    \
-        __global const uint *restrict levels, const uint levelCount, __global const Patch *restrict patches,                  \
-        __global FeatureTest *restrict list, const uint capacity, const uint limit, __global StepCounters *restrict counters
-#define DRAPE_STEP_CLOTHS {clothTriangles, start, end, thickness, obstacleMeshes, reachScale, mode, motions, motionCount}
-#define DRAPE_PATCH_TREE {wideNodes, levels, levelCount, patches}
+// What kernels that walk read, and the list that they write. radius: m, per cloth, negative for those that are not in
+// the step. limit: see team.h. counters' numbers must be zero before. The order of the list does not matter.
+#define DRAPE_WALK_ARGUMENTS                                                                                           \
+    __global const uint *restrict clothOrder, __global const Triangle *restrict clothTriangles, const uint clothCount, \
+        __global const float *restrict start, __global const float *restrict end,                                      \
+        __global const float *restrict radius, __global const float *restrict thickness, const uint obstacleMeshes,    \
+        const float reachScale, const uint mode, __global const ObstacleMotion *restrict motions,                      \
+        const uint motionCount, __global const float *restrict wideNodes, __global const uint *restrict levels,        \
+        const uint levelCount, __global const Patch *restrict patches, __global FeatureTest *restrict list,            \
+        const uint capacity, const uint limit, __global StepCounters *restrict counters
+#define DRAPE_STEP_CLOTHS                                                                             \
+    {                                                                                                 \
+        clothTriangles, start, end, thickness, obstacleMeshes, reachScale, mode, motions, motionCount \
+    }
+#define DRAPE_PATCH_TREE                       \
+    {                                          \
+        wideNodes, levels, levelCount, patches \
+    }
 
 // motion: 0 for none, else 1 + its place.
 static __global const ObstacleMotion* motionOf(const StepCloths* cloths, const uint motion)
@@ -60,10 +67,10 @@ static float thicknessWith(const StepCloths* cloths, const uint cloth, const uin
     return cloths->m_thickness[cloths->m_triangles[cloth].m_mesh * cloths->m_obstacleMeshes + mesh];
 }
 
-// Whether a cloth triangle is to be tested against a patch of the obstacles that move so (all that rest, or one that moves);
-// then *pair holds what.
-static int pairWith(FeatureTest* pair, const StepCloths* cloths, const PatchTree* tree, const uint cloth, const uint motion,
-                    const uint patch)
+// Whether a cloth triangle is to be tested against a patch of the obstacles that move so (all that rest, or one that
+// moves); then *pair holds what.
+static int pairWith(FeatureTest* pair, const StepCloths* cloths, const PatchTree* tree, const uint cloth,
+                    const uint motion, const uint patch)
 {
     const uint mesh = tree->m_patches[patch].m_mesh;
     const float thickness = thicknessWith(cloths, cloth, mesh);
@@ -101,8 +108,8 @@ typedef struct Looker
 
 static void look(Looker* looker, const StepCloths* cloths, const uint cloth, const uint motion)
 {
-    looker->m_valid = prepareCull(&looker->m_cull, cloths->m_start, cloths->m_end, cloths->m_triangles + cloth, cloths->m_mode,
-                                  motionOf(cloths, motion));
+    looker->m_valid = prepareCull(&looker->m_cull, cloths->m_start, cloths->m_end, cloths->m_triangles + cloth,
+                                  cloths->m_mode, motionOf(cloths, motion));
     looker->m_owned = cloths->m_triangles[cloth].m_owned;
     looker->m_mode = cloths->m_mode;
 }
@@ -129,12 +136,12 @@ static void keepLanes(DRAPE_TEAM Team* team, const LaneMask mask, FeatureTest te
 }
 
 // Lists the feature tests of a pair of cloth triangle and patch.
-static void cullPatch(DRAPE_TEAM Team* team, const PatchFeatures* features, const FeatureTest pair, const Looker* looker,
-                      const TestList* list)
+static void cullPatch(DRAPE_TEAM Team* team, const PatchFeatures* features, const FeatureTest pair,
+                      const DRAPE_TEAM Looker* looker, const TestList* list)
 {
     const uint index = pair.m_lane;
     __global const Patch* patch = features->m_patches + index;
-    const CullTriangle* cull = &looker->m_cull;
+    const DRAPE_TEAM CullTriangle* cull = &looker->m_cull;
     const CullReach reach = cullReach(cull, pair.m_reach, features->m_sizes[index], looker->m_mode);
     const uint owned = looker->m_owned & looker->m_valid;
     for (int i = 0; i < 3; ++i)

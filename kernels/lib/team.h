@@ -1,10 +1,10 @@
 // A team does one piece of a cull: one work-item with vectors of lanes (DRAPE_LANES 8 or 16), or one work-group whose
-// work-items are the lanes (DRAPE_LANES 1), of which there are DRAPE_PATCH_WIDTH or a multiple. Which of the two is a build
-// option; the text is the same.
+// work-items are the lanes (DRAPE_LANES 1), of which there are DRAPE_PATCH_WIDTH or a multiple. Which of the two is a
+// build option; the text is the same.
 //
-// What a team finds it gathers and moves to a list with one atomic for many. The list's demand counts on past the capacity;
-// what does not fit is not written, and the host repeats the step with a larger list. Past the limit the team ends: the step
-// is over it whatever follows, and a count that ran on could wrap around. For OpenCL C only.
+// What a team finds it gathers and moves to a list with one atomic for many. The list's demand counts on past the
+// capacity; what does not fit is not written, and the host repeats the step with a larger list. Past the limit the team
+// ends: the step is over it whatever follows, and a count that ran on could wrap around. For OpenCL C only.
 #ifndef DRAPE_LIB_TEAM_H
 #define DRAPE_LIB_TEAM_H
 
@@ -30,7 +30,6 @@ typedef struct TestList
 } TestList;
 
 #if DRAPE_LANES > 1
-#define DRAPE_TEAM
 #define teamLane() 0
 #define teamWidth() 1
 #define teamSync()
@@ -49,11 +48,11 @@ static uint laneBits(const LaneMask mask)
     return (uint)(half2.lo | half2.hi);
 }
 
-#define forLanes(lane, mask) \
-    for (uint bits = laneBits(mask), lane = 31 - clz(bits & -bits); bits; bits &= bits - 1, lane = 31 - clz(bits & -bits))
+#define forLanes(lane, mask)                                              \
+    for (uint bits = laneBits(mask), lane = 31 - clz(bits & -bits); bits; \
+         bits &= bits - 1, lane = 31 - clz(bits & -bits))
 #define teamAdd(counter) ((counter)++)
 #else
-#define DRAPE_TEAM __local
 #define teamLane() get_local_id(0)
 #define teamWidth() get_local_size(0)
 #define teamSync() barrier(CLK_LOCAL_MEM_FENCE)
