@@ -7,7 +7,7 @@
 #include <iostream>
 
 #include "benchmarks/study/study.h"
-#include "benchmarks/support/models.h"
+#include "scenes/models.h"
 
 namespace drape::bench
 {
@@ -26,7 +26,7 @@ bool StudyOptions::tooLate(const std::string& what) const
 std::vector<std::string> studyModels(bool quick)
 {
     if (quick) return {"sphere_1k", "terrain_6272"};
-    return {"spot", "terrain_6272", "torus_16301", "bunny", "torus_345944", "dragon", "bunny_1m"};
+    return studyModelNames();
 }
 
 void StudyOptions::readReference()

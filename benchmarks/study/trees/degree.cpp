@@ -7,7 +7,7 @@
 #include "benchmarks/study/trees/tree_walk.h"
 #include "benchmarks/study/trees/tree_work.h"
 #include "benchmarks/support/machine.h"
-#include "benchmarks/support/models.h"
+#include "scenes/models.h"
 #include "benchmarks/support/peer_scene.h"
 #include "benchmarks/support/result_hash.h"
 #include "benchmarks/support/step_method.h"
