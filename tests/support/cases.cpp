@@ -96,11 +96,11 @@ TriangleMesh repeated(int count, const std::vector<float>& triangle)
     return looseTriangles(corners);
 }
 
-// Each triangle's centroid is twice as far as the one before: a mean or a code parts off one triangle at a time.
-TriangleMesh doublingLine(int count)
+// From x (m) on, each triangle's centroid is farther than the one before by a third: a mean or a code parts off one
+// triangle at a time.
+TriangleMesh doublingLine(int count, float x)
 {
     std::vector<float> corners;
-    float x = 1e-30f;
     for (int i = 0; i < count; ++i, x *= 1.3f)
         corners.insert(corners.end(), {x, 0, 0, 1.1f * x, 0, 0, x, 1e-3f * x, 0});
     return looseTriangles(corners);
@@ -127,7 +127,8 @@ std::vector<NamedMesh> degenerateMeshes(int triangles)
 {
     return {{"equal centroids", repeated(triangles, {0, 0, 0, 1, 0, 0, 0, 1, 0})},
             {"points", repeated(300, {1, 2, 3, 1, 2, 3, 1, 2, 3})},
-            {"doubling line", doublingLine(300)},
+            {"doubling line", doublingLine(300, 1e-30f)},
+            {"doubling line backwards", doublingLine(300, -1e-30f)},
             {"even line", evenLine(triangles)},
             {"bad nodes", withBadNodes(makeSoup(1.0f, 0.1f, 500, 9))}};
 }

@@ -44,7 +44,7 @@ TriangleMesh shapeNamed(const std::string& name);
 // A mesh of one triangle or more: corners in order, none shared.
 TriangleMesh looseTriangles(const std::vector<float>& corners);
 
-// Meshes that hierarchies may fail at: all centroids equal, all corners in one point, a line whose triangles double in
+// Meshes that hierarchies may fail at: all centroids equal, all corners in one point, lines whose triangles grow in
 // distance, an even line, and a soup with nodes that are NaN, infinite and near the largest float. triangles: of the
 // large ones.
 using NamedMesh = std::pair<std::string, TriangleMesh>;
