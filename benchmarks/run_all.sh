@@ -3,7 +3,8 @@
 #
 #   --device NAME    part of an OpenCL device's name (default: the first GPU, else the first device)
 #   --models DIR     folder of bunny_69k.obj, dragon_871k.ply, spot_6k.obj; what is not there is left out
-#   --bin DIR        folder of the programs (default: build/release/bin)
+#   --bin DIR        folder of the programs (default: build/release/bin; those of the study in other volumes are made by
+#                    the target study_degrees)
 #   --minutes N      time to spend (default 80); what does not fit is named and left out
 #   --truth DIR      folder of published queries with exact answers, see error_vs_time/run.sh
 #   --commit TEXT    what is measured (default: git describe)
@@ -11,9 +12,9 @@
 #                    measured again
 #   --quick          small inputs only
 #
-# Writes bench_step.csv and .json, study.csv and .json, and, where Bullet's part is built, error_vs_time.csv and .json and
-# cloth_drop.json (of the bunny); then the plots beside them, and the tables in README.md where OUT_DIR lies under results/
-# here. Measure on an idle machine. Ends with 3 when a row is void, with 1 when something could not be measured.
+# Writes bench_step.csv and .json, study.csv and .json (run_study.sh alone does these, also part by part), and, where
+# Bullet's part is built, error_vs_time.csv and .json and cloth_drop.json (of the bunny); then the plots beside them, and
+# the tables in README.md where OUT_DIR lies under results/ here. Measure on an idle machine. Ends with 3 when a row is void, with 1 when something could not be measured.
 set -uo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -35,7 +36,7 @@ while [[ $# -gt 0 ]]; do
   esac
   shift
 done
-[[ -n $out ]] || { sed -n '2,17s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 2; }
+[[ -n $out ]] || { sed -n '2,19s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 2; }
 mkdir -p "$out" || exit 1
 
 common=(--commit "$commit")
@@ -62,7 +63,8 @@ if [[ -n $reference ]]; then
   step=(--reference "$reference/bench_step.json" --method drape --method drape_kernels)
 fi
 measure bench_step 0.45 "${step[@]}"
-measure study 0.27
+bash "$here/run_study.sh" --bin "$bin" "${common[@]}" --minutes "$(minutes_of 0.27)" "$out"
+note $?
 
 bunny=/usr/share/glmark2/models/bunny.obj
 [[ -z $models || ! -f $models/bunny_69k.obj ]] || bunny=$models/bunny_69k.obj

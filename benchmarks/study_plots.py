@@ -2,6 +2,7 @@
 import matplotlib.pyplot as plt
 
 from results import in_order, select
+from study_tables import FRONTS
 
 
 def descent(rows, scene, folder, save):
@@ -102,11 +103,24 @@ def by_model(rows, part, title, folder, save):
     save(figure, folder, "study_" + part)
 
 
+def grid(count, width=3):
+    """Axes for so many plots, in rows; the rest is switched off."""
+    lines = (count + width - 1) // width
+    figure, axes = plt.subplots(lines, min(count, width), figsize=(5 * min(count, width), 4 * lines), squeeze=False)
+    flat = list(axes.flat)
+    for unused in flat[count:]:
+        unused.axis("off")
+    return figure, flat
+
+
 def quality(rows, folder, save):
     """Nodes a query meets against the time to build: to the left and below is better."""
     mine = [row for row in select(rows, part="quality") if time_of(row) is not None]
-    for model in in_order(mine, "model"):
-        figure, axes = plt.subplots(figsize=(7, 4.5))
+    models = in_order(mine, "model")
+    if not models:
+        return
+    figure, all_axes = grid(len(models))
+    for model, axes in zip(models, all_axes):
         for row in select(mine, model=model):
             axes.plot(time_of(row), row["visits"], "o")
             axes.annotate(row["variant"], (time_of(row), row["visits"]), fontsize=7, xytext=(4, 3),
@@ -114,7 +128,77 @@ def quality(rows, folder, save):
         axes.set(xscale="log", xlabel="construction, ms", ylabel="volume tests of a step",
                  title=f"quality against build time, {model}")
         axes.grid(True, alpha=0.25)
-        save(figure, folder, f"study_quality_{model}")
+    save(figure, folder, "study_quality")
+
+
+def compaction(rows, folder, save):
+    """Figure 4.5: the compaction's share of the construction."""
+    mine = select(rows, part="compaction")
+    if not mine:
+        return
+    figure, axes = plt.subplots(figsize=(6, 4))
+    axes.plot([row["triangles"] for row in mine], [100 * row["share"] for row in mine], "o-")
+    for row in mine:
+        axes.annotate(row["model"], (row["triangles"], 100 * row["share"]), fontsize=7, xytext=(4, 3),
+                      textcoords="offset points")
+    axes.set(xscale="log", ylim=(0, None), xlabel="triangles", ylabel="% of the kernels' time",
+             title="compaction in the thesis's construction (figure 4.5)")
+    axes.grid(True, alpha=0.25)
+    save(figure, folder, "study_compaction")
+
+
+DEGREE_PANELS = (("build_", "construction, ms"), ("refit_", "refit, ms"), ("walk_", "traversal, ms"),
+                 ("visits", "volume tests"), ("candidates", "candidates"), ("bytes", "bytes of the tree"))
+
+
+def degree(rows, folder, save):
+    """What sides of the volumes cost and gain, against 18 of them; on the device where there is one."""
+    mine = [row for row in select(rows, part="degree") if "walk_median_ms" in row]
+    backend = "opencl" if select(mine, backend="opencl") else "host"
+    mine = select(mine, backend=backend)
+    if len({row["dop"] for row in mine}) < 2:
+        return
+    figure, all_axes = grid(len(DEGREE_PANELS))
+    for (column, title), axes in zip(DEGREE_PANELS, all_axes):
+        for model in in_order(mine, "model"):
+            values = {row["dop"]: row.get(column) if not column.endswith("_") else row.get(
+                column + "kernel_median_ms", row.get(column + "median_ms")) for row in select(mine, model=model)}
+            if not values.get(18):
+                continue
+            points = sorted((sides, value / values[18]) for sides, value in values.items() if value)
+            axes.plot(*zip(*points), ".-", label=model)
+        axes.set(xlabel="sides", xticks=[6, 14, 18, 26], ylabel="of that of 18 sides", title=f"{title} ({backend})")
+        axes.grid(True, alpha=0.25)
+        if axes.lines:
+            axes.legend(fontsize=6)
+    save(figure, folder, "study_degree")
+
+
+def front(rows, folder, save):
+    """The front against full traversals, step by step: volume tests and time."""
+    scenes = in_order(select(rows, part="traversal"), "model")
+    wanted = [variant for variants in FRONTS for variant in variants]
+    known = [row for row in select(rows, part="traversal") if row["variant"] in wanted and row.get("volume_tests")]
+    if not known:
+        return
+    figure, all_axes = plt.subplots(len(scenes), 2, figsize=(13, 4.5 * len(scenes)), squeeze=False)
+    for scene, line in zip(scenes, all_axes):
+        for variant in wanted:
+            steps = sorted(select(known, model=scene, variant=variant), key=lambda row: row["step"])
+            steps = [row for row in steps if row["step"] > 0 and "broad_ms" in row]
+            dash = "--" if variant.startswith("host") else "-"
+            for axes, column in zip(line, ("volume_tests", "broad_ms")):
+                if steps:
+                    axes.plot([row["step"] for row in steps], [row[column] for row in steps], dash, label=variant)
+        rest = [row["step"] for row in known if row["model"] == scene and row.get("phase") == "rest"]
+        for axes, label in zip(line, ("volume tests", "broad phase, ms")):
+            if rest:
+                axes.axvline(min(rest), color="grey", linewidth=0.8)
+            axes.set(xlabel="step; at rest to the right of the line", ylabel=label, yscale="log",
+                     title=f"{scene}: front and full traversals")
+            axes.grid(True, alpha=0.25)
+            axes.legend(fontsize=7)
+    save(figure, folder, "study_front")
 
 
 def draw(rows, folder, save):
@@ -123,5 +207,8 @@ def draw(rows, folder, save):
     levels(rows, folder, save)
     by_model(rows, "construction", "construction (tables 4.2 and 4.3)", folder, save)
     by_model(rows, "refit", "refit (table 4.4)", folder, save)
+    compaction(rows, folder, save)
     quality(rows, folder, save)
+    degree(rows, folder, save)
+    front(rows, folder, save)
     triangle_tests(rows, folder, save)

@@ -50,24 +50,111 @@ def by_model(rows, part, title, thesis_columns, table, figure):
     return title + "\n\n" + table(head, lines)
 
 
+def descent_steps(rows, scene, variant, phase="descent"):
+    """Steps of a phase. The first step of a pass follows the last, so it is none; nor is one without a time."""
+    return [row for row in select(rows, part="traversal", model=scene, variant=variant)
+            if row["step"] > 0 and row.get("phase", "descent") == phase and "broad_ms" in row]
+
+
+def mean(steps, column):
+    found = [row[column] for row in steps if row.get(column)]
+    return sum(found) / len(found) if found else None
+
+
+def count(value):
+    return "–" if value is None else f"{value:,.0f}"
+
+
 def descent_table(rows, table, figure):
     text = ""
     for scene in in_order(select(rows, part="traversal"), "model"):
-        mine = select(rows, part="traversal", model=scene)
         lines = []
-        for variant in in_order(mine, "variant"):
-            steps = [row for row in select(mine, variant=variant) if row["step"] > 0 and "broad_ms" in row]
+        for variant in in_order(select(rows, part="traversal", model=scene), "variant"):
+            steps = descent_steps(rows, scene, variant)
             if not steps:
                 continue
             total = [sum(row.get(stage + "_ms", 0) for row in steps) / len(steps)
                      for stage in ("refit", "broad", "narrow", "order")]
-            tests = [row["volume_tests"] for row in steps if row.get("volume_tests")]
-            lines.append([variant] + [figure(value) for value in total]
-                         + [f"{sum(tests) / len(tests):,.0f}" if tests else "–"])
+            lines.append([variant] + [figure(value) for value in total] + [count(mean(steps, "volume_tests"))])
         text += (f"Descent of the {scene} scene's cloth onto the bunny, mean of its steps, ms (kernel time on a device), "
                  "figures 4.6 and 4.8:\n\n"
                  + table(["traversal", "refit", "broad phase", "narrow phase", "order", "volume tests"], lines))
     return text
+
+
+# The front, and the traversals without one: the same but for it, and the thesis's.
+FRONTS = (("host, thesis: front", "host, as front, from the roots", "host, thesis: simple"),
+          ("thesis: front", "as front, from fixed pairs", "thesis: simple"))
+
+
+def front_table(rows, table, figure):
+    """What the front saves: volume tests and ms a step, as the cloth comes down and as it sways at rest."""
+    lines = []
+    for scene in in_order(select(rows, part="traversal"), "model"):
+        for variants in FRONTS:
+            front = {phase: descent_steps(rows, scene, variants[0], phase) for phase in ("descent", "rest")}
+            for variant in variants:
+                line, known = [scene, variant], False
+                for phase in ("descent", "rest"):
+                    steps = descent_steps(rows, scene, variant, phase)
+                    for column, text in (("volume_tests", count), ("broad_ms", figure)):
+                        value, least = mean(steps, column), mean(front[phase], column)
+                        known = known or value is not None
+                        ratio = f" ({least / value:.2f})" if value and least and variant != variants[0] else ""
+                        line.append("–" if value is None else text(value) + ratio)
+                if known:
+                    lines.append(line)
+    if not lines:
+        return ""
+    return ("The front against traversals without one, means of steps, ms of the broad phase (kernel time on a device); in "
+            "brackets what the front takes of it.\n\n"
+            + table(["scene", "traversal", "volume tests, coming down", "ms", "volume tests, at rest", "ms"], lines))
+
+
+def pair_text(row, prefix, figure):
+    """Kernel time / host to host, or wall time; prefix: of the column."""
+    if prefix + "median_ms" not in row:
+        return "–"
+    kernel = row.get(prefix + "kernel_median_ms")
+    return (f"{figure(kernel)} / " if kernel is not None else "") + figure(row[prefix + "median_ms"])
+
+
+def degree_table(rows, table, figure):
+    mine = select(rows, part="degree")
+    trees, steps = [], []
+    for model in in_order(mine, "model"):
+        for backend in in_order(select(mine, model=model), "backend"):
+            ordered = sorted(select(mine, model=model, backend=backend), key=lambda row: row["dop"])
+            place = "host, 1 thread" if backend == "host" else "device"
+            trees += [[model, place, f"{row['dop']:.0f}"]
+                      + [pair_text(row, prefix, figure) for prefix in ("build_", "refit_", "walk_")]
+                      + [count(row["visits"]), count(row["candidates"]), count(row["contacts"]),
+                         f"{row['bytes'] / row['triangles']:,.0f}"]
+                      for row in ordered if "walk_median_ms" in row]
+            for variant in in_order([row for row in ordered if "step_median_ms" in row], "variant"):
+                what = variant.partition(", step, ")[2]
+                row = select(ordered, variant=variant)[0]
+                steps.append((place_of(model, mine), what, row["dop"],
+                              [model, what, f"{row['dop']:.0f}", pair_text(row, "step_", figure), count(row.get("visits")),
+                               count(row["candidates"]), count(row["contacts"]),
+                               f"{row['bytes'] / 2 ** 20:,.1f}" if "bytes" in row else "–"]))
+    text = ""
+    if trees:
+        text += ("Sides of the volumes: a radix tree of each model, the thesis's cloth looking for its candidates in it; ms: "
+                 "kernel time / host to host on a device. The contacts of the candidates are the same for all, bit for "
+                 "bit.\n\n" + table(["model", "on", "sides", "construction", "refit", "traversal", "volume tests",
+                                     "candidates", "contacts", "bytes a triangle"], trees))
+    if steps:
+        steps.sort(key=lambda entry: entry[:3])
+        text += ("Whole steps in volumes of so many sides, mean of the scene's steps, ms likewise; the default's candidates "
+                 "are pairs of features, the others' of triangles.\n\n"
+                 + table(["scene", "traversal", "sides", "step", "volume tests", "candidates", "contacts",
+                          "device memory, MiB"], [line for *_, line in steps]))
+    return text
+
+
+def place_of(model, rows):
+    return in_order(rows, "model").index(model)
 
 
 def shape_table(rows, table, figure):
@@ -166,6 +253,32 @@ def quality_table(rows, table, figure):
     return text
 
 
+# Of the thesis's builders its last, and today's, on every machine.
+COMPARED = ("thesis: normal", "thesis: all optimisations", "radix, 30 bits", "ploc")
+
+
+def devices_table(machines, table, figure):
+    """Table 4.3: the same construction on all devices. machines: name and rows."""
+    devices, models, lines = [], {}, []
+    for name, rows in machines:
+        mine = [row for row in select(rows, part="construction", backend="opencl") if "kernel_median_ms" in row]
+        devices += [(name, mine)] if mine else []
+        models.update({row["model"]: row["triangles"] for row in mine})
+    if len(devices) < 2:
+        return ""
+    ordered = sorted(models, key=models.get)
+    for variant in COMPARED:
+        for name, mine in devices:
+            found = {row["model"]: row for row in select(mine, variant=variant)}
+            lines.append([variant, name] + [time_text(found[model], figure) if model in found else "–" for model in ordered])
+    for label, source, what in (("Quadro FX 3800", "4.2", "quadro_optimised"), ("Tesla C2050", "4.3", "tesla_optimised")):
+        figures = thesis(source, what)
+        lines.append(["*thesis, optimised, kernels*", f"*{label}*"] + [
+            f"*{figures[THESIS_MODELS[model]]:,.0f}*" if model in THESIS_MODELS else "–" for model in ordered])
+    return ("### Devices side by side\n\nConstruction on all devices (table 4.3), ms: kernel time / host to host.\n\n"
+            + table(["builder", "device"] + [f"{model.replace('_', ' ')} ({models[model]:,.0f})" for model in ordered], lines))
+
+
 def text(rows, table, figure):
     if not rows:
         return ""
@@ -179,6 +292,7 @@ def text(rows, table, figure):
             + by_model(rows, "refit", "Refit (table 4.4), ms, likewise.",
                        [("CPU", "4.4", "cpu"), ("Quadro FX 3800, kernels", "4.4", "quadro")], table, figure)
             + refit_kernel_table(rows, table, figure)
-            + quality_table(rows, table, figure) + shape_table(rows, table, figure) + descent_table(rows, table, figure)
+            + quality_table(rows, table, figure) + shape_table(rows, table, figure)
+            + degree_table(rows, table, figure) + descent_table(rows, table, figure) + front_table(rows, table, figure)
             + rebuild_table(rows, table, figure)
             + triangle_test_table(rows, table, figure))

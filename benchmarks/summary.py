@@ -172,6 +172,8 @@ def main():
     if not end:
         sys.exit(f"{readme} has no markers")
     text = "".join(machine_text(folder) for folder in folders)
+    text += study_tables.devices_table([(os.path.basename(folder), read_rows(folder, "study")) for folder in folders],
+                                       table, figure)
     with open(readme, "w") as file:
         file.write(before + BEGIN + "\n\n" + text + END + after)
 

@@ -4,7 +4,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
-#include "benchmarks/bench_step/peer_scene.h"
+#include "benchmarks/support/peer_scene.h"
 #include "benchmarks/bench_step/peer_methods.h"
 #include "benchmarks/support/embree.h"
 #include "benchmarks/support/result_hash.h"

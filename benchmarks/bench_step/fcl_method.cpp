@@ -7,7 +7,7 @@
 #include <fcl/narrowphase/detail/traversal/collision/mesh_collision_traversal_node.h>
 #include <fcl/narrowphase/detail/traversal/traversal_recurse.h>
 
-#include "benchmarks/bench_step/peer_scene.h"
+#include "benchmarks/support/peer_scene.h"
 #include "benchmarks/bench_step/peer_methods.h"
 #include "benchmarks/support/samples.h"
 

@@ -9,7 +9,7 @@
 
 #include "benchmarks/bench_step/measure_scene.h"
 #include "benchmarks/support/arguments.h"
-#include "benchmarks/support/models.h"
+#include "scenes/models.h"
 #include "benchmarks/support/samples.h"
 
 namespace drape::bench

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "benchmarks/support/models.h"
+#include "scenes/models.h"
 #include "scenes/random.h"
 #include "scenes/shapes.h"
 

@@ -9,7 +9,7 @@
 
 #include "benchmarks/error_vs_time/detector_part.h"
 #include "benchmarks/error_vs_time/simulation_part.h"
-#include "benchmarks/support/models.h"
+#include "scenes/models.h"
 #include "benchmarks/support/samples.h"
 
 namespace drape::bench

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iostream>
 
-#include "benchmarks/support/models.h"
+#include "scenes/models.h"
 #include "benchmarks/support/samples.h"
 
 namespace drape::bench

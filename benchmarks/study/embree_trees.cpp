@@ -46,6 +46,12 @@ public:
         rtcUpdateGeometryBuffer(m_geometry, RTC_BUFFER_TYPE_VERTEX, 0);
         return commit();
     }
+    std::string hash() const
+    {
+        RTCBounds bounds;
+        rtcGetSceneBounds(m_scene, &bounds);
+        return boundsHash(&bounds.lower_x, &bounds.upper_x);
+    }
 
 private:
     RTCScene m_scene = nullptr;
@@ -66,14 +72,21 @@ std::vector<PeerTree> measureEmbreeTrees(const TriangleMesh& mesh, int repeats, 
             tree.m_name = morton ? "embree_morton" : "embree_sah";
             tree.m_driver = "Embree " RTC_VERSION_STRING;
             tree.m_threads = threads;
-            tree.m_build =
-                repeat(2, std::size_t(repeats), seconds, [&] { return EmbreeTree(device, mesh, morton).commit(); });
+            tree.m_build = repeat(2, std::size_t(repeats), seconds,
+                                  [&]
+                                  {
+                                      EmbreeTree built(device, mesh, morton);
+                                      const double ms = built.commit();
+                                      tree.m_buildHash = built.hash();
+                                      return ms;
+                                  });
             if (morton)
             {
                 EmbreeTree kept(device, mesh, true);
                 kept.commit();
                 kept.refit();  // the first one prepares
                 tree.m_refit = repeat(2, std::size_t(repeats), seconds, [&] { return kept.refit(); });
+                tree.m_refitHash = kept.hash();
             }
             trees.push_back(tree);
         }

@@ -11,6 +11,15 @@ void build(FclModel& model, const TriangleMesh& mesh)
         model, mesh.triangleCount(), [&](std::size_t t) { return &mesh.m_triangles[3 * t]; }, mesh.m_positions.data(),
         mesh.vertexCount());
 }
+
+// A k-DOP's first three directions are the axes: least values, then, from 9 on, largest.
+std::string hashOf(const FclModel& model)
+{
+    const FclVolume& root = model.getBV(0).bv;
+    const float low[3] = {root.dist(0), root.dist(1), root.dist(2)};
+    const float high[3] = {root.dist(9), root.dist(10), root.dist(11)};
+    return boundsHash(low, high);
+}
 }  // namespace
 
 PeerTree measureFclTree(const TriangleMesh& mesh, int repeats, double seconds)
@@ -24,7 +33,9 @@ PeerTree measureFclTree(const TriangleMesh& mesh, int repeats, double seconds)
                               FclModel model;
                               const Clock::time_point start = Clock::now();
                               build(model, mesh);
-                              return millisecondsSince(start);
+                              const double ms = millisecondsSince(start);
+                              tree.m_buildHash = hashOf(model);
+                              return ms;
                           });
     FclModel kept;
     build(kept, mesh);
@@ -35,6 +46,7 @@ PeerTree measureFclTree(const TriangleMesh& mesh, int repeats, double seconds)
                               refitFclModel(kept, mesh.m_positions.data(), mesh.vertexCount());
                               return millisecondsSince(start);
                           });
+    tree.m_refitHash = hashOf(kept);
     return tree;
 }
 }  // namespace drape::bench

@@ -3,10 +3,11 @@
 // Every row carries a hash of its result; where it is not that of the host's version, the row is void and the program
 // ends with 3.
 #include <algorithm>
+#include <fstream>
 #include <iostream>
 
 #include "benchmarks/study/study.h"
-#include "benchmarks/support/models.h"
+#include "scenes/models.h"
 
 namespace drape::bench
 {
@@ -25,20 +26,54 @@ bool StudyOptions::tooLate(const std::string& what) const
 std::vector<std::string> studyModels(bool quick)
 {
     if (quick) return {"sphere_1k", "terrain_6272"};
-    return {"spot", "terrain_6272", "torus_16301", "bunny", "torus_345944", "dragon", "bunny_1m"};
+    return studyModelNames();
+}
+
+void StudyOptions::readReference()
+{
+    if (m_reference.empty()) return;
+    std::ifstream file(m_reference);
+    const Row all = Row::parse(file);
+    for (const Row& row : all.at("rows"))
+    {
+        if (row.value("valid", "") == "yes")
+            m_hashes[row.value("part", "") + ", " + row.value("model", "")] = row["hash"];
+    }
+}
+
+std::string StudyOptions::expectedHash(const std::string& part, const std::string& model) const
+{
+    const auto found = m_hashes.find(part + ", " + model);
+    return found == m_hashes.end() ? std::string() : found->second;
+}
+
+bool loadModel(const std::string& model, const StudyOptions& options, TriangleMesh& mesh)
+{
+    std::string error;
+    if (makeModel(model, modelFolders(options.m_models), mesh, error)) return true;
+    std::cerr << "study: " << error << std::endl;
+    return false;
+}
+
+std::vector<SceneSpec> studyScenes(const StudyOptions& options)
+{
+    std::vector<SceneSpec> specs;
+    for (const SceneSpec& spec : sceneSpecs())
+    {
+        const bool studied =
+            options.m_quick ? spec.m_name == "quick_one" : spec.m_name == "thesis" || spec.m_name == "fine";
+        if (studied && options.wants(spec.m_name)) specs.push_back(spec);
+    }
+    return specs;
 }
 
 void forEachModel(const StudyOptions& options, const std::function<void(const std::string&, const TriangleMesh&)>& body)
 {
     for (const std::string& model : studyModels(options.m_quick))
     {
-        if (!options.wants(model) || options.tooLate(model)) continue;
         TriangleMesh mesh;
-        std::string error;
-        if (makeModel(model, modelFolders(options.m_models), mesh, error))
-            body(model, mesh);
-        else
-            std::cerr << "study: " << error << std::endl;
+        if (!options.wants(model) || options.tooLate(model)) continue;
+        if (loadModel(model, options, mesh)) body(model, mesh);
     }
 }
 
@@ -51,8 +86,12 @@ int run(int argc, char** argv)
     addCommonOptions(app, options);
     app.add_option("--part", options.m_parts, "only these parts");
     app.add_option("--only", options.m_only, "only these models and scenes");
+    app.add_option("--reference", options.m_reference, "JSON of the part degree in other volumes: contacts must be its")
+        ->type_name("FILE")
+        ->check(CLI::ExistingFile);
     int exitCode = kExitGood;
     if (!parseArguments(app, argc, argv, exitCode)) return exitCode;
+    options.readReference();
     Table table;
     for (const Part& part : studyParts())
     {

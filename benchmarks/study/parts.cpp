@@ -1,27 +1,58 @@
+#include <algorithm>
+#include <limits>
+
 #include "benchmarks/study/peer_trees.h"
 #include "benchmarks/study/study.h"
+#include "benchmarks/support/result_hash.h"
 
 namespace drape::bench
 {
 namespace
 {
-void addPeerRow(const PeerTree& tree, const char* part, const Samples& samples, const std::string& model,
-                std::size_t triangles, Table& table)
+void addPeerRow(const PeerTree& tree, const char* part, const Samples& samples, const std::string& hash,
+                const std::string& model, const TriangleMesh& mesh, Table& table)
 {
     if (samples.empty()) return;
     Row row;
     row["part"] = part;
     row["model"] = model;
-    row["triangles"] = triangles;
+    row["triangles"] = mesh.triangleCount();
     row["variant"] = tree.m_name;
     row["backend"] = tree.m_name.substr(0, tree.m_name.find('_'));
     row["device"] = "host";
     row["driver"] = tree.m_driver;
     row["threads"] = tree.m_threads;
     samples.fill(row);
+    row["hash"] = hash;
+    judgeRow(row, boundsHash(mesh));
     table.add(row);
 }
 }  // namespace
+
+std::string boundsHash(const float* low, const float* high)
+{
+    return hashText(hashBytes(hashBytes(kEmptyHash, low, 3 * sizeof(float)), high, 3 * sizeof(float)));
+}
+
+std::string boundsHash(const TriangleMesh& mesh)
+{
+    float low[3], high[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        low[axis] = std::numeric_limits<float>::infinity();
+        high[axis] = -low[axis];
+    }
+    for (const std::int32_t vertex : mesh.m_triangles)
+    {
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            const float x = mesh.m_positions[3 * static_cast<std::size_t>(vertex) + static_cast<std::size_t>(axis)];
+            low[axis] = std::min(low[axis], x);
+            high[axis] = std::max(high[axis], x);
+        }
+    }
+    return boundsHash(low, high);
+}
 
 void studyPeerTrees(const StudyOptions& options, Table& table)
 {
@@ -32,8 +63,8 @@ void studyPeerTrees(const StudyOptions& options, Table& table)
                      trees.push_back(measureFclTree(mesh, options.m_repeats, options.m_seconds));
                      for (const PeerTree& tree : trees)
                      {
-                         addPeerRow(tree, "construction", tree.m_build, model, mesh.triangleCount(), table);
-                         addPeerRow(tree, "refit", tree.m_refit, model, mesh.triangleCount(), table);
+                         addPeerRow(tree, "construction", tree.m_build, tree.m_buildHash, model, mesh, table);
+                         addPeerRow(tree, "refit", tree.m_refit, tree.m_refitHash, model, mesh, table);
                      }
                  });
 }
@@ -45,7 +76,8 @@ const std::vector<Part>& studyParts()
         {"construction", "every builder: tables 4.2 and 4.3, figures 4.2 to 4.5", studyConstruction},
         {"refit", "every refit: table 4.4 and figure 4.10", studyRefit},
         {"quality", "the trees' quality against the time to build them", studyQuality},
-        {"shape", "two or four children, leaves of 1 to 16; volumes of the build's DRAPE_DOP", studyShapes},
+        {"shape", "two or four children, leaves of 1 to 16", studyShapes},
+        {"degree", "trees and whole steps in volumes of this program's sides", studyDegrees},
         {"traversal", "every traversal step by step as a cloth comes down: figures 4.6 and 4.8", studyTraversals},
         {"rebuild", "traversals of a cloth that changes its shape, its hierarchy rebuilt or not", studyRebuilds},
         {"triangle_tests", "Möller's test beside the certified one: figure 4.9", studyTriangleTests}};

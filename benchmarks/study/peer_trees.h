@@ -14,9 +14,15 @@ struct PeerTree
     std::string m_name;    // embree_morton, embree_sah, fcl
     std::string m_driver;  // with its version
     int m_threads = 1;
-    Samples m_build;  // from positions and triangles in memory
+    std::string m_buildHash, m_refitHash;  // boundsHash() of the box that the tree says it has
+    Samples m_build;                       // from positions and triangles in memory
     Samples m_refit;  // from new positions in memory; the same as before here, since it makes no difference to the time
 };
+
+// Of a box: least and largest x, y and z.
+std::string boundsHash(const float* low, const float* high);
+// Of the mesh, which every tree over it must say.
+std::string boundsHash(const TriangleMesh& mesh);
 
 // Embree's triangle geometry by its Morton and its SAH builder, on one and on two threads. repeats: at most, within
 // seconds each; two at least.

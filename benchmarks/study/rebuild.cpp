@@ -2,12 +2,10 @@
 // shape over a run, with rebuilds and without.
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <numeric>
 #include <stdexcept>
 
 #include "benchmarks/study/study.h"
-#include "benchmarks/support/models.h"
 #include "benchmarks/support/step_method.h"
 
 namespace drape::bench
@@ -210,17 +208,10 @@ void studyScene(const SceneSpec& spec, const TriangleMesh& obstacle, const Study
 
 void studyRebuilds(const StudyOptions& options, Table& table)
 {
-    for (const SceneSpec& spec : sceneSpecs())
+    for (const SceneSpec& spec : studyScenes(options))
     {
-        const bool studied =
-            options.m_quick ? spec.m_name == "quick_one" : spec.m_name == "thesis" || spec.m_name == "fine";
         TriangleMesh obstacle;
-        std::string error;
-        if (!studied || !options.wants(spec.m_name)) continue;
-        if (makeModel(spec.m_model, modelFolders(options.m_models), obstacle, error))
-            studyScene(spec, obstacle, options, table);
-        else
-            std::cerr << "study: " << error << std::endl;
+        if (loadModel(spec.m_model, options, obstacle)) studyScene(spec, obstacle, options, table);
     }
 }
 }  // namespace drape::bench

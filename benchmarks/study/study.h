@@ -2,11 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "benchmarks/support/arguments.h"
 #include "benchmarks/support/samples.h"
+#include "benchmarks/support/step_scene.h"
 #include "scenes/mesh.h"
 
 namespace drape::bench
@@ -14,7 +16,14 @@ namespace drape::bench
 struct StudyOptions : CommonOptions
 {
     std::vector<std::string> m_parts, m_only;  // empty: all; only: models and scenes
+    std::string m_reference;                   // JSON of another run
     Clock::time_point m_begin = Clock::now();
+    std::map<std::string, std::string> m_hashes;  // of the reference's good rows, see expectedHash()
+
+    // Reads m_reference. Throws what the JSON library throws.
+    void readReference();
+    // The hash that the reference has for a part and a model or scene; empty without.
+    std::string expectedHash(const std::string& part, const std::string& model) const;
 
     bool wants(const std::string& model) const;
     // Whether the time is used up; says so on standard error, naming what is left out.
@@ -44,6 +53,9 @@ void studyQuality(const StudyOptions& options, Table& table);
 // Trees of two and four children and of bundles of leaves, in the build's volumes: part "shape".
 void studyShapes(const StudyOptions& options, Table& table);
 
+// Trees and steps in volumes of the build's degree: part "degree".
+void studyDegrees(const StudyOptions& options, Table& table);
+
 // Möller's test and the certified one over pairs of triangles: figure 4.9, part "triangle_tests".
 void studyTriangleTests(const StudyOptions& options, Table& table);
 
@@ -55,6 +67,12 @@ void studyRebuilds(const StudyOptions& options, Table& table);
 
 // Models in the order of their size; quick: two small ones.
 std::vector<std::string> studyModels(bool quick);
+
+// False, and a line on standard error, for a model that is not there.
+bool loadModel(const std::string& model, const StudyOptions& options, TriangleMesh& mesh);
+
+// The cloth over the bunny in 2,048 and in 131,072 triangles, as far as they are wanted; quick: a small one.
+std::vector<SceneSpec> studyScenes(const StudyOptions& options);
 
 // Loads a model and calls body, unless it is unwanted, missing or too late.
 void forEachModel(const StudyOptions& options,

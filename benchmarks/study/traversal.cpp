@@ -1,11 +1,10 @@
-// A cloth comes down on an obstacle, a step at a time, so that overlaps grow from none to those at rest.
+// A cloth comes down on an obstacle, a step at a time, so that overlaps grow from none to those at rest; there it
+// sways.
 #include <algorithm>
-#include <iostream>
 #include <map>
 #include <stdexcept>
 
 #include "benchmarks/study/study.h"
-#include "benchmarks/support/models.h"
 #include "benchmarks/support/step_method.h"
 
 namespace drape::bench
@@ -18,29 +17,31 @@ struct Variant
     Settings m_settings;
 };
 
-// The host is the reference, so it is first.
+// The host's default is the reference, so it is first.
 std::vector<Variant> variants(const StudyOptions& options)
 {
-    Variant host{"host", Settings()};
-    host.m_settings.m_backend = Backend::Host;
-    Variant device{"default", options.settings()};
-    device.m_settings.m_profileKernels = true;
-    std::vector<Variant> all = {host};
-    if (options.m_backend == "host") return all;
-    all.push_back(device);
-    const std::pair<const char*, Traversal> traversals[] = {{"thesis: simple", Traversal::Single},
-                                                            {"thesis: front", Traversal::Front},
-                                                            {"as front, from fixed pairs", Traversal::Groups},
-                                                            {"pairs of subtrees", Traversal::Pairs},
-                                                            {"leaves", Traversal::Leaves},
-                                                            {"leaves, eight wide", Traversal::WideLeaves},
-                                                            {"groups, eight wide", Traversal::WideGroups}};
-    for (const auto& traversal : traversals)
+    std::vector<Variant> all;
+    const auto add = [&all](const std::string& name, Settings settings, Traversal traversal)
     {
-        device.m_name = traversal.first;
-        device.m_settings.m_methods.m_traversal = traversal.second;
-        all.push_back(device);
-    }
+        settings.m_methods.m_traversal = traversal;
+        all.push_back({name, settings});
+    };
+    Settings host, device = options.settings();
+    host.m_backend = Backend::Host;
+    device.m_profileKernels = true;
+    add("host", host, Traversal::Auto);
+    add("host, thesis: simple", host, Traversal::Single);
+    add("host, thesis: front", host, Traversal::Front);
+    add("host, as front, from the roots", host, Traversal::Groups);
+    if (options.m_backend == "host") return all;
+    add("default", device, Traversal::Auto);
+    add("thesis: simple", device, Traversal::Single);
+    add("thesis: front", device, Traversal::Front);
+    add("as front, from fixed pairs", device, Traversal::Groups);
+    add("pairs of subtrees", device, Traversal::Pairs);
+    add("leaves", device, Traversal::Leaves);
+    add("leaves, eight wide", device, Traversal::WideLeaves);
+    add("groups, eight wide", device, Traversal::WideGroups);
     return all;
 }
 
@@ -58,19 +59,22 @@ std::vector<std::size_t> countTests(const StepScene& scene, Variant variant)
     return tests;
 }
 
-// The scene's cloths from above: each step comes down by `kFall` thicknesses, the last one ends at rest.
+// The scene's cloths from above: each step comes down by `kFall` thicknesses, the last one ends at rest. Then they sway
+// as in the scene, so that hardly anything changes from step to step.
 constexpr float kFall = 0.15f;  // 3 mm at 20 mm, as fast as the motion of the scenes
 
-void descend(StepScene& scene, int steps)
+void descend(StepScene& scene, int descent, int sway)
 {
-    const std::vector<float> rest = scene.m_frames.front();
-    scene.m_frames.assign(static_cast<std::size_t>(steps) + 1, rest);
-    for (int step = 0; step < steps; ++step)
+    const std::vector<std::vector<float>> motion = scene.m_frames;
+    scene.m_frames.assign(static_cast<std::size_t>(descent), motion.front());
+    for (int step = 0; step < descent; ++step)
     {
         std::vector<float>& frame = scene.m_frames[static_cast<std::size_t>(step)];
         for (std::size_t i = 1; i < frame.size(); i += 3)
-            frame[i] += kFall * scene.m_thickness * static_cast<float>(steps - step);
+            frame[i] += kFall * scene.m_thickness * static_cast<float>(descent - step);
     }
+    for (std::size_t step = 0; step <= static_cast<std::size_t>(sway); ++step)
+        scene.m_frames.push_back(motion[step % motion.size()]);
 }
 
 // One variant over the descent: times by step and stage over the passes, and the last outcome of each step.
@@ -107,7 +111,7 @@ Descent run(StepMethod& method, const StepScene& scene, const StudyOptions& opti
 }
 
 void addRows(const StepScene& scene, const Variant& variant, const StepMethod& method, const Descent& descent,
-             const Descent& reference, const std::vector<std::size_t>& tests, Table& table)
+             const Descent& reference, const std::vector<std::size_t>& tests, int descentSteps, Table& table)
 {
     for (std::size_t step = 0; step < descent.m_times.size(); ++step)
     {
@@ -120,6 +124,7 @@ void addRows(const StepScene& scene, const Variant& variant, const StepMethod& m
         row["variant"] = variant.m_name;
         method.describe(row);
         row["step"] = step;
+        row["phase"] = step < static_cast<std::size_t>(descentSteps) ? "descent" : "rest";
         row["candidates"] = outcome.m_candidates;
         row["contacts"] = outcome.m_contacts;
         if (step < tests.size() && tests[step] > 0) row["volume_tests"] = tests[step];
@@ -137,31 +142,23 @@ void addRows(const StepScene& scene, const Variant& variant, const StepMethod& m
 
 void studyTraversals(const StudyOptions& options, Table& table)
 {
-    constexpr int kSteps = 40;
-    constexpr int kQuickSteps = 6;
-    for (const SceneSpec& spec : sceneSpecs())
+    const int steps = options.m_quick ? 6 : 40, sway = options.m_quick ? 4 : 24;
+    for (const SceneSpec& spec : studyScenes(options))
     {
-        const bool studied =
-            options.m_quick ? spec.m_name == "quick_one" : spec.m_name == "thesis" || spec.m_name == "fine";
         TriangleMesh obstacle;
-        std::string error;
-        if (!studied || !options.wants(spec.m_name)) continue;
-        if (!makeModel(spec.m_model, modelFolders(options.m_models), obstacle, error))
-        {
-            std::cerr << "study: " << error << std::endl;
-            continue;
-        }
+        if (!loadModel(spec.m_model, options, obstacle)) continue;
         StepScene scene = makeStepScene(spec, obstacle);
-        descend(scene, options.m_quick ? kQuickSteps : kSteps);
+        descend(scene, steps, sway);
         Descent reference;
         for (const Variant& variant : variants(options))
         {
             if (options.tooLate(spec.m_name + ", " + variant.m_name)) continue;
+            std::string error;
             const std::unique_ptr<StepMethod> method = makeDrapeMethod(scene, variant.m_settings, error);
             if (!method) throw std::runtime_error(error);
             const Descent descent = run(*method, scene, options);
             if (reference.m_outcomes.empty()) reference = descent;
-            addRows(scene, variant, *method, descent, reference, countTests(scene, variant), table);
+            addRows(scene, variant, *method, descent, reference, countTests(scene, variant), steps, table);
         }
     }
 }

@@ -1,12 +1,10 @@
 // Pairs of triangles by Möller's test, as in the thesis, and by the certified one: figure 4.9.
 #include <algorithm>
-#include <iostream>
 #include <stdexcept>
 
 #include "benchmarks/study/study.h"
 #include "benchmarks/study/trees/tree_input.h"
 #include "benchmarks/support/machine.h"
-#include "benchmarks/support/models.h"
 #include "benchmarks/support/result_hash.h"
 #include "kernels/lib/triangle_pair.h"
 #include "scenes/random.h"
@@ -128,14 +126,8 @@ private:
 void studyTriangleTests(const StudyOptions& options, Table& table)
 {
     TriangleMesh mesh;
-    std::string error;
-    const std::string model = options.m_quick ? "sphere_1k" : "bunny";
     if (!options.wants("bunny") || options.tooLate("triangle tests")) return;
-    if (!makeModel(model, modelFolders(options.m_models), mesh, error))
-    {
-        std::cerr << "study: " << error << std::endl;
-        return;
-    }
+    if (!loadModel(options.m_quick ? "sphere_1k" : "bunny", options, mesh)) return;
     const std::unique_ptr<Device> device = openStudyDevice(options);
     for (const std::size_t count : {1000u, 10000u, 100000u, 1000000u})
     {

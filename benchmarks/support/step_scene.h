@@ -15,7 +15,7 @@ struct SceneSpec
 {
     std::string m_name;
     std::string m_sweep;  // the series it belongs to, for plots and exponents; empty for single scenes
-    std::string m_model;  // see support/models.h
+    std::string m_model;  // see scenes/models.h
     int m_cells = 0;      // a side of a cloth
     int m_cloths = 1;
     double m_size = 0;       // m, a side of a cloth

@@ -134,10 +134,11 @@ class Study(ProgramTest):
         listed = run("study", "--list").stdout
         self.assertIn("traversal: ", listed)
         parts = {row["part"] for row in rows}
-        for part in ("construction", "refit", "shape", "traversal", "rebuild", "triangle_tests"):
+        for part in ("construction", "refit", "quality", "shape", "degree", "traversal", "rebuild", "triangle_tests"):
             self.assertIn(part, parts)
         for row in rows:
-            self.assertNotEqual(row["valid"], "no")
+            self.assertEqual(row["valid"], "yes")
+            self.assertTrue(row["hash"])
             for column in ("median_ms", "kernel_median_ms", "broad_ms"):
                 if row.get(column):
                     self.assertGreaterEqual(float(row[column]), 0)
@@ -153,6 +154,44 @@ class Study(ProgramTest):
         for row in rows:
             self.assertEqual(row["valid"], "yes")
             self.assertEqual(row["hash"], host[row["step"]]["hash"])
+
+    def test_the_front_tests_fewer_volumes_than_a_full_traversal(self):
+        rows = self.quick("study", "--part", "traversal", "--backend", "host")
+        tests = {}
+        for row in rows:
+            if row["phase"] == "rest":
+                tests[row["variant"]] = tests.get(row["variant"], 0) + int(row["volume_tests"])
+        self.assertLess(tests["host, thesis: front"], 0.75 * tests["host, as front, from the roots"])
+
+    def degree(self, program, *arguments):
+        return {(row["model"], row["variant"].partition(", ")[2], row["backend"]): row
+                for row in self.quick(program, "--part", "degree", *arguments)}
+
+    def test_volumes_of_other_degrees_give_the_same_contacts(self):
+        eighteen = self.degree("study")
+        os.rename(self.path("rows.json"), self.path("eighteen.json"))
+        six = self.degree("study_dop6", "--reference", self.path("eighteen.json"))
+        self.assertEqual(set(six), set(eighteen))
+        for key, row in six.items():
+            self.assertEqual((row["dop"], row["valid"]), ("6", "yes"))
+            self.assertEqual(row["hash"], eighteen[key]["hash"])
+            self.assertEqual(row["contacts"], eighteen[key]["contacts"])
+            self.assertGreater(int(row["contacts"]), 500)
+            if "default" not in key[1]:
+                self.assertGreater(int(row["candidates"]), int(eighteen[key]["candidates"]))
+                self.assertGreater(int(row["visits"]), int(eighteen[key]["visits"]))
+            if "nodes" in row and row["nodes"]:
+                self.assertLess(int(row["bytes"]), int(eighteen[key]["bytes"]))
+
+    def test_contacts_unlike_those_of_the_reference_void_the_row(self):
+        self.quick("study", "--part", "degree", "--backend", "host")
+        result = run("study_dop6", "--quick", "--part", "degree", "--backend", "host", "--csv", self.path("void.csv"),
+                     "--reference", self.reference_with_other_hash())
+        self.assertEqual(result.returncode, 3, result.stderr)
+        for row in read_csv(self.path("void.csv")):
+            self.assertEqual(row["valid"], "no")
+            self.assertEqual(row["dop"], "6")
+            self.assertEqual(row.get("contacts", ""), "")
 
     def test_every_shape_of_a_tree_gives_the_same_candidates(self):
         rows = [row for row in self.quick("study", "--part", "shape") if row["part"] == "shape"]
@@ -179,6 +218,67 @@ class Study(ProgramTest):
 
     def test_bad_input_is_refused(self):
         self.assertEqual(run("study", "--part", "no_such_part").returncode, 2)
+
+
+class Merge(ProgramTest):
+    """Results of parts become one, whatever the order they were measured in."""
+
+    def study(self, name, rows, **machine):
+        content = {"machine": {"date": "2026-01-01", "commit": "a", "processor": "p", "cores": 2, "devices": [], **machine},
+                   "rows": rows}
+        with open(self.path(name), "w") as file:
+            json.dump(content, file)
+        return self.path(name)
+
+    def merged(self):
+        with open(self.path("out/study.json")) as file:
+            return json.load(file)
+
+    def merge(self, *names):
+        return self.script("merge_study.py", self.path("out"), *names)
+
+    def test_parts_join_and_newer_ones_replace(self):
+        host = {"part": "construction", "model": "m", "backend": "host", "triangles": 5, "valid": "yes"}
+        refit = {**host, "part": "refit", "median_ms": 1.0}
+        first = self.study("first.json", [refit, {**host, "variant": "x", "median_ms": 1.0}, {**host, "variant": "gone"}])
+        self.assertEqual(self.merge(first).returncode, 0)
+        small = {**host, "model": "s", "triangles": 3}
+        device = {**host, "backend": "opencl"}
+        second = self.study("second.json", [device, {**host, "variant": "x", "median_ms": 2.0}, small], commit="b")
+        self.assertEqual(self.merge(second).returncode, 0)
+        self.assertEqual(self.merged()["rows"], [small, {**host, "variant": "x", "median_ms": 2.0}, device, refit])
+        self.assertEqual(self.merged()["machine"]["commit"], "a, b")
+        rows = read_csv(self.path("out/study.csv"))
+        self.assertEqual([row["median_ms"] for row in rows], ["", "2", "", "1"])
+
+    def test_another_machine_is_refused(self):
+        row = {"part": "refit", "model": "m", "backend": "host"}
+        self.assertEqual(self.merge(self.study("first.json", [row])).returncode, 0)
+        result = self.merge(self.study("second.json", [{**row, "part": "quality"}], processor="q"))
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("another machine", result.stderr)
+        self.assertEqual(self.merged()["rows"], [row])
+
+    def test_a_void_row_is_told(self):
+        void = {"part": "refit", "model": "m", "backend": "host", "valid": "no"}
+        self.assertEqual(self.merge(self.study("first.json", [void])).returncode, 3)
+
+    def run_study(self, *arguments):
+        path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "benchmarks", "run_study.sh")
+        return subprocess.run(["bash", path, "--bin", PROGRAMS, "--quick", "--repeats", "2", *arguments, self.path("out")],
+                              capture_output=True, text=True, timeout=600)
+
+    def test_parts_run_one_after_the_other(self):
+        result = self.run_study("--parts", "refit,peers")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual({row["part"] for row in self.merged()["rows"] if row["backend"] == "fcl"},
+                         {"construction", "refit"})
+        result = self.run_study("--parts", "quality", "--only", "sphere_1k")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        rows = self.merged()["rows"]
+        self.assertEqual({row["model"] for row in rows if row["part"] == "quality"}, {"sphere_1k"})
+        self.assertTrue([row for row in rows if row["part"] == "refit"])
+        self.assertEqual(self.run_study("--parts", "nonsense").returncode, 2)
 
 
 class Reports(ProgramTest):

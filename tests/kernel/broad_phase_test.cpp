@@ -6,8 +6,11 @@
 
 #include <limits>
 
+#include "scenes/draped_cloth.h"
+#include "scenes/models.h"
 #include "scenes/shapes.h"
 #include "tests/support/cases.h"
+#include "tests/support/models.h"
 #include "tests/support/traversals.h"
 
 namespace drape::test
@@ -28,14 +31,26 @@ Sides makeSides(const StepCase& step)
     return makeSides(std::move(cloth), makeSide({step.m_obstacle}), {step.m_thickness});
 }
 
+// One of each; see tree_test.cpp for their settings.
+std::vector<TreeMethods> allBuilders()
+{
+    std::vector<TreeMethods> all;
+    for (TreeBuilder builder : {TreeBuilder::Balanced, TreeBuilder::Radix, TreeBuilder::TopDown, TreeBuilder::Ploc})
+    {
+        all.emplace_back();
+        all.back().m_builder = builder;
+    }
+    return all;
+}
 }  // namespace
 
 class BroadPhaseTest : public DeviceTest
 {
 protected:
-    void expectAllAgree(Sides sides)
+    void expectAllAgree(Sides sides) { expectAllFind(sides, bruteForce(sides)); }
+
+    void expectAllFind(Sides& sides, const std::vector<Candidate>& brute)
     {
-        const std::vector<Candidate> brute = bruteForce(sides);
         for (Traversal traversal : allTraversals())
         {
             SCOPED_TRACE(traversalName(traversal));
@@ -132,6 +147,76 @@ TEST_P(BroadPhaseTest, TrianglesWithoutAValidNodeMeetNothing)
         ASSERT_NE(candidate.m_cloth, 44u);
     }
     expectAllAgree(sides);
+}
+
+// Trees that no balanced one is like: all corners in one place, a long branch, nodes that are not numbers; met in part,
+// and in whole.
+TEST_P(BroadPhaseTest, SetsAgreeInTreesOfEveryBuilder)
+{
+    const TriangleMesh soup = makeSoup(2.0f, 0.4f, 90, 75);
+    std::size_t found = 0;
+    const auto check =
+        [&](const TriangleMesh& cloth, const TriangleMesh& obstacle, float thickness, const TreeMethods& methods)
+    {
+        Sides sides = {makeSide({cloth}), makeSide({obstacle}), {thickness}};
+        useTree(sides.m_cloth, methods);
+        useTree(sides.m_obstacle, methods);
+        refitSides(sides);
+        const std::vector<Candidate> brute = bruteForce(sides);
+        found += brute.size();
+        expectAllFind(sides, brute);
+    };
+    for (const NamedMesh& mesh : degenerateMeshes(600))
+    {
+        for (const TreeMethods& methods : allBuilders())
+        {
+            for (const float thickness : {1.5f, 1e6f})
+            {
+                SCOPED_TRACE(mesh.first + ", builder " + std::to_string(int(methods.m_builder)) + ", thickness " +
+                             std::to_string(thickness));
+                check(soup, mesh.second, thickness, methods);
+                check(mesh.second, soup, thickness, methods);
+                if (HasFailure()) return;  // later ones would say the same at length
+            }
+        }
+    }
+    EXPECT_GT(found, 1000000u);
+}
+
+// A cloth of 2,048 triangles draped over each of the study's models. Over large ones only one builder's trees, against
+// the balanced one's, for time's sake.
+TEST_P(BroadPhaseTest, SetsAgreeOnModels)
+{
+    constexpr std::size_t kLarge = 100000;
+    std::size_t models = 0;
+    for (const std::string& model : studyModelNames())
+    {
+        TriangleMesh mesh;
+        if (!loadStudyModel(model, mesh)) continue;
+        ClothPlace place;
+        place.m_cells = 32;
+        place.m_size = 2.4;
+        place.m_gap = 0.015;
+        Sides sides = {makeSide({drapeCloth(HeightField(mesh), place)}), makeSide({mesh}), {0.03f}};
+        refitSides(sides);
+        HostRun balanced(Traversal::Leaves);
+        balanced.setTopology(sides);
+        const bool isLarge = mesh.triangleCount() > kLarge;
+        const std::vector<Candidate> expected = isLarge ? balanced.run(sides) : bruteForce(sides);
+        EXPECT_GT(expected.size(), 5000u);
+        for (const TreeMethods& methods : allBuilders())
+        {
+            if (isLarge && methods.m_builder != TreeBuilder::Ploc) continue;
+            SCOPED_TRACE(model + ", builder " + std::to_string(int(methods.m_builder)));
+            useTree(sides.m_cloth, methods);
+            useTree(sides.m_obstacle, methods);
+            refitSides(sides);
+            expectAllFind(sides, expected);
+            if (HasFailure()) return;
+        }
+        ++models;
+    }
+    EXPECT_GE(models, 3u);
 }
 
 TEST_P(BroadPhaseTest, NothingOnOneSide)

@@ -3,16 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <limits>
+#include <iterator>
 
 #include "bullet_plugin/core/bvh/tree_cost.h"
 #include "bullet_plugin/core/bvh/tree_quality.h"
-#include "scenes/mesh_loader.h"
+#include "scenes/models.h"
 #include "scenes/shapes.h"
 #include "tests/support/cases.h"
 #include "tests/support/device_side.h"
+#include "tests/support/models.h"
 
 namespace drape::test
 {
@@ -20,6 +19,8 @@ namespace
 {
 // Around the work-groups of 64, 128 and 256, the windows of 64 and 4,096 leaves and the sort's tile of 2,048.
 const int kSizes[] = {1, 2, 3, 63, 64, 65, 127, 128, 129, 255, 257, 2047, 2048, 2049, 4096, 4097, 8195, 20011};
+
+const TreeBuilder kBuilders[] = {TreeBuilder::Balanced, TreeBuilder::Radix, TreeBuilder::TopDown, TreeBuilder::Ploc};
 
 struct NamedMethods
 {
@@ -84,52 +85,15 @@ Side sideOf(const TriangleMesh& mesh)
     return makeSide({mesh});
 }
 
-TriangleMesh repeated(int count, const std::vector<float>& triangle)
+std::vector<NamedMesh> meshes()
 {
-    std::vector<float> corners;
-    for (int i = 0; i < count; ++i)
-        corners.insert(corners.end(), triangle.begin(), triangle.end());
-    return looseTriangles(corners);
-}
-
-// Each triangle's centroid is twice as far as the one before: a mean or a code parts off one triangle at a time.
-TriangleMesh doublingLine(int count)
-{
-    std::vector<float> corners;
-    float x = 1e-30f;
-    for (int i = 0; i < count; ++i, x *= 1.3f)
-        corners.insert(corners.end(), {x, 0, 0, 1.1f * x, 0, 0, x, 1e-3f * x, 0});
-    return looseTriangles(corners);
-}
-
-TriangleMesh evenLine(int count)
-{
-    std::vector<float> corners;
-    for (int i = 0; i < count; ++i)
-        corners.insert(corners.end(), {float(i), 0, 0, i + 1.0f, 0, 0, i + 0.5f, 1, 0});
-    return looseTriangles(corners);
-}
-
-TriangleMesh withBadNodes(TriangleMesh mesh)
-{
-    mesh.m_positions[7] = std::numeric_limits<float>::quiet_NaN();
-    mesh.m_positions[40] = std::numeric_limits<float>::infinity();
-    mesh.m_positions[80] = 3e38f;
-    return mesh;
-}
-
-std::vector<std::pair<std::string, TriangleMesh>> meshes()
-{
-    std::vector<std::pair<std::string, TriangleMesh>> all;
+    std::vector<NamedMesh> all;
     for (int size : kSizes)
         all.emplace_back("soup of " + std::to_string(size), makeSoup(1.0f, 0.1f, size, std::uint32_t(size)));
-    all.emplace_back("equal centroids", repeated(5000, {0, 0, 0, 1, 0, 0, 0, 1, 0}));
-    all.emplace_back("points", repeated(300, {1, 2, 3, 1, 2, 3, 1, 2, 3}));
-    all.emplace_back("doubling line", doublingLine(300));
-    all.emplace_back("even line", evenLine(5000));
+    for (const NamedMesh& mesh : degenerateMeshes(5000))
+        all.push_back(mesh);
     all.emplace_back("sphere", makeSphere(0.5f, 4));
     all.emplace_back("terrain", makeTerrain(3.0f, 0.4f, 80, 5));
-    all.emplace_back("bad nodes", withBadNodes(makeSoup(1.0f, 0.1f, 500, 9)));
     return all;
 }
 
@@ -173,7 +137,7 @@ TEST_P(TreeTest, EveryBuilderMakesTheHostsValidTree)
 {
     const std::unique_ptr<Device> device = openDevice(GetParam());
     ASSERT_TRUE(device);
-    const std::vector<std::pair<std::string, TriangleMesh>> cases = meshes();
+    const std::vector<NamedMesh> cases = meshes();
     for (const NamedMethods& named : allMethods())
     {
         TreeBuilderStage stage;
@@ -187,32 +151,29 @@ TEST_P(TreeTest, EveryBuilderMakesTheHostsValidTree)
     }
 }
 
-// Scans of up to 871,414 triangles, where the folder of models is named.
+// The study's models: those that are made, and the scans whose files are there, up to 1.1 million triangles.
 TEST_P(TreeTest, EveryBuilderMakesTheHostsValidTreeOfModels)
 {
-    const char* const folder = std::getenv("DRAPE_MODELS_DIR");
-    if (!folder || !std::filesystem::is_directory(folder)) GTEST_SKIP() << "DRAPE_MODELS_DIR names no folder";
     const std::unique_ptr<Device> device = openDevice(GetParam());
     ASSERT_TRUE(device);
+    std::vector<TreeBuilderStage> stages(std::size(kBuilders));
+    for (std::size_t builder = 0; builder < stages.size(); ++builder)
+        stages[builder].create(*device, programsOf(*device), methodsOf(kBuilders[builder], WorkShape::Device));
     std::size_t models = 0;
-    for (TreeBuilder builder : {TreeBuilder::Balanced, TreeBuilder::Radix, TreeBuilder::TopDown, TreeBuilder::Ploc})
+    for (const std::string& model : studyModelNames())
     {
-        const TreeMethods methods = methodsOf(builder, WorkShape::Device);
-        TreeBuilderStage stage;
-        stage.create(*device, programsOf(*device), methods);
-        for (const auto& entry : std::filesystem::directory_iterator(folder))
+        TriangleMesh mesh;
+        if (!loadStudyModel(model, mesh)) continue;
+        const Side side = sideOf(mesh);
+        for (std::size_t builder = 0; builder < stages.size(); ++builder)
         {
-            const std::string path = entry.path().string(), ending = entry.path().extension().string();
-            TriangleMesh mesh;
-            std::string error;
-            if (ending != ".obj" && ending != ".ply") continue;
-            SCOPED_TRACE(path + ", builder " + std::to_string(int(builder)));
-            ASSERT_TRUE(loadMesh(path, mesh, error)) << error;
-            expectSameAsHost(*device, stage, methods, sideOf(mesh));
-            ++models;
+            SCOPED_TRACE(model + ", builder " + std::to_string(builder));
+            expectSameAsHost(*device, stages[builder], methodsOf(kBuilders[builder], WorkShape::Device), side);
+            if (HasFailure()) return;
         }
+        ++models;
     }
-    EXPECT_GT(models, 0u);
+    EXPECT_GE(models, 3u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, TreeTest, testing::ValuesIn(openClBackends()), backendName);

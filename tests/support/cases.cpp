@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "scenes/cloth_grid.h"
 #include "scenes/shapes.h"
@@ -84,6 +85,53 @@ bool surfaceHeight(const TriangleMesh& mesh, double x, double z, double& height)
     return found;
 }
 }  // namespace
+
+namespace
+{
+TriangleMesh repeated(int count, const std::vector<float>& triangle)
+{
+    std::vector<float> corners;
+    for (int i = 0; i < count; ++i)
+        corners.insert(corners.end(), triangle.begin(), triangle.end());
+    return looseTriangles(corners);
+}
+
+// From x (m) on, each triangle's centroid is farther than the one before by a third: a mean or a code parts off one
+// triangle at a time.
+TriangleMesh doublingLine(int count, float x)
+{
+    std::vector<float> corners;
+    for (int i = 0; i < count; ++i, x *= 1.3f)
+        corners.insert(corners.end(), {x, 0, 0, 1.1f * x, 0, 0, x, 1e-3f * x, 0});
+    return looseTriangles(corners);
+}
+
+TriangleMesh evenLine(int count)
+{
+    std::vector<float> corners;
+    for (int i = 0; i < count; ++i)
+        corners.insert(corners.end(), {float(i), 0, 0, i + 1.0f, 0, 0, i + 0.5f, 1, 0});
+    return looseTriangles(corners);
+}
+
+TriangleMesh withBadNodes(TriangleMesh mesh)
+{
+    mesh.m_positions[7] = std::numeric_limits<float>::quiet_NaN();
+    mesh.m_positions[40] = std::numeric_limits<float>::infinity();
+    mesh.m_positions[80] = 3e38f;
+    return mesh;
+}
+}  // namespace
+
+std::vector<NamedMesh> degenerateMeshes(int triangles)
+{
+    return {{"equal centroids", repeated(triangles, {0, 0, 0, 1, 0, 0, 0, 1, 0})},
+            {"points", repeated(300, {1, 2, 3, 1, 2, 3, 1, 2, 3})},
+            {"doubling line", doublingLine(300, 1e-30f)},
+            {"doubling line backwards", doublingLine(300, -1e-30f)},
+            {"even line", evenLine(triangles)},
+            {"bad nodes", withBadNodes(makeSoup(1.0f, 0.1f, 500, 9))}};
+}
 
 TriangleMesh shapeNamed(const std::string& name)
 {

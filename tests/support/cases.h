@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenes/mesh.h"
@@ -42,6 +43,12 @@ TriangleMesh shapeNamed(const std::string& name);
 
 // A mesh of one triangle or more: corners in order, none shared.
 TriangleMesh looseTriangles(const std::vector<float>& corners);
+
+// Meshes that hierarchies may fail at: all centroids equal, all corners in one point, lines whose triangles grow in
+// distance, an even line, and a soup with nodes that are NaN, infinite and near the largest float. triangles: of the
+// large ones.
+using NamedMesh = std::pair<std::string, TriangleMesh>;
+std::vector<NamedMesh> degenerateMeshes(int triangles);
 
 // Lays the cloth's nodes onto the highest surface below or above each of them: at heights of gapLow … gapHigh above it,
 // at random. Nodes beside the obstacle keep their height.

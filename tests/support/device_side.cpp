@@ -5,7 +5,7 @@ namespace drape::test
 void DeviceSide::upload(Device& device, const Side& side)
 {
     guardCopy(device, m_nodes, side.m_nodes);
-    guardCopy(device, m_order, side.m_pool.order());
+    guardCopy(device, m_order, side.m_order);
     guardCopy(device, m_triangles, side.m_pool.triangles());
     guardCopy(device, m_edges, side.m_pool.edges());
     guardCopy(device, m_start, side.m_start);

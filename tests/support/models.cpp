@@ -1,10 +1,13 @@
 #include "tests/support/models.h"
 
+#include <gtest/gtest.h>
+
 #include <cstdlib>
 #include <fstream>
 #include <vector>
 
 #include "scenes/mesh_loader.h"
+#include "scenes/models.h"
 
 namespace drape::test
 {
@@ -17,5 +20,14 @@ std::string loadBunny(TriangleMesh& bunny)
     for (const std::string& path : paths)
         if (std::ifstream(path)) return loadMesh(path, bunny, error) ? std::string() : error;
     return error;
+}
+
+bool loadStudyModel(const std::string& name, TriangleMesh& mesh)
+{
+    std::string error;
+    if (makeModel(name, modelFolders(""), mesh, error)) return true;
+    const char* const folder = std::getenv("DRAPE_MODELS_DIR");
+    EXPECT_TRUE(!folder || *folder == '\0') << error;
+    return false;
 }
 }  // namespace drape::test

@@ -6,6 +6,7 @@
 
 #include "bullet_plugin/core/bvh/morton_order.h"
 #include "bullet_plugin/core/bvh/refit.h"
+#include "bullet_plugin/core/bvh/tree_builder.h"
 #include "bullet_plugin/core/mesh/normal_cones.h"
 #include "kernels/lib/dop.h"
 
@@ -49,15 +50,24 @@ Side makeSide(const std::vector<TriangleMesh>& meshes)
     }
     side.m_pool.update();
     side.m_end = side.m_start;
-    side.m_layout = makeBvhLayout(std::uint32_t(side.m_pool.order().size()));
+    side.m_order = side.m_pool.order();
+    side.m_layout = makeBvhLayout(std::uint32_t(side.m_order.size()));
     side.m_nodes = makeBvhNodes(side.m_layout);
     return side;
+}
+
+void useTree(Side& side, const TreeMethods& methods)
+{
+    const Tree tree = buildTreeOnHost(methods, side.m_pool.triangles(), side.m_start.data(), side.m_pool.meshCount());
+    side.m_order = tree.m_order;
+    side.m_layout = makeBvhLayout(tree.m_nodes, 0);
+    side.m_nodes = makeBvhNodes(side.m_layout);
 }
 
 std::size_t refitSide(Side& side, const std::vector<float>& radius)
 {
     std::size_t invalid = 0;
-    refitOnHost(side.m_nodes, side.m_layout, side.m_pool.order(), side.m_pool.triangles(), side.m_start.data(),
+    refitOnHost(side.m_nodes, side.m_layout, side.m_order, side.m_pool.triangles(), side.m_start.data(),
                 side.m_end.data(), radius, invalid);
     return invalid;
 }
@@ -66,14 +76,15 @@ std::vector<Candidate> bruteForceCandidates(const Side& cloth, const Side& obsta
                                             const std::vector<float>& thickness)
 {
     std::vector<Candidate> candidates;
-    const std::vector<std::uint32_t>&clothOrder = cloth.m_pool.order(), &obstacleOrder = obstacle.m_pool.order();
-    for (std::size_t i = 0; i < clothOrder.size(); ++i)
+    const std::vector<std::uint32_t>&clothOrder = cloth.m_order, &obstacleOrder = obstacle.m_order;
+    for (std::uint32_t i = 0; i < clothOrder.size(); ++i)
     {
+        const BvhNode& clothLeaf = cloth.m_nodes[cloth.m_layout.leafNode(i)];
         const std::size_t row = cloth.m_pool.triangles()[clothOrder[i]].m_mesh * obstacle.m_pool.meshCount();
-        for (std::size_t j = 0; j < obstacleOrder.size(); ++j)
+        for (std::uint32_t j = 0; j < obstacleOrder.size(); ++j)
         {
             if (thickness[row + obstacle.m_pool.triangles()[obstacleOrder[j]].m_mesh] < 0.0f) continue;
-            if (nodesOverlap(&cloth.m_nodes[i], &obstacle.m_nodes[j]))
+            if (nodesOverlap(&clothLeaf, &obstacle.m_nodes[obstacle.m_layout.leafNode(j)]))
                 candidates.push_back(Candidate{clothOrder[i], obstacleOrder[j]});
         }
     }

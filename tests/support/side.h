@@ -18,18 +18,23 @@ namespace drape::test
 struct Side
 {
     MeshPool m_pool;
+    std::vector<std::uint32_t> m_order;  // triangle per leaf
     BvhLayout m_layout;
     std::vector<BvhNode> m_nodes;
     std::vector<float> m_start, m_end;
     std::vector<NormalCone> m_vertexCones, m_edgeCones;
 
-    BroadPhaseSide broadPhase() const { return {m_nodes, m_layout, m_pool.order(), m_pool.triangles()}; }
+    BroadPhaseSide broadPhase() const { return {m_nodes, m_layout, m_order, m_pool.triangles()}; }
     ClothView cloth() const;
     ObstacleView obstacle() const;
 };
 
 // Ids are 0, 1, …
 Side makeSide(const std::vector<TriangleMesh>& meshes);
+
+// Another hierarchy over the same triangles, built on the host from the positions at the step's start. Volumes are
+// empty.
+void useTree(Side& side, const TreeMethods& methods);
 
 // Recomputes the hierarchy's volumes; radius in m per mesh, negative to leave a mesh out. Returns the invalid vertices.
 std::size_t refitSide(Side& side, const std::vector<float>& radius);

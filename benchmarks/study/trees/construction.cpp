@@ -2,25 +2,13 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "benchmarks/study/trees/tree_input.h"
+#include "benchmarks/study/trees/tree_work.h"
 #include "benchmarks/support/machine.h"
 
 namespace drape::bench
 {
-namespace
-{
-// What repeated builds of one variant took.
-struct Builds
-{
-    Samples m_host;                                   // from host memory to the finished tree, ms
-    Samples m_kernels;                                // all kernels of a build, ms
-    std::vector<std::vector<KernelTime>> m_launches;  // a build
-    std::vector<TopDownLevel> m_levels;
-    std::string m_hash;
-};
-
 // The first build lets buffers grow and drivers compile; it is not counted.
-Builds build(Device& device, TreeInput& input, const TreeMethods& methods, const StudyOptions& options)
+Builds buildOnDevice(Device& device, TreeInput& input, const TreeMethods& methods, const StudyOptions& options)
 {
     TreeBuilderStage stage;
     stage.create(device, studyPrograms(device), methods);
@@ -50,6 +38,8 @@ Builds build(Device& device, TreeInput& input, const TreeMethods& methods, const
     return builds;
 }
 
+namespace
+{
 // Share of the compaction in the kernels' time (figure 4.5).
 void addCompaction(const Builds& builds, Row row, Table& table)
 {
@@ -135,12 +125,13 @@ void studyConstruction(const StudyOptions& options, Table& table)
         for (const TreeVariant& variant : treeVariants(options.m_quick))
         {
             if (options.tooLate(model + ", " + variant.m_name)) continue;
-            const Builds builds = build(*device, input, variant.m_methods, options);
+            const Builds builds = buildOnDevice(*device, input, variant.m_methods, options);
             Row row = treeRow("construction", model, input.triangleCount(), variant.m_name);
             row["backend"] = "opencl";
             fillDevice(row, device->info());
             row["threads"] = 0;
             row["hash"] = builds.m_hash;
+            row["valid"] = "yes";  // where the next one is
             Row times = row;
             builds.m_host.fill(times);
             builds.m_kernels.fill(times, "kernel_");

@@ -1,83 +1,77 @@
 // Quality of the builders' trees: cost, volume, and what a cloth's step meets in them, against the time to build them.
-#include <iostream>
-
-#include "benchmarks/study/trees/tree_input.h"
+#include "benchmarks/study/trees/tree_walk.h"
+#include "benchmarks/study/trees/tree_work.h"
 #include "bullet_plugin/core/bvh/tree_quality.h"
-#include "kernels/lib/dop.h"
 
 namespace drape::bench
 {
 namespace
 {
-// Volume tests when every triangle of the thesis's cloth, draped over the model, looks for its candidates from the
-// root. Also counts the candidates, which must be the same for every tree.
-struct Visits
+// The construction part's row of this variant, for its times.
+const Row* timesOf(const Table& table, const std::string& model, const std::string& variant)
 {
-    std::size_t m_tests = 0, m_candidates = 0;
-};
-
-Visits countVisits(const Tree& tree, const std::vector<BvhNode>& queries)
-{
-    Visits visits;
-    std::vector<std::uint32_t> stack;
-    for (const BvhNode& query : queries)
-    {
-        stack.assign(1, 0u);
-        while (!stack.empty())
-        {
-            const BvhNode& node = tree.m_nodes[stack.back()];
-            stack.pop_back();
-            ++visits.m_tests;
-            if (!nodesOverlap(&query, &node)) continue;
-            if (node.m_count == 0) ++visits.m_candidates;
-            for (std::uint32_t child = 0; child < node.m_count; ++child)
-                stack.push_back(node.m_first + child);
-        }
-    }
-    return visits;
-}
-
-// The construction part's row of this variant, for its times; the host's where there is no device.
-const Row* timesOf(const Table& table, const std::string& model, const TreeVariant& variant)
-{
-    const Row* found = nullptr;
     for (const Row& row : table.rows())
     {
-        if (row["part"] != "construction" || row["model"] != model || !row.contains("median_ms")) continue;
-        if (row["variant"] == "host, " + variant.m_rule) found = &row;
-        if (row["variant"] == variant.m_name) return &row;
+        if (row["part"] == "construction" && row["model"] == model && row["variant"] == variant &&
+            row.contains("median_ms"))
+            return &row;
     }
-    return found;
+    return nullptr;
+}
+
+// Times to build: those of the part "construction" where that was measured before, else measured here; the host's where
+// there is no device.
+void fillBuildTimes(Row& row, const TreeVariant& variant, Device* device, TreeInput& input, const StudyOptions& options,
+                    const Table& table)
+{
+    const std::string model = row["model"];
+    if (const Row* times = timesOf(table, model, device ? variant.m_name : "host, " + variant.m_rule))
+    {
+        for (const char* column : {"median_ms", "kernel_median_ms"})
+        {
+            if (times->contains(column)) row[column] = (*times)[column];
+        }
+        return;
+    }
+    if (device)
+    {
+        const Builds builds = buildOnDevice(*device, input, variant.m_methods, options);
+        row["median_ms"] = builds.m_host.median();
+        row["kernel_median_ms"] = builds.m_kernels.median();
+        return;
+    }
+    const Clock::time_point start = Clock::now();
+    buildTreeOnHost(variant.m_methods, input.m_triangles, input.m_positions.data(), 1);
+    row["median_ms"] = millisecondsSince(start);
 }
 }  // namespace
 
 void studyQuality(const StudyOptions& options, Table& table)
 {
+    const std::unique_ptr<Device> device = openStudyDevice(options);
     const auto measure = [&](const std::string& model, const TriangleMesh& mesh)
     {
-        if (!options.m_quick && model != "bunny" && model != "dragon" && model != "spot") return;
-        const TreeInput input(mesh);
-        const std::vector<BvhNode> queries = clothQueries(mesh).m_nodes;
-        std::size_t candidates = 0;
+        TreeInput input(mesh);
+        const ClothQueries cloth = clothQueries(mesh);
+        std::string expected;  // the first one's: all trees have the same leaves
         for (const TreeVariant& rule : treeRules(options.m_quick))
         {
+            if (options.tooLate(model + ", " + rule.m_rule)) continue;
             const Tree tree = buildTreeOnHost(rule.m_methods, input.m_triangles, input.m_positions.data(), 1);
             const TreeQuality quality = measureTree(tree.m_nodes, 0);
-            const Visits visits = countVisits(tree, queries);
-            if (candidates == 0) candidates = visits.m_candidates;
+            Found found;
+            walkOnHost({tree.m_nodes, 0, tree.m_order}, cloth, found);
             Row row = treeRow("quality", model, input.triangleCount(), rule.m_rule);
             row["cost"] = quality.m_cost;
             row["volume_m3"] = quality.m_volume;
             row["height"] = quality.m_height;
-            row["visits"] = visits.m_tests;
-            row["candidates"] = visits.m_candidates;
-            const Row* times = timesOf(table, model, rule);
-            for (const char* column : {"median_ms", "kernel_median_ms"})
-            {
-                if (times && times->contains(column)) row[column] = (*times)[column];
-            }
-            row["hash"] = std::to_string(visits.m_candidates);
-            judgeRow(row, std::to_string(candidates));
+            row["visits"] = found.m_tests;
+            row["candidates"] = found.m_candidates.size();
+            row["backend"] = device ? "opencl" : "host";
+            fillBuildTimes(row, rule, device.get(), input, options, table);
+            row["hash"] = found.hash();
+            if (expected.empty()) expected = row["hash"];
+            judgeRow(row, expected);
             table.add(row);
         }
     };

@@ -1,7 +1,7 @@
 // Refit: table 4.4 and figure 4.10.
 #include <stdexcept>
 
-#include "benchmarks/study/trees/tree_input.h"
+#include "benchmarks/study/trees/tree_work.h"
 #include "benchmarks/support/machine.h"
 
 namespace drape::bench
@@ -59,6 +59,46 @@ private:
     std::vector<KernelTime> m_launches;
 };
 
+}  // namespace
+
+Refits refitOnDevice(Device& device, TreeInput& input, const Tree& tree, RefitMethod method,
+                     const StudyOptions& options)
+{
+    DeviceRefit refit(device, input, tree);
+    refit.run(method);  // some drivers compile at the first launch
+    Refits refits;
+    refits.m_host = repeat(2, std::size_t(options.m_repeats), options.m_seconds,
+                           [&]
+                           {
+                               const double ms = refit.run(method);
+                               refits.m_kernels.add(totalMs(refit.launches()));
+                               refits.m_launches.resize(refit.launches().size());
+                               for (std::size_t i = 0; i < refits.m_launches.size(); ++i)
+                                   refits.m_launches[i].add(refit.launches()[i].m_ms);
+                               return ms;
+                           });
+    for (const KernelTime& launch : refit.launches())
+        refits.m_names.push_back(launch.m_kernel);
+    refits.m_hash = refit.hash();
+    return refits;
+}
+
+Samples refitOnOneThread(Tree& tree, const TreeInput& input, const StudyOptions& options)
+{
+    const std::vector<float> noRadius(1, 0.0f);
+    std::size_t ignored = 0;
+    return repeat(2, std::size_t(options.m_repeats), options.m_seconds,
+                  [&]
+                  {
+                      const Clock::time_point start = Clock::now();
+                      refitTreeOnHost(tree, input.m_triangles, input.m_positions.data(), input.m_positions.data(),
+                                      noRadius, ignored);
+                      return millisecondsSince(start);
+                  });
+}
+
+namespace
+{
 struct RefitVariant
 {
     const char* m_name;
@@ -66,51 +106,38 @@ struct RefitVariant
 };
 
 // A launch's times: by height where there is one each (figure 4.10), else by kernel.
-void addLaunches(const RefitVariant& variant, const std::vector<KernelTime>& launches,
-                 const std::vector<Samples>& times, const Row& input, Table& table)
+void addLaunches(const RefitVariant& variant, const Refits& refits, const Row& input, Table& table)
 {
     const bool byHeight = variant.m_method == RefitMethod::Levels;
-    for (std::size_t launch = 0; launch < times.size(); ++launch)
+    for (std::size_t launch = 0; launch < refits.m_launches.size(); ++launch)
     {
         Row row = input;
         row["part"] = byHeight ? "refit_levels" : "refit_kernels";
         if (byHeight)
             row["level"] = launch;
         else
-            row["kernel"] = launches[launch].m_kernel;
-        times[launch].fill(row, "kernel_");
+            row["kernel"] = refits.m_names[launch];
+        refits.m_launches[launch].fill(row, "kernel_");
         table.add(row);
     }
 }
 
-void refitOnDevice(Device& device, TreeInput& input, const Tree& tree, const std::string& model,
+void addDeviceRows(Device& device, TreeInput& input, const Tree& tree, const std::string& model,
                    const RefitVariant& variant, const StudyOptions& options, Table& table)
 {
-    DeviceRefit refit(device, input, tree);
-    refit.run(variant.m_method);  // some drivers compile at the first launch
-    Samples kernels;
-    std::vector<Samples> launches;
-    const Samples host = repeat(2, std::size_t(options.m_repeats), options.m_seconds,
-                                [&]
-                                {
-                                    const double ms = refit.run(variant.m_method);
-                                    kernels.add(totalMs(refit.launches()));
-                                    launches.resize(refit.launches().size());
-                                    for (std::size_t i = 0; i < launches.size(); ++i)
-                                        launches[i].add(refit.launches()[i].m_ms);
-                                    return ms;
-                                });
+    const Refits refits = refitOnDevice(device, input, tree, variant.m_method, options);
     Row row = treeRow("refit", model, input.triangleCount(), variant.m_name);
     row["backend"] = "opencl";
     fillDevice(row, device.info());
     row["threads"] = 0;
-    row["hash"] = refit.hash();
+    row["hash"] = refits.m_hash;
+    row["valid"] = "yes";  // where the next one is
     const Row described = row;
-    host.fill(row);
-    kernels.fill(row, "kernel_");
+    refits.m_host.fill(row);
+    refits.m_kernels.fill(row, "kernel_");
     judgeRow(row, treeHash(tree));
     table.add(row);
-    if (row["valid"] == "yes") addLaunches(variant, refit.launches(), launches, described, table);
+    if (row["valid"] == "yes") addLaunches(variant, refits, described, table);
 }
 }  // namespace
 
@@ -122,16 +149,7 @@ void studyRefit(const StudyOptions& options, Table& table)
         TreeInput input(mesh);
         Tree tree = buildTreeOnHost(TreeMethods(), input.m_triangles, input.m_positions.data(), 1);
         const std::string built = treeHash(tree);
-        const std::vector<float> noRadius(1, 0.0f);
-        std::size_t ignored = 0;
-        const Samples times = repeat(2, std::size_t(options.m_repeats), options.m_seconds,
-                                     [&]
-                                     {
-                                         const Clock::time_point start = Clock::now();
-                                         refitTreeOnHost(tree, input.m_triangles, input.m_positions.data(),
-                                                         input.m_positions.data(), noRadius, ignored);
-                                         return millisecondsSince(start);
-                                     });
+        const Samples times = refitOnOneThread(tree, input, options);
         Row row = treeRow("refit", model, input.triangleCount(), "host");
         row["backend"] = "host";
         row["device"] = "host";
@@ -143,7 +161,7 @@ void studyRefit(const StudyOptions& options, Table& table)
         if (!device) return;
         for (const RefitVariant& variant :
              {RefitVariant{"thesis: launch per level", RefitMethod::Levels}, {"subtrees", RefitMethod::Subtrees}})
-            refitOnDevice(*device, input, tree, model, variant, options, table);
+            addDeviceRows(*device, input, tree, model, variant, options, table);
     };
     forEachModel(options, measure);
 }

@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "benchmarks/study/trees/tree_input.h"
+#include "benchmarks/study/trees/tree_walk.h"
 #include "benchmarks/support/machine.h"
-#include "benchmarks/support/result_hash.h"
-#include "bullet_plugin/core/broad_phase/broad_phase.h"
 #include "bullet_plugin/core/bvh/refit.h"
 #include "bullet_plugin/core/bvh/tree_quality.h"
 #include "bullet_plugin/core/bvh/wide_nodes.h"
-#include "bullet_plugin/core/narrow_phase/narrow_phase.h"
-#include "kernels/lib/dop.h"
 
 namespace drape::bench
 {
@@ -33,58 +29,19 @@ struct Shape
     const std::vector<std::uint32_t>& m_order;
 };
 
-struct Found
-{
-    std::size_t m_tests = 0;
-    std::vector<Candidate> m_candidates;
-
-    std::string hash()
-    {
-        sortCandidates(m_candidates);
-        return hashText(hashOf(m_candidates));
-    }
-};
-
-void walk(const Shape& shape, const ClothQueries& cloth, Found& found)
-{
-    std::vector<std::uint32_t> stack;
-    found = Found();
-    for (const BvhNode& query : cloth.m_nodes)
-    {
-        stack.assign(1, shape.m_layout.root());
-        while (!stack.empty())
-        {
-            const BvhNode& node = shape.m_nodes[stack.back()];
-            stack.pop_back();
-            ++found.m_tests;
-            if (!nodesOverlap(&query, &node)) continue;
-            if (node.m_count == 0) found.m_candidates.push_back({query.m_first, shape.m_order[node.m_first]});
-            for (std::uint32_t child = 0; child < node.m_count; ++child)
-                stack.push_back(node.m_first + child);
-        }
-    }
-}
-
-// Refits and walks a shape on a device: kernel times, and the candidates of the last walk.
+// Refits and walks a shape on a device: kernel times.
 class DeviceShape
 {
 public:
-    DeviceShape(Device& device, TreeInput& input, const Shape& shape, const ClothQueries& cloth)
-        : m_device(device), m_input(input), m_shape(shape)
+    // room: for candidates.
+    DeviceShape(Device& device, TreeInput& input, const Shape& shape, const ClothQueries& cloth, std::size_t room)
+        : m_device(device), m_input(input), m_shape(shape), m_walk(device, shape.hierarchy(), cloth, room)
     {
         const std::vector<float> zero(1, 0.0f);
-        std::vector<std::uint32_t> order(cloth.m_nodes.size());
-        for (std::uint32_t i = 0; i < order.size(); ++i)
-            order[i] = i;
         m_refit.create(device, studyPrograms(device)("refit"));
         m_refit.makeLevels(device, shape.m_layout, m_levels);
-        m_walk.create(device, Traversal::Leaves, studyPrograms(device));
-        m_walk.setTopology(device, {cloth.m_nodes, 0, order}, shape.hierarchy());
         m_nodes.assign(device, shape.m_nodes);
         m_order.assign(device, shape.m_order);
-        m_clothNodes.assign(device, cloth.m_nodes);
-        m_clothOrder.assign(device, order);
-        m_clothTriangles.assign(device, cloth.m_triangles);
         m_zero.assign(device, zero);
         m_counters.reserve(device, 1);
         input.upload(device);
@@ -97,55 +54,30 @@ public:
         m_counters.fill(m_device, 0, 1);
         m_refit.enqueue(m_device, m_shape.m_layout, m_levels, m_nodes, m_order, m_input.m_triangleBuffer,
                         m_input.m_positionBuffer, m_input.m_positionBuffer, m_zero, m_counters);
-        return finish();
-    }
-
-    // room: for candidates.
-    double walk(std::size_t room)
-    {
-        m_device.profiler()->take();
-        m_candidates.reserve(m_device, room);
-        m_counters.fill(m_device, 0, 1);
-        m_walk.enqueue(m_device, {{m_clothNodes, m_clothOrder, m_clothTriangles},
-                                  {m_nodes, m_order, m_input.m_triangleBuffer},
-                                  m_zero,
-                                  1,
-                                  m_candidates,
-                                  m_counters});
-        return finish();
-    }
-
-    std::string hash()
-    {
-        StepCounters counters = {};
-        m_counters.read(m_device, &counters, 1);
-        m_device.wait();
-        Found found;
-        found.m_candidates.resize(std::min<std::size_t>(counters.m_candidates, m_candidates.capacity()));
-        m_candidates.read(m_device, found.m_candidates.data(), found.m_candidates.size());
-        m_device.wait();
-        return found.hash();
-    }
-
-private:
-    double finish()
-    {
         m_device.wait();
         if (m_device.failed()) throw std::runtime_error(m_device.error().text());
         return totalMs(m_device.profiler()->take());
     }
 
+    double walk()
+    {
+        double kernelMs = 0;
+        m_walk.run(m_nodes, m_order, m_input.m_triangleBuffer, kernelMs);
+        return kernelMs;
+    }
+
+    std::string hash() { return m_walk.found().hash(); }
+
+private:
     Device& m_device;
     TreeInput& m_input;
     const Shape& m_shape;
+    DeviceWalk m_walk;
     RefitStage m_refit;
     RefitStage::Levels m_levels;
-    BroadPhaseStage m_walk;
-    Buffer<BvhNode> m_nodes, m_clothNodes;
-    Buffer<cl_uint> m_order, m_clothOrder;
-    Buffer<Triangle> m_clothTriangles;
+    Buffer<BvhNode> m_nodes;
+    Buffer<cl_uint> m_order;
     Buffer<float> m_zero;
-    Buffer<Candidate> m_candidates;
     Buffer<StepCounters> m_counters;
 };
 
@@ -197,7 +129,8 @@ void studyShape(const std::string& model, TreeInput& input, const Tree& tree, co
                     input.m_positions.data(), noRadius, ignored);
     };
     fillTimes(
-        row, options, [&] { return timed(refit); }, [&] { return timed([&] { walk(shape, cloth, found); }); });
+        row, options, [&] { return timed(refit); },
+        [&] { return timed([&] { walkOnHost(shape.hierarchy(), cloth, found); }); });
     row["visits"] = found.m_tests;
     row["candidates"] = found.m_candidates.size();
     row["hash"] = found.hash();
@@ -205,16 +138,15 @@ void studyShape(const std::string& model, TreeInput& input, const Tree& tree, co
     judgeRow(row, expected);
     table.add(row);
     if (!device) return;
-    DeviceShape onDevice(*device, input, shape, cloth);
+    DeviceShape onDevice(*device, input, shape, cloth, found.m_candidates.size());
     onDevice.refit();
-    const std::size_t room = found.m_candidates.size();
-    onDevice.walk(room);
+    onDevice.walk();
     row = described;
     row["backend"] = "opencl";
     fillDevice(row, device->info());
     row["threads"] = 0;
     fillTimes(
-        row, options, [&] { return onDevice.refit(); }, [&] { return onDevice.walk(room); });
+        row, options, [&] { return onDevice.refit(); }, [&] { return onDevice.walk(); });
     row["visits"] = found.m_tests;
     row["hash"] = onDevice.hash();
     judgeRow(row, expected);

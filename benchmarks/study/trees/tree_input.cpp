@@ -56,7 +56,8 @@ std::vector<TreeVariant> treeRules(bool quick)
     std::vector<TreeVariant> rules;
     for (const TreeVariant& variant : treeVariants(quick))
     {
-        if (rules.empty() || rules.back().m_rule != variant.m_rule) rules.push_back(variant);
+        if (!rules.empty() && rules.back().m_rule == variant.m_rule) rules.pop_back();
+        rules.push_back(variant);
     }
     return rules;
 }
@@ -99,8 +100,9 @@ ClothQueries clothQueries(const TriangleMesh& obstacle)
     spec.m_cells = 32;
     spec.m_size = 2.4;
     spec.m_thickness = kThickness;
-    const StepScene scene = makeStepScene(spec, obstacle);
     ClothQueries queries;
+    queries.m_scene = makeStepScene(spec, obstacle);
+    const StepScene& scene = queries.m_scene;
     queries.m_triangles = TreeInput(scene.m_cloths.front()).m_triangles;
     queries.m_nodes.resize(queries.m_triangles.size());
     for (std::size_t i = 0; i < queries.m_nodes.size(); ++i)

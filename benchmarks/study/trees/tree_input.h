@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "benchmarks/study/study.h"
+#include "benchmarks/support/step_scene.h"
 #include "bullet_plugin/core/bvh/tree_builder.h"
 #include "bullet_plugin/core/device/profiler.h"
 #include "scenes/mesh.h"
@@ -23,7 +24,7 @@ struct TreeVariant
 // The thesis's construction with its optimisations one after the other, and today's builders. quick: one of each
 // builder, since PoCL compiles the thesis's kernels again for each of their group sizes.
 std::vector<TreeVariant> treeVariants(bool quick);
-// One variant of each rule.
+// The last variant of each rule: of the thesis's, the one with all optimisations.
 std::vector<TreeVariant> treeRules(bool quick);
 
 // A profiled device as the options name it; null for the host. Throws where it was asked for and is not there.
@@ -48,6 +49,7 @@ struct TreeInput
 // looks.
 struct ClothQueries
 {
+    StepScene m_scene;  // the step is its first
     std::vector<BvhNode> m_nodes;
     std::vector<Triangle> m_triangles;
 };

@@ -1,4 +1,4 @@
-#include "benchmarks/bench_step/peer_scene.h"
+#include "benchmarks/support/peer_scene.h"
 
 #include <algorithm>
 #include <tuple>

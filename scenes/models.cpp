@@ -1,4 +1,4 @@
-#include "benchmarks/support/models.h"
+#include "scenes/models.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -7,7 +7,7 @@
 #include "scenes/mesh_loader.h"
 #include "scenes/shapes.h"
 
-namespace drape::bench
+namespace drape
 {
 namespace
 {
@@ -58,6 +58,13 @@ bool makeShapeNamed(const std::string& name, TriangleMesh& mesh)
 }
 }  // namespace
 
+const std::vector<std::string>& studyModelNames()
+{
+    static const std::vector<std::string> names = {"spot",         "terrain_6272", "torus_16301", "bunny",
+                                                   "torus_345944", "dragon",       "bunny_1m"};
+    return names;
+}
+
 std::vector<std::string> modelFolders(const std::string& given)
 {
     std::vector<std::string> folders;
@@ -86,4 +93,4 @@ bool makeModel(const std::string& name, const std::vector<std::string>& folders,
     placeOnFloor(mesh, kSize);
     return true;
 }
-}  // namespace drape::bench
+}  // namespace drape

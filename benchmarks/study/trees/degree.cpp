@@ -1,0 +1,262 @@
+// Volumes of 6, 14, 18 and 26 sides: what a tree of them costs to build, to refit and to keep, what a cloth's step
+// meets in it, and whole steps. The sides are the build's (DRAPE_DOP): a program a degree, whose contacts must be the
+// same.
+#include <numeric>
+#include <stdexcept>
+
+#include "benchmarks/study/trees/tree_walk.h"
+#include "benchmarks/study/trees/tree_work.h"
+#include "benchmarks/support/machine.h"
+#include "scenes/models.h"
+#include "benchmarks/support/peer_scene.h"
+#include "benchmarks/support/result_hash.h"
+#include "benchmarks/support/step_method.h"
+#include "bullet_plugin/core/bvh/tree_quality.h"
+
+namespace drape::bench
+{
+namespace
+{
+Row degreeRow(const std::string& model, std::size_t triangles, const std::string& what)
+{
+    constexpr int kSides = 2 * DRAPE_DOP_DIRECTIONS;
+    Row row = treeRow("degree", model, triangles, std::to_string(kSides) + "-DOP, " + what);
+    row["dop"] = kSides;
+    return row;
+}
+
+// The first result of a model without a reference is the others' expectation.
+class Judge
+{
+public:
+    Judge(const StudyOptions& options, const std::string& model) : m_expected(options.expectedHash("degree", model)) {}
+
+    void judge(Row& row)
+    {
+        if (m_expected.empty()) m_expected = row["hash"];
+        judgeRow(row, m_expected);
+    }
+
+private:
+    std::string m_expected;
+};
+
+// Contacts of a walk's candidates: those of no degree may be others.
+void fillContacts(Row& row, const ClothQueries& cloth, const PeerScene& scene, const Found& found)
+{
+    std::vector<Contact> contacts;
+    scene.narrowPhase(found.m_candidates, cloth.m_scene.start(0), cloth.m_scene.end(0), 1, contacts);
+    row["candidates"] = found.m_candidates.size();
+    row["contacts"] = contacts.size();
+    row["hash"] = hashText(hashOf(contacts));
+}
+
+Row treeOnHost(Tree& tree, const Row& described, const TreeInput& input, const TreeMethods& methods,
+               const ClothQueries& cloth, Found& found, const StudyOptions& options)
+{
+    const auto timed = [](auto work)
+    {
+        const Clock::time_point start = Clock::now();
+        work();
+        return millisecondsSince(start);
+    };
+    Row row = described;
+    row["backend"] = row["device"] = "host";
+    row["threads"] = 1;
+    const auto build = [&] { tree = buildTreeOnHost(methods, input.m_triangles, input.m_positions.data(), 1); };
+    const auto walk = [&] { walkOnHost({tree.m_nodes, 0, tree.m_order}, cloth, found); };
+    const std::size_t repeats = std::size_t(options.m_repeats);
+    repeat(1, repeats, options.m_seconds, [&] { return timed(build); }).fill(row, "build_");
+    refitOnOneThread(tree, input, options).fill(row, "refit_");
+    repeat(1, repeats, options.m_seconds, [&] { return timed(walk); }).fill(row, "walk_");
+    return row;
+}
+
+// Of a tree on the device: what a step reads, that is nodes and order.
+std::size_t bytesOf(const Tree& tree)
+{
+    return tree.m_nodes.size() * sizeof(BvhNode) + tree.m_order.size() * sizeof(std::uint32_t);
+}
+
+Found walkOnDevice(Device& device, TreeInput& input, const Tree& tree, const ClothQueries& cloth, std::size_t room,
+                   Row& row, const StudyOptions& options)
+{
+    DeviceTree onDevice;
+    onDevice.upload(device, tree);
+    DeviceWalk walk(device, {tree.m_nodes, 0, tree.m_order}, cloth, room);
+    double kernelMs = 0;
+    const auto once = [&] { return walk.run(onDevice.m_nodes, onDevice.m_order, input.m_triangleBuffer, kernelMs); };
+    once();  // some drivers compile at the first launch
+    Samples kernels;
+    const Samples host = repeat(2, std::size_t(options.m_repeats), options.m_seconds,
+                                [&]
+                                {
+                                    const double ms = once();
+                                    kernels.add(kernelMs);
+                                    return ms;
+                                });
+    host.fill(row, "walk_");
+    kernels.fill(row, "walk_kernel_");
+    return walk.found();
+}
+
+void studyTree(const std::string& model, const TriangleMesh& mesh, Device* device, const StudyOptions& options,
+               Table& table)
+{
+    TreeInput input(mesh);
+    TreeMethods methods;
+    methods.m_builder = TreeBuilder::Radix;
+    const ClothQueries cloth = clothQueries(mesh);
+    const PeerScene scene(cloth.m_scene);
+    Judge judge(options, model);
+    Row described = degreeRow(model, input.triangleCount(), "radix tree");
+    Tree tree;
+    Found found;
+    Row row = treeOnHost(tree, described, input, methods, cloth, found, options);
+    const TreeQuality quality = measureTree(tree.m_nodes, 0);
+    for (Row* each : {&described, &row})
+    {
+        (*each)["nodes"] = tree.m_nodes.size();
+        (*each)["bytes"] = bytesOf(tree);
+        (*each)["height"] = quality.m_height;
+        (*each)["cost"] = quality.m_cost;
+        (*each)["visits"] = found.m_tests;
+    }
+    fillContacts(row, cloth, scene, found);
+    judge.judge(row);
+    table.add(row);
+    if (!device) return;
+    row = described;
+    row["backend"] = "opencl";
+    fillDevice(row, device->info());
+    row["threads"] = 0;
+    const Builds builds = buildOnDevice(*device, input, methods, options);
+    builds.m_host.fill(row, "build_");
+    builds.m_kernels.fill(row, "build_kernel_");
+    const Refits refits = refitOnDevice(*device, input, tree, RefitMethod::Subtrees, options);
+    refits.m_host.fill(row, "refit_");
+    refits.m_kernels.fill(row, "refit_kernel_");
+    if (builds.m_hash != treeHash(tree) || refits.m_hash != builds.m_hash)
+        throw std::runtime_error(model + ": the device's tree is not the host's");
+    const Found onDevice = walkOnDevice(*device, input, tree, cloth, found.m_candidates.size(), row, options);
+    fillContacts(row, cloth, scene, onDevice);
+    judge.judge(row);
+    table.add(row);
+}
+
+struct StepVariant
+{
+    std::string m_name;
+    Settings m_settings;
+};
+
+// The host is the reference, so it is first.
+std::vector<StepVariant> stepVariants(const StudyOptions& options)
+{
+    std::vector<StepVariant> all;
+    const auto add = [&all](const std::string& name, Settings settings, Traversal traversal)
+    {
+        settings.m_methods.m_traversal = traversal;
+        all.push_back({name, settings});
+    };
+    Settings host;
+    host.m_backend = Backend::Host;
+    add("step, host", host, Traversal::Auto);
+    if (options.m_backend == "host") return all;
+    add("step, default", options.settings(), Traversal::Auto);
+    add("step, leaves", options.settings(), Traversal::Leaves);
+    add("step, pairs of subtrees", options.settings(), Traversal::Pairs);
+    return all;
+}
+
+// A period of the scene, several times over; means over its steps of the last time.
+struct StepRun
+{
+    std::map<std::string, Samples> m_stages;
+    std::size_t m_candidates = 0, m_contacts = 0, m_tests = 0, m_bytes = 0;
+    std::string m_hash;  // of all steps' contacts
+    Row m_device;
+};
+
+StepRun runSteps(const StepScene& scene, const Settings& settings, int passes, double seconds)
+{
+    std::string error;
+    const std::unique_ptr<StepMethod> method = makeDrapeMethod(scene, settings, error);
+    if (!method) throw std::runtime_error(error);
+    StepRun run;
+    const Clock::time_point begin = Clock::now();
+    // The first pass lets buffers grow.
+    for (int pass = 0; pass <= passes && (pass < 2 || millisecondsSince(begin) < 1000 * seconds); ++pass)
+    {
+        run.m_candidates = run.m_contacts = run.m_tests = 0;
+        std::uint64_t hash = kEmptyHash;
+        for (int step = 0; step < scene.period(); ++step)
+        {
+            const StepOutcome outcome = method->step(scene.start(step), scene.end(step));
+            run.m_candidates += outcome.m_candidates;
+            run.m_contacts += outcome.m_contacts;
+            run.m_tests += outcome.m_volumeTests;
+            hash = hashBytes(hash, outcome.m_hash.data(), outcome.m_hash.size());
+            for (const StageTime& stage : outcome.m_stages)
+            {
+                if (pass > 0) run.m_stages[stage.m_name].add(stage.m_ms);
+            }
+        }
+        run.m_hash = hashText(hash);
+    }
+    for (const Row& row : method->extraRows())
+        run.m_bytes += row["bytes"].get<std::size_t>();
+    for (std::size_t* sum : {&run.m_candidates, &run.m_contacts, &run.m_tests})
+        *sum /= std::size_t(scene.period());
+    method->describe(run.m_device);
+    return run;
+}
+
+void addSteps(const StepScene& scene, const StepVariant& variant, Judge& judge, const StudyOptions& options,
+              Table& table)
+{
+    const StepRun run = runSteps(scene, variant.m_settings, options.m_repeats, options.m_seconds);
+    Settings counting = variant.m_settings, profiled = variant.m_settings;
+    counting.m_methods.m_countTests = true;  // apart, since they cost time of their own
+    profiled.m_profileKernels = true;
+    Row row = degreeRow(scene.m_spec.m_name, scene.m_obstacle.triangleCount(), variant.m_name);
+    row["cloth_triangles"] = scene.m_spec.clothTriangles();
+    row.update(run.m_device);
+    row["candidates"] = run.m_candidates;
+    row["contacts"] = run.m_contacts;
+    const std::size_t tests = runSteps(scene, counting, 0, 0).m_tests;
+    if (tests > 0) row["visits"] = tests;
+    if (run.m_bytes > 0) row["bytes"] = run.m_bytes;
+    run.m_stages.at("step").fill(row, "step_");
+    if (row["backend"] == "opencl")
+    {
+        const StepRun kernels = runSteps(scene, profiled, options.m_repeats, options.m_seconds);
+        kernels.m_stages.at("kernels").fill(row, "step_kernel_");
+    }
+    row["hash"] = run.m_hash;
+    judge.judge(row);
+    table.add(row);
+}
+
+void studySteps(const SceneSpec& spec, const StudyOptions& options, Table& table)
+{
+    TriangleMesh obstacle;
+    if (!loadModel(spec.m_model, options, obstacle)) return;
+    const StepScene scene = makeStepScene(spec, obstacle);
+    Judge judge(options, spec.m_name);
+    for (const StepVariant& variant : stepVariants(options))
+    {
+        if (!options.tooLate(spec.m_name + ", " + variant.m_name)) addSteps(scene, variant, judge, options, table);
+    }
+}
+}  // namespace
+
+void studyDegrees(const StudyOptions& options, Table& table)
+{
+    const std::unique_ptr<Device> device = openStudyDevice(options);
+    for (const SceneSpec& spec : studyScenes(options))
+        studySteps(spec, options, table);
+    forEachModel(options, [&](const std::string& model, const TriangleMesh& mesh)
+                 { studyTree(model, mesh, device.get(), options, table); });
+}
+}  // namespace drape::bench

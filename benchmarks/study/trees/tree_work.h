@@ -1,0 +1,36 @@
+// Construction and refit on a device, repeated and timed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "benchmarks/study/trees/tree_input.h"
+
+namespace drape::bench
+{
+// What repeated builds of one variant took.
+struct Builds
+{
+    Samples m_host;                                   // from host memory to the finished tree, ms
+    Samples m_kernels;                                // all kernels of a build, ms
+    std::vector<std::vector<KernelTime>> m_launches;  // a build
+    std::vector<TopDownLevel> m_levels;
+    std::string m_hash;  // treeHash()
+};
+Builds buildOnDevice(Device& device, TreeInput& input, const TreeMethods& methods, const StudyOptions& options);
+
+// What repeated refits of one tree took.
+struct Refits
+{
+    Samples m_host;                    // from positions in host memory to the refitted tree, ms
+    Samples m_kernels;                 // all kernels of a refit, ms
+    std::vector<Samples> m_launches;   // each launch of a refit
+    std::vector<std::string> m_names;  // of their kernels
+    std::string m_hash;                // treeHash()
+};
+Refits refitOnDevice(Device& device, TreeInput& input, const Tree& tree, RefitMethod method,
+                     const StudyOptions& options);
+
+// ms.
+Samples refitOnOneThread(Tree& tree, const TreeInput& input, const StudyOptions& options);
+}  // namespace drape::bench
