@@ -3,6 +3,7 @@
 // Two shapes with the same result: for GPUs a work-group sorts a tile in local memory before it scatters, so that writes
 // come in runs; for CPUs a work-item counts and moves a long stretch alone.
 #include "lib/group_scan.h"
+#include "shared/types.h"
 
 #define DRAPE_RADIX_DIGITS 256u
 #define DRAPE_RADIX_GROUP 256
@@ -72,13 +73,16 @@ __kernel void radixScanDigitsSerial(__global uint* restrict counts, const uint t
     totals[digit] = base;
 }
 
-// One stable pass over four bits of a tile in local memory: places of a work-item's keys in the tile.
+// One stable pass over four bits of a tile in local memory: places of a work-item's keys in the tile. Loops over a
+// work-item's keys have a known length, so that a GPU keeps them in registers.
 static void placesByNibble(const uint* nibbles, const uint own, __local ushort* counters, __local uint* scratch,
                            uint* places)
 {
     const uint item = get_local_id(0);
     for (uint k = 0; k < 16; ++k) counters[k * DRAPE_RADIX_GROUP + item] = 0;
-    for (uint k = 0; k < own; ++k) ++counters[nibbles[k] * DRAPE_RADIX_GROUP + item];
+    DRAPE_UNROLL
+    for (uint k = 0; k < DRAPE_RADIX_SHARE; ++k)
+        if (k < own) ++counters[nibbles[k] * DRAPE_RADIX_GROUP + item];
     barrier(CLK_LOCAL_MEM_FENCE);
     uint sum = 0;
     for (uint k = 0; k < 16; ++k) sum += counters[item * 16 + k];
@@ -91,7 +95,9 @@ static void placesByNibble(const uint* nibbles, const uint own, __local ushort* 
         before += value;
     }
     barrier(CLK_LOCAL_MEM_FENCE);
-    for (uint k = 0; k < own; ++k) places[k] = counters[nibbles[k] * DRAPE_RADIX_GROUP + item]++;
+    DRAPE_UNROLL
+    for (uint k = 0; k < DRAPE_RADIX_SHARE; ++k)
+        if (k < own) places[k] = counters[nibbles[k] * DRAPE_RADIX_GROUP + item]++;
     barrier(CLK_LOCAL_MEM_FENCE);
 }
 
@@ -122,15 +128,18 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_RADIX_GROUP, 1, 1))) void rad
     {
         uint ownKeys[DRAPE_RADIX_SHARE], ownNumbers[DRAPE_RADIX_SHARE], nibbles[DRAPE_RADIX_SHARE];
         uint places[DRAPE_RADIX_SHARE];
-        for (uint k = 0; k < own; ++k)
+        DRAPE_UNROLL
+        for (uint k = 0; k < DRAPE_RADIX_SHARE; ++k)
         {
-            ownKeys[k] = tileKeys[item * DRAPE_RADIX_SHARE + k];
+            ownKeys[k] = tileKeys[item * DRAPE_RADIX_SHARE + k];  // behind the tile's size: anything, used for nothing
             ownNumbers[k] = tileNumbers[item * DRAPE_RADIX_SHARE + k];
             nibbles[k] = (ownKeys[k] >> (shift + 4 * nibble)) & 15u;
         }
         placesByNibble(nibbles, own, counters, scratch, places);
-        for (uint k = 0; k < own; ++k)
+        DRAPE_UNROLL
+        for (uint k = 0; k < DRAPE_RADIX_SHARE; ++k)
         {
+            if (k >= own) continue;
             tileKeys[places[k]] = ownKeys[k];
             tileNumbers[places[k]] = ownNumbers[k];
         }

@@ -1,5 +1,6 @@
 // Refit of a hierarchy in two or three launches: whole subtrees first, then groves of subtrees, then what spans groves.
 // Each launch reads what the one before wrote; nothing is passed between work-groups inside a launch.
+#include "lib/group_scan.h"
 #include "lib/tree_refit.h"
 
 // As DRAPE_SUBTREE_LEAVES: a stretch of whole subtrees that begin in a window has fewer than two windows of leaves.
@@ -310,8 +311,8 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_GROVE_GROUP, 1, 1))) void tre
 }
 
 // One work-item lists the splits of its window behind those of the windows before.
-__kernel void treeListTops(__global const uint* restrict splits, const uint leafCount,
-                           __global const uint* restrict counts, const uint windows, __global uint* restrict tops)
+__kernel void treeListTopsSerial(__global const uint* restrict splits, const uint leafCount,
+                                 __global const uint* restrict counts, const uint windows, __global uint* restrict tops)
 {
     const uint item = get_global_id(0);
     if (item >= windows) return;
@@ -323,6 +324,30 @@ __kernel void treeListTops(__global const uint* restrict splits, const uint leaf
     for (uint leaf = item * DRAPE_GROVE_LEAVES; leaf < end; ++leaf)
     {
         if (splitTier(splits[leaf]) == 2u) tops[place++] = leaf;
+    }
+}
+
+// The same by a work-group per window.
+__kernel __attribute__((reqd_work_group_size(DRAPE_GROVE_GROUP, 1, 1))) void treeListTopsGroups(
+    __global const uint* restrict splits, const uint leafCount, __global const uint* restrict counts,
+    __global uint* restrict tops)
+{
+    __local uint scratch[DRAPE_GROVE_GROUP];
+    const uint window = get_group_id(0), item = get_local_id(0);
+    uint before = 0, place, found;
+    for (uint i = item; i < window; i += DRAPE_GROVE_GROUP) before += counts[i];
+    groupPrefix(scratch, before, &place);
+    ++place;
+    if (item == 0 && window + 1 == get_num_groups(0)) tops[0] = place - 1 + counts[window];
+    if (counts[window] == 0) return;
+    const uint end = min(leafCount - 1, (window + 1) * DRAPE_GROVE_LEAVES);
+    for (uint first = window * DRAPE_GROVE_LEAVES; first < end; first += DRAPE_GROVE_GROUP)
+    {
+        const uint leaf = first + item;
+        const uint isTop = leaf < end && splitTier(splits[leaf]) == 2u;
+        const uint own = groupPrefix(scratch, isTop, &found);
+        if (isTop) tops[place + own] = leaf;
+        place += found;
     }
 }
 

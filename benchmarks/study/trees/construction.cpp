@@ -85,6 +85,28 @@ void addLevels(const Builds& builds, const Row& input, Table& table)
     }
 }
 
+// Time per kernel, all its launches of a build together.
+void addKernels(const Builds& builds, const Row& input, Table& table)
+{
+    std::map<std::string, Samples> times;
+    for (const std::vector<KernelTime>& launches : builds.m_launches)
+    {
+        std::map<std::string, double> sums;
+        for (const KernelTime& launch : launches)
+            sums[launch.m_kernel] += launch.m_ms;
+        for (const auto& sum : sums)
+            times[sum.first].add(sum.second);
+    }
+    for (const auto& kernel : times)
+    {
+        Row row = input;
+        row["part"] = "construction_kernels";
+        row["kernel"] = kernel.first;
+        kernel.second.fill(row, "kernel_");
+        table.add(row);
+    }
+}
+
 std::map<std::string, std::string> buildOnHost(const std::string& model, const TreeInput& input,
                                                const StudyOptions& options, Table& table)
 {
@@ -137,7 +159,12 @@ void studyConstruction(const StudyOptions& options, Table& table)
             builds.m_kernels.fill(times, "kernel_");
             judgeRow(times, hashes.at(variant.m_rule));
             table.add(times);
-            if (times["valid"] == "no" || builds.m_levels.empty()) continue;
+            if (times["valid"] == "no") continue;
+            if (builds.m_levels.empty())
+            {
+                addKernels(builds, row, table);
+                continue;
+            }
             addLevels(builds, row, table);
             if (variant.m_name == "thesis: all optimisations") addCompaction(builds, row, table);
         }

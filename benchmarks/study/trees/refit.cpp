@@ -16,7 +16,7 @@ public:
     {
         m_stage.create(device, studyPrograms(device));
         m_tree.upload(device, tree);
-        m_stage.listTops(device, m_tree);
+        m_stage.listTops(device, m_tree, WorkShape::Device);
         m_stage.uploadHeights(device, heightsOf(tree), m_heights);
         const std::vector<float> noRadius(1, 0.0f);
         m_radius.assign(device, noRadius);

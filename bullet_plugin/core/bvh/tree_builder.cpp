@@ -61,7 +61,7 @@ void TreeBuilderStage::enqueue(Device& device, Buffer<Triangle>& triangles, Buff
             m_radix.enqueue(device, triangles, positions, count, bits, m_methods.m_builder == TreeBuilder::Balanced,
                             shape, tree);
     }
-    m_refit.listTops(device, tree);
+    m_refit.listTops(device, tree, shape);
     m_noRadius.reserve(device, meshCount);
     m_noRadius.fill(device, 0, meshCount);
     m_counters.reserve(device, 1);

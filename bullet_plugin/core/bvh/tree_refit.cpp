@@ -47,20 +47,29 @@ void TreeRefitStage::create(Device& device, const ProgramLoader& load)
     m_grovesGroups.create(device, program, "refitGrovesGroups");
     m_topsGroup.create(device, program, "refitTopsGroup");
     m_countTops.create(device, program, "treeCountTops");
-    m_listTops.create(device, program, "treeListTops");
+    m_listTopsSerial.create(device, program, "treeListTopsSerial");
+    m_listTopsGroups.create(device, program, "treeListTopsGroups");
     m_leaves.create(device, program, "refitTreeLeaves");
     m_level.create(device, program, "refitTreeLevel");
 }
 
-void TreeRefitStage::listTops(Device& device, DeviceTree& tree)
+void TreeRefitStage::listTops(Device& device, DeviceTree& tree, WorkShape shape)
 {
     if (tree.m_leafCount <= DRAPE_GROVE_LEAVES) return;
     const std::size_t windows = windowsOf(tree.m_leafCount, DRAPE_GROVE_LEAVES);
     m_topCounts.reserve(device, windows);
     m_countTops.launch(device, windows * kGroveGroup, kGroveGroup, tree.m_splits.handle(), tree.m_leafCount,
                        m_topCounts.handle());
-    m_listTops.launch(device, windows, kGroup, tree.m_splits.handle(), tree.m_leafCount, m_topCounts.handle(),
-                      cl_uint(windows), tree.m_tops.handle());
+    if (runsGroups(device, shape))
+    {
+        m_listTopsGroups.launch(device, windows * kGroveGroup, kGroveGroup, tree.m_splits.handle(), tree.m_leafCount,
+                                m_topCounts.handle(), tree.m_tops.handle());
+    }
+    else
+    {
+        m_listTopsSerial.launch(device, windows, kGroup, tree.m_splits.handle(), tree.m_leafCount,
+                                m_topCounts.handle(), cl_uint(windows), tree.m_tops.handle());
+    }
 }
 
 void TreeRefitStage::enqueue(Device& device, DeviceTree& tree, LeafBuffers leaves, WorkShape shape)

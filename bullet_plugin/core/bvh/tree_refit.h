@@ -31,7 +31,7 @@ public:
     void create(Device& device, const ProgramLoader& load);
 
     // Lists the splits that the last launch of enqueue() climbs. Once per topology; returns after enqueueing.
-    void listTops(Device& device, DeviceTree& tree);
+    void listTops(Device& device, DeviceTree& tree, WorkShape shape);
     // Two launches up to 4,096 leaves, else three; one where subtrees suffice. Returns after enqueueing.
     void enqueue(Device& device, DeviceTree& tree, LeafBuffers leaves, WorkShape shape);
 
@@ -47,7 +47,7 @@ public:
 
 private:
     Kernel m_subtreesSerial, m_grovesSerial, m_topsSerial, m_subtreesGroups, m_grovesGroups, m_topsGroup;
-    Kernel m_countTops, m_listTops, m_leaves, m_level;
+    Kernel m_countTops, m_listTopsSerial, m_listTopsGroups, m_leaves, m_level;
     Buffer<cl_uint> m_topCounts;
 };
 }  // namespace drape
