@@ -7,6 +7,8 @@
 
 // Slots a work-group handles. Each work-item takes DRAPE_BLOCK / group size adjacent ones.
 #define DRAPE_BLOCK 1024
+// Members of a slot that a work-group puts in order by counting, in local memory; more are sorted where they are.
+#define DRAPE_COUNTED 512
 
 static uint countShare(__global const uint* slotCount, const uint slots, uint* first, uint* last)
 {
@@ -121,13 +123,33 @@ static void sortMembers(__global const Contact* hits, __global uint* members, co
     }
 }
 
+// The same for DRAPE_COUNTED members at most: each goes behind as many as have a lesser feature. keys, own: that many.
+static void countMembers(__global const Contact* hits, __global uint* members, const uint count, __local uint* keys,
+                         __local uint* own)
+{
+    for (uint i = get_local_id(0); i < count; i += get_local_size(0))
+    {
+        own[i] = members[i];
+        keys[i] = hits[own[i]].m_obstacleFeature;
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint i = get_local_id(0); i < count; i += get_local_size(0))
+    {
+        const uint key = keys[i];
+        uint before = 0;
+        for (uint j = 0; j < count; ++j) before += keys[j] < key;
+        members[before] = own[i];
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+}
+
 // A work-group sorts the members of those slots of its block (of at most DRAPE_BLOCK slots) that have more than
 // compactionWrite ranks.
 __kernel void compactionOrder(__global const Contact* restrict hits, const uint hitCapacity,
                               __global const uint* restrict slotFirst, const uint slots, const uint block,
                               __global uint* members, __global const StepCounters* restrict counters)
 {
-    __local uint crowded[DRAPE_BLOCK];
+    __local uint crowded[DRAPE_BLOCK], keys[DRAPE_COUNTED], own[DRAPE_COUNTED];
     __local uint crowdedCount;
     const uint count = min(counters->m_hits, hitCapacity);
     const uint begin = get_group_id(0) * block;
@@ -145,7 +167,11 @@ __kernel void compactionOrder(__global const Contact* restrict hits, const uint 
     {
         const uint slot = crowded[i];
         const uint last = slot + 1 < slots ? min(slotFirst[slot + 1], count) : count;
-        sortMembers(hits, members + slotFirst[slot], last - slotFirst[slot]);
+        const uint size = last - slotFirst[slot];
+        if (size <= DRAPE_COUNTED)
+            countMembers(hits, members + slotFirst[slot], size, keys, own);
+        else
+            sortMembers(hits, members + slotFirst[slot], size);
     }
 }
 
@@ -153,21 +179,19 @@ __kernel void compactionOrder(__global const Contact* restrict hits, const uint 
 // feature, and writes the hit where that number puts it. Where the slot has more than DRAPE_RANKED members they are sorted
 // and the hit keeps its place. A feature pair is tested once, so features of a slot differ and every place is written once.
 __kernel void compactionWrite(__global const Contact* restrict hits, const uint hitCapacity,
-                              __global const uint* restrict slotFirst, __global const uint* restrict members,
-                              __global Contact* restrict contacts, __global const StepCounters* restrict counters)
+                              __global const uint* restrict slotFirst, const uint slots,
+                              __global const uint* restrict members, __global Contact* restrict contacts,
+                              __global const StepCounters* restrict counters)
 {
     const uint count = min(counters->m_hits, hitCapacity);
     for (uint i = get_global_id(0); i < count; i += get_global_size(0))
     {
         const Contact hit = hits[members[i]];
         const uint first = slotFirst[hit.m_slot];
-        const uint last = min(count, first + DRAPE_RANKED + 1);
+        const uint last = hit.m_slot + 1 < slots ? min(slotFirst[hit.m_slot + 1], count) : count;
+        const int sorted = last - first > DRAPE_RANKED;
         uint before = 0;
-        uint j = first;
-        for (; j < last && hits[members[j]].m_slot == hit.m_slot; ++j)
-        {
-            before += hits[members[j]].m_obstacleFeature < hit.m_obstacleFeature;
-        }
-        contacts[j - first > DRAPE_RANKED ? i : first + before] = hit;
+        for (uint j = first; j < last && !sorted; ++j) before += hits[members[j]].m_obstacleFeature < hit.m_obstacleFeature;
+        contacts[sorted ? i : first + before] = hit;
     }
 }

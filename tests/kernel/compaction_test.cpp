@@ -76,7 +76,7 @@ public:
                         m_slotFirst.handle(), m_members.handle(), m_counters.handle());
         m_order.launch(m_device, (slots + m_sortBlock - 1) / m_sortBlock * kGroup, kGroup, m_hits.handle(), capacity,
                        m_slotFirst.handle(), slots, m_sortBlock, m_members.handle(), m_counters.handle());
-        m_write.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotFirst.handle(),
+        m_write.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotFirst.handle(), slots,
                        m_members.handle(), m_contacts.handle(), m_counters.handle());
         const std::vector<cl_uint> left = contents(m_device, m_slotCount, slots);
         EXPECT_EQ(std::count(left.begin(), left.end(), 0u), std::ptrdiff_t(slots)) << "slots are clean after";

@@ -12,7 +12,7 @@ namespace
 {
 constexpr std::size_t kGroup = 64;  // as in kernels/morton_order.cl
 // Groups per compute unit that look for the bounds: enough to hide latency, few enough to merge.
-constexpr std::size_t kBoundsGroupsPerUnit = 4;
+constexpr std::size_t kBoundsGroupsPerUnit = 4, kBoundsGroupsPerUnitGpu = 16;
 constexpr cl_uint kShortCodeBits = 30;
 constexpr cl_uint kLowBits = 32, kHighBits = 31;  // the words of a 63-bit code
 // Least and greatest values before any centroid was seen, see kernels/morton_order.cl.
@@ -83,7 +83,8 @@ void MortonOrderStage::enqueue(Device& device, Buffer<Triangle>& triangles, Buff
     low.reserve(device, wide ? count : 1);
     m_boundsBuffer.reserve(device, 6);
     m_boundsBuffer.write(device, kNoBounds, 6);
-    const std::size_t width = std::min<std::size_t>(count, kGroup * kBoundsGroupsPerUnit * device.computeUnits());
+    const std::size_t groupsPerUnit = device.isGpu() ? kBoundsGroupsPerUnitGpu : kBoundsGroupsPerUnit;
+    const std::size_t width = std::min<std::size_t>(count, kGroup * groupsPerUnit * device.computeUnits());
     m_bounds.launch(device, width, kGroup, triangles.handle(), positions.handle(), count, m_boundsBuffer.handle());
     m_codes.launch(device, count, kGroup, triangles.handle(), positions.handle(), count, m_boundsBuffer.handle(),
                    codeBits, high.handle(), low.handle(), order.handle());

@@ -152,8 +152,8 @@ void NarrowPhaseStage::enqueueCompaction(Device& device, NarrowPhaseBuffers side
     if (reduction)
         enqueueReduction(device, sides, counters, *reduction);
     else
-        m_write.launch(device, width, kGroup, m_hits.handle(), hitCapacity, m_slotFirst.handle(), m_members.handle(),
-                       m_contacts.handle(), counters.handle());
+        m_write.launch(device, width, kGroup, m_hits.handle(), hitCapacity, m_slotFirst.handle(), cl_uint(m_slots),
+                       m_members.handle(), m_contacts.handle(), counters.handle());
 }
 
 void NarrowPhaseStage::enqueueReduction(Device& device, NarrowPhaseBuffers sides, Buffer<StepCounters>& counters,
