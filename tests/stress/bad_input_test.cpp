@@ -237,7 +237,7 @@ TEST_P(BadInputTest, TwoIdenticalMeshes)
     const std::vector<Contact> contacts = runCase(*pipeline, step);
     expectFinite(contacts);
     // Each with itself and with those around its corners, and no others.
-    const std::vector<Candidate> meeting = meetingPairs(mesh, mesh);
+    const std::vector<NearTriangles> meeting = meetingPairs(mesh, mesh);
     ASSERT_GT(meeting.size(), 10 * mesh.triangleCount());
     EXPECT_EQ(pipeline->statistics().m_intersections, meeting.size());
     EXPECT_TRUE(sameBytes(meshPairsOn(settings, mesh, mesh, 0.0f).m_intersecting, meeting));

@@ -8,6 +8,7 @@
 #include <functional>
 #include <iterator>
 #include <numeric>
+#include <tuple>
 
 #include "scenes/shapes.h"
 #include "tests/support/backends.h"
@@ -147,12 +148,14 @@ void expectExchanged(std::vector<Keyed> found, const StepCase& swapped, std::vec
     }
 }
 
-using Rename = std::function<Candidate(const Candidate&)>;
+using Rename = std::function<NearTriangles(const NearTriangles&)>;
 
-void expectSameList(std::vector<Candidate> found, const std::vector<Candidate>& wanted, const Rename& rename)
+void expectSameList(std::vector<NearTriangles> found, const std::vector<NearTriangles>& wanted, const Rename& rename)
 {
     std::transform(found.begin(), found.end(), found.begin(), rename);
-    sortCandidates(found);
+    std::sort(found.begin(), found.end(),
+              [](const NearTriangles& a, const NearTriangles& b)
+              { return std::tie(a.m_a, a.m_b) < std::tie(b.m_a, b.m_b); });
     EXPECT_TRUE(sameBytes(found, wanted)) << found.size() << " and " << wanted.size() << " pairs";
 }
 
@@ -306,7 +309,7 @@ TEST_P(MeshRows, Row13FlippedWindingAndInvertedElements)
     const MeshPairs start = pairsOf(original), end = pairsOf(ended);
     EXPECT_TRUE(sameBytes(start.m_intersecting, meetingPairs(original.m_cloth, original.m_obstacle)));
     EXPECT_TRUE(sameBytes(end.m_intersecting, meetingPairs(ended.m_cloth, ended.m_obstacle)));
-    const Rename same = [](const Candidate& pair) { return pair; };
+    const Rename same = [](const NearTriangles& pair) { return pair; };
     for (const bool flipCloth : {false, true})
     {
         StepCase step = original, stepEnded = ended;
@@ -378,8 +381,8 @@ TEST_P(MeshRows, Row23SidesSwappedAndTrianglesShuffled)
         std::swap(swapped.m_cloth, swapped.m_obstacle);
         swapped.m_end = swapped.m_cloth.m_positions;
         expectSamePairs(pairsOf(swapped), pairs,
-                        [](const Candidate& pair) {
-                            return Candidate{pair.m_obstacle, pair.m_cloth};
+                        [](const NearTriangles& pair) {
+                            return NearTriangles{pair.m_b, pair.m_a};
                         });
         nearVertices += nodesNearVertices(step).size() + nodesNearVertices(swapped).size();
         expectExchanged(keyedContacts(swapped), swapped, reference, step);
@@ -387,8 +390,8 @@ TEST_P(MeshRows, Row23SidesSwappedAndTrianglesShuffled)
         StepCase shuffled = step;
         const std::vector<std::uint32_t> original = shuffleTriangles(shuffled.m_cloth, seed);
         expectSamePairs(pairsOf(shuffled), pairs,
-                        [&](const Candidate& pair) {
-                            return Candidate{original[pair.m_cloth], pair.m_obstacle};
+                        [&](const NearTriangles& pair) {
+                            return NearTriangles{original[pair.m_a], pair.m_b};
                         });
         expectSameButForNumbers(keyedContacts(shuffled), reference);
     }

@@ -19,14 +19,14 @@ MeshPairs meshPairsOn(const Settings& settings, const TriangleMesh& a, const Tri
     return found;
 }
 
-std::vector<Candidate> meetingPairs(const TriangleMesh& a, const TriangleMesh& b)
+std::vector<NearTriangles> meetingPairs(const TriangleMesh& a, const TriangleMesh& b)
 {
     const auto corners = [](const TriangleMesh& mesh, std::size_t triangle, Vector3 out[3])
     {
         for (std::size_t i = 0; i < 3; ++i)
             out[i] = position(mesh.m_positions, std::uint32_t(mesh.m_triangles[3 * triangle + i]));
     };
-    std::vector<Candidate> pairs;
+    std::vector<NearTriangles> pairs;
     for (std::size_t i = 0; i < a.triangleCount(); ++i)
     {
         for (std::size_t j = 0; j < b.triangleCount(); ++j)

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "bullet_plugin/core/queries.h"
+#include <drape/queries.h>
 #include "scenes/mesh.h"
 
 namespace drape::test
@@ -13,5 +13,5 @@ namespace drape::test
 MeshPairs meshPairsOn(const Settings& settings, const TriangleMesh& a, const TriangleMesh& b, float radius);
 
 // By brute force in exact arithmetic (oracle.h): the pairs that have a point in common. O(triangles²).
-std::vector<Candidate> meetingPairs(const TriangleMesh& a, const TriangleMesh& b);
+std::vector<NearTriangles> meetingPairs(const TriangleMesh& a, const TriangleMesh& b);
 }  // namespace drape::test
