@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <sstream>
 
+#include <assimp/BaseImporter.h>
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/LogStream.hpp>
 #include <assimp/config.h>
+#include <assimp/importerdesc.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
@@ -123,10 +126,32 @@ std::string faceProblem(const aiScene& scene)
     return "";
 }
 
+bool reads(const aiImporterDesc& reader, const std::string& ending)
+{
+    std::istringstream endings(reader.mFileExtensions);
+    for (std::string known; endings >> known;)
+        if ("." + known == ending) return true;
+    return false;
+}
+
+// A file is what its ending says: Assimp would go by its content where no reader of that ending wants it, past what is
+// looked through here before.
+void keepReadersOf(const std::string& ending, Assimp::Importer& importer)
+{
+    for (std::size_t i = importer.GetImporterCount(); i-- > 0;)
+    {
+        if (reads(*importer.GetImporterInfo(i), ending)) continue;
+        Assimp::BaseImporter* reader = importer.GetImporter(i);
+        importer.UnregisterLoader(reader);
+        delete reader;  // unregistered, it is the caller's
+    }
+}
+
 std::string importMesh(const std::string& path, TriangleMesh& mesh)
 {
     const LogListener listener;
     Assimp::Importer importer;
+    keepReadersOf(endingOf(path), importer);
     const aiScene* scene = importer.ReadFile(path, 0);
     if (!listener.problem().empty()) return listener.problem();
     const std::string problem = scene == nullptr ? "" : faceProblem(*scene);

@@ -10,7 +10,7 @@
 #include "benchmarks/error_vs_time/triangle_sets.h"
 #include "benchmarks/support/result_hash.h"
 #include "benchmarks/support/samples.h"
-#include "bullet_plugin/core/queries.h"
+#include <drape/queries.h>
 #include "scenes/query_records.h"
 
 namespace drape::bench

@@ -4,9 +4,9 @@
 
 #include <drape/drape.h>
 
-#include "benchmarks/error_vs_time/crossings.h"
 #include "examples/cloth_drop/drop_world.h"
 #include "examples/cloth_drop/node_positions.h"
+#include "scenes/crossings.h"
 
 namespace drape::bench
 {

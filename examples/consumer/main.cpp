@@ -1,13 +1,18 @@
-// Uses an installed Drape as an outside project does: a cloth falls on a ground of two triangles and must stay on it.
+// Uses an installed Drape as an outside project does: asks it two questions, then a cloth falls on a ground of two
+// triangles and must stay on it.
 //
-// Computes on the host, so that it runs where there is no OpenCL device. Exit code 0 when Drape found contacts and
-// every node ended at or above the ground, 1 otherwise, with the reason on standard error.
+// Computes on the host, so that it runs where there is no OpenCL device. Exit code 0 when the answers are right,
+// Drape found contacts and every node ended at or above the ground, 1 otherwise, with the reason on standard error.
+#include <cstdint>
 #include <cstdio>
+#include <memory>
+#include <vector>
 
 #include <btBulletDynamicsCommon.h>
 #include <BulletSoftBody/btSoftBodyHelpers.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <drape/drape.h>
+#include <drape/queries.h>
 
 namespace
 {
@@ -51,12 +56,52 @@ unsigned long drop(btSoftRigidDynamicsWorld& world, const drape::Plugin& plugin)
     }
     return contacts;
 }
+
+drape::MeshDescription describe(const std::vector<float>& positions, const std::vector<std::int32_t>& triangles)
+{
+    drape::MeshDescription mesh;
+    mesh.m_positions = positions.data();
+    mesh.m_vertexCount = positions.size() / 3;
+    mesh.m_triangles = triangles.data();
+    mesh.m_triangleCount = triangles.size() / 3;
+    return mesh;
+}
+
+// Of two triangles side by side the second is pierced by a third one, which is 5 cm from the first; a point that goes
+// through a face meets it half-way.
+bool answersAreRight(const drape::Settings& settings)
+{
+    drape::Error error;
+    const std::unique_ptr<drape::Queries> queries = drape::Queries::create(settings, error);
+    if (!queries) return false;
+
+    const std::vector<float> ground = {0, 0, 0, 0, 0, 1, 1, 0, 0, 1, 0, 1};
+    const std::vector<std::int32_t> groundTriangles = {0, 1, 2, 2, 1, 3};
+    const std::vector<float> spike = {0.55f, -1, 0.55f, 0.6f, 1, 0.55f, 0.55f, 1, 0.6f};
+    const std::vector<std::int32_t> spikeTriangles = {0, 1, 2};
+    const drape::MeshDescription other = describe(spike, spikeTriangles);
+    drape::MeshPairs pairs;
+    if (!queries->meshPairs(describe(ground, groundTriangles), &other, 0.1f, pairs)) return false;
+    if (pairs.m_within.size() != 2 || pairs.m_intersecting.size() != 1 || pairs.m_intersecting[0].m_a != 1)
+        return false;
+
+    const drape::CcdQuery query = {
+        {0.2f, 1, 0.2f, 0, 0, 0, 0, 0, 1, 1, 0, 0}, {0.2f, -1, 0.2f, 0, 0, 0, 0, 0, 1, 1, 0, 0}, DRAPE_VERTEX_FACE};
+    drape::CcdResult result;
+    if (!queries->motions(&query, 1, drape::defaultCcdSettings(), &result)) return false;
+    return result.m_hit && result.m_time <= 0.5f && result.m_time > 0.49f;
+}
 }  // namespace
 
 int main()
 {
     drape::Settings settings;
     settings.m_backend = drape::Backend::Host;
+    if (!answersAreRight(settings))
+    {
+        std::fprintf(stderr, "wrong answers to questions about triangles\n");
+        return 1;
+    }
     drape::Plugin plugin(settings);
     if (!plugin.ready())
     {

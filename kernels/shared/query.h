@@ -1,46 +1,12 @@
-// Questions about features and triangles outside a cloth's step, and about a mesh against itself, with their answers.
-// The same declarations serve C++ and OpenCL C: 32-bit scalars only, no padding.
+// Which tests answer questions about triangles, and what a mesh finds against itself. The questions that a caller may
+// ask are declared in a public header. The same declarations serve C++ and OpenCL C: 32-bit scalars only, no padding.
 #ifndef DRAPE_SHARED_QUERY_H
 #define DRAPE_SHARED_QUERY_H
 
+#include "../../bullet_plugin/core/include/drape/query_records.h"
 #include "types.h"
 
 DRAPE_NAMESPACE_BEGIN
-
-// Kinds of feature pairs.
-#define DRAPE_VERTEX_FACE 0u
-#define DRAPE_EDGES 1u
-
-// Do four moving vertices touch: a vertex and a face, or two edges?
-typedef struct CcdQuery
-{
-    float m_start[12];  // m, x y z of the four at the step's start
-    float m_end[12];
-    DRAPE_UINT m_kind;
-} CcdQuery;
-
-// How continuous collision searches; see kernels/lib/ccd.h for the defaults.
-typedef struct CcdSettings
-{
-    float m_separation;     // m, ≥ 0: features this near count as touching
-    float m_tolerance;      // of the offset relative to the pair's extent: what varies less is not halved
-    float m_timeTolerance;  // of the step: the time is searched to this; 1: any hit will do and its time is 0
-    DRAPE_UINT m_boxLimit;  // boxes looked at before a search ends with the safe answer, a hit
-} CcdSettings;
-
-typedef struct CcdResult
-{
-    DRAPE_UINT m_hit;
-    float m_time;        // part of the step, ≤ the true time of impact; 1 without a hit
-    float m_u, m_v;      // where on the features: see ccdVectors
-    DRAPE_UINT m_boxes;  // looked at, the cost
-} CcdResult;
-
-typedef struct TriangleQuery
-{
-    float m_a[9];  // m, x y z of three corners
-    float m_b[9];
-} TriangleQuery;
 
 // Which test answers a TriangleQuery on the device.
 #define DRAPE_TEST_CERTIFIED 0u

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <tuple>
 
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
@@ -21,25 +22,28 @@ struct FastDrop
 
 constexpr int kSteps = 60;
 
-class FastDropping : public testing::TestWithParam<FastDrop>
+class FastDropping : public testing::TestWithParam<std::tuple<FastDrop, BackendCase>>
 {
+protected:
+    void SetUp() override { requireBackend(std::get<1>(GetParam())); }
 };
 }  // namespace
 
 // After every step nothing is on the wrong side and nothing intersects.
 TEST_P(FastDropping, endsEveryStepOutside)
 {
+    const FastDrop& drop = std::get<0>(GetParam());
     TriangleMesh mesh;
-    ASSERT_TRUE(makeShape(GetParam().m_shape, mesh));
+    ASSERT_TRUE(makeShape(drop.m_shape, mesh));
     MeshShape shape(mesh);
-    Plugin plugin(hostSettings());
+    Plugin plugin(std::get<1>(GetParam()).m_settings);
     DropWorld world(&plugin);
     world.addObstacle(shape.shape());
     ClothSpec spec;
     spec.m_size = 2.4f;
-    spec.m_centre = btVector3(0, GetParam().m_height, 0);
+    spec.m_centre = btVector3(0, drop.m_height, 0);
     btSoftBody& cloth = world.addCloth(spec);
-    cloth.setVelocity(btVector3(0, -GetParam().m_speed, 0));
+    cloth.setVelocity(btVector3(0, -drop.m_speed, 0));
     PenetrationMeter meter(mesh, meshOf(cloth));
     std::size_t most = 0;
     for (int step = 0; step < kSteps; ++step)
@@ -54,10 +58,15 @@ TEST_P(FastDropping, endsEveryStepOutside)
     EXPECT_GT(most, 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Drops, FastDropping,
-                         testing::Values(FastDrop{"sphere", 10, btScalar(1.3)}, FastDrop{"sphere", 200, btScalar(1.3)},
-                                         FastDrop{"stairs", 50, btScalar(1.5)}, FastDrop{"box", 200, btScalar(0.8)},
-                                         FastDrop{"torus", 50, btScalar(0.6)}, FastDrop{"bowl", 3, btScalar(0.1)}),
-                         [](const testing::TestParamInfo<FastDrop>& info)
-                         { return info.param.m_shape + std::to_string(static_cast<int>(info.param.m_speed)); });
+INSTANTIATE_TEST_SUITE_P(
+    Drops, FastDropping,
+    testing::Combine(testing::Values(FastDrop{"sphere", 10, btScalar(1.3)}, FastDrop{"sphere", 200, btScalar(1.3)},
+                                     FastDrop{"stairs", 50, btScalar(1.5)}, FastDrop{"box", 200, btScalar(0.8)},
+                                     FastDrop{"torus", 50, btScalar(0.6)}, FastDrop{"bowl", 3, btScalar(0.1)}),
+                     testing::ValuesIn(allBackends())),
+    [](const testing::TestParamInfo<std::tuple<FastDrop, BackendCase>>& info)
+    {
+        const FastDrop& drop = std::get<0>(info.param);
+        return drop.m_shape + std::to_string(static_cast<int>(drop.m_speed)) + "_" + std::get<1>(info.param).m_name;
+    });
 }  // namespace drape::test

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "scenes/shapes.h"
@@ -100,7 +101,13 @@ struct Bed
     btScalar m_height;  // m, of the cloth at the start; the obstacle's top is below
 };
 
-class SettledCloth : public testing::TestWithParam<Bed>
+class SettledCloth : public testing::TestWithParam<std::tuple<Bed, BackendCase>>
+{
+protected:
+    void SetUp() override { requireBackend(std::get<1>(GetParam())); }
+};
+
+class SettledBunny : public BackendTest
 {
 };
 }  // namespace
@@ -108,12 +115,13 @@ class SettledCloth : public testing::TestWithParam<Bed>
 // The speed that Bullet keeps and the motion that is seen: a correction of places alone would show in the second only.
 TEST_P(SettledCloth, liesStill)
 {
-    Rest rest(hostSettings());
+    const Bed& bed = std::get<0>(GetParam());
+    Rest rest(std::get<1>(GetParam()).m_settings);
     TriangleMesh mesh;
-    ASSERT_TRUE(makeShape(GetParam().m_shape, mesh));
+    ASSERT_TRUE(makeShape(bed.m_shape, mesh));
     MeshShape shape(mesh);
     rest.m_world.addObstacle(shape.shape());
-    btSoftBody& cloth = rest.cloth(GetParam().m_size, GetParam().m_height);
+    btSoftBody& cloth = rest.cloth(bed.m_size, bed.m_height);
     rest.m_world.step(kStepsToSettle);
     double speed = 0, motion = 0;
     for (int i = 0; i < kStepsAtRest; ++i)
@@ -133,13 +141,13 @@ TEST_P(SettledCloth, liesStill)
 
 // The cloth of 2,048 triangles (2.4 m) that cloth_drop drops on the bunny of 69,666 (2 m). RMS over all steps: where it
 // hangs off the ears friction lets it slip now and then.
-TEST(SettledCloth, liesStillOnTheBunny)
+TEST_P(SettledBunny, liesStill)
 {
     TriangleMesh bunny;
     const std::string missing = loadBunny(bunny);
     if (!missing.empty()) GTEST_SKIP() << missing;
     placeOnFloor(bunny, 2.0f);
-    Rest rest(Settings{});
+    Rest rest(GetParam().m_settings);
     MeshShape shape(bunny);
     rest.m_world.addObstacle(shape.shape());
     ClothSpec spec;
@@ -164,16 +172,19 @@ TEST(SettledCloth, liesStillOnTheBunny)
     EXPECT_GT(end.m_gapMin, 0.9 * kThickness);
 }
 
-INSTANTIATE_TEST_SUITE_P(Beds, SettledCloth,
-                         testing::Values(Bed{"sphere", 2.4f, btScalar(1.1)}, Bed{"box", 2.4f, btScalar(0.6)},
-                                         Bed{"bowl", 1.2f, btScalar(0.1)}, Bed{"torus", 1.6f, btScalar(0.4)}),
-                         [](const testing::TestParamInfo<Bed>& info) { return std::string(info.param.m_shape); });
+INSTANTIATE_TEST_SUITE_P(
+    Beds, SettledCloth,
+    testing::Combine(testing::Values(Bed{"sphere", 2.4f, btScalar(1.1)}, Bed{"box", 2.4f, btScalar(0.6)},
+                                     Bed{"bowl", 1.2f, btScalar(0.1)}, Bed{"torus", 1.6f, btScalar(0.4)}),
+                     testing::ValuesIn(allBackends())),
+    [](const testing::TestParamInfo<std::tuple<Bed, BackendCase>>& info)
+    { return std::string(std::get<0>(info.param).m_shape) + "_" + std::get<1>(info.param).m_name; });
 
-INSTANTIATE_TEST_SUITE_P(Backend, RestingCloth, testing::ValuesIn(allBackends()), backendName);
+INSTANTIATE_TEST_SUITE_P(Backend, SettledBunny, testing::ValuesIn(openClBackends()), backendName);
 
-TEST(RestingCloth, thicknessIsTheSumOfBothMargins)
+TEST_P(RestingCloth, thicknessIsTheSumOfBothMargins)
 {
-    Rest rest(hostSettings());
+    Rest rest(GetParam().m_settings);
     MeshShape shape(makeBox(3.0f, 0.4f, 3.0f));
     shape.shape().setMargin(btScalar(0.03));
     rest.m_world.addObstacle(shape.shape());
@@ -185,9 +196,9 @@ TEST(RestingCloth, thicknessIsTheSumOfBothMargins)
 }
 
 // The contact rounds must not feed energy in: no slow creep over many steps.
-TEST(RestingCloth, staysWhereItLies)
+TEST_P(RestingCloth, staysWhereItLies)
 {
-    Rest rest(hostSettings());
+    Rest rest(GetParam().m_settings);
     MeshShape shape(makeBox(3.0f, 0.4f, 3.0f));
     rest.m_world.addObstacle(shape.shape());
     btSoftBody& cloth = rest.cloth(0.5f, btScalar(0.23));
@@ -200,4 +211,6 @@ TEST(RestingCloth, staysWhereItLies)
         farthest = std::max(farthest, static_cast<double>(std::abs(after[i] - before[i])));
     EXPECT_LT(farthest, 0.1 * kThickness);
 }
+
+INSTANTIATE_TEST_SUITE_P(Backend, RestingCloth, testing::ValuesIn(allBackends()), backendName);
 }  // namespace drape::test

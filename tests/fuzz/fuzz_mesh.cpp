@@ -1,7 +1,6 @@
 // Any bytes as a mesh file: the loader refuses them in one line, or gives a mesh whose every index and number is good.
 //
-// The first byte chooses the format. Formats that nothing looks through before Assimp reads them are left out: what is
-// found there is Assimp's.
+// The first byte chooses the format.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -30,8 +29,9 @@ std::string temporaryFile(const char* ending)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
     if (size < 2) return 0;
-    static const std::string kPaths[2] = {temporaryFile(".obj"), temporaryFile(".ply")};
-    const std::string& path = kPaths[data[0] % 2];
+    static const std::string kPaths[5] = {temporaryFile(".obj"), temporaryFile(".ply"), temporaryFile(".stl"),
+                                          temporaryFile(".gltf"), temporaryFile(".glb")};
+    const std::string& path = kPaths[data[0] % 5];
     std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(data + 1), std::streamsize(size - 1));
     drape::TriangleMesh mesh;
     std::string error;

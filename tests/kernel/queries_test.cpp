@@ -1,6 +1,6 @@
 // Queries and self collision on a device: the host's answers bit for bit at every size, full lists counted, nothing
 // written past their ends.
-#include "bullet_plugin/core/queries.h"
+#include <drape/queries.h>
 
 #include <gtest/gtest.h>
 

@@ -138,7 +138,7 @@ TEST_P(SelfOracle, PairsOfTrianglesAreThoseOfAllPairs)
         const float radius = 0.013f;
         MeshPairs found;
         ASSERT_TRUE(queries->meshPairs(describeMesh(mesh), nullptr, radius, found));
-        std::vector<Candidate> within, intersecting;
+        std::vector<NearTriangles> within, intersecting;
         for (std::uint32_t a = 0; a < mesh.triangleCount(); ++a)
         {
             for (std::uint32_t b = a + 1; b < mesh.triangleCount(); ++b)
@@ -147,13 +147,14 @@ TEST_P(SelfOracle, PairsOfTrianglesAreThoseOfAllPairs)
                 cornersOf(mesh, a, p);
                 cornersOf(mesh, b, q);
                 if (shareVertex(mesh, a, b)) continue;
-                if (trianglesIntersect(p, q)) intersecting.push_back(Candidate{a, b});
-                if (triangleDistance(p, q) <= radius) within.push_back(Candidate{a, b});
+                if (trianglesIntersect(p, q)) intersecting.push_back(NearTriangles{a, b});
+                if (triangleDistance(p, q) <= radius) within.push_back(NearTriangles{a, b});
             }
         }
-        const auto same = [](const std::vector<Candidate>& a, const std::vector<Candidate>& b) {
+        const auto same = [](const std::vector<NearTriangles>& a, const std::vector<NearTriangles>& b)
+        {
             return a.size() == b.size() &&
-                   (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Candidate)) == 0);
+                   (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(NearTriangles)) == 0);
         };
         EXPECT_TRUE(same(found.m_within, within)) << found.m_within.size() << " for " << within.size();
         EXPECT_TRUE(same(found.m_intersecting, intersecting));

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <map>
 
 #include "tests/support/backends.h"
@@ -15,39 +14,16 @@ namespace drape::test
 {
 namespace
 {
-// Names a contact by its kind and the vertices of its features, whatever their numbers.
-using Key = std::array<std::uint32_t, 7>;
-
-Key keyOf(const Contact& contact, const Side& cloth, const Side& obstacle)
-{
-    Key key;
-    key.fill(~0u);
-    key[0] = contact.m_kind;
-    const auto put = [&](std::size_t at, const std::uint32_t* vertices, std::size_t count)
-    {
-        std::copy(vertices, vertices + count, key.begin() + std::ptrdiff_t(at));
-        std::sort(key.begin() + std::ptrdiff_t(at), key.begin() + std::ptrdiff_t(at + 3));
-    };
-    const std::uint32_t i = contact.m_clothFeature, j = contact.m_obstacleFeature;
-    if (contact.m_kind == DRAPE_NODE_FACE) put(1, &i, 1), put(4, obstacle.m_pool.triangles()[j].m_vertices, 3);
-    if (contact.m_kind == DRAPE_FACE_VERTEX) put(1, cloth.m_pool.triangles()[i].m_vertices, 3), put(4, &j, 1);
-    if (contact.m_kind == DRAPE_EDGE_EDGE)
-    {
-        put(1, cloth.m_pool.edges()[i].m_vertices, 2);
-        put(4, obstacle.m_pool.edges()[j].m_vertices, 2);
-    }
-    return key;
-}
-
-std::map<Key, Contact> keyedContacts(const StepCase& step)
+std::map<FeatureKey, Contact> keyedContacts(const StepCase& step)
 {
     Side cloth = makeSide({step.m_cloth});
     const Side obstacle = makeSide({step.m_obstacle});
     cloth.m_end = step.m_end;
-    std::map<Key, Contact> keyed;
+    std::map<FeatureKey, Contact> keyed;
     for (const Contact& contact : contactsOfAllPairs(cloth, obstacle, step.m_thickness))
     {
-        EXPECT_TRUE(keyed.emplace(keyOf(contact, cloth, obstacle), contact).second) << "twice: " << describe(contact);
+        EXPECT_TRUE(keyed.emplace(featureKey(contact, cloth, obstacle), contact).second)
+            << "twice: " << describe(contact);
     }
     return keyed;
 }
@@ -56,7 +32,7 @@ std::map<Key, Contact> keyedContacts(const StepCase& step)
 // distance at the reach falls to either side. All other contacts agree.
 void expectSameUpToNumbering(const StepCase& a, const StepCase& b)
 {
-    const std::map<Key, Contact> first = keyedContacts(a), second = keyedContacts(b);
+    const std::map<FeatureKey, Contact> first = keyedContacts(a), second = keyedContacts(b);
     EXPECT_GT(first.size(), 100u);
     std::size_t alone = 0;
     for (const auto& one : first)

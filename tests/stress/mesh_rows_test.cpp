@@ -4,12 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <cstring>
+#include <functional>
+#include <iterator>
+#include <numeric>
 #include <tuple>
 
 #include "scenes/shapes.h"
 #include "tests/support/backends.h"
 #include "tests/support/contact_oracle.h"
+#include "tests/support/mesh_pairs.h"
+#include "tests/support/oracle.h"
 #include "tests/support/pair_batch.h"
 #include "tests/support/side.h"
 
@@ -40,10 +45,139 @@ void flipWinding(TriangleMesh& mesh)
         std::swap(mesh.m_triangles[3 * t + 1], mesh.m_triangles[3 * t + 2]);
 }
 
-using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;
-Key keyOf(const Contact& contact)
+// A contact with the vertices that name it.
+struct Keyed
 {
-    return Key(contact.m_kind, contact.m_clothFeature, contact.m_obstacleFeature);
+    FeatureKey m_key;
+    Contact m_contact;
+};
+
+void sortByKey(std::vector<Keyed>& contacts)
+{
+    std::sort(contacts.begin(), contacts.end(), [](const Keyed& a, const Keyed& b) { return a.m_key < b.m_key; });
+}
+
+void exchangeSides(FeatureKey& key)
+{
+    if (key[0] != DRAPE_EDGE_EDGE) key[0] = key[0] == DRAPE_NODE_FACE ? DRAPE_FACE_VERTEX : DRAPE_NODE_FACE;
+    std::swap_ranges(&key[1], &key[1] + 3, &key[4]);
+}
+
+// Whether the contacts are between the same features; says which are in one list only.
+bool expectSameKeys(const std::vector<Keyed>& found, const std::vector<Keyed>& wanted)
+{
+    const auto less = [](const Keyed& a, const Keyed& b) { return a.m_key < b.m_key; };
+    std::vector<Keyed> extra, missing;
+    std::set_difference(found.begin(), found.end(), wanted.begin(), wanted.end(), std::back_inserter(extra), less);
+    std::set_difference(wanted.begin(), wanted.end(), found.begin(), found.end(), std::back_inserter(missing), less);
+    for (const Keyed& keyed : extra)
+        ADD_FAILURE() << "not wanted: " << describe(keyed.m_contact);
+    for (const Keyed& keyed : missing)
+        ADD_FAILURE() << "missing: " << describe(keyed.m_contact);
+    return extra.empty() && missing.empty() && found.size() == wanted.size();
+}
+
+// Triangles and edges have other numbers; nothing else differs by a bit.
+void expectSameButForNumbers(const std::vector<Keyed>& found, const std::vector<Keyed>& wanted)
+{
+    ASSERT_TRUE(expectSameKeys(found, wanted));
+    for (std::size_t i = 0; i < found.size(); ++i)
+    {
+        Contact contact = found[i].m_contact;
+        const Contact& other = wanted[i].m_contact;
+        contact.m_slot = other.m_slot;
+        contact.m_clothFeature = other.m_clothFeature;
+        contact.m_obstacleFeature = other.m_obstacleFeature;
+        EXPECT_EQ(std::memcmp(&contact, &other, sizeof contact), 0) << describe(contact) << '\n' << describe(other);
+    }
+}
+
+// Where a node is nearest to a vertex of a face, and nearer than the thickness: by brute force, sorted.
+std::vector<FeatureKey> nodesNearVertices(const StepCase& step)
+{
+    std::vector<FeatureKey> keys;
+    for (std::uint32_t node = 0; node < step.m_cloth.vertexCount(); ++node)
+    {
+        for (std::size_t t = 0; t < step.m_obstacle.triangleCount(); ++t)
+        {
+            const std::int32_t* corners = &step.m_obstacle.m_triangles[3 * t];
+            Vector3 face[3];
+            FeatureKey key = {DRAPE_NODE_FACE, node, ~0u, ~0u, 0, 0, 0};
+            for (std::size_t i = 0; i < 3; ++i)
+            {
+                key[4 + i] = std::uint32_t(corners[i]);
+                face[i] = position(step.m_obstacle.m_positions, key[4 + i]);
+            }
+            const NearestOnTriangle nearest = nearestOnTriangle(position(step.m_cloth.m_positions, node), face);
+            if (nearest.m_distance > double(step.m_thickness)) continue;
+            if (std::count(nearest.m_weights, nearest.m_weights + 3, 0.0) != 2) continue;
+            std::sort(key.begin() + 4, key.end());
+            keys.push_back(key);
+        }
+    }
+    std::sort(keys.begin(), keys.end());
+    return keys;
+}
+
+// Takes out those contacts, which must be all that there are. What is nearest to a node is that node's contact, so that
+// they are other ones when cloth and obstacle change places.
+void takeNodesNearVertices(std::vector<Keyed>& contacts, const StepCase& step)
+{
+    const std::vector<FeatureKey> near = nodesNearVertices(step);
+    const auto isNear = [&](const Keyed& keyed) { return std::binary_search(near.begin(), near.end(), keyed.m_key); };
+    const auto taken = std::remove_if(contacts.begin(), contacts.end(), isNear);
+    EXPECT_EQ(std::size_t(contacts.end() - taken), near.size());
+    contacts.erase(taken, contacts.end());
+}
+
+// The same contacts with cloth and obstacle exchanged. The local frame has its origin at the other feature: gaps differ
+// by rounding.
+void expectExchanged(std::vector<Keyed> found, const StepCase& swapped, std::vector<Keyed> wanted, const StepCase& step)
+{
+    takeNodesNearVertices(found, swapped);
+    takeNodesNearVertices(wanted, step);
+    EXPECT_GT(wanted.size(), 200u);
+    for (Keyed& keyed : found)
+        exchangeSides(keyed.m_key);
+    sortByKey(found);
+    ASSERT_TRUE(expectSameKeys(found, wanted));
+    for (std::size_t i = 0; i < found.size(); ++i)
+    {
+        const Contact &a = found[i].m_contact, &b = wanted[i].m_contact;
+        EXPECT_NEAR(a.m_gap1, b.m_gap1, 1e-6f) << describe(a) << '\n' << describe(b);
+    }
+}
+
+using Rename = std::function<NearTriangles(const NearTriangles&)>;
+
+void expectSameList(std::vector<NearTriangles> found, const std::vector<NearTriangles>& wanted, const Rename& rename)
+{
+    std::transform(found.begin(), found.end(), found.begin(), rename);
+    std::sort(found.begin(), found.end(),
+              [](const NearTriangles& a, const NearTriangles& b)
+              { return std::tie(a.m_a, a.m_b) < std::tie(b.m_a, b.m_b); });
+    EXPECT_TRUE(sameBytes(found, wanted)) << found.size() << " and " << wanted.size() << " pairs";
+}
+
+void expectSamePairs(const MeshPairs& found, const MeshPairs& wanted, const Rename& rename)
+{
+    EXPECT_EQ(found.m_candidates, wanted.m_candidates);
+    expectSameList(found.m_within, wanted.m_within, rename);
+    expectSameList(found.m_intersecting, wanted.m_intersecting, rename);
+}
+
+// Returns each triangle's number before.
+std::vector<std::uint32_t> shuffleTriangles(TriangleMesh& mesh, std::uint32_t seed)
+{
+    Random random(seed);
+    std::vector<std::uint32_t> original(mesh.triangleCount());
+    std::iota(original.begin(), original.end(), 0u);
+    for (std::size_t i = original.size(); i > 1; --i)
+        std::swap(original[i - 1], original[random.below(std::uint32_t(i))]);
+    const std::vector<std::int32_t> before = mesh.m_triangles;
+    for (std::size_t i = 0; i < original.size(); ++i)
+        std::copy_n(&before[3 * original[i]], 3, &mesh.m_triangles[3 * i]);
+    return original;
 }
 }  // namespace
 
@@ -67,6 +201,23 @@ protected:
         result.m_statistics = pipeline->statistics();
         expectFinite(result.m_contacts);
         return result;
+    }
+
+    // Sorted by what they are between.
+    std::vector<Keyed> keyedContacts(const StepCase& step)
+    {
+        const Side cloth = makeSide({step.m_cloth}), obstacle = makeSide({step.m_obstacle});
+        std::vector<Keyed> keyed;
+        for (const Contact& contact : run(step).m_contacts)
+            keyed.push_back({featureKey(contact, cloth, obstacle), contact});
+        sortByKey(keyed);
+        return keyed;
+    }
+
+    // Of the triangles at the step's start.
+    MeshPairs pairsOf(const StepCase& step)
+    {
+        return meshPairsOn(GetParam().m_settings, step.m_cloth, step.m_obstacle, step.m_thickness);
     }
 
     // Nothing within the thickness is missed, nothing beyond it is kept, in the numbers as they were rounded.
@@ -142,8 +293,7 @@ TEST_P(MeshRows, Row08OffsetOfAMillion)
     EXPECT_EQ(run(step).m_statistics.m_status, std::uint32_t(kStepGood));
 }
 
-// Winding turns normals over and changes no distance: the same pairs of triangles and, but for seams where rounding
-// decides which neighbour reports, the same contacts.
+// Winding turns normals over and changes no distance: the same pairs of triangles, and the same contacts.
 TEST_P(MeshRows, Row13FlippedWindingAndInvertedElements)
 {
     StepCase original = fallingCase("torus", 16, 0.03f, 1113);
@@ -151,28 +301,26 @@ TEST_P(MeshRows, Row13FlippedWindingAndInvertedElements)
     // Every fifth node goes to the other side of its neighbours in the step: faces turn over.
     for (std::size_t node = 0; node < original.m_cloth.vertexCount(); node += 5)
         original.m_end[3 * node] += node % 2 ? 0.16f : -0.16f;
+    StepCase ended = original;
+    ended.m_cloth.m_positions = original.m_end;
     const Run reference = run(original);
     EXPECT_GT(reference.m_statistics.m_intersections, 20u);
-    std::set<Key> keys;
-    for (const Contact& contact : reference.m_contacts)
-        keys.insert(keyOf(contact));
+    const std::vector<Keyed> contacts = keyedContacts(original);
+    const MeshPairs start = pairsOf(original), end = pairsOf(ended);
+    EXPECT_TRUE(sameBytes(start.m_intersecting, meetingPairs(original.m_cloth, original.m_obstacle)));
+    EXPECT_TRUE(sameBytes(end.m_intersecting, meetingPairs(ended.m_cloth, ended.m_obstacle)));
+    const Rename same = [](const NearTriangles& pair) { return pair; };
     for (const bool flipCloth : {false, true})
     {
-        StepCase step = original;
+        StepCase step = original, stepEnded = ended;
         flipWinding(flipCloth ? step.m_cloth : step.m_obstacle);
+        flipWinding(flipCloth ? stepEnded.m_cloth : stepEnded.m_obstacle);
+        expectSamePairs(pairsOf(step), start, same);
+        expectSamePairs(pairsOf(stepEnded), end, same);
         const Run flipped = run(step);
         EXPECT_EQ(flipped.m_statistics.m_candidates, reference.m_statistics.m_candidates);
         EXPECT_EQ(flipped.m_statistics.m_intersections, reference.m_statistics.m_intersections);
-        EXPECT_NEAR(double(flipped.m_contacts.size()), double(keys.size()), 0.01 * double(keys.size()));
-        // Nodes and faces keep their numbers; edges are numbered along their triangles.
-        std::size_t others = 0, kept = 0;
-        for (const Contact& contact : flipped.m_contacts)
-        {
-            if (contact.m_kind == DRAPE_EDGE_EDGE) continue;
-            keys.count(keyOf(contact)) ? ++kept : ++others;
-        }
-        EXPECT_GT(kept, 100u);
-        EXPECT_LE(others, kept / 100);
+        EXPECT_TRUE(expectSameKeys(keyedContacts(step), contacts));
     }
 }
 
@@ -208,41 +356,46 @@ TEST_P(MeshRows, Row20NonManifoldAndDuplicateFaces)
         const Positions tip = {p[0] + 0.1f, p[1] + 0.2f, p[2]};
         finned.m_obstacle.m_positions.insert(finned.m_obstacle.m_positions.end(), tip.begin(), tip.end());
     }
-    std::set<Key> keys;
-    for (const Contact& contact : run(finned).m_contacts)
-        EXPECT_TRUE(keys.insert(keyOf(contact)).second) << "twice: " << describe(contact);
-    EXPECT_GE(keys.size(), reference.m_contacts.size());
+    const std::vector<Keyed> keyed = keyedContacts(finned);
+    for (std::size_t i = 1; i < keyed.size(); ++i)
+        EXPECT_NE(keyed[i].m_key, keyed[i - 1].m_key) << "twice: " << describe(keyed[i].m_contact);
+    EXPECT_GE(keyed.size(), reference.m_contacts.size());
 }
 
-// The same pairs whichever mesh is the cloth and however its triangles are numbered. (Device against host, bit for bit,
-// is HostDeviceTest's.)
+// The same pairs and contacts whichever mesh is the cloth and however its triangles are numbered. (Device against host,
+// bit for bit, is HostDeviceTest's.)
 TEST_P(MeshRows, Row23SidesSwappedAndTrianglesShuffled)
 {
+    std::size_t nearVertices = 0;
     for (std::uint32_t seed = 1123; seed < 1127; ++seed)
     {
-        StepCase step = soupCase(150, 200, false, seed);
+        const StepCase step = soupCase(150, 200, false, seed);
         SCOPED_TRACE(step.trace());
-        const Run reference = run(step);
-        EXPECT_GT(reference.m_statistics.m_intersections, 30u);
+        const std::vector<Keyed> reference = keyedContacts(step);
+        EXPECT_GT(reference.size(), 200u);
+        const MeshPairs pairs = pairsOf(step);
+        EXPECT_GT(pairs.m_intersecting.size(), 30u);
+        EXPECT_TRUE(sameBytes(pairs.m_intersecting, meetingPairs(step.m_cloth, step.m_obstacle)));
+
         StepCase swapped = step;
         std::swap(swapped.m_cloth, swapped.m_obstacle);
         swapped.m_end = swapped.m_cloth.m_positions;
-        EXPECT_EQ(run(swapped).m_statistics.m_intersections, reference.m_statistics.m_intersections);
+        expectSamePairs(pairsOf(swapped), pairs,
+                        [](const NearTriangles& pair) {
+                            return NearTriangles{pair.m_b, pair.m_a};
+                        });
+        nearVertices += nodesNearVertices(step).size() + nodesNearVertices(swapped).size();
+        expectExchanged(keyedContacts(swapped), swapped, reference, step);
 
-        Random random(seed);
         StepCase shuffled = step;
-        for (std::size_t i = shuffled.m_cloth.triangleCount(); i > 1; --i)
-        {
-            const std::size_t j = random.below(std::uint32_t(i));
-            if (j == i - 1) continue;
-            std::swap_ranges(&shuffled.m_cloth.m_triangles[3 * (i - 1)], &shuffled.m_cloth.m_triangles[3 * (i - 1)] + 3,
-                             &shuffled.m_cloth.m_triangles[3 * j]);
-        }
-        const Run other = run(shuffled);
-        EXPECT_EQ(other.m_statistics.m_candidates, reference.m_statistics.m_candidates);
-        EXPECT_EQ(other.m_statistics.m_intersections, reference.m_statistics.m_intersections);
-        EXPECT_EQ(other.m_contacts.size(), reference.m_contacts.size());
+        const std::vector<std::uint32_t> original = shuffleTriangles(shuffled.m_cloth, seed);
+        expectSamePairs(pairsOf(shuffled), pairs,
+                        [&](const NearTriangles& pair) {
+                            return NearTriangles{original[pair.m_a], pair.m_b};
+                        });
+        expectSameButForNumbers(keyedContacts(shuffled), reference);
     }
+    EXPECT_GT(nearVertices, 10u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, MeshRows, testing::ValuesIn(allBackends()), backendName);

@@ -49,12 +49,17 @@ void PrintTo(const BackendCase& backend, std::ostream* stream)
     *stream << backend.m_name;
 }
 
-void BackendTest::SetUp()
+void requireBackend(const BackendCase& backend)
 {
-    if (!GetParam().m_missing) return;
+    if (!backend.m_missing) return;
     const char* allowed = std::getenv("DRAPE_TEST_NO_DEVICE");
     if (allowed && std::string(allowed) == "1") GTEST_SKIP() << "no OpenCL device, as DRAPE_TEST_NO_DEVICE says";
     GTEST_FAIL() << "no OpenCL device was found (Debian: pocl-opencl-icd); DRAPE_TEST_NO_DEVICE=1 skips this test";
+}
+
+void BackendTest::SetUp()
+{
+    requireBackend(GetParam());
 }
 
 void DeviceTest::SetUp()

@@ -30,6 +30,9 @@ std::vector<BackendCase> allBackends();     // the host first
 std::string backendName(const testing::TestParamInfo<BackendCase>& info);
 void PrintTo(const BackendCase& backend, std::ostream* stream);
 
+// For SetUp(): fails or skips the test when the back end is not there.
+void requireBackend(const BackendCase& backend);
+
 // A fixture whose parameter is a back end that is there.
 class BackendTest : public testing::TestWithParam<BackendCase>
 {

@@ -45,23 +45,40 @@ void LiveScene::moveCloths()
         disturb(end, 0.02f, m_random);
         for (Pipeline* pipeline : m_pipelines)
             setMotion(*pipeline, cloth.m_id, cloth.m_mesh.m_positions, end);
+        cloth.m_start = cloth.m_mesh.m_positions;
         cloth.m_mesh.m_positions = end;
     }
 }
 
 void LiveScene::namePairs()
 {
-    for (const LiveMesh& cloth : m_cloths)
+    m_pairs.clear();
+    for (std::size_t i = 0; i < m_cloths.size(); ++i)
     {
-        for (const LiveMesh& obstacle : m_obstacles)
+        for (std::size_t j = 0; j < m_obstacles.size(); ++j)
         {
             if (m_random.below(4) == 0) continue;
             const float thickness = m_random.uniform(0.01f, 0.05f);
-            const float tube = cloth.m_id % 2 == 0 ? 0.5f * thickness : -1.0f;
+            m_pairs.push_back({i, j, thickness, m_cloths[i].m_id % 2 == 0 ? 0.5f * thickness : -1.0f});
             for (Pipeline* pipeline : m_pipelines)
-                pipeline->addPair(cloth.m_id, obstacle.m_id, thickness, tube);
+                pipeline->addPair(m_cloths[i].m_id, m_obstacles[j].m_id, thickness, m_pairs.back().m_tube);
         }
     }
+}
+
+void LiveScene::giveAnew(Pipeline& pipeline, std::vector<MeshId>& added) const
+{
+    for (MeshId id : added)
+        pipeline.remove(id);
+    added.clear();
+    for (const LiveMesh& cloth : m_cloths)
+        added.push_back(addCloth(pipeline, cloth.m_mesh));
+    for (const LiveMesh& obstacle : m_obstacles)
+        added.push_back(addObstacle(pipeline, obstacle.m_mesh));
+    for (std::size_t i = 0; i < m_cloths.size(); ++i)
+        setMotion(pipeline, added[i], m_cloths[i].m_start, m_cloths[i].m_mesh.m_positions);
+    for (const LivePair& pair : m_pairs)
+        pipeline.addPair(added[pair.m_cloth], added[m_cloths.size() + pair.m_obstacle], pair.m_thickness, pair.m_tube);
 }
 
 TriangleMesh LiveScene::randomCloth()
@@ -90,7 +107,7 @@ void LiveScene::add(std::vector<LiveMesh>& meshes, TriangleMesh mesh, bool cloth
         id = added;
     }
     const std::vector<float> home = mesh.m_positions;
-    meshes.push_back({id, std::move(mesh), home});
+    meshes.push_back({id, std::move(mesh), home, {}});
 }
 
 void LiveScene::removeOne(std::vector<LiveMesh>& meshes)

@@ -21,12 +21,22 @@ public:
 
     void nextStep();
 
+    // Gives the coming step to a pipeline that is none of the scene's, with every mesh added anew: of the steps before,
+    // nothing that it kept can matter. added: what the call before added, empty at first.
+    void giveAnew(Pipeline& pipeline, std::vector<MeshId>& added) const;
+
 private:
     struct LiveMesh
     {
         MeshId m_id;
         TriangleMesh m_mesh;
         std::vector<float> m_home;
+        std::vector<float> m_start;  // of a cloth, in the coming step
+    };
+    struct LivePair
+    {
+        std::size_t m_cloth, m_obstacle;
+        float m_thickness, m_tube;
     };
 
     void changeMeshes();
@@ -43,5 +53,6 @@ private:
     Random m_random;
     bool m_teleports;
     std::vector<LiveMesh> m_cloths, m_obstacles;
+    std::vector<LivePair> m_pairs;
 };
 }  // namespace drape::test

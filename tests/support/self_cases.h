@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bullet_plugin/core/queries.h"
+#include <drape/queries.h>
 #include "scenes/mesh.h"
 
 namespace drape::test

@@ -119,6 +119,27 @@ bool contains(const std::vector<Candidate>& sorted, std::uint32_t cloth, std::ui
                               { return std::tie(a.m_cloth, a.m_obstacle) < std::tie(b.m_cloth, b.m_obstacle); });
 }
 
+FeatureKey featureKey(const Contact& contact, const Side& cloth, const Side& obstacle)
+{
+    FeatureKey key;
+    key.fill(~0u);
+    key[0] = contact.m_kind;
+    const auto put = [&](std::size_t at, const std::uint32_t* vertices, std::size_t count)
+    {
+        std::copy(vertices, vertices + count, key.begin() + std::ptrdiff_t(at));
+        std::sort(key.begin() + std::ptrdiff_t(at), key.begin() + std::ptrdiff_t(at + 3));
+    };
+    const std::uint32_t i = contact.m_clothFeature, j = contact.m_obstacleFeature;
+    if (contact.m_kind == DRAPE_NODE_FACE) put(1, &i, 1), put(4, obstacle.m_pool.triangles()[j].m_vertices, 3);
+    if (contact.m_kind == DRAPE_FACE_VERTEX) put(1, cloth.m_pool.triangles()[i].m_vertices, 3), put(4, &j, 1);
+    if (contact.m_kind == DRAPE_EDGE_EDGE)
+    {
+        put(1, cloth.m_pool.edges()[i].m_vertices, 2);
+        put(4, obstacle.m_pool.edges()[j].m_vertices, 2);
+    }
+    return key;
+}
+
 std::string describe(const Contact& contact)
 {
     static const char* const kKinds[] = {"node-face", "face-vertex", "edge-edge"};

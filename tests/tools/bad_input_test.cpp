@@ -27,6 +27,11 @@ TEST_F(BadInput, notAMesh)
     expectRefused(runSmall({"--obstacle", write("empty.ply", "")}), {"empty.ply", "empty"});
     expectRefused(runSmall({"--obstacle", write("broken.ply", "ply\nformat ascii 1.0\nelement")}), {"broken.ply"});
     expectRefused(runSmall({"--obstacle", write("broken.stl", "sol")}), {"broken.stl", "not a mesh"});
+    // A file is what its ending says, whatever another reader would make of it.
+    const std::string ply =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    expectRefused(runSmall({"--obstacle", write("ply.glb", ply)}), {"ply.glb", "not a mesh"});
 }
 
 TEST_F(BadInput, noTriangles)

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "bullet_plugin/core/queries.h"
+#include <drape/queries.h>
 #include "tools/common/program.h"
 
 namespace drape

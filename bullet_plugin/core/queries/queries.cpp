@@ -1,4 +1,4 @@
-#include "bullet_plugin/core/queries.h"
+#include "drape/queries.h"
 
 #include <algorithm>
 #include <chrono>
@@ -59,11 +59,11 @@ void pairsOnHost(QueryMesh& a, QueryMesh& b, float radius, std::uint64_t& candid
     leafPairsOnHost(a.tree(), b.tree(), self ? DRAPE_WALK_SELF_APART : DRAPE_WALK_OTHER, visit);
 }
 
-void sortPairs(std::vector<Candidate>& pairs)
+void sortPairs(std::vector<NearTriangles>& pairs)
 {
     std::sort(pairs.begin(), pairs.end(),
-              [](const Candidate& a, const Candidate& b)
-              { return std::tie(a.m_cloth, a.m_obstacle) < std::tie(b.m_cloth, b.m_obstacle); });
+              [](const NearTriangles& a, const NearTriangles& b)
+              { return std::tie(a.m_a, a.m_b) < std::tie(b.m_a, b.m_b); });
 }
 
 // The truth about the pairs that the certified tests could not deny.
@@ -74,8 +74,8 @@ void decide(const QueryMesh& a, const QueryMesh& b, double radius, const std::ve
     for (const PairAnswer& answer : answers)
     {
         const ExactTriangle first = triangleOf(a, answer.m_a), second = triangleOf(b, answer.m_b);
-        Candidate pair = {a.m_topology.m_sourceTriangle[answer.m_a], b.m_topology.m_sourceTriangle[answer.m_b]};
-        if (self && pair.m_cloth > pair.m_obstacle) std::swap(pair.m_cloth, pair.m_obstacle);
+        NearTriangles pair = {a.m_topology.m_sourceTriangle[answer.m_a], b.m_topology.m_sourceTriangle[answer.m_b]};
+        if (self && pair.m_a > pair.m_b) std::swap(pair.m_a, pair.m_b);
         const bool meet = (answer.m_bits & DRAPE_PAIR_MEETS) && trianglesMeet(first, second);
         if (meet) found.m_intersecting.push_back(pair);
         if (meet || squaredDistance(first, second) <= radius * radius) found.m_within.push_back(pair);

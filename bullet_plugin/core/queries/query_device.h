@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "bullet_plugin/core/bvh/refit.h"
-#include "bullet_plugin/core/queries.h"
+#include "drape/queries.h"
 #include "query_mesh.h"
 
 namespace drape

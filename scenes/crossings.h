@@ -7,7 +7,7 @@
 #include "scenes/mesh.h"
 #include "scenes/triangle_tree.h"
 
-namespace drape::bench
+namespace drape
 {
 class Crossings
 {
@@ -24,4 +24,4 @@ private:
     std::vector<Vector3> m_last;
     std::vector<bool> m_crossed;
 };
-}  // namespace drape::bench
+}  // namespace drape

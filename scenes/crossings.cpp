@@ -1,11 +1,11 @@
-#include "benchmarks/error_vs_time/crossings.h"
+#include "scenes/crossings.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "scenes/exact_predicates.h"
 
-namespace drape::bench
+namespace drape
 {
 namespace
 {
@@ -53,4 +53,4 @@ std::size_t Crossings::nodes() const
 {
     return std::size_t(std::count(m_crossed.begin(), m_crossed.end(), true));
 }
-}  // namespace drape::bench
+}  // namespace drape

@@ -3,20 +3,25 @@
 //
 // Job: batches of single pairs, and whole meshes with their own hierarchies, made for the call. Guarantee: no true pair
 // is denied; the same answers, bit for bit, on every back end; lists grow or the work is done in batches, nothing is
-// lost. Cost: each call uploads, computes and waits. Lengths in metres. Knows no Bullet. Not thread-safe.
+// lost. Cost: each call uploads, computes and waits. Lengths in metres. Knows no Bullet and needs no plugin. Not
+// thread-safe. C++11, no OpenCL header needed.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
-#include "bullet_plugin/core/pipeline.h"
-#include "kernels/shared/mesh.h"
-#include "kernels/shared/query.h"
+#include "error.h"
+#include "mesh_description.h"
+#include "query_records.h"
+#include "report.h"
+#include "settings.h"
 
 namespace drape
 {
-// Working defaults of continuous collision; see kernels/lib/ccd.h.
+// Working defaults of continuous collision: no published true pair is missed, 157 false hits among the 6,593 hardest
+// published pairs that do not touch.
 CcdSettings defaultCcdSettings();
 
 enum class TriangleTest
@@ -26,12 +31,17 @@ enum class TriangleTest
     Moller      // with an absolute tolerance, for comparison: misses pairs and reports others
 };
 
-// Triangles are named by their index as given.
+// Two triangles by their index as given: of the first mesh, and of the second or, with itself, the later one.
+struct NearTriangles
+{
+    std::uint32_t m_a, m_b;
+};
+
 struct MeshPairs
 {
-    std::uint64_t m_candidates = 0;         // pairs whose volumes overlap
-    std::vector<Candidate> m_within;        // distance ≤ the radius, decided in double precision; sorted
-    std::vector<Candidate> m_intersecting;  // exact; sorted
+    std::uint64_t m_candidates = 0;             // pairs whose volumes overlap
+    std::vector<NearTriangles> m_within;        // distance ≤ the radius, decided in double precision; sorted
+    std::vector<NearTriangles> m_intersecting;  // exact; sorted
 };
 
 // Two features that touch during a step, by their vertices: a vertex and a face, or two edges (see CcdQuery).

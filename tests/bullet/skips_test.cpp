@@ -1,0 +1,166 @@
+// What the adapter does not look at again changes nothing: obstacles whose vertices are not read anew, cloth that
+// sleeps, cloth that is pinned. Contacts and trajectories, bit for bit, with the skip and with it defeated, on every
+// back end.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <functional>
+
+#include "scenes/shapes.h"
+#include "tests/bullet/drop_world.h"
+#include "tests/support/backends.h"
+
+namespace drape::test
+{
+namespace
+{
+btTransform shiftedTo(double x, double y, double z)
+{
+    return btTransform(btQuaternion::getIdentity(), btVector3(btScalar(x), btScalar(y), btScalar(z)));
+}
+
+ClothSpec clothAt(double x, double y)
+{
+    ClothSpec spec;
+    spec.m_nodes = 11;
+    spec.m_size = 0.8f;
+    spec.m_centre = btVector3(btScalar(x), btScalar(y), 0);
+    return spec;
+}
+
+// The contacts of one cloth, with what names objects of a world taken out.
+std::vector<ContactInfo> contactsOf(const Plugin& plugin, const btSoftBody& cloth)
+{
+    std::vector<ContactInfo> contacts;
+    for (ContactInfo contact : plugin.contacts())
+    {
+        if (contact.m_cloth != &cloth) continue;
+        contact.m_cloth = nullptr;
+        contact.m_obstacle = nullptr;
+        contacts.push_back(contact);
+    }
+    return contacts;
+}
+
+bool sameContacts(const std::vector<ContactInfo>& a, const std::vector<ContactInfo>& b)
+{
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(),
+                                              [](const ContactInfo& one, const ContactInfo& other)
+                                              { return std::memcmp(&one, &other, sizeof one) == 0; });
+}
+
+// A ball, a box that a body moves under the cloth, and the cloth on both.
+struct SkipWorld
+{
+    explicit SkipWorld(const Settings& settings)
+        : m_plugin(settings),
+          m_ball(makeSphere(0.3f, 3)),
+          m_slab(makeBox(3.0f, 0.2f, 3.0f)),
+          m_world(&m_plugin),
+          m_ballObject(m_world.addObstacle(m_ball.shape())),
+          m_slabBody(m_world.addKinematic(m_slab.shape(), shiftedTo(0, -0.2, 0))),
+          m_cloth(m_world.addCloth(clothAt(0.1, 0.4)))
+    {
+    }
+
+    // The slab rests, moves on and rests again; the ball jumps a little.
+    void step(int count)
+    {
+        m_ballObject.setWorldTransform(shiftedTo(count < 45 ? 0 : 0.02, 0, 0));
+        const double way = count < 30 ? 0 : count < 60 ? 0.01 * (count - 30) : 0.3;
+        m_slabBody.setWorldTransform(shiftedTo(way, -0.2, 0));
+        m_world.step();
+    }
+
+    Plugin m_plugin;
+    MeshShape m_ball, m_slab;
+    DropWorld m_world;
+    btCollisionObject& m_ballObject;
+    btRigidBody& m_slabBody;
+    btSoftBody& m_cloth;
+};
+
+static_assert(sizeof(ContactInfo) == 2 * sizeof(void*) + 3 * sizeof(int) + 11 * sizeof(float), "compared byte by byte");
+}  // namespace
+
+class Skips : public BackendTest
+{
+protected:
+    // Steps both worlds; before each step of the second one `defeat` is called. The cloth of both must do the same.
+    void expectSame(SkipWorld& skipping, SkipWorld& defeated, const std::function<void()>& defeat)
+    {
+        std::size_t contacts = 0;
+        for (int step = 0; step < 90; ++step)
+        {
+            SCOPED_TRACE("step " + std::to_string(step));
+            defeat();
+            skipping.step(step);
+            defeated.step(step);
+            const std::vector<ContactInfo> found = contactsOf(skipping.m_plugin, skipping.m_cloth);
+            ASSERT_TRUE(sameContacts(found, contactsOf(defeated.m_plugin, defeated.m_cloth)));
+            ASSERT_EQ(hashOf(skipping.m_cloth), hashOf(defeated.m_cloth));
+            contacts += found.size();
+        }
+        EXPECT_GT(contacts, 2000u);
+    }
+};
+
+TEST_P(Skips, ObstaclesThatAreNotReadAnew)
+{
+    SkipWorld skipping(GetParam().m_settings), defeated(GetParam().m_settings);
+    expectSame(skipping, defeated,
+               [&]
+               {
+                   defeated.m_plugin.obstacleChanged(&defeated.m_ball.shape());
+                   defeated.m_plugin.obstacleChanged(&defeated.m_slab.shape());
+               });
+}
+
+// In one world another cloth sleeps in touch with the slab, in the other there is none. It keeps its place until the
+// slab moves and wakes it.
+TEST_P(Skips, ClothThatSleeps)
+{
+    SkipWorld with(GetParam().m_settings), without(GetParam().m_settings);
+    btSoftBody& sleeper = with.m_world.addCloth(clothAt(1.0, -0.09));
+    const std::uint64_t hash = hashOf(sleeper);
+    int steps = 0;
+    expectSame(with, without,
+               [&]
+               {
+                   if (++steps > 30) return;
+                   EXPECT_EQ(hashOf(sleeper), hash);
+                   sleeper.forceActivationState(ISLAND_SLEEPING);
+               });
+}
+
+// All of its nodes are pinned, so that no contact could move it; with another node, which belongs to no face and falls
+// far away, the pair is looked at all the same.
+TEST_P(Skips, ClothThatIsPinned)
+{
+    SkipWorld skipping(GetParam().m_settings), defeated(GetParam().m_settings);
+    std::uint64_t hashes[2];
+    btSoftBody* pinned[2];
+    SkipWorld* worlds[2] = {&skipping, &defeated};
+    for (int i = 0; i < 2; ++i)
+    {
+        pinned[i] = &worlds[i]->m_world.addCloth(clothAt(1.0, -0.09));
+        for (int node = 0; node < pinned[i]->m_nodes.size(); ++node)
+            pinned[i]->setMass(node, 0);
+        hashes[i] = hashOf(*pinned[i]);
+    }
+    pinned[1]->appendNode(btVector3(1, 50, 0), 1);
+    std::size_t looked = 0;
+    expectSame(skipping, defeated,
+               [&]
+               {
+                   EXPECT_TRUE(contactsOf(skipping.m_plugin, *pinned[0]).empty());
+                   looked += contactsOf(defeated.m_plugin, *pinned[1]).size();
+               });
+    EXPECT_GT(looked, 1000u);
+    EXPECT_EQ(hashOf(*pinned[0]), hashes[0]);
+    pinned[1]->m_nodes.pop_back();
+    EXPECT_EQ(hashOf(*pinned[1]), hashes[1]);
+}
+
+INSTANTIATE_TEST_SUITE_P(Backend, Skips, testing::ValuesIn(allBackends()), backendName);
+}  // namespace drape::test

@@ -1,0 +1,61 @@
+// What a pipeline keeps from step to step saves time only: hierarchies of obstacles that rest and are not refitted, the
+// front of the last step, trees and patches, buffers on the device. One traversal for each kind of what is kept.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "tests/support/backends.h"
+#include "tests/support/live_scene.h"
+#include "tests/support/pipeline_driver.h"
+#include "tests/support/side.h"
+#include "tests/support/traversals.h"
+
+namespace drape::test
+{
+class SkipsTest : public testing::TestWithParam<std::tuple<BackendCase, Traversal>>
+{
+protected:
+    void SetUp() override { requireBackend(std::get<0>(GetParam())); }
+
+    std::unique_ptr<Pipeline> make() const
+    {
+        Settings settings = std::get<0>(GetParam()).m_settings;
+        settings.m_methods.m_traversal = std::get<1>(GetParam());
+        return makePipeline(settings);
+    }
+};
+
+// One pipeline lives through the steps, the other is given every mesh anew in each of them.
+TEST_P(SkipsTest, WhatIsKeptGivesTheContactsOfWhatIsMadeAnew)
+{
+    std::size_t contacts = 0, reduced = 0;
+    for (std::uint32_t seed = 980; seed < 983; ++seed)
+    {
+        const std::unique_ptr<Pipeline> kept = make(), anew = make();
+        ASSERT_TRUE(kept && anew);
+        std::vector<MeshId> added;
+        LiveScene scene({kept.get()}, seed, true);
+        for (int step = 0; step < 60; ++step)
+        {
+            SCOPED_TRACE("seed " + std::to_string(seed) + ", step " + std::to_string(step));
+            scene.nextStep();
+            scene.giveAnew(*anew, added);
+            const std::vector<Contact> first = runStep(*kept), other = runStep(*anew);
+            ASSERT_TRUE(sameBytes(first, other)) << difference(first, other);
+            EXPECT_EQ(kept->statistics().m_status, anew->statistics().m_status);
+            contacts += first.size();
+            reduced += kept->statistics().m_reduced;
+        }
+    }
+    EXPECT_GT(contacts, 10000u);
+    EXPECT_GT(reduced, 100u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, SkipsTest,
+                         testing::Combine(testing::ValuesIn(allBackends()),
+                                          testing::Values(Traversal::Auto, Traversal::Pairs, Traversal::Front,
+                                                          Traversal::WideLeaves)),
+                         [](const testing::TestParamInfo<std::tuple<BackendCase, Traversal>>& info)
+                         { return std::get<0>(info.param).m_name + "_" + traversalName(std::get<1>(info.param)); });
+}  // namespace drape::test
