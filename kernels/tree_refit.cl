@@ -1,6 +1,5 @@
 // Refit of a hierarchy in two or three launches: whole subtrees first, then groves of subtrees, then what spans groves.
 // Each launch reads what the one before wrote; nothing is passed between work-groups inside a launch.
-#include "lib/group_scan.h"
 #include "lib/tree_refit.h"
 
 // As DRAPE_SUBTREE_LEAVES: a stretch of whole subtrees that begin in a window has fewer than two windows of leaves.
@@ -43,7 +42,7 @@ __kernel void refitGrovesSerial(__global BvhNode* restrict nodes, __global const
     refitStretch(nodes, splits, first, nextBegin(splits, window + DRAPE_GROVE_LEAVES, leafCount, 1u), leafCount, 1u);
 }
 
-// One work-item refits what spans groves. tops holds how many splits there are and then the splits, in order.
+// One work-item refits what spans groves. tops: how many splits there are, and then the splits, in order.
 __kernel void refitTopsSerial(__global BvhNode* restrict nodes, __global const uint* restrict splits,
                               __global const uint* restrict tops, const uint leafCount)
 {
@@ -327,28 +326,11 @@ __kernel void treeListTopsSerial(__global const uint* restrict splits, const uin
     }
 }
 
-// The same by a work-group per window.
-__kernel __attribute__((reqd_work_group_size(DRAPE_GROVE_GROUP, 1, 1))) void treeListTopsGroups(
-    __global const uint* restrict splits, const uint leafCount, __global const uint* restrict counts,
-    __global uint* restrict tops)
+// The same in any order, which refitTopsGroup does not mind: a work-item is a split. tops[0] must be zero before.
+__kernel void treeListTopsGroups(__global const uint* restrict splits, const uint leafCount, __global volatile uint* tops)
 {
-    __local uint scratch[DRAPE_GROVE_GROUP];
-    const uint window = get_group_id(0), item = get_local_id(0);
-    uint before = 0, place, found;
-    for (uint i = item; i < window; i += DRAPE_GROVE_GROUP) before += counts[i];
-    groupPrefix(scratch, before, &place);
-    ++place;
-    if (item == 0 && window + 1 == get_num_groups(0)) tops[0] = place - 1 + counts[window];
-    if (counts[window] == 0) return;
-    const uint end = min(leafCount - 1, (window + 1) * DRAPE_GROVE_LEAVES);
-    for (uint first = window * DRAPE_GROVE_LEAVES; first < end; first += DRAPE_GROVE_GROUP)
-    {
-        const uint leaf = first + item;
-        const uint isTop = leaf < end && splitTier(splits[leaf]) == 2u;
-        const uint own = groupPrefix(scratch, isTop, &found);
-        if (isTop) tops[place + own] = leaf;
-        place += found;
-    }
+    const uint split = get_global_id(0);
+    if (split + 1 < leafCount && splitTier(splits[split]) == 2u) tops[1 + atomic_inc(tops)] = split;
 }
 
 // The thesis's refit, a launch per height: a work-item is a leaf …

@@ -56,20 +56,19 @@ void TreeRefitStage::create(Device& device, const ProgramLoader& load)
 void TreeRefitStage::listTops(Device& device, DeviceTree& tree, WorkShape shape)
 {
     if (tree.m_leafCount <= DRAPE_GROVE_LEAVES) return;
+    if (runsGroups(device, shape))
+    {
+        tree.m_tops.fill(device, 0, 1);
+        m_listTopsGroups.launch(device, tree.m_leafCount, kGroup, tree.m_splits.handle(), tree.m_leafCount,
+                                tree.m_tops.handle());
+        return;
+    }
     const std::size_t windows = windowsOf(tree.m_leafCount, DRAPE_GROVE_LEAVES);
     m_topCounts.reserve(device, windows);
     m_countTops.launch(device, windows * kGroveGroup, kGroveGroup, tree.m_splits.handle(), tree.m_leafCount,
                        m_topCounts.handle());
-    if (runsGroups(device, shape))
-    {
-        m_listTopsGroups.launch(device, windows * kGroveGroup, kGroveGroup, tree.m_splits.handle(), tree.m_leafCount,
-                                m_topCounts.handle(), tree.m_tops.handle());
-    }
-    else
-    {
-        m_listTopsSerial.launch(device, windows, kGroup, tree.m_splits.handle(), tree.m_leafCount,
-                                m_topCounts.handle(), cl_uint(windows), tree.m_tops.handle());
-    }
+    m_listTopsSerial.launch(device, windows, kGroup, tree.m_splits.handle(), tree.m_leafCount, m_topCounts.handle(),
+                            cl_uint(windows), tree.m_tops.handle());
 }
 
 void TreeRefitStage::enqueue(Device& device, DeviceTree& tree, LeafBuffers leaves, WorkShape shape)
