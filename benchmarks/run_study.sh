@@ -23,7 +23,7 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 bin=$here/../build/release/bin
 commit=$(git -C "$here" describe --always --dirty 2>/dev/null || echo unknown)
 # Shares of the time: what a part took of it, on a GPU and on two cores.
-declare -A shares=([peers]=2 [construction]=6 [refit]=1 [quality]=2 [shape]=3 [degree]=5 [traversal]=5 [rebuild]=4
+declare -A shares=([peers]=2 [construction]=6 [refit]=1 [quality]=2 [shape]=3 [degree]=8 [traversal]=8 [rebuild]=5
   [triangle_tests]=1)
 all=peers,construction,refit,quality,shape,degree,traversal,rebuild,triangle_tests
 parts=$all minutes=30 arguments=() only='' out=''
