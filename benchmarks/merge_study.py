@@ -11,7 +11,7 @@ import json
 import os
 import sys
 
-PARTS = ("construction", "compaction", "levels", "refit", "refit_kernels", "refit_levels", "quality", "shape", "degree",
+PARTS = ("construction", "construction_kernels", "compaction", "levels", "refit", "refit_kernels", "refit_levels", "quality", "shape", "degree",
          "traversal", "rebuild", "triangle_tests")
 BACKENDS = ("embree", "fcl", "host", "opencl")
 INPUTS = ("triangles", "cloth_triangles")

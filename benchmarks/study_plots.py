@@ -16,13 +16,12 @@ def descent(rows, scene, folder, save):
         steps = sorted(select(mine, variant=variant), key=lambda row: row["step"])
         # The first step of a pass follows the last: no step of the descent.
         steps = [row for row in steps if row["step"] > 0 and "broad_ms" in row]
-        label = variant if variant != "host" else "host, 1 thread"
         overlaps = sorted((row["candidates"], row["broad_ms"]) for row in steps)
-        by_overlaps.plot(*zip(*overlaps), ".-", markersize=4, linewidth=0.8, label=label)
-        by_step.plot([row["step"] for row in steps], [row["broad_ms"] for row in steps], label=label)
+        by_overlaps.plot(*zip(*overlaps), ".-", markersize=4, linewidth=0.8, label=variant)
+        by_step.plot([row["step"] for row in steps], [row["broad_ms"] for row in steps], label=variant)
         pairs = sorted((row["candidates"], row["narrow_ms"]) for row in steps if row["candidates"] > 0)
-        if pairs and variant in ("host", "default"):
-            narrow.plot(*zip(*pairs), ".-", markersize=4, linewidth=0.8, label=label)
+        if pairs and variant in ("host, thesis: front", "default"):
+            narrow.plot(*zip(*pairs), ".-", markersize=4, linewidth=0.8, label=variant)
     by_overlaps.set(xlabel="overlaps found", ylabel="broad phase, ms", yscale="log",
                     title="traversal against overlaps (figure 4.6)")
     by_step.set(xlabel="step of the descent", ylabel="broad phase, ms", yscale="log",

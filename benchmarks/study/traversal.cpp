@@ -29,7 +29,7 @@ std::vector<Variant> variants(const StudyOptions& options)
     Settings host, device = options.settings();
     host.m_backend = Backend::Host;
     device.m_profileKernels = true;
-    add("host", host, Traversal::Auto);
+    add("host, eight wide", host, Traversal::WideLeaves);
     add("host, thesis: simple", host, Traversal::Single);
     add("host, thesis: front", host, Traversal::Front);
     add("host, as front, from the roots", host, Traversal::Groups);

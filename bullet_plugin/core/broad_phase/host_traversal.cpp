@@ -11,6 +11,9 @@ namespace
 {
 // As on the device, see front_traversal.cpp.
 constexpr std::uint32_t kRaiseInterval = 8;
+// A front of more pairs is not kept, so that a crowd of triangles does not take memory twice: the next step begins at the
+// roots.
+constexpr std::size_t kMostFront = 1 << 22;
 }  // namespace
 
 struct HostTraversal::Step
@@ -55,7 +58,7 @@ struct HostTraversal::Step
 };
 
 HostTraversal::HostTraversal(Traversal traversal)
-    : m_traversal(traversal == Traversal::Auto ? Traversal::WideLeaves : traversal)
+    : m_traversal(traversal == Traversal::Auto ? Traversal::Front : traversal)
 {
 }
 
@@ -162,8 +165,14 @@ void HostTraversal::openFrom(const Step& step, NodePair start, bool keep)
             continue;
         }
         if (overlap) step.addLeaves(pair);
-        if (keep) m_nextFront.push_back(pair);
+        if (keep) keepPair(pair);
     }
+}
+
+// One more than are kept stays as a sign of it.
+void HostTraversal::keepPair(NodePair pair)
+{
+    if (m_nextFront.size() <= kMostFront) m_nextFront.push_back(pair);
 }
 
 // As raisePair() in kernels/broad_phase_front.cl, up to the roots.
@@ -193,9 +202,10 @@ void HostTraversal::runFront(const Step& step)
             continue;
         }
         ++m_tests;
-        if (raise(step, pair)) m_nextFront.push_back(pair);
+        if (raise(step, pair)) keepPair(pair);
     }
     m_front.swap(m_nextFront);
+    if (m_front.size() > kMostFront) m_front.clear();
 }
 
 void HostTraversal::runLeaves(const Step& step)

@@ -39,7 +39,7 @@ public:
 
     // Volume tests of the last run.
     std::size_t volumeTests() const { return m_tests; }
-    // Pairs at which the next run starts with Front; none before the first.
+    // Pairs at which the next run starts with Front; none before the first, nor after one that left too many.
     std::size_t frontSize() const { return m_front.size(); }
 
 private:
@@ -51,6 +51,7 @@ private:
     void runLeaves(const Step& step);
     void runWide(const Step& step);
     void openFrom(const Step& step, NodePair pair, bool keep);
+    void keepPair(NodePair pair);
     bool raise(const Step& step, NodePair& pair);
 
     Traversal m_traversal;

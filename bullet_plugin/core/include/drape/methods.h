@@ -58,8 +58,8 @@ struct TreeMethods
 enum class Traversal
 {
     // What was fastest. On a device: pairs of features, over patches of obstacle triangles
-    // (core/broad_phase/patch_cull.h); where pairs of triangles are asked for, and on the host: WideGroups on a GPU,
-    // else WideLeaves. The others all find the pairs of triangles whose volumes overlap.
+    // (core/broad_phase/patch_cull.h), or, where pairs of triangles are asked for, WideGroups on a GPU and else
+    // WideLeaves. On the host: Front. The others all find the pairs of triangles whose volumes overlap.
     Auto,
     Pairs,       // a work-item per pair of subtrees walks both hierarchies, the larger node opens first
     Single,      // one work-group with a queue, both nodes open (the thesis's simple traversal)
