@@ -29,9 +29,9 @@ std::vector<Variant> variants(const StudyOptions& options)
     Settings host, device = options.settings();
     host.m_backend = Backend::Host;
     device.m_profileKernels = true;
+    add("host, thesis: front", host, Traversal::Front);
     add("host, eight wide", host, Traversal::WideLeaves);
     add("host, thesis: simple", host, Traversal::Single);
-    add("host, thesis: front", host, Traversal::Front);
     add("host, as front, from the roots", host, Traversal::Groups);
     if (options.m_backend == "host") return all;
     add("default", device, Traversal::Auto);
