@@ -101,6 +101,13 @@ __kernel void narrowPhaseFeature(__global const FeatureTest* restrict tests, con
     }
 }
 
+// Places of the work-items, each group's first one before any group's second: few tests, which take long, are then not in
+// each other's way.
+static uint spreadItem(void)
+{
+    return get_local_id(0) * get_num_groups(0) + get_group_id(0);
+}
+
 // A work-item takes every stride-th of the tests that narrowPhaseFeature left to the continuous test and writes their hits.
 __kernel void narrowPhaseSwept(__global const FeatureTest* restrict tests,
                                __global const float* restrict clothStart, __global const float* restrict clothEnd,
@@ -120,7 +127,7 @@ __kernel void narrowPhaseSwept(__global const FeatureTest* restrict tests,
         clothView(clothStart, clothEnd, clothTriangles, clothEdges, nodeCount, triangleCount, mode, 1);
     const ObstacleView obstacle = obstacleView(0, obstacleTriangles, vertexCones, edgeCones);
     const PackedFeatures packed = {faces, vertices, edges, faceIds, vertexIds, edgeIds};
-    for (uint i = get_global_id(0); i < counters->m_swept; i += get_global_size(0))
+    for (uint i = spreadItem(); i < counters->m_swept; i += get_global_size(0))
     {
         const uint place = swept[i];
         Contact contact;

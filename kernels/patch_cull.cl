@@ -20,7 +20,8 @@ static void visitPatch(Team* team, Walk* walk, const StepCloths* cloths, const P
     if (!pairWith(&pair, cloths, tree, walk->m_cloth, walk->m_motion, patch)) return;
     if (!walk->m_looks) look(&walk->m_looker, cloths, walk->m_cloth, walk->m_motion);
     walk->m_looks = 1;
-    if (teamMakeRoom(team, list)) cullPatch(team, features, pair, &walk->m_looker, list);
+    const CullReach reach = cullReach(&walk->m_looker.m_cull, pair.m_reach, features->m_sizes[patch], cloths->m_mode);
+    if (teamMakeRoom(team, list)) cullPatch(team, features, pair, &walk->m_looker, reach, DRAPE_NEAR_ALL, list);
 }
 
 static void walkTree(Team* team, Walk* walk, const StepCloths* cloths, const PatchTree* tree, const PatchFeatures* features,

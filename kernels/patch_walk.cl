@@ -4,12 +4,14 @@
 // a packet of triangles that lie near each other.
 #include "lib/patch_pairs.h"
 
-// Nodes of the wide tree that a group for one triangle looks at together, at most.
+// Nodes of the wide tree that a group looks at together, at most.
 #define DRAPE_WALK_NODES 4
 // Nodes are taken from the lowest level that is left, so that each level has the children of one turn on the stack.
 #define DRAPE_WALK_STACK (DRAPE_LEVELS * DRAPE_PATCH_WIDTH * DRAPE_WALK_NODES)
 // Patches found before they are made into pairs.
 #define DRAPE_WALK_FOUND (2 * DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH)
+// The root's children where they are this few are where a walk begins.
+#define DRAPE_WALK_BEGIN 4
 
 // What a group shares.
 typedef struct Walkers
@@ -19,6 +21,7 @@ typedef struct Walkers
     uint m_found[DRAPE_WALK_FOUND];
     uint m_foundCount;
     CullVolume m_volumes[DRAPE_PATCH_WIDTH];  // of a packet's triangles
+    CullVolume m_joined;                      // of all of them
 } Walkers;
 
 // A walk over the obstacles that rest, or over one that moves.
@@ -28,8 +31,7 @@ typedef struct Walk
     uint m_motion;
     uint m_packet;     // triangles: 1 or DRAPE_PATCH_WIDTH
     uint m_cloth;      // this lane's triangle
-    CullVolume m_own;  // its volume
-    int m_near;        // whether it may come near the obstacle
+    CullVolume m_own;  // its volume, empty where it cannot come near the obstacle
 } Walk;
 
 // Lists the pairs of this lane's triangle and the patches found from first up to last, DRAPE_PATCH_WIDTH at most, side by
@@ -43,7 +45,7 @@ static void pairLane(__local Walkers* walkers, const Walk* walk, const StepCloth
     {
         const uint patch = walkers->m_found[i];
         __global const float* node = tree->m_nodes + (patch / DRAPE_PATCH_WIDTH) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH;
-        if (walk->m_near && cullWideChild(&walk->m_own, node + patch % DRAPE_PATCH_WIDTH) &&
+        if (cullWideChild(&walk->m_own, node + patch % DRAPE_PATCH_WIDTH) &&
             pairWith(&pair, cloths, tree, walk->m_cloth, walk->m_motion, patch))
             touched |= 1u << (i - first);
     }
@@ -56,7 +58,7 @@ static void pairLane(__local Walkers* walkers, const Walk* walk, const StepCloth
 }
 
 // Makes the patches found into pairs, where there are `least` of them. In a packet the lanes, which had a patch each, now
-// have a triangle each.
+// have a triangle each, and each DRAPE_PATCH_WIDTH lanes a share of the patches.
 static void settleFound(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const PatchTree* tree,
                         const TestList* list, const uint least)
 {
@@ -70,14 +72,27 @@ static void settleFound(__local Walkers* walkers, const Walk* walk, const StepCl
         if (pairWith(&pair, cloths, tree, walk->m_cloth, walk->m_motion, walkers->m_found[i]))
             teamKeep(&walkers->m_team, list, pair);
     }
-    for (uint first = 0; first < count && walk->m_packet > 1; first += DRAPE_PATCH_WIDTH)
+    const uint turns = teamWidth() / DRAPE_PATCH_WIDTH, turn = teamLane() / DRAPE_PATCH_WIDTH;
+    for (uint first = 0; first < count && walk->m_packet > 1; first += teamWidth())
     {
-        pairLane(walkers, walk, cloths, tree, first, min(count, first + DRAPE_PATCH_WIDTH), list);
+        const uint part = min(count - first, (uint)teamWidth()), share = (part + turns - 1) / turns;
+        pairLane(walkers, walk, cloths, tree, first + min(part, turn * share), first + min(part, (turn + 1) * share), list);
         if (!teamMakeRoom(&walkers->m_team, list)) break;
     }
     teamSync();
     if (teamLane() == 0) walkers->m_foundCount = 0;
     teamSync();
+}
+
+// Puts the root on the stack, or its children where they are few. Returns how many.
+static uint beginWalk(__local uint* stack, const PatchTree* tree)
+{
+    const uint top = tree->m_levelCount;
+    const uint children = top > 1 ? tree->m_levels[top - 1] - tree->m_levels[top - 2] : 0;
+    const int skips = children > 0 && children <= DRAPE_WALK_BEGIN;
+    const uint nodes = skips ? children : 1, level = skips ? top - 1 : top;
+    for (uint i = 0; i < nodes; ++i) stack[i] = (level << DRAPE_LEVEL_SHIFT) + i;
+    return nodes;
 }
 
 // How many nodes are taken from the stack together: those on top that are of one level.
@@ -97,11 +112,7 @@ static void walkTree(__local Walkers* walkers, const Walk* walk, const StepCloth
     const uint most = teamWidth() / DRAPE_PATCH_WIDTH;
     const uint turn = teamLane() / DRAPE_PATCH_WIDTH, lane = teamLane() % DRAPE_PATCH_WIDTH;
     teamSync();
-    if (teamLane() == 0)
-    {
-        stack[0] = tree->m_levelCount << DRAPE_LEVEL_SHIFT;
-        team->m_depth = 1;
-    }
+    if (teamLane() == 0) team->m_depth = beginWalk(stack, tree);
     teamSync();
     while (team->m_depth > 0)
     {
@@ -128,94 +139,186 @@ static void walkTree(__local Walkers* walkers, const Walk* walk, const StepCloth
     settleFound(walkers, walk, cloths, tree, list, 1);
 }
 
-// The volume of the whole packet.
-static void joinVolumes(__local CullVolume* volumes, Walk* walk)
+// Shares a packet's volumes out, and that of all of them.
+static void shareVolumes(__local Walkers* walkers, Walk* walk)
 {
     walk->m_volume = walk->m_own;
     if (walk->m_packet == 1) return;
+    const uint lane = teamLane();
+    __local CullVolume* joined = &walkers->m_joined;
     teamSync();
-    volumes[teamLane()] = walk->m_own;
+    if (lane < DRAPE_PATCH_WIDTH) walkers->m_volumes[lane] = walk->m_own;
     teamSync();
-    for (uint lane = 0; lane < DRAPE_PATCH_WIDTH; ++lane)
+    walk->m_own = walkers->m_volumes[lane % DRAPE_PATCH_WIDTH];
+    // A lane joins them in one direction, one more their radii.
+    if (lane <= DRAPE_DOP_DIRECTIONS)
     {
-        for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+        const int ofRadii = lane == DRAPE_DOP_DIRECTIONS;
+        float least = INFINITY, most = -INFINITY;
+        for (uint i = 0; i < DRAPE_PATCH_WIDTH; ++i)
         {
-            walk->m_volume.m_volume.m_low[i] = drapeMin(walk->m_volume.m_volume.m_low[i], volumes[lane].m_volume.m_low[i]);
-            walk->m_volume.m_volume.m_high[i] = drapeMax(walk->m_volume.m_volume.m_high[i], volumes[lane].m_volume.m_high[i]);
+            __local const CullVolume* volume = walkers->m_volumes + i;
+            least = ofRadii ? drapeMin(least, -volume->m_least) : drapeMin(least, volume->m_volume.m_low[lane]);
+            most = ofRadii ? drapeMax(most, volume->m_radius) : drapeMax(most, volume->m_volume.m_high[lane]);
         }
-        walk->m_volume.m_radius = drapeMax(walk->m_volume.m_radius, volumes[lane].m_radius);
-        walk->m_volume.m_least = drapeMax(walk->m_volume.m_least, volumes[lane].m_least);
+        *(ofRadii ? &joined->m_least : joined->m_volume.m_low + lane) = ofRadii ? -least : least;
+        *(ofRadii ? &joined->m_radius : joined->m_volume.m_high + lane) = most;
     }
+    teamSync();
+    walk->m_volume = *joined;
 }
 
-// A group lists the pairs of `packet` cloth triangles, in leaf order. packet: 1 with up to DRAPE_WALK_NODES times
-// DRAPE_PATCH_WIDTH lanes, or DRAPE_PATCH_WIDTH with as many lanes.
+// A group lists the pairs of `packet` cloth triangles, in leaf order. packet: 1, with DRAPE_PATCH_WIDTH lanes, or as many as
+// those, with up to DRAPE_WALK_NODES times as many lanes.
 __kernel void patchWalk(DRAPE_WALK_ARGUMENTS, const uint packet)
 {
     __local Walkers walkers;
     const StepCloths cloths = DRAPE_STEP_CLOTHS;
     const PatchTree tree = DRAPE_PATCH_TREE;
     const TestList pairs = {list, capacity, limit, &counters->m_patchPairs};
-    const uint group = get_group_id(0);
-    const uint leaf = packet == 1 ? group : group * packet + teamLane();
+    const uint group = get_group_id(0), lane = teamLane() % DRAPE_PATCH_WIDTH;
+    const uint leaf = packet == 1 ? group : group * packet + lane;
     Walk walk;
     walk.m_packet = packet;
     walk.m_cloth = clothOrder[min(leaf, clothCount - 1)];
     __global const Triangle* triangle = clothTriangles + walk.m_cloth;
     const float clothRadius = leaf < clothCount ? radius[triangle->m_mesh] : -1.0f;
-    if (clothRadius >= 0.0f && (packet > 1 || teamLane() == 0)) countInvalid(&cloths, walk.m_cloth, counters);
+    const int first = packet > 1 ? teamLane() < DRAPE_PATCH_WIDTH : teamLane() == 0;  // of the lanes with this triangle
+    if (clothRadius >= 0.0f && first) countInvalid(&cloths, walk.m_cloth, counters);
     if (teamLane() == 0) walkers.m_foundCount = 0;
     teamStart(&walkers.m_team);
     for (walk.m_motion = 0; walk.m_motion <= motionCount && walkers.m_team.m_place <= limit; ++walk.m_motion)
     {
         __global const ObstacleMotion* motion = motionOf(&cloths, walk.m_motion);
-        walk.m_near = clothRadius >= 0.0f && !(motion && thicknessWith(&cloths, walk.m_cloth, motion->m_mesh) < 0.0f) &&
-                      cullVolume(&walk.m_own, motion, triangle, start, end, clothRadius, mode);
-        if (!walk.m_near) emptyVolume(&walk.m_own);
-        joinVolumes(walkers.m_volumes, &walk);
+        const int near = (first || packet == 1) && clothRadius >= 0.0f &&
+                         !(motion && thicknessWith(&cloths, walk.m_cloth, motion->m_mesh) < 0.0f) &&
+                         cullVolume(&walk.m_own, motion, triangle, start, end, clothRadius, mode);
+        if (!near) emptyVolume(&walk.m_own);
+        shareVolumes(&walkers, &walk);
         walkTree(&walkers, &walk, &cloths, &tree, &pairs);
     }
     teamFlush(&walkers.m_team, &pairs);
 }
 
-// Every lane makes the looker, which takes no longer than one does.
-static void lookTogether(__local Looker* looker, const StepCloths* cloths, const FeatureTest pair)
+// Pairs that a group of patchCullPairs takes at a time, each with a lane to prepare it.
+#define DRAPE_CULL_PAIRS 32
+
+// A pair at hand. m_looker: the place of its cloth triangle's; m_near: the blocks of its patch to look at, see cullPatch().
+typedef struct CullPair
 {
-    Looker own;
-    look(&own, cloths, pair.m_cloth, pair.m_motion);
+    FeatureTest m_pair;
+    CullReach m_reach;
+    uint m_looker;
+    uint m_near;
+} CullPair;
+
+typedef struct Culler
+{
+    Team m_team;
+    Looker m_lookers[DRAPE_CULL_PAIRS];  // of each pair that has another cloth triangle than the pair before
+    CullPair m_pairs[DRAPE_CULL_PAIRS];
+} Culler;
+
+// Whether a cloth triangle is so large against a patch, of that size, that most of the patch's features are near it.
+static int reachesAll(__local const CullTriangle* cull, const CullReach reach, const float size)
+{
+    return cull->m_radius + reach.m_near > 0.5f * size;
+}
+
+// Takes the pairs from first up to last to hand, a lane each.
+static void takePairs(__local Culler* culler, const StepCloths* cloths, const PatchFeatures* features,
+                      __global const FeatureTest* pairs, const uint first, const uint last)
+{
+    const uint lane = teamLane();
+    const int takes = first + lane < last;
+    FeatureTest pair;
+    int leads = 0;
+    if (takes)
+    {
+        pair = pairs[first + lane];
+        leads = lane == 0 || pairs[first + lane - 1].m_cloth != pair.m_cloth ||
+                pairs[first + lane - 1].m_motion != pair.m_motion;
+        culler->m_pairs[lane].m_looker = leads ? lane : DRAPE_CULL_PAIRS;
+    }
+    if (leads)
+    {
+        Looker own;
+        look(&own, cloths, pair.m_cloth, pair.m_motion);
+        culler->m_lookers[lane] = own;
+    }
     teamSync();
-    if (teamLane() == 0) *looker = own;
+    uint looker = lane;
+    while (takes && culler->m_pairs[looker].m_looker == DRAPE_CULL_PAIRS) --looker;
+    teamSync();
+    if (takes)
+    {
+        CullPair taken;
+        taken.m_pair = pair;
+        taken.m_reach =
+            cullReach(&culler->m_lookers[looker].m_cull, pair.m_reach, features->m_sizes[pair.m_lane], cloths->m_mode);
+        taken.m_looker = looker;
+        taken.m_near = reachesAll(&culler->m_lookers[looker].m_cull, taken.m_reach, features->m_sizes[pair.m_lane])
+                           ? DRAPE_NEAR_ALL
+                           : 0;
+        culler->m_pairs[lane] = taken;
+    }
     teamSync();
 }
 
-// Lists the feature tests of the pairs that patchWalk listed, as many as fitted there. Each group takes a stretch of them:
-// most pairs next to each other are of one cloth triangle.
+// Marks the blocks of features that the face of this lane owns, where the pair's cloth triangle may be near.
+static void markBlocks(__local Culler* culler, const PatchFeatures* features, __global const uint* faceFeatures,
+                       const uint place)
+{
+    __local CullPair* pair = culler->m_pairs + place;
+    if (pair->m_near == DRAPE_NEAR_ALL) return;
+    const uint patch = pair->m_pair.m_lane;
+    const uint face = faceFeatures[patch * DRAPE_PATCH_WIDTH + teamLane() % DRAPE_PATCH_WIDTH];
+    if (!cullFaces(&culler->m_lookers[pair->m_looker].m_cull, pair->m_reach,
+                   features->m_faces + patch * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH))
+        return;
+    uint near = DRAPE_NEAR_FACES;
+    const uint vertices = popcount(DRAPE_FEATURES_OWNED(face) & 7u), edges = popcount(DRAPE_FEATURES_OWNED(face) >> 3);
+    const uint vertex = DRAPE_FEATURES_VERTEX(face), edge = DRAPE_FEATURES_EDGE(face);
+    if (vertices > 0)
+        near |= DRAPE_NEAR_VERTICES(vertex / DRAPE_PATCH_WIDTH) | DRAPE_NEAR_VERTICES((vertex + vertices - 1) / DRAPE_PATCH_WIDTH);
+    if (edges > 0) near |= DRAPE_NEAR_EDGES(edge / DRAPE_PATCH_WIDTH) | DRAPE_NEAR_EDGES((edge + edges - 1) / DRAPE_PATCH_WIDTH);
+    if ((pair->m_near & near) != near) atomic_or(&pair->m_near, near);
+}
+
+// Lists the feature tests of the pairs that patchWalk listed, as many as fitted there: most pairs next to each other are of
+// one cloth triangle. Groups have a multiple of DRAPE_PATCH_WIDTH lanes, of which each such number tests a pair.
 __kernel void patchCullPairs(__global const FeatureTest* restrict pairs, const uint pairCapacity,
                              __global const Triangle* restrict clothTriangles, __global const float* restrict start,
                              __global const float* restrict end, const uint mode,
                              __global const ObstacleMotion* restrict motions, __global const Patch* restrict patches,
-                             __global const float* restrict patchSizes, __global const float* restrict faces,
-                             __global const float* restrict vertices, __global const float* restrict edges,
-                             __global FeatureTest* restrict list, const uint capacity, const uint limit,
-                             __global StepCounters* restrict counters)
+                             __global const float* restrict patchSizes, __global const uint* restrict faceFeatures,
+                             __global const float* restrict faces, __global const float* restrict vertices,
+                             __global const float* restrict edges, __global FeatureTest* restrict list,
+                             const uint capacity, const uint limit, __global StepCounters* restrict counters)
 {
     const uint count = min(counters->m_patchPairs, pairCapacity);
-    const uint groups = get_num_groups(0), group = get_group_id(0);
-    const uint share = (count + groups - 1) / groups;
-    const uint first = min(group * share, count), last = min(first + share, count);
+    const uint groups = get_num_groups(0);
+    const uint rounds = max((count + groups * DRAPE_CULL_PAIRS - 1) / (groups * DRAPE_CULL_PAIRS), 1u);
+    const uint turn = teamLane() / DRAPE_PATCH_WIDTH, turns = teamWidth() / DRAPE_PATCH_WIDTH;
+    const uint share = max((count + groups * rounds - 1) / (groups * rounds), turns);
     const StepCloths cloths = {clothTriangles, start, end, 0, 0, 0.0f, mode, motions, 0};
     const PatchFeatures features = {patches, patchSizes, faces, vertices, edges};
     const TestList tests = {list, capacity, limit, &counters->m_candidates};
-    __local Team team;
-    __local Looker looker;
-    teamStart(&team);
-    for (uint i = first; i < last; ++i)
+    __local Culler culler;
+    teamStart(&culler.m_team);
+    for (uint first = get_group_id(0) * share; first < count; first += groups * share)
     {
-        const FeatureTest pair = pairs[i];
-        const int known = i > first && pairs[i - 1].m_cloth == pair.m_cloth && pairs[i - 1].m_motion == pair.m_motion;
-        if (!known) lookTogether(&looker, &cloths, pair);
-        cullPatch(&team, &features, pair, &looker, &tests);
-        if (!teamMakeRoom(&team, &tests)) break;
+        const uint last = min(first + share, count);
+        takePairs(&culler, &cloths, &features, pairs, first, last);
+        for (uint i = turn; i < last - first; i += turns) markBlocks(&culler, &features, faceFeatures, i);
+        teamSync();
+        for (uint i = turn; i < last - first; i += turns)
+        {
+            __local const CullPair* pair = culler.m_pairs + i;
+            if (pair->m_near != 0)
+                cullPatch(&culler.m_team, &features, pair->m_pair, culler.m_lookers + pair->m_looker, pair->m_reach,
+                          pair->m_near, &tests);
+        }
+        if (!teamFlush(&culler.m_team, &tests)) break;
     }
-    teamFlush(&team, &tests);
 }

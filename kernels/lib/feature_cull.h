@@ -42,6 +42,8 @@ typedef struct CullTriangle
     Vec3 m_along[3];            // unit, along edge i at the end
     float m_edgeLength[3];      // m, at the end
     float m_height;             // m, the least altitude at the end
+    Vec3 m_middle;              // m, of the corners at the end
+    float m_radius;             // m, about m_middle
     float m_diameter;           // m, of all six positions
     float m_motion;             // m, of the fastest corner
     int m_thinStart, m_thinEnd;
@@ -106,6 +108,10 @@ DRAPE_FUNCTION DRAPE_UINT prepareCull(CullTriangle* cull, const DRAPE_GLOBAL flo
         cull->m_end[i] = vec3Sub(cull->m_end[i], cull->m_origin);
         cull->m_motion = drapeMax(cull->m_motion, vec3Length(vec3Sub(cull->m_end[i], cull->m_start[i])));
     }
+    cull->m_middle = vec3Scale(vec3Add(cull->m_end[1], cull->m_end[2]), 1.0f / 3.0f);
+    cull->m_radius =
+        drapeMax(vec3Length(cull->m_middle), drapeMax(vec3Length(vec3Sub(cull->m_end[1], cull->m_middle)),
+                                                      vec3Length(vec3Sub(cull->m_end[2], cull->m_middle))));
     cull->m_motion *= 1.0f + DRAPE_CULL_SLACK;
     cull->m_diameter += 2.0f * cull->m_motion;
     return valid;
@@ -121,6 +127,33 @@ DRAPE_FUNCTION CullReach cullReach(const DRAPE_TEAM CullTriangle* cull, float re
     result.m_before = mode == DRAPE_CONTINUOUS ? DRAPE_CULL_ANYWHERE : result.m_met;
     result.m_farthest = drapeMax(result.m_near, result.m_met);
     return result;
+}
+
+// Faces of which the cloth triangle may be near a corner, an edge or the inside: as near as contacts are in any
+// direction, and beside the face only as far as the cones of those admit the direction (see cone_reach.h). Faces with
+// corners that are NaN are kept, since a corner may be good.
+DRAPE_FUNCTION LaneMask cullFaces(const DRAPE_TEAM CullTriangle* cull, CullReach reach, const DRAPE_GLOBAL float* block)
+{
+    const LanesVec3 a = lanesLoadVec3(block, 0), b = lanesLoadVec3(block, 3), c = lanesLoadVec3(block, 6);
+    const LanesVec3 ab = lanesSub(b, a), bc = lanesSub(c, b), ca = lanesSub(a, c);
+    const LanesVec3 area = lanesCross(ca, ab);
+    const Lanes square = lanesDot(area, area);
+    const Lanes longest = lanesMax(lanesMax(lanesDot(ab, ab), lanesDot(bc, bc)), lanesDot(ca, ca));
+    // From a corner to the middle it is 2/3 of a median, which the longest edge bounds.
+    const Lanes around = 0.66667f * lanesSqrt(longest) + (cull->m_radius + 5.0f * reach.m_slack);
+    const LanesVec3 corner = lanesSubUniform(lanesSubUniform(a, cull->m_origin), cull->m_middle);
+    const LanesVec3 offset =
+        lanesVec3(corner.x + (ab.x - ca.x) * (1.0f / 3.0f), corner.y + (ab.y - ca.y) * (1.0f / 3.0f),
+                  corner.z + (ab.z - ca.z) * (1.0f / 3.0f));
+    const Lanes away = lanesDot(offset, offset);
+    const Lanes far = around + reach.m_farthest, met = around + reach.m_met;
+    // A direction whose tangent with the normal is the spread goes no farther beside than that share of its length.
+    const Lanes wide = around + reach.m_near * lanesMin(lanesLoad(block, 9), lanesSplat(1.0f));
+    const LanesVec3 side = lanesCross(offset, area);
+    const LaneMask beside = (lanesDot(side, side) > wide * wide * square) & (away > met * met) &
+                            (square > DRAPE_CULL_THIN * DRAPE_CULL_THIN * longest * longest);
+    const int sure = !(cull->m_thinEnd || cull->m_height < DRAPE_CULL_SMALL * reach.m_near);
+    return lanesNot((away > far * far) | (beside & lanesMaskSplat(sure)));
 }
 
 // Vertices whose nearest point of the cloth triangle at the step's end is a corner, surely.

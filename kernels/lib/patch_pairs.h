@@ -103,7 +103,6 @@ typedef struct Looker
 {
     CullTriangle m_cull;
     uint m_valid, m_owned;  // its features, bits as in Triangle::m_owned
-    uint m_mode;
 } Looker;
 
 static void look(Looker* looker, const StepCloths* cloths, const uint cloth, const uint motion)
@@ -111,7 +110,6 @@ static void look(Looker* looker, const StepCloths* cloths, const uint cloth, con
     looker->m_valid = prepareCull(&looker->m_cull, cloths->m_start, cloths->m_end, cloths->m_triangles + cloth,
                                   cloths->m_mode, motionOf(cloths, motion));
     looker->m_owned = cloths->m_triangles[cloth].m_owned;
-    looker->m_mode = cloths->m_mode;
 }
 
 // The obstacles' features in blocks.
@@ -135,16 +133,21 @@ static void keepLanes(DRAPE_TEAM Team* team, const LaneMask mask, FeatureTest te
     }
 }
 
-// Lists the feature tests of a pair of cloth triangle and patch.
+// Blocks of a patch that are to be looked at: its faces, its first vertices and so on.
+#define DRAPE_NEAR_FACES 1u
+#define DRAPE_NEAR_VERTICES(block) (2u << (block))
+#define DRAPE_NEAR_EDGES(block) (16u << (block))
+#define DRAPE_NEAR_ALL 0x7fu
+
+// Lists the feature tests of a pair of cloth triangle and patch, of the blocks of the patch that are near.
 static void cullPatch(DRAPE_TEAM Team* team, const PatchFeatures* features, const FeatureTest pair,
-                      const DRAPE_TEAM Looker* looker, const TestList* list)
+                      const DRAPE_TEAM Looker* looker, const CullReach reach, const uint near, const TestList* list)
 {
     const uint index = pair.m_lane;
     __global const Patch* patch = features->m_patches + index;
     const DRAPE_TEAM CullTriangle* cull = &looker->m_cull;
-    const CullReach reach = cullReach(cull, pair.m_reach, features->m_sizes[index], looker->m_mode);
     const uint owned = looker->m_owned & looker->m_valid;
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < 3 && (near & DRAPE_NEAR_FACES); ++i)
     {
         if (!(owned & DRAPE_OWNS_VERTEX(i))) continue;
         const LaneMask mask =
@@ -154,6 +157,7 @@ static void cullPatch(DRAPE_TEAM Team* team, const PatchFeatures* features, cons
     for (uint block = patch->m_vertexBlock;
          looker->m_valid == DRAPE_ALL_FEATURES && block < patch->m_vertexBlock + patch->m_vertexBlocks; ++block)
     {
+        if (!(near & DRAPE_NEAR_VERTICES(block - patch->m_vertexBlock))) continue;
         const LaneMask mask =
             cullFaceVertex(cull, reach, features->m_vertices + block * DRAPE_VERTEX_FLOATS * DRAPE_PATCH_WIDTH);
         keepLanes(team, mask, pair, DRAPE_TEST_FACE, block * DRAPE_PATCH_WIDTH, list);
@@ -161,6 +165,7 @@ static void cullPatch(DRAPE_TEAM Team* team, const PatchFeatures* features, cons
     if (!(owned & (DRAPE_OWNS_EDGE(0) | DRAPE_OWNS_EDGE(1) | DRAPE_OWNS_EDGE(2)))) return;
     for (uint block = patch->m_edgeBlock; block < patch->m_edgeBlock + patch->m_edgeBlocks; ++block)
     {
+        if (!(near & DRAPE_NEAR_EDGES(block - patch->m_edgeBlock))) continue;
         const CullEdges edges = loadCullEdges(cull, features->m_edges + block * DRAPE_EDGE_FLOATS * DRAPE_PATCH_WIDTH);
         for (int i = 0; i < 3; ++i)
         {

@@ -36,9 +36,15 @@ typedef struct Patch
 #define DRAPE_PLACE_SHIFT 30
 #define DRAPE_NO_FEATURE 0xffffffffu
 
+// What a face's triangle owns, in one word: its bits as in Triangle::m_owned, above them the lanes of its first vertex
+// and of its first edge, counted from the patch's first of each. Its further ones follow those.
+#define DRAPE_FEATURES_OWNED(features) ((features)&0x3fu)
+#define DRAPE_FEATURES_VERTEX(features) (((features) >> 8) & 0xffu)
+#define DRAPE_FEATURES_EDGE(features) (((features) >> 16) & 0xffu)
+
 // A feature test that the cull could not drop: a cloth triangle with the test above it, and a lane of the faces (tests
-// 0 to 2: corner of the cloth triangle), vertices (3) or edges (4 to 6: edge of the cloth triangle). Also a pair of a cloth
-// triangle and a patch, whose index is then in the place of the lane.
+// 0 to 2: corner of the cloth triangle), vertices (3) or edges (4 to 6: edge of the cloth triangle). Also a pair of a
+// cloth triangle and a patch, whose index is then in the place of the lane.
 typedef struct FeatureTest
 {
     DRAPE_UINT m_cloth;

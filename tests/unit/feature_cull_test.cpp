@@ -61,6 +61,16 @@ public:
         return pairContact(test, &m_cloth, &m_obstacle, m_pair, kReach, &contact) == DRAPE_IS_CONTACT;
     }
 
+    // Whether the cull of faces lets any test of the pair be.
+    bool isNear() const
+    {
+        Lane face = {};
+        for (int i = 0; i < 3; ++i)
+            face.put(3 * i, corner(i));
+        face.m_values[9] = m_spreads[m_pair.m_obstacle];
+        return cullFaces(&m_cull, m_reach, face.m_values);
+    }
+
     bool isKept(int test) const
     {
         Lane lane = {};
@@ -101,33 +111,56 @@ private:
     CullReach m_reach = {};
 };
 
-// Of cloth triangle i and obstacle triangle i. kept and contacts count on.
-void expectContactsKept(const StepCase& step, std::uint32_t mode, std::size_t& kept, std::size_t& contacts)
+struct Counts
 {
-    Side cloth = makeSide({step.m_cloth});
-    const Side obstacle = makeSide({step.m_obstacle});
-    cloth.m_end = step.m_end;
-    const std::vector<float> spreads =
-        faceSpreads(obstacle.m_pool.triangles(), obstacle.m_start.data(), obstacle.m_vertexCones, obstacle.m_edgeCones);
-    PairOfTriangles pair(cloth, obstacle, spreads, mode);
-    for (std::uint32_t i = 0; i < cloth.m_pool.triangles().size(); ++i)
+    std::size_t m_pairs = 0, m_near = 0;     // of triangles
+    std::size_t m_kept = 0, m_contacts = 0;  // of features
+};
+
+// A step's meshes as PairOfTriangles reads them.
+struct CullCase
+{
+    explicit CullCase(const StepCase& step) : m_cloth(makeSide({step.m_cloth})), m_obstacle(makeSide({step.m_obstacle}))
     {
-        pair.choose({i, i});
-        for (int test = 0; test < DRAPE_FEATURE_TESTS; ++test)
-        {
-            const bool isKept = pair.isKept(test);
-            kept += isKept;
-            if (!pair.isContact(test)) continue;
-            ++contacts;
-            EXPECT_TRUE(isKept) << step.trace() << ", mode " << mode << ", triangles " << i << ", test " << test;
-        }
+        m_cloth.m_end = step.m_end;
+        m_spreads = faceSpreads(m_obstacle.m_pool.triangles(), m_obstacle.m_start.data(), m_obstacle.m_vertexCones,
+                                m_obstacle.m_edgeCones);
     }
+    Side m_cloth, m_obstacle;
+    std::vector<float> m_spreads;
+};
+
+void expectContactsKept(PairOfTriangles& pair, Candidate triangles, Counts& counts)
+{
+    pair.choose(triangles);
+    const bool isNear = pair.isNear();
+    ++counts.m_pairs;
+    counts.m_near += isNear;
+    for (int test = 0; test < DRAPE_FEATURE_TESTS; ++test)
+    {
+        const bool isKept = isNear && pair.isKept(test);
+        counts.m_kept += isKept;
+        if (!pair.isContact(test)) continue;
+        ++counts.m_contacts;
+        EXPECT_TRUE(isKept) << "triangles " << triangles.m_cloth << " and " << triangles.m_obstacle << ", test " << test
+                            << ", face near: " << isNear;
+    }
+}
+
+// Of cloth triangle i and obstacle triangle i.
+void expectContactsKept(const StepCase& step, std::uint32_t mode, Counts& counts)
+{
+    SCOPED_TRACE(step.trace() + ", mode " + std::to_string(mode));
+    const CullCase meshes(step);
+    PairOfTriangles pair(meshes.m_cloth, meshes.m_obstacle, meshes.m_spreads, mode);
+    for (std::uint32_t i = 0; i < meshes.m_cloth.m_pool.triangles().size(); ++i)
+        expectContactsKept(pair, {i, i}, counts);
 }
 }  // namespace
 
 TEST(FeatureCull, KeepsWhatGivesContactsWhateverTheShape)
 {
-    std::size_t kept = 0, contacts = 0, tested = 0;
+    Counts counts;
     std::uint32_t seed = 570;
     for (const Thin thin : {Thin::Cloth, Thin::Obstacle, Thin::Both})
     {
@@ -138,13 +171,37 @@ TEST(FeatureCull, KeepsWhatGivesContactsWhateverTheShape)
                 for (const bool moving : {false, true})
                 {
                     const StepCase step = needleCase(thin, 400, size, moving, ++seed);
-                    expectContactsKept(step, mode, kept, contacts);
-                    tested += 400 * DRAPE_FEATURE_TESTS;
+                    expectContactsKept(step, mode, counts);
                 }
             }
         }
     }
-    EXPECT_GT(contacts, tested / 10);
-    EXPECT_LT(kept, tested * 9 / 10);
+    const std::size_t tested = counts.m_pairs * DRAPE_FEATURE_TESTS;
+    EXPECT_GT(counts.m_contacts, tested / 10);
+    EXPECT_LT(counts.m_kept, tested * 9 / 10);
+}
+
+// Meshes, whose cones are narrow: every cloth triangle with every obstacle triangle.
+TEST(FeatureCull, KeepsWhatGivesContactsOfMeshes)
+{
+    std::uint32_t seed = 580;
+    for (const char* shape : {"terrain", "sphere"})
+    {
+        for (const std::uint32_t mode : {DRAPE_DISCRETE, DRAPE_CONTINUOUS, DRAPE_AUTOMATIC})
+        {
+            const StepCase step = fallingCase(shape, 13, kReach, ++seed);
+            SCOPED_TRACE(step.trace() + ", mode " + std::to_string(mode));
+            const CullCase meshes(step);
+            PairOfTriangles pair(meshes.m_cloth, meshes.m_obstacle, meshes.m_spreads, mode);
+            Counts counts;
+            for (std::uint32_t i = 0; i < meshes.m_cloth.m_pool.triangles().size(); ++i)
+            {
+                for (std::uint32_t j = 0; j < meshes.m_obstacle.m_pool.triangles().size(); ++j)
+                    expectContactsKept(pair, {i, j}, counts);
+            }
+            EXPECT_GT(counts.m_contacts, 100u);
+            EXPECT_LT(counts.m_near, counts.m_pairs / 10);
+        }
+    }
 }
 }  // namespace drape::test

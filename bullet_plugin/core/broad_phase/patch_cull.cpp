@@ -11,11 +11,12 @@ constexpr std::uint32_t kWidthCpu = 16;  // a vector of 512 bits
 constexpr std::size_t kGroup = 64;
 // Cloth triangles per group where a work-item is a team: small groups even out unequal triangles.
 constexpr std::size_t kTeamsPerGroup = 8;
-// On a GPU: nodes that a walk for one triangle looks at together, which shortens it, and the number of triangles from
-// which on walks are for packets of them.
-constexpr std::size_t kWalkNodes = 4;
+// On a GPU, the number of triangles from which on walks are for packets of them.
 constexpr std::size_t kManyTriangles = 1 << 15;
-// Groups that cull pairs: as many as a compute unit holds.
+// Then a group looks at several nodes at a time, and the groups that cull at several pairs.
+constexpr std::size_t kWalkTurns = 4;
+constexpr std::size_t kCullTurns = 4;
+// Groups that cull pairs, some times as many as a compute unit holds, so that uneven ones even out.
 constexpr std::size_t kPairGroupsPerUnit = 32;
 constexpr std::size_t kFirstPairs = 1 << 16;
 }  // namespace
@@ -50,6 +51,7 @@ void PatchCullStage::setTopology(Device& device, const MeshPool& obstacles)
     m_layout = makePatches(obstacles, std::uint32_t(lanes));
     m_patches.assign(device, m_layout.m_patches);
     m_faceOwners.assign(device, m_layout.m_faceOwners);
+    if (device.isGpu()) m_faceFeatures.assign(device, m_layout.m_faceFeatures);
     m_vertexOwners.assign(device, m_layout.m_vertexOwners);
     m_edgeOwners.assign(device, m_layout.m_edgeOwners);
     m_levels.assign(device, m_layout.m_levels);
@@ -127,7 +129,7 @@ void PatchCullStage::enqueueWalk(Device& device, Cloths cloths, Buffer<StepCount
     const bool many = cloths.m_count >= kManyTriangles;
     const std::size_t packet = many ? width(device) : 1;
     const std::size_t groups = (cloths.m_count + packet - 1) / packet;
-    const std::size_t group = width(device) * (many ? 1 : kWalkNodes);
+    const std::size_t group = width(device) * (many ? kWalkTurns : 1);
     m_walk.launch(device, groups * group, group, cloths.m_order.handle(), cloths.m_triangles.handle(),
                   cl_uint(cloths.m_count), cloths.m_start.handle(), cloths.m_end.handle(), cloths.m_radius.handle(),
                   cloths.m_thickness.handle(), cl_uint(cloths.m_obstacleMeshes), cloths.m_reachScale,
@@ -140,11 +142,12 @@ void PatchCullStage::enqueueWalk(Device& device, Cloths cloths, Buffer<StepCount
 void PatchCullStage::enqueuePairs(Device& device, Cloths cloths, Buffer<StepCounters>& counters)
 {
     const std::size_t groups = device.computeUnits() * kPairGroupsPerUnit;
-    m_cull.launch(device, groups * width(device), width(device), m_pairs.handle(), cl_uint(m_pairs.capacity()),
+    const std::size_t group = kCullTurns * width(device);
+    m_cull.launch(device, groups * group, group, m_pairs.handle(), cl_uint(m_pairs.capacity()),
                   cloths.m_triangles.handle(), cloths.m_start.handle(), cloths.m_end.handle(), cl_uint(cloths.m_mode),
-                  cloths.m_motions.handle(), m_patches.handle(), m_sizes.handle(), m_faces.handle(),
-                  m_vertices.handle(), m_edges.handle(), m_tests.handle(), cl_uint(m_tests.capacity()),
-                  cl_uint(cloths.m_limit), counters.handle());
+                  cloths.m_motions.handle(), m_patches.handle(), m_sizes.handle(), m_faceFeatures.handle(),
+                  m_faces.handle(), m_vertices.handle(), m_edges.handle(), m_tests.handle(),
+                  cl_uint(m_tests.capacity()), cl_uint(cloths.m_limit), counters.handle());
 }
 
 void PatchCullStage::enqueue(Device& device, Cloths cloths, Buffer<StepCounters>& counters)

@@ -96,6 +96,7 @@ private:
     Kernel m_walk, m_cull, m_packFaces, m_packVertices, m_packEdges, m_volumes, m_widen;
     Patches m_layout;
     Buffer<Patch> m_patches{"obstacle patches"};
+    Buffer<cl_uint> m_faceFeatures{"obstacle patches"};  // of a GPU
     Buffer<cl_uint> m_faceOwners{"obstacle patches"}, m_vertexOwners{"obstacle patches"};
     Buffer<cl_uint> m_edgeOwners{"obstacle patches"}, m_vertexIds{"obstacle patches"}, m_edgeIds{"obstacle patches"};
     Buffer<cl_uint> m_levels{"obstacle wide nodes"};

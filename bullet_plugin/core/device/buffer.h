@@ -29,6 +29,7 @@ public:
         const std::size_t wanted = count == 0 ? 1 : count;
         cl_int code = CL_SUCCESS;
         m_buffer = cl::Buffer(device.context(), CL_MEM_READ_WRITE, wanted * sizeof(T), nullptr, &code);
+        device.countBuffer();
         device.check(code, "clCreateBuffer", std::to_string(wanted * sizeof(T)) + " bytes");
         m_capacity = device.failed() ? 0 : wanted;
         m_entry = device.memory().enter(m_name, m_capacity * sizeof(T));

@@ -46,6 +46,10 @@ public:
     // Waits for all work enqueued so far.
     void wait();
 
+    // Buffers made so far: while it is the same, a handle stands for the same buffer.
+    std::size_t bufferCount() const { return m_bufferCount; }
+    void countBuffer() { ++m_bufferCount; }
+
     std::size_t maxAllocationBytes() const { return m_maxAllocationBytes; }
     std::size_t computeUnits() const { return m_computeUnits; }
 
@@ -57,6 +61,7 @@ private:
     cl::Context m_context;
     cl::CommandQueue m_queue;
     std::size_t m_maxAllocationBytes = 0;
+    std::size_t m_bufferCount = 0;
     std::size_t m_computeUnits = 1;
     std::unique_ptr<Profiler> m_profiler;
     MemoryLedger m_memory;

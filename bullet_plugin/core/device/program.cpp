@@ -177,10 +177,27 @@ cl::Program buildProgram(Device& device, const std::string& name, const std::str
 void Kernel::create(Device& device, const cl::Program& program, const char* name)
 {
     m_name = name;
+    m_arguments.clear();
     if (device.failed()) return;
     cl_int code = CL_SUCCESS;
     m_kernel = cl::Kernel(program, name, &code);
     device.check(code, "clCreateKernel", name);
+}
+
+bool Kernel::isSet(cl_uint index, Identity value)
+{
+    if (index >= m_arguments.size()) m_arguments.resize(index + 1);
+    const std::pair<bool, Identity> argument(true, value);
+    if (m_arguments[index] == argument) return true;
+    m_arguments[index] = argument;
+    return false;
+}
+
+void Kernel::forgetOldBuffers(const Device& device)
+{
+    if (m_bufferCount == device.bufferCount()) return;
+    m_bufferCount = device.bufferCount();
+    m_arguments.clear();
 }
 
 void Kernel::enqueue(Device& device, std::size_t globalSize, std::size_t localSize)

@@ -1,8 +1,13 @@
 // Programs of the embedded kernels: source with includes resolved, built for a device or taken from the cache on disk.
 #pragma once
 
+#include <cstdint>
+#include <cstring>
 #include <functional>
 #include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "device.h"
 
@@ -46,19 +51,41 @@ public:
     void launch(Device& device, std::size_t globalSize, std::size_t localSize, Arguments&&... arguments)
     {
         if (device.failed() || globalSize == 0) return;
+        forgetOldBuffers(device);
         cl_uint index = 0;
         (set(device, index++, arguments), ...);
         enqueue(device, globalSize, localSize);
     }
 
 private:
+    // Sets an argument unless it has the value already: a launch has a dozen, of which few change from step to step.
     template <typename T>
     void set(Device& device, cl_uint index, const T& value)
     {
+        if (isSet(index, identity(value))) return;
         const cl_int code = m_kernel.setArg(index, value);
         if (code != CL_SUCCESS) device.check(code, "clSetKernelArg " + std::to_string(index), m_name);
     }
+    // What tells an argument's values apart, as far as they are set here.
+    using Identity = std::uint64_t;
+    static Identity identity(const cl::Buffer& value) { return reinterpret_cast<Identity>(value()); }
+    static Identity identity(const cl::LocalSpaceArg& value) { return value.size_; }
+    template <typename T>
+    static Identity identity(const T& value)
+    {
+        static_assert(std::is_trivially_copyable<T>::value && sizeof(T) <= sizeof(Identity));
+        Identity result = 0;
+        std::memcpy(&result, &value, sizeof(T));
+        return result;
+    }
+    // Whether the argument has the value; if not, it counts as having it from now on.
+    bool isSet(cl_uint index, Identity value);
+    // A new buffer may have the handle of one that is gone.
+    void forgetOldBuffers(const Device& device);
     void enqueue(Device& device, std::size_t globalSize, std::size_t localSize);
+
+    std::vector<std::pair<bool, Identity>> m_arguments;
+    std::size_t m_bufferCount = 0;
 
     cl::Kernel m_kernel;
     std::string m_name;

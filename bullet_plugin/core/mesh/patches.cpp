@@ -34,6 +34,9 @@ void appendPatch(Patches& patches, const MeshPool& pool, std::size_t first, std:
         const std::uint32_t index = pool.order()[leaf];
         const std::uint32_t owned = pool.triangles()[index].m_owned;
         patches.m_faceOwners.push_back(index);
+        const std::size_t vertex = patches.m_vertexOwners.size() - std::size_t(patch.m_vertexBlock) * width;
+        const std::size_t edge = patches.m_edgeOwners.size() - std::size_t(patch.m_edgeBlock) * width;
+        patches.m_faceFeatures.push_back(owned | std::uint32_t(vertex) << 8 | std::uint32_t(edge) << 16);
         for (std::uint32_t place = 0; place < 3; ++place)
         {
             const std::uint32_t feature = index | (place << DRAPE_PLACE_SHIFT);
@@ -42,6 +45,7 @@ void appendPatch(Patches& patches, const MeshPool& pool, std::size_t first, std:
         }
     }
     padBlock(patches.m_faceOwners, width);
+    patches.m_faceFeatures.resize(patches.m_faceOwners.size(), 0);
     padBlock(patches.m_vertexOwners, width);
     padBlock(patches.m_edgeOwners, width);
     patch.m_vertexBlocks = std::uint32_t(patches.m_vertexOwners.size()) / width - patch.m_vertexBlock;

@@ -17,6 +17,7 @@ struct Patches
 {
     std::vector<Patch> m_patches;
     std::vector<std::uint32_t> m_faceOwners;    // one block a patch
+    std::vector<std::uint32_t> m_faceFeatures;  // per lane of those, see DRAPE_FEATURES_OWNED
     std::vector<std::uint32_t> m_vertexOwners;  // blocks in the patches' order
     std::vector<std::uint32_t> m_edgeOwners;
     std::vector<std::uint32_t> m_levels;  // first wide node of each level, lowest first, then the number of nodes
