@@ -79,8 +79,8 @@ struct Methods
     TreeBuilder m_treeBuilder = TreeBuilder::Balanced;
 
     // The cloths' hierarchy is built anew, beside the steps, once its nodes' areas over the root's have grown by this
-    // factor since it was built: see core/pipeline/tree_watch.h. 0: never. Only where a traversal walks it (Pairs,
-    // Single, Groups and Front).
+    // factor since it was built: see core/pipeline/tree_watch.h. 0: never. Only where a traversal walks it: Pairs,
+    // Single, Groups and Front, which is the host's Auto.
     float m_rebuildDecay = 1.5f;
 
     // Count the broad phase's volume tests (StepStatistics::m_volumeTests). Costs an atomic a work-item.
