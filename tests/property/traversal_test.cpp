@@ -2,6 +2,8 @@
 // to step, under random motion, teleports and meshes that come and go.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "tests/support/backends.h"
 #include "tests/support/live_scene.h"
 #include "tests/support/side.h"
@@ -96,40 +98,57 @@ TEST_P(TraversalTest, ContactsAreTheSame)
     EXPECT_GT(contacts, 10000u);
 }
 
-// The builder is a choice of time, too: the same contacts from the same candidates with every one.
+// The builder and its settings are a choice of time, too: the same contacts from the same candidates with every one, by
+// other volume tests.
 TEST_P(TraversalTest, ContactsAreTheSameInTreesOfEveryBuilder)
 {
+    std::vector<TreeMethods> trees;
+    for (TreeBuilder builder : {TreeBuilder::Balanced, TreeBuilder::Radix, TreeBuilder::TopDown, TreeBuilder::Ploc})
+        trees.emplace_back().m_builder = builder;
+    trees.push_back(trees[std::size_t(TreeBuilder::TopDown)]);
+    trees.back().m_topDown.m_medianSplit = true;
+    trees.push_back(trees.back());
+    trees.back().m_topDown.m_leafSize = 1000;
+    trees.push_back(trees[std::size_t(TreeBuilder::Ploc)]);
+    trees.back().m_plocRadius = 1;
     std::size_t contacts = 0;
     for (const Traversal traversal : allTraversals())
     {
         std::vector<std::unique_ptr<Pipeline>> owned;
         std::vector<Pipeline*> pipelines;
-        for (TreeBuilder builder : {TreeBuilder::Balanced, TreeBuilder::Radix, TreeBuilder::TopDown, TreeBuilder::Ploc})
+        for (const TreeMethods& tree : trees)
         {
             Settings settings = GetParam().m_settings;
             settings.m_methods.m_traversal = traversal;
-            settings.m_methods.m_treeBuilder = builder;
+            settings.m_methods.m_tree = tree;
             settings.m_methods.m_rebuildDecay = 1.05f;
+            settings.m_methods.m_countTests = true;
             owned.push_back(makePipeline(settings));
             ASSERT_TRUE(owned.back());
             pipelines.push_back(owned.back().get());
         }
+        std::vector<std::size_t> tests(pipelines.size(), 0);
         LiveScene scene(pipelines, 920 + std::uint32_t(traversal), true);
         for (int step = 0; step < 30; ++step)
         {
             scene.nextStep();
-            const std::vector<Contact> first = runStep(*pipelines[0]);
-            contacts += first.size();
-            for (std::size_t i = 1; i < pipelines.size(); ++i)
+            std::vector<Contact> first;
+            for (std::size_t i = 0; i < pipelines.size(); ++i)
             {
                 SCOPED_TRACE(std::string(traversalName(traversal)) + ", step " + std::to_string(step) + ", builder " +
                              std::to_string(i));
-                const std::vector<Contact> other = runStep(*pipelines[i]);
-                ASSERT_TRUE(sameBytes(other, first)) << difference(other, first);
+                const std::vector<Contact> found = runStep(*pipelines[i]);
+                tests[i] += pipelines[i]->statistics().m_volumeTests;
+                if (i == 0) first = found;
+                ASSERT_TRUE(sameBytes(found, first)) << difference(found, first);
                 EXPECT_EQ(pipelines[i]->statistics().m_candidates, pipelines[0]->statistics().m_candidates);
                 EXPECT_EQ(pipelines[i]->statistics().m_status, pipelines[0]->statistics().m_status);
             }
+            contacts += first.size();
         }
+        if (traversal != Traversal::Pairs) continue;
+        const std::set<std::size_t> different(tests.begin(), tests.end());
+        EXPECT_EQ(different.size(), tests.size()) << "settings that do not reach the builder";
     }
     EXPECT_GT(contacts, 10000u);
 }

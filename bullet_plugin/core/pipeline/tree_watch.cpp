@@ -48,11 +48,9 @@ bool TreeWatch::isDecayed(double cost, float rebuildDecay)
     return !m_rebuilt.valid() && drape::isDecayed(cost, m_costAtBuild, rebuildDecay);
 }
 
-void TreeWatch::rebuild(TreeBuilder builder, std::vector<Triangle> triangles, std::vector<float> positions,
+void TreeWatch::rebuild(const TreeMethods& methods, std::vector<Triangle> triangles, std::vector<float> positions,
                         std::size_t meshCount)
 {
-    TreeMethods methods;
-    methods.m_builder = builder;
     // Where there is no thread to be had, the step that takes the tree builds it.
     m_rebuilt = std::async(std::launch::async | std::launch::deferred,
                            [methods, meshCount, triangles = std::move(triangles), positions = std::move(positions)]

@@ -31,7 +31,7 @@ public:
     bool isDecayed(double cost, float rebuildDecay);
 
     // Starts to build from copies of its own. positions: m, x y z per vertex.
-    void rebuild(TreeBuilder builder, std::vector<Triangle> triangles, std::vector<float> positions,
+    void rebuild(const TreeMethods& methods, std::vector<Triangle> triangles, std::vector<float> positions,
                  std::size_t meshCount);
     // Gives the new hierarchy once, when it is there.
     bool take(Tree& tree);
