@@ -3,8 +3,9 @@
 
 Writes OUT_DIR/study.json and study.csv with the rows of all files; OUT_DIR/study.json itself, where it is there, comes
 first. Of rows with the same part, model, back end and volumes those of the last file stay, so that a part that was
-measured again replaces what it was. All must be of one machine: same processor, cores and devices. Ends with 3 when a row
-is void, with 2 when files cannot be read or are of different machines.
+measured again replaces what it was. Every row must say its back end and carry a hash; it keeps the commit that it was
+measured at. All must be of one machine: same processor, cores and devices. Ends with 3 when a row is void, with 2 when files
+cannot be read, lack a back end or a hash, or are of different machines.
 """
 import csv
 import json
@@ -36,19 +37,25 @@ def machine_key(machine):
     return machine["processor"], machine["cores"], devices
 
 
+def complete(row, commit, name):
+    """The row with its commit. One without a back end would never be replaced, and one without a hash cannot be judged."""
+    for column in ("backend", "hash"):
+        if not row.get(column):
+            raise ValueError(f"{name}: a row of {row.get('part')}, {row.get('model')} has no {column}")
+    return {**row, "commit": row.get("commit", commit)}
+
+
 def merge(files):
-    """files: (name, content). Returns machine and rows; a machine's dates and commits are those of all its runs."""
-    machine, rows, commits = None, [], []
+    """files: (name, content). Returns machine and rows; the machine's date is the last run's, its commits are the rows'."""
+    machine, rows = None, []
     for name, content in files:
         if machine and machine_key(content["machine"]) != machine_key(machine):
             raise ValueError(f"{name}: of another machine than {files[0][0]}")
         machine = dict(content["machine"])
-        for commit in str(machine["commit"]).split(", "):
-            if commit not in commits:
-                commits.append(commit)
-        again = {key_of(row) for row in content["rows"]}
-        rows = [row for row in rows if key_of(row) not in again] + content["rows"]
-    machine["commit"] = ", ".join(commits)
+        new = [complete(row, machine["commit"], name) for row in content["rows"]]
+        again = {key_of(row) for row in new}
+        rows = [row for row in rows if key_of(row) not in again] + new
+    machine["commit"] = ", ".join(dict.fromkeys(row["commit"] for row in rows))
     return machine, sorted(rows, key=sort_key)
 
 

@@ -30,6 +30,12 @@ def time_text(row, figure):
     return figure(row["median_ms"])
 
 
+def with_commits(rows, part, text):
+    """A part's tables, where there are any, and the commits of the rows that they are made of."""
+    commits = in_order(select(rows, part=part), "commit")
+    return text + f"*Measured at {', '.join(commits)}.*\n\n" if text and commits else text
+
+
 def by_model(rows, part, title, thesis_columns, table, figure):
     mine = [row for row in select(rows, part=part) if "median_ms" in row]
     models = in_order(mine, "model")
@@ -74,11 +80,12 @@ def descent_table(rows, table, figure):
             if not steps:
                 continue
             total = [sum(row.get(stage + "_ms", 0) for row in steps) / len(steps)
-                     for stage in ("refit", "broad", "narrow", "order")]
+                     for stage in ("refit", "broad", "narrow", "order", "step")]
             lines.append([variant] + [figure(value) for value in total] + [count(mean(steps, "volume_tests"))])
-        text += (f"Descent of the {scene} scene's cloth onto the bunny, mean of its steps, ms (kernel time on a device), "
-                 "figures 4.6 and 4.8:\n\n"
-                 + table(["traversal", "refit", "broad phase", "narrow phase", "order", "volume tests"], lines))
+        text += (f"Descent of the {scene} scene's cloth onto the bunny, mean of its steps, ms (kernel time on a device, of a queue "
+                 "that is profiled; the whole step host to host), figures 4.6 and 4.8:\n\n"
+                 + table(["traversal", "refit", "broad phase", "narrow phase", "order", "step, host to host", "volume tests"],
+                         lines))
     return text
 
 
@@ -89,7 +96,7 @@ FRONTS = (("host, thesis: front", "host, as front, from the roots", "host, thesi
 
 
 def front_cells(steps, front, figure):
-    """Volume tests, ms of the broad phase and of all stages; in brackets what the front takes of the first two."""
+    """Volume tests, ms of the broad phase, of all stages and host to host; in brackets the front's share of the first two."""
     cells = []
     for column, text in (("volume_tests", count), ("broad_ms", figure)):
         value, least = mean(steps, column), mean(front, column)
@@ -97,7 +104,7 @@ def front_cells(steps, front, figure):
         cells.append("–" if value is None else text(value) + ratio)
     stages = ("refit_ms", "broad_ms", "narrow_ms", "order_ms")
     whole = sum(row.get(stage, 0) for row in steps for stage in stages)
-    return cells + [figure(whole / len(steps)) if steps else "–"]
+    return cells + ([figure(whole / len(steps)), figure(mean(steps, "step_ms"))] if steps else ["–", "–"])
 
 
 def front_table(rows, table, figure):
@@ -115,8 +122,8 @@ def front_table(rows, table, figure):
                     lines.append(line)
     if not lines:
         return ""
-    columns = ["volume tests, {}", "broad phase, ms", "all stages, ms"]
-    return ("The front against traversals without one, means of steps (kernel time on a device); in brackets what the front "
+    columns = ["volume tests, {}", "broad phase, ms", "all stages, ms", "step, host to host, ms"]
+    return ("The front against traversals without one, means of steps (kernel time on a device, but for the last); in brackets what the front "
             "takes of it. The default finds pairs of features, the others of triangles.\n\n"
             + table(["scene", "traversal"] + [text.format(phase) for phase in ("coming down", "at rest") for text in columns],
                     lines))
@@ -282,28 +289,33 @@ def devices_table(machines, table, figure):
         for name, mine in devices:
             found = {row["model"]: row for row in select(mine, variant=variant)}
             lines.append([variant, name] + [time_text(found[model], figure) if model in found else "–" for model in ordered])
-    for label, source, what in (("Quadro FX 3800", "4.2", "quadro_optimised"), ("Tesla C2050", "4.3", "tesla_optimised")):
+    for label, source, what in (("Quadro FX 3800", "4.3", "quadro_optimised"), ("Tesla C2050", "4.3", "tesla_optimised")):
         figures = thesis(source, what)
         lines.append(["*thesis, optimised, kernels*", f"*{label}*"] + [
             f"*{figures[THESIS_MODELS[model]]:,.0f}*" if model in THESIS_MODELS else "–" for model in ordered])
-    return ("### Devices side by side\n\nConstruction on all devices (table 4.3), ms: kernel time / host to host.\n\n"
+    return ("### Devices side by side\n\nConstruction on all devices (table 4.3), ms: kernel time / host to host; measured at "
+            + ", ".join(f"{', '.join(in_order(mine, 'commit'))} ({name})" for name, mine in devices) + ".\n\n"
             + table(["builder", "device"] + [f"{model.replace('_', ' ')} ({models[model]:,.0f})" for model in ordered], lines))
 
 
 def text(rows, table, figure):
     if not rows:
         return ""
-    return (by_model(rows, "construction",
-                     "Construction (tables 4.2 and 4.3), ms: kernel time / host to host for a device; wall time for "
-                     "CPU threads.",
-                     [("CPU", "4.2", "cpu"), ("Quadro FX 3800, normal, kernels", "4.2", "quadro_normal"),
-                      ("Quadro FX 3800, optimised, kernels", "4.2", "quadro_optimised"),
-                      ("Tesla C2050, optimised, kernels", "4.3", "tesla_optimised")], table, figure)
-            + compaction_table(rows, table)
-            + by_model(rows, "refit", "Refit (table 4.4), ms, likewise.",
-                       [("CPU", "4.4", "cpu"), ("Quadro FX 3800, kernels", "4.4", "quadro")], table, figure)
-            + refit_kernel_table(rows, table, figure)
-            + quality_table(rows, table, figure) + shape_table(rows, table, figure)
-            + degree_table(rows, table, figure) + descent_table(rows, table, figure) + front_table(rows, table, figure)
-            + rebuild_table(rows, table, figure)
-            + triangle_test_table(rows, table, figure))
+    tables = (
+        ("construction", by_model(
+            rows, "construction",
+            "Construction (tables 4.2 and 4.3), ms: kernel time / host to host for a device; wall time for CPU threads.",
+            [("CPU", "4.2", "cpu"), ("Quadro FX 3800, normal, kernels", "4.2", "quadro_normal"),
+             ("Quadro FX 3800, optimised, kernels", "4.2", "quadro_optimised"),
+             ("Tesla C2050, optimised, kernels", "4.3", "tesla_optimised")], table, figure)),
+        ("compaction", compaction_table(rows, table)),
+        ("refit", by_model(rows, "refit", "Refit (table 4.4), ms, likewise.",
+                              [("CPU", "4.4", "cpu"), ("Quadro FX 3800, kernels", "4.4", "quadro")], table, figure)),
+        ("refit_kernels", refit_kernel_table(rows, table, figure)),
+        ("quality", quality_table(rows, table, figure)),
+        ("shape", shape_table(rows, table, figure)),
+        ("degree", degree_table(rows, table, figure)),
+        ("traversal", descent_table(rows, table, figure) + front_table(rows, table, figure)),
+        ("rebuild", rebuild_table(rows, table, figure)),
+        ("triangle_tests", triangle_test_table(rows, table, figure)))
+    return "".join(with_commits(rows, part, text) for part, text in tables)

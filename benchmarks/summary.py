@@ -151,8 +151,10 @@ def machine_text(folder):
     machine = read_machine(folder, "bench_step" if rows else "study")
     devices = ", ".join(f"{device['device']} (driver {device['driver']})" for device in machine["devices"]) or "none"
     text = f"### {os.path.basename(folder)}\n\n"
-    text += (f"{machine['processor']}, {machine['cores']:.0f} cores; OpenCL devices: {devices}. "
-             f"Measured {machine['date']} at commit {machine['commit']}. ")
+    text += f"{machine['processor']}, {machine['cores']:.0f} cores; OpenCL devices: {devices}. "
+    if rows:
+        text += f"Whole steps: measured {machine['date']} at commit {machine['commit']}. "
+    text += "The study's tables say their own commits. " if os.path.exists(os.path.join(folder, "study.csv")) else ""
     text += f"Void rows: {count_void(folder, 'bench_step') + count_void(folder, 'study')}.\n\n"
     text += step_table(rows) + built_in_line(folder, rows) + stage_table(rows)
     text += study_tables.text(read_rows(folder, "study"), table, figure)

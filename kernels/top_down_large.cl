@@ -55,6 +55,72 @@ __kernel void largePivots(__global const OpenNode* restrict queue, __global cons
     pivots[get_group_id(0)] = halvesBlindly(&rule, size) ? 0 : pivotOfSum(sum, size);
 }
 
+// The median's pivot is found a digit a round, from a histogram of the cells that agree with it so far: 256 bins fit into any
+// local memory.
+#define DRAPE_MEDIAN_BITS 8
+#define DRAPE_MEDIAN_BINS (1u << DRAPE_MEDIAN_BITS)
+
+// Adds a block's cells to its node's histogram of the digit at `shift`, which must be zero before the round's first block.
+// pivots: the digits above, and zeros. bins: one for each value of a digit.
+__kernel void largeHistograms(__global const BvhNode* restrict nodes, __global const uint* restrict order,
+                              __global const Vec3* restrict centroids, __global const OpenNode* restrict queue,
+                              __global const LargeNode* restrict large, __global const LargeBlock* restrict blocks,
+                              __global const uint* restrict pivots, const uint shift, __global uint* restrict histograms,
+                              __local uint* bins)
+{
+    const LargeBlock block = blocks[get_group_id(0)];
+    const SplitAxis axis = splitAxisOf(nodes + queue[large[block.m_node].m_queued].m_place);
+    const uint above = pivots[block.m_node] >> (shift + DRAPE_MEDIAN_BITS);
+    for (uint bin = get_local_id(0); bin < DRAPE_MEDIAN_BINS; bin += get_local_size(0)) bins[bin] = 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint i = block.m_first + get_local_id(0); i < block.m_end; i += get_local_size(0))
+    {
+        const uint cell = centroidCell(&axis, centroids[order[i]]);
+        if (cell >> (shift + DRAPE_MEDIAN_BITS) == above) atomic_inc(bins + ((cell >> shift) & (DRAPE_MEDIAN_BINS - 1)));
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint bin = get_local_id(0); bin < DRAPE_MEDIAN_BINS; bin += get_local_size(0))
+    {
+        if (bins[bin] > 0) atomic_add(histograms + block.m_node * DRAPE_MEDIAN_BINS + bin, bins[bin]);
+    }
+}
+
+// A work-group is a large node, of a power of two of work-items: the digit at `shift` of its pivot, the largest with which no
+// more than half of its cells are below, as pivotOfNode() finds it; after the last digit the pivot itself. below: how many
+// cells are below the pivot so far. Both must be zero before the first round. Leaves the histogram zero.
+__kernel void largeMedianDigits(__global const OpenNode* restrict queue, __global const LargeNode* restrict large,
+                                __global uint* restrict histograms, __global uint* restrict pivots,
+                                __global uint* restrict below, const uint shift, const uint depth, const uint leafSize,
+                                __local uint* scan)
+{
+    const uint number = get_group_id(0);
+    const OpenNode open = queue[large[number].m_queued];
+    const uint size = open.m_end - open.m_first;
+    const uint each = DRAPE_MEDIAN_BINS / get_local_size(0);
+    const uint first = get_local_id(0) * each;
+    __global uint* histogram = histograms + number * DRAPE_MEDIAN_BINS;
+    const uint belowDigits = below[number];
+    barrier(CLK_GLOBAL_MEM_FENCE);  // one work-item writes it below
+    uint sum = 0;
+    for (uint bin = first; bin < first + each; ++bin) sum += histogram[bin];
+    uint total;
+    uint before = belowDigits + groupPrefix(scan, sum, &total);
+    for (uint bin = first; bin < first + each; ++bin)
+    {
+        const uint behind = before + histogram[bin];
+        histogram[bin] = 0;
+        const int isLargest = bin + 1 == DRAPE_MEDIAN_BINS || !keepsMedianBit(behind, size);
+        if (keepsMedianBit(before, size) && isLargest)
+        {
+            const SplitRule rule = {depth, leafSize, 1};
+            const uint pivot = pivots[number] + (bin << shift);
+            below[number] = before;
+            pivots[number] = shift > 0 ? pivot : halvesBlindly(&rule, size) ? 0 : medianPivot(pivot, before);
+        }
+        before = behind;
+    }
+}
+
 // How many of a block's triangles go left.
 __kernel void largeCounts(__global const BvhNode* restrict nodes, __global const uint* restrict order,
                           __global const Vec3* restrict centroids, __global const OpenNode* restrict queue,

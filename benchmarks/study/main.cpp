@@ -29,6 +29,14 @@ std::vector<std::string> studyModels(bool quick)
     return studyModelNames();
 }
 
+std::vector<float> refitPositions(const std::vector<float>& positions)
+{
+    std::vector<float> moved(positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i)
+        moved[i] = positions[i] + 0.25f * positions[i - i % 3 + (i + 1) % 3];
+    return moved;
+}
+
 void StudyOptions::readReference()
 {
     if (m_reference.empty()) return;

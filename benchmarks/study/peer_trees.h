@@ -16,7 +16,7 @@ struct PeerTree
     int m_threads = 1;
     std::string m_buildHash, m_refitHash;  // boundsHash() of the box that the tree says it has
     Samples m_build;                       // from positions and triangles in memory
-    Samples m_refit;  // from new positions in memory; the same as before here, since it makes no difference to the time
+    Samples m_refit;                       // from new positions in memory
 };
 
 // Of a box: least and largest x, y and z.
@@ -24,10 +24,12 @@ std::string boundsHash(const float* low, const float* high);
 // Of the mesh, which every tree over it must say.
 std::string boundsHash(const TriangleMesh& mesh);
 
-// Embree's triangle geometry by its Morton and its SAH builder, on one and on two threads. repeats: at most, within
-// seconds each; two at least.
-std::vector<PeerTree> measureEmbreeTrees(const TriangleMesh& mesh, int repeats, double seconds);
+// Embree's triangle geometry by its Morton and its SAH builder, on one and on two threads, each warmed up by a build
+// that is not counted. moved: the mesh as refits find it, see refitPositions(). repeats: at most, within seconds each;
+// two at least, and of what is short kLeastRepeats.
+std::vector<PeerTree> measureEmbreeTrees(const TriangleMesh& mesh, const TriangleMesh& moved, int repeats,
+                                         double seconds);
 
 // FCL's float 18-DOP tree; likewise.
-PeerTree measureFclTree(const TriangleMesh& mesh, int repeats, double seconds);
+PeerTree measureFclTree(const TriangleMesh& mesh, const TriangleMesh& moved, int repeats, double seconds);
 }  // namespace drape::bench

@@ -111,25 +111,29 @@ struct Variant
 // The host is the reference, so it is first.
 std::vector<Variant> variants(const StudyOptions& options)
 {
-    Variant host{"host", Settings()};
-    host.m_settings.m_backend = Backend::Host;
-    std::vector<Variant> all = {host};
-    for (const auto& [name, traversal] : {std::pair<const char*, Traversal>("pairs of subtrees", Traversal::Pairs),
-                                          {"thesis: front", Traversal::Front}})
+    std::vector<Variant> all;
+    const auto addBoth = [&all](const std::string& name, Settings settings, Traversal traversal)
     {
+        settings.m_methods.m_traversal = traversal;
+        settings.m_profileKernels = settings.m_backend != Backend::Host;
         for (const float decay : {0.0f, Methods().m_rebuildDecay})
         {
-            Variant variant{std::string(name) + (decay > 0 ? ", rebuilt" : ", never rebuilt"), options.settings()};
-            variant.m_settings.m_methods.m_traversal = traversal;
-            variant.m_settings.m_methods.m_rebuildDecay = decay;
-            all.push_back(variant);
+            settings.m_methods.m_rebuildDecay = decay;
+            all.push_back({name + (decay > 0 ? ", rebuilt" : ", never rebuilt"), settings});
         }
-    }
+    };
+    Settings host;
+    host.m_backend = Backend::Host;
+    addBoth("host, thesis: front", host, Traversal::Front);
+    addBoth("host, pairs of subtrees", host, Traversal::Pairs);
     if (options.m_backend == "host") return all;
+    addBoth("pairs of subtrees", options.settings(), Traversal::Pairs);
+    addBoth("thesis: front", options.settings(), Traversal::Front);
     for (const bool anew : {false, true})
+    {
         all.push_back({anew ? "default, cloth in the order of its last shape" : "default", options.settings(), anew});
-    for (Variant& variant : all)
-        variant.m_settings.m_profileKernels = variant.m_name != "host";
+        all.back().m_settings.m_profileKernels = true;
+    }
     return all;
 }
 

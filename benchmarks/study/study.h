@@ -68,6 +68,10 @@ void studyRebuilds(const StudyOptions& options, Table& table);
 // Models in the order of their size; quick: two small ones.
 std::vector<std::string> studyModels(bool quick);
 
+// Where the vertices of a model are when its tree is refitted: sheared by a quarter, so that every volume of it
+// changes, and one that a refit did not make does not go unseen. The same bits everywhere.
+std::vector<float> refitPositions(const std::vector<float>& positions);
+
 // False, and a line on standard error, for a model that is not there.
 bool loadModel(const std::string& model, const StudyOptions& options, TriangleMesh& mesh);
 

@@ -27,7 +27,9 @@ void addCommonOptions(CLI::App& app, CommonOptions& options)
     app.add_option("--commit", options.m_commit, "what was measured, for the record");
     app.add_flag("--quick", options.m_quick, "small inputs only, some seconds");
     app.add_flag("--list", options.m_list, "list what can be measured and leave");
-    app.add_option("--repeats", options.m_repeats, "times a measurement is repeated, at most")
+    app.add_option(
+           "--repeats", options.m_repeats,
+           "times a measurement is repeated, at most; in the study at least 5 times where it takes less than 50 ms")
         ->check(CLI::PositiveNumber);
     app.add_option("--seconds", options.m_seconds, "for the repeats of one measurement")->check(CLI::PositiveNumber);
     app.add_option("--minutes", options.m_minutes, "for all; what does not fit is named and left out")

@@ -1,6 +1,7 @@
 // Times of repeated runs: least, median, 95th percentile.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 #include <vector>
@@ -25,23 +26,35 @@ public:
     double sum() const;
     // The value below which the share (0 to 1) of the samples lies: the nearest of them. 0 when there is none.
     double quantile(double share) const;
-    double median() const { return quantile(0.5); }
+    // The middle value; the mean of the two middle ones of an even number. 0 when there is none.
+    double median() const;
 
-    // Sets <prefix>min_ms, <prefix>median_ms and <prefix>p95_ms; nothing without samples.
+    // Sets <prefix>min_ms, <prefix>median_ms and <prefix>p95_ms, and without a prefix how many samples they are of;
+    // nothing without samples.
     void fill(Row& row, const std::string& prefix = "") const;
 
 private:
     std::vector<double> m_values;
 };
 
+// Repeats of what is short, at least: fewer say nothing of a median and a 95th percentile.
+constexpr std::size_t kLeastRepeats = 5;
+constexpr double kShortMs = 50;
+
 // Runs take (which returns ms) until `least` runs were made and then until `most` or the time is used up, whichever
-// comes first.
+// comes first; of what takes less than kShortMs kLeastRepeats are made in any case.
 template <typename Take>
 Samples repeat(std::size_t least, std::size_t most, double seconds, Take take)
 {
     Samples samples;
     const Clock::time_point start = Clock::now();
-    while (samples.count() < least || (samples.count() < most && millisecondsSince(start) < 1000 * seconds))
+    const auto wanted = [&]
+    {
+        const std::size_t floor = samples.quantile(0) < kShortMs ? kLeastRepeats : least;
+        return samples.count() < std::max(least, floor) ||
+               (samples.count() < most && millisecondsSince(start) < 1000 * seconds);
+    };
+    while (wanted())
         samples.add(take());
     return samples;
 }

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <iterator>
+#include <limits>
 
 #include "bullet_plugin/core/bvh/tree_cost.h"
 #include "bullet_plugin/core/bvh/tree_quality.h"
@@ -72,11 +74,14 @@ std::vector<NamedMethods> allMethods()
     methods.m_topDown.m_medianSplit = true;
     methods.m_topDown.m_smallShare = 2.0f;  // small nodes are always put aside
     methods.m_topDown.m_groupSize = 256;
+    methods.m_topDown.m_largeSize = 3000;
     all.push_back({"top-down, median", methods});
     methods.m_topDown.m_leafSize = 7;
     methods.m_topDown.m_groupSize = 32;
     methods.m_topDown.m_compactionGroup = 64;
     all.push_back({"top-down, median, leaves of 7", methods});
+    methods.m_topDown.m_largeNodes = false;
+    all.push_back({"top-down, median, no large nodes", methods});
     return all;
 }
 
@@ -131,7 +136,91 @@ protected:
         EXPECT_TRUE(intact(device, tree.m_nodes) && buffers.allIntact(device));
         ASSERT_FALSE(device.failed()) << device.error().text();
     }
+
+    // By every method and in every shape of the work.
+    void expectRefits(Device& device, TreeRefitStage& stage, const Tree& built, const Side& side)
+    {
+        const std::vector<float> radius = {0.05f};
+        Tree expected = built, spoilt = built;
+        std::size_t invalid = 0;
+        refitTreeOnHost(expected, side.m_pool.triangles(), side.m_start.data(), side.m_end.data(), radius, invalid);
+        for (BvhNode& node : spoilt.m_nodes)
+        {
+            std::fill(std::begin(node.m_low), std::end(node.m_low), 7.0f);
+            std::fill(std::begin(node.m_high), std::end(node.m_high), -7.0f);
+        }
+        DeviceSide buffers;
+        buffers.upload(device, side);
+        Buffer<float> onDevice;
+        guardCopy(device, onDevice, radius);
+        for (const auto& [method, shape] : {std::pair<RefitMethod, WorkShape>(RefitMethod::Levels, WorkShape::Device),
+                                            {RefitMethod::Subtrees, WorkShape::Serial},
+                                            {RefitMethod::Subtrees, WorkShape::Groups}})
+        {
+            SCOPED_TRACE("method " + std::to_string(std::size_t(method)) + ", shape " +
+                         std::to_string(std::size_t(shape)));
+            TreeMethods methods;
+            methods.m_refit = method;
+            methods.m_workShape = shape;
+            DeviceTree tree;
+            guard(device, tree.m_nodes, built.m_nodes.size());
+            tree.upload(device, spoilt);
+            Buffer<StepCounters> counters;
+            clearCounters(device, counters);
+            stage.prepare(device, tree, methods);
+            stage.enqueue(device, tree, {buffers.m_triangles, buffers.m_start, buffers.m_end, onDevice, counters},
+                          methods);
+            const Tree refitted = tree.download(device);
+            EXPECT_TRUE(sameBytes(refitted.m_nodes, expected.m_nodes));
+            EXPECT_EQ(readCounters(device, counters).m_invalidNodes, invalid);
+            EXPECT_TRUE(intact(device, tree.m_nodes) && buffers.allIntact(device) && intact(device, counters));
+            ASSERT_FALSE(device.failed()) << device.error().text();
+        }
+    }
 };
+
+// A step's start and end, both elsewhere than where the tree was built, and some vertices that are nowhere.
+void move(Side& side, bool spoil)
+{
+    const std::vector<float> built = side.m_start;
+    for (std::size_t i = 0; i < built.size(); ++i)
+    {
+        side.m_start[i] = built[i] + 0.3f * built[i - i % 3 + (i + 1) % 3];
+        side.m_end[i] = side.m_start[i] - 0.2f * built[i - i % 3 + (i + 2) % 3] + 0.01f;
+    }
+    for (std::size_t i = 3; spoil && i < built.size(); i += 300)
+        side.m_end[i] = std::numeric_limits<float>::quiet_NaN();
+}
+
+// Refits of one tree, whose volumes are first made such that none is right by chance.
+TEST_P(TreeTest, EveryRefitMakesTheHostsVolumesOfMovedTriangles)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    TreeRefitStage stage;
+    stage.create(*device, programsOf(*device));
+    const std::vector<NamedMesh> cases = meshes();
+    for (const TreeBuilder builder : kBuilders)
+    {
+        for (const auto& [name, mesh] : cases)
+        {
+            SCOPED_TRACE(name + ", builder " + std::to_string(std::size_t(builder)));
+            Side side = sideOf(mesh);
+            const Tree built = buildTreeOnHost(methodsOf(builder, WorkShape::Device), side.m_pool.triangles(),
+                                               side.m_start.data(), side.m_pool.meshCount());
+            move(side, false);
+            Tree atRest = built;
+            std::size_t invalid = 0;
+            refitTreeOnHost(atRest, side.m_pool.triangles(), side.m_start.data(), side.m_start.data(), {0.0f}, invalid);
+            EXPECT_EQ(whyInvalid(atRest, side), "");
+            EXPECT_FALSE(sameBytes(atRest.m_nodes, built.m_nodes)) << "nothing moved";
+            expectRefits(*device, stage, built, side);
+            move(side, true);
+            expectRefits(*device, stage, built, side);
+            if (HasFailure()) return;
+        }
+    }
+}
 
 TEST_P(TreeTest, EveryBuilderMakesTheHostsValidTree)
 {

@@ -2,6 +2,8 @@
 // to step, under random motion, teleports and meshes that come and go.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "tests/support/backends.h"
 #include "tests/support/live_scene.h"
 #include "tests/support/side.h"
@@ -18,6 +20,48 @@ protected:
         settings.m_methods.m_traversal = traversal;
         settings.m_methods.m_countTests = counting;
         return makePipeline(settings);
+    }
+
+    // Steps in which the cloth moves on a straight way to `end`, with rebuilds and without: the same contacts, and
+    // fewer volume tests with rebuilds where there are to be any.
+    void expectRebuilds(const StepCase& step, const std::vector<float>& end, Traversal traversal, bool expected)
+    {
+        constexpr int kSteps = 60;
+        std::vector<std::unique_ptr<Pipeline>> pipelines;
+        std::vector<MeshId> cloths, obstacles;
+        for (const float decay : {Methods().m_rebuildDecay, 0.0f})
+        {
+            Settings settings = GetParam().m_settings;
+            settings.m_methods.m_traversal = traversal;
+            settings.m_methods.m_rebuildDecay = decay;
+            settings.m_methods.m_countTests = true;
+            pipelines.push_back(makePipeline(settings));
+            ASSERT_TRUE(pipelines.back());
+            cloths.push_back(addCloth(*pipelines.back(), step.m_cloth));
+            obstacles.push_back(addObstacle(*pipelines.back(), step.m_obstacle));
+        }
+        std::size_t rebuilds[2] = {0, 0}, tests[2] = {0, 0};
+        for (int i = 0; i < kSteps; ++i)
+        {
+            SCOPED_TRACE("step " + std::to_string(i));
+            std::vector<float> positions = step.m_cloth.m_positions;
+            for (std::size_t k = 0; k < positions.size(); ++k)
+                positions[k] += float(i) / kSteps * (end[k] - positions[k]);
+            std::vector<Contact> contacts[2];
+            for (std::size_t p = 0; p < 2; ++p)
+            {
+                setMotion(*pipelines[p], cloths[p], positions, positions);
+                pipelines[p]->addPair(cloths[p], obstacles[p], step.m_thickness);
+                contacts[p] = runStep(*pipelines[p]);
+                rebuilds[p] += pipelines[p]->statistics().m_rebuilds;
+                tests[p] += pipelines[p]->statistics().m_volumeTests;
+            }
+            ASSERT_TRUE(sameBytes(contacts[0], contacts[1])) << difference(contacts[0], contacts[1]);
+            EXPECT_FALSE(contacts[0].empty());
+        }
+        EXPECT_EQ(rebuilds[0] > 0, expected);
+        EXPECT_EQ(rebuilds[1], 0u) << "never";
+        EXPECT_EQ(tests[0] < tests[1], expected);
     }
 };
 
@@ -54,45 +98,63 @@ TEST_P(TraversalTest, ContactsAreTheSame)
     EXPECT_GT(contacts, 10000u);
 }
 
-// The builder is a choice of time, too: the same contacts from the same candidates with every one.
+// The builder and its settings are a choice of time, too: the same contacts from the same candidates with every one, by
+// other volume tests.
 TEST_P(TraversalTest, ContactsAreTheSameInTreesOfEveryBuilder)
 {
+    std::vector<TreeMethods> trees;
+    for (TreeBuilder builder : {TreeBuilder::Balanced, TreeBuilder::Radix, TreeBuilder::TopDown, TreeBuilder::Ploc})
+        trees.emplace_back().m_builder = builder;
+    trees.push_back(trees[std::size_t(TreeBuilder::TopDown)]);
+    trees.back().m_topDown.m_medianSplit = true;
+    trees.push_back(trees.back());
+    trees.back().m_topDown.m_leafSize = 1000;
+    trees.push_back(trees[std::size_t(TreeBuilder::Ploc)]);
+    trees.back().m_plocRadius = 1;
     std::size_t contacts = 0;
     for (const Traversal traversal : allTraversals())
     {
         std::vector<std::unique_ptr<Pipeline>> owned;
         std::vector<Pipeline*> pipelines;
-        for (TreeBuilder builder : {TreeBuilder::Balanced, TreeBuilder::Radix, TreeBuilder::TopDown, TreeBuilder::Ploc})
+        for (const TreeMethods& tree : trees)
         {
             Settings settings = GetParam().m_settings;
             settings.m_methods.m_traversal = traversal;
-            settings.m_methods.m_treeBuilder = builder;
+            settings.m_methods.m_tree = tree;
             settings.m_methods.m_rebuildDecay = 1.05f;
+            settings.m_methods.m_countTests = true;
             owned.push_back(makePipeline(settings));
             ASSERT_TRUE(owned.back());
             pipelines.push_back(owned.back().get());
         }
+        std::vector<std::size_t> tests(pipelines.size(), 0);
         LiveScene scene(pipelines, 920 + std::uint32_t(traversal), true);
         for (int step = 0; step < 30; ++step)
         {
             scene.nextStep();
-            const std::vector<Contact> first = runStep(*pipelines[0]);
-            contacts += first.size();
-            for (std::size_t i = 1; i < pipelines.size(); ++i)
+            std::vector<Contact> first;
+            for (std::size_t i = 0; i < pipelines.size(); ++i)
             {
                 SCOPED_TRACE(std::string(traversalName(traversal)) + ", step " + std::to_string(step) + ", builder " +
                              std::to_string(i));
-                const std::vector<Contact> other = runStep(*pipelines[i]);
-                ASSERT_TRUE(sameBytes(other, first)) << difference(other, first);
+                const std::vector<Contact> found = runStep(*pipelines[i]);
+                tests[i] += pipelines[i]->statistics().m_volumeTests;
+                if (i == 0) first = found;
+                ASSERT_TRUE(sameBytes(found, first)) << difference(found, first);
                 EXPECT_EQ(pipelines[i]->statistics().m_candidates, pipelines[0]->statistics().m_candidates);
                 EXPECT_EQ(pipelines[i]->statistics().m_status, pipelines[0]->statistics().m_status);
             }
+            contacts += first.size();
         }
+        if (traversal != Traversal::Pairs) continue;
+        const std::set<std::size_t> different(tests.begin(), tests.end());
+        EXPECT_EQ(different.size(), tests.size()) << "settings that do not reach the builder";
     }
     EXPECT_GT(contacts, 10000u);
 }
 
-// A cloth of loose triangles that fly to each other's places, and the same at rest.
+// A cloth of loose triangles that fly to each other's places, and the same at rest: with a traversal that walks its
+// hierarchy everywhere, and with the default, which does so on the host.
 TEST_P(TraversalTest, DecayedTreesAreBuiltAnew)
 {
     StepCase step = soupCase(2000, 600, false, 930);
@@ -102,44 +164,14 @@ TEST_P(TraversalTest, DecayedTreesAreBuiltAnew)
     Random random(931);
     for (std::size_t i = strewn.size() / 9; i-- > 1;)
         std::swap_ranges(&strewn[9 * i], &strewn[9 * i] + 9, &strewn[9 * random.below(std::uint32_t(i))]);
-    constexpr int kSteps = 60;
-    for (const bool strews : {true, false})
+    for (const Traversal traversal : {Traversal::Pairs, Traversal::Auto})
     {
-        std::vector<std::unique_ptr<Pipeline>> pipelines;
-        std::vector<MeshId> cloths, obstacles;
-        for (const float decay : {1.5f, 0.0f})
+        const bool walksIt = traversal == Traversal::Pairs || GetParam().m_settings.m_backend == Backend::Host;
+        for (const bool strews : {true, false})
         {
-            Settings settings = GetParam().m_settings;
-            settings.m_methods.m_traversal = Traversal::Pairs;
-            settings.m_methods.m_rebuildDecay = decay;
-            settings.m_methods.m_countTests = true;
-            pipelines.push_back(makePipeline(settings));
-            ASSERT_TRUE(pipelines.back());
-            cloths.push_back(addCloth(*pipelines.back(), step.m_cloth));
-            obstacles.push_back(addObstacle(*pipelines.back(), step.m_obstacle));
+            SCOPED_TRACE(std::string(traversalName(traversal)) + (strews ? ", strewn" : ", at rest"));
+            expectRebuilds(step, strews ? strewn : step.m_cloth.m_positions, traversal, strews && walksIt);
         }
-        std::size_t rebuilds[2] = {0, 0}, tests[2] = {0, 0};
-        for (int i = 0; i < kSteps; ++i)
-        {
-            SCOPED_TRACE("step " + std::to_string(i));
-            std::vector<float> positions = step.m_cloth.m_positions;
-            for (std::size_t k = 0; strews && k < positions.size(); ++k)
-                positions[k] += float(i) / kSteps * (strewn[k] - positions[k]);
-            std::vector<Contact> contacts[2];
-            for (std::size_t p = 0; p < 2; ++p)
-            {
-                setMotion(*pipelines[p], cloths[p], positions, positions);
-                pipelines[p]->addPair(cloths[p], obstacles[p], step.m_thickness);
-                contacts[p] = runStep(*pipelines[p]);
-                rebuilds[p] += pipelines[p]->statistics().m_rebuilds;
-                tests[p] += pipelines[p]->statistics().m_volumeTests;
-            }
-            ASSERT_TRUE(sameBytes(contacts[0], contacts[1])) << difference(contacts[0], contacts[1]);
-            EXPECT_FALSE(contacts[0].empty());
-        }
-        EXPECT_EQ(rebuilds[0] > 0, strews);
-        EXPECT_EQ(rebuilds[1], 0u) << "never";
-        EXPECT_EQ(tests[0] < tests[1], strews);
     }
 }
 

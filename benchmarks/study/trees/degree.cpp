@@ -52,7 +52,7 @@ void fillContacts(Row& row, const ClothQueries& cloth, const PeerScene& scene, c
 }
 
 Row treeOnHost(Tree& tree, const Row& described, const TreeInput& input, const TreeMethods& methods,
-               const ClothQueries& cloth, Found& found, const StudyOptions& options)
+               const ClothQueries& cloth, Found& found, std::string& refitHash, const StudyOptions& options)
 {
     const auto timed = [](auto work)
     {
@@ -67,7 +67,11 @@ Row treeOnHost(Tree& tree, const Row& described, const TreeInput& input, const T
     const auto walk = [&] { walkOnHost({tree.m_nodes, 0, tree.m_order}, cloth, found); };
     const std::size_t repeats = std::size_t(options.m_repeats);
     repeat(1, repeats, options.m_seconds, [&] { return timed(build); }).fill(row, "build_");
-    refitOnOneThread(tree, input, options).fill(row, "refit_");
+    bool valid = false;
+    const Refits refits = refitOnOneThread(tree, input, options, valid);
+    if (!valid) throw std::runtime_error(std::string(row["model"]) + ": the host's refitted tree is not valid");
+    refits.m_host.fill(row, "refit_");
+    refitHash = refits.m_hash;
     repeat(1, repeats, options.m_seconds, [&] { return timed(walk); }).fill(row, "walk_");
     return row;
 }
@@ -112,7 +116,8 @@ void studyTree(const std::string& model, const TriangleMesh& mesh, Device* devic
     Row described = degreeRow(model, input.triangleCount(), "radix tree");
     Tree tree;
     Found found;
-    Row row = treeOnHost(tree, described, input, methods, cloth, found, options);
+    std::string refitHash;
+    Row row = treeOnHost(tree, described, input, methods, cloth, found, refitHash, options);
     const TreeQuality quality = measureTree(tree.m_nodes, 0);
     for (Row* each : {&described, &row})
     {
@@ -136,7 +141,7 @@ void studyTree(const std::string& model, const TriangleMesh& mesh, Device* devic
     const Refits refits = refitOnDevice(*device, input, tree, RefitMethod::Subtrees, options);
     refits.m_host.fill(row, "refit_");
     refits.m_kernels.fill(row, "refit_kernel_");
-    if (builds.m_hash != treeHash(tree) || refits.m_hash != builds.m_hash)
+    if (builds.m_hash != treeHash(tree) || refits.m_hash != refitHash)
         throw std::runtime_error(model + ": the device's tree is not the host's");
     const Found onDevice = walkOnDevice(*device, input, tree, cloth, found.m_candidates.size(), row, options);
     fillContacts(row, cloth, scene, onDevice);

@@ -3,6 +3,7 @@
 
 #include "benchmarks/study/trees/tree_work.h"
 #include "benchmarks/support/machine.h"
+#include "bullet_plugin/core/bvh/tree_quality.h"
 
 namespace drape::bench
 {
@@ -12,12 +13,13 @@ namespace
 class DeviceRefit
 {
 public:
-    DeviceRefit(Device& device, TreeInput& input, const Tree& tree) : m_device(device), m_input(input)
+    DeviceRefit(Device& device, TreeInput& input, const Tree& tree, RefitMethod method)
+        : m_device(device), m_input(input)
     {
         m_stage.create(device, studyPrograms(device));
         m_tree.upload(device, tree);
-        m_stage.listTops(device, m_tree, WorkShape::Device);
-        m_stage.uploadHeights(device, heightsOf(tree), m_heights);
+        m_methods.m_refit = method;
+        m_stage.prepare(device, m_tree, m_methods);
         const std::vector<float> noRadius(1, 0.0f);
         m_radius.assign(device, noRadius);
         m_counters.reserve(device, 1);
@@ -26,18 +28,15 @@ public:
         m_device.wait();
     }
 
-    // Positions to the device, and a refit; waits. Host-to-host ms.
-    double run(RefitMethod method)
+    // New positions to the device, and a refit; waits. Host-to-host ms.
+    double run()
     {
         m_device.profiler()->take();
         const Clock::time_point start = Clock::now();
-        m_input.m_positionBuffer.write(m_device, m_input.m_positions.data(), m_input.m_positions.size());
+        m_input.m_positionBuffer.write(m_device, m_input.m_moved.data(), m_input.m_moved.size());
         const LeafBuffers leaves = {m_input.m_triangleBuffer, m_input.m_positionBuffer, m_input.m_positionBuffer,
                                     m_radius, m_counters};
-        if (method == RefitMethod::Levels)
-            m_stage.enqueueByHeight(m_device, m_tree, leaves, m_heights);
-        else
-            m_stage.enqueue(m_device, m_tree, leaves, WorkShape::Device);
+        m_stage.enqueue(m_device, m_tree, leaves, m_methods);
         m_device.wait();
         const double ms = millisecondsSince(start);
         m_launches = m_device.profiler()->take();
@@ -53,7 +52,7 @@ private:
     TreeInput& m_input;
     TreeRefitStage m_stage;
     DeviceTree m_tree;
-    TreeRefitStage::Heights m_heights;
+    TreeMethods m_methods;
     Buffer<float> m_radius;
     Buffer<StepCounters> m_counters;
     std::vector<KernelTime> m_launches;
@@ -64,13 +63,13 @@ private:
 Refits refitOnDevice(Device& device, TreeInput& input, const Tree& tree, RefitMethod method,
                      const StudyOptions& options)
 {
-    DeviceRefit refit(device, input, tree);
-    refit.run(method);  // some drivers compile at the first launch
+    DeviceRefit refit(device, input, tree, method);
+    refit.run();  // some drivers compile at the first launch
     Refits refits;
     refits.m_host = repeat(2, std::size_t(options.m_repeats), options.m_seconds,
                            [&]
                            {
-                               const double ms = refit.run(method);
+                               const double ms = refit.run();
                                refits.m_kernels.add(totalMs(refit.launches()));
                                refits.m_launches.resize(refit.launches().size());
                                for (std::size_t i = 0; i < refits.m_launches.size(); ++i)
@@ -83,18 +82,22 @@ Refits refitOnDevice(Device& device, TreeInput& input, const Tree& tree, RefitMe
     return refits;
 }
 
-Samples refitOnOneThread(Tree& tree, const TreeInput& input, const StudyOptions& options)
+Refits refitOnOneThread(Tree tree, const TreeInput& input, const StudyOptions& options, bool& valid)
 {
     const std::vector<float> noRadius(1, 0.0f);
+    const float* moved = input.m_moved.data();
     std::size_t ignored = 0;
-    return repeat(2, std::size_t(options.m_repeats), options.m_seconds,
-                  [&]
-                  {
-                      const Clock::time_point start = Clock::now();
-                      refitTreeOnHost(tree, input.m_triangles, input.m_positions.data(), input.m_positions.data(),
-                                      noRadius, ignored);
-                      return millisecondsSince(start);
-                  });
+    Refits refits;
+    refits.m_host = repeat(2, std::size_t(options.m_repeats), options.m_seconds,
+                           [&]
+                           {
+                               const Clock::time_point start = Clock::now();
+                               refitTreeOnHost(tree, input.m_triangles, moved, moved, noRadius, ignored);
+                               return millisecondsSince(start);
+                           });
+    refits.m_hash = treeHash(tree);
+    valid = whyInvalid(tree.m_nodes, 0, tree.m_order, input.m_triangles, moved, noRadius).empty();
+    return refits;
 }
 
 namespace
@@ -123,7 +126,7 @@ void addLaunches(const RefitVariant& variant, const Refits& refits, const Row& i
 }
 
 void addDeviceRows(Device& device, TreeInput& input, const Tree& tree, const std::string& model,
-                   const RefitVariant& variant, const StudyOptions& options, Table& table)
+                   const RefitVariant& variant, const std::string& expected, const StudyOptions& options, Table& table)
 {
     const Refits refits = refitOnDevice(device, input, tree, variant.m_method, options);
     Row row = treeRow("refit", model, input.triangleCount(), variant.m_name);
@@ -135,7 +138,7 @@ void addDeviceRows(Device& device, TreeInput& input, const Tree& tree, const std
     const Row described = row;
     refits.m_host.fill(row);
     refits.m_kernels.fill(row, "kernel_");
-    judgeRow(row, treeHash(tree));
+    judgeRow(row, expected);
     table.add(row);
     if (row["valid"] == "yes") addLaunches(variant, refits, described, table);
 }
@@ -147,21 +150,21 @@ void studyRefit(const StudyOptions& options, Table& table)
     const auto measure = [&](const std::string& model, const TriangleMesh& mesh)
     {
         TreeInput input(mesh);
-        Tree tree = buildTreeOnHost(TreeMethods(), input.m_triangles, input.m_positions.data(), 1);
-        const std::string built = treeHash(tree);
-        const Samples times = refitOnOneThread(tree, input, options);
+        const Tree tree = buildTreeOnHost(TreeMethods(), input.m_triangles, input.m_positions.data(), 1);
+        bool valid = false;
+        const Refits host = refitOnOneThread(tree, input, options, valid);
         Row row = treeRow("refit", model, input.triangleCount(), "host");
         row["backend"] = "host";
         row["device"] = "host";
         row["threads"] = 1;
-        row["hash"] = treeHash(tree);
-        times.fill(row);
-        judgeRow(row, built);
+        row["hash"] = host.m_hash;
+        host.m_host.fill(row);
+        judgeRow(row, valid ? host.m_hash : "that of a valid tree");
         table.add(row);
         if (!device) return;
         for (const RefitVariant& variant :
              {RefitVariant{"thesis: launch per level", RefitMethod::Levels}, {"subtrees", RefitMethod::Subtrees}})
-            addDeviceRows(*device, input, tree, model, variant, options, table);
+            addDeviceRows(*device, input, tree, model, variant, host.m_hash, options, table);
     };
     forEachModel(options, measure);
 }

@@ -40,7 +40,8 @@ public:
         const std::vector<float> zero(1, 0.0f);
         m_refit.create(device, studyPrograms(device)("refit"));
         m_refit.makeLevels(device, shape.m_layout, m_levels);
-        m_nodes.assign(device, shape.m_nodes);
+        const std::vector<BvhNode> empty = makeBvhNodes(shape.m_layout);  // the host's are refitted already
+        m_nodes.assign(device, empty);
         m_order.assign(device, shape.m_order);
         m_zero.assign(device, zero);
         m_counters.reserve(device, 1);

@@ -84,7 +84,8 @@ ProgramLoader studyPrograms(Device& device)
 
 TreeInput::TreeInput(const TriangleMesh& mesh)
     : m_triangles(buildTopology(mesh.m_triangles.data(), mesh.triangleCount(), mesh.vertexCount()).m_triangles),
-      m_positions(mesh.m_positions)
+      m_positions(mesh.m_positions),
+      m_moved(refitPositions(mesh.m_positions))
 {
 }
 

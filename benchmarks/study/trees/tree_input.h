@@ -41,6 +41,7 @@ struct TreeInput
 
     std::vector<Triangle> m_triangles;
     std::vector<float> m_positions;  // m, x y z per vertex
+    std::vector<float> m_moved;      // where refits find them: refitPositions()
     Buffer<Triangle> m_triangleBuffer;
     Buffer<float> m_positionBuffer;
 };

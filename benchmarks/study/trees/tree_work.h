@@ -19,7 +19,7 @@ struct Builds
 };
 Builds buildOnDevice(Device& device, TreeInput& input, const TreeMethods& methods, const StudyOptions& options);
 
-// What repeated refits of one tree took.
+// What repeated refits of one tree took, from TreeInput::m_positions to m_moved.
 struct Refits
 {
     Samples m_host;                    // from positions in host memory to the refitted tree, ms
@@ -31,6 +31,6 @@ struct Refits
 Refits refitOnDevice(Device& device, TreeInput& input, const Tree& tree, RefitMethod method,
                      const StudyOptions& options);
 
-// ms.
-Samples refitOnOneThread(Tree& tree, const TreeInput& input, const StudyOptions& options);
+// Likewise, on the host: m_host and m_hash. valid: whether every volume then is exactly that of its triangles.
+Refits refitOnOneThread(Tree tree, const TreeInput& input, const StudyOptions& options, bool& valid);
 }  // namespace drape::bench

@@ -11,8 +11,8 @@ namespace
 {
 // As on the device, see front_traversal.cpp.
 constexpr std::uint32_t kRaiseInterval = 8;
-// A front of more pairs is not kept, so that a crowd of triangles does not take memory twice: the next step begins at the
-// roots.
+// A front of more pairs is not kept, so that a crowd of triangles does not take memory twice: the next step begins at
+// the roots.
 constexpr std::size_t kMostFront = 1 << 22;
 }  // namespace
 
@@ -57,10 +57,7 @@ struct HostTraversal::Step
     }
 };
 
-HostTraversal::HostTraversal(Traversal traversal)
-    : m_traversal(traversal == Traversal::Auto ? Traversal::Front : traversal)
-{
-}
+HostTraversal::HostTraversal(Traversal traversal) : m_traversal(resolve(traversal)) {}
 
 void HostTraversal::setObstacles(const BroadPhaseSide& obstacle)
 {

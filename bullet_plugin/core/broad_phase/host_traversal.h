@@ -25,6 +25,11 @@ class HostTraversal
 public:
     // Groups is Pairs with the fixed rule of the front; WideLeaves and WideGroups are the same.
     explicit HostTraversal(Traversal traversal = Traversal::Auto);
+    // What Auto is here.
+    static Traversal resolve(Traversal traversal)
+    {
+        return traversal == Traversal::Auto ? Traversal::Front : traversal;
+    }
 
     // New links in the obstacles' hierarchy, or new volumes.
     void setObstacles(const BroadPhaseSide& obstacle);

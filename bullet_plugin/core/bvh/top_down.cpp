@@ -17,6 +17,11 @@ constexpr cl_uint kLargeBlock = 2048;
 constexpr std::size_t kGroupsPerUnit = 32;
 // Nodes a work-group takes at most: the list of those it puts aside must fit into local memory beside the rest.
 constexpr std::size_t kNodesPerGroup = 512;
+// Of the median's pivot, a histogram a digit, as in kernels/top_down_large.cl.
+constexpr cl_uint kMedianBits = 8;
+constexpr std::size_t kMedianBins = 1 << kMedianBits;
+constexpr cl_uint kCellBits = 24;
+static_assert(DRAPE_CENTROID_CELLS == 1u << kCellBits && kCellBits % kMedianBits == 0, "digits make up a cell");
 // The least group of the adaptive switch, the thesis's last.
 constexpr std::uint32_t kLeastGroup = 16;
 
@@ -33,11 +38,13 @@ cl::LocalSpaceArg words(std::size_t group)
     return cl::Local(group * sizeof(cl_uint));
 }
 
-std::uint32_t groupSizeFor(const TopDownSettings& settings, cl_uint count, std::uint32_t nodes)
+// The thesis's estimate of a level's nodes: those of a full tree. On the last levels it says few triangles a node, as
+// it should, though they have few nodes.
+std::uint32_t groupSizeFor(const TopDownSettings& settings, cl_uint count, cl_uint depth)
 {
     std::uint32_t size = settings.m_groupSize;
     if (!settings.m_adaptiveGroups) return size;
-    const std::uint32_t mean = count / nodes;
+    const std::uint32_t mean = count >> std::min<cl_uint>(depth, 31);
     while (size > kLeastGroup && size / 2 >= mean)
         size /= 2;
     return size;
@@ -58,6 +65,8 @@ void TopDownStage::create(Device& device, const ProgramLoader& load)
     const cl::Program large = load("top_down_large");
     m_largeSums.create(device, large, "largeSums");
     m_largePivots.create(device, large, "largePivots");
+    m_largeHistograms.create(device, large, "largeHistograms");
+    m_largeMedianDigits.create(device, large, "largeMedianDigits");
     m_largeCounts.create(device, large, "largeCounts");
     m_largeReorder.create(device, large, "largeReorder");
     m_largeVolumes.create(device, large, "largeVolumes");
@@ -80,6 +89,11 @@ void TopDownStage::reserve(Device& device, cl_uint count, const TopDownSettings&
     m_large.reserve(device, large);
     m_pivots.reserve(device, large);
     m_blocks.reserve(device, blocks);
+    if (settings.m_medianSplit)
+    {
+        m_histograms.reserve(device, large * kMedianBins);
+        m_medianBelow.reserve(device, large);
+    }
     m_sums.reserve(device, blocks);
     m_leftCounts.reserve(device, blocks);
     m_hulls.reserve(device, 2 * blocks);
@@ -99,6 +113,33 @@ void TopDownStage::buildRoot(Device& device, cl_uint count, const TopDownSetting
     }
     launch(device, m_root, group, group, tree.m_nodes.handle(), m_volumes.handle(), count, count, m_queue.handle(),
            floatsOfHulls(group));
+}
+
+void TopDownStage::findMeans(Device& device, cl_uint depth, const TopDownSettings& settings, DeviceTree& tree)
+{
+    const std::size_t group = settings.m_groupSize;
+    launch(device, m_largeSums, m_blockTable.size() * group, group, tree.m_nodes.handle(), tree.m_order.handle(),
+           m_centroids.handle(), m_queue.handle(), m_large.handle(), m_blocks.handle(), m_sums.handle(), sums(group));
+    launch(device, m_largePivots, m_largeTable.size() * group, group, m_queue.handle(), m_large.handle(),
+           m_sums.handle(), m_pivots.handle(), depth, cl_uint(settings.m_leafSize), sums(group));
+}
+
+void TopDownStage::findMedians(Device& device, cl_uint depth, const TopDownSettings& settings, DeviceTree& tree)
+{
+    const std::size_t group = settings.m_groupSize, nodes = m_largeTable.size();
+    m_histograms.fill(device, 0, nodes * kMedianBins);
+    m_medianBelow.fill(device, 0, nodes);
+    m_pivots.fill(device, 0, nodes);
+    for (cl_uint shift = kCellBits; shift > 0;)
+    {
+        shift -= kMedianBits;
+        launch(device, m_largeHistograms, m_blockTable.size() * group, group, tree.m_nodes.handle(),
+               tree.m_order.handle(), m_centroids.handle(), m_queue.handle(), m_large.handle(), m_blocks.handle(),
+               m_pivots.handle(), shift, m_histograms.handle(), words(kMedianBins));
+        launch(device, m_largeMedianDigits, nodes * group, group, m_queue.handle(), m_large.handle(),
+               m_histograms.handle(), m_pivots.handle(), m_medianBelow.handle(), shift, depth,
+               cl_uint(settings.m_leafSize), words(group));
+    }
 }
 
 // While a level may hold large nodes the host has its queue, and deals their triangles out in blocks.
@@ -126,10 +167,10 @@ void TopDownStage::splitLarge(Device& device, cl_uint depth, const TopDownSettin
     m_blocks.write(device, blocks.data(), blocks.size());
     const std::size_t group = settings.m_groupSize;
     const std::size_t onBlocks = blocks.size() * group, onNodes = large.size() * group;
-    launch(device, m_largeSums, onBlocks, group, tree.m_nodes.handle(), tree.m_order.handle(), m_centroids.handle(),
-           m_queue.handle(), m_large.handle(), m_blocks.handle(), m_sums.handle(), sums(group));
-    launch(device, m_largePivots, onNodes, group, m_queue.handle(), m_large.handle(), m_sums.handle(),
-           m_pivots.handle(), depth, cl_uint(settings.m_leafSize), sums(group));
+    if (settings.m_medianSplit)
+        findMedians(device, depth, settings, tree);
+    else
+        findMeans(device, depth, settings, tree);
     launch(device, m_largeCounts, onBlocks, group, tree.m_nodes.handle(), tree.m_order.handle(), m_centroids.handle(),
            m_queue.handle(), m_large.handle(), m_blocks.handle(), m_pivots.handle(), m_leftCounts.handle(),
            sums(group));
@@ -148,9 +189,8 @@ void TopDownStage::splitLevel(Device& device, cl_uint depth, const TopDownSettin
 {
     TopDownLevel& level = m_levels.back();
     const cl_uint nodes = level.m_nodes;
-    const bool large = settings.m_largeNodes && !settings.m_medianSplit;
-    const cl_uint largeSize = large ? settings.m_largeSize : ~0u;
-    if (large && !m_open.empty()) splitLarge(device, depth, settings, tree);
+    const cl_uint largeSize = settings.m_largeNodes ? settings.m_largeSize : ~0u;
+    if (settings.m_largeNodes && !m_open.empty()) splitLarge(device, depth, settings, tree);
     if (level.m_largeNodes == nodes) return;
     const cl_uint median = settings.m_medianSplit ? 1 : 0, leafSize = settings.m_leafSize;
     const bool direct = settings.m_smallSplits && float(level.m_smallNodes) >= settings.m_smallShare * float(nodes);
@@ -161,7 +201,7 @@ void TopDownStage::splitLevel(Device& device, cl_uint depth, const TopDownSettin
                nodes, m_children.handle(), depth, leafSize, median, largeSize);
         return;
     }
-    const std::size_t group = groupSizeFor(settings, tree.m_leafCount, nodes);
+    const std::size_t group = groupSizeFor(settings, tree.m_leafCount, depth);
     level.m_groupSize = std::uint32_t(group);
     const std::size_t wanted = std::max(kGroupsPerUnit * device.computeUnits(), nodes / kNodesPerGroup + 1);
     const cl_uint nodesPerGroup = cl_uint((nodes + wanted - 1) / wanted);

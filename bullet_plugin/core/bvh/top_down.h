@@ -53,6 +53,9 @@ private:
     void buildRoot(Device& device, cl_uint count, const TopDownSettings& settings, DeviceTree& tree);
     void splitLevel(Device& device, cl_uint depth, const TopDownSettings& settings, DeviceTree& tree);
     void splitLarge(Device& device, cl_uint depth, const TopDownSettings& settings, DeviceTree& tree);
+    // Pivots of the level's large nodes, by blocks of their triangles: the means, or the medians.
+    void findMeans(Device& device, cl_uint depth, const TopDownSettings& settings, DeviceTree& tree);
+    void findMedians(Device& device, cl_uint depth, const TopDownSettings& settings, DeviceTree& tree);
     void compact(Device& device, const TopDownSettings& settings);
     template <typename... Arguments>
     void launch(Device& device, Kernel& kernel, std::size_t items, std::size_t group, Arguments&&... arguments)
@@ -63,7 +66,8 @@ private:
 
     Kernel m_summaries, m_root, m_splitGroups, m_splitItems;
     Kernel m_compactSmall, m_compactBlocks, m_compactScan, m_compactMove;
-    Kernel m_largeSums, m_largePivots, m_largeCounts, m_largeReorder, m_largeVolumes, m_largeLinks, m_rootBlocks;
+    Kernel m_largeSums, m_largePivots, m_largeHistograms, m_largeMedianDigits, m_largeCounts, m_largeReorder,
+        m_largeVolumes, m_largeLinks, m_rootBlocks;
 
     std::vector<TopDownLevel> m_levels;
     std::vector<OpenNode> m_open;  // the queue on the host, while it may hold large nodes
@@ -72,7 +76,7 @@ private:
     Buffer<Vec3> m_centroids;
     Buffer<Dop> m_volumes, m_hulls;
     Buffer<OpenNode> m_queue, m_children;
-    Buffer<cl_uint> m_other, m_level, m_places, m_blockCounts, m_pivots, m_leftCounts;
+    Buffer<cl_uint> m_other, m_level, m_places, m_blockCounts, m_pivots, m_leftCounts, m_histograms, m_medianBelow;
     Buffer<cl_ulong> m_sums;
     Buffer<LargeNode> m_large;
     Buffer<LargeBlock> m_blocks;

@@ -56,6 +56,9 @@ struct DeviceTree
     Buffer<cl_uint> m_splits;
     Buffer<cl_uint> m_order;
     Buffer<cl_uint> m_tops;  // see refitTopsSerial in kernels/tree_refit.cl
+    // As TreeHeights; only where it is refitted by levels.
+    Buffer<cl_uint> m_heightSplits;
+    std::vector<BvhHeight> m_heights;
     cl_uint m_leafCount = 0;
 
     void reserve(Device& device, cl_uint leafCount);

@@ -19,6 +19,7 @@ Tree buildTreeOnHost(const TreeMethods& methods, const std::vector<Triangle>& tr
     {
         tree = buildRadixTreeOnHost(triangles, positions, bits, methods.m_builder == TreeBuilder::Balanced);
     }
+    if (methods.m_builder == TreeBuilder::TopDown) return tree;  // has its volumes
     std::size_t ignored = 0;
     const std::vector<float> noRadius(meshCount, 0.0f);
     refitTreeOnHost(tree, triangles, positions, positions, noRadius, ignored);
@@ -61,11 +62,12 @@ void TreeBuilderStage::enqueue(Device& device, Buffer<Triangle>& triangles, Buff
             m_radix.enqueue(device, triangles, positions, count, bits, m_methods.m_builder == TreeBuilder::Balanced,
                             shape, tree);
     }
-    m_refit.listTops(device, tree, shape);
+    m_refit.prepare(device, tree, m_methods);
+    if (m_methods.m_builder == TreeBuilder::TopDown) return;  // has its volumes
     m_noRadius.reserve(device, meshCount);
     m_noRadius.fill(device, 0, meshCount);
     m_counters.reserve(device, 1);
     m_counters.fill(device, 0, 1);
-    m_refit.enqueue(device, tree, {triangles, positions, positions, m_noRadius, m_counters}, shape);
+    m_refit.enqueue(device, tree, {triangles, positions, positions, m_noRadius, m_counters}, m_methods);
 }
 }  // namespace drape

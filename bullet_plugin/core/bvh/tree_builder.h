@@ -17,15 +17,15 @@ Tree buildTreeOnHost(const TreeMethods& methods, const std::vector<Triangle>& tr
 class TreeBuilderStage
 {
 public:
-    // Makes the kernels of the one builder that methods name, and those of the refit.
+    // Makes the kernels of the one builder that methods name, and those of the refit that gives its nodes volumes.
     void create(Device& device, const ProgramLoader& load, const TreeMethods& methods);
 
-    // Returns after enqueueing where the builder needs no answer in between (Balanced, Radix); TopDown waits once a
-    // level and Ploc once in some rounds.
+    // Order, links and volumes, and what the methods' refit of the tree needs (TreeRefitStage::prepare). Returns after
+    // enqueueing where builder and refit need no answer in between (Balanced, Radix; Subtrees); TopDown waits once a
+    // level and Ploc once in some rounds. TopDown's own kernels make the volumes, the other builders' a refit makes.
     void enqueue(Device& device, Buffer<Triangle>& triangles, Buffer<float>& positions, cl_uint count,
                  std::size_t meshCount, DeviceTree& tree);
 
-    TreeRefitStage& refit() { return m_refit; }
     // Of the last build; empty unless the builder is TopDown.
     const std::vector<TopDownLevel>& topDownLevels() const { return m_topDown.levels(); }
 

@@ -53,6 +53,22 @@ void TreeRefitStage::create(Device& device, const ProgramLoader& load)
     m_level.create(device, program, "refitTreeLevel");
 }
 
+void TreeRefitStage::prepare(Device& device, DeviceTree& tree, const TreeMethods& methods)
+{
+    if (methods.m_refit == RefitMethod::Levels)
+        listHeights(device, tree);
+    else
+        listTops(device, tree, methods.m_workShape);
+}
+
+void TreeRefitStage::enqueue(Device& device, DeviceTree& tree, LeafBuffers leaves, const TreeMethods& methods)
+{
+    if (methods.m_refit == RefitMethod::Levels)
+        enqueueLevels(device, tree, leaves);
+    else
+        enqueueSubtrees(device, tree, leaves, methods.m_workShape);
+}
+
 void TreeRefitStage::listTops(Device& device, DeviceTree& tree, WorkShape shape)
 {
     if (tree.m_leafCount <= DRAPE_GROVE_LEAVES) return;
@@ -71,7 +87,7 @@ void TreeRefitStage::listTops(Device& device, DeviceTree& tree, WorkShape shape)
                             cl_uint(windows), tree.m_tops.handle());
 }
 
-void TreeRefitStage::enqueue(Device& device, DeviceTree& tree, LeafBuffers leaves, WorkShape shape)
+void TreeRefitStage::enqueueSubtrees(Device& device, DeviceTree& tree, LeafBuffers leaves, WorkShape shape)
 {
     const cl_uint count = tree.m_leafCount;
     const std::size_t windows = windowsOf(count, DRAPE_SUBTREE_LEAVES);
@@ -103,22 +119,23 @@ void TreeRefitStage::enqueue(Device& device, DeviceTree& tree, LeafBuffers leave
     }
 }
 
-void TreeRefitStage::uploadHeights(Device& device, const TreeHeights& heights, Heights& uploaded) const
+void TreeRefitStage::listHeights(Device& device, DeviceTree& tree)
 {
-    uploaded.m_splits.assign(device, heights.m_splits);
-    uploaded.m_ranges = heights.m_ranges;
-    device.wait();
+    const TreeHeights heights = heightsOf(tree.download(device));
+    tree.m_heightSplits.assign(device, heights.m_splits);
+    tree.m_heights = heights.m_ranges;
+    device.wait();  // heights is a local
 }
 
-void TreeRefitStage::enqueueByHeight(Device& device, DeviceTree& tree, LeafBuffers leaves, Heights& heights)
+void TreeRefitStage::enqueueLevels(Device& device, DeviceTree& tree, LeafBuffers leaves)
 {
     m_leaves.launch(device, tree.m_leafCount, kGroup, tree.m_nodes.handle(), tree.m_order.handle(),
                     leaves.m_triangles.handle(), leaves.m_start.handle(), leaves.m_end.handle(),
                     leaves.m_meshRadius.handle(), leaves.m_counters.handle(), tree.m_leafCount);
-    for (const BvhHeight& range : heights.m_ranges)
+    for (const BvhHeight& range : tree.m_heights)
     {
         m_level.launch(device, range.m_count, kGroup, tree.m_nodes.handle(), tree.m_splits.handle(),
-                       heights.m_splits.handle(), cl_uint(range.m_first), cl_uint(range.m_count));
+                       tree.m_heightSplits.handle(), cl_uint(range.m_first), cl_uint(range.m_count));
     }
 }
 }  // namespace drape

@@ -30,22 +30,19 @@ class TreeRefitStage
 public:
     void create(Device& device, const ProgramLoader& load);
 
-    // Lists the splits that the last launch of enqueue() climbs. Once per topology; returns after enqueueing.
-    void listTops(Device& device, DeviceTree& tree, WorkShape shape);
-    // Two launches up to 4,096 leaves, else three; one where subtrees suffice. Returns after enqueueing.
-    void enqueue(Device& device, DeviceTree& tree, LeafBuffers leaves, WorkShape shape);
-
-    // The splits of heightsOf() on the device.
-    struct Heights
-    {
-        Buffer<cl_uint> m_splits;
-        std::vector<BvhHeight> m_ranges;
-    };
-    void uploadHeights(Device& device, const TreeHeights& heights, Heights& uploaded) const;  // waits
-    // A launch per height. Returns after enqueueing.
-    void enqueueByHeight(Device& device, DeviceTree& tree, LeafBuffers leaves, Heights& heights);
+    // Lists the splits that enqueue() goes through by the method and the shape that methods name. Once per topology.
+    // Returns after enqueueing with Subtrees; waits with Levels, whose heights the host finds.
+    void prepare(Device& device, DeviceTree& tree, const TreeMethods& methods);
+    // The same methods as those that the tree was prepared for. Subtrees: two launches up to 4,096 leaves, else three;
+    // one where subtrees suffice. Levels: one for the leaves and one per height. Returns after enqueueing.
+    void enqueue(Device& device, DeviceTree& tree, LeafBuffers leaves, const TreeMethods& methods);
 
 private:
+    void listTops(Device& device, DeviceTree& tree, WorkShape shape);
+    void listHeights(Device& device, DeviceTree& tree);
+    void enqueueSubtrees(Device& device, DeviceTree& tree, LeafBuffers leaves, WorkShape shape);
+    void enqueueLevels(Device& device, DeviceTree& tree, LeafBuffers leaves);
+
     Kernel m_subtreesSerial, m_grovesSerial, m_topsSerial, m_subtreesGroups, m_grovesGroups, m_topsGroup;
     Kernel m_countTops, m_listTopsSerial, m_listTopsGroups, m_leaves, m_level;
     Buffer<cl_uint> m_topCounts;

@@ -34,7 +34,7 @@ DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& set
         const char* const counting = m_settings.m_methods.m_countTests ? "#define DRAPE_COUNT_VISITS\n" : "";
         m_broadPhase.create(*m_device, m_settings.m_methods.m_traversal,
                             [&](const char* name) { return program(name, counting); });
-        if (watchesClothTree(m_settings))
+        if (watchesClothTree(m_settings, false))
             m_treeCost.create(*m_device, [this](const char* name) { return program(name); });
     }
     m_narrowPhase.create(*m_device, ofWidth, patches(), m_settings.m_reduceContacts);
@@ -99,7 +99,7 @@ void DeviceBackend::warmUp()
     pairs.m_thickness = {0.1f};
     pairs.m_clothRadius = {0.1f};
     pairs.m_any = true;
-    pairs.m_measureTree = watchesClothTree(m_settings);
+    pairs.m_measureTree = watchesClothTree(m_settings, false);
     StepResult result;
     submit(scene, pairs);
     finish(scene, pairs, result);

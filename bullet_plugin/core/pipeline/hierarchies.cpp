@@ -6,8 +6,7 @@ namespace drape
 {
 void Pipeline::Implementation::buildHierarchy(MeshPool& pool, const float* positions, BvhLayout& layout) const
 {
-    TreeMethods methods;
-    methods.m_builder = m_settings.m_methods.m_treeBuilder;
+    const TreeMethods& methods = m_settings.m_methods.m_tree;
     const bool walked = m_report.m_onHost || !goesOverPatches(m_settings);
     if (methods.m_builder == TreeBuilder::Balanced || !walked)
         layout = makeBvhLayout(std::uint32_t(pool.order().size()));
@@ -18,7 +17,7 @@ void Pipeline::Implementation::buildHierarchy(MeshPool& pool, const float* posit
 void Pipeline::Implementation::useHierarchy(const Tree& tree, MeshPool& pool, BvhLayout& layout) const
 {
     // Pairs of neighbours in order is what a layout is by itself.
-    const bool balanced = m_settings.m_methods.m_treeBuilder == TreeBuilder::Balanced;
+    const bool balanced = m_settings.m_methods.m_tree.m_builder == TreeBuilder::Balanced;
     layout = balanced ? makeBvhLayout(tree.leafCount()) : makeBvhLayout(tree.m_nodes, 0);
     pool.reorder(tree.m_order);
 }
@@ -38,7 +37,7 @@ void Pipeline::Implementation::watchTree()
     const MeshPool& cloths = m_scene.m_cloths;
     if (!m_treeWatch.isDecayed(m_result.m_treeCost, m_settings.m_methods.m_rebuildDecay)) return;
     const float* end = m_scene.m_clothEnd.data();
-    m_treeWatch.rebuild(m_settings.m_methods.m_treeBuilder, cloths.triangles(),
+    m_treeWatch.rebuild(m_settings.m_methods.m_tree, cloths.triangles(),
                         std::vector<float>(end, end + 3 * cloths.vertexCount()), cloths.meshCount());
 }
 }  // namespace drape

@@ -161,7 +161,8 @@ void Pipeline::Implementation::collectPairs()
                                       kEdgePad * m_scene.m_obstacles.mesh(obstacle).m_longestEdge);
         m_stepPairs.m_any = true;
     }
-    m_stepPairs.m_measureTree = m_stepPairs.m_any && watchesClothTree(m_settings) && m_treeWatch.isDue();
+    m_stepPairs.m_measureTree =
+        m_stepPairs.m_any && watchesClothTree(m_settings, m_report.m_onHost) && m_treeWatch.isDue();
     collectMotions();
     collectTubes();
     m_pairs.clear();

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <utility>
 
+#include "bullet_plugin/core/broad_phase/host_traversal.h"
 #include "bullet_plugin/core/bvh/tree_builder.h"
 #include "bullet_plugin/core/bvh/tree_cost.h"
 
@@ -19,9 +20,11 @@ bool goesOverPatches(const Settings& settings)
     return !settings.m_reportIntersections && settings.m_methods.m_traversal == Traversal::Auto;
 }
 
-bool watchesClothTree(const Settings& settings)
+bool watchesClothTree(const Settings& settings, bool onHost)
 {
-    const Traversal traversal = settings.m_methods.m_traversal;
+    Traversal traversal = settings.m_methods.m_traversal;
+    // On a device none that Auto stands for walks it: device_backend.h and broad_phase.cpp.
+    if (onHost) traversal = HostTraversal::resolve(traversal);
     const bool walksIt = traversal == Traversal::Pairs || traversal == Traversal::Single ||
                          traversal == Traversal::Groups || traversal == Traversal::Front;
     return walksIt && settings.m_methods.m_rebuildDecay > 0.0f;
@@ -45,11 +48,9 @@ bool TreeWatch::isDecayed(double cost, float rebuildDecay)
     return !m_rebuilt.valid() && drape::isDecayed(cost, m_costAtBuild, rebuildDecay);
 }
 
-void TreeWatch::rebuild(TreeBuilder builder, std::vector<Triangle> triangles, std::vector<float> positions,
+void TreeWatch::rebuild(const TreeMethods& methods, std::vector<Triangle> triangles, std::vector<float> positions,
                         std::size_t meshCount)
 {
-    TreeMethods methods;
-    methods.m_builder = builder;
     // Where there is no thread to be had, the step that takes the tree builds it.
     m_rebuilt = std::async(std::launch::async | std::launch::deferred,
                            [methods, meshCount, triangles = std::move(triangles), positions = std::move(positions)]

@@ -16,8 +16,8 @@ namespace drape
 {
 // Whether the step goes over patches where it has a device; reported intersections are found among pairs of triangles.
 bool goesOverPatches(const Settings& settings);
-// Whether a step's traversal walks the cloths' hierarchy and its decay matters.
-bool watchesClothTree(const Settings& settings);
+// Whether a step's traversal walks the cloths' hierarchy and its decay matters. Auto is another traversal on the host.
+bool watchesClothTree(const Settings& settings, bool onHost);
 
 class TreeWatch
 {
@@ -31,7 +31,7 @@ public:
     bool isDecayed(double cost, float rebuildDecay);
 
     // Starts to build from copies of its own. positions: m, x y z per vertex.
-    void rebuild(TreeBuilder builder, std::vector<Triangle> triangles, std::vector<float> positions,
+    void rebuild(const TreeMethods& methods, std::vector<Triangle> triangles, std::vector<float> positions,
                  std::size_t meshCount);
     // Gives the new hierarchy once, when it is there.
     bool take(Tree& tree);

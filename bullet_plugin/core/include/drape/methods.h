@@ -17,7 +17,7 @@ enum class TreeBuilder
 
 enum class RefitMethod
 {
-    Levels,   // a launch per height (the thesis)
+    Levels,   // a launch per height (the thesis); waits once per topology
     Subtrees  // whole subtrees per work-group: three launches, two for fewer than 4,097 triangles
 };
 
@@ -32,11 +32,14 @@ enum class WorkShape
 // The thesis's construction and its optimisations, each a switch.
 struct TopDownSettings
 {
-    bool m_medianSplit = false;        // at the median of the centroids instead of the mean
-    bool m_adaptiveGroups = true;      // work-groups shrink with the mean size of a level's nodes
-    bool m_smallSplits = true;         // small nodes get a work-item instead of a work-group
-    bool m_largeNodes = true;          // large nodes get many work-groups
-    std::uint32_t m_leafSize = 1;      // ≥ 1: nodes of at most so many triangles are halved without looking
+    bool m_medianSplit = false;    // at the median of the centroids instead of the mean
+    bool m_adaptiveGroups = true;  // work-groups shrink with what a level's nodes would have in a full tree
+    bool m_smallSplits = true;     // small nodes get a work-item instead of a work-group
+    bool m_largeNodes = true;      // large nodes get many work-groups
+    // The thesis's leaf threshold, ≥ 1: nodes of at most so many triangles are no longer split by the rule, but halved
+    // as they lie. A hierarchy's leaves always are single triangles, which is what traversals hand on; leaves of more
+    // are measured apart (part `shape` of the study).
+    std::uint32_t m_leafSize = 1;
     std::uint32_t m_groupSize = 128;   // work-items of a group, a power of two, 16 to 256; the thesis's is 128
     std::uint32_t m_smallSize = 55;    // triangles up to which a node is small (the thesis's)
     float m_smallShare = 0.3f;         // share of small nodes from which a level has a work-item per node (its 30 %)
@@ -44,12 +47,16 @@ struct TopDownSettings
     std::uint32_t m_compactionGroup = 256;  // work-items of the compaction's groups, a power of two, ≤ 256
 };
 
+// How hierarchies of triangles are built and refitted. A pipeline builds its hierarchies on the host (core/bvh/
+// tree_builder.h: buildTreeOnHost), so that of these it goes by the builder, m_mortonBits, m_plocRadius and the rule of
+// m_topDown (m_medianSplit, m_leafSize), and refits them by levels (core/bvh/refit.h). The rest says how hierarchies
+// are built and refitted on a device (TreeBuilderStage, TreeRefitStage), which the study measures.
 struct TreeMethods
 {
     TreeBuilder m_builder = TreeBuilder::Balanced;
     RefitMethod m_refit = RefitMethod::Subtrees;
     WorkShape m_workShape = WorkShape::Device;
-    std::uint32_t m_mortonBits = 30;  // 30 or 63; Radix and Ploc
+    std::uint32_t m_mortonBits = 30;  // 30 or 63; all but TopDown
     std::uint32_t m_plocRadius = 8;   // neighbours looked at on either side; 1 to 32. Larger: better trees, slower
     TopDownSettings m_topDown;
 };
@@ -76,11 +83,11 @@ struct Methods
 
     // Who builds the hierarchies that traversals walk; nothing where the step goes over patches. All but Balanced build
     // on the host whenever meshes come or go, over a side's meshes together, as their positions were given.
-    TreeBuilder m_treeBuilder = TreeBuilder::Balanced;
+    TreeMethods m_tree;
 
     // The cloths' hierarchy is built anew, beside the steps, once its nodes' areas over the root's have grown by this
-    // factor since it was built: see core/pipeline/tree_watch.h. 0: never. Only where a traversal walks it (Pairs,
-    // Single, Groups and Front).
+    // factor since it was built: see core/pipeline/tree_watch.h. 0: never. Only where a traversal walks it: Pairs,
+    // Single, Groups and Front, which is the host's Auto.
     float m_rebuildDecay = 1.5f;
 
     // Count the broad phase's volume tests (StepStatistics::m_volumeTests). Costs an atomic a work-item.

@@ -14,7 +14,7 @@ enum class Backend
 {
     Auto,    // a GPU, else any OpenCL device, else the host
     OpenCl,  // an OpenCL device or an error
-    Host     // the same pure functions, run serially by the calling thread
+    Host     // the same pure functions, run serially by the calling thread (but Methods::m_rebuildDecay)
 };
 
 // How a step looks at the cloth's motion between its start and its end.
