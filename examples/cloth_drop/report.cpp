@@ -15,11 +15,11 @@ Json asJson(const TimeSummary& times)
 }
 
 // Sums over the run: what the broad phase left, what needed the continuous test, contacts solved and left out,
-// hierarchies of the cloth built anew, and steps with nothing to do.
+// hierarchies of the cloth built anew, steps with nothing to do, and steps that the host back end ran.
 Json workJson(const RunRecord& record)
 {
     std::uint64_t candidates = 0, swept = 0, contacts = 0, implied = 0;
-    std::size_t rebuilds = 0, skipped = 0;
+    std::size_t rebuilds = 0, skipped = 0, onHost = 0;
     for (const StepRecord& step : record.m_steps)
     {
         candidates += step.m_times.m_candidates;
@@ -28,6 +28,7 @@ Json workJson(const RunRecord& record)
         implied += step.m_times.m_reduced;
         rebuilds += step.m_times.m_rebuilds;
         skipped += step.m_times.m_skipped;
+        onHost += step.m_times.m_onHost;
     }
     Json json;
     json["candidates"] = candidates;
@@ -36,6 +37,7 @@ Json workJson(const RunRecord& record)
     json["contacts_left_out"] = implied;
     json["hierarchy_rebuilds"] = rebuilds;
     json["steps_skipped"] = skipped;
+    json["steps_on_host"] = onHost;
     return json;
 }
 

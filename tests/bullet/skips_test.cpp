@@ -1,6 +1,6 @@
 // What the adapter does not look at again changes nothing: obstacles whose vertices are not read anew, cloth that
-// sleeps, cloth that is pinned. Contacts and trajectories, bit for bit, with the skip and with it defeated, on every
-// back end.
+// sleeps, cloth that is pinned; and the device that a small scene does not use. Contacts and trajectories, bit for bit,
+// with the skip and with it defeated, on every back end.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -9,6 +9,7 @@
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
 #include "tests/support/backends.h"
+#include "tests/support/environment.h"
 
 namespace drape::test
 {
@@ -160,6 +161,37 @@ TEST_P(Skips, ClothThatIsPinned)
     EXPECT_EQ(hashOf(*pinned[0]), hashes[0]);
     pinned[1]->m_nodes.pop_back();
     EXPECT_EQ(hashOf(*pinned[1]), hashes[1]);
+}
+
+// A scene runs on the host until a second cloth makes it worth the device.
+TEST_P(Skips, TheDeviceWhereTheSceneIsTooSmallForIt)
+{
+    if (GetParam().m_device > 0) GTEST_SKIP() << "cost decides about the first device only";
+    const ScopedVariable noDevice("DRAPE_DEVICE", nullptr);
+    Settings settings;
+    settings.m_crossover = 16000;
+    SkipWorld byCost(settings), fixed(GetParam().m_settings);
+    std::size_t onHost = 0, onDevice = 0;
+    SkipWorld* worlds[2] = {&byCost, &fixed};
+    int steps = 0;
+    expectSame(byCost, fixed,
+               [&]
+               {
+                   const StepStatistics& statistics = byCost.m_plugin.statistics();
+                   if (!statistics.m_skipped) ++(statistics.m_onHost ? onHost : onDevice);
+                   for (int i = 0; i < 2 && steps == 30; ++i)
+                   {
+                       ClothSpec spec = clothAt(1.0, 0.05);
+                       spec.m_nodes = 61;
+                       worlds[i]->m_world.addCloth(spec);
+                   }
+                   ++steps;
+               });
+    const bool device = !listDevices().empty();
+    EXPECT_GT(onHost, 20u);
+    EXPECT_EQ(onDevice > 20u, device);
+    const std::string report = byCost.m_plugin.report();
+    EXPECT_EQ(report.find("16000") != std::string::npos, device) << report;
 }
 
 INSTANTIATE_TEST_SUITE_P(Backend, Skips, testing::ValuesIn(allBackends()), backendName);

@@ -19,6 +19,7 @@ struct PooledMesh
     MeshId m_id = kNoMesh;
     Topology m_topology;
     std::vector<float> m_positions;         // m, as last given: in its own frame where it has a place, else the world's
+    double m_area = 0;                      // m², of the triangles
     bool m_oneSided = false;                // obstacles only: see MeshDescription
     float m_coordinateStep = 0;             // m, obstacles only: distance of floats where it reaches farthest out
     std::vector<NormalCone> m_vertexCones;  // obstacles only

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "bullet_plugin/core/mesh/normal_cones.h"
+#include "scene_work.h"
 
 namespace drape
 {
@@ -33,6 +34,7 @@ PooledMesh Pipeline::Implementation::makeMesh(const MeshDescription& description
     mesh.m_id = m_nextId++;
     mesh.m_topology = buildTopology(description.m_triangles, description.m_triangleCount, description.m_vertexCount);
     mesh.m_positions.assign(description.m_positions, description.m_positions + 3 * description.m_vertexCount);
+    mesh.m_area = surfaceArea(mesh.m_topology.m_triangles, mesh.m_positions.data());
     if (m_deviceBackend)
     {
         mesh.m_order =
@@ -220,6 +222,7 @@ void Pipeline::Implementation::leaveDevice()
     m_report.m_device = DeviceInfo();
     m_report.m_device.m_name = "host";
     m_statistics.m_status |= kStepDeviceFailed;
+    m_choice.end();
     // The backend stays: the scene's pinned memory is its context's.
 }
 
@@ -242,7 +245,8 @@ std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& erro
     if (choice.m_onHost) return pipeline;
     std::unique_ptr<Device> device = Device::open(choice.m_index, error, settings.m_profileKernels);
     if (!device) return nullptr;
-    self.m_report.m_device = device->info();
+    self.m_report.m_device = self.m_openClDevice = device->info();
+    self.m_deviceReason = choice.m_reason;
     self.m_deviceBackend.reset(new DeviceBackend(std::move(device), settings));
     if (self.m_deviceBackend->device().failed())
     {
@@ -251,6 +255,7 @@ std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& erro
     }
     self.m_report.m_fromCache = self.m_deviceBackend->fromCache();
     self.m_report.m_buildMs = millisecondsSince(start);
+    if (self.costDecides(choice) && !self.beginChoice(*pipeline, error)) return nullptr;
     return pipeline;
 }
 
@@ -282,6 +287,8 @@ void Pipeline::remove(MeshId id)
     assert(!m_implementation->m_submitted);
     Scene& scene = m_implementation->m_scene;
     if (!scene.m_cloths.remove(id)) scene.m_obstacles.remove(id);
+    m_implementation->m_choice.forget(id);
+    m_implementation->m_notedPairs.clear();
 }
 
 void Pipeline::moveObstacle(MeshId id, const float* positions)
@@ -291,6 +298,8 @@ void Pipeline::moveObstacle(MeshId id, const float* positions)
     PooledMesh& mesh = scene.m_obstacles.mesh(scene.m_obstacles.slot(id));
     std::copy(positions, positions + mesh.m_positions.size(), mesh.m_positions.begin());
     m_implementation->measureObstacle(mesh);
+    mesh.m_area = surfaceArea(mesh.m_topology.m_triangles, positions);
+    m_implementation->m_notedPairs.clear();
     ++scene.m_obstacleMotion;
     m_implementation->joinObstacles();
 }
@@ -336,6 +345,7 @@ void Pipeline::submit()
     self.m_statistics = StepStatistics();
     self.joinScene();
     self.takeRebuilt();
+    self.chooseBackend();
     self.collectPairs();
     self.m_submitted = true;
     self.enqueue();
