@@ -28,14 +28,8 @@ RTCRay makeRay(const Vector3& origin, const Vector3& direction, double distance)
 }
 // Embree 4 dropped the context that version 3 asks for.
 #if RTC_VERSION_MAJOR >= 4
-void intersect(RTCScene scene, RTCRayHit& query)
-{
-    rtcIntersect1(scene, &query);
-}
-void occlude(RTCScene scene, RTCRay& ray)
-{
-    rtcOccluded1(scene, &ray);
-}
+void intersect(RTCScene scene, RTCRayHit& query) { rtcIntersect1(scene, &query); }
+void occlude(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray); }
 #else
 void intersect(RTCScene scene, RTCRayHit& query)
 {
