@@ -34,6 +34,8 @@ public:
         times.m_sweptTests = statistics.m_sweptTests;
         times.m_reduced = statistics.m_reduced;
         times.m_rebuilds = statistics.m_rebuilds;
+        times.m_clothsSkipped = statistics.m_clothsSkipped;
+        times.m_obstaclesKept = statistics.m_obstaclesKept;
         times.m_skipped = statistics.m_skipped;
         times.m_onHost = statistics.m_onHost;
         m_status |= statistics.m_status;

@@ -23,6 +23,8 @@ struct StepTimes
     std::size_t m_sweptTests = 0;
     std::size_t m_reduced = 0;
     std::size_t m_rebuilds = 0;
+    std::size_t m_clothsSkipped = 0;
+    std::size_t m_obstaclesKept = 0;
     bool m_skipped = false;
     bool m_onHost = false;
 };

@@ -27,6 +27,7 @@ struct PooledMesh
     MeshBox m_box = {};                  // m, of the positions, obstacles only
     float m_longestEdge = 0;             // m, obstacles only
     ObstaclePlacing m_placing;           // obstacles only
+    bool m_placedAnew = false;           // obstacles only: since the last step
     std::vector<std::uint32_t> m_order;  // leaf order, local triangles
     std::uint32_t m_firstVertex = 0;
     std::uint32_t m_firstTriangle = 0;

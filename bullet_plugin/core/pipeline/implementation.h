@@ -51,6 +51,7 @@ struct Pipeline::Implementation
     std::string m_deviceReason;  // why this device and no other
     MeshId m_nextId = 0;
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
+    std::uint32_t m_stepRevision = 0, m_stepMotion = 0;  // of the obstacles, in the last step with a pair
     bool m_submitted = false;
 
     Device* device() { return m_deviceBackend ? &m_deviceBackend->device() : nullptr; }
@@ -71,6 +72,8 @@ struct Pipeline::Implementation
     void placeMesh(std::size_t slot);
     void collectPairs();
     void collectMotions();
+    // How many obstacles of the pairs the step uses as the one before left them.
+    std::size_t countKept();
     // Which pairs' contacts may be reduced, and how far their cloths' nodes stay near their ways.
     void collectTubes();
     void leaveDevice();

@@ -165,6 +165,7 @@ void Pipeline::Implementation::collectPairs()
     }
     m_stepPairs.m_measureTree = m_stepPairs.m_any && watchesClothTree(m_settings) && m_treeWatch.isDue();
     collectMotions();
+    if (m_stepPairs.m_any) m_statistics.m_obstaclesKept = countKept();
     collectTubes();
     m_pairs.clear();
     const std::size_t clothTriangles = m_scene.m_cloths.triangles().size();
@@ -187,6 +188,28 @@ void Pipeline::Implementation::collectMotions()
             paired = paired || m_stepPairs.m_thickness[pair] >= 0.0f;
         if (paired) m_stepPairs.m_motions.push_back(makeMotion(mesh.m_placing, mesh.m_box, std::uint32_t(slot)));
     }
+}
+
+std::size_t Pipeline::Implementation::countKept()
+{
+    MeshPool& obstacles = m_scene.m_obstacles;
+    // Obstacles share a hierarchy: new ones, and positions given anew, are built or refitted with all others; on the
+    // host, places too.
+    bool all = m_stepRevision == m_obstacleRevision && m_stepMotion == m_scene.m_obstacleMotion;
+    m_stepRevision = m_obstacleRevision;
+    m_stepMotion = m_scene.m_obstacleMotion;
+    std::size_t kept = 0;
+    for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
+    {
+        PooledMesh& mesh = obstacles.mesh(slot);
+        if (mesh.m_placedAnew && m_report.m_onHost) all = false;
+        bool paired = false;
+        for (std::size_t pair = slot; pair < m_stepPairs.m_thickness.size(); pair += obstacles.meshCount())
+            paired = paired || m_stepPairs.m_thickness[pair] >= 0.0f;
+        if (paired && !mesh.m_placedAnew) ++kept;
+        mesh.m_placedAnew = false;
+    }
+    return all ? kept : 0;
 }
 
 // A cloth's contacts are reduced where all its obstacles rest and are two-sided: the solver keeps a node near its way
@@ -315,6 +338,7 @@ void Pipeline::placeObstacle(MeshId id, const float startPose[12], const float e
     std::copy(startPose, startPose + DRAPE_MAP_FLOATS, placing.m_start.begin());
     std::copy(endPose, endPose + DRAPE_MAP_FLOATS, placing.m_end.begin());
     if (stays) return;
+    scene.m_obstacles.mesh(slot).m_placedAnew = true;
     m_implementation->placeMesh(slot);
     ++scene.m_obstaclePlacing;
 }
