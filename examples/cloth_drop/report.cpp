@@ -15,7 +15,8 @@ Json asJson(const TimeSummary& times)
 }
 
 // Sums over the run: what the broad phase left, what needed the continuous test, contacts solved and left out,
-// hierarchies of the cloth built anew, cloths not looked at and obstacles used as they were, steps with nothing to do, and steps that the host back end ran.
+// hierarchies of the cloth built anew, cloths not looked at and obstacles used as they were, steps with nothing to do,
+// and steps that the host back end ran.
 Json workJson(const RunRecord& record)
 {
     std::uint64_t candidates = 0, swept = 0, contacts = 0, implied = 0;

@@ -26,9 +26,9 @@ constexpr int kFineness[] = {1, 4};                                    // cells 
 
 constexpr int kWarmUpSteps = 2;  // build trees and grow buffers
 constexpr int kFewestSteps = 5, kMostSteps = 15;
-constexpr double kStepsMs = 10;        // for the steps of one rung on one back end, if more than the fewest
-constexpr double kLongestStepMs = 5;   // of the host; the next rung is not climbed
-constexpr double kAhead = 2;           // times that the device is faster; so on two rungs, and the ladder ends
+constexpr double kStepsMs = 10;       // for the steps of one rung on one back end, if more than the fewest
+constexpr double kLongestStepMs = 5;  // of the host; the next rung is not climbed
+constexpr double kAhead = 2;          // times that the device is faster; so on two rungs, and the ladder ends
 
 struct Sheet
 {
