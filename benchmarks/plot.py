@@ -3,6 +3,7 @@
 
 Reads bench_step.csv and study.csv where they are, writes PNG files beside them. Needs python3-matplotlib.
 """
+import math
 import os
 import sys
 
@@ -12,7 +13,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 import study_plots
-from results import STAGES, SWEEPS, in_order, read_rows, select
+from results import STAGES, SWEEPS, fit_exponent, in_order, read_rows, select
 
 # One colour and dash a method, the same in every plot; peers dashed.
 STYLES = {
@@ -50,6 +51,39 @@ def sweep_plot(rows, sweep, folder):
     axes.grid(True, which="both", alpha=0.25)
     axes.legend(fontsize=7)
     save(figure, folder, "step_" + sweep)
+
+
+def stages_plot(rows, sweep, folder):
+    """Each stage against the size, and n log n through the largest size's sum for comparison."""
+    size, label = SWEEPS[sweep]
+    methods = [method for method in ("drape_kernels", "drape_host") if select(rows, sweep=sweep, method=method)]
+    if not methods:
+        return
+    figure, all_axes = plt.subplots(1, len(methods), figsize=(6 * len(methods), 4.5), squeeze=False)
+    titles = {"drape_kernels": "kernel time on the device", "drape_host": "time on the host back end"}
+    for axes, method in zip(all_axes[0], methods):
+        sums = {}
+        for stage in STAGES:
+            points = sorted((size(row), row["median_ms"]) for row in select(rows, sweep=sweep, method=method, stage=stage)
+                            if "median_ms" in row)
+            if not points:
+                continue
+            for x, y in points:
+                sums[x] = sums.get(x, 0) + y
+            axes.plot(*zip(*points), marker="o", markersize=3, label=f"{stage}, {slope(points)}")
+        guide = [x for x in sorted(sums) if x > 1]
+        if guide:
+            scale = sums[guide[-1]] / (guide[-1] * math.log(guide[-1]))
+            axes.plot(guide, [scale * x * math.log(x) for x in guide], ":", color="grey", label="n log n")
+        axes.set(xscale="log", yscale="log", xlabel=label, ylabel="median, ms", title=titles[method])
+        axes.grid(True, which="both", alpha=0.25)
+        axes.legend(fontsize=7)
+    save(figure, folder, "stages_" + sweep)
+
+
+def slope(points):
+    exponent = fit_exponent(points)
+    return "" if exponent is None else f"p = {exponent:.2f}"
 
 
 def shares_of(rows, method):
@@ -91,6 +125,7 @@ def main():
         rows = read_rows(folder, "bench_step")
         for sweep in SWEEPS:
             sweep_plot(rows, sweep, folder)
+            stages_plot(rows, sweep, folder)
         if rows:
             share_plot(rows, folder)
         study_plots.draw(read_rows(folder, "study"), folder, save)

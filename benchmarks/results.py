@@ -68,11 +68,19 @@ def fit_exponent(points):
     return sum((x - mean_x) * (y - mean_y) for x, y in logs) / spread
 
 
+def n_log_n_exponent(sizes):
+    """What fit_exponent() gives for times of n log n at these sizes."""
+    return fit_exponent([(size, size * math.log(size)) for size in sizes if size > 1])
+
+
 # The size that a sweep of bench_step varies, and how it is called.
 SWEEPS = {
     "cloth": (lambda row: row["cloth_triangles"], "cloth triangles, on the bunny"),
     "obstacle": (lambda row: row["obstacle_triangles"], "obstacle triangles (spheres) under 2,048 of cloth"),
     "both": (lambda row: row["cloth_triangles"] + row["obstacle_triangles"], "triangles of cloth and sphere together"),
+    "on_1k": (lambda row: row["cloth_triangles"], "cloth triangles, on a sphere of 1,280"),
+    "on_82k": (lambda row: row["cloth_triangles"], "cloth triangles, on a sphere of 81,920"),
+    "on_1m": (lambda row: row["cloth_triangles"], "cloth triangles, on a sphere of 1,310,720"),
     "cloths": (lambda row: row["cloths"], "cloths of 512 triangles, on the bunny"),
 }
 

@@ -19,6 +19,7 @@ namespace
 struct Options : CommonOptions
 {
     std::vector<std::string> m_scenes, m_methods;
+    std::string m_set;
     std::string m_reference;
 };
 
@@ -76,7 +77,8 @@ std::vector<SceneSpec> chosenScenes(const Options& options)
     std::vector<SceneSpec> chosen;
     for (const SceneSpec& spec : sceneSpecs())
     {
-        const bool wanted = options.m_scenes.empty()
+        const bool wanted = options.m_set == "sweep" ? !spec.m_sweep.empty()
+                            : options.m_scenes.empty()
                                 ? spec.m_quick == options.m_quick
                                 : contains(options.m_scenes, spec.m_name) || contains(options.m_scenes, spec.m_sweep);
         if (wanted) chosen.push_back(spec);
@@ -152,6 +154,10 @@ int run(int argc, char** argv)
     CLI::App app("Measures whole collision steps of Drape and its peers.", "bench_step");
     addCommonOptions(app, options);
     app.add_option("--scene", options.m_scenes, "only these scenes or sweeps");
+    app.add_option("--set", options.m_set,
+                   "sweep: the scenes of all sweeps, whole sizes from 512 to 2 M of cloth triangles")
+        ->check(CLI::IsMember({"sweep"}))
+        ->excludes("--scene");
     app.add_option("--method", options.m_methods, "only these methods, and the reference");
     app.add_option("--reference", options.m_reference, "JSON of an earlier run: contacts must have its hashes")
         ->type_name("FILE")

@@ -10,6 +10,7 @@ Settings CommonOptions::settings() const
 {
     Settings settings;
     settings.m_device = m_device;
+    settings.m_crossover = 0;  // methods are named by their back end, however small the scene
     settings.m_backend = m_backend == "host" ? Backend::Host : m_backend == "opencl" ? Backend::OpenCl : Backend::Auto;
     return settings;
 }

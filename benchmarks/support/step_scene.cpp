@@ -48,6 +48,11 @@ std::vector<SceneSpec> makeSpecs()
         specs.push_back({"both_" + sizeName(cells), "both", std::string("sphere_") + spheres[level], cells, 1,
                          kClothSize, 0, false});
     }
+    // From the smallest to the largest cloth, on the smallest obstacle, a middle one and the largest.
+    for (const char* size : {"1k", "82k", "1m"})
+        for (const int cells : {16, 64, 256, 1024})
+            specs.push_back({"cloth_" + sizeName(cells) + "_on_" + size, std::string("on_") + size,
+                             std::string("sphere_") + size, cells, 1, kClothSize, 0, false});
     for (const int cloths : {1, 10, 100, 1000})
         specs.push_back(
             {"cloths_" + std::to_string(cloths), "cloths", "bunny", 16, cloths, kPatchSize, kThickness, false});

@@ -50,6 +50,7 @@ void CollisionStep::clear()
     std::move(m_bodies.begin(), m_bodies.end(), std::back_inserter(m_spare));
     m_bodies.clear();
     m_pairs.clear();
+    m_pinned.clear();
     m_mirrors.clear();
 }
 
@@ -94,7 +95,12 @@ void CollisionStep::begin(const std::vector<PairNote>& notes)
     // Adding and removing meshes moves the memory that nodes are written to: mirrors first, nodes after.
     m_state.dropOldMirrors();
     for (const PairNote& note : notes)
-        if (anyMoves(*note.m_cloth)) addPair(note);
+    {
+        if (anyMoves(*note.m_cloth))
+            addPair(note);
+        else if (std::find(m_pinned.begin(), m_pinned.end(), note.m_cloth) == m_pinned.end())
+            m_pinned.push_back(note.m_cloth);
+    }
     if (!m_pairs.empty()) submit();
 }
 
@@ -153,6 +159,7 @@ void CollisionStep::receiveAll()
     all.m_uploadMs = before.m_uploadMs;  // the solver's to measure, as these are
     all.m_writeMs = before.m_writeMs;
     all.m_finishMs = before.m_finishMs;
+    all.m_clothsSkipped = before.m_clothsSkipped;
     m_state.m_found.set(m_state.pipeline(), contacts);
     receive(contacts);
 }
@@ -181,11 +188,13 @@ void CollisionStep::finish()
     m_state.m_statistics.m_skipped = m_pairs.empty();
     if (m_pairs.empty()) return;
     receiveAll();
+    const std::size_t kept = m_state.m_statistics.m_obstaclesKept;
     for (int detections = 1; detections < kMostDetections && cutPaths(); ++detections)
     {
         submit();
         receiveAll();
     }
+    m_state.m_statistics.m_obstaclesKept = kept;  // not those that the step itself brought up to date
 }
 
 bool CollisionStep::cutStrayed(const std::vector<bool>& strayed, Cut cut)
@@ -214,5 +223,6 @@ void CollisionStep::checkStrayed()
     m_state.m_statistics.m_contacts = before.m_contacts;
     m_state.m_statistics.m_reduced = before.m_reduced;
     m_state.m_statistics.m_candidates = before.m_candidates;
+    m_state.m_statistics.m_obstaclesKept = before.m_obstaclesKept;
 }
 }  // namespace drape

@@ -26,6 +26,8 @@ public:
 
     // As before the first begin().
     void clear();
+    // Cloths with a pair in this step that no contact could move: all of their nodes are pinned.
+    std::size_t pinnedCloths() const { return m_pinned.size(); }
     // Null when the body has no pair in this step.
     BodyContacts* contactsOf(const btSoftBody& body);
 
@@ -51,6 +53,7 @@ private:
     PluginState& m_state;
     std::vector<BodyContacts> m_bodies, m_spare;
     std::vector<Pair> m_pairs;
+    std::vector<const btSoftBody*> m_pinned;
     std::vector<const ClothMirror*> m_mirrors;  // one for each of m_bodies
 };
 }  // namespace drape

@@ -94,6 +94,7 @@ std::string Plugin::report() const
         step.m_skipped                       ? " (nothing to do)"
         : step.m_status & kStepClothsLeftOut ? " (cloths with too many candidates left out)"
                                              : "");
-    return "Drape on " + device().m_device.m_name + line;
+    const std::string reason = device().m_byCost ? " (" + device().m_reason + ")" : std::string();
+    return "Drape on " + device().m_device.m_name + reason + line;
 }
 }  // namespace drape

@@ -19,7 +19,8 @@ struct SoftBodySolver::Work
 
     CollisionStep m_step;
     ContactRounds m_rounds;
-    double m_predictMs = 0;  // of this class's share in predictMotion
+    std::size_t m_asleep = 0;  // cloths, as the step began: Bullet's islands may wake them before it solves
+    double m_predictMs = 0;    // of this class's share in predictMotion
 };
 
 SoftBodySolver::SoftBodySolver(Plugin& plugin) : m_state(plugin.state()), m_work(new Work(*m_state))
@@ -40,12 +41,15 @@ void SoftBodySolver::predictMotion(btScalar dt)
     Stopwatch watch;
     KinematicMotions& motions = m_state->motionsOf(this);
     motions.beginStep(dt);
+    m_work->m_asleep = 0;
     std::vector<MovingObject> moving;  // of one world: a solver has no other
     for (int i = 0; i < m_softBodySet.size(); ++i)
     {
         if (i == 0) moving = movingObjects(*m_softBodySet[i], motions);
         if (m_softBodySet[i]->isActive())
             coverMotion(*m_softBodySet[i], btScalar(m_state->settings().m_activation), moving);
+        else
+            ++m_work->m_asleep;
     }
     m_work->m_predictMs = watch.lapMs();
 }
@@ -61,6 +65,7 @@ void SoftBodySolver::detect()
         m_work->m_step.begin(m_state->takeNotes(this));
         const double beginMs = watch.lapMs();
         m_work->m_step.finish();
+        statistics.m_clothsSkipped = m_work->m_asleep + m_work->m_step.pinnedCloths();
         statistics.m_uploadMs = m_work->m_predictMs + beginMs;
         statistics.m_writeMs = watch.lapMs() - statistics.m_waitMs;
     }

@@ -34,7 +34,10 @@ public:
         times.m_sweptTests = statistics.m_sweptTests;
         times.m_reduced = statistics.m_reduced;
         times.m_rebuilds = statistics.m_rebuilds;
+        times.m_clothsSkipped = statistics.m_clothsSkipped;
+        times.m_obstaclesKept = statistics.m_obstaclesKept;
         times.m_skipped = statistics.m_skipped;
+        times.m_onHost = statistics.m_onHost;
         m_status |= statistics.m_status;
         return times;
     }
@@ -43,7 +46,7 @@ public:
     std::string backend() const override { return m_plugin->device().m_onHost ? "host" : "opencl"; }
     std::string device() const override { return m_plugin->device().m_device.m_name; }
     std::string deviceReason() const override { return m_plugin->device().m_reason; }
-    double prepareMs() const override { return m_plugin->device().m_buildMs; }
+    double prepareMs() const override { return m_plugin->device().m_buildMs + m_plugin->device().m_measureMs; }
     std::string trouble() const override
     {
         if (m_status & kStepDeviceFailed)

@@ -24,7 +24,7 @@ int runChosen(const Options& options, const DropScene& scene, NamedRun& run, Tri
     std::unique_ptr<Simulation> simulation = options.usesDrape() ? makeDrapeSimulation(scene, options, error, exitCode)
                                                                  : makeBulletSimulation(scene, options.m_bulletMode);
     if (!simulation) return fail(exitCode, error);
-    Progress progress(simulation->backend(), options.m_steps, options.m_quiet);
+    Progress progress(run.m_name, options.m_steps, options.m_quiet);
     RunHooks hooks;
     hooks.m_afterStep = [&](int number, const StepRecord&) { progress.show(number); };
     const bool ran =

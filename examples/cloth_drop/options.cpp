@@ -65,7 +65,7 @@ void addSceneOptions(CLI::App& app, Options& options, std::string& cloth)
 void addBackendOptions(CLI::App& app, Options& options, std::string& mode)
 {
     app.add_option("--backend", options.m_backend,
-                   "auto: a GPU, else any OpenCL device, else the host; bullet: built in")
+                   "auto: a GPU, else any OpenCL device, unless the scene costs less on the host; bullet: built in")
         ->check(CLI::IsMember({"auto", "opencl", "host", "bullet"}));
     app.add_option("--mode", options.m_contactMode, "how Drape looks at motion within a step")
         ->check(CLI::IsMember({"discrete", "continuous", "automatic"}));

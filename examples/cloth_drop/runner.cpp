@@ -9,9 +9,6 @@ namespace
 RunRecord startRecord(const Simulation& simulation, const DropScene& scene)
 {
     RunRecord record;
-    record.m_backend = simulation.backend();
-    record.m_device = simulation.device();
-    record.m_deviceReason = simulation.deviceReason();
     record.m_prepareMs = simulation.prepareMs();
     record.m_clothTriangles = scene.m_cloth.m_mesh.triangleCount();
     record.m_clothNodes = scene.m_cloth.m_mesh.vertexCount();
@@ -47,6 +44,10 @@ bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, co
         if (hooks.m_afterStep) hooks.m_afterStep(number, step);
         record.m_steps.push_back(std::move(step));
     }
+    // Where cost decides, only the steps tell.
+    record.m_backend = simulation.backend();
+    record.m_device = simulation.device();
+    record.m_deviceReason = simulation.deviceReason();
     record.m_trouble = simulation.trouble();
     return true;
 }

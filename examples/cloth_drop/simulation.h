@@ -23,7 +23,10 @@ struct StepTimes
     std::size_t m_sweptTests = 0;
     std::size_t m_reduced = 0;
     std::size_t m_rebuilds = 0;
+    std::size_t m_clothsSkipped = 0;
+    std::size_t m_obstaclesKept = 0;
     bool m_skipped = false;
+    bool m_onHost = false;
 };
 
 class Simulation
@@ -37,7 +40,7 @@ public:
     // x y z per cloth node, m; valid until the next step.
     virtual const std::vector<float>& positions() = 0;
 
-    // Text for the report; empty strings where there is no device.
+    // Text for the report, as of the last step; empty strings where there is no device.
     virtual std::string backend() const = 0;
     virtual std::string device() const = 0;
     virtual std::string deviceReason() const = 0;

@@ -4,6 +4,7 @@ Usage: programs_test.py FOLDER_OF_PROGRAMS
 """
 import csv
 import json
+import math
 import os
 import subprocess
 import sys
@@ -388,6 +389,44 @@ class Reports(ProgramTest):
         self.script("summary.py", readme)
         with open(readme) as file:
             self.assertEqual(file.read(), text)
+
+
+class Growth(ProgramTest):
+    """Which stages grow faster than n log n, from times that are known."""
+
+    SIZES = (512, 8192, 131072, 2097152)
+
+    def summary_of(self, **stages):
+        """The summary of a machine whose stages took stages[name](n) ms on the sweep on_1k."""
+        folder = self.path("results/machine")
+        os.makedirs(folder, exist_ok=True)
+        columns = ["scene", "sweep", "method", "stage", "cloth_triangles", "obstacle_triangles", "median_ms", "candidates"]
+        with open(f"{folder}/bench_step.csv", "w", newline="") as file:
+            writer = csv.writer(file)
+            writer.writerow(columns)
+            for size in self.SIZES:
+                for stage, time in stages.items():
+                    writer.writerow([f"s{size}", "on_1k", "drape_host", stage, size, 1280, time(size), 3 * size])
+        with open(f"{folder}/bench_step.json", "w") as file:
+            json.dump({"machine": {"processor": "p", "cores": 1, "devices": [], "date": "d", "commit": "c"}}, file)
+        readme = self.path("README.md")
+        with open(readme, "w") as file:
+            file.write("<!-- results: made by summary.py --><!-- end of results -->")
+        result = self.script("summary.py", readme)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        with open(readme) as file:
+            return file.read()
+
+    def test_linear_and_n_log_n_are_within(self):
+        text = self.summary_of(broad=lambda n: 0.999e-5 * n * math.log(n), narrow=lambda n: 1e-5 * n)
+        self.assertIn("No stage of Drape grows faster than n log n", text)
+        self.assertIn("| narrow | 1.00 | 1.10 |", text)
+
+    def test_a_stage_that_grows_faster_is_named(self):
+        text = self.summary_of(broad=lambda n: 1e-5 * n, narrow=lambda n: 1e-6 * n ** 1.2)
+        self.assertNotIn("No stage of Drape", text)
+        self.assertIn("faster than n log n: Drape, host, narrow (cloth triangles, on a sphere of 1,280: 1.20", text)
+        self.assertIn("**1.20**", text)
 
 
 if __name__ == "__main__":

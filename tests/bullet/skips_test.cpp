@@ -1,14 +1,17 @@
 // What the adapter does not look at again changes nothing: obstacles whose vertices are not read anew, cloth that
-// sleeps, cloth that is pinned. Contacts and trajectories, bit for bit, with the skip and with it defeated, on every
-// back end.
+// sleeps, cloth that is pinned; and the device that a small scene does not use. Contacts and trajectories, bit for bit,
+// with the skip and with it defeated, on every back end.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <functional>
 
+#include "bullet_plugin/adapter/plugin_state.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
 #include "tests/support/backends.h"
+#include "tests/support/environment.h"
 
 namespace drape::test
 {
@@ -108,12 +111,18 @@ protected:
 TEST_P(Skips, ObstaclesThatAreNotReadAnew)
 {
     SkipWorld skipping(GetParam().m_settings), defeated(GetParam().m_settings);
+    std::size_t kept = 0, keptAllTheSame = 0;
     expectSame(skipping, defeated,
                [&]
                {
+                   kept += skipping.m_plugin.statistics().m_obstaclesKept;
+                   keptAllTheSame += defeated.m_plugin.statistics().m_obstaclesKept;
                    defeated.m_plugin.obstacleChanged(&defeated.m_ball.shape());
                    defeated.m_plugin.obstacleChanged(&defeated.m_slab.shape());
                });
+    EXPECT_GT(kept, 60u);
+    // Reading vertices anew that have not changed refits nothing.
+    EXPECT_EQ(keptAllTheSame, kept);
 }
 
 // In one world another cloth sleeps in touch with the slab, in the other there is none. It keeps its place until the
@@ -129,6 +138,8 @@ TEST_P(Skips, ClothThatSleeps)
                {
                    if (++steps > 30) return;
                    EXPECT_EQ(hashOf(sleeper), hash);
+                   EXPECT_EQ(with.m_plugin.statistics().m_clothsSkipped, steps > 1 ? 1u : 0u);
+                   EXPECT_EQ(without.m_plugin.statistics().m_clothsSkipped, 0u);
                    sleeper.forceActivationState(ISLAND_SLEEPING);
                });
 }
@@ -149,17 +160,85 @@ TEST_P(Skips, ClothThatIsPinned)
         hashes[i] = hashOf(*pinned[i]);
     }
     pinned[1]->appendNode(btVector3(1, 50, 0), 1);
-    std::size_t looked = 0;
+    std::size_t looked = 0, counted = 0;
     expectSame(skipping, defeated,
                [&]
                {
                    EXPECT_TRUE(contactsOf(skipping.m_plugin, *pinned[0]).empty());
+                   counted += skipping.m_plugin.statistics().m_clothsSkipped;
+                   EXPECT_EQ(defeated.m_plugin.statistics().m_clothsSkipped, 0u);
                    looked += contactsOf(defeated.m_plugin, *pinned[1]).size();
                });
     EXPECT_GT(looked, 1000u);
+    EXPECT_GT(counted, 80u);
     EXPECT_EQ(hashOf(*pinned[0]), hashes[0]);
     pinned[1]->m_nodes.pop_back();
     EXPECT_EQ(hashOf(*pinned[1]), hashes[1]);
+}
+
+#ifdef NDEBUG
+// Drape's time in a step of a world in which all cloth sleeps on its obstacles, some of them kinematic: on the host,
+// and not a launch on a device.
+TEST_P(Skips, AWorldAtRestCostsFiveMicroseconds)
+{
+    Settings settings = GetParam().m_settings;
+    settings.m_profileKernels = true;
+    SkipWorld world(settings);
+    std::vector<btSoftBody*> cloths = {&world.m_cloth};
+    for (int i = 0; i < 9; ++i)
+        cloths.push_back(&world.m_world.addCloth(clothAt(-1.0 + 0.2 * i, -0.09)));
+    for (int step = 0; step < 5; ++step)
+        world.step(0);
+    ASSERT_GT(world.m_plugin.statistics().m_contacts, 0u);
+    Pipeline& pipeline = world.m_plugin.state()->pipeline();
+    pipeline.takeKernelTimes();
+    std::vector<double> times;
+    for (int step = 0; step < 400; ++step)
+    {
+        for (btSoftBody* cloth : cloths)
+            cloth->forceActivationState(ISLAND_SLEEPING);
+        world.step(0);
+        const StepStatistics& statistics = world.m_plugin.statistics();
+        ASSERT_TRUE(statistics.m_skipped);
+        ASSERT_EQ(statistics.m_clothsSkipped, cloths.size());
+        times.push_back(1000 * statistics.collisionMs());
+    }
+    EXPECT_TRUE(pipeline.takeKernelTimes().empty());
+    std::nth_element(times.begin(), times.begin() + 200, times.end());
+    RecordProperty("median_us", std::to_string(times[200]));
+    EXPECT_LT(times[200], 5) << "us, the median";
+}
+#endif
+
+// A scene runs on the host until a second cloth makes it worth the device.
+TEST_P(Skips, TheDeviceWhereTheSceneIsTooSmallForIt)
+{
+    if (GetParam().m_device > 0) GTEST_SKIP() << "cost decides about the first device only";
+    const ScopedVariable noDevice("DRAPE_DEVICE", nullptr);
+    Settings settings;
+    settings.m_crossover = 16000;
+    SkipWorld byCost(settings), fixed(GetParam().m_settings);
+    std::size_t onHost = 0, onDevice = 0;
+    SkipWorld* worlds[2] = {&byCost, &fixed};
+    int steps = 0;
+    expectSame(byCost, fixed,
+               [&]
+               {
+                   const StepStatistics& statistics = byCost.m_plugin.statistics();
+                   if (!statistics.m_skipped) ++(statistics.m_onHost ? onHost : onDevice);
+                   for (int i = 0; i < 2 && steps == 30; ++i)
+                   {
+                       ClothSpec spec = clothAt(1.0, 0.05);
+                       spec.m_nodes = 61;
+                       worlds[i]->m_world.addCloth(spec);
+                   }
+                   ++steps;
+               });
+    const bool device = !listDevices().empty();
+    EXPECT_GT(onHost, 20u);
+    EXPECT_EQ(onDevice > 20u, device);
+    const std::string report = byCost.m_plugin.report();
+    EXPECT_EQ(report.find("16000") != std::string::npos, device) << report;
 }
 
 INSTANTIATE_TEST_SUITE_P(Backend, Skips, testing::ValuesIn(allBackends()), backendName);

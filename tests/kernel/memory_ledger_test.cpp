@@ -6,6 +6,8 @@
 #include "bullet_plugin/core/device/buffer.h"
 #include "kernels/shared/contact.h"
 #include "kernels/shared/mesh.h"
+#include "scenes/draped_cloth.h"
+#include "scenes/shapes.h"
 #include "tests/support/backends.h"
 #include "tests/support/cases.h"
 #include "tests/support/pipeline_driver.h"
@@ -59,6 +61,35 @@ TEST_P(MemoryLedgerTest, APipelineNamesItsBuffers)
     EXPECT_EQ(bytesOf(uses, "cloth triangles"), step.m_cloth.triangleCount() * sizeof(Triangle));
     EXPECT_EQ(bytesOf(uses, "obstacle triangles"), step.m_obstacle.triangleCount() * sizeof(Triangle));
     EXPECT_GE(bytesOf(uses, "step contacts"), sizeof(Contact));
+}
+
+// What a step holds by the triangle, all in: at most 400 bytes of a cloth and 250 of an obstacle that rests. What is
+// not an obstacle's counts to the cloth, buffers that have not grown from their first size among it.
+TEST_P(MemoryLedgerTest, BytesATriangle)
+{
+    const std::unique_ptr<Pipeline> pipeline = makePipeline(GetParam().m_settings);
+    ASSERT_TRUE(pipeline);
+    const TriangleMesh obstacle = makeSphere(1.0f, 6);
+    const HeightField field(obstacle);
+    ClothPlace place;
+    place.m_cells = 256;
+    place.m_size = 2.4;
+    place.m_gap = 0.007;
+    const TriangleMesh cloth = drapeCloth(field, place);
+    const MeshId clothId = addCloth(*pipeline, cloth), obstacleId = addObstacle(*pipeline, obstacle);
+    for (int step = 0; step < 2; ++step)
+    {
+        setMotion(*pipeline, clothId, cloth.m_positions, cloth.m_positions);
+        pipeline->addPair(clothId, obstacleId, 0.009f, 0.002f);
+        EXPECT_GT(runStep(*pipeline).size(), 10000u);
+        std::size_t ofCloth = 0, ofObstacle = 0;
+        for (const MemoryUse& use : pipeline->deviceMemory())
+            (use.m_name.rfind("obstacle", 0) == 0 ? ofObstacle : ofCloth) += use.m_bytes;
+        EXPECT_LE(ofCloth, 400 * cloth.triangleCount());
+        EXPECT_LE(ofObstacle, 250 * obstacle.triangleCount());
+        EXPECT_EQ(bytesOf(pipeline->deviceMemory(), "sorting"), 0u);
+        EXPECT_EQ(bytesOf(pipeline->deviceMemory(), "other"), 0u) << "every buffer has a name";
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, MemoryLedgerTest, testing::ValuesIn(openClBackends()), backendName);

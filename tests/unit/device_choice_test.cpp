@@ -1,30 +1,17 @@
 // Which device settings and DRAPE_DEVICE come to, and what is said about it.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 #include "tests/support/backends.h"
+#include "tests/support/environment.h"
 
 namespace drape::test
 {
 namespace
 {
-// Sets DRAPE_DEVICE for a scope.
-class DeviceVariable
+// DRAPE_DEVICE for a scope.
+struct DeviceVariable : ScopedVariable
 {
-public:
-    explicit DeviceVariable(const char* value)
-    {
-        const char* previous = std::getenv("DRAPE_DEVICE");
-        m_had = previous != nullptr;
-        if (previous) m_previous = previous;
-        value ? setenv("DRAPE_DEVICE", value, 1) : unsetenv("DRAPE_DEVICE");
-    }
-    ~DeviceVariable() { m_had ? setenv("DRAPE_DEVICE", m_previous.c_str(), 1) : unsetenv("DRAPE_DEVICE"); }
-
-private:
-    bool m_had;
-    std::string m_previous;
+    explicit DeviceVariable(const char* value) : ScopedVariable("DRAPE_DEVICE", value) {}
 };
 
 Settings named(const std::string& device)
@@ -89,6 +76,7 @@ TEST_P(DeviceChoiceTest, NameIsComparedWithoutCaseAndByPart)
     const DeviceChoice choice = chooseDevice(named(part), error);
     EXPECT_FALSE(error.failed()) << error.text();
     EXPECT_FALSE(choice.m_onHost);
+    EXPECT_FALSE(choice.m_byCost);
     EXPECT_EQ(listDevices()[choice.m_index].m_name, info.m_name);
     EXPECT_NE(choice.m_reason.find("option"), std::string::npos) << choice.m_reason;
 }
@@ -98,6 +86,7 @@ TEST_P(DeviceChoiceTest, OptionWinsOverVariable)
     const DeviceVariable variable("no such device");
     Error error;
     EXPECT_FALSE(chooseDevice(GetParam().m_settings, error).m_onHost);
+    EXPECT_FALSE(chooseDevice(GetParam().m_settings, error).m_byCost);
     EXPECT_FALSE(error.failed()) << error.text();
 }
 
@@ -109,6 +98,7 @@ TEST_P(DeviceChoiceTest, AutomaticChoiceTakesTheFirst)
     EXPECT_FALSE(choice.m_onHost);
     EXPECT_EQ(choice.m_index, 0u);
     EXPECT_FALSE(choice.m_reason.empty());
+    EXPECT_TRUE(choice.m_byCost);
 }
 
 TEST_P(DeviceChoiceTest, PipelineReportsItsDevice)

@@ -52,8 +52,7 @@ void PatchCullStage::setTopology(Device& device, const MeshPool& obstacles)
     m_patches.assign(device, m_layout.m_patches);
     m_faceOwners.assign(device, m_layout.m_faceOwners);
     if (device.isGpu()) m_faceFeatures.assign(device, m_layout.m_faceFeatures);
-    m_vertexOwners.assign(device, m_layout.m_vertexOwners);
-    m_edgeOwners.assign(device, m_layout.m_edgeOwners);
+    releasePacking();
     m_levels.assign(device, m_layout.m_levels);
     m_faces.reserve(device, m_layout.m_faceOwners.size() * DRAPE_FACE_FLOATS);
     m_vertices.reserve(device, m_layout.m_vertexOwners.size() * DRAPE_VERTEX_FLOATS);
@@ -63,6 +62,12 @@ void PatchCullStage::setTopology(Device& device, const MeshPool& obstacles)
     m_sizes.reserve(device, m_layout.m_patches.size());
     m_wideNodes.reserve(device, m_layout.m_levels.back() * DRAPE_WIDE_NODE_FLOATS * lanes);
     device.wait();
+}
+
+void PatchCullStage::releasePacking()
+{
+    m_vertexOwners.release();
+    m_edgeOwners.release();
 }
 
 // Patches are in the order of slots.
@@ -79,6 +84,11 @@ void PatchCullStage::pack(Device& device, Slots slots, Buffer<Triangle>& triangl
 {
     const Range patches = patchesOf(slots);
     if (patches.count() == 0) return;
+    if (m_vertexOwners.capacity() == 0)
+    {
+        m_vertexOwners.assign(device, m_layout.m_vertexOwners);
+        m_edgeOwners.assign(device, m_layout.m_edgeOwners);
+    }
     const std::size_t width = PatchCullStage::width(device);
     const Patch &front = m_layout.m_patches[patches.m_first], &back = m_layout.m_patches[patches.m_last - 1];
     const Range faces = {patches.m_first * width, patches.m_last * width};

@@ -36,6 +36,8 @@ public:
     // joined obstacles'; returns after enqueueing.
     void pack(Device& device, Slots slots, Buffer<Triangle>& triangles, Buffer<float>& positions,
               Buffer<float>& spreads, Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones);
+    // Gives back what only pack() reads; it brings that again when it is called.
+    void releasePacking();
     static Slots allSlots() { return {0, SIZE_MAX}; }
 
     // What a step reads of the cloths and pairs.
@@ -96,12 +98,14 @@ private:
     Kernel m_walk, m_cull, m_packFaces, m_packVertices, m_packEdges, m_volumes, m_widen;
     Patches m_layout;
     Buffer<Patch> m_patches{"obstacle patches"};
-    Buffer<cl_uint> m_faceFeatures{"obstacle patches"};  // of a GPU
-    Buffer<cl_uint> m_faceOwners{"obstacle patches"}, m_vertexOwners{"obstacle patches"};
-    Buffer<cl_uint> m_edgeOwners{"obstacle patches"}, m_vertexIds{"obstacle patches"}, m_edgeIds{"obstacle patches"};
+    Buffer<cl_uint> m_faceFeatures{"obstacle face features"};  // of a GPU
+    Buffer<cl_uint> m_vertexOwners{"obstacle packing"}, m_edgeOwners{"obstacle packing"};
+    // Of each lane; a face's owner is the face itself.
+    Buffer<cl_uint> m_faceOwners{"obstacle face numbers"}, m_vertexIds{"obstacle vertex numbers"};
+    Buffer<cl_uint> m_edgeIds{"obstacle edge numbers"};
     Buffer<cl_uint> m_levels{"obstacle wide nodes"};
     Buffer<FeatureTest> m_tests{"step candidates"}, m_pairs{"step candidates"};
-    Buffer<float> m_faces{"obstacle features"}, m_vertices{"obstacle features"}, m_edges{"obstacle features"};
+    Buffer<float> m_faces{"obstacle faces"}, m_vertices{"obstacle vertices"}, m_edges{"obstacle edges"};
     Buffer<float> m_sizes{"obstacle patches"}, m_wideNodes{"obstacle wide nodes"};
 };
 }  // namespace drape

@@ -120,4 +120,13 @@ std::vector<std::uint32_t> MortonOrderStage::order(Device& device, const std::ve
     if (device.failed()) order.clear();
     return order;
 }
+
+void MortonOrderStage::release()
+{
+    m_triangleBuffer.release();
+    m_positionBuffer.release();
+    for (Buffer<cl_uint>* buffer : {&m_boundsBuffer, &m_order, &m_high, &m_low, &m_unsortedHigh, &m_unsortedLow})
+        buffer->release();
+    m_sort.release();
+}
 }  // namespace drape

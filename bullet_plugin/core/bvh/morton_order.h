@@ -38,11 +38,15 @@ public:
     std::vector<std::uint32_t> order(Device& device, const std::vector<Triangle>& triangles, const float* positions,
                                      std::size_t vertexCount);
 
+    // Gives back what sorting took: some 55 bytes for each triangle of the largest mesh.
+    void release();
+
 private:
     Kernel m_bounds, m_codes;
     RadixSortStage m_sort;
-    Buffer<Triangle> m_triangleBuffer;
-    Buffer<float> m_positionBuffer;
-    Buffer<cl_uint> m_boundsBuffer, m_order, m_high, m_low, m_unsortedHigh, m_unsortedLow;
+    Buffer<Triangle> m_triangleBuffer{"sorting"};
+    Buffer<float> m_positionBuffer{"sorting"};
+    Buffer<cl_uint> m_boundsBuffer{"sorting"}, m_order{"sorting"}, m_high{"sorting"}, m_low{"sorting"};
+    Buffer<cl_uint> m_unsortedHigh{"sorting"}, m_unsortedLow{"sorting"};
 };
 }  // namespace drape

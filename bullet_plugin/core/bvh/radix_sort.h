@@ -22,11 +22,14 @@ public:
     // out[i] = values[numbers[i]]. Returns after enqueueing.
     void gather(Device& device, Buffer<cl_uint>& values, Buffer<cl_uint>& numbers, cl_uint count, Buffer<cl_uint>& out);
 
+    // Gives back the memory that sorting took.
+    void release();
+
 private:
     void passInTiles(Device& device, Buffer<cl_uint>& keys, Buffer<cl_uint>& numbers, cl_uint count, cl_uint shift);
     void passInStretches(Device& device, Buffer<cl_uint>& keys, Buffer<cl_uint>& numbers, cl_uint count, cl_uint shift);
 
     Kernel m_countTiles, m_countStretches, m_scan, m_scanSerial, m_scatterTiles, m_scatterStretches, m_gather;
-    Buffer<cl_uint> m_counts, m_totals, m_otherKeys, m_otherNumbers;
+    Buffer<cl_uint> m_counts{"sorting"}, m_totals{"sorting"}, m_otherKeys{"sorting"}, m_otherNumbers{"sorting"};
 };
 }  // namespace drape

@@ -36,6 +36,9 @@ public:
         return true;
     }
 
+    // Gives the memory back once what is enqueued has used it.
+    void release() { *this = Buffer(m_name); }
+
     // Enqueue a copy; the source must stay unchanged until the device was waited for.
     void write(Device& device, const T* source, std::size_t count, std::size_t offset = 0)
     {

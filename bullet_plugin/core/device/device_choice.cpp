@@ -72,6 +72,7 @@ DeviceChoice chooseDevice(const Settings& settings, Error& error)
         return choice;
     }
     choice.m_onHost = false;
+    choice.m_byCost = settings.m_backend == Backend::Auto;
     choice.m_reason = devices[0].m_isGpu ? "the first GPU" : "no GPU was found; the first OpenCL device";
     return choice;
 }

@@ -19,6 +19,7 @@ struct PooledMesh
     MeshId m_id = kNoMesh;
     Topology m_topology;
     std::vector<float> m_positions;         // m, as last given: in its own frame where it has a place, else the world's
+    double m_area = 0;                      // m², of the triangles
     bool m_oneSided = false;                // obstacles only: see MeshDescription
     float m_coordinateStep = 0;             // m, obstacles only: distance of floats where it reaches farthest out
     std::vector<NormalCone> m_vertexCones;  // obstacles only
@@ -26,6 +27,7 @@ struct PooledMesh
     MeshBox m_box = {};                  // m, of the positions, obstacles only
     float m_longestEdge = 0;             // m, obstacles only
     ObstaclePlacing m_placing;           // obstacles only
+    bool m_placedAnew = false;           // obstacles only: since the last step
     std::vector<std::uint32_t> m_order;  // leaf order, local triangles
     std::uint32_t m_firstVertex = 0;
     std::uint32_t m_firstTriangle = 0;

@@ -124,7 +124,7 @@ private:
     Kernel m_test, m_feature, m_swept, m_intersect, m_count, m_scan, m_place, m_placeFew, m_gather, m_order, m_write;
     Kernel m_keep, m_writeKept;
     Buffer<Contact> m_hits{"step hits"}, m_contacts{"step contacts"};
-    Buffer<Candidate> m_intersections;
+    Buffer<Candidate> m_intersections{"step intersections"};
     Buffer<cl_uint> m_slotCount{"cloth slots"}, m_slotFirst{"cloth slots"}, m_blockCount{"cloth slots"};
     Buffer<cl_uint> m_slotKept{"cloth slots"}, m_keptFirst{"cloth slots"};  // only where contacts may be reduced
     Buffer<cl_uint> m_members{"step hits"}, m_sweptTests{"step hits"}, m_kept{"step hits"};

@@ -128,7 +128,8 @@ std::vector<std::uint32_t> DeviceBackend::order(const std::vector<Triangle>& tri
 void DeviceBackend::uploadSide(const MeshPool& pool, const BvhLayout& layout, Side& side)
 {
     side.m_revision = pool.revision();
-    side.m_order.assign(*m_device, pool.order());
+    // The cull over patches needs the leaf order of the cloths alone.
+    if (!patches() || &side == &m_cloth) side.m_order.assign(*m_device, pool.order());
     side.m_triangles.assign(*m_device, pool.triangles());
     if (m_settings.m_reduceContacts) side.m_firsts.assign(*m_device, pool.firsts());
     // The cull over patches needs no hierarchy of triangles.
@@ -164,6 +165,16 @@ void DeviceBackend::updateTopology(const Scene& scene)
                               (scene.m_anyPosed && m_sentPlaces.size() != scene.m_places.size());
     if (newPositions) uploadObstacles(scene);
     if (newPositions || m_obstaclePlacing != scene.m_obstaclePlacing) placeObstacles(scene, newPositions);
+    if (newCloths || newObstacles) m_mortonOrder.release();
+    if (newObstacles && !scene.m_anyPosed) releasePacking();
+}
+
+// What only packing reads goes when obstacles that rest are packed; those whose positions are given anew later keep it
+// from then on.
+void DeviceBackend::releasePacking()
+{
+    m_obstacleSpreads.release();
+    m_patchCull.releasePacking();
 }
 
 void DeviceBackend::updateTraversal(const Scene& scene, bool newObstacles)

@@ -41,7 +41,11 @@ private:
     struct Side
     {
         explicit Side(const std::string& side)
-            : m_nodes(side + " nodes"), m_order(side + " order"), m_triangles(side + " triangles")
+            : m_nodes(side + " nodes"),
+              m_order(side + " order"),
+              m_triangles(side + " triangles"),
+              m_radius(side + " meshes"),
+              m_firsts(side + " meshes")
         {
         }
         Buffer<BvhNode> m_nodes;
@@ -59,6 +63,7 @@ private:
     void updateTopology(const Scene& scene);
     void updateTraversal(const Scene& scene, bool newObstacles);
     void uploadObstacles(const Scene& scene);
+    void releasePacking();
     // Brings the obstacles whose places changed to the world, all of them after an upload, and renews what depends on
     // it.
     void placeObstacles(const Scene& scene, bool all);
@@ -90,19 +95,19 @@ private:
 
     Side m_cloth{"cloth"}, m_obstacle{"obstacle"};
     Buffer<float> m_clothStart{"cloth positions"}, m_clothEnd{"cloth positions"};
-    Buffer<float> m_obstaclePositions{"obstacle positions"}, m_obstacleSpreads{"obstacle positions"};
-    Buffer<float> m_thickness, m_tube;
+    Buffer<float> m_obstaclePositions{"obstacle positions"}, m_obstacleSpreads{"obstacle packing"};
+    Buffer<float> m_thickness{"pairs of meshes"}, m_tube{"pairs of meshes"};
     Buffer<Edge> m_clothEdges{"cloth edges"};
     Buffer<NormalCone> m_vertexCones{"obstacle cones"}, m_edgeCones{"obstacle cones"};
     // In the obstacles' own frames; only where one has a place.
-    Buffer<float> m_ownPositions{"obstacle positions"};
-    Buffer<NormalCone> m_ownVertexCones{"obstacle cones"}, m_ownEdgeCones{"obstacle cones"};
-    Buffer<ObstaclePlace> m_places{"obstacle positions"};
-    Buffer<ObstacleMotion> m_motions{"obstacle positions"};
+    Buffer<float> m_ownPositions{"obstacle positions in own frame"};
+    Buffer<NormalCone> m_ownVertexCones{"obstacle cones in own frame"}, m_ownEdgeCones{"obstacle cones in own frame"};
+    Buffer<ObstaclePlace> m_places{"obstacle places"};
+    Buffer<ObstacleMotion> m_motions{"obstacle places"};
     std::vector<ObstaclePlace> m_sentPlaces;
     std::vector<ObstacleMotion> m_sentMotions;
     Buffer<Candidate> m_candidates{"step candidates"};
-    Buffer<StepCounters> m_counters;
+    Buffer<StepCounters> m_counters{"step counters"};
     Staging<StepCounters> m_countersRead;
     Staging<Contact> m_contactsRead;
     std::size_t m_contactsAsked = 0;

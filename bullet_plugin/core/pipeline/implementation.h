@@ -1,9 +1,12 @@
 // What a Pipeline holds: the scene, both back ends, and the step under way.
 #pragma once
 
+#include <chrono>
 #include <memory>
+#include <string>
 #include <vector>
 
+#include "backend_choice.h"
 #include "bullet_plugin/core/pipeline.h"
 #include "device_backend.h"
 #include "host_backend.h"
@@ -18,6 +21,12 @@ struct NamedPair
     MeshId m_obstacle;
     float m_thickness;
     float m_tube;
+
+    bool operator==(const NamedPair& other) const
+    {
+        return m_cloth == other.m_cloth && m_obstacle == other.m_obstacle && m_thickness == other.m_thickness &&
+               m_tube == other.m_tube;
+    }
 };
 
 // Slot of a contact's obstacle.
@@ -36,8 +45,13 @@ struct Pipeline::Implementation
     StepResult m_result;
     StepStatistics m_statistics;
     TreeWatch m_treeWatch;
+    BackendChoice m_choice;               // active where cost decides
+    std::vector<NamedPair> m_notedPairs;  // those that m_choice has taken in last
+    DeviceInfo m_openClDevice;
+    std::string m_deviceReason;  // why this device and no other
     MeshId m_nextId = 0;
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
+    std::uint32_t m_stepRevision = 0, m_stepMotion = 0;  // of the obstacles, in the last step with a pair
     bool m_submitted = false;
 
     Device* device() { return m_deviceBackend ? &m_deviceBackend->device() : nullptr; }
@@ -58,9 +72,22 @@ struct Pipeline::Implementation
     void placeMesh(std::size_t slot);
     void collectPairs();
     void collectMotions();
+    // How many obstacles of the pairs the step uses as the one before left them.
+    std::size_t countKept();
     // Which pairs' contacts may be reduced, and how far their cloths' nodes stay near their ways.
     void collectTubes();
     void leaveDevice();
+    // Whether cost decides between the host and the device that was chosen.
+    bool costDecides(const DeviceChoice& choice) const;
+    // The crossover that settings or the environment name; negative where they name none. False: an error.
+    bool readCrossover(double& pairs, Error& error) const;
+    // From the cache, or measured.
+    double findCrossover(Pipeline& pipeline);
+    bool beginChoice(Pipeline& pipeline, Error& error);
+    // Has the coming steps run where the scene's work says, and the report say why.
+    void useChosen();
+    // Takes in the pairs that are named for the coming step, where they are not those of the last one.
+    void chooseBackend();
     void runOnHost();
     // The step of the pairs that are left, on the back end in use.
     void enqueue();

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "bullet_plugin/core/mesh/normal_cones.h"
+#include "scene_work.h"
 
 namespace drape
 {
@@ -33,6 +34,7 @@ PooledMesh Pipeline::Implementation::makeMesh(const MeshDescription& description
     mesh.m_id = m_nextId++;
     mesh.m_topology = buildTopology(description.m_triangles, description.m_triangleCount, description.m_vertexCount);
     mesh.m_positions.assign(description.m_positions, description.m_positions + 3 * description.m_vertexCount);
+    mesh.m_area = surfaceArea(mesh.m_topology.m_triangles, mesh.m_positions.data());
     if (m_deviceBackend)
     {
         mesh.m_order =
@@ -164,6 +166,7 @@ void Pipeline::Implementation::collectPairs()
     m_stepPairs.m_measureTree =
         m_stepPairs.m_any && watchesClothTree(m_settings, m_report.m_onHost) && m_treeWatch.isDue();
     collectMotions();
+    if (m_stepPairs.m_any) m_statistics.m_obstaclesKept = countKept();
     collectTubes();
     m_pairs.clear();
     const std::size_t clothTriangles = m_scene.m_cloths.triangles().size();
@@ -186,6 +189,28 @@ void Pipeline::Implementation::collectMotions()
             paired = paired || m_stepPairs.m_thickness[pair] >= 0.0f;
         if (paired) m_stepPairs.m_motions.push_back(makeMotion(mesh.m_placing, mesh.m_box, std::uint32_t(slot)));
     }
+}
+
+std::size_t Pipeline::Implementation::countKept()
+{
+    MeshPool& obstacles = m_scene.m_obstacles;
+    // Obstacles share a hierarchy: new ones, and positions given anew, are built or refitted with all others; on the
+    // host, places too.
+    bool all = m_stepRevision == m_obstacleRevision && m_stepMotion == m_scene.m_obstacleMotion;
+    m_stepRevision = m_obstacleRevision;
+    m_stepMotion = m_scene.m_obstacleMotion;
+    std::size_t kept = 0;
+    for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
+    {
+        PooledMesh& mesh = obstacles.mesh(slot);
+        if (mesh.m_placedAnew && m_report.m_onHost) all = false;
+        bool paired = false;
+        for (std::size_t pair = slot; pair < m_stepPairs.m_thickness.size(); pair += obstacles.meshCount())
+            paired = paired || m_stepPairs.m_thickness[pair] >= 0.0f;
+        if (paired && !mesh.m_placedAnew) ++kept;
+        mesh.m_placedAnew = false;
+    }
+    return all ? kept : 0;
 }
 
 // A cloth's contacts are reduced where all its obstacles rest and are two-sided: the solver keeps a node near its way
@@ -221,6 +246,7 @@ void Pipeline::Implementation::leaveDevice()
     m_report.m_device = DeviceInfo();
     m_report.m_device.m_name = "host";
     m_statistics.m_status |= kStepDeviceFailed;
+    m_choice.end();
     // The backend stays: the scene's pinned memory is its context's.
 }
 
@@ -243,7 +269,8 @@ std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& erro
     if (choice.m_onHost) return pipeline;
     std::unique_ptr<Device> device = Device::open(choice.m_index, error, settings.m_profileKernels);
     if (!device) return nullptr;
-    self.m_report.m_device = device->info();
+    self.m_report.m_device = self.m_openClDevice = device->info();
+    self.m_deviceReason = choice.m_reason;
     self.m_deviceBackend.reset(new DeviceBackend(std::move(device), settings));
     if (self.m_deviceBackend->device().failed())
     {
@@ -252,6 +279,7 @@ std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& erro
     }
     self.m_report.m_fromCache = self.m_deviceBackend->fromCache();
     self.m_report.m_buildMs = millisecondsSince(start);
+    if (self.costDecides(choice) && !self.beginChoice(*pipeline, error)) return nullptr;
     return pipeline;
 }
 
@@ -283,6 +311,8 @@ void Pipeline::remove(MeshId id)
     assert(!m_implementation->m_submitted);
     Scene& scene = m_implementation->m_scene;
     if (!scene.m_cloths.remove(id)) scene.m_obstacles.remove(id);
+    m_implementation->m_choice.forget(id);
+    m_implementation->m_notedPairs.clear();
 }
 
 void Pipeline::moveObstacle(MeshId id, const float* positions)
@@ -292,6 +322,8 @@ void Pipeline::moveObstacle(MeshId id, const float* positions)
     PooledMesh& mesh = scene.m_obstacles.mesh(scene.m_obstacles.slot(id));
     std::copy(positions, positions + mesh.m_positions.size(), mesh.m_positions.begin());
     m_implementation->measureObstacle(mesh);
+    mesh.m_area = surfaceArea(mesh.m_topology.m_triangles, positions);
+    m_implementation->m_notedPairs.clear();
     ++scene.m_obstacleMotion;
     m_implementation->joinObstacles();
 }
@@ -307,6 +339,7 @@ void Pipeline::placeObstacle(MeshId id, const float startPose[12], const float e
     std::copy(startPose, startPose + DRAPE_MAP_FLOATS, placing.m_start.begin());
     std::copy(endPose, endPose + DRAPE_MAP_FLOATS, placing.m_end.begin());
     if (stays) return;
+    scene.m_obstacles.mesh(slot).m_placedAnew = true;
     m_implementation->placeMesh(slot);
     ++scene.m_obstaclePlacing;
 }
@@ -337,6 +370,7 @@ void Pipeline::submit()
     self.m_statistics = StepStatistics();
     self.joinScene();
     self.takeRebuilt();
+    self.chooseBackend();
     self.collectPairs();
     self.m_submitted = true;
     self.enqueue();

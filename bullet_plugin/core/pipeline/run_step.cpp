@@ -28,6 +28,7 @@ std::vector<std::size_t> largestCloths(const std::vector<std::uint64_t>& candida
 void Pipeline::Implementation::runOnHost()
 {
     m_hostBackend.run(m_scene, m_stepPairs, m_settings, m_result);
+    m_statistics.m_onHost = true;
 }
 
 void Pipeline::Implementation::enqueue()

@@ -21,9 +21,17 @@ struct DeviceReport
 {
     bool m_onHost = true;  // the host back end computes
     DeviceInfo m_device;   // its name is "host" then
-    std::string m_reason;  // one line: why this device and no other
+    std::string m_reason;  // one line: why this device and no other, with figures where cost decides
     double m_buildMs = 0;  // making the kernels ready, warm-up included
     bool m_fromCache = false;
+
+    // Where cost decides between the host and a device (Backend::Auto); then m_onHost, m_device and m_reason are those
+    // of the last step with a pair, and of a scene without one before it.
+    bool m_byCost = false;
+    double m_expectedPairs = 0;     // of triangles, were every cloth to lie on its worst obstacle with all its area
+    double m_crossover = 0;         // of these pairs: the host up to it, the device above; infinite: never
+    std::string m_crossoverSource;  // "measured now", "measured before" or "set"
+    double m_measureMs = 0;         // that it took to measure now
 };
 
 // Every OpenCL device there is, in the order in which Drape would choose. Empty when there is none.
@@ -73,7 +81,12 @@ struct StepStatistics
     std::size_t m_invalidNodes = 0;   // with kStepInvalidNodes
     std::size_t m_retries = 0;        // stages run again because a buffer was too small
     std::size_t m_rebuilds = 0;       // of the cloths' hierarchy, that this step was the first to use
+    // What was there and not looked at, or used as it was left; contacts are the same without (tests/README.md).
+    std::size_t m_clothsSkipped =
+        0;  // of the solver's: asleep as it began, or pinned with all nodes; the adapter counts
+    std::size_t m_obstaclesKept = 0;  // of the step's pairs: neither built, refitted nor placed anew
     bool m_skipped = false;           // nothing to do: no pair, or nothing that could touch
+    bool m_onHost = false;            // the host back end ran the step, by choice or in place of the device
     // Together they are all of Drape's time in a solver's predictMotion and solveConstraints, and none of Bullet's.
     double m_uploadMs = 0;  // bounds, mirroring nodes and enqueueing
     double m_waitMs = 0;    // waiting for the device (all the work, on the host back end)

@@ -12,7 +12,7 @@ namespace drape
 {
 enum class Backend
 {
-    Auto,    // a GPU, else any OpenCL device, else the host
+    Auto,    // a GPU, else any OpenCL device, and the host where there is none or the scene is too small to pay for it
     OpenCl,  // an OpenCL device or an error
     Host     // the same pure functions, run serially by the calling thread (but Methods::m_rebuildDecay)
 };
@@ -32,6 +32,14 @@ struct Settings
     // Part of an OpenCL device's or platform's name, compared without case. Empty: the environment variable
     // DRAPE_DEVICE, and if that is empty too, the order of Backend::Auto. "host" asks for the host back end.
     std::string m_device;
+
+    // With Backend::Auto and no device named: the work from which a scene runs on the device, in pairs of triangles
+    // that its meshes let expect; below it the host is used. Both give the same contacts, so a scene that grows moves
+    // over between two steps, and comes back below half of it. 0: always the device. Infinite: always the host.
+    // Negative: the environment variable DRAPE_CROSSOVER, and if that is empty, what is measured for the machine and
+    // the device: once, in less than a second or two while the first pipeline is made, and kept in the cache folder
+    // (crossover-*.txt).
+    double m_crossover = -1;
 
     // Contacts are reported up to thickness + m_activation × thickness, so that the solver knows of a surface before
     // the thickness is violated. Range 0 to 4. Larger: safer under stiff links, more contacts.
@@ -59,7 +67,8 @@ struct Settings
     // Have the device time every kernel launch, for Pipeline::takeKernelTimes(). Costs some microseconds a launch.
     bool m_profileKernels = false;
 
-    // Folder of compiled kernels. Empty: $XDG_CACHE_HOME/drape or ~/.cache/drape. "none": do not cache.
+    // Folder of compiled kernels and of what was measured. Empty: $XDG_CACHE_HOME/drape or ~/.cache/drape. "none": do
+    // not cache.
     std::string m_cacheFolder;
 
     // Which algorithms; for comparing them. The contacts do not depend on it.

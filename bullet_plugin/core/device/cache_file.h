@@ -1,0 +1,24 @@
+// Files of Drape's cache folder. Every trouble (no folder, no space, no permission) reads as "not there"; nothing here
+// fails.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace drape
+{
+// What Settings::m_cacheFolder means: empty for $XDG_CACHE_HOME/drape or ~/.cache/drape, "none" for no cache (empty).
+std::string cacheFolder(const std::string& setting);
+
+// False when there is no folder or no such file, or it is longer than mostBytes.
+bool readCacheFile(const std::string& folder, const std::string& name, std::size_t mostBytes, std::string& bytes);
+// Written to a temporary file and renamed, so that no reader sees half of it.
+void writeCacheFile(const std::string& folder, const std::string& name, const std::string& bytes);
+
+// FNV-1a, 64 bit.
+constexpr std::uint64_t kCacheHashStart = 14695981039346656037ull;
+std::uint64_t cacheHash(const void* bytes, std::size_t count, std::uint64_t hash = kCacheHashStart);
+// 16 digits.
+std::string hexText(std::uint64_t value);
+}  // namespace drape

@@ -1,0 +1,127 @@
+// The back end of a scene where the settings leave it to cost: the crossover is found when the pipeline is made, and
+// held against the scene's work when its pairs change.
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+
+#include "crossover_ladder.h"
+#include "implementation.h"
+#include "scene_work.h"
+
+namespace drape
+{
+namespace
+{
+using Clock = std::chrono::steady_clock;
+
+std::string rounded(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.0f", value);
+    return text;
+}
+}  // namespace
+
+bool Pipeline::Implementation::costDecides(const DeviceChoice& choice) const
+{
+    // Methods, reports and profiles are for comparing what runs on the device; the crossover is that of the defaults.
+    return choice.m_byCost && goesOverPatches(m_settings) && !m_settings.m_profileKernels;
+}
+
+bool Pipeline::Implementation::readCrossover(double& pairs, Error& error) const
+{
+    pairs = m_settings.m_crossover;
+    const char* const variable = std::getenv("DRAPE_CROSSOVER");
+    if (pairs >= 0 || !variable || !*variable) return true;
+    char* end = nullptr;
+    pairs = std::strtod(variable, &end);
+    if (end != variable && *end == '\0' && pairs >= 0) return true;
+    error.m_call = "DRAPE_CROSSOVER is \"" + std::string(variable) + "\"";
+    error.m_detail = "it should be a number of pairs of triangles, 0 or more (inf: always the host)";
+    return false;
+}
+
+double Pipeline::Implementation::findCrossover(Pipeline& pipeline)
+{
+    const CrossoverCache cache(m_settings, m_openClDevice, device()->computeUnits());
+    Crossover crossover;
+    if (cache.load(crossover))
+    {
+        m_report.m_crossoverSource = "measured before";
+        return crossover.m_pairs;
+    }
+    const Clock::time_point start = Clock::now();
+    m_report.m_crossoverSource = "measured now";
+    const bool measured = measureLadder(
+        pipeline, m_settings.m_activation, [&](bool onHost) { m_report.m_onHost = onHost || device()->failed(); },
+        crossover.m_rungs);
+    // Nobody has seen these steps.
+    m_nextId = 0;
+    m_statistics = StepStatistics();
+    m_result = StepResult();
+    if (measured && !device()->failed())
+    {
+        crossover.m_pairs = bestCrossover(crossover.m_rungs);
+        cache.store(crossover);
+    }
+    else
+    {
+        m_report.m_crossoverSource = "its contacts are not the host's";
+        crossover.m_pairs = std::numeric_limits<double>::infinity();
+    }
+    m_report.m_measureMs = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    return crossover.m_pairs;
+}
+
+bool Pipeline::Implementation::beginChoice(Pipeline& pipeline, Error& error)
+{
+    double pairs = -1;
+    if (!readCrossover(pairs, error)) return false;
+    m_report.m_crossoverSource = "set";
+    if (pairs < 0) pairs = findCrossover(pipeline);
+    if (device()->failed()) return true;  // leaveDevice() has said so
+    m_report.m_byCost = true;
+    m_report.m_crossover = pairs;
+    m_choice.begin(pairs);
+    useChosen();
+    return true;
+}
+
+void Pipeline::Implementation::useChosen()
+{
+    m_report.m_onHost = m_choice.isOnHost();
+    m_report.m_expectedPairs = m_choice.pairs();
+    m_report.m_device = DeviceInfo();
+    m_report.m_device.m_name = "host";
+    if (!m_report.m_onHost) m_report.m_device = m_openClDevice;
+    const std::string source = " (" + m_report.m_crossoverSource + ")";
+    const std::string work = "expected pairs of triangles: " + rounded(m_report.m_expectedPairs) + ", ";
+    if (std::isinf(m_report.m_crossover))
+        m_report.m_reason = work + "the host for any number, rather than " + m_openClDevice.m_name + source;
+    else if (m_report.m_crossover == 0)
+        m_report.m_reason = work + m_openClDevice.m_name + ", " + m_deviceReason + ", for any number" + source;
+    else
+        m_report.m_reason = work + "the host up to " + rounded(m_report.m_crossover) + ", else " +
+                            m_openClDevice.m_name + ", " + m_deviceReason + source;
+}
+
+void Pipeline::Implementation::chooseBackend()
+{
+    if (!m_choice.active() || m_pairs.empty() || m_pairs == m_notedPairs) return;
+    m_notedPairs = m_pairs;
+    const auto surface = [](const MeshPool& pool, MeshId id)
+    {
+        const PooledMesh& mesh = pool.mesh(pool.slot(id));
+        return Surface{mesh.m_topology.m_triangles.size(), mesh.m_area};
+    };
+    for (const NamedPair& pair : m_pairs)
+    {
+        const double reach = double(pair.m_thickness) * (1 + double(m_settings.m_activation));
+        m_choice.note(pair.m_cloth, pair.m_obstacle,
+                      expectedPairs(surface(m_scene.m_cloths, pair.m_cloth),
+                                    surface(m_scene.m_obstacles, pair.m_obstacle), reach));
+    }
+    useChosen();
+}
+}  // namespace drape

@@ -1,0 +1,51 @@
+// The work from which a device is faster than the host back end: measured once for a machine, a device, a driver and a
+// version of Drape, and kept beside the compiled kernels.
+//
+// The file is text, one line for each rung of the ladder of scenes that was measured. What does not name this very
+// device, driver, host, version and settings, or is damaged, reads as "not there", and is measured again and replaced;
+// whoever wants it measured anew deletes crossover-*.txt.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "bullet_plugin/core/device/device.h"
+#include "drape/settings.h"
+
+namespace drape
+{
+// One scene, timed on both: the least of some steps, host to host.
+struct CrossoverRung
+{
+    double m_pairs = 0;  // expected, see scene_work.h
+    double m_hostMs = 0;
+    double m_deviceMs = 0;
+};
+
+struct Crossover
+{
+    double m_pairs = 0;  // 0: the device was faster in all scenes; infinite: the host was
+    std::vector<CrossoverRung> m_rungs;
+};
+
+// Where to divide the rungs so that the steps below on the host and those above on the device lose least against the
+// faster of both: least sum of the logarithms of the ratios. Of the ends, and the middles between neighbours.
+double bestCrossover(std::vector<CrossoverRung> rungs);
+
+// The crossover of one device with these settings, on disk.
+class CrossoverCache
+{
+public:
+    CrossoverCache(const Settings& settings, const DeviceInfo& device, std::size_t computeUnits);
+
+    bool load(Crossover& crossover) const;
+    void store(const Crossover& crossover) const;
+    std::string fileName() const;
+
+private:
+    std::string m_folder;
+    std::string m_machine;  // lines that name what is measured
+    std::string m_state;    // lines that may change, and make what is stored stale
+};
+}  // namespace drape

@@ -1,0 +1,19 @@
+// Times a pipeline's two back ends on a ladder of scenes: cloths that lie draped over a wavy sheet and sway, from two
+// triangles to some thousands, on sheets as coarse as the cloth and four times finer.
+//
+// Output: rungs for bestCrossover(). Guarantee: the pipeline is left without meshes. Ends a sheet's ladder where the
+// device is well ahead or a step of the host takes long. Cost: under a second.
+#pragma once
+
+#include <functional>
+
+#include "bullet_plugin/core/pipeline.h"
+#include "crossover.h"
+
+namespace drape
+{
+// use: has the pipeline's coming steps run on the host, or the device. activation: the pipeline's.
+// False where the device cannot be measured: it failed, or its contacts are not the host's.
+bool measureLadder(Pipeline& pipeline, float activation, const std::function<void(bool onHost)>& use,
+                   std::vector<CrossoverRung>& rungs);
+}  // namespace drape

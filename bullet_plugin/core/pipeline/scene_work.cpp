@@ -1,0 +1,36 @@
+#include "scene_work.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/lib/vec3.h"
+
+namespace drape
+{
+double surfaceArea(const std::vector<Triangle>& triangles, const float* positions)
+{
+    double area = 0;
+    for (const Triangle& triangle : triangles)
+    {
+        const Vec3 a = vec3Load(positions, triangle.m_vertices[0]);
+        const Vec3 ab = vec3Sub(vec3Load(positions, triangle.m_vertices[1]), a);
+        const Vec3 ac = vec3Sub(vec3Load(positions, triangle.m_vertices[2]), a);
+        const double twice = vec3Length(vec3Cross(ab, ac));
+        if (std::isfinite(twice)) area += 0.5 * twice;
+    }
+    return area;
+}
+
+double expectedPairs(const Surface& cloth, const Surface& obstacle, double reach)
+{
+    const double all = double(cloth.m_triangles) * double(obstacle.m_triangles);
+    if (!(cloth.m_area > 0) || !(obstacle.m_area > 0)) return all;
+    const double perClothArea = double(cloth.m_triangles) / cloth.m_area;
+    const double perObstacleArea = double(obstacle.m_triangles) / obstacle.m_area;
+    // A triangle of a grid is half a square of this side; a box around it, grown by the reach, meets one whose middle
+    // lies within half of both sides and twice the reach.
+    const double side = std::sqrt(2 / perClothArea) + std::sqrt(2 / perObstacleArea) + 2 * reach;
+    const double pairs = std::min(cloth.m_area, obstacle.m_area) * perClothArea * perObstacleArea * side * side;
+    return std::isfinite(pairs) ? std::min(pairs, all) : all;
+}
+}  // namespace drape

@@ -1,0 +1,235 @@
+// Where cost decides: a scene that moves between the back ends in the middle gives the contacts of one that does not,
+// and the report says where it runs and why.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "scenes/cloth_grid.h"
+#include "scenes/shapes.h"
+#include "tests/support/backends.h"
+#include "tests/support/environment.h"
+#include "tests/support/live_scene.h"
+#include "tests/support/pipeline_driver.h"
+#include "tests/support/side.h"
+
+namespace drape::test
+{
+namespace
+{
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Automatic: the device is the first one there is.
+Settings byCost(double crossover)
+{
+    Settings settings;
+    settings.m_crossover = crossover;
+    return settings;
+}
+
+// A cloth over a ball, with a pair.
+MeshId addDraped(Pipeline& pipeline, MeshId ball, int nodes)
+{
+    const TriangleMesh mesh = makeClothGrid(nodes, nodes, 0.8f, 0.51f).m_mesh;
+    const MeshId cloth = addCloth(pipeline, mesh);
+    setMotion(pipeline, cloth, mesh.m_positions, mesh.m_positions);
+    pipeline.addPair(cloth, ball, 0.02f);
+    return cloth;
+}
+
+std::vector<std::filesystem::path> crossoverFiles(const std::string& folder)
+{
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        if (entry.path().filename().string().rfind("crossover-", 0) == 0) files.push_back(entry.path());
+    return files;
+}
+}  // namespace
+
+// One device: the first. Nothing of the environment decides.
+class BackendMove : public BackendTest
+{
+protected:
+    ScopedVariable m_noDevice{"DRAPE_DEVICE", nullptr}, m_noCrossover{"DRAPE_CROSSOVER", nullptr};
+};
+
+// Meshes come and go at random, so that the work passes a crossover in its range time and again.
+TEST_P(BackendMove, ContactsDoNotDependOnMoves)
+{
+    Settings host;
+    host.m_backend = Backend::Host;
+    std::size_t contacts = 0, reduced = 0;
+    int moves = 0;
+    for (std::uint32_t seed = 1200; seed < 1204; ++seed)
+    {
+        const std::unique_ptr<Pipeline> moving = makePipeline(byCost(3000)), onHost = makePipeline(host),
+                                        onDevice = makePipeline(GetParam().m_settings);
+        ASSERT_TRUE(moving && onHost && onDevice);
+        LiveScene scene({moving.get(), onHost.get(), onDevice.get()}, seed, true);
+        bool wasOnHost = true;
+        for (int step = 0; step < 80; ++step)
+        {
+            SCOPED_TRACE("seed " + std::to_string(seed) + ", step " + std::to_string(step));
+            scene.nextStep();
+            const std::vector<Contact> found = runStep(*moving);
+            const std::vector<Contact> first = runStep(*onHost), second = runStep(*onDevice);
+            ASSERT_TRUE(sameBytes(found, first)) << difference(found, first);
+            ASSERT_TRUE(sameBytes(found, second)) << difference(found, second);
+            const DeviceReport& report = moving->deviceReport();
+            EXPECT_EQ(moving->statistics().m_onHost, report.m_onHost && !moving->statistics().m_skipped);
+            moves += report.m_onHost != wasOnHost;
+            wasOnHost = report.m_onHost;
+            contacts += found.size();
+            reduced += moving->statistics().m_reduced;
+        }
+    }
+    EXPECT_GT(moves, 8);
+    EXPECT_GT(contacts, 10000u);
+    EXPECT_GT(reduced, 100u);
+}
+
+TEST_P(BackendMove, AGrowingSceneMovesOnceAndTheReportSaysWhy)
+{
+    const std::unique_ptr<Pipeline> pipeline = makePipeline(byCost(6000));
+    ASSERT_TRUE(pipeline);
+    const DeviceReport& report = pipeline->deviceReport();
+    EXPECT_TRUE(report.m_byCost);
+    EXPECT_TRUE(report.m_onHost);
+    EXPECT_EQ(report.m_device.m_name, "host");
+    const MeshId ball = addObstacle(*pipeline, makeSphere(0.5f, 3));
+    const MeshId small = addDraped(*pipeline, ball, 9);
+    EXPECT_GT(runStep(*pipeline).size(), 0u);
+    EXPECT_TRUE(report.m_onHost);
+    EXPECT_GT(report.m_expectedPairs, 128);
+    EXPECT_NE(report.m_reason.find(std::to_string(std::lround(report.m_expectedPairs))), std::string::npos)
+        << report.m_reason;
+    EXPECT_NE(report.m_reason.find("6000"), std::string::npos) << report.m_reason;
+    EXPECT_NE(report.m_reason.find(listDevices()[0].m_name), std::string::npos) << report.m_reason;
+
+    const MeshId large = addDraped(*pipeline, ball, 41);
+    pipeline->addPair(small, ball, 0.02f);
+    EXPECT_GT(runStep(*pipeline).size(), 0u);
+    EXPECT_FALSE(report.m_onHost);
+    EXPECT_FALSE(pipeline->statistics().m_onHost);
+    EXPECT_EQ(report.m_device.m_name, listDevices()[0].m_name);
+    EXPECT_GT(report.m_expectedPairs, 6000);
+
+    // A step in which the large one has no pair is no other scene.
+    pipeline->addPair(small, ball, 0.02f);
+    runStep(*pipeline);
+    EXPECT_FALSE(report.m_onHost);
+
+    pipeline->remove(large);
+    pipeline->addPair(small, ball, 0.02f);
+    runStep(*pipeline);
+    EXPECT_TRUE(report.m_onHost);
+    EXPECT_TRUE(pipeline->statistics().m_onHost);
+}
+
+TEST_P(BackendMove, AnObstacleThatIsScaledCountsAnew)
+{
+    const std::unique_ptr<Pipeline> pipeline = makePipeline(byCost(2500));
+    ASSERT_TRUE(pipeline);
+    TriangleMesh mesh = makeSphere(1.0f, 3);
+    const MeshId ball = addObstacle(*pipeline, mesh);
+    const MeshId cloth = addDraped(*pipeline, ball, 9);
+    runStep(*pipeline);
+    const double before = pipeline->deviceReport().m_expectedPairs;
+    for (float& coordinate : mesh.m_positions)
+        coordinate *= 0.5f;
+    pipeline->moveObstacle(ball, mesh.m_positions.data());
+    pipeline->addPair(cloth, ball, 0.02f);
+    runStep(*pipeline);
+    EXPECT_GT(pipeline->deviceReport().m_expectedPairs, before);
+}
+
+TEST_P(BackendMove, SettingsAndTheVariableForceIt)
+{
+    for (const double crossover : {0.0, kInfinity})
+    {
+        const std::unique_ptr<Pipeline> pipeline = makePipeline(byCost(crossover));
+        ASSERT_TRUE(pipeline);
+        EXPECT_EQ(pipeline->deviceReport().m_onHost, crossover > 0);
+        EXPECT_EQ(pipeline->deviceReport().m_crossoverSource, "set");
+        const MeshId ball = addObstacle(*pipeline, makeSphere(0.5f, 3));
+        addDraped(*pipeline, ball, 41);
+        runStep(*pipeline);
+        EXPECT_EQ(pipeline->statistics().m_onHost, crossover > 0);
+    }
+    const ScopedVariable variable("DRAPE_CROSSOVER", "77.5");
+    EXPECT_EQ(makePipeline(byCost(-1))->deviceReport().m_crossover, 77.5);
+    EXPECT_EQ(makePipeline(byCost(12))->deviceReport().m_crossover, 12);
+    const ScopedVariable never("DRAPE_CROSSOVER", "inf");
+    EXPECT_EQ(makePipeline(byCost(-1))->deviceReport().m_crossover, kInfinity);
+    for (const char* wrong : {"-3", "many", "12 pairs", "nan"})
+    {
+        const ScopedVariable bad("DRAPE_CROSSOVER", wrong);
+        Error error;
+        EXPECT_FALSE(Pipeline::create(byCost(-1), error)) << wrong;
+        EXPECT_NE(error.text().find(wrong), std::string::npos) << error.text();
+    }
+}
+
+TEST_P(BackendMove, WhoAsksForABackEndGetsItUnmeasured)
+{
+    const TemporaryFolder folder;
+    Settings opencl = GetParam().m_settings, host, named;
+    host.m_backend = Backend::Host;
+    named.m_device = listDevices()[0].m_name;
+    for (Settings settings : {opencl, host, named})
+    {
+        settings.m_cacheFolder = folder.path();
+        const std::unique_ptr<Pipeline> pipeline = makePipeline(settings);
+        ASSERT_TRUE(pipeline);
+        EXPECT_FALSE(pipeline->deviceReport().m_byCost);
+        EXPECT_EQ(pipeline->deviceReport().m_onHost, settings.m_backend == Backend::Host);
+    }
+    EXPECT_TRUE(crossoverFiles(folder.path()).empty());
+}
+
+// Once for a cache folder; a damaged file is measured again.
+TEST_P(BackendMove, TheCrossoverIsMeasuredOnce)
+{
+    const TemporaryFolder folder;
+    Settings settings = byCost(-1);
+    settings.m_cacheFolder = folder.path();
+    const std::unique_ptr<Pipeline> first = makePipeline(settings), second = makePipeline(settings);
+    ASSERT_TRUE(first && second);
+    EXPECT_EQ(first->deviceReport().m_crossoverSource, "measured now") << first->deviceReport().m_reason;
+    EXPECT_LT(first->deviceReport().m_measureMs, 20000);
+    EXPECT_EQ(second->deviceReport().m_crossoverSource, "measured before");
+    EXPECT_EQ(second->deviceReport().m_measureMs, 0);
+    EXPECT_NEAR(second->deviceReport().m_crossover, first->deviceReport().m_crossover,
+                1e-6 * first->deviceReport().m_crossover);
+    ASSERT_EQ(crossoverFiles(folder.path()).size(), 1u);
+    std::ofstream(crossoverFiles(folder.path())[0]) << "something else";
+    EXPECT_EQ(makePipeline(settings)->deviceReport().m_crossoverSource, "measured now");
+    EXPECT_EQ(makePipeline(settings)->deviceReport().m_crossoverSource, "measured before");
+}
+
+// A pipeline that has measured is as one that has not: ids begin at 0, no memory of the ladder's steps.
+TEST_P(BackendMove, MeasuringLeavesNothingBehind)
+{
+    const TemporaryFolder folder;
+    Settings settings = byCost(-1);
+    settings.m_cacheFolder = folder.path();
+    for (const char* source : {"measured now", "measured before"})
+    {
+        const std::unique_ptr<Pipeline> pipeline = makePipeline(settings), plain = makePipeline(byCost(kInfinity));
+        ASSERT_TRUE(pipeline && plain);
+        EXPECT_EQ(pipeline->deviceReport().m_crossoverSource, source);
+        EXPECT_EQ(pipeline->statistics().m_candidates, 0u);
+        LiveScene scene({pipeline.get(), plain.get()}, 1300);
+        for (int step = 0; step < 20; ++step)
+        {
+            scene.nextStep();
+            const std::vector<Contact> found = runStep(*pipeline), expected = runStep(*plain);
+            ASSERT_TRUE(sameBytes(found, expected)) << difference(found, expected);
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Device, BackendMove, testing::Values(openClBackends().front()), backendName);
+}  // namespace drape::test
