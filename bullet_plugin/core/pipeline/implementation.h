@@ -32,6 +32,7 @@ struct Pipeline::Implementation
     std::unique_ptr<DeviceBackend> m_deviceBackend;
     HostBackend m_hostBackend;
     std::vector<NamedPair> m_pairs;
+    std::vector<MeshId> m_selfCloths;  // named for the coming step
     StepPairs m_stepPairs;
     StepResult m_result;
     StepStatistics m_statistics;
@@ -58,8 +59,11 @@ struct Pipeline::Implementation
     void placeMesh(std::size_t slot);
     void collectPairs();
     void collectMotions();
+    void collectSelf();
     // Which pairs' contacts may be reduced, and how far their cloths' nodes stay near their ways.
     void collectTubes();
+    // Makes a device ready for cloths that collide with themselves.
+    void prepareSelf();
     void leaveDevice();
     void runOnHost();
     // The step of the pairs that are left, on the back end in use.

@@ -64,16 +64,19 @@ struct StepStatistics
     std::size_t m_obstacleTriangles = 0;
     // What the broad phase left: pairs of triangles on the host and of cloths left out, pairs of features on a device.
     std::uint64_t m_candidates = 0;
-    std::size_t m_volumeTests = 0;    // over pairs of triangles; on a device see Methods::m_countTests
-    std::size_t m_sweptTests = 0;     // pairs of features that needed the continuous test
-    std::size_t m_clothsLeftOut = 0;  // with kStepClothsLeftOut
-    std::size_t m_contacts = 0;       // contacts published
-    std::size_t m_reduced = 0;        // contacts left out because others imply them
-    std::size_t m_intersections = 0;  // only with Settings::m_reportIntersections
-    std::size_t m_invalidNodes = 0;   // with kStepInvalidNodes
-    std::size_t m_retries = 0;        // stages run again because a buffer was too small
-    std::size_t m_rebuilds = 0;       // of the cloths' hierarchy, that this step was the first to use
-    bool m_skipped = false;           // nothing to do: no pair, or nothing that could touch
+    std::size_t m_volumeTests = 0;       // over pairs of triangles; on a device see Methods::m_countTests
+    std::size_t m_sweptTests = 0;        // pairs of features that needed the continuous test
+    std::size_t m_clothsLeftOut = 0;     // with kStepClothsLeftOut
+    std::size_t m_contacts = 0;          // contacts published
+    std::uint64_t m_selfCandidates = 0;  // pairs of features of cloths that collide with themselves
+    std::size_t m_selfSweptTests = 0;    // of these, that needed the continuous test
+    std::size_t m_selfContacts = 0;      // contacts of cloths with themselves
+    std::size_t m_reduced = 0;           // contacts left out because others imply them
+    std::size_t m_intersections = 0;     // only with Settings::m_reportIntersections
+    std::size_t m_invalidNodes = 0;      // with kStepInvalidNodes
+    std::size_t m_retries = 0;           // stages run again because a buffer was too small
+    std::size_t m_rebuilds = 0;          // of the cloths' hierarchy, that this step was the first to use
+    bool m_skipped = false;              // nothing to do: no pair, or nothing that could touch
     // Together they are all of Drape's time in a solver's predictMotion and solveConstraints, and none of Bullet's.
     double m_uploadMs = 0;  // bounds, mirroring nodes and enqueueing
     double m_waitMs = 0;    // waiting for the device (all the work, on the host back end)

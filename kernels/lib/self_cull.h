@@ -1,0 +1,136 @@
+// Pairs of features of one cloth that may touch in a step: boxes of features a block of lanes at a time, then the
+// features' own volumes.
+//
+// Every volume is the union of its nodes' volumes (vertexVolume), so a box or a patch's volume holds those of all that
+// it stands for, and which pairs are found does not depend on the patches.
+#ifndef DRAPE_LIB_SELF_CULL_H
+#define DRAPE_LIB_SELF_CULL_H
+
+#include "lanes.h"
+#include "self_collision.h"
+
+DRAPE_NAMESPACE_BEGIN
+
+// The first three directions of a volume.
+typedef struct FeatureBox
+{
+    float m_low[3], m_high[3];
+} FeatureBox;
+
+DRAPE_FUNCTION FeatureBox emptyBox(void)
+{
+    FeatureBox box;
+    for (int i = 0; i < 3; ++i)
+    {
+        box.m_low[i] = DRAPE_INFINITY;
+        box.m_high[i] = -DRAPE_INFINITY;
+    }
+    return box;
+}
+
+DRAPE_FUNCTION FeatureBox joinBoxes(FeatureBox a, FeatureBox b)
+{
+    for (int i = 0; i < 3; ++i)
+    {
+        a.m_low[i] = drapeMin(a.m_low[i], b.m_low[i]);
+        a.m_high[i] = drapeMax(a.m_high[i], b.m_high[i]);
+    }
+    return a;
+}
+
+// Along one direction, of a valid node over the step; as vertexVolume has it.
+DRAPE_FUNCTION void nodeInterval(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end, DRAPE_UINT node,
+                                 float radius, int direction, float* low, float* high)
+{
+    Dop dop;  // of which one direction is used
+    dop.m_low[direction] = DRAPE_INFINITY;
+    dop.m_high[direction] = -DRAPE_INFINITY;
+    for (int k = 0; k < 2; ++k)
+    {
+        const Vec3 p = vec3Load(k == 0 ? start : end, node);
+        const float v = dopProject(p, direction);
+        dopAddInterval(&dop, direction, v, v, radius * dopNorm(direction), dopInner(p, direction));
+    }
+    *low = dop.m_low[direction];
+    *high = dop.m_high[direction];
+}
+
+DRAPE_FUNCTION int nodeIsValid(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end, DRAPE_UINT node)
+{
+    return positionIsValid(vec3Load(start, node)) && positionIsValid(vec3Load(end, node));
+}
+
+// Empty where the node is not valid.
+DRAPE_FUNCTION FeatureBox nodeBox(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end, DRAPE_UINT node,
+                                  float radius)
+{
+    FeatureBox box = emptyBox();
+    if (!nodeIsValid(start, end, node)) return box;
+    DRAPE_UNROLL
+    for (int i = 0; i < 3; ++i)
+        nodeInterval(start, end, node, radius, i, &box.m_low[i], &box.m_high[i]);
+    return box;
+}
+
+// Whether the volumes of two features, of their nodes joined, overlap: the first `split` of four nodes are the first
+// feature's. The same answer as featuresOverlap() gives for the nodes' volumes.
+DRAPE_FUNCTION int nodeVolumesOverlap(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end,
+                                      const DRAPE_UINT nodes[4], int split, float radius)
+{
+    for (int k = 0; k < 4; ++k)
+        if (!nodeIsValid(start, end, nodes[k])) return 0;
+    DRAPE_UNROLL
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        float low[2] = {DRAPE_INFINITY, DRAPE_INFINITY}, high[2] = {-DRAPE_INFINITY, -DRAPE_INFINITY};
+        for (int k = 0; k < 4; ++k)
+        {
+            const int side = k >= split;
+            float least, greatest;
+            nodeInterval(start, end, nodes[k], radius, i, &least, &greatest);
+            low[side] = drapeMin(low[side], least);
+            high[side] = drapeMax(high[side], greatest);
+        }
+        if (low[0] > high[1] || low[1] > high[0]) return 0;
+    }
+    return 1;
+}
+
+// Boxes of a block, a lane each.
+typedef struct BoxLanes
+{
+    Lanes m_low[3], m_high[3];
+} BoxLanes;
+
+DRAPE_FUNCTION BoxLanes loadBoxes(const DRAPE_GLOBAL float* block)
+{
+    BoxLanes boxes;
+    for (int i = 0; i < 3; ++i)
+    {
+        boxes.m_low[i] = lanesLoad(block, i);
+        boxes.m_high[i] = lanesLoad(block, 3 + i);
+    }
+    return boxes;
+}
+
+DRAPE_FUNCTION LaneMask boxesOverlap(const BoxLanes* boxes, const FeatureBox* box)
+{
+    LaneMask near = lanesMaskSplat(1);
+    for (int i = 0; i < 3; ++i)
+        near &= (boxes->m_low[i] <= lanesSplat(box->m_high[i])) & (boxes->m_high[i] >= lanesSplat(box->m_low[i]));
+    return near;
+}
+
+// Children of a wide node (patch.h) whose volumes overlap a volume; what their contacts can reach is not looked at.
+DRAPE_FUNCTION LaneMask wideOverlaps(const Dop* volume, const DRAPE_GLOBAL float* node)
+{
+    LaneMask near = lanesMaskSplat(1);
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+        near &= (lanesLoad(node, i) <= lanesSplat(volume->m_high[i])) &
+                (lanesLoad(node, DRAPE_DOP_DIRECTIONS + i) >= lanesSplat(volume->m_low[i]));
+    return near;
+}
+
+DRAPE_NAMESPACE_END
+
+#endif
