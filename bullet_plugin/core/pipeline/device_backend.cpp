@@ -456,6 +456,8 @@ bool DeviceBackend::grow()
     }
     demand(counters.m_selfTests, m_self.tests().capacity(), sizeof(Contact),
            [&](std::size_t count) { m_self.reserveTests(device, count); });
+    const std::size_t hits = m_self.tests().capacity() + (patches() ? m_patchCull.tests().capacity() : 0);
+    if (hits * sizeof(Contact) > largest) m_limitReached = again = true;
     if (again && !m_limitReached) reserveHits();
     demand(counters.m_intersections, m_narrowPhase.intersections().capacity(), sizeof(Candidate),
            [&](std::size_t count) { m_narrowPhase.reserveIntersections(device, count); });

@@ -60,6 +60,10 @@ void SelfContactStage::create(Device& device, const ProgramLoader& load)
     m_feature.create(device, contact, "selfFeature");
     m_sweptKernel.create(device, contact, "selfSwept");
     reserveTests(device, kFirstTests);
+    // The others run in the first step; a small tree has no upper levels.
+    m_wideNodes.reserve(device, 1);
+    m_widen.launch(device, kGroup, kGroup, m_wideNodes.handle(), cl_uint(0), cl_uint(0), cl_uint(0), cl_uint(0),
+                   cl_uint(0));
     m_created = !device.failed();
 }
 

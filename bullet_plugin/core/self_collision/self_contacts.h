@@ -46,6 +46,38 @@ struct SelfCounts
     std::uint64_t m_swept = 0;  // candidates that the continuous test decided
 };
 
+// Volumes of the cloths' nodes over the step; those of cloths that are not in it stay as they are.
+void selfVolumes(const SelfStep& step, std::vector<Dop>& volumes);
+
+void sortSelfContacts(std::vector<Contact>& contacts);
+
+// Finds the contacts of pairs of triangles that are handed to it, in any order, each once.
+class SelfFinder
+{
+public:
+    // volumes: by selfVolumes(). All must outlive it.
+    SelfFinder(const SelfStep& step, const std::vector<Dop>& volumes, std::uint64_t candidateLimit = UINT64_MAX,
+               std::uint64_t contactLimit = UINT64_MAX);
+
+    void visit(const Candidate& pair);
+    // Of candidates: beyond them nothing is tested.
+    bool withinLimits() const { return m_counts.m_candidates <= m_candidateLimit; }
+    const SelfCounts& counts() const { return m_counts; }
+    // Appends the contacts in canonical order, none where there are more than a limit.
+    void append(std::vector<Contact>& contacts);
+
+private:
+    void test(const FeatureTest& test);
+
+    const SelfStep& m_step;
+    SelfView m_view;
+    const std::vector<Dop>& m_volumes;
+    std::uint64_t m_candidateLimit, m_contactLimit;
+    std::uint32_t m_firstSlot;
+    SelfCounts m_counts;
+    std::vector<Contact> m_found;
+};
+
 class SelfContactsOnHost
 {
 public:

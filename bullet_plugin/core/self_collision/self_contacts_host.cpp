@@ -29,6 +29,70 @@ HostTree treeOf(const MeshPool& cloths, const std::vector<BvhNode>& nodes, const
 }
 }  // namespace
 
+void sortSelfContacts(std::vector<Contact>& contacts)
+{
+    std::sort(contacts.begin(), contacts.end(),
+              [](const Contact& a, const Contact& b)
+              { return std::tie(a.m_slot, a.m_obstacleFeature) < std::tie(b.m_slot, b.m_obstacleFeature); });
+}
+
+void selfVolumes(const SelfStep& step, std::vector<Dop>& volumes)
+{
+    const MeshPool& cloths = step.m_cloths;
+    const ClothView& cloth = step.m_view.m_cloth;
+    const float* start = cloth.m_mode == DRAPE_DISCRETE ? cloth.m_end : cloth.m_start;
+    volumes.resize(cloths.vertexCount());
+    for (std::size_t slot = 0; slot < cloths.meshCount(); ++slot)
+    {
+        const float radius = step.m_reach.m_radius[slot];
+        const std::uint32_t first = cloths.mesh(slot).m_firstVertex;
+        if (radius < 0.0f) continue;  // nobody asks
+        for (std::uint32_t i = first; i < first + cloths.mesh(slot).m_topology.m_vertexCount; ++i)
+            vertexVolume(&volumes[i], start, cloth.m_end, i, radius);
+    }
+}
+
+SelfFinder::SelfFinder(const SelfStep& step, const std::vector<Dop>& volumes, std::uint64_t candidateLimit,
+                       std::uint64_t contactLimit)
+    : m_step(step),
+      m_view(step.m_view),
+      m_volumes(volumes),
+      m_candidateLimit(candidateLimit),
+      m_contactLimit(contactLimit),
+      m_firstSlot(firstSelfSlot(step.m_view.m_cloth.m_nodeCount, step.m_view.m_cloth.m_triangleCount,
+                                std::uint32_t(step.m_cloths.edges().size())))
+{
+}
+
+void SelfFinder::visit(const Candidate& pair)
+{
+    const Triangle* triangles = m_step.m_cloths.triangles().data();
+    const std::uint32_t mesh = triangles[pair.m_cloth].m_mesh;
+    if (mesh != triangles[pair.m_obstacle].m_mesh) return;
+    FeaturePairs features;
+    collectFeaturePairs(&features, triangles, pair, m_volumes.data());
+    const float thickness = m_step.m_reach.m_thickness[mesh];
+    for (std::uint32_t i = 0; i < features.m_vertexFaceCount; ++i)
+        test({features.m_vertexFace[i].m_a, features.m_vertexFace[i].m_b, thickness, DRAPE_SELF_TEST_NODE});
+    for (std::uint32_t i = 0; i < features.m_edgesCount; ++i)
+        test({features.m_edges[i].m_a, features.m_edges[i].m_b, thickness, DRAPE_SELF_TEST_EDGE});
+}
+
+void SelfFinder::test(const FeatureTest& test)
+{
+    Contact contact;
+    if (++m_counts.m_candidates > m_candidateLimit) return;
+    if (decide(m_view, test, m_firstSlot, &contact, m_counts) && ++m_counts.m_contacts <= m_contactLimit)
+        m_found.push_back(contact);
+}
+
+void SelfFinder::append(std::vector<Contact>& contacts)
+{
+    if (!withinLimits() || m_counts.m_contacts > m_contactLimit) return;
+    sortSelfContacts(m_found);
+    contacts.insert(contacts.end(), m_found.begin(), m_found.end());
+}
+
 float selfGrowth(float reach)
 {
     // Far above the roundings of the volumes' comparisons, which they are padded for themselves.
@@ -49,53 +113,20 @@ void SelfContactsOnHost::update(const SelfStep& step)
     std::size_t ignored = 0;
     refitOnHost(m_nodes, m_layout, cloths.order(), cloths.triangles(), start, cloth.m_end, step.m_reach.m_radius,
                 ignored);
-    m_volumes.resize(cloths.vertexCount());
-    for (std::size_t slot = 0; slot < cloths.meshCount(); ++slot)
-    {
-        const float radius = step.m_reach.m_radius[slot];
-        const std::uint32_t first = cloths.mesh(slot).m_firstVertex;
-        if (radius < 0.0f) continue;  // its leaves are empty: nobody asks
-        for (std::uint32_t i = first; i < first + cloths.mesh(slot).m_topology.m_vertexCount; ++i)
-            vertexVolume(&m_volumes[i], start, cloth.m_end, i, radius);
-    }
+    selfVolumes(step, m_volumes);
 }
 
 SelfCounts SelfContactsOnHost::run(const SelfStep& step, std::uint64_t candidateLimit, std::uint64_t contactLimit,
                                    std::vector<Contact>& contacts)
 {
     update(step);
-    const Triangle* triangles = step.m_cloths.triangles().data();
-    SelfView view = step.m_view;
-    const std::uint32_t firstSlot = firstSelfSlot(view.m_cloth.m_nodeCount, view.m_cloth.m_triangleCount,
-                                                  std::uint32_t(step.m_cloths.edges().size()));
-    SelfCounts counts;
-    std::vector<Contact> found;
-    const auto test = [&](std::uint32_t kind, const FeaturePair& pair, float thickness)
-    {
-        Contact contact;
-        if (++counts.m_candidates > candidateLimit) return;
-        if (!decide(view, FeatureTest{pair.m_a, pair.m_b, thickness, kind}, firstSlot, &contact, counts)) return;
-        if (++counts.m_contacts <= contactLimit) found.push_back(contact);
-    };
-    const auto visit = [&](const Candidate& pair)
-    {
-        if (triangles[pair.m_cloth].m_mesh != triangles[pair.m_obstacle].m_mesh) return;
-        const float thickness = step.m_reach.m_thickness[triangles[pair.m_cloth].m_mesh];
-        FeaturePairs features;
-        collectFeaturePairs(&features, triangles, pair, m_volumes.data());
-        for (std::uint32_t i = 0; i < features.m_vertexFaceCount; ++i)
-            test(DRAPE_SELF_TEST_NODE, features.m_vertexFace[i], thickness);
-        for (std::uint32_t i = 0; i < features.m_edgesCount; ++i)
-            test(DRAPE_SELF_TEST_EDGE, features.m_edges[i], thickness);
-    };
+    SelfFinder finder(step, m_volumes, candidateLimit, contactLimit);
     const HostTree tree = treeOf(step.m_cloths, m_nodes, m_layout);
-    leafPairsOnHost(tree, tree, DRAPE_WALK_SELF, visit, [&] { return counts.m_candidates <= candidateLimit; });
-    if (counts.m_candidates > candidateLimit || counts.m_contacts > contactLimit) return counts;
-    std::sort(found.begin(), found.end(),
-              [](const Contact& a, const Contact& b)
-              { return std::tie(a.m_slot, a.m_obstacleFeature) < std::tie(b.m_slot, b.m_obstacleFeature); });
-    contacts.insert(contacts.end(), found.begin(), found.end());
-    return counts;
+    leafPairsOnHost(
+        tree, tree, DRAPE_WALK_SELF, [&](const Candidate& pair) { finder.visit(pair); },
+        [&] { return finder.withinLimits(); });
+    finder.append(contacts);
+    return finder.counts();
 }
 
 std::vector<std::uint64_t> SelfContactsOnHost::countPairs(const SelfStep& step, std::uint64_t limit)
