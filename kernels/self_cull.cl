@@ -6,6 +6,11 @@
 #include "lib/self_cull.h"
 
 #define DRAPE_WALK_STACK (DRAPE_LEVELS * DRAPE_PATCH_WIDTH)
+// Pairs whose boxes overlap are tried when there are DRAPE_SETTLE of them; until the next look at their number come three
+// blocks at most.
+#define DRAPE_SETTLE (3 * DRAPE_PATCH_WIDTH)
+#define DRAPE_NEAR (DRAPE_SETTLE + 3 * DRAPE_PATCH_WIDTH)
+#define DRAPE_KIND_SHIFT 31
 
 static void storeBox(__global float* restrict boxes, const uint lane, const FeatureBox box)
 {
@@ -124,6 +129,8 @@ typedef struct SelfTeam
     uint m_found[DRAPE_PATCH_WIDTH];
     uint m_foundCount;
     uint m_bits;
+    uint m_nearA[DRAPE_NEAR], m_nearB[DRAPE_NEAR];  // pairs of features, kind above the second
+    uint m_nearCount;
 } SelfTeam;
 
 // A mask that the lanes have, as bits that all of them see; by all lanes together.
@@ -141,9 +148,37 @@ static uint sharedBits(DRAPE_TEAM SelfTeam* self, const LaneMask mask)
 #endif
 }
 
-static void keepSelfTest(DRAPE_TEAM SelfTeam* self, const SelfCloths* cloths, const uint a, const uint b, const uint kind,
-                         const TestList* list)
+// Notes a pair of features whose boxes overlap.
+static void noteNear(DRAPE_TEAM SelfTeam* self, const uint a, const uint b, const uint kind)
 {
+    const uint slot = teamAdd(self->m_nearCount);
+    self->m_nearA[slot] = a;
+    self->m_nearB[slot] = b | (kind << DRAPE_KIND_SHIFT);
+}
+
+// Lists a pair whose boxes overlap if the features share no vertex and their volumes overlap.
+static void tryPair(DRAPE_TEAM SelfTeam* self, const SelfCloths* cloths, const uint a, const uint b, const uint kind,
+                    const TestList* list)
+{
+    const int edges = kind == DRAPE_SELF_TEST_EDGE;
+    uint nodes[4];
+    if (edges)
+    {
+        const Edge e = cloths->m_edges[a], o = cloths->m_edges[b];
+        nodes[0] = e.m_vertices[0];
+        nodes[1] = e.m_vertices[1];
+        nodes[2] = o.m_vertices[0];
+        nodes[3] = o.m_vertices[1];
+    }
+    else
+    {
+        nodes[0] = a;
+        for (int i = 0; i < 3; ++i) nodes[1 + i] = cloths->m_triangles[b].m_vertices[i];
+    }
+    // Two nodes of a feature differ.
+    if (nodes[0] == nodes[1] || nodes[0] == nodes[2] || nodes[0] == nodes[3] || nodes[1] == nodes[2] || nodes[1] == nodes[3])
+        return;
+    if (!nodeVolumesOverlap(cloths->m_start, cloths->m_end, nodes, edges ? 2 : 1, cloths->m_radius)) return;
     FeatureTest test;
     test.m_cloth = a;
     test.m_lane = b;
@@ -152,28 +187,35 @@ static void keepSelfTest(DRAPE_TEAM SelfTeam* self, const SelfCloths* cloths, co
     teamKeep(&self->m_team, list, test);
 }
 
-static void tryNode(DRAPE_TEAM SelfTeam* self, const SelfCloths* cloths, const uint node, const uint face, const TestList* list)
+// Tries the pairs noted, where there are `least` of them, a lane each: few of the lanes that look at boxes find one at a time.
+// By all lanes together; returns whether the list is within its limit.
+static int settleNear(DRAPE_TEAM SelfTeam* self, const SelfCloths* cloths, const TestList* list, const uint least)
 {
-    __global const uint* v = cloths->m_triangles[face].m_vertices;
-    const uint nodes[4] = {node, v[0], v[1], v[2]};
-    if (node == v[0] || node == v[1] || node == v[2]) return;
-    if (nodeVolumesOverlap(cloths->m_start, cloths->m_end, nodes, 1, cloths->m_radius))
-        keepSelfTest(self, cloths, node, face, DRAPE_SELF_TEST_NODE, list);
-}
-
-static void tryEdges(DRAPE_TEAM SelfTeam* self, const SelfCloths* cloths, const uint a, const uint b, const TestList* list)
-{
-    const Edge e = cloths->m_edges[min(a, b)], o = cloths->m_edges[max(a, b)];
-    const uint nodes[4] = {e.m_vertices[0], e.m_vertices[1], o.m_vertices[0], o.m_vertices[1]};
-    if (nodes[0] == nodes[2] || nodes[0] == nodes[3] || nodes[1] == nodes[2] || nodes[1] == nodes[3]) return;
-    if (nodeVolumesOverlap(cloths->m_start, cloths->m_end, nodes, 2, cloths->m_radius))
-        keepSelfTest(self, cloths, min(a, b), max(a, b), DRAPE_SELF_TEST_EDGE, list);
+    teamSync();
+    const uint count = self->m_nearCount;
+    teamSync();
+    if (count < least) return 1;
+    int within = 1;
+    for (uint first = 0; first < count && within; first += DRAPE_PATCH_WIDTH)
+    {
+        const uint last = min(count, first + DRAPE_PATCH_WIDTH);
+        for (uint i = first + teamLane(); i < last; i += teamWidth())
+        {
+            const uint b = self->m_nearB[i];
+            tryPair(self, cloths, self->m_nearA[i], b & ((1u << DRAPE_KIND_SHIFT) - 1u), b >> DRAPE_KIND_SHIFT, list);
+        }
+        within = teamMakeRoom(&self->m_team, list);
+    }
+    if (teamLane() == 0) self->m_nearCount = 0;
+    teamSync();
+    return within;
 }
 
 // Triangle `place` of patch `own` against the features of patch `other`, which is not before it. Within a patch every node
-// meets every face from the node's side, and of two edges the one with the lesser index looks for the other.
-static void pairTriangle(DRAPE_TEAM SelfTeam* self, const SelfCloths* cloths, const uint own, const uint place,
-                         const uint other, const TestList* list)
+// meets every face from the node's side, and of two edges the one with the lesser index looks for the other. Returns whether
+// the list is within its limit.
+static int pairTriangle(DRAPE_TEAM SelfTeam* self, const SelfCloths* cloths, const uint own, const uint place,
+                        const uint other, const TestList* list)
 {
     const uint face = cloths->m_faceIds[own * DRAPE_PATCH_WIDTH + place];
     const Triangle triangle = cloths->m_triangles[face];
@@ -186,16 +228,20 @@ static void pairTriangle(DRAPE_TEAM SelfTeam* self, const SelfCloths* cloths, co
     {
         if (!(triangle.m_owned & DRAPE_OWNS_VERTEX(k))) continue;
         const LaneMask mask = boxesOverlap(&faces, &corner[k]);
-        forLanes(lane, mask) tryNode(self, cloths, triangle.m_vertices[k], cloths->m_faceIds[other * DRAPE_PATCH_WIDTH + lane], list);
+        forLanes(lane, mask) noteNear(self, triangle.m_vertices[k], cloths->m_faceIds[other * DRAPE_PATCH_WIDTH + lane],
+                                      DRAPE_SELF_TEST_NODE);
     }
+    if (!settleNear(self, cloths, list, DRAPE_SETTLE)) return 0;
     const FeatureBox whole = joinBoxes(joinBoxes(corner[0], corner[1]), corner[2]);
     for (uint block = patch.m_vertexBlock; own != other && block < patch.m_vertexBlock + patch.m_vertexBlocks; ++block)
     {
         const BoxLanes vertices = loadBoxes(cloths->m_vertexBoxes + block * DRAPE_BOX_FLOATS * DRAPE_PATCH_WIDTH);
         const LaneMask mask = boxesOverlap(&vertices, &whole);
-        forLanes(lane, mask) tryNode(self, cloths, cloths->m_vertexIds[block * DRAPE_PATCH_WIDTH + lane], face, list);
+        forLanes(lane, mask)
+            noteNear(self, cloths->m_vertexIds[block * DRAPE_PATCH_WIDTH + lane], face, DRAPE_SELF_TEST_NODE);
+        if (!settleNear(self, cloths, list, DRAPE_SETTLE)) return 0;
     }
-    if (!(triangle.m_owned >> 3)) return;
+    if (!(triangle.m_owned >> 3)) return 1;
     for (uint block = patch.m_edgeBlock; block < patch.m_edgeBlock + patch.m_edgeBlocks; ++block)
     {
         const BoxLanes edges = loadBoxes(cloths->m_edgeBoxes + block * DRAPE_BOX_FLOATS * DRAPE_PATCH_WIDTH);
@@ -206,11 +252,13 @@ static void pairTriangle(DRAPE_TEAM SelfTeam* self, const SelfCloths* cloths, co
             const LaneMask mask = boxesOverlap(&edges, &box);
             forLanes(lane, mask)
             {
-                const uint edge = cloths->m_edgeIds[block * DRAPE_PATCH_WIDTH + lane];
-                if (own != other || triangle.m_edges[k] < edge) tryEdges(self, cloths, triangle.m_edges[k], edge, list);
+                const uint edge = cloths->m_edgeIds[block * DRAPE_PATCH_WIDTH + lane], mine = triangle.m_edges[k];
+                if (own != other || mine < edge) noteNear(self, min(mine, edge), max(mine, edge), DRAPE_SELF_TEST_EDGE);
             }
         }
+        if (!settleNear(self, cloths, list, DRAPE_SETTLE)) return 0;
     }
+    return 1;
 }
 
 // Returns whether the list is within its limit.
@@ -230,8 +278,7 @@ static int pairPatches(DRAPE_TEAM SelfTeam* self, const SelfCloths* cloths, cons
     uint near = sharedBits(self, boxesOverlap(&faces, &box));
     for (; near; near &= near - 1)
     {
-        pairTriangle(self, cloths, own, 31 - clz(near & -near), other, list);
-        if (!teamMakeRoom(&self->m_team, list)) return 0;
+        if (!pairTriangle(self, cloths, own, 31 - clz(near & -near), other, list)) return 0;
     }
     return 1;
 }
@@ -315,7 +362,9 @@ __kernel void selfCull(__global const Patch* restrict patches, const uint patchC
     const SelfCloths cloths = {triangles, edges, start, end, patches, faceIds, vertexIds, edgeIds, faceBoxes, vertexBoxes,
                                edgeBoxes, wideNodes, levels, levelCount, radius[mesh], thickness[mesh]};
     const TestList tests = {list, capacity, limit, &counters->m_selfTests};
+    if (teamLane() == 0) self.m_nearCount = 0;
     teamStart(&self.m_team);
     walkSelf(&self, &cloths, own, &tests);
+    settleNear(&self, &cloths, &tests, 1);
     teamFlush(&self.m_team, &tests);
 }

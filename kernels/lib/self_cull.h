@@ -72,15 +72,15 @@ DRAPE_FUNCTION FeatureBox nodeBox(const DRAPE_GLOBAL float* start, const DRAPE_G
     return box;
 }
 
-// Whether the volumes of two features, of their nodes joined, overlap: the first `split` of four nodes are the first
-// feature's. The same answer as featuresOverlap() gives for the nodes' volumes.
+// Whether the volumes of two features, of their nodes joined, overlap where their boxes do: the first `split` of four
+// nodes are the first feature's. The same answer as featuresOverlap() gives for the nodes' volumes.
 DRAPE_FUNCTION int nodeVolumesOverlap(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end,
                                       const DRAPE_UINT nodes[4], int split, float radius)
 {
     for (int k = 0; k < 4; ++k)
         if (!nodeIsValid(start, end, nodes[k])) return 0;
     DRAPE_UNROLL
-    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+    for (int i = 3; i < DRAPE_DOP_DIRECTIONS; ++i)
     {
         float low[2] = {DRAPE_INFINITY, DRAPE_INFINITY}, high[2] = {-DRAPE_INFINITY, -DRAPE_INFINITY};
         for (int k = 0; k < 4; ++k)
