@@ -82,16 +82,20 @@ DRAPE_FUNCTION int nodeVolumesOverlap(const DRAPE_GLOBAL float* start, const DRA
     DRAPE_UNROLL
     for (int i = 3; i < DRAPE_DOP_DIRECTIONS; ++i)
     {
-        float low[2] = {DRAPE_INFINITY, DRAPE_INFINITY}, high[2] = {-DRAPE_INFINITY, -DRAPE_INFINITY};
+        // Not an array of two: a GPU would keep it in memory.
+        float low = DRAPE_INFINITY, high = -DRAPE_INFINITY, lowOther = DRAPE_INFINITY, highOther = -DRAPE_INFINITY;
+        DRAPE_UNROLL
         for (int k = 0; k < 4; ++k)
         {
-            const int side = k >= split;
+            const int other = k >= split;
             float least, greatest;
             nodeInterval(start, end, nodes[k], radius, i, &least, &greatest);
-            low[side] = drapeMin(low[side], least);
-            high[side] = drapeMax(high[side], greatest);
+            low = other ? low : drapeMin(low, least);
+            high = other ? high : drapeMax(high, greatest);
+            lowOther = other ? drapeMin(lowOther, least) : lowOther;
+            highOther = other ? drapeMax(highOther, greatest) : highOther;
         }
-        if (low[0] > high[1] || low[1] > high[0]) return 0;
+        if (low > highOther || lowOther > high) return 0;
     }
     return 1;
 }
