@@ -213,9 +213,9 @@ static int settleNear(DRAPE_TEAM SelfTeam* self, const SelfCloths* cloths, const
 
 // Triangle `place` of patch `own` against the features of patch `other`, which is not before it. Within a patch every node
 // meets every face from the node's side, and of two edges the one with the lesser index looks for the other. Returns whether
-// the list is within its limit.
+// the list is within its limit. box: of that patch.
 static int pairTriangle(DRAPE_TEAM SelfTeam* self, const SelfCloths* cloths, const uint own, const uint place,
-                        const uint other, const TestList* list)
+                        const uint other, const FeatureBox* box, const TestList* list)
 {
     const uint face = cloths->m_faceIds[own * DRAPE_PATCH_WIDTH + place];
     const Triangle triangle = cloths->m_triangles[face];
@@ -226,7 +226,7 @@ static int pairTriangle(DRAPE_TEAM SelfTeam* self, const SelfCloths* cloths, con
     const BoxLanes faces = loadBoxes(cloths->m_faceBoxes + other * DRAPE_BOX_FLOATS * DRAPE_PATCH_WIDTH);
     for (int k = 0; k < 3; ++k)
     {
-        if (!(triangle.m_owned & DRAPE_OWNS_VERTEX(k))) continue;
+        if (!(triangle.m_owned & DRAPE_OWNS_VERTEX(k)) || !boxesMeet(&corner[k], box)) continue;
         const LaneMask mask = boxesOverlap(&faces, &corner[k]);
         forLanes(lane, mask) noteNear(self, triangle.m_vertices[k], cloths->m_faceIds[other * DRAPE_PATCH_WIDTH + lane],
                                       DRAPE_SELF_TEST_NODE);
@@ -241,15 +241,21 @@ static int pairTriangle(DRAPE_TEAM SelfTeam* self, const SelfCloths* cloths, con
             noteNear(self, cloths->m_vertexIds[block * DRAPE_PATCH_WIDTH + lane], face, DRAPE_SELF_TEST_NODE);
         if (!settleNear(self, cloths, list, DRAPE_SETTLE)) return 0;
     }
-    if (!(triangle.m_owned >> 3)) return 1;
+    FeatureBox edgeBox[3];
+    int near[3];  // edges that may come near the patch
+    for (int k = 0; k < 3; ++k)
+    {
+        edgeBox[k] = joinBoxes(corner[k], corner[k == 2 ? 0 : k + 1]);
+        near[k] = (triangle.m_owned & DRAPE_OWNS_EDGE(k)) && boxesMeet(&edgeBox[k], box);
+    }
+    if (!near[0] && !near[1] && !near[2]) return 1;
     for (uint block = patch.m_edgeBlock; block < patch.m_edgeBlock + patch.m_edgeBlocks; ++block)
     {
         const BoxLanes edges = loadBoxes(cloths->m_edgeBoxes + block * DRAPE_BOX_FLOATS * DRAPE_PATCH_WIDTH);
         for (int k = 0; k < 3; ++k)
         {
-            if (!(triangle.m_owned & DRAPE_OWNS_EDGE(k))) continue;
-            const FeatureBox box = joinBoxes(corner[k], corner[k == 2 ? 0 : k + 1]);
-            const LaneMask mask = boxesOverlap(&edges, &box);
+            if (!near[k]) continue;
+            const LaneMask mask = boxesOverlap(&edges, &edgeBox[k]);
             forLanes(lane, mask)
             {
                 const uint edge = cloths->m_edgeIds[block * DRAPE_PATCH_WIDTH + lane], mine = triangle.m_edges[k];
@@ -278,7 +284,7 @@ static int pairPatches(DRAPE_TEAM SelfTeam* self, const SelfCloths* cloths, cons
     uint near = sharedBits(self, boxesOverlap(&faces, &box));
     for (; near; near &= near - 1)
     {
-        if (!pairTriangle(self, cloths, own, 31 - clz(near & -near), other, list)) return 0;
+        if (!pairTriangle(self, cloths, own, 31 - clz(near & -near), other, &box, list)) return 0;
     }
     return 1;
 }

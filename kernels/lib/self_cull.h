@@ -38,6 +38,14 @@ DRAPE_FUNCTION FeatureBox joinBoxes(FeatureBox a, FeatureBox b)
     return a;
 }
 
+DRAPE_FUNCTION int boxesMeet(const FeatureBox* a, const FeatureBox* b)
+{
+    int meet = 1;
+    for (int i = 0; i < 3; ++i)
+        meet &= (a->m_low[i] <= b->m_high[i]) & (a->m_high[i] >= b->m_low[i]);
+    return meet;
+}
+
 // Along one direction, of a valid node over the step; as vertexVolume has it.
 DRAPE_FUNCTION void nodeInterval(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end, DRAPE_UINT node,
                                  float radius, int direction, float* low, float* high)
