@@ -80,13 +80,47 @@ DRAPE_FUNCTION FeatureBox nodeBox(const DRAPE_GLOBAL float* start, const DRAPE_G
     return box;
 }
 
+// Whether a direction beyond the axes separates two features by more than their volumes are grown and padded: then
+// nodeVolumesOverlap() says no, which takes three times as long. A volume is grown by the radius and padded by less
+// than 3e-7 of its bound, so both together by less than the slack.
+DRAPE_FUNCTION int nodesFarApart(const Vec3 start[4], const Vec3 end[4], int split, float radius)
+{
+    DRAPE_UNROLL
+    for (int i = 3; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        float low = DRAPE_INFINITY, high = -DRAPE_INFINITY, lowOther = DRAPE_INFINITY, highOther = -DRAPE_INFINITY;
+        DRAPE_UNROLL
+        for (int k = 0; k < 4; ++k)
+        {
+            const int other = k >= split;
+            const float v0 = dopProject(start[k], i), v1 = dopProject(end[k], i);
+            const float least = drapeMin(v0, v1), greatest = drapeMax(v0, v1);
+            low = other ? low : drapeMin(low, least);
+            high = other ? high : drapeMax(high, greatest);
+            lowOther = other ? drapeMin(lowOther, least) : lowOther;
+            highOther = other ? drapeMax(highOther, greatest) : highOther;
+        }
+        const float grown = 2.0f * radius * dopNorm(i), share = 1e-6f;
+        const float gap = low - highOther, gapOther = lowOther - high;
+        if (gap > grown + share * (grown + drapeAbs(low) + drapeAbs(highOther))) return 1;
+        if (gapOther > grown + share * (grown + drapeAbs(lowOther) + drapeAbs(high))) return 1;
+    }
+    return 0;
+}
+
 // Whether the volumes of two features, of their nodes joined, overlap where their boxes do: the first `split` of four
 // nodes are the first feature's. The same answer as featuresOverlap() gives for the nodes' volumes.
 DRAPE_FUNCTION int nodeVolumesOverlap(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end,
                                       const DRAPE_UINT nodes[4], int split, float radius)
 {
+    Vec3 from[4], to[4];
     for (int k = 0; k < 4; ++k)
-        if (!nodeIsValid(start, end, nodes[k])) return 0;
+    {
+        from[k] = vec3Load(start, nodes[k]);
+        to[k] = vec3Load(end, nodes[k]);
+        if (!positionIsValid(from[k]) || !positionIsValid(to[k])) return 0;
+    }
+    if (nodesFarApart(from, to, split, radius)) return 0;
     DRAPE_UNROLL
     for (int i = 3; i < DRAPE_DOP_DIRECTIONS; ++i)
     {
