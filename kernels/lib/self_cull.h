@@ -82,18 +82,20 @@ DRAPE_FUNCTION FeatureBox nodeBox(const DRAPE_GLOBAL float* start, const DRAPE_G
 
 // Whether a direction beyond the axes separates two features by more than their volumes are grown and padded: then
 // nodeVolumesOverlap() says no, which takes three times as long. A volume is grown by the radius and padded by less
-// than 3e-7 of its bound, so both together by less than the slack.
+// than 3e-7 of its bound and the inner sum, so both together by less than the slack.
 DRAPE_FUNCTION int nodesFarApart(const Vec3 start[4], const Vec3 end[4], int split, float radius)
 {
     DRAPE_UNROLL
     for (int i = 3; i < DRAPE_DOP_DIRECTIONS; ++i)
     {
         float low = DRAPE_INFINITY, high = -DRAPE_INFINITY, lowOther = DRAPE_INFINITY, highOther = -DRAPE_INFINITY;
+        float inner = 0.0f;
         DRAPE_UNROLL
         for (int k = 0; k < 4; ++k)
         {
             const int other = k >= split;
             const float v0 = dopProject(start[k], i), v1 = dopProject(end[k], i);
+            inner = drapeMax(inner, drapeMax(dopInner(start[k], i), dopInner(end[k], i)));
             const float least = drapeMin(v0, v1), greatest = drapeMax(v0, v1);
             low = other ? low : drapeMin(low, least);
             high = other ? high : drapeMax(high, greatest);
@@ -102,8 +104,8 @@ DRAPE_FUNCTION int nodesFarApart(const Vec3 start[4], const Vec3 end[4], int spl
         }
         const float grown = 2.0f * radius * dopNorm(i), share = 1e-6f;
         const float gap = low - highOther, gapOther = lowOther - high;
-        if (gap > grown + share * (grown + drapeAbs(low) + drapeAbs(highOther))) return 1;
-        if (gapOther > grown + share * (grown + drapeAbs(lowOther) + drapeAbs(high))) return 1;
+        if (gap > grown + share * (grown + inner + drapeAbs(low) + drapeAbs(highOther))) return 1;
+        if (gapOther > grown + share * (grown + inner + drapeAbs(lowOther) + drapeAbs(high))) return 1;
     }
     return 0;
 }
