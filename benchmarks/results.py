@@ -85,4 +85,4 @@ SWEEPS = {
 }
 
 # The stages of a step; on a device, the sums of their kernels' times.
-STAGES = ("refit", "broad", "narrow", "order")
+STAGES = ("refit", "broad", "self", "narrow", "order")

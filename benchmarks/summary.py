@@ -21,6 +21,8 @@ SCENES = {
     "many_200": "200 × 512 on the bunny",
     "static_1m": "2,048 on the bunny in 1.1 M",
     "static_1m_fine": "131,072 on the bunny in 1.1 M",
+    "self_2k": "2,048 on the bunny and itself",
+    "self_131k": "131,072 on the bunny and itself",
 }
 METHODS = {
     "drape": "Drape, OpenCL",

@@ -31,13 +31,23 @@ static void sortFew(__global const Contact* hits, __global uint* members, const 
     }
 }
 
+// Contacts of a cloth with itself all stay: nothing rests there for others to be implied by.
+static int isSelf(const SlotLists* lists, const uint first)
+{
+    return lists->m_hits[lists->m_members[first]].m_kind >= DRAPE_SELF_NODE_FACE;
+}
+
 // A work-item reduces a slot of at most DRAPE_RANKED members. Returns how many stay.
 static uint reduceFew(const ReductionView* view, const SlotLists* lists, __global uint* kept, const uint first,
                       const uint count)
 {
     for (uint i = 0; i < count; ++i) kept[first + i] = lists->m_members[first + i];
-    sortFew(lists->m_hits, kept + first, count, 1);
-    const uint stay = reduceSlot(view, lists, kept + first, count);
+    uint stay = count;
+    if (!isSelf(lists, first))
+    {
+        sortFew(lists->m_hits, kept + first, count, 1);
+        stay = reduceSlot(view, lists, kept + first, count);
+    }
     sortFew(lists->m_hits, kept + first, stay, 0);
     for (uint i = stay; i < count; ++i) kept[first + i] = DRAPE_NO_FEATURE;
     return stay;
@@ -118,6 +128,7 @@ static uint reduceCrowded(const ReductionView* view, const SlotLists* lists, __g
 {
     kept += first;
     for (uint i = get_local_id(0); i < count; i += get_local_size(0)) kept[i] = lists->m_members[first + i];
+    if (isSelf(lists, first)) return count;
     const ReducedFeature feature = reducedFeature(view, lists, lists->m_hits + lists->m_members[first]);
     if (feature.m_mayEmpty) dropImplied(view, lists, &feature, kept, count, 0);
     uint rounds = 0, deepest;

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_sort.h>
 
 #include "benchmarks/support/peer_scene.h"
 #include "benchmarks/bench_step/peer_methods.h"
@@ -45,6 +46,20 @@ void boundTriangle(const RTCBoundsFunctionArguments* arguments)
     *arguments->bounds_o = {low[0], low[1], low[2], 0, high[0], high[1], high[2], 0};
 }
 
+// rtcCollide gives a pair of a scene with itself from either side, or from one of them.
+void keepEachOnce(std::vector<Candidate>& pairs)
+{
+    for (Candidate& pair : pairs)
+        if (pair.m_obstacle < pair.m_cloth) std::swap(pair.m_cloth, pair.m_obstacle);
+    tbb::parallel_sort(pairs.begin(), pairs.end(), [](const Candidate& a, const Candidate& b)
+                       { return a.m_cloth != b.m_cloth ? a.m_cloth < b.m_cloth : a.m_obstacle < b.m_obstacle; });
+    const auto same = [](const Candidate& a, const Candidate& b)
+    { return a.m_cloth == b.m_cloth && a.m_obstacle == b.m_obstacle; };
+    pairs.erase(std::unique(pairs.begin(), pairs.end(), same), pairs.end());
+    const auto itself = [](const Candidate& pair) { return pair.m_cloth == pair.m_obstacle; };
+    pairs.erase(std::remove_if(pairs.begin(), pairs.end(), itself), pairs.end());
+}
+
 using PairLists = tbb::enumerable_thread_specific<std::vector<Candidate>>;
 
 void takePairs(void* user, RTCCollision* pairs, unsigned count)
@@ -64,16 +79,20 @@ public:
         const float* nodes = scene.start(0);
         const float* surface = m_scene.obstaclePositions().data();
         m_clothBoxes = {m_scene.clothTriangles().data(), nodes, nodes, reach};
+        m_selfBoxes = {m_scene.clothTriangles().data(), nodes, nodes, selfReach(scene) / 2};
         m_obstacleBoxes = {m_scene.obstacleTriangles().data(), surface, surface, 0};
         const Clock::time_point start = Clock::now();
         m_obstacle = addScene(m_obstacleBoxes, m_scene.obstacleTriangles().size(), RTC_BUILD_QUALITY_MEDIUM, nullptr);
         m_buildMs = millisecondsSince(start);
         m_cloth = addScene(m_clothBoxes, m_scene.clothTriangles().size(), RTC_BUILD_QUALITY_REFIT, &m_clothGeometry);
+        if (m_selfBoxes.m_reach > 0)
+            m_self = addScene(m_selfBoxes, m_scene.clothTriangles().size(), RTC_BUILD_QUALITY_REFIT, &m_selfGeometry);
     }
     ~EmbreeMethod() override
     {
         rtcReleaseScene(m_obstacle);
         rtcReleaseScene(m_cloth);
+        if (m_self != nullptr) rtcReleaseScene(m_self);
         rtcReleaseDevice(m_device);
     }
 
@@ -83,27 +102,28 @@ public:
     {
         StepOutcome outcome;
         const Clock::time_point begin = Clock::now();
-        m_clothBoxes.m_start = start;
-        m_clothBoxes.m_end = end;
-        rtcUpdateGeometryBuffer(m_clothGeometry, RTC_BUFFER_TYPE_VERTEX, 0);
-        rtcCommitGeometry(m_clothGeometry);
-        rtcCommitScene(m_cloth);
+        refit(m_clothBoxes, m_clothGeometry, m_cloth, start, end);
+        if (m_self != nullptr) refit(m_selfBoxes, m_selfGeometry, m_self, start, end);
         const double refitMs = millisecondsSince(begin);
-        for (std::vector<Candidate>& list : m_lists)
-            list.clear();
-        rtcCollide(m_cloth, m_obstacle, takePairs, &m_lists);
-        m_candidates.clear();
-        for (const std::vector<Candidate>& list : m_lists)
-            m_candidates.insert(m_candidates.end(), list.begin(), list.end());
-        const double broadMs = millisecondsSince(begin);
+        collide(m_cloth, m_obstacle, m_candidates);
         outcome.m_candidates = m_candidates.size();
+        if (m_self != nullptr)
+        {
+            collide(m_self, m_self, m_selfPairs);
+            keepEachOnce(m_selfPairs);
+            outcome.m_candidates += m_selfPairs.size();
+        }
+        const double broadMs = millisecondsSince(begin);
         if (m_contacts) m_scene.narrowPhase(m_candidates, start, end, m_threads, m_found);
+        if (m_contacts && m_self != nullptr) m_scene.selfContacts(m_selfPairs, start, end, m_threads, m_selfFound);
         const double stepMs = millisecondsSince(begin);
         outcome.m_stages = {{"step", stepMs}, {"refit", refitMs}, {"broad", broadMs - refitMs}};
         if (!m_contacts) return outcome;
         outcome.m_stages.push_back({"narrow", stepMs - broadMs});
-        outcome.m_contacts = m_found.size();
-        outcome.m_hash = hashText(hashOf(m_found));
+        outcome.m_contacts = m_found.size() + m_selfFound.size();
+        std::uint64_t hash = hashOf(m_found);
+        if (m_self != nullptr) hash = hashOf(m_selfFound, hash);
+        outcome.m_hash = hashText(hash);
         return outcome;
     }
 
@@ -117,6 +137,23 @@ public:
     }
 
 private:
+    static void refit(Boxes& boxes, RTCGeometry geometry, RTCScene scene, const float* start, const float* end)
+    {
+        boxes.m_start = start;
+        boxes.m_end = end;
+        rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+        rtcCommitGeometry(geometry);
+        rtcCommitScene(scene);
+    }
+    void collide(RTCScene a, RTCScene b, std::vector<Candidate>& pairs)
+    {
+        for (std::vector<Candidate>& list : m_lists)
+            list.clear();
+        rtcCollide(a, b, takePairs, &m_lists);
+        pairs.clear();
+        for (const std::vector<Candidate>& list : m_lists)
+            pairs.insert(pairs.end(), list.begin(), list.end());
+    }
     RTCScene addScene(Boxes& boxes, std::size_t count, RTCBuildQuality quality, RTCGeometry* kept)
     {
         RTCScene scene = rtcNewScene(m_device);
@@ -144,12 +181,13 @@ private:
     int m_threads;
     bool m_contacts;
     RTCDevice m_device = nullptr;
-    RTCScene m_cloth = nullptr, m_obstacle = nullptr;
-    RTCGeometry m_clothGeometry = nullptr;
-    Boxes m_clothBoxes, m_obstacleBoxes;
+    RTCScene m_cloth = nullptr, m_obstacle = nullptr, m_self = nullptr;  // m_self: grown by half the reach
+    RTCGeometry m_clothGeometry = nullptr, m_selfGeometry = nullptr;
+    Boxes m_clothBoxes, m_obstacleBoxes, m_selfBoxes;
+    std::vector<Candidate> m_selfPairs;
     PairLists m_lists;
     std::vector<Candidate> m_candidates;
-    std::vector<Contact> m_found;
+    std::vector<Contact> m_found, m_selfFound;
     double m_buildMs = 0;
 };
 }  // namespace

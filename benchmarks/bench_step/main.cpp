@@ -141,6 +141,9 @@ int measure(const Options& options)
             if (!options.m_methods.empty() && !contains(options.m_methods, chosen.front().m_name))
                 chosen.erase(chosen.begin());
         }
+        // FCL has no collision of a model with itself.
+        const auto isFcl = [](const MethodEntry& entry) { return entry.m_name.rfind("fcl", 0) == 0; };
+        if (spec.m_self) chosen.erase(std::remove_if(chosen.begin(), chosen.end(), isFcl), chosen.end());
         good = measureScene(makeStepScene(spec, obstacle), chosen, settings, table) && good;
     }
     const int exitCode = finishTable("bench_step", table, options);

@@ -16,6 +16,7 @@ namespace
 std::string stageOfKernel(const std::string& kernel)
 {
     const std::pair<const char*, const char*> stages[] = {
+        {"self", "self"},
         {"refit", "refit"}, {"treeCost", "refit"}, {"narrowPhase", "narrow"}, {"compaction", "order"}};
     for (const auto& stage : stages)
     {
@@ -28,13 +29,15 @@ class DrapeMethod : public StepMethod
 {
 public:
     DrapeMethod(std::unique_ptr<Pipeline> pipeline, const StepScene& scene, bool profiled)
-        : m_pipeline(std::move(pipeline)), m_thickness(scene.m_thickness), m_profiled(profiled)
+        : m_pipeline(std::move(pipeline)), m_thickness(scene.m_thickness), m_self(scene.m_selfThickness > 0), m_profiled(profiled)
     {
         const Clock::time_point start = Clock::now();
         m_obstacle = m_pipeline->addObstacle(describeMesh(scene.m_obstacle));
         for (const TriangleMesh& cloth : scene.m_cloths)
         {
-            m_cloths.push_back(m_pipeline->addCloth(describeMesh(cloth)));
+            MeshDescription description = describeMesh(cloth);
+            description.m_selfThickness = scene.m_selfThickness;
+            m_cloths.push_back(m_pipeline->addCloth(description));
             m_floats.push_back(cloth.m_positions.size());
         }
         m_prepareMs = millisecondsSince(start);
@@ -50,6 +53,7 @@ public:
             std::copy(start + first, start + first + m_floats[i], m_pipeline->clothStart(m_cloths[i]));
             std::copy(end + first, end + first + m_floats[i], m_pipeline->clothEnd(m_cloths[i]));
             m_pipeline->addPair(m_cloths[i], m_obstacle, m_thickness);
+            if (m_self) m_pipeline->addSelf(m_cloths[i]);
             first += m_floats[i];
         }
         m_pipeline->submit();
@@ -57,11 +61,14 @@ public:
         outcome.m_stages.push_back({"step", millisecondsSince(begin)});
         const StepStatistics& statistics = m_pipeline->statistics();
         addStages(statistics, outcome);
-        outcome.m_candidates = statistics.m_candidates;
-        outcome.m_contacts = contacts.size();
+        const ContactList self = m_pipeline->selfContacts();
+        outcome.m_candidates = statistics.m_candidates + statistics.m_selfCandidates;
+        outcome.m_contacts = contacts.size() + self.size();
         outcome.m_volumeTests = statistics.m_volumeTests;
         outcome.m_rebuilds = statistics.m_rebuilds;
-        outcome.m_hash = hashText(hashOf(std::vector<Contact>(contacts.begin(), contacts.end())));
+        std::uint64_t hash = hashOf(std::vector<Contact>(contacts.begin(), contacts.end()));
+        if (m_self) hash = hashOf(std::vector<Contact>(self.begin(), self.end()), hash);
+        outcome.m_hash = hashText(hash);
         // A step that left its device is no measurement of it.
         if (statistics.m_status & (kStepDeviceFailed | kStepContactLimit)) outcome.m_hash = "left the device";
         return outcome;
@@ -115,6 +122,7 @@ private:
     std::vector<MeshId> m_cloths;
     std::vector<std::size_t> m_floats;
     float m_thickness;
+    bool m_self;
     double m_prepareMs = 0;
     bool m_profiled;
 };
@@ -136,5 +144,10 @@ float contactReach(const StepScene& scene)
 {
     // A thousandth more than the feature tests look, as the pipeline takes it, for the rounding of both.
     return scene.m_thickness * (1.0f + Settings().m_activation) * 1.001f;
+}
+
+float selfReach(const StepScene& scene)
+{
+    return scene.m_selfThickness * (1.0f + Settings().m_activation) * 1.001f;
 }
 }  // namespace drape::bench

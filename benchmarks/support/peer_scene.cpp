@@ -35,6 +35,43 @@ PeerScene::PeerScene(const StepScene& scene) : m_positions(scene.m_obstacle.m_po
     m_obstacles.update();
     computeNormalCones(m_obstacles.mesh(0).m_topology, m_positions.data(), m_vertexCones, m_edgeCones);
     m_thickness.assign(m_cloths.meshCount(), scene.m_thickness);
+    for (const TriangleMesh& cloth : scene.m_cloths)
+        m_rest.insert(m_rest.end(), cloth.m_positions.begin(), cloth.m_positions.end());
+    const float reach = scene.m_selfThickness * (1.0f + Settings().m_activation);
+    m_self.m_thickness.assign(m_cloths.meshCount(), scene.m_selfThickness);
+    m_self.m_radius.assign(m_cloths.meshCount(), selfGrowth(reach));
+}
+
+void PeerScene::selfContacts(const std::vector<Candidate>& pairs, const float* start, const float* end, int threads,
+                             std::vector<Contact>& contacts) const
+{
+    const ClothView cloth =
+        clothView(start, end, m_cloths.triangles().data(), m_cloths.edges().data(),
+                  static_cast<std::uint32_t>(m_cloths.vertexCount()),
+                  static_cast<std::uint32_t>(m_cloths.triangles().size()), DRAPE_AUTOMATIC, 1);
+    const SelfStep step = {m_cloths, selfView(cloth, m_rest.data(), 1.0f + Settings().m_activation), m_self};
+    std::vector<Dop> volumes;
+    selfVolumes(step, volumes);
+    const std::size_t shares = threads == 1 ? 1 : kSharesPerThread * static_cast<std::size_t>(threads);
+    std::vector<std::vector<Contact>> parts(shares);
+    tbb::task_arena arena(threads);
+    arena.execute(
+        [&]
+        {
+            tbb::parallel_for(std::size_t(0), shares,
+                              [&](std::size_t share)
+                              {
+                                  SelfFinder finder(step, volumes);
+                                  for (std::size_t i = pairs.size() * share / shares;
+                                       i < pairs.size() * (share + 1) / shares; ++i)
+                                      finder.visit(pairs[i]);
+                                  finder.append(parts[share]);
+                              });
+        });
+    contacts.clear();
+    for (const std::vector<Contact>& part : parts)
+        contacts.insert(contacts.end(), part.begin(), part.end());
+    sortSelfContacts(contacts);
 }
 
 void PeerScene::narrowPhase(const std::vector<Candidate>& candidates, const float* start, const float* end, int threads,

@@ -24,10 +24,16 @@ public:
     void narrowPhase(const std::vector<Candidate>& candidates, const float* start, const float* end, int threads,
                      std::vector<Contact>& contacts) const;
 
+    // The contacts of cloths with themselves of pairs of their triangles, each pair once, likewise.
+    void selfContacts(const std::vector<Candidate>& pairs, const float* start, const float* end, int threads,
+                      std::vector<Contact>& contacts) const;
+
 private:
     MeshPool m_cloths, m_obstacles;
     std::vector<float> m_positions;  // of the obstacle
     std::vector<NormalCone> m_vertexCones, m_edgeCones;
     std::vector<float> m_thickness;
+    std::vector<float> m_rest;  // of the cloths
+    SelfReach m_self;
 };
 }  // namespace drape::bench

@@ -48,4 +48,6 @@ std::unique_ptr<StepMethod> makeDrapeMethod(const StepScene& scene, const Settin
 
 // How far Drape looks with default settings: thickness and activation.
 float contactReach(const StepScene& scene);
+// The same from a cloth to itself; 0 where it does not collide with itself.
+float selfReach(const StepScene& scene);
 }  // namespace drape::bench

@@ -33,6 +33,9 @@ std::vector<SceneSpec> makeSpecs()
         {"many_200", "", "bunny", 16, 200, kPatchSize, kThickness, false},
         {"static_1m", "", "bunny_1m", 32, 1, kClothSize, kThickness, false},
         {"static_1m_fine", "", "bunny_1m", 256, 1, kClothSize, kThickness, false},
+        {"self_131k", "", "bunny", 256, 1, kClothSize, kThickness, false, true},
+        {"self_2k", "", "bunny", 32, 1, kClothSize, kThickness, false, true},
+        {"quick_self", "", "sphere_1k", 16, 1, kClothSize, kThickness, true, true},
         {"quick_one", "", "sphere_1k", 16, 1, kClothSize, kThickness, true},
         {"quick_many", "", "sphere_1k", 8, 5, kPatchSize, kThickness, true},
     };
@@ -93,6 +96,7 @@ StepScene makeStepScene(const SceneSpec& spec, const TriangleMesh& obstacle)
     scene.m_obstacle = obstacle;
     scene.m_thickness =
         static_cast<float>(spec.m_thickness > 0 ? spec.m_thickness : std::min(kThickness, spec.m_size / spec.m_cells));
+    if (spec.m_self) scene.m_selfThickness = static_cast<float>(kSelfShare * spec.m_size / spec.m_cells);
     const HeightField field(obstacle);
     ClothPlace place;
     place.m_cells = spec.m_cells;

@@ -21,6 +21,7 @@ struct SceneSpec
     double m_size = 0;       // m, a side of a cloth
     double m_thickness = 0;  // m; 0: a cell's size, at most kThickness
     bool m_quick = false;    // belongs to --quick
+    bool m_self = false;     // the cloths collide with themselves too
 
     std::size_t clothTriangles() const
     {
@@ -34,10 +35,15 @@ constexpr double kThickness = 0.02;
 
 const std::vector<SceneSpec>& sceneSpecs();
 
+// Of a cell's side: the thickness of a cloth with itself. With the default activation contacts reach to 0.6 of it, which
+// is less than the altitude of a cell's triangles, 0.7.
+constexpr double kSelfShare = 0.4;
+
 struct StepScene
 {
     SceneSpec m_spec;
-    float m_thickness = 0;  // m
+    float m_thickness = 0;      // m
+    float m_selfThickness = 0;  // m; 0: the cloths do not collide with themselves
     TriangleMesh m_obstacle;
     std::vector<TriangleMesh> m_cloths;        // at rest
     std::vector<std::vector<float>> m_frames;  // a period: all cloths' nodes at the start of each step

@@ -39,6 +39,21 @@ struct ContactView
     float m_time;          // time of impact in [0, 1]
 };
 
+// A contact of a cloth with itself: a node against a face, or two edges. The first feature's nodes come first, then the
+// second's.
+struct SelfContactView
+{
+    MeshId m_cloth;
+    std::uint32_t m_kind;     // DRAPE_SELF_NODE_FACE or DRAPE_SELF_EDGE_EDGE
+    std::int32_t m_nodes[4];  // node, face's three; or two of each edge; indices in the cloth
+    float m_weights[4];       // of m_nodes; those of either feature add up to 1
+    float m_normal[3];        // unit, from the second feature to the side the first came from
+    float m_point[3];         // m, on the second feature at the step's end
+    float m_gap0, m_gap1;     // m, along the normal at the step's start and end, thickness not subtracted
+    float m_thickness;        // m, of the pair
+    float m_time;             // time of impact in [0, 1]
+};
+
 // The cloth feature of a contact, which all contacts of one slot share.
 struct ClothFeature
 {
@@ -99,10 +114,17 @@ public:
     // step.
     void addPair(MeshId cloth, MeshId obstacle, float thickness, float tube = -1.0f);
 
+    // Names a cloth that collides with itself (MeshDescription::m_selfThickness > 0) in the coming step. Its features
+    // are swept over the step as obstacles' contacts are (Settings::m_mode); see kernels/lib/self_contact.h. None of
+    // these contacts is left out because others imply it.
+    void addSelf(MeshId cloth);
+
     // Enqueues the step for the pairs named since the last finish(); returns without waiting.
     void submit();
     // Waits, grows buffers and repeats where needed. Contacts are valid until the next submit().
     ContactList finish();
+    // Those of cloths with themselves of the last finish(), in canonical order; valid as long as its other contacts.
+    ContactList selfContacts() const;
     // With statistics of that step (upload and wait times, counts, status; the adapter adds its own).
     const StepStatistics& statistics() const;
     // The kernel launches since the last call, with Settings::m_profileKernels; empty on the host. Waits for the
@@ -115,7 +137,9 @@ public:
 
     // Resolves a contact of the last finish().
     ContactView view(const Contact& contact) const;
-    // The cloth's part of it, for less.
+    // Resolves one of selfContacts().
+    SelfContactView viewSelf(const Contact& contact) const;
+    // The cloth's part of a contact of finish(), for less.
     ClothFeature clothFeature(const Contact& contact) const;
 
 private:

@@ -90,25 +90,33 @@ DRAPE_FUNCTION int faceMayMeet(const MovingFace* face, Vec3 vertex, float s0, fl
     return !furtherApart(offset, low, vec3Dot(offset, vertex), distance, bounds);
 }
 
-// An edge moving from e0 to e1 and a resting edge. v0, v1: the volumes at the step's start and end.
-DRAPE_FUNCTION int edgeMayMeet(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, float v0, float v1, PairBounds bounds)
+// An edge moving from e0 to e1 and another one from o0 to o1. motion: m, of the fastest ends, added up. v0, v1: the
+// volumes at the step's start and end.
+DRAPE_FUNCTION int edgesMayMeet(FeatureEdge e0, FeatureEdge e1, FeatureEdge o0, FeatureEdge o1, float motion, float v0,
+                                float v1, PairBounds bounds)
 {
-    const Vec3 along = vec3Sub(o.m_b, o.m_a);
-    const float distance = meetingDistance(edgeMotion(e0, e1), bounds);
-    const float area0 = vec3Length(vec3Cross(vec3Sub(e0.m_b, e0.m_a), along));
-    const float area1 = vec3Length(vec3Cross(vec3Sub(e1.m_b, e1.m_a), along));
+    const float distance = meetingDistance(motion, bounds);
+    const float area0 = vec3Length(vec3Cross(vec3Sub(e0.m_b, e0.m_a), vec3Sub(o0.m_b, o0.m_a)));
+    const float area1 = vec3Length(vec3Cross(vec3Sub(e1.m_b, e1.m_a), vec3Sub(o1.m_b, o1.m_a)));
     if (!volumeAdmitsMeeting(v0, area0, distance, bounds) || !volumeAdmitsMeeting(v1, area1, distance, bounds))
         return 0;
     const Vec3 least = vec3Least(vec3Least(e0.m_a, e0.m_b), vec3Least(e1.m_a, e1.m_b));
     const Vec3 most = vec3Most(vec3Most(e0.m_a, e0.m_b), vec3Most(e1.m_a, e1.m_b));
-    if (boxesApart(least, most, vec3Least(o.m_a, o.m_b), vec3Most(o.m_a, o.m_b), DRAPE_SEAM * bounds.m_extent))
-        return 0;
+    const Vec3 leastOther = vec3Least(vec3Least(o0.m_a, o0.m_b), vec3Least(o1.m_a, o1.m_b));
+    const Vec3 mostOther = vec3Most(vec3Most(o0.m_a, o0.m_b), vec3Most(o1.m_a, o1.m_b));
+    if (boxesApart(least, most, leastOther, mostOther, DRAPE_SEAM * bounds.m_extent)) return 0;
     float s, t;
-    closestOnSegments(e1.m_a, e1.m_b, o.m_a, o.m_b, &s, &t);
-    const Vec3 offset = vec3Sub(vec3Mix(e1.m_a, e1.m_b, s), vec3Mix(o.m_a, o.m_b, t));
+    closestOnSegments(e1.m_a, e1.m_b, o1.m_a, o1.m_b, &s, &t);
+    const Vec3 offset = vec3Sub(vec3Mix(e1.m_a, e1.m_b, s), vec3Mix(o1.m_a, o1.m_b, t));
     const float low = drapeMin(vec3Dot(offset, e1.m_a), vec3Dot(offset, e1.m_b));
-    const float high = drapeMax(vec3Dot(offset, o.m_a), vec3Dot(offset, o.m_b));
+    const float high = drapeMax(vec3Dot(offset, o1.m_a), vec3Dot(offset, o1.m_b));
     return !furtherApart(offset, low, high, distance, bounds);
+}
+
+// The same with a resting edge.
+DRAPE_FUNCTION int edgeMayMeet(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, float v0, float v1, PairBounds bounds)
+{
+    return edgesMayMeet(e0, e1, o, o, edgeMotion(e0, e1), v0, v1, bounds);
 }
 
 // The search for a time costs three times that for a meeting at the defaults of ccd.h. A contact needs its place to a

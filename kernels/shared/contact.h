@@ -11,25 +11,31 @@ DRAPE_NAMESPACE_BEGIN
 #define DRAPE_NODE_FACE 0u
 #define DRAPE_FACE_VERTEX 1u
 #define DRAPE_EDGE_EDGE 2u
+// Contacts of a cloth with itself (lib/self_contact.h): the obstacle's part is played by another feature of the cloth.
+#define DRAPE_SELF_NODE_FACE 3u
+#define DRAPE_SELF_EDGE_EDGE 4u
 
 // The most contacts of a slot that a work-item handles alone, in quadratic time; a cloth feature at rest has a few
 // dozen.
 #define DRAPE_RANKED 64u
 
 // Canonical order of contacts: slot, then obstacle feature. A slot is a cloth feature: first all nodes, then all faces,
-// then all edges.
+// then all edges; behind them, in the same order, the slots of contacts of cloths with themselves.
 typedef struct Contact
 {
-    DRAPE_UINT m_slot;             // cloth feature of any kind, over all cloths
-    DRAPE_UINT m_kind;             // DRAPE_NODE_FACE, DRAPE_FACE_VERTEX or DRAPE_EDGE_EDGE
-    DRAPE_UINT m_clothFeature;     // node, triangle or edge, index over all cloths
-    DRAPE_UINT m_obstacleFeature;  // triangle, vertex or edge, index over all obstacles
-    float m_normal[3];             // unit, from the obstacle to the side the cloth came from
-    float m_gap1;                  // m, signed distance along the normal at the step's end, thickness not subtracted
-    float m_point[3];              // m, contact point on the obstacle, world frame
-    float m_gap0;                  // m, the same at the step's start
-    float m_weights[3];            // of the cloth feature's nodes; sum 1; unused ones 0
-    float m_time;                  // time of impact in [0, 1]; 1 when the surfaces are near at the step's end
+    DRAPE_UINT m_slot;          // cloth feature of any kind, over all cloths
+    DRAPE_UINT m_kind;          // DRAPE_NODE_FACE, ...
+    DRAPE_UINT m_clothFeature;  // node, triangle or edge, index over all cloths
+    DRAPE_UINT
+        m_obstacleFeature;  // triangle, vertex or edge, index over all obstacles; of self contacts over all cloths
+    float m_normal[3];      // unit, from the obstacle to the side the cloth came from
+    float m_gap1;           // m, signed distance along the normal at the step's end, thickness not subtracted
+    float m_point[3];       // m, contact point on the obstacle, world frame
+    float m_gap0;           // m, the same at the step's start
+    // Of the cloth feature's nodes; sum 1; unused ones 0. Of a self contact: of the face's nodes, or the places along
+    // the first and the second edge, each from its first node (0) to its second (1).
+    float m_weights[3];
+    float m_time;  // time of impact in [0, 1]; 1 when the surfaces are near at the step's end
 } Contact;
 
 DRAPE_NAMESPACE_END

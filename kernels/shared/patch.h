@@ -31,6 +31,9 @@ typedef struct Patch
 // Of every direction: low, high, and how far a contact can reach as a share of the reach (lib/cone_reach.h).
 #define DRAPE_WIDE_NODE_FLOATS (3 * DRAPE_DOP_DIRECTIONS)
 
+// Of a cloth that collides with itself: a feature's box over the step, low then high.
+#define DRAPE_BOX_FLOATS 6
+
 // A lane's owner: a triangle that owns its feature in the low bits, the feature's place in that triangle above. Lanes
 // that are not used hold DRAPE_NO_FEATURE and positions that are NaN, which no test keeps.
 #define DRAPE_PLACE_SHIFT 30
@@ -43,8 +46,9 @@ typedef struct Patch
 #define DRAPE_FEATURES_EDGE(features) (((features) >> 16) & 0xffu)
 
 // A feature test that the cull could not drop: a cloth triangle with the test above it, and a lane of the faces (tests
-// 0 to 2: corner of the cloth triangle), vertices (3) or edges (4 to 6: edge of the cloth triangle). Also a pair of a
-// cloth triangle and a patch, whose index is then in the place of the lane.
+// 0 to 2: corner of the cloth triangle), vertices (3) or edges (4 to 6: edge of the cloth triangle). Also a pair of a cloth
+// triangle and a patch, whose index is then in the place of the lane; and a pair of features of one cloth
+// (lib/self_contact.h).
 typedef struct FeatureTest
 {
     DRAPE_UINT m_cloth;

@@ -72,10 +72,11 @@ class BenchStep(ProgramTest):
         for row in rows:
             if row["stage"] == "step":
                 steps.setdefault(row["scene"], {})[row["method"]] = row
-        self.assertEqual(set(steps), {"quick_one", "quick_many"})
-        for methods in steps.values():
-            for name in ("drape_host", "embree_contacts_1", "embree_contacts_2", "embree_pairs_1", "fcl_pairs",
-                         "fcl_collide"):
+        self.assertEqual(set(steps), {"quick_one", "quick_many", "quick_self"})
+        for scene, methods in steps.items():
+            peers = () if scene == "quick_self" else ("fcl_pairs", "fcl_collide")
+            self.assertEqual("fcl_pairs" in methods, bool(peers))
+            for name in ("drape_host", "embree_contacts_1", "embree_contacts_2", "embree_pairs_1") + peers:
                 row = methods[name]
                 self.assertLessEqual(0, float(row["min_ms"]))
                 self.assertLessEqual(float(row["min_ms"]), float(row["median_ms"]))
@@ -88,6 +89,9 @@ class BenchStep(ProgramTest):
                 if row["valid"] == "yes":
                     self.assertEqual(row["hash"], reference["hash"])
                     self.assertEqual(row["contacts"], reference["contacts"])
+            if not peers:
+                self.assertEqual(methods["embree_contacts_1"]["valid"], "yes")
+                continue
             # Volumes of the same kind, grown alike: the peer's pairs are the broad phase's.
             pairs = float(methods["fcl_pairs"]["candidates"])
             self.assertAlmostEqual(pairs / float(reference["candidates"]), 1, delta=0.01)
@@ -100,6 +104,7 @@ class BenchStep(ProgramTest):
             self.assertTrue(all(row["valid"] in ("yes", "") for row in mine))
             self.assertTrue(any(row["valid"] == "yes" for row in mine))
         self.assertTrue(any(row["stage"].startswith("kernel: narrowPhase") for row in rows))
+        self.assertEqual({row["scene"] for row in rows if row["stage"] == "kernel: selfCull"}, {"quick_self"})
         self.assertTrue(any(row["stage"] == "memory: cloth triangles" and int(row["bytes"]) > 0 for row in rows))
 
     def test_a_wrong_hash_voids_the_row(self):

@@ -94,6 +94,8 @@ std::vector<Field> stepFields()
             DRAPE_TEST_OFFSET(StepCounters, m_spill),
             DRAPE_TEST_OFFSET(StepCounters, m_swept),
             DRAPE_TEST_OFFSET(StepCounters, m_patchPairs),
+            DRAPE_TEST_OFFSET(StepCounters, m_selfTests),
+            DRAPE_TEST_OFFSET(StepCounters, m_selfSwept),
             DRAPE_TEST_OFFSET(StepCounters, m_visits),
             DRAPE_TEST_OFFSET(Contact, m_slot),
             DRAPE_TEST_OFFSET(Contact, m_kind),

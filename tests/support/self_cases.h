@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <drape/queries.h>
+#include "bullet_plugin/core/pipeline.h"
 #include "scenes/mesh.h"
 
 namespace drape::test
@@ -25,5 +26,24 @@ SelfCase crumpledCase(int nodes, std::uint32_t seed);
 std::vector<SelfCase> selfCases();
 
 // Null, with a failure recorded, when the back end cannot be had.
+// A step of a cloth that collides with itself.
+struct SelfStepCase
+{
+    SelfCase m_motion;
+    std::vector<float> m_rest;  // positions at rest, m
+    float m_thickness;          // m
+};
+
+// A cloth of nodes × nodes folded into layers that lie on one another, a little disturbed, and moved by up to `motion`
+// (m) in a direction of each node's own. (nodes - 1) is a multiple of layers.
+SelfStepCase foldedCase(int nodes, int layers, float motion, std::uint32_t seed);
+// Folded, crumpled, torn, with a bad node, of one triangle and of none.
+std::vector<SelfStepCase> selfStepCases();
+
+// Adds the cloth, names it for the step and sets its nodes.
+MeshId addSelfCloth(Pipeline& pipeline, const SelfStepCase& step);
+// Contacts of a cloth with itself, of a pipeline of its own.
+std::vector<Contact> runSelfCase(Pipeline& pipeline, const SelfStepCase& step);
+
 std::unique_ptr<Queries> makeQueries(const Settings& settings);
 }  // namespace drape::test

@@ -21,6 +21,8 @@ struct PooledMesh
     std::vector<float> m_positions;         // m, as last given: in its own frame where it has a place, else the world's
     double m_area = 0;                      // m², of the triangles
     bool m_oneSided = false;                // obstacles only: see MeshDescription
+    float m_selfThickness = 0;              // m, cloths only, likewise
+    std::vector<float> m_rest;              // m, of cloths that collide with themselves
     float m_coordinateStep = 0;             // m, obstacles only: distance of floats where it reaches farthest out
     std::vector<NormalCone> m_vertexCones;  // obstacles only
     std::vector<NormalCone> m_edgeCones;

@@ -77,8 +77,10 @@ std::size_t NarrowPhaseStage::listWidth(const Device& device) const
 void NarrowPhaseStage::enqueue(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount,
                                std::size_t triangleCount, const NarrowPhaseSettings& settings,
                                Buffer<Candidate>& candidates, Buffer<StepCounters>& counters,
-                               const ReductionBuffers* reduction)
+                               const ReductionBuffers* reduction, const SelfWork* self)
 {
+    // Before the others' hits, which are listed behind what is there.
+    if (self) enqueueSelfHits(device, 0, counters, *self);
     const std::size_t width = listWidth(device);
     const cl_uint hitCapacity = cl_uint(m_hits.capacity());
     m_test.launch(device, width, kGroup, candidates.handle(), cl_uint(candidates.capacity()),
@@ -93,7 +95,8 @@ void NarrowPhaseStage::enqueue(Device& device, NarrowPhaseBuffers sides, std::si
 
 void NarrowPhaseStage::enqueueFeatures(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount,
                                        std::size_t triangleCount, std::uint32_t mode, PatchCullStage& cull,
-                                       Buffer<StepCounters>& counters, const ReductionBuffers* reduction)
+                                       Buffer<StepCounters>& counters, const ReductionBuffers* reduction,
+                                       const SelfWork* self)
 {
     PatchCullStage::Features features = cull.features();
     const std::size_t width = listWidth(device);
@@ -114,7 +117,22 @@ void NarrowPhaseStage::enqueueFeatures(Device& device, NarrowPhaseBuffers sides,
                        features.m_vertexIds.handle(), features.m_edgeIds.handle(), sides.m_motions.handle(),
                        m_hits.handle(), m_sweptTests.handle(), m_slotCount.handle(), counters.handle());
     }
+    if (self) enqueueSelfHits(device, cull.tests().capacity(), counters, *self);
     enqueueCompaction(device, sides, counters, reduction);
+}
+
+void NarrowPhaseStage::enqueueSelf(Device& device, NarrowPhaseBuffers sides, Buffer<StepCounters>& counters,
+                                   const SelfWork& self)
+{
+    enqueueSelfHits(device, 0, counters, self);
+    enqueueCompaction(device, sides, counters, nullptr);
+}
+
+void NarrowPhaseStage::enqueueSelfHits(Device& device, std::size_t obstacleCapacity, Buffer<StepCounters>& counters,
+                                       const SelfWork& self)
+{
+    self.m_stage.enqueueContacts(device, self.m_step, {m_hits, m_slotCount, m_hits.capacity(), obstacleCapacity},
+                                 counters);
 }
 
 // Where each slot's contacts begin.

@@ -8,6 +8,7 @@
 #include "bullet_plugin/core/broad_phase/patch_cull.h"
 #include "bullet_plugin/core/device/buffer.h"
 #include "bullet_plugin/core/device/program.h"
+#include "bullet_plugin/core/self_collision/self_contacts.h"
 #include "kernels/lib/contact_reduction.h"
 #include "kernels/lib/pair_contact.h"
 
@@ -81,6 +82,13 @@ struct ReductionBuffers
     Buffer<float>& m_tube;
 };
 
+// Contacts of cloths with themselves that go with a step's others.
+struct SelfWork
+{
+    SelfContactStage& m_stage;
+    SelfBuffers m_step;
+};
+
 class NarrowPhaseStage
 {
 public:
@@ -99,15 +107,18 @@ public:
     Buffer<Candidate>& intersections() { return m_intersections; }
 
     // Contacts of pairs of triangles. Returns after enqueueing. counters' places and intersections must be zero before.
-    // reduction: null where no contact is to be left out.
+    // reduction: null where no contact is to be left out. self: null where no cloth is tested against itself; there
+    // must be room for as many hits more as it has tests.
     void enqueue(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
                  const NarrowPhaseSettings& settings, Buffer<Candidate>& candidates, Buffer<StepCounters>& counters,
-                 const ReductionBuffers* reduction = nullptr);
+                 const ReductionBuffers* reduction = nullptr, const SelfWork* self = nullptr);
     // Contacts of the feature tests that a cull left. There must be room for as many hits as tests. mode:
     // DRAPE_DISCRETE …; a discrete step is one launch less.
     void enqueueFeatures(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
                          std::uint32_t mode, PatchCullStage& cull, Buffer<StepCounters>& counters,
-                         const ReductionBuffers* reduction = nullptr);
+                         const ReductionBuffers* reduction = nullptr, const SelfWork* self = nullptr);
+    // Contacts of cloths with themselves alone.
+    void enqueueSelf(Device& device, NarrowPhaseBuffers sides, Buffer<StepCounters>& counters, const SelfWork& self);
     void enqueueIntersect(Device& device, NarrowPhaseBuffers sides, Buffer<Candidate>& candidates,
                           Buffer<StepCounters>& counters);
 
@@ -119,6 +130,9 @@ private:
     // Where the hits of each slot begin, from their numbers.
     void enqueuePlaces(Device& device, Buffer<cl_uint>& slotCount, Buffer<cl_uint>& slotFirst,
                        Buffer<StepCounters>& counters);
+    // Hits of self tests, behind obstacleCapacity places.
+    void enqueueSelfHits(Device& device, std::size_t obstacleCapacity, Buffer<StepCounters>& counters,
+                         const SelfWork& self);
     std::size_t listWidth(const Device& device) const;
 
     Kernel m_test, m_feature, m_swept, m_intersect, m_count, m_scan, m_place, m_placeFew, m_gather, m_order, m_write;

@@ -108,8 +108,10 @@ void Pipeline::Implementation::useChosen()
 
 void Pipeline::Implementation::chooseBackend()
 {
-    if (!m_choice.active() || m_pairs.empty() || m_pairs == m_notedPairs) return;
+    if (!m_choice.active() || (m_pairs.empty() && m_selfCloths.empty())) return;
+    if (m_pairs == m_notedPairs && m_selfCloths == m_notedSelf) return;
     m_notedPairs = m_pairs;
+    m_notedSelf = m_selfCloths;
     const auto surface = [](const MeshPool& pool, MeshId id)
     {
         const PooledMesh& mesh = pool.mesh(pool.slot(id));
@@ -121,6 +123,14 @@ void Pipeline::Implementation::chooseBackend()
         m_choice.note(pair.m_cloth, pair.m_obstacle,
                       expectedPairs(surface(m_scene.m_cloths, pair.m_cloth),
                                     surface(m_scene.m_obstacles, pair.m_obstacle), reach));
+    }
+    for (MeshId cloth : m_selfCloths)
+    {
+        const Surface own = surface(m_scene.m_cloths, cloth);
+        const MeshPool& cloths = m_scene.m_cloths;
+        const double reach =
+            double(cloths.mesh(cloths.slot(cloth)).m_selfThickness) * (1 + double(m_settings.m_activation));
+        m_choice.note(cloth, cloth, expectedPairs(own, own, reach));
     }
     useChosen();
 }

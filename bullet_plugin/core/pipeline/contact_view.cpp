@@ -92,4 +92,52 @@ ContactView Pipeline::view(const Contact& contact) const
     view.m_thickness = self.m_stepPairs.m_thickness[feature.m_slot * obstacles.meshCount() + obstacle];
     return view;
 }
+
+SelfContactView Pipeline::viewSelf(const Contact& contact) const
+{
+    const Implementation& self = *m_implementation;
+    const MeshPool& cloths = self.m_scene.m_cloths;
+    const float* rest = self.m_scene.m_clothRest.data();
+    const bool edges = contact.m_kind == DRAPE_SELF_EDGE_EDGE;
+    const std::size_t slot =
+        edges ? cloths.slotOfEdge(contact.m_clothFeature) : cloths.slotOfVertex(contact.m_clothFeature);
+    const PooledMesh& cloth = cloths.mesh(slot);
+    const float s = contact.m_weights[0], t = contact.m_weights[1];
+    SelfContactView view;
+    view.m_cloth = cloth.m_id;
+    view.m_kind = contact.m_kind;
+    float restDistance;
+    if (edges)
+    {
+        const std::uint32_t* first = cloths.edges()[contact.m_clothFeature].m_vertices;
+        const std::uint32_t* second = cloths.edges()[contact.m_obstacleFeature].m_vertices;
+        for (int i = 0; i < 2; ++i)
+        {
+            view.m_nodes[i] = std::int32_t(first[i] - cloth.m_firstVertex);
+            view.m_nodes[2 + i] = std::int32_t(second[i] - cloth.m_firstVertex);
+            view.m_weights[i] = i == 0 ? 1.0f - s : s;
+            view.m_weights[2 + i] = i == 0 ? 1.0f - t : t;
+        }
+        restDistance = restDistanceOfEdges(rest, first, second);
+    }
+    else
+    {
+        const std::uint32_t* corners = cloths.triangles()[contact.m_obstacleFeature].m_vertices;
+        view.m_nodes[0] = std::int32_t(contact.m_clothFeature - cloth.m_firstVertex);
+        view.m_weights[0] = 1.0f;
+        for (int i = 0; i < 3; ++i)
+        {
+            view.m_nodes[1 + i] = std::int32_t(corners[i] - cloth.m_firstVertex);
+            view.m_weights[1 + i] = contact.m_weights[i];
+        }
+        restDistance = restDistanceOfNode(rest, contact.m_clothFeature, corners);
+    }
+    std::copy(contact.m_normal, contact.m_normal + 3, view.m_normal);
+    std::copy(contact.m_point, contact.m_point + 3, view.m_point);
+    view.m_gap0 = contact.m_gap0;
+    view.m_gap1 = contact.m_gap1;
+    view.m_time = contact.m_time;
+    view.m_thickness = selfThickness(cloth.m_selfThickness, restDistance);
+    return view;
+}
 }  // namespace drape

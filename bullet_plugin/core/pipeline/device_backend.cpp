@@ -65,7 +65,7 @@ cl::Program DeviceBackend::program(const char* name, const std::string& defines)
 }
 
 // A step of one triangle over another: some drivers compile a kernel again at its first launch with a group size.
-void DeviceBackend::warmUp()
+void DeviceBackend::warmUp(float selfThickness)
 {
     const std::int32_t indices[3] = {0, 1, 2};
     const std::vector<float> above = {0, 0, 0.5f, 1, 0, 0.5f, 0, 1, 0.5f}, below = {0, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -98,7 +98,13 @@ void DeviceBackend::warmUp()
     pairs.m_motions = {makeMotion(placing, MeshBox{{0, 0, 0}, {1, 1, 0}}, 0)};
     pairs.m_thickness = {0.1f};
     pairs.m_clothRadius = {0.1f};
-    pairs.m_any = true;
+    pairs.m_anyPair = pairs.m_any = true;
+    if (selfThickness > 0.0f)
+    {
+        scene.m_anySelf = pairs.m_anySelf = true;
+        scene.m_clothRest = below;
+        pairs.m_self = SelfReach{{selfThickness}, {selfGrowth(selfThickness)}};
+    }
     pairs.m_measureTree = watchesClothTree(m_settings, false);
     StepResult result;
     submit(scene, pairs);
@@ -117,6 +123,14 @@ void DeviceBackend::warmUp()
     m_sentTube.clear();
     m_sentRadius.clear();
     m_sentPlaces.clear();
+}
+
+void DeviceBackend::prepareSelf()
+{
+    if (m_self.created() || m_device->failed()) return;
+    m_self.create(*m_device, [this](const char* name) { return program(name, PatchCullStage::defines(*m_device)); });
+    reserveHits();
+    warmUp(0.1f);
 }
 
 std::vector<std::uint32_t> DeviceBackend::order(const std::vector<Triangle>& triangles, const float* positions,
@@ -152,7 +166,8 @@ void DeviceBackend::updateTopology(const Scene& scene)
         m_clothEdges.assign(*m_device, scene.m_cloths.edges());
         m_clothStart.reserve(*m_device, 3 * scene.m_cloths.vertexCount());
         m_clothEnd.reserve(*m_device, 3 * scene.m_cloths.vertexCount());
-        m_narrowPhase.resizeSlots(*m_device, scene.slotCount());
+        m_narrowPhase.resizeSlots(*m_device, scene.allSlotCount());
+        if (scene.m_anySelf) m_self.setTopology(*m_device, scene.m_cloths, scene.m_clothRest);
     }
     const bool newObstacles = m_obstacle.m_revision != scene.m_obstacles.revision();
     if (newObstacles)
@@ -280,6 +295,7 @@ void DeviceBackend::uploadStep(const Scene& scene, const StepPairs& pairs)
         m_sentTube = pairs.m_tube;
         m_tube.assign(*m_device, m_sentTube);
     }
+    if (pairs.m_anySelf) m_self.setReach(*m_device, pairs.m_self);
     if (!pairs.m_motions.empty())
     {
         m_sentMotions = pairs.m_motions;
@@ -299,13 +315,21 @@ NarrowPhaseBuffers DeviceBackend::narrowPhaseBuffers(const StepPairs& pairs)
             pairs.m_motions.size()};
 }
 
-void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
+SelfWork DeviceBackend::selfWork(const Scene& scene)
+{
+    const MeshPool& cloths = scene.m_cloths;
+    return {m_self,
+            {m_cloth.m_triangles, m_clothEdges, m_clothStart, m_clothEnd, m_cloth.m_radius, cloths.vertexCount(),
+             cloths.triangles().size(), cloths.edges().size(), std::uint32_t(m_settings.m_mode),
+             1.0f + m_settings.m_activation, StepLimits(m_settings).m_candidates}};
+}
+
+// Pairs of features, or of triangles, that may touch.
+void DeviceBackend::enqueueBroad(const Scene& scene, const StepPairs& pairs)
 {
     const std::size_t obstacleMeshes = scene.m_obstacles.meshCount();
-    m_counters.fill(*m_device, 0, 1);
-    const ReductionBuffers buffers = {m_cloth.m_firsts, m_obstacle.m_firsts, scene.m_cloths.meshCount(), obstacleMeshes,
-                                      m_tube};
-    const ReductionBuffers* const reduction = pairs.m_anyTube ? &buffers : nullptr;
+    if (pairs.m_anySelf) m_self.enqueueCull(*m_device, selfWork(scene).m_step, m_counters);
+    if (!pairs.m_anyPair) return;
     if (patches())
     {
         m_patchCull.enqueue(
@@ -314,36 +338,59 @@ void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
              scene.m_cloths.triangles().size(), obstacleMeshes, 1.0f + m_settings.m_activation,
              std::uint32_t(m_settings.m_mode), m_motions, pairs.m_motions.size(), StepLimits(m_settings).m_candidates},
             m_counters);
-        m_narrowPhase.enqueueFeatures(*m_device, narrowPhaseBuffers(pairs), scene.m_cloths.vertexCount(),
-                                      scene.m_cloths.triangles().size(), std::uint32_t(m_settings.m_mode), m_patchCull,
-                                      m_counters, reduction);
+        return;
+    }
+    RefitStage::Motions motions = {m_motions, pairs.m_motions.size(), m_thickness, obstacleMeshes};
+    m_refit.enqueue(*m_device, scene.m_clothLayout, m_cloth.m_levels, m_cloth.m_nodes, m_cloth.m_order,
+                    m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, m_counters,
+                    pairs.m_motions.empty() ? nullptr : &motions);
+    if (pairs.m_measureTree)
+        m_treeCost.enqueue(*m_device, m_cloth.m_nodes, scene.m_clothLayout.nodeCount(), scene.m_clothLayout.root());
+    m_broadPhase.enqueue(*m_device, {{m_cloth.m_nodes, m_cloth.m_order, m_cloth.m_triangles},
+                                     {m_obstacle.m_nodes, m_obstacle.m_order, m_obstacle.m_triangles},
+                                     m_thickness,
+                                     obstacleMeshes,
+                                     m_candidates,
+                                     m_counters,
+                                     StepLimits(m_settings).m_candidates});
+}
+
+void DeviceBackend::enqueueNarrow(const Scene& scene, const StepPairs& pairs)
+{
+    const std::size_t obstacleMeshes = scene.m_obstacles.meshCount();
+    const ReductionBuffers buffers = {m_cloth.m_firsts, m_obstacle.m_firsts, scene.m_cloths.meshCount(), obstacleMeshes,
+                                      m_tube};
+    const ReductionBuffers* const reduction = pairs.m_anyTube ? &buffers : nullptr;
+    const SelfWork own = selfWork(scene);
+    const SelfWork* const self = pairs.m_anySelf ? &own : nullptr;
+    const std::size_t nodes = scene.m_cloths.vertexCount(), triangles = scene.m_cloths.triangles().size();
+    const std::uint32_t mode = std::uint32_t(m_settings.m_mode);
+    if (!pairs.m_anyPair)
+    {
+        m_narrowPhase.enqueueSelf(*m_device, narrowPhaseBuffers(pairs), m_counters, own);
+        return;
+    }
+    if (patches())
+    {
+        m_narrowPhase.enqueueFeatures(*m_device, narrowPhaseBuffers(pairs), nodes, triangles, mode, m_patchCull,
+                                      m_counters, reduction, self);
     }
     else
     {
-        RefitStage::Motions motions = {m_motions, pairs.m_motions.size(), m_thickness, obstacleMeshes};
-        m_refit.enqueue(*m_device, scene.m_clothLayout, m_cloth.m_levels, m_cloth.m_nodes, m_cloth.m_order,
-                        m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, m_counters,
-                        pairs.m_motions.empty() ? nullptr : &motions);
-        if (pairs.m_measureTree)
-        {
-            m_treeCost.enqueue(*m_device, m_cloth.m_nodes, scene.m_clothLayout.nodeCount(), scene.m_clothLayout.root());
-        }
-        m_broadPhase.enqueue(*m_device, {{m_cloth.m_nodes, m_cloth.m_order, m_cloth.m_triangles},
-                                         {m_obstacle.m_nodes, m_obstacle.m_order, m_obstacle.m_triangles},
-                                         m_thickness,
-                                         obstacleMeshes,
-                                         m_candidates,
-                                         m_counters,
-                                         StepLimits(m_settings).m_candidates});
         const NarrowPhaseSettings narrow = {
-            pairs.m_thickness, obstacleMeshes, 1.0f + m_settings.m_activation, std::uint32_t(m_settings.m_mode), {}};
-        m_narrowPhase.enqueue(*m_device, narrowPhaseBuffers(pairs), scene.m_cloths.vertexCount(),
-                              scene.m_cloths.triangles().size(), narrow, m_candidates, m_counters, reduction);
+            pairs.m_thickness, obstacleMeshes, 1.0f + m_settings.m_activation, mode, {}};
+        m_narrowPhase.enqueue(*m_device, narrowPhaseBuffers(pairs), nodes, triangles, narrow, m_candidates, m_counters,
+                              reduction, self);
     }
     if (m_settings.m_reportIntersections)
-    {
         m_narrowPhase.enqueueIntersect(*m_device, narrowPhaseBuffers(pairs), m_candidates, m_counters);
-    }
+}
+
+void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
+{
+    m_counters.fill(*m_device, 0, 1);
+    enqueueBroad(scene, pairs);
+    enqueueNarrow(scene, pairs);
     m_counters.read(*m_device, m_countersRead.data(), 1);
     m_narrowPhase.contacts().read(*m_device, m_contactsRead.data(), m_contactsAsked);
     m_device->flush();
@@ -366,15 +413,24 @@ bool DeviceBackend::overLimit(StepResult& result)
                                           counters.m_candidates <= m_patchCull.tests().capacity()
                                     : counters.m_candidates <= m_candidates.capacity();
     const std::size_t hits = std::max(counters.m_hits, counters.m_found);
-    const std::size_t found = patches() ? hits : counters.m_listed;
-    if (std::max(counters.m_candidates, counters.m_patchPairs) > limits.m_candidates)
+    // Where hits are listed as they come, those of self tests are among them with places that hold none.
+    const std::size_t selfPlaces = std::min<std::size_t>(counters.m_selfTests, m_self.tests().capacity());
+    const std::size_t found =
+        patches() ? hits : std::max(hits, counters.m_listed - std::min<std::size_t>(selfPlaces, counters.m_listed));
+    if (std::max({counters.m_candidates, counters.m_patchPairs, counters.m_selfTests}) > limits.m_candidates)
         result.m_overLimit = true;
-    else if (complete && found > limits.m_contacts)
+    else if (complete && counters.m_selfTests <= m_self.tests().capacity() && found > limits.m_contacts)
     {
         result.m_overLimit = true;
         result.m_contactDemand = found;
     }
     return result.m_overLimit;
+}
+
+void DeviceBackend::reserveHits()
+{
+    const std::size_t tests = patches() ? m_patchCull.tests().capacity() : 0;
+    m_narrowPhase.reserveHits(*m_device, tests + m_self.tests().capacity());
 }
 
 bool DeviceBackend::grow()
@@ -399,11 +455,7 @@ bool DeviceBackend::grow()
         demand(counters.m_patchPairs, m_patchCull.pairs().capacity(), sizeof(FeatureTest),
                [&](std::size_t count) { m_patchCull.reservePairs(device, count); });
         demand(counters.m_candidates, m_patchCull.tests().capacity(), sizeof(Contact),
-               [&](std::size_t count)
-               {
-                   m_patchCull.reserveTests(device, count);
-                   m_narrowPhase.reserveHits(device, count);
-               });
+               [&](std::size_t count) { m_patchCull.reserveTests(device, count); });
     }
     else
     {
@@ -413,6 +465,11 @@ bool DeviceBackend::grow()
         demand(std::min(std::size_t(counters.m_listed), StepLimits(m_settings).m_contacts), m_narrowPhase.hitCapacity(),
                sizeof(Contact), [&](std::size_t count) { m_narrowPhase.reserveHits(device, count); });
     }
+    demand(counters.m_selfTests, m_self.tests().capacity(), sizeof(Contact),
+           [&](std::size_t count) { m_self.reserveTests(device, count); });
+    const std::size_t hits = m_self.tests().capacity() + (patches() ? m_patchCull.tests().capacity() : 0);
+    if (hits * sizeof(Contact) > largest) m_limitReached = again = true;
+    if (again && !m_limitReached) reserveHits();
     demand(counters.m_intersections, m_narrowPhase.intersections().capacity(), sizeof(Candidate),
            [&](std::size_t count) { m_narrowPhase.reserveIntersections(device, count); });
     return again;
@@ -444,6 +501,8 @@ void DeviceBackend::readAll(StepResult& result)
     result.m_candidates = counters.m_candidates;
     result.m_volumeTests = counters.m_visits;
     result.m_sweptTests = counters.m_swept;
+    result.m_selfCandidates = counters.m_selfTests;
+    result.m_selfSweptTests = counters.m_selfSwept;
     result.m_reduced = counters.m_found > counters.m_hits ? counters.m_found - counters.m_hits : 0;
     result.m_invalidNodes = counters.m_invalidNodes;
     result.m_intersectionCount = counters.m_intersections;

@@ -25,6 +25,9 @@ public:
     Device& device() { return *m_device; }
     bool fromCache() const { return m_fromCache; }
 
+    // Builds the kernels of cloths that collide with themselves, at the first call.
+    void prepareSelf();
+
     // See morton_order.h.
     std::vector<std::uint32_t> order(const std::vector<Triangle>& triangles, const float* positions,
                                      std::size_t vertexCount);
@@ -58,7 +61,7 @@ private:
     };
 
     cl::Program program(const char* name, const std::string& defines = std::string());
-    void warmUp();
+    void warmUp(float selfThickness = 0.0f);
     void uploadSide(const MeshPool& pool, const BvhLayout& layout, Side& side);
     void updateTopology(const Scene& scene);
     void updateTraversal(const Scene& scene, bool newObstacles);
@@ -73,6 +76,11 @@ private:
     void uploadStep(const Scene& scene, const StepPairs& pairs);
     void enqueueStep(const Scene& scene, const StepPairs& pairs);
     bool patches() const { return goesOverPatches(m_settings); }
+    SelfWork selfWork(const Scene& scene);
+    void enqueueBroad(const Scene& scene, const StepPairs& pairs);
+    void enqueueNarrow(const Scene& scene, const StepPairs& pairs);
+    // Room for hits of all tests.
+    void reserveHits();
     NarrowPhaseBuffers narrowPhaseBuffers(const StepPairs& pairs);
     // Whether the last run demanded more than the settings allow; the result says what.
     bool overLimit(StepResult& result);
@@ -92,6 +100,7 @@ private:
     BroadPhaseStage m_broadPhase;
     PatchCullStage m_patchCull;
     NarrowPhaseStage m_narrowPhase;
+    SelfContactStage m_self;
 
     Side m_cloth{"cloth"}, m_obstacle{"obstacle"};
     Buffer<float> m_clothStart{"cloth positions"}, m_clothEnd{"cloth positions"};

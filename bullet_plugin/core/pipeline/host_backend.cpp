@@ -118,18 +118,71 @@ BroadPhaseSide HostBackend::obstacleSide(const Scene& scene) const
     return {m_obstacleNodes, scene.m_obstacleLayout, scene.m_obstacles.order(), scene.m_obstacles.triangles()};
 }
 
-std::vector<std::uint64_t> HostBackend::countCandidates(const Scene& scene, const StepPairs& pairs)
+std::vector<std::uint64_t> HostBackend::countCandidates(const Scene& scene, const StepPairs& pairs,
+                                                        const Settings& settings)
 {
-    refitCloths(scene, pairs);
-    return drape::countCandidates(clothSide(scene), obstacleSide(scene), pairs.m_thickness, scene.m_cloths.meshCount(),
-                                  scene.m_obstacles.meshCount());
+    std::vector<std::uint64_t> counts(scene.m_cloths.meshCount(), 0);
+    if (pairs.m_anyPair)
+    {
+        refitCloths(scene, pairs);
+        counts = drape::countCandidates(clothSide(scene), obstacleSide(scene), pairs.m_thickness,
+                                        scene.m_cloths.meshCount(), scene.m_obstacles.meshCount());
+    }
+    if (!pairs.m_anySelf) return counts;
+    const std::vector<std::uint64_t> self =
+        m_self.countPairs(selfStep(scene, pairs, settings), StepLimits(settings).m_candidates);
+    for (std::size_t slot = 0; slot < counts.size(); ++slot)
+        counts[slot] += self[slot];
+    return counts;
+}
+
+SelfStep HostBackend::selfStep(const Scene& scene, const StepPairs& pairs, const Settings& settings)
+{
+    const MeshPool& cloths = scene.m_cloths;
+    const ClothView cloth = clothView(scene.m_clothStart.data(), scene.m_clothEnd.data(), cloths.triangles().data(),
+                                      cloths.edges().data(), std::uint32_t(cloths.vertexCount()),
+                                      std::uint32_t(cloths.triangles().size()), std::uint32_t(settings.m_mode), 1);
+    return {cloths, selfView(cloth, scene.m_clothRest.data(), 1.0f + settings.m_activation), pairs.m_self};
+}
+
+std::size_t HostBackend::invalidSelfNodes(const Scene& scene, const StepPairs& pairs)
+{
+    std::size_t invalid = 0;
+    for (const Triangle& triangle : scene.m_cloths.triangles())
+    {
+        if (pairs.m_clothRadius[triangle.m_mesh] >= 0.0f || pairs.m_self.m_radius[triangle.m_mesh] < 0.0f) continue;
+        Dop ignored;
+        invalid += leafVolume(&ignored, &triangle, scene.m_clothStart.data(), scene.m_clothEnd.data(), 0.0f);
+    }
+    return invalid;
+}
+
+bool HostBackend::runSelf(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result)
+{
+    const StepLimits limits(settings);
+    const std::size_t others = result.m_contacts.size();
+    result.m_invalidNodes += invalidSelfNodes(scene, pairs);
+    const SelfCounts counts = m_self.run(selfStep(scene, pairs, settings), limits.m_candidates,
+                                         limits.m_contacts - std::min(limits.m_contacts, others), result.m_contacts);
+    result.m_selfCandidates = counts.m_candidates;
+    result.m_selfSweptTests = counts.m_swept;
+    const bool tooMany = others + counts.m_contacts > limits.m_contacts;
+    result.m_overLimit = counts.m_candidates > limits.m_candidates || tooMany;
+    if (counts.m_candidates <= limits.m_candidates && tooMany) result.m_contactDemand = others + counts.m_contacts;
+    return !result.m_overLimit;
 }
 
 void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result)
 {
+    result = StepResult();
+    if (pairs.m_anyPair && !runPairs(scene, pairs, settings, result)) return;
+    if (pairs.m_anySelf) runSelf(scene, pairs, settings, result);
+}
+
+bool HostBackend::runPairs(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result)
+{
     const MeshPool& cloths = scene.m_cloths;
     const MeshPool& obstacles = scene.m_obstacles;
-    result = StepResult();
     Clock::time_point stage = Clock::now();
     const StepLimits limits(settings);
     result.m_invalidNodes = refitCloths(scene, pairs);
@@ -140,7 +193,7 @@ void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings
     {
         std::vector<Candidate>().swap(m_candidates);
         result.m_overLimit = true;
-        return;
+        return false;
     }
     result.m_candidates = m_candidates.size();
     result.m_volumeTests = m_traversal.volumeTests();
@@ -166,7 +219,7 @@ void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings
     {
         result.m_overLimit = true;
         result.m_contactDemand = counts.m_contacts;
-        return;
+        return false;
     }
     if (pairs.m_anyTube)
     {
@@ -176,5 +229,6 @@ void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings
     result.m_narrowMs = lap(stage);
     if (settings.m_reportIntersections) intersectOnHost(m_candidates, cloth, obstacle, motions, result.m_intersections);
     result.m_intersectionCount = result.m_intersections.size();
+    return true;
 }
 }  // namespace drape

@@ -15,8 +15,8 @@ public:
     // Runs the whole step.
     void run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
 
-    // The step's candidates per cloth slot, exact, however many.
-    std::vector<std::uint64_t> countCandidates(const Scene& scene, const StepPairs& pairs);
+    // The step's pairs of triangles per cloth slot: exact, however many; of cloths with themselves up to the limit.
+    std::vector<std::uint64_t> countCandidates(const Scene& scene, const StepPairs& pairs, const Settings& settings);
 
 private:
     // The obstacles in the world: the scene's own arrays where no obstacle has a place.
@@ -29,6 +29,12 @@ private:
     void place(const Scene& scene);
     ObstacleView obstacleView(const Scene& scene) const;
     static ReductionView reductionView(const Scene& scene, const StepPairs& pairs);
+    static SelfStep selfStep(const Scene& scene, const StepPairs& pairs, const Settings& settings);
+    // Of cloths that are in the step for their collisions with themselves only.
+    static std::size_t invalidSelfNodes(const Scene& scene, const StepPairs& pairs);
+    // What pairs of cloth and obstacle give, in canonical order. False when the step is over a limit.
+    bool runPairs(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
+    bool runSelf(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
     // Returns the invalid nodes.
     std::size_t refitCloths(const Scene& scene, const StepPairs& pairs);
     BroadPhaseSide clothSide(const Scene& scene) const;
@@ -36,6 +42,7 @@ private:
 
     std::vector<BvhNode> m_clothNodes, m_obstacleNodes;
     HostTraversal m_traversal;
+    SelfContactsOnHost m_self;
     std::vector<Candidate> m_candidates;
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0, m_obstacleMotion = 0, m_obstaclePlacing = 0;
     Placed m_placed;

@@ -41,12 +41,14 @@ struct Pipeline::Implementation
     std::unique_ptr<DeviceBackend> m_deviceBackend;
     HostBackend m_hostBackend;
     std::vector<NamedPair> m_pairs;
+    std::vector<MeshId> m_selfCloths;  // named for the coming step
     StepPairs m_stepPairs;
     StepResult m_result;
     StepStatistics m_statistics;
     TreeWatch m_treeWatch;
     BackendChoice m_choice;               // active where cost decides
     std::vector<NamedPair> m_notedPairs;  // those that m_choice has taken in last
+    std::vector<MeshId> m_notedSelf;
     DeviceInfo m_openClDevice;
     std::string m_deviceReason;  // why this device and no other
     MeshId m_nextId = 0;
@@ -72,10 +74,13 @@ struct Pipeline::Implementation
     void placeMesh(std::size_t slot);
     void collectPairs();
     void collectMotions();
+    void collectSelf();
     // How many obstacles of the pairs the step uses as the one before left them.
     std::size_t countKept();
     // Which pairs' contacts may be reduced, and how far their cloths' nodes stay near their ways.
     void collectTubes();
+    // Makes a device ready for cloths that collide with themselves.
+    void prepareSelf();
     void leaveDevice();
     // Whether cost decides between the host and the device that was chosen.
     bool costDecides(const DeviceChoice& choice) const;

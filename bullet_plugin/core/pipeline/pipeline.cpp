@@ -94,6 +94,16 @@ void Pipeline::Implementation::joinCloths()
     const MeshPool& cloths = m_scene.m_cloths;
     m_scene.m_clothStart.reserve(device(), 3 * cloths.vertexCount());
     m_scene.m_clothEnd.reserve(device(), 3 * cloths.vertexCount());
+    m_scene.m_anySelf = false;
+    for (std::size_t slot = 0; slot < cloths.meshCount(); ++slot)
+        m_scene.m_anySelf = m_scene.m_anySelf || cloths.mesh(slot).m_selfThickness > 0.0f;
+    m_scene.m_clothRest.clear();
+    for (std::size_t slot = 0; slot < cloths.meshCount() && m_scene.m_anySelf; ++slot)
+    {
+        const PooledMesh& mesh = cloths.mesh(slot);
+        const std::vector<float>& rest = mesh.m_rest.empty() ? mesh.m_positions : mesh.m_rest;
+        m_scene.m_clothRest.insert(m_scene.m_clothRest.end(), rest.begin(), rest.end());
+    }
     for (std::size_t slot = 0; slot < cloths.meshCount(); ++slot)
     {
         const PooledMesh& mesh = cloths.mesh(slot);
@@ -149,7 +159,7 @@ void Pipeline::Implementation::collectPairs()
     const std::size_t obstacleMeshes = m_scene.m_obstacles.meshCount();
     m_stepPairs.m_thickness.assign(m_scene.m_cloths.meshCount() * obstacleMeshes, -1.0f);
     m_stepPairs.m_clothRadius.assign(m_scene.m_cloths.meshCount(), -1.0f);
-    m_stepPairs.m_any = false;
+    m_stepPairs.m_anyPair = false;
     for (const NamedPair& pair : m_pairs)
     {
         const std::size_t cloth = m_scene.m_cloths.slot(pair.m_cloth);
@@ -161,19 +171,39 @@ void Pipeline::Implementation::collectPairs()
         float& radius = m_stepPairs.m_clothRadius[cloth];
         radius = std::max(radius, pair.m_thickness * (1.0f + m_settings.m_activation) * kReachPad +
                                       kEdgePad * m_scene.m_obstacles.mesh(obstacle).m_longestEdge);
-        m_stepPairs.m_any = true;
+        m_stepPairs.m_anyPair = true;
     }
     m_stepPairs.m_measureTree =
-        m_stepPairs.m_any && watchesClothTree(m_settings, m_report.m_onHost) && m_treeWatch.isDue();
+        m_stepPairs.m_anyPair && watchesClothTree(m_settings, m_report.m_onHost) && m_treeWatch.isDue();
     collectMotions();
-    if (m_stepPairs.m_any) m_statistics.m_obstaclesKept = countKept();
+    if (m_stepPairs.m_anyPair) m_statistics.m_obstaclesKept = countKept();
     collectTubes();
     m_pairs.clear();
     const std::size_t clothTriangles = m_scene.m_cloths.triangles().size();
     const std::size_t obstacleTriangles = m_scene.m_obstacles.triangles().size();
     m_statistics.m_clothTriangles = clothTriangles;
     m_statistics.m_obstacleTriangles = obstacleTriangles;
-    if (clothTriangles == 0 || obstacleTriangles == 0) m_stepPairs.m_any = false;
+    if (clothTriangles == 0 || obstacleTriangles == 0) m_stepPairs.m_anyPair = false;
+    collectSelf();
+    m_stepPairs.m_any = m_stepPairs.m_anyPair || m_stepPairs.m_anySelf;
+}
+
+void Pipeline::Implementation::collectSelf()
+{
+    const MeshPool& cloths = m_scene.m_cloths;
+    m_stepPairs.m_self.m_thickness.assign(cloths.meshCount(), -1.0f);
+    m_stepPairs.m_self.m_radius.assign(cloths.meshCount(), -1.0f);
+    m_stepPairs.m_anySelf = false;
+    for (MeshId id : m_selfCloths)
+    {
+        const std::size_t slot = cloths.slot(id);
+        assert(slot < cloths.meshCount() && cloths.mesh(slot).m_selfThickness > 0.0f);
+        const float thickness = cloths.mesh(slot).m_selfThickness;
+        m_stepPairs.m_self.m_thickness[slot] = thickness;
+        m_stepPairs.m_self.m_radius[slot] = selfGrowth(thickness * (1.0f + m_settings.m_activation));
+        m_stepPairs.m_anySelf = m_stepPairs.m_anySelf || !cloths.mesh(slot).m_topology.m_triangles.empty();
+    }
+    m_selfCloths.clear();
 }
 
 void Pipeline::Implementation::collectMotions()
@@ -237,6 +267,13 @@ void Pipeline::Implementation::collectTubes()
     }
 }
 
+void Pipeline::Implementation::prepareSelf()
+{
+    if (!m_deviceBackend || m_deviceBackend->device().failed()) return;
+    m_deviceBackend->prepareSelf();
+    if (m_deviceBackend->device().failed()) leaveDevice();
+}
+
 // After a failure everything goes on, on the host.
 void Pipeline::Implementation::leaveDevice()
 {
@@ -292,6 +329,14 @@ MeshId Pipeline::addCloth(const MeshDescription& description)
 {
     PooledMesh mesh = m_implementation->makeMesh(description);
     const MeshId id = mesh.m_id;
+    if (description.m_selfThickness > 0.0f)
+    {
+        mesh.m_selfThickness = description.m_selfThickness;
+        if (description.m_restPositions)
+            mesh.m_rest.assign(description.m_restPositions,
+                               description.m_restPositions + 3 * description.m_vertexCount);
+        m_implementation->prepareSelf();
+    }
     m_implementation->m_scene.m_cloths.add(std::move(mesh));
     return id;
 }
@@ -363,6 +408,11 @@ void Pipeline::addPair(MeshId cloth, MeshId obstacle, float thickness, float tub
     m_implementation->m_pairs.push_back(NamedPair{cloth, obstacle, thickness, tube});
 }
 
+void Pipeline::addSelf(MeshId cloth)
+{
+    m_implementation->m_selfCloths.push_back(cloth);
+}
+
 void Pipeline::submit()
 {
     Implementation& self = *m_implementation;
@@ -403,6 +453,9 @@ ContactList Pipeline::finish()
     statistics.m_candidates += self.m_result.m_candidates;
     statistics.m_volumeTests = self.m_result.m_volumeTests;
     statistics.m_sweptTests = self.m_result.m_sweptTests;
+    statistics.m_selfCandidates = self.m_result.m_selfCandidates;
+    statistics.m_selfSweptTests = self.m_result.m_selfSweptTests;
+    statistics.m_selfContacts = self.m_result.selfContacts().size();
     statistics.m_reduced = self.m_result.m_reduced;
     statistics.m_contacts = self.m_result.contacts().size();
     statistics.m_intersections = self.m_result.m_intersectionCount;
@@ -414,6 +467,11 @@ ContactList Pipeline::finish()
     if (statistics.m_invalidNodes > 0) statistics.m_status |= kStepInvalidNodes;
     statistics.m_waitMs = millisecondsSince(start);
     return self.m_result.contacts();
+}
+
+ContactList Pipeline::selfContacts() const
+{
+    return m_implementation->m_result.selfContacts();
 }
 
 const StepStatistics& Pipeline::statistics() const

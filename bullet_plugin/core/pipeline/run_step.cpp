@@ -54,7 +54,7 @@ void Pipeline::Implementation::complete()
 
 void Pipeline::Implementation::leaveOutCloths()
 {
-    const std::vector<std::uint64_t> candidates = m_hostBackend.countCandidates(m_scene, m_stepPairs);
+    const std::vector<std::uint64_t> candidates = m_hostBackend.countCandidates(m_scene, m_stepPairs, m_settings);
     const StepLimits limits(m_settings);
     std::uint64_t budget = limits.m_candidates;
     if (m_result.m_contactDemand > 0)
@@ -66,7 +66,7 @@ void Pipeline::Implementation::leaveOutCloths()
     m_statistics.m_status |= kStepClothsLeftOut;
     for (std::size_t slot : largestCloths(candidates, budget))
     {
-        if (m_stepPairs.m_clothRadius[slot] < 0.0f) continue;
+        if (m_stepPairs.m_clothRadius[slot] < 0.0f && m_stepPairs.m_self.m_radius[slot] < 0.0f) continue;
         ++m_statistics.m_clothsLeftOut;
         m_statistics.m_candidates += candidates[slot];
         m_stepPairs.leaveOut(slot);

@@ -45,13 +45,14 @@ void Pipeline::Implementation::dropBackContacts()
     if (!any) return;
     const auto onBack = [&](const Contact& contact)
     {
+        if (contact.m_kind >= DRAPE_SELF_NODE_FACE) return false;
         const PooledMesh& mesh = obstacles.mesh(obstacleSlot(obstacles, contact));
         if (!mesh.m_oneSided) return false;
         const std::array<float, 3> front = frontOf(mesh, contact.m_kind, contact.m_obstacleFeature);
         return front[0] * contact.m_normal[0] + front[1] * contact.m_normal[1] + front[2] * contact.m_normal[2] < 0.0f;
     };
     std::vector<Contact> kept;
-    const ContactList all = m_result.contacts();
+    const ContactList all = m_result.allContacts();
     std::remove_copy_if(all.begin(), all.end(), std::back_inserter(kept), onBack);
     m_result.m_contacts.swap(kept);
     m_result.m_deviceContacts = ContactList();

@@ -10,6 +10,7 @@
 #include "bullet_plugin/core/device/buffer.h"
 #include "bullet_plugin/core/mesh/mesh_pool.h"
 #include "bullet_plugin/core/narrow_phase/narrow_phase.h"
+#include "bullet_plugin/core/self_collision/self_contacts.h"
 #include "drape/settings.h"
 
 namespace drape
@@ -23,6 +24,8 @@ struct Scene
     BvhLayout m_obstacleLayout;
     Staging<float> m_clothStart;  // m, x y z per joined cloth node
     Staging<float> m_clothEnd;
+    bool m_anySelf = false;                  // whether a cloth collides with itself
+    std::vector<float> m_clothRest;          // m, joined, at rest; empty where none does
     std::vector<float> m_obstaclePositions;  // m, joined, as given
     std::vector<NormalCone> m_vertexCones;   // joined, as the positions
     std::vector<NormalCone> m_edgeCones;
@@ -35,6 +38,8 @@ struct Scene
     {
         return m_cloths.vertexCount() + m_cloths.triangles().size() + m_cloths.edges().size();
     }
+    // With those of contacts of cloths with themselves behind, where there can be any.
+    std::size_t allSlotCount() const { return m_anySelf ? 2 * slotCount() : slotCount(); }
 };
 
 // The most that a step may list.
@@ -57,7 +62,10 @@ struct StepPairs
     bool m_anyTube = false;
     std::vector<float> m_clothRadius;       // m, per cloth slot: the largest reach of its pairs, -1 without one
     std::vector<ObstacleMotion> m_motions;  // of the obstacles that have a pair and move, in the order of slots
-    bool m_any = false;
+    SelfReach m_self;
+    bool m_anyPair = false;      // cloth and obstacle
+    bool m_anySelf = false;      // cloth and itself
+    bool m_any = false;          // either
     bool m_measureTree = false;  // the result shall have the cost of the cloths' hierarchy
 
     // Takes a cloth out of the step.
@@ -67,7 +75,11 @@ struct StepPairs
         std::fill_n(m_thickness.begin() + std::ptrdiff_t(cloth * obstacles), obstacles, -1.0f);
         std::fill_n(m_tube.begin() + std::ptrdiff_t(cloth * obstacles), obstacles, -1.0f);
         m_clothRadius[cloth] = -1.0f;
-        m_any = std::any_of(m_clothRadius.begin(), m_clothRadius.end(), [](float radius) { return radius >= 0.0f; });
+        m_anyPair =
+            std::any_of(m_clothRadius.begin(), m_clothRadius.end(), [](float radius) { return radius >= 0.0f; });
+        m_self.leaveOut(cloth);
+        m_anySelf = m_self.any();
+        m_any = m_anyPair || m_anySelf;
     }
 };
 
@@ -82,6 +94,8 @@ struct StepResult
     std::size_t m_candidates = 0;
     std::size_t m_volumeTests = 0;
     std::size_t m_sweptTests = 0;
+    std::size_t m_selfCandidates = 0;
+    std::size_t m_selfSweptTests = 0;
     std::size_t m_reduced = 0;
     std::size_t m_invalidNodes = 0;
     std::size_t m_retries = 0;
@@ -89,9 +103,28 @@ struct StepResult
     double m_treeCost = 0;                                // where it was asked for, see tree_cost.h
     double m_refitMs = 0, m_broadMs = 0, m_narrowMs = 0;  // on the host back end
 
-    ContactList contacts() const
+    // Those with obstacles, then those of cloths with themselves.
+    ContactList allContacts() const
     {
         return m_contacts.empty() ? m_deviceContacts : ContactList{m_contacts.data(), m_contacts.size()};
+    }
+    ContactList contacts() const
+    {
+        const ContactList all = allContacts();
+        return {all.m_first, std::size_t(firstSelf(all) - all.begin())};
+    }
+    ContactList selfContacts() const
+    {
+        const ContactList all = allContacts();
+        const Contact* first = firstSelf(all);
+        return {first, std::size_t(all.end() - first)};
+    }
+
+private:
+    static const Contact* firstSelf(ContactList all)
+    {
+        return std::partition_point(all.begin(), all.end(),
+                                    [](const Contact& contact) { return contact.m_kind < DRAPE_SELF_NODE_FACE; });
     }
 };
 }  // namespace drape

@@ -30,9 +30,10 @@ struct HostTree
     const std::vector<Triangle>& m_triangles;
 };
 
-// Calls visit for each pair; kind: DRAPE_WALK_…, with a and b the same tree for a mesh with itself.
+// Calls visit for each pair; kind: DRAPE_WALK_…, with a and b the same tree for a mesh with itself. Ends when goesOn,
+// asked before each pair, says no.
 void leafPairsOnHost(const HostTree& a, const HostTree& b, std::uint32_t kind,
-                     const std::function<void(const Candidate&)>& visit);
+                     const std::function<void(const Candidate&)>& visit, const std::function<bool()>& goesOn = nullptr);
 
 // Positions: m, x y z per vertex at the step's start and end.
 struct HostMotion

@@ -20,7 +20,7 @@ std::vector<std::uint32_t> lastLeaves(const std::vector<BvhNode>& nodes, std::ui
 }
 
 void leafPairsOnHost(const HostTree& a, const HostTree& b, std::uint32_t kind,
-                     const std::function<void(const Candidate&)>& visit)
+                     const std::function<void(const Candidate&)>& visit, const std::function<bool()>& goesOn)
 {
     if (b.m_layout.leafCount() == 0) return;
     const std::vector<std::uint32_t> last = lastLeaves(b.m_nodes, b.m_layout.leafCount());
@@ -32,7 +32,10 @@ void leafPairsOnHost(const HostTree& a, const HostTree& b, std::uint32_t kind,
         Candidate pair;
         leafWalkStart(&walk, leaf, b.m_layout.root());
         while (leafWalkNext(&walk, &sideA, &sideB, kind, last.data(), &pair))
+        {
+            if (goesOn && !goesOn()) return;
             visit(pair);
+        }
         assert(!walk.m_tooDeep && "binary hierarchies of bvh_layout.h are at most 32 high");
     }
 }

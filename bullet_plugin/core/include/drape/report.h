@@ -72,18 +72,20 @@ struct StepStatistics
     std::size_t m_obstacleTriangles = 0;
     // What the broad phase left: pairs of triangles on the host and of cloths left out, pairs of features on a device.
     std::uint64_t m_candidates = 0;
-    std::size_t m_volumeTests = 0;    // over pairs of triangles; on a device see Methods::m_countTests
-    std::size_t m_sweptTests = 0;     // pairs of features that needed the continuous test
-    std::size_t m_clothsLeftOut = 0;  // with kStepClothsLeftOut
-    std::size_t m_contacts = 0;       // contacts published
-    std::size_t m_reduced = 0;        // contacts left out because others imply them
-    std::size_t m_intersections = 0;  // only with Settings::m_reportIntersections
-    std::size_t m_invalidNodes = 0;   // with kStepInvalidNodes
-    std::size_t m_retries = 0;        // stages run again because a buffer was too small
-    std::size_t m_rebuilds = 0;       // of the cloths' hierarchy, that this step was the first to use
+    std::size_t m_volumeTests = 0;       // over pairs of triangles; on a device see Methods::m_countTests
+    std::size_t m_sweptTests = 0;        // pairs of features that needed the continuous test
+    std::size_t m_clothsLeftOut = 0;     // with kStepClothsLeftOut
+    std::size_t m_contacts = 0;          // contacts published
+    std::uint64_t m_selfCandidates = 0;  // pairs of features of cloths that collide with themselves
+    std::size_t m_selfSweptTests = 0;    // of these, that needed the continuous test
+    std::size_t m_selfContacts = 0;      // contacts of cloths with themselves
+    std::size_t m_reduced = 0;           // contacts left out because others imply them
+    std::size_t m_intersections = 0;     // only with Settings::m_reportIntersections
+    std::size_t m_invalidNodes = 0;      // with kStepInvalidNodes
+    std::size_t m_retries = 0;           // stages run again because a buffer was too small
+    std::size_t m_rebuilds = 0;          // of the cloths' hierarchy, that this step was the first to use
     // What was there and not looked at, or used as it was left; contacts are the same without (tests/README.md).
-    std::size_t m_clothsSkipped =
-        0;  // of the solver's: asleep as it began, or pinned with all nodes; the adapter counts
+    std::size_t m_clothsSkipped = 0;  // of the solver's: asleep as it began, or pinned; the adapter counts
     std::size_t m_obstaclesKept = 0;  // of the step's pairs: neither built, refitted nor placed anew
     bool m_skipped = false;           // nothing to do: no pair, or nothing that could touch
     bool m_onHost = false;            // the host back end ran the step, by choice or in place of the device

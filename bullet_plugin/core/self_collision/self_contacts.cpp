@@ -1,0 +1,153 @@
+#include "self_contacts.h"
+
+#include <algorithm>
+
+#include "bullet_plugin/core/broad_phase/patch_cull.h"
+
+namespace drape
+{
+namespace
+{
+constexpr std::size_t kGroup = 64;
+constexpr std::size_t kTeamsPerGroup = 8;       // patches per group where a work-item is a team
+constexpr std::size_t kItemsPerUnitGpu = 1024;  // of the narrow phase, as in narrow_phase.cpp
+constexpr std::size_t kItemsPerUnitCpu = 256;
+constexpr std::size_t kFirstTests = 1 << 16;
+
+// The features that the lanes' owners name: triangles, or their vertices or edges.
+enum class Lane
+{
+    Vertex,
+    Edge
+};
+
+std::vector<cl_uint> featureIds(const std::vector<std::uint32_t>& owners, const std::vector<Triangle>& triangles,
+                                Lane lane)
+{
+    std::vector<cl_uint> ids;
+    ids.reserve(owners.size());
+    for (std::uint32_t owner : owners)
+    {
+        if (owner == DRAPE_NO_FEATURE)
+        {
+            ids.push_back(DRAPE_NO_FEATURE);
+            continue;
+        }
+        const Triangle& triangle = triangles[owner & ((1u << DRAPE_PLACE_SHIFT) - 1u)];
+        const std::uint32_t place = owner >> DRAPE_PLACE_SHIFT;
+        ids.push_back(lane == Lane::Vertex ? triangle.m_vertices[place] : triangle.m_edges[place]);
+    }
+    return ids;
+}
+}  // namespace
+
+bool SelfReach::any() const
+{
+    return std::any_of(m_radius.begin(), m_radius.end(), [](float radius) { return radius >= 0.0f; });
+}
+
+void SelfReach::leaveOut(std::size_t cloth)
+{
+    m_thickness[cloth] = m_radius[cloth] = -1.0f;
+}
+
+void SelfContactStage::create(Device& device, const ProgramLoader& load)
+{
+    const cl::Program cull = load("self_cull"), contact = load("self_contact");
+    m_pack.create(device, cull, "selfPack");
+    m_cull.create(device, cull, "selfCull");
+    m_widen.create(device, load("patch_pack"), "patchWiden");
+    m_feature.create(device, contact, "selfFeature");
+    m_sweptKernel.create(device, contact, "selfSwept");
+    reserveTests(device, kFirstTests);
+    // The others run in the first step; a small tree has no upper levels.
+    m_wideNodes.reserve(device, 1);
+    m_widen.launch(device, kGroup, kGroup, m_wideNodes.handle(), cl_uint(0), cl_uint(0), cl_uint(0), cl_uint(0),
+                   cl_uint(0));
+    m_created = !device.failed();
+}
+
+void SelfContactStage::reserveTests(Device& device, std::size_t count)
+{
+    m_tests.reserve(device, count);
+    m_swept.reserve(device, count);
+}
+
+void SelfContactStage::setTopology(Device& device, const MeshPool& cloths, const std::vector<float>& rest)
+{
+    const std::size_t width = PatchCullStage::width(device);
+    m_layout = makePatches(cloths, std::uint32_t(width));
+    const std::vector<cl_uint> vertexIds = featureIds(m_layout.m_vertexOwners, cloths.triangles(), Lane::Vertex);
+    const std::vector<cl_uint> edgeIds = featureIds(m_layout.m_edgeOwners, cloths.triangles(), Lane::Edge);
+    m_patches.assign(device, m_layout.m_patches);
+    m_faceIds.assign(device, m_layout.m_faceOwners);
+    m_vertexIds.assign(device, vertexIds);
+    m_edgeIds.assign(device, edgeIds);
+    m_levels.assign(device, m_layout.m_levels);
+    m_faceBoxes.reserve(device, m_layout.m_faceOwners.size() * DRAPE_BOX_FLOATS);
+    m_vertexBoxes.reserve(device, vertexIds.size() * DRAPE_BOX_FLOATS);
+    m_edgeBoxes.reserve(device, edgeIds.size() * DRAPE_BOX_FLOATS);
+    m_wideNodes.reserve(device, m_layout.m_levels.back() * DRAPE_WIDE_NODE_FLOATS * width);
+    m_rest.assign(device, rest);
+    device.wait();  // ids are locals; topology changes are rare
+}
+
+void SelfContactStage::setReach(Device& device, const SelfReach& reach)
+{
+    if (m_sentRadius != reach.m_radius)
+    {
+        m_sentRadius = reach.m_radius;
+        m_radius.assign(device, m_sentRadius);
+    }
+    if (m_sentThickness != reach.m_thickness)
+    {
+        m_sentThickness = reach.m_thickness;
+        m_thickness.assign(device, m_sentThickness);
+    }
+}
+
+void SelfContactStage::enqueueCull(Device& device, SelfBuffers step, Buffer<StepCounters>& counters)
+{
+    const std::size_t width = PatchCullStage::width(device), patchCount = m_layout.m_patches.size();
+    Buffer<float>& start = step.m_mode == DRAPE_DISCRETE ? step.m_end : step.m_start;
+    if (patchCount == 0) return;
+    const std::size_t places = m_layout.m_levels[1] * width;  // of the first level's children
+    m_pack.launch(device, places * width, width, m_patches.handle(), cl_uint(patchCount), m_faceIds.handle(),
+                  m_vertexIds.handle(), m_edgeIds.handle(), step.m_triangles.handle(), step.m_edges.handle(),
+                  start.handle(), step.m_end.handle(), m_radius.handle(), step.m_obstacleRadius.handle(),
+                  m_faceBoxes.handle(), m_vertexBoxes.handle(), m_edgeBoxes.handle(), m_wideNodes.handle(),
+                  counters.handle());
+    for (std::size_t level = 1; level + 1 < m_layout.m_levels.size(); ++level)
+    {
+        const std::size_t below = m_layout.m_levels[level - 1], first = m_layout.m_levels[level];
+        const std::size_t children = (m_layout.m_levels[level + 1] - first) * width;
+        m_widen.launch(device, children, kGroup, m_wideNodes.handle(), cl_uint(below), cl_uint(first - below),
+                       cl_uint(first), cl_uint(0), cl_uint(children));
+    }
+    const bool team = device.isGpu();  // of a group's work-items
+    m_cull.launch(device, patchCount * (team ? width : 1), team ? width : kTeamsPerGroup, m_patches.handle(),
+                  cl_uint(patchCount), m_faceIds.handle(), m_vertexIds.handle(), m_edgeIds.handle(),
+                  step.m_triangles.handle(), step.m_edges.handle(), start.handle(), step.m_end.handle(),
+                  m_radius.handle(), m_thickness.handle(), m_faceBoxes.handle(), m_vertexBoxes.handle(),
+                  m_edgeBoxes.handle(), m_wideNodes.handle(), m_levels.handle(), cl_uint(m_layout.m_levels.size() - 1),
+                  m_tests.handle(), cl_uint(m_tests.capacity()), cl_uint(step.m_limit), counters.handle());
+}
+
+void SelfContactStage::enqueueContacts(Device& device, SelfBuffers step, SelfHits hits, Buffer<StepCounters>& counters)
+{
+    const std::size_t width = device.computeUnits() * (device.isGpu() ? kItemsPerUnitGpu : kItemsPerUnitCpu);
+    const cl_uint nodes = cl_uint(step.m_nodeCount), triangles = cl_uint(step.m_triangleCount);
+    const cl_uint firstSlot = firstSelfSlot(nodes, triangles, cl_uint(step.m_edgeCount));
+    m_feature.launch(device, width, kGroup, m_tests.handle(), cl_uint(m_tests.capacity()), step.m_start.handle(),
+                     step.m_end.handle(), m_rest.handle(), step.m_triangles.handle(), step.m_edges.handle(), nodes,
+                     triangles, firstSlot, cl_uint(step.m_mode), step.m_reachScale, hits.m_hits.handle(),
+                     cl_uint(hits.m_capacity), cl_uint(hits.m_obstacleCapacity), m_swept.handle(),
+                     hits.m_slotCount.handle(), counters.handle());
+    if (step.m_mode == DRAPE_DISCRETE) return;
+    m_sweptKernel.launch(device, width, kGroup, m_tests.handle(), step.m_start.handle(), step.m_end.handle(),
+                         m_rest.handle(), step.m_triangles.handle(), step.m_edges.handle(), nodes, triangles, firstSlot,
+                         cl_uint(step.m_mode), step.m_reachScale, hits.m_hits.handle(),
+                         cl_uint(hits.m_obstacleCapacity), m_swept.handle(), hits.m_slotCount.handle(),
+                         counters.handle());
+}
+}  // namespace drape

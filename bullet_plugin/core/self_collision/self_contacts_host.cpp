@@ -1,0 +1,147 @@
+#include <algorithm>
+#include <tuple>
+
+#include "bullet_plugin/core/bvh/refit.h"
+#include "self_collision.h"
+#include "self_contacts.h"
+
+namespace drape
+{
+namespace
+{
+// A candidate's contact, in two goes as a device finds it.
+bool decide(SelfView& view, const FeatureTest& test, std::uint32_t firstSlot, Contact* contact, SelfCounts& counts)
+{
+    view.m_cloth.m_complete = 0;
+    int found = selfContact(&view, test, firstSlot, contact);
+    if (found == DRAPE_UNDECIDED)
+    {
+        ++counts.m_swept;
+        view.m_cloth.m_complete = 1;
+        found = selfContact(&view, test, firstSlot, contact);
+    }
+    return found == DRAPE_IS_CONTACT;
+}
+
+HostTree treeOf(const MeshPool& cloths, const std::vector<BvhNode>& nodes, const BvhLayout& layout)
+{
+    return {nodes, layout, cloths.order(), cloths.triangles()};
+}
+}  // namespace
+
+void sortSelfContacts(std::vector<Contact>& contacts)
+{
+    std::sort(contacts.begin(), contacts.end(),
+              [](const Contact& a, const Contact& b)
+              { return std::tie(a.m_slot, a.m_obstacleFeature) < std::tie(b.m_slot, b.m_obstacleFeature); });
+}
+
+void selfVolumes(const SelfStep& step, std::vector<Dop>& volumes)
+{
+    const MeshPool& cloths = step.m_cloths;
+    const ClothView& cloth = step.m_view.m_cloth;
+    const float* start = cloth.m_mode == DRAPE_DISCRETE ? cloth.m_end : cloth.m_start;
+    volumes.resize(cloths.vertexCount());
+    for (std::size_t slot = 0; slot < cloths.meshCount(); ++slot)
+    {
+        const float radius = step.m_reach.m_radius[slot];
+        const std::uint32_t first = cloths.mesh(slot).m_firstVertex;
+        if (radius < 0.0f) continue;  // nobody asks
+        for (std::uint32_t i = first; i < first + cloths.mesh(slot).m_topology.m_vertexCount; ++i)
+            vertexVolume(&volumes[i], start, cloth.m_end, i, radius);
+    }
+}
+
+SelfFinder::SelfFinder(const SelfStep& step, const std::vector<Dop>& volumes, std::uint64_t candidateLimit,
+                       std::uint64_t contactLimit)
+    : m_step(step),
+      m_view(step.m_view),
+      m_volumes(volumes),
+      m_candidateLimit(candidateLimit),
+      m_contactLimit(contactLimit),
+      m_firstSlot(firstSelfSlot(step.m_view.m_cloth.m_nodeCount, step.m_view.m_cloth.m_triangleCount,
+                                std::uint32_t(step.m_cloths.edges().size())))
+{
+}
+
+void SelfFinder::visit(const Candidate& pair)
+{
+    const Triangle* triangles = m_step.m_cloths.triangles().data();
+    const std::uint32_t mesh = triangles[pair.m_cloth].m_mesh;
+    if (mesh != triangles[pair.m_obstacle].m_mesh) return;
+    FeaturePairs features;
+    collectFeaturePairs(&features, triangles, pair, m_volumes.data());
+    const float thickness = m_step.m_reach.m_thickness[mesh];
+    for (std::uint32_t i = 0; i < features.m_vertexFaceCount; ++i)
+        test({features.m_vertexFace[i].m_a, features.m_vertexFace[i].m_b, thickness, DRAPE_SELF_TEST_NODE});
+    for (std::uint32_t i = 0; i < features.m_edgesCount; ++i)
+        test({features.m_edges[i].m_a, features.m_edges[i].m_b, thickness, DRAPE_SELF_TEST_EDGE});
+}
+
+void SelfFinder::test(const FeatureTest& test)
+{
+    Contact contact;
+    if (++m_counts.m_candidates > m_candidateLimit) return;
+    if (decide(m_view, test, m_firstSlot, &contact, m_counts) && ++m_counts.m_contacts <= m_contactLimit)
+        m_found.push_back(contact);
+}
+
+void SelfFinder::append(std::vector<Contact>& contacts)
+{
+    if (!withinLimits() || m_counts.m_contacts > m_contactLimit) return;
+    sortSelfContacts(m_found);
+    contacts.insert(contacts.end(), m_found.begin(), m_found.end());
+}
+
+float selfGrowth(float reach)
+{
+    // Far above the roundings of the volumes' comparisons, which they are padded for themselves.
+    return 0.5f * reach * 1.001f;
+}
+
+void SelfContactsOnHost::update(const SelfStep& step)
+{
+    const MeshPool& cloths = step.m_cloths;
+    if (m_revision != cloths.revision())
+    {
+        m_revision = cloths.revision();
+        m_layout = makeBvhLayout(std::uint32_t(cloths.triangles().size()));
+        m_nodes = makeBvhNodes(m_layout);
+    }
+    const ClothView& cloth = step.m_view.m_cloth;
+    const float* start = cloth.m_mode == DRAPE_DISCRETE ? cloth.m_end : cloth.m_start;
+    std::size_t ignored = 0;
+    refitOnHost(m_nodes, m_layout, cloths.order(), cloths.triangles(), start, cloth.m_end, step.m_reach.m_radius,
+                ignored);
+    selfVolumes(step, m_volumes);
+}
+
+SelfCounts SelfContactsOnHost::run(const SelfStep& step, std::uint64_t candidateLimit, std::uint64_t contactLimit,
+                                   std::vector<Contact>& contacts)
+{
+    update(step);
+    SelfFinder finder(step, m_volumes, candidateLimit, contactLimit);
+    const HostTree tree = treeOf(step.m_cloths, m_nodes, m_layout);
+    leafPairsOnHost(
+        tree, tree, DRAPE_WALK_SELF, [&](const Candidate& pair) { finder.visit(pair); },
+        [&] { return finder.withinLimits(); });
+    finder.append(contacts);
+    return finder.counts();
+}
+
+std::vector<std::uint64_t> SelfContactsOnHost::countPairs(const SelfStep& step, std::uint64_t limit)
+{
+    update(step);
+    const std::vector<Triangle>& triangles = step.m_cloths.triangles();
+    std::vector<std::uint64_t> counts(step.m_cloths.meshCount(), 0);
+    bool within = true;
+    const auto visit = [&](const Candidate& pair)
+    {
+        const std::uint32_t mesh = triangles[pair.m_cloth].m_mesh;
+        if (mesh == triangles[pair.m_obstacle].m_mesh) within = within && ++counts[mesh] <= limit;
+    };
+    const HostTree tree = treeOf(step.m_cloths, m_nodes, m_layout);
+    leafPairsOnHost(tree, tree, DRAPE_WALK_SELF, visit, [&] { return within; });
+    return counts;
+}
+}  // namespace drape

@@ -1,0 +1,184 @@
+// Pairs of features of one cloth that may touch in a step: boxes of features a block of lanes at a time, then the
+// features' own volumes.
+//
+// Every volume is the union of its nodes' volumes (vertexVolume), so a box or a patch's volume holds those of all that
+// it stands for, and which pairs are found does not depend on the patches.
+#ifndef DRAPE_LIB_SELF_CULL_H
+#define DRAPE_LIB_SELF_CULL_H
+
+#include "lanes.h"
+#include "self_collision.h"
+
+DRAPE_NAMESPACE_BEGIN
+
+// The first three directions of a volume.
+typedef struct FeatureBox
+{
+    float m_low[3], m_high[3];
+} FeatureBox;
+
+DRAPE_FUNCTION FeatureBox emptyBox(void)
+{
+    FeatureBox box;
+    for (int i = 0; i < 3; ++i)
+    {
+        box.m_low[i] = DRAPE_INFINITY;
+        box.m_high[i] = -DRAPE_INFINITY;
+    }
+    return box;
+}
+
+DRAPE_FUNCTION FeatureBox joinBoxes(FeatureBox a, FeatureBox b)
+{
+    for (int i = 0; i < 3; ++i)
+    {
+        a.m_low[i] = drapeMin(a.m_low[i], b.m_low[i]);
+        a.m_high[i] = drapeMax(a.m_high[i], b.m_high[i]);
+    }
+    return a;
+}
+
+DRAPE_FUNCTION int boxesMeet(const FeatureBox* a, const FeatureBox* b)
+{
+    int meet = 1;
+    for (int i = 0; i < 3; ++i)
+        meet &= (a->m_low[i] <= b->m_high[i]) & (a->m_high[i] >= b->m_low[i]);
+    return meet;
+}
+
+// Along one direction, of a valid node over the step; as vertexVolume has it.
+DRAPE_FUNCTION void nodeInterval(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end, DRAPE_UINT node,
+                                 float radius, int direction, float* low, float* high)
+{
+    Dop dop;  // of which one direction is used
+    dop.m_low[direction] = DRAPE_INFINITY;
+    dop.m_high[direction] = -DRAPE_INFINITY;
+    for (int k = 0; k < 2; ++k)
+    {
+        const Vec3 p = vec3Load(k == 0 ? start : end, node);
+        const float v = dopProject(p, direction);
+        dopAddInterval(&dop, direction, v, v, radius * dopNorm(direction), dopInner(p, direction));
+    }
+    *low = dop.m_low[direction];
+    *high = dop.m_high[direction];
+}
+
+DRAPE_FUNCTION int nodeIsValid(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end, DRAPE_UINT node)
+{
+    return positionIsValid(vec3Load(start, node)) && positionIsValid(vec3Load(end, node));
+}
+
+// Empty where the node is not valid.
+DRAPE_FUNCTION FeatureBox nodeBox(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end, DRAPE_UINT node,
+                                  float radius)
+{
+    FeatureBox box = emptyBox();
+    if (!nodeIsValid(start, end, node)) return box;
+    DRAPE_UNROLL
+    for (int i = 0; i < 3; ++i)
+        nodeInterval(start, end, node, radius, i, &box.m_low[i], &box.m_high[i]);
+    return box;
+}
+
+// Whether a direction beyond the axes separates two features by more than their volumes are grown and padded: then
+// nodeVolumesOverlap() says no, which takes three times as long. A volume is grown by the radius and padded by less
+// than 3e-7 of its bound and the inner sum, so both together by less than the slack.
+DRAPE_FUNCTION int nodesFarApart(const Vec3 start[4], const Vec3 end[4], int split, float radius)
+{
+    DRAPE_UNROLL
+    for (int i = 3; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        float low = DRAPE_INFINITY, high = -DRAPE_INFINITY, lowOther = DRAPE_INFINITY, highOther = -DRAPE_INFINITY;
+        float inner = 0.0f;
+        DRAPE_UNROLL
+        for (int k = 0; k < 4; ++k)
+        {
+            const int other = k >= split;
+            const float v0 = dopProject(start[k], i), v1 = dopProject(end[k], i);
+            inner = drapeMax(inner, drapeMax(dopInner(start[k], i), dopInner(end[k], i)));
+            const float least = drapeMin(v0, v1), greatest = drapeMax(v0, v1);
+            low = other ? low : drapeMin(low, least);
+            high = other ? high : drapeMax(high, greatest);
+            lowOther = other ? drapeMin(lowOther, least) : lowOther;
+            highOther = other ? drapeMax(highOther, greatest) : highOther;
+        }
+        const float grown = 2.0f * radius * dopNorm(i), share = 1e-6f;
+        const float gap = low - highOther, gapOther = lowOther - high;
+        if (gap > grown + share * (grown + inner + drapeAbs(low) + drapeAbs(highOther))) return 1;
+        if (gapOther > grown + share * (grown + inner + drapeAbs(lowOther) + drapeAbs(high))) return 1;
+    }
+    return 0;
+}
+
+// Whether the volumes of two features, of their nodes joined, overlap where their boxes do: the first `split` of four
+// nodes are the first feature's. The same answer as featuresOverlap() gives for the nodes' volumes.
+DRAPE_FUNCTION int nodeVolumesOverlap(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end,
+                                      const DRAPE_UINT nodes[4], int split, float radius)
+{
+    Vec3 from[4], to[4];
+    for (int k = 0; k < 4; ++k)
+    {
+        from[k] = vec3Load(start, nodes[k]);
+        to[k] = vec3Load(end, nodes[k]);
+        if (!positionIsValid(from[k]) || !positionIsValid(to[k])) return 0;
+    }
+    if (nodesFarApart(from, to, split, radius)) return 0;
+    DRAPE_UNROLL
+    for (int i = 3; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        // Not an array of two: a GPU would keep it in memory.
+        float low = DRAPE_INFINITY, high = -DRAPE_INFINITY, lowOther = DRAPE_INFINITY, highOther = -DRAPE_INFINITY;
+        DRAPE_UNROLL
+        for (int k = 0; k < 4; ++k)
+        {
+            const int other = k >= split;
+            float least, greatest;
+            nodeInterval(start, end, nodes[k], radius, i, &least, &greatest);
+            low = other ? low : drapeMin(low, least);
+            high = other ? high : drapeMax(high, greatest);
+            lowOther = other ? drapeMin(lowOther, least) : lowOther;
+            highOther = other ? drapeMax(highOther, greatest) : highOther;
+        }
+        if (low > highOther || lowOther > high) return 0;
+    }
+    return 1;
+}
+
+// Boxes of a block, a lane each.
+typedef struct BoxLanes
+{
+    Lanes m_low[3], m_high[3];
+} BoxLanes;
+
+DRAPE_FUNCTION BoxLanes loadBoxes(const DRAPE_GLOBAL float* block)
+{
+    BoxLanes boxes;
+    for (int i = 0; i < 3; ++i)
+    {
+        boxes.m_low[i] = lanesLoad(block, i);
+        boxes.m_high[i] = lanesLoad(block, 3 + i);
+    }
+    return boxes;
+}
+
+DRAPE_FUNCTION LaneMask boxesOverlap(const BoxLanes* boxes, const FeatureBox* box)
+{
+    LaneMask near = lanesMaskSplat(1);
+    for (int i = 0; i < 3; ++i)
+        near &= (boxes->m_low[i] <= lanesSplat(box->m_high[i])) & (boxes->m_high[i] >= lanesSplat(box->m_low[i]));
+    return near;
+}
+
+// Children of a wide node (patch.h) whose volumes overlap a volume; what their contacts can reach is not looked at.
+DRAPE_FUNCTION LaneMask wideOverlaps(const Dop* volume, const DRAPE_GLOBAL float* node)
+{
+    LaneMask near = lanesMaskSplat(1);
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+        near &= (lanesLoad(node, i) <= lanesSplat(volume->m_high[i])) &
+                (lanesLoad(node, DRAPE_DOP_DIRECTIONS + i) >= lanesSplat(volume->m_low[i]));
+    return near;
+}
+
+DRAPE_NAMESPACE_END
+
+#endif

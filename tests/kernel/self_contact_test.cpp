@@ -1,0 +1,160 @@
+// The kernels of cloths with themselves, one after the other: what they list is what the host lists, each pair once,
+// the demand past a full list is the true one, and nothing is written behind a buffer.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "bullet_plugin/core/broad_phase/patch_cull.h"
+#include "bullet_plugin/core/self_collision/self_contacts.h"
+#include "tests/support/device_side.h"
+#include "tests/support/self_cases.h"
+
+namespace drape::test
+{
+namespace
+{
+constexpr float kReachScale = 1.5f;
+
+using Key = std::tuple<cl_uint, cl_uint, cl_uint>;
+
+std::vector<Key> keysOf(const std::vector<FeatureTest>& tests)
+{
+    std::vector<Key> keys;
+    for (const FeatureTest& test : tests)
+        keys.emplace_back(test.m_motion, test.m_cloth, test.m_lane);
+    std::sort(keys.begin(), keys.end());
+    return keys;
+}
+
+class DeviceSelf
+{
+public:
+    DeviceSelf(Device& device, const SelfStepCase& step)
+        : m_device(device), m_side(makeSide({step.m_motion.m_mesh})), m_rest(step.m_rest)
+    {
+        m_side.m_end = step.m_motion.m_end;
+        m_reach = {{step.m_thickness}, {selfGrowth(step.m_thickness * kReachScale)}};
+        m_stage.create(device,
+                       [&](const char* name) { return programOf(device, name, PatchCullStage::defines(device)); });
+        m_buffers.upload(device, m_side);
+        guardCopy(device, m_obstacleRadius, std::vector<float>{-1.0f});
+        m_stage.setTopology(device, m_side.m_pool, m_rest);
+        m_stage.setReach(device, m_reach);
+        device.wait();
+    }
+
+    SelfBuffers buffers()
+    {
+        const MeshPool& pool = m_side.m_pool;
+        return {m_buffers.m_triangles, m_buffers.m_edges,  m_buffers.m_start,       m_buffers.m_end,
+                m_obstacleRadius,      pool.vertexCount(), pool.triangles().size(), pool.edges().size(),
+                DRAPE_AUTOMATIC,       kReachScale,        std::size_t(1) << 30};
+    }
+
+    std::vector<FeatureTest> cull(std::size_t capacity)
+    {
+        clearCounters(m_device, m_counters);
+        guard(m_device, m_stage.tests(), capacity);
+        m_stage.enqueueCull(m_device, buffers(), m_counters);
+        m_read = readCounters(m_device, m_counters);
+        EXPECT_TRUE(intact(m_device, m_stage.tests()) && intact(m_device, m_counters));
+        EXPECT_TRUE(m_buffers.allIntact(m_device) && intact(m_device, m_obstacleRadius));
+        return contents(m_device, m_stage.tests(),
+                        std::min<std::size_t>(m_read.m_selfTests, m_stage.tests().capacity()));
+    }
+
+    // Hits of the tests of the last cull, in no order, behind `behind` places.
+    std::vector<Contact> contacts(std::size_t behind)
+    {
+        const MeshPool& pool = m_side.m_pool;
+        const std::size_t tests = std::min<std::size_t>(m_read.m_selfTests, m_stage.tests().capacity());
+        const std::size_t slots = 2 * (pool.vertexCount() + pool.triangles().size() + pool.edges().size());
+        Buffer<Contact> hits;
+        Buffer<cl_uint> slotCount;
+        m_read.m_candidates = cl_uint(behind);
+        guardCopy(m_device, m_counters, std::vector<StepCounters>{m_read});
+        guard(m_device, hits, behind + tests);
+        guardCopy(m_device, slotCount, std::vector<cl_uint>(slots, 0));
+        m_stage.enqueueContacts(m_device, buffers(), {hits, slotCount, hits.capacity(), behind}, m_counters);
+        m_read = readCounters(m_device, m_counters);
+        EXPECT_EQ(m_read.m_listed, behind + tests);
+        EXPECT_TRUE(intact(m_device, hits) && intact(m_device, slotCount) && intact(m_device, m_counters));
+        std::vector<Contact> all = contents(m_device, hits, behind + tests);
+        all.erase(all.begin(), all.begin() + std::ptrdiff_t(behind));
+        all.erase(
+            std::remove_if(all.begin(), all.end(), [](const Contact& hit) { return hit.m_slot == DRAPE_NO_FEATURE; }),
+            all.end());
+        std::vector<cl_uint> expected(slots, 0);
+        for (const Contact& hit : all)
+            ++expected[hit.m_slot];
+        EXPECT_EQ(contents(m_device, slotCount, slots), expected);
+        return all;
+    }
+
+    std::vector<Contact> onHost()
+    {
+        const MeshPool& pool = m_side.m_pool;
+        const ClothView cloth =
+            clothView(m_side.m_start.data(), m_side.m_end.data(), pool.triangles().data(), pool.edges().data(),
+                      std::uint32_t(pool.vertexCount()), std::uint32_t(pool.triangles().size()), DRAPE_AUTOMATIC, 1);
+        const SelfStep step = {pool, selfView(cloth, m_rest.data(), kReachScale), m_reach};
+        std::vector<Contact> contacts;
+        m_candidates = SelfContactsOnHost().run(step, UINT64_MAX, UINT64_MAX, contacts).m_candidates;
+        return contacts;
+    }
+
+    StepCounters m_read = {};
+    std::uint64_t m_candidates = 0;
+
+private:
+    Device& m_device;
+    Side m_side;
+    std::vector<float> m_rest;
+    SelfReach m_reach;
+    SelfContactStage m_stage;
+    DeviceSide m_buffers;
+    Buffer<float> m_obstacleRadius;
+    Buffer<StepCounters> m_counters;
+};
+}  // namespace
+
+class SelfContactTest : public DeviceTest
+{
+};
+
+TEST_P(SelfContactTest, ListsEachPairOnceAndFindsTheHostsContacts)
+{
+    for (const SelfStepCase& step : selfStepCases())
+    {
+        if (step.m_motion.m_mesh.m_triangles.empty()) continue;
+        SCOPED_TRACE(step.m_motion.m_name);
+        DeviceSelf self(*m_device, step);
+        std::vector<Contact> expected = self.onHost();
+        std::vector<Key> keys = keysOf(self.cull(std::max<std::size_t>(1, self.m_candidates)));
+        EXPECT_EQ(self.m_read.m_selfTests, self.m_candidates);
+        EXPECT_TRUE(std::adjacent_find(keys.begin(), keys.end()) == keys.end());
+        std::vector<Contact> found = self.contacts(5);
+        sortSelfContacts(found);
+        EXPECT_TRUE(sameBytes(found, expected)) << difference(found, expected);
+    }
+}
+
+TEST_P(SelfContactTest, FullListsSayWhatThereIs)
+{
+    DeviceSelf self(*m_device, foldedCase(25, 4, 0.003f, 130));
+    self.onHost();
+    const std::vector<Key> all = keysOf(self.cull(self.m_candidates));
+    for (const std::size_t capacity :
+         {std::size_t(1), std::size_t(self.m_candidates / 3), std::size_t(self.m_candidates - 1)})
+    {
+        const std::vector<Key> some = keysOf(self.cull(capacity));
+        EXPECT_EQ(self.m_read.m_selfTests, self.m_candidates);
+        EXPECT_EQ(some.size(), capacity);
+        EXPECT_TRUE(std::includes(all.begin(), all.end(), some.begin(), some.end()));
+        self.contacts(0);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, SelfContactTest, testing::ValuesIn(openClBackends()), backendName);
+}  // namespace drape::test
