@@ -14,4 +14,4 @@ export DRAPE_TEST_NO_DEVICE=1
 export OCL_ICD_VENDORS=/nonexistent
 exec ctest --test-dir build/asan --output-on-failure --no-tests=error --parallel "$(nproc)" \
   --label-regex '^(unit|oracle|property|stress|bullet)$' \
-  --exclude-regex 'Soak|Row25|SettledCloth|SettledBunny|BunnyDrop|HundredThousand|DropComparison' "$@"
+  --exclude-regex 'Soak|Row25|Settled|BunnyDrop|HundredThousand|DropComparison' "$@"

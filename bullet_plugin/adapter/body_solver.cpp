@@ -28,7 +28,7 @@ double solveWithBullet(const BodyContacts& contacts, ContactRounds& rounds)
     {
         if (i > 0) contacts.m_limit.apply(body);
         rounds.restart();  // what contacts pushed before the links' last pull is the links' business now
-        rounds.run();
+        rounds.runAndSettle();
         Stopwatch watch;
         body.solveConstraints();
         bulletMs += watch.lapMs();

@@ -14,7 +14,7 @@
 //
 // Guarantee: at the end no contact is violated by more than kClosingTolerance where kClosingRounds suffice. A body with
 // velocity or drift iterations or clusters is given to Bullet in one piece, the rounds before and after it. Cost:
-// linear in the contacts, piterations + kClosingRounds rounds at most.
+// linear in the contacts, piterations + kClosingRounds rounds at most, and those that settle what has pushed.
 #pragma once
 
 #include "bullet_plugin/adapter/body_contacts.h"

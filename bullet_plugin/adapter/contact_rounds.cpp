@@ -34,10 +34,10 @@ void ContactRounds::start(const BodyContacts& contacts, const FoundContacts& fou
         addFeature(feature);
         if (feature.m_nodes[1] < 0) m_nodeBlocks = m_blocks.size();
     }
-    const float margin = kRounding * (m_farthest + static_cast<float>(contacts.m_mostThickness));
+    m_margin = kRounding * (m_farthest + static_cast<float>(contacts.m_mostThickness));
     for (Block& block : m_blocks)
         for (float& level : block.m_level)
-            level += margin;
+            level += m_margin;
     m_states.assign(m_blocks.size(), State());
 }
 
@@ -96,23 +96,61 @@ ContactRounds::Row ContactRounds::makeRow(const Block& block, int lane) const
     row.m_count = block.m_count;
     for (int k = 0; k < row.m_count; ++k)
     {
-        const btScalar weight = contact.m_weights[k];
         row.m_moved[k] = block.m_moved[k];
-        row.m_weights[k] = weight;
-        const btScalar inverseMass = m_moved[static_cast<std::size_t>(row.m_moved[k])].m_inverseMass;
-        row.m_shares[k] = weight * inverseMass;
-        row.m_mobility += weight * weight * inverseMass;
+        setWeight(row, k, contact.m_weights[k]);
     }
     row.m_normal = contact.m_normal;
-    row.m_level = contact.m_normal.dot(contact.m_point) + contact.m_thickness + contact.m_targetGap;
+    row.m_distance = contact.m_thickness + contact.m_targetGap;
+    row.m_level = contact.m_normal.dot(contact.m_point) + row.m_distance;
     row.m_friction = contact.m_friction;
     row.m_held.setZero();
-    row.m_carried = carriedBy(row, contact.m_carry);
+    row.m_carry = contact.m_carry;
+    row.m_carried = carriedBy(row, row.m_carry);
     row.m_speedLimit = contact.m_startGap < 0
                            ? std::max(btScalar(0), (contact.m_endGap - contact.m_startGap) * m_body->m_sst.isdt) +
                                  row.m_normal.dot(row.m_carried) * m_body->m_sst.isdt
                            : SIMD_INFINITY;
     return row;
+}
+
+// Adds to the row's mobility.
+void ContactRounds::setWeight(Row& row, int k, btScalar weight) const
+{
+    const btScalar inverseMass = m_moved[static_cast<std::size_t>(row.m_moved[k])].m_inverseMass;
+    row.m_weights[k] = weight;
+    row.m_shares[k] = weight * inverseMass;
+    row.m_mobility += weight * weight * inverseMass;
+}
+
+bool ContactRounds::isViolated(const Row& row) const
+{
+    btVector3 point(0, 0, 0);
+    for (int k = 0; k < row.m_count; ++k)
+        point += m_places[static_cast<std::size_t>(row.m_moved[k])].m_x * row.m_weights[k];
+    return row.m_level - row.m_normal.dot(point) > 0;
+}
+
+// Takes the contact's plane where its features are nearest now; the same plane for the block.
+void ContactRounds::renewPlane(Row& row, Block& block, int lane) const
+{
+    float nodes[3][3];
+    for (int k = 0; k < row.m_count; ++k)
+        for (int axis = 0; axis < 3; ++axis)
+            nodes[k][axis] = static_cast<float>(m_places[static_cast<std::size_t>(row.m_moved[k])].m_x[axis]);
+    ContactPlane plane;
+    if (!m_found->planeAt(block.m_contacts[lane], nodes, plane)) return;
+    row.m_renewed = true;
+    row.m_mobility = 0;
+    for (int k = 0; k < row.m_count; ++k)
+        setWeight(row, k, plane.m_weights[k]);
+    row.m_normal.setValue(plane.m_normal[0], plane.m_normal[1], plane.m_normal[2]);
+    row.m_level = row.m_normal.dot(btVector3(plane.m_point[0], plane.m_point[1], plane.m_point[2])) + row.m_distance;
+    row.m_carried = carriedBy(row, row.m_carry);
+    for (int axis = 0; axis < 3; ++axis)
+        block.m_normal[axis][lane] = plane.m_normal[axis];
+    block.m_weights[0][lane] = plane.m_weights[1];
+    block.m_weights[1][lane] = plane.m_weights[2];
+    block.m_level[lane] = static_cast<float>(row.m_level) + m_margin;
 }
 
 btVector3 ContactRounds::carriedBy(const Row& row, const btTransform* carry) const
@@ -126,6 +164,7 @@ btVector3 ContactRounds::carriedBy(const Row& row, const btTransform* carry) con
 
 void ContactRounds::restart()
 {
+    ++m_stage;
     for (std::size_t index : m_holding)
     {
         State& state = m_states[index];
@@ -221,7 +260,7 @@ inline unsigned ContactRounds::lanesDue(const Block& block, const Place* places)
 // Projects the contacts of a block that are due, in order. Returns the worst violation, 0 without one.
 btScalar ContactRounds::projectBlock(std::size_t index, unsigned due)
 {
-    const Block& block = m_blocks[index];
+    Block& block = m_blocks[index];
     State& state = m_states[index];
     const bool held = state.m_holding != 0;
     state.m_opened = true;
@@ -235,6 +274,12 @@ btScalar ContactRounds::projectBlock(std::size_t index, unsigned due)
             m_rows.push_back(makeRow(block, lane));
         }
         Row& row = m_rows[static_cast<std::size_t>(state.m_row[lane])];
+        if (!(row.m_mobility > 0)) continue;
+        if (row.m_stage != m_stage && isViolated(row))
+        {
+            renewPlane(row, block, lane);
+            row.m_stage = m_stage;
+        }
         if (!(row.m_mobility > 0) || !project(row, worst)) continue;
         state.m_holding |= 1u << lane;
         if (lane + 1 < block.m_lanes) due |= lanesDue(block, m_places.data());  // its nodes moved
@@ -264,9 +309,8 @@ void ContactRounds::scatter()
     }
 }
 
-btScalar ContactRounds::runBlocks(std::size_t count)
+btScalar ContactRounds::lookAtBlocks(std::size_t count)
 {
-    gather();
     const Block* const blocks = m_blocks.data();
     const Place* const places = m_places.data();
     btScalar worst = 0;
@@ -275,8 +319,37 @@ btScalar ContactRounds::runBlocks(std::size_t count)
         const unsigned due = lanesDue(blocks[i], places) | m_states[i].m_holding;
         if (due != 0) worst = std::max(worst, projectBlock(i, due));
     }
+    return worst;
+}
+
+btScalar ContactRounds::runBlocks(std::size_t count)
+{
+    gather();
+    const btScalar worst = lookAtBlocks(count);
     scatter();
     return worst;
+}
+
+void ContactRounds::settle(const State& state)
+{
+    btScalar worst = 0;
+    for (int lane = 0; lane < kLanes; ++lane)
+    {
+        if (!(state.m_holding >> lane & 1u)) continue;
+        Row& row = m_rows[static_cast<std::size_t>(state.m_row[lane])];
+        if (row.m_renewed) project(row, worst);
+    }
+}
+
+void ContactRounds::runAndSettle()
+{
+    gather();
+    lookAtBlocks(m_blocks.size());
+    std::sort(m_holding.begin(), m_holding.end());  // in canonical order
+    for (int pass = 0; pass < kSettlingPasses; ++pass)
+        for (const std::size_t index : m_holding)
+            settle(m_states[index]);
+    scatter();
 }
 
 void ContactRounds::limitSpeed(const Row& row)
@@ -286,7 +359,7 @@ void ContactRounds::limitSpeed(const Row& row)
         speed += m_body->m_nodes[m_moved[static_cast<std::size_t>(row.m_moved[k])].m_node].m_v.dot(row.m_normal) *
                  row.m_weights[k];
     const btScalar excess = speed - row.m_speedLimit;
-    if (!(excess > 0)) return;
+    if (!(excess > 0) || !(row.m_mobility > 0)) return;  // a plane taken anew may rest on pinned nodes alone
     for (int k = 0; k < row.m_count; ++k)
     {
         const Moved& moved = m_moved[static_cast<std::size_t>(row.m_moved[k])];

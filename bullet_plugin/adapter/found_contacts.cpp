@@ -73,6 +73,11 @@ StepContact FoundContacts::resolve(const btSoftBody& body, const NodePaths& path
     return contact;
 }
 
+bool FoundContacts::planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane) const
+{
+    return contact.m_kind == DRAPE_FACE_VERTEX && !(contact.m_time < 1) && m_pipeline->planeAt(contact, nodes, plane);
+}
+
 ContactInfo FoundContacts::infoOf(const Contact& contact) const
 {
     const ContactView view = m_pipeline->view(contact);

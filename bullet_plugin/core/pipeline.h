@@ -61,6 +61,14 @@ struct ClothFeature
     std::int32_t m_nodes[3];  // indices in that cloth; -1 where unused
 };
 
+// A contact of a face and a vertex with the cloth's nodes somewhere else: where the two are nearest there.
+struct ContactPlane
+{
+    float m_normal[3];   // unit, on the side of the contact's
+    float m_point[3];    // m, on the obstacle
+    float m_weights[3];  // of the face's nodes, sum 1
+};
+
 // Contacts where the back end left them.
 struct ContactList
 {
@@ -137,6 +145,9 @@ public:
 
     // Resolves a contact of the last finish().
     ContactView view(const Contact& contact) const;
+    // A DRAPE_FACE_VERTEX contact of the last finish() with the face's nodes (m, x y z each, in the view's order) at
+    // other places. False where their direction means nothing: the face touches the vertex, or came past it. O(1).
+    bool planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane) const;
     // Resolves one of selfContacts().
     SelfContactView viewSelf(const Contact& contact) const;
     // The cloth's part of a contact of finish(), for less.

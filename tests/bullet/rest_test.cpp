@@ -101,6 +101,11 @@ struct Bed
     btScalar m_height;  // m, of the cloth at the start; the obstacle's top is below
 };
 
+double square(double a)
+{
+    return a * a;
+}
+
 class SettledCloth : public testing::TestWithParam<std::tuple<Bed, BackendCase>>
 {
 protected:
@@ -110,9 +115,15 @@ protected:
 class SettledBunny : public BackendTest
 {
 };
+
+class SettledPile : public BackendTest
+{
+};
 }  // namespace
 
 // The speed that Bullet keeps and the motion that is seen: a correction of places alone would show in the second only.
+// RMS over all steps: cloth that hangs over a sphere slips now and then, on which steps is chance of the height it fell
+// from.
 TEST_P(SettledCloth, liesStill)
 {
     const Bed& bed = std::get<0>(GetParam());
@@ -123,38 +134,35 @@ TEST_P(SettledCloth, liesStill)
     rest.m_world.addObstacle(shape.shape());
     btSoftBody& cloth = rest.cloth(bed.m_size, bed.m_height);
     rest.m_world.step(kStepsToSettle);
-    double speed = 0, motion = 0;
+    double speed2 = 0, motion2 = 0;
     for (int i = 0; i < kStepsAtRest; ++i)
     {
         const std::vector<float> before = positionsOf(cloth);
         rest.m_world.step();
-        speed = std::max(speed, rmsSpeed(cloth));
-        motion = std::max(motion, rmsMotion(before, positionsOf(cloth)));
+        speed2 += square(rmsSpeed(cloth));
+        motion2 += square(rmsMotion(before, positionsOf(cloth)));
     }
-    EXPECT_LE(speed, kSpeedSettled);
-    EXPECT_LE(motion, kSpeedSettled);
+    EXPECT_LE(std::sqrt(speed2 / kStepsAtRest), kSpeedSettled);
+    EXPECT_LE(std::sqrt(motion2 / kStepsAtRest), kSpeedSettled);
     ASSERT_GT(rest.m_plugin.statistics().m_contacts, 0u);
     const StepMeasure end = PenetrationMeter(mesh, meshOf(cloth)).measure(positionsOf(cloth).data());
     EXPECT_EQ(end.m_intersectingPairs, 0u);
     EXPECT_GT(end.m_gapMin, 0.9 * kThickness);
 }
 
-// The cloth of 2,048 triangles (2.4 m) that cloth_drop drops on the bunny of 69,666 (2 m). RMS over all steps: where it
-// hangs off the ears friction lets it slip now and then.
-TEST_P(SettledBunny, liesStill)
+namespace
 {
-    TriangleMesh bunny;
-    const std::string missing = loadBunny(bunny);
-    if (!missing.empty()) GTEST_SKIP() << missing;
-    placeOnFloor(bunny, 2.0f);
-    Rest rest(GetParam().m_settings);
-    MeshShape shape(bunny);
+// Drops cloth_drop's cloth of 2,048 triangles and expects it to lie still on the mesh after a fall in m: RMS over all
+// steps, where it hangs over edges friction lets it slip now and then.
+void expectLiesStill(Rest& rest, const TriangleMesh& mesh, float size, btScalar fall)
+{
+    MeshShape shape(mesh);
     rest.m_world.addObstacle(shape.shape());
     ClothSpec spec;
     spec.m_nodes = 33;
-    spec.m_size = 2.4f;
+    spec.m_size = size;
     spec.m_damping = btScalar(0.02);
-    spec.m_centre = btVector3(0, btScalar(boundsOf(bunny).m_high[1]) + btScalar(0.32), 0);
+    spec.m_centre = btVector3(0, btScalar(boundsOf(mesh).m_high[1]) + btScalar(kThickness) + fall, 0);
     btSoftBody& cloth = rest.m_world.addCloth(spec);
     cloth.m_cfg.piterations = 5;
     cloth.m_materials[0]->m_kLST = btScalar(0.9);
@@ -163,24 +171,74 @@ TEST_P(SettledBunny, liesStill)
     for (int i = 0; i < kStepsAtRest; ++i)
     {
         rest.m_world.step();
-        sum2 += rmsSpeed(cloth) * rmsSpeed(cloth);
+        sum2 += square(rmsSpeed(cloth));
     }
     EXPECT_LE(std::sqrt(sum2 / kStepsAtRest), kSpeedSettled);
-    ASSERT_GT(rest.m_plugin.statistics().m_contacts, 1000u);
-    const StepMeasure end = PenetrationMeter(bunny, meshOf(cloth)).measure(positionsOf(cloth).data());
+    const StepMeasure end = PenetrationMeter(mesh, meshOf(cloth)).measure(positionsOf(cloth).data());
     EXPECT_EQ(end.m_intersectingPairs, 0u);
     EXPECT_GT(end.m_gapMin, 0.9 * kThickness);
 }
 
+constexpr int kBoards = 24;
+
+// Thin boards over each other, each turned against the last: their corners poke into the cloth's faces.
+TriangleMesh makePileOfBoards()
+{
+    TriangleMesh pile;
+    for (int i = 0; i < kBoards; ++i)
+    {
+        const btTransform pose(btQuaternion(btVector3(0, 1, 0), btScalar(0.26) * btScalar(i)),
+                               btVector3(0, btScalar(0.03) * (btScalar(i) + btScalar(0.5)), 0));
+        const TriangleMesh board = placed(makeBox(0.9f, 0.008f, 0.9f), pose);
+        const std::int32_t first = static_cast<std::int32_t>(pile.vertexCount());
+        pile.m_positions.insert(pile.m_positions.end(), board.m_positions.begin(), board.m_positions.end());
+        for (const std::int32_t vertex : board.m_triangles)
+            pile.m_triangles.push_back(first + vertex);
+    }
+    return pile;
+}
+}  // namespace
+
+// The bunny has 69,666 triangles and a height of 2 m. With planes as the predicted step's end has them, and contacts
+// that do not settle, cloth that falls by 0.5 m stirs at 1.3 mm/s.
+TEST_P(SettledBunny, liesStill)
+{
+    TriangleMesh bunny;
+    const std::string missing = loadBunny(bunny);
+    if (!missing.empty()) GTEST_SKIP() << missing;
+    placeOnFloor(bunny, 2.0f);
+    for (const btScalar fall : {btScalar(0.3), btScalar(0.5)})
+    {
+        SCOPED_TRACE(testing::Message() << "fall of " << fall << " m");
+        Rest rest(GetParam().m_settings);
+        expectLiesStill(rest, bunny, 2.4f, fall);
+        ASSERT_GT(rest.m_plugin.statistics().m_contacts, 1000u);
+    }
+}
+
+// With contacts' planes left as the predicted step's end has them, faces rock on the boards' corners for ever: 20 mm/s.
+TEST_P(SettledPile, liesStill)
+{
+    Rest rest(GetParam().m_settings);
+    expectLiesStill(rest, makePileOfBoards(), 1.8f, btScalar(0.3));
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Beds, SettledCloth,
-    testing::Combine(testing::Values(Bed{"sphere", 2.4f, btScalar(1.1)}, Bed{"box", 2.4f, btScalar(0.6)},
-                                     Bed{"bowl", 1.2f, btScalar(0.1)}, Bed{"torus", 1.6f, btScalar(0.4)}),
+    testing::Combine(testing::Values(Bed{"sphere", 2.4f, btScalar(1.08)}, Bed{"sphere", 2.4f, btScalar(1.1)},
+                                     Bed{"sphere", 2.4f, btScalar(1.15)}, Bed{"sphere", 2.4f, btScalar(1.2)},
+                                     Bed{"box", 2.4f, btScalar(0.6)}, Bed{"bowl", 1.2f, btScalar(0.1)},
+                                     Bed{"torus", 1.6f, btScalar(0.4)}),
                      testing::ValuesIn(allBackends())),
     [](const testing::TestParamInfo<std::tuple<Bed, BackendCase>>& info)
-    { return std::string(std::get<0>(info.param).m_shape) + "_" + std::get<1>(info.param).m_name; });
+    {
+        const Bed& bed = std::get<0>(info.param);
+        const int height = static_cast<int>(std::lround(100 * bed.m_height));  // cm
+        return bed.m_shape + std::string("_") + std::to_string(height) + "_" + std::get<1>(info.param).m_name;
+    });
 
 INSTANTIATE_TEST_SUITE_P(Backend, SettledBunny, testing::ValuesIn(openClBackends()), backendName);
+INSTANTIATE_TEST_SUITE_P(Backend, SettledPile, testing::ValuesIn(allBackends()), backendName);
 
 TEST_P(RestingCloth, thicknessIsTheSumOfBothMargins)
 {

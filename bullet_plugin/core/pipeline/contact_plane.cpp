@@ -1,0 +1,76 @@
+// Where a face is nearest to the vertex of its contact once the cloth's nodes have moved on.
+#include "implementation.h"
+#include "kernels/lib/feature_contact.h"
+#include "kernels/lib/rigid_motion.h"
+
+namespace drape
+{
+namespace
+{
+// The place of a face that is nearest to the vertex, which is the origin.
+struct Nearest
+{
+    Vec3 m_weights;  // of the cloth's nodes
+    Vec3 m_offset;   // from the vertex
+    Vec3 m_across;   // the face's area vector where the offset is parallel to it; else 0
+};
+
+// An obstacle's vertex at the step's end.
+Vec3 vertexAt(const Scene& scene, const ObstaclePlace& place, std::uint32_t vertex)
+{
+    const Vec3 own = vec3Load(scene.m_obstaclePositions.data(), vertex);
+    return place.m_posed ? mapPoint(place.m_pose, own) : own;
+}
+
+bool insideFace(Vec3 weights)
+{
+    return weights.x > 0 && weights.y > 0 && weights.z > 0;
+}
+
+Nearest nearestOfFace(const FeatureTriangle& face)
+{
+    const FaceArea area = faceArea(face);
+    const Vec3 weights = closestOnFace(vec3(0, 0, 0), face, area.m_thin);
+    const bool inside = insideFace(weights) && !area.m_thin;
+    return Nearest{weights, featurePoint(face, weights), inside ? area.m_vector : vec3(0, 0, 0)};
+}
+
+void store(Vec3 v, float target[3])
+{
+    target[0] = v.x;
+    target[1] = v.y;
+    target[2] = v.z;
+}
+
+// Unit, on the side of `before`; false where there is none.
+bool directionOf(const Nearest& nearest, Vec3 before, Vec3& direction)
+{
+    const float across = areaLengthOf(nearest.m_across);
+    if (across > 0)
+    {
+        direction = vec3Scale(nearest.m_across, (vec3Dot(nearest.m_across, before) < 0 ? -1.0f : 1.0f) / across);
+        return true;
+    }
+    const float distance = vec3Length(nearest.m_offset);
+    if (!(distance > 0) || !(vec3Dot(nearest.m_offset, before) > 0)) return false;
+    direction = vec3Scale(nearest.m_offset, 1 / distance);
+    return true;
+}
+}  // namespace
+
+bool Pipeline::planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane) const
+{
+    const Scene& scene = m_implementation->m_scene;
+    const MeshPool& obstacles = scene.m_obstacles;
+    const ObstaclePlace& place = scene.m_places[obstacleSlot(obstacles, contact)];
+    const Vec3 origin = vertexAt(scene, place, contact.m_obstacleFeature);
+    const auto node = [&](int k) { return vec3Sub(vec3(nodes[k][0], nodes[k][1], nodes[k][2]), origin); };
+    const Nearest nearest = nearestOfFace(FeatureTriangle{{node(0), node(1), node(2)}});
+    Vec3 direction;
+    if (!directionOf(nearest, vec3Load(contact.m_normal, 0), direction)) return false;
+    store(direction, plane.m_normal);
+    store(origin, plane.m_point);
+    store(nearest.m_weights, plane.m_weights);
+    return true;
+}
+}  // namespace drape
