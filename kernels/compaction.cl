@@ -45,50 +45,65 @@ __kernel void compactionScan(__global uint* restrict blockCount, const uint bloc
     if (get_local_id(0) == 0) counters->m_hits = base;
 }
 
-// A work-group writes where the hits of each slot of its block begin.
-__kernel void compactionPlace(__global const uint* restrict slotCount, const uint slots,
-                              __global const uint* restrict blockCount, __global uint* restrict slotFirst,
-                              __local uint* scratch)
+// Writes where the hits of each slot of the group's block begin, the first at `place`, and counts the slots that have many.
+// Returns where the hits behind the block begin.
+static uint placeBlock(__global const uint* restrict slotCount, const uint slots, const uint place,
+                       __global uint* restrict slotFirst, __global StepCounters* restrict counters, __local uint* scratch)
 {
     uint first, last, total;
-    uint place = blockCount[get_group_id(0)];
-    place += groupPrefix(scratch, countShare(slotCount, slots, &first, &last), &total);
+    uint next = place + groupPrefix(scratch, countShare(slotCount, slots, &first, &last), &total);
     for (uint slot = first; slot < last; ++slot)
     {
-        slotFirst[slot] = place;
-        place += slotCount[slot];
+        slotFirst[slot] = next;
+        next += slotCount[slot];
+        if (slotCount[slot] > DRAPE_RANKED) atomic_inc(&counters->m_crowded);
     }
+    return place + total;
 }
 
-// The same in one launch, by one work-group, for slots that are few: each work-item takes adjacent ones.
+// A work-group takes a block of slots.
+__kernel void compactionPlace(__global const uint* restrict slotCount, const uint slots,
+                              __global const uint* restrict blockCount, __global uint* restrict slotFirst,
+                              __global StepCounters* restrict counters, __local uint* scratch)
+{
+    placeBlock(slotCount, slots, blockCount[get_group_id(0)], slotFirst, counters, scratch);
+}
+
+// Slots that a work-item of compactionPlaceFew loads together: loads that do not wait for each other.
+#define DRAPE_TOGETHER 8
+
+// The same in one launch, for slots that are few: each work-group sums the hits before its block itself.
 __kernel void compactionPlaceFew(__global const uint* restrict slotCount, const uint slots, __global uint* restrict slotFirst,
                                  __global StepCounters* restrict counters, __local uint* scratch)
 {
-    const uint items = get_local_size(0), item = get_local_id(0);
-    const uint share = (slots + items - 1) / items;
-    const uint first = min(slots, item * share), last = min(slots, first + share);
-    uint sum = 0, total;
-    for (uint slot = first; slot < last; ++slot) sum += slotCount[slot];
-    uint place = groupPrefix(scratch, sum, &total);
-    for (uint slot = first; slot < last; ++slot)
+    const uint begin = get_group_id(0) * DRAPE_BLOCK;
+    uint sum = 0, before;
+    for (uint slot = get_local_id(0); slot < begin; slot += DRAPE_TOGETHER * get_local_size(0))
     {
-        slotFirst[slot] = place;
-        place += slotCount[slot];
+        DRAPE_UNROLL
+        for (uint i = 0; i < DRAPE_TOGETHER; ++i)
+        {
+            const uint other = slot + i * get_local_size(0);
+            sum += other < begin ? slotCount[other] : 0;
+        }
     }
-    if (item == 0) counters->m_hits = total;
+    groupPrefix(scratch, sum, &before);
+    const uint hits = placeBlock(slotCount, slots, before, slotFirst, counters, scratch);
+    if (get_group_id(0) == get_num_groups(0) - 1 && get_local_id(0) == 0) counters->m_hits = hits;
 }
 
 // A work-item takes every stride-th place of the hits' list and lists a hit among its slot's members, last to first as the
-// items come; the atomic gives each a place of its own. Places whose slot is DRAPE_NO_FEATURE hold no hit. Leaves slotCount zero for the next step.
+// items come; the atomic gives each a place of its own. Leaves slotCount zero for the next step, and its counters.
 __kernel void compactionGather(__global const Contact* restrict hits, const uint hitCapacity,
                                __global volatile uint* slotCount, __global const uint* restrict slotFirst,
-                               __global uint* restrict members, __global const StepCounters* restrict counters)
+                               __global uint* restrict members, __global const StepCounters* restrict counters,
+                               __global StepCounters* restrict next)
 {
     const uint count = min(counters->m_listed, hitCapacity);
+    if (get_global_id(0) < sizeof(StepCounters) / sizeof(uint)) ((__global uint*)next)[get_global_id(0)] = 0;
     for (uint i = get_global_id(0); i < count; i += get_global_size(0))
     {
         const uint slot = hits[i].m_slot;
-        if (slot == DRAPE_NO_FEATURE) continue;
         members[slotFirst[slot] + atomic_dec(slotCount + slot) - 1] = i;
     }
 }
@@ -176,14 +191,16 @@ __kernel void compactionOrder(__global const Contact* restrict hits, const uint 
 }
 
 // A work-item takes every stride-th place of the members' list, counts the members of the same slot with a lesser obstacle
-// feature, and writes the hit where that number puts it. Where the slot has more than DRAPE_RANKED members they are sorted
-// and the hit keeps its place. A feature pair is tested once, so features of a slot differ and every place is written once.
+// feature, and writes the hit where that number puts it. Where the slot has more than DRAPE_RANKED members compactionOrder has
+// sorted them and the hit keeps its place. A feature pair is tested once, so features of a slot differ and every place is
+// written once. contacts: behind a head with the counters.
 __kernel void compactionWrite(__global const Contact* restrict hits, const uint hitCapacity,
                               __global const uint* restrict slotFirst, const uint slots,
                               __global const uint* restrict members, __global Contact* restrict contacts,
                               __global const StepCounters* restrict counters)
 {
     const uint count = min(counters->m_hits, hitCapacity);
+    if (get_global_id(0) == 0) *(__global StepCounters*)contacts = *counters;
     for (uint i = get_global_id(0); i < count; i += get_global_size(0))
     {
         const Contact hit = hits[members[i]];
@@ -192,6 +209,6 @@ __kernel void compactionWrite(__global const Contact* restrict hits, const uint 
         const int sorted = last - first > DRAPE_RANKED;
         uint before = 0;
         for (uint j = first; j < last && !sorted; ++j) before += hits[members[j]].m_obstacleFeature < hit.m_obstacleFeature;
-        contacts[sorted ? i : first + before] = hit;
+        contacts[DRAPE_CONTACT_HEAD + (sorted ? i : first + before)] = hit;
     }
 }

@@ -147,11 +147,11 @@ static uint reduceCrowded(const ReductionView* view, const SlotLists* lists, __g
 
 // A work-group takes a block of at most DRAPE_BLOCK slots. members: in order in slots with more than DRAPE_RANKED; they stay
 // as they are, since faces and edges read those of their nodes. kept gets at the front of each slot the members that stay, in
-// order, and DRAPE_NO_FEATURE behind them; slotKept their number. counters->m_found gets m_hits, which is then free.
+// order, and DRAPE_NO_FEATURE behind them; slotKept their number. counters->m_hits is then free.
 __kernel __attribute__((reqd_work_group_size(DRAPE_REDUCE_GROUP, 1, 1))) void reductionKeep(
     __global const Contact* restrict hits, const uint hitCapacity, __global const uint* restrict slotFirst,
     const uint slots, const uint block, __global const uint* restrict members, __global uint* kept,
-    __global uint* restrict slotKept, __global StepCounters* restrict counters, __global const float* restrict start,
+    __global uint* restrict slotKept, __global const StepCounters* restrict counters, __global const float* restrict start,
     __global const float* restrict end, __global const Triangle* restrict triangles, __global const Edge* restrict edges,
     __global const MeshFirsts* restrict cloths, __global const MeshFirsts* restrict obstacles, const uint clothCount,
     const uint obstacleCount, __global const float* restrict thickness, __global const float* restrict tube)
@@ -162,7 +162,6 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_REDUCE_GROUP, 1, 1))) void re
     const ReductionView view = {start,     end,         triangles,     edges,     cloths,
                                 obstacles, clothCount,  obstacleCount, thickness, tube};
     const SlotLists lists = {hits, members, slotFirst, slots, min(counters->m_hits, hitCapacity)};
-    if (get_global_id(0) == 0) counters->m_found = counters->m_hits;
     const uint begin = get_group_id(0) * block, last = min(slots, begin + block);
     if (get_local_id(0) == 0) crowdedCount = 0;
     barrier(CLK_LOCAL_MEM_FENCE);
@@ -187,18 +186,19 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_REDUCE_GROUP, 1, 1))) void re
 }
 
 // A work-item takes every stride-th place of the members' list and writes the hit that stays there, if one does. keptFirst:
-// where the contacts of each slot begin.
+// where the contacts of each slot begin. contacts: behind a head with the counters.
 __kernel void reductionWrite(__global const Contact* restrict hits, const uint hitCapacity,
                              __global const uint* restrict slotFirst, __global const uint* restrict kept,
                              __global const uint* restrict keptFirst, __global Contact* restrict contacts,
                              __global const StepCounters* restrict counters)
 {
-    const uint count = min(counters->m_found, hitCapacity);
+    const uint count = min(counters->m_listed, hitCapacity);
+    if (get_global_id(0) == 0) *(__global StepCounters*)contacts = *counters;
     for (uint i = get_global_id(0); i < count; i += get_global_size(0))
     {
         const uint member = kept[i];
         if (member == DRAPE_NO_FEATURE) continue;
         const Contact hit = hits[member];
-        contacts[keptFirst[hit.m_slot] + i - slotFirst[hit.m_slot]] = hit;
+        contacts[DRAPE_CONTACT_HEAD + keptFirst[hit.m_slot] + i - slotFirst[hit.m_slot]] = hit;
     }
 }

@@ -1,5 +1,6 @@
 // Narrow phase over pairs of features. Launches have a fixed width and walk the list in strides: its length is only on the
 // device.
+#include "lib/hit_list.h"
 #include "lib/pair_contact.h"
 #include "shared/patch.h"
 
@@ -61,9 +62,8 @@ static int featureContact(const FeatureTest feature, const ClothView* cloth, con
                         packed->m_edgeIds[lane], feature.m_reach, contact);
 }
 
-// A work-item takes every stride-th of the feature tests that patchCull lists and writes each hit at its test's place; a test
-// without a hit leaves DRAPE_NO_FEATURE as slot, also one that needs the continuous test: those are listed in swept, in no
-// particular order. slotCount counts the hits of each cloth feature; it and counters->m_swept must be zero before.
+// A work-item takes every stride-th of the feature tests that patchCull lists and lists the hits; the tests that need the
+// continuous test it lists in swept, in no particular order. counters->m_swept must be zero before.
 __kernel void narrowPhaseFeature(__global const FeatureTest* restrict tests, const uint testCapacity,
                                  __global const float* restrict clothStart, __global const float* restrict clothEnd,
                                  __global const Triangle* restrict clothTriangles,
@@ -75,29 +75,24 @@ __kernel void narrowPhaseFeature(__global const FeatureTest* restrict tests, con
                                  __global const float* restrict vertices, __global const float* restrict edges,
                                  __global const uint* restrict faceIds, __global const uint* restrict vertexIds,
                                  __global const uint* restrict edgeIds,
-                                 __global const ObstacleMotion* restrict motions, __global Contact* restrict hits,
-                                 __global uint* restrict swept, __global volatile uint* slotCount,
-                                 __global StepCounters* restrict counters)
+                                 __global const ObstacleMotion* restrict motions, __global uint* restrict swept,
+                                 DRAPE_HIT_ARGUMENTS)
 {
+    const HitList list = DRAPE_HIT_LIST;
     ClothView cloth =
         clothView(clothStart, clothEnd, clothTriangles, clothEdges, nodeCount, triangleCount, mode, 0);
     const ObstacleView obstacle = obstacleView(0, obstacleTriangles, vertexCones, edgeCones);
     const PackedFeatures packed = {faces, vertices, edges, faceIds, vertexIds, edgeIds};
     const uint count = min(counters->m_candidates, testCapacity);
-    if (get_global_id(0) == 0) counters->m_listed = count;
     for (uint i = get_global_id(0); i < count; i += get_global_size(0))
     {
         cloth.m_motion = motionOfTest(motions, tests[i]);
         Contact contact;
         const int found = featureContact(tests[i], &cloth, &obstacle, &packed, &contact);
-        if (found != DRAPE_IS_CONTACT)
-        {
-            if (found == DRAPE_UNDECIDED) swept[atomic_inc(&counters->m_swept)] = i;
-            hits[i].m_slot = DRAPE_NO_FEATURE;
-            continue;
-        }
-        atomic_inc(slotCount + contact.m_slot);  // before the stores: on a CPU it would wait for them
-        hits[i] = contact;
+        if (found == DRAPE_IS_CONTACT)
+            listHit(&list, &contact);
+        else if (found == DRAPE_UNDECIDED)
+            swept[atomic_inc(&counters->m_swept)] = i;
     }
 }
 
@@ -108,7 +103,7 @@ static uint spreadItem(void)
     return get_local_id(0) * get_num_groups(0) + get_group_id(0);
 }
 
-// A work-item takes every stride-th of the tests that narrowPhaseFeature left to the continuous test and writes their hits.
+// A work-item takes every stride-th of the tests that narrowPhaseFeature left to the continuous test and lists their hits.
 __kernel void narrowPhaseSwept(__global const FeatureTest* restrict tests,
                                __global const float* restrict clothStart, __global const float* restrict clothEnd,
                                __global const Triangle* restrict clothTriangles, __global const Edge* restrict clothEdges,
@@ -119,21 +114,20 @@ __kernel void narrowPhaseSwept(__global const FeatureTest* restrict tests,
                                __global const float* restrict vertices, __global const float* restrict edges,
                                __global const uint* restrict faceIds, __global const uint* restrict vertexIds,
                                __global const uint* restrict edgeIds,
-                               __global const ObstacleMotion* restrict motions, __global Contact* restrict hits,
-                               __global const uint* restrict swept, __global volatile uint* slotCount,
-                               __global const StepCounters* restrict counters)
+                               __global const ObstacleMotion* restrict motions, __global const uint* restrict swept,
+                               DRAPE_HIT_ARGUMENTS)
 {
+    const HitList list = DRAPE_HIT_LIST;
     ClothView cloth =
         clothView(clothStart, clothEnd, clothTriangles, clothEdges, nodeCount, triangleCount, mode, 1);
     const ObstacleView obstacle = obstacleView(0, obstacleTriangles, vertexCones, edgeCones);
     const PackedFeatures packed = {faces, vertices, edges, faceIds, vertexIds, edgeIds};
-    for (uint i = spreadItem(); i < counters->m_swept; i += get_global_size(0))
+    const uint count = counters->m_swept;
+    for (uint i = spreadItem(); i < count; i += get_global_size(0))
     {
         const uint place = swept[i];
         Contact contact;
         cloth.m_motion = motionOfTest(motions, tests[place]);
-        if (featureContact(tests[place], &cloth, &obstacle, &packed, &contact) != DRAPE_IS_CONTACT) continue;
-        atomic_inc(slotCount + contact.m_slot);
-        hits[place] = contact;
+        if (featureContact(tests[place], &cloth, &obstacle, &packed, &contact) == DRAPE_IS_CONTACT) listHit(&list, &contact);
     }
 }

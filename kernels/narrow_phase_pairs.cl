@@ -1,11 +1,11 @@
 // Narrow phase over pairs of triangles, for the traversals that give those: contacts of the candidates' features, and the pairs
 // that intersect. Launches have a fixed width and walk the list in strides: its length is only on the device.
+#include "lib/hit_list.h"
 #include "lib/pair_contact.h"
 #include "lib/triangle_triangle.h"
 
-// A work-item takes every stride-th candidate, runs its feature tests and writes the hits in no particular order. motions: of
-// the obstacles that move in the step. slotCount counts the hits written per cloth feature; it and counters' listed and swept
-// must be zero before. m_listed counts on when the list is full.
+// A work-item takes every stride-th candidate, runs its feature tests and lists the hits. motions: of the obstacles that move
+// in the step. counters->m_swept must be zero before.
 __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, const uint candidateCapacity,
                               __global const float* restrict clothStart, __global const float* restrict clothEnd,
                               __global const Triangle* restrict clothTriangles, __global const Edge* restrict clothEdges,
@@ -16,9 +16,9 @@ __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, con
                               __global const NormalCone* restrict edgeCones, __global const float* restrict thickness,
                               const uint obstacleMeshes, const float reachScale, const uint mode,
                               __global const ObstacleMotion* restrict motions, const uint motionCount,
-                              __global Contact* restrict hits, const uint hitCapacity,
-                              __global volatile uint* slotCount, __global StepCounters* restrict counters)
+                              DRAPE_HIT_ARGUMENTS)
 {
+    const HitList list = DRAPE_HIT_LIST;
     ClothView cloth =
         clothView(clothStart, clothEnd, clothTriangles, clothEdges, nodeCount, triangleCount, mode, 0);
     const ObstacleView obstacle = obstacleView(obstaclePositions, obstacleTriangles, vertexCones, edgeCones);
@@ -39,11 +39,7 @@ __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, con
             int swept;
             const int found = decidePairContact(test, &cloth, &obstacle, candidate, reach, &contact, &swept);
             if (swept) atomic_inc(&counters->m_swept);
-            if (!found) continue;
-            const uint place = atomic_inc(&counters->m_listed);
-            if (place >= hitCapacity) continue;
-            hits[place] = contact;
-            atomic_inc(slotCount + contact.m_slot);
+            if (found) listHit(&list, &contact);
         }
     }
 }

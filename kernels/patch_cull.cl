@@ -2,7 +2,6 @@
 // of those it may touch a vector of lanes at a time, and lists the feature tests that are left.
 #include "lib/patch_pairs.h"
 
-#define DRAPE_WALK_STACK (DRAPE_LEVELS * DRAPE_PATCH_WIDTH)
 
 // A cloth triangle's walk over the obstacles that rest, or over one that moves.
 typedef struct Walk

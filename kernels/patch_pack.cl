@@ -184,26 +184,18 @@ __kernel void patchVolumes(__global const uint* restrict faceOwners, const uint 
     if (patch < patchCount) patchSizes[patch] = size;
 }
 
-// A work-item is a child place of one level: a node of the level below, or none from nodeCount on. below and level: that
-// level's nodes and this one's.
+// A work-item writes one number of a child place of one level, those from first up to last: a node of the level below, or none
+// from nodeCount on. below and level: that level's nodes and this one's.
 __kernel void patchWiden(__global float* restrict wideNodes, const uint below, const uint nodeCount, const uint level,
                          const uint first, const uint last)
 {
-    const uint node = first + get_global_id(0);
+    const uint node = first + get_global_id(0) / DRAPE_WIDE_NODE_FLOATS, row = get_global_id(0) % DRAPE_WIDE_NODE_FLOATS;
     if (node >= last) return;
-    WideChild child;
-    dopClear(&child.m_volume);
-    for (int k = 0; k < DRAPE_DOP_DIRECTIONS; ++k) child.m_reach[k] = 0.0f;
-    __global const float* lanes = wideNodes + (below + node) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH;
+    const int isLow = row < DRAPE_DOP_DIRECTIONS, isHigh = !isLow && row < 2 * DRAPE_DOP_DIRECTIONS;
+    float joined = isLow ? DRAPE_INFINITY : isHigh ? -DRAPE_INFINITY : 0.0f;
+    __global const float* lanes = wideNodes + ((below + node) * DRAPE_WIDE_NODE_FLOATS + row) * DRAPE_PATCH_WIDTH;
     for (uint lane = 0; lane < DRAPE_PATCH_WIDTH && node < nodeCount; ++lane)
-    {
-        for (int k = 0; k < DRAPE_DOP_DIRECTIONS; ++k)
-        {
-            child.m_volume.m_low[k] = drapeMin(child.m_volume.m_low[k], lanes[k * DRAPE_PATCH_WIDTH + lane]);
-            child.m_volume.m_high[k] =
-                drapeMax(child.m_volume.m_high[k], lanes[(DRAPE_DOP_DIRECTIONS + k) * DRAPE_PATCH_WIDTH + lane]);
-            child.m_reach[k] = drapeMax(child.m_reach[k], lanes[(2 * DRAPE_DOP_DIRECTIONS + k) * DRAPE_PATCH_WIDTH + lane]);
-        }
-    }
-    wideStore(wideNodes + level * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH, node, &child);
+        joined = isLow ? drapeMin(joined, lanes[lane]) : drapeMax(joined, lanes[lane]);
+    wideNodes[((level + node / DRAPE_PATCH_WIDTH) * DRAPE_WIDE_NODE_FLOATS + row) * DRAPE_PATCH_WIDTH +
+              node % DRAPE_PATCH_WIDTH] = joined;
 }

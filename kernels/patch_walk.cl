@@ -4,20 +4,14 @@
 // a packet of triangles that lie near each other.
 #include "lib/patch_pairs.h"
 
-// Nodes of the wide tree that a group looks at together, at most.
-#define DRAPE_WALK_NODES 4
-// Nodes are taken from the lowest level that is left, so that each level has the children of one turn on the stack.
-#define DRAPE_WALK_STACK (DRAPE_LEVELS * DRAPE_PATCH_WIDTH * DRAPE_WALK_NODES)
 // Patches found before they are made into pairs.
 #define DRAPE_WALK_FOUND (2 * DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH)
-// The root's children where they are this few are where a walk begins.
-#define DRAPE_WALK_BEGIN 4
 
 // What a group shares.
 typedef struct Walkers
 {
     Team m_team;
-    uint m_stack[DRAPE_WALK_STACK];
+    uint m_stack[DRAPE_WALK_NODES * DRAPE_WALK_STACK];
     uint m_found[DRAPE_WALK_FOUND];
     uint m_foundCount;
     CullVolume m_volumes[DRAPE_PATCH_WIDTH];  // of a packet's triangles
@@ -84,26 +78,6 @@ static void settleFound(__local Walkers* walkers, const Walk* walk, const StepCl
     teamSync();
 }
 
-// Puts the root on the stack, or its children where they are few. Returns how many.
-static uint beginWalk(__local uint* stack, const PatchTree* tree)
-{
-    const uint top = tree->m_levelCount;
-    const uint children = top > 1 ? tree->m_levels[top - 1] - tree->m_levels[top - 2] : 0;
-    const int skips = children > 0 && children <= DRAPE_WALK_BEGIN;
-    const uint nodes = skips ? children : 1, level = skips ? top - 1 : top;
-    for (uint i = 0; i < nodes; ++i) stack[i] = (level << DRAPE_LEVEL_SHIFT) + i;
-    return nodes;
-}
-
-// How many nodes are taken from the stack together: those on top that are of one level.
-static uint nodesInTurn(__local const uint* stack, const uint depth, const uint most)
-{
-    uint nodes = 1;
-    while (nodes < min(depth, most) && stack[depth - 1 - nodes] >> DRAPE_LEVEL_SHIFT == stack[depth - 1] >> DRAPE_LEVEL_SHIFT)
-        ++nodes;
-    return nodes;
-}
-
 static void walkTree(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const PatchTree* tree,
                      const TestList* list)
 {
@@ -112,7 +86,7 @@ static void walkTree(__local Walkers* walkers, const Walk* walk, const StepCloth
     const uint most = teamWidth() / DRAPE_PATCH_WIDTH;
     const uint turn = teamLane() / DRAPE_PATCH_WIDTH, lane = teamLane() % DRAPE_PATCH_WIDTH;
     teamSync();
-    if (teamLane() == 0) team->m_depth = beginWalk(stack, tree);
+    if (teamLane() == 0) team->m_depth = beginWalk(stack, tree->m_levels, tree->m_levelCount);
     teamSync();
     while (team->m_depth > 0)
     {
@@ -286,8 +260,8 @@ static void markBlocks(__local Culler* culler, const PatchFeatures* features, __
 }
 
 // Lists the feature tests of the pairs that patchWalk listed, as many as fitted there: most pairs next to each other are of
-// one cloth triangle. Groups have a multiple of DRAPE_PATCH_WIDTH lanes, of which each such number tests a pair.
-__kernel void patchCullPairs(__global const FeatureTest* restrict pairs, const uint pairCapacity,
+// one cloth triangle. Each DRAPE_PATCH_WIDTH lanes test a pair.
+__kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH, 1, 1))) void patchCullPairs(__global const FeatureTest* restrict pairs, const uint pairCapacity,
                              __global const Triangle* restrict clothTriangles, __global const float* restrict start,
                              __global const float* restrict end, const uint mode,
                              __global const ObstacleMotion* restrict motions, __global const Patch* restrict patches,

@@ -15,6 +15,7 @@ constexpr double kPatchSize = 0.3;  // m, of one of many cloths
 // 0.2 and a bit: cloth is near the surface, and does not pass it.
 constexpr double kGap = 0.75;
 constexpr double kWay = 0.15;  // of the thickness, a step: 3 mm at 20 mm
+constexpr double kFoldGap = 0.8;  // of the thickness with itself: the vertical gap between a folded cloth's halves
 constexpr std::uint32_t kSeed = 7;
 
 std::string sizeName(int cells)
@@ -35,6 +36,7 @@ std::vector<SceneSpec> makeSpecs()
         {"static_1m_fine", "", "bunny_1m", 256, 1, kClothSize, kThickness, false},
         {"self_131k", "", "bunny", 256, 1, kClothSize, kThickness, false, true},
         {"self_2k", "", "bunny", 32, 1, kClothSize, kThickness, false, true},
+        {"folded_131k", "", "bunny", 256, 1, kClothSize, kThickness, false, true, true},
         {"quick_self", "", "sphere_1k", 16, 1, kClothSize, kThickness, true, true},
         {"quick_one", "", "sphere_1k", 16, 1, kClothSize, kThickness, true},
         {"quick_many", "", "sphere_1k", 8, 5, kPatchSize, kThickness, true},
@@ -68,6 +70,20 @@ int periodOf(const SceneSpec& spec, std::size_t obstacleTriangles)
     if (spec.m_quick) return 3;
     if (spec.clothTriangles() > 40000 && obstacleTriangles > 500000) return 4;
     return spec.clothTriangles() <= 40000 ? 12 : spec.clothTriangles() <= 300000 ? 8 : 4;
+}
+
+// A draped cloth whose second half, in the direction of its columns, is laid over the first, a gap (m) above.
+void foldCloth(std::vector<float>& positions, int cells, float gap)
+{
+    const std::size_t side = static_cast<std::size_t>(cells) + 1;
+    for (std::size_t node = 0; 3 * node < positions.size(); ++node)
+    {
+        const std::size_t column = node % side;
+        if (2 * column <= side - 1) continue;
+        const std::size_t under = node - column + (side - 1 - column);
+        std::copy_n(&positions[3 * under], 3, &positions[3 * node]);
+        positions[3 * node + 1] += gap;
+    }
 }
 
 double meanEdge(const TriangleMesh& mesh)
@@ -112,6 +128,7 @@ StepScene makeStepScene(const SceneSpec& spec, const TriangleMesh& obstacle)
         scene.m_cloths.push_back(drapeCloth(field, next));
         rest.insert(rest.end(), scene.m_cloths.back().m_positions.begin(), scene.m_cloths.back().m_positions.end());
     }
+    if (spec.m_folded) foldCloth(rest, spec.m_cells, static_cast<float>(kFoldGap) * scene.m_selfThickness);
     const ClothMotion motion = {periodOf(spec, obstacle.triangleCount()), kWay * scene.m_thickness};
     for (int step = 0; step < motion.m_period; ++step)
     {

@@ -22,6 +22,7 @@ struct SceneSpec
     double m_thickness = 0;  // m; 0: a cell's size, at most kThickness
     bool m_quick = false;    // belongs to --quick
     bool m_self = false;     // the cloths collide with themselves too
+    bool m_folded = false;   // one half lies on the other
 
     std::size_t clothTriangles() const
     {

@@ -6,11 +6,7 @@
 #include "feature_cull.h"
 #include "rigid_motion.h"
 #include "team.h"
-
-// Entries of a walk's stack are nodes of the wide tree, with their level in the high bits.
-#define DRAPE_LEVEL_SHIFT 28
-// Levels of the wide tree over 2^28 triangles.
-#define DRAPE_LEVELS 7
+#include "wide_walk.h"
 
 // The cloths of a step and what their triangles have pairs with. thickness: m, cloths × obstacles, negative where the
 // pair is not tested. mode: DRAPE_DISCRETE …. motions: of the obstacles that move in the step.

@@ -46,19 +46,14 @@ DRAPE_FUNCTION int boxesMeet(const FeatureBox* a, const FeatureBox* b)
     return meet;
 }
 
-// Along one direction, of a valid node over the step; as vertexVolume has it.
-DRAPE_FUNCTION void nodeInterval(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end, DRAPE_UINT node,
-                                 float radius, int direction, float* low, float* high)
+// Grows an interval along one direction to hold a node's place; as dopAddPoint has it.
+DRAPE_FUNCTION void growInterval(Vec3 p, float radius, int direction, float* low, float* high)
 {
     Dop dop;  // of which one direction is used
-    dop.m_low[direction] = DRAPE_INFINITY;
-    dop.m_high[direction] = -DRAPE_INFINITY;
-    for (int k = 0; k < 2; ++k)
-    {
-        const Vec3 p = vec3Load(k == 0 ? start : end, node);
-        const float v = dopProject(p, direction);
-        dopAddInterval(&dop, direction, v, v, radius * dopNorm(direction), dopInner(p, direction));
-    }
+    dop.m_low[direction] = *low;
+    dop.m_high[direction] = *high;
+    const float v = dopProject(p, direction);
+    dopAddInterval(&dop, direction, v, v, radius * dopNorm(direction), dopInner(p, direction));
     *low = dop.m_low[direction];
     *high = dop.m_high[direction];
 }
@@ -73,10 +68,14 @@ DRAPE_FUNCTION FeatureBox nodeBox(const DRAPE_GLOBAL float* start, const DRAPE_G
                                   float radius)
 {
     FeatureBox box = emptyBox();
-    if (!nodeIsValid(start, end, node)) return box;
+    const Vec3 from = vec3Load(start, node), to = vec3Load(end, node);
+    if (!positionIsValid(from) || !positionIsValid(to)) return box;
     DRAPE_UNROLL
     for (int i = 0; i < 3; ++i)
-        nodeInterval(start, end, node, radius, i, &box.m_low[i], &box.m_high[i]);
+    {
+        growInterval(from, radius, i, &box.m_low[i], &box.m_high[i]);
+        growInterval(to, radius, i, &box.m_low[i], &box.m_high[i]);
+    }
     return box;
 }
 
@@ -132,8 +131,9 @@ DRAPE_FUNCTION int nodeVolumesOverlap(const DRAPE_GLOBAL float* start, const DRA
         for (int k = 0; k < 4; ++k)
         {
             const int other = k >= split;
-            float least, greatest;
-            nodeInterval(start, end, nodes[k], radius, i, &least, &greatest);
+            float least = DRAPE_INFINITY, greatest = -DRAPE_INFINITY;
+            growInterval(from[k], radius, i, &least, &greatest);
+            growInterval(to[k], radius, i, &least, &greatest);
             low = other ? low : drapeMin(low, least);
             high = other ? high : drapeMax(high, greatest);
             lowOther = other ? drapeMin(lowOther, least) : lowOther;
@@ -169,7 +169,47 @@ DRAPE_FUNCTION LaneMask boxesOverlap(const BoxLanes* boxes, const FeatureBox* bo
     return near;
 }
 
-// Children of a wide node (patch.h) whose volumes overlap a volume; what their contacts can reach is not looked at.
+// The volume of a patch, from the lowest level of the wide tree (patch.h).
+DRAPE_FUNCTION Dop childVolume(const DRAPE_GLOBAL float* nodes, DRAPE_UINT patch)
+{
+    const DRAPE_GLOBAL float* child =
+        nodes + (patch / DRAPE_PATCH_WIDTH) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH + patch % DRAPE_PATCH_WIDTH;
+    Dop volume;
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        volume.m_low[i] = child[i * DRAPE_PATCH_WIDTH];
+        volume.m_high[i] = child[(DRAPE_DOP_DIRECTIONS + i) * DRAPE_PATCH_WIDTH];
+    }
+    return volume;
+}
+
+DRAPE_FUNCTION FeatureBox boxOfVolume(const Dop* volume)
+{
+    FeatureBox box;
+    for (int i = 0; i < 3; ++i)
+    {
+        box.m_low[i] = volume->m_low[i];
+        box.m_high[i] = volume->m_high[i];
+    }
+    return box;
+}
+
+DRAPE_FUNCTION FeatureBox childBox(const DRAPE_GLOBAL float* nodes, DRAPE_UINT patch)
+{
+    const Dop volume = childVolume(nodes, patch);
+    return boxOfVolume(&volume);
+}
+
+// Patches under a child of a node of that level of the wide tree.
+DRAPE_FUNCTION DRAPE_UINT patchesBelow(DRAPE_UINT level)
+{
+    DRAPE_UINT below = 1;
+    for (DRAPE_UINT i = 1; i < level; ++i)
+        below *= DRAPE_PATCH_WIDTH;
+    return below;
+}
+
+// Children of a wide node whose volumes overlap a volume; what their contacts can reach is not looked at.
 DRAPE_FUNCTION LaneMask wideOverlaps(const Dop* volume, const DRAPE_GLOBAL float* node)
 {
     LaneMask near = lanesMaskSplat(1);

@@ -78,15 +78,16 @@ typedef struct Candidate
 typedef struct StepCounters
 {
     DRAPE_UINT m_candidates;
-    DRAPE_UINT m_listed;  // places of the list of hits, those without a hit included
+    DRAPE_UINT m_listed;  // hits, before any is reduced
+    DRAPE_UINT m_crowded;  // slots with more than DRAPE_RANKED of them
     DRAPE_UINT m_hits;    // without those that were reduced
-    DRAPE_UINT m_found;   // all hits, where hits are reduced
     DRAPE_UINT m_invalidNodes;
     DRAPE_UINT m_intersections;
     DRAPE_UINT m_front;   // pairs of the front for the next step
     DRAPE_UINT m_spill;   // most pairs that did not fit into a traversal's local queue
     DRAPE_UINT m_swept;   // pairs of features that the continuous test decided
     DRAPE_UINT m_patchPairs;  // of cloth triangles and patches, where they are listed
+    DRAPE_UINT m_selfPairs;   // of patches of cloths with themselves, where they are listed
     DRAPE_UINT m_selfTests;   // pairs of features of cloths with themselves
     DRAPE_UINT m_selfSwept;   // of these, that the continuous test decided
     DRAPE_UINT m_visits;  // volume tests of the broad phase; only in programs built with DRAPE_COUNT_VISITS

@@ -36,16 +36,20 @@ public:
         guardCopy(m_device, m_candidates, m_pairs);
         std::vector<StepCounters> start(1);
         start[0].m_candidates = cl_uint(count);
-        Buffer<StepCounters> counterBuffer;
+        Buffer<StepCounters> counterBuffer, next;
         guardCopy(m_device, counterBuffer, start);
-        guard(m_device, m_stage.contacts(), m_stage.hitCapacity());
+        guardCopy(m_device, next, start);
+        guard(m_device, m_stage.contacts(), DRAPE_CONTACT_HEAD + m_stage.hitCapacity());
         m_stage.enqueue(m_device, sides(), m_cloth.m_pool.vertexCount(), m_cloth.m_pool.triangles().size(), settings(),
-                        m_candidates, counterBuffer);
+                        m_candidates, {counterBuffer, next});
         counters = readCounters(m_device, counterBuffer);
         const std::size_t fitting = std::min<std::size_t>(counters.m_hits, m_stage.hitCapacity());
-        std::vector<Contact> contacts = contents(m_device, m_stage.contacts(), fitting);
+        std::vector<Contact> contacts = contents(m_device, m_stage.contacts(), DRAPE_CONTACT_HEAD + fitting);
+        EXPECT_EQ(std::memcmp(contacts.data(), &counters, sizeof(counters)), 0) << "the head";
+        contacts.erase(contacts.begin(), contacts.begin() + DRAPE_CONTACT_HEAD);
         EXPECT_TRUE(intact(m_device, m_stage.contacts()) && intact(m_device, counterBuffer) &&
                     intact(m_device, m_candidates));
+        EXPECT_TRUE(intact(m_device, next) && sameBytes(contents(m_device, next, 1), std::vector<StepCounters>(1)));
         EXPECT_TRUE(m_clothBuffers.allIntact(m_device) && m_obstacleBuffers.allIntact(m_device));
         EXPECT_FALSE(m_device.failed()) << m_device.error().text();
         return contacts;

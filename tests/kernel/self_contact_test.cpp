@@ -56,35 +56,34 @@ public:
     {
         clearCounters(m_device, m_counters);
         guard(m_device, m_stage.tests(), capacity);
+        if (m_pairCapacity > 0) guard(m_device, m_stage.pairs(), m_pairCapacity);
         m_stage.enqueueCull(m_device, buffers(), m_counters);
         m_read = readCounters(m_device, m_counters);
         EXPECT_TRUE(intact(m_device, m_stage.tests()) && intact(m_device, m_counters));
+        EXPECT_TRUE(m_pairCapacity == 0 || intact(m_device, m_stage.pairs()));
         EXPECT_TRUE(m_buffers.allIntact(m_device) && intact(m_device, m_obstacleRadius));
         return contents(m_device, m_stage.tests(),
                         std::min<std::size_t>(m_read.m_selfTests, m_stage.tests().capacity()));
     }
 
-    // Hits of the tests of the last cull, in no order, behind `behind` places.
-    std::vector<Contact> contacts(std::size_t behind)
+    // Hits of the tests of the last cull, in no order, behind `behind` others; with room for `room`, as many as fit.
+    std::vector<Contact> contacts(std::size_t behind, std::size_t room = SIZE_MAX)
     {
         const MeshPool& pool = m_side.m_pool;
         const std::size_t tests = std::min<std::size_t>(m_read.m_selfTests, m_stage.tests().capacity());
         const std::size_t slots = 2 * (pool.vertexCount() + pool.triangles().size() + pool.edges().size());
         Buffer<Contact> hits;
         Buffer<cl_uint> slotCount;
-        m_read.m_candidates = cl_uint(behind);
+        m_read.m_listed = cl_uint(behind);
         guardCopy(m_device, m_counters, std::vector<StepCounters>{m_read});
-        guard(m_device, hits, behind + tests);
+        guard(m_device, hits, behind + std::min(tests, room));
         guardCopy(m_device, slotCount, std::vector<cl_uint>(slots, 0));
-        m_stage.enqueueContacts(m_device, buffers(), {hits, slotCount, hits.capacity(), behind}, m_counters);
+        m_stage.enqueueContacts(m_device, buffers(), {hits, slotCount}, m_counters);
         m_read = readCounters(m_device, m_counters);
-        EXPECT_EQ(m_read.m_listed, behind + tests);
         EXPECT_TRUE(intact(m_device, hits) && intact(m_device, slotCount) && intact(m_device, m_counters));
-        std::vector<Contact> all = contents(m_device, hits, behind + tests);
+        std::vector<Contact> all =
+            contents(m_device, hits, std::min<std::size_t>(m_read.m_listed, behind + std::min(tests, room)));
         all.erase(all.begin(), all.begin() + std::ptrdiff_t(behind));
-        all.erase(
-            std::remove_if(all.begin(), all.end(), [](const Contact& hit) { return hit.m_slot == DRAPE_NO_FEATURE; }),
-            all.end());
         std::vector<cl_uint> expected(slots, 0);
         for (const Contact& hit : all)
             ++expected[hit.m_slot];
@@ -104,6 +103,8 @@ public:
         return contacts;
     }
 
+    // Room for pairs of patches; 0: what the stage has.
+    std::size_t m_pairCapacity = 0;
     StepCounters m_read = {};
     std::uint64_t m_candidates = 0;
 
@@ -153,6 +154,38 @@ TEST_P(SelfContactTest, FullListsSayWhatThereIs)
         EXPECT_EQ(some.size(), capacity);
         EXPECT_TRUE(std::includes(all.begin(), all.end(), some.begin(), some.end()));
         self.contacts(0);
+    }
+}
+
+TEST_P(SelfContactTest, FullListsOfHitsCountOn)
+{
+    DeviceSelf self(*m_device, foldedCase(25, 4, 0.003f, 130));
+    std::vector<Contact> expected = self.onHost();
+    ASSERT_GT(expected.size(), 60u);
+    for (const std::size_t room : {std::size_t(1), expected.size() / 3, expected.size() - 1})
+    {
+        self.cull(self.m_candidates);
+        const std::vector<Contact> some = self.contacts(2, room);
+        EXPECT_EQ(some.size(), room);
+        EXPECT_EQ(self.m_read.m_listed, 2 + expected.size());
+    }
+}
+
+// On a GPU, where pairs of patches are listed.
+TEST_P(SelfContactTest, FullListsOfPatchesCountOn)
+{
+    DeviceSelf self(*m_device, foldedCase(25, 4, 0.003f, 130));
+    self.onHost();
+    self.cull(self.m_candidates);
+    const std::uint32_t pairs = self.m_read.m_selfPairs;
+    EXPECT_EQ(pairs > 0, m_device->isGpu());
+    for (const std::size_t capacity : {std::size_t(1), std::size_t(pairs / 2)})
+    {
+        if (pairs == 0) break;
+        self.m_pairCapacity = capacity;
+        const std::vector<Key> some = keysOf(self.cull(self.m_candidates));
+        EXPECT_EQ(self.m_read.m_selfPairs, pairs);
+        EXPECT_LT(some.size(), self.m_candidates);
     }
 }
 

@@ -126,8 +126,8 @@ void PatchCullStage::packVolumes(Device& device, Range patches, Buffer<Triangle>
         else
         {
             const std::size_t below = m_layout.m_levels[level - 1];
-            m_widen.launch(device, changed.count(), kGroup, m_wideNodes.handle(), cl_uint(below),
-                           cl_uint(first - below), cl_uint(first), changed.first(), changed.last());
+            m_widen.launch(device, changed.count() * DRAPE_WIDE_NODE_FLOATS, kGroup, m_wideNodes.handle(),
+                           cl_uint(below), cl_uint(first - below), cl_uint(first), changed.first(), changed.last());
         }
         children = m_layout.m_levels[level + 1] - first;
         changed = {changed.m_first / width, (changed.m_last + width - 1) / width};

@@ -11,8 +11,8 @@ constexpr std::size_t kReduceGroup = 64;     // as in kernels/contact_reduction.
 constexpr std::size_t kReduceBlockGpu = 64;  // slots of such a group
 constexpr std::size_t kReduceBlockCpu = 256;
 constexpr std::size_t kBlock = 1024;        // slots per work-group, as in kernels/compaction.cl
-constexpr std::size_t kFewSlots = 1 << 14;  // one group places them: fewer launches
-constexpr std::size_t kPlaceGroupGpu = 512;
+constexpr std::size_t kFewSlots = 1 << 14;  // placed in one launch
+constexpr std::size_t kPlaceGroupGpu = 256;
 constexpr std::size_t kItemsPerUnitGpu = 1024;  // work-items per compute unit that hide a GPU's latency
 constexpr std::size_t kItemsPerUnitCpu = 256;   // four groups per core, so that uneven ones even out
 }  // namespace
@@ -63,9 +63,8 @@ void NarrowPhaseStage::resizeSlots(Device& device, std::size_t slotCount)
 void NarrowPhaseStage::reserveHits(Device& device, std::size_t count)
 {
     m_hits.reserve(device, count);
-    m_contacts.reserve(device, count);
+    m_contacts.reserve(device, DRAPE_CONTACT_HEAD + count);
     m_members.reserve(device, count);
-    m_sweptTests.reserve(device, count);
     if (m_reduces) m_kept.reserve(device, count);
 }
 
@@ -76,37 +75,38 @@ std::size_t NarrowPhaseStage::listWidth(const Device& device) const
 
 void NarrowPhaseStage::enqueue(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount,
                                std::size_t triangleCount, const NarrowPhaseSettings& settings,
-                               Buffer<Candidate>& candidates, Buffer<StepCounters>& counters,
-                               const ReductionBuffers* reduction, const SelfWork* self)
+                               Buffer<Candidate>& candidates, StepTally tally, const ReductionBuffers* reduction,
+                               const SelfWork* self)
 {
-    // Before the others' hits, which are listed behind what is there.
-    if (self) enqueueSelfHits(device, 0, counters, *self);
     const std::size_t width = listWidth(device);
     const cl_uint hitCapacity = cl_uint(m_hits.capacity());
-    m_test.launch(device, width, kGroup, candidates.handle(), cl_uint(candidates.capacity()),
-                  sides.m_clothStart.handle(), sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(),
-                  sides.m_clothEdges.handle(), cl_uint(nodeCount), cl_uint(triangleCount),
-                  sides.m_obstaclePositions.handle(), sides.m_obstacleTriangles.handle(), sides.m_vertexCones.handle(),
-                  sides.m_edgeCones.handle(), sides.m_thickness.handle(), cl_uint(settings.m_obstacleMeshes),
-                  settings.m_reachScale, cl_uint(settings.m_mode), sides.m_motions.handle(),
-                  cl_uint(sides.m_motionCount), m_hits.handle(), hitCapacity, m_slotCount.handle(), counters.handle());
-    enqueueCompaction(device, sides, counters, reduction);
+    m_test.launch(
+        device, width, kGroup, candidates.handle(), cl_uint(candidates.capacity()), sides.m_clothStart.handle(),
+        sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(), sides.m_clothEdges.handle(), cl_uint(nodeCount),
+        cl_uint(triangleCount), sides.m_obstaclePositions.handle(), sides.m_obstacleTriangles.handle(),
+        sides.m_vertexCones.handle(), sides.m_edgeCones.handle(), sides.m_thickness.handle(),
+        cl_uint(settings.m_obstacleMeshes), settings.m_reachScale, cl_uint(settings.m_mode), sides.m_motions.handle(),
+        cl_uint(sides.m_motionCount), m_hits.handle(), hitCapacity, m_slotCount.handle(), tally.m_now.handle());
+    if (self) enqueueSelfHits(device, tally, *self);
+    enqueueCompaction(device, sides, tally, reduction);
 }
 
 void NarrowPhaseStage::enqueueFeatures(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount,
                                        std::size_t triangleCount, std::uint32_t mode, PatchCullStage& cull,
-                                       Buffer<StepCounters>& counters, const ReductionBuffers* reduction,
-                                       const SelfWork* self)
+                                       StepTally tally, const ReductionBuffers* reduction, const SelfWork* self)
 {
     PatchCullStage::Features features = cull.features();
     const std::size_t width = listWidth(device);
-    m_feature.launch(
-        device, width, kGroup, cull.tests().handle(), cl_uint(cull.tests().capacity()), sides.m_clothStart.handle(),
-        sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(), sides.m_clothEdges.handle(), cl_uint(nodeCount),
-        cl_uint(triangleCount), cl_uint(mode), sides.m_obstacleTriangles.handle(), sides.m_vertexCones.handle(),
-        sides.m_edgeCones.handle(), features.m_faces.handle(), features.m_vertices.handle(), features.m_edges.handle(),
-        features.m_faceIds.handle(), features.m_vertexIds.handle(), features.m_edgeIds.handle(),
-        sides.m_motions.handle(), m_hits.handle(), m_sweptTests.handle(), m_slotCount.handle(), counters.handle());
+    const cl_uint hitCapacity = cl_uint(m_hits.capacity());
+    m_sweptTests.reserve(device, cull.tests().capacity());
+    m_feature.launch(device, width, kGroup, cull.tests().handle(), cl_uint(cull.tests().capacity()),
+                     sides.m_clothStart.handle(), sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(),
+                     sides.m_clothEdges.handle(), cl_uint(nodeCount), cl_uint(triangleCount), cl_uint(mode),
+                     sides.m_obstacleTriangles.handle(), sides.m_vertexCones.handle(), sides.m_edgeCones.handle(),
+                     features.m_faces.handle(), features.m_vertices.handle(), features.m_edges.handle(),
+                     features.m_faceIds.handle(), features.m_vertexIds.handle(), features.m_edgeIds.handle(),
+                     sides.m_motions.handle(), m_sweptTests.handle(), m_hits.handle(), hitCapacity,
+                     m_slotCount.handle(), tally.m_now.handle());
     if (mode != DRAPE_DISCRETE)
     {
         m_swept.launch(device, width, kGroup, cull.tests().handle(), sides.m_clothStart.handle(),
@@ -115,79 +115,82 @@ void NarrowPhaseStage::enqueueFeatures(Device& device, NarrowPhaseBuffers sides,
                        sides.m_vertexCones.handle(), sides.m_edgeCones.handle(), features.m_faces.handle(),
                        features.m_vertices.handle(), features.m_edges.handle(), features.m_faceIds.handle(),
                        features.m_vertexIds.handle(), features.m_edgeIds.handle(), sides.m_motions.handle(),
-                       m_hits.handle(), m_sweptTests.handle(), m_slotCount.handle(), counters.handle());
+                       m_sweptTests.handle(), m_hits.handle(), hitCapacity, m_slotCount.handle(), tally.m_now.handle());
     }
-    if (self) enqueueSelfHits(device, cull.tests().capacity(), counters, *self);
-    enqueueCompaction(device, sides, counters, reduction);
+    if (self) enqueueSelfHits(device, tally, *self);
+    enqueueCompaction(device, sides, tally, reduction);
 }
 
-void NarrowPhaseStage::enqueueSelf(Device& device, NarrowPhaseBuffers sides, Buffer<StepCounters>& counters,
-                                   const SelfWork& self)
+void NarrowPhaseStage::enqueueSelf(Device& device, NarrowPhaseBuffers sides, StepTally tally, const SelfWork& self)
 {
-    enqueueSelfHits(device, 0, counters, self);
-    enqueueCompaction(device, sides, counters, nullptr);
+    enqueueSelfHits(device, tally, self);
+    enqueueCompaction(device, sides, tally, nullptr);
 }
 
-void NarrowPhaseStage::enqueueSelfHits(Device& device, std::size_t obstacleCapacity, Buffer<StepCounters>& counters,
-                                       const SelfWork& self)
+void NarrowPhaseStage::enqueueSelfHits(Device& device, StepTally tally, const SelfWork& self)
 {
-    self.m_stage.enqueueContacts(device, self.m_step, {m_hits, m_slotCount, m_hits.capacity(), obstacleCapacity},
-                                 counters);
+    self.m_stage.enqueueContacts(device, self.m_step, {m_hits, m_slotCount}, tally.m_now);
 }
 
 // Where each slot's contacts begin.
 void NarrowPhaseStage::enqueuePlaces(Device& device, Buffer<cl_uint>& slotCount, Buffer<cl_uint>& slotFirst,
-                                     Buffer<StepCounters>& counters)
+                                     StepTally tally)
 {
     const cl_uint slots = cl_uint(m_slots);
+    const std::size_t blocks = (m_slots + kBlock - 1) / kBlock;
     if (m_slots <= kFewSlots)
     {
         const std::size_t group = device.isGpu() ? kPlaceGroupGpu : kGroup;
-        m_placeFew.launch(device, group, group, slotCount.handle(), slots, slotFirst.handle(), counters.handle(),
-                          cl::Local(group * sizeof(cl_uint)));
+        m_placeFew.launch(device, blocks * group, group, slotCount.handle(), slots, slotFirst.handle(),
+                          tally.m_now.handle(), cl::Local(group * sizeof(cl_uint)));
         return;
     }
-    const std::size_t blocks = (m_slots + kBlock - 1) / kBlock;
     const cl::LocalSpaceArg scratch = cl::Local(kGroup * sizeof(cl_uint));
     m_count.launch(device, blocks * kGroup, kGroup, slotCount.handle(), slots, m_blockCount.handle(), scratch);
-    m_scan.launch(device, kGroup, kGroup, m_blockCount.handle(), cl_uint(blocks), counters.handle(), scratch);
+    m_scan.launch(device, kGroup, kGroup, m_blockCount.handle(), cl_uint(blocks), tally.m_now.handle(), scratch);
     m_place.launch(device, blocks * kGroup, kGroup, slotCount.handle(), slots, m_blockCount.handle(),
-                   slotFirst.handle(), scratch);
+                   slotFirst.handle(), tally.m_now.handle(), scratch);
 }
 
-void NarrowPhaseStage::enqueueCompaction(Device& device, NarrowPhaseBuffers sides, Buffer<StepCounters>& counters,
+// Slots with many hits.
+void NarrowPhaseStage::enqueueOrder(Device& device, StepTally tally)
+{
+    const std::size_t block = device.isGpu() ? kSortBlockGpu : kBlock;
+    m_order.launch(device, (m_slots + block - 1) / block * kSortGroup, kSortGroup, m_hits.handle(),
+                   cl_uint(m_hits.capacity()), m_slotFirst.handle(), cl_uint(m_slots), cl_uint(block),
+                   m_members.handle(), tally.m_now.handle());
+}
+
+void NarrowPhaseStage::enqueueCompaction(Device& device, NarrowPhaseBuffers sides, StepTally tally,
                                          const ReductionBuffers* reduction)
 {
     const cl_uint hitCapacity = cl_uint(m_hits.capacity());
     const std::size_t width = listWidth(device);
-    enqueuePlaces(device, m_slotCount, m_slotFirst, counters);
+    enqueuePlaces(device, m_slotCount, m_slotFirst, tally);
     m_gather.launch(device, width, kGroup, m_hits.handle(), hitCapacity, m_slotCount.handle(), m_slotFirst.handle(),
-                    m_members.handle(), counters.handle());
-    const std::size_t sortBlock = device.isGpu() ? kSortBlockGpu : kBlock;
-    const std::size_t sortGroups = (m_slots + sortBlock - 1) / sortBlock;
-    m_order.launch(device, sortGroups * kSortGroup, kSortGroup, m_hits.handle(), hitCapacity, m_slotFirst.handle(),
-                   cl_uint(m_slots), cl_uint(sortBlock), m_members.handle(), counters.handle());
+                    m_members.handle(), tally.m_now.handle(), tally.m_next.handle());
+    if (tally.m_ordered) enqueueOrder(device, tally);
     if (reduction)
-        enqueueReduction(device, sides, counters, *reduction);
+        enqueueReduction(device, sides, tally, *reduction);
     else
         m_write.launch(device, width, kGroup, m_hits.handle(), hitCapacity, m_slotFirst.handle(), cl_uint(m_slots),
-                       m_members.handle(), m_contacts.handle(), counters.handle());
+                       m_members.handle(), m_contacts.handle(), tally.m_now.handle());
 }
 
-void NarrowPhaseStage::enqueueReduction(Device& device, NarrowPhaseBuffers sides, Buffer<StepCounters>& counters,
+void NarrowPhaseStage::enqueueReduction(Device& device, NarrowPhaseBuffers sides, StepTally tally,
                                         const ReductionBuffers& reduction)
 {
     const cl_uint hitCapacity = cl_uint(m_hits.capacity());
     const std::size_t block = device.isGpu() ? kReduceBlockGpu : kReduceBlockCpu;
     m_keep.launch(device, (m_slots + block - 1) / block * kReduceGroup, kReduceGroup, m_hits.handle(), hitCapacity,
                   m_slotFirst.handle(), cl_uint(m_slots), cl_uint(block), m_members.handle(), m_kept.handle(),
-                  m_slotKept.handle(), counters.handle(), sides.m_clothStart.handle(), sides.m_clothEnd.handle(),
+                  m_slotKept.handle(), tally.m_now.handle(), sides.m_clothStart.handle(), sides.m_clothEnd.handle(),
                   sides.m_clothTriangles.handle(), sides.m_clothEdges.handle(), reduction.m_cloths.handle(),
                   reduction.m_obstacles.handle(), cl_uint(reduction.m_clothCount), cl_uint(reduction.m_obstacleCount),
                   sides.m_thickness.handle(), reduction.m_tube.handle());
-    enqueuePlaces(device, m_slotKept, m_keptFirst, counters);
+    enqueuePlaces(device, m_slotKept, m_keptFirst, tally);
     m_writeKept.launch(device, listWidth(device), kGroup, m_hits.handle(), hitCapacity, m_slotFirst.handle(),
-                       m_kept.handle(), m_keptFirst.handle(), m_contacts.handle(), counters.handle());
+                       m_kept.handle(), m_keptFirst.handle(), m_contacts.handle(), tally.m_now.handle());
 }
 
 void NarrowPhaseStage::enqueueIntersect(Device& device, NarrowPhaseBuffers sides, Buffer<Candidate>& candidates,

@@ -89,6 +89,16 @@ struct SelfWork
     SelfBuffers m_step;
 };
 
+// The step's counters, and those of the next step, which compaction leaves zero. m_ordered: slots with more than
+// DRAPE_RANKED hits are put in order; where they are not and there are some, which the counters tell, the step must run
+// again.
+struct StepTally
+{
+    Buffer<StepCounters>& m_now;
+    Buffer<StepCounters>& m_next;
+    bool m_ordered = true;
+};
+
 class NarrowPhaseStage
 {
 public:
@@ -99,40 +109,37 @@ public:
     // Room for the slots of a cloth side: its nodes, faces and edges.
     void resizeSlots(Device& device, std::size_t slotCount);
 
-    // Room for a list of hits and as many contacts.
+    // Room for a list of hits and as many contacts. Steps count the hits on where it is full.
     void reserveHits(Device& device, std::size_t count);
     void reserveIntersections(Device& device, std::size_t count) { m_intersections.reserve(device, count); }
     std::size_t hitCapacity() const { return m_hits.capacity(); }
+    // Behind a head of DRAPE_CONTACT_HEAD places, which holds the step's counters.
     Buffer<Contact>& contacts() { return m_contacts; }
     Buffer<Candidate>& intersections() { return m_intersections; }
 
-    // Contacts of pairs of triangles. Returns after enqueueing. counters' places and intersections must be zero before.
-    // reduction: null where no contact is to be left out. self: null where no cloth is tested against itself; there
-    // must be room for as many hits more as it has tests.
+    // Contacts of pairs of triangles. Returns after enqueueing. The tally's counters of places and intersections must
+    // be zero before. reduction: null where no contact is to be left out. self: null where no cloth is tested against
+    // itself.
     void enqueue(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
-                 const NarrowPhaseSettings& settings, Buffer<Candidate>& candidates, Buffer<StepCounters>& counters,
+                 const NarrowPhaseSettings& settings, Buffer<Candidate>& candidates, StepTally tally,
                  const ReductionBuffers* reduction = nullptr, const SelfWork* self = nullptr);
-    // Contacts of the feature tests that a cull left. There must be room for as many hits as tests. mode:
-    // DRAPE_DISCRETE …; a discrete step is one launch less.
+    // Contacts of the feature tests that a cull left. mode: DRAPE_DISCRETE …; a discrete step is one launch less.
     void enqueueFeatures(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
-                         std::uint32_t mode, PatchCullStage& cull, Buffer<StepCounters>& counters,
+                         std::uint32_t mode, PatchCullStage& cull, StepTally tally,
                          const ReductionBuffers* reduction = nullptr, const SelfWork* self = nullptr);
     // Contacts of cloths with themselves alone.
-    void enqueueSelf(Device& device, NarrowPhaseBuffers sides, Buffer<StepCounters>& counters, const SelfWork& self);
+    void enqueueSelf(Device& device, NarrowPhaseBuffers sides, StepTally tally, const SelfWork& self);
     void enqueueIntersect(Device& device, NarrowPhaseBuffers sides, Buffer<Candidate>& candidates,
                           Buffer<StepCounters>& counters);
 
 private:
-    void enqueueCompaction(Device& device, NarrowPhaseBuffers sides, Buffer<StepCounters>& counters,
+    void enqueueCompaction(Device& device, NarrowPhaseBuffers sides, StepTally tally,
                            const ReductionBuffers* reduction);
-    void enqueueReduction(Device& device, NarrowPhaseBuffers sides, Buffer<StepCounters>& counters,
-                          const ReductionBuffers& reduction);
+    void enqueueReduction(Device& device, NarrowPhaseBuffers sides, StepTally tally, const ReductionBuffers& reduction);
     // Where the hits of each slot begin, from their numbers.
-    void enqueuePlaces(Device& device, Buffer<cl_uint>& slotCount, Buffer<cl_uint>& slotFirst,
-                       Buffer<StepCounters>& counters);
-    // Hits of self tests, behind obstacleCapacity places.
-    void enqueueSelfHits(Device& device, std::size_t obstacleCapacity, Buffer<StepCounters>& counters,
-                         const SelfWork& self);
+    void enqueuePlaces(Device& device, Buffer<cl_uint>& slotCount, Buffer<cl_uint>& slotFirst, StepTally tally);
+    void enqueueOrder(Device& device, StepTally tally);
+    void enqueueSelfHits(Device& device, StepTally tally, const SelfWork& self);
     std::size_t listWidth(const Device& device) const;
 
     Kernel m_test, m_feature, m_swept, m_intersect, m_count, m_scan, m_place, m_placeFew, m_gather, m_order, m_write;
@@ -141,7 +148,7 @@ private:
     Buffer<Candidate> m_intersections{"step intersections"};
     Buffer<cl_uint> m_slotCount{"cloth slots"}, m_slotFirst{"cloth slots"}, m_blockCount{"cloth slots"};
     Buffer<cl_uint> m_slotKept{"cloth slots"}, m_keptFirst{"cloth slots"};  // only where contacts may be reduced
-    Buffer<cl_uint> m_members{"step hits"}, m_sweptTests{"step hits"}, m_kept{"step hits"};
+    Buffer<cl_uint> m_members{"step hits"}, m_kept{"step hits"}, m_sweptTests{"step candidates"};
     std::size_t m_slots = 0;
     bool m_reduces = false;
 };

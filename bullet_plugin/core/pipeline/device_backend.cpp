@@ -11,6 +11,8 @@ namespace
 constexpr std::size_t kFirstCandidates = 1 << 16;
 constexpr std::size_t kFirstContacts = 1 << 13;
 constexpr std::size_t kPlaceGroup = 64;
+// For so many steps after one in which slots had many hits they are put in order; without it such a step runs twice.
+constexpr int kStepsToOrder = 64;
 
 std::size_t withHeadroom(std::size_t count)
 {
@@ -42,11 +44,15 @@ DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& set
     m_motions.reserve(*m_device, 1);
     m_candidates.reserve(*m_device, 1);
     m_patchCull.reserveTests(*m_device, kFirstCandidates);
-    m_narrowPhase.reserveHits(*m_device, kFirstCandidates);
+    m_narrowPhase.reserveHits(*m_device, kFirstContacts);
     m_narrowPhase.reserveIntersections(*m_device, 1);
-    m_counters.reserve(*m_device, 1);
-    m_countersRead.reserve(m_device.get(), 1);
-    m_contactsRead.reserve(m_device.get(), kFirstContacts);
+    for (Buffer<StepCounters>& counters : m_counters)
+    {
+        counters.reserve(*m_device, 1);
+        counters.fill(*m_device, 0, 1);
+    }
+    m_refitCounters.reserve(*m_device, 1);
+    m_contactsRead.reserve(m_device.get(), DRAPE_CONTACT_HEAD + kFirstContacts);
     warmUp();
 }
 
@@ -129,7 +135,6 @@ void DeviceBackend::prepareSelf()
 {
     if (m_self.created() || m_device->failed()) return;
     m_self.create(*m_device, [this](const char* name) { return program(name, PatchCullStage::defines(*m_device)); });
-    reserveHits();
     warmUp(0.1f);
 }
 
@@ -275,7 +280,8 @@ void DeviceBackend::refitObstacles(const Scene& scene)
     const std::vector<float> noRadius(scene.m_obstacles.meshCount(), 0.0f);
     m_obstacle.m_radius.assign(*m_device, noRadius);
     m_refit.enqueue(*m_device, scene.m_obstacleLayout, m_obstacle.m_levels, m_obstacle.m_nodes, m_obstacle.m_order,
-                    m_obstacle.m_triangles, m_obstaclePositions, m_obstaclePositions, m_obstacle.m_radius, m_counters);
+                    m_obstacle.m_triangles, m_obstaclePositions, m_obstaclePositions, m_obstacle.m_radius,
+                    m_refitCounters);
     m_broadPhase.obstaclesRefitted(*m_device, m_obstacle.m_nodes);
     m_device->wait();  // noRadius is a local
 }
@@ -328,7 +334,7 @@ SelfWork DeviceBackend::selfWork(const Scene& scene)
 void DeviceBackend::enqueueBroad(const Scene& scene, const StepPairs& pairs)
 {
     const std::size_t obstacleMeshes = scene.m_obstacles.meshCount();
-    if (pairs.m_anySelf) m_self.enqueueCull(*m_device, selfWork(scene).m_step, m_counters);
+    if (pairs.m_anySelf) m_self.enqueueCull(*m_device, selfWork(scene).m_step, counters());
     if (!pairs.m_anyPair) return;
     if (patches())
     {
@@ -337,12 +343,12 @@ void DeviceBackend::enqueueBroad(const Scene& scene, const StepPairs& pairs)
             {m_cloth.m_order, m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, m_thickness,
              scene.m_cloths.triangles().size(), obstacleMeshes, 1.0f + m_settings.m_activation,
              std::uint32_t(m_settings.m_mode), m_motions, pairs.m_motions.size(), StepLimits(m_settings).m_candidates},
-            m_counters);
+            counters());
         return;
     }
     RefitStage::Motions motions = {m_motions, pairs.m_motions.size(), m_thickness, obstacleMeshes};
     m_refit.enqueue(*m_device, scene.m_clothLayout, m_cloth.m_levels, m_cloth.m_nodes, m_cloth.m_order,
-                    m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, m_counters,
+                    m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, counters(),
                     pairs.m_motions.empty() ? nullptr : &motions);
     if (pairs.m_measureTree)
         m_treeCost.enqueue(*m_device, m_cloth.m_nodes, scene.m_clothLayout.nodeCount(), scene.m_clothLayout.root());
@@ -351,7 +357,7 @@ void DeviceBackend::enqueueBroad(const Scene& scene, const StepPairs& pairs)
                                      m_thickness,
                                      obstacleMeshes,
                                      m_candidates,
-                                     m_counters,
+                                     counters(),
                                      StepLimits(m_settings).m_candidates});
 }
 
@@ -365,34 +371,33 @@ void DeviceBackend::enqueueNarrow(const Scene& scene, const StepPairs& pairs)
     const SelfWork* const self = pairs.m_anySelf ? &own : nullptr;
     const std::size_t nodes = scene.m_cloths.vertexCount(), triangles = scene.m_cloths.triangles().size();
     const std::uint32_t mode = std::uint32_t(m_settings.m_mode);
+    if (pairs.m_anyPair && m_settings.m_reportIntersections)
+        m_narrowPhase.enqueueIntersect(*m_device, narrowPhaseBuffers(pairs), m_candidates, counters());
     if (!pairs.m_anyPair)
     {
-        m_narrowPhase.enqueueSelf(*m_device, narrowPhaseBuffers(pairs), m_counters, own);
+        m_narrowPhase.enqueueSelf(*m_device, narrowPhaseBuffers(pairs), tally(), own);
         return;
     }
     if (patches())
     {
         m_narrowPhase.enqueueFeatures(*m_device, narrowPhaseBuffers(pairs), nodes, triangles, mode, m_patchCull,
-                                      m_counters, reduction, self);
+                                      tally(), reduction, self);
     }
     else
     {
         const NarrowPhaseSettings narrow = {
             pairs.m_thickness, obstacleMeshes, 1.0f + m_settings.m_activation, mode, {}};
-        m_narrowPhase.enqueue(*m_device, narrowPhaseBuffers(pairs), nodes, triangles, narrow, m_candidates, m_counters,
+        m_narrowPhase.enqueue(*m_device, narrowPhaseBuffers(pairs), nodes, triangles, narrow, m_candidates, tally(),
                               reduction, self);
     }
-    if (m_settings.m_reportIntersections)
-        m_narrowPhase.enqueueIntersect(*m_device, narrowPhaseBuffers(pairs), m_candidates, m_counters);
 }
 
 void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
 {
-    m_counters.fill(*m_device, 0, 1);
+    m_turn = 1 - m_turn;
     enqueueBroad(scene, pairs);
     enqueueNarrow(scene, pairs);
-    m_counters.read(*m_device, m_countersRead.data(), 1);
-    m_narrowPhase.contacts().read(*m_device, m_contactsRead.data(), m_contactsAsked);
+    readContacts(m_contactsAsked);
     m_device->flush();
 }
 
@@ -404,38 +409,45 @@ void DeviceBackend::submit(const Scene& scene, const StepPairs& pairs)
     enqueueStep(scene, pairs);
 }
 
+void DeviceBackend::readContacts(std::size_t count)
+{
+    m_narrowPhase.contacts().read(*m_device, m_contactsRead.data(), DRAPE_CONTACT_HEAD + count);
+}
+
+StepCounters DeviceBackend::countersRead() const
+{
+    StepCounters counters;
+    static_assert(sizeof(counters) <= DRAPE_CONTACT_HEAD * sizeof(Contact));
+    std::memcpy(&counters, m_contactsRead.data(), sizeof(counters));
+    return counters;
+}
+
 bool DeviceBackend::overLimit(StepResult& result)
 {
-    const StepCounters counters = *m_countersRead.data();
+    const StepCounters counters = countersRead();
     const StepLimits limits(m_settings);
     // Hits are all of them only where every candidate was there to be tested.
-    const bool complete = patches() ? counters.m_patchPairs <= m_patchCull.pairs().capacity() &&
-                                          counters.m_candidates <= m_patchCull.tests().capacity()
-                                    : counters.m_candidates <= m_candidates.capacity();
-    const std::size_t hits = std::max(counters.m_hits, counters.m_found);
-    // Where hits are listed as they come, those of self tests are among them with places that hold none.
-    const std::size_t selfPlaces = std::min<std::size_t>(counters.m_selfTests, m_self.tests().capacity());
-    const std::size_t found =
-        patches() ? hits : std::max(hits, counters.m_listed - std::min<std::size_t>(selfPlaces, counters.m_listed));
-    if (std::max({counters.m_candidates, counters.m_patchPairs, counters.m_selfTests}) > limits.m_candidates)
-        result.m_overLimit = true;
-    else if (complete && counters.m_selfTests <= m_self.tests().capacity() && found > limits.m_contacts)
+    const bool ofObstacles = patches() ? counters.m_patchPairs <= m_patchCull.pairs().capacity() &&
+                                             counters.m_candidates <= m_patchCull.tests().capacity()
+                                       : counters.m_candidates <= m_candidates.capacity();
+    const bool ofSelf =
+        counters.m_selfPairs <= m_self.pairs().capacity() && counters.m_selfTests <= m_self.tests().capacity();
+    if (std::max({counters.m_candidates, counters.m_patchPairs, counters.m_selfPairs, counters.m_selfTests}) >
+        limits.m_candidates)
     {
         result.m_overLimit = true;
-        result.m_contactDemand = found;
+    }
+    else if (ofObstacles && ofSelf && counters.m_listed > limits.m_contacts)
+    {
+        result.m_overLimit = true;
+        result.m_contactDemand = counters.m_listed;
     }
     return result.m_overLimit;
 }
 
-void DeviceBackend::reserveHits()
-{
-    const std::size_t tests = patches() ? m_patchCull.tests().capacity() : 0;
-    m_narrowPhase.reserveHits(*m_device, tests + m_self.tests().capacity());
-}
-
 bool DeviceBackend::grow()
 {
-    const StepCounters counters = *m_countersRead.data();
+    const StepCounters counters = countersRead();
     const std::size_t largest = m_device->maxAllocationBytes();
     bool again = false;
     const auto demand = [&](std::size_t wanted, std::size_t capacity, std::size_t elementBytes, auto reserve)
@@ -454,7 +466,7 @@ bool DeviceBackend::grow()
     {
         demand(counters.m_patchPairs, m_patchCull.pairs().capacity(), sizeof(FeatureTest),
                [&](std::size_t count) { m_patchCull.reservePairs(device, count); });
-        demand(counters.m_candidates, m_patchCull.tests().capacity(), sizeof(Contact),
+        demand(counters.m_candidates, m_patchCull.tests().capacity(), sizeof(FeatureTest),
                [&](std::size_t count) { m_patchCull.reserveTests(device, count); });
     }
     else
@@ -462,14 +474,20 @@ bool DeviceBackend::grow()
         again = m_broadPhase.grow(device, counters, m_limitReached);
         demand(counters.m_candidates, m_candidates.capacity(), sizeof(Candidate),
                [&](std::size_t count) { m_candidates.reserve(device, count); });
-        demand(std::min(std::size_t(counters.m_listed), StepLimits(m_settings).m_contacts), m_narrowPhase.hitCapacity(),
-               sizeof(Contact), [&](std::size_t count) { m_narrowPhase.reserveHits(device, count); });
     }
-    demand(counters.m_selfTests, m_self.tests().capacity(), sizeof(Contact),
+    demand(counters.m_selfPairs, m_self.pairs().capacity(), sizeof(Candidate),
+           [&](std::size_t count) { m_self.reservePairs(device, count); });
+    demand(counters.m_selfTests, m_self.tests().capacity(), sizeof(FeatureTest),
            [&](std::size_t count) { m_self.reserveTests(device, count); });
-    const std::size_t hits = m_self.tests().capacity() + (patches() ? m_patchCull.tests().capacity() : 0);
-    if (hits * sizeof(Contact) > largest) m_limitReached = again = true;
-    if (again && !m_limitReached) reserveHits();
+    demand(std::min(std::size_t(counters.m_listed), StepLimits(m_settings).m_contacts), m_narrowPhase.hitCapacity(),
+           sizeof(Contact), [&](std::size_t count) { m_narrowPhase.reserveHits(device, count); });
+    if (counters.m_crowded > 0)
+    {
+        again |= m_stepsToOrder == 0;
+        m_stepsToOrder = kStepsToOrder;
+    }
+    else if (m_stepsToOrder > 0)
+        --m_stepsToOrder;
     demand(counters.m_intersections, m_narrowPhase.intersections().capacity(), sizeof(Candidate),
            [&](std::size_t count) { m_narrowPhase.reserveIntersections(device, count); });
     return again;
@@ -489,7 +507,7 @@ bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResul
         m_device->wait();
     }
     if (m_device->failed()) return false;
-    if (!patches()) m_broadPhase.accept(*m_device, *m_countersRead.data());
+    if (!patches()) m_broadPhase.accept(*m_device, countersRead());
     readAll(result);
     if (pairs.m_measureTree) result.m_treeCost = m_treeCost.cost();
     return !m_device->failed();
@@ -497,13 +515,13 @@ bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResul
 
 void DeviceBackend::readAll(StepResult& result)
 {
-    const StepCounters counters = *m_countersRead.data();
+    const StepCounters counters = countersRead();
     result.m_candidates = counters.m_candidates;
     result.m_volumeTests = counters.m_visits;
     result.m_sweptTests = counters.m_swept;
     result.m_selfCandidates = counters.m_selfTests;
     result.m_selfSweptTests = counters.m_selfSwept;
-    result.m_reduced = counters.m_found > counters.m_hits ? counters.m_found - counters.m_hits : 0;
+    result.m_reduced = counters.m_listed - counters.m_hits;
     result.m_invalidNodes = counters.m_invalidNodes;
     result.m_intersectionCount = counters.m_intersections;
     if (m_settings.m_reportIntersections)
@@ -515,12 +533,13 @@ void DeviceBackend::readAll(StepResult& result)
     const bool inHand = count <= m_contactsAsked;
     if (!inHand)
     {
-        m_contactsRead.reserve(m_device.get(), withHeadroom(count));
-        m_narrowPhase.contacts().read(*m_device, m_contactsRead.data(), count);
+        m_contactsRead.reserve(m_device.get(), DRAPE_CONTACT_HEAD + withHeadroom(count));
+        readContacts(count);
     }
     if (!inHand || m_settings.m_reportIntersections) m_device->wait();
-    result.m_deviceContacts = ContactList{m_contactsRead.data(), count};
-    m_contactsAsked = std::min({withHeadroom(count), m_contactsRead.capacity(), m_narrowPhase.hitCapacity()});
+    result.m_deviceContacts = ContactList{m_contactsRead.data() + DRAPE_CONTACT_HEAD, count};
+    m_contactsAsked = std::min({count + count / 16 + 256, m_contactsRead.capacity() - DRAPE_CONTACT_HEAD,
+                                m_narrowPhase.hitCapacity()});
     sortCandidates(result.m_intersections);
 }
 }  // namespace drape

@@ -77,11 +77,14 @@ private:
     void enqueueStep(const Scene& scene, const StepPairs& pairs);
     bool patches() const { return goesOverPatches(m_settings); }
     SelfWork selfWork(const Scene& scene);
+    Buffer<StepCounters>& counters() { return m_counters[m_turn]; }
+    StepTally tally() { return {counters(), m_counters[1 - m_turn], m_stepsToOrder > 0}; }
     void enqueueBroad(const Scene& scene, const StepPairs& pairs);
     void enqueueNarrow(const Scene& scene, const StepPairs& pairs);
-    // Room for hits of all tests.
-    void reserveHits();
     NarrowPhaseBuffers narrowPhaseBuffers(const StepPairs& pairs);
+    // Enqueues the transfer of the step's counters and first contacts.
+    void readContacts(std::size_t count);
+    StepCounters countersRead() const;
     // Whether the last run demanded more than the settings allow; the result says what.
     bool overLimit(StepResult& result);
     // Makes room for what the last run demanded. Returns whether the step must run again.
@@ -116,9 +119,12 @@ private:
     std::vector<ObstaclePlace> m_sentPlaces;
     std::vector<ObstacleMotion> m_sentMotions;
     Buffer<Candidate> m_candidates{"step candidates"};
-    Buffer<StepCounters> m_counters{"step counters"};
-    Staging<StepCounters> m_countersRead;
-    Staging<Contact> m_contactsRead;
+    // Of a step and the next by turns, see StepTally.
+    Buffer<StepCounters> m_counters[2] = {Buffer<StepCounters>("step counters"), Buffer<StepCounters>("step counters")};
+    Buffer<StepCounters> m_refitCounters{"step counters"};  // of obstacles, which nobody reads
+    std::size_t m_turn = 0;
+    int m_stepsToOrder = 1;
+    Staging<Contact> m_contactsRead;  // behind a head as on the device
     std::size_t m_contactsAsked = 0;
     std::vector<float> m_sentThickness, m_sentTube, m_sentRadius;
     std::uint32_t m_obstacleMotion = 0, m_obstaclePlacing = 0;

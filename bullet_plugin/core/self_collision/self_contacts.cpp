@@ -13,6 +13,10 @@ constexpr std::size_t kTeamsPerGroup = 8;       // patches per group where a wor
 constexpr std::size_t kItemsPerUnitGpu = 1024;  // of the narrow phase, as in narrow_phase.cpp
 constexpr std::size_t kItemsPerUnitCpu = 256;
 constexpr std::size_t kFirstTests = 1 << 16;
+// On a GPU, warps of a group that walks the tree, or takes pairs of patches; see kernels/self_walk.cl.
+constexpr std::size_t kTurns = 4;
+constexpr std::size_t kPairGroupsPerUnit = 24;
+constexpr std::size_t kFirstPairs = 1 << 14;
 
 // The features that the lanes' owners name: triangles, or their vertices or edges.
 enum class Lane
@@ -53,9 +57,11 @@ void SelfReach::leaveOut(std::size_t cloth)
 
 void SelfContactStage::create(Device& device, const ProgramLoader& load)
 {
-    const cl::Program cull = load("self_cull"), contact = load("self_contact");
-    m_pack.create(device, cull, "selfPack");
-    m_cull.create(device, cull, "selfCull");
+    const cl::Program cull = load(device.isGpu() ? "self_walk" : "self_cull"), contact = load("self_contact");
+    m_pack.create(device, load("self_pack"), "selfPack");
+    if (device.isGpu()) m_walk.create(device, cull, "selfWalk");
+    m_cull.create(device, cull, device.isGpu() ? "selfCullPairs" : "selfCull");
+    m_pairs.reserve(device, device.isGpu() ? kFirstPairs : 1);
     m_widen.create(device, load("patch_pack"), "patchWiden");
     m_feature.create(device, contact, "selfFeature");
     m_sweptKernel.create(device, contact, "selfSwept");
@@ -84,9 +90,10 @@ void SelfContactStage::setTopology(Device& device, const MeshPool& cloths, const
     m_vertexIds.assign(device, vertexIds);
     m_edgeIds.assign(device, edgeIds);
     m_levels.assign(device, m_layout.m_levels);
-    m_faceBoxes.reserve(device, m_layout.m_faceOwners.size() * DRAPE_BOX_FLOATS);
-    m_vertexBoxes.reserve(device, vertexIds.size() * DRAPE_BOX_FLOATS);
-    m_edgeBoxes.reserve(device, edgeIds.size() * DRAPE_BOX_FLOATS);
+    const std::size_t floats = device.isGpu() ? 0 : DRAPE_BOX_FLOATS;
+    m_faceBoxes.reserve(device, m_layout.m_faceOwners.size() * floats);
+    m_vertexBoxes.reserve(device, vertexIds.size() * floats);
+    m_edgeBoxes.reserve(device, edgeIds.size() * floats);
     m_wideNodes.reserve(device, m_layout.m_levels.back() * DRAPE_WIDE_NODE_FLOATS * width);
     m_rest.assign(device, rest);
     device.wait();  // ids are locals; topology changes are rare
@@ -106,31 +113,63 @@ void SelfContactStage::setReach(Device& device, const SelfReach& reach)
     }
 }
 
-void SelfContactStage::enqueueCull(Device& device, SelfBuffers step, Buffer<StepCounters>& counters)
+// Volumes of the patches, which is the tree's lowest level, and of the nodes above.
+void SelfContactStage::enqueuePack(Device& device, SelfBuffers step, Buffer<float>& start,
+                                   Buffer<StepCounters>& counters)
 {
-    const std::size_t width = PatchCullStage::width(device), patchCount = m_layout.m_patches.size();
-    Buffer<float>& start = step.m_mode == DRAPE_DISCRETE ? step.m_end : step.m_start;
-    if (patchCount == 0) return;
+    const std::size_t width = PatchCullStage::width(device);
     const std::size_t places = m_layout.m_levels[1] * width;  // of the first level's children
-    m_pack.launch(device, places * width, width, m_patches.handle(), cl_uint(patchCount), m_faceIds.handle(),
-                  m_vertexIds.handle(), m_edgeIds.handle(), step.m_triangles.handle(), step.m_edges.handle(),
-                  start.handle(), step.m_end.handle(), m_radius.handle(), step.m_obstacleRadius.handle(),
-                  m_faceBoxes.handle(), m_vertexBoxes.handle(), m_edgeBoxes.handle(), m_wideNodes.handle(),
-                  counters.handle());
+    m_pack.launch(device, places * width, width, m_patches.handle(), cl_uint(m_layout.m_patches.size()),
+                  m_faceIds.handle(), m_vertexIds.handle(), m_edgeIds.handle(), step.m_triangles.handle(),
+                  step.m_edges.handle(), start.handle(), step.m_end.handle(), m_radius.handle(),
+                  step.m_obstacleRadius.handle(), cl_uint(!device.isGpu()), m_faceBoxes.handle(),
+                  m_vertexBoxes.handle(), m_edgeBoxes.handle(), m_wideNodes.handle(), counters.handle());
     for (std::size_t level = 1; level + 1 < m_layout.m_levels.size(); ++level)
     {
         const std::size_t below = m_layout.m_levels[level - 1], first = m_layout.m_levels[level];
         const std::size_t children = (m_layout.m_levels[level + 1] - first) * width;
-        m_widen.launch(device, children, kGroup, m_wideNodes.handle(), cl_uint(below), cl_uint(first - below),
-                       cl_uint(first), cl_uint(0), cl_uint(children));
+        m_widen.launch(device, children * DRAPE_WIDE_NODE_FLOATS, kGroup, m_wideNodes.handle(), cl_uint(below),
+                       cl_uint(first - below), cl_uint(first), cl_uint(0), cl_uint(children));
     }
-    const bool team = device.isGpu();  // of a group's work-items
-    m_cull.launch(device, patchCount * (team ? width : 1), team ? width : kTeamsPerGroup, m_patches.handle(),
-                  cl_uint(patchCount), m_faceIds.handle(), m_vertexIds.handle(), m_edgeIds.handle(),
-                  step.m_triangles.handle(), step.m_edges.handle(), start.handle(), step.m_end.handle(),
-                  m_radius.handle(), m_thickness.handle(), m_faceBoxes.handle(), m_vertexBoxes.handle(),
-                  m_edgeBoxes.handle(), m_wideNodes.handle(), m_levels.handle(), cl_uint(m_layout.m_levels.size() - 1),
-                  m_tests.handle(), cl_uint(m_tests.capacity()), cl_uint(step.m_limit), counters.handle());
+}
+
+void SelfContactStage::enqueueWalk(Device& device, SelfBuffers step, Buffer<StepCounters>& counters)
+{
+    const std::size_t group = kTurns * PatchCullStage::width(device), patchCount = m_layout.m_patches.size();
+    m_walk.launch(device, patchCount * group, group, m_patches.handle(), cl_uint(patchCount), m_radius.handle(),
+                  m_wideNodes.handle(), m_levels.handle(), cl_uint(m_layout.m_levels.size() - 1), m_pairs.handle(),
+                  cl_uint(m_pairs.capacity()), cl_uint(step.m_limit), counters.handle());
+}
+
+void SelfContactStage::enqueuePairs(Device& device, SelfBuffers step, Buffer<float>& start,
+                                    Buffer<StepCounters>& counters)
+{
+    const std::size_t group = kTurns * PatchCullStage::width(device);
+    m_cull.launch(device, device.computeUnits() * kPairGroupsPerUnit * group, group, m_pairs.handle(),
+                  cl_uint(m_pairs.capacity()), m_patches.handle(), m_faceIds.handle(), m_vertexIds.handle(),
+                  m_edgeIds.handle(), step.m_triangles.handle(), step.m_edges.handle(), start.handle(),
+                  step.m_end.handle(), m_radius.handle(), m_thickness.handle(), m_wideNodes.handle(), m_tests.handle(),
+                  cl_uint(m_tests.capacity()), cl_uint(step.m_limit), counters.handle());
+}
+
+void SelfContactStage::enqueueCull(Device& device, SelfBuffers step, Buffer<StepCounters>& counters)
+{
+    const std::size_t patchCount = m_layout.m_patches.size();
+    Buffer<float>& start = step.m_mode == DRAPE_DISCRETE ? step.m_end : step.m_start;
+    if (patchCount == 0) return;
+    enqueuePack(device, step, start, counters);
+    if (device.isGpu())
+    {
+        enqueueWalk(device, step, counters);
+        enqueuePairs(device, step, start, counters);
+        return;
+    }
+    m_cull.launch(device, patchCount, kTeamsPerGroup, m_patches.handle(), cl_uint(patchCount), m_faceIds.handle(),
+                  m_vertexIds.handle(), m_edgeIds.handle(), step.m_triangles.handle(), step.m_edges.handle(),
+                  start.handle(), step.m_end.handle(), m_radius.handle(), m_thickness.handle(), m_faceBoxes.handle(),
+                  m_vertexBoxes.handle(), m_edgeBoxes.handle(), m_wideNodes.handle(), m_levels.handle(),
+                  cl_uint(m_layout.m_levels.size() - 1), m_tests.handle(), cl_uint(m_tests.capacity()),
+                  cl_uint(step.m_limit), counters.handle());
 }
 
 void SelfContactStage::enqueueContacts(Device& device, SelfBuffers step, SelfHits hits, Buffer<StepCounters>& counters)
@@ -140,14 +179,13 @@ void SelfContactStage::enqueueContacts(Device& device, SelfBuffers step, SelfHit
     const cl_uint firstSlot = firstSelfSlot(nodes, triangles, cl_uint(step.m_edgeCount));
     m_feature.launch(device, width, kGroup, m_tests.handle(), cl_uint(m_tests.capacity()), step.m_start.handle(),
                      step.m_end.handle(), m_rest.handle(), step.m_triangles.handle(), step.m_edges.handle(), nodes,
-                     triangles, firstSlot, cl_uint(step.m_mode), step.m_reachScale, hits.m_hits.handle(),
-                     cl_uint(hits.m_capacity), cl_uint(hits.m_obstacleCapacity), m_swept.handle(),
-                     hits.m_slotCount.handle(), counters.handle());
+                     triangles, firstSlot, cl_uint(step.m_mode), step.m_reachScale, m_swept.handle(),
+                     hits.m_hits.handle(), cl_uint(hits.m_hits.capacity()), hits.m_slotCount.handle(),
+                     counters.handle());
     if (step.m_mode == DRAPE_DISCRETE) return;
     m_sweptKernel.launch(device, width, kGroup, m_tests.handle(), step.m_start.handle(), step.m_end.handle(),
                          m_rest.handle(), step.m_triangles.handle(), step.m_edges.handle(), nodes, triangles, firstSlot,
-                         cl_uint(step.m_mode), step.m_reachScale, hits.m_hits.handle(),
-                         cl_uint(hits.m_obstacleCapacity), m_swept.handle(), hits.m_slotCount.handle(),
-                         counters.handle());
+                         cl_uint(step.m_mode), step.m_reachScale, m_swept.handle(), hits.m_hits.handle(),
+                         cl_uint(hits.m_hits.capacity()), hits.m_slotCount.handle(), counters.handle());
 }
 }  // namespace drape

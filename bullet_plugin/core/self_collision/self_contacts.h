@@ -3,8 +3,8 @@
 // Input: the cloths' nodes at the step's start and end and at rest, and per cloth the thickness. Output: contacts in
 // canonical order behind those with obstacles. Guarantee: no pair that gives a contact is missed; host and device list
 // the same candidates and find the same contacts, bit for bit. A list that is too small counts its true demand. Cost on
-// a device: four launches a step and one for each upper level of the tree; without a cloth that asks for it, none, and
-// its kernels are not built.
+// a device: four launches a step, on a GPU five, and one for each upper level of the tree; without a cloth that asks
+// for it, none, and its kernels are not built.
 #pragma once
 
 #include <cstdint>
@@ -113,13 +113,11 @@ struct SelfBuffers
     std::size_t m_limit;  // tests; the count is exact up to it
 };
 
-// Where the stage puts its hits: behind the places of the obstacles' tests, or before all others with none of those.
+// The list that the stage's hits join (kernels/lib/hit_list.h).
 struct SelfHits
 {
     Buffer<Contact>& m_hits;
     Buffer<cl_uint>& m_slotCount;
-    std::size_t m_capacity;
-    std::size_t m_obstacleCapacity;
 };
 
 class SelfContactStage
@@ -140,18 +138,27 @@ public:
 
     Buffer<FeatureTest>& tests() { return m_tests; }
     void reserveTests(Device& device, std::size_t count);
+    // The list of pairs of patches on a GPU. Where it was too short, other counts are too low.
+    Buffer<Candidate>& pairs() { return m_pairs; }
+    void reservePairs(Device& device, std::size_t count) { m_pairs.reserve(device, count); }
 
 private:
-    Kernel m_pack, m_widen, m_cull, m_feature, m_sweptKernel;
+    void enqueuePack(Device& device, SelfBuffers step, Buffer<float>& start, Buffer<StepCounters>& counters);
+    void enqueueWalk(Device& device, SelfBuffers step, Buffer<StepCounters>& counters);
+    void enqueuePairs(Device& device, SelfBuffers step, Buffer<float>& start, Buffer<StepCounters>& counters);
+
+    Kernel m_pack, m_widen, m_walk, m_cull, m_feature, m_sweptKernel;
     Patches m_layout;
     bool m_created = false;
     Buffer<Patch> m_patches{"self patches"};
     Buffer<cl_uint> m_faceIds{"self patches"}, m_vertexIds{"self patches"}, m_edgeIds{"self patches"};
     Buffer<cl_uint> m_levels{"self patches"};
+    // A GPU makes the boxes where it needs them.
     Buffer<float> m_faceBoxes{"self boxes"}, m_vertexBoxes{"self boxes"}, m_edgeBoxes{"self boxes"};
-    Buffer<float> m_wideNodes{"self boxes"};
-    Buffer<float> m_rest{"cloth positions"}, m_radius, m_thickness;
+    Buffer<float> m_wideNodes{"self wide nodes"};
+    Buffer<float> m_rest{"cloth positions"}, m_radius{"self patches"}, m_thickness{"self patches"};
     Buffer<FeatureTest> m_tests{"self candidates"};
+    Buffer<Candidate> m_pairs{"self candidates"};
     Buffer<cl_uint> m_swept{"self candidates"};
     std::vector<float> m_sentRadius, m_sentThickness;
 };

@@ -1,0 +1,38 @@
+// Walks of the wide tree over patches (shared/patch.h): what is on their stacks. For OpenCL C only.
+#ifndef DRAPE_LIB_WIDE_WALK_H
+#define DRAPE_LIB_WIDE_WALK_H
+
+#include "../shared/patch.h"
+
+// Entries of a walk's stack are nodes of the wide tree, with their level in the high bits.
+#define DRAPE_LEVEL_SHIFT 28
+// Levels of the wide tree over 2^28 triangles.
+#define DRAPE_LEVELS 7
+// Of a walk that takes a node at a time from the lowest level that is left: each level has the children of one on the stack.
+#define DRAPE_WALK_STACK (DRAPE_LEVELS * DRAPE_PATCH_WIDTH)
+
+// Nodes that a group with as many times DRAPE_PATCH_WIDTH lanes looks at together, at most.
+#define DRAPE_WALK_NODES 4
+// The root's children where they are this few are where a group's walk begins.
+#define DRAPE_WALK_BEGIN 4
+
+// Puts the root on the stack, or its children where they are few. Returns how many.
+static uint beginWalk(__local uint* stack, __global const uint* levels, const uint top)
+{
+    const uint children = top > 1 ? levels[top - 1] - levels[top - 2] : 0;
+    const int skips = children > 0 && children <= DRAPE_WALK_BEGIN;
+    const uint nodes = skips ? children : 1, level = skips ? top - 1 : top;
+    for (uint i = 0; i < nodes; ++i) stack[i] = (level << DRAPE_LEVEL_SHIFT) + i;
+    return nodes;
+}
+
+// How many nodes are taken from the stack together: those on top that are of one level.
+static uint nodesInTurn(__local const uint* stack, const uint depth, const uint most)
+{
+    uint nodes = 1;
+    while (nodes < min(depth, most) && stack[depth - 1 - nodes] >> DRAPE_LEVEL_SHIFT == stack[depth - 1] >> DRAPE_LEVEL_SHIFT)
+        ++nodes;
+    return nodes;
+}
+
+#endif
