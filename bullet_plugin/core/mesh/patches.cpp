@@ -1,6 +1,7 @@
 #include "patches.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "kernels/lib/vec3.h"
@@ -22,16 +23,101 @@ void padBlock(std::vector<std::uint32_t>& owners, std::uint32_t width)
         owners.push_back(DRAPE_NO_FEATURE);
 }
 
-// Triangles [first, last) of the leaf order.
-void appendPatch(Patches& patches, const MeshPool& pool, std::size_t first, std::size_t last, std::uint32_t width)
+constexpr std::uint32_t kNone = 0xffffffffu;
+
+// Two triangles at each edge; kNone beside a boundary.
+using EdgeTriangles = std::vector<std::array<std::uint32_t, 2>>;
+
+EdgeTriangles trianglesOfEdges(const MeshPool& pool)
+{
+    EdgeTriangles sides(pool.edges().size(), {kNone, kNone});
+    for (std::uint32_t i = 0; i < pool.triangles().size(); ++i)
+    {
+        for (std::uint32_t edge : pool.triangles()[i].m_edges)
+            (sides[edge][0] == kNone ? sides[edge][0] : sides[edge][1]) = i;
+    }
+    return sides;
+}
+
+// Takes triangles one after the other: of those beside the patch at hand the one with the most neighbours that are
+// taken, so that no hole stays behind, and where there is none the next of the leaf order.
+class Clustering
+{
+public:
+    explicit Clustering(const MeshPool& pool)
+        : m_pool(pool), m_sides(trianglesOfEdges(pool)), m_taken(pool.triangles().size(), false)
+    {
+    }
+
+    void beginPatch() { m_beside.clear(); }
+    std::uint32_t next()
+    {
+        std::size_t best = m_beside.size();
+        int most = -1;
+        for (std::size_t i = 0; i < m_beside.size(); ++i)
+        {
+            const int neighbours = takenNeighbours(m_beside[i]);
+            if (neighbours <= most) continue;
+            most = neighbours;
+            best = i;
+        }
+        const std::uint32_t triangle = most < 0 ? m_pool.order()[m_leaf] : m_beside[best];
+        if (most >= 0) m_beside.erase(m_beside.begin() + std::ptrdiff_t(best));
+        take(triangle);
+        return triangle;
+    }
+    // Whether no triangle of the mesh is left, where all of those before it in leaf order are taken.
+    bool leaves(std::uint32_t mesh) const
+    {
+        return m_leaf == m_pool.order().size() || m_pool.triangles()[m_pool.order()[m_leaf]].m_mesh != mesh;
+    }
+
+private:
+    std::uint32_t across(std::uint32_t triangle, std::uint32_t edge) const
+    {
+        return m_sides[edge][0] == triangle ? m_sides[edge][1] : m_sides[edge][0];
+    }
+    int takenNeighbours(std::uint32_t triangle) const
+    {
+        int count = 0;
+        for (std::uint32_t edge : m_pool.triangles()[triangle].m_edges)
+        {
+            const std::uint32_t other = across(triangle, edge);
+            count += other == kNone || m_taken[other];
+        }
+        return count;
+    }
+    void take(std::uint32_t triangle)
+    {
+        m_taken[triangle] = true;
+        for (std::uint32_t edge : m_pool.triangles()[triangle].m_edges)
+        {
+            const std::uint32_t other = across(triangle, edge);
+            if (other == kNone || m_taken[other]) continue;
+            if (std::find(m_beside.begin(), m_beside.end(), other) == m_beside.end()) m_beside.push_back(other);
+        }
+        while (m_leaf < m_pool.order().size() && m_taken[m_pool.order()[m_leaf]])
+            ++m_leaf;
+    }
+
+    const MeshPool& m_pool;
+    EdgeTriangles m_sides;
+    std::vector<bool> m_taken;
+    std::vector<std::uint32_t> m_beside;  // triangles that are not taken, beside the patch at hand, oldest first
+    std::size_t m_leaf = 0;               // first of the leaf order that is not taken
+};
+
+// Triangles [first, last) of the clustered order.
+void appendPatch(Patches& patches, const MeshPool& pool, const std::vector<std::uint32_t>& order, std::size_t first,
+                 std::size_t last, std::uint32_t width)
 {
     Patch patch = {};
-    patch.m_mesh = pool.triangles()[pool.order()[first]].m_mesh;
+    patch.m_mesh = pool.triangles()[order[first]].m_mesh;
     patch.m_vertexBlock = std::uint32_t(patches.m_vertexOwners.size()) / width;
     patch.m_edgeBlock = std::uint32_t(patches.m_edgeOwners.size()) / width;
     for (std::size_t leaf = first; leaf < last; ++leaf)
     {
-        const std::uint32_t index = pool.order()[leaf];
+        const std::uint32_t index = order[leaf];
         const std::uint32_t owned = pool.triangles()[index].m_owned;
         patches.m_faceOwners.push_back(index);
         const std::size_t vertex = patches.m_vertexOwners.size() - std::size_t(patch.m_vertexBlock) * width;
@@ -81,17 +167,36 @@ float spreadOf(const Triangle& triangle, const float* positions, const std::vect
 }
 }  // namespace
 
+std::vector<std::uint32_t> clusteredOrder(const MeshPool& pool, std::uint32_t width)
+{
+    std::vector<std::uint32_t> order;
+    order.reserve(pool.order().size());
+    Clustering clustering(pool);
+    std::uint32_t inPatch = 0;
+    while (order.size() < pool.order().size())
+    {
+        if (inPatch == width || (!order.empty() && clustering.leaves(pool.triangles()[order.back()].m_mesh)))
+        {
+            inPatch = 0;
+            clustering.beginPatch();
+        }
+        order.push_back(clustering.next());
+        ++inPatch;
+    }
+    return order;
+}
+
 Patches makePatches(const MeshPool& obstacles, std::uint32_t width)
 {
     Patches patches;
-    const std::vector<std::uint32_t>& order = obstacles.order();
+    const std::vector<std::uint32_t> order = clusteredOrder(obstacles, width);
     for (std::size_t first = 0; first < order.size();)
     {
         std::size_t last = first + 1;
         const std::uint32_t mesh = obstacles.triangles()[order[first]].m_mesh;
         while (last < order.size() && last - first < width && obstacles.triangles()[order[last]].m_mesh == mesh)
             ++last;
-        appendPatch(patches, obstacles, first, last, width);
+        appendPatch(patches, obstacles, order, first, last, width);
         first = last;
     }
     std::uint32_t nodes = 0;

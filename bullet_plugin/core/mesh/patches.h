@@ -1,8 +1,9 @@
-// Patches of the obstacles: runs of triangles in leaf order, and the lists of features that they own (see
-// kernels/shared/patch.h).
+// Patches of the obstacles: connected triangles as far as there are, begun in leaf order, and the lists of features that
+// they own (see kernels/shared/patch.h).
 //
 // Input: the joined triangles, leaf order and mesh slots. Output: per patch its blocks, per lane the feature. A patch
-// never holds triangles of two meshes. Every triangle, and every vertex and edge of one, is in exactly one lane. O(n).
+// never holds triangles of two meshes, and is full but for the last one of a mesh. Every triangle, and every vertex and
+// edge of one, is in exactly one lane. O(n).
 #pragma once
 
 #include <cstdint>
@@ -22,6 +23,10 @@ struct Patches
     std::vector<std::uint32_t> m_edgeOwners;
     std::vector<std::uint32_t> m_levels;  // first wide node of each level, lowest first, then the number of nodes
 };
+
+// The triangles of all patches, patch by patch. Runs of the leaf order alone, which follows a space-filling curve, are
+// torn where the curve jumps: their volumes then overlap far more others.
+std::vector<std::uint32_t> clusteredOrder(const MeshPool& pool, std::uint32_t width);
 
 // width: lanes in a block.
 Patches makePatches(const MeshPool& obstacles, std::uint32_t width);

@@ -147,8 +147,10 @@ std::vector<std::uint32_t> DeviceBackend::order(const std::vector<Triangle>& tri
 void DeviceBackend::uploadSide(const MeshPool& pool, const BvhLayout& layout, Side& side)
 {
     side.m_revision = pool.revision();
-    // The cull over patches needs the leaf order of the cloths alone.
-    if (!patches() || &side == &m_cloth) side.m_order.assign(*m_device, pool.order());
+    // The cull over patches needs an order of the cloths alone: that of their own patches, since it walks for packets.
+    std::vector<std::uint32_t> clustered;
+    if (patches() && &side == &m_cloth) clustered = clusteredOrder(pool, PatchCullStage::width(*m_device));
+    if (!patches() || &side == &m_cloth) side.m_order.assign(*m_device, patches() ? clustered : pool.order());
     side.m_triangles.assign(*m_device, pool.triangles());
     if (m_settings.m_reduceContacts) side.m_firsts.assign(*m_device, pool.firsts());
     // The cull over patches needs no hierarchy of triangles.
@@ -159,7 +161,7 @@ void DeviceBackend::uploadSide(const MeshPool& pool, const BvhLayout& layout, Si
         side.m_nodes.assign(*m_device, nodes);
         m_refit.makeLevels(*m_device, layout, side.m_levels);
     }
-    m_device->wait();  // nodes is a local; topology changes are rare
+    m_device->wait();  // nodes and clustered are locals; topology changes are rare
 }
 
 void DeviceBackend::updateTopology(const Scene& scene)
@@ -538,8 +540,8 @@ void DeviceBackend::readAll(StepResult& result)
     }
     if (!inHand || m_settings.m_reportIntersections) m_device->wait();
     result.m_deviceContacts = ContactList{m_contactsRead.data() + DRAPE_CONTACT_HEAD, count};
-    m_contactsAsked = std::min({count + count / 16 + 256, m_contactsRead.capacity() - DRAPE_CONTACT_HEAD,
-                                m_narrowPhase.hitCapacity()});
+    m_contactsAsked = std::min(
+        {count + count / 16 + 256, m_contactsRead.capacity() - DRAPE_CONTACT_HEAD, m_narrowPhase.hitCapacity()});
     sortCandidates(result.m_intersections);
 }
 }  // namespace drape
