@@ -1,5 +1,5 @@
 // Compaction: hits into canonical order, by slot (cloth feature) and then obstacle feature. A counting sort over the slots:
-// sums per block, scan of the blocks by one group, first place of every slot, members of every slot, and the place of each
+// sums per block, first place of every slot, members of every slot, and the place of each
 // hit among them: by counting where a slot has few, by a sort where it has many.
 #include "lib/group_scan.h"
 #include "shared/contact.h"
@@ -29,22 +29,6 @@ __kernel void compactionCount(__global const uint* restrict slotCount, const uin
     if (get_local_id(0) == 0) blockCount[get_group_id(0)] = total;
 }
 
-// One work-group replaces the sums by the sums before them and stores their total as counters->m_hits.
-__kernel void compactionScan(__global uint* restrict blockCount, const uint blocks,
-                             __global StepCounters* restrict counters, __local uint* scratch)
-{
-    uint base = 0;
-    for (uint first = 0; first < blocks; first += get_local_size(0))
-    {
-        const uint block = first + get_local_id(0);
-        uint total;
-        const uint before = groupPrefix(scratch, block < blocks ? blockCount[block] : 0, &total);
-        if (block < blocks) blockCount[block] = base + before;
-        base += total;
-    }
-    if (get_local_id(0) == 0) counters->m_hits = base;
-}
-
 // Writes where the hits of each slot of the group's block begin, the first at `place`, and counts the slots that have many.
 // Returns where the hits behind the block begin.
 static uint placeBlock(__global const uint* restrict slotCount, const uint slots, const uint place,
@@ -61,33 +45,41 @@ static uint placeBlock(__global const uint* restrict slotCount, const uint slots
     return place + total;
 }
 
-// A work-group takes a block of slots.
-__kernel void compactionPlace(__global const uint* restrict slotCount, const uint slots,
-                              __global const uint* restrict blockCount, __global uint* restrict slotFirst,
-                              __global StepCounters* restrict counters, __local uint* scratch)
-{
-    placeBlock(slotCount, slots, blockCount[get_group_id(0)], slotFirst, counters, scratch);
-}
-
-// Slots that a work-item of compactionPlaceFew loads together: loads that do not wait for each other.
+// Slots, or blocks of them, that a work-item loads together: loads that do not wait for each other.
 #define DRAPE_TOGETHER 8
 
-// The same in one launch, for slots that are few: each work-group sums the hits before its block itself.
-__kernel void compactionPlaceFew(__global const uint* restrict slotCount, const uint slots, __global uint* restrict slotFirst,
-                                 __global StepCounters* restrict counters, __local uint* scratch)
+// The sum of the first `count` numbers, by all of the group's work-items together.
+static uint sumOf(__global const uint* restrict numbers, const uint count, __local uint* scratch)
 {
-    const uint begin = get_group_id(0) * DRAPE_BLOCK;
-    uint sum = 0, before;
-    for (uint slot = get_local_id(0); slot < begin; slot += DRAPE_TOGETHER * get_local_size(0))
+    uint sum = 0, total;
+    for (uint first = get_local_id(0); first < count; first += DRAPE_TOGETHER * get_local_size(0))
     {
         DRAPE_UNROLL
         for (uint i = 0; i < DRAPE_TOGETHER; ++i)
         {
-            const uint other = slot + i * get_local_size(0);
-            sum += other < begin ? slotCount[other] : 0;
+            const uint other = first + i * get_local_size(0);
+            sum += other < count ? numbers[other] : 0;
         }
     }
-    groupPrefix(scratch, sum, &before);
+    groupPrefix(scratch, sum, &total);
+    return total;
+}
+
+// A work-group takes a block of slots, and sums those of the blocks before itself. The last one stores counters->m_hits.
+__kernel void compactionPlace(__global const uint* restrict slotCount, const uint slots,
+                              __global const uint* restrict blockCount, __global uint* restrict slotFirst,
+                              __global StepCounters* restrict counters, __local uint* scratch)
+{
+    const uint before = sumOf(blockCount, get_group_id(0), scratch);
+    const uint hits = placeBlock(slotCount, slots, before, slotFirst, counters, scratch);
+    if (get_group_id(0) == get_num_groups(0) - 1 && get_local_id(0) == 0) counters->m_hits = hits;
+}
+
+// The same without sums of blocks, for slots that are few.
+__kernel void compactionPlaceFew(__global const uint* restrict slotCount, const uint slots, __global uint* restrict slotFirst,
+                                 __global StepCounters* restrict counters, __local uint* scratch)
+{
+    const uint before = sumOf(slotCount, get_group_id(0) * DRAPE_BLOCK, scratch);
     const uint hits = placeBlock(slotCount, slots, before, slotFirst, counters, scratch);
     if (get_group_id(0) == get_num_groups(0) - 1 && get_local_id(0) == 0) counters->m_hits = hits;
 }

@@ -127,6 +127,7 @@ typedef struct NearSide
     NearFaces m_faces;
     NearVertices m_vertices;
     NearEdges m_edges;
+    uint m_near;  // whether a face is
 } NearSide;
 
 typedef struct SelfCuller
@@ -201,7 +202,27 @@ static void gatherEdge(__local NearEdges* near, const SelfCloth* cloth, const ui
     near->m_ids[place] = edge;
 }
 
-// Gathers the features of a patch, a lane each. other: the other patch's box.
+// Gathers the faces of both patches, a lane each. boxes: the patches'. Returns whether either has one that is near the other
+// patch: the volumes of patches alone overlap far more often.
+static int gatherFaces(__local NearSide* sides, const SelfCloth* cloth, const SelfFeatures* features, const Candidate pair,
+                       const FeatureBox boxes[2])
+{
+    const uint turn = get_local_id(0) / DRAPE_PATCH_WIDTH, lane = get_local_id(0) % DRAPE_PATCH_WIDTH;
+    __local NearSide* side = sides + min(turn, 1u);
+    if (turn < 2 && lane == 0) side->m_near = 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (turn < 2)
+    {
+        const uint patch = turn == 0 ? pair.m_cloth : pair.m_obstacle;
+        gatherFace(&side->m_faces, cloth, lane, features->m_faceIds[patch * DRAPE_PATCH_WIDTH + lane],
+                   turn == 0 ? boxes + 1 : boxes);
+        if (isNear(side->m_faces.m_boxes, lane)) side->m_near = 1;
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+    return sides[0].m_near && sides[1].m_near;
+}
+
+// Gathers the other features of a patch, a lane each. other: the other patch's box.
 static void gatherSide(__local NearSide* side, const SelfCloth* cloth, const SelfFeatures* features, const uint patch,
                        const FeatureBox* other)
 {
@@ -212,14 +233,12 @@ static void gatherSide(__local NearSide* side, const SelfCloth* cloth, const Sel
         side->m_vertices.m_count = vertices;
         side->m_edges.m_count = edges;
     }
-    for (uint i = get_local_id(0); i < DRAPE_PATCH_WIDTH + vertices + edges; i += get_local_size(0))
+    for (uint i = get_local_id(0); i < vertices + edges; i += get_local_size(0))
     {
-        const uint vertex = i - DRAPE_PATCH_WIDTH, edge = vertex - vertices;
-        if (i < DRAPE_PATCH_WIDTH)
-            gatherFace(&side->m_faces, cloth, i, features->m_faceIds[patch * DRAPE_PATCH_WIDTH + i], other);
-        else if (vertex < vertices)
-            gatherVertex(&side->m_vertices, cloth, vertex,
-                         features->m_vertexIds[owned.m_vertexBlock * DRAPE_PATCH_WIDTH + vertex], other);
+        const uint edge = i - vertices;
+        if (i < vertices)
+            gatherVertex(&side->m_vertices, cloth, i, features->m_vertexIds[owned.m_vertexBlock * DRAPE_PATCH_WIDTH + i],
+                         other);
         else
             gatherEdge(&side->m_edges, cloth, edge, features->m_edgeIds[owned.m_edgeBlock * DRAPE_PATCH_WIDTH + edge], other);
     }
@@ -286,6 +305,7 @@ static void crossPatches(__local SelfCuller* culler, const SelfCloth* cloth, con
     __local NearSide* sides = culler->m_sides;
     const int same = pair.m_cloth == pair.m_obstacle;
     const FeatureBox boxes[2] = {childBox(features->m_nodes, pair.m_cloth), childBox(features->m_nodes, pair.m_obstacle)};
+    if (!gatherFaces(sides, cloth, features, pair, boxes)) return;
     gatherSide(sides, cloth, features, pair.m_cloth, boxes + 1);
     if (!same) gatherSide(sides + 1, cloth, features, pair.m_obstacle, boxes);
     barrier(CLK_LOCAL_MEM_FENCE);

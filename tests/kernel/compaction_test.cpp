@@ -44,7 +44,6 @@ public:
     {
         const cl::Program program = programOf(device, "compaction");
         m_count.create(device, program, "compactionCount");
-        m_scan.create(device, program, "compactionScan");
         m_place.create(device, program, "compactionPlace");
         m_placeFew.create(device, program, "compactionPlaceFew");
         m_gather.create(device, program, "compactionGather");
@@ -71,7 +70,6 @@ public:
         guard(m_device, m_contacts, DRAPE_CONTACT_HEAD + capacity);
         const cl::LocalSpaceArg scratch = cl::Local(kGroup * sizeof(cl_uint));
         m_count.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_blockCount.handle(), scratch);
-        m_scan.launch(m_device, kGroup, kGroup, m_blockCount.handle(), cl_uint(blocks), m_counters.handle(), scratch);
         m_place.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_blockCount.handle(),
                        m_slotFirst.handle(), m_counters.handle(), scratch);
         expectPlacesInOneLaunch(slots);
@@ -120,7 +118,7 @@ private:
     }
 
     Device& m_device;
-    Kernel m_count, m_scan, m_place, m_placeFew, m_gather, m_order, m_write;
+    Kernel m_count, m_place, m_placeFew, m_gather, m_order, m_write;
     Buffer<Contact> m_hits, m_contacts;
     Buffer<cl_uint> m_slotCount, m_slotFirst, m_blockCount, m_members, m_places;
     Buffer<StepCounters> m_counters, m_next;

@@ -38,7 +38,7 @@ public:
         guardCopy(device, m_spreads,
                   faceSpreads(m_obstacle.m_pool.triangles(), m_obstacle.m_start.data(), m_obstacle.m_vertexCones,
                               m_obstacle.m_edgeCones));
-        m_stage.setTopology(device, m_obstacle.m_pool);
+        m_stage.setTopology(device, m_obstacle.m_pool, m_obstacle.m_start);
         m_stage.pack(device, PatchCullStage::allSlots(), m_obstacleBuffers.m_triangles, m_obstacleBuffers.m_start,
                      m_spreads, m_obstacleBuffers.m_vertexCones, m_obstacleBuffers.m_edgeCones);
     }

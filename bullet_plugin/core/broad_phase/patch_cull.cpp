@@ -45,10 +45,10 @@ void PatchCullStage::create(Device& device, const ProgramLoader& load)
     m_widen.create(device, pack, "patchWiden");
 }
 
-void PatchCullStage::setTopology(Device& device, const MeshPool& obstacles)
+void PatchCullStage::setTopology(Device& device, const MeshPool& obstacles, const std::vector<float>& positions)
 {
     const std::size_t lanes = width(device);
-    m_layout = makePatches(obstacles, std::uint32_t(lanes));
+    m_layout = makePatches(obstacles, positions.data(), std::uint32_t(lanes));
     m_patches.assign(device, m_layout.m_patches);
     m_faceOwners.assign(device, m_layout.m_faceOwners);
     if (device.isGpu()) m_faceFeatures.assign(device, m_layout.m_faceFeatures);

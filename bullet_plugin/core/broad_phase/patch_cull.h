@@ -26,7 +26,7 @@ public:
     void create(Device& device, const ProgramLoader& load);
 
     // New obstacle topology. Waits for the upload.
-    void setTopology(Device& device, const MeshPool& obstacles);
+    void setTopology(Device& device, const MeshPool& obstacles, const std::vector<float>& positions);
     // Obstacle slots from m_first up to m_last.
     struct Slots
     {

@@ -39,37 +39,45 @@ EdgeTriangles trianglesOfEdges(const MeshPool& pool)
     return sides;
 }
 
-// Takes triangles one after the other: of those beside the patch at hand the one with the most neighbours that are
-// taken, so that no hole stays behind, and where there is none the next of the leaf order.
+// Triangles of the leaf order that are looked at where a patch has no neighbours left.
+constexpr std::size_t kAhead = 64;
+
+Vec3 middleOf(const Triangle& triangle, const float* positions)
+{
+    const Vec3 sum =
+        vec3Add(vec3Add(vec3Load(positions, triangle.m_vertices[0]), vec3Load(positions, triangle.m_vertices[1])),
+                vec3Load(positions, triangle.m_vertices[2]));
+    return vec3Scale(sum, 1.0f / 3.0f);
+}
+
+// Takes triangles one after the other: of those beside the patch at hand one that is near its middle, sooner if its
+// neighbours are taken, so that no hole stays behind; where there is none, the nearest of the next in leaf order.
 class Clustering
 {
 public:
-    explicit Clustering(const MeshPool& pool)
+    Clustering(const MeshPool& pool, const float* positions)
         : m_pool(pool), m_sides(trianglesOfEdges(pool)), m_taken(pool.triangles().size(), false)
     {
+        m_middles.reserve(pool.triangles().size());
+        for (const Triangle& triangle : pool.triangles())
+            m_middles.push_back(middleOf(triangle, positions));
     }
 
-    void beginPatch() { m_beside.clear(); }
+    bool done() const { return m_leaf == m_pool.order().size(); }
+    // Of the first triangle in leaf order that is not taken.
+    std::uint32_t mesh() const { return m_pool.triangles()[m_pool.order()[m_leaf]].m_mesh; }
+    void beginPatch()
+    {
+        m_beside.clear();
+        m_inPatch = 0;
+    }
     std::uint32_t next()
     {
-        std::size_t best = m_beside.size();
-        int most = -1;
-        for (std::size_t i = 0; i < m_beside.size(); ++i)
-        {
-            const int neighbours = takenNeighbours(m_beside[i]);
-            if (neighbours <= most) continue;
-            most = neighbours;
-            best = i;
-        }
-        const std::uint32_t triangle = most < 0 ? m_pool.order()[m_leaf] : m_beside[best];
-        if (most >= 0) m_beside.erase(m_beside.begin() + std::ptrdiff_t(best));
+        const std::uint32_t triangle = m_inPatch == 0     ? m_pool.order()[m_leaf]
+                                       : m_beside.empty() ? nearestAhead()
+                                                          : bestBeside();
         take(triangle);
         return triangle;
-    }
-    // Whether no triangle of the mesh is left, where all of those before it in leaf order are taken.
-    bool leaves(std::uint32_t mesh) const
-    {
-        return m_leaf == m_pool.order().size() || m_pool.triangles()[m_pool.order()[m_leaf]].m_mesh != mesh;
     }
 
 private:
@@ -87,24 +95,66 @@ private:
         }
         return count;
     }
+    // Squared, of the triangle's middle from the patch's.
+    float distance(std::uint32_t triangle) const
+    {
+        const Vec3 offset = vec3Sub(m_middles[triangle], vec3Scale(m_sum, 1.0f / float(m_inPatch)));
+        return vec3Dot(offset, offset);
+    }
+    std::uint32_t bestBeside()
+    {
+        const auto cost = [&](std::uint32_t triangle)
+        {
+            const int open = 4 - takenNeighbours(triangle);
+            return distance(triangle) * float(open * open);
+        };
+        std::size_t best = 0;
+        float least = cost(m_beside[0]);
+        for (std::size_t i = 1; i < m_beside.size(); ++i)
+        {
+            const float own = cost(m_beside[i]);
+            if (!(own < least)) continue;
+            least = own;
+            best = i;
+        }
+        const std::uint32_t triangle = m_beside[best];
+        m_beside.erase(m_beside.begin() + std::ptrdiff_t(best));
+        return triangle;
+    }
+    std::uint32_t nearestAhead() const
+    {
+        const std::vector<std::uint32_t>& order = m_pool.order();
+        std::uint32_t nearest = order[m_leaf];
+        for (std::size_t leaf = m_leaf + 1; leaf < std::min(order.size(), m_leaf + kAhead); ++leaf)
+        {
+            if (m_taken[order[leaf]] || m_pool.triangles()[order[leaf]].m_mesh != mesh()) continue;
+            if (distance(order[leaf]) < distance(nearest)) nearest = order[leaf];
+        }
+        return nearest;
+    }
     void take(std::uint32_t triangle)
     {
         m_taken[triangle] = true;
+        m_sum = m_inPatch == 0 ? m_middles[triangle] : vec3Add(m_sum, m_middles[triangle]);
+        ++m_inPatch;
         for (std::uint32_t edge : m_pool.triangles()[triangle].m_edges)
         {
             const std::uint32_t other = across(triangle, edge);
             if (other == kNone || m_taken[other]) continue;
             if (std::find(m_beside.begin(), m_beside.end(), other) == m_beside.end()) m_beside.push_back(other);
         }
-        while (m_leaf < m_pool.order().size() && m_taken[m_pool.order()[m_leaf]])
+        while (!done() && m_taken[m_pool.order()[m_leaf]])
             ++m_leaf;
     }
 
     const MeshPool& m_pool;
     EdgeTriangles m_sides;
+    std::vector<Vec3> m_middles;
     std::vector<bool> m_taken;
     std::vector<std::uint32_t> m_beside;  // triangles that are not taken, beside the patch at hand, oldest first
-    std::size_t m_leaf = 0;               // first of the leaf order that is not taken
+    Vec3 m_sum = {0, 0, 0};               // of the patch's middles
+    std::uint32_t m_inPatch = 0;
+    std::size_t m_leaf = 0;  // first of the leaf order that is not taken
 };
 
 // Triangles [first, last) of the clustered order.
@@ -167,29 +217,25 @@ float spreadOf(const Triangle& triangle, const float* positions, const std::vect
 }
 }  // namespace
 
-std::vector<std::uint32_t> clusteredOrder(const MeshPool& pool, std::uint32_t width)
+std::vector<std::uint32_t> clusteredOrder(const MeshPool& pool, const float* positions, std::uint32_t width)
 {
     std::vector<std::uint32_t> order;
     order.reserve(pool.order().size());
-    Clustering clustering(pool);
-    std::uint32_t inPatch = 0;
-    while (order.size() < pool.order().size())
+    Clustering clustering(pool, positions);
+    while (!clustering.done())
     {
-        if (inPatch == width || (!order.empty() && clustering.leaves(pool.triangles()[order.back()].m_mesh)))
-        {
-            inPatch = 0;
-            clustering.beginPatch();
-        }
-        order.push_back(clustering.next());
-        ++inPatch;
+        const std::uint32_t mesh = clustering.mesh();
+        clustering.beginPatch();
+        for (std::uint32_t i = 0; i < width && !clustering.done() && clustering.mesh() == mesh; ++i)
+            order.push_back(clustering.next());
     }
     return order;
 }
 
-Patches makePatches(const MeshPool& obstacles, std::uint32_t width)
+Patches makePatches(const MeshPool& obstacles, const float* positions, std::uint32_t width)
 {
     Patches patches;
-    const std::vector<std::uint32_t> order = clusteredOrder(obstacles, width);
+    const std::vector<std::uint32_t> order = clusteredOrder(obstacles, positions, width);
     for (std::size_t first = 0; first < order.size();)
     {
         std::size_t last = first + 1;

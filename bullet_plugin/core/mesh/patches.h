@@ -1,5 +1,5 @@
-// Patches of the obstacles: connected triangles as far as there are, begun in leaf order, and the lists of features that
-// they own (see kernels/shared/patch.h).
+// Patches of the obstacles: connected triangles as far as there are, begun in leaf order, and the lists of features
+// that they own (see kernels/shared/patch.h).
 //
 // Input: the joined triangles, leaf order and mesh slots. Output: per patch its blocks, per lane the feature. A patch
 // never holds triangles of two meshes, and is full but for the last one of a mesh. Every triangle, and every vertex and
@@ -26,10 +26,11 @@ struct Patches
 
 // The triangles of all patches, patch by patch. Runs of the leaf order alone, which follows a space-filling curve, are
 // torn where the curve jumps: their volumes then overlap far more others.
-std::vector<std::uint32_t> clusteredOrder(const MeshPool& pool, std::uint32_t width);
+// positions: m, x y z per joined vertex, of each mesh in one frame; any that are no numbers only make patches larger.
+std::vector<std::uint32_t> clusteredOrder(const MeshPool& pool, const float* positions, std::uint32_t width);
 
-// width: lanes in a block.
-Patches makePatches(const MeshPool& obstacles, std::uint32_t width);
+// width: lanes in a block. positions: as above.
+Patches makePatches(const MeshPool& obstacles, const float* positions, std::uint32_t width);
 
 // Per triangle: how far beside it, over how far above it, a node can be that one of its edges' or corners' cones
 // admits; a large number where nothing bounds it.

@@ -34,7 +34,6 @@ void NarrowPhaseStage::create(Device& device, const ProgramLoader& load, bool fe
     }
     const cl::Program compaction = load("compaction");
     m_count.create(device, compaction, "compactionCount");
-    m_scan.create(device, compaction, "compactionScan");
     m_place.create(device, compaction, "compactionPlace");
     m_placeFew.create(device, compaction, "compactionPlaceFew");
     m_gather.create(device, compaction, "compactionGather");
@@ -138,18 +137,17 @@ void NarrowPhaseStage::enqueuePlaces(Device& device, Buffer<cl_uint>& slotCount,
 {
     const cl_uint slots = cl_uint(m_slots);
     const std::size_t blocks = (m_slots + kBlock - 1) / kBlock;
+    const std::size_t group = device.isGpu() ? kPlaceGroupGpu : kGroup;
+    const cl::LocalSpaceArg scratch = cl::Local(group * sizeof(cl_uint));
     if (m_slots <= kFewSlots)
     {
-        const std::size_t group = device.isGpu() ? kPlaceGroupGpu : kGroup;
         m_placeFew.launch(device, blocks * group, group, slotCount.handle(), slots, slotFirst.handle(),
-                          tally.m_now.handle(), cl::Local(group * sizeof(cl_uint)));
+                          tally.m_now.handle(), scratch);
         return;
     }
-    const cl::LocalSpaceArg scratch = cl::Local(kGroup * sizeof(cl_uint));
-    m_count.launch(device, blocks * kGroup, kGroup, slotCount.handle(), slots, m_blockCount.handle(), scratch);
-    m_scan.launch(device, kGroup, kGroup, m_blockCount.handle(), cl_uint(blocks), tally.m_now.handle(), scratch);
-    m_place.launch(device, blocks * kGroup, kGroup, slotCount.handle(), slots, m_blockCount.handle(),
-                   slotFirst.handle(), tally.m_now.handle(), scratch);
+    m_count.launch(device, blocks * group, group, slotCount.handle(), slots, m_blockCount.handle(), scratch);
+    m_place.launch(device, blocks * group, group, slotCount.handle(), slots, m_blockCount.handle(), slotFirst.handle(),
+                   tally.m_now.handle(), scratch);
 }
 
 // Slots with many hits.

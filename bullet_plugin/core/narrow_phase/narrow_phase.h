@@ -142,7 +142,7 @@ private:
     void enqueueSelfHits(Device& device, StepTally tally, const SelfWork& self);
     std::size_t listWidth(const Device& device) const;
 
-    Kernel m_test, m_feature, m_swept, m_intersect, m_count, m_scan, m_place, m_placeFew, m_gather, m_order, m_write;
+    Kernel m_test, m_feature, m_swept, m_intersect, m_count, m_place, m_placeFew, m_gather, m_order, m_write;
     Kernel m_keep, m_writeKept;
     Buffer<Contact> m_hits{"step hits"}, m_contacts{"step contacts"};
     Buffer<Candidate> m_intersections{"step intersections"};

@@ -144,12 +144,12 @@ std::vector<std::uint32_t> DeviceBackend::order(const std::vector<Triangle>& tri
     return m_mortonOrder.order(*m_device, triangles, positions, vertexCount);
 }
 
-void DeviceBackend::uploadSide(const MeshPool& pool, const BvhLayout& layout, Side& side)
+void DeviceBackend::uploadSide(const MeshPool& pool, const BvhLayout& layout, const float* positions, Side& side)
 {
     side.m_revision = pool.revision();
     // The cull over patches needs an order of the cloths alone: that of their own patches, since it walks for packets.
     std::vector<std::uint32_t> clustered;
-    if (patches() && &side == &m_cloth) clustered = clusteredOrder(pool, PatchCullStage::width(*m_device));
+    if (patches() && &side == &m_cloth) clustered = clusteredOrder(pool, positions, PatchCullStage::width(*m_device));
     if (!patches() || &side == &m_cloth) side.m_order.assign(*m_device, patches() ? clustered : pool.order());
     side.m_triangles.assign(*m_device, pool.triangles());
     if (m_settings.m_reduceContacts) side.m_firsts.assign(*m_device, pool.firsts());
@@ -169,7 +169,7 @@ void DeviceBackend::updateTopology(const Scene& scene)
     const bool newCloths = m_cloth.m_revision != scene.m_cloths.revision();
     if (newCloths)
     {
-        uploadSide(scene.m_cloths, scene.m_clothLayout, m_cloth);
+        uploadSide(scene.m_cloths, scene.m_clothLayout, scene.m_clothEnd.data(), m_cloth);
         m_clothEdges.assign(*m_device, scene.m_cloths.edges());
         m_clothStart.reserve(*m_device, 3 * scene.m_cloths.vertexCount());
         m_clothEnd.reserve(*m_device, 3 * scene.m_cloths.vertexCount());
@@ -179,8 +179,8 @@ void DeviceBackend::updateTopology(const Scene& scene)
     const bool newObstacles = m_obstacle.m_revision != scene.m_obstacles.revision();
     if (newObstacles)
     {
-        uploadSide(scene.m_obstacles, scene.m_obstacleLayout, m_obstacle);
-        if (patches()) m_patchCull.setTopology(*m_device, scene.m_obstacles);
+        uploadSide(scene.m_obstacles, scene.m_obstacleLayout, scene.m_obstaclePositions.data(), m_obstacle);
+        if (patches()) m_patchCull.setTopology(*m_device, scene.m_obstacles, scene.m_obstaclePositions);
     }
     if (!patches() && (newCloths || newObstacles)) updateTraversal(scene, newObstacles);
     const bool newPositions = newObstacles || m_obstacleMotion != scene.m_obstacleMotion ||

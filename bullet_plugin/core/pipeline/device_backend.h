@@ -62,7 +62,8 @@ private:
 
     cl::Program program(const char* name, const std::string& defines = std::string());
     void warmUp(float selfThickness = 0.0f);
-    void uploadSide(const MeshPool& pool, const BvhLayout& layout, Side& side);
+    // positions: m, of the side's vertices.
+    void uploadSide(const MeshPool& pool, const BvhLayout& layout, const float* positions, Side& side);
     void updateTopology(const Scene& scene);
     void updateTraversal(const Scene& scene, bool newObstacles);
     void uploadObstacles(const Scene& scene);

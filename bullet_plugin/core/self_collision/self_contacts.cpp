@@ -82,7 +82,7 @@ void SelfContactStage::reserveTests(Device& device, std::size_t count)
 void SelfContactStage::setTopology(Device& device, const MeshPool& cloths, const std::vector<float>& rest)
 {
     const std::size_t width = PatchCullStage::width(device);
-    m_layout = makePatches(cloths, std::uint32_t(width));
+    m_layout = makePatches(cloths, rest.data(), std::uint32_t(width));
     const std::vector<cl_uint> vertexIds = featureIds(m_layout.m_vertexOwners, cloths.triangles(), Lane::Vertex);
     const std::vector<cl_uint> edgeIds = featureIds(m_layout.m_edgeOwners, cloths.triangles(), Lane::Edge);
     m_patches.assign(device, m_layout.m_patches);

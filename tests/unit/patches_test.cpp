@@ -1,0 +1,97 @@
+// Patches: every triangle in one lane, full patches of one mesh each, and near each other on surfaces.
+#include "bullet_plugin/core/mesh/patches.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "scenes/shapes.h"
+#include "tests/support/cases.h"
+#include "tests/support/side.h"
+
+namespace drape::test
+{
+namespace
+{
+constexpr std::uint32_t kWidth = 32;
+
+std::vector<std::uint32_t> clustered(const Side& side)
+{
+    return clusteredOrder(side.m_pool, side.m_start.data(), kWidth);
+}
+
+void expectEachOnce(std::vector<std::uint32_t> order, std::size_t count)
+{
+    std::sort(order.begin(), order.end());
+    std::vector<std::uint32_t> all(count);
+    std::iota(all.begin(), all.end(), 0u);
+    EXPECT_EQ(order, all);
+}
+
+// m, of the boxes around runs of kWidth triangles, in the mean.
+double meanDiagonal(const Side& side, const std::vector<std::uint32_t>& order)
+{
+    double sum = 0;
+    std::size_t patches = 0;
+    for (std::size_t first = 0; first < order.size(); first += kWidth, ++patches)
+    {
+        Vec3 low = {1e30f, 1e30f, 1e30f}, high = {-1e30f, -1e30f, -1e30f};
+        for (std::size_t i = first; i < std::min(order.size(), first + kWidth); ++i)
+            for (std::uint32_t vertex : side.m_pool.triangles()[order[i]].m_vertices)
+            {
+                const Vec3 p = vec3Load(side.m_start.data(), vertex);
+                low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+                high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+            }
+        sum += std::hypot(high.x - low.x, high.y - low.y, high.z - low.z);
+    }
+    return sum / double(patches);
+}
+}  // namespace
+
+TEST(PatchesTest, EveryTriangleIsInOnePatchOfItsMesh)
+{
+    const TriangleMesh sphere = makeSphere(1.0f, 3), soup = makeSoup(1.0f, 0.2f, 101, 31);
+    const Side side = makeSide({sphere, soup, sphere, TriangleMesh()});
+    const std::size_t count = side.m_pool.triangles().size();
+    expectEachOnce(clustered(side), count);
+    const Patches patches = makePatches(side.m_pool, side.m_start.data(), kWidth);
+    std::size_t expected = 0;
+    for (const TriangleMesh& mesh : {sphere, soup, sphere})
+        expected += (mesh.triangleCount() + kWidth - 1) / kWidth;
+    EXPECT_EQ(patches.m_patches.size(), expected) << "full but for each mesh's last";
+    std::vector<std::uint32_t> faces;
+    for (std::size_t lane = 0; lane < patches.m_faceOwners.size(); ++lane)
+    {
+        const std::uint32_t face = patches.m_faceOwners[lane];
+        if (face == DRAPE_NO_FEATURE) continue;
+        faces.push_back(face);
+        EXPECT_EQ(side.m_pool.triangles()[face].m_mesh, patches.m_patches[lane / kWidth].m_mesh);
+    }
+    expectEachOnce(faces, count);
+}
+
+// A curve that fills space jumps; what it joins across a jump lies far apart.
+TEST(PatchesTest, PatchesOfASurfaceAreFarSmallerThanRunsOfTheLeafOrder)
+{
+    const Side side = makeSide({makeSphere(1.0f, 5)});
+    const std::vector<std::uint32_t> order = clustered(side);
+    EXPECT_LT(meanDiagonal(side, order), 0.8 * meanDiagonal(side, side.m_pool.order()));
+    // A disc of 32 triangles' area.
+    const double area = 4 * 3.14159265 / double(side.m_pool.triangles().size()) * kWidth;
+    EXPECT_LT(meanDiagonal(side, order), 2.0 * std::sqrt(area)) << "twice a square's side";
+}
+
+TEST(PatchesTest, PositionsThatAreNoNumbersLoseNothing)
+{
+    Side side = makeSide({makeSphere(1.0f, 3)});
+    for (std::size_t i = 0; i < side.m_start.size(); i += 7)
+        side.m_start[i] = std::numeric_limits<float>::quiet_NaN();
+    expectEachOnce(clustered(side), side.m_pool.triangles().size());
+    std::fill(side.m_start.begin(), side.m_start.end(), std::numeric_limits<float>::infinity());
+    expectEachOnce(clustered(side), side.m_pool.triangles().size());
+}
+}  // namespace drape::test
