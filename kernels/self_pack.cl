@@ -13,6 +13,16 @@ static void storeBox(__global float* restrict boxes, const uint lane, const Feat
     }
 }
 
+// Boxes by node instead: a GPU's groups join those of the features that they meet.
+static void storeNode(__global float* restrict boxes, const uint node, const FeatureBox box)
+{
+    for (int i = 0; i < 3; ++i)
+    {
+        boxes[node * DRAPE_BOX_FLOATS + i] = box.m_low[i];
+        boxes[node * DRAPE_BOX_FLOATS + 3 + i] = box.m_high[i];
+    }
+}
+
 // Counts the invalid nodes that the triangle owns, of a cloth that the search for obstacles does not look at.
 static void countInvalidNodes(__global const Triangle* triangle, __global const float* start, __global const float* end,
                               __global StepCounters* counters)
@@ -25,7 +35,7 @@ static void countInvalidNodes(__global const Triangle* triangle, __global const 
 }
 
 // A work-group of DRAPE_PATCH_WIDTH takes a patch, or one of the empty places behind patchCount: writes its volume, in the
-// first level of the wide tree, and where they are wanted the boxes of its features. Ids are those of the lanes' features,
+// first level of the wide tree, and the boxes of its features in blocks, or of its nodes alone at the nodes' places. Ids are those of the lanes' features,
 // DRAPE_NO_FEATURE where there is none. start: the end's positions in a discrete step. radius: m, per cloth, half the reach,
 // negative for cloths that do not collide with themselves; obstacleRadius: of the search for obstacles.
 __kernel __attribute__((reqd_work_group_size(DRAPE_PATCH_WIDTH, 1, 1))) void selfPack(
@@ -33,7 +43,7 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_PATCH_WIDTH, 1, 1))) void sel
     __global const uint* restrict vertexIds, __global const uint* restrict edgeIds,
     __global const Triangle* restrict triangles, __global const Edge* restrict edges, __global const float* start,
     __global const float* end, __global const float* restrict radius, __global const float* restrict obstacleRadius,
-    const uint boxesWanted, __global float* restrict faceBoxes, __global float* restrict vertexBoxes,
+    const uint inBlocks, __global float* restrict faceBoxes, __global float* restrict vertexBoxes,
     __global float* restrict edgeBoxes, __global float* restrict wideNodes, __global StepCounters* restrict counters)
 {
     __local float bounds[2 * DRAPE_DOP_DIRECTIONS * DRAPE_PATCH_WIDTH];
@@ -49,19 +59,22 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_PATCH_WIDTH, 1, 1))) void sel
         triangleVolume(&dop, triangles + face, start, end, grown);
         if (obstacleRadius[patch.m_mesh] < 0.0f) countInvalidNodes(triangles + face, start, end, counters);
     }
-    if (index < patchCount && boxesWanted) storeBox(faceBoxes, index * DRAPE_PATCH_WIDTH + lane, boxOfVolume(&dop));
+    if (index < patchCount && inBlocks) storeBox(faceBoxes, index * DRAPE_PATCH_WIDTH + lane, boxOfVolume(&dop));
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
     {
         bounds[i * DRAPE_PATCH_WIDTH + lane] = dop.m_low[i];
         bounds[(DRAPE_DOP_DIRECTIONS + i) * DRAPE_PATCH_WIDTH + lane] = dop.m_high[i];
     }
-    for (uint block = patch.m_vertexBlock; boxesWanted && block < patch.m_vertexBlock + patch.m_vertexBlocks; ++block)
+    for (uint block = patch.m_vertexBlock; block < patch.m_vertexBlock + patch.m_vertexBlocks; ++block)
     {
         const uint place = block * DRAPE_PATCH_WIDTH + lane, vertex = vertexIds[place];
         const int there = vertex != DRAPE_NO_FEATURE && grown >= 0.0f;
-        storeBox(vertexBoxes, place, there ? nodeBox(start, end, vertex, grown) : emptyBox());
+        if (inBlocks)
+            storeBox(vertexBoxes, place, there ? nodeBox(start, end, vertex, grown) : emptyBox());
+        else if (there)
+            storeNode(vertexBoxes, vertex, nodeBox(start, end, vertex, grown));
     }
-    for (uint block = patch.m_edgeBlock; boxesWanted && block < patch.m_edgeBlock + patch.m_edgeBlocks; ++block)
+    for (uint block = patch.m_edgeBlock; inBlocks && block < patch.m_edgeBlock + patch.m_edgeBlocks; ++block)
     {
         const uint place = block * DRAPE_PATCH_WIDTH + lane, edge = edgeIds[place];
         FeatureBox box = emptyBox();

@@ -93,6 +93,7 @@ typedef struct SelfFeatures
     __global const uint* m_faceIds;
     __global const uint* m_vertexIds;
     __global const uint* m_edgeIds;
+    __global const float* m_boxes;  // of the nodes
     __global const float* m_nodes;  // of the wide tree
 } SelfFeatures;
 
@@ -165,37 +166,47 @@ static int isNear(__local const float* boxes, const uint place)
     return boxes[place] < DRAPE_INFINITY;
 }
 
-static void gatherFace(__local NearFaces* near, const SelfCloth* cloth, const uint place, const uint face,
-                       const FeatureBox* other)
+static FeatureBox loadNode(const SelfFeatures* features, const uint node)
+{
+    FeatureBox box;
+    for (int i = 0; i < 3; ++i)
+    {
+        box.m_low[i] = features->m_boxes[node * DRAPE_BOX_FLOATS + i];
+        box.m_high[i] = features->m_boxes[node * DRAPE_BOX_FLOATS + 3 + i];
+    }
+    return box;
+}
+
+static void gatherFace(__local NearFaces* near, const SelfCloth* cloth, const SelfFeatures* features, const uint place, const uint face, const FeatureBox* other)
 {
     FeatureBox box = emptyBox();
     for (int k = 0; k < 3 && face != DRAPE_NO_FEATURE; ++k)
     {
         const uint vertex = cloth->m_triangles[face].m_vertices[k];
-        box = joinBoxes(box, nodeBox(cloth->m_start, cloth->m_end, vertex, cloth->m_radius));
+        box = joinBoxes(box, loadNode(features, vertex));
         near->m_nodes[3 * place + k] = vertex;
     }
     putBox(near->m_boxes, DRAPE_PATCH_WIDTH, place, box, other);
     near->m_ids[place] = face;
 }
 
-static void gatherVertex(__local NearVertices* near, const SelfCloth* cloth, const uint place, const uint vertex,
+static void gatherVertex(__local NearVertices* near, const SelfFeatures* features, const uint place, const uint vertex,
                          const FeatureBox* other)
 {
     FeatureBox box = emptyBox();
-    if (vertex != DRAPE_NO_FEATURE) box = nodeBox(cloth->m_start, cloth->m_end, vertex, cloth->m_radius);
+    if (vertex != DRAPE_NO_FEATURE) box = loadNode(features, vertex);
     putBox(near->m_boxes, DRAPE_OWNED_MOST, place, box, other);
     near->m_ids[place] = vertex;
 }
 
-static void gatherEdge(__local NearEdges* near, const SelfCloth* cloth, const uint place, const uint edge,
-                       const FeatureBox* other)
+static void gatherEdge(__local NearEdges* near, const SelfCloth* cloth, const SelfFeatures* features, const uint place,
+                       const uint edge, const FeatureBox* other)
 {
     FeatureBox box = emptyBox();
     for (int k = 0; k < 2 && edge != DRAPE_NO_FEATURE; ++k)
     {
         const uint vertex = cloth->m_edges[edge].m_vertices[k];
-        box = joinBoxes(box, nodeBox(cloth->m_start, cloth->m_end, vertex, cloth->m_radius));
+        box = joinBoxes(box, loadNode(features, vertex));
         near->m_nodes[2 * place + k] = vertex;
     }
     putBox(near->m_boxes, DRAPE_OWNED_MOST, place, box, other);
@@ -214,7 +225,7 @@ static int gatherFaces(__local NearSide* sides, const SelfCloth* cloth, const Se
     if (turn < 2)
     {
         const uint patch = turn == 0 ? pair.m_cloth : pair.m_obstacle;
-        gatherFace(&side->m_faces, cloth, lane, features->m_faceIds[patch * DRAPE_PATCH_WIDTH + lane],
+        gatherFace(&side->m_faces, cloth, features, lane, features->m_faceIds[patch * DRAPE_PATCH_WIDTH + lane],
                    turn == 0 ? boxes + 1 : boxes);
         if (isNear(side->m_faces.m_boxes, lane)) side->m_near = 1;
     }
@@ -237,10 +248,10 @@ static void gatherSide(__local NearSide* side, const SelfCloth* cloth, const Sel
     {
         const uint edge = i - vertices;
         if (i < vertices)
-            gatherVertex(&side->m_vertices, cloth, i, features->m_vertexIds[owned.m_vertexBlock * DRAPE_PATCH_WIDTH + i],
+            gatherVertex(&side->m_vertices, features, i, features->m_vertexIds[owned.m_vertexBlock * DRAPE_PATCH_WIDTH + i],
                          other);
         else
-            gatherEdge(&side->m_edges, cloth, edge, features->m_edgeIds[owned.m_edgeBlock * DRAPE_PATCH_WIDTH + edge], other);
+            gatherEdge(&side->m_edges, cloth, features, edge, features->m_edgeIds[owned.m_edgeBlock * DRAPE_PATCH_WIDTH + edge], other);
     }
 }
 
@@ -346,13 +357,13 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDT
                             __global const uint* restrict vertexIds, __global const uint* restrict edgeIds,
                             __global const Triangle* restrict triangles, __global const Edge* restrict edges,
                             __global const float* start, __global const float* end, __global const float* restrict radius,
-                            __global const float* restrict thickness, __global const float* restrict wideNodes,
-                            __global FeatureTest* restrict list, const uint capacity, const uint limit,
+                            __global const float* restrict thickness, __global const float* restrict nodeBoxes,
+                            __global const float* restrict wideNodes, __global FeatureTest* restrict list, const uint capacity, const uint limit,
                             __global StepCounters* restrict counters)
 {
     __local SelfCuller culler;
     const uint count = min(counters->m_selfPairs, pairCapacity);
-    const SelfFeatures features = {patches, faceIds, vertexIds, edgeIds, wideNodes};
+    const SelfFeatures features = {patches, faceIds, vertexIds, edgeIds, nodeBoxes, wideNodes};
     const TestList tests = {list, capacity, limit, &counters->m_selfTests};
     SelfCloth cloth = {triangles, edges, start, end, 0.0f, 0.0f};
     uint mesh = DRAPE_NO_FEATURE;

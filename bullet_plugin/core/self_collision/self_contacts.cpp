@@ -92,7 +92,7 @@ void SelfContactStage::setTopology(Device& device, const MeshPool& cloths, const
     m_levels.assign(device, m_layout.m_levels);
     const std::size_t floats = device.isGpu() ? 0 : DRAPE_BOX_FLOATS;
     m_faceBoxes.reserve(device, m_layout.m_faceOwners.size() * floats);
-    m_vertexBoxes.reserve(device, vertexIds.size() * floats);
+    m_vertexBoxes.reserve(device, (device.isGpu() ? cloths.vertexCount() : vertexIds.size()) * DRAPE_BOX_FLOATS);
     m_edgeBoxes.reserve(device, edgeIds.size() * floats);
     m_wideNodes.reserve(device, m_layout.m_levels.back() * DRAPE_WIDE_NODE_FLOATS * width);
     m_rest.assign(device, rest);
@@ -148,8 +148,9 @@ void SelfContactStage::enqueuePairs(Device& device, SelfBuffers step, Buffer<flo
     m_cull.launch(device, device.computeUnits() * kPairGroupsPerUnit * group, group, m_pairs.handle(),
                   cl_uint(m_pairs.capacity()), m_patches.handle(), m_faceIds.handle(), m_vertexIds.handle(),
                   m_edgeIds.handle(), step.m_triangles.handle(), step.m_edges.handle(), start.handle(),
-                  step.m_end.handle(), m_radius.handle(), m_thickness.handle(), m_wideNodes.handle(), m_tests.handle(),
-                  cl_uint(m_tests.capacity()), cl_uint(step.m_limit), counters.handle());
+                  step.m_end.handle(), m_radius.handle(), m_thickness.handle(), m_vertexBoxes.handle(),
+                  m_wideNodes.handle(), m_tests.handle(), cl_uint(m_tests.capacity()), cl_uint(step.m_limit),
+                  counters.handle());
 }
 
 void SelfContactStage::enqueueCull(Device& device, SelfBuffers step, Buffer<StepCounters>& counters)

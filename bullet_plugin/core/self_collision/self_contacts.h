@@ -153,7 +153,7 @@ private:
     Buffer<Patch> m_patches{"self patches"};
     Buffer<cl_uint> m_faceIds{"self patches"}, m_vertexIds{"self patches"}, m_edgeIds{"self patches"};
     Buffer<cl_uint> m_levels{"self patches"};
-    // A GPU makes the boxes where it needs them.
+    // On a GPU those of nodes alone, by node.
     Buffer<float> m_faceBoxes{"self boxes"}, m_vertexBoxes{"self boxes"}, m_edgeBoxes{"self boxes"};
     Buffer<float> m_wideNodes{"self wide nodes"};
     Buffer<float> m_rest{"cloth positions"}, m_radius{"self patches"}, m_thickness{"self patches"};
