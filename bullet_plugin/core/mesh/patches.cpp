@@ -9,8 +9,6 @@ namespace drape
 {
 namespace
 {
-// Spread of a face that nothing bounds: larger than any scene, small enough for products.
-constexpr float kUnbounded = 1e18f;
 // Directions steeper than this beside a face are taken as unbounded: the tangent grows without limit.
 constexpr double kSteepest = 1.4;
 // Radians that the direction of a cone and a face may be off by.
@@ -65,19 +63,19 @@ float spreadOf(const Triangle& triangle, const float* positions, const std::vect
     const Vec3 area = vec3Cross(vec3Sub(vec3Load(positions, triangle.m_vertices[1]), a),
                                 vec3Sub(vec3Load(positions, triangle.m_vertices[2]), a));
     const float length = vec3Length(area);
-    if (!(length > 0.0f)) return kUnbounded;
+    if (!(length > 0.0f)) return DRAPE_ANY_SPREAD;
     const Vec3 normal = vec3Scale(area, 1.0f / length);
     double steepest = 0;
     for (int i = 0; i < 3; ++i)
     {
         for (const NormalCone& cone : {vertexCones[triangle.m_vertices[i]], edgeCones[triangle.m_edges[i]]})
         {
-            if (!(cone.m_cosine > 0.0f)) return kUnbounded;
+            if (!(cone.m_cosine > 0.0f)) return DRAPE_ANY_SPREAD;
             const double halfAngle = std::acos(std::min(1.0, double(cone.m_cosine)));
             steepest = std::max(steepest, angleBetween(cone.m_axis, normal) + halfAngle + kAngleSlack);
         }
     }
-    return steepest < kSteepest ? float(std::tan(steepest)) : kUnbounded;
+    return steepest < kSteepest ? float(std::tan(steepest)) : DRAPE_ANY_SPREAD;
 }
 }  // namespace
 
