@@ -12,6 +12,7 @@
 #define DRAPE_LIB_FEATURE_CULL_H
 
 #include "closest.h"
+#include "cone_reach.h"
 #include "finite_corners.h"
 #include "lanes.h"
 #include "rigid_motion.h"
@@ -74,6 +75,16 @@ DRAPE_FUNCTION int cullNormal(const Vec3* p, Vec3* normal, float* height)
     *normal = vec3Scale(area, drapeRatio(1.0f, length));
     *height = drapeRatio(length, drapeSqrt(longest));
     return !(length > DRAPE_CULL_THIN * longest);
+}
+
+// A triangle's normal as a cone; every direction where it is not sure to a share that the cull's slack covers.
+DRAPE_FUNCTION NormalCone faceCone(const Vec3* p)
+{
+    Vec3 normal;
+    float height;
+    const int thin = cullNormal(p, &normal, &height);
+    const int sure = !thin && cornersSum(p) <= DRAPE_FARTHEST;
+    return normalCone(normal, sure ? 1.0f : -1.0f);
 }
 
 // mode: DRAPE_DISCRETE …; a discrete step has no motion. motion: the obstacle's, null where it rests. Returns the

@@ -36,12 +36,9 @@ public:
         m_obstacleBuffers.upload(device, m_obstacle);
         guardCopy(device, m_thicknessBuffer, m_thickness);
         guardCopy(device, m_radius, std::vector<float>{step.m_thickness * kReachScale * 1.001f});
-        guardCopy(device, m_spreads,
-                  faceSpreads(m_obstacle.m_pool.triangles(), m_obstacle.m_start.data(), m_obstacle.m_vertexCones,
-                              m_obstacle.m_edgeCones));
         m_stage.setTopology(device, m_obstacle.m_pool);
         m_stage.pack(device, PatchCullStage::allSlots(), m_obstacleBuffers.m_triangles, m_obstacleBuffers.m_start,
-                     m_spreads, m_obstacleBuffers.m_vertexCones, m_obstacleBuffers.m_edgeCones);
+                     m_obstacleBuffers.m_vertexCones, m_obstacleBuffers.m_edgeCones);
     }
 
     // What fits of the list.
@@ -107,7 +104,7 @@ private:
     PatchCullStage m_stage;
     DeviceSide m_clothBuffers, m_obstacleBuffers;
     std::vector<float> m_thickness;
-    Buffer<float> m_thicknessBuffer, m_radius, m_spreads;
+    Buffer<float> m_thicknessBuffer, m_radius;
     Buffer<ObstacleMotion> m_motions;  // none
     std::map<Buffer<cl_uint>*, std::vector<cl_uint>> m_ids;
 };

@@ -459,5 +459,33 @@ TEST_P(MovingObstacleTest, NodeThatEndsLevelWithAPlatesFaceBesideIt)
     expectHostsContacts(GetParam(), moving, expected);
 }
 
+// Faces of 3 mm whose corners are rounded to 0.1 mm where they are placed, so that they turn, and their cones do not.
+TEST_P(MovingObstacleTest, SmallFacesPlacedFarOut)
+{
+    for (std::uint32_t seed = 970; seed < 974; ++seed)
+    {
+        Random random(seed);
+        const Motion far = motionOf(0.4, {1200, 900, -1100}, random);
+        MovingCase moving = {{"far out", seed, {}, makeTorus(0.05f, 0.02f, 96, 48), {}, 0.02f}, far, far};
+        std::vector<float> corners;
+        for (int i = 0; i < 1000; ++i)
+        {
+            const Vec3 middle = {random.uniform(-0.1f, 0.1f), random.uniform(-0.05f, 0.05f),
+                                 random.uniform(-0.1f, 0.1f)};
+            for (int k = 0; k < 3; ++k)
+                for (const float coordinate : {middle.x, middle.y, middle.z})
+                    corners.push_back(coordinate + random.uniform(-0.002f, 0.002f));
+        }
+        moving.m_step.m_cloth = looseTriangles(corners);
+        moving.m_step.m_end = moving.m_step.m_cloth.m_positions = mapped(far, corners);
+        SCOPED_TRACE(moving.m_step.trace());
+        const std::unique_ptr<Pipeline> host = makePipeline(allBackends()[0].m_settings), pipeline = make();
+        ASSERT_TRUE(host && pipeline);
+        const std::vector<Contact> expected = runMoving(*host, moving), contacts = runMoving(*pipeline, moving);
+        EXPECT_GT(expected.size(), 1000u);
+        EXPECT_TRUE(sameBytes(contacts, expected)) << difference(contacts, expected);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Backends, MovingObstacleTest, testing::ValuesIn(allBackends()), backendName);
 }  // namespace drape::test

@@ -25,9 +25,4 @@ struct Patches
 
 // width: lanes in a block.
 Patches makePatches(const MeshPool& obstacles, std::uint32_t width);
-
-// Per triangle: how far beside it, over how far above it, a node can be that one of its edges' or corners' cones
-// admits; a large number where nothing bounds it.
-std::vector<float> faceSpreads(const std::vector<Triangle>& triangles, const float* positions,
-                               const std::vector<NormalCone>& vertexCones, const std::vector<NormalCone>& edgeCones);
 }  // namespace drape
