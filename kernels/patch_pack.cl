@@ -19,10 +19,41 @@ static void packVec3(__global float* restrict out, const uint first, const Vec3 
     out[(first + 2) * DRAPE_PATCH_WIDTH] = v.z;
 }
 
+// The obstacles' triangles where they are.
+typedef struct ObstacleFaces
+{
+    __global const Triangle* m_triangles;
+    __global const float* m_positions;
+    __global const NormalCone* m_vertexCones;
+    __global const NormalCone* m_edgeCones;
+} ObstacleFaces;
+
+// A triangle's normal (faceCone()) and the cones of its corners and edges.
+typedef struct FaceCones
+{
+    NormalCone m_face, m_around[6];
+} FaceCones;
+
+static FaceCones conesOf(const ObstacleFaces* faces, const uint index)
+{
+    __global const Triangle* triangle = faces->m_triangles + index;
+    FaceCones cones;
+    Vec3 p[3];
+    for (int k = 0; k < 3; ++k)
+    {
+        p[k] = vec3Load(faces->m_positions, triangle->m_vertices[k]);
+        cones.m_around[k] = faces->m_vertexCones[triangle->m_vertices[k]];
+        cones.m_around[3 + k] = faces->m_edgeCones[triangle->m_edges[k]];
+    }
+    cones.m_face = faceCone(p);
+    return cones;
+}
+
 // A work-item is a lane of a face block, of those from first up to last.
 __kernel void patchPackFaces(__global const uint* restrict owners, const uint first, const uint last,
                              __global const Triangle* restrict triangles, __global const float* restrict positions,
-                             __global const float* restrict spreads, __global float* restrict faces)
+                             __global const NormalCone* restrict vertexCones,
+                             __global const NormalCone* restrict edgeCones, __global float* restrict faces)
 {
     const uint i = first + get_global_id(0);
     if (i >= last) return;
@@ -30,7 +61,9 @@ __kernel void patchPackFaces(__global const uint* restrict owners, const uint fi
     const uint owner = used ? owners[i] : 0;
     __global float* out = faces + (i / DRAPE_PATCH_WIDTH) * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
     for (int k = 0; k < 3; ++k) packVec3(out, 3 * k, packedPosition(positions, triangles[owner].m_vertices[k], used));
-    out[9 * DRAPE_PATCH_WIDTH] = used ? spreads[owner] : 0.0f;
+    const ObstacleFaces all = {triangles, positions, vertexCones, edgeCones};
+    const FaceCones cones = conesOf(&all, owner);
+    out[9 * DRAPE_PATCH_WIDTH] = used ? faceSpread(cones.m_face, cones.m_around) : 0.0f;
 }
 
 // A work-item is a lane of a vertex block. ids: the vertex of each lane.
@@ -96,23 +129,9 @@ static void wideStore(__global float* restrict wideNodes, const uint child, cons
 typedef struct PatchFaces
 {
     __global const uint* m_owners;
-    __global const Triangle* m_triangles;
-    __global const float* m_positions;
-    __global const NormalCone* m_vertexCones;
-    __global const NormalCone* m_edgeCones;
+    ObstacleFaces m_faces;
     uint m_first, m_last;
 } PatchFaces;
-
-// The face's normal as a cone; every direction where it is not sure to a share that the cull's slack covers.
-static NormalCone faceCone(const PatchFaces* faces, __global const Triangle* triangle)
-{
-    Vec3 p[3], normal;
-    float height;
-    for (int k = 0; k < 3; ++k) p[k] = vec3Load(faces->m_positions, triangle->m_vertices[k]);
-    const int thin = cullNormal(p, &normal, &height);
-    const int sure = !thin && cornersSum(p) <= DRAPE_FARTHEST;
-    return normalCone(normal, sure ? 1.0f : -1.0f);
-}
 
 // A cone around what the patch's faces, edges and vertices admit.
 static NormalCone patchCone(const PatchFaces* faces)
@@ -120,9 +139,9 @@ static NormalCone patchCone(const PatchFaces* faces)
     Vec3 axis = vec3(0.0f, 0.0f, 0.0f);
     for (uint i = faces->m_first; i < faces->m_last; ++i)
     {
-        const NormalCone face = faceCone(faces, faces->m_triangles + faces->m_owners[i]);
-        if (!(face.m_cosine > 0.0f)) return face;
-        axis = vec3Add(axis, face.m_axis);
+        const FaceCones cones = conesOf(&faces->m_faces, faces->m_owners[i]);
+        if (!(cones.m_face.m_cosine > 0.0f)) return cones.m_face;
+        axis = vec3Add(axis, cones.m_face.m_axis);
     }
     const float length = vec3Length(axis);
     if (!(length > 0.5f)) return normalCone(axis, -1.0f);
@@ -130,13 +149,9 @@ static NormalCone patchCone(const PatchFaces* faces)
     float cosine = 1.0f;
     for (uint i = faces->m_first; i < faces->m_last && cosine > 0.0f; ++i)
     {
-        __global const Triangle* triangle = faces->m_triangles + faces->m_owners[i];
-        cosine = drapeMin(cosine, cosineAround(axis, faceCone(faces, triangle)));
-        for (int k = 0; k < 3; ++k)
-        {
-            cosine = drapeMin(cosine, cosineAround(axis, faces->m_vertexCones[triangle->m_vertices[k]]));
-            cosine = drapeMin(cosine, cosineAround(axis, faces->m_edgeCones[triangle->m_edges[k]]));
-        }
+        const FaceCones cones = conesOf(&faces->m_faces, faces->m_owners[i]);
+        cosine = drapeMin(cosine, cosineAround(axis, cones.m_face));
+        cosine = drapeMin(cosine, cosineOfCones(axis, cones.m_around));
     }
     return normalCone(axis, cosine - DRAPE_CONE_PAD);
 }
@@ -162,7 +177,9 @@ __kernel void patchVolumes(__global const uint* restrict faceOwners, const uint 
     if (patch >= last) return;
     WideChild child;
     dopClear(&child.m_volume);
-    PatchFaces faces = {faceOwners, triangles, positions, vertexCones, edgeCones, patch * DRAPE_PATCH_WIDTH,
+    PatchFaces faces = {faceOwners,
+                        {triangles, positions, vertexCones, edgeCones},
+                        patch * DRAPE_PATCH_WIDTH,
                         patch * DRAPE_PATCH_WIDTH};
     while (patch < patchCount && faces.m_last < (patch + 1) * DRAPE_PATCH_WIDTH &&
            faceOwners[faces.m_last] != DRAPE_NO_FEATURE)

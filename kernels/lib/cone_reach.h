@@ -8,6 +8,7 @@
 #ifndef DRAPE_LIB_CONE_REACH_H
 #define DRAPE_LIB_CONE_REACH_H
 
+#include "../shared/patch.h"
 #include "dop.h"
 
 DRAPE_NAMESPACE_BEGIN
@@ -35,6 +36,34 @@ DRAPE_FUNCTION float cosineAround(Vec3 axis, NormalCone cone)
     if (!(cone.m_cosine > 0.0f)) return -1.0f;
     const float cosine = between * cone.m_cosine - sineOf(between) * sineOf(drapeMin(cone.m_cosine, 1.0f));
     return cosine > 0.0f ? cosine : -1.0f;
+}
+
+// Cosine of the half-angle about `axis` of a cone that holds what a triangle's corners and edges admit; as
+// cosineAround(). cones: of its corners, then of its edges.
+DRAPE_FUNCTION float cosineOfCones(Vec3 axis, const NormalCone* cones)
+{
+    float cosine = 1.0f;
+    for (int k = 0; k < 6 && cosine > 0.0f; ++k)
+        cosine = drapeMin(cosine, cosineAround(axis, cones[k]));
+    return cosine;
+}
+
+// Radians by which the angle between a cone's axis and a normal may be off: where it is small, the root of twice the
+// error of their product, of some 30 roundings. That of a triangle's normal is 2e-5 (DRAPE_CULL_THIN).
+#define DRAPE_SPREAD_SLACK 2e-3f
+// Directions steeper than 1.4 radians beside a face are taken as unbounded: the tangent grows without limit.
+#define DRAPE_SPREAD_COSINE 0.17f
+
+// A face's spread (patch.h). face: its normal as a cone; cones: as in cosineOfCones(). All must be where the narrow
+// phase has them: corners that are rounded to where an obstacle is placed turn small faces, and do not turn the cones.
+DRAPE_FUNCTION float faceSpread(NormalCone face, const NormalCone* cones)
+{
+    if (!(face.m_cosine > 0.0f)) return DRAPE_ANY_SPREAD;
+    const float admitted = cosineOfCones(face.m_axis, cones);
+    // cos(a + b) ≥ cos a - b sin a - b² / 2
+    const float slack = DRAPE_SPREAD_SLACK;
+    const float cosine = admitted - slack * sineOf(admitted) - 0.5f * slack * slack;
+    return cosine > DRAPE_SPREAD_COSINE ? sineOf(cosine) / cosine : DRAPE_ANY_SPREAD;
 }
 
 // Most that a unit vector in the cone or its opposite goes along direction i of the volumes, rounded up.

@@ -12,6 +12,7 @@
 #define DRAPE_LIB_FEATURE_CULL_H
 
 #include "closest.h"
+#include "cone_reach.h"
 #include "finite_corners.h"
 #include "lanes.h"
 #include "rigid_motion.h"
@@ -74,6 +75,16 @@ DRAPE_FUNCTION int cullNormal(const Vec3* p, Vec3* normal, float* height)
     *normal = vec3Scale(area, drapeRatio(1.0f, length));
     *height = drapeRatio(length, drapeSqrt(longest));
     return !(length > DRAPE_CULL_THIN * longest);
+}
+
+// A triangle's normal as a cone; every direction where it is not sure to a share that the cull's slack covers.
+DRAPE_FUNCTION NormalCone faceCone(const Vec3* p)
+{
+    Vec3 normal;
+    float height;
+    const int thin = cullNormal(p, &normal, &height);
+    const int sure = !thin && cornersSum(p) <= DRAPE_FARTHEST;
+    return normalCone(normal, sure ? 1.0f : -1.0f);
 }
 
 // mode: DRAPE_DISCRETE …; a discrete step has no motion. motion: the obstacle's, null where it rests. Returns the
@@ -235,9 +246,12 @@ DRAPE_FUNCTION LaneMask cullNodeFace(const DRAPE_TEAM CullTriangle* cull, int i,
     const LaneMask level = depth <= square * lanesSelect(passed, lanesSplat(reach.m_farthest * reach.m_farthest),
                                                          lanesSplat(reach.m_near * reach.m_near));
     // How far outside an edge the node may be: where the edge's or a corner's cone still admits the direction to it, or
-    // as far as it can have moved since it passed. (x + y)² ≤ 1.1 x² + 11 y².
-    const Lanes spread = lanesLoad(block, 9);
-    const Lanes slope = lanesMin(depth * spread * spread, square * (reach.m_near * reach.m_near));
+    // as far as it can have moved since it passed. (x + y)² ≤ 1.1 x² + 11 y². A spread that is bounded is less than 6,
+    // so that six times the height's rounding are within the slack. One that is not says nothing of the height: level
+    // with the face it may be nothing.
+    const Lanes spread = lanesLoad(block, 9), most = square * (reach.m_near * reach.m_near);
+    const Lanes slope =
+        lanesSelect(spread < lanesSplat(DRAPE_ANY_SPREAD), lanesMin(depth * spread * spread, most), most);
     const Lanes moved = lanesSelect(passed, square * (reach.m_met * reach.m_met), lanesSplat(0.0f));
     const Lanes allowed = 1.1f * lanesMax(slope, moved) + 44.0f * reach.m_slack * reach.m_slack * square;
     const Lanes outAB = lanesMax(lanesDot(lanesCross(ab, area), x1), lanesSplat(0.0f));

@@ -28,6 +28,9 @@ typedef struct Patch
 #define DRAPE_FACE_FLOATS 10
 #define DRAPE_VERTEX_FLOATS 7
 #define DRAPE_EDGE_FLOATS 10
+// Spread: how far beside the face, over how far above it, a node can be that one of its edges' or corners' cones
+// admits; DRAPE_ANY_SPREAD where they admit as much as any, a direction in the face's own plane among them.
+#define DRAPE_ANY_SPREAD 1e18f
 // Of every direction: low, high, and how far a contact can reach as a share of the reach (lib/cone_reach.h).
 #define DRAPE_WIDE_NODE_FLOATS (3 * DRAPE_DOP_DIRECTIONS)
 
@@ -46,8 +49,8 @@ typedef struct Patch
 #define DRAPE_FEATURES_EDGE(features) (((features) >> 16) & 0xffu)
 
 // A feature test that the cull could not drop: a cloth triangle with the test above it, and a lane of the faces (tests
-// 0 to 2: corner of the cloth triangle), vertices (3) or edges (4 to 6: edge of the cloth triangle). Also a pair of a cloth
-// triangle and a patch, whose index is then in the place of the lane; and a pair of features of one cloth
+// 0 to 2: corner of the cloth triangle), vertices (3) or edges (4 to 6: edge of the cloth triangle). Also a pair of a
+// cloth triangle and a patch, whose index is then in the place of the lane; and a pair of features of one cloth
 // (lib/self_contact.h).
 typedef struct FeatureTest
 {

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "bullet_plugin/core/narrow_phase/narrow_phase.h"
+#include "scenes/shapes.h"
 #include "tests/support/cases.h"
 #include "tests/support/device_side.h"
 
@@ -35,12 +36,9 @@ public:
         m_obstacleBuffers.upload(device, m_obstacle);
         guardCopy(device, m_thicknessBuffer, m_thickness);
         guardCopy(device, m_radius, std::vector<float>{step.m_thickness * kReachScale * 1.001f});
-        guardCopy(device, m_spreads,
-                  faceSpreads(m_obstacle.m_pool.triangles(), m_obstacle.m_start.data(), m_obstacle.m_vertexCones,
-                              m_obstacle.m_edgeCones));
         m_stage.setTopology(device, m_obstacle.m_pool, m_obstacle.m_start);
         m_stage.pack(device, PatchCullStage::allSlots(), m_obstacleBuffers.m_triangles, m_obstacleBuffers.m_start,
-                     m_spreads, m_obstacleBuffers.m_vertexCones, m_obstacleBuffers.m_edgeCones);
+                     m_obstacleBuffers.m_vertexCones, m_obstacleBuffers.m_edgeCones);
     }
 
     // What fits of the list.
@@ -106,7 +104,7 @@ private:
     PatchCullStage m_stage;
     DeviceSide m_clothBuffers, m_obstacleBuffers;
     std::vector<float> m_thickness;
-    Buffer<float> m_thicknessBuffer, m_radius, m_spreads;
+    Buffer<float> m_thicknessBuffer, m_radius;
     Buffer<ObstacleMotion> m_motions;  // none
     std::map<Buffer<cl_uint>*, std::vector<cl_uint>> m_ids;
 };
@@ -202,6 +200,16 @@ TEST_P(PatchCullTest, ListsAShortEdgeFarFromTheFirstCorner)
     const TriangleMesh obstacle = looseTriangles({-0.0795672387f, 0.999655068f, 0.14446871f, -0.103625663f,
                                                   0.996899843f, 0.16811575f, -0.0932211801f, 1.01372147f, 0.14674969f});
     const StepCase step = {"short edge", 0, cloth, obstacle, cloth.m_positions, 0.02f};
+    for (const std::uint32_t mode : {DRAPE_DISCRETE, DRAPE_CONTINUOUS, DRAPE_AUTOMATIC})
+        expectContactsListed(*m_device, step, mode, 1.0);
+}
+
+// A node level with a box's upper face to the last bit, 24 mm beside it: the edges' cones admit what lies in the face's
+// plane, however little the node is above it.
+TEST_P(PatchCullTest, ListsANodeLevelWithAFaceBesideIt)
+{
+    const TriangleMesh cloth = looseTriangles({0.55f, 0.31f, 0.0f, 0.55f, 0.31f, 0.06f, 0.524f, 0.3f, 0.03f});
+    const StepCase step = {"level node", 0, cloth, makeBox(1.0f, 0.6f, 0.8f), cloth.m_positions, 0.02f};
     for (const std::uint32_t mode : {DRAPE_DISCRETE, DRAPE_CONTINUOUS, DRAPE_AUTOMATIC})
         expectContactsListed(*m_device, step, mode, 1.0);
 }

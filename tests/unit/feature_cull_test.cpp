@@ -6,7 +6,6 @@
 
 #include <algorithm>
 
-#include "bullet_plugin/core/mesh/patches.h"
 #include "kernels/lib/pair_contact.h"
 #include "tests/support/cases.h"
 #include "tests/support/side.h"
@@ -126,11 +125,25 @@ struct CullCase
     explicit CullCase(const StepCase& step) : m_cloth(makeSide({step.m_cloth})), m_obstacle(makeSide({step.m_obstacle}))
     {
         m_cloth.m_end = step.m_end;
-        m_spreads = faceSpreads(m_obstacle.m_pool.triangles(), m_obstacle.m_start.data(), m_obstacle.m_vertexCones,
-                                m_obstacle.m_edgeCones);
+        for (const Triangle& triangle : m_obstacle.m_pool.triangles())
+            m_spreads.push_back(spreadOf(triangle));
     }
     Side m_cloth, m_obstacle;
     std::vector<float> m_spreads;
+
+private:
+    float spreadOf(const Triangle& triangle) const
+    {
+        Vec3 corners[3];
+        NormalCone cones[6];
+        for (int i = 0; i < 3; ++i)
+        {
+            corners[i] = vec3Load(m_obstacle.m_start.data(), triangle.m_vertices[i]);
+            cones[i] = m_obstacle.m_vertexCones[triangle.m_vertices[i]];
+            cones[3 + i] = m_obstacle.m_edgeCones[triangle.m_edges[i]];
+        }
+        return faceSpread(faceCone(corners), cones);
+    }
 };
 
 void expectContactsKept(PairOfTriangles& pair, Candidate triangles, Counts& counts)

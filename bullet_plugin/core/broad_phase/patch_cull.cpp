@@ -80,7 +80,7 @@ PatchCullStage::Range PatchCullStage::patchesOf(Slots slots) const
 }
 
 void PatchCullStage::pack(Device& device, Slots slots, Buffer<Triangle>& triangles, Buffer<float>& positions,
-                          Buffer<float>& spreads, Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones)
+                          Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones)
 {
     const Range patches = patchesOf(slots);
     if (patches.count() == 0) return;
@@ -95,7 +95,8 @@ void PatchCullStage::pack(Device& device, Slots slots, Buffer<Triangle>& triangl
     const Range vertices = {front.m_vertexBlock * width, (back.m_vertexBlock + back.m_vertexBlocks) * width};
     const Range edges = {front.m_edgeBlock * width, (back.m_edgeBlock + back.m_edgeBlocks) * width};
     m_packFaces.launch(device, faces.count(), kGroup, m_faceOwners.handle(), faces.first(), faces.last(),
-                       triangles.handle(), positions.handle(), spreads.handle(), m_faces.handle());
+                       triangles.handle(), positions.handle(), vertexCones.handle(), edgeCones.handle(),
+                       m_faces.handle());
     m_packVertices.launch(device, vertices.count(), kGroup, m_vertexOwners.handle(), vertices.first(), vertices.last(),
                           triangles.handle(), positions.handle(), vertexCones.handle(), m_vertices.handle(),
                           m_vertexIds.handle());

@@ -35,7 +35,7 @@ public:
     // Packs the features of those obstacles at new positions; all must have been packed once. The buffers are the
     // joined obstacles'; returns after enqueueing.
     void pack(Device& device, Slots slots, Buffer<Triangle>& triangles, Buffer<float>& positions,
-              Buffer<float>& spreads, Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones);
+              Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones);
     // Gives back what only pack() reads; it brings that again when it is called.
     void releasePacking();
     static Slots allSlots() { return {0, SIZE_MAX}; }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "kernels/lib/vec3.h"
 
@@ -10,13 +9,6 @@ namespace drape
 {
 namespace
 {
-// Spread of a face that nothing bounds: larger than any scene, small enough for products.
-constexpr float kUnbounded = 1e18f;
-// Directions steeper than this beside a face are taken as unbounded: the tangent grows without limit.
-constexpr double kSteepest = 1.4;
-// Radians that the direction of a cone and a face may be off by.
-constexpr double kAngleSlack = 2e-3;
-
 void padBlock(std::vector<std::uint32_t>& owners, std::uint32_t width)
 {
     while (owners.size() % width != 0)
@@ -189,32 +181,6 @@ void appendPatch(Patches& patches, const MeshPool& pool, const std::vector<std::
     patches.m_patches.push_back(patch);
 }
 
-double angleBetween(Vec3 a, Vec3 b)
-{
-    return std::acos(std::min(1.0, double(drapeAbs(vec3Dot(a, b)))));
-}
-
-float spreadOf(const Triangle& triangle, const float* positions, const std::vector<NormalCone>& vertexCones,
-               const std::vector<NormalCone>& edgeCones)
-{
-    const Vec3 a = vec3Load(positions, triangle.m_vertices[0]);
-    const Vec3 area = vec3Cross(vec3Sub(vec3Load(positions, triangle.m_vertices[1]), a),
-                                vec3Sub(vec3Load(positions, triangle.m_vertices[2]), a));
-    const float length = vec3Length(area);
-    if (!(length > 0.0f)) return kUnbounded;
-    const Vec3 normal = vec3Scale(area, 1.0f / length);
-    double steepest = 0;
-    for (int i = 0; i < 3; ++i)
-    {
-        for (const NormalCone& cone : {vertexCones[triangle.m_vertices[i]], edgeCones[triangle.m_edges[i]]})
-        {
-            if (!(cone.m_cosine > 0.0f)) return kUnbounded;
-            const double halfAngle = std::acos(std::min(1.0, double(cone.m_cosine)));
-            steepest = std::max(steepest, angleBetween(cone.m_axis, normal) + halfAngle + kAngleSlack);
-        }
-    }
-    return steepest < kSteepest ? float(std::tan(steepest)) : kUnbounded;
-}
 }  // namespace
 
 std::vector<std::uint32_t> clusteredOrder(const MeshPool& pool, const float* positions, std::uint32_t width)
@@ -255,15 +221,5 @@ Patches makePatches(const MeshPool& obstacles, const float* positions, std::uint
     }
     patches.m_levels.push_back(nodes);
     return patches;
-}
-
-std::vector<float> faceSpreads(const std::vector<Triangle>& triangles, const float* positions,
-                               const std::vector<NormalCone>& vertexCones, const std::vector<NormalCone>& edgeCones)
-{
-    std::vector<float> spreads;
-    spreads.reserve(triangles.size());
-    for (const Triangle& triangle : triangles)
-        spreads.push_back(spreadOf(triangle, positions, vertexCones, edgeCones));
-    return spreads;
 }
 }  // namespace drape

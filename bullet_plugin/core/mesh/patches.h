@@ -31,9 +31,4 @@ std::vector<std::uint32_t> clusteredOrder(const MeshPool& pool, const float* pos
 
 // width: lanes in a block. positions: as above.
 Patches makePatches(const MeshPool& obstacles, const float* positions, std::uint32_t width);
-
-// Per triangle: how far beside it, over how far above it, a node can be that one of its edges' or corners' cones
-// admits; a large number where nothing bounds it.
-std::vector<float> faceSpreads(const std::vector<Triangle>& triangles, const float* positions,
-                               const std::vector<NormalCone>& vertexCones, const std::vector<NormalCone>& edgeCones);
 }  // namespace drape

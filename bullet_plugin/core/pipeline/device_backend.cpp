@@ -188,15 +188,9 @@ void DeviceBackend::updateTopology(const Scene& scene)
     if (newPositions) uploadObstacles(scene);
     if (newPositions || m_obstaclePlacing != scene.m_obstaclePlacing) placeObstacles(scene, newPositions);
     if (newCloths || newObstacles) m_mortonOrder.release();
-    if (newObstacles && !scene.m_anyPosed) releasePacking();
-}
-
-// What only packing reads goes when obstacles that rest are packed; those whose positions are given anew later keep it
-// from then on.
-void DeviceBackend::releasePacking()
-{
-    m_obstacleSpreads.release();
-    m_patchCull.releasePacking();
+    // What only packing reads goes when obstacles that rest are packed; those whose positions are given anew later keep
+    // it from then on.
+    if (newObstacles && !scene.m_anyPosed) m_patchCull.releasePacking();
 }
 
 void DeviceBackend::updateTraversal(const Scene& scene, bool newObstacles)
@@ -223,11 +217,6 @@ void DeviceBackend::uploadObstacles(const Scene& scene)
         m_vertexCones.reserve(*m_device, scene.m_vertexCones.size());
         m_edgeCones.reserve(*m_device, scene.m_edgeCones.size());
     }
-    if (!patches()) return;
-    const std::vector<float> spreads = faceSpreads(scene.m_obstacles.triangles(), scene.m_obstaclePositions.data(),
-                                                   scene.m_vertexCones, scene.m_edgeCones);
-    m_obstacleSpreads.assign(*m_device, spreads);
-    m_device->wait();  // spreads is a local
 }
 
 // From the first to the last slot whose place is not the one that was sent.
@@ -273,8 +262,7 @@ void DeviceBackend::placeObstacles(const Scene& scene, bool all)
         refitObstacles(scene);
         return;
     }
-    m_patchCull.pack(*m_device, slots, m_obstacle.m_triangles, m_obstaclePositions, m_obstacleSpreads, m_vertexCones,
-                     m_edgeCones);
+    m_patchCull.pack(*m_device, slots, m_obstacle.m_triangles, m_obstaclePositions, m_vertexCones, m_edgeCones);
 }
 
 void DeviceBackend::refitObstacles(const Scene& scene)

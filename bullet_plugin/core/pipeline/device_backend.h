@@ -67,7 +67,6 @@ private:
     void updateTopology(const Scene& scene);
     void updateTraversal(const Scene& scene, bool newObstacles);
     void uploadObstacles(const Scene& scene);
-    void releasePacking();
     // Brings the obstacles whose places changed to the world, all of them after an upload, and renews what depends on
     // it.
     void placeObstacles(const Scene& scene, bool all);
@@ -108,7 +107,7 @@ private:
 
     Side m_cloth{"cloth"}, m_obstacle{"obstacle"};
     Buffer<float> m_clothStart{"cloth positions"}, m_clothEnd{"cloth positions"};
-    Buffer<float> m_obstaclePositions{"obstacle positions"}, m_obstacleSpreads{"obstacle packing"};
+    Buffer<float> m_obstaclePositions{"obstacle positions"};
     Buffer<float> m_thickness{"pairs of meshes"}, m_tube{"pairs of meshes"};
     Buffer<Edge> m_clothEdges{"cloth edges"};
     Buffer<NormalCone> m_vertexCones{"obstacle cones"}, m_edgeCones{"obstacle cones"};
