@@ -113,6 +113,7 @@ TEST_P(BadInputTest, NanAndInfiniteNodesAreIsolatedAndCounted)
 TEST_P(BadInputTest, EveryNodeInvalid)
 {
     StepCase step = fallingCase("sphere", 10, 0.03f, 901);
+    SCOPED_TRACE(step.trace());
     for (float value : {kNan, kInfinity, -kInfinity})
     {
         step.m_end.assign(step.m_end.size(), value);
