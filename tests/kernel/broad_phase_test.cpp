@@ -10,7 +10,7 @@
 #include "scenes/models.h"
 #include "scenes/shapes.h"
 #include "tests/support/cases.h"
-#include "tests/support/models.h"
+#include "tests/support/published_data.h"
 #include "tests/support/traversals.h"
 
 namespace drape::test
