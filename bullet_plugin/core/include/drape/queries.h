@@ -72,7 +72,8 @@ public:
 
     const DeviceReport& deviceReport() const;
 
-    // Each returns false when the device failed; error() says how.
+    // Each returns false when the device failed, or a mesh has an index out of range; error() says how of the last that
+    // did.
     const Error& error() const;
 
     // results: count of them.
