@@ -289,6 +289,27 @@ TEST_P(BadInputTest, UnusedVerticesWidenNoVolume)
     }
 }
 
+// A triangle with a corner that no mesh can have is in no pair, wherever its other corners are.
+TEST_P(BadInputTest, TrianglesWithAnInvalidCornerAreInNoPair)
+{
+    const TriangleMesh sound = looseTriangles({-1, 0, -1, 1, 0, -1, 0, 0, 1});
+    for (const float value : {kNan, kInfinity, -1.1e9f, -3e38f})
+    {
+        SCOPED_TRACE(value);
+        // Its two other corners on either side of the sound triangle, in it, and away from it.
+        for (const float height : {-0.5f, 0.0f, 5.0f})
+        {
+            const TriangleMesh broken = looseTriangles({value, 1, 0, 0, height, 0, 0, 0.5f, 0});
+            for (const bool swapped : {false, true})
+            {
+                const MeshPairs found = swapped ? meshPairsOn(GetParam().m_settings, broken, sound, 0.1f)
+                                                : meshPairsOn(GetParam().m_settings, sound, broken, 0.1f);
+                EXPECT_TRUE(found.m_within.empty() && found.m_intersecting.empty());
+            }
+        }
+    }
+}
+
 TEST_P(BadInputTest, TwoIdenticalMeshes)
 {
     const TriangleMesh mesh = makeSphere(0.5f, 2);
