@@ -8,11 +8,11 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 seconds=${1:-60}
 seed=${2:-0}  # 0: libFuzzer chooses, and prints it
 
-bash cmake/build_preset.sh fuzz fuzz_mesh fuzz_core
+bash cmake/build_preset.sh fuzz fuzz_mesh fuzz_records fuzz_core fuzz_queries
 
 export LSAN_OPTIONS=suppressions=$PWD/cmake/lsan.supp:print_suppressions=0
 cd build/fuzz
-for target in mesh core; do
+for target in mesh records core queries; do
   mkdir -p "corpus/$target"
   echo "fuzz_$target for $seconds s" >&2
   # Leaks are looked for at the end; -close_fd_mask hides what readers print.

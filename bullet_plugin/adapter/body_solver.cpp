@@ -60,13 +60,6 @@ void close(const BodyContacts& contacts, ContactRounds& rounds)
 
 double solveBody(const BodyContacts& contacts, const FoundContacts& found, ContactRounds& rounds)
 {
-    btSoftBody& body = *contacts.m_body;
-    if (!(body.m_sst.sdt > 0))
-    {
-        Stopwatch watch;
-        body.solveConstraints();
-        return watch.lapMs();
-    }
     rounds.start(contacts, found);
     const double bulletMs = solveWithBullet(contacts, rounds);
     close(contacts, rounds);

@@ -28,6 +28,7 @@ constexpr int kClosingRounds = 8;
 // Worst violation that may be left, as a share of the thickness.
 constexpr btScalar kClosingTolerance = btScalar(0.01);
 
-// Runs the body's solveConstraints() with its contacts. Returns the time of Bullet's part, ms.
+// Runs the body's solveConstraints() with its contacts; its step has a time above 0. Returns the time of Bullet's part,
+// ms.
 double solveBody(const BodyContacts& contacts, const FoundContacts& found, ContactRounds& rounds);
 }  // namespace drape

@@ -10,6 +10,7 @@ namespace
 // Whether contacts could move any of its nodes, or all of them.
 bool anyMoves(const btSoftBody& body)
 {
+    if (!(body.m_sst.sdt > 0)) return false;
     for (int i = 0; i < body.m_nodes.size(); ++i)
         if (movableInverseMass(body.m_nodes[i]) > 0) return true;
     return false;

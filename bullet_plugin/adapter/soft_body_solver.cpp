@@ -83,7 +83,8 @@ double SoftBodySolver::solveBodies()
     for (int i = 0; i < m_softBodySet.size(); ++i)
     {
         btSoftBody* body = m_softBodySet[i];
-        if (!body->isActive()) continue;
+        // Bullet's links would move the nodes and its velocities are what they moved over the time: not numbers.
+        if (!body->isActive() || !(body->m_sst.sdt > 0)) continue;
         if (const BodyContacts* contacts = m_work->m_step.contactsOf(*body))
         {
             bulletMs += solveBody(*contacts, m_state->m_found, m_work->m_rounds);

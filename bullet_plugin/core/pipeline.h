@@ -93,7 +93,8 @@ public:
 
     const DeviceReport& deviceReport() const;
 
-    // Both copy what they are given and build the hierarchy. Topology is fixed until remove().
+    // Both copy what they are given and build the hierarchy. Topology is fixed until remove(). Return kNoMesh, with
+    // nothing added, for a mesh with an index out of range; lastError() names it.
     MeshId addCloth(const MeshDescription& mesh);
     MeshId addObstacle(const MeshDescription& mesh);
     void remove(MeshId mesh);
@@ -140,7 +141,7 @@ public:
     std::vector<KernelTime> takeKernelTimes();
     // What the device's buffers hold, by name; empty on the host.
     std::vector<MemoryUse> deviceMemory() const;
-    // Message of the device's failure when the status says so.
+    // Message of the device's failure when the status says so, or of the mesh that was refused since.
     const Error& lastError() const;
 
     // Resolves a contact of the last finish().

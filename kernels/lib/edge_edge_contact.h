@@ -87,14 +87,14 @@ DRAPE_FUNCTION int edgeEdgeContact(FeatureEdge e0, FeatureEdge e1, FeatureEdge o
     Vec3 normal;
     if (distance > DRAPE_SEAM * bounds.m_extent)
     {
-        normal = vec3Scale(offset, 1.0f / distance);
+        normal = vec3Direction(offset, distance);
         if (parallel && !coneAdmits(cone, normal)) return 0;
     }
     else
     {
         if (parallel) return 0;  // touching along a line: the ends report it
         const float before = bounds.m_mode == DRAPE_DISCRETE ? v1 : v0;
-        normal = vec3Scale(direction, (before < 0.0f ? 1.0f : -1.0f) / drapeSqrt(squared));
+        normal = vec3Scale(vec3Direction(direction, drapeSqrt(squared)), before < 0.0f ? 1.0f : -1.0f);
     }
     storeContact(contact, normal, point, vec3(1.0f - s, s, 0.0f),
                  vec3Dot(normal, vec3Sub(vec3Mix(e0.m_a, e0.m_b, s), point)), vec3Dot(normal, offset), 1.0f);

@@ -80,7 +80,7 @@ DRAPE_FUNCTION int faceVertexContact(const MovingFace* face, const DRAPE_UINT* b
     if (provenApart(offset, lowFace, vec3Dot(offset, vertex), bounds)) return 0;
     if (distance > DRAPE_SEAM * bounds.m_extent && (zeros == 1 || thin))
     {
-        normal = vec3Scale(offset, 1.0f / distance);
+        normal = vec3Direction(offset, distance);
         if (!coneAdmits(cone, normal)) return 0;
         const DRAPE_UINT neighbour = weights.z == 0.0f ? beyond[0] : weights.x == 0.0f ? beyond[1] : beyond[2];
         const Vec3 opposite = vec3Load(end, neighbour);

@@ -64,7 +64,7 @@ DRAPE_FUNCTION int asksForMeeting(int mayMeet, PairBounds bounds)
 // step, a straight line; where it goes along the surface, `side` tells, 1 for the direction itself.
 DRAPE_FUNCTION Vec3 meetingNormal(Vec3 direction, float length, Vec3 way, float side, PairBounds bounds)
 {
-    const Vec3 normal = vec3Scale(direction, 1.0f / length);
+    const Vec3 normal = vec3Direction(direction, length);
     const float along = vec3Dot(normal, way);
     if (drapeAbs(along) > DRAPE_SEAM * bounds.m_extent) side = along < 0.0f ? 1.0f : -1.0f;
     return vec3Scale(normal, side);

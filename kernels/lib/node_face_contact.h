@@ -65,7 +65,7 @@ DRAPE_FUNCTION int nodeFaceContact(Vec3 x0, Vec3 x1, const RestingFace* resting,
     const int onFace = weights.x > 0.0f && weights.y > 0.0f && weights.z > 0.0f;
     if (distance > DRAPE_SEAM * bounds.m_extent && (!onFace || thin))
     {
-        normal = vec3Scale(offset, 1.0f / distance);
+        normal = vec3Direction(offset, distance);
         if (!onFace && !coneAdmits(closestFeatureCone(weights, triangle, vertexCones, edgeCones), normal)) return 0;
     }
     else if (areaLength == 0.0f)

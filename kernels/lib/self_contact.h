@@ -131,7 +131,7 @@ DRAPE_FUNCTION int selfNodeNear(const ClothView* cloth, const DRAPE_GLOBAL Trian
         if (!inside && nearerBeyond(cloth, triangle, node, point, weights, seam)) return DRAPE_NO_CONTACT;
         side = height < 0.0f ? -1.0f : 1.0f;
         normal = inside && !area.m_thin ? vec3Scale(area.m_vector, side * drapeRatio(1.0f, area.m_length))
-                                        : vec3Scale(offset, 1.0f / distance);
+                                        : vec3Direction(offset, distance);
     }
     else
     {
@@ -236,8 +236,8 @@ DRAPE_FUNCTION int selfEdgesNear(const EdgePair* pair, PairBounds bounds, Contac
     const float distance = vec3Length(offset);
     const float before = bounds.m_mode == DRAPE_DISCRETE ? v1 : pair->m_v0;
     const Vec3 normal = distance > DRAPE_SEAM * bounds.m_extent
-                            ? vec3Scale(offset, 1.0f / distance)
-                            : vec3Scale(direction, (before < 0.0f ? 1.0f : -1.0f) / drapeSqrt(squared));
+                            ? vec3Direction(offset, distance)
+                            : vec3Scale(vec3Direction(direction, drapeSqrt(squared)), before < 0.0f ? 1.0f : -1.0f);
     selfStore(contact, normal, vec3Mix(o.m_a, o.m_b, t), vec3(s, t, 0.0f), edgeOffset(pair->m_e0, pair->m_o0, s, t),
               offset, 1.0f);
     return DRAPE_IS_CONTACT;

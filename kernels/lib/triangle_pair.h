@@ -97,21 +97,25 @@ DRAPE_FUNCTION DRAPE_UINT trianglePairTest(const Vec3 a[3], const Vec3 b[3], flo
     return meets || featuresNear(&pair, bounds) ? meets | DRAPE_PAIR_NEAR : 0u;
 }
 
+// Of two triangles of meshes. One with an invalid corner (positionIsValid) is in no pair: its volume is that of its
+// other corners, so that which others it meets would be chance.
 DRAPE_FUNCTION PairAnswer trianglePairAnswer(Candidate pair, const DRAPE_GLOBAL float* positionsA,
                                              const DRAPE_GLOBAL Triangle* trianglesA,
                                              const DRAPE_GLOBAL float* positionsB,
                                              const DRAPE_GLOBAL Triangle* trianglesB, float radius)
 {
     Vec3 a[3], b[3];
+    int valid = 1;
     for (int i = 0; i < 3; ++i)
     {
         a[i] = vec3Load(positionsA, trianglesA[pair.m_cloth].m_vertices[i]);
         b[i] = vec3Load(positionsB, trianglesB[pair.m_obstacle].m_vertices[i]);
+        valid = valid && positionIsValid(a[i]) && positionIsValid(b[i]);
     }
     PairAnswer answer;
     answer.m_a = pair.m_cloth;
     answer.m_b = pair.m_obstacle;
-    answer.m_bits = trianglePairTest(a, b, radius);
+    answer.m_bits = valid ? trianglePairTest(a, b, radius) : 0u;
     return answer;
 }
 

@@ -98,6 +98,13 @@ DRAPE_FUNCTION float vec3Length(Vec3 a)
 {
     return drapeSqrt(vec3Dot(a, a));
 }
+// a at length 1. length: of a, > 0. Where it is so small that its square loses digits as a denormal, it is taken anew.
+DRAPE_FUNCTION Vec3 vec3Direction(Vec3 a, float length)
+{
+    if (length > 1e-18f) return vec3Scale(a, 1.0f / length);
+    const Vec3 large = vec3Scale(a, 18446744073709551616.0f);  // 2^64
+    return vec3Scale(large, 1.0f / vec3Length(large));
+}
 DRAPE_FUNCTION float vec3Norm1(Vec3 a)
 {
     return drapeAbs(a.x) + drapeAbs(a.y) + drapeAbs(a.z);

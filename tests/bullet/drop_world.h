@@ -69,6 +69,7 @@ public:
 
     btSoftRigidDynamicsWorld& world() { return m_world; }
     btCollisionDispatcher& dispatcher() { return m_dispatcher; }
+    btSoftBodySolver* solver() { return m_solver.get(); }  // null: Bullet's default
 
 private:
     std::unique_ptr<btCollisionConfiguration> m_configuration;

@@ -10,7 +10,7 @@
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
 #include "tests/support/backends.h"
-#include "tests/support/models.h"
+#include "tests/support/published_data.h"
 
 namespace drape::test
 {
@@ -24,6 +24,10 @@ constexpr double kSpeedAtRest = 0.02;  // m/s
 // What is promised of cloth that had time to settle, over kStepsAtRest steps.
 constexpr double kSpeedSettled = 0.001;  // m/s
 constexpr int kStepsToSettle = 500, kStepsAtRest = 2000;
+
+// The worst of these steps, RMS over the nodes, m/s: no jerk. Twice what was measured: 1.3 mm/s on the sphere, where
+// the cloth slips now and then, 0.5 on the pile of boards; on the bunny, where it slips over the ears, 4.5.
+constexpr double kWorstStep = 0.0026, kWorstStepOnBunny = 0.009;
 
 // m/s, from the places before and after a step.
 double rmsMotion(const std::vector<float>& before, const std::vector<float>& after)
@@ -134,14 +138,17 @@ TEST_P(SettledCloth, liesStill)
     rest.m_world.addObstacle(shape.shape());
     btSoftBody& cloth = rest.cloth(bed.m_size, bed.m_height);
     rest.m_world.step(kStepsToSettle);
-    double speed2 = 0, motion2 = 0;
+    double speed2 = 0, motion2 = 0, worst = 0;
     for (int i = 0; i < kStepsAtRest; ++i)
     {
         const std::vector<float> before = positionsOf(cloth);
         rest.m_world.step();
-        speed2 += square(rmsSpeed(cloth));
-        motion2 += square(rmsMotion(before, positionsOf(cloth)));
+        const double speed = rmsSpeed(cloth), motion = rmsMotion(before, positionsOf(cloth));
+        speed2 += square(speed);
+        motion2 += square(motion);
+        worst = std::max({worst, speed, motion});
     }
+    EXPECT_LE(worst, kWorstStep);
     EXPECT_LE(std::sqrt(speed2 / kStepsAtRest), kSpeedSettled);
     EXPECT_LE(std::sqrt(motion2 / kStepsAtRest), kSpeedSettled);
     ASSERT_GT(rest.m_plugin.statistics().m_contacts, 0u);
@@ -153,8 +160,8 @@ TEST_P(SettledCloth, liesStill)
 namespace
 {
 // Drops cloth_drop's cloth of 2,048 triangles and expects it to lie still on the mesh after a fall in m: RMS over all
-// steps, where it hangs over edges friction lets it slip now and then.
-void expectLiesStill(Rest& rest, const TriangleMesh& mesh, float size, btScalar fall)
+// steps, where it hangs over edges friction lets it slip now and then, in no step faster than worstStep (m/s).
+void expectLiesStill(Rest& rest, const TriangleMesh& mesh, float size, btScalar fall, double worstStep)
 {
     MeshShape shape(mesh);
     rest.m_world.addObstacle(shape.shape());
@@ -167,12 +174,14 @@ void expectLiesStill(Rest& rest, const TriangleMesh& mesh, float size, btScalar 
     cloth.m_cfg.piterations = 5;
     cloth.m_materials[0]->m_kLST = btScalar(0.9);
     rest.m_world.step(kStepsToSettle);
-    double sum2 = 0;
+    double sum2 = 0, worst = 0;
     for (int i = 0; i < kStepsAtRest; ++i)
     {
         rest.m_world.step();
         sum2 += square(rmsSpeed(cloth));
+        worst = std::max(worst, rmsSpeed(cloth));
     }
+    EXPECT_LE(worst, worstStep);
     EXPECT_LE(std::sqrt(sum2 / kStepsAtRest), kSpeedSettled);
     const StepMeasure end = PenetrationMeter(mesh, meshOf(cloth)).measure(positionsOf(cloth).data());
     EXPECT_EQ(end.m_intersectingPairs, 0u);
@@ -204,14 +213,13 @@ TriangleMesh makePileOfBoards()
 TEST_P(SettledBunny, liesStill)
 {
     TriangleMesh bunny;
-    const std::string missing = loadBunny(bunny);
-    if (!missing.empty()) GTEST_SKIP() << missing;
+    if (!loadBunny(bunny)) return;
     placeOnFloor(bunny, 2.0f);
     for (const btScalar fall : {btScalar(0.3), btScalar(0.5)})
     {
         SCOPED_TRACE(testing::Message() << "fall of " << fall << " m");
         Rest rest(GetParam().m_settings);
-        expectLiesStill(rest, bunny, 2.4f, fall);
+        expectLiesStill(rest, bunny, 2.4f, fall, kWorstStepOnBunny);
         ASSERT_GT(rest.m_plugin.statistics().m_contacts, 1000u);
     }
 }
@@ -220,7 +228,7 @@ TEST_P(SettledBunny, liesStill)
 TEST_P(SettledPile, liesStill)
 {
     Rest rest(GetParam().m_settings);
-    expectLiesStill(rest, makePileOfBoards(), 1.8f, btScalar(0.3));
+    expectLiesStill(rest, makePileOfBoards(), 1.8f, btScalar(0.3), kWorstStep);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -109,6 +109,77 @@ TEST_P(WorldRows, Row15TeleportIntoTheClothGivesNoGiantImpulse)
     EXPECT_GT(lowestOf(cloth), kTop);
 }
 
+namespace
+{
+// Where the nodes are and how fast they go, bit for bit.
+std::vector<float> stateOf(const btSoftBody& cloth)
+{
+    std::vector<float> state = positionsOf(cloth);
+    for (int i = 0; i < cloth.m_nodes.size(); ++i)
+        for (int axis = 0; axis < 3; ++axis)
+            state.push_back(static_cast<float>(cloth.m_nodes[i].m_v[axis]));
+    return state;
+}
+}  // namespace
+
+// Bullet's world takes no step of no time; an app that calls the solver may.
+TEST_P(WorldRows, Row16StepOfNoTimeMovesNothing)
+{
+    Plugin plugin(GetParam().m_settings);
+    DropWorld world(&plugin);
+    world.addObstacle(m_boxShape.shape());
+    btSoftBody& cloth = world.addCloth(smallCloth(kTop + btScalar(0.1)));
+    btSoftBodySolver& solver = *world.solver();
+    for (const int steps : {4, 4, 60})  // it falls, comes to lie, lies
+    {
+        world.step(steps);
+        const std::vector<float> before = stateOf(cloth);
+        for (int step = 0; step < 3; ++step)
+        {
+            solver.predictMotion(0);
+            world.world().performDiscreteCollisionDetection();
+            solver.solveConstraints(0);
+            solver.updateSoftBodies();
+            ASSERT_EQ(stateOf(cloth), before);
+            ASSERT_EQ(plugin.statistics().m_status, std::uint32_t(kStepGood));
+        }
+    }
+    world.step(10);
+    ASSERT_GT(plugin.statistics().m_contacts, 0u);
+    EXPECT_TRUE(allFinite(cloth));
+    EXPECT_NEAR(double(lowestOf(cloth)) - double(kTop), kThickness, 0.05 * kThickness);
+}
+
+// A cloth whose time stands still in a world that goes on, in the way of a plate that comes up through it and of a
+// cloth that falls beside it.
+TEST_P(WorldRows, Row16ClothWithoutTimeStaysAsItIs)
+{
+    Plugin plugin(GetParam().m_settings);
+    DropWorld world(&plugin);
+    MeshShape plateShape(makeBox(0.8f, 0.02f, 0.8f));
+    btRigidBody& plate = world.addKinematic(plateShape.shape(), at(0, 0, 0));
+    world.addObstacle(m_boxShape.shape(), at(4, 0, 0));
+    btSoftBody& still = world.addCloth(smallCloth(btScalar(0.1)));
+    ClothSpec spec = smallCloth(kTop + btScalar(0.1));
+    spec.m_centre.setX(4);
+    btSoftBody& falling = world.addCloth(spec);
+    world.step(2);
+    still.m_cfg.timescale = 0;
+    const std::vector<float> before = stateOf(still);
+    for (int step = 1; step <= 60; ++step)
+    {
+        plate.setWorldTransform(at(0, 0.01 * step, 0));
+        world.step();
+        ASSERT_EQ(stateOf(still), before) << "step " << step;
+        ASSERT_EQ(plugin.statistics().m_status, std::uint32_t(kStepGood));
+    }
+    EXPECT_NEAR(double(lowestOf(falling)) - double(kTop), kThickness, 0.05 * kThickness);
+    still.m_cfg.timescale = 1;
+    world.step(30);
+    EXPECT_TRUE(allFinite(still));
+    EXPECT_NE(stateOf(still), before);
+}
+
 TEST_P(WorldRows, Row16HugeTimeStepsStayFinite)
 {
     for (const btScalar dt : {btScalar(1), btScalar(10), btScalar(1000)})

@@ -1,79 +1,64 @@
 // Anything as meshes, motions and settings, on the host back end: some steps with meshes that come, go and move.
 //
 // What must hold: no crash, no undefined behaviour, contacts that are finite, unit, in canonical order and within the
-// limits, and those of an automatic step are those of a continuous one. Indices are kept in range, which is the
-// caller's duty; everything else is as the bytes say.
+// limits; a mesh with an index out of range is refused. Contacts of an automatic step are those of a continuous one,
+// those of any methods are those of the default ones, and those of a step that leaves out what others imply are among
+// those of one that does not.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <tuple>
 #include <vector>
 
 #include "bullet_plugin/core/pipeline.h"
+#include "scenes/describe_mesh.h"
+#include "tests/fuzz/bytes.h"
 
 namespace
 {
-void require(bool good)
-{
-    if (!good) std::abort();
-}
-
-// Values out of the input; zeros when it has ended.
-class Bytes
-{
-public:
-    Bytes(const std::uint8_t* data, std::size_t size) : m_data(data), m_size(size) {}
-    bool left() const { return m_at < m_size; }
-    std::uint8_t byte() { return left() ? m_data[m_at++] : 0; }
-    std::uint32_t below(std::uint32_t count) { return byte() % count; }
-
-    // Mostly numbers that meet each other, and any bits at all.
-    float number()
-    {
-        const std::uint8_t kind = byte();
-        if (kind < 200) return float(kind % 32) / 16.0f - 1.0f;
-        if (kind < 240) return std::ldexp(float(std::int8_t(byte())), int(byte()) - 128);
-        std::uint32_t bits = 0;
-        for (int i = 0; i < 4; ++i)
-            bits = bits << 8 | byte();
-        float value;
-        std::memcpy(&value, &bits, sizeof value);
-        return value;
-    }
-
-private:
-    const std::uint8_t* m_data;
-    std::size_t m_size, m_at = 0;
-};
+using drape::fuzz::AnyMesh;
+using drape::fuzz::Bytes;
+using drape::fuzz::require;
 
 struct Mesh
 {
     drape::MeshId m_id;
     std::vector<float> m_positions;
+    bool m_self;
 };
 
-constexpr std::uint32_t kMostVertices = 24, kMostTriangles = 32;
 constexpr std::size_t kMostMeshes = 4;
 
-Mesh addMesh(drape::Pipeline& pipeline, Bytes& bytes, bool cloth)
+// What a whole input is about.
+struct Choices
 {
-    Mesh mesh;
-    const std::uint32_t vertices = bytes.below(kMostVertices), triangles = vertices ? bytes.below(kMostTriangles) : 0;
-    for (std::uint32_t i = 0; i < 3 * vertices; ++i)
-        mesh.m_positions.push_back(bytes.number());
-    std::vector<std::int32_t> indices;
-    for (std::uint32_t i = 0; i < 3 * triangles; ++i)
-        indices.push_back(std::int32_t(bytes.below(vertices)));
-    drape::MeshDescription description;
-    description.m_triangles = indices.data();
-    description.m_triangleCount = triangles;
-    description.m_positions = mesh.m_positions.data();
-    description.m_vertexCount = vertices;
+    drape::Settings m_settings;
+    bool m_badIndices, m_self, m_tubes;
+};
+
+// A cloth that collides with itself, its nodes at rest where they are or anywhere.
+void chooseSelf(Bytes& bytes, drape::MeshDescription& description, std::vector<float>& rest)
+{
+    description.m_selfThickness = bytes.length();
+    if (bytes.below(2) == 0) return;
+    for (std::size_t i = 0; i < 3 * description.m_vertexCount; ++i)
+        rest.push_back(bytes.number());
+    description.m_restPositions = rest.data();
+}
+
+void addMesh(drape::Pipeline& pipeline, Bytes& bytes, const Choices& choices, bool cloth, std::vector<Mesh>& meshes)
+{
+    const AnyMesh mesh(bytes, choices.m_badIndices);
+    drape::MeshDescription description = describeMesh(mesh);
     description.m_oneSided = !cloth && bytes.below(4) == 0;
-    mesh.m_id = cloth ? pipeline.addCloth(description) : pipeline.addObstacle(description);
-    return mesh;
+    std::vector<float> rest;
+    if (cloth && choices.m_self) chooseSelf(bytes, description, rest);
+    const drape::MeshId id = cloth ? pipeline.addCloth(description) : pipeline.addObstacle(description);
+    require((id != drape::kNoMesh) == mesh.m_inRange);
+    require(mesh.m_inRange || pipeline.lastError().failed());
+    if (mesh.m_inRange) meshes.push_back(Mesh{id, mesh.m_positions, description.m_selfThickness > 0.0f});
 }
 
 // Two poses of an obstacle; mostly rigid, sometimes not.
@@ -94,10 +79,10 @@ void place(drape::Pipeline& pipeline, Bytes& bytes, const Mesh& obstacle)
     pipeline.placeObstacle(obstacle.m_id, poses[0], poses[1]);
 }
 
-void change(drape::Pipeline& pipeline, Bytes& bytes, std::vector<Mesh>& meshes, bool cloth)
+void change(drape::Pipeline& pipeline, Bytes& bytes, const Choices& choices, std::vector<Mesh>& meshes, bool cloth)
 {
     const std::uint32_t kind = bytes.below(4);
-    if (kind == 0 && meshes.size() < kMostMeshes) meshes.push_back(addMesh(pipeline, bytes, cloth));
+    if (kind == 0 && meshes.size() < kMostMeshes) addMesh(pipeline, bytes, choices, cloth, meshes);
     if (kind > 1 || meshes.empty()) return;
     const std::size_t at = bytes.below(std::uint32_t(meshes.size()));
     if (kind == 1 && bytes.below(2))
@@ -130,83 +115,166 @@ void writeNodes(drape::Pipeline& pipeline, Bytes& bytes, std::vector<Mesh>& clot
     }
 }
 
-void check(const drape::Pipeline& pipeline, const drape::Settings& settings, const drape::ContactList& contacts)
+bool isBefore(const drape::Contact& a, const drape::Contact& b)
 {
-    require(contacts.size() <= settings.m_contactLimit);
-    const drape::Contact* last = nullptr;
-    for (const drape::Contact& contact : contacts)
-    {
-        float square = 0, weights = 0;
-        for (int i = 0; i < 3; ++i)
-        {
-            require(std::isfinite(contact.m_normal[i]) && std::isfinite(contact.m_point[i]));
-            square += contact.m_normal[i] * contact.m_normal[i];
-            weights += contact.m_weights[i];
-        }
-        require(std::fabs(square - 1.0f) < 1e-2f && std::fabs(weights - 1.0f) < 1e-4f);
-        require(std::isfinite(contact.m_gap0) && std::isfinite(contact.m_gap1));
-        require(contact.m_time >= 0.0f && contact.m_time <= 1.0f);
-        require(!last ||
-                std::tie(last->m_slot, last->m_obstacleFeature) < std::tie(contact.m_slot, contact.m_obstacleFeature));
-        last = &contact;
-        const drape::ContactView view = pipeline.view(contact);
-        require(view.m_cloth != drape::kNoMesh && view.m_obstacle != drape::kNoMesh && view.m_thickness > 0.0f);
-    }
+    return std::tie(a.m_slot, a.m_obstacleFeature) < std::tie(b.m_slot, b.m_obstacleFeature);
 }
 
-drape::Settings settingsFrom(Bytes& bytes)
+bool areSame(const drape::Contact& a, const drape::Contact& b)
 {
-    drape::Settings settings;
+    return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+// A contact's own numbers, and its place after the one before.
+void check(const drape::Contact& contact, const drape::Contact* last)
+{
+    float square = 0;
+    for (int i = 0; i < 3; ++i)
+    {
+        require(std::isfinite(contact.m_normal[i]) && std::isfinite(contact.m_point[i]));
+        square += contact.m_normal[i] * contact.m_normal[i];
+    }
+    require(std::fabs(square - 1.0f) < 1e-2f);
+    require(std::isfinite(contact.m_gap0) && std::isfinite(contact.m_gap1));
+    require(contact.m_time >= 0.0f && contact.m_time <= 1.0f);
+    require(!last || isBefore(*last, contact));
+}
+
+bool addUpToOne(const float* weights, int count)
+{
+    float sum = 0;
+    for (int i = 0; i < count; ++i)
+        sum += weights[i];
+    return std::fabs(sum - 1.0f) < 1e-4f;
+}
+
+// The contacts of a step, those of cloths with themselves last.
+std::vector<drape::Contact> checked(const drape::Pipeline& pipeline, const drape::Settings& settings,
+                                    const drape::ContactList& contacts)
+{
+    const drape::ContactList self = pipeline.selfContacts();
+    require(contacts.size() + self.size() <= settings.m_contactLimit);
+    std::vector<drape::Contact> all;
+    for (const drape::Contact& contact : contacts)
+    {
+        check(contact, all.empty() ? nullptr : &all.back());
+        const drape::ContactView view = pipeline.view(contact);
+        require(view.m_cloth != drape::kNoMesh && view.m_obstacle != drape::kNoMesh && view.m_thickness > 0.0f);
+        require(addUpToOne(view.m_weights, 3));
+        all.push_back(contact);
+    }
+    for (const drape::Contact& contact : self)
+    {
+        check(contact, all.empty() ? nullptr : &all.back());
+        const drape::SelfContactView view = pipeline.viewSelf(contact);
+        const int first = view.m_kind == DRAPE_SELF_EDGE_EDGE ? 2 : 1;
+        require(view.m_cloth != drape::kNoMesh && view.m_thickness > 0.0f);
+        require(addUpToOne(view.m_weights, first) && addUpToOne(view.m_weights + first, 4 - first));
+        all.push_back(contact);
+    }
+    return all;
+}
+
+Choices choicesFrom(Bytes& bytes)
+{
+    Choices choices;
+    drape::Settings& settings = choices.m_settings;
     settings.m_backend = drape::Backend::Host;
     settings.m_mode = drape::ContactMode(bytes.below(3));
     settings.m_activation = float(bytes.below(17)) / 4.0f;
     settings.m_reportIntersections = bytes.below(2) == 1;
     if (bytes.below(8) == 0) settings.m_candidateLimit = bytes.byte();
     if (bytes.below(8) == 0) settings.m_contactLimit = bytes.byte();
-    return settings;
+    const std::uint8_t kinds = bytes.last(), methods = bytes.last();
+    choices.m_badIndices = kinds & 1;
+    choices.m_self = kinds & 2;
+    choices.m_tubes = kinds & 4;
+    settings.m_methods.m_traversal = drape::Traversal(methods % 8);
+    settings.m_methods.m_tree.m_builder = drape::TreeBuilder(methods / 8 % 4);
+    settings.m_methods.m_countTests = methods / 32 % 2 == 1;
+    return choices;
 }
 
-// Runs the steps that the bytes tell; returns the contacts of all.
-std::vector<drape::Contact> run(Bytes bytes, const drape::Settings& settings)
+void namePairs(drape::Pipeline& pipeline, Bytes& bytes, const Choices& choices, const std::vector<Mesh>& cloths,
+               const std::vector<Mesh>& obstacles)
+{
+    for (const Mesh& cloth : cloths)
+    {
+        for (const Mesh& obstacle : obstacles)
+        {
+            // A thickness is a length above zero; what is too thin for the adapter is not for the core.
+            const float thickness = bytes.length();
+            const float tube = choices.m_tubes ? bytes.number() : -1.0f;
+            if (thickness > 0.0f) pipeline.addPair(cloth.m_id, obstacle.m_id, thickness, tube);
+        }
+        if (cloth.m_self && bytes.below(4) != 0) pipeline.addSelf(cloth.m_id);
+    }
+}
+
+using Steps = std::vector<std::vector<drape::Contact>>;
+
+// Runs the steps that the bytes tell; returns the contacts of each.
+Steps run(Bytes bytes, const Choices& choices)
 {
     drape::Error error;
-    const std::unique_ptr<drape::Pipeline> pipeline = drape::Pipeline::create(settings, error);
+    const std::unique_ptr<drape::Pipeline> pipeline = drape::Pipeline::create(choices.m_settings, error);
     require(pipeline != nullptr);
-    std::vector<drape::Contact> all;
+    Steps steps;
     std::vector<Mesh> cloths, obstacles;
     for (int step = 0; step < 6 && (step == 0 || bytes.left()); ++step)
     {
-        change(*pipeline, bytes, cloths, true);
-        change(*pipeline, bytes, obstacles, false);
+        change(*pipeline, bytes, choices, cloths, true);
+        change(*pipeline, bytes, choices, obstacles, false);
         writeNodes(*pipeline, bytes, cloths);
-        for (const Mesh& cloth : cloths)
-        {
-            for (const Mesh& obstacle : obstacles)
-            {
-                const float thickness = std::fabs(bytes.number());
-                // A thickness is a length above zero; what is too thin for the adapter is not for the core.
-                if (thickness > 0.0f && thickness < 1e9f) pipeline->addPair(cloth.m_id, obstacle.m_id, thickness);
-            }
-        }
+        namePairs(*pipeline, bytes, choices, cloths, obstacles);
         pipeline->submit();
         const drape::ContactList contacts = pipeline->finish();
-        check(*pipeline, settings, contacts);
-        all.insert(all.end(), contacts.begin(), contacts.end());
+        steps.push_back(checked(*pipeline, choices.m_settings, contacts));
     }
-    return all;
+    return steps;
+}
+
+void requireSame(const Steps& a, const Steps& b)
+{
+    require(a.size() == b.size());
+    for (std::size_t i = 0; i < a.size(); ++i)
+        require(std::equal(a[i].begin(), a[i].end(), b[i].begin(), b[i].end(), areSame));
+}
+
+void requireAmong(const Steps& some, const Steps& all)
+{
+    require(some.size() == all.size());
+    for (std::size_t i = 0; i < some.size(); ++i)
+    {
+        std::vector<drape::Contact>::const_iterator at = all[i].begin();
+        for (const drape::Contact& contact : some[i])
+        {
+            at = std::lower_bound(at, all[i].end(), contact, isBefore);
+            require(at != all[i].end() && areSame(*at, contact));
+        }
+    }
 }
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
     Bytes bytes(data, size);
-    drape::Settings settings = settingsFrom(bytes);
-    const std::vector<drape::Contact> contacts = run(bytes, settings);
-    if (settings.m_mode != drape::ContactMode::Automatic) return 0;
-    settings.m_mode = drape::ContactMode::Continuous;
-    const std::vector<drape::Contact> continuous = run(bytes, settings);
-    require(contacts.size() == continuous.size());
-    require(contacts.empty() ||
-            std::memcmp(contacts.data(), continuous.data(), contacts.size() * sizeof(drape::Contact)) == 0);
+    const Choices choices = choicesFrom(bytes);
+    const Steps steps = run(bytes, choices);
+    Choices other = choices;
+    if (choices.m_settings.m_mode == drape::ContactMode::Automatic)
+    {
+        other.m_settings.m_mode = drape::ContactMode::Continuous;
+        requireSame(steps, run(bytes, other));
+    }
+    other = choices;
+    other.m_settings.m_methods = drape::Methods();
+    requireSame(steps, run(bytes, other));
+    // Which cloths are over a limit depends on what is left out.
+    const drape::Settings unlimited;
+    if (!choices.m_tubes || choices.m_settings.m_contactLimit != unlimited.m_contactLimit) return 0;
+    other = choices;
+    other.m_settings.m_reduceContacts = false;
+    requireAmong(steps, run(bytes, other));
     return 0;
 }

@@ -3,40 +3,22 @@
 // The first byte chooses the format.
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
-#include <fstream>
 #include <string>
 
-#include <unistd.h>
-
 #include "scenes/mesh_loader.h"
+#include "tests/fuzz/bytes.h"
+#include "tests/fuzz/input_file.h"
 
-namespace
-{
-// A failure of the test, not of the file: libFuzzer keeps the input.
-void require(bool good)
-{
-    if (!good) std::abort();
-}
-
-std::string temporaryFile(const char* ending)
-{
-    const char* folder = ::access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp";
-    return std::string(folder) + "/drape_fuzz_" + std::to_string(::getpid()) + ending;
-}
-}  // namespace
+using drape::fuzz::require;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
     if (size < 2) return 0;
-    static const std::string kPaths[5] = {temporaryFile(".obj"), temporaryFile(".ply"), temporaryFile(".stl"),
-                                          temporaryFile(".gltf"), temporaryFile(".glb")};
-    const std::string& path = kPaths[data[0] % 5];
-    std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(data + 1), std::streamsize(size - 1));
+    const char* const endings[5] = {".obj", ".ply", ".stl", ".gltf", ".glb"};
+    const drape::fuzz::InputFile file(endings[data[0] % 5], data + 1, size - 1);
     drape::TriangleMesh mesh;
     std::string error;
-    const bool loaded = drape::loadMesh(path, mesh, error);
-    std::remove(path.c_str());
+    const bool loaded = drape::loadMesh(file.path(), mesh, error);
     require(loaded == error.empty());
     require(error.find('\n') == std::string::npos);
     if (!loaded) return 0;

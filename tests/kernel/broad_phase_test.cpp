@@ -10,7 +10,7 @@
 #include "scenes/models.h"
 #include "scenes/shapes.h"
 #include "tests/support/cases.h"
-#include "tests/support/models.h"
+#include "tests/support/published_data.h"
 #include "tests/support/traversals.h"
 
 namespace drape::test
@@ -93,6 +93,7 @@ TEST_P(BroadPhaseTest, SetsAgreeOnShapes)
 TEST_P(BroadPhaseTest, EveryPairOverlaps)
 {
     Sides sides = makeSides(soupCase(257, 601, false, 61));
+    SCOPED_TRACE("seed 61");
     sides.m_thickness[0] = 10.0f;
     refitSides(sides);
     ASSERT_EQ(bruteForce(sides).size(), 257u * 601u);
@@ -154,6 +155,7 @@ TEST_P(BroadPhaseTest, TrianglesWithoutAValidNodeMeetNothing)
 TEST_P(BroadPhaseTest, SetsAgreeInTreesOfEveryBuilder)
 {
     const TriangleMesh soup = makeSoup(2.0f, 0.4f, 90, 75);
+    SCOPED_TRACE("seed 75");
     std::size_t found = 0;
     const auto check =
         [&](const TriangleMesh& cloth, const TriangleMesh& obstacle, float thickness, const TreeMethods& methods)
@@ -229,6 +231,7 @@ TEST_P(BroadPhaseTest, NothingOnOneSide)
 TEST_P(BroadPhaseTest, FullListCountsOnAndWritesNothingBeyond)
 {
     Sides sides = makeSides(soupCase(700, 900, true, 72));
+    SCOPED_TRACE("seed 72");
     const std::vector<Candidate> brute = bruteForce(sides);
     ASSERT_GT(brute.size(), 1000u);
     for (Traversal traversal : allTraversals())
@@ -251,6 +254,7 @@ TEST_P(BroadPhaseTest, FullListCountsOnAndWritesNothingBeyond)
 TEST_P(BroadPhaseTest, LimitIsExact)
 {
     Sides sides = makeSides(soupCase(257, 601, false, 74));
+    SCOPED_TRACE("seed 74");
     sides.m_thickness[0] = 10.0f;
     refitSides(sides);
     const std::size_t all = 257 * 601;
@@ -275,6 +279,7 @@ TEST_P(BroadPhaseTest, LimitIsExact)
 TEST_P(BroadPhaseTest, CountsTests)
 {
     Sides sides = makeSides(fallingCase("torus", 33, 0.02f, 73));
+    SCOPED_TRACE("seed 73");
     for (Traversal traversal : {Traversal::Single, Traversal::Leaves, Traversal::WideLeaves, Traversal::WideGroups})
     {
         SCOPED_TRACE(traversalName(traversal));

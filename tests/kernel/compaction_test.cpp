@@ -191,6 +191,7 @@ TEST_P(CompactionTest, GrowsLittleMoreThanTheHitsOfASlot)
     ASSERT_TRUE(device);
     Compaction compaction(*device);
     Random random(93);
+    SCOPED_TRACE("seed 93");
     const std::vector<Contact> few = randomHits(16384, 1, true, random), many = randomHits(131072, 1, true, random);
     compaction.run(few, 1);  // compiles the kernels
     double fewMs = 1e9, manyMs = 1e9;

@@ -90,7 +90,7 @@ TEST_P(FrontTest, NewTopologyStartsAnew)
     DeviceRun device(*m_device, Traversal::Front);
     for (int size : {400, 30, 1, 700, 3})
     {
-        SCOPED_TRACE(std::to_string(size) + " triangles");
+        SCOPED_TRACE("seed 510, " + std::to_string(size) + " triangles");
         const StepCase step = soupCase(size, 900 - size, true, 510);
         Sides sides = {makeSide({step.m_cloth}), makeSide({step.m_obstacle}), {step.m_thickness}};
         refitSides(sides);

@@ -56,6 +56,7 @@ TEST_P(MemoryLedgerTest, APipelineNamesItsBuffers)
     const std::unique_ptr<Pipeline> pipeline = makePipeline(GetParam().m_settings);
     ASSERT_TRUE(pipeline);
     const StepCase step = drapedCase("sphere", 9, 0.02f, 3);
+    SCOPED_TRACE(step.trace());
     runCase(*pipeline, step);
     const std::vector<MemoryUse> uses = pipeline->deviceMemory();
     EXPECT_EQ(bytesOf(uses, "cloth triangles"), step.m_cloth.triangleCount() * sizeof(Triangle));

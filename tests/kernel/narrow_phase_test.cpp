@@ -173,6 +173,7 @@ TEST_P(NarrowPhaseTest, FullListsCountOnAndTheNextStepIsClean)
 TEST_P(NarrowPhaseTest, IntersectionsAreTheHosts)
 {
     DeviceNarrowPhase stage(*m_device, soupCase(60, 70, false, 83));
+    SCOPED_TRACE("seed 83");
     std::vector<Candidate> host;
     intersectOnHost(stage.m_pairs, stage.m_cloth.cloth(), stage.m_obstacle.obstacle(), {}, host);
     ASSERT_GT(host.size(), 5u);

@@ -217,6 +217,7 @@ TEST_P(PatchCullTest, ListsANodeLevelWithAFaceBesideIt)
 TEST_P(PatchCullTest, FullListCountsOn)
 {
     DeviceCull cull(*m_device, fallingCase("sphere", 12, 0.03f, 330));
+    SCOPED_TRACE("seed 330");
     StepCounters whole, counters;
     cull.run(1, whole);
     ASSERT_GT(whole.m_candidates, 100u);

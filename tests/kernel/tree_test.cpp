@@ -13,7 +13,7 @@
 #include "scenes/shapes.h"
 #include "tests/support/cases.h"
 #include "tests/support/device_side.h"
-#include "tests/support/models.h"
+#include "tests/support/published_data.h"
 
 namespace drape::test
 {

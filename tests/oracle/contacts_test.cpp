@@ -6,9 +6,9 @@
 #include <tuple>
 
 #include "scenes/cloth_grid.h"
-#include "scenes/mesh_loader.h"
 #include "tests/support/cases.h"
 #include "tests/support/contact_oracle.h"
+#include "tests/support/published_data.h"
 
 namespace drape::test
 {
@@ -141,10 +141,8 @@ TEST(ContactsOracle, FarFromTheOrigin)
 
 TEST(ContactsOracle, ClothDrapedOverTheBunny)
 {
-    const char* path = "/usr/share/glmark2/models/bunny.obj";
     TriangleMesh bunny;
-    std::string error;
-    if (!loadMesh(path, bunny, error)) GTEST_SKIP() << path << " is not there (Debian: glmark2-data): " << error;
+    if (!loadBunny(bunny)) return;
     placeOnFloor(bunny, 2.0f);
     Random random(350);
     StepCase step = {"cloth over the bunny", 350, makeClothGrid(33, 33, 0.8f, 0.0f).m_mesh, {}, {}, 0.02f};

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
-#include <filesystem>
 #include <map>
 #include <set>
 #include <tuple>
@@ -15,6 +13,7 @@
 #include "tests/support/backends.h"
 #include "tests/support/contact_oracle.h"
 #include "tests/support/oracle.h"
+#include "tests/support/published_data.h"
 #include "tests/support/self_cases.h"
 #include "tests/support/side.h"
 
@@ -282,13 +281,9 @@ TEST_P(SelfStepOracle, ReportsWhatIsNearAndWhatMetAndNothingElse)
 // Of a published step (46,598 nodes) every pair that the certified test finds to touch and that crossed by the margins.
 TEST_P(SelfStepOracle, PublishedClothBallStep)
 {
-    const char* const folder = std::getenv("DRAPE_TRUTH_DIR");
-    if (!folder) GTEST_SKIP() << "DRAPE_TRUTH_DIR is not set: it names the folder of the published queries";
     SelfStepCase step;
-    std::string error;
-    const std::string first = std::string(folder) + "/cloth_ball92.ply",
-                      second = std::string(folder) + "/cloth_ball93.ply";
-    if (!std::filesystem::exists(first) || !std::filesystem::exists(second)) GTEST_SKIP() << first << " is not there";
+    std::string first, second, error;
+    if (!findTruth("cloth_ball92.ply", first) || !findTruth("cloth_ball93.ply", second)) return;
     ASSERT_TRUE(loadMotion(first, second, step.m_motion.m_mesh, step.m_motion.m_end, error)) << error;
     step.m_rest = step.m_motion.m_mesh.m_positions;
     step.m_thickness = 0.001f;

@@ -3,12 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <fstream>
 #include <iostream>
 
 #include "scenes/exact_predicates.h"
 #include "tests/support/cases.h"
+#include "tests/support/published_data.h"
 
 namespace drape::test
 {
@@ -119,11 +119,9 @@ TEST(TriangleTriangleOracle, NamedCases)
 
 TEST(TriangleTriangleOracle, PublishedPairs)
 {
-    const char* folder = std::getenv("DRAPE_TRUTH_DIR");
-    if (!folder) GTEST_SKIP() << "DRAPE_TRUTH_DIR is not set: it names the folder of triangle_pairs.bin";
-    const std::string path = std::string(folder) + "/triangle_pairs.bin";
+    std::string path;
+    if (!findTruth("triangle_pairs.bin", path)) return;
     std::ifstream file(path, std::ios::binary);
-    if (!file) GTEST_SKIP() << path << " cannot be read";
     struct Record
     {
         float m_corners[18];

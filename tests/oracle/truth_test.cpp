@@ -1,18 +1,17 @@
 // The published queries with exact answers, on every back end: nothing missed, few false hits.
 //
-// The environment variable DRAPE_TRUTH_DIR names the folder of the data; without it these tests are skipped.
+// The data and what happens without it: tests/support/published_data.h.
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstdlib>
-#include <filesystem>
 #include <set>
 
 #include "scenes/mesh_loader.h"
 #include "tests/support/backends.h"
 #include "scenes/describe_mesh.h"
-#include "tests/support/self_cases.h"
 #include "scenes/query_records.h"
+#include "tests/support/published_data.h"
+#include "tests/support/self_cases.h"
 
 namespace drape::test
 {
@@ -62,32 +61,28 @@ protected:
     {
         BackendTest::SetUp();
         if (HasFatalFailure() || IsSkipped()) return;
-        const char* folder = std::getenv("DRAPE_TRUTH_DIR");
-        if (!folder) GTEST_SKIP() << "DRAPE_TRUTH_DIR is not set: it names the folder of the published queries";
-        m_folder = folder;
         m_queries = makeQueries(GetParam().m_settings);
         ASSERT_TRUE(m_queries);
     }
 
-    // Skips the test when the file is not there.
+    // False where the test is to return, as findTruth().
     template <typename Records>
-    void read(const std::string& name, Records& records)
+    bool read(const std::string& name, Records& records)
     {
-        const std::string path = m_folder + "/" + name;
-        std::string error;
-        if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
-        ASSERT_TRUE(readRecords(path, records, error)) << error;
+        std::string path, error;
+        if (!findTruth(name, path)) return false;
+        const bool good = readRecords(path, records, error);
+        EXPECT_TRUE(good) << error;
+        return good;
     }
 
-    std::string m_folder;
     std::unique_ptr<Queries> m_queries;
 };
 
 TEST_P(Truth, MovingFeatures)
 {
     MotionRecords records;
-    read("ccd_queries.bin", records);
-    if (IsSkipped() || HasFatalFailure()) return;
+    if (!read("ccd_queries.bin", records)) return;
     for (float timeTolerance : {1.0f, defaultCcdSettings().m_timeTolerance})
     {
         CcdSettings settings = defaultCcdSettings();
@@ -106,8 +101,7 @@ TEST_P(Truth, MovingFeatures)
 TEST_P(Truth, TrianglePairs)
 {
     TriangleRecords records;
-    read("triangle_pairs.bin", records);
-    if (IsSkipped() || HasFatalFailure()) return;
+    if (!read("triangle_pairs.bin", records)) return;
     const std::size_t count = records.m_queries.size();
     ASSERT_GE(count, kLayersLast);
     for (TriangleTest test : {TriangleTest::Certified, TriangleTest::Exact})
@@ -130,12 +124,12 @@ TEST_P(Truth, TrianglePairs)
 TEST_P(Truth, ClothBallStep)
 {
     MotionRecords records;
-    read("ccd_queries.bin", records);
-    if (IsSkipped() || HasFatalFailure()) return;
+    if (!read("ccd_queries.bin", records)) return;
     TriangleMesh mesh;
     std::vector<float> end;
-    std::string error;
-    ASSERT_TRUE(loadMotion(m_folder + "/cloth_ball92.ply", m_folder + "/cloth_ball93.ply", mesh, end, error)) << error;
+    std::string first, second, error;
+    if (!findTruth("cloth_ball92.ply", first) || !findTruth("cloth_ball93.ply", second)) return;
+    ASSERT_TRUE(loadMotion(first, second, mesh, end, error)) << error;
     ASSERT_EQ(mesh.vertexCount(), 46598u);
     MeshMotion found;
     CcdSettings settings = defaultCcdSettings();
@@ -177,10 +171,9 @@ TEST_P(Truth, ClothBallIntersections)
     const std::pair<const char*, std::size_t> frames[] = {{"cloth_ball92.ply", 61530}, {"cloth_ball93.ply", 97320}};
     for (const auto& [name, truth] : frames)
     {
-        const std::string path = m_folder + "/" + name;
-        if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
         TriangleMesh mesh;
-        std::string error;
+        std::string path, error;
+        if (!findTruth(name, path)) return;
         ASSERT_TRUE(loadMesh(path, mesh, error)) << error;
         MeshPairs found;
         ASSERT_TRUE(m_queries->meshPairs(describeMesh(mesh), nullptr, 0, found));

@@ -186,6 +186,7 @@ TEST_P(MovingObstacleTest, ClothThatIsCarriedAlongPassesNothing)
     Random random(910);
     MovingCase moving = {drapedCase("sphere", 20, 0.03f, 910), motionOf(0.6, {1, 2, 3}, random),
                          motionOf(1.0, {-1, 0.5, 2}, random)};
+    SCOPED_TRACE(moving.m_step.trace());
     const std::vector<float> lying = moving.m_step.m_cloth.m_positions;
     moving.m_step.m_cloth.m_positions = mapped(moving.m_start, lying);
     moving.m_step.m_end = mapped(moving.m_end, lying);
@@ -203,6 +204,7 @@ TEST_P(MovingObstacleTest, ClothThatIsCarriedAlongPassesNothing)
 TEST_P(MovingObstacleTest, EqualPosesAreATeleport)
 {
     const MovingCase moving = movingCase("box", 0.0, {0.0, 1.0, 0.0}, 920);
+    SCOPED_TRACE(moving.m_step.trace());
     const std::unique_ptr<Pipeline> pipeline = make(), rests = make();
     ASSERT_TRUE(pipeline && rests);
     const StepCase& step = moving.m_step;
@@ -344,7 +346,7 @@ TEST_P(MovingObstacleTest, PlacingAnewEqualsRebuild)
     std::vector<Motion> poses(4, motionOf(0, kNoShift, random));
     for (std::uint32_t step = 0; step < 12; ++step)
     {
-        SCOPED_TRACE("step " + std::to_string(step));
+        SCOPED_TRACE("seed 960, step " + std::to_string(step));
         Settings host = allBackends()[0].m_settings;
         const std::unique_ptr<Pipeline> fresh = makePipeline(host);
         ASSERT_TRUE(fresh);
@@ -385,6 +387,7 @@ TEST_P(MovingObstacleTest, RestCostsNoLaunch)
     const std::unique_ptr<Pipeline> pipeline = makePipeline(settings);
     ASSERT_TRUE(pipeline);
     const StepCase step = fallingCase("sphere", 12, 0.03f, 970);
+    SCOPED_TRACE(step.trace());
     const MeshId cloth = addCloth(*pipeline, step.m_cloth), obstacle = addObstacle(*pipeline, step.m_obstacle);
     Random random(970);
     const Pose rest = motionOf(0, kNoShift, random).pose(), shifted = motionOf(0, {0, 0.1, 0}, random).pose();

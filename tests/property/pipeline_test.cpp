@@ -59,7 +59,9 @@ TEST_P(PipelineTest, ContactsComeInCanonicalOrderAndOnce)
 {
     const std::unique_ptr<Pipeline> pipeline = make();
     ASSERT_TRUE(pipeline);
-    const std::vector<Contact> contacts = runCase(*pipeline, fallingCase("torus", 24, 0.03f, 702));
+    const StepCase step = fallingCase("torus", 24, 0.03f, 702);
+    SCOPED_TRACE(step.trace());
+    const std::vector<Contact> contacts = runCase(*pipeline, step);
     ASSERT_GT(contacts.size(), 100u);
     for (std::size_t i = 1; i < contacts.size(); ++i)
     {
@@ -126,6 +128,7 @@ TEST_P(PipelineTest, PairsAreIndependent)
     for (const auto& pair : pairs)
     {
         StepCase alone = cases[pair.m_cloth];
+        SCOPED_TRACE(alone.trace() + ", with the obstacle of: " + cases[pair.m_obstacle].trace());
         alone.m_obstacle = cases[pair.m_obstacle].m_obstacle;
         alone.m_thickness = pair.m_thickness;
         const std::unique_ptr<Pipeline> single = make();
@@ -177,6 +180,7 @@ TEST_P(PipelineTest, StepsWithoutPairsAreSkipped)
     EXPECT_TRUE(runStep(*pipeline).empty());
     EXPECT_TRUE(pipeline->statistics().m_skipped);
     const StepCase step = fallingCase("box", 12, 0.03f, 730);
+    SCOPED_TRACE(step.trace());
     EXPECT_FALSE(runCase(*pipeline, step).empty());
     EXPECT_FALSE(pipeline->statistics().m_skipped);
     EXPECT_TRUE(runStep(*pipeline).empty()) << "pairs are named anew for each step";
@@ -188,6 +192,7 @@ TEST_P(PipelineTest, SourceTrianglesSurviveDroppedOnes)
     const std::unique_ptr<Pipeline> pipeline = make();
     ASSERT_TRUE(pipeline);
     StepCase step = fallingCase("box", 12, 0.03f, 740);
+    SCOPED_TRACE(step.trace());
     // Triangles that repeat an index, in front and between: they are ignored, and the numbers given stay those given.
     std::vector<std::int32_t> triangles = {0, 0, 1};
     for (std::size_t i = 0; i < step.m_cloth.m_triangles.size(); i += 3)

@@ -128,15 +128,16 @@ TEST_P(TraversalTest, ContactsAreTheSameInTreesOfEveryBuilder)
             pipelines.push_back(owned.back().get());
         }
         std::vector<std::size_t> tests(pipelines.size(), 0);
-        LiveScene scene(pipelines, 920 + std::uint32_t(traversal), true);
+        const std::uint32_t seed = 920 + std::uint32_t(traversal);
+        LiveScene scene(pipelines, seed, true);
         for (int step = 0; step < 30; ++step)
         {
             scene.nextStep();
             std::vector<Contact> first;
             for (std::size_t i = 0; i < pipelines.size(); ++i)
             {
-                SCOPED_TRACE(std::string(traversalName(traversal)) + ", step " + std::to_string(step) + ", builder " +
-                             std::to_string(i));
+                SCOPED_TRACE("seed " + std::to_string(seed) + ", " + traversalName(traversal) + ", step " +
+                             std::to_string(step) + ", builder " + std::to_string(i));
                 const std::vector<Contact> found = runStep(*pipelines[i]);
                 tests[i] += pipelines[i]->statistics().m_volumeTests;
                 if (i == 0) first = found;
@@ -158,6 +159,7 @@ TEST_P(TraversalTest, ContactsAreTheSameInTreesOfEveryBuilder)
 TEST_P(TraversalTest, DecayedTreesAreBuiltAnew)
 {
     StepCase step = soupCase(2000, 600, false, 930);
+    SCOPED_TRACE(step.trace());
     for (float& coordinate : step.m_cloth.m_positions)
         coordinate *= 3.0f;
     std::vector<float> strewn = step.m_cloth.m_positions;
@@ -181,6 +183,7 @@ TEST_P(TraversalTest, FrontIsKeptUntilMeshesChange)
     const std::unique_ptr<Pipeline> pipeline = make(Traversal::Front, true);
     ASSERT_TRUE(pipeline);
     const StepCase step = drapedCase("torus", 33, 0.02f, 910);
+    SCOPED_TRACE(step.trace());
     const MeshId cloth = addCloth(*pipeline, step.m_cloth), obstacle = addObstacle(*pipeline, step.m_obstacle);
     std::vector<std::size_t> tests;
     const auto run = [&](int times)

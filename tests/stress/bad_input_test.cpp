@@ -2,9 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 
+#include "bullet_plugin/core/bvh/tree_builder.h"
+#include "bullet_plugin/core/bvh/tree_quality.h"
 #include "scenes/cloth_grid.h"
 #include "scenes/shapes.h"
 #include "tests/support/backends.h"
@@ -73,6 +76,16 @@ protected:
         return contacts;
     }
 
+    // With traversals of triangle pairs, their tests counted.
+    std::vector<Contact> runCounted(const StepCase& step, Traversal traversal)
+    {
+        Settings settings = GetParam().m_settings;
+        settings.m_methods.m_traversal = traversal;
+        settings.m_methods.m_countTests = true;
+        m_pipeline = makePipeline(settings);
+        return m_pipeline ? runCase(*m_pipeline, step) : std::vector<Contact>();
+    }
+
     std::unique_ptr<Pipeline> m_pipeline;
 };
 
@@ -113,6 +126,7 @@ TEST_P(BadInputTest, NanAndInfiniteNodesAreIsolatedAndCounted)
 TEST_P(BadInputTest, EveryNodeInvalid)
 {
     StepCase step = fallingCase("sphere", 10, 0.03f, 901);
+    SCOPED_TRACE(step.trace());
     for (float value : {kNan, kInfinity, -kInfinity})
     {
         step.m_end.assign(step.m_end.size(), value);
@@ -166,6 +180,29 @@ TEST_P(BadInputTest, HugeAndDenormalNodesStayFinite)
     }
 }
 
+namespace
+{
+// Trees of every builder hold the triangles in a height near the least there can be.
+void expectShallowTrees(const TriangleMesh& mesh)
+{
+    const Side side = makeSide({mesh});
+    const std::size_t leaves = side.m_pool.triangles().size();
+    const std::uint32_t least = std::uint32_t(std::ceil(std::log2(double(leaves))));
+    for (const TreeBuilder builder :
+         {TreeBuilder::Balanced, TreeBuilder::Radix, TreeBuilder::TopDown, TreeBuilder::Ploc})
+    {
+        TreeMethods methods;
+        methods.m_builder = builder;
+        const Tree tree = buildTreeOnHost(methods, side.m_pool.triangles(), side.m_start.data(), 1);
+        ASSERT_EQ(tree.leafCount(), leaves);
+        const std::uint32_t height = measureTree(tree.m_nodes, 0).m_height;
+        EXPECT_GE(height, least);
+        EXPECT_LE(height, 2 * least) << "builder " << int(builder);
+        EXPECT_EQ(whyInvalid(tree.m_nodes, 0, tree.m_order, side.m_pool.triangles(), side.m_start.data(), {0.0f}), "");
+    }
+}
+}  // namespace
+
 TEST_P(BadInputTest, ClothCollapsedToAPointOrALine)
 {
     for (bool line : {false, true})
@@ -185,6 +222,7 @@ TEST_P(BadInputTest, ClothCollapsedToAPointOrALine)
                     p[2] = 0.0f;
                 }
             }
+            expectShallowTrees(step.m_cloth);
             // Every node is near the pole or below it.
             std::set<std::uint32_t> nodes;
             for (const Contact& contact : run(step))
@@ -221,6 +259,52 @@ TEST_P(BadInputTest, EmptyAndTinyMeshes)
             for (const Contact& contact : contacts)
             {
                 EXPECT_TRUE(contact.m_gap1 > 0.0399f && contact.m_gap1 < 0.1501f) << describe(contact);
+            }
+        }
+    }
+}
+
+// Vertices of no triangle all about, on both sides: as many candidates and as many tests as without them.
+TEST_P(BadInputTest, UnusedVerticesWidenNoVolume)
+{
+    const StepCase step = fallingCase("sphere", 16, 0.03f, 905);
+    SCOPED_TRACE(step.trace());
+    StepCase strewn = step;
+    Random random(905);
+    for (std::vector<float>* positions : {&strewn.m_obstacle.m_positions, &strewn.m_cloth.m_positions, &strewn.m_end})
+        for (int i = 0; i < 3 * 50; ++i)
+            positions->push_back(random.uniform(-5, 5));
+    for (const Traversal traversal : {Traversal::Auto, Traversal::Pairs, Traversal::Leaves, Traversal::WideLeaves})
+    {
+        SCOPED_TRACE("traversal " + std::to_string(int(traversal)));
+        const std::size_t contacts = runCounted(step, traversal).size();
+        ASSERT_TRUE(m_pipeline);
+        const StepStatistics alone = m_pipeline->statistics();
+        EXPECT_GT(contacts, 100u);
+        EXPECT_EQ(runCounted(strewn, traversal).size(), contacts);
+        ASSERT_TRUE(m_pipeline);
+        EXPECT_EQ(m_pipeline->statistics().m_candidates, alone.m_candidates);
+        EXPECT_EQ(m_pipeline->statistics().m_volumeTests, alone.m_volumeTests);
+        EXPECT_TRUE(traversal == Traversal::Auto || alone.m_volumeTests > 1000u);
+    }
+}
+
+// A triangle with a corner that no mesh can have is in no pair, wherever its other corners are.
+TEST_P(BadInputTest, TrianglesWithAnInvalidCornerAreInNoPair)
+{
+    const TriangleMesh sound = looseTriangles({-1, 0, -1, 1, 0, -1, 0, 0, 1});
+    for (const float value : {kNan, kInfinity, -1.1e9f, -3e38f})
+    {
+        SCOPED_TRACE(value);
+        // Its two other corners on either side of the sound triangle, in it, and away from it.
+        for (const float height : {-0.5f, 0.0f, 5.0f})
+        {
+            const TriangleMesh broken = looseTriangles({value, 1, 0, 0, height, 0, 0, 0.5f, 0});
+            for (const bool swapped : {false, true})
+            {
+                const MeshPairs found = swapped ? meshPairsOn(GetParam().m_settings, broken, sound, 0.1f)
+                                                : meshPairsOn(GetParam().m_settings, sound, broken, 0.1f);
+                EXPECT_TRUE(found.m_within.empty() && found.m_intersecting.empty());
             }
         }
     }

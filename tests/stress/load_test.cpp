@@ -191,6 +191,7 @@ TEST_P(LoadTest, FastFacesOverLoneVertices)
         corners.insert(corners.end(), {x, 0, z, x + 0.01f, -0.1f, z, x, -0.1f, z + 0.01f});
     }
     StepCase step = {"needles", 960, makeClothGrid(5, 5, 4.0f, 0.0f).m_mesh, looseTriangles(corners), {}, 0.01f};
+    SCOPED_TRACE(step.trace());
     step.m_end = step.m_cloth.m_positions;
     translate(step.m_cloth.m_positions, 0, 8.0f, 0);
     translate(step.m_end, 0, -8.0f, 0);

@@ -6,10 +6,12 @@
 #include <cmath>
 
 #include "scenes/cloth_grid.h"
+#include "scenes/describe_mesh.h"
 #include "scenes/exact_predicates.h"
 #include "scenes/shapes.h"
 #include "tests/support/backends.h"
 #include "tests/support/pair_batch.h"
+#include "tests/support/self_cases.h"
 #include "tests/support/side.h"
 
 namespace drape::test
@@ -68,8 +70,7 @@ TEST_P(StressRows, Row01CoplanarOverlappingAndDisjoint)
     EXPECT_TRUE(run(allOrders(disjoint)).m_all.empty());
 }
 
-// One vertex in common, two, or all, in meshes that know nothing of each other. (Pairs that share a vertex by index are
-// of one mesh with itself.)
+// One vertex in common, two, or all, in meshes that know nothing of each other.
 TEST_P(StressRows, Row02SharedByPositionTouchesAtDistanceZero)
 {
     const TrianglePair vertex = {{0, 0, 0, -1, 1, 0, -1, 1, -1}, kFace};
@@ -81,6 +82,59 @@ TEST_P(StressRows, Row02SharedByPositionTouchesAtDistanceZero)
         {
             EXPECT_TRUE(std::any_of(contacts.begin(), contacts.end(),
                                     [](const Contact& contact) { return std::fabs(contact.m_gap1) < 1e-6f; }));
+        }
+    }
+}
+
+namespace
+{
+// The face and a second triangle in one mesh: `shared` of its corners are the face's first ones, by index or by
+// position only.
+TriangleMesh twoTriangles(const Corners& second, std::int32_t shared, bool byIndex)
+{
+    std::vector<float> corners(kFace.begin(), kFace.end());
+    corners.insert(corners.end(), second.begin(), second.end());
+    TriangleMesh mesh = looseTriangles(corners);
+    for (std::int32_t i = 0; byIndex && i < shared; ++i)
+        mesh.m_triangles[std::size_t(3 + i)] = i;
+    return mesh;
+}
+
+// A step at rest of a cloth whose second triangle was far from its first before.
+SelfStepCase restingOnItself(const TriangleMesh& mesh)
+{
+    SelfStepCase step = {{"two triangles", mesh, mesh.m_positions}, mesh.m_positions, kThickness};
+    for (std::size_t vertex = 3; vertex < mesh.vertexCount(); ++vertex)
+        step.m_rest[3 * vertex + 1] += 5.0f;
+    return step;
+}
+}  // namespace
+
+// Of one mesh with itself: triangles that share a vertex by index cross for no query, and features that share one touch
+// neither in a motion nor in a step; by position alone they do.
+TEST_P(StressRows, Row02SharedByIndexIsSkipped)
+{
+    const std::unique_ptr<Queries> queries = makeQueries(GetParam().m_settings);
+    ASSERT_TRUE(queries);
+    const Corners acrossTheFace = {0, 0, 0, 2, 1, 1, 1, -1, 2}, alongAnEdge = {0, 0, 0, 4, 0, 0, 1, 1, 1};
+    for (const std::int32_t shared : {1, 2})
+    {
+        const Corners& second = shared == 1 ? acrossTheFace : alongAnEdge;
+        for (const bool byIndex : {true, false})
+        {
+            SCOPED_TRACE(std::to_string(shared) + (byIndex ? " by index" : " by position"));
+            const TriangleMesh mesh = twoTriangles(second, shared, byIndex);
+            const std::size_t pairs = byIndex ? 0 : 1;
+            MeshPairs near;
+            ASSERT_TRUE(queries->meshPairs(describeMesh(mesh), nullptr, kThickness, near));
+            EXPECT_EQ(near.m_intersecting.size(), pairs);
+            EXPECT_EQ(near.m_within.size(), pairs);
+            MeshMotion motion;
+            ASSERT_TRUE(queries->meshMotion(describeMesh(mesh), mesh.m_positions.data(), defaultCcdSettings(), motion));
+            EXPECT_EQ(motion.m_touching.empty(), byIndex);
+            const std::unique_ptr<Pipeline> pipeline = makePipeline(GetParam().m_settings);
+            ASSERT_TRUE(pipeline);
+            EXPECT_EQ(runSelfCase(*pipeline, restingOnItself(mesh)).empty(), byIndex);
         }
     }
 }
@@ -141,6 +195,55 @@ TEST_P(StressRows, Row05NeedlesZeroAreasAndDuplicateVertices)
         if (exactlyIntersect(pair)) meeting.push_back(pair);
     }
     EXPECT_EQ(run(meeting).m_intersecting, meeting.size()) << "seed 1005";
+}
+
+// As narrow as floats near zero alone can be: 1e-8 m, around the origin.
+TEST_P(StressRows, Row05NeedlesOfTenNanometresAtTheOrigin)
+{
+    constexpr float kWidth = 1e-8f;  // m
+    const Corners around = {-1, 0, -1, 3, 0, -1, -1, 0, 3};
+    const Corners upright = {0, -1, 0, 0, 1, 0, kWidth, 1, 0}, lying = {-0.5f, 0, 0, 0.5f, 0, 0, 0.5f, 0, kWidth},
+                  tiny = {0, -kWidth, 0, 0, kWidth, 0, kWidth, kWidth, 0};
+    for (const Corners& needle : {upright, lying, tiny})
+    {
+        for (const Corners& face : {around, kFace})  // over its middle, and at its corner
+        {
+            expectAllHit({needle, face});
+            expectAllHit({face, needle});
+        }
+        Corners below = around;
+        for (std::size_t i = 1; i < 9; i += 3)
+            below[i] = -1.5f;
+        expectNoneHit({needle, below});
+        expectNoneHit({below, needle});
+    }
+    for (const Corners& needle : {lying, tiny})
+    {
+        Corners below = around;
+        for (std::size_t i = 1; i < 9; i += 3)
+            below[i] = -0.5f * kThickness;
+        for (const std::vector<Contact>& contacts : run(allOrders({needle, below})).m_contacts)
+            EXPECT_TRUE(touchesWithin(contacts, 0.5001f * kThickness));
+    }
+    // At random, their tips at the origin: none that truly meets the face is missed, whichever of the two is the cloth.
+    Random random(1006);
+    std::vector<TrianglePair> meeting, swapped;
+    for (int tries = 0; tries < 1000; ++tries)
+    {
+        TrianglePair pair = {{}, around};
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            pair.m_cloth[i] = random.uniform(-1, 1);
+            pair.m_cloth[3 + i] = random.uniform(-10 * kWidth, 10 * kWidth);
+            pair.m_cloth[6 + i] = pair.m_cloth[3 + i] + random.uniform(-kWidth, kWidth);
+        }
+        if (!exactlyIntersect(pair)) continue;
+        meeting.push_back(pair);
+        swapped.push_back({pair.m_obstacle, pair.m_cloth});
+    }
+    EXPECT_GT(meeting.size(), 300u);
+    EXPECT_EQ(run(meeting).m_intersecting, meeting.size()) << "seed 1006";
+    EXPECT_EQ(run(swapped).m_intersecting, swapped.size()) << "seed 1006";
 }
 
 // Zero and less is a hit, a proved distance none; in between either answer is good, but it is the same each time, and

@@ -95,6 +95,19 @@ TEST_P(BvhLayoutSizes, TreesOfAnyShapeKeepTheirShape)
     }
 }
 
+TEST(BvhLayout, UnusedVerticesWidenNoVolume)
+{
+    const TriangleMesh soup = makeSoup(1.0f, 0.1f, 100, 12);
+    TriangleMesh strewn = soup;
+    strewn.m_positions.insert(strewn.m_positions.end(), {50, 60, 70, -80, -90, -100});
+    Side side = makeSide({soup}), wider = makeSide({strewn});
+    refitSide(side, {0.01f});
+    refitSide(wider, {0.01f});
+    EXPECT_TRUE(wider.m_order == side.m_order);
+    EXPECT_TRUE(sameBytes(wider.m_nodes, side.m_nodes)) << "seed 12";
+    EXPECT_LT(wider.m_nodes[wider.m_layout.root()].m_high[0], 2.0f);
+}
+
 TEST(BvhLayout, NoLeavesNoNodes)
 {
     const BvhLayout layout = makeBvhLayout(0);

@@ -1,6 +1,8 @@
 // Named cases of kernels/lib/feature_contact.h: what is reported, with which normal, gaps, weights and time.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "scenes/cloth_grid.h"
 #include "scenes/shapes.h"
 #include "tests/support/cases.h"
@@ -39,8 +41,8 @@ std::vector<Contact> contacts(const Step& step, std::uint32_t kind, float reach 
     return found;
 }
 
-// Times are no later than the true one, and earlier by twice the tolerance at most: a hundredth of the reach along the way
-// (feature_meeting.h).
+// Times are no later than the true one, and earlier by twice the tolerance at most: a hundredth of the reach along the
+// way (feature_meeting.h).
 void expectTime(const Contact& contact, float time, float way)
 {
     EXPECT_LE(contact.m_time, time);
@@ -247,5 +249,27 @@ TEST(Degenerate, ZeroAreasGiveFiniteContactsOnTheRightSide)
         // The other way round: the cloth is the sliver.
         contacts(makeStep(sliver, sliver.m_positions, floorTriangle()), DRAPE_FACE_VERTEX);
     }
+}
+
+// Lengths below 1e-18 m have squares that floats hold badly, or not at all.
+TEST(Degenerate, NormalsAreUnitWhereSquaresOfDistancesAreDenormal)
+{
+    std::size_t found = 0;
+    for (float scale : {1e-16f, 1e-19f, 1e-21f, 1e-22f})
+    {
+        StepCase step = soupCase(60, 60, true, 19);
+        SCOPED_TRACE(step.trace() + ", times " + std::to_string(std::log10(scale)));
+        for (std::vector<float>* positions : {&step.m_cloth.m_positions, &step.m_end, &step.m_obstacle.m_positions})
+            for (float& coordinate : *positions)
+                coordinate *= scale;
+        const Step sides = makeStep(step.m_cloth, step.m_end, step.m_obstacle);
+        for (const Contact& contact : contactsOfAllPairs(sides.m_cloth, sides.m_obstacle, kReach))
+        {
+            const float* n = contact.m_normal;
+            ASSERT_NEAR(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1.0f, 1e-5f) << describe(contact);
+            ++found;
+        }
+    }
+    EXPECT_GT(found, 1000u);
 }
 }  // namespace drape::test

@@ -102,6 +102,7 @@ std::vector<Tree> someTrees()
 
 TEST(Hierarchy, LinksLeadToTheRoot)
 {
+    SCOPED_TRACE("seed 90");
     for (const Tree& tree : someTrees())
     {
         const std::vector<BvhLink> links = makeLinks(tree.hierarchy());
@@ -126,6 +127,7 @@ TEST(Hierarchy, LinksLeadToTheRoot)
 
 TEST(Hierarchy, StartPairsCoverEveryPairOfLeavesOnce)
 {
+    SCOPED_TRACE("seed 90");
     const std::vector<Tree> trees = someTrees();
     for (std::size_t i = 0; i + 5 < trees.size(); i += 2)
     {
@@ -154,6 +156,7 @@ TEST(Hierarchy, StartPairsCoverEveryPairOfLeavesOnce)
 // Every triangle is in one slot, and a slot's node holds exactly what hangs below it.
 TEST(Hierarchy, WideNodesHoldTheSameTree)
 {
+    SCOPED_TRACE("seed 90");
     for (const Tree& tree : someTrees())
     {
         const WideLayout wide = makeWideLayout(tree.hierarchy());

@@ -24,6 +24,6 @@ struct Topology
     std::size_t m_vertexCount = 0;
 };
 
-// triangles: 3 indices each, in [0, vertexCount).
+// triangles: 3 indices each, in [0, vertexCount); check_indices.h looks at a caller's.
 Topology buildTopology(const std::int32_t* triangles, std::size_t triangleCount, std::size_t vertexCount);
 }  // namespace drape

@@ -53,7 +53,7 @@ bool directionOf(const Nearest& nearest, Vec3 before, Vec3& direction)
     }
     const float distance = vec3Length(nearest.m_offset);
     if (!(distance > 0) || !(vec3Dot(nearest.m_offset, before) > 0)) return false;
-    direction = vec3Scale(nearest.m_offset, 1 / distance);
+    direction = vec3Direction(nearest.m_offset, distance);
     return true;
 }
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bullet_plugin/core/mesh/check_indices.h"
 #include "bullet_plugin/core/mesh/normal_cones.h"
 #include "scene_work.h"
 
@@ -327,6 +328,7 @@ const DeviceReport& Pipeline::deviceReport() const
 
 MeshId Pipeline::addCloth(const MeshDescription& description)
 {
+    if (!checkIndices(description, "addCloth", m_implementation->m_error)) return kNoMesh;
     PooledMesh mesh = m_implementation->makeMesh(description);
     const MeshId id = mesh.m_id;
     if (description.m_selfThickness > 0.0f)
@@ -343,6 +345,7 @@ MeshId Pipeline::addCloth(const MeshDescription& description)
 
 MeshId Pipeline::addObstacle(const MeshDescription& description)
 {
+    if (!checkIndices(description, "addObstacle", m_implementation->m_error)) return kNoMesh;
     PooledMesh mesh = m_implementation->makeMesh(description);
     const MeshId id = mesh.m_id;
     mesh.m_oneSided = description.m_oneSided;

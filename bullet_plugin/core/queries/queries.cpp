@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "bullet_plugin/core/exact/triangles.h"
+#include "bullet_plugin/core/mesh/check_indices.h"
 #include "kernels/lib/triangle_pair.h"
 #include "query_device.h"
 
@@ -162,6 +163,8 @@ bool Queries::meshPairs(const MeshDescription& a, const MeshDescription* b, floa
 {
     Implementation& self = *m_implementation;
     found = MeshPairs();
+    if (!checkIndices(a, "meshPairs", self.m_error)) return false;
+    if (b && !checkIndices(*b, "meshPairs", self.m_error)) return false;
     QueryMesh first = makeQueryMesh(a, a.m_positions), other;
     if (b) other = makeQueryMesh(*b, b->m_positions);
     QueryMesh& second = b ? other : first;
@@ -179,6 +182,7 @@ bool Queries::meshMotion(const MeshDescription& description, const float* end, c
 {
     Implementation& self = *m_implementation;
     found = MeshMotion();
+    if (!checkIndices(description, "meshMotion", self.m_error)) return false;
     QueryMesh mesh = makeQueryMesh(description, end);
     SelfCollisions collisions;
     if (!self.m_device)

@@ -4,8 +4,9 @@
 // Give it to btSoftRigidDynamicsWorld's constructor. In solveConstraints it sends the pairs noted during dispatch to
 // the device, waits once (again when the paths of fast nodes had to be cut), and lets Bullet solve, iteration by
 // iteration, with a round over the contacts before each and the closing rounds after the last. Bullet's m_rcontacts and
-// m_scontacts hold Bullet's own contacts only; Plugin::contacts() has Drape's. Bodies of another solver are left to
-// Bullet. C++11.
+// m_scontacts hold Bullet's own contacts only; Plugin::contacts() has Drape's. A body whose step has no time (a step of
+// 0, a timescale of 0 or less) stays as it is, and nothing is looked for. Bodies of another solver are left to Bullet.
+// C++11.
 #pragma once
 
 #include <memory>

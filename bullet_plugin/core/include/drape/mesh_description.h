@@ -7,7 +7,8 @@
 
 namespace drape
 {
-// Triangles over vertices. Indices must lie in [0, vertexCount); triangles that repeat an index are ignored.
+// Triangles over vertices. A mesh with an index outside [0, vertexCount) is refused by every call, with an Error;
+// triangles that repeat an index are ignored.
 struct MeshDescription
 {
     const std::int32_t* m_triangles = nullptr;  // 3 per triangle

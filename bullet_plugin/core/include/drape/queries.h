@@ -72,7 +72,8 @@ public:
 
     const DeviceReport& deviceReport() const;
 
-    // Each returns false when the device failed; error() says how.
+    // Each returns false when the device failed, or a mesh has an index out of range; error() says how of the last that
+    // did.
     const Error& error() const;
 
     // results: count of them.
@@ -81,7 +82,8 @@ public:
     // results: 1 for each pair that intersects, else 0.
     bool triangles(const TriangleQuery* queries, std::size_t count, TriangleTest test, std::uint32_t* results);
 
-    // Pairs of a's triangles with b's; b null: with a's own that share no vertex. radius ≥ 0.
+    // Pairs of a's triangles with b's; b null: with a's own that share no vertex. radius ≥ 0. A triangle with a corner
+    // that is NaN, infinite or farther out than 2^30 m is in no pair, and such a vertex touches nothing in meshMotion.
     bool meshPairs(const MeshDescription& a, const MeshDescription* b, float radius, MeshPairs& found);
 
     // Which features of the mesh touch one another while it moves from its positions to `end` (x y z per vertex).

@@ -85,7 +85,7 @@ struct StepStatistics
     std::size_t m_retries = 0;           // stages run again because a buffer was too small
     std::size_t m_rebuilds = 0;          // of the cloths' hierarchy, that this step was the first to use
     // What was there and not looked at, or used as it was left; contacts are the same without (tests/README.md).
-    std::size_t m_clothsSkipped = 0;  // of the solver's: asleep as it began, or pinned; the adapter counts
+    std::size_t m_clothsSkipped = 0;  // of the solver's: asleep as it began, pinned or without time; the adapter counts
     std::size_t m_obstaclesKept = 0;  // of the step's pairs: neither built, refitted nor placed anew
     bool m_skipped = false;           // nothing to do: no pair, or nothing that could touch
     bool m_onHost = false;            // the host back end ran the step, by choice or in place of the device
