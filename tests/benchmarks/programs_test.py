@@ -37,6 +37,16 @@ class ProgramTest(unittest.TestCase):
     def path(self, name):
         return os.path.join(self.folder, name)
 
+    def summary(self):
+        """The tables of the results beside."""
+        readme = self.path("README.md")
+        with open(readme, "w") as file:
+            file.write("<!-- results: made by summary.py --><!-- end of results -->")
+        result = self.script("summary.py", readme)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        with open(readme) as file:
+            return file.read()
+
     def quick(self, program, *arguments):
         """Rows of a quick run; every row has every column, and JSON says the same as CSV."""
         result = run(program, "--quick", "--repeats", "2", "--csv", self.path("rows.csv"), "--json",
@@ -396,6 +406,60 @@ class Reports(ProgramTest):
             self.assertEqual(file.read(), text)
 
 
+class Scripts(ProgramTest):
+    """drop_speeds.sh, and the tables of what it writes."""
+
+    @staticmethod
+    def bash(name, *arguments, **environment):
+        path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "benchmarks", name)
+        return subprocess.run(["bash", path, *arguments], capture_output=True, text=True, timeout=600,
+                              env={**os.environ, "BIN": PROGRAMS, **environment})
+
+    def content(self, name):
+        with open(self.path(f"results/machine/{name}.json")) as file:
+            content = json.load(file)
+        machine = content["machine"]
+        self.assertTrue(machine["processor"] and machine["date"])
+        self.assertEqual(machine["cores"], os.cpu_count())
+        for device in machine["devices"]:
+            self.assertTrue(device["device"] and device["driver"], device)
+        return content
+
+    def tables(self):
+        with open(self.path("results/machine/study.json"), "w") as file:
+            json.dump({"machine": {"processor": "p", "cores": 1, "devices": [], "date": "d", "commit": "c"}}, file)
+        return self.summary()
+
+    def drops(self, **environment):
+        if not os.path.exists(os.path.join(PROGRAMS, "cloth_drop")):
+            self.skipTest("cloth_drop is not built")
+        result = self.bash("drop_speeds.sh", self.path("results/machine"), "--backend", "host", "--cloth", "9x9",
+                           BUNNY="stairs", SPEEDS="2 50", COMMIT="abc1234", **environment)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        content = self.content("drop_speeds")
+        self.assertEqual(content["machine"]["commit"], "abc1234")
+        self.assertEqual([(row["speed_m_s"], row["run"]) for row in content["rows"]],
+                         [(speed, run) for speed in (2, 50)
+                          for run in ("automatic", "continuous", "discrete", "stock", "tuned")])
+        return content["rows"]
+
+    def test_drops_at_every_speed(self):
+        for row in self.drops(STEPS="3"):
+            self.assertEqual((row["ended"], row["steps"]), ("whole", 3), row)
+        text = self.tables()
+        self.assertIn("|  | 2 m/s | 50 m/s |", text)
+        self.assertIn("at abc1234.", text)
+        self.assertNotIn("of 3 steps", text)
+
+    def test_drops_that_reach_their_limit_keep_their_steps(self):
+        for row in self.drops(STEPS="40", LIMIT="1e-9"):
+            self.assertEqual(row["ended"], "by the time limit", row)
+            self.assertLessEqual(row["steps"], 1)
+            if row["run"] == "automatic":
+                self.assertEqual((row["steps"], row["intersecting_pairs_max"]), (1, 0))
+        self.assertIn("1 of 40 steps", self.tables())
+
+
 class Growth(ProgramTest):
     """Which stages grow faster than n log n, from times that are known."""
 
@@ -414,13 +478,7 @@ class Growth(ProgramTest):
                     writer.writerow([f"s{size}", "on_1k", "drape_host", stage, size, 1280, time(size), 3 * size])
         with open(f"{folder}/bench_step.json", "w") as file:
             json.dump({"machine": {"processor": "p", "cores": 1, "devices": [], "date": "d", "commit": "c"}}, file)
-        readme = self.path("README.md")
-        with open(readme, "w") as file:
-            file.write("<!-- results: made by summary.py --><!-- end of results -->")
-        result = self.script("summary.py", readme)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        with open(readme) as file:
-            return file.read()
+        return self.summary()
 
     def test_linear_and_n_log_n_are_within(self):
         text = self.summary_of(broad=lambda n: 0.999e-5 * n * math.log(n), narrow=lambda n: 1e-5 * n)
