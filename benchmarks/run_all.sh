@@ -6,7 +6,7 @@
 #   --bin DIR        folder of the programs (default: build/release/bin; those of the study in other volumes are made by
 #                    the target study_degrees)
 #   --minutes N      time to spend (default 80); what does not fit is named and left out
-#   --truth DIR      folder of published queries with exact answers, see error_vs_time/run.sh
+#   --truth DIR      folder of published queries with exact answers, see error_vs_time/run.sh and drape_check.sh
 #   --commit TEXT    what is measured (default: git describe)
 #   --reference DIR  OUT_DIR of an earlier run: contacts must have its hashes, and the host and the peers are not
 #                    measured again
@@ -14,7 +14,7 @@
 #
 # Writes bench_step.csv and .json, study.csv and .json (run_study.sh alone does these, also part by part), and, where
 # Bullet's part is built, error_vs_time.csv and .json, cloth_drop.json and drop_speeds.json (of the bunny; no drops with
-# --quick); then the plots beside them, and the tables in README.md where OUT_DIR lies
+# --quick), with --truth drape_check.json; then the plots beside them, and the tables in README.md where OUT_DIR lies
 # under results/ here. Measure on an idle machine. Ends with 3 when a row is void, with 1 when something could not be
 # measured.
 set -uo pipefail
@@ -76,6 +76,11 @@ if [[ -z $quick && -x $bin/cloth_drop && -f $bunny ]]; then
   # Its slow runs are Bullet's and the discrete ones, twelve: 0.04 of the minutes.
   BIN=$bin BUNNY=$bunny COMMIT=$commit LIMIT=$(minutes_of 0.2) \
     bash "$here/drop_speeds.sh" "$out" ${device:+--device "$device"} || worst=1
+fi
+
+if [[ -n $truth ]]; then
+  bash "$here/drape_check.sh" "$out" --truth "$truth" --bin "$bin" --commit "$commit" ${device:+--device "$device"} ||
+    worst=1
 fi
 
 if [[ -x $bin/error_vs_time ]]; then

@@ -171,6 +171,7 @@ def machine_text(folder):
     text += f"Void rows: {count_void(folder, 'bench_step') + count_void(folder, 'study')}.\n\n"
     text += step_table(rows) + built_in_line(folder, rows) + stage_table(rows)
     text += script_tables.drops_text(read_json(folder, "drop_speeds"), table)
+    text += script_tables.checks_text(read_json(folder, "drape_check"), table, figure)
     text += study_tables.text(read_rows(folder, "study"), table, figure)
     return text + exponent_table(rows) + memory_table(rows) + pictures(folder)
 

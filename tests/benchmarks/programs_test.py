@@ -6,6 +6,7 @@ import csv
 import json
 import math
 import os
+import struct
 import subprocess
 import sys
 import tempfile
@@ -407,7 +408,7 @@ class Reports(ProgramTest):
 
 
 class Scripts(ProgramTest):
-    """drop_speeds.sh, and the tables of what it writes."""
+    """drop_speeds.sh and drape_check.sh, and the tables of what they write."""
 
     @staticmethod
     def bash(name, *arguments, **environment):
@@ -458,6 +459,51 @@ class Scripts(ProgramTest):
             if row["run"] == "automatic":
                 self.assertEqual((row["steps"], row["intersecting_pairs_max"]), (1, 0))
         self.assertIn("1 of 40 steps", self.tables())
+
+    def truth(self):
+        """Records with a hit each and, of the triangles, an answer that is wrong; a mesh that passes itself."""
+        folder = self.path("truth")
+        os.makedirs(folder)
+        face = [0, 0, 0, 4, 0, 0, 0, 4, 0]
+        motion = struct.pack("<24f2i", 1, 1, 1, *face, 1, 1, -1, *face, 0, 1)
+        through = struct.pack("<18fi", *face, 0, 0, -1, 1, 0, 0, 0, 1, 0, 1)
+        above = struct.pack("<18fi", *face, 0, 0, 1, 1, 0, 2, 0, 1, 2, 1)
+        for name, records in (("ccd_queries.bin", motion), ("triangle_pairs.bin", through + above)):
+            with open(os.path.join(folder, name), "wb") as file:
+                file.write(records)
+        for name, height in (("cloth_ball92.ply", 1), ("cloth_ball93.ply", -1)):
+            with open(os.path.join(folder, name), "w") as file:
+                file.write("ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
+                           "property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+                           f"0 0 0\n4 0 0\n0 4 0\n0.5 0.5 {height}\n1 0.5 {height}\n0.5 1 {height}\n3 0 1 2\n3 3 4 5\n")
+        return folder
+
+    def test_published_queries_on_every_back_end(self):
+        result = self.bash("drape_check.sh", self.path("results/machine"), "--truth", self.truth(), "--commit", "abc1234")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        content = self.content("drape_check")
+        names = ["host"] + [device["device"] for device in content["machine"]["devices"]]
+        self.assertEqual([row["device"] for row in content["ccd"]], names)
+        self.assertEqual([(row["mode"], row["device"]) for row in content["triangles"]],
+                         [(mode, name) for mode in ("fast", "exact") for name in names])
+        self.assertEqual({(row["misses"], row["false_hits"]) for row in content["ccd"]}, {(0, 0)})
+        self.assertEqual({(row["misses"], row["false_hits"]) for row in content["triangles"]}, {(1, 0)})
+        self.assertEqual({(row["device"], row["vf_hits"]) for row in content["step"]}, {(name, 3) for name in names})
+        text = self.tables()
+        self.assertIn("| triangles exact | host | 2 | 1 | 0 |", text)
+        self.assertIn("| ccd | host | 1 | 0 | 0 |", text)
+        self.assertIn("at abc1234.", text)
+
+    def test_queries_that_are_not_there_are_named(self):
+        folder = self.truth()
+        os.remove(os.path.join(folder, "ccd_queries.bin"))
+        result = self.bash("drape_check.sh", self.path("results/machine"), "--truth", folder)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("ccd_queries.bin", result.stderr)
+        content = self.content("drape_check")
+        self.assertNotIn("ccd", content)
+        self.assertTrue(content["triangles"])
+        self.assertEqual(self.bash("drape_check.sh", self.path("results/machine")).returncode, 2)
 
 
 class Growth(ProgramTest):
