@@ -6,15 +6,17 @@
 #   --bin DIR        folder of the programs (default: build/release/bin; those of the study in other volumes are made by
 #                    the target study_degrees)
 #   --minutes N      time to spend (default 80); what does not fit is named and left out
-#   --truth DIR      folder of published queries with exact answers, see error_vs_time/run.sh
+#   --truth DIR      folder of published queries with exact answers, see error_vs_time/run.sh and drape_check.sh
 #   --commit TEXT    what is measured (default: git describe)
 #   --reference DIR  OUT_DIR of an earlier run: contacts must have its hashes, and the host and the peers are not
 #                    measured again
 #   --quick          small inputs only
 #
 # Writes bench_step.csv and .json, study.csv and .json (run_study.sh alone does these, also part by part), and, where
-# Bullet's part is built, error_vs_time.csv and .json and cloth_drop.json (of the bunny); then the plots beside them, and
-# the tables in README.md where OUT_DIR lies under results/ here. Measure on an idle machine. Ends with 3 when a row is void, with 1 when something could not be measured.
+# Bullet's part is built, error_vs_time.csv and .json, cloth_drop.json and drop_speeds.json (of the bunny; no drops with
+# --quick), with --truth drape_check.json; then the plots beside them, and the tables in README.md where OUT_DIR lies
+# under results/ here. Measure on an idle machine. Ends with 3 when a row is void, with 1 when something could not be
+# measured.
 set -uo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -36,7 +38,7 @@ while [[ $# -gt 0 ]]; do
   esac
   shift
 done
-[[ -n $out ]] || { sed -n '2,19s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 2; }
+[[ -n $out ]] || { sed -n '2,21s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 2; }
 mkdir -p "$out" || exit 1
 
 common=(--commit "$commit")
@@ -62,7 +64,7 @@ step=()
 if [[ -n $reference ]]; then
   step=(--reference "$reference/bench_step.json" --method drape --method drape_kernels)
 fi
-measure bench_step 0.45 "${step[@]}"
+measure bench_step 0.41 "${step[@]}"
 bash "$here/run_study.sh" --bin "$bin" "${common[@]}" --minutes "$(minutes_of 0.27)" "$out"
 note $?
 
@@ -71,6 +73,14 @@ bunny=/usr/share/glmark2/models/bunny.obj
 if [[ -z $quick && -x $bin/cloth_drop && -f $bunny ]]; then
   "$bin/cloth_drop" --obstacle "$bunny" --compare --quiet ${device:+--device "$device"} \
     --json "$out/cloth_drop.json" || worst=1
+  # Its slow runs are Bullet's and the discrete ones, twelve: 0.04 of the minutes.
+  BIN=$bin BUNNY=$bunny COMMIT=$commit LIMIT=$(minutes_of 0.2) \
+    bash "$here/drop_speeds.sh" "$out" ${device:+--device "$device"} || worst=1
+fi
+
+if [[ -n $truth ]]; then
+  bash "$here/drape_check.sh" "$out" --truth "$truth" --bin "$bin" --commit "$commit" ${device:+--device "$device"} ||
+    worst=1
 fi
 
 if [[ -x $bin/error_vs_time ]]; then

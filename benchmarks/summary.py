@@ -7,6 +7,7 @@ import math
 import os
 import sys
 
+import script_tables
 import study_tables
 from results import STAGES, SWEEPS, count_void, fit_exponent, in_order, n_log_n_exponent, read_json, read_machine, read_rows, select
 
@@ -169,6 +170,8 @@ def machine_text(folder):
     text += "The study's tables say their own commits. " if os.path.exists(os.path.join(folder, "study.csv")) else ""
     text += f"Void rows: {count_void(folder, 'bench_step') + count_void(folder, 'study')}.\n\n"
     text += step_table(rows) + built_in_line(folder, rows) + stage_table(rows)
+    text += script_tables.drops_text(read_json(folder, "drop_speeds"), table)
+    text += script_tables.checks_text(read_json(folder, "drape_check"), table, figure)
     text += study_tables.text(read_rows(folder, "study"), table, figure)
     return text + exponent_table(rows) + memory_table(rows) + pictures(folder)
 

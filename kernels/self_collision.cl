@@ -6,19 +6,20 @@
 // Pairs a work-item gathers before it reserves room for them with one atomic.
 #define DRAPE_SELF_GATHER 16
 
-// Reserves room for count entries of a list. Returns false when the demand is beyond what is counted.
-static int reserveEntries(__global volatile uint* demand, const uint count, uint* place)
+// Reserves room for count entries of a list. Returns false when the demand has reached `enough`, beyond which nothing is
+// counted.
+static int reserveEntries(__global volatile uint* demand, const uint count, const uint enough, uint* place)
 {
-    if (*demand >= DRAPE_DEMAND_LIMIT) return 0;
+    if (*demand >= enough) return 0;
     *place = atomic_add(demand, count);
     return 1;
 }
 
-static int flushPairs(__global Candidate* restrict pairs, const uint capacity, __global SelfCounters* restrict counters,
-                      const Candidate* gathered, const uint count)
+static int flushPairs(__global Candidate* restrict pairs, const uint capacity, const uint enough,
+                      __global SelfCounters* restrict counters, const Candidate* gathered, const uint count)
 {
     uint place;
-    if (!reserveEntries(&counters->m_pairs, count, &place)) return 0;
+    if (!reserveEntries(&counters->m_pairs, count, enough, &place)) return 0;
     for (uint i = 0; i < count; ++i)
     {
         if (place + i < capacity) pairs[place + i] = gathered[i];
@@ -48,12 +49,13 @@ static WalkSide walkSide(__global const BvhNode* nodes, __global const uint* ord
 
 // A work-item is one of leafCount leaves of side a from firstLeaf: lists the pairs of its triangle with those of the
 // leaves of tree b whose volumes overlap, as kind (DRAPE_WALK_…) says. For a mesh with itself, a and b are the same.
+// Work-items leave off once enough pairs (DRAPE_DEMAND_LIMIT at most) are counted.
 __kernel void leafTraverse(__global const BvhNode* nodesA, __global const uint* orderA,
                            __global const Triangle* trianglesA, const uint firstLeaf, const uint leafCount,
                            __global const BvhNode* nodesB, __global const uint* orderB,
                            __global const Triangle* trianglesB, const uint root, __global const uint* lastLeaf,
                            const uint kind, __global Candidate* restrict pairs, const uint capacity,
-                           __global SelfCounters* restrict counters)
+                           const uint enough, __global SelfCounters* restrict counters)
 {
     if (get_global_id(0) >= leafCount) return;
     const WalkSide a = walkSide(nodesA, orderA, trianglesA), b = walkSide(nodesB, orderB, trianglesB);
@@ -64,10 +66,10 @@ __kernel void leafTraverse(__global const BvhNode* nodesA, __global const uint* 
     while (leafWalkNext(&walk, &a, &b, kind, lastLeaf, gathered + count))
     {
         if (++count < DRAPE_SELF_GATHER) continue;
-        if (!flushPairs(pairs, capacity, counters, gathered, count)) return;
+        if (!flushPairs(pairs, capacity, enough, counters, gathered, count)) return;
         count = 0;
     }
-    if (count > 0) flushPairs(pairs, capacity, counters, gathered, count);
+    if (count > 0) flushPairs(pairs, capacity, enough, counters, gathered, count);
     if (walk.m_tooDeep) atomic_inc(&counters->m_tooDeep);
 }
 
@@ -75,7 +77,7 @@ static void storePairs(__global FeaturePair* restrict list, const uint capacity,
                        const FeaturePair* pairs, const uint count)
 {
     uint place;
-    if (count == 0 || !reserveEntries(demand, count, &place)) return;
+    if (count == 0 || !reserveEntries(demand, count, DRAPE_DEMAND_LIMIT, &place)) return;
     for (uint i = 0; i < count; ++i)
     {
         if (place + i < capacity) list[place + i] = pairs[i];

@@ -165,7 +165,7 @@ TrialResult runTrial(const ErrorOptions& options, const std::string& scene, cons
     describe(result.m_row, scene, trial);
     std::vector<StepRecord> steps;
     Row end;
-    const ChildEnd child = runCappedChild(childArguments(options, scene, number), capSeconds,
+    const ChildEnd child = runCappedChild(childArguments(options, scene, number), {capSeconds},
                                           [&](int, const std::string& line)
                                           {
                                               if (line.rfind("{\"end\"", 0) == 0)

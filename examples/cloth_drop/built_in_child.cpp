@@ -2,7 +2,6 @@
 
 #include <cstdio>
 
-#include "examples/cloth_drop/capped_child.h"
 #include "examples/cloth_drop/progress.h"
 #include "examples/cloth_drop/step_stream.h"
 
@@ -63,12 +62,12 @@ void describe(RunRecord& record, BulletMode mode, const DropScene& scene)
 }
 }  // namespace
 
-bool runBuiltInChild(const Options& options, BulletMode mode, const DropScene& scene, RunRecord& record,
-                     std::string& error)
+bool runBuiltInChild(const Options& options, BulletMode mode, const ChildCap& cap, const DropScene& scene,
+                     RunRecord& record, std::string& error)
 {
     describe(record, mode, scene);
     Progress progress(record.m_backend, options.m_steps, options.m_quiet);
-    const ChildEnd end = runCappedChild(childArguments(options, mode), options.m_compareCap,
+    const ChildEnd end = runCappedChild(childArguments(options, mode), cap,
                                         [&](int step, const std::string& line)
                                         {
                                             record.m_steps.push_back(stepFromLine(line));

@@ -2,19 +2,21 @@
 // measured until it ended or the cap did.
 //
 // The child is this program with --backend bullet and a hidden option; it writes a line before and after every step to
-// its standard output. The cap counts stepping only, not measuring. The child is always gone when the functions return.
+// its standard output. The cap counts stepping, and measuring where it says so. The child is always gone when the
+// functions return.
 #pragma once
 
 #include <string>
 
+#include "examples/cloth_drop/capped_child.h"
 #include "examples/cloth_drop/options.h"
 #include "examples/cloth_drop/run_record.h"
 
 namespace drape
 {
 // In the parent. False with one line in `error` when the child could not be started or failed.
-bool runBuiltInChild(const Options& options, BulletMode mode, const DropScene& scene, RunRecord& record,
-                     std::string& error);
+bool runBuiltInChild(const Options& options, BulletMode mode, const ChildCap& cap, const DropScene& scene,
+                     RunRecord& record, std::string& error);
 
 // In the child: runs and streams. Does not return: Bullet's own clean-up could take minutes.
 [[noreturn]] void streamBuiltIn(const Options& options, const DropScene& scene);

@@ -1,5 +1,6 @@
 #include "examples/cloth_drop/capped_child.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -42,14 +43,11 @@ int spawnChild(std::vector<std::string>& arguments, pid_t& child)
     return -1;
 }
 
-// The clock of the cap runs between "step" and "stepped".
+// The clock of the cap runs between "step" and "stepped", or from the first "step" on.
 class ChildReader
 {
 public:
-    ChildReader(int pipe, double capSeconds, const OnLine& onLine)
-        : m_pipe(pipe), m_capSeconds(capSeconds), m_onLine(onLine)
-    {
-    }
+    ChildReader(int pipe, const ChildCap& cap, const OnLine& onLine) : m_pipe(pipe), m_cap(cap), m_onLine(onLine) {}
 
     // Reads until the child's end (true) or the cap (false).
     bool follow()
@@ -57,11 +55,11 @@ public:
         char buffer[65536];
         for (;;)
         {
-            const double left = m_capSeconds - m_spent - (m_stepping ? secondsSince(m_stepStart) : 0);
-            if (m_stepping && left <= 0) return false;
+            const double left = m_cap.m_seconds - m_spent - (m_running ? secondsSince(m_start) : 0);
+            if (m_running && left <= 0) return false;
             pollfd waiting = {m_pipe, POLLIN, 0};
-            // Not stepping: loading or measuring, which always ends.
-            const int ready = ::poll(&waiting, 1, m_stepping ? static_cast<int>(left * 1000) + 1 : -1);
+            // Not running: loading or measuring, which always ends.
+            const int ready = ::poll(&waiting, 1, m_running ? waitMs(left) : -1);
             if (ready < 0 && errno != EINTR) return true;
             if (ready <= 0) continue;
             const ssize_t size = ::read(m_pipe, buffer, sizeof buffer);
@@ -80,6 +78,8 @@ private:
         return std::chrono::duration<double>(Clock::now() - start).count();
     }
 
+    static int waitMs(double seconds) { return static_cast<int>(std::min(seconds, 1e6) * 1000) + 1; }
+
     void takeLines()
     {
         std::size_t start = 0;
@@ -92,32 +92,34 @@ private:
     {
         if (line == "step")
         {
-            m_stepping = true;
-            m_stepStart = Clock::now();
             ++m_step;
+            if (m_running) return;
+            m_running = true;
+            m_start = Clock::now();
             return;
         }
         if (line == "stepped")
         {
-            m_stepping = false;
-            m_spent += secondsSince(m_stepStart);
+            if (m_cap.m_measuring) return;
+            m_running = false;
+            m_spent += secondsSince(m_start);
             return;
         }
         m_onLine(m_step, line);
     }
 
     int m_pipe;
-    double m_capSeconds;
+    ChildCap m_cap;
     const OnLine& m_onLine;
     std::string m_text;
-    bool m_stepping = false;
-    Clock::time_point m_stepStart;
+    bool m_running = false;
+    Clock::time_point m_start;
     double m_spent = 0;
     int m_step = 0;
 };
 }  // namespace
 
-ChildEnd runCappedChild(std::vector<std::string> arguments, double capSeconds, const OnLine& onLine)
+ChildEnd runCappedChild(std::vector<std::string> arguments, const ChildCap& cap, const OnLine& onLine)
 {
     ChildEnd end;
     pid_t child = 0;
@@ -127,7 +129,7 @@ ChildEnd runCappedChild(std::vector<std::string> arguments, double capSeconds, c
         end.m_error = std::string("cannot start the child process: ") + std::strerror(errno);
         return end;
     }
-    ChildReader reader(pipe, capSeconds, onLine);
+    ChildReader reader(pipe, cap, onLine);
     try
     {
         end.m_capped = !reader.follow();

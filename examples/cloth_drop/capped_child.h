@@ -1,8 +1,9 @@
 // Runs this program again as a child process whose steps may take only so long together, and follows what it writes.
 //
 // Why: Bullet's built-in collision can stall for minutes in one step. The child writes the line "step" to its standard
-// output before every step and "stepped" after it (see step_stream.h); the cap counts the time between them only, not
-// loading or measuring. All other lines go to the caller. The child is always gone when the function returns.
+// output before every step and "stepped" after it (see step_stream.h); the cap counts the time between them only, or
+// all since the first step began, but no loading. All other lines go to the caller. The child is always gone when the
+// function returns.
 #pragma once
 
 #include <functional>
@@ -11,6 +12,12 @@
 
 namespace drape
 {
+struct ChildCap
+{
+    double m_seconds;
+    bool m_measuring = false;  // counts what is done between steps, too
+};
+
 struct ChildEnd
 {
     int m_step = 0;         // the last step that began, from 1; 0: none
@@ -20,6 +27,6 @@ struct ChildEnd
 
 // arguments: the first one names the program. onLine gets the number of the last step and the line; an exception of its
 // own ends the child and becomes the error.
-ChildEnd runCappedChild(std::vector<std::string> arguments, double capSeconds,
+ChildEnd runCappedChild(std::vector<std::string> arguments, const ChildCap& cap,
                         const std::function<void(int step, const std::string& line)>& onLine);
 }  // namespace drape

@@ -1,4 +1,6 @@
 // cloth_drop: drops a cloth on an obstacle in Bullet, with Drape or Bullet's built-in collision, and reports.
+#include <chrono>
+
 #include "examples/cloth_drop/built_in_child.h"
 #include "examples/cloth_drop/outputs.h"
 #include "examples/cloth_drop/picture.h"
@@ -16,9 +18,19 @@ int fail(int exitCode, const std::string& reason)
     return drape::fail("cloth_drop", exitCode, reason);
 }
 
+// A built-in run with a limit of time is a child's, which is ended within a step that does not.
+int runLimitedBuiltIn(const Options& options, const DropScene& scene, NamedRun& run)
+{
+    std::string error;
+    const ChildCap cap = {options.m_timeLimit, true};
+    const bool ran = runBuiltInChild(options, options.m_bulletMode, cap, scene, run.m_record, error);
+    return ran ? kExitGood : fail(kExitFailed, error);
+}
+
 // Runs the chosen back end. A built-in world is left alive: Bullet's clean-up of its distance field can take minutes.
 int runChosen(const Options& options, const DropScene& scene, NamedRun& run, TriangleMesh& lastFrame)
 {
+    if (!options.usesDrape() && options.m_timeLimit > 0) return runLimitedBuiltIn(options, scene, run);
     std::string error;
     int exitCode = kExitFailed;
     std::unique_ptr<Simulation> simulation = options.usesDrape() ? makeDrapeSimulation(scene, options, error, exitCode)
@@ -27,6 +39,12 @@ int runChosen(const Options& options, const DropScene& scene, NamedRun& run, Tri
     Progress progress(run.m_name, options.m_steps, options.m_quiet);
     RunHooks hooks;
     hooks.m_afterStep = [&](int number, const StepRecord&) { progress.show(number); };
+    const auto start = std::chrono::steady_clock::now();
+    if (options.m_timeLimit > 0)
+    {
+        const std::chrono::duration<double> limit(options.m_timeLimit);
+        hooks.m_goesOn = [=] { return std::chrono::steady_clock::now() - start < limit; };
+    }
     const bool ran =
         runSimulation(*simulation, scene, options.m_steps, options.m_frames, hooks, run.m_record, lastFrame, error);
     if (!options.usesDrape()) static_cast<void>(simulation.release());
@@ -42,7 +60,7 @@ bool runBuiltIns(const Options& options, const DropScene& scene, std::vector<Nam
     {
         NamedRun run{mode.first, {}};
         std::string problem;
-        if (!runBuiltInChild(options, mode.second, scene, run.m_record, problem))
+        if (!runBuiltInChild(options, mode.second, {options.m_compareCap}, scene, run.m_record, problem))
         {
             run.m_record.m_trouble = problem;
             error = problem;

@@ -56,6 +56,10 @@ void addSceneOptions(CLI::App& app, Options& options, std::string& cloth)
     app.add_option("--drop-speed", options.m_dropSpeed, "speed of the cloth downwards at the start, m/s")
         ->check(CLI::Validator(numberAbove(0, true, "0 or more"), ""));
     app.add_option("--steps", options.m_steps, "simulation steps")->check(positive);
+    app.add_option("--time-limit", options.m_timeLimit,
+                   "seconds, measuring included, after which the run ends with the steps it has done")
+        ->check(positive)
+        ->default_str("none");
     app.add_option("--dt", options.m_dt, "seconds a step")->check(positive);
     app.add_option("--thickness", options.m_thickness,
                    "gap at rest: half is the cloth's margin, half the obstacle's, m")
@@ -100,6 +104,8 @@ std::string conflict(const Options& options)
     if (!options.usesDrape() && options.m_compare) return "--compare needs a back end of Drape, not --backend bullet";
     if (!options.usesDrape() && !options.m_device.empty()) return "--device means nothing with --backend bullet";
     if (options.m_compareSoftPair && !options.m_compare) return "--compare-vfss needs --compare";
+    if (!options.usesDrape() && options.m_timeLimit > 0 && (!options.m_frames.empty() || !options.m_picture.empty()))
+        return "--time-limit with --backend bullet leaves no cloth for --frames and --picture";
     if (options.m_obstacle.empty()) return "--obstacle is empty";
     return "";
 }

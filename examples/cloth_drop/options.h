@@ -28,6 +28,7 @@ struct Options
     double m_dropHeight = 0.3;
     double m_dropSpeed = 0;
     int m_steps = 240;
+    double m_timeLimit = 0;  // s; 0: none
     double m_dt = 1.0 / 60.0;
     double m_thickness = 0.02;
     std::string m_backend = "auto";

@@ -43,6 +43,9 @@ bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, co
         if (frames && !writeMesh(frameName(framesFolder, "cloth", number), lastFrame, error)) return false;
         if (hooks.m_afterStep) hooks.m_afterStep(number, step);
         record.m_steps.push_back(std::move(step));
+        if (number == steps || !hooks.m_goesOn || hooks.m_goesOn()) continue;
+        record.m_cappedAtStep = number;
+        break;
     }
     // Where cost decides, only the steps tell.
     record.m_backend = simulation.backend();

@@ -10,13 +10,14 @@ namespace drape
 {
 struct RunHooks  // any may be empty
 {
+    std::function<bool()> m_goesOn;                           // asked after each step but the last
     std::function<void(int)> m_beforeStep;                    // step from 1
     std::function<void(int)> m_stepped;                       // stepped, not measured yet
     std::function<void(int, const StepRecord&)> m_afterStep;  // measured too
 };
 
-// False, with one line in `error`, when a frame could not be written. `framesFolder` empty: no frames. `lastFrame` is
-// the cloth as it is after the last step.
+// A run that does not go on is capped at its last step. False, with one line in `error`, when a frame could not be
+// written. `framesFolder` empty: no frames. `lastFrame` is the cloth as it is after the last step.
 bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, const std::string& framesFolder,
                    const RunHooks& hooks, RunRecord& record, TriangleMesh& lastFrame, std::string& error);
 }  // namespace drape

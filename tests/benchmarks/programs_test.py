@@ -6,6 +6,7 @@ import csv
 import json
 import math
 import os
+import struct
 import subprocess
 import sys
 import tempfile
@@ -36,6 +37,16 @@ class ProgramTest(unittest.TestCase):
 
     def path(self, name):
         return os.path.join(self.folder, name)
+
+    def summary(self):
+        """The tables of the results beside."""
+        readme = self.path("README.md")
+        with open(readme, "w") as file:
+            file.write("<!-- results: made by summary.py --><!-- end of results -->")
+        result = self.script("summary.py", readme)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        with open(readme) as file:
+            return file.read()
 
     def quick(self, program, *arguments):
         """Rows of a quick run; every row has every column, and JSON says the same as CSV."""
@@ -396,6 +407,105 @@ class Reports(ProgramTest):
             self.assertEqual(file.read(), text)
 
 
+class Scripts(ProgramTest):
+    """drop_speeds.sh and drape_check.sh, and the tables of what they write."""
+
+    @staticmethod
+    def bash(name, *arguments, **environment):
+        path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "benchmarks", name)
+        return subprocess.run(["bash", path, *arguments], capture_output=True, text=True, timeout=600,
+                              env={**os.environ, "BIN": PROGRAMS, **environment})
+
+    def content(self, name):
+        with open(self.path(f"results/machine/{name}.json")) as file:
+            content = json.load(file)
+        machine = content["machine"]
+        self.assertTrue(machine["processor"] and machine["date"])
+        self.assertEqual(machine["cores"], os.cpu_count())
+        for device in machine["devices"]:
+            self.assertTrue(device["device"] and device["driver"], device)
+        return content
+
+    def tables(self):
+        with open(self.path("results/machine/study.json"), "w") as file:
+            json.dump({"machine": {"processor": "p", "cores": 1, "devices": [], "date": "d", "commit": "c"}}, file)
+        return self.summary()
+
+    def drops(self, **environment):
+        if not os.path.exists(os.path.join(PROGRAMS, "cloth_drop")):
+            self.skipTest("cloth_drop is not built")
+        result = self.bash("drop_speeds.sh", self.path("results/machine"), "--backend", "host", "--cloth", "9x9",
+                           BUNNY="stairs", SPEEDS="2 50", COMMIT="abc1234", **environment)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        content = self.content("drop_speeds")
+        self.assertEqual(content["machine"]["commit"], "abc1234")
+        self.assertEqual([(row["speed_m_s"], row["run"]) for row in content["rows"]],
+                         [(speed, run) for speed in (2, 50)
+                          for run in ("automatic", "continuous", "discrete", "stock", "tuned")])
+        return content["rows"]
+
+    def test_drops_at_every_speed(self):
+        for row in self.drops(STEPS="3"):
+            self.assertEqual((row["ended"], row["steps"]), ("whole", 3), row)
+        text = self.tables()
+        self.assertIn("|  | 2 m/s | 50 m/s |", text)
+        self.assertIn("at abc1234.", text)
+        self.assertNotIn("of 3 steps", text)
+
+    def test_drops_that_reach_their_limit_keep_their_steps(self):
+        for row in self.drops(STEPS="40", LIMIT="1e-9"):
+            self.assertEqual(row["ended"], "by the time limit", row)
+            self.assertLessEqual(row["steps"], 1)
+            if row["run"] == "automatic":
+                self.assertEqual((row["steps"], row["intersecting_pairs_max"]), (1, 0))
+        self.assertIn("1 of 40 steps", self.tables())
+
+    def truth(self):
+        """Records with a hit each and, of the triangles, an answer that is wrong; a mesh that passes itself."""
+        folder = self.path("truth")
+        os.makedirs(folder)
+        face = [0, 0, 0, 4, 0, 0, 0, 4, 0]
+        motion = struct.pack("<24f2i", 1, 1, 1, *face, 1, 1, -1, *face, 0, 1)
+        through = struct.pack("<18fi", *face, 0, 0, -1, 1, 0, 0, 0, 1, 0, 1)
+        above = struct.pack("<18fi", *face, 0, 0, 1, 1, 0, 2, 0, 1, 2, 1)
+        for name, records in (("ccd_queries.bin", motion), ("triangle_pairs.bin", through + above)):
+            with open(os.path.join(folder, name), "wb") as file:
+                file.write(records)
+        for name, height in (("cloth_ball92.ply", 1), ("cloth_ball93.ply", -1)):
+            with open(os.path.join(folder, name), "w") as file:
+                file.write("ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
+                           "property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+                           f"0 0 0\n4 0 0\n0 4 0\n0.5 0.5 {height}\n1 0.5 {height}\n0.5 1 {height}\n3 0 1 2\n3 3 4 5\n")
+        return folder
+
+    def test_published_queries_on_every_back_end(self):
+        result = self.bash("drape_check.sh", self.path("results/machine"), "--truth", self.truth(), "--commit", "abc1234")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        content = self.content("drape_check")
+        names = ["host"] + [device["device"] for device in content["machine"]["devices"]]
+        self.assertEqual([row["device"] for row in content["ccd"]], names)
+        self.assertEqual([(row["mode"], row["device"]) for row in content["triangles"]],
+                         [(mode, name) for mode in ("fast", "exact") for name in names])
+        self.assertEqual({(row["misses"], row["false_hits"]) for row in content["ccd"]}, {(0, 0)})
+        self.assertEqual({(row["misses"], row["false_hits"]) for row in content["triangles"]}, {(1, 0)})
+        self.assertEqual({(row["device"], row["vf_hits"]) for row in content["step"]}, {(name, 3) for name in names})
+        text = self.tables()
+        self.assertIn("| triangles exact | host | 2 | 1 | 0 |", text)
+        self.assertIn("| ccd | host | 1 | 0 | 0 |", text)
+        self.assertIn("at abc1234.", text)
+
+    def test_queries_that_are_not_there_are_named(self):
+        folder = self.truth()
+        os.remove(os.path.join(folder, "ccd_queries.bin"))
+        result = self.bash("drape_check.sh", self.path("results/machine"), "--truth", folder)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("ccd_queries.bin", result.stderr)
+        content = self.content("drape_check")
+        self.assertNotIn("ccd", content)
+        self.assertTrue(content["triangles"])
+        self.assertEqual(self.bash("drape_check.sh", self.path("results/machine")).returncode, 2)
+
+
 class Growth(ProgramTest):
     """Which stages grow faster than n log n, from times that are known."""
 
@@ -414,13 +524,7 @@ class Growth(ProgramTest):
                     writer.writerow([f"s{size}", "on_1k", "drape_host", stage, size, 1280, time(size), 3 * size])
         with open(f"{folder}/bench_step.json", "w") as file:
             json.dump({"machine": {"processor": "p", "cores": 1, "devices": [], "date": "d", "commit": "c"}}, file)
-        readme = self.path("README.md")
-        with open(readme, "w") as file:
-            file.write("<!-- results: made by summary.py --><!-- end of results -->")
-        result = self.script("summary.py", readme)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        with open(readme) as file:
-            return file.read()
+        return self.summary()
 
     def test_linear_and_n_log_n_are_within(self):
         text = self.summary_of(broad=lambda n: 0.999e-5 * n * math.log(n), narrow=lambda n: 1e-5 * n)

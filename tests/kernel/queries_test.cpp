@@ -195,7 +195,7 @@ TEST_P(SelfCollisionTest, SmallBatchesFindTheSame)
     mesh.refit(0);
     SelfCollisions host;
     selfCollideOnHost({mesh.tree(), mesh.m_topology.m_edges, mesh.m_start, mesh.m_end, mesh.m_topology.m_vertexCount},
-                      defaultCcdSettings(), host);
+                      defaultCcdSettings(), SelfLimits(), host);
     ASSERT_GT(host.m_hits.size(), 500u);
     QueryDevice device(openDevice(GetParam()), GetParam().m_settings);
     for (std::size_t bytes : {std::size_t(1) << 28, std::size_t(200000), std::size_t(40000), std::size_t(1)})
@@ -208,10 +208,51 @@ TEST_P(SelfCollisionTest, SmallBatchesFindTheSame)
         device.stage().pairs() = Buffer<Candidate>();
         device.stage().pairs().reserve(device.device(), 1);
         SelfCollisions found;
-        ASSERT_TRUE(device.meshMotion(mesh, defaultCcdSettings(), found)) << device.device().error().text();
+        ASSERT_TRUE(device.meshMotion(mesh, defaultCcdSettings(), SelfLimits(), found))
+            << device.device().error().text();
         EXPECT_EQ(found.m_trianglePairs, host.m_trianglePairs);
         EXPECT_EQ(found.m_vertexFaceCandidates, host.m_vertexFaceCandidates);
         EXPECT_EQ(found.m_edgeCandidates, host.m_edgeCandidates);
+        sortHits(found.m_hits);
+        EXPECT_TRUE(sameBytes(found.m_hits, host.m_hits));
+    }
+}
+
+// Limits that are reached in the first batch, in a later one, or met just so, give what the host gives.
+TEST_P(SelfCollisionTest, LimitsInAnyBatchAreTheHosts)
+{
+    const SelfCase motion = soupSelfCase(400, 114);
+    QueryMesh mesh = makeQueryMesh(describeMesh(motion.m_mesh), motion.m_end.data());
+    mesh.refit(0);
+    const HostMotion hostMotion = {mesh.tree(), mesh.m_topology.m_edges, mesh.m_start, mesh.m_end,
+                                   mesh.m_topology.m_vertexCount};
+    SelfCollisions whole;
+    selfCollideOnHost(hostMotion, defaultCcdSettings(), SelfLimits(), whole);
+    const std::uint64_t pairs = whole.m_trianglePairs;
+    const std::uint64_t features = whole.m_vertexFaceCandidates + whole.m_edgeCandidates;
+    QueryDevice device(openDevice(GetParam()), GetParam().m_settings);
+    device.stage().limitLists(40000);
+    device.stage().pairs() = Buffer<Candidate>();
+    device.stage().pairs().reserve(device.device(), 1);
+    const SelfLimits limits[] = {{10, 10},           {pairs - 1, 10},
+                                 {pairs, 10},        {features / 2, 1000000},
+                                 {features - 1, 10}, {features, whole.hits() - 1},
+                                 {features, 10},     {features, whole.hits()}};
+    for (const SelfLimits& limit : limits)
+    {
+        SCOPED_TRACE("seed 114, candidates " + std::to_string(limit.m_candidates) + ", hits " +
+                     std::to_string(limit.m_hits));
+        SelfCollisions host, found;
+        selfCollideOnHost(hostMotion, defaultCcdSettings(), limit, host);
+        ASSERT_TRUE(device.meshMotion(mesh, defaultCcdSettings(), limit, found)) << device.device().error().text();
+        EXPECT_EQ(host.m_untested, limit.m_candidates < features);
+        EXPECT_EQ(found.m_untested, host.m_untested);
+        EXPECT_EQ(found.m_trianglePairs, pairs);
+        EXPECT_EQ(host.m_trianglePairs, pairs);
+        EXPECT_EQ(found.m_vertexFaceCandidates, host.m_vertexFaceCandidates);
+        EXPECT_EQ(found.m_edgeCandidates, host.m_edgeCandidates);
+        EXPECT_EQ(found.m_hitCount[0], host.m_hitCount[0]);
+        EXPECT_EQ(found.m_hitCount[1], host.m_hitCount[1]);
         sortHits(found.m_hits);
         EXPECT_TRUE(sameBytes(found.m_hits, host.m_hits));
     }

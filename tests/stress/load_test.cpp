@@ -12,17 +12,6 @@
 
 namespace drape::test
 {
-namespace
-{
-TriangleMesh coincident(int count, float y)
-{
-    std::vector<float> corners;
-    for (int i = 0; i < count; ++i)
-        corners.insert(corners.end(), {0, y, 0, 1, y, 0, 0, y, 1});
-    return looseTriangles(corners);
-}
-}  // namespace
-
 class LoadTest : public BackendTest
 {
 };
@@ -33,8 +22,12 @@ TEST_P(LoadTest, CoincidentTriangles)
     constexpr int kClothTriangles = 600, kObstacleTriangles = 250;
     const std::unique_ptr<Pipeline> pipeline = makePipeline(GetParam().m_settings);
     ASSERT_TRUE(pipeline);
-    StepCase step = {
-        "coincident triangles", 0, coincident(kClothTriangles, 0.02f), coincident(kObstacleTriangles, 0.0f), {}, 0.1f};
+    StepCase step = {"coincident triangles",
+                     0,
+                     coincidentTriangles(kClothTriangles, 0.02f),
+                     coincidentTriangles(kObstacleTriangles, 0.0f),
+                     {},
+                     0.1f};
     step.m_end = step.m_cloth.m_positions;
     const std::vector<Contact> contacts = runCase(*pipeline, step);
     const StepStatistics& statistics = pipeline->statistics();
@@ -64,9 +57,9 @@ TEST_P(LoadTest, HundredThousandCoincidentTriangles)
     const std::size_t soundCandidates = pipeline->statistics().m_candidates;
     ASSERT_GT(alone.size(), 100u);
 
-    const TriangleMesh crowd = coincident(kClothTriangles, 5.02f);
+    const TriangleMesh crowd = coincidentTriangles(kClothTriangles, 5.02f);
     const MeshId cloth = addCloth(*pipeline, crowd);
-    const MeshId obstacle = addObstacle(*pipeline, coincident(kObstacleTriangles, 5.0f));
+    const MeshId obstacle = addObstacle(*pipeline, coincidentTriangles(kObstacleTriangles, 5.0f));
     const std::size_t before = peakResidentBytes();
     for (int repetition = 0; repetition < 2; ++repetition)
     {

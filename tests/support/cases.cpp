@@ -152,6 +152,14 @@ TriangleMesh looseTriangles(const std::vector<float>& corners)
     return mesh;
 }
 
+TriangleMesh coincidentTriangles(int count, float y)
+{
+    std::vector<float> corners;
+    for (int i = 0; i < count; ++i)
+        corners.insert(corners.end(), {0, y, 0, 1, y, 0, 0, y, 1});
+    return looseTriangles(corners);
+}
+
 void drapeOver(const TriangleMesh& obstacle, TriangleMesh& cloth, float gapLow, float gapHigh, Random& random)
 {
     for (std::size_t node = 0; node < cloth.vertexCount(); ++node)

@@ -44,6 +44,9 @@ TriangleMesh shapeNamed(const std::string& name);
 // A mesh of one triangle or more: corners in order, none shared.
 TriangleMesh looseTriangles(const std::vector<float>& corners);
 
+// Loose triangles with a square metre's half each, all at one place at height y.
+TriangleMesh coincidentTriangles(int count, float y);
+
 // Meshes that hierarchies may fail at: all centroids equal, all corners in one point, lines whose triangles grow in
 // distance, an even line, and a soup with nodes that are NaN, infinite and near the largest float. triangles: of the
 // large ones.

@@ -67,7 +67,7 @@ TEST_F(BadInput, vertexThatIsNoNumber)
 
 TEST_F(BadInput, numbers)
 {
-    for (const char* option : {"--obstacle-size", "--cloth-size", "--steps", "--dt", "--thickness"})
+    for (const char* option : {"--obstacle-size", "--cloth-size", "--steps", "--dt", "--thickness", "--time-limit"})
         for (const char* value : {"-1", "0", "nan", "inf", "two", ""})
         {
             SCOPED_TRACE(std::string(option) + " " + value);
@@ -94,6 +94,7 @@ TEST_F(BadInput, optionsThatDoNotExistOrContradict)
     expectRefused(runSmall({"--backend", "bullet", "--compare"}), {"--compare"});
     expectRefused(runSmall({"--backend", "host", "--device", "gpu"}), {"--device"});
     expectRefused(runSmall({"--validate-hash", "12"}), {"12"});
+    expectRefused(runSmall({"--backend", "bullet", "--time-limit", "9", "--frames", path("frames")}), {"--time-limit"});
 }
 
 TEST_F(BadInput, unknownDeviceListsThoseThereAre)

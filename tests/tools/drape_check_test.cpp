@@ -146,6 +146,45 @@ TEST_F(Check, stepFindsWhatPasses)
     EXPECT_EQ(answer({"step", above, above, "--separation", "0.6"}).at("vf_hits"), 3);
 }
 
+// A hundred thousand triangles at one place, all but coincident so that none is a repeated one: told at once, with the
+// exact number, on every back end.
+TEST_F(Check, tooManyPairsAreCountedAndRefused)
+{
+    std::string text = "v 0 0 0\nv 0 1 0\n";
+    for (int i = 0; i < 100000; ++i)
+        text += "v 1 0 " + std::to_string(i) + "e-9\nf 1 2 " + std::to_string(i + 3) + "\n";
+    const std::string crowd = write("crowd.obj", text);
+    const std::vector<std::string> backends =
+        listDevices().empty() ? std::vector<std::string>{"host"} : std::vector<std::string>{"host", "opencl"};
+    for (const std::string& backend : backends)
+    {
+        SCOPED_TRACE(backend);
+        const std::string json = path(backend + ".json");
+        expectRefused(run({"pairs", crowd, crowd, "--backend", backend, "--json", json}),
+                      {"crowd.obj", "10000000000", "--candidate-limit"});
+        const Json answer = Json::parse(readAll(json));
+        EXPECT_EQ(answer.at("candidates"), 10000000000u);
+        EXPECT_EQ(answer.at("limit_reached"), true);
+        EXPECT_FALSE(answer.contains("pairs_within"));
+        const ToolRun step = run({"step", crowd, crowd, "--backend", backend, "--json", "-"});
+        EXPECT_EQ(step.m_exitCode, 2);
+        EXPECT_NE(step.m_err.find("4999950000"), std::string::npos) << step.m_err;
+        EXPECT_EQ(Json::parse(step.m_out).at("triangle_pairs"), 4999950000u);
+    }
+    // Of features, which are counted of the triangles' pairs that may be tested.
+    const std::string above = write("above.obj", meshAt(0.5f)), below = write("below.obj", meshAt(-0.5f));
+    const Json whole = answer({"step", above, below});
+    const std::string limit = std::to_string(whole.at("triangle_pairs").get<int>());
+    ASSERT_GT(whole.at("vf_candidates").get<int>() + whole.at("ee_candidates").get<int>(), std::stoi(limit));
+    expectRefused(run({"step", above, below, "--candidate-limit", limit, "--json", path("features.json")}),
+                  {"features", "above.obj", "--candidate-limit " + limit});
+    const Json features = Json::parse(readAll(path("features.json")));
+    for (const char* key : {"triangle_pairs", "vf_candidates", "ee_candidates"})
+        EXPECT_EQ(features.at(key), whole.at(key)) << key;
+    EXPECT_FALSE(features.contains("vf_hits"));
+    expectRefused(run({"pairs", above, "--candidate-limit", "0"}), {"--candidate-limit"});
+}
+
 TEST_F(Check, writesItsAnswer)
 {
     const std::string file = write("motions.bin", motionRecord(-1, 1));

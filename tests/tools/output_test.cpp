@@ -188,6 +188,37 @@ TEST_F(Outputs, builtInBackEndAlone)
     EXPECT_NE(std::string(run.at("backend")).find("bullet"), std::string::npos);
 }
 
+// A limit that is passed at once: what was done until then is written, by every back end.
+TEST_F(Outputs, aLimitOfTimeKeepsTheStepsDone)
+{
+    const Json run = Json::parse(summaryOf({"--time-limit", "1e-9", "--csv", path("steps.csv")}));
+    expectRun(run, 1);
+    EXPECT_EQ(run.at("capped_at_step"), 1);
+    const std::string csv = readAll(path("steps.csv"));
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 2);
+    // Bullet's own may not end a step, so that the one in hand is given up.
+    const Json builtIn =
+        Json::parse(summaryOf({"--backend", "bullet", "--obstacle", "stairs", "--time-limit", "1e-9"}));
+    EXPECT_EQ(builtIn.at("capped_at_step"), 1);
+    EXPECT_LE(builtIn.at("steps"), 1);
+}
+
+TEST_F(Outputs, aLimitOfTimeThatIsNotReachedChangesNothing)
+{
+    for (const char* backend : {"host", "bullet"})
+    {
+        SCOPED_TRACE(backend);
+        const std::vector<std::string> arguments = {"--backend", backend, "--obstacle", "stairs", "--steps", "3"};
+        std::vector<std::string> limited = arguments;
+        limited.insert(limited.end(), {"--time-limit", "600"});
+        const Json run = Json::parse(summaryOf(limited)), other = Json::parse(summaryOf(arguments));
+        expectRun(run, 3);
+        EXPECT_FALSE(run.contains("capped_at_step"));
+        for (const char* key : {"backend", "device", "hash", "contacts_max", "nodes_below_surface"})
+            EXPECT_EQ(run.at(key), other.at(key)) << key;
+    }
+}
+
 TEST_F(Outputs, compareHasThreeRunsAndTwoRatios)
 {
     const Json all = Json::parse(summaryOf({"--obstacle", "stairs", "--compare", "--compare-cap", "10"}));

@@ -23,6 +23,7 @@ double microsecondsSince(Clock::time_point start)
 std::unique_ptr<Queries> openQueries(const Options& options, Json& answer, std::string& error, int& exitCode)
 {
     Settings settings;
+    settings.m_candidateLimit = options.m_candidateLimit;
     exitCode = kExitBadInput;
     if (!deviceSettings(options.m_backend, options.m_device, settings, error)) return nullptr;
     Error problem;
@@ -44,6 +45,18 @@ CcdSettings ccdSettingsOf(const Options& options)
     settings.m_tolerance = float(options.m_tolerance);
     settings.m_timeTolerance = float(options.m_timeTolerance);
     return settings;
+}
+
+// Refuses files with more pairs than may be tested. The answer keeps what is counted.
+bool refuseTooMany(const Options& options, std::uint64_t pairs, const char* what, Json& answer, std::string& error,
+                   int& exitCode)
+{
+    answer[kLimitReached] = true;
+    answer["candidate_limit"] = options.m_candidateLimit;
+    error = options.m_first + (options.m_second.empty() ? "" : ", " + options.m_second) + ": " + std::to_string(pairs) +
+            " pairs of " + what + " to test, more than --candidate-limit " + std::to_string(options.m_candidateLimit);
+    exitCode = kExitBadInput;
+    return false;
 }
 
 // Answers all queries twice, since drivers may compile at the first launch, and times the second; counts what differs
@@ -118,8 +131,10 @@ bool answerPairs(const Options& options, Json& answer, std::string& error, int& 
         return false;
     }
     answer["candidates"] = found.m_candidates;
-    answer["pairs_within"] = found.m_within.size();
-    answer["intersecting_pairs"] = found.m_intersecting.size();
+    if (found.m_limits & kQueryCandidateLimit)
+        return refuseTooMany(options, found.m_candidates, "triangles", answer, error, exitCode);
+    answer["pairs_within"] = found.m_withinCount;
+    answer["intersecting_pairs"] = found.m_intersectingCount;
     answer["ms"] = microsecondsSince(start) / 1000;
     return true;
 }
@@ -139,14 +154,16 @@ bool answerStep(const Options& options, Json& answer, std::string& error, int& e
         error = queries->error().text();
         return false;
     }
-    std::size_t hits[2] = {0, 0};
-    for (const TouchingFeatures& touching : found.m_touching)
-        ++hits[touching.m_kind == DRAPE_EDGES];
+    const bool tooMany = (found.m_limits & kQueryCandidateLimit) != 0;
+    const std::uint64_t features = found.m_vertexFaceCandidates + found.m_edgeCandidates;
     answer["triangle_pairs"] = found.m_trianglePairs;
+    if (tooMany && features == 0)
+        return refuseTooMany(options, found.m_trianglePairs, "triangles", answer, error, exitCode);
     answer["vf_candidates"] = found.m_vertexFaceCandidates;
-    answer["vf_hits"] = hits[0];
+    if (!tooMany) answer["vf_hits"] = found.m_vertexFaceHits;
     answer["ee_candidates"] = found.m_edgeCandidates;
-    answer["ee_hits"] = hits[1];
+    if (tooMany) return refuseTooMany(options, features, "features", answer, error, exitCode);
+    answer["ee_hits"] = found.m_edgeHits;
     answer["ms"] = microsecondsSince(start) / 1000;
     return true;
 }

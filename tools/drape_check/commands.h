@@ -7,7 +7,11 @@
 
 namespace drape
 {
-// The numbers of the command, in the order to print. False: `error` holds one line and `exitCode` what it comes to.
-// Reads the files before it opens a device.
+// In the answer, where there is more to test than may be.
+constexpr const char* kLimitReached = "limit_reached";
+
+// The numbers of the command, in the order to print. False: `error` holds one line and `exitCode` what it comes to;
+// with kLimitReached in it the answer is the numbers that could be told all the same. Reads the files before it opens a
+// device.
 bool runCommand(const Options& options, nlohmann::ordered_json& answer, std::string& error, int& exitCode);
 }  // namespace drape

@@ -10,13 +10,19 @@ namespace drape
 {
 namespace
 {
-bool writeAnswer(const Options& options, const nlohmann::ordered_json& answer, std::string& error)
+bool writeJson(const Options& options, const nlohmann::ordered_json& answer, std::string& error)
 {
     const std::string json = answer.dump(2) + "\n";
     if (options.m_json == "-")
         std::cout << json;
     else if (!options.m_json.empty() && !writeFileAtomically(options.m_json, json, error))
         return false;
+    return flushOutput(error);
+}
+
+bool writeAnswer(const Options& options, const nlohmann::ordered_json& answer, std::string& error)
+{
+    if (!writeJson(options, answer, error)) return false;
     if (!options.m_quiet && options.m_json != "-")
     {
         for (const auto& item : answer.items())
@@ -37,8 +43,12 @@ int run(const Options& options)
     if (!couldWrite(options.m_json, error)) return fail("drape_check", kExitFailed, error);
     nlohmann::ordered_json answer;
     int exitCode = kExitFailed;
-    if (!runCommand(options, answer, error, exitCode)) return fail("drape_check", exitCode, error);
-    return writeAnswer(options, answer, error) ? kExitGood : fail("drape_check", kExitFailed, error);
+    if (runCommand(options, answer, error, exitCode))
+        return writeAnswer(options, answer, error) ? kExitGood : fail("drape_check", kExitFailed, error);
+    std::string writeError;
+    if (answer.contains(kLimitReached) && !writeJson(options, answer, writeError))
+        return fail("drape_check", kExitFailed, writeError);
+    return fail("drape_check", exitCode, error);
 }
 }  // namespace
 }  // namespace drape

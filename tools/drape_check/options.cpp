@@ -26,6 +26,14 @@ void addMotionOptions(CLI::App& command, Options& options)
         ->check(CLI::Validator(numberAbove(0, false, "more than 0"), ""));
 }
 
+void addLimit(CLI::App& command, Options& options)
+{
+    command
+        .add_option("--candidate-limit", options.m_candidateLimit,
+                    "the most pairs of triangles, or of features, to test; of more the number is told")
+        ->check(CLI::Range(std::size_t(1), std::size_t(1) << 28));
+}
+
 void addCcd(CLI::App& app, Options& options)
 {
     CLI::App& command = *app.add_subcommand("ccd", "do moving vertices, faces and edges touch? Records with answers");
@@ -52,12 +60,14 @@ void addMeshes(CLI::App& app, Options& options)
     addFile(pairs, "B", options.m_second, "mesh file; without it A with itself, less pairs that share a vertex", false);
     pairs.add_option("--thickness", options.m_thickness, "near means no farther than this, m")
         ->check(CLI::Validator(numberAbove(0, true, "0 or more"), ""));
+    addLimit(pairs, options);
     pairs.callback([&options] { options.m_command = Command::Pairs; });
 
     CLI::App& step = *app.add_subcommand("step", "which features of a moving mesh touch one another during a step?");
     addFile(step, "A0", options.m_first, "mesh file: the start");
     addFile(step, "A1", options.m_second, "mesh file: the end, with the same vertices and triangles");
     addMotionOptions(step, options);
+    addLimit(step, options);
     step.callback([&options] { options.m_command = Command::Step; });
 }
 }  // namespace

@@ -20,8 +20,9 @@ enum class Command
 struct Options
 {
     Command m_command = Command::Ccd;
-    std::string m_first, m_second;  // files; m_second is empty for a mesh with itself
-    double m_thickness = 0;         // pairs
+    std::string m_first, m_second;                               // files; m_second is empty for a mesh with itself
+    double m_thickness = 0;                                      // pairs
+    std::size_t m_candidateLimit = Settings().m_candidateLimit;  // pairs and step
     TriangleTest m_test = TriangleTest::Certified;
     double m_separation = 0;  // ccd and step
     double m_tolerance = 0;

@@ -1,72 +1,21 @@
 #include "candidate_count.h"
 
-#include "kernels/lib/dop.h"
+#include "leaf_crowd.h"
 
 namespace drape
 {
 namespace
 {
-constexpr std::uint32_t kMixed = 0xffffffffu;
-
-// What is common to all leaves below a node.
-struct Crowd
+std::vector<LeafCrowd> crowdsOf(const BroadPhaseSide& side)
 {
-    float m_lowMost[DRAPE_DOP_DIRECTIONS];    // greatest lower bound of a leaf
-    float m_highLeast[DRAPE_DOP_DIRECTIONS];  // least upper bound of a leaf
-    std::uint64_t m_leaves = 0;
-    std::uint32_t m_mesh = kMixed;  // slot of the one mesh that they belong to
-};
-
-Crowd crowdOfLeaf(const BvhNode& node, std::uint32_t mesh)
-{
-    Crowd crowd;
-    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
-    {
-        crowd.m_lowMost[i] = node.m_low[i];
-        crowd.m_highLeast[i] = node.m_high[i];
-    }
-    crowd.m_leaves = 1;
-    crowd.m_mesh = mesh;
-    return crowd;
-}
-
-void join(Crowd& crowd, const Crowd& other)
-{
-    if (crowd.m_leaves == 0)
-    {
-        crowd = other;
-        return;
-    }
-    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
-    {
-        crowd.m_lowMost[i] = drapeMax(crowd.m_lowMost[i], other.m_lowMost[i]);
-        crowd.m_highLeast[i] = drapeMin(crowd.m_highLeast[i], other.m_highLeast[i]);
-    }
-    crowd.m_leaves += other.m_leaves;
-    if (crowd.m_mesh != other.m_mesh) crowd.m_mesh = kMixed;
-}
-
-// Every leaf of one overlaps every leaf of the other: in each direction the greatest lower bound of either is no more
-// than the least upper bound of the other.
-bool allOverlap(const Crowd& a, const Crowd& b)
-{
-    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
-    {
-        if (a.m_lowMost[i] > b.m_highLeast[i] || b.m_lowMost[i] > a.m_highLeast[i]) return false;
-    }
-    return true;
-}
-
-std::vector<Crowd> crowdsOf(const BroadPhaseSide& side)
-{
-    std::vector<Crowd> crowds(side.m_layout.nodeCount());
+    std::vector<LeafCrowd> crowds(side.m_layout.nodeCount());
     // Nodes lie by height, children before their parents.
     for (std::uint32_t index = 0; index < side.m_layout.nodeCount(); ++index)
     {
         const BvhNode& node = side.m_nodes[index];
         if (node.m_count == 0) crowds[index] = crowdOfLeaf(node, side.m_triangles[side.m_order[node.m_first]].m_mesh);
         for (std::uint32_t child = node.m_first; child < node.m_first + node.m_count; ++child)
-            join(crowds[index], crowds[child]);
+            joinCrowd(crowds[index], crowds[child]);
     }
     return crowds;
 }
@@ -78,7 +27,7 @@ std::vector<std::uint64_t> countCandidates(const BroadPhaseSide& cloth, const Br
 {
     std::vector<std::uint64_t> counts(clothMeshes, 0);
     if (cloth.m_layout.nodeCount() == 0 || obstacle.m_layout.nodeCount() == 0) return counts;
-    const std::vector<Crowd> clothCrowds = crowdsOf(cloth), obstacleCrowds = crowdsOf(obstacle);
+    const std::vector<LeafCrowd> clothCrowds = crowdsOf(cloth), obstacleCrowds = crowdsOf(obstacle);
     std::vector<Candidate> stack = {{cloth.m_layout.root(), obstacle.m_layout.root()}};  // of nodes
     while (!stack.empty())
     {
@@ -86,8 +35,8 @@ std::vector<std::uint64_t> countCandidates(const BroadPhaseSide& cloth, const Br
         stack.pop_back();
         const BvhNode &a = cloth.m_nodes[pair.m_cloth], &b = obstacle.m_nodes[pair.m_obstacle];
         if (!nodesOverlap(&a, &b)) continue;
-        const Crowd &crowdA = clothCrowds[pair.m_cloth], &crowdB = obstacleCrowds[pair.m_obstacle];
-        if (crowdA.m_mesh != kMixed && crowdB.m_mesh != kMixed)
+        const LeafCrowd &crowdA = clothCrowds[pair.m_cloth], &crowdB = obstacleCrowds[pair.m_obstacle];
+        if (crowdA.m_mesh != kMixedMeshes && crowdB.m_mesh != kMixedMeshes)
         {
             if (thickness[crowdA.m_mesh * obstacleMeshes + crowdB.m_mesh] < 0.0f) continue;
             if (allOverlap(crowdA, crowdB))

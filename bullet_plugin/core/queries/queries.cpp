@@ -1,11 +1,11 @@
 #include "drape/queries.h"
 
-#include <algorithm>
 #include <chrono>
-#include <tuple>
 
 #include "bullet_plugin/core/exact/triangles.h"
 #include "bullet_plugin/core/mesh/check_indices.h"
+#include "bullet_plugin/core/pipeline/step.h"
+#include "bullet_plugin/core/self_collision/leaf_pair_count.h"
 #include "kernels/lib/triangle_pair.h"
 #include "query_device.h"
 
@@ -13,6 +13,9 @@ namespace drape
 {
 struct Queries::Implementation
 {
+    explicit Implementation(const Settings& settings) : m_limits(settings) {}
+
+    StepLimits m_limits;
     DeviceReport m_report;
     Error m_error;
     std::unique_ptr<QueryDevice> m_device;  // null on the host
@@ -26,14 +29,6 @@ struct Queries::Implementation
 
 namespace
 {
-ExactTriangle triangleOf(const QueryMesh& mesh, std::uint32_t triangle)
-{
-    float corners[9];
-    for (int i = 0; i < 9; ++i)
-        corners[i] = mesh.m_start[3 * mesh.m_topology.m_triangles[triangle].m_vertices[i / 3] + i % 3];
-    return exactTriangle(corners);
-}
-
 std::uint32_t testOnHost(const TriangleQuery& query, std::uint32_t test)
 {
     FeatureTriangle a, b;
@@ -45,44 +40,22 @@ std::uint32_t testOnHost(const TriangleQuery& query, std::uint32_t test)
     return triangleQuery(a, b, test);
 }
 
-void pairsOnHost(QueryMesh& a, QueryMesh& b, float radius, std::uint64_t& candidates, std::vector<PairAnswer>& answers)
+// False when there are more pairs than may be tested; then they are counted only.
+bool pairsOnHost(QueryMesh& a, QueryMesh& b, float radius, std::uint64_t limit, std::uint64_t& candidates,
+                 PairDecision& decision)
 {
-    const bool self = &a == &b;
-    a.refit(self ? 0.5f * radius : radius);
-    if (!self) b.refit(0.0f);
+    refitBoth(a, b, radius);
+    candidates = leafPairsBeyond(a.tree(), b.tree(), walkOf(a, b), limit);
+    if (candidates > 0) return false;
     const auto visit = [&](const Candidate& pair)
     {
         ++candidates;
         const PairAnswer answer = trianglePairAnswer(pair, a.m_start, a.m_topology.m_triangles.data(), b.m_start,
                                                      b.m_topology.m_triangles.data(), radius);
-        if (answer.m_bits != 0) answers.push_back(answer);
+        if (answer.m_bits != 0) decision.take(answer);
     };
-    leafPairsOnHost(a.tree(), b.tree(), self ? DRAPE_WALK_SELF_APART : DRAPE_WALK_OTHER, visit);
-}
-
-void sortPairs(std::vector<NearTriangles>& pairs)
-{
-    std::sort(pairs.begin(), pairs.end(),
-              [](const NearTriangles& a, const NearTriangles& b)
-              { return std::tie(a.m_a, a.m_b) < std::tie(b.m_a, b.m_b); });
-}
-
-// The truth about the pairs that the certified tests could not deny.
-void decide(const QueryMesh& a, const QueryMesh& b, double radius, const std::vector<PairAnswer>& answers,
-            MeshPairs& found)
-{
-    const bool self = &a == &b;
-    for (const PairAnswer& answer : answers)
-    {
-        const ExactTriangle first = triangleOf(a, answer.m_a), second = triangleOf(b, answer.m_b);
-        NearTriangles pair = {a.m_topology.m_sourceTriangle[answer.m_a], b.m_topology.m_sourceTriangle[answer.m_b]};
-        if (self && pair.m_a > pair.m_b) std::swap(pair.m_a, pair.m_b);
-        const bool meet = (answer.m_bits & DRAPE_PAIR_MEETS) && trianglesMeet(first, second);
-        if (meet) found.m_intersecting.push_back(pair);
-        if (meet || squaredDistance(first, second) <= radius * radius) found.m_within.push_back(pair);
-    }
-    sortPairs(found.m_within);
-    sortPairs(found.m_intersecting);
+    leafPairsOnHost(a.tree(), b.tree(), walkOf(a, b), visit);
+    return true;
 }
 }  // namespace
 
@@ -91,7 +64,7 @@ CcdSettings defaultCcdSettings()
     return ccdDefaults();
 }
 
-Queries::Queries() : m_implementation(new Implementation) {}
+Queries::Queries(const Settings& settings) : m_implementation(new Implementation(settings)) {}
 Queries::~Queries() = default;
 
 std::unique_ptr<Queries> Queries::create(const Settings& settings, Error& error)
@@ -100,7 +73,7 @@ std::unique_ptr<Queries> Queries::create(const Settings& settings, Error& error)
     error = Error();
     const DeviceChoice choice = chooseDevice(settings, error);
     if (error.failed()) return nullptr;
-    std::unique_ptr<Queries> queries(new Queries);
+    std::unique_ptr<Queries> queries(new Queries(settings));
     Implementation& self = *queries->m_implementation;
     self.m_report.m_reason = choice.m_reason;
     self.m_report.m_device.m_name = "host";
@@ -168,12 +141,19 @@ bool Queries::meshPairs(const MeshDescription& a, const MeshDescription* b, floa
     QueryMesh first = makeQueryMesh(a, a.m_positions), other;
     if (b) other = makeQueryMesh(*b, b->m_positions);
     QueryMesh& second = b ? other : first;
-    std::vector<PairAnswer> answers;
+    PairDecision decision(first, second, double(radius), self.m_limits.m_contacts, found);
+    const std::uint64_t limit = self.m_limits.m_candidates;
+    bool within = true;
     if (!self.m_device)
-        pairsOnHost(first, second, radius, found.m_candidates, answers);
-    else if (!self.check(self.m_device->meshPairs(first, second, radius, found.m_candidates, answers)))
+        within = pairsOnHost(first, second, radius, limit, found.m_candidates, decision);
+    else if (!self.check(self.m_device->meshPairs(first, second, radius, limit, found.m_candidates, decision, within)))
         return false;
-    decide(first, second, double(radius), answers, found);
+    decision.finish();
+    if (within) return true;
+    const std::uint64_t candidates = found.m_candidates;
+    found = MeshPairs();
+    found.m_limits = kQueryCandidateLimit;
+    found.m_candidates = candidates;
     return true;
 }
 
@@ -184,20 +164,25 @@ bool Queries::meshMotion(const MeshDescription& description, const float* end, c
     found = MeshMotion();
     if (!checkIndices(description, "meshMotion", self.m_error)) return false;
     QueryMesh mesh = makeQueryMesh(description, end);
+    const SelfLimits limits = {self.m_limits.m_candidates, self.m_limits.m_contacts};
     SelfCollisions collisions;
     if (!self.m_device)
     {
         mesh.refit(selfRadius(settings));
         const HostMotion motion = {mesh.tree(), mesh.m_topology.m_edges, mesh.m_start, mesh.m_end,
                                    description.m_vertexCount};
-        selfCollideOnHost(motion, settings, collisions);
+        selfCollideOnHost(motion, settings, limits, collisions);
     }
-    else if (!self.check(self.m_device->meshMotion(mesh, settings, collisions)))
+    else if (!self.check(self.m_device->meshMotion(mesh, settings, limits, collisions)))
         return false;
     sortHits(collisions.m_hits);
+    found.m_limits = (collisions.m_untested ? kQueryCandidateLimit : kQueryWhole) |
+                     (collisions.hits() > limits.m_hits ? kQueryAnswerLimit : kQueryWhole);
     found.m_trianglePairs = collisions.m_trianglePairs;
     found.m_vertexFaceCandidates = collisions.m_vertexFaceCandidates;
     found.m_edgeCandidates = collisions.m_edgeCandidates;
+    found.m_vertexFaceHits = collisions.m_hitCount[DRAPE_VERTEX_FACE];
+    found.m_edgeHits = collisions.m_hitCount[DRAPE_EDGES];
     for (const FeatureHit& hit : collisions.m_hits)
     {
         TouchingFeatures touching = {hit.m_kind, {}, hit.m_time};

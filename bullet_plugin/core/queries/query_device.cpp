@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "bullet_plugin/core/self_collision/leaf_pair_count.h"
+
 namespace drape
 {
 namespace
@@ -94,42 +96,46 @@ DeviceTree QueryDevice::tree(const QueryMesh& source, Mesh& mesh) const
     return {mesh.m_nodes, mesh.m_order, mesh.m_triangles, mesh.m_lastLeaf, source.m_layout};
 }
 
-// Runs enqueue(batch) over all leaves; take() reads what a batch found. Lists grow to their limit, then batches shrink.
-template <typename Enqueue, typename Take>
-bool QueryDevice::inBatches(std::uint32_t leafCount, Enqueue enqueue, Take take)
+// Runs enqueue(batch) over all leaves; take() reads what a batch found. Lists grow to their limit, as meet() says, then
+// batches shrink. Ends early when there are more pairs of triangles than the walk may have.
+template <typename Enqueue, typename Meet, typename Take>
+bool QueryDevice::inBatches(PairWalk& walk, Enqueue enqueue, Meet meet, Take take)
 {
     Device& device = *m_device;
     SelfCollisionStage::Batch batch;
-    batch.m_count = leafCount;
-    while (batch.m_first < leafCount)
+    batch.m_count = walk.m_leafCount;
+    while (batch.m_first < walk.m_leafCount)
     {
-        batch.m_count = std::min(batch.m_count, leafCount - batch.m_first);
+        batch.m_count = std::min(batch.m_count, walk.m_leafCount - batch.m_first);
         enqueue(batch);
         m_stage.enqueueReadCounters(device);
         device.wait();
         if (!device.failed() && m_stage.counters().m_tooDeep > 0)
             device.check(CL_OUT_OF_RESOURCES, "traversal", "the hierarchy is too deep for its stack");
         if (device.failed()) return false;
-        switch (m_stage.meetDemand(device))
+        walk.m_tooMany = m_stage.counters().m_pairs > walk.left();
+        if (walk.m_tooMany) return true;
+        switch (meet())
         {
             case SelfCollisionStage::Demand::Grown:
                 break;
             case SelfCollisionStage::Demand::TooMuch:
                 // One triangle's pairs are at most the triangles of the other side.
                 if (batch.m_count == 1) m_stage.limitLists(device.maxAllocationBytes());
-                if (batch.m_count == 1 && m_stage.meetDemand(device) == SelfCollisionStage::Demand::TooMuch)
+                if (batch.m_count == 1 && meet() == SelfCollisionStage::Demand::TooMuch)
                     device.check(CL_MEM_OBJECT_ALLOCATION_FAILURE, "traversal", "the pairs of one triangle do not fit");
                 batch.m_count = (batch.m_count + 1) / 2;
                 break;
             case SelfCollisionStage::Demand::Met:
                 if (!take()) return false;
+                walk.m_pairs += m_stage.counters().m_pairs;
                 batch.m_first += batch.m_count;
         }
     }
     return !device.failed();
 }
 
-bool QueryDevice::answerPairs(Mesh& a, Mesh& b, float radius, std::vector<PairAnswer>& answers)
+bool QueryDevice::answerPairs(Mesh& a, Mesh& b, float radius, PairDecision& decision)
 {
     Device& device = *m_device;
     const cl_uint count = m_stage.counters().m_pairs;
@@ -145,54 +151,89 @@ bool QueryDevice::answerPairs(Mesh& a, Mesh& b, float radius, std::vector<PairAn
         device.wait();
     } while (!device.failed() && demand > m_answers.capacity());
     if (device.failed()) return false;
-    answers.resize(answers.size() + demand);
-    m_answers.read(device, answers.data() + answers.size() - demand, demand);
+    std::vector<PairAnswer> answers(demand);
+    m_answers.read(device, answers.data(), demand);
     device.wait();
-    return !device.failed();
+    if (device.failed()) return false;
+    for (const PairAnswer& answer : answers)
+        decision.take(answer);
+    return true;
 }
 
-bool QueryDevice::meshPairs(const QueryMesh& a, const QueryMesh& b, float radius, std::uint64_t& candidates,
-                            std::vector<PairAnswer>& answers)
+bool QueryDevice::meshPairs(QueryMesh& a, QueryMesh& b, float radius, std::uint64_t limit, std::uint64_t& candidates,
+                            PairDecision& decision, bool& within)
 {
     const bool self = &a == &b;
+    const MeshRadii radii(a, b, radius);
     Mesh meshA, other;
-    upload(a, self ? 0.5f * radius : radius, meshA);
-    if (!self) upload(b, 0.0f, other);
+    upload(a, radii.m_a, meshA);
+    if (!self) upload(b, radii.m_b, other);
     Mesh& meshB = self ? meshA : other;
-    const std::uint32_t kind = self ? DRAPE_WALK_SELF_APART : DRAPE_WALK_OTHER;
+    const std::uint32_t kind = walkOf(a, b);
+    PairWalk walk = {a.m_layout.leafCount(), limit};
     const auto enqueue = [&](const SelfCollisionStage::Batch& batch)
-    { m_stage.enqueuePairs(*m_device, tree(a, meshA), tree(b, meshB), kind, batch); };
-    const auto take = [&]
-    {
-        candidates += m_stage.counters().m_pairs;
-        return answerPairs(meshA, meshB, radius, answers);
-    };
-    return inBatches(a.m_layout.leafCount(), enqueue, take);
+    { m_stage.enqueuePairs(*m_device, tree(a, meshA), tree(b, meshB), kind, batch, walk.left()); };
+    const auto meet = [&] { return m_stage.meetDemand(*m_device); };
+    const auto take = [&] { return answerPairs(meshA, meshB, radius, decision); };
+    if (!inBatches(walk, enqueue, meet, take)) return false;
+    candidates = walk.m_pairs;
+    within = !walk.m_tooMany;
+    if (within) return true;
+    refitBoth(a, b, radius);
+    candidates = countLeafPairs(a.tree(), b.tree(), kind);
+    return true;
 }
 
-bool QueryDevice::meshMotion(const QueryMesh& source, const CcdSettings& settings, SelfCollisions& found)
+bool QueryDevice::takeHits(const SelfLimits& limits, SelfCollisions& found)
+{
+    std::vector<FeatureHit> hits(m_stage.counters().m_hits);
+    m_stage.hits().read(*m_device, hits.data(), hits.size());
+    m_device->wait();
+    if (m_device->failed()) return false;
+    for (const FeatureHit& hit : hits)
+        found.add(hit, limits);
+    return true;
+}
+
+bool QueryDevice::meshMotion(QueryMesh& source, const CcdSettings& settings, const SelfLimits& limits,
+                             SelfCollisions& found)
 {
     Mesh mesh;
     upload(source, selfRadius(settings), mesh);
     const DeviceTree deviceTree = tree(source, mesh);
     const DeviceMotion motion = {deviceTree, mesh.m_edges, mesh.m_start, mesh.m_end, source.m_topology.m_vertexCount};
     m_stage.enqueueVolumes(*m_device, motion, settings);
+    const SelfCounters& counters = m_stage.counters();
+    PairWalk walk = {source.m_layout.leafCount(), limits.m_candidates};
     const auto enqueue = [&](const SelfCollisionStage::Batch& batch)
     {
-        m_stage.enqueuePairs(*m_device, deviceTree, deviceTree, DRAPE_WALK_SELF, batch);
-        m_stage.enqueueTests(*m_device, motion, settings);
+        m_stage.enqueuePairs(*m_device, deviceTree, deviceTree, DRAPE_WALK_SELF, batch, walk.left());
+        m_stage.enqueueFeatures(*m_device, motion);
+        if (!found.m_untested) m_stage.enqueueTests(*m_device, motion, settings);
+    };
+    // Features that are too many to test need no room in the lists.
+    const auto meet = [&]
+    {
+        const SelfCollisionStage::Demand pairs = m_stage.meetPairs(*m_device);
+        if (pairs != SelfCollisionStage::Demand::Met) return pairs;
+        const std::uint64_t features = found.m_vertexFaceCandidates + found.m_edgeCandidates +
+                                       std::uint64_t(counters.m_vertexFace) + std::uint64_t(counters.m_edgeEdge);
+        if (features > limits.m_candidates) found.leaveUntested();
+        return found.m_untested ? pairs : m_stage.meetDemand(*m_device);
     };
     const auto take = [&]
     {
-        const SelfCounters& counters = m_stage.counters();
-        found.m_trianglePairs += counters.m_pairs;
         found.m_vertexFaceCandidates += counters.m_vertexFace;
         found.m_edgeCandidates += counters.m_edgeEdge;
-        found.m_hits.resize(found.m_hits.size() + counters.m_hits);
-        m_stage.hits().read(*m_device, found.m_hits.data() + found.m_hits.size() - counters.m_hits, counters.m_hits);
-        m_device->wait();
-        return !m_device->failed();
+        return found.m_untested || takeHits(limits, found);
     };
-    return inBatches(source.m_layout.leafCount(), enqueue, take);
+    if (!inBatches(walk, enqueue, meet, take)) return false;
+    found.m_trianglePairs = walk.m_pairs;
+    if (!walk.m_tooMany) return true;
+    found = SelfCollisions();
+    found.leaveUntested();
+    source.refit(selfRadius(settings));
+    found.m_trianglePairs = countLeafPairs(source.tree(), source.tree(), DRAPE_WALK_SELF);
+    return true;
 }
 }  // namespace drape

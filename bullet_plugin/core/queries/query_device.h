@@ -5,7 +5,7 @@
 
 #include "bullet_plugin/core/bvh/refit.h"
 #include "drape/queries.h"
-#include "query_mesh.h"
+#include "pair_decision.h"
 
 namespace drape
 {
@@ -22,10 +22,13 @@ public:
     // Each returns false when the device failed.
     bool motions(const CcdQuery* queries, std::size_t count, const CcdSettings& settings, CcdResult* results);
     bool triangles(const TriangleQuery* queries, std::size_t count, std::uint32_t test, std::uint32_t* results);
-    // Pairs that meet or are near by the certified tests, in no order; a and b the same mesh: with itself.
-    bool meshPairs(const QueryMesh& a, const QueryMesh& b, float radius, std::uint64_t& candidates,
-                   std::vector<PairAnswer>& answers);
-    bool meshMotion(const QueryMesh& mesh, const CcdSettings& settings, SelfCollisions& found);
+    // Gives the pairs that meet or are near by the certified tests to the decision, in no order; a and b the same mesh:
+    // with itself. Where there are more candidates than the limit, leaves off with `within` false, and counts them on
+    // the host, after refitting the meshes there.
+    bool meshPairs(QueryMesh& a, QueryMesh& b, float radius, std::uint64_t limit, std::uint64_t& candidates,
+                   PairDecision& decision, bool& within);
+    // Likewise.
+    bool meshMotion(QueryMesh& mesh, const CcdSettings& settings, const SelfLimits& limits, SelfCollisions& found);
 
 private:
     struct Mesh
@@ -38,12 +41,24 @@ private:
         RefitStage::Levels m_levels;
     };
 
+    // Pairs of triangles over all leaves of one side, and the most that may be tested.
+    struct PairWalk
+    {
+        std::uint32_t m_leafCount;
+        std::uint64_t m_limit;
+        std::uint64_t m_pairs = 0;
+        bool m_tooMany = false;
+
+        std::uint64_t left() const { return m_limit - m_pairs; }
+    };
+
     cl::Program program(const char* name, const std::string& cacheFolder);
     void upload(const QueryMesh& source, float radius, Mesh& mesh);
     DeviceTree tree(const QueryMesh& source, Mesh& mesh) const;
-    template <typename Enqueue, typename Take>
-    bool inBatches(std::uint32_t leafCount, Enqueue enqueue, Take take);
-    bool answerPairs(Mesh& a, Mesh& b, float radius, std::vector<PairAnswer>& answers);
+    template <typename Enqueue, typename Meet, typename Take>
+    bool inBatches(PairWalk& walk, Enqueue enqueue, Meet meet, Take take);
+    bool answerPairs(Mesh& a, Mesh& b, float radius, PairDecision& decision);
+    bool takeHits(const SelfLimits& limits, SelfCollisions& found);
 
     std::unique_ptr<Device> m_device;
     bool m_fromCache = true;

@@ -17,6 +17,18 @@ QueryMesh makeQueryMesh(const MeshDescription& description, const float* end)
     return mesh;
 }
 
+void refitBoth(QueryMesh& a, QueryMesh& b, float radius)
+{
+    const MeshRadii radii(a, b, radius);
+    a.refit(radii.m_a);
+    if (&a != &b) b.refit(radii.m_b);
+}
+
+std::uint32_t walkOf(const QueryMesh& a, const QueryMesh& b)
+{
+    return &a == &b ? DRAPE_WALK_SELF_APART : DRAPE_WALK_OTHER;
+}
+
 void QueryMesh::refit(float radius)
 {
     std::size_t ignored = 0;  // bad vertices make no pairs

@@ -23,6 +23,23 @@ struct QueryMesh
     void refit(float radius);
 };
 
+// By how much (m) the volumes of two meshes grow so that they overlap wherever the two come within the radius; a and b
+// may be the same mesh.
+struct MeshRadii
+{
+    MeshRadii(const QueryMesh& a, const QueryMesh& b, float radius)
+        : m_a(&a == &b ? 0.5f * radius : radius), m_b(&a == &b ? m_a : 0.0f)
+    {
+    }
+    float m_a, m_b;
+};
+
+// Refits both on the host by these radii.
+void refitBoth(QueryMesh& a, QueryMesh& b, float radius);
+
+// Which pairs of their triangles are asked for: DRAPE_WALK_…
+std::uint32_t walkOf(const QueryMesh& a, const QueryMesh& b);
+
 // Positions are not copied.
 QueryMesh makeQueryMesh(const MeshDescription& description, const float* end);
 }  // namespace drape

@@ -43,23 +43,29 @@ void SelfCollisionStage::enqueueVolumes(Device& device, DeviceMotion motion, con
                            cl_uint(motion.m_vertexCount), selfRadius(settings), m_volumes.handle());
 }
 
-void SelfCollisionStage::enqueuePairs(Device& device, DeviceTree a, DeviceTree b, std::uint32_t kind, Batch batch)
+void SelfCollisionStage::enqueuePairs(Device& device, DeviceTree a, DeviceTree b, std::uint32_t kind, Batch batch,
+                                      std::uint64_t most)
 {
     m_counters.fill(device, 0, 1);
     if (b.m_layout.leafCount() == 0) return;
     m_traverse.launch(device, batch.m_count, kGroup, a.m_nodes.handle(), a.m_order.handle(), a.m_triangles.handle(),
                       cl_uint(batch.m_first), cl_uint(batch.m_count), b.m_nodes.handle(), b.m_order.handle(),
                       b.m_triangles.handle(), cl_uint(b.m_layout.root()), b.m_lastLeaf.handle(), cl_uint(kind),
-                      m_pairs.handle(), cl_uint(m_pairs.capacity()), m_counters.handle());
+                      m_pairs.handle(), cl_uint(m_pairs.capacity()), cl_uint(std::min(most, kMostCounted) + 1),
+                      m_counters.handle());
+}
+
+void SelfCollisionStage::enqueueFeatures(Device& device, DeviceMotion motion)
+{
+    m_features.launch(device, listWidth(device), kGroup, m_pairs.handle(), cl_uint(m_pairs.capacity()),
+                      motion.m_tree.m_triangles.handle(), m_volumes.handle(), m_vertexFace.handle(),
+                      cl_uint(m_vertexFace.capacity()), m_edgePairs.handle(), cl_uint(m_edgePairs.capacity()),
+                      m_counters.handle());
 }
 
 void SelfCollisionStage::enqueueTests(Device& device, DeviceMotion motion, const CcdSettings& settings)
 {
     const std::size_t width = listWidth(device);
-    m_features.launch(device, width, kGroup, m_pairs.handle(), cl_uint(m_pairs.capacity()),
-                      motion.m_tree.m_triangles.handle(), m_volumes.handle(), m_vertexFace.handle(),
-                      cl_uint(m_vertexFace.capacity()), m_edgePairs.handle(), cl_uint(m_edgePairs.capacity()),
-                      m_counters.handle());
     for (cl_uint kind : {DRAPE_VERTEX_FACE, DRAPE_EDGES})
     {
         Buffer<FeaturePair>& list = kind == DRAPE_VERTEX_FACE ? m_vertexFace : m_edgePairs;
@@ -85,9 +91,14 @@ SelfCollisionStage::Demand SelfCollisionStage::meet(Device& device, std::size_t 
     return Demand::Grown;
 }
 
+SelfCollisionStage::Demand SelfCollisionStage::meetPairs(Device& device)
+{
+    return meet(device, m_read.m_pairs, m_pairs);
+}
+
 SelfCollisionStage::Demand SelfCollisionStage::meetDemand(Device& device)
 {
-    return std::max({meet(device, m_read.m_pairs, m_pairs), meet(device, m_read.m_vertexFace, m_vertexFace),
+    return std::max({meetPairs(device), meet(device, m_read.m_vertexFace, m_vertexFace),
                      meet(device, m_read.m_edgeEdge, m_edgePairs), meet(device, m_read.m_hits, m_hits)});
 }
 }  // namespace drape

@@ -45,18 +45,35 @@ struct HostMotion
     std::size_t m_vertexCount;
 };
 
+// The most that a search may test and list.
+struct SelfLimits
+{
+    std::uint64_t m_candidates = ~std::uint64_t(0);  // pairs of triangles, and pairs of features of both kinds
+    std::uint64_t m_hits = ~std::uint64_t(0);
+};
+
+// Counts are exact, but those of features 0 where the pairs of triangles were too many.
 struct SelfCollisions
 {
     std::uint64_t m_trianglePairs = 0;
     std::uint64_t m_vertexFaceCandidates = 0;
     std::uint64_t m_edgeCandidates = 0;
-    std::vector<FeatureHit> m_hits;  // by kind, first and second feature
+    std::uint64_t m_hitCount[2] = {0, 0};  // by kind
+    std::vector<FeatureHit> m_hits;        // by kind, first and second feature; none where there are too many
+    bool m_untested = false;               // more candidates than may be tested: there are no hits
+
+    std::uint64_t hits() const { return m_hitCount[0] + m_hitCount[1]; }
+    // What a search does that finds more candidates than it may test.
+    void leaveUntested();
+    // Counts a hit and lists it as long as all may be listed.
+    void add(const FeatureHit& hit, const SelfLimits& limits);
 };
 
 // Half the separation, rounded up: volumes grown by it overlap wherever two features come within the separation.
 float selfRadius(const CcdSettings& settings);
 
-void selfCollideOnHost(const HostMotion& motion, const CcdSettings& settings, SelfCollisions& found);
+void selfCollideOnHost(const HostMotion& motion, const CcdSettings& settings, const SelfLimits& limits,
+                       SelfCollisions& found);
 
 void sortHits(std::vector<FeatureHit>& hits);
 
@@ -82,6 +99,8 @@ struct DeviceMotion
 class SelfCollisionStage
 {
 public:
+    static constexpr std::uint64_t kMostCounted = DRAPE_DEMAND_LIMIT - 1;
+
     void create(Device& device, const cl::Program& program);
 
     // Leaves of one batch, by their places in the order.
@@ -93,9 +112,13 @@ public:
 
     // Each returns after enqueueing. Volumes of the vertices; once a step, before the tests.
     void enqueueVolumes(Device& device, DeviceMotion motion, const CcdSettings& settings);
-    // Zeroes the counters and lists the batch's pairs of triangles.
-    void enqueuePairs(Device& device, DeviceTree a, DeviceTree b, std::uint32_t kind, Batch batch);
-    // Lists the features of the pairs, and the hits among them.
+    // Zeroes the counters and lists the batch's pairs of triangles. The walk ends where their count exceeds `most`, and
+    // is exact up to it.
+    void enqueuePairs(Device& device, DeviceTree a, DeviceTree b, std::uint32_t kind, Batch batch,
+                      std::uint64_t most = kMostCounted);
+    // Lists the features of the pairs, or counts those that the lists have no room for.
+    void enqueueFeatures(Device& device, DeviceMotion motion);
+    // Lists the hits among them.
     void enqueueTests(Device& device, DeviceMotion motion, const CcdSettings& settings);
     void enqueueReadCounters(Device& device);
 
@@ -108,6 +131,8 @@ public:
         TooMuch  // run a smaller batch
     };
     Demand meetDemand(Device& device);
+    // Of the pairs of triangles alone.
+    Demand meetPairs(Device& device);
     // Bytes that one list may grow to. A batch of one leaf may exceed it.
     void limitLists(std::size_t bytes) { m_listBytes = bytes; }
 

@@ -2,7 +2,7 @@
 #include <cassert>
 #include <tuple>
 
-#include "self_collision.h"
+#include "leaf_pair_count.h"
 
 namespace drape
 {
@@ -40,9 +40,32 @@ void leafPairsOnHost(const HostTree& a, const HostTree& b, std::uint32_t kind,
     }
 }
 
-void selfCollideOnHost(const HostMotion& motion, const CcdSettings& settings, SelfCollisions& found)
+void SelfCollisions::leaveUntested()
+{
+    m_untested = true;
+    m_hitCount[0] = m_hitCount[1] = 0;
+    std::vector<FeatureHit>().swap(m_hits);
+}
+
+void SelfCollisions::add(const FeatureHit& hit, const SelfLimits& limits)
+{
+    ++m_hitCount[hit.m_kind == DRAPE_EDGES];
+    if (hits() <= limits.m_hits)
+        m_hits.push_back(hit);
+    else
+        std::vector<FeatureHit>().swap(m_hits);
+}
+
+void selfCollideOnHost(const HostMotion& motion, const CcdSettings& settings, const SelfLimits& limits,
+                       SelfCollisions& found)
 {
     found = SelfCollisions();
+    const std::uint64_t tooMany = leafPairsBeyond(motion.m_tree, motion.m_tree, DRAPE_WALK_SELF, limits.m_candidates);
+    if (tooMany > 0)
+    {
+        found.m_trianglePairs = tooMany;
+        return found.leaveUntested();
+    }
     std::vector<Dop> volumes(motion.m_vertexCount);
     for (std::uint32_t i = 0; i < motion.m_vertexCount; ++i)
         vertexVolume(&volumes[i], motion.m_start, motion.m_end, i, selfRadius(settings));
@@ -51,7 +74,7 @@ void selfCollideOnHost(const HostMotion& motion, const CcdSettings& settings, Se
     {
         FeatureHit hit;
         if (featurePairHit(kind, pair, triangles, motion.m_edges.data(), motion.m_start, motion.m_end, settings, &hit))
-            found.m_hits.push_back(hit);
+            found.add(hit, limits);
     };
     const auto visit = [&](const Candidate& pair)
     {
@@ -60,6 +83,9 @@ void selfCollideOnHost(const HostMotion& motion, const CcdSettings& settings, Se
         ++found.m_trianglePairs;
         found.m_vertexFaceCandidates += features.m_vertexFaceCount;
         found.m_edgeCandidates += features.m_edgesCount;
+        if (!found.m_untested && found.m_vertexFaceCandidates + found.m_edgeCandidates > limits.m_candidates)
+            found.leaveUntested();
+        if (found.m_untested) return;
         for (std::uint32_t i = 0; i < features.m_vertexFaceCount; ++i)
             test(DRAPE_VERTEX_FACE, features.m_vertexFace[i]);
         for (std::uint32_t i = 0; i < features.m_edgesCount; ++i)

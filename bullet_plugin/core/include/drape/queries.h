@@ -2,8 +2,9 @@
 // pairs of two meshes are near, which features of a moving mesh touch one another.
 //
 // Job: batches of single pairs, and whole meshes with their own hierarchies, made for the call. Guarantee: no true pair
-// is denied; the same answers, bit for bit, on every back end; lists grow or the work is done in batches, nothing is
-// lost. Cost: each call uploads, computes and waits. Lengths in metres. Knows no Bullet and needs no plugin. Not
+// is denied; the same answers, bit for bit, on every back end. Lists grow and the work is done in batches; what is
+// beyond Settings::m_candidateLimit and m_contactLimit is counted and said to be so, so that memory and time are
+// bounded. Cost: each call uploads, computes and waits. Lengths in metres. Knows no Bullet and needs no plugin. Not
 // thread-safe. C++11, no OpenCL header needed.
 #pragma once
 
@@ -37,9 +38,21 @@ struct NearTriangles
     std::uint32_t m_a, m_b;
 };
 
+// Bits of m_limits in a result. Zero: every candidate was tested, and every answer is listed.
+enum QueryLimitBits : std::uint32_t
+{
+    kQueryWhole = 0,
+    kQueryCandidateLimit = 1u << 0,  // more pairs than Settings::m_candidateLimit: no answer is counted or listed
+    kQueryAnswerLimit = 1u << 1      // more answers than Settings::m_contactLimit: they are counted, none is listed
+};
+
+// Counts are exact, whatever the limits; but see kQueryCandidateLimit.
 struct MeshPairs
 {
-    std::uint64_t m_candidates = 0;             // pairs whose volumes overlap
+    std::uint32_t m_limits = kQueryWhole;
+    std::uint64_t m_candidates = 0;  // pairs whose volumes overlap; exact beyond the limit, too
+    std::uint64_t m_withinCount = 0;
+    std::uint64_t m_intersectingCount = 0;
     std::vector<NearTriangles> m_within;        // distance ≤ the radius, decided in double precision; sorted
     std::vector<NearTriangles> m_intersecting;  // exact; sorted
 };
@@ -52,19 +65,23 @@ struct TouchingFeatures
     float m_time;  // of impact, part of the step
 };
 
+// kQueryCandidateLimit: more pairs of triangles, which alone are counted then, or more pairs of features of both kinds.
 struct MeshMotion
 {
-    std::uint64_t m_trianglePairs = 0;
+    std::uint32_t m_limits = kQueryWhole;
+    std::uint64_t m_trianglePairs = 0;         // exact beyond the limit, too
     std::uint64_t m_vertexFaceCandidates = 0;  // pairs whose own volumes over the step overlap
     std::uint64_t m_edgeCandidates = 0;
+    std::uint64_t m_vertexFaceHits = 0;  // those that touch
+    std::uint64_t m_edgeHits = 0;
     std::vector<TouchingFeatures> m_touching;  // vertices and faces first
 };
 
 class Queries
 {
 public:
-    // Chooses the device and makes its kernels ready. Returns null and fills error when settings ask for what is not
-    // there.
+    // Chooses the device and makes its kernels ready; keeps the settings' limits. Returns null and fills error when
+    // settings ask for what is not there.
     static std::unique_ptr<Queries> create(const Settings& settings, Error& error);
     ~Queries();
     Queries(const Queries&) = delete;
@@ -84,13 +101,15 @@ public:
 
     // Pairs of a's triangles with b's; b null: with a's own that share no vertex. radius ≥ 0. A triangle with a corner
     // that is NaN, infinite or farther out than 2^30 m is in no pair, and such a vertex touches nothing in meshMotion.
+    // Look at found.m_limits before its lists.
     bool meshPairs(const MeshDescription& a, const MeshDescription* b, float radius, MeshPairs& found);
 
-    // Which features of the mesh touch one another while it moves from its positions to `end` (x y z per vertex).
+    // Which features of the mesh touch one another while it moves from its positions to `end` (x y z per vertex). Look
+    // at found.m_limits before its list.
     bool meshMotion(const MeshDescription& mesh, const float* end, const CcdSettings& settings, MeshMotion& found);
 
 private:
-    Queries();
+    explicit Queries(const Settings& settings);
     struct Implementation;
     std::unique_ptr<Implementation> m_implementation;
 };

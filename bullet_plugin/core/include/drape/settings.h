@@ -60,7 +60,8 @@ struct Settings
     // Most triangle pairs that a step may list (8 bytes each), up to 2^28, and most contacts (132 bytes each on a
     // device and as many on the host, and up to 792 in Bullet). Steps of two million cloth triangles need a third of
     // either. A step with more leaves out the cloths that have most of them, until the rest fits, and says so in its
-    // status: those cloths collide with nothing in that step.
+    // status: those cloths collide with nothing in that step. Queries of whole meshes (drape/queries.h) test as many
+    // pairs and list as many answers (8 to 24 bytes each); of more they give the number.
     std::size_t m_candidateLimit = std::size_t(1) << 27;
     std::size_t m_contactLimit = std::size_t(1) << 24;
 
