@@ -48,6 +48,12 @@ bool Table::anyVoid() const
     return std::any_of(m_rows.begin(), m_rows.end(), [](const Row& row) { return row.value("valid", "") == "no"; });
 }
 
+void Table::leaveOut(const std::string& what)
+{
+    std::cerr << "left out: " << what << std::endl;
+    m_anyLeftOut = true;
+}
+
 std::string Table::csv() const
 {
     std::string text;

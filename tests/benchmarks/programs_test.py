@@ -202,6 +202,20 @@ class Study(ProgramTest):
             self.assertEqual(row["dop"], "6")
             self.assertEqual(row.get("contacts", ""), "")
 
+    def test_other_degrees_without_a_reference_are_left_out(self):
+        result = run("study_dop6", "--quick", "--part", "degree", "--backend", "host", "--csv", self.path("rows.csv"))
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertFalse(os.path.exists(self.path("rows.csv")))
+        for model in ("sphere_1k", "terrain_6272", "quick_one"):
+            self.assertIn(f"left out: {model}: ", result.stderr)
+        # A reference of other models, likewise.
+        self.quick("study", "--part", "degree", "--backend", "host", "--only", "sphere_1k")
+        result = run("study_dop6", "--quick", "--part", "degree", "--backend", "host", "--csv", self.path("six.csv"),
+                     "--reference", self.path("rows.json"))
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertEqual({row["model"] for row in read_csv(self.path("six.csv"))}, {"sphere_1k"})
+        self.assertIn("left out: terrain_6272: ", result.stderr)
+
     def test_every_shape_of_a_tree_gives_the_same_candidates(self):
         rows = [row for row in self.quick("study", "--part", "shape") if row["part"] == "shape"]
         for model in {row["model"] for row in rows}:
