@@ -12,7 +12,7 @@ namespace
 {
 // What a void row may keep of its numbers: its inputs.
 const char* const kInputs[] = {"triangles", "cloths", "cloth_triangles", "obstacle_triangles", "thickness_m", "threads",
-                               "step",      "dop"};
+                               "step",      "dop",    "decay"};
 
 std::string cell(const Row& value)
 {

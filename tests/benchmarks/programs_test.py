@@ -234,10 +234,26 @@ class Study(ProgramTest):
             key = row["model"], row["variant"]
             rebuilds[key] = rebuilds.get(key, 0) + int(row["rebuilds"])
         self.assertTrue(rebuilds)
+        counts = {}
         for (model, variant), count in rebuilds.items():
-            if not variant.endswith(", rebuilt") or model.endswith("rest"):
+            if "never" in variant or model.endswith("rest"):
                 self.assertEqual(count, 0, (model, variant))
+            else:
+                name, _, decay = variant.rpartition(" ")
+                counts.setdefault((model, name), []).append((float(decay), count))
         self.assertTrue(any(count > 0 for count in rebuilds.values()))
+        # A higher threshold rebuilds no more often, and the highest less than the lowest somewhere.
+        ordered = [[count for _, count in sorted(mine)] for mine in counts.values()]
+        for mine in ordered:
+            self.assertEqual(mine, sorted(mine, reverse=True))
+        self.assertTrue(any(mine[0] > mine[-1] for mine in ordered))
+        # Every back end in the same steps.
+        for row in rows:
+            if row["backend"] == "opencl":
+                host = [other for other in rows if other["variant"] == "host, " + row["variant"]
+                        and (other["model"], other["step"]) == (row["model"], row["step"])]
+                self.assertEqual([other["rebuilds"] for other in host], [row["rebuilds"]], row)
+                self.assertGreater(int(row["volume_tests"]), 0)
 
     def test_bad_input_is_refused(self):
         self.assertEqual(run("study", "--part", "no_such_part").returncode, 2)

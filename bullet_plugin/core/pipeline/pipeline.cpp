@@ -469,6 +469,12 @@ ContactList Pipeline::finish()
     return self.m_result.contacts();
 }
 
+void Pipeline::waitForRebuild()
+{
+    assert(!m_implementation->m_submitted);
+    m_implementation->m_treeWatch.wait();
+}
+
 ContactList Pipeline::selfContacts() const
 {
     return m_implementation->m_result.selfContacts();
