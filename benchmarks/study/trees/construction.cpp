@@ -79,6 +79,7 @@ void addLevels(const Builds& builds, const Row& input, Table& table)
         row["part"] = "levels";
         row["level"] = depth;
         row["nodes"] = level.m_nodes;
+        row["small_nodes"] = level.m_smallNodes;
         row["group_size"] = level.m_groupSize;
         row["large_nodes"] = level.m_largeNodes;
         times.fill(row, "kernel_");
