@@ -140,7 +140,7 @@ class Study(ProgramTest):
         listed = run("study", "--list").stdout
         self.assertIn("traversal: ", listed)
         parts = {row["part"] for row in rows}
-        for part in ("construction", "refit", "quality", "shape", "degree", "traversal", "rebuild", "triangle_tests"):
+        for part in ("construction", "refit", "quality", "shape", "degree", "traversal", "builder", "rebuild", "triangle_tests"):
             self.assertIn(part, parts)
         for row in rows:
             self.assertEqual(row["valid"], "yes")
@@ -171,6 +171,18 @@ class Study(ProgramTest):
             if row["phase"] == "rest":
                 tests[row["variant"]] = tests.get(row["variant"], 0) + int(row["volume_tests"])
         self.assertLess(tests["host, thesis: front"], 0.75 * tests["host, as front, from the roots"])
+
+    def test_every_builders_tree_gives_the_hosts_steps(self):
+        rows = [row for row in self.quick("study", "--part", "builder") if row["part"] == "builder"]
+        self.assertEqual({row["variant"] for row in rows},
+                         {"host, balanced", "host, radix", "host, ploc", "host, top-down"})
+        default = {row["step"]: row for row in rows if row["variant"] == "host, balanced"}
+        for row in rows:
+            self.assertEqual((row["backend"], row["valid"]), ("host", "yes"))
+            self.assertEqual(row["candidates"], default[row["step"]]["candidates"])
+        # Other trees, by other tests of volumes.
+        self.assertEqual(len({sum(int(row["volume_tests"]) for row in rows if row["variant"] == variant)
+                              for variant in {row["variant"] for row in rows}}), 4)
 
     def degree(self, program, *arguments):
         return {(row["model"], row["variant"].partition(", ")[2], row["backend"]): row
