@@ -85,7 +85,7 @@ class Pipeline
 {
 public:
     // Chooses the device and makes its kernels ready. Returns null and fills error when settings ask for what is not
-    // there.
+    // there, or for methods out of their ranges.
     static std::unique_ptr<Pipeline> create(const Settings& settings, Error& error);
     ~Pipeline();
     Pipeline(const Pipeline&) = delete;

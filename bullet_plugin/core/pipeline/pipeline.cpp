@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "bullet_plugin/core/mesh/normal_cones.h"
+#include "check_methods.h"
 #include "scene_work.h"
 
 namespace drape
@@ -294,6 +295,7 @@ std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& erro
 {
     const Clock::time_point start = Clock::now();
     error = Error();
+    if (!checkMethods(settings.m_methods, error)) return nullptr;
     const DeviceChoice choice = chooseDevice(settings, error);
     if (error.failed()) return nullptr;
     std::unique_ptr<Pipeline> pipeline(new Pipeline);
