@@ -424,15 +424,23 @@ class Reports(ProgramTest):
         """The tables replace what is between the markers, and a second run changes nothing."""
         readme = self.path("README.md")
         with open(readme, "w") as file:
-            file.write("before\n<!-- results: made by summary.py -->\nwhat was there\n<!-- end of results -->\nafter\n")
+            file.write("before\n" + "between\n".join(
+                f"<!-- {name}: made by summary.py -->\nwhat was there\n<!-- end of {name} -->\n"
+                for name in ("front", "ranking", "results")) + "after\n")
         result = self.script("summary.py", readme)
         self.assertEqual(result.returncode, 0, result.stderr)
         with open(readme) as file:
             text = file.read()
         self.assertTrue(text.startswith("before\n") and text.endswith("after\n"))
         self.assertNotIn("what was there", text)
-        for words in ("### machine", "fcl, 1 thread", "thesis: Quadro"):
-            self.assertIn(words, text)
+        self.assertEqual(text.count("between\n"), 2)
+        front, ranking, results = text.split("between\n")
+        for words in ("### machine", "fcl, 1 thread", "thesis: Quadro", "Whole steps of the host"):
+            self.assertIn(words, results)
+        for words in ("| machine | host, 1 thread | front |", "The front tests fewer volumes"):
+            self.assertIn(words, front)
+        for words in ("| refit | over construction", " < thesis: normal "):
+            self.assertIn(words, ranking)
         self.script("summary.py", readme)
         with open(readme) as file:
             self.assertEqual(file.read(), text)
