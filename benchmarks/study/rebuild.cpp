@@ -1,6 +1,6 @@
 // What the decay of the cloth's hierarchy costs, and what building it anew gains: a cloth over the bunny changes its
-// shape over a run, with rebuilds and without. A rebuild is waited for after the step in which it began, and its time is
-// in no figure, so that counts and times are of the same hierarchies in every run.
+// shape over a run, with rebuilds and without. A rebuild is waited for after the step in which it began, and its time
+// is in no figure, so that counts and times are of the same hierarchies in every run.
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -125,8 +125,8 @@ void addVariants(const std::string& name, Settings settings, const std::vector<f
     }
 }
 
-// The front, whose pairs are of nodes of both hierarchies, by every threshold. Of what takes long, and of a device, only
-// by the default one: the tests of volumes are those of the host but for the pairs it starts from. At rest nothing
+// The front, whose pairs are of nodes of both hierarchies, by every threshold. Of what takes long, and of a device,
+// only by the default one: the tests of volumes are those of the host but for the pairs it starts from. At rest nothing
 // should be rebuilt even by the lowest.
 std::vector<Variant> variants(Change change, bool isLarge, const StudyOptions& options)
 {
@@ -192,7 +192,8 @@ private:
     // Another pass must find the same and rebuild in the same steps.
     void hold(const std::vector<StepOutcome>& other)
     {
-        const auto rebuiltAlike = [](const StepOutcome& a, const StepOutcome& b) { return a.m_rebuilds == b.m_rebuilds; };
+        const auto rebuiltAlike = [](const StepOutcome& a, const StepOutcome& b)
+        { return a.m_rebuilds == b.m_rebuilds; };
         const bool alike = std::equal(other.begin(), other.end(), m_outcomes.begin(), m_outcomes.end(), rebuiltAlike);
         if (!alike) std::cerr << "study: " << m_name << ": other steps rebuild" << std::endl;
         m_repeatable = agree(m_name + ", again", other, m_outcomes, true) && alike && m_repeatable;

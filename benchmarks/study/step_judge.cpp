@@ -15,8 +15,8 @@ bool agree(const std::string& name, const std::vector<StepOutcome>& run, const s
     for (std::size_t step = 0; step < reference.size(); ++step)
     {
         const bool contacts = step < run.size() && run[step].m_hash == reference[step].m_hash;
-        const bool candidates = !bothListTriangles || (step < run.size() && run[step].m_candidates ==
-                                                                                reference[step].m_candidates);
+        const bool candidates =
+            !bothListTriangles || (step < run.size() && run[step].m_candidates == reference[step].m_candidates);
         if (contacts && candidates) continue;
         std::cerr << "study: " << name << ": step " << step << " has other " << (contacts ? "candidates" : "contacts")
                   << std::endl;

@@ -1,7 +1,7 @@
 // Holds the steps of a run against the same steps of another.
 //
-// Contacts alone do not tell a wrong step where there are none, so that as many candidates are asked for, too, and a run
-// with one wrong step is wrong as a whole.
+// Contacts alone do not tell a wrong step where there are none, so that as many candidates are asked for, too, and a
+// run with one wrong step is wrong as a whole.
 #pragma once
 
 #include <string>

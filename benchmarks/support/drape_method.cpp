@@ -15,9 +15,11 @@ namespace
 // Kernels are called stageAction; those of the broad phase have many names.
 std::string stageOfKernel(const std::string& kernel)
 {
-    const std::pair<const char*, const char*> stages[] = {
-        {"self", "self"},
-        {"refit", "refit"}, {"treeCost", "refit"}, {"narrowPhase", "narrow"}, {"compaction", "order"}};
+    const std::pair<const char*, const char*> stages[] = {{"self", "self"},
+                                                          {"refit", "refit"},
+                                                          {"treeCost", "refit"},
+                                                          {"narrowPhase", "narrow"},
+                                                          {"compaction", "order"}};
     for (const auto& stage : stages)
     {
         if (kernel.rfind(stage.first, 0) == 0) return stage.second;
@@ -44,6 +46,7 @@ public:
         for (const MeshId cloth : m_cloths)
             m_pipeline->remove(cloth);
         addCloths();
+        m_pipeline->clothStart(m_cloths.front());  // builds the hierarchy, which no step shall pay for
     }
 
     void settle() override { m_pipeline->waitForRebuild(); }

@@ -49,8 +49,8 @@ public:
     virtual std::vector<Row> extraRows() const { return {}; }
 };
 
-// The pipeline, host to host. Its contacts' hash is the reference where the settings ask for the host. The scene outlives
-// the method.
+// The pipeline, host to host. Its contacts' hash is the reference where the settings ask for the host. The scene
+// outlives the method.
 std::unique_ptr<StepMethod> makeDrapeMethod(const StepScene& scene, const Settings& settings, std::string& error);
 
 // How far Drape looks with default settings: thickness and activation.

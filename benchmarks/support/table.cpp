@@ -11,8 +11,8 @@ namespace drape::bench
 namespace
 {
 // What a void row may keep of its numbers: its inputs.
-const char* const kInputs[] = {"triangles", "cloths", "cloth_triangles", "obstacle_triangles", "thickness_m", "threads",
-                               "step",      "dop",    "decay"};
+const char* const kInputs[] = {
+    "triangles", "cloths", "cloth_triangles", "obstacle_triangles", "thickness_m", "threads", "step", "dop", "decay"};
 
 std::string cell(const Row& value)
 {

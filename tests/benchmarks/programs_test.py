@@ -439,7 +439,7 @@ class Reports(ProgramTest):
             self.assertIn(words, results)
         for words in ("| machine | host, 1 thread | front |", "The front tests fewer volumes"):
             self.assertIn(words, front)
-        for words in ("| refit | over construction", " < thesis: normal "):
+        for words in ("| refit | over construction", "| construction on the device, largest model, ms | "):
             self.assertIn(words, ranking)
         self.script("summary.py", readme)
         with open(readme) as file:

@@ -183,8 +183,8 @@ TEST_P(BroadPhaseTest, SetsAgreeInTreesOfEveryBuilder)
     EXPECT_GT(found, 1000000u);
 }
 
-// A cloth of 2,048 triangles draped over each of the study's models. Over large ones a walk of the balanced tree is what
-// the other builders' trees are held against, for time's sake.
+// A cloth of 2,048 triangles draped over each of the study's models. Over large ones a walk of the balanced tree is
+// what the other builders' trees are held against, for time's sake.
 TEST_P(BroadPhaseTest, SetsAgreeOnModels)
 {
     constexpr std::size_t kLarge = 100000;

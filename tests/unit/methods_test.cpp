@@ -54,8 +54,7 @@ TEST(MethodsRanges, WhatIsOutOfThemIsRefused)
         expectRefused("m_tree.m_topDown.m_compactionGroup is " + std::to_string(size),
                       [&](Methods& m) { m.m_tree.m_topDown.m_compactionGroup = size; });
     }
-    expectRefused("m_tree.m_topDown.m_smallShare is -0.5",
-                  [](Methods& m) { m.m_tree.m_topDown.m_smallShare = -0.5f; });
+    expectRefused("m_tree.m_topDown.m_smallShare is -0.5", [](Methods& m) { m.m_tree.m_topDown.m_smallShare = -0.5f; });
     expectRefused("m_tree.m_topDown.m_smallShare is nan", [](Methods& m) { m.m_tree.m_topDown.m_smallShare = kNaN; });
     expectRefused("m_rebuildDecay is 0.5", [](Methods& m) { m.m_rebuildDecay = 0.5f; });
     expectRefused("m_rebuildDecay is -1", [](Methods& m) { m.m_rebuildDecay = -1.0f; });

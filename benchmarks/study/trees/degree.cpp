@@ -139,8 +139,7 @@ void addDeviceRow(Device& device, Row row, TreeInput& input, const TreeMethods& 
     const Refits refits = refitOnDevice(device, input, host.m_tree, RefitMethod::Subtrees, options);
     refits.m_host.fill(row, "refit_");
     refits.m_kernels.fill(row, "refit_kernel_");
-    const Found found =
-        walkOnDevice(device, input, host.m_tree, cloth, host.m_found.m_candidates.size(), row, options);
+    const Found found = walkOnDevice(device, input, host.m_tree, cloth, host.m_found.m_candidates.size(), row, options);
     fillContacts(row, cloth, scene, found);
     judge.judge(row, host.m_valid && builds.m_hash == treeHash(host.m_tree) && refits.m_hash == host.m_refitHash);
     table.add(row);

@@ -42,8 +42,8 @@ struct TopDownSettings
     // as they lie. A hierarchy's leaves always are single triangles, which is what traversals hand on; leaves of more
     // are measured apart (part `shape` of the study).
     std::uint32_t m_leafSize = 1;
-    std::uint32_t m_groupSize = 128;   // work-items of a group, a power of two, 16 to 256; the thesis's is 128
-    std::uint32_t m_smallSize = 55;    // triangles up to which a node is small (the thesis's)
+    std::uint32_t m_groupSize = 128;  // work-items of a group, a power of two, 16 to 256; the thesis's is 128
+    std::uint32_t m_smallSize = 55;   // triangles up to which a node is small (the thesis's)
     // Share of small nodes from which a level has a work-item per node, ≥ 0 (its 30 %). Above 1: in no level.
     float m_smallShare = 0.3f;
     std::uint32_t m_largeSize = 8192;       // triangles from which a node is large, ≥ 1
@@ -61,7 +61,7 @@ struct TreeMethods
     WorkShape m_workShape = WorkShape::Device;
     // 30 or 63; all but TopDown. More tell triangles apart that are close together in a large scene, and take longer.
     std::uint32_t m_mortonBits = 30;
-    std::uint32_t m_plocRadius = 8;   // neighbours looked at on either side; 1 to 32. Larger: better trees, slower
+    std::uint32_t m_plocRadius = 8;  // neighbours looked at on either side; 1 to 32. Larger: better trees, slower
     TopDownSettings m_topDown;
 };
 
@@ -91,8 +91,8 @@ struct Methods
     TreeMethods m_tree;
 
     // The cloths' hierarchy is built anew, beside the steps, once its nodes' areas over the root's have grown by this
-    // factor, ≥ 1, since it was built: see core/pipeline/tree_watch.h. 0: never. Only where a traversal walks it: Pairs,
-    // Single, Groups and Front, which is the host's Auto.
+    // factor, ≥ 1, since it was built: see core/pipeline/tree_watch.h. 0: never. Only where a traversal walks it:
+    // Pairs, Single, Groups and Front, which is the host's Auto.
     float m_rebuildDecay = 1.5f;
 
     // Count the broad phase's volume tests (StepStatistics::m_volumeTests). Costs an atomic a work-item.
