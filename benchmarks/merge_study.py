@@ -13,7 +13,7 @@ import os
 import sys
 
 PARTS = ("construction", "construction_kernels", "compaction", "levels", "refit", "refit_kernels", "refit_levels", "quality", "shape", "degree",
-         "traversal", "rebuild", "triangle_tests")
+         "traversal", "builder", "rebuild", "triangle_tests")
 BACKENDS = ("embree", "fcl", "host", "opencl")
 INPUTS = ("triangles", "cloth_triangles")
 

@@ -6,7 +6,8 @@
 #                    bunny); what is not there is named and left out
 #   --bin DIR        folder of study, study_dop6, study_dop14 and study_dop26 (default: build/release/bin); nothing is
 #                    built
-#   --parts A,B,…    only these: peers, construction, refit, quality, shape, degree, traversal, rebuild, triangle_tests
+#   --parts A,B,…    only these: peers, construction, refit, quality, shape, degree, traversal, builder, rebuild,
+#                    triangle_tests
 #   --only A,B,…     only these models and scenes, by the names in the tables
 #   --minutes N      time to spend (default 30), shared out over the parts; what does not fit is named and left out
 #   --repeats N, --seconds N    of one measurement, at most (defaults of study)
@@ -16,16 +17,17 @@
 # Joins what was measured to OUT_DIR/study.json and study.csv after every part (merge_study.py): parts may be measured
 # one after the other, in any order, into one OUT_DIR, and what a part measured before is replaced. Then draws the plots
 # beside them, and writes the tables into README.md where OUT_DIR lies under results/ here. Needs python3, for plots
-# with matplotlib. Measure on an idle machine. Ends with 3 when a row is void, with 1 when something could not be measured.
+# with matplotlib. Measure on an idle machine. Ends with 3 when a row is void, with 1 when something could not be
+# measured or judged.
 set -uo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 bin=$here/../build/release/bin
 commit=$(git -C "$here" describe --always --dirty 2>/dev/null || echo unknown)
 # Shares of the time: what a part took of it, on a GPU and on two cores.
-declare -A shares=([peers]=2 [construction]=6 [refit]=1 [quality]=2 [shape]=3 [degree]=8 [traversal]=8 [rebuild]=5
+declare -A shares=([peers]=2 [construction]=6 [refit]=1 [quality]=2 [shape]=3 [degree]=8 [traversal]=8 [builder]=3 [rebuild]=5
   [triangle_tests]=1)
-all=peers,construction,refit,quality,shape,degree,traversal,rebuild,triangle_tests
+all=peers,construction,refit,quality,shape,degree,traversal,builder,rebuild,triangle_tests
 parts=$all minutes=30 arguments=() only='' out=''
 while [[ $# -gt 0 ]]; do
   case $1 in
@@ -41,7 +43,7 @@ while [[ $# -gt 0 ]]; do
   esac
   shift
 done
-[[ -n $out ]] || { sed -n '2,21s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 2; }
+[[ -n $out ]] || { sed -n '2,23s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 2; }
 for part in ${parts//,/ }; do
   [[ -n ${shares[$part]:-} ]] || { echo "run_study.sh: no part $part; there are $all" >&2; exit 2; }
 done
@@ -82,11 +84,14 @@ for part in ${parts//,/ }; do
   if [[ $part == degree ]]; then
     each=$(minutes_for "$(awk "BEGIN { print ${shares[$part]} / 4 }")")
     measure study degree "$each" degree
-    for sides in 6 14 26; do
-      reference=()
-      [[ ! -e $work/degree.json ]] || reference=(--reference "$work/degree.json")
-      measure "study_dop$sides" degree "$each" "degree_$sides" "${reference[@]}"
-    done
+    if [[ -e $work/degree.json ]]; then
+      for sides in 6 14 26; do
+        measure "study_dop$sides" degree "$each" "degree_$sides" --reference "$work/degree.json"
+      done
+    else
+      echo "run_study.sh: degree: 6, 14 and 26 sides: left out: no rows of 18 sides to judge them by" >&2
+      [[ -n $only ]] || note 1
+    fi
   else
     measure study "$part" "$(minutes_for "${shares[$part]}")" "$part"
   fi

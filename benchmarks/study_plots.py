@@ -66,6 +66,12 @@ def levels(rows, folder, save):
         left.plot(*zip(*points), ".-", markersize=4, linewidth=0.9, label=variant)
     left.set(xlabel="level, root 0", ylabel="kernel time, ms", yscale="log",
              title=f"top-down construction by level, {model} (figures 4.2–4.4)")
+    small = [row for row in select(build, variant="thesis: and small splits") if row.get("small_nodes") is not None]
+    if small:
+        shares = left.twinx()
+        points = sorted((row["level"], 100 * row["small_nodes"] / row["nodes"]) for row in small)
+        shares.plot(*zip(*points), ":", color="grey", linewidth=0.9)
+        shares.set(ylim=(0, 105), ylabel="% of the level's nodes that are small (dotted)")
     for variant in in_order(refit, "variant"):
         points = sorted((row["level"], row["kernel_median_ms"]) for row in select(refit, variant=variant))
         right.plot(*zip(*points), ".-", markersize=4, linewidth=0.9, label=variant)

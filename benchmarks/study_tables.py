@@ -67,6 +67,13 @@ def mean(steps, column):
     return sum(found) / len(found) if found else None
 
 
+def median(values):
+    ordered, half = sorted(values), len(values) // 2
+    if not ordered:
+        return None
+    return ordered[half] if len(ordered) % 2 else (ordered[half - 1] + ordered[half]) / 2
+
+
 def count(value):
     return "–" if value is None else f"{value:,.0f}"
 
@@ -195,6 +202,33 @@ def shape_table(rows, table, figure):
             "refit (kernel time on a device).\n\n" + table(["shape"] + [model.replace("_", " ") for model in models], lines))
 
 
+BUILDER_STAGES = ("step_ms", "refit_ms", "broad_ms")
+
+
+def builder_table(rows, table, figure):
+    """Whole steps of the host by the builder of its trees; in brackets the step over the default's."""
+    mine = [row for row in select(rows, part="builder") if "step_ms" in row and row["step"] > 0]
+    lines = []
+    for scene in in_order(mine, "model"):
+        medians = {}
+        for variant in in_order(select(mine, model=scene), "variant"):
+            line = [scene, variant.replace("host, ", "")]
+            for phase in ("descent", "rest"):
+                steps = select(mine, model=scene, variant=variant, phase=phase)
+                times = [median([row[stage] for row in steps if stage in row]) for stage in BUILDER_STAGES]
+                first = medians.setdefault(phase, times[0])
+                ratio = f" ({times[0] / first:.2f})" if times[0] is not None and first else ""
+                line += [figure(times[0]) + ratio] + [figure(time) for time in times[1:]] + [count(mean(steps, "volume_tests"))]
+            lines.append(line)
+    if not lines:
+        return ""
+    columns = ["step, {}, ms", "refit", "broad phase", "volume tests"]
+    return ("Whole steps of the host, one thread, by default but for the builder of both sides' trees: medians of steps, in "
+            "brackets the step of that with the default builder; passes of the builders took turns.\n\n"
+            + table(["scene", "builder"] + [text.format(phase) for phase in ("coming down", "at rest") for text in columns],
+                    lines))
+
+
 def refit_kernel_table(rows, table, figure):
     mine = select(rows, part="refit_kernels")
     if not mine:
@@ -230,7 +264,7 @@ def rebuild_table(rows, table, figure):
             lines.append([scene, variant] + cells)
     return ("A cloth that changes its shape in the first half of a run and keeps it in the second, with its hierarchy built "
             "anew where it decayed and without: means of all steps, and of the second half. Broad phase in ms, kernel time "
-            "on a device.\n\n"
+            "on a device; building is not in it.\n\n"
             + table(["scene", "variant", "rebuilds", "volume tests", "second half", "broad phase", "second half"], lines))
 
 
@@ -240,7 +274,8 @@ def compaction_table(rows, table):
         return ""
     lines = [[row["model"], f"{100 * row['share']:.1f} %"] for row in mine]
     return ("Share of the compaction in the thesis's construction with all optimisations, kernel time (figure 4.5; the "
-            "thesis calls it small and shrinking with the model):\n\n" + table(["model", "share"], lines))
+            "thesis calls it small and shrinking with the model). Here it is of every level's queue; the thesis compacts "
+            "only in levels with leaves:\n\n" + table(["model", "share"], lines))
 
 
 def triangle_test_table(rows, table, figure):
@@ -272,7 +307,7 @@ def quality_table(rows, table, figure):
 
 
 # Of the thesis's builders its last, and today's, on every machine.
-COMPARED = ("thesis: normal", "thesis: all optimisations", "radix, 30 bits", "ploc")
+COMPARED = ("thesis: normal", "thesis: all optimisations", "balanced", "radix, 30 bits", "ploc")
 
 
 def devices_table(machines, table, figure):
@@ -316,6 +351,7 @@ def text(rows, table, figure):
         ("shape", shape_table(rows, table, figure)),
         ("degree", degree_table(rows, table, figure)),
         ("traversal", descent_table(rows, table, figure) + front_table(rows, table, figure)),
+        ("builder", builder_table(rows, table, figure)),
         ("rebuild", rebuild_table(rows, table, figure)),
         ("triangle_tests", triangle_test_table(rows, table, figure)))
     return "".join(with_commits(rows, part, text) for part, text in tables)

@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
 """Writes the tables of all measured results into benchmarks/README.md, between its markers: summary.py [README]
 
-Every folder of results/ is a machine. What stands outside of the markers is written by hand.
+Every folder of results/ is a machine. What stands outside of the markers is written by hand. The markers of the findings
+(study_findings.py) may be missing.
 """
 import math
 import os
 import sys
 
 import script_tables
+import study_findings
 import study_tables
 from results import STAGES, SWEEPS, count_void, fit_exponent, in_order, n_log_n_exponent, read_json, read_machine, read_rows, select
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-BEGIN = "<!-- results: made by summary.py -->"
-END = "<!-- end of results -->"
 
 SCENES = {
     "thesis": "2,048 on the bunny",
@@ -176,6 +176,14 @@ def machine_text(folder):
     return text + exponent_table(rows) + memory_table(rows) + pictures(folder)
 
 
+def replaced(text, name, tables):
+    """The text with what is between the markers of that name replaced; None without the markers."""
+    begin, end = f"<!-- {name}: made by summary.py -->", f"<!-- end of {name} -->"
+    before, found, rest = text.partition(begin)
+    _, closed, after = rest.partition(end)
+    return before + begin + "\n\n" + tables + end + after if found and closed else None
+
+
 def main():
     readme = sys.argv[1] if len(sys.argv) > 1 else os.path.join(HERE, "README.md")
     results = os.path.join(os.path.dirname(os.path.abspath(readme)), "results")
@@ -184,15 +192,17 @@ def main():
     folders = [folder for folder in folders
                if any(os.path.exists(os.path.join(folder, name + ".json")) for name in ("bench_step", "study"))]
     with open(readme) as file:
-        before, _, rest = file.read().partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not end:
+        text = file.read()
+    machines = [(os.path.basename(folder), read_rows(folder, "study")) for folder in folders]
+    tables = "".join(machine_text(folder) for folder in folders) + study_tables.devices_table(machines, table, figure)
+    text = replaced(text, "results", tables)
+    if not text:
         sys.exit(f"{readme} has no markers")
-    text = "".join(machine_text(folder) for folder in folders)
-    text += study_tables.devices_table([(os.path.basename(folder), read_rows(folder, "study")) for folder in folders],
-                                       table, figure)
+    measured = [(name, rows) for name, rows in machines if rows]
+    for name, made in (("front", study_findings.front), ("ranking", study_findings.ranking)):
+        text = replaced(text, name, made(measured, table, figure)) or text
     with open(readme, "w") as file:
-        file.write(before + BEGIN + "\n\n" + text + END + after)
+        file.write(text)
 
 
 if __name__ == "__main__":

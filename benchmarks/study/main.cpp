@@ -44,7 +44,8 @@ void StudyOptions::readReference()
     const Row all = Row::parse(file);
     for (const Row& row : all.at("rows"))
     {
-        if (row.value("valid", "") == "yes")
+        // Other sides' rows are what is judged.
+        if (row.value("valid", "") == "yes" && row.value("dop", 18) == 18)
             m_hashes[row.value("part", "") + ", " + row.value("model", "")] = row["hash"];
     }
 }
@@ -111,6 +112,7 @@ int run(int argc, char** argv)
         part.m_run(options, table);
     }
     if (options.m_list) return kExitGood;
+    if (table.rows().empty() && table.anyLeftOut()) return kExitFailed;
     if (table.rows().empty()) return fail("study", kExitBadInput, "nothing to measure; --list names the parts");
     return finishTable("study", table, options);
 }

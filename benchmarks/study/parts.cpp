@@ -82,6 +82,7 @@ const std::vector<Part>& studyParts()
         {"shape", "two or four children, leaves of 1 to 16", studyShapes},
         {"degree", "trees and whole steps in volumes of this program's sides", studyDegrees},
         {"traversal", "every traversal step by step as a cloth comes down: figures 4.6 and 4.8", studyTraversals},
+        {"builder", "whole steps of the host over trees of each builder", studyBuilders},
         {"rebuild", "traversals of a cloth that changes its shape, its hierarchy rebuilt or not", studyRebuilds},
         {"triangle_tests", "Möller's test beside the certified one: figure 4.9", studyTriangleTests}};
     return parts;

@@ -1,12 +1,15 @@
 // What the decay of the cloth's hierarchy costs, and what building it anew gains: a cloth over the bunny changes its
-// shape over a run, with rebuilds and without.
+// shape over a run, with rebuilds and without. A rebuild is waited for after the step in which it began, and its time
+// is in no figure, so that counts and times are of the same hierarchies in every run.
 #include <algorithm>
 #include <cmath>
+#include <iostream>
 #include <numeric>
+#include <sstream>
 #include <stdexcept>
 
+#include "benchmarks/study/step_judge.h"
 #include "benchmarks/study/study.h"
-#include "benchmarks/support/step_method.h"
 
 namespace drape::bench
 {
@@ -105,107 +108,168 @@ struct Variant
 {
     std::string m_name;
     Settings m_settings;
-    bool m_orderedAnew = false;  // the cloth is added in its last shape
 };
 
-// The host is the reference, so it is first.
-std::vector<Variant> variants(const StudyOptions& options)
+void addVariants(const std::string& name, Settings settings, const std::vector<float>& decays,
+                 std::vector<Variant>& all)
 {
-    std::vector<Variant> all;
-    const auto addBoth = [&all](const std::string& name, Settings settings, Traversal traversal)
+    settings.m_methods.m_traversal = Traversal::Front;
+    settings.m_profileKernels = settings.m_backend != Backend::Host;
+    for (const float decay : decays)
     {
-        settings.m_methods.m_traversal = traversal;
-        settings.m_profileKernels = settings.m_backend != Backend::Host;
-        for (const float decay : {0.0f, Methods().m_rebuildDecay})
-        {
-            settings.m_methods.m_rebuildDecay = decay;
-            all.push_back({name + (decay > 0 ? ", rebuilt" : ", never rebuilt"), settings});
-        }
-    };
+        std::ostringstream text;
+        text << name << (decay > 0 ? ", rebuilt from " : ", never rebuilt");
+        if (decay > 0) text << decay;
+        settings.m_methods.m_rebuildDecay = decay;
+        all.push_back({text.str(), settings});
+    }
+}
+
+// The front, whose pairs are of nodes of both hierarchies, by every threshold. Of what takes long, and of a device,
+// only by the default one: the tests of volumes are those of the host but for the pairs it starts from. At rest nothing
+// should be rebuilt even by the lowest.
+std::vector<Variant> variants(Change change, bool isLarge, const StudyOptions& options)
+{
+    const std::vector<float> all = {0, 1.2f, 1.5f, 2, 3}, one = {0, Methods().m_rebuildDecay}, least = {0, 1.2f};
+    std::vector<Variant> variants;
     Settings host;
     host.m_backend = Backend::Host;
-    addBoth("host, thesis: front", host, Traversal::Front);
-    addBoth("host, pairs of subtrees", host, Traversal::Pairs);
-    if (options.m_backend == "host") return all;
-    addBoth("pairs of subtrees", options.settings(), Traversal::Pairs);
-    addBoth("thesis: front", options.settings(), Traversal::Front);
-    for (const bool anew : {false, true})
-    {
-        all.push_back({anew ? "default, cloth in the order of its last shape" : "default", options.settings(), anew});
-        all.back().m_settings.m_profileKernels = true;
-    }
-    return all;
+    // The host is the reference, so it is first.
+    addVariants("host, thesis: front", host, change == Change::Rest ? least : isLarge ? one : all, variants);
+    if (options.m_backend != "host" && change != Change::Rest)
+        addVariants("thesis: front", options.settings(), one, variants);
+    return variants;
 }
 
-struct Run
+// What some passes over the frames took and found. Each begins with a hierarchy of the cloth at rest, and after every
+// step a rebuild under way is waited for: the same steps rebuild in each pass.
+class Run
 {
-    std::vector<StepOutcome> m_outcomes;
-    Row m_device;
+public:
+    // counting: for volume tests, which cost a device time; the host counts anyway.
+    Run(const StepScene& scene, const Variant& variant, bool counting = false) : m_scene(scene), m_name(variant.m_name)
+    {
+        std::string error;
+        Settings settings = variant.m_settings;
+        settings.m_methods.m_countTests = counting;
+        m_method = makeDrapeMethod(scene, settings, error);
+        if (!m_method) throw std::runtime_error(error);
+        m_times.resize(scene.m_frames.size() - 1);
+        // Buffers grow before what is timed.
+        for (std::size_t frame = 0; frame < scene.m_frames.size(); frame += 8)
+            m_method->step(scene.m_frames[frame].data(), scene.m_frames[frame].data());
+    }
+
+    void pass()
+    {
+        m_method->restart();
+        std::vector<StepOutcome> outcomes;
+        for (std::size_t step = 0; step < m_times.size(); ++step)
+        {
+            outcomes.push_back(m_method->step(m_scene.m_frames[step].data(), m_scene.m_frames[step + 1].data()));
+            m_method->settle();
+            for (const StageTime& stage : outcomes.back().m_stages)
+                m_times[step][stage.m_name].add(stage.m_ms);
+        }
+        if (!m_outcomes.empty()) hold(outcomes);
+        m_outcomes = std::move(outcomes);
+    }
+
+    // Takes volume tests over from a run that counted.
+    void takeCounts(const Run& counted)
+    {
+        hold(counted.m_outcomes);
+        for (std::size_t step = 0; step < m_outcomes.size(); ++step)
+            m_outcomes[step].m_volumeTests = counted.m_outcomes[step].m_volumeTests;
+    }
+
+    const std::vector<StepOutcome>& outcomes() const { return m_outcomes; }
+    bool repeatable() const { return m_repeatable; }
+    const std::map<std::string, Samples>& times(std::size_t step) const { return m_times[step]; }
+    void describe(Row& row) const { m_method->describe(row); }
+
+private:
+    // Another pass must find the same and rebuild in the same steps.
+    void hold(const std::vector<StepOutcome>& other)
+    {
+        const auto rebuiltAlike = [](const StepOutcome& a, const StepOutcome& b)
+        { return a.m_rebuilds == b.m_rebuilds; };
+        const bool alike = std::equal(other.begin(), other.end(), m_outcomes.begin(), m_outcomes.end(), rebuiltAlike);
+        if (!alike) std::cerr << "study: " << m_name << ": other steps rebuild" << std::endl;
+        m_repeatable = agree(m_name + ", again", other, m_outcomes, true) && alike && m_repeatable;
+    }
+
+    const StepScene& m_scene;
+    std::string m_name;
+    std::unique_ptr<StepMethod> m_method;
+    std::vector<std::map<std::string, Samples>> m_times;  // by step and stage
+    std::vector<StepOutcome> m_outcomes;                  // of the last pass
+    bool m_repeatable = true;
 };
 
-// counting: the volume tests instead of the times, which counting would lengthen.
-Run run(StepScene scene, Variant variant, bool counting)
+void addRows(const StepScene& scene, const std::string& change, const Variant& variant, const Run& run,
+             const std::vector<StepOutcome>& reference, Table& table)
 {
-    std::string error;
-    variant.m_settings.m_methods.m_countTests = counting;
-    if (variant.m_orderedAnew) scene.m_cloths.front().m_positions = scene.m_frames.back();
-    const std::unique_ptr<StepMethod> method = makeDrapeMethod(scene, variant.m_settings, error);
-    if (!method) throw std::runtime_error(error);
-    Run run;
-    method->describe(run.m_device);
-    for (std::size_t step = 0; step + 1 < scene.m_frames.size(); ++step)
-        run.m_outcomes.push_back(method->step(scene.m_frames[step].data(), scene.m_frames[step + 1].data()));
-    return run;
-}
-
-void addRows(const StepScene& scene, const std::string& change, const Variant& variant, const Run& timed,
-             const Run& counted, const Run& reference, Table& table)
-{
-    for (std::size_t step = 0; step < timed.m_outcomes.size(); ++step)
+    const bool agrees = agree(variant.m_name, run.outcomes(), reference, true) && run.repeatable();
+    for (std::size_t step = 0; step < reference.size(); ++step)
     {
-        const StepOutcome& outcome = timed.m_outcomes[step];
+        const StepOutcome& outcome = run.outcomes()[step];
         Row row;
         row["part"] = "rebuild";
         row["model"] = scene.m_spec.m_name + ", " + change;
         row["cloth_triangles"] = scene.m_spec.clothTriangles();
         row["triangles"] = scene.m_obstacle.triangleCount();
         row["variant"] = variant.m_name;
-        row.update(timed.m_device);
+        run.describe(row);
+        row["decay"] = variant.m_settings.m_methods.m_rebuildDecay;
         row["step"] = step;
         row["candidates"] = outcome.m_candidates;
         row["contacts"] = outcome.m_contacts;
         row["rebuilds"] = outcome.m_rebuilds;
-        if (counted.m_outcomes[step].m_volumeTests > 0) row["volume_tests"] = counted.m_outcomes[step].m_volumeTests;
-        for (const StageTime& stage : outcome.m_stages)
+        if (outcome.m_volumeTests > 0) row["volume_tests"] = outcome.m_volumeTests;
+        for (const char* stage : {"step", "refit", "broad"})
         {
-            if (stage.m_name == "step" || stage.m_name == "refit" || stage.m_name == "broad")
-                row[stage.m_name + "_ms"] = stage.m_ms;
+            const auto found = run.times(step).find(stage);
+            if (found != run.times(step).end()) row[std::string(stage) + "_ms"] = found->second.median();
         }
         row["hash"] = outcome.m_hash;
-        judgeRow(row, reference.m_outcomes[step].m_hash);
+        judgeStep(row, reference[step], agrees);
         table.add(row);
     }
 }
 
-void studyScene(const SceneSpec& spec, const TriangleMesh& obstacle, const StudyOptions& options, Table& table)
+// Passes, of what is long fewer; at least two.
+void measure(Run& run, const Variant& variant, const StepScene& scene, const StudyOptions& options)
 {
-    constexpr int kSteps = 64;
-    constexpr int kQuickSteps = 24;
-    for (const auto& [name, change] : {std::pair<const char*, Change>("rest", Change::Rest),
-                                       {"folded", Change::Fold},
-                                       {"crumpled", Change::Crumple},
-                                       {"torn", Change::Tear}})
+    const Clock::time_point begin = Clock::now();
+    for (int pass = 0; pass < options.m_repeats; ++pass)
     {
-        StepScene scene = makeStepScene(spec, obstacle);
-        makeFrames(scene, change, options.m_quick ? kQuickSteps : kSteps);
-        Run reference;
-        for (const Variant& variant : variants(options))
-        {
-            if (options.tooLate(spec.m_name + ", " + name + ", " + variant.m_name)) continue;
-            const Run timed = run(scene, variant, false);
-            if (reference.m_outcomes.empty()) reference = timed;
-            addRows(scene, name, variant, timed, run(scene, variant, true), reference, table);
-        }
+        if (pass < 2 || millisecondsSince(begin) < 1000 * options.m_seconds) run.pass();
+    }
+    if (variant.m_settings.m_backend == Backend::Host) return;
+    Run counted(scene, variant, true);
+    counted.pass();
+    run.takeCounts(counted);
+}
+
+void studyChange(const SceneSpec& spec, const TriangleMesh& obstacle, const std::string& name, Change change,
+                 const StudyOptions& options, Table& table)
+{
+    constexpr std::size_t kLarge = 100000;  // cloth triangles, of which a step takes a third of a second
+    constexpr int kSteps = 64, kLargeSteps = 40, kQuickSteps = 24;
+    const bool isLarge = spec.clothTriangles() > kLarge;
+    // The large cloth says no more of these than the small one.
+    if (isLarge && (change == Change::Rest || change == Change::Tear)) return;
+    StepScene scene = makeStepScene(spec, obstacle);
+    makeFrames(scene, change, options.m_quick ? kQuickSteps : isLarge ? kLargeSteps : kSteps);
+    std::vector<StepOutcome> reference;
+    for (const Variant& variant : variants(change, isLarge, options))
+    {
+        if (options.tooLate(spec.m_name + ", " + name + ", " + variant.m_name)) continue;
+        Run run(scene, variant);
+        measure(run, variant, scene, options);
+        if (reference.empty()) reference = run.outcomes();
+        addRows(scene, name, variant, run, reference, table);
     }
 }
 }  // namespace
@@ -215,7 +279,12 @@ void studyRebuilds(const StudyOptions& options, Table& table)
     for (const SceneSpec& spec : studyScenes(options))
     {
         TriangleMesh obstacle;
-        if (loadModel(spec.m_model, options, obstacle)) studyScene(spec, obstacle, options, table);
+        if (!loadModel(spec.m_model, options, obstacle)) continue;
+        for (const auto& [name, change] : {std::pair<const char*, Change>("rest", Change::Rest),
+                                           {"folded", Change::Fold},
+                                           {"crumpled", Change::Crumple},
+                                           {"torn", Change::Tear}})
+            studyChange(spec, obstacle, name, change, options, table);
     }
 }
 }  // namespace drape::bench

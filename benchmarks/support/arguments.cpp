@@ -82,6 +82,6 @@ int finishTable(const std::string& program, const Table& table, const CommonOpti
         !writeText(options.m_json, table.json(describeMachine(options.m_commit)), error))
         return fail(program, kExitFailed, error);
     if (table.anyVoid()) return fail(program, kExitOtherHash, "rows are void: their results are not the reference's");
-    return kExitGood;
+    return table.anyLeftOut() ? kExitFailed : kExitGood;
 }
 }  // namespace drape::bench

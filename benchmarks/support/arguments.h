@@ -47,6 +47,6 @@ int fail(const std::string& program, int exitCode, const std::string& reason);
 int guarded(const std::string& program, const std::function<int()>& body);
 
 // Writes the table where the options say (or a CSV to standard output where they name nothing) and returns the exit
-// code: kExitOtherHash when a row is void.
+// code: kExitOtherHash when a row is void, else kExitFailed when something was left out that could not be measured.
 int finishTable(const std::string& program, const Table& table, const CommonOptions& options);
 }  // namespace drape::bench

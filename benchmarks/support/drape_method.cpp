@@ -15,9 +15,11 @@ namespace
 // Kernels are called stageAction; those of the broad phase have many names.
 std::string stageOfKernel(const std::string& kernel)
 {
-    const std::pair<const char*, const char*> stages[] = {
-        {"self", "self"},
-        {"refit", "refit"}, {"treeCost", "refit"}, {"narrowPhase", "narrow"}, {"compaction", "order"}};
+    const std::pair<const char*, const char*> stages[] = {{"self", "self"},
+                                                          {"refit", "refit"},
+                                                          {"treeCost", "refit"},
+                                                          {"narrowPhase", "narrow"},
+                                                          {"compaction", "order"}};
     for (const auto& stage : stages)
     {
         if (kernel.rfind(stage.first, 0) == 0) return stage.second;
@@ -29,19 +31,25 @@ class DrapeMethod : public StepMethod
 {
 public:
     DrapeMethod(std::unique_ptr<Pipeline> pipeline, const StepScene& scene, bool profiled)
-        : m_pipeline(std::move(pipeline)), m_thickness(scene.m_thickness), m_self(scene.m_selfThickness > 0), m_profiled(profiled)
+        : m_pipeline(std::move(pipeline)), m_scene(scene), m_profiled(profiled)
     {
         const Clock::time_point start = Clock::now();
         m_obstacle = m_pipeline->addObstacle(describeMesh(scene.m_obstacle));
         for (const TriangleMesh& cloth : scene.m_cloths)
-        {
-            MeshDescription description = describeMesh(cloth);
-            description.m_selfThickness = scene.m_selfThickness;
-            m_cloths.push_back(m_pipeline->addCloth(description));
             m_floats.push_back(cloth.m_positions.size());
-        }
+        addCloths();
         m_prepareMs = millisecondsSince(start);
     }
+
+    void restart() override
+    {
+        for (const MeshId cloth : m_cloths)
+            m_pipeline->remove(cloth);
+        addCloths();
+        m_pipeline->clothStart(m_cloths.front());  // builds the hierarchy, which no step shall pay for
+    }
+
+    void settle() override { m_pipeline->waitForRebuild(); }
 
     StepOutcome step(const float* start, const float* end) override
     {
@@ -52,8 +60,8 @@ public:
         {
             std::copy(start + first, start + first + m_floats[i], m_pipeline->clothStart(m_cloths[i]));
             std::copy(end + first, end + first + m_floats[i], m_pipeline->clothEnd(m_cloths[i]));
-            m_pipeline->addPair(m_cloths[i], m_obstacle, m_thickness);
-            if (m_self) m_pipeline->addSelf(m_cloths[i]);
+            m_pipeline->addPair(m_cloths[i], m_obstacle, m_scene.m_thickness);
+            if (collidesWithItself()) m_pipeline->addSelf(m_cloths[i]);
             first += m_floats[i];
         }
         m_pipeline->submit();
@@ -67,7 +75,7 @@ public:
         outcome.m_volumeTests = statistics.m_volumeTests;
         outcome.m_rebuilds = statistics.m_rebuilds;
         std::uint64_t hash = hashOf(std::vector<Contact>(contacts.begin(), contacts.end()));
-        if (m_self) hash = hashOf(std::vector<Contact>(self.begin(), self.end()), hash);
+        if (collidesWithItself()) hash = hashOf(std::vector<Contact>(self.begin(), self.end()), hash);
         outcome.m_hash = hashText(hash);
         // A step that left its device is no measurement of it.
         if (statistics.m_status & (kStepDeviceFailed | kStepContactLimit)) outcome.m_hash = "left the device";
@@ -94,6 +102,19 @@ public:
     }
 
 private:
+    bool collidesWithItself() const { return m_scene.m_selfThickness > 0; }
+
+    void addCloths()
+    {
+        m_cloths.clear();
+        for (const TriangleMesh& cloth : m_scene.m_cloths)
+        {
+            MeshDescription description = describeMesh(cloth);
+            description.m_selfThickness = m_scene.m_selfThickness;
+            m_cloths.push_back(m_pipeline->addCloth(description));
+        }
+    }
+
     void addStages(const StepStatistics& statistics, StepOutcome& outcome)
     {
         if (m_pipeline->deviceReport().m_onHost)
@@ -118,11 +139,10 @@ private:
     }
 
     std::unique_ptr<Pipeline> m_pipeline;
+    const StepScene& m_scene;
     MeshId m_obstacle = kNoMesh;
     std::vector<MeshId> m_cloths;
     std::vector<std::size_t> m_floats;
-    float m_thickness;
-    bool m_self;
     double m_prepareMs = 0;
     bool m_profiled;
 };

@@ -37,13 +37,20 @@ public:
     // timed, not the hashing.
     virtual StepOutcome step(const float* start, const float* end) = 0;
 
+    // Has the cloths come anew, in the shape that they are at rest: what the method keeps from step to step is as at
+    // first, but for its memory.
+    virtual void restart() {}
+    // Waits for what the method does beside its steps.
+    virtual void settle() {}
+
     // Adds what says which method it is (backend, device, threads …), and one-time costs.
     virtual void describe(Row& row) const = 0;
     // Rows beside the times: memory by buffer. Called after the last step.
     virtual std::vector<Row> extraRows() const { return {}; }
 };
 
-// The pipeline, host to host. Its contacts' hash is the reference where the settings ask for the host.
+// The pipeline, host to host. Its contacts' hash is the reference where the settings ask for the host. The scene
+// outlives the method.
 std::unique_ptr<StepMethod> makeDrapeMethod(const StepScene& scene, const Settings& settings, std::string& error);
 
 // How far Drape looks with default settings: thickness and activation.

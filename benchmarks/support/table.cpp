@@ -11,8 +11,8 @@ namespace drape::bench
 namespace
 {
 // What a void row may keep of its numbers: its inputs.
-const char* const kInputs[] = {"triangles", "cloths", "cloth_triangles", "obstacle_triangles", "thickness_m", "threads",
-                               "step",      "dop"};
+const char* const kInputs[] = {
+    "triangles", "cloths", "cloth_triangles", "obstacle_triangles", "thickness_m", "threads", "step", "dop", "decay"};
 
 std::string cell(const Row& value)
 {
@@ -46,6 +46,12 @@ void Table::add(const Row& row)
 bool Table::anyVoid() const
 {
     return std::any_of(m_rows.begin(), m_rows.end(), [](const Row& row) { return row.value("valid", "") == "no"; });
+}
+
+void Table::leaveOut(const std::string& what)
+{
+    std::cerr << "left out: " << what << std::endl;
+    m_anyLeftOut = true;
 }
 
 std::string Table::csv() const

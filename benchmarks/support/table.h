@@ -21,6 +21,10 @@ public:
     // Whether a row is void.
     bool anyVoid() const;
 
+    // Names on standard error what could not be measured; the program then ends with kExitFailed (finishTable()).
+    void leaveOut(const std::string& what);
+    bool anyLeftOut() const { return m_anyLeftOut; }
+
     // A header line and a line a row; texts with commas or quotes are quoted. Missing values are empty.
     std::string csv() const;
     // {"machine": …, "rows": […]}.
@@ -29,6 +33,7 @@ public:
 private:
     std::vector<std::string> m_columns;
     std::vector<Row> m_rows;
+    bool m_anyLeftOut = false;
 };
 
 // Compares row["hash"] with the expected one. Where they differ, "valid" becomes "no" and every number except counts of

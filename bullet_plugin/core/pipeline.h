@@ -85,7 +85,7 @@ class Pipeline
 {
 public:
     // Chooses the device and makes its kernels ready. Returns null and fills error when settings ask for what is not
-    // there.
+    // there, or for methods out of their ranges.
     static std::unique_ptr<Pipeline> create(const Settings& settings, Error& error);
     ~Pipeline();
     Pipeline(const Pipeline&) = delete;
@@ -132,6 +132,10 @@ public:
     void submit();
     // Waits, grows buffers and repeats where needed. Contacts are valid until the next submit().
     ContactList finish();
+    // Waits for a hierarchy that is being built beside the steps (Methods::m_rebuildDecay): the next submit() uses it.
+    // Without it, time decides which step does, but no contact depends on it: for measurements and tests. Between
+    // finish() and submit().
+    void waitForRebuild();
     // Those of cloths with themselves of the last finish(), in canonical order; valid as long as its other contacts.
     ContactList selfContacts() const;
     // With statistics of that step (upload and wait times, counts, status; the adapter adds its own).

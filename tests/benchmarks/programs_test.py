@@ -151,7 +151,7 @@ class Study(ProgramTest):
         listed = run("study", "--list").stdout
         self.assertIn("traversal: ", listed)
         parts = {row["part"] for row in rows}
-        for part in ("construction", "refit", "quality", "shape", "degree", "traversal", "rebuild", "triangle_tests"):
+        for part in ("construction", "refit", "quality", "shape", "degree", "traversal", "builder", "rebuild", "triangle_tests"):
             self.assertIn(part, parts)
         for row in rows:
             self.assertEqual(row["valid"], "yes")
@@ -183,6 +183,18 @@ class Study(ProgramTest):
                 tests[row["variant"]] = tests.get(row["variant"], 0) + int(row["volume_tests"])
         self.assertLess(tests["host, thesis: front"], 0.75 * tests["host, as front, from the roots"])
 
+    def test_every_builders_tree_gives_the_hosts_steps(self):
+        rows = [row for row in self.quick("study", "--part", "builder") if row["part"] == "builder"]
+        self.assertEqual({row["variant"] for row in rows},
+                         {"host, balanced", "host, radix", "host, ploc", "host, top-down"})
+        default = {row["step"]: row for row in rows if row["variant"] == "host, balanced"}
+        for row in rows:
+            self.assertEqual((row["backend"], row["valid"]), ("host", "yes"))
+            self.assertEqual(row["candidates"], default[row["step"]]["candidates"])
+        # Other trees, by other tests of volumes.
+        self.assertEqual(len({sum(int(row["volume_tests"]) for row in rows if row["variant"] == variant)
+                              for variant in {row["variant"] for row in rows}}), 4)
+
     def degree(self, program, *arguments):
         return {(row["model"], row["variant"].partition(", ")[2], row["backend"]): row
                 for row in self.quick(program, "--part", "degree", *arguments)}
@@ -213,6 +225,20 @@ class Study(ProgramTest):
             self.assertEqual(row["dop"], "6")
             self.assertEqual(row.get("contacts", ""), "")
 
+    def test_other_degrees_without_a_reference_are_left_out(self):
+        result = run("study_dop6", "--quick", "--part", "degree", "--backend", "host", "--csv", self.path("rows.csv"))
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertFalse(os.path.exists(self.path("rows.csv")))
+        for model in ("sphere_1k", "terrain_6272", "quick_one"):
+            self.assertIn(f"left out: {model}: ", result.stderr)
+        # A reference of other models, likewise.
+        self.quick("study", "--part", "degree", "--backend", "host", "--only", "sphere_1k")
+        result = run("study_dop6", "--quick", "--part", "degree", "--backend", "host", "--csv", self.path("six.csv"),
+                     "--reference", self.path("rows.json"))
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertEqual({row["model"] for row in read_csv(self.path("six.csv"))}, {"sphere_1k"})
+        self.assertIn("left out: terrain_6272: ", result.stderr)
+
     def test_every_shape_of_a_tree_gives_the_same_candidates(self):
         rows = [row for row in self.quick("study", "--part", "shape") if row["part"] == "shape"]
         for model in {row["model"] for row in rows}:
@@ -231,10 +257,26 @@ class Study(ProgramTest):
             key = row["model"], row["variant"]
             rebuilds[key] = rebuilds.get(key, 0) + int(row["rebuilds"])
         self.assertTrue(rebuilds)
+        counts = {}
         for (model, variant), count in rebuilds.items():
-            if not variant.endswith(", rebuilt") or model.endswith("rest"):
+            if "never" in variant or model.endswith("rest"):
                 self.assertEqual(count, 0, (model, variant))
+            else:
+                name, _, decay = variant.rpartition(" ")
+                counts.setdefault((model, name), []).append((float(decay), count))
         self.assertTrue(any(count > 0 for count in rebuilds.values()))
+        # A higher threshold rebuilds no more often, and the highest less than the lowest somewhere.
+        ordered = [[count for _, count in sorted(mine)] for mine in counts.values()]
+        for mine in ordered:
+            self.assertEqual(mine, sorted(mine, reverse=True))
+        self.assertTrue(any(mine[0] > mine[-1] for mine in ordered))
+        # Every back end in the same steps.
+        for row in rows:
+            if row["backend"] == "opencl":
+                host = [other for other in rows if other["variant"] == "host, " + row["variant"]
+                        and (other["model"], other["step"]) == (row["model"], row["step"])]
+                self.assertEqual([other["rebuilds"] for other in host], [row["rebuilds"]], row)
+                self.assertGreater(int(row["volume_tests"]), 0)
 
     def test_bad_input_is_refused(self):
         self.assertEqual(run("study", "--part", "no_such_part").returncode, 2)
@@ -393,15 +435,23 @@ class Reports(ProgramTest):
         """The tables replace what is between the markers, and a second run changes nothing."""
         readme = self.path("README.md")
         with open(readme, "w") as file:
-            file.write("before\n<!-- results: made by summary.py -->\nwhat was there\n<!-- end of results -->\nafter\n")
+            file.write("before\n" + "between\n".join(
+                f"<!-- {name}: made by summary.py -->\nwhat was there\n<!-- end of {name} -->\n"
+                for name in ("front", "ranking", "results")) + "after\n")
         result = self.script("summary.py", readme)
         self.assertEqual(result.returncode, 0, result.stderr)
         with open(readme) as file:
             text = file.read()
         self.assertTrue(text.startswith("before\n") and text.endswith("after\n"))
         self.assertNotIn("what was there", text)
-        for words in ("### machine", "fcl, 1 thread", "thesis: Quadro"):
-            self.assertIn(words, text)
+        self.assertEqual(text.count("between\n"), 2)
+        front, ranking, results = text.split("between\n")
+        for words in ("### machine", "fcl, 1 thread", "thesis: Quadro", "Whole steps of the host"):
+            self.assertIn(words, results)
+        for words in ("| machine | host, 1 thread | front |", "The front tests fewer volumes"):
+            self.assertIn(words, front)
+        for words in ("| refit | over construction", "| construction on the device, largest model, ms | "):
+            self.assertIn(words, ranking)
         self.script("summary.py", readme)
         with open(readme) as file:
             self.assertEqual(file.read(), text)

@@ -185,8 +185,8 @@ TEST_P(BroadPhaseTest, SetsAgreeInTreesOfEveryBuilder)
     EXPECT_GT(found, 1000000u);
 }
 
-// A cloth of 2,048 triangles draped over each of the study's models. Over large ones only one builder's trees, against
-// the balanced one's, for time's sake.
+// A cloth of 2,048 triangles draped over each of the study's models. Over large ones a walk of the balanced tree is
+// what the other builders' trees are held against, for time's sake.
 TEST_P(BroadPhaseTest, SetsAgreeOnModels)
 {
     constexpr std::size_t kLarge = 100000;
@@ -208,7 +208,7 @@ TEST_P(BroadPhaseTest, SetsAgreeOnModels)
         EXPECT_GT(expected.size(), 5000u);
         for (const TreeMethods& methods : allBuilders())
         {
-            if (isLarge && methods.m_builder != TreeBuilder::Ploc) continue;
+            if (isLarge && methods.m_builder == TreeBuilder::Balanced) continue;
             SCOPED_TRACE(model + ", builder " + std::to_string(int(methods.m_builder)));
             useTree(sides.m_cloth, methods);
             useTree(sides.m_obstacle, methods);

@@ -240,6 +240,47 @@ TEST_P(TreeTest, EveryBuilderMakesTheHostsValidTree)
     }
 }
 
+// What the study's models show beside the builders' defaults: the thesis's construction without any optimisation, its
+// split at the median, and codes of 63 bits, which tell triangles apart that are one to 30.
+std::vector<NamedMethods> otherMethodsOfModels()
+{
+    std::vector<NamedMethods> all(4, {"top-down, normal", methodsOf(TreeBuilder::TopDown, WorkShape::Device)});
+    TopDownSettings& normal = all[0].m_methods.m_topDown;
+    normal.m_adaptiveGroups = normal.m_smallSplits = normal.m_largeNodes = false;
+    all[1].m_name = "top-down, median";
+    all[1].m_methods.m_topDown.m_medianSplit = true;
+    all[2] = {"radix, 63 bits", methodsOf(TreeBuilder::Radix, WorkShape::Device)};
+    all[3] = {"balanced, 63 bits", methodsOf(TreeBuilder::Balanced, WorkShape::Device)};
+    all[2].m_methods.m_mortonBits = all[3].m_methods.m_mortonBits = 63;
+    return all;
+}
+
+// Of the models only those up to the bunny, for time's sake.
+TEST_P(TreeTest, OtherMethodsMakeTheHostsValidTreeOfModels)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    const std::vector<NamedMethods> all = otherMethodsOfModels();
+    std::vector<TreeBuilderStage> stages(all.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+        stages[i].create(*device, programsOf(*device), all[i].m_methods);
+    std::size_t models = 0;
+    for (const char* model : {"spot", "terrain_6272", "torus_16301", "bunny"})
+    {
+        TriangleMesh mesh;
+        if (!loadStudyModel(model, mesh)) continue;
+        const Side side = sideOf(mesh);
+        for (std::size_t i = 0; i < all.size(); ++i)
+        {
+            SCOPED_TRACE(all[i].m_name + ": " + model);
+            expectSameAsHost(*device, stages[i], all[i].m_methods, side);
+            if (HasFailure()) return;
+        }
+        ++models;
+    }
+    EXPECT_GE(models, 2u);
+}
+
 // The study's models: those that are made, and the scans whose files are there, up to 1.1 million triangles.
 TEST_P(TreeTest, EveryBuilderMakesTheHostsValidTreeOfModels)
 {

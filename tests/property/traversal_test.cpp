@@ -53,6 +53,7 @@ protected:
                 setMotion(*pipelines[p], cloths[p], positions, positions);
                 pipelines[p]->addPair(cloths[p], obstacles[p], step.m_thickness);
                 contacts[p] = runStep(*pipelines[p]);
+                pipelines[p]->waitForRebuild();  // or the machine's load would decide which steps use it
                 rebuilds[p] += pipelines[p]->statistics().m_rebuilds;
                 tests[p] += pipelines[p]->statistics().m_volumeTests;
             }
@@ -111,6 +112,7 @@ TEST_P(TraversalTest, ContactsAreTheSameInTreesOfEveryBuilder)
     trees.back().m_topDown.m_leafSize = 1000;
     trees.push_back(trees[std::size_t(TreeBuilder::Ploc)]);
     trees.back().m_plocRadius = 1;
+    trees.emplace_back().m_mortonBits = 63;
     std::size_t contacts = 0;
     for (const Traversal traversal : allTraversals())
     {
@@ -175,6 +177,37 @@ TEST_P(TraversalTest, DecayedTreesAreBuiltAnew)
             expectRebuilds(step, strews ? strewn : step.m_cloth.m_positions, traversal, strews && walksIt);
         }
     }
+}
+
+// Codes of 30 bits put what is close together in a large scene in no order, those of 63 do; so they must when meshes
+// come, and not only in a tree that is built anew.
+TEST_P(TraversalTest, LongCodesOrderABalancedTree)
+{
+    StepCase step = soupCase(600, 900, false, 940);
+    // A triangle far away, so that the rest lies in one cell of 30 bits.
+    for (std::vector<float>* positions : {&step.m_cloth.m_positions, &step.m_end, &step.m_obstacle.m_positions})
+    {
+        for (std::size_t i = 0; i < 9; ++i)
+            (*positions)[i] += 1e4f;
+    }
+    std::size_t tests[2];
+    std::vector<Contact> contacts[2];
+    for (const std::uint32_t bits : {30u, 63u})
+    {
+        Settings settings = GetParam().m_settings;
+        settings.m_methods.m_traversal = Traversal::Pairs;
+        settings.m_methods.m_countTests = true;
+        settings.m_methods.m_rebuildDecay = 0.0f;
+        settings.m_methods.m_tree.m_mortonBits = bits;
+        const std::unique_ptr<Pipeline> pipeline = makePipeline(settings);
+        ASSERT_TRUE(pipeline);
+        const std::size_t i = bits == 30 ? 0 : 1;
+        contacts[i] = runCase(*pipeline, step);
+        tests[i] = pipeline->statistics().m_volumeTests;
+    }
+    EXPECT_TRUE(sameBytes(contacts[0], contacts[1])) << difference(contacts[0], contacts[1]);
+    EXPECT_GT(contacts[0].size(), 100u);
+    EXPECT_LT(2 * tests[1], tests[0]);
 }
 
 // A front in a pipeline: it is used from the second step on, and drops with a mesh that comes.

@@ -4,6 +4,7 @@
 
 #include "benchmarks/study/trees/tree_work.h"
 #include "benchmarks/support/machine.h"
+#include "bullet_plugin/core/bvh/tree_quality.h"
 
 namespace drape::bench
 {
@@ -78,6 +79,7 @@ void addLevels(const Builds& builds, const Row& input, Table& table)
         row["part"] = "levels";
         row["level"] = depth;
         row["nodes"] = level.m_nodes;
+        row["small_nodes"] = level.m_smallNodes;
         row["group_size"] = level.m_groupSize;
         row["large_nodes"] = level.m_largeNodes;
         times.fill(row, "kernel_");
@@ -107,10 +109,10 @@ void addKernels(const Builds& builds, const Row& input, Table& table)
     }
 }
 
-std::map<std::string, std::string> buildOnHost(const std::string& model, const TreeInput& input,
-                                               const StudyOptions& options, Table& table)
+// A row a rule, void where its tree is not a valid one.
+std::map<std::string, Row> buildOnHost(const std::string& model, const TreeInput& input, const StudyOptions& options)
 {
-    std::map<std::string, std::string> hashes;
+    std::map<std::string, Row> rows;
     for (const TreeVariant& rule : treeRules(options.m_quick))
     {
         Tree tree;
@@ -122,17 +124,59 @@ std::map<std::string, std::string> buildOnHost(const std::string& model, const T
                        tree = buildTreeOnHost(rule.m_methods, input.m_triangles, input.m_positions.data(), 1);
                        return millisecondsSince(start);
                    });
-        hashes[rule.m_rule] = treeHash(tree);
         Row row = treeRow("construction", model, input.triangleCount(), "host, " + rule.m_rule);
         row["backend"] = "host";
         row["device"] = "host";
         row["threads"] = 1;
         times.fill(row);
-        row["hash"] = hashes[rule.m_rule];
-        row["valid"] = "yes";
-        table.add(row);
+        row["hash"] = treeHash(tree);
+        judgeRow(row, isValid(tree, input) ? treeHash(tree) : kNoValidTree);
+        rows[rule.m_rule] = row;
     }
-    return hashes;
+    return rows;
+}
+
+// A device's builds of one variant; false where its tree is not the host's, or the host's no valid one.
+bool addBuilds(const Builds& builds, const TreeVariant& variant, Row row, const Row& host, Table& table)
+{
+    row["hash"] = builds.m_hash;
+    row["valid"] = "yes";  // where the next one is
+    Row times = row;
+    builds.m_host.fill(times);
+    builds.m_kernels.fill(times, "kernel_");
+    judgeRow(times, host["valid"] == "yes" ? std::string(host["hash"]) : kNoValidTree);
+    table.add(times);
+    if (times["valid"] == "no") return false;
+    if (builds.m_levels.empty())
+    {
+        addKernels(builds, row, table);
+        return true;
+    }
+    addLevels(builds, row, table);
+    if (variant.m_name == "thesis: all optimisations") addCompaction(builds, row, table);
+    return true;
+}
+
+// Every variant on the device. A host's row is void, too, where the tree of none of its rule's variants is the host's.
+void addDeviceRows(Device& device, TreeInput& input, const std::string& model, std::map<std::string, Row>& host,
+                   const StudyOptions& options, Table& table)
+{
+    std::map<std::string, bool> agreed;
+    for (const TreeVariant& variant : treeVariants(options.m_quick))
+    {
+        if (options.tooLate(model + ", " + variant.m_name)) continue;
+        const Builds builds = buildOnDevice(device, input, variant.m_methods, options);
+        Row row = treeRow("construction", model, input.triangleCount(), variant.m_name);
+        row["backend"] = "opencl";
+        fillDevice(row, device.info());
+        row["threads"] = 0;
+        const bool same = addBuilds(builds, variant, row, host.at(variant.m_rule), table);
+        agreed[variant.m_rule] = agreed[variant.m_rule] || same;
+    }
+    for (const auto& rule : agreed)
+    {
+        if (!rule.second) judgeRow(host.at(rule.first), "that of the device's tree");
+    }
 }
 }  // namespace
 
@@ -142,32 +186,13 @@ void studyConstruction(const StudyOptions& options, Table& table)
     const auto measure = [&](const std::string& model, const TriangleMesh& mesh)
     {
         TreeInput input(mesh);
-        const std::map<std::string, std::string> hashes = buildOnHost(model, input, options, table);
-        if (!device) return;
-        for (const TreeVariant& variant : treeVariants(options.m_quick))
-        {
-            if (options.tooLate(model + ", " + variant.m_name)) continue;
-            const Builds builds = buildOnDevice(*device, input, variant.m_methods, options);
-            Row row = treeRow("construction", model, input.triangleCount(), variant.m_name);
-            row["backend"] = "opencl";
-            fillDevice(row, device->info());
-            row["threads"] = 0;
-            row["hash"] = builds.m_hash;
-            row["valid"] = "yes";  // where the next one is
-            Row times = row;
-            builds.m_host.fill(times);
-            builds.m_kernels.fill(times, "kernel_");
-            judgeRow(times, hashes.at(variant.m_rule));
-            table.add(times);
-            if (times["valid"] == "no") continue;
-            if (builds.m_levels.empty())
-            {
-                addKernels(builds, row, table);
-                continue;
-            }
-            addLevels(builds, row, table);
-            if (variant.m_name == "thesis: all optimisations") addCompaction(builds, row, table);
-        }
+        std::map<std::string, Row> host = buildOnHost(model, input, options);
+        Table onDevice;
+        if (device) addDeviceRows(*device, input, model, host, options, onDevice);
+        for (const TreeVariant& rule : treeRules(options.m_quick))
+            table.add(host.at(rule.m_rule));
+        for (const Row& row : onDevice.rows())
+            table.add(row);
     };
     forEachModel(options, measure);
 }

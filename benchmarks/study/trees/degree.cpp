@@ -25,21 +25,33 @@ Row degreeRow(const std::string& model, std::size_t triangles, const std::string
     return row;
 }
 
-// The first result of a model without a reference is the others' expectation.
+// Other sides' contacts are judged by those of the product's, which without a reference are the first result's.
 class Judge
 {
 public:
     Judge(const StudyOptions& options, const std::string& model) : m_expected(options.expectedHash("degree", model)) {}
 
-    void judge(Row& row)
+    // False where there is nothing to judge a model by.
+    bool canJudge() const { return !m_expected.empty() || 2 * DRAPE_DOP_DIRECTIONS == kProductSides; }
+    // right: whether what else the row is about is; where it is not, the row is void.
+    void judge(Row& row, bool right = true)
     {
-        if (m_expected.empty()) m_expected = row["hash"];
-        judgeRow(row, m_expected);
+        if (m_expected.empty() && right) m_expected = row["hash"];
+        judgeRow(row, right ? m_expected : kNoValidTree);
     }
 
 private:
+    static constexpr int kProductSides = 18;
     std::string m_expected;
 };
+
+// Judge::canJudge(), or a line that names the model.
+bool isJudged(const Judge& judge, const std::string& model, Table& table)
+{
+    if (judge.canJudge()) return true;
+    table.leaveOut(model + ": no row of 18 sides to judge its contacts by (--reference)");
+    return false;
+}
 
 // Contacts of a walk's candidates: those of no degree may be others.
 void fillContacts(Row& row, const ClothQueries& cloth, const PeerScene& scene, const Found& found)
@@ -51,8 +63,17 @@ void fillContacts(Row& row, const ClothQueries& cloth, const PeerScene& scene, c
     row["hash"] = hashText(hashOf(contacts));
 }
 
-Row treeOnHost(Tree& tree, const Row& described, const TreeInput& input, const TreeMethods& methods,
-               const ClothQueries& cloth, Found& found, std::string& refitHash, const StudyOptions& options)
+// A tree as the host builds, refits and walks it.
+struct HostTree
+{
+    Tree m_tree;
+    Found m_found;
+    std::string m_refitHash;
+    bool m_valid = false;  // as built, and refitted
+};
+
+Row treeOnHost(HostTree& host, const Row& described, const TreeInput& input, const TreeMethods& methods,
+               const ClothQueries& cloth, const StudyOptions& options)
 {
     const auto timed = [](auto work)
     {
@@ -63,15 +84,15 @@ Row treeOnHost(Tree& tree, const Row& described, const TreeInput& input, const T
     Row row = described;
     row["backend"] = row["device"] = "host";
     row["threads"] = 1;
+    Tree& tree = host.m_tree;
     const auto build = [&] { tree = buildTreeOnHost(methods, input.m_triangles, input.m_positions.data(), 1); };
-    const auto walk = [&] { walkOnHost({tree.m_nodes, 0, tree.m_order}, cloth, found); };
+    const auto walk = [&] { walkOnHost({tree.m_nodes, 0, tree.m_order}, cloth, host.m_found); };
     const std::size_t repeats = std::size_t(options.m_repeats);
     repeat(1, repeats, options.m_seconds, [&] { return timed(build); }).fill(row, "build_");
-    bool valid = false;
-    const Refits refits = refitOnOneThread(tree, input, options, valid);
-    if (!valid) throw std::runtime_error(std::string(row["model"]) + ": the host's refitted tree is not valid");
+    const Refits refits = refitOnOneThread(tree, input, options, host.m_valid);
+    host.m_valid = isValid(tree, input) && host.m_valid;
     refits.m_host.fill(row, "refit_");
-    refitHash = refits.m_hash;
+    host.m_refitHash = refits.m_hash;
     repeat(1, repeats, options.m_seconds, [&] { return timed(walk); }).fill(row, "walk_");
     return row;
 }
@@ -104,49 +125,52 @@ Found walkOnDevice(Device& device, TreeInput& input, const Tree& tree, const Clo
     return walk.found();
 }
 
+// The same on the device. Its row is void, too, where one of its trees is not the host's.
+void addDeviceRow(Device& device, Row row, TreeInput& input, const TreeMethods& methods, const HostTree& host,
+                  const ClothQueries& cloth, const PeerScene& scene, Judge& judge, const StudyOptions& options,
+                  Table& table)
+{
+    row["backend"] = "opencl";
+    fillDevice(row, device.info());
+    row["threads"] = 0;
+    const Builds builds = buildOnDevice(device, input, methods, options);
+    builds.m_host.fill(row, "build_");
+    builds.m_kernels.fill(row, "build_kernel_");
+    const Refits refits = refitOnDevice(device, input, host.m_tree, RefitMethod::Subtrees, options);
+    refits.m_host.fill(row, "refit_");
+    refits.m_kernels.fill(row, "refit_kernel_");
+    const Found found = walkOnDevice(device, input, host.m_tree, cloth, host.m_found.m_candidates.size(), row, options);
+    fillContacts(row, cloth, scene, found);
+    judge.judge(row, host.m_valid && builds.m_hash == treeHash(host.m_tree) && refits.m_hash == host.m_refitHash);
+    table.add(row);
+}
+
 void studyTree(const std::string& model, const TriangleMesh& mesh, Device* device, const StudyOptions& options,
                Table& table)
 {
+    Judge judge(options, model);
+    if (!isJudged(judge, model, table)) return;
     TreeInput input(mesh);
     TreeMethods methods;
     methods.m_builder = TreeBuilder::Radix;
     const ClothQueries cloth = clothQueries(mesh);
     const PeerScene scene(cloth.m_scene);
-    Judge judge(options, model);
     Row described = degreeRow(model, input.triangleCount(), "radix tree");
-    Tree tree;
-    Found found;
-    std::string refitHash;
-    Row row = treeOnHost(tree, described, input, methods, cloth, found, refitHash, options);
-    const TreeQuality quality = measureTree(tree.m_nodes, 0);
+    HostTree host;
+    Row row = treeOnHost(host, described, input, methods, cloth, options);
+    const TreeQuality quality = measureTree(host.m_tree.m_nodes, 0);
     for (Row* each : {&described, &row})
     {
-        (*each)["nodes"] = tree.m_nodes.size();
-        (*each)["bytes"] = bytesOf(tree);
+        (*each)["nodes"] = host.m_tree.m_nodes.size();
+        (*each)["bytes"] = bytesOf(host.m_tree);
         (*each)["height"] = quality.m_height;
         (*each)["cost"] = quality.m_cost;
-        (*each)["visits"] = found.m_tests;
+        (*each)["visits"] = host.m_found.m_tests;
     }
-    fillContacts(row, cloth, scene, found);
-    judge.judge(row);
+    fillContacts(row, cloth, scene, host.m_found);
+    judge.judge(row, host.m_valid);
     table.add(row);
-    if (!device) return;
-    row = described;
-    row["backend"] = "opencl";
-    fillDevice(row, device->info());
-    row["threads"] = 0;
-    const Builds builds = buildOnDevice(*device, input, methods, options);
-    builds.m_host.fill(row, "build_");
-    builds.m_kernels.fill(row, "build_kernel_");
-    const Refits refits = refitOnDevice(*device, input, tree, RefitMethod::Subtrees, options);
-    refits.m_host.fill(row, "refit_");
-    refits.m_kernels.fill(row, "refit_kernel_");
-    if (builds.m_hash != treeHash(tree) || refits.m_hash != refitHash)
-        throw std::runtime_error(model + ": the device's tree is not the host's");
-    const Found onDevice = walkOnDevice(*device, input, tree, cloth, found.m_candidates.size(), row, options);
-    fillContacts(row, cloth, scene, onDevice);
-    judge.judge(row);
-    table.add(row);
+    if (device) addDeviceRow(*device, described, input, methods, host, cloth, scene, judge, options, table);
 }
 
 struct StepVariant
@@ -252,6 +276,7 @@ void studySteps(const SceneSpec& spec, const StudyOptions& options, Table& table
     if (!loadModel(spec.m_model, options, obstacle)) return;
     const StepScene scene = makeStepScene(spec, obstacle);
     Judge judge(options, spec.m_name);
+    if (!isJudged(judge, spec.m_name, table)) return;
     for (const StepVariant& variant : stepVariants(options))
     {
         if (!options.tooLate(spec.m_name + ", " + variant.m_name)) addSteps(scene, variant, judge, options, table);

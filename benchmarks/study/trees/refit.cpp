@@ -3,7 +3,6 @@
 
 #include "benchmarks/study/trees/tree_work.h"
 #include "benchmarks/support/machine.h"
-#include "bullet_plugin/core/bvh/tree_quality.h"
 
 namespace drape::bench
 {
@@ -96,7 +95,7 @@ Refits refitOnOneThread(Tree tree, const TreeInput& input, const StudyOptions& o
                                return millisecondsSince(start);
                            });
     refits.m_hash = treeHash(tree);
-    valid = whyInvalid(tree.m_nodes, 0, tree.m_order, input.m_triangles, moved, noRadius).empty();
+    valid = isValid(tree, input, true);
     return refits;
 }
 
@@ -159,12 +158,12 @@ void studyRefit(const StudyOptions& options, Table& table)
         row["threads"] = 1;
         row["hash"] = host.m_hash;
         host.m_host.fill(row);
-        judgeRow(row, valid ? host.m_hash : "that of a valid tree");
+        judgeRow(row, valid ? host.m_hash : kNoValidTree);
         table.add(row);
         if (!device) return;
         for (const RefitVariant& variant :
              {RefitVariant{"thesis: launch per level", RefitMethod::Levels}, {"subtrees", RefitMethod::Subtrees}})
-            addDeviceRows(*device, input, tree, model, variant, host.m_hash, options, table);
+            addDeviceRows(*device, input, tree, model, variant, valid ? host.m_hash : kNoValidTree, options, table);
     };
     forEachModel(options, measure);
 }

@@ -1,9 +1,11 @@
 #include "benchmarks/study/trees/tree_input.h"
 
+#include <iostream>
 #include <stdexcept>
 
 #include "benchmarks/support/result_hash.h"
 #include "benchmarks/support/step_method.h"
+#include "bullet_plugin/core/bvh/tree_quality.h"
 #include "bullet_plugin/core/mesh/topology.h"
 #include "kernels/lib/dop.h"
 
@@ -119,6 +121,14 @@ ClothQueries clothQueries(const TriangleMesh& obstacle)
 std::string treeHash(const Tree& tree)
 {
     return hashText(hashOf(tree.m_nodes, hashOf(tree.m_order)));
+}
+
+bool isValid(const Tree& tree, const TreeInput& input, bool moved)
+{
+    const float* positions = (moved ? input.m_moved : input.m_positions).data();
+    const std::string reason = whyInvalid(tree.m_nodes, 0, tree.m_order, input.m_triangles, positions, {0.0f});
+    if (!reason.empty()) std::cerr << "study: not a valid tree: " << reason << std::endl;
+    return reason.empty();
 }
 
 Row treeRow(const char* part, const std::string& model, std::size_t triangles, const std::string& variant)

@@ -58,6 +58,11 @@ ClothQueries clothQueries(const TriangleMesh& obstacle);
 
 // Of order and nodes: links and volumes, bit for bit.
 std::string treeHash(const Tree& tree);
+// Whether every triangle is in one leaf and every volume is exactly that of its triangles: whyInvalid(), which a line
+// on standard error then says. moved: of the triangles where refits find them.
+bool isValid(const Tree& tree, const TreeInput& input, bool moved = false);
+// What the hash of a wrong tree is held against.
+constexpr const char* kNoValidTree = "that of a valid tree";
 
 // A row's input columns.
 Row treeRow(const char* part, const std::string& model, std::size_t triangles, const std::string& variant);

@@ -8,7 +8,9 @@ void Pipeline::Implementation::buildHierarchy(MeshPool& pool, const float* posit
 {
     const TreeMethods& methods = m_settings.m_methods.m_tree;
     const bool walked = m_report.m_onHost || !goesOverPatches(m_settings);
-    if (methods.m_builder == TreeBuilder::Balanced || !walked)
+    // Meshes come sorted by codes of 30 bits.
+    const bool asTheyCame = methods.m_builder == TreeBuilder::Balanced && methods.m_mortonBits == 30;
+    if (asTheyCame || !walked)
         layout = makeBvhLayout(std::uint32_t(pool.order().size()));
     else
         useHierarchy(buildTreeOnHost(methods, pool.triangles(), positions, pool.meshCount()), pool, layout);

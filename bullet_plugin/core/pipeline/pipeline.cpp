@@ -8,6 +8,7 @@
 
 #include "bullet_plugin/core/mesh/check_indices.h"
 #include "bullet_plugin/core/mesh/normal_cones.h"
+#include "check_methods.h"
 #include "scene_work.h"
 
 namespace drape
@@ -295,6 +296,7 @@ std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& erro
 {
     const Clock::time_point start = Clock::now();
     error = Error();
+    if (!checkMethods(settings.m_methods, error)) return nullptr;
     const DeviceChoice choice = chooseDevice(settings, error);
     if (error.failed()) return nullptr;
     std::unique_ptr<Pipeline> pipeline(new Pipeline);
@@ -470,6 +472,12 @@ ContactList Pipeline::finish()
     if (statistics.m_invalidNodes > 0) statistics.m_status |= kStepInvalidNodes;
     statistics.m_waitMs = millisecondsSince(start);
     return self.m_result.contacts();
+}
+
+void Pipeline::waitForRebuild()
+{
+    assert(!m_implementation->m_submitted);
+    m_implementation->m_treeWatch.wait();
 }
 
 ContactList Pipeline::selfContacts() const

@@ -57,6 +57,11 @@ void TreeWatch::rebuild(const TreeMethods& methods, std::vector<Triangle> triang
                            { return buildTreeOnHost(methods, triangles, positions.data(), meshCount); });
 }
 
+void TreeWatch::wait()
+{
+    if (m_rebuilt.valid()) m_rebuilt.wait();
+}
+
 bool TreeWatch::take(Tree& tree)
 {
     if (!m_rebuilt.valid() || m_rebuilt.wait_for(std::chrono::seconds(0)) == std::future_status::timeout) return false;

@@ -33,6 +33,8 @@ public:
     // Starts to build from copies of its own. positions: m, x y z per vertex.
     void rebuild(const TreeMethods& methods, std::vector<Triangle> triangles, std::vector<float> positions,
                  std::size_t meshCount);
+    // Waits until the hierarchy that is being built is there; returns at once where none is.
+    void wait();
     // Gives the new hierarchy once, when it is there.
     bool take(Tree& tree);
 

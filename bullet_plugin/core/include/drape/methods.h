@@ -1,6 +1,8 @@
 // Which algorithm each stage uses, where there are several. All of them give the same contacts, bit for bit: the choice
 // is one of time and memory. The defaults are those that were fastest on each class of device. C++11, no OpenCL header
 // needed.
+//
+// Where a field has a range, Pipeline::create fails with an Error that names the field when it is out of it.
 #pragma once
 
 #include <cstdint>
@@ -40,11 +42,12 @@ struct TopDownSettings
     // as they lie. A hierarchy's leaves always are single triangles, which is what traversals hand on; leaves of more
     // are measured apart (part `shape` of the study).
     std::uint32_t m_leafSize = 1;
-    std::uint32_t m_groupSize = 128;   // work-items of a group, a power of two, 16 to 256; the thesis's is 128
-    std::uint32_t m_smallSize = 55;    // triangles up to which a node is small (the thesis's)
-    float m_smallShare = 0.3f;         // share of small nodes from which a level has a work-item per node (its 30 %)
-    std::uint32_t m_largeSize = 8192;  // triangles from which a node is large
-    std::uint32_t m_compactionGroup = 256;  // work-items of the compaction's groups, a power of two, ≤ 256
+    std::uint32_t m_groupSize = 128;  // work-items of a group, a power of two, 16 to 256; the thesis's is 128
+    std::uint32_t m_smallSize = 55;   // triangles up to which a node is small (the thesis's)
+    // Share of small nodes from which a level has a work-item per node, ≥ 0 (its 30 %). Above 1: in no level.
+    float m_smallShare = 0.3f;
+    std::uint32_t m_largeSize = 8192;       // triangles from which a node is large, ≥ 1
+    std::uint32_t m_compactionGroup = 256;  // work-items of the compaction's groups, a power of two, 16 to 256
 };
 
 // How hierarchies of triangles are built and refitted. A pipeline builds its hierarchies on the host (core/bvh/
@@ -56,8 +59,9 @@ struct TreeMethods
     TreeBuilder m_builder = TreeBuilder::Balanced;
     RefitMethod m_refit = RefitMethod::Subtrees;
     WorkShape m_workShape = WorkShape::Device;
-    std::uint32_t m_mortonBits = 30;  // 30 or 63; all but TopDown
-    std::uint32_t m_plocRadius = 8;   // neighbours looked at on either side; 1 to 32. Larger: better trees, slower
+    // 30 or 63; all but TopDown. More tell triangles apart that are close together in a large scene, and take longer.
+    std::uint32_t m_mortonBits = 30;
+    std::uint32_t m_plocRadius = 8;  // neighbours looked at on either side; 1 to 32. Larger: better trees, slower
     TopDownSettings m_topDown;
 };
 
@@ -81,13 +85,14 @@ struct Methods
 {
     Traversal m_traversal = Traversal::Auto;
 
-    // Who builds the hierarchies that traversals walk; nothing where the step goes over patches. All but Balanced build
-    // on the host whenever meshes come or go, over a side's meshes together, as their positions were given.
+    // Who builds the hierarchies that traversals walk; nothing where the step goes over patches. All but Balanced with
+    // codes of 30 bits build on the host whenever meshes come or go, over a side's meshes together, as their positions
+    // were given; that one takes each mesh's triangles in the order in which it came.
     TreeMethods m_tree;
 
     // The cloths' hierarchy is built anew, beside the steps, once its nodes' areas over the root's have grown by this
-    // factor since it was built: see core/pipeline/tree_watch.h. 0: never. Only where a traversal walks it: Pairs,
-    // Single, Groups and Front, which is the host's Auto.
+    // factor, ≥ 1, since it was built: see core/pipeline/tree_watch.h. 0: never. Only where a traversal walks it:
+    // Pairs, Single, Groups and Front, which is the host's Auto.
     float m_rebuildDecay = 1.5f;
 
     // Count the broad phase's volume tests (StepStatistics::m_volumeTests). Costs an atomic a work-item.
