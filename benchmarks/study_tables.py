@@ -114,6 +114,12 @@ def front_cells(steps, front, figure):
     return cells + ([figure(whole / len(steps)), figure(mean(steps, "step_ms"))] if steps else ["–", "–"])
 
 
+def phase_table(table, what, columns, lines):
+    """columns: with a place for the phase, for coming down and then for rest."""
+    headings = [text.format(phase) for phase in ("coming down", "at rest") for text in columns]
+    return table(["scene", what] + headings, lines)
+
+
 def front_table(rows, table, figure):
     """What the front saves as the cloth comes down, and as it sways at rest."""
     lines = []
@@ -132,8 +138,7 @@ def front_table(rows, table, figure):
     columns = ["volume tests, {}", "broad phase, ms", "all stages, ms", "step, host to host, ms"]
     return ("The front against traversals without one, means of steps (kernel time on a device, but for the last); in brackets what the front "
             "takes of it. The default finds pairs of features, the others of triangles.\n\n"
-            + table(["scene", "traversal"] + [text.format(phase) for phase in ("coming down", "at rest") for text in columns],
-                    lines))
+            + phase_table(table, "traversal", columns, lines))
 
 
 def pair_text(row, prefix, figure):
@@ -225,8 +230,7 @@ def builder_table(rows, table, figure):
     columns = ["step, {}, ms", "refit", "broad phase", "volume tests"]
     return ("Whole steps of the host, one thread, by default but for the builder of both sides' trees: medians of steps, in "
             "brackets the step of that with the default builder; passes of the builders took turns.\n\n"
-            + table(["scene", "builder"] + [text.format(phase) for phase in ("coming down", "at rest") for text in columns],
-                    lines))
+            + phase_table(table, "builder", columns, lines))
 
 
 def refit_kernel_table(rows, table, figure):
