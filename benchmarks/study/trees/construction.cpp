@@ -9,6 +9,17 @@
 namespace drape::bench
 {
 // The first build lets buffers grow and drivers compile; it is not counted.
+Samples buildOnOneThread(const TreeInput& input, const TreeMethods& methods, const StudyOptions& options, Tree& tree)
+{
+    return repeat(1, std::size_t(options.m_repeats), options.m_seconds,
+                  [&]
+                  {
+                      const Clock::time_point start = Clock::now();
+                      tree = buildTreeOnHost(methods, input.m_triangles, input.m_positions.data(), 1);
+                      return millisecondsSince(start);
+                  });
+}
+
 Builds buildOnDevice(Device& device, TreeInput& input, const TreeMethods& methods, const StudyOptions& options)
 {
     TreeBuilderStage stage;
@@ -116,14 +127,7 @@ std::map<std::string, Row> buildOnHost(const std::string& model, const TreeInput
     for (const TreeVariant& rule : treeRules(options.m_quick))
     {
         Tree tree;
-        const Samples times =
-            repeat(1, std::size_t(options.m_repeats), options.m_seconds,
-                   [&]
-                   {
-                       const Clock::time_point start = Clock::now();
-                       tree = buildTreeOnHost(rule.m_methods, input.m_triangles, input.m_positions.data(), 1);
-                       return millisecondsSince(start);
-                   });
+        const Samples times = buildOnOneThread(input, rule.m_methods, options, tree);
         Row row = treeRow("construction", model, input.triangleCount(), "host, " + rule.m_rule);
         row["backend"] = "host";
         row["device"] = "host";

@@ -41,15 +41,7 @@ std::string fillBuildTimes(Row& row, const TreeVariant& variant, Device* device,
         return builds.m_hash;
     }
     Tree tree;
-    const Samples times =
-        repeat(1, std::size_t(options.m_repeats), options.m_seconds,
-               [&]
-               {
-                   const Clock::time_point start = Clock::now();
-                   tree = buildTreeOnHost(variant.m_methods, input.m_triangles, input.m_positions.data(), 1);
-                   return millisecondsSince(start);
-               });
-    row["median_ms"] = times.median();
+    row["median_ms"] = buildOnOneThread(input, variant.m_methods, options, tree).median();
     return treeHash(tree);
 }
 }  // namespace

@@ -1,4 +1,4 @@
-// Construction and refit on a device, repeated and timed.
+// Construction and refit, repeated and timed.
 #pragma once
 
 #include <string>
@@ -18,6 +18,8 @@ struct Builds
     std::string m_hash;  // treeHash()
 };
 Builds buildOnDevice(Device& device, TreeInput& input, const TreeMethods& methods, const StudyOptions& options);
+// On the host, one thread: the last tree, and how long each took, ms.
+Samples buildOnOneThread(const TreeInput& input, const TreeMethods& methods, const StudyOptions& options, Tree& tree);
 
 // What repeated refits of one tree took, from TreeInput::m_positions to m_moved.
 struct Refits
