@@ -2,7 +2,6 @@
 // of those it may touch a vector of lanes at a time, and lists the feature tests that are left.
 #include "lib/patch_pairs.h"
 
-
 // A cloth triangle's walk over the obstacles that rest, or over one that moves.
 typedef struct Walk
 {

@@ -177,7 +177,8 @@ static FeatureBox loadNode(const SelfFeatures* features, const uint node)
     return box;
 }
 
-static void gatherFace(__local NearFaces* near, const SelfCloth* cloth, const SelfFeatures* features, const uint place, const uint face, const FeatureBox* other)
+static void gatherFace(__local NearFaces* near, const SelfCloth* cloth, const SelfFeatures* features, const uint place,
+                       const uint face, const FeatureBox* other)
 {
     FeatureBox box = emptyBox();
     for (int k = 0; k < 3 && face != DRAPE_NO_FEATURE; ++k)
