@@ -17,7 +17,7 @@ bool iterationsCanBeSplit(const btSoftBody& body)
 }
 
 // Returns the time of Bullet's part, ms.
-double solveWithBullet(const BodyContacts& contacts, ContactRounds& rounds)
+double solveWithBullet(BodyContacts& contacts, ContactRounds& rounds)
 {
     btSoftBody& body = *contacts.m_body;
     double bulletMs = 0;
@@ -37,10 +37,10 @@ double solveWithBullet(const BodyContacts& contacts, ContactRounds& rounds)
     return bulletMs;
 }
 
-void close(const BodyContacts& contacts, ContactRounds& rounds)
+void close(BodyContacts& contacts, ContactRounds& rounds)
 {
     btSoftBody& body = *contacts.m_body;
-    const MotionLimit& limit = contacts.m_limit;
+    MotionLimit& limit = contacts.m_limit;
     limit.apply(body);
     if (rounds.empty()) return;
     rounds.restart();
@@ -58,7 +58,7 @@ void close(const BodyContacts& contacts, ContactRounds& rounds)
 }
 }  // namespace
 
-double solveBody(const BodyContacts& contacts, const FoundContacts& found, ContactRounds& rounds)
+double solveBody(BodyContacts& contacts, const FoundContacts& found, ContactRounds& rounds)
 {
     rounds.start(contacts, found);
     const double bulletMs = solveWithBullet(contacts, rounds);

@@ -30,5 +30,5 @@ constexpr btScalar kClosingTolerance = btScalar(0.01);
 
 // Runs the body's solveConstraints() with its contacts; its step has a time above 0. Returns the time of Bullet's part,
 // ms.
-double solveBody(const BodyContacts& contacts, const FoundContacts& found, ContactRounds& rounds);
+double solveBody(BodyContacts& contacts, const FoundContacts& found, ContactRounds& rounds);
 }  // namespace drape

@@ -120,8 +120,8 @@ void CollisionStep::submit()
         m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_thickness), tubeOf(pair));
     m_state.pipeline().submit();
     // While the device works.
-    for (BodyContacts& body : m_bodies)
-        body.m_limit.record(*body.m_body);
+    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+        m_bodies[i].m_limit.record(*m_bodies[i].m_body, m_mirrors[i]->triangles());
 }
 
 void CollisionStep::receive(const ContactList& contacts)

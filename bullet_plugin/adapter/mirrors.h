@@ -43,6 +43,8 @@ public:
     MeshId refresh(Pipeline& pipeline);
     // Writes the nodes' positions at the step's start (m_q) and predicted end (m_x).
     void writeNodes(float* start, float* end) const;
+    // Three nodes each, as the pipeline has them.
+    const std::vector<std::int32_t>& triangles() const { return m_triangles; }
     void requireFullCheck() { m_fullCheck = true; }
 
     int m_owners = 0;              // algorithms alive that use this mirror

@@ -56,41 +56,17 @@ void MotionLimit::addObstacle(const btVector3& low, const btVector3& high, btSca
                                carry ? *carry : btTransform::getIdentity()});
 }
 
-void MotionLimit::record(const btSoftBody& body)
+void MotionLimit::record(const btSoftBody& body, const std::vector<std::int32_t>& triangles)
 {
     m_paths.record(body);
     m_hasContact.assign(m_paths.m_end.size(), 0);
-}
-
-bool MotionLimit::near(const Region& region, std::size_t node, const btVector3& to) const
-{
-    btVector3 low = m_paths.m_end[node], high = m_paths.m_end[node];
-    low.setMin(to);
-    high.setMax(to);
-    bool near = true;
-    for (int axis = 0; axis < 3; ++axis)
-        near = near && low[axis] <= region.m_high[axis] && high[axis] >= region.m_low[axis];
-    return near;
+    m_triangles = &triangles;
 }
 
 MotionLimit::Allowance MotionLimit::allowance(const Region& region, std::size_t node) const
 {
     const Allowance& own = region.m_allowance;
     return Allowance{own.m_start, m_hasContact[node] ? own.m_start : own.m_end};
-}
-
-MotionLimit::Allowance MotionLimit::allowance(std::size_t node, const btVector3& to) const
-{
-    Allowance least{SIMD_INFINITY, SIMD_INFINITY};
-    for (const Region& region : m_regions)
-    {
-        // A node of a face or an edge that is near may itself be away from all boxes.
-        if (region.m_moves || !(m_hasContact[node] || near(region, node, to))) continue;
-        const Allowance own = allowance(region, node);
-        least.m_start = std::min(least.m_start, own.m_start);
-        least.m_end = std::min(least.m_end, own.m_end);
-    }
-    return least;
 }
 
 bool MotionLimit::strayed(const btSoftBody& body) const
@@ -102,24 +78,113 @@ bool MotionLimit::strayed(const btSoftBody& body) const
     return false;
 }
 
-void MotionLimit::apply(btSoftBody& body) const
+bool MotionLimit::findRestless(const btSoftBody& body)
 {
-    const btScalar velocityScale = body.m_sst.isdt * (1 - body.m_cfg.kDP);
     const int count = std::min(body.m_nodes.size(), static_cast<int>(m_paths.m_end.size()));
+    m_restless.clear();
+    m_isRestless.assign(m_paths.m_end.size(), 0);
     for (int i = 0; i < count; ++i)
     {
-        btSoftBody::Node& node = body.m_nodes[i];
         const std::size_t at = static_cast<std::size_t>(i);
-        const btVector3 &start = m_paths.m_start[at], &end = m_paths.m_end[at];
-        if ((node.m_x - end).length2() <= m_free * m_free || !(m_paths.m_inverseMass[at] > 0)) continue;
-        const Allowance allowed = allowance(at, node.m_x);
-        if (allowed.m_end != SIMD_INFINITY) keepNear(node, start, end, allowed.m_start, allowed.m_end, velocityScale);
-        for (const Region& region : m_regions)
+        const btScalar off2 = (body.m_nodes[i].m_x - m_paths.m_end[at]).length2();
+        if (off2 <= m_free * m_free || !(m_paths.m_inverseMass[at] > 0)) continue;
+        m_restless.push_back(Restless{i, Allowance{SIMD_INFINITY, SIMD_INFINITY}});
+        m_isRestless[at] = 1;
+    }
+    return !m_restless.empty();
+}
+
+void MotionLimit::addPassed(const btSoftBody& body, int a, int b, int c)
+{
+    const btVector3& first = m_paths.m_end[static_cast<std::size_t>(a)];
+    Passed passed{first, first, {a, b, c}};
+    for (const int node : passed.m_nodes)
+    {
+        for (const btVector3& place : {m_paths.m_end[static_cast<std::size_t>(node)], body.m_nodes[node].m_x})
         {
-            if (!region.m_moves || !near(region, at, node.m_x)) continue;
-            const Allowance own = allowance(region, at);
-            keepNear(node, region.m_carry * start, end, own.m_start, own.m_end, velocityScale);
+            passed.m_low.setMin(place);
+            passed.m_high.setMax(place);
         }
     }
+    m_passed.push_back(passed);
+}
+
+// Of restless nodes, and of triangles that have one.
+void MotionLimit::boxPassed(const btSoftBody& body)
+{
+    m_passed.clear();
+    for (const Restless& restless : m_restless)
+        addPassed(body, restless.m_node, restless.m_node, restless.m_node);
+    const std::vector<std::int32_t>& nodes = *m_triangles;
+    for (std::size_t i = 0; i + 2 < nodes.size(); i += 3)
+    {
+        bool any = false;
+        for (int k = 0; k < 3; ++k)
+            any = any || m_isRestless[static_cast<std::size_t>(nodes[i + static_cast<std::size_t>(k)])] != 0;
+        if (any) addPassed(body, nodes[i], nodes[i + 1], nodes[i + 2]);
+    }
+}
+
+void MotionLimit::markNear(const Region& region)
+{
+    m_isNear.assign(m_paths.m_end.size(), 0);
+    for (const Passed& passed : m_passed)
+    {
+        bool near = true;
+        for (int axis = 0; axis < 3; ++axis)
+            near = near && passed.m_low[axis] <= region.m_high[axis] && passed.m_high[axis] >= region.m_low[axis];
+        for (int k = 0; near && k < 3; ++k)
+            m_isNear[static_cast<std::size_t>(passed.m_nodes[k])] = 1;
+    }
+}
+
+void MotionLimit::applyResting(btSoftBody& body, btScalar velocityScale)
+{
+    for (const Region& region : m_regions)
+    {
+        if (region.m_moves) continue;
+        markNear(region);
+        for (Restless& restless : m_restless)
+        {
+            const std::size_t at = static_cast<std::size_t>(restless.m_node);
+            // What met a node's face on the way to the end may be away from all boxes there.
+            if (!(m_hasContact[at] || m_isNear[at])) continue;
+            const Allowance own = allowance(region, at);
+            restless.m_allowed.m_start = std::min(restless.m_allowed.m_start, own.m_start);
+            restless.m_allowed.m_end = std::min(restless.m_allowed.m_end, own.m_end);
+        }
+    }
+    for (const Restless& restless : m_restless)
+    {
+        const Allowance& allowed = restless.m_allowed;
+        if (allowed.m_end == SIMD_INFINITY) continue;
+        const std::size_t at = static_cast<std::size_t>(restless.m_node);
+        keepNear(body.m_nodes[restless.m_node], m_paths.m_start[at], m_paths.m_end[at], allowed.m_start, allowed.m_end,
+                 velocityScale);
+    }
+}
+
+void MotionLimit::applyMoving(btSoftBody& body, const Region& region, btScalar velocityScale)
+{
+    boxPassed(body);
+    markNear(region);
+    for (const Restless& restless : m_restless)
+    {
+        const std::size_t at = static_cast<std::size_t>(restless.m_node);
+        if (!m_isNear[at]) continue;
+        const Allowance own = allowance(region, at);
+        keepNear(body.m_nodes[restless.m_node], region.m_carry * m_paths.m_start[at], m_paths.m_end[at], own.m_start,
+                 own.m_end, velocityScale);
+    }
+}
+
+void MotionLimit::apply(btSoftBody& body)
+{
+    if (!findRestless(body)) return;
+    const btScalar velocityScale = body.m_sst.isdt * (1 - body.m_cfg.kDP);
+    boxPassed(body);
+    applyResting(body, velocityScale);
+    for (const Region& region : m_regions)
+        if (region.m_moves) applyMoving(body, region, velocityScale);
 }
 }  // namespace drape

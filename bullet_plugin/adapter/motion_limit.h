@@ -7,11 +7,13 @@
 // too close to are among its contacts. A node without contacts is farther from every surface than the reach at the
 // path's end, and may leave that end by most of it; towards the path's start, where only the thickness is known to be
 // free, it may leave by less. What links could not do in this step they do in the next. The velocity follows the
-// position, as in Bullet's own update, so that no energy comes from it. Nodes away from every obstacle are not touched.
-// Near an obstacle that moves the path is the one that the obstacle sees. Metres, world frame. Cost: linear in the
-// nodes.
+// position, as in Bullet's own update, so that no energy comes from it. A node is near an obstacle when it or any of
+// its faces is: a face whose nodes all lie beside a corner may be pulled over it. Nodes away from every obstacle are
+// not touched. Near an obstacle that moves the path is the one that the obstacle sees. Metres, world frame. Cost:
+// linear in the nodes, and in the triangles where nodes left their paths.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "bullet_plugin/adapter/node_paths.h"
@@ -37,13 +39,15 @@ public:
     // Forgets the obstacles; what memory it has stays.
     void clear();
     // Box of an obstacle that the body has a pair with, the pair's thickness, and the activation as a share of it.
-    // Nodes whose way from the predicted to the solved position misses every box are free. carry: see StepContact.
+    // Nodes are free where what their faces can pass between the predicted and the solved positions misses every box.
+    // carry: see StepContact.
     // While a body's obstacles all rest, a node with contacts ends at most tube() of the thinnest pair from its path:
     // detection may leave out what others imply there.
     void addObstacle(const btVector3& low, const btVector3& high, btScalar thickness, btScalar activation,
                      const btTransform* carry = nullptr);
-    // Call before Bullet solves: remembers the prediction.
-    void record(const btSoftBody& body);
+    // Call before Bullet solves: remembers the prediction. triangles: three nodes each; they stay where they are until
+    // the last apply().
+    void record(const btSoftBody& body, const std::vector<std::int32_t>& triangles);
     // Distance from its path that a node with contacts may go, m.
     static btScalar tube(btScalar thickness, btScalar activation);
     const NodePaths& paths() const { return m_paths; }
@@ -52,7 +56,7 @@ public:
     // Whether a node ended so far back along its path that faces and edges may have taken ways nobody looked at.
     bool strayed(const btSoftBody& body) const;
     // Brings nodes that left their path too far back; the nearest point of the allowed region.
-    void apply(btSoftBody& body) const;
+    void apply(btSoftBody& body);
 
 private:
     // Distances from the path's start and end that a node may go.
@@ -68,15 +72,36 @@ private:
         btTransform m_carry;
     };
 
-    bool near(const Region& region, std::size_t node, const btVector3& to) const;
-    // Of the obstacles that rest.
-    Allowance allowance(std::size_t node, const btVector3& to) const;
+    // A node farther from its path's end than is always free.
+    struct Restless
+    {
+        int m_node;
+        Allowance m_allowed;  // by the obstacles that rest
+    };
+    // What a node or a triangle may pass between its predicted and its present place.
+    struct Passed
+    {
+        btVector3 m_low, m_high;
+        int m_nodes[3];
+    };
+
+    bool findRestless(const btSoftBody& body);
+    void boxPassed(const btSoftBody& body);
+    void addPassed(const btSoftBody& body, int a, int b, int c);
+    void markNear(const Region& region);
     Allowance allowance(const Region& region, std::size_t node) const;
+    void applyResting(btSoftBody& body, btScalar velocityScale);
+    void applyMoving(btSoftBody& body, const Region& region, btScalar velocityScale);
 
     std::vector<Region> m_regions;
     btScalar m_leastReach = SIMD_INFINITY;
     btScalar m_free = SIMD_INFINITY;  // m, from the end of its path; within it a node is where it may be
     NodePaths m_paths;
     std::vector<unsigned char> m_hasContact;
+    const std::vector<std::int32_t>* m_triangles = nullptr;
+    // Of one apply(), kept for their memory.
+    std::vector<Restless> m_restless;
+    std::vector<unsigned char> m_isRestless, m_isNear;  // by node; near the region looked at last
+    std::vector<Passed> m_passed;
 };
 }  // namespace drape

@@ -85,7 +85,7 @@ double SoftBodySolver::solveBodies()
         btSoftBody* body = m_softBodySet[i];
         // Bullet's links would move the nodes and its velocities are what they moved over the time: not numbers.
         if (!body->isActive() || !(body->m_sst.sdt > 0)) continue;
-        if (const BodyContacts* contacts = m_work->m_step.contactsOf(*body))
+        if (BodyContacts* contacts = m_work->m_step.contactsOf(*body))
         {
             bulletMs += solveBody(*contacts, m_state->m_found, m_work->m_rounds);
             continue;

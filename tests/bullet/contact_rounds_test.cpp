@@ -274,7 +274,8 @@ TEST(ContactRounds, areThoseOverEveryContact)
     BodyContacts bodyContacts;
     bodyContacts.start(cloth, &body);
     bodyContacts.m_leastThickness = bodyContacts.m_mostThickness = kThickness;
-    bodyContacts.m_limit.record(body);
+    const std::vector<std::int32_t> noTriangles;
+    bodyContacts.m_limit.record(body, noTriangles);
     bodyContacts.m_features = featuresOf(*pipeline, contacts);
 
     ContactRounds rounds;

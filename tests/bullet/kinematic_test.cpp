@@ -7,6 +7,7 @@
 
 #include "bullet_plugin/adapter/kinematic_motion.h"
 #include "bullet_plugin/adapter/motion_limit.h"
+#include "scenes/random.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
 #include "tests/support/backends.h"
@@ -220,6 +221,35 @@ INSTANTIATE_TEST_SUITE_P(Plates, KinematicPlate, testing::ValuesIn(plateCases())
                                     plate.m_backend.m_name;
                          });
 
+// The links pull edges across its corners whose nodes all lie beside it.
+TEST_P(Kinematic, thinPlateIsWrappedByClothThatLiesAskew)
+{
+    constexpr btScalar kSpeed = 30, kMostShift = btScalar(0.12);  // m/s, m
+    std::size_t most = 0;
+    for (std::uint32_t seed = 1; seed <= 8; ++seed)
+    {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Random random(seed);
+        const btQuaternion turn(btVector3(0, 1, 0), random.within(0, 2 * SIMD_PI));
+        const btVector3 shift(random.within(-kMostShift, kMostShift), 0, random.within(-kMostShift, kMostShift));
+        const auto poseAt = [&](btScalar height) { return btTransform(turn, shift + btVector3(0, height, 0)); };
+        btScalar height = -1;
+        KinematicScene scene(makeBox(0.7f, 0.004f, 0.7f), poseAt(height), 1.0f, btVector3(0, 0, 0),
+                             GetParam().m_settings);
+        scene.m_cloth.addVelocity(btVector3(0, btScalar(random.within(-8, 0)), 0));
+        scene.checkedStep(poseAt(height));
+        for (int i = 0; i < 24; ++i)
+        {
+            SCOPED_TRACE("step " + std::to_string(i));
+            height += kSpeed * kDt;
+            scene.checkedStep(poseAt(height));
+            if (HasFatalFailure()) return;
+        }
+        most = std::max(most, scene.m_most);
+    }
+    EXPECT_GT(most, 0u);
+}
+
 // Discrete steps look at the end of each only: what comes by farther than the thickness misses the cloth, unless a step
 // ends there. The share of nodes that are behind the plate after it came up from one of 12 heights, evenly spaced over
 // the way of a step, is what tests/README.md documents.
@@ -413,7 +443,8 @@ btVector3 limited(const btVector3& to, bool moves)
     const btTransform up = shiftedBy(btVector3(0, 1, 0));
     MotionLimit limit;
     limit.addObstacle(btVector3(-2, -2, -2), btVector3(2, 2, 2), kThickness, btScalar(0.5), moves ? &up : nullptr);
-    limit.record(body);
+    const std::vector<std::int32_t> noTriangles;
+    limit.record(body, noTriangles);
     limit.addContactNode(0);
     body.m_nodes[0].m_x = to;
     limit.apply(body);
@@ -430,6 +461,37 @@ TEST(KinematicMotion, takesTheLimitOfNodesWithIt)
     EXPECT_NEAR(limited(beside, true).x(), kThickness / 2, 1e-6);
     EXPECT_NEAR(limited(beside, true).y(), 0.5, 1e-6);
     EXPECT_NEAR(limited(beyond, true).y(), 1 + kThickness / 2, 1e-6);
+}
+
+// All nodes are beside the obstacle before and after they were pulled, only their triangle comes over its corner.
+TEST(MotionLimit, holdsTrianglesThatArePulledOverACorner)
+{
+    const btVector3 places[] = {
+        {btScalar(2.2), btScalar(0.5), 0}, {btScalar(0.5), btScalar(2.2), 0}, {btScalar(2.2), btScalar(2.2), 0}};
+    const btVector3 pull(btScalar(-0.5), btScalar(-0.5), 0);
+    const btScalar masses[] = {1, 1, 1};
+    const btTransform rests = btTransform::getIdentity();
+    for (const bool joined : {true, false})
+    {
+        for (const bool moves : {true, false})
+        {
+            btSoftBodyWorldInfo info;
+            btSoftBody body(&info, 3, places, masses);
+            body.m_sst.isdt = 1 / kDt;
+            const std::vector<std::int32_t> triangles =
+                joined ? std::vector<std::int32_t>{0, 1, 2} : std::vector<std::int32_t>();
+            MotionLimit limit;
+            limit.addObstacle(btVector3(-1, -1, -1), btVector3(1, 1, 1), kThickness, btScalar(0.5),
+                              moves ? &rests : nullptr);
+            limit.record(body, triangles);
+            for (int i = 0; i < 3; ++i)
+                body.m_nodes[i].m_x += pull;
+            limit.apply(body);
+            const btScalar most = joined ? kFreeShare * btScalar(1.5) * kThickness : pull.length();
+            for (int i = 0; i < 3; ++i)
+                EXPECT_NEAR((body.m_nodes[i].m_x - places[i]).length(), most, 1e-6) << "node " << i;
+        }
+    }
 }
 
 TEST(KinematicMotion, isWhatVelocityAndPosesSay)
