@@ -9,8 +9,8 @@ namespace
 std::vector<StepVariant> variants()
 {
     std::vector<StepVariant> all;
-    for (const auto& [name, builder] : {std::pair<const char*, TreeBuilder>("balanced", TreeBuilder::Balanced),
-                                        {"radix", TreeBuilder::Radix},
+    for (const auto& [name, builder] : {std::pair<const char*, TreeBuilder>("radix", TreeBuilder::Radix),
+                                        {"balanced", TreeBuilder::Balanced},
                                         {"ploc", TreeBuilder::Ploc},
                                         {"top-down", TreeBuilder::TopDown}})
     {

@@ -187,7 +187,7 @@ class Study(ProgramTest):
         rows = [row for row in self.quick("study", "--part", "builder") if row["part"] == "builder"]
         self.assertEqual({row["variant"] for row in rows},
                          {"host, balanced", "host, radix", "host, ploc", "host, top-down"})
-        default = {row["step"]: row for row in rows if row["variant"] == "host, balanced"}
+        default = {row["step"]: row for row in rows if row["variant"] == "host, radix"}
         for row in rows:
             self.assertEqual((row["backend"], row["valid"]), ("host", "yes"))
             self.assertEqual(row["candidates"], default[row["step"]]["candidates"])

@@ -149,7 +149,9 @@ void studyRefit(const StudyOptions& options, Table& table)
     const auto measure = [&](const std::string& model, const TriangleMesh& mesh)
     {
         TreeInput input(mesh);
-        const Tree tree = buildTreeOnHost(TreeMethods(), input.m_triangles, input.m_positions.data(), 1);
+        TreeMethods methods;
+        methods.m_builder = TreeBuilder::Balanced;  // a device's default, the same for all
+        const Tree tree = buildTreeOnHost(methods, input.m_triangles, input.m_positions.data(), 1);
         bool valid = false;
         const Refits host = refitOnOneThread(tree, input, options, valid);
         Row row = treeRow("refit", model, input.triangleCount(), "host");

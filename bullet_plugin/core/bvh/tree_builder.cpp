@@ -2,9 +2,17 @@
 
 namespace drape
 {
-Tree buildTreeOnHost(const TreeMethods& methods, const std::vector<Triangle>& triangles, const float* positions,
+TreeMethods resolveBuilder(TreeMethods methods, bool onHost)
+{
+    if (methods.m_builder == TreeBuilder::Auto)
+        methods.m_builder = onHost ? TreeBuilder::Radix : TreeBuilder::Balanced;
+    return methods;
+}
+
+Tree buildTreeOnHost(const TreeMethods& asked, const std::vector<Triangle>& triangles, const float* positions,
                      std::size_t meshCount)
 {
+    const TreeMethods methods = resolveBuilder(asked, true);
     const std::uint32_t bits = methods.m_mortonBits;
     Tree tree;
     if (methods.m_builder == TreeBuilder::TopDown)
@@ -28,9 +36,9 @@ Tree buildTreeOnHost(const TreeMethods& methods, const std::vector<Triangle>& tr
 
 void TreeBuilderStage::create(Device& device, const ProgramLoader& load, const TreeMethods& methods)
 {
-    m_methods = methods;
+    m_methods = resolveBuilder(methods, false);
     m_refit.create(device, load);
-    switch (methods.m_builder)
+    switch (m_methods.m_builder)
     {
         case TreeBuilder::TopDown:
             m_topDown.create(device, load);

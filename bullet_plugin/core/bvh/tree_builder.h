@@ -10,7 +10,10 @@
 
 namespace drape
 {
-// positions: m, x y z per vertex. meshCount: slots that triangles refer to. Volumes have no radius.
+// The methods with a builder in place of TreeBuilder::Auto.
+TreeMethods resolveBuilder(TreeMethods methods, bool onHost);
+
+// positions: m, x y z per vertex. meshCount: slots that triangles refer to. Volumes have no radius. Auto is the host's.
 Tree buildTreeOnHost(const TreeMethods& methods, const std::vector<Triangle>& triangles, const float* positions,
                      std::size_t meshCount);
 

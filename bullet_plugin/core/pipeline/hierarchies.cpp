@@ -6,7 +6,7 @@ namespace drape
 {
 void Pipeline::Implementation::buildHierarchy(MeshPool& pool, const float* positions, BvhLayout& layout) const
 {
-    const TreeMethods& methods = m_settings.m_methods.m_tree;
+    const TreeMethods methods = resolveBuilder(m_settings.m_methods.m_tree, m_report.m_onHost);
     const bool walked = m_report.m_onHost || !goesOverPatches(m_settings);
     // Meshes come sorted by codes of 30 bits.
     const bool asTheyCame = methods.m_builder == TreeBuilder::Balanced && methods.m_mortonBits == 30;
@@ -19,7 +19,8 @@ void Pipeline::Implementation::buildHierarchy(MeshPool& pool, const float* posit
 void Pipeline::Implementation::useHierarchy(const Tree& tree, MeshPool& pool, BvhLayout& layout) const
 {
     // Pairs of neighbours in order is what a layout is by itself.
-    const bool balanced = m_settings.m_methods.m_tree.m_builder == TreeBuilder::Balanced;
+    const TreeMethods methods = resolveBuilder(m_settings.m_methods.m_tree, m_report.m_onHost);
+    const bool balanced = methods.m_builder == TreeBuilder::Balanced;
     layout = balanced ? makeBvhLayout(tree.leafCount()) : makeBvhLayout(tree.m_nodes, 0);
     pool.reorder(tree.m_order);
 }
@@ -39,7 +40,7 @@ void Pipeline::Implementation::watchTree()
     const MeshPool& cloths = m_scene.m_cloths;
     if (!m_treeWatch.isDecayed(m_result.m_treeCost, m_settings.m_methods.m_rebuildDecay)) return;
     const float* end = m_scene.m_clothEnd.data();
-    m_treeWatch.rebuild(m_settings.m_methods.m_tree, cloths.triangles(),
+    m_treeWatch.rebuild(resolveBuilder(m_settings.m_methods.m_tree, m_report.m_onHost), cloths.triangles(),
                         std::vector<float>(end, end + 3 * cloths.vertexCount()), cloths.meshCount());
 }
 }  // namespace drape

@@ -11,6 +11,7 @@ namespace drape
 {
 enum class TreeBuilder
 {
+    Auto,      // what was fastest: Radix where the host walks the hierarchy, Balanced on a device
     Balanced,  // triangles in Morton order, neighbours paired height by height: the shape depends on the count alone
     Radix,     // triangles in Morton order, split where the codes' first differing bit is (Karras 2012)
     TopDown,   // level by level, at the mean or median of the centroids along the longest direction (the thesis)
@@ -56,7 +57,7 @@ struct TopDownSettings
 // are built and refitted on a device (TreeBuilderStage, TreeRefitStage), which the study measures.
 struct TreeMethods
 {
-    TreeBuilder m_builder = TreeBuilder::Balanced;
+    TreeBuilder m_builder = TreeBuilder::Auto;
     RefitMethod m_refit = RefitMethod::Subtrees;
     WorkShape m_workShape = WorkShape::Device;
     // 30 or 63; all but TopDown. More tell triangles apart that are close together in a large scene, and take longer.
@@ -87,7 +88,8 @@ struct Methods
 
     // Who builds the hierarchies that traversals walk; nothing where the step goes over patches. All but Balanced with
     // codes of 30 bits build on the host whenever meshes come or go, over a side's meshes together, as their positions
-    // were given; that one takes each mesh's triangles in the order in which it came.
+    // were given; that one takes each mesh's triangles in the order in which it came, which is sooner done where small
+    // meshes often come beside large ones.
     TreeMethods m_tree;
 
     // The cloths' hierarchy is built anew, beside the steps, once its nodes' areas over the root's have grown by this
