@@ -67,6 +67,7 @@ Json asJson(const RunRecord& record)
     json["penetration_p99_m"] = summary.m_penetrationP99;
     json["gap_min_m"] = summary.m_gapMin;
     json["nodes_below_surface"] = summary.m_nodesBelow;
+    json["nodes_through"] = summary.m_nodesThrough;
     json["intersecting_pairs_end"] = summary.m_intersectingPairsEnd;
     json["nan_nodes"] = summary.m_invalidNodes;
     json["hash"] = hashText(summary.m_hash);
@@ -156,16 +157,16 @@ std::string asCsv(const RunRecord& record, double dt)
 {
     std::string csv =
         "step,time_s,step_ms,collision_ms,contacts,penetration_max_m,gap_min_m,nodes_below_surface,"
-        "intersecting_pairs,nan_nodes,speed_rms_m_s\n";
+        "intersecting_pairs,nan_nodes,speed_rms_m_s,nodes_through\n";
     char line[256];
     for (std::size_t i = 0; i < record.m_steps.size(); ++i)
     {
         const StepRecord& step = record.m_steps[i];
-        std::snprintf(line, sizeof line, "%zu,%.9g,%.6f,%.6f,%zu,%.9g,%.9g,%zu,%zu,%zu,%.9g\n", i + 1,
+        std::snprintf(line, sizeof line, "%zu,%.9g,%.6f,%.6f,%zu,%.9g,%.9g,%zu,%zu,%zu,%.9g,%zu\n", i + 1,
                       static_cast<double>(i + 1) * dt, step.m_times.m_stepMs, step.m_times.m_collisionMs,
                       step.m_times.m_contacts, step.m_measure.m_penetrationMax, step.m_measure.m_gapMin,
                       step.m_measure.nodesBelow(), step.m_measure.m_intersectingPairs, step.m_measure.m_invalidNodes,
-                      step.m_speed);
+                      step.m_speed, step.m_nodesThrough);
         csv += line;
     }
     return csv;
@@ -197,6 +198,7 @@ std::string asTable(const std::vector<NamedRun>& runs)
     add("penetration, p99, mm", [&](std::size_t i) { return text("%.3f", 1000 * summaries[i].m_penetrationP99); });
     add("gap, least, mm", [&](std::size_t i) { return text("%.3f", 1000 * summaries[i].m_gapMin); });
     add("nodes below surface, end", [&](std::size_t i) { return count(summaries[i].m_nodesBelow); });
+    add("nodes that went through", [&](std::size_t i) { return count(summaries[i].m_nodesThrough); });
     add("intersecting pairs, end", [&](std::size_t i) { return count(summaries[i].m_intersectingPairsEnd); });
     add("NaN nodes", [&](std::size_t i) { return count(summaries[i].m_invalidNodes); });
     add("hash", [&](std::size_t i) { return hashText(summaries[i].m_hash); });

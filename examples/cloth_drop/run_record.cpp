@@ -65,6 +65,7 @@ RunSummary summarise(const RunRecord& record)
     if (record.m_steps.empty()) return summary;
     const StepRecord& last = record.m_steps.back();
     summary.m_nodesBelow = last.m_measure.nodesBelow();
+    summary.m_nodesThrough = last.m_nodesThrough;
     summary.m_intersectingPairsEnd = last.m_measure.m_intersectingPairs;
     summary.m_hash = last.m_hash;
     return summary;

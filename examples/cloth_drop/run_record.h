@@ -14,8 +14,9 @@ struct StepRecord
 {
     StepTimes m_times;
     StepMeasure m_measure;
-    double m_speed = 0;        // m/s, root mean square of the nodes' speeds over the step
-    std::uint64_t m_hash = 0;  // of all positions up to and with this step
+    std::size_t m_nodesThrough = 0;  // whose way met the obstacle's surface, in this step or before (Crossings)
+    double m_speed = 0;              // m/s, root mean square of the nodes' speeds over the step
+    std::uint64_t m_hash = 0;        // of all positions up to and with this step
 };
 
 struct RunRecord
@@ -44,6 +45,7 @@ struct RunSummary
     double m_penetrationP99 = 0;  // over every cloth node in every step in contact; nodes that are not below count as 0
     double m_gapMin = 0;
     std::size_t m_nodesBelow = 0;            // after the last step
+    std::size_t m_nodesThrough = 0;          // that ever went through the obstacle's surface
     std::size_t m_intersectingPairsEnd = 0;  // after the last step
     std::size_t m_invalidNodes = 0;          // most in any step
     std::uint64_t m_hash = 0;

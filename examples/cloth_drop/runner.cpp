@@ -1,5 +1,6 @@
 #include "examples/cloth_drop/runner.h"
 
+#include "scenes/crossings.h"
 #include "scenes/mesh_writer.h"
 
 namespace drape
@@ -24,6 +25,7 @@ bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, co
     record = startRecord(simulation, scene);
     lastFrame = scene.m_cloth.m_mesh;
     PenetrationMeter meter(scene.m_obstacle, scene.m_cloth.m_mesh);
+    Crossings crossings(scene.m_obstacle, scene.m_cloth.m_mesh.m_positions);
     std::uint64_t hash = kHashStart;
     const bool frames = !framesFolder.empty();
     if (frames && !(writeMesh(framesFolder + "/obstacle.ply", scene.m_obstacle, error) &&
@@ -39,6 +41,8 @@ bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, co
         step.m_speed = rmsSpeed(lastFrame.m_positions, positions, scene.m_dt);
         lastFrame.m_positions = positions;
         step.m_measure = meter.measure(lastFrame.m_positions.data());
+        crossings.follow(positions);
+        step.m_nodesThrough = crossings.nodes();
         step.m_hash = hash = hashFloats(hash, lastFrame.m_positions);
         if (frames && !writeMesh(frameName(framesFolder, "cloth", number), lastFrame, error)) return false;
         if (hooks.m_afterStep) hooks.m_afterStep(number, step);

@@ -21,6 +21,7 @@ Json asLine(const StepRecord& step)
             {"penetration", step.m_measure.m_penetrationMax},
             {"gap", step.m_measure.m_gapMin},
             {"depths", step.m_measure.m_nodeDepths},
+            {"through", step.m_nodesThrough},
             {"pairs", step.m_measure.m_intersectingPairs},
             {"invalid", step.m_measure.m_invalidNodes},
             {"speed", step.m_speed},
@@ -38,6 +39,7 @@ StepRecord stepFromLine(const std::string& text)
     step.m_measure.m_penetrationMax = line.at("penetration");
     step.m_measure.m_gapMin = line.at("gap").is_null() ? 0.0 : line.at("gap").get<double>();
     step.m_measure.m_nodeDepths = line.at("depths").get<std::vector<float>>();
+    step.m_nodesThrough = line.at("through");
     step.m_measure.m_intersectingPairs = line.at("pairs");
     step.m_measure.m_invalidNodes = line.at("invalid");
     step.m_speed = line.at("speed").is_null() ? 0.0 : line.at("speed").get<double>();

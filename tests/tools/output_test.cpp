@@ -28,7 +28,7 @@ void expectRun(const Json& run, int steps)
     for (const char* key : {"backend", "device", "device_reason", "hash"})
         EXPECT_TRUE(run.at(key).is_string()) << key;
     for (const char* key : {"steps", "cloth_triangles", "obstacle_triangles", "contacts_max", "nodes_below_surface",
-                            "intersecting_pairs_end", "nan_nodes"})
+                            "nodes_through", "intersecting_pairs_end", "nan_nodes"})
         EXPECT_TRUE(run.at(key).is_number_unsigned()) << key;
     for (const char* key : {"thickness_m", "penetration_max_m", "penetration_p99_m", "gap_min_m"})
         EXPECT_TRUE(run.at(key).is_number()) << key;
@@ -61,6 +61,7 @@ TEST_F(Outputs, jsonHasEveryKey)
     EXPECT_LE(run.at("collision_ms").at("median"), run.at("collision_ms").at("max"));
     EXPECT_EQ(run.at("penetration_max_m"), 0);
     EXPECT_EQ(run.at("nodes_below_surface"), 0);
+    EXPECT_EQ(run.at("nodes_through"), 0);
     EXPECT_EQ(run.at("intersecting_pairs_end"), 0);
     EXPECT_EQ(run.at("nan_nodes"), 0);
     EXPECT_EQ(run.at("work").at("hierarchy_rebuilds"), 0);
@@ -105,6 +106,24 @@ TEST_F(Outputs, csvHasARowAStep)
     const std::ptrdiff_t commas = std::count(heading.begin(), heading.end(), ',');
     EXPECT_EQ(std::count(csv.begin(), csv.end(), ','), 11 * commas);
     EXPECT_NE(csv.find("\n10,"), std::string::npos);
+}
+
+// Cloth that flew past the obstacle is not below its surface.
+TEST_F(Outputs, nodesThatWentThroughAreCounted)
+{
+    for (const char* mode : {"discrete", "automatic"})
+    {
+        SCOPED_TRACE(mode);
+        const Json run = Json::parse(summaryOf({"--mode", mode, "--drop-speed", "1000", "--csv", path("steps.csv")}));
+        EXPECT_EQ(run.at("nodes_below_surface"), 0);
+        const std::size_t through = run.at("nodes_through");
+        if (mode == std::string("automatic"))
+            EXPECT_EQ(through, 0u);
+        else
+            EXPECT_GT(through, 10u);
+        const std::string csv = readAll(path("steps.csv"));
+        EXPECT_NE(csv.find("," + std::to_string(through) + "\n"), std::string::npos) << csv;
+    }
 }
 
 TEST_F(Outputs, framesAreMeshesOneAStep)
