@@ -2,10 +2,10 @@
 # The cloth of cloth_drop thrown at the bunny: drop_speeds.sh OUT_DIR [options of cloth_drop, as --device NAME]
 #
 # Runs 2, 10, 50 and 200 m/s for 100 steps with Drape in each of its modes, and Bullet's own collision beside it. Writes
-# OUT_DIR/drop_speeds.json, with commit and machine, and prints a table: the most intersecting pairs at the end of a step,
-# nodes on the wrong side at the end, contacts at most, and the trajectory's hash. A run that takes longer than its limit
-# is ended, and its row is of the steps until then. Needs cloth_drop, Bash and Python. These may be set: BIN
-# (build/release/bin), BUNNY, COMMIT (git describe), LIMIT (60 s a run), SPEEDS and STEPS.
+# OUT_DIR/drop_speeds.json, with commit and machine, and prints a table: the most intersecting pairs and nodes on the
+# wrong side at the end of any step, nodes that went through the bunny, contacts at most, and the trajectory's hash. A run
+# that takes longer than its limit is ended, and its row is of the steps until then. Needs cloth_drop, Bash and Python.
+# These may be set: BIN (build/release/bin), BUNNY, COMMIT (git describe), LIMIT (60 s a run), SPEEDS and STEPS.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 out=${1:?OUT_DIR}
@@ -34,28 +34,32 @@ for speed in $speeds; do
     fi
   done
 done
-PYTHONPATH=$here python3 - "$bin/cloth_drop" "$commit" "$steps" "$work" "$out/drop_speeds.json" "$speeds" <<'PYTHON'
+PYTHONPATH=$here python3 - "$bin/cloth_drop" "$commit" "$steps" "$work" "$out/drop_speeds.json" "$speeds" "$bunny" "$@" <<'PYTHON'
 import csv, json, pathlib, sys
 
 import machine
 
-program, commit, steps, work, target, speeds = sys.argv[1:]
+program, commit, steps, work, target, speeds, bunny, *options = sys.argv[1:]
 rows = []
 for speed in speeds.split():
     for run in ("automatic", "continuous", "discrete", "stock", "tuned"):
         with open(pathlib.Path(work, f"{speed}-{run}.csv")) as file:
-            pairs = [int(step["intersecting_pairs"] or 0) for step in csv.DictReader(file)]
+            course = list(csv.DictReader(file))
         whole = json.loads(pathlib.Path(work, f"{speed}-{run}.json").read_text())
         row = {"speed_m_s": float(speed), "run": run,
                "ended": "by the time limit" if "capped_at_step" in whole else "whole",
-               "steps": len(pairs), "intersecting_pairs_max": max(pairs, default=None)}
-        for key in ("device", "nodes_below_surface", "penetration_max_m", "contacts_max", "hash"):
+               "steps": len(course)}
+        for key, column in (("intersecting_pairs_max", "intersecting_pairs"),
+                            ("nodes_below_surface_max", "nodes_below_surface")):
+            row[key] = max((int(step[column] or 0) for step in course), default=None)
+        for key in ("device", "nodes_below_surface", "nodes_through", "penetration_max_m", "contacts_max", "hash"):
             row[key] = whole.get(key)
         rows.append(row)
 with open(target, "w") as file:
-    json.dump({"machine": machine.describe(program, commit), "steps": int(steps), "rows": rows}, file, indent=2)
+    json.dump({"machine": machine.describe(program, commit), "scene": machine.scene(bunny, options),
+               "steps": int(steps), "rows": rows}, file, indent=2)
     file.write("\n")
 for row in rows:
-    print(*(row[key] for key in ("speed_m_s", "run", "ended", "steps", "intersecting_pairs_max", "nodes_below_surface",
-                                 "contacts_max", "hash")))
+    print(*(row[key] for key in ("speed_m_s", "run", "ended", "steps", "intersecting_pairs_max", "nodes_below_surface_max",
+                                 "nodes_through", "contacts_max", "hash")))
 PYTHON

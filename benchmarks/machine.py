@@ -1,5 +1,6 @@
 """What a script's figures were measured on, as the benchmark programs write it."""
 import datetime
+import hashlib
 import os
 import re
 import subprocess
@@ -21,3 +22,12 @@ def processor():
 def describe(program, commit):
     return {"date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d"), "commit": commit,
             "processor": processor(), "cores": os.cpu_count(), "devices": devices(program)}
+
+
+def scene(obstacle, options):
+    """What cloth_drop drops on, by its bytes where it is a file, and the options that every run got."""
+    digest = obstacle
+    if os.path.isfile(obstacle):
+        with open(obstacle, "rb") as file:
+            digest = hashlib.sha256(file.read()).hexdigest()[:16]
+    return {"obstacle": os.path.basename(obstacle), "obstacle_digest": digest, "options": list(options)}

@@ -2,12 +2,14 @@
 """Writes the tables of all measured results into benchmarks/README.md, between its markers: summary.py [README]
 
 Every folder of results/ is a machine. What stands outside of the markers is written by hand. The markers of the findings
-(study_findings.py) may be missing.
+(study_findings.py) may be missing. Ends with 1, naming the rows, and writes nothing when results of one commit have several
+hashes of the same trajectory.
 """
 import math
 import os
 import sys
 
+import hashes
 import script_tables
 import study_findings
 import study_tables
@@ -141,16 +143,11 @@ def memory_table(rows):
             "cloth.\n\n" + table([""] + [SCENES[scene] for scene in scenes], lines))
 
 
-def built_in_line(folder, rows):
-    runs = read_json(folder, "cloth_drop")
-    if not runs:
-        return ""
-    parts = []
-    for name, label in (("drape", "Drape"), ("bullet_stock", "stock"), ("bullet_tuned", "tuned")):
-        if name in runs and "collision_ms" in runs[name]:
-            parts.append(f"{label} {figure(runs[name]['collision_ms']['median'])} ms")
-    return ("Bullet's built-in collision in a simulation of the thesis scene (`cloth_drop --compare`), collision a step in "
-            "contact, medians: " + ", ".join(parts) + ".\n\n")
+def trajectories(folders):
+    """Contents by name of what holds hashes of simulations."""
+    named = {f"{os.path.basename(folder)}/{name}.json": read_json(folder, name)
+             for folder in folders for name in ("cloth_drop", "drop_speeds")}
+    return {name: content for name, content in named.items() if content}
 
 
 def pictures(folder):
@@ -169,7 +166,8 @@ def machine_text(folder):
         text += f"Whole steps: measured {machine['date']} at commit {machine['commit']}. "
     text += "The study's tables say their own commits. " if os.path.exists(os.path.join(folder, "study.csv")) else ""
     text += f"Void rows: {count_void(folder, 'bench_step') + count_void(folder, 'study')}.\n\n"
-    text += step_table(rows) + built_in_line(folder, rows) + stage_table(rows)
+    text += step_table(rows) + stage_table(rows)
+    text += script_tables.cloth_text(read_json(folder, "cloth_drop"), table)
     text += script_tables.drops_text(read_json(folder, "drop_speeds"), table)
     text += script_tables.checks_text(read_json(folder, "drape_check"), table, figure)
     text += study_tables.text(read_rows(folder, "study"), table, figure)
@@ -191,6 +189,13 @@ def main():
     folders = [os.path.join(results, name) for name in names]
     folders = [folder for folder in folders
                if any(os.path.exists(os.path.join(folder, name + ".json")) for name in ("bench_step", "study"))]
+    # No table of results of which one must be wrong.
+    runs = trajectories(os.path.join(results, name) for name in names)
+    for line in hashes.incomparable(runs):
+        print("summary.py: " + line, file=sys.stderr)
+    differences = hashes.differences(runs)
+    if differences:
+        sys.exit("\n".join(differences))
     with open(readme) as file:
         text = file.read()
     machines = [(os.path.basename(folder), read_rows(folder, "study")) for folder in folders]

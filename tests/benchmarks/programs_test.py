@@ -6,6 +6,7 @@ import csv
 import json
 import math
 import os
+import shutil
 import struct
 import subprocess
 import sys
@@ -368,7 +369,7 @@ IDENTITY = ("part", "model", "variant", "backend", "device", "threads", "dop", "
             "pairs")
 
 
-class Committed(unittest.TestCase):
+class Committed(ProgramTest):
     """Results that are published: every row was judged, is good, and says when it was measured."""
 
     def machines(self):
@@ -404,6 +405,15 @@ class Committed(unittest.TestCase):
                     self.assertRegex(row["hash"], "^[0-9a-f]{16}$", row)
                     self.assertEqual(row["valid"], "yes", row)
                 self.assertNotEqual(row["valid"], "no", row)
+
+
+    def test_one_trajectory_has_one_hash(self):
+        """summary.py refuses them otherwise, here into another file."""
+        shutil.copytree(RESULTS, self.path("results"), ignore=shutil.ignore_patterns("*.png"))
+        readme = self.path("README.md")
+        shutil.copy(os.path.join(os.path.dirname(RESULTS), "README.md"), readme)
+        result = self.script("summary.py", readme)
+        self.assertEqual(result.returncode, 0, result.stderr)
 
 
 class Reports(ProgramTest):
@@ -458,7 +468,7 @@ class Reports(ProgramTest):
 
 
 class Scripts(ProgramTest):
-    """drop_speeds.sh and drape_check.sh, and the tables of what they write."""
+    """cloth_drop.sh, drop_speeds.sh and drape_check.sh, and the tables of what they write."""
 
     @staticmethod
     def bash(name, *arguments, **environment):
@@ -481,6 +491,50 @@ class Scripts(ProgramTest):
             json.dump({"machine": {"processor": "p", "cores": 1, "devices": [], "date": "d", "commit": "c"}}, file)
         return self.summary()
 
+    def cloth_drop(self, *options, **environment):
+        if not os.path.exists(os.path.join(PROGRAMS, "cloth_drop")):
+            self.skipTest("cloth_drop is not built")
+        return self.bash("cloth_drop.sh", self.path("results/machine"), *options,
+                         **{"BUNNY": "stairs", "STEPS": "20", "COMMIT": "abc1234", **environment})
+
+    def test_the_scene_on_every_back_end(self):
+        result = self.cloth_drop("--cloth", "9x9")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        content = self.content("cloth_drop")
+        self.assertEqual(content["scene"], {"obstacle": "stairs", "obstacle_digest": "stairs", "options": ["--cloth", "9x9"]})
+        names = [device["device"] for device in content["machine"]["devices"]] + ["host"]
+        drape = [row for row in content["rows"] if row["run"] == "drape"]
+        self.assertEqual([(row["device"], row["all_contacts"]) for row in drape],
+                         [(name, every) for name in names for every in (False, True)])
+        self.assertEqual({row["run"] for row in content["rows"]}, {"drape", "bullet_stock", "bullet_tuned"})
+        for row in drape:
+            self.assertEqual((row["steps"], row["cloth_triangles"], row["nodes_through"]), (20, 128, 0))
+            self.assertGreater(row["collision_ms"]["median"], 0)
+        text = self.tables()
+        for words in ("for 20 steps (`cloth_drop.sh`)", "| Drape, all contacts | host |", "| Bullet built in, tuned | host |",
+                      f"`{drape[0]['hash']}`"):
+            self.assertIn(words, text)
+
+    def test_the_scene_without_bullet(self):
+        self.assertEqual(self.cloth_drop("--no-compare", STEPS="2").returncode, 0)
+        self.assertEqual({row["run"] for row in self.content("cloth_drop")["rows"]}, {"drape"})
+        self.assertEqual(self.cloth_drop("--no-such-option", STEPS="2").returncode, 1)
+
+    def test_back_ends_that_differ_are_told(self):
+        """A program whose hash is its back end's."""
+        with open(self.path("cloth_drop"), "w") as file:
+            file.write(f"""#!/usr/bin/env bash
+[[ $* != *--list-devices* ]] || {{ echo "some device (a platform, driver 1)"; exit; }}
+hash=0000000000000001
+[[ $* != *"--backend host"* ]] || hash=0000000000000002
+"{PROGRAMS}/cloth_drop" --obstacle stairs --cloth 9x9 --steps 2 --backend host --quiet --json - | sed "s/[0-9a-f]\\{{16\\}}/$hash/"
+""")
+        os.chmod(self.path("cloth_drop"), 0o755)
+        result = self.cloth_drop("--no-compare", BIN=self.folder)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("differ at commit abc1234 after 2 steps", result.stderr)
+        self.assertIn("host 0000000000000002", result.stderr)
+
     def drops(self, **environment):
         if not os.path.exists(os.path.join(PROGRAMS, "cloth_drop")):
             self.skipTest("cloth_drop is not built")
@@ -497,8 +551,18 @@ class Scripts(ProgramTest):
     def test_drops_at_every_speed(self):
         for row in self.drops(STEPS="3"):
             self.assertEqual((row["ended"], row["steps"]), ("whole", 3), row)
+            self.assertLessEqual(row["nodes_below_surface"], row["nodes_below_surface_max"])
+            if row["run"] in ("automatic", "continuous"):
+                self.assertEqual((row["nodes_below_surface_max"], row["nodes_through"]), (0, 0), row)
+            elif row["run"] == "stock" and row["speed_m_s"] == 50:
+                self.assertGreater(row["nodes_through"], 0, "a child's")
+            elif row["run"] == "discrete" and row["speed_m_s"] == 50:
+                self.assertGreater(row["nodes_below_surface_max"], row["nodes_below_surface"], "not the last step alone")
+                self.assertGreater(row["nodes_through"], row["nodes_below_surface_max"])
+                through = f"/ {row['nodes_below_surface_max']} / {row['nodes_through']} /"
         text = self.tables()
         self.assertIn("|  | 2 m/s | 50 m/s |", text)
+        self.assertIn(through, text)
         self.assertIn("at abc1234.", text)
         self.assertNotIn("of 3 steps", text)
 
@@ -535,13 +599,17 @@ class Scripts(ProgramTest):
         names = ["host"] + [device["device"] for device in content["machine"]["devices"]]
         self.assertEqual([row["device"] for row in content["ccd"]], names)
         self.assertEqual([(row["mode"], row["device"]) for row in content["triangles"]],
-                         [(mode, name) for mode in ("fast", "exact") for name in names])
+                         [(mode, name) for mode in ("fast", "exact", "moller") for name in names])
         self.assertEqual({(row["misses"], row["false_hits"]) for row in content["ccd"]}, {(0, 0)})
         self.assertEqual({(row["misses"], row["false_hits"]) for row in content["triangles"]}, {(1, 0)})
+        self.assertEqual([(row["mode"], row["device"], row["intersecting_pairs"]) for row in content["pairs"]],
+                         [(mode, name, count) for mode, count in (("frame 92", 0), ("frame 93", 0), ("92 and 93", 1))
+                          for name in names])
         self.assertEqual({(row["device"], row["vf_hits"]) for row in content["step"]}, {(name, 3) for name in names})
         text = self.tables()
         self.assertIn("| triangles exact | host | 2 | 1 | 0 |", text)
         self.assertIn("| ccd | host | 1 | 0 | 0 |", text)
+        self.assertRegex(text, r"\| 92 and 93 \| host \| \d+ \| 1 \|")
         self.assertIn("at abc1234.", text)
 
     def test_queries_that_are_not_there_are_named(self):
@@ -554,6 +622,64 @@ class Scripts(ProgramTest):
         self.assertNotIn("ccd", content)
         self.assertTrue(content["triangles"])
         self.assertEqual(self.bash("drape_check.sh", self.path("results/machine")).returncode, 2)
+
+
+class Hashes(ProgramTest):
+    """Trajectories of several results."""
+
+    def write(self, folder, name, commit, device, hash, scene="d", options=(), **columns):
+        os.makedirs(self.path("results/" + folder), exist_ok=True)
+        row = {"run": "drape", "all_contacts": False, "device": device, "steps": 240, "hash": hash, "step_ms": {},
+               "collision_ms": {"median": 1, "p95": 2}, "penetration_max_m": 0, "intersecting_pairs_end": 0,
+               "nodes_below_surface": 0, "nodes_through": 0, "intersecting_pairs_max": 0, "contacts_max": 1, "ended": "whole",
+               "speed_m_s": 0, **columns}
+        with open(self.path(f"results/{folder}/{name}.json"), "w") as file:
+            json.dump({"machine": {"commit": commit, "date": "d"}, "steps": 240, "rows": [row],
+                       "scene": {"obstacle": "o", "obstacle_digest": scene, "options": list(options)}}, file)
+
+    def judged(self):
+        readme = self.path("README.md")
+        with open(readme, "w") as file:
+            file.write("<!-- results: made by summary.py -->as it was<!-- end of results -->")
+        result = self.script("summary.py", readme)
+        with open(readme) as file:
+            self.assertEqual("as it was" in file.read(), result.returncode != 0, "no table of results that are refused")
+        return result
+
+    def refused(self, *words):
+        result = self.judged()
+        self.assertEqual(result.returncode, 1)
+        for word in words:
+            self.assertIn(word, result.stderr)
+
+    def accepted(self):
+        result = self.judged()
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result
+
+    def test_one_run_on_two_machines(self):
+        self.write("a", "cloth_drop", "abc1234", "gpu", "1")
+        self.write("b", "cloth_drop", "abc1234", "cpu", "1")
+        self.accepted()
+        self.write("b", "cloth_drop", "abc12345", "cpu", "2")
+        self.refused("a/cloth_drop.json: automatic on gpu 1", "b/cloth_drop.json: automatic on cpu 2")
+
+    def test_one_run_in_two_files(self):
+        self.write("a", "cloth_drop", "abc1234", "gpu", "1")
+        self.write("a", "drop_speeds", "abc1234", "gpu", "2", run="automatic", options=["--device", "gpu"])
+        self.refused("a/cloth_drop.json", "a/drop_speeds.json")
+
+    def test_other_runs_may_differ(self):
+        for other in ({"commit": "abc1235"}, {"scene": "e"}, {"options": ["--cloth", "9x9"]}, {"all_contacts": True},
+                      {"steps": 52}, {"run": "bullet_stock"}, {"speed_m_s": 2}, {"commit": "abc1234-dirty"}):
+            with self.subTest(**other):
+                self.write("a", "cloth_drop", "abc1234", "gpu", "1")
+                self.write("b", "cloth_drop", **{"commit": "abc1234", "device": "cpu", "hash": "2", **other})
+                self.accepted()
+
+    def test_results_that_cannot_be_compared_are_named(self):
+        self.write("a", "cloth_drop", "unknown", "gpu", "1")
+        self.assertIn("a/cloth_drop.json does not say its commit", self.accepted().stderr)
 
 
 class Growth(ProgramTest):
