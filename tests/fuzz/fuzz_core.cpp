@@ -190,8 +190,8 @@ Choices choicesFrom(Bytes& bytes)
     choices.m_self = kinds & 2;
     choices.m_tubes = kinds & 4;
     settings.m_methods.m_traversal = drape::Traversal(methods % 8);
-    settings.m_methods.m_tree.m_builder = drape::TreeBuilder(methods / 8 % 4);
-    settings.m_methods.m_countTests = methods / 32 % 2 == 1;
+    settings.m_methods.m_tree.m_builder = drape::TreeBuilder(methods / 8 % 5);
+    settings.m_methods.m_countTests = methods / 40 % 2 == 1;
     return choices;
 }
 

@@ -104,15 +104,19 @@ TEST_P(TraversalTest, ContactsAreTheSame)
 TEST_P(TraversalTest, ContactsAreTheSameInTreesOfEveryBuilder)
 {
     std::vector<TreeMethods> trees;
-    for (TreeBuilder builder : {TreeBuilder::Balanced, TreeBuilder::Radix, TreeBuilder::TopDown, TreeBuilder::Ploc})
+    const auto add = [&](TreeBuilder builder) -> TreeMethods&
+    {
         trees.emplace_back().m_builder = builder;
-    trees.push_back(trees[std::size_t(TreeBuilder::TopDown)]);
-    trees.back().m_topDown.m_medianSplit = true;
-    trees.push_back(trees.back());
-    trees.back().m_topDown.m_leafSize = 1000;
-    trees.push_back(trees[std::size_t(TreeBuilder::Ploc)]);
-    trees.back().m_plocRadius = 1;
-    trees.emplace_back().m_mortonBits = 63;
+        return trees.back();
+    };
+    for (TreeBuilder builder : {TreeBuilder::Balanced, TreeBuilder::Radix, TreeBuilder::TopDown, TreeBuilder::Ploc})
+        add(builder);
+    add(TreeBuilder::TopDown).m_topDown.m_medianSplit = true;
+    TreeMethods& largeLeaves = add(TreeBuilder::TopDown);
+    largeLeaves.m_topDown.m_medianSplit = true;
+    largeLeaves.m_topDown.m_leafSize = 1000;
+    add(TreeBuilder::Ploc).m_plocRadius = 1;
+    add(TreeBuilder::Balanced).m_mortonBits = 63;
     std::size_t contacts = 0;
     for (const Traversal traversal : allTraversals())
     {
@@ -198,6 +202,7 @@ TEST_P(TraversalTest, LongCodesOrderABalancedTree)
         settings.m_methods.m_traversal = Traversal::Pairs;
         settings.m_methods.m_countTests = true;
         settings.m_methods.m_rebuildDecay = 0.0f;
+        settings.m_methods.m_tree.m_builder = TreeBuilder::Balanced;
         settings.m_methods.m_tree.m_mortonBits = bits;
         const std::unique_ptr<Pipeline> pipeline = makePipeline(settings);
         ASSERT_TRUE(pipeline);

@@ -60,7 +60,7 @@ void useTree(Side& side, const TreeMethods& methods)
 {
     const Tree tree = buildTreeOnHost(methods, side.m_pool.triangles(), side.m_start.data(), side.m_pool.meshCount());
     side.m_order = tree.m_order;
-    side.m_layout = makeBvhLayout(tree.m_nodes, 0);
+    side.m_layout = makeBvhLayout(linksOf(tree.m_nodes), 0);
     side.m_nodes = makeBvhNodes(side.m_layout);
 }
 

@@ -74,7 +74,7 @@ TEST_P(BvhLayoutSizes, TreesOfAnyShapeKeepTheirShape)
         TreeMethods methods;
         methods.m_builder = builder;
         const Tree tree = buildTreeOnHost(methods, side.m_pool.triangles(), side.m_start.data(), 1);
-        const BvhLayout layout = makeBvhLayout(tree.m_nodes, 0);
+        const BvhLayout layout = makeBvhLayout(linksOf(tree.m_nodes), 0);
         std::vector<BvhNode> nodes = makeBvhNodes(layout);
         ASSERT_EQ(layout.leafCount(), GetParam());
         ASSERT_EQ(nodes.size(), tree.m_nodes.size());

@@ -75,7 +75,7 @@ TEST_F(TreeQualityTest, EveryShapeHoldsTheSameLeaves)
             for (const BvhNode& node : shaped)
                 EXPECT_LE(node.m_count, std::max(degree, bundle));
             EXPECT_EQ(shaped.size() < m_tree.m_nodes.size(), degree == 4 || bundle > 2);
-            const BvhLayout layout = makeBvhLayout(shaped, 0);
+            const BvhLayout layout = makeBvhLayout(linksOf(shaped), 0);
             std::vector<BvhNode> nodes = makeBvhNodes(layout);
             std::size_t invalid = 0;
             refitOnHost(nodes, layout, m_tree.m_order, m_side.m_pool.triangles(), m_side.m_start.data(),

@@ -17,7 +17,7 @@ namespace
 struct Shape
 {
     Shape(const Tree& tree, std::uint32_t degree, std::uint32_t bundle)
-        : m_layout(makeBvhLayout(reshape(tree, degree, bundle), 0)),
+        : m_layout(makeBvhLayout(linksOf(reshape(tree, degree, bundle)), 0)),
           m_nodes(makeBvhNodes(m_layout)),
           m_order(tree.m_order)
     {

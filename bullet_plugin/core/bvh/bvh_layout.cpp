@@ -18,7 +18,16 @@ BvhLayout makeBvhLayout(std::uint32_t leafCount)
     return layout;
 }
 
-BvhLayout makeBvhLayout(const std::vector<BvhNode>& tree, std::uint32_t root)
+std::vector<BvhChildren> linksOf(const std::vector<BvhNode>& nodes)
+{
+    std::vector<BvhChildren> links;
+    links.reserve(nodes.size());
+    for (const BvhNode& node : nodes)
+        links.push_back({node.m_first, node.m_count});
+    return links;
+}
+
+BvhLayout makeBvhLayout(const std::vector<BvhChildren>& tree, std::uint32_t root)
 {
     BvhLayout layout;
     if (tree.empty()) return layout;
@@ -31,7 +40,7 @@ BvhLayout makeBvhLayout(const std::vector<BvhNode>& tree, std::uint32_t root)
         const std::size_t end = nodes.size();
         for (; begin < end; ++begin)
         {
-            const BvhNode node = tree[nodes[begin]];
+            const BvhChildren node = tree[nodes[begin]];
             for (std::uint32_t child = node.m_count; child-- > 0;)
                 nodes.push_back(node.m_first + child);
         }
@@ -45,7 +54,7 @@ BvhLayout makeBvhLayout(const std::vector<BvhNode>& tree, std::uint32_t root)
     std::uint32_t leaves = 0;
     for (std::uint32_t node : nodes)
     {
-        const BvhNode& from = tree[node];
+        const BvhChildren& from = tree[node];
         const bool leaf = from.m_count == 0;
         layout.m_links[places[node]] = {leaf ? from.m_first : places[from.m_first], from.m_count};
         if (!leaf) continue;

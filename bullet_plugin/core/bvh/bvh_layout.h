@@ -48,9 +48,12 @@ struct BvhLayout
 
 BvhLayout makeBvhLayout(std::uint32_t leafCount);
 
-// The same tree as the given one, whose links alone are read, in a layout's order: a height is a depth, the deepest
-// first. Leaves keep their numbers. Linear.
-BvhLayout makeBvhLayout(const std::vector<BvhNode>& tree, std::uint32_t root);
+// The tree of the given links in a layout's order: a height is a depth, the deepest first. Leaves keep their numbers.
+// Linear.
+BvhLayout makeBvhLayout(const std::vector<BvhChildren>& links, std::uint32_t root);
+
+// Those of nodes alone.
+std::vector<BvhChildren> linksOf(const std::vector<BvhNode>& nodes);
 
 // Nodes with their links set and volumes empty.
 std::vector<BvhNode> makeBvhNodes(const BvhLayout& layout);

@@ -4,29 +4,24 @@ namespace drape
 {
 TreeMethods resolveBuilder(TreeMethods methods, bool onHost)
 {
-    if (methods.m_builder == TreeBuilder::Auto)
-        methods.m_builder = onHost ? TreeBuilder::Radix : TreeBuilder::Balanced;
+    if (methods.m_builder == TreeBuilder::Auto) methods.m_builder = onHost ? TreeBuilder::Radix : TreeBuilder::Balanced;
     return methods;
 }
 
-Tree buildTreeOnHost(const TreeMethods& asked, const std::vector<Triangle>& triangles, const float* positions,
-                     std::size_t meshCount)
+Tree linkTreeOnHost(const TreeMethods& asked, const std::vector<Triangle>& triangles, const float* positions)
 {
     const TreeMethods methods = resolveBuilder(asked, true);
     const std::uint32_t bits = methods.m_mortonBits;
-    Tree tree;
-    if (methods.m_builder == TreeBuilder::TopDown)
-    {
-        tree = buildTopDownOnHost(triangles, positions, methods.m_topDown);
-    }
-    else if (methods.m_builder == TreeBuilder::Ploc)
-    {
-        tree = buildPlocOnHost(triangles, positions, bits, methods.m_plocRadius);
-    }
-    else
-    {
-        tree = buildRadixTreeOnHost(triangles, positions, bits, methods.m_builder == TreeBuilder::Balanced);
-    }
+    if (methods.m_builder == TreeBuilder::TopDown) return buildTopDownOnHost(triangles, positions, methods.m_topDown);
+    if (methods.m_builder == TreeBuilder::Ploc)
+        return buildPlocOnHost(triangles, positions, bits, methods.m_plocRadius);
+    return buildRadixTreeOnHost(triangles, positions, bits, methods.m_builder == TreeBuilder::Balanced);
+}
+
+Tree buildTreeOnHost(const TreeMethods& methods, const std::vector<Triangle>& triangles, const float* positions,
+                     std::size_t meshCount)
+{
+    Tree tree = linkTreeOnHost(methods, triangles, positions);
     if (methods.m_builder == TreeBuilder::TopDown) return tree;  // has its volumes
     std::size_t ignored = 0;
     const std::vector<float> noRadius(meshCount, 0.0f);

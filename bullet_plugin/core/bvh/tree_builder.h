@@ -13,7 +13,10 @@ namespace drape
 // The methods with a builder in place of TreeBuilder::Auto.
 TreeMethods resolveBuilder(TreeMethods methods, bool onHost);
 
-// positions: m, x y z per vertex. meshCount: slots that triangles refer to. Volumes have no radius. Auto is the host's.
+// positions: m, x y z per vertex. Order and links; of all but TopDown no volumes. Auto is the host's.
+Tree linkTreeOnHost(const TreeMethods& methods, const std::vector<Triangle>& triangles, const float* positions);
+
+// The same with volumes, without a radius. meshCount: slots that triangles refer to.
 Tree buildTreeOnHost(const TreeMethods& methods, const std::vector<Triangle>& triangles, const float* positions,
                      std::size_t meshCount);
 

@@ -10,6 +10,7 @@
 #include "bullet_plugin/core/pipeline.h"
 #include "device_backend.h"
 #include "host_backend.h"
+#include "side_hierarchy.h"
 #include "tree_watch.h"
 
 namespace drape
@@ -45,6 +46,7 @@ struct Pipeline::Implementation
     StepPairs m_stepPairs;
     StepResult m_result;
     StepStatistics m_statistics;
+    SideHierarchy m_clothHierarchy, m_obstacleHierarchy;
     TreeWatch m_treeWatch;
     BackendChoice m_choice;               // active where cost decides
     std::vector<NamedPair> m_notedPairs;  // those that m_choice has taken in last
@@ -63,9 +65,10 @@ struct Pipeline::Implementation
     void joinScene();
     void joinCloths();
     void joinObstacles();
-    // Links and leaf order of a side's hierarchy by the builder that the settings name. positions: m, joined.
-    void buildHierarchy(MeshPool& pool, const float* positions, BvhLayout& layout) const;
-    void useHierarchy(const Tree& tree, MeshPool& pool, BvhLayout& layout) const;
+    // Those of the settings, the builder as the back end in use has it.
+    TreeMethods treeMethods() const;
+    // Of both sides, by these methods, where the coming step walks them.
+    void buildHierarchies();
     // Uses a hierarchy of the cloths that was built anew.
     void takeRebuilt();
     // Has one built where the last step found the cloths' hierarchy decayed.

@@ -144,14 +144,14 @@ void Pipeline::Implementation::joinScene()
     if (m_clothRevision != cloths.revision())
     {
         joinCloths();
-        buildHierarchy(cloths, m_scene.m_clothEnd.data(), m_scene.m_clothLayout);
+        m_clothHierarchy.begin(cloths, m_scene.m_clothLayout);
         m_clothRevision = cloths.revision();
         m_treeWatch.begin();
     }
     if (m_obstacleRevision != obstacles.revision())
     {
         joinObstacles();
-        buildHierarchy(obstacles, m_scene.m_obstaclePositions.data(), m_scene.m_obstacleLayout);
+        m_obstacleHierarchy.begin(obstacles, m_scene.m_obstacleLayout);
         m_obstacleRevision = obstacles.revision();
     }
 }
@@ -426,6 +426,7 @@ void Pipeline::submit()
     self.joinScene();
     self.takeRebuilt();
     self.chooseBackend();
+    self.buildHierarchies();
     self.collectPairs();
     self.m_submitted = true;
     self.enqueue();

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "bullet_plugin/core/broad_phase/host_traversal.h"
-#include "bullet_plugin/core/bvh/tree_builder.h"
 #include "bullet_plugin/core/bvh/tree_cost.h"
+#include "side_hierarchy.h"
 
 namespace drape
 {
@@ -32,7 +32,7 @@ bool watchesClothTree(const Settings& settings, bool onHost)
 
 void TreeWatch::begin()
 {
-    m_rebuilt = std::future<Tree>();
+    m_rebuilt = std::future<JoinedTree>();
     m_costAtBuild = 0;
     m_step = 0;
 }
@@ -48,13 +48,14 @@ bool TreeWatch::isDecayed(double cost, float rebuildDecay)
     return !m_rebuilt.valid() && drape::isDecayed(cost, m_costAtBuild, rebuildDecay);
 }
 
-void TreeWatch::rebuild(const TreeMethods& methods, std::vector<Triangle> triangles, std::vector<float> positions,
-                        std::size_t meshCount)
+void TreeWatch::rebuild(const TreeMethods& methods, std::vector<Triangle> triangles,
+                        std::vector<std::uint32_t> firstTriangles, std::vector<float> positions)
 {
     // Where there is no thread to be had, the step that takes the tree builds it.
     m_rebuilt = std::async(std::launch::async | std::launch::deferred,
-                           [methods, meshCount, triangles = std::move(triangles), positions = std::move(positions)]
-                           { return buildTreeOnHost(methods, triangles, positions.data(), meshCount); });
+                           [methods, triangles = std::move(triangles), firsts = std::move(firstTriangles),
+                            positions = std::move(positions)]
+                           { return buildJoined(methods, triangles, firsts, positions.data()); });
 }
 
 void TreeWatch::wait()
@@ -62,7 +63,7 @@ void TreeWatch::wait()
     if (m_rebuilt.valid()) m_rebuilt.wait();
 }
 
-bool TreeWatch::take(Tree& tree)
+bool TreeWatch::take(JoinedTree& tree)
 {
     if (!m_rebuilt.valid() || m_rebuilt.wait_for(std::chrono::seconds(0)) == std::future_status::timeout) return false;
     tree = m_rebuilt.get();

@@ -11,7 +11,8 @@ namespace drape
 {
 enum class TreeBuilder
 {
-    Auto,      // what was fastest: Radix where the host walks the hierarchy, Balanced on a device
+    Auto,      // Radix where the host walks the hierarchy: of the builders whose tree pays within tens of steps the one
+               // with the fastest steps. Balanced on a device, where a step by default walks none: built fastest
     Balanced,  // triangles in Morton order, neighbours paired height by height: the shape depends on the count alone
     Radix,     // triangles in Morton order, split where the codes' first differing bit is (Karras 2012)
     TopDown,   // level by level, at the mean or median of the centroids along the longest direction (the thesis)
@@ -86,10 +87,8 @@ struct Methods
 {
     Traversal m_traversal = Traversal::Auto;
 
-    // Who builds the hierarchies that traversals walk; nothing where the step goes over patches. All but Balanced with
-    // codes of 30 bits build on the host whenever meshes come or go, over a side's meshes together, as their positions
-    // were given; that one takes each mesh's triangles in the order in which it came, which is sooner done where small
-    // meshes often come beside large ones.
+    // Who builds the hierarchies that traversals walk; nothing where the step goes over patches. A tree for each mesh,
+    // once, as its positions were given, before the first step that walks it, and pairs of meshes above.
     TreeMethods m_tree;
 
     // The cloths' hierarchy is built anew, beside the steps, once its nodes' areas over the root's have grown by this

@@ -1,0 +1,112 @@
+#include "side_hierarchy.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "bullet_plugin/core/bvh/tree_builder.h"
+#include "implementation.h"
+
+namespace drape
+{
+namespace
+{
+// Meshes' triangles come sorted by codes of 30 bits, and pairs of neighbours in order is what a layout is by itself.
+bool isAsTheyCame(const TreeMethods& methods)
+{
+    return methods.m_builder == TreeBuilder::Balanced && methods.m_mortonBits == 30;
+}
+}  // namespace
+
+void SideHierarchy::begin(const MeshPool& pool, BvhLayout& layout)
+{
+    layout = makeBvhLayout(std::uint32_t(pool.order().size()));
+    m_used = TreeBuilder::Auto;
+    for (auto kept = m_trees.begin(); kept != m_trees.end();)
+        kept = pool.slot(kept->first) == pool.meshCount() ? m_trees.erase(kept) : std::next(kept);
+}
+
+const MeshTree& SideHierarchy::treeOf(const TreeMethods& methods, const PooledMesh& mesh)
+{
+    const auto kept = m_trees.find(mesh.m_id);
+    if (kept != m_trees.end()) return kept->second;
+    return m_trees[mesh.m_id] = buildMeshTree(methods, mesh.m_topology.m_triangles, mesh.m_positions.data());
+}
+
+bool SideHierarchy::build(const TreeMethods& methods, MeshPool& pool, BvhLayout& layout)
+{
+    if (m_used == methods.m_builder || (m_used == TreeBuilder::Auto && isAsTheyCame(methods))) return false;
+    if (m_builder != methods.m_builder) m_trees.clear();
+    m_builder = methods.m_builder;
+    std::vector<const MeshTree*> trees;
+    for (std::size_t slot = 0; slot < pool.meshCount(); ++slot)
+        trees.push_back(&treeOf(methods, pool.mesh(slot)));
+    use(methods, joinTrees(trees), pool, layout);
+    return true;
+}
+
+void SideHierarchy::use(const TreeMethods& methods, JoinedTree tree, MeshPool& pool, BvhLayout& layout)
+{
+    m_used = methods.m_builder;
+    if (m_used == TreeBuilder::Balanced)
+        layout = makeBvhLayout(std::uint32_t(tree.m_order.size()));
+    else
+        layout = std::move(tree.m_layout);
+    pool.reorder(std::move(tree.m_order));
+}
+
+JoinedTree buildJoined(const TreeMethods& methods, const std::vector<Triangle>& triangles,
+                       const std::vector<std::uint32_t>& firstTriangles, const float* positions)
+{
+    std::vector<MeshTree> trees;
+    for (std::size_t mesh = 0; mesh < firstTriangles.size(); ++mesh)
+    {
+        const auto first = triangles.begin() + std::ptrdiff_t(firstTriangles[mesh]);
+        const bool last = mesh + 1 == firstTriangles.size();
+        const auto end = last ? triangles.end() : triangles.begin() + std::ptrdiff_t(firstTriangles[mesh + 1]);
+        trees.push_back(buildMeshTree(methods, {first, end}, positions));
+    }
+    std::vector<const MeshTree*> all;
+    for (const MeshTree& tree : trees)
+        all.push_back(&tree);
+    return joinTrees(all);
+}
+
+TreeMethods Pipeline::Implementation::treeMethods() const
+{
+    return resolveBuilder(m_settings.m_methods.m_tree, m_report.m_onHost);
+}
+
+void Pipeline::Implementation::buildHierarchies()
+{
+    if (m_pairs.empty() || !(m_report.m_onHost || !goesOverPatches(m_settings))) return;
+    if (m_clothHierarchy.build(treeMethods(), m_scene.m_cloths, m_scene.m_clothLayout))
+    {
+        m_clothRevision = m_scene.m_cloths.revision();
+        m_treeWatch.begin();
+    }
+    if (m_obstacleHierarchy.build(treeMethods(), m_scene.m_obstacles, m_scene.m_obstacleLayout))
+        m_obstacleRevision = m_scene.m_obstacles.revision();
+}
+
+void Pipeline::Implementation::takeRebuilt()
+{
+    JoinedTree tree;
+    if (!m_treeWatch.take(tree)) return;
+    m_clothHierarchy.use(treeMethods(), std::move(tree), m_scene.m_cloths, m_scene.m_clothLayout);
+    m_clothRevision = m_scene.m_cloths.revision();
+    ++m_statistics.m_rebuilds;
+}
+
+void Pipeline::Implementation::watchTree()
+{
+    if (!m_stepPairs.m_measureTree || m_statistics.m_skipped) return;
+    const MeshPool& cloths = m_scene.m_cloths;
+    if (!m_treeWatch.isDecayed(m_result.m_treeCost, m_settings.m_methods.m_rebuildDecay)) return;
+    std::vector<std::uint32_t> firstTriangles;
+    for (const MeshFirsts& firsts : cloths.firsts())
+        firstTriangles.push_back(firsts.m_triangle);
+    const float* end = m_scene.m_clothEnd.data();
+    m_treeWatch.rebuild(treeMethods(), cloths.triangles(), std::move(firstTriangles),
+                        std::vector<float>(end, end + 3 * cloths.vertexCount()));
+}
+}  // namespace drape
