@@ -126,6 +126,7 @@ private:
     {
         row["device"] = m_queries.deviceReport().m_device.m_name;
         row["hash"] = hashText(hash);
+        row[kMustMatch] = "same";
         const std::string name =
             row.value("scene", "") + "/" + row.value("knob", "") + "/" + row["value"].dump() + row.value("setting", "");
         if (m_queries.deviceReport().m_onHost) m_hostHashes[name] = hashText(hash);

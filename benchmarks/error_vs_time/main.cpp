@@ -16,9 +16,11 @@ namespace drape::bench
 {
 namespace
 {
+// Scenes and knobs are the simulations'.
 bool partWanted(const ErrorOptions& options, const std::string& part)
 {
-    return options.m_part.empty() || options.m_part == part;
+    if (!options.m_part.empty()) return options.m_part == part;
+    return part == kSimulationPart || (options.m_scenes.empty() && options.m_knobs.empty());
 }
 
 int measure(ErrorOptions options)
@@ -63,7 +65,8 @@ int main(int argc, char** argv)
                  kProgram);
     ErrorOptions options;
     addCommonOptions(app, options);
-    app.add_option("--part", options.m_part, "only this part")->check(CLI::IsMember({kDetectorPart, kSimulationPart}));
+    app.add_option("--part", options.m_part, "only this part (default: both; the simulations with --scene or --knob)")
+        ->check(CLI::IsMember({kDetectorPart, kSimulationPart}));
     app.add_option("--scene", options.m_scenes, "only these (repeat it); --list names them");
     app.add_option("--knob", options.m_knobs, "only these besides the defaults (repeat it); --list names them");
     app.add_option("--cap", options.m_capSeconds, "seconds of stepping for one trial")->check(CLI::PositiveNumber);

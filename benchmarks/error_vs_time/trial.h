@@ -29,18 +29,20 @@ struct Trial
     double m_activation = 0.5;        // Drape, see Settings
     ContactMode m_mode = ContactMode::Automatic;
     Traversal m_traversal = Traversal::Auto;
-    int m_substeps = 1;        // steps a frame
-    int m_iterations = 5;      // of Bullet's position solver
-    double m_voxel = 0;        // m, of the distance field; 0: as Bullet sets it up
-    std::uint32_t m_seed = 0;  // of the fall; 0: flat and from rest
-    int m_frames = 0;          // of 1/60 s
+    int m_substeps = 1;            // steps a frame
+    int m_iterations = 5;          // of Bullet's position solver
+    double m_voxel = 0;            // m, of the distance field; 0: as Bullet sets it up
+    std::uint32_t m_seed = 0;      // of the fall; 0: flat and from rest
+    int m_frames = 0;              // of 1/60 s
+    int m_speedFrames = 0;         // the last ones, over which the cloth's RMS speed is taken
+    bool m_reduceContacts = true;  // of Drape, see Settings
 
     std::string method() const;
     bool isDrape() const { return m_method != Method::BuiltIn; }
 };
 
 // Defaults and reference first, then Drape's knobs and Bullet's. Without a device there is no Method::Drape. frames:
-// of every trial but those that wait for the cloth to come to rest.
+// of every trial but those that wait for the cloth to come to rest. A rest trial's value is the seed of its fall.
 std::vector<Trial> makeTrials(bool quick, bool withDevice, int frames);
 
 // 1 + the last round of any trial.

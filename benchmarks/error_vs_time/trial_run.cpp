@@ -13,9 +13,6 @@ namespace drape::bench
 {
 namespace
 {
-// Share of the frames, the last ones, over which the cloth's speed is taken.
-constexpr double kLateShare = 0.1;
-
 std::vector<std::string> childArguments(const ErrorOptions& options, const std::string& scene, int number)
 {
     std::vector<std::string> arguments = {kProgram,
@@ -56,9 +53,10 @@ EnergyErrors energyErrors(const std::vector<ClothEnergy>& energies)
     return {errors.m_rise / fall, errors.m_gain / fall};
 }
 
-double lateSpeed(const std::vector<double>& speeds)
+// RMS of the last `count` speeds.
+double lateSpeed(const std::vector<double>& speeds, std::size_t count)
 {
-    const std::size_t count = std::max<std::size_t>(1, std::size_t(double(speeds.size()) * kLateShare));
+    count = std::min(count, speeds.size());
     double squares = 0;
     for (std::size_t i = speeds.size() - count; i < speeds.size(); ++i)
         squares += speeds[i] * speeds[i];
@@ -85,6 +83,7 @@ void describe(Row& row, const std::string& scene, const Trial& trial)
     row["voxel_m"] = trial.m_voxel;
     row["mode"] = trial.isDrape() ? modeName(trial.m_mode) : "";
     row["seed"] = trial.m_seed;
+    if (trial.isDrape() && trial.m_sameContacts) row[kMustMatch] = "defaults";
 }
 
 // Sums of each frame's substeps, of the frames that were in contact; of all, where none was.
@@ -181,6 +180,7 @@ TrialResult runTrial(const ErrorOptions& options, const std::string& scene, cons
     if (child.m_capped || !child.m_error.empty() || steps.empty() || !end.is_object()) return result;
     fillErrors(result.m_row, steps, end.at("nodes"));
     const char* speed = trial.m_knob == "rest" ? "rest_speed_mm_s" : "late_speed_mm_s";
+    result.m_row["speed_frames"] = trial.m_speedFrames;
     result.m_row[speed] = 1000 * end.at("late_speed").get<double>();
     result.m_row["nodes_through"] = end.at("crossed");
     for (const char* energy : {"energy_rise", "energy_gain"})
@@ -204,7 +204,8 @@ int streamTrial(const ErrorOptions& options, const ErrorScene& scene, const Tria
                   Row end;
                   end["nodes"] = own.m_drop.m_cloth.m_mesh.vertexCount();
                   end["device"] = simulation->device();
-                  end["late_speed"] = lateSpeed(simulation->speeds());
+                  end["late_speed"] =
+                      lateSpeed(simulation->speeds(), std::size_t(trial.m_speedFrames) * std::size_t(trial.m_substeps));
                   end["crossed"] = simulation->crossed();
                   // An obstacle that moves does work.
                   if (own.m_rise == 0)

@@ -170,6 +170,7 @@ std::unique_ptr<TrialSimulation> makeTrialSimulation(const ErrorScene& scene, co
     settings.m_activation = float(trial.m_activation);
     settings.m_mode = trial.m_mode;
     settings.m_methods.m_traversal = trial.m_traversal;
+    settings.m_reduceContacts = trial.m_reduceContacts;
     if (trial.m_method == Method::DrapeHost)
     {
         settings.m_backend = Backend::Host;

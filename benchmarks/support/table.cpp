@@ -12,7 +12,8 @@ namespace
 {
 // What a void row may keep of its numbers: its inputs.
 const char* const kInputs[] = {
-    "triangles", "cloths", "cloth_triangles", "obstacle_triangles", "thickness_m", "threads", "step", "dop", "decay"};
+    "triangles", "cloths", "cloth_triangles", "obstacle_triangles", "thickness_m", "threads", "step", "dop",
+    "decay",     "value",  "activation",      "substeps",           "iterations",  "voxel_m", "seed"};
 
 std::string cell(const Row& value)
 {
