@@ -1,13 +1,13 @@
 """The tables of error against run time in benchmarks/README.md. plot.py writes them."""
 import os
 
-from results import count_void, in_order, read_json, select
+from results import count_void, in_order, read_json, read_rows, select
 
 # Column, what it says, file name of its figure.
 SIMULATION_ERRORS = (
     ("penetration_max", "deepest penetration / thickness", "penetration"),
     ("penetration_p99", "penetration / thickness, 99th percentile", "penetration_p99"),
-    ("intersecting_end", "intersecting pairs after the last frame", "pairs"),
+    ("intersecting_max", "most intersecting pairs at the end of a step", "pairs"),
     ("nodes_through", "nodes that went through the obstacle", "through"),
     ("late_speed_mm_s", "RMS speed in the last tenth of the run, mm/s", "late_speed"),
     ("rest_speed_mm_s", "RMS speed at rest, mm/s", "rest"),
@@ -15,9 +15,9 @@ SIMULATION_ERRORS = (
     ("energy_gain", "rise of energy that no link had held / energy of the fall", "energy"),
     ("shape_error", "shape against small steps / thickness", "shape"),
 )
-IN_TABLE = ("penetration_max", "intersecting_end", "nodes_through", "late_speed_mm_s", "energy_rise", "energy_gain",
+IN_TABLE = ("penetration_max", "intersecting_max", "nodes_through", "late_speed_mm_s", "energy_rise", "energy_gain",
             "shape_error")
-COUNTS = ("intersecting_end", "nodes_through")
+COUNTS = ("intersecting_max", "nodes_through")
 NAMES = {"drape": "Drape, device", "drape_host": "Drape, host", "bullet": "Bullet built in",
          "plain": "closest points, plainly"}
 BEGIN = "<!-- error_vs_time: made by plot.py -->"
@@ -101,26 +101,33 @@ def knobs_table(rows):
 
 
 def falls_text(rows):
-    """Of many falls that differ by chance it can be said how rare an error is: none in N means fewer than 3 / N, at 95 %."""
-    said = []
-    for method in ("drape", "drape_host", "bullet"):
-        falls = [row for row in select(rows, method=method, knob="fall") if row["ended"] in ("whole", "capped")]
-        if not falls:
-            continue
-        clean = sum(is_clean(row) for row in falls)
-        bound = f" (so that fewer than {300 / len(falls):.0f} % of such falls have one, at 95 %)" if clean == len(falls) >= 30 else ""
-        said.append(f"{NAMES[method]}: {clean} of {len(falls)} without a node below or through the surface and without "
-                    f"an intersecting pair after any step{bound}")
-    return "Falls with a random turn, shift and speed, over all scenes. " + "; ".join(said) + ".\n\n" if said else ""
+    """Of falls that differ by chance it can be said how rare an error is: none in N means fewer than 3 / N, at 95 %."""
+    lines = []
+    for scene in in_order(rows, "scene"):
+        for method in NAMES:
+            falls = [row for row in select(rows, scene=scene, method=method, knob="fall") if row["ended"] in ("whole", "capped")]
+            if not falls:
+                continue
+            clean = sum(is_clean(row) for row in falls)
+            bound = f"{min(300 / len(falls), 100):.3g} %" if clean == len(falls) else "–"
+            lines.append([scene, NAMES[method], str(len(falls)), str(clean), bound])
+    return ("Falls with a random turn, shift and speed. Clean: without a node below or through the surface and without an "
+            "intersecting pair at the end of any step; where all N are, fewer than 3 / N of such falls are not, at 95 %:\n\n") + \
+        table(["scene", "method", "falls", "clean", "not clean: fewer than"], lines) if lines else ""
+
+
+def rest_line(row):
+    return [row["scene"], NAMES[row["method"]], f"{row['seed']:.0f}" if row.get("seed") else "flat, from rest",
+            row.get("setting", "reduced") if is_drape(row) else "–",
+            f"{row['speed_frames']:,.0f} of {row['frames']:,.0f}", figure_of(row["rest_speed_mm_s"], 3), knob_cell(row)]
 
 
 def rest_text(rows):
-    rests = [row for row in select(rows, knob="rest") if "rest_speed_mm_s" in row]
+    rests = [row for row in select(rows, knob="rest") if "rest_speed_mm_s" in row and "speed_frames" in row]
     if not rests:
         return ""
-    return "RMS speed of the cloth in the last 200 of 2,000 frames, mm/s, and what was wrong until then:\n\n" + \
-        table(["scene", "method", "mm/s", "ms a frame"],
-              [[row["scene"], NAMES[row["method"]], figure_of(row["rest_speed_mm_s"], 3), knob_cell(row)] for row in rests])
+    return "RMS speed of the cloth over the last frames of a long run, after it settled, and what was wrong until then:\n\n" + \
+        table(["scene", "method", "fall", "contacts", "over frames", "mm/s", "ms a frame"], [rest_line(row) for row in rests])
 
 
 def detector_line(row):
@@ -129,7 +136,7 @@ def detector_line(row):
     return [row["scene"], NAMES[row["method"]], setting_of(row), f"{row['query_median_us']:.3g}",
             f"{row['misses']:,.0f} of {row['true_pairs']:,.0f}",
             f"{row['false_hits']:,.0f} of {row['queries'] - row['true_pairs']:,.0f}",
-            error("time_error_p50"), error("distance_error_max"), error("normal_error_deg_p99")]
+            error("time_error_p50"), error("time_error_max"), error("late_times", "{:,.0f}"), error("distance_error_max"), error("normal_error_deg_p99")]
 
 
 def detector_table(rows):
@@ -144,7 +151,7 @@ def detector_table(rows):
             if row.get("setting") or row["knob"] == "defaults" or row is last:
                 lines.append(detector_line(row))
     return table(["queries", "method", "variant", "µs a query", "misses", "false hits", "time of impact off by, of the step, median",
-                  "distance off by, of the extent, at most", "normal off by, degrees, 99 %"], lines)
+                  "off by, at most", "late", "distance off by, of the extent, at most", "normal off by, degrees, 99 %"], lines)
 
 
 def misses_text(rows):
@@ -186,11 +193,19 @@ def summary(folder, rows):
     return text + (detector_table(detector) + misses_text(detector) if detector else "") + pictures(folder)
 
 
-def write(readme, text):
+def all_summaries(results):
+    """Of every folder of results that has rows, by name."""
+    folders = [os.path.join(results, name) for name in sorted(os.listdir(results))] if os.path.isdir(results) else []
+    found = [(folder, read_rows(folder, "error_vs_time")) for folder in folders]
+    return "".join(summary(folder, rows) for folder, rows in found if rows)
+
+
+def write(readme):
     old = open(readme).read() if os.path.exists(readme) else ""
     if BEGIN not in old:
         old = old.rstrip("\n") + ("\n\n" if old else "") + BEGIN + "\n" + END + "\n"
     before, rest = old.split(BEGIN, 1)
     after = rest.split(END, 1)[1]
+    text = all_summaries(os.path.join(os.path.dirname(os.path.abspath(readme)), "results"))
     with open(readme, "w") as file:
         file.write(before + BEGIN + "\n\n" + text + END + after)

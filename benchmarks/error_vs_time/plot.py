@@ -2,7 +2,8 @@
 
 One figure per error measure with a panel a scene (or a set of queries): a line per knob, the Pareto hull of Drape and of
 what is beside it, zero error on a strip of its own below the axis. Capped runs stand at the top as crosses. With README,
-the tables between its error_vs_time markers are replaced (and appended where there are none). Needs python3-matplotlib.
+the tables between its error_vs_time markers are made again (or appended, where there are none), of every folder of results/
+beside it. Needs python3-matplotlib.
 """
 import math
 import os
@@ -33,7 +34,7 @@ TIMES = {"simulation": ("frame_", "_ms", "ms a frame of 1/60 s (5 % to 95 %)"),
 GROUPS = {"drape": ("C0", "Drape, device"), "drape_host": ("C2", "Drape, host"), "bullet": ("C3", "Bullet built in"),
           "plain": ("C1", "closest points, plainly")}
 MARKERS = {"defaults": "*", "reference": "D", "substeps": "o", "iterations": "s", "thickness": "^", "margin": "^",
-           "activation": "v", "voxel": "P", "mode": "X", "traversal": "<", "fall": ".", "tolerance": "o",
+           "activation": "v", "voxel": "P", "mode": "X", "contacts": "d", "traversal": "<", "fall": ".", "tolerance": "o",
            "time tolerance": "s", "test": "X"}
 COLUMNS = 4  # panels side by side
 # Not along one line: each value is a run of its own.
@@ -86,9 +87,9 @@ def draw_knob(axes, rows, method, knob, error, floor):
     colour, name = GROUPS[method]
     axes.errorbar(x, y, xerr=spread, color=colour, marker=MARKERS.get(knob, "."), markersize=9 if knob == "defaults" else 5,
                   linewidth=0 if knob in SCATTERED else 0.7, elinewidth=0.3, alpha=0.8, label=f"{name}: {knob}")
-    for i, (time, _, _, value, setting) in enumerate(points):
-        if setting and knob != "traversal":
-            axes.annotate(setting, (time, value or floor), fontsize=5, xytext=(2, 3 + 5 * i), textcoords="offset points")
+    named = [point for point in points if point[4] and knob != "traversal"]
+    for i, (time, _, _, value, setting) in enumerate(named):
+        axes.annotate(setting, (time, value or floor), fontsize=5, xytext=(2, 3 + 5 * i), textcoords="offset points")
 
 
 def mark_what_did_not_end(axes, rows):
@@ -108,7 +109,8 @@ def draw_panel(axes, rows, error):
         for knob in in_order(select(rows, method=method), "knob"):
             draw_knob(axes, rows, method, knob, error, floor)
     for drape, colour in ((True, "C0"), (False, "C3")):
-        hull = pareto(points_of([row for row in rows if is_drape(row) == drape and row["knob"] != "fall"], error))
+        # Another fall is no choice.
+        hull = pareto(points_of([row for row in rows if is_drape(row) == drape and not row.get("seed")], error))
         if hull:
             axes.step([x for x, _ in hull], [y or floor for _, y in hull], where="post", color=colour, linewidth=2.5,
                       alpha=0.35)
@@ -155,7 +157,7 @@ def main():
     draw(select(rows, part="simulation"), SIMULATION_ERRORS, sys.argv[1])
     draw(select(rows, part="detector"), DETECTOR_ERRORS, sys.argv[1])
     if len(sys.argv) == 3:
-        error_summary.write(sys.argv[2], error_summary.summary(sys.argv[1], rows))
+        error_summary.write(sys.argv[2])
 
 
 if __name__ == "__main__":
