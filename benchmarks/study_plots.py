@@ -5,24 +5,41 @@ from results import in_order, select
 from study_tables import FRONTS
 
 
+# A colour for each line of a kind, more than a kind has.
+COLOURS = plt.get_cmap("tab10").colors + plt.get_cmap("Dark2").colors
+DASHES = {"opencl": "-", "host": ":", "peer": "--"}
+
+
+def line_styles(keys):
+    """Of (backend, label) pairs: devices are solid, the host dotted, peers dashed, each kind with all colours."""
+    used, styles = {}, {}
+    for backend, label in keys:
+        kind = backend if backend in DASHES else "peer"
+        styles[label] = {"linestyle": DASHES[kind], "color": COLOURS[used.setdefault(kind, 0) % len(COLOURS)]}
+        used[kind] += 1
+    return styles
+
+
 def descent(rows, scene, folder, save):
     """Figures 4.6 and 4.8 (traversal) over a cloth's descent, and its narrow phase."""
     mine = select(rows, part="traversal", model=scene)
     if not mine:
         return
     variants = in_order(mine, "variant")
+    styles = line_styles([("host" if variant.startswith("host") else "opencl", variant) for variant in variants])
     figure, (by_overlaps, by_step, narrow) = plt.subplots(1, 3, figsize=(16, 4.5))
     for variant in variants:
         steps = sorted(select(mine, variant=variant), key=lambda row: row["step"])
         # The first step of a pass follows the last: no step of the descent.
         steps = [row for row in steps if row["step"] > 0 and "broad_ms" in row]
         overlaps = sorted((row["candidates"], row["broad_ms"]) for row in steps)
-        by_overlaps.plot(*zip(*overlaps), ".-", markersize=4, linewidth=0.8, label=variant)
-        by_step.plot([row["step"] for row in steps], [row["broad_ms"] for row in steps], label=variant)
+        if variant != "default":  # which finds pairs of features
+            by_overlaps.plot(*zip(*overlaps), marker=".", markersize=4, linewidth=0.8, label=variant, **styles[variant])
+        by_step.plot([row["step"] for row in steps], [row["broad_ms"] for row in steps], label=variant, **styles[variant])
         pairs = sorted((row["candidates"], row["narrow_ms"]) for row in steps if row["candidates"] > 0)
         if pairs and variant in ("host, thesis: front", "default"):
             narrow.plot(*zip(*pairs), ".-", markersize=4, linewidth=0.8, label=variant)
-    by_overlaps.set(xlabel="overlaps found", ylabel="broad phase, ms", yscale="log",
+    by_overlaps.set(xlabel="overlaps found, pairs of triangles", ylabel="broad phase, ms", yscale="log",
                     title="traversal against overlaps (figure 4.6)")
     by_step.set(xlabel="step of the descent", ylabel="broad phase, ms", yscale="log",
                 title="traversals over a simulation (figure 4.8)")
@@ -94,13 +111,14 @@ def by_model(rows, part, title, folder, save):
     if not mine:
         return
     figure, axes = plt.subplots(figsize=(8, 5))
+    lines = {}
     for variant in in_order(mine, "variant"):
         for threads in in_order(select(mine, variant=variant), "threads"):
-            chosen = select(mine, variant=variant, threads=threads)
-            points = sorted((row["triangles"], time_of(row)) for row in chosen)
-            dash = "-" if chosen[0]["backend"] in ("opencl", "host") else "--"
-            label = variant + (f", {threads:.0f} thread(s)" if threads else "")
-            axes.plot(*zip(*points), dash, marker=".", markersize=5, linewidth=0.9, label=label)
+            lines[variant + (f", {threads:.0f} thread(s)" if threads else "")] = select(mine, variant=variant, threads=threads)
+    styles = line_styles([(chosen[0]["backend"], label) for label, chosen in lines.items()])
+    for label, chosen in lines.items():
+        points = sorted((row["triangles"], time_of(row)) for row in chosen)
+        axes.plot(*zip(*points), marker=".", markersize=5, linewidth=0.9, label=label, **styles[label])
     axes.set(xscale="log", yscale="log", xlabel="triangles", ylabel="ms (kernel time; wall time on CPU threads)",
              title=title)
     axes.grid(True, which="both", alpha=0.25)
