@@ -18,18 +18,28 @@ btScalar closestOnPath(const btVector3& start, const btVector3& end, const btVec
     return std::min(btScalar(1), std::max(btScalar(0), (point - start).dot(way) / length2));
 }
 
+bool meet(const btVector3& low, const btVector3& high, const btVector3& otherLow, const btVector3& otherHigh)
+{
+    bool meet = true;
+    for (int axis = 0; axis < 3; ++axis)
+        meet = meet && low[axis] <= otherHigh[axis] && high[axis] >= otherLow[axis];
+    return meet;
+}
+
 // Brings the node back to the path where it is farther off than the radius, which goes from one end's to the other's.
-void keepNear(btSoftBody::Node& node, const btVector3& start, const btVector3& end, btScalar startRadius,
+// Returns whether it was.
+bool keepNear(btSoftBody::Node& node, const btVector3& start, const btVector3& end, btScalar startRadius,
               btScalar endRadius, btScalar velocityScale)
 {
     const btScalar t = closestOnPath(start, end, node.m_x);
     const btVector3 off = node.m_x - (start + (end - start) * t);
     const btScalar radius = startRadius + (endRadius - startRadius) * t;
     const btScalar distance = off.length();
-    if (!(distance > radius)) return;
+    if (!(distance > radius)) return false;
     const btVector3 shift = off * (radius / distance - 1);
     node.m_x += shift;
     node.m_v += shift * velocityScale;
+    return true;
 }
 }  // namespace
 
@@ -106,6 +116,8 @@ void MotionLimit::addPassed(const btSoftBody& body, int a, int b, int c)
             passed.m_high.setMax(place);
         }
     }
+    m_allLow.setMin(passed.m_low);
+    m_allHigh.setMax(passed.m_high);
     m_passed.push_back(passed);
 }
 
@@ -113,6 +125,8 @@ void MotionLimit::addPassed(const btSoftBody& body, int a, int b, int c)
 void MotionLimit::boxPassed(const btSoftBody& body)
 {
     m_passed.clear();
+    m_allLow.setValue(SIMD_INFINITY, SIMD_INFINITY, SIMD_INFINITY);
+    m_allHigh = -m_allLow;
     for (const Restless& restless : m_restless)
         addPassed(body, restless.m_node, restless.m_node, restless.m_node);
     const std::vector<std::int32_t>& nodes = *m_triangles;
@@ -121,61 +135,69 @@ void MotionLimit::boxPassed(const btSoftBody& body)
         bool any = false;
         for (int k = 0; k < 3; ++k)
             any = any || m_isRestless[static_cast<std::size_t>(nodes[i + static_cast<std::size_t>(k)])] != 0;
-        if (any) addPassed(body, nodes[i], nodes[i + 1], nodes[i + 2]);
+        const bool there = std::max(nodes[i], std::max(nodes[i + 1], nodes[i + 2])) < body.m_nodes.size();
+        if (any && there) addPassed(body, nodes[i], nodes[i + 1], nodes[i + 2]);
     }
 }
 
-void MotionLimit::markNear(const Region& region)
+bool MotionLimit::markNear(const Region& region)
 {
+    if (!meet(m_allLow, m_allHigh, region.m_low, region.m_high)) return false;
     m_isNear.assign(m_paths.m_end.size(), 0);
+    bool any = false;
     for (const Passed& passed : m_passed)
     {
-        bool near = true;
-        for (int axis = 0; axis < 3; ++axis)
-            near = near && passed.m_low[axis] <= region.m_high[axis] && passed.m_high[axis] >= region.m_low[axis];
-        for (int k = 0; near && k < 3; ++k)
-            m_isNear[static_cast<std::size_t>(passed.m_nodes[k])] = 1;
+        if (!meet(passed.m_low, passed.m_high, region.m_low, region.m_high)) continue;
+        any = true;
+        for (const int node : passed.m_nodes)
+            m_isNear[static_cast<std::size_t>(node)] = 1;
     }
+    return any;
 }
 
-void MotionLimit::applyResting(btSoftBody& body, btScalar velocityScale)
+bool MotionLimit::applyResting(btSoftBody& body, btScalar velocityScale)
 {
     for (const Region& region : m_regions)
     {
         if (region.m_moves) continue;
-        markNear(region);
+        const bool anyNear = markNear(region);
         for (Restless& restless : m_restless)
         {
             const std::size_t at = static_cast<std::size_t>(restless.m_node);
             // What met a node's face on the way to the end may be away from all boxes there.
-            if (!(m_hasContact[at] || m_isNear[at])) continue;
+            if (!(m_hasContact[at] || (anyNear && m_isNear[at]))) continue;
             const Allowance own = allowance(region, at);
             restless.m_allowed.m_start = std::min(restless.m_allowed.m_start, own.m_start);
             restless.m_allowed.m_end = std::min(restless.m_allowed.m_end, own.m_end);
         }
     }
+    bool moved = false;
     for (const Restless& restless : m_restless)
     {
         const Allowance& allowed = restless.m_allowed;
         if (allowed.m_end == SIMD_INFINITY) continue;
         const std::size_t at = static_cast<std::size_t>(restless.m_node);
-        keepNear(body.m_nodes[restless.m_node], m_paths.m_start[at], m_paths.m_end[at], allowed.m_start, allowed.m_end,
-                 velocityScale);
+        moved = keepNear(body.m_nodes[restless.m_node], m_paths.m_start[at], m_paths.m_end[at], allowed.m_start,
+                         allowed.m_end, velocityScale) ||
+                moved;
     }
+    return moved;
 }
 
-void MotionLimit::applyMoving(btSoftBody& body, const Region& region, btScalar velocityScale)
+bool MotionLimit::applyMoving(btSoftBody& body, const Region& region, btScalar velocityScale)
 {
-    boxPassed(body);
-    markNear(region);
+    bool moved = false;
+    if (!markNear(region)) return moved;
     for (const Restless& restless : m_restless)
     {
         const std::size_t at = static_cast<std::size_t>(restless.m_node);
         if (!m_isNear[at]) continue;
         const Allowance own = allowance(region, at);
-        keepNear(body.m_nodes[restless.m_node], region.m_carry * m_paths.m_start[at], m_paths.m_end[at], own.m_start,
-                 own.m_end, velocityScale);
+        moved = keepNear(body.m_nodes[restless.m_node], region.m_carry * m_paths.m_start[at], m_paths.m_end[at],
+                         own.m_start, own.m_end, velocityScale) ||
+                moved;
     }
+    return moved;
 }
 
 void MotionLimit::apply(btSoftBody& body)
@@ -183,8 +205,12 @@ void MotionLimit::apply(btSoftBody& body)
     if (!findRestless(body)) return;
     const btScalar velocityScale = body.m_sst.isdt * (1 - body.m_cfg.kDP);
     boxPassed(body);
-    applyResting(body, velocityScale);
+    bool moved = applyResting(body, velocityScale);
     for (const Region& region : m_regions)
-        if (region.m_moves) applyMoving(body, region, velocityScale);
+    {
+        if (!region.m_moves) continue;
+        if (moved) boxPassed(body);
+        moved = applyMoving(body, region, velocityScale);
+    }
 }
 }  // namespace drape

@@ -10,7 +10,7 @@
 // position, as in Bullet's own update, so that no energy comes from it. A node is near an obstacle when it or any of
 // its faces is: a face whose nodes all lie beside a corner may be pulled over it. Nodes away from every obstacle are
 // not touched. Near an obstacle that moves the path is the one that the obstacle sees. Metres, world frame. Cost:
-// linear in the nodes, and in the triangles where nodes left their paths.
+// linear in the nodes, and in the triangles where nodes left their paths; there again for each obstacle that is near.
 #pragma once
 
 #include <cstdint>
@@ -88,10 +88,12 @@ private:
     bool findRestless(const btSoftBody& body);
     void boxPassed(const btSoftBody& body);
     void addPassed(const btSoftBody& body, int a, int b, int c);
-    void markNear(const Region& region);
+    // Marks nodes near the region; false, with no mark changed, where there are none.
+    bool markNear(const Region& region);
     Allowance allowance(const Region& region, std::size_t node) const;
-    void applyResting(btSoftBody& body, btScalar velocityScale);
-    void applyMoving(btSoftBody& body, const Region& region, btScalar velocityScale);
+    // Both: whether a node was brought back.
+    bool applyResting(btSoftBody& body, btScalar velocityScale);
+    bool applyMoving(btSoftBody& body, const Region& region, btScalar velocityScale);
 
     std::vector<Region> m_regions;
     btScalar m_leastReach = SIMD_INFINITY;
@@ -103,5 +105,6 @@ private:
     std::vector<Restless> m_restless;
     std::vector<unsigned char> m_isRestless, m_isNear;  // by node; near the region looked at last
     std::vector<Passed> m_passed;
+    btVector3 m_allLow, m_allHigh;  // around all of them
 };
 }  // namespace drape

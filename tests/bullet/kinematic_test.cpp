@@ -225,7 +225,6 @@ INSTANTIATE_TEST_SUITE_P(Plates, KinematicPlate, testing::ValuesIn(plateCases())
 TEST_P(Kinematic, thinPlateIsWrappedByClothThatLiesAskew)
 {
     constexpr btScalar kSpeed = 30, kMostShift = btScalar(0.12);  // m/s, m
-    std::size_t most = 0;
     for (std::uint32_t seed = 1; seed <= 8; ++seed)
     {
         SCOPED_TRACE("seed " + std::to_string(seed));
@@ -245,9 +244,8 @@ TEST_P(Kinematic, thinPlateIsWrappedByClothThatLiesAskew)
             scene.checkedStep(poseAt(height));
             if (HasFatalFailure()) return;
         }
-        most = std::max(most, scene.m_most);
+        EXPECT_GT(scene.m_most, 0u);
     }
-    EXPECT_GT(most, 0u);
 }
 
 // Discrete steps look at the end of each only: what comes by farther than the thickness misses the cloth, unless a step

@@ -106,9 +106,8 @@ double WorldRows::fastestWithABallInside(bool kinematic)
     btSoftBody& cloth = world.addCloth(smallCloth(kTop + btScalar(0.03)));
     btCollisionObject& ball = addBall(world, sphere, at(0, 5, 0), kinematic);
     world.step(60);
-    const std::size_t without = plugin.statistics().m_contacts;
     double speed = 0;
-    std::size_t most = 0;
+    std::size_t touching = 0;  // contacts with the ball
     for (int jump = 0; jump < 6; ++jump)
     {
         teleport(ball, at(0.1 * jump - 0.25, double(kTop) + 0.1, 0));
@@ -117,12 +116,13 @@ double WorldRows::fastestWithABallInside(bool kinematic)
             world.step();
             EXPECT_TRUE(allFinite(cloth));
             speed = std::max(speed, fastest(cloth));
-            most = std::max(most, plugin.statistics().m_contacts);
+            for (const ContactInfo& contact : plugin.contacts())
+                touching += contact.m_obstacle == &ball;
         }
         teleport(ball, at(0, 5, 0));
         world.step(5);
     }
-    EXPECT_GT(most, without) << "the ball never touched the cloth";
+    EXPECT_GT(touching, 0u) << "the ball never touched the cloth";
     world.step(120);
     EXPECT_GT(lowestOf(cloth), kTop);
     return speed;

@@ -10,6 +10,7 @@
 #include "scenes/cloth_grid.h"
 #include "scenes/shapes.h"
 #include "tests/support/backends.h"
+#include "tests/support/cases.h"
 #include "tests/support/environment.h"
 #include "tests/support/live_scene.h"
 #include "tests/support/pipeline_driver.h"
@@ -229,6 +230,41 @@ TEST_P(BackendMove, MeasuringLeavesNothingBehind)
             ASSERT_TRUE(sameBytes(found, expected)) << difference(found, expected);
         }
     }
+}
+
+// More meshes than the measurement had, whose numbers are theirs.
+TEST_P(BackendMove, MeshesThatComeAfterMeasuringHaveTreesOfTheirOwn)
+{
+    constexpr std::size_t kMeshes = 80, kTriangles = 30;
+    const TemporaryFolder folder;
+    Settings settings = byCost(-1);
+    settings.m_cacheFolder = folder.path();
+    const std::unique_ptr<Pipeline> measured = makePipeline(settings), plain = makePipeline(byCost(kInfinity));
+    ASSERT_TRUE(measured && plain);
+    EXPECT_EQ(measured->deviceReport().m_crossoverSource, "measured now");
+    const StepCase step = soupCase(600, int(kMeshes * kTriangles), false, 1310);
+    SCOPED_TRACE(step.trace());
+    std::vector<Contact> found[2];
+    for (Pipeline* pipeline : {measured.get(), plain.get()})
+    {
+        std::vector<MeshId> obstacles;
+        for (std::size_t i = 0; i < kMeshes; ++i)
+        {
+            TriangleMesh mesh;  // no corner of the soup is shared
+            const auto first = step.m_obstacle.m_positions.begin() + std::ptrdiff_t(9 * kTriangles * i);
+            mesh.m_positions.assign(first, first + 9 * kTriangles);
+            for (std::size_t corner = 0; corner < 3 * kTriangles; ++corner)
+                mesh.m_triangles.push_back(std::int32_t(corner));
+            obstacles.push_back(addObstacle(*pipeline, mesh));
+        }
+        const MeshId cloth = addCloth(*pipeline, step.m_cloth);
+        setMotion(*pipeline, cloth, step.m_cloth.m_positions, step.m_end);
+        for (const MeshId obstacle : obstacles)
+            pipeline->addPair(cloth, obstacle, step.m_thickness);
+        found[pipeline == plain.get()] = runStep(*pipeline);
+    }
+    EXPECT_GT(found[1].size(), 100u);
+    EXPECT_TRUE(sameBytes(found[0], found[1])) << difference(found[0], found[1]);
 }
 
 INSTANTIATE_TEST_SUITE_P(Device, BackendMove, testing::Values(openClBackends().front()), backendName);

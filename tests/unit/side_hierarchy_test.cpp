@@ -118,6 +118,35 @@ TEST_P(SideHierarchyTest, AMeshThatComesLeavesTheOthersTreesAsTheyWere)
     expectValid();
 }
 
+TEST_P(SideHierarchyTest, WhatWasBuiltAnewStaysWhenAMeshComes)
+{
+    add(300);
+    m_hierarchy.build(m_methods, m_pool, m_layout);
+    std::vector<float> elsewhere = m_pool.mesh(0).m_positions;
+    std::reverse(elsewhere.begin(), elsewhere.end());
+    m_hierarchy.use(buildMeshTrees(m_methods, m_pool.triangles(), {0}, elsewhere.data()), m_pool, m_layout);
+    const std::vector<std::uint32_t> anew = m_pool.order();
+    EXPECT_FALSE(m_hierarchy.build(m_methods, m_pool, m_layout));
+    expectValid();
+    add(50);
+    EXPECT_TRUE(m_hierarchy.build(m_methods, m_pool, m_layout));
+    EXPECT_TRUE(std::equal(anew.begin(), anew.end(), m_pool.order().begin()));
+    EXPECT_EQ(m_layout.leafCount(), 350u);
+}
+
+// As meshes may that are numbered anew.
+TEST_P(SideHierarchyTest, ATreeOfAnotherMeshOfTheSameNumberIsNotTaken)
+{
+    add(300);
+    m_hierarchy.build(m_methods, m_pool, m_layout);
+    m_pool.remove(0);
+    m_next = 0;
+    add(20);
+    m_hierarchy.build(m_methods, m_pool, m_layout);
+    EXPECT_EQ(m_layout.leafCount(), 20u);
+    expectValid();
+}
+
 TEST_P(SideHierarchyTest, AnotherBuilderBuildsAnew)
 {
     add(300);

@@ -56,8 +56,9 @@ double Pipeline::Implementation::findCrossover(Pipeline& pipeline)
     const bool measured = measureLadder(
         pipeline, m_settings.m_activation, [&](bool onHost) { m_report.m_onHost = onHost || device()->failed(); },
         crossover.m_rungs);
-    // Nobody has seen these steps.
+    // Nobody has seen these steps, whose meshes' ids are given again.
     m_nextId = 0;
+    m_clothHierarchy = m_obstacleHierarchy = SideHierarchy();
     m_statistics = StepStatistics();
     m_result = StepResult();
     if (measured && !device()->failed())

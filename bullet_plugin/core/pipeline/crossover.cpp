@@ -16,6 +16,7 @@ namespace
 {
 constexpr const char* kHead = "drape crossover 1\n";
 constexpr std::size_t kMostBytes = 1 << 20;
+constexpr int kHostRevision = 2;  // counts up with what changes how long the host's steps take
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 // A value in one line.
@@ -85,7 +86,7 @@ CrossoverCache::CrossoverCache(const Settings& settings, const DeviceInfo& devic
             << computeUnits << "\nhost " << oneLine(hostName()) << "\nsettings mode " << int(settings.m_mode)
             << " activation " << settings.m_activation << " reduce " << settings.m_reduceContacts << "\n";
     state << "driver " << oneLine(device.m_driver) << "\ndrape " << DRAPE_VERSION << " kernels " << kernelsHash()
-          << "\n";
+          << " host " << kHostRevision << "\n";
     m_machine = machine.str();
     m_state = state.str();
 }

@@ -67,7 +67,9 @@ struct Pipeline::Implementation
     void joinObstacles();
     // Those of the settings, the builder as the back end in use has it.
     TreeMethods treeMethods() const;
-    // Of both sides, by these methods, where the coming step walks them.
+    // Whether the coming step walks both sides' hierarchies of triangles.
+    bool walksHierarchies() const;
+    // Of both sides, by these methods, where it does.
     void buildHierarchies();
     // Uses a hierarchy of the cloths that was built anew.
     void takeRebuilt();

@@ -424,9 +424,9 @@ void Pipeline::submit()
     const Clock::time_point start = Clock::now();
     self.m_statistics = StepStatistics();
     self.joinScene();
-    self.takeRebuilt();
     self.chooseBackend();
     self.buildHierarchies();
+    self.takeRebuilt();
     self.collectPairs();
     self.m_submitted = true;
     self.enqueue();

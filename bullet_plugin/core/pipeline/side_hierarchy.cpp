@@ -1,6 +1,7 @@
 #include "side_hierarchy.h"
 
-#include <algorithm>
+#include <cassert>
+#include <iterator>
 #include <utility>
 
 #include "bullet_plugin/core/bvh/tree_builder.h"
@@ -27,48 +28,61 @@ void SideHierarchy::begin(const MeshPool& pool, BvhLayout& layout)
 
 const MeshTree& SideHierarchy::treeOf(const TreeMethods& methods, const PooledMesh& mesh)
 {
+    const std::vector<Triangle>& triangles = mesh.m_topology.m_triangles;
     const auto kept = m_trees.find(mesh.m_id);
-    if (kept != m_trees.end()) return kept->second;
-    return m_trees[mesh.m_id] = buildMeshTree(methods, mesh.m_topology.m_triangles, mesh.m_positions.data());
+    if (kept != m_trees.end() && kept->second.m_order.size() == triangles.size()) return kept->second;
+    return m_trees[mesh.m_id] = buildMeshTree(methods, triangles, mesh.m_positions.data());
 }
 
 bool SideHierarchy::build(const TreeMethods& methods, MeshPool& pool, BvhLayout& layout)
 {
-    if (m_used == methods.m_builder || (m_used == TreeBuilder::Auto && isAsTheyCame(methods))) return false;
+    const bool asTheyCame = m_used == TreeBuilder::Auto && m_trees.empty() && isAsTheyCame(methods);
+    if (m_used == methods.m_builder || asTheyCame) return false;
     if (m_builder != methods.m_builder) m_trees.clear();
     m_builder = methods.m_builder;
-    std::vector<const MeshTree*> trees;
     for (std::size_t slot = 0; slot < pool.meshCount(); ++slot)
-        trees.push_back(&treeOf(methods, pool.mesh(slot)));
-    use(methods, joinTrees(trees), pool, layout);
+        treeOf(methods, pool.mesh(slot));
+    join(pool, layout);
     return true;
 }
 
-void SideHierarchy::use(const TreeMethods& methods, JoinedTree tree, MeshPool& pool, BvhLayout& layout)
+void SideHierarchy::use(RebuiltTrees rebuilt, MeshPool& pool, BvhLayout& layout)
 {
-    m_used = methods.m_builder;
-    if (m_used == TreeBuilder::Balanced)
-        layout = makeBvhLayout(std::uint32_t(tree.m_order.size()));
-    else
-        layout = std::move(tree.m_layout);
-    pool.reorder(std::move(tree.m_order));
+    assert(rebuilt.m_trees.size() == pool.meshCount());
+    m_builder = rebuilt.m_builder;
+    m_trees.clear();
+    for (std::size_t slot = 0; slot < pool.meshCount(); ++slot)
+        m_trees[pool.mesh(slot).m_id] = std::move(rebuilt.m_trees[slot]);
+    join(pool, layout);
 }
 
-JoinedTree buildJoined(const TreeMethods& methods, const std::vector<Triangle>& triangles,
-                       const std::vector<std::uint32_t>& firstTriangles, const float* positions)
+void SideHierarchy::join(MeshPool& pool, BvhLayout& layout)
 {
-    std::vector<MeshTree> trees;
+    std::vector<const MeshTree*> trees;
+    for (std::size_t slot = 0; slot < pool.meshCount(); ++slot)
+        trees.push_back(&m_trees.at(pool.mesh(slot).m_id));
+    JoinedTree joined = joinTrees(trees);
+    m_used = m_builder;
+    if (m_used == TreeBuilder::Balanced)
+        layout = makeBvhLayout(std::uint32_t(joined.m_order.size()));
+    else
+        layout = std::move(joined.m_layout);
+    pool.reorder(std::move(joined.m_order));
+}
+
+RebuiltTrees buildMeshTrees(const TreeMethods& methods, const std::vector<Triangle>& triangles,
+                            const std::vector<std::uint32_t>& firstTriangles, const float* positions)
+{
+    RebuiltTrees rebuilt;
+    rebuilt.m_builder = methods.m_builder;
     for (std::size_t mesh = 0; mesh < firstTriangles.size(); ++mesh)
     {
         const auto first = triangles.begin() + std::ptrdiff_t(firstTriangles[mesh]);
         const bool last = mesh + 1 == firstTriangles.size();
         const auto end = last ? triangles.end() : triangles.begin() + std::ptrdiff_t(firstTriangles[mesh + 1]);
-        trees.push_back(buildMeshTree(methods, {first, end}, positions));
+        rebuilt.m_trees.push_back(buildMeshTree(methods, {first, end}, positions));
     }
-    std::vector<const MeshTree*> all;
-    for (const MeshTree& tree : trees)
-        all.push_back(&tree);
-    return joinTrees(all);
+    return rebuilt;
 }
 
 TreeMethods Pipeline::Implementation::treeMethods() const
@@ -76,9 +90,14 @@ TreeMethods Pipeline::Implementation::treeMethods() const
     return resolveBuilder(m_settings.m_methods.m_tree, m_report.m_onHost);
 }
 
+bool Pipeline::Implementation::walksHierarchies() const
+{
+    return !m_pairs.empty() && (m_report.m_onHost || !goesOverPatches(m_settings));
+}
+
 void Pipeline::Implementation::buildHierarchies()
 {
-    if (m_pairs.empty() || !(m_report.m_onHost || !goesOverPatches(m_settings))) return;
+    if (!walksHierarchies()) return;
     if (m_clothHierarchy.build(treeMethods(), m_scene.m_cloths, m_scene.m_clothLayout))
     {
         m_clothRevision = m_scene.m_cloths.revision();
@@ -90,9 +109,11 @@ void Pipeline::Implementation::buildHierarchies()
 
 void Pipeline::Implementation::takeRebuilt()
 {
-    JoinedTree tree;
-    if (!m_treeWatch.take(tree)) return;
-    m_clothHierarchy.use(treeMethods(), std::move(tree), m_scene.m_cloths, m_scene.m_clothLayout);
+    RebuiltTrees rebuilt;
+    if (m_pairs.empty() || !m_treeWatch.take(rebuilt)) return;
+    // Of a back end that is no longer in use: dropped.
+    if (!walksHierarchies() || rebuilt.m_builder != treeMethods().m_builder) return;
+    m_clothHierarchy.use(std::move(rebuilt), m_scene.m_cloths, m_scene.m_clothLayout);
     m_clothRevision = m_scene.m_cloths.revision();
     ++m_statistics.m_rebuilds;
 }

@@ -1,8 +1,8 @@
 // One side's hierarchy: who builds it, and when.
 //
 // Meshes that come and go leave pairs of neighbours in the order in which triangles came, which costs nothing; the
-// builder that the settings name builds before the first step that walks the hierarchy. Trees of meshes are kept, so
-// that one that comes costs its own alone.
+// builder that the settings name builds before the first step that walks the hierarchy. (A step that a device hands
+// back to the host half-way walks what is there.) Trees of meshes are kept, so that one that comes costs its own alone.
 #pragma once
 
 #include <map>
@@ -12,6 +12,16 @@
 
 namespace drape
 {
+// Every mesh's tree, by slot.
+struct RebuiltTrees
+{
+    TreeBuilder m_builder = TreeBuilder::Auto;
+    std::vector<MeshTree> m_trees;
+};
+// triangles, positions (m): the pool's, joined; firstTriangles: of every mesh. No state: for another thread.
+RebuiltTrees buildMeshTrees(const TreeMethods& methods, const std::vector<Triangle>& triangles,
+                            const std::vector<std::uint32_t>& firstTriangles, const float* positions);
+
 class SideHierarchy
 {
 public:
@@ -20,19 +30,16 @@ public:
     // Another leaf order and layout where the last ones are not by that builder. methods: none with TreeBuilder::Auto.
     // Returns whether anything changed; it counts as a change of the pool.
     bool build(const TreeMethods& methods, MeshPool& pool, BvhLayout& layout);
-    // Takes what buildJoined() has made of the pool's meshes.
-    void use(const TreeMethods& methods, JoinedTree tree, MeshPool& pool, BvhLayout& layout);
+    // Takes what buildMeshTrees() has made of the pool's meshes, in place of the trees that are kept.
+    void use(RebuiltTrees rebuilt, MeshPool& pool, BvhLayout& layout);
 
 private:
     const MeshTree& treeOf(const TreeMethods& methods, const PooledMesh& mesh);
+    void join(MeshPool& pool, BvhLayout& layout);
 
-    std::map<MeshId, MeshTree> m_trees;  // by m_builder
+    std::map<MeshId, MeshTree> m_trees;  // by m_builder; of every mesh of the pool when they are joined
     TreeBuilder m_builder = TreeBuilder::Auto;
     TreeBuilder m_used = TreeBuilder::Auto;  // by which the layout is; Auto: as triangles came
 };
 
-// Every mesh's tree by the methods' builder, joined. triangles, positions: the pool's, joined; firstTriangles: of every
-// mesh. No state: for another thread.
-JoinedTree buildJoined(const TreeMethods& methods, const std::vector<Triangle>& triangles,
-                       const std::vector<std::uint32_t>& firstTriangles, const float* positions);
 }  // namespace drape

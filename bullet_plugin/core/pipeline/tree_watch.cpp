@@ -5,7 +5,6 @@
 
 #include "bullet_plugin/core/broad_phase/host_traversal.h"
 #include "bullet_plugin/core/bvh/tree_cost.h"
-#include "side_hierarchy.h"
 
 namespace drape
 {
@@ -32,7 +31,7 @@ bool watchesClothTree(const Settings& settings, bool onHost)
 
 void TreeWatch::begin()
 {
-    m_rebuilt = std::future<JoinedTree>();
+    m_rebuilt = std::future<RebuiltTrees>();
     m_costAtBuild = 0;
     m_step = 0;
 }
@@ -55,7 +54,7 @@ void TreeWatch::rebuild(const TreeMethods& methods, std::vector<Triangle> triang
     m_rebuilt = std::async(std::launch::async | std::launch::deferred,
                            [methods, triangles = std::move(triangles), firsts = std::move(firstTriangles),
                             positions = std::move(positions)]
-                           { return buildJoined(methods, triangles, firsts, positions.data()); });
+                           { return buildMeshTrees(methods, triangles, firsts, positions.data()); });
 }
 
 void TreeWatch::wait()
@@ -63,10 +62,10 @@ void TreeWatch::wait()
     if (m_rebuilt.valid()) m_rebuilt.wait();
 }
 
-bool TreeWatch::take(JoinedTree& tree)
+bool TreeWatch::take(RebuiltTrees& rebuilt)
 {
     if (!m_rebuilt.valid() || m_rebuilt.wait_for(std::chrono::seconds(0)) == std::future_status::timeout) return false;
-    tree = m_rebuilt.get();
+    rebuilt = m_rebuilt.get();
     begin();
     return true;
 }

@@ -9,8 +9,8 @@
 
 #include <future>
 
-#include "bullet_plugin/core/bvh/joined_tree.h"
 #include "drape/settings.h"
+#include "side_hierarchy.h"
 
 namespace drape
 {
@@ -30,16 +30,16 @@ public:
     // Whether a hierarchy of that cost is to be built anew; false while one is being built.
     bool isDecayed(double cost, float rebuildDecay);
 
-    // Starts to build from copies of its own; see buildJoined(). positions: m, x y z per vertex.
+    // Starts to build from copies of its own; see buildMeshTrees(). positions: m, x y z per vertex.
     void rebuild(const TreeMethods& methods, std::vector<Triangle> triangles, std::vector<std::uint32_t> firstTriangles,
                  std::vector<float> positions);
     // Waits until the hierarchy that is being built is there; returns at once where none is.
     void wait();
-    // Gives the new hierarchy once, when it is there.
-    bool take(JoinedTree& tree);
+    // Gives the new trees once, when they are there.
+    bool take(RebuiltTrees& rebuilt);
 
 private:
-    std::future<JoinedTree> m_rebuilt;
+    std::future<RebuiltTrees> m_rebuilt;
     double m_costAtBuild = 0;  // 0: not measured yet
     std::uint32_t m_step = 0;
 };
