@@ -228,9 +228,34 @@ def rankings(rows, figure):
     yield "tests of triangle pairs on the device, most pairs, ms (kernel / host to host)", ranked_tests(rows, "opencl", figure)
 
 
+# Drape's on a device, and the peers' on CPU threads: (column, part's variant, threads).
+TREES = {"construction": "balanced", "refit": "subtrees"}
+PEERS = (("Embree, Morton, 2 threads", "embree_morton", 2), ("Embree, Morton, 1 thread", "embree_morton", 1), ("FCL, 18-DOP", "fcl", 1))
+
+
+def peers_table(machines, table, figure):
+    """Construction and refit by a device's default, beside the peers'."""
+    lines = []
+    for name, rows in machines:
+        for part, variant in TREES.items():
+            for model in ("bunny", "bunny_1m"):
+                mine = select(rows, part=part, variant=variant, model=model, backend="opencl")
+                if not mine or "median_ms" not in mine[0]:
+                    continue
+                line = [name, part, model.replace("_", " "), time_text(mine[0], figure)]
+                for _, peer, threads in PEERS:
+                    theirs = select(rows, part=part, variant=peer, model=model, threads=threads)
+                    time = theirs[0].get("median_ms") if theirs else None
+                    line.append(f"{figure(time)} ({mine[0]['median_ms'] / time:.2g})" if time else "–")
+                lines.append(line)
+    return ("Trees of the largest model and the bunny, ms: Drape's on the device (kernel / host to host), and the peers' on the "
+            "machine's CPU; in brackets Drape's, host to host, over theirs.\n\n"
+            + table(["machine", "stage", "model", "Drape"] + [peer[0] for peer in PEERS], lines)) if lines else ""
+
+
 def ranking(machines, table, figure):
     lines = [[name, what, ordered(entries)] for name, rows in machines for what, entries in rankings(rows, figure) if entries]
     if not lines:
         return ""
-    return (findings_table(machines, table) + "The methods of each stage, the best first:\n\n"
+    return (findings_table(machines, table) + peers_table(machines, table, figure) + "The methods of each stage, the best first:\n\n"
             + table(["machine", "what", "from the best to the worst"], lines))

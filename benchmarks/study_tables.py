@@ -204,7 +204,7 @@ def shape_table(rows, table, figure):
     if not lines:
         return ""
     return ("Shapes of a radix tree: volume tests when the thesis's cloth looks for its candidates, ms for that, and ms for a "
-            "refit (kernel time on a device).\n\n" + table(["shape"] + [model.replace("_", " ") for model in models], lines))
+            "refit (kernel time on a device; by the step's launch a height, which takes any shape, not by subtrees).\n\n" + table(["shape"] + [model.replace("_", " ") for model in models], lines))
 
 
 BUILDER_STAGES = ("step_ms", "refit_ms", "broad_ms")
@@ -306,7 +306,7 @@ def quality_table(rows, table, figure):
                   f"{row['height']:.0f}", f"{row['visits']:,.0f}"]
                  for row in select(rows, part="quality", model=model) if "median_ms" in row]
         text += f"Trees of the {model}: build time (kernel / host to host, ms) against quality.\n\n" + table(
-            ["builder", "build", "SAH cost", "volume, m³", "height", "volume tests a step"], lines)
+            ["builder", "build", "SAH cost", "volume, m³", "height", "volume tests of 2,048 queries"], lines)
     return text
 
 

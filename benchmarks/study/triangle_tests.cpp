@@ -15,7 +15,7 @@ namespace
 {
 constexpr std::size_t kGroup = 64;
 
-// Triangles of the mesh and a near one each, moved by up to the first one's size, so that about as many meet as miss.
+// Triangles of the mesh and a near one each, moved by up to the first one's size, so that a good part of them meets.
 std::vector<TriangleQuery> pairsOf(const TriangleMesh& mesh, std::size_t count)
 {
     Random random(4900);
