@@ -46,6 +46,7 @@ class ProgramTest(unittest.TestCase):
             file.write("<!-- results: made by summary.py --><!-- end of results -->")
         result = self.script("summary.py", readme)
         self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertNotIn("does not say its commit", result.stderr)
         with open(readme) as file:
             return file.read()
 
@@ -406,6 +407,19 @@ class Committed(ProgramTest):
                     self.assertEqual(row["valid"], "yes", row)
                 self.assertNotEqual(row["valid"], "no", row)
 
+    def test_peers_refitted_to_other_places(self):
+        """A peer's tree after its refit is of the sheared mesh, everywhere, and not the one that was built."""
+        refitted = {}
+        for name in self.machines():
+            with open(os.path.join(RESULTS, name, "study.json")) as file:
+                rows = [row for row in json.load(file)["rows"] if row["backend"] in ("embree", "fcl")]
+            built = {(row["model"], row["variant"], row["threads"]): row["hash"] for row in rows if row["part"] == "construction"}
+            self.assertTrue(built)
+            for row in (row for row in rows if row["part"] == "refit"):
+                identity = row["model"], row["variant"], row["threads"]
+                self.assertNotEqual(row["hash"], built[identity], identity)
+                self.assertEqual(refitted.setdefault(identity, row["hash"]), row["hash"], identity)
+        self.assertTrue(refitted)
 
     def test_one_trajectory_has_one_hash(self):
         """summary.py refuses them otherwise, here into another file."""
@@ -414,6 +428,7 @@ class Committed(ProgramTest):
         shutil.copy(os.path.join(os.path.dirname(RESULTS), "README.md"), readme)
         result = self.script("summary.py", readme)
         self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertNotIn("does not say its commit", result.stderr)
 
 
 class Reports(ProgramTest):
@@ -450,6 +465,7 @@ class Reports(ProgramTest):
                 for name in ("front", "ranking", "results")) + "after\n")
         result = self.script("summary.py", readme)
         self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertNotIn("does not say its commit", result.stderr)
         with open(readme) as file:
             text = file.read()
         self.assertTrue(text.startswith("before\n") and text.endswith("after\n"))
