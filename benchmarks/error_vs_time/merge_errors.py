@@ -3,7 +3,7 @@
 
 Writes OUT_DIR/error_vs_time.json and .csv with the rows of all files; OUT_DIR/error_vs_time.json itself, where it is there,
 comes first. Of the rows of one trial or query (part, scene, method, knob, value and setting) the last stays, but one that
-was not run never takes the place of one that was, of the same commit. Each keeps the commit that it was measured at. Rows of
+was not run never takes the place of one that was. Each keeps the commit that it was measured at. Rows of
 one commit are judged together, whichever file they came from: one that must have the hash of the host's (column must_match)
 and has another is void. All must be of one machine: same processor, cores and devices. Ends with 3 when a row is void, with 2
 when files cannot be read, lack what names a row, or are of different machines.
@@ -40,8 +40,7 @@ def joined(old, new):
     rows = {key_of(row): row for row in old}
     for row in new:
         before = rows.get(key_of(row), row)
-        says_less = place(row["ended"], NOT_RUN) < place(before["ended"], NOT_RUN)
-        if not (says_less and before["commit"] == row["commit"]):
+        if place(row["ended"], NOT_RUN) >= place(before["ended"], NOT_RUN):
             rows[key_of(row)] = row
     return list(rows.values())
 
