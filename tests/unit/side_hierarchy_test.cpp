@@ -35,8 +35,10 @@ protected:
         m_hierarchy.begin(m_pool, m_layout);
     }
 
-    // Whole, over every triangle once, and a mesh's triangles have a subtree of their own.
-    // filled: meshes with triangles, one or two.
+    bool build() { return m_hierarchy.build(m_methods, m_pool, m_layout); }
+
+    // Whole, over every triangle once, and a mesh's triangles have a subtree of their own. filled: meshes with
+    // triangles, one or two.
     void expectValid(std::size_t filled = 1) const
     {
         std::vector<float> positions;
@@ -84,9 +86,9 @@ TEST_P(SideHierarchyTest, IsBuiltWhenItIsWalkedAndOnlyThen)
     add(200);
     EXPECT_EQ(m_layout.nodeCount(), makeBvhLayout(200).nodeCount()) << "pairs of neighbours until then";
     const std::uint32_t before = m_pool.revision();
-    EXPECT_EQ(m_hierarchy.build(m_methods, m_pool, m_layout), GetParam() != TreeBuilder::Balanced);
+    EXPECT_EQ(build(), GetParam() != TreeBuilder::Balanced);
     EXPECT_EQ(m_pool.revision() != before, GetParam() != TreeBuilder::Balanced);
-    EXPECT_FALSE(m_hierarchy.build(m_methods, m_pool, m_layout)) << "it is there";
+    EXPECT_FALSE(build()) << "it is there";
     expectValid();
 }
 
@@ -94,7 +96,7 @@ TEST_P(SideHierarchyTest, MeshesWithoutTrianglesAndOfOneAreJoined)
 {
     for (const int triangles : {0, 1, 0, 333})
         add(triangles);
-    m_hierarchy.build(m_methods, m_pool, m_layout);
+    build();
     EXPECT_EQ(m_layout.leafCount(), 334u);
     expectValid(2);
 }
@@ -102,18 +104,18 @@ TEST_P(SideHierarchyTest, MeshesWithoutTrianglesAndOfOneAreJoined)
 TEST_P(SideHierarchyTest, AMeshThatComesLeavesTheOthersTreesAsTheyWere)
 {
     add(300);
-    m_hierarchy.build(m_methods, m_pool, m_layout);
+    build();
     const std::vector<std::uint32_t> alone = m_pool.order();
     // What is under the kept mesh's name now is not looked at again.
     m_pool.mesh(0).m_positions.assign(m_pool.mesh(0).m_positions.size(), 0.0f);
     add(50);
-    m_hierarchy.build(m_methods, m_pool, m_layout);
+    build();
     const bool kept = std::equal(alone.begin(), alone.end(), m_pool.order().begin());
     EXPECT_TRUE(kept || GetParam() == TreeBuilder::Balanced);
     m_pool.remove(0);
     m_pool.update();
     m_hierarchy.begin(m_pool, m_layout);
-    m_hierarchy.build(m_methods, m_pool, m_layout);
+    build();
     EXPECT_EQ(m_layout.leafCount(), 50u);
     expectValid();
 }
@@ -121,15 +123,15 @@ TEST_P(SideHierarchyTest, AMeshThatComesLeavesTheOthersTreesAsTheyWere)
 TEST_P(SideHierarchyTest, WhatWasBuiltAnewStaysWhenAMeshComes)
 {
     add(300);
-    m_hierarchy.build(m_methods, m_pool, m_layout);
+    build();
     std::vector<float> elsewhere = m_pool.mesh(0).m_positions;
     std::reverse(elsewhere.begin(), elsewhere.end());
     m_hierarchy.use(buildMeshTrees(m_methods, m_pool.triangles(), {0}, elsewhere.data()), m_pool, m_layout);
     const std::vector<std::uint32_t> anew = m_pool.order();
-    EXPECT_FALSE(m_hierarchy.build(m_methods, m_pool, m_layout));
+    EXPECT_FALSE(build());
     expectValid();
     add(50);
-    EXPECT_TRUE(m_hierarchy.build(m_methods, m_pool, m_layout));
+    EXPECT_TRUE(build());
     EXPECT_TRUE(std::equal(anew.begin(), anew.end(), m_pool.order().begin()));
     EXPECT_EQ(m_layout.leafCount(), 350u);
 }
@@ -138,11 +140,11 @@ TEST_P(SideHierarchyTest, WhatWasBuiltAnewStaysWhenAMeshComes)
 TEST_P(SideHierarchyTest, ATreeOfAnotherMeshOfTheSameNumberIsNotTaken)
 {
     add(300);
-    m_hierarchy.build(m_methods, m_pool, m_layout);
+    build();
     m_pool.remove(0);
     m_next = 0;
     add(20);
-    m_hierarchy.build(m_methods, m_pool, m_layout);
+    build();
     EXPECT_EQ(m_layout.leafCount(), 20u);
     expectValid();
 }
@@ -150,14 +152,14 @@ TEST_P(SideHierarchyTest, ATreeOfAnotherMeshOfTheSameNumberIsNotTaken)
 TEST_P(SideHierarchyTest, AnotherBuilderBuildsAnew)
 {
     add(300);
-    m_hierarchy.build(m_methods, m_pool, m_layout);
+    build();
     const std::vector<std::uint32_t> order = m_pool.order();
     const std::uint32_t nodes = m_layout.nodeCount();
     TreeMethods other;
     other.m_builder = GetParam() == TreeBuilder::Ploc ? TreeBuilder::TopDown : TreeBuilder::Ploc;
     EXPECT_TRUE(m_hierarchy.build(other, m_pool, m_layout));
     EXPECT_FALSE(order == m_pool.order());
-    EXPECT_TRUE(m_hierarchy.build(m_methods, m_pool, m_layout));
+    EXPECT_TRUE(build());
     EXPECT_EQ(m_layout.nodeCount(), nodes);
     expectValid();
 }
