@@ -14,18 +14,16 @@ typedef struct Walkers
     uint m_stack[DRAPE_WALK_NODES * DRAPE_WALK_STACK];
     uint m_found[DRAPE_WALK_FOUND];
     uint m_foundCount;
-    CullVolume m_volumes[DRAPE_PATCH_WIDTH];  // of a packet's triangles
-    CullVolume m_joined;                      // of all of them
+    CullVolume m_volumes[DRAPE_PATCH_WIDTH];  // of a packet's triangles, empty where one cannot come near the obstacle
+    CullVolume m_joined;                      // of all of them, or of the one triangle
 } Walkers;
 
 // A walk over the obstacles that rest, or over one that moves.
 typedef struct Walk
 {
-    CullVolume m_volume;  // of the triangle, or of all of the packet
     uint m_motion;
-    uint m_packet;     // triangles: 1 or DRAPE_PATCH_WIDTH
-    uint m_cloth;      // this lane's triangle
-    CullVolume m_own;  // its volume, empty where it cannot come near the obstacle
+    uint m_packet;  // triangles: 1 or DRAPE_PATCH_WIDTH
+    uint m_cloth;   // this lane's triangle
 } Walk;
 
 // Lists the pairs of this lane's triangle and the patches found from first up to last, DRAPE_PATCH_WIDTH at most, side by
@@ -33,13 +31,14 @@ typedef struct Walk
 static void pairLane(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const PatchTree* tree,
                      const uint first, const uint last, const TestList* list)
 {
+    __local const CullVolume* own = walkers->m_volumes + teamLane() % DRAPE_PATCH_WIDTH;
     uint touched = 0;
     FeatureTest pair;
     for (uint i = first; i < last; ++i)
     {
         const uint patch = walkers->m_found[i];
         __global const float* node = tree->m_nodes + (patch / DRAPE_PATCH_WIDTH) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH;
-        if (cullWideChild(&walk->m_own, node + patch % DRAPE_PATCH_WIDTH) &&
+        if (cullWideChild(own, node + patch % DRAPE_PATCH_WIDTH) &&
             pairWith(&pair, cloths, tree, walk->m_cloth, walk->m_motion, patch))
             touched |= 1u << (i - first);
     }
@@ -100,7 +99,7 @@ static void walkTree(__local Walkers* walkers, const Walk* walk, const StepCloth
         __global const float* node =
             tree->m_nodes + (tree->m_levels[level - 1] + index) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH;
         const uint child = index * DRAPE_PATCH_WIDTH + lane;
-        if (turn < nodes && cullWideChild(&walk->m_volume, node + lane))
+        if (turn < nodes && cullWideChild(&walkers->m_joined, node + lane))
         {
             if (level > 1)
                 stack[atomic_inc(&team->m_depth)] = ((level - 1) << DRAPE_LEVEL_SHIFT) + child;
@@ -113,37 +112,48 @@ static void walkTree(__local Walkers* walkers, const Walk* walk, const StepCloth
     settleFound(walkers, walk, cloths, tree, list, 1);
 }
 
-// Shares a packet's volumes out, and that of all of them.
-static void shareVolumes(__local Walkers* walkers, Walk* walk)
+// Joins a packet's volumes. They lie in local memory, since in registers they would leave room for few groups.
+static void joinVolumes(__local Walkers* walkers)
 {
-    walk->m_volume = walk->m_own;
-    if (walk->m_packet == 1) return;
-    const uint lane = teamLane();
-    __local CullVolume* joined = &walkers->m_joined;
-    teamSync();
-    if (lane < DRAPE_PATCH_WIDTH) walkers->m_volumes[lane] = walk->m_own;
-    teamSync();
-    walk->m_own = walkers->m_volumes[lane % DRAPE_PATCH_WIDTH];
     // A lane joins them in one direction, one more their radii.
-    if (lane <= DRAPE_DOP_DIRECTIONS)
+    const uint lane = teamLane();
+    if (lane > DRAPE_DOP_DIRECTIONS) return;
+    __local CullVolume* joined = &walkers->m_joined;
+    const int ofRadii = lane == DRAPE_DOP_DIRECTIONS;
+    float least = INFINITY, most = -INFINITY;
+    for (uint i = 0; i < DRAPE_PATCH_WIDTH; ++i)
     {
-        const int ofRadii = lane == DRAPE_DOP_DIRECTIONS;
-        float least = INFINITY, most = -INFINITY;
-        for (uint i = 0; i < DRAPE_PATCH_WIDTH; ++i)
-        {
-            __local const CullVolume* volume = walkers->m_volumes + i;
-            least = ofRadii ? drapeMin(least, -volume->m_least) : drapeMin(least, volume->m_volume.m_low[lane]);
-            most = ofRadii ? drapeMax(most, volume->m_radius) : drapeMax(most, volume->m_volume.m_high[lane]);
-        }
-        *(ofRadii ? &joined->m_least : joined->m_volume.m_low + lane) = ofRadii ? -least : least;
-        *(ofRadii ? &joined->m_radius : joined->m_volume.m_high + lane) = most;
+        __local const CullVolume* volume = walkers->m_volumes + i;
+        least = ofRadii ? drapeMin(least, -volume->m_least) : drapeMin(least, volume->m_volume.m_low[lane]);
+        most = ofRadii ? drapeMax(most, volume->m_radius) : drapeMax(most, volume->m_volume.m_high[lane]);
     }
-    teamSync();
-    walk->m_volume = *joined;
+    *(ofRadii ? &joined->m_least : joined->m_volume.m_low + lane) = ofRadii ? -least : least;
+    *(ofRadii ? &joined->m_radius : joined->m_volume.m_high + lane) = most;
 }
 
-// A group lists the pairs of `packet` cloth triangles, in leaf order. packet: 1, with DRAPE_PATCH_WIDTH lanes, or as many as
-// those, with up to DRAPE_WALK_NODES times as many lanes.
+// Makes the volumes of the group's triangles over the obstacles that rest, or over one that moves. prepares: whether this
+// lane has a triangle to make one of.
+static void makeVolumes(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const float clothRadius,
+                        const int prepares)
+{
+    __global const ObstacleMotion* motion = motionOf(cloths, walk->m_motion);
+    CullVolume own;
+    teamSync();
+    if (prepares)
+    {
+        const int near = clothRadius >= 0.0f && !(motion && thicknessWith(cloths, walk->m_cloth, motion->m_mesh) < 0.0f) &&
+                         cullVolume(&own, motion, cloths->m_triangles + walk->m_cloth, cloths->m_start, cloths->m_end,
+                                    clothRadius, cloths->m_mode);
+        if (!near) emptyVolume(&own);
+        *(walk->m_packet == 1 ? &walkers->m_joined : walkers->m_volumes + teamLane()) = own;
+    }
+    teamSync();
+    if (walk->m_packet > 1) joinVolumes(walkers);
+    teamSync();
+}
+
+// A group lists the pairs of `packet` cloth triangles, in leaf order. packet: 1 or DRAPE_PATCH_WIDTH, with as many lanes as
+// that or up to DRAPE_WALK_NODES times as many.
 __kernel void patchWalk(DRAPE_WALK_ARGUMENTS, const uint packet)
 {
     __local Walkers walkers;
@@ -155,20 +165,16 @@ __kernel void patchWalk(DRAPE_WALK_ARGUMENTS, const uint packet)
     Walk walk;
     walk.m_packet = packet;
     walk.m_cloth = clothOrder[min(leaf, clothCount - 1)];
-    __global const Triangle* triangle = clothTriangles + walk.m_cloth;
-    const float clothRadius = leaf < clothCount ? radius[triangle->m_mesh] : -1.0f;
-    const int first = packet > 1 ? teamLane() < DRAPE_PATCH_WIDTH : teamLane() == 0;  // of the lanes with this triangle
-    if (clothRadius >= 0.0f && first) countInvalid(&cloths, walk.m_cloth, counters);
+    const float clothRadius = leaf < clothCount ? radius[clothTriangles[walk.m_cloth].m_mesh] : -1.0f;
+    // Of the lanes that have this triangle the first one makes its volume, and the last one meanwhile counts its nodes.
+    const uint lanes = packet > 1 ? DRAPE_PATCH_WIDTH : 1;
+    const int first = teamLane() < lanes, last = teamLane() >= teamWidth() - lanes;
+    if (clothRadius >= 0.0f && last) countInvalid(&cloths, walk.m_cloth, counters);
     if (teamLane() == 0) walkers.m_foundCount = 0;
     teamStart(&walkers.m_team);
     for (walk.m_motion = 0; walk.m_motion <= motionCount && walkers.m_team.m_place <= limit; ++walk.m_motion)
     {
-        __global const ObstacleMotion* motion = motionOf(&cloths, walk.m_motion);
-        const int near = (first || packet == 1) && clothRadius >= 0.0f &&
-                         !(motion && thicknessWith(&cloths, walk.m_cloth, motion->m_mesh) < 0.0f) &&
-                         cullVolume(&walk.m_own, motion, triangle, start, end, clothRadius, mode);
-        if (!near) emptyVolume(&walk.m_own);
-        shareVolumes(&walkers, &walk);
+        makeVolumes(&walkers, &walk, &cloths, clothRadius, first);
         walkTree(&walkers, &walk, &cloths, &tree, &pairs);
     }
     teamFlush(&walkers.m_team, &pairs);

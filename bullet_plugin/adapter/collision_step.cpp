@@ -82,11 +82,8 @@ void CollisionStep::addPair(const PairNote& note)
 
 void CollisionStep::uploadNodes()
 {
-    for (std::size_t i = 0; i < m_bodies.size(); ++i)
-    {
-        const MeshId cloth = m_bodies[i].m_cloth;
-        m_mirrors[i]->writeNodes(m_state.pipeline().clothStart(cloth), m_state.pipeline().clothEnd(cloth));
-    }
+    for (const ClothMirror* mirror : m_mirrors)
+        mirror->writeNodes(m_state.pipeline());
 }
 
 void CollisionStep::begin(const std::vector<PairNote>& notes)

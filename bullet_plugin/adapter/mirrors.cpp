@@ -12,6 +12,8 @@ namespace
 // refine) alters a count or an array and is seen at once; shuffling faces in place, as randomizeConstraints does, is
 // seen within faces / 32768 steps, and the contact writer checks the face that it is about to use.
 constexpr int kFacesPerCheck = 32768;
+// Nodes after which the pipeline is told that they are written.
+constexpr int kNodesPerPart = 8192;
 
 int nodeIndex(const btSoftBody& body, const btSoftBody::Node* node)
 {
@@ -95,14 +97,17 @@ MeshId ClothMirror::refresh(Pipeline& pipeline)
     return m_id;
 }
 
-void ClothMirror::writeNodes(float* start, float* end) const
+void ClothMirror::writeNodes(Pipeline& pipeline) const
 {
+    float *start = pipeline.clothStart(m_id), *end = pipeline.clothEnd(m_id);
     for (int i = 0; i < m_nodeCount; ++i)
     {
         const btSoftBody::Node& node = m_body->m_nodes[i];
         writePosition(node.m_q, start);
         writePosition(node.m_x, end);
+        if ((i + 1) % kNodesPerPart == 0) pipeline.nodesWritten(m_id, static_cast<std::size_t>(i) + 1);
     }
+    pipeline.nodesWritten(m_id, static_cast<std::size_t>(m_nodeCount));
 }
 
 void ObstacleMirror::reload(Pipeline& pipeline, const btTransform& pose)

@@ -42,7 +42,7 @@ public:
     // Adds the body to the pipeline, or replaces what is there when the topology changed.
     MeshId refresh(Pipeline& pipeline);
     // Writes the nodes' positions at the step's start (m_q) and predicted end (m_x).
-    void writeNodes(float* start, float* end) const;
+    void writeNodes(Pipeline& pipeline) const;
     // Three nodes each, as the pipeline has them.
     const std::vector<std::int32_t>& triangles() const { return m_triangles; }
     void requireFullCheck() { m_fullCheck = true; }

@@ -115,6 +115,10 @@ public:
     // memory is the pipeline's (pinned where the device has it), valid until addCloth, remove or submit.
     float* clothStart(MeshId cloth);
     float* clothEnd(MeshId cloth);
+    // Tells that the first `count` nodes of a cloth are written, start and end, and stay so until submit(): they may go
+    // to the device while the caller writes others. Optional. It helps where cloths are told of in the order in which
+    // they were added, and large ones a part at a time.
+    void nodesWritten(MeshId cloth, std::size_t count);
 
     // Names a pair for the coming step; thickness in m > 0. A cloth without a pair costs nothing.
     // tube: m, for a caller that lets no node of the cloth go farther than this from its straight way while it solves:

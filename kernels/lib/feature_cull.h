@@ -376,7 +376,7 @@ DRAPE_FUNCTION void emptyVolume(CullVolume* cull)
 }
 
 // Whether the triangle is not proved out of reach of one child of a wide node (patch.h), in its features' directions.
-DRAPE_FUNCTION int cullWideChild(const CullVolume* cull, const DRAPE_GLOBAL float* child)
+DRAPE_FUNCTION int cullWideChild(const DRAPE_TEAM CullVolume* cull, const DRAPE_GLOBAL float* child)
 {
     int near = 1;
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
@@ -390,7 +390,7 @@ DRAPE_FUNCTION int cullWideChild(const CullVolume* cull, const DRAPE_GLOBAL floa
 }
 
 // The same for all children at once.
-DRAPE_FUNCTION LaneMask cullWideNode(const CullVolume* cull, const DRAPE_GLOBAL float* node)
+DRAPE_FUNCTION LaneMask cullWideNode(const DRAPE_TEAM CullVolume* cull, const DRAPE_GLOBAL float* node)
 {
     LaneMask near = lanesMaskSplat(1);
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "scenes/shapes.h"
 #include "tests/support/backends.h"
@@ -171,6 +172,54 @@ TEST_P(PipelineTest, RefitEqualsRebuild)
         EXPECT_TRUE(sameBytes(refitted, rebuilt)) << difference(refitted, rebuilt);
         EXPECT_GT(rebuilt.size(), 50u);
     }
+}
+
+// Two cloths of more nodes than go to a device together, told of in parts, a part, the wrong order or not at all.
+TEST_P(PipelineTest, NodesMayGoBeforeAllAreWritten)
+{
+    const StepCase step = fallingCase("bowl", 190, 0.03f, 703);
+    const std::vector<float>&start = step.m_cloth.m_positions, &end = step.m_end;
+    const std::size_t nodes = start.size() / 3;
+    ASSERT_GT(nodes, std::size_t(1) << 15);
+    const std::unique_ptr<Pipeline> pipeline = make();
+    ASSERT_TRUE(pipeline);
+    const MeshId first = addCloth(*pipeline, step.m_cloth), second = addCloth(*pipeline, step.m_cloth);
+    const MeshId obstacle = addObstacle(*pipeline, step.m_obstacle);
+    using Tell = std::function<void(MeshId, std::size_t)>;
+    const auto run = [&](std::vector<MeshId> cloths, const Tell& written)
+    {
+        for (const MeshId cloth : cloths)
+        {
+            std::fill_n(pipeline->clothStart(cloth), 3 * nodes, 1e3f);
+            std::fill_n(pipeline->clothEnd(cloth), 3 * nodes, 1e3f);
+        }
+        for (const MeshId cloth : cloths)
+        {
+            for (std::size_t from = 0, to; from < nodes; from = to)
+            {
+                to = std::min(from + 5000, nodes);
+                std::copy(&start[3 * from], &start[0] + 3 * to, pipeline->clothStart(cloth) + 3 * from);
+                std::copy(&end[3 * from], &end[0] + 3 * to, pipeline->clothEnd(cloth) + 3 * from);
+                written(cloth, to);
+            }
+            pipeline->addPair(cloth, obstacle, step.m_thickness);
+        }
+        return runStep(*pipeline);
+    };
+    const auto told = [&](MeshId cloth, std::size_t count) { pipeline->nodesWritten(cloth, count); };
+    const Tell silent = [](MeshId, std::size_t) {};
+    const Tell halfTold = [&](MeshId cloth, std::size_t count) { told(cloth, count / 2); };
+    const auto expectSame = [&](const std::vector<Contact>& found, const std::vector<Contact>& expected)
+    { EXPECT_TRUE(sameBytes(found, expected)) << difference(found, expected); };
+    const std::vector<Contact> expected = run({first, second}, silent);
+    ASSERT_GT(expected.size(), 1000u);
+    expectSame(run({first, second}, told), expected);
+    expectSame(run({second, first}, told), expected);
+    expectSame(run({first, second}, halfTold), expected);
+    // Told of before a cloth goes.
+    pipeline->nodesWritten(first, nodes);
+    pipeline->remove(second);
+    expectSame(run({first}, told), run({first}, silent));
 }
 
 TEST_P(PipelineTest, StepsWithoutPairsAreSkipped)

@@ -13,8 +13,10 @@ constexpr std::size_t kGroup = 64;
 constexpr std::size_t kTeamsPerGroup = 8;
 // On a GPU, the number of triangles from which on walks are for packets of them.
 constexpr std::size_t kManyTriangles = 1 << 15;
-// Then a group looks at several nodes at a time, and the groups that cull at several pairs.
+// Nodes that a group which walks looks at together, for a packet and for one triangle, and pairs that one which culls
+// does.
 constexpr std::size_t kWalkTurns = 4;
+constexpr std::size_t kWalkTurnsAlone = 2;
 constexpr std::size_t kCullTurns = 4;
 // Groups that cull pairs, some times as many as a compute unit holds, so that uneven ones even out.
 constexpr std::size_t kPairGroupsPerUnit = 32;
@@ -140,7 +142,7 @@ void PatchCullStage::enqueueWalk(Device& device, Cloths cloths, Buffer<StepCount
     const bool many = cloths.m_count >= kManyTriangles;
     const std::size_t packet = many ? width(device) : 1;
     const std::size_t groups = (cloths.m_count + packet - 1) / packet;
-    const std::size_t group = width(device) * (many ? kWalkTurns : 1);
+    const std::size_t group = width(device) * (many ? kWalkTurns : kWalkTurnsAlone);
     m_walk.launch(device, groups * group, group, cloths.m_order.handle(), cloths.m_triangles.handle(),
                   cl_uint(cloths.m_count), cloths.m_start.handle(), cloths.m_end.handle(), cloths.m_radius.handle(),
                   cloths.m_thickness.handle(), cl_uint(cloths.m_obstacleMeshes), cloths.m_reachScale,

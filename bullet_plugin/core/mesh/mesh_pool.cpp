@@ -7,6 +7,7 @@ namespace drape
 {
 void MeshPool::add(PooledMesh mesh)
 {
+    m_ids.push_back(mesh.m_id);
     m_meshes.push_back(std::move(mesh));
     m_changed = true;
 }
@@ -16,6 +17,7 @@ bool MeshPool::remove(MeshId id)
     const std::size_t found = slot(id);
     if (found == m_meshes.size()) return false;
     m_meshes.erase(m_meshes.begin() + std::ptrdiff_t(found));
+    m_ids.erase(m_ids.begin() + std::ptrdiff_t(found));
     m_changed = true;
     return true;
 }
@@ -23,9 +25,8 @@ bool MeshPool::remove(MeshId id)
 std::size_t MeshPool::slot(MeshId id) const
 {
     // Ids are handed out in rising order and meshes keep it.
-    const auto found = std::lower_bound(m_meshes.begin(), m_meshes.end(), id,
-                                        [](const PooledMesh& mesh, MeshId wanted) { return mesh.m_id < wanted; });
-    return found != m_meshes.end() && found->m_id == id ? std::size_t(found - m_meshes.begin()) : m_meshes.size();
+    const auto found = std::lower_bound(m_ids.begin(), m_ids.end(), id);
+    return found != m_ids.end() && *found == id ? std::size_t(found - m_ids.begin()) : m_ids.size();
 }
 
 std::size_t MeshPool::slotOfVertex(std::uint32_t vertex) const

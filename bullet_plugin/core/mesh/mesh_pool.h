@@ -67,6 +67,7 @@ public:
 
 private:
     std::vector<PooledMesh> m_meshes;
+    std::vector<MeshId> m_ids;  // of the meshes, next to each other to be searched
     std::vector<Triangle> m_triangles;
     std::vector<Edge> m_edges;
     std::vector<std::uint32_t> m_order;

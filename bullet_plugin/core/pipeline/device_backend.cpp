@@ -276,11 +276,23 @@ void DeviceBackend::refitObstacles(const Scene& scene)
     m_device->wait();  // noRadius is a local
 }
 
-void DeviceBackend::uploadStep(const Scene& scene, const StepPairs& pairs)
+void DeviceBackend::writeNodes(const Scene& scene, std::size_t first, std::size_t count)
 {
-    const std::size_t floats = 3 * scene.m_cloths.vertexCount();
-    m_clothStart.write(*m_device, scene.m_clothStart.data(), floats);
-    m_clothEnd.write(*m_device, scene.m_clothEnd.data(), floats);
+    m_clothStart.write(*m_device, scene.m_clothStart.data() + 3 * first, 3 * count, 3 * first);
+    m_clothEnd.write(*m_device, scene.m_clothEnd.data() + 3 * first, 3 * count, 3 * first);
+}
+
+bool DeviceBackend::sendNodes(const Scene& scene, std::size_t first, std::size_t count)
+{
+    if (m_device->failed() || m_cloth.m_revision != scene.m_cloths.revision()) return false;
+    writeNodes(scene, first, count);
+    m_device->flush();
+    return true;
+}
+
+void DeviceBackend::uploadStep(const Scene& scene, const StepPairs& pairs, std::size_t sent)
+{
+    writeNodes(scene, sent, scene.m_cloths.vertexCount() - sent);
     if (m_sentThickness != pairs.m_thickness)
     {
         m_sentThickness = pairs.m_thickness;
@@ -391,11 +403,11 @@ void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
     m_device->flush();
 }
 
-void DeviceBackend::submit(const Scene& scene, const StepPairs& pairs)
+void DeviceBackend::submit(const Scene& scene, const StepPairs& pairs, std::size_t sent)
 {
     m_limitReached = false;
     updateTopology(scene);
-    uploadStep(scene, pairs);
+    uploadStep(scene, pairs, sent);
     enqueueStep(scene, pairs);
 }
 

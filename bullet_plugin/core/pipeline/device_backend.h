@@ -32,8 +32,12 @@ public:
     std::vector<std::uint32_t> order(const std::vector<Triangle>& triangles, const float* positions,
                                      std::size_t vertexCount);
 
-    // Returns after enqueueing. The scene and the pairs must stay as they are until finish().
-    void submit(const Scene& scene, const StepPairs& pairs);
+    // Begins to bring nodes of the cloths, start and end, to the device before the step is submitted. False where the
+    // device does not know the cloths yet.
+    bool sendNodes(const Scene& scene, std::size_t first, std::size_t count);
+    // Returns after enqueueing. The scene and the pairs must stay as they are until finish(). sent: of the cloths'
+    // nodes, the first so many were.
+    void submit(const Scene& scene, const StepPairs& pairs, std::size_t sent = 0);
     // Waits. False when the device failed or cannot hold what the step needs (then limitReached()). The result says
     // when the step is over the settings' limits.
     bool finish(const Scene& scene, const StepPairs& pairs, StepResult& result);
@@ -73,7 +77,8 @@ private:
     PatchCullStage::Slots changedPlaces(const Scene& scene) const;
     void enqueuePlacing(const Scene& scene, PatchCullStage::Slots slots);
     void refitObstacles(const Scene& scene);
-    void uploadStep(const Scene& scene, const StepPairs& pairs);
+    void writeNodes(const Scene& scene, std::size_t first, std::size_t count);
+    void uploadStep(const Scene& scene, const StepPairs& pairs, std::size_t sent);
     void enqueueStep(const Scene& scene, const StepPairs& pairs);
     bool patches() const { return goesOverPatches(m_settings); }
     SelfWork selfWork(const Scene& scene);

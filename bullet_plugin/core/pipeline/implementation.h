@@ -56,6 +56,7 @@ struct Pipeline::Implementation
     MeshId m_nextId = 0;
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
     std::uint32_t m_stepRevision = 0, m_stepMotion = 0;  // of the obstacles, in the last step with a pair
+    std::size_t m_nodesWritten = 0, m_nodesSent = 0;     // the first so many nodes of all cloths, for the coming step
     bool m_submitted = false;
 
     Device* device() { return m_deviceBackend ? &m_deviceBackend->device() : nullptr; }

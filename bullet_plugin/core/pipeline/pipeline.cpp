@@ -23,6 +23,9 @@ constexpr float kReachPad = 1.001f;
 // Share of the longest edge of an obstacle by which candidates are looked for farther than contacts reach: the search
 // for meetings takes features for met that are apart by a share of their size (isSwept in kernels/lib/rigid_motion.h).
 constexpr float kEdgePad = 1e-4f;
+// Nodes that go to the device before all are written: 0.4 MB each of start and end, so that a transfer takes longer
+// than it takes to ask for it.
+constexpr std::size_t kNodesTogether = 1 << 15;
 
 double millisecondsSince(Clock::time_point start)
 {
@@ -94,6 +97,7 @@ void Pipeline::Implementation::placeMesh(std::size_t slot)
 void Pipeline::Implementation::joinCloths()
 {
     const MeshPool& cloths = m_scene.m_cloths;
+    m_nodesWritten = m_nodesSent = 0;
     m_scene.m_clothStart.reserve(device(), 3 * cloths.vertexCount());
     m_scene.m_clothEnd.reserve(device(), 3 * cloths.vertexCount());
     m_scene.m_anySelf = false;
@@ -408,6 +412,20 @@ float* Pipeline::clothEnd(MeshId id)
     return scene.m_clothEnd.data() + 3 * std::size_t(scene.m_cloths.mesh(scene.m_cloths.slot(id)).m_firstVertex);
 }
 
+void Pipeline::nodesWritten(MeshId id, std::size_t count)
+{
+    Implementation& self = *m_implementation;
+    if (self.m_report.m_onHost) return;
+    self.joinScene();
+    const MeshPool& cloths = self.m_scene.m_cloths;
+    const std::size_t first = cloths.mesh(cloths.slot(id)).m_firstVertex;
+    if (first > self.m_nodesWritten) return;
+    self.m_nodesWritten = std::max(self.m_nodesWritten, first + count);
+    const std::size_t unsent = self.m_nodesWritten - self.m_nodesSent;
+    if (unsent >= kNodesTogether && self.m_deviceBackend->sendNodes(self.m_scene, self.m_nodesSent, unsent))
+        self.m_nodesSent = self.m_nodesWritten;
+}
+
 void Pipeline::addPair(MeshId cloth, MeshId obstacle, float thickness, float tube)
 {
     m_implementation->m_pairs.push_back(NamedPair{cloth, obstacle, thickness, tube});
@@ -430,6 +448,7 @@ void Pipeline::submit()
     self.collectPairs();
     self.m_submitted = true;
     self.enqueue();
+    self.m_nodesWritten = self.m_nodesSent = 0;
     self.m_statistics.m_uploadMs = millisecondsSince(start);
 }
 

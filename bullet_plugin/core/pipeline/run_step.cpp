@@ -33,7 +33,7 @@ void Pipeline::Implementation::runOnHost()
 
 void Pipeline::Implementation::enqueue()
 {
-    if (m_stepPairs.m_any && !m_report.m_onHost) m_deviceBackend->submit(m_scene, m_stepPairs);
+    if (m_stepPairs.m_any && !m_report.m_onHost) m_deviceBackend->submit(m_scene, m_stepPairs, m_nodesSent);
 }
 
 void Pipeline::Implementation::complete()
