@@ -131,24 +131,38 @@ static void joinVolumes(__local Walkers* walkers)
     *(ofRadii ? &joined->m_radius : joined->m_volume.m_high + lane) = most;
 }
 
-// Makes the volumes of the group's triangles over the obstacles that rest, or over one that moves. prepares: whether this
-// lane has a triangle to make one of.
-static void makeVolumes(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const float clothRadius,
-                        const int prepares)
+// Makes the volumes of the group's triangles over the obstacles that rest, or over one that moves. In a packet each of the
+// first lanes makes that of its triangle; of one triangle each makes what it is in one direction.
+static void makeVolumes(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const float clothRadius)
 {
     __global const ObstacleMotion* motion = motionOf(cloths, walk->m_motion);
-    CullVolume own;
+    const uint lane = teamLane();
+    const int alone = walk->m_packet == 1;
     teamSync();
-    if (prepares)
+    if (lane < DRAPE_PATCH_WIDTH)
     {
+        __local CullVolume* volume = alone ? &walkers->m_joined : walkers->m_volumes + lane;
+        CullCorners corners;
+        float least = 0.0f;
         const int near = clothRadius >= 0.0f && !(motion && thicknessWith(cloths, walk->m_cloth, motion->m_mesh) < 0.0f) &&
-                         cullVolume(&own, motion, cloths->m_triangles + walk->m_cloth, cloths->m_start, cloths->m_end,
-                                    clothRadius, cloths->m_mode);
-        if (!near) emptyVolume(&own);
-        *(walk->m_packet == 1 ? &walkers->m_joined : walkers->m_volumes + teamLane()) = own;
+                         cullCorners(&corners, &least, motion, cloths->m_triangles + walk->m_cloth, cloths->m_start,
+                                     cloths->m_end, clothRadius, cloths->m_mode) &&
+                         cullMeets(&corners, clothRadius, motion);
+        for (uint i = alone ? lane : 0; i < DRAPE_DOP_DIRECTIONS; i += alone ? DRAPE_PATCH_WIDTH : 1)
+        {
+            float low = INFINITY, high = -INFINITY;
+            if (near) cullInterval(&corners, i, &low, &high);
+            volume->m_volume.m_low[i] = low;
+            volume->m_volume.m_high[i] = high;
+        }
+        if (!alone || lane == 0)
+        {
+            volume->m_radius = near ? clothRadius : 0.0f;
+            volume->m_least = near ? least : 0.0f;
+        }
     }
     teamSync();
-    if (walk->m_packet > 1) joinVolumes(walkers);
+    if (!alone) joinVolumes(walkers);
     teamSync();
 }
 
@@ -166,15 +180,13 @@ __kernel void patchWalk(DRAPE_WALK_ARGUMENTS, const uint packet)
     walk.m_packet = packet;
     walk.m_cloth = clothOrder[min(leaf, clothCount - 1)];
     const float clothRadius = leaf < clothCount ? radius[clothTriangles[walk.m_cloth].m_mesh] : -1.0f;
-    // Of the lanes that have this triangle the first one makes its volume, and the last one meanwhile counts its nodes.
-    const uint lanes = packet > 1 ? DRAPE_PATCH_WIDTH : 1;
-    const int first = teamLane() < lanes, last = teamLane() >= teamWidth() - lanes;
-    if (clothRadius >= 0.0f && last) countInvalid(&cloths, walk.m_cloth, counters);
+    // The last lanes do this while the first make volumes.
+    if (clothRadius >= 0.0f && teamLane() >= teamWidth() - packet) countInvalid(&cloths, walk.m_cloth, counters);
     if (teamLane() == 0) walkers.m_foundCount = 0;
     teamStart(&walkers.m_team);
     for (walk.m_motion = 0; walk.m_motion <= motionCount && walkers.m_team.m_place <= limit; ++walk.m_motion)
     {
-        makeVolumes(&walkers, &walk, &cloths, clothRadius, first);
+        makeVolumes(&walkers, &walk, &cloths, clothRadius);
         walkTree(&walkers, &walk, &cloths, &tree, &pairs);
     }
     teamFlush(&walkers.m_team, &pairs);

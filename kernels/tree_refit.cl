@@ -218,12 +218,119 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_SUBTREE_GROUP, 1, 1))) void r
     storeStretch(nodes, 2u * first, 2u * (last - first), &subtrees, window);
 }
 
+// Splits of one tier that a group merges, lower ones first: so many at most.
+#ifndef DRAPE_MERGED
+#define DRAPE_MERGED 1024
+#endif
+typedef struct Merges
+{
+    uint m_splits[DRAPE_MERGED];
+    uint m_places[DRAPE_MERGED];     // of their nodes
+    uint m_waits[DRAPE_MERGED];      // children of each that are to be merged before it
+    ushort m_parents[DRAPE_MERGED];  // of them, here, or DRAPE_NO_PLACE
+    ushort m_queue[DRAPE_MERGED];    // those whose children are complete, in the order in which they became so
+    uint m_queued;
+} Merges;
+
+// Splits that a work-item has.
+#define DRAPE_MERGES_EACH ((DRAPE_MERGED + DRAPE_GROVE_GROUP - 1) / DRAPE_GROVE_GROUP)
+// Merges that a group has under way, a work-item for each word, and how many of them a work-item loads together.
+#define DRAPE_WORDS_AT_ONCE (DRAPE_GROVE_GROUP / DRAPE_DOP_WORDS)
+#define DRAPE_WORDS_TOGETHER 4
+
+// Merges the pairs of those from first up to last in the queue.
+static void mergeQueued(__global BvhNode* nodes, __local const Merges* merges, const uint first, const uint last)
+{
+    const uint turn = get_local_id(0) / DRAPE_DOP_WORDS, word = get_local_id(0) % DRAPE_DOP_WORDS;
+    __global float* words = (__global float*)nodes + word;
+    for (uint next = first + turn; next < last && turn < DRAPE_WORDS_AT_ONCE; next += DRAPE_WORDS_TOGETHER * DRAPE_WORDS_AT_ONCE)
+    {
+        float left[DRAPE_WORDS_TOGETHER], right[DRAPE_WORDS_TOGETHER];
+        DRAPE_UNROLL
+        for (uint k = 0; k < DRAPE_WORDS_TOGETHER; ++k)
+        {
+            const uint split = merges->m_splits[merges->m_queue[min(next + k * DRAPE_WORDS_AT_ONCE, last - 1u)]];
+            left[k] = words[(2u * split + 1u) * DRAPE_NODE_WORDS];
+            right[k] = words[(2u * split + 2u) * DRAPE_NODE_WORDS];
+        }
+        DRAPE_UNROLL
+        for (uint k = 0; k < DRAPE_WORDS_TOGETHER; ++k)
+        {
+            const uint i = next + k * DRAPE_WORDS_AT_ONCE;
+            if (i < last)
+                words[merges->m_places[merges->m_queue[i]] * DRAPE_NODE_WORDS] =
+                    word < DRAPE_DOP_DIRECTIONS ? drapeMin(left[k], right[k]) : drapeMax(left[k], right[k]);
+        }
+    }
+}
+
+// Finds each split's parent among the others, and how many each waits for.
+static void findParents(__local Merges* merges, const uint count)
+{
+    // The first leaf behind the parent's split; 0: the root has none.
+    uint behind[DRAPE_MERGES_EACH], parent[DRAPE_MERGES_EACH];
+    DRAPE_UNROLL
+    for (uint k = 0; k < DRAPE_MERGES_EACH; ++k)
+    {
+        const uint i = get_local_id(0) + k * DRAPE_GROVE_GROUP;
+        behind[k] = i < count ? (merges->m_places[i] + 1u) / 2u : 0u;
+        parent[k] = DRAPE_NO_PLACE;
+    }
+    for (uint other = 0; other < count; ++other)
+    {
+        const uint split = merges->m_splits[other];
+        DRAPE_UNROLL
+        for (uint k = 0; k < DRAPE_MERGES_EACH; ++k)
+            if (split + 1u == behind[k]) parent[k] = other;
+    }
+    DRAPE_UNROLL
+    for (uint k = 0; k < DRAPE_MERGES_EACH; ++k)
+    {
+        const uint i = get_local_id(0) + k * DRAPE_GROVE_GROUP;
+        if (i < count) merges->m_parents[i] = (ushort)parent[k];
+        if (parent[k] != DRAPE_NO_PLACE) atomic_inc(merges->m_waits + parent[k]);
+    }
+}
+
+// The whole group merges the pairs of count splits, those of m_splits, each when its children are complete. Splits of lower
+// tiers are.
+static void mergeInOrder(__global BvhNode* nodes, __global const uint* splits, __local Merges* merges, const uint count)
+{
+    const uint item = get_local_id(0);
+    for (uint i = item; i < count; i += get_local_size(0))
+    {
+        merges->m_places[i] = splitPlace(splits[merges->m_splits[i]]);
+        merges->m_waits[i] = 0;
+    }
+    if (item == 0) merges->m_queued = 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    findParents(merges, count);
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint i = item; i < count; i += get_local_size(0))
+        if (merges->m_waits[i] == 0) merges->m_queue[atomic_inc(&merges->m_queued)] = (ushort)i;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint merged = 0; merged < count;)
+    {
+        const uint queued = merges->m_queued;
+        mergeQueued(nodes, merges, merged, queued);
+        barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
+        for (uint i = merged + item; i < queued; i += get_local_size(0))
+        {
+            const uint parent = merges->m_parents[merges->m_queue[i]];
+            if (parent != DRAPE_NO_PLACE && atomic_dec(merges->m_waits + parent) == 1)
+                merges->m_queue[atomic_inc(&merges->m_queued)] = (ushort)parent;
+        }
+        merged = queued;
+        barrier(CLK_LOCAL_MEM_FENCE);
+    }
+}
+
 // Volumes never hold NaN, so a NaN low end marks a node that is not complete yet.
 #define DRAPE_INCOMPLETE 0x7fc00000u
 static int isComplete(__global const BvhNode* node) { return as_uint(node->m_low[0]) != DRAPE_INCOMPLETE; }
 
-// The whole group merges the given splits' pairs, each when its children are complete. Splits of lower tiers are.
-static void mergeSplits(__global BvhNode* nodes, __global const uint* splits, const uint count, const uint base,
+// The same for splits of any number, which are far or lie near a base.
+static void mergeMarked(__global BvhNode* nodes, __global const uint* splits, const uint count, const uint base,
                         __local const ushort* near, __global const uint* far, __local uint* pending)
 {
     for (uint i = get_local_id(0); i < count; i += get_local_size(0))
@@ -263,33 +370,122 @@ static void mergeSplits(__global BvhNode* nodes, __global const uint* splits, co
     }
 }
 
+// A group's splits: one tree over so many leaves may have more of this tier than it merges in order.
+typedef union GroveSplits
+{
+    Merges m_merges;
+    ushort m_found[2 * DRAPE_GROVE_LEAVES];
+} GroveSplits;
+
+// What a group of refitGrovesGroups shares.
+typedef struct Groves
+{
+    GroveSplits m_splits;
+    uint m_found;  // splits of the tier
+    uint m_stretch[2];
+    uint m_pending;
+} Groves;
+
+// Splits that a work-item loads together: loads that do not wait for each other.
+#define DRAPE_SPLITS_TOGETHER 8
+
+// Finds the stretch of leaves of the groves that begin in a window, see stretchOfWindow(), and lists the splits of their tier
+// in the windows that it may lie in, as many as there is room for.
+static void findGroves(__local Groves* groves, __global const uint* restrict splits, const uint window, const uint leafCount)
+{
+    const uint limit = min(leafCount, window + 2 * DRAPE_GROVE_LEAVES);
+    if (get_local_id(0) < 2) groves->m_stretch[get_local_id(0)] = leafCount;
+    if (get_local_id(0) == 0) groves->m_found = 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint first = window + get_local_id(0); first < limit; first += DRAPE_SPLITS_TOGETHER * DRAPE_GROVE_GROUP)
+    {
+        uint tiers[DRAPE_SPLITS_TOGETHER];  // of the split before each leaf
+        DRAPE_UNROLL
+        for (uint k = 0; k < DRAPE_SPLITS_TOGETHER; ++k)
+        {
+            const uint leaf = first + k * DRAPE_GROVE_GROUP;
+            tiers[k] = leaf >= limit ? 0u : leaf == 0u ? 2u : splitTier(splits[leaf - 1u]);
+        }
+        DRAPE_UNROLL
+        for (uint k = 0; k < DRAPE_SPLITS_TOGETHER; ++k)
+        {
+            const uint leaf = first + k * DRAPE_GROVE_GROUP;
+            if (tiers[k] > 1u)
+            {
+                atomic_min(groves->m_stretch + 0, leaf);
+                if (leaf >= window + DRAPE_GROVE_LEAVES) atomic_min(groves->m_stretch + 1, leaf);
+            }
+            else if (tiers[k] == 1u)
+            {
+                const uint i = atomic_inc(&groves->m_found);
+                if (i < DRAPE_MERGED) groves->m_splits.m_merges.m_splits[i] = leaf - 1u;
+            }
+        }
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+}
+
+// Leaves of the splits listed those that lie inside of the stretch. Returns how many.
+static uint keepInside(__local Groves* groves, const uint count)
+{
+    uint own[DRAPE_MERGES_EACH];
+    DRAPE_UNROLL
+    for (uint k = 0; k < DRAPE_MERGES_EACH; ++k)
+    {
+        const uint i = get_local_id(0) + k * DRAPE_GROVE_GROUP;
+        own[k] = i < count ? groves->m_splits.m_merges.m_splits[i] : 0xffffffffu;
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (get_local_id(0) == 0) groves->m_found = 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    DRAPE_UNROLL
+    for (uint k = 0; k < DRAPE_MERGES_EACH; ++k)
+    {
+        if (own[k] < groves->m_stretch[0] || own[k] >= groves->m_stretch[1] - 1u) continue;
+        groves->m_splits.m_merges.m_splits[atomic_inc(&groves->m_found)] = own[k];
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+    return groves->m_found;
+}
+
 // A work-group is a window of leaves; it refits the groves that begin in it.
 __kernel __attribute__((reqd_work_group_size(DRAPE_GROVE_GROUP, 1, 1))) void refitGrovesGroups(
     __global BvhNode* nodes, __global const uint* splits, const uint leafCount)
 {
-    __local ushort found[2 * DRAPE_GROVE_LEAVES];
-    __local uint foundCount, pending;
-    __local uint stretch[2];
+    __local Groves groves;
     const uint window = get_group_id(0) * DRAPE_GROVE_LEAVES;
-    if (get_local_id(0) == 0) foundCount = 0;
-    stretchOfWindow(splits, window, DRAPE_GROVE_LEAVES, leafCount, 1u, stretch);
-    const uint first = stretch[0];
-    const uint end = stretch[1];
+    findGroves(&groves, splits, window, leafCount);
+    const uint first = groves.m_stretch[0], end = groves.m_stretch[1], count = groves.m_found;
     if (first >= window + DRAPE_GROVE_LEAVES) return;
-    for (uint leaf = first + get_local_id(0); leaf + 1 < end; leaf += get_local_size(0))
+    if (count <= DRAPE_MERGED)
     {
-        if (splitTier(splits[leaf]) == 1u) found[atomic_inc(&foundCount)] = (ushort)(leaf - first);
+        mergeInOrder(nodes, splits, &groves.m_splits.m_merges, keepInside(&groves, count));
+        return;
     }
     barrier(CLK_LOCAL_MEM_FENCE);
-    mergeSplits(nodes, splits, foundCount, first, found, 0, &pending);
+    if (get_local_id(0) == 0) groves.m_found = 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint leaf = first + get_local_id(0); leaf + 1 < end; leaf += get_local_size(0))
+        if (splitTier(splits[leaf]) == 1u) groves.m_splits.m_found[atomic_inc(&groves.m_found)] = (ushort)(leaf - first);
+    barrier(CLK_LOCAL_MEM_FENCE);
+    mergeMarked(nodes, splits, groves.m_found, first, groves.m_splits.m_found, 0, &groves.m_pending);
 }
 
 // One work-group refits what spans groves.
 __kernel __attribute__((reqd_work_group_size(DRAPE_GROVE_GROUP, 1, 1))) void refitTopsGroup(
     __global BvhNode* nodes, __global const uint* splits, __global const uint* tops)
 {
+    __local Merges merges;
     __local uint pending;
-    mergeSplits(nodes, splits, tops[0], 0, 0, tops + 1, &pending);
+    const uint count = tops[0];
+    if (count > DRAPE_MERGED)
+    {
+        mergeMarked(nodes, splits, count, 0, 0, tops + 1, &pending);
+        return;
+    }
+    for (uint i = get_local_id(0); i < count; i += get_local_size(0)) merges.m_splits[i] = tops[1 + i];
+    barrier(CLK_LOCAL_MEM_FENCE);
+    mergeInOrder(nodes, splits, &merges, count);
 }
 
 // The list of splits that span groves, in order. A work-group is a window of leaves; the first kernel counts.

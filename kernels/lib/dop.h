@@ -60,18 +60,18 @@ DRAPE_FUNCTION float dopInner(Vec3 p, int i)
     return i < 3 + DRAPE_DOP_EDGES ? 0.0f : drapeAbs(p.x) + drapeAbs(p.y);
 }
 
-// Grows one interval to hold the balls of radius r around points whose projections lie in [least, greatest] and whose
-// inner sums are at most `inner`; reach is r times the direction's length. With u = 2^-24 the projection v of a point
-// errs by at most u |v| for two terms, and by u·inner more for three; the shift s = v ∓ reach by u |s|. The pad 2^-23
+// Grows an interval along a direction to hold the balls of radius r around points whose projections lie in [least,
+// greatest] and whose inner sums are at most `inner`; reach is r times the direction's length. With u = 2^-24 the
+// projection v of a point errs by at most u |v| for two terms, and by u·inner more for three; the shift s = v ∓ reach
+// by u |s|. The pad 2^-23
 // (|v| + |s|) covers these and its own rounding. It is enough to pad the outermost: v - u |v| rises with v.
-DRAPE_FUNCTION void dopAddInterval(Dop* dop, int i, float least, float greatest, float reach, float inner)
+DRAPE_FUNCTION void dopGrowInterval(float* low, float* high, float least, float greatest, float reach, float inner)
 {
     const float pad = 1.1920929e-7f;  // 2^-23
-    const float low = least - reach;
-    const float high = greatest + reach;
-    dop->m_low[i] = drapeMin(dop->m_low[i], low - (pad * (drapeAbs(least) + inner + drapeAbs(low)) + DRAPE_TINY));
-    dop->m_high[i] =
-        drapeMax(dop->m_high[i], high + (pad * (drapeAbs(greatest) + inner + drapeAbs(high)) + DRAPE_TINY));
+    const float from = least - reach;
+    const float to = greatest + reach;
+    *low = drapeMin(*low, from - (pad * (drapeAbs(least) + inner + drapeAbs(from)) + DRAPE_TINY));
+    *high = drapeMax(*high, to + (pad * (drapeAbs(greatest) + inner + drapeAbs(to)) + DRAPE_TINY));
 }
 
 // Grows the volume to hold the ball of the given radius (m, ≥ 0) around p.
@@ -81,7 +81,7 @@ DRAPE_FUNCTION void dopAddPoint(Dop* dop, Vec3 p, float radius)
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
     {
         const float v = dopProject(p, i);
-        dopAddInterval(dop, i, v, v, radius * dopNorm(i), dopInner(p, i));
+        dopGrowInterval(dop->m_low + i, dop->m_high + i, v, v, radius * dopNorm(i), dopInner(p, i));
     }
 }
 
@@ -136,6 +136,26 @@ DRAPE_FUNCTION int opensFirst(const DRAPE_GLOBAL BvhNode* a, const DRAPE_GLOBAL 
     return b->m_count == 0 || nodeExtent(a) > nodeExtent(b);
 }
 
+// The interval of a triangle's volume along direction i, see cornersVolume().
+DRAPE_FUNCTION void cornersInterval(const Vec3* p, int i, int moves, float radius, float* low, float* high)
+{
+    float least = dopProject(p[0], i);
+    float greatest = least;
+    float inner = dopInner(p[0], i);
+    DRAPE_UNROLL
+    for (int k = 1; k < 6; ++k)
+    {
+        if (k >= 3 && !moves) break;
+        const float v = dopProject(p[k], i);
+        least = drapeMin(least, v);
+        greatest = drapeMax(greatest, v);
+        inner = drapeMax(inner, dopInner(p[k], i));
+    }
+    *low = DRAPE_INFINITY;
+    *high = -DRAPE_INFINITY;
+    dopGrowInterval(low, high, least, greatest, radius * dopNorm(i), inner);
+}
+
 // Volume of a triangle over a step of linear motion, grown by the radius. p: its corners at the step's start, then at
 // its end; without `moves` only the first three count. Invalid corners (positionIsValid) stay out of it, so that one
 // bad node cannot make every ancestor overlap everything and features of the others are still found (see
@@ -147,20 +167,7 @@ DRAPE_FUNCTION int cornersVolume(Dop* dop, Vec3* p, int moves, float radius)
     if (valid == 0u) return 0;
     DRAPE_UNROLL
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
-    {
-        float least = dopProject(p[0], i);
-        float greatest = least;
-        float inner = dopInner(p[0], i);
-        for (int k = 1; k < 6; ++k)
-        {
-            if (k >= 3 && !moves) break;
-            const float v = dopProject(p[k], i);
-            least = drapeMin(least, v);
-            greatest = drapeMax(greatest, v);
-            inner = drapeMax(inner, dopInner(p[k], i));
-        }
-        dopAddInterval(dop, i, least, greatest, radius * dopNorm(i), inner);
-    }
+        cornersInterval(p, i, moves, radius, dop->m_low + i, dop->m_high + i);
     return valid == DRAPE_ALL_FEATURES;
 }
 

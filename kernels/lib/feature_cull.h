@@ -335,44 +335,78 @@ typedef struct CullVolume
     float m_radius, m_least;
 } CullVolume;
 
+// What a cloth triangle's volume is made of.
+typedef struct CullCorners
+{
+    Vec3 m_p[6];         // m, at the step's start and end; without the sweep at the end twice
+    int m_swept;         // see isSwept()
+    DRAPE_UINT m_valid;  // features, see replaceInvalidCorners()
+    float m_size;        // m, of what is compared
+} CullCorners;
+
+// The volume's interval along direction i.
+DRAPE_FUNCTION void cullInterval(const CullCorners* corners, int i, float* low, float* high)
+{
+    cornersInterval(corners->m_p, i, corners->m_swept, 0.0f, low, high);
+    // Four roundings of what the comparison subtracts, and the noise of directions.
+    *low -= DRAPE_CULL_NOISE * corners->m_size * dopNorm(i) + 2.4e-7f * drapeAbs(*low);
+    *high += DRAPE_CULL_NOISE * corners->m_size * dopNorm(i) + 2.4e-7f * drapeAbs(*high);
+}
+
+// Returns whether the volume holds anything. least: as in CullVolume.
+DRAPE_FUNCTION int cullCorners(CullCorners* corners, float* least, const DRAPE_GLOBAL ObstacleMotion* motion,
+                               const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
+                               const DRAPE_GLOBAL float* end, float radius, DRAPE_UINT mode)
+{
+    Vec3 normal;
+    Vec3* p = corners->m_p;
+    float height, moved = 0.0f;
+    cornersSeen(p, motion, triangle, start, end);
+    corners->m_swept = isSwept(p, radius, mode);
+    for (int k = 0; k < 3 && !corners->m_swept; ++k)
+    {
+        if (mode != DRAPE_DISCRETE) moved = drapeMax(moved, vec3Length(vec3Sub(p[3 + k], p[k])));
+        p[k] = p[3 + k];
+    }
+    corners->m_valid = replaceInvalidCorners(p, p + 3);
+    *least = moved + DRAPE_CULL_MET * radius;
+    const int thin = cullNormal(p + 3, &normal, &height);
+    if (corners->m_valid != DRAPE_ALL_FEATURES || thin || height < DRAPE_CULL_SMALL * radius) *least = radius;
+    corners->m_size = 2.0f * radius;
+    for (int i = 0; i < 3; ++i)
+    {
+        float low, high;
+        cornersInterval(p, i, corners->m_swept, 0.0f, &low, &high);
+        corners->m_size += high - low;
+    }
+    return corners->m_valid != 0u;
+}
+
+// Whether the volume, grown by the radius, meets the box of an obstacle's positions that moves; yes where it rests.
+DRAPE_FUNCTION int cullMeets(const CullCorners* corners, float radius, const DRAPE_GLOBAL ObstacleMotion* motion)
+{
+    int meets = 1;
+    for (int axis = 0; axis < 3 && motion; ++axis)
+    {
+        float low, high;
+        cullInterval(corners, axis, &low, &high);
+        meets &= (low - radius <= motion->m_high[axis]) & (high + radius >= motion->m_low[axis]);
+    }
+    return meets;
+}
+
 // Returns whether it may come near the obstacle.
 DRAPE_FUNCTION int cullVolume(CullVolume* cull, const DRAPE_GLOBAL ObstacleMotion* motion,
                               const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
                               const DRAPE_GLOBAL float* end, float radius, DRAPE_UINT mode)
 {
-    Vec3 p[6], normal;
-    float height;
-    cornersSeen(p, motion, triangle, start, end);
-    const int swept = isSwept(p, radius, mode);
+    CullCorners corners;
     cull->m_radius = radius;
-    float moved = 0.0f;
-    for (int k = 0; k < 3 && !swept; ++k)
-    {
-        if (mode != DRAPE_DISCRETE) moved = drapeMax(moved, vec3Length(vec3Sub(p[3 + k], p[k])));
-        p[k] = p[3 + k];
-    }
-    cull->m_least = moved + DRAPE_CULL_MET * radius;
-    Dop* dop = &cull->m_volume;
-    const int valid = cornersVolume(dop, p, swept, 0.0f);
-    const int thin = cullNormal(p + 3, &normal, &height);
-    if (!valid || thin || height < DRAPE_CULL_SMALL * radius) cull->m_least = radius;
-    float size = 2.0f * radius;
-    for (int i = 0; i < 3; ++i)
-        size += drapeMax(dop->m_high[i] - dop->m_low[i], 0.0f);
+    if (!cullCorners(&corners, &cull->m_least, motion, triangle, start, end, radius, mode)) return 0;
+    DRAPE_UNROLL
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
-    {
-        // Four roundings of what the comparison subtracts, and the noise of directions.
-        dop->m_low[i] -= DRAPE_CULL_NOISE * size * dopNorm(i) + 2.4e-7f * drapeAbs(dop->m_low[i]);
-        dop->m_high[i] += DRAPE_CULL_NOISE * size * dopNorm(i) + 2.4e-7f * drapeAbs(dop->m_high[i]);
-    }
-    return mayComeNear(dop, radius, motion);
-}
-
-// A volume that nothing is near.
-DRAPE_FUNCTION void emptyVolume(CullVolume* cull)
-{
-    dopClear(&cull->m_volume);
-    cull->m_radius = cull->m_least = 0.0f;
+        cullInterval(&corners, i, cull->m_volume.m_low + i, cull->m_volume.m_high + i);
+    return cullMeets(&corners, radius, motion);
 }
 
 // Whether the triangle is not proved out of reach of one child of a wide node (patch.h), in its features' directions.

@@ -49,13 +49,8 @@ DRAPE_FUNCTION int boxesMeet(const FeatureBox* a, const FeatureBox* b)
 // Grows an interval along one direction to hold a node's place; as dopAddPoint has it.
 DRAPE_FUNCTION void growInterval(Vec3 p, float radius, int direction, float* low, float* high)
 {
-    Dop dop;  // of which one direction is used
-    dop.m_low[direction] = *low;
-    dop.m_high[direction] = *high;
     const float v = dopProject(p, direction);
-    dopAddInterval(&dop, direction, v, v, radius * dopNorm(direction), dopInner(p, direction));
-    *low = dop.m_low[direction];
-    *high = dop.m_high[direction];
+    dopGrowInterval(low, high, v, v, radius * dopNorm(direction), dopInner(p, direction));
 }
 
 DRAPE_FUNCTION int nodeIsValid(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end, DRAPE_UINT node)
