@@ -427,6 +427,7 @@ DRAPE_FUNCTION int cullWideChild(const DRAPE_TEAM CullVolume* cull, const DRAPE_
 DRAPE_FUNCTION LaneMask cullWideNode(const DRAPE_TEAM CullVolume* cull, const DRAPE_GLOBAL float* node)
 {
     LaneMask near = lanesMaskSplat(1);
+    DRAPE_UNROLL
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
     {
         const Lanes share = lanesLoad(node, 2 * DRAPE_DOP_DIRECTIONS + i);

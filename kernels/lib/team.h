@@ -34,18 +34,21 @@ typedef struct TestList
 #define teamWidth() 1
 #define teamSync()
 
+// Bit i: byte i, of eight that are all ones or zero. The first is the lowest, as on every CPU with OpenCL.
+static uint byteBits(const ulong bytes)
+{
+    return (uint)(((bytes & 0x8040201008040201UL) * 0x0101010101010101UL) >> 56);
+}
+
 // Bit i: lane i's mask.
 static uint laneBits(const LaneMask mask)
 {
 #if DRAPE_LANES == 16
-    const int16 all = mask & (int16)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768);
-    const int8 half8 = all.lo | all.hi;
+    const ulong2 bytes = as_ulong2(convert_char16(mask));
+    return (bytes.x | bytes.y) == 0 ? 0 : byteBits(bytes.x) | byteBits(bytes.y) << 8;
 #else
-    const int8 half8 = mask & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
+    return byteBits(as_ulong(convert_char8(mask)));
 #endif
-    const int4 half4 = half8.lo | half8.hi;
-    const int2 half2 = half4.lo | half4.hi;
-    return (uint)(half2.lo | half2.hi);
 }
 
 #define forLanes(lane, mask)                                              \
