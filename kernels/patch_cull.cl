@@ -1,29 +1,35 @@
-// Broad phase over patches on a CPU: every cloth triangle walks the wide tree of the obstacles' patches, tests the features
-// of those it may touch a vector of lanes at a time, and lists the feature tests that are left.
+// Broad phase over patches on a CPU: packets of cloth triangles that lie near each other walk the wide tree of the
+// obstacles' patches by the volume that joins theirs. Each triangle of a packet tests the features of those patches
+// found that it may touch itself, a vector of lanes at a time, and lists the feature tests that are left.
+#include "lib/cull_packet.h"
 #include "lib/patch_pairs.h"
 
-// A cloth triangle's walk over the obstacles that rest, or over one that moves.
-typedef struct Walk
+// A packet's walk over the obstacles that rest, or over one that moves.
+typedef struct Packet
 {
-    CullVolume m_volume;
-    uint m_cloth, m_motion;
-    Looker m_looker;
-    int m_looks;  // whether m_looker is ready
-} Walk;
+    uint m_cloth[DRAPE_LANES];    // triangles
+    float m_radius[DRAPE_LANES];  // m, negative for those that are not in the step
+    uint m_motion;
+    CullVolumes m_volumes;
+    CullVolume m_joined;
+    Looker m_lookers[DRAPE_LANES];
+    uint m_looks;  // bit i: whether looker i is ready
+} Packet;
 
-static void visitPatch(Team* team, Walk* walk, const StepCloths* cloths, const PatchTree* tree, const PatchFeatures* features,
-                       const uint patch, const TestList* list)
+static void visitPatch(Team* team, Packet* packet, const StepCloths* cloths, const PatchTree* tree,
+                       const PatchFeatures* features, const uint triangle, const uint patch, const TestList* list)
 {
     FeatureTest pair;
-    if (!pairWith(&pair, cloths, tree, walk->m_cloth, walk->m_motion, patch)) return;
-    if (!walk->m_looks) look(&walk->m_looker, cloths, walk->m_cloth, walk->m_motion);
-    walk->m_looks = 1;
-    const CullReach reach = cullReach(&walk->m_looker.m_cull, pair.m_reach, features->m_sizes[patch], cloths->m_mode);
-    if (teamMakeRoom(team, list)) cullPatch(team, features, pair, &walk->m_looker, reach, DRAPE_NEAR_ALL, list);
+    if (!pairWith(&pair, cloths, tree, packet->m_cloth[triangle], packet->m_motion, patch)) return;
+    Looker* looker = packet->m_lookers + triangle;
+    if (!(packet->m_looks >> triangle & 1u)) look(looker, cloths, pair.m_cloth, packet->m_motion);
+    packet->m_looks |= 1u << triangle;
+    const CullReach reach = cullReach(&looker->m_cull, pair.m_reach, features->m_sizes[patch], cloths->m_mode);
+    if (teamMakeRoom(team, list)) cullPatch(team, features, pair, looker, reach, DRAPE_NEAR_ALL, list);
 }
 
-static void walkTree(Team* team, Walk* walk, const StepCloths* cloths, const PatchTree* tree, const PatchFeatures* features,
-                     const TestList* list)
+static void walkTree(Team* team, Packet* packet, const StepCloths* cloths, const PatchTree* tree,
+                     const PatchFeatures* features, const TestList* list)
 {
     uint stack[DRAPE_WALK_STACK];
     uint depth = 1;
@@ -32,44 +38,111 @@ static void walkTree(Team* team, Walk* walk, const StepCloths* cloths, const Pat
     {
         const uint entry = stack[--depth];
         const uint level = entry >> DRAPE_LEVEL_SHIFT, index = entry & ((1u << DRAPE_LEVEL_SHIFT) - 1u);
-        const uint node = tree->m_levels[level - 1] + index;
-        const LaneMask near = cullWideNode(&walk->m_volume, tree->m_nodes + node * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH);
+        __global const float* node =
+            tree->m_nodes + (tree->m_levels[level - 1] + index) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH;
+        const LaneMask near = cullWideNode(&packet->m_joined, node);
         forLanes(lane, near)
         {
             const uint child = index * DRAPE_PATCH_WIDTH + lane;
             if (level > 1)
+            {
                 stack[depth++] = ((level - 1) << DRAPE_LEVEL_SHIFT) + child;
-            else
-                visitPatch(team, walk, cloths, tree, features, child, list);
+                continue;
+            }
+            const LaneMask touching = cullPacketChild(&packet->m_volumes, node + lane);
+            forLanes(triangle, touching) visitPatch(team, packet, cloths, tree, features, triangle, child, list);
         }
     }
 }
 
-// A work-item takes one cloth triangle, in leaf order.
-__kernel void patchCull(DRAPE_WALK_ARGUMENTS, __global const float* restrict patchSizes, __global const float* restrict faces,
-                        __global const float* restrict vertices, __global const float* restrict edges)
+// Six corners of a triangle, see cornersSeen(), of a packet's: x y z of each, a row of lanes each.
+#define DRAPE_CORNER_ROWS 18
+
+static void putCorners(float* rows, const uint lane, const Vec3* p)
 {
-    const uint leaf = get_global_id(0);
-    if (leaf >= clothCount) return;
-    Walk walk;
-    walk.m_cloth = clothOrder[leaf];
-    __global const Triangle* triangle = clothTriangles + walk.m_cloth;
-    const float clothRadius = radius[triangle->m_mesh];
-    if (clothRadius < 0.0f) return;
+    for (int k = 0; k < 6; ++k)
+    {
+        rows[3 * k * DRAPE_LANES + lane] = p[k].x;
+        rows[(3 * k + 1) * DRAPE_LANES + lane] = p[k].y;
+        rows[(3 * k + 2) * DRAPE_LANES + lane] = p[k].z;
+    }
+}
+
+// Returns the triangles all of whose corners are valid.
+static LaneMask getCorners(LanesVec3* p, const float* rows)
+{
+    Lanes sum = lanesSplat(0.0f);
+    for (int k = 0; k < 6; ++k)
+    {
+        p[k] = lanesVec3(lanesLoad(rows, 3 * k), lanesLoad(rows, 3 * k + 1), lanesLoad(rows, 3 * k + 2));
+        sum += lanesNorm1(p[k]);
+    }
+    return sum <= DRAPE_FARTHEST;
+}
+
+// Takes the packet's volumes for its motion. Returns whether any of its triangles may come near the obstacle. Counts
+// the invalid nodes where it takes those for the obstacles that rest, which is once.
+static int takeVolumes(Packet* packet, const StepCloths* cloths, __global StepCounters* counters)
+{
+    __global const ObstacleMotion* motion = motionOf(cloths, packet->m_motion);
+    float rows[DRAPE_CORNER_ROWS * DRAPE_LANES], radius[DRAPE_LANES];
+    Vec3 own[6];
+    for (uint lane = 0; lane < DRAPE_LANES; ++lane)
+    {
+        const uint cloth = packet->m_cloth[lane];
+        cornersSeen(own, motion, cloths->m_triangles + cloth, cloths->m_start, cloths->m_end);
+        putCorners(rows, lane, own);
+        const int paired = !motion || thicknessWith(cloths, cloth, motion->m_mesh) >= 0.0f;
+        radius[lane] = paired ? packet->m_radius[lane] : -1.0f;
+    }
+    LanesVec3 p[6];
+    const LaneMask whole = getCorners(p, rows);
+    const LaneMask torn = lanesNot(whole) & (lanesLoad(radius, 0) >= 0.0f);
+    forLanes(lane, torn)
+    {
+        const uint cloth = packet->m_cloth[lane];
+        cornersSeen(own, motion, cloths->m_triangles + cloth, cloths->m_start, cloths->m_end);
+        if (replaceInvalidCorners(own, own + 3) == 0u) radius[lane] = -1.0f;
+        putCorners(rows, lane, own);
+        if (!motion) countInvalid(cloths, cloth, counters);
+    }
+    getCorners(p, rows);
+    CullVolumes* volumes = &packet->m_volumes;
+    const LaneMask near = cullVolumes(volumes, p, lanesLoad(radius, 0), whole, cloths->m_mode, motion);
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        packet->m_joined.m_volume.m_low[i] = leastLane(volumes->m_low[i]);
+        packet->m_joined.m_volume.m_high[i] = -leastLane(-volumes->m_high[i]);
+    }
+    packet->m_joined.m_radius = -leastLane(-volumes->m_radius);
+    packet->m_joined.m_least = -leastLane(-volumes->m_least);
+    return laneBits(near) != 0;
+}
+
+// A work-item takes a packet: DRAPE_LANES cloth triangles in leaf order.
+__kernel void patchCull(DRAPE_WALK_ARGUMENTS, __global const float* restrict patchSizes,
+                        __global const float* restrict faces, __global const float* restrict vertices,
+                        __global const float* restrict edges)
+{
+    const uint first = get_global_id(0) * DRAPE_LANES;
+    if (first >= clothCount) return;
     const StepCloths cloths = DRAPE_STEP_CLOTHS;
     const PatchTree tree = DRAPE_PATCH_TREE;
     const PatchFeatures features = {patches, patchSizes, faces, vertices, edges};
     const TestList tests = {list, capacity, limit, &counters->m_candidates};
-    countInvalid(&cloths, walk.m_cloth, counters);
+    Packet packet;
+    for (uint lane = 0; lane < DRAPE_LANES; ++lane)
+    {
+        packet.m_cloth[lane] = clothOrder[min(first + lane, clothCount - 1)];
+        packet.m_radius[lane] =
+            first + lane < clothCount ? radius[clothTriangles[packet.m_cloth[lane]].m_mesh] : -1.0f;
+    }
     Team team;
     teamStart(&team);
-    for (walk.m_motion = 0; walk.m_motion <= motionCount && team.m_place <= limit; ++walk.m_motion)
+    for (packet.m_motion = 0; packet.m_motion <= motionCount && team.m_place <= limit; ++packet.m_motion)
     {
-        __global const ObstacleMotion* motion = motionOf(&cloths, walk.m_motion);
-        if (motion && thicknessWith(&cloths, walk.m_cloth, motion->m_mesh) < 0.0f) continue;
-        walk.m_looks = 0;
-        if (cullVolume(&walk.m_volume, motion, triangle, start, end, clothRadius, mode))
-            walkTree(&team, &walk, &cloths, &tree, &features, &tests);
+        packet.m_looks = 0;
+        if (takeVolumes(&packet, &cloths, counters)) walkTree(&team, &packet, &cloths, &tree, &features, &tests);
     }
     teamFlush(&team, &tests);
 }

@@ -51,6 +51,19 @@ static uint laneBits(const LaneMask mask)
 #endif
 }
 
+// The least of all lanes.
+static float leastLane(const Lanes all)
+{
+#if DRAPE_LANES == 16
+    const float8 half8 = all.lo < all.hi ? all.lo : all.hi;
+#else
+    const float8 half8 = all;
+#endif
+    const float4 half4 = half8.lo < half8.hi ? half8.lo : half8.hi;
+    const float2 half2 = half4.lo < half4.hi ? half4.lo : half4.hi;
+    return half2.lo < half2.hi ? half2.lo : half2.hi;
+}
+
 #define forLanes(lane, mask)                                              \
     for (uint bits = laneBits(mask), lane = 31 - clz(bits & -bits); bits; \
          bits &= bits - 1, lane = 31 - clz(bits & -bits))

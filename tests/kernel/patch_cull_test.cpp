@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <tuple>
 
@@ -22,20 +23,27 @@ constexpr float kReachScale = 1.5f;
 // A contact's feature pair: kind, cloth feature, obstacle feature.
 using Pair = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;
 
+// The step's cloth, with others at its sides that are not in the step.
 class DeviceCull
 {
 public:
-    DeviceCull(Device& device, const StepCase& step, std::uint32_t mode = DRAPE_AUTOMATIC)
-        : m_device(device), m_mode(mode), m_cloth(makeSide({step.m_cloth})), m_obstacle(makeSide({step.m_obstacle}))
+    DeviceCull(Device& device, const StepCase& step, std::uint32_t mode = DRAPE_AUTOMATIC,
+               const TriangleMesh& skipped = {})
+        : m_device(device),
+          m_mode(mode),
+          m_cloth(makeSide({skipped, step.m_cloth, skipped})),
+          m_obstacle(makeSide({step.m_obstacle}))
     {
-        m_cloth.m_end = step.m_end;
-        m_thickness = {step.m_thickness};
+        std::copy(step.m_end.begin(), step.m_end.end(),
+                  m_cloth.m_end.begin() + std::ptrdiff_t(skipped.m_positions.size()));
+        m_thickness = {-1.0f, step.m_thickness, -1.0f};
+        const float radius = step.m_thickness * kReachScale * 1.001f;
         m_stage.create(device,
                        [&](const char* name) { return programOf(device, name, PatchCullStage::defines(device)); });
         m_clothBuffers.upload(device, m_cloth);
         m_obstacleBuffers.upload(device, m_obstacle);
         guardCopy(device, m_thicknessBuffer, m_thickness);
-        guardCopy(device, m_radius, std::vector<float>{step.m_thickness * kReachScale * 1.001f});
+        guardCopy(device, m_radius, std::vector<float>{-1.0f, radius, -1.0f});
         m_stage.setTopology(device, m_obstacle.m_pool, m_obstacle.m_start);
         m_stage.pack(device, PatchCullStage::allSlots(), m_obstacleBuffers.m_triangles, m_obstacleBuffers.m_start,
                      m_obstacleBuffers.m_vertexCones, m_obstacleBuffers.m_edgeCones);
@@ -110,10 +118,11 @@ private:
 };
 
 // Every contact's test is listed once; most of all feature pairs are not: less than `share` of them is.
-void expectContactsListed(Device& device, const StepCase& step, std::uint32_t mode, double share = 0.5)
+StepCounters expectContactsListed(Device& device, const StepCase& step, std::uint32_t mode, double share = 0.5,
+                                  const TriangleMesh& skipped = {})
 {
     SCOPED_TRACE("mode " + std::to_string(mode));
-    DeviceCull cull(device, step, mode);
+    DeviceCull cull(device, step, mode, skipped);
     StepCounters counters;
     cull.run(1, counters);
     std::map<Pair, int> listed;
@@ -130,6 +139,7 @@ void expectContactsListed(Device& device, const StepCase& step, std::uint32_t mo
     }
     EXPECT_GT(contacts.size(), 0u);
     EXPECT_LT(double(counters.m_candidates), share * double(cull.featurePairs()));
+    return counters;
 }
 }  // namespace
 
@@ -160,6 +170,27 @@ TEST_P(PatchCullTest, ListsEveryContactOfSoups)
                          " triangles");
             for (const std::uint32_t mode : {DRAPE_DISCRETE, DRAPE_CONTINUOUS, DRAPE_AUTOMATIC})
                 expectContactsListed(*m_device, step, mode);
+        }
+    }
+}
+
+// Packets that hold triangles of several cloths, and some with invalid nodes.
+TEST_P(PatchCullTest, ListsEveryContactBesideSkippedAndInvalidTriangles)
+{
+    const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 2e9f};
+    for (const int skipped : {1, 15, 16, 23, 130})
+    {
+        StepCase step = soupCase(41, 183, true, 360 + std::uint32_t(skipped));
+        SCOPED_TRACE(step.trace() + ", " + std::to_string(skipped) + " skipped");
+        // Of three triangles a corner each, of one all three.
+        const std::size_t vertices[] = {4, 27, 62, 96, 97, 98};
+        for (std::size_t i = 0; i < 6; ++i)
+            step.m_end[3 * vertices[i] + i % 3] = bad[i % 3];
+        for (const std::uint32_t mode : {DRAPE_DISCRETE, DRAPE_CONTINUOUS, DRAPE_AUTOMATIC})
+        {
+            const StepCounters counters =
+                expectContactsListed(*m_device, step, mode, 0.5, makeSoup(1.0f, 0.2f, skipped, 370));
+            EXPECT_EQ(counters.m_invalidNodes, 6u);
         }
     }
 }

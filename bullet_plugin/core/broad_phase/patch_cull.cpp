@@ -9,8 +9,6 @@ namespace
 constexpr std::uint32_t kWidthGpu = 32;  // a warp
 constexpr std::uint32_t kWidthCpu = 16;  // a vector of 512 bits
 constexpr std::size_t kGroup = 64;
-// Cloth triangles per group where a work-item is a team: small groups even out unequal triangles.
-constexpr std::size_t kTeamsPerGroup = 8;
 // On a GPU, the number of triangles from which on walks are for packets of them.
 constexpr std::size_t kManyTriangles = 1 << 15;
 // Nodes that a group which walks looks at together, for a packet and for one triangle, and pairs that one which culls
@@ -172,12 +170,13 @@ void PatchCullStage::enqueue(Device& device, Cloths cloths, Buffer<StepCounters>
         enqueuePairs(device, cloths, counters);
         return;
     }
-    m_cull.launch(device, cloths.m_count, kTeamsPerGroup, cloths.m_order.handle(), cloths.m_triangles.handle(),
-                  cl_uint(cloths.m_count), cloths.m_start.handle(), cloths.m_end.handle(), cloths.m_radius.handle(),
-                  cloths.m_thickness.handle(), cl_uint(cloths.m_obstacleMeshes), cloths.m_reachScale,
-                  cl_uint(cloths.m_mode), cloths.m_motions.handle(), cl_uint(cloths.m_motionCount),
-                  m_wideNodes.handle(), m_levels.handle(), cl_uint(m_layout.m_levels.size() - 1), m_patches.handle(),
-                  m_tests.handle(), cl_uint(m_tests.capacity()), cl_uint(cloths.m_limit), counters.handle(),
-                  m_sizes.handle(), m_faces.handle(), m_vertices.handle(), m_edges.handle());
+    const std::size_t packets = (cloths.m_count + kWidthCpu - 1) / kWidthCpu;
+    m_cull.launch(device, packets, 1, cloths.m_order.handle(), cloths.m_triangles.handle(), cl_uint(cloths.m_count),
+                  cloths.m_start.handle(), cloths.m_end.handle(), cloths.m_radius.handle(), cloths.m_thickness.handle(),
+                  cl_uint(cloths.m_obstacleMeshes), cloths.m_reachScale, cl_uint(cloths.m_mode),
+                  cloths.m_motions.handle(), cl_uint(cloths.m_motionCount), m_wideNodes.handle(), m_levels.handle(),
+                  cl_uint(m_layout.m_levels.size() - 1), m_patches.handle(), m_tests.handle(),
+                  cl_uint(m_tests.capacity()), cl_uint(cloths.m_limit), counters.handle(), m_sizes.handle(),
+                  m_faces.handle(), m_vertices.handle(), m_edges.handle());
 }
 }  // namespace drape

@@ -1,0 +1,109 @@
+// Volumes of a packet of cloth triangles, a lane each: what cullVolume() and cullWideChild() do for one triangle, see
+// feature_cull.h.
+#ifndef DRAPE_LIB_CULL_PACKET_H
+#define DRAPE_LIB_CULL_PACKET_H
+
+#include "feature_cull.h"
+
+DRAPE_NAMESPACE_BEGIN
+
+// See CullVolume.
+typedef struct CullVolumes
+{
+    Lanes m_low[DRAPE_DOP_DIRECTIONS], m_high[DRAPE_DOP_DIRECTIONS];
+    Lanes m_radius, m_least;
+} CullVolumes;
+
+// Of positions whose |x| + |y| + |z| is at most 1, most that roundings take from a volume: as dopAddInterval() and
+// cullVolume() have it, with that sum in the place of every projection.
+#define DRAPE_PACKET_PAD 6.1e-7f
+
+// p: corners at the step's start as the obstacle sees them, then at its end, all valid; unswept triangles lose the
+// starts. whole: not so where a corner was invalid and another is in its place. Returns the triangles that may come
+// near the obstacle; others, and those of negative radius, get an empty volume.
+DRAPE_FUNCTION LaneMask cullVolumes(CullVolumes* cull, LanesVec3* p, Lanes radius, LaneMask whole, DRAPE_UINT mode,
+                                    const DRAPE_GLOBAL ObstacleMotion* motion)
+{
+    const LanesVec3 e0 = lanesSub(p[4], p[3]), e1 = lanesSub(p[5], p[3]), e2 = lanesSub(p[5], p[4]);
+    Lanes moved = lanesSplat(0.0f);  // squared
+    for (int k = 0; k < 3 && mode != DRAPE_DISCRETE; ++k)
+    {
+        const LanesVec3 way = lanesSub(p[3 + k], p[k]);
+        moved = lanesMax(moved, lanesDot(way, way));
+    }
+    const Lanes small = 0.9f * radius - 2e-5f * (lanesNorm1(e0) + lanesNorm1(e1));  // see isSwept()
+    const LaneMask automatic = lanesMaskSplat(mode == DRAPE_AUTOMATIC);
+    const LaneMask stays =
+        (automatic & (small > 0.0f) & (moved <= small * small)) | lanesMaskSplat(mode == DRAPE_DISCRETE);
+    Lanes farthest = lanesSplat(0.0f);
+    for (int k = 0; k < 3; ++k)
+    {
+        p[k] = lanesVec3(lanesSelect(stays, p[3 + k].x, p[k].x), lanesSelect(stays, p[3 + k].y, p[k].y),
+                         lanesSelect(stays, p[3 + k].z, p[k].z));
+        farthest = lanesMax(farthest, lanesMax(lanesNorm1(p[k]), lanesNorm1(p[3 + k])));
+    }
+
+    const LanesVec3 area = lanesCross(e0, e1);
+    const Lanes longest = lanesMax(lanesMax(lanesDot(e0, e0), lanesDot(e1, e1)), lanesDot(e2, e2));
+    const Lanes length = lanesSqrt(lanesDot(area, area));
+    const LaneMask sure =
+        whole & (length > DRAPE_CULL_THIN * longest) & (length >= DRAPE_CULL_SMALL * radius * lanesSqrt(longest));
+    const Lanes unswept = lanesSelect(stays, lanesSqrt(moved), lanesSplat(0.0f));
+    cull->m_radius = radius;
+    cull->m_least = lanesSelect(sure, unswept + DRAPE_CULL_MET * radius, radius);
+
+    Lanes size = 2.0f * radius;
+    DRAPE_UNROLL
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        const Vec3 direction = vec3(dopProject(vec3(1.0f, 0.0f, 0.0f), i), dopProject(vec3(0.0f, 1.0f, 0.0f), i),
+                                    dopProject(vec3(0.0f, 0.0f, 1.0f), i));
+        Lanes low = lanesDotUniform(p[0], direction), high = low;
+        DRAPE_UNROLL
+        for (int k = 1; k < 6; ++k)
+        {
+            const Lanes v = lanesDotUniform(p[k], direction);
+            low = lanesMin(low, v);
+            high = lanesMax(high, v);
+        }
+        if (i < 3) size += high - low;
+        cull->m_low[i] = low;
+        cull->m_high[i] = high;
+    }
+    LaneMask near = radius >= 0.0f;
+    DRAPE_UNROLL
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        const Lanes pad = DRAPE_CULL_NOISE * dopNorm(i) * size + (DRAPE_PACKET_PAD * farthest + DRAPE_TINY);
+        cull->m_low[i] -= pad;
+        cull->m_high[i] += pad;
+        if (i < 3 && motion)
+            near &= (cull->m_low[i] - radius <= motion->m_high[i]) & (cull->m_high[i] + radius >= motion->m_low[i]);
+    }
+    DRAPE_UNROLL
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        cull->m_low[i] = lanesSelect(near, cull->m_low[i], lanesSplat(DRAPE_INFINITY));
+        cull->m_high[i] = lanesSelect(near, cull->m_high[i], lanesSplat(-DRAPE_INFINITY));
+    }
+    return near;
+}
+
+// Triangles that are not proved out of reach of one child of a wide node.
+DRAPE_FUNCTION LaneMask cullPacketChild(const CullVolumes* cull, const DRAPE_GLOBAL float* child)
+{
+    LaneMask near = lanesMaskSplat(1);
+    DRAPE_UNROLL
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        const float share = child[(2 * DRAPE_DOP_DIRECTIONS + i) * DRAPE_PATCH_WIDTH];
+        const Lanes reach = lanesMax(cull->m_radius * share, cull->m_least * dopNorm(i));
+        near &= (child[i * DRAPE_PATCH_WIDTH] - reach <= cull->m_high[i]) &
+                (child[(DRAPE_DOP_DIRECTIONS + i) * DRAPE_PATCH_WIDTH] + reach >= cull->m_low[i]);
+    }
+    return near;
+}
+
+DRAPE_NAMESPACE_END
+
+#endif
