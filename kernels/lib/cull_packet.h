@@ -14,7 +14,7 @@ typedef struct CullVolumes
     Lanes m_radius, m_least;
 } CullVolumes;
 
-// Of positions whose |x| + |y| + |z| is at most 1, most that roundings take from a volume: as dopAddInterval() and
+// Of positions whose |x| + |y| + |z| is at most 1, most that roundings take from a volume: as dopGrowInterval() and
 // cullVolume() have it, with that sum in the place of every projection.
 #define DRAPE_PACKET_PAD 6.1e-7f
 
