@@ -138,7 +138,7 @@ void ContactRounds::renewPlane(Row& row, Block& block, int lane) const
         for (int axis = 0; axis < 3; ++axis)
             nodes[k][axis] = static_cast<float>(m_places[static_cast<std::size_t>(row.m_moved[k])].m_x[axis]);
     ContactPlane plane;
-    if (!m_found->planeAt(block.m_contacts[lane], nodes, plane)) return;
+    if (!FoundContacts::planeAt(block.m_contacts[lane], nodes, plane)) return;
     row.m_renewed = true;
     row.m_mobility = 0;
     for (int k = 0; k < row.m_count; ++k)

@@ -67,15 +67,16 @@ StepContact FoundContacts::resolve(const btSoftBody& body, const NodePaths& path
     contact.m_point = vectorOf(view.m_point);
     contact.m_thickness = view.m_thickness;
     contact.m_time = view.m_time;
-    contact.m_carry = carryOf(view.m_obstacle);
-    contact.m_friction = body.m_cfg.kDF * m_obstacles.at(view.m_obstacle).m_object->getFriction();
+    const Obstacle& obstacle = m_obstacles.at(view.m_obstacle);
+    contact.m_carry = obstacle.m_moves ? &obstacle.m_carry : nullptr;
+    contact.m_friction = body.m_cfg.kDF * obstacle.m_object->getFriction();
     setGaps(body, paths, contact);
     return contact;
 }
 
-bool FoundContacts::planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane) const
+bool FoundContacts::planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane)
 {
-    return contact.m_kind == DRAPE_FACE_VERTEX && !(contact.m_time < 1) && m_pipeline->planeAt(contact, nodes, plane);
+    return contact.m_kind == DRAPE_FACE_VERTEX && !(contact.m_time < 1) && Pipeline::planeAt(contact, nodes, plane);
 }
 
 ContactInfo FoundContacts::infoOf(const Contact& contact) const

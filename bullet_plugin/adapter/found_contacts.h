@@ -33,7 +33,7 @@ public:
     StepContact resolve(const btSoftBody& body, const NodePaths& paths, const Contact& contact) const;
     // A contact with its nodes at other places, see Pipeline. Only faces at a vertex turn theirs, and one that was met
     // keeps it: else false.
-    bool planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane) const;
+    static bool planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane);
     std::vector<ContactInfo> list() const;
 
 private:

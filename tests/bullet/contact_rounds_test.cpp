@@ -120,7 +120,7 @@ private:
             for (int axis = 0; axis < 3; ++axis)
                 nodes[k][axis] = float(x[static_cast<std::size_t>(contact.m_nodes[k])][axis]);
         ContactPlane plane;
-        if (!m_found.planeAt(m_detected[i], nodes, plane)) return;
+        if (!FoundContacts::planeAt(m_detected[i], nodes, plane)) return;
         ++m_renewed;
         m_rows[i].m_settles = true;
         contact.m_normal.setValue(plane.m_normal[0], plane.m_normal[1], plane.m_normal[2]);

@@ -201,6 +201,33 @@ TEST_P(MovingObstacleTest, ClothThatIsCarriedAlongPassesNothing)
     }
 }
 
+// Pipeline::planeAt() takes the contact's point for its vertex.
+TEST_P(MovingObstacleTest, PointOfAVertexIsItsPlaceAtTheEnd)
+{
+    Random random(915);
+    MovingCase moving = {drapedCase("sphere", 12, 0.03f, 915), motionOf(0.6, {1, 2, 3}, random),
+                         motionOf(0.7, {1, 2.1, 3}, random)};
+    SCOPED_TRACE(moving.m_step.trace());
+    const std::vector<float> lying = moving.m_step.m_cloth.m_positions;
+    moving.m_step.m_cloth.m_positions = mapped(moving.m_start, lying);
+    moving.m_step.m_end = mapped(moving.m_end, lying);
+    const std::unique_ptr<Pipeline> pipeline = make();
+    ASSERT_TRUE(pipeline);
+    const Pose end = moving.m_end.pose();
+    std::size_t vertices = 0;
+    for (const Contact& contact : runMoving(*pipeline, moving))
+    {
+        if (contact.m_kind != DRAPE_FACE_VERTEX) continue;
+        const Vec3 own = vec3Load(moving.m_step.m_obstacle.m_positions.data(), contact.m_obstacleFeature);
+        const Vec3 place = mapPoint(end.data(), own);
+        EXPECT_EQ(contact.m_point[0], place.x) << describe(contact);
+        EXPECT_EQ(contact.m_point[1], place.y) << describe(contact);
+        EXPECT_EQ(contact.m_point[2], place.z) << describe(contact);
+        ++vertices;
+    }
+    EXPECT_GT(vertices, 50u);
+}
+
 TEST_P(MovingObstacleTest, EqualPosesAreATeleport)
 {
     const MovingCase moving = movingCase("box", 0.0, {0.0, 1.0, 0.0}, 920);

@@ -1,7 +1,6 @@
 // Where a face is nearest to the vertex of its contact once the cloth's nodes have moved on.
-#include "implementation.h"
+#include "bullet_plugin/core/pipeline.h"
 #include "kernels/lib/feature_contact.h"
-#include "kernels/lib/rigid_motion.h"
 
 namespace drape
 {
@@ -14,13 +13,6 @@ struct Nearest
     Vec3 m_offset;   // from the vertex
     Vec3 m_across;   // the face's area vector where the offset is parallel to it; else 0
 };
-
-// An obstacle's vertex at the step's end.
-Vec3 vertexAt(const Scene& scene, const ObstaclePlace& place, std::uint32_t vertex)
-{
-    const Vec3 own = vec3Load(scene.m_obstaclePositions.data(), vertex);
-    return place.m_posed ? mapPoint(place.m_pose, own) : own;
-}
 
 bool insideFace(Vec3 weights)
 {
@@ -58,12 +50,9 @@ bool directionOf(const Nearest& nearest, Vec3 before, Vec3& direction)
 }
 }  // namespace
 
-bool Pipeline::planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane) const
+bool Pipeline::planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane)
 {
-    const Scene& scene = m_implementation->m_scene;
-    const MeshPool& obstacles = scene.m_obstacles;
-    const ObstaclePlace& place = scene.m_places[obstacleSlot(obstacles, contact)];
-    const Vec3 origin = vertexAt(scene, place, contact.m_obstacleFeature);
+    const Vec3 origin = vec3Load(contact.m_point, 0);  // the vertex, at the step's end
     const auto node = [&](int k) { return vec3Sub(vec3(nodes[k][0], nodes[k][1], nodes[k][2]), origin); };
     const Nearest nearest = nearestOfFace(FeatureTriangle{{node(0), node(1), node(2)}});
     Vec3 direction;
