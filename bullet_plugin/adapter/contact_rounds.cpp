@@ -1,6 +1,7 @@
 #include "bullet_plugin/adapter/contact_rounds.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 
 namespace drape
@@ -13,6 +14,26 @@ constexpr float kRounding = 256 * std::numeric_limits<float>::epsilon();
 float largestCoordinate(const btVector3& v)
 {
     return static_cast<float>(std::max(btFabs(v.x()), std::max(btFabs(v.y()), btFabs(v.z()))));
+}
+
+// A vector of Bullet's, the last number of which does not count, loaded and stored whole: a contact reads what the one
+// before has just written, and a load waits for stores of less than itself to reach the cache.
+using Quad = btScalar __attribute__((vector_size(4 * sizeof(btScalar))));
+
+inline void load(const btVector3& vector, Quad& quad)
+{
+    std::memcpy(&quad, vector.m_floats, sizeof(quad));
+}
+
+inline void store(const Quad& quad, btVector3& vector)
+{
+    std::memcpy(vector.m_floats, &quad, sizeof(quad));
+}
+
+inline btScalar dot(const Quad& a, const Quad& b)
+{
+    const Quad products = a * b;
+    return products[0] + products[1] + products[2];
 }
 }  // namespace
 
@@ -191,20 +212,21 @@ template <int count>
 bool ContactRounds::projectNodes(Row& row, btScalar& worst)
 {
     Place* places[count];
-    btVector3 x[count], point(0, 0, 0);
+    Quad x[count], point = {};
     for (int k = 0; k < count; ++k)
     {
         places[k] = &m_places[static_cast<std::size_t>(row.m_moved[k])];
-        x[k] = places[k]->m_x;
+        load(places[k]->m_x, x[k]);
         point += x[k] * row.m_weights[k];
     }
-    const btVector3 normal = row.m_normal;
-    const btScalar violation = row.m_level - normal.dot(point);
+    Quad normal;
+    load(row.m_normal, normal);
+    const btScalar violation = row.m_level - dot(normal, point);
     if (!(violation > 0) && !(row.m_multiplier > 0)) return false;  // also for NaN
     worst = std::max(worst, violation);
     const btScalar pushed = std::max(btScalar(0), row.m_multiplier + violation / row.m_mobility);
-    const btVector3 push = normal * (pushed - row.m_multiplier);
-    btVector3 sliding(0, 0, 0);
+    const Quad push = normal * (pushed - row.m_multiplier);
+    Quad sliding = {};
     for (int k = 0; k < count; ++k)
     {
         x[k] += push * row.m_shares[k];
@@ -212,22 +234,28 @@ bool ContactRounds::projectNodes(Row& row, btScalar& worst)
     }
 
     // Friction: takes the contact's motion along the surface back, within the cone.
-    sliding -= row.m_carried;
-    for (int k = 0; k < count; ++k)
-        sliding -= places[k]->m_start * row.m_weights[k];
-    sliding -= normal * normal.dot(sliding);
-    btVector3 held = row.m_held - sliding / row.m_mobility;
-    const btScalar most = row.m_friction * pushed;
-    const btScalar wanted2 = held.length2();
-    if (wanted2 > most * most) held *= most / btSqrt(wanted2);
-    const btVector3 hold = held - row.m_held;
+    Quad other;
+    load(row.m_carried, other);
+    sliding -= other;
     for (int k = 0; k < count; ++k)
     {
-        places[k]->m_x = x[k] + hold * row.m_shares[k];
+        load(places[k]->m_start, other);
+        sliding -= other * row.m_weights[k];
+    }
+    sliding -= normal * dot(normal, sliding);
+    load(row.m_held, other);
+    Quad held = other - sliding * (1 / row.m_mobility);
+    const btScalar most = row.m_friction * pushed;
+    const btScalar wanted2 = dot(held, held);
+    if (wanted2 > most * most) held *= most / btSqrt(wanted2);
+    const Quad hold = held - other;
+    for (int k = 0; k < count; ++k)
+    {
+        store(x[k] + hold * row.m_shares[k], places[k]->m_x);
         m_moved[static_cast<std::size_t>(row.m_moved[k])].m_shifted = true;
     }
     row.m_multiplier = pushed;
-    row.m_held = held;
+    store(held, row.m_held);
     row.m_pushed = true;
     return true;
 }
@@ -235,19 +263,28 @@ bool ContactRounds::projectNodes(Row& row, btScalar& worst)
 // The lanes whose contacts may be violated, a bit each: all that are, and some that nearly are.
 inline unsigned ContactRounds::lanesDue(const Block& block, const Place* places)
 {
+    if (block.m_count == 1) return lanesDueOf<1>(block, places);
+    return block.m_count == 2 ? lanesDueOf<2>(block, places) : lanesDueOf<3>(block, places);
+}
+
+template <int count>
+inline unsigned ContactRounds::lanesDueOf(const Block& block, const Place* places)
+{
     const btVector3& a = places[block.m_moved[0]].m_x;
     const btVector3& b = places[block.m_moved[1]].m_x;
     const btVector3& c = places[block.m_moved[2]].m_x;
-    const float x = float(a.x()), y = float(a.y()), z = float(a.z());
-    const float bx = float(b.x()) - x, by = float(b.y()) - y, bz = float(b.z()) - z;
-    const float cx = float(c.x()) - x, cy = float(c.y()) - y, cz = float(c.z()) - z;
     float excess[kLanes];
     for (int lane = 0; lane < kLanes; ++lane)
     {
-        const float u = block.m_weights[0][lane], v = block.m_weights[1][lane];
-        const float along = block.m_normal[0][lane] * (x + u * bx + v * cx) +
-                            block.m_normal[1][lane] * (y + u * by + v * cy) +
-                            block.m_normal[2][lane] * (z + u * bz + v * cz);
+        float along = 0;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            const float x = float(a[axis]);
+            float at = x;
+            if (count > 1) at += block.m_weights[0][lane] * (float(b[axis]) - x);
+            if (count > 2) at += block.m_weights[1][lane] * (float(c[axis]) - x);
+            along += block.m_normal[axis][lane] * at;
+        }
         excess[lane] = block.m_level[lane] - along;
     }
     if (!(std::max(std::max(excess[0], excess[1]), std::max(excess[2], excess[3])) > 0)) return 0;

@@ -121,6 +121,8 @@ private:
     btScalar lookAtBlocks(std::size_t count);
     btScalar runBlocks(std::size_t count);
     static unsigned lanesDue(const Block& block, const Place* places);
+    template <int count>
+    static unsigned lanesDueOf(const Block& block, const Place* places);
     btScalar projectBlock(std::size_t index, unsigned due);
     bool project(Row& row, btScalar& worst);
     void settle(const State& state);
