@@ -65,6 +65,8 @@ struct Pipeline::Implementation
     static void measureObstacle(PooledMesh& mesh);
     void joinScene();
     void joinCloths();
+    // Nodes that were told to be written are not those of the coming step. Transfers of them end.
+    void forgetNodes();
     void joinObstacles();
     // Those of the settings, the builder as the back end in use has it.
     TreeMethods treeMethods() const;

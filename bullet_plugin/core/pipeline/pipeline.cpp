@@ -97,7 +97,7 @@ void Pipeline::Implementation::placeMesh(std::size_t slot)
 void Pipeline::Implementation::joinCloths()
 {
     const MeshPool& cloths = m_scene.m_cloths;
-    m_nodesWritten = m_nodesSent = 0;
+    forgetNodes();
     m_scene.m_clothStart.reserve(device(), 3 * cloths.vertexCount());
     m_scene.m_clothEnd.reserve(device(), 3 * cloths.vertexCount());
     m_scene.m_anySelf = false;
@@ -118,6 +118,12 @@ void Pipeline::Implementation::joinCloths()
             std::copy(mesh.m_positions.begin(), mesh.m_positions.end(), target + 3 * std::size_t(mesh.m_firstVertex));
         }
     }
+}
+
+void Pipeline::Implementation::forgetNodes()
+{
+    if (m_nodesSent > 0) m_deviceBackend->device().wait();
+    m_nodesWritten = m_nodesSent = 0;
 }
 
 void Pipeline::Implementation::joinObstacles()
@@ -419,6 +425,7 @@ void Pipeline::nodesWritten(MeshId id, std::size_t count)
     self.joinScene();
     const MeshPool& cloths = self.m_scene.m_cloths;
     const std::size_t first = cloths.mesh(cloths.slot(id)).m_firstVertex;
+    assert(first + count <= cloths.vertexCount());
     if (first > self.m_nodesWritten) return;
     self.m_nodesWritten = std::max(self.m_nodesWritten, first + count);
     const std::size_t unsent = self.m_nodesWritten - self.m_nodesSent;
@@ -448,7 +455,8 @@ void Pipeline::submit()
     self.collectPairs();
     self.m_submitted = true;
     self.enqueue();
-    self.m_nodesWritten = self.m_nodesSent = 0;
+    if (self.m_stepPairs.m_any && !self.m_report.m_onHost) self.m_nodesSent = 0;  // finish() waits for them
+    self.forgetNodes();
     self.m_statistics.m_uploadMs = millisecondsSince(start);
 }
 
