@@ -232,8 +232,6 @@ typedef struct Merges
     uint m_queued;
 } Merges;
 
-// Splits that a work-item has.
-#define DRAPE_MERGES_EACH ((DRAPE_MERGED + DRAPE_GROVE_GROUP - 1) / DRAPE_GROVE_GROUP)
 // Merges that a group has under way, a work-item for each word, and how many of them a work-item loads together.
 #define DRAPE_WORDS_AT_ONCE (DRAPE_GROVE_GROUP / DRAPE_DOP_WORDS)
 #define DRAPE_WORDS_TOGETHER 4
@@ -264,34 +262,6 @@ static void mergeQueued(__global BvhNode* nodes, __local const Merges* merges, c
     }
 }
 
-// Finds each split's parent among the others, and how many each waits for.
-static void findParents(__local Merges* merges, const uint count)
-{
-    // The first leaf behind the parent's split; 0: the root has none.
-    uint behind[DRAPE_MERGES_EACH], parent[DRAPE_MERGES_EACH];
-    DRAPE_UNROLL
-    for (uint k = 0; k < DRAPE_MERGES_EACH; ++k)
-    {
-        const uint i = get_local_id(0) + k * DRAPE_GROVE_GROUP;
-        behind[k] = i < count ? (merges->m_places[i] + 1u) / 2u : 0u;
-        parent[k] = DRAPE_NO_PLACE;
-    }
-    for (uint other = 0; other < count; ++other)
-    {
-        const uint split = merges->m_splits[other];
-        DRAPE_UNROLL
-        for (uint k = 0; k < DRAPE_MERGES_EACH; ++k)
-            if (split + 1u == behind[k]) parent[k] = other;
-    }
-    DRAPE_UNROLL
-    for (uint k = 0; k < DRAPE_MERGES_EACH; ++k)
-    {
-        const uint i = get_local_id(0) + k * DRAPE_GROVE_GROUP;
-        if (i < count) merges->m_parents[i] = (ushort)parent[k];
-        if (parent[k] != DRAPE_NO_PLACE) atomic_inc(merges->m_waits + parent[k]);
-    }
-}
-
 // The whole group merges the pairs of count splits, those of m_splits, each when its children are complete. Splits of lower
 // tiers are.
 static void mergeInOrder(__global BvhNode* nodes, __global const uint* splits, __local Merges* merges, const uint count)
@@ -304,7 +274,16 @@ static void mergeInOrder(__global BvhNode* nodes, __global const uint* splits, _
     }
     if (item == 0) merges->m_queued = 0;
     barrier(CLK_LOCAL_MEM_FENCE);
-    findParents(merges, count);
+    for (uint i = item; i < count; i += get_local_size(0))
+    {
+        // The first leaf behind the parent's split; 0: the root has none.
+        const uint behind = (merges->m_places[i] + 1u) / 2u;
+        uint parent = DRAPE_NO_PLACE;
+        for (uint other = 0; other < count; ++other)
+            if (merges->m_splits[other] + 1u == behind) parent = other;
+        merges->m_parents[i] = (ushort)parent;
+        if (parent != DRAPE_NO_PLACE) atomic_inc(merges->m_waits + parent);
+    }
     barrier(CLK_LOCAL_MEM_FENCE);
     for (uint i = item; i < count; i += get_local_size(0))
         if (merges->m_waits[i] == 0) merges->m_queue[atomic_inc(&merges->m_queued)] = (ushort)i;
@@ -377,98 +356,37 @@ typedef union GroveSplits
     ushort m_found[2 * DRAPE_GROVE_LEAVES];
 } GroveSplits;
 
-// What a group of refitGrovesGroups shares.
-typedef struct Groves
-{
-    GroveSplits m_splits;
-    uint m_found;  // splits of the tier
-    uint m_stretch[2];
-    uint m_pending;
-} Groves;
-
-// Splits that a work-item loads together: loads that do not wait for each other.
-#define DRAPE_SPLITS_TOGETHER 8
-
-// Finds the stretch of leaves of the groves that begin in a window, see stretchOfWindow(), and lists the splits of their tier
-// in the windows that it may lie in, as many as there is room for.
-static void findGroves(__local Groves* groves, __global const uint* restrict splits, const uint window, const uint leafCount)
-{
-    const uint limit = min(leafCount, window + 2 * DRAPE_GROVE_LEAVES);
-    if (get_local_id(0) < 2) groves->m_stretch[get_local_id(0)] = leafCount;
-    if (get_local_id(0) == 0) groves->m_found = 0;
-    barrier(CLK_LOCAL_MEM_FENCE);
-    for (uint first = window + get_local_id(0); first < limit; first += DRAPE_SPLITS_TOGETHER * DRAPE_GROVE_GROUP)
-    {
-        uint tiers[DRAPE_SPLITS_TOGETHER];  // of the split before each leaf
-        DRAPE_UNROLL
-        for (uint k = 0; k < DRAPE_SPLITS_TOGETHER; ++k)
-        {
-            const uint leaf = first + k * DRAPE_GROVE_GROUP;
-            tiers[k] = leaf >= limit ? 0u : leaf == 0u ? 2u : splitTier(splits[leaf - 1u]);
-        }
-        DRAPE_UNROLL
-        for (uint k = 0; k < DRAPE_SPLITS_TOGETHER; ++k)
-        {
-            const uint leaf = first + k * DRAPE_GROVE_GROUP;
-            if (tiers[k] > 1u)
-            {
-                atomic_min(groves->m_stretch + 0, leaf);
-                if (leaf >= window + DRAPE_GROVE_LEAVES) atomic_min(groves->m_stretch + 1, leaf);
-            }
-            else if (tiers[k] == 1u)
-            {
-                const uint i = atomic_inc(&groves->m_found);
-                if (i < DRAPE_MERGED) groves->m_splits.m_merges.m_splits[i] = leaf - 1u;
-            }
-        }
-    }
-    barrier(CLK_LOCAL_MEM_FENCE);
-}
-
-// Leaves of the splits listed those that lie inside of the stretch. Returns how many.
-static uint keepInside(__local Groves* groves, const uint count)
-{
-    uint own[DRAPE_MERGES_EACH];
-    DRAPE_UNROLL
-    for (uint k = 0; k < DRAPE_MERGES_EACH; ++k)
-    {
-        const uint i = get_local_id(0) + k * DRAPE_GROVE_GROUP;
-        own[k] = i < count ? groves->m_splits.m_merges.m_splits[i] : 0xffffffffu;
-    }
-    barrier(CLK_LOCAL_MEM_FENCE);
-    if (get_local_id(0) == 0) groves->m_found = 0;
-    barrier(CLK_LOCAL_MEM_FENCE);
-    DRAPE_UNROLL
-    for (uint k = 0; k < DRAPE_MERGES_EACH; ++k)
-    {
-        if (own[k] < groves->m_stretch[0] || own[k] >= groves->m_stretch[1] - 1u) continue;
-        groves->m_splits.m_merges.m_splits[atomic_inc(&groves->m_found)] = own[k];
-    }
-    barrier(CLK_LOCAL_MEM_FENCE);
-    return groves->m_found;
-}
-
 // A work-group is a window of leaves; it refits the groves that begin in it.
 __kernel __attribute__((reqd_work_group_size(DRAPE_GROVE_GROUP, 1, 1))) void refitGrovesGroups(
     __global BvhNode* nodes, __global const uint* splits, const uint leafCount)
 {
-    __local Groves groves;
+    __local GroveSplits group;
+    __local uint foundCount, pending;
+    __local uint stretch[2];
     const uint window = get_group_id(0) * DRAPE_GROVE_LEAVES;
-    findGroves(&groves, splits, window, leafCount);
-    const uint first = groves.m_stretch[0], end = groves.m_stretch[1], count = groves.m_found;
+    if (get_local_id(0) == 0) foundCount = 0;
+    stretchOfWindow(splits, window, DRAPE_GROVE_LEAVES, leafCount, 1u, stretch);
+    const uint first = stretch[0];
+    const uint end = stretch[1];
     if (first >= window + DRAPE_GROVE_LEAVES) return;
+    for (uint leaf = first + get_local_id(0); leaf + 1 < end; leaf += get_local_size(0))
+    {
+        if (splitTier(splits[leaf]) != 1u) continue;
+        const uint i = atomic_inc(&foundCount);
+        if (i < DRAPE_MERGED) group.m_merges.m_splits[i] = leaf;
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+    const uint count = foundCount;
     if (count <= DRAPE_MERGED)
     {
-        mergeInOrder(nodes, splits, &groves.m_splits.m_merges, keepInside(&groves, count));
+        mergeInOrder(nodes, splits, &group.m_merges, count);
         return;
     }
     barrier(CLK_LOCAL_MEM_FENCE);
-    if (get_local_id(0) == 0) groves.m_found = 0;
-    barrier(CLK_LOCAL_MEM_FENCE);
     for (uint leaf = first + get_local_id(0); leaf + 1 < end; leaf += get_local_size(0))
-        if (splitTier(splits[leaf]) == 1u) groves.m_splits.m_found[atomic_inc(&groves.m_found)] = (ushort)(leaf - first);
+        if (splitTier(splits[leaf]) == 1u) group.m_found[atomic_dec(&foundCount) - 1u] = (ushort)(leaf - first);
     barrier(CLK_LOCAL_MEM_FENCE);
-    mergeMarked(nodes, splits, groves.m_found, first, groves.m_splits.m_found, 0, &groves.m_pending);
+    mergeMarked(nodes, splits, count, first, group.m_found, 0, &pending);
 }
 
 // One work-group refits what spans groves.
