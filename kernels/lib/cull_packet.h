@@ -18,41 +18,34 @@ typedef struct CullVolumes
 // cullVolume() have it, with that sum in the place of every projection.
 #define DRAPE_PACKET_PAD 6.1e-7f
 
-// p: corners at the step's start as the obstacle sees them, then at its end, all valid; unswept triangles lose the
-// starts. whole: not so where a corner was invalid and another is in its place. Returns the triangles that may come
-// near the obstacle; others, and those of negative radius, get an empty volume.
-DRAPE_FUNCTION LaneMask cullVolumes(CullVolumes* cull, LanesVec3* p, Lanes radius, LaneMask whole, DRAPE_UINT mode,
-                                    const DRAPE_GLOBAL ObstacleMotion* motion)
+// How triangles of a packet move. m_stays: those that are not swept; m_moved: m, squared, of the fastest corner.
+typedef struct PacketMotion
 {
-    const LanesVec3 e0 = lanesSub(p[4], p[3]), e1 = lanesSub(p[5], p[3]), e2 = lanesSub(p[5], p[4]);
-    Lanes moved = lanesSplat(0.0f);  // squared
+    LaneMask m_stays;
+    Lanes m_moved;
+} PacketMotion;
+
+// See isSwept(). p: as for cullVolumes(); e0, e1: edges from the first corner at the end.
+DRAPE_FUNCTION PacketMotion packetMotion(const LanesVec3* p, LanesVec3 e0, LanesVec3 e1, Lanes radius, DRAPE_UINT mode)
+{
+    PacketMotion motion;
+    motion.m_moved = lanesSplat(0.0f);
     for (int k = 0; k < 3 && mode != DRAPE_DISCRETE; ++k)
     {
         const LanesVec3 way = lanesSub(p[3 + k], p[k]);
-        moved = lanesMax(moved, lanesDot(way, way));
+        motion.m_moved = lanesMax(motion.m_moved, lanesDot(way, way));
     }
-    const Lanes small = 0.9f * radius - 2e-5f * (lanesNorm1(e0) + lanesNorm1(e1));  // see isSwept()
+    const Lanes small = 0.9f * radius - 2e-5f * (lanesNorm1(e0) + lanesNorm1(e1));
     const LaneMask automatic = lanesMaskSplat(mode == DRAPE_AUTOMATIC);
-    const LaneMask stays =
-        (automatic & (small > 0.0f) & (moved <= small * small)) | lanesMaskSplat(mode == DRAPE_DISCRETE);
-    Lanes farthest = lanesSplat(0.0f);
-    for (int k = 0; k < 3; ++k)
-    {
-        p[k] = lanesVec3(lanesSelect(stays, p[3 + k].x, p[k].x), lanesSelect(stays, p[3 + k].y, p[k].y),
-                         lanesSelect(stays, p[3 + k].z, p[k].z));
-        farthest = lanesMax(farthest, lanesMax(lanesNorm1(p[k]), lanesNorm1(p[3 + k])));
-    }
+    motion.m_stays =
+        (automatic & (small > 0.0f) & (motion.m_moved <= small * small)) | lanesMaskSplat(mode == DRAPE_DISCRETE);
+    return motion;
+}
 
-    const LanesVec3 area = lanesCross(e0, e1);
-    const Lanes longest = lanesMax(lanesMax(lanesDot(e0, e0), lanesDot(e1, e1)), lanesDot(e2, e2));
-    const Lanes length = lanesSqrt(lanesDot(area, area));
-    const LaneMask sure =
-        whole & (length > DRAPE_CULL_THIN * longest) & (length >= DRAPE_CULL_SMALL * radius * lanesSqrt(longest));
-    const Lanes unswept = lanesSelect(stays, lanesSqrt(moved), lanesSplat(0.0f));
-    cull->m_radius = radius;
-    cull->m_least = lanesSelect(sure, unswept + DRAPE_CULL_MET * radius, radius);
-
-    Lanes size = 2.0f * radius;
+// The corners' intervals along every direction, without any padding. Returns the sum of those along the axes, m.
+DRAPE_FUNCTION Lanes packetIntervals(CullVolumes* cull, const LanesVec3* p)
+{
+    Lanes size = lanesSplat(0.0f);
     DRAPE_UNROLL
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
     {
@@ -70,6 +63,36 @@ DRAPE_FUNCTION LaneMask cullVolumes(CullVolumes* cull, LanesVec3* p, Lanes radiu
         cull->m_low[i] = low;
         cull->m_high[i] = high;
     }
+    return size;
+}
+
+// p: corners at the step's start as the obstacle sees them, then at its end, all valid; unswept triangles lose the
+// starts. whole: not so where a corner was invalid and another is in its place. Returns the triangles that may come
+// near the obstacle; others, and those of negative radius, get an empty volume.
+DRAPE_FUNCTION LaneMask cullVolumes(CullVolumes* cull, LanesVec3* p, Lanes radius, LaneMask whole, DRAPE_UINT mode,
+                                    const DRAPE_GLOBAL ObstacleMotion* motion)
+{
+    const LanesVec3 e0 = lanesSub(p[4], p[3]), e1 = lanesSub(p[5], p[3]), e2 = lanesSub(p[5], p[4]);
+    const PacketMotion way = packetMotion(p, e0, e1, radius, mode);
+    const LaneMask stays = way.m_stays;
+    Lanes farthest = lanesSplat(0.0f);
+    for (int k = 0; k < 3; ++k)
+    {
+        p[k] = lanesVec3(lanesSelect(stays, p[3 + k].x, p[k].x), lanesSelect(stays, p[3 + k].y, p[k].y),
+                         lanesSelect(stays, p[3 + k].z, p[k].z));
+        farthest = lanesMax(farthest, lanesMax(lanesNorm1(p[k]), lanesNorm1(p[3 + k])));
+    }
+
+    const LanesVec3 area = lanesCross(e0, e1);
+    const Lanes longest = lanesMax(lanesMax(lanesDot(e0, e0), lanesDot(e1, e1)), lanesDot(e2, e2));
+    const Lanes length = lanesSqrt(lanesDot(area, area));
+    const LaneMask sure =
+        whole & (length > DRAPE_CULL_THIN * longest) & (length >= DRAPE_CULL_SMALL * radius * lanesSqrt(longest));
+    const Lanes unswept = lanesSelect(stays, lanesSqrt(way.m_moved), lanesSplat(0.0f));
+    cull->m_radius = radius;
+    cull->m_least = lanesSelect(sure, unswept + DRAPE_CULL_MET * radius, radius);
+
+    const Lanes size = 2.0f * radius + packetIntervals(cull, p);
     LaneMask near = radius >= 0.0f;
     DRAPE_UNROLL
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)

@@ -180,6 +180,14 @@ TEST_P(MovingObstacleTest, GivesWhatTheOppositeMotionOfTheClothGives)
     }
 }
 
+// The cloth lies on the obstacle and moves with it.
+void carryCloth(MovingCase& moving)
+{
+    const std::vector<float> lying = moving.m_step.m_cloth.m_positions;
+    moving.m_step.m_cloth.m_positions = mapped(moving.m_start, lying);
+    moving.m_step.m_end = mapped(moving.m_end, lying);
+}
+
 // A cloth that moves with the obstacle stays as far from it as it was.
 TEST_P(MovingObstacleTest, ClothThatIsCarriedAlongPassesNothing)
 {
@@ -187,9 +195,7 @@ TEST_P(MovingObstacleTest, ClothThatIsCarriedAlongPassesNothing)
     MovingCase moving = {drapedCase("sphere", 20, 0.03f, 910), motionOf(0.6, {1, 2, 3}, random),
                          motionOf(1.0, {-1, 0.5, 2}, random)};
     SCOPED_TRACE(moving.m_step.trace());
-    const std::vector<float> lying = moving.m_step.m_cloth.m_positions;
-    moving.m_step.m_cloth.m_positions = mapped(moving.m_start, lying);
-    moving.m_step.m_end = mapped(moving.m_end, lying);
+    carryCloth(moving);
     const std::unique_ptr<Pipeline> pipeline = make();
     ASSERT_TRUE(pipeline);
     const std::vector<Contact> contacts = runMoving(*pipeline, moving);
@@ -208,9 +214,7 @@ TEST_P(MovingObstacleTest, PointOfAVertexIsItsPlaceAtTheEnd)
     MovingCase moving = {drapedCase("sphere", 12, 0.03f, 915), motionOf(0.6, {1, 2, 3}, random),
                          motionOf(0.7, {1, 2.1, 3}, random)};
     SCOPED_TRACE(moving.m_step.trace());
-    const std::vector<float> lying = moving.m_step.m_cloth.m_positions;
-    moving.m_step.m_cloth.m_positions = mapped(moving.m_start, lying);
-    moving.m_step.m_end = mapped(moving.m_end, lying);
+    carryCloth(moving);
     const std::unique_ptr<Pipeline> pipeline = make();
     ASSERT_TRUE(pipeline);
     const Pose end = moving.m_end.pose();
