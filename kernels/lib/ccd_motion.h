@@ -21,20 +21,25 @@ typedef struct CcdVectors
 #define DRAPE_CCD_NORMAL 3
 #define DRAPE_CCD_ALONG_U 4
 #define DRAPE_CCD_ALONG_V 5
+// One more for the side of a face on which u + v = 1.
+#define DRAPE_CCD_ALONG_SIDE 6
+#define DRAPE_CCD_ALL_VIEWS 7
+
+#define DRAPE_CCD_TWELVE_UNITS 7.1525574e-7f  // 12 · 2^-24
 
 typedef struct CcdMotion
 {
     CcdVectors m_vectors;
     float m_scale;
-    float m_d0[DRAPE_CCD_VIEWS], m_d1[DRAPE_CCD_VIEWS];  // D, E and G in each view at the step's ends
-    float m_e0[DRAPE_CCD_VIEWS], m_e1[DRAPE_CCD_VIEWS];
-    float m_g0[DRAPE_CCD_VIEWS], m_g1[DRAPE_CCD_VIEWS];
-    float m_slack[DRAPE_CCD_VIEWS];  // more than F's bounds err by rounding
-    float m_reach[DRAPE_CCD_VIEWS];  // slack and separation: bounds beyond it prove F beyond the separation
-    float m_separation;              // in the frame
-    float m_rates[3];                // most that F varies along the whole of t, u, v, on any axis
-    int m_triangular;                // u + v ≤ 1
-    int m_independent;               // the skew views' directions span space; see ccdAim
+    float m_d0[DRAPE_CCD_ALL_VIEWS], m_d1[DRAPE_CCD_ALL_VIEWS];  // D, E and G in each view at the step's ends
+    float m_e0[DRAPE_CCD_ALL_VIEWS], m_e1[DRAPE_CCD_ALL_VIEWS];
+    float m_g0[DRAPE_CCD_ALL_VIEWS], m_g1[DRAPE_CCD_ALL_VIEWS];
+    float m_slack[DRAPE_CCD_ALL_VIEWS];  // more than F's bounds err by rounding
+    float m_reach[DRAPE_CCD_ALL_VIEWS];  // slack and separation: bounds beyond it prove F beyond the separation
+    float m_separation;                  // in the frame
+    float m_rates[3];                    // most that F varies along the whole of t, u, v, on any axis
+    int m_triangular;                    // u + v ≤ 1
+    int m_independent;                   // the skew views' directions span space; see ccdAim
 } CcdMotion;
 
 // A box [x, x + width] in each of t, u, v; corners and widths are dyadic and exact.
@@ -109,12 +114,21 @@ DRAPE_FUNCTION void ccdAddAxis(CcdMotion* m, int i, Vec3 unit)
 // together 12 u |n|₁, and their flushed products.
 DRAPE_FUNCTION Vec3 ccdAddSkewView(CcdMotion* m, int i, Vec3 direction)
 {
-    const float twelveUnits = 7.1525574e-7f;
     const Vec3 n = vec3Scale(direction, localScale(vec3NormMax(direction)));
     ccdProject(m, i, n);
-    m->m_slack[i] = ccdSlack(m, i) + twelveUnits * vec3Norm1(n) * (1.0f + twelveUnits);
-    m->m_reach[i] = m->m_separation * vec3Length(n) * (1.0f + twelveUnits) + m->m_slack[i];
+    m->m_slack[i] = ccdSlack(m, i) + DRAPE_CCD_TWELVE_UNITS * vec3Norm1(n) * (1.0f + DRAPE_CCD_TWELVE_UNITS);
+    m->m_reach[i] = m->m_slack[i];
+    if (m->m_separation > 0.0f)
+        m->m_reach[i] += m->m_separation * vec3Length(n) * (1.0f + 2.0f * DRAPE_CCD_TWELVE_UNITS);
     return n;
+}
+
+// How F varies with t at a place.
+DRAPE_FUNCTION Vec3 ccdRate(const CcdVectors* v, float place0, float place1)
+{
+    Vec3 rate = vec3Sub(v->m_d1, v->m_d0);
+    rate = vec3AddScaled(rate, vec3Sub(v->m_e1, v->m_e0), -place0);
+    return vec3AddScaled(rate, vec3Sub(v->m_g1, v->m_g0), -place1);
 }
 
 // Aims the skew views at what F does in the middle of a box: there each varies with t, u or v alone. What they prove
@@ -123,17 +137,30 @@ DRAPE_FUNCTION void ccdAim(CcdMotion* m, const CcdBox* box)
 {
     const CcdVectors* v = &m->m_vectors;
     const float t = box->m_low[0] + 0.5f * box->m_width[0];
-    const float alongE = -(box->m_low[1] + 0.5f * box->m_width[1]);
-    const float alongG = -(box->m_low[2] + 0.5f * box->m_width[2]);
     const Vec3 e = vec3Mix(v->m_e0, v->m_e1, t);
     const Vec3 g = vec3Mix(v->m_g0, v->m_g1, t);
-    Vec3 rate = vec3Sub(v->m_d1, v->m_d0);
-    rate = vec3AddScaled(rate, vec3Sub(v->m_e1, v->m_e0), alongE);
-    rate = vec3AddScaled(rate, vec3Sub(v->m_g1, v->m_g0), alongG);
+    const Vec3 rate = ccdRate(v, box->m_low[1] + 0.5f * box->m_width[1], box->m_low[2] + 0.5f * box->m_width[2]);
     const Vec3 n3 = ccdAddSkewView(m, DRAPE_CCD_NORMAL, vec3Cross(e, g));
     const Vec3 n4 = ccdAddSkewView(m, DRAPE_CCD_ALONG_U, vec3Cross(g, rate));
     const Vec3 n5 = ccdAddSkewView(m, DRAPE_CCD_ALONG_V, vec3Cross(e, rate));
     m->m_independent = drapeAbs(vec3Dot(n3, vec3Cross(n4, n5))) > 1e-5f;
+}
+
+// Aims at a face's third side, on which u + v = 1, as ccdAim() does at the others: seen so, F varies with u + v alone.
+// In terms of u + v and v it is D - (u + v) E - v (G - E). G - E is up to 2 and made of two rounded vectors: twelve
+// units of |n|₁ for the vectors become eighteen, which twice the twelve cover.
+DRAPE_FUNCTION void ccdAimAtSide(CcdMotion* m, const CcdBox* box)
+{
+    const CcdVectors* v = &m->m_vectors;
+    const int i = DRAPE_CCD_ALONG_SIDE;
+    if (!m->m_triangular) return;
+    const Vec3 side0 = vec3Sub(v->m_g0, v->m_e0), side1 = vec3Sub(v->m_g1, v->m_e1);
+    const Vec3 rate = ccdRate(v, box->m_low[1] + 0.5f * box->m_width[1], box->m_low[2] + 0.5f * box->m_width[2]);
+    const Vec3 side = vec3Mix(side0, side1, box->m_low[0] + 0.5f * box->m_width[0]);
+    const Vec3 n = ccdAddSkewView(m, i, vec3Cross(side, rate));
+    m->m_g0[i] = vec3Dot(n, side0);
+    m->m_g1[i] = vec3Dot(n, side1);
+    m->m_reach[i] += ccdSlack(m, i) + DRAPE_CCD_TWELVE_UNITS * vec3Norm1(n) * (1.0f + DRAPE_CCD_TWELVE_UNITS);
 }
 
 // Scales the differences, given prescaled, so that the largest is in [1/2, 1), and derives the rest. Returns whether
@@ -170,28 +197,26 @@ typedef struct CcdRanges
     float m_low1[DRAPE_CCD_VIEWS], m_high1[DRAPE_CCD_VIEWS];
 } CcdRanges;
 
-DRAPE_FUNCTION void ccdBounds(const CcdMotion* m, const CcdBox* box, CcdRanges* r)
+// Least and greatest F in view i over the box's places at time t.
+DRAPE_FUNCTION void ccdRange(const CcdMotion* m, int i, const CcdBox* box, float t, float* low, float* high)
 {
     const float u0 = box->m_low[1], u1 = box->m_low[1] + box->m_width[1];
     const float v0 = box->m_low[2], v1 = box->m_low[2] + box->m_width[2];
+    const float s = 1.0f - t;
+    const float d = s * m->m_d0[i] + t * m->m_d1[i];
+    const float e = s * m->m_e0[i] + t * m->m_e1[i];
+    const float g = s * m->m_g0[i] + t * m->m_g1[i];
+    *low = d - drapeMax(u0 * e, u1 * e) - drapeMax(v0 * g, v1 * g);
+    *high = d - drapeMin(u0 * e, u1 * e) - drapeMin(v0 * g, v1 * g);
+}
+
+DRAPE_FUNCTION void ccdBounds(const CcdMotion* m, const CcdBox* box, CcdRanges* r)
+{
     const float t0 = box->m_low[0], t1 = box->m_low[0] + box->m_width[0];
-    const float s0 = 1.0f - t0, s1 = 1.0f - t1;
     for (int i = 0; i < DRAPE_CCD_VIEWS; ++i)
-    {
-        const float d = s0 * m->m_d0[i] + t0 * m->m_d1[i];
-        const float e = s0 * m->m_e0[i] + t0 * m->m_e1[i];
-        const float g = s0 * m->m_g0[i] + t0 * m->m_g1[i];
-        r->m_low0[i] = d - drapeMax(u0 * e, u1 * e) - drapeMax(v0 * g, v1 * g);
-        r->m_high0[i] = d - drapeMin(u0 * e, u1 * e) - drapeMin(v0 * g, v1 * g);
-    }
+        ccdRange(m, i, box, t0, r->m_low0 + i, r->m_high0 + i);
     for (int i = 0; i < DRAPE_CCD_VIEWS; ++i)
-    {
-        const float d = s1 * m->m_d0[i] + t1 * m->m_d1[i];
-        const float e = s1 * m->m_e0[i] + t1 * m->m_e1[i];
-        const float g = s1 * m->m_g0[i] + t1 * m->m_g1[i];
-        r->m_low1[i] = d - drapeMax(u0 * e, u1 * e) - drapeMax(v0 * g, v1 * g);
-        r->m_high1[i] = d - drapeMin(u0 * e, u1 * e) - drapeMin(v0 * g, v1 * g);
-    }
+        ccdRange(m, i, box, t1, r->m_low1 + i, r->m_high1 + i);
 }
 
 #define DRAPE_CCD_APART 0
@@ -224,6 +249,22 @@ DRAPE_FUNCTION int ccdTest(const CcdMotion* m, const CcdRanges* r)
     return within ? DRAPE_CCD_WITHIN : DRAPE_CCD_OPEN;
 }
 
+// Whether F stays beyond the separation over that part of the box in which u + v ≤ 1, seen along the view for that
+// side.
+DRAPE_FUNCTION int ccdBeyondSide(const CcdMotion* m, const CcdBox* box)
+{
+    const int i = DRAPE_CCD_ALONG_SIDE;
+    if (!m->m_triangular) return 0;
+    // In u + v and v, see ccdAimAtSide().
+    CcdBox part = *box;
+    part.m_low[1] = box->m_low[1] + box->m_low[2];
+    part.m_width[1] = drapeMin(box->m_width[1] + box->m_width[2], 1.0f - part.m_low[1]);
+    float low0, high0, low1, high1;
+    ccdRange(m, i, &part, part.m_low[0], &low0, &high0);
+    ccdRange(m, i, &part, part.m_low[0] + part.m_width[0], &low1, &high1);
+    return drapeMin(low0, low1) > m->m_reach[i] || -drapeMax(high0, high1) > m->m_reach[i];
+}
+
 // Whether F changes sign from one end of the box to the other in view i, everywhere: between the ranges there.
 DRAPE_FUNCTION int ccdCrosses(float low0, float high0, float low1, float high1, float slack)
 {
@@ -237,23 +278,27 @@ DRAPE_FUNCTION int ccdCrossesSide(const CcdMotion* m, const CcdBox* box, int i, 
     for (int end = 0; end < 2; ++end)
     {
         CcdBox side = *box;
-        CcdRanges r;
         ccdMoveAlong(&side, axis, end ? 1.0f : 0.0f);
         ccdWidenAlong(&side, axis, 0.0f);
-        ccdBounds(m, &side, &r);
-        low[end] = drapeMin(r.m_low0[i], r.m_low1[i]);
-        high[end] = drapeMax(r.m_high0[i], r.m_high1[i]);
+        float low1, high1;
+        ccdRange(m, i, &side, side.m_low[0], low + end, high + end);
+        ccdRange(m, i, &side, side.m_low[0] + side.m_width[0], &low1, &high1);
+        low[end] = drapeMin(low[end], low1);
+        high[end] = drapeMax(high[end], high1);
     }
     return ccdCrosses(low[0], high[0], low[1], high[1], m->m_slack[i]);
 }
 
 // Proof that F vanishes somewhere in the box: three views that span space, each of which changes sign between opposite
 // sides of the box (Poincaré and Miranda's theorem). Not finding it proves nothing.
-DRAPE_FUNCTION int ccdHolds(const CcdMotion* m, const CcdBox* box, const CcdRanges* r)
+DRAPE_FUNCTION int ccdHolds(const CcdMotion* m, const CcdBox* box)
 {
     const int n = DRAPE_CCD_NORMAL;
+    float low0, high0, low1, high1;
     if (!m->m_independent) return 0;
-    if (!ccdCrosses(r->m_low0[n], r->m_high0[n], r->m_low1[n], r->m_high1[n], m->m_slack[n])) return 0;
+    ccdRange(m, n, box, box->m_low[0], &low0, &high0);
+    ccdRange(m, n, box, box->m_low[0] + box->m_width[0], &low1, &high1);
+    if (!ccdCrosses(low0, high0, low1, high1, m->m_slack[n])) return 0;
     const float farthest = box->m_low[1] + box->m_width[1] + box->m_low[2] + box->m_width[2];
     if (m->m_triangular && farthest > 1.0f) return 0;
     return ccdCrossesSide(m, box, DRAPE_CCD_ALONG_U, 1) && ccdCrossesSide(m, box, DRAPE_CCD_ALONG_V, 2);

@@ -136,38 +136,6 @@ typedef struct Meeting
     float m_place;  // of the step, where the features are to be looked at: as near as a few steps come
 } Meeting;
 
-// Six times the signed volume of the features at time t.
-DRAPE_FUNCTION float volumeAt(const CcdVectors* v, float t)
-{
-    return vec3Dot(vec3Mix(v->m_d0, v->m_d1, t), vec3Cross(vec3Mix(v->m_e0, v->m_e1, t), vec3Mix(v->m_g0, v->m_g1, t)));
-}
-
-// The time between two at which the features are in one plane, by a few steps of false position; the middle where the
-// volume does not change sign.
-DRAPE_FUNCTION float coplanarTime(const CcdVectors* v, float low, float high)
-{
-    float before = volumeAt(v, low), after = volumeAt(v, high);
-    const float side = after < 0.0f ? -1.0f : 1.0f;  // products of volumes would underflow for small features
-    if (!(side * before < 0.0f)) return low + 0.5f * (high - low);
-    float time = low;
-    for (int i = 0; i < 4 && before != after; ++i)
-    {
-        time = low + (high - low) * (before / (before - after));
-        const float middle = volumeAt(v, time);
-        if (side * middle > 0.0f)
-        {
-            high = time;
-            after = middle;
-        }
-        else
-        {
-            low = time;
-            before = middle;
-        }
-    }
-    return time;
-}
-
 DRAPE_FUNCTION Meeting meetFeatures(DRAPE_UINT kind, const Vec3 start[4], const Vec3 end[4], float motion,
                                     PairBounds bounds)
 {
@@ -180,7 +148,8 @@ DRAPE_FUNCTION Meeting meetFeatures(DRAPE_UINT kind, const Vec3 start[4], const 
     if (result.m_hit)
     {
         const float latest = drapeMin(1.0f, result.m_time + 2.0f * settings.m_timeTolerance);
-        meeting.m_place = coplanarTime(&vectors, result.m_time, latest);
+        const float middle = result.m_time + 0.5f * (latest - result.m_time);
+        meeting.m_place = coplanarTime(&vectors, result.m_time, latest, middle);
     }
     return meeting;
 }

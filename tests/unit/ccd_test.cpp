@@ -230,6 +230,70 @@ TEST(Ccd, everyTouchThatNewtonFindsIsAHitInTime)
     EXPECT_GT(confirmed, hits * 9 / 10) << "hits that Newton's method does not find should be few";
 }
 
+// A vertex and a face that are in one plane at the given time, the vertex at the weights u and v there, while the
+// corners move by up to `turn` besides.
+Motion passingMotion(Random& random, float time, float u, float v, float turn)
+{
+    Motion motion = {DRAPE_VERTEX_FACE, {}, {}};
+    const Vec3 corners[3] = {vec3(0, 0, 0), vec3(1, 0, 0), vec3(0.2f, 0.9f, 0)};
+    Vec3 place = vec3(0, 0, 0);
+    for (int i = 0; i < 3; ++i)
+    {
+        const Vec3 way = vec3(random.uniform(-turn, turn), random.uniform(-turn, turn), random.uniform(-turn, turn));
+        motion.m_start[i + 1] = vec3AddScaled(corners[i], way, -0.5f);
+        motion.m_end[i + 1] = vec3AddScaled(corners[i], way, 0.5f);
+        const float weight = i == 0 ? 1 - u - v : i == 1 ? u : v;
+        place = vec3AddScaled(place, vec3Mix(motion.m_start[i + 1], motion.m_end[i + 1], time), weight);
+    }
+    const Vec3 way = vec3(random.uniform(-0.3f, 0.3f), random.uniform(-0.3f, 0.3f), random.uniform(0.6f, 1.0f));
+    motion.m_start[0] = vec3AddScaled(place, way, -time);
+    motion.m_end[0] = vec3AddScaled(place, way, 1 - time);
+    return motion;
+}
+
+TEST(Ccd, mostMeetingsAreProvedWithoutASearch)
+{
+    Random random(75);
+    CcdSettings settings = ccdDefaults();
+    settings.m_timeTolerance = 0.01f;
+    const int cases = 4000;
+    int searched = 0;
+    for (int i = 0; i < cases; ++i)
+    {
+        const float u = random.uniform(0.01f, 0.98f), v = random.uniform(0.005f, 0.99f - u);
+        const float time = random.uniform(0.05f, 0.95f);
+        const CcdResult result = run(passingMotion(random, time, u, v, 0.1f), settings);
+        searched += result.m_boxes > 2;
+        ASSERT_TRUE(result.m_hit) << "seed 75, case " << i;
+        // Looked for to the tolerance, and given as much earlier.
+        ASSERT_LE(result.m_time, time) << "seed 75, case " << i;
+        ASSERT_GE(result.m_time, time - 2.1f * settings.m_timeTolerance) << "seed 75, case " << i;
+        if (result.m_boxes > 2) continue;
+        ASSERT_NEAR(result.m_u, u, 0.01f) << "seed 75, case " << i;
+        ASSERT_NEAR(result.m_v, v, 0.01f) << "seed 75, case " << i;
+    }
+    EXPECT_LT(searched, cases / 50);
+}
+
+TEST(Ccd, mostMissesBesideAnySideTakeFewLooks)
+{
+    Random random(76);
+    const int cases = 3000;
+    int hits = 0, searched = 0;
+    for (int i = 0; i < cases; ++i)
+    {
+        const float beside = random.uniform(0.01f, 0.05f), along = random.uniform(0.1f, 0.9f);
+        const float u = i % 3 == 0 ? -beside : along, v = i % 3 == 1   ? -beside
+                                                          : i % 3 == 2 ? 1 + beside - along
+                                                                       : along;
+        const CcdResult result = run(passingMotion(random, random.uniform(0.1f, 0.9f), u, v, 0.03f));
+        hits += int(result.m_hit);
+        searched += result.m_boxes > 7;
+    }
+    EXPECT_LT(hits, cases / 20) << "paths that lean may still meet the face";
+    EXPECT_LT(searched, cases / 20);
+}
+
 TEST(Ccd, unitsOfLengthThatArePowersOfTwoChangeNoBit)
 {
     Random random(72);
