@@ -139,7 +139,7 @@ static void countMembers(__global const Contact* hits, __global uint* members, c
         own[i] = members[i];
         keys[i] = hits[own[i]].m_obstacleFeature;
     }
-    barrier(CLK_LOCAL_MEM_FENCE);
+    barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
     for (uint i = get_local_id(0); i < count; i += get_local_size(0))
     {
         const uint key = keys[i];

@@ -131,6 +131,15 @@ static void joinVolumes(__local Walkers* walkers)
     *(ofRadii ? &joined->m_radius : joined->m_volume.m_high + lane) = most;
 }
 
+// Stores a volume's interval in one direction, empty where the triangle cannot come near the obstacle.
+static void storeInterval(__local CullVolume* volume, const CullCorners* corners, const int near, const uint direction)
+{
+    float low = INFINITY, high = -INFINITY;
+    if (near) cullInterval(corners, direction, &low, &high);
+    volume->m_volume.m_low[direction] = low;
+    volume->m_volume.m_high[direction] = high;
+}
+
 // Makes the volumes of the group's triangles over the obstacles that rest, or over one that moves. In a packet each of the
 // first lanes makes that of its triangle; of one triangle each makes what it is in one direction.
 static void makeVolumes(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const float clothRadius)
@@ -148,13 +157,13 @@ static void makeVolumes(__local Walkers* walkers, const Walk* walk, const StepCl
                          cullCorners(&corners, &least, motion, cloths->m_triangles + walk->m_cloth, cloths->m_start,
                                      cloths->m_end, clothRadius, cloths->m_mode) &&
                          cullMeets(&corners, clothRadius, motion);
-        for (uint i = alone ? lane : 0; i < DRAPE_DOP_DIRECTIONS; i += alone ? DRAPE_PATCH_WIDTH : 1)
+        if (!alone)
         {
-            float low = INFINITY, high = -INFINITY;
-            if (near) cullInterval(&corners, i, &low, &high);
-            volume->m_volume.m_low[i] = low;
-            volume->m_volume.m_high[i] = high;
+            DRAPE_UNROLL
+            for (uint i = 0; i < DRAPE_DOP_DIRECTIONS; ++i) storeInterval(volume, &corners, near, i);
         }
+        else if (lane < DRAPE_DOP_DIRECTIONS)
+            storeInterval(volume, &corners, near, lane);
         if (!alone || lane == 0)
         {
             volume->m_radius = near ? clothRadius : 0.0f;
@@ -194,6 +203,9 @@ __kernel void patchWalk(DRAPE_WALK_ARGUMENTS, const uint packet)
 
 // Pairs that a group of patchCullPairs takes at a time, each with a lane to prepare it.
 #define DRAPE_CULL_PAIRS 32
+
+// The groups launched are this many times as many as a GPU runs together.
+#define DRAPE_CULL_WAVES 4
 
 // A pair at hand. m_looker: the place of its cloth triangle's; m_near: the blocks of its patch to look at, see cullPatch().
 typedef struct CullPair
@@ -277,6 +289,16 @@ static void markBlocks(__local Culler* culler, const PatchFeatures* features, __
     if ((pair->m_near & near) != near) atomic_or(&pair->m_near, near);
 }
 
+// Pairs that a group takes at a time. As long as they suffice for the groups that the device runs together, one wave of
+// them, with as many pairs each; else for as many rounds of all groups as need be.
+static uint pairsOfGroup(const uint count, const uint groups, const uint turns)
+{
+    const uint wave = max(groups / DRAPE_CULL_WAVES, 1u);
+    const uint inWave = ((count + wave - 1) / wave + turns - 1) / turns * turns;
+    const uint rounds = max((count + groups * DRAPE_CULL_PAIRS - 1) / (groups * DRAPE_CULL_PAIRS), 1u);
+    return inWave <= DRAPE_CULL_PAIRS ? max(inWave, turns) : (count + groups * rounds - 1) / (groups * rounds);
+}
+
 // Lists the feature tests of the pairs that patchWalk listed, as many as fitted there: most pairs next to each other are of
 // one cloth triangle. Each DRAPE_PATCH_WIDTH lanes test a pair.
 __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH, 1, 1))) void patchCullPairs(__global const FeatureTest* restrict pairs, const uint pairCapacity,
@@ -290,9 +312,8 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDT
 {
     const uint count = min(counters->m_patchPairs, pairCapacity);
     const uint groups = get_num_groups(0);
-    const uint rounds = max((count + groups * DRAPE_CULL_PAIRS - 1) / (groups * DRAPE_CULL_PAIRS), 1u);
     const uint turn = teamLane() / DRAPE_PATCH_WIDTH, turns = teamWidth() / DRAPE_PATCH_WIDTH;
-    const uint share = max((count + groups * rounds - 1) / (groups * rounds), turns);
+    const uint share = pairsOfGroup(count, groups, turns);
     const StepCloths cloths = {clothTriangles, start, end, 0, 0, 0.0f, mode, motions, 0};
     const PatchFeatures features = {patches, patchSizes, faces, vertices, edges};
     const TestList tests = {list, capacity, limit, &counters->m_candidates};
