@@ -56,11 +56,17 @@ MethodRun runMethod(StepMethod& method, const StepScene& scene, const MeasureSet
     const int period = scene.period();
     std::vector<std::string> hashes(static_cast<std::size_t>(period), kNoHash);
     Clock::time_point begin;
+    // The positions lie where an application's integrator has just written them; frames untouched for a whole period
+    // would have to come from memory first.
+    const std::size_t floats = scene.floats();
+    std::vector<float> start, end;
     for (int step = 0; step < kWarmUpSteps + settings.m_repeats * period; ++step)
     {
         if (step == kWarmUpSteps) begin = Clock::now();
         if (step >= kWarmUpSteps + period && millisecondsSince(begin) > 1000 * settings.m_seconds) break;
-        const StepOutcome outcome = method.step(scene.start(step), scene.end(step));
+        start.assign(scene.start(step), scene.start(step) + floats);
+        end.assign(scene.end(step), scene.end(step) + floats);
+        const StepOutcome outcome = method.step(start.data(), end.data());
         if (step == 0) run.m_firstMs = outcome.m_stages.front().m_ms;
         if (step >= kWarmUpSteps) addStages(run, outcome);
         std::string& hash = hashes[static_cast<std::size_t>(step % period)];

@@ -58,7 +58,7 @@ public:
         std::size_t first = 0;
         for (std::size_t i = 0; i < m_cloths.size(); ++i)
         {
-            writeNodes(i, start + first, end + first);
+            m_pipeline->copyNodes(m_cloths[i], start + first, end + first);
             m_pipeline->addPair(m_cloths[i], m_obstacle, m_scene.m_thickness);
             if (collidesWithItself()) m_pipeline->addSelf(m_cloths[i]);
             first += m_floats[i];
@@ -101,20 +101,6 @@ public:
     }
 
 private:
-    void writeNodes(std::size_t cloth, const float* start, const float* end)
-    {
-        constexpr std::size_t kPart = 3 * 8192;
-        float *startTarget = m_pipeline->clothStart(m_cloths[cloth]),
-              *endTarget = m_pipeline->clothEnd(m_cloths[cloth]);
-        for (std::size_t from = 0, to; from < m_floats[cloth]; from = to)
-        {
-            to = std::min(from + kPart, m_floats[cloth]);
-            std::copy(start + from, start + to, startTarget + from);
-            std::copy(end + from, end + to, endTarget + from);
-            m_pipeline->nodesWritten(m_cloths[cloth], to / 3);
-        }
-    }
-
     bool collidesWithItself() const { return m_scene.m_selfThickness > 0; }
 
     void addCloths()

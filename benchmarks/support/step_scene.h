@@ -50,6 +50,7 @@ struct StepScene
     std::vector<std::vector<float>> m_frames;  // a period: all cloths' nodes at the start of each step
 
     int period() const { return static_cast<int>(m_frames.size()); }
+    std::size_t floats() const { return m_frames.front().size(); }  // of all nodes' positions
     const float* start(int step) const { return m_frames[static_cast<std::size_t>(step % period())].data(); }
     const float* end(int step) const { return start(step + 1); }
 };

@@ -119,6 +119,8 @@ public:
     // to the device while the caller writes others. Optional. It helps where cloths are told of in the order in which
     // they were added, and large ones a part at a time.
     void nodesWritten(MeshId cloth, std::size_t count);
+    // All of that for a caller with arrays of its own, x y z per vertex: copies them a part at a time.
+    void copyNodes(MeshId cloth, const float* start, const float* end);
 
     // Names a pair for the coming step; thickness in m > 0. A cloth without a pair costs nothing.
     // tube: m, for a caller that lets no node of the cloth go farther than this from its straight way while it solves:

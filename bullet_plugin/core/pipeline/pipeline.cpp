@@ -433,6 +433,20 @@ void Pipeline::nodesWritten(MeshId id, std::size_t count)
         self.m_nodesSent = self.m_nodesWritten;
 }
 
+void Pipeline::copyNodes(MeshId id, const float* start, const float* end)
+{
+    float *startTarget = clothStart(id), *endTarget = clothEnd(id);
+    const MeshPool& cloths = m_implementation->m_scene.m_cloths;
+    const std::size_t count = cloths.mesh(cloths.slot(id)).m_positions.size() / 3;
+    for (std::size_t first = 0, last; first < count; first = last)
+    {
+        last = std::min(first + kNodesTogether, count);
+        std::copy(start + 3 * first, start + 3 * last, startTarget + 3 * first);
+        std::copy(end + 3 * first, end + 3 * last, endTarget + 3 * first);
+        nodesWritten(id, last);
+    }
+}
+
 void Pipeline::addPair(MeshId cloth, MeshId obstacle, float thickness, float tube)
 {
     m_implementation->m_pairs.push_back(NamedPair{cloth, obstacle, thickness, tube});
