@@ -62,27 +62,29 @@ static int featureContact(const FeatureTest feature, const ClothView* cloth, con
                         packed->m_edgeIds[lane], feature.m_reach, contact);
 }
 
+// The step's cloths and obstacles as the kernels below read them, and the hits that they list.
+#define DRAPE_FEATURE_ARGUMENTS                                                                                            \
+    __global const FeatureTest *restrict tests, const uint testCapacity, __global const float *restrict clothStart,        \
+        __global const float *restrict clothEnd, __global const Triangle *restrict clothTriangles,                         \
+        __global const Edge *restrict clothEdges, const uint nodeCount, const uint triangleCount, const uint mode,         \
+        __global const Triangle *restrict obstacleTriangles, __global const NormalCone *restrict vertexCones,              \
+        __global const NormalCone *restrict edgeCones, __global const float *restrict faces,                               \
+        __global const float *restrict vertices, __global const float *restrict edges, __global const uint *restrict faceIds, \
+        __global const uint *restrict vertexIds, __global const uint *restrict edgeIds,                                    \
+        __global const ObstacleMotion *restrict motions, DRAPE_HIT_ARGUMENTS
+#define DRAPE_CLOTH_VIEW(searches) \
+    clothView(clothStart, clothEnd, clothTriangles, clothEdges, nodeCount, triangleCount, mode, searches)
+#define DRAPE_FEATURE_VIEWS                                                                     \
+    const HitList list = DRAPE_HIT_LIST;                                                        \
+    const ObstacleView obstacle = obstacleView(0, obstacleTriangles, vertexCones, edgeCones);   \
+    const PackedFeatures packed = {faces, vertices, edges, faceIds, vertexIds, edgeIds}
+
 // A work-item takes every stride-th of the feature tests that patchCull lists and lists the hits; the tests that need the
 // continuous test it lists in swept, in no particular order. counters->m_swept must be zero before.
-__kernel void narrowPhaseFeature(__global const FeatureTest* restrict tests, const uint testCapacity,
-                                 __global const float* restrict clothStart, __global const float* restrict clothEnd,
-                                 __global const Triangle* restrict clothTriangles,
-                                 __global const Edge* restrict clothEdges, const uint nodeCount,
-                                 const uint triangleCount, const uint mode,
-                                 __global const Triangle* restrict obstacleTriangles,
-                                 __global const NormalCone* restrict vertexCones,
-                                 __global const NormalCone* restrict edgeCones, __global const float* restrict faces,
-                                 __global const float* restrict vertices, __global const float* restrict edges,
-                                 __global const uint* restrict faceIds, __global const uint* restrict vertexIds,
-                                 __global const uint* restrict edgeIds,
-                                 __global const ObstacleMotion* restrict motions, __global uint* restrict swept,
-                                 DRAPE_HIT_ARGUMENTS)
+__kernel void narrowPhaseFeature(DRAPE_FEATURE_ARGUMENTS, __global uint* restrict swept)
 {
-    const HitList list = DRAPE_HIT_LIST;
-    ClothView cloth =
-        clothView(clothStart, clothEnd, clothTriangles, clothEdges, nodeCount, triangleCount, mode, 0);
-    const ObstacleView obstacle = obstacleView(0, obstacleTriangles, vertexCones, edgeCones);
-    const PackedFeatures packed = {faces, vertices, edges, faceIds, vertexIds, edgeIds};
+    DRAPE_FEATURE_VIEWS;
+    ClothView cloth = DRAPE_CLOTH_VIEW(0);
     const uint count = min(counters->m_candidates, testCapacity);
     for (uint i = get_global_id(0); i < count; i += get_global_size(0))
     {
@@ -96,38 +98,64 @@ __kernel void narrowPhaseFeature(__global const FeatureTest* restrict tests, con
     }
 }
 
-// Places of the work-items, each group's first one before any group's second: few tests, which take long, are then not in
-// each other's way.
-static uint spreadItem(void)
+// Groups take turns at the kinds of tests, and each its tests one by one, its first lane's after every other group's: lanes
+// of one kind wait for those of another, and few tests, which take long, are then not in each other's way.
+#define DRAPE_TEST_KINDS 3
+typedef struct KindShare
 {
-    return get_local_id(0) * get_num_groups(0) + get_group_id(0);
+    uint m_kind, m_first, m_stride;
+} KindShare;
+
+static KindShare kindShare(void)
+{
+    KindShare share;
+    const uint groups = get_num_groups(0) / DRAPE_TEST_KINDS, group = get_group_id(0);
+    share.m_kind = group % DRAPE_TEST_KINDS;
+    share.m_first = get_local_id(0) * groups + group / DRAPE_TEST_KINDS;
+    share.m_stride = get_local_size(0) * groups;
+    if (group >= groups * DRAPE_TEST_KINDS) share.m_kind = DRAPE_TEST_KINDS;  // takes none
+    return share;
+}
+
+static uint kindOfTest(const FeatureTest feature)
+{
+    const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT;
+    return test < DRAPE_TEST_FACE ? 0 : test == DRAPE_TEST_FACE ? 1 : 2;
 }
 
 // A work-item takes every stride-th of the tests that narrowPhaseFeature left to the continuous test and lists their hits.
-__kernel void narrowPhaseSwept(__global const FeatureTest* restrict tests,
-                               __global const float* restrict clothStart, __global const float* restrict clothEnd,
-                               __global const Triangle* restrict clothTriangles, __global const Edge* restrict clothEdges,
-                               const uint nodeCount, const uint triangleCount, const uint mode,
-                               __global const Triangle* restrict obstacleTriangles,
-                               __global const NormalCone* restrict vertexCones,
-                               __global const NormalCone* restrict edgeCones, __global const float* restrict faces,
-                               __global const float* restrict vertices, __global const float* restrict edges,
-                               __global const uint* restrict faceIds, __global const uint* restrict vertexIds,
-                               __global const uint* restrict edgeIds,
-                               __global const ObstacleMotion* restrict motions, __global const uint* restrict swept,
-                               DRAPE_HIT_ARGUMENTS)
+__kernel void narrowPhaseSwept(DRAPE_FEATURE_ARGUMENTS, __global const uint* restrict swept)
 {
-    const HitList list = DRAPE_HIT_LIST;
-    ClothView cloth =
-        clothView(clothStart, clothEnd, clothTriangles, clothEdges, nodeCount, triangleCount, mode, 1);
-    const ObstacleView obstacle = obstacleView(0, obstacleTriangles, vertexCones, edgeCones);
-    const PackedFeatures packed = {faces, vertices, edges, faceIds, vertexIds, edgeIds};
+    DRAPE_FEATURE_VIEWS;
+    uint searches = 0;
+    ClothView cloth = DRAPE_CLOTH_VIEW(&searches);
+    const KindShare share = kindShare();
     const uint count = counters->m_swept;
-    for (uint i = spreadItem(); i < count; i += get_global_size(0))
+    for (uint i = share.m_first; i < count; i += share.m_stride)
     {
-        const uint place = swept[i];
+        const FeatureTest test = tests[swept[i]];
         Contact contact;
-        cloth.m_motion = motionOfTest(motions, tests[place]);
-        if (featureContact(tests[place], &cloth, &obstacle, &packed, &contact) == DRAPE_IS_CONTACT) listHit(&list, &contact);
+        if (kindOfTest(test) != share.m_kind) continue;
+        cloth.m_motion = motionOfTest(motions, test);
+        if (featureContact(test, &cloth, &obstacle, &packed, &contact) == DRAPE_IS_CONTACT) listHit(&list, &contact);
     }
+}
+
+// Both in one launch, for tests so few that a work-item has one at most: each runs the continuous test where it needs it.
+__kernel void narrowPhaseFew(DRAPE_FEATURE_ARGUMENTS)
+{
+    DRAPE_FEATURE_VIEWS;
+    uint searches = 0;
+    ClothView cloth = DRAPE_CLOTH_VIEW(&searches);
+    const KindShare share = kindShare();
+    const uint count = min(counters->m_candidates, testCapacity);
+    for (uint i = share.m_first; i < count; i += share.m_stride)
+    {
+        const FeatureTest test = tests[i];
+        Contact contact;
+        if (kindOfTest(test) != share.m_kind) continue;
+        cloth.m_motion = motionOfTest(motions, test);
+        if (featureContact(test, &cloth, &obstacle, &packed, &contact) == DRAPE_IS_CONTACT) listHit(&list, &contact);
+    }
+    if (searches > 0) atomic_add(&counters->m_swept, searches);
 }

@@ -19,8 +19,9 @@ __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, con
                               DRAPE_HIT_ARGUMENTS)
 {
     const HitList list = DRAPE_HIT_LIST;
+    uint searches = 0;
     ClothView cloth =
-        clothView(clothStart, clothEnd, clothTriangles, clothEdges, nodeCount, triangleCount, mode, 0);
+        clothView(clothStart, clothEnd, clothTriangles, clothEdges, nodeCount, triangleCount, mode, &searches);
     const ObstacleView obstacle = obstacleView(obstaclePositions, obstacleTriangles, vertexCones, edgeCones);
     const uint count = min(counters->m_candidates, candidateCapacity);
     for (uint i = get_global_id(0); i < count; i += get_global_size(0))
@@ -36,12 +37,11 @@ __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, con
         {
             Contact contact;
             if (!(tests & (1u << test))) continue;
-            int swept;
-            const int found = decidePairContact(test, &cloth, &obstacle, candidate, reach, &contact, &swept);
-            if (swept) atomic_inc(&counters->m_swept);
-            if (found) listHit(&list, &contact);
+            if (pairContact(test, &cloth, &obstacle, candidate, reach, &contact) == DRAPE_IS_CONTACT)
+                listHit(&list, &contact);
         }
     }
+    if (searches > 0) atomic_add(&counters->m_swept, searches);
 }
 
 // A work-item takes every stride-th candidate and lists the pairs that intersect at the step's start.

@@ -35,8 +35,9 @@ __kernel void selfSwept(__global const FeatureTest* restrict tests, __global con
                         const float reachScale, __global const uint* restrict swept, DRAPE_HIT_ARGUMENTS)
 {
     const HitList list = DRAPE_HIT_LIST;
+    uint searches = 0;
     const SelfView view =
-        selfView(clothView(start, end, triangles, edges, nodeCount, triangleCount, mode, 1), rest, reachScale);
+        selfView(clothView(start, end, triangles, edges, nodeCount, triangleCount, mode, &searches), rest, reachScale);
     const uint count = counters->m_selfSwept;
     for (uint i = get_global_id(0); i < count; i += get_global_size(0))
     {

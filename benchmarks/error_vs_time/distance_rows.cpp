@@ -40,7 +40,8 @@ public:
         const Edge edge = {{0, 1}, {1, 1}};
         const NormalCone any = {vec3(0, 0, 0), -1};
         const NormalCone anyOf[4] = {any, any, any, any};
-        const ClothView cloth = clothView(pair.m_points, pair.m_points, &own, &edge, 4, 1, m_mode, 1);
+        std::uint32_t searches = 0;
+        const ClothView cloth = clothView(pair.m_points, pair.m_points, &own, &edge, 4, 1, m_mode, &searches);
         const ObstacleView obstacle = obstacleView(pair.m_points, &other, anyOf, anyOf);
         Contact contact;
         const int found =

@@ -48,7 +48,7 @@ void PeerScene::selfContacts(const std::vector<Candidate>& pairs, const float* s
     const ClothView cloth =
         clothView(start, end, m_cloths.triangles().data(), m_cloths.edges().data(),
                   static_cast<std::uint32_t>(m_cloths.vertexCount()),
-                  static_cast<std::uint32_t>(m_cloths.triangles().size()), DRAPE_AUTOMATIC, 1);
+                  static_cast<std::uint32_t>(m_cloths.triangles().size()), DRAPE_AUTOMATIC, nullptr);
     const SelfStep step = {m_cloths, selfView(cloth, m_rest.data(), 1.0f + Settings().m_activation), m_self};
     std::vector<Dop> volumes;
     selfVolumes(step, volumes);
@@ -77,15 +77,10 @@ void PeerScene::selfContacts(const std::vector<Candidate>& pairs, const float* s
 void PeerScene::narrowPhase(const std::vector<Candidate>& candidates, const float* start, const float* end, int threads,
                             std::vector<Contact>& contacts) const
 {
-    const ClothView cloth = {start,
-                             end,
-                             m_cloths.triangles().data(),
-                             m_cloths.edges().data(),
-                             static_cast<std::uint32_t>(m_cloths.vertexCount()),
-                             static_cast<std::uint32_t>(m_cloths.triangles().size()),
-                             DRAPE_AUTOMATIC,
-                             1,
-                             nullptr};
+    const ClothView cloth =
+        clothView(start, end, m_cloths.triangles().data(), m_cloths.edges().data(),
+                  static_cast<std::uint32_t>(m_cloths.vertexCount()),
+                  static_cast<std::uint32_t>(m_cloths.triangles().size()), DRAPE_AUTOMATIC, nullptr);
     const ObstacleView obstacle = {m_positions.data(), m_obstacles.triangles().data(), m_vertexCones.data(),
                                    m_edgeCones.data()};
     const NarrowPhaseSettings settings = {m_thickness, 1, 1.0f + Settings().m_activation};

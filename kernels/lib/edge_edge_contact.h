@@ -57,7 +57,8 @@ DRAPE_FUNCTION int edgeEdgeContact(FeatureEdge e0, FeatureEdge e1, FeatureEdge o
         const int mayMeet = edgeMayMeet(e0, e1, o, v0, v1, bounds);
         if (asksForMeeting(mayMeet, bounds))
         {
-            if (!bounds.m_complete) return DRAPE_UNDECIDED;
+            if (!bounds.m_searches) return DRAPE_UNDECIDED;
+            ++*bounds.m_searches;
             const Meeting meeting = meetEdge(e0, e1, o, bounds);
             if (meeting.m_met && mayMeet && edgeEdgeMet(e0, e1, o, meeting, v0, bounds, contact))
                 return DRAPE_IS_CONTACT;

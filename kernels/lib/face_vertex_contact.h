@@ -35,7 +35,8 @@ DRAPE_FUNCTION int faceVertexPassed(const MovingFace* face, Vec3 vertex, float s
     const float before = s0 < 0.0f ? -1.0f : 1.0f, after = s1 < 0.0f ? -1.0f : 1.0f;
     if (asksForMeeting(mayMeet, bounds))
     {
-        if (!bounds.m_complete) return DRAPE_UNDECIDED;
+        if (!bounds.m_searches) return DRAPE_UNDECIDED;
+        ++*bounds.m_searches;
         const Meeting meeting = meetFace(face, vertex, bounds);
         if (meeting.m_met && mayMeet && faceVertexMet(f0, face->m_end, vertex, meeting, before, bounds, contact))
             return DRAPE_IS_CONTACT;

@@ -88,11 +88,12 @@ typedef struct PairBounds
     float m_reach;
     float m_reachSlack;  // reach grown by more than the rounding of a distance and its normal
     DRAPE_UINT m_mode;   // DRAPE_DISCRETE …
-    int m_complete;      // whether the continuous test is to be run where it is needed
+    // Counts the pairs for which the continuous test was needed and run; null: it is not to be run.
+    DRAPE_UINT* m_searches;
 } PairBounds;
 
-// What a feature test returns: no contact, a contact, or that only the continuous test can tell and m_complete is not
-// set.
+// What a feature test returns: no contact, a contact, or that only the continuous test can tell, which is not to
+// be run.
 #define DRAPE_NO_CONTACT 0
 #define DRAPE_IS_CONTACT 1
 #define DRAPE_UNDECIDED 2

@@ -22,7 +22,7 @@ typedef struct ClothView
     DRAPE_UINT m_nodeCount;
     DRAPE_UINT m_triangleCount;
     DRAPE_UINT m_mode;                            // DRAPE_DISCRETE …
-    int m_complete;                               // as in PairBounds
+    DRAPE_UINT* m_searches;                       // as in PairBounds
     const DRAPE_GLOBAL ObstacleMotion* m_motion;  // of the obstacle at hand; null where it rests
 } ClothView;
 
@@ -36,7 +36,8 @@ typedef struct ObstacleView
 
 DRAPE_FUNCTION ClothView clothView(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end,
                                    const DRAPE_GLOBAL Triangle* triangles, const DRAPE_GLOBAL Edge* edges,
-                                   DRAPE_UINT nodeCount, DRAPE_UINT triangleCount, DRAPE_UINT mode, int complete)
+                                   DRAPE_UINT nodeCount, DRAPE_UINT triangleCount, DRAPE_UINT mode,
+                                   DRAPE_UINT* searches)
 {
     ClothView view;
     view.m_start = start;
@@ -46,7 +47,7 @@ DRAPE_FUNCTION ClothView clothView(const DRAPE_GLOBAL float* start, const DRAPE_
     view.m_nodeCount = nodeCount;
     view.m_triangleCount = triangleCount;
     view.m_mode = mode;
-    view.m_complete = complete;
+    view.m_searches = searches;
     view.m_motion = 0;
     return view;
 }
@@ -78,7 +79,7 @@ DRAPE_FUNCTION PairBounds pairBounds(const ClothView* cloth, float extent, float
     bounds.m_reach = reach;
     bounds.m_reachSlack = reach * 1.001f + DRAPE_SEAM * extent;
     bounds.m_mode = cloth->m_mode;
-    bounds.m_complete = cloth->m_complete;
+    bounds.m_searches = cloth->m_searches;
     return bounds;
 }
 
@@ -291,20 +292,6 @@ DRAPE_FUNCTION DRAPE_UINT testsOfPair(const ClothView* cloth, const ObstacleView
     if (pairApart(&pair, reach)) return 0;
     return pair.m_tests & ownedTests(cloth->m_triangles[candidate.m_cloth].m_owned,
                                      obstacle->m_triangles[candidate.m_obstacle].m_owned);
-}
-
-// pairContact() with the continuous test where it is needed; *swept tells whether it was. Returns whether there is a
-// contact.
-DRAPE_FUNCTION int decidePairContact(int test, ClothView* cloth, const ObstacleView* obstacle, Candidate candidate,
-                                     float reach, Contact* contact, int* swept)
-{
-    int found = DRAPE_UNDECIDED;
-    for (cloth->m_complete = 0; found == DRAPE_UNDECIDED; cloth->m_complete = 1)
-    {
-        *swept = cloth->m_complete;
-        found = pairContact(test, cloth, obstacle, candidate, reach, contact);
-    }
-    return found == DRAPE_IS_CONTACT;
 }
 
 DRAPE_NAMESPACE_END

@@ -252,7 +252,8 @@ DRAPE_FUNCTION int edgesPassedOrNear(const EdgePair* pair, PairBounds bounds, Co
             edgesMayMeet(pair->m_e0, pair->m_e1, pair->m_o0, pair->m_o1, motion, pair->m_v0, pair->m_v1, bounds);
         if (asksForMeeting(mayMeet, bounds))
         {
-            if (!bounds.m_complete) return DRAPE_UNDECIDED;
+            if (!bounds.m_searches) return DRAPE_UNDECIDED;
+            ++*bounds.m_searches;
             const Vec3 start[4] = {pair->m_e0.m_a, pair->m_e0.m_b, pair->m_o0.m_a, pair->m_o0.m_b};
             const Vec3 end[4] = {pair->m_e1.m_a, pair->m_e1.m_b, pair->m_o1.m_a, pair->m_o1.m_b};
             const Meeting meeting = meetFeatures(DRAPE_EDGES, start, end, motion, bounds);

@@ -96,7 +96,7 @@ public:
         const MeshPool& pool = m_side.m_pool;
         const ClothView cloth =
             clothView(m_side.m_start.data(), m_side.m_end.data(), pool.triangles().data(), pool.edges().data(),
-                      std::uint32_t(pool.vertexCount()), std::uint32_t(pool.triangles().size()), DRAPE_AUTOMATIC, 1);
+                      std::uint32_t(pool.vertexCount()), std::uint32_t(pool.triangles().size()), DRAPE_AUTOMATIC, nullptr);
         const SelfStep step = {pool, selfView(cloth, m_rest.data(), kReachScale), m_reach};
         std::vector<Contact> contacts;
         m_candidates = SelfContactsOnHost().run(step, UINT64_MAX, UINT64_MAX, contacts).m_candidates;

@@ -217,10 +217,50 @@ TEST_P(PipelineTest, NodesMayGoBeforeAllAreWritten)
     expectSame(run({first, second}, told), expected);
     expectSame(run({second, first}, told), expected);
     expectSame(run({first, second}, halfTold), expected);
+    for (const MeshId cloth : {first, second})
+    {
+        std::fill_n(pipeline->clothEnd(cloth), 3 * nodes, 1e3f);
+        pipeline->copyNodes(cloth, start.data(), end.data());
+        pipeline->addPair(cloth, obstacle, step.m_thickness);
+    }
+    expectSame(runStep(*pipeline), expected);
     // Told of before a cloth goes.
     pipeline->nodesWritten(first, nodes);
     pipeline->remove(second);
     expectSame(run({first}, told), run({first}, silent));
+}
+
+// A device goes through few tests with another kernel once a step has told that they are few.
+TEST_P(PipelineTest, FewTestsGiveTheSameContacts)
+{
+    std::size_t swept = 0, contacts = 0;
+    for (std::uint32_t seed = 740; seed < 764; ++seed)
+    {
+        const std::unique_ptr<Pipeline> pipeline = make();
+        ASSERT_TRUE(pipeline);
+        const StepCase step = seed % 2 ? soupCase(10, 40, true, seed) : fallingCase("box", 5, 0.03f, seed);
+        SCOPED_TRACE(step.trace());
+        const MeshId cloth = addCloth(*pipeline, step.m_cloth), obstacle = addObstacle(*pipeline, step.m_obstacle);
+        const auto run = [&]
+        {
+            pipeline->copyNodes(cloth, step.m_cloth.m_positions.data(), step.m_end.data());
+            pipeline->addPair(cloth, obstacle, step.m_thickness);
+            return runStep(*pipeline);
+        };
+        const std::vector<Contact> first = run();
+        const std::size_t sweptFirst = pipeline->statistics().m_sweptTests;
+        const std::vector<Contact> second = run();
+        EXPECT_TRUE(sameBytes(second, first)) << difference(second, first);
+        EXPECT_EQ(pipeline->statistics().m_sweptTests, sweptFirst);
+        if (!pipeline->deviceReport().m_onHost)
+        {
+            EXPECT_LE(pipeline->statistics().m_candidates, 256u) << "few, with two compute units";
+        }
+        swept += sweptFirst;
+        contacts += second.size();
+    }
+    EXPECT_GT(swept, 500u);
+    EXPECT_GT(contacts, 300u);
 }
 
 TEST_P(PipelineTest, StepsWithoutPairsAreSkipped)

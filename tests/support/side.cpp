@@ -14,15 +14,9 @@ namespace drape::test
 {
 ClothView Side::cloth() const
 {
-    return {m_start.data(),
-            m_end.data(),
-            m_pool.triangles().data(),
-            m_pool.edges().data(),
-            std::uint32_t(m_pool.vertexCount()),
-            std::uint32_t(m_pool.triangles().size()),
-            DRAPE_AUTOMATIC,
-            1,
-            nullptr};
+    return clothView(m_start.data(), m_end.data(), m_pool.triangles().data(), m_pool.edges().data(),
+                     std::uint32_t(m_pool.vertexCount()), std::uint32_t(m_pool.triangles().size()), DRAPE_AUTOMATIC,
+                     nullptr);
 }
 
 ObstacleView Side::obstacle() const

@@ -15,6 +15,9 @@ constexpr std::size_t kFewSlots = 1 << 14;  // placed in one launch
 constexpr std::size_t kPlaceGroupGpu = 256;
 constexpr std::size_t kItemsPerUnitGpu = 1024;  // work-items per compute unit that hide a GPU's latency
 constexpr std::size_t kItemsPerUnitCpu = 256;   // four groups per core, so that uneven ones even out
+// Feature tests per compute unit up to which one launch is faster than two: the continuous test takes registers, which
+// leave room for few groups at a time.
+constexpr std::size_t kFewTestsPerUnit = 128;
 }  // namespace
 
 void NarrowPhaseStage::create(Device& device, const ProgramLoader& load, bool features, bool reduces)
@@ -25,6 +28,7 @@ void NarrowPhaseStage::create(Device& device, const ProgramLoader& load, bool fe
         const cl::Program narrowPhase = load("narrow_phase");
         m_feature.create(device, narrowPhase, "narrowPhaseFeature");
         m_swept.create(device, narrowPhase, "narrowPhaseSwept");
+        m_few.create(device, narrowPhase, "narrowPhaseFew");
     }
     else
     {
@@ -95,27 +99,22 @@ void NarrowPhaseStage::enqueueFeatures(Device& device, NarrowPhaseBuffers sides,
                                        StepTally tally, const ReductionBuffers* reduction, const SelfWork* self)
 {
     PatchCullStage::Features features = cull.features();
-    const std::size_t width = listWidth(device);
-    const cl_uint hitCapacity = cl_uint(m_hits.capacity());
-    m_sweptTests.reserve(device, cull.tests().capacity());
-    m_feature.launch(device, width, kGroup, cull.tests().handle(), cl_uint(cull.tests().capacity()),
-                     sides.m_clothStart.handle(), sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(),
-                     sides.m_clothEdges.handle(), cl_uint(nodeCount), cl_uint(triangleCount), cl_uint(mode),
-                     sides.m_obstacleTriangles.handle(), sides.m_vertexCones.handle(), sides.m_edgeCones.handle(),
-                     features.m_faces.handle(), features.m_vertices.handle(), features.m_edges.handle(),
-                     features.m_faceIds.handle(), features.m_vertexIds.handle(), features.m_edgeIds.handle(),
-                     sides.m_motions.handle(), m_sweptTests.handle(), m_hits.handle(), hitCapacity,
-                     m_slotCount.handle(), tally.m_now.handle());
-    if (mode != DRAPE_DISCRETE)
+    const auto launch = [&](Kernel& kernel, auto&... list)
     {
-        m_swept.launch(device, width, kGroup, cull.tests().handle(), sides.m_clothStart.handle(),
-                       sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(), sides.m_clothEdges.handle(),
-                       cl_uint(nodeCount), cl_uint(triangleCount), cl_uint(mode), sides.m_obstacleTriangles.handle(),
-                       sides.m_vertexCones.handle(), sides.m_edgeCones.handle(), features.m_faces.handle(),
-                       features.m_vertices.handle(), features.m_edges.handle(), features.m_faceIds.handle(),
-                       features.m_vertexIds.handle(), features.m_edgeIds.handle(), sides.m_motions.handle(),
-                       m_sweptTests.handle(), m_hits.handle(), hitCapacity, m_slotCount.handle(), tally.m_now.handle());
-    }
+        kernel.launch(device, listWidth(device), kGroup, cull.tests().handle(), cl_uint(cull.tests().capacity()),
+                      sides.m_clothStart.handle(), sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(),
+                      sides.m_clothEdges.handle(), cl_uint(nodeCount), cl_uint(triangleCount), cl_uint(mode),
+                      sides.m_obstacleTriangles.handle(), sides.m_vertexCones.handle(), sides.m_edgeCones.handle(),
+                      features.m_faces.handle(), features.m_vertices.handle(), features.m_edges.handle(),
+                      features.m_faceIds.handle(), features.m_vertexIds.handle(), features.m_edgeIds.handle(),
+                      sides.m_motions.handle(), m_hits.handle(), cl_uint(m_hits.capacity()), m_slotCount.handle(),
+                      tally.m_now.handle(), list.handle()...);
+    };
+    m_sweptTests.reserve(device, cull.tests().capacity());
+    const bool few = tally.m_tests <= device.computeUnits() * kFewTestsPerUnit;
+    if (mode == DRAPE_DISCRETE || !few) launch(m_feature, m_sweptTests);
+    if (mode != DRAPE_DISCRETE && !few) launch(m_swept, m_sweptTests);
+    if (mode != DRAPE_DISCRETE && few) launch(m_few);
     if (self) enqueueSelfHits(device, tally, *self);
     enqueueCompaction(device, sides, tally, reduction);
 }

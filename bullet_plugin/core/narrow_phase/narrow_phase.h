@@ -91,12 +91,13 @@ struct SelfWork
 
 // The step's counters, and those of the next step, which compaction leaves zero. m_ordered: slots with more than
 // DRAPE_RANKED hits are put in order; where they are not and there are some, which the counters tell, the step must run
-// again.
+// again. m_tests: about as many feature tests are expected; speed alone depends on it.
 struct StepTally
 {
     Buffer<StepCounters>& m_now;
     Buffer<StepCounters>& m_next;
     bool m_ordered = true;
+    std::size_t m_tests = SIZE_MAX;
 };
 
 class NarrowPhaseStage
@@ -123,7 +124,8 @@ public:
     void enqueue(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
                  const NarrowPhaseSettings& settings, Buffer<Candidate>& candidates, StepTally tally,
                  const ReductionBuffers* reduction = nullptr, const SelfWork* self = nullptr);
-    // Contacts of the feature tests that a cull left. mode: DRAPE_DISCRETE …; a discrete step is one launch less.
+    // Contacts of the feature tests that a cull left. mode: DRAPE_DISCRETE …; a discrete step is one launch less, and
+    // so is one with few tests.
     void enqueueFeatures(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
                          std::uint32_t mode, PatchCullStage& cull, StepTally tally,
                          const ReductionBuffers* reduction = nullptr, const SelfWork* self = nullptr);
@@ -142,7 +144,7 @@ private:
     void enqueueSelfHits(Device& device, StepTally tally, const SelfWork& self);
     std::size_t listWidth(const Device& device) const;
 
-    Kernel m_test, m_feature, m_swept, m_intersect, m_count, m_place, m_placeFew, m_gather, m_order, m_write;
+    Kernel m_test, m_feature, m_swept, m_few, m_intersect, m_count, m_place, m_placeFew, m_gather, m_order, m_write;
     Kernel m_keep, m_writeKept;
     Buffer<Contact> m_hits{"step hits"}, m_contacts{"step contacts"};
     Buffer<Candidate> m_intersections{"step intersections"};

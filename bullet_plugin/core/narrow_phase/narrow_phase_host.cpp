@@ -24,7 +24,9 @@ NarrowPhaseCounts narrowPhaseOnHost(const std::vector<Candidate>& candidates, co
     contacts.clear();
     NarrowPhaseCounts counts;
     ClothView seen = cloth;
+    std::uint32_t searches = 0;
     seen.m_mode = settings.m_mode;
+    seen.m_searches = &searches;
     for (const Candidate& candidate : candidates)
     {
         const Triangle* clothTriangle = cloth.m_triangles + candidate.m_cloth;
@@ -37,12 +39,12 @@ NarrowPhaseCounts narrowPhaseOnHost(const std::vector<Candidate>& candidates, co
         for (int test = 0; test < DRAPE_FEATURE_TESTS; ++test)
         {
             Contact contact;
-            int swept = 0;
             if (!(tests & (1u << test))) continue;
-            const bool found = decidePairContact(test, &seen, &obstacle, candidate, reach, &contact, &swept);
-            counts.m_swept += std::uint64_t(swept);
-            if (found && ++counts.m_contacts <= limit) contacts.push_back(contact);
+            if (pairContact(test, &seen, &obstacle, candidate, reach, &contact) != DRAPE_IS_CONTACT) continue;
+            if (++counts.m_contacts <= limit) contacts.push_back(contact);
         }
+        counts.m_swept += searches;
+        searches = 0;
     }
     if (counts.m_contacts > limit) std::vector<Contact>().swap(contacts);
     sortContacts(contacts);

@@ -518,6 +518,7 @@ bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResul
 void DeviceBackend::readAll(StepResult& result)
 {
     const StepCounters counters = countersRead();
+    m_testsBefore = counters.m_candidates;
     result.m_candidates = counters.m_candidates;
     result.m_volumeTests = counters.m_visits;
     result.m_sweptTests = counters.m_swept;

@@ -139,9 +139,10 @@ std::vector<std::uint64_t> HostBackend::countCandidates(const Scene& scene, cons
 SelfStep HostBackend::selfStep(const Scene& scene, const StepPairs& pairs, const Settings& settings)
 {
     const MeshPool& cloths = scene.m_cloths;
-    const ClothView cloth = clothView(scene.m_clothStart.data(), scene.m_clothEnd.data(), cloths.triangles().data(),
-                                      cloths.edges().data(), std::uint32_t(cloths.vertexCount()),
-                                      std::uint32_t(cloths.triangles().size()), std::uint32_t(settings.m_mode), 1);
+    const ClothView cloth =
+        clothView(scene.m_clothStart.data(), scene.m_clothEnd.data(), cloths.triangles().data(), cloths.edges().data(),
+                  std::uint32_t(cloths.vertexCount()), std::uint32_t(cloths.triangles().size()),
+                  std::uint32_t(settings.m_mode), nullptr);
     return {cloths, selfView(cloth, scene.m_clothRest.data(), 1.0f + settings.m_activation), pairs.m_self};
 }
 
@@ -199,15 +200,9 @@ bool HostBackend::runPairs(const Scene& scene, const StepPairs& pairs, const Set
     result.m_volumeTests = m_traversal.volumeTests();
     result.m_broadMs = lap(stage);
     const std::uint32_t mode = std::uint32_t(settings.m_mode);
-    const ClothView cloth = {scene.m_clothStart.data(),
-                             scene.m_clothEnd.data(),
-                             cloths.triangles().data(),
-                             cloths.edges().data(),
-                             std::uint32_t(cloths.vertexCount()),
-                             std::uint32_t(cloths.triangles().size()),
-                             mode,
-                             1,
-                             nullptr};
+    const ClothView cloth =
+        clothView(scene.m_clothStart.data(), scene.m_clothEnd.data(), cloths.triangles().data(), cloths.edges().data(),
+                  std::uint32_t(cloths.vertexCount()), std::uint32_t(cloths.triangles().size()), mode, nullptr);
     const ObstacleView obstacle = obstacleView(scene);
     const MotionList motions = {pairs.m_motions.data(), std::uint32_t(pairs.m_motions.size())};
     const NarrowPhaseSettings narrow = {pairs.m_thickness, obstacles.meshCount(), 1.0f + settings.m_activation, mode,

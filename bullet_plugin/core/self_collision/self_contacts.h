@@ -35,7 +35,7 @@ float selfGrowth(float reach);
 struct SelfStep
 {
     const MeshPool& m_cloths;
-    SelfView m_view;  // with m_complete set
+    SelfView m_view;
     const SelfReach& m_reach;
 };
 

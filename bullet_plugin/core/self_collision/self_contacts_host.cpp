@@ -9,17 +9,13 @@ namespace drape
 {
 namespace
 {
-// A candidate's contact, in two goes as a device finds it.
+// Whether a candidate is a contact.
 bool decide(SelfView& view, const FeatureTest& test, std::uint32_t firstSlot, Contact* contact, SelfCounts& counts)
 {
-    view.m_cloth.m_complete = 0;
-    int found = selfContact(&view, test, firstSlot, contact);
-    if (found == DRAPE_UNDECIDED)
-    {
-        ++counts.m_swept;
-        view.m_cloth.m_complete = 1;
-        found = selfContact(&view, test, firstSlot, contact);
-    }
+    std::uint32_t searches = 0;
+    view.m_cloth.m_searches = &searches;
+    const int found = selfContact(&view, test, firstSlot, contact);
+    counts.m_swept += searches;
     return found == DRAPE_IS_CONTACT;
 }
 
