@@ -16,8 +16,8 @@ packages=(
   libcli11-dev libassimp-dev nlohmann-json3-dev libpng-dev libembree-dev libgmp-dev
   # benchmarks: peers, plots
   libfcl-dev libtbb-dev python3-matplotlib
-  # tests; fuzzing
-  libgtest-dev clang libclang-rt-dev
+  # tests; a simulated GPU; fuzzing
+  libgtest-dev oclgrind clang libclang-rt-dev
   # data: the bunny; unpacking
   glmark2-data xz-utils
 )

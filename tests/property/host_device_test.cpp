@@ -5,6 +5,7 @@
 #include "tests/support/backends.h"
 #include "tests/support/pipeline_driver.h"
 #include "tests/support/live_scene.h"
+#include "tests/support/self_cases.h"
 #include "tests/support/side.h"
 
 namespace drape::test
@@ -45,6 +46,43 @@ TEST_P(HostDeviceTest, RandomSequences)
     EXPECT_GT(contacts, 10000u);
     EXPECT_LT(quiet, 200u);
     EXPECT_FALSE(m_device->deviceReport().m_onHost);
+}
+
+// So small that a simulator of a device gets through it (tests/CMakeLists.txt). Each step twice: a device may go about one
+// in another way once it knows how much there is to do.
+TEST_P(HostDeviceTest, FewTriangles)
+{
+    ASSERT_TRUE(makeBoth());
+    std::size_t swept = 0, contacts = 0;
+    for (const StepCase& step : {soupCase(4, 24, true, 830), fallingCase("box", 3, 0.1f, 832)})
+    {
+        SCOPED_TRACE(step.trace());
+        const auto run = [&](Pipeline& pipeline)
+        {
+            std::vector<std::vector<Contact>> steps;
+            const MeshId cloth = addCloth(pipeline, step.m_cloth), obstacle = addObstacle(pipeline, step.m_obstacle);
+            for (int i = 0; i < 2; ++i)
+            {
+                pipeline.copyNodes(cloth, step.m_cloth.m_positions.data(), step.m_end.data());
+                pipeline.addPair(cloth, obstacle, step.m_thickness, 0.1f * step.m_thickness);
+                steps.push_back(runStep(pipeline));
+            }
+            return steps;
+        };
+        const std::vector<std::vector<Contact>> host = run(*m_host), device = run(*m_device);
+        for (std::size_t i = 0; i < host.size(); ++i)
+            EXPECT_TRUE(sameBytes(device[i], host[i])) << difference(device[i], host[i]);
+        contacts += device.back().size();
+        swept += m_device->statistics().m_sweptTests;
+    }
+    const SelfStepCase folded = foldedCase(4, 3, 0.1f, 833);
+    const std::vector<Contact> host = runSelfCase(*m_host, folded), device = runSelfCase(*m_device, folded);
+    EXPECT_TRUE(sameBytes(device, host)) << difference(device, host);
+    EXPECT_GT(device.size(), 5u);
+    EXPECT_GT(contacts, 10u);
+    EXPECT_GT(swept, 10u);
+    EXPECT_FALSE(m_device->deviceReport().m_onHost);
+    EXPECT_EQ(m_device->statistics().m_status, std::uint32_t(kStepGood)) << m_device->lastError().text();
 }
 
 TEST_P(HostDeviceTest, LargeStepGrowsBuffersAndAgrees)
