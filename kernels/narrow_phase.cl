@@ -106,6 +106,7 @@ typedef struct KindShare
     uint m_kind, m_first, m_stride;
 } KindShare;
 
+// There must be a group for each kind.
 static KindShare kindShare(void)
 {
     KindShare share;
@@ -113,7 +114,7 @@ static KindShare kindShare(void)
     share.m_kind = group % DRAPE_TEST_KINDS;
     share.m_first = get_local_id(0) * groups + group / DRAPE_TEST_KINDS;
     share.m_stride = get_local_size(0) * groups;
-    if (group >= groups * DRAPE_TEST_KINDS) share.m_kind = DRAPE_TEST_KINDS;  // takes none
+    if (group >= groups * DRAPE_TEST_KINDS) share.m_first = UINT_MAX;  // one too many
     return share;
 }
 
@@ -141,7 +142,7 @@ __kernel void narrowPhaseSwept(DRAPE_FEATURE_ARGUMENTS, __global const uint* res
     }
 }
 
-// Both in one launch, for tests so few that a work-item has one at most: each runs the continuous test where it needs it.
+// Both in one launch, for tests that are few: each runs the continuous test where it needs it.
 __kernel void narrowPhaseFew(DRAPE_FEATURE_ARGUMENTS)
 {
     DRAPE_FEATURE_VIEWS;

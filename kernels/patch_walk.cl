@@ -204,7 +204,7 @@ __kernel void patchWalk(DRAPE_WALK_ARGUMENTS, const uint packet)
 // Pairs that a group of patchCullPairs takes at a time, each with a lane to prepare it.
 #define DRAPE_CULL_PAIRS 32
 
-// The groups launched are this many times as many as a GPU runs together.
+// The groups launched (kPairGroupsPerUnit in patch_cull.cpp) are this many times as many as a GPU runs together.
 #define DRAPE_CULL_WAVES 4
 
 // A pair at hand. m_looker: the place of its cloth triangle's; m_near: the blocks of its patch to look at, see cullPatch().

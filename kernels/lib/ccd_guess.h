@@ -10,7 +10,7 @@ DRAPE_NAMESPACE_BEGIN
 // The widest box in u and v, as parts of the features, and in t, as a part of the step.
 #define DRAPE_CCD_GUESS_PLACE 0.125f
 #define DRAPE_CCD_GUESS_TIME 0.03125f
-// The narrowest in u and v, 2^-20: nearer to a feature's end the search decides.
+// The narrowest, 2^-20: nearer to a feature's end the search decides.
 #define DRAPE_CCD_GUESS_FINEST 9.5367432e-7f
 
 // Six times the signed volume of the features at time t.
@@ -81,7 +81,7 @@ DRAPE_FUNCTION int ccdGuessBox(const CcdMotion* m, float timeTolerance, CcdBox* 
     const float width = inside ? powerOfTwoBelow(drapeMin(margin, DRAPE_CCD_GUESS_PLACE)) : 1.0f;
     aim->m_low[0] = time;
     aim->m_width[0] = 0.0f;
-    box->m_width[0] = powerOfTwoBelow(drapeMin(timeTolerance, DRAPE_CCD_GUESS_TIME));
+    box->m_width[0] = powerOfTwoBelow(drapeMax(drapeMin(timeTolerance, DRAPE_CCD_GUESS_TIME), DRAPE_CCD_GUESS_FINEST));
     box->m_low[0] = drapeMin(intervalAbout(time, box->m_width[0]), 1.0f - box->m_width[0]);
     for (int i = 0; i < 2; ++i)
     {

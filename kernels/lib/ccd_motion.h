@@ -42,7 +42,7 @@ typedef struct CcdMotion
     int m_independent;                   // the skew views' directions span space; see ccdAim
 } CcdMotion;
 
-// A box [x, x + width] in each of t, u, v; corners and widths are dyadic and exact.
+// A box [x, x + width] in each of t, u, v; corners and widths are exact, and so is 1 - t at them.
 typedef struct CcdBox
 {
     float m_low[3];

@@ -48,8 +48,8 @@ TEST_P(HostDeviceTest, RandomSequences)
     EXPECT_FALSE(m_device->deviceReport().m_onHost);
 }
 
-// So small that a simulator of a device gets through it (tests/CMakeLists.txt). Each step twice: a device may go about one
-// in another way once it knows how much there is to do.
+// So small that a simulator of a device gets through it (tests/CMakeLists.txt). Each step twice: a device may go about
+// one in another way once it knows how much there is to do.
 TEST_P(HostDeviceTest, FewTriangles)
 {
     ASSERT_TRUE(makeBoth());

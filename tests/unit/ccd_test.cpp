@@ -251,6 +251,18 @@ Motion passingMotion(Random& random, float time, float u, float v, float turn)
     return motion;
 }
 
+// Where a path leads in time, from the begin of the box that is `width` wide.
+double pathOffset(const CcdPath& path, double width)
+{
+    double offset = 0;
+    for (int i = 0; i < path.m_depth; ++i)
+    {
+        width *= 0.5;
+        if (path.m_upper >> i & 1) offset += width;
+    }
+    return offset;
+}
+
 TEST(Ccd, mostMeetingsAreProvedWithoutASearch)
 {
     Random random(75);
@@ -283,15 +295,61 @@ TEST(Ccd, mostMissesBesideAnySideTakeFewLooks)
     for (int i = 0; i < cases; ++i)
     {
         const float beside = random.uniform(0.01f, 0.05f), along = random.uniform(0.1f, 0.9f);
-        const float u = i % 3 == 0 ? -beside : along, v = i % 3 == 1   ? -beside
-                                                          : i % 3 == 2 ? 1 + beside - along
-                                                                       : along;
+        const float places[3][2] = {{-beside, along}, {along, -beside}, {along, 1 + beside - along}};
+        const float u = places[i % 3][0], v = places[i % 3][1];
         const CcdResult result = run(passingMotion(random, random.uniform(0.1f, 0.9f), u, v, 0.03f));
         hits += int(result.m_hit);
         searched += result.m_boxes > 7;
     }
     EXPECT_LT(hits, cases / 20) << "paths that lean may still meet the face";
     EXPECT_LT(searched, cases / 20);
+}
+
+// Halving in time from any piece of the step and coming back gives the piece again, bit for bit.
+TEST(Ccd, halvesOfAPieceOfTheStepAreThePiece)
+{
+    Random random(77);
+    for (int i = 0; i < 2000; ++i)
+    {
+        const float grain = 1.0f / float(1 << (4 + random.below(17)));
+        const float low = grain * float(random.below(std::uint32_t(1 / grain)));
+        const CcdBox piece = {{low, 0, 0}, {1 - low, 1, 1}};
+        CcdBox box = piece;
+        CcdPath path = {0, {0, 0}, 0};
+        int halvings = 0;
+        for (; ccdHalvesInTime(&box) && path.m_depth < 40; ++halvings)
+        {
+            ccdDescend(&box, &path, 0);
+            if (random.below(2) == 1)
+            {
+                ASSERT_TRUE(ccdNext(&box, &path));
+            }
+            ASSERT_EQ(double(box.m_low[0]), double(piece.m_low[0]) + pathOffset(path, piece.m_width[0]))
+                << "case " << i;
+            ASSERT_EQ(1 - double(box.m_low[0]), double(1 - box.m_low[0]));
+        }
+        EXPECT_GE(halvings, 3) << low;
+        while (ccdNext(&box, &path))
+            while (ccdHalvesInTime(&box) && path.m_depth < 12)
+                ccdDescend(&box, &path, 0);
+        ASSERT_EQ(box.m_low[0], piece.m_low[0]) << "seed 77, case " << i;
+        ASSERT_EQ(box.m_width[0], piece.m_width[0]) << "seed 77, case " << i;
+    }
+}
+
+TEST(Ccd, toleranceOfNothingEnds)
+{
+    for (float tolerance : {0.0f, -1.0f, 1e-45f, 1e-12f, 5e-10f})
+    {
+        CcdSettings settings = ccdDefaults();
+        settings.m_timeTolerance = tolerance;
+        const CcdResult result = run(fallingVertex(), settings);
+        EXPECT_TRUE(result.m_hit) << tolerance;
+        EXPECT_LE(result.m_time, 0.25f) << tolerance;
+        EXPECT_GE(result.m_time, 0.2499f) << tolerance;
+        settings.m_boxLimit = 20;
+        EXPECT_TRUE(run(fallingEdge(), settings).m_hit) << tolerance;
+    }
 }
 
 TEST(Ccd, unitsOfLengthThatArePowersOfTwoChangeNoBit)

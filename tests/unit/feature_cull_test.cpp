@@ -39,7 +39,9 @@ public:
         : m_cloth(cloth.cloth()), m_obstacle(obstacle.obstacle()), m_spreads(spreads), m_pairReach(reach)
     {
         m_cloth.m_mode = mode;
+        m_cloth.m_searches = &m_searches;
     }
+    PairOfTriangles(const PairOfTriangles&) = delete;  // m_cloth points here
 
     void choose(Candidate pair)
     {
@@ -103,6 +105,7 @@ public:
 private:
     Vec3 corner(int i) const { return vec3Load(m_obstacle.m_positions, m_triangle->m_vertices[i]); }
 
+    std::uint32_t m_searches = 0;
     ClothView m_cloth;
     ObstacleView m_obstacle;
     const std::vector<float>& m_spreads;

@@ -16,7 +16,7 @@ constexpr std::size_t kManyTriangles = 1 << 15;
 constexpr std::size_t kWalkTurns = 4;
 constexpr std::size_t kWalkTurnsAlone = 2;
 constexpr std::size_t kCullTurns = 4;
-// Groups that cull pairs, some times as many as a compute unit holds, so that uneven ones even out.
+// Groups that cull pairs, DRAPE_CULL_WAVES times as many as a compute unit holds, so that uneven ones even out.
 constexpr std::size_t kPairGroupsPerUnit = 32;
 constexpr std::size_t kFirstPairs = 1 << 16;
 }  // namespace
