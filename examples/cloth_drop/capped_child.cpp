@@ -22,6 +22,22 @@ namespace
 using Clock = std::chrono::steady_clock;
 using OnLine = std::function<void(int, const std::string&)>;
 
+constexpr char kStep[] = "step ", kStepped[] = "stepped ";
+
+// A system's processes share this clock. ns.
+std::string withTime(const char* word)
+{
+    return word + std::to_string(std::chrono::nanoseconds(Clock::now().time_since_epoch()).count());
+}
+
+bool readTime(const std::string& line, const char* word, Clock::time_point& time)
+{
+    const std::size_t length = std::strlen(word);
+    if (line.compare(0, length, word) != 0) return false;
+    time = Clock::time_point(std::chrono::nanoseconds(std::stoll(line.substr(length))));
+    return true;
+}
+
 // Starts the child with its standard output in a pipe; returns the reading end, or −1 with errno.
 int spawnChild(std::vector<std::string>& arguments, pid_t& child)
 {
@@ -43,7 +59,7 @@ int spawnChild(std::vector<std::string>& arguments, pid_t& child)
     return -1;
 }
 
-// The clock of the cap runs between "step" and "stepped", or from the first "step" on.
+// The clock of the cap runs between a step's two lines, or from the first step's on.
 class ChildReader
 {
 public:
@@ -55,57 +71,66 @@ public:
         char buffer[65536];
         for (;;)
         {
-            const double left = m_cap.m_seconds - m_spent - (m_running ? secondsSince(m_start) : 0);
-            if (m_running && left <= 0) return false;
+            const double left = m_running ? secondsLeft(Clock::now()) : 0;
             pollfd waiting = {m_pipe, POLLIN, 0};
             // Not running: loading or measuring, which always ends.
             const int ready = ::poll(&waiting, 1, m_running ? waitMs(left) : -1);
             if (ready < 0 && errno != EINTR) return true;
+            if (ready == 0 && m_running && left <= 0) return false;
             if (ready <= 0) continue;
             const ssize_t size = ::read(m_pipe, buffer, sizeof buffer);
             if (size < 0 && errno == EINTR) continue;
             if (size <= 0) return true;
             m_text.append(buffer, static_cast<std::size_t>(size));
-            takeLines();
+            if (!takeLines()) return false;
         }
     }
 
     int step() const { return m_step; }
 
 private:
-    static double secondsSince(Clock::time_point start)
+    // In a step, at `time`.
+    double secondsLeft(Clock::time_point time) const
     {
-        return std::chrono::duration<double>(Clock::now() - start).count();
+        return m_cap.m_seconds - m_spent - std::chrono::duration<double>(time - m_start).count();
     }
 
-    static int waitMs(double seconds) { return static_cast<int>(std::min(seconds, 1e6) * 1000) + 1; }
+    static int waitMs(double seconds)
+    {
+        return seconds > 0 ? static_cast<int>(std::min(seconds, 1e6) * 1000) + 1 : 0;  // 0: what is there already
+    }
 
-    void takeLines()
+    // False: the cap.
+    bool takeLines()
     {
         std::size_t start = 0;
         for (std::size_t end; (end = m_text.find('\n', start)) != std::string::npos; start = end + 1)
-            takeLine(m_text.substr(start, end - start));
+            if (!takeLine(m_text.substr(start, end - start))) return false;
         m_text.erase(0, start);
+        return true;
     }
 
-    void takeLine(const std::string& line)
+    bool takeLine(const std::string& line)
     {
-        if (line == "step")
+        Clock::time_point time;
+        if (readTime(line, kStep, time))
         {
+            if (m_running && secondsLeft(time) <= 0) return false;
             ++m_step;
-            if (m_running) return;
+            if (!m_running) m_start = time;
             m_running = true;
-            m_start = Clock::now();
-            return;
         }
-        if (line == "stepped")
+        else if (readTime(line, kStepped, time))
         {
-            if (m_cap.m_measuring) return;
+            const double left = secondsLeft(time);
+            if (left <= 0) return false;
+            if (m_cap.m_measuring) return true;
             m_running = false;
-            m_spent += secondsSince(m_start);
-            return;
+            m_spent = m_cap.m_seconds - left;
         }
-        m_onLine(m_step, line);
+        else
+            m_onLine(m_step, line);
+        return true;
     }
 
     int m_pipe;
@@ -118,6 +143,16 @@ private:
     int m_step = 0;
 };
 }  // namespace
+
+std::string stepLine()
+{
+    return withTime(kStep);
+}
+
+std::string steppedLine()
+{
+    return withTime(kStepped);
+}
 
 ChildEnd runCappedChild(std::vector<std::string> arguments, const ChildCap& cap, const OnLine& onLine)
 {

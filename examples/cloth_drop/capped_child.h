@@ -1,9 +1,10 @@
 // Runs this program again as a child process whose steps may take only so long together, and follows what it writes.
 //
-// Why: Bullet's built-in collision can stall for minutes in one step. The child writes the line "step" to its standard
-// output before every step and "stepped" after it (see step_stream.h); the cap counts the time between them only, or
-// all since the first step began, but no loading. All other lines go to the caller. The child is always gone when the
-// function returns.
+// Why: Bullet's built-in collision can stall for minutes in one step. The child writes a line to its standard output
+// before every step and one after it (see step_stream.h), each with the time; the cap counts the time between them only,
+// or all since the first step began, but no loading. All other lines go to the caller, up to the first of these two whose
+// time is beyond the cap: what is kept does not depend on when this process gets to read. The child is always gone when
+// the function returns.
 #pragma once
 
 #include <functional>
@@ -12,6 +13,10 @@
 
 namespace drape
 {
+// In the child: the lines before and after a step, at the time of the call.
+std::string stepLine();
+std::string steppedLine();
+
 struct ChildCap
 {
     double m_seconds;

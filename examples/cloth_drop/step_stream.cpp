@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "examples/cloth_drop/capped_child.h"
 #include "examples/cloth_drop/options.h"
 #include "examples/cloth_drop/runner.h"
 
@@ -56,8 +57,8 @@ void streamRun(Simulation& simulation, const DropScene& scene, int steps, const 
         good = good && std::fputs((line + "\n").c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
         if (!good) std::_Exit(kExitFailed);  // the parent is gone
     };
-    hooks.m_beforeStep = [&](int) { send("step"); };
-    hooks.m_stepped = [&](int) { send("stepped"); };
+    hooks.m_beforeStep = [&](int) { send(stepLine()); };
+    hooks.m_stepped = [&](int) { send(steppedLine()); };
     hooks.m_afterStep = [&](int, const StepRecord& step) { send(asLine(step).dump()); };
     RunRecord record;
     TriangleMesh lastFrame;

@@ -11,7 +11,7 @@ namespace drape
 // In the parent: what a line says. Throws what the JSON library throws.
 StepRecord stepFromLine(const std::string& line);
 
-// In the child: runs, and writes "step", "stepped" and the measured step as a line of JSON; at the end what lastLine
+// In the child: runs, and writes stepLine, steppedLine and the measured step as a line of JSON; at the end what lastLine
 // returns, where it is given. Does not return: Bullet's own clean-up could take minutes.
 [[noreturn]] void streamRun(Simulation& simulation, const DropScene& scene, int steps,
                             const std::function<std::string()>& lastLine = {});
