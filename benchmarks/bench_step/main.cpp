@@ -176,5 +176,5 @@ int run(int argc, char** argv)
 
 int main(int argc, char** argv)
 {
-    return drape::bench::guarded("bench_step", [&] { return drape::bench::run(argc, argv); });
+    return drape::runGuarded("bench_step", [&] { return drape::bench::run(argc, argv); });
 }

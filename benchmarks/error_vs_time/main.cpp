@@ -60,6 +60,7 @@ int list(const ErrorOptions& options)
 
 int main(int argc, char** argv)
 {
+    using namespace drape;
     using namespace drape::bench;
     CLI::App app("What a frame costs against how wrong the cloth is, and a query against how wrong its answer is.",
                  kProgram);
@@ -80,10 +81,10 @@ int main(int argc, char** argv)
     app.add_option("--child-trial", options.m_childTrial)->group("");
     int exitCode = kExitGood;
     if (!parseArguments(app, argc, argv, exitCode)) return exitCode;
-    return guarded(kProgram,
-                   [&]
-                   {
-                       if (options.m_list) return list(options);
-                       return options.m_childScene.empty() ? measure(options) : runChild(options);
-                   });
+    return runGuarded(kProgram,
+                      [&]
+                      {
+                          if (options.m_list) return list(options);
+                          return options.m_childScene.empty() ? measure(options) : runChild(options);
+                      });
 }

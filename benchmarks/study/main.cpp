@@ -121,5 +121,5 @@ int run(int argc, char** argv)
 
 int main(int argc, char** argv)
 {
-    return drape::bench::guarded("study", [&] { return drape::bench::run(argc, argv); });
+    return drape::runGuarded("study", [&] { return drape::bench::run(argc, argv); });
 }

@@ -39,39 +39,8 @@ void addCommonOptions(CLI::App& app, CommonOptions& options)
 
 bool parseArguments(CLI::App& app, int argc, const char* const* argv, int& exitCode)
 {
-    try
-    {
-        app.parse(argc, argv);
-        return true;
-    }
-    catch (const CLI::CallForHelp&)
-    {
-        std::cout << app.help();
-        exitCode = kExitGood;
-    }
-    catch (const CLI::ParseError& error)
-    {
-        exitCode = fail(app.get_name(), kExitBadInput, error.what());
-    }
-    return false;
-}
-
-int fail(const std::string& program, int exitCode, const std::string& reason)
-{
-    std::cerr << program << ": " << reason << std::endl;
-    return exitCode;
-}
-
-int guarded(const std::string& program, const std::function<int()>& body)
-{
-    try
-    {
-        return body();
-    }
-    catch (const std::exception& exception)
-    {
-        return fail(program, kExitFailed, exception.what());
-    }
+    return drape::parseArguments(
+        app, argc, argv, [] { return std::string(); }, exitCode);
 }
 
 int finishTable(const std::string& program, const Table& table, const CommonOptions& options)

@@ -4,21 +4,12 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "benchmarks/support/table.h"
 #include "drape/settings.h"
+#include "tools/common/arguments.h"
 
 namespace drape::bench
 {
-enum ExitCode
-{
-    kExitGood = 0,
-    kExitFailed = 1,    // a measurement could not be made, or a result not be written
-    kExitBadInput = 2,  // arguments, files or device
-    kExitOtherHash = 3  // a row is void
-};
-
 struct CommonOptions
 {
     std::string m_device;
@@ -37,14 +28,8 @@ struct CommonOptions
 
 void addCommonOptions(CLI::App& app, CommonOptions& options);
 
-// True: go on. False: leave with `exitCode`; help or one line on standard error has been printed.
+// As parseArguments() of all programs, where no arguments exclude each other.
 bool parseArguments(CLI::App& app, int argc, const char* const* argv, int& exitCode);
-
-// Prints "<program>: <reason>" to standard error and returns the code.
-int fail(const std::string& program, int exitCode, const std::string& reason);
-
-// Runs body; an exception becomes a line on standard error and kExitFailed.
-int guarded(const std::string& program, const std::function<int()>& body);
 
 // Writes the table where the options say (or a CSV to standard output where they name nothing) and returns the exit
 // code: kExitOtherHash when a row is void, else kExitFailed when something was left out that could not be measured.

@@ -53,7 +53,7 @@ bool parseArguments(CLI::App& app, int argc, const char* const* argv, const std:
         problem = error.what();
     }
     if (problem.empty()) return true;
-    exitCode = fail(app.get_name().c_str(), kExitBadInput, problem);
+    exitCode = fail(app.get_name(), kExitBadInput, problem);
     return false;
 }
 }  // namespace drape

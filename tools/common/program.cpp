@@ -8,16 +8,19 @@
 
 #include <unistd.h>
 
+#include "tools/common/pocl_threads.h"
+
 namespace drape
 {
-int fail(const char* program, int exitCode, const std::string& reason)
+int fail(const std::string& program, int exitCode, const std::string& reason)
 {
     std::cerr << program << ": " << reason << std::endl;
     return exitCode;
 }
 
-int runGuarded(const char* program, const std::function<int()>& work)
+int runGuarded(const std::string& program, const std::function<int()>& work)
 {
+    keepPoclThreadsApart();
     try
     {
         return work();

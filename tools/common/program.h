@@ -1,4 +1,4 @@
-// How Drape's programs end: exit codes, one line on standard error, nothing thrown out of main.
+// How Drape's programs run and end: exit codes, one line on standard error, nothing thrown out of main.
 #pragma once
 
 #include <functional>
@@ -15,10 +15,10 @@ enum ExitCode
 };
 
 // Prints "program: reason" and returns the code.
-int fail(const char* program, int exitCode, const std::string& reason);
+int fail(const std::string& program, int exitCode, const std::string& reason);
 
-// Runs a program's work; what it throws becomes a failure.
-int runGuarded(const char* program, const std::function<int()>& work);
+// Runs a program's work, PoCL's threads kept apart (pocl_threads.h); what it throws becomes a failure.
+int runGuarded(const std::string& program, const std::function<int()>& work);
 
 // Flushes standard output. False, with a line in `error` unless there is one, when it could not be written.
 bool flushOutput(std::string& error);
