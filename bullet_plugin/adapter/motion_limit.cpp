@@ -92,14 +92,12 @@ bool MotionLimit::findRestless(const btSoftBody& body)
 {
     const int count = std::min(body.m_nodes.size(), static_cast<int>(m_paths.m_end.size()));
     m_restless.clear();
-    m_isRestless.assign(m_paths.m_end.size(), 0);
     for (int i = 0; i < count; ++i)
     {
         const std::size_t at = static_cast<std::size_t>(i);
         const btScalar off2 = (body.m_nodes[i].m_x - m_paths.m_end[at]).length2();
         if (off2 <= m_free * m_free || !(m_paths.m_inverseMass[at] > 0)) continue;
         m_restless.push_back(Restless{i, Allowance{SIMD_INFINITY, SIMD_INFINITY}});
-        m_isRestless[at] = 1;
     }
     return !m_restless.empty();
 }
@@ -121,20 +119,27 @@ void MotionLimit::addPassed(const btSoftBody& body, int a, int b, int c)
     m_passed.push_back(passed);
 }
 
-// Of restless nodes, and of triangles that have one.
-void MotionLimit::boxPassed(const btSoftBody& body)
+// Of restless nodes that count, and of triangles that have one: where obstacles rest only those without contacts do.
+void MotionLimit::boxPassed(const btSoftBody& body, bool withContacts)
 {
     m_passed.clear();
     m_allLow.setValue(SIMD_INFINITY, SIMD_INFINITY, SIMD_INFINITY);
     m_allHigh = -m_allLow;
+    m_counts.assign(m_paths.m_end.size(), 0);
     for (const Restless& restless : m_restless)
+    {
+        const std::size_t at = static_cast<std::size_t>(restless.m_node);
+        if (!withContacts && m_hasContact[at]) continue;
+        m_counts[at] = 1;
         addPassed(body, restless.m_node, restless.m_node, restless.m_node);
+    }
+    if (m_passed.empty()) return;
     const std::vector<std::int32_t>& nodes = *m_triangles;
     for (std::size_t i = 0; i + 2 < nodes.size(); i += 3)
     {
         bool any = false;
         for (int k = 0; k < 3; ++k)
-            any = any || m_isRestless[static_cast<std::size_t>(nodes[i + static_cast<std::size_t>(k)])] != 0;
+            any = any || m_counts[static_cast<std::size_t>(nodes[i + static_cast<std::size_t>(k)])] != 0;
         const bool there = std::max(nodes[i], std::max(nodes[i + 1], nodes[i + 2])) < body.m_nodes.size();
         if (any && there) addPassed(body, nodes[i], nodes[i + 1], nodes[i + 2]);
     }
@@ -204,12 +209,14 @@ void MotionLimit::apply(btSoftBody& body)
 {
     if (!findRestless(body)) return;
     const btScalar velocityScale = body.m_sst.isdt * (1 - body.m_cfg.kDP);
-    boxPassed(body);
+    boxPassed(body, false);
     bool moved = applyResting(body, velocityScale);
+    bool boxed = false;
     for (const Region& region : m_regions)
     {
         if (!region.m_moves) continue;
-        if (moved) boxPassed(body);
+        if (moved || !boxed) boxPassed(body, true);
+        boxed = true;
         moved = applyMoving(body, region, velocityScale);
     }
 }

@@ -86,7 +86,7 @@ private:
     };
 
     bool findRestless(const btSoftBody& body);
-    void boxPassed(const btSoftBody& body);
+    void boxPassed(const btSoftBody& body, bool withContacts);
     void addPassed(const btSoftBody& body, int a, int b, int c);
     // Marks nodes near the region; false, with no mark changed, where there are none.
     bool markNear(const Region& region);
@@ -103,7 +103,7 @@ private:
     const std::vector<std::int32_t>* m_triangles = nullptr;
     // Of one apply(), kept for their memory.
     std::vector<Restless> m_restless;
-    std::vector<unsigned char> m_isRestless, m_isNear;  // by node; near the region looked at last
+    std::vector<unsigned char> m_counts, m_isNear;  // by node: what it passed is boxed; near the region looked at last
     std::vector<Passed> m_passed;
     btVector3 m_allLow, m_allHigh;  // around all of them
 };
