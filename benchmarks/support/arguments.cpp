@@ -1,7 +1,5 @@
 #include "benchmarks/support/arguments.h"
 
-#include <iostream>
-
 #include "benchmarks/support/machine.h"
 
 namespace drape::bench

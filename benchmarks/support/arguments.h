@@ -28,7 +28,7 @@ struct CommonOptions
 
 void addCommonOptions(CLI::App& app, CommonOptions& options);
 
-// As parseArguments() of all programs, where no arguments exclude each other.
+// As parseArguments() of all programs, with no check of the whole but CLI11's.
 bool parseArguments(CLI::App& app, int argc, const char* const* argv, int& exitCode);
 
 // Writes the table where the options say (or a CSV to standard output where they name nothing) and returns the exit

@@ -162,6 +162,9 @@ bool MotionLimit::markNear(const Region& region)
 
 bool MotionLimit::applyResting(btSoftBody& body, btScalar velocityScale)
 {
+    const auto rests = [](const Region& region) { return !region.m_moves; };
+    if (std::none_of(m_regions.begin(), m_regions.end(), rests)) return false;
+    boxPassed(body, false);
     for (const Region& region : m_regions)
     {
         if (region.m_moves) continue;
@@ -209,7 +212,6 @@ void MotionLimit::apply(btSoftBody& body)
 {
     if (!findRestless(body)) return;
     const btScalar velocityScale = body.m_sst.isdt * (1 - body.m_cfg.kDP);
-    boxPassed(body, false);
     bool moved = applyResting(body, velocityScale);
     bool boxed = false;
     for (const Region& region : m_regions)

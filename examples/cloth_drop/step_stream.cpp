@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "examples/cloth_drop/capped_child.h"
+#include "examples/cloth_drop/capped_lines.h"
 #include "examples/cloth_drop/options.h"
 #include "examples/cloth_drop/runner.h"
 
@@ -59,7 +59,11 @@ void streamRun(Simulation& simulation, const DropScene& scene, int steps, const 
     };
     hooks.m_beforeStep = [&](int) { send(stepLine()); };
     hooks.m_stepped = [&](int) { send(steppedLine()); };
-    hooks.m_afterStep = [&](int, const StepRecord& step) { send(asLine(step).dump()); };
+    hooks.m_afterStep = [&](int, const StepRecord& step)
+    {
+        send(measuredLine());
+        send(asLine(step).dump());
+    };
     RunRecord record;
     TriangleMesh lastFrame;
     std::string error;

@@ -1,4 +1,4 @@
-// A run in a child process: its steps as lines of text that the parent reads back (see capped_child.h).
+// A run in a child process: its steps as lines of text that the parent reads back (see capped_lines.h).
 #pragma once
 
 #include <functional>
@@ -11,8 +11,8 @@ namespace drape
 // In the parent: what a line says. Throws what the JSON library throws.
 StepRecord stepFromLine(const std::string& line);
 
-// In the child: runs, and writes stepLine, steppedLine and the measured step as a line of JSON; at the end what lastLine
-// returns, where it is given. Does not return: Bullet's own clean-up could take minutes.
+// In the child: runs, and writes a step's lines (capped_lines.h) and what was measured as a line of JSON; at the end
+// what lastLine returns, where it is given. Does not return: Bullet's own clean-up could take minutes.
 [[noreturn]] void streamRun(Simulation& simulation, const DropScene& scene, int steps,
                             const std::function<std::string()>& lastLine = {});
 }  // namespace drape

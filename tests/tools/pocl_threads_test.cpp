@@ -63,6 +63,14 @@ TEST_F(PoclThreads, areLeftAloneWhereACoreIsMissing)
     EXPECT_EQ(std::getenv(kVariable), nullptr);
 }
 
+TEST_F(PoclThreads, areLeftAloneWhereTheirNumberIsSet)
+{
+    ::setenv("POCL_MAX_PTHREAD_COUNT", "64", 1);
+    keepPoclThreadsApart();
+    ::unsetenv("POCL_MAX_PTHREAD_COUNT");
+    EXPECT_EQ(std::getenv(kVariable), nullptr);
+}
+
 TEST_F(PoclThreads, areTheUsersToDecide)
 {
     ::setenv(kVariable, "0", 1);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -210,6 +211,20 @@ TEST_F(CrossoverCacheTest, OtherDevicesUnitsAndSettingsHaveTheirOwn)
     }
     m_settings.m_mode = ContactMode::Discrete;
     EXPECT_FALSE(loads(cache()));
+}
+
+TEST_F(CrossoverCacheTest, ProcessorsWhoseThreadsKeepToTheirCoresHaveTheirOwn)
+{
+    ::setenv("POCL_AFFINITY", "1", 1);
+    cache().store(m_stored);
+    EXPECT_TRUE(loads(cache()));
+    ::unsetenv("POCL_AFFINITY");
+    EXPECT_FALSE(loads(cache()));
+    m_device.m_isGpu = true;
+    cache().store(m_stored);
+    ::setenv("POCL_AFFINITY", "1", 1);
+    EXPECT_TRUE(loads(cache()));
+    ::unsetenv("POCL_AFFINITY");
 }
 
 TEST_F(CrossoverCacheTest, EveryTruncationAndEveryFlippedByteReadsAsNotThere)

@@ -9,9 +9,9 @@ namespace drape
 enum ExitCode
 {
     kExitGood = 0,
-    kExitFailed = 1,    // the run failed, or something could not be written
+    kExitFailed = 1,    // the run or a measurement failed, or something could not be written
     kExitBadInput = 2,  // arguments, files or device
-    kExitOtherHash = 3  // --validate-hash differs
+    kExitOtherHash = 3  // a hash is not the one to be: --validate-hash, or a row of a benchmark
 };
 
 // Prints "program: reason" and returns the code.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <locale>
@@ -48,6 +49,13 @@ std::string kernelsHash()
     return hexText(hash);
 }
 
+// Where its threads run decides how long a step takes PoCL.
+std::string threadsOf(const DeviceInfo& device)
+{
+    const char* const variable = device.m_isGpu ? nullptr : std::getenv("POCL_AFFINITY");
+    return variable ? " affinity " + oneLine(variable) : std::string();
+}
+
 std::string hashLine(const std::string& text)
 {
     return "hash " + hexText(cacheHash(text.data(), text.size())) + "\n";
@@ -83,8 +91,9 @@ CrossoverCache::CrossoverCache(const Settings& settings, const DeviceInfo& devic
 {
     std::ostringstream machine = plainStream(), state = plainStream();
     machine << "device " << oneLine(device.m_name) << "\nplatform " << oneLine(device.m_platform) << "\nunits "
-            << computeUnits << "\nhost " << oneLine(hostName()) << "\nsettings mode " << int(settings.m_mode)
-            << " activation " << settings.m_activation << " reduce " << settings.m_reduceContacts << "\n";
+            << computeUnits << threadsOf(device) << "\nhost " << oneLine(hostName()) << "\nsettings mode "
+            << int(settings.m_mode) << " activation " << settings.m_activation << " reduce "
+            << settings.m_reduceContacts << "\n";
     state << "driver " << oneLine(device.m_driver) << "\ndrape " << DRAPE_VERSION << " kernels " << kernelsHash()
           << " host " << kHostRevision << "\n";
     m_machine = machine.str();
