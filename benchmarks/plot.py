@@ -39,7 +39,7 @@ def sweep_plot(rows, sweep, folder):
     mine = select(rows, sweep=sweep, stage="step")
     if not mine:
         return
-    figure, axes = plt.subplots(figsize=(7, 4.5))
+    figure, axes = plt.subplots(figsize=(9, 4.5))
     for method, (name, colour, dash) in STYLES.items():
         points = sorted((size(row), row["min_ms"], row["median_ms"], row["p95_ms"]) for row in select(mine, method=method))
         if not points:
@@ -49,7 +49,7 @@ def sweep_plot(rows, sweep, folder):
         axes.fill_between(x, low, high, color=colour, alpha=0.12, linewidth=0)
     axes.set(xscale="log", yscale="log", xlabel=label, ylabel="whole step, host to host, ms (median; least to p95)")
     axes.grid(True, which="both", alpha=0.25)
-    axes.legend(fontsize=7)
+    study_plots.legend_beside(axes)
     save(figure, folder, "step_" + sweep)
 
 

@@ -20,6 +20,11 @@ def line_styles(keys):
     return styles
 
 
+def legend_beside(axes):
+    """For lines that leave no corner free."""
+    axes.legend(fontsize=7, loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0)
+
+
 def descent(rows, scene, folder, save):
     """Figures 4.6 and 4.8 (traversal) over a cloth's descent, and its narrow phase."""
     mine = select(rows, part="traversal", model=scene)
@@ -27,7 +32,7 @@ def descent(rows, scene, folder, save):
         return
     variants = in_order(mine, "variant")
     styles = line_styles([("host" if variant.startswith("host") else "opencl", variant) for variant in variants])
-    figure, (by_overlaps, by_step, narrow) = plt.subplots(1, 3, figsize=(16, 4.5))
+    figure, (narrow, by_overlaps, by_step) = plt.subplots(1, 3, figsize=(17, 4.5))
     for variant in variants:
         steps = sorted(select(mine, variant=variant), key=lambda row: row["step"])
         # The first step of a pass follows the last: no step of the descent.
@@ -47,7 +52,8 @@ def descent(rows, scene, folder, save):
                title="narrow phase against pairs")
     for axes in (by_overlaps, by_step, narrow):
         axes.grid(True, alpha=0.25)
-        axes.legend(fontsize=7)
+    legend_beside(by_step)  # of both
+    narrow.legend(fontsize=7)
     save(figure, folder, "study_descent_" + scene)
 
 
@@ -122,7 +128,7 @@ def by_model(rows, part, title, folder, save):
     axes.set(xscale="log", yscale="log", xlabel="triangles", ylabel="ms (kernel time; wall time on CPU threads)",
              title=title)
     axes.grid(True, which="both", alpha=0.25)
-    axes.legend(fontsize=6, ncol=2)
+    legend_beside(axes)
     save(figure, folder, "study_" + part)
 
 
