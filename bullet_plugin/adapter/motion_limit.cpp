@@ -119,18 +119,19 @@ void MotionLimit::addPassed(const btSoftBody& body, int a, int b, int c)
     m_passed.push_back(passed);
 }
 
-// Of restless nodes that count, and of triangles that have one: where obstacles rest only those without contacts do.
+// Of restless nodes, and of triangles that have one; where obstacles rest, those without contacts are all that is
+// asked.
 void MotionLimit::boxPassed(const btSoftBody& body, bool withContacts)
 {
     m_passed.clear();
     m_allLow.setValue(SIMD_INFINITY, SIMD_INFINITY, SIMD_INFINITY);
     m_allHigh = -m_allLow;
-    m_counts.assign(m_paths.m_end.size(), 0);
+    m_isBoxed.assign(m_paths.m_end.size(), 0);
     for (const Restless& restless : m_restless)
     {
         const std::size_t at = static_cast<std::size_t>(restless.m_node);
         if (!withContacts && m_hasContact[at]) continue;
-        m_counts[at] = 1;
+        m_isBoxed[at] = 1;
         addPassed(body, restless.m_node, restless.m_node, restless.m_node);
     }
     if (m_passed.empty()) return;
@@ -139,7 +140,7 @@ void MotionLimit::boxPassed(const btSoftBody& body, bool withContacts)
     {
         bool any = false;
         for (int k = 0; k < 3; ++k)
-            any = any || m_counts[static_cast<std::size_t>(nodes[i + static_cast<std::size_t>(k)])] != 0;
+            any = any || m_isBoxed[static_cast<std::size_t>(nodes[i + static_cast<std::size_t>(k)])] != 0;
         const bool there = std::max(nodes[i], std::max(nodes[i + 1], nodes[i + 2])) < body.m_nodes.size();
         if (any && there) addPassed(body, nodes[i], nodes[i + 1], nodes[i + 2]);
     }
@@ -160,10 +161,10 @@ bool MotionLimit::markNear(const Region& region)
     return any;
 }
 
-bool MotionLimit::applyResting(btSoftBody& body, btScalar velocityScale)
+void MotionLimit::applyResting(btSoftBody& body, btScalar velocityScale)
 {
     const auto rests = [](const Region& region) { return !region.m_moves; };
-    if (std::none_of(m_regions.begin(), m_regions.end(), rests)) return false;
+    if (std::none_of(m_regions.begin(), m_regions.end(), rests)) return;
     boxPassed(body, false);
     for (const Region& region : m_regions)
     {
@@ -179,17 +180,14 @@ bool MotionLimit::applyResting(btSoftBody& body, btScalar velocityScale)
             restless.m_allowed.m_end = std::min(restless.m_allowed.m_end, own.m_end);
         }
     }
-    bool moved = false;
     for (const Restless& restless : m_restless)
     {
         const Allowance& allowed = restless.m_allowed;
         if (allowed.m_end == SIMD_INFINITY) continue;
         const std::size_t at = static_cast<std::size_t>(restless.m_node);
-        moved = keepNear(body.m_nodes[restless.m_node], m_paths.m_start[at], m_paths.m_end[at], allowed.m_start,
-                         allowed.m_end, velocityScale) ||
-                moved;
+        keepNear(body.m_nodes[restless.m_node], m_paths.m_start[at], m_paths.m_end[at], allowed.m_start, allowed.m_end,
+                 velocityScale);
     }
-    return moved;
 }
 
 bool MotionLimit::applyMoving(btSoftBody& body, const Region& region, btScalar velocityScale)
@@ -212,14 +210,13 @@ void MotionLimit::apply(btSoftBody& body)
 {
     if (!findRestless(body)) return;
     const btScalar velocityScale = body.m_sst.isdt * (1 - body.m_cfg.kDP);
-    bool moved = applyResting(body, velocityScale);
+    applyResting(body, velocityScale);
     bool boxed = false;
     for (const Region& region : m_regions)
     {
         if (!region.m_moves) continue;
-        if (moved || !boxed) boxPassed(body, true);
-        boxed = true;
-        moved = applyMoving(body, region, velocityScale);
+        if (!boxed) boxPassed(body, true);
+        boxed = !applyMoving(body, region, velocityScale);
     }
 }
 }  // namespace drape

@@ -91,8 +91,8 @@ private:
     // Marks nodes near the region; false, with no mark changed, where there are none.
     bool markNear(const Region& region);
     Allowance allowance(const Region& region, std::size_t node) const;
-    // Both: whether a node was brought back.
-    bool applyResting(btSoftBody& body, btScalar velocityScale);
+    void applyResting(btSoftBody& body, btScalar velocityScale);
+    // Whether a node was brought back.
     bool applyMoving(btSoftBody& body, const Region& region, btScalar velocityScale);
 
     std::vector<Region> m_regions;
@@ -103,7 +103,7 @@ private:
     const std::vector<std::int32_t>* m_triangles = nullptr;
     // Of one apply(), kept for their memory.
     std::vector<Restless> m_restless;
-    std::vector<unsigned char> m_counts, m_isNear;  // by node: what it passed is boxed; near the region looked at last
+    std::vector<unsigned char> m_isBoxed, m_isNear;  // by node: what it passed; near the region looked at last
     std::vector<Passed> m_passed;
     btVector3 m_allLow, m_allHigh;  // around all of them
 };
