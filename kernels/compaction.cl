@@ -2,8 +2,7 @@
 // sums per block, first place of every slot, members of every slot, and the place of each
 // hit among them: by counting where a slot has few, by a sort where it has many.
 #include "lib/group_scan.h"
-#include "shared/contact.h"
-#include "shared/patch.h"
+#include "lib/hit_list.h"
 
 // Slots a work-group handles. Each work-item takes DRAPE_BLOCK / group size adjacent ones.
 #define DRAPE_BLOCK 1024
@@ -29,9 +28,9 @@ __kernel void compactionCount(__global const uint* restrict slotCount, const uin
     if (get_local_id(0) == 0) blockCount[get_group_id(0)] = total;
 }
 
-// Writes where the hits of each slot of the group's block begin, the first at `place`, and counts the slots that have many.
-// Returns where the hits behind the block begin.
-static uint placeBlock(__global const uint* restrict slotCount, const uint slots, const uint place,
+// Writes where the hits of each slot of the group's block begin, the first at `place`, and counts the slots that have more
+// than `ranked`. Returns where the hits behind the block begin.
+static uint placeBlock(__global const uint* restrict slotCount, const uint slots, const uint ranked, const uint place,
                        __global uint* restrict slotFirst, __global StepCounters* restrict counters, __local uint* scratch)
 {
     uint first, last, total;
@@ -40,7 +39,7 @@ static uint placeBlock(__global const uint* restrict slotCount, const uint slots
     {
         slotFirst[slot] = next;
         next += slotCount[slot];
-        if (slotCount[slot] > DRAPE_RANKED) atomic_inc(&counters->m_crowded);
+        if (slotCount[slot] > ranked) atomic_inc(&counters->m_crowded);
     }
     return place + total;
 }
@@ -66,37 +65,42 @@ static uint sumOf(__global const uint* restrict numbers, const uint count, __loc
 }
 
 // A work-group takes a block of slots, and sums those of the blocks before itself. The last one stores counters->m_hits.
-__kernel void compactionPlace(__global const uint* restrict slotCount, const uint slots,
+// ranked: most hits of a slot that the launch behind puts in order itself; those with more are counted.
+__kernel void compactionPlace(__global const uint* restrict slotCount, const uint slots, const uint ranked,
                               __global const uint* restrict blockCount, __global uint* restrict slotFirst,
                               __global StepCounters* restrict counters, __local uint* scratch)
 {
     const uint before = sumOf(blockCount, get_group_id(0), scratch);
-    const uint hits = placeBlock(slotCount, slots, before, slotFirst, counters, scratch);
+    const uint hits = placeBlock(slotCount, slots, ranked, before, slotFirst, counters, scratch);
     if (get_group_id(0) == get_num_groups(0) - 1 && get_local_id(0) == 0) counters->m_hits = hits;
 }
 
 // The same without sums of blocks, for slots that are few.
-__kernel void compactionPlaceFew(__global const uint* restrict slotCount, const uint slots, __global uint* restrict slotFirst,
-                                 __global StepCounters* restrict counters, __local uint* scratch)
+__kernel void compactionPlaceFew(__global const uint* restrict slotCount, const uint slots, const uint ranked,
+                                 __global uint* restrict slotFirst, __global StepCounters* restrict counters,
+                                 __local uint* scratch)
 {
     const uint before = sumOf(slotCount, get_group_id(0) * DRAPE_BLOCK, scratch);
-    const uint hits = placeBlock(slotCount, slots, before, slotFirst, counters, scratch);
+    const uint hits = placeBlock(slotCount, slots, ranked, before, slotFirst, counters, scratch);
     if (get_group_id(0) == get_num_groups(0) - 1 && get_local_id(0) == 0) counters->m_hits = hits;
 }
 
 // A work-item takes every stride-th place of the hits' list and lists a hit among its slot's members, last to first as the
-// items come; the atomic gives each a place of its own. Leaves slotCount zero for the next step, and its counters.
+// items come; the atomic gives each a place of its own. keys: the obstacle features of members. Leaves slotCount zero for the
+// next step, and its counters.
 __kernel void compactionGather(__global const Contact* restrict hits, const uint hitCapacity,
                                __global volatile uint* slotCount, __global const uint* restrict slotFirst,
-                               __global uint* restrict members, __global const StepCounters* restrict counters,
-                               __global StepCounters* restrict next)
+                               __global uint* restrict members, __global uint* restrict keys,
+                               __global const StepCounters* restrict counters, __global StepCounters* restrict next)
 {
     const uint count = min(counters->m_listed, hitCapacity);
     if (get_global_id(0) < sizeof(StepCounters) / sizeof(uint)) ((__global uint*)next)[get_global_id(0)] = 0;
     for (uint i = get_global_id(0); i < count; i += get_global_size(0))
     {
         const uint slot = hits[i].m_slot;
-        members[slotFirst[slot] + atomic_dec(slotCount + slot) - 1] = i;
+        const uint place = slotFirst[slot] + atomic_dec(slotCount + slot) - 1;
+        members[place] = i;
+        keys[place] = hits[i].m_obstacleFeature;
     }
 }
 
@@ -150,11 +154,10 @@ static void countMembers(__global const Contact* hits, __global uint* members, c
     barrier(CLK_LOCAL_MEM_FENCE);
 }
 
-// A work-group sorts the members of those slots of its block (of at most DRAPE_BLOCK slots) that have more than
-// compactionWrite ranks.
+// A work-group sorts the members of those slots of its block (of at most DRAPE_BLOCK slots) that have more than `ranked`.
 __kernel void compactionOrder(__global const Contact* restrict hits, const uint hitCapacity,
-                              __global const uint* restrict slotFirst, const uint slots, const uint block,
-                              __global uint* members, __global const StepCounters* restrict counters)
+                              __global const uint* restrict slotFirst, const uint slots, const uint ranked,
+                              const uint block, __global uint* members, __global const StepCounters* restrict counters)
 {
     __local uint crowded[DRAPE_BLOCK], keys[DRAPE_COUNTED], own[DRAPE_COUNTED];
     __local uint crowdedCount;
@@ -166,7 +169,7 @@ __kernel void compactionOrder(__global const Contact* restrict hits, const uint 
     for (uint slot = begin + get_local_id(0); slot < end; slot += get_local_size(0))
     {
         const uint last = slot + 1 < slots ? min(slotFirst[slot + 1], count) : count;
-        if (last > slotFirst[slot] + DRAPE_RANKED) crowded[atomic_inc(&crowdedCount)] = slot;
+        if (last > slotFirst[slot] + ranked) crowded[atomic_inc(&crowdedCount)] = slot;
     }
     barrier(CLK_LOCAL_MEM_FENCE);
     const uint toSort = crowdedCount;
@@ -182,25 +185,27 @@ __kernel void compactionOrder(__global const Contact* restrict hits, const uint 
     }
 }
 
-// A work-item takes every stride-th place of the members' list, counts the members of the same slot with a lesser obstacle
-// feature, and writes the hit where that number puts it. Where the slot has more than DRAPE_RANKED members compactionOrder has
-// sorted them and the hit keeps its place. A feature pair is tested once, so features of a slot differ and every place is
-// written once. contacts: behind a head with the counters.
+// `parts` work-items (1, 2 or 4) share a hit, and take every stride-th place of the members' list: they count the members of the
+// same slot with a lesser obstacle feature, and copy the hit to where that number puts it. Where the slot has more members than
+// `ranked` compactionOrder has sorted them and the hit keeps its place. A feature pair is tested once, so features of a slot
+// differ and every place is written once. keys: see compactionGather. contacts: behind a head with the counters.
 __kernel void compactionWrite(__global const Contact* restrict hits, const uint hitCapacity,
-                              __global const uint* restrict slotFirst, const uint slots,
-                              __global const uint* restrict members, __global Contact* restrict contacts,
+                              __global const uint* restrict slotFirst, const uint slots, const uint ranked,
+                              const uint parts, __global const uint* restrict members,
+                              __global const uint* restrict keys, __global Contact* restrict contacts,
                               __global const StepCounters* restrict counters)
 {
     const uint count = min(counters->m_hits, hitCapacity);
     if (get_global_id(0) == 0) *(__global StepCounters*)contacts = *counters;
-    for (uint i = get_global_id(0); i < count; i += get_global_size(0))
+    for (uint i = get_global_id(0) / parts; i < count; i += get_global_size(0) / parts)
     {
-        const Contact hit = hits[members[i]];
-        const uint first = slotFirst[hit.m_slot];
-        const uint last = hit.m_slot + 1 < slots ? min(slotFirst[hit.m_slot + 1], count) : count;
-        const int sorted = last - first > DRAPE_RANKED;
+        __global const Contact* hit = hits + members[i];
+        const uint slot = hit->m_slot, first = slotFirst[slot];
+        const uint last = slot + 1 < slots ? min(slotFirst[slot + 1], count) : count;
+        const int sorted = last - first > ranked;
+        const uint key = keys[i];
         uint before = 0;
-        for (uint j = first; j < last && !sorted; ++j) before += hits[members[j]].m_obstacleFeature < hit.m_obstacleFeature;
-        contacts[DRAPE_CONTACT_HEAD + (sorted ? i : first + before)] = hit;
+        for (uint j = first; j < last && !sorted; ++j) before += keys[j] < key;
+        copyHit(contacts + DRAPE_CONTACT_HEAD + (sorted ? i : first + before), hit, parts);
     }
 }

@@ -2,6 +2,7 @@
 // hits are a work-item's, crowded ones a work-group's; both come to the same contacts.
 #include "lib/contact_reduction.h"
 #include "lib/group_scan.h"
+#include "lib/hit_list.h"
 #include "shared/patch.h"
 
 // Most slots and work-items of a group.
@@ -185,20 +186,20 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_REDUCE_GROUP, 1, 1))) void re
     }
 }
 
-// A work-item takes every stride-th place of the members' list and writes the hit that stays there, if one does. keptFirst:
-// where the contacts of each slot begin. contacts: behind a head with the counters.
+// `parts` work-items (1, 2 or 4) share a place of the members' list, and take every stride-th: they copy the hit that stays there,
+// if one does. keptFirst: where the contacts of each slot begin. contacts: behind a head with the counters.
 __kernel void reductionWrite(__global const Contact* restrict hits, const uint hitCapacity,
-                             __global const uint* restrict slotFirst, __global const uint* restrict kept,
-                             __global const uint* restrict keptFirst, __global Contact* restrict contacts,
-                             __global const StepCounters* restrict counters)
+                             __global const uint* restrict slotFirst, const uint parts,
+                             __global const uint* restrict kept, __global const uint* restrict keptFirst,
+                             __global Contact* restrict contacts, __global const StepCounters* restrict counters)
 {
     const uint count = min(counters->m_listed, hitCapacity);
     if (get_global_id(0) == 0) *(__global StepCounters*)contacts = *counters;
-    for (uint i = get_global_id(0); i < count; i += get_global_size(0))
+    for (uint i = get_global_id(0) / parts; i < count; i += get_global_size(0) / parts)
     {
         const uint member = kept[i];
         if (member == DRAPE_NO_FEATURE) continue;
-        const Contact hit = hits[member];
-        contacts[DRAPE_CONTACT_HEAD + keptFirst[hit.m_slot] + i - slotFirst[hit.m_slot]] = hit;
+        const uint slot = hits[member].m_slot;
+        copyHit(contacts + DRAPE_CONTACT_HEAD + keptFirst[slot] + i - slotFirst[slot], hits + member, parts);
     }
 }

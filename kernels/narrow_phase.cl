@@ -106,15 +106,16 @@ typedef struct KindShare
     uint m_kind, m_first, m_stride;
 } KindShare;
 
-// There must be a group for each kind.
-static KindShare kindShare(void)
+// Of the kinds from `kind` on. There must be a group for each.
+static KindShare kindShare(const uint kind)
 {
     KindShare share;
-    const uint groups = get_num_groups(0) / DRAPE_TEST_KINDS, group = get_group_id(0);
-    share.m_kind = group % DRAPE_TEST_KINDS;
-    share.m_first = get_local_id(0) * groups + group / DRAPE_TEST_KINDS;
+    const uint kinds = DRAPE_TEST_KINDS - kind;
+    const uint groups = get_num_groups(0) / kinds, group = get_group_id(0);
+    share.m_kind = kind + group % kinds;
+    share.m_first = get_local_id(0) * groups + group / kinds;
     share.m_stride = get_local_size(0) * groups;
-    if (group >= groups * DRAPE_TEST_KINDS) share.m_first = UINT_MAX;  // one too many
+    if (group >= groups * kinds) share.m_first = UINT_MAX;  // one too many
     return share;
 }
 
@@ -125,12 +126,13 @@ static uint kindOfTest(const FeatureTest feature)
 }
 
 // A work-item takes every stride-th of the tests that narrowPhaseFeature left to the continuous test and lists their hits.
+// None of these is a node's: its way crosses a face that rests in closed form.
 __kernel void narrowPhaseSwept(DRAPE_FEATURE_ARGUMENTS, __global const uint* restrict swept)
 {
     DRAPE_FEATURE_VIEWS;
     uint searches = 0;
     ClothView cloth = DRAPE_CLOTH_VIEW(&searches);
-    const KindShare share = kindShare();
+    const KindShare share = kindShare(1);
     const uint count = counters->m_swept;
     for (uint i = share.m_first; i < count; i += share.m_stride)
     {
@@ -148,7 +150,7 @@ __kernel void narrowPhaseFew(DRAPE_FEATURE_ARGUMENTS)
     DRAPE_FEATURE_VIEWS;
     uint searches = 0;
     ClothView cloth = DRAPE_CLOTH_VIEW(&searches);
-    const KindShare share = kindShare();
+    const KindShare share = kindShare(0);
     const uint count = min(counters->m_candidates, testCapacity);
     for (uint i = share.m_first; i < count; i += share.m_stride)
     {

@@ -2,8 +2,11 @@
 // Each launch reads what the one before wrote; nothing is passed between work-groups inside a launch.
 #include "lib/tree_refit.h"
 
-// As DRAPE_SUBTREE_LEAVES: a stretch of whole subtrees that begin in a window has fewer than two windows of leaves.
+// Leaves in a window: of a work-item, and of a group. A group has an item for each leaf of the whole subtrees that begin in
+// its window, the last of which ends less than DRAPE_SUBTREE_LEAVES behind it.
+#define DRAPE_SERIAL_WINDOW 64
 #define DRAPE_SUBTREE_GROUP 128
+#define DRAPE_SUBTREE_WINDOW (DRAPE_SUBTREE_GROUP - DRAPE_SUBTREE_LEAVES)
 #define DRAPE_GROVE_GROUP 256
 
 // A work-item is a window of leaves; it refits, one after the other, the subtrees that begin in it.
@@ -13,11 +16,11 @@ __kernel void refitSubtreesSerial(__global BvhNode* restrict nodes, __global con
                                   __global const float* restrict meshRadius, __global StepCounters* restrict counters,
                                   const uint leafCount)
 {
-    const uint window = get_global_id(0) * DRAPE_SUBTREE_LEAVES;
+    const uint window = get_global_id(0) * DRAPE_SERIAL_WINDOW;
     if (window >= leafCount) return;
     const uint first = nextBegin(splits, window, leafCount, 0u);
-    if (first >= window + DRAPE_SUBTREE_LEAVES) return;
-    const uint last = nextBegin(splits, window + DRAPE_SUBTREE_LEAVES, leafCount, 0u);
+    if (first >= window + DRAPE_SERIAL_WINDOW) return;
+    const uint last = nextBegin(splits, window + DRAPE_SERIAL_WINDOW, leafCount, 0u);
     uint invalid = 0;
     for (uint leaf = first; leaf < last; ++leaf)
     {
@@ -56,13 +59,14 @@ __kernel void refitTopsSerial(__global BvhNode* restrict nodes, __global const u
     }
 }
 
-// The first begins of a tier at or after `from` and at or after `from + window`. Every work-item of the group calls it.
-static void stretchOfWindow(__global const uint* restrict splits, const uint from, const uint window, const uint leafCount,
-                            const uint tier, __local uint* stretch)
+// The first begins of a tier, whose nodes have no more than `most` leaves, at or after `from` and at or after
+// `from + window`. Every work-item of the group calls it.
+static void stretchOfWindow(__global const uint* restrict splits, const uint from, const uint window, const uint most,
+                            const uint leafCount, const uint tier, __local uint* stretch)
 {
     if (get_local_id(0) < 2) stretch[get_local_id(0)] = leafCount;
     barrier(CLK_LOCAL_MEM_FENCE);
-    const uint limit = min(leafCount, from + 2 * window);
+    const uint limit = min(leafCount, from + window + most);
     for (uint leaf = from + get_local_id(0); leaf < limit; leaf += get_local_size(0))
     {
         if (!beginsTier(splits, leaf, tier)) continue;
@@ -180,7 +184,7 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_SUBTREE_GROUP, 1, 1))) void r
     __global const float* restrict meshRadius, __global StepCounters* restrict counters, const uint leafCount)
 {
     __local Subtrees subtrees;
-    const uint item = get_local_id(0), window = get_group_id(0) * DRAPE_SUBTREE_LEAVES, leaf = window + item;
+    const uint item = get_local_id(0), window = get_group_id(0) * DRAPE_SUBTREE_WINDOW, leaf = window + item;
     const uint word = leaf + 1u < leafCount ? splits[leaf] : 0xffffffffu;
     const uint owner = leaf < leafCount ? order[leaf] : 0u;
     if (item == 0) subtrees.m_mergeCount = subtrees.m_mergesBegun = 0;
@@ -189,9 +193,9 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_SUBTREE_GROUP, 1, 1))) void r
     subtrees.m_indexOfPlace[item] = subtrees.m_indexOfPlace[DRAPE_SUBTREE_GROUP + item] = DRAPE_NO_PLACE;
     subtrees.m_done[item] = 1;
     subtrees.m_done[DRAPE_SUBTREE_GROUP + item] = 0;
-    stretchOfWindow(splits, window, DRAPE_SUBTREE_LEAVES, leafCount, 0u, subtrees.m_stretch);
+    stretchOfWindow(splits, window, DRAPE_SUBTREE_WINDOW, DRAPE_SUBTREE_LEAVES, leafCount, 0u, subtrees.m_stretch);
     const uint first = subtrees.m_stretch[0], last = subtrees.m_stretch[1];
-    if (first >= window + DRAPE_SUBTREE_LEAVES || first >= last) return;
+    if (first >= window + DRAPE_SUBTREE_WINDOW || first >= last) return;
 
     const int present = leaf >= first && leaf < last;
     const int merges = present && leaf + 1u < last && splitTier(word) == 0u;
@@ -365,7 +369,7 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_GROVE_GROUP, 1, 1))) void ref
     __local uint stretch[2];
     const uint window = get_group_id(0) * DRAPE_GROVE_LEAVES;
     if (get_local_id(0) == 0) foundCount = 0;
-    stretchOfWindow(splits, window, DRAPE_GROVE_LEAVES, leafCount, 1u, stretch);
+    stretchOfWindow(splits, window, DRAPE_GROVE_LEAVES, DRAPE_GROVE_LEAVES, leafCount, 1u, stretch);
     const uint first = stretch[0];
     const uint end = stretch[1];
     if (first >= window + DRAPE_GROVE_LEAVES) return;

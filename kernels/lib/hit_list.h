@@ -22,12 +22,32 @@ typedef struct HitList
     __global volatile uint* m_count;
 } HitList;
 
+// A contact is four of these, and where it lies in a list it is aligned so: a store of less leaves a GPU's memory more to do.
+#define DRAPE_CONTACT_QUARTERS 4
+
+// `parts` neighbouring work-items copy a contact together, each some quarters of it.
+static void copyHit(__global Contact* to, __global const Contact* from, const uint parts)
+{
+    for (uint k = get_global_id(0) % parts; k < DRAPE_CONTACT_QUARTERS; k += parts)
+        ((__global uint4*)to)[k] = ((__global const uint4*)from)[k];
+}
+
+static void storeHit(__global Contact* to, const Contact* from)
+{
+    __global uint4* quarters = (__global uint4*)to;
+    const float *n = from->m_normal, *p = from->m_point, *w = from->m_weights;
+    quarters[0] = (uint4)(from->m_slot, from->m_kind, from->m_clothFeature, from->m_obstacleFeature);
+    quarters[1] = as_uint4((float4)(n[0], n[1], n[2], from->m_gap1));
+    quarters[2] = as_uint4((float4)(p[0], p[1], p[2], from->m_gap0));
+    quarters[3] = as_uint4((float4)(w[0], w[1], w[2], from->m_time));
+}
+
 static void listHit(const HitList* list, const Contact* contact)
 {
     const uint place = atomic_inc(list->m_count);
     if (place >= list->m_capacity) return;
     atomic_inc(list->m_slotCount + contact->m_slot);  // before the stores: on a CPU it would wait for them
-    list->m_hits[place] = *contact;
+    storeHit(list->m_hits + place, contact);
 }
 
 #endif

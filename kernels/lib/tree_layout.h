@@ -14,11 +14,11 @@ DRAPE_NAMESPACE_BEGIN
 // seldom matters, and low enough for a traversal's stack.
 #define DRAPE_TREE_HEIGHT 48
 
-// A node over at most so many leaves is refitted in its subtree's work-group; 128 leaves and their inner nodes fill the
-// local memory that every device has.
-#define DRAPE_SUBTREE_LEAVES 64u
-// A node over more is left to the last launch: one group climbs what is above 4,096 leaves.
-#define DRAPE_GROVE_LEAVES 4096u
+// A node over at most so many leaves is refitted in its subtree's work-group, and one over more in its grove's; what is
+// above is left to the last launch, one group. The fewer leaves a subtree has, the more of a group's work-items are
+// busy with the subtrees that begin in its window; groves and what is above them have the more nodes for it.
+#define DRAPE_SUBTREE_LEAVES 32u
+#define DRAPE_GROVE_LEAVES 2048u
 
 // One word per split: the place of the node that splits there, and its tier.
 #define DRAPE_SPLIT_PLACE 0x3fffffffu

@@ -15,8 +15,8 @@ DRAPE_NAMESPACE_BEGIN
 #define DRAPE_SELF_NODE_FACE 3u
 #define DRAPE_SELF_EDGE_EDGE 4u
 
-// The most contacts of a slot that a work-item handles alone, in quadratic time; a cloth feature at rest has a few
-// dozen.
+// The most contacts of a slot that a CPU's work-item, or one that reduces them, handles alone in quadratic time; a cloth
+// feature at rest has a few dozen.
 #define DRAPE_RANKED 64u
 
 // Canonical order of contacts: slot, then obstacle feature. A slot is a cloth feature: first all nodes, then all faces,

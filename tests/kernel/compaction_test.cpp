@@ -16,6 +16,7 @@ namespace
 {
 constexpr std::size_t kGroup = 64;
 constexpr std::size_t kBlock = 1024;  // as in kernels/compaction.cl
+constexpr cl_uint kRankedGpu = 512;   // as in narrow_phase.cpp
 
 // Hits with distinct features per slot, in random order. crowded: most of them in one slot.
 std::vector<Contact> randomHits(std::size_t count, std::uint32_t slots, bool crowded, Random& random)
@@ -67,22 +68,25 @@ public:
         guard(m_device, m_slotFirst, slots);
         guard(m_device, m_blockCount, blocks);
         guard(m_device, m_members, capacity);
+        guard(m_device, m_keys, capacity);
         guard(m_device, m_contacts, DRAPE_CONTACT_HEAD + capacity);
         const cl::LocalSpaceArg scratch = cl::Local(kGroup * sizeof(cl_uint));
         m_count.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_blockCount.handle(), scratch);
-        m_place.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_blockCount.handle(),
+        m_place.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_ranked, m_blockCount.handle(),
                        m_slotFirst.handle(), m_counters.handle(), scratch);
         expectPlacesInOneLaunch(slots);
         m_gather.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotCount.handle(),
-                        m_slotFirst.handle(), m_members.handle(), m_counters.handle(), m_next.handle());
+                        m_slotFirst.handle(), m_members.handle(), m_keys.handle(), m_counters.handle(),
+                        m_next.handle());
         m_order.launch(m_device, (slots + m_sortBlock - 1) / m_sortBlock * kGroup, kGroup, m_hits.handle(), capacity,
-                       m_slotFirst.handle(), slots, m_sortBlock, m_members.handle(), m_counters.handle());
-        m_write.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotFirst.handle(), slots,
-                       m_members.handle(), m_contacts.handle(), m_counters.handle());
+                       m_slotFirst.handle(), slots, m_ranked, m_sortBlock, m_members.handle(), m_counters.handle());
+        m_write.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotFirst.handle(), slots, m_ranked,
+                       m_parts, m_members.handle(), m_keys.handle(), m_contacts.handle(), m_counters.handle());
         const std::vector<cl_uint> left = contents(m_device, m_slotCount, slots);
         EXPECT_EQ(std::count(left.begin(), left.end(), 0u), std::ptrdiff_t(slots)) << "slots are clean after";
         EXPECT_TRUE(intact(m_device, m_hits) && intact(m_device, m_slotCount) && intact(m_device, m_slotFirst) &&
-                    intact(m_device, m_blockCount) && intact(m_device, m_members) && intact(m_device, m_contacts));
+                    intact(m_device, m_blockCount) && intact(m_device, m_members) && intact(m_device, m_keys) &&
+                    intact(m_device, m_contacts));
         EXPECT_TRUE(sameBytes(contents(m_device, m_next, 1), std::vector<StepCounters>(1)))
             << "counters are clean after";
         EXPECT_TRUE(intact(m_device, m_next));
@@ -92,8 +96,15 @@ public:
         return found;
     }
 
-    // Slots that one group sorts.
-    cl_uint m_sortBlock = kBlock;
+    // Slots that one group sorts; hits of a slot from which on it does; work-items that copy a hit.
+    cl_uint m_sortBlock = kBlock, m_ranked = DRAPE_RANKED, m_parts = 1;
+
+    // As a CPU takes them, or as a GPU does.
+    void takeAs(bool gpu)
+    {
+        m_ranked = gpu ? kRankedGpu : DRAPE_RANKED;
+        m_parts = gpu ? 4 : 1;
+    }
 
     // How long it takes for hits of one slot, copies and checks included: those grow with the hits.
     double orderMs(const std::vector<Contact>& hits)
@@ -110,7 +121,7 @@ private:
         const cl_uint hits = contents(m_device, m_counters, 1)[0].m_hits;
         guard(m_device, m_places, slots);
         const std::size_t blocks = (slots + kBlock - 1) / kBlock;
-        m_placeFew.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_places.handle(),
+        m_placeFew.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_ranked, m_places.handle(),
                           m_counters.handle(), cl::Local(kGroup * sizeof(cl_uint)));
         EXPECT_EQ(contents(m_device, m_places, slots), contents(m_device, m_slotFirst, slots));
         EXPECT_EQ(contents(m_device, m_counters, 1)[0].m_hits, hits);
@@ -120,7 +131,7 @@ private:
     Device& m_device;
     Kernel m_count, m_place, m_placeFew, m_gather, m_order, m_write;
     Buffer<Contact> m_hits, m_contacts;
-    Buffer<cl_uint> m_slotCount, m_slotFirst, m_blockCount, m_members, m_places;
+    Buffer<cl_uint> m_slotCount, m_slotFirst, m_blockCount, m_members, m_keys, m_places;
     Buffer<StepCounters> m_counters, m_next;
 };
 }  // namespace
@@ -142,25 +153,30 @@ TEST_P(CompactionTest, OrdersBySlotAndFeature)
             for (bool crowded : {false, true})
             {
                 SCOPED_TRACE("seed 90, " + std::to_string(slots) + " slots, " + std::to_string(count) + " hits");
-                std::vector<Contact> hits = randomHits(count, slots, crowded, random);
-                const std::vector<Contact> found = compaction.run(hits, slots);
-                std::sort(hits.begin(), hits.end(), inOrder);
-                ASSERT_TRUE(sameBytes(found, hits)) << difference(found, hits);
+                const std::vector<Contact> hits = randomHits(count, slots, crowded, random);
+                std::vector<Contact> ordered = hits;
+                std::sort(ordered.begin(), ordered.end(), inOrder);
+                for (bool gpu : {false, true})
+                {
+                    compaction.takeAs(gpu);
+                    const std::vector<Contact> found = compaction.run(hits, slots);
+                    ASSERT_TRUE(sameBytes(found, ordered)) << difference(found, ordered);
+                }
             }
         }
     }
     EXPECT_FALSE(device->failed()) << device->error().text();
 }
 
-// As when thousands of coincident obstacle triangles lie over one cloth triangle. The lengths are those around
-// DRAPE_RANKED and around powers of two, where the sort's network is cut off.
+// As when thousands of coincident obstacle triangles lie over one cloth triangle. The lengths are those around what is
+// counted and around powers of two, where the sort's network is cut off.
 TEST_P(CompactionTest, OrdersCrowdedSlots)
 {
     const std::unique_ptr<Device> device = openDevice(GetParam());
     ASSERT_TRUE(device);
     Compaction compaction(*device);
     Random random(92);
-    for (std::uint32_t each : {63u, 64u, 65u, 66u, 127u, 128u, 129u, 1000u, 4097u})
+    for (std::uint32_t each : {63u, 64u, 65u, 66u, 127u, 128u, 129u, 511u, 512u, 513u, 1000u, 4097u})
     {
         constexpr std::uint32_t kSlots = 1027;  // the last block has three
         SCOPED_TRACE("seed 92, " + std::to_string(each) + " hits a crowded slot");
@@ -177,9 +193,14 @@ TEST_P(CompactionTest, OrdersCrowdedSlots)
         for (std::size_t i = hits.size(); i > 1; --i)
             std::swap(hits[i - 1], hits[random.below(std::uint32_t(i))]);
         compaction.m_sortBlock = each % 2 == 0 ? 32 : kBlock;
-        const std::vector<Contact> found = compaction.run(hits, kSlots);
-        std::sort(hits.begin(), hits.end(), inOrder);
-        ASSERT_TRUE(sameBytes(found, hits)) << difference(found, hits);
+        std::vector<Contact> ordered = hits;
+        std::sort(ordered.begin(), ordered.end(), inOrder);
+        for (bool gpu : {false, true})
+        {
+            compaction.takeAs(gpu);
+            const std::vector<Contact> found = compaction.run(hits, kSlots);
+            ASSERT_TRUE(sameBytes(found, ordered)) << difference(found, ordered);
+        }
     }
     EXPECT_FALSE(device->failed()) << device->error().text();
 }

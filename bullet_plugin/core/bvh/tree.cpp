@@ -43,7 +43,7 @@ void DeviceTree::reserve(Device& device, cl_uint leafCount)
     m_nodes.reserve(device, leafCount == 0 ? 0 : 2 * std::size_t(leafCount) - 1);
     m_splits.reserve(device, leafCount);
     m_order.reserve(device, leafCount);
-    // At each of the tree's heights at most n / 4,096 nodes span more than 4,096 leaves.
+    // At each of the tree's heights at most n / 2,048 nodes span more than 2,048 leaves.
     const std::size_t groves = leafCount / DRAPE_GROVE_LEAVES;
     m_tops.reserve(device, 1 + std::min<std::size_t>(leafCount, groves * DRAPE_TREE_HEIGHT));
 }

@@ -9,6 +9,8 @@ namespace
 {
 // As in kernels/tree_refit.cl.
 constexpr std::size_t kSubtreeGroup = 128;
+constexpr cl_uint kSubtreeWindow = kSubtreeGroup - DRAPE_SUBTREE_LEAVES;
+constexpr cl_uint kSerialWindow = 64;
 constexpr std::size_t kGroveGroup = 256;
 constexpr std::size_t kGroup = 64;
 // Windows of leaves that a serial work-group goes through: a work-group's start costs a CPU as much as some leaves.
@@ -90,9 +92,9 @@ void TreeRefitStage::listTops(Device& device, DeviceTree& tree, WorkShape shape)
 void TreeRefitStage::enqueueSubtrees(Device& device, DeviceTree& tree, LeafBuffers leaves, WorkShape shape)
 {
     const cl_uint count = tree.m_leafCount;
-    const std::size_t windows = windowsOf(count, DRAPE_SUBTREE_LEAVES);
-    const std::size_t groves = count > DRAPE_SUBTREE_LEAVES ? windowsOf(count, DRAPE_GROVE_LEAVES) : 0;
     const bool groups = runsGroups(device, shape);
+    const std::size_t windows = windowsOf(count, groups ? kSubtreeWindow : kSerialWindow);
+    const std::size_t groves = count > DRAPE_SUBTREE_LEAVES ? windowsOf(count, DRAPE_GROVE_LEAVES) : 0;
     Kernel& subtrees = groups ? m_subtreesGroups : m_subtreesSerial;
     subtrees.launch(device, groups ? windows * kSubtreeGroup : windows, groups ? kSubtreeGroup : kSerialGroup,
                     tree.m_nodes.handle(), tree.m_splits.handle(), tree.m_order.handle(), leaves.m_triangles.handle(),

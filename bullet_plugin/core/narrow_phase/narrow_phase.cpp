@@ -10,6 +10,8 @@ constexpr std::size_t kSortBlockGpu = 32;    // slots that a group sorts one aft
 constexpr std::size_t kReduceGroup = 64;     // as in kernels/contact_reduction.cl
 constexpr std::size_t kReduceBlockGpu = 64;  // slots of such a group
 constexpr std::size_t kReduceBlockCpu = 256;
+// Most hits of a slot that a GPU puts in order by counting lesser ones, where no reduction follows.
+constexpr cl_uint kRankedGpu = 512;
 constexpr std::size_t kBlock = 1024;        // slots per work-group, as in kernels/compaction.cl
 constexpr std::size_t kFewSlots = 1 << 14;  // placed in one launch
 constexpr std::size_t kPlaceGroupGpu = 256;
@@ -18,6 +20,12 @@ constexpr std::size_t kItemsPerUnitCpu = 256;   // four groups per core, so that
 // Feature tests per compute unit up to which one launch is faster than two: the continuous test takes registers, which
 // leave room for few groups at a time.
 constexpr std::size_t kFewTestsPerUnit = 128;
+
+// Work-items that copy a contact together.
+cl_uint copyParts(const Device& device)
+{
+    return device.isGpu() ? 4 : 1;
+}
 }  // namespace
 
 void NarrowPhaseStage::create(Device& device, const ProgramLoader& load, bool features, bool reduces)
@@ -68,6 +76,7 @@ void NarrowPhaseStage::reserveHits(Device& device, std::size_t count)
     m_hits.reserve(device, count);
     m_contacts.reserve(device, DRAPE_CONTACT_HEAD + count);
     m_members.reserve(device, count);
+    m_keys.reserve(device, count);
     if (m_reduces) m_kept.reserve(device, count);
 }
 
@@ -132,7 +141,7 @@ void NarrowPhaseStage::enqueueSelfHits(Device& device, StepTally tally, const Se
 
 // Where each slot's contacts begin.
 void NarrowPhaseStage::enqueuePlaces(Device& device, Buffer<cl_uint>& slotCount, Buffer<cl_uint>& slotFirst,
-                                     StepTally tally)
+                                     cl_uint ranked, StepTally tally)
 {
     const cl_uint slots = cl_uint(m_slots);
     const std::size_t blocks = (m_slots + kBlock - 1) / kBlock;
@@ -140,21 +149,21 @@ void NarrowPhaseStage::enqueuePlaces(Device& device, Buffer<cl_uint>& slotCount,
     const cl::LocalSpaceArg scratch = cl::Local(group * sizeof(cl_uint));
     if (m_slots <= kFewSlots)
     {
-        m_placeFew.launch(device, blocks * group, group, slotCount.handle(), slots, slotFirst.handle(),
+        m_placeFew.launch(device, blocks * group, group, slotCount.handle(), slots, ranked, slotFirst.handle(),
                           tally.m_now.handle(), scratch);
         return;
     }
     m_count.launch(device, blocks * group, group, slotCount.handle(), slots, m_blockCount.handle(), scratch);
-    m_place.launch(device, blocks * group, group, slotCount.handle(), slots, m_blockCount.handle(), slotFirst.handle(),
-                   tally.m_now.handle(), scratch);
+    m_place.launch(device, blocks * group, group, slotCount.handle(), slots, ranked, m_blockCount.handle(),
+                   slotFirst.handle(), tally.m_now.handle(), scratch);
 }
 
-// Slots with many hits.
-void NarrowPhaseStage::enqueueOrder(Device& device, StepTally tally)
+// Slots with more hits than `ranked`.
+void NarrowPhaseStage::enqueueOrder(Device& device, cl_uint ranked, StepTally tally)
 {
     const std::size_t block = device.isGpu() ? kSortBlockGpu : kBlock;
     m_order.launch(device, (m_slots + block - 1) / block * kSortGroup, kSortGroup, m_hits.handle(),
-                   cl_uint(m_hits.capacity()), m_slotFirst.handle(), cl_uint(m_slots), cl_uint(block),
+                   cl_uint(m_hits.capacity()), m_slotFirst.handle(), cl_uint(m_slots), ranked, cl_uint(block),
                    m_members.handle(), tally.m_now.handle());
 }
 
@@ -163,15 +172,17 @@ void NarrowPhaseStage::enqueueCompaction(Device& device, NarrowPhaseBuffers side
 {
     const cl_uint hitCapacity = cl_uint(m_hits.capacity());
     const std::size_t width = listWidth(device);
-    enqueuePlaces(device, m_slotCount, m_slotFirst, tally);
+    const cl_uint ranked = device.isGpu() && !reduction ? kRankedGpu : DRAPE_RANKED;
+    enqueuePlaces(device, m_slotCount, m_slotFirst, ranked, tally);
     m_gather.launch(device, width, kGroup, m_hits.handle(), hitCapacity, m_slotCount.handle(), m_slotFirst.handle(),
-                    m_members.handle(), tally.m_now.handle(), tally.m_next.handle());
-    if (tally.m_ordered) enqueueOrder(device, tally);
+                    m_members.handle(), m_keys.handle(), tally.m_now.handle(), tally.m_next.handle());
+    if (tally.m_ordered) enqueueOrder(device, ranked, tally);
     if (reduction)
         enqueueReduction(device, sides, tally, *reduction);
     else
         m_write.launch(device, width, kGroup, m_hits.handle(), hitCapacity, m_slotFirst.handle(), cl_uint(m_slots),
-                       m_members.handle(), m_contacts.handle(), tally.m_now.handle());
+                       ranked, copyParts(device), m_members.handle(), m_keys.handle(), m_contacts.handle(),
+                       tally.m_now.handle());
 }
 
 void NarrowPhaseStage::enqueueReduction(Device& device, NarrowPhaseBuffers sides, StepTally tally,
@@ -185,9 +196,10 @@ void NarrowPhaseStage::enqueueReduction(Device& device, NarrowPhaseBuffers sides
                   sides.m_clothTriangles.handle(), sides.m_clothEdges.handle(), reduction.m_cloths.handle(),
                   reduction.m_obstacles.handle(), cl_uint(reduction.m_clothCount), cl_uint(reduction.m_obstacleCount),
                   sides.m_thickness.handle(), reduction.m_tube.handle());
-    enqueuePlaces(device, m_slotKept, m_keptFirst, tally);
+    enqueuePlaces(device, m_slotKept, m_keptFirst, DRAPE_RANKED, tally);
     m_writeKept.launch(device, listWidth(device), kGroup, m_hits.handle(), hitCapacity, m_slotFirst.handle(),
-                       m_kept.handle(), m_keptFirst.handle(), m_contacts.handle(), tally.m_now.handle());
+                       copyParts(device), m_kept.handle(), m_keptFirst.handle(), m_contacts.handle(),
+                       tally.m_now.handle());
 }
 
 void NarrowPhaseStage::enqueueIntersect(Device& device, NarrowPhaseBuffers sides, Buffer<Candidate>& candidates,

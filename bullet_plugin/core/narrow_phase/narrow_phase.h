@@ -89,9 +89,9 @@ struct SelfWork
     SelfBuffers m_step;
 };
 
-// The step's counters, and those of the next step, which compaction leaves zero. m_ordered: slots with more than
-// DRAPE_RANKED hits are put in order; where they are not and there are some, which the counters tell, the step must run
-// again. m_tests: about as many feature tests are expected; speed alone depends on it.
+// The step's counters, and those of the next step, which compaction leaves zero. m_ordered: slots with too many hits
+// for the last launch are put in order before it; where they are not and there are some, which the counters tell, the
+// step must run again. m_tests: about as many feature tests are expected; speed alone depends on it.
 struct StepTally
 {
     Buffer<StepCounters>& m_now;
@@ -138,9 +138,10 @@ private:
     void enqueueCompaction(Device& device, NarrowPhaseBuffers sides, StepTally tally,
                            const ReductionBuffers* reduction);
     void enqueueReduction(Device& device, NarrowPhaseBuffers sides, StepTally tally, const ReductionBuffers& reduction);
-    // Where the hits of each slot begin, from their numbers.
-    void enqueuePlaces(Device& device, Buffer<cl_uint>& slotCount, Buffer<cl_uint>& slotFirst, StepTally tally);
-    void enqueueOrder(Device& device, StepTally tally);
+    // Where the hits of each slot begin, from their numbers. ranked: see kernels/compaction.cl.
+    void enqueuePlaces(Device& device, Buffer<cl_uint>& slotCount, Buffer<cl_uint>& slotFirst, cl_uint ranked,
+                       StepTally tally);
+    void enqueueOrder(Device& device, cl_uint ranked, StepTally tally);
     void enqueueSelfHits(Device& device, StepTally tally, const SelfWork& self);
     std::size_t listWidth(const Device& device) const;
 
@@ -150,7 +151,7 @@ private:
     Buffer<Candidate> m_intersections{"step intersections"};
     Buffer<cl_uint> m_slotCount{"cloth slots"}, m_slotFirst{"cloth slots"}, m_blockCount{"cloth slots"};
     Buffer<cl_uint> m_slotKept{"cloth slots"}, m_keptFirst{"cloth slots"};  // only where contacts may be reduced
-    Buffer<cl_uint> m_members{"step hits"}, m_kept{"step hits"}, m_sweptTests{"step candidates"};
+    Buffer<cl_uint> m_members{"step hits"}, m_keys{"step hits"}, m_kept{"step hits"}, m_sweptTests{"step candidates"};
     std::size_t m_slots = 0;
     bool m_reduces = false;
 };
