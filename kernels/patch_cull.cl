@@ -1,8 +1,46 @@
 // Broad phase over patches on a CPU: packets of cloth triangles that lie near each other walk the wide tree of the
-// obstacles' patches by the volume that joins theirs. Each triangle of a packet tests the features of those patches
-// found that it may touch itself, a vector of lanes at a time, and lists the feature tests that are left.
+// obstacles' patches by the volume that joins theirs. Of each triangle of a packet, the nodes and edges that may be
+// near a patch found, and its face, are tested against the patch's features, a vector of lanes at a time, and the
+// feature tests that are left are listed.
 #include "lib/cull_packet.h"
 #include "lib/patch_pairs.h"
+
+// The directions of the volumes, a lane each. Lanes behind them hold zero, by which nothing is out of reach.
+#if DRAPE_DOP_DIRECTIONS > DRAPE_LANES
+#error "a lane for each direction of the volumes"
+#endif
+typedef struct Directions
+{
+    LanesVec3 m_along;
+    Lanes m_norm;
+} Directions;
+
+static Directions directionLanes(void)
+{
+    float x[DRAPE_LANES], y[DRAPE_LANES], z[DRAPE_LANES], norm[DRAPE_LANES];
+    DRAPE_UNROLL
+    for (int i = 0; i < DRAPE_LANES; ++i)
+    {
+        const float is = i < DRAPE_DOP_DIRECTIONS ? 1.0f : 0.0f;
+        x[i] = dopProject(vec3(is, 0.0f, 0.0f), i);
+        y[i] = dopProject(vec3(0.0f, is, 0.0f), i);
+        z[i] = dopProject(vec3(0.0f, 0.0f, is), i);
+        norm[i] = is * dopNorm(i);
+    }
+    Directions directions;
+    directions.m_along = lanesVec3(lanesLoad(x, 0), lanesLoad(y, 0), lanesLoad(z, 0));
+    directions.m_norm = lanesLoad(norm, 0);
+    return directions;
+}
+
+// A triangle's nodes over the step along the directions, as its volume is made of them.
+typedef struct NodeIntervals
+{
+    Lanes m_low[3], m_high[3];
+} NodeIntervals;
+
+// Six corners of a triangle, see cornersSeen(), of a packet's: x y z of each, a row of lanes each.
+#define DRAPE_CORNER_ROWS 18
 
 // A packet's walk over the obstacles that rest, or over one that moves.
 typedef struct Packet
@@ -12,24 +50,83 @@ typedef struct Packet
     uint m_motion;
     CullVolumes m_volumes;
     CullVolume m_joined;
+    float m_corners[DRAPE_CORNER_ROWS * DRAPE_LANES];  // that the volumes are made of
     Looker m_lookers[DRAPE_LANES];
-    uint m_looks;  // bit i: whether looker i is ready
+    NodeIntervals m_nodes[DRAPE_LANES];
+    uint m_looks;  // bit i: whether looker i and its nodes are ready
 } Packet;
 
+// Corner k of a packet's triangle: of those at the step's start, then those at its end.
+static Vec3 cornerOf(const Packet* packet, const uint triangle, const int k)
+{
+    const float* rows = packet->m_corners + 3 * k * DRAPE_LANES + triangle;
+    return vec3(rows[0], rows[DRAPE_LANES], rows[2 * DRAPE_LANES]);
+}
+
+static void takeNodes(Packet* packet, const uint triangle)
+{
+    const Directions directions = directionLanes();
+    const float noise = ((const float*)&packet->m_volumes.m_noise)[triangle];
+    const float rounding = ((const float*)&packet->m_volumes.m_rounding)[triangle];
+    const Lanes pad = directions.m_norm * noise + rounding;
+    NodeIntervals* nodes = packet->m_nodes + triangle;
+    for (int k = 0; k < 3; ++k)
+    {
+        const Lanes start = lanesDotUniform(directions.m_along, cornerOf(packet, triangle, k));
+        const Lanes end = lanesDotUniform(directions.m_along, cornerOf(packet, triangle, 3 + k));
+        nodes->m_low[k] = lanesMin(start, end) - pad;
+        nodes->m_high[k] = lanesMax(start, end) + pad;
+    }
+}
+
+static const Looker* lookerOf(Packet* packet, const StepCloths* cloths, const uint triangle)
+{
+    Looker* looker = packet->m_lookers + triangle;
+    if (packet->m_looks >> triangle & 1u) return looker;
+    packet->m_looks |= 1u << triangle;
+    look(looker, cloths, packet->m_cloth[triangle], packet->m_motion);
+    takeNodes(packet, triangle);
+    return looker;
+}
+
+// Of a triangle's nodes and edges among `owned` those that are not proved out of reach of a patch, bits as in
+// Triangle::m_owned: what cullPacketChild() asks of triangles. volume: the patch's, see patchVolumes.
+static uint featuresNear(const Packet* packet, const uint triangle, const uint owned, __global const float* volume)
+{
+    const NodeIntervals* nodes = packet->m_nodes + triangle;
+    const float radius = ((const float*)&packet->m_volumes.m_radius)[triangle];
+    const float least = ((const float*)&packet->m_volumes.m_least)[triangle];
+    const Lanes reach = lanesMax(radius * lanesLoad(volume, 2), least * directionLanes().m_norm);
+    const Lanes low = lanesLoad(volume, 0) - reach, high = lanesLoad(volume, 1) + reach;
+    uint near = 0;
+    DRAPE_UNROLL
+    for (int k = 0; k < 3; ++k)
+    {
+        const int next = k == 2 ? 0 : k + 1;
+        if ((owned & DRAPE_OWNS_VERTEX(k)) && !anyLane((low > nodes->m_high[k]) | (high < nodes->m_low[k])))
+            near |= DRAPE_OWNS_VERTEX(k);
+        if ((owned & DRAPE_OWNS_EDGE(k)) && !anyLane((low > lanesMax(nodes->m_high[k], nodes->m_high[next])) |
+                                                     (high < lanesMin(nodes->m_low[k], nodes->m_low[next]))))
+            near |= DRAPE_OWNS_EDGE(k);
+    }
+    return near;
+}
+
 static void visitPatch(Team* team, Packet* packet, const StepCloths* cloths, const PatchTree* tree,
-                       const PatchFeatures* features, const uint triangle, const uint patch, const TestList* list)
+                       const PatchFeatures* features, __global const float* volumes, const uint triangle,
+                       const uint patch, const TestList* list)
 {
     FeatureTest pair;
     if (!pairWith(&pair, cloths, tree, packet->m_cloth[triangle], packet->m_motion, patch)) return;
-    Looker* looker = packet->m_lookers + triangle;
-    if (!(packet->m_looks >> triangle & 1u)) look(looker, cloths, pair.m_cloth, packet->m_motion);
-    packet->m_looks |= 1u << triangle;
+    const Looker* looker = lookerOf(packet, cloths, triangle);
     const CullReach reach = cullReach(&looker->m_cull, pair.m_reach, features->m_sizes[patch], cloths->m_mode);
-    if (teamMakeRoom(team, list)) cullPatch(team, features, pair, looker, reach, DRAPE_NEAR_ALL, list);
+    const uint own =
+        featuresNear(packet, triangle, looker->m_owned & looker->m_valid, volumes + patch * DRAPE_PATCH_VOLUME_FLOATS);
+    if (teamMakeRoom(team, list)) cullPatch(team, features, pair, looker, reach, DRAPE_NEAR_ALL, own, list);
 }
 
 static void walkTree(Team* team, Packet* packet, const StepCloths* cloths, const PatchTree* tree,
-                     const PatchFeatures* features, const TestList* list)
+                     const PatchFeatures* features, __global const float* volumes, const TestList* list)
 {
     uint stack[DRAPE_WALK_STACK];
     uint depth = 1;
@@ -50,13 +147,11 @@ static void walkTree(Team* team, Packet* packet, const StepCloths* cloths, const
                 continue;
             }
             const LaneMask touching = cullPacketChild(&packet->m_volumes, node + lane);
-            forLanes(triangle, touching) visitPatch(team, packet, cloths, tree, features, triangle, child, list);
+            forLanes(triangle, touching)
+                visitPatch(team, packet, cloths, tree, features, volumes, triangle, child, list);
         }
     }
 }
-
-// Six corners of a triangle, see cornersSeen(), of a packet's: x y z of each, a row of lanes each.
-#define DRAPE_CORNER_ROWS 18
 
 static void putCorners(float* rows, const uint lane, const Vec3* p)
 {
@@ -109,6 +204,12 @@ static int takeVolumes(Packet* packet, const StepCloths* cloths, __global StepCo
     getCorners(p, rows);
     CullVolumes* volumes = &packet->m_volumes;
     const LaneMask near = cullVolumes(volumes, p, lanesLoad(radius, 0), whole, cloths->m_mode, motion);
+    for (int k = 0; k < 6; ++k)
+    {
+        lanesStore(p[k].x, packet->m_corners, 3 * k);
+        lanesStore(p[k].y, packet->m_corners, 3 * k + 1);
+        lanesStore(p[k].z, packet->m_corners, 3 * k + 2);
+    }
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
     {
         packet->m_joined.m_volume.m_low[i] = leastLane(volumes->m_low[i]);
@@ -121,8 +222,8 @@ static int takeVolumes(Packet* packet, const StepCloths* cloths, __global StepCo
 
 // A work-item takes a packet: DRAPE_LANES cloth triangles in leaf order.
 __kernel void patchCull(DRAPE_WALK_ARGUMENTS, __global const float* restrict patchSizes,
-                        __global const float* restrict faces, __global const float* restrict vertices,
-                        __global const float* restrict edges)
+                        __global const float* restrict patchVolumes, __global const float* restrict faces,
+                        __global const float* restrict vertices, __global const float* restrict edges)
 {
     const uint first = get_global_id(0) * DRAPE_LANES;
     if (first >= clothCount) return;
@@ -142,7 +243,8 @@ __kernel void patchCull(DRAPE_WALK_ARGUMENTS, __global const float* restrict pat
     for (packet.m_motion = 0; packet.m_motion <= motionCount && team.m_place <= limit; ++packet.m_motion)
     {
         packet.m_looks = 0;
-        if (takeVolumes(&packet, &cloths, counters)) walkTree(&team, &packet, &cloths, &tree, &features, &tests);
+        if (takeVolumes(&packet, &cloths, counters))
+            walkTree(&team, &packet, &cloths, &tree, &features, patchVolumes, &tests);
     }
     teamFlush(&team, &tests);
 }

@@ -166,12 +166,13 @@ static void growVolume(Dop* dop, const Dop* other)
 }
 
 // A work-item is a child place of the wide tree's lowest level, of those from first up to last: a patch, or none from
-// patchCount on. Writes what the tree holds of it and its size, m. The volume is grown by a share of the size, which
+// patchCount on. Writes what the tree holds of it, on a CPU by direction too, and its size, m. The volume is grown by a share of the size, which
 // covers the directions of contacts that are rounding noise (see feature_cull.h).
 __kernel void patchVolumes(__global const uint* restrict faceOwners, const uint patchCount, const uint first, const uint last,
                            __global const Triangle* restrict triangles, __global const float* restrict positions,
                            __global const NormalCone* restrict vertexCones, __global const NormalCone* restrict edgeCones,
-                           __global float* restrict wideNodes, __global float* restrict patchSizes)
+                           __global float* restrict wideNodes, __global float* restrict patchSizes,
+                           __global float* restrict patchVolumes)
 {
     const uint patch = first + get_global_id(0);
     if (patch >= last) return;
@@ -198,7 +199,18 @@ __kernel void patchVolumes(__global const uint* restrict faceOwners, const uint 
         child.m_reach[k] = coneReach(cone, k);
     }
     wideStore(wideNodes, patch, &child);
-    if (patch < patchCount) patchSizes[patch] = size;
+    if (patch >= patchCount) return;
+    patchSizes[patch] = size;
+#if DRAPE_LANES > 1
+    __global float* out = patchVolumes + patch * DRAPE_PATCH_VOLUME_FLOATS;
+    for (int k = 0; k < DRAPE_PATCH_WIDTH; ++k)
+    {
+        const int is = k < DRAPE_DOP_DIRECTIONS;
+        out[k] = is ? child.m_volume.m_low[k] : 0.0f;
+        out[DRAPE_PATCH_WIDTH + k] = is ? child.m_volume.m_high[k] : 0.0f;
+        out[2 * DRAPE_PATCH_WIDTH + k] = is ? child.m_reach[k] : 0.0f;
+    }
+#endif
 }
 
 // A work-item writes one number of a child place of one level, those from first up to last: a node of the level below, or none

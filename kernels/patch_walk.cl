@@ -330,7 +330,7 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDT
             __local const CullPair* pair = culler.m_pairs + i;
             if (pair->m_near != 0)
                 cullPatch(&culler.m_team, &features, pair->m_pair, culler.m_lookers + pair->m_looker, pair->m_reach,
-                          pair->m_near, &tests);
+                          pair->m_near, DRAPE_ALL_FEATURES, &tests);
         }
         if (!teamFlush(&culler.m_team, &tests)) break;
     }

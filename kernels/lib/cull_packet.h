@@ -7,11 +7,12 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// See CullVolume.
+// See CullVolume. Intervals are padded by m_noise along a direction of length 1, and by m_rounding.
 typedef struct CullVolumes
 {
     Lanes m_low[DRAPE_DOP_DIRECTIONS], m_high[DRAPE_DOP_DIRECTIONS];
     Lanes m_radius, m_least;
+    Lanes m_noise, m_rounding;  // m
 } CullVolumes;
 
 // Of positions whose |x| + |y| + |z| is at most 1, most that roundings take from a volume: as dopGrowInterval() and
@@ -92,12 +93,13 @@ DRAPE_FUNCTION LaneMask cullVolumes(CullVolumes* cull, LanesVec3* p, Lanes radiu
     cull->m_radius = radius;
     cull->m_least = lanesSelect(sure, unswept + DRAPE_CULL_MET * radius, radius);
 
-    const Lanes size = 2.0f * radius + packetIntervals(cull, p);
+    cull->m_noise = DRAPE_CULL_NOISE * (2.0f * radius + packetIntervals(cull, p));
+    cull->m_rounding = DRAPE_PACKET_PAD * farthest + DRAPE_TINY;
     LaneMask near = radius >= 0.0f;
     DRAPE_UNROLL
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
     {
-        const Lanes pad = DRAPE_CULL_NOISE * dopNorm(i) * size + (DRAPE_PACKET_PAD * farthest + DRAPE_TINY);
+        const Lanes pad = dopNorm(i) * cull->m_noise + cull->m_rounding;
         cull->m_low[i] -= pad;
         cull->m_high[i] += pad;
         if (i < 3 && motion)

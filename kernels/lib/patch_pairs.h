@@ -135,14 +135,16 @@ static void keepLanes(DRAPE_TEAM Team* team, const LaneMask mask, FeatureTest te
 #define DRAPE_NEAR_EDGES(block) (16u << (block))
 #define DRAPE_NEAR_ALL 0x7fu
 
-// Lists the feature tests of a pair of cloth triangle and patch, of the blocks of the patch that are near.
+// Lists the feature tests of a pair of cloth triangle and patch: of the blocks of the patch that are near, and of the
+// triangle's nodes and edges among `own` (bits as in Triangle::m_owned).
 static void cullPatch(DRAPE_TEAM Team* team, const PatchFeatures* features, const FeatureTest pair,
-                      const DRAPE_TEAM Looker* looker, const CullReach reach, const uint near, const TestList* list)
+                      const DRAPE_TEAM Looker* looker, const CullReach reach, const uint near, const uint own,
+                      const TestList* list)
 {
     const uint index = pair.m_lane;
     __global const Patch* patch = features->m_patches + index;
     const DRAPE_TEAM CullTriangle* cull = &looker->m_cull;
-    const uint owned = looker->m_owned & looker->m_valid;
+    const uint owned = looker->m_owned & looker->m_valid & own;
     for (int i = 0; i < 3 && (near & DRAPE_NEAR_FACES); ++i)
     {
         if (!(owned & DRAPE_OWNS_VERTEX(i))) continue;

@@ -51,6 +51,16 @@ static uint laneBits(const LaneMask mask)
 #endif
 }
 
+static int anyLane(const LaneMask mask)
+{
+#if DRAPE_LANES == 16
+    const ulong2 bytes = as_ulong2(convert_char16(mask));
+    return (bytes.x | bytes.y) != 0;
+#else
+    return as_ulong(convert_char8(mask)) != 0;
+#endif
+}
+
 // The least of all lanes.
 static float leastLane(const Lanes all)
 {
