@@ -5,19 +5,18 @@
 #include "lib/cull_packet.h"
 #include "lib/patch_pairs.h"
 
-// The directions of the volumes, a lane each. Lanes behind them hold zero, by which nothing is out of reach.
-#if DRAPE_DOP_DIRECTIONS > DRAPE_LANES
-#error "a lane for each direction of the volumes"
-#endif
+// The directions of the volumes, a lane each, and zero in the lanes behind them.
+typedef char DirectionsFit[DRAPE_DOP_DIRECTIONS <= DRAPE_LANES ? 1 : -1];
 typedef struct Directions
 {
     LanesVec3 m_along;
     Lanes m_norm;
+    Lanes m_ignored;  // infinite in the lanes behind, else zero
 } Directions;
 
 static Directions directionLanes(void)
 {
-    float x[DRAPE_LANES], y[DRAPE_LANES], z[DRAPE_LANES], norm[DRAPE_LANES];
+    float x[DRAPE_LANES], y[DRAPE_LANES], z[DRAPE_LANES], norm[DRAPE_LANES], ignored[DRAPE_LANES];
     DRAPE_UNROLL
     for (int i = 0; i < DRAPE_LANES; ++i)
     {
@@ -26,14 +25,17 @@ static Directions directionLanes(void)
         y[i] = dopProject(vec3(0.0f, is, 0.0f), i);
         z[i] = dopProject(vec3(0.0f, 0.0f, is), i);
         norm[i] = is * dopNorm(i);
+        ignored[i] = i < DRAPE_DOP_DIRECTIONS ? 0.0f : DRAPE_INFINITY;
     }
     Directions directions;
     directions.m_along = lanesVec3(lanesLoad(x, 0), lanesLoad(y, 0), lanesLoad(z, 0));
     directions.m_norm = lanesLoad(norm, 0);
+    directions.m_ignored = lanesLoad(ignored, 0);
     return directions;
 }
 
-// A triangle's nodes over the step along the directions, as its volume is made of them.
+// A triangle's nodes over the step along the directions, as its volume is made of them; without bounds in lanes that are
+// no direction.
 typedef struct NodeIntervals
 {
     Lanes m_low[3], m_high[3];
@@ -68,7 +70,7 @@ static void takeNodes(Packet* packet, const uint triangle)
     const Directions directions = directionLanes();
     const float noise = ((const float*)&packet->m_volumes.m_noise)[triangle];
     const float rounding = ((const float*)&packet->m_volumes.m_rounding)[triangle];
-    const Lanes pad = directions.m_norm * noise + rounding;
+    const Lanes pad = directions.m_norm * noise + rounding + directions.m_ignored;
     NodeIntervals* nodes = packet->m_nodes + triangle;
     for (int k = 0; k < 3; ++k)
     {
@@ -96,8 +98,9 @@ static uint featuresNear(const Packet* packet, const uint triangle, const uint o
     const NodeIntervals* nodes = packet->m_nodes + triangle;
     const float radius = ((const float*)&packet->m_volumes.m_radius)[triangle];
     const float least = ((const float*)&packet->m_volumes.m_least)[triangle];
-    const Lanes reach = lanesMax(radius * lanesLoad(volume, 2), least * directionLanes().m_norm);
-    const Lanes low = lanesLoad(volume, 0) - reach, high = lanesLoad(volume, 1) + reach;
+    const Lanes share = lanesLoad(volume + 2 * DRAPE_DOP_DIRECTIONS, 0);
+    const Lanes reach = lanesMax(radius * share, least * directionLanes().m_norm);
+    const Lanes low = lanesLoad(volume, 0) - reach, high = lanesLoad(volume + DRAPE_DOP_DIRECTIONS, 0) + reach;
     uint near = 0;
     DRAPE_UNROLL
     for (int k = 0; k < 3; ++k)
@@ -121,7 +124,7 @@ static void visitPatch(Team* team, Packet* packet, const StepCloths* cloths, con
     const Looker* looker = lookerOf(packet, cloths, triangle);
     const CullReach reach = cullReach(&looker->m_cull, pair.m_reach, features->m_sizes[patch], cloths->m_mode);
     const uint own =
-        featuresNear(packet, triangle, looker->m_owned & looker->m_valid, volumes + patch * DRAPE_PATCH_VOLUME_FLOATS);
+        featuresNear(packet, triangle, looker->m_owned & looker->m_valid, volumes + patch * DRAPE_WIDE_NODE_FLOATS);
     if (teamMakeRoom(team, list)) cullPatch(team, features, pair, looker, reach, DRAPE_NEAR_ALL, own, list);
 }
 

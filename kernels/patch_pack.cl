@@ -166,7 +166,7 @@ static void growVolume(Dop* dop, const Dop* other)
 }
 
 // A work-item is a child place of the wide tree's lowest level, of those from first up to last: a patch, or none from
-// patchCount on. Writes what the tree holds of it, on a CPU by direction too, and its size, m. The volume is grown by a share of the size, which
+// patchCount on. Writes what the tree holds of it, on a CPU side by side too, and its size, m. The volume is grown by a share of the size, which
 // covers the directions of contacts that are rounding noise (see feature_cull.h).
 __kernel void patchVolumes(__global const uint* restrict faceOwners, const uint patchCount, const uint first, const uint last,
                            __global const Triangle* restrict triangles, __global const float* restrict positions,
@@ -202,13 +202,12 @@ __kernel void patchVolumes(__global const uint* restrict faceOwners, const uint 
     if (patch >= patchCount) return;
     patchSizes[patch] = size;
 #if DRAPE_LANES > 1
-    __global float* out = patchVolumes + patch * DRAPE_PATCH_VOLUME_FLOATS;
-    for (int k = 0; k < DRAPE_PATCH_WIDTH; ++k)
+    __global float* out = patchVolumes + patch * DRAPE_WIDE_NODE_FLOATS;
+    for (int k = 0; k < DRAPE_DOP_DIRECTIONS; ++k)
     {
-        const int is = k < DRAPE_DOP_DIRECTIONS;
-        out[k] = is ? child.m_volume.m_low[k] : 0.0f;
-        out[DRAPE_PATCH_WIDTH + k] = is ? child.m_volume.m_high[k] : 0.0f;
-        out[2 * DRAPE_PATCH_WIDTH + k] = is ? child.m_reach[k] : 0.0f;
+        out[k] = child.m_volume.m_low[k];
+        out[DRAPE_DOP_DIRECTIONS + k] = child.m_volume.m_high[k];
+        out[2 * DRAPE_DOP_DIRECTIONS + k] = child.m_reach[k];
     }
 #endif
 }

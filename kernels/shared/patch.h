@@ -33,8 +33,6 @@ typedef struct Patch
 #define DRAPE_ANY_SPREAD 1e18f
 // Of every direction: low, high, and how far a contact can reach as a share of the reach (lib/cone_reach.h).
 #define DRAPE_WIDE_NODE_FLOATS (3 * DRAPE_DOP_DIRECTIONS)
-// A CPU has the same of each patch beside it, a lane for each direction; lanes without one hold zero.
-#define DRAPE_PATCH_VOLUME_FLOATS (3 * DRAPE_PATCH_WIDTH)
 
 // Of a cloth that collides with itself: a feature's box over the step, low then high.
 #define DRAPE_BOX_FLOATS 6

@@ -60,7 +60,8 @@ void PatchCullStage::setTopology(Device& device, const MeshPool& obstacles, cons
     m_vertexIds.reserve(device, m_layout.m_vertexOwners.size());
     m_edgeIds.reserve(device, m_layout.m_edgeOwners.size());
     m_sizes.reserve(device, m_layout.m_patches.size());
-    m_volumesByDirection.reserve(device, device.isGpu() ? 1 : m_layout.m_patches.size() * DRAPE_PATCH_VOLUME_FLOATS);
+    // A vector of lanes is loaded from it, of which some lie behind the last patch's.
+    m_patchVolumes.reserve(device, device.isGpu() ? 1 : m_layout.m_patches.size() * DRAPE_WIDE_NODE_FLOATS + lanes);
     m_wideNodes.reserve(device, m_layout.m_levels.back() * DRAPE_WIDE_NODE_FLOATS * lanes);
     device.wait();
 }
@@ -124,7 +125,7 @@ void PatchCullStage::packVolumes(Device& device, Range patches, Buffer<Triangle>
             m_volumes.launch(device, changed.count(), kGroup, m_faceOwners.handle(), cl_uint(patchCount),
                              changed.first(), changed.last(), triangles.handle(), positions.handle(),
                              vertexCones.handle(), edgeCones.handle(), m_wideNodes.handle(), m_sizes.handle(),
-                             m_volumesByDirection.handle());
+                             m_patchVolumes.handle());
         }
         else
         {
@@ -179,6 +180,6 @@ void PatchCullStage::enqueue(Device& device, Cloths cloths, Buffer<StepCounters>
                   cloths.m_motions.handle(), cl_uint(cloths.m_motionCount), m_wideNodes.handle(), m_levels.handle(),
                   cl_uint(m_layout.m_levels.size() - 1), m_patches.handle(), m_tests.handle(),
                   cl_uint(m_tests.capacity()), cl_uint(cloths.m_limit), counters.handle(), m_sizes.handle(),
-                  m_volumesByDirection.handle(), m_faces.handle(), m_vertices.handle(), m_edges.handle());
+                  m_patchVolumes.handle(), m_faces.handle(), m_vertices.handle(), m_edges.handle());
 }
 }  // namespace drape

@@ -105,7 +105,6 @@ private:
     Buffer<cl_uint> m_levels{"obstacle wide nodes"};
     Buffer<FeatureTest> m_tests{"step candidates"}, m_pairs{"step candidates"};
     Buffer<float> m_faces{"obstacle faces"}, m_vertices{"obstacle vertices"}, m_edges{"obstacle edges"};
-    Buffer<float> m_sizes{"obstacle patches"}, m_volumesByDirection{"obstacle patches"},
-        m_wideNodes{"obstacle wide nodes"};
+    Buffer<float> m_sizes{"obstacle patches"}, m_patchVolumes{"obstacle patches"}, m_wideNodes{"obstacle wide nodes"};
 };
 }  // namespace drape
