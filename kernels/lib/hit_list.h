@@ -24,6 +24,7 @@ typedef struct HitList
 
 // A contact is four of these, and where it lies in a list it is aligned so: a store of less leaves a GPU's memory more to do.
 #define DRAPE_CONTACT_QUARTERS 4
+typedef char ContactFits[sizeof(Contact) == DRAPE_CONTACT_QUARTERS * sizeof(uint4) ? 1 : -1];
 
 // `parts` neighbouring work-items copy a contact together, each some quarters of it.
 static void copyHit(__global Contact* to, __global const Contact* from, const uint parts)

@@ -74,6 +74,9 @@ public:
         m_count.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_blockCount.handle(), scratch);
         m_place.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_ranked, m_blockCount.handle(),
                        m_slotFirst.handle(), m_counters.handle(), scratch);
+        const auto isCrowded = [&](cl_uint count) { return count > m_ranked; };
+        EXPECT_EQ(contents(m_device, m_counters, 1)[0].m_crowded,
+                  cl_uint(std::count_if(slotCount.begin(), slotCount.end(), isCrowded)));
         expectPlacesInOneLaunch(slots);
         m_gather.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotCount.handle(),
                         m_slotFirst.handle(), m_members.handle(), m_keys.handle(), m_counters.handle(),

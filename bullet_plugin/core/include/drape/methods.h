@@ -22,7 +22,7 @@ enum class TreeBuilder
 enum class RefitMethod
 {
     Levels,   // a launch per height (the thesis); waits once per topology
-    Subtrees  // whole subtrees per work-group: three launches, two for fewer than 4,097 triangles
+    Subtrees  // whole subtrees per work-group: three launches, two up to 2,048 triangles
 };
 
 // How kernels spread their work; results do not depend on it.
