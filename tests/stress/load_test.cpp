@@ -44,6 +44,32 @@ TEST_P(LoadTest, CoincidentTriangles)
     EXPECT_TRUE(sameBytes(again, contacts)) << difference(again, contacts);
 }
 
+// Slots with so many hits that a launch of their own puts them in order, long after the last step that had some: the
+// step runs again for it. Lists have room from before.
+TEST_P(LoadTest, CrowdsComeBackInOrder)
+{
+    constexpr int kObstacleTriangles = 1000, kStepsWithout = 200;
+    const std::unique_ptr<Pipeline> pipeline = makePipeline(GetParam().m_settings);
+    ASSERT_TRUE(pipeline);
+    StepCase step = {"a crowd", 0,   coincidentTriangles(2, 0.02f), coincidentTriangles(kObstacleTriangles, 0.0f),
+                     {},        0.1f};
+    step.m_end = step.m_cloth.m_positions;
+    const std::vector<Contact> contacts = runCase(*pipeline, step);
+    ASSERT_GE(contacts.size(), 3u * 2u * kObstacleTriangles);
+    const std::vector<float> away = coincidentTriangles(2, 5.0f).m_positions;
+    for (int i = 0; i < kStepsWithout; ++i)
+    {
+        setMotion(*pipeline, 0, away, away);
+        pipeline->addPair(0, 1, step.m_thickness);
+        ASSERT_TRUE(runStep(*pipeline).empty());
+    }
+    setMotion(*pipeline, 0, step.m_cloth.m_positions, step.m_end);
+    pipeline->addPair(0, 1, step.m_thickness);
+    const std::vector<Contact> again = runStep(*pipeline);
+    EXPECT_EQ(pipeline->statistics().m_retries, pipeline->deviceReport().m_onHost ? 0u : 1u);
+    EXPECT_TRUE(sameBytes(again, contacts)) << difference(again, contacts);
+}
+
 // Row 11 of the stress table. Five thousand million pairs, more than fit into memory or into 32 bits: the step says so,
 // with the exact number, leaves that cloth out and does the rest as if it were alone. Bounded in memory and time.
 TEST_P(LoadTest, HundredThousandCoincidentTriangles)
