@@ -92,7 +92,7 @@ static const Looker* lookerOf(Packet* packet, const StepCloths* cloths, const ui
 }
 
 // Of a triangle's nodes and edges among `owned` those that are not proved out of reach of a patch, bits as in
-// Triangle::m_owned: what cullPacketChild() asks of triangles. volume: the patch's, see patchVolumes.
+// Triangle::m_owned: what cullPacketChild() asks of triangles. volume: the patch's, see patch_pack.cl.
 static uint featuresNear(const Packet* packet, const uint triangle, const uint owned, __global const float* volume)
 {
     const NodeIntervals* nodes = packet->m_nodes + triangle;
