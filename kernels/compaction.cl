@@ -155,6 +155,7 @@ static void countMembers(__global const Contact* hits, __global uint* members, c
 }
 
 // A work-group sorts the members of those slots of its block (of at most DRAPE_BLOCK slots) that have more than `ranked`.
+// Their keys stay as they were, and are not read any more.
 __kernel void compactionOrder(__global const Contact* restrict hits, const uint hitCapacity,
                               __global const uint* restrict slotFirst, const uint slots, const uint ranked,
                               const uint block, __global uint* members, __global const StepCounters* restrict counters)

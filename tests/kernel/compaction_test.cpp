@@ -102,11 +102,18 @@ public:
     // Slots that one group sorts; hits of a slot from which on it does; work-items that copy a hit.
     cl_uint m_sortBlock = kBlock, m_ranked = DRAPE_RANKED, m_parts = 1;
 
-    // As a CPU takes them, or as a GPU does.
-    void takeAs(bool gpu)
+    // That run() orders them, as a CPU takes them and as a GPU does, and by work-items in pairs.
+    void expectOrdered(const std::vector<Contact>& hits, std::uint32_t slots)
     {
-        m_ranked = gpu ? kRankedGpu : DRAPE_RANKED;
-        m_parts = gpu ? 4 : 1;
+        std::vector<Contact> ordered = hits;
+        std::sort(ordered.begin(), ordered.end(), inOrder);
+        for (const cl_uint parts : {1u, 2u, 4u})
+        {
+            m_parts = parts;
+            m_ranked = parts == 1 ? DRAPE_RANKED : kRankedGpu;
+            const std::vector<Contact> found = run(hits, slots);
+            ASSERT_TRUE(sameBytes(found, ordered)) << parts << " parts: " << difference(found, ordered);
+        }
     }
 
     // How long it takes for hits of one slot, copies and checks included: those grow with the hits.
@@ -157,14 +164,7 @@ TEST_P(CompactionTest, OrdersBySlotAndFeature)
             {
                 SCOPED_TRACE("seed 90, " + std::to_string(slots) + " slots, " + std::to_string(count) + " hits");
                 const std::vector<Contact> hits = randomHits(count, slots, crowded, random);
-                std::vector<Contact> ordered = hits;
-                std::sort(ordered.begin(), ordered.end(), inOrder);
-                for (bool gpu : {false, true})
-                {
-                    compaction.takeAs(gpu);
-                    const std::vector<Contact> found = compaction.run(hits, slots);
-                    ASSERT_TRUE(sameBytes(found, ordered)) << difference(found, ordered);
-                }
+                ASSERT_NO_FATAL_FAILURE(compaction.expectOrdered(hits, slots));
             }
         }
     }
@@ -196,14 +196,7 @@ TEST_P(CompactionTest, OrdersCrowdedSlots)
         for (std::size_t i = hits.size(); i > 1; --i)
             std::swap(hits[i - 1], hits[random.below(std::uint32_t(i))]);
         compaction.m_sortBlock = each % 2 == 0 ? 32 : kBlock;
-        std::vector<Contact> ordered = hits;
-        std::sort(ordered.begin(), ordered.end(), inOrder);
-        for (bool gpu : {false, true})
-        {
-            compaction.takeAs(gpu);
-            const std::vector<Contact> found = compaction.run(hits, kSlots);
-            ASSERT_TRUE(sameBytes(found, ordered)) << difference(found, ordered);
-        }
+        ASSERT_NO_FATAL_FAILURE(compaction.expectOrdered(hits, kSlots));
     }
     EXPECT_FALSE(device->failed()) << device->error().text();
 }

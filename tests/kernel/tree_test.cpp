@@ -21,8 +21,8 @@ namespace
 {
 // Around the work-groups of 64, 128 and 256, the windows of 64, 96 and 2,048 leaves, subtrees of 32, and the sort's
 // tile of 2,048.
-const int kSizes[] = {1,   2,   3,   32,  33,  63,   64,   65,   95,   96,   97,
-                      127, 128, 129, 255, 257, 2047, 2048, 2049, 4096, 4097, 20011};
+const int kSizes[] = {1,   2,   3,   31,  32,  33,  63,  64,   65,   95,   96,   97,   127,
+                      128, 129, 191, 192, 193, 255, 257, 2047, 2048, 2049, 4096, 4097, 20011};
 
 const TreeBuilder kBuilders[] = {TreeBuilder::Balanced, TreeBuilder::Radix, TreeBuilder::TopDown, TreeBuilder::Ploc};
 

@@ -23,15 +23,15 @@ class PoclThreads : public testing::Test
 protected:
     void SetUp() override
     {
-        ASSERT_EQ(::sched_getaffinity(0, sizeof m_cores, &m_cores), 0);
         hide(kAffinity);
         for (const char* name : kNumbers)
             hide(name);
+        ASSERT_EQ(::sched_getaffinity(0, sizeof m_cores, &m_cores), 0);
     }
 
     void TearDown() override
     {
-        ::sched_setaffinity(0, sizeof m_cores, &m_cores);
+        if (CPU_COUNT(&m_cores) > 0) ::sched_setaffinity(0, sizeof m_cores, &m_cores);
         ::unsetenv(kAffinity);
         for (const auto& variable : m_variables)
             ::setenv(variable.first.c_str(), variable.second.c_str(), 1);
@@ -49,7 +49,7 @@ protected:
         return CPU_COUNT(&cores) == ::sysconf(_SC_NPROCESSORS_CONF) ? "1" : "";
     }
 
-    cpu_set_t m_cores;
+    cpu_set_t m_cores = {};
 
 private:
     void hide(const char* name)

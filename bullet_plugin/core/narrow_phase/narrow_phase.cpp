@@ -10,7 +10,8 @@ constexpr std::size_t kSortBlockGpu = 32;    // slots that a group sorts one aft
 constexpr std::size_t kReduceGroup = 64;     // as in kernels/contact_reduction.cl
 constexpr std::size_t kReduceBlockGpu = 64;  // slots of such a group
 constexpr std::size_t kReduceBlockCpu = 256;
-// Most hits of a slot that a GPU puts in order by counting lesser ones, where no reduction follows.
+// Most hits of a slot that a GPU puts in order by counting lesser ones, where no reduction follows: what a group of
+// compactionOrder would count in local memory, a launch more.
 constexpr cl_uint kRankedGpu = 512;
 constexpr std::size_t kBlock = 1024;        // slots per work-group, as in kernels/compaction.cl
 constexpr std::size_t kFewSlots = 1 << 14;  // placed in one launch
@@ -21,7 +22,7 @@ constexpr std::size_t kItemsPerUnitCpu = 256;   // four groups per core, so that
 // leave room for few groups at a time.
 constexpr std::size_t kFewTestsPerUnit = 128;
 
-// Work-items that copy a contact together.
+// Work-items that copy a contact together: on a GPU, whose neighbours' stores are joined, one for each of its vectors.
 cl_uint copyParts(const Device& device)
 {
     return device.isGpu() ? 4 : 1;
