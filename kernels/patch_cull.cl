@@ -5,15 +5,7 @@
 #include "lib/cull_packet.h"
 #include "lib/patch_pairs.h"
 
-// The directions of the volumes, a lane each, and zero in the lanes behind them.
 typedef char DirectionsFit[DRAPE_DOP_DIRECTIONS <= DRAPE_LANES ? 1 : -1];
-typedef struct Directions
-{
-    LanesVec3 m_along;
-    Lanes m_norm;
-    Lanes m_ignored;  // infinite in the lanes behind, else zero
-} Directions;
-
 static Directions directionLanes(void)
 {
     float x[DRAPE_LANES], y[DRAPE_LANES], z[DRAPE_LANES], norm[DRAPE_LANES], ignored[DRAPE_LANES];
@@ -34,13 +26,6 @@ static Directions directionLanes(void)
     return directions;
 }
 
-// A triangle's nodes over the step along the directions, as its volume is made of them; without bounds in lanes that are
-// no direction.
-typedef struct NodeIntervals
-{
-    Lanes m_low[3], m_high[3];
-} NodeIntervals;
-
 // Six corners of a triangle, see cornersSeen(), of a packet's: x y z of each, a row of lanes each.
 #define DRAPE_CORNER_ROWS 18
 
@@ -58,27 +43,23 @@ typedef struct Packet
     uint m_looks;  // bit i: whether looker i and its nodes are ready
 } Packet;
 
-// Corner k of a packet's triangle: of those at the step's start, then those at its end.
-static Vec3 cornerOf(const Packet* packet, const uint triangle, const int k)
+// One number of a packet's lanes.
+static float laneOf(const Lanes* lanes, const uint lane)
 {
-    const float* rows = packet->m_corners + 3 * k * DRAPE_LANES + triangle;
-    return vec3(rows[0], rows[DRAPE_LANES], rows[2 * DRAPE_LANES]);
+    return ((const float*)lanes)[lane];
 }
 
 static void takeNodes(Packet* packet, const uint triangle)
 {
     const Directions directions = directionLanes();
-    const float noise = ((const float*)&packet->m_volumes.m_noise)[triangle];
-    const float rounding = ((const float*)&packet->m_volumes.m_rounding)[triangle];
-    const Lanes pad = directions.m_norm * noise + rounding + directions.m_ignored;
-    NodeIntervals* nodes = packet->m_nodes + triangle;
-    for (int k = 0; k < 3; ++k)
+    Vec3 corners[6];
+    for (int k = 0; k < 6; ++k)
     {
-        const Lanes start = lanesDotUniform(directions.m_along, cornerOf(packet, triangle, k));
-        const Lanes end = lanesDotUniform(directions.m_along, cornerOf(packet, triangle, 3 + k));
-        nodes->m_low[k] = lanesMin(start, end) - pad;
-        nodes->m_high[k] = lanesMax(start, end) + pad;
+        const float* rows = packet->m_corners + 3 * k * DRAPE_LANES + triangle;
+        corners[k] = vec3(rows[0], rows[DRAPE_LANES], rows[2 * DRAPE_LANES]);
     }
+    nodeIntervals(packet->m_nodes + triangle, &directions, corners, laneOf(&packet->m_volumes.m_noise, triangle),
+                  laneOf(&packet->m_volumes.m_rounding, triangle));
 }
 
 static const Looker* lookerOf(Packet* packet, const StepCloths* cloths, const uint triangle)
@@ -92,25 +73,22 @@ static const Looker* lookerOf(Packet* packet, const StepCloths* cloths, const ui
 }
 
 // Of a triangle's nodes and edges among `owned` those that are not proved out of reach of a patch, bits as in
-// Triangle::m_owned: what cullPacketChild() asks of triangles. volume: the patch's, see patch_pack.cl.
+// Triangle::m_owned: what cullPacketChild() asks of triangles. volume: the patch's, as patchVolumes of patch_pack.cl
+// leaves it.
 static uint featuresNear(const Packet* packet, const uint triangle, const uint owned, __global const float* volume)
 {
     const NodeIntervals* nodes = packet->m_nodes + triangle;
-    const float radius = ((const float*)&packet->m_volumes.m_radius)[triangle];
-    const float least = ((const float*)&packet->m_volumes.m_least)[triangle];
-    const Lanes share = lanesLoad(volume + 2 * DRAPE_DOP_DIRECTIONS, 0);
-    const Lanes reach = lanesMax(radius * share, least * directionLanes().m_norm);
-    const Lanes low = lanesLoad(volume, 0) - reach, high = lanesLoad(volume + DRAPE_DOP_DIRECTIONS, 0) + reach;
+    const Directions directions = directionLanes();
+    const NearPatch patch =
+        nearPatch(&directions, lanesLoad(volume, 0), lanesLoad(volume + DRAPE_DOP_DIRECTIONS, 0),
+                  lanesLoad(volume + 2 * DRAPE_DOP_DIRECTIONS, 0), laneOf(&packet->m_volumes.m_radius, triangle),
+                  laneOf(&packet->m_volumes.m_least, triangle));
     uint near = 0;
     DRAPE_UNROLL
     for (int k = 0; k < 3; ++k)
     {
-        const int next = k == 2 ? 0 : k + 1;
-        if ((owned & DRAPE_OWNS_VERTEX(k)) && !anyLane((low > nodes->m_high[k]) | (high < nodes->m_low[k])))
-            near |= DRAPE_OWNS_VERTEX(k);
-        if ((owned & DRAPE_OWNS_EDGE(k)) && !anyLane((low > lanesMax(nodes->m_high[k], nodes->m_high[next])) |
-                                                     (high < lanesMin(nodes->m_low[k], nodes->m_low[next]))))
-            near |= DRAPE_OWNS_EDGE(k);
+        if ((owned & DRAPE_OWNS_VERTEX(k)) && !anyLane(nodeIsOut(nodes, k, patch))) near |= DRAPE_OWNS_VERTEX(k);
+        if ((owned & DRAPE_OWNS_EDGE(k)) && !anyLane(edgeIsOut(nodes, k, patch))) near |= DRAPE_OWNS_EDGE(k);
     }
     return near;
 }
@@ -225,7 +203,7 @@ static int takeVolumes(Packet* packet, const StepCloths* cloths, __global StepCo
 
 // A work-item takes a packet: DRAPE_LANES cloth triangles in leaf order.
 __kernel void patchCull(DRAPE_WALK_ARGUMENTS, __global const float* restrict patchSizes,
-                        __global const float* restrict patchVolumes, __global const float* restrict faces,
+                        __global const float* restrict volumes, __global const float* restrict faces,
                         __global const float* restrict vertices, __global const float* restrict edges)
 {
     const uint first = get_global_id(0) * DRAPE_LANES;
@@ -238,8 +216,7 @@ __kernel void patchCull(DRAPE_WALK_ARGUMENTS, __global const float* restrict pat
     for (uint lane = 0; lane < DRAPE_LANES; ++lane)
     {
         packet.m_cloth[lane] = clothOrder[min(first + lane, clothCount - 1)];
-        packet.m_radius[lane] =
-            first + lane < clothCount ? radius[clothTriangles[packet.m_cloth[lane]].m_mesh] : -1.0f;
+        packet.m_radius[lane] = first + lane < clothCount ? radius[clothTriangles[packet.m_cloth[lane]].m_mesh] : -1.0f;
     }
     Team team;
     teamStart(&team);
@@ -247,7 +224,7 @@ __kernel void patchCull(DRAPE_WALK_ARGUMENTS, __global const float* restrict pat
     {
         packet.m_looks = 0;
         if (takeVolumes(&packet, &cloths, counters))
-            walkTree(&team, &packet, &cloths, &tree, &features, patchVolumes, &tests);
+            walkTree(&team, &packet, &cloths, &tree, &features, volumes, &tests);
     }
     teamFlush(&team, &tests);
 }

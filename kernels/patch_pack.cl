@@ -166,13 +166,13 @@ static void growVolume(Dop* dop, const Dop* other)
 }
 
 // A work-item is a child place of the wide tree's lowest level, of those from first up to last: a patch, or none from
-// patchCount on. Writes what the tree holds of it, on a CPU side by side too, and its size, m. The volume is grown by a
+// patchCount on. Writes what the tree holds of it, on a CPU in volumes side by side too, and its size, m. The volume is grown by a
 // share of the size, which covers the directions of contacts that are rounding noise (see feature_cull.h).
 __kernel void patchVolumes(__global const uint* restrict faceOwners, const uint patchCount, const uint first, const uint last,
                            __global const Triangle* restrict triangles, __global const float* restrict positions,
                            __global const NormalCone* restrict vertexCones, __global const NormalCone* restrict edgeCones,
                            __global float* restrict wideNodes, __global float* restrict patchSizes,
-                           __global float* restrict patchVolumes)
+                           __global float* restrict volumes)
 {
     const uint patch = first + get_global_id(0);
     if (patch >= last) return;
@@ -202,7 +202,7 @@ __kernel void patchVolumes(__global const uint* restrict faceOwners, const uint 
     if (patch >= patchCount) return;
     patchSizes[patch] = size;
 #if DRAPE_LANES > 1
-    __global float* out = patchVolumes + patch * DRAPE_WIDE_NODE_FLOATS;
+    __global float* out = volumes + patch * DRAPE_WIDE_NODE_FLOATS;
     for (int k = 0; k < DRAPE_DOP_DIRECTIONS; ++k)
     {
         out[k] = child.m_volume.m_low[k];

@@ -1,5 +1,5 @@
 // Volumes of a packet of cloth triangles, a lane each: what cullVolume() and cullWideChild() do for one triangle, see
-// feature_cull.h.
+// feature_cull.h. And those of one triangle's nodes and edges, a lane for each direction.
 #ifndef DRAPE_LIB_CULL_PACKET_H
 #define DRAPE_LIB_CULL_PACKET_H
 
@@ -127,6 +127,65 @@ DRAPE_FUNCTION LaneMask cullPacketChild(const CullVolumes* cull, const DRAPE_GLO
                 (child[(DRAPE_DOP_DIRECTIONS + i) * DRAPE_PATCH_WIDTH] + reach >= cull->m_low[i]);
     }
     return near;
+}
+
+// Directions of the volumes, a lane each. Lanes that are none hold zero, and infinity in m_ignored, which is zero else.
+typedef struct Directions
+{
+    LanesVec3 m_along;
+    Lanes m_norm, m_ignored;
+} Directions;
+
+// A triangle's nodes over the step along the directions, m: together they are its volume's intervals. Without bounds in
+// lanes that are no direction.
+typedef struct NodeIntervals
+{
+    Lanes m_low[3], m_high[3];
+} NodeIntervals;
+
+// corners: of one triangle, as cullVolumes() leaves them; noise, rounding: its pads there.
+DRAPE_FUNCTION void nodeIntervals(NodeIntervals* nodes, const Directions* directions, const Vec3* corners, float noise,
+                                  float rounding)
+{
+    const Lanes pad = directions->m_norm * noise + rounding + directions->m_ignored;
+    for (int k = 0; k < 3; ++k)
+    {
+        const Lanes start = lanesDotUniform(directions->m_along, corners[k]);
+        const Lanes end = lanesDotUniform(directions->m_along, corners[3 + k]);
+        nodes->m_low[k] = lanesMin(start, end) - pad;
+        nodes->m_high[k] = lanesMax(start, end) + pad;
+    }
+}
+
+// Where cloth is that may be near a patch, along the directions, m.
+typedef struct NearPatch
+{
+    Lanes m_low, m_high;
+} NearPatch;
+
+// low, high, share: what the wide tree holds of the patch. radius, least: the triangle's, see CullVolume.
+DRAPE_FUNCTION NearPatch nearPatch(const Directions* directions, Lanes low, Lanes high, Lanes share, float radius,
+                                   float least)
+{
+    const Lanes reach = lanesMax(radius * share, least * directions->m_norm);
+    NearPatch near;
+    near.m_low = low - reach;
+    near.m_high = high + reach;
+    return near;
+}
+
+// Directions along which node k is out of reach of a patch. Lanes of NaN are none.
+DRAPE_FUNCTION LaneMask nodeIsOut(const NodeIntervals* nodes, int k, NearPatch near)
+{
+    return (near.m_low > nodes->m_high[k]) | (near.m_high < nodes->m_low[k]);
+}
+
+// The same of the edge from node k on.
+DRAPE_FUNCTION LaneMask edgeIsOut(const NodeIntervals* nodes, int k, NearPatch near)
+{
+    const int next = k == 2 ? 0 : k + 1;
+    return (near.m_low > lanesMax(nodes->m_high[k], nodes->m_high[next])) |
+           (near.m_high < lanesMin(nodes->m_low[k], nodes->m_low[next]));
 }
 
 DRAPE_NAMESPACE_END

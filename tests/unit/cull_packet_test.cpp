@@ -1,7 +1,9 @@
-// Volumes of packets, a lane at a time: as those of single triangles, never smaller.
+// Volumes of packets, a lane at a time: as those of single triangles, never smaller. Those of their nodes and edges.
 #include "kernels/lib/cull_packet.h"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 #include "tests/support/cases.h"
 #include "tests/support/side.h"
@@ -15,7 +17,62 @@ constexpr float kRadius = 0.03f;  // m
 struct Counts
 {
     int m_volumes = 0, m_near = 0, m_unswept = 0;
+    int m_tried = 0, m_out = 0;  // nodes against patches beside the opposite edge
 };
+
+// The lane of direction i.
+Directions directionLane(int i)
+{
+    const Vec3 axes[] = {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1)};
+    return {lanesVec3(dopProject(axes[0], i), dopProject(axes[1], i), dopProject(axes[2], i)), dopNorm(i), 0.0f};
+}
+
+// Which nodes and edges are out of reach of a patch that is a point without a cone, bits as in Triangle::m_owned.
+std::uint32_t outOfReach(const CullVolumes& packet, const Vec3* corners, Vec3 point)
+{
+    std::uint32_t out = 0;
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        const Directions direction = directionLane(i);
+        const float place = dopProject(point, i);
+        const NearPatch patch = nearPatch(&direction, place, place, dopNorm(i), packet.m_radius, packet.m_least);
+        NodeIntervals nodes;
+        nodeIntervals(&nodes, &direction, corners, packet.m_noise, packet.m_rounding);
+        for (int k = 0; k < 3; ++k)
+        {
+            if (nodeIsOut(&nodes, k, patch)) out |= DRAPE_OWNS_VERTEX(k);
+            if (edgeIsOut(&nodes, k, patch)) out |= DRAPE_OWNS_EDGE(k);
+        }
+    }
+    return out;
+}
+
+// corners: those that the packet's volume is made of.
+void expectNodesMakeTheVolume(const CullVolumes& packet, const Vec3* corners, Counts& counts)
+{
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+    {
+        const Directions direction = directionLane(i);
+        NodeIntervals nodes;
+        nodeIntervals(&nodes, &direction, corners, packet.m_noise, packet.m_rounding);
+        EXPECT_EQ(std::min({nodes.m_low[0], nodes.m_low[1], nodes.m_low[2]}), packet.m_low[i]);
+        EXPECT_EQ(std::max({nodes.m_high[0], nodes.m_high[1], nodes.m_high[2]}), packet.m_high[i]);
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+        const int next = (k + 1) % 3, last = (k + 2) % 3;
+        // What is at a node, or beside an edge as far as contacts reach, is in its reach; the node opposite may not be.
+        const Vec3 middle = vec3Scale(vec3Add(corners[3 + next], corners[3 + last]), 0.5f);
+        const Vec3 beside = vec3Add(middle, vec3(0.0f, packet.m_radius, 0.0f));
+        EXPECT_EQ(outOfReach(packet, corners, corners[3 + k]) &
+                      (DRAPE_OWNS_VERTEX(k) | DRAPE_OWNS_EDGE(k) | DRAPE_OWNS_EDGE(last)),
+                  0u);
+        const std::uint32_t out = outOfReach(packet, corners, beside);
+        EXPECT_EQ(out & DRAPE_OWNS_EDGE(next), 0u);
+        ++counts.m_tried;
+        counts.m_out += (out & DRAPE_OWNS_VERTEX(k)) != 0;
+    }
+}
 
 // Of valid triangles.
 void expectSameVolume(const StepCase& step, const Triangle& triangle, std::uint32_t mode, const ObstacleMotion* motion,
@@ -44,6 +101,9 @@ void expectSameVolume(const StepCase& step, const Triangle& triangle, std::uint3
         EXPECT_NEAR(packet.m_low[i], single.m_volume.m_low[i], 5e-6f);
         EXPECT_NEAR(packet.m_high[i], single.m_volume.m_high[i], 5e-6f);
     }
+    for (int k = 0; k < 6; ++k)
+        corners[k] = vec3(lanes[k].x, lanes[k].y, lanes[k].z);
+    expectNodesMakeTheVolume(packet, corners, counts);
 }
 }  // namespace
 
@@ -73,6 +133,7 @@ TEST(CullPacket, VolumesAreThoseOfSingleTriangles)
     EXPECT_GT(counts.m_near, counts.m_volumes / 2);
     EXPECT_LT(counts.m_near, counts.m_volumes * 9 / 10);
     EXPECT_GT(counts.m_unswept, counts.m_near / 5);
+    EXPECT_GT(counts.m_out, counts.m_tried / 4);
 }
 
 // What is not in the step is near nothing, wherever it is.
