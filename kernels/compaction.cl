@@ -3,6 +3,7 @@
 // hit among them: by counting where a slot has few, by a sort where it has many.
 #include "lib/group_scan.h"
 #include "lib/hit_list.h"
+#include "lib/item_runs.h"
 
 // Slots a work-group handles. Each work-item takes DRAPE_BLOCK / group size adjacent ones.
 #define DRAPE_BLOCK 1024
@@ -85,9 +86,9 @@ __kernel void compactionPlaceFew(__global const uint* restrict slotCount, const 
     if (get_group_id(0) == get_num_groups(0) - 1 && get_local_id(0) == 0) counters->m_hits = hits;
 }
 
-// A work-item takes every stride-th place of the hits' list and lists a hit among its slot's members, last to first as the
-// items come; the atomic gives each a place of its own. keys: the obstacle features of members. Leaves slotCount zero for the
-// next step, and its counters.
+// A work-item goes through its part of the hits' list and lists a hit among its slot's members, last to first as the items
+// come; the atomic gives each a place of its own. keys: the obstacle features of members. Leaves slotCount zero for the next
+// step, and its counters.
 __kernel void compactionGather(__global const Contact* restrict hits, const uint hitCapacity,
                                __global volatile uint* slotCount, __global const uint* restrict slotFirst,
                                __global uint* restrict members, __global uint* restrict keys,
@@ -95,8 +96,9 @@ __kernel void compactionGather(__global const Contact* restrict hits, const uint
 {
     const uint count = min(counters->m_listed, hitCapacity);
     if (get_global_id(0) < sizeof(StepCounters) / sizeof(uint)) ((__global uint*)next)[get_global_id(0)] = 0;
-    for (uint i = get_global_id(0); i < count; i += get_global_size(0))
+    for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextItem(&runs))
     {
+        const uint i = runs.m_item;
         const uint slot = hits[i].m_slot;
         const uint place = slotFirst[slot] + atomic_dec(slotCount + slot) - 1;
         members[place] = i;
@@ -186,10 +188,10 @@ __kernel void compactionOrder(__global const Contact* restrict hits, const uint 
     }
 }
 
-// `parts` work-items (1, 2 or 4) share a hit, and take every stride-th place of the members' list: they count the members of the
-// same slot with a lesser obstacle feature, and copy the hit to where that number puts it. Where the slot has more members than
-// `ranked` compactionOrder has sorted them and the hit keeps its place. A feature pair is tested once, so features of a slot
-// differ and every place is written once. keys: see compactionGather. contacts: behind a head with the counters.
+// `parts` work-items (1, 2 or 4) share a hit, and go through their part of the members' list: they count the members of the
+// same slot with a lesser obstacle feature, and copy the hit to where that number puts it. Where the slot has more members
+// than `ranked` compactionOrder has sorted them and the hit keeps its place. A feature pair is tested once, so features of a
+// slot differ and every place is written once. keys: see compactionGather. contacts: behind a head with the counters.
 __kernel void compactionWrite(__global const Contact* restrict hits, const uint hitCapacity,
                               __global const uint* restrict slotFirst, const uint slots, const uint ranked,
                               const uint parts, __global const uint* restrict members,
@@ -198,8 +200,9 @@ __kernel void compactionWrite(__global const Contact* restrict hits, const uint 
 {
     const uint count = min(counters->m_hits, hitCapacity);
     if (get_global_id(0) == 0) *(__global StepCounters*)contacts = *counters;
-    for (uint i = get_global_id(0) / parts; i < count; i += get_global_size(0) / parts)
+    for (ItemRuns runs = itemRuns(count, parts); runs.m_item < count; nextItem(&runs))
     {
+        const uint i = runs.m_item;
         __global const Contact* hit = hits + members[i];
         const uint slot = hit->m_slot, first = slotFirst[slot];
         const uint last = slot + 1 < slots ? min(slotFirst[slot + 1], count) : count;

@@ -3,6 +3,7 @@
 #include "lib/contact_reduction.h"
 #include "lib/group_scan.h"
 #include "lib/hit_list.h"
+#include "lib/item_runs.h"
 #include "shared/patch.h"
 
 // Most slots and work-items of a group.
@@ -186,8 +187,8 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_REDUCE_GROUP, 1, 1))) void re
     }
 }
 
-// `parts` work-items (1, 2 or 4) share a place of the members' list, and take every stride-th: they copy the hit that stays there,
-// if one does. keptFirst: where the contacts of each slot begin. contacts: behind a head with the counters.
+// `parts` work-items (1, 2 or 4) share a place of the members' list, and go through their part: they copy the hit that stays
+// there, if one does. keptFirst: where the contacts of each slot begin. contacts: behind a head with the counters.
 __kernel void reductionWrite(__global const Contact* restrict hits, const uint hitCapacity,
                              __global const uint* restrict slotFirst, const uint parts,
                              __global const uint* restrict kept, __global const uint* restrict keptFirst,
@@ -195,8 +196,9 @@ __kernel void reductionWrite(__global const Contact* restrict hits, const uint h
 {
     const uint count = min(counters->m_listed, hitCapacity);
     if (get_global_id(0) == 0) *(__global StepCounters*)contacts = *counters;
-    for (uint i = get_global_id(0) / parts; i < count; i += get_global_size(0) / parts)
+    for (ItemRuns runs = itemRuns(count, parts); runs.m_item < count; nextItem(&runs))
     {
+        const uint i = runs.m_item;
         const uint member = kept[i];
         if (member == DRAPE_NO_FEATURE) continue;
         const uint slot = hits[member].m_slot;

@@ -1,6 +1,6 @@
-// Narrow phase over pairs of features. Launches have a fixed width and walk the list in strides: its length is only on the
-// device.
+// Narrow phase over pairs of features. Launches have a fixed width: the list's length is only on the device.
 #include "lib/hit_list.h"
+#include "lib/item_runs.h"
 #include "lib/pair_contact.h"
 #include "shared/patch.h"
 
@@ -79,15 +79,16 @@ static int featureContact(const FeatureTest feature, const ClothView* cloth, con
     const ObstacleView obstacle = obstacleView(0, obstacleTriangles, vertexCones, edgeCones);   \
     const PackedFeatures packed = {faces, vertices, edges, faceIds, vertexIds, edgeIds}
 
-// A work-item takes every stride-th of the feature tests that patchCull lists and lists the hits; the tests that need the
+// A work-item goes through its part of the feature tests that patchCull lists and lists the hits; the tests that need the
 // continuous test it lists in swept, in no particular order. counters->m_swept must be zero before.
 __kernel void narrowPhaseFeature(DRAPE_FEATURE_ARGUMENTS, __global uint* restrict swept)
 {
     DRAPE_FEATURE_VIEWS;
     ClothView cloth = DRAPE_CLOTH_VIEW(0);
     const uint count = min(counters->m_candidates, testCapacity);
-    for (uint i = get_global_id(0); i < count; i += get_global_size(0))
+    for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextItem(&runs))
     {
+        const uint i = runs.m_item;
         cloth.m_motion = motionOfTest(motions, tests[i]);
         Contact contact;
         const int found = featureContact(tests[i], &cloth, &obstacle, &packed, &contact);

@@ -1,11 +1,12 @@
 // Narrow phase over pairs of triangles, for the traversals that give those: contacts of the candidates' features, and the pairs
-// that intersect. Launches have a fixed width and walk the list in strides: its length is only on the device.
+// that intersect. Launches have a fixed width: the list's length is only on the device.
 #include "lib/hit_list.h"
+#include "lib/item_runs.h"
 #include "lib/pair_contact.h"
 #include "lib/triangle_triangle.h"
 
-// A work-item takes every stride-th candidate, runs its feature tests and lists the hits. motions: of the obstacles that move
-// in the step. counters->m_swept must be zero before.
+// A work-item goes through its part of the candidates, runs their feature tests and lists the hits. motions: of the obstacles
+// that move in the step. counters->m_swept must be zero before.
 __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, const uint candidateCapacity,
                               __global const float* restrict clothStart, __global const float* restrict clothEnd,
                               __global const Triangle* restrict clothTriangles, __global const Edge* restrict clothEdges,
@@ -24,8 +25,9 @@ __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, con
         clothView(clothStart, clothEnd, clothTriangles, clothEdges, nodeCount, triangleCount, mode, &searches);
     const ObstacleView obstacle = obstacleView(obstaclePositions, obstacleTriangles, vertexCones, edgeCones);
     const uint count = min(counters->m_candidates, candidateCapacity);
-    for (uint i = get_global_id(0); i < count; i += get_global_size(0))
+    for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextItem(&runs))
     {
+        const uint i = runs.m_item;
         const Candidate candidate = candidates[i];
         __global const Triangle* clothTriangle = clothTriangles + candidate.m_cloth;
         __global const Triangle* obstacleTriangle = obstacleTriangles + candidate.m_obstacle;
@@ -44,7 +46,7 @@ __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, con
     if (searches > 0) atomic_add(&counters->m_swept, searches);
 }
 
-// A work-item takes every stride-th candidate and lists the pairs that intersect at the step's start.
+// A work-item goes through its part of the candidates and lists the pairs that intersect at the step's start.
 // counters->m_intersections must be zero before; it counts on when the list is full.
 __kernel void narrowPhaseIntersect(__global const Candidate* restrict candidates, const uint candidateCapacity,
                                    __global const float* restrict clothStart,
@@ -58,8 +60,9 @@ __kernel void narrowPhaseIntersect(__global const Candidate* restrict candidates
     ClothView cloth = clothView(clothStart, clothStart, clothTriangles, 0, 0, 0, DRAPE_DISCRETE, 0);
     const ObstacleView obstacle = obstacleView(obstaclePositions, obstacleTriangles, 0, 0);
     const uint count = min(counters->m_candidates, candidateCapacity);
-    for (uint i = get_global_id(0); i < count; i += get_global_size(0))
+    for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextItem(&runs))
     {
+        const uint i = runs.m_item;
         cloth.m_motion = findMotion(motions, motionCount, obstacleTriangles[candidates[i].m_obstacle].m_mesh);
         PairTriangles pair;
         loadPair(&pair, &cloth, &obstacle, candidates[i]);

@@ -1,6 +1,7 @@
 // Self collision: a moving mesh against itself. Volumes of its vertices, pairs of its triangles, pairs of features, and
 // which of these touch during the step. Lists are filled in no particular order; their demands must be zero before, and
 // count on when a list is full (see SelfCounters).
+#include "lib/item_runs.h"
 #include "lib/self_collision.h"
 
 // Pairs a work-item gathers before it reserves room for them with one atomic.
@@ -84,7 +85,8 @@ static void storePairs(__global FeaturePair* restrict list, const uint capacity,
     }
 }
 
-// A work-item takes every stride-th pair of triangles and lists the pairs of features that it owns and that overlap.
+// A work-item goes through its part of the pairs of triangles and lists the pairs of features that each owns and that
+// overlap.
 __kernel void selfFeatures(__global const Candidate* restrict pairs, const uint pairCapacity,
                            __global const Triangle* restrict triangles, __global const Dop* restrict volumes,
                            __global FeaturePair* restrict vertexFace, const uint vertexFaceCapacity,
@@ -92,8 +94,9 @@ __kernel void selfFeatures(__global const Candidate* restrict pairs, const uint 
                            __global SelfCounters* restrict counters)
 {
     const uint count = min(counters->m_pairs, pairCapacity);
-    for (uint i = get_global_id(0); i < count; i += get_global_size(0))
+    for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextItem(&runs))
     {
+        const uint i = runs.m_item;
         FeaturePairs found;
         collectFeaturePairs(&found, triangles, pairs[i], volumes);
         storePairs(vertexFace, vertexFaceCapacity, &counters->m_vertexFace, found.m_vertexFace, found.m_vertexFaceCount);
@@ -101,7 +104,7 @@ __kernel void selfFeatures(__global const Candidate* restrict pairs, const uint 
     }
 }
 
-// A work-item takes every stride-th pair of one kind and lists those that touch during the step.
+// A work-item goes through its part of the pairs of one kind and lists those that touch during the step.
 __kernel void selfTest(const uint kind, __global const FeaturePair* restrict pairs, const uint pairCapacity,
                        __global const Triangle* restrict triangles, __global const Edge* restrict edges,
                        __global const float* restrict start, __global const float* restrict end, const float separation,
@@ -112,8 +115,9 @@ __kernel void selfTest(const uint kind, __global const FeaturePair* restrict pai
     const CcdSettings settings = ccdSettings(separation, tolerance, timeTolerance, boxLimit);
     const uint demand = kind == DRAPE_VERTEX_FACE ? counters->m_vertexFace : counters->m_edgeEdge;
     const uint count = min(demand, pairCapacity);
-    for (uint i = get_global_id(0); i < count; i += get_global_size(0))
+    for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextItem(&runs))
     {
+        const uint i = runs.m_item;
         FeatureHit hit;
         if (!featurePairHit(kind, pairs[i], triangles, edges, start, end, settings, &hit)) continue;
         const uint place = atomic_inc(&counters->m_hits);

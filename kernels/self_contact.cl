@@ -1,9 +1,9 @@
-// Narrow phase of cloths with themselves. Launches have a fixed width and walk the list in strides: its length is only on the
-// device.
+// Narrow phase of cloths with themselves. Launches have a fixed width: the list's length is only on the device.
 #include "lib/hit_list.h"
+#include "lib/item_runs.h"
 #include "lib/self_contact.h"
 
-// A work-item takes every stride-th of the tests that selfCull lists and lists the hits; the tests that need the continuous
+// A work-item goes through its part of the tests that selfCull lists and lists the hits; the tests that need the continuous
 // test it lists in swept, in no particular order. rest: x y z per node, m. counters->m_selfSwept must be zero before.
 __kernel void selfFeature(__global const FeatureTest* restrict tests, const uint testCapacity,
                           __global const float* restrict start, __global const float* restrict end,
@@ -16,8 +16,9 @@ __kernel void selfFeature(__global const FeatureTest* restrict tests, const uint
     const SelfView view =
         selfView(clothView(start, end, triangles, edges, nodeCount, triangleCount, mode, 0), rest, reachScale);
     const uint count = min(counters->m_selfTests, testCapacity);
-    for (uint i = get_global_id(0); i < count; i += get_global_size(0))
+    for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextItem(&runs))
     {
+        const uint i = runs.m_item;
         Contact contact;
         const int found = selfContact(&view, tests[i], firstSlot, &contact);
         if (found == DRAPE_IS_CONTACT)
@@ -27,7 +28,7 @@ __kernel void selfFeature(__global const FeatureTest* restrict tests, const uint
     }
 }
 
-// A work-item takes every stride-th of the tests that selfFeature left to the continuous test and lists their hits.
+// A work-item goes through its part of the tests that selfFeature left to the continuous test and lists their hits.
 __kernel void selfSwept(__global const FeatureTest* restrict tests, __global const float* restrict start,
                         __global const float* restrict end, __global const float* restrict rest,
                         __global const Triangle* restrict triangles, __global const Edge* restrict edges,
@@ -39,8 +40,9 @@ __kernel void selfSwept(__global const FeatureTest* restrict tests, __global con
     const SelfView view =
         selfView(clothView(start, end, triangles, edges, nodeCount, triangleCount, mode, &searches), rest, reachScale);
     const uint count = counters->m_selfSwept;
-    for (uint i = get_global_id(0); i < count; i += get_global_size(0))
+    for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextItem(&runs))
     {
+        const uint i = runs.m_item;
         Contact contact;
         if (selfContact(&view, tests[swept[i]], firstSlot, &contact) == DRAPE_IS_CONTACT) listHit(&list, &contact);
     }

@@ -37,8 +37,9 @@ typedef struct WideNode
     DRAPE_UINT m_child[DRAPE_WIDE];
 } WideNode;
 
-// Depth of a wide traversal's stack: a step takes one node and leaves at most eight. Enough for 25 heights; a binary
-// tree of 48 heights, more than builders make, has 16 wide ones, a 4-wide tree of 24 at most 24.
+// Depth of a wide traversal's stack: a step takes one node and leaves at most eight, so this is enough for 25 heights. A
+// wide height takes the place of three binary ones: of 48 of a mesh's tree, the highest that a builder makes, and of 27
+// above it, those over 2^27 meshes. Of a study's 4-wide ones it takes the place of one; a mesh's tree has 24.
 #define DRAPE_WIDE_STACK_DEPTH 176
 
 DRAPE_NAMESPACE_END

@@ -150,7 +150,8 @@ cl::Program buildProgram(Device& device, const std::string& name, const std::str
 {
     result.m_fromCache = false;
     if (device.failed()) return cl::Program();
-    const std::string source = defines + assembleSource("kernels/" + name + ".cl");
+    const std::string kind = device.isGpu() ? "" : "#define DRAPE_CPU\n";
+    const std::string source = kind + defines + assembleSource("kernels/" + name + ".cl");
     const ProgramCache cache(cacheFolder);
     const std::string key = cache.key(source, kOptions, device.info());
     std::vector<unsigned char> binary;

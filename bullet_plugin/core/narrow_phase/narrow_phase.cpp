@@ -1,10 +1,11 @@
 #include "narrow_phase.h"
 
+#include "bullet_plugin/core/device/list_launch.h"
+
 namespace drape
 {
 namespace
 {
-constexpr std::size_t kGroup = 64;
 constexpr std::size_t kSortGroup = 256;      // one group sorts a slot, however large
 constexpr std::size_t kSortBlockGpu = 32;    // slots that a group sorts one after the other; a CPU's take kBlock
 constexpr std::size_t kReduceGroup = 64;     // as in kernels/contact_reduction.cl
@@ -16,8 +17,7 @@ constexpr cl_uint kRankedGpu = 512;
 constexpr std::size_t kBlock = 1024;        // slots per work-group, as in kernels/compaction.cl
 constexpr std::size_t kFewSlots = 1 << 14;  // placed in one launch
 constexpr std::size_t kPlaceGroupGpu = 256;
-constexpr std::size_t kItemsPerUnitGpu = 1024;  // work-items per compute unit that hide a GPU's latency
-constexpr std::size_t kItemsPerUnitCpu = 256;   // four groups per core, so that uneven ones even out
+constexpr std::size_t kPlaceGroupCpu = 64;
 // Feature tests per compute unit up to which one launch is faster than two: the continuous test takes registers, which
 // leave room for few groups at a time.
 constexpr std::size_t kFewTestsPerUnit = 128;
@@ -81,25 +81,20 @@ void NarrowPhaseStage::reserveHits(Device& device, std::size_t count)
     if (m_reduces) m_kept.reserve(device, count);
 }
 
-std::size_t NarrowPhaseStage::listWidth(const Device& device) const
-{
-    return device.computeUnits() * (device.isGpu() ? kItemsPerUnitGpu : kItemsPerUnitCpu);
-}
-
 void NarrowPhaseStage::enqueue(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount,
                                std::size_t triangleCount, const NarrowPhaseSettings& settings,
                                Buffer<Candidate>& candidates, StepTally tally, const ReductionBuffers* reduction,
                                const SelfWork* self)
 {
-    const std::size_t width = listWidth(device);
     const cl_uint hitCapacity = cl_uint(m_hits.capacity());
-    m_test.launch(
-        device, width, kGroup, candidates.handle(), cl_uint(candidates.capacity()), sides.m_clothStart.handle(),
-        sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(), sides.m_clothEdges.handle(), cl_uint(nodeCount),
-        cl_uint(triangleCount), sides.m_obstaclePositions.handle(), sides.m_obstacleTriangles.handle(),
-        sides.m_vertexCones.handle(), sides.m_edgeCones.handle(), sides.m_thickness.handle(),
-        cl_uint(settings.m_obstacleMeshes), settings.m_reachScale, cl_uint(settings.m_mode), sides.m_motions.handle(),
-        cl_uint(sides.m_motionCount), m_hits.handle(), hitCapacity, m_slotCount.handle(), tally.m_now.handle());
+    m_test.launch(device, listWidth(device), listGroup(device), candidates.handle(), cl_uint(candidates.capacity()),
+                  sides.m_clothStart.handle(), sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(),
+                  sides.m_clothEdges.handle(), cl_uint(nodeCount), cl_uint(triangleCount),
+                  sides.m_obstaclePositions.handle(), sides.m_obstacleTriangles.handle(), sides.m_vertexCones.handle(),
+                  sides.m_edgeCones.handle(), sides.m_thickness.handle(), cl_uint(settings.m_obstacleMeshes),
+                  settings.m_reachScale, cl_uint(settings.m_mode), sides.m_motions.handle(),
+                  cl_uint(sides.m_motionCount), m_hits.handle(), hitCapacity, m_slotCount.handle(),
+                  tally.m_now.handle());
     if (self) enqueueSelfHits(device, tally, *self);
     enqueueCompaction(device, sides, tally, reduction);
 }
@@ -111,14 +106,15 @@ void NarrowPhaseStage::enqueueFeatures(Device& device, NarrowPhaseBuffers sides,
     PatchCullStage::Features features = cull.features();
     const auto launch = [&](Kernel& kernel, auto&... list)
     {
-        kernel.launch(device, listWidth(device), kGroup, cull.tests().handle(), cl_uint(cull.tests().capacity()),
-                      sides.m_clothStart.handle(), sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(),
-                      sides.m_clothEdges.handle(), cl_uint(nodeCount), cl_uint(triangleCount), cl_uint(mode),
-                      sides.m_obstacleTriangles.handle(), sides.m_vertexCones.handle(), sides.m_edgeCones.handle(),
-                      features.m_faces.handle(), features.m_vertices.handle(), features.m_edges.handle(),
-                      features.m_faceIds.handle(), features.m_vertexIds.handle(), features.m_edgeIds.handle(),
-                      sides.m_motions.handle(), m_hits.handle(), cl_uint(m_hits.capacity()), m_slotCount.handle(),
-                      tally.m_now.handle(), list.handle()...);
+        kernel.launch(device, listWidth(device), listGroup(device), cull.tests().handle(),
+                      cl_uint(cull.tests().capacity()), sides.m_clothStart.handle(), sides.m_clothEnd.handle(),
+                      sides.m_clothTriangles.handle(), sides.m_clothEdges.handle(), cl_uint(nodeCount),
+                      cl_uint(triangleCount), cl_uint(mode), sides.m_obstacleTriangles.handle(),
+                      sides.m_vertexCones.handle(), sides.m_edgeCones.handle(), features.m_faces.handle(),
+                      features.m_vertices.handle(), features.m_edges.handle(), features.m_faceIds.handle(),
+                      features.m_vertexIds.handle(), features.m_edgeIds.handle(), sides.m_motions.handle(),
+                      m_hits.handle(), cl_uint(m_hits.capacity()), m_slotCount.handle(), tally.m_now.handle(),
+                      list.handle()...);
     };
     m_sweptTests.reserve(device, cull.tests().capacity());
     const bool few = tally.m_tests <= device.computeUnits() * kFewTestsPerUnit;
@@ -146,7 +142,7 @@ void NarrowPhaseStage::enqueuePlaces(Device& device, Buffer<cl_uint>& slotCount,
 {
     const cl_uint slots = cl_uint(m_slots);
     const std::size_t blocks = (m_slots + kBlock - 1) / kBlock;
-    const std::size_t group = device.isGpu() ? kPlaceGroupGpu : kGroup;
+    const std::size_t group = device.isGpu() ? kPlaceGroupGpu : kPlaceGroupCpu;
     const cl::LocalSpaceArg scratch = cl::Local(group * sizeof(cl_uint));
     if (m_slots <= kFewSlots)
     {
@@ -172,18 +168,18 @@ void NarrowPhaseStage::enqueueCompaction(Device& device, NarrowPhaseBuffers side
                                          const ReductionBuffers* reduction)
 {
     const cl_uint hitCapacity = cl_uint(m_hits.capacity());
-    const std::size_t width = listWidth(device);
     const cl_uint ranked = device.isGpu() && !reduction ? kRankedGpu : DRAPE_RANKED;
     enqueuePlaces(device, m_slotCount, m_slotFirst, ranked, tally);
-    m_gather.launch(device, width, kGroup, m_hits.handle(), hitCapacity, m_slotCount.handle(), m_slotFirst.handle(),
-                    m_members.handle(), m_keys.handle(), tally.m_now.handle(), tally.m_next.handle());
+    m_gather.launch(device, listWidth(device), listGroup(device), m_hits.handle(), hitCapacity, m_slotCount.handle(),
+                    m_slotFirst.handle(), m_members.handle(), m_keys.handle(), tally.m_now.handle(),
+                    tally.m_next.handle());
     if (tally.m_ordered) enqueueOrder(device, ranked, tally);
     if (reduction)
         enqueueReduction(device, sides, tally, *reduction);
     else
-        m_write.launch(device, width, kGroup, m_hits.handle(), hitCapacity, m_slotFirst.handle(), cl_uint(m_slots),
-                       ranked, copyParts(device), m_members.handle(), m_keys.handle(), m_contacts.handle(),
-                       tally.m_now.handle());
+        m_write.launch(device, listWidth(device), listGroup(device), m_hits.handle(), hitCapacity, m_slotFirst.handle(),
+                       cl_uint(m_slots), ranked, copyParts(device), m_members.handle(), m_keys.handle(),
+                       m_contacts.handle(), tally.m_now.handle());
 }
 
 void NarrowPhaseStage::enqueueReduction(Device& device, NarrowPhaseBuffers sides, StepTally tally,
@@ -198,7 +194,7 @@ void NarrowPhaseStage::enqueueReduction(Device& device, NarrowPhaseBuffers sides
                   reduction.m_obstacles.handle(), cl_uint(reduction.m_clothCount), cl_uint(reduction.m_obstacleCount),
                   sides.m_thickness.handle(), reduction.m_tube.handle());
     enqueuePlaces(device, m_slotKept, m_keptFirst, DRAPE_RANKED, tally);
-    m_writeKept.launch(device, listWidth(device), kGroup, m_hits.handle(), hitCapacity, m_slotFirst.handle(),
+    m_writeKept.launch(device, listWidth(device), listGroup(device), m_hits.handle(), hitCapacity, m_slotFirst.handle(),
                        copyParts(device), m_kept.handle(), m_keptFirst.handle(), m_contacts.handle(),
                        tally.m_now.handle());
 }
@@ -206,9 +202,10 @@ void NarrowPhaseStage::enqueueReduction(Device& device, NarrowPhaseBuffers sides
 void NarrowPhaseStage::enqueueIntersect(Device& device, NarrowPhaseBuffers sides, Buffer<Candidate>& candidates,
                                         Buffer<StepCounters>& counters)
 {
-    m_intersect.launch(device, listWidth(device), kGroup, candidates.handle(), cl_uint(candidates.capacity()),
-                       sides.m_clothStart.handle(), sides.m_clothTriangles.handle(), sides.m_obstaclePositions.handle(),
-                       sides.m_obstacleTriangles.handle(), sides.m_motions.handle(), cl_uint(sides.m_motionCount),
-                       m_intersections.handle(), cl_uint(m_intersections.capacity()), counters.handle());
+    m_intersect.launch(device, listWidth(device), listGroup(device), candidates.handle(),
+                       cl_uint(candidates.capacity()), sides.m_clothStart.handle(), sides.m_clothTriangles.handle(),
+                       sides.m_obstaclePositions.handle(), sides.m_obstacleTriangles.handle(), sides.m_motions.handle(),
+                       cl_uint(sides.m_motionCount), m_intersections.handle(), cl_uint(m_intersections.capacity()),
+                       counters.handle());
 }
 }  // namespace drape

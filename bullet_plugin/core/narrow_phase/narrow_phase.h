@@ -143,7 +143,6 @@ private:
                        StepTally tally);
     void enqueueOrder(Device& device, cl_uint ranked, StepTally tally);
     void enqueueSelfHits(Device& device, StepTally tally, const SelfWork& self);
-    std::size_t listWidth(const Device& device) const;
 
     Kernel m_test, m_feature, m_swept, m_few, m_intersect, m_count, m_place, m_placeFew, m_gather, m_order, m_write;
     Kernel m_keep, m_writeKept;

@@ -2,20 +2,14 @@
 
 #include <algorithm>
 
+#include "bullet_plugin/core/device/list_launch.h"
+
 namespace drape
 {
 namespace
 {
 constexpr std::size_t kGroup = 64;
 constexpr std::size_t kFirstEntries = 1 << 14;  // a first guess for each list
-// As for the narrow phase: enough to hide a GPU's latency, and four groups per core of a CPU.
-constexpr std::size_t kItemsPerUnitGpu = 1024;
-constexpr std::size_t kItemsPerUnitCpu = 256;
-
-std::size_t listWidth(const Device& device)
-{
-    return device.computeUnits() * (device.isGpu() ? kItemsPerUnitGpu : kItemsPerUnitCpu);
-}
 }  // namespace
 
 float selfRadius(const CcdSettings& settings)
@@ -57,7 +51,7 @@ void SelfCollisionStage::enqueuePairs(Device& device, DeviceTree a, DeviceTree b
 
 void SelfCollisionStage::enqueueFeatures(Device& device, DeviceMotion motion)
 {
-    m_features.launch(device, listWidth(device), kGroup, m_pairs.handle(), cl_uint(m_pairs.capacity()),
+    m_features.launch(device, listWidth(device), listGroup(device), m_pairs.handle(), cl_uint(m_pairs.capacity()),
                       motion.m_tree.m_triangles.handle(), m_volumes.handle(), m_vertexFace.handle(),
                       cl_uint(m_vertexFace.capacity()), m_edgePairs.handle(), cl_uint(m_edgePairs.capacity()),
                       m_counters.handle());
@@ -65,11 +59,10 @@ void SelfCollisionStage::enqueueFeatures(Device& device, DeviceMotion motion)
 
 void SelfCollisionStage::enqueueTests(Device& device, DeviceMotion motion, const CcdSettings& settings)
 {
-    const std::size_t width = listWidth(device);
     for (cl_uint kind : {DRAPE_VERTEX_FACE, DRAPE_EDGES})
     {
         Buffer<FeaturePair>& list = kind == DRAPE_VERTEX_FACE ? m_vertexFace : m_edgePairs;
-        m_test.launch(device, width, kGroup, kind, list.handle(), cl_uint(list.capacity()),
+        m_test.launch(device, listWidth(device), listGroup(device), kind, list.handle(), cl_uint(list.capacity()),
                       motion.m_tree.m_triangles.handle(), motion.m_edges.handle(), motion.m_start.handle(),
                       motion.m_end.handle(), settings.m_separation, settings.m_tolerance, settings.m_timeTolerance,
                       cl_uint(settings.m_boxLimit), m_hits.handle(), cl_uint(m_hits.capacity()), m_counters.handle());

@@ -3,15 +3,14 @@
 #include <algorithm>
 
 #include "bullet_plugin/core/broad_phase/patch_cull.h"
+#include "bullet_plugin/core/device/list_launch.h"
 
 namespace drape
 {
 namespace
 {
 constexpr std::size_t kGroup = 64;
-constexpr std::size_t kTeamsPerGroup = 8;       // patches per group where a work-item is a team
-constexpr std::size_t kItemsPerUnitGpu = 1024;  // of the narrow phase, as in narrow_phase.cpp
-constexpr std::size_t kItemsPerUnitCpu = 256;
+constexpr std::size_t kTeamsPerGroup = 8;  // patches per group where a work-item is a team
 constexpr std::size_t kFirstTests = 1 << 16;
 // On a GPU, warps of a group that walks the tree, or takes pairs of patches; see kernels/self_walk.cl.
 constexpr std::size_t kTurns = 4;
@@ -175,18 +174,18 @@ void SelfContactStage::enqueueCull(Device& device, SelfBuffers step, Buffer<Step
 
 void SelfContactStage::enqueueContacts(Device& device, SelfBuffers step, SelfHits hits, Buffer<StepCounters>& counters)
 {
-    const std::size_t width = device.computeUnits() * (device.isGpu() ? kItemsPerUnitGpu : kItemsPerUnitCpu);
     const cl_uint nodes = cl_uint(step.m_nodeCount), triangles = cl_uint(step.m_triangleCount);
     const cl_uint firstSlot = firstSelfSlot(nodes, triangles, cl_uint(step.m_edgeCount));
-    m_feature.launch(device, width, kGroup, m_tests.handle(), cl_uint(m_tests.capacity()), step.m_start.handle(),
-                     step.m_end.handle(), m_rest.handle(), step.m_triangles.handle(), step.m_edges.handle(), nodes,
-                     triangles, firstSlot, cl_uint(step.m_mode), step.m_reachScale, m_swept.handle(),
-                     hits.m_hits.handle(), cl_uint(hits.m_hits.capacity()), hits.m_slotCount.handle(),
+    m_feature.launch(device, listWidth(device), listGroup(device), m_tests.handle(), cl_uint(m_tests.capacity()),
+                     step.m_start.handle(), step.m_end.handle(), m_rest.handle(), step.m_triangles.handle(),
+                     step.m_edges.handle(), nodes, triangles, firstSlot, cl_uint(step.m_mode), step.m_reachScale,
+                     m_swept.handle(), hits.m_hits.handle(), cl_uint(hits.m_hits.capacity()), hits.m_slotCount.handle(),
                      counters.handle());
     if (step.m_mode == DRAPE_DISCRETE) return;
-    m_sweptKernel.launch(device, width, kGroup, m_tests.handle(), step.m_start.handle(), step.m_end.handle(),
-                         m_rest.handle(), step.m_triangles.handle(), step.m_edges.handle(), nodes, triangles, firstSlot,
-                         cl_uint(step.m_mode), step.m_reachScale, m_swept.handle(), hits.m_hits.handle(),
-                         cl_uint(hits.m_hits.capacity()), hits.m_slotCount.handle(), counters.handle());
+    m_sweptKernel.launch(device, listWidth(device), listGroup(device), m_tests.handle(), step.m_start.handle(),
+                         step.m_end.handle(), m_rest.handle(), step.m_triangles.handle(), step.m_edges.handle(), nodes,
+                         triangles, firstSlot, cl_uint(step.m_mode), step.m_reachScale, m_swept.handle(),
+                         hits.m_hits.handle(), cl_uint(hits.m_hits.capacity()), hits.m_slotCount.handle(),
+                         counters.handle());
 }
 }  // namespace drape

@@ -1,0 +1,106 @@
+// Launches of fixed width over lists: every item is taken, once, and on a CPU what lies side by side by one work-item.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "bullet_plugin/core/device/program.h"
+#include "tests/support/backends.h"
+#include "tests/support/canary.h"
+
+namespace drape::test
+{
+namespace
+{
+constexpr cl_uint kLongestRun = 128;
+
+const char* const kTake = R"(
+__kernel void takeItems(const uint count, const uint parts, __global uint* taken, __global uint* taker)
+{
+    for (ItemRuns runs = itemRuns(count, parts); runs.m_item < count; nextItem(&runs))
+    {
+        atomic_inc(taken + runs.m_item);
+        taker[runs.m_item] = get_global_id(0) / parts;
+    }
+}
+)";
+
+struct Taken
+{
+    std::vector<cl_uint> m_times, m_taker;
+};
+
+class Taking
+{
+public:
+    Taking(Device& device, const std::string& defines) : m_device(device)
+    {
+        m_program = compileSource(device, "item_runs", defines + assembleSource("kernels/lib/item_runs.h") + kTake);
+        m_kernel.create(device, m_program, "takeItems");
+    }
+
+    Taken run(cl_uint width, cl_uint count, cl_uint parts)
+    {
+        Buffer<cl_uint> taken, taker;
+        const std::vector<cl_uint> zeros(std::max(count, 1u), 0);
+        guardCopy(m_device, taken, zeros);
+        guardCopy(m_device, taker, zeros);
+        m_kernel.launch(m_device, width, 8, count, parts, taken.handle(), taker.handle());
+        const Taken found = {contents(m_device, taken, count), contents(m_device, taker, count)};
+        EXPECT_TRUE(intact(m_device, taken) && intact(m_device, taker));
+        return found;
+    }
+
+private:
+    Device& m_device;
+    cl::Program m_program;
+    Kernel m_kernel;
+};
+
+// How often the next item is another work-item's.
+cl_uint changes(const std::vector<cl_uint>& taker)
+{
+    cl_uint count = 0;
+    for (std::size_t i = 1; i < taker.size(); ++i)
+        count += taker[i] != taker[i - 1];
+    return count;
+}
+
+const cl_uint kCounts[] = {0, 1, 2, 63, 64, 65, 8191, 8192, 8193, 100003};
+}  // namespace
+
+class ItemRunsTest : public BackendTest
+{
+};
+
+TEST_P(ItemRunsTest, EveryItemIsTakenByEachPartOnce)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    for (const char* defines : {"", "#define DRAPE_CPU\n"})
+    {
+        Taking taking(*device, defines);
+        for (cl_uint count : kCounts)
+            for (cl_uint parts : {1u, 2u, 4u})
+                EXPECT_EQ(taking.run(64, count, parts).m_times, std::vector<cl_uint>(count, parts))
+                    << defines << count << " items, " << parts << " parts";
+    }
+    ASSERT_FALSE(device->failed()) << device->error().text();
+}
+
+TEST_P(ItemRunsTest, NeighboursOnACpuAreOneWorkItemsUpToTheLongestRun)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    Taking strides(*device, ""), runs(*device, "#define DRAPE_CPU\n");
+    EXPECT_EQ(changes(strides.run(64, 8192, 1).m_taker), 8191u);
+    EXPECT_EQ(changes(runs.run(64, 640, 1).m_taker), 63u);  // ten each
+    const cl_uint count = 3 * 64 * kLongestRun + 1;         // in four turns
+    const Taken found = runs.run(64, count, 1);
+    EXPECT_EQ(changes(found.m_taker), (count - 1) / ((3 * kLongestRun + 1 + 3) / 4));
+    ASSERT_FALSE(device->failed()) << device->error().text();
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, ItemRunsTest, testing::ValuesIn(openClBackends()), backendName);
+}  // namespace drape::test
