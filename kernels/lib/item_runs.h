@@ -7,40 +7,57 @@
 // Longest run: what its items read stays in a core's own cache, and runs even out among the cores.
 #define DRAPE_MOST_RUN 128u
 
+// m_item: the one at hand; there is none left where it is not below the list's length.
+#ifdef DRAPE_CPU
 typedef struct ItemRuns
 {
-    uint m_item;  // the one at hand; there is none left where it is not below the list's length
-    uint m_left;  // of its run, with itself
-    uint m_run;
-    uint m_skip;  // from the last item of a run to the first of the next
+    uint m_item, m_end;  // of its run
+    uint m_run, m_runs;
+    uint m_takers;  // of runs, in turn
+    uint m_count;
 } ItemRuns;
 
-// parts: neighbouring work-items that take the same items.
+// The list in runs that differ by one in length at most. Where takers are more than items, some have none.
+static void takeRun(ItemRuns* runs)
+{
+    const ulong run = runs->m_run, count = runs->m_count;
+    runs->m_item = (uint)(run * count / runs->m_runs);
+    runs->m_end = (uint)((run + 1) * count / runs->m_runs);
+    if (runs->m_run >= runs->m_runs || runs->m_item == runs->m_end) runs->m_item = UINT_MAX;
+}
+#else
+typedef struct ItemRuns
+{
+    uint m_item, m_stride;
+} ItemRuns;
+#endif
+
+// count: the same for all work-items. parts: neighbouring work-items that take the same items, a divisor of the width.
 static ItemRuns itemRuns(const uint count, const uint parts)
 {
-    const uint items = get_global_size(0) / parts, item = get_global_id(0) / parts;
+    const uint takers = get_global_size(0) / parts, taker = get_global_id(0) / parts;
     ItemRuns runs;
 #ifdef DRAPE_CPU
-    const uint share = max((count + items - 1) / items, 1u);
-    const uint turns = (share + DRAPE_MOST_RUN - 1) / DRAPE_MOST_RUN;  // all take as many
-    runs.m_run = (share + turns - 1) / turns;
+    runs.m_run = taker;
+    runs.m_runs = takers * (count / (takers * DRAPE_MOST_RUN) + 1);
+    runs.m_takers = takers;
+    runs.m_count = count;
+    takeRun(&runs);
 #else
-    runs.m_run = 1;
+    runs.m_item = taker;
+    runs.m_stride = takers;
 #endif
-    runs.m_item = item * runs.m_run;
-    runs.m_left = runs.m_run;
-    runs.m_skip = (items - 1) * runs.m_run + 1;
     return runs;
 }
 
 static void nextItem(ItemRuns* runs)
 {
 #ifdef DRAPE_CPU
-    --runs->m_left;
-    runs->m_item += runs->m_left > 0 ? 1 : runs->m_skip;
-    if (runs->m_left == 0) runs->m_left = runs->m_run;
+    if (++runs->m_item < runs->m_end) return;
+    runs->m_run += runs->m_takers;
+    takeRun(runs);
 #else
-    runs->m_item += runs->m_skip;
+    runs->m_item += runs->m_stride;
 #endif
 }
 

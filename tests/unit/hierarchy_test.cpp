@@ -38,6 +38,24 @@ std::vector<std::uint32_t> leavesBelow(const Tree& tree, std::uint32_t root)
     return leaves;
 }
 
+// Levels from the root down to every node.
+std::vector<int> depths(const Tree& tree)
+{
+    std::vector<int> depth(tree.m_nodes.size());
+    std::vector<std::uint32_t> open = {tree.m_root};
+    while (!open.empty())
+    {
+        const std::uint32_t node = open.back();
+        open.pop_back();
+        for (std::uint32_t i = 0; i < tree.m_nodes[node].m_count; ++i)
+        {
+            depth[tree.m_nodes[node].m_first + i] = depth[node] + 1;
+            open.push_back(tree.m_nodes[node].m_first + i);
+        }
+    }
+    return depth;
+}
+
 Tree balancedTree(std::uint32_t leaves)
 {
     const BvhLayout layout = makeBvhLayout(leaves);
@@ -191,6 +209,28 @@ TEST(Hierarchy, WideNodesHoldTheSameTree)
         EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), std::ptrdiff_t(seen.size()));
         EXPECT_EQ(std::count(reached.begin() + 1, reached.end(), 1), std::ptrdiff_t(reached.size() - 1));
         EXPECT_LE(slots, 2 * tree.m_order.size());
+    }
+}
+
+// What the depth of the wide traversal's stack counts on.
+TEST(Hierarchy, AWideHeightTakesThePlaceOfThreeBinaryOnes)
+{
+    SCOPED_TRACE("seed 91");
+    Random random(91);
+    for (std::uint32_t leaves : {9u, 64u, 513u, 3001u})
+    {
+        const Tree tree = randomTree(leaves, 2, random);
+        const std::vector<int> depth = depths(tree);
+        const WideLayout wide = makeWideLayout(tree.hierarchy());
+        std::vector<std::uint32_t> source(wide.m_nodes.size(), tree.m_root);  // of each wide node; parents come first
+        for (std::size_t i = 0; i < wide.m_sources.size(); ++i)
+        {
+            const std::uint32_t child = wide.m_nodes[i / DRAPE_WIDE].m_child[i % DRAPE_WIDE];
+            if (child == DRAPE_WIDE_NONE || (child & DRAPE_WIDE_LEAF)) continue;
+            source[child] = wide.m_sources[i];
+            EXPECT_GE(depth[source[child]], depth[source[i / DRAPE_WIDE]] + 3);
+        }
+        EXPECT_GT(wide.m_nodes.size(), 1u);
     }
 }
 

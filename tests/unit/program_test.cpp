@@ -156,6 +156,18 @@ TEST_P(ProgramTest, SecondBuildComesFromTheCacheAndADamagedOneIsBuiltAnew)
     fs::remove_all(folder);
 }
 
+TEST_P(ProgramTest, KernelsAreToldOfACpu)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    ProgramBuild build;
+    const cl::Program program = buildProgram(*device, "compaction", "none", build, "// a line of the caller's\n");
+    ASSERT_FALSE(device->failed()) << device->error().text();
+    const std::string source = program.getInfo<CL_PROGRAM_SOURCE>();
+    EXPECT_EQ(source.find("#define DRAPE_CPU\n") == std::string::npos, device->isGpu());
+    EXPECT_NE(source.find("// a line of the caller's\n"), std::string::npos);
+}
+
 TEST_P(ProgramTest, ErrorsAreSticky)
 {
     const std::unique_ptr<Device> device = openDevice(GetParam());

@@ -12,7 +12,10 @@ namespace
 {
 // A step of the traversal leaves seven more than it took: so many heights fit into its stack.
 constexpr std::uint32_t kMaxHeights = (DRAPE_WIDE_STACK_DEPTH - 1) / (DRAPE_WIDE - 1);
-static_assert(3 * kMaxHeights >= DRAPE_TREE_HEIGHT + 27, "a mesh's tree under those of pairs of 2^27 meshes");
+constexpr std::uint32_t kBinaryHeights = 3;  // that a wide one takes the place of
+static_assert(DRAPE_WIDE == 1 << kBinaryHeights, "a node's slots hold what is so many heights below");
+static_assert(kBinaryHeights * kMaxHeights >= DRAPE_TREE_HEIGHT + 27,
+              "a mesh's tree under those of pairs of 2^27 meshes");
 
 // The nodes that stand side by side below a node: its children, then in turn those that open while there is room.
 std::vector<std::uint32_t> slotsBelow(const std::vector<BvhNode>& nodes, std::uint32_t node)

@@ -7,15 +7,19 @@
 
 namespace drape
 {
-// Work-items: on a GPU enough to hide its latency, on a CPU to even out runs of dear and of cheap items.
+// Work-items a compute unit: on a GPU enough to hide its latency, on a CPU to even out runs of dear and of cheap items.
+constexpr std::size_t kListItemsGpu = 1024, kListItemsCpu = 256;
+
+// Work-items a group. PoCL's threads take a share of the groups that are left at a time: small groups even out shares.
+constexpr std::size_t kListGroupGpu = 64, kListGroupCpu = 8;
+
 inline std::size_t listWidth(const Device& device)
 {
-    return device.computeUnits() * (device.isGpu() ? 1024 : 256);
+    return device.computeUnits() * (device.isGpu() ? kListItemsGpu : kListItemsCpu);
 }
 
-// Of a group. PoCL's threads take half of the groups that are left at a time: small groups make such halves even.
 inline std::size_t listGroup(const Device& device)
 {
-    return device.isGpu() ? 64 : 8;
+    return device.isGpu() ? kListGroupGpu : kListGroupCpu;
 }
 }  // namespace drape

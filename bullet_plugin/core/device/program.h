@@ -26,9 +26,9 @@ struct ProgramBuild
     bool m_fromCache = false;
 };
 
-// Builds "kernels/<name>.cl" with contraction off and correctly rounded ÷ and √. cacheFolder empty: the user's cache;
-// "none": no cache. A failed build puts the file and the whole log into the device's error. Cache trouble means a
-// build, never a failure.
+// Builds "kernels/<name>.cl" with contraction off and correctly rounded ÷ and √; DRAPE_CPU is defined unless the device
+// is a GPU. cacheFolder empty: the user's cache; "none": no cache. A failed build puts the file and the whole log into
+// the device's error. Cache trouble means a build, never a failure.
 // defines: lines of text put before the source.
 cl::Program buildProgram(Device& device, const std::string& name, const std::string& cacheFolder, ProgramBuild& build,
                          const std::string& defines = std::string());
