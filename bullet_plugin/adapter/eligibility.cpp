@@ -1,7 +1,6 @@
 #include "bullet_plugin/adapter/eligibility.h"
 
 #include "BulletCollision/BroadphaseCollision/btBroadphaseProxy.h"
-#include "BulletSoftBody/btSoftBodySolvers.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
 #include "bullet_plugin/adapter/plugin_state.h"
 
@@ -11,11 +10,10 @@ namespace
 {
 const char* reasonFromCloth(const PluginState& state, const btSoftBody& cloth)
 {
-    const btSoftBodySolver* solver = cloth.getSoftBodySolver();
-    if (solver && (solver->getSolverType() == btSoftBodySolver::DEFORMABLE_SOLVER ||
-                   solver->getSolverType() == btSoftBodySolver::REDUCED_DEFORMABLE_SOLVER))
-        return "the soft body lives in a deformable world";
-    if (!state.ownsSolver(solver)) return "the world's soft body solver is not a drape::SoftBodySolver of this plugin";
+    // Compared, never followed: a soft body may outlive its world's solver.
+    if (!state.ownsSolver(cloth.getSoftBodySolver()))
+        return "the world's soft body solver is not a drape::SoftBodySolver of this plugin; a deformable world has its "
+               "own";
     if (cloth.m_reducedModel) return "the soft body is a reduced deformable model";
     if (cloth.m_cfg.collisions & btSoftBody::fCollision::SDF_RD)
         return "the soft body collides as a deformable (SDF_RD)";
@@ -48,9 +46,8 @@ const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, co
     return reasonFromObstacle(obstacle, shape);
 }
 
-bool wantsContacts(const btSoftBody& cloth, const btCollisionObject& obstacle)
+bool respond(const btSoftBody& cloth, const btCollisionObject& obstacle)
 {
-    return cloth.isActive() && cloth.hasContactResponse() && obstacle.hasContactResponse() &&
-           !disabledFor(cloth, obstacle);
+    return cloth.hasContactResponse() && obstacle.hasContactResponse() && !disabledFor(cloth, obstacle);
 }
 }  // namespace drape

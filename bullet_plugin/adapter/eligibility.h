@@ -12,7 +12,7 @@ class PluginState;
 const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
                            const btCollisionShape& shape);
 
-// Whether contacts are wanted from a pair that Drape handles: not between objects that ignore each other, not for
-// sleeping cloth, not where either side has no contact response.
-bool wantsContacts(const btSoftBody& cloth, const btCollisionObject& obstacle);
+// Whether the two answer each other's touch: not objects that ignore each other, not where either side has no contact
+// response.
+bool respond(const btSoftBody& cloth, const btCollisionObject& obstacle);
 }  // namespace drape

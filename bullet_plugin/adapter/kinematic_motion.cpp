@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "BulletCollision/CollisionDispatch/btCollisionObject.h"
+#include "BulletDynamics/Dynamics/btRigidBody.h"
 #include "LinearMath/btTransformUtil.h"
 
 namespace drape
@@ -90,6 +90,24 @@ void KinematicMotions::beginStep(btScalar dt)
     ++m_step;
 }
 
+// The motion from where the object was to the pose that Bullet has now.
+void KinematicMotions::advance(Tracked& tracked, const btCollisionObject& object) const
+{
+    const btTransform& pose = object.getWorldTransform();
+    const btVector3& velocity = object.getInterpolationLinearVelocity();
+    const btVector3& angularVelocity = object.getInterpolationAngularVelocity();
+    const btTransform from = tracked.m_motion.m_end;
+    const bool setLater = btRigidBody::upcast(&object) && !(object.getInterpolationWorldTransform() == pose);
+    const bool jumps = velocity.isZero() && angularVelocity.isZero();
+    const bool samePose = pose == tracked.m_pose, onTheWay = !(from == tracked.m_pose);
+    if (!jumps && onTheWay && !samePose) tracked.m_shares = false;
+    if (!jumps && !onTheWay && samePose) tracked.m_shares = true;  // a substep that got nothing new
+    tracked.m_pose = pose;
+    const bool whole = setLater || (!jumps && !tracked.m_shares);
+    tracked.m_motion =
+        whole && m_dt > 0 ? BodyMotion{from, pose} : motionInStep(from, pose, velocity, angularVelocity, m_dt);
+}
+
 BodyMotion KinematicMotions::observe(const btCollisionObject& object)
 {
     const btTransform& pose = object.getWorldTransform();
@@ -97,14 +115,13 @@ BodyMotion KinematicMotions::observe(const btCollisionObject& object)
     if (found == m_tracked.end())
     {
         const BodyMotion rest = {pose, pose};
-        m_tracked[&object] = Tracked{rest, m_step};
+        m_tracked[&object] = Tracked{rest, m_step, pose, true};
         return rest;
     }
     Tracked& tracked = found->second;
     if (tracked.m_step < m_step)
     {
-        tracked.m_motion = motionInStep(tracked.m_motion.m_end, pose, object.getInterpolationLinearVelocity(),
-                                        object.getInterpolationAngularVelocity(), m_dt);
+        advance(tracked, object);
         tracked.m_step = m_step;
     }
     return tracked.m_motion;

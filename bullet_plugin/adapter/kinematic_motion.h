@@ -8,7 +8,12 @@
 // Job: remember where each object was at the end of the step before and say where it is at this one's start and end.
 // The motion of several substeps is shared out among them, at constant velocity. An object that was not there in the
 // step before rests. Where the velocity does not fit the change of the pose (teleported and moved at once), the object
-// comes to its pose with its velocity, over this step alone. O(1) an object.
+// comes to its pose with its velocity, over this step alone.
+//
+// Bullet does not know of every motion: a pose set after it took the velocity (by a tick's callback, or while the body
+// sleeps) differs from the interpolation transform; one set by setCenterOfMassTransform() several times before a step
+// leaves the last part's velocity, which looks like one of several substeps until the next pose comes too soon. Both
+// are swept the whole way, the second from then on. O(1) an object.
 #pragma once
 
 #include <cstdint>
@@ -47,7 +52,11 @@ private:
     {
         BodyMotion m_motion;
         std::uint64_t m_step;
+        btTransform m_pose;    // that Bullet had; the motion's end is on the way there while substeps share it
+        bool m_shares = true;  // motion that looks like one of several substeps is shared out among them
     };
+
+    void advance(Tracked& tracked, const btCollisionObject& object) const;
 
     std::unordered_map<const btCollisionObject*, Tracked> m_tracked;  // never followed
     std::uint64_t m_step = 0;

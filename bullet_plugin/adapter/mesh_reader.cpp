@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "BulletCollision/BroadphaseCollision/btBroadphaseProxy.h"
 #include "BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h"
@@ -13,8 +14,8 @@ namespace drape
 {
 namespace
 {
-// Vertices of a part that meshSignature() looks at: enough that a deformation of a whole mesh is seen, few enough that
-// looking costs a microsecond.
+// Triangles of a part of which meshSignature() looks at a vertex: enough that a deformation of a whole mesh is seen,
+// few enough that looking costs a microsecond.
 constexpr int kSamplesPerPart = 32;
 
 // FNV-1a over 64-bit words (Fowler, Noll, Vo); only equality matters here.
@@ -52,12 +53,11 @@ public:
     LockedPart(const LockedPart&) = delete;
     LockedPart& operator=(const LockedPart&) = delete;
 
-    int vertexCount() const { return m_vertexCount; }
     int triangleCount() const { return m_triangleCount; }
     const void* vertices() const { return m_vertices; }
     const void* indices() const { return m_indices; }
 
-    btVector3 vertex(int i) const
+    btVector3 vertex(std::int64_t i) const
     {
         const unsigned char* at = m_vertices + static_cast<std::ptrdiff_t>(i) * m_vertexStride;
         return m_vertexType == PHY_DOUBLE ? load<double>(at) : load<float>(at);
@@ -115,9 +115,60 @@ ScaledMesh resolve(const btCollisionShape& shape)
     return ScaledMesh{&bvh, bvh.getMeshInterface()->getScaling()};
 }
 
-void appendVertices(const LockedPart& part, const btVector3& scaling, const btTransform& pose, WorldMesh& mesh)
+// The vertices of a part that its triangles use, in their order: parts may share one array of vertices, and Bullet
+// never looks at how many of them a part says it has.
+class UsedVertices
 {
-    for (int i = 0; i < part.vertexCount(); ++i)
+public:
+    explicit UsedVertices(const LockedPart& part)
+    {
+        std::int64_t low = std::numeric_limits<std::int64_t>::max(), high = -1;
+        forEachCorner(part,
+                      [&](std::int64_t i)
+                      {
+                          low = std::min(low, i);
+                          high = std::max(high, i);
+                      });
+        if (high < 0) return;
+        m_first = low;
+        m_place.assign(static_cast<std::size_t>(high - low + 1), -1);
+        forEachCorner(part, [&](std::int64_t i) { m_place[static_cast<std::size_t>(i - low)] = 0; });
+        for (std::size_t i = 0; i < m_place.size(); ++i)
+        {
+            if (m_place[i] < 0) continue;
+            m_place[i] = static_cast<std::int32_t>(m_indices.size());
+            m_indices.push_back(low + static_cast<std::int64_t>(i));
+        }
+    }
+
+    const std::vector<std::int64_t>& indices() const { return m_indices; }
+    // Place of a used one among indices(); negative for a negative index.
+    std::int32_t place(std::int64_t index) const
+    {
+        return index < 0 ? -1 : m_place[static_cast<std::size_t>(index - m_first)];
+    }
+
+private:
+    template <typename Visit>
+    static void forEachCorner(const LockedPart& part, Visit visit)
+    {
+        for (int t = 0; t < part.triangleCount(); ++t)
+            for (int k = 0; k < 3; ++k)
+            {
+                const std::int64_t index = part.index(t, k);
+                if (index >= 0) visit(index);
+            }
+    }
+
+    std::int64_t m_first = 0;
+    std::vector<std::int32_t> m_place;
+    std::vector<std::int64_t> m_indices;
+};
+
+void appendVertices(const LockedPart& part, const UsedVertices& used, const btVector3& scaling, const btTransform& pose,
+                    WorldMesh& mesh)
+{
+    for (std::int64_t i : used.indices())
     {
         const btVector3 world = pose * (part.vertex(i) * scaling);
         for (int axis = 0; axis < 3; ++axis)
@@ -125,25 +176,25 @@ void appendVertices(const LockedPart& part, const btVector3& scaling, const btTr
     }
 }
 
-bool usable(const WorldMesh& mesh, std::int64_t first, int count, const std::int64_t corner[3])
+bool isFinite(const WorldMesh& mesh, std::size_t vertex)
 {
-    for (int k = 0; k < 3; ++k)
-    {
-        if (corner[k] < 0 || corner[k] >= count) return false;
-        const float* at = &mesh.m_positions[static_cast<std::size_t>(3 * (first + corner[k]))];
-        if (!std::isfinite(at[0]) || !std::isfinite(at[1]) || !std::isfinite(at[2])) return false;
-    }
-    return true;
+    const float* at = &mesh.m_positions[3 * vertex];
+    return std::isfinite(at[0]) && std::isfinite(at[1]) && std::isfinite(at[2]);
 }
 
-void appendTriangles(const LockedPart& part, std::int64_t first, WorldMesh& mesh)
+void appendTriangles(const LockedPart& part, const UsedVertices& used, std::size_t first, WorldMesh& mesh)
 {
     for (int t = 0; t < part.triangleCount(); ++t)
     {
-        const std::int64_t corner[3] = {part.index(t, 0), part.index(t, 1), part.index(t, 2)};
-        if (!usable(mesh, first, part.vertexCount(), corner)) continue;
+        std::int32_t corners[3];
+        bool usable = true;
         for (int k = 0; k < 3; ++k)
-            mesh.m_triangles.push_back(static_cast<std::int32_t>(first + corner[k]));
+        {
+            const std::int32_t place = used.place(part.index(t, k));
+            corners[k] = static_cast<std::int32_t>(first) + place;
+            usable = usable && place >= 0 && isFinite(mesh, static_cast<std::size_t>(corners[k]));
+        }
+        if (usable) mesh.m_triangles.insert(mesh.m_triangles.end(), corners, corners + 3);
     }
 }
 
@@ -174,9 +225,10 @@ void readMesh(const btCollisionShape& shape, const btTransform& pose, WorldMesh&
     for (int p = 0; p < source.mesh().getNumSubParts(); ++p)
     {
         const LockedPart part(source.mesh(), p);
-        const std::int64_t first = static_cast<std::int64_t>(mesh.m_positions.size() / 3);
-        appendVertices(part, source.m_scaling, pose, mesh);
-        appendTriangles(part, first, mesh);
+        const UsedVertices used(part);
+        const std::size_t first = mesh.m_positions.size() / 3;
+        appendVertices(part, used, source.m_scaling, pose, mesh);
+        appendTriangles(part, used, first, mesh);
     }
     clearInvalid(mesh.m_positions);
 
@@ -203,11 +255,13 @@ std::uint64_t meshSignature(const btCollisionShape& shape)
         const LockedPart part(source.mesh(), p);
         hash.add(std::uint64_t(reinterpret_cast<std::uintptr_t>(part.vertices())));
         hash.add(std::uint64_t(reinterpret_cast<std::uintptr_t>(part.indices())));
-        hash.add(std::uint64_t(part.vertexCount()));
         hash.add(std::uint64_t(part.triangleCount()));
-        const int stride = std::max(1, part.vertexCount() / kSamplesPerPart);
-        for (int i = 0; i < part.vertexCount(); i += stride)
-            hash.add(part.vertex(i));
+        const int stride = std::max(1, part.triangleCount() / kSamplesPerPart);
+        for (int t = 0; t < part.triangleCount(); t += stride)
+        {
+            const std::int64_t corner = part.index(t, t % 3);
+            if (corner >= 0) hash.add(part.vertex(corner));
+        }
     }
     return hash.value();
 }

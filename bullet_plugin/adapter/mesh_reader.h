@@ -1,8 +1,10 @@
 // Reading a Bullet triangle mesh shape: all parts, strides, float or double vertices, 8, 16 or 32 bit indices, scaling.
 //
 // Input: a shape that isMeshShape() accepts and a pose. Output: triangles and world positions (m) as the core takes
-// them, transformed in btScalar before they are rounded to float. Triangles with an index out of range or a vertex that
-// is not finite are left out. Cost: one pass over the mesh; meshSignature() looks at a bounded number of vertices only.
+// them, transformed in btScalar before they are rounded to float; vertices that no triangle uses are left out, and so
+// are triangles with a negative index or a vertex that is not finite. As Bullet does, this trusts indices and not the
+// number of vertices that a part states. Cost: a few passes over the mesh; meshSignature() looks at a bounded number of
+// vertices only.
 #pragma once
 
 #include <cstdint>

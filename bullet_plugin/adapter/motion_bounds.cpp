@@ -3,7 +3,9 @@
 #include <cmath>
 
 #include "BulletCollision/BroadphaseCollision/btBroadphaseInterface.h"
+#include "BulletCollision/BroadphaseCollision/btOverlappingPairCache.h"
 #include "LinearMath/btAabbUtil2.h"
+#include "bullet_plugin/adapter/eligibility.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
 
 namespace drape
@@ -41,6 +43,63 @@ void widen(btSoftBody& body, const Extent& extent, btScalar reach)
     body.m_bounds[1].setMax(extent.m_high + margin);
 }
 
+// Of the places of a body's nodes; nodes that are not finite left out.
+struct Way
+{
+    explicit Way(const btSoftBody& body)
+    {
+        for (int i = 0; i < body.m_nodes.size(); ++i)
+        {
+            const btSoftBody::Node& node = body.m_nodes[i];
+            if (!finite(node.m_x) || !finite(node.m_q)) continue;
+            m_start.add(node.m_q);
+            m_end.add(node.m_x);
+        }
+    }
+
+    Extent m_start, m_end;
+};
+
+// The body's part of the reach of contacts, m.
+btScalar reachOf(const btSoftBody& body, btScalar activation)
+{
+    return (1 + activation) * body.getCollisionShape()->getMargin();
+}
+
+// A body's way through the step as a moving object sees it, beside the bounds that Bullet has of that object: those of
+// its own pose, which the motion may not have reached yet.
+struct Sight
+{
+    Sight(const btSoftBody& body, const Way& way, const MovingObject& object, btScalar activation)
+    {
+        const btTransform& pose = object.m_object->getWorldTransform();
+        const btCollisionShape& shape = *object.m_object->getCollisionShape();
+        m_seen.addMapped(way.m_start, pose * object.m_motion.m_start.inverse());
+        m_seen.addMapped(way.m_end, pose * object.m_motion.m_end.inverse());
+        shape.getAabb(pose, m_low, m_high);
+        m_reach = reachOf(body, activation) + activation * shape.getMargin();
+    }
+    bool comesNear() const
+    {
+        const btVector3 margin(m_reach, m_reach, m_reach);
+        return TestAabbAgainstAabb2(m_seen.m_low - margin, m_seen.m_high + margin, m_low, m_high);
+    }
+
+    Extent m_seen;
+    btVector3 m_low, m_high;
+    btScalar m_reach;  // m, but for what the object's bounds hold
+};
+
+// Whether Bullet would hand their pair on, and contacts are wanted of it once the body is awake.
+bool mayTouch(const btSoftBody& body, const btCollisionObject& object)
+{
+    btOverlappingPairCache* pairs = body.m_worldInfo->m_broadphase->getOverlappingPairCache();
+    btBroadphaseProxy* proxy = const_cast<btBroadphaseProxy*>(body.getBroadphaseHandle());
+    btBroadphaseProxy* other = const_cast<btBroadphaseProxy*>(object.getBroadphaseHandle());
+    return respond(body, object) && proxy && other && pairs->needsBroadphaseCollision(proxy, other) &&
+           body.checkCollideWith(&object) && object.checkCollideWith(&body);
+}
+
 class CollectMoving : public btBroadphaseAabbCallback
 {
 public:
@@ -73,34 +132,32 @@ std::vector<MovingObject> movingObjects(const btSoftBody& body, KinematicMotions
     return collect.m_found;
 }
 
-void coverMotion(btSoftBody& body, btScalar activation, const std::vector<MovingObject>& moving)
+bool isReached(const btSoftBody& body, btScalar activation, const std::vector<MovingObject>& moving)
 {
-    Extent start, end;
-    for (int i = 0; i < body.m_nodes.size(); ++i)
-    {
-        const btSoftBody::Node& node = body.m_nodes[i];
-        if (!finite(node.m_x) || !finite(node.m_q)) continue;
-        end.add(node.m_x);
-        start.add(node.m_q);
-    }
-    if (end.empty()) return;
-    Extent path = start;
-    path.add(end.m_low);
-    path.add(end.m_high);
-    const btScalar reach = (1 + activation) * body.getCollisionShape()->getMargin();
-    widen(body, path, reach);
+    if (moving.empty()) return false;
+    Way rest(body);
+    rest.m_start = rest.m_end;  // the last step that it was awake in is over
+    if (rest.m_end.empty()) return false;
     for (const MovingObject& object : moving)
     {
-        // Bullet's bounds of the object are those of its own pose, which the motion may not have reached yet.
-        const btTransform& pose = object.m_object->getWorldTransform();
-        Extent seen;
-        seen.addMapped(start, pose * object.m_motion.m_start.inverse());
-        seen.addMapped(end, pose * object.m_motion.m_end.inverse());
-        btVector3 low, high;
-        object.m_object->getCollisionShape()->getAabb(pose, low, high);
-        const btScalar share = reach + activation * object.m_object->getCollisionShape()->getMargin();
-        const btVector3 margin(share, share, share);
-        if (TestAabbAgainstAabb2(seen.m_low - margin, seen.m_high + margin, low, high)) widen(body, seen, share);
+        if (!mayTouch(body, *object.m_object)) continue;
+        if (Sight(body, rest, object, activation).comesNear()) return true;
+    }
+    return false;
+}
+
+void coverMotion(btSoftBody& body, btScalar activation, const std::vector<MovingObject>& moving)
+{
+    const Way way(body);
+    if (way.m_end.empty()) return;
+    Extent path = way.m_start;
+    path.add(way.m_end.m_low);
+    path.add(way.m_end.m_high);
+    widen(body, path, reachOf(body, activation));
+    for (const MovingObject& object : moving)
+    {
+        const Sight sight(body, way, object, activation);
+        if (sight.comesNear()) widen(body, sight.m_seen, sight.m_reach);
     }
 }
 }  // namespace drape

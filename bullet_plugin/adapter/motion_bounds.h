@@ -1,8 +1,10 @@
-// Bounds of soft bodies that cover a step's motion, so that Bullet's broad phase makes every pair that Drape needs.
+// Bounds of soft bodies that cover a step's motion, so that Bullet's broad phase makes every pair that Drape needs, and
+// sleeping ones that a kinematic object comes to, which have to be awake by then.
 //
 // Bullet's own bounds come from the node tree of the step before and lag behind fast cloth, and those of a kinematic
-// object hold its pose at the end alone. Input: bodies after predictMotion, before Bullet computes its pairs. Output:
-// wider m_bounds. Cost: linear in the nodes, and in the world's objects, which are asked whether they move.
+// object hold its pose at the end alone. Input: bodies before and after predictMotion, before Bullet computes its
+// pairs. Output: wider m_bounds. Cost: linear in the nodes (of sleeping bodies while something moves), and in the
+// world's objects, which are asked whether they move.
 #pragma once
 
 #include <vector>
@@ -21,6 +23,10 @@ struct MovingObject
 // The kinematic meshes and compounds of the body's world that move in this step; observes those that rest, too. None
 // where the body's world info names no broad phase.
 std::vector<MovingObject> movingObjects(const btSoftBody& body, KinematicMotions& motions);
+
+// Whether a moving object that the sleeping body collides with comes near it in this step: Bullet wakes bodies for it
+// only once it has arrived.
+bool isReached(const btSoftBody& body, btScalar activation, const std::vector<MovingObject>& moving);
 
 // Widens the body's bounds to its nodes' paths, grown by the body's part of the reach of contacts, and to those paths
 // as moving objects see them, where they come near the object; those with the object's part, too, which its own bounds

@@ -47,12 +47,8 @@ void PairAlgorithm::processCollision(const btCollisionObjectWrapper* wrapA, cons
         return;
     }
     dropStock();
-    // As Bullet's kinematic objects wake rigid bodies; the cloth takes part from the next step on.
-    const btCollisionObject& obstacle = *obstacleWrap.getCollisionObject();
-    if (wantsContacts(*cloth, obstacle))
+    if (cloth->isActive() && respond(*cloth, *obstacleWrap.getCollisionObject()))
         m_state.note(this, *cloth, obstacleWrap);
-    else if (!cloth->isActive() && obstacle.hasContactResponse() && m_state.moves(*cloth, obstacle))
-        cloth->activate();
 }
 
 void PairAlgorithm::processStock(const btCollisionObjectWrapper* wrapA, const btCollisionObjectWrapper* wrapB,

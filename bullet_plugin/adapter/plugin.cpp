@@ -5,6 +5,7 @@
 
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
 #include "bullet_plugin/adapter/eligibility.h"
+#include "bullet_plugin/adapter/mesh_reader.h"
 #include "bullet_plugin/adapter/plugin_state.h"
 
 namespace drape
@@ -24,7 +25,11 @@ std::string reasonInShape(const PluginState& state, const btSoftBody& cloth, con
     for (int i = 0; i < compound.getNumChildShapes(); ++i)
     {
         const std::string reason = reasonInShape(state, cloth, obstacle, *compound.getChildShape(i));
-        if (!reason.empty()) return "child " + std::to_string(i) + " of the compound: " + reason;
+        if (reason.empty()) continue;
+        const bool nobodys = isMeshShape(compound.getChildShape(i)->getShapeType());
+        return "child " + std::to_string(i) + " of the compound: " + reason +
+               (nobodys ? "; Bullet's own algorithm takes no mesh in a compound, so that it collides with nothing"
+                        : "");
     }
     return std::string();
 }
@@ -94,7 +99,8 @@ std::string Plugin::report() const
         step.m_skipped                       ? " (nothing to do)"
         : step.m_status & kStepClothsLeftOut ? " (cloths with too many candidates left out)"
                                              : "");
-    const std::string reason = device().m_byCost ? " (" + device().m_reason + ")" : std::string();
+    const bool tellsWhy = device().m_byCost || m_state->error().failed();
+    const std::string reason = tellsWhy ? " (" + device().m_reason + ")" : std::string();
     return "Drape on " + device().m_device.m_name + reason + line;
 }
 }  // namespace drape

@@ -96,12 +96,6 @@ bool PluginState::ownsSolver(const btSoftBodySolver* solver) const
     return std::find(m_solvers.begin(), m_solvers.end(), solver) != m_solvers.end();
 }
 
-bool PluginState::moves(const btSoftBody& cloth, const btCollisionObject& obstacle)
-{
-    return obstacle.isKinematicObject() &&
-           motionsOf(const_cast<btSoftBody&>(cloth).getSoftBodySolver()).observe(obstacle).moves();
-}
-
 void PluginState::note(const void* owner, btSoftBody& cloth, const btCollisionObjectWrapper& obstacle)
 {
     PairNote note;

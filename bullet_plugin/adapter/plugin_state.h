@@ -46,7 +46,8 @@ public:
     PluginState& operator=(const PluginState&) = delete;
 
     bool ready() const { return m_pipeline != nullptr; }
-    const Error& error() const { return m_error; }
+    // What kept Drape from starting, or what the device failed of while the host went on.
+    const Error& error() const { return m_pipeline ? m_pipeline->lastError() : m_error; }
     const DeviceReport& device() const;
     Pipeline& pipeline() { return *m_pipeline; }
     const Settings& settings() const { return m_settings; }
@@ -62,8 +63,6 @@ public:
     // How the kinematic objects of that solver's world move in its step.
     KinematicMotions& motionsOf(const btSoftBodySolver* solver) { return m_motions[solver]; }
 
-    // Whether the obstacle moves in the step of the cloth's world.
-    bool moves(const btSoftBody& cloth, const btCollisionObject& obstacle);
     void note(const void* owner, btSoftBody& cloth, const btCollisionObjectWrapper& obstacle);
     void forget(const void* owner);
     void obstacleChanged(const btCollisionShape* shape);

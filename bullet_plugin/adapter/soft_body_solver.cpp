@@ -36,22 +36,34 @@ SoftBodySolver::~SoftBodySolver()
 void SoftBodySolver::predictMotion(btScalar dt)
 {
     m_state->dropNotes(this);  // of a dispatch that no solve followed
-    btDefaultSoftBodySolver::predictMotion(dt);
-    if (!m_state->ready()) return;
+    if (!m_state->ready())
+    {
+        btDefaultSoftBodySolver::predictMotion(dt);
+        return;
+    }
     Stopwatch watch;
+    const btScalar activation = btScalar(m_state->settings().m_activation);
     KinematicMotions& motions = m_state->motionsOf(this);
     motions.beginStep(dt);
-    m_work->m_asleep = 0;
-    std::vector<MovingObject> moving;  // of one world: a solver has no other
+    std::vector<MovingObject> moving;
+    if (m_softBodySet.size() > 0) moving = movingObjects(*m_softBodySet[0], motions);
     for (int i = 0; i < m_softBodySet.size(); ++i)
     {
-        if (i == 0) moving = movingObjects(*m_softBodySet[i], motions);
+        btSoftBody& body = *m_softBodySet[i];
+        if (!body.isActive() && isReached(body, activation, moving)) body.activate();
+    }
+    m_work->m_predictMs = watch.lapMs();
+    btDefaultSoftBodySolver::predictMotion(dt);
+    watch.lapMs();
+    m_work->m_asleep = 0;
+    for (int i = 0; i < m_softBodySet.size(); ++i)
+    {
         if (m_softBodySet[i]->isActive())
-            coverMotion(*m_softBodySet[i], btScalar(m_state->settings().m_activation), moving);
+            coverMotion(*m_softBodySet[i], activation, moving);
         else
             ++m_work->m_asleep;
     }
-    m_work->m_predictMs = watch.lapMs();
+    m_work->m_predictMs += watch.lapMs();
 }
 
 void SoftBodySolver::detect()

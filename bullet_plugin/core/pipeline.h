@@ -85,7 +85,8 @@ class Pipeline
 {
 public:
     // Chooses the device and makes its kernels ready. Returns null and fills error when settings ask for what is not
-    // there, or for methods out of their ranges.
+    // there or does not work, or for methods out of their ranges. A device that nobody asked for and that does not work
+    // leaves the host: see deviceReport() and lastError().
     static std::unique_ptr<Pipeline> create(const Settings& settings, Error& error);
     ~Pipeline();
     Pipeline(const Pipeline&) = delete;

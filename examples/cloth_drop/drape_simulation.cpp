@@ -50,7 +50,7 @@ public:
     std::string trouble() const override
     {
         if (m_status & kStepDeviceFailed)
-            return "the device failed during the run; the host took over: " + m_plugin->error();
+            return "the device failed; the host took over: " + m_plugin->error();
         if (m_status & kStepClothsLeftOut)
             return "more candidates or contacts than a step may have; such steps left the cloth out";
         if (m_status & kStepContactLimit) return "a buffer reached the device's limit; such steps ran on the host";

@@ -390,6 +390,23 @@ TEST_P(Kinematic, substepsShareTheMotion)
     EXPECT_GT(parts.m_most, 0u);
 }
 
+// Bullet takes velocities before it calls: this motion begins without one.
+TEST_P(Kinematic, bodyMovedByATicksCallbackTakesClothAlong)
+{
+    KinematicScene scene(makeBox(4, 0.2f, 4), shiftedBy(btVector3(0, -1, 0)), 1.0f, btVector3(0, 0, 0),
+                         GetParam().m_settings);
+    scene.step(shiftedBy(btVector3(0, -1, 0)));
+    const auto lift = [](btDynamicsWorld* world, btScalar)
+    {
+        btRigidBody& body = *static_cast<btRigidBody*>(world->getWorldUserInfo());
+        body.setWorldTransform(shiftedBy(body.getWorldTransform().getOrigin() + btVector3(0, 2, 0)));
+    };
+    scene.m_world.world().setInternalTickCallback(lift, &scene.m_body, true);
+    scene.m_world.world().stepSimulation(2 * kDt, 2, kDt);
+    EXPECT_GT(scene.m_plugin.statistics().m_contacts, 0u);
+    EXPECT_GT(lowestOf(scene.m_cloth), btScalar(3));
+}
+
 TEST_P(Kinematic, childOfACompoundMovesWithIt)
 {
     Plugin plugin(GetParam().m_settings);
@@ -424,6 +441,25 @@ TEST_P(Kinematic, bodyThatBeginsToMoveWakesCloth)
     for (int i = 1; i <= 3; ++i)
         scene.step(shiftedBy(btVector3(0, btScalar(0.002) * btScalar(i), 0)));
     EXPECT_TRUE(scene.m_cloth.isActive());
+}
+
+// A plate that is past sleeping cloth within one step finds it awake; one that does not collide with it, asleep.
+TEST_P(Kinematic, bodyThatComesFastWakesClothInTime)
+{
+    for (const bool collide : {true, false})
+    {
+        KinematicScene scene(makeBox(4, 0.2f, 4), shiftedBy(btVector3(0, -5, 0)), 1.0f, btVector3(0, 0, 0),
+                             GetParam().m_settings);
+        if (!collide) scene.m_body.setIgnoreCollisionCheck(&scene.m_cloth, true);
+        scene.step(shiftedBy(btVector3(0, -5, 0)));
+        scene.m_cloth.forceActivationState(ISLAND_SLEEPING);
+        scene.step(shiftedBy(btVector3(0, -4, 0)));
+        EXPECT_FALSE(scene.m_cloth.isActive()) << "far away";
+        scene.step(shiftedBy(btVector3(0, 4, 0)));
+        EXPECT_EQ(scene.m_cloth.isActive(), collide);
+        EXPECT_EQ(scene.m_most > 0, collide);
+        EXPECT_EQ(lowestOf(scene.m_cloth) > 4, collide);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Backend, Kinematic, testing::ValuesIn(allBackends()), backendName);
@@ -508,6 +544,99 @@ TEST(KinematicMotion, isWhatVelocityAndPosesSay)
     EXPECT_TRUE(mixed.m_end == to);
     EXPECT_NEAR((mixed.m_end.getOrigin() - mixed.m_start.getOrigin()).y(), kDt, 1e-6);
     EXPECT_NEAR(mixed.m_start.getOrigin().x(), 3, 1e-6);
+}
+
+namespace
+{
+// A kinematic body that no world moves: Bullet's part of a step is called by hand.
+class ObservedBody
+{
+public:
+    ObservedBody() : m_shape(btVector3(1, 1, 1)), m_body(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &m_shape))
+    {
+        m_body.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+        step();
+    }
+    btRigidBody& body() { return m_body; }
+    void place(btScalar x) { m_body.setWorldTransform(shiftedBy(btVector3(x, 0, 0))); }
+    // stepSimulation() with so many substeps begins.
+    void beginFrame(int substeps = 1) { m_body.saveKinematicState(btScalar(substeps) * kDt); }
+    void step()
+    {
+        m_motions.beginStep(kDt);
+        m_motion = m_motions.observe(m_body);
+    }
+    void expectMotion(btScalar from, btScalar to)
+    {
+        EXPECT_NEAR(m_motion.m_start.getOrigin().x(), from, 1e-5);
+        EXPECT_NEAR(m_motion.m_end.getOrigin().x(), to, 1e-5);
+    }
+
+private:
+    btBoxShape m_shape;
+    btRigidBody m_body;
+    KinematicMotions m_motions;
+    BodyMotion m_motion;
+};
+}  // namespace
+
+// Frames faster than steps, moved by what keeps the pose before as interpolation transform: the velocity is the last
+// frame's. The first step takes it for one of three substeps, no later one does.
+TEST(KinematicMotion, ofSeveralPosesAStepIsSweptWhole)
+{
+    ObservedBody observed;
+    btScalar x = 0, last = 0;
+    for (int step = 0; step < 6; ++step)
+    {
+        const btScalar frame = btScalar(0.1) * btScalar(1 + step / 3);  // it speeds up
+        for (int i = 0; i < 3; ++i)
+            observed.body().setCenterOfMassTransform(shiftedBy(btVector3(x += frame, 0, 0)));
+        observed.beginFrame();
+        observed.step();
+        SCOPED_TRACE(step);
+        observed.expectMotion(last, step == 0 ? btScalar(0.1) : x);
+        last = step == 0 ? btScalar(0.1) : x;
+    }
+    // From here on Bullet's substeps move it: the second of them shows it.
+    observed.place(x + btScalar(0.4));
+    observed.beginFrame(4);
+    observed.step();
+    observed.expectMotion(x, x + btScalar(0.4));
+    x += btScalar(0.4);
+    for (int part = 2; part <= 4; ++part)
+    {
+        observed.step();
+        observed.expectMotion(x, x);
+    }
+    observed.place(x + btScalar(0.4));
+    observed.beginFrame(4);
+    for (int part = 1; part <= 4; ++part, x += btScalar(0.1))
+    {
+        observed.step();
+        observed.expectMotion(x, x + btScalar(0.1));
+    }
+}
+
+TEST(KinematicMotion, afterBulletTookTheVelocityIsSweptWhole)
+{
+    ObservedBody observed;
+    observed.beginFrame(3);
+    btScalar x = 0;
+    for (int substep = 0; substep < 3; ++substep)
+    {
+        const btScalar next = x + btScalar(0.1) * btScalar(1 + substep);
+        observed.place(next);  // as a tick's callback does
+        observed.step();
+        observed.expectMotion(x, next);
+        x = next;
+    }
+    // Both transforms: a teleport even there, where Bullet's velocity is none.
+    observed.beginFrame();
+    observed.beginFrame();
+    observed.place(7);
+    observed.body().setInterpolationWorldTransform(observed.body().getWorldTransform());
+    observed.step();
+    observed.expectMotion(7, 7);
 }
 
 TEST(KinematicMotion, sharesTurnsAmongSubsteps)

@@ -7,6 +7,7 @@
 #include "BulletCollision/Gimpact/btGImpactShape.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
+#include "tests/support/environment.h"
 
 namespace drape::test
 {
@@ -122,6 +123,39 @@ TEST_F(Stock, compoundNamesTheChild)
     expectReason(addCloth(), m_world.addObstacle(compound), "child 1");
 }
 
+// Bullet's own algorithm would take the compound for a mesh.
+TEST_F(Stock, aMeshInACompoundThatDrapeLeavesIsNobodys)
+{
+    btCompoundShape compound;
+    compound.addChildShape(btTransform::getIdentity(), &m_shape.shape());
+    btCollisionObject& object = m_world.addObstacle(compound);
+    btSoftBody& cloth = addCloth();
+    EXPECT_EQ(m_plugin.whyStock(&cloth, &object), "");
+    cloth.generateClusters(4);
+    cloth.m_cfg.collisions = btSoftBody::fCollision::CL_RS;
+    expectReason(cloth, object, "collides with nothing");
+    expectReason(cloth, object, "child 0");
+    m_world.step(10);
+    EXPECT_EQ(contactsHeld(cloth), 0);
+}
+
+TEST_F(Stock, aSoftBodyMayOutliveItsSolver)
+{
+    btSoftBodyWorldInfo info;
+    const btVector3 places[] = {btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(0, 0, 1)};
+    btSoftBody cloth(&info, 3, places, nullptr);
+    cloth.appendFace(0, 1, 2);
+    btCollisionObject& object = m_world.addObstacle(m_shape.shape());
+    {
+        SoftBodySolver solver(m_plugin);
+        cloth.setSoftBodySolver(&solver);
+        EXPECT_EQ(m_plugin.whyStock(&cloth, &object), "");
+    }
+    expectReason(cloth, object, "solver");
+    cloth.setSoftBodySolver(nullptr);
+    expectReason(cloth, object, "deformable world");
+}
+
 TEST_F(Stock, pairsThatAreNotClothAndObstacle)
 {
     btCollisionObject& object = m_world.addObstacle(m_shape.shape());
@@ -151,6 +185,33 @@ TEST(StockWithoutDevice, anUnknownDeviceIsAnErrorThatListsThoseThereAre)
             EXPECT_NE(plugin.error().find(device.m_name), std::string::npos) << plugin.error();
         EXPECT_FALSE(plugin.report().empty());
     }
+}
+
+TEST(StockWithoutDevice, aDeviceThatNobodyAskedForAndThatFailsLeavesTheHost)
+{
+    const std::vector<DeviceInfo> devices = listDevices();
+    if (devices.empty() || devices[0].m_platform != "Portable Computing Language")
+        GTEST_SKIP() << "only PoCL, where it would be chosen, can be told to fail";
+    const ScopedVariable unnamed("DRAPE_DEVICE", nullptr), broken("POCL_EXTRA_BUILD_FLAGS", "-Dvec3Sub=@");
+    Settings settings;
+    settings.m_cacheFolder = "none";
+    Plugin plugin(settings);
+    EXPECT_TRUE(plugin.ready());
+    EXPECT_NE(plugin.error().find(".cl"), std::string::npos) << plugin.error();
+    EXPECT_NE(plugin.report().find("the host, since " + devices[0].m_name + " failed"), std::string::npos)
+        << plugin.report();
+    MeshShape shape(makeBox(2.0f, 0.4f, 2.0f));
+    DropWorld world(&plugin);
+    btCollisionObject& object = world.addObstacle(shape.shape());
+    ClothSpec spec;
+    spec.m_nodes = 9;
+    spec.m_centre = btVector3(0, btScalar(0.25), 0);
+    btSoftBody& cloth = world.addCloth(spec);
+    EXPECT_EQ(plugin.whyStock(&cloth, &object), "");
+    for (int i = 0; i < 30; ++i)
+        world.step();
+    EXPECT_FALSE(plugin.contacts().empty());
+    EXPECT_EQ(plugin.statistics().m_status, std::uint32_t(kStepDeviceFailed));
 }
 
 TEST(StockWithoutDevice, theAppRunsOnWithBulletsOwnCollision)

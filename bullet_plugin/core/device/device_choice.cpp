@@ -37,6 +37,7 @@ DeviceChoice chooseByName(const std::vector<DeviceInfo>& devices, const std::str
         if (text.find(lowered(wanted)) == std::string::npos) continue;
         choice.m_onHost = false;
         choice.m_index = i;
+        choice.m_device = devices[i];
         choice.m_reason = "named by " + origin + " \"" + wanted + "\"";
         return choice;
     }
@@ -72,6 +73,7 @@ DeviceChoice chooseDevice(const Settings& settings, Error& error)
         return choice;
     }
     choice.m_onHost = false;
+    choice.m_device = devices[0];
     choice.m_byCost = settings.m_backend == Backend::Auto;
     choice.m_reason = devices[0].m_isGpu ? "the first GPU" : "no GPU was found; the first OpenCL device";
     return choice;

@@ -58,6 +58,7 @@ struct Pipeline::Implementation
     std::uint32_t m_stepRevision = 0, m_stepMotion = 0;  // of the obstacles, in the last step with a pair
     std::size_t m_nodesWritten = 0, m_nodesSent = 0;     // the first so many nodes of all cloths, for the coming step
     bool m_submitted = false;
+    bool m_deviceLeft = false;  // it failed
 
     Device* device() { return m_deviceBackend ? &m_deviceBackend->device() : nullptr; }
     PooledMesh makeMesh(const MeshDescription& description);
@@ -89,7 +90,11 @@ struct Pipeline::Implementation
     void collectTubes();
     // Makes a device ready for cloths that collide with themselves.
     void prepareSelf();
+    // False, with error filled, when the device cannot be opened or its kernels made ready; nothing of it is kept.
+    bool openDevice(const DeviceChoice& choice, Error& error);
+    // After the device's failure everything goes on, on the host, to the end.
     void leaveDevice();
+    void goOnWithoutDevice(const Error& error);
     // Whether cost decides between the host and the device that was chosen.
     bool costDecides(const DeviceChoice& choice) const;
     // The crossover that settings or the environment name; negative where they name none. False: an error.

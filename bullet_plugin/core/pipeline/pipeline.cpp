@@ -286,17 +286,43 @@ void Pipeline::Implementation::prepareSelf()
     if (m_deviceBackend->device().failed()) leaveDevice();
 }
 
-// After a failure everything goes on, on the host.
 void Pipeline::Implementation::leaveDevice()
 {
-    m_error = m_deviceBackend->device().error();
-    m_report.m_reason = "the host, since " + m_report.m_device.m_name + " failed: " + m_error.m_call;
+    if (!m_deviceLeft) goOnWithoutDevice(m_deviceBackend->device().error());
+    // The backend stays: the scene's pinned memory is its context's.
+}
+
+void Pipeline::Implementation::goOnWithoutDevice(const Error& error)
+{
+    m_error = error;
+    m_deviceLeft = true;
+    m_report.m_reason = "the host, since " + m_openClDevice.m_name + " failed: " + error.m_call;
     m_report.m_onHost = true;
+    m_report.m_byCost = false;
     m_report.m_device = DeviceInfo();
     m_report.m_device.m_name = "host";
     m_statistics.m_status |= kStepDeviceFailed;
     m_choice.end();
-    // The backend stays: the scene's pinned memory is its context's.
+}
+
+bool Pipeline::Implementation::openDevice(const DeviceChoice& choice, Error& error)
+{
+    const Clock::time_point start = Clock::now();
+    m_openClDevice = choice.m_device;
+    std::unique_ptr<Device> device = Device::open(choice.m_index, error, m_settings.m_profileKernels);
+    if (!device) return false;
+    m_deviceBackend.reset(new DeviceBackend(std::move(device), m_settings));
+    if (m_deviceBackend->device().failed())
+    {
+        error = m_deviceBackend->device().error();
+        m_deviceBackend.reset();
+        return false;
+    }
+    m_report.m_onHost = false;
+    m_report.m_device = m_openClDevice;
+    m_report.m_fromCache = m_deviceBackend->fromCache();
+    m_report.m_buildMs = millisecondsSince(start);
+    return true;
 }
 
 Pipeline::Pipeline() : m_implementation(new Implementation) {}
@@ -304,7 +330,6 @@ Pipeline::~Pipeline() = default;
 
 std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& error)
 {
-    const Clock::time_point start = Clock::now();
     error = Error();
     if (!checkMethods(settings.m_methods, error)) return nullptr;
     const DeviceChoice choice = chooseDevice(settings, error);
@@ -313,22 +338,16 @@ std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& erro
     Implementation& self = *pipeline->m_implementation;
     self.m_settings = settings;
     self.m_hostBackend = HostBackend(settings.m_methods);
-    self.m_report.m_reason = choice.m_reason;
+    self.m_report.m_reason = self.m_deviceReason = choice.m_reason;
     self.m_report.m_device.m_name = "host";
-    self.m_report.m_onHost = choice.m_onHost;
     if (choice.m_onHost) return pipeline;
-    std::unique_ptr<Device> device = Device::open(choice.m_index, error, settings.m_profileKernels);
-    if (!device) return nullptr;
-    self.m_report.m_device = self.m_openClDevice = device->info();
-    self.m_deviceReason = choice.m_reason;
-    self.m_deviceBackend.reset(new DeviceBackend(std::move(device), settings));
-    if (self.m_deviceBackend->device().failed())
+    if (!self.openDevice(choice, error))
     {
-        error = self.m_deviceBackend->device().error();
-        return nullptr;
+        if (!choice.m_byCost) return nullptr;
+        self.goOnWithoutDevice(error);
+        error = Error();
+        return pipeline;
     }
-    self.m_report.m_fromCache = self.m_deviceBackend->fromCache();
-    self.m_report.m_buildMs = millisecondsSince(start);
     if (self.costDecides(choice) && !self.beginChoice(*pipeline, error)) return nullptr;
     return pipeline;
 }
@@ -462,6 +481,7 @@ void Pipeline::submit()
     Implementation& self = *m_implementation;
     const Clock::time_point start = Clock::now();
     self.m_statistics = StepStatistics();
+    if (self.m_deviceLeft) self.m_statistics.m_status |= kStepDeviceFailed;
     self.joinScene();
     self.chooseBackend();
     self.buildHierarchies();

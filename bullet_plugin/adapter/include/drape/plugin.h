@@ -4,15 +4,18 @@
 // Settings. Guarantee: no exception leaves this class; when Drape cannot start, error() says why and every pair goes to
 // Bullet's own algorithm. Make it before the collision configuration and the solver; they keep its state alive, so the
 // order of destruction does not matter as long as Bullet's own rule holds (configuration and solver outlive the world).
-// One plugin serves one thread; it may serve several worlds of that thread. SI units, world frame. C++11.
+// One plugin serves one thread; it may serve several worlds of that thread, each with a solver of its own. A dispatcher
+// of several threads (btCollisionDispatcherMt) is not supported: Bullet's soft bodies are not either. SI units, world
+// frame. C++11.
 //
 // The thickness of a pair, at which cloth comes to rest, is the soft body's collision margin plus the mesh shape's
 // margin (body->getCollisionShape()->getMargin() + shape->getMargin()); at least 0.1 mm.
 //
 // Kinematic rigid bodies move over the step as the velocity says that Bullet finds when stepSimulation() begins, from
 // the interpolation transform to the world transform (or the motion state's). To teleport one, set both transforms to
-// the new pose. One that sleeps has no velocity for Bullet: give it DISABLE_DEACTIVATION. In the first step in which a
-// body is there it rests. A static object's pose that changes is a teleport.
+// the new pose. One whose pose is set later, by a tick's callback or while it sleeps, moves the whole way from its last
+// pose; one that sleeps has no velocity for Bullet: give it DISABLE_DEACTIVATION. In the first step in which a body is
+// there it rests. A static object's pose that changes is a teleport.
 #pragma once
 
 #include <memory>
@@ -52,8 +55,9 @@ public:
     Plugin(const Plugin&) = delete;
     Plugin& operator=(const Plugin&) = delete;
 
-    bool ready() const;         // false: every pair goes to Bullet's own algorithm
-    std::string error() const;  // what failed, with the whole log; empty when nothing did
+    bool ready() const;  // false: every pair goes to Bullet's own algorithm
+    // What failed, with the whole log; empty when nothing did. ready() all the same: the host took over from a device.
+    std::string error() const;
 
     const DeviceReport& device() const;
     const StepStatistics& statistics() const;   // of the last step that one of this plugin's solvers solved
@@ -61,7 +65,7 @@ public:
     std::string report() const;                 // device and last step in one line
 
     // Empty when Drape handles the pair, else the reason why Bullet's own algorithm does. For a compound the first
-    // child that Drape does not handle gives the reason.
+    // child that Drape does not handle gives the reason; a mesh there, which Bullet's own cannot take, is named as such.
     std::string whyStock(const btCollisionObject* objectA, const btCollisionObject* objectB) const;
 
     // Tells that vertices of a mesh shape were moved in place. Refits (a changed bounding box), scaling and changes

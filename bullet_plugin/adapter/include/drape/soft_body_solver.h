@@ -5,8 +5,8 @@
 // the device, waits once (again when the paths of fast nodes had to be cut), and lets Bullet solve, iteration by
 // iteration, with a round over the contacts before each and the closing rounds after the last. Bullet's m_rcontacts and
 // m_scontacts hold Bullet's own contacts only; Plugin::contacts() has Drape's. A body whose step has no time (a step of
-// 0, a timescale of 0 or less) stays as it is, and nothing is looked for. Bodies of another solver are left to Bullet.
-// C++11.
+// 0, a timescale of 0 or less) stays as it is, and nothing is looked for. A body that sleeps is woken by a kinematic
+// mesh that comes near it. Bodies of another solver are left to Bullet. One solver serves one world. C++11.
 #pragma once
 
 #include <memory>

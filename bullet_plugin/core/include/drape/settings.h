@@ -12,7 +12,8 @@ namespace drape
 {
 enum class Backend
 {
-    Auto,    // a GPU, else any OpenCL device, and the host where there is none or the scene is too small to pay for it
+    Auto,    // a GPU, else any OpenCL device, and the host where there is none, where it fails (then error() says why),
+             // or where the scene is too small to pay for it
     OpenCl,  // an OpenCL device or an error
     Host     // the same pure functions, run serially by the calling thread (but Methods::m_rebuildDecay)
 };
