@@ -23,6 +23,11 @@ if(DRAPE_BULLET_DOUBLE)
 else()
   set(DRAPE_PC_BULLET bullet)
 endif()
+# What a static library leaves to be linked.
+if(DRAPE_LIBRARY_TYPE STREQUAL "STATIC_LIBRARY")
+  set(DRAPE_PC_STATIC_REQUIRES ", OpenCL")
+  set(DRAPE_PC_STATIC_LIBS " -pthread")
+endif()
 # Relative to the .pc file, so that cmake --install --prefix and a moved tree stay right.
 set(pc_dir ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig)
 file(RELATIVE_PATH DRAPE_PC_PREFIX ${pc_dir} ${CMAKE_INSTALL_PREFIX})

@@ -1,6 +1,7 @@
 # The test install.consumer: installs Drape into WORK, then builds and runs examples/consumer against what was
-# installed, once as a CMake package and once by pkg-config.
-# Input: BUILD (Drape's build folder), SOURCE (the consumer), WORK (made anew), LIBDIR, COMPILER, SANITIZE.
+# installed, once as a CMake package and once by pkg-config; by pkg-config also the README's program, which it runs, and
+# its fragment, which it compiles.
+# Input: BUILD (Drape's build folder), SOURCE (the consumer), README, WORK (made anew), LIBDIR, COMPILER, SANITIZE.
 cmake_minimum_required(VERSION 3.25)
 function(must)
   execute_process(COMMAND ${ARGV} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
@@ -20,9 +21,46 @@ must(${CMAKE_COMMAND} --build ${WORK}/build)
 must(${WORK}/build/consumer)
 
 set(ENV{PKG_CONFIG_PATH} ${prefix}/${LIBDIR}/pkgconfig)
-execute_process(COMMAND pkg-config --static --cflags --libs drape
+execute_process(COMMAND pkg-config --cflags --libs drape
   OUTPUT_VARIABLE package_flags OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
 separate_arguments(package_flags UNIX_COMMAND "${package_flags}")
 must(${COMPILER} -std=c++11 ${flags} ${SOURCE}/main.cpp -o ${WORK}/consumer_by_pkg_config ${package_flags}
   -Wl,-rpath,${prefix}/${LIBDIR})
 must(${WORK}/consumer_by_pkg_config)
+
+# Blocks of C++ in the order in which the README has them; semicolons would part a list.
+file(READ ${README} text)
+string(REPLACE ";" "@semicolon@" text "${text}")
+string(REGEX MATCHALL "```cpp\n[^`]*```" blocks "${text}")
+list(LENGTH blocks count)
+if(NOT count EQUAL 2)
+  message(FATAL_ERROR "The README has ${count} blocks of C++, of which this test knows two")
+endif()
+set(sources "")
+foreach(block IN LISTS blocks)
+  string(REGEX REPLACE "^```cpp\n(.*)```$" "\\1" block "${block}")
+  list(APPEND sources "${block}")
+endforeach()
+list(GET sources 0 program)
+list(GET sources 1 fragment)
+string(REGEX MATCHALL "#include [^\n]*" includes "${fragment}")
+string(REGEX REPLACE "#include [^\n]*" "" fragment "${fragment}")
+list(JOIN includes "\n" includes)
+set(fragment "${includes}
+void ask(const drape::MeshDescription& meshA, const drape::MeshDescription& meshB, const drape::CcdQuery& ccdQuery)
+{
+${fragment}
+}
+")
+foreach(name program fragment)
+  string(REPLACE "@semicolon@" ";" ${name} "${${name}}")
+  file(WRITE ${WORK}/readme_${name}.cpp "${${name}}")
+endforeach()
+must(${COMPILER} -std=c++11 -fsyntax-only ${WORK}/readme_fragment.cpp ${package_flags})
+must(${COMPILER} -std=c++11 ${flags} ${WORK}/readme_program.cpp -o ${WORK}/readme_program ${package_flags}
+  -Wl,-rpath,${prefix}/${LIBDIR})
+execute_process(COMMAND ${WORK}/readme_program OUTPUT_VARIABLE report COMMAND_ERROR_IS_FATAL ANY)
+message("${report}")
+if(NOT report MATCHES "^Drape on .* ([1-9][0-9]*) contacts" OR NOT report MATCHES "\n\n$")
+  message(FATAL_ERROR "The README's program does not report contacts of a pair that Drape has")
+endif()

@@ -8,6 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 seconds=${1:-60}
 seed=${2:-0}  # 0: libFuzzer chooses, and prints it
 
+bash cmake/install_packages.sh
 bash cmake/build_preset.sh fuzz fuzz_mesh fuzz_records fuzz_core fuzz_queries
 
 export LSAN_OPTIONS=suppressions=$PWD/cmake/lsan.supp:print_suppressions=0

@@ -77,7 +77,7 @@ public:
         if (collidesWithItself()) hash = hashOf(std::vector<Contact>(self.begin(), self.end()), hash);
         outcome.m_hash = hashText(hash);
         // A step that left its device is no measurement of it.
-        if (statistics.m_status & (kStepDeviceFailed | kStepContactLimit)) outcome.m_hash = "left the device";
+        if (statistics.m_status & (kStepDeviceFailed | kStepDeviceFull)) outcome.m_hash = "left the device";
         return outcome;
     }
 

@@ -1,6 +1,6 @@
 // The collision pipeline: mirrors cloths and obstacles, and once a step finds their contacts on the chosen back end.
 //
-// Job: hold every cloth and obstacle as one 18-DOP hierarchy per side; each step refit, broad phase, narrow phase,
+// Job: hold every cloth and obstacle; each step refit (of what the traversal walks), broad phase, narrow phase,
 // reduction, compaction. Input: node positions at the step's start and end, obstacle positions when they change, and
 // the pairs to test. Output: contacts in canonical order in host memory. Guarantee: same input, same contacts, bit for
 // bit, on every back end; a buffer that is too small grows and the stage runs again. Cost: one submission, one wait a

@@ -49,16 +49,12 @@ public:
     double prepareMs() const override { return m_plugin->device().m_buildMs + m_plugin->device().m_measureMs; }
     std::string trouble() const override
     {
-        if (m_status & kStepDeviceFailed)
-            return "the device failed; the host took over: " + m_plugin->error();
-        if (m_status & kStepClothsLeftOut)
-            return "more candidates or contacts than a step may have; such steps left the cloth out";
-        if (m_status & kStepContactLimit) return "a buffer reached the device's limit; such steps ran on the host";
-        return "";
+        const std::string error = m_plugin->error();
+        return statusText(m_status) + (error.empty() ? "" : ": " + error);
     }
 
 private:
-    std::unique_ptr<Plugin> m_plugin;  // before the world: it must outlive the configuration's users
+    std::unique_ptr<Plugin> m_plugin;  // before the world, which uses it
     DropWorld m_world;
     double m_dt;
     std::uint32_t m_status = 0;

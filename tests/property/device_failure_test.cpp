@@ -2,6 +2,7 @@
 // with the same contacts, and status, report and error say so to the end.
 #include <gtest/gtest.h>
 
+#include "drape/queries.h"
 #include "tests/support/backends.h"
 #include "tests/support/environment.h"
 
@@ -118,6 +119,27 @@ TEST_P(DeviceFailureTest, OneThatNobodyAskedForLeavesTheHost)
     const MeshId cloth = pipeline->addCloth(triangle(kAbove)), obstacle = pipeline->addObstacle(triangle(kBelow));
     expectStepsOnHost(*pipeline, cloth, obstacle, 3);
     expectHostGoesOn(*pipeline);
+}
+
+TEST_P(DeviceFailureTest, QueriesGoOnOnTheHostLikewise)
+{
+    if (GetParam().m_device != 0) GTEST_SKIP() << "not the device that would be chosen";
+    const ScopedVariable unnamed("DRAPE_DEVICE", nullptr), broken(kBuildFlags, kBroken);
+    Error error;
+    EXPECT_FALSE(Queries::create(m_settings, error));
+    EXPECT_NE(error.text().find(".cl"), std::string::npos) << error.text();
+    m_settings.m_backend = Backend::Auto;
+    m_settings.m_device.clear();
+    const std::unique_ptr<Queries> queries = Queries::create(m_settings, error);
+    ASSERT_TRUE(queries) << error.text();
+    EXPECT_FALSE(error.failed());
+    EXPECT_TRUE(queries->deviceReport().m_onHost);
+    EXPECT_EQ(queries->deviceReport().m_reason.find("the host, since " + m_name + " failed: "), 0u);
+    EXPECT_NE(queries->error().text().find(".cl"), std::string::npos) << queries->error().text();
+    MeshPairs pairs;
+    const MeshDescription above = triangle(kAbove), below = triangle(kBelow);
+    EXPECT_TRUE(queries->meshPairs(above, &below, 0.1f, pairs));
+    EXPECT_EQ(pairs.m_withinCount, 1u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, DeviceFailureTest, testing::ValuesIn(openClBackends()), backendName);

@@ -53,6 +53,23 @@ TEST(DeviceChoice, UnknownNameListsWhatThereIs)
     EXPECT_EQ(fromPipeline.text(), error.text());
 }
 
+TEST(DeviceChoice, ADeviceByBackendAndTheHostByNameContradict)
+{
+    Settings settings = named("host");
+    settings.m_backend = Backend::OpenCl;
+    Error error;
+    chooseDevice(settings, error);
+    EXPECT_TRUE(error.failed());
+    EXPECT_EQ(whyNoDevice(settings).rfind(error.m_call, 0), 0u) << whyNoDevice(settings);
+    EXPECT_EQ(whyNoDevice(settings).find('\n'), std::string::npos);
+    settings.m_backend = Backend::Auto;
+    EXPECT_EQ(whyNoDevice(settings), "");
+    settings.m_device.clear();
+    settings.m_backend = Backend::OpenCl;
+    const DeviceVariable variable("host");
+    EXPECT_NE(whyNoDevice(settings).find("DRAPE_DEVICE"), std::string::npos) << whyNoDevice(settings);
+}
+
 TEST(DeviceChoice, UnknownVariableIsNamed)
 {
     const DeviceVariable variable("no such device");
@@ -78,7 +95,7 @@ TEST_P(DeviceChoiceTest, NameIsComparedWithoutCaseAndByPart)
     EXPECT_FALSE(choice.m_onHost);
     EXPECT_FALSE(choice.m_byCost);
     EXPECT_EQ(listDevices()[choice.m_index].m_name, info.m_name);
-    EXPECT_NE(choice.m_reason.find("option"), std::string::npos) << choice.m_reason;
+    EXPECT_NE(choice.m_reason.find("name"), std::string::npos) << choice.m_reason;
 }
 
 TEST_P(DeviceChoiceTest, OptionWinsOverVariable)

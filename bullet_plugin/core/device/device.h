@@ -78,6 +78,9 @@ struct DeviceChoice
     std::string m_reason;
 };
 
+// The reason of a report where the host took over from a device that failed.
+std::string hostSince(const DeviceInfo& device, const Error& error);
+
 // error is filled when a device was asked for that is not there; its detail lists those that are.
 DeviceChoice chooseDevice(const Settings& settings, Error& error);
 }  // namespace drape

@@ -38,7 +38,7 @@ DeviceChoice chooseByName(const std::vector<DeviceInfo>& devices, const std::str
         choice.m_onHost = false;
         choice.m_index = i;
         choice.m_device = devices[i];
-        choice.m_reason = "named by " + origin + " \"" + wanted + "\"";
+        choice.m_reason = "asked for by " + origin + " \"" + wanted + "\"";
         return choice;
     }
     error.m_call = "no OpenCL device matches " + origin + " \"" + wanted + "\"";
@@ -47,17 +47,35 @@ DeviceChoice chooseByName(const std::vector<DeviceInfo>& devices, const std::str
 }
 }  // namespace
 
+std::string hostSince(const DeviceInfo& device, const Error& error)
+{
+    return "the host, since " + device.m_name + " failed: " + error.m_call;
+}
+
+std::string whyNoDevice(const Settings& settings)
+{
+    Error error;
+    chooseDevice(settings, error);
+    return error.failed() ? error.m_call + "; " + error.m_detail : std::string();
+}
+
 DeviceChoice chooseDevice(const Settings& settings, Error& error)
 {
     DeviceChoice choice;
     const char* variable = std::getenv("DRAPE_DEVICE");
     const bool fromVariable = settings.m_device.empty() && variable && *variable;
     const std::string wanted = fromVariable ? variable : settings.m_device;
-    const std::string origin = fromVariable ? "DRAPE_DEVICE" : "the device option";
+    const std::string origin = fromVariable ? "DRAPE_DEVICE" : "the name";
+    if (settings.m_backend == Backend::OpenCl && lowered(wanted) == "host")
+    {
+        error.m_call = "an OpenCL device was asked for, and the host by " + origin + " \"" + wanted + "\"";
+        error.m_detail = listing(listDevices());
+        return choice;
+    }
     if (settings.m_backend == Backend::Host || lowered(wanted) == "host")
     {
         choice.m_reason =
-            settings.m_backend == Backend::Host ? "the host back end was asked for" : "named by " + origin;
+            settings.m_backend == Backend::Host ? "the host back end was asked for" : "asked for by " + origin;
         return choice;
     }
     const std::vector<DeviceInfo> devices = listDevices();
@@ -68,7 +86,7 @@ DeviceChoice chooseDevice(const Settings& settings, Error& error)
         if (settings.m_backend == Backend::OpenCl)
         {
             error.m_call = "an OpenCL device was asked for, and none was found";
-            error.m_detail = "install a driver, for example pocl-opencl-icd";
+            error.m_detail = "install a driver, for example the package pocl-opencl-icd";
         }
         return choice;
     }

@@ -4,6 +4,12 @@ namespace drape
 {
 bool checkIndices(const MeshDescription& mesh, const char* call, Error& error)
 {
+    if ((mesh.m_triangleCount > 0 && !mesh.m_triangles) || (mesh.m_vertexCount > 0 && !mesh.m_positions))
+    {
+        error = Error();
+        error.m_call = std::string(call) + ": a mesh without one of its arrays";
+        return false;
+    }
     for (std::size_t i = 0; i < 3 * mesh.m_triangleCount; ++i)
     {
         const std::int32_t index = mesh.m_triangles[i];

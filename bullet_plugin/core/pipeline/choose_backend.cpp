@@ -69,6 +69,7 @@ double Pipeline::Implementation::findCrossover(Pipeline& pipeline)
     else
     {
         m_report.m_crossoverSource = "its contacts are not the host's";
+        if (!device()->failed()) m_error.m_call = m_openClDevice.m_name + " is not used: " + m_report.m_crossoverSource;
         crossover.m_pairs = std::numeric_limits<double>::infinity();
     }
     m_report.m_measureMs = std::chrono::duration<double, std::milli>(Clock::now() - start).count();

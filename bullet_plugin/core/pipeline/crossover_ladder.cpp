@@ -156,7 +156,7 @@ bool measureRung(Pipeline& pipeline, Rung& scene, const std::function<void(bool)
     use(false);
     rung.m_deviceMs = scene.leastMs();
     scene.run(0, device);
-    return (pipeline.statistics().m_status & (kStepDeviceFailed | kStepContactLimit)) == 0 && !host.empty() &&
+    return (pipeline.statistics().m_status & (kStepDeviceFailed | kStepDeviceFull)) == 0 && !host.empty() &&
            host.size() == device.size() && std::memcmp(host.data(), device.data(), host.size() * sizeof(Contact)) == 0;
 }
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include "bullet_plugin/core/mesh/check_indices.h"
 #include "bullet_plugin/core/mesh/normal_cones.h"
-#include "check_methods.h"
+#include "check_settings.h"
 #include "scene_work.h"
 
 namespace drape
@@ -296,7 +296,7 @@ void Pipeline::Implementation::goOnWithoutDevice(const Error& error)
 {
     m_error = error;
     m_deviceLeft = true;
-    m_report.m_reason = "the host, since " + m_openClDevice.m_name + " failed: " + error.m_call;
+    m_report.m_reason = hostSince(m_openClDevice, error);
     m_report.m_onHost = true;
     m_report.m_byCost = false;
     m_report.m_device = DeviceInfo();
@@ -331,7 +331,7 @@ Pipeline::~Pipeline() = default;
 std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& error)
 {
     error = Error();
-    if (!checkMethods(settings.m_methods, error)) return nullptr;
+    if (!checkSettings(settings, error)) return nullptr;
     const DeviceChoice choice = chooseDevice(settings, error);
     if (error.failed()) return nullptr;
     std::unique_ptr<Pipeline> pipeline(new Pipeline);

@@ -46,7 +46,7 @@ void Pipeline::Implementation::complete()
     }
     else if (!m_deviceBackend->finish(m_scene, m_stepPairs, m_result))
     {
-        if (m_deviceBackend->limitReached()) m_statistics.m_status |= kStepContactLimit;
+        if (m_deviceBackend->limitReached()) m_statistics.m_status |= kStepDeviceFull;
         if (m_deviceBackend->device().failed()) leaveDevice();
         runOnHost();
     }

@@ -1,6 +1,8 @@
 #include "drape/queries.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "bullet_plugin/core/exact/triangles.h"
 #include "bullet_plugin/core/mesh/check_indices.h"
@@ -24,6 +26,21 @@ struct Queries::Implementation
     {
         if (!good) m_error = m_device->device().error();
         return good;
+    }
+    // Whether what a caller gave is usable; else the error names the call and what is wrong.
+    bool require(bool good, const char* call, const std::string& wrong)
+    {
+        if (good) return true;
+        m_error = Error();
+        m_error.m_call = std::string(call) + ": " + wrong;
+        return false;
+    }
+    bool requireSettings(const CcdSettings& settings, const char* call)
+    {
+        const auto isLength = [](float value) { return std::isfinite(value) && value >= 0.0f; };
+        return require(
+            isLength(settings.m_separation) && isLength(settings.m_tolerance) && isLength(settings.m_timeTolerance),
+            call, "CcdSettings with a length or tolerance that is negative or not finite");
     }
 };
 
@@ -79,12 +96,22 @@ std::unique_ptr<Queries> Queries::create(const Settings& settings, Error& error)
     self.m_report.m_device.m_name = "host";
     if (choice.m_onHost) return queries;
     std::unique_ptr<Device> device = Device::open(choice.m_index, error);
-    if (!device) return nullptr;
-    self.m_report.m_device = device->info();
+    if (device)
+    {
+        self.m_device.reset(new QueryDevice(std::move(device), settings));
+        error = self.m_device->device().error();
+    }
+    if (error.failed())
+    {
+        self.m_device.reset();
+        if (!choice.m_byCost) return nullptr;
+        self.m_report.m_reason = hostSince(choice.m_device, error);
+        self.m_error = error;
+        error = Error();
+        return queries;
+    }
+    self.m_report.m_device = choice.m_device;
     self.m_report.m_onHost = false;
-    self.m_device.reset(new QueryDevice(std::move(device), settings));
-    error = self.m_device->device().error();
-    if (error.failed()) return nullptr;
     self.m_report.m_fromCache = self.m_device->fromCache();
     self.m_report.m_buildMs =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -104,6 +131,13 @@ const Error& Queries::error() const
 bool Queries::motions(const CcdQuery* queries, std::size_t count, const CcdSettings& settings, CcdResult* results)
 {
     Implementation& self = *m_implementation;
+    if (!self.require(count == 0 || (queries && results), "motions", "an array is missing") ||
+        !self.requireSettings(settings, "motions"))
+        return false;
+    const CcdQuery* const unknown =
+        std::find_if(queries, queries + count, [](const CcdQuery& query) { return query.m_kind > DRAPE_EDGES; });
+    if (!self.require(unknown == queries + count, "motions", "a query with a kind that is neither of the two"))
+        return false;
     if (self.m_device) return self.check(self.m_device->motions(queries, count, settings, results));
     for (std::size_t i = 0; i < count; ++i)
     {
@@ -121,6 +155,7 @@ bool Queries::motions(const CcdQuery* queries, std::size_t count, const CcdSetti
 bool Queries::triangles(const TriangleQuery* queries, std::size_t count, TriangleTest test, std::uint32_t* results)
 {
     Implementation& self = *m_implementation;
+    if (!self.require(count == 0 || (queries && results), "triangles", "an array is missing")) return false;
     const std::uint32_t fast = test == TriangleTest::Moller ? DRAPE_TEST_MOLLER : DRAPE_TEST_CERTIFIED;
     if (self.m_device && !self.check(self.m_device->triangles(queries, count, fast, results))) return false;
     for (std::size_t i = 0; i < count; ++i)
@@ -138,6 +173,8 @@ bool Queries::meshPairs(const MeshDescription& a, const MeshDescription* b, floa
     found = MeshPairs();
     if (!checkIndices(a, "meshPairs", self.m_error)) return false;
     if (b && !checkIndices(*b, "meshPairs", self.m_error)) return false;
+    if (!self.require(std::isfinite(radius) && radius >= 0.0f, "meshPairs", "a radius that is negative or not finite"))
+        return false;
     QueryMesh first = makeQueryMesh(a, a.m_positions), other;
     if (b) other = makeQueryMesh(*b, b->m_positions);
     QueryMesh& second = b ? other : first;
@@ -163,6 +200,9 @@ bool Queries::meshMotion(const MeshDescription& description, const float* end, c
     Implementation& self = *m_implementation;
     found = MeshMotion();
     if (!checkIndices(description, "meshMotion", self.m_error)) return false;
+    if (!self.require(end || description.m_vertexCount == 0, "meshMotion", "an array is missing") ||
+        !self.requireSettings(settings, "meshMotion"))
+        return false;
     QueryMesh mesh = makeQueryMesh(description, end);
     const SelfLimits limits = {self.m_limits.m_candidates, self.m_limits.m_contacts};
     SelfCollisions collisions;

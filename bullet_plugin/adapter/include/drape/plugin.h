@@ -2,18 +2,20 @@
 //
 // Job: choose the device, keep the mirrors of cloths and obstacles, answer questions about the last step. Input:
 // Settings. Guarantee: no exception leaves this class; when Drape cannot start, error() says why and every pair goes to
-// Bullet's own algorithm. Make it before the collision configuration and the solver; they keep its state alive, so the
-// order of destruction does not matter as long as Bullet's own rule holds (configuration and solver outlive the world).
+// Bullet's own algorithm. Make it before the collision configuration and the solver; they keep its state alive, so that
+// it may go before them, if Bullet's own rule holds (configuration and solver outlive the world). Not so a dispatcher
+// that install() gave it to: that has to go first.
 // One plugin serves one thread; it may serve several worlds of that thread, each with a solver of its own. A dispatcher
 // of several threads (btCollisionDispatcherMt) is not supported: Bullet's soft bodies are not either. SI units, world
 // frame. C++11.
 //
 // The thickness of a pair, at which cloth comes to rest, is the soft body's collision margin plus the mesh shape's
-// margin (body->getCollisionShape()->getMargin() + shape->getMargin()); at least 0.1 mm.
+// margin (body->getCollisionShape()->getMargin() + shape->getMargin()); at least 0.1 mm. Bullet makes a soft body's
+// margin 0.25 m.
 //
-// Kinematic rigid bodies move over the step as the velocity says that Bullet finds when stepSimulation() begins, from
-// the interpolation transform to the world transform (or the motion state's). To teleport one, set both transforms to
-// the new pose. One whose pose is set later, by a tick's callback or while it sleeps, moves the whole way from its last
+// Kinematic rigid bodies move over the step by the velocity that Bullet derives, when stepSimulation() begins, from the
+// interpolation transform and the world transform (or the motion state's). To teleport one, set both transforms to the
+// new pose. One whose pose is set later, by a tick's callback or while it sleeps, moves the whole way from its last
 // pose; one that sleeps has no velocity for Bullet: give it DISABLE_DEACTIVATION. In the first step in which a body is
 // there it rests. A static object's pose that changes is a teleport.
 #pragma once
@@ -33,7 +35,7 @@ namespace drape
 {
 class PluginState;
 
-// One contact of the last step, for debugging and drawing; those that others imply are left out
+// One contact of the last step, for debugging and drawing; redundant ones, which others already enforce, are left out
 // (Settings::m_reduceContacts). The pointers are those of that step: do not keep them.
 struct ContactInfo
 {
@@ -65,7 +67,8 @@ public:
     std::string report() const;                 // device and last step in one line
 
     // Empty when Drape handles the pair, else the reason why Bullet's own algorithm does. For a compound the first
-    // child that Drape does not handle gives the reason; a mesh there, which Bullet's own cannot take, is named as such.
+    // child that Drape does not handle gives the reason; a mesh there, which Bullet's own cannot take, is named as
+    // such.
     std::string whyStock(const btCollisionObject* objectA, const btCollisionObject* objectB) const;
 
     // Tells that vertices of a mesh shape were moved in place. Refits (a changed bounding box), scaling and changes

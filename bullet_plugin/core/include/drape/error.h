@@ -1,6 +1,6 @@
-// A failure of the environment (no device, a kernel that does not build), or a mesh with an index out of range: the
-// call that failed, the kernel or the triangle it concerned, and the whole log. A caller's other mistakes assert
-// instead. No exception crosses the public interface.
+// A failure of the environment (no device, a kernel that does not build), or settings, meshes and queries that cannot
+// be used: the call that failed, the kernel, triangle or field it concerned, and the whole log. No exception crosses
+// the public interface.
 #pragma once
 
 #include <string>

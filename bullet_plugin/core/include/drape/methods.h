@@ -87,8 +87,9 @@ struct Methods
 {
     Traversal m_traversal = Traversal::Auto;
 
-    // Who builds the hierarchies that traversals walk; nothing where the step goes over patches. A tree for each mesh,
-    // once, as its positions were given, before the first step that walks it, and pairs of meshes above.
+    // Who builds the hierarchies that traversals walk; unused by the default of a device, which walks patches. Each
+    // mesh's tree is built once, from the positions that it was given, before the first step that walks it; pairs of
+    // meshes come above.
     TreeMethods m_tree;
 
     // The cloths' hierarchy is built anew, beside the steps, once its nodes' areas over the root's have grown by this

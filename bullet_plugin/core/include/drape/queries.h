@@ -21,8 +21,8 @@
 
 namespace drape
 {
-// Working defaults of continuous collision: no published true pair is missed, 157 false hits among the 6,593 hardest
-// published pairs that do not touch.
+// Working defaults of continuous collision: no published true pair is missed, 157 false hits among the 6,598 published
+// pairs that do not touch.
 CcdSettings defaultCcdSettings();
 
 enum class TriangleTest
@@ -46,7 +46,7 @@ enum QueryLimitBits : std::uint32_t
     kQueryAnswerLimit = 1u << 1      // more answers than Settings::m_contactLimit: they are counted, none is listed
 };
 
-// Counts are exact, whatever the limits; but see kQueryCandidateLimit.
+// Counts are exact, whatever the limits; with kQueryCandidateLimit there is only m_candidates.
 struct MeshPairs
 {
     std::uint32_t m_limits = kQueryWhole;
@@ -81,7 +81,8 @@ class Queries
 {
 public:
     // Chooses the device and makes its kernels ready; keeps the settings' limits. Returns null and fills error when
-    // settings ask for what is not there.
+    // settings ask for what is not there or does not work. Backend::Auto is the first device, whatever the work, and
+    // the host where there is none or it fails: then error() of what is returned says why.
     static std::unique_ptr<Queries> create(const Settings& settings, Error& error);
     ~Queries();
     Queries(const Queries&) = delete;
@@ -89,8 +90,8 @@ public:
 
     const DeviceReport& deviceReport() const;
 
-    // Each returns false when the device failed, or a mesh has an index out of range; error() says how of the last that
-    // did.
+    // Each returns false when the device failed, a mesh has an index out of range, an array is missing, or a kind or a
+    // length is none; error() says how of the last that did.
     const Error& error() const;
 
     // results: count of them.

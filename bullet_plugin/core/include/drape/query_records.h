@@ -26,15 +26,15 @@ typedef struct CcdQuery
 typedef struct CcdSettings
 {
     float m_separation;       // m, ≥ 0: features this near count as touching
-    float m_tolerance;        // of the offset relative to the pair's extent: what varies less is not halved
+    float m_tolerance;        // of the pair's extent: where the features' offset varies by less, they touch
     float m_timeTolerance;    // of the step: the time is searched to this; 1: any hit will do and its time is 0
     unsigned int m_boxLimit;  // boxes looked at before a search ends with the safe answer, a hit
 } CcdSettings;
 
 typedef struct CcdResult
 {
-    unsigned int m_hit;
-    float m_time;    // part of the step, ≤ the true time of impact; 1 without a hit
+    unsigned int m_hit;  // 1: they touch, or nearly (m_tolerance); 0: proved apart
+    float m_time;        // part of the step, ≤ the true time of impact; 1 without a hit
     float m_u, m_v;  // where they touch: weights of the face's second and third corner, or of the edges' second ends
     unsigned int m_boxes;  // looked at, the cost
 } CcdResult;

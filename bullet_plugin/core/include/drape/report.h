@@ -28,14 +28,22 @@ struct DeviceReport
     // Where cost decides between the host and a device (Backend::Auto); then m_onHost, m_device and m_reason are those
     // of the last step with a pair, and of a scene without one before it.
     bool m_byCost = false;
-    double m_expectedPairs = 0;     // of triangles, were every cloth to lie on its worst obstacle with all its area
-    double m_crossover = 0;         // of these pairs: the host up to it, the device above; infinite: never
-    std::string m_crossoverSource;  // "measured now", "measured before" or "set"
-    double m_measureMs = 0;         // that it took to measure now
+    double m_expectedPairs = 0;  // of triangles: as many as there were, lay every cloth wholly on the obstacle where it
+                                 // has most
+    double m_crossover = 0;      // of these pairs: the host up to it, the device above; infinite: never
+    // "measured now", "measured before", "set", or "its contacts are not the host's": such a device is not used, and
+    // the error says so.
+    std::string m_crossoverSource;
+    double m_measureMs = 0;  // that it took to measure now
 };
+
+struct Settings;
 
 // Every OpenCL device there is, in the order in which Drape would choose. Empty when there is none.
 std::vector<DeviceInfo> listDevices();
+
+// Whether what settings and DRAPE_DEVICE ask for is there: empty, or in one line why not and which devices there are.
+std::string whyNoDevice(const Settings& settings);
 
 // Bits of StepStatistics::m_status. Zero is a good step.
 enum StepStatusBits : std::uint32_t
@@ -43,12 +51,15 @@ enum StepStatusBits : std::uint32_t
     kStepGood = 0,
     kStepInvalidNodes = 1u << 0,  // nodes that are NaN, infinite or beyond 2^30 m were left out
     kStepDeviceFailed = 1u << 1,  // the device failed; this and later steps run on the host
-    kStepContactLimit = 1u << 2,  // a buffer reached what the device can hold; the step ran on the host
+    kStepDeviceFull = 1u << 2,    // a list needed more than the device can hold; the step ran on the host
     kStepClothsLeftOut =
         1u << 3,  // more than Settings::m_candidateLimit or m_contactLimit: the largest cloths left out
     kStepCoarsePositions =
         1u << 4  // an obstacle reaches so far out that neighbouring floats are a thickness apart there
 };
+
+// What StepStatistics::m_status says, in words: one clause a bit, joined by "; ". Empty for a good step.
+std::string statusText(std::uint32_t status);
 
 // One kernel launch as the device timed it; only with Settings::m_profileKernels.
 struct KernelTime

@@ -15,7 +15,8 @@ enum class Backend
     Auto,    // a GPU, else any OpenCL device, and the host where there is none, where it fails (then error() says why),
              // or where the scene is too small to pay for it
     OpenCl,  // an OpenCL device or an error
-    Host     // the same pure functions, run serially by the calling thread (but Methods::m_rebuildDecay)
+    Host     // the same functions, run serially by the calling thread; trees built anew (Methods::m_rebuildDecay) have
+             // a thread of their own
 };
 
 // How a step looks at the cloth's motion between its start and its end.
@@ -37,32 +38,34 @@ struct Settings
     // With Backend::Auto and no device named: the work from which a scene runs on the device, in pairs of triangles
     // that its meshes let expect; below it the host is used. Both give the same contacts, so a scene that grows moves
     // over between two steps, and comes back below half of it. 0: always the device. Infinite: always the host.
-    // Negative: the environment variable DRAPE_CROSSOVER, and if that is empty, what is measured for the machine and
-    // the device: once, in less than a second or two while the first pipeline is made, and kept in the cache folder
-    // (crossover-*.txt).
+    // Negative: the environment variable DRAPE_CROSSOVER, and if that is empty, what is measured for the machine, the
+    // device, m_mode, m_activation and m_reduceContacts: once, which takes a second or two while the first pipeline
+    // with them is made, and kept in the cache folder (crossover-*.txt). Cost decides over the default traversal alone
+    // (Methods::m_traversal), and not with m_reportIntersections or m_profileKernels: then the device runs every step.
     double m_crossover = -1;
 
     // Contacts are reported up to thickness + m_activation × thickness, so that the solver knows of a surface before
     // the thickness is violated. Range 0 to 4. Larger: safer under stiff links, more contacts.
     float m_activation = 0.5f;
 
-    // Leave out contacts that others keep anyway, up to 2 % of the thickness, within the distance that nodes may go
-    // from their predicted paths while they are solved. Off: all contacts are solved; the same cloth at rest, but for
-    // that.
+    // Leave out redundant contacts: those that others already enforce, up to 2 % of the thickness, within the distance
+    // that nodes may go from their predicted paths while they are solved. Off: all contacts are solved; the same cloth
+    // at rest, but for that.
     bool m_reduceContacts = true;
 
     // Continuous and Automatic find every face and edge that meets a feature of the obstacle on its linear way through
     // the step, at the earliest time; Discrete may lose what is faster than its thickness (README: how much it loses).
     ContactMode m_mode = ContactMode::Automatic;
 
-    // Also list the cloth and obstacle triangles that intersect at the step's start. Costs a kernel.
+    // Also count the pairs of cloth and obstacle triangles that intersect at the step's start
+    // (StepStatistics::m_intersections). Costs a kernel.
     bool m_reportIntersections = false;
 
-    // Most triangle pairs that a step may list (8 bytes each), up to 2^28, and most contacts (132 bytes each on a
-    // device and as many on the host, and up to 792 in Bullet). Steps of two million cloth triangles need a third of
-    // either. A step with more leaves out the cloths that have most of them, until the rest fits, and says so in its
-    // status: those cloths collide with nothing in that step. Queries of whole meshes (drape/queries.h) test as many
-    // pairs and list as many answers (8 to 24 bytes each); of more they give the number.
+    // Most triangle pairs that a step may list (8 bytes each) and most contacts (132 bytes each on a device and as many
+    // on the host, and up to 792 in Bullet); 2^28 at most, which stands for more. Steps of two million cloth triangles
+    // need a third of either. A step with more leaves out the cloths that have most of them, until the rest fits, and
+    // says so in its status: those cloths collide with nothing in that step. Queries of whole meshes (drape/queries.h)
+    // test as many pairs and list as many answers (8 to 24 bytes each); of more they give the number.
     std::size_t m_candidateLimit = std::size_t(1) << 27;
     std::size_t m_contactLimit = std::size_t(1) << 24;
 

@@ -1,4 +1,4 @@
-// Methods out of their ranges are refused with an error that names the field; what is at a range's ends is not.
+// Settings out of their ranges are refused with an error that names the field; what is at a range's ends is not.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -15,16 +15,21 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 using Change = std::function<void(Methods&)>;
 
-// Of making a pipeline on the host with changed methods; empty where it was made.
-std::string errorOf(const Change& change)
+// Of making a pipeline on the host with changed settings; empty where it was made.
+std::string errorOfSettings(const std::function<void(Settings&)>& change)
 {
     Settings settings;
     settings.m_backend = Backend::Host;
-    change(settings.m_methods);
+    change(settings);
     Error error;
     const std::unique_ptr<Pipeline> pipeline = Pipeline::create(settings, error);
     EXPECT_EQ(pipeline == nullptr, error.failed());
     return error.text();
+}
+
+std::string errorOf(const Change& change)
+{
+    return errorOfSettings([&](Settings& settings) { change(settings.m_methods); });
 }
 
 void expectRefused(const std::string& text, const Change& change)
@@ -32,6 +37,33 @@ void expectRefused(const std::string& text, const Change& change)
     EXPECT_EQ(errorOf(change).rfind("Methods::" + text + "\nit should be ", 0), 0u) << errorOf(change);
 }
 }  // namespace
+
+TEST(SettingsRanges, WhatIsOutOfThemIsRefused)
+{
+    for (const float activation : {-0.1f, 4.1f, kNaN, kInfinity})
+    {
+        const std::string error = errorOfSettings([&](Settings& s) { s.m_activation = activation; });
+        EXPECT_EQ(error.rfind("Settings::m_activation is ", 0), 0u) << error;
+        EXPECT_NE(error.find("it should be 0 to 4"), std::string::npos) << error;
+    }
+    for (const float activation : {0.0f, 4.0f})
+        EXPECT_EQ(errorOfSettings([&](Settings& s) { s.m_activation = activation; }), "");
+    EXPECT_NE(errorOfSettings([](Settings& s) { s.m_mode = ContactMode(3); }), "");
+}
+
+TEST(StatusText, NamesEveryBit)
+{
+    EXPECT_EQ(statusText(kStepGood), "");
+    std::string all;
+    for (const std::uint32_t bit :
+         {kStepInvalidNodes, kStepDeviceFailed, kStepDeviceFull, kStepClothsLeftOut, kStepCoarsePositions})
+    {
+        EXPECT_NE(statusText(bit), "");
+        EXPECT_EQ(statusText(bit).find(';'), std::string::npos);
+        all += (all.empty() ? "" : "; ") + statusText(bit);
+    }
+    EXPECT_EQ(statusText(0xffffffffu), all);
+}
 
 TEST(MethodsRanges, WhatIsOutOfThemIsRefused)
 {
