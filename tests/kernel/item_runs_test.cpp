@@ -77,8 +77,8 @@ cl_uint imbalance(const std::vector<cl_uint>& taker, cl_uint takers)
     std::vector<cl_uint> share(takers, 0);
     for (cl_uint by : taker)
         ++share.at(by);
-    const auto [least, most] = std::minmax_element(share.begin(), share.end());
-    return *most - *least;
+    std::sort(share.begin(), share.end());
+    return share.back() - share.front();
 }
 
 struct Launch
