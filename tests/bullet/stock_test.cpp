@@ -8,6 +8,7 @@
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
 #include "tests/support/environment.h"
+#include "tests/support/own_process.h"
 
 namespace drape::test
 {
@@ -192,26 +193,30 @@ TEST(StockWithoutDevice, aDeviceThatNobodyAskedForAndThatFailsLeavesTheHost)
     const std::vector<DeviceInfo> devices = listDevices();
     if (devices.empty() || devices[0].m_platform != "Portable Computing Language")
         GTEST_SKIP() << "only PoCL, where it would be chosen, can be told to fail";
-    const ScopedVariable unnamed("DRAPE_DEVICE", nullptr), broken("POCL_EXTRA_BUILD_FLAGS", "-Dvec3Sub=@");
-    Settings settings;
-    settings.m_cacheFolder = "none";
-    Plugin plugin(settings);
-    EXPECT_TRUE(plugin.ready());
-    EXPECT_NE(plugin.error().find(".cl"), std::string::npos) << plugin.error();
-    EXPECT_NE(plugin.report().find("the host, since " + devices[0].m_name + " failed"), std::string::npos)
-        << plugin.report();
-    MeshShape shape(makeBox(2.0f, 0.4f, 2.0f));
-    DropWorld world(&plugin);
-    btCollisionObject& object = world.addObstacle(shape.shape());
-    ClothSpec spec;
-    spec.m_nodes = 9;
-    spec.m_centre = btVector3(0, btScalar(0.25), 0);
-    btSoftBody& cloth = world.addCloth(spec);
-    EXPECT_EQ(plugin.whyStock(&cloth, &object), "");
-    for (int i = 0; i < 30; ++i)
-        world.step();
-    EXPECT_FALSE(plugin.contacts().empty());
-    EXPECT_EQ(plugin.statistics().m_status, std::uint32_t(kStepDeviceFailed));
+    inOwnProcess(
+        [&]
+        {
+            const ScopedVariable unnamed("DRAPE_DEVICE", nullptr), broken("POCL_EXTRA_BUILD_FLAGS", "-Dvec3Sub=@");
+            Settings settings;
+            settings.m_cacheFolder = "none";
+            Plugin plugin(settings);
+            EXPECT_TRUE(plugin.ready());
+            EXPECT_NE(plugin.error().find(".cl"), std::string::npos) << plugin.error();
+            EXPECT_NE(plugin.report().find("the host, since " + devices[0].m_name + " failed"), std::string::npos)
+                << plugin.report();
+            MeshShape shape(makeBox(2.0f, 0.4f, 2.0f));
+            DropWorld world(&plugin);
+            btCollisionObject& object = world.addObstacle(shape.shape());
+            ClothSpec spec;
+            spec.m_nodes = 9;
+            spec.m_centre = btVector3(0, btScalar(0.25), 0);
+            btSoftBody& cloth = world.addCloth(spec);
+            EXPECT_EQ(plugin.whyStock(&cloth, &object), "");
+            for (int i = 0; i < 30; ++i)
+                world.step();
+            EXPECT_FALSE(plugin.contacts().empty());
+            EXPECT_EQ(plugin.statistics().m_status, std::uint32_t(kStepDeviceFailed));
+        });
 }
 
 TEST(StockWithoutDevice, theAppRunsOnWithBulletsOwnCollision)

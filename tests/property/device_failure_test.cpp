@@ -5,13 +5,14 @@
 #include "drape/queries.h"
 #include "tests/support/backends.h"
 #include "tests/support/environment.h"
+#include "tests/support/own_process.h"
 
 namespace drape::test
 {
 namespace
 {
 // PoCL adds these to every build, and no kernel of ours is C with them. It remembers a build that failed for as long as
-// the process lives: what is to build first comes first.
+// the process lives, so that each test has one of its own.
 constexpr const char* kBuildFlags = "POCL_EXTRA_BUILD_FLAGS";
 constexpr const char* kBroken = "-Dvec3Sub=@";
 
@@ -79,67 +80,85 @@ protected:
 
 TEST_P(DeviceFailureTest, ADeviceThatFailsBetweenStepsIsLeftForGood)
 {
-    const std::unique_ptr<Pipeline> pipeline = makePipeline(m_settings);
-    ASSERT_TRUE(pipeline);
-    const MeshId cloth = pipeline->addCloth(triangle(kAbove)), obstacle = pipeline->addObstacle(triangle(kBelow));
-    const std::size_t contacts = contactsOfStep(*pipeline, cloth, obstacle);
-    EXPECT_GT(contacts, 0u);
-    EXPECT_FALSE(pipeline->statistics().m_onHost);
-    EXPECT_EQ(pipeline->statistics().m_status, std::uint32_t(kStepGood));
-    {
-        const ScopedVariable broken(kBuildFlags, kBroken);
-        pipeline->addCloth(triangle(kAbove, 0.02f));  // needs kernels that are not there yet
-    }
-    expectHostGoesOn(*pipeline);
-    expectStepsOnHost(*pipeline, cloth, obstacle, contacts);
-    pipeline->addObstacle(triangle(kBelow));
-    expectStepsOnHost(*pipeline, cloth, obstacle, contacts);
-    expectHostGoesOn(*pipeline);
+    inOwnProcess(
+        [&]
+        {
+            const std::unique_ptr<Pipeline> pipeline = makePipeline(m_settings);
+            ASSERT_TRUE(pipeline);
+            const MeshId cloth = pipeline->addCloth(triangle(kAbove)),
+                         obstacle = pipeline->addObstacle(triangle(kBelow));
+            const std::size_t contacts = contactsOfStep(*pipeline, cloth, obstacle);
+            EXPECT_GT(contacts, 0u);
+            EXPECT_FALSE(pipeline->statistics().m_onHost);
+            EXPECT_EQ(pipeline->statistics().m_status, std::uint32_t(kStepGood));
+            {
+                const ScopedVariable broken(kBuildFlags, kBroken);
+                pipeline->addCloth(triangle(kAbove, 0.02f));  // needs kernels that are not there yet
+            }
+            expectHostGoesOn(*pipeline);
+            expectStepsOnHost(*pipeline, cloth, obstacle, contacts);
+            pipeline->addObstacle(triangle(kBelow));
+            expectStepsOnHost(*pipeline, cloth, obstacle, contacts);
+            expectHostGoesOn(*pipeline);
+        });
 }
 
 TEST_P(DeviceFailureTest, OneThatWasAskedForIsAnErrorWithTheLog)
 {
-    const ScopedVariable broken(kBuildFlags, kBroken);
-    Error error;
-    EXPECT_FALSE(Pipeline::create(m_settings, error));
-    EXPECT_NE(error.text().find(".cl"), std::string::npos) << error.text();
+    inOwnProcess(
+        [&]
+        {
+            const ScopedVariable broken(kBuildFlags, kBroken);
+            Error error;
+            EXPECT_FALSE(Pipeline::create(m_settings, error));
+            EXPECT_NE(error.text().find(".cl"), std::string::npos) << error.text();
+        });
 }
 
 TEST_P(DeviceFailureTest, OneThatNobodyAskedForLeavesTheHost)
 {
     if (GetParam().m_device != 0) GTEST_SKIP() << "not the device that would be chosen";
-    const ScopedVariable unnamed("DRAPE_DEVICE", nullptr), broken(kBuildFlags, kBroken);
-    m_settings.m_backend = Backend::Auto;
-    m_settings.m_device.clear();
-    Error error;
-    const std::unique_ptr<Pipeline> pipeline = Pipeline::create(m_settings, error);
-    ASSERT_TRUE(pipeline) << error.text();
-    EXPECT_FALSE(error.failed());
-    expectHostGoesOn(*pipeline);
-    const MeshId cloth = pipeline->addCloth(triangle(kAbove)), obstacle = pipeline->addObstacle(triangle(kBelow));
-    expectStepsOnHost(*pipeline, cloth, obstacle, 3);
-    expectHostGoesOn(*pipeline);
+    inOwnProcess(
+        [&]
+        {
+            const ScopedVariable unnamed("DRAPE_DEVICE", nullptr), broken(kBuildFlags, kBroken);
+            m_settings.m_backend = Backend::Auto;
+            m_settings.m_device.clear();
+            Error error;
+            const std::unique_ptr<Pipeline> pipeline = Pipeline::create(m_settings, error);
+            ASSERT_TRUE(pipeline) << error.text();
+            EXPECT_FALSE(error.failed());
+            expectHostGoesOn(*pipeline);
+            const MeshId cloth = pipeline->addCloth(triangle(kAbove)),
+                         obstacle = pipeline->addObstacle(triangle(kBelow));
+            expectStepsOnHost(*pipeline, cloth, obstacle, 3);
+            expectHostGoesOn(*pipeline);
+        });
 }
 
 TEST_P(DeviceFailureTest, QueriesGoOnOnTheHostLikewise)
 {
     if (GetParam().m_device != 0) GTEST_SKIP() << "not the device that would be chosen";
-    const ScopedVariable unnamed("DRAPE_DEVICE", nullptr), broken(kBuildFlags, kBroken);
-    Error error;
-    EXPECT_FALSE(Queries::create(m_settings, error));
-    EXPECT_NE(error.text().find(".cl"), std::string::npos) << error.text();
-    m_settings.m_backend = Backend::Auto;
-    m_settings.m_device.clear();
-    const std::unique_ptr<Queries> queries = Queries::create(m_settings, error);
-    ASSERT_TRUE(queries) << error.text();
-    EXPECT_FALSE(error.failed());
-    EXPECT_TRUE(queries->deviceReport().m_onHost);
-    EXPECT_EQ(queries->deviceReport().m_reason.find("the host, since " + m_name + " failed: "), 0u);
-    EXPECT_NE(queries->error().text().find(".cl"), std::string::npos) << queries->error().text();
-    MeshPairs pairs;
-    const MeshDescription above = triangle(kAbove), below = triangle(kBelow);
-    EXPECT_TRUE(queries->meshPairs(above, &below, 0.1f, pairs));
-    EXPECT_EQ(pairs.m_withinCount, 1u);
+    inOwnProcess(
+        [&]
+        {
+            const ScopedVariable unnamed("DRAPE_DEVICE", nullptr), broken(kBuildFlags, kBroken);
+            Error error;
+            EXPECT_FALSE(Queries::create(m_settings, error));
+            EXPECT_NE(error.text().find(".cl"), std::string::npos) << error.text();
+            m_settings.m_backend = Backend::Auto;
+            m_settings.m_device.clear();
+            const std::unique_ptr<Queries> queries = Queries::create(m_settings, error);
+            ASSERT_TRUE(queries) << error.text();
+            EXPECT_FALSE(error.failed());
+            EXPECT_TRUE(queries->deviceReport().m_onHost);
+            EXPECT_EQ(queries->deviceReport().m_reason.find("the host, since " + m_name + " failed: "), 0u);
+            EXPECT_NE(queries->error().text().find(".cl"), std::string::npos) << queries->error().text();
+            MeshPairs pairs;
+            const MeshDescription above = triangle(kAbove), below = triangle(kBelow);
+            EXPECT_TRUE(queries->meshPairs(above, &below, 0.1f, pairs));
+            EXPECT_EQ(pairs.m_withinCount, 1u);
+        });
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, DeviceFailureTest, testing::ValuesIn(openClBackends()), backendName);

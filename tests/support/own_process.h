@@ -1,0 +1,23 @@
+// What changes the process that it runs in for good, in one of its own.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <functional>
+
+namespace drape::test
+{
+// Runs the scenario in a new process, which repeats the test up to here. Its failures are this test's; what it prints
+// is shown with them.
+inline void inOwnProcess(const std::function<void()>& scenario)
+{
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    const auto run = [&]
+    {
+        scenario();
+        std::_Exit(testing::Test::HasFailure() ? 1 : 0);
+    };
+    EXPECT_EXIT(run(), testing::ExitedWithCode(0), "");
+}
+}  // namespace drape::test
