@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <functional>
+#include <iostream>
 
 namespace drape::test
 {
@@ -16,6 +17,9 @@ inline void inOwnProcess(const std::function<void()>& scenario)
     const auto run = [&]
     {
         scenario();
+        const testing::TestResult& result = *testing::UnitTest::GetInstance()->current_test_info()->result();
+        for (int i = 0; i < result.total_part_count(); ++i)
+            std::cerr << result.GetTestPartResult(i) << std::endl;
         std::_Exit(testing::Test::HasFailure() ? 1 : 0);
     };
     EXPECT_EXIT(run(), testing::ExitedWithCode(0), "");
