@@ -7,11 +7,18 @@
 
 #include "scenes/shapes.h"
 #include "tools/common/arguments.h"
+#include "tools/common/program.h"
 
 namespace drape
 {
 namespace
 {
+// What --help says of --json.
+constexpr const char* kJsonText =
+    "JSON keys end in their units; step_ms and collision_ms are over the steps in contact. Penetration is how far a\n"
+    "node was below the surface, or a vertex of the obstacle above a face. With --compare there is an object a run:\n"
+    "drape, bullet_stock, bullet_tuned and, where asked for, bullet_vfss.";
+
 constexpr int kMostNodesASide = 4096;  // 16.8 million nodes: beyond what a step can hold, below any overflow
 
 std::string grid(std::string& text)
@@ -127,6 +134,7 @@ const std::map<std::string, Traversal>& traversalsByName()
 bool parseOptions(int argc, const char* const* argv, Options& options, int& exitCode)
 {
     CLI::App app("Drops a cloth on an obstacle in Bullet and reports what happened.", "cloth_drop");
+    app.footer(std::string(kJsonText) + "\n" + kExitCodesText);
     std::string cloth = "33x33", mode = "stock";
     app.option_defaults()->always_capture_default();
     addSceneOptions(app, options, cloth);

@@ -14,6 +14,10 @@ enum ExitCode
     kExitOtherHash = 3  // a hash is not the one to be: --validate-hash, or a row of a benchmark
 };
 
+// The codes as --help tells them.
+constexpr const char* kExitCodesText =
+    "Exit codes: 0 good, 1 a run failed, 2 arguments, files or a device that cannot be used, 3 another hash.";
+
 // Prints "program: reason" and returns the code.
 int fail(const std::string& program, int exitCode, const std::string& reason);
 

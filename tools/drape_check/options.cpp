@@ -1,6 +1,7 @@
 #include "tools/drape_check/options.h"
 
 #include "tools/common/arguments.h"
+#include "tools/common/program.h"
 
 namespace drape
 {
@@ -75,6 +76,7 @@ void addMeshes(CLI::App& app, Options& options)
 bool parseOptions(int argc, const char* const* argv, Options& options, int& exitCode)
 {
     CLI::App app("Answers collision questions with Drape and says how often it was wrong.", "drape_check");
+    app.footer(kExitCodesText);
     std::string mode = "fast";
     options.m_tolerance = defaultCcdSettings().m_tolerance;
     app.option_defaults()->always_capture_default();
