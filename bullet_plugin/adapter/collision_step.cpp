@@ -184,6 +184,7 @@ void CollisionStep::finish()
 {
     m_state.m_statistics = StepStatistics();
     m_state.m_statistics.m_skipped = m_pairs.empty();
+    if (m_state.pipeline().deviceFailed()) m_state.m_statistics.m_status |= kStepDeviceFailed;
     if (m_pairs.empty()) return;
     receiveAll();
     const std::size_t kept = m_state.m_statistics.m_obstaclesKept;

@@ -1,6 +1,7 @@
 #include "bullet_plugin/adapter/eligibility.h"
 
 #include "BulletCollision/BroadphaseCollision/btBroadphaseProxy.h"
+#include "BulletCollision/CollisionShapes/btCompoundShape.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
 #include "bullet_plugin/adapter/plugin_state.h"
 
@@ -44,6 +45,16 @@ const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, co
     if (!state.ready()) return "Drape could not start; see Plugin::error()";
     if (const char* reason = reasonFromCloth(state, cloth)) return reason;
     return reasonFromObstacle(obstacle, shape);
+}
+
+bool handlesAny(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
+                const btCollisionShape& shape)
+{
+    if (shape.getShapeType() != COMPOUND_SHAPE_PROXYTYPE) return !reasonForStock(state, cloth, obstacle, shape);
+    const btCompoundShape& compound = static_cast<const btCompoundShape&>(shape);
+    for (int i = 0; i < compound.getNumChildShapes(); ++i)
+        if (handlesAny(state, cloth, obstacle, *compound.getChildShape(i))) return true;
+    return false;
 }
 
 bool respond(const btSoftBody& cloth, const btCollisionObject& obstacle)

@@ -12,6 +12,10 @@ class PluginState;
 const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
                            const btCollisionShape& shape);
 
+// Whether Drape handles the cloth and any leaf of the obstacle's shape, which may be a compound.
+bool handlesAny(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
+                const btCollisionShape& shape);
+
 // Whether the two answer each other's touch: not objects that ignore each other, not where either side has no contact
 // response.
 bool respond(const btSoftBody& cloth, const btCollisionObject& obstacle);

@@ -20,6 +20,11 @@ constexpr btScalar kShiftSlack = btScalar(0.02);
 constexpr btScalar kTurnSlack = btScalar(0.1);
 constexpr btScalar kShiftNoise = btScalar(1e-4);
 
+// Most poses between two steps that count as one motion, of frames faster than steps, and the least cosine between it
+// and the velocity.
+constexpr btScalar kMostPoses = 16;
+constexpr btScalar kSameWay = btScalar(0.7);
+
 struct Turn
 {
     btVector3 m_axis;
@@ -46,9 +51,11 @@ btTransform moved(const btTransform& from, const btVector3& shift, const btVecto
 }
 
 // Substeps that the velocity takes for the change of the pose, 0 when the two do not fit.
-btScalar substepsBetween(const btTransform& from, const btTransform& to, const Turn& turn, const btVector3& velocity,
+btScalar substepsBetween(const btTransform& from, const btTransform& to, const btVector3& velocity,
                          const btVector3& angularVelocity, btScalar dt)
 {
+    if (from == to || !(dt > 0)) return 0;
+    const Turn turn = turnBetween(from, to);
     const btVector3 shift = to.getOrigin() - from.getOrigin();
     const btScalar speed = velocity.length(), turning = angularVelocity.length();
     const bool byShift = speed * dt > kShiftNoise || !(turning * dt > 0);
@@ -59,6 +66,23 @@ btScalar substepsBetween(const btTransform& from, const btTransform& to, const T
     if (std::fabs(turning * count * dt - turn.m_angle) > kTurnSlack * turn.m_angle + count * kAngleNoise) return 0;
     if (turn.m_angle > 10 * kAngleNoise && turn.m_axis.dot(angularVelocity) < (1 - kTurnSlack) * turning) return 0;
     return count;
+}
+
+// Whether the change of the pose may be that of several poses before one step, of which the velocity knows the last.
+bool isNear(const btTransform& from, const btTransform& to, const btVector3& velocity, const btVector3& angularVelocity,
+            btScalar dt)
+{
+    const btVector3 shift = to.getOrigin() - from.getOrigin();
+    const btScalar farthest = kMostPoses * velocity.length() * dt, most = kMostPoses * angularVelocity.length() * dt;
+    if (shift.length() > kShiftNoise && shift.dot(velocity) < kSameWay * shift.length() * velocity.length())
+        return false;
+    return shift.length() <= farthest + kShiftNoise && turnBetween(from, to).m_angle <= most + kMostPoses * kAngleNoise;
+}
+
+// The pose at which Bullet took the velocity, where it does.
+const btTransform& noticedBy(const btCollisionObject& object)
+{
+    return btRigidBody::upcast(&object) ? object.getInterpolationWorldTransform() : object.getWorldTransform();
 }
 }  // namespace
 
@@ -72,7 +96,7 @@ BodyMotion motionInStep(const btTransform& from, const btTransform& to, const bt
         const bool slowTurn = from.getOrigin() == to.getOrigin() && turn.m_angle < kAngleNoise;
         return BodyMotion{slowTurn ? from : to, to};
     }
-    const btScalar substeps = substepsBetween(from, to, turn, linearVelocity, angularVelocity, dt);
+    const btScalar substeps = substepsBetween(from, to, linearVelocity, angularVelocity, dt);
     if (substeps == 1) return BodyMotion{from, to};
     if (substeps > 1)
     {
@@ -97,13 +121,26 @@ void KinematicMotions::advance(Tracked& tracked, const btCollisionObject& object
     const btVector3& velocity = object.getInterpolationLinearVelocity();
     const btVector3& angularVelocity = object.getInterpolationAngularVelocity();
     const btTransform from = tracked.m_motion.m_end;
-    const bool setLater = btRigidBody::upcast(&object) && !(object.getInterpolationWorldTransform() == pose);
-    const bool jumps = velocity.isZero() && angularVelocity.isZero();
-    const bool samePose = pose == tracked.m_pose, onTheWay = !(from == tracked.m_pose);
-    if (!jumps && onTheWay && !samePose) tracked.m_shares = false;
-    if (!jumps && !onTheWay && samePose) tracked.m_shares = true;  // a substep that got nothing new
+    const btTransform noticed = tracked.m_noticed;
+    const bool early = !(from == tracked.m_pose) && !(pose == tracked.m_pose);
     tracked.m_pose = pose;
-    const bool whole = setLater || (!jumps && !tracked.m_shares);
+    tracked.m_noticed = noticedBy(object);
+    bool whole = !(tracked.m_noticed == pose);
+    if (!whole && velocity.isZero() && angularVelocity.isZero())
+    {
+        tracked.m_shares = true;
+    }
+    else if (!whole && from == pose)
+    {
+        tracked.m_shares = true;  // a substep that got nothing new
+    }
+    else if (!whole)
+    {
+        const bool near = isNear(from, pose, velocity, angularVelocity, m_dt);
+        tracked.m_shares = !near || (tracked.m_shares && !early);
+        whole = !tracked.m_shares || (substepsBetween(from, pose, velocity, angularVelocity, m_dt) == 0 &&
+                                      substepsBetween(noticed, pose, velocity, angularVelocity, m_dt) > 0);
+    }
     tracked.m_motion =
         whole && m_dt > 0 ? BodyMotion{from, pose} : motionInStep(from, pose, velocity, angularVelocity, m_dt);
 }
@@ -115,7 +152,7 @@ BodyMotion KinematicMotions::observe(const btCollisionObject& object)
     if (found == m_tracked.end())
     {
         const BodyMotion rest = {pose, pose};
-        m_tracked[&object] = Tracked{rest, m_step, pose, true};
+        m_tracked[&object] = Tracked{rest, m_step, pose, noticedBy(object), true};
         return rest;
     }
     Tracked& tracked = found->second;

@@ -10,10 +10,11 @@
 // step before rests. Where the velocity does not fit the change of the pose (teleported and moved at once), the object
 // comes to its pose with its velocity, over this step alone.
 //
-// Bullet does not know of every motion: a pose set after it took the velocity (by a tick's callback, or while the body
-// sleeps) differs from the interpolation transform; one set by setCenterOfMassTransform() several times before a step
-// leaves the last part's velocity, which looks like one of several substeps until the next pose comes too soon. Both
-// are swept the whole way, the second from then on. O(1) an object.
+// Bullet does not know of every motion. A pose set after it took the velocity (by a tick's callback, or while the body
+// sleeps) differs from the interpolation transform; where Bullet catches up, its velocity is from where it left off.
+// Several poses set by setCenterOfMassTransform() before a step leave the last one's velocity, which looks like one of
+// several substeps until the next pose comes too soon. All these are swept the whole way, the last from then on. A last
+// pose set twice has no velocity, and is a jump. O(1) an object.
 #pragma once
 
 #include <cstdint>
@@ -52,8 +53,9 @@ private:
     {
         BodyMotion m_motion;
         std::uint64_t m_step;
-        btTransform m_pose;    // that Bullet had; the motion's end is on the way there while substeps share it
-        bool m_shares = true;  // motion that looks like one of several substeps is shared out among them
+        btTransform m_pose;     // that Bullet had; the motion's end is on the way there while substeps share it
+        btTransform m_noticed;  // the pose at which Bullet had taken the velocity
+        bool m_shares;          // motion that looks like one of several substeps is shared out among them
     };
 
     void advance(Tracked& tracked, const btCollisionObject& object) const;

@@ -14,9 +14,13 @@ namespace drape
 {
 namespace
 {
-// Triangles of a part of which meshSignature() looks at a vertex: enough that a deformation of a whole mesh is seen,
-// few enough that looking costs a microsecond.
-constexpr int kSamplesPerPart = 32;
+// Corners of a part whose vertices meshSignature() looks at: all of a small part's, and of a larger one enough that a
+// deformation of a whole mesh is seen, few enough that looking costs a microsecond.
+constexpr std::int64_t kSmallPart = 384;
+constexpr std::int64_t kSamplesPerPart = 32;
+
+// Vertices of the stretch that a part uses, at most, for each corner of its triangles, for a table of that stretch.
+constexpr std::int64_t kStretchPerCorner = 8;
 
 // FNV-1a over 64-bit words (Fowler, Noll, Vo); only equality matters here.
 class Hash
@@ -116,7 +120,7 @@ ScaledMesh resolve(const btCollisionShape& shape)
 }
 
 // The vertices of a part that its triangles use, in their order: parts may share one array of vertices, and Bullet
-// never looks at how many of them a part says it has.
+// never looks at how many of them a part says it has. Memory: linear in the triangles.
 class UsedVertices
 {
 public:
@@ -130,22 +134,20 @@ public:
                           high = std::max(high, i);
                       });
         if (high < 0) return;
-        m_first = low;
-        m_place.assign(static_cast<std::size_t>(high - low + 1), -1);
-        forEachCorner(part, [&](std::int64_t i) { m_place[static_cast<std::size_t>(i - low)] = 0; });
-        for (std::size_t i = 0; i < m_place.size(); ++i)
-        {
-            if (m_place[i] < 0) continue;
-            m_place[i] = static_cast<std::int32_t>(m_indices.size());
-            m_indices.push_back(low + static_cast<std::int64_t>(i));
-        }
+        if (high - low < kStretchPerCorner * 3 * part.triangleCount())
+            readStretch(part, low, high);
+        else
+            readScattered(part);
     }
 
     const std::vector<std::int64_t>& indices() const { return m_indices; }
     // Place of a used one among indices(); negative for a negative index.
     std::int32_t place(std::int64_t index) const
     {
-        return index < 0 ? -1 : m_place[static_cast<std::size_t>(index - m_first)];
+        if (index < 0) return -1;
+        if (!m_places.empty()) return m_places[static_cast<std::size_t>(index - m_indices[0])];
+        return static_cast<std::int32_t>(std::lower_bound(m_indices.begin(), m_indices.end(), index) -
+                                         m_indices.begin());
     }
 
 private:
@@ -159,9 +161,25 @@ private:
                 if (index >= 0) visit(index);
             }
     }
+    void readStretch(const LockedPart& part, std::int64_t low, std::int64_t high)
+    {
+        m_places.assign(static_cast<std::size_t>(high - low + 1), -1);
+        forEachCorner(part, [&](std::int64_t i) { m_places[static_cast<std::size_t>(i - low)] = 0; });
+        for (std::size_t i = 0; i < m_places.size(); ++i)
+        {
+            if (m_places[i] < 0) continue;
+            m_places[i] = static_cast<std::int32_t>(m_indices.size());
+            m_indices.push_back(low + static_cast<std::int64_t>(i));
+        }
+    }
+    void readScattered(const LockedPart& part)
+    {
+        forEachCorner(part, [&](std::int64_t i) { m_indices.push_back(i); });
+        std::sort(m_indices.begin(), m_indices.end());
+        m_indices.erase(std::unique(m_indices.begin(), m_indices.end()), m_indices.end());
+    }
 
-    std::int64_t m_first = 0;
-    std::vector<std::int32_t> m_place;
+    std::vector<std::int32_t> m_places;  // by index, from the first used one on; empty where they are scattered
     std::vector<std::int64_t> m_indices;
 };
 
@@ -256,10 +274,12 @@ std::uint64_t meshSignature(const btCollisionShape& shape)
         hash.add(std::uint64_t(reinterpret_cast<std::uintptr_t>(part.vertices())));
         hash.add(std::uint64_t(reinterpret_cast<std::uintptr_t>(part.indices())));
         hash.add(std::uint64_t(part.triangleCount()));
-        const int stride = std::max(1, part.triangleCount() / kSamplesPerPart);
-        for (int t = 0; t < part.triangleCount(); t += stride)
+        const std::int64_t corners = 3 * std::int64_t(part.triangleCount());
+        std::int64_t stride = corners <= kSmallPart ? 1 : corners / kSamplesPerPart;
+        if (stride % 3 == 0) ++stride;  // the first corners alone, else
+        for (std::int64_t i = 0; i < corners; i += stride)
         {
-            const std::int64_t corner = part.index(t, t % 3);
+            const std::int64_t corner = part.index(int(i / 3), int(i % 3));
             if (corner >= 0) hash.add(part.vertex(corner));
         }
     }

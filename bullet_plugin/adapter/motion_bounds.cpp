@@ -7,6 +7,7 @@
 #include "LinearMath/btAabbUtil2.h"
 #include "bullet_plugin/adapter/eligibility.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
+#include "bullet_plugin/adapter/plugin_state.h"
 
 namespace drape
 {
@@ -90,14 +91,15 @@ struct Sight
     btScalar m_reach;  // m, but for what the object's bounds hold
 };
 
-// Whether Bullet would hand their pair on, and contacts are wanted of it once the body is awake.
-bool mayTouch(const btSoftBody& body, const btCollisionObject& object)
+// Whether Bullet would hand their pair on and Drape find contacts of it once the body is awake.
+bool mayTouch(const PluginState& state, const btSoftBody& body, const btCollisionObject& object)
 {
     btOverlappingPairCache* pairs = body.m_worldInfo->m_broadphase->getOverlappingPairCache();
     btBroadphaseProxy* proxy = const_cast<btBroadphaseProxy*>(body.getBroadphaseHandle());
     btBroadphaseProxy* other = const_cast<btBroadphaseProxy*>(object.getBroadphaseHandle());
     return respond(body, object) && proxy && other && pairs->needsBroadphaseCollision(proxy, other) &&
-           body.checkCollideWith(&object) && object.checkCollideWith(&body);
+           body.checkCollideWith(&object) && object.checkCollideWith(&body) &&
+           handlesAny(state, body, object, *object.getCollisionShape());
 }
 
 class CollectMoving : public btBroadphaseAabbCallback
@@ -132,7 +134,7 @@ std::vector<MovingObject> movingObjects(const btSoftBody& body, KinematicMotions
     return collect.m_found;
 }
 
-bool isReached(const btSoftBody& body, btScalar activation, const std::vector<MovingObject>& moving)
+bool isReached(const PluginState& state, const btSoftBody& body, const std::vector<MovingObject>& moving)
 {
     if (moving.empty()) return false;
     Way rest(body);
@@ -140,8 +142,8 @@ bool isReached(const btSoftBody& body, btScalar activation, const std::vector<Mo
     if (rest.m_end.empty()) return false;
     for (const MovingObject& object : moving)
     {
-        if (!mayTouch(body, *object.m_object)) continue;
-        if (Sight(body, rest, object, activation).comesNear()) return true;
+        if (!mayTouch(state, body, *object.m_object)) continue;
+        if (Sight(body, rest, object, btScalar(state.settings().m_activation)).comesNear()) return true;
     }
     return false;
 }

@@ -14,6 +14,8 @@
 
 namespace drape
 {
+class PluginState;
+
 struct MovingObject
 {
     const btCollisionObject* m_object;
@@ -24,9 +26,9 @@ struct MovingObject
 // where the body's world info names no broad phase.
 std::vector<MovingObject> movingObjects(const btSoftBody& body, KinematicMotions& motions);
 
-// Whether a moving object that the sleeping body collides with comes near it in this step: Bullet wakes bodies for it
-// only once it has arrived.
-bool isReached(const btSoftBody& body, btScalar activation, const std::vector<MovingObject>& moving);
+// Whether a moving object of a pair that Drape handles comes near the sleeping body in this step: Bullet wakes bodies
+// for it only once it has arrived.
+bool isReached(const PluginState& state, const btSoftBody& body, const std::vector<MovingObject>& moving);
 
 // Widens the body's bounds to its nodes' paths, grown by the body's part of the reach of contacts, and to those paths
 // as moving objects see them, where they come near the object; those with the object's part, too, which its own bounds

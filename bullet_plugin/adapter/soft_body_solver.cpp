@@ -50,7 +50,7 @@ void SoftBodySolver::predictMotion(btScalar dt)
     for (int i = 0; i < m_softBodySet.size(); ++i)
     {
         btSoftBody& body = *m_softBodySet[i];
-        if (!body.isActive() && isReached(body, activation, moving)) body.activate();
+        if (!body.isActive() && isReached(*m_state, body, moving)) body.activate();
     }
     m_work->m_predictMs = watch.lapMs();
     btDefaultSoftBodySolver::predictMotion(dt);

@@ -152,6 +152,8 @@ public:
     std::vector<KernelTime> takeKernelTimes();
     // What the device's buffers hold, by name; empty on the host.
     std::vector<MemoryUse> deviceMemory() const;
+    // Whether a device failed, so that the host runs every step from then on.
+    bool deviceFailed() const;
     // Message of the device's failure when the status says so, or of the mesh that was refused since.
     const Error& lastError() const;
 

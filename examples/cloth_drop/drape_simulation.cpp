@@ -1,5 +1,7 @@
 #include <drape/drape.h>
 
+#include <iostream>
+
 #include "examples/cloth_drop/drop_world.h"
 #include "examples/cloth_drop/node_positions.h"
 #include "examples/cloth_drop/simulation.h"
@@ -49,8 +51,9 @@ public:
     double prepareMs() const override { return m_plugin->device().m_buildMs + m_plugin->device().m_measureMs; }
     std::string trouble() const override
     {
-        const std::string error = m_plugin->error();
-        return statusText(m_status) + (error.empty() ? "" : ": " + error);
+        const std::string status = statusText(m_status);
+        if (m_plugin->error().empty()) return status;
+        return status + (status.empty() ? "" : "; ") + m_plugin->device().m_reason;
     }
 
 private:
@@ -74,9 +77,14 @@ std::unique_ptr<Simulation> makeDrapeSimulation(const DropScene& scene, const Op
                                                               : ContactMode::Automatic;
     settings.m_methods.m_traversal = traversalsByName().at(options.m_traversal);
     auto simulation = std::make_unique<DrapeSimulation>(scene, settings);
-    if (simulation->plugin().ready()) return simulation;
-    exitCode = kExitFailed;
     error = simulation->plugin().error();
-    return nullptr;
+    if (!simulation->plugin().ready())
+    {
+        exitCode = kExitFailed;
+        return nullptr;
+    }
+    if (!error.empty()) std::cerr << "cloth_drop: " << error << "\n";  // a device that failed; the host goes on
+    error.clear();
+    return simulation;
 }
 }  // namespace drape

@@ -462,6 +462,30 @@ TEST_P(Kinematic, bodyThatComesFastWakesClothInTime)
     }
 }
 
+// Nor does one wake cloth whose pairs Drape leaves to Bullet.
+TEST_P(Kinematic, bodyThatIsNotDrapesLetsClothSleep)
+{
+    Plugin plugin(GetParam().m_settings);
+    DropWorld world(&plugin);
+    btBoxShape box(btVector3(1, btScalar(0.1), 1));
+    btCompoundShape compound;
+    compound.addChildShape(btTransform::getIdentity(), &box);
+    btRigidBody& body = world.addKinematic(compound, shiftedBy(btVector3(0, -5, 0)));
+    ClothSpec spec;
+    btSoftBody& cloth = world.addCloth(spec);
+    EXPECT_NE(plugin.whyStock(&cloth, &body), "");
+    world.step();
+    cloth.forceActivationState(ISLAND_SLEEPING);
+    for (int i = 1; i <= 3; ++i)
+    {
+        body.setWorldTransform(shiftedBy(btVector3(0, btScalar(-5 + i), 0)));
+        world.step();
+    }
+    body.setWorldTransform(shiftedBy(btVector3(0, 5, 0)));
+    world.step();
+    EXPECT_FALSE(cloth.isActive());
+}
+
 INSTANTIATE_TEST_SUITE_P(Backend, Kinematic, testing::ValuesIn(allBackends()), backendName);
 
 namespace
@@ -566,10 +590,10 @@ public:
         m_motions.beginStep(kDt);
         m_motion = m_motions.observe(m_body);
     }
-    void expectMotion(btScalar from, btScalar to)
+    void expectMotion(btScalar from, btScalar to, double slack = 1e-5)
     {
-        EXPECT_NEAR(m_motion.m_start.getOrigin().x(), from, 1e-5);
-        EXPECT_NEAR(m_motion.m_end.getOrigin().x(), to, 1e-5);
+        EXPECT_NEAR(m_motion.m_start.getOrigin().x(), from, slack);
+        EXPECT_NEAR(m_motion.m_end.getOrigin().x(), to, slack);
     }
 
 private:
@@ -637,6 +661,78 @@ TEST(KinematicMotion, afterBulletTookTheVelocityIsSweptWhole)
     observed.body().setInterpolationWorldTransform(observed.body().getWorldTransform());
     observed.step();
     observed.expectMotion(7, 7);
+}
+
+// Teleports by both transforms stay teleports where motion had been swept whole, or was being shared.
+TEST(KinematicMotion, teleportsFarAreNotSwept)
+{
+    const btTransform far = shiftedBy(btVector3(500, 0, 0));
+    const auto teleport = [&](ObservedBody& observed)
+    {
+        observed.body().setWorldTransform(far);
+        observed.body().setInterpolationWorldTransform(far);
+    };
+    ObservedBody shared;
+    shared.place(btScalar(0.4));
+    shared.beginFrame(4);
+    shared.step();
+    teleport(shared);  // as a tick's callback in the second substep does
+    shared.step();
+    shared.expectMotion(btScalar(499.9), 500, 1e-3);
+
+    ObservedBody faster;
+    btScalar x = 0;
+    for (int step = 0; step < 2; ++step)
+    {
+        for (int i = 0; i < 4; ++i)
+            faster.body().setCenterOfMassTransform(shiftedBy(btVector3(x += btScalar(0.1), 0, 0)));
+        faster.beginFrame();
+        faster.step();
+    }
+    faster.expectMotion(btScalar(0.1), btScalar(0.8));
+    teleport(faster);
+    faster.body().setCenterOfMassTransform(shiftedBy(btVector3(btScalar(500.1), 0, 0)));
+    faster.beginFrame();
+    faster.step();
+    faster.expectMotion(500, btScalar(500.1), 1e-3);
+    // And that was the end of it: the next frame of substeps is shared.
+    faster.place(btScalar(500.5));
+    faster.beginFrame(4);
+    faster.step();
+    faster.expectMotion(btScalar(500.1), btScalar(500.2), 1e-3);
+}
+
+// Bullet's first velocity after poses that it did not see is from the last that it saw.
+TEST(KinematicMotion, goesOnWhereBulletCatchesUp)
+{
+    ObservedBody asleep;
+    asleep.beginFrame();
+    for (int step = 1; step <= 10; ++step)
+    {
+        asleep.place(btScalar(0.1) * btScalar(step));
+        asleep.step();
+        asleep.expectMotion(btScalar(0.1) * btScalar(step - 1), btScalar(0.1) * btScalar(step));
+    }
+    asleep.place(btScalar(1.1));
+    asleep.beginFrame();  // awake
+    asleep.step();
+    asleep.expectMotion(1, btScalar(1.1));
+
+    ObservedBody after;  // moved by a callback after each of two substeps, faster and faster
+    btScalar last = 0, x = 0, pace = 0;
+    for (int frame = 0; frame < 4; ++frame)
+    {
+        after.beginFrame(2);
+        for (int substep = 0; substep < 2; ++substep)
+        {
+            SCOPED_TRACE(testing::Message() << "frame " << frame << " substep " << substep);
+            after.step();
+            after.expectMotion(last, x);
+            last = x;
+            x += pace += btScalar(0.05);
+            after.place(x);
+        }
+    }
 }
 
 TEST(KinematicMotion, sharesTurnsAmongSubsteps)

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -190,24 +191,57 @@ TEST(MeshReader, trianglesThatCannotBeReadAreLeftOut)
     EXPECT_TRUE(read(plainPart(mesh)).m_positions.empty());
 }
 
-TEST(MeshReader, aVertexMovedInPlaceChangesTheSignature)
+// Parts whose indices are far apart are read by their indices, others by the stretch that they span.
+TEST(MeshReader, scatteredIndicesGiveTheSameMesh)
 {
-    const TriangleMesh mesh = makeBox(1.0f, 1.0f, 1.0f);
-    for (const int stated : {0, int(mesh.vertexCount())})
-    {
-        Part part = plainPart(mesh);
-        part.m_layout.m_numVertices = stated;
-        btTriangleIndexVertexArray arrays;
-        part.addTo(arrays, part);
-        std::uint64_t before, same, after;
-        read(arrays, &before);
-        read(arrays, &same);
-        const float moved = mesh.m_positions[0] + 0.25f;
-        for (std::size_t i = 0; i < mesh.vertexCount(); ++i)
-            std::memcpy(&part.m_vertices[i * std::size_t(part.m_layout.m_vertexStride)], &moved, sizeof moved);
-        read(arrays, &after);
-        EXPECT_EQ(before, same);
-        EXPECT_NE(before, after);
-    }
+    const TriangleMesh box = makeBox(1.0f, 2.0f, 3.0f);
+    constexpr std::size_t kApart = 1000;
+    TriangleMesh scattered;
+    scattered.m_positions.assign(3 * kApart * box.vertexCount(), 0);
+    for (std::size_t i = 0; i < box.vertexCount(); ++i)
+        std::copy_n(&box.m_positions[3 * i], 3, &scattered.m_positions[3 * kApart * i]);
+    for (const std::int32_t index : box.m_triangles)
+        scattered.m_triangles.push_back(index * std::int32_t(kApart));
+    expectSame(read(plainPart(scattered)), box);
+}
+
+TEST(MeshReader, anyVertexOfASmallMeshMovedInPlaceChangesTheSignature)
+{
+    TriangleMesh quad;
+    quad.m_positions = {0, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 1};
+    quad.m_triangles = {0, 1, 2, 0, 2, 3};
+    for (const TriangleMesh& mesh : {quad, makeBox(1.0f, 1.0f, 1.0f)})
+        for (const int stated : {0, int(mesh.vertexCount())})
+            for (std::size_t moved = 0; moved < mesh.vertexCount(); ++moved)
+            {
+                Part part = plainPart(mesh);
+                part.m_layout.m_numVertices = stated;
+                btTriangleIndexVertexArray arrays;
+                part.addTo(arrays, part);
+                std::uint64_t before, same, after;
+                read(arrays, &before);
+                read(arrays, &same);
+                const float y = mesh.m_positions[3 * moved + 1] - 3;
+                std::memcpy(&part.m_vertices[moved * std::size_t(part.m_layout.m_vertexStride) + sizeof y], &y,
+                            sizeof y);
+                read(arrays, &after);
+                EXPECT_EQ(before, same);
+                EXPECT_NE(before, after) << "vertex " << moved << " of " << mesh.vertexCount();
+            }
+}
+
+TEST(MeshReader, aLargeMeshMovedInPlaceChangesTheSignature)
+{
+    TriangleMesh mesh = makeSphere(1.0f, 5);
+    ASSERT_GT(mesh.triangleCount(), 1000u);
+    std::uint64_t before, after;
+    btTriangleIndexVertexArray arrays;
+    Part part = plainPart(mesh);
+    part.addTo(arrays, part);
+    read(arrays, &before);
+    for (std::size_t i = 0; i < mesh.vertexCount(); ++i)
+        part.m_vertices[i * std::size_t(part.m_layout.m_vertexStride)] ^= 1;
+    read(arrays, &after);
+    EXPECT_NE(before, after);
 }
 }  // namespace drape::test

@@ -216,6 +216,10 @@ TEST(StockWithoutDevice, aDeviceThatNobodyAskedForAndThatFailsLeavesTheHost)
                 world.step();
             EXPECT_FALSE(plugin.contacts().empty());
             EXPECT_EQ(plugin.statistics().m_status, std::uint32_t(kStepDeviceFailed));
+            world.remove(object);
+            world.step();
+            EXPECT_TRUE(plugin.statistics().m_skipped);
+            EXPECT_EQ(plugin.statistics().m_status, std::uint32_t(kStepDeviceFailed)) << "a step without a pair";
         });
 }
 

@@ -36,6 +36,15 @@ protected:
 };
 }  // namespace
 
+TEST_F(QueriesInput, settings)
+{
+    Settings settings;
+    settings.m_backend = Backend(7);
+    Error error;
+    EXPECT_FALSE(Queries::create(settings, error));
+    EXPECT_EQ(error.m_call.rfind("Settings::m_backend", 0), 0u) << error.text();
+}
+
 TEST_F(QueriesInput, motions)
 {
     CcdQuery query = {};
@@ -66,6 +75,7 @@ TEST_F(QueriesInput, triangles)
     std::uint32_t result = 0;
     expectRefused(m_queries->triangles(nullptr, 1, TriangleTest::Exact, &result), "triangles: an array");
     expectRefused(m_queries->triangles(&query, 1, TriangleTest::Exact, nullptr), "triangles: an array");
+    expectRefused(m_queries->triangles(&query, 1, TriangleTest(7), &result), "triangles: an unknown test");
     EXPECT_TRUE(m_queries->triangles(nullptr, 0, TriangleTest::Exact, nullptr));
 }
 

@@ -1,5 +1,7 @@
 #include "tools/common/device_option.h"
 
+#include <strings.h>
+
 #include <iostream>
 
 #include "drape/report.h"
@@ -10,7 +12,7 @@ bool deviceSettings(const std::string& backend, const std::string& device, Setti
 {
     settings.m_backend = backend == "host" ? Backend::Host : backend == "opencl" ? Backend::OpenCl : Backend::Auto;
     settings.m_device = device;
-    if (settings.m_backend == Backend::Host && !device.empty() && device != "host")
+    if (settings.m_backend == Backend::Host && !device.empty() && strcasecmp(device.c_str(), "host") != 0)
         error = "--device " + device + " contradicts --backend host";
     else
         error = whyNoDevice(settings);

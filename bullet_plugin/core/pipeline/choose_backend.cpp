@@ -68,7 +68,7 @@ double Pipeline::Implementation::findCrossover(Pipeline& pipeline)
     }
     else
     {
-        m_report.m_crossoverSource = "its contacts are not the host's";
+        m_report.m_crossoverSource = device()->failed() ? "" : "its steps are not the host's";
         if (!device()->failed()) m_error.m_call = m_openClDevice.m_name + " is not used: " + m_report.m_crossoverSource;
         crossover.m_pairs = std::numeric_limits<double>::infinity();
     }

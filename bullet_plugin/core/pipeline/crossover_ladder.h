@@ -13,7 +13,7 @@
 namespace drape
 {
 // use: has the pipeline's coming steps run on the host, or the device. activation: the pipeline's.
-// False where the device cannot be measured: it failed, or its contacts are not the host's.
+// False where the device cannot be measured: it failed, or its steps are not the host's.
 bool measureLadder(Pipeline& pipeline, float activation, const std::function<void(bool onHost)>& use,
                    std::vector<CrossoverRung>& rungs);
 }  // namespace drape

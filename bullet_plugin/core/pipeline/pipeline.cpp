@@ -563,6 +563,10 @@ std::vector<MemoryUse> Pipeline::deviceMemory() const
     Device* device = m_implementation->device();
     return device ? device->memory().list() : std::vector<MemoryUse>();
 }
+bool Pipeline::deviceFailed() const
+{
+    return m_implementation->m_deviceLeft;
+}
 const Error& Pipeline::lastError() const
 {
     return m_implementation->m_error;

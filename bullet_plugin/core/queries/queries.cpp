@@ -6,6 +6,7 @@
 
 #include "bullet_plugin/core/exact/triangles.h"
 #include "bullet_plugin/core/mesh/check_indices.h"
+#include "bullet_plugin/core/pipeline/check_settings.h"
 #include "bullet_plugin/core/pipeline/step.h"
 #include "bullet_plugin/core/self_collision/leaf_pair_count.h"
 #include "kernels/lib/triangle_pair.h"
@@ -88,6 +89,7 @@ std::unique_ptr<Queries> Queries::create(const Settings& settings, Error& error)
 {
     const auto start = std::chrono::steady_clock::now();
     error = Error();
+    if (!checkSettings(settings, error)) return nullptr;
     const DeviceChoice choice = chooseDevice(settings, error);
     if (error.failed()) return nullptr;
     std::unique_ptr<Queries> queries(new Queries(settings));
@@ -155,7 +157,9 @@ bool Queries::motions(const CcdQuery* queries, std::size_t count, const CcdSetti
 bool Queries::triangles(const TriangleQuery* queries, std::size_t count, TriangleTest test, std::uint32_t* results)
 {
     Implementation& self = *m_implementation;
-    if (!self.require(count == 0 || (queries && results), "triangles", "an array is missing")) return false;
+    if (!self.require(count == 0 || (queries && results), "triangles", "an array is missing") ||
+        !self.require(test >= TriangleTest::Certified && test <= TriangleTest::Moller, "triangles", "an unknown test"))
+        return false;
     const std::uint32_t fast = test == TriangleTest::Moller ? DRAPE_TEST_MOLLER : DRAPE_TEST_CERTIFIED;
     if (self.m_device && !self.check(self.m_device->triangles(queries, count, fast, results))) return false;
     for (std::size_t i = 0; i < count; ++i)

@@ -81,8 +81,9 @@ class Queries
 {
 public:
     // Chooses the device and makes its kernels ready; keeps the settings' limits. Returns null and fills error when
-    // settings ask for what is not there or does not work. Backend::Auto is the first device, whatever the work, and
-    // the host where there is none or it fails: then error() of what is returned says why.
+    // settings ask for what is not there or does not work, or are out of their ranges. Backend::Auto is the first
+    // device, whatever the work, and the host where there is none or it fails: then error() of what is returned says
+    // why.
     static std::unique_ptr<Queries> create(const Settings& settings, Error& error);
     ~Queries();
     Queries(const Queries&) = delete;

@@ -31,7 +31,7 @@ struct DeviceReport
     double m_expectedPairs = 0;  // of triangles: as many as there were, lay every cloth wholly on the obstacle where it
                                  // has most
     double m_crossover = 0;      // of these pairs: the host up to it, the device above; infinite: never
-    // "measured now", "measured before", "set", or "its contacts are not the host's": such a device is not used, and
+    // "measured now", "measured before", "set", or "its steps are not the host's": such a device is not used, and
     // the error says so.
     std::string m_crossoverSource;
     double m_measureMs = 0;  // that it took to measure now
