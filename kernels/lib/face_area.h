@@ -99,7 +99,7 @@ DRAPE_FUNCTION int isThin(FeatureTriangle f, float length)
     return !(length > DRAPE_THIN * (vec3Dot(ab, ab) + vec3Dot(ac, ac)));
 }
 
-DRAPE_RARE_FUNCTION Vec3 thinArea(FeatureTriangle f)
+DRAPE_COLD_FUNCTION Vec3 thinArea(FeatureTriangle f)
 {
     const LongFace face = longFace(f);
     return face.m_swapped ? vec3Cross(face.m_rise, face.m_along) : vec3Cross(face.m_along, face.m_rise);
@@ -139,7 +139,7 @@ DRAPE_FUNCTION void tryEdge(NearPoint* best, Vec3 p, Vec3 a, Vec3 b, Vec3 unitA,
 }
 
 // As closestOnTriangle(), for a thin face: the nearest of the closest points on the edges and of the foot inside.
-DRAPE_RARE_FUNCTION Vec3 closestOnThin(Vec3 p, FeatureTriangle f)
+DRAPE_COLD_FUNCTION Vec3 closestOnThin(Vec3 p, FeatureTriangle f)
 {
     const Vec3 x = vec3(1.0f, 0.0f, 0.0f), y = vec3(0.0f, 1.0f, 0.0f), z = vec3(0.0f, 0.0f, 1.0f);
     NearPoint best;

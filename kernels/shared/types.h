@@ -8,7 +8,7 @@
 #define DRAPE_INT int
 #define DRAPE_GLOBAL __global
 #define DRAPE_FUNCTION static inline
-// For what is seldom called: inlined it would cost its callers registers.
+// For what is seldom called and large: inlined it would cost its callers registers.
 #define DRAPE_RARE_FUNCTION static __attribute__((noinline))
 #define DRAPE_NAMESPACE_BEGIN
 #define DRAPE_NAMESPACE_END
@@ -40,5 +40,15 @@ typedef struct Vec3
 } Vec3;
 
 DRAPE_NAMESPACE_END
+
+// For what is seldom called and small. On a GPU a call costs a kernel a stack frame wherever it may happen; inlined it
+// costs less.
+#ifndef __OPENCL_VERSION__
+#define DRAPE_COLD_FUNCTION inline
+#elif defined(DRAPE_CPU)
+#define DRAPE_COLD_FUNCTION DRAPE_RARE_FUNCTION
+#else
+#define DRAPE_COLD_FUNCTION DRAPE_FUNCTION
+#endif
 
 #endif
