@@ -79,6 +79,52 @@ static int featureContact(const FeatureTest feature, const ClothView* cloth, con
     const ObstacleView obstacle = obstacleView(0, obstacleTriangles, vertexCones, edgeCones);   \
     const PackedFeatures packed = {faces, vertices, edges, faceIds, vertexIds, edgeIds}
 
+#define DRAPE_TEST_KINDS 3
+static uint kindOfTest(const FeatureTest feature)
+{
+    const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT;
+    return test < DRAPE_TEST_FACE ? 0 : test == DRAPE_TEST_FACE ? 1 : 2;
+}
+
+// Tests the item-th feature pair; lists its hit, or in swept that the continuous test must tell.
+static void testFeature(__global const FeatureTest* tests, const uint item, ClothView* cloth, const ObstacleView* obstacle,
+                        const PackedFeatures* packed, __global const ObstacleMotion* motions, const HitList* list,
+                        __global uint* swept, __global StepCounters* counters)
+{
+    const FeatureTest test = tests[item];
+    cloth->m_motion = motionOfTest(motions, test);
+    Contact contact;
+    const int found = featureContact(test, cloth, obstacle, packed, &contact);
+    if (found == DRAPE_IS_CONTACT)
+        listHit(list, &contact);
+    else if (found == DRAPE_UNDECIDED)
+        swept[atomic_inc(&counters->m_swept)] = item;
+}
+
+#ifndef DRAPE_CPU
+// Most work-items of a group.
+#define DRAPE_FEATURE_GROUP 256
+
+// Shares out to a group's work-items as many tests as they are, from `first` on, so that those of one kind are next to each
+// other: lanes of one kind wait for those of another. Returns this work-item's test, `count` where it has none.
+static uint testByKind(__global const FeatureTest* tests, const uint first, const uint count, __local uint* kinds,
+                       __local ushort* order)
+{
+    const uint lane = get_local_id(0), item = first + lane;
+    if (lane < DRAPE_TEST_KINDS) kinds[lane] = 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    const uint kind = item < count ? kindOfTest(tests[item]) : DRAPE_TEST_KINDS;
+    uint place = kind < DRAPE_TEST_KINDS ? atomic_inc(kinds + kind) : 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint k = 0; k < kind && kind < DRAPE_TEST_KINDS; ++k) place += kinds[k];
+    if (item < count) order[place] = (ushort)lane;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    const uint own = item < count ? first + order[lane] : count;
+    barrier(CLK_LOCAL_MEM_FENCE);  // the next turn writes anew
+    return own;
+}
+#endif
+
 // A work-item goes through its part of the feature tests that patchCull lists and lists the hits; the tests that need the
 // continuous test it lists in swept, in no particular order. counters->m_swept must be zero before.
 __kernel void narrowPhaseFeature(DRAPE_FEATURE_ARGUMENTS, __global uint* restrict swept)
@@ -86,23 +132,23 @@ __kernel void narrowPhaseFeature(DRAPE_FEATURE_ARGUMENTS, __global uint* restric
     DRAPE_FEATURE_VIEWS;
     ClothView cloth = DRAPE_CLOTH_VIEW(0);
     const uint count = min(counters->m_candidates, testCapacity);
+#ifdef DRAPE_CPU
     for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextItem(&runs))
+        testFeature(tests, runs.m_item, &cloth, &obstacle, &packed, motions, &list, swept, counters);
+#else
+    __local uint kinds[DRAPE_TEST_KINDS];
+    __local ushort order[DRAPE_FEATURE_GROUP];
+    for (uint first = get_group_id(0) * get_local_size(0); first < count; first += get_global_size(0))
     {
-        const uint i = runs.m_item;
-        cloth.m_motion = motionOfTest(motions, tests[i]);
-        Contact contact;
-        const int found = featureContact(tests[i], &cloth, &obstacle, &packed, &contact);
-        if (found == DRAPE_IS_CONTACT)
-            listHit(&list, &contact);
-        else if (found == DRAPE_UNDECIDED)
-            swept[atomic_inc(&counters->m_swept)] = i;
+        const uint item = testByKind(tests, first, count, kinds, order);
+        if (item < count) testFeature(tests, item, &cloth, &obstacle, &packed, motions, &list, swept, counters);
     }
+#endif
 }
 
 // Groups take turns at the kinds of tests, and each its tests one by one, its first lane's after every other group's: lanes
 // of one kind wait for those of another, and few tests, which take long, are then not in each other's way. On a CPU, too:
 // next to the tests themselves it costs little that what neighbours read is not in the cache.
-#define DRAPE_TEST_KINDS 3
 typedef struct KindShare
 {
     uint m_kind, m_first, m_stride;
@@ -119,12 +165,6 @@ static KindShare kindShare(const uint kind)
     share.m_stride = get_local_size(0) * groups;
     if (group >= groups * kinds) share.m_first = UINT_MAX;  // one too many
     return share;
-}
-
-static uint kindOfTest(const FeatureTest feature)
-{
-    const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT;
-    return test < DRAPE_TEST_FACE ? 0 : test == DRAPE_TEST_FACE ? 1 : 2;
 }
 
 // A work-item takes every stride-th of the tests that narrowPhaseFeature left to the continuous test and lists their hits.

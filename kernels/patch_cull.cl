@@ -93,6 +93,41 @@ static uint featuresNear(const Packet* packet, const uint triangle, const uint o
     return near;
 }
 
+// Lists the feature tests of a pair of cloth triangle and patch: of the triangle's nodes and edges among `own` (bits as in
+// Triangle::m_owned), and of its face.
+static void cullPatch(Team* team, const PatchFeatures* features, const FeatureTest pair, const Looker* looker,
+                      const CullReach reach, const uint own, const TestList* list)
+{
+    const uint index = pair.m_lane;
+    __global const Patch* patch = features->m_patches + index;
+    const CullTriangle* cull = &looker->m_cull;
+    for (int i = 0; i < 3; ++i)
+    {
+        if (!(own & DRAPE_OWNS_VERTEX(i))) continue;
+        const LaneMask mask =
+            cullNodeFace(cull, i, reach, features->m_faces + index * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH);
+        keepLanes(team, mask, pair, DRAPE_TEST_NODE + i, index * DRAPE_PATCH_WIDTH, list);
+    }
+    for (uint block = patch->m_vertexBlock;
+         looker->m_valid == DRAPE_ALL_FEATURES && block < patch->m_vertexBlock + patch->m_vertexBlocks; ++block)
+    {
+        const LaneMask mask =
+            cullFaceVertex(cull, reach, features->m_vertices + block * DRAPE_VERTEX_FLOATS * DRAPE_PATCH_WIDTH);
+        keepLanes(team, mask, pair, DRAPE_TEST_FACE, block * DRAPE_PATCH_WIDTH, list);
+    }
+    if (!(own & (DRAPE_OWNS_EDGE(0) | DRAPE_OWNS_EDGE(1) | DRAPE_OWNS_EDGE(2)))) return;
+    for (uint block = patch->m_edgeBlock; block < patch->m_edgeBlock + patch->m_edgeBlocks; ++block)
+    {
+        const CullEdges edges = loadCullEdges(cull, features->m_edges + block * DRAPE_EDGE_FLOATS * DRAPE_PATCH_WIDTH);
+        for (int i = 0; i < 3; ++i)
+        {
+            if (!(own & DRAPE_OWNS_EDGE(i))) continue;
+            const LaneMask mask = cullEdgeEdge(cull, i, reach, &edges);
+            keepLanes(team, mask, pair, DRAPE_TEST_EDGE + i, block * DRAPE_PATCH_WIDTH, list);
+        }
+    }
+}
+
 static void visitPatch(Team* team, Packet* packet, const StepCloths* cloths, const PatchTree* tree,
                        const PatchFeatures* features, __global const float* volumes, const uint triangle,
                        const uint patch, const TestList* list)
@@ -103,7 +138,7 @@ static void visitPatch(Team* team, Packet* packet, const StepCloths* cloths, con
     const CullReach reach = cullReach(&looker->m_cull, pair.m_reach, features->m_sizes[patch], cloths->m_mode);
     const uint own =
         featuresNear(packet, triangle, looker->m_owned & looker->m_valid, volumes + patch * DRAPE_WIDE_NODE_FLOATS);
-    if (teamMakeRoom(team, list)) cullPatch(team, features, pair, looker, reach, DRAPE_NEAR_ALL, own, list);
+    if (teamMakeRoom(team, list)) cullPatch(team, features, pair, looker, reach, own, list);
 }
 
 static void walkTree(Team* team, Packet* packet, const StepCloths* cloths, const PatchTree* tree,

@@ -129,49 +129,4 @@ static void keepLanes(DRAPE_TEAM Team* team, const LaneMask mask, FeatureTest te
     }
 }
 
-// Blocks of a patch that are to be looked at: its faces, its first vertices and so on.
-#define DRAPE_NEAR_FACES 1u
-#define DRAPE_NEAR_VERTICES(block) (2u << (block))
-#define DRAPE_NEAR_EDGES(block) (16u << (block))
-#define DRAPE_NEAR_ALL 0x7fu
-
-// Lists the feature tests of a pair of cloth triangle and patch: of the blocks of the patch that are near, and of the
-// triangle's nodes and edges among `own` (bits as in Triangle::m_owned).
-static void cullPatch(DRAPE_TEAM Team* team, const PatchFeatures* features, const FeatureTest pair,
-                      const DRAPE_TEAM Looker* looker, const CullReach reach, const uint near, const uint own,
-                      const TestList* list)
-{
-    const uint index = pair.m_lane;
-    __global const Patch* patch = features->m_patches + index;
-    const DRAPE_TEAM CullTriangle* cull = &looker->m_cull;
-    const uint owned = looker->m_owned & looker->m_valid & own;
-    for (int i = 0; i < 3 && (near & DRAPE_NEAR_FACES); ++i)
-    {
-        if (!(owned & DRAPE_OWNS_VERTEX(i))) continue;
-        const LaneMask mask =
-            cullNodeFace(cull, i, reach, features->m_faces + index * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH);
-        keepLanes(team, mask, pair, DRAPE_TEST_NODE + i, index * DRAPE_PATCH_WIDTH, list);
-    }
-    for (uint block = patch->m_vertexBlock;
-         looker->m_valid == DRAPE_ALL_FEATURES && block < patch->m_vertexBlock + patch->m_vertexBlocks; ++block)
-    {
-        if (!(near & DRAPE_NEAR_VERTICES(block - patch->m_vertexBlock))) continue;
-        const LaneMask mask =
-            cullFaceVertex(cull, reach, features->m_vertices + block * DRAPE_VERTEX_FLOATS * DRAPE_PATCH_WIDTH);
-        keepLanes(team, mask, pair, DRAPE_TEST_FACE, block * DRAPE_PATCH_WIDTH, list);
-    }
-    if (!(owned & (DRAPE_OWNS_EDGE(0) | DRAPE_OWNS_EDGE(1) | DRAPE_OWNS_EDGE(2)))) return;
-    for (uint block = patch->m_edgeBlock; block < patch->m_edgeBlock + patch->m_edgeBlocks; ++block)
-    {
-        if (!(near & DRAPE_NEAR_EDGES(block - patch->m_edgeBlock))) continue;
-        const CullEdges edges = loadCullEdges(cull, features->m_edges + block * DRAPE_EDGE_FLOATS * DRAPE_PATCH_WIDTH);
-        for (int i = 0; i < 3; ++i)
-        {
-            if (!(owned & DRAPE_OWNS_EDGE(i))) continue;
-            const LaneMask mask = cullEdgeEdge(cull, i, reach, &edges);
-            keepLanes(team, mask, pair, DRAPE_TEST_EDGE + i, block * DRAPE_PATCH_WIDTH, list);
-        }
-    }
-}
-
 #endif

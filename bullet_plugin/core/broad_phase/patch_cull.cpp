@@ -34,8 +34,8 @@ std::string PatchCullStage::defines(const Device& device)
 
 void PatchCullStage::create(Device& device, const ProgramLoader& load)
 {
-    const cl::Program cull = load(device.isGpu() ? "patch_walk" : "patch_cull"), pack = load("patch_pack");
-    if (device.isGpu()) m_walk.create(device, cull, "patchWalk");
+    const cl::Program cull = load(device.isGpu() ? "patch_cull_pairs" : "patch_cull"), pack = load("patch_pack");
+    if (device.isGpu()) m_walk.create(device, load("patch_walk"), "patchWalk");
     m_cull.create(device, cull, device.isGpu() ? "patchCullPairs" : "patchCull");
     m_pairs.reserve(device, device.isGpu() ? kFirstPairs : 1);
     m_packFaces.create(device, pack, "patchPackFaces");

@@ -21,6 +21,10 @@ constexpr std::size_t kPlaceGroupCpu = 64;
 // Feature tests per compute unit up to which one launch is faster than two: the continuous test takes registers, which
 // leave room for few groups at a time.
 constexpr std::size_t kFewTestsPerUnit = 128;
+// Of a GPU's launch over the feature tests: a group shares them out by kind (kernels/narrow_phase.cl).
+constexpr std::size_t kFeatureGroupGpu = 256;
+// Of its launches of the continuous test, whose registers leave room for as many work-items as these.
+constexpr std::size_t kSweptItemsGpu = 256, kSweptGroupGpu = 32;
 
 // Work-items that copy a contact together: on a GPU, whose neighbours' stores are joined, one for each of its vectors.
 cl_uint copyParts(const Device& device)
@@ -104,23 +108,26 @@ void NarrowPhaseStage::enqueueFeatures(Device& device, NarrowPhaseBuffers sides,
                                        StepTally tally, const ReductionBuffers* reduction, const SelfWork* self)
 {
     PatchCullStage::Features features = cull.features();
-    const auto launch = [&](Kernel& kernel, auto&... list)
+    const auto launch = [&](Kernel& kernel, std::size_t width, std::size_t group, auto&... list)
     {
-        kernel.launch(device, listWidth(device), listGroup(device), cull.tests().handle(),
-                      cl_uint(cull.tests().capacity()), sides.m_clothStart.handle(), sides.m_clothEnd.handle(),
-                      sides.m_clothTriangles.handle(), sides.m_clothEdges.handle(), cl_uint(nodeCount),
-                      cl_uint(triangleCount), cl_uint(mode), sides.m_obstacleTriangles.handle(),
-                      sides.m_vertexCones.handle(), sides.m_edgeCones.handle(), features.m_faces.handle(),
-                      features.m_vertices.handle(), features.m_edges.handle(), features.m_faceIds.handle(),
-                      features.m_vertexIds.handle(), features.m_edgeIds.handle(), sides.m_motions.handle(),
-                      m_hits.handle(), cl_uint(m_hits.capacity()), m_slotCount.handle(), tally.m_now.handle(),
-                      list.handle()...);
+        kernel.launch(device, width, group, cull.tests().handle(), cl_uint(cull.tests().capacity()),
+                      sides.m_clothStart.handle(), sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(),
+                      sides.m_clothEdges.handle(), cl_uint(nodeCount), cl_uint(triangleCount), cl_uint(mode),
+                      sides.m_obstacleTriangles.handle(), sides.m_vertexCones.handle(), sides.m_edgeCones.handle(),
+                      features.m_faces.handle(), features.m_vertices.handle(), features.m_edges.handle(),
+                      features.m_faceIds.handle(), features.m_vertexIds.handle(), features.m_edgeIds.handle(),
+                      sides.m_motions.handle(), m_hits.handle(), cl_uint(m_hits.capacity()), m_slotCount.handle(),
+                      tally.m_now.handle(), list.handle()...);
     };
     m_sweptTests.reserve(device, cull.tests().capacity());
     const bool few = tally.m_tests <= device.computeUnits() * kFewTestsPerUnit;
-    if (mode == DRAPE_DISCRETE || !few) launch(m_feature, m_sweptTests);
-    if (mode != DRAPE_DISCRETE && !few) launch(m_swept, m_sweptTests);
-    if (mode != DRAPE_DISCRETE && few) launch(m_few);
+    const bool gpu = device.isGpu();
+    const std::size_t featureGroup = gpu ? kFeatureGroupGpu : listGroup(device);
+    const std::size_t sweptGroup = gpu ? kSweptGroupGpu : listGroup(device);
+    const std::size_t sweptWidth = gpu ? device.computeUnits() * kSweptItemsGpu : listWidth(device);
+    if (mode == DRAPE_DISCRETE || !few) launch(m_feature, listWidth(device), featureGroup, m_sweptTests);
+    if (mode != DRAPE_DISCRETE && !few) launch(m_swept, sweptWidth, sweptGroup, m_sweptTests);
+    if (mode != DRAPE_DISCRETE && few) launch(m_few, sweptWidth, sweptGroup);
     if (self) enqueueSelfHits(device, tally, *self);
     enqueueCompaction(device, sides, tally, reduction);
 }

@@ -1,0 +1,70 @@
+// What the culls take for granted of a device's own functions.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "bullet_plugin/core/broad_phase/patch_cull.h"
+#include "kernels/lib/lanes.h"
+#include "tests/support/device_side.h"
+
+namespace drape::test
+{
+namespace
+{
+// A work-item takes the roots of a block's lanes, or on a GPU of its own lane's.
+std::string rootsOf(const Device& device)
+{
+    const char* const stored =
+        device.isGpu() ? "out[get_global_id(0)] = roots;" : "lanesStore(roots, out, get_global_id(0));";
+    const char* const loaded = device.isGpu() ? "in[get_global_id(0)]" : "lanesLoad(in, get_global_id(0))";
+    return std::string("\n__kernel void takeRoots(__global const float* in, __global float* out)\n{\n") +
+           "    const Lanes roots = lanesSqrt(" + loaded + ");\n    " + stored + "\n}\n";
+}
+
+// Squares of lengths from 1e-15 to 1e15 m, and zero.
+std::vector<float> squares()
+{
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> exponent(-30.0f, 30.0f);
+    std::vector<float> values = {0.0f};
+    while (values.size() < 8192)
+        values.push_back(std::pow(10.0f, exponent(random)));
+    return values;
+}
+
+class LanesTest : public testing::TestWithParam<BackendCase>
+{
+};
+
+TEST_P(LanesTest, RootsErrByLessThanTheCullsAllow)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    const std::string source =
+        PatchCullStage::defines(*device) + assembleSource("kernels/lib/lanes.h") + rootsOf(*device);
+    const cl::Program program = compileSource(*device, "lanes", source);
+    ASSERT_FALSE(device->failed()) << device->error().text();
+    Kernel kernel;
+    kernel.create(*device, program, "takeRoots");
+    const std::vector<float> values = squares();
+    Buffer<float> in, out;
+    guardCopy(*device, in, values);
+    guard(*device, out, values.size());
+    const std::size_t lanes = device->isGpu() ? 1 : PatchCullStage::width(*device);
+    kernel.launch(*device, values.size() / lanes, 1, in.handle(), out.handle());
+    const std::vector<float> roots = contents(*device, out, values.size());
+    ASSERT_TRUE(intact(*device, out)) << device->error().text();
+    for (std::size_t i = 0; i < values.size(); ++i)
+    {
+        const double exact = std::sqrt(double(values[i]));
+        EXPECT_LE(std::abs(double(roots[i]) - exact), DRAPE_ROOT_ERROR * exact) << values[i];
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, LanesTest, testing::ValuesIn(openClBackends()), backendName);
+}  // namespace
+}  // namespace drape::test
