@@ -1,4 +1,5 @@
-# Finds what the chosen parts need and says what is missing by its Debian name. Sets DRAPE_WITH_BULLET (ON or OFF).
+# Finds what the chosen parts need and says what is missing by its Debian name. Sets DRAPE_WITH_BULLET,
+# DRAPE_WITH_BENCHMARKS and DRAPE_WITH_TESTS (ON or OFF).
 set(THREADS_PREFER_PTHREAD_FLAG ON)
 find_package(Threads REQUIRED)
 find_package(OpenCL MODULE)
@@ -55,7 +56,21 @@ if(DRAPE_BUILD_BENCHMARKS AND (PROJECT_IS_TOP_LEVEL OR NOT DRAPE_BUILD_BENCHMARK
   endif()
 endif()
 
-if(DRAPE_TOOLS OR DRAPE_TESTS OR DRAPE_WITH_BENCHMARKS OR DRAPE_BUILD_FUZZERS)
+set(DRAPE_WITH_TESTS OFF)
+if(DRAPE_TESTS STREQUAL "AUTO")
+  find_package(GTest CONFIG QUIET)
+  find_program(OCLGRIND oclgrind)
+  if(GTest_FOUND AND (OCLGRIND OR DRAPE_SANITIZE))
+    set(DRAPE_WITH_TESTS ON)
+  else()
+    message(STATUS "Without tests: they need libgtest-dev oclgrind")
+  endif()
+elseif(DRAPE_TESTS)
+  find_package(GTest CONFIG REQUIRED)
+  set(DRAPE_WITH_TESTS ON)
+endif()
+
+if(DRAPE_TOOLS OR DRAPE_WITH_TESTS OR DRAPE_WITH_BENCHMARKS OR DRAPE_BUILD_FUZZERS)
   find_package(PkgConfig REQUIRED)
   # By pkg-config: the CMake files of Debian's assimp ask for packages that a user of it does not need.
   pkg_check_modules(assimp REQUIRED IMPORTED_TARGET assimp)
@@ -68,7 +83,4 @@ endif()
 if(DRAPE_TOOLS AND DRAPE_WITH_BULLET)
   find_package(PNG MODULE REQUIRED)
   find_package(DrapeEmbree MODULE REQUIRED)
-endif()
-if(DRAPE_TESTS)
-  find_package(GTest CONFIG REQUIRED)
 endif()

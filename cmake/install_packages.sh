@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 / Ubuntu 24.04 packages that Drape's build, tools and tests need: install_packages.sh
+# Installs the Debian 12 / Ubuntu 24.04 packages that Drape needs: install_packages.sh [--tools]
 #
+# For the library and its tools with --tools; else for benchmarks and tests, too.
 # Calls apt only when dpkg says that something is missing, with sudo when not root. Fails, naming the packages, when
 # something is missing and cannot be installed. The one list of packages.
 set -euo pipefail
@@ -14,13 +15,18 @@ packages=(
   pocl-opencl-icd
   # tools: arguments, meshes, JSON, PNG, rays; exact arithmetic for the independent check
   libcli11-dev libassimp-dev nlohmann-json3-dev libpng-dev libembree-dev libgmp-dev
+  # data: the bunny
+  glmark2-data
+)
+further=(
   # benchmarks: peers, plots
   libfcl-dev libtbb-dev python3-matplotlib
   # tests; a simulated GPU; fuzzing
   libgtest-dev oclgrind clang libclang-rt-dev
-  # data: the bunny; unpacking
-  glmark2-data xz-utils
+  # published data: unpacking
+  xz-utils
 )
+[[ ${1:-} == --tools ]] || packages+=("${further[@]}")
 
 if ! command -v dpkg-query >/dev/null; then
   echo "No dpkg here: cannot check for these packages (Debian names): ${packages[*]}" >&2

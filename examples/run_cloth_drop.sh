@@ -8,7 +8,7 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 bunny=/usr/share/glmark2/models/bunny.obj
 
-bash "$root/cmake/install_packages.sh"
+bash "$root/cmake/install_packages.sh" --tools
 (cd "$root" && bash cmake/build_preset.sh release cloth_drop)
 
 obstacle=(--obstacle "$bunny")
