@@ -87,9 +87,10 @@ static uint kindOfTest(const FeatureTest feature)
 }
 
 // Tests the item-th feature pair; lists its hit, or in swept that the continuous test must tell.
-static void testFeature(__global const FeatureTest* tests, const uint item, ClothView* cloth, const ObstacleView* obstacle,
-                        const PackedFeatures* packed, __global const ObstacleMotion* motions, const HitList* list,
-                        __global uint* swept, __global StepCounters* counters)
+static void testFeature(__global const FeatureTest* tests, const uint item, ClothView* cloth,
+                        const ObstacleView* obstacle, const PackedFeatures* packed,
+                        __global const ObstacleMotion* motions, const HitList* list, __global uint* swept,
+                        __global StepCounters* counters)
 {
     const FeatureTest test = tests[item];
     cloth->m_motion = motionOfTest(motions, test);
@@ -102,11 +103,13 @@ static void testFeature(__global const FeatureTest* tests, const uint item, Clot
 }
 
 #ifndef DRAPE_CPU
-// Most work-items of a group.
+// Work-items of a group (kFeatureGroupGpu in narrow_phase.cpp).
 #define DRAPE_FEATURE_GROUP 256
 
-// Shares out to a group's work-items as many tests as they are, from `first` on, so that those of one kind are next to each
-// other: lanes of one kind wait for those of another. Returns this work-item's test, `count` where it has none.
+// Shares out to a group's work-items as many tests as they are, from `first` on, so that those of one kind are next to
+// each other: lanes of one kind wait for those of another. Returns this work-item's test, `count` where it has none. By
+// all of the group together. The next turn's writes need no barrier: it clears `kinds` after everyone has passed the
+// last one here, and writes `order` after two of its own.
 static uint testByKind(__global const FeatureTest* tests, const uint first, const uint count, __local uint* kinds,
                        __local ushort* order)
 {
@@ -114,20 +117,25 @@ static uint testByKind(__global const FeatureTest* tests, const uint first, cons
     if (lane < DRAPE_TEST_KINDS) kinds[lane] = 0;
     barrier(CLK_LOCAL_MEM_FENCE);
     const uint kind = item < count ? kindOfTest(tests[item]) : DRAPE_TEST_KINDS;
-    uint place = kind < DRAPE_TEST_KINDS ? atomic_inc(kinds + kind) : 0;
+    uint place = item < count ? atomic_inc(kinds + kind) : 0;
     barrier(CLK_LOCAL_MEM_FENCE);
-    for (uint k = 0; k < kind && kind < DRAPE_TEST_KINDS; ++k) place += kinds[k];
-    if (item < count) order[place] = (ushort)lane;
+    if (item < count)
+    {
+        for (uint k = 0; k < kind; ++k) place += kinds[k];
+        order[place] = (ushort)lane;
+    }
     barrier(CLK_LOCAL_MEM_FENCE);
-    const uint own = item < count ? first + order[lane] : count;
-    barrier(CLK_LOCAL_MEM_FENCE);  // the next turn writes anew
-    return own;
+    return item < count ? first + order[lane] : count;
 }
+#define DRAPE_FEATURE_KERNEL __kernel __attribute__((reqd_work_group_size(DRAPE_FEATURE_GROUP, 1, 1)))
+#else
+#define DRAPE_FEATURE_KERNEL __kernel
 #endif
 
-// A work-item goes through its part of the feature tests that patchCull lists and lists the hits; the tests that need the
-// continuous test it lists in swept, in no particular order. counters->m_swept must be zero before.
-__kernel void narrowPhaseFeature(DRAPE_FEATURE_ARGUMENTS, __global uint* restrict swept)
+// A CPU's work-item goes through its part of the feature tests that patchCull lists, a GPU's group through as many at a
+// time as it has work-items, and lists the hits; the tests that need the continuous test it lists in swept, in no
+// particular order. counters->m_swept must be zero before.
+DRAPE_FEATURE_KERNEL void narrowPhaseFeature(DRAPE_FEATURE_ARGUMENTS, __global uint* restrict swept)
 {
     DRAPE_FEATURE_VIEWS;
     ClothView cloth = DRAPE_CLOTH_VIEW(0);

@@ -93,8 +93,8 @@ static uint featuresNear(const Packet* packet, const uint triangle, const uint o
     return near;
 }
 
-// Lists the feature tests of a pair of cloth triangle and patch: of the triangle's nodes and edges among `own` (bits as in
-// Triangle::m_owned), and of its face.
+// Lists the feature tests of a pair of cloth triangle and patch: of the triangle's nodes and edges among `own` (bits as
+// in Triangle::m_owned), and of its face.
 static void cullPatch(Team* team, const PatchFeatures* features, const FeatureTest pair, const Looker* looker,
                       const CullReach reach, const uint own, const TestList* list)
 {

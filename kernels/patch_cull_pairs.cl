@@ -1,6 +1,7 @@
-// Second launch of the broad phase over patches on a GPU: the feature tests of the pairs that patchWalk listed. A patch has
-// some hundred features, and a cloth triangle is seldom near them all. So a group first finds, for each of its pairs, the
-// parts of the patch's blocks that are near, and then tests these alone, as many side by side as it has lanes for.
+// Second launch of the broad phase over patches on a GPU: the feature tests of the pairs that patchWalk listed. A patch
+// has some hundred features, and a cloth triangle is seldom near them all. So a group first finds, for each of its
+// pairs, the parts of the patch's blocks that are near, and then tests these alone, as many side by side as it has
+// lanes for.
 #include "lib/patch_pairs.h"
 
 // Pairs that a group takes at a time, each with a lane to prepare it.
@@ -13,14 +14,19 @@
 #define DRAPE_PART 8
 #define DRAPE_PARTS (DRAPE_PATCH_WIDTH / DRAPE_PART)
 
-// Parts of a patch's features, a bit each: of its faces, its vertices and its edges, of which there are up to three blocks.
+// Parts of a patch's features, a bit each: of its faces, its vertices and its edges, of which there are up to three
+// blocks.
 #define DRAPE_PART_BITS(blocks) ((1u << (blocks) * DRAPE_PARTS) - 1u)
 #define DRAPE_FACE_PARTS 0u
 #define DRAPE_VERTEX_PARTS (DRAPE_FACE_PARTS + DRAPE_PARTS)
 #define DRAPE_EDGE_PARTS (DRAPE_VERTEX_PARTS + 3u * DRAPE_PARTS)
 
 // The part of this lane's place in a block.
-#define DRAPE_OWN_PART (get_local_id(0) % DRAPE_PATCH_WIDTH / DRAPE_PART)
+#define DRAPE_OWN_PART (teamLane() % DRAPE_PATCH_WIDTH / DRAPE_PART)
+
+// A pair's place has five bits of a task, its parts are bits of a word, and each pair has a lane.
+typedef char PairsFit[DRAPE_CULL_PAIRS <= 32 && DRAPE_CULL_PAIRS <= DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH ? 1 : -1];
+typedef char PartsFit[DRAPE_EDGE_PARTS + 3u * DRAPE_PARTS <= 32u ? 1 : -1];
 
 // A pair at hand. m_looker: the place of its cloth triangle's.
 typedef struct CullPair
@@ -28,12 +34,12 @@ typedef struct CullPair
     FeatureTest m_pair;
     CullReach m_reach;
     uint m_looker;
-    uint m_own;    // the triangle's nodes and edges, bits as in Triangle::m_owned
+    uint m_own;    // the triangle's nodes and edges that it owns and that are valid, bits as in Triangle::m_owned
     uint m_all;    // whether it is so large against the patch that it is near most of it
     uint m_parts;  // of the patch that the triangle is near
 } CullPair;
 
-// Tests at hand: of a pair, one of its triangle's nodes or edges, and a part of the patch's features.
+// Tests at hand: of a pair, one of its triangle's nodes or edges or (0) its face, and a part of the patch's features.
 #define DRAPE_TASK(pair, feature, part) ((ushort)((pair) | (feature) << 5 | (part) << 7))
 #define DRAPE_TASK_PAIR(task) ((task) & 31u)
 #define DRAPE_TASK_FEATURE(task) ((task) >> 5 & 3u)
@@ -97,8 +103,8 @@ static void takePairs(__local Culler* culler, const StepCloths* cloths, const Pa
     teamSync();
 }
 
-// Marks the parts that hold the face of this lane and the features which it owns, where the pair's cloth triangle may be
-// near it.
+// Marks the parts that hold the face of this lane and the features which it owns, where the pair's cloth triangle may
+// be near it.
 static void markParts(__local CullPair* pair, __local const CullTriangle* cull, const PatchFeatures* features,
                       __global const uint* faceFeatures)
 {
@@ -116,13 +122,15 @@ static void markParts(__local CullPair* pair, __local const CullTriangle* cull, 
 }
 
 // Lists the tests of each bit of `own` with each bit of `parts`.
-static void listTasks(__local ushort* tasks, volatile __local uint* count, const uint pair, const uint own, const uint parts)
+static void listTasks(__local ushort* tasks, volatile __local uint* count, const uint pair, const uint own,
+                      const uint parts)
 {
     uint place = atomic_add(count, popcount(own) * popcount(parts));
     for (uint ofOwn = own; ofOwn != 0; ofOwn &= ofOwn - 1)
     {
         const uint feature = 31 - clz(ofOwn & -ofOwn);
-        for (uint left = parts; left != 0; left &= left - 1) tasks[place++] = DRAPE_TASK(pair, feature, 31 - clz(left & -left));
+        for (uint left = parts; left != 0; left &= left - 1)
+            tasks[place++] = DRAPE_TASK(pair, feature, 31 - clz(left & -left));
     }
 }
 
@@ -148,7 +156,8 @@ static void listAllTasks(__local Culler* culler, const uint count)
     }
 }
 
-// From where this lane's place lies in a block (lanesLoad()) to where it lies in the part.
+// From where this lane's place lies in a block (lanesLoad()) to where it lies in the part: only the sum of the two is
+// read.
 static int partShift(const uint part)
 {
     return ((int)(part % DRAPE_PARTS) - (int)DRAPE_OWN_PART) * DRAPE_PART;
@@ -173,8 +182,9 @@ static void cullFace(__local Culler* culler, const PatchFeatures* features, cons
     __local const CullPair* pair = culler->m_pairs + DRAPE_TASK_PAIR(task);
     const uint block = features->m_patches[pair->m_pair.m_lane].m_vertexBlock + part / DRAPE_PARTS;
     const int shift = partShift(part);
-    const LaneMask mask = cullFaceVertex(&culler->m_lookers[pair->m_looker].m_cull, pair->m_reach,
-                                         features->m_vertices + block * DRAPE_VERTEX_FLOATS * DRAPE_PATCH_WIDTH + shift);
+    const LaneMask mask =
+        cullFaceVertex(&culler->m_lookers[pair->m_looker].m_cull, pair->m_reach,
+                       features->m_vertices + block * DRAPE_VERTEX_FLOATS * DRAPE_PATCH_WIDTH + shift);
     keepLanes(&culler->m_team, mask, pair->m_pair, DRAPE_TEST_FACE, block * DRAPE_PATCH_WIDTH + shift, list);
 }
 
@@ -211,13 +221,15 @@ static uint pairsOfGroup(const uint count, const uint groups, const uint turns)
     return inWave <= DRAPE_CULL_PAIRS ? max(inWave, turns) : (count + groups * rounds - 1) / (groups * rounds);
 }
 
-// Lists the feature tests of the pairs that patchWalk listed, as many as fitted there: most pairs next to each other are of
-// one cloth triangle.
+// Lists the feature tests of the pairs that patchWalk listed, as many as fitted there: most pairs next to each other
+// are of one cloth triangle. A group takes up to DRAPE_CULL_PAIRS at a time; how many they are and when it ends is the
+// same for all its lanes, so that all reach its barriers. counters->m_candidates must be zero before.
 __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH, 1, 1))) void patchCullPairs(
-    __global const FeatureTest* restrict pairs, const uint pairCapacity, __global const Triangle* restrict clothTriangles,
-    __global const float* restrict start, __global const float* restrict end, const uint mode,
-    __global const ObstacleMotion* restrict motions, __global const Patch* restrict patches,
-    __global const float* restrict patchSizes, __global const uint* restrict faceFeatures, __global const float* restrict faces,
+    __global const FeatureTest* restrict pairs, const uint pairCapacity,
+    __global const Triangle* restrict clothTriangles, __global const float* restrict start,
+    __global const float* restrict end, const uint mode, __global const ObstacleMotion* restrict motions,
+    __global const Patch* restrict patches, __global const float* restrict patchSizes,
+    __global const uint* restrict faceFeatures, __global const float* restrict faces,
     __global const float* restrict vertices, __global const float* restrict edges, __global FeatureTest* restrict list,
     const uint capacity, const uint limit, __global StepCounters* restrict counters)
 {
@@ -235,7 +247,8 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDT
         const uint taken = min(first + share, count) - first;
         takePairs(&culler, &cloths, &features, pairs, first, first + taken);
         for (uint i = turn; i < taken; i += turns)
-            markParts(culler.m_pairs + i, &culler.m_lookers[culler.m_pairs[i].m_looker].m_cull, &features, faceFeatures);
+            markParts(culler.m_pairs + i, &culler.m_lookers[culler.m_pairs[i].m_looker].m_cull, &features,
+                      faceFeatures);
         teamSync();
         listAllTasks(&culler, taken);
         teamSync();

@@ -1,4 +1,5 @@
-// Packs the obstacles' features for patch_cull.cl, and the wide tree over their patches, when an obstacle came or moved.
+// Packs the obstacles' features for the culls (patch_cull.cl, patch_cull_pairs.cl), and the wide tree over their patches,
+// when an obstacle came or moved.
 #include "lib/cone_reach.h"
 #include "lib/feature_cull.h"
 #include "shared/patch.h"

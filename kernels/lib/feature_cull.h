@@ -1,7 +1,7 @@
 // Drops feature tests of one cloth triangle against a block of obstacle features, a lane each: what is kept is a
 // superset of what gives a contact (pair_contact.h), and little more.
 //
-// Every comparison is loosened by kSlackShare of the pair's size, some thousand roundings. A feature whose shape makes
+// Every comparison is loosened by DRAPE_CULL_SLACK of the pair's size, some thousand roundings. A feature whose shape makes
 // a direction worse than that (thin triangles, edges that are nearly parallel) is kept by its distance alone. Lanes
 // with NaN positions are dropped: each result depends on a comparison of theirs that must hold.
 //

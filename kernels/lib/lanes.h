@@ -9,8 +9,8 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// Most that lanesSqrt() may err by, as a share of the root: a twentieth of DRAPE_CULL_SLACK. GPUs' own roots err by some
-// roundings, a hundredth of it.
+// Most that lanesSqrt() may err by, as a share of the root. A cull's slack is more than 4e-4 of its reach and of the
+// motion, 2e-4 of a feature: a root of any of these errs by a twentieth of it.
 #define DRAPE_ROOT_ERROR 1e-5f
 
 // What a team's lanes share (see team.h) lies in memory of its own where they are a group's work-items: private to
@@ -62,11 +62,12 @@ static Lanes lanesMin(Lanes a, Lanes b)
 #define lanesMin(a, b) fmin(a, b)
 #endif
 #define lanesAbs(a) fabs(a)
-// A GPU's own root: with one that is rounded correctly the cull of pairs takes a tenth longer.
-#if DRAPE_LANES > 1
-#define lanesSqrt(a) sqrt(a)
-#else
+// The device's own root, where it is known to be good (PatchCullStage::defines()): with one that is rounded correctly a
+// GPU's cull takes a tenth longer.
+#ifdef DRAPE_NATIVE_ROOTS
 #define lanesSqrt(a) native_sqrt(a)
+#else
+#define lanesSqrt(a) sqrt(a)
 #endif
 #define lanesFma(a, b, c) fma(a, b, c)
 #else

@@ -1,5 +1,5 @@
-// Pairs of a cloth triangle and a patch of the obstacles: which there are in a step, and the feature tests they leave.
-// For OpenCL C only; see team.h for who does it.
+// Pairs of a cloth triangle and a patch of the obstacles: which there are in a step, what looks at a patch, and how the
+// feature tests that are left are listed. For OpenCL C only; see team.h for who does it.
 #ifndef DRAPE_LIB_PATCH_PAIRS_H
 #define DRAPE_LIB_PATCH_PAIRS_H
 
@@ -118,6 +118,7 @@ typedef struct PatchFeatures
     __global const float* m_edges;
 } PatchFeatures;
 
+// Lists the tests of a block's lanes in the mask. kind: DRAPE_TEST_NODE …; first: the block's first lane.
 static void keepLanes(DRAPE_TEAM Team* team, const LaneMask mask, FeatureTest test, const uint kind, const uint first,
                       const TestList* list)
 {

@@ -28,8 +28,10 @@ std::uint32_t PatchCullStage::width(const Device& device)
 
 std::string PatchCullStage::defines(const Device& device)
 {
+    // OpenCL does not say how a native root errs; NVIDIA does (PTX: 2^-23 of it, over the whole range).
+    const bool roots = device.isGpu() && device.info().m_platform.rfind("NVIDIA", 0) == 0;
     return "#define DRAPE_PATCH_WIDTH " + std::to_string(width(device)) + "\n#define DRAPE_LANES " +
-           (device.isGpu() ? "1\n" : std::to_string(kWidthCpu) + "\n");
+           (device.isGpu() ? "1\n" : std::to_string(kWidthCpu) + "\n") + (roots ? "#define DRAPE_NATIVE_ROOTS\n" : "");
 }
 
 void PatchCullStage::create(Device& device, const ProgramLoader& load)

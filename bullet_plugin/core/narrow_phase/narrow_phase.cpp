@@ -21,9 +21,10 @@ constexpr std::size_t kPlaceGroupCpu = 64;
 // Feature tests per compute unit up to which one launch is faster than two: the continuous test takes registers, which
 // leave room for few groups at a time.
 constexpr std::size_t kFewTestsPerUnit = 128;
-// Of a GPU's launch over the feature tests: a group shares them out by kind (kernels/narrow_phase.cl).
+// Of a GPU's launch over the feature tests, as in kernels/narrow_phase.cl: a group shares them out by kind.
 constexpr std::size_t kFeatureGroupGpu = 256;
-// Of its launches of the continuous test, whose registers leave room for as many work-items as these.
+// Of its launches of the continuous test, work-items a compute unit: as many as the test's 250 registers leave room for
+// on the H200, in groups of a warp.
 constexpr std::size_t kSweptItemsGpu = 256, kSweptGroupGpu = 32;
 
 // Work-items that copy a contact together: on a GPU, whose neighbours' stores are joined, one for each of its vectors.
