@@ -14,9 +14,9 @@
 #
 # Writes bench_step.csv and .json, study.csv and .json (run_study.sh alone does these, also part by part), and, where
 # Bullet's part is built, error_vs_time.csv and .json, cloth_drop.json and drop_speeds.json (of the bunny; no drops with
-# --quick), with --truth drape_check.json; then the plots beside them, and the tables in README.md where OUT_DIR lies
-# under results/ here. Measure on an idle machine. Ends with 3 when a row is void, with 1 when something could not be
-# measured.
+# --quick), with --truth drape_check.json; then the plots beside them, and the tables in results/README.md and README.md
+# here where OUT_DIR lies under results/. Measure on an idle machine. Ends with 3 when a row is void, with 1 when
+# something could not be measured.
 set -uo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)

@@ -16,9 +16,9 @@
 #
 # Joins what was measured to OUT_DIR/study.json and study.csv after every part (merge_study.py): parts may be measured
 # one after the other, in any order, into one OUT_DIR, and what a part measured before is replaced. Then draws the plots
-# beside them, and writes the tables into README.md where OUT_DIR lies under results/ here. Needs python3, for plots
-# with matplotlib. Measure on an idle machine. Ends with 3 when a row is void, with 1 when something could not be
-# measured or judged.
+# beside them, and writes the tables into results/README.md and README.md here where OUT_DIR lies under results/. Needs
+# python3, for plots with matplotlib. Measure on an idle machine. Ends with 3 when a row is void, with 1 when something
+# could not be measured or judged.
 set -uo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)

@@ -332,7 +332,7 @@ def devices_table(machines, table, figure):
         figures = thesis(source, what)
         lines.append(["*thesis, optimised, kernels*", f"*{label}*"] + [
             f"*{figures[THESIS_MODELS[model]]:,.0f}*" if model in THESIS_MODELS else "–" for model in ordered])
-    return ("### Devices side by side\n\nConstruction on all devices (table 4.3), ms: kernel time / host to host; measured at "
+    return ("## Devices side by side\n\nConstruction on all devices (table 4.3), ms: kernel time / host to host; measured at "
             + ", ".join(f"{', '.join(in_order(mine, 'commit'))} ({name})" for name, mine in devices) + ".\n\n"
             + table(["builder", "device"] + [f"{model.replace('_', ' ')} ({models[model]:,.0f})" for model in ordered], lines))
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Writes the tables of all measured results into benchmarks/README.md, between its markers: summary.py [README]
+"""Writes the tables of all measured results: summary.py [FOLDER]
 
-Every folder of results/ is a machine. What stands outside of the markers is written by hand. The markers of the findings
-(study_findings.py) may be missing. Ends with 1, naming the rows, and writes nothing when results of one commit have several
-hashes of the same trajectory.
+FOLDER, this one unless said, has results/ with a folder for each machine. Their tables go into results/README.md, those of
+the findings (study_findings.py) into README.md, where it has their markers. What stands outside of the markers is written by
+hand. Ends with 1, naming the rows, and writes nothing when results of one commit have several hashes of the same trajectory.
 """
 import math
 import os
@@ -152,7 +152,7 @@ def trajectories(folders):
 
 def pictures(folder):
     names = sorted(name for name in os.listdir(folder) if name.endswith(".png") and not name.startswith("error_"))
-    relative = "results/" + os.path.basename(folder)
+    relative = os.path.basename(folder)
     return "".join(f"![{name[:-4]}]({relative}/{name})\n" for name in names) + "\n" if names else ""
 
 
@@ -160,7 +160,7 @@ def machine_text(folder):
     rows = read_rows(folder, "bench_step")
     machine = read_machine(folder, "bench_step" if rows else "study")
     devices = ", ".join(f"{device['device']} (driver {device['driver']})" for device in machine["devices"]) or "none"
-    text = f"### {os.path.basename(folder)}\n\n"
+    text = f"## {os.path.basename(folder)}\n\n"
     text += f"{machine['processor']}, {machine['cores']:.0f} cores; OpenCL devices: {devices}. "
     if rows:
         text += f"Whole steps: measured {machine['date']} at commit {machine['commit']}. "
@@ -182,9 +182,16 @@ def replaced(text, name, tables):
     return before + begin + "\n\n" + tables + end + after if found and closed else None
 
 
+def read_text(path):
+    if not os.path.exists(path):
+        return ""
+    with open(path) as file:
+        return file.read()
+
+
 def main():
-    readme = sys.argv[1] if len(sys.argv) > 1 else os.path.join(HERE, "README.md")
-    results = os.path.join(os.path.dirname(os.path.abspath(readme)), "results")
+    here = sys.argv[1] if len(sys.argv) > 1 else HERE
+    results = os.path.join(here, "results")
     names = sorted(os.listdir(results)) if os.path.isdir(results) else []
     folders = [os.path.join(results, name) for name in names]
     folders = [folder for folder in folders
@@ -196,18 +203,21 @@ def main():
     differences = hashes.differences(runs)
     if differences:
         sys.exit("\n".join(differences))
-    with open(readme) as file:
-        text = file.read()
     machines = [(os.path.basename(folder), read_rows(folder, "study")) for folder in folders]
-    tables = "".join(machine_text(folder) for folder in folders) + study_tables.devices_table(machines, table, figure)
-    text = replaced(text, "results", tables)
-    if not text:
-        sys.exit(f"{readme} has no markers")
     measured = [(name, rows) for name, rows in machines if rows]
-    for name, made in (("front", study_findings.front), ("ranking", study_findings.ranking)):
-        text = replaced(text, name, made(measured, table, figure)) or text
-    with open(readme, "w") as file:
-        file.write(text)
+    tables = "".join(machine_text(folder) for folder in folders) + study_tables.devices_table(machines, table, figure)
+    texts = {os.path.join(results, "README.md"): {"results": tables},
+             os.path.join(here, "README.md"): {"front": study_findings.front(measured, table, figure),
+                                               "ranking": study_findings.ranking(measured, table, figure)}}
+    if not replaced(read_text(os.path.join(results, "README.md")), "results", ""):
+        sys.exit(f"{results}/README.md has no markers")
+    for path, regions in texts.items():
+        text = read_text(path)
+        for name, made in regions.items():
+            text = replaced(text, name, made) or text
+        if text:
+            with open(path, "w") as file:
+                file.write(text)
 
 
 if __name__ == "__main__":

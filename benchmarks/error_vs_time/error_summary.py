@@ -1,4 +1,4 @@
-"""The tables of error against run time in benchmarks/README.md. plot.py writes them."""
+"""The tables of error against run time in benchmarks/results/README.md. plot.py writes them."""
 import os
 
 from results import count_void, in_order, read_json, read_rows, select
@@ -177,13 +177,13 @@ def left_out_text(rows):
 
 def pictures(folder):
     names = sorted(name for name in os.listdir(folder) if name.startswith("error_") and name.endswith(".png"))
-    place = f"results/{os.path.basename(os.path.abspath(folder))}"
+    place = os.path.basename(os.path.abspath(folder))
     return "".join(f"![{name[:-4]}]({place}/{name})\n" for name in names) + "\n"
 
 
 def summary(folder, rows):
     machine = (read_json(folder, "error_vs_time") or {}).get("machine", {})
-    text = f"### Error against run time: {os.path.basename(os.path.abspath(folder))}\n\n"
+    text = f"## Error against run time: {os.path.basename(os.path.abspath(folder))}\n\n"
     text += (f"{machine.get('processor', 'unknown processor')}, commit {machine.get('commit', 'unknown')}. "
              f"Void rows: {count_void(folder, 'error_vs_time')}.\n\n")
     simulations, detector = select(rows, part="simulation"), select(rows, part="detector")
@@ -195,7 +195,7 @@ def summary(folder, rows):
 
 def all_summaries(results):
     """Of every folder of results that has rows, by name."""
-    folders = [os.path.join(results, name) for name in sorted(os.listdir(results))] if os.path.isdir(results) else []
+    folders = [os.path.join(results, name) for name in sorted(os.listdir(results))]
     found = [(folder, read_rows(folder, "error_vs_time")) for folder in folders]
     return "".join(summary(folder, rows) for folder, rows in found if rows)
 
@@ -206,6 +206,6 @@ def write(readme):
         old = old.rstrip("\n") + ("\n\n" if old else "") + BEGIN + "\n" + END + "\n"
     before, rest = old.split(BEGIN, 1)
     after = rest.split(END, 1)[1]
-    text = all_summaries(os.path.join(os.path.dirname(os.path.abspath(readme)), "results"))
+    text = all_summaries(os.path.dirname(os.path.abspath(readme)))
     with open(readme, "w") as file:
         file.write(before + BEGIN + "\n\n" + text + END + after)

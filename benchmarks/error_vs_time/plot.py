@@ -2,8 +2,8 @@
 
 One figure per error measure with a panel a scene (or a set of queries): a line per knob, the Pareto hull of Drape and of
 what is beside it, zero error on a strip of its own below the axis. Capped runs stand at the top as crosses. With README,
-the tables between its error_vs_time markers are made again (or appended, where there are none), of every folder of results/
-beside it. Needs python3-matplotlib.
+the tables between its error_vs_time markers are made again (or appended, where there are none), of every folder beside it.
+Needs python3-matplotlib.
 """
 import math
 import os

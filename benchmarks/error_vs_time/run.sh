@@ -11,9 +11,9 @@
 #   --bin DIR      folder of the program (default: build/release/bin)
 #
 # Joins what was measured to error_vs_time.csv and .json in OUT_DIR (merge_errors.py; delete them to begin anew): scenes and
-# knobs may be measured run by run. Draws the plots there, and writes the tables of all machines into benchmarks/README.md
-# where OUT_DIR lies under benchmarks/results/. Measure on an idle machine. Ends with 3 when a row is void, with 2 when
-# OUT_DIR is of another machine, with 1 when something is missing.
+# knobs may be measured run by run. Draws the plots there, and writes the tables of all machines into
+# benchmarks/results/README.md where OUT_DIR lies there. Measure on an idle machine. Ends with 3 when a row is void, with 2
+# when OUT_DIR is of another machine, with 1 when something is missing.
 set -uo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -49,7 +49,7 @@ case $? in
 esac
 rm -r "$work"
 readme=()
-[[ $(cd "$out" && pwd) != "$(cd "$here/.." && pwd)"/results/* ]] || readme=("$here/../README.md")
+[[ $(cd "$out" && pwd) != "$(cd "$here/.." && pwd)"/results/* ]] || readme=("$here/../results/README.md")
 if "$python" -c 'import matplotlib' 2>/dev/null; then
   "$python" "$here/plot.py" "$out" "${readme[@]}" || [[ $code != 0 ]] || code=1
 else

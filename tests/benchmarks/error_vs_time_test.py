@@ -122,7 +122,7 @@ class ErrorVsTimeTest(FolderTest):
             os.makedirs(folder)
             for ending in (".csv", ".json"):
                 shutil.copy(self.path("error_vs_time" + ending), folder)
-        readme = self.path("README.md")
+        readme = self.path("results/README.md")
         with open(readme, "w") as file:
             file.write("Before.\n")
         for folder in folders:  # the second time it replaces
@@ -130,8 +130,8 @@ class ErrorVsTimeTest(FolderTest):
         with open(readme) as file:
             text = file.read()
         self.assertTrue(text.startswith("Before.\n"))
-        self.assertEqual([line for line in text.splitlines() if line.startswith("###")],
-                         ["### Error against run time: one", "### Error against run time: two"])
+        self.assertEqual([line for line in text.splitlines() if line.startswith("##")],
+                         ["## Error against run time: one", "## Error against run time: two"])
         for folder in folders:
             for name in ("penetration", "pairs", "through", "detector_false_hits", "detector_time"):
                 self.assertGreater(os.path.getsize(os.path.join(folder, f"error_{name}.png")), 10000)

@@ -41,14 +41,19 @@ class ProgramTest(unittest.TestCase):
 
     def summary(self):
         """The tables of the results beside."""
-        readme = self.path("README.md")
-        with open(readme, "w") as file:
-            file.write("<!-- results: made by summary.py --><!-- end of results -->")
-        result = self.script("summary.py", readme)
+        readme = self.write_readme("<!-- results: made by summary.py --><!-- end of results -->")
+        result = self.script("summary.py", self.folder)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertNotIn("does not say its commit", result.stderr)
         with open(readme) as file:
             return file.read()
+
+    def write_readme(self, text, folder="results"):
+        path = self.path(os.path.join(folder, "README.md"))
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, "w") as file:
+            file.write(text)
+        return path
 
     def quick(self, program, *arguments):
         """Rows of a quick run; every row has every column, and JSON says the same as CSV."""
@@ -424,9 +429,8 @@ class Committed(ProgramTest):
     def test_one_trajectory_has_one_hash(self):
         """summary.py refuses them otherwise, here into another file."""
         shutil.copytree(RESULTS, self.path("results"), ignore=shutil.ignore_patterns("*.png"))
-        readme = self.path("README.md")
-        shutil.copy(os.path.join(os.path.dirname(RESULTS), "README.md"), readme)
-        result = self.script("summary.py", readme)
+        shutil.copy(os.path.join(os.path.dirname(RESULTS), "README.md"), self.folder)
+        result = self.script("summary.py", self.folder)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertNotIn("does not say its commit", result.stderr)
 
@@ -458,29 +462,33 @@ class Reports(ProgramTest):
 
     def check_summary(self):
         """The tables replace what is between the markers, and a second run changes nothing."""
-        readme = self.path("README.md")
-        with open(readme, "w") as file:
-            file.write("before\n" + "between\n".join(
-                f"<!-- {name}: made by summary.py -->\nwhat was there\n<!-- end of {name} -->\n"
-                for name in ("front", "ranking", "results")) + "after\n")
-        result = self.script("summary.py", readme)
+        def marked(*names):
+            return "before\n" + "between\n".join(
+                f"<!-- {name}: made by summary.py -->\nwhat was there\n<!-- end of {name} -->\n" for name in names) + "after\n"
+
+        paths = self.write_readme(marked("front", "ranking"), "."), self.write_readme(marked("results"))
+        result = self.script("summary.py", self.folder)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertNotIn("does not say its commit", result.stderr)
-        with open(readme) as file:
-            text = file.read()
-        self.assertTrue(text.startswith("before\n") and text.endswith("after\n"))
-        self.assertNotIn("what was there", text)
-        self.assertEqual(text.count("between\n"), 2)
-        front, ranking, results = text.split("between\n")
-        for words in ("### machine", "fcl, 1 thread", "thesis: Quadro", "Whole steps of the host"):
+        texts = []
+        for path in paths:
+            with open(path) as file:
+                texts.append(file.read())
+            self.assertTrue(texts[-1].startswith("before\n") and texts[-1].endswith("after\n"))
+            self.assertNotIn("what was there", texts[-1])
+        self.assertEqual([text.count("between\n") for text in texts], [1, 0])
+        front, ranking = texts[0].split("between\n")
+        results = texts[1]
+        for words in ("## machine", "fcl, 1 thread", "thesis: Quadro", "Whole steps of the host"):
             self.assertIn(words, results)
         for words in ("| machine | host, 1 thread | front |", "The front tests fewer volumes"):
             self.assertIn(words, front)
         for words in ("| refit | over construction", "| construction on the device, largest model, ms | "):
             self.assertIn(words, ranking)
-        self.script("summary.py", readme)
-        with open(readme) as file:
-            self.assertEqual(file.read(), text)
+        self.script("summary.py", self.folder)
+        for path, text in zip(paths, texts):
+            with open(path) as file:
+                self.assertEqual(file.read(), text)
 
 
 class Scripts(ProgramTest):
@@ -655,10 +663,8 @@ class Hashes(ProgramTest):
                        "scene": {"obstacle": "o", "obstacle_digest": scene, "options": list(options)}}, file)
 
     def judged(self):
-        readme = self.path("README.md")
-        with open(readme, "w") as file:
-            file.write("<!-- results: made by summary.py -->as it was<!-- end of results -->")
-        result = self.script("summary.py", readme)
+        readme = self.write_readme("<!-- results: made by summary.py -->as it was<!-- end of results -->")
+        result = self.script("summary.py", self.folder)
         with open(readme) as file:
             self.assertEqual("as it was" in file.read(), result.returncode != 0, "no table of results that are refused")
         return result
