@@ -5,27 +5,6 @@
 #include "lib/cull_packet.h"
 #include "lib/patch_pairs.h"
 
-typedef char DirectionsFit[DRAPE_DOP_DIRECTIONS <= DRAPE_LANES ? 1 : -1];
-static Directions directionLanes(void)
-{
-    float x[DRAPE_LANES], y[DRAPE_LANES], z[DRAPE_LANES], norm[DRAPE_LANES], ignored[DRAPE_LANES];
-    DRAPE_UNROLL
-    for (int i = 0; i < DRAPE_LANES; ++i)
-    {
-        const float is = i < DRAPE_DOP_DIRECTIONS ? 1.0f : 0.0f;
-        x[i] = dopProject(vec3(is, 0.0f, 0.0f), i);
-        y[i] = dopProject(vec3(0.0f, is, 0.0f), i);
-        z[i] = dopProject(vec3(0.0f, 0.0f, is), i);
-        norm[i] = is * dopNorm(i);
-        ignored[i] = i < DRAPE_DOP_DIRECTIONS ? 0.0f : DRAPE_INFINITY;
-    }
-    Directions directions;
-    directions.m_along = lanesVec3(lanesLoad(x, 0), lanesLoad(y, 0), lanesLoad(z, 0));
-    directions.m_norm = lanesLoad(norm, 0);
-    directions.m_ignored = lanesLoad(ignored, 0);
-    return directions;
-}
-
 // Six corners of a triangle, see cornersSeen(), of a packet's: x y z of each, a row of lanes each.
 #define DRAPE_CORNER_ROWS 18
 

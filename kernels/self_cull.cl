@@ -20,18 +20,33 @@ typedef struct SelfCloths
     uint m_levelCount;
 } SelfCloths;
 
+// Boxes of the corners of a patch's triangles, made when a triangle is first near another patch.
+typedef struct OwnCorners
+{
+    FeatureBox m_boxes[3 * DRAPE_PATCH_WIDTH];
+    uint m_made;  // bit i: those of the patch's triangle i
+} OwnCorners;
+
+static const FeatureBox* cornersOf(OwnCorners* corners, const SelfCloth* cloth, const Triangle triangle, const uint place)
+{
+    FeatureBox* own = corners->m_boxes + 3 * place;
+    if (corners->m_made >> place & 1u) return own;
+    corners->m_made |= 1u << place;
+    for (int k = 0; k < 3; ++k) own[k] = nodeBox(cloth->m_start, cloth->m_end, triangle.m_vertices[k], cloth->m_radius);
+    return own;
+}
+
 // Triangle `place` of patch `own` against the features of patch `other`, which is not before it. Within a patch every node
 // meets every face from the node's side, and of two edges the one with the lesser index looks for the other. box: of that
 // patch.
-static void pairTriangle(Team* team, const SelfCloths* cloths, const uint own, const uint place, const uint other,
-                         const FeatureBox* box, const TestList* list)
+static void pairTriangle(Team* team, const SelfCloths* cloths, OwnCorners* corners, const uint own, const uint place,
+                         const uint other, const FeatureBox* box, const TestList* list)
 {
     const SelfCloth* cloth = &cloths->m_cloth;
     const uint face = cloths->m_faceIds[own * DRAPE_PATCH_WIDTH + place];
     const Triangle triangle = cloth->m_triangles[face];
     const Patch patch = cloths->m_patches[other];
-    FeatureBox corner[3];
-    for (int k = 0; k < 3; ++k) corner[k] = nodeBox(cloth->m_start, cloth->m_end, triangle.m_vertices[k], cloth->m_radius);
+    const FeatureBox* corner = cornersOf(corners, cloth, triangle, place);
     const BoxLanes faces = loadBoxes(cloths->m_faceBoxes + other * DRAPE_BOX_FLOATS * DRAPE_PATCH_WIDTH);
     for (int k = 0; k < 3; ++k)
     {
@@ -74,14 +89,15 @@ static void pairTriangle(Team* team, const SelfCloths* cloths, const uint own, c
 }
 
 // Returns whether the list is within its limit.
-static int pairPatches(Team* team, const SelfCloths* cloths, const uint own, const uint other, const TestList* list)
+static int pairPatches(Team* team, const SelfCloths* cloths, OwnCorners* corners, const uint own, const uint other,
+                       const TestList* list)
 {
     const FeatureBox box = childBox(cloths->m_nodes, other);
     const BoxLanes faces = loadBoxes(cloths->m_faceBoxes + own * DRAPE_BOX_FLOATS * DRAPE_PATCH_WIDTH);
     const LaneMask near = boxesOverlap(&faces, &box);
     forLanes(place, near)
     {
-        pairTriangle(team, cloths, own, place, other, &box, list);
+        pairTriangle(team, cloths, corners, own, place, other, &box, list);
         if (!teamMakeRoom(team, list)) return 0;
     }
     return 1;
@@ -92,6 +108,8 @@ static void walkSelf(Team* team, const SelfCloths* cloths, const uint own, const
     uint stack[DRAPE_WALK_STACK];
     uint depth = 1;
     const Dop volume = childVolume(cloths->m_nodes, own);
+    OwnCorners corners;
+    corners.m_made = 0;
     stack[0] = cloths->m_levelCount << DRAPE_LEVEL_SHIFT;
     while (depth > 0)
     {
@@ -107,7 +125,7 @@ static void walkSelf(Team* team, const SelfCloths* cloths, const uint own, const
             if (level > 1)
                 stack[depth++] = ((level - 1) << DRAPE_LEVEL_SHIFT) + next;
             else if (cloths->m_patches[next].m_mesh == cloths->m_patches[own].m_mesh &&
-                     !pairPatches(team, cloths, own, next, list))
+                     !pairPatches(team, cloths, &corners, own, next, list))
                 return;
         }
     }

@@ -136,6 +136,29 @@ typedef struct Directions
     Lanes m_norm, m_ignored;
 } Directions;
 
+#if defined(__OPENCL_VERSION__) && DRAPE_LANES > 1
+typedef char DirectionsFit[DRAPE_DOP_DIRECTIONS <= DRAPE_LANES ? 1 : -1];
+static Directions directionLanes(void)
+{
+    float x[DRAPE_LANES], y[DRAPE_LANES], z[DRAPE_LANES], norm[DRAPE_LANES], ignored[DRAPE_LANES];
+    DRAPE_UNROLL
+    for (int i = 0; i < DRAPE_LANES; ++i)
+    {
+        const float is = i < DRAPE_DOP_DIRECTIONS ? 1.0f : 0.0f;
+        x[i] = dopProject(vec3(is, 0.0f, 0.0f), i);
+        y[i] = dopProject(vec3(0.0f, is, 0.0f), i);
+        z[i] = dopProject(vec3(0.0f, 0.0f, is), i);
+        norm[i] = is * dopNorm(i);
+        ignored[i] = i < DRAPE_DOP_DIRECTIONS ? 0.0f : DRAPE_INFINITY;
+    }
+    Directions directions;
+    directions.m_along = lanesVec3(lanesLoad(x, 0), lanesLoad(y, 0), lanesLoad(z, 0));
+    directions.m_norm = lanesLoad(norm, 0);
+    directions.m_ignored = lanesLoad(ignored, 0);
+    return directions;
+}
+#endif
+
 // A triangle's nodes over the step along the directions, m: together they are its volume's intervals. Without bounds in
 // lanes that are no direction.
 typedef struct NodeIntervals

@@ -20,6 +20,7 @@ typedef struct FeatureBox
 DRAPE_FUNCTION FeatureBox emptyBox(void)
 {
     FeatureBox box;
+    DRAPE_UNROLL
     for (int i = 0; i < 3; ++i)
     {
         box.m_low[i] = DRAPE_INFINITY;
@@ -30,6 +31,7 @@ DRAPE_FUNCTION FeatureBox emptyBox(void)
 
 DRAPE_FUNCTION FeatureBox joinBoxes(FeatureBox a, FeatureBox b)
 {
+    DRAPE_UNROLL
     for (int i = 0; i < 3; ++i)
     {
         a.m_low[i] = drapeMin(a.m_low[i], b.m_low[i]);
@@ -41,6 +43,7 @@ DRAPE_FUNCTION FeatureBox joinBoxes(FeatureBox a, FeatureBox b)
 DRAPE_FUNCTION int boxesMeet(const FeatureBox* a, const FeatureBox* b)
 {
     int meet = 1;
+    DRAPE_UNROLL
     for (int i = 0; i < 3; ++i)
         meet &= (a->m_low[i] <= b->m_high[i]) & (a->m_high[i] >= b->m_low[i]);
     return meet;
@@ -74,9 +77,12 @@ DRAPE_FUNCTION FeatureBox nodeBox(const DRAPE_GLOBAL float* start, const DRAPE_G
     return box;
 }
 
+// What two volumes are padded by and no more than, as a share of what they are grown by, of the bounds that face each
+// other and of the inner sum: each by less than 3e-7.
+#define DRAPE_SELF_PAD 1e-6f
+
 // Whether a direction beyond the axes separates two features by more than their volumes are grown and padded: then
-// nodeVolumesOverlap() says no, which takes three times as long. A volume is grown by the radius and padded by less
-// than 3e-7 of its bound and the inner sum, so both together by less than the slack.
+// nodeVolumesOverlap() says no, which takes three times as long. Nodes and split as there.
 DRAPE_FUNCTION int nodesFarApart(const Vec3 start[4], const Vec3 end[4], int split, float radius)
 {
     DRAPE_UNROLL
@@ -96,7 +102,7 @@ DRAPE_FUNCTION int nodesFarApart(const Vec3 start[4], const Vec3 end[4], int spl
             lowOther = other ? drapeMin(lowOther, least) : lowOther;
             highOther = other ? drapeMax(highOther, greatest) : highOther;
         }
-        const float grown = 2.0f * radius * dopNorm(i), share = 1e-6f;
+        const float grown = 2.0f * radius * dopNorm(i), share = DRAPE_SELF_PAD;
         const float gap = low - highOther, gapOther = lowOther - high;
         if (gap > grown + share * (grown + inner + drapeAbs(low) + drapeAbs(highOther))) return 1;
         if (gapOther > grown + share * (grown + inner + drapeAbs(lowOther) + drapeAbs(high))) return 1;
@@ -104,19 +110,24 @@ DRAPE_FUNCTION int nodesFarApart(const Vec3 start[4], const Vec3 end[4], int spl
     return 0;
 }
 
-// Whether the volumes of two features, of their nodes joined, overlap where their boxes do: the first `split` of four
-// nodes are the first feature's. The same answer as featuresOverlap() gives for the nodes' volumes.
-DRAPE_FUNCTION int nodeVolumesOverlap(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end,
-                                      const DRAPE_UINT nodes[4], int split, float radius)
+// Loads nodes at the step's start and end. Returns whether all are valid.
+DRAPE_FUNCTION int loadNodes(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end, const DRAPE_UINT nodes[4],
+                             Vec3 from[4], Vec3 to[4])
 {
-    Vec3 from[4], to[4];
+    int valid = 1;
     for (int k = 0; k < 4; ++k)
     {
         from[k] = vec3Load(start, nodes[k]);
         to[k] = vec3Load(end, nodes[k]);
-        if (!positionIsValid(from[k]) || !positionIsValid(to[k])) return 0;
+        valid &= positionIsValid(from[k]) & positionIsValid(to[k]);
     }
-    if (nodesFarApart(from, to, split, radius)) return 0;
+    return valid;
+}
+
+// Whether the volumes of two features, of their valid nodes joined, overlap where their boxes do: the first `split` of
+// four nodes are the first feature's. The same answer as featuresOverlap() gives for the nodes' volumes.
+DRAPE_FUNCTION int nodeVolumesOverlap(const Vec3 from[4], const Vec3 to[4], int split, float radius)
+{
     DRAPE_UNROLL
     for (int i = 3; i < DRAPE_DOP_DIRECTIONS; ++i)
     {
@@ -148,6 +159,7 @@ typedef struct BoxLanes
 DRAPE_FUNCTION BoxLanes loadBoxes(const DRAPE_GLOBAL float* block)
 {
     BoxLanes boxes;
+    DRAPE_UNROLL
     for (int i = 0; i < 3; ++i)
     {
         boxes.m_low[i] = lanesLoad(block, i);
@@ -159,6 +171,7 @@ DRAPE_FUNCTION BoxLanes loadBoxes(const DRAPE_GLOBAL float* block)
 DRAPE_FUNCTION LaneMask boxesOverlap(const BoxLanes* boxes, const FeatureBox* box)
 {
     LaneMask near = lanesMaskSplat(1);
+    DRAPE_UNROLL
     for (int i = 0; i < 3; ++i)
         near &= (boxes->m_low[i] <= lanesSplat(box->m_high[i])) & (boxes->m_high[i] >= lanesSplat(box->m_low[i]));
     return near;
