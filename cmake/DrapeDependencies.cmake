@@ -56,18 +56,18 @@ if(DRAPE_BUILD_BENCHMARKS AND (PROJECT_IS_TOP_LEVEL OR NOT DRAPE_BUILD_BENCHMARK
   endif()
 endif()
 
+# Tests need theirs; sanitized ones run no simulated GPU.
 set(DRAPE_WITH_TESTS OFF)
-if(DRAPE_TESTS STREQUAL "AUTO")
+if(DRAPE_TESTS)
   find_package(GTest CONFIG QUIET)
   find_program(OCLGRIND oclgrind)
   if(GTest_FOUND AND (OCLGRIND OR DRAPE_SANITIZE))
     set(DRAPE_WITH_TESTS ON)
-  else()
+  elseif(DRAPE_TESTS STREQUAL "AUTO")
     message(STATUS "Without tests: they need libgtest-dev oclgrind")
+  else()
+    message(FATAL_ERROR "Tests need libgtest-dev oclgrind")
   endif()
-elseif(DRAPE_TESTS)
-  find_package(GTest CONFIG REQUIRED)
-  set(DRAPE_WITH_TESTS ON)
 endif()
 
 if(DRAPE_TOOLS OR DRAPE_WITH_TESTS OR DRAPE_WITH_BENCHMARKS OR DRAPE_BUILD_FUZZERS)
