@@ -1,14 +1,14 @@
 // Compaction: hits into canonical order, by slot (cloth feature) and then obstacle feature. A counting sort over the slots:
 // sums per block, first place of every slot, members of every slot, and the place of each
-// hit among them: by counting where a slot has few, by a sort where it has many.
+// hit among them: by counting where a slot has few, by a sort where it has many. On a GPU few slots and hits take one launch
+// instead (compaction_few.cl).
 #include "lib/group_scan.h"
 #include "lib/hit_list.h"
 #include "lib/item_runs.h"
+#include "lib/slot_order.h"
 
 // Slots a work-group handles. Each work-item takes DRAPE_BLOCK / group size adjacent ones.
 #define DRAPE_BLOCK 1024
-// Members of a slot that a work-group puts in order by counting, in local memory; more are sorted where they are.
-#define DRAPE_COUNTED 512
 
 static uint countShare(__global const uint* slotCount, const uint slots, uint* first, uint* last)
 {
@@ -45,43 +45,15 @@ static uint placeBlock(__global const uint* restrict slotCount, const uint slots
     return place + total;
 }
 
-// Slots, or blocks of them, that a work-item loads together: loads that do not wait for each other.
-#define DRAPE_TOGETHER 8
-
-// The sum of the first `count` numbers, by all of the group's work-items together.
-static uint sumOf(__global const uint* restrict numbers, const uint count, __local uint* scratch)
-{
-    uint sum = 0, total;
-    for (uint first = get_local_id(0); first < count; first += DRAPE_TOGETHER * get_local_size(0))
-    {
-        DRAPE_UNROLL
-        for (uint i = 0; i < DRAPE_TOGETHER; ++i)
-        {
-            const uint other = first + i * get_local_size(0);
-            sum += other < count ? numbers[other] : 0;
-        }
-    }
-    groupPrefix(scratch, sum, &total);
-    return total;
-}
-
-// A work-group takes a block of slots, and sums those of the blocks before itself. The last one stores counters->m_hits.
-// ranked: most hits of a slot that the launch behind puts in order itself; those with more are counted.
+// A work-group takes a block of slots, and sums the hits of those before itself. The last one stores counters->m_hits. sums:
+// of blocks, by compactionCount, and perBlock 1; where slots are few it is slotCount, and perBlock DRAPE_BLOCK. ranked: most
+// hits of a slot that the launch behind puts in order itself; those with more are counted.
 __kernel void compactionPlace(__global const uint* restrict slotCount, const uint slots, const uint ranked,
-                              __global const uint* restrict blockCount, __global uint* restrict slotFirst,
-                              __global StepCounters* restrict counters, __local uint* scratch)
+                              __global const uint* restrict sums, const uint perBlock,
+                              __global uint* restrict slotFirst, __global StepCounters* restrict counters,
+                              __local uint* scratch)
 {
-    const uint before = sumOf(blockCount, get_group_id(0), scratch);
-    const uint hits = placeBlock(slotCount, slots, ranked, before, slotFirst, counters, scratch);
-    if (get_group_id(0) == get_num_groups(0) - 1 && get_local_id(0) == 0) counters->m_hits = hits;
-}
-
-// The same without sums of blocks, for slots that are few.
-__kernel void compactionPlaceFew(__global const uint* restrict slotCount, const uint slots, const uint ranked,
-                                 __global uint* restrict slotFirst, __global StepCounters* restrict counters,
-                                 __local uint* scratch)
-{
-    const uint before = sumOf(slotCount, get_group_id(0) * DRAPE_BLOCK, scratch);
+    const uint before = groupSumOf(sums, get_group_id(0) * perBlock, scratch);
     const uint hits = placeBlock(slotCount, slots, ranked, before, slotFirst, counters, scratch);
     if (get_group_id(0) == get_num_groups(0) - 1 && get_local_id(0) == 0) counters->m_hits = hits;
 }
@@ -104,56 +76,6 @@ __kernel void compactionGather(__global const Contact* restrict hits, const uint
         members[place] = i;
         keys[place] = hits[i].m_obstacleFeature;
     }
-}
-
-// Puts one pair of members in order.
-static void orderPair(__global const Contact* hits, __global uint* low, __global uint* high)
-{
-    const uint a = *low, b = *high;
-    if (hits[a].m_obstacleFeature <= hits[b].m_obstacleFeature) return;
-    *low = b;
-    *high = a;
-}
-
-// A work-group sorts count members by obstacle feature, in place: Batcher's bitonic network, its merges begun with a
-// mirrored step so that the lesser always goes to the lower place. So places from count on count as greater than all and
-// need not exist. In a step every place is in one pair; the barrier orders the steps.
-static void sortMembers(__global const Contact* hits, __global uint* members, const uint count)
-{
-    for (uint size = 2; size / 2 < count; size *= 2)
-    {
-        const uint pairs = (count + size - 1) / size * (size / 2);
-        for (uint stride = size / 2; stride > 0; stride /= 2)
-        {
-            for (uint i = get_local_id(0); i < pairs; i += get_local_size(0))
-            {
-                const uint begin = i / stride * stride * 2, offset = i % stride;
-                const uint high = begin + (stride == size / 2 ? size - 1 - offset : stride + offset);
-                if (high < count) orderPair(hits, members + begin + offset, members + high);
-            }
-            barrier(CLK_GLOBAL_MEM_FENCE);
-        }
-    }
-}
-
-// The same for DRAPE_COUNTED members at most: each goes behind as many as have a lesser feature. keys, own: that many.
-static void countMembers(__global const Contact* hits, __global uint* members, const uint count, __local uint* keys,
-                         __local uint* own)
-{
-    for (uint i = get_local_id(0); i < count; i += get_local_size(0))
-    {
-        own[i] = members[i];
-        keys[i] = hits[own[i]].m_obstacleFeature;
-    }
-    barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
-    for (uint i = get_local_id(0); i < count; i += get_local_size(0))
-    {
-        const uint key = keys[i];
-        uint before = 0;
-        for (uint j = 0; j < count; ++j) before += keys[j] < key;
-        members[before] = own[i];
-    }
-    barrier(CLK_LOCAL_MEM_FENCE);
 }
 
 // A work-group sorts the members of those slots of its block (of at most DRAPE_BLOCK slots) that have more than `ranked`.
@@ -180,11 +102,7 @@ __kernel void compactionOrder(__global const Contact* restrict hits, const uint 
     {
         const uint slot = crowded[i];
         const uint last = slot + 1 < slots ? min(slotFirst[slot + 1], count) : count;
-        const uint size = last - slotFirst[slot];
-        if (size <= DRAPE_COUNTED)
-            countMembers(hits, members + slotFirst[slot], size, keys, own);
-        else
-            sortMembers(hits, members + slotFirst[slot], size);
+        orderMembers(hits, members + slotFirst[slot], last - slotFirst[slot], keys, own);
     }
 }
 

@@ -205,3 +205,43 @@ __kernel void reductionWrite(__global const Contact* restrict hits, const uint h
         copyHit(contacts + DRAPE_CONTACT_HEAD + keptFirst[slot] + i - slotFirst[slot], hits + member, parts);
     }
 }
+
+// The same where slots are few, without a launch before it that places them: a work-group takes `block` slots, at most
+// DRAPE_BLOCK, and sums the contacts of those before. scratch: a uint per work-item.
+__kernel void reductionWriteFew(__global const Contact* restrict hits, const uint hitCapacity,
+                                __global const uint* restrict slotFirst, const uint slots, const uint block,
+                                const uint parts, __global const uint* restrict kept,
+                                __global const uint* restrict slotKept, __global Contact* restrict contacts,
+                                __global const StepCounters* restrict counters, __local uint* scratch)
+{
+    __local uint shifts[DRAPE_BLOCK];  // from a slot's members to its contacts, modulo 2^32
+    const uint id = get_local_id(0), size = get_local_size(0), count = min(counters->m_listed, hitCapacity);
+    const uint begin = min(slots, (uint)(get_group_id(0) * block)), end = min(slots, begin + block);
+    const uint before = groupSumOf(slotKept, begin, scratch);
+    const uint share = (end - begin + size - 1) / size;
+    const uint first = min(end, begin + id * share), last = min(end, first + share);
+    uint sum = 0, total;
+    for (uint slot = first; slot < last; ++slot) sum += slotKept[slot];
+    uint next = before + groupPrefix(scratch, sum, &total);
+    for (uint slot = first; slot < last; ++slot)
+    {
+        shifts[slot - begin] = next - slotFirst[slot];
+        next += slotKept[slot];
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (get_group_id(0) == get_num_groups(0) - 1 && id == 0)
+    {
+        StepCounters all = *counters;
+        all.m_hits = before + total;
+        *(__global StepCounters*)contacts = all;
+    }
+    if (begin == end) return;
+    const uint from = slotFirst[begin], to = end < slots ? slotFirst[end] : count;
+    for (uint k = from * parts + id; k < to * parts; k += size)
+    {
+        const uint i = k / parts, member = kept[i];
+        if (member == DRAPE_NO_FEATURE) continue;
+        const uint place = shifts[hits[member].m_slot - begin] + i;
+        copyHit(contacts + DRAPE_CONTACT_HEAD + place, hits + member, parts);
+    }
+}

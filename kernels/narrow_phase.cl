@@ -1,106 +1,5 @@
 // Narrow phase over pairs of features. Launches have a fixed width: the list's length is only on the device.
-#include "lib/hit_list.h"
-#include "lib/item_runs.h"
-#include "lib/pair_contact.h"
-#include "shared/patch.h"
-
-// Position and cone of a lane of a vertex or edge block.
-static Vec3 laneVec3(__global const float* restrict blocks, const uint floats, const uint lane, const uint first)
-{
-    __global const float* p =
-        blocks + ((lane / DRAPE_PATCH_WIDTH) * floats + first) * DRAPE_PATCH_WIDTH + lane % DRAPE_PATCH_WIDTH;
-    return vec3(p[0], p[DRAPE_PATCH_WIDTH], p[2 * DRAPE_PATCH_WIDTH]);
-}
-
-static NormalCone laneCone(__global const float* restrict blocks, const uint floats, const uint lane)
-{
-    NormalCone cone;
-    cone.m_axis = laneVec3(blocks, floats, lane, floats - 4);
-    cone.m_cosine = blocks[((lane / DRAPE_PATCH_WIDTH) * floats + floats - 1) * DRAPE_PATCH_WIDTH + lane % DRAPE_PATCH_WIDTH];
-    return cone;
-}
-
-// The packed features of the obstacles (see shared/patch.h); ids: the triangle, vertex or edge of each lane.
-typedef struct PackedFeatures
-{
-    __global const float* m_faces;
-    __global const float* m_vertices;
-    __global const float* m_edges;
-    __global const uint* m_faceIds;
-    __global const uint* m_vertexIds;
-    __global const uint* m_edgeIds;
-} PackedFeatures;
-
-// The motion of a test's obstacle; null where it rests.
-static __global const ObstacleMotion* motionOfTest(__global const ObstacleMotion* motions, const FeatureTest test)
-{
-    return test.m_motion == 0 ? 0 : motions + (test.m_motion - 1);
-}
-
-static int featureContact(const FeatureTest feature, const ClothView* cloth, const ObstacleView* obstacle,
-                          const PackedFeatures* packed, Contact* contact)
-{
-    const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT, lane = feature.m_lane;
-    const uint triangle = feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u);
-    if (test < DRAPE_TEST_FACE)
-    {
-        __global const float* faces = packed->m_faces;
-        return pairNodeFace(test, cloth, triangle, laneVec3(faces, DRAPE_FACE_FLOATS, lane, 0),
-                            laneVec3(faces, DRAPE_FACE_FLOATS, lane, 3), laneVec3(faces, DRAPE_FACE_FLOATS, lane, 6),
-                            obstacle, packed->m_faceIds[lane], feature.m_reach, contact);
-    }
-    if (test == DRAPE_TEST_FACE)
-    {
-        __global const float* vertices = packed->m_vertices;
-        return pairFaceVertex(cloth, triangle, laneVec3(vertices, DRAPE_VERTEX_FLOATS, lane, 0),
-                              laneCone(vertices, DRAPE_VERTEX_FLOATS, lane), packed->m_vertexIds[lane], feature.m_reach,
-                              contact);
-    }
-    __global const float* edges = packed->m_edges;
-    return pairEdgeEdge(test - DRAPE_TEST_EDGE, cloth, triangle, laneVec3(edges, DRAPE_EDGE_FLOATS, lane, 0),
-                        laneVec3(edges, DRAPE_EDGE_FLOATS, lane, 3), laneCone(edges, DRAPE_EDGE_FLOATS, lane),
-                        packed->m_edgeIds[lane], feature.m_reach, contact);
-}
-
-// The step's cloths and obstacles as the kernels below read them, and the hits that they list.
-#define DRAPE_FEATURE_ARGUMENTS                                                                                            \
-    __global const FeatureTest *restrict tests, const uint testCapacity, __global const float *restrict clothStart,        \
-        __global const float *restrict clothEnd, __global const Triangle *restrict clothTriangles,                         \
-        __global const Edge *restrict clothEdges, const uint nodeCount, const uint triangleCount, const uint mode,         \
-        __global const Triangle *restrict obstacleTriangles, __global const NormalCone *restrict vertexCones,              \
-        __global const NormalCone *restrict edgeCones, __global const float *restrict faces,                               \
-        __global const float *restrict vertices, __global const float *restrict edges, __global const uint *restrict faceIds, \
-        __global const uint *restrict vertexIds, __global const uint *restrict edgeIds,                                    \
-        __global const ObstacleMotion *restrict motions, DRAPE_HIT_ARGUMENTS
-#define DRAPE_CLOTH_VIEW(searches) \
-    clothView(clothStart, clothEnd, clothTriangles, clothEdges, nodeCount, triangleCount, mode, searches)
-#define DRAPE_FEATURE_VIEWS                                                                     \
-    const HitList list = DRAPE_HIT_LIST;                                                        \
-    const ObstacleView obstacle = obstacleView(0, obstacleTriangles, vertexCones, edgeCones);   \
-    const PackedFeatures packed = {faces, vertices, edges, faceIds, vertexIds, edgeIds}
-
-#define DRAPE_TEST_KINDS 3
-static uint kindOfTest(const FeatureTest feature)
-{
-    const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT;
-    return test < DRAPE_TEST_FACE ? 0 : test == DRAPE_TEST_FACE ? 1 : 2;
-}
-
-// Tests the item-th feature pair; lists its hit, or in swept that the continuous test must tell.
-static void testFeature(__global const FeatureTest* tests, const uint item, ClothView* cloth,
-                        const ObstacleView* obstacle, const PackedFeatures* packed,
-                        __global const ObstacleMotion* motions, const HitList* list, __global uint* swept,
-                        __global StepCounters* counters)
-{
-    const FeatureTest test = tests[item];
-    cloth->m_motion = motionOfTest(motions, test);
-    Contact contact;
-    const int found = featureContact(test, cloth, obstacle, packed, &contact);
-    if (found == DRAPE_IS_CONTACT)
-        listHit(list, &contact);
-    else if (found == DRAPE_UNDECIDED)
-        swept[atomic_inc(&counters->m_swept)] = item;
-}
+#include "lib/feature_tests.h"
 
 #ifndef DRAPE_CPU
 // Work-items of a group (kFeatureGroupGpu in narrow_phase.cpp).
@@ -127,32 +26,25 @@ static uint testByKind(__global const FeatureTest* tests, const uint first, cons
     barrier(CLK_LOCAL_MEM_FENCE);
     return item < count ? first + order[lane] : count;
 }
-#define DRAPE_FEATURE_KERNEL __kernel __attribute__((reqd_work_group_size(DRAPE_FEATURE_GROUP, 1, 1)))
-#else
-#define DRAPE_FEATURE_KERNEL __kernel
-#endif
 
-// A CPU's work-item goes through its part of the feature tests that patchCull lists, a GPU's group through as many at a
-// time as it has work-items, and lists the hits; the tests that need the continuous test it lists in swept, in no
-// particular order. counters->m_swept must be zero before.
-DRAPE_FEATURE_KERNEL void narrowPhaseFeature(DRAPE_FEATURE_ARGUMENTS, __global uint* restrict swept)
+// A group goes through its part of the feature tests that the cull lists, as many at a time as it has work-items, and lists
+// the hits; the tests that need the continuous test it lists in swept, in no particular order. counters->m_swept must be
+// zero before. A CPU's narrowPhaseFeature is in narrow_phase_lanes.cl.
+__kernel __attribute__((reqd_work_group_size(DRAPE_FEATURE_GROUP, 1, 1))) void narrowPhaseFeature(
+    DRAPE_FEATURE_ARGUMENTS, __global uint* restrict swept)
 {
     DRAPE_FEATURE_VIEWS;
-    ClothView cloth = DRAPE_CLOTH_VIEW(0);
-    const uint count = min(counters->m_candidates, testCapacity);
-#ifdef DRAPE_CPU
-    for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextItem(&runs))
-        testFeature(tests, runs.m_item, &cloth, &obstacle, &packed, motions, &list, swept, counters);
-#else
     __local uint kinds[DRAPE_TEST_KINDS];
     __local ushort order[DRAPE_FEATURE_GROUP];
+    ClothView cloth = DRAPE_CLOTH_VIEW(0);
+    const uint count = min(counters->m_candidates, testCapacity);
     for (uint first = get_group_id(0) * get_local_size(0); first < count; first += get_global_size(0))
     {
         const uint item = testByKind(tests, first, count, kinds, order);
         if (item < count) testFeature(tests, item, &cloth, &obstacle, &packed, motions, &list, swept, counters);
     }
-#endif
 }
+#endif
 
 // Groups take turns at the kinds of tests, and each its tests one by one, its first lane's after every other group's: lanes
 // of one kind wait for those of another, and few tests, which take long, are then not in each other's way. On a CPU, too:

@@ -22,12 +22,6 @@ typedef struct Packet
     uint m_looks;  // bit i: whether looker i and its nodes are ready
 } Packet;
 
-// One number of a packet's lanes.
-static float laneOf(const Lanes* lanes, const uint lane)
-{
-    return ((const float*)lanes)[lane];
-}
-
 static void takeNodes(Packet* packet, const uint triangle)
 {
     const Directions directions = directionLanes();

@@ -3,8 +3,9 @@
 #include "lib/item_runs.h"
 #include "lib/self_contact.h"
 
-// A work-item goes through its part of the tests that selfCull lists and lists the hits; the tests that need the continuous
-// test it lists in swept, in no particular order. rest: x y z per node, m. counters->m_selfSwept must be zero before.
+// A work-item goes through its part of the tests that the cull lists and lists the hits; the tests that need the continuous
+// test it lists in swept, in no particular order. rest: x y z per node, m. counters->m_selfSwept must be zero before. A
+// CPU's selfFeature is in self_contact_lanes.cl.
 __kernel void selfFeature(__global const FeatureTest* restrict tests, const uint testCapacity,
                           __global const float* restrict start, __global const float* restrict end,
                           __global const float* restrict rest, __global const Triangle* restrict triangles,

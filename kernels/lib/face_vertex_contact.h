@@ -47,6 +47,17 @@ DRAPE_FUNCTION int faceVertexPassed(const MovingFace* face, Vec3 vertex, float s
     return mayMeet && after != before && sidesTell ? DRAPE_NO_CONTACT : DRAPE_ASK_THE_END;
 }
 
+// Whether the neighbour over the edge on which the closest point lies (weights with one zero) is nearer to the vertex.
+// beyond, start, end, origin: as for faceVertexContact(). offset: from the vertex to that point; seam: m.
+DRAPE_FUNCTION int neighbourIsNearer(Vec3 weights, const DRAPE_UINT* beyond, const DRAPE_GLOBAL float* start,
+                                     const DRAPE_GLOBAL float* end, Vec3 origin, Vec3 point, Vec3 offset, float seam)
+{
+    const DRAPE_UINT neighbour = weights.z == 0.0f ? beyond[0] : weights.x == 0.0f ? beyond[1] : beyond[2];
+    const Vec3 opposite = vec3Load(end, neighbour);
+    return !leansAway(vec3Scale(offset, -1.0f), vec3Sub(opposite, origin), point, seam) && positionIsValid(opposite) &&
+           positionIsValid(vec3Load(start, neighbour));
+}
+
 // Moving face against a resting vertex with the given normal cone. A vertex nearest to an edge of the face counts here
 // too (weights with one zero); one nearest to a node is the node's contact. beyond: the third vertices of the
 // neighbours over the face's three edges (m_a … m_c), into start and end, positions at the step's start and end; a
@@ -83,16 +94,10 @@ DRAPE_FUNCTION int faceVertexContact(const MovingFace* face, const DRAPE_UINT* b
     {
         normal = vec3Direction(offset, distance);
         if (!coneAdmits(cone, normal)) return 0;
-        const DRAPE_UINT neighbour = weights.z == 0.0f ? beyond[0] : weights.x == 0.0f ? beyond[1] : beyond[2];
-        const Vec3 opposite = vec3Load(end, neighbour);
         // Of a thin face's long edges either may seem the nearer one: distances squared err by 4 u of the square, so
         // that the offset leans by the root of that.
         const float seam = thin ? DRAPE_SEAM * bounds.m_extent + 5e-4f * distance : DRAPE_SEAM * distance;
-        if (zeros == 1 && !leansAway(vec3Scale(offset, -1.0f), vec3Sub(opposite, origin), point, seam) &&
-            positionIsValid(opposite) && positionIsValid(vec3Load(start, neighbour)))
-        {
-            return 0;
-        }
+        if (zeros == 1 && neighbourIsNearer(weights, beyond, start, end, origin, point, offset, seam)) return 0;
     }
     else if (areaLength == 0.0f || (thin && zeros == 0 && !coneAdmits(cone, normal)))
     {

@@ -2,6 +2,8 @@
 #ifndef DRAPE_LIB_GROUP_SCAN_H
 #define DRAPE_LIB_GROUP_SCAN_H
 
+#include "../shared/types.h"
+
 #ifdef __OPENCL_VERSION__
 
 // Sums value over the work-items before this one; total gets the group's sum. scratch holds one uint per work-item.
@@ -25,6 +27,26 @@ static uint groupPrefix(__local uint* scratch, const uint value, uint* total)
     const uint before = scratch[id] - value;
     barrier(CLK_LOCAL_MEM_FENCE);
     return before;
+}
+
+// Loads of a work-item that do not wait for each other.
+#define DRAPE_TOGETHER 8
+
+// The sum of the first `count` numbers, by all of the group's work-items together.
+static uint groupSumOf(__global const uint* restrict numbers, const uint count, __local uint* scratch)
+{
+    uint sum = 0, total;
+    for (uint first = get_local_id(0); first < count; first += DRAPE_TOGETHER * get_local_size(0))
+    {
+        DRAPE_UNROLL
+        for (uint i = 0; i < DRAPE_TOGETHER; ++i)
+        {
+            const uint other = first + i * get_local_size(0);
+            sum += other < count ? numbers[other] : 0;
+        }
+    }
+    groupPrefix(scratch, sum, &total);
+    return total;
 }
 
 #endif

@@ -5,19 +5,22 @@
 #include "../shared/contact.h"
 #include "../shared/mesh.h"
 
-// What a kernel that finds hits writes. slotCount counts those of each slot that are in the list; it and counters->m_listed
-// must be zero before the step's first such kernel. m_listed counts on when the list is full.
-#define DRAPE_HIT_ARGUMENTS \
-    __global Contact *restrict hits, const uint hitCapacity, __global volatile uint *slotCount, __global StepCounters *counters
+// What a kernel that finds hits writes. hitSlots: the slot of each hit, once more; null where compactionFew does not follow.
+// slotCount counts those of each slot that are in the list; it and counters->m_listed must be zero before the step's first
+// such kernel. m_listed counts on when the list is full.
+#define DRAPE_HIT_ARGUMENTS                                                                                           \
+    __global Contact *restrict hits, const uint hitCapacity, __global uint *restrict hitSlots,                        \
+        __global volatile uint *slotCount, __global StepCounters *counters
 #define DRAPE_HIT_LIST                                            \
     {                                                             \
-        hits, hitCapacity, slotCount, &counters->m_listed         \
+        hits, hitCapacity, hitSlots, slotCount, &counters->m_listed \
     }
 
 typedef struct HitList
 {
     __global Contact* m_hits;
     uint m_capacity;
+    __global uint* m_hitSlots;
     __global volatile uint* m_slotCount;
     __global volatile uint* m_count;
 } HitList;
@@ -43,12 +46,24 @@ static void storeHit(__global Contact* to, const Contact* from)
     quarters[3] = as_uint4((float4)(w[0], w[1], w[2], from->m_time));
 }
 
-static void listHit(const HitList* list, const Contact* contact)
+static void putHit(const HitList* list, const uint place, const Contact* contact)
 {
-    const uint place = atomic_inc(list->m_count);
     if (place >= list->m_capacity) return;
     atomic_inc(list->m_slotCount + contact->m_slot);  // before the stores: on a CPU it would wait for them
+    if (list->m_hitSlots) list->m_hitSlots[place] = contact->m_slot;
     storeHit(list->m_hits + place, contact);
+}
+
+static void listHit(const HitList* list, const Contact* contact)
+{
+    putHit(list, atomic_inc(list->m_count), contact);
+}
+
+// Several at once: a CPU's cores take turns at the list's length.
+static void listHits(const HitList* list, const Contact* contacts, const uint count)
+{
+    const uint first = count > 0 ? atomic_add(list->m_count, count) : 0;
+    for (uint i = 0; i < count; ++i) putHit(list, first + i, contacts + i);
 }
 
 #endif

@@ -50,12 +50,20 @@ static ItemRuns itemRuns(const uint count, const uint parts)
     return runs;
 }
 
+#ifdef DRAPE_CPU
+// For what takes a run at a time, from m_item to m_end.
+static void nextRun(ItemRuns* runs)
+{
+    runs->m_run += runs->m_takers;
+    takeRun(runs);
+}
+#endif
+
 static void nextItem(ItemRuns* runs)
 {
 #ifdef DRAPE_CPU
     if (++runs->m_item < runs->m_end) return;
-    runs->m_run += runs->m_takers;
-    takeRun(runs);
+    nextRun(runs);
 #else
     runs->m_item += runs->m_stride;
 #endif

@@ -32,6 +32,12 @@ typedef DRAPE_VECTOR(int, DRAPE_LANES) LaneMask;
 #define lanesNot(mask) (~(mask))
 #define lanesSplat(a) ((Lanes)(a))
 #define lanesMaskSplat(a) ((LaneMask)(-(a)))
+
+// One lane's number.
+static float laneOf(const Lanes* lanes, const uint lane)
+{
+    return ((const float*)lanes)[lane];
+}
 #else
 typedef float Lanes;
 typedef int LaneMask;

@@ -100,6 +100,17 @@ DRAPE_FUNCTION int finishContact(int found, Vec3 origin, Contact* contact)
     return DRAPE_IS_CONTACT;
 }
 
+// The features of a contact of the kind. cloth: node, triangle or edge.
+DRAPE_FUNCTION void nameFeatures(Contact* contact, const ClothView* view, DRAPE_UINT kind, DRAPE_UINT cloth,
+                                 DRAPE_UINT obstacle)
+{
+    contact->m_kind = kind;
+    contact->m_clothFeature = cloth;
+    contact->m_obstacleFeature = obstacle;
+    contact->m_slot = cloth + (kind == DRAPE_NODE_FACE ? 0u : view->m_nodeCount) +
+                      (kind == DRAPE_EDGE_EDGE ? view->m_triangleCount : 0u);
+}
+
 // Node i of the cloth triangle against the obstacle's triangle with corners a, b, c.
 DRAPE_FUNCTION int pairNodeFace(int i, const ClothView* cloth, DRAPE_UINT clothTriangle, Vec3 a, Vec3 b, Vec3 c,
                                 const ObstacleView* obstacle, DRAPE_UINT obstacleTriangle, float reach,
@@ -113,10 +124,7 @@ DRAPE_FUNCTION int pairNodeFace(int i, const ClothView* cloth, DRAPE_UINT clothT
     face.m_corners.m_p[2] = vec3Sub(c, a);
     face.m_area = faceArea(face.m_corners);
     const float extent = drapeMax(stepExtent(cloth, vec3NormMax(x0), vec3NormMax(x1)), triangleExtent(face.m_corners));
-    contact->m_kind = DRAPE_NODE_FACE;
-    contact->m_clothFeature = node;
-    contact->m_obstacleFeature = obstacleTriangle;
-    contact->m_slot = node;
+    nameFeatures(contact, cloth, DRAPE_NODE_FACE, node, obstacleTriangle);
     const int found = nodeFaceContact(x0, x1, &face, obstacle->m_triangles + obstacleTriangle, obstacle->m_vertexCones,
                                       obstacle->m_edgeCones, pairBounds(cloth, extent, reach), contact);
     return finishContact(found, a, contact);
@@ -147,10 +155,7 @@ DRAPE_FUNCTION int pairFaceVertex(const ClothView* cloth, DRAPE_UINT clothTriang
     DRAPE_UINT beyond[3];
     for (int edge = 0; edge < 3; ++edge)
         beyond[edge] = vertexBeyond(cloth, triangle, edge);
-    contact->m_kind = DRAPE_FACE_VERTEX;
-    contact->m_clothFeature = clothTriangle;
-    contact->m_obstacleFeature = obstacleVertex;
-    contact->m_slot = cloth->m_nodeCount + clothTriangle;
+    nameFeatures(contact, cloth, DRAPE_FACE_VERTEX, clothTriangle, obstacleVertex);
     const int found = faceVertexContact(&face, beyond, cloth->m_start, cloth->m_end, vertex, vec3(0.0f, 0.0f, 0.0f),
                                         cone, pairBounds(cloth, extent, reach), contact);
     return finishContact(found, vertex, contact);
@@ -173,10 +178,7 @@ DRAPE_FUNCTION int pairEdgeEdge(int i, const ClothView* cloth, DRAPE_UINT clothT
     const float extent = drapeMax(stepExtent(cloth, drapeMax(vec3NormMax(e0.m_a), vec3NormMax(e0.m_b)),
                                              drapeMax(vec3NormMax(e1.m_a), vec3NormMax(e1.m_b))),
                                   vec3NormMax(o.m_b));
-    contact->m_kind = DRAPE_EDGE_EDGE;
-    contact->m_clothFeature = triangle->m_edges[i];
-    contact->m_obstacleFeature = obstacleEdge;
-    contact->m_slot = cloth->m_nodeCount + cloth->m_triangleCount + contact->m_clothFeature;
+    nameFeatures(contact, cloth, DRAPE_EDGE_EDGE, triangle->m_edges[i], obstacleEdge);
     return finishContact(edgeEdgeContact(e0, e1, o, cone, pairBounds(cloth, extent, reach), contact), a, contact);
 }
 

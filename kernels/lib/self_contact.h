@@ -179,9 +179,6 @@ DRAPE_FUNCTION int selfNodeFace(const SelfView* view, DRAPE_UINT node, DRAPE_UIN
         const Vec3 before = featurePoint(face.m_start, weights), after = featurePoint(face.m_end, weights);
         selfStore(contact, normal, after, weights, vec3Scale(before, -1.0f), vec3Scale(after, -1.0f), contact->m_time);
     }
-    contact->m_kind = DRAPE_SELF_NODE_FACE;
-    contact->m_clothFeature = node;
-    contact->m_obstacleFeature = triangleIndex;
     return finishContact(found, x1, contact);
 }
 
@@ -298,19 +295,25 @@ DRAPE_FUNCTION int selfEdgeEdge(const SelfView* view, DRAPE_UINT first, DRAPE_UI
     pair.m_v1 = edgeEdgeVolume(pair.m_e1, pair.m_o1);
     const float extent = stepExtent(cloth, drapeMax(edgeExtent(pair.m_e0), edgeExtent(pair.m_o0)),
                                     drapeMax(edgeExtent(pair.m_e1), edgeExtent(pair.m_o1)));
-    contact->m_kind = DRAPE_SELF_EDGE_EDGE;
-    contact->m_clothFeature = first;
-    contact->m_obstacleFeature = second;
     return finishContact(edgesPassedOrNear(&pair, pairBounds(cloth, extent, own * view->m_reachScale), contact),
                          origin1, contact);
 }
 
-// Runs a self test. firstSlot: firstSelfSlot(). Returns DRAPE_NO_CONTACT, ….
+// The features of a self test's contact. firstSlot: firstSelfSlot().
+DRAPE_FUNCTION void nameSelfFeatures(Contact* contact, const ClothView* cloth, FeatureTest test, DRAPE_UINT firstSlot)
+{
+    const int edges = test.m_motion == DRAPE_SELF_TEST_EDGE;
+    contact->m_kind = edges ? DRAPE_SELF_EDGE_EDGE : DRAPE_SELF_NODE_FACE;
+    contact->m_clothFeature = test.m_cloth;
+    contact->m_obstacleFeature = test.m_lane;
+    contact->m_slot = firstSlot + test.m_cloth + (edges ? cloth->m_nodeCount + cloth->m_triangleCount : 0u);
+}
+
+// Runs a self test. Returns DRAPE_NO_CONTACT, ….
 DRAPE_FUNCTION int selfContact(const SelfView* view, FeatureTest test, DRAPE_UINT firstSlot, Contact* contact)
 {
     const int edges = test.m_motion == DRAPE_SELF_TEST_EDGE;
-    contact->m_slot =
-        firstSlot + test.m_cloth + (edges ? view->m_cloth.m_nodeCount + view->m_cloth.m_triangleCount : 0u);
+    nameSelfFeatures(contact, &view->m_cloth, test, firstSlot);
     return edges ? selfEdgeEdge(view, test.m_cloth, test.m_lane, test.m_reach, contact)
                  : selfNodeFace(view, test.m_cloth, test.m_lane, test.m_reach, contact);
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <tuple>
 
 #include "bullet_plugin/core/device/program.h"
@@ -15,8 +16,9 @@ namespace drape::test
 namespace
 {
 constexpr std::size_t kGroup = 64;
-constexpr std::size_t kBlock = 1024;  // as in kernels/compaction.cl
-constexpr cl_uint kRankedGpu = 512;   // as in narrow_phase.cpp
+constexpr std::size_t kBlock = 1024;        // as in kernels/compaction.cl
+constexpr cl_uint kRankedGpu = 512;         // as in narrow_phase.cpp
+constexpr std::size_t kFewSlots = 1 << 14;  // likewise
 
 // Hits with distinct features per slot, in random order. crowded: most of them in one slot.
 std::vector<Contact> randomHits(std::size_t count, std::uint32_t slots, bool crowded, Random& random)
@@ -46,10 +48,11 @@ public:
         const cl::Program program = programOf(device, "compaction");
         m_count.create(device, program, "compactionCount");
         m_place.create(device, program, "compactionPlace");
-        m_placeFew.create(device, program, "compactionPlaceFew");
         m_gather.create(device, program, "compactionGather");
         m_order.create(device, program, "compactionOrder");
         m_write.create(device, program, "compactionWrite");
+        m_few.create(device, programOf(device, "compaction_few"), "compactionFew");
+        m_writeKeptFew.create(device, programOf(device, "contact_reduction"), "reductionWriteFew");
     }
 
     std::vector<Contact> run(const std::vector<Contact>& hits, std::uint32_t slots)
@@ -73,11 +76,11 @@ public:
         const cl::LocalSpaceArg scratch = cl::Local(kGroup * sizeof(cl_uint));
         m_count.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_blockCount.handle(), scratch);
         m_place.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_ranked, m_blockCount.handle(),
-                       m_slotFirst.handle(), m_counters.handle(), scratch);
+                       1u, m_slotFirst.handle(), m_counters.handle(), scratch);
         const auto isCrowded = [&](cl_uint count) { return count > m_ranked; };
         EXPECT_EQ(contents(m_device, m_counters, 1)[0].m_crowded,
                   cl_uint(std::count_if(slotCount.begin(), slotCount.end(), isCrowded)));
-        expectPlacesInOneLaunch(slots);
+        expectPlacesWithoutSums(slots);
         m_gather.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotCount.handle(),
                         m_slotFirst.handle(), m_members.handle(), m_keys.handle(), m_counters.handle(),
                         m_next.handle());
@@ -99,6 +102,54 @@ public:
         return found;
     }
 
+    // The same by one launch whose groups take `block` slots.
+    std::vector<Contact> runFew(const std::vector<Contact>& hits, std::uint32_t slots, cl_uint block)
+    {
+        enqueueFew(hits, slots, block, m_parts);
+        const std::vector<cl_uint> left = contents(m_device, m_slotCount, slots);
+        EXPECT_EQ(std::count(left.begin(), left.end(), 0u), std::ptrdiff_t(slots)) << "slots are clean after";
+        EXPECT_TRUE(sameBytes(contents(m_device, m_next, 1), std::vector<StepCounters>(1)))
+            << "counters are clean after";
+        EXPECT_TRUE(intact(m_device, m_contacts) && intact(m_device, m_members) && intact(m_device, m_keys) &&
+                    intact(m_device, m_slotFirst) && intact(m_device, m_slotCount) && intact(m_device, m_next));
+        return written(hits.size());
+    }
+
+    // Drops every third hit of those that the one launch lists without writing, and writes the others.
+    std::vector<Contact> runKept(const std::vector<Contact>& hits, std::uint32_t slots, cl_uint block)
+    {
+        enqueueFew(hits, slots, block, 0);
+        EXPECT_EQ(contents(m_device, m_counters, 1)[0].m_hits, cl_uint(hits.size()));
+        const std::vector<cl_uint> first = contents(m_device, m_slotFirst, slots);
+        std::vector<cl_uint> kept = contents(m_device, m_members, hits.size()), slotKept(slots, 0);
+        std::vector<Contact> expected;
+        for (std::uint32_t slot = 0; slot < slots; ++slot)
+        {
+            const std::size_t end = slot + 1 < slots ? first[slot + 1] : hits.size();
+            const auto from = kept.begin() + first[slot], to = kept.begin() + std::ptrdiff_t(end);
+            EXPECT_TRUE(std::all_of(from, to, [&](cl_uint member) { return hits[member].m_slot == slot; }));
+            const auto byFeature = [&](cl_uint a, cl_uint b) { return inOrder(hits[a], hits[b]); };
+            EXPECT_TRUE(end - first[slot] <= m_ranked || std::is_sorted(from, to, byFeature)) << "slot " << slot;
+            std::sort(from, to, byFeature);
+            const auto stay = std::remove_if(from, to, [](cl_uint member) { return member % 3 == 0; });
+            slotKept[slot] = cl_uint(stay - from);
+            std::fill(stay, to, DRAPE_NO_FEATURE);
+            for (auto member = from; member != stay; ++member)
+                expected.push_back(hits[*member]);
+        }
+        kept.resize(std::max<std::size_t>(1, kept.size()));
+        guardCopy(m_device, m_kept, kept);
+        guardCopy(m_device, m_slotKept, slotKept);
+        m_writeKeptFew.launch(m_device, (slots + block - 1) / block * kGroup, kGroup, m_hits.handle(),
+                              cl_uint(kept.size()), m_slotFirst.handle(), slots, block, m_parts, m_kept.handle(),
+                              m_slotKept.handle(), m_contacts.handle(), m_counters.handle(),
+                              cl::Local(kGroup * sizeof(cl_uint)));
+        EXPECT_TRUE(intact(m_device, m_contacts) && intact(m_device, m_kept) && intact(m_device, m_slotKept));
+        const std::vector<Contact> found = written(expected.size());
+        EXPECT_TRUE(sameBytes(found, expected)) << difference(found, expected);
+        return found;
+    }
+
     // Slots that one group sorts; hits of a slot from which on it does; work-items that copy a hit.
     cl_uint m_sortBlock = kBlock, m_ranked = DRAPE_RANKED, m_parts = 1;
 
@@ -113,6 +164,13 @@ public:
             m_ranked = parts == 1 ? DRAPE_RANKED : kRankedGpu;
             const std::vector<Contact> found = run(hits, slots);
             ASSERT_TRUE(sameBytes(found, ordered)) << parts << " parts: " << difference(found, ordered);
+            for (const cl_uint block : {64u, cl_uint(kBlock)})
+            {
+                if (slots > kFewSlots) continue;
+                const std::vector<Contact> few = runFew(hits, slots, block);
+                ASSERT_TRUE(sameBytes(few, ordered)) << parts << " parts in one launch: " << difference(few, ordered);
+                runKept(hits, slots, block);
+            }
         }
     }
 
@@ -125,23 +183,59 @@ public:
     }
 
 private:
-    // That one launch places the slots as the three did.
-    void expectPlacesInOneLaunch(std::uint32_t slots)
+    void enqueueFew(const std::vector<Contact>& hits, std::uint32_t slots, cl_uint block, cl_uint parts)
+    {
+        std::vector<cl_uint> slotOf;
+        for (const Contact& hit : hits)
+            slotOf.push_back(hit.m_slot);
+        std::vector<StepCounters> start(1);
+        start[0].m_listed = cl_uint(hits.size());
+        const cl_uint capacity = cl_uint(std::max<std::size_t>(1, hits.size()));
+        slotOf.resize(capacity);
+        guardCopy(m_device, m_hits, hits);
+        guardCopy(m_device, m_hitSlots, slotOf);
+        guardCopy(m_device, m_slotCount, std::vector<cl_uint>(slots, 7));
+        guardCopy(m_device, m_counters, start);
+        guardCopy(m_device, m_next, start);
+        guard(m_device, m_slotFirst, slots);
+        guard(m_device, m_members, capacity);
+        guard(m_device, m_keys, capacity);
+        guard(m_device, m_contacts, DRAPE_CONTACT_HEAD + capacity);
+        m_few.launch(m_device, (slots + block - 1) / block * kGroup, kGroup, m_hits.handle(), capacity,
+                     m_hitSlots.handle(), m_slotCount.handle(), m_slotFirst.handle(), slots, block, m_ranked,
+                     m_members.handle(), m_keys.handle(), parts, m_contacts.handle(), m_counters.handle(),
+                     m_next.handle(), cl::Local(kGroup * sizeof(cl_uint)));
+    }
+
+    // The contacts; their head must tell `count`.
+    std::vector<Contact> written(std::size_t count)
+    {
+        std::vector<Contact> found = contents(m_device, m_contacts, DRAPE_CONTACT_HEAD + count);
+        StepCounters head;
+        std::memcpy(&head, found.data(), sizeof(head));
+        EXPECT_EQ(head.m_hits, cl_uint(count));
+        found.erase(found.begin(), found.begin() + DRAPE_CONTACT_HEAD);
+        return found;
+    }
+
+    // That sums over the slots themselves place these as sums of blocks did.
+    void expectPlacesWithoutSums(std::uint32_t slots)
     {
         const cl_uint hits = contents(m_device, m_counters, 1)[0].m_hits;
         guard(m_device, m_places, slots);
         const std::size_t blocks = (slots + kBlock - 1) / kBlock;
-        m_placeFew.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_ranked, m_places.handle(),
-                          m_counters.handle(), cl::Local(kGroup * sizeof(cl_uint)));
+        m_place.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_ranked, m_slotCount.handle(),
+                       cl_uint(kBlock), m_places.handle(), m_counters.handle(), cl::Local(kGroup * sizeof(cl_uint)));
         EXPECT_EQ(contents(m_device, m_places, slots), contents(m_device, m_slotFirst, slots));
         EXPECT_EQ(contents(m_device, m_counters, 1)[0].m_hits, hits);
         EXPECT_TRUE(intact(m_device, m_places) && intact(m_device, m_counters));
     }
 
     Device& m_device;
-    Kernel m_count, m_place, m_placeFew, m_gather, m_order, m_write;
+    Kernel m_count, m_place, m_gather, m_order, m_write, m_few, m_writeKeptFew;
     Buffer<Contact> m_hits, m_contacts;
-    Buffer<cl_uint> m_slotCount, m_slotFirst, m_blockCount, m_members, m_keys, m_places;
+    Buffer<cl_uint> m_slotCount, m_slotFirst, m_blockCount, m_members, m_keys, m_places, m_hitSlots;
+    Buffer<cl_uint> m_kept, m_slotKept;
     Buffer<StepCounters> m_counters, m_next;
 };
 }  // namespace

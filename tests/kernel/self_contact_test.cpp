@@ -73,20 +73,26 @@ public:
         const std::size_t tests = std::min<std::size_t>(m_read.m_selfTests, m_stage.tests().capacity());
         const std::size_t slots = 2 * (pool.vertexCount() + pool.triangles().size() + pool.edges().size());
         Buffer<Contact> hits;
-        Buffer<cl_uint> slotCount;
+        Buffer<cl_uint> hitSlots, slotCount;
         m_read.m_listed = cl_uint(behind);
         guardCopy(m_device, m_counters, std::vector<StepCounters>{m_read});
         guard(m_device, hits, behind + std::min(tests, room));
+        guard(m_device, hitSlots, behind + std::min(tests, room));
         guardCopy(m_device, slotCount, std::vector<cl_uint>(slots, 0));
-        m_stage.enqueueContacts(m_device, buffers(), {hits, slotCount}, m_counters);
+        m_stage.enqueueContacts(m_device, buffers(), {hits, hitSlots, slotCount}, m_counters);
         m_read = readCounters(m_device, m_counters);
-        EXPECT_TRUE(intact(m_device, hits) && intact(m_device, slotCount) && intact(m_device, m_counters));
-        std::vector<Contact> all =
-            contents(m_device, hits, std::min<std::size_t>(m_read.m_listed, behind + std::min(tests, room)));
-        all.erase(all.begin(), all.begin() + std::ptrdiff_t(behind));
+        EXPECT_TRUE(intact(m_device, hits) && intact(m_device, hitSlots) && intact(m_device, slotCount) &&
+                    intact(m_device, m_counters));
+        const std::size_t listed = std::min<std::size_t>(m_read.m_listed, behind + std::min(tests, room));
+        std::vector<Contact> all = contents(m_device, hits, listed);
+        const std::vector<cl_uint> slotOf = contents(m_device, hitSlots, listed);
         std::vector<cl_uint> expected(slots, 0);
-        for (const Contact& hit : all)
-            ++expected[hit.m_slot];
+        for (std::size_t i = behind; i < listed; ++i)
+        {
+            EXPECT_EQ(slotOf[i], all[i].m_slot);
+            ++expected[all[i].m_slot];
+        }
+        all.erase(all.begin(), all.begin() + std::ptrdiff_t(behind));
         EXPECT_EQ(contents(m_device, slotCount, slots), expected);
         return all;
     }

@@ -22,4 +22,13 @@ inline std::size_t listGroup(const Device& device)
 {
     return device.isGpu() ? kListGroupGpu : kListGroupCpu;
 }
+
+// The same where a CPU's work-item does as many items side by side as a vector has lanes: few work-items, each in a
+// group of its own, so that each has many.
+constexpr std::size_t kLaneItemsCpu = 16;
+
+inline std::size_t laneListWidth(const Device& device)
+{
+    return device.isGpu() ? listWidth(device) : device.computeUnits() * kLaneItemsCpu;
+}
 }  // namespace drape

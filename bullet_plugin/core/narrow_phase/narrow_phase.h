@@ -91,13 +91,13 @@ struct SelfWork
 
 // The step's counters, and those of the next step, which compaction leaves zero. m_ordered: slots with too many hits
 // for the last launch are put in order before it; where they are not and there are some, which the counters tell, the
-// step must run again. m_tests: about as many feature tests are expected; speed alone depends on it.
+// step must run again. m_tests, m_hits: about as many feature tests and hits are expected; speed alone depends on them.
 struct StepTally
 {
     Buffer<StepCounters>& m_now;
     Buffer<StepCounters>& m_next;
     bool m_ordered = true;
-    std::size_t m_tests = SIZE_MAX;
+    std::size_t m_tests = SIZE_MAX, m_hits = SIZE_MAX;
 };
 
 class NarrowPhaseStage
@@ -141,12 +141,18 @@ private:
     // Where the hits of each slot begin, from their numbers. ranked: see kernels/compaction.cl.
     void enqueuePlaces(Device& device, Buffer<cl_uint>& slotCount, Buffer<cl_uint>& slotFirst, cl_uint ranked,
                        StepTally tally);
+    void enqueueFewCompaction(Device& device, NarrowPhaseBuffers sides, StepTally tally,
+                              const ReductionBuffers* reduction);
+    void enqueueKeep(Device& device, NarrowPhaseBuffers sides, StepTally tally, const ReductionBuffers& reduction);
+    void reserveHitSlots(Device& device);
+    HitBuffers hits() { return {m_hits, m_hitSlots, m_slotCount}; }
     void enqueueOrder(Device& device, cl_uint ranked, StepTally tally);
     void enqueueSelfHits(Device& device, StepTally tally, const SelfWork& self);
 
-    Kernel m_test, m_feature, m_swept, m_few, m_intersect, m_count, m_place, m_placeFew, m_gather, m_order, m_write;
-    Kernel m_keep, m_writeKept;
+    Kernel m_test, m_feature, m_swept, m_few, m_intersect, m_count, m_place, m_gather, m_order, m_write;
+    Kernel m_compactFew, m_keep, m_writeKept, m_writeKeptFew;
     Buffer<Contact> m_hits{"step hits"}, m_contacts{"step contacts"};
+    Buffer<cl_uint> m_hitSlots{"step hits"};  // on a GPU, where slots are few
     Buffer<Candidate> m_intersections{"step intersections"};
     Buffer<cl_uint> m_slotCount{"cloth slots"}, m_slotFirst{"cloth slots"}, m_blockCount{"cloth slots"};
     Buffer<cl_uint> m_slotKept{"cloth slots"}, m_keptFirst{"cloth slots"};  // only where contacts may be reduced

@@ -519,6 +519,7 @@ void DeviceBackend::readAll(StepResult& result)
 {
     const StepCounters counters = countersRead();
     m_testsBefore = counters.m_candidates;
+    m_hitsBefore = counters.m_listed;
     result.m_candidates = counters.m_candidates;
     result.m_volumeTests = counters.m_visits;
     result.m_sweptTests = counters.m_swept;

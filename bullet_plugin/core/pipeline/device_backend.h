@@ -83,7 +83,7 @@ private:
     bool patches() const { return goesOverPatches(m_settings); }
     SelfWork selfWork(const Scene& scene);
     Buffer<StepCounters>& counters() { return m_counters[m_turn]; }
-    StepTally tally() { return {counters(), m_counters[1 - m_turn], m_stepsToOrder > 0, m_testsBefore}; }
+    StepTally tally() { return {counters(), m_counters[1 - m_turn], m_stepsToOrder > 0, m_testsBefore, m_hitsBefore}; }
     void enqueueBroad(const Scene& scene, const StepPairs& pairs);
     void enqueueNarrow(const Scene& scene, const StepPairs& pairs);
     NarrowPhaseBuffers narrowPhaseBuffers(const StepPairs& pairs);
@@ -129,8 +129,8 @@ private:
     Buffer<StepCounters> m_refitCounters{"step counters"};  // of obstacles, which nobody reads
     std::size_t m_turn = 0;
     int m_stepsToOrder = 1;
-    std::size_t m_testsBefore = SIZE_MAX;  // feature tests of the step before
-    Staging<Contact> m_contactsRead;       // behind a head as on the device
+    std::size_t m_testsBefore = SIZE_MAX, m_hitsBefore = SIZE_MAX;  // feature tests and hits of the step before
+    Staging<Contact> m_contactsRead;                                // behind a head as on the device
     std::size_t m_contactsAsked = 0;
     std::vector<float> m_sentThickness, m_sentTube, m_sentRadius;
     std::uint32_t m_obstacleMotion = 0, m_obstaclePlacing = 0;

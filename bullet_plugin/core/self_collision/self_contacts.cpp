@@ -62,7 +62,7 @@ void SelfContactStage::create(Device& device, const ProgramLoader& load)
     m_cull.create(device, cull, device.isGpu() ? "selfCullPairs" : "selfCull");
     m_pairs.reserve(device, device.isGpu() ? kFirstPairs : 1);
     m_widen.create(device, load("patch_pack"), "patchWiden");
-    m_feature.create(device, contact, "selfFeature");
+    m_feature.create(device, device.isGpu() ? contact : load("self_contact_lanes"), "selfFeature");
     m_sweptKernel.create(device, contact, "selfSwept");
     reserveTests(device, kFirstTests);
     // The others run in the first step; a small tree has no upper levels.
@@ -172,20 +172,22 @@ void SelfContactStage::enqueueCull(Device& device, SelfBuffers step, Buffer<Step
                   cl_uint(step.m_limit), counters.handle());
 }
 
-void SelfContactStage::enqueueContacts(Device& device, SelfBuffers step, SelfHits hits, Buffer<StepCounters>& counters)
+void SelfContactStage::enqueueContacts(Device& device, SelfBuffers step, HitBuffers hits,
+                                       Buffer<StepCounters>& counters)
 {
     const cl_uint nodes = cl_uint(step.m_nodeCount), triangles = cl_uint(step.m_triangleCount);
     const cl_uint firstSlot = firstSelfSlot(nodes, triangles, cl_uint(step.m_edgeCount));
-    m_feature.launch(device, listWidth(device), listGroup(device), m_tests.handle(), cl_uint(m_tests.capacity()),
-                     step.m_start.handle(), step.m_end.handle(), m_rest.handle(), step.m_triangles.handle(),
-                     step.m_edges.handle(), nodes, triangles, firstSlot, cl_uint(step.m_mode), step.m_reachScale,
-                     m_swept.handle(), hits.m_hits.handle(), cl_uint(hits.m_hits.capacity()), hits.m_slotCount.handle(),
+    m_feature.launch(device, laneListWidth(device), device.isGpu() ? listGroup(device) : 1, m_tests.handle(),
+                     cl_uint(m_tests.capacity()), step.m_start.handle(), step.m_end.handle(), m_rest.handle(),
+                     step.m_triangles.handle(), step.m_edges.handle(), nodes, triangles, firstSlot,
+                     cl_uint(step.m_mode), step.m_reachScale, m_swept.handle(), hits.m_hits.handle(),
+                     cl_uint(hits.m_hits.capacity()), hits.m_hitSlots.handle(), hits.m_slotCount.handle(),
                      counters.handle());
     if (step.m_mode == DRAPE_DISCRETE) return;
     m_sweptKernel.launch(device, listWidth(device), listGroup(device), m_tests.handle(), step.m_start.handle(),
                          step.m_end.handle(), m_rest.handle(), step.m_triangles.handle(), step.m_edges.handle(), nodes,
                          triangles, firstSlot, cl_uint(step.m_mode), step.m_reachScale, m_swept.handle(),
-                         hits.m_hits.handle(), cl_uint(hits.m_hits.capacity()), hits.m_slotCount.handle(),
-                         counters.handle());
+                         hits.m_hits.handle(), cl_uint(hits.m_hits.capacity()), hits.m_hitSlots.handle(),
+                         hits.m_slotCount.handle(), counters.handle());
 }
 }  // namespace drape

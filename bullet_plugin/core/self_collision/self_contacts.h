@@ -14,6 +14,7 @@
 #include "bullet_plugin/core/device/buffer.h"
 #include "bullet_plugin/core/device/program.h"
 #include "bullet_plugin/core/mesh/patches.h"
+#include "bullet_plugin/core/narrow_phase/hit_buffers.h"
 #include "kernels/lib/self_contact.h"
 
 namespace drape
@@ -113,13 +114,6 @@ struct SelfBuffers
     std::size_t m_limit;  // tests; the count is exact up to it
 };
 
-// The list that the stage's hits join (kernels/lib/hit_list.h).
-struct SelfHits
-{
-    Buffer<Contact>& m_hits;
-    Buffer<cl_uint>& m_slotCount;
-};
-
 class SelfContactStage
 {
 public:
@@ -133,8 +127,8 @@ public:
 
     // Both return after enqueueing. Lists the tests; counters' numbers of them must be zero before.
     void enqueueCull(Device& device, SelfBuffers step, Buffer<StepCounters>& counters);
-    // Writes their hits.
-    void enqueueContacts(Device& device, SelfBuffers step, SelfHits hits, Buffer<StepCounters>& counters);
+    // Their hits join the list.
+    void enqueueContacts(Device& device, SelfBuffers step, HitBuffers hits, Buffer<StepCounters>& counters);
 
     Buffer<FeatureTest>& tests() { return m_tests; }
     void reserveTests(Device& device, std::size_t count);

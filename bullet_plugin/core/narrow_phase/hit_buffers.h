@@ -1,0 +1,15 @@
+// The list of a step's hits on a device, as the kernels that find them take it (kernels/lib/hit_list.h).
+#pragma once
+
+#include "bullet_plugin/core/device/buffer.h"
+#include "kernels/shared/contact.h"
+
+namespace drape
+{
+struct HitBuffers
+{
+    Buffer<Contact>& m_hits;
+    Buffer<cl_uint>& m_hitSlots;  // has no memory where they are not needed
+    Buffer<cl_uint>& m_slotCount;
+};
+}  // namespace drape

@@ -1,0 +1,107 @@
+// The feature tests that a cull lists: what they read, and how one is done. For OpenCL C only.
+#ifndef DRAPE_LIB_FEATURE_TESTS_H
+#define DRAPE_LIB_FEATURE_TESTS_H
+
+#include "../shared/patch.h"
+#include "hit_list.h"
+#include "pair_contact.h"
+
+// Position and cone of a lane of a vertex or edge block.
+static Vec3 laneVec3(__global const float* restrict blocks, const uint floats, const uint lane, const uint first)
+{
+    __global const float* p =
+        blocks + ((lane / DRAPE_PATCH_WIDTH) * floats + first) * DRAPE_PATCH_WIDTH + lane % DRAPE_PATCH_WIDTH;
+    return vec3(p[0], p[DRAPE_PATCH_WIDTH], p[2 * DRAPE_PATCH_WIDTH]);
+}
+
+static NormalCone laneCone(__global const float* restrict blocks, const uint floats, const uint lane)
+{
+    NormalCone cone;
+    cone.m_axis = laneVec3(blocks, floats, lane, floats - 4);
+    cone.m_cosine = blocks[((lane / DRAPE_PATCH_WIDTH) * floats + floats - 1) * DRAPE_PATCH_WIDTH + lane % DRAPE_PATCH_WIDTH];
+    return cone;
+}
+
+// The packed features of the obstacles (see shared/patch.h); ids: the triangle, vertex or edge of each lane.
+typedef struct PackedFeatures
+{
+    __global const float* m_faces;
+    __global const float* m_vertices;
+    __global const float* m_edges;
+    __global const uint* m_faceIds;
+    __global const uint* m_vertexIds;
+    __global const uint* m_edgeIds;
+} PackedFeatures;
+
+// The motion of a test's obstacle; null where it rests.
+static __global const ObstacleMotion* motionOfTest(__global const ObstacleMotion* motions, const FeatureTest test)
+{
+    return test.m_motion == 0 ? 0 : motions + (test.m_motion - 1);
+}
+
+static int featureContact(const FeatureTest feature, const ClothView* cloth, const ObstacleView* obstacle,
+                          const PackedFeatures* packed, Contact* contact)
+{
+    const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT, lane = feature.m_lane;
+    const uint triangle = feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u);
+    if (test < DRAPE_TEST_FACE)
+    {
+        __global const float* faces = packed->m_faces;
+        return pairNodeFace(test, cloth, triangle, laneVec3(faces, DRAPE_FACE_FLOATS, lane, 0),
+                            laneVec3(faces, DRAPE_FACE_FLOATS, lane, 3), laneVec3(faces, DRAPE_FACE_FLOATS, lane, 6),
+                            obstacle, packed->m_faceIds[lane], feature.m_reach, contact);
+    }
+    if (test == DRAPE_TEST_FACE)
+    {
+        __global const float* vertices = packed->m_vertices;
+        return pairFaceVertex(cloth, triangle, laneVec3(vertices, DRAPE_VERTEX_FLOATS, lane, 0),
+                              laneCone(vertices, DRAPE_VERTEX_FLOATS, lane), packed->m_vertexIds[lane], feature.m_reach,
+                              contact);
+    }
+    __global const float* edges = packed->m_edges;
+    return pairEdgeEdge(test - DRAPE_TEST_EDGE, cloth, triangle, laneVec3(edges, DRAPE_EDGE_FLOATS, lane, 0),
+                        laneVec3(edges, DRAPE_EDGE_FLOATS, lane, 3), laneCone(edges, DRAPE_EDGE_FLOATS, lane),
+                        packed->m_edgeIds[lane], feature.m_reach, contact);
+}
+
+// The step's cloths and obstacles as the kernels below read them, and the hits that they list.
+#define DRAPE_FEATURE_ARGUMENTS                                                                                            \
+    __global const FeatureTest *restrict tests, const uint testCapacity, __global const float *restrict clothStart,        \
+        __global const float *restrict clothEnd, __global const Triangle *restrict clothTriangles,                         \
+        __global const Edge *restrict clothEdges, const uint nodeCount, const uint triangleCount, const uint mode,         \
+        __global const Triangle *restrict obstacleTriangles, __global const NormalCone *restrict vertexCones,              \
+        __global const NormalCone *restrict edgeCones, __global const float *restrict faces,                               \
+        __global const float *restrict vertices, __global const float *restrict edges, __global const uint *restrict faceIds, \
+        __global const uint *restrict vertexIds, __global const uint *restrict edgeIds,                                    \
+        __global const ObstacleMotion *restrict motions, DRAPE_HIT_ARGUMENTS
+#define DRAPE_CLOTH_VIEW(searches) \
+    clothView(clothStart, clothEnd, clothTriangles, clothEdges, nodeCount, triangleCount, mode, searches)
+#define DRAPE_FEATURE_VIEWS                                                                     \
+    const HitList list = DRAPE_HIT_LIST;                                                        \
+    const ObstacleView obstacle = obstacleView(0, obstacleTriangles, vertexCones, edgeCones);   \
+    const PackedFeatures packed = {faces, vertices, edges, faceIds, vertexIds, edgeIds}
+
+#define DRAPE_TEST_KINDS 3
+static uint kindOfTest(const FeatureTest feature)
+{
+    const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT;
+    return test < DRAPE_TEST_FACE ? 0 : test == DRAPE_TEST_FACE ? 1 : 2;
+}
+
+// Tests the item-th feature pair; lists its hit, or in swept that the continuous test must tell.
+static void testFeature(__global const FeatureTest* tests, const uint item, ClothView* cloth,
+                        const ObstacleView* obstacle, const PackedFeatures* packed,
+                        __global const ObstacleMotion* motions, const HitList* list, __global uint* swept,
+                        __global StepCounters* counters)
+{
+    const FeatureTest test = tests[item];
+    cloth->m_motion = motionOfTest(motions, test);
+    Contact contact;
+    const int found = featureContact(test, cloth, obstacle, packed, &contact);
+    if (found == DRAPE_IS_CONTACT)
+        listHit(list, &contact);
+    else if (found == DRAPE_UNDECIDED)
+        swept[atomic_inc(&counters->m_swept)] = item;
+}
+
+#endif
