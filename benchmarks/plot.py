@@ -13,7 +13,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 import study_plots
-from results import STAGES, SWEEPS, fit_exponent, in_order, read_rows, select
+from results import STAGES, SWEEPS, fit_exponent, in_order, read_rows, read_steps, select
 
 # One colour and dash a method, the same in every plot; peers dashed.
 STYLES = {
@@ -122,7 +122,7 @@ def main():
     if len(sys.argv) < 2:
         sys.exit(__doc__)
     for folder in sys.argv[1:]:
-        rows = read_rows(folder, "bench_step")
+        rows = read_steps(folder)
         for sweep in SWEEPS:
             sweep_plot(rows, sweep, folder)
             stages_plot(rows, sweep, folder)

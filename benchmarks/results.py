@@ -14,6 +14,16 @@ def read_rows(folder, name):
         return [number_cells(row) for row in csv.DictReader(file) if row.get("valid") != "no"]
 
 
+def read_steps(folder):
+    """Rows of bench_step, and of what it left to the run that was its --reference (bench_step_reference.csv): scenes'
+    methods without a row of their own."""
+    rows = read_rows(folder, "bench_step")
+    measured = {(row["scene"], row["method"]) for row in rows}
+    scenes = {row["scene"] for row in rows}
+    return rows + [row for row in read_rows(folder, "bench_step_reference")
+                   if row["scene"] in scenes and (row["scene"], row["method"]) not in measured]
+
+
 def count_void(folder, name):
     path = os.path.join(folder, name + ".csv")
     if not os.path.exists(path):

@@ -9,7 +9,7 @@
 #   --truth DIR      folder of published queries with exact answers, see error_vs_time/run.sh and drape_check.sh
 #   --commit TEXT    what is measured (default: git describe)
 #   --reference DIR  OUT_DIR of an earlier run: contacts must have its hashes, and the host and the peers are not
-#                    measured again
+#                    measured again; they are copied, for the tables, as bench_step_reference.csv and .json
 #   --quick          small inputs only
 #
 # Writes bench_step.csv and .json, study.csv and .json (run_study.sh alone does these, also part by part), and, where
@@ -63,6 +63,7 @@ measure() {
 step=()
 if [[ -n $reference ]]; then
   step=(--reference "$reference/bench_step.json" --method drape --method drape_kernels)
+  for kind in csv json; do cp "$reference/bench_step.$kind" "$out/bench_step_reference.$kind" || worst=1; done
 fi
 measure bench_step 0.41 "${step[@]}"
 bash "$here/run_study.sh" --bin "$bin" "${common[@]}" --minutes "$(minutes_of 0.27)" "$out"

@@ -13,7 +13,8 @@ import hashes
 import script_tables
 import study_findings
 import study_tables
-from results import STAGES, SWEEPS, count_void, fit_exponent, in_order, n_log_n_exponent, read_json, read_machine, read_rows, select
+from results import (STAGES, SWEEPS, count_void, fit_exponent, in_order, n_log_n_exponent, read_json, read_machine,
+                     read_rows, read_steps, select)
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 
@@ -157,13 +158,16 @@ def pictures(folder):
 
 
 def machine_text(folder):
-    rows = read_rows(folder, "bench_step")
+    rows = read_steps(folder)
     machine = read_machine(folder, "bench_step" if rows else "study")
     devices = ", ".join(f"{device['device']} (driver {device['driver']})" for device in machine["devices"]) or "none"
     text = f"## {os.path.basename(folder)}\n\n"
     text += f"{machine['processor']}, {machine['cores']:.0f} cores; OpenCL devices: {devices}. "
     if rows:
         text += f"Whole steps: measured {machine['date']} at commit {machine['commit']}. "
+    reference = read_json(folder, "bench_step_reference")
+    if reference:
+        text += f"The host and the peers there, where not measured anew: at commit {reference['machine']['commit']}. "
     text += "The study's tables say their own commits. " if os.path.exists(os.path.join(folder, "study.csv")) else ""
     text += f"Void rows: {count_void(folder, 'bench_step') + count_void(folder, 'study')}.\n\n"
     text += step_table(rows) + stage_table(rows)
