@@ -3,6 +3,7 @@
 #include "lib/item_runs.h"
 #include "lib/self_contact.h"
 
+#ifndef DRAPE_CPU
 // A work-item goes through its part of the tests that the cull lists and lists the hits; the tests that need the continuous
 // test it lists in swept, in no particular order. rest: x y z per node, m. counters->m_selfSwept must be zero before. A
 // CPU's selfFeature is in self_contact_lanes.cl.
@@ -28,6 +29,7 @@ __kernel void selfFeature(__global const FeatureTest* restrict tests, const uint
             swept[atomic_inc(&counters->m_selfSwept)] = i;
     }
 }
+#endif
 
 // A work-item goes through its part of the tests that selfFeature left to the continuous test and lists their hits.
 __kernel void selfSwept(__global const FeatureTest* restrict tests, __global const float* restrict start,

@@ -1,11 +1,12 @@
-// The list of a step's hits, in no particular order: compaction.cl brings them into the canonical one. For OpenCL C only.
+// The list of a step's hits, in no particular order: compaction.cl or compaction_few.cl brings them into the canonical one.
+// For OpenCL C only.
 #ifndef DRAPE_LIB_HIT_LIST_H
 #define DRAPE_LIB_HIT_LIST_H
 
 #include "../shared/contact.h"
 #include "../shared/mesh.h"
 
-// What a kernel that finds hits writes. hitSlots: the slot of each hit, once more; null where compactionFew does not follow.
+// What a kernel that finds hits writes. hitSlots: the slot of each hit, once more, for compactionFew; may be null.
 // slotCount counts those of each slot that are in the list; it and counters->m_listed must be zero before the step's first
 // such kernel. m_listed counts on when the list is full.
 #define DRAPE_HIT_ARGUMENTS                                                                                           \

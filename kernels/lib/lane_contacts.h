@@ -1,7 +1,7 @@
 // Contacts of as many feature tests of one kind as there are lanes, on a CPU: what node_face_contact.h,
 // face_vertex_contact.h and edge_edge_contact.h compute for one pair, rounded alike, so the same bits. Lanes with anything
-// out of the ordinary stay open, for the caller to test one by one: thin faces, features that may meet or that touch,
-// edges that are nearly parallel, positions that are invalid. Not for continuous steps, which search every pair for a
+// out of the ordinary stay open, for the caller to test one by one: thin faces, features that may meet, nodes that passed a
+// face's plane, edges that touch or are nearly parallel, positions that are invalid. Not for continuous steps, which search every pair for a
 // meeting.
 #ifndef DRAPE_LIB_LANE_CONTACTS_H
 #define DRAPE_LIB_LANE_CONTACTS_H
@@ -399,7 +399,7 @@ static LanePlaces lanePlaces(const LaneEdges* edges)
 static LanesVec3 laneOffset(const LaneEdges* edges, const LanePlaces places)
 {
     return lanesSub(exactAddScaled(edges->m_a, lanesSub(edges->m_b, edges->m_a), places.m_s),
-                    exactScale(edges->m_far, places.m_t));
+                    exactAddScaled(lanesZero(), edges->m_far, places.m_t));
 }
 
 // What two edges span at the step's end, where they are closest, and the offset there, with its least product with an
@@ -450,7 +450,7 @@ static void laneEdgesNear(LaneContacts* contacts, const LaneEdges* start, const 
 {
     const LaneBounds* bounds = &crossing->m_bounds;
     const Lanes s = crossing->m_places.m_s, t = crossing->m_places.m_t;
-    contacts->m_point = exactScale(end->m_far, t);
+    contacts->m_point = exactAddScaled(lanesZero(), end->m_far, t);
     contacts->m_offset = crossing->m_offset;
     contacts->m_distance = exactLength(contacts->m_offset);
     const LaneMask apart =

@@ -1,6 +1,7 @@
 // One value per lane: a vector of DRAPE_LANES floats where a work-item computes a whole block by itself (CPUs), a float
-// where each work-item of a group is a lane (GPUs) and in C++, where a block is one lane. For what is compared with a
-// slack only: fma and the built-in functions do not round alike everywhere.
+// where each work-item of a group is a lane (GPUs) and in C++, where a block is one lane. Products (lanesFma(), lanesDot…,
+// lanesCross…) and lanesSqrt() are for what is compared with a slack only: fma and the built-in functions do not round
+// alike everywhere. The others round as they are written: lane_contacts.h relies on it.
 #ifndef DRAPE_LIB_LANES_H
 #define DRAPE_LIB_LANES_H
 

@@ -54,7 +54,7 @@ static void countMembers(__global const Contact* hits, __global uint* members, c
         for (uint j = 0; j < count; ++j) before += keys[j] < key;
         members[before] = own[i];
     }
-    barrier(CLK_LOCAL_MEM_FENCE);
+    barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
 }
 
 // Either, by how many they are.

@@ -129,6 +129,7 @@ void DeviceBackend::warmUp(float selfThickness)
     m_sentTube.clear();
     m_sentRadius.clear();
     m_sentPlaces.clear();
+    m_testsBefore = m_hitsBefore = SIZE_MAX;
 }
 
 void DeviceBackend::prepareSelf()
@@ -424,6 +425,13 @@ StepCounters DeviceBackend::countersRead() const
     return counters;
 }
 
+// What the next launches are chosen by.
+void DeviceBackend::takeCounts(const StepCounters& counters)
+{
+    m_testsBefore = counters.m_candidates;
+    m_hitsBefore = counters.m_listed;
+}
+
 bool DeviceBackend::overLimit(StepResult& result)
 {
     const StepCounters counters = countersRead();
@@ -505,6 +513,7 @@ bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResul
         if (!grow()) break;
         if (m_limitReached) return false;
         ++result.m_retries;
+        takeCounts(countersRead());
         enqueueStep(scene, pairs);
         m_device->wait();
     }
@@ -518,8 +527,7 @@ bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResul
 void DeviceBackend::readAll(StepResult& result)
 {
     const StepCounters counters = countersRead();
-    m_testsBefore = counters.m_candidates;
-    m_hitsBefore = counters.m_listed;
+    takeCounts(counters);
     result.m_candidates = counters.m_candidates;
     result.m_volumeTests = counters.m_visits;
     result.m_sweptTests = counters.m_swept;

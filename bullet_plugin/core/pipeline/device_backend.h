@@ -90,6 +90,7 @@ private:
     // Enqueues the transfer of the step's counters and first contacts.
     void readContacts(std::size_t count);
     StepCounters countersRead() const;
+    void takeCounts(const StepCounters& counters);
     // Whether the last run demanded more than the settings allow; the result says what.
     bool overLimit(StepResult& result);
     // Makes room for what the last run demanded. Returns whether the step must run again.
