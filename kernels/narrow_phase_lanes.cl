@@ -1,9 +1,30 @@
 // Narrow phase over pairs of features on a CPU: a work-item sorts a run of tests by kind, and does as many of one kind side by
 // side as a vector has lanes.
 #include "lib/feature_tests.h"
-#include "lib/item_runs.h"
-#include "lib/lane_contacts.h"
-#include "lib/team.h"
+#include "lib/lane_runs.h"
+
+struct LaneWork
+{
+    __global const FeatureTest* m_tests;
+    ClothView m_cloth;
+    ObstacleView m_obstacle;
+    PackedFeatures m_packed;
+    __global const ObstacleMotion* m_motions;
+    HitList m_list;
+    __global uint* m_swept;
+    __global StepCounters* m_counters;
+};
+
+static uint kindOf(const LaneWork* work, const uint item)
+{
+    return kindOfTest(work->m_tests[item]);
+}
+
+static void testOne(LaneWork* work, const uint item)
+{
+    testFeature(work->m_tests, item, &work->m_cloth, &work->m_obstacle, &work->m_packed, work->m_motions, &work->m_list,
+                work->m_swept, work->m_counters);
+}
 
 // From `row` on.
 static void putCone(float* rows, const uint row, const uint lane, const NormalCone cone)
@@ -12,10 +33,13 @@ static void putCone(float* rows, const uint row, const uint lane, const NormalCo
     putNumber(rows, row + 3, lane, cone.m_cosine);
 }
 
-// Puts the numbers of a test into its lane, see lane_contacts.h.
-static void putTest(float* rows, const uint lane, const FeatureTest feature, const ClothView* cloth,
-                    const PackedFeatures* packed)
+// See lane_contacts.h for the rows.
+static void putTest(float* rows, const uint lane, LaneWork* work, const uint item)
 {
+    const FeatureTest feature = work->m_tests[item];
+    ClothView* cloth = &work->m_cloth;
+    const PackedFeatures* packed = &work->m_packed;
+    cloth->m_motion = motionOfTest(work->m_motions, feature);
     const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT, packedLane = feature.m_lane;
     __global const Triangle* triangle = cloth->m_triangles + (feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u));
     if (test < DRAPE_TEST_FACE)
@@ -52,11 +76,20 @@ static void putTest(float* rows, const uint lane, const FeatureTest feature, con
     putNumber(rows, DRAPE_EDGE_EDGE_ROWS - 1, lane, feature.m_reach);
 }
 
-// Asks what a contact of a lane depends on besides, and stores it. rows: where its test was put.
-static int takeContact(const LaneContacts* contacts, const float* rows, const uint lane, const FeatureTest feature,
-                       const ClothView* cloth, const ObstacleView* obstacle, const PackedFeatures* packed,
-                       const int asks, Contact* contact)
+static void askLanes(LaneContacts* contacts, const float* rows, const LaneWork* work, const uint kind)
 {
+    if (kind == 0) laneNodeFace(contacts, rows, work->m_cloth.m_mode);
+    if (kind == 1) laneFaceVertex(contacts, rows, work->m_cloth.m_mode);
+    if (kind == 2) laneEdgeEdge(contacts, rows, work->m_cloth.m_mode);
+}
+
+static int takeContact(const LaneContacts* contacts, const float* rows, const uint lane, const LaneWork* work,
+                       const uint item, const int asks, Contact* contact)
+{
+    const FeatureTest feature = work->m_tests[item];
+    const ClothView* cloth = &work->m_cloth;
+    const ObstacleView* obstacle = &work->m_obstacle;
+    const PackedFeatures* packed = &work->m_packed;
     const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT, index = feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u);
     __global const Triangle* triangle = cloth->m_triangles + index;
     const Vec3 normal = vec3Of(&contacts->m_normal, lane), weights = vec3Of(&contacts->m_weights, lane);
@@ -96,82 +129,13 @@ static int takeContact(const LaneContacts* contacts, const float* rows, const ui
     return finishContact(DRAPE_IS_CONTACT, origin, contact);
 }
 
-// What a work-item's tests need.
-typedef struct FeatureWork
-{
-    __global const FeatureTest* m_tests;
-    ClothView m_cloth;
-    ObstacleView m_obstacle;
-    PackedFeatures m_packed;
-    __global const ObstacleMotion* m_motions;
-    HitList m_list;
-    __global uint* m_swept;
-    __global StepCounters* m_counters;
-} FeatureWork;
-
-static void testOne(FeatureWork* work, const uint item)
-{
-    testFeature(work->m_tests, item, &work->m_cloth, &work->m_obstacle, &work->m_packed, work->m_motions, &work->m_list,
-                work->m_swept, work->m_counters);
-}
-
-// Tests items[0] … items[count - 1], all of one kind, at most one a lane.
-static void testLanes(FeatureWork* work, const uint kind, const uint* items, const uint count)
-{
-    float rows[DRAPE_MOST_ROWS * DRAPE_LANES];
-    LaneContacts contacts;
-    for (uint lane = 0; lane < DRAPE_LANES; ++lane)
-    {
-        const FeatureTest test = work->m_tests[items[min(lane, count - 1)]];
-        work->m_cloth.m_motion = motionOfTest(work->m_motions, test);
-        putTest(rows, lane, test, &work->m_cloth, &work->m_packed);
-    }
-    if (kind == 0) laneNodeFace(&contacts, rows, work->m_cloth.m_mode);
-    if (kind == 1) laneFaceVertex(&contacts, rows, work->m_cloth.m_mode);
-    if (kind == 2) laneEdgeEdge(&contacts, rows, work->m_cloth.m_mode);
-    const uint used = (1u << count) - 1u, asking = laneBits(contacts.m_asks), found = laneBits(contacts.m_found) & used;
-    Contact hits[DRAPE_LANES];
-    uint hitCount = 0;
-    for (uint left = found; left; left &= left - 1)
-    {
-        const uint lane = 31 - clz(left & -left);
-        hitCount += takeContact(&contacts, rows, lane, work->m_tests[items[lane]], &work->m_cloth, &work->m_obstacle,
-                                &work->m_packed, asking >> lane & 1u, hits + hitCount) == DRAPE_IS_CONTACT;
-    }
-    listHits(&work->m_list, hits, hitCount);
-    for (uint left = laneBits(contacts.m_open) & used; left; left &= left - 1) testOne(work, items[31 - clz(left & -left)]);
-}
-
-// Tests a run of items, at most DRAPE_MOST_RUN.
-static void testRun(FeatureWork* work, const uint first, const uint end)
-{
-    uint items[DRAPE_TEST_KINDS][DRAPE_MOST_RUN], counts[DRAPE_TEST_KINDS] = {0, 0, 0};
-    for (uint item = first; item < end; ++item)
-    {
-        const uint kind = kindOfTest(work->m_tests[item]);
-        items[kind][counts[kind]++] = item;
-    }
-    const int bySearch = work->m_cloth.m_mode == DRAPE_CONTINUOUS;
-    for (uint kind = 0; kind < DRAPE_TEST_KINDS; ++kind)
-    {
-        for (uint i = 0; i < counts[kind]; i += DRAPE_LANES)
-        {
-            const uint count = min(counts[kind] - i, (uint)DRAPE_LANES);
-            if (count >= DRAPE_FEWEST_LANES && !bySearch)
-                testLanes(work, kind, items[kind] + i, count);
-            else
-                for (uint k = 0; k < count; ++k) testOne(work, items[kind][i + k]);
-        }
-    }
-}
-
 // A work-item goes through its part of the feature tests that patchCull lists and lists the hits; the tests that need the
 // continuous test it lists in swept, in no particular order. counters->m_swept must be zero before.
 __kernel void narrowPhaseFeature(DRAPE_FEATURE_ARGUMENTS, __global uint* restrict swept)
 {
     DRAPE_FEATURE_VIEWS;
-    FeatureWork work = {tests, DRAPE_CLOTH_VIEW(0), obstacle, packed, motions, list, swept, counters};
+    LaneWork work = {tests, DRAPE_CLOTH_VIEW(0), obstacle, packed, motions, list, swept, counters};
     const uint count = min(counters->m_candidates, testCapacity);
     for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextRun(&runs))
-        testRun(&work, runs.m_item, runs.m_end);
+        testRun(&work, runs.m_item, runs.m_end, mode, &list);
 }

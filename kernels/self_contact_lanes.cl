@@ -1,13 +1,11 @@
 // Narrow phase of cloths with themselves on a CPU: as narrow_phase_lanes.cl does the contacts with obstacles.
-#include "lib/hit_list.h"
-#include "lib/item_runs.h"
+#include "lib/lane_runs.h"
 #include "lib/lane_self_contacts.h"
-#include "lib/team.h"
+#include "lib/self_tests.h"
 
-#define DRAPE_SELF_KINDS 2
+typedef char SelfRowsFit[DRAPE_SELF_ROWS <= DRAPE_LANE_ROWS ? 1 : -1];
 
-// What a work-item's tests need.
-typedef struct SelfTests
+struct LaneWork
 {
     __global const FeatureTest* m_tests;
     SelfView m_view;
@@ -15,16 +13,16 @@ typedef struct SelfTests
     HitList m_list;
     __global uint* m_swept;
     __global StepCounters* m_counters;
-} SelfTests;
+};
 
-static void testOne(const SelfTests* work, const uint item)
+static uint kindOf(const LaneWork* work, const uint item)
 {
-    Contact contact;
-    const int found = selfContact(&work->m_view, work->m_tests[item], work->m_firstSlot, &contact);
-    if (found == DRAPE_IS_CONTACT)
-        listHit(&work->m_list, &contact);
-    else if (found == DRAPE_UNDECIDED)
-        work->m_swept[atomic_inc(&work->m_counters->m_selfSwept)] = item;
+    return work->m_tests[item].m_motion;
+}
+
+static void testOne(LaneWork* work, const uint item)
+{
+    testSelf(work->m_tests, item, &work->m_view, work->m_firstSlot, &work->m_list, work->m_swept, work->m_counters);
 }
 
 // The positions of a test: the node and the face's corners, or the ends of both edges.
@@ -43,8 +41,11 @@ static void nodesOf(uint* nodes, const SelfView* view, const FeatureTest test)
     }
 }
 
-static void putTest(float* rows, const uint lane, const SelfView* view, const FeatureTest test)
+// See lane_self_contacts.h for the rows.
+static void putTest(float* rows, const uint lane, LaneWork* work, const uint item)
 {
+    const FeatureTest test = work->m_tests[item];
+    const SelfView* view = &work->m_view;
     uint nodes[DRAPE_SELF_POSITIONS];
     nodesOf(nodes, view, test);
     for (uint k = 0; k < DRAPE_SELF_POSITIONS; ++k)
@@ -56,10 +57,19 @@ static void putTest(float* rows, const uint lane, const SelfView* view, const Fe
     putNumber(rows, DRAPE_SELF_ROWS - 1, lane, test.m_reach);
 }
 
-// Asks what a contact of a lane depends on besides, and stores it. rows: where its test was put.
-static int takeContact(const SelfTests* work, const LaneContacts* contacts, const float* rows, const uint lane,
-                       const FeatureTest test, const int asks, Contact* contact)
+static void askLanes(LaneContacts* contacts, const float* rows, const LaneWork* work, const uint kind)
 {
+    const uint mode = work->m_view.m_cloth.m_mode;
+    if (kind == DRAPE_SELF_TEST_NODE)
+        laneSelfNodeFace(contacts, rows, mode, work->m_view.m_reachScale);
+    else
+        laneSelfEdgeEdge(contacts, rows, mode, work->m_view.m_reachScale);
+}
+
+static int takeContact(const LaneContacts* contacts, const float* rows, const uint lane, const LaneWork* work,
+                       const uint item, const int asks, Contact* contact)
+{
+    const FeatureTest test = work->m_tests[item];
     const ClothView* cloth = &work->m_view.m_cloth;
     const int edges = test.m_motion == DRAPE_SELF_TEST_EDGE;
     const Vec3 point = vec3Of(&contacts->m_point, lane), weights = vec3Of(&contacts->m_weights, lane);
@@ -73,66 +83,12 @@ static int takeContact(const SelfTests* work, const LaneContacts* contacts, cons
     return finishContact(DRAPE_IS_CONTACT, origin, contact);
 }
 
-// Tests items[0] … items[count - 1], all of one kind, at most one a lane.
-static void testLanes(const SelfTests* work, const uint kind, const uint* items, const uint count)
-{
-    float rows[DRAPE_SELF_ROWS * DRAPE_LANES];
-    LaneContacts contacts;
-    Contact hits[DRAPE_LANES];
-    uint hitCount = 0;
-    for (uint lane = 0; lane < DRAPE_LANES; ++lane)
-        putTest(rows, lane, &work->m_view, work->m_tests[items[min(lane, count - 1)]]);
-    if (kind == DRAPE_SELF_TEST_NODE)
-        laneSelfNodeFace(&contacts, rows, work->m_view.m_cloth.m_mode, work->m_view.m_reachScale);
-    else
-        laneSelfEdgeEdge(&contacts, rows, work->m_view.m_cloth.m_mode, work->m_view.m_reachScale);
-    const uint used = (1u << count) - 1u, asking = laneBits(contacts.m_asks);
-    for (uint left = laneBits(contacts.m_found) & used; left; left &= left - 1)
-    {
-        const uint lane = 31 - clz(left & -left);
-        hitCount += takeContact(work, &contacts, rows, lane, work->m_tests[items[lane]], asking >> lane & 1u,
-                                hits + hitCount) == DRAPE_IS_CONTACT;
-    }
-    listHits(&work->m_list, hits, hitCount);
-    for (uint left = laneBits(contacts.m_open) & used; left; left &= left - 1) testOne(work, items[31 - clz(left & -left)]);
-}
-
-// Tests a run of items, at most DRAPE_MOST_RUN.
-static void testRun(const SelfTests* work, const uint first, const uint end)
-{
-    uint items[DRAPE_SELF_KINDS][DRAPE_MOST_RUN], counts[DRAPE_SELF_KINDS] = {0, 0};
-    for (uint item = first; item < end; ++item)
-    {
-        const uint kind = work->m_tests[item].m_motion;
-        items[kind][counts[kind]++] = item;
-    }
-    const int bySearch = work->m_view.m_cloth.m_mode == DRAPE_CONTINUOUS;
-    for (uint kind = 0; kind < DRAPE_SELF_KINDS; ++kind)
-    {
-        for (uint i = 0; i < counts[kind]; i += DRAPE_LANES)
-        {
-            const uint count = min(counts[kind] - i, (uint)DRAPE_LANES);
-            if (count >= DRAPE_FEWEST_LANES && !bySearch)
-                testLanes(work, kind, items[kind] + i, count);
-            else
-                for (uint k = 0; k < count; ++k) testOne(work, items[kind][i + k]);
-        }
-    }
-}
-
 // As selfFeature of self_contact.cl.
-__kernel void selfFeature(__global const FeatureTest* restrict tests, const uint testCapacity,
-                          __global const float* restrict start, __global const float* restrict end,
-                          __global const float* restrict rest, __global const Triangle* restrict triangles,
-                          __global const Edge* restrict edges, const uint nodeCount, const uint triangleCount,
-                          const uint firstSlot, const uint mode, const float reachScale, __global uint* restrict swept,
-                          DRAPE_HIT_ARGUMENTS)
+__kernel void selfFeature(DRAPE_SELF_ARGUMENTS, __global uint* restrict swept)
 {
     const HitList list = DRAPE_HIT_LIST;
-    const SelfTests work = {
-        tests, selfView(clothView(start, end, triangles, edges, nodeCount, triangleCount, mode, 0), rest, reachScale),
-        firstSlot, list, swept, counters};
+    LaneWork work = {tests, DRAPE_SELF_VIEW(0), firstSlot, list, swept, counters};
     const uint count = min(counters->m_selfTests, testCapacity);
     for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextRun(&runs))
-        testRun(&work, runs.m_item, runs.m_end);
+        testRun(&work, runs.m_item, runs.m_end, mode, &list);
 }

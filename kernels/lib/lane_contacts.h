@@ -15,10 +15,6 @@
 #define DRAPE_NODE_FACE_ROWS 16
 #define DRAPE_FACE_VERTEX_ROWS 26
 #define DRAPE_EDGE_EDGE_ROWS 23
-#define DRAPE_MOST_ROWS DRAPE_FACE_VERTEX_ROWS
-
-// Fewer tests of a kind than this are done one by one.
-#define DRAPE_FEWEST_LANES 3u
 
 // m_found: contacts, of which the caller has to ask those in m_asks for what depends on neighbours: a node nearest to an
 // edge or corner for that one's cone, a vertex nearest to an edge for the face beyond. m_point: on the feature of two or

@@ -60,19 +60,9 @@ public:
         std::vector<cl_uint> slotCount(slots, 0);
         for (const Contact& hit : hits)
             ++slotCount[hit.m_slot];
-        std::vector<StepCounters> start(1);
-        start[0].m_listed = cl_uint(hits.size());
         const std::size_t blocks = (slots + kBlock - 1) / kBlock;
-        const cl_uint capacity = cl_uint(std::max<std::size_t>(1, hits.size()));
-        guardCopy(m_device, m_hits, hits);
-        guardCopy(m_device, m_slotCount, slotCount);
-        guardCopy(m_device, m_counters, start);
-        guardCopy(m_device, m_next, start);
-        guard(m_device, m_slotFirst, slots);
+        const cl_uint capacity = prepare(hits, slotCount, 0);
         guard(m_device, m_blockCount, blocks);
-        guard(m_device, m_members, capacity);
-        guard(m_device, m_keys, capacity);
-        guard(m_device, m_contacts, DRAPE_CONTACT_HEAD + capacity);
         const cl::LocalSpaceArg scratch = cl::Local(kGroup * sizeof(cl_uint));
         m_count.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_blockCount.handle(), scratch);
         m_place.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_ranked, m_blockCount.handle(),
@@ -152,6 +142,8 @@ public:
 
     // Slots that one group sorts; hits of a slot from which on it does; work-items that copy a hit.
     cl_uint m_sortBlock = kBlock, m_ranked = DRAPE_RANKED, m_parts = 1;
+    // Hits that the list of the one launch had no room for.
+    cl_uint m_unlisted = 0;
 
     // That run() orders them, as a CPU takes them and as a GPU does, and by work-items in pairs.
     void expectOrdered(const std::vector<Contact>& hits, std::uint32_t slots)
@@ -183,24 +175,32 @@ public:
     }
 
 private:
+    // The buffers of a step whose list has these hits and had no room for `unlisted` others. Returns the list's room.
+    cl_uint prepare(const std::vector<Contact>& hits, const std::vector<cl_uint>& slotCount, cl_uint unlisted)
+    {
+        const cl_uint capacity = cl_uint(std::max<std::size_t>(1, hits.size()));
+        std::vector<StepCounters> start(1);
+        start[0].m_listed = cl_uint(hits.size()) + unlisted;
+        guardCopy(m_device, m_hits, hits);
+        guardCopy(m_device, m_slotCount, slotCount);
+        guardCopy(m_device, m_counters, start);
+        guardCopy(m_device, m_next, start);
+        guard(m_device, m_slotFirst, slotCount.size());
+        guard(m_device, m_members, capacity);
+        guard(m_device, m_keys, capacity);
+        guard(m_device, m_contacts, DRAPE_CONTACT_HEAD + capacity);
+        return capacity;
+    }
+
     void enqueueFew(const std::vector<Contact>& hits, std::uint32_t slots, cl_uint block, cl_uint parts)
     {
         std::vector<cl_uint> slotOf;
         for (const Contact& hit : hits)
             slotOf.push_back(hit.m_slot);
-        std::vector<StepCounters> start(1);
-        start[0].m_listed = cl_uint(hits.size());
-        const cl_uint capacity = cl_uint(std::max<std::size_t>(1, hits.size()));
+        // What slotCount holds is of no account: it is cleared for the next step.
+        const cl_uint capacity = prepare(hits, std::vector<cl_uint>(slots, 7), m_unlisted);
         slotOf.resize(capacity);
-        guardCopy(m_device, m_hits, hits);
         guardCopy(m_device, m_hitSlots, slotOf);
-        guardCopy(m_device, m_slotCount, std::vector<cl_uint>(slots, 7));
-        guardCopy(m_device, m_counters, start);
-        guardCopy(m_device, m_next, start);
-        guard(m_device, m_slotFirst, slots);
-        guard(m_device, m_members, capacity);
-        guard(m_device, m_keys, capacity);
-        guard(m_device, m_contacts, DRAPE_CONTACT_HEAD + capacity);
         m_few.launch(m_device, (slots + block - 1) / block * kGroup, kGroup, m_hits.handle(), capacity,
                      m_hitSlots.handle(), m_slotCount.handle(), m_slotFirst.handle(), slots, block, m_ranked,
                      m_members.handle(), m_keys.handle(), parts, m_contacts.handle(), m_counters.handle(),
@@ -292,6 +292,20 @@ TEST_P(CompactionTest, OrdersCrowdedSlots)
         compaction.m_sortBlock = each % 2 == 0 ? 32 : kBlock;
         ASSERT_NO_FATAL_FAILURE(compaction.expectOrdered(hits, kSlots));
     }
+    EXPECT_FALSE(device->failed()) << device->error().text();
+}
+
+// As of a step that must run again with more room: what is in the list comes out in order.
+TEST_P(CompactionTest, TakesWhatAFullListHas)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    Compaction compaction(*device);
+    Random random(94);
+    SCOPED_TRACE("seed 94");
+    const std::vector<Contact> hits = randomHits(500, 300, false, random);
+    compaction.m_unlisted = 77;
+    ASSERT_NO_FATAL_FAILURE(compaction.expectOrdered(hits, 300));
     EXPECT_FALSE(device->failed()) << device->error().text();
 }
 

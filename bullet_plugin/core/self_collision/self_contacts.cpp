@@ -177,17 +177,15 @@ void SelfContactStage::enqueueContacts(Device& device, SelfBuffers step, HitBuff
 {
     const cl_uint nodes = cl_uint(step.m_nodeCount), triangles = cl_uint(step.m_triangleCount);
     const cl_uint firstSlot = firstSelfSlot(nodes, triangles, cl_uint(step.m_edgeCount));
-    m_feature.launch(device, laneListWidth(device), device.isGpu() ? listGroup(device) : 1, m_tests.handle(),
-                     cl_uint(m_tests.capacity()), step.m_start.handle(), step.m_end.handle(), m_rest.handle(),
-                     step.m_triangles.handle(), step.m_edges.handle(), nodes, triangles, firstSlot,
-                     cl_uint(step.m_mode), step.m_reachScale, m_swept.handle(), hits.m_hits.handle(),
-                     cl_uint(hits.m_hits.capacity()), hits.m_hitSlots.handle(), hits.m_slotCount.handle(),
-                     counters.handle());
-    if (step.m_mode == DRAPE_DISCRETE) return;
-    m_sweptKernel.launch(device, listWidth(device), listGroup(device), m_tests.handle(), step.m_start.handle(),
-                         step.m_end.handle(), m_rest.handle(), step.m_triangles.handle(), step.m_edges.handle(), nodes,
-                         triangles, firstSlot, cl_uint(step.m_mode), step.m_reachScale, m_swept.handle(),
-                         hits.m_hits.handle(), cl_uint(hits.m_hits.capacity()), hits.m_hitSlots.handle(),
-                         hits.m_slotCount.handle(), counters.handle());
+    const auto launch = [&](Kernel& kernel, std::size_t width, std::size_t group)
+    {
+        kernel.launch(device, width, group, m_tests.handle(), cl_uint(m_tests.capacity()), step.m_start.handle(),
+                      step.m_end.handle(), m_rest.handle(), step.m_triangles.handle(), step.m_edges.handle(), nodes,
+                      triangles, firstSlot, cl_uint(step.m_mode), step.m_reachScale, hits.m_hits.handle(),
+                      cl_uint(hits.m_hits.capacity()), hits.m_hitSlots.handle(), hits.m_slotCount.handle(),
+                      counters.handle(), m_swept.handle());
+    };
+    launch(m_feature, laneListWidth(device), device.isGpu() ? listGroup(device) : 1);
+    if (step.m_mode != DRAPE_DISCRETE) launch(m_sweptKernel, listWidth(device), listGroup(device));
 }
 }  // namespace drape

@@ -1,0 +1,74 @@
+// Runs of feature tests on a CPU, as many of one kind side by side as there are lanes. Who includes this defines the
+// functions that are only declared here, for tests of its own. For OpenCL C only.
+#ifndef DRAPE_LIB_LANE_RUNS_H
+#define DRAPE_LIB_LANE_RUNS_H
+
+#include "hit_list.h"
+#include "item_runs.h"
+#include "lane_contacts.h"
+#include "team.h"
+
+// Most kinds of tests, and most rows of numbers of one.
+#define DRAPE_LANE_KINDS 3
+#define DRAPE_LANE_ROWS 37
+// Fewer tests of a kind than this are done one by one.
+#define DRAPE_FEWEST_LANES 3u
+
+// What a work-item's tests need.
+typedef struct LaneWork LaneWork;
+
+// Of a test, below DRAPE_LANE_KINDS.
+static uint kindOf(const LaneWork* work, const uint item);
+// Puts the numbers of a test into its lane.
+static void putTest(float* rows, const uint lane, LaneWork* work, const uint item);
+// What the lanes say of tests of a kind.
+static void askLanes(LaneContacts* contacts, const float* rows, const LaneWork* work, const uint kind);
+// Stores the contact of a lane, asking what it depends on besides if it `asks`. Returns DRAPE_NO_CONTACT, ….
+static int takeContact(const LaneContacts* contacts, const float* rows, const uint lane, const LaneWork* work,
+                       const uint item, const int asks, Contact* contact);
+// Does a test by itself.
+static void testOne(LaneWork* work, const uint item);
+
+// Tests items[0] … items[count - 1], all of one kind, at most one a lane.
+static void testLanes(LaneWork* work, const uint kind, const uint* items, const uint count, const HitList* list)
+{
+    float rows[DRAPE_LANE_ROWS * DRAPE_LANES];
+    LaneContacts contacts;
+    Contact hits[DRAPE_LANES];
+    uint hitCount = 0;
+    for (uint lane = 0; lane < DRAPE_LANES; ++lane) putTest(rows, lane, work, items[min(lane, count - 1)]);
+    askLanes(&contacts, rows, work, kind);
+    const uint used = (1u << count) - 1u, asking = laneBits(contacts.m_asks);
+    for (uint left = laneBits(contacts.m_found) & used; left; left &= left - 1)
+    {
+        const uint lane = 31 - clz(left & -left);
+        hitCount += takeContact(&contacts, rows, lane, work, items[lane], asking >> lane & 1u, hits + hitCount) ==
+                    DRAPE_IS_CONTACT;
+    }
+    listHits(list, hits, hitCount);
+    for (uint left = laneBits(contacts.m_open) & used; left; left &= left - 1) testOne(work, items[31 - clz(left & -left)]);
+}
+
+// Tests a run of items, at most DRAPE_MOST_RUN. A continuous step searches every pair for a meeting: one by one.
+static void testRun(LaneWork* work, const uint first, const uint end, const uint mode, const HitList* list)
+{
+    uint items[DRAPE_LANE_KINDS][DRAPE_MOST_RUN], counts[DRAPE_LANE_KINDS] = {0, 0, 0};
+    for (uint item = first; item < end; ++item)
+    {
+        const uint kind = kindOf(work, item);
+        items[kind][counts[kind]++] = item;
+    }
+    for (uint kind = 0; kind < DRAPE_LANE_KINDS; ++kind)
+    {
+        for (uint i = 0; i < counts[kind]; i += DRAPE_LANES)
+        {
+            const uint count = min(counts[kind] - i, (uint)DRAPE_LANES);
+            if (count >= DRAPE_FEWEST_LANES && mode != DRAPE_CONTINUOUS)
+                testLanes(work, kind, items[kind] + i, count, list);
+            else
+                for (uint k = 0; k < count; ++k) testOne(work, items[kind][i + k]);
+        }
+    }
+}
+
+#endif
