@@ -79,12 +79,12 @@ __kernel void compactionGather(__global const Contact* restrict hits, const uint
 }
 
 // A work-group sorts the members of those slots of its block (of at most DRAPE_BLOCK slots) that have more than `ranked`.
-// Their keys stay as they were, and are not read any more.
-__kernel void compactionOrder(__global const Contact* restrict hits, const uint hitCapacity,
-                              __global const uint* restrict slotFirst, const uint slots, const uint ranked,
-                              const uint block, __global uint* members, __global const StepCounters* restrict counters)
+// Their keys (see compactionGather) are of no use afterwards.
+__kernel void compactionOrder(const uint hitCapacity, __global const uint* restrict slotFirst, const uint slots,
+                              const uint ranked, const uint block, __global uint* members, __global uint* keys,
+                              __global const StepCounters* restrict counters)
 {
-    __local uint crowded[DRAPE_BLOCK], keys[DRAPE_COUNTED], own[DRAPE_COUNTED];
+    __local uint crowded[DRAPE_BLOCK], own[DRAPE_COUNTED], ownKeys[DRAPE_COUNTED];
     __local uint crowdedCount;
     const uint count = min(counters->m_hits, hitCapacity);
     const uint begin = get_group_id(0) * block;
@@ -100,9 +100,9 @@ __kernel void compactionOrder(__global const Contact* restrict hits, const uint 
     const uint toSort = crowdedCount;
     for (uint i = 0; i < toSort; ++i)
     {
-        const uint slot = crowded[i];
+        const uint slot = crowded[i], first = slotFirst[slot];
         const uint last = slot + 1 < slots ? min(slotFirst[slot + 1], count) : count;
-        orderMembers(hits, members + slotFirst[slot], last - slotFirst[slot], keys, own);
+        orderMembers(members + first, keys + first, last - first, own, ownKeys);
     }
 }
 

@@ -92,8 +92,8 @@ static void listMembers(const SlotBlock* block, __global const Contact* restrict
 }
 
 // Puts the members of slots that have more than `ranked` in order.
-static void orderCrowded(const SlotBlock* block, const uint ranked, __global const Contact* hits, __global uint* members,
-                         __local uint* crowded, __local uint* crowdedCount, __local uint* keys, __local uint* own)
+static void orderCrowded(const SlotBlock* block, const uint ranked, __global uint* members, __global uint* keys,
+                         __local uint* crowded, __local uint* crowdedCount, __local uint* own, __local uint* ownKeys)
 {
     const uint slots = block->m_end - block->m_begin;
     if (get_local_id(0) == 0) *crowdedCount = 0;
@@ -105,7 +105,7 @@ static void orderCrowded(const SlotBlock* block, const uint ranked, __global con
     for (uint i = 0; i < toOrder; ++i)
     {
         const uint first = block->m_firsts[crowded[i]];
-        orderMembers(hits, members + first, block->m_firsts[crowded[i] + 1] - first, keys, own);
+        orderMembers(members + first, keys + first, block->m_firsts[crowded[i] + 1] - first, own, ownKeys);
     }
 }
 
@@ -151,7 +151,7 @@ __kernel void compactionFew(__global const Contact* restrict hits, const uint hi
                             __global StepCounters* restrict next, __local uint* scratch)
 {
     __local uint counts[DRAPE_BLOCK], firsts[DRAPE_BLOCK + 1];
-    __local uint crowdedCount, sortKeys[DRAPE_COUNTED], sorted[DRAPE_COUNTED];
+    __local uint crowdedCount, toOrder[DRAPE_COUNTED], toOrderKeys[DRAPE_COUNTED];
     const uint id = get_local_id(0), count = min(counters->m_listed, hitCapacity);
     const uint begin = min(slots, (uint)(get_group_id(0) * block));
     const SlotBlock own = {begin, min(slots, begin + block), counts, firsts};
@@ -163,7 +163,7 @@ __kernel void compactionFew(__global const Contact* restrict hits, const uint hi
         slotCount[slot] = 0;
     }
     listMembers(&own, hits, hitSlots, count, members, keys);
-    orderCrowded(&own, ranked, hits, members, counts, &crowdedCount, sortKeys, sorted);
+    orderCrowded(&own, ranked, members, keys, counts, &crowdedCount, toOrder, toOrderKeys);
     if (get_group_id(0) == 0 && id < sizeof(StepCounters) / sizeof(uint)) ((__global uint*)next)[id] = 0;
     if (get_group_id(0) == 0 && id == 0)
     {

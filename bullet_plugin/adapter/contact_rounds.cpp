@@ -1,6 +1,7 @@
 #include "bullet_plugin/adapter/contact_rounds.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 
@@ -14,6 +15,12 @@ constexpr float kRounding = 256 * std::numeric_limits<float>::epsilon();
 float largestCoordinate(const btVector3& v)
 {
     return static_cast<float>(std::max(btFabs(v.x()), std::max(btFabs(v.y()), btFabs(v.z()))));
+}
+
+// What the obstacle's motion in the step does to a point, m.
+btVector3 carriedFrom(const btVector3& start, const btTransform* carry)
+{
+    return carry ? *carry * start - start : btVector3(0, 0, 0);
 }
 
 // A vector of Bullet's, the last number of which does not count, loaded and stored whole: a contact reads what the one
@@ -30,10 +37,38 @@ inline void store(const Quad& quad, btVector3& vector)
     std::memcpy(vector.m_floats, &quad, sizeof(quad));
 }
 
+// For blocks, which are in float32.
+inline ContactRounds::Lanes lanesOf(const btVector3& vector)
+{
+    Quad quad;
+    load(vector, quad);
+    return __builtin_convertvector(quad, ContactRounds::Lanes);
+}
+
 inline btScalar dot(const Quad& a, const Quad& b)
 {
     const Quad products = a * b;
     return products[0] + products[1] + products[2];
+}
+
+inline bool anyAbove0(const ContactRounds::Lanes& values)
+{
+    const auto above = values > 0;
+    std::uint64_t halves[2];
+    std::memcpy(halves, &above, sizeof(above));
+    return (halves[0] | halves[1]) != 0;
+}
+
+// A bit for each lane that is above 0.
+inline unsigned bitsAbove0(const ContactRounds::Lanes& values)
+{
+    static_assert(ContactRounds::kLanes == 4 && sizeof(int) == sizeof(float));
+    using Bits = int __attribute__((vector_size(sizeof(values))));
+    const Bits bits = (values > 0) & Bits{1, 2, 4, 8};
+    std::uint64_t halves[2];
+    std::memcpy(halves, &bits, sizeof(bits));
+    const std::uint64_t both = halves[0] | halves[1];
+    return static_cast<unsigned>(both | both >> 32);
 }
 }  // namespace
 
@@ -57,9 +92,10 @@ void ContactRounds::start(const BodyContacts& contacts, const FoundContacts& fou
     }
     m_margin = kRounding * (m_farthest + static_cast<float>(contacts.m_mostThickness));
     for (Block& block : m_blocks)
-        for (float& level : block.m_level)
-            level += m_margin;
-    m_states.assign(m_blocks.size(), State());
+        block.m_level += m_margin;
+    m_rowsOf.assign(m_blocks.size(), BlockRows());
+    m_holds.assign(m_blocks.size(), 0);
+    m_shifted.assign(m_moved.size(), 0);
 }
 
 void ContactRounds::addFeature(const FeatureContacts& feature)
@@ -78,11 +114,12 @@ void ContactRounds::addFeature(const FeatureContacts& feature)
         m_blocks.emplace_back();
         Block& block = m_blocks.back();
         block.m_contacts = feature.m_contacts + first;
-        block.m_lanes = static_cast<int>(std::min(feature.m_count - first, std::uint32_t(kLanes)));
+        const int lanes = static_cast<int>(std::min(feature.m_count - first, std::uint32_t(kLanes)));
+        block.m_used = (1u << lanes) - 1;
         block.m_count = count;
         std::copy(moved, moved + 3, block.m_moved);
         for (int lane = 0; lane < kLanes; ++lane)
-            fillLane(block, lane, block.m_contacts[std::min(lane, block.m_lanes - 1)]);
+            fillLane(block, lane, block.m_contacts[std::min(lane, lanes - 1)]);
     }
 }
 
@@ -103,8 +140,8 @@ int ContactRounds::addMoved(int node)
 {
     const NodePaths& paths = m_contacts->m_limit.paths();
     const std::size_t at = static_cast<std::size_t>(node);
-    m_places.push_back(Place{paths.m_end[at], paths.m_start[at]});
-    m_moved.push_back(Moved{paths.m_inverseMass[at], node, false});
+    m_places.push_back(paths.m_end[at]);
+    m_moved.push_back(Moved{paths.m_inverseMass[at], node});
     m_farthest =
         std::max(m_farthest, std::max(largestCoordinate(paths.m_start[at]), largestCoordinate(paths.m_end[at])));
     return static_cast<int>(m_moved.size()) - 1;
@@ -115,40 +152,58 @@ ContactRounds::Row ContactRounds::makeRow(const Block& block, int lane) const
     const StepContact contact = m_found->resolve(*m_body, m_contacts->m_limit.paths(), block.m_contacts[lane]);
     Row row = Row();
     row.m_count = block.m_count;
-    for (int k = 0; k < row.m_count; ++k)
-    {
-        row.m_moved[k] = block.m_moved[k];
-        setWeight(row, k, contact.m_weights[k]);
-    }
-    row.m_normal = contact.m_normal;
-    row.m_distance = contact.m_thickness + contact.m_targetGap;
-    row.m_level = contact.m_normal.dot(contact.m_point) + row.m_distance;
-    row.m_friction = contact.m_friction;
+    std::copy(block.m_moved, block.m_moved + 3, row.m_moved);
     row.m_held.setZero();
+    row.m_friction = contact.m_friction;
+    row.m_distance = contact.m_thickness + contact.m_targetGap;
     row.m_carry = contact.m_carry;
-    row.m_carried = carriedBy(row, row.m_carry);
-    row.m_speedLimit = contact.m_startGap < 0
-                           ? std::max(btScalar(0), (contact.m_endGap - contact.m_startGap) * m_body->m_sst.isdt) +
-                                 row.m_normal.dot(row.m_carried) * m_body->m_sst.isdt
-                           : SIMD_INFINITY;
+    setPlane(row, contact.m_weights, contact.m_normal, contact.m_point);
+    row.m_speedLimit = SIMD_INFINITY;
+    if (contact.m_startGap < 0)
+    {
+        const btScalar recovered = std::max(btScalar(0), contact.m_endGap - contact.m_startGap);
+        row.m_speedLimit = (recovered + row.m_normal.dot(carriedFrom(row.m_start, row.m_carry))) * m_body->m_sst.isdt;
+    }
     return row;
 }
 
-// Adds to the row's mobility.
-void ContactRounds::setWeight(Row& row, int k, btScalar weight) const
+// Of the row's point of the cloth.
+btVector3 ContactRounds::startOf(const Row& row) const
 {
-    const btScalar inverseMass = m_moved[static_cast<std::size_t>(row.m_moved[k])].m_inverseMass;
-    row.m_weights[k] = weight;
-    row.m_shares[k] = weight * inverseMass;
-    row.m_mobility += weight * weight * inverseMass;
+    const std::vector<btVector3>& starts = m_contacts->m_limit.paths().m_start;
+    btVector3 start(0, 0, 0);
+    for (int k = 0; k < row.m_count; ++k)
+    {
+        const int node = m_moved[static_cast<std::size_t>(row.m_moved[k])].m_node;
+        start += starts[static_cast<std::size_t>(node)] * row.m_weights[k];
+    }
+    return start;
+}
+
+void ContactRounds::setPlane(Row& row, const btScalar weights[3], const btVector3& normal, const btVector3& point) const
+{
+    btScalar mobility = 0;
+    for (int k = 0; k < row.m_count; ++k)
+    {
+        const btScalar inverseMass = m_moved[static_cast<std::size_t>(row.m_moved[k])].m_inverseMass;
+        row.m_weights[k] = weights[k];
+        row.m_shares[k] = weights[k] * inverseMass;
+        mobility += weights[k] * weights[k] * inverseMass;
+    }
+    row.m_inverseMobility = mobility > 0 ? 1 / mobility : btScalar(0);
+    row.m_normal = normal;
+    row.m_start = startOf(row);
+    const btVector3 carried = carriedFrom(row.m_start, row.m_carry);
+    row.m_carried = carried - normal * normal.dot(carried);
+    row.m_level = normal.dot(point - row.m_start) + row.m_distance;
 }
 
 bool ContactRounds::isViolated(const Row& row) const
 {
-    btVector3 point(0, 0, 0);
+    btVector3 way = -row.m_start;
     for (int k = 0; k < row.m_count; ++k)
-        point += m_places[static_cast<std::size_t>(row.m_moved[k])].m_x * row.m_weights[k];
-    return row.m_level - row.m_normal.dot(point) > 0;
+        way += m_places[static_cast<std::size_t>(row.m_moved[k])] * row.m_weights[k];
+    return row.m_level - row.m_normal.dot(way) > 0;
 }
 
 // Takes the contact's plane where its features are nearest now; the same plane for the block.
@@ -157,46 +212,33 @@ void ContactRounds::renewPlane(Row& row, Block& block, int lane) const
     float nodes[3][3];
     for (int k = 0; k < row.m_count; ++k)
         for (int axis = 0; axis < 3; ++axis)
-            nodes[k][axis] = static_cast<float>(m_places[static_cast<std::size_t>(row.m_moved[k])].m_x[axis]);
+            nodes[k][axis] = static_cast<float>(m_places[static_cast<std::size_t>(row.m_moved[k])][axis]);
     ContactPlane plane;
     if (!FoundContacts::planeAt(block.m_contacts[lane], nodes, plane)) return;
     row.m_renewed = true;
-    row.m_mobility = 0;
-    for (int k = 0; k < row.m_count; ++k)
-        setWeight(row, k, plane.m_weights[k]);
-    row.m_normal.setValue(plane.m_normal[0], plane.m_normal[1], plane.m_normal[2]);
-    row.m_level = row.m_normal.dot(btVector3(plane.m_point[0], plane.m_point[1], plane.m_point[2])) + row.m_distance;
-    row.m_carried = carriedBy(row, row.m_carry);
+    const btScalar weights[3] = {plane.m_weights[0], plane.m_weights[1], plane.m_weights[2]};
+    const btVector3 point(plane.m_point[0], plane.m_point[1], plane.m_point[2]);
+    setPlane(row, weights, btVector3(plane.m_normal[0], plane.m_normal[1], plane.m_normal[2]), point);
     for (int axis = 0; axis < 3; ++axis)
         block.m_normal[axis][lane] = plane.m_normal[axis];
     block.m_weights[0][lane] = plane.m_weights[1];
     block.m_weights[1][lane] = plane.m_weights[2];
-    block.m_level[lane] = static_cast<float>(row.m_level) + m_margin;
-}
-
-btVector3 ContactRounds::carriedBy(const Row& row, const btTransform* carry) const
-{
-    btVector3 start(0, 0, 0);
-    if (!carry) return start;
-    for (int k = 0; k < row.m_count; ++k)
-        start += m_places[static_cast<std::size_t>(row.m_moved[k])].m_start * row.m_weights[k];
-    return *carry * start - start;
+    block.m_level[lane] = static_cast<float>(row.m_normal.dot(point) + row.m_distance) + m_margin;
 }
 
 void ContactRounds::restart()
 {
     ++m_stage;
-    for (std::size_t index : m_holding)
+    for (const std::size_t index : m_holding)
     {
-        State& state = m_states[index];
         for (int lane = 0; lane < kLanes; ++lane)
         {
-            if (!(state.m_holding >> lane & 1u)) continue;
-            Row& row = m_rows[static_cast<std::size_t>(state.m_row[lane])];
+            if (!(m_holds[index] >> lane & 1)) continue;
+            Row& row = m_rows[static_cast<std::size_t>(m_rowsOf[index].m_row[lane])];
             row.m_multiplier = 0;
             row.m_held.setZero();
         }
-        state.m_holding = 0;
+        m_holds[index] = 0;
     }
     m_holding.clear();
 }
@@ -211,117 +253,94 @@ bool ContactRounds::project(Row& row, btScalar& worst)
 template <int count>
 bool ContactRounds::projectNodes(Row& row, btScalar& worst)
 {
-    Place* places[count];
-    Quad x[count], point = {};
+    btVector3* places[count];
+    Quad x[count], way, normal, held, carried;
+    load(row.m_normal, normal);
+    load(row.m_held, held);
+    load(row.m_carried, carried);
+    load(row.m_start, way);
+    way = -way;
     for (int k = 0; k < count; ++k)
     {
         places[k] = &m_places[static_cast<std::size_t>(row.m_moved[k])];
-        load(places[k]->m_x, x[k]);
-        point += x[k] * row.m_weights[k];
+        load(*places[k], x[k]);
+        way += x[k] * row.m_weights[k];
     }
-    Quad normal;
-    load(row.m_normal, normal);
-    const btScalar violation = row.m_level - dot(normal, point);
+    const btScalar along = dot(normal, way), violation = row.m_level - along;
     if (!(violation > 0) && !(row.m_multiplier > 0)) return false;  // also for NaN
     worst = std::max(worst, violation);
-    const btScalar pushed = std::max(btScalar(0), row.m_multiplier + violation / row.m_mobility);
-    const Quad push = normal * (pushed - row.m_multiplier);
-    Quad sliding = {};
-    for (int k = 0; k < count; ++k)
-    {
-        x[k] += push * row.m_shares[k];
-        sliding += x[k] * row.m_weights[k];
-    }
-
-    // Friction: takes the contact's motion along the surface back, within the cone.
-    Quad other;
-    load(row.m_carried, other);
-    sliding -= other;
-    for (int k = 0; k < count; ++k)
-    {
-        load(places[k]->m_start, other);
-        sliding -= other * row.m_weights[k];
-    }
-    sliding -= normal * dot(normal, sliding);
-    load(row.m_held, other);
-    Quad held = other - sliding * (1 / row.m_mobility);
+    const btScalar pushed = std::max(btScalar(0), row.m_multiplier + violation * row.m_inverseMobility);
+    // Friction: takes the point's motion along the surface back, within the cone. A push leaves that motion as it is.
+    Quad hold = held - (way - normal * along - carried) * row.m_inverseMobility;
     const btScalar most = row.m_friction * pushed;
-    const btScalar wanted2 = dot(held, held);
-    if (wanted2 > most * most) held *= most / btSqrt(wanted2);
-    const Quad hold = held - other;
+    const btScalar wanted2 = dot(hold, hold);
+    if (wanted2 > most * most) hold *= most / btSqrt(wanted2);
+    const Quad shift = normal * (pushed - row.m_multiplier) + (hold - held);
     for (int k = 0; k < count; ++k)
     {
-        store(x[k] + hold * row.m_shares[k], places[k]->m_x);
-        m_moved[static_cast<std::size_t>(row.m_moved[k])].m_shifted = true;
+        const std::size_t moved = static_cast<std::size_t>(row.m_moved[k]);
+        store(x[k] + shift * row.m_shares[k], *places[k]);
+        m_shifted[moved] = 1;
     }
     row.m_multiplier = pushed;
-    store(held, row.m_held);
+    store(hold, row.m_held);
     row.m_pushed = true;
     return true;
 }
 
-// The lanes whose contacts may be violated, a bit each: all that are, and some that nearly are.
-inline unsigned ContactRounds::lanesDue(const Block& block, const Place* places)
+// How far each lane's contact may be violated, m: no less than it is.
+inline ContactRounds::Lanes ContactRounds::excessOf(const Block& block, const btVector3* places)
 {
-    if (block.m_count == 1) return lanesDueOf<1>(block, places);
-    return block.m_count == 2 ? lanesDueOf<2>(block, places) : lanesDueOf<3>(block, places);
+    if (block.m_count == 1) return excessOfNodes<1>(block, places);
+    return block.m_count == 2 ? excessOfNodes<2>(block, places) : excessOfNodes<3>(block, places);
 }
 
 template <int count>
-inline unsigned ContactRounds::lanesDueOf(const Block& block, const Place* places)
+inline ContactRounds::Lanes ContactRounds::excessOfNodes(const Block& block, const btVector3* places)
 {
-    const btVector3& a = places[block.m_moved[0]].m_x;
-    const btVector3& b = places[block.m_moved[1]].m_x;
-    const btVector3& c = places[block.m_moved[2]].m_x;
-    float excess[kLanes];
-    for (int lane = 0; lane < kLanes; ++lane)
+    const Lanes a = lanesOf(places[block.m_moved[0]]);
+    Lanes at[3] = {__builtin_shufflevector(a, a, 0, 0, 0, 0), __builtin_shufflevector(a, a, 1, 1, 1, 1),
+                   __builtin_shufflevector(a, a, 2, 2, 2, 2)};
+    for (int k = 1; k < count; ++k)
     {
-        float along = 0;
-        for (int axis = 0; axis < 3; ++axis)
-        {
-            const float x = float(a[axis]);
-            float at = x;
-            if (count > 1) at += block.m_weights[0][lane] * (float(b[axis]) - x);
-            if (count > 2) at += block.m_weights[1][lane] * (float(c[axis]) - x);
-            along += block.m_normal[axis][lane] * at;
-        }
-        excess[lane] = block.m_level[lane] - along;
+        const Lanes way = lanesOf(places[block.m_moved[k]]) - a;
+        at[0] += block.m_weights[k - 1] * __builtin_shufflevector(way, way, 0, 0, 0, 0);
+        at[1] += block.m_weights[k - 1] * __builtin_shufflevector(way, way, 1, 1, 1, 1);
+        at[2] += block.m_weights[k - 1] * __builtin_shufflevector(way, way, 2, 2, 2, 2);
     }
-    if (!(std::max(std::max(excess[0], excess[1]), std::max(excess[2], excess[3])) > 0)) return 0;
-    unsigned due = 0;
-    for (int lane = 0; lane < block.m_lanes; ++lane)
-        due |= excess[lane] > 0 ? 1u << lane : 0u;
-    return due;
+    return block.m_level - (block.m_normal[0] * at[0] + block.m_normal[1] * at[1] + block.m_normal[2] * at[2]);
 }
 
-// Projects the contacts of a block that are due, in order. Returns the worst violation, 0 without one.
+// Projects the contacts of a block that are due, in order: those that push and those that may be violated. Returns the
+// worst violation, 0 without one.
 btScalar ContactRounds::projectBlock(std::size_t index, unsigned due)
 {
     Block& block = m_blocks[index];
-    State& state = m_states[index];
-    const bool held = state.m_holding != 0;
-    state.m_opened = true;
+    const unsigned held = m_holds[index];
+    unsigned holds = held;
     btScalar worst = 0;
-    for (int lane = 0; lane < block.m_lanes; ++lane)
+    for (int lane = 0; lane < kLanes; ++lane)
     {
-        if (!((due | state.m_holding) >> lane & 1u)) continue;
-        if (state.m_row[lane] < 0)
+        if (!(due >> lane & block.m_used >> lane & 1u)) continue;
+        int& at = m_rowsOf[index].m_row[lane];
+        if (at < 0)
         {
-            state.m_row[lane] = static_cast<int>(m_rows.size());
+            at = static_cast<int>(m_rows.size());
             m_rows.push_back(makeRow(block, lane));
         }
-        Row& row = m_rows[static_cast<std::size_t>(state.m_row[lane])];
-        if (!(row.m_mobility > 0)) continue;
+        Row& row = m_rows[static_cast<std::size_t>(at)];
+        if (!(row.m_inverseMobility > 0)) continue;
         if (row.m_stage != m_stage && isViolated(row))
         {
             renewPlane(row, block, lane);
             row.m_stage = m_stage;
         }
-        if (!(row.m_mobility > 0) || !project(row, worst)) continue;
-        state.m_holding |= 1u << lane;
-        if (lane + 1 < block.m_lanes) due |= lanesDue(block, m_places.data());  // its nodes moved
+        if (!(row.m_inverseMobility > 0) || !project(row, worst)) continue;
+        holds |= 1u << lane;
+        if (block.m_used >> lane > 1) due |= bitsAbove0(excessOf(block, m_places.data()));  // its nodes moved
     }
-    if (!held && state.m_holding != 0) m_holding.push_back(index);
+    m_holds[index] = static_cast<unsigned char>(holds);
+    if (held == 0 && holds != 0) m_holding.push_back(index);
     return worst;
 }
 
@@ -329,7 +348,7 @@ btScalar ContactRounds::projectBlock(std::size_t index, unsigned due)
 void ContactRounds::gather()
 {
     for (std::size_t i = 0; i < m_moved.size(); ++i)
-        m_places[i].m_x = m_body->m_nodes[m_moved[i].m_node].m_x;
+        m_places[i] = m_body->m_nodes[m_moved[i].m_node].m_x;
 }
 
 void ContactRounds::scatter()
@@ -337,24 +356,24 @@ void ContactRounds::scatter()
     const btScalar velocityScale = m_body->m_sst.isdt * (1 - m_body->m_cfg.kDP);
     for (std::size_t i = 0; i < m_moved.size(); ++i)
     {
-        Moved& moved = m_moved[i];
-        if (!moved.m_shifted) continue;
-        moved.m_shifted = false;
-        btSoftBody::Node& node = m_body->m_nodes[moved.m_node];
-        node.m_v += (m_places[i].m_x - node.m_x) * velocityScale;
-        node.m_x = m_places[i].m_x;
+        if (!m_shifted[i]) continue;
+        m_shifted[i] = 0;
+        btSoftBody::Node& node = m_body->m_nodes[m_moved[i].m_node];
+        node.m_v += (m_places[i] - node.m_x) * velocityScale;
+        node.m_x = m_places[i];
     }
 }
 
 btScalar ContactRounds::lookAtBlocks(std::size_t count)
 {
     const Block* const blocks = m_blocks.data();
-    const Place* const places = m_places.data();
+    const btVector3* const places = m_places.data();
+    const unsigned char* const holds = m_holds.data();
     btScalar worst = 0;
     for (std::size_t i = 0; i < count; ++i)
     {
-        const unsigned due = lanesDue(blocks[i], places) | m_states[i].m_holding;
-        if (due != 0) worst = std::max(worst, projectBlock(i, due));
+        const Lanes excess = excessOf(blocks[i], places);
+        if (holds[i] != 0 || anyAbove0(excess)) worst = std::max(worst, projectBlock(i, bitsAbove0(excess) | holds[i]));
     }
     return worst;
 }
@@ -367,25 +386,30 @@ btScalar ContactRounds::runBlocks(std::size_t count)
     return worst;
 }
 
-void ContactRounds::settle(const State& state)
+void ContactRounds::settle()
 {
-    btScalar worst = 0;
-    for (int lane = 0; lane < kLanes; ++lane)
+    std::sort(m_holding.begin(), m_holding.end());  // in canonical order
+    m_settling.clear();
+    for (const std::size_t index : m_holding)
     {
-        if (!(state.m_holding >> lane & 1u)) continue;
-        Row& row = m_rows[static_cast<std::size_t>(state.m_row[lane])];
-        if (row.m_renewed) project(row, worst);
+        for (int lane = 0; lane < kLanes; ++lane)
+        {
+            if (!(m_holds[index] >> lane & 1)) continue;
+            Row& row = m_rows[static_cast<std::size_t>(m_rowsOf[index].m_row[lane])];
+            if (row.m_renewed) m_settling.push_back(&row);
+        }
     }
+    btScalar worst = 0;
+    for (int pass = 0; pass < kSettlingPasses; ++pass)
+        for (Row* row : m_settling)
+            project(*row, worst);
 }
 
 void ContactRounds::runAndSettle()
 {
     gather();
     lookAtBlocks(m_blocks.size());
-    std::sort(m_holding.begin(), m_holding.end());  // in canonical order
-    for (int pass = 0; pass < kSettlingPasses; ++pass)
-        for (const std::size_t index : m_holding)
-            settle(m_states[index]);
+    settle();
     scatter();
 }
 
@@ -396,20 +420,19 @@ void ContactRounds::limitSpeed(const Row& row)
         speed += m_body->m_nodes[m_moved[static_cast<std::size_t>(row.m_moved[k])].m_node].m_v.dot(row.m_normal) *
                  row.m_weights[k];
     const btScalar excess = speed - row.m_speedLimit;
-    if (!(excess > 0) || !(row.m_mobility > 0)) return;  // a plane taken anew may rest on pinned nodes alone
+    if (!(excess > 0) || !(row.m_inverseMobility > 0)) return;  // a plane taken anew may rest on pinned nodes alone
     for (int k = 0; k < row.m_count; ++k)
     {
         const Moved& moved = m_moved[static_cast<std::size_t>(row.m_moved[k])];
-        m_body->m_nodes[moved.m_node].m_v -=
-            row.m_normal * (row.m_weights[k] * moved.m_inverseMass * excess / row.m_mobility);
+        m_body->m_nodes[moved.m_node].m_v -= row.m_normal * (row.m_shares[k] * excess * row.m_inverseMobility);
     }
 }
 
 void ContactRounds::limitSpeeds()
 {
-    for (const State& state : m_states)
-        for (int lane = 0; state.m_opened && lane < kLanes; ++lane)
-            if (state.m_row[lane] >= 0 && m_rows[static_cast<std::size_t>(state.m_row[lane])].m_pushed)
-                limitSpeed(m_rows[static_cast<std::size_t>(state.m_row[lane])]);
+    for (const BlockRows& rows : m_rowsOf)
+        for (const int row : rows.m_row)
+            if (row >= 0 && m_rows[static_cast<std::size_t>(row)].m_pushed)
+                limitSpeed(m_rows[static_cast<std::size_t>(row)]);
 }
 }  // namespace drape

@@ -35,6 +35,9 @@ public:
     // Without any, cloth on thin boards stirs at 2.5 mm/s (RMS) for ever.
     static constexpr int kSettlingPasses = 2;
 
+    static constexpr int kLanes = 4;  // contacts looked at side by side
+    using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
+
     // For another body; memory is kept. Both stay as they are until the last round.
     void start(const BodyContacts& contacts, const FoundContacts& found);
 
@@ -53,79 +56,72 @@ public:
     bool empty() const { return m_blocks.empty(); }
 
 private:
-    // A node that contacts refer to, copied together: Bullet's nodes are far apart.
-    struct Place
-    {
-        btVector3 m_x, m_start;
-    };
+    // A node that contacts refer to. Where it is is in m_places: Bullet's nodes are far apart.
     struct Moved
     {
         btScalar m_inverseMass;
         int m_node;
-        bool m_shifted;  // in this round
     };
-    static constexpr int kLanes = 4;
-
     // Contacts of one cloth feature side by side; lanes beyond the last one repeat it. The gap is
     // n.(x0 + w1 (x1 - x0) + w2 (x2 - x0)) - level. The level is raised by a margin for rounding.
     struct Block
     {
         Block() {}  // leaves everything to who adds it
 
-        float m_normal[3][kLanes];
-        float m_level[kLanes];
-        float m_weights[2][kLanes];  // of the second and third node
-        int m_moved[3];              // the first one again where unused
-        int m_count;                 // of nodes
-        int m_lanes;                 // in use
+        Lanes m_normal[3];
+        Lanes m_level;
+        Lanes m_weights[2];  // of the second and third node
+        int m_moved[3];      // the first one again where unused
+        int m_count;         // of nodes
+        unsigned m_used;     // a bit for each lane
         const Contact* m_contacts;
     };
-    // Of a block, in bits and indices by lane.
-    struct State
+    // Indices in m_rows by a block's lanes, -1 for none.
+    struct BlockRows
     {
-        unsigned m_holding = 0;  // rows that have pushed in this stage
-        bool m_opened = false;   // there is a row
         int m_row[kLanes] = {-1, -1, -1, -1};
     };
+    // A contact that acts. All is seen from where its point of the cloth, sum w x, was at the step's start.
     struct Row
     {
-        int m_moved[3];
-        int m_count;
+        btVector3 m_normal;
+        btVector3 m_start;
+        btVector3 m_carried;  // m, along the surface, what the obstacle's motion in the step does to it
+        btVector3 m_held;     // by friction, in this stage, in units of the multiplier
         btScalar m_weights[3];
         btScalar m_shares[3];  // of a unit multiplier, by node
-        btScalar m_mobility;   // what a unit multiplier moves the weighted point
-        btVector3 m_normal;
-        btScalar m_level;  // n.(sum w x) at the target
+        int m_moved[3];
+        int m_count;
+        btScalar m_level;            // m, least n.(sum w x - start)
+        btScalar m_inverseMobility;  // of what a unit multiplier moves the weighted point by; 0: nothing moves
         btScalar m_friction;
         btScalar m_multiplier;  // pushed in this stage
-        btVector3 m_held;       // by friction, in this stage, in units of the multiplier
-        btVector3 m_carried;    // m, what the obstacle's motion in the step does to the contact's start
-        btScalar m_speedLimit;  // m/s outwards when it pushed
+        unsigned m_stage;       // for which the plane was renewed
+        bool m_renewed;         // in any stage
         bool m_pushed;          // in any stage
+        btScalar m_speedLimit;  // m/s outwards when it pushed
+        btScalar m_distance;    // m, to keep from the contact's point: the thickness and the target
         const btTransform* m_carry;
-        btScalar m_distance;  // m, to keep from the contact's point: the thickness and the target
-        unsigned m_stage;     // for which the plane was renewed
-        bool m_renewed;       // in any stage
     };
 
     void addFeature(const FeatureContacts& feature);
     int addMoved(int node);
     void fillLane(Block& block, int lane, const Contact& contact) const;
     Row makeRow(const Block& block, int lane) const;
-    void setWeight(Row& row, int k, btScalar weight) const;
+    void setPlane(Row& row, const btScalar weights[3], const btVector3& normal, const btVector3& point) const;
+    btVector3 startOf(const Row& row) const;
     bool isViolated(const Row& row) const;
     void renewPlane(Row& row, Block& block, int lane) const;
-    btVector3 carriedBy(const Row& row, const btTransform* carry) const;
     void gather();
     void scatter();
     btScalar lookAtBlocks(std::size_t count);
     btScalar runBlocks(std::size_t count);
-    static unsigned lanesDue(const Block& block, const Place* places);
+    static Lanes excessOf(const Block& block, const btVector3* places);
     template <int count>
-    static unsigned lanesDueOf(const Block& block, const Place* places);
+    static Lanes excessOfNodes(const Block& block, const btVector3* places);
     btScalar projectBlock(std::size_t index, unsigned due);
     bool project(Row& row, btScalar& worst);
-    void settle(const State& state);
+    void settle();
     template <int count>
     bool projectNodes(Row& row, btScalar& worst);
     void limitSpeed(const Row& row);
@@ -135,12 +131,15 @@ private:
     btSoftBody* m_body = nullptr;
     std::vector<int> m_movedOfNode;  // index in m_moved, -1 for none
     std::vector<Moved> m_moved;
-    std::vector<Place> m_places;  // of m_moved
-    float m_farthest = 0;         // largest coordinate of a path, m
-    std::vector<Block> m_blocks;  // in canonical order
-    std::vector<State> m_states;  // of each
+    std::vector<btVector3> m_places;       // of m_moved
+    std::vector<unsigned char> m_shifted;  // likewise: in this round
+    float m_farthest = 0;                  // largest coordinate of a path, m
+    std::vector<Block> m_blocks;           // in canonical order
+    std::vector<BlockRows> m_rowsOf;       // of each
+    std::vector<unsigned char> m_holds;    // likewise: a bit for each lane whose row has pushed in this stage
     std::vector<Row> m_rows;
     std::vector<std::size_t> m_holding;  // blocks with rows that have pushed in this stage
+    std::vector<Row*> m_settling;        // of those the rows whose planes were taken anew
     std::size_t m_nodeBlocks = 0;
     float m_margin = 0;    // m, of the blocks' levels
     unsigned m_stage = 0;  // counts up with each

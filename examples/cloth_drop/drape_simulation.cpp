@@ -30,7 +30,9 @@ public:
         StepTimes times;
         times.m_stepMs = m_world.step(m_dt);
         const StepStatistics& statistics = m_plugin->statistics();
-        times.m_collisionMs = m_world.world().collisionMs() + statistics.collisionMs();
+        times.m_parts = {m_world.world().collisionMs(), statistics.m_uploadMs, statistics.m_waitMs,
+                         statistics.m_writeMs, statistics.m_finishMs};
+        times.m_collisionMs = times.m_parts.sum();
         times.m_contacts = statistics.m_contacts;
         times.m_candidates = statistics.m_candidates;
         times.m_sweptTests = statistics.m_sweptTests;

@@ -15,9 +15,9 @@ namespace
 {
 // What --help says of --json.
 constexpr const char* kJsonText =
-    "JSON keys end in their units; step_ms and collision_ms are over the steps in contact. Penetration is how far a\n"
-    "node was below the surface, or a vertex of the obstacle above a face. With --compare there is an object a run:\n"
-    "drape, bullet_stock, bullet_tuned and, where asked for, bullet_vfss.";
+    "JSON keys end in their units; step_ms, collision_ms and collision_parts_ms (medians) are over the steps in\n"
+    "contact. Penetration is how far a node was below the surface, or a vertex of the obstacle above a face. With\n"
+    "--compare there is an object a run: drape, bullet_stock, bullet_tuned and, where asked for, bullet_vfss.";
 
 constexpr int kMostNodesASide = 4096;  // 16.8 million nodes: beyond what a step can hold, below any overflow
 

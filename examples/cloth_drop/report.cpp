@@ -14,6 +14,15 @@ Json asJson(const TimeSummary& times)
     return {{"first", times.m_first}, {"median", times.m_median}, {"p95", times.m_p95}, {"max", times.m_max}};
 }
 
+Json asJson(const CollisionParts& parts)
+{
+    return {{"dispatch", parts.m_dispatch},
+            {"upload", parts.m_upload},
+            {"wait", parts.m_wait},
+            {"write", parts.m_write},
+            {"rounds", parts.m_rounds}};
+}
+
 // Sums over the run: what the broad phase left, what needed the continuous test, contacts solved and left out,
 // hierarchies of the cloth built anew, cloths not looked at and obstacles used as they were, steps with nothing to do,
 // and steps that the host back end ran.
@@ -61,7 +70,11 @@ Json asJson(const RunRecord& record)
     json["thickness_m"] = record.m_thickness;
     json["step_ms"] = asJson(summary.m_step);
     json["collision_ms"] = asJson(summary.m_collision);
-    if (!record.m_backend.empty() && record.m_backend.rfind("bullet", 0) != 0) json["work"] = workJson(record);
+    if (!record.m_backend.empty() && record.m_backend.rfind("bullet", 0) != 0)
+    {
+        json["collision_parts_ms"] = asJson(summary.m_parts);
+        json["work"] = workJson(record);
+    }
     json["contacts_max"] = summary.m_contactsMax;
     json["penetration_max_m"] = summary.m_penetrationMax;
     json["penetration_p99_m"] = summary.m_penetrationP99;

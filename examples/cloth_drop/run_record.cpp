@@ -30,6 +30,15 @@ TimeSummary summariseTimes(std::vector<double> times)
     return summary;
 }
 
+// Of the steps that had contacts.
+double medianOf(const RunRecord& record, double CollisionParts::*part)
+{
+    std::vector<double> times;
+    for (const StepRecord& step : record.m_steps)
+        if (step.m_times.m_contacts > 0) times.push_back(step.m_times.m_parts.*part);
+    return summariseTimes(std::move(times)).m_median;
+}
+
 // Percentile of depths among `samples` values of which all that are not listed are 0.
 double depthPercentile(std::vector<double> depths, std::size_t samples, double share)
 {
@@ -61,6 +70,9 @@ RunSummary summarise(const RunRecord& record)
     }
     summary.m_step = summariseTimes(std::move(steps));
     summary.m_collision = summariseTimes(std::move(collisions));
+    for (const auto part : {&CollisionParts::m_dispatch, &CollisionParts::m_upload, &CollisionParts::m_wait,
+                            &CollisionParts::m_write, &CollisionParts::m_rounds})
+        summary.m_parts.*part = medianOf(record, part);
     summary.m_penetrationP99 = depthPercentile(std::move(depths), summary.m_stepsInContact * record.m_clothNodes, 0.99);
     if (record.m_steps.empty()) return summary;
     const StepRecord& last = record.m_steps.back();

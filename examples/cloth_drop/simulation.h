@@ -13,10 +13,22 @@
 
 namespace drape
 {
+// Of the time that Drape spends in a step, ms; see StepStatistics.
+struct CollisionParts
+{
+    double m_dispatch = 0;  // Bullet's collision detection, and Drape's part in it
+    double m_upload = 0;
+    double m_wait = 0;
+    double m_write = 0;
+    double m_rounds = 0;
+    double sum() const { return m_dispatch + m_upload + m_wait + m_write + m_rounds; }
+};
+
 struct StepTimes
 {
     double m_stepMs = 0;       // wall time of stepSimulation
     double m_collisionMs = 0;  // of it: Bullet's collision detection, and all that Drape does
+    CollisionParts m_parts;    // of that; 0 of the built-in
     std::size_t m_contacts = 0;
     // What Drape did for it, as in StepStatistics; 0 of the built-in.
     std::uint64_t m_candidates = 0;

@@ -1,4 +1,4 @@
-// The members of a slot in order of their obstacle features, by a work-group. For devices only: it needs barriers.
+// The members of a slot in order of their keys, the obstacle features, by a work-group. For devices only: it needs barriers.
 #ifndef DRAPE_LIB_SLOT_ORDER_H
 #define DRAPE_LIB_SLOT_ORDER_H
 
@@ -7,19 +7,23 @@
 // Members of a slot that a work-group puts in order by counting, in local memory; more are sorted where they are.
 #define DRAPE_COUNTED 512
 
-// Puts one pair of members in order.
-static void orderPair(__global const Contact* hits, __global uint* low, __global uint* high)
+// Puts one pair of places in order.
+static void orderPair(__global uint* members, __global uint* keys, const uint low, const uint high)
 {
-    const uint a = *low, b = *high;
-    if (hits[a].m_obstacleFeature <= hits[b].m_obstacleFeature) return;
-    *low = b;
-    *high = a;
+    const uint a = keys[low], b = keys[high];
+    if (a <= b) return;
+    keys[low] = b;
+    keys[high] = a;
+    const uint member = members[low];
+    members[low] = members[high];
+    members[high] = member;
 }
 
-// A work-group sorts count members by obstacle feature, in place: Batcher's bitonic network, its merges begun with a
-// mirrored step so that the lesser always goes to the lower place. So places from count on count as greater than all and
-// need not exist. In a step every place is in one pair; the barrier orders the steps.
-static void sortMembers(__global const Contact* hits, __global uint* members, const uint count)
+// A work-group sorts count members by their keys, in place, both lists alike: Batcher's bitonic network, its merges begun with
+// a mirrored step so that the lesser always goes to the lower place. So places from count on count as greater than all and
+// need not exist. In a step every place is in one pair; the barrier orders the steps. It goes through lists side by side: the
+// hits themselves, looked up for each pair, are more than a CPU's cache holds.
+static void sortMembers(__global uint* members, __global uint* keys, const uint count)
 {
     for (uint size = 2; size / 2 < count; size *= 2)
     {
@@ -30,41 +34,42 @@ static void sortMembers(__global const Contact* hits, __global uint* members, co
             {
                 const uint begin = i / stride * stride * 2, offset = i % stride;
                 const uint high = begin + (stride == size / 2 ? size - 1 - offset : stride + offset);
-                if (high < count) orderPair(hits, members + begin + offset, members + high);
+                if (high < count) orderPair(members, keys, begin + offset, high);
             }
             barrier(CLK_GLOBAL_MEM_FENCE);
         }
     }
 }
 
-// The same for DRAPE_COUNTED members at most: each goes behind as many as have a lesser feature. keys, own: that many.
-static void countMembers(__global const Contact* hits, __global uint* members, const uint count, __local uint* keys,
-                         __local uint* own)
+// The same for DRAPE_COUNTED members at most, the keys left as they are: each goes behind as many as have a lesser one. own,
+// ownKeys: that many.
+static void countMembers(__global uint* members, __global const uint* keys, const uint count, __local uint* own,
+                         __local uint* ownKeys)
 {
     for (uint i = get_local_id(0); i < count; i += get_local_size(0))
     {
         own[i] = members[i];
-        keys[i] = hits[own[i]].m_obstacleFeature;
+        ownKeys[i] = keys[i];
     }
     barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
     for (uint i = get_local_id(0); i < count; i += get_local_size(0))
     {
-        const uint key = keys[i];
+        const uint key = ownKeys[i];
         uint before = 0;
-        for (uint j = 0; j < count; ++j) before += keys[j] < key;
+        for (uint j = 0; j < count; ++j) before += ownKeys[j] < key;
         members[before] = own[i];
     }
     barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
 }
 
-// Either, by how many they are.
-static void orderMembers(__global const Contact* hits, __global uint* members, const uint count, __local uint* keys,
-                         __local uint* own)
+// Either, by how many they are. The keys are of no use afterwards.
+static void orderMembers(__global uint* members, __global uint* keys, const uint count, __local uint* own,
+                         __local uint* ownKeys)
 {
     if (count <= DRAPE_COUNTED)
-        countMembers(hits, members, count, keys, own);
+        countMembers(members, keys, count, own, ownKeys);
     else
-        sortMembers(hits, members, count);
+        sortMembers(members, keys, count);
 }
 
 #endif

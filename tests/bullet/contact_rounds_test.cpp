@@ -103,16 +103,23 @@ private:
         return worst;
     }
 
-    static btScalar levelOf(const StepContact& contact)
+    // Where the contact's point of the cloth was at the step's start: all is seen from there.
+    btVector3 startOf(const StepContact& contact) const
     {
-        const btScalar distance = contact.m_thickness + contact.m_targetGap;
-        return contact.m_normal.dot(contact.m_point) + distance;
+        return pointOf(contact, m_paths.m_start, btVector3(0, 0, 0));
+    }
+
+    btScalar violationOf(const StepContact& contact, const btVector3& start, const std::vector<btVector3>& x) const
+    {
+        const btScalar level =
+            contact.m_normal.dot(contact.m_point - start) + (contact.m_thickness + contact.m_targetGap);
+        return level - contact.m_normal.dot(pointOf(contact, x, -start));
     }
 
     void renewPlane(std::size_t i, const std::vector<btVector3>& x)
     {
         StepContact& contact = m_contacts[i];
-        const bool violated = levelOf(contact) - contact.m_normal.dot(pointOf(contact, x)) > 0;
+        const bool violated = violationOf(contact, startOf(contact), x) > 0;
         if (m_rows[i].m_renewed || !(mobilityOf(contact) > 0) || !violated) return;
         m_rows[i].m_renewed = true;
         float nodes[3][3];
@@ -129,9 +136,8 @@ private:
             contact.m_weights[k] = plane.m_weights[k];
     }
 
-    static btVector3 pointOf(const StepContact& contact, const std::vector<btVector3>& x)
+    static btVector3 pointOf(const StepContact& contact, const std::vector<btVector3>& x, btVector3 point)
     {
-        btVector3 point(0, 0, 0);
         for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
             point += x[static_cast<std::size_t>(contact.m_nodes[k])] * contact.m_weights[k];
         return point;
@@ -155,22 +161,18 @@ private:
 
     btScalar project(const StepContact& contact, Row& row, std::vector<btVector3>& x) const
     {
-        const btVector3& normal = contact.m_normal;
-        const btScalar mobility = mobilityOf(contact);
-        const btScalar violation = levelOf(contact) - normal.dot(pointOf(contact, x));
+        const btVector3 normal = contact.m_normal, start = startOf(contact);
+        const btScalar mobility = mobilityOf(contact), violation = violationOf(contact, start, x);
         if (!(mobility > 0) || (!(violation > 0) && !(row.m_multiplier > 0))) return 0;
         row.m_acted = true;
-        const btScalar pushed = std::max(btScalar(0), row.m_multiplier + violation / mobility);
-        shift(contact, normal * (pushed - row.m_multiplier), x);
-        row.m_multiplier = pushed;
-        btVector3 sliding = pointOf(contact, x);
-        for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
-            sliding -= m_paths.m_start[static_cast<std::size_t>(contact.m_nodes[k])] * contact.m_weights[k];
-        sliding -= normal * normal.dot(sliding);
-        btVector3 held = row.m_held - sliding / mobility;
+        const btScalar inverse = 1 / mobility;
+        const btScalar pushed = std::max(btScalar(0), row.m_multiplier + violation * inverse);
+        const btVector3 way = pointOf(contact, x, -start);
+        btVector3 held = row.m_held - (way - normal * normal.dot(way)) * inverse;
         const btScalar most = contact.m_friction * pushed, wanted2 = held.length2();
         if (wanted2 > most * most) held *= most / btSqrt(wanted2);
-        shift(contact, held - row.m_held, x);
+        shift(contact, normal * (pushed - row.m_multiplier) + (held - row.m_held), x);
+        row.m_multiplier = pushed;
         row.m_held = held;
         return violation;
     }

@@ -74,8 +74,9 @@ public:
         m_gather.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotCount.handle(),
                         m_slotFirst.handle(), m_members.handle(), m_keys.handle(), m_counters.handle(),
                         m_next.handle());
-        m_order.launch(m_device, (slots + m_sortBlock - 1) / m_sortBlock * kGroup, kGroup, m_hits.handle(), capacity,
-                       m_slotFirst.handle(), slots, m_ranked, m_sortBlock, m_members.handle(), m_counters.handle());
+        m_order.launch(m_device, (slots + m_sortBlock - 1) / m_sortBlock * kGroup, kGroup, capacity,
+                       m_slotFirst.handle(), slots, m_ranked, m_sortBlock, m_members.handle(), m_keys.handle(),
+                       m_counters.handle());
         m_write.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotFirst.handle(), slots, m_ranked,
                        m_parts, m_members.handle(), m_keys.handle(), m_contacts.handle(), m_counters.handle());
         const std::vector<cl_uint> left = contents(m_device, m_slotCount, slots);
@@ -325,7 +326,7 @@ TEST_P(CompactionTest, GrowsLittleMoreThanTheHitsOfASlot)
         fewMs = std::min(fewMs, compaction.orderMs(few));
         manyMs = std::min(manyMs, compaction.orderMs(many));
     }
-    EXPECT_LT(manyMs, 32 * fewMs) << fewMs << " ms for 16384 hits, " << manyMs << " for 131072";
+    EXPECT_LT(manyMs, 20 * fewMs) << fewMs << " ms for 16384 hits, " << manyMs << " for 131072";
     EXPECT_FALSE(device->failed()) << device->error().text();
 }
 

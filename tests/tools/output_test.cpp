@@ -59,6 +59,12 @@ TEST_F(Outputs, jsonHasEveryKey)
     EXPECT_GT(run.at("contacts_max"), 0);
     EXPECT_GT(run.at("collision_ms").at("median"), 0);
     EXPECT_LE(run.at("collision_ms").at("median"), run.at("collision_ms").at("max"));
+    for (const char* part : {"dispatch", "upload", "wait", "write", "rounds"})
+    {
+        EXPECT_GE(run.at("collision_parts_ms").at(part), 0) << part;
+        EXPECT_LE(run.at("collision_parts_ms").at(part), run.at("collision_ms").at("max")) << part;
+    }
+    EXPECT_GT(run.at("collision_parts_ms").at("rounds"), 0);
     EXPECT_EQ(run.at("penetration_max_m"), 0);
     EXPECT_EQ(run.at("nodes_below_surface"), 0);
     EXPECT_EQ(run.at("nodes_through"), 0);

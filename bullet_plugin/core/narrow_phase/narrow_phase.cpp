@@ -178,9 +178,9 @@ void NarrowPhaseStage::enqueuePlaces(Device& device, Buffer<cl_uint>& slotCount,
 void NarrowPhaseStage::enqueueOrder(Device& device, cl_uint ranked, StepTally tally)
 {
     const std::size_t block = device.isGpu() ? kSortBlockGpu : kBlock;
-    m_order.launch(device, (m_slots + block - 1) / block * kSortGroup, kSortGroup, m_hits.handle(),
-                   cl_uint(m_hits.capacity()), m_slotFirst.handle(), cl_uint(m_slots), ranked, cl_uint(block),
-                   m_members.handle(), tally.m_now.handle());
+    m_order.launch(device, (m_slots + block - 1) / block * kSortGroup, kSortGroup, cl_uint(m_hits.capacity()),
+                   m_slotFirst.handle(), cl_uint(m_slots), ranked, cl_uint(block), m_members.handle(), m_keys.handle(),
+                   tally.m_now.handle());
 }
 
 void NarrowPhaseStage::enqueueCompaction(Device& device, NarrowPhaseBuffers sides, StepTally tally,
