@@ -115,11 +115,13 @@ void ContactRounds::addFeature(const FeatureContacts& feature)
         Block& block = m_blocks.back();
         block.m_contacts = feature.m_contacts + first;
         const int lanes = static_cast<int>(std::min(feature.m_count - first, std::uint32_t(kLanes)));
-        block.m_used = (1u << lanes) - 1;
+        block.m_lanes = lanes;
         block.m_count = count;
         std::copy(moved, moved + 3, block.m_moved);
         for (int lane = 0; lane < kLanes; ++lane)
             fillLane(block, lane, block.m_contacts[std::min(lane, lanes - 1)]);
+        for (int lane = lanes; lane < kLanes; ++lane)
+            block.m_level[lane] = -std::numeric_limits<float>::infinity();
     }
 }
 
@@ -321,7 +323,7 @@ btScalar ContactRounds::projectBlock(std::size_t index, unsigned due)
     btScalar worst = 0;
     for (int lane = 0; lane < kLanes; ++lane)
     {
-        if (!(due >> lane & block.m_used >> lane & 1u)) continue;
+        if (!(due >> lane & 1u)) continue;
         int& at = m_rowsOf[index].m_row[lane];
         if (at < 0)
         {
@@ -337,7 +339,7 @@ btScalar ContactRounds::projectBlock(std::size_t index, unsigned due)
         }
         if (!(row.m_inverseMobility > 0) || !project(row, worst)) continue;
         holds |= 1u << lane;
-        if (block.m_used >> lane > 1) due |= bitsAbove0(excessOf(block, m_places.data()));  // its nodes moved
+        if (lane + 1 < block.m_lanes) due |= bitsAbove0(excessOf(block, m_places.data()));  // its nodes moved
     }
     m_holds[index] = static_cast<unsigned char>(holds);
     if (held == 0 && holds != 0) m_holding.push_back(index);

@@ -62,7 +62,7 @@ private:
         btScalar m_inverseMass;
         int m_node;
     };
-    // Contacts of one cloth feature side by side; lanes beyond the last one repeat it. The gap is
+    // Contacts of one cloth feature side by side; lanes beyond the last one are never violated. The gap is
     // n.(x0 + w1 (x1 - x0) + w2 (x2 - x0)) - level. The level is raised by a margin for rounding.
     struct Block
     {
@@ -73,7 +73,7 @@ private:
         Lanes m_weights[2];  // of the second and third node
         int m_moved[3];      // the first one again where unused
         int m_count;         // of nodes
-        unsigned m_used;     // a bit for each lane
+        int m_lanes;         // in use
         const Contact* m_contacts;
     };
     // Indices in m_rows by a block's lanes, -1 for none.
@@ -139,7 +139,7 @@ private:
     std::vector<unsigned char> m_holds;    // likewise: a bit for each lane whose row has pushed in this stage
     std::vector<Row> m_rows;
     std::vector<std::size_t> m_holding;  // blocks with rows that have pushed in this stage
-    std::vector<Row*> m_settling;        // of those the rows whose planes were taken anew
+    std::vector<Row*> m_settling;        // within settle(): of those the rows whose planes were taken anew
     std::size_t m_nodeBlocks = 0;
     float m_margin = 0;    // m, of the blocks' levels
     unsigned m_stage = 0;  // counts up with each

@@ -13,14 +13,14 @@
 
 namespace drape
 {
-// Of the time that Drape spends in a step, ms; see StepStatistics.
+// Of StepTimes::m_collisionMs, ms; see StepStatistics.
 struct CollisionParts
 {
     double m_dispatch = 0;  // Bullet's collision detection, and Drape's part in it
     double m_upload = 0;
     double m_wait = 0;
     double m_write = 0;
-    double m_rounds = 0;
+    double m_rounds = 0;  // and the look at strayed nodes
     double sum() const { return m_dispatch + m_upload + m_wait + m_write + m_rounds; }
 };
 
