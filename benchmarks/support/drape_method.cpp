@@ -35,8 +35,6 @@ public:
     {
         const Clock::time_point start = Clock::now();
         m_obstacle = m_pipeline->addObstacle(describeMesh(scene.m_obstacle));
-        for (const TriangleMesh& cloth : scene.m_cloths)
-            m_floats.push_back(cloth.m_positions.size());
         addCloths();
         m_prepareMs = millisecondsSince(start);
     }
@@ -55,13 +53,11 @@ public:
     {
         StepOutcome outcome;
         const Clock::time_point begin = Clock::now();
-        std::size_t first = 0;
-        for (std::size_t i = 0; i < m_cloths.size(); ++i)
+        m_pipeline->copyNodes(m_cloths, start, end);
+        for (const MeshId cloth : m_cloths)
         {
-            m_pipeline->copyNodes(m_cloths[i], start + first, end + first);
-            m_pipeline->addPair(m_cloths[i], m_obstacle, m_scene.m_thickness);
-            if (collidesWithItself()) m_pipeline->addSelf(m_cloths[i]);
-            first += m_floats[i];
+            m_pipeline->addPair(cloth, m_obstacle, m_scene.m_thickness);
+            if (collidesWithItself()) m_pipeline->addSelf(cloth);
         }
         m_pipeline->submit();
         const ContactList contacts = m_pipeline->finish();
@@ -141,7 +137,6 @@ private:
     const StepScene& m_scene;
     MeshId m_obstacle = kNoMesh;
     std::vector<MeshId> m_cloths;
-    std::vector<std::size_t> m_floats;
     double m_prepareMs = 0;
     bool m_profiled;
 };

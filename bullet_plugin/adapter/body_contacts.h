@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "BulletSoftBody/btSoftBody.h"
+#include "bullet_plugin/adapter/cloth_parts.h"
 #include "bullet_plugin/adapter/motion_limit.h"
 #include "bullet_plugin/core/pipeline.h"
 
@@ -26,15 +27,17 @@ struct BodyContacts
 {
     MeshId m_cloth = kNoMesh;
     btSoftBody* m_body = nullptr;
+    const ClothParts* m_parts = nullptr;                             // the mirror's, of the body's nodes
     btScalar m_leastThickness = SIMD_INFINITY, m_mostThickness = 0;  // of the body's pairs
     std::vector<FeatureContacts> m_features;                         // in canonical order
     MotionLimit m_limit;
 
     // For a body of another step; what memory it has stays.
-    void start(MeshId cloth, btSoftBody* body)
+    void start(MeshId cloth, btSoftBody* body, const ClothParts& parts)
     {
         m_cloth = cloth;
         m_body = body;
+        m_parts = &parts;
         m_leastThickness = SIMD_INFINITY;
         m_mostThickness = 0;
         m_features.clear();

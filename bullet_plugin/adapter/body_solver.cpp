@@ -1,6 +1,7 @@
 #include "bullet_plugin/adapter/body_solver.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "bullet_plugin/adapter/stopwatch.h"
 
@@ -12,57 +13,156 @@ namespace
 // nothing else that a call does adds up.
 bool iterationsCanBeSplit(const btSoftBody& body)
 {
-    return body.m_cfg.viterations == 0 && body.m_cfg.diterations == 0 && body.m_clusters.size() == 0 &&
-           body.m_joints.size() == 0;
+    return body.m_cfg.piterations > 1 && body.m_cfg.viterations == 0 && body.m_cfg.diterations == 0 &&
+           body.m_clusters.size() == 0 && body.m_joints.size() == 0;
 }
 
-// Returns the time of Bullet's part, ms.
-double solveWithBullet(BodyContacts& contacts, ContactRounds& rounds)
+// Calls of Bullet's solver.
+int callsFor(const btSoftBody& body)
 {
-    btSoftBody& body = *contacts.m_body;
-    double bulletMs = 0;
+    return iterationsCanBeSplit(body) ? body.m_cfg.piterations : 1;
+}
+
+// One of them. Returns its time, ms.
+double callBullet(btSoftBody& body)
+{
     const int iterations = body.m_cfg.piterations;
-    const bool split = iterations > 1 && iterationsCanBeSplit(body);
-    if (split) body.m_cfg.piterations = 1;
-    for (int i = 0; i < (split ? iterations : 1); ++i)
-    {
-        if (i > 0) contacts.m_limit.apply(body);
-        rounds.restart();  // what contacts pushed before the links' last pull is the links' business now
-        rounds.runAndSettle();
-        Stopwatch watch;
-        body.solveConstraints();
-        bulletMs += watch.lapMs();
-    }
+    if (iterationsCanBeSplit(body)) body.m_cfg.piterations = 1;
+    Stopwatch watch;
+    body.solveConstraints();
+    const double ms = watch.lapMs();
     body.m_cfg.piterations = iterations;
-    return bulletMs;
+    return ms;
 }
 
-void close(BodyContacts& contacts, ContactRounds& rounds)
+btSoftBody& bodyOf(const ContactRounds* rounds)
 {
-    btSoftBody& body = *contacts.m_body;
-    MotionLimit& limit = contacts.m_limit;
-    limit.apply(body);
-    if (rounds.empty()) return;
-    rounds.restart();
-    const btScalar tolerance = kClosingTolerance * contacts.m_leastThickness;
-    btScalar worst = rounds.run();
-    for (int i = 1; i < kClosingRounds && worst > tolerance; ++i)
-    {
-        limit.apply(body);
-        worst = rounds.run();
-    }
-    // What does not converge is left to the faces and edges, which a node outside the obstacle keeps from passing in a
-    // later step.
-    if (worst > tolerance) rounds.runNodes();
-    rounds.limitSpeeds();
+    return *rounds->contacts().m_body;
+}
+
+bool hasContacts(const ContactRounds* rounds)
+{
+    return !rounds->contacts().m_features.empty();
+}
+
+bool isOpen(const ContactRounds* rounds)
+{
+    return RoundsTeam::worst(*rounds) > kClosingTolerance * rounds->contacts().m_leastThickness;
+}
+
+bool obstaclesRest(const ContactRounds* rounds)
+{
+    return rounds->contacts().m_limit.obstaclesRest();
+}
+
+// Those of `from` for which it holds, another list.
+template <class Holds>
+void select(const RoundsTeam::Bodies& from, RoundsTeam::Bodies& to, const Holds& holds)
+{
+    to.clear();
+    std::copy_if(from.begin(), from.end(), std::back_inserter(to), holds);
+}
+
+// Leaves those for which it holds.
+template <class Holds>
+void keep(RoundsTeam::Bodies& bodies, const Holds& holds)
+{
+    const auto drops = [&](const ContactRounds* rounds) { return !holds(rounds); };
+    bodies.erase(std::remove_if(bodies.begin(), bodies.end(), drops), bodies.end());
 }
 }  // namespace
 
-double solveBody(BodyContacts& contacts, const FoundContacts& found, ContactRounds& rounds)
+void BodySolver::begin(const std::vector<BodyContacts*>& bodies, const FoundContacts& found)
 {
-    rounds.start(contacts, found);
-    const double bulletMs = solveWithBullet(contacts, rounds);
-    close(contacts, rounds);
+    while (m_rounds.size() < bodies.size())
+        m_rounds.emplace_back(new ContactRounds);
+    m_all.clear();
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        m_all.push_back(m_rounds[i].get());
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        m_rounds[i]->assign(*bodies[i], found);
+    m_team.forBodies(m_all, [](ContactRounds& rounds) { rounds.begin(); });
+    select(m_all, m_touching, hasContacts);
+    m_team.start(m_touching);
+}
+
+void BodySolver::applyLimits(const Bodies& bodies)
+{
+    m_team.forBodies(bodies, [](ContactRounds& rounds) { rounds.contacts().m_limit.apply(bodyOf(&rounds)); });
+}
+
+double BodySolver::iterate()
+{
+    double bulletMs = 0;
+    m_iterating = m_all;
+    for (int i = 0; !m_iterating.empty(); ++i)
+    {
+        if (i > 0) applyLimits(m_iterating);
+        select(m_iterating, m_turn, hasContacts);
+        for (ContactRounds* rounds : m_turn)
+            rounds->restart();  // what contacts pushed before the links' last pull is the links' business now
+        m_team.gather(m_turn);
+        m_team.runAndSettle(m_turn);
+        m_team.scatter(m_turn);
+        for (const ContactRounds* rounds : m_iterating)
+            bulletMs += callBullet(bodyOf(rounds));
+        keep(m_iterating, [i](const ContactRounds* rounds) { return i + 1 < callsFor(bodyOf(rounds)); });
+    }
+    return bulletMs;
+}
+
+// A round after the first. The nodes of those whose obstacles rest stay with the threads; of others the limit asks
+// where all nodes are.
+void BodySolver::runAgain(const Bodies& bodies)
+{
+    select(bodies, m_resting, obstaclesRest);
+    select(bodies, m_others, [](const ContactRounds* rounds) { return !obstaclesRest(rounds); });
+    m_team.limitAndRun(m_resting);
+    m_team.scatter(m_others);
+    applyLimits(m_others);
+    m_team.gather(m_others);
+    m_team.run(m_others);
+}
+
+// Nodes without contacts do not move in a round, but what their faces pass does, and may have come near an obstacle. No
+// contact depends on where they are.
+void BodySolver::holdOthers()
+{
+    m_team.forBodies(m_touching,
+                     [](ContactRounds& rounds)
+                     {
+                         MotionLimit& limit = rounds.contacts().m_limit;
+                         if (limit.obstaclesRest()) limit.applyToOthers(bodyOf(&rounds));
+                     });
+}
+
+void BodySolver::close()
+{
+    applyLimits(m_all);
+    for (ContactRounds* rounds : m_touching)
+        rounds->restart();
+    m_team.gather(m_touching);
+    m_team.run(m_touching);
+    select(m_touching, m_open, isOpen);
+    for (int i = 1; i < kClosingRounds && !m_open.empty(); ++i)
+    {
+        runAgain(m_open);
+        keep(m_open, isOpen);
+    }
+    // What does not converge is left to the faces and edges, which a node outside the obstacle keeps from passing in a
+    // later step.
+    m_team.runNodes(m_open);
+    m_team.scatter(m_touching);
+    holdOthers();
+    m_team.limitSpeeds(m_touching);
+}
+
+double BodySolver::solve(const std::vector<BodyContacts*>& bodies, const FoundContacts& found)
+{
+    if (bodies.empty()) return 0;
+    begin(bodies, found);
+    const double bulletMs = iterate();
+    close();
     return bulletMs;
 }
 }  // namespace drape

@@ -1,4 +1,4 @@
-// One step of one body: Bullet's own solver for everything that Bullet knows (links, anchors, its own contacts), and
+// One step of some bodies: Bullet's own solver for everything that Bullet knows (links, anchors, its own contacts), and
 // rounds over Drape's contacts between its iterations and after them.
 //
 // Why not btSoftBody::RContact and SContact: Bullet's solver never takes back what an RContact pushed, and its
@@ -12,10 +12,19 @@
 // cloth at rest on the bunny stirs at up to 2.6 mm/s (RMS) for ever; with it, at 0.3 over 2,000 steps, a slip of 2.5
 // among them.
 //
-// Guarantee: at the end no contact is violated by more than kClosingTolerance where kClosingRounds suffice. A body with
-// velocity or drift iterations or clusters is given to Bullet in one piece, the rounds before and after it. Cost:
-// linear in the contacts, piterations + kClosingRounds rounds at most, and those that settle what has pushed.
+// All bodies do an iteration before any does the next: the rounds of all are shared by the threads of a team, Bullet's
+// part is the caller's, a body at a time, those without contacts of Drape's before all others. That differs from
+// Bullet's own order only where bodies act on each other: by anchors or rigid contacts on one rigid body, or by soft
+// contacts.
+//
+// Guarantee: at the end no contact is violated by more than kClosingTolerance where kClosingRounds suffice. The same
+// bits with any number of threads. A body with velocity or drift iterations or clusters is given to Bullet in one
+// piece, the rounds before and after it. Cost: linear in the contacts, piterations + kClosingRounds rounds at most, and
+// those that settle what has pushed.
 #pragma once
+
+#include <memory>
+#include <vector>
 
 #include "bullet_plugin/adapter/body_contacts.h"
 #include "bullet_plugin/adapter/contact_rounds.h"
@@ -28,7 +37,28 @@ constexpr int kClosingRounds = 8;
 // Worst violation that may be left, as a share of the thickness.
 constexpr btScalar kClosingTolerance = btScalar(0.01);
 
-// Runs the body's solveConstraints() with its contacts; its step has a time above 0. Returns the time of Bullet's part,
-// ms.
-double solveBody(BodyContacts& contacts, const FoundContacts& found, ContactRounds& rounds);
+class BodySolver
+{
+public:
+    explicit BodySolver(ThreadTeam& threads) : m_team(threads) {}
+
+    // Runs the bodies' solveConstraints() with their contacts; their steps have a time above 0. Returns the time of
+    // Bullet's part, ms.
+    double solve(const std::vector<BodyContacts*>& bodies, const FoundContacts& found);
+
+private:
+    using Bodies = RoundsTeam::Bodies;
+
+    void begin(const std::vector<BodyContacts*>& bodies, const FoundContacts& found);
+    void applyLimits(const Bodies& bodies);
+    double iterate();
+    void runAgain(const Bodies& bodies);
+    void holdOthers();
+    void close();
+
+    RoundsTeam m_team;
+    std::vector<std::unique_ptr<ContactRounds>> m_rounds;  // kept for their memory
+    // Of the step; of these those with contacts, and those of one iteration or round.
+    Bodies m_all, m_touching, m_iterating, m_turn, m_open, m_resting, m_others;
+};
 }  // namespace drape

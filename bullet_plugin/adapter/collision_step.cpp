@@ -37,13 +37,12 @@ BodyContacts* CollisionStep::contactsOf(const btSoftBody& body)
     return nullptr;
 }
 
-BodyContacts& CollisionStep::addBody(MeshId cloth, btSoftBody* body)
+void CollisionStep::addBody(const ClothMirror& cloth, btSoftBody* body)
 {
     if (m_spare.empty()) m_spare.emplace_back();
     m_bodies.push_back(std::move(m_spare.back()));
     m_spare.pop_back();
-    m_bodies.back().start(cloth, body);
-    return m_bodies.back();
+    m_bodies.back().start(cloth.id(), body, cloth.parts());
 }
 
 void CollisionStep::clear()
@@ -63,7 +62,7 @@ void CollisionStep::addPair(const PairNote& note)
     if (clothId == kNoMesh || obstacleId == kNoMesh) return;
     if (!bodyOf(clothId))
     {
-        addBody(clothId, note.m_cloth);
+        addBody(cloth, note.m_cloth);
         m_mirrors.push_back(&cloth);
         m_state.m_found.nameCloth(clothId, note.m_cloth);
     }
@@ -82,8 +81,11 @@ void CollisionStep::addPair(const PairNote& note)
 
 void CollisionStep::uploadNodes()
 {
+    std::vector<MeshId> cloths;
     for (const ClothMirror* mirror : m_mirrors)
-        mirror->writeNodes(m_state.pipeline());
+        cloths.push_back(mirror->id());
+    m_state.pipeline().writeNodes(cloths,
+                                  [&](const NodeStretch& stretch) { m_mirrors[stretch.m_cloth]->writeNodes(stretch); });
 }
 
 void CollisionStep::begin(const std::vector<PairNote>& notes)

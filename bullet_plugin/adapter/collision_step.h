@@ -48,7 +48,7 @@ private:
     bool cutPaths();
     bool cutStrayed(const std::vector<bool>& strayed, Cut cut);
     BodyContacts* bodyOf(MeshId cloth);
-    BodyContacts& addBody(MeshId cloth, btSoftBody* body);
+    void addBody(const ClothMirror& cloth, btSoftBody* body);
 
     PluginState& m_state;
     std::vector<BodyContacts> m_bodies, m_spare;

@@ -1,8 +1,6 @@
 #include "bullet_plugin/adapter/contact_rounds.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <cstring>
 #include <limits>
 
 namespace drape
@@ -12,429 +10,228 @@ namespace
 // More than what the two ways of computing a violation round apart, as a share of the coordinates.
 constexpr float kRounding = 256 * std::numeric_limits<float>::epsilon();
 
+// From how many blocks of contacts on sharing a step's rounds saves more than waking threads takes, which is up to 50
+// us on a virtual machine: a round over so many takes 15.
+constexpr std::size_t kLeastShared = 512;
+// The same of nodes, for what a step does to each a dozen times: 3 ns each.
+constexpr std::size_t kLeastNodesShared = 8192;
+
 float largestCoordinate(const btVector3& v)
 {
     return static_cast<float>(std::max(btFabs(v.x()), std::max(btFabs(v.y()), btFabs(v.z()))));
 }
-
-// What the obstacle's motion in the step does to a point, m.
-btVector3 carriedFrom(const btVector3& start, const btTransform* carry)
-{
-    return carry ? *carry * start - start : btVector3(0, 0, 0);
-}
-
-// A vector of Bullet's, the last number of which does not count, loaded and stored whole: a contact reads what the one
-// before has just written, and a load waits for stores of less than itself to reach the cache.
-using Quad = btScalar __attribute__((vector_size(4 * sizeof(btScalar))));
-
-inline void load(const btVector3& vector, Quad& quad)
-{
-    std::memcpy(&quad, vector.m_floats, sizeof(quad));
-}
-
-inline void store(const Quad& quad, btVector3& vector)
-{
-    std::memcpy(vector.m_floats, &quad, sizeof(quad));
-}
-
-// For blocks, which are in float32.
-inline ContactRounds::Lanes lanesOf(const btVector3& vector)
-{
-    Quad quad;
-    load(vector, quad);
-    return __builtin_convertvector(quad, ContactRounds::Lanes);
-}
-
-inline btScalar dot(const Quad& a, const Quad& b)
-{
-    const Quad products = a * b;
-    return products[0] + products[1] + products[2];
-}
-
-inline bool anyAbove0(const ContactRounds::Lanes& values)
-{
-    const auto above = values > 0;
-    std::uint64_t halves[2];
-    std::memcpy(halves, &above, sizeof(above));
-    return (halves[0] | halves[1]) != 0;
-}
-
-// A bit for each lane that is above 0.
-inline unsigned bitsAbove0(const ContactRounds::Lanes& values)
-{
-    static_assert(ContactRounds::kLanes == 4 && sizeof(int) == sizeof(float));
-    using Bits = int __attribute__((vector_size(sizeof(values))));
-    const Bits bits = (values > 0) & Bits{1, 2, 4, 8};
-    std::uint64_t halves[2];
-    std::memcpy(halves, &bits, sizeof(bits));
-    const std::uint64_t both = halves[0] | halves[1];
-    return static_cast<unsigned>(both | both >> 32);
-}
 }  // namespace
 
-void ContactRounds::start(const BodyContacts& contacts, const FoundContacts& found)
+void ContactRounds::assign(BodyContacts& contacts, const FoundContacts& found)
 {
     m_contacts = &contacts;
-    m_found = &found;
-    m_body = contacts.m_body;
-    m_movedOfNode.assign(static_cast<std::size_t>(m_body->m_nodes.size()), -1);
-    m_moved.clear();
-    m_places.clear();
-    m_farthest = 0;
-    m_blocks.clear();
-    m_rows.clear();
-    m_holding.clear();
-    m_nodeBlocks = 0;
-    for (const FeatureContacts& feature : contacts.m_features)
-    {
-        addFeature(feature);
-        if (feature.m_nodes[1] < 0) m_nodeBlocks = m_blocks.size();
-    }
-    m_margin = kRounding * (m_farthest + static_cast<float>(contacts.m_mostThickness));
-    for (Block& block : m_blocks)
-        block.m_level += m_margin;
-    m_rowsOf.assign(m_blocks.size(), BlockRows());
-    m_holds.assign(m_blocks.size(), 0);
-    m_shifted.assign(m_moved.size(), 0);
+    m_parts = contacts.m_parts;
+    m_nodes.m_contacts = &contacts;
+    m_nodes.m_found = &found;
+    m_nodes.m_body = contacts.m_body;
 }
 
-void ContactRounds::addFeature(const FeatureContacts& feature)
+void ContactRounds::begin()
 {
-    int moved[3], count = 0;
-    for (int k = 0; k < 3; ++k)
+    const std::size_t groups = m_parts->groupCount();
+    if (m_groups.size() < groups)
     {
-        const int node = feature.m_nodes[k] >= 0 ? feature.m_nodes[k] : feature.m_nodes[0];
-        int& entry = m_movedOfNode[static_cast<std::size_t>(node)];
-        if (entry < 0) entry = addMoved(node);
-        moved[k] = entry;
-        count += feature.m_nodes[k] >= 0 ? 1 : 0;
+        m_halfDone.reset(new std::atomic<bool>[groups]);
+        m_groups.resize(groups);
     }
-    for (std::uint32_t first = 0; first < feature.m_count; first += kLanes)
+    for (std::size_t group = 0; group < groups; ++group)
     {
-        m_blocks.emplace_back();
-        Block& block = m_blocks.back();
-        block.m_contacts = feature.m_contacts + first;
-        const int lanes = static_cast<int>(std::min(feature.m_count - first, std::uint32_t(kLanes)));
-        block.m_lanes = lanes;
-        block.m_count = count;
-        std::copy(moved, moved + 3, block.m_moved);
-        for (int lane = 0; lane < kLanes; ++lane)
-            fillLane(block, lane, block.m_contacts[std::min(lane, lanes - 1)]);
-        for (int lane = lanes; lane < kLanes; ++lane)
-            block.m_level[lane] = -std::numeric_limits<float>::infinity();
+        m_groups[group].clear();
+        m_halfDone[group] = false;
     }
+    m_worst.assign(groups, 0);
+    m_settles.assign(groups, 0);
+    m_nodes.m_movedOfNode.assign(m_parts->nodeCount(), -1);
+    m_blocks = 0;
+    for (const FeatureContacts& feature : m_contacts->m_features)
+    {
+        m_groups[m_parts->groupOf(feature.m_nodes)].add(feature);
+        m_blocks += (feature.m_count + kLanes - 1) / kLanes;
+        for (int k = 0; k < 3 && feature.m_nodes[k] >= 0; ++k)
+            m_nodes.m_movedOfNode[static_cast<std::size_t>(feature.m_nodes[k])] = 0;
+    }
+    numberMoved();
 }
 
-void ContactRounds::fillLane(Block& block, int lane, const Contact& contact) const
-{
-    block.m_weights[0][lane] = contact.m_weights[1];
-    block.m_weights[1][lane] = contact.m_weights[2];
-    float level = static_cast<float>(m_contacts->m_mostThickness);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        block.m_normal[axis][lane] = contact.m_normal[axis];
-        level += contact.m_normal[axis] * contact.m_point[axis];
-    }
-    block.m_level[lane] = level;
-}
-
-int ContactRounds::addMoved(int node)
+// Leaf by leaf, so that threads that work on different leaves seldom write to one line of a cache.
+void ContactRounds::numberMoved()
 {
     const NodePaths& paths = m_contacts->m_limit.paths();
-    const std::size_t at = static_cast<std::size_t>(node);
-    m_places.push_back(paths.m_end[at]);
-    m_moved.push_back(Moved{paths.m_inverseMass[at], node});
-    m_farthest =
-        std::max(m_farthest, std::max(largestCoordinate(paths.m_start[at]), largestCoordinate(paths.m_end[at])));
-    return static_cast<int>(m_moved.size()) - 1;
-}
-
-ContactRounds::Row ContactRounds::makeRow(const Block& block, int lane) const
-{
-    const StepContact contact = m_found->resolve(*m_body, m_contacts->m_limit.paths(), block.m_contacts[lane]);
-    Row row = Row();
-    row.m_count = block.m_count;
-    std::copy(block.m_moved, block.m_moved + 3, row.m_moved);
-    row.m_held.setZero();
-    row.m_friction = contact.m_friction;
-    row.m_distance = contact.m_thickness + contact.m_targetGap;
-    row.m_carry = contact.m_carry;
-    setPlane(row, contact.m_weights, contact.m_normal, contact.m_point);
-    row.m_speedLimit = SIMD_INFINITY;
-    if (contact.m_startGap < 0)
+    float farthest = 0;
+    m_nodes.m_moved.clear();
+    m_firstMoved.assign(1, 0);
+    for (std::size_t leaf = 0; leaf < m_parts->leafCount(); ++leaf)
     {
-        const btScalar recovered = std::max(btScalar(0), contact.m_endGap - contact.m_startGap);
-        row.m_speedLimit = (recovered + row.m_normal.dot(carriedFrom(row.m_start, row.m_carry))) * m_body->m_sst.isdt;
-    }
-    return row;
-}
-
-// Of the row's point of the cloth.
-btVector3 ContactRounds::startOf(const Row& row) const
-{
-    const std::vector<btVector3>& starts = m_contacts->m_limit.paths().m_start;
-    btVector3 start(0, 0, 0);
-    for (int k = 0; k < row.m_count; ++k)
-    {
-        const int node = m_moved[static_cast<std::size_t>(row.m_moved[k])].m_node;
-        start += starts[static_cast<std::size_t>(node)] * row.m_weights[k];
-    }
-    return start;
-}
-
-void ContactRounds::setPlane(Row& row, const btScalar weights[3], const btVector3& normal, const btVector3& point) const
-{
-    btScalar mobility = 0;
-    for (int k = 0; k < row.m_count; ++k)
-    {
-        const btScalar inverseMass = m_moved[static_cast<std::size_t>(row.m_moved[k])].m_inverseMass;
-        row.m_weights[k] = weights[k];
-        row.m_shares[k] = weights[k] * inverseMass;
-        mobility += weights[k] * weights[k] * inverseMass;
-    }
-    row.m_inverseMobility = mobility > 0 ? 1 / mobility : btScalar(0);
-    row.m_normal = normal;
-    row.m_start = startOf(row);
-    const btVector3 carried = carriedFrom(row.m_start, row.m_carry);
-    row.m_carried = carried - normal * normal.dot(carried);
-    row.m_level = normal.dot(point - row.m_start) + row.m_distance;
-}
-
-bool ContactRounds::isViolated(const Row& row) const
-{
-    btVector3 way = -row.m_start;
-    for (int k = 0; k < row.m_count; ++k)
-        way += m_places[static_cast<std::size_t>(row.m_moved[k])] * row.m_weights[k];
-    return row.m_level - row.m_normal.dot(way) > 0;
-}
-
-// Takes the contact's plane where its features are nearest now; the same plane for the block.
-void ContactRounds::renewPlane(Row& row, Block& block, int lane) const
-{
-    float nodes[3][3];
-    for (int k = 0; k < row.m_count; ++k)
-        for (int axis = 0; axis < 3; ++axis)
-            nodes[k][axis] = static_cast<float>(m_places[static_cast<std::size_t>(row.m_moved[k])][axis]);
-    ContactPlane plane;
-    if (!FoundContacts::planeAt(block.m_contacts[lane], nodes, plane)) return;
-    row.m_renewed = true;
-    const btScalar weights[3] = {plane.m_weights[0], plane.m_weights[1], plane.m_weights[2]};
-    const btVector3 point(plane.m_point[0], plane.m_point[1], plane.m_point[2]);
-    setPlane(row, weights, btVector3(plane.m_normal[0], plane.m_normal[1], plane.m_normal[2]), point);
-    for (int axis = 0; axis < 3; ++axis)
-        block.m_normal[axis][lane] = plane.m_normal[axis];
-    block.m_weights[0][lane] = plane.m_weights[1];
-    block.m_weights[1][lane] = plane.m_weights[2];
-    block.m_level[lane] = static_cast<float>(row.m_normal.dot(point) + row.m_distance) + m_margin;
-}
-
-void ContactRounds::restart()
-{
-    ++m_stage;
-    for (const std::size_t index : m_holding)
-    {
-        for (int lane = 0; lane < kLanes; ++lane)
+        for (std::size_t i = m_parts->firstNode(leaf); i < m_parts->firstNode(leaf + 1); ++i)
         {
-            if (!(m_holds[index] >> lane & 1)) continue;
-            Row& row = m_rows[static_cast<std::size_t>(m_rowsOf[index].m_row[lane])];
-            row.m_multiplier = 0;
-            row.m_held.setZero();
+            const int node = m_parts->order()[i];
+            const std::size_t at = static_cast<std::size_t>(node);
+            if (m_nodes.m_movedOfNode[at] < 0) continue;
+            m_nodes.m_movedOfNode[at] = static_cast<int>(m_nodes.m_moved.size());
+            m_nodes.m_moved.push_back(RoundsNodes::Moved{paths.m_inverseMass[at], node});
+            farthest =
+                std::max(farthest, std::max(largestCoordinate(paths.m_start[at]), largestCoordinate(paths.m_end[at])));
         }
-        m_holds[index] = 0;
+        m_firstMoved.push_back(m_nodes.m_moved.size());
     }
-    m_holding.clear();
+    m_nodes.m_places.resize(m_nodes.m_moved.size());
+    m_nodes.m_shifted.assign(m_nodes.m_moved.size(), 0);
+    m_nodes.m_margin = kRounding * (farthest + static_cast<float>(m_contacts->m_mostThickness));
 }
 
-// Returns whether the contact had anything to do; `worst` grows to its violation.
-bool ContactRounds::project(Row& row, btScalar& worst)
-{
-    if (row.m_count == 1) return projectNodes<1>(row, worst);
-    return row.m_count == 2 ? projectNodes<2>(row, worst) : projectNodes<3>(row, worst);
-}
-
-template <int count>
-bool ContactRounds::projectNodes(Row& row, btScalar& worst)
-{
-    btVector3* places[count];
-    Quad x[count], way, normal, held, carried;
-    load(row.m_normal, normal);
-    load(row.m_held, held);
-    load(row.m_carried, carried);
-    load(row.m_start, way);
-    way = -way;
-    for (int k = 0; k < count; ++k)
-    {
-        places[k] = &m_places[static_cast<std::size_t>(row.m_moved[k])];
-        load(*places[k], x[k]);
-        way += x[k] * row.m_weights[k];
-    }
-    const btScalar along = dot(normal, way), violation = row.m_level - along;
-    if (!(violation > 0) && !(row.m_multiplier > 0)) return false;  // also for NaN
-    worst = std::max(worst, violation);
-    const btScalar pushed = std::max(btScalar(0), row.m_multiplier + violation * row.m_inverseMobility);
-    // Friction: takes the point's motion along the surface back, within the cone. A push leaves that motion as it is.
-    Quad hold = held - (way - normal * along - carried) * row.m_inverseMobility;
-    const btScalar most = row.m_friction * pushed;
-    const btScalar wanted2 = dot(hold, hold);
-    if (wanted2 > most * most) hold *= most / btSqrt(wanted2);
-    const Quad shift = normal * (pushed - row.m_multiplier) + (hold - held);
-    for (int k = 0; k < count; ++k)
-    {
-        const std::size_t moved = static_cast<std::size_t>(row.m_moved[k]);
-        store(x[k] + shift * row.m_shares[k], *places[k]);
-        m_shifted[moved] = 1;
-    }
-    row.m_multiplier = pushed;
-    store(hold, row.m_held);
-    row.m_pushed = true;
-    return true;
-}
-
-// How far each lane's contact may be violated, m: no less than it is.
-inline ContactRounds::Lanes ContactRounds::excessOf(const Block& block, const btVector3* places)
-{
-    if (block.m_count == 1) return excessOfNodes<1>(block, places);
-    return block.m_count == 2 ? excessOfNodes<2>(block, places) : excessOfNodes<3>(block, places);
-}
-
-template <int count>
-inline ContactRounds::Lanes ContactRounds::excessOfNodes(const Block& block, const btVector3* places)
-{
-    const Lanes a = lanesOf(places[block.m_moved[0]]);
-    Lanes at[3] = {__builtin_shufflevector(a, a, 0, 0, 0, 0), __builtin_shufflevector(a, a, 1, 1, 1, 1),
-                   __builtin_shufflevector(a, a, 2, 2, 2, 2)};
-    for (int k = 1; k < count; ++k)
-    {
-        const Lanes way = lanesOf(places[block.m_moved[k]]) - a;
-        at[0] += block.m_weights[k - 1] * __builtin_shufflevector(way, way, 0, 0, 0, 0);
-        at[1] += block.m_weights[k - 1] * __builtin_shufflevector(way, way, 1, 1, 1, 1);
-        at[2] += block.m_weights[k - 1] * __builtin_shufflevector(way, way, 2, 2, 2, 2);
-    }
-    return block.m_level - (block.m_normal[0] * at[0] + block.m_normal[1] * at[1] + block.m_normal[2] * at[2]);
-}
-
-// Projects the contacts of a block that are due, in order: those that push and those that may be violated. Returns the
-// worst violation, 0 without one.
-btScalar ContactRounds::projectBlock(std::size_t index, unsigned due)
-{
-    Block& block = m_blocks[index];
-    const unsigned held = m_holds[index];
-    unsigned holds = held;
-    btScalar worst = 0;
-    for (int lane = 0; lane < kLanes; ++lane)
-    {
-        if (!(due >> lane & 1u)) continue;
-        int& at = m_rowsOf[index].m_row[lane];
-        if (at < 0)
-        {
-            at = static_cast<int>(m_rows.size());
-            m_rows.push_back(makeRow(block, lane));
-        }
-        Row& row = m_rows[static_cast<std::size_t>(at)];
-        if (!(row.m_inverseMobility > 0)) continue;
-        if (row.m_stage != m_stage && isViolated(row))
-        {
-            renewPlane(row, block, lane);
-            row.m_stage = m_stage;
-        }
-        if (!(row.m_inverseMobility > 0) || !project(row, worst)) continue;
-        holds |= 1u << lane;
-        if (lane + 1 < block.m_lanes) due |= bitsAbove0(excessOf(block, m_places.data()));  // its nodes moved
-    }
-    m_holds[index] = static_cast<unsigned char>(holds);
-    if (held == 0 && holds != 0) m_holding.push_back(index);
-    return worst;
-}
-
-// Takes over where the body's nodes are now.
+// Takes over where the nodes are now. One thread for a body: Bullet, which has written them, reads them next.
 void ContactRounds::gather()
 {
-    for (std::size_t i = 0; i < m_moved.size(); ++i)
-        m_places[i] = m_body->m_nodes[m_moved[i].m_node].m_x;
+    for (std::size_t i = 0; i < m_nodes.m_moved.size(); ++i)
+        m_nodes.m_places[i] = m_nodes.m_body->m_nodes[m_nodes.m_moved[i].m_node].m_x;
 }
 
 void ContactRounds::scatter()
 {
-    const btScalar velocityScale = m_body->m_sst.isdt * (1 - m_body->m_cfg.kDP);
-    for (std::size_t i = 0; i < m_moved.size(); ++i)
+    const btSoftBody& body = *m_nodes.m_body;
+    const btScalar velocityScale = body.m_sst.isdt * (1 - body.m_cfg.kDP);
+    for (std::size_t i = 0; i < m_nodes.m_moved.size(); ++i)
     {
-        if (!m_shifted[i]) continue;
-        m_shifted[i] = 0;
-        btSoftBody::Node& node = m_body->m_nodes[m_moved[i].m_node];
-        node.m_v += (m_places[i] - node.m_x) * velocityScale;
-        node.m_x = m_places[i];
+        if (!m_nodes.m_shifted[i]) continue;
+        m_nodes.m_shifted[i] = 0;
+        btSoftBody::Node& node = m_nodes.m_body->m_nodes[m_nodes.m_moved[i].m_node];
+        node.m_v += (m_nodes.m_places[i] - node.m_x) * velocityScale;
+        node.m_x = m_nodes.m_places[i];
     }
 }
 
-btScalar ContactRounds::lookAtBlocks(std::size_t count)
+// Nodes of a leaf, where the body's limit says no more of others.
+void ContactRounds::keepNear(std::size_t leaf)
 {
-    const Block* const blocks = m_blocks.data();
-    const btVector3* const places = m_places.data();
-    const unsigned char* const holds = m_holds.data();
-    btScalar worst = 0;
-    for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t i = m_firstMoved[leaf]; i < m_firstMoved[leaf + 1]; ++i)
     {
-        const Lanes excess = excessOf(blocks[i], places);
-        if (holds[i] != 0 || anyAbove0(excess)) worst = std::max(worst, projectBlock(i, bitsAbove0(excess) | holds[i]));
+        const std::size_t node = static_cast<std::size_t>(m_nodes.m_moved[i].m_node);
+        if (m_contacts->m_limit.keepNear(node, m_nodes.m_places[i])) m_nodes.m_shifted[i] = 1;
     }
-    return worst;
 }
 
-btScalar ContactRounds::runBlocks(std::size_t count)
+void ContactRounds::work(std::size_t index, Pass pass)
 {
-    gather();
-    const btScalar worst = lookAtBlocks(count);
-    scatter();
-    return worst;
+    ContactGroup& group = m_groups[index];
+    switch (pass)
+    {
+        case Pass::MakeBlocks:
+            return group.makeBlocks(m_nodes);
+        case Pass::Nodes:
+            m_worst[index] = group.look(m_nodes, m_stage, ContactGroup::Kinds::Nodes);
+            return;
+        case Pass::NodesAndFaces:
+        case Pass::LimitNodesAndFaces:
+            m_worst[index] = group.look(m_nodes, m_stage, ContactGroup::Kinds::NodesAndFaces);
+            return;
+        case Pass::Edges:
+        case Pass::EdgesAndList:
+            m_worst[index] = std::max(m_worst[index], group.look(m_nodes, m_stage, ContactGroup::Kinds::Edges));
+            m_settles[index] = pass == Pass::EdgesAndList && group.listSettling();
+            return;
+        case Pass::Settle:
+            return group.settle(m_nodes);
+        case Pass::LimitSpeeds:
+            return group.limitSpeeds(m_nodes);
+    }
 }
 
-void ContactRounds::settle()
+void ContactRounds::climb(std::size_t leaf, Pass pass)
 {
-    std::sort(m_holding.begin(), m_holding.end());  // in canonical order
+    if (pass == Pass::LimitNodesAndFaces) keepNear(leaf);
+    for (std::size_t group = m_parts->firstLeaf() + leaf;; group /= 2)
+    {
+        if (!m_groups[group].empty()) work(group, pass);
+        // The second of two halves goes on, and sees what the first one wrote.
+        if (group == 1 || !m_halfDone[group / 2].exchange(true, std::memory_order_acq_rel)) return;
+        m_halfDone[group / 2].store(false, std::memory_order_relaxed);
+    }
+}
+
+btScalar ContactRounds::worst() const
+{
+    return *std::max_element(m_worst.begin(), m_worst.end());
+}
+
+bool ContactRounds::anySettles() const
+{
+    return std::find(m_settles.begin(), m_settles.end(), 1) != m_settles.end();
+}
+
+void RoundsTeam::pass(const Bodies& bodies, ContactRounds::Pass pass)
+{
+    m_leaves.clear();
+    std::size_t blocks = 0;
+    for (ContactRounds* body : bodies)
+    {
+        blocks += body->m_blocks;
+        for (std::size_t leaf = 0; leaf < body->m_parts->leafCount(); ++leaf)
+            m_leaves.push_back(Leaf{body, leaf});
+    }
+    const auto climb = [&](std::size_t i) { m_leaves[i].m_body->climb(m_leaves[i].m_leaf, pass); };
+    if (blocks >= kLeastShared) return m_threads.run(m_leaves.size(), climb);
+    for (std::size_t i = 0; i < m_leaves.size(); ++i)
+        climb(i);
+}
+
+bool RoundsTeam::areLarge(const Bodies& bodies)
+{
+    std::size_t nodes = 0;
+    for (const ContactRounds* body : bodies)
+        nodes += body->m_parts->nodeCount();
+    return nodes >= kLeastNodesShared;
+}
+
+void RoundsTeam::gather(const Bodies& bodies)
+{
+    forBodies(bodies, [](ContactRounds& body) { body.gather(); });
+}
+
+void RoundsTeam::scatter(const Bodies& bodies)
+{
+    forBodies(bodies, [](ContactRounds& body) { body.scatter(); });
+}
+
+void RoundsTeam::start(const Bodies& bodies)
+{
+    pass(bodies, ContactRounds::Pass::MakeBlocks);
+}
+
+void RoundsTeam::run(const Bodies& bodies)
+{
+    pass(bodies, ContactRounds::Pass::NodesAndFaces);
+    pass(bodies, ContactRounds::Pass::Edges);
+}
+
+void RoundsTeam::limitAndRun(const Bodies& bodies)
+{
+    pass(bodies, ContactRounds::Pass::LimitNodesAndFaces);
+    pass(bodies, ContactRounds::Pass::Edges);
+}
+
+void RoundsTeam::runNodes(const Bodies& bodies)
+{
+    pass(bodies, ContactRounds::Pass::Nodes);
+}
+
+void RoundsTeam::runAndSettle(const Bodies& bodies)
+{
+    pass(bodies, ContactRounds::Pass::NodesAndFaces);
+    pass(bodies, ContactRounds::Pass::EdgesAndList);
     m_settling.clear();
-    for (const std::size_t index : m_holding)
-    {
-        for (int lane = 0; lane < kLanes; ++lane)
-        {
-            if (!(m_holds[index] >> lane & 1)) continue;
-            Row& row = m_rows[static_cast<std::size_t>(m_rowsOf[index].m_row[lane])];
-            if (row.m_renewed) m_settling.push_back(&row);
-        }
-    }
-    btScalar worst = 0;
-    for (int pass = 0; pass < kSettlingPasses; ++pass)
-        for (Row* row : m_settling)
-            project(*row, worst);
+    for (ContactRounds* body : bodies)
+        if (body->anySettles()) m_settling.push_back(body);
+    for (int i = 0; i < kSettlingPasses; ++i)
+        pass(m_settling, ContactRounds::Pass::Settle);
 }
 
-void ContactRounds::runAndSettle()
+void RoundsTeam::limitSpeeds(const Bodies& bodies)
 {
-    gather();
-    lookAtBlocks(m_blocks.size());
-    settle();
-    scatter();
-}
-
-void ContactRounds::limitSpeed(const Row& row)
-{
-    btScalar speed = 0;
-    for (int k = 0; k < row.m_count; ++k)
-        speed += m_body->m_nodes[m_moved[static_cast<std::size_t>(row.m_moved[k])].m_node].m_v.dot(row.m_normal) *
-                 row.m_weights[k];
-    const btScalar excess = speed - row.m_speedLimit;
-    if (!(excess > 0) || !(row.m_inverseMobility > 0)) return;  // a plane taken anew may rest on pinned nodes alone
-    for (int k = 0; k < row.m_count; ++k)
-    {
-        const Moved& moved = m_moved[static_cast<std::size_t>(row.m_moved[k])];
-        m_body->m_nodes[moved.m_node].m_v -= row.m_normal * (row.m_shares[k] * excess * row.m_inverseMobility);
-    }
-}
-
-void ContactRounds::limitSpeeds()
-{
-    for (const BlockRows& rows : m_rowsOf)
-        for (const int row : rows.m_row)
-            if (row >= 0 && m_rows[static_cast<std::size_t>(row)].m_pushed)
-                limitSpeed(m_rows[static_cast<std::size_t>(row)]);
+    pass(bodies, ContactRounds::Pass::LimitSpeeds);
 }
 }  // namespace drape

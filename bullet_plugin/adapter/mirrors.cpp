@@ -1,6 +1,7 @@
 #include "bullet_plugin/adapter/mirrors.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "bullet_plugin/adapter/mesh_reader.h"
 
@@ -12,8 +13,6 @@ namespace
 // refine) alters a count or an array and is seen at once; shuffling faces in place, as randomizeConstraints does, is
 // seen within faces / 32768 steps, and the contact writer checks the face that it is about to use.
 constexpr int kFacesPerCheck = 32768;
-// Nodes after which the pipeline is told that they are written.
-constexpr int kNodesPerPart = 8192;
 
 int nodeIndex(const btSoftBody& body, const btSoftBody::Node* node)
 {
@@ -70,6 +69,10 @@ void ClothMirror::readTopology()
     for (int f = 0; f < faces; ++f)
         for (int k = 0; k < 3; ++k)
             m_triangles[static_cast<std::size_t>(3 * f + k)] = nodeIndex(*m_body, m_body->m_faces[f].m_n[k]);
+    std::vector<btVector3> places;
+    for (int i = 0; i < m_nodeCount; ++i)
+        places.push_back(m_body->m_nodes[i].m_x);
+    m_parts.cut(std::move(places));
     m_nodeArray = m_nodeCount > 0 ? &m_body->m_nodes[0] : nullptr;
     m_faceArray = faces > 0 ? &m_body->m_faces[0] : nullptr;
     m_fullCheck = false;
@@ -97,17 +100,15 @@ MeshId ClothMirror::refresh(Pipeline& pipeline)
     return m_id;
 }
 
-void ClothMirror::writeNodes(Pipeline& pipeline) const
+void ClothMirror::writeNodes(const NodeStretch& stretch) const
 {
-    float *start = pipeline.clothStart(m_id), *end = pipeline.clothEnd(m_id);
-    for (int i = 0; i < m_nodeCount; ++i)
+    float *start = stretch.m_start, *end = stretch.m_end;
+    for (std::size_t i = stretch.m_first; i < stretch.m_first + stretch.m_count; ++i)
     {
-        const btSoftBody::Node& node = m_body->m_nodes[i];
+        const btSoftBody::Node& node = m_body->m_nodes[static_cast<int>(i)];
         writePosition(node.m_q, start);
         writePosition(node.m_x, end);
-        if ((i + 1) % kNodesPerPart == 0) pipeline.nodesWritten(m_id, static_cast<std::size_t>(i) + 1);
     }
-    pipeline.nodesWritten(m_id, static_cast<std::size_t>(m_nodeCount));
 }
 
 void ObstacleMirror::reload(Pipeline& pipeline, const btTransform& pose)

@@ -12,6 +12,7 @@
 
 #include "BulletSoftBody/btSoftBody.h"
 #include "LinearMath/btTransform.h"
+#include "bullet_plugin/adapter/cloth_parts.h"
 #include "bullet_plugin/adapter/kinematic_motion.h"
 #include "bullet_plugin/core/pipeline.h"
 
@@ -41,10 +42,12 @@ public:
 
     // Adds the body to the pipeline, or replaces what is there when the topology changed.
     MeshId refresh(Pipeline& pipeline);
-    // Writes the nodes' positions at the step's start (m_q) and predicted end (m_x).
-    void writeNodes(Pipeline& pipeline) const;
+    // Writes nodes' positions at the step's start (m_q) and predicted end (m_x).
+    void writeNodes(const NodeStretch& stretch) const;
     // Three nodes each, as the pipeline has them.
     const std::vector<std::int32_t>& triangles() const { return m_triangles; }
+    // Of the nodes as they lay when the topology was read.
+    const ClothParts& parts() const { return m_parts; }
     void requireFullCheck() { m_fullCheck = true; }
 
     int m_owners = 0;              // algorithms alive that use this mirror
@@ -58,6 +61,7 @@ private:
     const btSoftBody* m_body;  // followed only while a pair of the current step names it
     MeshId m_id = kNoMesh;
     std::vector<std::int32_t> m_triangles;
+    ClothParts m_parts;
     int m_nodeCount = 0;
     const void* m_nodeArray = nullptr;
     const void* m_faceArray = nullptr;

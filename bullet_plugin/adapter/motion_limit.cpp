@@ -26,17 +26,25 @@ bool meet(const btVector3& low, const btVector3& high, const btVector3& otherLow
     return meet;
 }
 
-// Brings the node back to the path where it is farther off than the radius, which goes from one end's to the other's.
-// Returns whether it was.
-bool keepNear(btSoftBody::Node& node, const btVector3& start, const btVector3& end, btScalar startRadius,
-              btScalar endRadius, btScalar velocityScale)
+// Brings the place back to the path where it is farther off than the radius, which goes from one end's to the other's.
+// Returns by how much it moved.
+btVector3 shiftToPath(const btVector3& start, const btVector3& end, btScalar startRadius, btScalar endRadius,
+                      const btVector3& place)
 {
-    const btScalar t = closestOnPath(start, end, node.m_x);
-    const btVector3 off = node.m_x - (start + (end - start) * t);
+    const btScalar t = closestOnPath(start, end, place);
+    const btVector3 off = place - (start + (end - start) * t);
     const btScalar radius = startRadius + (endRadius - startRadius) * t;
     const btScalar distance = off.length();
-    if (!(distance > radius)) return false;
-    const btVector3 shift = off * (radius / distance - 1);
+    if (!(distance > radius)) return btVector3(0, 0, 0);
+    return off * (radius / distance - 1);
+}
+
+// The same for a node. Returns whether it was.
+bool bringBack(btSoftBody::Node& node, const btVector3& start, const btVector3& end, btScalar startRadius,
+               btScalar endRadius, btScalar velocityScale)
+{
+    const btVector3 shift = shiftToPath(start, end, startRadius, endRadius, node.m_x);
+    if (shift == btVector3(0, 0, 0)) return false;
     node.m_x += shift;
     node.m_v += shift * velocityScale;
     return true;
@@ -46,7 +54,8 @@ bool keepNear(btSoftBody::Node& node, const btVector3& start, const btVector3& e
 void MotionLimit::clear()
 {
     m_regions.clear();
-    m_leastReach = m_free = SIMD_INFINITY;
+    m_anyMoves = false;
+    m_leastReach = m_leastTube = m_free = SIMD_INFINITY;
 }
 
 btScalar MotionLimit::tube(btScalar thickness, btScalar activation)
@@ -61,6 +70,8 @@ void MotionLimit::addObstacle(const btVector3& low, const btVector3& high, btSca
     m_leastReach = std::min(m_leastReach, reach);
     const btVector3 margin(reach, reach, reach);
     const btScalar least = tube(thickness, activation);
+    m_leastTube = std::min(m_leastTube, least);
+    m_anyMoves = m_anyMoves || carry != nullptr;
     m_free = std::min(m_free, kSureShare * std::min(least, kFreeShare * reach));
     m_regions.push_back(Region{low - margin, high + margin, Allowance{least, kFreeShare * reach}, carry != nullptr,
                                carry ? *carry : btTransform::getIdentity()});
@@ -88,15 +99,28 @@ bool MotionLimit::strayed(const btSoftBody& body) const
     return false;
 }
 
+bool MotionLimit::isRestless(std::size_t node, const btVector3& place) const
+{
+    const btScalar off2 = (place - m_paths.m_end[node]).length2();
+    return !(off2 <= m_free * m_free) && m_paths.m_inverseMass[node] > 0;
+}
+
+// Such a node is held by every obstacle that rests, and by each in the same way along its path.
+bool MotionLimit::keepNear(std::size_t node, btVector3& place) const
+{
+    if (!isRestless(node, place)) return false;
+    const btVector3 shift = shiftToPath(m_paths.m_start[node], m_paths.m_end[node], m_leastTube, m_leastTube, place);
+    place += shift;
+    return !(shift == btVector3(0, 0, 0));
+}
+
 bool MotionLimit::findRestless(const btSoftBody& body)
 {
     const int count = std::min(body.m_nodes.size(), static_cast<int>(m_paths.m_end.size()));
     m_restless.clear();
     for (int i = 0; i < count; ++i)
     {
-        const std::size_t at = static_cast<std::size_t>(i);
-        const btScalar off2 = (body.m_nodes[i].m_x - m_paths.m_end[at]).length2();
-        if (off2 <= m_free * m_free || !(m_paths.m_inverseMass[at] > 0)) continue;
+        if (!isRestless(static_cast<std::size_t>(i), body.m_nodes[i].m_x)) continue;
         m_restless.push_back(Restless{i, Allowance{SIMD_INFINITY, SIMD_INFINITY}});
     }
     return !m_restless.empty();
@@ -161,7 +185,7 @@ bool MotionLimit::markNear(const Region& region)
     return any;
 }
 
-void MotionLimit::applyResting(btSoftBody& body, btScalar velocityScale)
+void MotionLimit::applyResting(btSoftBody& body, btScalar velocityScale, bool withContacts)
 {
     const auto rests = [](const Region& region) { return !region.m_moves; };
     if (std::none_of(m_regions.begin(), m_regions.end(), rests)) return;
@@ -174,7 +198,7 @@ void MotionLimit::applyResting(btSoftBody& body, btScalar velocityScale)
         {
             const std::size_t at = static_cast<std::size_t>(restless.m_node);
             // What met a node's face on the way to the end may be away from all boxes there.
-            if (!(m_hasContact[at] || (anyNear && m_isNear[at]))) continue;
+            if (!(m_hasContact[at] ? withContacts : anyNear && m_isNear[at])) continue;
             const Allowance own = allowance(region, at);
             restless.m_allowed.m_start = std::min(restless.m_allowed.m_start, own.m_start);
             restless.m_allowed.m_end = std::min(restless.m_allowed.m_end, own.m_end);
@@ -185,8 +209,8 @@ void MotionLimit::applyResting(btSoftBody& body, btScalar velocityScale)
         const Allowance& allowed = restless.m_allowed;
         if (allowed.m_end == SIMD_INFINITY) continue;
         const std::size_t at = static_cast<std::size_t>(restless.m_node);
-        keepNear(body.m_nodes[restless.m_node], m_paths.m_start[at], m_paths.m_end[at], allowed.m_start, allowed.m_end,
-                 velocityScale);
+        bringBack(body.m_nodes[restless.m_node], m_paths.m_start[at], m_paths.m_end[at], allowed.m_start, allowed.m_end,
+                  velocityScale);
     }
 }
 
@@ -199,18 +223,23 @@ bool MotionLimit::applyMoving(btSoftBody& body, const Region& region, btScalar v
         const std::size_t at = static_cast<std::size_t>(restless.m_node);
         if (!m_isNear[at]) continue;
         const Allowance own = allowance(region, at);
-        moved = keepNear(body.m_nodes[restless.m_node], region.m_carry * m_paths.m_start[at], m_paths.m_end[at],
-                         own.m_start, own.m_end, velocityScale) ||
+        moved = bringBack(body.m_nodes[restless.m_node], region.m_carry * m_paths.m_start[at], m_paths.m_end[at],
+                          own.m_start, own.m_end, velocityScale) ||
                 moved;
     }
     return moved;
+}
+
+void MotionLimit::applyToOthers(btSoftBody& body)
+{
+    if (findRestless(body)) applyResting(body, body.m_sst.isdt * (1 - body.m_cfg.kDP), false);
 }
 
 void MotionLimit::apply(btSoftBody& body)
 {
     if (!findRestless(body)) return;
     const btScalar velocityScale = body.m_sst.isdt * (1 - body.m_cfg.kDP);
-    applyResting(body, velocityScale);
+    applyResting(body, velocityScale, true);
     bool boxed = false;
     for (const Region& region : m_regions)
     {

@@ -46,7 +46,7 @@ public:
     void addObstacle(const btVector3& low, const btVector3& high, btScalar thickness, btScalar activation,
                      const btTransform* carry = nullptr);
     // Call before Bullet solves: remembers the prediction. triangles: three nodes each; they stay where they are until
-    // the last apply().
+    // the last apply() or applyToOthers().
     void record(const btSoftBody& body, const std::vector<std::int32_t>& triangles);
     // Distance from its path that a node with contacts may go, m.
     static btScalar tube(btScalar thickness, btScalar activation);
@@ -57,6 +57,14 @@ public:
     bool strayed(const btSoftBody& body) const;
     // Brings nodes that left their path too far back; the nearest point of the allowed region.
     void apply(btSoftBody& body);
+    // The same for nodes without contacts alone.
+    void applyToOthers(btSoftBody& body);
+    // Whether all of the obstacles do. Then keepNear() does for a node with contacts what apply() does, wherever the
+    // other nodes are.
+    bool obstaclesRest() const { return !m_anyMoves; }
+    // For a node with contacts that is at `place`, while the obstacles rest: within the tube of the thinnest pair.
+    // Returns whether it was brought back.
+    bool keepNear(std::size_t node, btVector3& place) const;
 
 private:
     // Distances from the path's start and end that a node may go.
@@ -85,18 +93,21 @@ private:
         int m_nodes[3];
     };
 
+    bool isRestless(std::size_t node, const btVector3& place) const;
     bool findRestless(const btSoftBody& body);
     void boxPassed(const btSoftBody& body, bool withContacts);
     void addPassed(const btSoftBody& body, int a, int b, int c);
     // Marks nodes near the region; false, with no mark changed, where there are none.
     bool markNear(const Region& region);
     Allowance allowance(const Region& region, std::size_t node) const;
-    void applyResting(btSoftBody& body, btScalar velocityScale);
+    void applyResting(btSoftBody& body, btScalar velocityScale, bool withContacts);
     // Whether a node was brought back.
     bool applyMoving(btSoftBody& body, const Region& region, btScalar velocityScale);
 
     std::vector<Region> m_regions;
+    bool m_anyMoves = false;
     btScalar m_leastReach = SIMD_INFINITY;
+    btScalar m_leastTube = SIMD_INFINITY;
     btScalar m_free = SIMD_INFINITY;  // m, from the end of its path; within it a node is where it may be
     NodePaths m_paths;
     std::vector<unsigned char> m_hasContact;

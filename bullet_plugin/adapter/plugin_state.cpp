@@ -51,6 +51,7 @@ PluginState::PluginState(const Settings& settings)
         m_error.m_detail = exception.what();
     }
     if (!m_pipeline && !m_error.failed()) m_error.m_call = "drape::Plugin";
+    m_threads = m_pipeline ? m_pipeline->threads() : std::make_shared<ThreadTeam>(1);
     m_failedDevice.m_device.m_name = "none";
     m_failedDevice.m_reason = m_error.m_call;
 }

@@ -22,6 +22,7 @@
 #include "bullet_plugin/adapter/mirrors.h"
 #include "bullet_plugin/adapter/pair_algorithm.h"
 #include "bullet_plugin/core/pipeline.h"
+#include "bullet_plugin/core/threads/thread_team.h"
 
 class btSoftBodySolver;
 
@@ -51,6 +52,8 @@ public:
     const DeviceReport& device() const;
     Pipeline& pipeline() { return *m_pipeline; }
     const Settings& settings() const { return m_settings; }
+    // The pipeline's; they outlive it.
+    ThreadTeam& threads() { return *m_threads; }
     // After a failure that the pipeline could not contain: every pair goes to Bullet from now on.
     void fail(const std::string& call, const std::string& detail);
 
@@ -92,6 +95,7 @@ private:
 
     const Settings m_settings;
     std::unique_ptr<Pipeline> m_pipeline;
+    std::shared_ptr<ThreadTeam> m_threads;
     Error m_error;
     DeviceReport m_failedDevice;
     PairCreateFunction m_create, m_createSwapped;

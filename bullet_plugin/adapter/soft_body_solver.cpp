@@ -15,12 +15,13 @@ namespace drape
 // What is kept from step to step.
 struct SoftBodySolver::Work
 {
-    explicit Work(PluginState& state) : m_step(state) {}
+    explicit Work(PluginState& state) : m_step(state), m_solver(state.threads()) {}
 
     CollisionStep m_step;
-    ContactRounds m_rounds;
-    std::size_t m_asleep = 0;  // cloths, as the step began: Bullet's islands may wake them before it solves
-    double m_predictMs = 0;    // of this class's share in predictMotion
+    BodySolver m_solver;
+    std::vector<BodyContacts*> m_touched;  // of solveBodies()
+    std::size_t m_asleep = 0;              // cloths, as the step began: Bullet's islands may wake them before it solves
+    double m_predictMs = 0;                // of this class's share in predictMotion
 };
 
 SoftBodySolver::SoftBodySolver(Plugin& plugin) : m_state(plugin.state()), m_work(new Work(*m_state))
@@ -92,6 +93,7 @@ void SoftBodySolver::detect()
 double SoftBodySolver::solveBodies()
 {
     double bulletMs = 0;
+    m_work->m_touched.clear();
     for (int i = 0; i < m_softBodySet.size(); ++i)
     {
         btSoftBody* body = m_softBodySet[i];
@@ -99,14 +101,14 @@ double SoftBodySolver::solveBodies()
         if (!body->isActive() || !(body->m_sst.sdt > 0)) continue;
         if (BodyContacts* contacts = m_work->m_step.contactsOf(*body))
         {
-            bulletMs += solveBody(*contacts, m_state->m_found, m_work->m_rounds);
+            m_work->m_touched.push_back(contacts);
             continue;
         }
         Stopwatch watch;
         body->solveConstraints();
         bulletMs += watch.lapMs();
     }
-    return bulletMs;
+    return bulletMs + m_work->m_solver.solve(m_work->m_touched, m_state->m_found);
 }
 
 void SoftBodySolver::checkStrayed()
@@ -127,7 +129,16 @@ void SoftBodySolver::solveConstraints(btScalar)
     StepStatistics& statistics = m_state->m_statistics;
     const double waitMs = statistics.m_waitMs;
     Stopwatch watch;
-    const double bulletMs = solveBodies();
+    double bulletMs = 0;
+    try
+    {
+        bulletMs = solveBodies();
+    }
+    catch (const std::exception& exception)
+    {
+        m_work->m_step.clear();
+        m_state->fail("drape::SoftBodySolver::solveConstraints", exception.what());
+    }
     checkStrayed();
     statistics.m_finishMs = watch.lapMs() - bulletMs - (statistics.m_waitMs - waitMs);
 }

@@ -8,9 +8,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
+#include "bullet_plugin/core/threads/thread_team.h"
 #include "drape/error.h"
 #include "drape/mesh_description.h"
 #include "drape/report.h"
@@ -69,6 +71,14 @@ struct ContactPlane
     float m_weights[3];  // of the face's nodes, sum 1
 };
 
+// Some adjacent nodes of a cloth, and where they are to be written: x y z per node.
+struct NodeStretch
+{
+    std::size_t m_cloth;  // index in the caller's list
+    std::size_t m_first, m_count;
+    float *m_start, *m_end;  // of the first of them at the step's start and end
+};
+
 // Contacts where the back end left them.
 struct ContactList
 {
@@ -120,8 +130,11 @@ public:
     // to the device while the caller writes others. Optional. It helps where cloths are told of in the order in which
     // they were added, and large ones a part at a time.
     void nodesWritten(MeshId cloth, std::size_t count);
-    // All of that for a caller with arrays of its own, x y z per vertex: copies them a part at a time.
-    void copyNodes(MeshId cloth, const float* start, const float* end);
+    // All of that for several cloths: calls write() for stretches of their nodes, and tells of them as they are
+    // written. A GPU's pipeline shares many stretches with threads(), so that write() must not depend on their order.
+    void writeNodes(const std::vector<MeshId>& cloths, const std::function<void(const NodeStretch&)>& write);
+    // The same for a caller with arrays of its own, of all the cloths one after the other: x y z per vertex.
+    void copyNodes(const std::vector<MeshId>& cloths, const float* start, const float* end);
 
     // Names a pair for the coming step; thickness in m > 0. A cloth without a pair costs nothing.
     // tube: m, for a caller that lets no node of the cloth go farther than this from its straight way while it solves:
@@ -152,6 +165,8 @@ public:
     std::vector<KernelTime> takeKernelTimes();
     // What the device's buffers hold, by name; empty on the host.
     std::vector<MemoryUse> deviceMemory() const;
+    // Those that Settings::m_threads asks for; never null. For the pipeline's caller, between its calls, too.
+    const std::shared_ptr<ThreadTeam>& threads() const;
     // Whether a device failed, so that the host runs every step from then on.
     bool deviceFailed() const;
     // Message of the device's failure when the status says so, or of the mesh that was refused since.

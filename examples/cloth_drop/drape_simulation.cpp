@@ -74,6 +74,7 @@ std::unique_ptr<Simulation> makeDrapeSimulation(const DropScene& scene, const Op
     exitCode = kExitBadInput;
     if (!deviceSettings(options.m_backend, options.m_device, settings, error)) return nullptr;
     settings.m_reduceContacts = !options.m_allContacts;
+    settings.m_threads = options.m_threads;
     settings.m_mode = options.m_contactMode == "discrete"     ? ContactMode::Discrete
                       : options.m_contactMode == "continuous" ? ContactMode::Continuous
                                                               : ContactMode::Automatic;

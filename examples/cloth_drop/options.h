@@ -38,6 +38,7 @@ struct Options
     std::string m_device;
     bool m_listDevices = false;
     bool m_allContacts = false;  // those that others imply, too
+    unsigned m_threads = 0;      // see Settings
     bool m_compare = false;
     bool m_compareSoftPair = false;
     double m_compareCap = 60.0;

@@ -1,4 +1,5 @@
-// Contact rounds that leave most contacts alone against rounds that project every one: equal to the bit.
+// Contact rounds that leave most contacts alone, and are shared by threads, against rounds that project every one in
+// turn: equal to the bit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,25 +17,33 @@ namespace drape::test
 {
 namespace
 {
-// Every contact, in order, without any short cut.
+// Every contact, without any short cut: group by group of the cloth, children first, each in canonical order; in a
+// round edges after all others.
 class PlainRounds
 {
 public:
-    PlainRounds(btSoftBody& body, const NodePaths& paths, const FoundContacts& found,
+    PlainRounds(btSoftBody& body, const ClothParts& parts, const NodePaths& paths, const FoundContacts& found,
                 const std::vector<Contact>& contacts)
         : m_body(body), m_paths(paths), m_found(found), m_detected(contacts), m_rows(contacts.size())
     {
-        for (const Contact& contact : contacts)
-            m_contacts.push_back(found.resolve(body, paths, contact));
+        const auto groupOf = [&](const Contact& contact)
+        { return parts.groupOf(found.resolve(body, paths, contact).m_nodes); };
+        std::stable_sort(m_detected.begin(), m_detected.end(),
+                         [&](const Contact& a, const Contact& b) { return groupOf(a) > groupOf(b); });
+        for (std::size_t i = 0; i < m_detected.size(); ++i)
+        {
+            m_contacts.push_back(found.resolve(body, paths, m_detected[i]));
+            m_rows[i].m_speedLimit = speedLimitOf(m_contacts[i]);
+        }
     }
 
     void restart()
     {
         for (Row& row : m_rows)
         {
-            const bool settles = row.m_settles;
-            row = Row();
-            row.m_settles = settles;
+            row.m_multiplier = 0;
+            row.m_held.setZero();
+            row.m_renewed = row.m_acted = false;
         }
     }
 
@@ -50,12 +59,30 @@ public:
     {
         std::vector<btVector3> x = places();
         runAll(x);
-        for (int pass = 0; pass < ContactRounds::kSettlingPasses; ++pass)
+        for (int pass = 0; pass < RoundsTeam::kSettlingPasses; ++pass)
             for (std::size_t i = 0; i < m_rows.size(); ++i)
                 if (m_rows[i].m_acted && m_rows[i].m_settles) project(m_contacts[i], m_rows[i], x);
         store(x);
     }
 
+    void limitSpeeds()
+    {
+        for (std::size_t i = 0; i < m_rows.size(); ++i)
+        {
+            const StepContact& contact = m_contacts[i];
+            btScalar speed = 0;
+            for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+                speed += m_body.m_nodes[contact.m_nodes[k]].m_v.dot(contact.m_normal) * contact.m_weights[k];
+            const btScalar excess = speed - m_rows[i].m_speedLimit, mobility = mobilityOf(contact);
+            if (!m_rows[i].m_everActed || !(excess > 0) || !(mobility > 0)) continue;
+            ++m_slowed;
+            for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+                m_body.m_nodes[contact.m_nodes[k]].m_v -=
+                    contact.m_normal * (shareOf(contact, k) * excess * (1 / mobility));
+        }
+    }
+
+    std::size_t slowed() const { return m_slowed; }
     std::size_t renewed() const { return m_renewed; }
     std::size_t pushed() const
     {
@@ -69,8 +96,10 @@ private:
         btScalar m_multiplier = 0;
         btVector3 m_held = btVector3(0, 0, 0);
         bool m_renewed = false;
-        bool m_acted = false;    // violated or holding when it was looked at
-        bool m_settles = false;  // its plane was renewed in any stage
+        bool m_acted = false;      // violated or holding when it was looked at
+        bool m_everActed = false;  // in any stage
+        bool m_settles = false;    // its plane was renewed in any stage
+        btScalar m_speedLimit = 0;
     };
 
     std::vector<btVector3> places() const
@@ -95,10 +124,14 @@ private:
     btScalar runAll(std::vector<btVector3>& x)
     {
         btScalar worst = 0;
-        for (std::size_t i = 0; i < m_rows.size(); ++i)
+        for (const bool edges : {false, true})
         {
-            renewPlane(i, x);
-            worst = std::max(worst, project(m_contacts[i], m_rows[i], x));
+            for (std::size_t i = 0; i < m_rows.size(); ++i)
+            {
+                if ((m_contacts[i].m_nodes[1] >= 0 && m_contacts[i].m_nodes[2] < 0) != edges) continue;
+                renewPlane(i, x);
+                worst = std::max(worst, project(m_contacts[i], m_rows[i], x));
+            }
         }
         return worst;
     }
@@ -107,6 +140,20 @@ private:
     btVector3 startOf(const StepContact& contact) const
     {
         return pointOf(contact, m_paths.m_start, btVector3(0, 0, 0));
+    }
+
+    // What the obstacle's motion does to that point.
+    static btVector3 carriedFrom(const StepContact& contact, const btVector3& start)
+    {
+        return contact.m_carry ? *contact.m_carry * start - start : btVector3(0, 0, 0);
+    }
+
+    // Outwards: what recovering a depth that the step began with takes, beside the obstacle's own.
+    btScalar speedLimitOf(const StepContact& contact) const
+    {
+        if (!(contact.m_startGap < 0)) return SIMD_INFINITY;
+        const btScalar carried = contact.m_normal.dot(carriedFrom(contact, startOf(contact)));
+        return (std::max(btScalar(0), contact.m_endGap - contact.m_startGap) + carried) * m_body.m_sst.isdt;
     }
 
     btScalar violationOf(const StepContact& contact, const btVector3& start, const std::vector<btVector3>& x) const
@@ -146,8 +193,12 @@ private:
     void shift(const StepContact& contact, const btVector3& impulse, std::vector<btVector3>& x) const
     {
         for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
-            x[static_cast<std::size_t>(contact.m_nodes[k])] +=
-                impulse * (contact.m_weights[k] * movableInverseMass(m_body.m_nodes[contact.m_nodes[k]]));
+            x[static_cast<std::size_t>(contact.m_nodes[k])] += impulse * shareOf(contact, k);
+    }
+
+    btScalar shareOf(const StepContact& contact, int k) const
+    {
+        return contact.m_weights[k] * movableInverseMass(m_body.m_nodes[contact.m_nodes[k]]);
     }
 
     btScalar mobilityOf(const StepContact& contact) const
@@ -164,11 +215,12 @@ private:
         const btVector3 normal = contact.m_normal, start = startOf(contact);
         const btScalar mobility = mobilityOf(contact), violation = violationOf(contact, start, x);
         if (!(mobility > 0) || (!(violation > 0) && !(row.m_multiplier > 0))) return 0;
-        row.m_acted = true;
+        row.m_acted = row.m_everActed = true;
         const btScalar inverse = 1 / mobility;
         const btScalar pushed = std::max(btScalar(0), row.m_multiplier + violation * inverse);
-        const btVector3 way = pointOf(contact, x, -start);
-        btVector3 held = row.m_held - (way - normal * normal.dot(way)) * inverse;
+        const btVector3 way = pointOf(contact, x, -start), carried = carriedFrom(contact, start);
+        const btVector3 along = normal * normal.dot(way), slid = carried - normal * normal.dot(carried);
+        btVector3 held = row.m_held - (way - along - slid) * inverse;
         const btScalar most = contact.m_friction * pushed, wanted2 = held.length2();
         if (wanted2 > most * most) held *= most / btSqrt(wanted2);
         shift(contact, normal * (pushed - row.m_multiplier) + (held - row.m_held), x);
@@ -183,7 +235,7 @@ private:
     std::vector<Contact> m_detected;
     std::vector<StepContact> m_contacts;
     std::vector<Row> m_rows;
-    std::size_t m_renewed = 0;
+    std::size_t m_renewed = 0, m_slowed = 0;
 };
 
 std::unique_ptr<btSoftBody> makeBody(btSoftBodyWorldInfo& info, const std::vector<float>& start,
@@ -205,6 +257,14 @@ std::unique_ptr<btSoftBody> makeBody(btSoftBodyWorldInfo& info, const std::vecto
     body.m_sst.isdt = 1 / kDt;
     body.m_cfg.kDF = btScalar(0.6);
     return made;
+}
+
+std::vector<btVector3> placesOf(const btSoftBody& body)
+{
+    std::vector<btVector3> places;
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+        places.push_back(body.m_nodes[i].m_x);
+    return places;
 }
 
 std::vector<FeatureContacts> featuresOf(const Pipeline& pipeline, const std::vector<Contact>& contacts)
@@ -231,8 +291,10 @@ void expectSameNodes(const btSoftBody& a, const btSoftBody& b)
 }
 
 // A round of both: every fourth begins anew, and the one after it settles.
-void runBoth(ContactRounds& rounds, PlainRounds& plain, std::size_t round)
+void runBoth(RoundsTeam& team, ContactRounds& rounds, PlainRounds& plain, std::size_t round)
 {
+    const RoundsTeam::Bodies bodies{&rounds};
+    team.gather(bodies);
     if (round % 4 == 0)
     {
         rounds.restart();
@@ -240,49 +302,78 @@ void runBoth(ContactRounds& rounds, PlainRounds& plain, std::size_t round)
     }
     if (round % 4 != 1)
     {
-        ASSERT_EQ(rounds.run(), plain.run());
-        return;
+        team.run(bodies);
+        ASSERT_EQ(RoundsTeam::worst(rounds), plain.run());
     }
-    rounds.runAndSettle();
-    plain.runAndSettle();
+    else
+    {
+        team.runAndSettle(bodies);
+        plain.runAndSettle();
+    }
+    team.scatter(bodies);
 }
+
+struct RoundsCase
+{
+    std::string m_name;
+    BodyMotion m_motion;
+    unsigned m_threads;
+};
+
+const BodyMotion kRests{btTransform::getIdentity(), btTransform::getIdentity()};
+const BodyMotion kTurns{btTransform::getIdentity(),
+                        btTransform(btQuaternion(btVector3(1, 2, 3).normalized(), 0.02f), btVector3(0.01f, 0, 0.02f))};
+
+class ContactRoundsTest : public testing::TestWithParam<RoundsCase>
+{
+};
 }  // namespace
 
 // Between the rounds nodes are moved at random, as links move them, so that contacts come to act and cease to.
-TEST(ContactRounds, areThoseOverEveryContact)
+TEST_P(ContactRoundsTest, areThoseOverEveryContact)
 {
     Error error;
     const std::unique_ptr<Pipeline> pipeline = Pipeline::create(hostSettings(), error);
-    const TriangleMesh grid = makeClothGrid(17, 17, 1.0f, 0.032f).m_mesh;
-    const MeshId cloth = addCloth(*pipeline, grid), ground = addObstacle(*pipeline, makeTerrain(1.2f, 0.01f, 96, 7));
+    const TriangleMesh grid = makeClothGrid(65, 65, 2.0f, 0.032f).m_mesh;
+    const MeshId cloth = addCloth(*pipeline, grid), ground = addObstacle(*pipeline, makeTerrain(2.4f, 0.01f, 192, 7));
     Random random(20);
     SCOPED_TRACE("seed 20");
     const auto noise = [&random] { return random.uniform(-0.012f, 0.012f); };
     std::vector<float> start = grid.m_positions, end = start;
-    for (float& coordinate : end)
-        coordinate += noise();
+    for (std::size_t i = 0; i < end.size(); ++i)
+    {
+        start[i] += noise();
+        end[i] += noise();
+    }
     setMotion(*pipeline, cloth, start, end);
     pipeline->addPair(cloth, ground, kThickness);
     const std::vector<Contact> contacts = runStep(*pipeline);
-    ASSERT_GT(contacts.size(), 100u);
+    ASSERT_GT(contacts.size(), 2048u);  // in more blocks than threads begin to share at
 
     btSoftBodyWorldInfo info;
     const std::unique_ptr<btSoftBody> made = makeBody(info, start, end), plainMade = makeBody(info, start, end);
     btSoftBody &body = *made, &plainBody = *plainMade;
     btCollisionObject object;
     FoundContacts found;
-    found.nameObstacle(ground, &object, BodyMotion{btTransform::getIdentity(), btTransform::getIdentity()});
+    found.nameObstacle(ground, &object, GetParam().m_motion);
     found.set(*pipeline, ContactList{contacts.data(), contacts.size()});
+    ClothParts parts;
+    parts.cut(placesOf(body));
+    ASSERT_EQ(parts.leafCount(), 4u);
     BodyContacts bodyContacts;
-    bodyContacts.start(cloth, &body);
+    bodyContacts.start(cloth, &body, parts);
     bodyContacts.m_leastThickness = bodyContacts.m_mostThickness = kThickness;
     const std::vector<std::int32_t> noTriangles;
     bodyContacts.m_limit.record(body, noTriangles);
     bodyContacts.m_features = featuresOf(*pipeline, contacts);
 
+    ThreadTeam threads(GetParam().m_threads);
+    RoundsTeam team(threads);
     ContactRounds rounds;
-    rounds.start(bodyContacts, found);
-    PlainRounds plain(plainBody, bodyContacts.m_limit.paths(), found, contacts);
+    rounds.assign(bodyContacts, found);
+    rounds.begin();
+    team.start({&rounds});
+    PlainRounds plain(plainBody, parts, bodyContacts.m_limit.paths(), found, contacts);
     constexpr std::size_t kRounds = 24;
     std::size_t pushed = 0;
     for (std::size_t round = 0; round < kRounds; ++round)
@@ -294,12 +385,21 @@ TEST(ContactRounds, areThoseOverEveryContact)
             body.m_nodes[i].m_x += pull;
             plainBody.m_nodes[i].m_x += pull;
         }
-        ASSERT_NO_FATAL_FAILURE(runBoth(rounds, plain, round));
+        ASSERT_NO_FATAL_FAILURE(runBoth(team, rounds, plain, round));
         ASSERT_NO_FATAL_FAILURE(expectSameNodes(body, plainBody));
         pushed += plain.pushed();
         EXPECT_LT(plain.pushed(), contacts.size() / 2);
     }
     EXPECT_GT(pushed, kRounds * contacts.size() / 50);
     EXPECT_GT(plain.renewed(), 10u);
+    team.limitSpeeds({&rounds});
+    plain.limitSpeeds();
+    expectSameNodes(body, plainBody);
+    EXPECT_GT(plain.slowed(), 5u);
 }
+
+INSTANTIATE_TEST_SUITE_P(Obstacle, ContactRoundsTest,
+                         testing::Values(RoundsCase{"rests", kRests, 1}, RoundsCase{"turns", kTurns, 1},
+                                         RoundsCase{"restsThreads", kRests, 3}, RoundsCase{"turnsThreads", kTurns, 8}),
+                         [](const auto& round) { return round.param.m_name; });
 }  // namespace drape::test

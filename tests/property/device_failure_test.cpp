@@ -32,7 +32,7 @@ MeshDescription triangle(const float* positions, float selfThickness = 0)
 
 std::size_t contactsOfStep(Pipeline& pipeline, MeshId cloth, MeshId obstacle)
 {
-    pipeline.copyNodes(cloth, kAbove, kAbove);
+    pipeline.copyNodes({cloth}, kAbove, kAbove);
     pipeline.addPair(cloth, obstacle, 0.1f);
     pipeline.submit();
     return pipeline.finish().size();

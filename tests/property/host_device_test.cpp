@@ -63,7 +63,7 @@ TEST_P(HostDeviceTest, FewTriangles)
             const MeshId cloth = addCloth(pipeline, step.m_cloth), obstacle = addObstacle(pipeline, step.m_obstacle);
             for (int i = 0; i < 2; ++i)
             {
-                pipeline.copyNodes(cloth, step.m_cloth.m_positions.data(), step.m_end.data());
+                pipeline.copyNodes({cloth}, step.m_cloth.m_positions.data(), step.m_end.data());
                 pipeline.addPair(cloth, obstacle, step.m_thickness, 0.1f * step.m_thickness);
                 steps.push_back(runStep(pipeline));
             }

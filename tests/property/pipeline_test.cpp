@@ -221,9 +221,20 @@ TEST_P(PipelineTest, NodesMayGoBeforeAllAreWritten)
     {
         std::fill_n(pipeline->clothStart(cloth), 3 * nodes, 1e3f);
         std::fill_n(pipeline->clothEnd(cloth), 3 * nodes, 1e3f);
-        pipeline->copyNodes(cloth, start.data(), end.data());
+        pipeline->copyNodes({cloth}, start.data(), end.data());
         pipeline->addPair(cloth, obstacle, step.m_thickness);
     }
+    expectSame(runStep(*pipeline), expected);
+    std::vector<float> bothStart = start, bothEnd = end;
+    bothStart.insert(bothStart.end(), start.begin(), start.end());
+    bothEnd.insert(bothEnd.end(), end.begin(), end.end());
+    for (const MeshId cloth : {first, second})
+    {
+        std::fill_n(pipeline->clothStart(cloth), 3 * nodes, 1e3f);
+        std::fill_n(pipeline->clothEnd(cloth), 3 * nodes, 1e3f);
+        pipeline->addPair(cloth, obstacle, step.m_thickness);
+    }
+    pipeline->copyNodes({first, second}, bothStart.data(), bothEnd.data());
     expectSame(runStep(*pipeline), expected);
     // Told of before a cloth goes.
     pipeline->nodesWritten(first, nodes);
@@ -244,7 +255,7 @@ TEST_P(PipelineTest, FewTestsGiveTheSameContacts)
         const MeshId cloth = addCloth(*pipeline, step.m_cloth), obstacle = addObstacle(*pipeline, step.m_obstacle);
         const auto run = [&]
         {
-            pipeline->copyNodes(cloth, step.m_cloth.m_positions.data(), step.m_end.data());
+            pipeline->copyNodes({cloth}, step.m_cloth.m_positions.data(), step.m_end.data());
             pipeline->addPair(cloth, obstacle, step.m_thickness);
             return runStep(*pipeline);
         };

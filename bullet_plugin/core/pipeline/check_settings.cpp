@@ -39,6 +39,7 @@ bool checkSettings(const Settings& settings, Error& error)
         choice("Settings::m_mode", settings.m_mode, ContactMode::Automatic),
         {"Settings::m_activation", double(settings.m_activation),
          settings.m_activation >= 0.0f && settings.m_activation <= 4.0f, "0 to 4"},
+        {"Settings::m_threads", double(settings.m_threads), settings.m_threads <= 64, "0 to 64"},
         choice("Methods::m_traversal", methods.m_traversal, Traversal::WideGroups),
         choice("Methods::m_tree.m_builder", tree.m_builder, TreeBuilder::Ploc),
         choice("Methods::m_tree.m_refit", tree.m_refit, RefitMethod::Subtrees),

@@ -60,12 +60,16 @@ struct Pipeline::Implementation
     bool m_submitted = false;
     bool m_deviceLeft = false;  // it failed
 
+    std::shared_ptr<ThreadTeam> m_threads;
+
+    bool runsOnGpu() { return !m_report.m_onHost && device()->isGpu(); }
     Device* device() { return m_deviceBackend ? &m_deviceBackend->device() : nullptr; }
     PooledMesh makeMesh(const MeshDescription& description);
     // What depends on an obstacle's positions.
     static void measureObstacle(PooledMesh& mesh);
     void joinScene();
     void joinCloths();
+    std::vector<NodeStretch> stretchesOf(const std::vector<MeshId>& cloths);
     // Nodes that were told to be written are not those of the coming step. Transfers of them end.
     void forgetNodes();
     void joinObstacles();

@@ -26,6 +26,9 @@ constexpr float kEdgePad = 1e-4f;
 // Nodes that go to the device before all are written: 0.4 MB each of start and end, so that a transfer takes longer
 // than it takes to ask for it.
 constexpr std::size_t kNodesTogether = 1 << 15;
+// Nodes that one thread writes before it looks for others, and from how many on it is worth waking threads.
+constexpr std::size_t kNodesAlone = 1 << 11;
+constexpr std::size_t kLeastShared = 1 << 14;
 
 double millisecondsSince(Clock::time_point start)
 {
@@ -124,6 +127,23 @@ void Pipeline::Implementation::forgetNodes()
 {
     if (m_nodesSent > 0) m_deviceBackend->device().wait();
     m_nodesWritten = m_nodesSent = 0;
+}
+
+std::vector<NodeStretch> Pipeline::Implementation::stretchesOf(const std::vector<MeshId>& ids)
+{
+    std::vector<NodeStretch> stretches;
+    for (std::size_t i = 0; i < ids.size(); ++i)
+    {
+        const PooledMesh& mesh = m_scene.m_cloths.mesh(m_scene.m_cloths.slot(ids[i]));
+        const std::size_t nodes = mesh.m_positions.size() / 3;
+        for (std::size_t first = 0; first < nodes; first += kNodesAlone)
+        {
+            const std::size_t at = 3 * (mesh.m_firstVertex + first);
+            stretches.push_back(NodeStretch{i, first, std::min(kNodesAlone, nodes - first),
+                                            m_scene.m_clothStart.data() + at, m_scene.m_clothEnd.data() + at});
+        }
+    }
+    return stretches;
 }
 
 void Pipeline::Implementation::joinObstacles()
@@ -337,6 +357,7 @@ std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& erro
     std::unique_ptr<Pipeline> pipeline(new Pipeline);
     Implementation& self = *pipeline->m_implementation;
     self.m_settings = settings;
+    self.m_threads = std::make_shared<ThreadTeam>(settings.m_threads);
     self.m_hostBackend = HostBackend(settings.m_methods);
     self.m_report.m_reason = self.m_deviceReason = choice.m_reason;
     self.m_report.m_device.m_name = "host";
@@ -452,18 +473,46 @@ void Pipeline::nodesWritten(MeshId id, std::size_t count)
         self.m_nodesSent = self.m_nodesWritten;
 }
 
-void Pipeline::copyNodes(MeshId id, const float* start, const float* end)
+void Pipeline::writeNodes(const std::vector<MeshId>& ids, const std::function<void(const NodeStretch&)>& write)
 {
-    float *startTarget = clothStart(id), *endTarget = clothEnd(id);
-    const MeshPool& cloths = m_implementation->m_scene.m_cloths;
-    const std::size_t count = cloths.mesh(cloths.slot(id)).m_positions.size() / 3;
-    for (std::size_t first = 0, last; first < count; first = last)
+    Implementation& self = *m_implementation;
+    self.joinScene();
+    const std::vector<NodeStretch> stretches = self.stretchesOf(ids);
+    for (std::size_t first = 0, last; first < stretches.size(); first = last)
     {
-        last = std::min(first + kNodesTogether, count);
-        std::copy(start + 3 * first, start + 3 * last, startTarget + 3 * first);
-        std::copy(end + 3 * first, end + 3 * last, endTarget + 3 * first);
-        nodesWritten(id, last);
+        std::size_t nodes = 0;
+        for (last = first; last < stretches.size() && nodes < kNodesTogether; ++last)
+            nodes += stretches[last].m_count;
+        const auto writeOne = [&](std::size_t i) { write(stretches[first + i]); };
+        if (nodes >= kLeastShared && self.runsOnGpu())
+            self.m_threads->run(last - first, writeOne);
+        else
+            for (std::size_t i = 0; i < last - first; ++i)
+                writeOne(i);
+        for (std::size_t i = first; i < last; ++i)
+            nodesWritten(ids[stretches[i].m_cloth], stretches[i].m_first + stretches[i].m_count);
     }
+}
+
+void Pipeline::copyNodes(const std::vector<MeshId>& ids, const float* start, const float* end)
+{
+    const MeshPool& cloths = m_implementation->m_scene.m_cloths;
+    m_implementation->joinScene();
+    std::vector<std::size_t> firsts(1, 0);
+    for (const MeshId id : ids)
+        firsts.push_back(firsts.back() + cloths.mesh(cloths.slot(id)).m_positions.size());
+    writeNodes(ids,
+               [&](const NodeStretch& stretch)
+               {
+                   const std::size_t from = firsts[stretch.m_cloth] + 3 * stretch.m_first;
+                   std::copy_n(start + from, 3 * stretch.m_count, stretch.m_start);
+                   std::copy_n(end + from, 3 * stretch.m_count, stretch.m_end);
+               });
+}
+
+const std::shared_ptr<ThreadTeam>& Pipeline::threads() const
+{
+    return m_implementation->m_threads;
 }
 
 void Pipeline::addPair(MeshId cloth, MeshId obstacle, float thickness, float tube)

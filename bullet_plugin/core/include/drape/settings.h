@@ -57,6 +57,11 @@ struct Settings
     // the step, at the earliest time; Discrete may lose what is faster than its thickness (README: how much it loses).
     ContactMode m_mode = ContactMode::Automatic;
 
+    // Threads that hold the contacts of large cloths, and of many, in Bullet's solver, and write their nodes for a GPU;
+    // the caller's among them. They sleep else. 0: as many as the process may use cores, 8 at most. 1: the caller's
+    // alone. 64 at most. No trajectory depends on it.
+    unsigned m_threads = 0;
+
     // Also count the pairs of cloth and obstacle triangles that intersect at the step's start
     // (StepStatistics::m_intersections). Costs a kernel.
     bool m_reportIntersections = false;

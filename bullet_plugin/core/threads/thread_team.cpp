@@ -1,0 +1,214 @@
+#include "thread_team.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cfenv>
+#include <chrono>
+#include <csignal>
+#include <exception>
+#include <limits>
+#include <utility>
+
+#include <pthread.h>
+#include <sched.h>
+
+namespace drape
+{
+namespace
+{
+// Looks between two that leave the core to another thread, should one wait for it.
+constexpr int kLooksTogether = 64;
+
+// Tells the core that this is a loop that waits.
+inline void pause()
+{
+#if defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#elif defined(__aarch64__)
+    __asm__ __volatile__("yield");
+#endif
+}
+
+unsigned sizeFor(unsigned threads)
+{
+    if (threads > 0) return threads;
+    cpu_set_t cores;
+    return ::sched_getaffinity(0, sizeof cores, &cores) == 0
+               ? std::min(static_cast<unsigned>(CPU_COUNT(&cores)), ThreadTeam::kMostByDefault)
+               : 1;
+}
+
+// Blocks them for the calling thread, and so for threads that it starts: handlers are the application's, and run on its
+// own threads.
+class BlockedSignals
+{
+public:
+    BlockedSignals()
+    {
+        sigset_t all;
+        ::sigfillset(&all);
+        ::pthread_sigmask(SIG_SETMASK, &all, &m_before);
+    }
+    ~BlockedSignals() { ::pthread_sigmask(SIG_SETMASK, &m_before, nullptr); }
+
+private:
+    sigset_t m_before;
+};
+}  // namespace
+
+ThreadTeam::ThreadTeam(unsigned threads) : m_size(sizeFor(threads)), m_stretches(new Stretch[m_size]) {}
+
+ThreadTeam::~ThreadTeam()
+{
+    {
+        const std::lock_guard<std::mutex> lock(m_mutex);
+        m_ends = true;
+    }
+    m_offered.notify_all();
+    for (std::thread& thread : m_threads)
+        thread.join();
+}
+
+// Fewer threads than wanted do the same, later.
+void ThreadTeam::start()
+{
+    if (m_started) return;
+    m_started = true;
+    const BlockedSignals blocked;
+    try
+    {
+        m_threads.reserve(m_size - 1);
+        while (m_threads.size() + 1 < m_size)
+            m_threads.emplace_back(&ThreadTeam::work, this, static_cast<unsigned>(m_threads.size()) + 1);
+    }
+    catch (const std::exception&)
+    {
+    }
+}
+
+// As far as the process may use others; where it cannot be had they run anywhere.
+void ThreadTeam::keepOffCallersCore()
+{
+    const int core = ::sched_getcpu();
+    if (core < 0 || core == m_callersCore) return;
+    m_callersCore = core;
+    cpu_set_t cores;
+    if (::sched_getaffinity(0, sizeof cores, &cores) != 0 || CPU_COUNT(&cores) < 2) return;
+    CPU_CLR(static_cast<std::size_t>(core), &cores);
+    for (std::thread& thread : m_threads)
+        ::pthread_setaffinity_np(thread.native_handle(), sizeof cores, &cores);
+}
+
+void ThreadTeam::share(std::size_t count, Call call, const void* context)
+{
+    start();
+    keepOffCallersCore();
+    m_call = call;
+    m_context = context;
+    std::fegetenv(&m_environment);
+    m_unfinished.store(count, std::memory_order_relaxed);
+    assert(count <= std::numeric_limits<std::uint32_t>::max());
+    const std::uint32_t job = m_job.load(std::memory_order_relaxed) + 1;
+    for (std::size_t thread = 0, first = 0; thread < m_size; ++thread)
+    {
+        Stretch& stretch = m_stretches[thread];
+        stretch.m_end = (thread + 1) * count / m_size;
+        stretch.m_claim.store(std::uint64_t(job) << 32 | (stretch.m_end - first), std::memory_order_release);
+        first = stretch.m_end;
+    }
+    m_job.store(job);
+    wakeOne();
+    workOn(0);
+    for (int looks = 1; m_unfinished.load(std::memory_order_acquire) > 0; ++looks)
+    {
+        if (looks % kLooksTogether == 0)
+            std::this_thread::yield();
+        else
+            pause();
+    }
+    if (!m_failed.load(std::memory_order_relaxed)) return;
+    m_failed = false;
+    std::rethrow_exception(std::exchange(m_failure, nullptr));
+}
+
+// Of those that sleep, which then wakes another: a call that wakes takes the one who makes it up to 50 us on a virtual
+// machine. Either this sees a thread that is about to sleep, or that one sees the job: both store before they load.
+void ThreadTeam::wakeOne()
+{
+    if (m_sleepers.load() == 0) return;
+    {
+        const std::lock_guard<std::mutex> lock(m_mutex);
+    }
+    m_offered.notify_one();
+}
+
+void ThreadTeam::workOn(unsigned thread)
+{
+    for (unsigned i = 0; i < m_size; ++i)
+        while (workOnce(m_stretches[(thread + i) % m_size], thread > 0))
+        {
+        }
+}
+
+// Claims an item and runs it; false where none is left. What the caller wrote of the job is read after the claim alone:
+// until that item is done the caller does not come to write another job's.
+bool ThreadTeam::workOnce(Stretch& stretch, bool helps)
+{
+    std::uint64_t claim = stretch.m_claim.load(std::memory_order_acquire);
+    do
+    {
+        if (static_cast<std::uint32_t>(claim) == 0) return false;
+    } while (!stretch.m_claim.compare_exchange_weak(claim, claim - 1, std::memory_order_acquire));
+    if (helps) std::fesetenv(&m_environment);
+    runItem(stretch.m_end - static_cast<std::uint32_t>(claim));
+    m_unfinished.fetch_sub(1, std::memory_order_release);
+    return true;
+}
+
+void ThreadTeam::runItem(std::size_t item)
+{
+    if (m_failed.load(std::memory_order_relaxed)) return;
+    try
+    {
+        m_call(m_context, item);
+    }
+    catch (...)
+    {
+        if (!m_failed.exchange(true)) m_failure = std::current_exception();
+    }
+}
+
+void ThreadTeam::work(unsigned thread)
+{
+    std::uint32_t done = 0;
+    while (awaitJob(done))
+    {
+        done = m_job.load();
+        workOn(thread);
+    }
+}
+
+// Until there is another job than the one done last; false when the team ends.
+bool ThreadTeam::awaitJob(std::uint32_t done)
+{
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point sleepAt = Clock::now() + std::chrono::microseconds(kAwakeMicroseconds);
+    do
+    {
+        for (int looks = 0; looks < kLooksTogether; ++looks)
+        {
+            if (m_job.load(std::memory_order_acquire) != done) return true;
+            pause();
+        }
+        if (m_ends) return false;
+        std::this_thread::yield();
+    } while (Clock::now() < sleepAt);
+    std::unique_lock<std::mutex> lock(m_mutex);
+    ++m_sleepers;
+    m_offered.wait(lock, [&] { return m_ends || m_job.load() != done; });
+    --m_sleepers;
+    lock.unlock();
+    if (!m_ends) wakeOne();
+    return !m_ends;
+}
+}  // namespace drape

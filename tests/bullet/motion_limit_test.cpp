@@ -1,0 +1,116 @@
+// What limits the motion of nodes near obstacles: places that are held one by one are those of the whole body at once.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "bullet_plugin/adapter/motion_limit.h"
+#include "tests/bullet/drop_world.h"
+#include "tests/support/cases.h"
+
+namespace drape::test
+{
+namespace
+{
+constexpr int kNodes = 600;
+constexpr btScalar kActivation = btScalar(0.5);
+
+// Nodes that went somewhere, some of them pinned and one of them nowhere; every third has contacts.
+struct Strayed
+{
+    std::unique_ptr<btSoftBody> m_body;
+    MotionLimit m_limit;
+    std::vector<std::int32_t> m_triangles;
+    std::vector<btVector3> m_places;  // after they went
+
+    static bool hasContact(int node) { return node % 3 == 0; }
+
+    Strayed(btSoftBodyWorldInfo& info, std::uint32_t seed)
+    {
+        Random random(seed);
+        const auto vector = [&random](float most)
+        { return btVector3(random.uniform(-most, most), random.uniform(-most, most), random.uniform(-most, most)); };
+        std::vector<btVector3> starts;
+        std::vector<btScalar> masses;
+        for (int i = 0; i < kNodes; ++i)
+        {
+            starts.push_back(vector(1));
+            masses.push_back(i % 7 == 0 ? btScalar(0) : btScalar(0.01));
+        }
+        m_body = std::make_unique<btSoftBody>(&info, kNodes, starts.data(), masses.data());
+        m_body->m_sst.sdt = kDt;
+        m_body->m_sst.isdt = 1 / kDt;
+        for (int i = 0; i < kNodes; ++i)
+            m_body->m_nodes[i].m_x += vector(0.03f);
+        for (int i = 0; i + 2 < kNodes; i += 3)
+            m_triangles.insert(m_triangles.end(), {i, i + 1, i + 2});
+        m_limit.addObstacle(btVector3(-1, -1, -1), btVector3(1, btScalar(0.2), 1), btScalar(0.02), kActivation);
+        m_limit.addObstacle(btVector3(-1, 0, -1), btVector3(btScalar(0.3), 1, 1), btScalar(0.05), kActivation);
+        m_limit.record(*m_body, m_triangles);
+        for (int i = 0; i < kNodes; ++i)
+        {
+            if (hasContact(i)) m_limit.addContactNode(i);
+            m_body->m_nodes[i].m_x += vector(0.04f);
+        }
+        m_body->m_nodes[3].m_x.setX(std::numeric_limits<btScalar>::quiet_NaN());
+        for (int i = 0; i < kNodes; ++i)
+            m_places.push_back(m_body->m_nodes[i].m_x);
+    }
+
+    bool wasMoved(int node) const { return !(m_body->m_nodes[node].m_x == m_places[static_cast<std::size_t>(node)]); }
+};
+
+bool isNumber(const btVector3& place)
+{
+    return place == place;
+}
+}  // namespace
+
+TEST(MotionLimit, holdsNodesWithContactsOneByOne)
+{
+    btSoftBodyWorldInfo info;
+    SCOPED_TRACE("seed 4");
+    Strayed strayed(info, 4);
+    ASSERT_TRUE(strayed.m_limit.obstaclesRest());
+    strayed.m_limit.apply(*strayed.m_body);
+    int brought = 0, left = 0;
+    for (int i = 0; i < kNodes; ++i)
+    {
+        if (!Strayed::hasContact(i)) continue;
+        btVector3 place = strayed.m_places[static_cast<std::size_t>(i)];
+        const bool moved = strayed.m_limit.keepNear(static_cast<std::size_t>(i), place);
+        if (!isNumber(place)) continue;
+        EXPECT_EQ(place, strayed.m_body->m_nodes[i].m_x) << "node " << i;
+        EXPECT_EQ(moved, strayed.wasMoved(i)) << "node " << i;
+        ++(moved ? brought : left);
+    }
+    EXPECT_GT(brought, kNodes / 12);
+    EXPECT_GT(left, kNodes / 24);
+}
+
+TEST(MotionLimit, holdsTheOthersApart)
+{
+    btSoftBodyWorldInfo info;
+    SCOPED_TRACE("seed 4");
+    Strayed strayed(info, 4), whole(info, 4);
+    whole.m_limit.apply(*whole.m_body);
+    strayed.m_limit.applyToOthers(*strayed.m_body);
+    int brought = 0;
+    for (int i = 0; i < kNodes; ++i)
+    {
+        const btSoftBody::Node& node = strayed.m_body->m_nodes[i];
+        if (!isNumber(node.m_x)) continue;
+        if (Strayed::hasContact(i))
+        {
+            EXPECT_FALSE(strayed.wasMoved(i)) << "node " << i;
+            continue;
+        }
+        EXPECT_EQ(node.m_x, whole.m_body->m_nodes[i].m_x) << "node " << i;
+        EXPECT_EQ(node.m_v, whole.m_body->m_nodes[i].m_v) << "node " << i;
+        brought += strayed.wasMoved(i) ? 1 : 0;
+    }
+    EXPECT_GT(brought, kNodes / 12);
+}
+}  // namespace drape::test
