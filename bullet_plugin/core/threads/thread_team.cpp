@@ -131,8 +131,9 @@ void ThreadTeam::share(std::size_t count, Call call, const void* context)
     std::rethrow_exception(std::exchange(m_failure, nullptr));
 }
 
-// Of those that sleep, which then wakes another: a call that wakes takes the one who makes it up to 50 us on a virtual
-// machine. Either this sees a thread that is about to sleep, or that one sees the job: both store before they load.
+// Of those that sleep, which then wakes two others: a call that wakes takes the one who makes it up to 50 us on a
+// virtual machine. Either this sees a thread that is about to sleep, or that one sees the job: both store before they
+// load.
 void ThreadTeam::wakeOne()
 {
     if (m_sleepers.load() == 0) return;
@@ -208,7 +209,9 @@ bool ThreadTeam::awaitJob(std::uint32_t done)
     m_offered.wait(lock, [&] { return m_ends || m_job.load() != done; });
     --m_sleepers;
     lock.unlock();
-    if (!m_ends) wakeOne();
-    return !m_ends;
+    if (m_ends) return false;
+    wakeOne();
+    wakeOne();
+    return true;
 }
 }  // namespace drape

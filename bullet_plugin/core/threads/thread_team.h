@@ -10,7 +10,7 @@
 // Threads are started by the first job that has more than one item. They keep off the core that the caller runs on:
 // Linux would wake them there and, on a virtual machine, leave them there, one behind the other. They take no signals.
 // Cost: about a microsecond a job while they are awake. They look for the next job for kAwakeMicroseconds, then sleep;
-// waking one of them, which wakes the next, takes the caller 5 to 50.
+// waking one of them, which wakes two others, takes the caller 5 to 50.
 //
 // Errors: what an item throws is thrown to the caller once all that were begun have ended; items that were not begun
 // are left out then. Where threads cannot be started there are fewer. run() belongs to one thread at a time, and no
