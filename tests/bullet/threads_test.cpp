@@ -11,7 +11,7 @@ namespace drape::test
 {
 namespace
 {
-constexpr int kSteps = 30;
+constexpr int kSteps = 18;
 // Contacts from which the rounds over them are shared: 512 blocks of four.
 constexpr std::size_t kShared = 2048;
 
