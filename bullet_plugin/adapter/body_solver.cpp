@@ -78,9 +78,10 @@ void BodySolver::begin(const std::vector<BodyContacts*>& bodies, const FoundCont
         m_rounds.emplace_back(new ContactRounds);
     m_all.clear();
     for (std::size_t i = 0; i < bodies.size(); ++i)
-        m_all.push_back(m_rounds[i].get());
-    for (std::size_t i = 0; i < bodies.size(); ++i)
+    {
         m_rounds[i]->assign(*bodies[i], found);
+        m_all.push_back(m_rounds[i].get());
+    }
     m_team.forBodies(m_all, [](ContactRounds& rounds) { rounds.begin(); });
     select(m_all, m_touching, hasContacts);
     m_team.start(m_touching);

@@ -313,6 +313,32 @@ void runBoth(RoundsTeam& team, ContactRounds& rounds, PlainRounds& plain, std::s
     team.scatter(bodies);
 }
 
+// Between the rounds nodes are moved at random, as links move them, so that contacts come to act and cease to.
+void runAll(RoundsTeam& team, ContactRounds& rounds, PlainRounds& plain, btSoftBody& plainBody, std::size_t contacts,
+            Random& random)
+{
+    btSoftBody& body = *rounds.contacts().m_body;
+    const auto noise = [&random] { return random.uniform(-0.012f, 0.012f); };
+    constexpr std::size_t kRounds = 24;
+    std::size_t pushed = 0;
+    for (std::size_t round = 0; round < kRounds; ++round)
+    {
+        SCOPED_TRACE("round " + std::to_string(round));
+        for (int i = 0; i < body.m_nodes.size(); ++i)
+        {
+            const btVector3 pull(noise(), noise(), noise());
+            body.m_nodes[i].m_x += pull;
+            plainBody.m_nodes[i].m_x += pull;
+        }
+        ASSERT_NO_FATAL_FAILURE(runBoth(team, rounds, plain, round));
+        ASSERT_NO_FATAL_FAILURE(expectSameNodes(body, plainBody));
+        pushed += plain.pushed();
+        EXPECT_LT(plain.pushed(), contacts / 2);
+    }
+    EXPECT_GT(pushed, kRounds * contacts / 50);
+    EXPECT_GT(plain.renewed(), 10u);
+}
+
 struct RoundsCase
 {
     std::string m_name;
@@ -329,7 +355,6 @@ class ContactRoundsTest : public testing::TestWithParam<RoundsCase>
 };
 }  // namespace
 
-// Between the rounds nodes are moved at random, as links move them, so that contacts come to act and cease to.
 TEST_P(ContactRoundsTest, areThoseOverEveryContact)
 {
     Error error;
@@ -374,24 +399,7 @@ TEST_P(ContactRoundsTest, areThoseOverEveryContact)
     rounds.begin();
     team.start({&rounds});
     PlainRounds plain(plainBody, parts, bodyContacts.m_limit.paths(), found, contacts);
-    constexpr std::size_t kRounds = 24;
-    std::size_t pushed = 0;
-    for (std::size_t round = 0; round < kRounds; ++round)
-    {
-        SCOPED_TRACE("round " + std::to_string(round));
-        for (int i = 0; i < body.m_nodes.size(); ++i)
-        {
-            const btVector3 pull(noise(), noise(), noise());
-            body.m_nodes[i].m_x += pull;
-            plainBody.m_nodes[i].m_x += pull;
-        }
-        ASSERT_NO_FATAL_FAILURE(runBoth(team, rounds, plain, round));
-        ASSERT_NO_FATAL_FAILURE(expectSameNodes(body, plainBody));
-        pushed += plain.pushed();
-        EXPECT_LT(plain.pushed(), contacts.size() / 2);
-    }
-    EXPECT_GT(pushed, kRounds * contacts.size() / 50);
-    EXPECT_GT(plain.renewed(), 10u);
+    ASSERT_NO_FATAL_FAILURE(runAll(team, rounds, plain, plainBody, contacts.size(), random));
     team.limitSpeeds({&rounds});
     plain.limitSpeeds();
     expectSameNodes(body, plainBody);

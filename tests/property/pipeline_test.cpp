@@ -229,11 +229,9 @@ TEST_P(PipelineTest, NodesMayGoBeforeAllAreWritten)
     bothStart.insert(bothStart.end(), start.begin(), start.end());
     bothEnd.insert(bothEnd.end(), end.begin(), end.end());
     for (const MeshId cloth : {first, second})
-    {
-        std::fill_n(pipeline->clothStart(cloth), 3 * nodes, 1e3f);
-        std::fill_n(pipeline->clothEnd(cloth), 3 * nodes, 1e3f);
         pipeline->addPair(cloth, obstacle, step.m_thickness);
-    }
+    std::fill_n(pipeline->clothStart(second), 3 * nodes, 1e3f);
+    std::fill_n(pipeline->clothEnd(first), 3 * nodes, 1e3f);
     pipeline->copyNodes({first, second}, bothStart.data(), bothEnd.data());
     expectSame(runStep(*pipeline), expected);
     // Told of before a cloth goes.
