@@ -70,6 +70,7 @@ Json asJson(const RunRecord& record)
     json["thickness_m"] = record.m_thickness;
     json["step_ms"] = asJson(summary.m_step);
     json["collision_ms"] = asJson(summary.m_collision);
+    json["finding_ms"] = asJson(summary.m_finding);
     if (!record.m_backend.empty() && record.m_backend.rfind("bullet", 0) != 0)
     {
         json["collision_parts_ms"] = asJson(summary.m_parts);
@@ -89,9 +90,9 @@ Json asJson(const RunRecord& record)
     return json;
 }
 
-double ratio(const RunSummary& other, const RunSummary& own)
+double ratio(const TimeSummary& other, const TimeSummary& own)
 {
-    return own.m_collision.m_median > 0 ? other.m_collision.m_median / own.m_collision.m_median : 0;
+    return own.m_median > 0 ? other.m_median / own.m_median : 0;
 }
 
 std::string text(const char* format, double value)
@@ -160,8 +161,10 @@ Json asJson(const std::vector<NamedRun>& runs)
         json[run.m_name] = asJson(run.m_record);
     for (std::size_t i = 1; i < runs.size(); ++i)
     {
-        const std::string& name = runs[i].m_name;
-        json["ratio_" + name.substr(name.find('_') + 1)] = ratio(summarise(runs[i].m_record), first);
+        const std::string name = runs[i].m_name.substr(runs[i].m_name.find('_') + 1);
+        const RunSummary other = summarise(runs[i].m_record);
+        json["ratio_" + name] = ratio(other.m_collision, first.m_collision);
+        json["ratio_" + name + "_finding"] = ratio(other.m_finding, first.m_finding);
     }
     return json;
 }
@@ -206,6 +209,7 @@ std::string asTable(const std::vector<NamedRun>& runs)
         { return count(runs[i].m_record.m_steps.size()) + " (" + count(summaries[i].m_stepsInContact) + ")"; });
     addTimes(table, "step, ms", summaries, &RunSummary::m_step);
     addTimes(table, "collision, ms", summaries, &RunSummary::m_collision);
+    add("of it finding contacts, median", [&](std::size_t i) { return text("%.3f", summaries[i].m_finding.m_median); });
     add("contacts, most", [&](std::size_t i) { return count(summaries[i].m_contactsMax); });
     add("penetration, most, mm", [&](std::size_t i) { return text("%.3f", 1000 * summaries[i].m_penetrationMax); });
     add("penetration, p99, mm", [&](std::size_t i) { return text("%.3f", 1000 * summaries[i].m_penetrationP99); });
@@ -215,8 +219,11 @@ std::string asTable(const std::vector<NamedRun>& runs)
     add("intersecting pairs, end", [&](std::size_t i) { return count(summaries[i].m_intersectingPairsEnd); });
     add("NaN nodes", [&](std::size_t i) { return count(summaries[i].m_invalidNodes); });
     add("hash", [&](std::size_t i) { return hashText(summaries[i].m_hash); });
-    if (runs.size() > 1)
-        add("collision median, ratio", [&](std::size_t i) { return text("%.1f", ratio(summaries[i], summaries[0])); });
+    if (runs.size() == 1) return table;
+    add("collision median, ratio",
+        [&](std::size_t i) { return text("%.1f", ratio(summaries[i].m_collision, summaries[0].m_collision)); });
+    add("finding median, ratio",
+        [&](std::size_t i) { return text("%.1f", ratio(summaries[i].m_finding, summaries[0].m_finding)); });
     return table;
 }
 }  // namespace drape

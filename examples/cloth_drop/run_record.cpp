@@ -53,7 +53,7 @@ double depthPercentile(std::vector<double> depths, std::size_t samples, double s
 RunSummary summarise(const RunRecord& record)
 {
     RunSummary summary;
-    std::vector<double> steps, collisions, depths;
+    std::vector<double> steps, collisions, finding, depths;
     for (std::size_t i = 0; i < record.m_steps.size(); ++i)
     {
         const StepRecord& step = record.m_steps[i];
@@ -67,9 +67,11 @@ RunSummary summarise(const RunRecord& record)
         ++summary.m_stepsInContact;
         steps.push_back(step.m_times.m_stepMs);
         collisions.push_back(step.m_times.m_collisionMs);
+        finding.push_back(step.m_times.m_collisionMs - step.m_times.m_parts.m_rounds);
     }
     summary.m_step = summariseTimes(std::move(steps));
     summary.m_collision = summariseTimes(std::move(collisions));
+    summary.m_finding = summariseTimes(std::move(finding));
     for (const auto part : {&CollisionParts::m_dispatch, &CollisionParts::m_upload, &CollisionParts::m_wait,
                             &CollisionParts::m_write, &CollisionParts::m_rounds})
         summary.m_parts.*part = medianOf(record, part);

@@ -40,6 +40,8 @@ struct RunSummary
 {
     std::size_t m_stepsInContact = 0;
     TimeSummary m_step, m_collision;
+    TimeSummary
+        m_finding;  // of the collision, all but solving: Bullet does that with its contacts elsewhere in the step
     CollisionParts m_parts;  // medians of each, over the same steps
     std::size_t m_contactsMax = 0;
     double m_penetrationMax = 0;

@@ -65,6 +65,8 @@ TEST_F(Outputs, jsonHasEveryKey)
         EXPECT_LE(run.at("collision_parts_ms").at(part), run.at("collision_ms").at("max")) << part;
     }
     EXPECT_GT(run.at("collision_parts_ms").at("rounds"), 0);
+    EXPECT_GT(run.at("finding_ms").at("median"), 0);
+    EXPECT_LT(run.at("finding_ms").at("median"), run.at("collision_ms").at("median"));
     EXPECT_EQ(run.at("penetration_max_m"), 0);
     EXPECT_EQ(run.at("nodes_below_surface"), 0);
     EXPECT_EQ(run.at("nodes_through"), 0);
@@ -255,7 +257,9 @@ TEST_F(Outputs, compareHasThreeRunsAndTwoRatios)
     }
     EXPECT_FALSE(all.at("drape").contains("capped_at_step"));
     EXPECT_EQ(all.at("drape").at("penetration_max_m"), 0);
-    for (const char* ratio : {"ratio_stock", "ratio_tuned"})
+    for (const char* name : {"bullet_stock", "bullet_tuned"})  // whose solver's time is no part of either
+        EXPECT_EQ(all.at(name).at("finding_ms"), all.at(name).at("collision_ms")) << name;
+    for (const char* ratio : {"ratio_stock", "ratio_tuned", "ratio_stock_finding", "ratio_tuned_finding"})
     {
         ASSERT_TRUE(all.at(ratio).is_number()) << ratio;
         EXPECT_GT(all.at(ratio), 0) << ratio;
