@@ -7,10 +7,10 @@
 #
 # Runs 240 steps on each device and on the host back end, with contacts that others imply left out and solved
 # (--all-contacts), then Bullet's own collision beside the first. Writes OUT_DIR/cloth_drop.json, what cloth_drop says of
-# each with commit, machine, scene and options, and prints a table: collision medians, deepest penetration, intersecting
-# pairs and nodes inside at the end, nodes that went through, and the trajectory's hash. Needs cloth_drop, Bash and
-# Python. Measure on an idle machine. Ends with 1 when a run failed or Drape's back ends differ. These may be set: BIN
-# (build/release/bin), BUNNY, COMMIT (git describe), and STEPS.
+# each with commit, machine, scene and options, and prints a table: medians of the collision and of finding contacts,
+# deepest penetration, intersecting pairs and nodes inside at the end, nodes that went through, and the trajectory's
+# hash. Needs cloth_drop, Bash and Python. Measure on an idle machine. Ends with 1 when a run failed or Drape's back ends
+# differ. These may be set: BIN (build/release/bin), BUNNY, COMMIT (git describe), and STEPS.
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)

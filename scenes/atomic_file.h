@@ -1,4 +1,7 @@
-// Writes a file so that it is there whole or not at all: into a neighbour with a temporary name, then renamed.
+// Writes a file so that it is there whole or not at all: into a neighbour with a temporary name, then renamed over it.
+//
+// A link stays one: what it points to is replaced. A file keeps its permissions, and one that may not be written is
+// left alone. What is no file (a pipe, a terminal, a device) is written where it is, as far as that goes.
 // Returns false and says in `error` which path failed and why (one line); a half-written neighbour is removed.
 #pragma once
 
@@ -7,4 +10,7 @@
 namespace drape
 {
 bool writeFileAtomically(const std::string& path, const std::string& bytes, std::string& error);
+
+// Whether that could be done, told before there is anything to write. Else one line in `error`.
+bool canWriteFile(const std::string& path, std::string& error);
 }  // namespace drape

@@ -43,6 +43,9 @@ const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, co
                            const btCollisionShape& shape)
 {
     if (!state.ready()) return "Drape could not start; see Plugin::error()";
+    if (!state.isWired())
+        return "no dispatcher has Drape's algorithm: make it with a drape::CollisionConfiguration, or call "
+               "drape::install()";
     if (const char* reason = reasonFromCloth(state, cloth)) return reason;
     return reasonFromObstacle(obstacle, shape);
 }

@@ -57,7 +57,13 @@ public:
     // After a failure that the pipeline could not contain: every pair goes to Bullet from now on.
     void fail(const std::string& call, const std::string& detail);
 
-    btCollisionAlgorithmCreateFunc& createFunction(bool swapped) { return swapped ? m_createSwapped : m_create; }
+    btCollisionAlgorithmCreateFunc& createFunction(bool swapped)
+    {
+        m_isWired = true;
+        return swapped ? m_createSwapped : m_create;
+    }
+    // Whether any dispatcher was given them.
+    bool isWired() const { return m_isWired; }
     btCollisionAlgorithmCreateFunc& stockCreateFunction(bool swapped);
 
     void addSolver(const btSoftBodySolver* solver);
@@ -102,6 +108,7 @@ private:
     btSoftBodyConcaveCollisionAlgorithm::CreateFunc m_stockCreate;
     btSoftBodyConcaveCollisionAlgorithm::SwappedCreateFunc m_stockCreateSwapped;
 
+    bool m_isWired = false;
     std::vector<const btSoftBodySolver*> m_solvers;
     std::unordered_map<const btSoftBodySolver*, KinematicMotions> m_motions;
     std::vector<PairNote> m_notes;  // in the order of dispatch

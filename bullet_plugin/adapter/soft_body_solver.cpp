@@ -12,6 +12,20 @@
 
 namespace drape
 {
+namespace
+{
+// As Bullet does, but that time which runs backwards stands still: Bullet bounds a node's speed by what is negative
+// then.
+void predict(btSoftBody& body, btScalar dt)
+{
+    const btScalar timescale = body.m_cfg.timescale;
+    const bool passes = dt > 0 && timescale > 0;
+    if (!passes) body.m_cfg.timescale = 0;
+    body.predictMotion(passes ? dt : btScalar(0));
+    body.m_cfg.timescale = timescale;
+}
+}  // namespace
+
 // What is kept from step to step.
 struct SoftBodySolver::Work
 {
@@ -54,7 +68,8 @@ void SoftBodySolver::predictMotion(btScalar dt)
         if (!body.isActive() && isReached(*m_state, body, moving)) body.activate();
     }
     m_work->m_predictMs = watch.lapMs();
-    btDefaultSoftBodySolver::predictMotion(dt);
+    for (int i = 0; i < m_softBodySet.size(); ++i)
+        if (m_softBodySet[i]->isActive()) predict(*m_softBodySet[i], dt);
     watch.lapMs();
     m_work->m_asleep = 0;
     for (int i = 0; i < m_softBodySet.size(); ++i)

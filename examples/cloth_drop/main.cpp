@@ -91,7 +91,7 @@ int run(const Options& options)
     std::string error;
     if (!makeDropScene(options, scene, error)) return fail(kExitBadInput, error);
     if (options.m_streamSteps) streamBuiltIn(options, scene);
-    if (!prepareOutputs(options, error)) return fail(kExitFailed, error);
+    if (!prepareOutputs(options, error)) return fail(kExitBadInput, error);
     std::vector<NamedRun> runs(1);
     runs[0].m_name = options.usesDrape() ? "drape" : "bullet";
     TriangleMesh lastFrame;

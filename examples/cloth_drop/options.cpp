@@ -16,9 +16,12 @@ namespace
 // What --help says of --json.
 constexpr const char* kJsonText =
     "JSON keys end in their units; step_ms, collision_ms and collision_parts_ms (medians) are over the steps in\n"
-    "contact. Of the collision, finding_ms leaves out solving the contacts, which Bullet's own figures leave out, too.\n"
+    "contact. Of the collision, finding_ms leaves out solving the contacts, which Bullet's own figures leave out, "
+    "too.\n"
     "Penetration is how far a node was below the surface, or a vertex of the obstacle above a face. With --compare\n"
     "there is an object a run: drape, bullet_stock, bullet_tuned and, where asked for, bullet_vfss.";
+
+constexpr double kLeastThickness = 1e-4;  // m, of Drape
 
 constexpr int kMostNodesASide = 4096;  // 16.8 million nodes: beyond what a step can hold, below any overflow
 
@@ -71,7 +74,7 @@ void addSceneOptions(CLI::App& app, Options& options, std::string& cloth)
     app.add_option("--dt", options.m_dt, "seconds a step")->check(positive);
     app.add_option("--thickness", options.m_thickness,
                    "gap at rest: half is the cloth's margin, half the obstacle's, m")
-        ->check(positive);
+        ->check(CLI::Validator(numberAbove(kLeastThickness, true, "0.0001 or more"), ""));
 }
 
 void addBackendOptions(CLI::App& app, Options& options, std::string& mode)
@@ -98,10 +101,18 @@ void addBackendOptions(CLI::App& app, Options& options, std::string& mode)
 
 void addOutputOptions(CLI::App& app, Options& options)
 {
-    app.add_option("--csv", options.m_csv, "write a row a step")->type_name("FILE");
-    app.add_option("--json", options.m_json, "write the summary; - is standard output")->type_name("FILE");
-    app.add_option("--frames", options.m_frames, "write obstacle.ply and a cloth_NNNN.ply a step")->type_name("DIR");
-    app.add_option("--picture", options.m_picture, "write a shaded picture of the last frame")->type_name("FILE.png");
+    app.add_option("--csv", options.m_csv, "write a row a step; - is standard output")
+        ->type_name("FILE")
+        ->check(CLI::Validator(notEmpty, ""));
+    app.add_option("--json", options.m_json, "write the summary; - is standard output")
+        ->type_name("FILE")
+        ->check(CLI::Validator(notEmpty, ""));
+    app.add_option("--frames", options.m_frames, "write obstacle.ply and a cloth_NNNN.ply a step")
+        ->type_name("DIR")
+        ->check(CLI::Validator(notEmpty, ""));
+    app.add_option("--picture", options.m_picture, "write a shaded picture of the last frame")
+        ->type_name("FILE.png")
+        ->check(CLI::Validator(notEmpty, ""));
     app.add_option("--validate-hash", options.m_validateHash, "exit with 3 unless the run's hash is this")
         ->type_name("H")
         ->transform(CLI::Validator(hash, ""));
@@ -117,6 +128,7 @@ std::string conflict(const Options& options)
     if (!options.usesDrape() && options.m_timeLimit > 0 && (!options.m_frames.empty() || !options.m_picture.empty()))
         return "--time-limit with --backend bullet leaves no cloth for --frames and --picture";
     if (options.m_obstacle.empty()) return "--obstacle is empty";
+    if (options.m_picture == "-") return "--picture needs a file, not -";
     return "";
 }
 }  // namespace

@@ -10,7 +10,8 @@
 
 namespace drape
 {
-// Makes the frames' folder and checks that each named file could be written. False with one line in `error`.
+// Makes the frames' folder and checks that each named file could be written, and is no other's. False with one line in
+// `error`.
 bool prepareOutputs(const Options& options, std::string& error);
 
 // Writes CSV (of the first run), JSON and the table. Tries all, reports the first failure in `error`.

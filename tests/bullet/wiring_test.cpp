@@ -63,6 +63,19 @@ TEST(Wiring, installOnALivingDispatcherIsAsGoodAsTheConfiguration)
     EXPECT_EQ(hashOf(one), hashOf(two));
 }
 
+// The solver alone, with Bullet's own configuration, is easily taken for enough.
+TEST(Wiring, whyStockNamesADispatcherWithoutDrape)
+{
+    MeshShape shape(makeSphere(0.4f, 2));
+    Plugin plugin(hostSettings());
+    DropWorld world(&plugin, Wiring::SolverOnly);
+    btCollisionObject& object = world.addObstacle(shape.shape());
+    btSoftBody& cloth = world.addCloth(kAboveSphere);
+    EXPECT_NE(plugin.whyStock(&cloth, &object).find("drape::install()"), std::string::npos);
+    install(plugin, world.dispatcher(), world.world());
+    EXPECT_EQ(plugin.whyStock(&cloth, &object), "");
+}
+
 TEST(Wiring, installTakesOverPairsThatExist)
 {
     const TriangleMesh mesh = makeBox(3.0f, 0.4f, 3.0f);

@@ -100,7 +100,8 @@ TEST_F(BadInput, vertexThatIsNoNumber)
 TEST_F(BadInput, numbers)
 {
     for (const char* option : {"--obstacle-size", "--cloth-size", "--steps", "--dt", "--thickness", "--time-limit"})
-        for (const char* value : {"-1", "0", "nan", "inf", "two", ""})
+        for (const char* value :
+             {"-1", "0", "nan", "inf", "1e39", "1e-50", "two", ""})  // programs compute with float32
         {
             SCOPED_TRACE(std::string(option) + " " + value);
             expectRefused(runSmall({option, value}), {option});
@@ -108,6 +109,7 @@ TEST_F(BadInput, numbers)
     expectRefused(runSmall({"--drop-height", "-0.1"}), {"--drop-height"});
     expectRefused(runSmall({"--drop-speed", "-1"}), {"--drop-speed"});
     expectRefused(runSmall({"--steps", "2.5"}), {"--steps"});
+    expectRefused(runSmall({"--thickness", "0.00009"}), {"--thickness", "0.0001"});
 }
 
 TEST_F(BadInput, clothSizes)

@@ -164,17 +164,45 @@ TEST_F(Outputs, pictureIsAPng)
     }
 }
 
-TEST_F(Outputs, whatCannotBeWrittenIsAFailedRun)
+TEST_F(Outputs, whatCannotBeWrittenIsToldBeforeTheRun)
 {
     for (const char* option : {"--json", "--csv", "--picture"})
     {
         SCOPED_TRACE(option);
-        const ToolRun run = runSmall({option, path("no/such/folder/file.png")});
-        EXPECT_EQ(run.m_exitCode, 1);
-        EXPECT_NE(run.m_err.find("no/such/folder"), std::string::npos) << run.m_err;
+        expectRefused(runSmall({option, path("no/such/folder/file.png")}), {"no/such/folder"});
+        expectRefused(runSmall({option, ""}), {option, "empty"});
     }
     write("file", "");
-    EXPECT_EQ(runSmall({"--frames", path("file")}).m_exitCode, 1);
+    expectRefused(runSmall({"--frames", path("file")}), {path("file")});
+    expectRefused(runSmall({"--picture", "-"}), {"--picture"});
+}
+
+TEST_F(Outputs, whatFailsToBeWrittenIsAFailedRun)
+{
+    if (!std::filesystem::is_character_file("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+    std::filesystem::create_symlink("/dev/full", path("full"));
+    const ToolRun run = runSmall({"--json", path("full")});
+    EXPECT_EQ(run.m_exitCode, 1);
+    EXPECT_NE(run.m_err.find("full: cannot write"), std::string::npos) << run.m_err;
+}
+
+TEST_F(Outputs, twoOfThemNeedTwoFiles)
+{
+    std::filesystem::create_symlink("a", path("link"));
+    expectRefused(runSmall({"--csv", path("a"), "--json", path("a")}), {"--csv and --json"});
+    expectRefused(runSmall({"--json", path("./a"), "--picture", path("a")}), {"--json and --picture"});
+    expectRefused(runSmall({"--csv", "-", "--json", "-"}), {"--csv and --json"});
+    write("a", "");
+    expectRefused(runSmall({"--csv", path("link"), "--json", path("a")}), {"--csv and --json"});
+    EXPECT_EQ(runSmall({"--csv", "/dev/null", "--json", "/dev/null"}).m_exitCode, 0);
+}
+
+TEST_F(Outputs, csvOnStandardOutputIsTheFile)
+{
+    const ToolRun run = runSmall({"--steps", "2", "--csv", "-"});
+    ASSERT_EQ(run.m_exitCode, 0) << run.m_err;
+    EXPECT_EQ(run.m_out.rfind("step,time_s,", 0), 0u) << run.m_out;
+    EXPECT_EQ(std::count(run.m_out.begin(), run.m_out.end(), '\n'), 3);
 }
 
 TEST_F(Outputs, quietSaysNothingAndHelpIsGood)

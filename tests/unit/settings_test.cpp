@@ -49,6 +49,8 @@ TEST(SettingsRanges, WhatIsOutOfThemIsRefused)
     for (const float activation : {0.0f, 4.0f})
         EXPECT_EQ(errorOfSettings([&](Settings& s) { s.m_activation = activation; }), "");
     EXPECT_NE(errorOfSettings([](Settings& s) { s.m_mode = ContactMode(3); }), "");
+    EXPECT_NE(errorOfSettings([](Settings& s) { s.m_crossover = double(kNaN); }), "");
+    EXPECT_EQ(errorOfSettings([](Settings& s) { s.m_crossover = double(kInfinity); }), "");
 }
 
 TEST(StatusText, NamesEveryBit)

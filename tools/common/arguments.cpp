@@ -13,7 +13,7 @@ std::string asNumber(const std::string& text, double& value)
     {
         std::size_t end = 0;
         value = std::stod(text, &end);
-        if (end == text.size() && std::isfinite(value)) return "";
+        if (end == text.size() && std::isfinite(static_cast<float>(value))) return "";
     }
     catch (const std::exception&)
     {
@@ -29,8 +29,16 @@ std::function<std::string(std::string&)> numberAbove(double least, bool inclusiv
         double value = 0;
         const std::string problem = asNumber(text, value);
         if (!problem.empty()) return problem;
-        return value > least || (inclusive && value >= least) ? "" : "'" + text + "' must be " + what;
+        // The programs compute with float: what is beyond it is no finite number there, and what is below it 0.
+        const bool positive = value <= 0 || static_cast<float>(value) > 0;
+        const bool fits = value > least || (inclusive && value >= least);
+        return fits && positive ? "" : "'" + text + "' must be " + what;
     };
+}
+
+std::string notEmpty(std::string& text)
+{
+    return text.empty() ? "is empty" : "";
 }
 
 bool parseArguments(CLI::App& app, int argc, const char* const* argv, const std::function<std::string()>& conflict,

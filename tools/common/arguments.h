@@ -10,9 +10,12 @@
 
 namespace drape
 {
-// Checks for CLI11: "" when the text is a finite number above `least` (or equal, when inclusive), else the reason,
-// which says `what` it must be.
+// Checks for CLI11: "" when the text is a number that is finite as float32, and not 0 there unless it is 0, above
+// `least` (or equal, when inclusive), else the reason, which says `what` it must be.
 std::function<std::string(std::string&)> numberAbove(double least, bool inclusive, const char* what);
+
+// Likewise: "" when the text is not empty.
+std::string notEmpty(std::string& text);
 
 // Parses; `conflict` then tells what is wrong with the whole ("" for nothing). True: go on. False: leave with
 // `exitCode`; what there was to say has been printed (help, or one line on standard error).

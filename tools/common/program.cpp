@@ -1,13 +1,9 @@
 #include "tools/common/program.h"
 
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
 #include <iostream>
 #include <new>
 
-#include <unistd.h>
-
+#include "scenes/atomic_file.h"
 #include "tools/common/pocl_threads.h"
 
 namespace drape
@@ -44,16 +40,6 @@ bool flushOutput(std::string& error)
 
 bool couldWrite(const std::string& path, std::string& error)
 {
-    namespace fs = std::filesystem;
-    if (path.empty() || path == "-") return true;
-    std::error_code code;
-    const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
-    if (fs::is_directory(path, code))
-        error = path + ": cannot write: is a folder";
-    else if (!fs::is_directory(folder, code))
-        error = path + ": cannot write: no folder " + folder.string();
-    else if (::access(folder.c_str(), W_OK) != 0)
-        error = path + ": cannot write: " + std::strerror(errno);
-    return error.empty();
+    return path.empty() || path == "-" || canWriteFile(path, error);
 }
 }  // namespace drape

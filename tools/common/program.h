@@ -10,7 +10,7 @@ enum ExitCode
 {
     kExitGood = 0,
     kExitFailed = 1,    // the run or a measurement failed, or something could not be written
-    kExitBadInput = 2,  // arguments, files or device
+    kExitBadInput = 2,  // arguments, files (also one that can be seen beforehand not to be writable) or device
     kExitOtherHash = 3  // a hash is not the one to be: --validate-hash, or a row of a benchmark
 };
 

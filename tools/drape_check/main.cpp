@@ -40,7 +40,7 @@ int run(const Options& options)
         return kExitGood;
     }
     std::string error;
-    if (!couldWrite(options.m_json, error)) return fail("drape_check", kExitFailed, error);
+    if (!couldWrite(options.m_json, error)) return fail("drape_check", kExitBadInput, error);
     nlohmann::ordered_json answer;
     int exitCode = kExitFailed;
     if (runCommand(options, answer, error, exitCode))

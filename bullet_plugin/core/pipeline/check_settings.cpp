@@ -1,5 +1,6 @@
 #include "check_settings.h"
 
+#include <cmath>
 #include <sstream>
 
 namespace drape
@@ -37,6 +38,7 @@ bool checkSettings(const Settings& settings, Error& error)
     const Field fields[] = {
         choice("Settings::m_backend", settings.m_backend, Backend::Host),
         choice("Settings::m_mode", settings.m_mode, ContactMode::Automatic),
+        {"Settings::m_crossover", settings.m_crossover, !std::isnan(settings.m_crossover), "a number"},
         {"Settings::m_activation", double(settings.m_activation),
          settings.m_activation >= 0.0f && settings.m_activation <= 4.0f, "0 to 4"},
         {"Settings::m_threads", double(settings.m_threads), settings.m_threads <= 64, "0 to 64"},

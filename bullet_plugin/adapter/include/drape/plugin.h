@@ -68,7 +68,7 @@ public:
 
     // Empty when Drape handles the pair, else the reason why Bullet's own algorithm does. For a compound the first
     // child that Drape does not handle gives the reason; a mesh there, which Bullet's own cannot take, is named as
-    // such.
+    // such. Of several worlds it is not asked which have Drape's algorithm: one that has is enough.
     std::string whyStock(const btCollisionObject* objectA, const btCollisionObject* objectB) const;
 
     // Tells that vertices of a mesh shape were moved in place. Refits (a changed bounding box), scaling and changes
