@@ -103,30 +103,4 @@ void MortonOrderStage::enqueue(Device& device, Buffer<Triangle>& triangles, Buff
     m_sort.enqueue(device, high, order, count, kHighBits, shape);
     m_sort.gather(device, m_unsortedLow, order, count, low);
 }
-
-std::vector<std::uint32_t> MortonOrderStage::order(Device& device, const std::vector<Triangle>& triangles,
-                                                   const float* positions, std::size_t vertexCount)
-{
-    const cl_uint count = cl_uint(triangles.size());
-    std::vector<std::uint32_t> order(count);
-    if (count == 0) return order;
-    m_triangleBuffer.assign(device, triangles);
-    m_positionBuffer.reserve(device, 3 * vertexCount);
-    m_positionBuffer.write(device, positions, 3 * vertexCount);
-    enqueue(device, m_triangleBuffer, m_positionBuffer, count, kShortCodeBits, WorkShape::Device, m_order, m_high,
-            m_low);
-    m_order.read(device, order.data(), count);
-    device.wait();
-    if (device.failed()) order.clear();
-    return order;
-}
-
-void MortonOrderStage::release()
-{
-    m_triangleBuffer.release();
-    m_positionBuffer.release();
-    for (Buffer<cl_uint>* buffer : {&m_boundsBuffer, &m_order, &m_high, &m_low, &m_unsortedHigh, &m_unsortedLow})
-        buffer->release();
-    m_sort.release();
-}
 }  // namespace drape

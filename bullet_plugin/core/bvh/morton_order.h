@@ -34,19 +34,9 @@ public:
     void enqueue(Device& device, Buffer<Triangle>& triangles, Buffer<float>& positions, cl_uint count, cl_uint codeBits,
                  WorkShape shape, Buffer<cl_uint>& order, Buffer<cl_uint>& high, Buffer<cl_uint>& low);
 
-    // Waits for the device: meshes come and go rarely. Empty when the device failed.
-    std::vector<std::uint32_t> order(Device& device, const std::vector<Triangle>& triangles, const float* positions,
-                                     std::size_t vertexCount);
-
-    // Gives back what sorting took: some 55 bytes for each triangle of the largest mesh.
-    void release();
-
 private:
     Kernel m_bounds, m_codes;
     RadixSortStage m_sort;
-    Buffer<Triangle> m_triangleBuffer{"sorting"};
-    Buffer<float> m_positionBuffer{"sorting"};
-    Buffer<cl_uint> m_boundsBuffer{"sorting"}, m_order{"sorting"}, m_high{"sorting"}, m_low{"sorting"};
-    Buffer<cl_uint> m_unsortedHigh{"sorting"}, m_unsortedLow{"sorting"};
+    Buffer<cl_uint> m_boundsBuffer{"sorting"}, m_unsortedHigh{"sorting"}, m_unsortedLow{"sorting"};
 };
 }  // namespace drape

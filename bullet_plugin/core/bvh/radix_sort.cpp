@@ -84,10 +84,4 @@ void RadixSortStage::gather(Device& device, Buffer<cl_uint>& values, Buffer<cl_u
 {
     m_gather.launch(device, count, kGatherGroup, values.handle(), numbers.handle(), count, out.handle());
 }
-
-void RadixSortStage::release()
-{
-    for (Buffer<cl_uint>* buffer : {&m_counts, &m_totals, &m_otherKeys, &m_otherNumbers})
-        buffer->release();
-}
 }  // namespace drape

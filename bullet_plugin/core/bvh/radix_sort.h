@@ -22,9 +22,6 @@ public:
     // out[i] = values[numbers[i]]. Returns after enqueueing.
     void gather(Device& device, Buffer<cl_uint>& values, Buffer<cl_uint>& numbers, cl_uint count, Buffer<cl_uint>& out);
 
-    // Gives back the memory that sorting took.
-    void release();
-
 private:
     void passInTiles(Device& device, Buffer<cl_uint>& keys, Buffer<cl_uint>& numbers, cl_uint count, cl_uint shift);
     void passInStretches(Device& device, Buffer<cl_uint>& keys, Buffer<cl_uint>& numbers, cl_uint count, cl_uint shift);

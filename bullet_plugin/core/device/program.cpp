@@ -110,6 +110,11 @@ bool build(Device& device, cl::Program& program, const std::string& name, const 
 }
 }  // namespace
 
+bool keepsItsOwn(const DeviceInfo& device)
+{
+    return device.m_platform == "Portable Computing Language";
+}
+
 std::string assembleSource(const std::string& path)
 {
     if (!findText(path)) return std::string();
@@ -155,7 +160,8 @@ cl::Program buildProgram(Device& device, const std::string& name, const std::str
     const ProgramCache cache(cacheFolder);
     const std::string key = cache.key(source, kOptions, device.info());
     std::vector<unsigned char> binary;
-    if (cache.load(key, binary))
+    const bool kept = keepsItsOwn(device.info());
+    if (!kept && cache.load(key, binary))
     {
         cl_int code = CL_SUCCESS;
         cl::Program program(device.context(), {device.handle()}, cl::Program::Binaries{binary}, nullptr, &code);
@@ -166,7 +172,7 @@ cl::Program buildProgram(Device& device, const std::string& name, const std::str
         }
     }
     cl::Program program = compileSource(device, name, source);
-    if (device.failed()) return program;
+    if (device.failed() || kept) return program;
     std::vector<std::vector<unsigned char>> binaries;
     if (program.getInfo(CL_PROGRAM_BINARIES, &binaries) == CL_SUCCESS && binaries.size() == 1)
     {

@@ -26,10 +26,15 @@ struct ProgramBuild
     bool m_fromCache = false;
 };
 
+// Whether the platform keeps what it has compiled itself. PoCL does, a kernel for each size of group that it was
+// launched with. Asked for a binary it compiles every kernel once more, for groups of any size: that no launch needs,
+// and it takes twice as long as all the rest.
+bool keepsItsOwn(const DeviceInfo& device);
+
 // Builds "kernels/<name>.cl" with contraction off and correctly rounded ÷ and √; DRAPE_CPU is defined unless the device
-// is a GPU. cacheFolder empty: the user's cache; "none": no cache. A failed build puts the file and the whole log into
-// the device's error. Cache trouble means a build, never a failure.
-// defines: lines of text put before the source.
+// is a GPU. A failed build puts the file and the whole log into the device's error. What was built is kept in
+// cacheFolder, unless the platform keeps its own (empty: the user's cache; "none": no cache); cache trouble means a
+// build, never a failure. defines: lines of text put before the source.
 cl::Program buildProgram(Device& device, const std::string& name, const std::string& cacheFolder, ProgramBuild& build,
                          const std::string& defines = std::string());
 

@@ -23,7 +23,6 @@ std::size_t withHeadroom(std::size_t count)
 DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& settings)
     : m_device(std::move(device)), m_settings(settings)
 {
-    m_mortonOrder.create(*m_device, [this](const char* name) { return program(name); });
     const ProgramLoader ofWidth = [this](const char* name)
     { return program(name, PatchCullStage::defines(*m_device)); };
     if (patches())
@@ -81,8 +80,7 @@ void DeviceBackend::warmUp(float selfThickness)
         PooledMesh mesh;
         mesh.m_id = 0;
         mesh.m_topology = buildTopology(indices, 1, 3);
-        mesh.m_order = order(mesh.m_topology.m_triangles, below.data(), 3);
-        if (m_device->failed()) return;
+        mesh.m_order = {0};
         pool->add(std::move(mesh));
         pool->update();
     }
@@ -139,12 +137,6 @@ void DeviceBackend::prepareSelf()
     warmUp(0.1f);
 }
 
-std::vector<std::uint32_t> DeviceBackend::order(const std::vector<Triangle>& triangles, const float* positions,
-                                                std::size_t vertexCount)
-{
-    return m_mortonOrder.order(*m_device, triangles, positions, vertexCount);
-}
-
 void DeviceBackend::uploadSide(const MeshPool& pool, const BvhLayout& layout, const float* positions, Side& side)
 {
     side.m_revision = pool.revision();
@@ -188,7 +180,6 @@ void DeviceBackend::updateTopology(const Scene& scene)
                               (scene.m_anyPosed && m_sentPlaces.size() != scene.m_places.size());
     if (newPositions) uploadObstacles(scene);
     if (newPositions || m_obstaclePlacing != scene.m_obstaclePlacing) placeObstacles(scene, newPositions);
-    if (newCloths || newObstacles) m_mortonOrder.release();
     // What only packing reads goes when obstacles that rest are packed; those whose positions are given anew later keep
     // it from then on.
     if (newObstacles && !scene.m_anyPosed) m_patchCull.releasePacking();

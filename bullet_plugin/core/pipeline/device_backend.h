@@ -6,7 +6,6 @@
 
 #include "bullet_plugin/core/broad_phase/broad_phase.h"
 #include "bullet_plugin/core/broad_phase/patch_cull.h"
-#include "bullet_plugin/core/bvh/morton_order.h"
 #include "bullet_plugin/core/bvh/refit.h"
 #include "bullet_plugin/core/bvh/tree_cost.h"
 #include "drape/settings.h"
@@ -27,10 +26,6 @@ public:
 
     // Builds the kernels of cloths that collide with themselves, at the first call.
     void prepareSelf();
-
-    // See morton_order.h.
-    std::vector<std::uint32_t> order(const std::vector<Triangle>& triangles, const float* positions,
-                                     std::size_t vertexCount);
 
     // Begins to bring nodes of the cloths, start and end, to the device before the step is submitted. False where the
     // device does not know the cloths yet.
@@ -104,7 +99,6 @@ private:
 
     RefitStage m_refit;
     TreeCostStage m_treeCost;
-    MortonOrderStage m_mortonOrder;
     Kernel m_place;
     BroadPhaseStage m_broadPhase;
     PatchCullStage m_patchCull;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bullet_plugin/core/bvh/morton_order.h"
 #include "bullet_plugin/core/mesh/check_indices.h"
 #include "bullet_plugin/core/mesh/normal_cones.h"
 #include "check_settings.h"
@@ -43,16 +44,7 @@ PooledMesh Pipeline::Implementation::makeMesh(const MeshDescription& description
     mesh.m_topology = buildTopology(description.m_triangles, description.m_triangleCount, description.m_vertexCount);
     mesh.m_positions.assign(description.m_positions, description.m_positions + 3 * description.m_vertexCount);
     mesh.m_area = surfaceArea(mesh.m_topology.m_triangles, mesh.m_positions.data());
-    if (m_deviceBackend)
-    {
-        mesh.m_order =
-            m_deviceBackend->order(mesh.m_topology.m_triangles, mesh.m_positions.data(), description.m_vertexCount);
-        if (m_deviceBackend->device().failed()) leaveDevice();
-    }
-    if (mesh.m_order.size() != mesh.m_topology.m_triangles.size())
-    {
-        mesh.m_order = mortonOrderOnHost(mesh.m_topology.m_triangles, mesh.m_positions.data());
-    }
+    mesh.m_order = mortonOrderOnHost(mesh.m_topology.m_triangles, mesh.m_positions.data());
     return mesh;
 }
 

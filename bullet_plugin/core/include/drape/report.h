@@ -19,11 +19,11 @@ struct DeviceInfo
 
 struct DeviceReport
 {
-    bool m_onHost = true;  // the host back end computes
-    DeviceInfo m_device;   // its name is "host" then
-    std::string m_reason;  // one line: why this device and no other, with figures where cost decides
-    double m_buildMs = 0;  // making the kernels ready, warm-up included
-    bool m_fromCache = false;
+    bool m_onHost = true;      // the host back end computes
+    DeviceInfo m_device;       // its name is "host" then
+    std::string m_reason;      // one line: why this device and no other, with figures where cost decides
+    double m_buildMs = 0;      // making the kernels ready, warm-up included
+    bool m_fromCache = false;  // all of them were in Drape's cache; never on PoCL, which keeps its own
 
     // Where cost decides between the host and a device (Backend::Auto); then m_onHost, m_device and m_reason are those
     // of the last step with a pair, and of a scene without one before it.
