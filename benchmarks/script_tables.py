@@ -25,8 +25,8 @@ def count(value):
 
 
 def cloth_line(row):
-    """A run of cloth_drop.json in words: what it is, its collision and what of it is finding contacts, medians, what went
-    wrong, and its hash."""
+    """A run of cloth_drop.json in words: what it is, its collision and what of it is finding contacts (medians), what
+    went wrong, and its hash."""
     what = BUILT_IN.get(row["run"]) or ("Drape, all contacts" if row["all_contacts"] else "Drape")
     where = row["device"] + (f", {row['steps']} steps, ended by the limit of time" if "capped_at_step" in row else "")
     times, finding = row["collision_ms"], row.get("finding_ms")
@@ -40,11 +40,12 @@ def cloth_text(content, table):
     """The thesis's scene as a simulation, on every back end. Nothing of results of before that say no commit."""
     if not content or "rows" not in content:
         return ""
+    columns = ["", "on", "collision, ms", "finding, ms", "deepest penetration, mm", "intersecting pairs, end",
+               "nodes inside, end", "nodes that went through", "hash"]
     return (f"The thesis's scene simulated for {content['steps']} steps (`cloth_drop.sh`): collision a step in contact, "
-            "median (95th percentile), what of it is finding contacts (Bullet's figures have no more in them: its solver holds "
-            "its contacts), and what an independent check saw:\n\n"
-            + table(["", "on", "collision, ms", "finding, ms", "deepest penetration, mm", "intersecting pairs, end",
-                     "nodes inside, end", "nodes that went through", "hash"], [cloth_line(row) for row in content["rows"]]) + measured(content))
+            "median (95th percentile), what of it is finding contacts (Bullet's figures have no more in them: its solver "
+            "holds its contacts), and what an independent check saw:\n\n"
+            + table(columns, [cloth_line(row) for row in content["rows"]]) + measured(content))
 
 
 def drop_cell(rows, whole_steps):

@@ -17,10 +17,13 @@ namespace fs = std::filesystem;
 // Where the bytes go in the end.
 struct Target
 {
-    fs::path m_path;         // no link
-    bool m_isThere = false;  // else it is new
-    bool m_isFile = true;
-    mode_t m_mode = 0;  // of what is there
+    fs::path m_path;           // no link, of a file
+    struct stat m_status;      // of what is there
+    int m_code = 0;            // why there is nothing: ENOENT, or worse
+    bool m_isInPlace = false;  // written where it is
+
+    bool isThere() const { return m_code == 0; }
+    bool canBeMade() const { return m_code == ENOENT; }
 };
 
 bool fail(const std::string& path, const std::string& reason, std::string& error)
@@ -34,32 +37,34 @@ bool fail(const std::string& path, int code, std::string& error)
     return fail(path, std::strerror(code), error);
 }
 
-// A link's end, whether or not anything is there; links that go round in a circle end where they began.
-fs::path followed(fs::path path)
+// The same place without links on the way to it, as far as there is one.
+fs::path inRealFolder(const fs::path& path)
 {
-    constexpr int kMostLinks = 40;  // as Linux has it
     std::error_code code;
-    for (int i = 0; i < kMostLinks && fs::is_symlink(path, code); ++i)
-    {
-        const fs::path next = fs::read_symlink(path, code);
-        if (code) break;
-        path = path.parent_path() / next;  // an absolute one replaces it
-    }
+    const fs::path folder = fs::canonical(path.has_parent_path() ? path.parent_path() : fs::path("."), code);
+    return code ? path : folder / path.filename();
+}
+
+// A link's end, whether or not anything is there. What a process's descriptor links to need not be a path: it is left
+// as it is.
+fs::path followed(const fs::path& link)
+{
+    std::error_code code;
+    fs::path path = inRealFolder(link);
+    while (fs::is_symlink(path, code) && path.string().rfind("/proc/", 0) != 0)
+        path = inRealFolder(path.parent_path() / fs::read_symlink(path, code));  // an absolute one replaces it
     return path;
 }
 
 Target targetOf(const std::string& path)
 {
     Target target;
-    struct stat status;
-    target.m_isThere = ::stat(path.c_str(), &status) == 0;
-    if (target.m_isThere)
-    {
-        target.m_mode = status.st_mode & 07777;
-        target.m_isFile = S_ISREG(status.st_mode);
-    }
-    // What a process's descriptors link to need not be a path.
-    target.m_path = target.m_isFile ? followed(path) : fs::path(path);
+    if (::stat(path.c_str(), &target.m_status) != 0) target.m_code = errno;
+    target.m_path = path;
+    if (!target.isThere() && !target.canBeMade()) return target;  // links that go round in a circle among others
+    target.m_path = followed(path);
+    std::error_code code;
+    target.m_isInPlace = target.isThere() && (!S_ISREG(target.m_status.st_mode) || fs::is_symlink(target.m_path, code));
     return target;
 }
 
@@ -77,28 +82,43 @@ int writeTo(const std::string& path, const std::string& bytes)
 
 bool canWriteFile(const std::string& path, std::string& error)
 {
-    std::error_code code;
-    if (fs::is_directory(path, code)) return fail(path, "is a folder", error);
     const Target target = targetOf(path);
-    if (target.m_isThere && ::access(target.m_path.c_str(), W_OK) != 0) return fail(path, errno, error);
-    if (!target.m_isFile) return true;
+    if (!target.isThere() && !target.canBeMade()) return fail(path, target.m_code, error);
+    if (target.isThere() && S_ISDIR(target.m_status.st_mode)) return fail(path, "is a folder", error);
+    if (target.isThere() && ::access(target.m_path.c_str(), W_OK) != 0) return fail(path, errno, error);
+    if (target.m_isInPlace) return true;
+    std::error_code code;
     const fs::path folder = target.m_path.has_parent_path() ? target.m_path.parent_path() : fs::path(".");
     if (!fs::is_directory(folder, code)) return fail(path, "no folder " + folder.string(), error);
     return ::access(folder.c_str(), W_OK) == 0 || fail(path, errno, error);
 }
 
+bool areOneFile(const std::string& one, const std::string& other)
+{
+    const Target a = targetOf(one), b = targetOf(other);
+    if (a.isThere() != b.isThere()) return false;
+    if (a.isThere())
+        return a.m_status.st_dev == b.m_status.st_dev && a.m_status.st_ino == b.m_status.st_ino &&
+               !S_ISCHR(a.m_status.st_mode);
+    std::error_code code;
+    const auto placeOf = [&code](const Target& target)
+    { return fs::weakly_canonical(fs::absolute(target.m_path, code), code); };
+    return placeOf(a) == placeOf(b);
+}
+
 bool writeFileAtomically(const std::string& path, const std::string& bytes, std::string& error)
 {
     const Target target = targetOf(path);
-    if (!target.m_isFile)
+    if (target.m_isInPlace)
     {
         const int code = writeTo(target.m_path, bytes);
         return code == 0 || fail(path, code, error);
     }
-    if (target.m_isThere && ::access(target.m_path.c_str(), W_OK) != 0) return fail(path, errno, error);
+    if (!target.isThere() && !target.canBeMade()) return fail(path, target.m_code, error);
+    if (target.isThere() && ::access(target.m_path.c_str(), W_OK) != 0) return fail(path, errno, error);
     const std::string temporary = target.m_path.string() + ".part" + std::to_string(::getpid());
     int code = writeTo(temporary, bytes);
-    if (code == 0 && target.m_isThere && ::chmod(temporary.c_str(), target.m_mode) != 0) code = errno;
+    if (code == 0 && target.isThere() && ::chmod(temporary.c_str(), target.m_status.st_mode & 07777) != 0) code = errno;
     if (code == 0 && std::rename(temporary.c_str(), target.m_path.c_str()) != 0) code = errno;
     if (code == 0) return true;
     std::remove(temporary.c_str());

@@ -1,7 +1,8 @@
 // Writes a file so that it is there whole or not at all: into a neighbour with a temporary name, then renamed over it.
 //
 // A link stays one: what it points to is replaced. A file keeps its permissions, and one that may not be written is
-// left alone. What is no file (a pipe, a terminal, a device) is written where it is, as far as that goes.
+// left alone. What is no file (a pipe, a terminal, a device), or is named by a process's descriptor (/dev/fd/3), is
+// written where it is, as far as that goes.
 // Returns false and says in `error` which path failed and why (one line); a half-written neighbour is removed.
 #pragma once
 
@@ -13,4 +14,8 @@ bool writeFileAtomically(const std::string& path, const std::string& bytes, std:
 
 // Whether that could be done, told before there is anything to write. Else one line in `error`.
 bool canWriteFile(const std::string& path, std::string& error);
+
+// Whether what is written to one path would take the place of what is written to the other, under whatever names. A
+// device takes both.
+bool areOneFile(const std::string& one, const std::string& other);
 }  // namespace drape

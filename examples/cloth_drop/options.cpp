@@ -103,16 +103,16 @@ void addOutputOptions(CLI::App& app, Options& options)
 {
     app.add_option("--csv", options.m_csv, "write a row a step; - is standard output")
         ->type_name("FILE")
-        ->check(CLI::Validator(notEmpty, ""));
+        ->transform(CLI::Validator(outputFile, ""));
     app.add_option("--json", options.m_json, "write the summary; - is standard output")
         ->type_name("FILE")
-        ->check(CLI::Validator(notEmpty, ""));
+        ->transform(CLI::Validator(outputFile, ""));
     app.add_option("--frames", options.m_frames, "write obstacle.ply and a cloth_NNNN.ply a step")
         ->type_name("DIR")
-        ->check(CLI::Validator(notEmpty, ""));
+        ->transform(CLI::Validator(outputFile, ""));
     app.add_option("--picture", options.m_picture, "write a shaded picture of the last frame")
         ->type_name("FILE.png")
-        ->check(CLI::Validator(notEmpty, ""));
+        ->transform(CLI::Validator(outputFile, ""));
     app.add_option("--validate-hash", options.m_validateHash, "exit with 3 unless the run's hash is this")
         ->type_name("H")
         ->transform(CLI::Validator(hash, ""));

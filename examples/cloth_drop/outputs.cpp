@@ -4,7 +4,6 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
-#include <map>
 
 #include <unistd.h>
 
@@ -25,37 +24,34 @@ struct Output
 };
 
 // Two that go to one place would leave one of them.
-bool areApart(const std::vector<Output>& outputs, std::string& error)
+bool areApart(const Output& one, const Output& other, std::string& error)
 {
-    std::map<fs::path, const char*> optionOf;
-    for (const Output& output : outputs)
-    {
-        if (output.m_path.empty()) continue;
-        std::error_code code;
-        const fs::path place =
-            output.m_path == kStandardOutput ? fs::path(kStandardOutput) : fs::weakly_canonical(output.m_path, code);
-        const auto added = optionOf.emplace(place, output.m_option);
-        if (added.second || fs::is_other(place, code)) continue;  // a device takes both
-        error = std::string(added.first->second) + " and " + output.m_option + " both write " + output.m_path;
-        return false;
-    }
-    return true;
+    if (one.m_path.empty() || other.m_path.empty()) return true;
+    const bool same = one.m_path == kStandardOutput || other.m_path == kStandardOutput
+                          ? one.m_path == other.m_path
+                          : areOneFile(one.m_path, other.m_path);
+    if (same) error = std::string(one.m_option) + " and " + other.m_option + " both write " + other.m_path;
+    return !same;
+}
+
+bool makeFolder(const std::string& path, std::string& error)
+{
+    std::error_code code;
+    fs::create_directories(path, code);
+    if (!fs::is_directory(path, code) || ::access(path.c_str(), W_OK) != 0)
+        error = path + ": cannot write: " + (code ? code.message() : std::string(std::strerror(errno)));
+    return error.empty();
 }
 }  // namespace
 
 bool prepareOutputs(const Options& options, std::string& error)
 {
-    const std::vector<Output> outputs = {
-        {"--csv", options.m_csv}, {"--json", options.m_json}, {"--picture", options.m_picture}};
+    if (!options.m_frames.empty() && !makeFolder(options.m_frames, error)) return false;
+    const Output outputs[] = {{"--csv", options.m_csv}, {"--json", options.m_json}, {"--picture", options.m_picture}};
     for (const Output& output : outputs)
         if (!couldWrite(output.m_path, error)) return false;
-    if (!areApart(outputs, error)) return false;
-    if (options.m_frames.empty()) return true;
-    std::error_code code;
-    fs::create_directories(options.m_frames, code);
-    if (!fs::is_directory(options.m_frames) || ::access(options.m_frames.c_str(), W_OK) != 0)
-        error = options.m_frames + ": cannot write: " + (code ? code.message() : std::string(std::strerror(errno)));
-    return error.empty();
+    return areApart(outputs[0], outputs[1], error) && areApart(outputs[0], outputs[2], error) &&
+           areApart(outputs[1], outputs[2], error);
 }
 
 bool writeOutputs(const Options& options, const std::vector<NamedRun>& runs, std::string& error)

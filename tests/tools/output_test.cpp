@@ -174,6 +174,7 @@ TEST_F(Outputs, whatCannotBeWrittenIsToldBeforeTheRun)
     }
     write("file", "");
     expectRefused(runSmall({"--frames", path("file")}), {path("file")});
+    expectRefused(runSmall({"--frames", path("both"), "--csv", path("both")}), {"is a folder"});
     expectRefused(runSmall({"--picture", "-"}), {"--picture"});
 }
 
@@ -199,10 +200,14 @@ TEST_F(Outputs, twoOfThemNeedTwoFiles)
 
 TEST_F(Outputs, csvOnStandardOutputIsTheFile)
 {
-    const ToolRun run = runSmall({"--steps", "2", "--csv", "-"});
-    ASSERT_EQ(run.m_exitCode, 0) << run.m_err;
-    EXPECT_EQ(run.m_out.rfind("step,time_s,", 0), 0u) << run.m_out;
-    EXPECT_EQ(std::count(run.m_out.begin(), run.m_out.end(), '\n'), 3);
+    for (const char* name : {"-", "/dev/stdout"})
+    {
+        SCOPED_TRACE(name);
+        const ToolRun run = runSmall({"--steps", "2", "--csv", name});
+        ASSERT_EQ(run.m_exitCode, 0) << run.m_err;
+        EXPECT_EQ(run.m_out.rfind("step,time_s,", 0), 0u) << run.m_out;
+        EXPECT_EQ(std::count(run.m_out.begin(), run.m_out.end(), '\n'), 3);
+    }
 }
 
 TEST_F(Outputs, quietSaysNothingAndHelpIsGood)

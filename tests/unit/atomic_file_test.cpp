@@ -7,6 +7,7 @@
 #include <sstream>
 #include <thread>
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -114,6 +115,57 @@ TEST_F(AtomicFile, saysWhyNot)
     fs::create_directory(path("folder"));
     expectRefused("folder", "is a folder");
     expectRefused("nowhere/a", "no folder");
+}
+
+TEST_F(AtomicFile, linksInACircleAreNoPlace)
+{
+    fs::create_symlink("two", path("one"));
+    fs::create_symlink("one", path("two"));
+    expectRefused("one", "symbolic links");
+    EXPECT_TRUE(fs::is_symlink(path("one")));
+}
+
+TEST_F(AtomicFile, whatADescriptorNamesIsWrittenInPlace)
+{
+    expectWritten("a", "old");
+    const int descriptor = ::open(path("a").c_str(), O_RDONLY);
+    ASSERT_GE(descriptor, 0);
+    fs::rename(path("a"), path("b"));
+    expectWritten("a", "another");
+    std::string error;
+    EXPECT_TRUE(writeFileAtomically("/dev/fd/" + std::to_string(descriptor), "new", error)) << error;
+    ::close(descriptor);
+    EXPECT_EQ(contentOf(path("a")), "another");
+    EXPECT_EQ(contentOf(path("b")), "new");
+    EXPECT_EQ(entries(), 2u);
+}
+
+TEST_F(AtomicFile, oneFileUnderTwoNames)
+{
+    fs::create_symlink("later", path("dangling"));
+    EXPECT_TRUE(areOneFile(path("dangling"), path("later")));
+    EXPECT_TRUE(areOneFile("no-such-file", "./no-such-file"));
+    EXPECT_TRUE(areOneFile("no-such-file", (fs::current_path() / "no-such-file").string()));
+    EXPECT_FALSE(areOneFile(path("a"), path("b")));
+    expectWritten("a", "");
+    fs::create_hard_link(path("a"), path("b"));
+    EXPECT_TRUE(areOneFile(path("a"), path("b")));
+    EXPECT_FALSE(areOneFile(path("a"), path("later")));
+    EXPECT_FALSE(areOneFile("/dev/null", "/dev/null"));
+    int one[2], two[2];
+    ASSERT_EQ(::pipe(one), 0);
+    ASSERT_EQ(::pipe(two), 0);
+    const auto name = [](int descriptor) { return "/dev/fd/" + std::to_string(descriptor); };
+    EXPECT_FALSE(areOneFile(name(one[1]), name(two[1])));
+    EXPECT_TRUE(areOneFile(name(one[1]), name(one[1])));
+    std::string error;
+    EXPECT_TRUE(canWriteFile(name(one[1]), error)) << error;
+    EXPECT_TRUE(writeFileAtomically(name(one[1]), "x", error)) << error;
+    char read = 0;
+    EXPECT_EQ(::read(one[0], &read, 1), 1);
+    EXPECT_EQ(read, 'x');
+    for (const int descriptor : {one[0], one[1], two[0], two[1]})
+        ::close(descriptor);
 }
 
 TEST_F(AtomicFile, whatIsReadOnlyStays)

@@ -30,14 +30,14 @@ std::function<std::string(std::string&)> numberAbove(double least, bool inclusiv
         const std::string problem = asNumber(text, value);
         if (!problem.empty()) return problem;
         // The programs compute with float: what is beyond it is no finite number there, and what is below it 0.
-        const bool positive = value <= 0 || static_cast<float>(value) > 0;
-        const bool fits = value > least || (inclusive && value >= least);
-        return fits && positive ? "" : "'" + text + "' must be " + what;
+        if (value > 0 && !(static_cast<float>(value) > 0)) return "'" + text + "' is too small for float32";
+        return value > least || (inclusive && value >= least) ? "" : "'" + text + "' must be " + what;
     };
 }
 
-std::string notEmpty(std::string& text)
+std::string outputFile(std::string& text)
 {
+    if (text == "/dev/stdout") text = "-";
     return text.empty() ? "is empty" : "";
 }
 

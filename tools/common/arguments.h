@@ -14,8 +14,9 @@ namespace drape
 // `least` (or equal, when inclusive), else the reason, which says `what` it must be.
 std::function<std::string(std::string&)> numberAbove(double least, bool inclusive, const char* what);
 
-// Likewise: "" when the text is not empty.
-std::string notEmpty(std::string& text);
+// To transform the name of a file to write: "" when it is not empty. Standard output is - under its other name, too:
+// what else is written there must not be written over.
+std::string outputFile(std::string& text);
 
 // Parses; `conflict` then tells what is wrong with the whole ("" for nothing). True: go on. False: leave with
 // `exitCode`; what there was to say has been printed (help, or one line on standard error).

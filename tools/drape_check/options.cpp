@@ -86,7 +86,7 @@ bool parseOptions(int argc, const char* const* argv, Options& options, int& exit
     app.add_option("--device", options.m_device, "part of an OpenCL device's or platform's name")->type_name("TEXT");
     app.add_option("--json", options.m_json, "write the answer; - is standard output")
         ->type_name("FILE")
-        ->check(CLI::Validator(notEmpty, ""));
+        ->transform(CLI::Validator(outputFile, ""));
     app.add_flag("--list-devices", options.m_listDevices, "list the OpenCL devices and leave");
     app.add_flag("--quiet", options.m_quiet, "print nothing");
     addCcd(app, options);

@@ -78,7 +78,7 @@ struct Settings
     bool m_profileKernels = false;
 
     // Folder of compiled kernels and of what was measured. Empty: $XDG_CACHE_HOME/drape or ~/.cache/drape. "none": do
-    // not cache.
+    // not cache. PoCL keeps its kernels itself, whatever is said here: in $XDG_CACHE_HOME/pocl or ~/.cache/pocl.
     std::string m_cacheFolder;
 
     // Which algorithms; for comparing them. The contacts do not depend on it.
