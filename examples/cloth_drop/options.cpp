@@ -101,18 +101,12 @@ void addBackendOptions(CLI::App& app, Options& options, std::string& mode)
 
 void addOutputOptions(CLI::App& app, Options& options)
 {
-    app.add_option("--csv", options.m_csv, "write a row a step; - is standard output")
-        ->type_name("FILE")
-        ->transform(CLI::Validator(outputFile, ""));
-    app.add_option("--json", options.m_json, "write the summary; - is standard output")
-        ->type_name("FILE")
-        ->transform(CLI::Validator(outputFile, ""));
-    app.add_option("--frames", options.m_frames, "write obstacle.ply and a cloth_NNNN.ply a step")
-        ->type_name("DIR")
-        ->transform(CLI::Validator(outputFile, ""));
-    app.add_option("--picture", options.m_picture, "write a shaded picture of the last frame")
-        ->type_name("FILE.png")
-        ->transform(CLI::Validator(outputFile, ""));
+    const auto add = [&app](const char* name, std::string& path, const char* type, const char* text)
+    { app.add_option(name, path, text)->type_name(type)->transform(CLI::Validator(outputFile, "")); };
+    add("--csv", options.m_csv, "FILE", "write a row a step; - is standard output");
+    add("--json", options.m_json, "FILE", "write the summary; - is standard output");
+    add("--frames", options.m_frames, "DIR", "write obstacle.ply and a cloth_NNNN.ply a step");
+    add("--picture", options.m_picture, "FILE.png", "write a shaded picture of the last frame");
     app.add_option("--validate-hash", options.m_validateHash, "exit with 3 unless the run's hash is this")
         ->type_name("H")
         ->transform(CLI::Validator(hash, ""));

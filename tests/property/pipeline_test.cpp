@@ -174,70 +174,118 @@ TEST_P(PipelineTest, RefitEqualsRebuild)
     }
 }
 
-// Two cloths of more nodes than go to a device together, told of in parts, a part, the wrong order or not at all.
+namespace
+{
+// Two cloths of more nodes than go to a device together, alike, over a bowl.
+class TwoCloths
+{
+public:
+    using Tell = std::function<void(MeshId, std::size_t)>;
+
+    explicit TwoCloths(Pipeline& pipeline)
+        : m_pipeline(pipeline),
+          m_step(fallingCase("bowl", onHost() ? 40 : 190, 0.03f, 703)),
+          m_nodes(m_step.m_end.size() / 3),
+          m_first(addCloth(pipeline, m_step.m_cloth)),
+          m_second(addCloth(pipeline, m_step.m_cloth)),
+          m_obstacle(addObstacle(pipeline, m_step.m_obstacle))
+    {
+    }
+
+    bool onHost() const { return m_pipeline.deviceReport().m_onHost; }  // has nowhere to send them, and would take long
+    const std::vector<float>& start() const { return m_step.m_cloth.m_positions; }
+    const std::vector<float>& end() const { return m_step.m_end; }
+
+    // What stands where nodes are still to be written.
+    void spoil(float* nodes) { std::fill_n(nodes, 3 * m_nodes, 1e3f); }
+    void addPair(MeshId cloth) { m_pipeline.addPair(cloth, m_obstacle, m_step.m_thickness); }
+
+    // A step whose nodes are written a seventh at a time, and told of each time.
+    std::vector<Contact> run(const std::vector<MeshId>& cloths, const Tell& written)
+    {
+        for (const MeshId cloth : cloths)
+        {
+            spoil(m_pipeline.clothStart(cloth));
+            spoil(m_pipeline.clothEnd(cloth));
+        }
+        for (const MeshId cloth : cloths)
+        {
+            for (std::size_t from = 0, to; from < m_nodes; from = to)
+            {
+                to = std::min(from + m_nodes / 7, m_nodes);
+                std::copy(&start()[3 * from], &start()[0] + 3 * to, m_pipeline.clothStart(cloth) + 3 * from);
+                std::copy(&end()[3 * from], &end()[0] + 3 * to, m_pipeline.clothEnd(cloth) + 3 * from);
+                written(cloth, to);
+            }
+            addPair(cloth);
+        }
+        return runStep(m_pipeline);
+    }
+    std::vector<Contact> runSilently(const std::vector<MeshId>& cloths)
+    {
+        return run(cloths, [](MeshId, std::size_t) {});
+    }
+
+    Pipeline& m_pipeline;
+    const StepCase m_step;
+    const std::size_t m_nodes;
+    const MeshId m_first, m_second, m_obstacle;
+};
+
+void expectSame(const std::vector<Contact>& found, const std::vector<Contact>& expected)
+{
+    EXPECT_TRUE(sameBytes(found, expected)) << difference(found, expected);
+}
+}  // namespace
+
+// Told of in parts, a part, the wrong order or not at all.
 TEST_P(PipelineTest, NodesMayGoBeforeAllAreWritten)
 {
     const std::unique_ptr<Pipeline> pipeline = make();
     ASSERT_TRUE(pipeline);
-    const bool onHost = pipeline->deviceReport().m_onHost;  // has nowhere to send them, and would take long
-    const StepCase step = fallingCase("bowl", onHost ? 40 : 190, 0.03f, 703);
-    const std::vector<float>&start = step.m_cloth.m_positions, &end = step.m_end;
-    const std::size_t nodes = start.size() / 3;
-    ASSERT_TRUE(onHost || nodes > std::size_t(1) << 15);
-    const MeshId first = addCloth(*pipeline, step.m_cloth), second = addCloth(*pipeline, step.m_cloth);
-    const MeshId obstacle = addObstacle(*pipeline, step.m_obstacle);
-    using Tell = std::function<void(MeshId, std::size_t)>;
-    const auto run = [&](std::vector<MeshId> cloths, const Tell& written)
-    {
-        for (const MeshId cloth : cloths)
-        {
-            std::fill_n(pipeline->clothStart(cloth), 3 * nodes, 1e3f);
-            std::fill_n(pipeline->clothEnd(cloth), 3 * nodes, 1e3f);
-        }
-        for (const MeshId cloth : cloths)
-        {
-            for (std::size_t from = 0, to; from < nodes; from = to)
-            {
-                to = std::min(from + nodes / 7, nodes);
-                std::copy(&start[3 * from], &start[0] + 3 * to, pipeline->clothStart(cloth) + 3 * from);
-                std::copy(&end[3 * from], &end[0] + 3 * to, pipeline->clothEnd(cloth) + 3 * from);
-                written(cloth, to);
-            }
-            pipeline->addPair(cloth, obstacle, step.m_thickness);
-        }
-        return runStep(*pipeline);
-    };
+    TwoCloths two(*pipeline);
+    ASSERT_TRUE(two.onHost() || two.m_nodes > std::size_t(1) << 15);
+    const MeshId first = two.m_first, second = two.m_second;
     const auto told = [&](MeshId cloth, std::size_t count) { pipeline->nodesWritten(cloth, count); };
-    const Tell silent = [](MeshId, std::size_t) {};
-    const Tell halfTold = [&](MeshId cloth, std::size_t count) { told(cloth, count / 2); };
-    const auto expectSame = [&](const std::vector<Contact>& found, const std::vector<Contact>& expected)
-    { EXPECT_TRUE(sameBytes(found, expected)) << difference(found, expected); };
-    const std::vector<Contact> expected = run({first, second}, silent);
+    const auto halfTold = [&](MeshId cloth, std::size_t count) { told(cloth, count / 2); };
+    const std::vector<Contact> expected = two.runSilently({first, second});
     ASSERT_GT(expected.size(), 500u);
-    expectSame(run({first, second}, told), expected);
-    expectSame(run({second, first}, told), expected);
-    expectSame(run({first, second}, halfTold), expected);
+    expectSame(two.run({first, second}, told), expected);
+    expectSame(two.run({second, first}, told), expected);
+    expectSame(two.run({first, second}, halfTold), expected);
+    // Told of before a cloth goes.
+    pipeline->nodesWritten(first, two.m_nodes);
+    pipeline->remove(second);
+    expectSame(two.run({first}, told), two.runSilently({first}));
+}
+
+// One cloth after the other, and both at once.
+TEST_P(PipelineTest, NodesThatAreCopiedAreThoseThatAreWritten)
+{
+    const std::unique_ptr<Pipeline> pipeline = make();
+    ASSERT_TRUE(pipeline);
+    TwoCloths two(*pipeline);
+    ASSERT_TRUE(two.onHost() || two.m_nodes > std::size_t(1) << 15);
+    const MeshId first = two.m_first, second = two.m_second;
+    const std::vector<Contact> expected = two.runSilently({first, second});
+    ASSERT_GT(expected.size(), 500u);
     for (const MeshId cloth : {first, second})
     {
-        std::fill_n(pipeline->clothStart(cloth), 3 * nodes, 1e3f);
-        std::fill_n(pipeline->clothEnd(cloth), 3 * nodes, 1e3f);
-        pipeline->copyNodes({cloth}, start.data(), end.data());
-        pipeline->addPair(cloth, obstacle, step.m_thickness);
+        two.spoil(pipeline->clothStart(cloth));
+        two.spoil(pipeline->clothEnd(cloth));
+        pipeline->copyNodes({cloth}, two.start().data(), two.end().data());
+        two.addPair(cloth);
     }
     expectSame(runStep(*pipeline), expected);
-    std::vector<float> bothStart = start, bothEnd = end;
-    bothStart.insert(bothStart.end(), start.begin(), start.end());
-    bothEnd.insert(bothEnd.end(), end.begin(), end.end());
+    std::vector<float> bothStart = two.start(), bothEnd = two.end();
+    bothStart.insert(bothStart.end(), two.start().begin(), two.start().end());
+    bothEnd.insert(bothEnd.end(), two.end().begin(), two.end().end());
     for (const MeshId cloth : {first, second})
-        pipeline->addPair(cloth, obstacle, step.m_thickness);
-    std::fill_n(pipeline->clothStart(second), 3 * nodes, 1e3f);
-    std::fill_n(pipeline->clothEnd(first), 3 * nodes, 1e3f);
+        two.addPair(cloth);
+    two.spoil(pipeline->clothStart(second));
+    two.spoil(pipeline->clothEnd(first));
     pipeline->copyNodes({first, second}, bothStart.data(), bothEnd.data());
     expectSame(runStep(*pipeline), expected);
-    // Told of before a cloth goes.
-    pipeline->nodesWritten(first, nodes);
-    pipeline->remove(second);
-    expectSame(run({first}, told), run({first}, silent));
 }
 
 // A device goes through few tests with another kernel once a step has told that they are few.
