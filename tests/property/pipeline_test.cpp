@@ -238,54 +238,63 @@ void expectSame(const std::vector<Contact>& found, const std::vector<Contact>& e
 }
 }  // namespace
 
-// Told of in parts, a part, the wrong order or not at all.
-TEST_P(PipelineTest, NodesMayGoBeforeAllAreWritten)
+// Two cloths whose contacts are known by nodes that were written in silence.
+class PipelineNodesTest : public PipelineTest
 {
-    const std::unique_ptr<Pipeline> pipeline = make();
-    ASSERT_TRUE(pipeline);
-    TwoCloths two(*pipeline);
-    ASSERT_TRUE(two.onHost() || two.m_nodes > std::size_t(1) << 15);
+protected:
+    void SetUp() override
+    {
+        m_pipeline = make();
+        ASSERT_TRUE(m_pipeline);
+        m_two = std::make_unique<TwoCloths>(*m_pipeline);
+        ASSERT_TRUE(m_two->onHost() || m_two->m_nodes > std::size_t(1) << 15);
+        m_expected = m_two->runSilently({m_two->m_first, m_two->m_second});
+        ASSERT_GT(m_expected.size(), 500u);
+    }
+
+    std::unique_ptr<Pipeline> m_pipeline;
+    std::unique_ptr<TwoCloths> m_two;
+    std::vector<Contact> m_expected;
+};
+
+// Told of in parts, a part, the wrong order or not at all.
+TEST_P(PipelineNodesTest, NodesMayGoBeforeAllAreWritten)
+{
+    TwoCloths& two = *m_two;
     const MeshId first = two.m_first, second = two.m_second;
-    const auto told = [&](MeshId cloth, std::size_t count) { pipeline->nodesWritten(cloth, count); };
+    const auto told = [&](MeshId cloth, std::size_t count) { m_pipeline->nodesWritten(cloth, count); };
     const auto halfTold = [&](MeshId cloth, std::size_t count) { told(cloth, count / 2); };
-    const std::vector<Contact> expected = two.runSilently({first, second});
-    ASSERT_GT(expected.size(), 500u);
-    expectSame(two.run({first, second}, told), expected);
-    expectSame(two.run({second, first}, told), expected);
-    expectSame(two.run({first, second}, halfTold), expected);
+    expectSame(two.run({first, second}, told), m_expected);
+    expectSame(two.run({second, first}, told), m_expected);
+    expectSame(two.run({first, second}, halfTold), m_expected);
     // Told of before a cloth goes.
-    pipeline->nodesWritten(first, two.m_nodes);
-    pipeline->remove(second);
+    m_pipeline->nodesWritten(first, two.m_nodes);
+    m_pipeline->remove(second);
     expectSame(two.run({first}, told), two.runSilently({first}));
 }
 
 // One cloth after the other, and both at once.
-TEST_P(PipelineTest, NodesThatAreCopiedAreThoseThatAreWritten)
+TEST_P(PipelineNodesTest, NodesThatAreCopiedAreThoseThatAreWritten)
 {
-    const std::unique_ptr<Pipeline> pipeline = make();
-    ASSERT_TRUE(pipeline);
-    TwoCloths two(*pipeline);
-    ASSERT_TRUE(two.onHost() || two.m_nodes > std::size_t(1) << 15);
+    TwoCloths& two = *m_two;
     const MeshId first = two.m_first, second = two.m_second;
-    const std::vector<Contact> expected = two.runSilently({first, second});
-    ASSERT_GT(expected.size(), 500u);
     for (const MeshId cloth : {first, second})
     {
-        two.spoil(pipeline->clothStart(cloth));
-        two.spoil(pipeline->clothEnd(cloth));
-        pipeline->copyNodes({cloth}, two.start().data(), two.end().data());
+        two.spoil(m_pipeline->clothStart(cloth));
+        two.spoil(m_pipeline->clothEnd(cloth));
+        m_pipeline->copyNodes({cloth}, two.start().data(), two.end().data());
         two.addPair(cloth);
     }
-    expectSame(runStep(*pipeline), expected);
+    expectSame(runStep(*m_pipeline), m_expected);
     std::vector<float> bothStart = two.start(), bothEnd = two.end();
     bothStart.insert(bothStart.end(), two.start().begin(), two.start().end());
     bothEnd.insert(bothEnd.end(), two.end().begin(), two.end().end());
     for (const MeshId cloth : {first, second})
         two.addPair(cloth);
-    two.spoil(pipeline->clothStart(second));
-    two.spoil(pipeline->clothEnd(first));
-    pipeline->copyNodes({first, second}, bothStart.data(), bothEnd.data());
-    expectSame(runStep(*pipeline), expected);
+    two.spoil(m_pipeline->clothStart(second));
+    two.spoil(m_pipeline->clothEnd(first));
+    m_pipeline->copyNodes({first, second}, bothStart.data(), bothEnd.data());
+    expectSame(runStep(*m_pipeline), m_expected);
 }
 
 // A device goes through few tests with another kernel once a step has told that they are few.
@@ -364,4 +373,5 @@ TEST_P(PipelineTest, SourceTrianglesSurviveDroppedOnes)
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, PipelineTest, testing::ValuesIn(allBackends()), backendName);
+INSTANTIATE_TEST_SUITE_P(Backends, PipelineNodesTest, testing::ValuesIn(allBackends()), backendName);
 }  // namespace drape::test
