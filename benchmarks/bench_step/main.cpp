@@ -7,6 +7,8 @@
 #include <iostream>
 #include <map>
 
+#include <CLI/CLI.hpp>
+
 #include "benchmarks/bench_step/measure_scene.h"
 #include "benchmarks/support/arguments.h"
 #include "scenes/models.h"

@@ -7,6 +7,8 @@
 // with 3.
 #include <iostream>
 
+#include <CLI/CLI.hpp>
+
 #include "benchmarks/error_vs_time/detector_part.h"
 #include "benchmarks/error_vs_time/simulation_part.h"
 #include "scenes/models.h"

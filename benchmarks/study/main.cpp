@@ -6,6 +6,8 @@
 #include <fstream>
 #include <iostream>
 
+#include <CLI/CLI.hpp>
+
 #include "benchmarks/study/study.h"
 #include "scenes/models.h"
 

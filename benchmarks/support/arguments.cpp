@@ -1,5 +1,7 @@
 #include "benchmarks/support/arguments.h"
 
+#include <CLI/CLI.hpp>
+
 #include "benchmarks/support/machine.h"
 
 namespace drape::bench

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <map>
 
+#include <CLI/CLI.hpp>
+
 #include "scenes/shapes.h"
 #include "tools/common/arguments.h"
 #include "tools/common/program.h"

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <iostream>
 
+#include <CLI/CLI.hpp>
+
 namespace drape
 {
 namespace

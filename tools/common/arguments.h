@@ -1,12 +1,15 @@
-// Command lines of Drape's programs, on CLI11.
+// Command lines of Drape's programs, on CLI11. Its header takes seconds to compile: only what defines options includes it.
 #pragma once
 
 #include <functional>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include "tools/common/program.h"
+
+namespace CLI
+{
+class App;
+}
 
 namespace drape
 {

@@ -1,5 +1,7 @@
 #include "tools/drape_check/options.h"
 
+#include <CLI/CLI.hpp>
+
 #include "tools/common/arguments.h"
 #include "tools/common/program.h"
 
