@@ -78,10 +78,10 @@ std::unique_ptr<Pipeline> makePipeline(const Settings& settings)
     return pipeline;
 }
 
-std::unique_ptr<Device> openDevice(const BackendCase& backend)
+std::unique_ptr<Device> openDevice(const BackendCase& backend, bool profiled)
 {
     Error error;
-    std::unique_ptr<Device> device = Device::open(std::size_t(backend.m_device), error);
+    std::unique_ptr<Device> device = Device::open(std::size_t(backend.m_device), error, profiled);
     if (!device) ADD_FAILURE() << error.text();
     return device;
 }

@@ -51,6 +51,7 @@ protected:
 
 // Null, with a failure recorded, when it cannot be made.
 std::unique_ptr<Pipeline> makePipeline(const Settings& settings);
-// The device of an OpenCL back end; null, with a failure recorded, when it cannot be opened.
-std::unique_ptr<Device> openDevice(const BackendCase& backend);
+// The device of an OpenCL back end; null, with a failure recorded, when it cannot be opened. profiled: see
+// Device::open().
+std::unique_ptr<Device> openDevice(const BackendCase& backend, bool profiled = false);
 }  // namespace drape::test

@@ -124,7 +124,7 @@ TEST_P(ProgramTest, BrokenKernelNamesFileLineAndLog)
     const std::string before = source.substr(source.rfind("#line", at), at - source.rfind("#line", at));
     const std::size_t line = std::stoul(before.substr(6)) + countOf(before, "\n") - 1;
 
-    compileSource(*device, "refit", source);
+    compileSource(*device, "kernels/refit.cl", source);
     ASSERT_TRUE(device->failed());
     const Error& error = device->error();
     EXPECT_NE(error.m_call.find("kernels/refit.cl"), std::string::npos) << error.text();

@@ -99,13 +99,13 @@ std::string originOfLine(const std::string& source, std::size_t wanted)
     return file + ":" + std::to_string(line - 1);
 }
 
-bool build(Device& device, cl::Program& program, const std::string& name, const std::string& source)
+bool build(Device& device, cl::Program& program, const std::string& what, const std::string& source)
 {
     const cl_int code = program.build(std::vector<cl::Device>{device.handle()}, kOptions);
     if (code == CL_SUCCESS) return true;
     std::string log;
     program.getBuildInfo(device.handle(), CL_PROGRAM_BUILD_LOG, &log);
-    device.check(code, "building kernels/" + name + ".cl", translateLog(log, source));
+    device.check(code, "building " + what, translateLog(log, source));
     return false;
 }
 }  // namespace
@@ -115,12 +115,15 @@ bool keepsItsOwn(const DeviceInfo& device)
     return device.m_platform == "Portable Computing Language";
 }
 
-std::string assembleSource(const std::string& path)
+std::string assembleSource(const std::vector<std::string>& paths)
 {
-    if (!findText(path)) return std::string();
     std::set<std::string> seen;
     std::string source = kPreamble;
-    append(path, seen, source);
+    for (const std::string& path : paths)
+    {
+        if (!findText(path)) return std::string();
+        append(path, seen, source);
+    }
     return source;
 }
 
@@ -142,21 +145,28 @@ std::string translateLog(const std::string& log, const std::string& source)
     return translated + log.substr(from);
 }
 
-cl::Program compileSource(Device& device, const std::string& name, const std::string& source)
+cl::Program compileSource(Device& device, const std::string& what, const std::string& source)
 {
     cl_int code = CL_SUCCESS;
     cl::Program program(device.context(), source, false, &code);
-    if (device.check(code, "clCreateProgramWithSource", name)) build(device, program, name, source);
+    if (device.check(code, "clCreateProgramWithSource", what)) build(device, program, what, source);
     return program;
 }
 
-cl::Program buildProgram(Device& device, const std::string& name, const std::string& cacheFolder, ProgramBuild& result,
-                         const std::string& defines)
+cl::Program buildProgram(Device& device, const std::vector<std::string>& names, const std::string& cacheFolder,
+                         ProgramBuild& result, const std::string& defines)
 {
     result.m_fromCache = false;
     if (device.failed()) return cl::Program();
+    std::vector<std::string> paths;
+    std::string what;
+    for (const std::string& name : names)
+    {
+        paths.push_back("kernels/" + name + ".cl");
+        what += (what.empty() ? "" : ", ") + paths.back();
+    }
     const std::string kind = device.isGpu() ? "" : "#define DRAPE_CPU\n";
-    const std::string source = kind + defines + assembleSource("kernels/" + name + ".cl");
+    const std::string source = kind + defines + assembleSource(paths);
     const ProgramCache cache(cacheFolder);
     const std::string key = cache.key(source, kOptions, device.info());
     std::vector<unsigned char> binary;
@@ -171,7 +181,7 @@ cl::Program buildProgram(Device& device, const std::string& name, const std::str
             return program;
         }
     }
-    cl::Program program = compileSource(device, name, source);
+    cl::Program program = compileSource(device, what, source);
     if (device.failed() || kept) return program;
     std::vector<std::vector<unsigned char>> binaries;
     if (program.getInfo(CL_PROGRAM_BINARIES, &binaries) == CL_SUCCESS && binaries.size() == 1)

@@ -13,9 +13,14 @@
 
 namespace drape
 {
-// The text of kernels/<file> with every include replaced by the included text once. Line directives keep each line's
-// own file and number, so a compiler's message names the .cl or .h file. Empty when the file is not embedded.
-std::string assembleSource(const std::string& path);
+// The texts of kernels/<file>, one behind the other, with every include replaced by the included text once. Line
+// directives keep each line's own file and number, so a compiler's message names the .cl or .h file. Empty when a file
+// is not embedded.
+std::string assembleSource(const std::vector<std::string>& paths);
+inline std::string assembleSource(const std::string& path)
+{
+    return assembleSource(std::vector<std::string>{path});
+}
 
 // A compiler's log with every "<kernel>:line", as drivers write that ignore line directives, replaced by the file and
 // line of the kernels that this line of the assembled source came from.
@@ -31,18 +36,23 @@ struct ProgramBuild
 // and it takes twice as long as all the rest.
 bool keepsItsOwn(const DeviceInfo& device);
 
-// Builds "kernels/<name>.cl" with contraction off and correctly rounded ÷ and √; DRAPE_CPU is defined unless the device
-// is a GPU. A failed build puts the file and the whole log into the device's error. What was built is kept in
-// cacheFolder, unless the platform keeps its own (empty: the user's cache; "none": no cache); cache trouble means a
-// build, never a failure. defines: lines of text put before the source.
-cl::Program buildProgram(Device& device, const std::string& name, const std::string& cacheFolder, ProgramBuild& build,
-                         const std::string& defines = std::string());
+// Builds "kernels/<name>.cl" of all the names as one program, with contraction off and correctly rounded ÷ and √;
+// DRAPE_CPU is defined unless the device is a GPU. A failed build puts the files and the whole log into the device's
+// error. What was built is kept in cacheFolder, unless the platform keeps its own (empty: the user's cache; "none": no
+// cache); cache trouble means a build, never a failure. defines: lines of text put before the source.
+cl::Program buildProgram(Device& device, const std::vector<std::string>& names, const std::string& cacheFolder,
+                         ProgramBuild& build, const std::string& defines = std::string());
+inline cl::Program buildProgram(Device& device, const std::string& name, const std::string& cacheFolder,
+                                ProgramBuild& build, const std::string& defines = std::string())
+{
+    return buildProgram(device, std::vector<std::string>{name}, cacheFolder, build, defines);
+}
 
-// Gives the program of "kernels/<name>.cl" to a stage that needs several.
+// Gives the program of "kernels/<name>.cl", alone or with others, to a stage that needs several.
 using ProgramLoader = std::function<cl::Program(const char* name)>;
 
-// Builds a source text as given, for tests of the log.
-cl::Program compileSource(Device& device, const std::string& name, const std::string& source);
+// Builds a source text as given. what: names it in an error.
+cl::Program compileSource(Device& device, const std::string& what, const std::string& source);
 
 // A kernel with its name, for messages. Launches are enqueued; nothing waits.
 class Kernel

@@ -14,6 +14,17 @@ constexpr std::size_t kPlaceGroup = 64;
 // For so many steps after one in which slots had many hits they are put in order; without it such a step runs twice.
 constexpr int kStepsToOrder = 64;
 
+// What a CPU has as one program: the files of a step, over patches or over trees, and those of cloths that collide with
+// themselves.
+std::vector<ProgramSet::Names> filesTogether(bool patches)
+{
+    const ProgramSet::Names self = {"self_cull", "self_pack", "self_contact", "self_contact_lanes"};
+    if (!patches) return {{"refit", "narrow_phase_pairs", "compaction", "contact_reduction", "place_obstacles"}, self};
+    return {{"patch_cull", "patch_pack", "narrow_phase", "narrow_phase_lanes", "compaction", "contact_reduction",
+             "place_obstacles"},
+            self};
+}
+
 std::size_t withHeadroom(std::size_t count)
 {
     return count + count / 4 + 1024;
@@ -21,25 +32,25 @@ std::size_t withHeadroom(std::size_t count)
 }  // namespace
 
 DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& settings)
-    : m_device(std::move(device)), m_settings(settings)
+    : m_device(std::move(device)),
+      m_settings(settings),
+      m_programs(
+          *m_device, settings.m_cacheFolder, filesTogether(patches()),
+          PatchCullStage::defines(*m_device) + (settings.m_methods.m_countTests ? "#define DRAPE_COUNT_VISITS\n" : ""))
 {
-    const ProgramLoader ofWidth = [this](const char* name)
-    { return program(name, PatchCullStage::defines(*m_device)); };
+    const ProgramLoader load = m_programs.loader();
     if (patches())
     {
-        m_patchCull.create(*m_device, ofWidth);
+        m_patchCull.create(*m_device, load);
     }
     else
     {
-        m_refit.create(*m_device, program("refit"));
-        const char* const counting = m_settings.m_methods.m_countTests ? "#define DRAPE_COUNT_VISITS\n" : "";
-        m_broadPhase.create(*m_device, m_settings.m_methods.m_traversal,
-                            [&](const char* name) { return program(name, counting); });
-        if (watchesClothTree(m_settings, false))
-            m_treeCost.create(*m_device, [this](const char* name) { return program(name); });
+        m_refit.create(*m_device, load("refit"));
+        m_broadPhase.create(*m_device, m_settings.m_methods.m_traversal, load);
+        if (watchesClothTree(m_settings, false)) m_treeCost.create(*m_device, load);
     }
-    m_narrowPhase.create(*m_device, ofWidth, patches(), m_settings.m_reduceContacts);
-    m_place.create(*m_device, program("place_obstacles"), "placeObstacles");
+    m_narrowPhase.create(*m_device, load, patches(), m_settings.m_reduceContacts);
+    m_place.create(*m_device, load("place_obstacles"), "placeObstacles");
     m_motions.reserve(*m_device, 1);
     m_candidates.reserve(*m_device, 1);
     m_patchCull.reserveTests(*m_device, kFirstCandidates);
@@ -59,14 +70,6 @@ DeviceBackend::~DeviceBackend()
 {
     // Transfers into host memory that is about to go must have ended.
     m_device->wait();
-}
-
-cl::Program DeviceBackend::program(const char* name, const std::string& defines)
-{
-    ProgramBuild build;
-    const cl::Program built = buildProgram(*m_device, name, m_settings.m_cacheFolder, build, defines);
-    m_fromCache = m_fromCache && build.m_fromCache;
-    return built;
 }
 
 // A step of one triangle over another: some drivers compile a kernel again at its first launch with a group size.
@@ -133,7 +136,7 @@ void DeviceBackend::warmUp(float selfThickness)
 void DeviceBackend::prepareSelf()
 {
     if (m_self.created() || m_device->failed()) return;
-    m_self.create(*m_device, [this](const char* name) { return program(name, PatchCullStage::defines(*m_device)); });
+    m_self.create(*m_device, m_programs.loader());
     warmUp(0.1f);
 }
 

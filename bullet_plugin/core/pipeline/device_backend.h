@@ -8,6 +8,7 @@
 #include "bullet_plugin/core/broad_phase/patch_cull.h"
 #include "bullet_plugin/core/bvh/refit.h"
 #include "bullet_plugin/core/bvh/tree_cost.h"
+#include "bullet_plugin/core/device/program_set.h"
 #include "drape/settings.h"
 #include "step.h"
 #include "tree_watch.h"
@@ -22,7 +23,7 @@ public:
     ~DeviceBackend();
 
     Device& device() { return *m_device; }
-    bool fromCache() const { return m_fromCache; }
+    bool fromCache() const { return m_programs.fromCache(); }
 
     // Builds the kernels of cloths that collide with themselves, at the first call.
     void prepareSelf();
@@ -59,7 +60,6 @@ private:
         std::uint32_t m_revision = 0;
     };
 
-    cl::Program program(const char* name, const std::string& defines = std::string());
     void warmUp(float selfThickness = 0.0f);
     // positions: m, of the side's vertices.
     void uploadSide(const MeshPool& pool, const BvhLayout& layout, const float* positions, Side& side);
@@ -94,7 +94,7 @@ private:
 
     std::unique_ptr<Device> m_device;
     Settings m_settings;
-    bool m_fromCache = true;
+    ProgramSet m_programs;
     bool m_limitReached = false;
 
     RefitStage m_refit;

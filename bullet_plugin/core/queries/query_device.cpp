@@ -13,24 +13,18 @@ constexpr std::size_t kGroup = 64;
 constexpr std::size_t kBatch = std::size_t(1) << 18;
 }  // namespace
 
-QueryDevice::QueryDevice(std::unique_ptr<Device> device, const Settings& settings) : m_device(std::move(device))
+QueryDevice::QueryDevice(std::unique_ptr<Device> device, const Settings& settings)
+    : m_device(std::move(device)),
+      m_programs(*m_device, settings.m_cacheFolder, {{"queries", "refit", "self_collision"}})
 {
-    const cl::Program queries = program("queries", settings.m_cacheFolder);
+    const cl::Program queries = m_programs.load("queries");
     m_motion.create(*m_device, queries, "queryMotion");
     m_triangles.create(*m_device, queries, "queryTriangles");
     m_pairs.create(*m_device, queries, "queryPairs");
-    m_refit.create(*m_device, program("refit", settings.m_cacheFolder));
-    m_stage.create(*m_device, program("self_collision", settings.m_cacheFolder));
+    m_refit.create(*m_device, m_programs.load("refit"));
+    m_stage.create(*m_device, m_programs.load("self_collision"));
     m_refitCounters.reserve(*m_device, 1);
     m_answerDemand.reserve(*m_device, 1);
-}
-
-cl::Program QueryDevice::program(const char* name, const std::string& cacheFolder)
-{
-    ProgramBuild build;
-    const cl::Program built = buildProgram(*m_device, name, cacheFolder, build);
-    m_fromCache = m_fromCache && build.m_fromCache;
-    return built;
 }
 
 bool QueryDevice::motions(const CcdQuery* queries, std::size_t count, const CcdSettings& settings, CcdResult* results)

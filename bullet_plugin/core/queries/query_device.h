@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "bullet_plugin/core/bvh/refit.h"
+#include "bullet_plugin/core/device/program_set.h"
 #include "drape/queries.h"
 #include "pair_decision.h"
 
@@ -16,7 +17,7 @@ public:
     QueryDevice(std::unique_ptr<Device> device, const Settings& settings);
 
     Device& device() { return *m_device; }
-    bool fromCache() const { return m_fromCache; }
+    bool fromCache() const { return m_programs.fromCache(); }
     SelfCollisionStage& stage() { return m_stage; }
 
     // Each returns false when the device failed.
@@ -52,7 +53,6 @@ private:
         std::uint64_t left() const { return m_limit - m_pairs; }
     };
 
-    cl::Program program(const char* name, const std::string& cacheFolder);
     void upload(const QueryMesh& source, float radius, Mesh& mesh);
     DeviceTree tree(const QueryMesh& source, Mesh& mesh) const;
     template <typename Enqueue, typename Meet, typename Take>
@@ -61,7 +61,7 @@ private:
     bool takeHits(const SelfLimits& limits, SelfCollisions& found);
 
     std::unique_ptr<Device> m_device;
-    bool m_fromCache = true;
+    ProgramSet m_programs;
     RefitStage m_refit;
     SelfCollisionStage m_stage;
     Kernel m_motion, m_triangles, m_pairs;

@@ -1,0 +1,44 @@
+// The programs of a backend, each built once.
+//
+// A CPU's driver reads OpenCL's own declarations for every program, 30 ms with PoCL even where it has the kernels
+// already, and compiles for every program what several include. So files that are needed together are one program
+// there. On a GPU each file is one, which leaves every kernel's registers to its file alone.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "program.h"
+
+namespace drape
+{
+class ProgramSet
+{
+public:
+    using Names = std::vector<std::string>;  // of "kernels/<name>.cl"
+
+    // together: files that are one program on a CPU; of those in several, the first counts. cacheFolder, defines: see
+    // buildProgram(). The device stays.
+    ProgramSet(Device& device, std::string cacheFolder, std::vector<Names> together,
+               std::string defines = std::string());
+
+    // The program that has the file, built at the first call. Errors: in the device.
+    cl::Program load(const std::string& name);
+    ProgramLoader loader()
+    {
+        return [this](const char* name) { return load(name); };
+    }
+    // Whether all that were loaded were in the cache.
+    bool fromCache() const { return m_fromCache; }
+
+private:
+    Names namesWith(const std::string& name) const;
+
+    Device& m_device;
+    std::string m_cacheFolder, m_defines;
+    std::vector<Names> m_groups;
+    std::map<Names, cl::Program> m_programs;
+    bool m_fromCache = true;
+};
+}  // namespace drape

@@ -1,0 +1,91 @@
+// A backend's programs: each is built once, and a CPU has files that belong together as one.
+#include "bullet_plugin/core/device/program_set.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "tests/support/backends.h"
+
+namespace drape::test
+{
+namespace
+{
+bool hasKernel(const cl::Program& program, const char* name)
+{
+    cl_int code = CL_SUCCESS;
+    const cl::Kernel kernel(program, name, &code);
+    return code == CL_SUCCESS;
+}
+
+class ProgramSetTest : public BackendTest
+{
+};
+}  // namespace
+
+TEST_P(ProgramSetTest, FilesThatBelongTogetherAreOneProgramOnACpu)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    ProgramSet programs(*device, "none", {{"refit", "place_obstacles"}, {"tree_cost", "refit"}},
+                        "// a caller's line\n");
+    const cl::Program refit = programs.load("refit"), place = programs.load("place_obstacles"),
+                      cost = programs.load("tree_cost");
+    ASSERT_FALSE(device->failed()) << device->error().text();
+    EXPECT_EQ(refit() == place(), !device->isGpu());
+    EXPECT_NE(refit(), cost());
+    EXPECT_TRUE(hasKernel(refit, "refitLeaves"));
+    EXPECT_TRUE(hasKernel(place, "placeObstacles"));
+    EXPECT_TRUE(hasKernel(cost, "treeCostSums"));
+
+    const std::string source = refit.getInfo<CL_PROGRAM_SOURCE>(), included = "#line 1 \"kernels/shared/types.h\"";
+    const std::size_t first = source.find(included);
+    EXPECT_NE(first, std::string::npos);
+    EXPECT_EQ(source.find(included, first + 1), std::string::npos) << "a file that both include is there twice";
+    EXPECT_NE(source.find("// a caller's line\n"), std::string::npos);
+}
+
+TEST_P(ProgramSetTest, AProgramIsBuiltOnce)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    ProgramSet programs(*device, "none", {{"refit", "place_obstacles"}});
+    EXPECT_EQ(programs.load("place_obstacles")(), programs.loader()("place_obstacles")());
+    EXPECT_EQ(programs.load("tree_cost")(), programs.load("tree_cost")());
+}
+
+TEST_P(ProgramSetTest, TellsWhetherAllCameFromTheCache)
+{
+    namespace fs = std::filesystem;
+    std::string folder = (fs::temp_directory_path() / "drape_program_set_XXXXXX").string();
+    ASSERT_NE(mkdtemp(folder.data()), nullptr);
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    ProgramSet first(*device, folder, {{"refit", "place_obstacles"}});
+    EXPECT_TRUE(first.fromCache()) << "of no program";
+    first.load("refit");
+    EXPECT_FALSE(first.fromCache());
+
+    ProgramSet second(*device, folder, {{"refit", "place_obstacles"}});
+    second.load("refit");
+    EXPECT_EQ(second.fromCache(), !keepsItsOwn(device->info()));
+    second.load("tree_cost");
+    second.load("refit");
+    EXPECT_FALSE(second.fromCache());
+    fs::remove_all(folder);
+}
+
+TEST_P(ProgramSetTest, ABrokenFileIsNamedWithThoseItIsBuiltWith)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    ProgramSet programs(*device, "none", {{"refit", "place_obstacles"}}, "this is no kernel\n");
+    programs.load("place_obstacles");
+    ASSERT_TRUE(device->failed());
+    EXPECT_NE(device->error().m_call.find("kernels/place_obstacles.cl"), std::string::npos) << device->error().text();
+    EXPECT_EQ(device->error().m_call.find("kernels/refit.cl") != std::string::npos, !device->isGpu());
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, ProgramSetTest, testing::ValuesIn(openClBackends()), backendName);
+}  // namespace drape::test
