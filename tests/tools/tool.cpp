@@ -1,10 +1,8 @@
 #include "tests/tools/tool.h"
 
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -12,8 +10,6 @@ namespace drape::test
 {
 namespace
 {
-namespace fs = std::filesystem;
-
 std::string quoted(const std::string& text)
 {
     std::string out = "'";
@@ -34,14 +30,6 @@ void ToolTest::SetUp()
     const char* program = std::getenv(programVariable());
     ASSERT_TRUE(program != nullptr) << programVariable() << " must name the program";
     m_program = program;
-    std::string name = (fs::temp_directory_path() / "drape_tools_XXXXXX").string();
-    ASSERT_TRUE(::mkdtemp(name.data()) != nullptr);
-    m_folder = name;
-}
-
-void ToolTest::TearDown()
-{
-    if (!m_folder.empty()) fs::remove_all(m_folder);
 }
 
 ToolRun ToolTest::run(const std::vector<std::string>& arguments) const

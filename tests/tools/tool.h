@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/environment.h"
+
 namespace drape::test
 {
 struct ToolRun
@@ -21,7 +23,6 @@ class ToolTest : public testing::Test
 {
 protected:
     void SetUp() override;
-    void TearDown() override;
     // The environment variable that names the program.
     virtual const char* programVariable() const { return "DRAPE_CLOTH_DROP"; }
 
@@ -31,14 +32,15 @@ protected:
     // The summary of such a run, as JSON text; fails the test when the run fails.
     std::string summaryOf(const std::vector<std::string>& more) const;
 
-    std::string path(const std::string& name) const { return m_folder + "/" + name; }
+    std::string path(const std::string& name) const { return m_folder.path() + "/" + name; }
     std::string write(const std::string& name, const std::string& text) const;  // returns the path
 
     // Exit code 2 and one line on stderr that holds every one of the words.
     static void expectRefused(const ToolRun& run, const std::vector<std::string>& words);
 
 private:
-    std::string m_program, m_folder;
+    std::string m_program;
+    const TemporaryFolder m_folder;
 };
 
 std::string readAll(const std::string& path);

@@ -2,12 +2,13 @@
 #include "bullet_plugin/core/device/program_cache.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+
+#include "tests/support/environment.h"
 
 namespace drape::test
 {
@@ -20,21 +21,12 @@ class ProgramCacheTest : public testing::Test
 protected:
     void SetUp() override
     {
-        std::string pattern = (fs::temp_directory_path() / "drape_cache_XXXXXX").string();
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        m_folder = pattern;
         m_device.m_platform = "platform";
         m_device.m_name = "device";
         m_device.m_driver = "1";
         for (int i = 0; i < 1000; ++i)
             m_binary.push_back(static_cast<unsigned char>(i * 7));
     }
-    void TearDown() override
-    {
-        std::error_code ignored;
-        fs::remove_all(m_folder, ignored);
-    }
-
     fs::path storedFile()
     {
         m_cacheKey = ProgramCache(m_folder).key("source", "options", m_device);
@@ -47,7 +39,9 @@ protected:
         return ProgramCache(m_folder).load(m_cacheKey, loaded) && loaded == m_binary;
     }
 
-    std::string m_folder, m_cacheKey;
+    const TemporaryFolder m_temporary;
+    const std::string m_folder = m_temporary.path();
+    std::string m_cacheKey;
     DeviceInfo m_device;
     std::vector<unsigned char> m_binary;
 };

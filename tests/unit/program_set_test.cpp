@@ -2,11 +2,9 @@
 #include "bullet_plugin/core/device/program_set.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
 
 #include "tests/support/backends.h"
+#include "tests/support/environment.h"
 
 namespace drape::test
 {
@@ -57,23 +55,20 @@ TEST_P(ProgramSetTest, AProgramIsBuiltOnce)
 
 TEST_P(ProgramSetTest, TellsWhetherAllCameFromTheCache)
 {
-    namespace fs = std::filesystem;
-    std::string folder = (fs::temp_directory_path() / "drape_program_set_XXXXXX").string();
-    ASSERT_NE(mkdtemp(folder.data()), nullptr);
+    const TemporaryFolder folder;
     const std::unique_ptr<Device> device = openDevice(GetParam());
     ASSERT_TRUE(device);
-    ProgramSet first(*device, folder, {{"refit", "place_obstacles"}});
+    ProgramSet first(*device, folder.path(), {{"refit", "place_obstacles"}});
     EXPECT_TRUE(first.fromCache()) << "of no program";
     first.load("refit");
     EXPECT_FALSE(first.fromCache());
 
-    ProgramSet second(*device, folder, {{"refit", "place_obstacles"}});
+    ProgramSet second(*device, folder.path(), {{"refit", "place_obstacles"}});
     second.load("refit");
     EXPECT_EQ(second.fromCache(), !keepsItsOwn(device->info()));
     second.load("tree_cost");
     second.load("refit");
     EXPECT_FALSE(second.fromCache());
-    fs::remove_all(folder);
 }
 
 TEST_P(ProgramSetTest, ABrokenFileIsNamedWithThoseItIsBuiltWith)

@@ -2,7 +2,6 @@
 #include "bullet_plugin/core/device/program.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <sstream>
@@ -10,6 +9,7 @@
 #include "bullet_plugin/core/device/buffer.h"
 #include "bullet_plugin/core/device/embedded_kernels.h"
 #include "tests/support/backends.h"
+#include "tests/support/environment.h"
 
 namespace drape::test
 {
@@ -136,8 +136,8 @@ TEST_P(ProgramTest, BrokenKernelNamesFileLineAndLog)
 TEST_P(ProgramTest, SecondBuildComesFromTheCacheAndADamagedOneIsBuiltAnew)
 {
     namespace fs = std::filesystem;
-    std::string folder = (fs::temp_directory_path() / "drape_programs_XXXXXX").string();
-    ASSERT_NE(mkdtemp(folder.data()), nullptr);
+    const TemporaryFolder temporary;
+    const std::string& folder = temporary.path();
     const std::unique_ptr<Device> device = openDevice(GetParam());
     ASSERT_TRUE(device);
     ProgramBuild build;
@@ -155,7 +155,6 @@ TEST_P(ProgramTest, SecondBuildComesFromTheCacheAndADamagedOneIsBuiltAnew)
     buildProgram(*device, "broad_phase", "/proc/drape", build);
     EXPECT_FALSE(build.m_fromCache);
     EXPECT_FALSE(device->failed()) << device->error().text();
-    fs::remove_all(folder);
 }
 
 TEST_P(ProgramTest, KernelsAreToldOfACpu)
