@@ -15,12 +15,6 @@ bool anyMoves(const btSoftBody& body)
         if (movableInverseMass(body.m_nodes[i]) > 0) return true;
     return false;
 }
-bool hasPinnedNode(const btSoftBody& body)
-{
-    for (int i = 0; i < body.m_nodes.size(); ++i)
-        if (!(movableInverseMass(body.m_nodes[i]) > 0)) return true;
-    return false;
-}
 }  // namespace
 
 BodyContacts* CollisionStep::bodyOf(MeshId cloth)
@@ -79,13 +73,22 @@ void CollisionStep::addPair(const PairNote& note)
     body.m_mostThickness = std::max(body.m_mostThickness, note.m_thickness);
 }
 
+// Writes where nodes go for the device, and remembers it for the limits of motion: a large cloth's nodes are read once.
 void CollisionStep::uploadNodes()
 {
     std::vector<MeshId> cloths;
-    for (const ClothMirror* mirror : m_mirrors)
-        cloths.push_back(mirror->id());
-    m_state.pipeline().writeNodes(cloths,
-                                  [&](const NodeStretch& stretch) { m_mirrors[stretch.m_cloth]->writeNodes(stretch); });
+    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+    {
+        cloths.push_back(m_mirrors[i]->id());
+        m_bodies[i].m_limit.startRecord(*m_bodies[i].m_body, m_mirrors[i]->faces());
+    }
+    const auto write = [&](const NodeStretch& stretch)
+    {
+        BodyContacts& body = m_bodies[stretch.m_cloth];
+        m_mirrors[stretch.m_cloth]->writeNodes(stretch);
+        body.m_limit.recordNodes(*body.m_body, stretch.m_first, stretch.m_count);
+    };
+    m_state.pipeline().writeNodes(cloths, write);
 }
 
 void CollisionStep::begin(const std::vector<PairNote>& notes)
@@ -108,7 +111,7 @@ void CollisionStep::begin(const std::vector<PairNote>& notes)
 // of pinned nodes alone is not held, so that it can stand for no other.
 float CollisionStep::tubeOf(const Pair& pair)
 {
-    if (!m_state.settings().m_reduceContacts || hasPinnedNode(*bodyOf(pair.m_cloth)->m_body)) return -1;
+    if (!m_state.settings().m_reduceContacts || bodyOf(pair.m_cloth)->m_limit.hasPinnedNode()) return -1;
     return static_cast<float>(MotionLimit::tube(pair.m_thickness, btScalar(m_state.settings().m_activation)));
 }
 
@@ -118,9 +121,6 @@ void CollisionStep::submit()
     for (const Pair& pair : m_pairs)
         m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_thickness), tubeOf(pair));
     m_state.pipeline().submit();
-    // While the device works.
-    for (std::size_t i = 0; i < m_bodies.size(); ++i)
-        m_bodies[i].m_limit.record(*m_bodies[i].m_body, m_mirrors[i]->triangles());
 }
 
 void CollisionStep::receive(const ContactList& contacts)

@@ -40,7 +40,8 @@ bool ClothMirror::sameFaces(int begin, int end) const
 {
     for (int f = begin; f < end; ++f)
         for (int k = 0; k < 3; ++k)
-            if (nodeIndex(*m_body, m_body->m_faces[f].m_n[k]) != m_triangles[static_cast<std::size_t>(3 * f + k)])
+            if (nodeIndex(*m_body, m_body->m_faces[f].m_n[k]) !=
+                m_faces.triangles()[static_cast<std::size_t>(3 * f + k)])
                 return false;
     return true;
 }
@@ -48,7 +49,9 @@ bool ClothMirror::sameFaces(int begin, int end) const
 bool ClothMirror::topologyChanged()
 {
     const int faces = m_body->m_faces.size();
-    if (m_body->m_nodes.size() != m_nodeCount || static_cast<std::size_t>(3 * faces) != m_triangles.size()) return true;
+    if (static_cast<std::size_t>(m_body->m_nodes.size()) != m_faces.nodeCount() ||
+        static_cast<std::size_t>(3 * faces) != m_faces.triangles().size())
+        return true;
     if (faces == 0) return false;
     const bool all = m_fullCheck || m_nodeArray != &m_body->m_nodes[0] || m_faceArray != &m_body->m_faces[0];
     m_fullCheck = false;
@@ -63,17 +66,17 @@ bool ClothMirror::topologyChanged()
 
 void ClothMirror::readTopology()
 {
-    const int faces = m_body->m_faces.size();
-    m_nodeCount = m_body->m_nodes.size();
-    m_triangles.resize(static_cast<std::size_t>(3 * faces));
+    const int faces = m_body->m_faces.size(), nodes = m_body->m_nodes.size();
+    std::vector<std::int32_t> triangles;
     for (int f = 0; f < faces; ++f)
         for (int k = 0; k < 3; ++k)
-            m_triangles[static_cast<std::size_t>(3 * f + k)] = nodeIndex(*m_body, m_body->m_faces[f].m_n[k]);
+            triangles.push_back(nodeIndex(*m_body, m_body->m_faces[f].m_n[k]));
+    m_faces = ClothFaces(std::move(triangles), static_cast<std::size_t>(nodes));
     std::vector<btVector3> places;
-    for (int i = 0; i < m_nodeCount; ++i)
+    for (int i = 0; i < nodes; ++i)
         places.push_back(m_body->m_nodes[i].m_x);
     m_parts.cut(std::move(places));
-    m_nodeArray = m_nodeCount > 0 ? &m_body->m_nodes[0] : nullptr;
+    m_nodeArray = nodes > 0 ? &m_body->m_nodes[0] : nullptr;
     m_faceArray = faces > 0 ? &m_body->m_faces[0] : nullptr;
     m_fullCheck = false;
     m_cursor = 0;
@@ -81,21 +84,22 @@ void ClothMirror::readTopology()
 
 MeshId ClothMirror::refresh(Pipeline& pipeline)
 {
-    if (!topologyChanged() && (m_id != kNoMesh || m_triangles.empty())) return m_id;
+    const std::vector<std::int32_t>& triangles = m_faces.triangles();
+    if (!topologyChanged() && (m_id != kNoMesh || triangles.empty())) return m_id;
     if (m_id != kNoMesh) pipeline.remove(m_id);
     m_id = kNoMesh;
     readTopology();
-    if (m_triangles.empty() || m_nodeCount == 0) return m_id;
+    if (triangles.empty() || m_faces.nodeCount() == 0) return m_id;
 
-    std::vector<float> positions(static_cast<std::size_t>(3 * m_nodeCount));
+    std::vector<float> positions(3 * m_faces.nodeCount());
     float* out = positions.data();
-    for (int i = 0; i < m_nodeCount; ++i)
+    for (int i = 0; i < m_body->m_nodes.size(); ++i)
         writePosition(m_body->m_nodes[i].m_x, out);
     MeshDescription mesh;
-    mesh.m_triangles = m_triangles.data();
-    mesh.m_triangleCount = m_triangles.size() / 3;
+    mesh.m_triangles = triangles.data();
+    mesh.m_triangleCount = triangles.size() / 3;
     mesh.m_positions = positions.data();
-    mesh.m_vertexCount = static_cast<std::size_t>(m_nodeCount);
+    mesh.m_vertexCount = m_faces.nodeCount();
     m_id = pipeline.addCloth(mesh);
     return m_id;
 }

@@ -12,6 +12,7 @@
 
 #include "BulletSoftBody/btSoftBody.h"
 #include "LinearMath/btTransform.h"
+#include "bullet_plugin/adapter/cloth_faces.h"
 #include "bullet_plugin/adapter/cloth_parts.h"
 #include "bullet_plugin/adapter/kinematic_motion.h"
 #include "bullet_plugin/core/pipeline.h"
@@ -44,8 +45,8 @@ public:
     MeshId refresh(Pipeline& pipeline);
     // Writes nodes' positions at the step's start (m_q) and predicted end (m_x).
     void writeNodes(const NodeStretch& stretch) const;
-    // Three nodes each, as the pipeline has them.
-    const std::vector<std::int32_t>& triangles() const { return m_triangles; }
+    // As the pipeline has them.
+    const ClothFaces& faces() const { return m_faces; }
     // Of the nodes as they lay when the topology was read.
     const ClothParts& parts() const { return m_parts; }
     void requireFullCheck() { m_fullCheck = true; }
@@ -60,9 +61,8 @@ private:
 
     const btSoftBody* m_body;  // followed only while a pair of the current step names it
     MeshId m_id = kNoMesh;
-    std::vector<std::int32_t> m_triangles;
+    ClothFaces m_faces;
     ClothParts m_parts;
-    int m_nodeCount = 0;
     const void* m_nodeArray = nullptr;
     const void* m_faceArray = nullptr;
     int m_cursor = 0;

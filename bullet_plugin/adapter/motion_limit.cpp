@@ -77,11 +77,29 @@ void MotionLimit::addObstacle(const btVector3& low, const btVector3& high, btSca
                                carry ? *carry : btTransform::getIdentity()});
 }
 
-void MotionLimit::record(const btSoftBody& body, const std::vector<std::int32_t>& triangles)
+void MotionLimit::startRecord(const btSoftBody& body, const ClothFaces& faces)
 {
-    m_paths.record(body);
+    m_paths.resize(static_cast<std::size_t>(body.m_nodes.size()));
     m_hasContact.assign(m_paths.m_end.size(), 0);
-    m_triangles = &triangles;
+    m_faces = &faces;
+}
+
+void MotionLimit::recordNodes(const btSoftBody& body, std::size_t first, std::size_t count)
+{
+    for (std::size_t i = first; i < first + count; ++i)
+        m_paths.record(i, body.m_nodes[static_cast<int>(i)]);
+}
+
+void MotionLimit::record(const btSoftBody& body, const ClothFaces& faces)
+{
+    startRecord(body, faces);
+    recordNodes(body, 0, m_paths.m_end.size());
+}
+
+bool MotionLimit::hasPinnedNode() const
+{
+    const std::vector<btScalar>& masses = m_paths.m_inverseMass;
+    return std::any_of(masses.begin(), masses.end(), [](btScalar inverseMass) { return !(inverseMass > 0); });
 }
 
 MotionLimit::Allowance MotionLimit::allowance(const Region& region, std::size_t node) const
@@ -158,15 +176,18 @@ void MotionLimit::boxPassed(const btSoftBody& body, bool withContacts)
         m_isBoxed[at] = 1;
         addPassed(body, restless.m_node, restless.m_node, restless.m_node);
     }
-    if (m_passed.empty()) return;
-    const std::vector<std::int32_t>& nodes = *m_triangles;
-    for (std::size_t i = 0; i + 2 < nodes.size(); i += 3)
+    if (m_faces->nodeCount() != m_paths.m_end.size() || m_faces->nodeCount() != std::size_t(body.m_nodes.size()))
+        return;
+    const auto isBoxed = [this](std::int32_t node) { return m_isBoxed[static_cast<std::size_t>(node)] != 0; };
+    for (std::size_t i = 0, nodes = m_passed.size(); i < nodes; ++i)
     {
-        bool any = false;
-        for (int k = 0; k < 3; ++k)
-            any = any || m_isBoxed[static_cast<std::size_t>(nodes[i + static_cast<std::size_t>(k)])] != 0;
-        const bool there = std::max(nodes[i], std::max(nodes[i + 1], nodes[i + 2])) < body.m_nodes.size();
-        if (any && there) addPassed(body, nodes[i], nodes[i + 1], nodes[i + 2]);
+        const int own = m_passed[i].m_nodes[0];
+        const auto addFace = [&](const std::int32_t* face)
+        {
+            // By the first of its nodes alone.
+            if (*std::find_if(face, face + 3, isBoxed) == own) addPassed(body, face[0], face[1], face[2]);
+        };
+        m_faces->forFacesOf(static_cast<std::size_t>(own), addFace);
     }
 }
 

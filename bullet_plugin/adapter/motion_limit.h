@@ -10,12 +10,13 @@
 // position, as in Bullet's own update, so that no energy comes from it. A node is near an obstacle when it or any of
 // its faces is: a face whose nodes all lie beside a corner may be pulled over it. Nodes away from every obstacle are
 // not touched. Near an obstacle that moves the path is the one that the obstacle sees. Metres, world frame. Cost:
-// linear in the nodes, and in the triangles where nodes left their paths; there again for each obstacle that is near.
+// linear in the nodes; again for those that left their paths and their faces, by each obstacle that is near.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "bullet_plugin/adapter/cloth_faces.h"
 #include "bullet_plugin/adapter/node_paths.h"
 
 namespace drape
@@ -45,12 +46,18 @@ public:
     // detection may leave out what others imply there.
     void addObstacle(const btVector3& low, const btVector3& high, btScalar thickness, btScalar activation,
                      const btTransform* carry = nullptr);
-    // Call before Bullet solves: remembers the prediction. triangles: three nodes each; they stay where they are until
-    // the last apply() or applyToOthers().
-    void record(const btSoftBody& body, const std::vector<std::int32_t>& triangles);
+    // Before Bullet solves: the prediction is to be remembered, by recordNodes() for all of the nodes. They have no
+    // contacts yet. The faces stay as they are until the last apply() or applyToOthers().
+    void startRecord(const btSoftBody& body, const ClothFaces& faces);
+    // Some of them; others may be recorded by another thread meanwhile.
+    void recordNodes(const btSoftBody& body, std::size_t first, std::size_t count);
+    // Both, for all nodes.
+    void record(const btSoftBody& body, const ClothFaces& faces);
     // Distance from its path that a node with contacts may go, m.
     static btScalar tube(btScalar thickness, btScalar activation);
     const NodePaths& paths() const { return m_paths; }
+    // Whether no contact may move one of the nodes.
+    bool hasPinnedNode() const;
     // A node of a contact; after record().
     void addContactNode(int node) { m_hasContact[static_cast<std::size_t>(node)] = 1; }
     // Whether a node ended so far back along its path that faces and edges may have taken ways nobody looked at.
@@ -111,7 +118,7 @@ private:
     btScalar m_free = SIMD_INFINITY;  // m, from the end of its path; within it a node is where it may be
     NodePaths m_paths;
     std::vector<unsigned char> m_hasContact;
-    const std::vector<std::int32_t>* m_triangles = nullptr;
+    const ClothFaces* m_faces = nullptr;
     // Of one apply(), kept for their memory.
     std::vector<Restless> m_restless;
     std::vector<unsigned char> m_isBoxed, m_isNear;  // by node: what it passed; near the region looked at last

@@ -388,8 +388,8 @@ TEST_P(ContactRoundsTest, areThoseOverEveryContact)
     BodyContacts bodyContacts;
     bodyContacts.start(cloth, &body, parts);
     bodyContacts.m_leastThickness = bodyContacts.m_mostThickness = kThickness;
-    const std::vector<std::int32_t> noTriangles;
-    bodyContacts.m_limit.record(body, noTriangles);
+    const ClothFaces noFaces;
+    bodyContacts.m_limit.record(body, noFaces);
     bodyContacts.m_features = featuresOf(*pipeline, contacts);
 
     ThreadTeam threads(GetParam().m_threads);

@@ -501,8 +501,8 @@ btVector3 limited(const btVector3& to, bool moves)
     const btTransform up = shiftedBy(btVector3(0, 1, 0));
     MotionLimit limit;
     limit.addObstacle(btVector3(-2, -2, -2), btVector3(2, 2, 2), kThickness, btScalar(0.5), moves ? &up : nullptr);
-    const std::vector<std::int32_t> noTriangles;
-    limit.record(body, noTriangles);
+    const ClothFaces noFaces({}, 1);
+    limit.record(body, noFaces);
     limit.addContactNode(0);
     body.m_nodes[0].m_x = to;
     limit.apply(body);
@@ -536,12 +536,11 @@ TEST(MotionLimit, holdsTrianglesThatArePulledOverACorner)
             btSoftBodyWorldInfo info;
             btSoftBody body(&info, 3, places, masses);
             body.m_sst.isdt = 1 / kDt;
-            const std::vector<std::int32_t> triangles =
-                joined ? std::vector<std::int32_t>{0, 1, 2} : std::vector<std::int32_t>();
+            const ClothFaces faces(joined ? std::vector<std::int32_t>{0, 1, 2} : std::vector<std::int32_t>(), 3);
             MotionLimit limit;
             limit.addObstacle(btVector3(-1, -1, -1), btVector3(1, 1, 1), kThickness, btScalar(0.5),
                               moves ? &rests : nullptr);
-            limit.record(body, triangles);
+            limit.record(body, faces);
             for (int i = 0; i < 3; ++i)
                 body.m_nodes[i].m_x += pull;
             limit.apply(body);

@@ -22,7 +22,7 @@ struct Strayed
 {
     std::unique_ptr<btSoftBody> m_body;
     MotionLimit m_limit;
-    std::vector<std::int32_t> m_triangles;
+    ClothFaces m_faces;
     std::vector<btVector3> m_places;  // after they went
 
     static bool hasContact(int node) { return node % 3 == 0; }
@@ -44,11 +44,13 @@ struct Strayed
         m_body->m_sst.isdt = 1 / kDt;
         for (int i = 0; i < kNodes; ++i)
             m_body->m_nodes[i].m_x += vector(0.03f);
+        std::vector<std::int32_t> triangles;
         for (int i = 0; i + 2 < kNodes; i += 3)
-            m_triangles.insert(m_triangles.end(), {i, i + 1, i + 2});
+            triangles.insert(triangles.end(), {i, i + 1, i + 2});
+        m_faces = ClothFaces(std::move(triangles), kNodes);
         m_limit.addObstacle(btVector3(-1, -1, -1), btVector3(1, btScalar(0.2), 1), btScalar(0.02), kActivation);
         m_limit.addObstacle(btVector3(-1, 0, -1), btVector3(btScalar(0.3), 1, 1), btScalar(0.05), kActivation);
-        m_limit.record(*m_body, m_triangles);
+        m_limit.record(*m_body, m_faces);
         for (int i = 0; i < kNodes; ++i)
         {
             if (hasContact(i)) m_limit.addContactNode(i);
