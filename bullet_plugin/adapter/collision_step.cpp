@@ -121,6 +121,8 @@ void CollisionStep::submit()
     for (const Pair& pair : m_pairs)
         m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_thickness), tubeOf(pair));
     m_state.pipeline().submit();
+    for (ClothMirror* mirror : m_mirrors)
+        mirror->checkSomeFaces();
 }
 
 void CollisionStep::receive(const ContactList& contacts)

@@ -54,6 +54,6 @@ private:
     std::vector<BodyContacts> m_bodies, m_spare;
     std::vector<Pair> m_pairs;
     std::vector<const btSoftBody*> m_pinned;
-    std::vector<const ClothMirror*> m_mirrors;  // one for each of m_bodies
+    std::vector<ClothMirror*> m_mirrors;  // one for each of m_bodies
 };
 }  // namespace drape

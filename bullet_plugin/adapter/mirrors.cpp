@@ -10,8 +10,8 @@ namespace drape
 namespace
 {
 // Faces whose indices are compared in one step. Every change that Bullet's own functions make (appendFace, cutLink,
-// refine) alters a count or an array and is seen at once; shuffling faces in place, as randomizeConstraints does, is
-// seen within faces / 32768 steps, and the contact writer checks the face that it is about to use.
+// refine) alters a count or an array and is seen at once; shuffling faces in place, as randomizeConstraints does,
+// leaves the same cloth. Other nodes for a face that stays where it is are seen one step after faces / 32768 steps.
 constexpr int kFacesPerCheck = 32768;
 
 int nodeIndex(const btSoftBody& body, const btSoftBody::Node* node)
@@ -57,11 +57,15 @@ bool ClothMirror::topologyChanged()
     m_fullCheck = false;
     m_nodeArray = &m_body->m_nodes[0];
     m_faceArray = &m_body->m_faces[0];
-    if (all) return !sameFaces(0, faces);
+    return all && !sameFaces(0, faces);
+}
+
+void ClothMirror::checkSomeFaces()
+{
+    const int faces = m_body->m_faces.size();
     const int begin = m_cursor < faces ? m_cursor : 0;
-    const int end = std::min(faces, begin + kFacesPerCheck);
-    m_cursor = end;
-    return !sameFaces(begin, end);
+    m_cursor = std::min(faces, begin + kFacesPerCheck);
+    if (!sameFaces(begin, m_cursor)) m_fullCheck = true;
 }
 
 void ClothMirror::readTopology()

@@ -4,7 +4,7 @@
 // or kNoMesh for a mesh without triangles. Guarantee: a cloth whose faces or nodes were replaced, cut, refined or
 // shuffled is rebuilt; an obstacle that moved, was scaled or deformed is moved, and rebuilt when its triangles changed.
 // An unchanged obstacle, and a kinematic one that only moved, costs meshSignature(), an unchanged cloth a comparison of
-// its indices. Metres; a kinematic obstacle's positions are in its own frame, all others in the world's.
+// some indices. Metres; a kinematic obstacle's positions are in its own frame, all others in the world's.
 #pragma once
 
 #include <cstdint>
@@ -43,6 +43,8 @@ public:
 
     // Adds the body to the pipeline, or replaces what is there when the topology changed.
     MeshId refresh(Pipeline& pipeline);
+    // After refresh(), while the device works: looks at some faces more, for the next refresh() to heed.
+    void checkSomeFaces();
     // Writes nodes' positions at the step's start (m_q) and predicted end (m_x).
     void writeNodes(const NodeStretch& stretch) const;
     // As the pipeline has them.
