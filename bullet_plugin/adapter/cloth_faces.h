@@ -32,7 +32,7 @@ public:
     // Three nodes each.
     const std::vector<std::int32_t>& triangles() const { return m_triangles; }
 
-    // Calls visit(nodes), nodes the face's three, for each face that has the node.
+    // Calls visit(nodes), nodes the face's three, for each face that has the node; again where it has it twice.
     template <class Visit>
     void forFacesOf(std::size_t node, const Visit& visit) const
     {

@@ -7,7 +7,7 @@ namespace drape
 {
 namespace
 {
-// Whether contacts could move any of its nodes, or all of them.
+// Whether contacts could move any of its nodes.
 bool anyMoves(const btSoftBody& body)
 {
     if (!(body.m_sst.sdt > 0)) return false;
@@ -80,7 +80,7 @@ void CollisionStep::uploadNodes()
     for (std::size_t i = 0; i < m_bodies.size(); ++i)
     {
         cloths.push_back(m_mirrors[i]->id());
-        m_bodies[i].m_limit.startRecord(*m_bodies[i].m_body, m_mirrors[i]->faces());
+        m_bodies[i].m_limit.startRecord(m_mirrors[i]->faces());
     }
     const auto write = [&](const NodeStretch& stretch)
     {
@@ -92,6 +92,19 @@ void CollisionStep::uploadNodes()
 }
 
 void CollisionStep::begin(const std::vector<PairNote>& notes)
+{
+    beginWithCounts(notes);
+    // While a device works.
+    bool facesChanged = false;
+    for (ClothMirror* mirror : m_mirrors)
+        facesChanged = mirror->someFacesChanged() || facesChanged;
+    if (!facesChanged) return;
+    m_state.pipeline().finish();
+    beginWithCounts(notes);
+}
+
+// Takes cloths for what they were while they have as many nodes and faces, where they were.
+void CollisionStep::beginWithCounts(const std::vector<PairNote>& notes)
 {
     clear();
     m_state.m_found.clear();
@@ -121,8 +134,6 @@ void CollisionStep::submit()
     for (const Pair& pair : m_pairs)
         m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_thickness), tubeOf(pair));
     m_state.pipeline().submit();
-    for (ClothMirror* mirror : m_mirrors)
-        mirror->checkSomeFaces();
 }
 
 void CollisionStep::receive(const ContactList& contacts)

@@ -38,6 +38,7 @@ private:
         btScalar m_thickness;
     };
 
+    void beginWithCounts(const std::vector<PairNote>& notes);
     void addPair(const PairNote& note);
     float tubeOf(const Pair& pair);
     void uploadNodes();

@@ -1,6 +1,7 @@
 #include "bullet_plugin/adapter/mirrors.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "bullet_plugin/adapter/mesh_reader.h"
@@ -10,8 +11,8 @@ namespace drape
 namespace
 {
 // Faces whose indices are compared in one step. Every change that Bullet's own functions make (appendFace, cutLink,
-// refine) alters a count or an array and is seen at once; shuffling faces in place, as randomizeConstraints does,
-// leaves the same cloth. Other nodes for a face that stays where it is are seen one step after faces / 32768 steps.
+// refine) alters a count or an array and is seen at once; other nodes for a face that stays where it is, as
+// randomizeConstraints gives, are seen within faces / 32768 steps.
 constexpr int kFacesPerCheck = 32768;
 
 int nodeIndex(const btSoftBody& body, const btSoftBody::Node* node)
@@ -60,12 +61,15 @@ bool ClothMirror::topologyChanged()
     return all && !sameFaces(0, faces);
 }
 
-void ClothMirror::checkSomeFaces()
+bool ClothMirror::someFacesChanged()
 {
     const int faces = m_body->m_faces.size();
+    assert(static_cast<std::size_t>(3 * faces) == m_faces.triangles().size());
     const int begin = m_cursor < faces ? m_cursor : 0;
     m_cursor = std::min(faces, begin + kFacesPerCheck);
-    if (!sameFaces(begin, m_cursor)) m_fullCheck = true;
+    if (sameFaces(begin, m_cursor)) return false;
+    m_fullCheck = true;
+    return true;
 }
 
 void ClothMirror::readTopology()

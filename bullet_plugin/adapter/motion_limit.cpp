@@ -1,6 +1,7 @@
 #include "bullet_plugin/adapter/motion_limit.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace drape
 {
@@ -77,22 +78,23 @@ void MotionLimit::addObstacle(const btVector3& low, const btVector3& high, btSca
                                carry ? *carry : btTransform::getIdentity()});
 }
 
-void MotionLimit::startRecord(const btSoftBody& body, const ClothFaces& faces)
+void MotionLimit::startRecord(const ClothFaces& faces)
 {
-    m_paths.resize(static_cast<std::size_t>(body.m_nodes.size()));
+    m_paths.resize(faces.nodeCount());
     m_hasContact.assign(m_paths.m_end.size(), 0);
     m_faces = &faces;
 }
 
 void MotionLimit::recordNodes(const btSoftBody& body, std::size_t first, std::size_t count)
 {
+    assert(m_paths.m_end.size() == static_cast<std::size_t>(body.m_nodes.size()));
     for (std::size_t i = first; i < first + count; ++i)
         m_paths.record(i, body.m_nodes[static_cast<int>(i)]);
 }
 
 void MotionLimit::record(const btSoftBody& body, const ClothFaces& faces)
 {
-    startRecord(body, faces);
+    startRecord(faces);
     recordNodes(body, 0, m_paths.m_end.size());
 }
 
@@ -176,8 +178,6 @@ void MotionLimit::boxPassed(const btSoftBody& body, bool withContacts)
         m_isBoxed[at] = 1;
         addPassed(body, restless.m_node, restless.m_node, restless.m_node);
     }
-    if (m_faces->nodeCount() != m_paths.m_end.size() || m_faces->nodeCount() != std::size_t(body.m_nodes.size()))
-        return;
     const auto isBoxed = [this](std::int32_t node) { return m_isBoxed[static_cast<std::size_t>(node)] != 0; };
     for (std::size_t i = 0, nodes = m_passed.size(); i < nodes; ++i)
     {

@@ -13,7 +13,6 @@
 // linear in the nodes; again for those that left their paths and their faces, by each obstacle that is near.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "bullet_plugin/adapter/cloth_faces.h"
@@ -47,8 +46,8 @@ public:
     void addObstacle(const btVector3& low, const btVector3& high, btScalar thickness, btScalar activation,
                      const btTransform* carry = nullptr);
     // Before Bullet solves: the prediction is to be remembered, by recordNodes() for all of the nodes. They have no
-    // contacts yet. The faces stay as they are until the last apply() or applyToOthers().
-    void startRecord(const btSoftBody& body, const ClothFaces& faces);
+    // contacts yet. The faces are of as many nodes, and stay as they are until the last apply() or applyToOthers().
+    void startRecord(const ClothFaces& faces);
     // Some of them; others may be recorded by another thread meanwhile.
     void recordNodes(const btSoftBody& body, std::size_t first, std::size_t count);
     // Both, for all nodes.
@@ -56,9 +55,9 @@ public:
     // Distance from its path that a node with contacts may go, m.
     static btScalar tube(btScalar thickness, btScalar activation);
     const NodePaths& paths() const { return m_paths; }
-    // Whether no contact may move one of the nodes.
+    // Whether there is a node that no contact may move; once all are recorded.
     bool hasPinnedNode() const;
-    // A node of a contact; after record().
+    // A node of a contact; after startRecord().
     void addContactNode(int node) { m_hasContact[static_cast<std::size_t>(node)] = 1; }
     // Whether a node ended so far back along its path that faces and edges may have taken ways nobody looked at.
     bool strayed(const btSoftBody& body) const;

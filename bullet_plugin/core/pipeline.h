@@ -131,7 +131,8 @@ public:
     // they were added, and large ones a part at a time.
     void nodesWritten(MeshId cloth, std::size_t count);
     // All of that for several cloths: calls write() for stretches of their nodes, and tells of them as they are
-    // written. A GPU's pipeline shares many stretches with threads(), so that write() must not depend on their order.
+    // written. A GPU's pipeline shares many stretches with threads(): calls must not depend on their order, and several
+    // may be under way at once.
     void writeNodes(const std::vector<MeshId>& cloths, const std::function<void(const NodeStretch&)>& write);
     // The same for a caller with arrays of its own, of all the cloths one after the other: x y z per vertex.
     void copyNodes(const std::vector<MeshId>& cloths, const float* start, const float* end);

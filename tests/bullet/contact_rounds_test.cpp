@@ -388,7 +388,7 @@ TEST_P(ContactRoundsTest, areThoseOverEveryContact)
     BodyContacts bodyContacts;
     bodyContacts.start(cloth, &body, parts);
     bodyContacts.m_leastThickness = bodyContacts.m_mostThickness = kThickness;
-    const ClothFaces noFaces;
+    const ClothFaces noFaces({}, parts.nodeCount());
     bodyContacts.m_limit.record(body, noFaces);
     bodyContacts.m_features = featuresOf(*pipeline, contacts);
 

@@ -1,9 +1,11 @@
 // What limits the motion of nodes near obstacles: places that are held one by one are those of the whole body at once.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "bullet_plugin/adapter/motion_limit.h"
@@ -114,5 +116,73 @@ TEST(MotionLimit, holdsTheOthersApart)
         brought += strayed.wasMoved(i) ? 1 : 0;
     }
     EXPECT_GT(brought, kNodes / 12);
+}
+
+// In stretches, as threads do.
+TEST(MotionLimit, recordsNodesInAnyStretches)
+{
+    btSoftBodyWorldInfo info;
+    SCOPED_TRACE("seed 4");
+    Strayed whole(info, 4), parts(info, 4);
+    MotionLimit limit;
+    limit.startRecord(parts.m_faces);
+    const std::pair<std::size_t, std::size_t> stretches[] = {{400, 199}, {0, 1}, {1, 249}, {599, 1}, {250, 150}};
+    for (const auto& [first, count] : stretches)
+        limit.recordNodes(*parts.m_body, first, count);
+    EXPECT_TRUE(limit.hasPinnedNode());
+    whole.m_limit.record(*parts.m_body, parts.m_faces);
+    EXPECT_EQ(limit.paths().m_inverseMass, whole.m_limit.paths().m_inverseMass);
+    for (std::size_t i = 0; i < kNodes; ++i)
+    {
+        if (i == 3) continue;  // no number
+        EXPECT_EQ(limit.paths().m_start[i], whole.m_limit.paths().m_start[i]) << "node " << i;
+        EXPECT_EQ(limit.paths().m_end[i], whole.m_limit.paths().m_end[i]) << "node " << i;
+    }
+}
+
+// Of faces that share nodes, in any order, by any of their nodes and twice: each holds all of its nodes.
+TEST(MotionLimit, heedsEveryFaceOfANode)
+{
+    SCOPED_TRACE("seed 5");
+    std::vector<btVector3> expected;
+    for (int turn = 0; turn < 4; ++turn)
+    {
+        btSoftBodyWorldInfo info;
+        Strayed strayed(info, 5);
+        Random random(6);  // the same faces in each turn
+        std::vector<std::int32_t> triangles;
+        for (int i = 0; i < 3 * 2 * kNodes; ++i)
+            triangles.push_back(std::int32_t(random.uniform(0, kNodes - 0.001f)));
+        if (turn == 1) std::reverse(triangles.begin(), triangles.end());
+        if (turn == 2) std::rotate(triangles.begin(), triangles.begin() + 300, triangles.end());
+        if (turn == 3)
+        {
+            for (std::size_t i = 0; i < triangles.size(); i += 3)
+                std::rotate(&triangles[i], &triangles[i] + 1, &triangles[i] + 3);
+            const std::vector<std::int32_t> again = triangles;
+            triangles.insert(triangles.end(), again.begin(), again.end());
+        }
+        const ClothFaces faces(std::move(triangles), kNodes);
+        const std::vector<btVector3> pulled = strayed.m_places;
+        for (int i = 0; i < kNodes; ++i)
+            strayed.m_body->m_nodes[i].m_x = strayed.m_limit.paths().m_end[std::size_t(i)];
+        strayed.m_limit.record(*strayed.m_body, faces);
+        for (int i = 0; i < kNodes; ++i)
+            strayed.m_body->m_nodes[i].m_x = pulled[std::size_t(i)];
+        strayed.m_limit.apply(*strayed.m_body);
+        std::vector<btVector3> places;
+        for (int i = 0; i < kNodes; ++i)
+            places.push_back(strayed.m_body->m_nodes[i].m_x);
+        if (turn == 0) expected = places;
+        int brought = 0;
+        for (int i = 0; i < kNodes; ++i)
+        {
+            if (i == 3) continue;  // no number
+            EXPECT_EQ(places[std::size_t(i)], expected[std::size_t(i)]) << "node " << i << ", turn " << turn;
+            brought += strayed.wasMoved(i) ? 1 : 0;
+        }
+        EXPECT_GT(brought, kNodes / 4);
+        EXPECT_LT(brought, kNodes);
+    }
 }
 }  // namespace drape::test

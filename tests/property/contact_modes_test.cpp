@@ -104,7 +104,7 @@ protected:
     }
 
 private:
-    // One for all of a test's cases: making one takes PoCL a third of a second.
+    // One for all of a test's cases: making one takes PoCL a fifth of a second.
     Pipeline* pipelineOf(ContactMode mode)
     {
         std::unique_ptr<Pipeline>& pipeline = m_pipelines[mode];

@@ -12,6 +12,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/support/environment.h"
+
 namespace drape::test
 {
 namespace
@@ -29,12 +31,6 @@ std::string contentOf(const fs::path& path)
 class AtomicFile : public testing::Test
 {
 protected:
-    AtomicFile() : m_folder(fs::temp_directory_path() / ("drape-atomic-" + std::to_string(::getpid())))
-    {
-        fs::create_directory(m_folder);
-    }
-    ~AtomicFile() override { fs::remove_all(m_folder); }
-
     std::string path(const std::string& name) const { return (m_folder / name).string(); }
 
     // Expects that it is told beforehand, too.
@@ -59,7 +55,8 @@ protected:
         return static_cast<std::size_t>(std::distance(fs::directory_iterator(m_folder), fs::directory_iterator()));
     }
 
-    const fs::path m_folder;
+    const TemporaryFolder m_temporary;
+    const fs::path m_folder = m_temporary.path();
 };
 }  // namespace
 

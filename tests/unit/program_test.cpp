@@ -84,6 +84,16 @@ TEST(AssembleSource, UnknownFileIsEmpty)
     EXPECT_TRUE(assembleSource("kernels/no_such.cl").empty());
 }
 
+TEST(AssembleSource, OfSeveralFilesHasWhatTheyIncludeOnce)
+{
+    const std::string source = assembleSources({"kernels/refit.cl", "kernels/place_obstacles.cl"});
+    expectLinesAreWhereTheySay(source);
+    EXPECT_EQ(countOf(source, "#line 1 \"kernels/shared/types.h\""), 1u);
+    EXPECT_NE(source.find("__kernel void refitLeaves"), std::string::npos);
+    EXPECT_NE(source.find("__kernel void placeObstacles"), std::string::npos);
+    EXPECT_TRUE(assembleSources({"kernels/refit.cl", "kernels/no_such.cl"}).empty());
+}
+
 // For drivers that ignore line directives: a marker in the assembled source, named by its own line, is found in its
 // file.
 TEST(TranslateLog, NamesFileAndLineOfEveryKernelLine)

@@ -1,4 +1,5 @@
-// Command lines of Drape's programs, on CLI11. Its header takes seconds to compile: only what defines options includes it.
+// Command lines of Drape's programs, on CLI11. Its header takes seconds to compile: only what defines options includes
+// it.
 #pragma once
 
 #include <functional>

@@ -115,7 +115,7 @@ bool keepsItsOwn(const DeviceInfo& device)
     return device.m_platform == "Portable Computing Language";
 }
 
-std::string assembleSource(const std::vector<std::string>& paths)
+std::string assembleSources(const std::vector<std::string>& paths)
 {
     std::set<std::string> seen;
     std::string source = kPreamble;
@@ -153,8 +153,8 @@ cl::Program compileSource(Device& device, const std::string& what, const std::st
     return program;
 }
 
-cl::Program buildProgram(Device& device, const std::vector<std::string>& names, const std::string& cacheFolder,
-                         ProgramBuild& result, const std::string& defines)
+cl::Program buildJoinedProgram(Device& device, const std::vector<std::string>& names, const std::string& cacheFolder,
+                               ProgramBuild& result, const std::string& defines)
 {
     result.m_fromCache = false;
     if (device.failed()) return cl::Program();
@@ -166,7 +166,7 @@ cl::Program buildProgram(Device& device, const std::vector<std::string>& names, 
         what += (what.empty() ? "" : ", ") + paths.back();
     }
     const std::string kind = device.isGpu() ? "" : "#define DRAPE_CPU\n";
-    const std::string source = kind + defines + assembleSource(paths);
+    const std::string source = kind + defines + assembleSources(paths);
     const ProgramCache cache(cacheFolder);
     const std::string key = cache.key(source, kOptions, device.info());
     std::vector<unsigned char> binary;

@@ -16,10 +16,10 @@ namespace drape
 // The texts of kernels/<file>, one behind the other, with every include replaced by the included text once. Line
 // directives keep each line's own file and number, so a compiler's message names the .cl or .h file. Empty when a file
 // is not embedded.
-std::string assembleSource(const std::vector<std::string>& paths);
+std::string assembleSources(const std::vector<std::string>& paths);
 inline std::string assembleSource(const std::string& path)
 {
-    return assembleSource(std::vector<std::string>{path});
+    return assembleSources({path});
 }
 
 // A compiler's log with every "<kernel>:line", as drivers write that ignore line directives, replaced by the file and
@@ -40,12 +40,12 @@ bool keepsItsOwn(const DeviceInfo& device);
 // DRAPE_CPU is defined unless the device is a GPU. A failed build puts the files and the whole log into the device's
 // error. What was built is kept in cacheFolder, unless the platform keeps its own (empty: the user's cache; "none": no
 // cache); cache trouble means a build, never a failure. defines: lines of text put before the source.
-cl::Program buildProgram(Device& device, const std::vector<std::string>& names, const std::string& cacheFolder,
-                         ProgramBuild& build, const std::string& defines = std::string());
+cl::Program buildJoinedProgram(Device& device, const std::vector<std::string>& names, const std::string& cacheFolder,
+                               ProgramBuild& build, const std::string& defines = std::string());
 inline cl::Program buildProgram(Device& device, const std::string& name, const std::string& cacheFolder,
                                 ProgramBuild& build, const std::string& defines = std::string())
 {
-    return buildProgram(device, std::vector<std::string>{name}, cacheFolder, build, defines);
+    return buildJoinedProgram(device, {name}, cacheFolder, build, defines);
 }
 
 // Gives the program of "kernels/<name>.cl", alone or with others, to a stage that needs several.

@@ -24,7 +24,7 @@ cl::Program ProgramSet::load(const std::string& name)
     const auto known = m_programs.find(names);
     if (known != m_programs.end()) return known->second;
     ProgramBuild build;
-    const cl::Program program = buildProgram(m_device, names, m_cacheFolder, build, m_defines);
+    const cl::Program program = buildJoinedProgram(m_device, names, m_cacheFolder, build, m_defines);
     m_fromCache = m_fromCache && build.m_fromCache;
     m_programs.emplace(names, program);
     return program;

@@ -19,7 +19,7 @@ public:
     using Names = std::vector<std::string>;  // of "kernels/<name>.cl"
 
     // together: files that are one program on a CPU; of those in several, the first counts. cacheFolder, defines: see
-    // buildProgram(). The device stays.
+    // buildJoinedProgram(). The device stays.
     ProgramSet(Device& device, std::string cacheFolder, std::vector<Names> together,
                std::string defines = std::string());
 

@@ -14,15 +14,17 @@ constexpr std::size_t kPlaceGroup = 64;
 // For so many steps after one in which slots had many hits they are put in order; without it such a step runs twice.
 constexpr int kStepsToOrder = 64;
 
-// What a CPU has as one program: the files of a step, over patches or over trees, and those of cloths that collide with
-// themselves.
-std::vector<ProgramSet::Names> filesTogether(bool patches)
+// What a CPU has as one program: the files of every step over patches, or over trees but for the traversal's own, and
+// what cloths need beside them that collide with themselves.
+std::vector<ProgramSet::Names> filesTogether(bool patches, bool reduces)
 {
-    const ProgramSet::Names self = {"self_cull", "self_pack", "self_contact", "self_contact_lanes"};
-    if (!patches) return {{"refit", "narrow_phase_pairs", "compaction", "contact_reduction", "place_obstacles"}, self};
-    return {{"patch_cull", "patch_pack", "narrow_phase", "narrow_phase_lanes", "compaction", "contact_reduction",
-             "place_obstacles"},
-            self};
+    ProgramSet::Names step = {"compaction", "place_obstacles"};
+    if (patches)
+        step.insert(step.end(), {"patch_cull", "patch_pack", "narrow_phase", "narrow_phase_lanes"});
+    else
+        step.insert(step.end(), {"refit", "narrow_phase_pairs"});
+    if (reduces) step.push_back("contact_reduction");
+    return {step, {"self_cull", "self_pack", "self_contact", "self_contact_lanes"}};
 }
 
 std::size_t withHeadroom(std::size_t count)
@@ -35,7 +37,7 @@ DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& set
     : m_device(std::move(device)),
       m_settings(settings),
       m_programs(
-          *m_device, settings.m_cacheFolder, filesTogether(patches()),
+          *m_device, settings.m_cacheFolder, filesTogether(patches(), settings.m_reduceContacts),
           PatchCullStage::defines(*m_device) + (settings.m_methods.m_countTests ? "#define DRAPE_COUNT_VISITS\n" : ""))
 {
     const ProgramLoader load = m_programs.loader();
