@@ -93,19 +93,6 @@ void CollisionStep::uploadNodes()
 
 void CollisionStep::begin(const std::vector<PairNote>& notes)
 {
-    beginWithCounts(notes);
-    // While a device works.
-    bool facesChanged = false;
-    for (ClothMirror* mirror : m_mirrors)
-        facesChanged = mirror->someFacesChanged() || facesChanged;
-    if (!facesChanged) return;
-    m_state.pipeline().finish();
-    beginWithCounts(notes);
-}
-
-// Takes cloths for what they were while they have as many nodes and faces, where they were.
-void CollisionStep::beginWithCounts(const std::vector<PairNote>& notes)
-{
     clear();
     m_state.m_found.clear();
     // Adding and removing meshes moves the memory that nodes are written to: mirrors first, nodes after.

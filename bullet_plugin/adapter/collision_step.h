@@ -38,7 +38,6 @@ private:
         btScalar m_thickness;
     };
 
-    void beginWithCounts(const std::vector<PairNote>& notes);
     void addPair(const PairNote& note);
     float tubeOf(const Pair& pair);
     void uploadNodes();
@@ -55,6 +54,6 @@ private:
     std::vector<BodyContacts> m_bodies, m_spare;
     std::vector<Pair> m_pairs;
     std::vector<const btSoftBody*> m_pinned;
-    std::vector<ClothMirror*> m_mirrors;  // one for each of m_bodies
+    std::vector<const ClothMirror*> m_mirrors;  // one for each of m_bodies
 };
 }  // namespace drape

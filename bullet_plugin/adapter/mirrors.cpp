@@ -1,7 +1,6 @@
 #include "bullet_plugin/adapter/mirrors.h"
 
 #include <algorithm>
-#include <cassert>
 #include <utility>
 
 #include "bullet_plugin/adapter/mesh_reader.h"
@@ -58,18 +57,10 @@ bool ClothMirror::topologyChanged()
     m_fullCheck = false;
     m_nodeArray = &m_body->m_nodes[0];
     m_faceArray = &m_body->m_faces[0];
-    return all && !sameFaces(0, faces);
-}
-
-bool ClothMirror::someFacesChanged()
-{
-    const int faces = m_body->m_faces.size();
-    assert(static_cast<std::size_t>(3 * faces) == m_faces.triangles().size());
+    if (all) return !sameFaces(0, faces);
     const int begin = m_cursor < faces ? m_cursor : 0;
     m_cursor = std::min(faces, begin + kFacesPerCheck);
-    if (sameFaces(begin, m_cursor)) return false;
-    m_fullCheck = true;
-    return true;
+    return !sameFaces(begin, m_cursor);
 }
 
 void ClothMirror::readTopology()

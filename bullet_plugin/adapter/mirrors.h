@@ -2,10 +2,10 @@
 //
 // Input: the live body or shape of the current step, never one remembered from before. Output: the pipeline's mesh id,
 // or kNoMesh for a mesh without triangles. Guarantee: a cloth whose faces or nodes were replaced, cut or refined is
-// rebuilt, where no count tells, once someFacesChanged() has seen it; an obstacle that moved, was scaled or deformed is
-// moved, and rebuilt when its triangles changed. An unchanged obstacle, and a kinematic one that only moved, costs
-// meshSignature(), an unchanged cloth a comparison of some indices. Metres; a kinematic obstacle's positions are in its
-// own frame, all others in the world's.
+// rebuilt, at once where a count or an array tells, else within as many steps as it has stretches of 32,768 faces; an
+// obstacle that moved, was scaled or deformed is moved, and rebuilt when its triangles changed. An unchanged obstacle,
+// and a kinematic one that only moved, costs meshSignature(), an unchanged cloth a comparison of some indices. Metres;
+// a kinematic obstacle's positions are in its own frame, all others in the world's.
 #pragma once
 
 #include <cstdint>
@@ -43,9 +43,6 @@ public:
 
     // Adds the body to the pipeline, or replaces what is there when the topology changed.
     MeshId refresh(Pipeline& pipeline);
-    // After refresh(), once a step: whether some of the faces have other nodes, as no count tells; the next refresh()
-    // then reads the body anew. All of up to 32,768 faces are looked at, of more so many in each step.
-    bool someFacesChanged();
     // Writes nodes' positions at the step's start (m_q) and predicted end (m_x).
     void writeNodes(const NodeStretch& stretch) const;
     // As the pipeline has them.

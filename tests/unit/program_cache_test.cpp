@@ -27,6 +27,7 @@ protected:
         for (int i = 0; i < 1000; ++i)
             m_binary.push_back(static_cast<unsigned char>(i * 7));
     }
+
     fs::path storedFile()
     {
         m_cacheKey = ProgramCache(m_folder).key("source", "options", m_device);
