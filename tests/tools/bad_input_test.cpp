@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "bullet_plugin/core/pipeline.h"
+#include "tests/support/environment.h"
 #include "tests/tools/tool.h"
 
 namespace drape::test
@@ -139,6 +140,13 @@ TEST_F(BadInput, unknownDeviceListsThoseThereAre)
         words.push_back(device.m_name);
     expectRefused(runSmall({"--device", "no such device"}), words);
     expectRefused(runSmall({"--backend", "opencl", "--device", "no such device"}), words);
+}
+
+TEST_F(BadInput, crossoverThatIsNoNumber)
+{
+    DRAPE_NEED_DEVICE();
+    const ScopedVariable byCost("DRAPE_DEVICE", nullptr), crossover("DRAPE_CROSSOVER", "many");
+    expectRefused(runSmall({"--backend", "auto"}), {"DRAPE_CROSSOVER", "many"});
 }
 
 TEST_F(BadInput, writesNothing)

@@ -70,6 +70,20 @@ TEST(DeviceChoice, ADeviceByBackendAndTheHostByNameContradict)
     EXPECT_NE(whyNoDevice(settings).find("DRAPE_DEVICE"), std::string::npos) << whyNoDevice(settings);
 }
 
+TEST(DeviceChoice, ACrossoverThatIsNoNumberIsNamedWhereCostDecides)
+{
+    const DeviceVariable none(nullptr);
+    const ScopedVariable crossover("DRAPE_CROSSOVER", "many");
+    Settings settings;
+    Error error;
+    if (!chooseDevice(settings, error).m_byCost) GTEST_SKIP() << "no OpenCL device here: cost decides nothing";
+    EXPECT_NE(whyNoDevice(settings).find("DRAPE_CROSSOVER is \"many\""), std::string::npos) << whyNoDevice(settings);
+    EXPECT_EQ(whyNoDevice(settings).find('\n'), std::string::npos);
+    settings.m_crossover = 5;
+    EXPECT_EQ(whyNoDevice(settings), "");
+    EXPECT_EQ(whyNoDevice(named("host")), "");
+}
+
 TEST(DeviceChoice, UnknownVariableIsNamed)
 {
     const DeviceVariable variable("no such device");

@@ -55,7 +55,8 @@ std::string hostSince(const DeviceInfo& device, const Error& error)
 std::string whyNoDevice(const Settings& settings)
 {
     Error error;
-    chooseDevice(settings, error);
+    double pairs;
+    if (chooseDevice(settings, error).m_byCost) wantedCrossover(settings, pairs, error);
     return error.failed() ? error.m_call + "; " + error.m_detail : std::string();
 }
 
@@ -95,5 +96,18 @@ DeviceChoice chooseDevice(const Settings& settings, Error& error)
     choice.m_byCost = settings.m_backend == Backend::Auto;
     choice.m_reason = devices[0].m_isGpu ? "the first GPU" : "no GPU was found; the first OpenCL device";
     return choice;
+}
+
+bool wantedCrossover(const Settings& settings, double& pairs, Error& error)
+{
+    pairs = settings.m_crossover;
+    const char* const variable = std::getenv("DRAPE_CROSSOVER");
+    if (pairs >= 0 || !variable || !*variable) return true;
+    char* end = nullptr;
+    pairs = std::strtod(variable, &end);
+    if (end != variable && *end == '\0' && pairs >= 0) return true;
+    error.m_call = "DRAPE_CROSSOVER is \"" + std::string(variable) + "\"";
+    error.m_detail = "it should be a number of pairs of triangles, 0 or more (inf: always the host)";
+    return false;
 }
 }  // namespace drape

@@ -2,7 +2,6 @@
 // held against the scene's work when its pairs change.
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <limits>
 
 #include "crossover_ladder.h"
@@ -27,19 +26,6 @@ bool Pipeline::Implementation::costDecides(const DeviceChoice& choice) const
 {
     // Methods, reports and profiles are for comparing what runs on the device; the crossover is that of the defaults.
     return choice.m_byCost && goesOverPatches(m_settings) && !m_settings.m_profileKernels;
-}
-
-bool Pipeline::Implementation::readCrossover(double& pairs, Error& error) const
-{
-    pairs = m_settings.m_crossover;
-    const char* const variable = std::getenv("DRAPE_CROSSOVER");
-    if (pairs >= 0 || !variable || !*variable) return true;
-    char* end = nullptr;
-    pairs = std::strtod(variable, &end);
-    if (end != variable && *end == '\0' && pairs >= 0) return true;
-    error.m_call = "DRAPE_CROSSOVER is \"" + std::string(variable) + "\"";
-    error.m_detail = "it should be a number of pairs of triangles, 0 or more (inf: always the host)";
-    return false;
 }
 
 double Pipeline::Implementation::findCrossover(Pipeline& pipeline)
@@ -79,7 +65,7 @@ double Pipeline::Implementation::findCrossover(Pipeline& pipeline)
 bool Pipeline::Implementation::beginChoice(Pipeline& pipeline, Error& error)
 {
     double pairs = -1;
-    if (!readCrossover(pairs, error)) return false;
+    if (!wantedCrossover(m_settings, pairs, error)) return false;
     m_report.m_crossoverSource = "set";
     if (pairs < 0) pairs = findCrossover(pipeline);
     if (device()->failed()) return true;  // leaveDevice() has said so

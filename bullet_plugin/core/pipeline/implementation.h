@@ -102,7 +102,6 @@ struct Pipeline::Implementation
     // Whether cost decides between the host and the device that was chosen.
     bool costDecides(const DeviceChoice& choice) const;
     // The crossover that settings or the environment name; negative where they name none. False: an error.
-    bool readCrossover(double& pairs, Error& error) const;
     // From the cache, or measured.
     double findCrossover(Pipeline& pipeline);
     bool beginChoice(Pipeline& pipeline, Error& error);

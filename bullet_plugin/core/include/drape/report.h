@@ -43,6 +43,7 @@ struct Settings;
 std::vector<DeviceInfo> listDevices();
 
 // Whether what settings and DRAPE_DEVICE ask for is there: empty, or in one line why not and which devices there are.
+// Where cost decides it also says what is wrong with DRAPE_CROSSOVER.
 std::string whyNoDevice(const Settings& settings);
 
 // Bits of StepStatistics::m_status. Zero is a good step.
