@@ -200,7 +200,9 @@ bool isFinite(const WorldMesh& mesh, std::size_t vertex)
     return std::isfinite(at[0]) && std::isfinite(at[1]) && std::isfinite(at[2]);
 }
 
-void appendTriangles(const LockedPart& part, const UsedVertices& used, std::size_t first, WorldMesh& mesh)
+// Of a mirrored mesh the corners the other way round, so that a triangle's front stays its front.
+void appendTriangles(const LockedPart& part, const UsedVertices& used, std::size_t first, bool mirrored,
+                     WorldMesh& mesh)
 {
     for (int t = 0; t < part.triangleCount(); ++t)
     {
@@ -212,6 +214,7 @@ void appendTriangles(const LockedPart& part, const UsedVertices& used, std::size
             corners[k] = static_cast<std::int32_t>(first) + place;
             usable = usable && place >= 0 && isFinite(mesh, static_cast<std::size_t>(corners[k]));
         }
+        if (mirrored) std::swap(corners[1], corners[2]);
         if (usable) mesh.m_triangles.insert(mesh.m_triangles.end(), corners, corners + 3);
     }
 }
@@ -235,9 +238,15 @@ const btCollisionShape* meshShapeOf(const btCollisionShape& shape)
     return resolve(shape).m_shape;
 }
 
+btScalar marginBeyondBounds(const btCollisionShape& shape)
+{
+    return std::max(btScalar(0), shape.getMargin() - resolve(shape).m_shape->getMargin());
+}
+
 void readMesh(const btCollisionShape& shape, const btTransform& pose, WorldMesh& mesh)
 {
     const ScaledMesh source = resolve(shape);
+    const bool mirrored = source.m_scaling.x() * source.m_scaling.y() * source.m_scaling.z() < 0;
     mesh.m_triangles.clear();
     mesh.m_positions.clear();
     for (int p = 0; p < source.mesh().getNumSubParts(); ++p)
@@ -246,7 +255,7 @@ void readMesh(const btCollisionShape& shape, const btTransform& pose, WorldMesh&
         const UsedVertices used(part);
         const std::size_t first = mesh.m_positions.size() / 3;
         appendVertices(part, used, source.m_scaling, pose, mesh);
-        appendTriangles(part, used, first, mesh);
+        appendTriangles(part, used, first, mirrored, mesh);
     }
     clearInvalid(mesh.m_positions);
 

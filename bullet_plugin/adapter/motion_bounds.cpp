@@ -148,18 +148,23 @@ bool isReached(const PluginState& state, const btSoftBody& body, const std::vect
     return false;
 }
 
-void coverMotion(btSoftBody& body, btScalar activation, const std::vector<MovingObject>& moving)
+void coverMotion(btSoftBody& body, btScalar activation, btScalar extra, const std::vector<MovingObject>& moving)
 {
     const Way way(body);
     if (way.m_end.empty()) return;
     Extent path = way.m_start;
     path.add(way.m_end.m_low);
     path.add(way.m_end.m_high);
-    widen(body, path, reachOf(body, activation));
+    if (!finite(body.m_bounds[0]) || !finite(body.m_bounds[1]))
+    {
+        body.m_bounds[0] = path.m_low;
+        body.m_bounds[1] = path.m_high;
+    }
+    widen(body, path, reachOf(body, activation) + extra);
     for (const MovingObject& object : moving)
     {
         const Sight sight(body, way, object, activation);
-        if (sight.comesNear()) widen(body, sight.m_seen, sight.m_reach);
+        if (sight.comesNear()) widen(body, sight.m_seen, sight.m_reach + extra);
     }
 }
 }  // namespace drape

@@ -30,8 +30,9 @@ std::vector<MovingObject> movingObjects(const btSoftBody& body, KinematicMotions
 // for it only once it has arrived.
 bool isReached(const PluginState& state, const btSoftBody& body, const std::vector<MovingObject>& moving);
 
-// Widens the body's bounds to its nodes' paths, grown by the body's part of the reach of contacts, and to those paths
-// as moving objects see them, where they come near the object; those with the object's part, too, which its own bounds
-// hold but for the activation.
-void coverMotion(btSoftBody& body, btScalar activation, const std::vector<MovingObject>& moving);
+// Widens the body's bounds to its nodes' paths, grown by the body's part of the reach of contacts and by `extra` (m,
+// what obstacles' bounds lack), and to those paths as moving objects see them, where they come near the object; those
+// with the object's part, too, which its own bounds hold but for the activation. Bounds that are no numbers, because of
+// a node that is none, become those of the other nodes: Bullet would stop simulating the body.
+void coverMotion(btSoftBody& body, btScalar activation, btScalar extra, const std::vector<MovingObject>& moving);
 }  // namespace drape

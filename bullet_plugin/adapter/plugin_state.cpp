@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <exception>
 
+#include "BulletCollision/CollisionShapes/btCompoundShape.h"
 #include "BulletSoftBody/btSoftBodySolvers.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
 
@@ -24,6 +25,39 @@ std::uint64_t childOf(const btCollisionObjectWrapper& wrap)
         child = child * 1099511628211ull + static_cast<std::uint64_t>(static_cast<std::int64_t>(w->m_index) + 2);
     return child;
 }
+
+// Whether objects still have the shapes that were noted: what runs between dispatch and solve, actions and the tick's
+// callback, may give an object another shape, or a compound other children. Compares addresses.
+class PresentShapes
+{
+public:
+    bool has(const ObstacleKey& noted)
+    {
+        const btCollisionShape* root = noted.m_object->getCollisionShape();
+        if (root == noted.m_shape) return true;
+        if (!root || !root->isCompound()) return false;
+        const auto found = m_children.emplace(noted.m_object, Shapes());
+        if (found.second) addChildren(static_cast<const btCompoundShape&>(*root), found.first->second);
+        return found.first->second.count(noted.m_shape) > 0;
+    }
+
+private:
+    using Shapes = std::unordered_set<const btCollisionShape*>;
+
+    static void addChildren(const btCompoundShape& compound, Shapes& shapes)
+    {
+        for (int i = 0; i < compound.getNumChildShapes(); ++i)
+        {
+            const btCollisionShape* child = compound.getChildShape(i);
+            if (child->isCompound())
+                addChildren(static_cast<const btCompoundShape&>(*child), shapes);
+            else
+                shapes.insert(child);
+        }
+    }
+
+    std::unordered_map<const btCollisionObject*, Shapes> m_children;  // of compounds, nested ones' too
+};
 
 // The motion of the object's shape, or of a compound's child.
 BodyMotion motionOfShape(const btCollisionObjectWrapper& wrap, KinematicMotions& motions)
@@ -109,6 +143,7 @@ void PluginState::note(const void* owner, btSoftBody& cloth, const btCollisionOb
                                      : BodyMotion{obstacle.getWorldTransform(), obstacle.getWorldTransform()};
     note.m_thickness =
         std::max(kMinThickness, cloth.getCollisionShape()->getMargin() + obstacle.getCollisionShape()->getMargin());
+    m_marginBeyondBounds = std::max(m_marginBeyondBounds, drape::marginBeyondBounds(*obstacle.getCollisionShape()));
     for (PairNote& old : m_notes)
         if (old.m_owner == owner)
         {
@@ -156,11 +191,15 @@ void PluginState::dropNotes(const btSoftBodySolver* solver)
         m_notes.end());
 }
 
-std::vector<PairNote> PluginState::takeNotes(const btSoftBodySolver* solver)
+std::vector<PairNote> PluginState::takeNotes(const btSoftBodySolver* solver,
+                                             const std::vector<const btSoftBody*>& cloths)
 {
     std::vector<PairNote> taken;
+    PresentShapes present;
     for (const PairNote& note : m_notes)
-        if (note.m_solver == solver && note.m_cloth->isActive()) taken.push_back(note);
+        if (note.m_solver == solver && std::binary_search(cloths.begin(), cloths.end(), note.m_cloth) &&
+            present.has(note.m_obstacle))
+            taken.push_back(note);
     dropNotes(solver);
     ++m_step;
     for (const PairNote& note : taken)

@@ -73,11 +73,15 @@ public:
     KinematicMotions& motionsOf(const btSoftBodySolver* solver) { return m_motions[solver]; }
 
     void note(const void* owner, btSoftBody& cloth, const btCollisionObjectWrapper& obstacle);
+    // The most that any obstacle noted so far has of margin that its bounds do not hold, m.
+    btScalar marginBeyondBounds() const { return m_marginBeyondBounds; }
     void forget(const void* owner);
     void obstacleChanged(const btCollisionShape* shape);
     void setOneSided(const btCollisionShape* shape, bool oneSided);
     void dropNotes(const btSoftBodySolver* solver);
-    std::vector<PairNote> takeNotes(const btSoftBodySolver* solver);
+    // Those of the given cloths, sorted by address. Of an obstacle whose shape has gone since it was noted none is
+    // taken.
+    std::vector<PairNote> takeNotes(const btSoftBodySolver* solver, const std::vector<const btSoftBody*>& cloths);
 
     // The mirrors of a noted pair, made when there are none. Counts the step for dropOldMirrors().
     ClothMirror& clothMirror(const PairNote& note);
@@ -116,6 +120,7 @@ private:
     std::vector<std::unique_ptr<ClothMirror>> m_cloths;
     std::vector<std::unique_ptr<ObstacleMirror>> m_obstacles;
     std::unordered_set<const btCollisionShape*> m_oneSided;  // compared, never followed
+    btScalar m_marginBeyondBounds = 0;
     std::uint64_t m_step = 0;
 };
 }  // namespace drape

@@ -33,9 +33,10 @@ struct SoftBodySolver::Work
 
     CollisionStep m_step;
     BodySolver m_solver;
-    std::vector<BodyContacts*> m_touched;  // of solveBodies()
-    std::size_t m_asleep = 0;              // cloths, as the step began: Bullet's islands may wake them before it solves
-    double m_predictMs = 0;                // of this class's share in predictMotion
+    std::vector<BodyContacts*> m_touched;        // of solveBodies()
+    std::vector<const btSoftBody*> m_predicted;  // in this step, sorted by address
+    std::size_t m_asleep = 0;                    // cloths that are not among them
+    double m_predictMs = 0;                      // of this class's share in predictMotion
 };
 
 SoftBodySolver::SoftBodySolver(Plugin& plugin) : m_state(plugin.state()), m_work(new Work(*m_state))
@@ -53,6 +54,7 @@ void SoftBodySolver::predictMotion(btScalar dt)
     m_state->dropNotes(this);  // of a dispatch that no solve followed
     if (!m_state->ready())
     {
+        listPredicted();
         btDefaultSoftBodySolver::predictMotion(dt);
         return;
     }
@@ -67,19 +69,27 @@ void SoftBodySolver::predictMotion(btScalar dt)
         btSoftBody& body = *m_softBodySet[i];
         if (!body.isActive() && isReached(*m_state, body, moving)) body.activate();
     }
+    listPredicted();
     m_work->m_predictMs = watch.lapMs();
     for (int i = 0; i < m_softBodySet.size(); ++i)
         if (m_softBodySet[i]->isActive()) predict(*m_softBodySet[i], dt);
     watch.lapMs();
-    m_work->m_asleep = 0;
     for (int i = 0; i < m_softBodySet.size(); ++i)
-    {
         if (m_softBodySet[i]->isActive())
-            coverMotion(*m_softBodySet[i], activation, moving);
-        else
-            ++m_work->m_asleep;
-    }
+            coverMotion(*m_softBodySet[i], activation, m_state->marginBeyondBounds(), moving);
     m_work->m_predictMs += watch.lapMs();
+}
+
+// Bullet's islands and callbacks may wake cloth, or put it to sleep, before it is solved. What was predicted is solved,
+// with the contacts along its path; what was not waits for the next step.
+void SoftBodySolver::listPredicted()
+{
+    std::vector<const btSoftBody*>& predicted = m_work->m_predicted;
+    predicted.clear();
+    for (int i = 0; i < m_softBodySet.size(); ++i)
+        if (m_softBodySet[i]->isActive()) predicted.push_back(m_softBodySet[i]);
+    std::sort(predicted.begin(), predicted.end());
+    m_work->m_asleep = static_cast<std::size_t>(m_softBodySet.size()) - predicted.size();
 }
 
 void SoftBodySolver::detect()
@@ -90,7 +100,7 @@ void SoftBodySolver::detect()
     {
         StepStatistics& statistics = m_state->m_statistics;
         Stopwatch watch;
-        m_work->m_step.begin(m_state->takeNotes(this));
+        m_work->m_step.begin(m_state->takeNotes(this, m_work->m_predicted));
         const double beginMs = watch.lapMs();
         m_work->m_step.finish();
         statistics.m_clothsSkipped = m_work->m_asleep + m_work->m_step.pinnedCloths();
@@ -107,13 +117,14 @@ void SoftBodySolver::detect()
 // Returns the time of Bullet's part, ms.
 double SoftBodySolver::solveBodies()
 {
+    const std::vector<const btSoftBody*>& predicted = m_work->m_predicted;
     double bulletMs = 0;
     m_work->m_touched.clear();
     for (int i = 0; i < m_softBodySet.size(); ++i)
     {
         btSoftBody* body = m_softBodySet[i];
         // Bullet's links would move the nodes and its velocities are what they moved over the time: not numbers.
-        if (!body->isActive() || !(body->m_sst.sdt > 0)) continue;
+        if (!std::binary_search(predicted.begin(), predicted.end(), body) || !(body->m_sst.sdt > 0)) continue;
         if (BodyContacts* contacts = m_work->m_step.contactsOf(*body))
         {
             m_work->m_touched.push_back(contacts);

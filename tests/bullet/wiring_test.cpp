@@ -158,6 +158,53 @@ TEST(Wiring, scaledAndMirroredShapes)
     }
 }
 
+// Bullet's bounds of a scaled shape hold the margin of the shape that it scales, here none.
+TEST(Wiring, aScaledShapesOwnMargin)
+{
+    constexpr float kOwn = 0.1f;
+    MeshShape shape(makeBox(3.0f, 0.4f, 3.0f));
+    shape.shape().setMargin(0);
+    btScaledBvhTriangleMeshShape scaled(&shape.shape(), btVector3(1, 1, 1));
+    scaled.setMargin(kOwn);
+    btCompoundShape compound;
+    compound.addChildShape(btTransform::getIdentity(), &scaled);
+    for (btCollisionShape* ground :
+         {static_cast<btCollisionShape*>(&scaled), static_cast<btCollisionShape*>(&compound)})
+    {
+        SCOPED_TRACE(ground->getName());
+        Plugin plugin(hostSettings());
+        DropWorld world(&plugin);
+        world.addObstacle(*ground);
+        btSoftBody& cloth = world.addCloth(clothAt(btVector3(0, btScalar(0.4), 0)));
+        world.step(2 * kSteps);
+        for (int step = 0; step < 30; ++step)
+        {
+            world.step();
+            ASSERT_GT(plugin.statistics().m_contacts, 0u) << "step " << step;
+            ASSERT_NEAR(static_cast<double>(lowestOf(cloth)) - 0.2, double(kMargin + kOwn), 0.02 * double(kOwn));
+        }
+    }
+}
+
+TEST(Wiring, aMirroredShapeKeepsItsFront)
+{
+    const TriangleMesh mesh = makeBox(3.0f, 0.4f, 3.0f);
+    MeshShape shape(mesh);
+    for (const btScalar scale : {btScalar(1), btScalar(-1)})
+    {
+        SCOPED_TRACE(testing::Message() << "scaled by " << scale);
+        btScaledBvhTriangleMeshShape scaled(&shape.shape(), btVector3(scale, 1, 1));
+        scaled.setMargin(kMargin);
+        Plugin plugin(hostSettings());
+        plugin.setOneSided(&shape.shape(), true);
+        DropWorld world(&plugin);
+        world.addObstacle(scaled);
+        btSoftBody& cloth = world.addCloth(clothAt(btVector3(0, btScalar(0.24), 0)));
+        world.step(kSteps);
+        EXPECT_NEAR(static_cast<double>(lowestOf(cloth)) - 0.2, kThickness, 0.1 * kThickness);
+    }
+}
+
 TEST(Wiring, verticesMovedInPlaceAreNoticed)
 {
     const TriangleMesh mesh = makeBox(3.0f, 0.4f, 3.0f);

@@ -102,6 +102,7 @@ void Device::flush()
 
 void Device::wait()
 {
-    if (!failed()) check(m_queue.finish(), "clFinish");
+    if (m_queue() == nullptr) return;
+    check(m_queue.finish(), "clFinish");  // after a failure, too: transfers from before it may be under way
 }
 }  // namespace drape

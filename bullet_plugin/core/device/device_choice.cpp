@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <limits>
+#include <locale>
+#include <sstream>
 
 #include "device.h"
 
@@ -103,9 +106,13 @@ bool wantedCrossover(const Settings& settings, double& pairs, Error& error)
     pairs = settings.m_crossover;
     const char* const variable = std::getenv("DRAPE_CROSSOVER");
     if (pairs >= 0 || !variable || !*variable) return true;
-    char* end = nullptr;
-    pairs = std::strtod(variable, &end);
-    if (end != variable && *end == '\0' && pairs >= 0) return true;
+    std::istringstream text(variable);
+    text.imbue(std::locale::classic());  // whatever language the app speaks
+    if (std::string(variable) == "inf")
+        pairs = std::numeric_limits<double>::infinity();
+    else if (!(text >> pairs && text.peek() == std::istringstream::traits_type::eof()))
+        pairs = -1;
+    if (pairs >= 0) return true;
     error.m_call = "DRAPE_CROSSOVER is \"" + std::string(variable) + "\"";
     error.m_detail = "it should be a number of pairs of triangles, 0 or more (inf: always the host)";
     return false;

@@ -1,30 +1,11 @@
 // Runs a step on the back end in use, and again without the largest cloths where it is over the settings' limits.
-#include <algorithm>
 #include <numeric>
 
+#include "cloths_over_budget.h"
 #include "implementation.h"
 
 namespace drape
 {
-namespace
-{
-// Cloth slots to take out so that the others have at most `budget` candidates together: those with the most, of equals
-// the last ones. At least one.
-std::vector<std::size_t> largestCloths(const std::vector<std::uint64_t>& candidates, std::uint64_t budget)
-{
-    std::vector<std::size_t> slots(candidates.size());
-    std::iota(slots.begin(), slots.end(), std::size_t(0));
-    std::stable_sort(slots.begin(), slots.end(),
-                     [&](std::size_t a, std::size_t b) { return candidates[a] < candidates[b]; });
-    std::uint64_t sum = 0;
-    std::size_t kept = 0;
-    while (kept + 1 < slots.size() && sum + candidates[slots[kept]] <= budget)
-        sum += candidates[slots[kept++]];
-    slots.erase(slots.begin(), slots.begin() + std::ptrdiff_t(kept));
-    return slots;
-}
-}  // namespace
-
 void Pipeline::Implementation::runOnHost()
 {
     m_hostBackend.run(m_scene, m_stepPairs, m_settings, m_result);
@@ -63,10 +44,13 @@ void Pipeline::Implementation::leaveOutCloths()
         const std::uint64_t all = std::accumulate(candidates.begin(), candidates.end(), std::uint64_t(0));
         budget = std::uint64_t(double(all) * double(limits.m_contacts) / double(m_result.m_contactDemand));
     }
+    std::vector<std::size_t> taking;
+    for (std::size_t slot = 0; slot < candidates.size(); ++slot)
+        if (m_stepPairs.m_clothRadius[slot] >= 0.0f || m_stepPairs.m_self.m_radius[slot] >= 0.0f)
+            taking.push_back(slot);
     m_statistics.m_status |= kStepClothsLeftOut;
-    for (std::size_t slot : largestCloths(candidates, budget))
+    for (std::size_t slot : clothsOverBudget(taking, candidates, budget))
     {
-        if (m_stepPairs.m_clothRadius[slot] < 0.0f && m_stepPairs.m_self.m_radius[slot] < 0.0f) continue;
         ++m_statistics.m_clothsLeftOut;
         m_statistics.m_candidates += candidates[slot];
         m_stepPairs.leaveOut(slot);

@@ -17,7 +17,7 @@
 // interpolation transform and the world transform (or the motion state's). To teleport one, set both transforms to the
 // new pose. One whose pose is set later, by a tick's callback or while it sleeps, moves the whole way from its last
 // pose; one that sleeps has no velocity for Bullet: give it DISABLE_DEACTIVATION. In the first step in which a body is
-// there it rests. A static object's pose that changes is a teleport.
+// there it rests. A static object's pose that changes is a teleport, and so is the place of a child in its compound.
 #pragma once
 
 #include <memory>
@@ -76,8 +76,9 @@ public:
     void obstacleChanged(const btCollisionShape* shape);
 
     // Whether only a mesh shape's front is solid, the side from which its triangles' corners run counter-clockwise:
-    // cloth that is behind may come out instead of being caught inside. Off unless it is switched on. The shape (a
-    // scaled one's own, or the mesh shape that it shows) is remembered by its address until it is switched off again.
+    // cloth that is behind may come out instead of being caught inside. A mirrored mesh (scaled by a negative number)
+    // keeps its front. Off unless it is switched on. The shape (a scaled one's own, or the mesh shape that it shows) is
+    // remembered by its address until it is switched off again.
     void setOneSided(const btCollisionShape* shape, bool oneSided);
 
     // For the other classes of this library.

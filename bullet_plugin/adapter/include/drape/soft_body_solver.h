@@ -30,6 +30,7 @@ public:
 private:
     struct Work;
 
+    void listPredicted();
     void detect();
     double solveBodies();
     void checkStrayed();
