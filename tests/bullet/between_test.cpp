@@ -18,7 +18,7 @@ protected:
     void SetUp() override
     {
         BackendTest::SetUp();
-        if (IsSkipped()) return;
+        if (HasFatalFailure() || IsSkipped()) return;
         m_plugin = std::make_unique<Plugin>(GetParam().m_settings);
         m_world = std::make_unique<DropWorld>(m_plugin.get());
         m_world->world().setInternalTickCallback(tick, this);
@@ -29,10 +29,16 @@ protected:
         spec.m_centre = btVector3(0, btScalar(height), 0);
         return m_world->addCloth(spec);
     }
+    // A step with the job between dispatch and solve.
+    void stepWith(const std::function<void()>& job)
+    {
+        m_job = job;
+        m_world->step();
+        m_job = nullptr;
+    }
 
     std::unique_ptr<Plugin> m_plugin;
     std::unique_ptr<DropWorld> m_world;
-    std::function<void()> m_job;  // of every step
 
 private:
     static void tick(btDynamicsWorld* world, btScalar)
@@ -40,6 +46,8 @@ private:
         const Between& self = *static_cast<Between*>(world->getWorldUserInfo());
         if (self.m_job) self.m_job();
     }
+
+    std::function<void()> m_job;
 };
 }  // namespace
 
@@ -51,13 +59,12 @@ TEST_P(Between, AnotherShapeInPlaceOfTheOneThatWasNoted)
     btSoftBody& body = cloth(0.23);
     m_world->step(30);
     ASSERT_GT(m_plugin->statistics().m_contacts, 0u);
-    m_job = [&]
-    {
-        ground.setCollisionShape(&other->shape());
-        old.reset();
-    };
-    m_world->step();
-    m_job = nullptr;
+    stepWith(
+        [&]
+        {
+            ground.setCollisionShape(&other->shape());
+            old.reset();
+        });
     EXPECT_EQ(m_plugin->statistics().m_contacts, 0u);
     m_world->step(60);
     EXPECT_NEAR(static_cast<double>(lowestOf(body)) - 0.2, kThickness, 0.1 * kThickness);
@@ -78,13 +85,12 @@ TEST_P(Between, AChildThatIsTakenOutOfItsCompound)
     btSoftBody& body = cloth(0.23);
     m_world->step(30);
     const std::size_t before = m_plugin->statistics().m_contacts;
-    m_job = [&]
-    {
-        nested.removeChildShape(&gone->shape());
-        gone.reset();
-    };
-    m_world->step();
-    m_job = nullptr;
+    stepWith(
+        [&]
+        {
+            nested.removeChildShape(&gone->shape());
+            gone.reset();
+        });
     EXPECT_GT(m_plugin->statistics().m_contacts, 0u);
     EXPECT_LT(m_plugin->statistics().m_contacts, before);
     m_world->step(30);
@@ -101,11 +107,10 @@ TEST_P(Between, ClothPutToSleepIsSolvedToTheEndOfItsStep)
     ClothSpec spec;
     spec.m_centre = btVector3(0, btScalar(0.5), 0);
     btSoftBody& twin = undisturbed.addCloth(spec);
-    m_job = [&] { body.forceActivationState(ISLAND_SLEEPING); };
     for (int step = 0; step < 60; ++step)
     {
         body.forceActivationState(ACTIVE_TAG);
-        m_world->step();
+        stepWith([&] { body.forceActivationState(ISLAND_SLEEPING); });
         undisturbed.step();
         ASSERT_EQ(hashOf(body), hashOf(twin)) << "step " << step;
     }
@@ -124,11 +129,9 @@ TEST_P(Between, ClothWokenWaitsForTheNextStep)
     body.m_nodes[0].m_x += btVector3(0, btScalar(0.1), 0);  // for links to pull back, were they solved
     body.m_nodes[0].m_q = body.m_nodes[0].m_x;
     const std::uint64_t asleep = hashOf(body);
-    m_job = [&] { body.forceActivationState(ACTIVE_TAG); };
-    m_world->step();
+    stepWith([&] { body.forceActivationState(ACTIVE_TAG); });
     EXPECT_EQ(hashOf(body), asleep);
     EXPECT_EQ(m_plugin->statistics().m_clothsSkipped, 1u);
-    m_job = nullptr;
     const Course course = runMeasured(*m_world, body, box, 60);
     expectClean(course);
     EXPECT_GT(m_plugin->statistics().m_contacts, 0u);
