@@ -11,7 +11,7 @@ import joined_results
 from joined_results import place
 
 PARTS = ("construction", "construction_kernels", "compaction", "levels", "refit", "refit_kernels", "refit_levels", "quality", "shape", "degree",
-         "traversal", "builder", "rebuild", "triangle_tests")
+         "traversal", "builder", "rebuild", "obstacles", "triangle_tests")
 BACKENDS = ("embree", "fcl", "host", "opencl")
 INPUTS = ("triangles", "cloth_triangles")
 

@@ -272,6 +272,23 @@ def rebuild_table(rows, table, figure):
             + table(["scene", "variant", "rebuilds", "volume tests", "second half", "broad phase", "second half"], lines))
 
 
+def obstacle_table(rows, table, figure):
+    mine = [row for row in select(rows, part="obstacles") if "median_ms" in row]
+    if not mine:
+        return ""
+    events = in_order(mine, "variant")
+    lines = []
+    for backend in in_order(mine, "backend"):
+        for model in in_order(select(mine, backend=backend), "model"):
+            steps = select(mine, backend=backend, model=model)
+            times = [select(steps, variant=event)[0]["median_ms"] for event in events]
+            lines.append([model, f"{steps[0]['triangles']:,}", "host, one thread" if backend == "host" else "device"]
+                         + [figure(time) for time in times])
+    return ("Whole steps, ms, of a cloth of 512 triangles on the model in which an obstacle of 320 comes or goes, or two move, "
+            "of which one came before the model and one after it: medians.\n\n"
+            + table(["model", "triangles", "back end"] + events, lines))
+
+
 def compaction_table(rows, table):
     mine = select(rows, part="compaction")
     if not mine:
@@ -357,5 +374,6 @@ def text(rows, table, figure):
         ("traversal", descent_table(rows, table, figure) + front_table(rows, table, figure)),
         ("builder", builder_table(rows, table, figure)),
         ("rebuild", rebuild_table(rows, table, figure)),
+        ("obstacles", obstacle_table(rows, table, figure)),
         ("triangle_tests", triangle_test_table(rows, table, figure)))
     return "".join(with_commits(rows, part, text) for part, text in tables)

@@ -84,6 +84,7 @@ const std::vector<Part>& studyParts()
         {"traversal", "every traversal step by step as a cloth comes down: figures 4.6 and 4.8", studyTraversals},
         {"builder", "whole steps of the host over trees of each builder", studyBuilders},
         {"rebuild", "traversals of a cloth that changes its shape, its hierarchy rebuilt or not", studyRebuilds},
+        {"obstacles", "steps in which obstacles come, go and move beside one that rests", studyObstacles},
         {"triangle_tests", "Möller's test beside the certified one: figure 4.9", studyTriangleTests}};
     return parts;
 }

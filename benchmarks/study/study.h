@@ -68,6 +68,9 @@ void studyBuilders(const StudyOptions& options, Table& table);
 // A cloth that changes its shape, with rebuilds of its hierarchy and without: part "rebuild".
 void studyRebuilds(const StudyOptions& options, Table& table);
 
+// Steps in which obstacles come, go and move beside one that rests: part "obstacles".
+void studyObstacles(const StudyOptions& options, Table& table);
+
 // Models in the order of their size; quick: two small ones.
 std::vector<std::string> studyModels(bool quick);
 

@@ -19,16 +19,14 @@ bool anyMoves(const btSoftBody& body)
 
 BodyContacts* CollisionStep::bodyOf(MeshId cloth)
 {
-    for (BodyContacts& body : m_bodies)
-        if (body.m_cloth == cloth) return &body;
-    return nullptr;
+    const auto found = m_byCloth.find(cloth);
+    return found == m_byCloth.end() ? nullptr : &m_bodies[found->second];
 }
 
 BodyContacts* CollisionStep::contactsOf(const btSoftBody& body)
 {
-    for (BodyContacts& entry : m_bodies)
-        if (entry.m_body == &body) return &entry;
-    return nullptr;
+    const auto found = m_byBody.find(&body);
+    return found == m_byBody.end() ? nullptr : &m_bodies[found->second];
 }
 
 void CollisionStep::addBody(const ClothMirror& cloth, btSoftBody* body)
@@ -36,6 +34,7 @@ void CollisionStep::addBody(const ClothMirror& cloth, btSoftBody* body)
     if (m_spare.empty()) m_spare.emplace_back();
     m_bodies.push_back(std::move(m_spare.back()));
     m_spare.pop_back();
+    m_byCloth[cloth.id()] = m_byBody[body] = m_bodies.size() - 1;
     m_bodies.back().start(cloth.id(), body, cloth.parts());
 }
 
@@ -43,7 +42,10 @@ void CollisionStep::clear()
 {
     std::move(m_bodies.begin(), m_bodies.end(), std::back_inserter(m_spare));
     m_bodies.clear();
+    m_byCloth.clear();
+    m_byBody.clear();
     m_pairs.clear();
+    m_paired.clear();
     m_pinned.clear();
     m_mirrors.clear();
 }
@@ -61,8 +63,7 @@ void CollisionStep::addPair(const PairNote& note)
         m_state.m_found.nameCloth(clothId, note.m_cloth);
     }
     m_state.m_found.nameObstacle(obstacleId, note.m_obstacle.m_object, note.m_motion);
-    for (const Pair& pair : m_pairs)
-        if (pair.m_cloth == clothId && pair.m_obstacle == obstacleId) return;
+    if (!m_paired.insert(std::uint64_t(clothId) << 32 | obstacleId).second) return;
     m_pairs.push_back(Pair{clothId, obstacleId, note.m_thickness});
     btVector3 low, high;
     note.m_obstacle.m_shape->getAabb(note.m_motion.m_end, low, high);

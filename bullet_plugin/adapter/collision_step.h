@@ -5,6 +5,8 @@
 // exceptions of the pipeline pass through.
 #pragma once
 
+#include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "bullet_plugin/adapter/body_contacts.h"
@@ -52,7 +54,10 @@ private:
 
     PluginState& m_state;
     std::vector<BodyContacts> m_bodies, m_spare;
+    std::unordered_map<MeshId, std::size_t> m_byCloth;  // places among m_bodies
+    std::unordered_map<const btSoftBody*, std::size_t> m_byBody;
     std::vector<Pair> m_pairs;
+    std::unordered_set<std::uint64_t> m_paired;  // a pair's cloth above its obstacle
     std::vector<const btSoftBody*> m_pinned;
     std::vector<const ClothMirror*> m_mirrors;  // one for each of m_bodies
 };

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "BulletSoftBody/btSoftBody.h"
 #include "LinearMath/btTransform.h"
@@ -30,6 +31,15 @@ struct ObstacleKey
     bool operator==(const ObstacleKey& other) const
     {
         return m_object == other.m_object && m_shape == other.m_shape && m_child == other.m_child;
+    }
+};
+
+struct ObstacleKeyHash
+{
+    std::size_t operator()(const ObstacleKey& key) const
+    {
+        const std::hash<const void*> hash;
+        return (hash(key.m_object) * 31 + hash(key.m_shape)) * 31 + std::size_t(key.m_child);
     }
 };
 

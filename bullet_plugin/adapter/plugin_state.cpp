@@ -101,6 +101,7 @@ void PluginState::fail(const std::string& call, const std::string& detail)
     m_error.m_detail = detail;
     m_failedDevice.m_reason = call;
     m_notes.clear();
+    m_noteOf.clear();
     m_owned.clear();
     m_cloths.clear();
     m_obstacles.clear();
@@ -144,20 +145,24 @@ void PluginState::note(const void* owner, btSoftBody& cloth, const btCollisionOb
     note.m_thickness =
         std::max(kMinThickness, cloth.getCollisionShape()->getMargin() + obstacle.getCollisionShape()->getMargin());
     m_marginBeyondBounds = std::max(m_marginBeyondBounds, drape::marginBeyondBounds(*obstacle.getCollisionShape()));
-    for (PairNote& old : m_notes)
-        if (old.m_owner == owner)
-        {
-            old = note;
-            return;
-        }
-    m_notes.push_back(note);
+    const auto place = m_noteOf.emplace(owner, m_notes.size());
+    if (place.second)
+        m_notes.push_back(note);
+    else
+        m_notes[place.first->second] = note;
+}
+
+void PluginState::dropNotesIf(const std::function<bool(const PairNote&)>& drops)
+{
+    m_notes.erase(std::remove_if(m_notes.begin(), m_notes.end(), drops), m_notes.end());
+    m_noteOf.clear();
+    for (std::size_t i = 0; i < m_notes.size(); ++i)
+        m_noteOf[m_notes[i].m_owner] = i;
 }
 
 void PluginState::forget(const void* owner)
 {
-    m_notes.erase(
-        std::remove_if(m_notes.begin(), m_notes.end(), [owner](const PairNote& n) { return n.m_owner == owner; }),
-        m_notes.end());
+    if (m_noteOf.count(owner) > 0) dropNotesIf([owner](const PairNote& note) { return note.m_owner == owner; });
     const auto found = m_owned.find(owner);
     if (found == m_owned.end()) return;
     disown(found->second);
@@ -172,8 +177,8 @@ void PluginState::disown(const Owned& owned)
 
 void PluginState::obstacleChanged(const btCollisionShape* shape)
 {
-    for (const std::unique_ptr<ObstacleMirror>& mirror : m_obstacles)
-        if (mirror->uses(shape)) mirror->requireReading();
+    for (auto& entry : m_obstacles)
+        if (entry.second.uses(shape)) entry.second.requireReading();
 }
 
 void PluginState::setOneSided(const btCollisionShape* shape, bool oneSided)
@@ -186,9 +191,7 @@ void PluginState::setOneSided(const btCollisionShape* shape, bool oneSided)
 
 void PluginState::dropNotes(const btSoftBodySolver* solver)
 {
-    m_notes.erase(
-        std::remove_if(m_notes.begin(), m_notes.end(), [solver](const PairNote& n) { return n.m_solver == solver; }),
-        m_notes.end());
+    dropNotesIf([solver](const PairNote& note) { return note.m_solver == solver; });
 }
 
 std::vector<PairNote> PluginState::takeNotes(const btSoftBodySolver* solver,
@@ -210,10 +213,8 @@ std::vector<PairNote> PluginState::takeNotes(const btSoftBodySolver* solver,
 // Makes the mirrors of a pair, and counts its algorithm among their owners.
 void PluginState::adopt(const PairNote& note)
 {
-    if (!findCloth(note.m_cloth)) m_cloths.emplace_back(new ClothMirror(note.m_cloth));
-    if (!findObstacle(note.m_obstacle)) m_obstacles.emplace_back(new ObstacleMirror(note.m_obstacle));
-    ClothMirror& cloth = *findCloth(note.m_cloth);
-    ObstacleMirror& obstacle = *findObstacle(note.m_obstacle);
+    ClothMirror& cloth = m_cloths.try_emplace(note.m_cloth, note.m_cloth).first->second;
+    ObstacleMirror& obstacle = m_obstacles.try_emplace(note.m_obstacle, note.m_obstacle).first->second;
     cloth.m_lastSeen = obstacle.m_lastSeen = m_step;
     if (cloth.m_owners == 0) cloth.requireFullCheck();
     if (obstacle.m_owners == 0) obstacle.requireReading();
@@ -233,16 +234,14 @@ void PluginState::adopt(const PairNote& note)
 
 ClothMirror* PluginState::findCloth(const btSoftBody* body)
 {
-    for (const std::unique_ptr<ClothMirror>& mirror : m_cloths)
-        if (mirror->body() == body) return mirror.get();
-    return nullptr;
+    const auto found = m_cloths.find(body);
+    return found == m_cloths.end() ? nullptr : &found->second;
 }
 
 ObstacleMirror* PluginState::findObstacle(const ObstacleKey& key)
 {
-    for (const std::unique_ptr<ObstacleMirror>& mirror : m_obstacles)
-        if (mirror->key() == key) return mirror.get();
-    return nullptr;
+    const auto found = m_obstacles.find(key);
+    return found == m_obstacles.end() ? nullptr : &found->second;
 }
 
 ClothMirror& PluginState::clothMirror(const PairNote& note)
@@ -255,18 +254,19 @@ ObstacleMirror& PluginState::obstacleMirror(const PairNote& note)
     return *findObstacle(note.m_obstacle);
 }
 
-template <typename Mirror>
-static void dropOld(std::vector<std::unique_ptr<Mirror>>& mirrors, Pipeline& pipeline, std::uint64_t step)
+template <typename Mirrors>
+static void dropOld(Mirrors& mirrors, Pipeline& pipeline, std::uint64_t step)
 {
-    for (std::size_t i = 0; i < mirrors.size();)
+    for (auto entry = mirrors.begin(); entry != mirrors.end();)
     {
-        if (mirrors[i]->m_owners > 0 || mirrors[i]->m_lastSeen + kKeepSteps > step)
+        const auto& mirror = entry->second;
+        if (mirror.m_owners > 0 || mirror.m_lastSeen + kKeepSteps > step)
         {
-            ++i;
+            ++entry;
             continue;
         }
-        if (mirrors[i]->id() != kNoMesh) pipeline.remove(mirrors[i]->id());
-        mirrors.erase(mirrors.begin() + static_cast<std::ptrdiff_t>(i));
+        if (mirror.id() != kNoMesh) pipeline.remove(mirror.id());
+        entry = mirrors.erase(entry);
     }
 }
 

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <unordered_map>
 #include <unordered_set>
@@ -102,6 +103,7 @@ private:
     ObstacleMirror* findObstacle(const ObstacleKey& key);
     void adopt(const PairNote& note);
     void disown(const Owned& owned);
+    void dropNotesIf(const std::function<bool(const PairNote&)>& drops);
 
     const Settings m_settings;
     std::unique_ptr<Pipeline> m_pipeline;
@@ -115,10 +117,11 @@ private:
     bool m_isWired = false;
     std::vector<const btSoftBodySolver*> m_solvers;
     std::unordered_map<const btSoftBodySolver*, KinematicMotions> m_motions;
-    std::vector<PairNote> m_notes;  // in the order of dispatch
+    std::vector<PairNote> m_notes;                          // in the order of dispatch
+    std::unordered_map<const void*, std::size_t> m_noteOf;  // places among them, by owner
     std::unordered_map<const void*, Owned> m_owned;
-    std::vector<std::unique_ptr<ClothMirror>> m_cloths;
-    std::vector<std::unique_ptr<ObstacleMirror>> m_obstacles;
+    std::unordered_map<const btSoftBody*, ClothMirror> m_cloths;
+    std::unordered_map<ObstacleKey, ObstacleMirror, ObstacleKeyHash> m_obstacles;
     std::unordered_set<const btCollisionShape*> m_oneSided;  // compared, never followed
     btScalar m_marginBeyondBounds = 0;
     std::uint64_t m_step = 0;

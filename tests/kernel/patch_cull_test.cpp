@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <tuple>
@@ -44,8 +45,8 @@ public:
         m_obstacleBuffers.upload(device, m_obstacle);
         guardCopy(device, m_thicknessBuffer, m_thickness);
         guardCopy(device, m_radius, std::vector<float>{-1.0f, radius, -1.0f});
-        m_stage.setTopology(device, m_obstacle.m_pool, m_obstacle.m_start);
-        m_stage.pack(device, PatchCullStage::allSlots(), m_obstacleBuffers.m_triangles, m_obstacleBuffers.m_start,
+        m_stage.setTopology(device, m_obstacle.m_pool, 0);
+        m_stage.pack(device, {0, 1}, m_obstacleBuffers.m_triangles, m_obstacleBuffers.m_start,
                      m_obstacleBuffers.m_vertexCones, m_obstacleBuffers.m_edgeCones);
     }
 
@@ -257,6 +258,87 @@ TEST_P(PatchCullTest, FullListCountsOn)
         EXPECT_EQ(cull.run(capacity, counters).size(), capacity);
         EXPECT_EQ(counters.m_candidates, whole.m_candidates);
     }
+}
+
+// The packed features of obstacles, as bytes.
+class PackedObstacles
+{
+public:
+    explicit PackedObstacles(Device& device) : m_device(device)
+    {
+        m_stage.create(device,
+                       [&](const char* name) { return programOf(device, name, PatchCullStage::defines(device)); });
+    }
+
+    // From that slot on; those before are as they were.
+    void pack(const std::vector<TriangleMesh>& meshes, std::size_t firstSlot)
+    {
+        const Side side = makeSide(meshes);
+        DeviceSide buffers;
+        buffers.upload(m_device, side);
+        m_stage.setTopology(m_device, side.m_pool, firstSlot);
+        m_stage.pack(m_device, {firstSlot, meshes.size()}, buffers.m_triangles, buffers.m_start, buffers.m_vertexCones,
+                     buffers.m_edgeCones);
+        m_device.wait();
+        EXPECT_TRUE(buffers.allIntact(m_device));
+        m_layout = makePatches(side.m_pool, side.m_start.data(), PatchCullStage::width(m_device));
+    }
+
+    std::vector<std::uint32_t> bytes()
+    {
+        const PatchCullStage::Features features = m_stage.features();
+        std::vector<std::uint32_t> all;
+        append(all, features.m_faces, m_layout.m_faceOwners.size() * DRAPE_FACE_FLOATS);
+        append(all, features.m_vertices, m_layout.m_vertexOwners.size() * DRAPE_VERTEX_FLOATS);
+        append(all, features.m_edges, m_layout.m_edgeOwners.size() * DRAPE_EDGE_FLOATS);
+        append(all, features.m_faceIds, m_layout.m_faceOwners.size());
+        append(all, features.m_vertexIds, m_layout.m_vertexOwners.size());
+        append(all, features.m_edgeIds, m_layout.m_edgeOwners.size());
+        return all;
+    }
+
+private:
+    template <typename T>
+    void append(std::vector<std::uint32_t>& all, Buffer<T>& buffer, std::size_t count)
+    {
+        const std::vector<T> values = contents(m_device, buffer, count);
+        const std::size_t before = all.size();
+        all.resize(before + count);
+        std::memcpy(all.data() + before, values.data(), count * sizeof(T));
+    }
+
+    Device& m_device;
+    PatchCullStage m_stage;
+    Patches m_layout;
+};
+
+// Obstacles that come behind others and go again leave the packed features of all that are there.
+TEST_P(PatchCullTest, ObstaclesThatComeLaterArePackedAsIfAllCameAtOnce)
+{
+    const TriangleMesh sphere = makeSphere(1.0f, 3), box = makeBox(1.0f, 0.5f, 0.7f), none;
+    const TriangleMesh soup = makeSoup(1.0f, 0.2f, 519, 381), terrain = shapeNamed("terrain");
+    struct Scene
+    {
+        std::vector<TriangleMesh> m_meshes;
+        std::size_t m_firstSlot;  // that is new
+    };
+    const Scene scenes[] = {{{sphere}, 0},
+                            {{sphere, box}, 1},
+                            {{sphere, box, terrain, none}, 2},
+                            {{sphere, box, soup}, 2},
+                            {{sphere, none}, 1},
+                            {{sphere, soup, terrain, sphere}, 1},
+                            {{none, soup}, 0}};
+    PackedObstacles kept(*m_device);
+    for (const Scene& scene : scenes)
+    {
+        SCOPED_TRACE(std::to_string(&scene - scenes) + ", seed 381");
+        PackedObstacles anew(*m_device);
+        kept.pack(scene.m_meshes, scene.m_firstSlot);
+        anew.pack(scene.m_meshes, 0);
+        EXPECT_TRUE(kept.bytes() == anew.bytes());
+    }
+    EXPECT_FALSE(m_device->failed()) << m_device->error().text();
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, PatchCullTest, testing::ValuesIn(openClBackends()), backendName);

@@ -26,6 +26,22 @@ protected:
     }
 };
 
+// Contacts as a caller sees them, whose meshes are named by their places among `ids`: what was there before gives
+// features other numbers.
+std::vector<ContactView> viewsOf(const Pipeline& pipeline, const std::vector<Contact>& contacts,
+                                 const std::vector<MeshId>& ids)
+{
+    const auto place = [&](MeshId id) { return MeshId(std::find(ids.begin(), ids.end(), id) - ids.begin()); };
+    std::vector<ContactView> views;
+    for (const Contact& contact : contacts)
+    {
+        views.push_back(pipeline.view(contact));
+        views.back().m_cloth = place(views.back().m_cloth);
+        views.back().m_obstacle = place(views.back().m_obstacle);
+    }
+    return views;
+}
+
 // One pipeline lives through the steps, the other is given every mesh anew in each of them.
 TEST_P(SkipsTest, WhatIsKeptGivesTheContactsOfWhatIsMadeAnew)
 {
@@ -42,7 +58,8 @@ TEST_P(SkipsTest, WhatIsKeptGivesTheContactsOfWhatIsMadeAnew)
             scene.nextStep();
             scene.giveAnew(*anew, added);
             const std::vector<Contact> first = runStep(*kept), other = runStep(*anew);
-            ASSERT_TRUE(sameBytes(first, other)) << difference(first, other);
+            ASSERT_TRUE(sameBytes(viewsOf(*kept, first, scene.ids()), viewsOf(*anew, other, added)))
+                << difference(first, other);
             EXPECT_EQ(kept->statistics().m_status, anew->statistics().m_status);
             contacts += first.size();
             reduced += kept->statistics().m_reduced;

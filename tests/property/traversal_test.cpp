@@ -134,9 +134,9 @@ TEST_P(TraversalTest, ContactsAreTheSameInTreesOfEveryBuilder)
             pipelines.push_back(owned.back().get());
         }
         std::vector<std::size_t> tests(pipelines.size(), 0);
-        const std::uint32_t seed = 920 + std::uint32_t(traversal);
+        const std::uint32_t seed = 960 + std::uint32_t(traversal);
         LiveScene scene(pipelines, seed, true);
-        for (int step = 0; step < 30; ++step)
+        for (int step = 0; step < 60; ++step)
         {
             scene.nextStep();
             std::vector<Contact> first;

@@ -2,11 +2,21 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "scenes/cloth_grid.h"
 #include "scenes/shapes.h"
 
 namespace drape::test
 {
+namespace
+{
+std::vector<float> unposed()
+{
+    return {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+}
+}  // namespace
+
 void LiveScene::nextStep()
 {
     changeMeshes();
@@ -27,12 +37,33 @@ void LiveScene::moveObstacles()
 {
     for (LiveMesh& obstacle : m_obstacles)
     {
+        if (m_random.below(3) == 0 && obstacle.m_id % 3 == 0 && obstacle.m_pose.empty()) obstacle.m_pose = unposed();
+        if (!obstacle.m_pose.empty())
+        {
+            place(obstacle);
+            continue;
+        }
         if (m_random.below(4) != 0) continue;
         translate(obstacle.m_mesh.m_positions, m_random.uniform(-0.05f, 0.05f), m_random.uniform(-0.05f, 0.05f), 0.0f);
         if (m_teleports && m_random.below(4) == 0) jump(obstacle);
         for (Pipeline* pipeline : m_pipelines)
             pipeline->moveObstacle(obstacle.m_id, obstacle.m_mesh.m_positions.data());
     }
+}
+
+// Two of three times where it was.
+void LiveScene::place(LiveMesh& obstacle)
+{
+    obstacle.m_poseBefore = obstacle.m_pose;
+    if (m_random.below(3) == 0)
+    {
+        const float angle = m_random.uniform(-0.1f, 0.1f), cosine = std::cos(angle), sine = std::sin(angle);
+        obstacle.m_pose = {cosine, 0, sine, 0, 0, 1, 0, 0, -sine, 0, cosine, 0};
+        for (const std::size_t shift : {3u, 7u, 11u})
+            obstacle.m_pose[shift] = obstacle.m_poseBefore[shift] + m_random.uniform(-0.05f, 0.05f);
+    }
+    for (Pipeline* pipeline : m_pipelines)
+        pipeline->placeObstacle(obstacle.m_id, obstacle.m_poseBefore.data(), obstacle.m_pose.data());
 }
 
 void LiveScene::moveCloths()
@@ -75,10 +106,23 @@ void LiveScene::giveAnew(Pipeline& pipeline, std::vector<MeshId>& added) const
         added.push_back(addCloth(pipeline, cloth.m_mesh));
     for (const LiveMesh& obstacle : m_obstacles)
         added.push_back(addObstacle(pipeline, obstacle.m_mesh));
+    for (std::size_t i = 0; i < m_obstacles.size(); ++i)
+        if (!m_obstacles[i].m_pose.empty())
+            pipeline.placeObstacle(added[m_cloths.size() + i], m_obstacles[i].m_poseBefore.data(),
+                                   m_obstacles[i].m_pose.data());
     for (std::size_t i = 0; i < m_cloths.size(); ++i)
         setMotion(pipeline, added[i], m_cloths[i].m_start, m_cloths[i].m_mesh.m_positions);
     for (const LivePair& pair : m_pairs)
         pipeline.addPair(added[pair.m_cloth], added[m_cloths.size() + pair.m_obstacle], pair.m_thickness, pair.m_tube);
+}
+
+std::vector<MeshId> LiveScene::ids() const
+{
+    std::vector<MeshId> ids;
+    for (const std::vector<LiveMesh>* meshes : {&m_cloths, &m_obstacles})
+        for (const LiveMesh& mesh : *meshes)
+            ids.push_back(mesh.m_id);
+    return ids;
 }
 
 TriangleMesh LiveScene::randomCloth()
@@ -107,7 +151,7 @@ void LiveScene::add(std::vector<LiveMesh>& meshes, TriangleMesh mesh, bool cloth
         id = added;
     }
     const std::vector<float> home = mesh.m_positions;
-    meshes.push_back({id, std::move(mesh), home, {}});
+    meshes.push_back({id, std::move(mesh), home, {}, {}, {}});
 }
 
 void LiveScene::removeOne(std::vector<LiveMesh>& meshes)

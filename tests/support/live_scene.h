@@ -1,4 +1,4 @@
-// One scene of meshes that come, go and move at random, in several pipelines at once.
+// One scene of meshes that come, go and move at random, some obstacles by their places, in several pipelines at once.
 //
 // Every pipeline is told the same, so ids agree. nextStep() leaves the pipelines ready to run. Seeded.
 #pragma once
@@ -24,6 +24,8 @@ public:
     // Gives the coming step to a pipeline that is none of the scene's, with every mesh added anew: of the steps before,
     // nothing that it kept can matter. added: what the call before added, empty at first.
     void giveAnew(Pipeline& pipeline, std::vector<MeshId>& added) const;
+    // In the order in which giveAnew() adds.
+    std::vector<MeshId> ids() const;
 
 private:
     struct LiveMesh
@@ -31,7 +33,8 @@ private:
         MeshId m_id;
         TriangleMesh m_mesh;
         std::vector<float> m_home;
-        std::vector<float> m_start;  // of a cloth, in the coming step
+        std::vector<float> m_start;               // of a cloth, in the coming step
+        std::vector<float> m_poseBefore, m_pose;  // of an obstacle that has a place, likewise; else empty
     };
     struct LivePair
     {
@@ -41,6 +44,7 @@ private:
 
     void changeMeshes();
     void moveObstacles();
+    void place(LiveMesh& obstacle);
     void moveCloths();
     void namePairs();
     TriangleMesh randomCloth();

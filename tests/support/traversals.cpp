@@ -98,7 +98,7 @@ std::vector<Candidate> DeviceRun::run(std::size_t capacity, std::size_t limit)
 void HostRun::setTopology(const Sides& sides)
 {
     m_traversal.setObstacles(sides.m_obstacle.broadPhase());
-    m_traversal.setTopology(sides.m_cloth.broadPhase(), sides.m_obstacle.broadPhase());
+    m_traversal.setTopology(sides.m_cloth.broadPhase());
     upload(sides);
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "tests/support/cases.h"
@@ -84,15 +85,83 @@ TEST(MeshPool, KeepsIdsWhenOthersGo)
     EXPECT_FALSE(pool.remove(kNoMesh));
     pool.update();
     EXPECT_EQ(pool.slot(0), 0u);
-    EXPECT_EQ(pool.slot(4), 1u);
-    EXPECT_EQ(pool.slot(7), 2u);
+    EXPECT_EQ(pool.slot(4), 2u) << "its slot, too";
+    EXPECT_EQ(pool.slot(7), 3u);
     EXPECT_EQ(pool.slot(2), pool.meshCount()) << "gone";
+    EXPECT_TRUE(pool.mesh(1).m_vacant && pool.holds(2));
     EXPECT_EQ(pool.slot(100), pool.meshCount());
-    expectJoined(pool);
+    EXPECT_EQ(pool.presentTriangles(), 36u);
     pool.add(pooled(8, shapeNamed("torus")));
     pool.update();
-    EXPECT_EQ(pool.slot(8), 3u);
+    EXPECT_EQ(pool.slot(8), 4u);
+    pool.remove(8);
+    EXPECT_EQ(pool.meshCount(), 3u) << "more was vacant than there";
+    pool.update();
+    EXPECT_FALSE(pool.holds(2));
+    EXPECT_EQ(pool.slot(4), 1u);
     expectJoined(pool);
+}
+
+// What a user of the joined arrays has to look at again.
+TEST(MeshPool, TellsFromWhichSlotOnPlacesAreNew)
+{
+    MeshPool pool;
+    for (MeshId id : {0u, 1u, 2u, 3u})
+        pool.add(pooled(id, shapeNamed("box")));
+    pool.update();
+    EXPECT_EQ(pool.firstSince(0), 0u);
+    const std::uint32_t four = pool.revision();
+    EXPECT_EQ(pool.firstSince(four), 4u);
+    EXPECT_EQ(pool.begin(4).m_triangle, pool.triangles().size());
+
+    pool.remove(3);
+    pool.update();
+    EXPECT_EQ(pool.revision(), four) << "a vacancy changes nothing";
+    pool.add(pooled(4, shapeNamed("sphere")));
+    pool.update();
+    EXPECT_EQ(pool.slot(4), 3u) << "a mesh that comes takes the place of the last that went";
+    EXPECT_EQ(pool.firstSince(four), 3u);
+    EXPECT_EQ(pool.begin(3).m_triangle, 36u);
+    const std::uint32_t sphere = pool.revision();
+
+    pool.reorder(std::vector<std::uint32_t>(pool.order().rbegin(), pool.order().rend()));
+    EXPECT_EQ(pool.firstSince(sphere), 4u) << "places are as they were";
+    pool.add(pooled(5, shapeNamed("box")));
+    pool.update();
+    EXPECT_EQ(pool.firstSince(sphere), 4u);
+    expectJoined(pool);
+
+    pool.remove(1);
+    pool.remove(4);
+    pool.update();
+    EXPECT_EQ(pool.firstSince(sphere), 1u) << "those behind the first that went have moved up";
+    EXPECT_EQ(pool.meshCount(), 3u);
+    expectJoined(pool);
+}
+
+// Meshes of a few triangles that come and go beside a large one.
+TEST(MeshPool, VacantSlotsStayFew)
+{
+    MeshPool pool;
+    pool.add(pooled(0, shapeNamed("sphere")));
+    pool.update();
+    MeshId next = 1;
+    std::size_t most = 0;
+    for (int round = 0; round < 300; ++round)
+    {
+        pool.add(pooled(next, shapeNamed("box")));
+        pool.add(pooled(next + 1, shapeNamed("box")));
+        pool.update();
+        pool.remove(next);
+        next += 2;
+        most = std::max(most, pool.meshCount());
+        if (round >= 10) pool.remove(next - 21);
+    }
+    EXPECT_LT(most, 100u);
+    EXPECT_EQ(pool.firstSince(1), 1u) << "the large one kept its place";
+    pool.update();
+    for (std::size_t slot = 0; slot < pool.meshCount(); ++slot)
+        EXPECT_EQ(pool.slot(pool.mesh(slot).m_id), pool.mesh(slot).m_vacant ? pool.meshCount() : slot);
 }
 
 TEST(MeshPool, RevisionCountsChangesOnly)
@@ -107,6 +176,9 @@ TEST(MeshPool, RevisionCountsChangesOnly)
     EXPECT_EQ(pool.revision(), first + 1);
     pool.update();
     EXPECT_EQ(pool.revision(), first + 1);
+    pool.remove(0);
+    pool.update();
+    EXPECT_EQ(pool.revision(), first + 1) << "as many are there as not";
     pool.remove(1);
     pool.update();
     EXPECT_EQ(pool.revision(), first + 2);

@@ -18,9 +18,10 @@ namespace
 {
 constexpr std::uint32_t kWidth = 32;
 
+// Of a side of one mesh.
 std::vector<std::uint32_t> clustered(const Side& side)
 {
-    return clusteredOrder(side.m_pool, side.m_start.data(), kWidth);
+    return clusteredOrder(side.m_pool.mesh(0), side.m_start.data(), kWidth);
 }
 
 void expectEachOnce(std::vector<std::uint32_t> order, std::size_t count)
@@ -57,7 +58,6 @@ TEST(PatchesTest, EveryTriangleIsInOnePatchOfItsMesh)
     const TriangleMesh sphere = makeSphere(1.0f, 3), soup = makeSoup(1.0f, 0.2f, 101, 31);
     const Side side = makeSide({sphere, soup, sphere, TriangleMesh()});
     const std::size_t count = side.m_pool.triangles().size();
-    expectEachOnce(clustered(side), count);
     const Patches patches = makePatches(side.m_pool, side.m_start.data(), kWidth);
     std::size_t expected = 0;
     for (const TriangleMesh& mesh : {sphere, soup, sphere})
@@ -72,6 +72,31 @@ TEST(PatchesTest, EveryTriangleIsInOnePatchOfItsMesh)
         EXPECT_EQ(side.m_pool.triangles()[face].m_mesh, patches.m_patches[lane / kWidth].m_mesh);
     }
     expectEachOnce(faces, count);
+}
+
+// Meshes that come behind others, and those that take the places of some that went.
+TEST(PatchesTest, AppendedPatchesAreThoseOfAll)
+{
+    const TriangleMesh sphere = makeSphere(1.0f, 3), soup = makeSoup(1.0f, 0.2f, 101, 32), none;
+    const std::vector<TriangleMesh> before = {sphere, soup, none, sphere},
+                                    after = {sphere, soup, none, soup, none, soup};
+    for (std::size_t kept = 0; kept <= 3; ++kept)
+    {
+        SCOPED_TRACE("seed 32, kept " + std::to_string(kept));
+        const Side first = makeSide(before), second = makeSide(after);
+        Patches patches = makePatches(first.m_pool, first.m_start.data(), kWidth);
+        keepPatches(patches, kept, kWidth);
+        for (std::size_t slot = kept; slot < after.size(); ++slot)
+            appendPatches(patches, second.m_pool, slot, second.m_pool.mesh(slot).m_positions.data(), kWidth);
+        makeLevels(patches, kWidth);
+        const Patches all = makePatches(second.m_pool, second.m_start.data(), kWidth);
+        EXPECT_TRUE(sameBytes(patches.m_patches, all.m_patches));
+        EXPECT_EQ(patches.m_faceOwners, all.m_faceOwners);
+        EXPECT_EQ(patches.m_faceFeatures, all.m_faceFeatures);
+        EXPECT_EQ(patches.m_vertexOwners, all.m_vertexOwners);
+        EXPECT_EQ(patches.m_edgeOwners, all.m_edgeOwners);
+        EXPECT_EQ(patches.m_levels, all.m_levels);
+    }
 }
 
 // A curve that fills space jumps; what it joins across a jump lies far apart.

@@ -32,7 +32,8 @@ protected:
             mesh.m_order.push_back(i);
         m_pool.add(mesh);
         m_pool.update();
-        m_hierarchy.begin(m_pool, m_layout);
+        m_hierarchy.begin(m_pool);
+        m_hierarchy.layOut(m_pool, m_layout);
     }
 
     bool build() { return m_hierarchy.build(m_methods, m_pool, m_layout); }
@@ -114,7 +115,8 @@ TEST_P(SideHierarchyTest, AMeshThatComesLeavesTheOthersTreesAsTheyWere)
     EXPECT_TRUE(kept || GetParam() == TreeBuilder::Balanced);
     m_pool.remove(0);
     m_pool.update();
-    m_hierarchy.begin(m_pool, m_layout);
+    m_hierarchy.begin(m_pool);
+    m_hierarchy.layOut(m_pool, m_layout);
     build();
     EXPECT_EQ(m_layout.leafCount(), 50u);
     expectValid();

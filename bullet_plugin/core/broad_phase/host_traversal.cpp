@@ -62,6 +62,7 @@ HostTraversal::HostTraversal(Traversal traversal) : m_traversal(resolve(traversa
 void HostTraversal::setObstacles(const BroadPhaseSide& obstacle)
 {
     if (isWide()) m_wide = makeWideLayout(obstacle.hierarchy());
+    if (walksFront()) m_obstacleLinks = makeLinks(obstacle.hierarchy());
 }
 
 void HostTraversal::obstaclesRefitted(const BroadPhaseSide& obstacle)
@@ -69,13 +70,11 @@ void HostTraversal::obstaclesRefitted(const BroadPhaseSide& obstacle)
     gatherWideOnHost(obstacle.m_nodes, m_wide);
 }
 
-void HostTraversal::setTopology(const BroadPhaseSide& cloth, const BroadPhaseSide& obstacle)
+void HostTraversal::setTopology(const BroadPhaseSide& cloth)
 {
     m_front.clear();
     if (m_traversal == Traversal::Leaves || isWide()) m_leaves = leafNodes(cloth.hierarchy());
-    if (m_traversal != Traversal::Front && m_traversal != Traversal::Groups) return;
-    m_clothLinks = makeLinks(cloth.hierarchy());
-    m_obstacleLinks = makeLinks(obstacle.hierarchy());
+    if (walksFront()) m_clothLinks = makeLinks(cloth.hierarchy());
 }
 
 bool HostTraversal::run(const BroadPhaseSide& cloth, const BroadPhaseSide& obstacle,

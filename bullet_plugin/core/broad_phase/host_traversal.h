@@ -34,8 +34,8 @@ public:
     // New links in the obstacles' hierarchy, or new volumes.
     void setObstacles(const BroadPhaseSide& obstacle);
     void obstaclesRefitted(const BroadPhaseSide& obstacle);
-    // New links in either hierarchy: drops the front.
-    void setTopology(const BroadPhaseSide& cloth, const BroadPhaseSide& obstacle);
+    // New links in either hierarchy, of the obstacles' after setObstacles(): drops the front.
+    void setTopology(const BroadPhaseSide& cloth);
 
     // thickness: m, cloth slots × obstacle slots, negative where the pair is not tested. False when there are more than
     // limit candidates; the list is incomplete then.
@@ -50,6 +50,7 @@ public:
 private:
     struct Step;
     bool isWide() const { return m_traversal == Traversal::WideLeaves || m_traversal == Traversal::WideGroups; }
+    bool walksFront() const { return m_traversal == Traversal::Front || m_traversal == Traversal::Groups; }
     void runPairs(const Step& step);
     void runBothOpen(const Step& step);
     void runFront(const Step& step);

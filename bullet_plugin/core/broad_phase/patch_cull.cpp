@@ -47,24 +47,37 @@ void PatchCullStage::create(Device& device, const ProgramLoader& load)
     m_widen.create(device, pack, "patchWiden");
 }
 
-void PatchCullStage::setTopology(Device& device, const MeshPool& obstacles, const std::vector<float>& positions)
+void PatchCullStage::setTopology(Device& device, const MeshPool& obstacles, std::size_t firstSlot)
 {
-    const std::size_t lanes = width(device);
-    m_layout = makePatches(obstacles, positions.data(), std::uint32_t(lanes));
-    m_patches.assign(device, m_layout.m_patches);
-    m_faceOwners.assign(device, m_layout.m_faceOwners);
-    if (device.isGpu()) m_faceFeatures.assign(device, m_layout.m_faceFeatures);
+    const std::uint32_t lanes = width(device);
+    keepPatches(m_layout, firstSlot, lanes);
+    const std::size_t patches = m_layout.m_patches.size(), faces = m_layout.m_faceOwners.size();
+    const std::size_t vertices = m_layout.m_vertexOwners.size(), edges = m_layout.m_edgeOwners.size();
+    const std::size_t volumes = patches * DRAPE_WIDE_NODE_FLOATS;
+    for (std::size_t slot = firstSlot; slot < obstacles.meshCount(); ++slot)
+        appendPatches(m_layout, obstacles, slot, obstacles.mesh(slot).m_positions.data(), lanes);
+    makeLevels(m_layout, lanes);
+    m_levelsMoved = true;
+    m_patches.append(device, m_layout.m_patches, patches);
+    m_faceOwners.append(device, m_layout.m_faceOwners, faces);
+    if (device.isGpu()) m_faceFeatures.append(device, m_layout.m_faceFeatures, faces);
     releasePacking();
     m_levels.assign(device, m_layout.m_levels);
-    m_faces.reserve(device, m_layout.m_faceOwners.size() * DRAPE_FACE_FLOATS);
-    m_vertices.reserve(device, m_layout.m_vertexOwners.size() * DRAPE_VERTEX_FLOATS);
-    m_edges.reserve(device, m_layout.m_edgeOwners.size() * DRAPE_EDGE_FLOATS);
-    m_vertexIds.reserve(device, m_layout.m_vertexOwners.size());
-    m_edgeIds.reserve(device, m_layout.m_edgeOwners.size());
-    m_sizes.reserve(device, m_layout.m_patches.size());
+    m_faces.extend(device, m_layout.m_faceOwners.size() * DRAPE_FACE_FLOATS, faces * DRAPE_FACE_FLOATS);
+    m_vertices.extend(device, m_layout.m_vertexOwners.size() * DRAPE_VERTEX_FLOATS, vertices * DRAPE_VERTEX_FLOATS);
+    m_edges.extend(device, m_layout.m_edgeOwners.size() * DRAPE_EDGE_FLOATS, edges * DRAPE_EDGE_FLOATS);
+    m_vertexIds.extend(device, m_layout.m_vertexOwners.size(), vertices);
+    m_edgeIds.extend(device, m_layout.m_edgeOwners.size(), edges);
+    m_sizes.extend(device, m_layout.m_patches.size(), patches);
     // A vector of lanes is loaded from it, of which some lie behind the last patch's.
-    m_patchVolumes.reserve(device, device.isGpu() ? 1 : m_layout.m_patches.size() * DRAPE_WIDE_NODE_FLOATS + lanes);
-    m_wideNodes.reserve(device, m_layout.m_levels.back() * DRAPE_WIDE_NODE_FLOATS * lanes);
+    const std::size_t volumesNow = m_layout.m_patches.size() * DRAPE_WIDE_NODE_FLOATS + lanes;
+    if (!device.isGpu())
+        m_patchVolumes.extend(device, volumesNow, volumes);
+    else
+        m_patchVolumes.reserve(device, 1);
+    // The lowest level, which comes first, stays: a place a patch, in nodes of so many.
+    const std::size_t kept = (patches + lanes - 1) / lanes * lanes * DRAPE_WIDE_NODE_FLOATS;
+    m_wideNodes.extend(device, m_layout.m_levels.back() * DRAPE_WIDE_NODE_FLOATS * lanes, kept);
     device.wait();
 }
 
@@ -72,6 +85,21 @@ void PatchCullStage::releasePacking()
 {
     m_vertexOwners.release();
     m_edgeOwners.release();
+    m_vertexOwnersHeld = m_edgeOwnersHeld = {0, 0};
+}
+
+void PatchCullStage::bringOwners(Device& device, Range vertices, Range edges)
+{
+    const auto bring = [&](Buffer<cl_uint>& buffer, const std::vector<std::uint32_t>& owners, Range& held, Range wanted)
+    {
+        if (held.m_first <= wanted.m_first && wanted.m_last <= held.m_last) return;
+        if (held.count() > 0) wanted = {std::min(held.m_first, wanted.m_first), std::max(held.m_last, wanted.m_last)};
+        buffer.reserve(device, wanted.m_last);
+        buffer.write(device, owners.data() + wanted.m_first, wanted.count(), wanted.m_first);
+        held = wanted;
+    };
+    bring(m_vertexOwners, m_layout.m_vertexOwners, m_vertexOwnersHeld, vertices);
+    bring(m_edgeOwners, m_layout.m_edgeOwners, m_edgeOwnersHeld, edges);
 }
 
 // Patches are in the order of slots.
@@ -87,17 +115,21 @@ void PatchCullStage::pack(Device& device, Slots slots, Buffer<Triangle>& triangl
                           Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones)
 {
     const Range patches = patchesOf(slots);
-    if (patches.count() == 0) return;
-    if (m_vertexOwners.capacity() == 0)
-    {
-        m_vertexOwners.assign(device, m_layout.m_vertexOwners);
-        m_edgeOwners.assign(device, m_layout.m_edgeOwners);
-    }
+    if (m_layout.m_patches.empty() || (patches.count() == 0 && !m_levelsMoved)) return;
+    if (patches.count() > 0) packFeatures(device, patches, triangles, positions, vertexCones, edgeCones);
+    packVolumes(device, patches, triangles, positions, vertexCones, edgeCones);
+    m_levelsMoved = false;
+}
+
+void PatchCullStage::packFeatures(Device& device, Range patches, Buffer<Triangle>& triangles, Buffer<float>& positions,
+                                  Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones)
+{
     const std::size_t width = PatchCullStage::width(device);
     const Patch &front = m_layout.m_patches[patches.m_first], &back = m_layout.m_patches[patches.m_last - 1];
     const Range faces = {patches.m_first * width, patches.m_last * width};
     const Range vertices = {front.m_vertexBlock * width, (back.m_vertexBlock + back.m_vertexBlocks) * width};
     const Range edges = {front.m_edgeBlock * width, (back.m_edgeBlock + back.m_edgeBlocks) * width};
+    bringOwners(device, vertices, edges);
     m_packFaces.launch(device, faces.count(), kGroup, m_faceOwners.handle(), faces.first(), faces.last(),
                        triangles.handle(), positions.handle(), vertexCones.handle(), edgeCones.handle(),
                        m_faces.handle());
@@ -107,11 +139,10 @@ void PatchCullStage::pack(Device& device, Slots slots, Buffer<Triangle>& triangl
     m_packEdges.launch(device, edges.count(), kGroup, m_edgeOwners.handle(), edges.first(), edges.last(),
                        triangles.handle(), positions.handle(), edgeCones.handle(), m_edges.handle(),
                        m_edgeIds.handle());
-    packVolumes(device, patches, triangles, positions, vertexCones, edgeCones);
 }
 
-// Volumes of the patches and of the wide nodes above them. With the last patch go the places behind it, which are
-// empty.
+// Volumes of the patches and of the wide nodes above them, all of those where levels have moved, and the places behind
+// the last patch, which are empty.
 void PatchCullStage::packVolumes(Device& device, Range patches, Buffer<Triangle>& triangles, Buffer<float>& positions,
                                  Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones)
 {
@@ -121,13 +152,21 @@ void PatchCullStage::packVolumes(Device& device, Range patches, Buffer<Triangle>
     for (std::size_t level = 0; level + 1 < m_layout.m_levels.size(); ++level)
     {
         const std::size_t first = m_layout.m_levels[level];
-        if (changed.m_last == children) changed.m_last = (m_layout.m_levels[level + 1] - first) * width;
+        const std::size_t places = (m_layout.m_levels[level + 1] - first) * width;
+        if (level > 0 && m_levelsMoved) changed = {0, children};
+        const bool withLast = changed.m_last == children;
+        if (withLast) changed.m_last = places;
         if (level == 0)
         {
-            m_volumes.launch(device, changed.count(), kGroup, m_faceOwners.handle(), cl_uint(patchCount),
-                             changed.first(), changed.last(), triangles.handle(), positions.handle(),
-                             vertexCones.handle(), edgeCones.handle(), m_wideNodes.handle(), m_sizes.handle(),
-                             m_patchVolumes.handle());
+            const auto launch = [&](Range range)
+            {
+                m_volumes.launch(device, range.count(), kGroup, m_faceOwners.handle(), cl_uint(patchCount),
+                                 range.first(), range.last(), triangles.handle(), positions.handle(),
+                                 vertexCones.handle(), edgeCones.handle(), m_wideNodes.handle(), m_sizes.handle(),
+                                 m_patchVolumes.handle());
+            };
+            launch(changed);
+            if (m_levelsMoved && !withLast) launch({children, places});
         }
         else
         {

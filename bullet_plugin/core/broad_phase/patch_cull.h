@@ -24,20 +24,19 @@ public:
     // The programs that it is made of.
     void create(Device& device, const ProgramLoader& load);
 
-    // New obstacle topology. Waits for the upload.
-    void setTopology(Device& device, const MeshPool& obstacles, const std::vector<float>& positions);
+    // New obstacles from that slot on, which must be packed next, even where none came. Waits for the upload.
+    void setTopology(Device& device, const MeshPool& obstacles, std::size_t firstSlot);
     // Obstacle slots from m_first up to m_last.
     struct Slots
     {
         std::size_t m_first, m_last;
     };
-    // Packs the features of those obstacles at new positions; all must have been packed once. The buffers are the
-    // joined obstacles'; returns after enqueueing.
+    // Packs the features of those obstacles at new positions. The buffers are the joined obstacles'; returns after
+    // enqueueing.
     void pack(Device& device, Slots slots, Buffer<Triangle>& triangles, Buffer<float>& positions,
               Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones);
     // Gives back what only pack() reads; it brings that again when it is called.
     void releasePacking();
-    static Slots allSlots() { return {0, SIZE_MAX}; }
 
     // What a step reads of the cloths and pairs.
     struct Cloths
@@ -88,6 +87,9 @@ private:
         cl_uint last() const { return cl_uint(m_last); }
     };
     Range patchesOf(Slots slots) const;
+    void bringOwners(Device& device, Range vertices, Range edges);
+    void packFeatures(Device& device, Range patches, Buffer<Triangle>& triangles, Buffer<float>& positions,
+                      Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones);
     void packVolumes(Device& device, Range patches, Buffer<Triangle>& triangles, Buffer<float>& positions,
                      Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones);
 
@@ -96,6 +98,8 @@ private:
 
     Kernel m_walk, m_cull, m_packFaces, m_packVertices, m_packEdges, m_volumes, m_widen;
     Patches m_layout;
+    bool m_levelsMoved = false;                                    // since the last pack()
+    Range m_vertexOwnersHeld = {0, 0}, m_edgeOwnersHeld = {0, 0};  // by the buffers
     Buffer<Patch> m_patches{"obstacle patches"};
     Buffer<cl_uint> m_faceFeatures{"obstacle face features"};  // of a GPU
     Buffer<cl_uint> m_vertexOwners{"obstacle packing"}, m_edgeOwners{"obstacle packing"};

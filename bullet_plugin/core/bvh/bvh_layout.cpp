@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace drape
 {
@@ -25,6 +26,16 @@ std::vector<BvhChildren> linksOf(const std::vector<BvhNode>& nodes)
     for (const BvhNode& node : nodes)
         links.push_back({node.m_first, node.m_count});
     return links;
+}
+
+std::vector<std::uint32_t> parentsOf(const std::vector<BvhNode>& nodes)
+{
+    std::vector<std::uint32_t> parents(nodes.size());
+    std::iota(parents.begin(), parents.end(), 0u);
+    for (std::uint32_t node = 0; node < nodes.size(); ++node)
+        for (std::uint32_t child = 0; child < nodes[node].m_count; ++child)
+            parents[nodes[node].m_first + child] = node;
+    return parents;
 }
 
 BvhLayout makeBvhLayout(const std::vector<BvhChildren>& tree, std::uint32_t root)

@@ -55,6 +55,9 @@ BvhLayout makeBvhLayout(const std::vector<BvhChildren>& links, std::uint32_t roo
 // Those of nodes alone.
 std::vector<BvhChildren> linksOf(const std::vector<BvhNode>& nodes);
 
+// Of every node; the root, which no node has for a child, is its own.
+std::vector<std::uint32_t> parentsOf(const std::vector<BvhNode>& nodes);
+
 // Nodes with their links set and volumes empty.
 std::vector<BvhNode> makeBvhNodes(const BvhLayout& layout);
 }  // namespace drape

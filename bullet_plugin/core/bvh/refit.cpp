@@ -1,5 +1,8 @@
 #include "refit.h"
 
+#include <algorithm>
+#include <unordered_set>
+
 #include "kernels/lib/rigid_motion.h"
 
 namespace drape
@@ -29,6 +32,38 @@ void refitOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const std
         dopStore(&nodes[layout.leafNode(leaf)], &dop);
     }
     mergeUpwards(nodes);
+}
+
+HierarchyPart partOf(const BvhLayout& layout, const std::vector<std::uint32_t>& parents, std::uint32_t first,
+                     std::uint32_t last)
+{
+    HierarchyPart part;
+    part.m_first = first;
+    part.m_last = last;
+    std::unordered_set<std::uint32_t> found;
+    for (std::uint32_t leaf = first; leaf < last; ++leaf)
+    {
+        std::uint32_t node = layout.leafNode(leaf);
+        while (parents[node] != node && found.insert(parents[node]).second)
+            node = parents[node];
+    }
+    part.m_above.assign(found.begin(), found.end());
+    std::sort(part.m_above.begin(), part.m_above.end());  // children lie before their parents
+    return part;
+}
+
+void refitPartOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const HierarchyPart& part,
+                     const std::vector<std::uint32_t>& order, const std::vector<Triangle>& triangles,
+                     const float* positions)
+{
+    for (std::uint32_t leaf = part.m_first; leaf < part.m_last; ++leaf)
+    {
+        Dop dop;
+        leafVolume(&dop, &triangles[order[leaf]], positions, positions, 0.0f);
+        dopStore(&nodes[layout.leafNode(leaf)], &dop);
+    }
+    for (const std::uint32_t node : part.m_above)
+        dopMergeChildren(nodes.data(), node);
 }
 
 void growByMotionsOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const std::vector<std::uint32_t>& order,

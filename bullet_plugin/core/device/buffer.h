@@ -36,6 +36,28 @@ public:
         return true;
     }
 
+    // The same, but the first `kept` elements stay where there are any, and then a quarter is added for the next time.
+    void extend(Device& device, std::size_t count, std::size_t kept)
+    {
+        if (kept == 0 || m_capacity >= count)
+        {
+            reserve(device, count);
+            return;
+        }
+        const Buffer before = std::exchange(*this, Buffer(m_name));
+        reserve(device, count + count / 4);
+        copy(device, before, count, kept);
+    }
+
+    // Makes room for count elements, of which the first `copied` become another buffer's.
+    void copy(Device& device, const Buffer& from, std::size_t count, std::size_t copied)
+    {
+        reserve(device, count);
+        if (device.failed() || copied == 0) return;
+        device.check(device.queue().enqueueCopyBuffer(from.m_buffer, m_buffer, 0, 0, copied * sizeof(T)),
+                     "clEnqueueCopyBuffer");
+    }
+
     // Gives the memory back once what is enqueued has used it.
     void release() { *this = Buffer(m_name); }
 
@@ -51,6 +73,12 @@ public:
     {
         reserve(device, source.size());
         write(device, source.data(), source.size());
+    }
+    // Those from `first` on; what was before stays.
+    void append(Device& device, const std::vector<T>& source, std::size_t first)
+    {
+        extend(device, source.size(), first);
+        write(device, source.data() + first, source.size() - first, first);
     }
     void read(Device& device, T* target, std::size_t count, std::size_t offset = 0)
     {

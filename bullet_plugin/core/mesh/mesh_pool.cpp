@@ -5,8 +5,16 @@
 
 namespace drape
 {
+namespace
+{
+// Vacant slots that are kept whatever they hold: each costs a place in every table of meshes.
+constexpr std::size_t kVacantKept = 64;
+}  // namespace
+
 void MeshPool::add(PooledMesh mesh)
 {
+    dropLastVacant();
+    m_triangleCount += mesh.m_topology.m_triangles.size();
     m_ids.push_back(mesh.m_id);
     m_meshes.push_back(std::move(mesh));
     m_changed = true;
@@ -16,17 +24,63 @@ bool MeshPool::remove(MeshId id)
 {
     const std::size_t found = slot(id);
     if (found == m_meshes.size()) return false;
-    m_meshes.erase(m_meshes.begin() + std::ptrdiff_t(found));
-    m_ids.erase(m_ids.begin() + std::ptrdiff_t(found));
-    m_changed = true;
+    PooledMesh& mesh = m_meshes[found];
+    mesh.m_vacant = true;
+    m_vacantTriangles += mesh.m_topology.m_triangles.size();
+    ++m_vacantCount;
+    const std::size_t present = m_meshes.size() - m_vacantCount;
+    if (m_vacantTriangles > presentTriangles() || m_vacantCount > present + kVacantKept || present == 0) closeGaps();
     return true;
+}
+
+void MeshPool::forget(const PooledMesh& vacant)
+{
+    m_triangleCount -= vacant.m_topology.m_triangles.size();
+    m_vacantTriangles -= vacant.m_topology.m_triangles.size();
+    --m_vacantCount;
+}
+
+void MeshPool::closeGaps()
+{
+    std::size_t kept = 0;
+    for (std::size_t slot = 0; slot < m_meshes.size(); ++slot)
+    {
+        if (m_meshes[slot].m_vacant)
+        {
+            forget(m_meshes[slot]);
+            m_placed = std::min(m_placed, kept);
+            continue;
+        }
+        if (kept != slot) m_meshes[kept] = std::move(m_meshes[slot]);
+        m_ids[kept++] = m_ids[slot];
+    }
+    m_meshes.resize(kept);
+    m_ids.resize(kept);
+    m_changed = true;
+}
+
+void MeshPool::dropLastVacant()
+{
+    while (!m_meshes.empty() && m_meshes.back().m_vacant)
+    {
+        forget(m_meshes.back());
+        m_meshes.pop_back();
+        m_ids.pop_back();
+    }
+    m_placed = std::min(m_placed, m_meshes.size());
 }
 
 std::size_t MeshPool::slot(MeshId id) const
 {
     // Ids are handed out in rising order and meshes keep it.
     const auto found = std::lower_bound(m_ids.begin(), m_ids.end(), id);
-    return found != m_ids.end() && *found == id ? std::size_t(found - m_ids.begin()) : m_ids.size();
+    const std::size_t slot = std::size_t(found - m_ids.begin());
+    return found != m_ids.end() && *found == id && !m_meshes[slot].m_vacant ? slot : m_ids.size();
+}
+
+bool MeshPool::holds(MeshId id) const
+{
+    return std::binary_search(m_ids.begin(), m_ids.end(), id);
 }
 
 std::size_t MeshPool::slotOfVertex(std::uint32_t vertex) const
@@ -45,49 +99,72 @@ std::size_t MeshPool::slotOfEdge(std::uint32_t edge) const
     return std::size_t(after - m_meshes.begin()) - 1;
 }
 
+std::size_t MeshPool::firstSince(std::uint32_t revision) const
+{
+    // Places are taken in the order of slots.
+    const auto later = [](std::uint32_t r, const PooledMesh& mesh) { return r < mesh.m_joined; };
+    return std::size_t(std::upper_bound(m_meshes.begin(), m_meshes.end(), revision, later) - m_meshes.begin());
+}
+
+MeshFirsts MeshPool::begin(std::size_t slot) const
+{
+    if (slot < m_firsts.size()) return m_firsts[slot];
+    return MeshFirsts{std::uint32_t(m_vertexCount), std::uint32_t(m_triangles.size()), std::uint32_t(m_edges.size())};
+}
+
+void MeshPool::join(std::size_t slot)
+{
+    PooledMesh& mesh = m_meshes[slot];
+    mesh.m_joined = m_revision;
+    mesh.m_firstVertex = std::uint32_t(m_vertexCount);
+    mesh.m_firstTriangle = std::uint32_t(m_triangles.size());
+    mesh.m_firstEdge = std::uint32_t(m_edges.size());
+    m_firsts.push_back(MeshFirsts{mesh.m_firstVertex, mesh.m_firstTriangle, mesh.m_firstEdge});
+    for (Triangle triangle : mesh.m_topology.m_triangles)
+    {
+        for (std::uint32_t& vertex : triangle.m_vertices)
+            vertex += mesh.m_firstVertex;
+        for (std::uint32_t& edge : triangle.m_edges)
+            edge += mesh.m_firstEdge;
+        triangle.m_mesh = std::uint32_t(slot);
+        m_triangles.push_back(triangle);
+    }
+    for (Edge edge : mesh.m_topology.m_edges)
+    {
+        for (std::uint32_t& vertex : edge.m_vertices)
+            vertex += mesh.m_firstVertex;
+        for (std::uint32_t& vertex : edge.m_opposite)
+            vertex += mesh.m_firstVertex;
+        m_edges.push_back(edge);
+    }
+    m_vertexCount += mesh.m_topology.m_vertexCount;
+}
+
 void MeshPool::update()
 {
     if (!m_changed) return;
     m_changed = false;
     ++m_revision;
-    m_triangles.clear();
-    m_edges.clear();
-    m_order.clear();
-    m_firsts.clear();
-    m_vertexCount = 0;
-    for (std::size_t slot = 0; slot < m_meshes.size(); ++slot)
-    {
-        PooledMesh& mesh = m_meshes[slot];
-        mesh.m_firstVertex = std::uint32_t(m_vertexCount);
-        mesh.m_firstTriangle = std::uint32_t(m_triangles.size());
-        mesh.m_firstEdge = std::uint32_t(m_edges.size());
-        m_firsts.push_back(MeshFirsts{mesh.m_firstVertex, mesh.m_firstTriangle, mesh.m_firstEdge});
-        for (Triangle triangle : mesh.m_topology.m_triangles)
-        {
-            for (std::uint32_t& vertex : triangle.m_vertices)
-                vertex += mesh.m_firstVertex;
-            for (std::uint32_t& edge : triangle.m_edges)
-                edge += mesh.m_firstEdge;
-            triangle.m_mesh = std::uint32_t(slot);
-            m_triangles.push_back(triangle);
-        }
-        for (Edge edge : mesh.m_topology.m_edges)
-        {
-            for (std::uint32_t& vertex : edge.m_vertices)
-                vertex += mesh.m_firstVertex;
-            for (std::uint32_t& vertex : edge.m_opposite)
-                vertex += mesh.m_firstVertex;
-            m_edges.push_back(edge);
-        }
-        for (std::uint32_t triangle : mesh.m_order)
-            m_order.push_back(triangle + mesh.m_firstTriangle);
-        m_vertexCount += mesh.m_topology.m_vertexCount;
-    }
+    const MeshFirsts end = begin(m_placed);
+    m_vertexCount = end.m_vertex;
+    m_triangles.resize(end.m_triangle);
+    m_edges.resize(end.m_edge);
+    m_firsts.resize(m_placed);
+    const std::size_t ordered = m_reordered ? 0 : m_placed;
+    m_order.resize(m_reordered ? 0 : end.m_triangle);
+    for (std::size_t slot = m_placed; slot < m_meshes.size(); ++slot)
+        join(slot);
+    for (std::size_t slot = ordered; slot < m_meshes.size(); ++slot)
+        for (std::uint32_t triangle : m_meshes[slot].m_order)
+            m_order.push_back(triangle + m_meshes[slot].m_firstTriangle);
+    m_placed = m_meshes.size();
+    m_reordered = false;
 }
 
 void MeshPool::reorder(std::vector<std::uint32_t> order)
 {
     m_order = std::move(order);
+    m_reordered = true;
     ++m_revision;
 }
 }  // namespace drape

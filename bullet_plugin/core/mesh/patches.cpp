@@ -20,12 +20,12 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 // Two triangles at each edge; kNone beside a boundary.
 using EdgeTriangles = std::vector<std::array<std::uint32_t, 2>>;
 
-EdgeTriangles trianglesOfEdges(const MeshPool& pool)
+EdgeTriangles trianglesOfEdges(const Topology& topology)
 {
-    EdgeTriangles sides(pool.edges().size(), {kNone, kNone});
-    for (std::uint32_t i = 0; i < pool.triangles().size(); ++i)
+    EdgeTriangles sides(topology.m_edges.size(), {kNone, kNone});
+    for (std::uint32_t i = 0; i < topology.m_triangles.size(); ++i)
     {
-        for (std::uint32_t edge : pool.triangles()[i].m_edges)
+        for (std::uint32_t edge : topology.m_triangles[i].m_edges)
             (sides[edge][0] == kNone ? sides[edge][0] : sides[edge][1]) = i;
     }
     return sides;
@@ -47,17 +47,18 @@ Vec3 middleOf(const Triangle& triangle, const float* positions)
 class Clustering
 {
 public:
-    Clustering(const MeshPool& pool, const float* positions)
-        : m_pool(pool), m_sides(trianglesOfEdges(pool)), m_taken(pool.triangles().size(), false)
+    Clustering(const PooledMesh& mesh, const float* positions)
+        : m_triangles(mesh.m_topology.m_triangles),
+          m_order(mesh.m_order),
+          m_sides(trianglesOfEdges(mesh.m_topology)),
+          m_taken(m_triangles.size(), false)
     {
-        m_middles.reserve(pool.triangles().size());
-        for (const Triangle& triangle : pool.triangles())
+        m_middles.reserve(m_triangles.size());
+        for (const Triangle& triangle : m_triangles)
             m_middles.push_back(middleOf(triangle, positions));
     }
 
-    bool done() const { return m_leaf == m_pool.order().size(); }
-    // Of the first triangle in leaf order that is not taken.
-    std::uint32_t mesh() const { return m_pool.triangles()[m_pool.order()[m_leaf]].m_mesh; }
+    bool done() const { return m_leaf == m_order.size(); }
     void beginPatch()
     {
         m_beside.clear();
@@ -65,7 +66,7 @@ public:
     }
     std::uint32_t next()
     {
-        const std::uint32_t triangle = m_inPatch == 0     ? m_pool.order()[m_leaf]
+        const std::uint32_t triangle = m_inPatch == 0     ? m_order[m_leaf]
                                        : m_beside.empty() ? nearestAhead()
                                                           : bestBeside();
         take(triangle);
@@ -80,7 +81,7 @@ private:
     int takenNeighbours(std::uint32_t triangle) const
     {
         int count = 0;
-        for (std::uint32_t edge : m_pool.triangles()[triangle].m_edges)
+        for (std::uint32_t edge : m_triangles[triangle].m_edges)
         {
             const std::uint32_t other = across(triangle, edge);
             count += other == kNone || m_taken[other];
@@ -115,12 +116,11 @@ private:
     }
     std::uint32_t nearestAhead() const
     {
-        const std::vector<std::uint32_t>& order = m_pool.order();
-        std::uint32_t nearest = order[m_leaf];
-        for (std::size_t leaf = m_leaf + 1; leaf < std::min(order.size(), m_leaf + kAhead); ++leaf)
+        std::uint32_t nearest = m_order[m_leaf];
+        for (std::size_t leaf = m_leaf + 1; leaf < std::min(m_order.size(), m_leaf + kAhead); ++leaf)
         {
-            if (m_taken[order[leaf]] || m_pool.triangles()[order[leaf]].m_mesh != mesh()) continue;
-            if (distance(order[leaf]) < distance(nearest)) nearest = order[leaf];
+            if (m_taken[m_order[leaf]]) continue;
+            if (distance(m_order[leaf]) < distance(nearest)) nearest = m_order[leaf];
         }
         return nearest;
     }
@@ -129,17 +129,18 @@ private:
         m_taken[triangle] = true;
         m_sum = m_inPatch == 0 ? m_middles[triangle] : vec3Add(m_sum, m_middles[triangle]);
         ++m_inPatch;
-        for (std::uint32_t edge : m_pool.triangles()[triangle].m_edges)
+        for (std::uint32_t edge : m_triangles[triangle].m_edges)
         {
             const std::uint32_t other = across(triangle, edge);
             if (other == kNone || m_taken[other]) continue;
             if (std::find(m_beside.begin(), m_beside.end(), other) == m_beside.end()) m_beside.push_back(other);
         }
-        while (!done() && m_taken[m_pool.order()[m_leaf]])
+        while (!done() && m_taken[m_order[m_leaf]])
             ++m_leaf;
     }
 
-    const MeshPool& m_pool;
+    const std::vector<Triangle>& m_triangles;
+    const std::vector<std::uint32_t>& m_order;
     EdgeTriangles m_sides;
     std::vector<Vec3> m_middles;
     std::vector<bool> m_taken;
@@ -149,18 +150,18 @@ private:
     std::size_t m_leaf = 0;  // first of the leaf order that is not taken
 };
 
-// Triangles [first, last) of the clustered order.
-void appendPatch(Patches& patches, const MeshPool& pool, const std::vector<std::uint32_t>& order, std::size_t first,
-                 std::size_t last, std::uint32_t width)
+// Joined triangles [first, last) of those of a mesh.
+void appendPatch(Patches& patches, const std::vector<Triangle>& triangles, const std::uint32_t* first,
+                 const std::uint32_t* last, std::uint32_t width)
 {
     Patch patch = {};
-    patch.m_mesh = pool.triangles()[order[first]].m_mesh;
+    patch.m_mesh = triangles[*first].m_mesh;
     patch.m_vertexBlock = std::uint32_t(patches.m_vertexOwners.size()) / width;
     patch.m_edgeBlock = std::uint32_t(patches.m_edgeOwners.size()) / width;
-    for (std::size_t leaf = first; leaf < last; ++leaf)
+    for (; first < last; ++first)
     {
-        const std::uint32_t index = order[leaf];
-        const std::uint32_t owned = pool.triangles()[index].m_owned;
+        const std::uint32_t index = *first;
+        const std::uint32_t owned = triangles[index].m_owned;
         patches.m_faceOwners.push_back(index);
         const std::size_t vertex = patches.m_vertexOwners.size() - std::size_t(patch.m_vertexBlock) * width;
         const std::size_t edge = patches.m_edgeOwners.size() - std::size_t(patch.m_edgeBlock) * width;
@@ -183,35 +184,50 @@ void appendPatch(Patches& patches, const MeshPool& pool, const std::vector<std::
 
 }  // namespace
 
-std::vector<std::uint32_t> clusteredOrder(const MeshPool& pool, const float* positions, std::uint32_t width)
+std::vector<std::uint32_t> clusteredOrder(const PooledMesh& mesh, const float* positions, std::uint32_t width)
 {
     std::vector<std::uint32_t> order;
-    order.reserve(pool.order().size());
-    Clustering clustering(pool, positions);
+    order.reserve(mesh.m_order.size());
+    Clustering clustering(mesh, positions);
     while (!clustering.done())
     {
-        const std::uint32_t mesh = clustering.mesh();
         clustering.beginPatch();
-        for (std::uint32_t i = 0; i < width && !clustering.done() && clustering.mesh() == mesh; ++i)
+        for (std::uint32_t i = 0; i < width && !clustering.done(); ++i)
             order.push_back(clustering.next());
     }
     return order;
 }
 
-Patches makePatches(const MeshPool& obstacles, const float* positions, std::uint32_t width)
+void keepPatches(Patches& patches, std::size_t slots, std::uint32_t width)
 {
-    Patches patches;
-    const std::vector<std::uint32_t> order = clusteredOrder(obstacles, positions, width);
-    for (std::size_t first = 0; first < order.size();)
+    std::vector<Patch>& all = patches.m_patches;
+    const auto before = [](const Patch& patch, std::size_t slot) { return patch.m_mesh < slot; };
+    all.erase(std::lower_bound(all.begin(), all.end(), slots, before), all.end());
+    const Patch last = all.empty() ? Patch{} : all.back();
+    patches.m_faceOwners.resize(all.size() * width);
+    patches.m_faceFeatures.resize(all.size() * width);
+    patches.m_vertexOwners.resize(std::size_t(last.m_vertexBlock + last.m_vertexBlocks) * width);
+    patches.m_edgeOwners.resize(std::size_t(last.m_edgeBlock + last.m_edgeBlocks) * width);
+}
+
+void appendPatches(Patches& patches, const MeshPool& pool, std::size_t slot, const float* positions,
+                   std::uint32_t width)
+{
+    const PooledMesh& mesh = pool.mesh(slot);
+    std::vector<std::uint32_t> order = clusteredOrder(mesh, positions, width);
+    for (std::uint32_t& triangle : order)
+        triangle += mesh.m_firstTriangle;
+    for (std::size_t first = 0; first < order.size(); first += width)
     {
-        std::size_t last = first + 1;
-        const std::uint32_t mesh = obstacles.triangles()[order[first]].m_mesh;
-        while (last < order.size() && last - first < width && obstacles.triangles()[order[last]].m_mesh == mesh)
-            ++last;
-        appendPatch(patches, obstacles, order, first, last, width);
-        first = last;
+        const std::size_t last = std::min(order.size(), first + width);
+        appendPatch(patches, pool.triangles(), order.data() + first, order.data() + last, width);
     }
+}
+
+void makeLevels(Patches& patches, std::uint32_t width)
+{
     std::uint32_t nodes = 0;
+    patches.m_levels.clear();
     for (std::size_t count = patches.m_patches.size(); count > 0;)
     {
         count = (count + width - 1) / width;
@@ -220,6 +236,14 @@ Patches makePatches(const MeshPool& obstacles, const float* positions, std::uint
         if (count == 1) break;
     }
     patches.m_levels.push_back(nodes);
+}
+
+Patches makePatches(const MeshPool& pool, const float* positions, std::uint32_t width)
+{
+    Patches patches;
+    for (std::size_t slot = 0; slot < pool.meshCount(); ++slot)
+        appendPatches(patches, pool, slot, positions + 3 * std::size_t(pool.mesh(slot).m_firstVertex), width);
+    makeLevels(patches, width);
     return patches;
 }
 }  // namespace drape

@@ -1,9 +1,9 @@
 // Patches of the obstacles: connected triangles as far as there are, begun in leaf order, and the lists of features
 // that they own (see kernels/shared/patch.h).
 //
-// Input: the joined triangles, leaf order and mesh slots. Output: per patch its blocks, per lane the feature. A patch
-// never holds triangles of two meshes, and is full but for the last one of a mesh. Every triangle, and every vertex and
-// edge of one, is in exactly one lane. O(n).
+// Input: meshes' triangles and leaf order. Output: per patch its blocks, per lane the feature. A patch never holds
+// triangles of two meshes, and is full but for the last one of a mesh. Every triangle, and every vertex and edge of
+// one, is in exactly one lane. O(n); meshes can be put behind those that are there for what they are themselves.
 #pragma once
 
 #include <cstdint>
@@ -24,11 +24,18 @@ struct Patches
     std::vector<std::uint32_t> m_levels;  // first wide node of each level, lowest first, then the number of nodes
 };
 
-// The triangles of all patches, patch by patch. Runs of the leaf order alone, which follows a space-filling curve, are
-// torn where the curve jumps: their volumes then overlap far more others.
-// positions: m, x y z per joined vertex, of each mesh in one frame; any that are no numbers only make patches larger.
-std::vector<std::uint32_t> clusteredOrder(const MeshPool& pool, const float* positions, std::uint32_t width);
+// The mesh's own triangles, patch by patch. Runs of the leaf order alone, which follows a space-filling curve, are torn
+// where the curve jumps: their volumes then overlap far more others.
+// positions: m, x y z per vertex of the mesh, in any one frame; those that are no numbers only make patches larger.
+std::vector<std::uint32_t> clusteredOrder(const PooledMesh& mesh, const float* positions, std::uint32_t width);
 
-// width: lanes in a block. positions: as above.
-Patches makePatches(const MeshPool& obstacles, const float* positions, std::uint32_t width);
+// Leaves the patches of the first `slots` meshes; levels are not those of what is left.
+void keepPatches(Patches& patches, std::size_t slots, std::uint32_t width);
+// Adds those of the pool's next mesh. positions: as above. Levels are not those of what is there then.
+void appendPatches(Patches& patches, const MeshPool& pool, std::size_t slot, const float* positions,
+                   std::uint32_t width);
+void makeLevels(Patches& patches, std::uint32_t width);
+
+// All of them. width: lanes in a block. positions: m, x y z per joined vertex.
+Patches makePatches(const MeshPool& pool, const float* positions, std::uint32_t width);
 }  // namespace drape

@@ -4,7 +4,6 @@
 #include <array>
 #include <cassert>
 #include <set>
-#include <unordered_map>
 
 namespace drape
 {
@@ -12,27 +11,66 @@ namespace
 {
 constexpr std::uint32_t kNone = 0xffffffffu;
 
-std::uint64_t edgeKey(std::uint32_t a, std::uint32_t b)
+// Finds a topology's edges by their vertices: those of a vertex hang together in a chain, and an edge hangs at the end
+// of which fewer triangles have a corner, so that a fan's chains are short.
+class EdgeFinder
 {
-    return a < b ? (std::uint64_t(a) << 32 | b) : (std::uint64_t(b) << 32 | a);
-}
+public:
+    EdgeFinder(const std::int32_t* triangles, std::size_t triangleCount, std::size_t vertexCount)
+        : m_uses(vertexCount, 0), m_first(vertexCount, kNone)
+    {
+        for (std::size_t i = 0; i < 3 * triangleCount; ++i)
+            ++m_uses[std::size_t(triangles[i])];
+        m_next.reserve(triangleCount * 3 / 2 + 1);
+    }
 
-using EdgeNumbers = std::unordered_map<std::uint64_t, std::uint32_t>;
+    // kNone where there is none.
+    std::uint32_t find(const Topology& topology, std::uint32_t a, std::uint32_t b) const
+    {
+        std::uint32_t edge = m_first[chainOf(a, b)];
+        while (edge != kNone && !joins(topology.m_edges[edge], a, b))
+            edge = m_next[edge];
+        return edge;
+    }
+    // The next of the topology's edges.
+    void add(std::uint32_t a, std::uint32_t b)
+    {
+        const std::uint32_t chain = chainOf(a, b);
+        const std::uint32_t edge = std::uint32_t(m_next.size());
+        m_next.push_back(m_first[chain]);
+        m_first[chain] = edge;
+    }
+
+private:
+    std::uint32_t chainOf(std::uint32_t a, std::uint32_t b) const
+    {
+        return m_uses[a] < m_uses[b] || (m_uses[a] == m_uses[b] && a < b) ? a : b;
+    }
+    static bool joins(const Edge& edge, std::uint32_t a, std::uint32_t b)
+    {
+        return (edge.m_vertices[0] == a && edge.m_vertices[1] == b) ||
+               (edge.m_vertices[0] == b && edge.m_vertices[1] == a);
+    }
+
+    std::vector<std::uint32_t> m_uses, m_first;  // by vertex
+    std::vector<std::uint32_t> m_next;           // by edge
+};
+
 using CrowdedTriangles = std::set<std::array<std::uint32_t, 3>>;
 
 // Whether a triangle of the same three vertices was added before. An edge remembers the third vertices of its first two
 // triangles; a triangle that is a later one at all its edges is remembered in `crowded`.
-bool repeatsTriangle(const Topology& topology, const EdgeNumbers& known, CrowdedTriangles& crowded,
+bool repeatsTriangle(const Topology& topology, const EdgeFinder& known, CrowdedTriangles& crowded,
                      const std::uint32_t* v)
 {
     int leastUses = 255;
     for (int i = 0; i < 3; ++i)
     {
-        const auto edge = known.find(edgeKey(v[i], v[(i + 1) % 3]));
-        if (edge == known.end()) return false;
-        const std::uint32_t* opposite = topology.m_edges[edge->second].m_opposite;
+        const std::uint32_t edge = known.find(topology, v[i], v[(i + 1) % 3]);
+        if (edge == kNone) return false;
+        const std::uint32_t* opposite = topology.m_edges[edge].m_opposite;
         if (opposite[0] == v[(i + 2) % 3] || opposite[1] == v[(i + 2) % 3]) return true;
-        leastUses = std::min(leastUses, int(topology.m_edgeUses[edge->second]));
+        leastUses = std::min(leastUses, int(topology.m_edgeUses[edge]));
     }
     if (leastUses < 2) return false;
     std::array<std::uint32_t, 3> key = {v[0], v[1], v[2]};
@@ -40,16 +78,17 @@ bool repeatsTriangle(const Topology& topology, const EdgeNumbers& known, Crowded
     return !crowded.insert(key).second;
 }
 
-void addEdge(Topology& topology, EdgeNumbers& known, std::uint32_t index, int i)
+void addEdge(Topology& topology, EdgeFinder& known, std::uint32_t index, int i)
 {
     Triangle& triangle = topology.m_triangles[index];
     const std::uint32_t a = triangle.m_vertices[i], b = triangle.m_vertices[(i + 1) % 3];
     const std::uint32_t opposite = triangle.m_vertices[(i + 2) % 3];
-    const auto inserted = known.emplace(edgeKey(a, b), std::uint32_t(topology.m_edges.size()));
-    const std::uint32_t edge = inserted.first->second;
+    const std::uint32_t edge = known.find(topology, a, b);
     triangle.m_edges[i] = edge;
-    if (inserted.second)
+    if (edge == kNone)
     {
+        triangle.m_edges[i] = std::uint32_t(topology.m_edges.size());
+        known.add(a, b);
         topology.m_edges.push_back(Edge{{a, b}, {opposite, opposite}});
         topology.m_edgeTriangle.push_back(index);
         topology.m_edgeUses.push_back(1);
@@ -67,9 +106,8 @@ Topology buildTopology(const std::int32_t* triangles, std::size_t triangleCount,
     topology.m_vertexCount = vertexCount;
     topology.m_vertexTriangle.assign(vertexCount, kNone);
     topology.m_triangles.reserve(triangleCount);
-    EdgeNumbers known;
+    EdgeFinder known(triangles, triangleCount, vertexCount);
     CrowdedTriangles crowded;
-    known.reserve(triangleCount * 3 / 2 + 1);
     for (std::size_t source = 0; source < triangleCount; ++source)
     {
         Triangle triangle = {};

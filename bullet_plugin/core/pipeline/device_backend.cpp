@@ -11,6 +11,10 @@ namespace
 constexpr std::size_t kFirstCandidates = 1 << 16;
 constexpr std::size_t kFirstContacts = 1 << 13;
 constexpr std::size_t kPlaceGroup = 64;
+// Triangles of obstacles between two that changed which are brought up to date with them: about what the launches of a
+// run cost.
+constexpr std::size_t kTrianglesBetweenCpu = 1 << 8;
+constexpr std::size_t kTrianglesBetweenGpu = 1 << 14;
 // For so many steps after one in which slots had many hits they are put in order; without it such a step runs twice.
 constexpr int kStepsToOrder = 64;
 
@@ -77,6 +81,7 @@ DeviceBackend::~DeviceBackend()
 // A step of one triangle over another: some drivers compile a kernel again at its first launch with a group size.
 void DeviceBackend::warmUp(float selfThickness)
 {
+    forgetScene();
     const std::int32_t indices[3] = {0, 1, 2};
     const std::vector<float> above = {0, 0, 0.5f, 1, 0, 0.5f, 0, 1, 0.5f}, below = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     Scene scene;
@@ -86,6 +91,7 @@ void DeviceBackend::warmUp(float selfThickness)
         mesh.m_id = 0;
         mesh.m_topology = buildTopology(indices, 1, 3);
         mesh.m_order = {0};
+        mesh.m_positions = below;
         pool->add(std::move(mesh));
         pool->update();
     }
@@ -127,12 +133,18 @@ void DeviceBackend::warmUp(float selfThickness)
     }
     if (!patches()) m_refit.warmUp(*m_device, m_cloth.m_nodes);
     m_device->wait();
-    m_cloth.m_revision = m_obstacle.m_revision = 0;
+    forgetScene();
     m_sentThickness.clear();
     m_sentTube.clear();
     m_sentRadius.clear();
-    m_sentPlaces.clear();
     m_testsBefore = m_hitsBefore = SIZE_MAX;
+}
+
+void DeviceBackend::forgetScene()
+{
+    m_cloth.m_revision = m_obstacle.m_revision = 0;
+    m_changes.forget();
+    m_anyPosed = false;
 }
 
 void DeviceBackend::prepareSelf()
@@ -142,49 +154,67 @@ void DeviceBackend::prepareSelf()
     warmUp(0.1f);
 }
 
-void DeviceBackend::uploadSide(const MeshPool& pool, const BvhLayout& layout, const float* positions, Side& side)
+std::size_t DeviceBackend::firstNew(const MeshPool& pool, const Side& side) const
 {
+    return patches() ? pool.firstSince(side.m_revision) : 0;
+}
+
+void DeviceBackend::uploadSide(const MeshPool& pool, const BvhLayout& layout, Side& side)
+{
+    const std::size_t first = firstNew(pool, side);
     side.m_revision = pool.revision();
-    // The cull over patches needs an order of the cloths alone: that of their own patches, since it walks for packets.
-    std::vector<std::uint32_t> clustered;
-    if (patches() && &side == &m_cloth) clustered = clusteredOrder(pool, positions, PatchCullStage::width(*m_device));
-    if (!patches() || &side == &m_cloth) side.m_order.assign(*m_device, patches() ? clustered : pool.order());
-    side.m_triangles.assign(*m_device, pool.triangles());
+    side.m_triangles.append(*m_device, pool.triangles(), pool.begin(first).m_triangle);
     if (m_settings.m_reduceContacts) side.m_firsts.assign(*m_device, pool.firsts());
     // The cull over patches needs no hierarchy of triangles.
     std::vector<BvhNode> nodes;
     if (!patches())
     {
+        side.m_order.assign(*m_device, pool.order());
         nodes = makeBvhNodes(layout);
         side.m_nodes.assign(*m_device, nodes);
         m_refit.makeLevels(*m_device, layout, side.m_levels);
     }
-    m_device->wait();  // nodes and clustered are locals; topology changes are rare
+    m_device->wait();  // nodes are a local; topology changes are rare
+}
+
+// The cull over patches needs an order of the cloths alone: that of their own patches, since it walks for packets.
+void DeviceBackend::clusterCloths(const MeshPool& cloths, std::size_t firstSlot)
+{
+    m_clustered.resize(cloths.begin(firstSlot).m_triangle);
+    for (std::size_t slot = firstSlot; slot < cloths.meshCount(); ++slot)
+    {
+        const PooledMesh& mesh = cloths.mesh(slot);
+        for (std::uint32_t own : clusteredOrder(mesh, mesh.m_positions.data(), PatchCullStage::width(*m_device)))
+            m_clustered.push_back(own + mesh.m_firstTriangle);
+    }
+    m_cloth.m_order.append(*m_device, m_clustered, cloths.begin(firstSlot).m_triangle);
+}
+
+void DeviceBackend::updateCloths(const Scene& scene)
+{
+    const std::size_t first = firstNew(scene.m_cloths, m_cloth);
+    if (patches()) clusterCloths(scene.m_cloths, first);
+    m_clothEdges.append(*m_device, scene.m_cloths.edges(), scene.m_cloths.begin(first).m_edge);
+    uploadSide(scene.m_cloths, scene.m_clothLayout, m_cloth);
+    m_clothStart.extend(*m_device, 3 * scene.m_cloths.vertexCount(), 0);
+    m_clothEnd.extend(*m_device, 3 * scene.m_cloths.vertexCount(), 0);
+    m_narrowPhase.resizeSlots(*m_device, scene.allSlotCount());
+    if (scene.m_anySelf) m_self.setTopology(*m_device, scene.m_cloths, scene.m_clothRest);
 }
 
 void DeviceBackend::updateTopology(const Scene& scene)
 {
     const bool newCloths = m_cloth.m_revision != scene.m_cloths.revision();
-    if (newCloths)
-    {
-        uploadSide(scene.m_cloths, scene.m_clothLayout, scene.m_clothEnd.data(), m_cloth);
-        m_clothEdges.assign(*m_device, scene.m_cloths.edges());
-        m_clothStart.reserve(*m_device, 3 * scene.m_cloths.vertexCount());
-        m_clothEnd.reserve(*m_device, 3 * scene.m_cloths.vertexCount());
-        m_narrowPhase.resizeSlots(*m_device, scene.allSlotCount());
-        if (scene.m_anySelf) m_self.setTopology(*m_device, scene.m_cloths, scene.m_clothRest);
-    }
     const bool newObstacles = m_obstacle.m_revision != scene.m_obstacles.revision();
+    const std::size_t fresh = newObstacles ? firstNew(scene.m_obstacles, m_obstacle) : scene.m_obstacles.meshCount();
+    if (newCloths) updateCloths(scene);
     if (newObstacles)
     {
-        uploadSide(scene.m_obstacles, scene.m_obstacleLayout, scene.m_obstaclePositions.data(), m_obstacle);
-        if (patches()) m_patchCull.setTopology(*m_device, scene.m_obstacles, scene.m_obstaclePositions);
+        uploadSide(scene.m_obstacles, scene.m_obstacleLayout, m_obstacle);
+        if (patches()) m_patchCull.setTopology(*m_device, scene.m_obstacles, fresh);
     }
     if (!patches() && (newCloths || newObstacles)) updateTraversal(scene, newObstacles);
-    const bool newPositions = newObstacles || m_obstacleMotion != scene.m_obstacleMotion ||
-                              (scene.m_anyPosed && m_sentPlaces.size() != scene.m_places.size());
-    if (newPositions) uploadObstacles(scene);
-    if (newPositions || m_obstaclePlacing != scene.m_obstaclePlacing) placeObstacles(scene, newPositions);
+    if (newObstacles || m_changes.any(scene)) updateObstacles(scene, fresh);
     // What only packing reads goes when obstacles that rest are packed; those whose positions are given anew later keep
     // it from then on.
     if (newObstacles && !scene.m_anyPosed) m_patchCull.releasePacking();
@@ -200,66 +230,95 @@ void DeviceBackend::updateTraversal(const Scene& scene, bool newObstacles)
     m_broadPhase.setTopology(*m_device, cloth, obstacle);
 }
 
-void DeviceBackend::uploadObstacles(const Scene& scene)
+// Runs of the obstacles that changed. Some that did not go along where they are between two that did, as many as cost
+// less than launches of their own.
+template <typename Changed>
+std::vector<PatchCullStage::Slots> DeviceBackend::runsOf(const MeshPool& obstacles, const Changed& changed) const
 {
-    m_obstacleMotion = scene.m_obstacleMotion;
-    const bool own = scene.m_anyPosed;
-    (own ? m_ownPositions : m_obstaclePositions).assign(*m_device, scene.m_obstaclePositions);
-    (own ? m_ownVertexCones : m_vertexCones).assign(*m_device, scene.m_vertexCones);
-    (own ? m_ownEdgeCones : m_edgeCones).assign(*m_device, scene.m_edgeCones);
-    if (!own) m_sentPlaces.clear();
-    if (own)
+    const std::size_t between = m_device->isGpu() ? kTrianglesBetweenGpu : kTrianglesBetweenCpu;
+    std::vector<PatchCullStage::Slots> runs;
+    for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
     {
-        m_obstaclePositions.reserve(*m_device, scene.m_obstaclePositions.size());
-        m_vertexCones.reserve(*m_device, scene.m_vertexCones.size());
-        m_edgeCones.reserve(*m_device, scene.m_edgeCones.size());
+        if (!changed(slot)) continue;
+        const bool near = !runs.empty() &&
+                          obstacles.begin(slot).m_triangle - obstacles.begin(runs.back().m_last).m_triangle <= between;
+        if (near)
+            runs.back().m_last = slot + 1;
+        else
+            runs.push_back({slot, slot + 1});
     }
+    return runs;
 }
 
-// From the first to the last slot whose place is not the one that was sent.
-PatchCullStage::Slots DeviceBackend::changedPlaces(const Scene& scene) const
+void DeviceBackend::uploadObstacles(const Scene& scene, PatchCullStage::Slots slots)
 {
-    PatchCullStage::Slots slots = {0, scene.m_places.size()};
-    const auto same = [&](std::size_t slot)
-    { return std::memcmp(&scene.m_places[slot], &m_sentPlaces[slot], sizeof(ObstaclePlace)) == 0; };
-    while (slots.m_first < slots.m_last && same(slots.m_first))
-        ++slots.m_first;
-    while (slots.m_first < slots.m_last && same(slots.m_last - 1))
-        --slots.m_last;
-    return slots;
+    const bool own = scene.m_anyPosed;
+    const MeshFirsts first = scene.m_obstacles.begin(slots.m_first), last = scene.m_obstacles.begin(slots.m_last);
+    (own ? m_ownPositions : m_obstaclePositions)
+        .write(*m_device, scene.m_obstaclePositions.data() + 3 * std::size_t(first.m_vertex),
+               3 * std::size_t(last.m_vertex - first.m_vertex), 3 * std::size_t(first.m_vertex));
+    (own ? m_ownVertexCones : m_vertexCones)
+        .write(*m_device, scene.m_vertexCones.data() + first.m_vertex, last.m_vertex - first.m_vertex, first.m_vertex);
+    (own ? m_ownEdgeCones : m_edgeCones)
+        .write(*m_device, scene.m_edgeCones.data() + first.m_edge, last.m_edge - first.m_edge, first.m_edge);
 }
 
 void DeviceBackend::enqueuePlacing(const Scene& scene, PatchCullStage::Slots slots)
 {
-    const std::size_t count = scene.m_places.size();
-    const bool toEnd = slots.m_last == count;
-    const cl_uint firstVertex = scene.m_places[slots.m_first].m_firstVertex;
-    const cl_uint firstEdge = scene.m_places[slots.m_first].m_firstEdge;
-    const cl_uint lastVertex = toEnd ? cl_uint(scene.m_vertexCones.size()) : scene.m_places[slots.m_last].m_firstVertex;
-    const cl_uint lastEdge = toEnd ? cl_uint(scene.m_edgeCones.size()) : scene.m_places[slots.m_last].m_firstEdge;
-    m_place.launch(*m_device, lastVertex - firstVertex + lastEdge - firstEdge, kPlaceGroup, m_places.handle(),
-                   cl_uint(count), firstVertex, lastVertex - firstVertex, firstEdge, lastEdge - firstEdge,
-                   m_ownPositions.handle(), m_ownVertexCones.handle(), m_ownEdgeCones.handle(),
-                   m_obstaclePositions.handle(), m_vertexCones.handle(), m_edgeCones.handle());
+    const MeshFirsts first = scene.m_obstacles.begin(slots.m_first), last = scene.m_obstacles.begin(slots.m_last);
+    m_place.launch(*m_device, last.m_vertex - first.m_vertex + last.m_edge - first.m_edge, kPlaceGroup,
+                   m_places.handle(), cl_uint(scene.m_places.size()), first.m_vertex, last.m_vertex - first.m_vertex,
+                   first.m_edge, last.m_edge - first.m_edge, m_ownPositions.handle(), m_ownVertexCones.handle(),
+                   m_ownEdgeCones.handle(), m_obstaclePositions.handle(), m_vertexCones.handle(), m_edgeCones.handle());
 }
 
-void DeviceBackend::placeObstacles(const Scene& scene, bool all)
+void DeviceBackend::reserveObstacles(const Scene& scene, std::size_t fresh)
 {
-    m_obstaclePlacing = scene.m_obstaclePlacing;
-    const PatchCullStage::Slots slots = all ? PatchCullStage::Slots{0, scene.m_places.size()} : changedPlaces(scene);
-    if (slots.m_first == slots.m_last) return;
-    if (scene.m_anyPosed)
+    const MeshFirsts end = scene.m_obstacles.begin(scene.m_obstacles.meshCount());
+    const MeshFirsts kept = scene.m_obstacles.begin(fresh);
+    const bool begins = scene.m_anyPosed && !m_anyPosed;
+    m_anyPosed = scene.m_anyPosed;
+    const auto extend = [&](auto& world, auto& own, std::size_t count, std::size_t keptCount)
     {
-        m_sentPlaces = scene.m_places;  // the device has been waited for since they were written last
-        m_places.assign(*m_device, m_sentPlaces);
-        enqueuePlacing(scene, slots);
+        world.extend(*m_device, count, keptCount);
+        if (!m_anyPosed)
+            own.release();
+        else if (begins)
+            own.copy(*m_device, world, count, keptCount);  // the world was every obstacle's own frame
+        else
+            own.extend(*m_device, count, keptCount);
+    };
+    extend(m_obstaclePositions, m_ownPositions, 3 * std::size_t(end.m_vertex), 3 * std::size_t(kept.m_vertex));
+    extend(m_vertexCones, m_ownVertexCones, end.m_vertex, kept.m_vertex);
+    extend(m_edgeCones, m_ownEdgeCones, end.m_edge, kept.m_edge);
+}
+
+void DeviceBackend::updateObstacles(const Scene& scene, std::size_t fresh)
+{
+    const MeshPool& obstacles = scene.m_obstacles;
+    m_changes.take(scene, fresh);  // the device has been waited for since places were written last
+    reserveObstacles(scene, fresh);
+    for (const PatchCullStage::Slots& run : runsOf(obstacles, [&](std::size_t slot) { return m_changes.given(slot); }))
+        uploadObstacles(scene, run);
+    const std::vector<PatchCullStage::Slots> runs =
+        runsOf(obstacles, [&](std::size_t slot) { return m_changes.moved(slot); });
+    if (scene.m_anyPosed && !runs.empty())
+    {
+        m_places.assign(*m_device, m_changes.places());
+        for (const PatchCullStage::Slots& run : runs)
+            enqueuePlacing(scene, run);
     }
     if (!patches())
     {
         refitObstacles(scene);
         return;
     }
-    m_patchCull.pack(*m_device, slots, m_obstacle.m_triangles, m_obstaclePositions, m_vertexCones, m_edgeCones);
+    const std::size_t count = obstacles.meshCount();
+    m_patchCull.pack(*m_device, {fresh, count}, m_obstacle.m_triangles, m_obstaclePositions, m_vertexCones,
+                     m_edgeCones);
+    for (const PatchCullStage::Slots& run : runs)
+        m_patchCull.pack(*m_device, {run.m_first, std::min(run.m_last, fresh)}, m_obstacle.m_triangles,
+                         m_obstaclePositions, m_vertexCones, m_edgeCones);
 }
 
 void DeviceBackend::refitObstacles(const Scene& scene)

@@ -10,6 +10,7 @@
 #include "bullet_plugin/core/bvh/tree_cost.h"
 #include "bullet_plugin/core/device/program_set.h"
 #include "drape/settings.h"
+#include "obstacle_changes.h"
 #include "step.h"
 #include "tree_watch.h"
 
@@ -61,15 +62,22 @@ private:
     };
 
     void warmUp(float selfThickness = 0.0f);
-    // positions: m, of the side's vertices.
-    void uploadSide(const MeshPool& pool, const BvhLayout& layout, const float* positions, Side& side);
+    // The next scene is brought here from its first mesh on.
+    void forgetScene();
+    // The first slot that the device does not know as it is.
+    std::size_t firstNew(const MeshPool& pool, const Side& side) const;
+    void uploadSide(const MeshPool& pool, const BvhLayout& layout, Side& side);
     void updateTopology(const Scene& scene);
+    void updateCloths(const Scene& scene);
+    void clusterCloths(const MeshPool& cloths, std::size_t firstSlot);
     void updateTraversal(const Scene& scene, bool newObstacles);
-    void uploadObstacles(const Scene& scene);
-    // Brings the obstacles whose places changed to the world, all of them after an upload, and renews what depends on
-    // it.
-    void placeObstacles(const Scene& scene, bool all);
-    PatchCullStage::Slots changedPlaces(const Scene& scene) const;
+    // Brings the obstacles from slot `fresh` on, and of the others those that were given other positions or another
+    // place, to the device and to the world, and renews what depends on it.
+    void updateObstacles(const Scene& scene, std::size_t fresh);
+    void reserveObstacles(const Scene& scene, std::size_t fresh);
+    void uploadObstacles(const Scene& scene, PatchCullStage::Slots slots);
+    template <typename Changed>
+    std::vector<PatchCullStage::Slots> runsOf(const MeshPool& obstacles, const Changed& changed) const;
     void enqueuePlacing(const Scene& scene, PatchCullStage::Slots slots);
     void refitObstacles(const Scene& scene);
     void writeNodes(const Scene& scene, std::size_t first, std::size_t count);
@@ -116,7 +124,9 @@ private:
     Buffer<NormalCone> m_ownVertexCones{"obstacle cones in own frame"}, m_ownEdgeCones{"obstacle cones in own frame"};
     Buffer<ObstaclePlace> m_places{"obstacle places"};
     Buffer<ObstacleMotion> m_motions{"obstacle places"};
-    std::vector<ObstaclePlace> m_sentPlaces;
+    std::vector<cl_uint> m_clustered;  // as m_cloth.m_order
+    ObstacleChanges m_changes;
+    bool m_anyPosed = false;  // as the scene when the obstacles were brought here
     std::vector<ObstacleMotion> m_sentMotions;
     Buffer<Candidate> m_candidates{"step candidates"};
     // Of a step and the next by turns, see StepTally.
@@ -128,6 +138,5 @@ private:
     Staging<Contact> m_contactsRead;                                // behind a head as on the device
     std::size_t m_contactsAsked = 0;
     std::vector<float> m_sentThickness, m_sentTube, m_sentRadius;
-    std::uint32_t m_obstacleMotion = 0, m_obstaclePlacing = 0;
 };
 }  // namespace drape

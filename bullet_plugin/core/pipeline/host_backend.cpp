@@ -36,42 +36,68 @@ void HostBackend::update(const Scene& scene)
     {
         m_obstacleRevision = scene.m_obstacles.revision();
         m_obstacleNodes = makeBvhNodes(scene.m_obstacleLayout);
+        m_obstacleParents.clear();
+        m_obstacleParts.clear();
         m_traversal.setObstacles(obstacleSide(scene));
     }
-    if (newCloths || newObstacles) m_traversal.setTopology(clothSide(scene), obstacleSide(scene));
-    if (newObstacles || m_obstacleMotion != scene.m_obstacleMotion || m_obstaclePlacing != scene.m_obstaclePlacing)
+    if (newCloths || newObstacles) m_traversal.setTopology(clothSide(scene));
+    if (newObstacles || m_changes.any(scene)) updateObstacles(scene, newObstacles);
+}
+
+void HostBackend::updateObstacles(const Scene& scene, bool all)
+{
+    const MeshPool& obstacles = scene.m_obstacles;
+    if (!scene.m_anyPosed) m_placed = Placed();
+    all = all || (scene.m_anyPosed && m_placed.m_positions.empty());
+    m_changes.take(scene, all ? 0 : obstacles.meshCount());
+    if (scene.m_anyPosed) place(scene);
+    const float* positions = obstacleView(scene).m_positions;
+    if (all)
     {
-        m_obstacleMotion = scene.m_obstacleMotion;
-        m_obstaclePlacing = scene.m_obstaclePlacing;
-        if (scene.m_anyPosed) place(scene);
-        const float* positions = obstacleView(scene).m_positions;
-        const std::vector<float> noRadius(scene.m_obstacles.meshCount(), 0.0f);
+        const std::vector<float> noRadius(obstacles.meshCount(), 0.0f);
         std::size_t ignored = 0;  // the adapter reports bad obstacles when it mirrors them
-        refitOnHost(m_obstacleNodes, scene.m_obstacleLayout, scene.m_obstacles.order(), scene.m_obstacles.triangles(),
-                    positions, positions, noRadius, ignored);
-        m_traversal.obstaclesRefitted(obstacleSide(scene));
+        refitOnHost(m_obstacleNodes, scene.m_obstacleLayout, obstacles.order(), obstacles.triangles(), positions,
+                    positions, noRadius, ignored);
     }
+    for (std::size_t slot = 0; slot < obstacles.meshCount() && !all; ++slot)
+        if (m_changes.moved(slot))
+            refitPartOnHost(m_obstacleNodes, scene.m_obstacleLayout, obstaclePart(scene, slot), obstacles.order(),
+                            obstacles.triangles(), positions);
+    m_traversal.obstaclesRefitted(obstacleSide(scene));
+}
+
+const HierarchyPart& HostBackend::obstaclePart(const Scene& scene, std::size_t slot)
+{
+    const auto found = m_obstacleParts.find(slot);
+    if (found != m_obstacleParts.end()) return found->second;
+    if (m_obstacleParents.empty()) m_obstacleParents = parentsOf(m_obstacleNodes);
+    // The order goes mesh by mesh.
+    return m_obstacleParts[slot] =
+               partOf(scene.m_obstacleLayout, m_obstacleParents, scene.m_obstacles.begin(slot).m_triangle,
+                      scene.m_obstacles.begin(slot + 1).m_triangle);
 }
 
 // As kernels/place_obstacles.cl.
 void HostBackend::place(const Scene& scene)
 {
-    const ObstaclePlace* places = scene.m_places.data();
-    const std::uint32_t count = std::uint32_t(scene.m_places.size());
     m_placed.m_positions.resize(scene.m_obstaclePositions.size());
     m_placed.m_vertexCones.resize(scene.m_vertexCones.size());
     m_placed.m_edgeCones.resize(scene.m_edgeCones.size());
-    for (std::uint32_t vertex = 0; vertex < scene.m_vertexCones.size(); ++vertex)
+    for (std::size_t slot = 0; slot < scene.m_places.size(); ++slot)
     {
-        const ObstaclePlace* at = places + placeOf(places, count, DRAPE_OF_VERTEX, vertex);
-        const Vec3 p = placedPosition(at, vec3Load(scene.m_obstaclePositions.data(), vertex));
-        const float coordinates[3] = {p.x, p.y, p.z};
-        std::copy(coordinates, coordinates + 3, &m_placed.m_positions[3 * std::size_t(vertex)]);
-        m_placed.m_vertexCones[vertex] = placedCone(at, scene.m_vertexCones[vertex]);
+        if (!m_changes.moved(slot)) continue;
+        const ObstaclePlace* at = &scene.m_places[slot];
+        const MeshFirsts first = scene.m_obstacles.begin(slot), last = scene.m_obstacles.begin(slot + 1);
+        for (std::uint32_t vertex = first.m_vertex; vertex < last.m_vertex; ++vertex)
+        {
+            const Vec3 p = placedPosition(at, vec3Load(scene.m_obstaclePositions.data(), vertex));
+            const float coordinates[3] = {p.x, p.y, p.z};
+            std::copy(coordinates, coordinates + 3, &m_placed.m_positions[3 * std::size_t(vertex)]);
+            m_placed.m_vertexCones[vertex] = placedCone(at, scene.m_vertexCones[vertex]);
+        }
+        for (std::uint32_t edge = first.m_edge; edge < last.m_edge; ++edge)
+            m_placed.m_edgeCones[edge] = placedCone(at, scene.m_edgeCones[edge]);
     }
-    for (std::uint32_t edge = 0; edge < scene.m_edgeCones.size(); ++edge)
-        m_placed.m_edgeCones[edge] =
-            placedCone(places + placeOf(places, count, DRAPE_OF_EDGE, edge), scene.m_edgeCones[edge]);
 }
 
 ObstacleView HostBackend::obstacleView(const Scene& scene) const

@@ -55,8 +55,8 @@ struct Pipeline::Implementation
     std::string m_deviceReason;  // why this device and no other
     MeshId m_nextId = 0;
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
-    std::uint32_t m_stepRevision = 0, m_stepMotion = 0;  // of the obstacles, in the last step with a pair
-    std::size_t m_nodesWritten = 0, m_nodesSent = 0;     // the first so many nodes of all cloths, for the coming step
+    std::uint32_t m_stepRevision = 0;                 // of the obstacles, in the last step with a pair
+    std::size_t m_nodesWritten = 0, m_nodesSent = 0;  // the first so many nodes of all cloths, for the coming step
     bool m_submitted = false;
     bool m_deviceLeft = false;  // it failed
 
@@ -68,17 +68,21 @@ struct Pipeline::Implementation
     // What depends on an obstacle's positions.
     static void measureObstacle(PooledMesh& mesh);
     void joinScene();
-    void joinCloths();
+    // From that slot on.
+    void joinCloths(std::size_t first);
+    void joinRest();
     std::vector<NodeStretch> stretchesOf(const std::vector<MeshId>& cloths);
     // Nodes that were told to be written are not those of the coming step. Transfers of them end.
     void forgetNodes();
-    void joinObstacles();
+    void joinObstacles(std::size_t first);
     // Those of the settings, the builder as the back end in use has it.
     TreeMethods treeMethods() const;
     // Whether the coming step walks both sides' hierarchies of triangles.
     bool walksHierarchies() const;
     // Of both sides, by these methods, where it does.
     void buildHierarchies();
+    // Has both sides' layouts at hand for the host.
+    void layOut();
     // Uses a hierarchy of the cloths that was built anew.
     void takeRebuilt();
     // Has one built where the last step found the cloths' hierarchy decayed.

@@ -89,12 +89,33 @@ void Pipeline::Implementation::placeMesh(std::size_t slot)
     mesh.m_coordinateStep = std::nextafter(farthest, std::numeric_limits<float>::infinity()) - farthest;
 }
 
-void Pipeline::Implementation::joinCloths()
+void Pipeline::Implementation::joinCloths(std::size_t first)
 {
     const MeshPool& cloths = m_scene.m_cloths;
     forgetNodes();
-    m_scene.m_clothStart.reserve(device(), 3 * cloths.vertexCount());
-    m_scene.m_clothEnd.reserve(device(), 3 * cloths.vertexCount());
+    const std::size_t coordinates = 3 * cloths.vertexCount();
+    if (m_scene.m_clothStart.capacity() < coordinates)
+    {
+        // Their contents are lost; a quarter more where it is not the first time.
+        const std::size_t room = coordinates + (first > 0 ? coordinates / 4 : 0);
+        m_scene.m_clothStart.reserve(device(), room);
+        m_scene.m_clothEnd.reserve(device(), room);
+        first = 0;
+    }
+    for (std::size_t slot = first; slot < cloths.meshCount(); ++slot)
+    {
+        const PooledMesh& mesh = cloths.mesh(slot);
+        for (float* target : {m_scene.m_clothStart.data(), m_scene.m_clothEnd.data()})
+        {
+            std::copy(mesh.m_positions.begin(), mesh.m_positions.end(), target + 3 * std::size_t(mesh.m_firstVertex));
+        }
+    }
+    joinRest();
+}
+
+void Pipeline::Implementation::joinRest()
+{
+    const MeshPool& cloths = m_scene.m_cloths;
     m_scene.m_anySelf = false;
     for (std::size_t slot = 0; slot < cloths.meshCount(); ++slot)
         m_scene.m_anySelf = m_scene.m_anySelf || cloths.mesh(slot).m_selfThickness > 0.0f;
@@ -104,14 +125,6 @@ void Pipeline::Implementation::joinCloths()
         const PooledMesh& mesh = cloths.mesh(slot);
         const std::vector<float>& rest = mesh.m_rest.empty() ? mesh.m_positions : mesh.m_rest;
         m_scene.m_clothRest.insert(m_scene.m_clothRest.end(), rest.begin(), rest.end());
-    }
-    for (std::size_t slot = 0; slot < cloths.meshCount(); ++slot)
-    {
-        const PooledMesh& mesh = cloths.mesh(slot);
-        for (float* target : {m_scene.m_clothStart.data(), m_scene.m_clothEnd.data()})
-        {
-            std::copy(mesh.m_positions.begin(), mesh.m_positions.end(), target + 3 * std::size_t(mesh.m_firstVertex));
-        }
     }
 }
 
@@ -138,21 +151,23 @@ std::vector<NodeStretch> Pipeline::Implementation::stretchesOf(const std::vector
     return stretches;
 }
 
-void Pipeline::Implementation::joinObstacles()
+void Pipeline::Implementation::joinObstacles(std::size_t first)
 {
     MeshPool& pool = m_scene.m_obstacles;
-    m_scene.m_obstaclePositions.clear();
-    m_scene.m_vertexCones.clear();
-    m_scene.m_edgeCones.clear();
-    m_scene.m_places.assign(pool.meshCount(), ObstaclePlace{});
-    m_scene.m_anyPosed = false;
-    for (std::size_t slot = 0; slot < pool.meshCount(); ++slot)
+    const MeshFirsts kept = pool.begin(first);
+    m_scene.m_obstaclePositions.resize(3 * std::size_t(kept.m_vertex));
+    m_scene.m_vertexCones.resize(kept.m_vertex);
+    m_scene.m_edgeCones.resize(kept.m_edge);
+    m_scene.m_places.resize(pool.meshCount());
+    if (pool.meshCount() == 0) m_scene.m_anyPosed = false;
+    const auto append = [](auto& all, const auto& own) { all.insert(all.end(), own.begin(), own.end()); };
+    for (std::size_t slot = first; slot < pool.meshCount(); ++slot)
     {
-        const PooledMesh& mesh = pool.mesh(slot);
-        m_scene.m_obstaclePositions.insert(m_scene.m_obstaclePositions.end(), mesh.m_positions.begin(),
-                                           mesh.m_positions.end());
-        m_scene.m_vertexCones.insert(m_scene.m_vertexCones.end(), mesh.m_vertexCones.begin(), mesh.m_vertexCones.end());
-        m_scene.m_edgeCones.insert(m_scene.m_edgeCones.end(), mesh.m_edgeCones.begin(), mesh.m_edgeCones.end());
+        PooledMesh& mesh = pool.mesh(slot);
+        append(m_scene.m_obstaclePositions, mesh.m_positions);
+        append(m_scene.m_vertexCones, mesh.m_vertexCones);
+        append(m_scene.m_edgeCones, mesh.m_edgeCones);
+        mesh.m_placedAnew = true;
         placeMesh(slot);
     }
 }
@@ -165,15 +180,15 @@ void Pipeline::Implementation::joinScene()
     obstacles.update();
     if (m_clothRevision != cloths.revision())
     {
-        joinCloths();
-        m_clothHierarchy.begin(cloths, m_scene.m_clothLayout);
+        joinCloths(cloths.firstSince(m_clothRevision));
+        m_clothHierarchy.begin(cloths);
         m_clothRevision = cloths.revision();
         m_treeWatch.begin();
     }
     if (m_obstacleRevision != obstacles.revision())
     {
-        joinObstacles();
-        m_obstacleHierarchy.begin(obstacles, m_scene.m_obstacleLayout);
+        joinObstacles(obstacles.firstSince(m_obstacleRevision));
+        m_obstacleHierarchy.begin(obstacles);
         m_obstacleRevision = obstacles.revision();
     }
 }
@@ -205,8 +220,8 @@ void Pipeline::Implementation::collectPairs()
     m_pairs.clear();
     const std::size_t clothTriangles = m_scene.m_cloths.triangles().size();
     const std::size_t obstacleTriangles = m_scene.m_obstacles.triangles().size();
-    m_statistics.m_clothTriangles = clothTriangles;
-    m_statistics.m_obstacleTriangles = obstacleTriangles;
+    m_statistics.m_clothTriangles = m_scene.m_cloths.presentTriangles();
+    m_statistics.m_obstacleTriangles = m_scene.m_obstacles.presentTriangles();
     if (clothTriangles == 0 || obstacleTriangles == 0) m_stepPairs.m_anyPair = false;
     collectSelf();
     m_stepPairs.m_any = m_stepPairs.m_anyPair || m_stepPairs.m_anySelf;
@@ -248,23 +263,24 @@ void Pipeline::Implementation::collectMotions()
 std::size_t Pipeline::Implementation::countKept()
 {
     MeshPool& obstacles = m_scene.m_obstacles;
-    // Obstacles share a hierarchy: new ones, and positions given anew, are built or refitted with all others; on the
-    // host, places too.
-    bool all = m_stepRevision == m_obstacleRevision && m_stepMotion == m_scene.m_obstacleMotion;
+    // Obstacles share a hierarchy: new ones are built and refitted with all others, on a device that walks it those
+    // that move, too. Patches are an obstacle's own.
+    const bool shares = m_report.m_onHost || !goesOverPatches(m_settings);
+    const bool all = !shares || m_stepRevision == m_obstacleRevision;
+    bool alone = true;
     m_stepRevision = m_obstacleRevision;
-    m_stepMotion = m_scene.m_obstacleMotion;
     std::size_t kept = 0;
     for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
     {
         PooledMesh& mesh = obstacles.mesh(slot);
-        if (mesh.m_placedAnew && m_report.m_onHost) all = false;
+        if (mesh.m_placedAnew && shares && !m_report.m_onHost) alone = false;
         bool paired = false;
         for (std::size_t pair = slot; pair < m_stepPairs.m_thickness.size(); pair += obstacles.meshCount())
             paired = paired || m_stepPairs.m_thickness[pair] >= 0.0f;
         if (paired && !mesh.m_placedAnew) ++kept;
         mesh.m_placedAnew = false;
     }
-    return all ? kept : 0;
+    return all && alone ? kept : 0;
 }
 
 // A cloth's contacts are reduced where all its obstacles rest and are two-sided: the solver keeps a node near its way
@@ -402,7 +418,10 @@ void Pipeline::remove(MeshId id)
 {
     assert(!m_implementation->m_submitted);
     Scene& scene = m_implementation->m_scene;
-    if (!scene.m_cloths.remove(id)) scene.m_obstacles.remove(id);
+    if (scene.m_cloths.remove(id))
+        m_implementation->forgetNodes();
+    else
+        scene.m_obstacles.remove(id);
     m_implementation->m_choice.forget(id);
     m_implementation->m_notedPairs.clear();
 }
@@ -411,13 +430,20 @@ void Pipeline::moveObstacle(MeshId id, const float* positions)
 {
     Scene& scene = m_implementation->m_scene;
     m_implementation->joinScene();
-    PooledMesh& mesh = scene.m_obstacles.mesh(scene.m_obstacles.slot(id));
-    std::copy(positions, positions + mesh.m_positions.size(), mesh.m_positions.begin());
+    const std::size_t slot = scene.m_obstacles.slot(id);
+    PooledMesh& mesh = scene.m_obstacles.mesh(slot);
+    const auto replace = [](auto& all, std::size_t first, const auto& own)
+    { std::copy(own.begin(), own.end(), all.begin() + std::ptrdiff_t(first)); };
+    mesh.m_positions.assign(positions, positions + mesh.m_positions.size());
     m_implementation->measureObstacle(mesh);
     mesh.m_area = surfaceArea(mesh.m_topology.m_triangles, positions);
     m_implementation->m_notedPairs.clear();
-    ++scene.m_obstacleMotion;
-    m_implementation->joinObstacles();
+    replace(scene.m_obstaclePositions, 3 * std::size_t(mesh.m_firstVertex), mesh.m_positions);
+    replace(scene.m_vertexCones, mesh.m_firstVertex, mesh.m_vertexCones);
+    replace(scene.m_edgeCones, mesh.m_firstEdge, mesh.m_edgeCones);
+    mesh.m_given = ++scene.m_obstacleMotion;
+    mesh.m_placedAnew = true;
+    m_implementation->placeMesh(slot);
 }
 
 void Pipeline::placeObstacle(MeshId id, const float startPose[12], const float endPose[12])

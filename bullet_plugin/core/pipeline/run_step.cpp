@@ -8,6 +8,7 @@ namespace drape
 {
 void Pipeline::Implementation::runOnHost()
 {
+    layOut();
     m_hostBackend.run(m_scene, m_stepPairs, m_settings, m_result);
     m_statistics.m_onHost = true;
 }
@@ -35,6 +36,7 @@ void Pipeline::Implementation::complete()
 
 void Pipeline::Implementation::leaveOutCloths()
 {
+    layOut();
     const std::vector<std::uint64_t> candidates = m_hostBackend.countCandidates(m_scene, m_stepPairs, m_settings);
     const StepLimits limits(m_settings);
     std::uint64_t budget = limits.m_candidates;

@@ -18,12 +18,18 @@ bool isAsTheyCame(const TreeMethods& methods)
 }
 }  // namespace
 
-void SideHierarchy::begin(const MeshPool& pool, BvhLayout& layout)
+void SideHierarchy::begin(const MeshPool& pool)
 {
-    layout = makeBvhLayout(std::uint32_t(pool.order().size()));
+    m_laidOut = false;
     m_used = TreeBuilder::Auto;
     for (auto kept = m_trees.begin(); kept != m_trees.end();)
-        kept = pool.slot(kept->first) == pool.meshCount() ? m_trees.erase(kept) : std::next(kept);
+        kept = pool.holds(kept->first) ? std::next(kept) : m_trees.erase(kept);
+}
+
+void SideHierarchy::layOut(const MeshPool& pool, BvhLayout& layout)
+{
+    if (!m_laidOut) layout = makeBvhLayout(std::uint32_t(pool.order().size()));
+    m_laidOut = true;
 }
 
 const MeshTree& SideHierarchy::treeOf(const TreeMethods& methods, const PooledMesh& mesh)
@@ -63,6 +69,7 @@ void SideHierarchy::join(MeshPool& pool, BvhLayout& layout)
         trees.push_back(&m_trees.at(pool.mesh(slot).m_id));
     JoinedTree joined = joinTrees(trees);
     m_used = m_builder;
+    m_laidOut = true;
     if (m_used == TreeBuilder::Balanced)
         layout = makeBvhLayout(std::uint32_t(joined.m_order.size()));
     else
@@ -95,8 +102,15 @@ bool Pipeline::Implementation::walksHierarchies() const
     return !m_pairs.empty() && (m_report.m_onHost || !goesOverPatches(m_settings));
 }
 
+void Pipeline::Implementation::layOut()
+{
+    m_clothHierarchy.layOut(m_scene.m_cloths, m_scene.m_clothLayout);
+    m_obstacleHierarchy.layOut(m_scene.m_obstacles, m_scene.m_obstacleLayout);
+}
+
 void Pipeline::Implementation::buildHierarchies()
 {
+    if (m_report.m_onHost || !goesOverPatches(m_settings)) layOut();
     if (!walksHierarchies()) return;
     if (m_clothHierarchy.build(treeMethods(), m_scene.m_cloths, m_scene.m_clothLayout))
     {

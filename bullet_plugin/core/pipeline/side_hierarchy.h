@@ -1,8 +1,9 @@
 // One side's hierarchy: who builds it, and when.
 //
-// Meshes that come and go leave pairs of neighbours in the order in which triangles came, which costs nothing; the
-// builder that the settings name builds before the first step that walks the hierarchy. (A step that a device hands
-// back to the host half-way walks what is there.) Trees of meshes are kept, so that one that comes costs its own alone.
+// Meshes that come and go leave pairs of neighbours in the order in which triangles came, laid out when somebody asks
+// for it; the builder that the settings name builds before the first step that walks the hierarchy. (A step that a
+// device hands back to the host half-way walks what is there.) Trees of meshes are kept, so that one that comes costs
+// its own and joining. The order goes mesh by mesh.
 #pragma once
 
 #include <map>
@@ -26,7 +27,9 @@ class SideHierarchy
 {
 public:
     // After the pool's meshes came or went.
-    void begin(const MeshPool& pool, BvhLayout& layout);
+    void begin(const MeshPool& pool);
+    // Makes the layout that of the pool's order where it is not.
+    void layOut(const MeshPool& pool, BvhLayout& layout);
     // Another leaf order and layout where the last ones are not by that builder. methods: none with TreeBuilder::Auto.
     // Returns whether anything changed; it counts as a change of the pool.
     bool build(const TreeMethods& methods, MeshPool& pool, BvhLayout& layout);
@@ -39,7 +42,8 @@ private:
 
     std::map<MeshId, MeshTree> m_trees;  // by m_builder; of every mesh of the pool when they are joined
     TreeBuilder m_builder = TreeBuilder::Auto;
-    TreeBuilder m_used = TreeBuilder::Auto;  // by which the layout is; Auto: as triangles came
+    TreeBuilder m_used = TreeBuilder::Auto;  // by which the order is; Auto: as triangles came
+    bool m_laidOut = false;                  // the layout is the order's
 };
 
 }  // namespace drape

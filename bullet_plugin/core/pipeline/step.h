@@ -32,7 +32,7 @@ struct Scene
     std::uint32_t m_obstacleMotion = 0;   // counts up when positions are given anew
     std::vector<ObstaclePlace> m_places;  // per obstacle slot
     std::uint32_t m_obstaclePlacing = 0;  // counts up when a place changes
-    bool m_anyPosed = false;              // false: all positions are the world's
+    bool m_anyPosed = false;              // false: all positions are the world's; stays while there are obstacles
 
     std::size_t slotCount() const
     {

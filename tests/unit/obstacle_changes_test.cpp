@@ -1,0 +1,76 @@
+// Which obstacles a back end brings up to date: those that came, were given other positions or have another place.
+#include "bullet_plugin/core/pipeline/obstacle_changes.h"
+
+#include <gtest/gtest.h>
+
+namespace drape::test
+{
+namespace
+{
+// Four obstacles, all where they were made.
+class ObstacleChangesTest : public testing::Test
+{
+protected:
+    ObstacleChangesTest()
+    {
+        for (MeshId id = 0; id < 4; ++id)
+        {
+            PooledMesh mesh;
+            mesh.m_id = id;
+            m_scene.m_obstacles.add(std::move(mesh));
+        }
+        m_scene.m_obstacles.update();
+        m_scene.m_places.resize(4);
+    }
+
+    void place(std::size_t slot, float shift)
+    {
+        m_scene.m_places[slot].m_posed = 1;
+        m_scene.m_places[slot].m_pose[3] = shift;
+        ++m_scene.m_obstaclePlacing;
+    }
+    void give(std::size_t slot) { m_scene.m_obstacles.mesh(slot).m_given = ++m_scene.m_obstacleMotion; }
+
+    // A letter a slot: given, placed, or nothing.
+    std::string taken(std::size_t fresh)
+    {
+        m_changes.take(m_scene, fresh);
+        std::string all;
+        for (std::size_t slot = 0; slot < m_scene.m_places.size(); ++slot)
+            all += m_changes.given(slot) ? 'g' : m_changes.moved(slot) ? 'p' : '-';
+        return all;
+    }
+
+    Scene m_scene;
+    ObstacleChanges m_changes;
+};
+}  // namespace
+
+TEST_F(ObstacleChangesTest, TellsWhatCameAndWhatMoved)
+{
+    EXPECT_EQ(taken(0), "gggg");
+    EXPECT_FALSE(m_changes.any(m_scene));
+    EXPECT_EQ(taken(4), "----");
+    place(1, 0.5f);
+    give(3);
+    EXPECT_TRUE(m_changes.any(m_scene));
+    EXPECT_EQ(taken(4), "-p-g");
+    EXPECT_FALSE(m_changes.any(m_scene));
+    place(1, 0.5f);
+    EXPECT_TRUE(m_changes.any(m_scene)) << "it may have";
+    EXPECT_EQ(taken(4), "----") << "it has not";
+    give(0);
+    give(2);
+    EXPECT_EQ(taken(3), "g-gg");
+}
+
+TEST_F(ObstacleChangesTest, KnowsWhatItHasForgottenAsNew)
+{
+    place(2, 1.0f);
+    EXPECT_EQ(taken(0), "gggg");
+    m_changes.forget();
+    EXPECT_TRUE(m_changes.any(m_scene));
+    EXPECT_EQ(taken(0), "gggg");
+    EXPECT_EQ(m_changes.places()[2].m_pose[3], 1.0f);
+}
+}  // namespace drape::test
