@@ -44,6 +44,7 @@ struct Pipeline::Implementation
     std::vector<NamedPair> m_pairs;
     std::vector<MeshId> m_selfCloths;  // named for the coming step
     StepPairs m_stepPairs;
+    std::vector<bool> m_paired;  // per obstacle slot, with any cloth in the step
     StepResult m_result;
     StepStatistics m_statistics;
     SideHierarchy m_clothHierarchy, m_obstacleHierarchy;

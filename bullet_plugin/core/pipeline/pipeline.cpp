@@ -199,12 +199,14 @@ void Pipeline::Implementation::collectPairs()
     m_stepPairs.m_thickness.assign(m_scene.m_cloths.meshCount() * obstacleMeshes, -1.0f);
     m_stepPairs.m_clothRadius.assign(m_scene.m_cloths.meshCount(), -1.0f);
     m_stepPairs.m_anyPair = false;
+    m_paired.assign(obstacleMeshes, false);
     for (const NamedPair& pair : m_pairs)
     {
         const std::size_t cloth = m_scene.m_cloths.slot(pair.m_cloth);
         const std::size_t obstacle = m_scene.m_obstacles.slot(pair.m_obstacle);
         assert(cloth < m_scene.m_cloths.meshCount() && obstacle < obstacleMeshes && pair.m_thickness > 0.0f);
         m_stepPairs.m_thickness[cloth * obstacleMeshes + obstacle] = pair.m_thickness;
+        m_paired[obstacle] = true;
         if (m_scene.m_obstacles.mesh(obstacle).m_coordinateStep > pair.m_thickness)
             m_statistics.m_status |= kStepCoarsePositions;
         float& radius = m_stepPairs.m_clothRadius[cloth];
@@ -252,11 +254,8 @@ void Pipeline::Implementation::collectMotions()
     for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
     {
         const PooledMesh& mesh = obstacles.mesh(slot);
-        if (!mesh.m_placing.moves()) continue;
-        bool paired = false;
-        for (std::size_t pair = slot; pair < m_stepPairs.m_thickness.size(); pair += obstacles.meshCount())
-            paired = paired || m_stepPairs.m_thickness[pair] >= 0.0f;
-        if (paired) m_stepPairs.m_motions.push_back(makeMotion(mesh.m_placing, mesh.m_box, std::uint32_t(slot)));
+        if (m_paired[slot] && mesh.m_placing.moves())
+            m_stepPairs.m_motions.push_back(makeMotion(mesh.m_placing, mesh.m_box, std::uint32_t(slot)));
     }
 }
 
@@ -274,10 +273,7 @@ std::size_t Pipeline::Implementation::countKept()
     {
         PooledMesh& mesh = obstacles.mesh(slot);
         if (mesh.m_placedAnew && shares && !m_report.m_onHost) alone = false;
-        bool paired = false;
-        for (std::size_t pair = slot; pair < m_stepPairs.m_thickness.size(); pair += obstacles.meshCount())
-            paired = paired || m_stepPairs.m_thickness[pair] >= 0.0f;
-        if (paired && !mesh.m_placedAnew) ++kept;
+        if (m_paired[slot] && !mesh.m_placedAnew) ++kept;
         mesh.m_placedAnew = false;
     }
     return all && alone ? kept : 0;
