@@ -13,6 +13,8 @@ namespace
 {
 constexpr float kThickness = 0.02f;  // m
 constexpr float kStride = 0.001f;    // m, of an obstacle that moves, a step
+constexpr float kRadius = 0.2f;      // m, of those that come, go and move
+constexpr float kHeight = 1.0f;      // m, of the cloth
 constexpr int kWarmSteps = 3;
 
 enum class Event
@@ -33,18 +35,18 @@ constexpr NamedEvent kEvents[] = {{Event::Nothing, "nothing happens"},
                                   {Event::Goes, "one goes"},
                                   {Event::Moves, "two move"}};
 
-// A cloth of 512 triangles that rests at the height of the model's middle, and two spheres of 320 triangles, added
-// before the model and after it.
+// A cloth of 512 triangles that rests at the height of the model's middle, and two spheres of 320 triangles just below
+// it, added before the model and after it.
 class ObstacleScene
 {
 public:
     ObstacleScene(std::unique_ptr<Pipeline> pipeline, const TriangleMesh& model)
         : m_pipeline(std::move(pipeline)),
-          m_sphere(makeSphere(0.2f, 2)),
+          m_sphere(makeSphere(kRadius, 2)),
           m_first(m_pipeline->addObstacle(describeMesh(m_sphere))),
           m_model(m_pipeline->addObstacle(describeMesh(model))),
           m_last(m_pipeline->addObstacle(describeMesh(m_sphere))),
-          m_cloth(m_pipeline->addCloth(describeMesh(makeClothGrid(17, 17, 2.0f, 1.0f).m_mesh)))
+          m_cloth(m_pipeline->addCloth(describeMesh(makeClothGrid(17, 17, 2.0f, kHeight).m_mesh)))
     {
     }
 
@@ -73,8 +75,9 @@ public:
 private:
     void place(MeshId obstacle, float before)
     {
-        const float start[12] = {1, 0, 0, before, 0, 1, 0, 1, 0, 0, 1, 0};
-        const float end[12] = {1, 0, 0, m_shift, 0, 1, 0, 1, 0, 0, 1, 0};
+        const float y = kHeight - kRadius - 0.5f * kThickness;
+        const float start[12] = {1, 0, 0, before, 0, 1, 0, y, 0, 0, 1, 0};
+        const float end[12] = {1, 0, 0, m_shift, 0, 1, 0, y, 0, 0, 1, 0};
         m_pipeline->placeObstacle(obstacle, start, end);
     }
 
@@ -90,7 +93,7 @@ struct Times
 {
     Samples m_samples[std::size(kEvents)];
     std::string m_hashes[std::size(kEvents)];
-    std::size_t m_contacts = 0;
+    std::size_t m_contacts[std::size(kEvents)] = {};
 };
 
 // Rounds in which each event has its step; those before them see memory grow.
@@ -108,10 +111,11 @@ Times measure(ObstacleScene& scene, const StudyOptions& options)
         for (std::size_t i = 0; i < std::size(kEvents); ++i)
         {
             times.m_samples[i].add(scene.step(kEvents[i].m_event));
-            if (round + 1 == int(kLeastRepeats)) times.m_hashes[i] = scene.hash();
+            if (round + 1 != int(kLeastRepeats)) continue;
+            times.m_hashes[i] = scene.hash();
+            times.m_contacts[i] = scene.contacts();
         }
     }
-    times.m_contacts = scene.contacts();
     return times;
 }
 
@@ -128,7 +132,7 @@ void addRows(const std::string& model, std::size_t triangles, ObstacleScene& sce
         row["backend"] = scene.device().m_onHost ? "host" : "opencl";
         fillDevice(row, scene.device().m_device);
         row["threads"] = scene.device().m_onHost ? 1 : 0;
-        row["contacts"] = times.m_contacts;
+        row["contacts"] = times.m_contacts[i];
         times.m_samples[i].fill(row);
         row["hash"] = scene.failed() ? "left the device" : times.m_hashes[i];
         judgeRow(row, reference.m_hashes[i]);

@@ -61,7 +61,8 @@ void PatchCullStage::setTopology(Device& device, const MeshPool& obstacles, std:
     m_patches.append(device, m_layout.m_patches, patches);
     m_faceOwners.append(device, m_layout.m_faceOwners, faces);
     if (device.isGpu()) m_faceFeatures.append(device, m_layout.m_faceFeatures, faces);
-    releasePacking();
+    m_vertexOwnersHeld.m_last = std::min(m_vertexOwnersHeld.m_last, vertices);
+    m_edgeOwnersHeld.m_last = std::min(m_edgeOwnersHeld.m_last, edges);
     m_levels.assign(device, m_layout.m_levels);
     m_faces.extend(device, m_layout.m_faceOwners.size() * DRAPE_FACE_FLOATS, faces * DRAPE_FACE_FLOATS);
     m_vertices.extend(device, m_layout.m_vertexOwners.size() * DRAPE_VERTEX_FLOATS, vertices * DRAPE_VERTEX_FLOATS);
@@ -93,10 +94,13 @@ void PatchCullStage::bringOwners(Device& device, Range vertices, Range edges)
     const auto bring = [&](Buffer<cl_uint>& buffer, const std::vector<std::uint32_t>& owners, Range& held, Range wanted)
     {
         if (held.m_first <= wanted.m_first && wanted.m_last <= held.m_last) return;
-        if (held.count() > 0) wanted = {std::min(held.m_first, wanted.m_first), std::max(held.m_last, wanted.m_last)};
-        buffer.reserve(device, wanted.m_last);
-        buffer.write(device, owners.data() + wanted.m_first, wanted.count(), wanted.m_first);
-        held = wanted;
+        Range all = wanted;
+        if (!held.empty()) all = {std::min(held.m_first, wanted.m_first), std::max(held.m_last, wanted.m_last)};
+        buffer.extend(device, all.m_last, held.empty() ? 0 : held.m_last);
+        // Where there is something before what is held, that is brought again.
+        const std::size_t first = held.empty() || all.m_first < held.m_first ? all.m_first : held.m_last;
+        buffer.write(device, owners.data() + first, all.m_last - first, first);
+        held = all;
     };
     bring(m_vertexOwners, m_layout.m_vertexOwners, m_vertexOwnersHeld, vertices);
     bring(m_edgeOwners, m_layout.m_edgeOwners, m_edgeOwnersHeld, edges);

@@ -83,6 +83,7 @@ private:
     {
         std::size_t m_first, m_last;
         std::size_t count() const { return m_last - m_first; }
+        bool empty() const { return m_last <= m_first; }
         cl_uint first() const { return cl_uint(m_first); }
         cl_uint last() const { return cl_uint(m_last); }
     };
