@@ -25,11 +25,11 @@ constexpr btScalar kDt = btScalar(1) / 60;  // s
 
 struct ClothSpec
 {
-    int m_nodes = 17;           // along either side
-    float m_size = 1.0f;        // m
-    btVector3 m_centre;         // m
-    bool m_springs = true;      // false: nodes and faces only
-    btScalar m_damping = 0.1f;  // share of the velocity lost in a step, 0 to 1
+    int m_nodes = 17;                         // along either side
+    float m_size = 1.0f;                      // m
+    btVector3 m_centre = btVector3(0, 0, 0);  // m
+    bool m_springs = true;                    // false: nodes and faces only
+    btScalar m_damping = 0.1f;                // share of the velocity lost in a step, 0 to 1
 };
 
 // A mesh as Bullet's static shape; owns the arrays that the shape reads. The shape's margin is kMargin.
