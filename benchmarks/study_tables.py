@@ -282,7 +282,7 @@ def obstacle_table(rows, table, figure):
         for model in in_order(select(mine, backend=backend), "model"):
             steps = select(mine, backend=backend, model=model)
             times = [select(steps, variant=event)[0]["median_ms"] for event in events]
-            lines.append([model, f"{steps[0]['triangles']:,}", "host, one thread" if backend == "host" else "device"]
+            lines.append([model, f"{steps[0]['triangles']:,.0f}", "host, one thread" if backend == "host" else "device"]
                          + [figure(time) for time in times])
     return ("Whole steps, ms, of a cloth of 512 triangles on the model in which an obstacle of 320 comes or goes, or two move, "
             "of which one came before the model and one after it: medians.\n\n"

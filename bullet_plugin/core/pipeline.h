@@ -104,14 +104,16 @@ public:
 
     const DeviceReport& deviceReport() const;
 
-    // Both copy what they are given and build the hierarchy. Topology is fixed until remove(). Return kNoMesh, with
-    // nothing added, for a mesh with an index out of range; lastError() names it.
+    // Both copy what they are given. Topology is fixed until remove(). Return kNoMesh, with nothing added, for a mesh
+    // with an index out of range; lastError() names it. On a device the next step costs more by what the mesh holds,
+    // now and then, where memory grows, by what all do; on the host by what all do. remove() costs next to nothing:
+    // memory is given back once more is vacant than not.
     MeshId addCloth(const MeshDescription& mesh);
     MeshId addObstacle(const MeshDescription& mesh);
     void remove(MeshId mesh);
 
-    // New positions (x y z per vertex) of an obstacle that moved or was deformed; its hierarchy is refitted. Counts as
-    // a teleport: the motion between old and new is not swept.
+    // New positions (x y z per vertex) of an obstacle that moved or was deformed; what hangs on them is made anew, the
+    // other obstacles stay as they are. Counts as a teleport: the motion between old and new is not swept.
     void moveObstacle(MeshId obstacle, const float* positions);
 
     // Where the obstacle's own frame is at the start and at the end of the coming steps, until the next call: three
