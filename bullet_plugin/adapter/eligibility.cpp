@@ -50,6 +50,11 @@ const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, co
     return reasonFromObstacle(obstacle, shape);
 }
 
+bool handlesObstacle(const btCollisionObject& obstacle, const btCollisionShape& shape)
+{
+    return !reasonFromObstacle(obstacle, shape);
+}
+
 bool handlesAny(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
                 const btCollisionShape& shape)
 {

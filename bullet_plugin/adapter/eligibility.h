@@ -12,6 +12,9 @@ class PluginState;
 const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
                            const btCollisionShape& shape);
 
+// Whether Drape handles an obstacle with that shape beside cloth that it handles.
+bool handlesObstacle(const btCollisionObject& obstacle, const btCollisionShape& shape);
+
 // Whether Drape handles the cloth and any leaf of the obstacle's shape, which may be a compound.
 bool handlesAny(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
                 const btCollisionShape& shape);

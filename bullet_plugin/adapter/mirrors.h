@@ -61,7 +61,8 @@ public:
     const ClothParts& parts() const { return m_parts; }
     void requireFullCheck() { m_fullCheck = true; }
 
-    int m_owners = 0;              // algorithms alive that use this mirror
+    int m_owners = 0;  // algorithms alive that use this mirror, and who had it prepared
+    bool m_prepared = false;
     std::uint64_t m_lastSeen = 0;  // step
 
 private:
@@ -94,6 +95,7 @@ public:
     void requireReading() { m_read = false; }
 
     int m_owners = 0;
+    bool m_prepared = false;
     std::uint64_t m_lastSeen = 0;
     bool m_oneSided = false;  // wanted; the next refresh() heeds it
 

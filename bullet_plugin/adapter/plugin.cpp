@@ -78,6 +78,16 @@ std::string Plugin::whyStock(const btCollisionObject* objectA, const btCollision
     return reasonInShape(*m_state, *cloth, *obstacle, *obstacle->getCollisionShape());
 }
 
+void Plugin::prepare(const btCollisionObject* object)
+{
+    m_state->prepare(*object);
+}
+
+void Plugin::release(const btCollisionObject* object)
+{
+    m_state->release(object);
+}
+
 void Plugin::obstacleChanged(const btCollisionShape* shape)
 {
     m_state->obstacleChanged(shape);

@@ -5,6 +5,7 @@
 
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
 #include "BulletSoftBody/btSoftBodySolvers.h"
+#include "bullet_plugin/adapter/eligibility.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
 
 namespace drape
@@ -58,6 +59,14 @@ private:
 
     std::unordered_map<const btCollisionObject*, Shapes> m_children;  // of compounds, nested ones' too
 };
+
+// Counted among the mirror's owners.
+template <typename Mirror>
+void setPrepared(Mirror& mirror, bool prepared)
+{
+    mirror.m_owners += int(prepared) - int(mirror.m_prepared);
+    mirror.m_prepared = prepared;
+}
 
 // The motion of the object's shape, or of a compound's child.
 BodyMotion motionOfShape(const btCollisionObjectWrapper& wrap, KinematicMotions& motions)
@@ -175,6 +184,66 @@ void PluginState::disown(const Owned& owned)
     if (ObstacleMirror* obstacle = findObstacle(owned.m_obstacle)) --obstacle->m_owners;
 }
 
+bool PluginState::isOneSided(const btCollisionShape& shape) const
+{
+    return m_oneSided.count(&shape) + m_oneSided.count(meshShapeOf(shape)) > 0;
+}
+
+void PluginState::prepare(const btCollisionObject& object)
+{
+    if (!ready()) return;
+    try
+    {
+        if (const btSoftBody* body = btSoftBody::upcast(&object))
+        {
+            ClothMirror& cloth = m_cloths.try_emplace(body, body).first->second;
+            if (cloth.m_owners == 0) cloth.requireFullCheck();
+            setPrepared(cloth, true);
+            cloth.refresh(*m_pipeline);
+        }
+        else
+            prepareShape({nullptr, object.getCollisionShape(), &object, object.getWorldTransform(), -1, -1});
+        m_pipeline->prepare();
+    }
+    catch (const std::exception& exception)
+    {
+        fail("drape::Plugin::prepare", exception.what());
+    }
+}
+
+// At rest where it is.
+void PluginState::prepareShape(const btCollisionObjectWrapper& wrap)
+{
+    const btCollisionShape& shape = *wrap.getCollisionShape();
+    if (shape.isCompound())
+    {
+        const btCompoundShape& compound = static_cast<const btCompoundShape&>(shape);
+        for (int i = 0; i < compound.getNumChildShapes(); ++i)
+        {
+            const btTransform place = wrap.getWorldTransform() * compound.getChildTransform(i);
+            prepareShape({&wrap, compound.getChildShape(i), wrap.getCollisionObject(), place, -1, i});
+        }
+        return;
+    }
+    const btCollisionObject& object = *wrap.getCollisionObject();
+    if (!handlesObstacle(object, shape)) return;
+    const ObstacleKey key = {&object, &shape, childOf(wrap)};
+    ObstacleMirror& obstacle = m_obstacles.try_emplace(key, key).first->second;
+    if (obstacle.m_owners == 0) obstacle.requireReading();
+    setPrepared(obstacle, true);
+    obstacle.m_oneSided = isOneSided(shape);
+    obstacle.refresh(*m_pipeline, object.isKinematicObject(),
+                     BodyMotion{wrap.getWorldTransform(), wrap.getWorldTransform()});
+}
+
+void PluginState::release(const btCollisionObject* object)
+{
+    for (auto& entry : m_cloths)
+        if (entry.first == object) setPrepared(entry.second, false);
+    for (auto& entry : m_obstacles)
+        if (entry.first.m_object == object) setPrepared(entry.second, false);
+}
+
 void PluginState::obstacleChanged(const btCollisionShape* shape)
 {
     for (auto& entry : m_obstacles)
@@ -218,8 +287,7 @@ void PluginState::adopt(const PairNote& note)
     cloth.m_lastSeen = obstacle.m_lastSeen = m_step;
     if (cloth.m_owners == 0) cloth.requireFullCheck();
     if (obstacle.m_owners == 0) obstacle.requireReading();
-    obstacle.m_oneSided =
-        m_oneSided.count(note.m_obstacle.m_shape) + m_oneSided.count(meshShapeOf(*note.m_obstacle.m_shape)) > 0;
+    obstacle.m_oneSided = isOneSided(*note.m_obstacle.m_shape);
 
     const auto found = m_owned.find(note.m_owner);
     if (found != m_owned.end())

@@ -77,6 +77,10 @@ public:
     // The most that any obstacle noted so far has of margin that its bounds do not hold, m.
     btScalar marginBeyondBounds() const { return m_marginBeyondBounds; }
     void forget(const void* owner);
+    // Makes the object's mirrors, those of a compound's children, and brings them to the device; they are owned as if
+    // by an algorithm until release().
+    void prepare(const btCollisionObject& object);
+    void release(const btCollisionObject* object);
     void obstacleChanged(const btCollisionShape* shape);
     void setOneSided(const btCollisionShape* shape, bool oneSided);
     void dropNotes(const btSoftBodySolver* solver);
@@ -99,6 +103,8 @@ private:
         ObstacleKey m_obstacle;
     };
 
+    void prepareShape(const btCollisionObjectWrapper& wrap);
+    bool isOneSided(const btCollisionShape& shape) const;
     ClothMirror* findCloth(const btSoftBody* body);
     ObstacleMirror* findObstacle(const ObstacleKey& key);
     void adopt(const PairNote& note);

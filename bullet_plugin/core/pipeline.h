@@ -112,6 +112,10 @@ public:
     MeshId addObstacle(const MeshDescription& mesh);
     void remove(MeshId mesh);
 
+    // Brings meshes that came to the device now, or on the host builds what steps walk: the next step does not pay for
+    // it. Waits. Not between submit() and finish().
+    void prepare();
+
     // New positions (x y z per vertex) of an obstacle that moved or was deformed; what hangs on them is made anew, the
     // other obstacles stay as they are. Counts as a teleport: the motion between old and new is not swept.
     void moveObstacle(MeshId obstacle, const float* positions);

@@ -56,7 +56,7 @@ public:
     virtual std::string backend() const = 0;
     virtual std::string device() const = 0;
     virtual std::string deviceReason() const = 0;
-    virtual double prepareMs() const = 0;  // making the kernels ready, not part of any step
+    virtual double prepareMs() const = 0;  // making the kernels and meshes ready, not part of any step
 
     // One line when the back end left its path during the run (a device that failed), else empty.
     virtual std::string trouble() const = 0;

@@ -459,6 +459,12 @@ void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
     m_device->flush();
 }
 
+void DeviceBackend::prepare(const Scene& scene)
+{
+    updateTopology(scene);
+    m_device->wait();
+}
+
 void DeviceBackend::submit(const Scene& scene, const StepPairs& pairs, std::size_t sent)
 {
     m_limitReached = false;

@@ -29,6 +29,8 @@ public:
     // Builds the kernels of cloths that collide with themselves, at the first call.
     void prepareSelf();
 
+    // Brings meshes that came, and obstacles that moved, to the device, and waits.
+    void prepare(const Scene& scene);
     // Begins to bring nodes of the cloths, start and end, to the device before the step is submitted. False where the
     // device does not know the cloths yet.
     bool sendNodes(const Scene& scene, std::size_t first, std::size_t count);

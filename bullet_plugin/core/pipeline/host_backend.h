@@ -16,6 +16,8 @@ class HostBackend
 public:
     explicit HostBackend(const Methods& methods = Methods()) : m_traversal(methods.m_traversal) {}
 
+    // Does what a step does after meshes came or obstacles moved.
+    void prepare(const Scene& scene) { update(scene); }
     // Runs the whole step.
     void run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
 

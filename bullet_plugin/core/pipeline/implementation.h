@@ -80,7 +80,7 @@ struct Pipeline::Implementation
     TreeMethods treeMethods() const;
     // Whether the coming step walks both sides' hierarchies of triangles.
     bool walksHierarchies() const;
-    // Of both sides, by these methods, where it does.
+    // Of both sides, by these methods.
     void buildHierarchies();
     // Has both sides' layouts at hand for the host.
     void layOut();

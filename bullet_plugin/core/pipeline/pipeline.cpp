@@ -422,6 +422,25 @@ void Pipeline::remove(MeshId id)
     m_implementation->m_notedPairs.clear();
 }
 
+void Pipeline::prepare()
+{
+    Implementation& self = *m_implementation;
+    assert(!self.m_submitted);
+    self.joinScene();
+    const bool onDevice = self.m_deviceBackend && !self.m_deviceLeft;
+    if (!onDevice || !goesOverPatches(self.m_settings)) self.buildHierarchies();
+    self.m_stepRevision = self.m_obstacleRevision;
+    for (std::size_t slot = 0; slot < self.m_scene.m_obstacles.meshCount(); ++slot)
+        self.m_scene.m_obstacles.mesh(slot).m_placedAnew = false;
+    if (!onDevice)
+    {
+        self.m_hostBackend.prepare(self.m_scene);
+        return;
+    }
+    self.m_deviceBackend->prepare(self.m_scene);
+    if (self.m_deviceBackend->device().failed()) self.leaveDevice();
+}
+
 void Pipeline::moveObstacle(MeshId id, const float* positions)
 {
     Scene& scene = m_implementation->m_scene;
@@ -547,7 +566,8 @@ void Pipeline::submit()
     if (self.m_deviceLeft) self.m_statistics.m_status |= kStepDeviceFailed;
     self.joinScene();
     self.chooseBackend();
-    self.buildHierarchies();
+    if (self.m_report.m_onHost || !goesOverPatches(self.m_settings)) self.layOut();
+    if (self.walksHierarchies()) self.buildHierarchies();
     self.takeRebuilt();
     self.collectPairs();
     self.m_submitted = true;

@@ -110,8 +110,7 @@ void Pipeline::Implementation::layOut()
 
 void Pipeline::Implementation::buildHierarchies()
 {
-    if (m_report.m_onHost || !goesOverPatches(m_settings)) layOut();
-    if (!walksHierarchies()) return;
+    layOut();
     if (m_clothHierarchy.build(treeMethods(), m_scene.m_cloths, m_scene.m_clothLayout))
     {
         m_clothRevision = m_scene.m_cloths.revision();

@@ -71,6 +71,15 @@ public:
     // such. Of several worlds it is not asked which have Drape's algorithm: one that has is enough.
     std::string whyStock(const btCollisionObject* objectA, const btCollisionObject* objectB) const;
 
+    // Reads a soft body, or an obstacle's meshes (a compound's children, too), and brings them to the device: without it
+    // the first step in which cloth comes near pays for that. What Drape does not handle costs nothing. Kept, whether
+    // paired or not, until release(), before which the object must live; changes are noticed as of any other. A body in
+    // a world or not; not while that is stepped.
+    void prepare(const btCollisionObject* object);
+    // From now on the object is kept as one that was never prepared: for two seconds of steps after its last pair. One
+    // that was not prepared may be given.
+    void release(const btCollisionObject* object);
+
     // Tells that vertices of a mesh shape were moved in place. Refits (a changed bounding box), scaling and changes
     // that touch one of the vertices that are sampled each step are noticed without it.
     void obstacleChanged(const btCollisionShape* shape);
