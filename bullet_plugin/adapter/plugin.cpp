@@ -3,6 +3,7 @@
 #include <cinttypes>
 #include <cstdio>
 
+#include "BulletCollision/CollisionDispatch/btCollisionWorld.h"
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
 #include "bullet_plugin/adapter/eligibility.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
@@ -80,7 +81,13 @@ std::string Plugin::whyStock(const btCollisionObject* objectA, const btCollision
 
 void Plugin::prepare(const btCollisionObject* object)
 {
-    m_state->prepare(*object);
+    m_state->prepare(&object, 1);
+}
+
+void Plugin::prepare(const btCollisionWorld& world)
+{
+    const btCollisionObjectArray& objects = world.getCollisionObjectArray();
+    if (objects.size() > 0) m_state->prepare(&objects[0], objects.size());
 }
 
 void Plugin::release(const btCollisionObject* object)

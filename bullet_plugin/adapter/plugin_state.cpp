@@ -189,26 +189,34 @@ bool PluginState::isOneSided(const btCollisionShape& shape) const
     return m_oneSided.count(&shape) + m_oneSided.count(meshShapeOf(shape)) > 0;
 }
 
-void PluginState::prepare(const btCollisionObject& object)
+void PluginState::prepare(const btCollisionObject* const* objects, int count)
 {
     if (!ready()) return;
     try
     {
-        if (const btSoftBody* body = btSoftBody::upcast(&object))
+        m_found.keepList();  // by meshes as they are
+        for (int i = 0; i < count; ++i)
         {
-            ClothMirror& cloth = m_cloths.try_emplace(body, body).first->second;
-            if (cloth.m_owners == 0) cloth.requireFullCheck();
-            setPrepared(cloth, true);
-            cloth.refresh(*m_pipeline);
+            const btCollisionObject& object = *objects[i];
+            if (const btSoftBody* body = btSoftBody::upcast(&object))
+                prepareCloth(*body);
+            else
+                prepareShape({nullptr, object.getCollisionShape(), &object, object.getWorldTransform(), -1, -1});
         }
-        else
-            prepareShape({nullptr, object.getCollisionShape(), &object, object.getWorldTransform(), -1, -1});
         m_pipeline->prepare();
     }
     catch (const std::exception& exception)
     {
         fail("drape::Plugin::prepare", exception.what());
     }
+}
+
+void PluginState::prepareCloth(const btSoftBody& body)
+{
+    ClothMirror& cloth = m_cloths.try_emplace(&body, &body).first->second;
+    if (cloth.m_owners == 0) cloth.requireFullCheck();
+    setPrepared(cloth, true);
+    cloth.refresh(*m_pipeline);
 }
 
 // At rest where it is.

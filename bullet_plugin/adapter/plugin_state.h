@@ -79,7 +79,7 @@ public:
     void forget(const void* owner);
     // Makes the object's mirrors, those of a compound's children, and brings them to the device; they are owned as if
     // by an algorithm until release().
-    void prepare(const btCollisionObject& object);
+    void prepare(const btCollisionObject* const* objects, int count);
     void release(const btCollisionObject* object);
     void obstacleChanged(const btCollisionShape* shape);
     void setOneSided(const btCollisionShape* shape, bool oneSided);
@@ -103,6 +103,7 @@ private:
         ObstacleKey m_obstacle;
     };
 
+    void prepareCloth(const btSoftBody& body);
     void prepareShape(const btCollisionObjectWrapper& wrap);
     bool isOneSided(const btCollisionShape& shape) const;
     ClothMirror* findCloth(const btSoftBody* body);

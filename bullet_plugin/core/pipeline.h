@@ -106,14 +106,16 @@ public:
 
     // Both copy what they are given. Topology is fixed until remove(). Return kNoMesh, with nothing added, for a mesh
     // with an index out of range; lastError() names it. On a device the next step costs more by what the mesh holds,
-    // now and then, where memory grows, by what all do; on the host by what all do. remove() costs next to nothing:
-    // memory is given back once more is vacant than not.
+    // now and then, where memory grows or gaps close, by what all do; on the host, with a traversal that is not the
+    // default, and for a cloth beside one that collides with itself, by what all do. remove() costs next to nothing;
+    // gaps close once more is vacant than not.
     MeshId addCloth(const MeshDescription& mesh);
     MeshId addObstacle(const MeshDescription& mesh);
     void remove(MeshId mesh);
 
-    // Brings meshes that came to the device now, or on the host builds what steps walk: the next step does not pay for
-    // it. Waits. Not between submit() and finish().
+    // Brings meshes that came to the device now, or without one builds what the host walks: the next step does not pay
+    // for it, unless it is one that cost gives to the host beside a device. Waits. Not between submit() and finish();
+    // contacts of the last step are not to be looked at any more.
     void prepare();
 
     // New positions (x y z per vertex) of an obstacle that moved or was deformed; what hangs on them is made anew, the

@@ -23,8 +23,7 @@ public:
         m_world.addMeshObstacle(scene);
         m_world.addCloth(scene, false);
         const Clock::time_point begin = Clock::now();
-        m_plugin->prepare(&m_world.obstacle());
-        m_plugin->prepare(&m_world.cloth());
+        m_plugin->prepare(m_world.world());
         m_meshesMs = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
     }
 

@@ -44,7 +44,6 @@ public:
 
     TimedWorld& world() { return m_world; }
     btSoftBody& cloth() { return *m_cloth; }
-    const btCollisionObject& obstacle() const { return *m_object; }  // of meshes
 
     // One step; returns its wall time in ms.
     double step(double dt);

@@ -183,6 +183,13 @@ double rmsSpeed(const btSoftBody& cloth)
     return std::sqrt(sum / cloth.m_nodes.size());
 }
 
+bool sameContacts(const std::vector<ContactInfo>& a, const std::vector<ContactInfo>& b)
+{
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(),
+                                              [](const ContactInfo& one, const ContactInfo& other)
+                                              { return std::memcmp(&one, &other, sizeof one) == 0; });
+}
+
 int contactsHeld(const btSoftBody& cloth)
 {
     return cloth.m_rcontacts.size() + cloth.m_scontacts.size();

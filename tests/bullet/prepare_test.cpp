@@ -96,6 +96,40 @@ TEST_P(Prepared, whatIsPreparedStaysUntilItIsReleased)
     EXPECT_GT(world.m_plugin.statistics().m_obstacleTriangles, 1000u);
 }
 
+// Meshes that come are numbered anew; those of the last step's contacts keep their names.
+TEST_P(Prepared, contactsOfTheLastStepStay)
+{
+    PreparedWorld world(GetParam().m_settings);
+    world.m_world.addCloth(above(0.5));
+    world.m_world.step(60);
+    const std::vector<ContactInfo> before = world.m_plugin.contacts();
+    ASSERT_GT(before.size(), 200u);
+    MeshShape other(makeBox(1.0f, 0.1f, 1.0f));
+    for (int i = 1; i < 4; ++i)
+    {
+        world.m_plugin.prepare(&world.m_world.addObstacle(other.shape(), shifted(kFar, btScalar(i))));
+        EXPECT_TRUE(sameContacts(before, world.m_plugin.contacts())) << i;
+    }
+    world.m_world.step();
+    EXPECT_FALSE(sameContacts(before, world.m_plugin.contacts()));
+}
+
+TEST_P(Prepared, aWorldAtOnce)
+{
+    Plugin plugin(GetParam().m_settings);
+    DropWorld world(&plugin);
+    plugin.prepare(world.world());
+    MeshShape sphere(makeSphere(0.4f, 2)), slab(makeBox(2.0f, 0.1f, 2.0f));
+    world.addObstacle(sphere.shape());
+    world.addObstacle(slab.shape(), shifted(0, btScalar(0.35)));
+    btSoftBody& cloth = world.addCloth(above(0.41));
+    plugin.prepare(world.world());
+    for (int step = 0; step == 0 || (step < 10 && plugin.statistics().m_skipped); ++step)
+        world.step();
+    EXPECT_EQ(plugin.statistics().m_obstaclesKept, 2u);
+    EXPECT_EQ(plugin.whyStock(&cloth, world.world().getCollisionObjectArray()[0]), "");
+}
+
 // A compound's meshes, and what changed after it was prepared.
 TEST_P(Prepared, childrenAndChanges)
 {

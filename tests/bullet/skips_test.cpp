@@ -45,13 +45,6 @@ std::vector<ContactInfo> contactsOf(const Plugin& plugin, const btSoftBody& clot
     return contacts;
 }
 
-bool sameContacts(const std::vector<ContactInfo>& a, const std::vector<ContactInfo>& b)
-{
-    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(),
-                                              [](const ContactInfo& one, const ContactInfo& other)
-                                              { return std::memcmp(&one, &other, sizeof one) == 0; });
-}
-
 // A ball, a box that a body moves under the cloth, and the cloth on both.
 struct SkipWorld
 {

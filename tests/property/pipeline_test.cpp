@@ -273,6 +273,16 @@ TEST_P(PipelineNodesTest, NodesMayGoBeforeAllAreWritten)
     expectSame(two.run({first}, told), two.runSilently({first}));
 }
 
+// The place of a cloth that has gone stays, and nobody writes its nodes.
+TEST_P(PipelineNodesTest, NodesBehindAClothThatHasGoneMayGo)
+{
+    const auto told = [&](MeshId cloth, std::size_t count) { m_pipeline->nodesWritten(cloth, count); };
+    m_pipeline->remove(m_two->m_first);
+    const std::vector<Contact> expected = m_two->runSilently({m_two->m_second});
+    ASSERT_GT(expected.size(), 500u);
+    expectSame(m_two->run({m_two->m_second}, told), expected);
+}
+
 // One cloth after the other, and both at once.
 TEST_P(PipelineNodesTest, NodesThatAreCopiedAreThoseThatAreWritten)
 {

@@ -79,7 +79,6 @@ void PatchCullStage::setTopology(Device& device, const MeshPool& obstacles, std:
     // The lowest level, which comes first, stays: a place a patch, in nodes of so many.
     const std::size_t kept = (patches + lanes - 1) / lanes * lanes * DRAPE_WIDE_NODE_FLOATS;
     m_wideNodes.extend(device, m_layout.m_levels.back() * DRAPE_WIDE_NODE_FLOATS * lanes, kept);
-    device.wait();
 }
 
 void PatchCullStage::releasePacking()
@@ -145,8 +144,8 @@ void PatchCullStage::packFeatures(Device& device, Range patches, Buffer<Triangle
                        m_edgeIds.handle());
 }
 
-// Volumes of the patches and of the wide nodes above them, all of those where levels have moved, and the places behind
-// the last patch, which are empty.
+// Volumes of the patches and of the wide nodes above them, all of those where levels have moved. With the last patch go
+// the places behind it, which are empty.
 void PatchCullStage::packVolumes(Device& device, Range patches, Buffer<Triangle>& triangles, Buffer<float>& positions,
                                  Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones)
 {
@@ -158,19 +157,13 @@ void PatchCullStage::packVolumes(Device& device, Range patches, Buffer<Triangle>
         const std::size_t first = m_layout.m_levels[level];
         const std::size_t places = (m_layout.m_levels[level + 1] - first) * width;
         if (level > 0 && m_levelsMoved) changed = {0, children};
-        const bool withLast = changed.m_last == children;
-        if (withLast) changed.m_last = places;
+        if (changed.m_last == children) changed.m_last = places;
         if (level == 0)
         {
-            const auto launch = [&](Range range)
-            {
-                m_volumes.launch(device, range.count(), kGroup, m_faceOwners.handle(), cl_uint(patchCount),
-                                 range.first(), range.last(), triangles.handle(), positions.handle(),
-                                 vertexCones.handle(), edgeCones.handle(), m_wideNodes.handle(), m_sizes.handle(),
-                                 m_patchVolumes.handle());
-            };
-            launch(changed);
-            if (m_levelsMoved && !withLast) launch({children, places});
+            m_volumes.launch(device, changed.count(), kGroup, m_faceOwners.handle(), cl_uint(patchCount),
+                             changed.first(), changed.last(), triangles.handle(), positions.handle(),
+                             vertexCones.handle(), edgeCones.handle(), m_wideNodes.handle(), m_sizes.handle(),
+                             m_patchVolumes.handle());
         }
         else
         {

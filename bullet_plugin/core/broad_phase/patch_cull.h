@@ -24,7 +24,8 @@ public:
     // The programs that it is made of.
     void create(Device& device, const ProgramLoader& load);
 
-    // New obstacles from that slot on, which must be packed next, even where none came. Waits for the upload.
+    // New obstacles from that slot on, which must be packed next, even where none came. What the device is sent is kept
+    // until the next call.
     void setTopology(Device& device, const MeshPool& obstacles, std::size_t firstSlot);
     // Obstacle slots from m_first up to m_last.
     struct Slots

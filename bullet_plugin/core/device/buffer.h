@@ -1,6 +1,7 @@
 // Device memory that grows, and host memory that the device can copy fast.
 #pragma once
 
+#include <algorithm>
 #include <cstring>
 #include <memory>
 #include <string>
@@ -36,7 +37,8 @@ public:
         return true;
     }
 
-    // The same, but the first `kept` elements stay where there are any, and then a quarter is added for the next time.
+    // The same, but the first `kept` elements stay where there are any, and then up to a quarter is added for the next
+    // time.
     void extend(Device& device, std::size_t count, std::size_t kept)
     {
         if (kept == 0 || m_capacity >= count)
@@ -45,7 +47,8 @@ public:
             return;
         }
         const Buffer before = std::exchange(*this, Buffer(m_name));
-        reserve(device, count + count / 4);
+        const std::size_t most = device.maxAllocationBytes() / sizeof(T);
+        reserve(device, std::max(count, std::min(count + count / 4, most)));
         copy(device, before, count, kept);
     }
 

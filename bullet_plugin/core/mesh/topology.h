@@ -3,7 +3,7 @@
 // Input: indices and a vertex count. Output: Triangle and Edge records with indices local to the mesh. Triangles that
 // repeat an index, or all three vertices of an earlier triangle, are left out. Every vertex and every edge that a
 // triangle uses is owned by exactly one triangle, the first. Edges are numbered by their first use, so the result
-// depends on the input alone. O(n) expected.
+// depends on the input alone. O(n) for surfaces, O(n^1.5) at worst.
 #pragma once
 
 #include <cstdint>

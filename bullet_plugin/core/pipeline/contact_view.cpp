@@ -89,7 +89,7 @@ ContactView Pipeline::view(const Contact& contact) const
     view.m_gap0 = contact.m_gap0;
     view.m_gap1 = contact.m_gap1;
     view.m_time = contact.m_time;
-    view.m_thickness = self.m_stepPairs.m_thickness[feature.m_slot * obstacles.meshCount() + obstacle];
+    view.m_thickness = self.m_stepPairs.thickness(feature.m_slot, obstacle);
     return view;
 }
 

@@ -174,7 +174,7 @@ void DeviceBackend::uploadSide(const MeshPool& pool, const BvhLayout& layout, Si
         side.m_nodes.assign(*m_device, nodes);
         m_refit.makeLevels(*m_device, layout, side.m_levels);
     }
-    m_device->wait();  // nodes are a local; topology changes are rare
+    if (!nodes.empty()) m_device->wait();  // they are a local
 }
 
 // The cull over patches needs an order of the cloths alone: that of their own patches, since it walks for packets.
@@ -196,8 +196,8 @@ void DeviceBackend::updateCloths(const Scene& scene)
     if (patches()) clusterCloths(scene.m_cloths, first);
     m_clothEdges.append(*m_device, scene.m_cloths.edges(), scene.m_cloths.begin(first).m_edge);
     uploadSide(scene.m_cloths, scene.m_clothLayout, m_cloth);
-    m_clothStart.extend(*m_device, 3 * scene.m_cloths.vertexCount(), 0);
-    m_clothEnd.extend(*m_device, 3 * scene.m_cloths.vertexCount(), 0);
+    m_clothStart.reserve(*m_device, scene.m_clothStart.capacity());
+    m_clothEnd.reserve(*m_device, scene.m_clothEnd.capacity());
     m_narrowPhase.resizeSlots(*m_device, scene.allSlotCount());
     if (scene.m_anySelf) m_self.setTopology(*m_device, scene.m_cloths, scene.m_clothRest);
 }

@@ -52,17 +52,26 @@ void HostBackend::updateObstacles(const Scene& scene, bool all)
     m_changes.take(scene, all ? 0 : obstacles.meshCount());
     if (scene.m_anyPosed) place(scene);
     const float* positions = obstacleView(scene).m_positions;
-    if (all)
+    std::size_t moved = 0;  // triangles
+    for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
+        if (m_changes.moved(slot)) moved += obstacles.mesh(slot).m_topology.m_triangles.size();
+    // Part by part what lies above several is merged several times.
+    if (2 * moved > obstacles.triangles().size())
     {
         const std::vector<float> noRadius(obstacles.meshCount(), 0.0f);
         std::size_t ignored = 0;  // the adapter reports bad obstacles when it mirrors them
         refitOnHost(m_obstacleNodes, scene.m_obstacleLayout, obstacles.order(), obstacles.triangles(), positions,
                     positions, noRadius, ignored);
     }
-    for (std::size_t slot = 0; slot < obstacles.meshCount() && !all; ++slot)
-        if (m_changes.moved(slot))
+    else
+    {
+        for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
+        {
+            if (!m_changes.moved(slot)) continue;
             refitPartOnHost(m_obstacleNodes, scene.m_obstacleLayout, obstaclePart(scene, slot), obstacles.order(),
                             obstacles.triangles(), positions);
+        }
+    }
     m_traversal.obstaclesRefitted(obstacleSide(scene));
 }
 

@@ -73,6 +73,8 @@ struct Pipeline::Implementation
     void joinCloths(std::size_t first);
     void joinRest();
     std::vector<NodeStretch> stretchesOf(const std::vector<MeshId>& cloths);
+    // Counts nodes of cloths that are gone as written, up to node `last`.
+    void passVacantNodes(std::size_t last);
     // Nodes that were told to be written are not those of the coming step. Transfers of them end.
     void forgetNodes();
     void joinObstacles(std::size_t first);

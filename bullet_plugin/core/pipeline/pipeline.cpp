@@ -118,7 +118,7 @@ void Pipeline::Implementation::joinRest()
     const MeshPool& cloths = m_scene.m_cloths;
     m_scene.m_anySelf = false;
     for (std::size_t slot = 0; slot < cloths.meshCount(); ++slot)
-        m_scene.m_anySelf = m_scene.m_anySelf || cloths.mesh(slot).m_selfThickness > 0.0f;
+        m_scene.m_anySelf |= cloths.mesh(slot).m_selfThickness > 0.0f && !cloths.mesh(slot).m_vacant;
     m_scene.m_clothRest.clear();
     for (std::size_t slot = 0; slot < cloths.meshCount() && m_scene.m_anySelf; ++slot)
     {
@@ -132,6 +132,18 @@ void Pipeline::Implementation::forgetNodes()
 {
     if (m_nodesSent > 0) m_deviceBackend->device().wait();
     m_nodesWritten = m_nodesSent = 0;
+}
+
+// Nobody writes those.
+void Pipeline::Implementation::passVacantNodes(std::size_t last)
+{
+    const MeshPool& cloths = m_scene.m_cloths;
+    while (m_nodesWritten < last)
+    {
+        const std::size_t slot = cloths.slotOfVertex(std::uint32_t(m_nodesWritten));
+        if (!cloths.mesh(slot).m_vacant) return;
+        m_nodesWritten = cloths.begin(slot + 1).m_vertex;
+    }
 }
 
 std::vector<NodeStretch> Pipeline::Implementation::stretchesOf(const std::vector<MeshId>& ids)
@@ -415,7 +427,10 @@ void Pipeline::remove(MeshId id)
     assert(!m_implementation->m_submitted);
     Scene& scene = m_implementation->m_scene;
     if (scene.m_cloths.remove(id))
+    {
         m_implementation->forgetNodes();
+        m_implementation->m_treeWatch.begin();
+    }
     else
         scene.m_obstacles.remove(id);
     m_implementation->m_choice.forget(id);
@@ -499,6 +514,7 @@ void Pipeline::nodesWritten(MeshId id, std::size_t count)
     const MeshPool& cloths = self.m_scene.m_cloths;
     const std::size_t first = cloths.mesh(cloths.slot(id)).m_firstVertex;
     assert(first + count <= cloths.vertexCount());
+    self.passVacantNodes(first);
     if (first > self.m_nodesWritten) return;
     self.m_nodesWritten = std::max(self.m_nodesWritten, first + count);
     const std::size_t unsent = self.m_nodesWritten - self.m_nodesSent;

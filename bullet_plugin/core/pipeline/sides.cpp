@@ -41,7 +41,7 @@ void Pipeline::Implementation::dropBackContacts()
     const MeshPool& obstacles = m_scene.m_obstacles;
     bool any = false;
     for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
-        any = any || obstacles.mesh(slot).m_oneSided;
+        any = any || (obstacles.mesh(slot).m_oneSided && !obstacles.mesh(slot).m_vacant);
     if (!any) return;
     const auto onBack = [&](const Contact& contact)
     {

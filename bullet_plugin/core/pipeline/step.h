@@ -68,10 +68,16 @@ struct StepPairs
     bool m_any = false;          // either
     bool m_measureTree = false;  // the result shall have the cost of the cloths' hierarchy
 
+    // As many as there were when the pairs were collected.
+    std::size_t obstacleSlots() const { return m_thickness.size() / m_clothRadius.size(); }
+    float thickness(std::size_t cloth, std::size_t obstacle) const
+    {
+        return m_thickness[cloth * obstacleSlots() + obstacle];
+    }
     // Takes a cloth out of the step.
     void leaveOut(std::size_t cloth)
     {
-        const std::size_t obstacles = m_thickness.size() / m_clothRadius.size();
+        const std::size_t obstacles = obstacleSlots();
         std::fill_n(m_thickness.begin() + std::ptrdiff_t(cloth * obstacles), obstacles, -1.0f);
         std::fill_n(m_tube.begin() + std::ptrdiff_t(cloth * obstacles), obstacles, -1.0f);
         m_clothRadius[cloth] = -1.0f;
