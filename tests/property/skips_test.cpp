@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <tuple>
 
+#include "scenes/cloth_grid.h"
+#include "scenes/describe_mesh.h"
+#include "scenes/shapes.h"
 #include "tests/support/backends.h"
 #include "tests/support/live_scene.h"
 #include "tests/support/pipeline_driver.h"
@@ -67,6 +70,40 @@ TEST_P(SkipsTest, WhatIsKeptGivesTheContactsOfWhatIsMadeAnew)
     }
     EXPECT_GT(contacts, 10000u);
     EXPECT_GT(reduced, 100u);
+}
+
+// A device that walks the obstacles' hierarchy makes it anew with one that comes or moves.
+TEST_P(SkipsTest, ObstaclesAreCountedAsKeptThatAre)
+{
+    const auto& [backend, traversal] = GetParam();
+    const bool asOne = backend.m_settings.m_backend != Backend::Host && traversal != Traversal::Auto;
+    const std::unique_ptr<Pipeline> pipeline = make();
+    ASSERT_TRUE(pipeline);
+    const TriangleMesh sphere = makeSphere(0.5f, 2), grid = makeClothGrid(5, 5, 1.0f, 0.505f).m_mesh;
+    const MeshId cloth = pipeline->addCloth(describeMesh(grid));
+    std::vector<MeshId> obstacles;
+    const auto kept = [&]
+    {
+        for (const MeshId obstacle : obstacles)
+            pipeline->addPair(cloth, obstacle, 0.02f);
+        EXPECT_FALSE(runStep(*pipeline).empty());
+        return pipeline->statistics().m_obstaclesKept;
+    };
+    for (int i = 0; i < 2; ++i)
+        obstacles.push_back(pipeline->addObstacle(describeMesh(sphere)));
+    EXPECT_EQ(kept(), 0u);
+    EXPECT_EQ(kept(), 2u);
+    obstacles.push_back(pipeline->addObstacle(describeMesh(sphere)));
+    EXPECT_EQ(kept(), asOne ? 0u : 2u) << "one came";
+    EXPECT_EQ(kept(), 3u);
+    const float pose[12] = {1, 0, 0, 0.01f, 0, 1, 0, 0, 0, 0, 1, 0};
+    pipeline->placeObstacle(obstacles[1], pose, pose);
+    EXPECT_EQ(kept(), asOne ? 0u : 2u) << "one was placed";
+    pipeline->moveObstacle(obstacles[0], sphere.m_positions.data());
+    EXPECT_EQ(kept(), asOne ? 0u : 2u) << "one was given other positions";
+    pipeline->remove(obstacles.back());
+    obstacles.pop_back();
+    EXPECT_EQ(kept(), 2u) << "one went";
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, SkipsTest,

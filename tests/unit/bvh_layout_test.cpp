@@ -96,30 +96,6 @@ TEST_P(BvhLayoutSizes, TreesOfAnyShapeKeepTheirShape)
     }
 }
 
-// One mesh of three moves: its leaves and what is above them are all that changes.
-TEST(BvhLayout, APartRefittedEqualsARefitOfAll)
-{
-    for (const std::uint32_t moved : {0u, 1u, 2u})
-    {
-        SCOPED_TRACE("seeds 50 to 52, mesh " + std::to_string(moved));
-        Side side =
-            makeSide({makeSoup(1.0f, 0.1f, 77, 50), makeSoup(1.0f, 0.1f, 1, 51), makeSoup(1.0f, 0.1f, 200, 52)});
-        const std::vector<float> noRadius(3, 0.0f);
-        refitSide(side, noRadius);
-        std::vector<BvhNode> partly = side.m_nodes;
-        const MeshFirsts first = side.m_pool.begin(moved), last = side.m_pool.begin(moved + 1);
-        for (std::size_t i = 3 * first.m_vertex; i < 3 * last.m_vertex; ++i)
-            side.m_start[i] += 2.0f;
-        side.m_end = side.m_start;
-        refitSide(side, noRadius);
-        const HierarchyPart part = partOf(side.m_layout, parentsOf(partly), first.m_triangle, last.m_triangle);
-        EXPECT_TRUE(std::is_sorted(part.m_above.begin(), part.m_above.end()));
-        EXPECT_LT(part.m_above.size(), partly.size() / 2);
-        refitPartOnHost(partly, side.m_layout, part, side.m_order, side.m_pool.triangles(), side.m_start.data());
-        EXPECT_TRUE(sameBytes(partly, side.m_nodes));
-    }
-}
-
 TEST(BvhLayout, UnusedVerticesWidenNoVolume)
 {
     const TriangleMesh soup = makeSoup(1.0f, 0.1f, 100, 12);

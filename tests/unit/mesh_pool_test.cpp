@@ -126,7 +126,12 @@ TEST(MeshPool, TellsFromWhichSlotOnPlacesAreNew)
     EXPECT_EQ(pool.begin(3).m_triangle, 36u);
     const std::uint32_t sphere = pool.revision();
 
-    pool.reorder(std::vector<std::uint32_t>(pool.order().rbegin(), pool.order().rend()));
+    const std::vector<std::uint32_t> kept = pool.mesh(0).m_order;
+    const std::vector<std::uint32_t> turned(pool.mesh(1).m_order.rbegin(), pool.mesh(1).m_order.rend());
+    pool.reorder({nullptr, &turned, nullptr, nullptr});
+    EXPECT_GT(pool.revision(), sphere);
+    EXPECT_TRUE(pool.mesh(0).m_order == kept && pool.mesh(1).m_order == turned);
+    expectJoined(pool);
     EXPECT_EQ(pool.firstSince(sphere), 4u) << "places are as they were";
     pool.add(pooled(5, shapeNamed("box")));
     pool.update();

@@ -1,15 +1,16 @@
 #include "hierarchy.h"
 
+#include "bullet_plugin/core/mesh/reserve_room.h"
 #include "kernels/lib/traversal.h"
 
 namespace drape
 {
-std::vector<BvhLink> makeLinks(const Hierarchy& hierarchy)
+std::vector<BvhLink> makeLinks(const Hierarchy& hierarchy, std::uint32_t rootDepth)
 {
     std::vector<BvhLink> links(hierarchy.m_nodes.size());
     if (links.empty()) return links;
     std::vector<std::uint32_t> below = {hierarchy.m_root};
-    links[hierarchy.m_root] = {hierarchy.m_root, 0};
+    links[hierarchy.m_root] = {hierarchy.m_root, rootDepth};
     while (!below.empty())
     {
         const std::uint32_t parent = below.back();
@@ -22,6 +23,19 @@ std::vector<BvhLink> makeLinks(const Hierarchy& hierarchy)
         }
     }
     return links;
+}
+
+void extendLinks(const std::vector<BvhNode>& nodes, std::uint32_t first, std::uint32_t rootDepth,
+                 std::vector<BvhLink>& links)
+{
+    reserveRoom(links, nodes.size());
+    links.resize(nodes.size());
+    if (nodes.empty()) return;
+    const std::uint32_t root = std::uint32_t(nodes.size()) - 1;
+    links[root] = {root, rootDepth};
+    for (std::uint32_t parent = root + 1; parent-- > first;)
+        for (std::uint32_t child = 0; child < nodes[parent].m_count; ++child)
+            links[nodes[parent].m_first + child] = {parent, links[parent].m_depth + 1};
 }
 
 std::vector<std::uint32_t> leafNodes(const Hierarchy& hierarchy)

@@ -14,6 +14,8 @@ constexpr std::uint32_t kRaiseInterval = 8;
 // A front of more pairs is not kept, so that a crowd of triangles does not take memory twice: the next step begins at
 // the roots.
 constexpr std::size_t kMostFront = 1 << 22;
+// Depth of the meshes' roots in a joined layout, however many there are: so the depths of what stays stay, too.
+constexpr std::uint32_t kMeshDepth = 64;
 }  // namespace
 
 struct HostTraversal::Step
@@ -59,10 +61,13 @@ struct HostTraversal::Step
 
 HostTraversal::HostTraversal(Traversal traversal) : m_traversal(resolve(traversal)) {}
 
-void HostTraversal::setObstacles(const BroadPhaseSide& obstacle)
+void HostTraversal::setObstacles(const BroadPhaseSide& obstacle, std::size_t keptBlocks)
 {
+    const BvhLayout& layout = obstacle.m_layout;
     if (isWide()) m_wide = makeWideLayout(obstacle.hierarchy());
-    if (walksFront()) m_obstacleLinks = makeLinks(obstacle.hierarchy());
+    if (!walksFront()) return;
+    m_rootDepth = layout.joined() ? kMeshDepth - std::uint32_t(layout.m_heights.size()) : 0;
+    extendLinks(obstacle.m_nodes, keptBlocks > 0 ? layout.blockNode(keptBlocks) : 0, m_rootDepth, m_obstacleLinks);
 }
 
 void HostTraversal::obstaclesRefitted(const BroadPhaseSide& obstacle)
@@ -74,7 +79,7 @@ void HostTraversal::setTopology(const BroadPhaseSide& cloth)
 {
     m_front.clear();
     if (m_traversal == Traversal::Leaves || isWide()) m_leaves = leafNodes(cloth.hierarchy());
-    if (walksFront()) m_clothLinks = makeLinks(cloth.hierarchy());
+    if (walksFront()) m_clothLinks = makeLinks(cloth.hierarchy(), m_rootDepth);
 }
 
 bool HostTraversal::run(const BroadPhaseSide& cloth, const BroadPhaseSide& obstacle,
@@ -174,7 +179,7 @@ void HostTraversal::keepPair(NodePair pair)
 // As raisePair() in kernels/broad_phase_front.cl, up to the roots.
 bool HostTraversal::raise(const Step& step, NodePair& pair)
 {
-    while (m_clothLinks[pair.m_cloth].m_depth + m_obstacleLinks[pair.m_obstacle].m_depth > 0)
+    while (m_clothLinks[pair.m_cloth].m_depth + m_obstacleLinks[pair.m_obstacle].m_depth > 2 * m_rootDepth)
     {
         const NodePair parent = parentPair(pair, m_clothLinks.data(), m_obstacleLinks.data());
         ++m_tests;

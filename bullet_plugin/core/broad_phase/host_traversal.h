@@ -31,8 +31,9 @@ public:
         return traversal == Traversal::Auto ? Traversal::Front : traversal;
     }
 
-    // New links in the obstacles' hierarchy, or new volumes.
-    void setObstacles(const BroadPhaseSide& obstacle);
+    // New links in the obstacles' hierarchy, but for those of the first so many blocks of a joined layout; or new
+    // volumes.
+    void setObstacles(const BroadPhaseSide& obstacle, std::size_t keptBlocks = 0);
     void obstaclesRefitted(const BroadPhaseSide& obstacle);
     // New links in either hierarchy, of the obstacles' after setObstacles(): drops the front.
     void setTopology(const BroadPhaseSide& cloth);
@@ -64,6 +65,7 @@ private:
     WideLayout m_wide;
     std::vector<std::uint32_t> m_leaves;  // nodes of the cloth's leaves
     std::vector<BvhLink> m_clothLinks, m_obstacleLinks;
+    std::uint32_t m_rootDepth = 0;  // of both
     std::vector<NodePair> m_front, m_nextFront, m_stack;
     std::uint32_t m_step = 0;
     std::size_t m_tests = 0;

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
+
+#include "bullet_plugin/core/mesh/reserve_room.h"
 
 namespace drape
 {
@@ -26,16 +27,6 @@ std::vector<BvhChildren> linksOf(const std::vector<BvhNode>& nodes)
     for (const BvhNode& node : nodes)
         links.push_back({node.m_first, node.m_count});
     return links;
-}
-
-std::vector<std::uint32_t> parentsOf(const std::vector<BvhNode>& nodes)
-{
-    std::vector<std::uint32_t> parents(nodes.size());
-    std::iota(parents.begin(), parents.end(), 0u);
-    for (std::uint32_t node = 0; node < nodes.size(); ++node)
-        for (std::uint32_t child = 0; child < nodes[node].m_count; ++child)
-            parents[nodes[node].m_first + child] = node;
-    return parents;
 }
 
 BvhLayout makeBvhLayout(const std::vector<BvhChildren>& tree, std::uint32_t root)
@@ -79,18 +70,39 @@ BvhLayout makeBvhLayout(const std::vector<BvhChildren>& tree, std::uint32_t root
     return layout;
 }
 
+BvhLayout layoutByHeights(const BvhLayout& layout)
+{
+    return layout.joined() && layout.nodeCount() > 0 ? makeBvhLayout(layout.m_links, layout.root()) : layout;
+}
+
+std::size_t sameBlocks(const std::vector<BvhBlock>& a, const std::vector<BvhBlock>& b)
+{
+    const auto sameTree = [](const BvhBlock& x, const BvhBlock& y) { return x.m_tree == y.m_tree; };
+    return std::size_t(std::mismatch(a.begin(), a.end(), b.begin(), b.end(), sameTree).first - a.begin());
+}
+
 std::vector<BvhNode> makeBvhNodes(const BvhLayout& layout)
+{
+    std::vector<BvhNode> nodes;
+    makeBvhNodes(layout, 0, nodes);
+    return nodes;
+}
+
+void makeBvhNodes(const BvhLayout& layout, std::size_t keptBlocks, std::vector<BvhNode>& nodes)
 {
     BvhNode empty = {};
     std::fill(empty.m_low, empty.m_low + DRAPE_DOP_DIRECTIONS, std::numeric_limits<float>::infinity());
     std::fill(empty.m_high, empty.m_high + DRAPE_DOP_DIRECTIONS, -std::numeric_limits<float>::infinity());
-    std::vector<BvhNode> nodes(layout.nodeCount(), empty);
-    for (std::size_t i = 0; i < layout.m_links.size(); ++i)
+    const std::size_t kept = keptBlocks > 0 ? layout.blockNode(keptBlocks) : 0;
+    nodes.resize(kept);
+    reserveRoom(nodes, layout.nodeCount());
+    nodes.resize(layout.nodeCount(), empty);
+    for (std::size_t i = kept; i < layout.m_links.size(); ++i)
     {
         nodes[i].m_first = layout.m_links[i].m_first;
         nodes[i].m_count = layout.m_links[i].m_count;
     }
-    if (!layout.m_links.empty()) return nodes;
+    if (!layout.m_links.empty()) return;
     for (std::size_t height = 0; height < layout.m_heights.size(); ++height)
     {
         const BvhHeight& level = layout.m_heights[height];
@@ -108,6 +120,5 @@ std::vector<BvhNode> makeBvhNodes(const BvhLayout& layout)
             node.m_count = std::min(2u, below.m_count - 2 * i);
         }
     }
-    return nodes;
 }
 }  // namespace drape

@@ -1,43 +1,71 @@
 #include "joined_tree.h"
 
+#include "bullet_plugin/core/mesh/reserve_room.h"
 #include "tree_builder.h"
 
 namespace drape
 {
+namespace
+{
+void appendBlock(const std::shared_ptr<const MeshTree>& mesh, BvhLayout& layout)
+{
+    const std::uint32_t node = std::uint32_t(layout.m_links.size()), leaf = std::uint32_t(layout.m_leafNodes.size());
+    layout.m_blocks.push_back(BvhBlock{mesh, node, leaf});
+    layout.m_leafNodes.resize(leaf + mesh->m_order.size());
+    for (const BvhChildren& own : mesh->m_links)
+    {
+        const bool isLeaf = own.m_count == 0;
+        if (isLeaf) layout.m_leafNodes[leaf + own.m_first] = std::uint32_t(layout.m_links.size());
+        layout.m_links.push_back(BvhChildren{own.m_first + (isLeaf ? leaf : node), own.m_count});
+    }
+}
+
+// A node over each mesh's root, so that these lie side by side, and pairs of neighbours above.
+void appendTop(BvhLayout& layout)
+{
+    const std::uint32_t top = std::uint32_t(layout.m_links.size());
+    std::uint32_t end = top;  // of the block's nodes
+    std::vector<BvhChildren> roots;
+    for (std::size_t block = layout.m_blocks.size(); block-- > 0; end = layout.m_blocks[block].m_firstNode)
+        if (layout.m_blocks[block].m_firstNode < end) roots.push_back(BvhChildren{end - 1, 1});
+    layout.m_links.insert(layout.m_links.end(), roots.rbegin(), roots.rend());
+    const BvhLayout above = makeBvhLayout(std::uint32_t(roots.size()));
+    const std::vector<BvhChildren> links = linksOf(makeBvhNodes(above));
+    for (std::size_t node = roots.size(); node < links.size(); ++node)
+        layout.m_links.push_back(BvhChildren{links[node].m_first + top, links[node].m_count});
+    for (const BvhHeight& height : above.m_heights)
+        layout.m_heights.push_back(BvhHeight{height.m_first + top, height.m_count});
+}
+}  // namespace
+
 MeshTree buildMeshTree(const TreeMethods& methods, const std::vector<Triangle>& triangles, const float* positions)
 {
     Tree tree = linkTreeOnHost(methods, triangles, positions);
     MeshTree mesh;
-    mesh.m_links = linksOf(tree.m_nodes);
+    mesh.m_links = makeBvhLayout(linksOf(tree.m_nodes), 0).m_links;
     mesh.m_order = std::move(tree.m_order);
     return mesh;
 }
 
-JoinedTree joinTrees(const std::vector<const MeshTree*>& meshes)
+void joinTrees(const std::vector<std::shared_ptr<const MeshTree>>& meshes, BvhLayout& layout)
 {
-    std::vector<const MeshTree*> filled;
-    for (const MeshTree* mesh : meshes)
-        if (!mesh->m_order.empty()) filled.push_back(mesh);
-    JoinedTree joined;
-    // The nodes above, whose leaves are the meshes' roots, then what is below each root.
-    std::vector<BvhChildren> links = linksOf(makeBvhNodes(makeBvhLayout(std::uint32_t(filled.size()))));
-    const std::uint32_t root = std::uint32_t(links.size()) - 1;
-    for (std::size_t i = 0; i < filled.size(); ++i)
+    std::size_t kept = 0, leaves = 0, nodes = 0;
+    while (kept < std::min(meshes.size(), layout.m_blocks.size()) && layout.m_blocks[kept].m_tree == meshes[kept])
+        ++kept;
+    for (std::size_t i = 0; i < meshes.size(); ++i)
     {
-        const std::uint32_t first =
-            std::uint32_t(joined.m_order.size());                     // leaf and triangle: meshes without any add none
-        const std::uint32_t below = std::uint32_t(links.size()) - 1;  // of the mesh's node 1, less 1
-        const auto shifted = [&](const BvhChildren& node) {
-            return BvhChildren{node.m_first + (node.m_count == 0 ? first : below), node.m_count};
-        };
-        const std::vector<BvhChildren>& own = filled[i]->m_links;
-        links[i] = shifted(own[0]);
-        for (std::size_t node = 1; node < own.size(); ++node)
-            links.push_back(shifted(own[node]));
-        for (const std::uint32_t triangle : filled[i]->m_order)
-            joined.m_order.push_back(triangle + first);
+        leaves += meshes[i]->m_order.size();
+        nodes += meshes[i]->m_links.size() + 2;  // and those above
     }
-    joined.m_layout = makeBvhLayout(links, root);
-    return joined;
+    const std::uint32_t node = kept > 0 ? layout.blockNode(kept) : 0, leaf = kept > 0 ? layout.blockLeaf(kept) : 0;
+    layout.m_links.resize(node);
+    layout.m_leafNodes.resize(leaf);
+    layout.m_blocks.resize(kept);
+    layout.m_heights.clear();
+    reserveRoom(layout.m_links, nodes + 1);
+    reserveRoom(layout.m_leafNodes, leaves);
+    for (std::size_t i = kept; i < meshes.size(); ++i)
+        appendBlock(meshes[i], layout);
+    appendTop(layout);
 }
 }  // namespace drape

@@ -1,7 +1,6 @@
 #include "refit.h"
 
 #include <algorithm>
-#include <unordered_set>
 
 #include "kernels/lib/rigid_motion.h"
 
@@ -13,9 +12,9 @@ constexpr std::size_t kGroup = 64;
 // A height of at most this many nodes is cheaper in the climb of one group than as a launch (3 µs on an H200).
 constexpr std::size_t kClimbGroup = 128;
 
-void mergeUpwards(std::vector<BvhNode>& nodes)
+void mergeUpwards(std::vector<BvhNode>& nodes, std::uint32_t first, std::uint32_t last)
 {
-    for (std::uint32_t node = 0; node < nodes.size(); ++node)
+    for (std::uint32_t node = first; node < last; ++node)
         dopMergeChildren(nodes.data(), node);
 }
 }  // namespace
@@ -31,39 +30,25 @@ void refitOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const std
         invalidNodes += leafVolume(&dop, &triangle, start, end, meshRadius[triangle.m_mesh]);
         dopStore(&nodes[layout.leafNode(leaf)], &dop);
     }
-    mergeUpwards(nodes);
+    mergeUpwards(nodes, 0, layout.nodeCount());
 }
 
-HierarchyPart partOf(const BvhLayout& layout, const std::vector<std::uint32_t>& parents, std::uint32_t first,
-                     std::uint32_t last)
-{
-    HierarchyPart part;
-    part.m_first = first;
-    part.m_last = last;
-    std::unordered_set<std::uint32_t> found;
-    for (std::uint32_t leaf = first; leaf < last; ++leaf)
-    {
-        std::uint32_t node = layout.leafNode(leaf);
-        while (parents[node] != node && found.insert(parents[node]).second)
-            node = parents[node];
-    }
-    part.m_above.assign(found.begin(), found.end());
-    std::sort(part.m_above.begin(), part.m_above.end());  // children lie before their parents
-    return part;
-}
-
-void refitPartOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const HierarchyPart& part,
+void refitMeshOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, std::size_t slot,
                      const std::vector<std::uint32_t>& order, const std::vector<Triangle>& triangles,
                      const float* positions)
 {
-    for (std::uint32_t leaf = part.m_first; leaf < part.m_last; ++leaf)
+    for (std::uint32_t leaf = layout.blockLeaf(slot); leaf < layout.blockLeaf(slot + 1); ++leaf)
     {
         Dop dop;
         leafVolume(&dop, &triangles[order[leaf]], positions, positions, 0.0f);
         dopStore(&nodes[layout.leafNode(leaf)], &dop);
     }
-    for (const std::uint32_t node : part.m_above)
-        dopMergeChildren(nodes.data(), node);
+    mergeUpwards(nodes, layout.blockNode(slot), layout.blockNode(slot + 1));
+}
+
+void refitTopOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout)
+{
+    mergeUpwards(nodes, layout.top(), layout.nodeCount());
 }
 
 void growByMotionsOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const std::vector<std::uint32_t>& order,
@@ -80,7 +65,7 @@ void growByMotionsOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, c
         growByMotions(&nodes[layout.leafNode(leaf)], motions.data(), std::uint32_t(motions.size()),
                       &thickness[triangle.m_mesh * obstacleMeshes], &triangle, start, end, radius);
     }
-    mergeUpwards(nodes);
+    mergeUpwards(nodes, 0, layout.nodeCount());
 }
 
 void RefitStage::create(Device& device, const cl::Program& program)

@@ -17,19 +17,11 @@ void refitOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const std
                  const std::vector<Triangle>& triangles, const float* start, const float* end,
                  const std::vector<float>& meshRadius, std::size_t& invalidNodes);
 
-// The leaves from m_first up to m_last, and every node above one of them, children before parents.
-struct HierarchyPart
-{
-    std::uint32_t m_first = 0, m_last = 0;
-    std::vector<std::uint32_t> m_above;
-};
-// parents: of every node; the root's is itself. O(what is in the part).
-HierarchyPart partOf(const BvhLayout& layout, const std::vector<std::uint32_t>& parents, std::uint32_t first,
-                     std::uint32_t last);
-// Refits a part of a hierarchy whose triangles rest; the others' volumes stay.
-void refitPartOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const HierarchyPart& part,
+// A joined layout's mesh, at rest: its nodes up to its root, then those above the meshes.
+void refitMeshOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, std::size_t slot,
                      const std::vector<std::uint32_t>& order, const std::vector<Triangle>& triangles,
                      const float* positions);
+void refitTopOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout);
 
 // Grows the leaves of such a hierarchy to what the obstacles that move see of the cloths' motion, and the nodes above
 // them. thickness: m, mesh slots × obstacleMeshes, negative where there is no pair.

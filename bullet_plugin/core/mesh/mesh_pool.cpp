@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "reserve_room.h"
+
 namespace drape
 {
 namespace
@@ -129,6 +131,7 @@ void MeshPool::join(std::size_t slot)
         triangle.m_mesh = std::uint32_t(slot);
         m_triangles.push_back(triangle);
     }
+    reserveRoom(m_edges, m_edges.size() + mesh.m_topology.m_edges.size());
     for (Edge edge : mesh.m_topology.m_edges)
     {
         for (std::uint32_t& vertex : edge.m_vertices)
@@ -150,21 +153,30 @@ void MeshPool::update()
     m_triangles.resize(end.m_triangle);
     m_edges.resize(end.m_edge);
     m_firsts.resize(m_placed);
-    const std::size_t ordered = m_reordered ? 0 : m_placed;
-    m_order.resize(m_reordered ? 0 : end.m_triangle);
+    reserveRoom(m_triangles, m_triangleCount);
+    reserveRoom(m_order, m_triangleCount);
     for (std::size_t slot = m_placed; slot < m_meshes.size(); ++slot)
         join(slot);
-    for (std::size_t slot = ordered; slot < m_meshes.size(); ++slot)
-        for (std::uint32_t triangle : m_meshes[slot].m_order)
-            m_order.push_back(triangle + m_meshes[slot].m_firstTriangle);
+    m_order.resize(m_triangles.size());
+    for (std::size_t slot = m_placed; slot < m_meshes.size(); ++slot)
+        joinOrder(m_meshes[slot]);
     m_placed = m_meshes.size();
-    m_reordered = false;
 }
 
-void MeshPool::reorder(std::vector<std::uint32_t> order)
+void MeshPool::joinOrder(const PooledMesh& mesh)
 {
-    m_order = std::move(order);
-    m_reordered = true;
+    for (std::size_t leaf = 0; leaf < mesh.m_order.size(); ++leaf)
+        m_order[mesh.m_firstTriangle + leaf] = mesh.m_order[leaf] + mesh.m_firstTriangle;
+}
+
+void MeshPool::reorder(const std::vector<const std::vector<std::uint32_t>*>& orders)
+{
+    for (std::size_t slot = 0; slot < orders.size(); ++slot)
+    {
+        if (!orders[slot]) continue;
+        m_meshes[slot].m_order = *orders[slot];
+        joinOrder(m_meshes[slot]);
+    }
     ++m_revision;
 }
 }  // namespace drape

@@ -62,8 +62,9 @@ public:
 
     // Joins what came since the last call; the joined arrays are valid after it. Free when nothing did.
     void update();
-    // Another leaf order of the joined triangles, until meshes come or go. Counts as an update that changed something.
-    void reorder(std::vector<std::uint32_t> order);
+    // Another leaf order of the meshes' triangles: local ones by slot, null where it stays. Counts as an update that
+    // changed something.
+    void reorder(const std::vector<const std::vector<std::uint32_t>*>& orders);
     // Counts up with every update that changed something.
     std::uint32_t revision() const { return m_revision; }
     // The first slot that took its place after that revision; those before are as they were, but for vacancies.
@@ -85,6 +86,7 @@ private:
     void dropLastVacant();
     void forget(const PooledMesh& vacant);
     void join(std::size_t slot);
+    void joinOrder(const PooledMesh& mesh);
 
     std::vector<PooledMesh> m_meshes;
     std::vector<MeshId> m_ids;  // of the meshes, next to each other to be searched
@@ -99,6 +101,5 @@ private:
     std::size_t m_placed = 0;  // leading slots whose places in the joined arrays stand
     std::uint32_t m_revision = 0;
     bool m_changed = false;
-    bool m_reordered = false;
 };
 }  // namespace drape

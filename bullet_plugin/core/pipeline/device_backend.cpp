@@ -170,9 +170,10 @@ void DeviceBackend::uploadSide(const MeshPool& pool, const BvhLayout& layout, Si
     if (!patches())
     {
         side.m_order.assign(*m_device, pool.order());
-        nodes = makeBvhNodes(layout);
+        side.m_layout = layoutByHeights(layout);
+        nodes = makeBvhNodes(side.m_layout);
         side.m_nodes.assign(*m_device, nodes);
-        m_refit.makeLevels(*m_device, layout, side.m_levels);
+        m_refit.makeLevels(*m_device, side.m_layout, side.m_levels);
     }
     if (!nodes.empty()) m_device->wait();  // they are a local
 }
@@ -222,10 +223,10 @@ void DeviceBackend::updateTopology(const Scene& scene)
 
 void DeviceBackend::updateTraversal(const Scene& scene, bool newObstacles)
 {
-    const std::vector<BvhNode> clothNodes = makeBvhNodes(scene.m_clothLayout);
-    const std::vector<BvhNode> obstacleNodes = makeBvhNodes(scene.m_obstacleLayout);
-    const Hierarchy cloth = {clothNodes, scene.m_clothLayout.root(), scene.m_cloths.order()};
-    const Hierarchy obstacle = {obstacleNodes, scene.m_obstacleLayout.root(), scene.m_obstacles.order()};
+    const std::vector<BvhNode> clothNodes = makeBvhNodes(m_cloth.m_layout);
+    const std::vector<BvhNode> obstacleNodes = makeBvhNodes(m_obstacle.m_layout);
+    const Hierarchy cloth = {clothNodes, m_cloth.m_layout.root(), scene.m_cloths.order()};
+    const Hierarchy obstacle = {obstacleNodes, m_obstacle.m_layout.root(), scene.m_obstacles.order()};
     if (newObstacles) m_broadPhase.setObstacles(*m_device, obstacle);
     m_broadPhase.setTopology(*m_device, cloth, obstacle);
 }
@@ -325,7 +326,7 @@ void DeviceBackend::refitObstacles(const Scene& scene)
 {
     const std::vector<float> noRadius(scene.m_obstacles.meshCount(), 0.0f);
     m_obstacle.m_radius.assign(*m_device, noRadius);
-    m_refit.enqueue(*m_device, scene.m_obstacleLayout, m_obstacle.m_levels, m_obstacle.m_nodes, m_obstacle.m_order,
+    m_refit.enqueue(*m_device, m_obstacle.m_layout, m_obstacle.m_levels, m_obstacle.m_nodes, m_obstacle.m_order,
                     m_obstacle.m_triangles, m_obstaclePositions, m_obstaclePositions, m_obstacle.m_radius,
                     m_refitCounters);
     m_broadPhase.obstaclesRefitted(*m_device, m_obstacle.m_nodes);
@@ -405,11 +406,11 @@ void DeviceBackend::enqueueBroad(const Scene& scene, const StepPairs& pairs)
         return;
     }
     RefitStage::Motions motions = {m_motions, pairs.m_motions.size(), m_thickness, obstacleMeshes};
-    m_refit.enqueue(*m_device, scene.m_clothLayout, m_cloth.m_levels, m_cloth.m_nodes, m_cloth.m_order,
+    m_refit.enqueue(*m_device, m_cloth.m_layout, m_cloth.m_levels, m_cloth.m_nodes, m_cloth.m_order,
                     m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, counters(),
                     pairs.m_motions.empty() ? nullptr : &motions);
     if (pairs.m_measureTree)
-        m_treeCost.enqueue(*m_device, m_cloth.m_nodes, scene.m_clothLayout.nodeCount(), scene.m_clothLayout.root());
+        m_treeCost.enqueue(*m_device, m_cloth.m_nodes, m_cloth.m_layout.nodeCount(), m_cloth.m_layout.root());
     m_broadPhase.enqueue(*m_device, {{m_cloth.m_nodes, m_cloth.m_order, m_cloth.m_triangles},
                                      {m_obstacle.m_nodes, m_obstacle.m_order, m_obstacle.m_triangles},
                                      m_thickness,

@@ -59,6 +59,7 @@ private:
         Buffer<Triangle> m_triangles;
         Buffer<float> m_radius;
         Buffer<MeshFirsts> m_firsts;
+        BvhLayout m_layout;  // by heights; empty over patches
         RefitStage::Levels m_levels;
         std::uint32_t m_revision = 0;
     };

@@ -6,6 +6,7 @@
 #include "bullet_plugin/core/broad_phase/candidate_count.h"
 #include "bullet_plugin/core/bvh/refit.h"
 #include "bullet_plugin/core/bvh/tree_cost.h"
+#include "bullet_plugin/core/mesh/reserve_room.h"
 
 namespace drape
 {
@@ -31,67 +32,60 @@ void HostBackend::update(const Scene& scene)
         m_clothRevision = scene.m_cloths.revision();
         m_clothNodes = makeBvhNodes(scene.m_clothLayout);
     }
+    std::size_t kept = scene.m_obstacles.meshCount();
     const bool newObstacles = m_obstacleRevision != scene.m_obstacles.revision();
     if (newObstacles)
     {
         m_obstacleRevision = scene.m_obstacles.revision();
-        m_obstacleNodes = makeBvhNodes(scene.m_obstacleLayout);
-        m_obstacleParents.clear();
-        m_obstacleParts.clear();
-        m_traversal.setObstacles(obstacleSide(scene));
+        kept = sameBlocks(m_obstacleBlocks, scene.m_obstacleLayout.m_blocks);
+        makeBvhNodes(scene.m_obstacleLayout, kept, m_obstacleNodes);
+        m_obstacleBlocks = scene.m_obstacleLayout.m_blocks;
+        m_traversal.setObstacles(obstacleSide(scene), kept);
     }
     if (newCloths || newObstacles) m_traversal.setTopology(clothSide(scene));
-    if (newObstacles || m_changes.any(scene)) updateObstacles(scene, newObstacles);
+    if (newObstacles || m_changes.any(scene)) updateObstacles(scene, kept);
 }
 
-void HostBackend::updateObstacles(const Scene& scene, bool all)
+void HostBackend::updateObstacles(const Scene& scene, std::size_t fresh)
 {
-    const MeshPool& obstacles = scene.m_obstacles;
     if (!scene.m_anyPosed) m_placed = Placed();
-    all = all || (scene.m_anyPosed && m_placed.m_positions.empty());
-    m_changes.take(scene, all ? 0 : obstacles.meshCount());
+    const bool placesBegin = scene.m_anyPosed && m_placed.m_positions.empty();
+    m_changes.take(scene, placesBegin ? 0 : fresh);
     if (scene.m_anyPosed) place(scene);
-    const float* positions = obstacleView(scene).m_positions;
-    std::size_t moved = 0;  // triangles
-    for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
-        if (m_changes.moved(slot)) moved += obstacles.mesh(slot).m_topology.m_triangles.size();
-    // Part by part what lies above several is merged several times.
-    if (2 * moved > obstacles.triangles().size())
-    {
-        const std::vector<float> noRadius(obstacles.meshCount(), 0.0f);
-        std::size_t ignored = 0;  // the adapter reports bad obstacles when it mirrors them
-        refitOnHost(m_obstacleNodes, scene.m_obstacleLayout, obstacles.order(), obstacles.triangles(), positions,
-                    positions, noRadius, ignored);
-    }
-    else
-    {
-        for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
-        {
-            if (!m_changes.moved(slot)) continue;
-            refitPartOnHost(m_obstacleNodes, scene.m_obstacleLayout, obstaclePart(scene, slot), obstacles.order(),
-                            obstacles.triangles(), positions);
-        }
-    }
+    refitObstacles(scene);
     m_traversal.obstaclesRefitted(obstacleSide(scene));
 }
 
-const HierarchyPart& HostBackend::obstaclePart(const Scene& scene, std::size_t slot)
+void HostBackend::refitObstacles(const Scene& scene)
 {
-    const auto found = m_obstacleParts.find(slot);
-    if (found != m_obstacleParts.end()) return found->second;
-    if (m_obstacleParents.empty()) m_obstacleParents = parentsOf(m_obstacleNodes);
-    // The order goes mesh by mesh.
-    return m_obstacleParts[slot] =
-               partOf(scene.m_obstacleLayout, m_obstacleParents, scene.m_obstacles.begin(slot).m_triangle,
-                      scene.m_obstacles.begin(slot + 1).m_triangle);
+    const MeshPool& obstacles = scene.m_obstacles;
+    const BvhLayout& layout = scene.m_obstacleLayout;
+    const float* positions = obstacleView(scene).m_positions;
+    if (!layout.joined())
+    {
+        const std::vector<float> noRadius(obstacles.meshCount(), 0.0f);
+        std::size_t ignored = 0;  // the adapter reports bad obstacles when it mirrors them
+        refitOnHost(m_obstacleNodes, layout, obstacles.order(), obstacles.triangles(), positions, positions, noRadius,
+                    ignored);
+        return;
+    }
+    for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
+        if (m_changes.moved(slot))
+            refitMeshOnHost(m_obstacleNodes, layout, slot, obstacles.order(), obstacles.triangles(), positions);
+    refitTopOnHost(m_obstacleNodes, layout);
 }
 
 // As kernels/place_obstacles.cl.
 void HostBackend::place(const Scene& scene)
 {
-    m_placed.m_positions.resize(scene.m_obstaclePositions.size());
-    m_placed.m_vertexCones.resize(scene.m_vertexCones.size());
-    m_placed.m_edgeCones.resize(scene.m_edgeCones.size());
+    const auto resize = [](auto& placed, const auto& own)
+    {
+        reserveRoom(placed, own.size());
+        placed.resize(own.size());
+    };
+    resize(m_placed.m_positions, scene.m_obstaclePositions);
+    resize(m_placed.m_vertexCones, scene.m_vertexCones);
+    resize(m_placed.m_edgeCones, scene.m_edgeCones);
     for (std::size_t slot = 0; slot < scene.m_places.size(); ++slot)
     {
         if (!m_changes.moved(slot)) continue;

@@ -1,8 +1,6 @@
 // The step on the calling thread, with the kernels' own pure functions. Needs no OpenCL device.
 #pragma once
 
-#include <unordered_map>
-
 #include "bullet_plugin/core/broad_phase/host_traversal.h"
 #include "bullet_plugin/core/bvh/refit.h"
 #include "drape/settings.h"
@@ -32,9 +30,9 @@ private:
         std::vector<NormalCone> m_vertexCones, m_edgeCones;
     };
     void update(const Scene& scene);
-    // Those whose positions or places changed, or all of them.
-    void updateObstacles(const Scene& scene, bool all);
-    const HierarchyPart& obstaclePart(const Scene& scene, std::size_t slot);
+    // Those from slot `fresh` on, and of the others those whose positions or places changed.
+    void updateObstacles(const Scene& scene, std::size_t fresh);
+    void refitObstacles(const Scene& scene);
     void place(const Scene& scene);
     ObstacleView obstacleView(const Scene& scene) const;
     static ReductionView reductionView(const Scene& scene, const StepPairs& pairs);
@@ -54,10 +52,8 @@ private:
     SelfContactsOnHost m_self;
     std::vector<Candidate> m_candidates;
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
+    std::vector<BvhBlock> m_obstacleBlocks;  // that m_obstacleNodes has
     ObstacleChanges m_changes;
-    // Of the obstacles that moved since others came or went, by slot, and what those are told by.
-    std::unordered_map<std::size_t, HierarchyPart> m_obstacleParts;
-    std::vector<std::uint32_t> m_obstacleParents;
     Placed m_placed;
 };
 }  // namespace drape

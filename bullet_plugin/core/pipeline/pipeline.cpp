@@ -9,6 +9,7 @@
 #include "bullet_plugin/core/bvh/morton_order.h"
 #include "bullet_plugin/core/mesh/check_indices.h"
 #include "bullet_plugin/core/mesh/normal_cones.h"
+#include "bullet_plugin/core/mesh/reserve_room.h"
 #include "check_settings.h"
 #include "scene_work.h"
 
@@ -172,6 +173,10 @@ void Pipeline::Implementation::joinObstacles(std::size_t first)
     m_scene.m_edgeCones.resize(kept.m_edge);
     m_scene.m_places.resize(pool.meshCount());
     if (pool.meshCount() == 0) m_scene.m_anyPosed = false;
+    const MeshFirsts end = pool.begin(pool.meshCount());
+    reserveRoom(m_scene.m_obstaclePositions, 3 * std::size_t(end.m_vertex));
+    reserveRoom(m_scene.m_vertexCones, end.m_vertex);
+    reserveRoom(m_scene.m_edgeCones, end.m_edge);
     const auto append = [](auto& all, const auto& own) { all.insert(all.end(), own.begin(), own.end()); };
     for (std::size_t slot = first; slot < pool.meshCount(); ++slot)
     {
@@ -274,16 +279,17 @@ void Pipeline::Implementation::collectMotions()
 std::size_t Pipeline::Implementation::countKept()
 {
     MeshPool& obstacles = m_scene.m_obstacles;
-    // Obstacles share a hierarchy: new ones are built and refitted with all others, on a device that walks it those
-    // that move, too. Patches are an obstacle's own.
+    // On a device that walks it the obstacles' hierarchy is made or refitted with new ones and those that move, on the
+    // host where it is not joined out of the obstacles' own. Patches are an obstacle's own.
     const bool onTree = !m_report.m_onHost && !goesOverPatches(m_settings);
-    bool allAnew = (m_report.m_onHost || onTree) && m_stepRevision != m_obstacleRevision;
+    const bool asOne = onTree || (m_report.m_onHost && !m_scene.m_obstacleLayout.joined());
+    bool allAnew = asOne && m_stepRevision != m_obstacleRevision;
     m_stepRevision = m_obstacleRevision;
     std::size_t kept = 0;
     for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
     {
         PooledMesh& mesh = obstacles.mesh(slot);
-        allAnew = allAnew || (onTree && mesh.m_placedAnew);
+        allAnew = allAnew || (asOne && mesh.m_placedAnew);
         if (m_paired[slot] && !mesh.m_placedAnew) ++kept;
         mesh.m_placedAnew = false;
     }
@@ -581,8 +587,10 @@ void Pipeline::submit()
     if (self.m_deviceLeft) self.m_statistics.m_status |= kStepDeviceFailed;
     self.joinScene();
     self.chooseBackend();
-    if (self.m_report.m_onHost || !goesOverPatches(self.m_settings)) self.layOut();
-    if (self.walksHierarchies()) self.buildHierarchies();
+    if (self.walksHierarchies())
+        self.buildHierarchies();
+    else if (!self.m_report.m_onHost && !goesOverPatches(self.m_settings))
+        self.layOut();
     self.takeRebuilt();
     self.collectPairs();
     self.m_submitted = true;

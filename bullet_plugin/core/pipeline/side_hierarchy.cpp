@@ -32,23 +32,29 @@ void SideHierarchy::layOut(const MeshPool& pool, BvhLayout& layout)
     m_laidOut = true;
 }
 
-const MeshTree& SideHierarchy::treeOf(const TreeMethods& methods, const PooledMesh& mesh)
+bool SideHierarchy::buildTree(const TreeMethods& methods, const PooledMesh& mesh)
 {
     const std::vector<Triangle>& triangles = mesh.m_topology.m_triangles;
-    const auto kept = m_trees.find(mesh.m_id);
-    if (kept != m_trees.end() && kept->second.m_order.size() == triangles.size()) return kept->second;
-    return m_trees[mesh.m_id] = buildMeshTree(methods, triangles, mesh.m_positions.data());
+    std::shared_ptr<const MeshTree>& tree = m_trees[mesh.m_id];
+    if (tree && tree->m_order.size() == triangles.size()) return false;
+    tree = std::make_shared<const MeshTree>(buildMeshTree(methods, triangles, mesh.m_positions.data()));
+    return true;
 }
 
 bool SideHierarchy::build(const TreeMethods& methods, MeshPool& pool, BvhLayout& layout)
 {
-    const bool asTheyCame = m_used == TreeBuilder::Auto && m_trees.empty() && isAsTheyCame(methods);
-    if (m_used == methods.m_builder || asTheyCame) return false;
+    if (m_used == methods.m_builder) return false;
+    if (m_trees.empty() && isAsTheyCame(methods))
+    {
+        layOut(pool, layout);
+        return false;
+    }
     if (m_builder != methods.m_builder) m_trees.clear();
     m_builder = methods.m_builder;
+    std::vector<bool> fresh;
     for (std::size_t slot = 0; slot < pool.meshCount(); ++slot)
-        treeOf(methods, pool.mesh(slot));
-    join(pool, layout);
+        fresh.push_back(buildTree(methods, pool.mesh(slot)));
+    join(pool, fresh, layout);
     return true;
 }
 
@@ -58,23 +64,26 @@ void SideHierarchy::use(RebuiltTrees rebuilt, MeshPool& pool, BvhLayout& layout)
     m_builder = rebuilt.m_builder;
     m_trees.clear();
     for (std::size_t slot = 0; slot < pool.meshCount(); ++slot)
-        m_trees[pool.mesh(slot).m_id] = std::move(rebuilt.m_trees[slot]);
-    join(pool, layout);
+        m_trees[pool.mesh(slot).m_id] = std::make_shared<const MeshTree>(std::move(rebuilt.m_trees[slot]));
+    join(pool, std::vector<bool>(pool.meshCount(), true), layout);
 }
 
-void SideHierarchy::join(MeshPool& pool, BvhLayout& layout)
+void SideHierarchy::join(MeshPool& pool, const std::vector<bool>& fresh, BvhLayout& layout)
 {
-    std::vector<const MeshTree*> trees;
+    std::vector<std::shared_ptr<const MeshTree>> trees;
+    std::vector<const std::vector<std::uint32_t>*> orders;
     for (std::size_t slot = 0; slot < pool.meshCount(); ++slot)
-        trees.push_back(&m_trees.at(pool.mesh(slot).m_id));
-    JoinedTree joined = joinTrees(trees);
+    {
+        trees.push_back(m_trees.at(pool.mesh(slot).m_id));
+        orders.push_back(fresh[slot] ? &trees.back()->m_order : nullptr);
+    }
+    pool.reorder(orders);
     m_used = m_builder;
     m_laidOut = true;
     if (m_used == TreeBuilder::Balanced)
-        layout = makeBvhLayout(std::uint32_t(joined.m_order.size()));
+        layout = makeBvhLayout(std::uint32_t(pool.order().size()));
     else
-        layout = std::move(joined.m_layout);
-    pool.reorder(std::move(joined.m_order));
+        joinTrees(trees, layout);
 }
 
 RebuiltTrees buildMeshTrees(const TreeMethods& methods, const std::vector<Triangle>& triangles,
@@ -110,7 +119,6 @@ void Pipeline::Implementation::layOut()
 
 void Pipeline::Implementation::buildHierarchies()
 {
-    layOut();
     if (m_clothHierarchy.build(treeMethods(), m_scene.m_cloths, m_scene.m_clothLayout))
     {
         m_clothRevision = m_scene.m_cloths.revision();

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 
 #include "bullet_plugin/core/bvh/joined_tree.h"
 #include "bullet_plugin/core/mesh/mesh_pool.h"
@@ -37,12 +38,15 @@ public:
     void use(RebuiltTrees rebuilt, MeshPool& pool, BvhLayout& layout);
 
 private:
-    const MeshTree& treeOf(const TreeMethods& methods, const PooledMesh& mesh);
-    void join(MeshPool& pool, BvhLayout& layout);
+    // Returns whether it was not there.
+    bool buildTree(const TreeMethods& methods, const PooledMesh& mesh);
+    // fresh: by slot, whether the mesh's tree is another one than its leaf order is by.
+    void join(MeshPool& pool, const std::vector<bool>& fresh, BvhLayout& layout);
 
-    std::map<MeshId, MeshTree> m_trees;  // by m_builder; of every mesh of the pool when they are joined
+    // By m_builder; of every mesh of the pool when they are joined.
+    std::map<MeshId, std::shared_ptr<const MeshTree>> m_trees;
     TreeBuilder m_builder = TreeBuilder::Auto;
-    TreeBuilder m_used = TreeBuilder::Auto;  // by which the order is; Auto: as triangles came
+    TreeBuilder m_used = TreeBuilder::Auto;  // by which the layout is; Auto: pairs of neighbours
     bool m_laidOut = false;                  // the layout is the order's
 };
 
