@@ -129,6 +129,53 @@ static int takeContact(const LaneContacts* contacts, const float* rows, const ui
     return finishContact(DRAPE_IS_CONTACT, origin, contact);
 }
 
+static void askForWord(__global const void* word)
+{
+    __builtin_prefetch((const void*)(ulong)word);
+}
+
+static void askForLane(__global const float* blocks, const uint floats, __global const uint* ids, const uint lane)
+{
+    __global const float* block = blocks + lane / DRAPE_PATCH_WIDTH * floats * DRAPE_PATCH_WIDTH;
+    for (uint row = 0; row < floats; ++row) askForWord(block + row * DRAPE_PATCH_WIDTH);
+    askForWord(ids + lane);
+}
+
+// Has what a test reads brought nearer.
+static void askForTest(const LaneWork* work, const FeatureTest feature)
+{
+    const PackedFeatures* packed = &work->m_packed;
+    const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT, lane = feature.m_lane;
+    askForWord(work->m_cloth.m_triangles + (feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u)));
+    if (test < DRAPE_TEST_FACE) askForLane(packed->m_faces, DRAPE_FACE_FLOATS, packed->m_faceIds, lane);
+    else if (test == DRAPE_TEST_FACE) askForLane(packed->m_vertices, DRAPE_VERTEX_FLOATS, packed->m_vertexIds, lane);
+    else askForLane(packed->m_edges, DRAPE_EDGE_FLOATS, packed->m_edgeIds, lane);
+}
+
+// Then, once that is there, what it leads to.
+static void askForNodes(const LaneWork* work, const FeatureTest feature)
+{
+    const ClothView* cloth = &work->m_cloth;
+    const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT;
+    __global const Triangle* triangle = cloth->m_triangles + (feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u));
+    for (uint k = 0; k < 3; ++k)
+    {
+        if (test < DRAPE_TEST_FACE && k != test) continue;
+        askForWord(cloth->m_start + 3 * triangle->m_vertices[k]);
+        askForWord(cloth->m_end + 3 * triangle->m_vertices[k]);
+    }
+    if (test < DRAPE_TEST_FACE) askForWord(work->m_obstacle.m_triangles + work->m_packed.m_faceIds[feature.m_lane]);
+}
+
+static void askForRun(const LaneWork* work, const uint first, const uint end)
+{
+    for (uint item = first; item < end; ++item) askForTest(work, work->m_tests[item]);
+    for (uint item = first; item < end; ++item) askForNodes(work, work->m_tests[item]);
+}
+
+// From so many tests on what they read is seldom in the caches.
+#define DRAPE_FAR_TESTS (1u << 17)
+
 // A work-item goes through its part of the feature tests that patchCull lists and lists the hits; the tests that need the
 // continuous test it lists in swept, in no particular order. counters->m_swept must be zero before.
 __kernel void narrowPhaseFeature(DRAPE_FEATURE_ARGUMENTS, __global uint* restrict swept)
@@ -137,5 +184,8 @@ __kernel void narrowPhaseFeature(DRAPE_FEATURE_ARGUMENTS, __global uint* restric
     LaneWork work = {tests, DRAPE_CLOTH_VIEW(0), obstacle, packed, motions, list, swept, counters};
     const uint count = min(counters->m_candidates, testCapacity);
     for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextRun(&runs))
+    {
+        if (count >= DRAPE_FAR_TESTS) askForRun(&work, runs.m_item, runs.m_end);
         testRun(&work, runs.m_item, runs.m_end, mode, &list);
+    }
 }

@@ -49,22 +49,25 @@ static void storeHit(__global Contact* to, const Contact* from)
 
 static void putHit(const HitList* list, const uint place, const Contact* contact)
 {
-    if (place >= list->m_capacity) return;
-    atomic_inc(list->m_slotCount + contact->m_slot);  // before the stores: on a CPU it would wait for them
     if (list->m_hitSlots) list->m_hitSlots[place] = contact->m_slot;
     storeHit(list->m_hits + place, contact);
 }
 
 static void listHit(const HitList* list, const Contact* contact)
 {
-    putHit(list, atomic_inc(list->m_count), contact);
+    const uint place = atomic_inc(list->m_count);
+    if (place >= list->m_capacity) return;
+    atomic_inc(list->m_slotCount + contact->m_slot);
+    putHit(list, place, contact);
 }
 
-// Several at once: a CPU's cores take turns at the list's length.
+// Several at once: a CPU's cores take turns at the list's length, and an atomic waits for the stores before it.
 static void listHits(const HitList* list, const Contact* contacts, const uint count)
 {
     const uint first = count > 0 ? atomic_add(list->m_count, count) : 0;
-    for (uint i = 0; i < count; ++i) putHit(list, first + i, contacts + i);
+    const uint listed = first < list->m_capacity ? min(count, list->m_capacity - first) : 0;
+    for (uint i = 0; i < listed; ++i) atomic_inc(list->m_slotCount + contacts[i].m_slot);
+    for (uint i = 0; i < listed; ++i) putHit(list, first + i, contacts + i);
 }
 
 #endif
