@@ -5,12 +5,12 @@
 
 namespace drape
 {
-std::vector<BvhLink> makeLinks(const Hierarchy& hierarchy, std::uint32_t rootDepth)
+std::vector<BvhLink> makeLinks(const Hierarchy& hierarchy)
 {
     std::vector<BvhLink> links(hierarchy.m_nodes.size());
     if (links.empty()) return links;
     std::vector<std::uint32_t> below = {hierarchy.m_root};
-    links[hierarchy.m_root] = {hierarchy.m_root, rootDepth};
+    links[hierarchy.m_root] = {hierarchy.m_root, 0};
     while (!below.empty())
     {
         const std::uint32_t parent = below.back();

@@ -23,7 +23,7 @@ struct Hierarchy
 };
 
 // Parent and depth of every node.
-std::vector<BvhLink> makeLinks(const Hierarchy& hierarchy, std::uint32_t rootDepth = 0);
+std::vector<BvhLink> makeLinks(const Hierarchy& hierarchy);
 // Those of nodes whose children lie before them and whose root is last: what hangs below a node before `first` stays as
 // it is in `links`.
 void extendLinks(const std::vector<BvhNode>& nodes, std::uint32_t first, std::uint32_t rootDepth,

@@ -67,7 +67,7 @@ void HostTraversal::setObstacles(const BroadPhaseSide& obstacle, std::size_t kep
     if (isWide()) m_wide = makeWideLayout(obstacle.hierarchy());
     if (!walksFront()) return;
     m_rootDepth = layout.joined() ? kMeshDepth - std::uint32_t(layout.m_heights.size()) : 0;
-    extendLinks(obstacle.m_nodes, keptBlocks > 0 ? layout.blockNode(keptBlocks) : 0, m_rootDepth, m_obstacleLinks);
+    extendLinks(obstacle.m_nodes, layout.blockNode(keptBlocks), m_rootDepth, m_obstacleLinks);
 }
 
 void HostTraversal::obstaclesRefitted(const BroadPhaseSide& obstacle)
@@ -79,7 +79,7 @@ void HostTraversal::setTopology(const BroadPhaseSide& cloth)
 {
     m_front.clear();
     if (m_traversal == Traversal::Leaves || isWide()) m_leaves = leafNodes(cloth.hierarchy());
-    if (walksFront()) m_clothLinks = makeLinks(cloth.hierarchy(), m_rootDepth);
+    if (walksFront()) extendLinks(cloth.m_nodes, 0, m_rootDepth, m_clothLinks);
 }
 
 bool HostTraversal::run(const BroadPhaseSide& cloth, const BroadPhaseSide& obstacle,

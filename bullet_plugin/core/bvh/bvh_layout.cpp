@@ -93,7 +93,7 @@ void makeBvhNodes(const BvhLayout& layout, std::size_t keptBlocks, std::vector<B
     BvhNode empty = {};
     std::fill(empty.m_low, empty.m_low + DRAPE_DOP_DIRECTIONS, std::numeric_limits<float>::infinity());
     std::fill(empty.m_high, empty.m_high + DRAPE_DOP_DIRECTIONS, -std::numeric_limits<float>::infinity());
-    const std::size_t kept = keptBlocks > 0 ? layout.blockNode(keptBlocks) : 0;
+    const std::size_t kept = layout.blockNode(keptBlocks);
     nodes.resize(kept);
     reserveRoom(nodes, layout.nodeCount());
     nodes.resize(layout.nodeCount(), empty);

@@ -85,10 +85,11 @@ BvhLayout layoutByHeights(const BvhLayout& layout);
 // Those of nodes alone.
 std::vector<BvhChildren> linksOf(const std::vector<BvhNode>& nodes);
 
-// Nodes with their links set and volumes empty.
-std::vector<BvhNode> makeBvhNodes(const BvhLayout& layout);
 // Leading blocks in which two joined layouts are the same.
 std::size_t sameBlocks(const std::vector<BvhBlock>& a, const std::vector<BvhBlock>& b);
-// The same for nodes of an earlier layout with the first so many blocks in common, whose nodes stay as they are.
+
+// Nodes with their links set and volumes empty.
+std::vector<BvhNode> makeBvhNodes(const BvhLayout& layout);
+// The same from nodes of an earlier layout with the first so many blocks in common, whose nodes stay as they are.
 void makeBvhNodes(const BvhLayout& layout, std::size_t keptBlocks, std::vector<BvhNode>& nodes);
 }  // namespace drape

@@ -1,5 +1,7 @@
 #include "joined_tree.h"
 
+#include <algorithm>
+
 #include "bullet_plugin/core/mesh/reserve_room.h"
 #include "tree_builder.h"
 
@@ -49,15 +51,16 @@ MeshTree buildMeshTree(const TreeMethods& methods, const std::vector<Triangle>& 
 
 void joinTrees(const std::vector<std::shared_ptr<const MeshTree>>& meshes, BvhLayout& layout)
 {
+    if (!layout.joined()) layout = BvhLayout();
     std::size_t kept = 0, leaves = 0, nodes = 0;
     while (kept < std::min(meshes.size(), layout.m_blocks.size()) && layout.m_blocks[kept].m_tree == meshes[kept])
         ++kept;
-    for (std::size_t i = 0; i < meshes.size(); ++i)
+    for (const std::shared_ptr<const MeshTree>& mesh : meshes)
     {
-        leaves += meshes[i]->m_order.size();
-        nodes += meshes[i]->m_links.size() + 2;  // and those above
+        leaves += mesh->m_order.size();
+        nodes += mesh->m_links.size() + 2;  // and those above
     }
-    const std::uint32_t node = kept > 0 ? layout.blockNode(kept) : 0, leaf = kept > 0 ? layout.blockLeaf(kept) : 0;
+    const std::uint32_t node = layout.blockNode(kept), leaf = layout.blockLeaf(kept);
     layout.m_links.resize(node);
     layout.m_leafNodes.resize(leaf);
     layout.m_blocks.resize(kept);
