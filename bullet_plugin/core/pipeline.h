@@ -113,9 +113,9 @@ public:
     MeshId addObstacle(const MeshDescription& mesh);
     void remove(MeshId mesh);
 
-    // Brings meshes that came to the device now, or without one builds what the host walks: the next step does not pay
-    // for it, unless it is one that cost gives to the host beside a device. Waits. Not between submit() and finish();
-    // contacts of the last step are not to be looked at any more.
+    // Brings meshes that came to the device now, and builds what the host walks where there is none or where cost may
+    // leave these meshes' steps to the host: the next step does not pay for it. Waits. Not between submit() and
+    // finish(); contacts of the last step are not to be looked at any more.
     void prepare();
 
     // New positions (x y z per vertex) of an obstacle that moved or was deformed; what hangs on them is made anew, the

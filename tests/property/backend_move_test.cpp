@@ -2,6 +2,7 @@
 // and the report says where it runs and why.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -144,6 +145,24 @@ TEST_P(BackendMove, AnObstacleThatIsScaledCountsAnew)
     pipeline->addPair(cloth, ball, 0.02f);
     runStep(*pipeline);
     EXPECT_GT(pipeline->deviceReport().m_expectedPairs, before);
+}
+
+// What the host walks for 81,920 triangles takes it many times as long as the step.
+TEST_P(BackendMove, PrepareLeavesTheHostNothingToBuild)
+{
+    const auto firstStepMs = [](double crossover, bool prepared)
+    {
+        const std::unique_ptr<Pipeline> pipeline = makePipeline(byCost(crossover));
+        const MeshId ball = addObstacle(*pipeline, makeSphere(0.5f, 6));
+        addDraped(*pipeline, ball, 3);
+        if (prepared) pipeline->prepare();
+        const auto start = std::chrono::steady_clock::now();
+        runStep(*pipeline);
+        EXPECT_TRUE(pipeline->statistics().m_onHost);
+        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    };
+    for (const double crossover : {1e5, kInfinity})
+        EXPECT_LT(firstStepMs(crossover, true), 0.25 * firstStepMs(crossover, false)) << crossover;
 }
 
 TEST_P(BackendMove, SettingsAndTheVariableForceIt)

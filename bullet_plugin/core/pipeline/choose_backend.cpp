@@ -1,5 +1,6 @@
 // The back end of a scene where the settings leave it to cost: the crossover is found when the pipeline is made, and
 // held against the scene's work when its pairs change.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -19,6 +20,11 @@ std::string rounded(double value)
     char text[32];
     std::snprintf(text, sizeof text, "%.0f", value);
     return text;
+}
+
+Surface surfaceOf(const PooledMesh& mesh)
+{
+    return mesh.m_vacant ? Surface() : Surface{mesh.m_topology.m_triangles.size(), mesh.m_area};
 }
 }  // namespace
 
@@ -100,26 +106,38 @@ void Pipeline::Implementation::chooseBackend()
     if (m_pairs == m_notedPairs && m_selfCloths == m_notedSelf) return;
     m_notedPairs = m_pairs;
     m_notedSelf = m_selfCloths;
-    const auto surface = [](const MeshPool& pool, MeshId id)
-    {
-        const PooledMesh& mesh = pool.mesh(pool.slot(id));
-        return Surface{mesh.m_topology.m_triangles.size(), mesh.m_area};
-    };
+    const MeshPool& cloths = m_scene.m_cloths;
+    const MeshPool& obstacles = m_scene.m_obstacles;
+    const double reachOfThickness = 1 + double(m_settings.m_activation);
     for (const NamedPair& pair : m_pairs)
-    {
-        const double reach = double(pair.m_thickness) * (1 + double(m_settings.m_activation));
         m_choice.note(pair.m_cloth, pair.m_obstacle,
-                      expectedPairs(surface(m_scene.m_cloths, pair.m_cloth),
-                                    surface(m_scene.m_obstacles, pair.m_obstacle), reach));
-    }
-    for (MeshId cloth : m_selfCloths)
+                      expectedPairs(surfaceOf(cloths.mesh(cloths.slot(pair.m_cloth))),
+                                    surfaceOf(obstacles.mesh(obstacles.slot(pair.m_obstacle))),
+                                    double(pair.m_thickness) * reachOfThickness));
+    for (MeshId id : m_selfCloths)
     {
-        const Surface own = surface(m_scene.m_cloths, cloth);
-        const MeshPool& cloths = m_scene.m_cloths;
-        const double reach =
-            double(cloths.mesh(cloths.slot(cloth)).m_selfThickness) * (1 + double(m_settings.m_activation));
-        m_choice.note(cloth, cloth, expectedPairs(own, own, reach));
+        const PooledMesh& cloth = cloths.mesh(cloths.slot(id));
+        const Surface own = surfaceOf(cloth);
+        m_choice.note(id, id, expectedPairs(own, own, double(cloth.m_selfThickness) * reachOfThickness));
     }
     useChosen();
+}
+
+bool Pipeline::Implementation::mayStayOnHost() const
+{
+    const bool always = !m_choice.active() || std::isinf(m_report.m_crossover);
+    if (!m_report.m_onHost || always) return m_report.m_onHost;
+    const MeshPool& cloths = m_scene.m_cloths;
+    const MeshPool& obstacles = m_scene.m_obstacles;
+    double least = 0;
+    for (std::size_t cloth = 0; cloth < cloths.meshCount() && least <= m_report.m_crossover; ++cloth)
+    {
+        const Surface own = surfaceOf(cloths.mesh(cloth));
+        double most = cloths.mesh(cloth).m_selfThickness > 0.0f ? expectedPairs(own, own, 0) : 0;
+        for (std::size_t obstacle = 0; obstacle < obstacles.meshCount(); ++obstacle)
+            most = std::max(most, expectedPairs(own, surfaceOf(obstacles.mesh(obstacle)), 0));
+        least += most;
+    }
+    return least <= m_report.m_crossover;
 }
 }  // namespace drape

@@ -116,6 +116,9 @@ struct Pipeline::Implementation
     void useChosen();
     // Takes in the pairs that are named for the coming step, where they are not those of the last one.
     void chooseBackend();
+    // Whether the host may have the steps of all meshes that are there: where cost decides, by pairs of a thickness near
+    // zero, the least that any have.
+    bool mayStayOnHost() const;
     void runOnHost();
     // The step of the pairs that are left, on the back end in use.
     void enqueue();

@@ -76,7 +76,7 @@ public:
     // it the first step in which cloth comes near pays for that. What Drape does not handle costs nothing. Kept,
     // whether paired or not, until release(), before which the object must live; changes are noticed as of any other.
     // An object in a world or not; not while that is stepped. Where cost decides between host and device
-    // (Settings::m_crossover), for the device.
+    // (Settings::m_crossover), for the device, and for the host while all that is prepared may stay there.
     void prepare(const btCollisionObject* object);
     // All of a world's objects at once, which on the host takes less time than one after the other.
     void prepare(const btCollisionWorld& world);
