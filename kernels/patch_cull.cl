@@ -119,11 +119,11 @@ static void walkTree(Team* team, Packet* packet, const StepCloths* cloths, const
 {
     uint stack[DRAPE_WALK_STACK];
     uint depth = 1;
-    stack[0] = tree->m_levelCount << DRAPE_LEVEL_SHIFT;
+    stack[0] = walkEntry(tree->m_levelCount, 0);
     while (depth > 0 && team->m_place <= list->m_limit)
     {
         const uint entry = stack[--depth];
-        const uint level = entry >> DRAPE_LEVEL_SHIFT, index = entry & ((1u << DRAPE_LEVEL_SHIFT) - 1u);
+        const uint level = entryLevel(entry), index = entryIndex(entry);
         __global const float* node =
             tree->m_nodes + (tree->m_levels[level - 1] + index) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH;
         const LaneMask near = cullWideNode(&packet->m_joined, node);
@@ -132,7 +132,7 @@ static void walkTree(Team* team, Packet* packet, const StepCloths* cloths, const
             const uint child = index * DRAPE_PATCH_WIDTH + lane;
             if (level > 1)
             {
-                stack[depth++] = ((level - 1) << DRAPE_LEVEL_SHIFT) + child;
+                stack[depth++] = walkEntry(level - 1, child);
                 continue;
             }
             const LaneMask touching = cullPacketChild(&packet->m_volumes, node + lane);

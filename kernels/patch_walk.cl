@@ -95,14 +95,14 @@ static void walkTree(__local Walkers* walkers, const Walk* walk, const StepCloth
         teamSync();
         if (teamLane() == 0) team->m_depth = depth - nodes;
         teamSync();
-        const uint level = entry >> DRAPE_LEVEL_SHIFT, index = entry & ((1u << DRAPE_LEVEL_SHIFT) - 1u);
+        const uint level = entryLevel(entry), index = entryIndex(entry);
         __global const float* node =
             tree->m_nodes + (tree->m_levels[level - 1] + index) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH;
         const uint child = index * DRAPE_PATCH_WIDTH + lane;
         if (turn < nodes && cullWideChild(&walkers->m_joined, node + lane))
         {
             if (level > 1)
-                stack[atomic_inc(&team->m_depth)] = ((level - 1) << DRAPE_LEVEL_SHIFT) + child;
+                stack[atomic_inc(&team->m_depth)] = walkEntry(level - 1, child);
             else
                 walkers->m_found[atomic_inc(&walkers->m_foundCount)] = child;
         }

@@ -110,11 +110,11 @@ static void walkSelf(Team* team, const SelfCloths* cloths, const uint own, const
     const Dop volume = childVolume(cloths->m_nodes, own);
     OwnCorners corners;
     corners.m_made = 0;
-    stack[0] = cloths->m_levelCount << DRAPE_LEVEL_SHIFT;
+    stack[0] = walkEntry(cloths->m_levelCount, 0);
     while (depth > 0)
     {
         const uint entry = stack[--depth];
-        const uint level = entry >> DRAPE_LEVEL_SHIFT, index = entry & ((1u << DRAPE_LEVEL_SHIFT) - 1u);
+        const uint level = entryLevel(entry), index = entryIndex(entry);
         const uint below = patchesBelow(level);
         const LaneMask near = wideOverlaps(
             &volume, cloths->m_nodes + (cloths->m_levels[level - 1] + index) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH);
@@ -123,7 +123,7 @@ static void walkSelf(Team* team, const SelfCloths* cloths, const uint own, const
             const uint next = index * DRAPE_PATCH_WIDTH + lane;
             if ((next + 1) * below <= own) continue;  // patches before this one look for it
             if (level > 1)
-                stack[depth++] = ((level - 1) << DRAPE_LEVEL_SHIFT) + next;
+                stack[depth++] = walkEntry(level - 1, next);
             else if (cloths->m_patches[next].m_mesh == cloths->m_patches[own].m_mesh &&
                      !pairPatches(team, cloths, &corners, own, next, list))
                 return;

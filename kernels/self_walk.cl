@@ -43,7 +43,7 @@ static int listPatches(__local SelfWalker* walker, const uint own, __global Cand
 // A work-group takes a patch. The tree's volumes are those that
 // selfPack wrote and patchWiden joined. radius: as there. Past the limit a group ends: see lib/team.h. counters->m_selfPairs
 // must be zero before.
-__kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH, 1, 1))) void selfWalk(__global const Patch* restrict patches, const uint patchCount, __global const float* restrict radius,
+__kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH, 1, 1))) void selfWalk(__global const Patch* restrict patches, __global const float* restrict radius,
                        __global const float* restrict wideNodes, __global const uint* restrict levels, const uint levelCount,
                        __global Candidate* restrict list, const uint capacity, const uint limit,
                        __global StepCounters* restrict counters)
@@ -68,14 +68,14 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDT
         barrier(CLK_LOCAL_MEM_FENCE);
         if (get_local_id(0) == 0) walker.m_depth = depth - nodes;
         barrier(CLK_LOCAL_MEM_FENCE);
-        const uint level = entry >> DRAPE_LEVEL_SHIFT, index = entry & ((1u << DRAPE_LEVEL_SHIFT) - 1u);
+        const uint level = entryLevel(entry), index = entryIndex(entry);
         const uint next = index * DRAPE_PATCH_WIDTH + lane;
         const int ahead = (next + 1) * patchesBelow(level) > own;  // patches before this one look for it
         if (turn < nodes && ahead &&
             wideOverlaps(&volume, wideNodes + (levels[level - 1] + index) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH))
         {
             if (level > 1)
-                walker.m_stack[atomic_inc(&walker.m_depth)] = ((level - 1) << DRAPE_LEVEL_SHIFT) + next;
+                walker.m_stack[atomic_inc(&walker.m_depth)] = walkEntry(level - 1, next);
             else if (patches[next].m_mesh == mesh)
                 walker.m_kept[atomic_inc(&walker.m_keptCount)] = next;
         }

@@ -1,4 +1,4 @@
-// Volumes of a packet of cloth triangles, a lane each: what cullVolume() and cullWideChild() do for one triangle, see
+// Volumes of a packet of cloth triangles, a lane each: what a GPU's walk (patch_walk.cl) makes for one triangle, see
 // feature_cull.h. And those of one triangle's nodes and edges, a lane for each direction.
 #ifndef DRAPE_LIB_CULL_PACKET_H
 #define DRAPE_LIB_CULL_PACKET_H
@@ -16,7 +16,7 @@ typedef struct CullVolumes
 } CullVolumes;
 
 // Of positions whose |x| + |y| + |z| is at most 1, most that roundings take from a volume: as dopGrowInterval() and
-// cullVolume() have it, with that sum in the place of every projection.
+// cullInterval() have it, with that sum in the place of every projection.
 #define DRAPE_PACKET_PAD 6.1e-7f
 
 // How triangles of a packet move. m_stays: those that are not swept; m_moved: m, squared, of the fastest corner.
@@ -93,7 +93,7 @@ DRAPE_FUNCTION LaneMask cullVolumes(CullVolumes* cull, LanesVec3* p, Lanes radiu
     cull->m_radius = radius;
     cull->m_least = lanesSelect(sure, unswept + DRAPE_CULL_MET * radius, radius);
 
-    cull->m_noise = DRAPE_CULL_NOISE * (2.0f * radius + packetIntervals(cull, p));
+    cull->m_noise = lanesMin(DRAPE_CULL_NOISE * (2.0f * radius + packetIntervals(cull, p)), radius);
     cull->m_rounding = DRAPE_PACKET_PAD * farthest + DRAPE_TINY;
     LaneMask near = radius >= 0.0f;
     DRAPE_UNROLL

@@ -85,6 +85,7 @@ DRAPE_FUNCTION int edgeEdgeContact(FeatureEdge e0, FeatureEdge e1, FeatureEdge o
     const float highObstacle = drapeMax(vec3Dot(offset, o.m_a), vec3Dot(offset, o.m_b));
     if (provenApart(offset, lowCloth, highObstacle, bounds)) return 0;
     const float distance = vec3Length(offset);
+    if (edgesAreOutOfReach(distance, e1, o, bounds)) return 0;
     Vec3 normal;
     if (distance > DRAPE_SEAM * bounds.m_extent)
     {

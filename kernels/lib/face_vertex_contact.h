@@ -90,6 +90,7 @@ DRAPE_FUNCTION int faceVertexContact(const MovingFace* face, const DRAPE_UINT* b
     const float lowFace =
         drapeMin(drapeMin(vec3Dot(offset, f1.m_p[0]), vec3Dot(offset, f1.m_p[1])), vec3Dot(offset, f1.m_p[2]));
     if (provenApart(offset, lowFace, vec3Dot(offset, vertex), bounds)) return 0;
+    if (pointIsOutOfReach(distance, vertex, &f1, bounds)) return 0;
     if (distance > DRAPE_SEAM * bounds.m_extent && (zeros == 1 || thin))
     {
         normal = vec3Direction(offset, distance);

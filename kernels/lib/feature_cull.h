@@ -341,7 +341,7 @@ typedef struct CullCorners
     Vec3 m_p[6];         // m, at the step's start and end; without the sweep at the end twice
     int m_swept;         // see isSwept()
     DRAPE_UINT m_valid;  // features, see replaceInvalidCorners()
-    float m_size;        // m, of what is compared
+    float m_noise;       // m, see DRAPE_CULL_NOISE: no more than the reach, which holds whatever the cones admit
 } CullCorners;
 
 // The volume's interval along direction i.
@@ -349,8 +349,8 @@ DRAPE_FUNCTION void cullInterval(const CullCorners* corners, int i, float* low, 
 {
     cornersInterval(corners->m_p, i, corners->m_swept, 0.0f, low, high);
     // Four roundings of what the comparison subtracts, and the noise of directions.
-    *low -= DRAPE_CULL_NOISE * corners->m_size * dopNorm(i) + 2.4e-7f * drapeAbs(*low);
-    *high += DRAPE_CULL_NOISE * corners->m_size * dopNorm(i) + 2.4e-7f * drapeAbs(*high);
+    *low -= corners->m_noise * dopNorm(i) + 2.4e-7f * drapeAbs(*low);
+    *high += corners->m_noise * dopNorm(i) + 2.4e-7f * drapeAbs(*high);
 }
 
 // Returns whether the volume holds anything. least: as in CullVolume.
@@ -372,13 +372,14 @@ DRAPE_FUNCTION int cullCorners(CullCorners* corners, float* least, const DRAPE_G
     *least = moved + DRAPE_CULL_MET * radius;
     const int thin = cullNormal(p + 3, &normal, &height);
     if (corners->m_valid != DRAPE_ALL_FEATURES || thin || height < DRAPE_CULL_SMALL * radius) *least = radius;
-    corners->m_size = 2.0f * radius;
+    float size = 2.0f * radius;
     for (int i = 0; i < 3; ++i)
     {
         float low, high;
         cornersInterval(p, i, corners->m_swept, 0.0f, &low, &high);
-        corners->m_size += high - low;
+        size += high - low;
     }
+    corners->m_noise = drapeMin(DRAPE_CULL_NOISE * size, radius);
     return corners->m_valid != 0u;
 }
 
@@ -393,20 +394,6 @@ DRAPE_FUNCTION int cullMeets(const CullCorners* corners, float radius, const DRA
         meets &= (low - radius <= motion->m_high[axis]) & (high + radius >= motion->m_low[axis]);
     }
     return meets;
-}
-
-// Returns whether it may come near the obstacle.
-DRAPE_FUNCTION int cullVolume(CullVolume* cull, const DRAPE_GLOBAL ObstacleMotion* motion,
-                              const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
-                              const DRAPE_GLOBAL float* end, float radius, DRAPE_UINT mode)
-{
-    CullCorners corners;
-    cull->m_radius = radius;
-    if (!cullCorners(&corners, &cull->m_least, motion, triangle, start, end, radius, mode)) return 0;
-    DRAPE_UNROLL
-    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
-        cullInterval(&corners, i, cull->m_volume.m_low + i, cull->m_volume.m_high + i);
-    return cullMeets(&corners, radius, motion);
 }
 
 // Whether the triangle is not proved out of reach of one child of a wide node (patch.h), in its features' directions.

@@ -10,6 +10,7 @@
 
 #include "ccd.h"
 #include "feature_contact.h"
+#include "ways.h"
 
 DRAPE_NAMESPACE_BEGIN
 
@@ -143,9 +144,9 @@ DRAPE_FUNCTION Meeting meetFeatures(DRAPE_UINT kind, const Vec3 start[4], const 
     const CcdVectors vectors = ccdVectors(kind, start, end);
     const CcdResult result = ccdRun(&vectors, kind == DRAPE_VERTEX_FACE, settings);
     Meeting meeting;
-    meeting.m_met = result.m_hit;
+    meeting.m_met = result.m_hit && waysOverlap(start, end, kind == DRAPE_VERTEX_FACE ? 1 : 2, DRAPE_WAY_REACH * bounds.m_reach);
     meeting.m_time = meeting.m_place = result.m_time;
-    if (result.m_hit)
+    if (meeting.m_met)
     {
         const float latest = drapeMin(1.0f, result.m_time + 2.0f * settings.m_timeTolerance);
         const float middle = result.m_time + 0.5f * (latest - result.m_time);

@@ -1,8 +1,8 @@
 // Contacts of as many feature tests of one kind as there are lanes, on a CPU: what node_face_contact.h,
 // face_vertex_contact.h and edge_edge_contact.h compute for one pair, rounded alike, so the same bits. Lanes with anything
 // out of the ordinary stay open, for the caller to test one by one: thin faces, features that may meet, nodes that passed a
-// face's plane, edges that touch or are nearly parallel, positions that are invalid. Not for continuous steps, which search every pair for a
-// meeting.
+// face's plane, features that may be out of reach after all, edges that touch or are nearly parallel, positions that are
+// invalid. Not for continuous steps, which search every pair for a meeting.
 #ifndef DRAPE_LIB_LANE_CONTACTS_H
 #define DRAPE_LIB_LANE_CONTACTS_H
 
@@ -278,10 +278,11 @@ static LaneMask laneValid(const float* rows, const int count)
 
 // Stores the contacts of lanes whose features are near at the step's end. direct: those whose normal is the offset's.
 static void laneNear(LaneContacts* contacts, const LaneMask found, const LaneMask direct, const LanesVec3 plane,
-                     const LanesVec3 startOffset)
+                     const LanesVec3 startOffset, const LaneBounds* bounds)
 {
     const LanesVec3 direction = exactScale(contacts->m_offset, 1.0f / contacts->m_distance);
     contacts->m_open |= direct & lanesNot(contacts->m_distance > 1e-18f);
+    contacts->m_open |= found & (contacts->m_distance > bounds->m_reach - DRAPE_WAY_ROUNDING * bounds->m_extent);
     contacts->m_normal = lanesChoose(direct, direction, plane);
     contacts->m_gap0 = exactDot(contacts->m_normal, startOffset);
     contacts->m_gap1 = exactDot(contacts->m_normal, contacts->m_offset);
@@ -316,7 +317,7 @@ static void laneNodeFace(LaneContacts* contacts, const float* rows, const uint m
     const LaneMask onFace = (weights.x > 0.0f) & (weights.y > 0.0f) & (weights.z > 0.0f);
     const LaneMask direct = (contacts->m_distance > DRAPE_SEAM * bounds.m_extent) & lanesNot(onFace);
     laneNear(contacts, lanesNot(apart) & (direct | lanesNot(area.m_length == 0.0f)), direct,
-             lanePlane(&area, side), lanesSub(x0, point));
+             lanePlane(&area, side), lanesSub(x0, point), &bounds);
     contacts->m_asks = direct;
     contacts->m_weights = weights;
 }
@@ -347,7 +348,7 @@ static void laneFaceVertex(LaneContacts* contacts, const float* rows, const uint
     const LaneMask direct = lanesNot(inside) & (contacts->m_distance > DRAPE_SEAM * face.m_bounds.m_extent);
     const Lanes sign = lanesSelect(face.m_after < 0.0f, lanesSplat(1.0f), lanesSplat(-1.0f));
     laneNear(contacts, lanesNot(apart | corner) & (direct | lanesNot(face.m_area.m_length == 0.0f)), direct,
-             lanePlane(&face.m_area, sign), lanePoint(start, weights));
+             lanePlane(&face.m_area, sign), lanePoint(start, weights), &face.m_bounds);
     const LaneMask admitted = lanesAbs(exactDot(axis, contacts->m_normal)) >= cosine;
     contacts->m_found &= admitted | lanesNot(inside | direct);
     contacts->m_asks = direct;
@@ -454,7 +455,7 @@ static void laneEdgesNear(LaneContacts* contacts, const LaneEdges* start, const 
         laneApart(contacts->m_offset, crossing->m_low, crossing->m_high, bounds);
     const LaneMask found = admitted & (s > 0.0f) & (s < 1.0f) & (t > 0.0f) & (t < 1.0f) & lanesNot(apart);
     contacts->m_open |= found & lanesNot(contacts->m_distance > DRAPE_SEAM * bounds->m_extent);
-    laneNear(contacts, found, found, contacts->m_offset, laneOffset(start, crossing->m_places));
+    laneNear(contacts, found, found, contacts->m_offset, laneOffset(start, crossing->m_places), bounds);
     contacts->m_asks = lanesMaskSplat(0);
 }
 

@@ -48,7 +48,7 @@ static void laneSelfNodeFace(LaneContacts* contacts, const float* rows, const ui
     const LaneMask boundary = lanesNot((weights.x > 0.0f) & (weights.y > 0.0f) & (weights.z > 0.0f));
     const Lanes sign = lanesSelect(face.m_after < 0.0f, lanesSplat(-1.0f), lanesSplat(1.0f));
     laneNear(contacts, found, boundary, lanePlane(&face.m_area, sign),
-             exactScale(lanePoint(start + 1, weights), lanesSplat(-1.0f)));
+             exactScale(lanePoint(start + 1, weights), lanesSplat(-1.0f)), &face.m_bounds);
     contacts->m_asks = boundary;
     contacts->m_weights = weights;
 }

@@ -4,6 +4,7 @@
 #define DRAPE_LIB_NODE_FACE_CONTACT_H
 
 #include "feature_contact.h"
+#include "ways.h"
 
 DRAPE_NAMESPACE_BEGIN
 
@@ -19,6 +20,16 @@ DRAPE_FUNCTION NormalCone closestFeatureCone(Vec3 weights, const DRAPE_GLOBAL Tr
     if (weights.z == 0.0f) return edgeCones[triangle->m_edges[0]];
     if (weights.x == 0.0f) return edgeCones[triangle->m_edges[1]];
     return edgeCones[triangle->m_edges[2]];
+}
+
+// Whether a path through the face's plane went through the face, which it came as near as `distance`, m.
+DRAPE_FUNCTION int wentThrough(Vec3 x0, Vec3 x1, const FeatureTriangle* face, float distance, PairBounds bounds)
+{
+    if (distance > DRAPE_SEAM * bounds.m_extent) return 0;
+    if (distance <= DRAPE_WAY_REACH * bounds.m_reach) return 1;
+    const Vec3 start[4] = {x0, face->m_p[0], face->m_p[1], face->m_p[2]};
+    const Vec3 end[4] = {x1, face->m_p[0], face->m_p[1], face->m_p[2]};
+    return waysOverlap(start, end, 1, DRAPE_WAY_REACH * bounds.m_reach);
 }
 
 // Node moving from x0 to x1 against a resting face. Returns whether there is a contact.
@@ -46,7 +57,7 @@ DRAPE_FUNCTION int nodeFaceContact(Vec3 x0, Vec3 x1, const RestingFace* resting,
         const Vec3 hit = vec3Mix(x0, x1, time);
         const Vec3 weights = closestOnFace(hit, face, thin);
         const Vec3 point = featurePoint(face, weights);
-        if (vec3Length(vec3Sub(hit, point)) <= DRAPE_SEAM * bounds.m_extent)
+        if (wentThrough(x0, x1, &face, vec3Length(vec3Sub(hit, point)), bounds))
         {
             storeContact(contact, normal, point, vec3(1.0f, 0.0f, 0.0f), vec3Dot(normal, vec3Sub(x0, point)),
                          vec3Dot(normal, vec3Sub(x1, point)), time);
@@ -62,6 +73,7 @@ DRAPE_FUNCTION int nodeFaceContact(Vec3 x0, Vec3 x1, const RestingFace* resting,
         drapeMax(drapeMax(vec3Dot(offset, face.m_p[0]), vec3Dot(offset, face.m_p[1])), vec3Dot(offset, face.m_p[2]));
     if (provenApart(offset, vec3Dot(offset, x1), highFace, bounds)) return 0;
     const float distance = vec3Length(offset);
+    if (pointIsOutOfReach(distance, x1, &face, bounds)) return 0;
     const int onFace = weights.x > 0.0f && weights.y > 0.0f && weights.z > 0.0f;
     if (distance > DRAPE_SEAM * bounds.m_extent && (!onFace || thin))
     {

@@ -123,6 +123,7 @@ DRAPE_FUNCTION int selfNodeNear(const ClothView* cloth, const DRAPE_GLOBAL Trian
         drapeMax(drapeMax(vec3Dot(offset, f.m_p[0]), vec3Dot(offset, f.m_p[1])), vec3Dot(offset, f.m_p[2]));
     if (provenApart(offset, 0.0f, most, bounds)) return DRAPE_NO_CONTACT;
     const float distance = vec3Length(point);
+    if (pointIsOutOfReach(distance, origin, &f, bounds)) return DRAPE_NO_CONTACT;
     const int inside = weights.x > 0.0f && weights.y > 0.0f && weights.z > 0.0f;
     Vec3 normal;
     if (distance > DRAPE_SEAM * bounds.m_extent)
@@ -231,6 +232,7 @@ DRAPE_FUNCTION int selfEdgesNear(const EdgePair* pair, PairBounds bounds, Contac
     const float high = drapeMax(vec3Dot(offset, o.m_a), vec3Dot(offset, o.m_b));
     if (provenApart(offset, low, high, bounds)) return DRAPE_NO_CONTACT;
     const float distance = vec3Length(offset);
+    if (edgesAreOutOfReach(distance, e, o, bounds)) return DRAPE_NO_CONTACT;
     const float before = bounds.m_mode == DRAPE_DISCRETE ? v1 : pair->m_v0;
     const Vec3 normal = distance > DRAPE_SEAM * bounds.m_extent
                             ? vec3Direction(offset, distance)

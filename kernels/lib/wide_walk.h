@@ -16,13 +16,29 @@
 // The root's children where they are this few are where a group's walk begins.
 #define DRAPE_WALK_BEGIN 4
 
+static uint walkEntry(const uint level, const uint index)
+{
+    return (level << DRAPE_LEVEL_SHIFT) + index;
+}
+
+static uint entryLevel(const uint entry)
+{
+    return entry >> DRAPE_LEVEL_SHIFT;
+}
+
+// The node's place in its level.
+static uint entryIndex(const uint entry)
+{
+    return entry & ((1u << DRAPE_LEVEL_SHIFT) - 1u);
+}
+
 // Puts the root on the stack, or its children where they are few. Returns how many.
 static uint beginWalk(__local uint* stack, __global const uint* levels, const uint top)
 {
     const uint children = top > 1 ? levels[top - 1] - levels[top - 2] : 0;
     const int skips = children > 0 && children <= DRAPE_WALK_BEGIN;
     const uint nodes = skips ? children : 1, level = skips ? top - 1 : top;
-    for (uint i = 0; i < nodes; ++i) stack[i] = (level << DRAPE_LEVEL_SHIFT) + i;
+    for (uint i = 0; i < nodes; ++i) stack[i] = walkEntry(level, i);
     return nodes;
 }
 
@@ -30,7 +46,7 @@ static uint beginWalk(__local uint* stack, __global const uint* levels, const ui
 static uint nodesInTurn(__local const uint* stack, const uint depth, const uint most)
 {
     uint nodes = 1;
-    while (nodes < min(depth, most) && stack[depth - 1 - nodes] >> DRAPE_LEVEL_SHIFT == stack[depth - 1] >> DRAPE_LEVEL_SHIFT)
+    while (nodes < min(depth, most) && entryLevel(stack[depth - 1 - nodes]) == entryLevel(stack[depth - 1]))
         ++nodes;
     return nodes;
 }

@@ -13,7 +13,7 @@ typedef struct NodePair
     DRAPE_UINT m_obstacle;
 } NodePair;
 
-// Where a node hangs. The root is its own parent, at depth 0.
+// Where a node hangs. A root is its own parent.
 typedef struct BvhLink
 {
     DRAPE_UINT m_parent;

@@ -2,6 +2,8 @@
 // move.
 #include <gtest/gtest.h>
 
+#include "scenes/cloth_grid.h"
+#include "scenes/shapes.h"
 #include "tests/support/backends.h"
 #include "tests/support/pipeline_driver.h"
 #include "tests/support/live_scene.h"
@@ -96,6 +98,27 @@ TEST_P(HostDeviceTest, LargeStepGrowsBuffersAndAgrees)
     EXPECT_GT(m_host->statistics().m_intersections, 100u);
     EXPECT_TRUE(sameBytes(device, host)) << difference(device, host);
     EXPECT_GT(host.size(), 10000u);
+}
+
+// Ways and faces a hundred thousand times as long as contacts reach, where rounding alone is farther than that.
+TEST_P(HostDeviceTest, StepsFarLongerThanTheReach)
+{
+    ASSERT_TRUE(makeBoth());
+    const TriangleMesh ball = makeSphere(0.005f, 4), cloth = makeClothGrid(13, 13, 0.012f, 0.0065f).m_mesh;
+    for (const float way : {0.1f, 16.67f, 1000.0f})
+    {
+        for (const bool torn : {false, true})  // every third node stays near
+        {
+            SCOPED_TRACE(std::to_string(way) + (torn ? " m, torn" : " m"));
+            StepCase step = {"long ways", 0, cloth, ball, cloth.m_positions, 1e-4f};
+            for (std::size_t i = 1; i < step.m_end.size(); i += 3)
+                step.m_end[i] -= torn && i % 9 == 1 ? 0.0012f : way;
+            const std::vector<Contact> host = runCase(*m_host, step), device = runCase(*m_device, step);
+            EXPECT_TRUE(sameBytes(device, host)) << difference(device, host);
+            EXPECT_GT(host.size(), 500u);
+            EXPECT_LT(m_device->statistics().m_candidates, 500000u) << "the cull holds";
+        }
+    }
 }
 
 // Two runs of the same on one device: the order of its work-items leaves no trace.

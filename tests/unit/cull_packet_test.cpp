@@ -20,6 +20,18 @@ struct Counts
     int m_tried = 0, m_out = 0;  // nodes against patches beside the opposite edge
 };
 
+// Volumes of one triangle as kernels/patch_walk.cl makes them. Returns whether it may come near the obstacle.
+int cullVolume(CullVolume* cull, const ObstacleMotion* motion, const Triangle* triangle, const float* start,
+               const float* end, std::uint32_t mode)
+{
+    CullCorners corners;
+    cull->m_radius = kRadius;
+    if (!cullCorners(&corners, &cull->m_least, motion, triangle, start, end, kRadius, mode)) return 0;
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+        cullInterval(&corners, i, cull->m_volume.m_low + i, cull->m_volume.m_high + i);
+    return cullMeets(&corners, kRadius, motion);
+}
+
 // The lane of direction i.
 Directions directionLane(int i)
 {
@@ -80,7 +92,7 @@ void expectSameVolume(const StepCase& step, const Triangle& triangle, std::uint3
 {
     CullVolume single;
     const int mayComeNear =
-        cullVolume(&single, motion, &triangle, step.m_cloth.m_positions.data(), step.m_end.data(), kRadius, mode);
+        cullVolume(&single, motion, &triangle, step.m_cloth.m_positions.data(), step.m_end.data(), mode);
     Vec3 corners[6];
     LanesVec3 lanes[6];
     cornersSeen(corners, motion, &triangle, step.m_cloth.m_positions.data(), step.m_end.data());

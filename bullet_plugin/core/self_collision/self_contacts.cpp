@@ -17,7 +17,7 @@ constexpr std::size_t kTurns = 4;
 constexpr std::size_t kPairGroupsPerUnit = 24;
 constexpr std::size_t kFirstPairs = 1 << 14;
 
-// The features that the lanes' owners name: triangles, or their vertices or edges.
+// The features that the lanes' owners name: their vertices or edges.
 enum class Lane
 {
     Vertex,
@@ -135,8 +135,8 @@ void SelfContactStage::enqueuePack(Device& device, SelfBuffers step, Buffer<floa
 void SelfContactStage::enqueueWalk(Device& device, SelfBuffers step, Buffer<StepCounters>& counters)
 {
     const std::size_t group = kTurns * PatchCullStage::width(device), patchCount = m_layout.m_patches.size();
-    m_walk.launch(device, patchCount * group, group, m_patches.handle(), cl_uint(patchCount), m_radius.handle(),
-                  m_wideNodes.handle(), m_levels.handle(), cl_uint(m_layout.m_levels.size() - 1), m_pairs.handle(),
+    m_walk.launch(device, patchCount * group, group, m_patches.handle(), m_radius.handle(), m_wideNodes.handle(),
+                  m_levels.handle(), cl_uint(m_layout.m_levels.size() - 1), m_pairs.handle(),
                   cl_uint(m_pairs.capacity()), cl_uint(step.m_limit), counters.handle());
 }
 

@@ -1,0 +1,61 @@
+// Features that the feature tests take for met or near, against the directions of the volumes.
+//
+// Tests drop a pair only on proof, so that where a feature is long, far from the other or degenerate, rounding may keep one
+// that is farther apart than the reach: farther than volumes hold, which then were to blame for whether there is a contact.
+// What is told here is proof, too, and the same that any traversal's volumes give: what is kept, all of them hold.
+#ifndef DRAPE_LIB_WAYS_H
+#define DRAPE_LIB_WAYS_H
+
+#include "dop.h"
+#include "feature_contact.h"
+
+DRAPE_NAMESPACE_BEGIN
+
+// Share of the reach by which ways of features that met may be apart, less than volumes hold beyond them in any direction
+// (DRAPE_CULL_MET of feature_cull.h).
+#define DRAPE_WAY_REACH 0.01f
+// Share of a pair's extent by which distances round.
+#define DRAPE_WAY_ROUNDING 3e-6f
+
+// Whether the ways of two features, of the first `count` points and of the others, are not proved farther apart than the
+// distance, m.
+DRAPE_FUNCTION int waysOverlap(const Vec3 start[4], const Vec3 end[4], int count, float distance)
+{
+    int overlap = 1;
+    for (int i = 0; i < DRAPE_DOP_DIRECTIONS && overlap; ++i)
+    {
+        float low[2] = {DRAPE_INFINITY, DRAPE_INFINITY}, high[2] = {-DRAPE_INFINITY, -DRAPE_INFINITY};
+        for (int k = 0; k < 4; ++k)
+        {
+            const float from = dopProject(start[k], i), to = dopProject(end[k], i);
+            const float inner = drapeMax(dopInner(start[k], i), dopInner(end[k], i));
+            dopGrowInterval(low + (k >= count), high + (k >= count), drapeMin(from, to), drapeMax(from, to),
+                            0.5f * distance * dopNorm(i), inner);
+        }
+        overlap = (low[0] <= high[1]) & (low[1] <= high[0]);
+    }
+    return overlap;
+}
+
+// Whether features whose distance was found to be this, m, are farther apart than the reach after all.
+DRAPE_FUNCTION int outOfReach(float distance, const Vec3 points[4], int count, PairBounds bounds)
+{
+    return distance > bounds.m_reach - DRAPE_WAY_ROUNDING * bounds.m_extent &&
+           !waysOverlap(points, points, count, bounds.m_reach);
+}
+
+DRAPE_FUNCTION int pointIsOutOfReach(float distance, Vec3 point, const FeatureTriangle* face, PairBounds bounds)
+{
+    const Vec3 points[4] = {point, face->m_p[0], face->m_p[1], face->m_p[2]};
+    return outOfReach(distance, points, 1, bounds);
+}
+
+DRAPE_FUNCTION int edgesAreOutOfReach(float distance, FeatureEdge e, FeatureEdge o, PairBounds bounds)
+{
+    const Vec3 points[4] = {e.m_a, e.m_b, o.m_a, o.m_b};
+    return outOfReach(distance, points, 2, bounds);
+}
+
+DRAPE_NAMESPACE_END
+
+#endif
