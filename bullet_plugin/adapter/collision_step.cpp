@@ -152,7 +152,10 @@ void CollisionStep::receiveAll()
     StepStatistics& all = m_state.m_statistics;
     all = m_state.pipeline().statistics();
     all.m_status |= before.m_status;
+    all.m_clothsLeftOut = std::max(all.m_clothsLeftOut, before.m_clothsLeftOut);
+    all.m_invalidNodes = std::max(all.m_invalidNodes, before.m_invalidNodes);
     all.m_retries += before.m_retries;
+    all.m_rebuilds += before.m_rebuilds;
     all.m_waitMs += before.m_waitMs;
     all.m_refitMs += before.m_refitMs;
     all.m_broadMs += before.m_broadMs;

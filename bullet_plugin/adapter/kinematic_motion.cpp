@@ -1,7 +1,9 @@
 #include "bullet_plugin/adapter/kinematic_motion.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "BulletCollision/CollisionShapes/btCollisionShape.h"
 #include "BulletDynamics/Dynamics/btRigidBody.h"
 #include "LinearMath/btTransformUtil.h"
 
@@ -79,6 +81,18 @@ bool isNear(const btTransform& from, const btTransform& to, const btVector3& vel
     return shift.length() <= farthest + kShiftNoise && turnBetween(from, to).m_angle <= most + kMostPoses * kAngleNoise;
 }
 
+// Farther than this, m and radii of the shape, no step moves an object: it was put elsewhere. Bullet takes a soft body
+// out of its simulation whose box is 10^6 m across.
+constexpr btScalar kMostShift = 100, kMostRadii = 100, kMostOfAll = btScalar(2.5e5);
+
+btScalar mostShift(const btCollisionObject& object)
+{
+    btVector3 centre;
+    btScalar radius = 0;
+    if (object.getCollisionShape()) object.getCollisionShape()->getBoundingSphere(centre, radius);
+    return std::min(std::max(kMostShift, kMostRadii * radius), kMostOfAll);
+}
+
 // The pose at which Bullet took the velocity, where it does.
 const btTransform& noticedBy(const btCollisionObject& object)
 {
@@ -141,8 +155,10 @@ void KinematicMotions::advance(Tracked& tracked, const btCollisionObject& object
         whole = !tracked.m_shares || (substepsBetween(from, pose, velocity, angularVelocity, m_dt) == 0 &&
                                       substepsBetween(noticed, pose, velocity, angularVelocity, m_dt) > 0);
     }
-    tracked.m_motion =
-        whole && m_dt > 0 ? BodyMotion{from, pose} : motionInStep(from, pose, velocity, angularVelocity, m_dt);
+    BodyMotion& motion = tracked.m_motion;
+    motion = whole && m_dt > 0 ? BodyMotion{from, pose} : motionInStep(from, pose, velocity, angularVelocity, m_dt);
+    if ((motion.m_end.getOrigin() - motion.m_start.getOrigin()).length() > mostShift(object))
+        motion = BodyMotion{pose, pose};
 }
 
 BodyMotion KinematicMotions::observe(const btCollisionObject& object)

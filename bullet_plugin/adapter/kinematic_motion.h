@@ -3,7 +3,9 @@
 // Bullet gives a kinematic object its pose at the end of stepSimulation() in the first of its substeps, and a velocity:
 // the difference to its interpolation transform over the time of all substeps (btRigidBody::saveKinematicState). So a
 // pose that changes with a velocity is motion, and a pose that changes without one is a jump: that is how
-// setInterpolationWorldTransform() with the same pose tells a teleport, to Bullet and to Drape.
+// setInterpolationWorldTransform() with the same pose tells a teleport, to Bullet and to Drape. So does a motion by
+// more than 100 m and 100 times the shape's radius in one step, or by more than 250 km: a body that an app parks out of
+// sight.
 //
 // Job: remember where each object was at the end of the step before and say where it is at this one's start and end.
 // The motion of several substeps is shared out among them, at constant velocity. An object that was not there in the

@@ -71,20 +71,31 @@ void ClothMirror::readTopology()
         for (int k = 0; k < 3; ++k)
             triangles.push_back(nodeIndex(*m_body, m_body->m_faces[f].m_n[k]));
     m_faces = ClothFaces(std::move(triangles), static_cast<std::size_t>(nodes));
-    std::vector<btVector3> places;
-    for (int i = 0; i < nodes; ++i)
-        places.push_back(m_body->m_nodes[i].m_x);
-    m_parts.cut(std::move(places));
+    cutParts();
     m_nodeArray = nodes > 0 ? &m_body->m_nodes[0] : nullptr;
     m_faceArray = faces > 0 ? &m_body->m_faces[0] : nullptr;
     m_fullCheck = false;
     m_cursor = 0;
 }
 
+// What a trajectory depends on, so that nothing of a body that lay here before may be left in it.
+void ClothMirror::cutParts()
+{
+    std::vector<btVector3> places;
+    for (int i = 0; i < m_body->m_nodes.size(); ++i)
+        places.push_back(m_body->m_nodes[i].m_x);
+    m_parts.cut(std::move(places));
+    m_takenUp = false;
+}
+
 MeshId ClothMirror::refresh(Pipeline& pipeline)
 {
     const std::vector<std::int32_t>& triangles = m_faces.triangles();
-    if (!topologyChanged() && (m_id != kNoMesh || triangles.empty())) return m_id;
+    if (!topologyChanged() && (m_id != kNoMesh || triangles.empty()))
+    {
+        if (m_takenUp) cutParts();
+        return m_id;
+    }
     if (m_id != kNoMesh) pipeline.remove(m_id);
     m_id = kNoMesh;
     readTopology();
@@ -99,6 +110,7 @@ MeshId ClothMirror::refresh(Pipeline& pipeline)
     mesh.m_triangleCount = triangles.size() / 3;
     mesh.m_positions = positions.data();
     mesh.m_vertexCount = m_faces.nodeCount();
+    mesh.m_looseVertices = true;  // what hangs on it, or is left where faces were cut away
     m_id = pipeline.addCloth(mesh);
     return m_id;
 }

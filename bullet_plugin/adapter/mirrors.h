@@ -57,9 +57,10 @@ public:
     void writeNodes(const NodeStretch& stretch) const;
     // As the pipeline has them.
     const ClothFaces& faces() const { return m_faces; }
-    // Of the nodes as they lay when the topology was read.
+    // Of the nodes as they lay when the topology was read, or when it was last taken up.
     const ClothParts& parts() const { return m_parts; }
-    void requireFullCheck() { m_fullCheck = true; }
+    // For who uses it first, or again: the body may be another one in the same place.
+    void takeUp() { m_fullCheck = m_takenUp = true; }
 
     int m_owners = 0;  // algorithms alive that use this mirror, and who had it prepared
     bool m_prepared = false;
@@ -69,6 +70,7 @@ private:
     bool topologyChanged();
     bool sameFaces(int begin, int end) const;
     void readTopology();
+    void cutParts();
 
     const btSoftBody* m_body;  // followed only while a pair of the current step names it
     MeshId m_id = kNoMesh;
@@ -77,6 +79,7 @@ private:
     const void* m_nodeArray = nullptr;
     const void* m_faceArray = nullptr;
     int m_cursor = 0;
+    bool m_takenUp = false;  // since the parts were cut
     bool m_fullCheck = true;
 };
 

@@ -67,6 +67,7 @@ std::vector<ContactInfo> Plugin::contacts() const
 
 std::string Plugin::whyStock(const btCollisionObject* objectA, const btCollisionObject* objectB) const
 {
+    if (!objectA || !objectB) return "one of the objects is missing";
     const btSoftBody* cloth = btSoftBody::upcast(objectA);
     const btCollisionObject* obstacle = objectB;
     if (!cloth)
@@ -75,6 +76,7 @@ std::string Plugin::whyStock(const btCollisionObject* objectA, const btCollision
         obstacle = objectA;
     }
     if (!cloth) return "neither object is a soft body";
+    if (!obstacle->getCollisionShape()) return "the obstacle has no collision shape";
     if (btSoftBody::upcast(obstacle)) return "both objects are soft bodies";
     return reasonInShape(*m_state, *cloth, *obstacle, *obstacle->getCollisionShape());
 }

@@ -197,10 +197,11 @@ void PluginState::prepare(const btCollisionObject* const* objects, int count)
         m_found.keepList();  // by meshes as they are
         for (int i = 0; i < count; ++i)
         {
+            if (!objects[i]) continue;
             const btCollisionObject& object = *objects[i];
             if (const btSoftBody* body = btSoftBody::upcast(&object))
                 prepareCloth(*body);
-            else
+            else if (object.getCollisionShape())
                 prepareShape({nullptr, object.getCollisionShape(), &object, object.getWorldTransform(), -1, -1});
         }
         m_pipeline->prepare();
@@ -214,7 +215,7 @@ void PluginState::prepare(const btCollisionObject* const* objects, int count)
 void PluginState::prepareCloth(const btSoftBody& body)
 {
     ClothMirror& cloth = m_cloths.try_emplace(&body, &body).first->second;
-    if (cloth.m_owners == 0) cloth.requireFullCheck();
+    if (cloth.m_owners == 0) cloth.takeUp();
     setPrepared(cloth, true);
     cloth.refresh(*m_pipeline);
 }
@@ -293,7 +294,7 @@ void PluginState::adopt(const PairNote& note)
     ClothMirror& cloth = m_cloths.try_emplace(note.m_cloth, note.m_cloth).first->second;
     ObstacleMirror& obstacle = m_obstacles.try_emplace(note.m_obstacle, note.m_obstacle).first->second;
     cloth.m_lastSeen = obstacle.m_lastSeen = m_step;
-    if (cloth.m_owners == 0) cloth.requireFullCheck();
+    if (cloth.m_owners == 0) cloth.takeUp();
     if (obstacle.m_owners == 0) obstacle.requireReading();
     obstacle.m_oneSided = isOneSided(*note.m_obstacle.m_shape);
 

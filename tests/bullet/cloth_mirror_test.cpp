@@ -6,6 +6,7 @@
 
 #include "BulletSoftBody/btSoftBodyHelpers.h"
 #include "bullet_plugin/adapter/mirrors.h"
+#include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
 #include "tests/support/backends.h"
 
@@ -57,6 +58,27 @@ std::unique_ptr<btSoftBody> twoTriangles(btSoftBodyWorldInfo& info)
 }
 }  // namespace
 
+// A mirror is found by its body's address, where another body of the same faces may lie once the first is gone: nothing
+// that a trajectory depends on may be left of that.
+TEST(ClothMirror, thatIsTakenUpHasPartsOfWhereTheNodesAre)
+{
+    btSoftBodyWorldInfo info;
+    const std::unique_ptr<btSoftBody> body = makePatch(info, 80);
+    const std::unique_ptr<Pipeline> pipeline = makePipeline(hostSettings());
+    ASSERT_TRUE(pipeline);
+    ClothMirror reused(body.get());
+    reused.refresh(*pipeline);
+    for (int i = 0; i < body->m_nodes.size(); ++i)
+        body->m_nodes[i].m_x = btVector3(body->m_nodes[i].m_x.z() * 3, 0, body->m_nodes[i].m_x.x());
+    ClothMirror fresh(body.get());
+    fresh.refresh(*pipeline);
+    reused.refresh(*pipeline);
+    EXPECT_NE(reused.parts().order(), fresh.parts().order()) << "the cut stays while it is in use";
+    reused.takeUp();
+    reused.refresh(*pipeline);
+    EXPECT_EQ(reused.parts().order(), fresh.parts().order());
+}
+
 TEST(ClothMirror, seesOtherNodesOfAFaceWithinItsStretchesOfFaces)
 {
     EXPECT_EQ(stepsUntilSeen(5, 3), 1);
@@ -90,6 +112,42 @@ TEST_P(FacesInPlace, countInTheSameStep)
     world.step();
     EXPECT_GT(plugin.statistics().m_contacts, 0u);
     world.world().removeSoftBody(body.get());
+}
+
+// What hangs on a cloth without faces, or is left of it where some were cut away.
+TEST_P(FacesInPlace, nodesWithoutFacesCollideToo)
+{
+    Plugin plugin(GetParam().m_settings);
+    MeshShape slab(makeBox(4.0f, 0.4f, 4.0f));
+    DropWorld world(&plugin);
+    const btCollisionObject& ground = world.addObstacle(slab.shape());
+    ClothSpec spec;
+    spec.m_nodes = 9;
+    spec.m_centre = btVector3(0, btScalar(0.6), 0);
+    btSoftBody& tassel = world.addCloth(spec);
+    for (int i = 0; i < 6; ++i)
+    {
+        tassel.appendNode(btVector3(btScalar(0.56) + btScalar(0.06) * i, btScalar(0.6), btScalar(0.5)), btScalar(0.01));
+        const int last = tassel.m_nodes.size() - 1;
+        tassel.appendLink(i == 0 ? 80 : last - 1, last);
+    }
+    spec.m_centre = btVector3(0, btScalar(1.2), 0);
+    btSoftBody& torn = world.addCloth(spec);
+    torn.m_faces.resize(torn.m_faces.size() / 2);
+    torn.appendFace(80, 80, 79);  // no face
+    for (int step = 0; step < 120; ++step)
+    {
+        world.step();
+        for (const btSoftBody* cloth : {&tassel, &torn})
+        {
+            ASSERT_EQ(plugin.whyStock(cloth, &ground), "");
+            ASSERT_GT(lowestOf(*cloth), btScalar(0.2) + btScalar(0.9 * kThickness)) << "step " << step;
+        }
+    }
+    std::size_t alone = 0;
+    for (const ContactInfo& contact : plugin.contacts())
+        alone += contact.m_cloth == &tassel && contact.m_nodes[0] > 80;
+    EXPECT_GT(alone, 5u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Backend, FacesInPlace, testing::ValuesIn(allBackends()), backendName);

@@ -367,6 +367,29 @@ TEST_P(Kinematic, equalTransformsAreATeleport)
     EXPECT_LT(meanOf(scene.m_cloth).y(), btScalar(-3));
 }
 
+// A body that an app parks out of sight, far or so far that Bullet would take cloth beside its way out of the
+// simulation, takes nothing along, and is met again where it comes back.
+TEST_P(Kinematic, bodiesThatAreParkedFarAwayTakeNothingAlong)
+{
+    for (const btVector3& place : {btVector3(1000, 0, 0), btVector3(0, 1000, 0), btVector3(0, -1e5f, 0),
+                                   btVector3(0, -1e6f, 0), btVector3(0, btScalar(1e30), 0)})
+    {
+        SCOPED_TRACE("x " + std::to_string(place.x()) + ", y " + std::to_string(place.y()));
+        KinematicScene scene(makeBox(4, 0.2f, 4), shiftedBy(btVector3(0, 0, 0)), 1.0f, btVector3(0, btScalar(0.12), 0),
+                             GetParam().m_settings);
+        MeshShape ground(makeBox(8.0f, 0.2f, 8.0f));
+        scene.m_world.addObstacle(ground.shape(), shiftedBy(btVector3(0, btScalar(-0.5), 0)));
+        for (int step = 0; step < 10; ++step)
+            scene.step(shiftedBy(btVector3(0, 0, 0)));
+        EXPECT_GT(scene.m_most, 0u);
+        for (int step = 0; step < 60; ++step)
+            scene.step(shiftedBy(place));
+        EXPECT_EQ(scene.m_cloth.getActivationState(), ACTIVE_TAG);
+        EXPECT_NEAR(double(meanOf(scene.m_cloth).x()), 0.0, 0.1);
+        EXPECT_NEAR(double(lowestOf(scene.m_cloth)), -0.4 + double(kThickness), 0.1 * double(kThickness));
+    }
+}
+
 // A frame of several substeps is the motion of its parts.
 TEST_P(Kinematic, substepsShareTheMotion)
 {

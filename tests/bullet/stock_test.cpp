@@ -159,6 +159,10 @@ TEST_F(Stock, aSoftBodyMayOutliveItsSolver)
 
 TEST_F(Stock, pairsThatAreNotClothAndObstacle)
 {
+    btCollisionObject shapeless;
+    expectReason(addCloth(), shapeless, "no collision shape");
+    EXPECT_NE(m_plugin.whyStock(nullptr, &shapeless), "");
+    m_plugin.prepare(&shapeless);
     btCollisionObject& object = m_world.addObstacle(m_shape.shape());
     btSoftBody &one = addCloth(), &two = addCloth();
     EXPECT_NE(m_plugin.whyStock(&object, &object), "");

@@ -191,4 +191,28 @@ TEST(Topology, DependsOnTheInputAlone)
         ASSERT_EQ(std::memcmp(&a.m_triangles[i], &b.m_triangles[i], sizeof(Triangle)), 0);
     }
 }
+// Of a triangle, one that has a vertex twice, and two vertices that nothing has.
+TEST(Topology, PointsAreOfVerticesWithoutATriangle)
+{
+    const std::int32_t triangles[] = {0, 1, 2, 3, 3, 0};
+    Topology topology = buildTopology(triangles, 2, 6);
+    ASSERT_EQ(topology.m_triangles.size(), 1u);
+    addPoints(topology);
+    ASSERT_EQ(topology.m_triangles.size(), 4u);
+    EXPECT_EQ(topology.m_edges.size(), 6u);
+    for (std::uint32_t i = 0; i < 3; ++i)
+    {
+        const Triangle& point = topology.m_triangles[1 + i];
+        for (int k = 0; k < 3; ++k)
+        {
+            EXPECT_EQ(point.m_vertices[k], 3 + i);
+            EXPECT_EQ(point.m_edges[k], 3 + i);
+        }
+        EXPECT_EQ(point.m_owned, DRAPE_OWNS_VERTEX(0));
+        EXPECT_EQ(topology.m_vertexTriangle[3 + i], 1 + i);
+        EXPECT_EQ(topology.m_sourceTriangle[1 + i], kUnused);
+    }
+    addPoints(topology);
+    EXPECT_EQ(topology.m_triangles.size(), 4u) << "each has its own";
+}
 }  // namespace drape::test

@@ -133,4 +133,20 @@ Topology buildTopology(const std::int32_t* triangles, std::size_t triangleCount,
     }
     return topology;
 }
+
+void addPoints(Topology& topology)
+{
+    for (std::uint32_t vertex = 0; vertex < topology.m_vertexCount; ++vertex)
+    {
+        if (topology.m_vertexTriangle[vertex] != kNone) continue;
+        const std::uint32_t edge = std::uint32_t(topology.m_edges.size());
+        const std::uint32_t index = std::uint32_t(topology.m_triangles.size());
+        topology.m_edges.push_back(Edge{{vertex, vertex}, {vertex, vertex}});
+        topology.m_edgeTriangle.push_back(index);
+        topology.m_edgeUses.push_back(1);
+        topology.m_triangles.push_back(Triangle{{vertex, vertex, vertex}, {edge, edge, edge}, DRAPE_OWNS_VERTEX(0), 0});
+        topology.m_sourceTriangle.push_back(kNone);
+        topology.m_vertexTriangle[vertex] = index;
+    }
+}
 }  // namespace drape

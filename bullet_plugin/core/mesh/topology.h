@@ -3,7 +3,8 @@
 // Input: indices and a vertex count. Output: Triangle and Edge records with indices local to the mesh. Triangles that
 // repeat an index, or all three vertices of an earlier triangle, are left out. Every vertex and every edge that a
 // triangle uses is owned by exactly one triangle, the first. Edges are numbered by their first use, so the result
-// depends on the input alone. O(n) for surfaces, O(n^1.5) at worst.
+// depends on the input alone. O(n) for surfaces, O(n^1.5) at worst. A vertex without a triangle has none unless it is
+// given a point.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +18,7 @@ struct Topology
 {
     std::vector<Triangle> m_triangles;
     std::vector<Edge> m_edges;
-    std::vector<std::uint32_t> m_sourceTriangle;  // index as given, per kept triangle
+    std::vector<std::uint32_t> m_sourceTriangle;  // index as given, per kept triangle; 0xffffffff for points
     std::vector<std::uint32_t> m_edgeTriangle;    // a kept triangle per edge: its owner
     std::vector<std::uint32_t> m_vertexTriangle;  // a kept triangle per vertex; 0xffffffff when unused
     std::vector<std::uint8_t> m_edgeUses;         // triangles per edge, 255 for more
@@ -26,4 +27,8 @@ struct Topology
 
 // triangles: 3 indices each, in [0, vertexCount); check_indices.h looks at a caller's.
 Topology buildTopology(const std::int32_t* triangles, std::size_t triangleCount, std::size_t vertexCount);
+
+// Adds a point for each vertex that no triangle has: a triangle that is that vertex three times and owns it, with an
+// edge from it to itself that nobody owns.
+void addPoints(Topology& topology);
 }  // namespace drape

@@ -18,6 +18,8 @@ struct MeshDescription
     // Of an obstacle: only its front counts, the side from which its triangles' corners run counter-clockwise. Cloth
     // behind it is free to come out.
     bool m_oneSided = false;
+    // Of a cloth in steps: vertices without a triangle collide as its nodes do.
+    bool m_looseVertices = false;
     // Of a cloth: the thickness at which it collides with itself, m; 0: it does not. A pair of its features comes no
     // nearer than this, or than half of the distance that they have at rest where that is less.
     float m_selfThickness = 0.0f;
