@@ -31,6 +31,9 @@ std::string chunkProblem(const std::string& bytes)
     {
         const std::size_t length = numberAt(bytes, place), there = bytes.size() - place - kChunkHeaderBytes;
         if (length > there) return tooLong("chunk " + std::to_string(chunk), length, there);
+        const std::size_t content = place + kChunkHeaderBytes;
+        const std::string problem = chunk == 1 ? scanGltf(bytes.substr(content, length)) : "";
+        if (!problem.empty()) return problem;
         place += kChunkHeaderBytes + length;
     }
     return "";
@@ -46,6 +49,6 @@ std::string scanGlb(const std::string& bytes)
     if (version == 2) return chunkProblem(bytes);
     if (bytes.size() < kFirstHeaderBytes) return "not a mesh: not binary glTF";
     const std::size_t content = numberAt(bytes, 12), there = bytes.size() - kFirstHeaderBytes;
-    return content > there ? tooLong("content", content, there) : "";
+    return content > there ? tooLong("content", content, there) : scanGltf(bytes.substr(kFirstHeaderBytes, content));
 }
 }  // namespace drape

@@ -169,7 +169,9 @@ std::string readMesh(const std::string& path, TriangleMesh& mesh)
     const std::string ending = endingOf(path);
     if (problem.empty() && ending == ".obj") problem = scanObj(bytes);
     if (problem.empty() && ending == ".ply") problem = scanPly(bytes);
+    if (problem.empty() && ending == ".stl") problem = scanStl(bytes);
     if (problem.empty() && ending == ".glb") problem = scanGlb(bytes);
+    if (problem.empty() && ending == ".gltf") problem = scanGltf(bytes);
     if (problem.empty()) problem = importMesh(path, mesh);
     return problem.empty() ? "" : path + ": " + problem;
 }

@@ -1,6 +1,7 @@
-// Looks through the bytes of an OBJ or PLY file for what Assimp repairs or drops in silence: coordinates that are no
-// finite float, and indices of vertices that do not exist; and through those of a binary glTF file for lengths that the
-// file has not, which Assimp would make room for. Returns an empty string, or element and reason in one line.
+// Looks through the bytes of an OBJ, PLY or STL file for what Assimp repairs or drops in silence: coordinates that are
+// no finite float, indices of vertices that do not exist, files that end too early; and through those of a glTF file
+// for lengths that it has not, which Assimp would make room for, and for what is nested so deep that readers run out of
+// stack. Returns an empty string, or element and reason in one line.
 #pragma once
 
 #include <string>
@@ -9,7 +10,10 @@ namespace drape
 {
 std::string scanObj(const std::string& bytes);
 std::string scanPly(const std::string& bytes);
+std::string scanStl(const std::string& bytes);
 std::string scanGlb(const std::string& bytes);
+// The text of a glTF file, or that in a binary one.
+std::string scanGltf(const std::string& text);
 
 // "" when the text is one finite number that fits a float, else why not.
 std::string coordinateProblem(const std::string& word);

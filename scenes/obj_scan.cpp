@@ -1,3 +1,4 @@
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -25,12 +26,21 @@ struct ObjState
 std::string vertexProblem(std::istringstream& line, ObjState& state)
 {
     ++state.m_vertices;
-    for (int axis = 0; axis < 3; ++axis)
+    const std::string vertex = "vertex " + std::to_string(state.m_vertices) + ": ";
+    int numbers = 0;
+    for (std::string word; line >> word; ++numbers)
     {
-        std::string word;
-        const std::string problem = line >> word ? coordinateProblem(word) : "has fewer than three coordinates";
-        if (!problem.empty()) return "vertex " + std::to_string(state.m_vertices) + ": " + problem;
+        const std::string problem = numbers < 3 ? coordinateProblem(word) : "";
+        if (!problem.empty()) return vertex + problem;
+        // Assimp counts what begins with a digit or a sign, and drops a vertex of whose count it makes nothing.
+        if (!std::isdigit(static_cast<unsigned char>(word[0])) && word[0] != '-' && word[0] != '+')
+            return vertex + "'" + word.substr(0, 32) + "' begins with no digit";
+        if (word.find_first_of("xX") != std::string::npos)
+            return vertex + "'" + word.substr(0, 32) + "' is hexadecimal";
     }
+    if (numbers < 3) return vertex + "has fewer than three coordinates";
+    if (numbers != 3 && numbers != 4 && numbers != 6)
+        return vertex + "has " + std::to_string(numbers) + " numbers, not 3, 4 (with a weight) or 6 (with a colour)";
     return "";
 }
 

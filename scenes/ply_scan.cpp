@@ -261,8 +261,11 @@ std::string scanPly(const std::string& bytes)
     for (const Element& element : header.m_elements)
     {
         if (element.m_name == "vertex") vertices = static_cast<double>(element.m_count);
-        if (element.m_name == "face" || element.m_name == "tristrips") faces = static_cast<double>(element.m_count);
+        if (element.m_name == "face") faces = static_cast<double>(element.m_count);
     }
+    const auto isStrips = [](const Element& element) { return element.m_name == "tristrips" && element.m_count > 0; };
+    if (std::any_of(header.m_elements.begin(), header.m_elements.end(), isStrips))
+        return "has triangle strips (tristrips), of which nothing is read; only faces";
     if (vertices == 0) return "not a mesh: no vertices";
     if (faces == 0) return "no triangles";
     if (header.m_encoding == Encoding::Text && bytes.find('\0') != std::string::npos)

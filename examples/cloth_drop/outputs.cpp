@@ -34,12 +34,34 @@ bool areApart(const Output& one, const Output& other, std::string& error)
     return !same;
 }
 
+// Names that --frames writes.
+bool isFrame(const std::string& name)
+{
+    const std::string start = "cloth_", end = ".ply";
+    return name == "obstacle.ply" ||
+           (name.size() > start.size() + end.size() && name.compare(0, start.size(), start) == 0 &&
+            name.compare(name.size() - end.size(), end.size(), end) == 0);
+}
+
+// What is read stays, and what is written is not written over.
+bool spares(const Options& options, const Output& file, std::string& error)
+{
+    if (file.m_path.empty() || file.m_path == kStandardOutput) return true;
+    const fs::path path(file.m_path);
+    const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
+    if (!options.m_frames.empty() && isFrame(path.filename().string()) && areOneFile(folder, options.m_frames))
+        error = file.m_path + ": --frames writes a file of that name there";
+    return error.empty();
+}
+
 bool makeFolder(const std::string& path, std::string& error)
 {
-    std::error_code code;
+    std::error_code code, ignored;
     fs::create_directories(path, code);
-    if (!fs::is_directory(path, code) || ::access(path.c_str(), W_OK) != 0)
-        error = path + ": cannot write: " + (code ? code.message() : std::string(std::strerror(errno)));
+    if (!fs::is_directory(path, ignored))
+        error = path + ": cannot write: " + (fs::exists(path, ignored) ? "it is not a folder" : code.message());
+    else if (::access(path.c_str(), W_OK) != 0)
+        error = path + ": cannot write: " + std::strerror(errno);
     return error.empty();
 }
 }  // namespace
@@ -48,8 +70,15 @@ bool prepareOutputs(const Options& options, std::string& error)
 {
     if (!options.m_frames.empty() && !makeFolder(options.m_frames, error)) return false;
     const Output outputs[] = {{"--csv", options.m_csv}, {"--json", options.m_json}, {"--picture", options.m_picture}};
+    const Output obstacle = {"--obstacle", options.m_obstacle};
+    if (!spares(options, obstacle, error)) return false;
     for (const Output& output : outputs)
-        if (!couldWrite(output.m_path, error)) return false;
+    {
+        if (!spares(options, output, error) || !couldWrite(output.m_path, error)) return false;
+        if (!output.m_path.empty() && output.m_path != kStandardOutput && areOneFile(output.m_path, obstacle.m_path))
+            error = std::string(output.m_option) + " would write over the file of --obstacle, " + obstacle.m_path;
+        if (!error.empty()) return false;
+    }
     return areApart(outputs[0], outputs[1], error) && areApart(outputs[0], outputs[2], error) &&
            areApart(outputs[1], outputs[2], error);
 }

@@ -67,6 +67,69 @@ TEST_F(BadInput, binaryFileThatSaysItIsLonger)
     expectRefused(runSmall({"--obstacle", write("none.glb", header(2, whole) + size + chunk)}), {"none.glb"});
 }
 
+// Whose readers call themselves for every level.
+TEST_F(BadInput, gltfNestedTooDeep)
+{
+    expectRefused(runSmall({"--obstacle", write("deep.gltf", std::string(200000, '['))}), {"deep.gltf", "deeper"});
+    std::string chain = "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{}", twice = chain, quoted = chain;
+    for (int node = 0; node < 20000; ++node)
+        chain += ",{\"children\":[" + std::to_string(node) + "]}";
+    for (int node = 0; node < 26; ++node)
+        twice += ",{\"children\":[" + std::to_string(node) + "," + std::to_string(node) + "]}";
+    expectRefused(runSmall({"--obstacle", write("chain.gltf", chain + "]}")}), {"chain.gltf", "deeper"});
+    expectRefused(runSmall({"--obstacle", write("twice.gltf", twice + "]}")}), {"twice.gltf", "two parents"});
+    expectRefused(runSmall({"--obstacle", write("far.gltf", "{\"nodes\":[{\"children\":[7]}]}")}), {"out of range"});
+    const std::string name = ",{\"name\":\"\\\"" + std::string(600, '[') + "\"}";  // brackets of a string are none
+    const ToolRun result = runSmall({"--obstacle", write("quoted.gltf", quoted + name + "]}")});
+    EXPECT_EQ(result.m_err.find("deeper"), std::string::npos) << result.m_err;
+}
+
+// What Assimp takes a part of.
+TEST_F(BadInput, stlThatIsNotWhole)
+{
+    const std::string facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n";
+    const std::string whole = "solid a\n" + facet + "endfacet\n";
+    expectRefused(runSmall({"--obstacle", write("end.stl", whole)}), {"end.stl", "too early", "1 facets"});
+    expectRefused(runSmall({"--obstacle", write("open.stl", whole + facet)}), {"open.stl", "too early"});
+    expectRefused(runSmall({"--obstacle", write("next.stl", "solid a\n" + facet + facet)}), {"line 8", "facet 2"});
+    expectRefused(
+        runSmall({"--obstacle", write("four.stl", "solid a\n" + facet + "vertex 1 1 0\nendfacet\nendsolid\n")}),
+        {"four.stl", "4 vertices"});
+    expectRefused(runSmall({"--obstacle", write("comma.stl", "solid a\nfacet normal 0 0 1\nvertex 1,5 0 0\n")}),
+                  {"line 3", "'1,5' is not a number"});
+    std::string binary(80, ' ');
+    binary += glbNumber(2) + std::string(50, '\0');
+    expectRefused(runSmall({"--obstacle", write("short.stl", binary)}), {"2 triangles", "184 bytes", "134"});
+}
+
+TEST_F(BadInput, verticesThatAreDropped)
+{
+    const auto obj = [](const std::string& vertex) { return "v 0 0 0\nv " + vertex + "\nv 0 1 0\nf 1 2 3\n"; };
+    expectRefused(runSmall({"--obstacle", write("dot.obj", obj("1 .5 0"))}), {"line 2", "vertex 2", "'.5'"});
+    expectRefused(runSmall({"--obstacle", write("seven.obj", obj("1 0 0 1 1 1 1"))}), {"line 2", "7 numbers"});
+    expectRefused(runSmall({"--obstacle", write("hex.obj", obj("0x1p0 0 0"))}), {"line 2", "hexadecimal"});
+    const std::string strips =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    expectRefused(runSmall({"--obstacle", write("strips.ply", strips)}), {"strips.ply", "tristrips"});
+}
+
+TEST_F(BadInput, whatIsReadIsNotWrittenOver)
+{
+    const std::string mesh = write("in.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    for (const char* option : {"--json", "--csv", "--picture"})
+        expectRefused(runSmall({"--obstacle", mesh, option, mesh}), {option, "write over", "in.obj"});
+    const std::string frames = path("frames");
+    std::filesystem::create_directories(frames);
+    write("frames/obstacle.ply",
+          "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+          "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    expectRefused(runSmall({"--obstacle", frames + "/obstacle.ply", "--frames", frames}), {"--frames"});
+    expectRefused(runSmall({"--csv", frames + "/cloth_0001.ply", "--frames", frames}), {"--frames"});
+    std::filesystem::remove_all(frames);
+    expectRefused(runSmall({"--frames", mesh}), {"in.obj", "folder"});
+}
+
 TEST_F(BadInput, noTriangles)
 {
     expectRefused(runSmall({"--obstacle", write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n")}), {"points.obj"});

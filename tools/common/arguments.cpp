@@ -39,7 +39,8 @@ std::function<std::string(std::string&)> numberAbove(double least, bool inclusiv
 
 std::string outputFile(std::string& text)
 {
-    if (text == "/dev/stdout") text = "-";
+    for (const char* name : {"/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"})
+        if (text == name) text = "-";
     return text.empty() ? "is empty" : "";
 }
 

@@ -40,6 +40,9 @@ int run(const Options& options)
         return kExitGood;
     }
     std::string error;
+    for (const std::string& input : {options.m_first, options.m_second})
+        if (!options.m_json.empty() && options.m_json != "-" && !input.empty() && areOneFile(options.m_json, input))
+            return fail("drape_check", kExitBadInput, "--json would write over " + input);
     if (!couldWrite(options.m_json, error)) return fail("drape_check", kExitBadInput, error);
     nlohmann::ordered_json answer;
     int exitCode = kExitFailed;
