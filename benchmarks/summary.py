@@ -30,7 +30,9 @@ SCENES = {
 }
 METHODS = {
     "drape": "Drape, OpenCL",
+    "drape_reduced": "the same, redundant contacts left out",
     "drape_host": "Drape, host",
+    "drape_host_reduced": "the same, redundant contacts left out",
     "embree_contacts_2": "Embree + narrow phase, 2 threads",
     "embree_contacts_1": "the same, 1 thread",
     "embree_pairs_2": "Embree, pairs only, 2 threads",
@@ -70,6 +72,9 @@ def step_table(rows):
     for what in ("candidates", "contacts"):
         counts = [select(rows, scene=scene, method="drape_host", stage="step") for scene in scenes]
         lines.append([what + " a step"] + [f"{row[0][what]:,.0f}" if row else "–" for row in counts])
+    counts = [select(rows, scene=scene, method="drape_host_reduced", stage="step") for scene in scenes]
+    if any(counts):
+        lines.append(["contacts less redundant ones"] + [f"{row[0]['contacts']:,.0f}" if row else "–" for row in counts])
     return ("Whole step, host to host, ms: median (95th percentile). Same scene, same step, same process.\n\n"
             + table([""] + [SCENES[scene] for scene in scenes], lines))
 

@@ -1,7 +1,7 @@
 // bench_step: whole collision steps, host to host, of Drape and its peers over scenes of many sizes.
 //
-// Every scene is run by Drape's host back end first: the hash of its contacts is what all others must have. A row whose
-// hash differs is void, and the program ends with 3.
+// Every scene is run by Drape's host back end first: the hash of its contacts is what all others must have, and
+// likewise where redundant contacts are left out. A row whose hash differs is void, and the program ends with 3.
 #include <algorithm>
 #include <fstream>
 #include <iostream>
@@ -30,6 +30,10 @@ bool contains(const std::vector<std::string>& list, const std::string& text)
     return std::find(list.begin(), list.end(), text) != list.end();
 }
 
+const char* const kReference = "drape_host";
+const char* const kReducedReference = "drape_host_reduced";
+const char* const kReduced = "drape_reduced";
+
 // The host first: it is the reference.
 std::vector<MethodEntry> allMethods(const Options& options)
 {
@@ -38,11 +42,18 @@ std::vector<MethodEntry> allMethods(const Options& options)
     const Settings device = options.settings();
     std::vector<MethodEntry> entries;
     const auto add = [&entries](const std::string& name, auto make) { entries.push_back({name, make}); };
+    const auto addReduced = [&entries](const std::string& name, const Settings& settings)
+    {
+        entries.push_back({name,
+                           [settings](const StepScene& scene, std::string& error)
+                           { return makeReducedMethod(scene, settings, error); },
+                           true});
+    };
     const auto drape = [](Settings settings) {
         return [settings](const StepScene& scene, std::string& error)
         { return makeDrapeMethod(scene, settings, error); };
     };
-    add("drape_host", drape(host));
+    add(kReference, drape(host));
     if (device.m_backend != Backend::Host)
     {
         add("drape", drape(device));
@@ -50,6 +61,8 @@ std::vector<MethodEntry> allMethods(const Options& options)
         profiled.m_profileKernels = true;  // apart, since it costs time of its own
         add("drape_kernels", drape(profiled));
     }
+    addReduced(kReducedReference, host);
+    if (device.m_backend != Backend::Host) addReduced(kReduced, device);
     for (const int threads : {2, 1})
     {
         const std::string suffix = "_" + std::to_string(threads);
@@ -63,15 +76,36 @@ std::vector<MethodEntry> allMethods(const Options& options)
     return entries;
 }
 
-// The reference stays even where it was not asked for: without it nothing is checked but against --reference.
+// References stay even where they were not asked for: without them nothing is checked but against --reference.
 std::vector<MethodEntry> chosenMethods(const Options& options)
 {
     std::vector<MethodEntry> entries = allMethods(options);
     if (options.m_methods.empty()) return entries;
-    entries.erase(std::remove_if(entries.begin() + 1, entries.end(),
-                                 [&](const MethodEntry& entry) { return !contains(options.m_methods, entry.m_name); }),
+    const auto isNeeded = [&](const MethodEntry& entry)
+    {
+        return contains(options.m_methods, entry.m_name) || entry.m_name == kReference ||
+               (entry.m_name == kReducedReference && contains(options.m_methods, kReduced));
+    };
+    entries.erase(std::remove_if(entries.begin(), entries.end(), [&](const auto& entry) { return !isNeeded(entry); }),
                   entries.end());
     return entries;
+}
+
+// Of the methods, those for a scene: without references whose hashes are known, unless they were asked for; sweeps,
+// whose scenes are many, without reduced ones likewise.
+std::vector<MethodEntry> methodsFor(const SceneSpec& spec, std::vector<MethodEntry> methods, const Options& options,
+                                    const MeasureSettings& settings)
+{
+    const auto isLeftOut = [&](const MethodEntry& entry)
+    {
+        if (contains(options.m_methods, entry.m_name)) return false;
+        const bool known = !(entry.m_reduced ? settings.m_expectedReduced : settings.m_expected).empty();
+        if (!options.m_methods.empty()) return known;
+        // FCL has no collision of a model with itself.
+        return (entry.m_reduced && !spec.m_sweep.empty()) || (spec.m_self && entry.m_name.rfind("fcl", 0) == 0);
+    };
+    methods.erase(std::remove_if(methods.begin(), methods.end(), isLeftOut), methods.end());
+    return methods;
 }
 
 std::vector<SceneSpec> chosenScenes(const Options& options)
@@ -88,16 +122,21 @@ std::vector<SceneSpec> chosenScenes(const Options& options)
     return chosen;
 }
 
-// Hash of each scene in the JSON of an earlier run. Throws what the JSON library throws.
-std::map<std::string, std::string> readReference(const std::string& path)
+// By scene, and whether redundant contacts are left out.
+using Hashes = std::map<std::pair<std::string, bool>, std::string>;
+
+// Those of the JSON of an earlier run. Throws what the JSON library throws.
+Hashes readReference(const std::string& path)
 {
-    std::map<std::string, std::string> hashes;
+    Hashes hashes;
     if (path.empty()) return hashes;
     std::ifstream file(path);
     const Row all = Row::parse(file);
     for (const Row& row : all.at("rows"))
     {
-        if (row.value("valid", "") == "yes") hashes[row.at("scene")] = row.at("hash");
+        const std::string method = row.value("method", "");
+        const bool reduced = method == kReducedReference || method == kReduced;
+        if (row.value("valid", "") == "yes") hashes[{row.at("scene"), reduced}] = row.at("hash");
     }
     return hashes;
 }
@@ -116,7 +155,7 @@ int measure(const Options& options)
 {
     const std::vector<SceneSpec> scenes = chosenScenes(options);
     if (scenes.empty()) return fail("bench_step", kExitBadInput, "no such scene; --list names them");
-    const std::map<std::string, std::string> reference = readReference(options.m_reference);
+    Hashes reference = readReference(options.m_reference);
     const std::vector<MethodEntry> methods = chosenMethods(options);
     const std::vector<std::string> folders = modelFolders(options.m_models);
     const Clock::time_point begin = Clock::now();
@@ -133,19 +172,9 @@ int measure(const Options& options)
             continue;
         }
         std::cerr << "bench_step: " << spec.m_name << std::endl;
-        MeasureSettings settings = {options.m_repeats, options.m_seconds, ""};
-        std::vector<MethodEntry> chosen = methods;
-        const auto known = reference.find(spec.m_name);
-        if (known != reference.end())
-        {
-            settings.m_expected = known->second;
-            // The host need not be run for the reference then, which takes minutes on the largest scenes.
-            if (!options.m_methods.empty() && !contains(options.m_methods, chosen.front().m_name))
-                chosen.erase(chosen.begin());
-        }
-        // FCL has no collision of a model with itself.
-        const auto isFcl = [](const MethodEntry& entry) { return entry.m_name.rfind("fcl", 0) == 0; };
-        if (spec.m_self) chosen.erase(std::remove_if(chosen.begin(), chosen.end(), isFcl), chosen.end());
+        const MeasureSettings settings = {options.m_repeats, options.m_seconds, reference[{spec.m_name, false}],
+                                          reference[{spec.m_name, true}]};
+        const std::vector<MethodEntry> chosen = methodsFor(spec, methods, options, settings);
         good = measureScene(makeStepScene(spec, obstacle), chosen, settings, table) && good;
     }
     const int exitCode = finishTable("bench_step", table, options);

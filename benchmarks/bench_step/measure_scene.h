@@ -11,9 +11,10 @@ namespace drape::bench
 {
 struct MeasureSettings
 {
-    int m_repeats = 3;       // periods that are timed, at most
-    double m_seconds = 10;   // for a method's timed steps; one period is timed in any case
-    std::string m_expected;  // hash that the reference itself must have; empty: any
+    int m_repeats = 3;      // periods that are timed, at most
+    double m_seconds = 10;  // for a method's timed steps; one period is timed in any case
+    // Hashes that the reference itself, and the reduced one, must have; empty: any.
+    std::string m_expected, m_expectedReduced;
 };
 
 // What a method did over a period and some timed ones after it. hash is that of the first period; where a later period
@@ -29,8 +30,8 @@ struct MethodRun
 
 MethodRun runMethod(StepMethod& method, const StepScene& scene, const MeasureSettings& settings);
 
-// The first method gives the reference hash. A method that cannot run is reported on standard error and leaves no row;
-// false then.
+// The first method gives the reference hash, and the first reduced one that of the reduced. A method that cannot run is
+// reported on standard error and leaves no row; false then.
 bool measureScene(const StepScene& scene, const std::vector<MethodEntry>& methods, const MeasureSettings& settings,
                   Table& table);
 }  // namespace drape::bench

@@ -15,11 +15,9 @@ namespace
 // Kernels are called stageAction; those of the broad phase have many names.
 std::string stageOfKernel(const std::string& kernel)
 {
-    const std::pair<const char*, const char*> stages[] = {{"self", "self"},
-                                                          {"refit", "refit"},
-                                                          {"treeCost", "refit"},
-                                                          {"narrowPhase", "narrow"},
-                                                          {"compaction", "order"}};
+    const std::pair<const char*, const char*> stages[] = {{"self", "self"},       {"refit", "refit"},
+                                                          {"treeCost", "refit"},  {"narrowPhase", "narrow"},
+                                                          {"reduction", "order"}, {"compaction", "order"}};
     for (const auto& stage : stages)
     {
         if (kernel.rfind(stage.first, 0) == 0) return stage.second;
@@ -30,8 +28,9 @@ std::string stageOfKernel(const std::string& kernel)
 class DrapeMethod : public StepMethod
 {
 public:
-    DrapeMethod(std::unique_ptr<Pipeline> pipeline, const StepScene& scene, bool profiled)
-        : m_pipeline(std::move(pipeline)), m_scene(scene), m_profiled(profiled)
+    // tube: see Pipeline::addPair; negative where all contacts are kept.
+    DrapeMethod(std::unique_ptr<Pipeline> pipeline, const StepScene& scene, float tube, bool profiled)
+        : m_pipeline(std::move(pipeline)), m_scene(scene), m_tube(tube), m_profiled(profiled)
     {
         const Clock::time_point start = Clock::now();
         m_obstacle = m_pipeline->addObstacle(describeMesh(scene.m_obstacle));
@@ -56,7 +55,7 @@ public:
         m_pipeline->copyNodes(m_cloths, start, end);
         for (const MeshId cloth : m_cloths)
         {
-            m_pipeline->addPair(cloth, m_obstacle, m_scene.m_thickness);
+            m_pipeline->addPair(cloth, m_obstacle, m_scene.m_thickness, m_tube);
             if (collidesWithItself()) m_pipeline->addSelf(cloth);
         }
         m_pipeline->submit();
@@ -138,11 +137,11 @@ private:
     MeshId m_obstacle = kNoMesh;
     std::vector<MeshId> m_cloths;
     double m_prepareMs = 0;
+    float m_tube;
     bool m_profiled;
 };
-}  // namespace
 
-std::unique_ptr<StepMethod> makeDrapeMethod(const StepScene& scene, const Settings& settings, std::string& error)
+std::unique_ptr<StepMethod> makeMethod(const StepScene& scene, const Settings& settings, float tube, std::string& error)
 {
     Error problem;
     std::unique_ptr<Pipeline> pipeline = Pipeline::create(settings, problem);
@@ -151,7 +150,18 @@ std::unique_ptr<StepMethod> makeDrapeMethod(const StepScene& scene, const Settin
         error = problem.text();
         return nullptr;
     }
-    return std::make_unique<DrapeMethod>(std::move(pipeline), scene, settings.m_profileKernels);
+    return std::make_unique<DrapeMethod>(std::move(pipeline), scene, tube, settings.m_profileKernels);
+}
+}  // namespace
+
+std::unique_ptr<StepMethod> makeDrapeMethod(const StepScene& scene, const Settings& settings, std::string& error)
+{
+    return makeMethod(scene, settings, -1.0f, error);
+}
+
+std::unique_ptr<StepMethod> makeReducedMethod(const StepScene& scene, const Settings& settings, std::string& error)
+{
+    return makeMethod(scene, settings, scene.m_thickness * settings.m_activation, error);
 }
 
 float contactReach(const StepScene& scene)

@@ -8,9 +8,9 @@
 
 namespace drape::bench
 {
-// Processor, cores in use, date, commit as given, versions of the peers.
+// Processor, cores in use, date, commit as given.
 Row describeMachine(const std::string& commit);
 
-// "device", "driver", "platform" of a row.
+// "device" and "driver" of a row.
 void fillDevice(Row& row, const DeviceInfo& device);
 }  // namespace drape::bench

@@ -8,6 +8,7 @@
 #include <tbb/task_arena.h>
 
 #include "bullet_plugin/core/mesh/normal_cones.h"
+#include "bullet_plugin/core/narrow_phase/narrow_phase.h"
 #include "drape/settings.h"
 
 namespace drape::bench
@@ -71,7 +72,7 @@ void PeerScene::selfContacts(const std::vector<Candidate>& pairs, const float* s
     contacts.clear();
     for (const std::vector<Contact>& part : parts)
         contacts.insert(contacts.end(), part.begin(), part.end());
-    sortSelfContacts(contacts);
+    sortContacts(contacts);
 }
 
 void PeerScene::narrowPhase(const std::vector<Candidate>& candidates, const float* start, const float* end, int threads,

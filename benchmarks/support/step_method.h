@@ -52,6 +52,8 @@ public:
 // The pipeline, host to host. Its contacts' hash is the reference where the settings ask for the host. The scene
 // outlives the method.
 std::unique_ptr<StepMethod> makeDrapeMethod(const StepScene& scene, const Settings& settings, std::string& error);
+// The same, with redundant contacts left out, as the plugin has it.
+std::unique_ptr<StepMethod> makeReducedMethod(const StepScene& scene, const Settings& settings, std::string& error);
 
 // How far Drape looks with default settings: thickness and activation.
 float contactReach(const StepScene& scene);

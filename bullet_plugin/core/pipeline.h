@@ -12,6 +12,7 @@
 #include <memory>
 #include <vector>
 
+#include "bullet_plugin/core/mesh/mesh_id.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 #include "drape/error.h"
 #include "drape/mesh_description.h"
@@ -21,9 +22,6 @@
 
 namespace drape
 {
-using MeshId = std::uint32_t;  // never reused while the pipeline lives
-constexpr MeshId kNoMesh = 0xffffffffu;
-
 // A contact with its pool-wide indices resolved to meshes: what a solver needs.
 struct ContactView
 {
@@ -31,7 +29,7 @@ struct ContactView
     MeshId m_obstacle;
     std::uint32_t m_kind;     // DRAPE_NODE_FACE …
     std::int32_t m_nodes[3];  // nodes of the cloth feature, indices in that cloth; -1 where unused
-    std::int32_t m_triangle;  // a cloth triangle that holds the feature, index as given to addCloth
+    std::int32_t m_triangle;  // a cloth triangle that holds the feature, index as given to addCloth; -1: none does
     float m_weights[3];       // of m_nodes, sum 1
     float m_normal[3];        // unit, from the obstacle to the side the cloth came from
     float m_point[3];         // m, on the obstacle

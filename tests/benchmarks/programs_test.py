@@ -102,6 +102,10 @@ class BenchStep(ProgramTest):
                 self.assertGreater(float(row["candidates"]), 0)
             reference = methods["drape_host"]
             self.assertGreater(float(reference["contacts"]), 100)
+            reduced = methods.pop("drape_host_reduced")
+            self.assertEqual(reduced["valid"], "yes")
+            self.assertNotEqual(reduced["hash"], reference["hash"])
+            self.assertLess(float(reduced["contacts"]), float(reference["contacts"]))
             for row in methods.values():
                 self.assertNotEqual(row["valid"], "no")
                 if row["valid"] == "yes":
@@ -115,8 +119,9 @@ class BenchStep(ProgramTest):
             self.assertAlmostEqual(pairs / float(reference["candidates"]), 1, delta=0.01)
 
     def test_an_opencl_device_gives_the_hosts_hash(self):
-        rows = self.quick("bench_step", "--backend", "opencl", "--method", "drape", "--method", "drape_kernels")
-        for name in ("drape", "drape_kernels"):
+        rows = self.quick("bench_step", "--backend", "opencl", "--method", "drape", "--method", "drape_kernels", "--method",
+                          "drape_reduced")
+        for name in ("drape", "drape_kernels", "drape_reduced"):
             mine = [row for row in rows if row["method"] == name]
             self.assertTrue(mine, "no rows of " + name)
             self.assertTrue(all(row["valid"] in ("yes", "") for row in mine))

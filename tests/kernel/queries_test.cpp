@@ -169,7 +169,7 @@ TEST_P(SelfCollisionTest, FullListsCountOnAndKeepToThemselves)
     guardCopy(*m_device, order, mesh.m_order);
     guardCopy(*m_device, lastLeaf, lastLeaves(mesh.m_nodes, mesh.m_layout.leafCount()));
     guardCopy(*m_device, triangles, mesh.m_topology.m_triangles);
-    const DeviceTree tree = {nodes, order, triangles, lastLeaf, mesh.m_layout};
+    const DeviceTreeView tree = {nodes, order, triangles, lastLeaf, mesh.m_layout};
     for (std::size_t capacity : {std::size_t(1), std::size_t(17), host.size() - 1, host.size()})
     {
         SCOPED_TRACE("seed 112, capacity " + std::to_string(capacity));

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "bullet_plugin/core/broad_phase/patch_cull.h"
+#include "bullet_plugin/core/narrow_phase/narrow_phase.h"
 #include "bullet_plugin/core/self_collision/self_contacts.h"
 #include "tests/support/device_side.h"
 #include "tests/support/self_cases.h"
@@ -100,9 +101,9 @@ public:
     std::vector<Contact> onHost()
     {
         const MeshPool& pool = m_side.m_pool;
-        const ClothView cloth =
-            clothView(m_side.m_start.data(), m_side.m_end.data(), pool.triangles().data(), pool.edges().data(),
-                      std::uint32_t(pool.vertexCount()), std::uint32_t(pool.triangles().size()), DRAPE_AUTOMATIC, nullptr);
+        const ClothView cloth = clothView(m_side.m_start.data(), m_side.m_end.data(), pool.triangles().data(),
+                                          pool.edges().data(), std::uint32_t(pool.vertexCount()),
+                                          std::uint32_t(pool.triangles().size()), DRAPE_AUTOMATIC, nullptr);
         const SelfStep step = {pool, selfView(cloth, m_rest.data(), kReachScale), m_reach};
         std::vector<Contact> contacts;
         m_candidates = SelfContactsOnHost().run(step, UINT64_MAX, UINT64_MAX, contacts).m_candidates;
@@ -142,7 +143,7 @@ TEST_P(SelfContactTest, ListsEachPairOnceAndFindsTheHostsContacts)
         EXPECT_EQ(self.m_read.m_selfTests, self.m_candidates);
         EXPECT_TRUE(std::adjacent_find(keys.begin(), keys.end()) == keys.end());
         std::vector<Contact> found = self.contacts(5);
-        sortSelfContacts(found);
+        sortContacts(found);
         EXPECT_TRUE(sameBytes(found, expected)) << difference(found, expected);
     }
 }

@@ -71,7 +71,7 @@ void expectNoneMissed(const StepCase& step, std::size_t leastNear)
     refitSide(cloth, {step.m_thickness});
     refitSide(obstacle, {0.0f});
     std::vector<Candidate> candidates;
-    broadPhaseOnHost(cloth.broadPhase(), obstacle.broadPhase(), {step.m_thickness}, 1, candidates);
+    HostTraversal(Traversal::Pairs).run(cloth.broadPhase(), obstacle.broadPhase(), {step.m_thickness}, 1, candidates);
     sortCandidates(candidates);
     const Pairs pairs = checkCandidates(cloth, obstacle, step.m_thickness, candidates);
     EXPECT_EQ(pairs.m_missed, 0u);

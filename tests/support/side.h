@@ -40,7 +40,7 @@ void useTree(Side& side, const TreeMethods& methods);
 // Recomputes the hierarchy's volumes; radius in m per mesh, negative to leave a mesh out. Returns the invalid vertices.
 std::size_t refitSide(Side& side, const std::vector<float>& radius);
 
-// The pairs whose leaf volumes overlap, by testing every one. thickness as in broadPhaseOnHost. Sorted.
+// The pairs whose leaf volumes overlap, by testing every one. thickness as in HostTraversal::run. Sorted.
 std::vector<Candidate> bruteForceCandidates(const Side& cloth, const Side& obstacle,
                                             const std::vector<float>& thickness);
 

@@ -1,4 +1,6 @@
 // Which device settings and DRAPE_DEVICE come to, and what is said about it.
+#include "bullet_plugin/core/device/device_choice.h"
+
 #include <gtest/gtest.h>
 
 #include "tests/support/backends.h"

@@ -6,6 +6,7 @@
 #include "benchmarks/support/result_hash.h"
 #include "benchmarks/support/step_method.h"
 #include "bullet_plugin/core/bvh/tree_quality.h"
+#include "bullet_plugin/core/device/device_choice.h"
 #include "bullet_plugin/core/mesh/topology.h"
 #include "kernels/lib/dop.h"
 

@@ -12,7 +12,7 @@
 
 namespace drape
 {
-// thickness as in broadPhaseOnHost. Returns a count per cloth slot.
+// thickness as in HostTraversal::run. Returns a count per cloth slot.
 std::vector<std::uint64_t> countCandidates(const BroadPhaseSide& cloth, const BroadPhaseSide& obstacle,
                                            const std::vector<float>& thickness, std::size_t clothMeshes,
                                            std::size_t obstacleMeshes);

@@ -254,10 +254,4 @@ void HostTraversal::runWide(const Step& step)
         }
     }
 }
-
-bool broadPhaseOnHost(const BroadPhaseSide& cloth, const BroadPhaseSide& obstacle, const std::vector<float>& thickness,
-                      std::size_t obstacleMeshes, std::vector<Candidate>& candidates, std::size_t limit)
-{
-    return HostTraversal(Traversal::Pairs).run(cloth, obstacle, thickness, obstacleMeshes, candidates, limit);
-}
 }  // namespace drape

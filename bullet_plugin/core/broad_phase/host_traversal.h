@@ -45,8 +45,6 @@ public:
 
     // Volume tests of the last run.
     std::size_t volumeTests() const { return m_tests; }
-    // Pairs at which the next run starts with Front; none before the first, nor after one that left too many.
-    std::size_t frontSize() const { return m_front.size(); }
 
 private:
     struct Step;
@@ -70,9 +68,4 @@ private:
     std::uint32_t m_step = 0;
     std::size_t m_tests = 0;
 };
-
-// One full traversal that keeps nothing. thickness as above.
-bool broadPhaseOnHost(const BroadPhaseSide& cloth, const BroadPhaseSide& obstacle, const std::vector<float>& thickness,
-                      std::size_t obstacleMeshes, std::vector<Candidate>& candidates,
-                      std::size_t limit = kMostCandidates);
 }  // namespace drape

@@ -34,9 +34,9 @@ bool SingleTraversal::grow(Device& device, const StepCounters& counters, bool& l
 {
     if (counters.m_spill <= m_spill.capacity()) return false;
     // What was lost would have opened further: twice the demand seen, so that few runs are needed.
-    const std::size_t wanted = 2 * std::size_t(counters.m_spill);
-    limitReached = wanted * sizeof(NodePair) > device.maxAllocationBytes();
-    if (!limitReached) m_spill.reserve(device, wanted);
+    const std::size_t most = device.maxAllocationBytes() / sizeof(NodePair);
+    limitReached = counters.m_spill > most;
+    if (!limitReached) m_spill.reserve(device, std::min(2 * std::size_t(counters.m_spill), most));
     return true;
 }
 }  // namespace drape

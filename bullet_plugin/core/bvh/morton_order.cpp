@@ -95,8 +95,7 @@ void MortonOrderStage::enqueue(Device& device, Buffer<Triangle>& triangles, Buff
     }
     // By the lower word, then by the upper: the sort is stable.
     m_unsortedHigh.reserve(device, count);
-    m_unsortedLow.reserve(device, count);
-    device.queue().enqueueCopyBuffer(low.handle(), m_unsortedLow.handle(), 0, 0, count * sizeof(cl_uint));
+    m_unsortedLow.copy(device, low, count, count);
     std::swap(high, m_unsortedHigh);
     m_sort.enqueue(device, low, order, count, kLowBits, shape);
     m_sort.gather(device, m_unsortedHigh, order, count, high);

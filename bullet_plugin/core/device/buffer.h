@@ -29,6 +29,7 @@ public:
         if (m_capacity >= count && m_capacity > 0) return false;
         const std::size_t wanted = count == 0 ? 1 : count;
         cl_int code = CL_SUCCESS;
+        m_buffer = cl::Buffer();  // before the new one is made, so that both need not fit
         m_buffer = cl::Buffer(device.context(), CL_MEM_READ_WRITE, wanted * sizeof(T), nullptr, &code);
         device.countBuffer();
         device.check(code, "clCreateBuffer", std::to_string(wanted * sizeof(T)) + " bytes");

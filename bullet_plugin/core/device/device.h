@@ -1,4 +1,4 @@
-// An OpenCL device with its context and in-order queue, and the choice among those there are.
+// An OpenCL device with its context and in-order queue.
 //
 // Errors are sticky: after the first failure every later call on the device is a no-op and error() says what failed,
 // with which code and log. The pipeline checks once a step. Not thread-safe. The only folder that includes OpenCL
@@ -67,24 +67,4 @@ private:
     MemoryLedger m_memory;
     Error m_error;
 };
-
-// What settings (and DRAPE_DEVICE) come to on this machine.
-struct DeviceChoice
-{
-    bool m_onHost = true;
-    bool m_byCost = false;    // nobody asked for this device: scenes that are too small for it may run on the host
-    std::size_t m_index = 0;  // into listDevices(), unless on the host
-    DeviceInfo m_device;      // that one
-    std::string m_reason;
-};
-
-// The reason of a report where the host took over from a device that failed.
-std::string hostSince(const DeviceInfo& device, const Error& error);
-
-// error is filled when a device was asked for that is not there; its detail lists those that are.
-DeviceChoice chooseDevice(const Settings& settings, Error& error);
-
-// The crossover, in pairs of triangles, that settings or else DRAPE_CROSSOVER ask for; negative where neither does.
-// Returns false, and fills error, where the variable is not a number from 0 on.
-bool wantedCrossover(const Settings& settings, double& pairs, Error& error);
 }  // namespace drape

@@ -1,11 +1,11 @@
+#include "device_choice.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
 #include <limits>
 #include <locale>
 #include <sstream>
-
-#include "device.h"
 
 namespace drape
 {
@@ -36,7 +36,8 @@ DeviceChoice chooseByName(const std::vector<DeviceInfo>& devices, const std::str
     DeviceChoice choice;
     for (std::size_t i = 0; i < devices.size(); ++i)
     {
-        const std::string text = lowered(devices[i].m_name + " " + devices[i].m_platform);
+        std::string text = lowered(devices[i].m_name + " " + devices[i].m_platform);
+        if (text.find("portable computing language") != std::string::npos) text += " pocl";
         if (text.find(lowered(wanted)) == std::string::npos) continue;
         choice.m_onHost = false;
         choice.m_index = i;
@@ -86,11 +87,14 @@ DeviceChoice chooseDevice(const Settings& settings, Error& error)
     if (!wanted.empty()) return chooseByName(devices, wanted, origin, error);
     if (devices.empty())
     {
-        choice.m_reason = "no OpenCL device was found";
+        choice.m_reason =
+            "no OpenCL device was found (PoCL shows none where it cannot write its cache, XDG_CACHE_HOME)";
         if (settings.m_backend == Backend::OpenCl)
         {
             error.m_call = "an OpenCL device was asked for, and none was found";
-            error.m_detail = "install a driver, for example the package pocl-opencl-icd";
+            error.m_detail =
+                "install a driver, for example the package pocl-opencl-icd, which needs a cache folder that it "
+                "can write (XDG_CACHE_HOME)";
         }
         return choice;
     }

@@ -15,7 +15,6 @@ constexpr std::size_t kVacantKept = 64;
 
 void MeshPool::add(PooledMesh mesh)
 {
-    dropLastVacant();
     m_triangleCount += mesh.m_topology.m_triangles.size();
     m_ids.push_back(mesh.m_id);
     m_meshes.push_back(std::move(mesh));
@@ -30,9 +29,14 @@ bool MeshPool::remove(MeshId id)
     mesh.m_vacant = true;
     m_vacantTriangles += mesh.m_topology.m_triangles.size();
     ++m_vacantCount;
-    const std::size_t present = m_meshes.size() - m_vacantCount;
-    if (m_vacantTriangles > presentTriangles() || m_vacantCount > present + kVacantKept || present == 0) closeGaps();
     return true;
+}
+
+bool MeshPool::hasWideGaps() const
+{
+    const std::size_t present = m_meshes.size() - m_vacantCount;
+    return m_vacantTriangles > presentTriangles() || m_vacantCount > present + kVacantKept ||
+           (m_vacantCount > 0 && present == 0);
 }
 
 void MeshPool::forget(const PooledMesh& vacant)
@@ -63,13 +67,14 @@ void MeshPool::closeGaps()
 
 void MeshPool::dropLastVacant()
 {
-    while (!m_meshes.empty() && m_meshes.back().m_vacant)
-    {
-        forget(m_meshes.back());
-        m_meshes.pop_back();
-        m_ids.pop_back();
-    }
-    m_placed = std::min(m_placed, m_meshes.size());
+    std::size_t kept = m_placed;
+    while (kept > 0 && m_meshes[kept - 1].m_vacant)
+        forget(m_meshes[--kept]);
+    const auto erase = [&](auto& all)
+    { all.erase(all.begin() + std::ptrdiff_t(kept), all.begin() + std::ptrdiff_t(m_placed)); };
+    erase(m_meshes);
+    erase(m_ids);
+    m_placed = kept;
 }
 
 std::size_t MeshPool::slot(MeshId id) const
@@ -145,9 +150,11 @@ void MeshPool::join(std::size_t slot)
 
 void MeshPool::update()
 {
+    if (hasWideGaps()) closeGaps();
     if (!m_changed) return;
     m_changed = false;
     ++m_revision;
+    dropLastVacant();
     const MeshFirsts end = begin(m_placed);
     m_vertexCount = end.m_vertex;
     m_triangles.resize(end.m_triangle);

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "bullet_plugin/core/pipeline.h"
+#include "mesh_id.h"
 #include "obstacle_placing.h"
 #include "topology.h"
 
@@ -43,9 +43,9 @@ struct PooledMesh
 class MeshPool
 {
 public:
-    // Ids must rise.
+    // Ids must rise. Slots of the others stay until update().
     void add(PooledMesh mesh);
-    // Returns false when the id is not of this pool.
+    // Returns false when the id is not of this pool. So do they here.
     bool remove(MeshId id);
 
     // With vacant ones.
@@ -81,7 +81,8 @@ public:
     const std::vector<MeshFirsts>& firsts() const { return m_firsts; }
 
 private:
-    // Gives vacant slots back, all of them or those behind the last mesh.
+    // Gives vacant slots back: all of them, or the last of those that have their places.
+    bool hasWideGaps() const;
     void closeGaps();
     void dropLastVacant();
     void forget(const PooledMesh& vacant);

@@ -56,6 +56,9 @@ void intersectOnHost(const std::vector<Candidate>& candidates, const ClothView& 
 
 void sortCandidates(std::vector<Candidate>& candidates);
 
+// Into canonical order.
+void sortContacts(std::vector<Contact>& contacts);
+
 // Device buffers that hold both sides' geometry.
 struct NarrowPhaseBuffers
 {

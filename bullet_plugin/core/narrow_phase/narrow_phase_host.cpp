@@ -7,15 +7,12 @@
 
 namespace drape
 {
-namespace
-{
 void sortContacts(std::vector<Contact>& contacts)
 {
     std::sort(contacts.begin(), contacts.end(),
               [](const Contact& a, const Contact& b)
               { return std::tie(a.m_slot, a.m_obstacleFeature) < std::tie(b.m_slot, b.m_obstacleFeature); });
 }
-}  // namespace
 
 NarrowPhaseCounts narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth,
                                     const ObstacleView& obstacle, const NarrowPhaseSettings& settings,

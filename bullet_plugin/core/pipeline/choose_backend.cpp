@@ -111,12 +111,12 @@ void Pipeline::Implementation::chooseBackend()
     const double reachOfThickness = 1 + double(m_settings.m_activation);
     for (const NamedPair& pair : m_pairs)
         m_choice.note(pair.m_cloth, pair.m_obstacle,
-                      expectedPairs(surfaceOf(cloths.mesh(cloths.slot(pair.m_cloth))),
-                                    surfaceOf(obstacles.mesh(obstacles.slot(pair.m_obstacle))),
+                      expectedPairs(surfaceOf(cloths.mesh(slotOf(cloths, pair.m_cloth))),
+                                    surfaceOf(obstacles.mesh(slotOf(obstacles, pair.m_obstacle))),
                                     double(pair.m_thickness) * reachOfThickness));
     for (MeshId id : m_selfCloths)
     {
-        const PooledMesh& cloth = cloths.mesh(cloths.slot(id));
+        const PooledMesh& cloth = cloths.mesh(slotOf(cloths, id));
         const Surface own = surfaceOf(cloth);
         m_choice.note(id, id, expectedPairs(own, own, double(cloth.m_selfThickness) * reachOfThickness));
     }

@@ -2,7 +2,7 @@
 // triangles to some thousands, on sheets as coarse as the cloth and four times finer.
 //
 // Output: rungs for bestCrossover(). Guarantee: the pipeline is left without meshes. Ends a sheet's ladder where the
-// device is well ahead or a step of the host takes long. Cost: under a second.
+// device is well ahead or a step of the host takes long. Cost: a second or two.
 #pragma once
 
 #include <functional>

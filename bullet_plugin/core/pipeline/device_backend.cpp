@@ -526,12 +526,9 @@ bool DeviceBackend::grow()
     {
         if (wanted <= capacity) return;
         again = true;
-        if (withHeadroom(wanted) * elementBytes > largest)
-        {
-            m_limitReached = true;
-            return;
-        }
-        reserve(withHeadroom(wanted));
+        const std::size_t most = largest / elementBytes - DRAPE_CONTACT_HEAD;  // contacts have a head before them
+        m_limitReached = m_limitReached || wanted > most;
+        if (!m_limitReached) reserve(std::min(withHeadroom(wanted), most));
     };
     Device& device = *m_device;
     if (patches())

@@ -1,12 +1,14 @@
 // What a Pipeline holds: the scene, both back ends, and the step under way.
 #pragma once
 
+#include <cassert>
 #include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "backend_choice.h"
+#include "bullet_plugin/core/device/device_choice.h"
 #include "bullet_plugin/core/pipeline.h"
 #include "device_backend.h"
 #include "host_backend.h"
@@ -29,6 +31,14 @@ struct NamedPair
                m_tube == other.m_tube;
     }
 };
+
+// The id is of a mesh that is there.
+inline std::size_t slotOf(const MeshPool& pool, MeshId id)
+{
+    const std::size_t slot = pool.slot(id);
+    assert(slot < pool.meshCount());
+    return slot;
+}
 
 // Slot of a contact's obstacle.
 std::size_t obstacleSlot(const MeshPool& obstacles, const Contact& contact);
@@ -108,7 +118,6 @@ struct Pipeline::Implementation
     void goOnWithoutDevice(const Error& error);
     // Whether cost decides between the host and the device that was chosen.
     bool costDecides(const DeviceChoice& choice) const;
-    // The crossover that settings or the environment name; negative where they name none. False: an error.
     // From the cache, or measured.
     double findCrossover(Pipeline& pipeline);
     bool beginChoice(Pipeline& pipeline, Error& error);
@@ -116,8 +125,8 @@ struct Pipeline::Implementation
     void useChosen();
     // Takes in the pairs that are named for the coming step, where they are not those of the last one.
     void chooseBackend();
-    // Whether the host may have the steps of all meshes that are there: where cost decides, by pairs of a thickness near
-    // zero, the least that any have.
+    // Whether the host may have the steps of all meshes that are there: where cost decides, by pairs of a thickness
+    // near zero, the least that any have.
     bool mayStayOnHost() const;
     void runOnHost();
     // The step of the pairs that are left, on the back end in use.

@@ -3,13 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <chrono>
-#include <cmath>
-#include <limits>
 
-#include "bullet_plugin/core/bvh/morton_order.h"
 #include "bullet_plugin/core/mesh/check_indices.h"
-#include "bullet_plugin/core/mesh/normal_cones.h"
-#include "bullet_plugin/core/mesh/reserve_room.h"
 #include "check_settings.h"
 #include "scene_work.h"
 
@@ -19,306 +14,11 @@ namespace
 {
 using Clock = std::chrono::steady_clock;
 
-// Volumes reach a little further than the feature tests, by more than those round, so that which pairs were candidates
-// never decides whether a pair is a contact.
-constexpr float kReachPad = 1.001f;
-// Share of the longest edge of an obstacle by which candidates are looked for farther than contacts reach: the search
-// for meetings takes features for met that are apart by a share of their size (isSwept in kernels/lib/rigid_motion.h).
-constexpr float kEdgePad = 1e-4f;
-// Nodes that go to the device before all are written: 0.4 MB each of start and end, so that a transfer takes longer
-// than it takes to ask for it.
-constexpr std::size_t kNodesTogether = 1 << 15;
-// Nodes that one thread writes before it looks for others, and from how many on it is worth waking threads.
-constexpr std::size_t kNodesAlone = 1 << 11;
-constexpr std::size_t kLeastShared = 1 << 14;
-
 double millisecondsSince(Clock::time_point start)
 {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 }  // namespace
-
-PooledMesh Pipeline::Implementation::makeMesh(const MeshDescription& description)
-{
-    PooledMesh mesh;
-    mesh.m_id = m_nextId++;
-    mesh.m_topology = buildTopology(description.m_triangles, description.m_triangleCount, description.m_vertexCount);
-    mesh.m_positions.assign(description.m_positions, description.m_positions + 3 * description.m_vertexCount);
-    mesh.m_area = surfaceArea(mesh.m_topology.m_triangles, mesh.m_positions.data());
-    mesh.m_order = mortonOrderOnHost(mesh.m_topology.m_triangles, mesh.m_positions.data());
-    return mesh;
-}
-
-void Pipeline::Implementation::measureObstacle(PooledMesh& mesh)
-{
-    computeNormalCones(mesh.m_topology, mesh.m_positions.data(), mesh.m_vertexCones, mesh.m_edgeCones);
-    const float infinity = std::numeric_limits<float>::infinity();
-    mesh.m_box = MeshBox{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
-    for (std::size_t i = 0; i < mesh.m_positions.size(); ++i)
-    {
-        const float coordinate = mesh.m_positions[i];
-        if (!std::isfinite(coordinate)) continue;
-        mesh.m_box.m_low[i % 3] = std::min(mesh.m_box.m_low[i % 3], coordinate);
-        mesh.m_box.m_high[i % 3] = std::max(mesh.m_box.m_high[i % 3], coordinate);
-    }
-    mesh.m_longestEdge = 0;
-    for (const Edge& edge : mesh.m_topology.m_edges)
-    {
-        const Vec3 a = vec3Load(mesh.m_positions.data(), edge.m_vertices[0]);
-        const float length = vec3Length(vec3Sub(vec3Load(mesh.m_positions.data(), edge.m_vertices[1]), a));
-        if (std::isfinite(length)) mesh.m_longestEdge = std::max(mesh.m_longestEdge, length);
-    }
-}
-
-void Pipeline::Implementation::placeMesh(std::size_t slot)
-{
-    PooledMesh& mesh = m_scene.m_obstacles.mesh(slot);
-    const ObstaclePlacing& placing = mesh.m_placing;
-    ObstaclePlace& place = m_scene.m_places[slot];
-    std::copy(placing.m_end.begin(), placing.m_end.end(), place.m_pose);
-    place.m_posed = placing.m_posed;
-    place.m_firstVertex = mesh.m_firstVertex;
-    place.m_firstEdge = mesh.m_firstEdge;
-    m_scene.m_anyPosed = m_scene.m_anyPosed || placing.m_posed;
-    const MeshBox box = placing.m_posed ? placedBox(placing.m_end, mesh.m_box) : mesh.m_box;
-    float farthest = 0;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        for (float bound : {box.m_low[axis], box.m_high[axis]})
-            if (std::isfinite(bound)) farthest = std::max(farthest, std::fabs(bound));
-    }
-    mesh.m_coordinateStep = std::nextafter(farthest, std::numeric_limits<float>::infinity()) - farthest;
-}
-
-void Pipeline::Implementation::joinCloths(std::size_t first)
-{
-    const MeshPool& cloths = m_scene.m_cloths;
-    forgetNodes();
-    const std::size_t coordinates = 3 * cloths.vertexCount();
-    if (m_scene.m_clothStart.capacity() < coordinates)
-    {
-        // Their contents are lost; a quarter more where it is not the first time.
-        const std::size_t room = coordinates + (first > 0 ? coordinates / 4 : 0);
-        m_scene.m_clothStart.reserve(device(), room);
-        m_scene.m_clothEnd.reserve(device(), room);
-        first = 0;
-    }
-    for (std::size_t slot = first; slot < cloths.meshCount(); ++slot)
-    {
-        const PooledMesh& mesh = cloths.mesh(slot);
-        for (float* target : {m_scene.m_clothStart.data(), m_scene.m_clothEnd.data()})
-        {
-            std::copy(mesh.m_positions.begin(), mesh.m_positions.end(), target + 3 * std::size_t(mesh.m_firstVertex));
-        }
-    }
-    joinRest();
-}
-
-void Pipeline::Implementation::joinRest()
-{
-    const MeshPool& cloths = m_scene.m_cloths;
-    m_scene.m_anySelf = false;
-    for (std::size_t slot = 0; slot < cloths.meshCount(); ++slot)
-        m_scene.m_anySelf |= cloths.mesh(slot).m_selfThickness > 0.0f && !cloths.mesh(slot).m_vacant;
-    m_scene.m_clothRest.clear();
-    for (std::size_t slot = 0; slot < cloths.meshCount() && m_scene.m_anySelf; ++slot)
-    {
-        const PooledMesh& mesh = cloths.mesh(slot);
-        const std::vector<float>& rest = mesh.m_rest.empty() ? mesh.m_positions : mesh.m_rest;
-        m_scene.m_clothRest.insert(m_scene.m_clothRest.end(), rest.begin(), rest.end());
-    }
-}
-
-void Pipeline::Implementation::forgetNodes()
-{
-    if (m_nodesSent > 0) m_deviceBackend->device().wait();
-    m_nodesWritten = m_nodesSent = 0;
-}
-
-// Nobody writes those.
-void Pipeline::Implementation::passVacantNodes(std::size_t last)
-{
-    const MeshPool& cloths = m_scene.m_cloths;
-    while (m_nodesWritten < last)
-    {
-        const std::size_t slot = cloths.slotOfVertex(std::uint32_t(m_nodesWritten));
-        if (!cloths.mesh(slot).m_vacant) return;
-        m_nodesWritten = cloths.begin(slot + 1).m_vertex;
-    }
-}
-
-std::vector<NodeStretch> Pipeline::Implementation::stretchesOf(const std::vector<MeshId>& ids)
-{
-    std::vector<NodeStretch> stretches;
-    for (std::size_t i = 0; i < ids.size(); ++i)
-    {
-        const PooledMesh& mesh = m_scene.m_cloths.mesh(m_scene.m_cloths.slot(ids[i]));
-        const std::size_t nodes = mesh.m_positions.size() / 3;
-        for (std::size_t first = 0; first < nodes; first += kNodesAlone)
-        {
-            const std::size_t at = 3 * (mesh.m_firstVertex + first);
-            stretches.push_back(NodeStretch{i, first, std::min(kNodesAlone, nodes - first),
-                                            m_scene.m_clothStart.data() + at, m_scene.m_clothEnd.data() + at});
-        }
-    }
-    return stretches;
-}
-
-void Pipeline::Implementation::joinObstacles(std::size_t first)
-{
-    MeshPool& pool = m_scene.m_obstacles;
-    const MeshFirsts kept = pool.begin(first);
-    m_scene.m_obstaclePositions.resize(3 * std::size_t(kept.m_vertex));
-    m_scene.m_vertexCones.resize(kept.m_vertex);
-    m_scene.m_edgeCones.resize(kept.m_edge);
-    m_scene.m_places.resize(pool.meshCount());
-    if (pool.meshCount() == 0) m_scene.m_anyPosed = false;
-    const MeshFirsts end = pool.begin(pool.meshCount());
-    reserveRoom(m_scene.m_obstaclePositions, 3 * std::size_t(end.m_vertex));
-    reserveRoom(m_scene.m_vertexCones, end.m_vertex);
-    reserveRoom(m_scene.m_edgeCones, end.m_edge);
-    const auto append = [](auto& all, const auto& own) { all.insert(all.end(), own.begin(), own.end()); };
-    for (std::size_t slot = first; slot < pool.meshCount(); ++slot)
-    {
-        PooledMesh& mesh = pool.mesh(slot);
-        append(m_scene.m_obstaclePositions, mesh.m_positions);
-        append(m_scene.m_vertexCones, mesh.m_vertexCones);
-        append(m_scene.m_edgeCones, mesh.m_edgeCones);
-        mesh.m_placedAnew = true;
-        placeMesh(slot);
-    }
-}
-
-void Pipeline::Implementation::joinScene()
-{
-    MeshPool& cloths = m_scene.m_cloths;
-    MeshPool& obstacles = m_scene.m_obstacles;
-    cloths.update();
-    obstacles.update();
-    if (m_clothRevision != cloths.revision())
-    {
-        joinCloths(cloths.firstSince(m_clothRevision));
-        m_clothHierarchy.begin(cloths);
-        m_clothRevision = cloths.revision();
-        m_treeWatch.begin();
-    }
-    if (m_obstacleRevision != obstacles.revision())
-    {
-        joinObstacles(obstacles.firstSince(m_obstacleRevision));
-        m_obstacleHierarchy.begin(obstacles);
-        m_obstacleRevision = obstacles.revision();
-    }
-}
-
-void Pipeline::Implementation::collectPairs()
-{
-    const std::size_t obstacleMeshes = m_scene.m_obstacles.meshCount();
-    m_stepPairs.m_thickness.assign(m_scene.m_cloths.meshCount() * obstacleMeshes, -1.0f);
-    m_stepPairs.m_clothRadius.assign(m_scene.m_cloths.meshCount(), -1.0f);
-    m_stepPairs.m_anyPair = false;
-    m_paired.assign(obstacleMeshes, false);
-    for (const NamedPair& pair : m_pairs)
-    {
-        const std::size_t cloth = m_scene.m_cloths.slot(pair.m_cloth);
-        const std::size_t obstacle = m_scene.m_obstacles.slot(pair.m_obstacle);
-        assert(cloth < m_scene.m_cloths.meshCount() && obstacle < obstacleMeshes && pair.m_thickness > 0.0f);
-        m_stepPairs.m_thickness[cloth * obstacleMeshes + obstacle] = pair.m_thickness;
-        m_paired[obstacle] = true;
-        if (m_scene.m_obstacles.mesh(obstacle).m_coordinateStep > pair.m_thickness)
-            m_statistics.m_status |= kStepCoarsePositions;
-        float& radius = m_stepPairs.m_clothRadius[cloth];
-        radius = std::max(radius, pair.m_thickness * (1.0f + m_settings.m_activation) * kReachPad +
-                                      kEdgePad * m_scene.m_obstacles.mesh(obstacle).m_longestEdge);
-        m_stepPairs.m_anyPair = true;
-    }
-    m_stepPairs.m_measureTree =
-        m_stepPairs.m_anyPair && watchesClothTree(m_settings, m_report.m_onHost) && m_treeWatch.isDue();
-    collectMotions();
-    if (m_stepPairs.m_anyPair) m_statistics.m_obstaclesKept = countKept();
-    collectTubes();
-    m_pairs.clear();
-    const std::size_t clothTriangles = m_scene.m_cloths.triangles().size();
-    const std::size_t obstacleTriangles = m_scene.m_obstacles.triangles().size();
-    m_statistics.m_clothTriangles = m_scene.m_cloths.presentTriangles();
-    m_statistics.m_obstacleTriangles = m_scene.m_obstacles.presentTriangles();
-    if (clothTriangles == 0 || obstacleTriangles == 0) m_stepPairs.m_anyPair = false;
-    collectSelf();
-    m_stepPairs.m_any = m_stepPairs.m_anyPair || m_stepPairs.m_anySelf;
-}
-
-void Pipeline::Implementation::collectSelf()
-{
-    const MeshPool& cloths = m_scene.m_cloths;
-    m_stepPairs.m_self.m_thickness.assign(cloths.meshCount(), -1.0f);
-    m_stepPairs.m_self.m_radius.assign(cloths.meshCount(), -1.0f);
-    m_stepPairs.m_anySelf = false;
-    for (MeshId id : m_selfCloths)
-    {
-        const std::size_t slot = cloths.slot(id);
-        assert(slot < cloths.meshCount() && cloths.mesh(slot).m_selfThickness > 0.0f);
-        const float thickness = cloths.mesh(slot).m_selfThickness;
-        m_stepPairs.m_self.m_thickness[slot] = thickness;
-        m_stepPairs.m_self.m_radius[slot] = selfGrowth(thickness * (1.0f + m_settings.m_activation));
-        m_stepPairs.m_anySelf = m_stepPairs.m_anySelf || !cloths.mesh(slot).m_topology.m_triangles.empty();
-    }
-    m_selfCloths.clear();
-}
-
-void Pipeline::Implementation::collectMotions()
-{
-    const MeshPool& obstacles = m_scene.m_obstacles;
-    m_stepPairs.m_motions.clear();
-    for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
-    {
-        const PooledMesh& mesh = obstacles.mesh(slot);
-        if (m_paired[slot] && mesh.m_placing.moves())
-            m_stepPairs.m_motions.push_back(makeMotion(mesh.m_placing, mesh.m_box, std::uint32_t(slot)));
-    }
-}
-
-std::size_t Pipeline::Implementation::countKept()
-{
-    MeshPool& obstacles = m_scene.m_obstacles;
-    // On a device that walks it the obstacles' hierarchy is made or refitted with new ones and those that move, on the
-    // host where it is not joined out of the obstacles' own. Patches are an obstacle's own.
-    const bool onTree = !m_report.m_onHost && !goesOverPatches(m_settings);
-    const bool asOne = onTree || (m_report.m_onHost && !m_scene.m_obstacleLayout.joined());
-    bool allAnew = asOne && m_stepRevision != m_obstacleRevision;
-    m_stepRevision = m_obstacleRevision;
-    std::size_t kept = 0;
-    for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
-    {
-        PooledMesh& mesh = obstacles.mesh(slot);
-        allAnew = allAnew || (asOne && mesh.m_placedAnew);
-        if (m_paired[slot] && !mesh.m_placedAnew) ++kept;
-        mesh.m_placedAnew = false;
-    }
-    return allAnew ? 0 : kept;
-}
-
-// A cloth's contacts are reduced where all its obstacles rest and are two-sided: the solver keeps a node near its way
-// as each moving obstacle sees it, and contacts on the back of a one-sided one are not held.
-void Pipeline::Implementation::collectTubes()
-{
-    const MeshPool& obstacles = m_scene.m_obstacles;
-    m_stepPairs.m_tube.assign(m_stepPairs.m_thickness.size(), -1.0f);
-    m_stepPairs.m_anyTube = false;
-    if (!m_settings.m_reduceContacts) return;
-    std::vector<bool> exempt(m_scene.m_cloths.meshCount(), false);
-    for (const NamedPair& pair : m_pairs)
-    {
-        const PooledMesh& obstacle = obstacles.mesh(obstacles.slot(pair.m_obstacle));
-        if (obstacle.m_placing.moves() || obstacle.m_oneSided || !(pair.m_tube >= 0.0f))
-            exempt[m_scene.m_cloths.slot(pair.m_cloth)] = true;
-    }
-    for (const NamedPair& pair : m_pairs)
-    {
-        const std::size_t cloth = m_scene.m_cloths.slot(pair.m_cloth);
-        if (exempt[cloth]) continue;
-        m_stepPairs.m_tube[cloth * obstacles.meshCount() + obstacles.slot(pair.m_obstacle)] = pair.m_tube;
-        m_stepPairs.m_anyTube = true;
-    }
-}
 
 void Pipeline::Implementation::prepareSelf()
 {
@@ -401,6 +101,7 @@ const DeviceReport& Pipeline::deviceReport() const
 
 MeshId Pipeline::addCloth(const MeshDescription& description)
 {
+    assert(!m_implementation->m_submitted);
     if (!checkIndices(description, "addCloth", m_implementation->m_error)) return kNoMesh;
     PooledMesh mesh = m_implementation->makeMesh(description);
     const MeshId id = mesh.m_id;
@@ -418,6 +119,7 @@ MeshId Pipeline::addCloth(const MeshDescription& description)
 
 MeshId Pipeline::addObstacle(const MeshDescription& description)
 {
+    assert(!m_implementation->m_submitted);
     if (!checkIndices(description, "addObstacle", m_implementation->m_error)) return kNoMesh;
     PooledMesh mesh = m_implementation->makeMesh(description);
     const MeshId id = mesh.m_id;
@@ -461,9 +163,10 @@ void Pipeline::prepare()
 
 void Pipeline::moveObstacle(MeshId id, const float* positions)
 {
+    assert(!m_implementation->m_submitted);
     Scene& scene = m_implementation->m_scene;
     m_implementation->joinScene();
-    const std::size_t slot = scene.m_obstacles.slot(id);
+    const std::size_t slot = slotOf(scene.m_obstacles, id);
     PooledMesh& mesh = scene.m_obstacles.mesh(slot);
     const auto replace = [](auto& all, std::size_t first, const auto& own)
     { std::copy(own.begin(), own.end(), all.begin() + std::ptrdiff_t(first)); };
@@ -481,9 +184,10 @@ void Pipeline::moveObstacle(MeshId id, const float* positions)
 
 void Pipeline::placeObstacle(MeshId id, const float startPose[12], const float endPose[12])
 {
+    assert(!m_implementation->m_submitted);
     Scene& scene = m_implementation->m_scene;
     m_implementation->joinScene();
-    const std::size_t slot = scene.m_obstacles.slot(id);
+    const std::size_t slot = slotOf(scene.m_obstacles, id);
     ObstaclePlacing& placing = scene.m_obstacles.mesh(slot).m_placing;
     const bool stays = placing.m_posed && std::equal(placing.m_end.begin(), placing.m_end.end(), endPose);
     placing.m_posed = true;
@@ -493,73 +197,6 @@ void Pipeline::placeObstacle(MeshId id, const float startPose[12], const float e
     scene.m_obstacles.mesh(slot).m_placedAnew = true;
     m_implementation->placeMesh(slot);
     ++scene.m_obstaclePlacing;
-}
-
-float* Pipeline::clothStart(MeshId id)
-{
-    m_implementation->joinScene();
-    Scene& scene = m_implementation->m_scene;
-    return scene.m_clothStart.data() + 3 * std::size_t(scene.m_cloths.mesh(scene.m_cloths.slot(id)).m_firstVertex);
-}
-
-float* Pipeline::clothEnd(MeshId id)
-{
-    m_implementation->joinScene();
-    Scene& scene = m_implementation->m_scene;
-    return scene.m_clothEnd.data() + 3 * std::size_t(scene.m_cloths.mesh(scene.m_cloths.slot(id)).m_firstVertex);
-}
-
-void Pipeline::nodesWritten(MeshId id, std::size_t count)
-{
-    Implementation& self = *m_implementation;
-    if (self.m_report.m_onHost) return;
-    self.joinScene();
-    const MeshPool& cloths = self.m_scene.m_cloths;
-    const std::size_t first = cloths.mesh(cloths.slot(id)).m_firstVertex;
-    assert(first + count <= cloths.vertexCount());
-    self.passVacantNodes(first);
-    if (first > self.m_nodesWritten) return;
-    self.m_nodesWritten = std::max(self.m_nodesWritten, first + count);
-    const std::size_t unsent = self.m_nodesWritten - self.m_nodesSent;
-    if (unsent >= kNodesTogether && self.m_deviceBackend->sendNodes(self.m_scene, self.m_nodesSent, unsent))
-        self.m_nodesSent = self.m_nodesWritten;
-}
-
-void Pipeline::writeNodes(const std::vector<MeshId>& ids, const std::function<void(const NodeStretch&)>& write)
-{
-    Implementation& self = *m_implementation;
-    self.joinScene();
-    const std::vector<NodeStretch> stretches = self.stretchesOf(ids);
-    for (std::size_t first = 0, last; first < stretches.size(); first = last)
-    {
-        std::size_t nodes = 0;
-        for (last = first; last < stretches.size() && nodes < kNodesTogether; ++last)
-            nodes += stretches[last].m_count;
-        const auto writeOne = [&](std::size_t i) { write(stretches[first + i]); };
-        if (nodes >= kLeastShared && self.runsOnGpu())
-            self.m_threads->run(last - first, writeOne);
-        else
-            for (std::size_t i = 0; i < last - first; ++i)
-                writeOne(i);
-        for (std::size_t i = first; i < last; ++i)
-            nodesWritten(ids[stretches[i].m_cloth], stretches[i].m_first + stretches[i].m_count);
-    }
-}
-
-void Pipeline::copyNodes(const std::vector<MeshId>& ids, const float* start, const float* end)
-{
-    const MeshPool& cloths = m_implementation->m_scene.m_cloths;
-    m_implementation->joinScene();
-    std::vector<std::size_t> firsts(1, 0);
-    for (const MeshId id : ids)
-        firsts.push_back(firsts.back() + cloths.mesh(cloths.slot(id)).m_positions.size());
-    writeNodes(ids,
-               [&](const NodeStretch& stretch)
-               {
-                   const std::size_t from = firsts[stretch.m_cloth] + 3 * stretch.m_first;
-                   std::copy_n(start + from, 3 * stretch.m_count, stretch.m_start);
-                   std::copy_n(end + from, 3 * stretch.m_count, stretch.m_end);
-               });
 }
 
 const std::shared_ptr<ThreadTeam>& Pipeline::threads() const

@@ -10,6 +10,7 @@
 #include "bullet_plugin/core/device/buffer.h"
 #include "bullet_plugin/core/mesh/mesh_pool.h"
 #include "bullet_plugin/core/narrow_phase/narrow_phase.h"
+#include "bullet_plugin/core/pipeline.h"
 #include "bullet_plugin/core/self_collision/self_contacts.h"
 #include "drape/settings.h"
 

@@ -5,6 +5,7 @@
 
 #include "bullet_plugin/core/broad_phase/host_traversal.h"
 #include "bullet_plugin/core/bvh/tree_cost.h"
+#include "bullet_plugin/core/threads/blocked_signals.h"
 
 namespace drape
 {
@@ -31,7 +32,7 @@ bool watchesClothTree(const Settings& settings, bool onHost)
 
 void TreeWatch::begin()
 {
-    m_rebuilt = std::future<RebuiltTrees>();
+    m_superseded = m_rebuilt.valid();
     m_costAtBuild = 0;
     m_step = 0;
 }
@@ -51,6 +52,7 @@ void TreeWatch::rebuild(const TreeMethods& methods, std::vector<Triangle> triang
                         std::vector<std::uint32_t> firstTriangles, std::vector<float> positions)
 {
     // Where there is no thread to be had, the step that takes the tree builds it.
+    const BlockedSignals blocked;
     m_rebuilt = std::async(std::launch::async | std::launch::deferred,
                            [methods, triangles = std::move(triangles), firsts = std::move(firstTriangles),
                             positions = std::move(positions)]
@@ -65,8 +67,12 @@ void TreeWatch::wait()
 bool TreeWatch::take(RebuiltTrees& rebuilt)
 {
     if (!m_rebuilt.valid() || m_rebuilt.wait_for(std::chrono::seconds(0)) == std::future_status::timeout) return false;
-    rebuilt = m_rebuilt.get();
+    const bool superseded = m_superseded;
+    if (superseded)
+        m_rebuilt = std::future<RebuiltTrees>();
+    else
+        rebuilt = m_rebuilt.get();
     begin();
-    return true;
+    return !superseded;
 }
 }  // namespace drape

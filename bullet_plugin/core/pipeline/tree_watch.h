@@ -22,7 +22,8 @@ bool watchesClothTree(const Settings& settings, bool onHost);
 class TreeWatch
 {
 public:
-    // The hierarchy is new: the next cost is what later ones are held against. Drops a rebuild under way, once it ends.
+    // The hierarchy is new: the next cost is what later ones are held against. What is being built is dropped when it
+    // is there, and nothing else is built before.
     void begin();
 
     // Once a step: whether its cost is to be measured.
@@ -40,7 +41,8 @@ public:
 
 private:
     std::future<RebuiltTrees> m_rebuilt;
-    double m_costAtBuild = 0;  // 0: not measured yet
+    bool m_superseded = false;  // m_rebuilt will not be used
+    double m_costAtBuild = 0;   // 0: not measured yet
     std::uint32_t m_step = 0;
 };
 }  // namespace drape

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "bullet_plugin/core/device/device_choice.h"
 #include "bullet_plugin/core/exact/triangles.h"
 #include "bullet_plugin/core/mesh/check_indices.h"
 #include "bullet_plugin/core/pipeline/check_settings.h"
@@ -25,7 +26,7 @@ struct Queries::Implementation
 
     bool check(bool good)
     {
-        if (!good) m_error = m_device->device().error();
+        if (!good) m_error = m_device->error();
         return good;
     }
     // Whether what a caller gave is usable; else the error names the call and what is wrong.

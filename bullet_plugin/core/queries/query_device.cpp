@@ -85,9 +85,16 @@ void QueryDevice::upload(const QueryMesh& source, float radius, Mesh& mesh)
     device.wait();  // locals were uploaded
 }
 
-DeviceTree QueryDevice::tree(const QueryMesh& source, Mesh& mesh) const
+DeviceTreeView QueryDevice::tree(const QueryMesh& source, Mesh& mesh) const
 {
     return {mesh.m_nodes, mesh.m_order, mesh.m_triangles, mesh.m_lastLeaf, source.m_layout};
+}
+
+bool QueryDevice::refuse(const std::string& why)
+{
+    m_noRoom.m_call = "traversal on " + m_device->info().m_name;
+    m_noRoom.m_detail = why;
+    return false;
 }
 
 // Runs enqueue(batch) over all leaves; take() reads what a batch found. Lists grow to their limit, as meet() says, then
@@ -104,9 +111,8 @@ bool QueryDevice::inBatches(PairWalk& walk, Enqueue enqueue, Meet meet, Take tak
         enqueue(batch);
         m_stage.enqueueReadCounters(device);
         device.wait();
-        if (!device.failed() && m_stage.counters().m_tooDeep > 0)
-            device.check(CL_OUT_OF_RESOURCES, "traversal", "the hierarchy is too deep for its stack");
         if (device.failed()) return false;
+        if (m_stage.counters().m_tooDeep > 0) return refuse("the hierarchy is too deep for its stack");
         walk.m_tooMany = m_stage.counters().m_pairs > walk.left();
         if (walk.m_tooMany) return true;
         switch (meet())
@@ -117,7 +123,7 @@ bool QueryDevice::inBatches(PairWalk& walk, Enqueue enqueue, Meet meet, Take tak
                 // One triangle's pairs are at most the triangles of the other side.
                 if (batch.m_count == 1) m_stage.limitLists(device.maxAllocationBytes());
                 if (batch.m_count == 1 && meet() == SelfCollisionStage::Demand::TooMuch)
-                    device.check(CL_MEM_OBJECT_ALLOCATION_FAILURE, "traversal", "the pairs of one triangle do not fit");
+                    return refuse("the pairs of one triangle do not fit");
                 batch.m_count = (batch.m_count + 1) / 2;
                 break;
             case SelfCollisionStage::Demand::Met:
@@ -194,7 +200,7 @@ bool QueryDevice::meshMotion(QueryMesh& source, const CcdSettings& settings, con
 {
     Mesh mesh;
     upload(source, selfRadius(settings), mesh);
-    const DeviceTree deviceTree = tree(source, mesh);
+    const DeviceTreeView deviceTree = tree(source, mesh);
     const DeviceMotion motion = {deviceTree, mesh.m_edges, mesh.m_start, mesh.m_end, source.m_topology.m_vertexCount};
     m_stage.enqueueVolumes(*m_device, motion, settings);
     const SelfCounters& counters = m_stage.counters();

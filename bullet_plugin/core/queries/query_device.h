@@ -20,7 +20,8 @@ public:
     bool fromCache() const { return m_programs.fromCache(); }
     SelfCollisionStage& stage() { return m_stage; }
 
-    // Each returns false when the device failed.
+    // Each returns false when the device failed, or when it has no room for it; error() says which.
+    const Error& error() const { return m_device->failed() ? m_device->error() : m_noRoom; }
     bool motions(const CcdQuery* queries, std::size_t count, const CcdSettings& settings, CcdResult* results);
     bool triangles(const TriangleQuery* queries, std::size_t count, std::uint32_t test, std::uint32_t* results);
     // Gives the pairs that meet or are near by the certified tests to the decision, in no order; a and b the same mesh:
@@ -54,13 +55,15 @@ private:
     };
 
     void upload(const QueryMesh& source, float radius, Mesh& mesh);
-    DeviceTree tree(const QueryMesh& source, Mesh& mesh) const;
+    DeviceTreeView tree(const QueryMesh& source, Mesh& mesh) const;
+    bool refuse(const std::string& why);
     template <typename Enqueue, typename Meet, typename Take>
     bool inBatches(PairWalk& walk, Enqueue enqueue, Meet meet, Take take);
     bool answerPairs(Mesh& a, Mesh& b, float radius, PairDecision& decision);
     bool takeHits(const SelfLimits& limits, SelfCollisions& found);
 
     std::unique_ptr<Device> m_device;
+    Error m_noRoom;  // of the last walk, which alone ends
     ProgramSet m_programs;
     RefitStage m_refit;
     SelfCollisionStage m_stage;

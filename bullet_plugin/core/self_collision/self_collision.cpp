@@ -37,8 +37,8 @@ void SelfCollisionStage::enqueueVolumes(Device& device, DeviceMotion motion, con
                            cl_uint(motion.m_vertexCount), selfRadius(settings), m_volumes.handle());
 }
 
-void SelfCollisionStage::enqueuePairs(Device& device, DeviceTree a, DeviceTree b, std::uint32_t kind, Batch batch,
-                                      std::uint64_t most)
+void SelfCollisionStage::enqueuePairs(Device& device, DeviceTreeView a, DeviceTreeView b, std::uint32_t kind,
+                                      Batch batch, std::uint64_t most)
 {
     m_counters.fill(device, 0, 1);
     if (b.m_layout.leafCount() == 0) return;

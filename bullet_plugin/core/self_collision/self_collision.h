@@ -78,7 +78,7 @@ void selfCollideOnHost(const HostMotion& motion, const CcdSettings& settings, co
 void sortHits(std::vector<FeatureHit>& hits);
 
 // The same on a device.
-struct DeviceTree
+struct DeviceTreeView
 {
     Buffer<BvhNode>& m_nodes;
     Buffer<cl_uint>& m_order;
@@ -89,7 +89,7 @@ struct DeviceTree
 
 struct DeviceMotion
 {
-    DeviceTree m_tree;
+    DeviceTreeView m_tree;
     Buffer<Edge>& m_edges;
     Buffer<float>& m_start;
     Buffer<float>& m_end;
@@ -114,7 +114,7 @@ public:
     void enqueueVolumes(Device& device, DeviceMotion motion, const CcdSettings& settings);
     // Zeroes the counters and lists the batch's pairs of triangles. The walk ends where their count exceeds `most`, and
     // is exact up to it.
-    void enqueuePairs(Device& device, DeviceTree a, DeviceTree b, std::uint32_t kind, Batch batch,
+    void enqueuePairs(Device& device, DeviceTreeView a, DeviceTreeView b, std::uint32_t kind, Batch batch,
                       std::uint64_t most = kMostCounted);
     // Lists the features of the pairs, or counts those that the lists have no room for.
     void enqueueFeatures(Device& device, DeviceMotion motion);

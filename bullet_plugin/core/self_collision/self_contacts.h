@@ -50,8 +50,6 @@ struct SelfCounts
 // Volumes of the cloths' nodes over the step; those of cloths that are not in it stay as they are.
 void selfVolumes(const SelfStep& step, std::vector<Dop>& volumes);
 
-void sortSelfContacts(std::vector<Contact>& contacts);
-
 // Finds the contacts of pairs of triangles that are handed to it, in any order, each once.
 class SelfFinder
 {

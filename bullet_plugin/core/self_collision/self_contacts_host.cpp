@@ -1,7 +1,6 @@
-#include <algorithm>
-#include <tuple>
 
 #include "bullet_plugin/core/bvh/refit.h"
+#include "bullet_plugin/core/narrow_phase/narrow_phase.h"
 #include "self_collision.h"
 #include "self_contacts.h"
 
@@ -24,13 +23,6 @@ HostTree treeOf(const MeshPool& cloths, const std::vector<BvhNode>& nodes, const
     return {nodes, layout, cloths.order(), cloths.triangles()};
 }
 }  // namespace
-
-void sortSelfContacts(std::vector<Contact>& contacts)
-{
-    std::sort(contacts.begin(), contacts.end(),
-              [](const Contact& a, const Contact& b)
-              { return std::tie(a.m_slot, a.m_obstacleFeature) < std::tie(b.m_slot, b.m_obstacleFeature); });
-}
 
 void selfVolumes(const SelfStep& step, std::vector<Dop>& volumes)
 {
@@ -85,7 +77,7 @@ void SelfFinder::test(const FeatureTest& test)
 void SelfFinder::append(std::vector<Contact>& contacts)
 {
     if (!withinLimits() || m_counts.m_contacts > m_contactLimit) return;
-    sortSelfContacts(m_found);
+    sortContacts(m_found);
     contacts.insert(contacts.end(), m_found.begin(), m_found.end());
 }
 

@@ -4,13 +4,14 @@
 #include <cassert>
 #include <cfenv>
 #include <chrono>
-#include <csignal>
 #include <exception>
 #include <limits>
 #include <utility>
 
 #include <pthread.h>
 #include <sched.h>
+
+#include "blocked_signals.h"
 
 namespace drape
 {
@@ -37,23 +38,6 @@ unsigned sizeFor(unsigned threads)
                ? std::min(static_cast<unsigned>(CPU_COUNT(&cores)), ThreadTeam::kMostByDefault)
                : 1;
 }
-
-// Blocks them for the calling thread, and so for threads that it starts: handlers are the application's, and run on its
-// own threads.
-class BlockedSignals
-{
-public:
-    BlockedSignals()
-    {
-        sigset_t all;
-        ::sigfillset(&all);
-        ::pthread_sigmask(SIG_SETMASK, &all, &m_before);
-    }
-    ~BlockedSignals() { ::pthread_sigmask(SIG_SETMASK, &m_before, nullptr); }
-
-private:
-    sigset_t m_before;
-};
 }  // namespace
 
 ThreadTeam::ThreadTeam(unsigned threads) : m_size(sizeFor(threads)), m_stretches(new Stretch[m_size]) {}

@@ -53,7 +53,7 @@ struct TopDownSettings
 };
 
 // How hierarchies of triangles are built and refitted. A pipeline builds its hierarchies on the host (core/bvh/
-// tree_builder.h: buildTreeOnHost), so that of these it goes by the builder, m_mortonBits, m_plocRadius and the rule of
+// joined_tree.h: buildMeshTree), so that of these it goes by the builder, m_mortonBits, m_plocRadius and the rule of
 // m_topDown (m_medianSplit, m_leafSize), and refits them by levels (core/bvh/refit.h). The rest says how hierarchies
 // are built and refitted on a device (TreeBuilderStage, TreeRefitStage), which the study measures.
 struct TreeMethods

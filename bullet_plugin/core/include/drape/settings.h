@@ -66,12 +66,12 @@ struct Settings
     // (StepStatistics::m_intersections). Costs a kernel.
     bool m_reportIntersections = false;
 
-    // Most pairs that a step may list (8 bytes each; of triangles on the host, of features or of triangles and patches
-    // on a device) and most contacts (132 bytes each on a device and as many on the host); 2^28 at most, which stands
-    // for more. Steps of two million cloth triangles need a third of either. A step with more leaves out the cloths
-    // that have most of them, until the rest fits, and says so in its status: those cloths collide with nothing in that
-    // step. Queries of whole meshes (drape/queries.h) test as many pairs and list as many answers (8 to 24 bytes each);
-    // of more they give the number.
+    // Most pairs that a step may list (of triangles on the host, 8 bytes each; of features or of triangles and patches
+    // on a device, up to 20) and most contacts (140 bytes each on a device, 64 and more on the host); 2^28 at most,
+    // which stands for more. Steps of two million cloth triangles need a third of either. A step with more leaves out
+    // the cloths that have most of them, until the rest fits, and says so in its status: those cloths collide with
+    // nothing in that step. Queries of whole meshes (drape/queries.h) test as many pairs and list as many answers (8 to
+    // 24 bytes each); of more they give the number.
     std::size_t m_candidateLimit = std::size_t(1) << 27;
     std::size_t m_contactLimit = std::size_t(1) << 24;
 

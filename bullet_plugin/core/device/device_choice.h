@@ -1,0 +1,32 @@
+// Which device settings and the environment ask for.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "drape/error.h"
+#include "drape/report.h"
+#include "drape/settings.h"
+
+namespace drape
+{
+// What settings (and DRAPE_DEVICE) come to on this machine.
+struct DeviceChoice
+{
+    bool m_onHost = true;
+    bool m_byCost = false;    // nobody asked for this device: scenes that are too small for it may run on the host
+    std::size_t m_index = 0;  // into listDevices(), unless on the host
+    DeviceInfo m_device;      // that one
+    std::string m_reason;
+};
+
+// The reason of a report where the host took over from a device that failed.
+std::string hostSince(const DeviceInfo& device, const Error& error);
+
+// error is filled when a device was asked for that is not there; its detail lists those that are.
+DeviceChoice chooseDevice(const Settings& settings, Error& error);
+
+// The crossover, in pairs of triangles, that settings or else DRAPE_CROSSOVER ask for; negative where neither does.
+// Returns false, and fills error, where the variable is not a number from 0 on.
+bool wantedCrossover(const Settings& settings, double& pairs, Error& error);
+}  // namespace drape

@@ -1,0 +1,10 @@
+// What meshes are called by.
+#pragma once
+
+#include <cstdint>
+
+namespace drape
+{
+using MeshId = std::uint32_t;  // never reused while the pipeline lives
+constexpr MeshId kNoMesh = 0xffffffffu;
+}  // namespace drape

@@ -1,0 +1,129 @@
+// What the coming step is to do: its pairs of cloth and obstacle, cloths that collide with themselves, obstacles that
+// move, and whose contacts may be reduced.
+#include <algorithm>
+#include <cassert>
+
+#include "implementation.h"
+
+namespace drape
+{
+namespace
+{
+// Volumes reach a little further than the feature tests, by more than those round, so that which pairs were candidates
+// never decides whether a pair is a contact.
+constexpr float kReachPad = 1.001f;
+// Share of the longest edge of an obstacle by which candidates are looked for farther than contacts reach: the search
+// for meetings takes features for met that are apart by a share of their size (isSwept in kernels/lib/rigid_motion.h).
+constexpr float kEdgePad = 1e-4f;
+}  // namespace
+
+void Pipeline::Implementation::collectPairs()
+{
+    const std::size_t obstacleMeshes = m_scene.m_obstacles.meshCount();
+    m_stepPairs.m_thickness.assign(m_scene.m_cloths.meshCount() * obstacleMeshes, -1.0f);
+    m_stepPairs.m_clothRadius.assign(m_scene.m_cloths.meshCount(), -1.0f);
+    m_stepPairs.m_anyPair = false;
+    m_paired.assign(obstacleMeshes, false);
+    for (const NamedPair& pair : m_pairs)
+    {
+        const std::size_t cloth = slotOf(m_scene.m_cloths, pair.m_cloth);
+        const std::size_t obstacle = slotOf(m_scene.m_obstacles, pair.m_obstacle);
+        assert(pair.m_thickness > 0.0f);
+        m_stepPairs.m_thickness[cloth * obstacleMeshes + obstacle] = pair.m_thickness;
+        m_paired[obstacle] = true;
+        if (m_scene.m_obstacles.mesh(obstacle).m_coordinateStep > pair.m_thickness)
+            m_statistics.m_status |= kStepCoarsePositions;
+        float& radius = m_stepPairs.m_clothRadius[cloth];
+        radius = std::max(radius, pair.m_thickness * (1.0f + m_settings.m_activation) * kReachPad +
+                                      kEdgePad * m_scene.m_obstacles.mesh(obstacle).m_longestEdge);
+        m_stepPairs.m_anyPair = true;
+    }
+    m_stepPairs.m_measureTree =
+        m_stepPairs.m_anyPair && watchesClothTree(m_settings, m_report.m_onHost) && m_treeWatch.isDue();
+    collectMotions();
+    if (m_stepPairs.m_anyPair) m_statistics.m_obstaclesKept = countKept();
+    collectTubes();
+    m_pairs.clear();
+    const std::size_t clothTriangles = m_scene.m_cloths.triangles().size();
+    const std::size_t obstacleTriangles = m_scene.m_obstacles.triangles().size();
+    m_statistics.m_clothTriangles = m_scene.m_cloths.presentTriangles();
+    m_statistics.m_obstacleTriangles = m_scene.m_obstacles.presentTriangles();
+    if (clothTriangles == 0 || obstacleTriangles == 0) m_stepPairs.m_anyPair = false;
+    collectSelf();
+    m_stepPairs.m_any = m_stepPairs.m_anyPair || m_stepPairs.m_anySelf;
+}
+
+void Pipeline::Implementation::collectSelf()
+{
+    const MeshPool& cloths = m_scene.m_cloths;
+    m_stepPairs.m_self.m_thickness.assign(cloths.meshCount(), -1.0f);
+    m_stepPairs.m_self.m_radius.assign(cloths.meshCount(), -1.0f);
+    m_stepPairs.m_anySelf = false;
+    for (MeshId id : m_selfCloths)
+    {
+        const std::size_t slot = slotOf(cloths, id);
+        assert(cloths.mesh(slot).m_selfThickness > 0.0f);
+        const float thickness = cloths.mesh(slot).m_selfThickness;
+        m_stepPairs.m_self.m_thickness[slot] = thickness;
+        m_stepPairs.m_self.m_radius[slot] = selfGrowth(thickness * (1.0f + m_settings.m_activation));
+        m_stepPairs.m_anySelf = m_stepPairs.m_anySelf || !cloths.mesh(slot).m_topology.m_triangles.empty();
+    }
+    m_selfCloths.clear();
+}
+
+void Pipeline::Implementation::collectMotions()
+{
+    const MeshPool& obstacles = m_scene.m_obstacles;
+    m_stepPairs.m_motions.clear();
+    for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
+    {
+        const PooledMesh& mesh = obstacles.mesh(slot);
+        if (m_paired[slot] && mesh.m_placing.moves())
+            m_stepPairs.m_motions.push_back(makeMotion(mesh.m_placing, mesh.m_box, std::uint32_t(slot)));
+    }
+}
+
+std::size_t Pipeline::Implementation::countKept()
+{
+    MeshPool& obstacles = m_scene.m_obstacles;
+    // On a device that walks it the obstacles' hierarchy is made or refitted with new ones and those that move, on the
+    // host where it is not joined out of the obstacles' own. Patches are an obstacle's own.
+    const bool onTree = !m_report.m_onHost && !goesOverPatches(m_settings);
+    const bool asOne = onTree || (m_report.m_onHost && !m_scene.m_obstacleLayout.joined());
+    bool allAnew = asOne && m_stepRevision != m_obstacleRevision;
+    m_stepRevision = m_obstacleRevision;
+    std::size_t kept = 0;
+    for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
+    {
+        PooledMesh& mesh = obstacles.mesh(slot);
+        allAnew = allAnew || (asOne && mesh.m_placedAnew);
+        if (m_paired[slot] && !mesh.m_placedAnew) ++kept;
+        mesh.m_placedAnew = false;
+    }
+    return allAnew ? 0 : kept;
+}
+
+// A cloth's contacts are reduced where all its obstacles rest and are two-sided: the solver keeps a node near its way
+// as each moving obstacle sees it, and contacts on the back of a one-sided one are not held.
+void Pipeline::Implementation::collectTubes()
+{
+    const MeshPool& obstacles = m_scene.m_obstacles;
+    m_stepPairs.m_tube.assign(m_stepPairs.m_thickness.size(), -1.0f);
+    m_stepPairs.m_anyTube = false;
+    if (!m_settings.m_reduceContacts) return;
+    std::vector<bool> exempt(m_scene.m_cloths.meshCount(), false);
+    for (const NamedPair& pair : m_pairs)
+    {
+        const PooledMesh& obstacle = obstacles.mesh(slotOf(obstacles, pair.m_obstacle));
+        if (obstacle.m_placing.moves() || obstacle.m_oneSided || !(pair.m_tube >= 0.0f))
+            exempt[slotOf(m_scene.m_cloths, pair.m_cloth)] = true;
+    }
+    for (const NamedPair& pair : m_pairs)
+    {
+        const std::size_t cloth = slotOf(m_scene.m_cloths, pair.m_cloth);
+        if (exempt[cloth]) continue;
+        m_stepPairs.m_tube[cloth * obstacles.meshCount() + slotOf(obstacles, pair.m_obstacle)] = pair.m_tube;
+        m_stepPairs.m_anyTube = true;
+    }
+}
+}  // namespace drape
