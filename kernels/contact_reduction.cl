@@ -1,5 +1,6 @@
 // Reduction of the hits of each slot (lib/contact_reduction.h), between the compaction's order and its writing. Slots with few
-// hits are a work-item's, crowded ones a work-group's; both come to the same contacts.
+// hits are a work-item's, crowded ones a work-group's; on a GPU each hit of the former is a work-item's. All come to the same
+// contacts.
 #include "lib/contact_reduction.h"
 #include "lib/group_scan.h"
 #include "lib/hit_list.h"
@@ -184,6 +185,222 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_REDUCE_GROUP, 1, 1))) void re
         const uint stay =
             reduceCrowded(&view, &lists, kept, slotFirst[slot], slotEnd(&lists, slot) - slotFirst[slot], scratch);
         if (get_local_id(0) == 0) slotKept[slot] = stay;
+    }
+}
+
+// Most slots of a group whose work-items take a hit each, and most hits that it holds at a time.
+#define DRAPE_HELD_SLOTS 64
+#define DRAPE_HELD 256
+#define DRAPE_HELD_GROUP 128
+#define DRAPE_UNDECIDED_HIT 0u
+#define DRAPE_STAYS 1u
+#define DRAPE_GOES 2u
+
+// Consecutive slots and their hits, by their places among those that are held. m_lack is infinite where a hit may not go, and
+// m_rank how many of its slot are deeper. Depth and height of a hit's nodes are three each, as ways of a slot's nodes are.
+typedef struct Held
+{
+    uint m_first, m_count, m_slots;  // the first hit's place among all members; how many there are
+    __local const uint* m_firsts;    // of the slots, by all members' places; one more than slots
+    __local uint *m_slot, *m_rank, *m_state, *m_feature;
+    __local float *m_gap, *m_lack, *m_depth, *m_height;
+    __local uint *m_cloth, *m_nodes, *m_mayEmpty, *m_stay;
+    __local Vec3* m_ways;
+} Held;
+
+static void holdSlots(const ReductionView* view, const SlotLists* lists, const Held* held)
+{
+    for (uint slot = get_local_id(0); slot < held->m_slots; slot += get_local_size(0))
+    {
+        held->m_stay[slot] = 0;
+        if (held->m_firsts[slot + 1] == held->m_firsts[slot]) continue;
+        __global const Contact* contact = lists->m_hits + lists->m_members[held->m_firsts[slot]];
+        for (uint i = held->m_firsts[slot]; i < held->m_firsts[slot + 1]; ++i) held->m_slot[i - held->m_first] = slot;
+        held->m_nodes[slot] = 0;  // of hits that all stay
+        if (contact->m_kind >= DRAPE_SELF_NODE_FACE) continue;
+        const ReducedFeature feature = reducedFeature(view, lists, contact);
+        held->m_cloth[slot] = feature.m_cloth;
+        held->m_nodes[slot] = (uint)feature.m_count;
+        held->m_mayEmpty[slot] = (uint)feature.m_mayEmpty;
+        for (int k = 0; k < feature.m_count; ++k) held->m_ways[3 * slot + k] = feature.m_way[k];
+    }
+}
+
+// The slot's feature, but for its nodes' numbers.
+static ReducedFeature heldFeature(const Held* held, const uint slot)
+{
+    ReducedFeature feature;
+    feature.m_count = (int)held->m_nodes[slot];
+    feature.m_cloth = held->m_cloth[slot];
+    feature.m_mayEmpty = (int)held->m_mayEmpty[slot];
+    for (int k = 0; k < feature.m_count; ++k) feature.m_way[k] = held->m_ways[3 * slot + k];
+    return feature;
+}
+
+static void holdHits(const ReductionView* view, const SlotLists* lists, const Held* held)
+{
+    for (uint i = get_local_id(0); i < held->m_count; i += get_local_size(0))
+    {
+        __global const Contact* contact = lists->m_hits + lists->m_members[held->m_first + i];
+        held->m_gap[i] = contact->m_gap1;
+        held->m_feature[i] = contact->m_obstacleFeature;
+        held->m_lack[i] = INFINITY;
+        if (held->m_nodes[held->m_slot[i]] == 0) continue;
+        const ReducedFeature feature = reducedFeature(view, lists, contact);
+        const uint pair = pairOf(view, feature.m_cloth, contact);
+        if (!isReducible(view, contact, pair)) continue;
+        NodeBounds bounds = noBounds();
+        boundNodes(view, lists, &feature, contact, pair, &bounds);
+        held->m_lack[i] = bounds.m_lack;
+        for (int k = 0; k < feature.m_count; ++k)
+        {
+            held->m_depth[3 * i + k] = bounds.m_depth[k];
+            held->m_height[3 * i + k] = bounds.m_height[k];
+        }
+    }
+}
+
+// Ranks the hits, and drops those that the nodes alone imply.
+static void rankHits(const Held* held)
+{
+    for (uint i = get_local_id(0); i < held->m_count; i += get_local_size(0))
+    {
+        const uint slot = held->m_slot[i];
+        uint rank = 0;
+        for (uint j = held->m_firsts[slot] - held->m_first; j < held->m_firsts[slot + 1] - held->m_first; ++j)
+            rank += held->m_gap[j] < held->m_gap[i] ||
+                    (held->m_gap[j] == held->m_gap[i] && held->m_feature[j] < held->m_feature[i]);
+        held->m_rank[i] = rank;
+        held->m_state[i] = held->m_nodes[slot] == 0 ? DRAPE_STAYS : DRAPE_UNDECIDED_HIT;
+        if (held->m_lack[i] <= 0.0f && (rank > 0 || held->m_mayEmpty[slot])) held->m_state[i] = DRAPE_GOES;
+    }
+}
+
+// Whether a hit is implied by the keeper of its slot, both by their places among those that are held.
+static int heldImplied(const ReductionView* view, const SlotLists* lists, const Held* held, const uint i, const uint keeper)
+{
+    if (!(held->m_lack[i] < INFINITY)) return 0;
+    __global const Contact* contact = lists->m_hits + lists->m_members[held->m_first + i];
+    const ReducedFeature feature = heldFeature(held, held->m_slot[i]);
+    NodeBounds bounds;
+    bounds.m_normal = contactNormal(contact);
+    bounds.m_pair = pairOf(view, feature.m_cloth, contact);
+    bounds.m_lack = held->m_lack[i];
+    for (int k = 0; k < feature.m_count; ++k)
+    {
+        bounds.m_depth[k] = held->m_depth[3 * i + k];
+        bounds.m_height[k] = held->m_height[3 * i + k];
+    }
+    return impliedBy(view, &feature, &bounds, contact, bounds.m_pair,
+                     lists->m_hits + lists->m_members[held->m_first + keeper]);
+}
+
+// In every round each slot's deepest hit that nothing is known of stays, and what it implies goes; then the rest stays.
+// keepers: DRAPE_HELD_SLOTS for the round and as many for the next.
+static void decideHits(const ReductionView* view, const SlotLists* lists, const Held* held, __local uint* keepers,
+                       __local uint* left)
+{
+    const uint id = get_local_id(0), size = get_local_size(0);
+    for (uint slot = id; slot < 2 * DRAPE_HELD_SLOTS; slot += size) keepers[slot] = UINT_MAX;
+    if (id == 0) left[0] = left[1] = 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint round = 0; round < DRAPE_KEEPERS; ++round)
+    {
+        __local uint* now = keepers + (round & 1u) * DRAPE_HELD_SLOTS;
+        __local uint* next = keepers + (~round & 1u) * DRAPE_HELD_SLOTS;
+        for (uint i = id; i < held->m_count; i += size)
+        {
+            if (held->m_state[i] != DRAPE_UNDECIDED_HIT) continue;
+            atomic_min(now + held->m_slot[i], held->m_rank[i] * DRAPE_HELD + i);
+            left[round & 1u] = 1;
+        }
+        for (uint slot = id; slot < held->m_slots; slot += size) next[slot] = UINT_MAX;
+        barrier(CLK_LOCAL_MEM_FENCE);
+        const uint some = left[round & 1u];
+        for (uint i = id; i < held->m_count && some; i += size)
+        {
+            if (held->m_state[i] != DRAPE_UNDECIDED_HIT) continue;
+            const uint keeper = now[held->m_slot[i]] % DRAPE_HELD;
+            if (keeper == i)
+                held->m_state[i] = DRAPE_STAYS;
+            else if (heldImplied(view, lists, held, i, keeper))
+                held->m_state[i] = DRAPE_GOES;
+        }
+        if (id == 0) left[~round & 1u] = 0;
+        barrier(CLK_LOCAL_MEM_FENCE);
+        if (!some) return;
+    }
+}
+
+// Writes to the front of each slot what stays, by obstacle feature.
+static void writeHeld(const SlotLists* lists, const Held* held, __global uint* kept)
+{
+    for (uint i = get_local_id(0); i < held->m_count; i += get_local_size(0))
+        if (held->m_state[i] != DRAPE_GOES) atomic_inc(held->m_stay + held->m_slot[i]);
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint i = get_local_id(0); i < held->m_count; i += get_local_size(0))
+    {
+        const uint slot = held->m_slot[i], first = held->m_firsts[slot];
+        if (held->m_first + i >= first + held->m_stay[slot]) kept[held->m_first + i] = DRAPE_NO_FEATURE;
+        if (held->m_state[i] == DRAPE_GOES) continue;
+        uint before = 0;
+        for (uint j = first - held->m_first; j < held->m_firsts[slot + 1] - held->m_first; ++j)
+            before += held->m_state[j] != DRAPE_GOES && held->m_feature[j] < held->m_feature[i];
+        kept[first + before] = lists->m_members[held->m_first + i];
+    }
+}
+
+// The same as reductionKeep, where work-items of a hit each are there in plenty; block: at most DRAPE_HELD_SLOTS. members: in
+// order in slots with more than DRAPE_HELD.
+__kernel __attribute__((reqd_work_group_size(DRAPE_HELD_GROUP, 1, 1))) void reductionKeepWide(
+    __global const Contact* restrict hits, const uint hitCapacity, __global const uint* restrict slotFirst,
+    const uint slots, const uint block, __global const uint* restrict members, __global uint* kept,
+    __global uint* restrict slotKept, __global const StepCounters* restrict counters, __global const float* restrict start,
+    __global const float* restrict end, __global const Triangle* restrict triangles, __global const Edge* restrict edges,
+    __global const MeshFirsts* restrict cloths, __global const MeshFirsts* restrict obstacles, const uint clothCount,
+    const uint obstacleCount, __global const float* restrict thickness, __global const float* restrict tube)
+{
+    __local uint firsts[DRAPE_HELD_SLOTS + 1], keepers[2 * DRAPE_HELD_SLOTS], left[2], scratch[DRAPE_HELD_GROUP];
+    __local uint slotOf[DRAPE_HELD], rank[DRAPE_HELD], state[DRAPE_HELD], feature[DRAPE_HELD];
+    __local float gap[DRAPE_HELD], lack[DRAPE_HELD], depth[3 * DRAPE_HELD], height[3 * DRAPE_HELD];
+    __local uint cloth[DRAPE_HELD_SLOTS], nodes[DRAPE_HELD_SLOTS], mayEmpty[DRAPE_HELD_SLOTS], stay[DRAPE_HELD_SLOTS];
+    __local Vec3 ways[3 * DRAPE_HELD_SLOTS];
+    const ReductionView view = {start,     end,         triangles,     edges,     cloths,
+                                obstacles, clothCount,  obstacleCount, thickness, tube};
+    const SlotLists lists = {hits, members, slotFirst, slots, min(counters->m_hits, hitCapacity)};
+    const uint begin = min(slots, (uint)(get_group_id(0) * block)), own = min(slots, begin + block) - begin;
+    for (uint i = get_local_id(0); i <= own; i += get_local_size(0))
+        firsts[i] = begin + i < slots ? min(slotFirst[begin + i], lists.m_count) : lists.m_count;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    uint from = 0;
+    while (from < own)
+    {
+        // As many slots as can be held, or a crowded one.
+        uint to = from;
+        while (to < own && firsts[to + 1] - firsts[from] <= DRAPE_HELD) ++to;
+        if (to == from)
+        {
+            const uint stays =
+                reduceCrowded(&view, &lists, kept, firsts[from], firsts[from + 1] - firsts[from], scratch);
+            if (get_local_id(0) == 0) slotKept[begin + from] = stays;
+            ++from;
+            continue;
+        }
+        const Held held = {firsts[from], firsts[to] - firsts[from], to - from, firsts + from, slotOf, rank,     state, feature,
+                           gap,          lack,                      depth,     height,        cloth,  nodes,    mayEmpty, stay,
+                           ways};
+        holdSlots(&view, &lists, &held);
+        barrier(CLK_LOCAL_MEM_FENCE);
+        holdHits(&view, &lists, &held);
+        barrier(CLK_LOCAL_MEM_FENCE);
+        rankHits(&held);
+        barrier(CLK_LOCAL_MEM_FENCE);
+        decideHits(&view, &lists, &held, keepers, left);
+        writeHeld(&lists, &held, kept);
+        barrier(CLK_LOCAL_MEM_FENCE);
+        for (uint slot = get_local_id(0); slot < held.m_slots; slot += get_local_size(0)) slotKept[begin + from + slot] = stay[slot];
+        barrier(CLK_LOCAL_MEM_FENCE);
+        from = to;
     }
 }
 

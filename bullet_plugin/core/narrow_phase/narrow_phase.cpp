@@ -1,19 +1,24 @@
 #include "narrow_phase.h"
 
+#include <algorithm>
+
 #include "bullet_plugin/core/device/list_launch.h"
 
 namespace drape
 {
 namespace
 {
-constexpr std::size_t kSortGroup = 256;      // one group sorts a slot, however large
-constexpr std::size_t kSortBlockGpu = 32;    // slots that a group sorts one after the other; a CPU's take kBlock
-constexpr std::size_t kReduceGroup = 64;     // as in kernels/contact_reduction.cl
-constexpr std::size_t kReduceBlockGpu = 64;  // slots of such a group
-constexpr std::size_t kReduceBlockCpu = 256;
+constexpr std::size_t kSortGroup = 256;       // one group sorts a slot, however large
+constexpr std::size_t kSortBlockGpu = 32;     // slots that a group sorts one after the other; a CPU's take kBlock
+constexpr std::size_t kReduceGroup = 64;      // as in kernels/contact_reduction.cl
+constexpr std::size_t kReduceBlockCpu = 256;  // slots of such a group
+// On a GPU; as many groups per compute unit as make it busy, where slots are few.
+constexpr std::size_t kReduceGroupGpu = 128;
+constexpr std::size_t kReduceBlockGpu = 64, kLeastReduceBlockGpu = 4, kReduceGroupsPerUnit = 16;
 // Most hits of a slot that a GPU puts in order by counting lesser ones, where no reduction follows: what a group of
 // compactionOrder would count in local memory, a launch more.
 constexpr cl_uint kRankedGpu = 512;
+constexpr cl_uint kRankedReducedGpu = 256;  // where one follows: DRAPE_HELD of kernels/contact_reduction.cl
 constexpr std::size_t kBlock = 1024;        // slots per work-group, as in kernels/compaction.cl
 constexpr std::size_t kFewSlots = 1 << 14;  // each group sums those before its own
 // Hits up to which a GPU compacts few slots in one launch: every group looks at all hits' slots, which would cost a CPU
@@ -63,7 +68,7 @@ void NarrowPhaseStage::create(Device& device, const ProgramLoader& load, bool fe
     if (device.isGpu()) m_compactFew.create(device, load("compaction_few"), "compactionFew");
     if (!reduces) return;
     const cl::Program reduction = load("contact_reduction");
-    m_keep.create(device, reduction, "reductionKeep");
+    m_keep.create(device, reduction, device.isGpu() ? "reductionKeepWide" : "reductionKeep");
     m_writeKept.create(device, reduction, "reductionWrite");
     m_writeKeptFew.create(device, reduction, "reductionWriteFew");
 }
@@ -192,7 +197,7 @@ void NarrowPhaseStage::enqueueCompaction(Device& device, NarrowPhaseBuffers side
         return;
     }
     const cl_uint hitCapacity = cl_uint(m_hits.capacity());
-    const cl_uint ranked = device.isGpu() && !reduction ? kRankedGpu : DRAPE_RANKED;
+    const cl_uint ranked = !device.isGpu() ? DRAPE_RANKED : reduction ? kRankedReducedGpu : kRankedGpu;
     enqueuePlaces(device, m_slotCount, m_slotFirst, ranked, tally);
     m_gather.launch(device, listWidth(device), listGroup(device), m_hits.handle(), hitCapacity, m_slotCount.handle(),
                     m_slotFirst.handle(), m_members.handle(), m_keys.handle(), tally.m_now.handle(),
@@ -209,14 +214,16 @@ void NarrowPhaseStage::enqueueCompaction(Device& device, NarrowPhaseBuffers side
 void NarrowPhaseStage::enqueueKeep(Device& device, NarrowPhaseBuffers sides, StepTally tally,
                                    const ReductionBuffers& reduction)
 {
-    const std::size_t block = device.isGpu() ? kReduceBlockGpu : kReduceBlockCpu;
-    m_keep.launch(device, (m_slots + block - 1) / block * kReduceGroup, kReduceGroup, m_hits.handle(),
-                  cl_uint(m_hits.capacity()), m_slotFirst.handle(), cl_uint(m_slots), cl_uint(block),
-                  m_members.handle(), m_kept.handle(), m_slotKept.handle(), tally.m_now.handle(),
-                  sides.m_clothStart.handle(), sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(),
-                  sides.m_clothEdges.handle(), reduction.m_cloths.handle(), reduction.m_obstacles.handle(),
-                  cl_uint(reduction.m_clothCount), cl_uint(reduction.m_obstacleCount), sides.m_thickness.handle(),
-                  reduction.m_tube.handle());
+    const std::size_t group = device.isGpu() ? kReduceGroupGpu : kReduceGroup;
+    const std::size_t spread = m_slots / (kReduceGroupsPerUnit * device.computeUnits());
+    const std::size_t block =
+        device.isGpu() ? std::clamp(spread, kLeastReduceBlockGpu, kReduceBlockGpu) : kReduceBlockCpu;
+    m_keep.launch(device, (m_slots + block - 1) / block * group, group, m_hits.handle(), cl_uint(m_hits.capacity()),
+                  m_slotFirst.handle(), cl_uint(m_slots), cl_uint(block), m_members.handle(), m_kept.handle(),
+                  m_slotKept.handle(), tally.m_now.handle(), sides.m_clothStart.handle(), sides.m_clothEnd.handle(),
+                  sides.m_clothTriangles.handle(), sides.m_clothEdges.handle(), reduction.m_cloths.handle(),
+                  reduction.m_obstacles.handle(), cl_uint(reduction.m_clothCount), cl_uint(reduction.m_obstacleCount),
+                  sides.m_thickness.handle(), reduction.m_tube.handle());
 }
 
 void NarrowPhaseStage::enqueueReduction(Device& device, NarrowPhaseBuffers sides, StepTally tally,
@@ -234,7 +241,7 @@ void NarrowPhaseStage::enqueueFewCompaction(Device& device, NarrowPhaseBuffers s
 {
     const cl_uint hitCapacity = cl_uint(m_hits.capacity()), slots = cl_uint(m_slots), block = cl_uint(kFewBlock);
     const std::size_t group = kPlaceGroupGpu, width = (m_slots + kFewBlock - 1) / kFewBlock * group;
-    const cl_uint ranked = reduction ? DRAPE_RANKED : kRankedGpu;
+    const cl_uint ranked = reduction ? kRankedReducedGpu : kRankedGpu;
     const cl::LocalSpaceArg scratch = cl::Local(group * sizeof(cl_uint));
     m_compactFew.launch(device, width, group, m_hits.handle(), hitCapacity, m_hitSlots.handle(), m_slotCount.handle(),
                         m_slotFirst.handle(), slots, block, ranked, m_members.handle(), m_keys.handle(),
