@@ -148,23 +148,28 @@ static uint reduceCrowded(const ReductionView* view, const SlotLists* lists, __g
     return closeRanks(kept, count, scratch);
 }
 
+// What both kernels take that tell which contacts stay; see reductionKeep.
+#define DRAPE_KEEP_ARGUMENTS \
+    __global const Contact* restrict hits, const uint hitCapacity, __global const uint* restrict slotFirst, \
+    const uint slots, const uint block, __global const uint* restrict members, __global uint* kept, \
+    __global uint* restrict slotKept, __global const StepCounters* restrict counters, __global const float* restrict start, \
+    __global const float* restrict end, __global const Triangle* restrict triangles, __global const Edge* restrict edges, \
+    __global const MeshFirsts* restrict cloths, __global const MeshFirsts* restrict obstacles, const uint clothCount, \
+    const uint obstacleCount, __global const float* restrict thickness, __global const float* restrict tube
+#define DRAPE_KEEP_VIEW \
+    {start, end, triangles, edges, cloths, obstacles, clothCount, obstacleCount, thickness, tube}
+#define DRAPE_KEEP_LISTS {hits, members, slotFirst, slots, min(counters->m_hits, hitCapacity)}
+
 // A work-group takes a block of at most DRAPE_BLOCK slots. members: in order in slots with more than DRAPE_RANKED; they stay
 // as they are, since faces and edges read those of their nodes. kept gets at the front of each slot the members that stay, in
 // order, and DRAPE_NO_FEATURE behind them; slotKept their number. counters->m_hits is then free.
-__kernel __attribute__((reqd_work_group_size(DRAPE_REDUCE_GROUP, 1, 1))) void reductionKeep(
-    __global const Contact* restrict hits, const uint hitCapacity, __global const uint* restrict slotFirst,
-    const uint slots, const uint block, __global const uint* restrict members, __global uint* kept,
-    __global uint* restrict slotKept, __global const StepCounters* restrict counters, __global const float* restrict start,
-    __global const float* restrict end, __global const Triangle* restrict triangles, __global const Edge* restrict edges,
-    __global const MeshFirsts* restrict cloths, __global const MeshFirsts* restrict obstacles, const uint clothCount,
-    const uint obstacleCount, __global const float* restrict thickness, __global const float* restrict tube)
+__kernel __attribute__((reqd_work_group_size(DRAPE_REDUCE_GROUP, 1, 1))) void reductionKeep(DRAPE_KEEP_ARGUMENTS)
 {
     __local uint crowded[DRAPE_BLOCK];
     __local uint scratch[DRAPE_REDUCE_GROUP];
     __local uint crowdedCount;
-    const ReductionView view = {start,     end,         triangles,     edges,     cloths,
-                                obstacles, clothCount,  obstacleCount, thickness, tube};
-    const SlotLists lists = {hits, members, slotFirst, slots, min(counters->m_hits, hitCapacity)};
+    const ReductionView view = DRAPE_KEEP_VIEW;
+    const SlotLists lists = DRAPE_KEEP_LISTS;
     const uint begin = get_group_id(0) * block, last = min(slots, begin + block);
     if (get_local_id(0) == 0) crowdedCount = 0;
     barrier(CLK_LOCAL_MEM_FENCE);
@@ -352,22 +357,15 @@ static void writeHeld(const SlotLists* lists, const Held* held, __global uint* k
 
 // The same as reductionKeep, where work-items of a hit each are there in plenty; block: at most DRAPE_HELD_SLOTS. members: in
 // order in slots with more than DRAPE_HELD.
-__kernel __attribute__((reqd_work_group_size(DRAPE_HELD_GROUP, 1, 1))) void reductionKeepWide(
-    __global const Contact* restrict hits, const uint hitCapacity, __global const uint* restrict slotFirst,
-    const uint slots, const uint block, __global const uint* restrict members, __global uint* kept,
-    __global uint* restrict slotKept, __global const StepCounters* restrict counters, __global const float* restrict start,
-    __global const float* restrict end, __global const Triangle* restrict triangles, __global const Edge* restrict edges,
-    __global const MeshFirsts* restrict cloths, __global const MeshFirsts* restrict obstacles, const uint clothCount,
-    const uint obstacleCount, __global const float* restrict thickness, __global const float* restrict tube)
+__kernel __attribute__((reqd_work_group_size(DRAPE_HELD_GROUP, 1, 1))) void reductionKeepWide(DRAPE_KEEP_ARGUMENTS)
 {
     __local uint firsts[DRAPE_HELD_SLOTS + 1], keepers[2 * DRAPE_HELD_SLOTS], left[2], scratch[DRAPE_HELD_GROUP];
     __local uint slotOf[DRAPE_HELD], rank[DRAPE_HELD], state[DRAPE_HELD], feature[DRAPE_HELD];
     __local float gap[DRAPE_HELD], lack[DRAPE_HELD], depth[3 * DRAPE_HELD], height[3 * DRAPE_HELD];
     __local uint cloth[DRAPE_HELD_SLOTS], nodes[DRAPE_HELD_SLOTS], mayEmpty[DRAPE_HELD_SLOTS], stay[DRAPE_HELD_SLOTS];
     __local Vec3 ways[3 * DRAPE_HELD_SLOTS];
-    const ReductionView view = {start,     end,         triangles,     edges,     cloths,
-                                obstacles, clothCount,  obstacleCount, thickness, tube};
-    const SlotLists lists = {hits, members, slotFirst, slots, min(counters->m_hits, hitCapacity)};
+    const ReductionView view = DRAPE_KEEP_VIEW;
+    const SlotLists lists = DRAPE_KEEP_LISTS;
     const uint begin = min(slots, (uint)(get_group_id(0) * block)), own = min(slots, begin + block) - begin;
     for (uint i = get_local_id(0); i <= own; i += get_local_size(0))
         firsts[i] = begin + i < slots ? min(slotFirst[begin + i], lists.m_count) : lists.m_count;
