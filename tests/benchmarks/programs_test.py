@@ -103,9 +103,13 @@ class BenchStep(ProgramTest):
             reference = methods["drape_host"]
             self.assertGreater(float(reference["contacts"]), 100)
             reduced = methods.pop("drape_host_reduced")
-            self.assertEqual(reduced["valid"], "yes")
-            self.assertNotEqual(reduced["hash"], reference["hash"])
-            self.assertLess(float(reduced["contacts"]), float(reference["contacts"]))
+            fewer = float(reduced["contacts"]) < float(reference["contacts"])
+            self.assertEqual(fewer, scene != "quick_many", "where cloths are too coarse none is redundant")
+            self.assertEqual(fewer, reduced["hash"] != reference["hash"])
+            for row in (reduced, methods.pop("drape_reduced", reduced)):
+                self.assertEqual(row["valid"], "yes")
+                self.assertEqual(row["hash"], reduced["hash"])
+                self.assertEqual(row["contacts"], reduced["contacts"])
             for row in methods.values():
                 self.assertNotEqual(row["valid"], "no")
                 if row["valid"] == "yes":

@@ -101,6 +101,46 @@ std::vector<Contact> contactsOfPair(const Pipeline& pipeline, const std::vector<
 }  // namespace
 
 // Each pair of several alone gives what it gives among the others. The last cloth has no pair, the first has two.
+// Contacts stand until the next step: what they name, too, when it has gone since, or something has come.
+TEST_P(PipelineTest, ContactsOfTheLastStepOutliveTheirMeshes)
+{
+    const StepCase step = fallingCase("bowl", 24, 0.03f, 703);
+    SCOPED_TRACE(step.trace());
+    const std::unique_ptr<Pipeline> pipeline = make();
+    ASSERT_TRUE(pipeline);
+    const MeshId obstacle = addObstacle(*pipeline, step.m_obstacle);
+    const MeshId cloths[] = {addCloth(*pipeline, makeSphere(0.1f, 4)), addCloth(*pipeline, step.m_cloth),
+                             addCloth(*pipeline, step.m_cloth)};
+    for (int i = 1; i < 3; ++i)
+    {
+        setMotion(*pipeline, cloths[i], step.m_cloth.m_positions, step.m_end);
+        pipeline->addPair(cloths[i], obstacle, step.m_thickness);
+    }
+    const std::vector<Contact> contacts = runStep(*pipeline);
+    EXPECT_GT(contacts.size(), 200u);
+    const auto views = [&]
+    {
+        std::vector<std::uint64_t> named;
+        for (const Contact& contact : contacts)
+        {
+            const ContactView view = pipeline->view(contact);
+            named.insert(named.end(), {view.m_cloth, view.m_obstacle, std::uint64_t(view.m_triangle),
+                                       std::uint64_t(view.m_nodes[0]), std::uint64_t(view.m_nodes[2])});
+            EXPECT_EQ(view.m_thickness, step.m_thickness);
+        }
+        return named;
+    };
+    const std::vector<std::uint64_t> before = views();
+    pipeline->remove(cloths[0]);
+    EXPECT_EQ(views(), before);
+    pipeline->remove(cloths[2]);
+    addCloth(*pipeline, step.m_cloth);
+    EXPECT_EQ(views(), before);
+    pipeline->remove(cloths[1]);
+    pipeline->remove(obstacle);
+    EXPECT_EQ(views(), before);
+}
+
 TEST_P(PipelineTest, PairsAreIndependent)
 {
     const std::unique_ptr<Pipeline> together = make();

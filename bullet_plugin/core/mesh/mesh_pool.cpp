@@ -92,16 +92,16 @@ bool MeshPool::holds(MeshId id) const
 
 std::size_t MeshPool::slotOfVertex(std::uint32_t vertex) const
 {
-    if (m_meshes.size() == 1) return 0;
-    const auto after = std::upper_bound(m_meshes.begin(), m_meshes.end(), vertex,
+    if (m_placed == 1) return 0;
+    const auto after = std::upper_bound(m_meshes.begin(), m_meshes.begin() + std::ptrdiff_t(m_placed), vertex,
                                         [](std::uint32_t v, const PooledMesh& mesh) { return v < mesh.m_firstVertex; });
     return std::size_t(after - m_meshes.begin()) - 1;
 }
 
 std::size_t MeshPool::slotOfEdge(std::uint32_t edge) const
 {
-    if (m_meshes.size() == 1) return 0;
-    const auto after = std::upper_bound(m_meshes.begin(), m_meshes.end(), edge,
+    if (m_placed == 1) return 0;
+    const auto after = std::upper_bound(m_meshes.begin(), m_meshes.begin() + std::ptrdiff_t(m_placed), edge,
                                         [](std::uint32_t e, const PooledMesh& mesh) { return e < mesh.m_firstEdge; });
     return std::size_t(after - m_meshes.begin()) - 1;
 }
