@@ -97,6 +97,62 @@ struct SlotHits
     std::vector<Contact> m_hits;
     std::vector<cl_uint> m_slotFirst, m_members;
 };
+
+// What stays of each slot: members, and how many.
+struct Kept
+{
+    std::vector<cl_uint> m_members, m_counts;
+};
+
+// Both sides of a step and its hits on a device.
+class KeptBuffers
+{
+public:
+    KeptBuffers(Device& device, const Side& cloth, const SlotHits& input)
+        : m_device(device), m_slots(input.m_slotFirst.size()), m_count(input.m_hits.size())
+    {
+        std::vector<StepCounters> counters(1);
+        counters[0].m_listed = counters[0].m_hits = cl_uint(m_count);
+        guardCopy(device, m_hits, input.m_hits);
+        guardCopy(device, m_slotFirst, input.m_slotFirst);
+        guardCopy(device, m_members, input.m_members);
+        guardCopy(device, m_counters, counters);
+        guardCopy(device, m_start, cloth.m_start);
+        guardCopy(device, m_end, cloth.m_end);
+        guardCopy(device, m_thickness, std::vector<float>{kThickness});
+        guardCopy(device, m_tube, std::vector<float>{0.5f * kThickness});
+        guardCopy(device, m_triangles, cloth.m_pool.triangles());
+        guardCopy(device, m_edges, cloth.m_pool.edges());
+        guardCopy(device, m_firsts, std::vector<MeshFirsts>(1));
+    }
+
+    Kept run(Kernel& keep, std::size_t group, std::size_t block)
+    {
+        Buffer<cl_uint> kept, slotKept;
+        guard(m_device, kept, m_count);
+        guard(m_device, slotKept, m_slots);
+        keep.launch(m_device, (m_slots + block - 1) / block * group, group, m_hits.handle(), cl_uint(m_count),
+                    m_slotFirst.handle(), cl_uint(m_slots), cl_uint(block), m_members.handle(), kept.handle(),
+                    slotKept.handle(), m_counters.handle(), m_start.handle(), m_end.handle(), m_triangles.handle(),
+                    m_edges.handle(), m_firsts.handle(), m_firsts.handle(), cl_uint(1), cl_uint(1),
+                    m_thickness.handle(), m_tube.handle());
+        const Kept found = {contents(m_device, kept, m_count), contents(m_device, slotKept, m_slots)};
+        EXPECT_TRUE(intact(m_device, kept));
+        EXPECT_TRUE(intact(m_device, slotKept));
+        return found;
+    }
+
+private:
+    Device& m_device;
+    std::size_t m_slots, m_count;
+    Buffer<Contact> m_hits;
+    Buffer<cl_uint> m_slotFirst, m_members;
+    Buffer<StepCounters> m_counters;
+    Buffer<float> m_start, m_end, m_thickness, m_tube;
+    Buffer<Triangle> m_triangles;
+    Buffer<Edge> m_edges;
+    Buffer<MeshFirsts> m_firsts;
+};
 }  // namespace
 
 class ContactReductionTest : public BackendTest
@@ -158,49 +214,14 @@ TEST_P(ContactReductionTest, WorkItemsOfAHitOrASlotKeepTheSame)
     {
         SCOPED_TRACE("seed 96, up to " + std::to_string(most) + " hits a slot");
         const SlotHits input(cloth, most, random);
-        const std::size_t slots = input.m_slotFirst.size(), count = input.m_hits.size();
-        std::vector<StepCounters> counters(1);
-        counters[0].m_listed = counters[0].m_hits = cl_uint(count);
-        Buffer<Contact> hits;
-        Buffer<cl_uint> slotFirst, members, kept[2], slotKept[2];
-        Buffer<StepCounters> counted;
-        Buffer<float> start, end, thickness, tube;
-        Buffer<Triangle> triangles;
-        Buffer<Edge> edges;
-        Buffer<MeshFirsts> firsts;
-        guardCopy(*device, hits, input.m_hits);
-        guardCopy(*device, slotFirst, input.m_slotFirst);
-        guardCopy(*device, members, input.m_members);
-        guardCopy(*device, counted, counters);
-        guardCopy(*device, start, cloth.m_start);
-        guardCopy(*device, end, cloth.m_end);
-        guardCopy(*device, thickness, std::vector<float>{kThickness});
-        guardCopy(*device, tube, std::vector<float>{0.5f * kThickness});
-        guardCopy(*device, triangles, cloth.m_pool.triangles());
-        guardCopy(*device, edges, cloth.m_pool.edges());
-        guardCopy(*device, firsts, std::vector<MeshFirsts>(1));
-        std::vector<cl_uint> foundKept[2], foundCounts[2];
-        for (const int wide : {0, 1})
-        {
-            guard(*device, kept[wide], count);
-            guard(*device, slotKept[wide], slots);
-            const std::size_t group = wide ? 128 : 64, block = wide ? 5 : 100;
-            Kernel& keep = wide ? keepHits : keepSlots;
-            keep.launch(*device, (slots + block - 1) / block * group, group, hits.handle(), cl_uint(count),
-                        slotFirst.handle(), cl_uint(slots), cl_uint(block), members.handle(), kept[wide].handle(),
-                        slotKept[wide].handle(), counted.handle(), start.handle(), end.handle(), triangles.handle(),
-                        edges.handle(), firsts.handle(), firsts.handle(), cl_uint(1), cl_uint(1), thickness.handle(),
-                        tube.handle());
-            foundKept[wide] = contents(*device, kept[wide], count);
-            foundCounts[wide] = contents(*device, slotKept[wide], slots);
-            EXPECT_TRUE(intact(*device, kept[wide]));
-            EXPECT_TRUE(intact(*device, slotKept[wide]));
-        }
-        EXPECT_EQ(foundCounts[1], foundCounts[0]);
-        EXPECT_EQ(foundKept[1], foundKept[0]);
-        const std::size_t gone = std::size_t(std::count(foundKept[0].begin(), foundKept[0].end(), DRAPE_NO_FEATURE));
-        EXPECT_GT(gone, count / 20);
-        EXPECT_LT(gone, count);
+        const std::size_t count = input.m_hits.size();
+        KeptBuffers buffers(*device, cloth, input);
+        const Kept bySlot = buffers.run(keepSlots, 64, 100), byHit = buffers.run(keepHits, 128, 5);
+        EXPECT_EQ(byHit.m_counts, bySlot.m_counts);
+        EXPECT_EQ(byHit.m_members, bySlot.m_members);
+        const auto gone = std::count(bySlot.m_members.begin(), bySlot.m_members.end(), DRAPE_NO_FEATURE);
+        EXPECT_GT(std::size_t(gone), count / 20);
+        EXPECT_LT(std::size_t(gone), count);
     }
     EXPECT_FALSE(device->failed()) << device->error().text();
 }

@@ -105,8 +105,10 @@ struct Pipeline::Implementation
     void collectPairs();
     void collectMotions();
     void collectSelf();
-    // How many obstacles of the pairs the step uses as the one before left them.
+    // How many obstacles of the pairs the step uses as the one before left them; takes them all.
     std::size_t countKept();
+    // From here on the obstacles that are there are as a step left them.
+    void takeObstacles();
     // Which pairs' contacts may be reduced, and how far their cloths' nodes stay near their ways.
     void collectTubes();
     // Makes a device ready for cloths that collide with themselves.

@@ -152,9 +152,7 @@ void Pipeline::prepare()
     const bool onDevice = self.m_deviceBackend && !self.m_deviceLeft;
     const bool onHost = self.mayStayOnHost();
     if (onHost || !goesOverPatches(self.m_settings)) self.buildHierarchies();
-    self.m_stepRevision = self.m_obstacleRevision;
-    for (std::size_t slot = 0; slot < self.m_scene.m_obstacles.meshCount(); ++slot)
-        self.m_scene.m_obstacles.mesh(slot).m_placedAnew = false;
+    self.takeObstacles();
     if (onHost) self.m_hostBackend.prepare(self.m_scene);
     if (!onDevice) return;
     self.m_deviceBackend->prepare(self.m_scene);

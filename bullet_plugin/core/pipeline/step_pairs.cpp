@@ -85,22 +85,28 @@ void Pipeline::Implementation::collectMotions()
 
 std::size_t Pipeline::Implementation::countKept()
 {
-    MeshPool& obstacles = m_scene.m_obstacles;
+    const MeshPool& obstacles = m_scene.m_obstacles;
     // On a device that walks it the obstacles' hierarchy is made or refitted with new ones and those that move, on the
     // host where it is not joined out of the obstacles' own. Patches are an obstacle's own.
     const bool onTree = !m_report.m_onHost && !goesOverPatches(m_settings);
     const bool asOne = onTree || (m_report.m_onHost && !m_scene.m_obstacleLayout.joined());
     bool allAnew = asOne && m_stepRevision != m_obstacleRevision;
-    m_stepRevision = m_obstacleRevision;
     std::size_t kept = 0;
     for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
     {
-        PooledMesh& mesh = obstacles.mesh(slot);
+        const PooledMesh& mesh = obstacles.mesh(slot);
         allAnew = allAnew || (asOne && mesh.m_placedAnew);
         if (m_paired[slot] && !mesh.m_placedAnew) ++kept;
-        mesh.m_placedAnew = false;
     }
+    takeObstacles();
     return allAnew ? 0 : kept;
+}
+
+void Pipeline::Implementation::takeObstacles()
+{
+    m_stepRevision = m_obstacleRevision;
+    for (std::size_t slot = 0; slot < m_scene.m_obstacles.meshCount(); ++slot)
+        m_scene.m_obstacles.mesh(slot).m_placedAnew = false;
 }
 
 // A cloth's contacts are reduced where all its obstacles rest and are two-sided: the solver keeps a node near its way
