@@ -1,4 +1,5 @@
-// What limits the motion of nodes near obstacles: places that are held one by one are those of the whole body at once.
+// What limits the motion of nodes near obstacles: places that are held one by one are those of the whole body at once,
+// nodes go along with what moves, and triangles hold their nodes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 
 #include "bullet_plugin/adapter/motion_limit.h"
 #include "tests/bullet/drop_world.h"
+#include "tests/bullet/kinematic_scene.h"
 #include "tests/support/cases.h"
 
 namespace drape::test
@@ -183,6 +185,69 @@ TEST(MotionLimit, heedsEveryFaceOfANode)
         }
         EXPECT_GT(brought, kNodes / 4);
         EXPECT_LT(brought, kNodes);
+    }
+}
+
+namespace
+{
+// Where a node at rest at the origin may stay that ended at `to`, beside an obstacle that went up by 1 m or rested.
+btVector3 limited(const btVector3& to, bool moves)
+{
+    btSoftBodyWorldInfo info;
+    const btVector3 place(0, 0, 0);
+    const btScalar mass = 1;
+    btSoftBody body(&info, 1, &place, &mass);
+    body.m_sst.isdt = 1 / kDt;
+    const btTransform up = shiftedBy(btVector3(0, 1, 0));
+    MotionLimit limit;
+    limit.addObstacle(btVector3(-2, -2, -2), btVector3(2, 2, 2), kThickness, btScalar(0.5), moves ? &up : nullptr);
+    const ClothFaces noFaces({}, 1);
+    limit.record(body, noFaces);
+    limit.addContactNode(0);
+    body.m_nodes[0].m_x = to;
+    limit.apply(body);
+    return body.m_nodes[0].m_x;
+}
+}  // namespace
+
+// A node goes with the obstacle as far as that goes, and no farther from that way than beside one at rest.
+TEST(KinematicMotion, takesTheLimitOfNodesWithIt)
+{
+    const btVector3 half(0, btScalar(0.5), 0), beside(btScalar(0.5), btScalar(0.5), 0), beyond(0, 2, 0);
+    EXPECT_TRUE(limited(half, true) == half);
+    EXPECT_NEAR(limited(half, false).y(), kThickness / 2, 1e-6);
+    EXPECT_NEAR(limited(beside, true).x(), kThickness / 2, 1e-6);
+    EXPECT_NEAR(limited(beside, true).y(), 0.5, 1e-6);
+    EXPECT_NEAR(limited(beyond, true).y(), 1 + kThickness / 2, 1e-6);
+}
+
+// All nodes are beside the obstacle before and after they were pulled, only their triangle comes over its corner.
+TEST(MotionLimit, holdsTrianglesThatArePulledOverACorner)
+{
+    const btVector3 places[] = {
+        {btScalar(2.2), btScalar(0.5), 0}, {btScalar(0.5), btScalar(2.2), 0}, {btScalar(2.2), btScalar(2.2), 0}};
+    const btVector3 pull(btScalar(-0.5), btScalar(-0.5), 0);
+    const btScalar masses[] = {1, 1, 1};
+    const btTransform rests = btTransform::getIdentity();
+    for (const bool joined : {true, false})
+    {
+        for (const bool moves : {true, false})
+        {
+            btSoftBodyWorldInfo info;
+            btSoftBody body(&info, 3, places, masses);
+            body.m_sst.isdt = 1 / kDt;
+            const ClothFaces faces(joined ? std::vector<std::int32_t>{0, 1, 2} : std::vector<std::int32_t>(), 3);
+            MotionLimit limit;
+            limit.addObstacle(btVector3(-1, -1, -1), btVector3(1, 1, 1), kThickness, btScalar(0.5),
+                              moves ? &rests : nullptr);
+            limit.record(body, faces);
+            for (int i = 0; i < 3; ++i)
+                body.m_nodes[i].m_x += pull;
+            limit.apply(body);
+            const btScalar most = joined ? kFreeShare * btScalar(1.5) * kThickness : pull.length();
+            for (int i = 0; i < 3; ++i)
+                EXPECT_NEAR((body.m_nodes[i].m_x - places[i]).length(), most, 1e-6) << "node " << i;
+        }
     }
 }
 }  // namespace drape::test

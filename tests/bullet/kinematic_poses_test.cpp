@@ -1,0 +1,169 @@
+// Kinematic obstacles by the poses that an app gives them: what is motion and what a teleport, in frames of several
+// substeps, from callbacks and in compounds, and what wakes cloth.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "scenes/shapes.h"
+#include "tests/bullet/kinematic_scene.h"
+
+namespace drape::test
+{
+// With both of Bullet's transforms set there is no velocity and nothing on the way is touched.
+TEST_P(Kinematic, equalTransformsAreATeleport)
+{
+    KinematicScene scene(makeBox(4, 0.2f, 4), shiftedBy(btVector3(0, -3, 0)), 1.0f, btVector3(0, 0, 0),
+                         GetParam().m_settings);
+    scene.step(shiftedBy(btVector3(0, -3, 0)));
+    const btTransform above = shiftedBy(btVector3(0, 3, 0));
+    scene.m_body.setInterpolationWorldTransform(above);
+    scene.step(above);
+    EXPECT_EQ(scene.m_most, 0u);
+    EXPECT_LT(meanOf(scene.m_cloth).y(), 0);
+    scene.step(shiftedBy(btVector3(0, -3, 0)));  // and this is motion
+    EXPECT_GT(scene.m_most, 0u);
+    EXPECT_LT(meanOf(scene.m_cloth).y(), btScalar(-3));
+}
+
+// A body that an app parks out of sight, far or so far that Bullet would take cloth beside its way out of the
+// simulation, takes nothing along, and is met again where it comes back.
+TEST_P(Kinematic, bodiesThatAreParkedFarAwayTakeNothingAlong)
+{
+    for (const btVector3& place : {btVector3(1000, 0, 0), btVector3(0, 1000, 0), btVector3(0, -1e5f, 0),
+                                   btVector3(0, -1e6f, 0), btVector3(0, btScalar(1e30), 0)})
+    {
+        SCOPED_TRACE("x " + std::to_string(place.x()) + ", y " + std::to_string(place.y()));
+        KinematicScene scene(makeBox(4, 0.2f, 4), shiftedBy(btVector3(0, 0, 0)), 1.0f, btVector3(0, btScalar(0.12), 0),
+                             GetParam().m_settings);
+        MeshShape ground(makeBox(8.0f, 0.2f, 8.0f));
+        scene.m_world.addObstacle(ground.shape(), shiftedBy(btVector3(0, btScalar(-0.5), 0)));
+        for (int step = 0; step < 10; ++step)
+            scene.step(shiftedBy(btVector3(0, 0, 0)));
+        EXPECT_GT(scene.m_most, 0u);
+        for (int step = 0; step < 60; ++step)
+            scene.step(shiftedBy(place));
+        EXPECT_EQ(scene.m_cloth.getActivationState(), ACTIVE_TAG);
+        EXPECT_NEAR(double(meanOf(scene.m_cloth).x()), 0.0, 0.1);
+        EXPECT_NEAR(double(lowestOf(scene.m_cloth)), -0.4 + double(kThickness), 0.1 * double(kThickness));
+    }
+}
+
+// A frame of several substeps is the motion of its parts.
+TEST_P(Kinematic, substepsShareTheMotion)
+{
+    KinematicScene whole(makeBox(4, 0.2f, 4), btTransform::getIdentity(), 1.0f, btVector3(0, btScalar(0.15), 0),
+                         GetParam().m_settings);
+    KinematicScene parts(makeBox(4, 0.2f, 4), btTransform::getIdentity(), 1.0f, btVector3(0, btScalar(0.15), 0),
+                         GetParam().m_settings);
+    // What has just come rests in its first step.
+    whole.step(btTransform::getIdentity());
+    parts.step(btTransform::getIdentity());
+    for (int frame = 1; frame <= 20; ++frame)
+    {
+        const btVector3 shift(btScalar(0.05), btScalar(0.02), 0);
+        whole.m_body.setWorldTransform(shiftedBy(shift * btScalar(frame)));
+        whole.m_world.world().stepSimulation(4 * kDt, 4, kDt);
+        for (int part = 1; part <= 4; ++part)
+            parts.step(shiftedBy(shift * (btScalar(frame - 1) + btScalar(part) / 4)));
+        ASSERT_LT((meanOf(whole.m_cloth) - meanOf(parts.m_cloth)).length(), btScalar(0.005)) << frame;
+    }
+    EXPECT_GT(meanOf(parts.m_cloth).y(), btScalar(0.4));
+    EXPECT_GT(parts.m_most, 0u);
+}
+
+// Bullet takes velocities before it calls: this motion begins without one.
+TEST_P(Kinematic, bodyMovedByATicksCallbackTakesClothAlong)
+{
+    KinematicScene scene(makeBox(4, 0.2f, 4), shiftedBy(btVector3(0, -1, 0)), 1.0f, btVector3(0, 0, 0),
+                         GetParam().m_settings);
+    scene.step(shiftedBy(btVector3(0, -1, 0)));
+    const auto lift = [](btDynamicsWorld* world, btScalar)
+    {
+        btRigidBody& body = *static_cast<btRigidBody*>(world->getWorldUserInfo());
+        body.setWorldTransform(shiftedBy(body.getWorldTransform().getOrigin() + btVector3(0, 2, 0)));
+    };
+    scene.m_world.world().setInternalTickCallback(lift, &scene.m_body, true);
+    scene.m_world.world().stepSimulation(2 * kDt, 2, kDt);
+    EXPECT_GT(scene.m_plugin.statistics().m_contacts, 0u);
+    EXPECT_GT(lowestOf(scene.m_cloth), btScalar(3));
+}
+
+TEST_P(Kinematic, childOfACompoundMovesWithIt)
+{
+    Plugin plugin(GetParam().m_settings);
+    MeshShape mesh(makeBox(3, 0.2f, 3));
+    btCompoundShape compound;
+    const btTransform child(btQuaternion(btVector3(0, 1, 0), btScalar(0.5)), btVector3(0, 1, 0));
+    compound.addChildShape(child, &mesh.shape());
+    DropWorld world(&plugin);
+    btRigidBody& body = world.addKinematic(compound);
+    ClothSpec spec;
+    spec.m_centre = btVector3(0, btScalar(1.15), 0);
+    btSoftBody& cloth = world.addCloth(spec);
+    EXPECT_EQ(plugin.whyStock(&cloth, &body), "");
+    world.step(60);
+    for (int i = 1; i <= 60; ++i)
+    {
+        body.setWorldTransform(shiftedBy(btVector3(0, btScalar(0.1) * btScalar(i), 0)));
+        world.step();
+        ASSERT_GT(lowestOf(cloth), btScalar(1.1) + btScalar(0.1) * btScalar(i)) << i;
+    }
+}
+
+TEST_P(Kinematic, bodyThatBeginsToMoveWakesCloth)
+{
+    KinematicScene scene(makeBox(4, 0.2f, 4), btTransform::getIdentity(), 1.0f, btVector3(0, btScalar(0.15), 0),
+                         GetParam().m_settings);
+    for (int i = 0; i < 60; ++i)
+        scene.step(btTransform::getIdentity());
+    scene.m_cloth.forceActivationState(ISLAND_SLEEPING);
+    scene.step(btTransform::getIdentity());
+    EXPECT_FALSE(scene.m_cloth.isActive());
+    for (int i = 1; i <= 3; ++i)
+        scene.step(shiftedBy(btVector3(0, btScalar(0.002) * btScalar(i), 0)));
+    EXPECT_TRUE(scene.m_cloth.isActive());
+}
+
+// A plate that is past sleeping cloth within one step finds it awake; one that does not collide with it, asleep.
+TEST_P(Kinematic, bodyThatComesFastWakesClothInTime)
+{
+    for (const bool collide : {true, false})
+    {
+        KinematicScene scene(makeBox(4, 0.2f, 4), shiftedBy(btVector3(0, -5, 0)), 1.0f, btVector3(0, 0, 0),
+                             GetParam().m_settings);
+        if (!collide) scene.m_body.setIgnoreCollisionCheck(&scene.m_cloth, true);
+        scene.step(shiftedBy(btVector3(0, -5, 0)));
+        scene.m_cloth.forceActivationState(ISLAND_SLEEPING);
+        scene.step(shiftedBy(btVector3(0, -4, 0)));
+        EXPECT_FALSE(scene.m_cloth.isActive()) << "far away";
+        scene.step(shiftedBy(btVector3(0, 4, 0)));
+        EXPECT_EQ(scene.m_cloth.isActive(), collide);
+        EXPECT_EQ(scene.m_most > 0, collide);
+        EXPECT_EQ(lowestOf(scene.m_cloth) > 4, collide);
+    }
+}
+
+// Nor does one wake cloth whose pairs Drape leaves to Bullet.
+TEST_P(Kinematic, bodyThatIsNotDrapesLetsClothSleep)
+{
+    Plugin plugin(GetParam().m_settings);
+    DropWorld world(&plugin);
+    btBoxShape box(btVector3(1, btScalar(0.1), 1));
+    btCompoundShape compound;
+    compound.addChildShape(btTransform::getIdentity(), &box);
+    btRigidBody& body = world.addKinematic(compound, shiftedBy(btVector3(0, -5, 0)));
+    ClothSpec spec;
+    btSoftBody& cloth = world.addCloth(spec);
+    EXPECT_NE(plugin.whyStock(&cloth, &body), "");
+    world.step();
+    cloth.forceActivationState(ISLAND_SLEEPING);
+    for (int i = 1; i <= 3; ++i)
+    {
+        body.setWorldTransform(shiftedBy(btVector3(0, btScalar(-5 + i), 0)));
+        world.step();
+    }
+    body.setWorldTransform(shiftedBy(btVector3(0, 5, 0)));
+    world.step();
+    EXPECT_FALSE(cloth.isActive());
+}
+}  // namespace drape::test
