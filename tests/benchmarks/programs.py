@@ -1,0 +1,77 @@
+"""What the tests of the benchmark programs share. The first argument of a test is the folder of the programs."""
+import csv
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAMS = sys.argv.pop(1)
+
+
+def run(program, *arguments):
+    return subprocess.run([os.path.join(PROGRAMS, program), *arguments], capture_output=True, text=True, timeout=600)
+
+
+def read_csv(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file, strict=True))
+
+
+class ProgramTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    @staticmethod
+    def script(name, *arguments):
+        path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "benchmarks", name)
+        return subprocess.run([sys.executable, path, *arguments], capture_output=True, text=True, timeout=600)
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def summary(self):
+        """The tables of the results beside."""
+        readme = self.write_readme("<!-- results: made by summary.py --><!-- end of results -->")
+        result = self.script("summary.py", self.folder)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertNotIn("does not say its commit", result.stderr)
+        with open(readme) as file:
+            return file.read()
+
+    def write_readme(self, text, folder="results"):
+        path = self.path(os.path.join(folder, "README.md"))
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, "w") as file:
+            file.write(text)
+        return path
+
+    def quick(self, program, *arguments):
+        """Rows of a quick run; every row has every column, and JSON says the same as CSV."""
+        result = run(program, "--quick", "--repeats", "2", "--csv", self.path("rows.csv"), "--json",
+                     self.path("rows.json"), *arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        rows = read_csv(self.path("rows.csv"))
+        with open(self.path("rows.json")) as file:
+            everything = json.load(file)
+        self.assertTrue(rows)
+        self.assertEqual(len(rows), len(everything["rows"]))
+        self.assertTrue(everything["machine"]["processor"])
+        for row in rows:
+            self.assertNotIn(None, row, "more cells than columns")
+            self.assertNotIn(None, row.values(), "fewer cells than columns")
+        return rows
+
+    def reference_with_other_hash(self):
+        """The JSON of the run before, with one digit of every hash changed."""
+        with open(self.path("rows.json")) as file:
+            everything = json.load(file)
+        for row in everything["rows"]:
+            if row.get("hash"):
+                row["hash"] = ("1" if row["hash"][0] == "0" else "0") + row["hash"][1:]
+        with open(self.path("other.json"), "w") as file:
+            json.dump(everything, file)
+        return self.path("other.json")
