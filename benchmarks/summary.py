@@ -83,12 +83,16 @@ def stage_table(rows):
     scenes = [scene for scene in SCENES if select(rows, scene=scene, method="drape_kernels")]
     if not scenes:
         return ""
-    kernels = in_order([row for row in select(rows, method="drape_kernels")
-                        if str(row["stage"]).startswith("kernel")], "stage")
-    lines = [[kernel.replace("kernel: ", "")] + [figure(next((row.get("median_ms") for row in select(
-        rows, scene=scene, method="drape_kernels", stage=kernel)), None)) for scene in scenes] for kernel in kernels]
-    return "Kernel time a step, ms, medians, of a run with a profiled queue:\n\n" + table(
-        [""] + [SCENES[scene] for scene in scenes], lines)
+    lines = []
+    for method in ("drape_kernels", "drape_reduced_kernels"):
+        all_rows = select(rows, method=method)
+        for kernel in in_order([row for row in all_rows if str(row["stage"]).startswith("kernel")], "stage"):
+            if method == "drape_kernels" or kernel == "kernels" or kernel.startswith("kernel: reduction"):
+                label = kernel.replace("kernel: ", "") + ("" if method == "drape_kernels" else ", reduced")
+                lines.append([label] + [figure(next((row.get("median_ms") for row in select(
+                    rows, scene=scene, method=method, stage=kernel)), None)) for scene in scenes])
+    return ("Kernel time a step, ms, medians, of a run with a profiled queue; the last lines where redundant contacts are "
+            "left out:\n\n" + table([""] + [SCENES[scene] for scene in scenes], lines))
 
 
 def exponent_table(rows):

@@ -33,6 +33,7 @@ bool contains(const std::vector<std::string>& list, const std::string& text)
 const char* const kReference = "drape_host";
 const char* const kReducedReference = "drape_host_reduced";
 const char* const kReduced = "drape_reduced";
+const char* const kReducedKernels = "drape_reduced_kernels";
 
 // The host first: it is the reference.
 std::vector<MethodEntry> allMethods(const Options& options)
@@ -53,16 +54,15 @@ std::vector<MethodEntry> allMethods(const Options& options)
         return [settings](const StepScene& scene, std::string& error)
         { return makeDrapeMethod(scene, settings, error); };
     };
+    const bool onHost = device.m_backend == Backend::Host;
+    Settings profiled = device;
+    profiled.m_profileKernels = true;  // apart, since it costs time of its own
     add(kReference, drape(host));
-    if (device.m_backend != Backend::Host)
-    {
-        add("drape", drape(device));
-        Settings profiled = device;
-        profiled.m_profileKernels = true;  // apart, since it costs time of its own
-        add("drape_kernels", drape(profiled));
-    }
+    if (!onHost) add("drape", drape(device));
+    if (!onHost) add("drape_kernels", drape(profiled));
     addReduced(kReducedReference, host);
-    if (device.m_backend != Backend::Host) addReduced(kReduced, device);
+    if (!onHost) addReduced(kReduced, device);
+    if (!onHost) addReduced(kReducedKernels, profiled);
     for (const int threads : {2, 1})
     {
         const std::string suffix = "_" + std::to_string(threads);
@@ -81,10 +81,11 @@ std::vector<MethodEntry> chosenMethods(const Options& options)
 {
     std::vector<MethodEntry> entries = allMethods(options);
     if (options.m_methods.empty()) return entries;
+    const bool reduces = contains(options.m_methods, kReduced) || contains(options.m_methods, kReducedKernels);
     const auto isNeeded = [&](const MethodEntry& entry)
     {
         return contains(options.m_methods, entry.m_name) || entry.m_name == kReference ||
-               (entry.m_name == kReducedReference && contains(options.m_methods, kReduced));
+               (entry.m_name == kReducedReference && reduces);
     };
     entries.erase(std::remove_if(entries.begin(), entries.end(), [&](const auto& entry) { return !isNeeded(entry); }),
                   entries.end());

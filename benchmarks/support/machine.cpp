@@ -1,26 +1,12 @@
 #include "benchmarks/support/machine.h"
 
 #include <ctime>
-#include <fstream>
 #include <thread>
+
+#include "bullet_plugin/core/device/processor_name.h"
 
 namespace drape::bench
 {
-namespace
-{
-std::string processorName()
-{
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string line; std::getline(file, line);)
-    {
-        if (line.compare(0, 10, "model name") != 0) continue;
-        const std::size_t colon = line.find(": ");
-        if (colon != std::string::npos) return line.substr(colon + 2);
-    }
-    return "unknown";
-}
-}  // namespace
-
 Row describeMachine(const std::string& commit)
 {
     char date[32];

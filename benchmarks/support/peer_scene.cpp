@@ -7,8 +7,8 @@
 #include <tbb/parallel_sort.h>
 #include <tbb/task_arena.h>
 
+#include "bullet_plugin/core/compaction/canonical_order.h"
 #include "bullet_plugin/core/mesh/normal_cones.h"
-#include "bullet_plugin/core/narrow_phase/narrow_phase.h"
 #include "drape/settings.h"
 
 namespace drape::bench

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "bullet_plugin/adapter/stopwatch.h"
+#include "bullet_plugin/core/stopwatch.h"
 
 namespace drape
 {

@@ -8,7 +8,7 @@
 #include "bullet_plugin/adapter/collision_step.h"
 #include "bullet_plugin/adapter/motion_bounds.h"
 #include "bullet_plugin/adapter/plugin_state.h"
-#include "bullet_plugin/adapter/stopwatch.h"
+#include "bullet_plugin/core/stopwatch.h"
 
 namespace drape
 {

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "bullet_plugin/core/compaction/canonical_order.h"
+#include "bullet_plugin/core/compaction/compaction.h"
 #include "tests/support/cases.h"
 #include "tests/support/device_side.h"
 
@@ -11,7 +13,7 @@ namespace drape::test
 {
 namespace
 {
-// One device with the stage and the buffers of one case; every pair of triangles is a candidate.
+// One device with both stages and the buffers of one case; every pair of triangles is a candidate.
 class DeviceNarrowPhase
 {
 public:
@@ -19,11 +21,12 @@ public:
         : m_device(device), m_cloth(makeSide({step.m_cloth})), m_obstacle(makeSide({step.m_obstacle}))
     {
         m_cloth.m_end = step.m_end;
-        m_stage.create(
-            device, [&](const char* name) { return programOf(device, name); }, false);
+        const ProgramLoader load = [&](const char* name) { return programOf(device, name); };
+        m_stage.create(device, load, false);
+        m_compaction.create(device, load);
         m_thickness = {step.m_thickness};
         m_pairs = allPairs(m_cloth, m_obstacle);
-        m_stage.resizeSlots(
+        m_compaction.resizeSlots(
             device, m_cloth.m_pool.vertexCount() + m_cloth.m_pool.triangles().size() + m_cloth.m_pool.edges().size());
         m_clothBuffers.upload(device, m_cloth);
         m_obstacleBuffers.upload(device, m_obstacle);
@@ -39,15 +42,16 @@ public:
         Buffer<StepCounters> counterBuffer, next;
         guardCopy(m_device, counterBuffer, start);
         guardCopy(m_device, next, start);
-        guard(m_device, m_stage.contacts(), DRAPE_CONTACT_HEAD + m_stage.hitCapacity());
+        guard(m_device, m_compaction.contacts(), DRAPE_CONTACT_HEAD + m_compaction.hitCapacity());
         m_stage.enqueue(m_device, sides(), m_cloth.m_pool.vertexCount(), m_cloth.m_pool.triangles().size(), settings(),
-                        m_candidates, {counterBuffer, next});
+                        m_candidates, m_compaction.hits(), counterBuffer);
+        m_compaction.enqueue(m_device, {counterBuffer, next});
         counters = readCounters(m_device, counterBuffer);
-        const std::size_t fitting = std::min<std::size_t>(counters.m_hits, m_stage.hitCapacity());
-        std::vector<Contact> contacts = contents(m_device, m_stage.contacts(), DRAPE_CONTACT_HEAD + fitting);
+        const std::size_t fitting = std::min<std::size_t>(counters.m_hits, m_compaction.hitCapacity());
+        std::vector<Contact> contacts = contents(m_device, m_compaction.contacts(), DRAPE_CONTACT_HEAD + fitting);
         EXPECT_EQ(std::memcmp(contacts.data(), &counters, sizeof(counters)), 0) << "the head";
         contacts.erase(contacts.begin(), contacts.begin() + DRAPE_CONTACT_HEAD);
-        EXPECT_TRUE(intact(m_device, m_stage.contacts()) && intact(m_device, counterBuffer) &&
+        EXPECT_TRUE(intact(m_device, m_compaction.contacts()) && intact(m_device, counterBuffer) &&
                     intact(m_device, m_candidates));
         EXPECT_TRUE(intact(m_device, next) && sameBytes(contents(m_device, next, 1), std::vector<StepCounters>(1)));
         EXPECT_TRUE(m_clothBuffers.allIntact(m_device) && m_obstacleBuffers.allIntact(m_device));
@@ -99,6 +103,7 @@ public:
     Device& m_device;
     Side m_cloth, m_obstacle;
     NarrowPhaseStage m_stage;
+    CompactionStage m_compaction;
     DeviceSide m_clothBuffers, m_obstacleBuffers;
     std::vector<float> m_thickness;
     std::vector<Candidate> m_pairs;
@@ -116,7 +121,7 @@ TEST_P(NarrowPhaseTest, ContactsAreTheHostsAtEverySize)
 {
     DeviceNarrowPhase stage(*m_device, soupCase(161, 183, true, 80));
     const std::size_t all = stage.m_pairs.size();
-    stage.m_stage.reserveHits(*m_device, stage.host(all).size() + 1);
+    stage.m_compaction.reserveHits(*m_device, stage.host(all).size() + 1);
     for (std::size_t count :
          {std::size_t(0), std::size_t(1), std::size_t(63), std::size_t(64), std::size_t(65), std::size_t(1023), all})
     {
@@ -137,7 +142,7 @@ TEST_P(NarrowPhaseTest, ContactsAreTheHostsOnShapes)
         SCOPED_TRACE(step.trace());
         DeviceNarrowPhase stage(*m_device, step);
         const std::vector<Contact> host = stage.host(stage.m_pairs.size());
-        stage.m_stage.reserveHits(*m_device, host.size());
+        stage.m_compaction.reserveHits(*m_device, host.size());
         StepCounters counters;
         const std::vector<Contact> device = stage.run(stage.m_pairs.size(), counters);
         EXPECT_TRUE(sameBytes(device, host)) << difference(device, host);
@@ -154,12 +159,12 @@ TEST_P(NarrowPhaseTest, FullListsCountOnAndTheNextStepIsClean)
     for (std::size_t capacity : {std::size_t(1), std::size_t(13), host.size() / 2, host.size() - 1})
     {
         SCOPED_TRACE("seed 82, capacity " + std::to_string(capacity));
-        stage.m_stage.reserveHits(*m_device, capacity);
+        stage.m_compaction.reserveHits(*m_device, capacity);
         StepCounters counters;
         stage.run(all, counters);
         EXPECT_EQ(counters.m_listed, host.size());
     }
-    stage.m_stage.reserveHits(*m_device, host.size());
+    stage.m_compaction.reserveHits(*m_device, host.size());
     for (int step = 0; step < 3; ++step)
     {
         StepCounters counters;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "bullet_plugin/core/compaction/canonical_order.h"
 #include "bullet_plugin/core/queries/query_device.h"
 #include "scenes/shapes.h"
 #include "tests/support/cases.h"

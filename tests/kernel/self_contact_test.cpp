@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "bullet_plugin/core/broad_phase/patch_cull.h"
-#include "bullet_plugin/core/narrow_phase/narrow_phase.h"
+#include "bullet_plugin/core/compaction/canonical_order.h"
 #include "bullet_plugin/core/self_collision/self_contacts.h"
 #include "tests/support/device_side.h"
 #include "tests/support/self_cases.h"

@@ -2,6 +2,7 @@
 // candidate.
 #include <gtest/gtest.h>
 
+#include "bullet_plugin/core/compaction/canonical_order.h"
 #include "tests/support/cases.h"
 #include "tests/support/oracle.h"
 #include "tests/support/side.h"

@@ -7,6 +7,7 @@
 #include "bullet_plugin/core/bvh/morton_order.h"
 #include "bullet_plugin/core/bvh/refit.h"
 #include "bullet_plugin/core/bvh/tree_builder.h"
+#include "bullet_plugin/core/compaction/canonical_order.h"
 #include "bullet_plugin/core/mesh/normal_cones.h"
 #include "kernels/lib/dop.h"
 

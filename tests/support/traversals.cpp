@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "bullet_plugin/core/compaction/canonical_order.h"
+
 namespace drape::test
 {
 const std::vector<Traversal>& allTraversals()

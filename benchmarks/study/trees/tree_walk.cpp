@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "benchmarks/support/result_hash.h"
-#include "bullet_plugin/core/narrow_phase/narrow_phase.h"
+#include "bullet_plugin/core/compaction/canonical_order.h"
 #include "kernels/lib/dop.h"
 
 namespace drape::bench

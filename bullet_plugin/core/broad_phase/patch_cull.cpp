@@ -106,7 +106,7 @@ void PatchCullStage::bringOwners(Device& device, Range vertices, Range edges)
 }
 
 // Patches are in the order of slots.
-PatchCullStage::Range PatchCullStage::patchesOf(Slots slots) const
+PatchCullStage::Range PatchCullStage::patchesOf(SlotRange slots) const
 {
     const auto before = [](const Patch& patch, std::size_t slot) { return patch.m_mesh < slot; };
     const auto first = std::lower_bound(m_layout.m_patches.begin(), m_layout.m_patches.end(), slots.m_first, before);
@@ -114,7 +114,7 @@ PatchCullStage::Range PatchCullStage::patchesOf(Slots slots) const
     return {std::size_t(first - m_layout.m_patches.begin()), std::size_t(last - m_layout.m_patches.begin())};
 }
 
-void PatchCullStage::pack(Device& device, Slots slots, Buffer<Triangle>& triangles, Buffer<float>& positions,
+void PatchCullStage::pack(Device& device, SlotRange slots, Buffer<Triangle>& triangles, Buffer<float>& positions,
                           Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones)
 {
     const Range patches = patchesOf(slots);

@@ -27,14 +27,9 @@ public:
     // New obstacles from that slot on, which must be packed next, even where none came. What the device is sent is kept
     // until the next call.
     void setTopology(Device& device, const MeshPool& obstacles, std::size_t firstSlot);
-    // Obstacle slots from m_first up to m_last.
-    struct Slots
-    {
-        std::size_t m_first, m_last;
-    };
     // Packs the features of those obstacles at new positions. The buffers are the joined obstacles'; returns after
     // enqueueing.
-    void pack(Device& device, Slots slots, Buffer<Triangle>& triangles, Buffer<float>& positions,
+    void pack(Device& device, SlotRange slots, Buffer<Triangle>& triangles, Buffer<float>& positions,
               Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones);
     // Gives back what only pack() reads; it brings that again when it is called.
     void releasePacking();
@@ -88,7 +83,7 @@ private:
         cl_uint first() const { return cl_uint(m_first); }
         cl_uint last() const { return cl_uint(m_last); }
     };
-    Range patchesOf(Slots slots) const;
+    Range patchesOf(SlotRange slots) const;
     void bringOwners(Device& device, Range vertices, Range edges);
     void packFeatures(Device& device, Range patches, Buffer<Triangle>& triangles, Buffer<float>& positions,
                       Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones);

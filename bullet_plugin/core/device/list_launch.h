@@ -31,4 +31,10 @@ inline std::size_t laneListWidth(const Device& device)
 {
     return device.isGpu() ? listWidth(device) : device.computeUnits() * kLaneItemsCpu;
 }
+
+// Work-items that copy a contact together: on a GPU, whose neighbours' stores are joined, one for each of its vectors.
+inline cl_uint copyParts(const Device& device)
+{
+    return device.isGpu() ? 4 : 1;
+}
 }  // namespace drape

@@ -40,6 +40,12 @@ struct PooledMesh
     bool m_vacant = false;       // gone, but for its place
 };
 
+// Slots from m_first up to m_last.
+struct SlotRange
+{
+    std::size_t m_first, m_last;
+};
+
 class MeshPool
 {
 public:

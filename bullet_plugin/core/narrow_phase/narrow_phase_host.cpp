@@ -1,19 +1,9 @@
-#include <algorithm>
-#include <numeric>
-#include <tuple>
-
+#include "bullet_plugin/core/compaction/canonical_order.h"
 #include "kernels/lib/triangle_triangle.h"
 #include "narrow_phase.h"
 
 namespace drape
 {
-void sortContacts(std::vector<Contact>& contacts)
-{
-    std::sort(contacts.begin(), contacts.end(),
-              [](const Contact& a, const Contact& b)
-              { return std::tie(a.m_slot, a.m_obstacleFeature) < std::tie(b.m_slot, b.m_obstacleFeature); });
-}
-
 NarrowPhaseCounts narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth,
                                     const ObstacleView& obstacle, const NarrowPhaseSettings& settings,
                                     std::vector<Contact>& contacts, std::size_t limit)
@@ -48,34 +38,6 @@ NarrowPhaseCounts narrowPhaseOnHost(const std::vector<Candidate>& candidates, co
     return counts;
 }
 
-void reduceOnHost(std::vector<Contact>& contacts, const ReductionView& view, std::size_t slotCount)
-{
-    const std::uint32_t count = std::uint32_t(contacts.size());
-    std::vector<std::uint32_t> members(count), kept, first(slotCount, 0);
-    std::iota(members.begin(), members.end(), 0u);
-    for (std::uint32_t slot = 0, i = 0; slot < slotCount; ++slot)
-    {
-        first[slot] = i;
-        while (i < count && contacts[i].m_slot == slot)
-            ++i;
-    }
-    const SlotLists lists = {contacts.data(), members.data(), first.data(), std::uint32_t(slotCount), count};
-    std::vector<Contact> all;
-    for (std::uint32_t i = 0; i < count;)
-    {
-        const std::uint32_t end = slotEnd(&lists, contacts[i].m_slot);
-        kept.assign(members.begin() + i, members.begin() + end);
-        std::sort(kept.begin(), kept.end(),
-                  [&](std::uint32_t a, std::uint32_t b) { return isDeeper(&contacts[a], &contacts[b]) != 0; });
-        kept.resize(reduceSlot(&view, &lists, kept.data(), end - i));
-        std::sort(kept.begin(), kept.end());
-        for (std::uint32_t member : kept)
-            all.push_back(contacts[member]);
-        i = end;
-    }
-    contacts.swap(all);
-}
-
 void intersectOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth, const ObstacleView& obstacle,
                      const MotionList& motions, std::vector<Candidate>& pairs)
 {
@@ -89,12 +51,5 @@ void intersectOnHost(const std::vector<Candidate>& candidates, const ClothView& 
         if (trianglesIntersect(pair.m_start, pair.m_resting)) pairs.push_back(candidate);
     }
     sortCandidates(pairs);
-}
-
-void sortCandidates(std::vector<Candidate>& candidates)
-{
-    std::sort(candidates.begin(), candidates.end(),
-              [](const Candidate& a, const Candidate& b)
-              { return std::tie(a.m_cloth, a.m_obstacle) < std::tie(b.m_cloth, b.m_obstacle); });
 }
 }  // namespace drape

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "bullet_plugin/core/stopwatch.h"
 #include "crossover_ladder.h"
 #include "implementation.h"
 #include "scene_work.h"
@@ -13,8 +14,6 @@ namespace drape
 {
 namespace
 {
-using Clock = std::chrono::steady_clock;
-
 std::string rounded(double value)
 {
     char text[32];
@@ -43,7 +42,7 @@ double Pipeline::Implementation::findCrossover(Pipeline& pipeline)
         m_report.m_crossoverSource = "measured before";
         return crossover.m_pairs;
     }
-    const Clock::time_point start = Clock::now();
+    Stopwatch watch;
     m_report.m_crossoverSource = "measured now";
     const bool measured = measureLadder(
         pipeline, m_settings.m_activation, [&](bool onHost) { m_report.m_onHost = onHost || device()->failed(); },
@@ -64,7 +63,7 @@ double Pipeline::Implementation::findCrossover(Pipeline& pipeline)
         if (!device()->failed()) m_error.m_call = m_openClDevice.m_name + " is not used: " + m_report.m_crossoverSource;
         crossover.m_pairs = std::numeric_limits<double>::infinity();
     }
-    m_report.m_measureMs = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    m_report.m_measureMs = watch.lapMs();
     return crossover.m_pairs;
 }
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <limits>
 #include <locale>
 #include <sstream>
 
 #include "bullet_plugin/core/device/cache_file.h"
 #include "bullet_plugin/core/device/embedded_kernels.h"
+#include "bullet_plugin/core/device/processor_name.h"
 
 namespace drape
 {
@@ -25,17 +25,6 @@ std::string oneLine(std::string text)
 {
     std::replace(text.begin(), text.end(), '\n', ' ');
     return text;
-}
-
-std::string hostName()
-{
-    std::ifstream info("/proc/cpuinfo");
-    std::string line;
-    while (std::getline(info, line))
-    {
-        if (line.compare(0, 10, "model name") == 0) return line.substr(std::min(line.find(':') + 2, line.size()));
-    }
-    return "unknown";
 }
 
 std::string kernelsHash()
@@ -91,7 +80,7 @@ CrossoverCache::CrossoverCache(const Settings& settings, const DeviceInfo& devic
 {
     std::ostringstream machine = plainStream(), state = plainStream();
     machine << "device " << oneLine(device.m_name) << "\nplatform " << oneLine(device.m_platform) << "\nunits "
-            << computeUnits << threadsOf(device) << "\nhost " << oneLine(hostName()) << "\nsettings mode "
+            << computeUnits << threadsOf(device) << "\nhost " << oneLine(processorName()) << "\nsettings mode "
             << int(settings.m_mode) << " activation " << settings.m_activation << " reduce "
             << settings.m_reduceContacts << "\n";
     state << "driver " << oneLine(device.m_driver) << "\ndrape " << DRAPE_VERSION << " kernels " << kernelsHash()

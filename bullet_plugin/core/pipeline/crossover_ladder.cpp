@@ -1,12 +1,12 @@
 #include "crossover_ladder.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
 #include "bullet_plugin/core/mesh/topology.h"
+#include "bullet_plugin/core/stopwatch.h"
 #include "scene_work.h"
 
 namespace drape
@@ -108,10 +108,10 @@ public:
         placeCloth(m_clothSheet, step, m_pipeline.clothStart(m_cloth));
         placeCloth(m_clothSheet, step + 1, m_pipeline.clothEnd(m_cloth));
         m_pipeline.addPair(m_cloth, m_obstacle, kThickness, 0.25f * kThickness);
-        const auto start = std::chrono::steady_clock::now();
+        Stopwatch watch;
         m_pipeline.submit();
         const ContactList found = m_pipeline.finish();
-        const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        const double ms = watch.lapMs();
         contacts.assign(found.begin(), found.end());
         return ms;
     }

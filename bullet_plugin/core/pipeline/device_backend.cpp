@@ -1,7 +1,8 @@
 #include "device_backend.h"
 
 #include <algorithm>
-#include <cstring>
+
+#include "warm_up_step.h"
 
 namespace drape
 {
@@ -10,13 +11,6 @@ namespace
 // First guesses; they grow to what scenes need.
 constexpr std::size_t kFirstCandidates = 1 << 16;
 constexpr std::size_t kFirstContacts = 1 << 13;
-constexpr std::size_t kPlaceGroup = 64;
-// Triangles of obstacles between two that changed which are brought up to date with them: no more than what the
-// launches of a run cost, 0.1 ms, of which a triangle takes 0.2 us on two cores.
-constexpr std::size_t kTrianglesBetweenCpu = 1 << 8;
-constexpr std::size_t kTrianglesBetweenGpu = 1 << 14;
-// For so many steps after one in which slots had many hits they are put in order; without it such a step runs twice.
-constexpr int kStepsToOrder = 64;
 
 // What a CPU has as one program: the files of every step over patches, or over trees but for the traversal's own, and
 // what cloths need beside them that collide with themselves.
@@ -29,11 +23,6 @@ std::vector<ProgramSet::Names> filesTogether(bool patches, bool reduces)
         step.insert(step.end(), {"refit", "narrow_phase_pairs"});
     if (reduces) step.push_back("contact_reduction");
     return {step, {"self_cull", "self_pack", "self_contact", "self_contact_lanes"}};
-}
-
-std::size_t withHeadroom(std::size_t count)
-{
-    return count + count / 4 + 1024;
 }
 }  // namespace
 
@@ -55,12 +44,13 @@ DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& set
         m_broadPhase.create(*m_device, m_settings.m_methods.m_traversal, load);
         if (watchesClothTree(m_settings, false)) m_treeCost.create(*m_device, load);
     }
-    m_narrowPhase.create(*m_device, load, patches(), m_settings.m_reduceContacts);
-    m_place.create(*m_device, load("place_obstacles"), "placeObstacles");
+    m_narrowPhase.create(*m_device, load, patches());
+    m_compaction.create(*m_device, load, m_settings.m_reduceContacts);
+    m_placed.create(*m_device, load("place_obstacles"));
     m_motions.reserve(*m_device, 1);
     m_candidates.reserve(*m_device, 1);
     m_patchCull.reserveTests(*m_device, kFirstCandidates);
-    m_narrowPhase.reserveHits(*m_device, kFirstContacts);
+    m_compaction.reserveHits(*m_device, kFirstContacts);
     m_narrowPhase.reserveIntersections(*m_device, 1);
     for (Buffer<StepCounters>& counters : m_counters)
     {
@@ -82,44 +72,9 @@ DeviceBackend::~DeviceBackend()
 void DeviceBackend::warmUp(float selfThickness)
 {
     forgetScene();
-    const std::int32_t indices[3] = {0, 1, 2};
-    const std::vector<float> above = {0, 0, 0.5f, 1, 0, 0.5f, 0, 1, 0.5f}, below = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     Scene scene;
-    for (MeshPool* pool : {&scene.m_cloths, &scene.m_obstacles})
-    {
-        PooledMesh mesh;
-        mesh.m_id = 0;
-        mesh.m_topology = buildTopology(indices, 1, 3);
-        mesh.m_order = {0};
-        mesh.m_positions = below;
-        pool->add(std::move(mesh));
-        pool->update();
-    }
-    scene.m_clothLayout = makeBvhLayout(1);
-    scene.m_obstacleLayout = makeBvhLayout(1);
-    scene.m_clothStart.reserve(nullptr, 9);
-    scene.m_clothEnd.reserve(nullptr, 9);
-    std::copy(above.begin(), above.end(), scene.m_clothStart.data());
-    std::copy(below.begin(), below.end(), scene.m_clothEnd.data());
-    scene.m_obstaclePositions = below;
-    scene.m_vertexCones.assign(3, NormalCone{{0, 0, 1}, -1});
-    scene.m_edgeCones.assign(3, NormalCone{{0, 0, 1}, -1});
-    ObstaclePlacing placing;
-    placing.m_posed = true;
-    placing.m_start = placing.m_end = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-    scene.m_places = {ObstaclePlace{{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, 1, 0, 0}};
-    scene.m_anyPosed = true;
     StepPairs pairs;
-    pairs.m_motions = {makeMotion(placing, MeshBox{{0, 0, 0}, {1, 1, 0}}, 0)};
-    pairs.m_thickness = {0.1f};
-    pairs.m_clothRadius = {0.1f};
-    pairs.m_anyPair = pairs.m_any = true;
-    if (selfThickness > 0.0f)
-    {
-        scene.m_anySelf = pairs.m_anySelf = true;
-        scene.m_clothRest = below;
-        pairs.m_self = SelfReach{{selfThickness}, {selfGrowth(selfThickness)}};
-    }
+    makeWarmUpStep(scene, pairs, selfThickness);
     pairs.m_measureTree = watchesClothTree(m_settings, false);
     StepResult result;
     submit(scene, pairs);
@@ -143,8 +98,7 @@ void DeviceBackend::warmUp(float selfThickness)
 void DeviceBackend::forgetScene()
 {
     m_cloth.m_revision = m_obstacle.m_revision = 0;
-    m_changes.forget();
-    m_anyPosed = false;
+    m_placed.forget();
 }
 
 void DeviceBackend::prepareSelf()
@@ -199,7 +153,7 @@ void DeviceBackend::updateCloths(const Scene& scene)
     uploadSide(scene.m_cloths, scene.m_clothLayout, m_cloth);
     m_clothStart.reserve(*m_device, scene.m_clothStart.capacity());
     m_clothEnd.reserve(*m_device, scene.m_clothEnd.capacity());
-    m_narrowPhase.resizeSlots(*m_device, scene.allSlotCount());
+    m_compaction.resizeSlots(*m_device, scene.allSlotCount());
     if (scene.m_anySelf) m_self.setTopology(*m_device, scene.m_cloths, scene.m_clothRest);
 }
 
@@ -215,7 +169,7 @@ void DeviceBackend::updateTopology(const Scene& scene)
         if (patches()) m_patchCull.setTopology(*m_device, scene.m_obstacles, fresh);
     }
     if (!patches() && (newCloths || newObstacles)) updateTraversal(scene, newObstacles);
-    if (newObstacles || m_changes.any(scene)) updateObstacles(scene, fresh);
+    if (newObstacles || m_placed.changed(scene)) updateObstacles(scene, fresh);
     // What only packing reads goes when obstacles that rest are packed; those whose positions are given anew later keep
     // it from then on.
     if (newObstacles && !scene.m_anyPosed) m_patchCull.releasePacking();
@@ -231,95 +185,22 @@ void DeviceBackend::updateTraversal(const Scene& scene, bool newObstacles)
     m_broadPhase.setTopology(*m_device, cloth, obstacle);
 }
 
-// Runs of the obstacles that changed. Some that did not go along where they are between two that did, as many as cost
-// less than launches of their own.
-template <typename Changed>
-std::vector<PatchCullStage::Slots> DeviceBackend::runsOf(const MeshPool& obstacles, const Changed& changed) const
-{
-    const std::size_t between = m_device->isGpu() ? kTrianglesBetweenGpu : kTrianglesBetweenCpu;
-    std::vector<PatchCullStage::Slots> runs;
-    for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
-    {
-        if (!changed(slot)) continue;
-        const bool near = !runs.empty() &&
-                          obstacles.begin(slot).m_triangle - obstacles.begin(runs.back().m_last).m_triangle <= between;
-        if (near)
-            runs.back().m_last = slot + 1;
-        else
-            runs.push_back({slot, slot + 1});
-    }
-    return runs;
-}
-
-void DeviceBackend::uploadObstacles(const Scene& scene, PatchCullStage::Slots slots)
-{
-    const bool own = scene.m_anyPosed;
-    const MeshFirsts first = scene.m_obstacles.begin(slots.m_first), last = scene.m_obstacles.begin(slots.m_last);
-    (own ? m_ownPositions : m_obstaclePositions)
-        .write(*m_device, scene.m_obstaclePositions.data() + 3 * std::size_t(first.m_vertex),
-               3 * std::size_t(last.m_vertex - first.m_vertex), 3 * std::size_t(first.m_vertex));
-    (own ? m_ownVertexCones : m_vertexCones)
-        .write(*m_device, scene.m_vertexCones.data() + first.m_vertex, last.m_vertex - first.m_vertex, first.m_vertex);
-    (own ? m_ownEdgeCones : m_edgeCones)
-        .write(*m_device, scene.m_edgeCones.data() + first.m_edge, last.m_edge - first.m_edge, first.m_edge);
-}
-
-void DeviceBackend::enqueuePlacing(const Scene& scene, PatchCullStage::Slots slots)
-{
-    const MeshFirsts first = scene.m_obstacles.begin(slots.m_first), last = scene.m_obstacles.begin(slots.m_last);
-    m_place.launch(*m_device, last.m_vertex - first.m_vertex + last.m_edge - first.m_edge, kPlaceGroup,
-                   m_places.handle(), cl_uint(scene.m_places.size()), first.m_vertex, last.m_vertex - first.m_vertex,
-                   first.m_edge, last.m_edge - first.m_edge, m_ownPositions.handle(), m_ownVertexCones.handle(),
-                   m_ownEdgeCones.handle(), m_obstaclePositions.handle(), m_vertexCones.handle(), m_edgeCones.handle());
-}
-
-void DeviceBackend::reserveObstacles(const Scene& scene, std::size_t fresh)
-{
-    const MeshFirsts end = scene.m_obstacles.begin(scene.m_obstacles.meshCount());
-    const MeshFirsts kept = scene.m_obstacles.begin(fresh);
-    const bool begins = scene.m_anyPosed && !m_anyPosed;
-    m_anyPosed = scene.m_anyPosed;
-    const auto extend = [&](auto& world, auto& own, std::size_t count, std::size_t keptCount)
-    {
-        world.extend(*m_device, count, keptCount);
-        if (!m_anyPosed)
-            own.release();
-        else if (begins)
-            own.copy(*m_device, world, count, keptCount);  // the world was every obstacle's own frame
-        else
-            own.extend(*m_device, count, keptCount);
-    };
-    extend(m_obstaclePositions, m_ownPositions, 3 * std::size_t(end.m_vertex), 3 * std::size_t(kept.m_vertex));
-    extend(m_vertexCones, m_ownVertexCones, end.m_vertex, kept.m_vertex);
-    extend(m_edgeCones, m_ownEdgeCones, end.m_edge, kept.m_edge);
-}
-
 void DeviceBackend::updateObstacles(const Scene& scene, std::size_t fresh)
 {
-    const MeshPool& obstacles = scene.m_obstacles;
-    m_changes.take(scene, fresh);  // the device has been waited for since places were written last
-    reserveObstacles(scene, fresh);
-    for (const PatchCullStage::Slots& run : runsOf(obstacles, [&](std::size_t slot) { return m_changes.given(slot); }))
-        uploadObstacles(scene, run);
-    const std::vector<PatchCullStage::Slots> runs =
-        runsOf(obstacles, [&](std::size_t slot) { return m_changes.moved(slot); });
-    if (scene.m_anyPosed && !runs.empty())
-    {
-        m_places.assign(*m_device, m_changes.places());
-        for (const PatchCullStage::Slots& run : runs)
-            enqueuePlacing(scene, run);
-    }
+    const std::vector<SlotRange> runs = m_placed.update(*m_device, scene, fresh);
     if (!patches())
     {
         refitObstacles(scene);
         return;
     }
-    const std::size_t count = obstacles.meshCount();
-    m_patchCull.pack(*m_device, {fresh, count}, m_obstacle.m_triangles, m_obstaclePositions, m_vertexCones,
-                     m_edgeCones);
-    for (const PatchCullStage::Slots& run : runs)
-        m_patchCull.pack(*m_device, {run.m_first, std::min(run.m_last, fresh)}, m_obstacle.m_triangles,
-                         m_obstaclePositions, m_vertexCones, m_edgeCones);
+    const auto pack = [&](SlotRange slots)
+    {
+        m_patchCull.pack(*m_device, slots, m_obstacle.m_triangles, m_placed.positions(), m_placed.vertexCones(),
+                         m_placed.edgeCones());
+    };
+    pack({fresh, scene.m_obstacles.meshCount()});
+    for (const SlotRange& run : runs)
+        pack({run.m_first, std::min(run.m_last, fresh)});
 }
 
 void DeviceBackend::refitObstacles(const Scene& scene)
@@ -327,7 +208,7 @@ void DeviceBackend::refitObstacles(const Scene& scene)
     const std::vector<float> noRadius(scene.m_obstacles.meshCount(), 0.0f);
     m_obstacle.m_radius.assign(*m_device, noRadius);
     m_refit.enqueue(*m_device, m_obstacle.m_layout, m_obstacle.m_levels, m_obstacle.m_nodes, m_obstacle.m_order,
-                    m_obstacle.m_triangles, m_obstaclePositions, m_obstaclePositions, m_obstacle.m_radius,
+                    m_obstacle.m_triangles, m_placed.positions(), m_placed.positions(), m_obstacle.m_radius,
                     m_refitCounters);
     m_broadPhase.obstaclesRefitted(*m_device, m_obstacle.m_nodes);
     m_device->wait();  // noRadius is a local
@@ -375,25 +256,54 @@ void DeviceBackend::uploadStep(const Scene& scene, const StepPairs& pairs, std::
 
 NarrowPhaseBuffers DeviceBackend::narrowPhaseBuffers(const StepPairs& pairs)
 {
-    return {m_clothStart,           m_clothEnd,    m_cloth.m_triangles, m_clothEdges, m_obstaclePositions,
-            m_obstacle.m_triangles, m_vertexCones, m_edgeCones,         m_thickness,  m_motions,
+    return {m_clothStart,
+            m_clothEnd,
+            m_cloth.m_triangles,
+            m_clothEdges,
+            m_placed.positions(),
+            m_obstacle.m_triangles,
+            m_placed.vertexCones(),
+            m_placed.edgeCones(),
+            m_thickness,
+            m_motions,
             pairs.m_motions.size()};
 }
 
-SelfWork DeviceBackend::selfWork(const Scene& scene)
+SelfBuffers DeviceBackend::selfBuffers(const Scene& scene)
 {
     const MeshPool& cloths = scene.m_cloths;
-    return {m_self,
-            {m_cloth.m_triangles, m_clothEdges, m_clothStart, m_clothEnd, m_cloth.m_radius, cloths.vertexCount(),
-             cloths.triangles().size(), cloths.edges().size(), std::uint32_t(m_settings.m_mode),
-             1.0f + m_settings.m_activation, StepLimits(m_settings).m_candidates}};
+    return {m_cloth.m_triangles,
+            m_clothEdges,
+            m_clothStart,
+            m_clothEnd,
+            m_cloth.m_radius,
+            cloths.vertexCount(),
+            cloths.triangles().size(),
+            cloths.edges().size(),
+            std::uint32_t(m_settings.m_mode),
+            1.0f + m_settings.m_activation,
+            StepLimits(m_settings).m_candidates};
+}
+
+ReductionBuffers DeviceBackend::reductionBuffers(const Scene& scene)
+{
+    return {m_clothStart,
+            m_clothEnd,
+            m_cloth.m_triangles,
+            m_clothEdges,
+            m_cloth.m_firsts,
+            m_obstacle.m_firsts,
+            scene.m_cloths.meshCount(),
+            scene.m_obstacles.meshCount(),
+            m_thickness,
+            m_tube};
 }
 
 // Pairs of features, or of triangles, that may touch.
 void DeviceBackend::enqueueBroad(const Scene& scene, const StepPairs& pairs)
 {
     const std::size_t obstacleMeshes = scene.m_obstacles.meshCount();
-    if (pairs.m_anySelf) m_self.enqueueCull(*m_device, selfWork(scene).m_step, counters());
+    if (pairs.m_anySelf) m_self.enqueueCull(*m_device, selfBuffers(scene), counters());
     if (!pairs.m_anyPair) return;
     if (patches())
     {
@@ -420,35 +330,35 @@ void DeviceBackend::enqueueBroad(const Scene& scene, const StepPairs& pairs)
                                      StepLimits(m_settings).m_candidates});
 }
 
+// Those of them that touch.
 void DeviceBackend::enqueueNarrow(const Scene& scene, const StepPairs& pairs)
 {
-    const std::size_t obstacleMeshes = scene.m_obstacles.meshCount();
-    const ReductionBuffers buffers = {m_cloth.m_firsts, m_obstacle.m_firsts, scene.m_cloths.meshCount(), obstacleMeshes,
-                                      m_tube};
-    const ReductionBuffers* const reduction = pairs.m_anyTube ? &buffers : nullptr;
-    const SelfWork own = selfWork(scene);
-    const SelfWork* const self = pairs.m_anySelf ? &own : nullptr;
     const std::size_t nodes = scene.m_cloths.vertexCount(), triangles = scene.m_cloths.triangles().size();
     const std::uint32_t mode = std::uint32_t(m_settings.m_mode);
-    if (pairs.m_anyPair && m_settings.m_reportIntersections)
-        m_narrowPhase.enqueueIntersect(*m_device, narrowPhaseBuffers(pairs), m_candidates, counters());
-    if (!pairs.m_anyPair)
-    {
-        m_narrowPhase.enqueueSelf(*m_device, narrowPhaseBuffers(pairs), tally(), own);
-        return;
-    }
-    if (patches())
+    const HitBuffers hits = m_compaction.hits();
+    if (pairs.m_anyPair && patches())
     {
         m_narrowPhase.enqueueFeatures(*m_device, narrowPhaseBuffers(pairs), nodes, triangles, mode, m_patchCull,
-                                      tally(), reduction, self);
+                                      m_testsBefore, hits, counters());
     }
-    else
+    else if (pairs.m_anyPair)
     {
         const NarrowPhaseSettings narrow = {
-            pairs.m_thickness, obstacleMeshes, 1.0f + m_settings.m_activation, mode, {}};
-        m_narrowPhase.enqueue(*m_device, narrowPhaseBuffers(pairs), nodes, triangles, narrow, m_candidates, tally(),
-                              reduction, self);
+            pairs.m_thickness, scene.m_obstacles.meshCount(), 1.0f + m_settings.m_activation, mode, {}};
+        if (m_settings.m_reportIntersections)
+            m_narrowPhase.enqueueIntersect(*m_device, narrowPhaseBuffers(pairs), m_candidates, counters());
+        m_narrowPhase.enqueue(*m_device, narrowPhaseBuffers(pairs), nodes, triangles, narrow, m_candidates, hits,
+                              counters());
     }
+    if (pairs.m_anySelf) m_self.enqueueContacts(*m_device, selfBuffers(scene), hits, counters());
+}
+
+// Their contacts in canonical order.
+void DeviceBackend::enqueueCompaction(const Scene& scene, const StepPairs& pairs)
+{
+    const StepTally tally = {counters(), m_counters[1 - m_turn], m_stepsToOrder > 0, m_hitsBefore};
+    const ReductionBuffers reduction = reductionBuffers(scene);
+    m_compaction.enqueue(*m_device, tally, pairs.m_anyPair && pairs.m_anyTube ? &reduction : nullptr);
 }
 
 void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
@@ -456,6 +366,7 @@ void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
     m_turn = 1 - m_turn;
     enqueueBroad(scene, pairs);
     enqueueNarrow(scene, pairs);
+    enqueueCompaction(scene, pairs);
     readContacts(m_contactsAsked);
     m_device->flush();
 }
@@ -474,143 +385,4 @@ void DeviceBackend::submit(const Scene& scene, const StepPairs& pairs, std::size
     enqueueStep(scene, pairs);
 }
 
-void DeviceBackend::readContacts(std::size_t count)
-{
-    m_narrowPhase.contacts().read(*m_device, m_contactsRead.data(), DRAPE_CONTACT_HEAD + count);
-}
-
-StepCounters DeviceBackend::countersRead() const
-{
-    StepCounters counters;
-    static_assert(sizeof(counters) <= DRAPE_CONTACT_HEAD * sizeof(Contact));
-    std::memcpy(&counters, m_contactsRead.data(), sizeof(counters));
-    return counters;
-}
-
-// What the next launches are chosen by.
-void DeviceBackend::takeCounts(const StepCounters& counters)
-{
-    m_testsBefore = counters.m_candidates;
-    m_hitsBefore = counters.m_listed;
-}
-
-bool DeviceBackend::overLimit(StepResult& result)
-{
-    const StepCounters counters = countersRead();
-    const StepLimits limits(m_settings);
-    // Hits are all of them only where every candidate was there to be tested.
-    const bool ofObstacles = patches() ? counters.m_patchPairs <= m_patchCull.pairs().capacity() &&
-                                             counters.m_candidates <= m_patchCull.tests().capacity()
-                                       : counters.m_candidates <= m_candidates.capacity();
-    const bool ofSelf =
-        counters.m_selfPairs <= m_self.pairs().capacity() && counters.m_selfTests <= m_self.tests().capacity();
-    if (std::max({counters.m_candidates, counters.m_patchPairs, counters.m_selfPairs, counters.m_selfTests}) >
-        limits.m_candidates)
-    {
-        result.m_overLimit = true;
-    }
-    else if (ofObstacles && ofSelf && counters.m_listed > limits.m_contacts)
-    {
-        result.m_overLimit = true;
-        result.m_contactDemand = counters.m_listed;
-    }
-    return result.m_overLimit;
-}
-
-bool DeviceBackend::grow()
-{
-    const StepCounters counters = countersRead();
-    const std::size_t largest = m_device->maxAllocationBytes();
-    bool again = false;
-    const auto demand = [&](std::size_t wanted, std::size_t capacity, std::size_t elementBytes, auto reserve)
-    {
-        if (wanted <= capacity) return;
-        again = true;
-        const std::size_t most = largest / elementBytes - DRAPE_CONTACT_HEAD;  // contacts have a head before them
-        m_limitReached = m_limitReached || wanted > most;
-        if (!m_limitReached) reserve(std::min(withHeadroom(wanted), most));
-    };
-    Device& device = *m_device;
-    if (patches())
-    {
-        demand(counters.m_patchPairs, m_patchCull.pairs().capacity(), sizeof(FeatureTest),
-               [&](std::size_t count) { m_patchCull.reservePairs(device, count); });
-        demand(counters.m_candidates, m_patchCull.tests().capacity(), sizeof(FeatureTest),
-               [&](std::size_t count) { m_patchCull.reserveTests(device, count); });
-    }
-    else
-    {
-        again = m_broadPhase.grow(device, counters, m_limitReached);
-        demand(counters.m_candidates, m_candidates.capacity(), sizeof(Candidate),
-               [&](std::size_t count) { m_candidates.reserve(device, count); });
-    }
-    demand(counters.m_selfPairs, m_self.pairs().capacity(), sizeof(Candidate),
-           [&](std::size_t count) { m_self.reservePairs(device, count); });
-    demand(counters.m_selfTests, m_self.tests().capacity(), sizeof(FeatureTest),
-           [&](std::size_t count) { m_self.reserveTests(device, count); });
-    demand(std::min(std::size_t(counters.m_listed), StepLimits(m_settings).m_contacts), m_narrowPhase.hitCapacity(),
-           sizeof(Contact), [&](std::size_t count) { m_narrowPhase.reserveHits(device, count); });
-    if (counters.m_crowded > 0)
-    {
-        again |= m_stepsToOrder == 0;
-        m_stepsToOrder = kStepsToOrder;
-    }
-    else if (m_stepsToOrder > 0)
-        --m_stepsToOrder;
-    demand(counters.m_intersections, m_narrowPhase.intersections().capacity(), sizeof(Candidate),
-           [&](std::size_t count) { m_narrowPhase.reserveIntersections(device, count); });
-    return again;
-}
-
-bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResult& result)
-{
-    result = StepResult();
-    m_device->wait();
-    while (!m_device->failed())
-    {
-        if (overLimit(result)) return true;
-        if (!grow()) break;
-        if (m_limitReached) return false;
-        ++result.m_retries;
-        takeCounts(countersRead());
-        enqueueStep(scene, pairs);
-        m_device->wait();
-    }
-    if (m_device->failed()) return false;
-    if (!patches()) m_broadPhase.accept(*m_device, countersRead());
-    readAll(result);
-    if (pairs.m_measureTree) result.m_treeCost = m_treeCost.cost();
-    return !m_device->failed();
-}
-
-void DeviceBackend::readAll(StepResult& result)
-{
-    const StepCounters counters = countersRead();
-    takeCounts(counters);
-    result.m_candidates = counters.m_candidates;
-    result.m_volumeTests = counters.m_visits;
-    result.m_sweptTests = counters.m_swept;
-    result.m_selfCandidates = counters.m_selfTests;
-    result.m_selfSweptTests = counters.m_selfSwept;
-    result.m_reduced = counters.m_listed - counters.m_hits;
-    result.m_invalidNodes = counters.m_invalidNodes;
-    result.m_intersectionCount = counters.m_intersections;
-    if (m_settings.m_reportIntersections)
-    {
-        result.m_intersections.resize(counters.m_intersections);
-        m_narrowPhase.intersections().read(*m_device, result.m_intersections.data(), counters.m_intersections);
-    }
-    const std::size_t count = counters.m_hits;
-    const bool inHand = count <= m_contactsAsked;
-    if (!inHand)
-    {
-        m_contactsRead.reserve(m_device.get(), DRAPE_CONTACT_HEAD + withHeadroom(count));
-        readContacts(count);
-    }
-    if (!inHand || m_settings.m_reportIntersections) m_device->wait();
-    result.m_deviceContacts = ContactList{m_contactsRead.data() + DRAPE_CONTACT_HEAD, count};
-    m_contactsAsked = std::min(
-        {count + count / 16 + 256, m_contactsRead.capacity() - DRAPE_CONTACT_HEAD, m_narrowPhase.hitCapacity()});
-    sortCandidates(result.m_intersections);
-}
 }  // namespace drape

@@ -8,9 +8,10 @@
 #include "bullet_plugin/core/broad_phase/patch_cull.h"
 #include "bullet_plugin/core/bvh/refit.h"
 #include "bullet_plugin/core/bvh/tree_cost.h"
+#include "bullet_plugin/core/compaction/compaction.h"
 #include "bullet_plugin/core/device/program_set.h"
 #include "drape/settings.h"
-#include "obstacle_changes.h"
+#include "placed_obstacles.h"
 #include "step.h"
 #include "tree_watch.h"
 
@@ -77,22 +78,18 @@ private:
     // Brings the obstacles from slot `fresh` on, and of the others those that were given other positions or another
     // place, to the device and to the world, and renews what depends on it.
     void updateObstacles(const Scene& scene, std::size_t fresh);
-    void reserveObstacles(const Scene& scene, std::size_t fresh);
-    void uploadObstacles(const Scene& scene, PatchCullStage::Slots slots);
-    template <typename Changed>
-    std::vector<PatchCullStage::Slots> runsOf(const MeshPool& obstacles, const Changed& changed) const;
-    void enqueuePlacing(const Scene& scene, PatchCullStage::Slots slots);
     void refitObstacles(const Scene& scene);
     void writeNodes(const Scene& scene, std::size_t first, std::size_t count);
     void uploadStep(const Scene& scene, const StepPairs& pairs, std::size_t sent);
     void enqueueStep(const Scene& scene, const StepPairs& pairs);
     bool patches() const { return goesOverPatches(m_settings); }
-    SelfWork selfWork(const Scene& scene);
     Buffer<StepCounters>& counters() { return m_counters[m_turn]; }
-    StepTally tally() { return {counters(), m_counters[1 - m_turn], m_stepsToOrder > 0, m_testsBefore, m_hitsBefore}; }
     void enqueueBroad(const Scene& scene, const StepPairs& pairs);
     void enqueueNarrow(const Scene& scene, const StepPairs& pairs);
+    void enqueueCompaction(const Scene& scene, const StepPairs& pairs);
     NarrowPhaseBuffers narrowPhaseBuffers(const StepPairs& pairs);
+    SelfBuffers selfBuffers(const Scene& scene);
+    ReductionBuffers reductionBuffers(const Scene& scene);
     // Enqueues the transfer of the step's counters and first contacts.
     void readContacts(std::size_t count);
     StepCounters countersRead() const;
@@ -110,26 +107,19 @@ private:
 
     RefitStage m_refit;
     TreeCostStage m_treeCost;
-    Kernel m_place;
     BroadPhaseStage m_broadPhase;
     PatchCullStage m_patchCull;
     NarrowPhaseStage m_narrowPhase;
     SelfContactStage m_self;
+    CompactionStage m_compaction;
+    PlacedObstacles m_placed;
 
     Side m_cloth{"cloth"}, m_obstacle{"obstacle"};
     Buffer<float> m_clothStart{"cloth positions"}, m_clothEnd{"cloth positions"};
-    Buffer<float> m_obstaclePositions{"obstacle positions"};
     Buffer<float> m_thickness{"pairs of meshes"}, m_tube{"pairs of meshes"};
     Buffer<Edge> m_clothEdges{"cloth edges"};
-    Buffer<NormalCone> m_vertexCones{"obstacle cones"}, m_edgeCones{"obstacle cones"};
-    // In the obstacles' own frames; only where one has a place.
-    Buffer<float> m_ownPositions{"obstacle positions in own frame"};
-    Buffer<NormalCone> m_ownVertexCones{"obstacle cones in own frame"}, m_ownEdgeCones{"obstacle cones in own frame"};
-    Buffer<ObstaclePlace> m_places{"obstacle places"};
     Buffer<ObstacleMotion> m_motions{"obstacle places"};
     std::vector<cl_uint> m_clustered;  // as m_cloth.m_order
-    ObstacleChanges m_changes;
-    bool m_anyPosed = false;  // as the scene when the obstacles were brought here
     std::vector<ObstacleMotion> m_sentMotions;
     Buffer<Candidate> m_candidates{"step candidates"};
     // Of a step and the next by turns, see StepTally.

@@ -1,29 +1,15 @@
 #include "host_backend.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "bullet_plugin/core/broad_phase/candidate_count.h"
 #include "bullet_plugin/core/bvh/refit.h"
 #include "bullet_plugin/core/bvh/tree_cost.h"
 #include "bullet_plugin/core/mesh/reserve_room.h"
+#include "bullet_plugin/core/stopwatch.h"
 
 namespace drape
 {
-namespace
-{
-using Clock = std::chrono::steady_clock;
-
-// Milliseconds since `from`, which becomes now.
-double lap(Clock::time_point& from)
-{
-    const Clock::time_point now = Clock::now();
-    const double ms = std::chrono::duration<double, std::milli>(now - from).count();
-    from = now;
-    return ms;
-}
-}  // namespace
-
 void HostBackend::update(const Scene& scene)
 {
     const bool newCloths = m_clothRevision != scene.m_cloths.revision();
@@ -213,11 +199,11 @@ bool HostBackend::runPairs(const Scene& scene, const StepPairs& pairs, const Set
 {
     const MeshPool& cloths = scene.m_cloths;
     const MeshPool& obstacles = scene.m_obstacles;
-    Clock::time_point stage = Clock::now();
+    Stopwatch watch;
     const StepLimits limits(settings);
     result.m_invalidNodes = refitCloths(scene, pairs);
     if (pairs.m_measureTree) result.m_treeCost = treeCostOnHost(m_clothNodes, scene.m_clothLayout.root());
-    result.m_refitMs = lap(stage);
+    result.m_refitMs = watch.lapMs();
     if (!m_traversal.run(clothSide(scene), obstacleSide(scene), pairs.m_thickness, obstacles.meshCount(), m_candidates,
                          limits.m_candidates))
     {
@@ -227,7 +213,7 @@ bool HostBackend::runPairs(const Scene& scene, const StepPairs& pairs, const Set
     }
     result.m_candidates = m_candidates.size();
     result.m_volumeTests = m_traversal.volumeTests();
-    result.m_broadMs = lap(stage);
+    result.m_broadMs = watch.lapMs();
     const std::uint32_t mode = std::uint32_t(settings.m_mode);
     const ClothView cloth =
         clothView(scene.m_clothStart.data(), scene.m_clothEnd.data(), cloths.triangles().data(), cloths.edges().data(),
@@ -250,7 +236,7 @@ bool HostBackend::runPairs(const Scene& scene, const StepPairs& pairs, const Set
         reduceOnHost(result.m_contacts, reductionView(scene, pairs), scene.slotCount());
         result.m_reduced = counts.m_contacts - result.m_contacts.size();
     }
-    result.m_narrowMs = lap(stage);
+    result.m_narrowMs = watch.lapMs();
     if (settings.m_reportIntersections) intersectOnHost(m_candidates, cloth, obstacle, motions, result.m_intersections);
     result.m_intersectionCount = result.m_intersections.size();
     return true;

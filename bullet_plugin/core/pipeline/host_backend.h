@@ -3,6 +3,7 @@
 
 #include "bullet_plugin/core/broad_phase/host_traversal.h"
 #include "bullet_plugin/core/bvh/refit.h"
+#include "bullet_plugin/core/compaction/contact_reduction.h"
 #include "drape/settings.h"
 #include "obstacle_changes.h"
 #include "step.h"

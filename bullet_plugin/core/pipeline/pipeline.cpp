@@ -2,24 +2,14 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 
 #include "bullet_plugin/core/mesh/check_indices.h"
+#include "bullet_plugin/core/stopwatch.h"
 #include "check_settings.h"
 #include "scene_work.h"
 
 namespace drape
 {
-namespace
-{
-using Clock = std::chrono::steady_clock;
-
-double millisecondsSince(Clock::time_point start)
-{
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-}  // namespace
-
 void Pipeline::Implementation::prepareSelf()
 {
     if (!m_deviceBackend || m_deviceBackend->device().failed()) return;
@@ -48,7 +38,7 @@ void Pipeline::Implementation::goOnWithoutDevice(const Error& error)
 
 bool Pipeline::Implementation::openDevice(const DeviceChoice& choice, Error& error)
 {
-    const Clock::time_point start = Clock::now();
+    Stopwatch watch;
     m_openClDevice = choice.m_device;
     std::unique_ptr<Device> device = Device::open(choice.m_index, error, m_settings.m_profileKernels);
     if (!device) return false;
@@ -62,7 +52,7 @@ bool Pipeline::Implementation::openDevice(const DeviceChoice& choice, Error& err
     m_report.m_onHost = false;
     m_report.m_device = m_openClDevice;
     m_report.m_fromCache = m_deviceBackend->fromCache();
-    m_report.m_buildMs = millisecondsSince(start);
+    m_report.m_buildMs = watch.lapMs();
     return true;
 }
 
@@ -215,7 +205,7 @@ void Pipeline::addSelf(MeshId cloth)
 void Pipeline::submit()
 {
     Implementation& self = *m_implementation;
-    const Clock::time_point start = Clock::now();
+    Stopwatch watch;
     self.m_statistics = StepStatistics();
     if (self.m_deviceLeft) self.m_statistics.m_status |= kStepDeviceFailed;
     self.joinScene();
@@ -230,13 +220,13 @@ void Pipeline::submit()
     self.enqueue();
     if (self.m_stepPairs.m_any && !self.m_report.m_onHost) self.m_nodesSent = 0;  // finish() waits for them
     self.forgetNodes();
-    self.m_statistics.m_uploadMs = millisecondsSince(start);
+    self.m_statistics.m_uploadMs = watch.lapMs();
 }
 
 ContactList Pipeline::finish()
 {
     Implementation& self = *m_implementation;
-    const Clock::time_point start = Clock::now();
+    Stopwatch watch;
     StepStatistics& statistics = self.m_statistics;
     if (!self.m_stepPairs.m_any || !self.m_submitted)
     {
@@ -271,7 +261,7 @@ ContactList Pipeline::finish()
     statistics.m_broadMs = self.m_result.m_broadMs;
     statistics.m_narrowMs = self.m_result.m_narrowMs;
     if (statistics.m_invalidNodes > 0) statistics.m_status |= kStepInvalidNodes;
-    statistics.m_waitMs = millisecondsSince(start);
+    statistics.m_waitMs = watch.lapMs();
     return self.m_result.contacts();
 }
 

@@ -1,7 +1,6 @@
 #include "drape/queries.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "bullet_plugin/core/device/device_choice.h"
@@ -10,6 +9,7 @@
 #include "bullet_plugin/core/pipeline/check_settings.h"
 #include "bullet_plugin/core/pipeline/step.h"
 #include "bullet_plugin/core/self_collision/leaf_pair_count.h"
+#include "bullet_plugin/core/stopwatch.h"
 #include "kernels/lib/triangle_pair.h"
 #include "query_device.h"
 
@@ -88,7 +88,7 @@ Queries::~Queries() = default;
 
 std::unique_ptr<Queries> Queries::create(const Settings& settings, Error& error)
 {
-    const auto start = std::chrono::steady_clock::now();
+    Stopwatch watch;
     error = Error();
     if (!checkSettings(settings, error)) return nullptr;
     const DeviceChoice choice = chooseDevice(settings, error);
@@ -116,8 +116,7 @@ std::unique_ptr<Queries> Queries::create(const Settings& settings, Error& error)
     self.m_report.m_device = choice.m_device;
     self.m_report.m_onHost = false;
     self.m_report.m_fromCache = self.m_device->fromCache();
-    self.m_report.m_buildMs =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    self.m_report.m_buildMs = watch.lapMs();
     return queries;
 }
 

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "bullet_plugin/core/bvh/bvh_layout.h"
+#include "bullet_plugin/core/compaction/hit_buffers.h"
 #include "bullet_plugin/core/device/buffer.h"
 #include "bullet_plugin/core/device/program.h"
 #include "bullet_plugin/core/mesh/patches.h"
-#include "bullet_plugin/core/narrow_phase/hit_buffers.h"
 #include "kernels/lib/self_contact.h"
 
 namespace drape

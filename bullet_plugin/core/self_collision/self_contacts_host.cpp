@@ -1,6 +1,6 @@
 
 #include "bullet_plugin/core/bvh/refit.h"
-#include "bullet_plugin/core/narrow_phase/narrow_phase.h"
+#include "bullet_plugin/core/compaction/canonical_order.h"
 #include "self_collision.h"
 #include "self_contacts.h"
 

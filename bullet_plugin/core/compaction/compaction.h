@@ -1,0 +1,65 @@
+// Compaction: the hits of a step, listed as they were found, into contacts in canonical order
+// (kernels/shared/contact.h), without those that others imply where that is asked for.
+//
+// Input: hits() filled, with each slot's number of them, and how many there are in the step's counters. Output:
+// contacts(), and their number in the counters; the slots' numbers and the next step's counters are left zero.
+// Guarantee: the host's contacts, bit for bit. Where the list is full hits are counted on, and the step must run again
+// with more room. Cost: on a GPU one launch where slots and hits are few, else three to five; what reduction takes
+// besides is said there.
+#pragma once
+
+#include <cstdint>
+
+#include "contact_reduction.h"
+#include "hit_buffers.h"
+#include "slot_places.h"
+
+namespace drape
+{
+// The step's counters, and those of the next step. m_ordered: slots with too many hits for the last launch are put in
+// order before it; where they are not and there are some, which the counters tell, the step must run again. m_hits:
+// about as many are expected; speed alone depends on it.
+struct StepTally
+{
+    Buffer<StepCounters>& m_now;
+    Buffer<StepCounters>& m_next;
+    bool m_ordered = true;
+    std::size_t m_hits = SIZE_MAX;
+};
+
+class CompactionStage
+{
+public:
+    // reduces: whether steps may reduce their contacts; its kernels are not built otherwise.
+    void create(Device& device, const ProgramLoader& load, bool reduces = false);
+
+    // Room for the slots of a cloth side: its nodes, faces and edges.
+    void resizeSlots(Device& device, std::size_t slotCount);
+    // Room for a list of hits and as many contacts.
+    void reserveHits(Device& device, std::size_t count);
+    std::size_t hitCapacity() const { return m_hits.capacity(); }
+
+    // What the stages before list their hits in.
+    HitBuffers hits() { return {m_hits, m_hitSlots, m_slotCount}; }
+    // Behind a head of DRAPE_CONTACT_HEAD places, which holds the step's counters.
+    Buffer<Contact>& contacts() { return m_contacts; }
+
+    // Returns after enqueueing. reduction: null where no contact is to be left out.
+    void enqueue(Device& device, StepTally tally, const ReductionBuffers* reduction = nullptr);
+
+private:
+    void enqueueFew(Device& device, StepTally tally, const ReductionBuffers* reduction);
+    void enqueueOrder(Device& device, cl_uint ranked, StepTally tally);
+    void reserveHitSlots(Device& device);
+    SlotHits slotHits() { return {m_hits, m_slotFirst, m_members}; }
+
+    SlotPlaces m_places;
+    ContactReductionStage m_reduction;
+    Kernel m_gather, m_order, m_write, m_few;
+    Buffer<Contact> m_hits{"step hits"}, m_contacts{"step contacts"};
+    Buffer<cl_uint> m_hitSlots{"step hits"};  // on a GPU, where slots are few
+    Buffer<cl_uint> m_slotCount{"cloth slots"}, m_slotFirst{"cloth slots"};
+    Buffer<cl_uint> m_members{"step hits"}, m_keys{"step hits"};
+    bool m_reduces = false;
+};
+}  // namespace drape

@@ -1,0 +1,68 @@
+#include "contact_reduction.h"
+
+#include <algorithm>
+
+#include "bullet_plugin/core/device/list_launch.h"
+
+namespace drape
+{
+namespace
+{
+constexpr std::size_t kGroupCpu = 64;   // as in kernels/contact_reduction.cl
+constexpr std::size_t kBlockCpu = 256;  // slots of such a group
+// On a GPU; as many groups per compute unit as make it busy, where slots are few.
+constexpr std::size_t kGroupGpu = 128;
+constexpr std::size_t kBlockGpu = 64, kLeastBlockGpu = 4, kGroupsPerUnit = 16;
+}  // namespace
+
+void ContactReductionStage::create(Device& device, const ProgramLoader& load)
+{
+    const cl::Program reduction = load("contact_reduction");
+    m_keep.create(device, reduction, device.isGpu() ? "reductionKeepWide" : "reductionKeep");
+    m_write.create(device, reduction, "reductionWrite");
+    m_writeFew.create(device, reduction, "reductionWriteFew");
+}
+
+void ContactReductionStage::resizeSlots(Device& device, std::size_t slotCount)
+{
+    m_slots = slotCount;
+    m_slotKept.reserve(device, slotCount);
+    m_keptFirst.reserve(device, slotCount);
+}
+
+void ContactReductionStage::enqueueKeep(Device& device, SlotHits hits, const ReductionBuffers& sides,
+                                        Buffer<StepCounters>& counters)
+{
+    const std::size_t group = device.isGpu() ? kGroupGpu : kGroupCpu;
+    const std::size_t spread = m_slots / (kGroupsPerUnit * device.computeUnits());
+    const std::size_t block = device.isGpu() ? std::clamp(spread, kLeastBlockGpu, kBlockGpu) : kBlockCpu;
+    m_keep.launch(device, (m_slots + block - 1) / block * group, group, hits.m_hits.handle(),
+                  cl_uint(hits.m_hits.capacity()), hits.m_slotFirst.handle(), cl_uint(m_slots), cl_uint(block),
+                  hits.m_members.handle(), m_kept.handle(), m_slotKept.handle(), counters.handle(),
+                  sides.m_clothStart.handle(), sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(),
+                  sides.m_clothEdges.handle(), sides.m_cloths.handle(), sides.m_obstacles.handle(),
+                  cl_uint(sides.m_clothCount), cl_uint(sides.m_obstacleCount), sides.m_thickness.handle(),
+                  sides.m_tube.handle());
+}
+
+void ContactReductionStage::enqueue(Device& device, SlotHits hits, const ReductionBuffers& sides, SlotPlaces& places,
+                                    Buffer<Contact>& contacts, Buffer<StepCounters>& counters)
+{
+    enqueueKeep(device, hits, sides, counters);
+    places.enqueue(device, m_slotKept, m_keptFirst, DRAPE_RANKED, counters);
+    m_write.launch(device, listWidth(device), listGroup(device), hits.m_hits.handle(), cl_uint(hits.m_hits.capacity()),
+                   hits.m_slotFirst.handle(), copyParts(device), m_kept.handle(), m_keptFirst.handle(),
+                   contacts.handle(), counters.handle());
+}
+
+void ContactReductionStage::enqueueFew(Device& device, SlotHits hits, const ReductionBuffers& sides,
+                                       Buffer<Contact>& contacts, Buffer<StepCounters>& counters)
+{
+    enqueueKeep(device, hits, sides, counters);
+    const std::size_t group = SlotPlaces::kGroupGpu;
+    m_writeFew.launch(device, fewWidth(m_slots), group, hits.m_hits.handle(), cl_uint(hits.m_hits.capacity()),
+                      hits.m_slotFirst.handle(), cl_uint(m_slots), cl_uint(kFewBlock), copyParts(device),
+                      m_kept.handle(), m_slotKept.handle(), contacts.handle(), counters.handle(),
+                      cl::Local(group * sizeof(cl_uint)));
+}
+}  // namespace drape

@@ -1,0 +1,161 @@
+// What a step on the device demanded, and what it gave: lists that were too small grow, limits are kept, contacts are
+// read.
+#include <algorithm>
+#include <cstring>
+
+#include "bullet_plugin/core/compaction/canonical_order.h"
+#include "device_backend.h"
+
+namespace drape
+{
+namespace
+{
+std::size_t withHeadroom(std::size_t count)
+{
+    return count + count / 4 + 1024;
+}
+
+// For so many steps after one in which slots had many hits they are put in order; without it such a step runs twice.
+constexpr int kStepsToOrder = 64;
+}  // namespace
+
+void DeviceBackend::readContacts(std::size_t count)
+{
+    m_compaction.contacts().read(*m_device, m_contactsRead.data(), DRAPE_CONTACT_HEAD + count);
+}
+
+StepCounters DeviceBackend::countersRead() const
+{
+    StepCounters counters;
+    static_assert(sizeof(counters) <= DRAPE_CONTACT_HEAD * sizeof(Contact));
+    std::memcpy(&counters, m_contactsRead.data(), sizeof(counters));
+    return counters;
+}
+
+// What the next launches are chosen by.
+void DeviceBackend::takeCounts(const StepCounters& counters)
+{
+    m_testsBefore = counters.m_candidates;
+    m_hitsBefore = counters.m_listed;
+}
+
+bool DeviceBackend::overLimit(StepResult& result)
+{
+    const StepCounters counters = countersRead();
+    const StepLimits limits(m_settings);
+    // Hits are all of them only where every candidate was there to be tested.
+    const bool ofObstacles = patches() ? counters.m_patchPairs <= m_patchCull.pairs().capacity() &&
+                                             counters.m_candidates <= m_patchCull.tests().capacity()
+                                       : counters.m_candidates <= m_candidates.capacity();
+    const bool ofSelf =
+        counters.m_selfPairs <= m_self.pairs().capacity() && counters.m_selfTests <= m_self.tests().capacity();
+    if (std::max({counters.m_candidates, counters.m_patchPairs, counters.m_selfPairs, counters.m_selfTests}) >
+        limits.m_candidates)
+    {
+        result.m_overLimit = true;
+    }
+    else if (ofObstacles && ofSelf && counters.m_listed > limits.m_contacts)
+    {
+        result.m_overLimit = true;
+        result.m_contactDemand = counters.m_listed;
+    }
+    return result.m_overLimit;
+}
+
+bool DeviceBackend::grow()
+{
+    const StepCounters counters = countersRead();
+    const std::size_t largest = m_device->maxAllocationBytes();
+    bool again = false;
+    const auto demand = [&](std::size_t wanted, std::size_t capacity, std::size_t elementBytes, auto reserve)
+    {
+        if (wanted <= capacity) return;
+        again = true;
+        const std::size_t most = largest / elementBytes - DRAPE_CONTACT_HEAD;  // contacts have a head before them
+        m_limitReached = m_limitReached || wanted > most;
+        if (!m_limitReached) reserve(std::min(withHeadroom(wanted), most));
+    };
+    Device& device = *m_device;
+    if (patches())
+    {
+        demand(counters.m_patchPairs, m_patchCull.pairs().capacity(), sizeof(FeatureTest),
+               [&](std::size_t count) { m_patchCull.reservePairs(device, count); });
+        demand(counters.m_candidates, m_patchCull.tests().capacity(), sizeof(FeatureTest),
+               [&](std::size_t count) { m_patchCull.reserveTests(device, count); });
+    }
+    else
+    {
+        again = m_broadPhase.grow(device, counters, m_limitReached);
+        demand(counters.m_candidates, m_candidates.capacity(), sizeof(Candidate),
+               [&](std::size_t count) { m_candidates.reserve(device, count); });
+    }
+    demand(counters.m_selfPairs, m_self.pairs().capacity(), sizeof(Candidate),
+           [&](std::size_t count) { m_self.reservePairs(device, count); });
+    demand(counters.m_selfTests, m_self.tests().capacity(), sizeof(FeatureTest),
+           [&](std::size_t count) { m_self.reserveTests(device, count); });
+    demand(std::min(std::size_t(counters.m_listed), StepLimits(m_settings).m_contacts), m_compaction.hitCapacity(),
+           sizeof(Contact), [&](std::size_t count) { m_compaction.reserveHits(device, count); });
+    if (counters.m_crowded > 0)
+    {
+        again |= m_stepsToOrder == 0;
+        m_stepsToOrder = kStepsToOrder;
+    }
+    else if (m_stepsToOrder > 0)
+        --m_stepsToOrder;
+    demand(counters.m_intersections, m_narrowPhase.intersections().capacity(), sizeof(Candidate),
+           [&](std::size_t count) { m_narrowPhase.reserveIntersections(device, count); });
+    return again;
+}
+
+bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResult& result)
+{
+    result = StepResult();
+    m_device->wait();
+    while (!m_device->failed())
+    {
+        if (overLimit(result)) return true;
+        if (!grow()) break;
+        if (m_limitReached) return false;
+        ++result.m_retries;
+        takeCounts(countersRead());
+        enqueueStep(scene, pairs);
+        m_device->wait();
+    }
+    if (m_device->failed()) return false;
+    if (!patches()) m_broadPhase.accept(*m_device, countersRead());
+    readAll(result);
+    if (pairs.m_measureTree) result.m_treeCost = m_treeCost.cost();
+    return !m_device->failed();
+}
+
+void DeviceBackend::readAll(StepResult& result)
+{
+    const StepCounters counters = countersRead();
+    takeCounts(counters);
+    result.m_candidates = counters.m_candidates;
+    result.m_volumeTests = counters.m_visits;
+    result.m_sweptTests = counters.m_swept;
+    result.m_selfCandidates = counters.m_selfTests;
+    result.m_selfSweptTests = counters.m_selfSwept;
+    result.m_reduced = counters.m_listed - counters.m_hits;
+    result.m_invalidNodes = counters.m_invalidNodes;
+    result.m_intersectionCount = counters.m_intersections;
+    if (m_settings.m_reportIntersections)
+    {
+        result.m_intersections.resize(counters.m_intersections);
+        m_narrowPhase.intersections().read(*m_device, result.m_intersections.data(), counters.m_intersections);
+    }
+    const std::size_t count = counters.m_hits;
+    const bool inHand = count <= m_contactsAsked;
+    if (!inHand)
+    {
+        m_contactsRead.reserve(m_device.get(), DRAPE_CONTACT_HEAD + withHeadroom(count));
+        readContacts(count);
+    }
+    if (!inHand || m_settings.m_reportIntersections) m_device->wait();
+    result.m_deviceContacts = ContactList{m_contactsRead.data() + DRAPE_CONTACT_HEAD, count};
+    m_contactsAsked = std::min(
+        {count + count / 16 + 256, m_contactsRead.capacity() - DRAPE_CONTACT_HEAD, m_compaction.hitCapacity()});
+    sortCandidates(result.m_intersections);
+}
+}  // namespace drape

@@ -1,0 +1,48 @@
+// The obstacles of a scene on a device, where they are in the world: positions and normal cones, joined as in the
+// scene.
+//
+// Where one has a place, all are kept in their own frames, too, and placed on the device. Cost: what changed goes up
+// and is placed; obstacles that rest cost nothing.
+#pragma once
+
+#include <vector>
+
+#include "bullet_plugin/core/device/program.h"
+#include "obstacle_changes.h"
+
+namespace drape
+{
+class PlacedObstacles
+{
+public:
+    void create(Device& device, const cl::Program& program);
+    // The next scene is brought here from its first mesh on.
+    void forget();
+
+    // Whether positions or places may have changed since update().
+    bool changed(const Scene& scene) const { return m_changes.any(scene); }
+    // Brings the obstacles from slot `fresh` on, and of the others those that were given other positions or another
+    // place. Returns after enqueueing, with runs of the slots whose places in the world are new; the scene must stay as
+    // it is until the device was waited for, and the device must have been since the last call.
+    std::vector<SlotRange> update(Device& device, const Scene& scene, std::size_t fresh);
+
+    Buffer<float>& positions() { return m_positions; }
+    Buffer<NormalCone>& vertexCones() { return m_vertexCones; }
+    Buffer<NormalCone>& edgeCones() { return m_edgeCones; }
+
+private:
+    void reserve(Device& device, const Scene& scene, std::size_t fresh);
+    void upload(Device& device, const Scene& scene, SlotRange slots);
+    void enqueuePlacing(Device& device, const Scene& scene, SlotRange slots);
+
+    Kernel m_place;
+    ObstacleChanges m_changes;
+    bool m_anyPosed = false;  // as the scene at the last update
+    Buffer<float> m_positions{"obstacle positions"};
+    Buffer<NormalCone> m_vertexCones{"obstacle cones"}, m_edgeCones{"obstacle cones"};
+    // In the obstacles' own frames; only where one has a place.
+    Buffer<float> m_ownPositions{"obstacle positions in own frame"};
+    Buffer<NormalCone> m_ownVertexCones{"obstacle cones in own frame"}, m_ownEdgeCones{"obstacle cones in own frame"};
+    Buffer<ObstaclePlace> m_places{"obstacle places"};
+};
+}  // namespace drape

@@ -1,0 +1,52 @@
+#include "warm_up_step.h"
+
+#include <algorithm>
+
+namespace drape
+{
+namespace
+{
+const std::vector<float> kAbove = {0, 0, 0.5f, 1, 0, 0.5f, 0, 1, 0.5f}, kBelow = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+constexpr float kReach = 0.1f;
+
+void addTriangle(MeshPool& pool)
+{
+    const std::int32_t indices[3] = {0, 1, 2};
+    PooledMesh mesh;
+    mesh.m_id = 0;
+    mesh.m_topology = buildTopology(indices, 1, 3);
+    mesh.m_order = {0};
+    mesh.m_positions = kBelow;
+    pool.add(std::move(mesh));
+    pool.update();
+}
+}  // namespace
+
+void makeWarmUpStep(Scene& scene, StepPairs& pairs, float selfThickness)
+{
+    addTriangle(scene.m_cloths);
+    addTriangle(scene.m_obstacles);
+    scene.m_clothLayout = makeBvhLayout(1);
+    scene.m_obstacleLayout = makeBvhLayout(1);
+    scene.m_clothStart.reserve(nullptr, kAbove.size());
+    scene.m_clothEnd.reserve(nullptr, kBelow.size());
+    std::copy(kAbove.begin(), kAbove.end(), scene.m_clothStart.data());
+    std::copy(kBelow.begin(), kBelow.end(), scene.m_clothEnd.data());
+    scene.m_obstaclePositions = kBelow;
+    scene.m_vertexCones.assign(3, NormalCone{{0, 0, 1}, -1});
+    scene.m_edgeCones.assign(3, NormalCone{{0, 0, 1}, -1});
+    ObstaclePlacing placing;
+    placing.m_posed = true;
+    placing.m_start = placing.m_end = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    scene.m_places = {ObstaclePlace{{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, 1, 0, 0}};
+    scene.m_anyPosed = true;
+    pairs.m_motions = {makeMotion(placing, MeshBox{{0, 0, 0}, {1, 1, 0}}, 0)};
+    pairs.m_thickness = {kReach};
+    pairs.m_clothRadius = {kReach};
+    pairs.m_anyPair = pairs.m_any = true;
+    if (!(selfThickness > 0.0f)) return;
+    scene.m_anySelf = pairs.m_anySelf = true;
+    scene.m_clothRest = kBelow;
+    pairs.m_self = SelfReach{{selfThickness}, {selfGrowth(selfThickness)}};
+}
+}  // namespace drape
