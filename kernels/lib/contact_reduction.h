@@ -76,11 +76,19 @@ typedef struct ReducedFeature
     int m_mayEmpty;      // each node of a face or edge has contacts of its own
 } ReducedFeature;
 
+// What is asked of a contact.
+typedef struct ReducedContact
+{
+    Vec3 m_normal;
+    float m_gap0;
+    float m_gap1;
+    float m_weights[3];
+    DRAPE_UINT m_pair;  // of meshes
+} ReducedContact;
+
 // What the nodes allow along one contact's normal.
 typedef struct NodeBounds
 {
-    Vec3 m_normal;
-    DRAPE_UINT m_pair;  // of meshes
     float m_depth[3];
     float m_height[3];
     float m_lack;  // by which the nodes alone fail to imply the contact, m
@@ -143,101 +151,138 @@ DRAPE_FUNCTION ReducedFeature reducedFeature(const ReductionView* view, const Sl
     return feature;
 }
 
-DRAPE_FUNCTION Vec3 contactNormal(const DRAPE_GLOBAL Contact* contact)
+DRAPE_FUNCTION ReducedContact reducedContact(const ReductionView* view, DRAPE_UINT cloth,
+                                             const DRAPE_GLOBAL Contact* contact)
 {
-    return vec3(contact->m_normal[0], contact->m_normal[1], contact->m_normal[2]);
+    ReducedContact reduced;
+    reduced.m_normal = vec3(contact->m_normal[0], contact->m_normal[1], contact->m_normal[2]);
+    reduced.m_gap0 = contact->m_gap0;
+    reduced.m_gap1 = contact->m_gap1;
+    for (int k = 0; k < 3; ++k)
+        reduced.m_weights[k] = contact->m_weights[k];
+    reduced.m_pair = pairOf(view, cloth, contact);
+    return reduced;
+}
+
+// Whether a contact may be dropped at all. time: its own.
+DRAPE_FUNCTION int isReducible(const ReductionView* view, const ReducedContact* contact, float time)
+{
+    return view->m_tube[contact->m_pair] >= 0.0f && time == 1.0f;
+}
+
+// Whether one stands for another.
+DRAPE_FUNCTION int standsFor(const ReducedContact* keeper, const ReducedContact* contact, float thickness)
+{
+    return keeper->m_gap0 >= DRAPE_STANDS * thickness && keeper->m_pair == contact->m_pair;
 }
 
 // d_i of the header: ways are those of the contact's nodes.
-DRAPE_FUNCTION float letsDown(const DRAPE_GLOBAL Contact* contact, Vec3 normal, const Vec3* ways, int count,
-                              float thickness, float tube)
+DRAPE_FUNCTION float letsDown(const ReducedContact* contact, Vec3 normal, const Vec3* ways, int count, float thickness,
+                              float tube)
 {
-    const Vec3 turn = vec3Sub(normal, contactNormal(contact));
+    const Vec3 turn = vec3Sub(normal, contact->m_normal);
     float down = contact->m_gap1 - thickness + tube * vec3Length(turn);
     for (int k = 0; k < count; ++k)
         down += contact->m_weights[k] * drapeMax(0.0f, vec3Dot(turn, ways[k]));
     return down;
 }
 
-// The depth of a node of the feature along the normal.
-DRAPE_FUNCTION float nodeDepth(const ReductionView* view, const SlotLists* lists, const ReducedFeature* feature, int k,
-                               Vec3 normal, DRAPE_UINT pair)
+// How far a node goes down along a contact's normal, and up, where no contact of its own holds it.
+DRAPE_FUNCTION float freeDepth(Vec3 normal, Vec3 way, float tube)
 {
-    const float thickness = view->m_thickness[pair], tube = view->m_tube[pair];
-    float depth = tube + drapeMax(0.0f, vec3Dot(normal, feature->m_way[k]));
+    return tube + drapeMax(0.0f, vec3Dot(normal, way));
+}
+
+DRAPE_FUNCTION float nodeHeight(Vec3 normal, Vec3 way, float tube)
+{
+    return tube + drapeMax(0.0f, -vec3Dot(normal, way));
+}
+
+// The depth where a contact of its own may hold it, of which it is `depth` so far.
+DRAPE_FUNCTION float heldDepth(const ReductionView* view, const ReducedContact* contact, const ReducedContact* own,
+                               Vec3 way, float depth)
+{
+    const float thickness = view->m_thickness[contact->m_pair], tube = view->m_tube[contact->m_pair];
+    if (!standsFor(own, contact, thickness)) return depth;
+    return drapeMin(depth, letsDown(own, contact->m_normal, &way, 1, thickness, tube));
+}
+
+// How many of a node's contacts are asked, and where they begin.
+DRAPE_FUNCTION DRAPE_UINT supportsOf(const SlotLists* lists, DRAPE_UINT node, DRAPE_UINT* first)
+{
+    const DRAPE_UINT end = slotEnd(lists, node);
+    *first = lists->m_first[node];
+    return end > *first && end <= *first + DRAPE_SUPPORTS ? end - *first : 0u;
+}
+
+// The depth of a node of the feature along a contact's normal.
+DRAPE_FUNCTION float nodeDepth(const ReductionView* view, const SlotLists* lists, const ReducedFeature* feature, int k,
+                               const ReducedContact* contact)
+{
+    float depth = freeDepth(contact->m_normal, feature->m_way[k], view->m_tube[contact->m_pair]);
     if (feature->m_count == 1) return depth;
-    const DRAPE_UINT first = lists->m_first[feature->m_node[k]], end = slotEnd(lists, feature->m_node[k]);
-    if (end > first + DRAPE_SUPPORTS) return depth;
-    for (DRAPE_UINT i = first; i < end; ++i)
+    DRAPE_UINT first;
+    const DRAPE_UINT supports = supportsOf(lists, feature->m_node[k], &first);
+    for (DRAPE_UINT i = first; i < first + supports; ++i)
     {
-        const DRAPE_GLOBAL Contact* own = lists->m_hits + lists->m_members[i];
-        if (own->m_gap0 < DRAPE_STANDS * thickness || pairOf(view, feature->m_cloth, own) != pair) continue;
-        depth = drapeMin(depth, letsDown(own, normal, feature->m_way + k, 1, thickness, tube));
+        const ReducedContact own = reducedContact(view, feature->m_cloth, lists->m_hits + lists->m_members[i]);
+        depth = heldDepth(view, contact, &own, feature->m_way[k], depth);
     }
     return depth;
 }
 
-DRAPE_FUNCTION float impliedSlack(const DRAPE_GLOBAL Contact* contact, float thickness)
+DRAPE_FUNCTION float impliedSlack(const ReducedContact* contact, float thickness)
 {
     return contact->m_gap1 - thickness + DRAPE_IMPLIED_SHARE * thickness;
 }
 
-// Of no contact yet.
-DRAPE_FUNCTION NodeBounds noBounds(void)
+// By how much nodes of these depths fail to imply a contact, m.
+DRAPE_FUNCTION float lackOf(const ReducedContact* contact, int count, const float* depth, float thickness)
 {
-    NodeBounds bounds;
-    bounds.m_normal = vec3(0.0f, 0.0f, 0.0f);
-    bounds.m_pair = 0;
-    bounds.m_lack = 0.0f;
-    return bounds;
+    float lack = -impliedSlack(contact, thickness);
+    for (int k = 0; k < count; ++k)
+        lack += contact->m_weights[k] * depth[k];
+    return lack;
 }
 
-// What the nodes allow along a contact's normal. The contacts within a face share theirs: *bounds is that of the
-// contact before, or of none.
+// What the nodes allow along a contact's normal. The contacts within a face share theirs: *bounds is that of *before,
+// or of none where that is null.
 DRAPE_FUNCTION void boundNodes(const ReductionView* view, const SlotLists* lists, const ReducedFeature* feature,
-                               const DRAPE_GLOBAL Contact* contact, DRAPE_UINT pair, NodeBounds* bounds)
+                               const ReducedContact* contact, const ReducedContact* before, NodeBounds* bounds)
 {
-    const Vec3 normal = contactNormal(contact), last = bounds->m_normal;
-    if (normal.x != last.x || normal.y != last.y || normal.z != last.z || pair != bounds->m_pair)
+    const Vec3 normal = contact->m_normal;
+    if (!before || normal.x != before->m_normal.x || normal.y != before->m_normal.y || normal.z != before->m_normal.z ||
+        contact->m_pair != before->m_pair)
     {
-        bounds->m_normal = normal;
-        bounds->m_pair = pair;
         for (int k = 0; k < feature->m_count; ++k)
         {
-            bounds->m_depth[k] = nodeDepth(view, lists, feature, k, normal, pair);
-            bounds->m_height[k] = view->m_tube[pair] + drapeMax(0.0f, -vec3Dot(normal, feature->m_way[k]));
+            bounds->m_depth[k] = nodeDepth(view, lists, feature, k, contact);
+            bounds->m_height[k] = nodeHeight(normal, feature->m_way[k], view->m_tube[contact->m_pair]);
         }
     }
-    bounds->m_lack = -impliedSlack(contact, view->m_thickness[pair]);
-    for (int k = 0; k < feature->m_count; ++k)
-        bounds->m_lack += contact->m_weights[k] * bounds->m_depth[k];
+    bounds->m_lack = lackOf(contact, feature->m_count, bounds->m_depth, view->m_thickness[contact->m_pair]);
 }
 
-// Whether a contact may be dropped at all.
-DRAPE_FUNCTION int isReducible(const ReductionView* view, const DRAPE_GLOBAL Contact* contact, DRAPE_UINT pair)
+// Whether the keeper, another contact of the feature, and the nodes imply a contact that the nodes alone do not. ways:
+// of the feature's nodes, count of them.
+DRAPE_FUNCTION int impliedBy(const ReductionView* view, const Vec3* ways, int count, const NodeBounds* bounds,
+                             const ReducedContact* contact, const ReducedContact* keeper)
 {
-    return view->m_tube[pair] >= 0.0f && contact->m_time == 1.0f;
-}
-
-// Whether the keeper, another contact of the feature, and the nodes imply a contact that the nodes alone do not.
-DRAPE_FUNCTION int impliedBy(const ReductionView* view, const ReducedFeature* feature, const NodeBounds* bounds,
-                             const DRAPE_GLOBAL Contact* contact, DRAPE_UINT pair, const DRAPE_GLOBAL Contact* keeper)
-{
-    const float thickness = view->m_thickness[pair];
-    if (keeper->m_gap0 < DRAPE_STANDS * thickness || pairOf(view, feature->m_cloth, keeper) != pair) return 0;
+    const float thickness = view->m_thickness[contact->m_pair], tube = view->m_tube[contact->m_pair];
+    if (!standsFor(keeper, contact, thickness)) return 0;
     float most = 0.0f;  // of what the nodes let the keeper's point down
-    for (int k = 0; k < feature->m_count; ++k)
+    for (int k = 0; k < count; ++k)
         most += keeper->m_weights[k] * bounds->m_depth[k];
     // What the normals' difference may cost at most. Most keepers need no root and no look at the ways.
-    const float tube = view->m_tube[pair], room = most - (keeper->m_gap1 - thickness) - bounds->m_lack;
-    const Vec3 turn = vec3Sub(bounds->m_normal, contactNormal(keeper));
+    const float room = most - (keeper->m_gap1 - thickness) - bounds->m_lack;
+    const Vec3 turn = vec3Sub(contact->m_normal, keeper->m_normal);
     if (!(room >= 0.0f) || tube * tube * vec3Dot(turn, turn) > room * room) return 0;
-    const float down = letsDown(keeper, bounds->m_normal, feature->m_way, feature->m_count, thickness, tube);
+    const float down = letsDown(keeper, contact->m_normal, ways, count, thickness, tube);
     const float gain = most - down;  // per unit of the share
     if (!(gain >= bounds->m_lack)) return 0;
     // The largest share that leaves no node less than nothing, then all of it.
     float share = 1.0f, whole = down;
-    for (int k = 0; k < feature->m_count; ++k)
+    for (int k = 0; k < count; ++k)
     {
         const float own = contact->m_weights[k], its = keeper->m_weights[k];
         if (share * its > own) share = own / its;
@@ -260,22 +305,28 @@ DRAPE_FUNCTION DRAPE_UINT reduceSlot(const ReductionView* view, const SlotLists*
 {
     if (count == 0u) return 0u;
     const ReducedFeature feature = reducedFeature(view, lists, lists->m_hits + kept[0]);
-    NodeBounds bounds = noBounds();
+    ReducedContact keepers[DRAPE_KEEPERS];  // the first that stay
+    NodeBounds bounds;
+    ReducedContact before;
+    int any = 0;  // bounds are those of before
     DRAPE_UINT stay = 0;
     for (DRAPE_UINT j = 0; j < count; ++j)
     {
         const DRAPE_UINT member = kept[j];
-        const DRAPE_GLOBAL Contact* contact = lists->m_hits + member;
-        const DRAPE_UINT pair = pairOf(view, feature.m_cloth, contact);
+        const ReducedContact contact = reducedContact(view, feature.m_cloth, lists->m_hits + member);
         int drop = 0;
-        if ((j > 0u || feature.m_mayEmpty) && isReducible(view, contact, pair))
+        if ((j > 0u || feature.m_mayEmpty) && isReducible(view, &contact, lists->m_hits[member].m_time))
         {
-            boundNodes(view, lists, &feature, contact, pair, &bounds);
+            boundNodes(view, lists, &feature, &contact, any ? &before : 0, &bounds);
+            before = contact;
+            any = 1;
             drop = bounds.m_lack <= 0.0f;
             for (DRAPE_UINT i = 0; !drop && i < stay && i < DRAPE_KEEPERS; ++i)
-                drop = impliedBy(view, &feature, &bounds, contact, pair, lists->m_hits + kept[i]);
+                drop = impliedBy(view, feature.m_way, feature.m_count, &bounds, &contact, keepers + i);
         }
-        if (!drop) kept[stay++] = member;
+        if (drop) continue;
+        if (stay < DRAPE_KEEPERS) keepers[stay] = contact;
+        kept[stay++] = member;
     }
     return stay;
 }

@@ -86,7 +86,7 @@ void CompactionStage::enqueue(Device& device, StepTally tally, const ReductionBu
                     tally.m_next.handle());
     if (tally.m_ordered) enqueueOrder(device, ranked, tally);
     if (reduction)
-        m_reduction.enqueue(device, slotHits(), *reduction, m_places, m_contacts, tally.m_now);
+        m_reduction.enqueue(device, slotHits(), *reduction, tally.m_hits, m_places, m_contacts, tally.m_now);
     else
         m_write.launch(device, listWidth(device), listGroup(device), m_hits.handle(), hitCapacity, m_slotFirst.handle(),
                        cl_uint(m_places.slotCount()), ranked, copyParts(device), m_members.handle(), m_keys.handle(),
@@ -100,6 +100,6 @@ void CompactionStage::enqueueFew(Device& device, StepTally tally, const Reductio
                  m_slotCount.handle(), m_slotFirst.handle(), cl_uint(slots), cl_uint(kFewBlock),
                  rankedOn(device, reduction), m_members.handle(), m_keys.handle(), reduction ? 0u : copyParts(device),
                  m_contacts.handle(), tally.m_now.handle(), tally.m_next.handle(), cl::Local(group * sizeof(cl_uint)));
-    if (reduction) m_reduction.enqueueFew(device, slotHits(), *reduction, m_contacts, tally.m_now);
+    if (reduction) m_reduction.enqueueFew(device, slotHits(), *reduction, tally.m_hits, m_contacts, tally.m_now);
 }
 }  // namespace drape

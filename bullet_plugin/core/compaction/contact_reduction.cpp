@@ -10,9 +10,19 @@ namespace
 {
 constexpr std::size_t kGroupCpu = 64;   // as in kernels/contact_reduction.cl
 constexpr std::size_t kBlockCpu = 256;  // slots of such a group
-// On a GPU; as many groups per compute unit as make it busy, where slots are few.
+// On a GPU: groups of about so many hits, but as many per compute unit as make it busy.
 constexpr std::size_t kGroupGpu = 128;
-constexpr std::size_t kBlockGpu = 64, kLeastBlockGpu = 4, kGroupsPerUnit = 16;
+constexpr std::size_t kHitsPerGroup = 2, kFewestGroupsPerUnit = 16, kMostGroupsPerUnit = 48;
+constexpr std::size_t kMostBlockGpu = 64;  // slots, as in kernels/contact_reduction.cl
+
+std::size_t slotsPerGroup(const Device& device, std::size_t slots, std::size_t expectedHits)
+{
+    if (!device.isGpu()) return kBlockCpu;
+    const std::size_t units = device.computeUnits();
+    const std::size_t groups =
+        std::clamp(expectedHits / kHitsPerGroup, kFewestGroupsPerUnit * units, kMostGroupsPerUnit * units);
+    return std::clamp(slots / groups, std::size_t(1), kMostBlockGpu);
+}
 }  // namespace
 
 void ContactReductionStage::create(Device& device, const ProgramLoader& load)
@@ -31,11 +41,10 @@ void ContactReductionStage::resizeSlots(Device& device, std::size_t slotCount)
 }
 
 void ContactReductionStage::enqueueKeep(Device& device, SlotHits hits, const ReductionBuffers& sides,
-                                        Buffer<StepCounters>& counters)
+                                        std::size_t expectedHits, Buffer<StepCounters>& counters)
 {
     const std::size_t group = device.isGpu() ? kGroupGpu : kGroupCpu;
-    const std::size_t spread = m_slots / (kGroupsPerUnit * device.computeUnits());
-    const std::size_t block = device.isGpu() ? std::clamp(spread, kLeastBlockGpu, kBlockGpu) : kBlockCpu;
+    const std::size_t block = slotsPerGroup(device, m_slots, expectedHits);
     m_keep.launch(device, (m_slots + block - 1) / block * group, group, hits.m_hits.handle(),
                   cl_uint(hits.m_hits.capacity()), hits.m_slotFirst.handle(), cl_uint(m_slots), cl_uint(block),
                   hits.m_members.handle(), m_kept.handle(), m_slotKept.handle(), counters.handle(),
@@ -45,10 +54,11 @@ void ContactReductionStage::enqueueKeep(Device& device, SlotHits hits, const Red
                   sides.m_tube.handle());
 }
 
-void ContactReductionStage::enqueue(Device& device, SlotHits hits, const ReductionBuffers& sides, SlotPlaces& places,
-                                    Buffer<Contact>& contacts, Buffer<StepCounters>& counters)
+void ContactReductionStage::enqueue(Device& device, SlotHits hits, const ReductionBuffers& sides,
+                                    std::size_t expectedHits, SlotPlaces& places, Buffer<Contact>& contacts,
+                                    Buffer<StepCounters>& counters)
 {
-    enqueueKeep(device, hits, sides, counters);
+    enqueueKeep(device, hits, sides, expectedHits, counters);
     places.enqueue(device, m_slotKept, m_keptFirst, DRAPE_RANKED, counters);
     m_write.launch(device, listWidth(device), listGroup(device), hits.m_hits.handle(), cl_uint(hits.m_hits.capacity()),
                    hits.m_slotFirst.handle(), copyParts(device), m_kept.handle(), m_keptFirst.handle(),
@@ -56,9 +66,10 @@ void ContactReductionStage::enqueue(Device& device, SlotHits hits, const Reducti
 }
 
 void ContactReductionStage::enqueueFew(Device& device, SlotHits hits, const ReductionBuffers& sides,
-                                       Buffer<Contact>& contacts, Buffer<StepCounters>& counters)
+                                       std::size_t expectedHits, Buffer<Contact>& contacts,
+                                       Buffer<StepCounters>& counters)
 {
-    enqueueKeep(device, hits, sides, counters);
+    enqueueKeep(device, hits, sides, expectedHits, counters);
     const std::size_t group = SlotPlaces::kGroupGpu;
     m_writeFew.launch(device, fewWidth(m_slots), group, hits.m_hits.handle(), cl_uint(hits.m_hits.capacity()),
                       hits.m_slotFirst.handle(), cl_uint(m_slots), cl_uint(kFewBlock), copyParts(device),

@@ -49,15 +49,16 @@ public:
     void resizeSlots(Device& device, std::size_t slotCount);
     void reserveHits(Device& device, std::size_t count) { m_kept.reserve(device, count); }
 
-    // Both return after enqueueing. places: of these slots.
-    void enqueue(Device& device, SlotHits hits, const ReductionBuffers& sides, SlotPlaces& places,
-                 Buffer<Contact>& contacts, Buffer<StepCounters>& counters);
+    // Both return after enqueueing. expectedHits: about as many; speed alone depends on it. places: of these slots.
+    void enqueue(Device& device, SlotHits hits, const ReductionBuffers& sides, std::size_t expectedHits,
+                 SlotPlaces& places, Buffer<Contact>& contacts, Buffer<StepCounters>& counters);
     // A launch less; where slots and hits are few, on a GPU.
-    void enqueueFew(Device& device, SlotHits hits, const ReductionBuffers& sides, Buffer<Contact>& contacts,
-                    Buffer<StepCounters>& counters);
+    void enqueueFew(Device& device, SlotHits hits, const ReductionBuffers& sides, std::size_t expectedHits,
+                    Buffer<Contact>& contacts, Buffer<StepCounters>& counters);
 
 private:
-    void enqueueKeep(Device& device, SlotHits hits, const ReductionBuffers& sides, Buffer<StepCounters>& counters);
+    void enqueueKeep(Device& device, SlotHits hits, const ReductionBuffers& sides, std::size_t expectedHits,
+                     Buffer<StepCounters>& counters);
 
     Kernel m_keep, m_write, m_writeFew;
     Buffer<cl_uint> m_kept{"step hits"};
