@@ -69,12 +69,14 @@ def step_table(rows):
     methods = [method for method in METHODS if select(rows, method=method)]
     lines = [[METHODS[method]] + [cell_of(rows, scene=scene, method=method, stage="step") for scene in scenes]
              for method in methods]
-    for what in ("candidates", "contacts"):
-        counts = [select(rows, scene=scene, method="drape_host", stage="step") for scene in scenes]
-        lines.append([what + " a step"] + [f"{row[0][what]:,.0f}" if row else "–" for row in counts])
-    counts = [select(rows, scene=scene, method="drape_host_reduced", stage="step") for scene in scenes]
-    if any(counts):
-        lines.append(["contacts less redundant ones"] + [f"{row[0]['contacts']:,.0f}" if row else "–" for row in counts])
+    # Contacts are the same on host and device; candidates are not, pairs of triangles and of features.
+    for label, what, sources in (("candidates a step", "candidates", ("drape_host",)),
+                                 ("contacts a step", "contacts", ("drape_host", "drape")),
+                                 ("contacts less redundant ones", "contacts", ("drape_host_reduced", "drape_reduced"))):
+        counts = [[row for method in sources for row in select(rows, scene=scene, method=method, stage="step")]
+                  for scene in scenes]
+        if any(counts):
+            lines.append([label] + [f"{row[0][what]:,.0f}" if row else "–" for row in counts])
     return ("Whole step, host to host, ms: median (95th percentile). Same scene, same step, same process.\n\n"
             + table([""] + [SCENES[scene] for scene in scenes], lines))
 
