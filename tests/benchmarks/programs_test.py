@@ -49,13 +49,15 @@ class BenchStep(ProgramTest):
 
     def test_an_opencl_device_gives_the_hosts_hash(self):
         rows = self.quick("bench_step", "--backend", "opencl", "--method", "drape", "--method", "drape_kernels", "--method",
-                          "drape_reduced")
-        for name in ("drape", "drape_kernels", "drape_reduced"):
+                          "drape_reduced", "--method", "drape_reduced_kernels")
+        for name in ("drape", "drape_kernels", "drape_reduced", "drape_reduced_kernels"):
             mine = [row for row in rows if row["method"] == name]
             self.assertTrue(mine, "no rows of " + name)
             self.assertTrue(all(row["valid"] in ("yes", "") for row in mine))
             self.assertTrue(any(row["valid"] == "yes" for row in mine))
         self.assertTrue(any(row["stage"].startswith("kernel: narrowPhase") for row in rows))
+        self.assertEqual({row["method"] for row in rows if row["stage"].startswith("kernel: reduction")},
+                         {"drape_reduced_kernels"})
         self.assertEqual({row["scene"] for row in rows if row["stage"] == "kernel: selfCull"}, {"quick_self"})
         self.assertTrue(any(row["stage"] == "memory: cloth triangles" and int(row["bytes"]) > 0 for row in rows))
 
