@@ -15,7 +15,7 @@ DRAPE_NAMESPACE_BEGIN
 #define DRAPE_SELF_NODE_FACE 3u
 #define DRAPE_SELF_EDGE_EDGE 4u
 
-// The most contacts of a slot that a CPU's work-item, or one that reduces them, handles alone in quadratic time; a cloth
+// The most contacts of a slot that a CPU's work-item puts in order alone in quadratic time, where none are left out; a cloth
 // feature at rest has a few dozen.
 #define DRAPE_RANKED 64u
 

@@ -11,14 +11,15 @@ constexpr std::size_t kSortBlockGpu = 32;  // slots that a group sorts one after
 // Most hits of a slot that a GPU puts in order by counting lesser ones, where no reduction follows: what a group of
 // compactionOrder would count in local memory, a launch more.
 constexpr cl_uint kRankedGpu = 512;
-constexpr cl_uint kRankedReducedGpu = 256;  // where one follows: DRAPE_HELD of kernels/contact_reduction.cl
+constexpr cl_uint kRankedReducedGpu = 256;  // where one follows: DRAPE_HELD of kernels/contact_reduction_hits.cl
 // Hits up to which a GPU compacts few slots in one launch: every group looks at all hits' slots, which would cost a CPU
 // more than launches do.
 constexpr std::size_t kFewHits = 1 << 13;
 
 cl_uint rankedOn(const Device& device, bool reduced)
 {
-    return !device.isGpu() ? DRAPE_RANKED : reduced ? kRankedReducedGpu : kRankedGpu;
+    if (device.isGpu()) return reduced ? kRankedReducedGpu : kRankedGpu;
+    return reduced ? UINT32_MAX : DRAPE_RANKED;  // a CPU's reduction sorts all slots itself
 }
 }  // namespace
 

@@ -8,12 +8,11 @@ namespace drape
 {
 namespace
 {
-constexpr std::size_t kGroupCpu = 64;   // as in kernels/contact_reduction.cl
-constexpr std::size_t kBlockCpu = 256;  // slots of such a group
+constexpr std::size_t kBlockCpu = 64;  // slots of a work-item
 // On a GPU: groups of about so many hits, but as many per compute unit as make it busy.
 constexpr std::size_t kGroupGpu = 128;
 constexpr std::size_t kHitsPerGroup = 2, kFewestGroupsPerUnit = 16, kMostGroupsPerUnit = 48;
-constexpr std::size_t kMostBlockGpu = 64;  // slots, as in kernels/contact_reduction.cl
+constexpr std::size_t kMostBlockGpu = 64;  // slots, as in kernels/contact_reduction_hits.cl
 
 std::size_t slotsPerGroup(const Device& device, std::size_t slots, std::size_t expectedHits)
 {
@@ -28,7 +27,9 @@ std::size_t slotsPerGroup(const Device& device, std::size_t slots, std::size_t e
 void ContactReductionStage::create(Device& device, const ProgramLoader& load)
 {
     const cl::Program reduction = load("contact_reduction");
-    m_keep.create(device, reduction, device.isGpu() ? "reductionKeepWide" : "reductionKeep");
+    const bool gpu = device.isGpu();
+    m_keep.create(device, load(gpu ? "contact_reduction_hits" : "contact_reduction_slots"),
+                  gpu ? "reductionKeepWide" : "reductionKeep");
     m_write.create(device, reduction, "reductionWrite");
     m_writeFew.create(device, reduction, "reductionWriteFew");
 }
@@ -43,7 +44,7 @@ void ContactReductionStage::resizeSlots(Device& device, std::size_t slotCount)
 void ContactReductionStage::enqueueKeep(Device& device, SlotHits hits, const ReductionBuffers& sides,
                                         std::size_t expectedHits, Buffer<StepCounters>& counters)
 {
-    const std::size_t group = device.isGpu() ? kGroupGpu : kGroupCpu;
+    const std::size_t group = device.isGpu() ? kGroupGpu : 1;
     const std::size_t block = slotsPerGroup(device, m_slots, expectedHits);
     m_keep.launch(device, (m_slots + block - 1) / block * group, group, hits.m_hits.handle(),
                   cl_uint(hits.m_hits.capacity()), hits.m_slotFirst.handle(), cl_uint(m_slots), cl_uint(block),
@@ -59,7 +60,7 @@ void ContactReductionStage::enqueue(Device& device, SlotHits hits, const Reducti
                                     Buffer<StepCounters>& counters)
 {
     enqueueKeep(device, hits, sides, expectedHits, counters);
-    places.enqueue(device, m_slotKept, m_keptFirst, DRAPE_RANKED, counters);
+    places.enqueue(device, m_slotKept, m_keptFirst, UINT32_MAX, counters);  // they are in order
     m_write.launch(device, listWidth(device), listGroup(device), hits.m_hits.handle(), cl_uint(hits.m_hits.capacity()),
                    hits.m_slotFirst.handle(), copyParts(device), m_kept.handle(), m_keptFirst.handle(),
                    contacts.handle(), counters.handle());

@@ -21,7 +21,7 @@ std::vector<ProgramSet::Names> filesTogether(bool patches, bool reduces)
         step.insert(step.end(), {"patch_cull", "patch_pack", "narrow_phase", "narrow_phase_lanes"});
     else
         step.insert(step.end(), {"refit", "narrow_phase_pairs"});
-    if (reduces) step.push_back("contact_reduction");
+    if (reduces) step.insert(step.end(), {"contact_reduction", "contact_reduction_slots"});
     return {step, {"self_cull", "self_pack", "self_contact", "self_contact_lanes"}};
 }
 }  // namespace
