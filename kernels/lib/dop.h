@@ -15,6 +15,8 @@ DRAPE_NAMESPACE_BEGIN
 #define DRAPE_SPACE_DIAGONAL 1.7320509f
 // Smallest normal float, added to a pad so that flushed denormals cannot shrink a volume.
 #define DRAPE_TINY 1.17549435e-38f
+// 2^-23, see dopGrowInterval().
+#define DRAPE_DOP_PAD 1.1920929e-7f
 #define DRAPE_INFINITY (1.0f / 0.0f)
 
 typedef struct Dop
@@ -67,7 +69,7 @@ DRAPE_FUNCTION float dopInner(Vec3 p, int i)
 // (|v| + |s|) covers these and its own rounding. It is enough to pad the outermost: v - u |v| rises with v.
 DRAPE_FUNCTION void dopGrowInterval(float* low, float* high, float least, float greatest, float reach, float inner)
 {
-    const float pad = 1.1920929e-7f;  // 2^-23
+    const float pad = DRAPE_DOP_PAD;
     const float from = least - reach;
     const float to = greatest + reach;
     *low = drapeMin(*low, from - (pad * (drapeAbs(least) + inner + drapeAbs(from)) + DRAPE_TINY));

@@ -61,6 +61,19 @@ DRAPE_FUNCTION int nodeIsValid(const DRAPE_GLOBAL float* start, const DRAPE_GLOB
     return positionIsValid(vec3Load(start, node)) && positionIsValid(vec3Load(end, node));
 }
 
+#ifdef __OPENCL_VERSION__
+// Counts the invalid nodes that the triangle owns, of a cloth that the search for obstacles does not look at.
+static void countInvalidNodes(__global const Triangle* triangle, __global const float* start, __global const float* end,
+                              __global StepCounters* counters)
+{
+    for (int i = 0; i < 3; ++i)
+    {
+        if ((triangle->m_owned & DRAPE_OWNS_VERTEX(i)) && !nodeIsValid(start, end, triangle->m_vertices[i]))
+            atomic_inc(&counters->m_invalidNodes);
+    }
+}
+#endif
+
 // Empty where the node is not valid.
 DRAPE_FUNCTION FeatureBox nodeBox(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end, DRAPE_UINT node,
                                   float radius)

@@ -22,7 +22,7 @@ std::vector<ProgramSet::Names> filesTogether(bool patches, bool reduces)
     else
         step.insert(step.end(), {"refit", "narrow_phase_pairs"});
     if (reduces) step.insert(step.end(), {"contact_reduction", "contact_reduction_slots"});
-    return {step, {"self_cull", "self_pack", "self_contact", "self_contact_lanes"}};
+    return {step, {"self_cull", "self_pack_lanes", "self_contact", "self_contact_lanes"}};
 }
 }  // namespace
 

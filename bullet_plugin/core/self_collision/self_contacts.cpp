@@ -57,7 +57,7 @@ void SelfReach::leaveOut(std::size_t cloth)
 void SelfContactStage::create(Device& device, const ProgramLoader& load)
 {
     const cl::Program cull = load(device.isGpu() ? "self_walk" : "self_cull"), contact = load("self_contact");
-    m_pack.create(device, load("self_pack"), "selfPack");
+    m_pack.create(device, load(device.isGpu() ? "self_pack" : "self_pack_lanes"), "selfPack");
     if (device.isGpu()) m_walk.create(device, cull, "selfWalk");
     m_cull.create(device, cull, device.isGpu() ? "selfCullPairs" : "selfCull");
     m_pairs.reserve(device, device.isGpu() ? kFirstPairs : 1);
@@ -118,11 +118,18 @@ void SelfContactStage::enqueuePack(Device& device, SelfBuffers step, Buffer<floa
 {
     const std::size_t width = PatchCullStage::width(device);
     const std::size_t places = m_layout.m_levels[1] * width;  // of the first level's children
-    m_pack.launch(device, places * width, width, m_patches.handle(), cl_uint(m_layout.m_patches.size()),
-                  m_faceIds.handle(), m_vertexIds.handle(), m_edgeIds.handle(), step.m_triangles.handle(),
-                  step.m_edges.handle(), start.handle(), step.m_end.handle(), m_radius.handle(),
-                  step.m_obstacleRadius.handle(), cl_uint(!device.isGpu()), m_faceBoxes.handle(),
-                  m_vertexBoxes.handle(), m_edgeBoxes.handle(), m_wideNodes.handle(), counters.handle());
+    const cl_uint patchCount = cl_uint(m_layout.m_patches.size());
+    if (device.isGpu())
+        m_pack.launch(device, places * width, width, m_patches.handle(), patchCount, m_faceIds.handle(),
+                      m_vertexIds.handle(), step.m_triangles.handle(), start.handle(), step.m_end.handle(),
+                      m_radius.handle(), step.m_obstacleRadius.handle(), m_vertexBoxes.handle(), m_wideNodes.handle(),
+                      counters.handle());
+    else
+        m_pack.launch(device, places, kTeamsPerGroup, m_patches.handle(), patchCount, cl_uint(places),
+                      m_faceIds.handle(), m_vertexIds.handle(), m_edgeIds.handle(), step.m_triangles.handle(),
+                      step.m_edges.handle(), start.handle(), step.m_end.handle(), m_radius.handle(),
+                      step.m_obstacleRadius.handle(), m_faceBoxes.handle(), m_vertexBoxes.handle(),
+                      m_edgeBoxes.handle(), m_wideNodes.handle(), counters.handle());
     for (std::size_t level = 1; level + 1 < m_layout.m_levels.size(); ++level)
     {
         const std::size_t below = m_layout.m_levels[level - 1], first = m_layout.m_levels[level];
