@@ -20,7 +20,8 @@ __kernel void reductionWrite(__global const Contact* restrict hits, const uint h
     for (ItemRuns runs = itemRuns(count, parts); runs.m_item < count; nextItem(&runs))
     {
         const uint i = runs.m_item;
-        const uint member = kept[i];
+        const uint member = kept[i], ahead = kept[min(i + DRAPE_AHEAD, count - 1)];
+        if (ahead != DRAPE_NO_FEATURE) askFor(hits + ahead);
         if (member == DRAPE_NO_FEATURE) continue;
         const uint slot = hits[member].m_slot;
         copyHit(contacts + DRAPE_CONTACT_HEAD + keptFirst[slot] + i - slotFirst[slot], hits + member, parts);

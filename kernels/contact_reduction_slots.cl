@@ -1,4 +1,5 @@
 // Which hits of each slot stay (lib/contact_reduction.h), on a CPU: a work-item reduces slots one after the other, alone.
+#include "lib/item_runs.h"
 #include "lib/reduction_slots.h"
 
 // Most members that are sorted by insertion.
@@ -56,7 +57,11 @@ static void putInOrder(__global const Contact* hits, __global uint* members, con
 static uint reduceMembers(const ReductionView* view, const SlotLists* lists, __global uint* kept, const uint first,
                           const uint count)
 {
-    for (uint i = 0; i < count; ++i) kept[i] = lists->m_members[first + i];
+    for (uint i = 0; i < count; ++i)
+    {
+        askFor(lists->m_hits + lists->m_members[min(first + i + DRAPE_AHEAD, lists->m_count - 1)]);
+        kept[i] = lists->m_members[first + i];
+    }
     uint stay = count;
     if (!isSelf(lists, first))
     {

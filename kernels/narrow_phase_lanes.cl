@@ -129,16 +129,11 @@ static int takeContact(const LaneContacts* contacts, const float* rows, const ui
     return finishContact(DRAPE_IS_CONTACT, origin, contact);
 }
 
-static void askForWord(__global const void* word)
-{
-    __builtin_prefetch((const void*)(ulong)word);
-}
-
 static void askForLane(__global const float* blocks, const uint floats, __global const uint* ids, const uint lane)
 {
     __global const float* block = blocks + lane / DRAPE_PATCH_WIDTH * floats * DRAPE_PATCH_WIDTH;
-    for (uint row = 0; row < floats; ++row) askForWord(block + row * DRAPE_PATCH_WIDTH);
-    askForWord(ids + lane);
+    for (uint row = 0; row < floats; ++row) askFor(block + row * DRAPE_PATCH_WIDTH);
+    askFor(ids + lane);
 }
 
 // Has what a test reads brought nearer.
@@ -146,7 +141,7 @@ static void askForTest(const LaneWork* work, const FeatureTest feature)
 {
     const PackedFeatures* packed = &work->m_packed;
     const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT, lane = feature.m_lane;
-    askForWord(work->m_cloth.m_triangles + (feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u)));
+    askFor(work->m_cloth.m_triangles + (feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u)));
     if (test < DRAPE_TEST_FACE) askForLane(packed->m_faces, DRAPE_FACE_FLOATS, packed->m_faceIds, lane);
     else if (test == DRAPE_TEST_FACE) askForLane(packed->m_vertices, DRAPE_VERTEX_FLOATS, packed->m_vertexIds, lane);
     else askForLane(packed->m_edges, DRAPE_EDGE_FLOATS, packed->m_edgeIds, lane);
@@ -161,10 +156,10 @@ static void askForNodes(const LaneWork* work, const FeatureTest feature)
     for (uint k = 0; k < 3; ++k)
     {
         if (test < DRAPE_TEST_FACE && k != test) continue;
-        askForWord(cloth->m_start + 3 * triangle->m_vertices[k]);
-        askForWord(cloth->m_end + 3 * triangle->m_vertices[k]);
+        askFor(cloth->m_start + 3 * triangle->m_vertices[k]);
+        askFor(cloth->m_end + 3 * triangle->m_vertices[k]);
     }
-    if (test < DRAPE_TEST_FACE) askForWord(work->m_obstacle.m_triangles + work->m_packed.m_faceIds[feature.m_lane]);
+    if (test < DRAPE_TEST_FACE) askFor(work->m_obstacle.m_triangles + work->m_packed.m_faceIds[feature.m_lane]);
 }
 
 static void askForRun(const LaneWork* work, const uint first, const uint end)
