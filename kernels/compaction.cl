@@ -1,7 +1,7 @@
 // Compaction: hits into canonical order, by slot (cloth feature) and then obstacle feature. A counting sort over the slots:
-// sums per block, first place of every slot, members of every slot, and the place of each
-// hit among them: by counting where a slot has few, by a sort where it has many. On a GPU few slots and hits take one launch
-// instead (compaction_few.cl).
+// sums per block, first place of every slot, members of every slot, and the place of each hit among them: by counting where a
+// slot has few, by a sort where it has many. On a GPU few slots and hits take one launch instead (compaction_few.cl).
+#include "lib/ask_for.h"
 #include "lib/group_scan.h"
 #include "lib/hit_list.h"
 #include "lib/item_runs.h"
@@ -94,7 +94,7 @@ __kernel void compactionOrder(const uint hitCapacity, __global const uint* restr
     for (uint slot = begin + get_local_id(0); slot < end; slot += get_local_size(0))
     {
         const uint last = slot + 1 < slots ? min(slotFirst[slot + 1], count) : count;
-        if (last > slotFirst[slot] + ranked) crowded[atomic_inc(&crowdedCount)] = slot;
+        if (last > slotFirst[slot] && last - slotFirst[slot] > ranked) crowded[atomic_inc(&crowdedCount)] = slot;
     }
     barrier(CLK_LOCAL_MEM_FENCE);
     const uint toSort = crowdedCount;

@@ -1,5 +1,6 @@
 // Writes the hits that stay. Which these are is told before, by contact_reduction_hits.cl on a GPU and by
 // contact_reduction_slots.cl on a CPU.
+#include "lib/ask_for.h"
 #include "lib/group_scan.h"
 #include "lib/hit_list.h"
 #include "lib/item_runs.h"

@@ -1,8 +1,8 @@
 // Which hits of each slot stay (lib/contact_reduction.h), on a CPU: a work-item reduces slots one after the other, alone.
-#include "lib/item_runs.h"
+#include "lib/ask_for.h"
 #include "lib/reduction_slots.h"
 
-// Most members that are sorted by insertion.
+// Most members that are sorted by insertion, which takes as long as a heap there.
 #define DRAPE_INSERTED 128u
 
 // Whether one of two members stands before the other: by depth, or by obstacle feature.

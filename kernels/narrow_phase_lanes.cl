@@ -1,5 +1,6 @@
 // Narrow phase over pairs of features on a CPU: a work-item sorts a run of tests by kind, and does as many of one kind side by
 // side as a vector has lanes.
+#include "lib/ask_for.h"
 #include "lib/feature_tests.h"
 #include "lib/lane_runs.h"
 

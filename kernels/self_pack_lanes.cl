@@ -1,6 +1,7 @@
 // As self_pack.cl, on a CPU: a work-item packs a patch, a vector of its features at a time, and writes their boxes besides.
 #include "lib/lanes.h"
 #include "lib/self_cull.h"
+#include "lib/team.h"
 
 // Rows of a node of each lane's feature: x y z at the step's start and at its end.
 #define DRAPE_NODE_ROWS (6 * DRAPE_LANES)
@@ -91,13 +92,6 @@ static void storeBoxes(__global float* restrict boxes, const uint block, const N
     }
 }
 
-static float leastOf(const Lanes lanes)
-{
-    float least = DRAPE_INFINITY;
-    for (uint lane = 0; lane < DRAPE_LANES; ++lane) least = drapeMin(least, laneOf(&lanes, lane));
-    return least;
-}
-
 // At the patch's place in the first level of the wide tree; empty where no face is valid.
 static void storeVolume(__global float* restrict wideNodes, const uint patch, const NodeLanes* corners, const float radius)
 {
@@ -108,13 +102,14 @@ static void storeVolume(__global float* restrict wideNodes, const uint patch, co
     {
         Lanes low, high;
         growLanes(&low, &high, corners, 3, radius, i);
-        out[i * DRAPE_PATCH_WIDTH] = leastOf(low);
-        out[(DRAPE_DOP_DIRECTIONS + i) * DRAPE_PATCH_WIDTH] = -leastOf(-high);
+        out[i * DRAPE_PATCH_WIDTH] = leastLane(low);
+        out[(DRAPE_DOP_DIRECTIONS + i) * DRAPE_PATCH_WIDTH] = -leastLane(-high);
         out[(2 * DRAPE_DOP_DIRECTIONS + i) * DRAPE_PATCH_WIDTH] = 0.0f;
     }
 }
 
-// A work-item takes a patch, or one of the empty places behind patchCount. Arguments as in self_pack.cl; boxes in blocks.
+// A work-item takes a patch, or one of the empty places behind patchCount; places: all of the tree's first level. Other arguments
+// as in self_pack.cl; boxes in blocks.
 __kernel void selfPack(
     __global const Patch* restrict patches, const uint patchCount, const uint places, __global const uint* restrict faceIds,
     __global const uint* restrict vertexIds, __global const uint* restrict edgeIds,

@@ -40,13 +40,12 @@ static int listPatches(__local SelfWalker* walker, const uint own, __global Cand
     return place <= limit;
 }
 
-// A work-group takes a patch. The tree's volumes are those that
-// selfPack wrote and patchWiden joined. radius: as there. Past the limit a group ends: see lib/team.h. counters->m_selfPairs
-// must be zero before.
-__kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH, 1, 1))) void selfWalk(__global const Patch* restrict patches, __global const float* restrict radius,
-                       __global const float* restrict wideNodes, __global const uint* restrict levels, const uint levelCount,
-                       __global Candidate* restrict list, const uint capacity, const uint limit,
-                       __global StepCounters* restrict counters)
+// A work-group takes a patch. The tree's volumes are those that selfPack wrote and patchWiden joined. radius: as there. Past the
+// limit a group ends: see lib/team.h. counters->m_selfPairs must be zero before.
+__kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH, 1, 1))) void selfWalk(
+    __global const Patch* restrict patches, __global const float* restrict radius, __global const float* restrict wideNodes,
+    __global const uint* restrict levels, const uint levelCount, __global Candidate* restrict list, const uint capacity,
+    const uint limit, __global StepCounters* restrict counters)
 {
     __local SelfWalker walker;
     const uint own = get_group_id(0), mesh = patches[own].m_mesh;

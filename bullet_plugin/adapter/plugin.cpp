@@ -97,6 +97,13 @@ void Plugin::release(const btCollisionObject* object)
     m_state->release(object);
 }
 
+void Plugin::release(const btCollisionWorld& world)
+{
+    const btCollisionObjectArray& objects = world.getCollisionObjectArray();
+    for (int i = 0; i < objects.size(); ++i)
+        m_state->release(objects[i]);
+}
+
 void Plugin::obstacleChanged(const btCollisionShape* shape)
 {
     m_state->obstacleChanged(shape);

@@ -307,8 +307,8 @@ DRAPE_FUNCTION DRAPE_UINT reduceSlot(const ReductionView* view, const SlotLists*
     const ReducedFeature feature = reducedFeature(view, lists, lists->m_hits + kept[0]);
     ReducedContact keepers[DRAPE_KEEPERS];  // the first that stay
     NodeBounds bounds;
-    ReducedContact before;
-    int any = 0;  // bounds are those of before
+    ReducedContact before;  // whose the bounds are
+    const ReducedContact* last = 0;
     DRAPE_UINT stay = 0;
     for (DRAPE_UINT j = 0; j < count; ++j)
     {
@@ -317,9 +317,9 @@ DRAPE_FUNCTION DRAPE_UINT reduceSlot(const ReductionView* view, const SlotLists*
         int drop = 0;
         if ((j > 0u || feature.m_mayEmpty) && isReducible(view, &contact, lists->m_hits[member].m_time))
         {
-            boundNodes(view, lists, &feature, &contact, any ? &before : 0, &bounds);
+            boundNodes(view, lists, &feature, &contact, last, &bounds);
             before = contact;
-            any = 1;
+            last = &before;
             drop = bounds.m_lack <= 0.0f;
             for (DRAPE_UINT i = 0; !drop && i < stay && i < DRAPE_KEEPERS; ++i)
                 drop = impliedBy(view, feature.m_way, feature.m_count, &bounds, &contact, keepers + i);

@@ -1,22 +1,11 @@
 // Which items of a list, whose length is only on the device, a work-item of a launch of fixed width takes. On a GPU every
 // stride-th: neighbours then read side by side. On a CPU runs of adjacent ones, one after the other: what lies side by side
-// in a list lies side by side in space, and finds what it reads in the cache. And what is asked for before its turn. For OpenCL
-// C only.
+// in a list lies side by side in space, and finds what it reads in the cache. For OpenCL C only.
 #ifndef DRAPE_LIB_ITEM_RUNS_H
 #define DRAPE_LIB_ITEM_RUNS_H
 
 // Longest run: what its items read stays in a core's own cache, and runs even out among the cores.
 #define DRAPE_MOST_RUN 128u
-
-// Has a word brought nearer on a CPU, which does not wait for it.
-#ifdef DRAPE_CPU
-#define askFor(word) __builtin_prefetch((const void*)(ulong)(word))
-#else
-#define askFor(word) (void)(word)
-#endif
-
-// How many items ahead of its turn what an item reads is asked for: some hundred nanoseconds' work.
-#define DRAPE_AHEAD 8
 
 // m_item: the one at hand; there is none left where it is not below the list's length.
 #ifdef DRAPE_CPU

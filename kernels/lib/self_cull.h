@@ -2,7 +2,8 @@
 // features' own volumes.
 //
 // Every volume is the union of its nodes' volumes (vertexVolume), so a box or a patch's volume holds those of all that
-// it stands for, and which pairs are found does not depend on the patches.
+// it stands for, and which pairs are found does not depend on the patches. Where several nodes' outermost projections
+// alone are padded it is the same, since what dopGrowInterval() makes of a projection rises with it, rounded, too.
 #ifndef DRAPE_LIB_SELF_CULL_H
 #define DRAPE_LIB_SELF_CULL_H
 

@@ -1,6 +1,8 @@
 // What an app has brought to the device before a step needs it.
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "BulletCollision/CollisionShapes/btBoxShape.h"
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
 #include "scenes/shapes.h"
@@ -50,6 +52,30 @@ struct PreparedWorld
     btCollisionObject& m_obstacle;
     btSoftBody& m_cloth;
 };
+
+// What is prepared is there while the cloth is elsewhere, and no longer once it is released.
+void staysUntil(const Settings& settings, const std::function<void(PreparedWorld&)>& release)
+{
+    PreparedWorld world(settings);
+    world.m_plugin.prepare(&world.m_obstacle);
+    world.m_plugin.prepare(&world.m_obstacle);
+    EXPECT_EQ(world.keptInNextStep(), 1u);
+    MeshShape floorShape(makeBox(4.0f, 0.1f, 4.0f));
+    world.m_world.addObstacle(floorShape.shape(), shifted(kFar, -1));
+    const auto visitFloor = [&]
+    {
+        world.m_cloth.translate(btVector3(kFar, 0, 0));
+        world.m_world.step(200);
+        world.m_cloth.translate(btVector3(-kFar, btScalar(1.37), 0));
+    };
+    visitFloor();
+    EXPECT_EQ(world.keptInNextStep(), 1u);
+    release(world);
+    EXPECT_EQ(world.keptInNextStep(), 1u) << "its pair has it";
+    visitFloor();
+    EXPECT_EQ(world.keptInNextStep(), 0u);
+    EXPECT_GT(world.m_plugin.statistics().m_obstacleTriangles, 1000u);
+}
 }  // namespace
 
 class Prepared : public BackendTest
@@ -74,26 +100,17 @@ TEST_P(Prepared, theFirstStepFindsWhatItNeeds)
 
 TEST_P(Prepared, whatIsPreparedStaysUntilItIsReleased)
 {
-    PreparedWorld world(GetParam().m_settings);
-    world.m_plugin.prepare(&world.m_obstacle);
-    world.m_plugin.prepare(&world.m_obstacle);
-    EXPECT_EQ(world.keptInNextStep(), 1u);
-    MeshShape floorShape(makeBox(4.0f, 0.1f, 4.0f));
-    world.m_world.addObstacle(floorShape.shape(), shifted(kFar, -1));
-    const auto visitFloor = [&]
-    {
-        world.m_cloth.translate(btVector3(kFar, 0, 0));
-        world.m_world.step(200);
-        world.m_cloth.translate(btVector3(-kFar, btScalar(1.37), 0));
-    };
-    visitFloor();
-    EXPECT_EQ(world.keptInNextStep(), 1u);
-    world.m_plugin.release(&world.m_obstacle);
-    world.m_plugin.release(&world.m_cloth);
-    EXPECT_EQ(world.keptInNextStep(), 1u) << "its pair has it";
-    visitFloor();
-    EXPECT_EQ(world.keptInNextStep(), 0u);
-    EXPECT_GT(world.m_plugin.statistics().m_obstacleTriangles, 1000u);
+    staysUntil(GetParam().m_settings,
+               [](PreparedWorld& world)
+               {
+                   world.m_plugin.release(&world.m_obstacle);
+                   world.m_plugin.release(&world.m_cloth);
+               });
+}
+
+TEST_P(Prepared, aWorldIsReleasedAtOnce)
+{
+    staysUntil(GetParam().m_settings, [](PreparedWorld& world) { world.m_plugin.release(world.m_world.world()); });
 }
 
 // Meshes that come are numbered anew; those of the last step's contacts keep their names.

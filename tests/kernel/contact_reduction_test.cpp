@@ -47,8 +47,8 @@ struct KeptHits
 
 constexpr float kThickness = 0.02f;  // m
 
-// Hits of a cloth that lies on a floor, by slots of its nodes, faces and edges, up to `most` each and some of none;
-// members are in order, or each slot's in the opposite one.
+// Hits of a cloth that lies on a floor, by slots of its nodes, faces and edges and of its contacts with itself, up to
+// `most` each and some of none; members are in order, or shuffled.
 struct SlotHits
 {
     SlotHits(const Side& cloth, std::uint32_t most, Random& random)
@@ -56,17 +56,23 @@ struct SlotHits
         const std::uint32_t nodes = std::uint32_t(cloth.m_pool.vertexCount());
         const std::uint32_t faces = std::uint32_t(cloth.m_pool.triangles().size());
         const std::uint32_t edges = std::uint32_t(cloth.m_pool.edges().size());
-        for (std::uint32_t slot = 0; slot < nodes + faces + edges; ++slot)
+        addSlots(DRAPE_NODE_FACE, nodes, most, random);
+        addSlots(DRAPE_FACE_VERTEX, faces, most, random);
+        addSlots(DRAPE_EDGE_EDGE, edges, most, random);
+        m_reducible = m_hits.size();
+        addSlots(DRAPE_SELF_NODE_FACE, nodes, most, random);
+    }
+
+    void addSlots(std::uint32_t kind, std::uint32_t features, std::uint32_t most, Random& random)
+    {
+        for (std::uint32_t feature = 0; feature < features; ++feature)
         {
+            const std::uint32_t slot = std::uint32_t(m_slotFirst.size());
             m_slotFirst.push_back(cl_uint(m_hits.size()));
-            const std::uint32_t kind = slot < nodes           ? DRAPE_NODE_FACE
-                                       : slot < nodes + faces ? DRAPE_FACE_VERTEX
-                                                              : DRAPE_EDGE_EDGE;
-            const std::uint32_t first = slot < nodes ? 0 : slot < nodes + faces ? nodes : nodes + faces;
             const std::uint32_t few = slot % 7 == 0 ? most : 6;
             const std::uint32_t count = slot % 3 == 0 ? 0 : random.below(few + 1);
             for (std::uint32_t i = 0; i < count; ++i)
-                add(kind, slot, slot - first, i, random);
+                add(kind, slot, feature, i, random);
         }
     }
 
@@ -94,17 +100,28 @@ struct SlotHits
         m_hits.push_back(hit);
     }
 
-    void reverseMembers()
+    void shuffleMembers(Random& random)
     {
         for (std::size_t slot = 0; slot < m_slotFirst.size(); ++slot)
-        {
-            const auto first = m_members.begin() + m_slotFirst[slot];
-            const bool last = slot + 1 == m_slotFirst.size();
-            std::reverse(first, last ? m_members.end() : m_members.begin() + m_slotFirst[slot + 1]);
-        }
+            for (std::size_t i = end(slot); i > m_slotFirst[slot] + 1; --i)
+                std::swap(m_members[i - 1],
+                          m_members[m_slotFirst[slot] + random.below(cl_uint(i - m_slotFirst[slot]))]);
+    }
+
+    std::size_t end(std::size_t slot) const
+    {
+        return slot + 1 < m_slotFirst.size() ? m_slotFirst[slot + 1] : m_hits.size();
+    }
+    std::size_t largest() const
+    {
+        std::size_t most = 0;
+        for (std::size_t slot = 0; slot < m_slotFirst.size(); ++slot)
+            most = std::max(most, end(slot) - m_slotFirst[slot]);
+        return most;
     }
 
     std::vector<Contact> m_hits;
+    std::size_t m_reducible = 0;  // the first so many hits, which are not a cloth's with itself
     std::vector<cl_uint> m_slotFirst, m_members;
 };
 
@@ -118,7 +135,8 @@ struct Kept
 class KeptBuffers
 {
 public:
-    KeptBuffers(Device& device, const Side& cloth, const SlotHits& input)
+    // tube: m, negative where all hits stay.
+    KeptBuffers(Device& device, const Side& cloth, const SlotHits& input, float tube)
         : m_device(device), m_slots(input.m_slotFirst.size()), m_count(input.m_hits.size())
     {
         std::vector<StepCounters> counters(1);
@@ -130,7 +148,7 @@ public:
         guardCopy(device, m_start, cloth.m_start);
         guardCopy(device, m_end, cloth.m_end);
         guardCopy(device, m_thickness, std::vector<float>{kThickness});
-        guardCopy(device, m_tube, std::vector<float>{0.5f * kThickness});
+        guardCopy(device, m_tube, std::vector<float>{tube});
         guardCopy(device, m_triangles, cloth.m_pool.triangles());
         guardCopy(device, m_edges, cloth.m_pool.edges());
         guardCopy(device, m_firsts, std::vector<MeshFirsts>(1));
@@ -207,7 +225,8 @@ TEST_P(ContactReductionTest, WritesWhatStays)
     EXPECT_FALSE(device->failed()) << device->error().text();
 }
 
-// A GPU's work-items take hits, and a crowded slot together; a CPU's take slots, whose members have any order.
+// A GPU's work-items take hits, and a crowded slot together; a CPU's take slots, whose members have any order. More
+// than 256 hits are a crowded slot there, and more than 128 are sorted in another way here.
 TEST_P(ContactReductionTest, WorkItemsOfAHitOrASlotKeepTheSame)
 {
     const std::unique_ptr<Device> device = openDevice(GetParam());
@@ -219,20 +238,30 @@ TEST_P(ContactReductionTest, WorkItemsOfAHitOrASlotKeepTheSame)
     Side cloth = makeSide({makeClothGrid(9, 9, 0.4f, 0.0f).m_mesh});
     for (std::size_t i = 1; i < cloth.m_end.size(); i += 3)
         cloth.m_end[i] -= random.uniform(0.0f, 0.002f);
-    for (const std::uint32_t most : {1u, 12u, 70u, 300u})
-    {
-        SCOPED_TRACE("seed 96, up to " + std::to_string(most) + " hits a slot");
-        SlotHits input(cloth, most, random);
-        const std::size_t count = input.m_hits.size();
-        const Kept byHit = KeptBuffers(*device, cloth, input).run(keepHits, 128, 5);
-        input.reverseMembers();
-        const Kept bySlot = KeptBuffers(*device, cloth, input).run(keepSlots, 1, 100);
-        EXPECT_EQ(byHit.m_counts, bySlot.m_counts);
-        EXPECT_EQ(byHit.m_members, bySlot.m_members);
-        const auto gone = std::count(bySlot.m_members.begin(), bySlot.m_members.end(), DRAPE_NO_FEATURE);
-        EXPECT_GT(std::size_t(gone), count / 20);
-        EXPECT_LT(std::size_t(gone), count);
-    }
+    std::size_t largest = 0, mostKept = 0;
+    for (const float tube : {0.5f * kThickness, -1.0f})
+        for (const std::uint32_t most : {1u, 12u, 70u, 300u})
+        {
+            SCOPED_TRACE("seed 96, up to " + std::to_string(most) + " hits a slot, tube " + std::to_string(tube));
+            SlotHits input(cloth, most, random);
+            const Kept byHit = KeptBuffers(*device, cloth, input, tube).run(keepHits, 128, 5);
+            input.shuffleMembers(random);
+            const Kept bySlot = KeptBuffers(*device, cloth, input, tube).run(keepSlots, 1, 100);
+            EXPECT_EQ(byHit.m_counts, bySlot.m_counts);
+            EXPECT_EQ(byHit.m_members, bySlot.m_members);
+            const std::size_t gone =
+                std::size_t(std::count(bySlot.m_members.begin(), bySlot.m_members.end(), DRAPE_NO_FEATURE));
+            EXPECT_LT(gone, input.m_reducible);
+            if (tube < 0.0f)
+                EXPECT_EQ(gone, 0u);
+            else
+                EXPECT_GT(gone, input.m_reducible / 20);
+            largest = std::max(largest, input.largest());
+            mostKept =
+                std::max<std::size_t>(mostKept, *std::max_element(bySlot.m_counts.begin(), bySlot.m_counts.end()));
+        }
+    EXPECT_GT(largest, 256u);
+    EXPECT_GT(mostKept, 128u);
     EXPECT_FALSE(device->failed()) << device->error().text();
 }
 

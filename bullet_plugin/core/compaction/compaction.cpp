@@ -85,7 +85,7 @@ void CompactionStage::enqueue(Device& device, StepTally tally, const ReductionBu
     m_gather.launch(device, listWidth(device), listGroup(device), m_hits.handle(), hitCapacity, m_slotCount.handle(),
                     m_slotFirst.handle(), m_members.handle(), m_keys.handle(), tally.m_now.handle(),
                     tally.m_next.handle());
-    if (tally.m_ordered) enqueueOrder(device, ranked, tally);
+    if (tally.m_ordered && ranked != UINT32_MAX) enqueueOrder(device, ranked, tally);
     if (reduction)
         m_reduction.enqueue(device, slotHits(), *reduction, tally.m_hits, m_places, m_contacts, tally.m_now);
     else

@@ -33,7 +33,8 @@ struct ReductionBuffers
     Buffer<float>& m_tube;
 };
 
-// A step's hits by slots: those of a slot stand in members from its first place on.
+// A step's hits by slots: those of a slot stand in members from its first place on. On a GPU slots with more than 256
+// of them are in order, which the others need not be.
 struct SlotHits
 {
     Buffer<Contact>& m_hits;

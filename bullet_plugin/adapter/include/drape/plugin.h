@@ -83,6 +83,8 @@ public:
     // From now on the object is kept as one that was never prepared: for two seconds of steps after its last pair. One
     // that was not prepared may be given.
     void release(const btCollisionObject* object);
+    // All objects that are in a world.
+    void release(const btCollisionWorld& world);
 
     // Tells that vertices of a mesh shape were moved in place. Refits (a changed bounding box), scaling and changes
     // that touch one of the vertices that are sampled each step are noticed without it.

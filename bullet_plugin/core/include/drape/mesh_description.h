@@ -15,10 +15,11 @@ struct MeshDescription
     std::size_t m_triangleCount = 0;
     const float* m_positions = nullptr;  // x y z per vertex, m
     std::size_t m_vertexCount = 0;
+    // What follows counts in steps alone, not in queries.
     // Of an obstacle: only its front counts, the side from which its triangles' corners run counter-clockwise. Cloth
     // behind it is free to come out.
     bool m_oneSided = false;
-    // Of a cloth in steps: vertices without a triangle collide as its nodes do.
+    // Of a cloth: vertices without a triangle collide as its nodes do.
     bool m_looseVertices = false;
     // Of a cloth: the thickness at which it collides with itself, m; 0: it does not. A pair of its features comes no
     // nearer than this, or than half of the distance that they have at rest where that is less.

@@ -63,7 +63,9 @@ struct Settings
     unsigned m_threads = 0;
 
     // Also count the pairs of cloth and obstacle triangles that intersect at the step's start
-    // (StepStatistics::m_intersections). Costs a kernel.
+    // (StepStatistics::m_intersections). Costs a kernel, and on a device the usual search, which finds pairs of
+    // features over patches: pairs of triangles are found instead, as on the host, by walking both sides' hierarchies
+    // after a refit. StepStatistics::m_candidates then counts those.
     bool m_reportIntersections = false;
 
     // Most pairs that a step may list (of triangles on the host, 8 bytes each; of features or of triangles and patches
@@ -75,7 +77,8 @@ struct Settings
     std::size_t m_candidateLimit = std::size_t(1) << 27;
     std::size_t m_contactLimit = std::size_t(1) << 24;
 
-    // Have the device time every kernel launch, for Pipeline::takeKernelTimes(). Costs some microseconds a launch.
+    // Have the device time every kernel launch, for benchmarks over the core alone (Pipeline::takeKernelTimes(), which
+    // is not installed). Costs some microseconds a launch.
     bool m_profileKernels = false;
 
     // Folder of compiled kernels and of what was measured. Empty: $XDG_CACHE_HOME/drape or ~/.cache/drape. "none": do
