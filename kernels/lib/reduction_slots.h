@@ -13,8 +13,8 @@ static int isSelf(const SlotLists* lists, const uint first)
     return lists->m_hits[lists->m_members[first]].m_kind >= DRAPE_SELF_NODE_FACE;
 }
 
-// hits, slotFirst, members: see SlotLists; which slots' members must be in order, each kernel says. Members stay as they are, since
-// faces and edges read those of their nodes. kept gets at the front of each slot the members that stay, in order, and
+// hits, slotFirst, members: see SlotLists; which slots' members must be in order, each kernel says. Members stay as they are,
+// since faces and edges read those of their nodes. kept gets at the front of each slot the members that stay, in order, and
 // DRAPE_NO_FEATURE behind them; slotKept their number. counters->m_hits is then free. block: slots of a group.
 #define DRAPE_KEEP_ARGUMENTS \
     __global const Contact* restrict hits, const uint hitCapacity, __global const uint* restrict slotFirst, \
