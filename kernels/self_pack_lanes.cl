@@ -1,5 +1,5 @@
 // As self_pack.cl, on a CPU: a work-item packs a patch, a vector of its features at a time, and writes their boxes besides.
-#include "lib/lanes.h"
+#include "lib/cull_packet.h"
 #include "lib/self_cull.h"
 #include "lib/team.h"
 
@@ -43,20 +43,6 @@ static NodeLanes getNodes(const float* rows)
     return nodes;
 }
 
-// See dopProject() and dopInner(), which round alike.
-static Lanes projectLanes(const LanesVec3 p, const int i)
-{
-    if (i < 3) return i == 0 ? p.x : i == 1 ? p.y : p.z;
-    if (i < 3 + DRAPE_DOP_EDGES)
-    {
-        const Lanes first = (i - 3) % 3 == 2 ? p.y : p.x, second = (i - 3) % 3 == 0 ? p.y : p.z;
-        return i < 6 ? first + second : first - second;
-    }
-    const int corner = i - 3 - DRAPE_DOP_EDGES;
-    const Lanes sum = corner < 2 ? p.x + p.y : p.x - p.y;
-    return corner % 2 == 0 ? sum + p.z : sum - p.z;
-}
-
 // See dopGrowInterval(): features' intervals along a direction, of `count` nodes each; empty where none is valid.
 static void growLanes(Lanes* low, Lanes* high, const NodeLanes* nodes, const int count, const float radius, const int direction)
 {
@@ -69,7 +55,7 @@ static void growLanes(Lanes* low, Lanes* high, const NodeLanes* nodes, const int
         least = lanesSelect(node->m_valid, lanesMin(least, v), least);
         greatest = lanesSelect(node->m_valid, lanesMax(greatest, v), greatest);
         if (direction >= 3 + DRAPE_DOP_EDGES)
-            inner = lanesSelect(node->m_valid, lanesMax(inner, lanesAbs(p.x) + lanesAbs(p.y)), inner);
+            inner = lanesSelect(node->m_valid, lanesMax(inner, lanesNorm1(p)), inner);
     }
     const float reach = radius * dopNorm(direction), pad = DRAPE_DOP_PAD;
     const Lanes from = least - reach, to = greatest + reach;

@@ -43,6 +43,15 @@ DRAPE_FUNCTION PacketMotion packetMotion(const LanesVec3* p, LanesVec3 e0, Lanes
     return motion;
 }
 
+// Positions along a direction. With three terms not rounded as dopProject() does, but by no more than the sum of all of a
+// position's coordinates in the place of dopInner()'s.
+DRAPE_FUNCTION Lanes projectLanes(LanesVec3 p, int i)
+{
+    const Vec3 direction = vec3(dopProject(vec3(1.0f, 0.0f, 0.0f), i), dopProject(vec3(0.0f, 1.0f, 0.0f), i),
+                                dopProject(vec3(0.0f, 0.0f, 1.0f), i));
+    return lanesDotUniform(p, direction);
+}
+
 // The corners' intervals along every direction, without any padding. Returns the sum of those along the axes, m.
 DRAPE_FUNCTION Lanes packetIntervals(CullVolumes* cull, const LanesVec3* p)
 {
@@ -50,13 +59,11 @@ DRAPE_FUNCTION Lanes packetIntervals(CullVolumes* cull, const LanesVec3* p)
     DRAPE_UNROLL
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
     {
-        const Vec3 direction = vec3(dopProject(vec3(1.0f, 0.0f, 0.0f), i), dopProject(vec3(0.0f, 1.0f, 0.0f), i),
-                                    dopProject(vec3(0.0f, 0.0f, 1.0f), i));
-        Lanes low = lanesDotUniform(p[0], direction), high = low;
+        Lanes low = projectLanes(p[0], i), high = low;
         DRAPE_UNROLL
         for (int k = 1; k < 6; ++k)
         {
-            const Lanes v = lanesDotUniform(p[k], direction);
+            const Lanes v = projectLanes(p[k], i);
             low = lanesMin(low, v);
             high = lanesMax(high, v);
         }
