@@ -54,17 +54,18 @@ DRAPE_FUNCTION int edgeEdgeContact(FeatureEdge e0, FeatureEdge e1, FeatureEdge o
     const float v1 = vec3Dot(direction, vec3Sub(o.m_a, e1.m_a));
     if (bounds.m_mode != DRAPE_DISCRETE)
     {
-        const int mayMeet = edgeMayMeet(e0, e1, o, v0, v1, bounds);
-        if (asksForMeeting(mayMeet, bounds))
+        const int known = edgeMayMeet(e0, e1, o, v0, v1, bounds);
+        if (asksForMeeting(known, bounds))
         {
             if (!bounds.m_searches) return DRAPE_UNDECIDED;
             ++*bounds.m_searches;
             const Meeting meeting = meetEdge(e0, e1, o, bounds);
-            if (meeting.m_met && mayMeet && edgeEdgeMet(e0, e1, o, meeting, v0, bounds, contact))
+            if (meeting.m_met && known == DRAPE_MAY_MEET && edgeEdgeMet(e0, e1, o, meeting, v0, bounds, contact))
                 return DRAPE_IS_CONTACT;
         }
         // The edges' lines passed each other near by: what the edges themselves met tells on which side they belong.
-        if (mayMeet && ((v0 < 0.0f && v1 > 0.0f) || (v0 > 0.0f && v1 < 0.0f))) return DRAPE_NO_CONTACT;
+        if (known != DRAPE_STAY_APART && ((v0 < 0.0f && v1 > 0.0f) || (v0 > 0.0f && v1 < 0.0f)))
+            return DRAPE_NO_CONTACT;
     }
     const float squared = vec3Dot(direction, direction);
     // Inside both edges the offset is parallel to the direction (or the edges are parallel, and it may be any).

@@ -247,19 +247,21 @@ DRAPE_FUNCTION int edgesPassedOrNear(const EdgePair* pair, PairBounds bounds, Co
     if (bounds.m_mode != DRAPE_DISCRETE)
     {
         const float motion = edgeMotion(pair->m_e0, pair->m_e1) + edgeMotion(pair->m_o0, pair->m_o1);
-        const int mayMeet =
+        const int known =
             edgesMayMeet(pair->m_e0, pair->m_e1, pair->m_o0, pair->m_o1, motion, pair->m_v0, pair->m_v1, bounds);
-        if (asksForMeeting(mayMeet, bounds))
+        if (asksForMeeting(known, bounds))
         {
             if (!bounds.m_searches) return DRAPE_UNDECIDED;
             ++*bounds.m_searches;
             const Vec3 start[4] = {pair->m_e0.m_a, pair->m_e0.m_b, pair->m_o0.m_a, pair->m_o0.m_b};
             const Vec3 end[4] = {pair->m_e1.m_a, pair->m_e1.m_b, pair->m_o1.m_a, pair->m_o1.m_b};
             const Meeting meeting = meetFeatures(DRAPE_EDGES, start, end, motion, bounds);
-            if (meeting.m_met && mayMeet && selfEdgesMet(pair, meeting, bounds, contact)) return DRAPE_IS_CONTACT;
+            if (meeting.m_met && known == DRAPE_MAY_MEET && selfEdgesMet(pair, meeting, bounds, contact))
+                return DRAPE_IS_CONTACT;
         }
         // The lines passed each other near by: what the edges themselves met tells on which side they belong.
-        if (mayMeet && ((pair->m_v0 < 0.0f && pair->m_v1 > 0.0f) || (pair->m_v0 > 0.0f && pair->m_v1 < 0.0f)))
+        if (known != DRAPE_STAY_APART &&
+            ((pair->m_v0 < 0.0f && pair->m_v1 > 0.0f) || (pair->m_v0 > 0.0f && pair->m_v1 < 0.0f)))
             return DRAPE_NO_CONTACT;
     }
     return selfEdgesNear(pair, bounds, contact);
