@@ -1,6 +1,6 @@
 // Compaction: hits into canonical order, by slot (cloth feature) and then obstacle feature. A counting sort over the slots:
 // sums per block, first place of every slot, members of every slot, and the place of each hit among them: by counting where a
-// slot has few, by a sort where it has many. On a GPU few slots and hits take one launch instead (compaction_few.cl).
+// slot has few, by a sort where it has many. On a GPU few slots take a launch less or two (compaction_few.cl).
 #include "lib/ask_for.h"
 #include "lib/group_scan.h"
 #include "lib/hit_list.h"
@@ -60,14 +60,16 @@ __kernel void compactionPlace(__global const uint* restrict slotCount, const uin
 
 // A work-item goes through its part of the hits' list and lists a hit among its slot's members, last to first as the items
 // come; the atomic gives each a place of its own. keys: the obstacle features of members. Leaves slotCount zero for the next
-// step, and its counters.
+// step, and its counters; slotKept, where it is not null, for the kernel that tells what stays.
 __kernel void compactionGather(__global const Contact* restrict hits, const uint hitCapacity,
                                __global volatile uint* slotCount, __global const uint* restrict slotFirst,
-                               __global uint* restrict members, __global uint* restrict keys,
+                               const uint slots, __global uint* restrict members, __global uint* restrict keys,
+                               __global uint* restrict slotKept,
                                __global const StepCounters* restrict counters, __global StepCounters* restrict next)
 {
     const uint count = min(counters->m_listed, hitCapacity);
     if (get_global_id(0) < sizeof(StepCounters) / sizeof(uint)) ((__global uint*)next)[get_global_id(0)] = 0;
+    for (uint slot = get_global_id(0); slot < slots && slotKept; slot += get_global_size(0)) slotKept[slot] = 0;
     for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextItem(&runs))
     {
         const uint i = runs.m_item;
@@ -109,14 +111,17 @@ __kernel void compactionOrder(const uint hitCapacity, __global const uint* restr
 // `parts` work-items (1, 2 or 4) share a hit, and go through their part of the members' list: they count the members of the
 // same slot with a lesser obstacle feature, and copy the hit to where that number puts it. Where the slot has more members
 // than `ranked` compactionOrder has sorted them and the hit keeps its place. A feature pair is tested once, so features of a
-// slot differ and every place is written once. keys: see compactionGather. contacts: behind a head with the counters.
+// slot differ and every place is written once. keys: see compactionGather. contacts: behind a head with the counters. Leaves
+// slotCount and slotSums zero for the next step where slotSums is not null.
 __kernel void compactionWrite(__global const Contact* restrict hits, const uint hitCapacity,
                               __global const uint* restrict slotFirst, const uint slots, const uint ranked,
                               const uint parts, __global const uint* restrict members,
                               __global const uint* restrict keys, __global Contact* restrict contacts,
-                              __global const StepCounters* restrict counters)
+                              __global const StepCounters* restrict counters, __global uint* restrict slotCount,
+                              __global uint* restrict slotSums)
 {
     const uint count = min(counters->m_hits, hitCapacity);
+    clearSums(slotCount, slotSums, slots);
     if (get_global_id(0) == 0) *(__global StepCounters*)contacts = *counters;
     for (ItemRuns runs = itemRuns(count, parts); runs.m_item < count; nextItem(&runs))
     {
@@ -128,7 +133,7 @@ __kernel void compactionWrite(__global const Contact* restrict hits, const uint 
         const int sorted = last - first > ranked;
         const uint key = keys[i];
         uint before = 0;
-        for (uint j = first; j < last && !sorted; ++j) before += keys[j] < key;
+        __attribute__((opencl_unroll_hint(8))) for (uint j = first; j < last && !sorted; ++j) before += keys[j] < key;
         copyHit(contacts + DRAPE_CONTACT_HEAD + (sorted ? i : first + before), hit, parts);
     }
 }

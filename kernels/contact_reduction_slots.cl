@@ -73,12 +73,12 @@ static uint reduceMembers(const ReductionView* view, const SlotLists* lists, __g
     return stay;
 }
 
-// See reduction_slots.h; a group is a work-item. members: in any order.
+// See reduction_slots.h; a group is a work-item, and takes a share of the slots. members: in any order.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void reductionKeep(DRAPE_KEEP_ARGUMENTS)
 {
     const ReductionView view = DRAPE_KEEP_VIEW;
     const SlotLists lists = DRAPE_KEEP_LISTS;
-    const uint begin = min(slots, (uint)get_global_id(0) * block), last = min(slots, begin + block);
+    const uint begin = min(slots, (uint)get_global_id(0) * share), last = min(slots, begin + share);
     for (uint slot = begin; slot < last; ++slot)
     {
         const uint first = slotFirst[slot], end = slotEnd(&lists, slot);

@@ -40,6 +40,14 @@ DRAPE_NAMESPACE_BEGIN
 // The most contacts of a node that are asked what they hold; one with more is taken for free within the tube.
 #define DRAPE_SUPPORTS 16u
 
+// A loop over a feature's nodes. A GPU goes through three, which unroll, so that arrays stay in registers: of those
+// that a feature has not weight, way, depth and height are 0.
+#if defined(__OPENCL_VERSION__) && !defined(DRAPE_CPU)
+#define DRAPE_EACH_NODE(k, count) DRAPE_UNROLL for (int k = 0; k < 3; ++k)
+#else
+#define DRAPE_EACH_NODE(k, count) for (int k = 0; k < (count); ++k)
+#endif
+
 // Both sides of a step. tube: m, cloth slots x obstacle slots, how far nodes may be from their ways; negative where the
 // pair's contacts stay as they are.
 typedef struct ReductionView
@@ -131,21 +139,23 @@ DRAPE_FUNCTION DRAPE_UINT pairOf(const ReductionView* view, DRAPE_UINT cloth, co
            meshOf(view->m_obstacles, view->m_obstacleCount, contact->m_kind, 0, contact->m_obstacleFeature);
 }
 
-DRAPE_FUNCTION ReducedFeature reducedFeature(const ReductionView* view, const SlotLists* lists,
-                                             const DRAPE_GLOBAL Contact* contact)
+// kind, index: of the slot's contacts, and of the cloth feature that they share.
+DRAPE_FUNCTION ReducedFeature reducedFeature(const ReductionView* view, const SlotLists* lists, DRAPE_UINT kind,
+                                             DRAPE_UINT index)
 {
     ReducedFeature feature;
-    const DRAPE_UINT index = contact->m_clothFeature;
     const DRAPE_GLOBAL DRAPE_UINT* nodes =
-        contact->m_kind == DRAPE_FACE_VERTEX ? view->m_triangles[index].m_vertices : view->m_edges[index].m_vertices;
-    feature.m_count = contact->m_kind == DRAPE_NODE_FACE ? 1 : contact->m_kind == DRAPE_FACE_VERTEX ? 3 : 2;
-    feature.m_cloth = meshOf(view->m_cloths, view->m_clothCount, contact->m_kind, 1, index);
+        kind == DRAPE_FACE_VERTEX ? view->m_triangles[index].m_vertices : view->m_edges[index].m_vertices;
+    feature.m_count = kind == DRAPE_NODE_FACE ? 1 : kind == DRAPE_FACE_VERTEX ? 3 : 2;
+    feature.m_cloth = meshOf(view->m_cloths, view->m_clothCount, kind, 1, index);
     feature.m_mayEmpty = feature.m_count > 1;
-    for (int k = 0; k < feature.m_count; ++k)
+    DRAPE_EACH_NODE(k, feature.m_count)
     {
-        const DRAPE_UINT node = contact->m_kind == DRAPE_NODE_FACE ? index : nodes[k];
+        const int has = k < feature.m_count;
+        const DRAPE_UINT node = kind == DRAPE_NODE_FACE ? index : nodes[has ? k : 0];
         feature.m_node[k] = node;
-        feature.m_way[k] = vec3Sub(vec3Load(view->m_end, node), vec3Load(view->m_start, node));
+        feature.m_way[k] =
+            has ? vec3Sub(vec3Load(view->m_end, node), vec3Load(view->m_start, node)) : vec3(0.0f, 0.0f, 0.0f);
         if (slotEnd(lists, node) <= lists->m_first[node]) feature.m_mayEmpty = 0;
     }
     return feature;
@@ -176,14 +186,19 @@ DRAPE_FUNCTION int standsFor(const ReducedContact* keeper, const ReducedContact*
     return keeper->m_gap0 >= DRAPE_STANDS * thickness && keeper->m_pair == contact->m_pair;
 }
 
+// d_i of the header but for its nodes' ways. turn: from the contact's normal to the one along which it is asked.
+DRAPE_FUNCTION float letsDownAtRest(const ReducedContact* contact, Vec3 turn, float thickness, float tube)
+{
+    return contact->m_gap1 - thickness + tube * vec3Length(turn);
+}
+
 // d_i of the header: ways are those of the contact's nodes.
 DRAPE_FUNCTION float letsDown(const ReducedContact* contact, Vec3 normal, const Vec3* ways, int count, float thickness,
                               float tube)
 {
     const Vec3 turn = vec3Sub(normal, contact->m_normal);
-    float down = contact->m_gap1 - thickness + tube * vec3Length(turn);
-    for (int k = 0; k < count; ++k)
-        down += contact->m_weights[k] * drapeMax(0.0f, vec3Dot(turn, ways[k]));
+    float down = letsDownAtRest(contact, turn, thickness, tube);
+    DRAPE_EACH_NODE(k, count) down += contact->m_weights[k] * drapeMax(0.0f, vec3Dot(turn, ways[k]));
     return down;
 }
 
@@ -204,7 +219,9 @@ DRAPE_FUNCTION float heldDepth(const ReductionView* view, const ReducedContact* 
 {
     const float thickness = view->m_thickness[contact->m_pair], tube = view->m_tube[contact->m_pair];
     if (!standsFor(own, contact, thickness)) return depth;
-    return drapeMin(depth, letsDown(own, contact->m_normal, &way, 1, thickness, tube));
+    const Vec3 turn = vec3Sub(contact->m_normal, own->m_normal);
+    const float down = letsDownAtRest(own, turn, thickness, tube);
+    return drapeMin(depth, down + own->m_weights[0] * drapeMax(0.0f, vec3Dot(turn, way)));
 }
 
 // How many of a node's contacts are asked, and where they begin.
@@ -240,8 +257,7 @@ DRAPE_FUNCTION float impliedSlack(const ReducedContact* contact, float thickness
 DRAPE_FUNCTION float lackOf(const ReducedContact* contact, int count, const float* depth, float thickness)
 {
     float lack = -impliedSlack(contact, thickness);
-    for (int k = 0; k < count; ++k)
-        lack += contact->m_weights[k] * depth[k];
+    DRAPE_EACH_NODE(k, count) lack += contact->m_weights[k] * depth[k];
     return lack;
 }
 
@@ -254,35 +270,45 @@ DRAPE_FUNCTION void boundNodes(const ReductionView* view, const SlotLists* lists
     if (!before || normal.x != before->m_normal.x || normal.y != before->m_normal.y || normal.z != before->m_normal.z ||
         contact->m_pair != before->m_pair)
     {
-        for (int k = 0; k < feature->m_count; ++k)
+        DRAPE_EACH_NODE(k, feature->m_count)
         {
-            bounds->m_depth[k] = nodeDepth(view, lists, feature, k, contact);
-            bounds->m_height[k] = nodeHeight(normal, feature->m_way[k], view->m_tube[contact->m_pair]);
+            const int has = k < feature->m_count;
+            bounds->m_depth[k] = has ? nodeDepth(view, lists, feature, k, contact) : 0.0f;
+            bounds->m_height[k] = has ? nodeHeight(normal, feature->m_way[k], view->m_tube[contact->m_pair]) : 0.0f;
         }
     }
     bounds->m_lack = lackOf(contact, feature->m_count, bounds->m_depth, view->m_thickness[contact->m_pair]);
 }
 
-// Whether the keeper, another contact of the feature, and the nodes imply a contact that the nodes alone do not. ways:
-// of the feature's nodes, count of them.
+// Whether the keeper, another contact of the feature, and nodes of these depths may imply a contact that the nodes
+// alone do not, as far as told without a root and a look at the ways: most keepers do not. most gets how far the nodes
+// let the keeper's point down.
+DRAPE_FUNCTION int mayImply(const ReductionView* view, int count, const float* depth, float lack,
+                            const ReducedContact* contact, const ReducedContact* keeper, float* most)
+{
+    const float thickness = view->m_thickness[contact->m_pair], tube = view->m_tube[contact->m_pair];
+    *most = 0.0f;
+    if (!standsFor(keeper, contact, thickness)) return 0;
+    DRAPE_EACH_NODE(k, count)* most += keeper->m_weights[k] * depth[k];
+    // What the normals' difference may cost at most.
+    const float room = *most - (keeper->m_gap1 - thickness) - lack;
+    const Vec3 turn = vec3Sub(contact->m_normal, keeper->m_normal);
+    return room >= 0.0f && tube * tube * vec3Dot(turn, turn) <= room * room;
+}
+
+// Whether they do. ways: of the feature's nodes, count of them.
 DRAPE_FUNCTION int impliedBy(const ReductionView* view, const Vec3* ways, int count, const NodeBounds* bounds,
                              const ReducedContact* contact, const ReducedContact* keeper)
 {
     const float thickness = view->m_thickness[contact->m_pair], tube = view->m_tube[contact->m_pair];
-    if (!standsFor(keeper, contact, thickness)) return 0;
-    float most = 0.0f;  // of what the nodes let the keeper's point down
-    for (int k = 0; k < count; ++k)
-        most += keeper->m_weights[k] * bounds->m_depth[k];
-    // What the normals' difference may cost at most. Most keepers need no root and no look at the ways.
-    const float room = most - (keeper->m_gap1 - thickness) - bounds->m_lack;
-    const Vec3 turn = vec3Sub(contact->m_normal, keeper->m_normal);
-    if (!(room >= 0.0f) || tube * tube * vec3Dot(turn, turn) > room * room) return 0;
+    float most;
+    if (!mayImply(view, count, bounds->m_depth, bounds->m_lack, contact, keeper, &most)) return 0;
     const float down = letsDown(keeper, contact->m_normal, ways, count, thickness, tube);
     const float gain = most - down;  // per unit of the share
     if (!(gain >= bounds->m_lack)) return 0;
     // The largest share that leaves no node less than nothing, then all of it.
     float share = 1.0f, whole = down;
-    for (int k = 0; k < count; ++k)
+    DRAPE_EACH_NODE(k, count)
     {
         const float own = contact->m_weights[k], its = keeper->m_weights[k];
         if (share * its > own) share = own / its;
@@ -304,7 +330,8 @@ DRAPE_FUNCTION DRAPE_UINT reduceSlot(const ReductionView* view, const SlotLists*
                                      DRAPE_UINT count)
 {
     if (count == 0u) return 0u;
-    const ReducedFeature feature = reducedFeature(view, lists, lists->m_hits + kept[0]);
+    const DRAPE_GLOBAL Contact* any = lists->m_hits + kept[0];
+    const ReducedFeature feature = reducedFeature(view, lists, any->m_kind, any->m_clothFeature);
     ReducedContact keepers[DRAPE_KEEPERS];  // the first that stay
     NodeBounds bounds;
     ReducedContact before;  // whose the bounds are

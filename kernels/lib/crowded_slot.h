@@ -91,7 +91,8 @@ static uint reduceCrowded(const ReductionView* view, const SlotLists* lists, __g
     kept += first;
     for (uint i = get_local_id(0); i < count; i += get_local_size(0)) kept[i] = lists->m_members[first + i];
     if (isSelf(lists, first)) return count;
-    const ReducedFeature feature = reducedFeature(view, lists, lists->m_hits + lists->m_members[first]);
+    __global const Contact* any = lists->m_hits + lists->m_members[first];
+    const ReducedFeature feature = reducedFeature(view, lists, any->m_kind, any->m_clothFeature);
     if (feature.m_mayEmpty) dropImplied(view, lists, &feature, kept, count, 0);
     uint rounds = 0, deepest;
     do

@@ -1,28 +1,30 @@
-// The list of a step's hits, in no particular order: compaction.cl or compaction_few.cl brings them into the canonical one.
+// The list of a step's hits, in no particular order: compaction brings them into the canonical one.
 // For OpenCL C only.
 #ifndef DRAPE_LIB_HIT_LIST_H
 #define DRAPE_LIB_HIT_LIST_H
 
 #include "../shared/contact.h"
 #include "../shared/mesh.h"
+#include "slot_sums.h"
 
-// What a kernel that finds hits writes. hitSlots: the slot of each hit, once more, for compactionFew; may be null.
-// slotCount counts those of each slot that are in the list; it and counters->m_listed must be zero before the step's first
-// such kernel. m_listed counts on when the list is full.
+// What a kernel that finds hits writes. slotCount counts those of each slot that are in the list; slotSums adds them up, and
+// hitPlaces gets how many hits of its slot were before a hit, where slots are few on a GPU; elsewhere both are null. slotCount,
+// slotSums and counters->m_listed must be zero before the step's first such kernel. m_listed counts on when the list is full.
 #define DRAPE_HIT_ARGUMENTS                                                                                           \
-    __global Contact *restrict hits, const uint hitCapacity, __global uint *restrict hitSlots,                        \
-        __global volatile uint *slotCount, __global StepCounters *counters
-#define DRAPE_HIT_LIST                                            \
-    {                                                             \
-        hits, hitCapacity, hitSlots, slotCount, &counters->m_listed \
+    __global Contact *restrict hits, const uint hitCapacity, __global uint *restrict hitPlaces,                       \
+        __global volatile uint *slotCount, __global volatile uint *slotSums, __global StepCounters *counters
+#define DRAPE_HIT_LIST                                                         \
+    {                                                                          \
+        hits, hitCapacity, hitPlaces, slotCount, slotSums, &counters->m_listed \
     }
 
 typedef struct HitList
 {
     __global Contact* m_hits;
     uint m_capacity;
-    __global uint* m_hitSlots;
+    __global uint* m_hitPlaces;
     __global volatile uint* m_slotCount;
+    __global volatile uint* m_slotSums;
     __global volatile uint* m_count;
 } HitList;
 
@@ -47,27 +49,24 @@ static void storeHit(__global Contact* to, const Contact* from)
     quarters[3] = as_uint4((float4)(w[0], w[1], w[2], from->m_time));
 }
 
-static void putHit(const HitList* list, const uint place, const Contact* contact)
-{
-    if (list->m_hitSlots) list->m_hitSlots[place] = contact->m_slot;
-    storeHit(list->m_hits + place, contact);
-}
-
 static void listHit(const HitList* list, const Contact* contact)
 {
     const uint place = atomic_inc(list->m_count);
     if (place >= list->m_capacity) return;
-    atomic_inc(list->m_slotCount + contact->m_slot);
-    putHit(list, place, contact);
+    const uint before = atomic_inc(list->m_slotCount + contact->m_slot);
+    storeHit(list->m_hits + place, contact);
+    if (!list->m_hitPlaces) return;
+    list->m_hitPlaces[place] = before;
+    addToSums(list->m_slotSums, contact->m_slot, 1);
 }
 
-// Several at once: a CPU's cores take turns at the list's length, and an atomic waits for the stores before it.
+// Several at once, on a CPU: its cores take turns at the list's length, and an atomic waits for the stores before it.
 static void listHits(const HitList* list, const Contact* contacts, const uint count)
 {
     const uint first = count > 0 ? atomic_add(list->m_count, count) : 0;
     const uint listed = first < list->m_capacity ? min(count, list->m_capacity - first) : 0;
     for (uint i = 0; i < listed; ++i) atomic_inc(list->m_slotCount + contacts[i].m_slot);
-    for (uint i = 0; i < listed; ++i) putHit(list, first + i, contacts + i);
+    for (uint i = 0; i < listed; ++i) storeHit(list->m_hits + first + i, contacts + i);
 }
 
 #endif

@@ -15,10 +15,10 @@ static int isSelf(const SlotLists* lists, const uint first)
 
 // hits, slotFirst, members: see SlotLists; which slots' members must be in order, each kernel says. Members stay as they are,
 // since faces and edges read those of their nodes. kept gets at the front of each slot the members that stay, in order, and
-// DRAPE_NO_FEATURE behind them; slotKept their number. counters->m_hits is then free. block: slots of a group.
+// DRAPE_NO_FEATURE behind them; slotKept their number. counters->m_hits is then free. share: what a group takes.
 #define DRAPE_KEEP_ARGUMENTS \
     __global const Contact* restrict hits, const uint hitCapacity, __global const uint* restrict slotFirst, \
-    const uint slots, const uint block, __global const uint* restrict members, __global uint* kept, \
+    const uint slots, const uint share, __global const uint* restrict members, __global uint* kept, \
     __global uint* restrict slotKept, __global const StepCounters* restrict counters, __global const float* restrict start, \
     __global const float* restrict end, __global const Triangle* restrict triangles, __global const Edge* restrict edges, \
     __global const MeshFirsts* restrict cloths, __global const MeshFirsts* restrict obstacles, const uint clothCount, \

@@ -7,6 +7,7 @@
 
 #include "bullet_plugin/core/device/program.h"
 #include "kernels/shared/patch.h"
+#include "kernels/shared/slot_sums.h"
 #include "tests/support/cases.h"
 #include "tests/support/device_side.h"
 
@@ -15,9 +16,8 @@ namespace drape::test
 namespace
 {
 constexpr std::size_t kGroup = 64;
-constexpr std::size_t kBlock = 1024;        // as in kernels/compaction.cl
-constexpr cl_uint kRankedGpu = 512;         // as in narrow_phase.cpp
-constexpr std::size_t kFewSlots = 1 << 14;  // likewise
+constexpr std::size_t kBlock = 1024;  // as in kernels/compaction.cl
+constexpr cl_uint kRankedGpu = 512;   // as in compaction.cpp
 
 // Hits with distinct features per slot, in random order. crowded: most of them in one slot.
 std::vector<Contact> randomHits(std::size_t count, std::uint32_t slots, bool crowded, Random& random)
@@ -50,7 +50,7 @@ public:
         m_gather.create(device, program, "compactionGather");
         m_order.create(device, program, "compactionOrder");
         m_write.create(device, program, "compactionWrite");
-        m_few.create(device, programOf(device, "compaction_few"), "compactionFew");
+        m_gatherFew.create(device, programOf(device, "compaction_few"), "compactionGatherFew");
         m_writeKeptFew.create(device, programOf(device, "contact_reduction"), "reductionWriteFew");
     }
 
@@ -70,16 +70,13 @@ public:
         EXPECT_EQ(contents(m_device, m_counters, 1)[0].m_crowded,
                   cl_uint(std::count_if(slotCount.begin(), slotCount.end(), isCrowded)));
         expectPlacesWithoutSums(slots);
+        guardCopy(m_device, m_slotKept, std::vector<cl_uint>(slots, 7));
         m_gather.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotCount.handle(),
-                        m_slotFirst.handle(), m_members.handle(), m_keys.handle(), m_counters.handle(),
-                        m_next.handle());
-        m_order.launch(m_device, (slots + m_sortBlock - 1) / m_sortBlock * kGroup, kGroup, capacity,
-                       m_slotFirst.handle(), slots, m_ranked, m_sortBlock, m_members.handle(), m_keys.handle(),
-                       m_counters.handle());
-        m_write.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotFirst.handle(), slots, m_ranked,
-                       m_parts, m_members.handle(), m_keys.handle(), m_contacts.handle(), m_counters.handle());
-        const std::vector<cl_uint> left = contents(m_device, m_slotCount, slots);
-        EXPECT_EQ(std::count(left.begin(), left.end(), 0u), std::ptrdiff_t(slots)) << "slots are clean after";
+                        m_slotFirst.handle(), slots, m_members.handle(), m_keys.handle(), m_slotKept.handle(),
+                        m_counters.handle(), m_next.handle());
+        enqueueOrderAndWrite(slots, capacity, nullptr);
+        expectClean(m_slotCount, slots);
+        expectClean(m_slotKept, slots);
         EXPECT_TRUE(intact(m_device, m_hits) && intact(m_device, m_slotCount) && intact(m_device, m_slotFirst) &&
                     intact(m_device, m_blockCount) && intact(m_device, m_members) && intact(m_device, m_keys) &&
                     intact(m_device, m_contacts));
@@ -92,24 +89,24 @@ public:
         return found;
     }
 
-    // The same by one launch whose groups take `block` slots.
-    std::vector<Contact> runFew(const std::vector<Contact>& hits, std::uint32_t slots, cl_uint block)
+    // The same where every work-item sums for itself.
+    std::vector<Contact> runFew(const std::vector<Contact>& hits, std::uint32_t slots)
     {
-        enqueueFew(hits, slots, block, m_parts);
-        const std::vector<cl_uint> left = contents(m_device, m_slotCount, slots);
-        EXPECT_EQ(std::count(left.begin(), left.end(), 0u), std::ptrdiff_t(slots)) << "slots are clean after";
-        EXPECT_TRUE(sameBytes(contents(m_device, m_next, 1), std::vector<StepCounters>(1)))
-            << "counters are clean after";
-        EXPECT_TRUE(intact(m_device, m_contacts) && intact(m_device, m_members) && intact(m_device, m_keys) &&
-                    intact(m_device, m_slotFirst) && intact(m_device, m_slotCount) && intact(m_device, m_next));
+        const cl_uint capacity = enqueueFew(hits, slots);
+        enqueueOrderAndWrite(slots, capacity, &m_slotSums);
+        expectClean(m_slotCount, slots);
+        expectClean(m_slotSums, DRAPE_SLOT_SUMS);
+        expectIntact();
         return written(hits.size());
     }
 
-    // Drops every third hit of those that the one launch lists without writing, and writes the others.
-    std::vector<Contact> runKept(const std::vector<Contact>& hits, std::uint32_t slots, cl_uint block)
+    // Drops every third hit of those that are listed, and writes the others.
+    std::vector<Contact> runKept(const std::vector<Contact>& hits, std::uint32_t slots)
     {
-        enqueueFew(hits, slots, block, 0);
+        const cl_uint capacity = enqueueFew(hits, slots);
         EXPECT_EQ(contents(m_device, m_counters, 1)[0].m_hits, cl_uint(hits.size()));
+        expectClean(m_slotKept, slots);
+        expectClean(m_keptSums, DRAPE_SLOT_SUMS);
         const std::vector<cl_uint> first = contents(m_device, m_slotFirst, slots);
         std::vector<cl_uint> kept = contents(m_device, m_members, hits.size()), slotKept(slots, 0);
         std::vector<Contact> expected;
@@ -118,23 +115,23 @@ public:
             const std::size_t end = slot + 1 < slots ? first[slot + 1] : hits.size();
             const auto from = kept.begin() + first[slot], to = kept.begin() + std::ptrdiff_t(end);
             EXPECT_TRUE(std::all_of(from, to, [&](cl_uint member) { return hits[member].m_slot == slot; }));
-            const auto byFeature = [&](cl_uint a, cl_uint b) { return inOrder(hits[a], hits[b]); };
-            EXPECT_TRUE(end - first[slot] <= m_ranked || std::is_sorted(from, to, byFeature)) << "slot " << slot;
-            std::sort(from, to, byFeature);
+            std::sort(from, to, [&](cl_uint a, cl_uint b) { return inOrder(hits[a], hits[b]); });
             const auto stay = std::remove_if(from, to, [](cl_uint member) { return member % 3 == 0; });
             slotKept[slot] = cl_uint(stay - from);
             std::fill(stay, to, DRAPE_NO_FEATURE);
             for (auto member = from; member != stay; ++member)
                 expected.push_back(hits[*member]);
         }
-        kept.resize(std::max<std::size_t>(1, kept.size()));
+        kept.resize(capacity);
         guardCopy(m_device, m_kept, kept);
+        guardCopy(m_device, m_keptSums, sumsOf(slotKept));
         guardCopy(m_device, m_slotKept, slotKept);
-        m_writeKeptFew.launch(m_device, (slots + block - 1) / block * kGroup, kGroup, m_hits.handle(),
-                              cl_uint(kept.size()), m_slotFirst.handle(), slots, block, m_parts, m_kept.handle(),
-                              m_slotKept.handle(), m_contacts.handle(), m_counters.handle(),
-                              cl::Local(kGroup * sizeof(cl_uint)));
-        EXPECT_TRUE(intact(m_device, m_contacts) && intact(m_device, m_kept) && intact(m_device, m_slotKept));
+        m_writeKeptFew.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotFirst.handle(), slots,
+                              m_parts, m_kept.handle(), m_slotKept.handle(), m_keptSums.handle(), m_contacts.handle(),
+                              m_counters.handle(), m_slotCount.handle(), m_slotSums.handle());
+        expectClean(m_slotCount, slots);
+        expectClean(m_slotSums, DRAPE_SLOT_SUMS);
+        expectIntact();
         const std::vector<Contact> found = written(expected.size());
         EXPECT_TRUE(sameBytes(found, expected)) << difference(found, expected);
         return found;
@@ -142,7 +139,7 @@ public:
 
     // Slots that one group sorts; hits of a slot from which on it does; work-items that copy a hit.
     cl_uint m_sortBlock = kBlock, m_ranked = DRAPE_RANKED, m_parts = 1;
-    // Hits that the list of the one launch had no room for.
+    // Hits that a list had no room for, where work-items sum for themselves.
     cl_uint m_unlisted = 0;
 
     // That run() orders them, as a CPU takes them and as a GPU does, and by work-items in pairs.
@@ -156,13 +153,10 @@ public:
             m_ranked = parts == 1 ? DRAPE_RANKED : kRankedGpu;
             const std::vector<Contact> found = run(hits, slots);
             ASSERT_TRUE(sameBytes(found, ordered)) << parts << " parts: " << difference(found, ordered);
-            for (const cl_uint block : {64u, cl_uint(kBlock)})
-            {
-                if (slots > kFewSlots) continue;
-                const std::vector<Contact> few = runFew(hits, slots, block);
-                ASSERT_TRUE(sameBytes(few, ordered)) << parts << " parts in one launch: " << difference(few, ordered);
-                runKept(hits, slots, block);
-            }
+            if (slots > DRAPE_MOST_SUMMED) continue;
+            const std::vector<Contact> few = runFew(hits, slots);
+            ASSERT_TRUE(sameBytes(few, ordered)) << parts << " parts, few slots: " << difference(few, ordered);
+            runKept(hits, slots);
         }
     }
 
@@ -192,19 +186,60 @@ private:
         return capacity;
     }
 
-    void enqueueFew(const std::vector<Contact>& hits, std::uint32_t slots, cl_uint block, cl_uint parts)
+    static std::vector<cl_uint> sumsOf(const std::vector<cl_uint>& counts)
     {
-        std::vector<cl_uint> slotOf;
+        std::vector<cl_uint> sums(DRAPE_SLOT_SUMS, 0);
+        for (std::size_t slot = 0; slot < counts.size(); ++slot)
+            sums[slot / DRAPE_SUMMED] += counts[slot];
+        return sums;
+    }
+
+    // Up to the members' list. Returns the room of the hits' list.
+    cl_uint enqueueFew(const std::vector<Contact>& hits, std::uint32_t slots)
+    {
+        std::vector<cl_uint> slotCount(slots, 0), places;
         for (const Contact& hit : hits)
-            slotOf.push_back(hit.m_slot);
-        // What slotCount holds is of no account: it is cleared for the next step.
-        const cl_uint capacity = prepare(hits, std::vector<cl_uint>(slots, 7), m_unlisted);
-        slotOf.resize(capacity);
-        guardCopy(m_device, m_hitSlots, slotOf);
-        m_few.launch(m_device, (slots + block - 1) / block * kGroup, kGroup, m_hits.handle(), capacity,
-                     m_hitSlots.handle(), m_slotCount.handle(), m_slotFirst.handle(), slots, block, m_ranked,
-                     m_members.handle(), m_keys.handle(), parts, m_contacts.handle(), m_counters.handle(),
-                     m_next.handle(), cl::Local(kGroup * sizeof(cl_uint)));
+            places.push_back(slotCount[hit.m_slot]++);
+        const cl_uint capacity = prepare(hits, slotCount, m_unlisted);
+        places.resize(capacity);
+        guardCopy(m_device, m_hitPlaces, places);
+        guardCopy(m_device, m_slotSums, sumsOf(slotCount));
+        guardCopy(m_device, m_slotKept, std::vector<cl_uint>(slots, 7));
+        guardCopy(m_device, m_keptSums, std::vector<cl_uint>(DRAPE_SLOT_SUMS, 7));
+        m_gatherFew.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_hitPlaces.handle(),
+                           m_slotCount.handle(), m_slotSums.handle(), slots, m_ranked, m_slotFirst.handle(),
+                           m_members.handle(), m_keys.handle(), m_slotKept.handle(), m_keptSums.handle(),
+                           m_counters.handle(), m_next.handle());
+        const auto isCrowded = [&](cl_uint count) { return count > m_ranked; };
+        EXPECT_EQ(contents(m_device, m_counters, 1)[0].m_crowded,
+                  cl_uint(std::count_if(slotCount.begin(), slotCount.end(), isCrowded)));
+        EXPECT_TRUE(sameBytes(contents(m_device, m_next, 1), std::vector<StepCounters>(1)))
+            << "counters are clean after";
+        return capacity;
+    }
+
+    void enqueueOrderAndWrite(std::uint32_t slots, cl_uint capacity, Buffer<cl_uint>* sums)
+    {
+        m_order.launch(m_device, (slots + m_sortBlock - 1) / m_sortBlock * kGroup, kGroup, capacity,
+                       m_slotFirst.handle(), slots, m_ranked, m_sortBlock, m_members.handle(), m_keys.handle(),
+                       m_counters.handle());
+        m_write.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotFirst.handle(), slots, m_ranked,
+                       m_parts, m_members.handle(), m_keys.handle(), m_contacts.handle(), m_counters.handle(),
+                       m_slotCount.handle(), sums ? sums->handle() : cl::Buffer());
+    }
+
+    void expectClean(Buffer<cl_uint>& numbers, std::size_t count)
+    {
+        const std::vector<cl_uint> left = contents(m_device, numbers, count);
+        EXPECT_EQ(std::count(left.begin(), left.end(), 0u), std::ptrdiff_t(count)) << "clean after";
+    }
+
+    void expectIntact()
+    {
+        for (Buffer<cl_uint>* numbers :
+             {&m_members, &m_keys, &m_slotFirst, &m_slotCount, &m_slotSums, &m_hitPlaces, &m_slotKept, &m_keptSums})
+            EXPECT_TRUE(intact(m_device, *numbers));
+        EXPECT_TRUE(intact(m_device, m_contacts) && intact(m_device, m_next));
     }
 
     // The contacts; their head must tell `count`.
@@ -232,10 +267,10 @@ private:
     }
 
     Device& m_device;
-    Kernel m_count, m_place, m_gather, m_order, m_write, m_few, m_writeKeptFew;
+    Kernel m_count, m_place, m_gather, m_gatherFew, m_order, m_write, m_writeKeptFew;
     Buffer<Contact> m_hits, m_contacts;
-    Buffer<cl_uint> m_slotCount, m_slotFirst, m_blockCount, m_members, m_keys, m_places, m_hitSlots;
-    Buffer<cl_uint> m_kept, m_slotKept;
+    Buffer<cl_uint> m_slotCount, m_slotFirst, m_blockCount, m_members, m_keys, m_places, m_hitPlaces;
+    Buffer<cl_uint> m_slotSums, m_kept, m_slotKept, m_keptSums;
     Buffer<StepCounters> m_counters, m_next;
 };
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "bullet_plugin/core/device/program.h"
 #include "kernels/shared/patch.h"
+#include "kernels/shared/slot_sums.h"
 #include "scenes/cloth_grid.h"
 #include "tests/support/cases.h"
 #include "tests/support/device_side.h"
@@ -154,23 +155,44 @@ public:
         guardCopy(device, m_firsts, std::vector<MeshFirsts>(1));
     }
 
-    Kept run(Kernel& keep, std::size_t group, std::size_t block)
+    // By work-items that take slots.
+    Kept runSlots(Kernel& keep, std::size_t share) { return run(keep, (m_slots + share - 1) / share, 1, share); }
+
+    // By groups that take the slots of so many members, one group less than would do in one turn.
+    Kept runHits(Kernel& keep, std::size_t share)
+    {
+        Buffer<cl_uint> sums;
+        guardCopy(m_device, sums, std::vector<cl_uint>(DRAPE_SLOT_SUMS, 0));
+        const Kept found = run(keep, std::max<std::size_t>(1, m_count / share), 128, share, sums.handle());
+        std::vector<cl_uint> expected(DRAPE_SLOT_SUMS, 0);
+        for (std::size_t slot = 0; slot < m_slots; ++slot)
+            expected[slot / DRAPE_SUMMED] += found.m_counts[slot];
+        EXPECT_EQ(contents(m_device, sums, DRAPE_SLOT_SUMS), expected);
+        EXPECT_TRUE(intact(m_device, sums));
+        const Kept withoutSums = run(keep, m_count, 128, share, cl::Buffer());
+        EXPECT_EQ(withoutSums.m_members, found.m_members);
+        EXPECT_EQ(withoutSums.m_counts, found.m_counts);
+        return found;
+    }
+
+private:
+    template <typename... Sums>
+    Kept run(Kernel& keep, std::size_t groups, std::size_t group, std::size_t share, const Sums&... sums)
     {
         Buffer<cl_uint> kept, slotKept;
         guard(m_device, kept, m_count);
-        guard(m_device, slotKept, m_slots);
-        keep.launch(m_device, (m_slots + block - 1) / block * group, group, m_hits.handle(), cl_uint(m_count),
-                    m_slotFirst.handle(), cl_uint(m_slots), cl_uint(block), m_members.handle(), kept.handle(),
-                    slotKept.handle(), m_counters.handle(), m_start.handle(), m_end.handle(), m_triangles.handle(),
-                    m_edges.handle(), m_firsts.handle(), m_firsts.handle(), cl_uint(1), cl_uint(1),
-                    m_thickness.handle(), m_tube.handle());
+        guardCopy(m_device, slotKept, std::vector<cl_uint>(m_slots, 0));
+        keep.launch(m_device, groups * group, group, m_hits.handle(), cl_uint(m_count), m_slotFirst.handle(),
+                    cl_uint(m_slots), cl_uint(share), m_members.handle(), kept.handle(), slotKept.handle(),
+                    m_counters.handle(), m_start.handle(), m_end.handle(), m_triangles.handle(), m_edges.handle(),
+                    m_firsts.handle(), m_firsts.handle(), cl_uint(1), cl_uint(1), m_thickness.handle(), m_tube.handle(),
+                    sums...);
         const Kept found = {contents(m_device, kept, m_count), contents(m_device, slotKept, m_slots)};
         EXPECT_TRUE(intact(m_device, kept));
         EXPECT_TRUE(intact(m_device, slotKept));
         return found;
     }
 
-private:
     Device& m_device;
     std::size_t m_slots, m_count;
     Buffer<Contact> m_hits;
@@ -244,9 +266,9 @@ TEST_P(ContactReductionTest, WorkItemsOfAHitOrASlotKeepTheSame)
         {
             SCOPED_TRACE("seed 96, up to " + std::to_string(most) + " hits a slot, tube " + std::to_string(tube));
             SlotHits input(cloth, most, random);
-            const Kept byHit = KeptBuffers(*device, cloth, input, tube).run(keepHits, 128, 5);
+            const Kept byHit = KeptBuffers(*device, cloth, input, tube).runHits(keepHits, 1 + 7 * most % 64);
             input.shuffleMembers(random);
-            const Kept bySlot = KeptBuffers(*device, cloth, input, tube).run(keepSlots, 1, 100);
+            const Kept bySlot = KeptBuffers(*device, cloth, input, tube).runSlots(keepSlots, 100);
             EXPECT_EQ(byHit.m_counts, bySlot.m_counts);
             EXPECT_EQ(byHit.m_members, bySlot.m_members);
             const std::size_t gone =

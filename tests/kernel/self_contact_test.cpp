@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
+#include <set>
 #include <tuple>
 
 #include "bullet_plugin/core/broad_phase/patch_cull.h"
 #include "bullet_plugin/core/compaction/canonical_order.h"
 #include "bullet_plugin/core/self_collision/self_contacts.h"
+#include "kernels/shared/slot_sums.h"
 #include "tests/support/device_side.h"
 #include "tests/support/self_cases.h"
 
@@ -74,26 +77,24 @@ public:
         const std::size_t tests = std::min<std::size_t>(m_read.m_selfTests, m_stage.tests().capacity());
         const std::size_t slots = 2 * (pool.vertexCount() + pool.triangles().size() + pool.edges().size());
         Buffer<Contact> hits;
-        Buffer<cl_uint> hitSlots, slotCount;
+        EXPECT_LE(slots, DRAPE_MOST_SUMMED);
+        Buffer<cl_uint> hitPlaces, slotCount, slotSums;
         m_read.m_listed = cl_uint(behind);
         guardCopy(m_device, m_counters, std::vector<StepCounters>{m_read});
         guard(m_device, hits, behind + std::min(tests, room));
-        guard(m_device, hitSlots, behind + std::min(tests, room));
+        if (m_device.isGpu()) guard(m_device, hitPlaces, behind + std::min(tests, room));
+        if (m_device.isGpu()) guardCopy(m_device, slotSums, std::vector<cl_uint>(DRAPE_SLOT_SUMS, 0));
         guardCopy(m_device, slotCount, std::vector<cl_uint>(slots, 0));
-        m_stage.enqueueContacts(m_device, buffers(), {hits, hitSlots, slotCount}, m_counters);
+        m_stage.enqueueContacts(m_device, buffers(), {hits, hitPlaces, slotCount, slotSums}, m_counters);
         m_read = readCounters(m_device, m_counters);
-        EXPECT_TRUE(intact(m_device, hits) && intact(m_device, hitSlots) && intact(m_device, slotCount) &&
-                    intact(m_device, m_counters));
+        EXPECT_TRUE(intact(m_device, hits) && intact(m_device, slotCount) && intact(m_device, m_counters));
         const std::size_t listed = std::min<std::size_t>(m_read.m_listed, behind + std::min(tests, room));
         std::vector<Contact> all = contents(m_device, hits, listed);
-        const std::vector<cl_uint> slotOf = contents(m_device, hitSlots, listed);
-        std::vector<cl_uint> expected(slots, 0);
-        for (std::size_t i = behind; i < listed; ++i)
-        {
-            EXPECT_EQ(slotOf[i], all[i].m_slot);
-            ++expected[all[i].m_slot];
-        }
         all.erase(all.begin(), all.begin() + std::ptrdiff_t(behind));
+        std::vector<cl_uint> expected(slots, 0);
+        for (const Contact& hit : all)
+            ++expected[hit.m_slot];
+        if (m_device.isGpu()) expectPlaces(all, hitPlaces, behind, slotSums);
         EXPECT_EQ(contents(m_device, slotCount, slots), expected);
         return all;
     }
@@ -116,6 +117,25 @@ public:
     std::uint64_t m_candidates = 0;
 
 private:
+    // That each hit has a place of its own among those of its slot, and what the sums over slots are.
+    void expectPlaces(const std::vector<Contact>& hits, Buffer<cl_uint>& hitPlaces, std::size_t behind,
+                      Buffer<cl_uint>& slotSums)
+    {
+        const std::vector<cl_uint> places = contents(m_device, hitPlaces, behind + hits.size());
+        std::map<cl_uint, std::set<cl_uint>> ofSlot;
+        std::vector<cl_uint> sums(DRAPE_SLOT_SUMS, 0);
+        for (std::size_t i = 0; i < hits.size(); ++i)
+        {
+            const cl_uint slot = hits[i].m_slot;
+            EXPECT_TRUE(ofSlot[slot].insert(places[behind + i]).second) << "slot " << slot;
+            ++sums[slot / DRAPE_SUMMED];
+        }
+        for (const auto& [slot, taken] : ofSlot)
+            EXPECT_EQ(*taken.rbegin() + 1, taken.size()) << "slot " << slot;
+        EXPECT_EQ(contents(m_device, slotSums, DRAPE_SLOT_SUMS), sums);
+        EXPECT_TRUE(intact(m_device, hitPlaces) && intact(m_device, slotSums));
+    }
+
     Device& m_device;
     Side m_side;
     std::vector<float> m_rest;

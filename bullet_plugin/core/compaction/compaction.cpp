@@ -12,9 +12,6 @@ constexpr std::size_t kSortBlockGpu = 32;  // slots that a group sorts one after
 // compactionOrder would count in local memory, a launch more.
 constexpr cl_uint kRankedGpu = 512;
 constexpr cl_uint kRankedReducedGpu = 256;  // where one follows: DRAPE_HELD of kernels/contact_reduction_hits.cl
-// Hits up to which a GPU compacts few slots in one launch: every group looks at all hits' slots, which would cost a CPU
-// more than launches do.
-constexpr std::size_t kFewHits = 1 << 13;
 
 cl_uint rankedOn(const Device& device, bool reduced)
 {
@@ -31,26 +28,34 @@ void CompactionStage::create(Device& device, const ProgramLoader& load, bool red
     m_gather.create(device, compaction, "compactionGather");
     m_order.create(device, compaction, "compactionOrder");
     m_write.create(device, compaction, "compactionWrite");
-    if (device.isGpu()) m_few.create(device, load("compaction_few"), "compactionFew");
+    if (device.isGpu()) m_gatherFew.create(device, load("compaction_few"), "compactionGatherFew");
     if (reduces) m_reduction.create(device, load);
 }
 
 void CompactionStage::resizeSlots(Device& device, std::size_t slotCount)
 {
     m_places.resize(device, slotCount);
-    m_slotCount.reserve(device, slotCount);
+    const std::size_t rows = (slotCount + DRAPE_SUMMED - 1) / DRAPE_SUMMED;  // sums read whole ones
+    m_slotCount.reserve(device, rows * DRAPE_SUMMED);
     m_slotFirst.reserve(device, slotCount);
-    if (m_reduces) m_reduction.resizeSlots(device, slotCount);
+    if (m_reduces) m_reduction.resizeSlots(device, slotCount, device.isGpu() && m_places.few());
     m_slotCount.fill(device, 0, slotCount);  // every step leaves it so
-    reserveHitSlots(device);
+    if (device.isGpu() && m_places.few())
+    {
+        m_slotSums.reserve(device, DRAPE_SLOT_SUMS);
+        m_slotSums.fill(device, 0, DRAPE_SLOT_SUMS);
+    }
+    else
+        m_slotSums.release();
+    reserveHitPlaces(device);
 }
 
-void CompactionStage::reserveHitSlots(Device& device)
+void CompactionStage::reserveHitPlaces(Device& device)
 {
-    if (device.isGpu() && m_places.few())
-        m_hitSlots.reserve(device, m_hits.capacity());
+    if (hasSums())
+        m_hitPlaces.reserve(device, m_hits.capacity());
     else
-        m_hitSlots.release();
+        m_hitPlaces.release();
 }
 
 void CompactionStage::reserveHits(Device& device, std::size_t count)
@@ -60,7 +65,7 @@ void CompactionStage::reserveHits(Device& device, std::size_t count)
     m_members.reserve(device, count);
     m_keys.reserve(device, count);
     if (m_reduces) m_reduction.reserveHits(device, count);
-    reserveHitSlots(device);
+    reserveHitPlaces(device);
 }
 
 // Slots with more hits than `ranked`.
@@ -73,34 +78,37 @@ void CompactionStage::enqueueOrder(Device& device, cl_uint ranked, StepTally tal
                    tally.m_now.handle());
 }
 
-void CompactionStage::enqueue(Device& device, StepTally tally, const ReductionBuffers* reduction)
+// Places of slots, and their members.
+void CompactionStage::enqueueGather(Device& device, StepTally tally, cl_uint ranked, const ReductionBuffers* reduction)
 {
-    if (m_hitSlots.capacity() > 0 && tally.m_hits <= kFewHits)
+    const cl_uint hitCapacity = cl_uint(m_hits.capacity()), slots = cl_uint(m_places.slotCount());
+    const KeptCounts kept = m_reduction.keptCounts(device.isGpu() && reduction);
+    if (hasSums())
     {
-        enqueueFew(device, tally, reduction);
+        m_gatherFew.launch(device, listWidth(device, slots + tally.m_hits), listGroup(device), m_hits.handle(),
+                           hitCapacity, m_hitPlaces.handle(), m_slotCount.handle(), m_slotSums.handle(), slots, ranked,
+                           m_slotFirst.handle(), m_members.handle(), m_keys.handle(), kept.m_slotKept, kept.m_keptSums,
+                           tally.m_now.handle(), tally.m_next.handle());
         return;
     }
-    const cl_uint hitCapacity = cl_uint(m_hits.capacity()), ranked = rankedOn(device, reduction);
     m_places.enqueue(device, m_slotCount, m_slotFirst, ranked, tally.m_now);
     m_gather.launch(device, listWidth(device), listGroup(device), m_hits.handle(), hitCapacity, m_slotCount.handle(),
-                    m_slotFirst.handle(), m_members.handle(), m_keys.handle(), tally.m_now.handle(),
-                    tally.m_next.handle());
+                    m_slotFirst.handle(), slots, m_members.handle(), m_keys.handle(), kept.m_slotKept,
+                    tally.m_now.handle(), tally.m_next.handle());
+}
+
+void CompactionStage::enqueue(Device& device, StepTally tally, const ReductionBuffers* reduction)
+{
+    const cl_uint hitCapacity = cl_uint(m_hits.capacity()), ranked = rankedOn(device, reduction);
+    tally.m_hits = std::min(tally.m_hits, m_hits.capacity());
+    enqueueGather(device, tally, ranked, reduction);
     if (tally.m_ordered && ranked != UINT32_MAX) enqueueOrder(device, ranked, tally);
     if (reduction)
         m_reduction.enqueue(device, slotHits(), *reduction, tally.m_hits, m_places, m_contacts, tally.m_now);
     else
-        m_write.launch(device, listWidth(device), listGroup(device), m_hits.handle(), hitCapacity, m_slotFirst.handle(),
-                       cl_uint(m_places.slotCount()), ranked, copyParts(device), m_members.handle(), m_keys.handle(),
-                       m_contacts.handle(), tally.m_now.handle());
-}
-
-void CompactionStage::enqueueFew(Device& device, StepTally tally, const ReductionBuffers* reduction)
-{
-    const std::size_t slots = m_places.slotCount(), group = SlotPlaces::kGroupGpu;
-    m_few.launch(device, fewWidth(slots), group, m_hits.handle(), cl_uint(m_hits.capacity()), m_hitSlots.handle(),
-                 m_slotCount.handle(), m_slotFirst.handle(), cl_uint(slots), cl_uint(kFewBlock),
-                 rankedOn(device, reduction), m_members.handle(), m_keys.handle(), reduction ? 0u : copyParts(device),
-                 m_contacts.handle(), tally.m_now.handle(), tally.m_next.handle(), cl::Local(group * sizeof(cl_uint)));
-    if (reduction) m_reduction.enqueueFew(device, slotHits(), *reduction, tally.m_hits, m_contacts, tally.m_now);
+        m_write.launch(device, listWidth(device, tally.m_hits * copyParts(device)), listGroup(device), m_hits.handle(),
+                       hitCapacity, m_slotFirst.handle(), cl_uint(m_places.slotCount()), ranked, copyParts(device),
+                       m_members.handle(), m_keys.handle(), m_contacts.handle(), tally.m_now.handle(),
+                       m_slotCount.handle(), m_slotSums.handle());
 }
 }  // namespace drape

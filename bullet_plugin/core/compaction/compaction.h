@@ -4,8 +4,8 @@
 // Input: hits() filled, with each slot's number of them, and how many there are in the step's counters. Output:
 // contacts(), and their number in the counters; the slots' numbers and the next step's counters are left zero.
 // Guarantee: the host's contacts, bit for bit. Where the list is full hits are counted on, and the step must run again
-// with more room. Cost: on a GPU one launch where slots and hits are few, else three to five; what reduction takes
-// besides is said there.
+// with more room. Cost: on a GPU two launches where slots are few, else three to five; what reduction takes besides is
+// said there.
 #pragma once
 
 #include <cstdint>
@@ -40,7 +40,7 @@ public:
     std::size_t hitCapacity() const { return m_hits.capacity(); }
 
     // What the stages before list their hits in.
-    HitBuffers hits() { return {m_hits, m_hitSlots, m_slotCount}; }
+    HitBuffers hits() { return {m_hits, m_hitPlaces, m_slotCount, m_slotSums}; }
     // Behind a head of DRAPE_CONTACT_HEAD places, which holds the step's counters.
     Buffer<Contact>& contacts() { return m_contacts; }
 
@@ -48,16 +48,18 @@ public:
     void enqueue(Device& device, StepTally tally, const ReductionBuffers* reduction = nullptr);
 
 private:
-    void enqueueFew(Device& device, StepTally tally, const ReductionBuffers* reduction);
+    // Where slots are few on a GPU every work-item sums for itself.
+    bool hasSums() { return m_slotSums.capacity() > 0; }
+    void enqueueGather(Device& device, StepTally tally, cl_uint ranked, const ReductionBuffers* reduction);
     void enqueueOrder(Device& device, cl_uint ranked, StepTally tally);
-    void reserveHitSlots(Device& device);
-    SlotHits slotHits() { return {m_hits, m_slotFirst, m_members}; }
+    void reserveHitPlaces(Device& device);
+    SlotHits slotHits() { return {m_hits, m_slotFirst, m_members, m_slotCount, m_slotSums}; }
 
     SlotPlaces m_places;
     ContactReductionStage m_reduction;
-    Kernel m_gather, m_order, m_write, m_few;
+    Kernel m_gather, m_gatherFew, m_order, m_write;
     Buffer<Contact> m_hits{"step hits"}, m_contacts{"step contacts"};
-    Buffer<cl_uint> m_hitSlots{"step hits"};  // on a GPU, where slots are few
+    Buffer<cl_uint> m_hitPlaces{"step hits"}, m_slotSums{"cloth slots"};  // on a GPU, where slots are few
     Buffer<cl_uint> m_slotCount{"cloth slots"}, m_slotFirst{"cloth slots"};
     Buffer<cl_uint> m_members{"step hits"}, m_keys{"step hits"};
     bool m_reduces = false;

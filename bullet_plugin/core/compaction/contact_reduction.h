@@ -2,8 +2,8 @@
 // keep the same.
 //
 // Input: a step's hits by slots, where both sides are, and how far nodes may be from their ways. Output: the contacts
-// that stay, in canonical order, and their number in the step's counters. Cost on a device: two launches where hits and
-// slots are few, else three or four.
+// that stay, in canonical order, and their number in the step's counters. Cost on a device: two launches where slots
+// are few on a GPU, else three or four.
 #pragma once
 
 #include <vector>
@@ -40,6 +40,15 @@ struct SlotHits
     Buffer<Contact>& m_hits;
     Buffer<cl_uint>& m_slotFirst;
     Buffer<cl_uint>& m_members;
+    Buffer<cl_uint>& m_slotCount;  // left zero for the next step where there are sums, as these
+    Buffer<cl_uint>& m_slotSums;
+};
+
+// How many hits of each slot stay, and sums over these where slots are few on a GPU. There both must be zero before.
+struct KeptCounts
+{
+    cl::Buffer m_slotKept;
+    cl::Buffer m_keptSums;
 };
 
 class ContactReductionStage
@@ -47,15 +56,15 @@ class ContactReductionStage
 public:
     void create(Device& device, const ProgramLoader& load);
 
-    void resizeSlots(Device& device, std::size_t slotCount);
+    // sums: whether slots are few, on a GPU.
+    void resizeSlots(Device& device, std::size_t slotCount, bool sums);
     void reserveHits(Device& device, std::size_t count) { m_kept.reserve(device, count); }
 
-    // Both return after enqueueing. expectedHits: about as many; speed alone depends on it. places: of these slots.
+    // Handles of what is to be zero before, null where nothing is.
+    KeptCounts keptCounts(bool reduces);
+    // Returns after enqueueing. expectedHits: about as many; speed alone depends on it. places: of these slots.
     void enqueue(Device& device, SlotHits hits, const ReductionBuffers& sides, std::size_t expectedHits,
                  SlotPlaces& places, Buffer<Contact>& contacts, Buffer<StepCounters>& counters);
-    // A launch less; where slots and hits are few, on a GPU.
-    void enqueueFew(Device& device, SlotHits hits, const ReductionBuffers& sides, std::size_t expectedHits,
-                    Buffer<Contact>& contacts, Buffer<StepCounters>& counters);
 
 private:
     void enqueueKeep(Device& device, SlotHits hits, const ReductionBuffers& sides, std::size_t expectedHits,
@@ -63,7 +72,7 @@ private:
 
     Kernel m_keep, m_write, m_writeFew;
     Buffer<cl_uint> m_kept{"step hits"};
-    Buffer<cl_uint> m_slotKept{"cloth slots"}, m_keptFirst{"cloth slots"};
+    Buffer<cl_uint> m_slotKept{"cloth slots"}, m_keptFirst{"cloth slots"}, m_keptSums{"cloth slots"};
     std::size_t m_slots = 0;
 };
 }  // namespace drape

@@ -9,7 +9,8 @@ namespace drape
 struct HitBuffers
 {
     Buffer<Contact>& m_hits;
-    Buffer<cl_uint>& m_hitSlots;  // has no memory where they are not needed
+    Buffer<cl_uint>& m_hitPlaces;  // has no memory where it is not needed, as m_slotSums
     Buffer<cl_uint>& m_slotCount;
+    Buffer<cl_uint>& m_slotSums;
 };
 }  // namespace drape

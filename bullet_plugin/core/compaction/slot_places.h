@@ -7,6 +7,7 @@
 #include "bullet_plugin/core/device/buffer.h"
 #include "bullet_plugin/core/device/program.h"
 #include "kernels/shared/mesh.h"
+#include "kernels/shared/slot_sums.h"
 
 namespace drape
 {
@@ -14,7 +15,6 @@ class SlotPlaces
 {
 public:
     static constexpr std::size_t kBlock = 1024;  // slots per work-group, as in kernels/compaction.cl
-    static constexpr std::size_t kGroupGpu = 256;
 
     void create(Device& device, const cl::Program& compaction);
     void resize(Device& device, std::size_t slotCount);
@@ -26,20 +26,11 @@ public:
                  Buffer<StepCounters>& counters);
 
 private:
-    static constexpr std::size_t kFewSlots = 1 << 14;  // each group sums those before its own
-    static constexpr std::size_t kGroupCpu = 64;
+    static constexpr std::size_t kFewSlots = DRAPE_MOST_SUMMED;  // each group sums those before its own
+    static constexpr std::size_t kGroupGpu = 256, kGroupCpu = 64;
 
     Kernel m_count, m_place;
     Buffer<cl_uint> m_blockCount{"cloth slots"};
     std::size_t m_slots = 0;
 };
-
-// Launches over few slots that find the slots' places themselves, on a GPU (kernels/compaction_few.cl,
-// reductionWriteFew): a work-group for each so many slots.
-constexpr std::size_t kFewBlock = 64;
-
-inline std::size_t fewWidth(std::size_t slotCount)
-{
-    return (slotCount + kFewBlock - 1) / kFewBlock * SlotPlaces::kGroupGpu;
-}
 }  // namespace drape

@@ -1,6 +1,7 @@
 // Width and group of a launch over a list whose length is only on the device; see kernels/lib/item_runs.h.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 
 #include "device.h"
@@ -21,6 +22,14 @@ inline std::size_t listWidth(const Device& device)
 inline std::size_t listGroup(const Device& device)
 {
     return device.isGpu() ? kListGroupGpu : kListGroupCpu;
+}
+
+// The same where about so many items are expected: a GPU starts no more work-items than these and a few in reserve.
+inline std::size_t listWidth(const Device& device, std::size_t items)
+{
+    const std::size_t most = listWidth(device), group = listGroup(device);
+    if (!device.isGpu() || items > most) return most;
+    return std::min(most, (items + items / 8 + group) / group * group);
 }
 
 // The same where a CPU's work-item does as many items side by side as a vector has lanes: few work-items, each in a

@@ -44,7 +44,7 @@ void NarrowPhaseStage::enqueue(Device& device, NarrowPhaseBuffers sides, std::si
                   sides.m_edgeCones.handle(), sides.m_thickness.handle(), cl_uint(settings.m_obstacleMeshes),
                   settings.m_reachScale, cl_uint(settings.m_mode), sides.m_motions.handle(),
                   cl_uint(sides.m_motionCount), hits.m_hits.handle(), cl_uint(hits.m_hits.capacity()),
-                  hits.m_hitSlots.handle(), hits.m_slotCount.handle(), counters.handle());
+                  hits.m_hitPlaces.handle(), hits.m_slotCount.handle(), hits.m_slotSums.handle(), counters.handle());
 }
 
 void NarrowPhaseStage::enqueueFeatures(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount,
@@ -61,7 +61,8 @@ void NarrowPhaseStage::enqueueFeatures(Device& device, NarrowPhaseBuffers sides,
                       features.m_faces.handle(), features.m_vertices.handle(), features.m_edges.handle(),
                       features.m_faceIds.handle(), features.m_vertexIds.handle(), features.m_edgeIds.handle(),
                       sides.m_motions.handle(), hits.m_hits.handle(), cl_uint(hits.m_hits.capacity()),
-                      hits.m_hitSlots.handle(), hits.m_slotCount.handle(), counters.handle(), list.handle()...);
+                      hits.m_hitPlaces.handle(), hits.m_slotCount.handle(), hits.m_slotSums.handle(), counters.handle(),
+                      list.handle()...);
     };
     m_sweptTests.reserve(device, cull.tests().capacity());
     const bool few = expectedTests <= device.computeUnits() * kFewTestsPerUnit;

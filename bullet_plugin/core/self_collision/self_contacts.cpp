@@ -189,8 +189,8 @@ void SelfContactStage::enqueueContacts(Device& device, SelfBuffers step, HitBuff
         kernel.launch(device, width, group, m_tests.handle(), cl_uint(m_tests.capacity()), step.m_start.handle(),
                       step.m_end.handle(), m_rest.handle(), step.m_triangles.handle(), step.m_edges.handle(), nodes,
                       triangles, firstSlot, cl_uint(step.m_mode), step.m_reachScale, hits.m_hits.handle(),
-                      cl_uint(hits.m_hits.capacity()), hits.m_hitSlots.handle(), hits.m_slotCount.handle(),
-                      counters.handle(), m_swept.handle());
+                      cl_uint(hits.m_hits.capacity()), hits.m_hitPlaces.handle(), hits.m_slotCount.handle(),
+                      hits.m_slotSums.handle(), counters.handle(), m_swept.handle());
     };
     launch(m_feature, laneListWidth(device), device.isGpu() ? listGroup(device) : 1);
     if (step.m_mode != DRAPE_DISCRETE) launch(m_sweptKernel, listWidth(device), listGroup(device));

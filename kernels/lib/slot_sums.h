@@ -1,0 +1,55 @@
+// Where slots' hits begin in a list by slots, where slots are few: what counts a slot's hits adds them up by rows of slots,
+// too, so that every work-item can tell for itself, and no launch has to sum before. For OpenCL C only.
+#ifndef DRAPE_LIB_SLOT_SUMS_H
+#define DRAPE_LIB_SLOT_SUMS_H
+
+#include "../shared/slot_sums.h"
+
+// So many hits more of a slot. sums: DRAPE_SLOT_SUMS.
+static void addToSums(__global volatile uint* sums, const uint slot, const uint hits)
+{
+    atomic_add(sums + slot / DRAPE_SUMMED, hits);
+}
+
+// The sum of the first `count` of DRAPE_SUMMED numbers. By masks: of choices by component PoCL 3.1 makes something else.
+static uint sumOfFirst(__global const uint* numbers, const uint count)
+{
+    uint4 sums = 0;
+    DRAPE_UNROLL
+    for (uint i = 0; i < DRAPE_SUMMED; i += 4)
+        sums += ((__global const uint4*)numbers)[i / 4] & as_uint4((uint4)(i, i + 1, i + 2, i + 3) < (uint4)(count));
+    return sums.x + sums.y + sums.z + sums.w;
+}
+
+// A group of DRAPE_WIDE_SUMS work-items, or more, sums rows by DRAPE_SUMMED: wide gets so many sums.
+static void sumRows(__global const uint* sums, __local uint* wide)
+{
+    const uint id = get_local_id(0);
+    if (id < DRAPE_WIDE_SUMS) wide[id] = sumOfFirst(sums + id * DRAPE_SUMMED, DRAPE_SUMMED);
+    barrier(CLK_LOCAL_MEM_FENCE);
+}
+
+static uint sumOfWide(__local const uint* wide, const uint count)
+{
+    uint sum = 0;
+    for (uint i = 0; i < count; ++i) sum += wide[i];
+    return sum;
+}
+
+// How many hits the slots before this one have. counts: of each slot; wide: by sumRows().
+static uint hitsBefore(__global const uint* counts, __global const uint* sums, __local const uint* wide, const uint slot)
+{
+    const uint row = slot / DRAPE_SUMMED, firstRow = row / DRAPE_SUMMED * DRAPE_SUMMED;
+    return sumOfWide(wide, row / DRAPE_SUMMED) + sumOfFirst(sums + firstRow, row - firstRow) +
+           sumOfFirst(counts + row * DRAPE_SUMMED, slot % DRAPE_SUMMED);
+}
+
+// All work-items of the launch together. sums may be null: then all is left as it is.
+static void clearSums(__global uint* counts, __global uint* sums, const uint slots)
+{
+    if (!sums) return;
+    for (uint i = get_global_id(0); i < slots; i += get_global_size(0)) counts[i] = 0;
+    for (uint i = get_global_id(0); i < DRAPE_SLOT_SUMS; i += get_global_size(0)) sums[i] = 0;
+}
+
+#endif
