@@ -16,8 +16,9 @@ constexpr std::size_t kManyTriangles = 1 << 15;
 constexpr std::size_t kWalkTurns = 4;
 constexpr std::size_t kWalkTurnsAlone = 2;
 constexpr std::size_t kCullTurns = 4;
-// Groups that cull pairs, DRAPE_CULL_WAVES times as many as a compute unit holds, so that uneven ones even out.
-constexpr std::size_t kPairGroupsPerUnit = 32;
+// Groups that cull pairs, DRAPE_CULL_WAVES times the seven that an H200's compute unit holds by their registers, so that
+// uneven ones even out.
+constexpr std::size_t kPairGroupsPerUnit = 28;
 constexpr std::size_t kFirstPairs = 1 << 16;
 }  // namespace
 
