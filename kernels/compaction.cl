@@ -133,7 +133,9 @@ __kernel void compactionWrite(__global const Contact* restrict hits, const uint 
         const int sorted = last - first > ranked;
         const uint key = keys[i];
         uint before = 0;
-        __attribute__((opencl_unroll_hint(8))) for (uint j = first; j < last && !sorted; ++j) before += keys[j] < key;
+        // Loads together, which on a GPU wait for each other else.
+        __attribute__((opencl_unroll_hint(DRAPE_TOGETHER)))
+        for (uint j = first; j < last && !sorted; ++j) before += keys[j] < key;
         copyHit(contacts + DRAPE_CONTACT_HEAD + (sorted ? i : first + before), hit, parts);
     }
 }

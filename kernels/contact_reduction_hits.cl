@@ -10,8 +10,10 @@
 #define DRAPE_COMPARED 32u
 // Most work-items that share a hit's comparisons.
 #define DRAPE_COMPARERS 8u
-// Pairs of hits that are left after a first look, of a group.
+// Pairs of hits that are left after a first look, of a group. A test sets fewer.
+#ifndef DRAPE_LIKELY
 #define DRAPE_LIKELY 1024u
+#endif
 #define DRAPE_UNDECIDED_HIT 0
 #define DRAPE_STAYS 1
 #define DRAPE_GOES 2

@@ -54,7 +54,7 @@ DRAPE_FUNCTION int edgeEdgeContact(FeatureEdge e0, FeatureEdge e1, FeatureEdge o
     const float v1 = vec3Dot(direction, vec3Sub(o.m_a, e1.m_a));
     if (bounds.m_mode != DRAPE_DISCRETE)
     {
-        const int known = edgeMayMeet(e0, e1, o, v0, v1, bounds);
+        const int known = edgeNearness(e0, e1, o, v0, v1, bounds);
         if (asksForMeeting(known, bounds))
         {
             if (!bounds.m_searches) return DRAPE_UNDECIDED;

@@ -31,7 +31,7 @@ DRAPE_FUNCTION int faceVertexPassed(const MovingFace* face, Vec3 vertex, float s
                                     Contact* contact)
 {
     const FeatureTriangle f0 = face->m_start;
-    const int known = faceMayMeet(face, vertex, s0, s1, bounds);
+    const int known = faceNearness(face, vertex, s0, s1, bounds);
     const float before = s0 < 0.0f ? -1.0f : 1.0f, after = s1 < 0.0f ? -1.0f : 1.0f;
     if (asksForMeeting(known, bounds))
     {

@@ -66,7 +66,7 @@ DRAPE_FUNCTION int furtherApart(Vec3 n, float low, float high, float distance, P
 // The answer for features that come near. n: normal of the plane; low: the least product with it of the one's corners
 // at the step's start and end, high: the greatest of the other's. What is on one side at both stays there on a straight
 // way.
-DRAPE_FUNCTION int mayMeetAcross(Vec3 n, float low, float high, PairBounds bounds)
+DRAPE_FUNCTION int nearnessAcross(Vec3 n, float low, float high, PairBounds bounds)
 {
     return furtherApart(n, low, high, 0.0f, bounds) ? DRAPE_ARE_PARTED : DRAPE_MAY_MEET;
 }
@@ -88,7 +88,7 @@ DRAPE_FUNCTION Vec3 meetingNormal(Vec3 direction, float length, Vec3 way, float 
 }
 
 // A moving face and a resting vertex; see DRAPE_STAY_APART. s0, s1: the volumes at the step's start and end.
-DRAPE_FUNCTION int faceMayMeet(const MovingFace* face, Vec3 vertex, float s0, float s1, PairBounds bounds)
+DRAPE_FUNCTION int faceNearness(const MovingFace* face, Vec3 vertex, float s0, float s1, PairBounds bounds)
 {
     const FeatureTriangle f0 = face->m_start, f1 = face->m_end;
     const float distance = meetingDistance(faceMotion(face), bounds);
@@ -108,13 +108,13 @@ DRAPE_FUNCTION int faceMayMeet(const MovingFace* face, Vec3 vertex, float s0, fl
     if (furtherApart(offset, low, high, distance, bounds)) return DRAPE_STAY_APART;
     const float before =
         drapeMin(drapeMin(vec3Dot(offset, f0.m_p[0]), vec3Dot(offset, f0.m_p[1])), vec3Dot(offset, f0.m_p[2]));
-    return mayMeetAcross(offset, drapeMin(low, before), high, bounds);
+    return nearnessAcross(offset, drapeMin(low, before), high, bounds);
 }
 
 // An edge moving from e0 to e1 and another one from o0 to o1; see DRAPE_STAY_APART. motion: m, of the fastest ends,
 // added up. v0, v1: the volumes at the step's start and end.
-DRAPE_FUNCTION int edgesMayMeet(FeatureEdge e0, FeatureEdge e1, FeatureEdge o0, FeatureEdge o1, float motion, float v0,
-                                float v1, PairBounds bounds)
+DRAPE_FUNCTION int edgesNearness(FeatureEdge e0, FeatureEdge e1, FeatureEdge o0, FeatureEdge o1, float motion, float v0,
+                                 float v1, PairBounds bounds)
 {
     const float distance = meetingDistance(motion, bounds);
     const float area0 = vec3Length(vec3Cross(vec3Sub(e0.m_b, e0.m_a), vec3Sub(o0.m_b, o0.m_a)));
@@ -134,13 +134,13 @@ DRAPE_FUNCTION int edgesMayMeet(FeatureEdge e0, FeatureEdge e1, FeatureEdge o0, 
     if (furtherApart(offset, low, high, distance, bounds)) return DRAPE_STAY_APART;
     const float lowBefore = drapeMin(vec3Dot(offset, e0.m_a), vec3Dot(offset, e0.m_b));
     const float highBefore = drapeMax(vec3Dot(offset, o0.m_a), vec3Dot(offset, o0.m_b));
-    return mayMeetAcross(offset, drapeMin(low, lowBefore), drapeMax(high, highBefore), bounds);
+    return nearnessAcross(offset, drapeMin(low, lowBefore), drapeMax(high, highBefore), bounds);
 }
 
 // The same with a resting edge.
-DRAPE_FUNCTION int edgeMayMeet(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, float v0, float v1, PairBounds bounds)
+DRAPE_FUNCTION int edgeNearness(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, float v0, float v1, PairBounds bounds)
 {
-    return edgesMayMeet(e0, e1, o, o, edgeMotion(e0, e1), v0, v1, bounds);
+    return edgesNearness(e0, e1, o, o, edgeMotion(e0, e1), v0, v1, bounds);
 }
 
 // The search for a time costs three times that for a meeting at the defaults of ccd.h. A contact needs its place to a

@@ -219,12 +219,12 @@ static Lanes laneExtent(const LanesVec3* corners)
     return lanesMax(lanesMax(exactNormMax(corners[0]), exactNormMax(corners[1])), exactNormMax(corners[2]));
 }
 
-// A moving face and what rests in the frame's origin. m_mayMeet: see faceMayMeet(). At the step's end: m_after, the
-// origin's distance from the face's plane times the length of the area vector; m_weights of the face's closest point,
-// m_point; m_low, the least product of that point and a corner.
+// A moving face and what rests in the frame's origin. m_comesNear: faceNearness() is not DRAPE_STAY_APART. At the step's
+// end: m_after, the origin's distance from the face's plane times the length of the area vector; m_weights of the face's
+// closest point, m_point; m_low, the least product of that point and a corner.
 typedef struct LaneFace
 {
-    LaneMask m_mayMeet;
+    LaneMask m_comesNear;
     LaneArea m_area;
     Lanes m_after, m_low;
     LanesVec3 m_weights, m_point;
@@ -242,7 +242,7 @@ static LaneFace laneFace(const LanesVec3* start, const LanesVec3* end, const Lan
     face.m_point = lanePoint(end, face.m_weights);
     face.m_low = lanesMin(lanesMin(exactDot(face.m_point, end[0]), exactDot(face.m_point, end[1])),
                           exactDot(face.m_point, end[2]));
-    face.m_mayMeet = lanesMaskSplat(0);
+    face.m_comesNear = lanesMaskSplat(0);
     if (mode == DRAPE_DISCRETE) return face;
     Lanes motion = lanesSplat(0.0f);
     LaneBox box = laneBox(start[0], end[0]);
@@ -254,7 +254,7 @@ static LaneFace laneFace(const LanesVec3* start, const LanesVec3* end, const Lan
     }
     const Lanes distance = laneMeetingDistance(motion, &face.m_bounds);
     const LanesVec3 area = exactCross(lanesSub(start[1], start[0]), lanesSub(start[2], start[0]));
-    face.m_mayMeet = laneAdmitsMeeting(exactDot(area, start[0]), exactLength(area), distance, &face.m_bounds) &
+    face.m_comesNear = laneAdmitsMeeting(exactDot(area, start[0]), exactLength(area), distance, &face.m_bounds) &
                      laneAdmitsMeeting(face.m_after, face.m_area.m_length, distance, &face.m_bounds) &
                      lanesNot(laneBoxesApart(box, laneBox(lanesZero(), lanesZero()), &face.m_bounds)) &
                      lanesNot(laneFurther(face.m_point, face.m_low, lanesSplat(0.0f), distance, &face.m_bounds));
@@ -335,7 +335,7 @@ static void laneFaceVertex(LaneContacts* contacts, const float* rows, const uint
         end[k] = lanesSub(laneRow(rows, 9 + 3 * k), vertex);
     }
     const LaneFace face = laneFace(start, end, lanesLoad(rows, 25), mode);
-    contacts->m_open = face.m_area.m_thin | face.m_mayMeet | lanesNot(laneValid(rows, 21));
+    contacts->m_open = face.m_area.m_thin | face.m_comesNear | lanesNot(laneValid(rows, 21));
 
     const LanesVec3 weights = face.m_weights;
     const LaneMask inside = (weights.x != 0.0f) & (weights.y != 0.0f) & (weights.z != 0.0f);
@@ -400,13 +400,13 @@ static LanesVec3 laneOffset(const LaneEdges* edges, const LanePlaces places)
 }
 
 // What two edges span at the step's end, where they are closest, and the offset there, with its least product with an
-// end of the first edge and its greatest with one of the second. m_mayMeet: see edgesMayMeet().
+// end of the first edge and its greatest with one of the second. m_comesNear: as for a face.
 typedef struct LaneCrossing
 {
     LanesVec3 m_direction, m_offset;
     Lanes m_squared, m_volume, m_low, m_high;
     LanePlaces m_places;
-    LaneMask m_parallel, m_mayMeet;
+    LaneMask m_parallel, m_comesNear;
     LaneBounds m_bounds;
 } LaneCrossing;
 
@@ -426,7 +426,7 @@ static LaneCrossing laneCrossing(const LaneEdges* start, const LaneEdges* end, c
     crossing.m_offset = laneOffset(end, crossing.m_places);
     crossing.m_low = lanesMin(exactDot(crossing.m_offset, end->m_a), exactDot(crossing.m_offset, end->m_b));
     crossing.m_high = lanesMax(lanesSplat(0.0f), exactDot(crossing.m_offset, along));
-    crossing.m_mayMeet = lanesMaskSplat(0);
+    crossing.m_comesNear = lanesMaskSplat(0);
     if (mode == DRAPE_DISCRETE) return crossing;
     const Lanes motion = lanesMax(exactLength(lanesSub(end->m_a, start->m_a)), exactLength(lanesSub(end->m_b, start->m_b))) +
                          exactLength(lanesSub(along, start->m_far));
@@ -434,7 +434,7 @@ static LaneCrossing laneCrossing(const LaneEdges* start, const LaneEdges* end, c
     const LanesVec3 direction = exactCross(lanesSub(start->m_b, start->m_a), start->m_far);
     const LaneBox box = laneJoined(laneBox(start->m_a, start->m_b), laneBox(end->m_a, end->m_b));
     const LaneBox other = laneJoined(laneBox(lanesZero(), start->m_far), laneBox(lanesZero(), along));
-    crossing.m_mayMeet = laneAdmitsMeeting(exactDot(direction, start->m_a), exactLength(direction), distance, bounds) &
+    crossing.m_comesNear = laneAdmitsMeeting(exactDot(direction, start->m_a), exactLength(direction), distance, bounds) &
                          laneAdmitsMeeting(crossing.m_volume, sqrt(crossing.m_squared), distance, bounds) &
                          lanesNot(laneBoxesApart(box, other, bounds)) &
                          lanesNot(laneFurther(crossing.m_offset, crossing.m_low, crossing.m_high, distance, bounds));
@@ -467,7 +467,7 @@ static void laneEdgeEdge(LaneContacts* contacts, const float* rows, const uint m
     const LaneEdges start = {lanesSub(laneRow(rows, 0), origin), lanesSub(laneRow(rows, 3), origin), far};
     const LaneEdges end = {lanesSub(laneRow(rows, 6), origin), lanesSub(laneRow(rows, 9), origin), far};
     const LaneCrossing crossing = laneCrossing(&start, &end, lanesLoad(rows, 22), mode);
-    contacts->m_open = lanesNot(laneValid(rows, 18)) | crossing.m_parallel | crossing.m_mayMeet;
+    contacts->m_open = lanesNot(laneValid(rows, 18)) | crossing.m_parallel | crossing.m_comesNear;
     const Lanes facing = exactDot(axis, crossing.m_direction);
     const LaneMask admitted = lanesNot((cosine > 0.0f) & (facing * facing < cosine * cosine * crossing.m_squared));
     laneEdgesNear(contacts, &start, &end, &crossing, admitted);

@@ -34,7 +34,7 @@ static void laneSelfNodeFace(LaneContacts* contacts, const float* rows, const ui
     laneFrame(rest, rows, 2, 0);
     const Lanes own = laneSelfThickness(rows, exactLength(lanePoint(rest + 1, laneClosest(lanesZero(), rest + 1))));
     const LaneFace face = laneFace(start + 1, end + 1, own * reachScale, mode);
-    contacts->m_open = face.m_area.m_thin | face.m_mayMeet | laneArea(rest + 1).m_thin |
+    contacts->m_open = face.m_area.m_thin | face.m_comesNear | laneArea(rest + 1).m_thin |
                        lanesNot(laneValid(rows, DRAPE_SELF_ROWS - 1));
 
     const LanesVec3 weights = face.m_weights;
@@ -65,7 +65,7 @@ static void laneSelfEdgeEdge(LaneContacts* contacts, const float* rows, const ui
     const LaneEdges atRest = {rest[0], rest[1], rest[3]};
     const Lanes own = laneSelfThickness(rows, exactLength(laneOffset(&atRest, lanePlaces(&atRest))));
     const LaneCrossing crossing = laneCrossing(&start, &end, own * reachScale, mode);
-    contacts->m_open = crossing.m_mayMeet | lanesNot(laneValid(rows, DRAPE_SELF_ROWS - 1));
+    contacts->m_open = crossing.m_comesNear | lanesNot(laneValid(rows, DRAPE_SELF_ROWS - 1));
     laneEdgesNear(contacts, &start, &end, &crossing, (own > 0.0f) & lanesNot(crossing.m_parallel));
     contacts->m_weights = lanesVec3(crossing.m_places.m_s, crossing.m_places.m_t, lanesSplat(0.0f));
 }

@@ -248,7 +248,7 @@ DRAPE_FUNCTION int edgesPassedOrNear(const EdgePair* pair, PairBounds bounds, Co
     {
         const float motion = edgeMotion(pair->m_e0, pair->m_e1) + edgeMotion(pair->m_o0, pair->m_o1);
         const int known =
-            edgesMayMeet(pair->m_e0, pair->m_e1, pair->m_o0, pair->m_o1, motion, pair->m_v0, pair->m_v1, bounds);
+            edgesNearness(pair->m_e0, pair->m_e1, pair->m_o0, pair->m_o1, motion, pair->m_v0, pair->m_v1, bounds);
         if (asksForMeeting(known, bounds))
         {
             if (!bounds.m_searches) return DRAPE_UNDECIDED;

@@ -79,7 +79,7 @@ typedef struct StepCounters
 {
     DRAPE_UINT m_candidates;
     DRAPE_UINT m_listed;  // hits, before any is reduced
-    DRAPE_UINT m_crowded;  // slots with more of them than are counted (compaction.cl alone)
+    DRAPE_UINT m_crowded;  // slots with more of them than are counted (compaction.cl, compaction_few.cl)
     DRAPE_UINT m_hits;    // without those that were reduced
     DRAPE_UINT m_invalidNodes;
     DRAPE_UINT m_intersections;

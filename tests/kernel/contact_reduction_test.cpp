@@ -158,7 +158,7 @@ public:
     // By work-items that take slots.
     Kept runSlots(Kernel& keep, std::size_t share) { return run(keep, (m_slots + share - 1) / share, 1, share); }
 
-    // By groups that take the slots of so many members, one group less than would do in one turn.
+    // By groups that take the slots of so many members, in one turn, two or many.
     Kept runHits(Kernel& keep, std::size_t share)
     {
         Buffer<cl_uint> sums;
@@ -169,9 +169,12 @@ public:
             expected[slot / DRAPE_SUMMED] += found.m_counts[slot];
         EXPECT_EQ(contents(m_device, sums, DRAPE_SLOT_SUMS), expected);
         EXPECT_TRUE(intact(m_device, sums));
-        const Kept withoutSums = run(keep, m_count, 128, share, cl::Buffer());
-        EXPECT_EQ(withoutSums.m_members, found.m_members);
-        EXPECT_EQ(withoutSums.m_counts, found.m_counts);
+        for (const std::size_t groups : {m_count, std::size_t(3), std::size_t(1)})
+        {
+            const Kept withoutSums = run(keep, groups, 128, share, cl::Buffer());
+            EXPECT_EQ(withoutSums.m_members, found.m_members) << groups << " groups";
+            EXPECT_EQ(withoutSums.m_counts, found.m_counts) << groups << " groups";
+        }
         return found;
     }
 
@@ -253,9 +256,12 @@ TEST_P(ContactReductionTest, WorkItemsOfAHitOrASlotKeepTheSame)
 {
     const std::unique_ptr<Device> device = openDevice(GetParam());
     ASSERT_TRUE(device);
-    Kernel keepSlots, keepHits;
+    Kernel keepSlots, keepHits, keepListed;
     keepSlots.create(*device, programOf(*device, "contact_reduction_slots"), "reductionKeep");
     keepHits.create(*device, programOf(*device, "contact_reduction_hits"), "reductionKeepWide");
+    // Lists that are full after a few pairs.
+    keepListed.create(*device, programOf(*device, "contact_reduction_hits", "#define DRAPE_LIKELY 5u\n"),
+                      "reductionKeepWide");
     Random random(96);
     Side cloth = makeSide({makeClothGrid(9, 9, 0.4f, 0.0f).m_mesh});
     for (std::size_t i = 1; i < cloth.m_end.size(); i += 3)
@@ -267,6 +273,9 @@ TEST_P(ContactReductionTest, WorkItemsOfAHitOrASlotKeepTheSame)
             SCOPED_TRACE("seed 96, up to " + std::to_string(most) + " hits a slot, tube " + std::to_string(tube));
             SlotHits input(cloth, most, random);
             const Kept byHit = KeptBuffers(*device, cloth, input, tube).runHits(keepHits, 1 + 7 * most % 64);
+            const Kept byListed = KeptBuffers(*device, cloth, input, tube).runHits(keepListed, 64);
+            EXPECT_EQ(byListed.m_counts, byHit.m_counts);
+            EXPECT_EQ(byListed.m_members, byHit.m_members);
             input.shuffleMembers(random);
             const Kept bySlot = KeptBuffers(*device, cloth, input, tube).runSlots(keepSlots, 100);
             EXPECT_EQ(byHit.m_counts, bySlot.m_counts);

@@ -33,7 +33,7 @@ int knownOfEdges(const Vec3* start, const Vec3* end)
     const auto volume = [](FeatureEdge e, FeatureEdge o)
     { return vec3Dot(vec3Cross(vec3Sub(e.m_b, e.m_a), vec3Sub(o.m_b, o.m_a)), vec3Sub(o.m_a, e.m_a)); };
     const float motion = edgeMotion(e0, e1) + edgeMotion(o0, o1);
-    return edgesMayMeet(e0, e1, o0, o1, motion, volume(e0, o0), volume(e1, o1), boundsOf(start, end));
+    return edgesNearness(e0, e1, o0, o1, motion, volume(e0, o0), volume(e1, o1), boundsOf(start, end));
 }
 
 // A vertex that rests and a face.
@@ -46,7 +46,7 @@ int knownOfFace(const Vec3* start, const Vec3* end)
     face.m_areaEnd = faceArea(face.m_end);
     const float s0 = vec3Dot(face.m_areaStart, vec3Sub(start[0], start[1]));
     const float s1 = vec3Dot(face.m_areaEnd.m_vector, vec3Sub(start[0], end[1]));
-    return faceMayMeet(&face, start[0], s0, s1, boundsOf(start, end));
+    return faceNearness(&face, start[0], s0, s1, boundsOf(start, end));
 }
 
 // Turned so that no axis is an edge's or a normal's.

@@ -4,8 +4,8 @@
 // Input: hits() filled, with each slot's number of them, and how many there are in the step's counters. Output:
 // contacts(), and their number in the counters; the slots' numbers and the next step's counters are left zero.
 // Guarantee: the host's contacts, bit for bit. Where the list is full hits are counted on, and the step must run again
-// with more room. Cost: on a GPU two launches where slots are few, else three to five; what reduction takes besides is
-// said there.
+// with more room. Cost: on a GPU two or three launches where slots are few, else three to five; what reduction takes
+// besides is said there.
 #pragma once
 
 #include <cstdint>

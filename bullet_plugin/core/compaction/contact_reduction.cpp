@@ -9,7 +9,7 @@ namespace drape
 namespace
 {
 constexpr std::size_t kBlockCpu = 64;  // slots of a work-item
-// On a GPU: groups take the slots of so many members, so that there are about so many groups per compute unit.
+// On a GPU: groups take the slots of so many members, so that there are so many groups per compute unit or more.
 constexpr std::size_t kGroupGpu = 128;
 constexpr std::size_t kGroupsPerUnit = 8;
 constexpr std::size_t kLeastShareGpu = 4, kMostShareGpu = 64;  // the latter as in kernels/contact_reduction_hits.cl
@@ -64,9 +64,9 @@ void ContactReductionStage::enqueueKeep(Device& device, SlotHits hits, const Red
         launch((m_slots + kBlockCpu - 1) / kBlockCpu, 1, kBlockCpu);
         return;
     }
-    const std::size_t hitsPerGroup = expectedHits / (kGroupsPerUnit * device.computeUnits());
-    const std::size_t share = std::clamp(hitsPerGroup, kLeastShareGpu, kMostShareGpu);
-    launch((expectedHits + expectedHits / 8) / share + 1, kGroupGpu, share, m_keptSums.handle());
+    const std::size_t fewest = kGroupsPerUnit * device.computeUnits();
+    const std::size_t share = std::clamp(expectedHits / fewest, kLeastShareGpu, kMostShareGpu);
+    launch(std::max(fewest, (expectedHits + expectedHits / 8) / share), kGroupGpu, share, m_keptSums.handle());
 }
 
 void ContactReductionStage::enqueue(Device& device, SlotHits hits, const ReductionBuffers& sides,

@@ -24,12 +24,13 @@ inline std::size_t listGroup(const Device& device)
     return device.isGpu() ? kListGroupGpu : kListGroupCpu;
 }
 
-// The same where about so many items are expected: a GPU starts no more work-items than these and a few in reserve.
+// The same where about so many items are expected: a GPU starts no more work-items than these and a few in reserve, but
+// not so few that many more items than expected would take long.
 inline std::size_t listWidth(const Device& device, std::size_t items)
 {
     const std::size_t most = listWidth(device), group = listGroup(device);
     if (!device.isGpu() || items > most) return most;
-    return std::min(most, (items + items / 8 + group) / group * group);
+    return std::clamp((items + items / 8 + group) / group * group, most / 8, most);
 }
 
 // The same where a CPU's work-item does as many items side by side as a vector has lanes: few work-items, each in a
