@@ -64,8 +64,8 @@ __kernel void compactionPlace(__global const uint* restrict slotCount, const uin
 __kernel void compactionGather(__global const Contact* restrict hits, const uint hitCapacity,
                                __global volatile uint* slotCount, __global const uint* restrict slotFirst,
                                const uint slots, __global uint* restrict members, __global uint* restrict keys,
-                               __global uint* restrict slotKept,
-                               __global const StepCounters* restrict counters, __global StepCounters* restrict next)
+                               __global uint* restrict slotKept, __global const StepCounters* restrict counters,
+                               __global StepCounters* restrict next)
 {
     const uint count = min(counters->m_listed, hitCapacity);
     if (get_global_id(0) < sizeof(StepCounters) / sizeof(uint)) ((__global uint*)next)[get_global_id(0)] = 0;

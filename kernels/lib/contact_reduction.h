@@ -281,17 +281,18 @@ DRAPE_FUNCTION void boundNodes(const ReductionView* view, const SlotLists* lists
 }
 
 // Whether the keeper, another contact of the feature, and nodes of these depths may imply a contact that the nodes
-// alone do not, as far as told without a root and a look at the ways: most keepers do not. most gets how far the nodes
-// let the keeper's point down.
+// alone do not, as far as told without a root and a look at the ways: most keepers do not. Where they may, most gets
+// how far the nodes let the keeper's point down.
 DRAPE_FUNCTION int mayImply(const ReductionView* view, int count, const float* depth, float lack,
                             const ReducedContact* contact, const ReducedContact* keeper, float* most)
 {
     const float thickness = view->m_thickness[contact->m_pair], tube = view->m_tube[contact->m_pair];
-    *most = 0.0f;
+    float letDown = 0.0f;
     if (!standsFor(keeper, contact, thickness)) return 0;
-    DRAPE_EACH_NODE(k, count)* most += keeper->m_weights[k] * depth[k];
+    DRAPE_EACH_NODE(k, count) letDown += keeper->m_weights[k] * depth[k];
+    *most = letDown;
     // What the normals' difference may cost at most.
-    const float room = *most - (keeper->m_gap1 - thickness) - lack;
+    const float room = letDown - (keeper->m_gap1 - thickness) - lack;
     const Vec3 turn = vec3Sub(contact->m_normal, keeper->m_normal);
     return room >= 0.0f && tube * tube * vec3Dot(turn, turn) <= room * room;
 }

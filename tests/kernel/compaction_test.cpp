@@ -7,9 +7,9 @@
 
 #include "bullet_plugin/core/device/program.h"
 #include "kernels/shared/patch.h"
-#include "kernels/shared/slot_sums.h"
 #include "tests/support/cases.h"
 #include "tests/support/device_side.h"
+#include "tests/support/slot_sums.h"
 
 namespace drape::test
 {
@@ -124,7 +124,7 @@ public:
         }
         kept.resize(capacity);
         guardCopy(m_device, m_kept, kept);
-        guardCopy(m_device, m_keptSums, sumsOf(slotKept));
+        guardCopy(m_device, m_keptSums, slotSumsOf(slotKept));
         guardCopy(m_device, m_slotKept, slotKept);
         m_writeKeptFew.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotFirst.handle(), slots,
                               m_parts, m_kept.handle(), m_slotKept.handle(), m_keptSums.handle(), m_contacts.handle(),
@@ -186,14 +186,6 @@ private:
         return capacity;
     }
 
-    static std::vector<cl_uint> sumsOf(const std::vector<cl_uint>& counts)
-    {
-        std::vector<cl_uint> sums(DRAPE_SLOT_SUMS, 0);
-        for (std::size_t slot = 0; slot < counts.size(); ++slot)
-            sums[slot / DRAPE_SUMMED] += counts[slot];
-        return sums;
-    }
-
     // Up to the members' list. Returns the room of the hits' list.
     cl_uint enqueueFew(const std::vector<Contact>& hits, std::uint32_t slots)
     {
@@ -203,7 +195,7 @@ private:
         const cl_uint capacity = prepare(hits, slotCount, m_unlisted);
         places.resize(capacity);
         guardCopy(m_device, m_hitPlaces, places);
-        guardCopy(m_device, m_slotSums, sumsOf(slotCount));
+        guardCopy(m_device, m_slotSums, slotSumsOf(slotCount));
         guardCopy(m_device, m_slotKept, std::vector<cl_uint>(slots, 7));
         guardCopy(m_device, m_keptSums, std::vector<cl_uint>(DRAPE_SLOT_SUMS, 7));
         m_gatherFew.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_hitPlaces.handle(),

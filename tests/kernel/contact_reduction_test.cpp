@@ -6,11 +6,11 @@
 
 #include "bullet_plugin/core/device/program.h"
 #include "kernels/shared/patch.h"
-#include "kernels/shared/slot_sums.h"
 #include "scenes/cloth_grid.h"
 #include "tests/support/cases.h"
 #include "tests/support/device_side.h"
 #include "tests/support/side.h"
+#include "tests/support/slot_sums.h"
 
 namespace drape::test
 {
@@ -164,10 +164,7 @@ public:
         Buffer<cl_uint> sums;
         guardCopy(m_device, sums, std::vector<cl_uint>(DRAPE_SLOT_SUMS, 0));
         const Kept found = run(keep, std::max<std::size_t>(1, m_count / share), 128, share, sums.handle());
-        std::vector<cl_uint> expected(DRAPE_SLOT_SUMS, 0);
-        for (std::size_t slot = 0; slot < m_slots; ++slot)
-            expected[slot / DRAPE_SUMMED] += found.m_counts[slot];
-        EXPECT_EQ(contents(m_device, sums, DRAPE_SLOT_SUMS), expected);
+        EXPECT_EQ(contents(m_device, sums, DRAPE_SLOT_SUMS), slotSumsOf(found.m_counts));
         EXPECT_TRUE(intact(m_device, sums));
         for (const std::size_t groups : {m_count, std::size_t(3), std::size_t(1)})
         {

@@ -35,12 +35,12 @@ void CompactionStage::create(Device& device, const ProgramLoader& load, bool red
 void CompactionStage::resizeSlots(Device& device, std::size_t slotCount)
 {
     m_places.resize(device, slotCount);
-    const std::size_t rows = (slotCount + DRAPE_SUMMED - 1) / DRAPE_SUMMED;  // sums read whole ones
-    m_slotCount.reserve(device, rows * DRAPE_SUMMED);
+    const bool sums = device.isGpu() && m_places.few();
+    m_slotCount.reserve(device, wholeRows(slotCount));
     m_slotFirst.reserve(device, slotCount);
-    if (m_reduces) m_reduction.resizeSlots(device, slotCount, device.isGpu() && m_places.few());
+    if (m_reduces) m_reduction.resizeSlots(device, slotCount, sums);
     m_slotCount.fill(device, 0, slotCount);  // every step leaves it so
-    if (device.isGpu() && m_places.few())
+    if (sums)
     {
         m_slotSums.reserve(device, DRAPE_SLOT_SUMS);
         m_slotSums.fill(device, 0, DRAPE_SLOT_SUMS);

@@ -28,7 +28,7 @@ void ContactReductionStage::create(Device& device, const ProgramLoader& load)
 void ContactReductionStage::resizeSlots(Device& device, std::size_t slotCount, bool sums)
 {
     m_slots = slotCount;
-    m_slotKept.reserve(device, (slotCount + DRAPE_SUMMED - 1) / DRAPE_SUMMED * DRAPE_SUMMED);  // sums read whole rows
+    m_slotKept.reserve(device, wholeRows(slotCount));
     if (sums)
     {
         m_keptSums.reserve(device, DRAPE_SLOT_SUMS);

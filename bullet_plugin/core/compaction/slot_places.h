@@ -11,6 +11,12 @@
 
 namespace drape
 {
+// Room for so many slots' numbers of which sums are read by whole rows.
+inline std::size_t wholeRows(std::size_t slots)
+{
+    return (slots + DRAPE_SUMMED - 1) / DRAPE_SUMMED * DRAPE_SUMMED;
+}
+
 class SlotPlaces
 {
 public:

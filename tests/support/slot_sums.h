@@ -1,0 +1,18 @@
+// What kernels/lib/slot_sums.h must come to.
+#pragma once
+
+#include <vector>
+
+#include "kernels/shared/slot_sums.h"
+
+namespace drape::test
+{
+// The sums over slots that have so many hits each.
+inline std::vector<std::uint32_t> slotSumsOf(const std::vector<std::uint32_t>& counts)
+{
+    std::vector<std::uint32_t> sums(DRAPE_SLOT_SUMS, 0);
+    for (std::size_t slot = 0; slot < counts.size(); ++slot)
+        sums[slot / DRAPE_SUMMED] += counts[slot];
+    return sums;
+}
+}  // namespace drape::test
