@@ -18,7 +18,7 @@ from results import STAGES, SWEEPS, fit_exponent, in_order, read_rows, read_step
 # One colour and dash a method, the same in every plot; peers dashed.
 STYLES = {
     "drape": ("Drape, OpenCL", "C0", "-"),
-    "drape_host": ("Drape, host, 1 thread", "C1", "-"),
+    "drape_host": ("Drape, host", "C1", "-"),
     "embree_contacts_2": ("Embree + Drape's narrow phase, 2 threads", "C2", "--"),
     "embree_contacts_1": ("the same, 1 thread", "C2", ":"),
     "embree_pairs_2": ("Embree, pairs of boxes only, 2 threads", "C3", "--"),

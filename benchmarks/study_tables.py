@@ -228,7 +228,7 @@ def builder_table(rows, table, figure):
     if not lines:
         return ""
     columns = ["step, {}, ms", "refit", "broad phase", "volume tests"]
-    return ("Whole steps of the host, one thread, by default but for the builder of both sides' trees: medians of steps, in "
+    return ("Whole steps of the host by the front, one thread, with every builder of both sides' trees: medians of steps, in "
             "brackets the step of that with the default builder; passes of the builders took turns.\n\n"
             + phase_table(table, "builder", columns, lines))
 

@@ -32,6 +32,7 @@ METHODS = {
     "drape": "Drape, OpenCL",
     "drape_reduced": "the same, redundant contacts left out",
     "drape_host": "Drape, host",
+    "drape_host_front": "the same by the thesis's front over trees of triangles",
     "drape_host_reduced": "the same, redundant contacts left out",
     "embree_contacts_2": "Embree + narrow phase, 2 threads",
     "embree_contacts_1": "the same, 1 thread",

@@ -31,6 +31,7 @@ bool contains(const std::vector<std::string>& list, const std::string& text)
 }
 
 const char* const kReference = "drape_host";
+const char* const kFront = "drape_host_front";
 const char* const kReducedReference = "drape_host_reduced";
 const char* const kReduced = "drape_reduced";
 const char* const kReducedKernels = "drape_reduced_kernels";
@@ -60,6 +61,9 @@ std::vector<MethodEntry> allMethods(const Options& options)
     add(kReference, drape(host));
     if (!onHost) add("drape", drape(device));
     if (!onHost) add("drape_kernels", drape(profiled));
+    Settings front = host;
+    front.m_methods.m_traversal = Traversal::Front;
+    add(kFront, drape(front));
     addReduced(kReducedReference, host);
     if (!onHost) addReduced(kReduced, device);
     if (!onHost) addReduced(kReducedKernels, profiled);
@@ -93,7 +97,7 @@ std::vector<MethodEntry> chosenMethods(const Options& options)
 }
 
 // Of the methods, those for a scene: without references whose hashes are known, unless they were asked for; sweeps,
-// whose scenes are many, without reduced ones likewise.
+// whose scenes are many, without reduced ones and the front likewise.
 std::vector<MethodEntry> methodsFor(const SceneSpec& spec, std::vector<MethodEntry> methods, const Options& options,
                                     const MeasureSettings& settings)
 {
@@ -102,8 +106,10 @@ std::vector<MethodEntry> methodsFor(const SceneSpec& spec, std::vector<MethodEnt
         if (contains(options.m_methods, entry.m_name)) return false;
         const bool known = !(entry.m_reduced ? settings.m_expectedReduced : settings.m_expected).empty();
         if (!options.m_methods.empty()) return known;
-        // FCL has no collision of a model with itself.
-        return (entry.m_reduced && !spec.m_sweep.empty()) || (spec.m_self && entry.m_name.rfind("fcl", 0) == 0);
+        // Neither FCL nor the front has a collision of a model with itself.
+        const bool pairsOnly = entry.m_name == kFront || entry.m_name.rfind("fcl", 0) == 0;
+        const bool extra = entry.m_reduced || entry.m_name == kFront;
+        return (extra && !spec.m_sweep.empty()) || (spec.m_self && pairsOnly);
     };
     methods.erase(std::remove_if(methods.begin(), methods.end(), isLeftOut), methods.end());
     return methods;

@@ -16,6 +16,7 @@ std::vector<StepVariant> variants()
     {
         all.push_back({std::string("host, ") + name, Settings()});
         all.back().m_settings.m_backend = Backend::Host;
+        all.back().m_settings.m_methods.m_traversal = Traversal::Front;  // the default walks no tree of triangles
         all.back().m_settings.m_methods.m_tree.m_builder = builder;
     }
     return all;

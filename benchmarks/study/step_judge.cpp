@@ -6,7 +6,7 @@ namespace drape::bench
 {
 bool listsTriangles(const Settings& settings)
 {
-    return settings.m_backend == Backend::Host || settings.m_methods.m_traversal != Traversal::Auto;
+    return settings.m_methods.m_traversal != Traversal::Auto;
 }
 
 bool agree(const std::string& name, const std::vector<StepOutcome>& run, const std::vector<StepOutcome>& reference,

@@ -81,7 +81,7 @@ public:
         const DeviceReport& report = m_pipeline->deviceReport();
         row["backend"] = report.m_onHost ? "host" : "opencl";
         fillDevice(row, report.m_device);
-        row["threads"] = report.m_onHost ? 1 : 0;
+        row["threads"] = report.m_onHost ? m_pipeline->threads()->size() : 0;
         row["prepare_ms"] = m_prepareMs;
         row["kernels_ms"] = report.m_buildMs;
     }

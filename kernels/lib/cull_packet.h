@@ -43,8 +43,8 @@ DRAPE_FUNCTION PacketMotion packetMotion(const LanesVec3* p, LanesVec3 e0, Lanes
     return motion;
 }
 
-// Positions along a direction. With three terms not rounded as dopProject() does, but by no more than the sum of all of a
-// position's coordinates in the place of dopInner()'s.
+// Positions along a direction. With three terms not rounded as dopProject() does, but by no more than the sum of all of
+// a position's coordinates in the place of dopInner()'s.
 DRAPE_FUNCTION Lanes projectLanes(LanesVec3 p, int i)
 {
     const Vec3 direction = vec3(dopProject(vec3(1.0f, 0.0f, 0.0f), i), dopProject(vec3(0.0f, 1.0f, 0.0f), i),
@@ -143,9 +143,9 @@ typedef struct Directions
     Lanes m_norm, m_ignored;
 } Directions;
 
-#if defined(__OPENCL_VERSION__) && DRAPE_LANES > 1
+#if defined(DRAPE_LANES) && DRAPE_LANES > 1
 typedef char DirectionsFit[DRAPE_DOP_DIRECTIONS <= DRAPE_LANES ? 1 : -1];
-static Directions directionLanes(void)
+DRAPE_FUNCTION Directions directionLanes(void)
 {
     float x[DRAPE_LANES], y[DRAPE_LANES], z[DRAPE_LANES], norm[DRAPE_LANES], ignored[DRAPE_LANES];
     DRAPE_UNROLL

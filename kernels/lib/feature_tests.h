@@ -1,4 +1,4 @@
-// The feature tests that a cull lists: what they read, and how one is done. For OpenCL C only.
+// The feature tests that a cull lists: what they read, and how one is done. For kernels only.
 #ifndef DRAPE_LIB_FEATURE_TESTS_H
 #define DRAPE_LIB_FEATURE_TESTS_H
 

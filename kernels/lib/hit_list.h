@@ -1,5 +1,5 @@
 // The list of a step's hits, in no particular order: compaction brings them into the canonical one.
-// For OpenCL C only.
+// For kernels only.
 #ifndef DRAPE_LIB_HIT_LIST_H
 #define DRAPE_LIB_HIT_LIST_H
 
@@ -28,6 +28,7 @@ typedef struct HitList
     __global volatile uint* m_count;
 } HitList;
 
+#ifndef DRAPE_HOST_KERNELS
 // A contact is four of these, and where it lies in a list it is aligned so: a store of less leaves a GPU's memory more to do.
 #define DRAPE_CONTACT_QUARTERS 4
 typedef char ContactFits[sizeof(Contact) == DRAPE_CONTACT_QUARTERS * sizeof(uint4) ? 1 : -1];
@@ -48,6 +49,12 @@ static void storeHit(__global Contact* to, const Contact* from)
     quarters[2] = as_uint4((float4)(p[0], p[1], p[2], from->m_gap0));
     quarters[3] = as_uint4((float4)(w[0], w[1], w[2], from->m_time));
 }
+#else
+static void storeHit(Contact* to, const Contact* from)
+{
+    *to = *from;
+}
+#endif
 
 static void listHit(const HitList* list, const Contact* contact)
 {

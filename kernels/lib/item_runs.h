@@ -1,6 +1,6 @@
 // Which items of a list, whose length is only on the device, a work-item of a launch of fixed width takes. On a GPU every
 // stride-th: neighbours then read side by side. On a CPU runs of adjacent ones, one after the other: what lies side by side
-// in a list lies side by side in space, and finds what it reads in the cache. For OpenCL C only.
+// in a list lies side by side in space, and finds what it reads in the cache. For kernels only.
 #ifndef DRAPE_LIB_ITEM_RUNS_H
 #define DRAPE_LIB_ITEM_RUNS_H
 

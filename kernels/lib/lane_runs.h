@@ -1,5 +1,5 @@
 // Runs of feature tests on a CPU, as many of one kind side by side as there are lanes. Who includes this defines the
-// functions that are only declared here, for tests of its own. For OpenCL C only.
+// functions that are only declared here, for tests of its own. For kernels only.
 #ifndef DRAPE_LIB_LANE_RUNS_H
 #define DRAPE_LIB_LANE_RUNS_H
 

@@ -1,7 +1,8 @@
-// One value per lane: a vector of DRAPE_LANES floats where a work-item computes a whole block by itself (CPUs), a float
-// where each work-item of a group is a lane (GPUs) and in C++, where a block is one lane. Products (lanesFma(), lanesDot…,
-// lanesCross…) and lanesSqrt() are for what is compared with a slack only: fma and the built-in functions do not round
-// alike everywhere. The others round as they are written: lane_contacts.h relies on it.
+// One value per lane: a vector of DRAPE_LANES floats where a work-item computes a whole block by itself (CPUs, in
+// OpenCL C and in the host's kernels), a float where each work-item of a group is a lane (GPUs) and elsewhere in C++,
+// where a block is one lane. Products (lanesFma(), lanesDot…, lanesCross…) and lanesSqrt() are for what is compared
+// with a slack only: fma and the built-in functions do not round alike everywhere. The others round as they are
+// written: lane_contacts.h relies on it.
 #ifndef DRAPE_LIB_LANES_H
 #define DRAPE_LIB_LANES_H
 
@@ -22,7 +23,9 @@ DRAPE_NAMESPACE_BEGIN
 #define DRAPE_TEAM
 #endif
 
-#if defined(__OPENCL_VERSION__) && DRAPE_LANES > 1
+#ifdef DRAPE_HOST_KERNELS
+#include "host_lanes.h"
+#elif defined(__OPENCL_VERSION__) && DRAPE_LANES > 1
 #define DRAPE_PASTE(a, b) a##b
 #define DRAPE_VECTOR(type, lanes) DRAPE_PASTE(type, lanes)
 typedef DRAPE_VECTOR(float, DRAPE_LANES) Lanes;
@@ -33,12 +36,6 @@ typedef DRAPE_VECTOR(int, DRAPE_LANES) LaneMask;
 #define lanesNot(mask) (~(mask))
 #define lanesSplat(a) ((Lanes)(a))
 #define lanesMaskSplat(a) ((LaneMask)(-(a)))
-
-// One lane's number.
-static float laneOf(const Lanes* lanes, const uint lane)
-{
-    return ((const float*)lanes)[lane];
-}
 #else
 typedef float Lanes;
 typedef int LaneMask;
@@ -53,21 +50,30 @@ typedef int LaneMask;
 #define lanesMaskSplat(a) (a)
 #endif
 
-#ifdef __OPENCL_VERSION__
-#if DRAPE_LANES > 1
+#if defined(DRAPE_LANES) && DRAPE_LANES > 1
+// One lane's number.
+DRAPE_FUNCTION float laneOf(const Lanes* lanes, DRAPE_UINT lane)
+{
+    return ((const float*)lanes)[lane];
+}
 // Of a number and NaN these give a, not the number: on a CPU fmax and fmin take three instructions more for that.
-static Lanes lanesMax(Lanes a, Lanes b)
+DRAPE_FUNCTION Lanes lanesMax(Lanes a, Lanes b)
 {
     return a < b ? b : a;
 }
-static Lanes lanesMin(Lanes a, Lanes b)
+DRAPE_FUNCTION Lanes lanesMin(Lanes a, Lanes b)
 {
     return b < a ? b : a;
 }
-#else
+#elif defined(__OPENCL_VERSION__)
 #define lanesMax(a, b) fmax(a, b)
 #define lanesMin(a, b) fmin(a, b)
+#else
+#define lanesMax(a, b) drapeMax(a, b)
+#define lanesMin(a, b) drapeMin(a, b)
 #endif
+
+#ifdef __OPENCL_VERSION__
 #define lanesAbs(a) fabs(a)
 // The device's own root, where it is known to be good (PatchCullStage::defines()): with one that is rounded correctly a
 // GPU's cull takes a tenth longer.
@@ -78,10 +84,10 @@ static Lanes lanesMin(Lanes a, Lanes b)
 #endif
 #define lanesFma(a, b, c) fma(a, b, c)
 #else
-#define lanesMax(a, b) drapeMax(a, b)
-#define lanesMin(a, b) drapeMin(a, b)
+#ifndef DRAPE_HOST_KERNELS
 #define lanesAbs(a) drapeAbs(a)
 #define lanesSqrt(a) drapeSqrt(a)
+#endif
 #define lanesFma(a, b, c) ((a) * (b) + (c))
 #endif
 

@@ -1,5 +1,5 @@
 // Pairs of a cloth triangle and a patch of the obstacles: which there are in a step, what looks at a patch, and how the
-// feature tests that are left are listed. For OpenCL C only; see team.h for who does it.
+// feature tests that are left are listed. For kernels only; see team.h for who does it.
 #ifndef DRAPE_LIB_PATCH_PAIRS_H
 #define DRAPE_LIB_PATCH_PAIRS_H
 

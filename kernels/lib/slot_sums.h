@@ -1,5 +1,5 @@
 // Where slots' hits begin in a list by slots, where slots are few: what counts a slot's hits adds them up by rows of slots,
-// too, so that every work-item can tell for itself, and no launch has to sum before. For OpenCL C only.
+// too, so that every work-item can tell for itself, and no launch has to sum before. For kernels only.
 #ifndef DRAPE_LIB_SLOT_SUMS_H
 #define DRAPE_LIB_SLOT_SUMS_H
 
@@ -11,6 +11,7 @@ static void addToSums(__global volatile uint* sums, const uint slot, const uint 
     atomic_add(sums + slot / DRAPE_SUMMED, hits);
 }
 
+#ifndef DRAPE_HOST_KERNELS
 // The sum of the first `count` of DRAPE_SUMMED numbers. By masks: of choices by component PoCL 3.1 makes something else.
 static uint sumOfFirst(__global const uint* numbers, const uint count)
 {
@@ -51,5 +52,6 @@ static void clearSums(__global uint* counts, __global uint* sums, const uint slo
     for (uint i = get_global_id(0); i < slots; i += get_global_size(0)) counts[i] = 0;
     for (uint i = get_global_id(0); i < DRAPE_SLOT_SUMS; i += get_global_size(0)) sums[i] = 0;
 }
+#endif
 
 #endif

@@ -4,7 +4,7 @@
 //
 // What a team finds it gathers and moves to a list with one atomic for many. The list's demand counts on past the
 // capacity; what does not fit is not written, and the host repeats the step with a larger list. Past the limit the team
-// ends: the step is over it whatever follows, and a count that ran on could wrap around. For OpenCL C only.
+// ends: the step is over it whatever follows, and a count that ran on could wrap around. For kernels only.
 #ifndef DRAPE_LIB_TEAM_H
 #define DRAPE_LIB_TEAM_H
 
@@ -40,30 +40,51 @@ static uint byteBits(const ulong bytes)
     return (uint)(((bytes & 0x8040201008040201UL) * 0x0101010101010101UL) >> 56);
 }
 
+#ifndef DRAPE_HOST_KERNELS
+// Of each lane's mask a byte.
+static void laneBytes(const LaneMask mask, ulong* bytes)
+{
+#if DRAPE_LANES == 16
+    const ulong2 all = as_ulong2(convert_char16(mask));
+    bytes[0] = all.x;
+    bytes[1] = all.y;
+#else
+    bytes[0] = as_ulong(convert_char8(mask));
+#endif
+}
+#endif
+
 // Bit i: lane i's mask.
 static uint laneBits(const LaneMask mask)
 {
+    ulong bytes[DRAPE_LANES / 8];
+    laneBytes(mask, bytes);
 #if DRAPE_LANES == 16
-    const ulong2 bytes = as_ulong2(convert_char16(mask));
-    return (bytes.x | bytes.y) == 0 ? 0 : byteBits(bytes.x) | byteBits(bytes.y) << 8;
+    return (bytes[0] | bytes[1]) == 0 ? 0 : byteBits(bytes[0]) | byteBits(bytes[1]) << 8;
 #else
-    return byteBits(as_ulong(convert_char8(mask)));
+    return byteBits(bytes[0]);
 #endif
 }
 
 static int anyLane(const LaneMask mask)
 {
+    ulong bytes[DRAPE_LANES / 8];
+    laneBytes(mask, bytes);
 #if DRAPE_LANES == 16
-    const ulong2 bytes = as_ulong2(convert_char16(mask));
-    return (bytes.x | bytes.y) != 0;
+    return (bytes[0] | bytes[1]) != 0;
 #else
-    return as_ulong(convert_char8(mask)) != 0;
+    return bytes[0] != 0;
 #endif
 }
 
 // The least of all lanes.
 static float leastLane(const Lanes all)
 {
+#ifdef DRAPE_HOST_KERNELS
+    float least = all[0];
+    for (int i = 1; i < DRAPE_LANES; ++i) least = drapeMin(least, all[i]);
+    return least;
+#else
 #if DRAPE_LANES == 16
     const float8 half8 = all.lo < all.hi ? all.lo : all.hi;
 #else
@@ -72,6 +93,7 @@ static float leastLane(const Lanes all)
     const float4 half4 = half8.lo < half8.hi ? half8.lo : half8.hi;
     const float2 half2 = half4.lo < half4.hi ? half4.lo : half4.hi;
     return half2.lo < half2.hi ? half2.lo : half2.hi;
+#endif
 }
 
 #define forLanes(lane, mask)                                              \

@@ -11,17 +11,17 @@ DRAPE_NAMESPACE_BEGIN
 #define drapeBits(a) as_uint(a)
 #define drapeFromBits(a) as_float(a)
 #else
-inline float drapeSqrt(float a)
+DRAPE_FUNCTION float drapeSqrt(float a)
 {
-    return std::sqrt(a);
+    return __builtin_sqrtf(a);
 }
-inline std::uint32_t drapeBits(float a)
+DRAPE_FUNCTION std::uint32_t drapeBits(float a)
 {
     std::uint32_t bits;
     std::memcpy(&bits, &a, sizeof bits);
     return bits;
 }
-inline float drapeFromBits(std::uint32_t bits)
+DRAPE_FUNCTION float drapeFromBits(std::uint32_t bits)
 {
     float a;
     std::memcpy(&a, &bits, sizeof a);

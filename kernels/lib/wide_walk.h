@@ -1,4 +1,4 @@
-// Walks of the wide tree over patches (shared/patch.h): what is on their stacks. For OpenCL C only.
+// Walks of the wide tree over patches (shared/patch.h): what is on their stacks. For kernels only.
 #ifndef DRAPE_LIB_WIDE_WALK_H
 #define DRAPE_LIB_WIDE_WALK_H
 

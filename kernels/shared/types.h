@@ -22,8 +22,14 @@
 #define DRAPE_ULONG std::uint64_t
 #define DRAPE_INT std::int32_t
 #define DRAPE_GLOBAL
+// Each instruction set that the host's kernels are compiled for has functions of its own: linkers join inline ones.
+#ifdef DRAPE_HOST_KERNELS
+#define DRAPE_FUNCTION static inline
+#define DRAPE_RARE_FUNCTION static __attribute__((noinline))
+#else
 #define DRAPE_FUNCTION inline
 #define DRAPE_RARE_FUNCTION inline
+#endif
 #define DRAPE_NAMESPACE_BEGIN \
     namespace drape           \
     {
@@ -43,9 +49,7 @@ DRAPE_NAMESPACE_END
 
 // For what is seldom called and small. On a GPU a call costs a kernel a stack frame wherever it may happen; inlined it
 // costs less.
-#ifndef __OPENCL_VERSION__
-#define DRAPE_COLD_FUNCTION inline
-#elif defined(DRAPE_CPU)
+#if defined(DRAPE_HOST_KERNELS) || defined(DRAPE_CPU)
 #define DRAPE_COLD_FUNCTION DRAPE_RARE_FUNCTION
 #else
 #define DRAPE_COLD_FUNCTION DRAPE_FUNCTION

@@ -33,7 +33,7 @@ TEST_P(LoadTest, CoincidentTriangles)
     const StepStatistics& statistics = pipeline->statistics();
     EXPECT_GE(statistics.m_candidates, std::size_t(kClothTriangles) * kObstacleTriangles);
     EXPECT_LE(statistics.m_retries, 3u);
-    EXPECT_EQ(statistics.m_retries > 0, !pipeline->deviceReport().m_onHost);
+    EXPECT_GT(statistics.m_retries, 0u);
     // Three nodes of every cloth triangle against every obstacle triangle at least.
     EXPECT_GE(contacts.size(), 3u * kClothTriangles * kObstacleTriangles);
     EXPECT_EQ(statistics.m_status, std::uint32_t(kStepGood));
@@ -138,6 +138,7 @@ TEST_P(LoadTest, LimitsLeaveOutTheLargestCloths)
     // Of cloths left out the pairs of triangles are counted, on the host.
     Settings onHost;
     onHost.m_backend = Backend::Host;
+    onHost.m_methods.m_traversal = Traversal::Pairs;
     const std::unique_ptr<Pipeline> host = makePipeline(onHost);
     runCase(*host, step);
     const std::uint64_t pairs = host->statistics().m_candidates;

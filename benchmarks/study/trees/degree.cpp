@@ -190,7 +190,7 @@ std::vector<StepVariant> stepVariants(const StudyOptions& options)
     };
     Settings host;
     host.m_backend = Backend::Host;
-    add("step, host", host, Traversal::Auto);
+    add("step, host", host, Traversal::Front);
     if (options.m_backend == "host") return all;
     add("step, default", options.settings(), Traversal::Auto);
     add("step, leaves", options.settings(), Traversal::Leaves);

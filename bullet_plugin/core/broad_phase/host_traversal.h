@@ -1,4 +1,5 @@
-// Broad phase on the calling thread: the same traversals as on a device, for comparison and as the product's own.
+// Broad phase on the calling thread over trees: the same traversals as on a device, for comparison, for reports of
+// intersections, and for counts of pairs of triangles.
 #pragma once
 
 #include <vector>

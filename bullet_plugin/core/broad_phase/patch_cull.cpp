@@ -16,8 +16,8 @@ constexpr std::size_t kManyTriangles = 1 << 15;
 constexpr std::size_t kWalkTurns = 4;
 constexpr std::size_t kWalkTurnsAlone = 2;
 constexpr std::size_t kCullTurns = 4;
-// Groups that cull pairs, DRAPE_CULL_WAVES times the seven that an H200's compute unit holds by their registers, so that
-// uneven ones even out.
+// Groups that cull pairs, DRAPE_CULL_WAVES times the seven that an H200's compute unit holds by their registers, so
+// that uneven ones even out.
 constexpr std::size_t kPairGroupsPerUnit = 28;
 constexpr std::size_t kFirstPairs = 1 << 16;
 }  // namespace
@@ -89,12 +89,13 @@ void PatchCullStage::releasePacking()
     m_vertexOwnersHeld = m_edgeOwnersHeld = {0, 0};
 }
 
-void PatchCullStage::bringOwners(Device& device, Range vertices, Range edges)
+void PatchCullStage::bringOwners(Device& device, ItemRange vertices, ItemRange edges)
 {
-    const auto bring = [&](Buffer<cl_uint>& buffer, const std::vector<std::uint32_t>& owners, Range& held, Range wanted)
+    const auto bring =
+        [&](Buffer<cl_uint>& buffer, const std::vector<std::uint32_t>& owners, ItemRange& held, ItemRange wanted)
     {
         if (held.m_first <= wanted.m_first && wanted.m_last <= held.m_last) return;
-        Range all = wanted;
+        ItemRange all = wanted;
         if (!held.empty()) all = {std::min(held.m_first, wanted.m_first), std::max(held.m_last, wanted.m_last)};
         buffer.extend(device, all.m_last, held.empty() ? 0 : held.m_last);
         // Where there is something before what is held, that is brought again.
@@ -106,33 +107,22 @@ void PatchCullStage::bringOwners(Device& device, Range vertices, Range edges)
     bring(m_edgeOwners, m_layout.m_edgeOwners, m_edgeOwnersHeld, edges);
 }
 
-// Patches are in the order of slots.
-PatchCullStage::Range PatchCullStage::patchesOf(SlotRange slots) const
-{
-    const auto before = [](const Patch& patch, std::size_t slot) { return patch.m_mesh < slot; };
-    const auto first = std::lower_bound(m_layout.m_patches.begin(), m_layout.m_patches.end(), slots.m_first, before);
-    const auto last = std::lower_bound(first, m_layout.m_patches.end(), slots.m_last, before);
-    return {std::size_t(first - m_layout.m_patches.begin()), std::size_t(last - m_layout.m_patches.begin())};
-}
-
 void PatchCullStage::pack(Device& device, SlotRange slots, Buffer<Triangle>& triangles, Buffer<float>& positions,
                           Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones)
 {
-    const Range patches = patchesOf(slots);
+    const ItemRange patches = patchesOf(m_layout, slots);
     if (m_layout.m_patches.empty() || (patches.count() == 0 && !m_levelsMoved)) return;
     if (patches.count() > 0) packFeatures(device, patches, triangles, positions, vertexCones, edgeCones);
     packVolumes(device, patches, triangles, positions, vertexCones, edgeCones);
     m_levelsMoved = false;
 }
 
-void PatchCullStage::packFeatures(Device& device, Range patches, Buffer<Triangle>& triangles, Buffer<float>& positions,
-                                  Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones)
+void PatchCullStage::packFeatures(Device& device, ItemRange patches, Buffer<Triangle>& triangles,
+                                  Buffer<float>& positions, Buffer<NormalCone>& vertexCones,
+                                  Buffer<NormalCone>& edgeCones)
 {
-    const std::size_t width = PatchCullStage::width(device);
-    const Patch &front = m_layout.m_patches[patches.m_first], &back = m_layout.m_patches[patches.m_last - 1];
-    const Range faces = {patches.m_first * width, patches.m_last * width};
-    const Range vertices = {front.m_vertexBlock * width, (back.m_vertexBlock + back.m_vertexBlocks) * width};
-    const Range edges = {front.m_edgeBlock * width, (back.m_edgeBlock + back.m_edgeBlocks) * width};
+    const PatchLanes lanes = lanesOf(m_layout, patches, width(device));
+    const ItemRange faces = lanes.m_faces, vertices = lanes.m_vertices, edges = lanes.m_edges;
     bringOwners(device, vertices, edges);
     m_packFaces.launch(device, faces.count(), kGroup, m_faceOwners.handle(), faces.first(), faces.last(),
                        triangles.handle(), positions.handle(), vertexCones.handle(), edgeCones.handle(),
@@ -145,35 +135,25 @@ void PatchCullStage::packFeatures(Device& device, Range patches, Buffer<Triangle
                        m_edgeIds.handle());
 }
 
-// Volumes of the patches and of the wide nodes above them, all of those where levels have moved. With the last patch go
-// the places behind it, which are empty.
-void PatchCullStage::packVolumes(Device& device, Range patches, Buffer<Triangle>& triangles, Buffer<float>& positions,
-                                 Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones)
+// Volumes of the patches and of the wide nodes above them.
+void PatchCullStage::packVolumes(Device& device, ItemRange patches, Buffer<Triangle>& triangles,
+                                 Buffer<float>& positions, Buffer<NormalCone>& vertexCones,
+                                 Buffer<NormalCone>& edgeCones)
 {
-    const std::size_t width = PatchCullStage::width(device), patchCount = m_layout.m_patches.size();
-    Range changed = patches;
-    std::size_t children = patchCount;
-    for (std::size_t level = 0; level + 1 < m_layout.m_levels.size(); ++level)
+    for (const LevelPlaces& changed : changedPlaces(m_layout, patches, m_levelsMoved, width(device)))
     {
-        const std::size_t first = m_layout.m_levels[level];
-        const std::size_t places = (m_layout.m_levels[level + 1] - first) * width;
-        if (level > 0 && m_levelsMoved) changed = {0, children};
-        if (changed.m_last == children) changed.m_last = places;
-        if (level == 0)
+        const ItemRange places = changed.m_places;
+        if (changed.m_level == 0)
         {
-            m_volumes.launch(device, changed.count(), kGroup, m_faceOwners.handle(), cl_uint(patchCount),
-                             changed.first(), changed.last(), triangles.handle(), positions.handle(),
+            m_volumes.launch(device, places.count(), kGroup, m_faceOwners.handle(), cl_uint(changed.m_children),
+                             places.first(), places.last(), triangles.handle(), positions.handle(),
                              vertexCones.handle(), edgeCones.handle(), m_wideNodes.handle(), m_sizes.handle(),
                              m_patchVolumes.handle());
+            continue;
         }
-        else
-        {
-            const std::size_t below = m_layout.m_levels[level - 1];
-            m_widen.launch(device, changed.count() * DRAPE_WIDE_NODE_FLOATS, kGroup, m_wideNodes.handle(),
-                           cl_uint(below), cl_uint(first - below), cl_uint(first), changed.first(), changed.last());
-        }
-        children = m_layout.m_levels[level + 1] - first;
-        changed = {changed.m_first / width, (changed.m_last + width - 1) / width};
+        m_widen.launch(device, places.count() * DRAPE_WIDE_NODE_FLOATS, kGroup, m_wideNodes.handle(),
+                       cl_uint(m_layout.m_levels[changed.m_level - 1]), cl_uint(changed.m_children),
+                       cl_uint(m_layout.m_levels[changed.m_level]), places.first(), places.last());
     }
 }
 

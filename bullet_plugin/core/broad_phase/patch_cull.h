@@ -74,20 +74,10 @@ public:
     Features features() { return {m_faces, m_vertices, m_edges, m_faceOwners, m_vertexIds, m_edgeIds}; }
 
 private:
-    // Work-items from m_first up to m_last.
-    struct Range
-    {
-        std::size_t m_first, m_last;
-        std::size_t count() const { return m_last - m_first; }
-        bool empty() const { return m_last <= m_first; }
-        cl_uint first() const { return cl_uint(m_first); }
-        cl_uint last() const { return cl_uint(m_last); }
-    };
-    Range patchesOf(SlotRange slots) const;
-    void bringOwners(Device& device, Range vertices, Range edges);
-    void packFeatures(Device& device, Range patches, Buffer<Triangle>& triangles, Buffer<float>& positions,
+    void bringOwners(Device& device, ItemRange vertices, ItemRange edges);
+    void packFeatures(Device& device, ItemRange patches, Buffer<Triangle>& triangles, Buffer<float>& positions,
                       Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones);
-    void packVolumes(Device& device, Range patches, Buffer<Triangle>& triangles, Buffer<float>& positions,
+    void packVolumes(Device& device, ItemRange patches, Buffer<Triangle>& triangles, Buffer<float>& positions,
                      Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones);
 
     void enqueueWalk(Device& device, Cloths cloths, Buffer<StepCounters>& counters);
@@ -95,8 +85,8 @@ private:
 
     Kernel m_walk, m_cull, m_packFaces, m_packVertices, m_packEdges, m_volumes, m_widen;
     Patches m_layout;
-    bool m_levelsMoved = false;                                    // since the last pack()
-    Range m_vertexOwnersHeld = {0, 0}, m_edgeOwnersHeld = {0, 0};  // by the buffers
+    bool m_levelsMoved = false;                                        // since the last pack()
+    ItemRange m_vertexOwnersHeld = {0, 0}, m_edgeOwnersHeld = {0, 0};  // by the buffers
     Buffer<Patch> m_patches{"obstacle patches"};
     Buffer<cl_uint> m_faceFeatures{"obstacle face features"};  // of a GPU
     Buffer<cl_uint> m_vertexOwners{"obstacle packing"}, m_edgeOwners{"obstacle packing"};

@@ -10,13 +10,15 @@
 
 #include "bullet_plugin/core/device/buffer.h"
 #include "bullet_plugin/core/device/program.h"
+#include "bullet_plugin/core/threads/thread_team.h"
 #include "kernels/lib/contact_reduction.h"
 #include "slot_places.h"
 
 namespace drape
 {
 // slotCount: of the cloth side. The contacts are in canonical order, and those that stay are.
-void reduceOnHost(std::vector<Contact>& contacts, const ReductionView& view, std::size_t slotCount);
+void reduceOnHost(std::vector<Contact>& contacts, const ReductionView& view, std::size_t slotCount,
+                  ThreadTeam& threads);
 
 // What it reads of the sides.
 struct ReductionBuffers

@@ -198,6 +198,52 @@ std::vector<std::uint32_t> clusteredOrder(const PooledMesh& mesh, const float* p
     return order;
 }
 
+void clusterMeshes(const MeshPool& pool, std::size_t first, std::uint32_t width, std::vector<std::uint32_t>& order)
+{
+    order.resize(pool.begin(first).m_triangle);
+    for (std::size_t slot = first; slot < pool.meshCount(); ++slot)
+    {
+        const PooledMesh& mesh = pool.mesh(slot);
+        for (std::uint32_t own : clusteredOrder(mesh, mesh.m_positions.data(), width))
+            order.push_back(own + mesh.m_firstTriangle);
+    }
+}
+
+// Patches are in the order of slots.
+ItemRange patchesOf(const Patches& patches, SlotRange slots)
+{
+    const std::vector<Patch>& all = patches.m_patches;
+    const auto before = [](const Patch& patch, std::size_t slot) { return patch.m_mesh < slot; };
+    const auto first = std::lower_bound(all.begin(), all.end(), slots.m_first, before);
+    const auto last = std::lower_bound(first, all.end(), slots.m_last, before);
+    return {std::size_t(first - all.begin()), std::size_t(last - all.begin())};
+}
+
+PatchLanes lanesOf(const Patches& patches, ItemRange range, std::uint32_t width)
+{
+    const Patch &front = patches.m_patches[range.m_first], &back = patches.m_patches[range.m_last - 1];
+    const std::size_t lanes = width;
+    return {{range.m_first * lanes, range.m_last * lanes},
+            {front.m_vertexBlock * lanes, (back.m_vertexBlock + back.m_vertexBlocks) * lanes},
+            {front.m_edgeBlock * lanes, (back.m_edgeBlock + back.m_edgeBlocks) * lanes}};
+}
+
+std::vector<LevelPlaces> changedPlaces(const Patches& patches, ItemRange range, bool levelsMoved, std::uint32_t width)
+{
+    std::vector<LevelPlaces> all;
+    std::size_t children = patches.m_patches.size();
+    for (std::size_t level = 0; level + 1 < patches.m_levels.size(); ++level)
+    {
+        const std::size_t nodes = patches.m_levels[level + 1] - patches.m_levels[level];
+        if (level > 0 && levelsMoved) range = {0, children};
+        if (range.m_last == children) range.m_last = nodes * width;
+        all.push_back({level, children, range});
+        children = nodes;
+        range = {range.m_first / width, (range.m_last + width - 1) / width};
+    }
+    return all;
+}
+
 void keepPatches(Patches& patches, std::size_t slots, std::uint32_t width)
 {
     std::vector<Patch>& all = patches.m_patches;

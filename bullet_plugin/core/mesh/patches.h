@@ -24,10 +24,22 @@ struct Patches
     std::vector<std::uint32_t> m_levels;  // first wide node of each level, lowest first, then the number of nodes
 };
 
+// Places of a list from m_first up to m_last.
+struct ItemRange
+{
+    std::size_t m_first, m_last;
+    std::size_t count() const { return m_last - m_first; }
+    bool empty() const { return m_last <= m_first; }
+    std::uint32_t first() const { return std::uint32_t(m_first); }
+    std::uint32_t last() const { return std::uint32_t(m_last); }
+};
+
 // The mesh's own triangles, patch by patch. Runs of the leaf order alone, which follows a space-filling curve, are torn
 // where the curve jumps: their volumes then overlap far more others.
 // positions: m, x y z per vertex of the mesh, in any one frame; those that are no numbers only make patches larger.
 std::vector<std::uint32_t> clusteredOrder(const PooledMesh& mesh, const float* positions, std::uint32_t width);
+// Joined triangles of all of the pool's meshes in that order; those before slot `first` are there.
+void clusterMeshes(const MeshPool& pool, std::size_t first, std::uint32_t width, std::vector<std::uint32_t>& order);
 
 // Leaves the patches of the first `slots` meshes; levels are not those of what is left.
 void keepPatches(Patches& patches, std::size_t slots, std::uint32_t width);
@@ -35,6 +47,25 @@ void keepPatches(Patches& patches, std::size_t slots, std::uint32_t width);
 void appendPatches(Patches& patches, const MeshPool& pool, std::size_t slot, const float* positions,
                    std::uint32_t width);
 void makeLevels(Patches& patches, std::uint32_t width);
+
+// The patches of those meshes.
+ItemRange patchesOf(const Patches& patches, SlotRange slots);
+// The lanes of those patches, which are there.
+struct PatchLanes
+{
+    ItemRange m_faces, m_vertices, m_edges;
+};
+PatchLanes lanesOf(const Patches& patches, ItemRange range, std::uint32_t width);
+
+// Places of one level of the wide tree, of `children` that are there.
+struct LevelPlaces
+{
+    std::size_t m_level, m_children;
+    ItemRange m_places;
+};
+// Those to be made anew, lowest level first, where the patches `range` changed; with all of the upper levels where
+// levels have moved. With the last child go the places behind it, which are empty.
+std::vector<LevelPlaces> changedPlaces(const Patches& patches, ItemRange range, bool levelsMoved, std::uint32_t width);
 
 // All of them. width: lanes in a block. positions: m, x y z per joined vertex.
 Patches makePatches(const MeshPool& pool, const float* positions, std::uint32_t width);

@@ -10,6 +10,7 @@
 #include "bullet_plugin/core/device/cache_file.h"
 #include "bullet_plugin/core/device/embedded_kernels.h"
 #include "bullet_plugin/core/device/processor_name.h"
+#include "bullet_plugin/core/threads/thread_team.h"
 
 namespace drape
 {
@@ -17,7 +18,7 @@ namespace
 {
 constexpr const char* kHead = "drape crossover 1\n";
 constexpr std::size_t kMostBytes = 1 << 20;
-constexpr int kHostRevision = 2;  // counts up with what changes how long the host's steps take
+constexpr int kHostRevision = 3;  // counts up with what changes how long the host's steps take
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 // A value in one line.
@@ -80,9 +81,9 @@ CrossoverCache::CrossoverCache(const Settings& settings, const DeviceInfo& devic
 {
     std::ostringstream machine = plainStream(), state = plainStream();
     machine << "device " << oneLine(device.m_name) << "\nplatform " << oneLine(device.m_platform) << "\nunits "
-            << computeUnits << threadsOf(device) << "\nhost " << oneLine(processorName()) << "\nsettings mode "
-            << int(settings.m_mode) << " activation " << settings.m_activation << " reduce "
-            << settings.m_reduceContacts << "\n";
+            << computeUnits << threadsOf(device) << "\nhost " << oneLine(processorName()) << " threads "
+            << ThreadTeam::sizeFor(settings.m_threads) << "\nsettings mode " << int(settings.m_mode) << " activation "
+            << settings.m_activation << " reduce " << settings.m_reduceContacts << "\n";
     state << "driver " << oneLine(device.m_driver) << "\ndrape " << DRAPE_VERSION << " kernels " << kernelsHash()
           << " host " << kHostRevision << "\n";
     m_machine = machine.str();

@@ -135,13 +135,7 @@ void DeviceBackend::uploadSide(const MeshPool& pool, const BvhLayout& layout, Si
 // The cull over patches needs an order of the cloths alone: that of their own patches, since it walks for packets.
 void DeviceBackend::clusterCloths(const MeshPool& cloths, std::size_t firstSlot)
 {
-    m_clustered.resize(cloths.begin(firstSlot).m_triangle);
-    for (std::size_t slot = firstSlot; slot < cloths.meshCount(); ++slot)
-    {
-        const PooledMesh& mesh = cloths.mesh(slot);
-        for (std::uint32_t own : clusteredOrder(mesh, mesh.m_positions.data(), PatchCullStage::width(*m_device)))
-            m_clustered.push_back(own + mesh.m_firstTriangle);
-    }
+    clusterMeshes(cloths, firstSlot, PatchCullStage::width(*m_device), m_clustered);
     m_cloth.m_order.append(*m_device, m_clustered, cloths.begin(firstSlot).m_triangle);
 }
 

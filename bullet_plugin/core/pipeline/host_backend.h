@@ -1,11 +1,12 @@
-// The step on the calling thread, with the kernels' own pure functions. Needs no OpenCL device.
+// The step on the host. Needs no OpenCL device.
 #pragma once
 
-#include "bullet_plugin/core/broad_phase/host_traversal.h"
-#include "bullet_plugin/core/bvh/refit.h"
+#include <memory>
+
 #include "bullet_plugin/core/compaction/contact_reduction.h"
 #include "drape/settings.h"
-#include "obstacle_changes.h"
+#include "host_patches.h"
+#include "host_trees.h"
 #include "step.h"
 
 namespace drape
@@ -13,10 +14,10 @@ namespace drape
 class HostBackend
 {
 public:
-    explicit HostBackend(const Methods& methods = Methods()) : m_traversal(methods.m_traversal) {}
+    explicit HostBackend(const Settings& settings, std::shared_ptr<ThreadTeam> threads);
 
     // Does what a step does after meshes came or obstacles moved.
-    void prepare(const Scene& scene) { update(scene); }
+    void prepare(const Scene& scene);
     // Runs the whole step.
     void run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
 
@@ -24,18 +25,6 @@ public:
     std::vector<std::uint64_t> countCandidates(const Scene& scene, const StepPairs& pairs, const Settings& settings);
 
 private:
-    // The obstacles in the world: the scene's own arrays where no obstacle has a place.
-    struct Placed
-    {
-        std::vector<float> m_positions;
-        std::vector<NormalCone> m_vertexCones, m_edgeCones;
-    };
-    void update(const Scene& scene);
-    // Those from slot `fresh` on, and of the others those whose positions or places changed.
-    void updateObstacles(const Scene& scene, std::size_t fresh);
-    void refitObstacles(const Scene& scene);
-    void place(const Scene& scene);
-    ObstacleView obstacleView(const Scene& scene) const;
     static ReductionView reductionView(const Scene& scene, const StepPairs& pairs);
     static SelfStep selfStep(const Scene& scene, const StepPairs& pairs, const Settings& settings);
     // Of cloths that are in the step for their collisions with themselves only.
@@ -43,18 +32,11 @@ private:
     // What pairs of cloth and obstacle give, in canonical order. False when the step is over a limit.
     bool runPairs(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
     bool runSelf(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
-    // Returns the invalid nodes.
-    std::size_t refitCloths(const Scene& scene, const StepPairs& pairs);
-    BroadPhaseSide clothSide(const Scene& scene) const;
-    BroadPhaseSide obstacleSide(const Scene& scene) const;
 
-    std::vector<BvhNode> m_clothNodes, m_obstacleNodes;
-    HostTraversal m_traversal;
+    std::shared_ptr<ThreadTeam> m_threads;
+    bool m_overPatches;
+    HostPatches m_patches;
+    HostTrees m_trees;  // over patches it counts only
     SelfContactsOnHost m_self;
-    std::vector<Candidate> m_candidates;
-    std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
-    std::vector<BvhBlock> m_obstacleBlocks;  // that m_obstacleNodes has
-    ObstacleChanges m_changes;
-    Placed m_placed;
 };
 }  // namespace drape

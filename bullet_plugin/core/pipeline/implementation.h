@@ -50,7 +50,7 @@ struct Pipeline::Implementation
     Error m_error;
     Scene m_scene;  // before the back ends: they may still read its memory while they end
     std::unique_ptr<DeviceBackend> m_deviceBackend;
-    HostBackend m_hostBackend;
+    std::unique_ptr<HostBackend> m_hostBackend;
     std::vector<NamedPair> m_pairs;
     std::vector<MeshId> m_selfCloths;  // named for the coming step
     StepPairs m_stepPairs;

@@ -69,7 +69,7 @@ std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& erro
     Implementation& self = *pipeline->m_implementation;
     self.m_settings = settings;
     self.m_threads = std::make_shared<ThreadTeam>(settings.m_threads);
-    self.m_hostBackend = HostBackend(settings.m_methods);
+    self.m_hostBackend = std::make_unique<HostBackend>(settings, self.m_threads);
     self.m_report.m_reason = self.m_deviceReason = choice.m_reason;
     self.m_report.m_device.m_name = "host";
     if (choice.m_onHost) return pipeline;
@@ -141,9 +141,9 @@ void Pipeline::prepare()
     self.joinScene();
     const bool onDevice = self.m_deviceBackend && !self.m_deviceLeft;
     const bool onHost = self.mayStayOnHost();
-    if (onHost || !goesOverPatches(self.m_settings)) self.buildHierarchies();
+    if (!goesOverPatches(self.m_settings)) self.buildHierarchies();
     self.takeObstacles();
-    if (onHost) self.m_hostBackend.prepare(self.m_scene);
+    if (onHost) self.m_hostBackend->prepare(self.m_scene);
     if (!onDevice) return;
     self.m_deviceBackend->prepare(self.m_scene);
     if (self.m_deviceBackend->device().failed()) self.leaveDevice();

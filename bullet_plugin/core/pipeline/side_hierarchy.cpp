@@ -108,7 +108,7 @@ TreeMethods Pipeline::Implementation::treeMethods() const
 
 bool Pipeline::Implementation::walksHierarchies() const
 {
-    return !m_pairs.empty() && (m_report.m_onHost || !goesOverPatches(m_settings));
+    return !m_pairs.empty() && !goesOverPatches(m_settings);
 }
 
 void Pipeline::Implementation::layOut()

@@ -43,6 +43,15 @@ struct Scene
     std::size_t allSlotCount() const { return m_anySelf ? 2 * slotCount() : slotCount(); }
 };
 
+// The cloths as kernels see them.
+inline ClothView clothView(const Scene& scene, const Settings& settings)
+{
+    const MeshPool& cloths = scene.m_cloths;
+    return clothView(scene.m_clothStart.data(), scene.m_clothEnd.data(), cloths.triangles().data(),
+                     cloths.edges().data(), std::uint32_t(cloths.vertexCount()),
+                     std::uint32_t(cloths.triangles().size()), std::uint32_t(settings.m_mode), nullptr);
+}
+
 // The most that a step may list.
 struct StepLimits
 {

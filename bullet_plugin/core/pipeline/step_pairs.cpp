@@ -88,8 +88,7 @@ std::size_t Pipeline::Implementation::countKept()
     const MeshPool& obstacles = m_scene.m_obstacles;
     // On a device that walks it the obstacles' hierarchy is made or refitted with new ones and those that move, on the
     // host where it is not joined out of the obstacles' own. Patches are an obstacle's own.
-    const bool onTree = !m_report.m_onHost && !goesOverPatches(m_settings);
-    const bool asOne = onTree || (m_report.m_onHost && !m_scene.m_obstacleLayout.joined());
+    const bool asOne = !goesOverPatches(m_settings) && !(m_report.m_onHost && m_scene.m_obstacleLayout.joined());
     bool allAnew = asOne && m_stepRevision != m_obstacleRevision;
     std::size_t kept = 0;
     for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)

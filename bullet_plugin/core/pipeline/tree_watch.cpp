@@ -24,7 +24,7 @@ bool watchesClothTree(const Settings& settings, bool onHost)
 {
     Traversal traversal = settings.m_methods.m_traversal;
     // On a device none that Auto stands for walks it: device_backend.h and broad_phase.cpp.
-    if (onHost) traversal = HostTraversal::resolve(traversal);
+    if (onHost && !goesOverPatches(settings)) traversal = HostTraversal::resolve(traversal);
     const bool walksIt = traversal == Traversal::Pairs || traversal == Traversal::Single ||
                          traversal == Traversal::Groups || traversal == Traversal::Front;
     return walksIt && settings.m_methods.m_rebuildDecay > 0.0f;

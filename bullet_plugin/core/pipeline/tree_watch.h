@@ -14,9 +14,10 @@
 
 namespace drape
 {
-// Whether the step goes over patches where it has a device; reported intersections are found among pairs of triangles.
+// Whether steps go over patches; reported intersections are found among pairs of triangles.
 bool goesOverPatches(const Settings& settings);
-// Whether a step's traversal walks the cloths' hierarchy and its decay matters. Auto is another traversal on the host.
+// Whether a step's traversal walks the cloths' hierarchy and its decay matters. Where it does not go over patches, Auto
+// is another traversal on the host.
 bool watchesClothTree(const Settings& settings, bool onHost);
 
 class TreeWatch

@@ -30,15 +30,16 @@ inline void pause()
 #endif
 }
 
-unsigned sizeFor(unsigned threads)
+}  // namespace
+
+unsigned ThreadTeam::sizeFor(unsigned threads)
 {
     if (threads > 0) return threads;
     cpu_set_t cores;
     return ::sched_getaffinity(0, sizeof cores, &cores) == 0
-               ? std::min(static_cast<unsigned>(CPU_COUNT(&cores)), ThreadTeam::kMostByDefault)
+               ? std::min(static_cast<unsigned>(CPU_COUNT(&cores)), kMostByDefault)
                : 1;
 }
-}  // namespace
 
 ThreadTeam::ThreadTeam(unsigned threads) : m_size(sizeFor(threads)), m_stretches(new Stretch[m_size]) {}
 

@@ -40,6 +40,8 @@ public:
 
     // threads: the caller's among them. 0: as many as the process may use cores, kMostByDefault at most.
     explicit ThreadTeam(unsigned threads);
+    // How many that are.
+    static unsigned sizeFor(unsigned threads);
     ~ThreadTeam();
     ThreadTeam(const ThreadTeam&) = delete;
     ThreadTeam& operator=(const ThreadTeam&) = delete;
@@ -102,4 +104,13 @@ private:
     std::atomic<unsigned> m_sleepers{0};
     std::atomic<bool> m_ends{false};
 };
+
+// The same, by the caller alone where it is not worth waking others.
+template <class Job>
+void runShared(ThreadTeam& threads, bool worth, std::size_t count, const Job& job)
+{
+    if (worth) return threads.run(count, job);
+    for (std::size_t item = 0; item < count; ++item)
+        job(item);
+}
 }  // namespace drape

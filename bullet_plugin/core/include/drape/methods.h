@@ -70,9 +70,9 @@ struct TreeMethods
 // How the broad phase finds what may touch.
 enum class Traversal
 {
-    // What was fastest. On a device: pairs of features, over patches of obstacle triangles
-    // (core/broad_phase/patch_cull.h), or, where pairs of triangles are asked for, WideGroups on a GPU and else
-    // WideLeaves. On the host: Front. The others all find the pairs of triangles whose volumes overlap.
+    // What was fastest: pairs of features, over patches of obstacle triangles (core/broad_phase/patch_cull.h), or, where
+    // pairs of triangles are asked for, WideGroups on a GPU, Front on the host and else WideLeaves. The others all find
+    // the pairs of triangles whose volumes overlap.
     Auto,
     Pairs,       // a work-item per pair of subtrees walks both hierarchies, the larger node opens first
     Single,      // one work-group with a queue, both nodes open (the thesis's simple traversal)
@@ -87,14 +87,13 @@ struct Methods
 {
     Traversal m_traversal = Traversal::Auto;
 
-    // Who builds the hierarchies that traversals walk; unused by the default of a device, which walks patches. Each
-    // mesh's tree is built once, from the positions that it was given, before the first step that walks it; pairs of
+    // Who builds the hierarchies that traversals walk; unused by the default, which walks patches. Each mesh's tree is built once, from the positions that it was given, before the first step that walks it; pairs of
     // meshes come above.
     TreeMethods m_tree;
 
     // The cloths' hierarchy is built anew, beside the steps, once its nodes' areas over the root's have grown by this
     // factor, ≥ 1, since it was built: see core/pipeline/tree_watch.h. 0: never. Only where a traversal walks it:
-    // Pairs, Single, Groups and Front, which is the host's Auto.
+    // Pairs, Single, Groups and Front.
     float m_rebuildDecay = 1.5f;
 
     // Count the broad phase's volume tests (StepStatistics::m_volumeTests). Costs an atomic a work-item.

@@ -82,7 +82,8 @@ struct StepStatistics
     std::uint32_t m_status = kStepGood;
     std::size_t m_clothTriangles = 0;
     std::size_t m_obstacleTriangles = 0;
-    // What the broad phase left: pairs of triangles on the host and of cloths left out, pairs of features on a device.
+    // What the broad phase left: pairs of features; of cloths left out, and with a traversal that is not the default,
+    // pairs of triangles.
     std::uint64_t m_candidates = 0;
     std::size_t m_volumeTests = 0;       // over pairs of triangles; on a device see Methods::m_countTests
     std::size_t m_sweptTests = 0;        // pairs of features that needed the continuous test
@@ -104,8 +105,8 @@ struct StepStatistics
     // Together they are all of Drape's time in a solver's predictMotion and solveConstraints, and none of Bullet's.
     double m_uploadMs = 0;  // bounds, mirroring nodes and enqueueing
     double m_waitMs = 0;    // waiting for the device (all the work, on the host back end)
-    double m_refitMs = 0;   // of the wait, on the host back end; a device's kernels are timed one by one
-    double m_broadMs = 0;   // likewise
+    double m_refitMs = 0;   // of the wait, on the host back end over trees; a device's kernels are timed one by one
+    double m_broadMs = 0;   // of the wait, on the host back end
     double m_narrowMs = 0;  // likewise, with the canonical order
     double m_writeMs = 0;   // sorting contacts by body; cutting paths and what comes of it but the wait
     double m_finishMs = 0;  // contact rounds between and after Bullet's iterations, and the look at strayed nodes

@@ -15,8 +15,7 @@ enum class Backend
     Auto,    // a GPU, else any OpenCL device, and the host where there is none, where it fails (then error() says why),
              // or where the scene is too small to pay for it
     OpenCl,  // an OpenCL device or an error
-    Host     // the same functions, run serially by the calling thread; trees built anew (Methods::m_rebuildDecay) have
-             // a thread of their own
+    Host     // the same functions as C++, on m_threads threads and without OpenCL
 };
 
 // How a step looks at the cloth's motion between its start and its end.
@@ -57,19 +56,18 @@ struct Settings
     // the step, at the earliest time; Discrete may lose what is faster than its thickness (README: how much it loses).
     ContactMode m_mode = ContactMode::Automatic;
 
-    // Threads that hold the contacts of large cloths, and of many, in Bullet's solver, and write their nodes for a GPU;
-    // the caller's among them. They sleep else. 0: as many as the process may use cores, 8 at most. 1: the caller's
+    // Threads that hold the contacts of large cloths, and of many, in Bullet's solver, that write their nodes for a GPU,
+    // and that the host back end computes on; the caller's among them. They sleep else. 0: as many as the process may use cores, 8 at most. 1: the caller's
     // alone. 64 at most. No trajectory depends on it.
     unsigned m_threads = 0;
 
     // Also count the pairs of cloth and obstacle triangles that intersect at the step's start
-    // (StepStatistics::m_intersections). Costs a kernel, and on a device the usual search, which finds pairs of
-    // features over patches: pairs of triangles are found instead, as on the host, by walking both sides' hierarchies
-    // after a refit. StepStatistics::m_candidates then counts those.
+    // (StepStatistics::m_intersections). Costs a kernel, and the usual search, which finds pairs of features over
+    // patches: pairs of triangles are found instead, by walking both sides' hierarchies after a refit. StepStatistics::m_candidates then counts those.
     bool m_reportIntersections = false;
 
-    // Most pairs that a step may list (of triangles on the host, 8 bytes each; of features or of triangles and patches
-    // on a device, up to 20) and most contacts (140 bytes each on a device, 64 and more on the host); 2^28 at most,
+    // Most pairs that a step may list (of features, on a GPU also of triangles and patches; up to 20 bytes each) and most
+    // contacts (140 bytes each on a device, 130 and more on the host); 2^28 at most,
     // which stands for more. Steps of two million cloth triangles need a third of either. A step with more leaves out
     // the cloths that have most of them, until the rest fits, and says so in its status: those cloths collide with
     // nothing in that step. Queries of whole meshes (drape/queries.h) test as many pairs and list as many answers (8 to

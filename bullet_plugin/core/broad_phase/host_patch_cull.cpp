@@ -1,0 +1,107 @@
+#include "host_patch_cull.h"
+
+#include <algorithm>
+
+#include "bullet_plugin/core/mesh/reserve_room.h"
+
+namespace drape
+{
+namespace
+{
+constexpr std::uint32_t kWidth = DRAPE_PATCH_WIDTH;
+constexpr std::size_t kFirstTests = 1 << 12;
+// Tests of the step before from which on threads are worth waking: such a step's cull takes half a millisecond.
+constexpr std::size_t kLeastShared = 1 << 10;
+
+template <typename T>
+void resize(std::vector<T>& elements, std::size_t count)
+{
+    reserveRoom(elements, count);
+    elements.resize(count);
+}
+}  // namespace
+
+void HostPatchCull::setTopology(const MeshPool& obstacles, std::size_t firstSlot)
+{
+    keepPatches(m_layout, firstSlot, kWidth);
+    for (std::size_t slot = firstSlot; slot < obstacles.meshCount(); ++slot)
+        appendPatches(m_layout, obstacles, slot, obstacles.mesh(slot).m_positions.data(), kWidth);
+    makeLevels(m_layout, kWidth);
+    m_levelsMoved = true;
+    resize(m_faces, m_layout.m_faceOwners.size() * DRAPE_FACE_FLOATS);
+    resize(m_vertices, m_layout.m_vertexOwners.size() * DRAPE_VERTEX_FLOATS);
+    resize(m_edges, m_layout.m_edgeOwners.size() * DRAPE_EDGE_FLOATS);
+    resize(m_vertexIds, m_layout.m_vertexOwners.size());
+    resize(m_edgeIds, m_layout.m_edgeOwners.size());
+    resize(m_sizes, m_layout.m_patches.size());
+    // A vector of lanes is loaded from it, of which some lie behind the last patch's.
+    resize(m_volumes, m_layout.m_patches.size() * DRAPE_WIDE_NODE_FLOATS + kWidth);
+    resize(m_wideNodes, std::size_t(m_layout.m_levels.back()) * DRAPE_WIDE_NODE_FLOATS * kWidth);
+}
+
+void HostPatchCull::pack(SlotRange slots, const ObstacleView& obstacle)
+{
+    const ItemRange patches = patchesOf(m_layout, slots);
+    if (m_layout.m_patches.empty() || (patches.empty() && !m_levelsMoved)) return;
+    if (!patches.empty()) packFeatures(patches, obstacle);
+    for (const LevelPlaces& changed : changedPlaces(m_layout, patches, m_levelsMoved, kWidth))
+    {
+        const ItemRange places = changed.m_places;
+        const std::vector<std::uint32_t>& levels = m_layout.m_levels;
+        if (changed.m_level == 0)
+            m_kernels->m_packVolumes(m_layout.m_faceOwners.data(), std::uint32_t(changed.m_children), places.first(),
+                                     places.last(), obstacle, m_wideNodes.data(), m_sizes.data(), m_volumes.data());
+        else
+            m_kernels->m_widen(m_wideNodes.data(), levels[changed.m_level - 1], std::uint32_t(changed.m_children),
+                               levels[changed.m_level], places.first(), places.last());
+    }
+    m_levelsMoved = false;
+}
+
+void HostPatchCull::packFeatures(ItemRange patches, const ObstacleView& obstacle)
+{
+    const PatchLanes lanes = lanesOf(m_layout, patches, kWidth);
+    m_kernels->m_packFaces(m_layout.m_faceOwners.data(), lanes.m_faces.first(), lanes.m_faces.last(), obstacle,
+                           m_faces.data());
+    m_kernels->m_packVertices(m_layout.m_vertexOwners.data(), lanes.m_vertices.first(), lanes.m_vertices.last(),
+                              obstacle, m_vertices.data(), m_vertexIds.data());
+    m_kernels->m_packEdges(m_layout.m_edgeOwners.data(), lanes.m_edges.first(), lanes.m_edges.last(), obstacle,
+                           m_edges.data(), m_edgeIds.data());
+}
+
+PackedPatches HostPatchCull::packed() const
+{
+    return {m_layout.m_patches.data(),
+            m_layout.m_levels.data(),
+            std::uint32_t(m_layout.m_levels.size() - 1),
+            m_wideNodes.data(),
+            m_sizes.data(),
+            m_volumes.data(),
+            m_faces.data(),
+            m_vertices.data(),
+            m_edges.data(),
+            m_layout.m_faceOwners.data(),
+            m_vertexIds.data(),
+            m_edgeIds.data()};
+}
+
+std::size_t HostPatchCull::run(const ClothView& cloth, const HostCloths& cloths, std::size_t limit, ThreadTeam& threads,
+                               StepCounters& counters)
+{
+    if (m_tests.empty()) m_tests.resize(kFirstTests);
+    if (m_layout.m_patches.empty()) return 0;
+    const StepCounters before = counters;
+    const PackedPatches patches = packed();
+    for (std::size_t retries = 0;; ++retries)
+    {
+        const HostTests list = {m_tests.data(), std::uint32_t(m_tests.size()), std::uint32_t(limit)};
+        const auto cull = [&](std::size_t packet)
+        { m_kernels->m_cull(std::uint32_t(packet), cloth, cloths, patches, list, &counters); };
+        runShared(threads, m_testsBefore >= kLeastShared, (cloths.m_count + kWidth - 1) / kWidth, cull);
+        const std::size_t wanted = m_testsBefore = counters.m_candidates;
+        if (wanted <= m_tests.size() || wanted > limit) return retries;
+        m_tests.resize(std::min(wanted + wanted / 4, limit));
+        counters = before;
+    }
+}
+}  // namespace drape

@@ -1,0 +1,43 @@
+// Broad phase over patches on the host: PatchCullStage's job, by the kernels of a CPU (host_kernels.h) on the threads
+// of a team.
+#pragma once
+
+#include <vector>
+
+#include "bullet_plugin/core/host_kernels/host_kernels.h"
+#include "bullet_plugin/core/mesh/patches.h"
+#include "bullet_plugin/core/threads/thread_team.h"
+
+namespace drape
+{
+class HostPatchCull
+{
+public:
+    explicit HostPatchCull(const HostKernels& kernels = hostKernels()) : m_kernels(&kernels) {}
+
+    // New obstacles from that slot on, which must be packed next, even where none came.
+    void setTopology(const MeshPool& obstacles, std::size_t firstSlot);
+    // Packs the features of those obstacles where the view has them.
+    void pack(SlotRange slots, const ObstacleView& obstacle);
+
+    // Lists the step's feature tests, and counts them and invalid nodes. limit: of tests; with more the list is not
+    // complete, and counters say only that there are more. Returns how often the list was too short and grew.
+    std::size_t run(const ClothView& cloth, const HostCloths& cloths, std::size_t limit, ThreadTeam& threads,
+                    StepCounters& counters);
+    // Of the last run: as many as counted, and what is behind them is old.
+    const std::vector<FeatureTest>& tests() const { return m_tests; }
+
+    PackedPatches packed() const;
+
+private:
+    void packFeatures(ItemRange patches, const ObstacleView& obstacle);
+
+    const HostKernels* m_kernels;
+    Patches m_layout;
+    bool m_levelsMoved = false;  // since the last pack()
+    std::vector<float> m_faces, m_vertices, m_edges, m_sizes, m_volumes, m_wideNodes;
+    std::vector<std::uint32_t> m_vertexIds, m_edgeIds;  // a face's owner is the face itself
+    std::vector<FeatureTest> m_tests;
+    std::size_t m_testsBefore = 0;  // of the last run
+};
+}  // namespace drape

@@ -1,0 +1,103 @@
+// A CPU's kernels as functions of C++: the very text that an OpenCL device of that kind runs, compiled for several
+// instruction sets, of which the machine's best is used. Needs no OpenCL.
+//
+// Threads may run different items of a launch at once; results do not depend on it, but for the order of lists.
+// Arguments are those of the kernels: kernels/patch_pack.cl, patch_cull.cl, narrow_phase_lanes.cl and narrow_phase.cl
+// say what they are. All of one call are of DRAPE_PATCH_WIDTH lanes. The same bits whatever the instruction set.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "kernels/lib/pair_contact.h"
+#include "kernels/shared/contact.h"
+#include "kernels/shared/patch.h"
+
+namespace drape
+{
+// The cloths of a step and what their triangles have pairs with. thickness: m, cloths × obstacles; radius: m, per
+// cloth.
+struct HostCloths
+{
+    const std::uint32_t* m_order;
+    std::uint32_t m_count;  // triangles
+    const float* m_radius;
+    const float* m_thickness;
+    std::uint32_t m_obstacleMeshes;
+    float m_reachScale;
+    const ObstacleMotion* m_motions;
+    std::uint32_t m_motionCount;
+};
+
+// The obstacles' patches, packed.
+struct PackedPatches
+{
+    const Patch* m_patches;
+    const std::uint32_t* m_levels;
+    std::uint32_t m_levelCount;
+    const float* m_wideNodes;
+    const float* m_sizes;
+    const float* m_volumes;
+    const float* m_faces;
+    const float* m_vertices;
+    const float* m_edges;
+    const std::uint32_t* m_faceIds;
+    const std::uint32_t* m_vertexIds;
+    const std::uint32_t* m_edgeIds;
+};
+
+// Lists that a step fills; demands count on in the counters.
+struct HostTests
+{
+    FeatureTest* m_tests;
+    std::uint32_t m_capacity, m_limit;
+};
+struct HostHits
+{
+    Contact* m_hits;
+    std::uint32_t m_capacity;
+    std::uint32_t* m_slotCount;
+};
+
+// What the narrow phase reads. motions: as HostCloths has them.
+struct HostFeatures
+{
+    const FeatureTest* m_tests;
+    std::uint32_t m_count;
+    ClothView m_cloth;
+    ObstacleView m_obstacle;
+    PackedPatches m_patches;
+    const ObstacleMotion* m_motions;
+};
+
+// first, last: the work-items to run, all of them in this call. item, items: the one to run, of so many in all.
+struct HostKernels
+{
+    const char* m_instructions;
+
+    void (*m_packFaces)(const std::uint32_t* owners, std::uint32_t first, std::uint32_t last,
+                        const ObstacleView& obstacle, float* faces);
+    void (*m_packVertices)(const std::uint32_t* owners, std::uint32_t first, std::uint32_t last,
+                           const ObstacleView& obstacle, float* vertices, std::uint32_t* ids);
+    void (*m_packEdges)(const std::uint32_t* owners, std::uint32_t first, std::uint32_t last,
+                        const ObstacleView& obstacle, float* edges, std::uint32_t* ids);
+    void (*m_packVolumes)(const std::uint32_t* faceOwners, std::uint32_t patchCount, std::uint32_t first,
+                          std::uint32_t last, const ObstacleView& obstacle, float* wideNodes, float* sizes,
+                          float* volumes);
+    void (*m_widen)(float* wideNodes, std::uint32_t below, std::uint32_t nodeCount, std::uint32_t level,
+                    std::uint32_t first, std::uint32_t last);
+    // Lists the feature tests of a packet, DRAPE_PATCH_WIDTH cloth triangles. Of the cloth its edges are not read.
+    void (*m_cull)(std::uint32_t packet, const ClothView& cloth, const HostCloths& cloths, const PackedPatches& patches,
+                   HostTests tests, StepCounters* counters);
+    // Lists hits, and in swept, which has room for as many, the tests that the continuous test decides.
+    void (*m_findHits)(std::uint32_t item, std::uint32_t items, const HostFeatures& features, HostHits hits,
+                       std::uint32_t* swept, StepCounters* counters);
+    // Lists the hits of those. items: at least one for each kind of feature.
+    void (*m_findSwept)(std::uint32_t item, std::uint32_t items, const HostFeatures& features, HostHits hits,
+                        std::uint32_t* swept, StepCounters* counters);
+};
+
+// Those for this machine. Every set that it can run, the best first: for tests.
+const HostKernels& hostKernels();
+const HostKernels* const* allHostKernels(std::size_t& count);
+}  // namespace drape

@@ -1,0 +1,88 @@
+// Words of OpenCL C in C++, for kernels of a CPU that threads run an item at a time: those whose work-items need no
+// other's, in groups of one. Their text is included behind this in a namespace of its own.
+#pragma once
+
+#include <climits>
+#include <cmath>
+#include <cstdint>
+
+#define __kernel static
+#define __global
+#define __local
+#define restrict __restrict
+
+namespace drape
+{
+namespace
+{
+using uint = std::uint32_t;
+using ulong = std::uint64_t;
+using ushort = std::uint16_t;
+
+// The thread's work-item at hand, and how many there are.
+thread_local uint t_item, t_items;
+
+inline uint get_global_id(int)
+{
+    return t_item;
+}
+inline uint get_global_size(int)
+{
+    return t_items;
+}
+inline uint get_group_id(int)
+{
+    return t_item;
+}
+inline uint get_num_groups(int)
+{
+    return t_items;
+}
+inline uint get_local_id(int)
+{
+    return 0;
+}
+inline uint get_local_size(int)
+{
+    return 1;
+}
+
+// Runs work-item `item` of so many.
+template <class Kernel>
+inline void runItem(uint item, uint items, const Kernel& kernel)
+{
+    t_item = item;
+    t_items = items;
+    kernel();
+}
+
+// Runs all of so many, one after the other.
+template <class Kernel>
+inline void launch(uint items, const Kernel& kernel)
+{
+    for (uint item = 0; item < items; ++item)
+        runItem(item, items, kernel);
+}
+
+inline uint min(uint a, uint b)
+{
+    return b < a ? b : a;
+}
+inline int popcount(uint a)
+{
+    return __builtin_popcount(a);
+}
+inline uint clz(uint a)
+{
+    return a == 0 ? 32 : uint(__builtin_clz(a));
+}
+inline uint atomic_add(volatile uint* number, uint more)
+{
+    return __atomic_fetch_add(number, more, __ATOMIC_RELAXED);
+}
+inline uint atomic_inc(volatile uint* number)
+{
+    return atomic_add(number, 1);
+}
+}  // namespace
+}  // namespace drape

@@ -1,0 +1,30 @@
+// The obstacles of a scene where they are in the world, on the host: the scene's own arrays where no obstacle has a
+// place.
+#pragma once
+
+#include <vector>
+
+#include "obstacle_changes.h"
+
+namespace drape
+{
+class HostPlacedObstacles
+{
+public:
+    // Whether positions or places may have changed since update().
+    bool changed(const Scene& scene) const { return m_changes.any(scene); }
+    // Those from slot `fresh` on, and of the others those that were given other positions or another place.
+    void update(const Scene& scene, std::size_t fresh);
+    // By the last update().
+    bool moved(std::size_t slot) const { return m_changes.moved(slot); }
+
+    ObstacleView view(const Scene& scene) const;
+
+private:
+    void place(const Scene& scene);
+
+    ObstacleChanges m_changes;
+    std::vector<float> m_positions;
+    std::vector<NormalCone> m_vertexCones, m_edgeCones;
+};
+}  // namespace drape

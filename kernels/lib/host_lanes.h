@@ -1,0 +1,70 @@
+// Vectors of lanes in C++, by GCC's and Clang's vector types: what lanes.h is made of in the host's kernels, and what
+// team.h asks of a mask. Included by lanes.h, within its namespace.
+#ifndef DRAPE_LIB_HOST_LANES_H
+#define DRAPE_LIB_HOST_LANES_H
+
+typedef float Lanes __attribute__((vector_size(4 * DRAPE_LANES)));
+typedef int LaneMask __attribute__((vector_size(4 * DRAPE_LANES)));
+
+DRAPE_FUNCTION Lanes lanesSplat(float a)
+{
+    return a - Lanes{};
+}
+DRAPE_FUNCTION Lanes lanesSplat(Lanes a)
+{
+    return a;
+}
+DRAPE_FUNCTION LaneMask lanesMaskSplat(int a)
+{
+    return LaneMask{} - a;
+}
+DRAPE_FUNCTION LaneMask lanesNot(LaneMask mask)
+{
+    return ~mask;
+}
+
+DRAPE_FUNCTION Lanes lanesLoad(const float* block, DRAPE_UINT component)
+{
+    Lanes lanes;
+    __builtin_memcpy(&lanes, block + DRAPE_LANES * component, sizeof lanes);
+    return lanes;
+}
+DRAPE_FUNCTION void lanesStore(Lanes lanes, float* block, DRAPE_UINT component)
+{
+    __builtin_memcpy(block + DRAPE_LANES * component, &lanes, sizeof lanes);
+}
+
+DRAPE_FUNCTION Lanes lanesSelect(LaneMask mask, Lanes yes, Lanes no)
+{
+    return mask ? yes : no;
+}
+DRAPE_FUNCTION Lanes lanesSelect(LaneMask mask, Lanes yes, float no)
+{
+    return mask ? yes : lanesSplat(no);
+}
+
+DRAPE_FUNCTION Lanes lanesAbs(Lanes a)
+{
+    return (Lanes)((LaneMask)a & 0x7fffffff);
+}
+DRAPE_FUNCTION Lanes sqrt(Lanes a)
+{
+    Lanes root;
+    for (int i = 0; i < DRAPE_LANES; ++i)
+        root[i] = __builtin_sqrtf(a[i]);
+    return root;
+}
+DRAPE_FUNCTION Lanes lanesSqrt(Lanes a)
+{
+    return sqrt(a);
+}
+
+// Of each lane's mask a byte.
+DRAPE_FUNCTION void laneBytes(LaneMask mask, DRAPE_ULONG* bytes)
+{
+    typedef signed char Bytes __attribute__((vector_size(DRAPE_LANES)));
+    const Bytes all = __builtin_convertvector(mask, Bytes);
+    __builtin_memcpy(bytes, &all, sizeof all);
+}
+
+#endif

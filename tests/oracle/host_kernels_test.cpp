@@ -1,0 +1,175 @@
+// The host's kernels of every instruction set that the machine has, against all pairs of triangles tested one by one:
+// the same contacts, bit for bit, with any number of threads. Lists that are too short grow, limits are kept.
+#include "bullet_plugin/core/host_kernels/host_kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "bullet_plugin/core/broad_phase/host_patch_cull.h"
+#include "bullet_plugin/core/compaction/canonical_order.h"
+#include "scenes/shapes.h"
+#include "tests/support/cases.h"
+#include "tests/support/side.h"
+
+namespace drape::test
+{
+namespace
+{
+constexpr float kReachScale = 1.5f;
+
+// A step's cull and narrow phase by one set of kernels.
+class HostStep
+{
+public:
+    HostStep(const HostKernels& kernels, const StepCase& step, std::uint32_t mode)
+        : m_kernels(kernels),
+          m_cull(kernels),
+          m_cloth(makeSide({step.m_cloth})),
+          m_obstacle(makeSide({step.m_obstacle})),
+          m_thickness(step.m_thickness),
+          m_radius(step.m_thickness * kReachScale * 1.001f)
+    {
+        m_cloth.m_end = step.m_end;
+        m_view = m_cloth.cloth();
+        m_view.m_mode = mode;
+        clusterMeshes(m_cloth.m_pool, 0, DRAPE_PATCH_WIDTH, m_order);
+        m_cull.setTopology(m_obstacle.m_pool, 0);
+        m_cull.pack({0, 1}, m_obstacle.obstacle());
+    }
+
+    std::size_t cull(ThreadTeam& threads, std::size_t limit = 1u << 28)
+    {
+        m_counters = {};
+        const HostCloths cloths = {
+            m_order.data(), std::uint32_t(m_order.size()), &m_radius, &m_thickness, 1, kReachScale, nullptr, 0};
+        return m_cull.run(m_view, cloths, limit, threads, m_counters);
+    }
+
+    // Of the last cull.
+    std::vector<Contact> contacts(ThreadTeam& threads)
+    {
+        const MeshPool& pool = m_cloth.m_pool;
+        std::vector<Contact> hits(m_counters.m_candidates), contacts;
+        std::vector<std::uint32_t> slots(pool.vertexCount() + pool.triangles().size() + pool.edges().size(), 0);
+        std::vector<std::uint32_t> swept(m_counters.m_candidates);
+        const HostFeatures features = {m_cull.tests().data(), m_counters.m_candidates, m_view,
+                                       m_obstacle.obstacle(), m_cull.packed(),         nullptr};
+        const HostHits list = {hits.data(), std::uint32_t(hits.size()), slots.data()};
+        const auto run = [&](auto kernel, std::size_t items)
+        {
+            threads.run(
+                items, [&](std::size_t item)
+                { kernel(std::uint32_t(item), std::uint32_t(items), features, list, swept.data(), &m_counters); });
+        };
+        run(m_kernels.m_findHits, 1 + m_counters.m_candidates / 100);
+        run(m_kernels.m_findSwept, 6);
+        orderHits(hits.data(), m_counters.m_listed, slots, contacts);
+        return contacts;
+    }
+
+    std::vector<Contact> expected() const
+    {
+        std::vector<Contact> contacts;
+        narrowPhaseOnHost(allPairs(m_cloth, m_obstacle), m_view, m_obstacle.obstacle(),
+                          {{m_thickness}, 1, kReachScale, m_view.m_mode}, contacts);
+        return contacts;
+    }
+
+    const StepCounters& counters() const { return m_counters; }
+
+private:
+    const HostKernels& m_kernels;
+    HostPatchCull m_cull;
+    Side m_cloth, m_obstacle;
+    float m_thickness, m_radius;
+    ClothView m_view;
+    std::vector<std::uint32_t> m_order;
+    StepCounters m_counters = {};
+};
+
+// The numbers of the machine's sets, the best first.
+std::vector<std::size_t> sets()
+{
+    std::size_t count = 0;
+    allHostKernels(count);
+    std::vector<std::size_t> numbers(count);
+    for (std::size_t i = 0; i < count; ++i)
+        numbers[i] = i;
+    return numbers;
+}
+
+std::string setName(const testing::TestParamInfo<std::size_t>& info)
+{
+    std::size_t count = 0;
+    std::string name = allHostKernels(count)[info.param]->m_instructions;
+    for (char& letter : name)
+        letter = std::isalnum(static_cast<unsigned char>(letter)) ? letter : '_';
+    return name;
+}
+
+class HostKernelsTest : public testing::TestWithParam<std::size_t>
+{
+protected:
+    static const HostKernels& kernels()
+    {
+        std::size_t count = 0;
+        return *allHostKernels(count)[GetParam()];
+    }
+};
+
+TEST_P(HostKernelsTest, ContactsAreThoseOfAllPairs)
+{
+    ThreadTeam alone(1), team(3);
+    std::size_t contacts = 0, swept = 0;
+    for (const StepCase& step :
+         {fallingCase("sphere", 17, 0.03f, 1500), fallingCase("terrain", 17, 0.05f, 1501),
+          soupCase(200, 400, true, 1502), soupCase(3, 5, false, 1503), drapedCase("torus", 21, 0.02f, 1504)})
+    {
+        for (const std::uint32_t mode : {DRAPE_DISCRETE, DRAPE_CONTINUOUS, DRAPE_AUTOMATIC})
+        {
+            SCOPED_TRACE(step.trace() + ", mode " + std::to_string(mode));
+            HostStep host(kernels(), step, mode);
+            const std::vector<Contact> expected = host.expected();
+            for (ThreadTeam* threads : {&alone, &team, &team})
+            {
+                host.cull(*threads);
+                const std::vector<Contact> found = host.contacts(*threads);
+                EXPECT_TRUE(sameBytes(found, expected)) << difference(found, expected);
+            }
+            contacts += expected.size();
+            swept += host.counters().m_swept;
+        }
+    }
+    EXPECT_GT(contacts, 5000u);
+    EXPECT_GT(swept, 100u);
+}
+
+TEST_P(HostKernelsTest, ListsGrowAndLimitsAreKept)
+{
+    ThreadTeam team(2);
+    HostStep host(kernels(), soupCase(500, 900, true, 1510), DRAPE_AUTOMATIC);
+    EXPECT_GT(host.cull(team), 0u) << "the list was too short";
+    const std::size_t tests = host.counters().m_candidates;
+    EXPECT_EQ(host.cull(team), 0u) << "now it is long enough";
+    EXPECT_EQ(host.counters().m_candidates, tests);
+    host.cull(team, tests / 2);
+    EXPECT_GT(host.counters().m_candidates, tests / 2);
+    host.cull(team, tests);
+    EXPECT_EQ(host.counters().m_candidates, tests);
+    const std::vector<Contact> found = host.contacts(team), expected = host.expected();
+    EXPECT_TRUE(sameBytes(found, expected)) << difference(found, expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sets, HostKernelsTest, testing::ValuesIn(sets()), setName);
+
+TEST(HostKernels, TheMachinesBestIsUsed)
+{
+    std::size_t count = 0;
+    const HostKernels* const* all = allHostKernels(count);
+    ASSERT_GT(count, 0u);
+    EXPECT_EQ(&hostKernels(), all[0]);
+    EXPECT_STREQ(all[count - 1]->m_instructions, "any CPU") << "a machine without any has these";
+}
+}  // namespace
+}  // namespace drape::test
