@@ -64,7 +64,7 @@ public:
         };
         run(m_kernels.m_findHits, 1 + m_counters.m_candidates / 100);
         run(m_kernels.m_findSwept, 6);
-        orderHits(hits.data(), m_counters.m_listed, slots, contacts);
+        orderHits(hits.data(), m_counters.m_listed, slots, contacts, threads);
         return contacts;
     }
 

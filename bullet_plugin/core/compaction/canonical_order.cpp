@@ -15,6 +15,10 @@ void sortCandidates(std::vector<Candidate>& candidates)
 
 namespace
 {
+// Hits, or slots, that a thread takes at a time, and hits from which on others are worth waking.
+constexpr std::size_t kPiece = 512;
+constexpr std::size_t kLeastShared = 1 << 12;
+
 bool comesBefore(const Contact& a, const Contact& b)
 {
     return std::tie(a.m_slot, a.m_obstacleFeature) < std::tie(b.m_slot, b.m_obstacleFeature);
@@ -27,19 +31,31 @@ void sortContacts(std::vector<Contact>& contacts)
 }
 
 void orderHits(const Contact* hits, std::size_t count, std::vector<std::uint32_t>& slotCount,
-               std::vector<Contact>& contacts)
+               std::vector<Contact>& contacts, ThreadTeam& threads)
 {
     std::uint32_t first = 0;
     for (std::uint32_t& number : slotCount)
         first += std::exchange(number, first);
     contacts.resize(count);
+    // Each slot's places fill up in any order, which its sort does away with.
     std::vector<std::uint32_t> last = slotCount;
-    for (const Contact* hit = hits; hit != hits + count; ++hit)
-        contacts[last[hit->m_slot]++] = *hit;
-    for (std::size_t slot = 0; slot < slotCount.size(); ++slot)
+    const auto place = [&](std::size_t hit)
+    { contacts[__atomic_fetch_add(&last[hits[hit].m_slot], 1u, __ATOMIC_RELAXED)] = hits[hit]; };
+    const auto sort = [&](std::size_t slot)
     {
         if (last[slot] - slotCount[slot] > 1)
             std::sort(contacts.begin() + slotCount[slot], contacts.begin() + last[slot], comesBefore);
-    }
+    };
+    const auto forPieces = [&](std::size_t items, const auto& one)
+    {
+        runShared(threads, count >= kLeastShared, (items + kPiece - 1) / kPiece,
+                  [&](std::size_t piece)
+                  {
+                      for (std::size_t i = piece * kPiece; i < std::min((piece + 1) * kPiece, items); ++i)
+                          one(i);
+                  });
+    };
+    forPieces(count, place);
+    forPieces(slotCount.size(), sort);
 }
 }  // namespace drape

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "bullet_plugin/core/threads/thread_team.h"
 #include "kernels/shared/contact.h"
 #include "kernels/shared/mesh.h"
 
@@ -16,5 +17,5 @@ void sortContacts(std::vector<Contact>& contacts);
 // The same of hits, of which those of each slot have been counted. Gives the slots' first places in the place of their
 // counts.
 void orderHits(const Contact* hits, std::size_t count, std::vector<std::uint32_t>& slotCount,
-               std::vector<Contact>& contacts);
+               std::vector<Contact>& contacts, ThreadTeam& threads);
 }  // namespace drape

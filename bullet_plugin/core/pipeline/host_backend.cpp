@@ -84,7 +84,7 @@ bool HostBackend::runSelf(const Scene& scene, const StepPairs& pairs, const Sett
 
 void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result)
 {
-    result = StepResult();
+    result.clear();
     if (pairs.m_anyPair && !runPairs(scene, pairs, settings, result)) return;
     if (pairs.m_anySelf) runSelf(scene, pairs, settings, result);
 }

@@ -107,7 +107,7 @@ bool HostPatches::run(const Scene& scene, const StepPairs& pairs, const Settings
     if (result.m_overLimit)
         result.m_contactDemand = counters.m_listed;
     else
-        orderHits(m_hits.data(), counters.m_listed, m_slotCount, result.m_contacts);
+        orderHits(m_hits.data(), counters.m_listed, m_slotCount, result.m_contacts, threads);
     result.m_narrowMs = watch.lapMs();
     return !result.m_overLimit;
 }

@@ -20,7 +20,7 @@ void Pipeline::Implementation::enqueue()
 
 void Pipeline::Implementation::complete()
 {
-    m_result = StepResult();
+    m_result.clear();
     if (!m_stepPairs.m_any) return;
     if (m_report.m_onHost)
     {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "bullet_plugin/core/broad_phase/broad_phase.h"
@@ -118,6 +119,15 @@ struct StepResult
     std::size_t m_intersectionCount = 0;
     double m_treeCost = 0;                                // where it was asked for, see tree_cost.h
     double m_refitMs = 0, m_broadMs = 0, m_narrowMs = 0;  // on the host back end
+
+    // As new, but for the memory of the host's contacts.
+    void clear()
+    {
+        std::vector<Contact> contacts = std::move(m_contacts);
+        contacts.clear();
+        *this = StepResult();
+        m_contacts = std::move(contacts);
+    }
 
     // Those with obstacles, then those of cloths with themselves.
     ContactList allContacts() const
