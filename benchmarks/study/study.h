@@ -62,7 +62,7 @@ void studyTriangleTests(const StudyOptions& options, Table& table);
 // Every traversal over a cloth's descent onto the bunny, step by step: figures 4.6 and 4.8.
 void studyTraversals(const StudyOptions& options, Table& table);
 
-// Whole steps of the host with the default traversal over trees of each builder, the cloth coming down and at rest.
+// Whole steps of the host with the front over trees of each builder, the cloth coming down and at rest.
 void studyBuilders(const StudyOptions& options, Table& table);
 
 // A cloth that changes its shape, with rebuilds of its hierarchy and without: part "rebuild".

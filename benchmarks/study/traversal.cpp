@@ -5,7 +5,7 @@ namespace drape::bench
 {
 namespace
 {
-// The host's default is the reference, so it is first. Its other traversals are last: they take longest, and what the
+// The host's front is the reference, so it is first. Its other traversals are last: they take longest, and what the
 // time left does not suffice for should be theirs.
 std::vector<StepVariant> variants(const StudyOptions& options)
 {

@@ -105,8 +105,8 @@ public:
     // Both copy what they are given. Topology is fixed until remove(). Return kNoMesh, with nothing added, for a mesh
     // with an index out of range; lastError() names it. The next step costs more by what the mesh holds, now and then,
     // where memory grows or gaps close, by what all do; with a traversal that is not the default, and for a cloth
-    // beside one that collides with itself, by what all of its side do. remove() costs next to
-    // nothing; gaps close once more is vacant than not.
+    // beside one that collides with itself, by what all of its side do. remove() costs next to nothing; gaps close once
+    // more is vacant than not.
     MeshId addCloth(const MeshDescription& mesh);
     MeshId addObstacle(const MeshDescription& mesh);
     void remove(MeshId mesh);

@@ -87,7 +87,8 @@ void addBackendOptions(CLI::App& app, Options& options, std::string& mode)
     app.add_option("--mode", options.m_contactMode, "how Drape looks at motion within a step")
         ->check(CLI::IsMember({"discrete", "continuous", "automatic"}));
     app.add_flag("--all-contacts", options.m_allContacts, "solve contacts too that others imply");
-    app.add_option("--threads", options.m_threads, "that hold contacts; 0: as many as there are cores, 8 at most")
+    app.add_option("--threads", options.m_threads,
+                   "that hold contacts, and of the host; 0: as many as there are cores, 8 at most")
         ->check(CLI::Range(0, 64));
     app.add_option("--traversal", options.m_traversal, "how Drape's broad phase goes; the contacts are the same")
         ->check(CLI::IsMember(traversalsByName()));

@@ -34,7 +34,7 @@ typedef struct TestList
 #define teamWidth() 1
 #define teamSync()
 
-// Bit i: byte i, of eight that are all ones or zero. The first is the lowest, as on every CPU with OpenCL.
+// Bit i: byte i, of eight that are all ones or zero. The first is the lowest, as little-endian CPUs have it.
 static uint byteBits(const ulong bytes)
 {
     return (uint)(((bytes & 0x8040201008040201UL) * 0x0101010101010101UL) >> 56);

@@ -117,7 +117,7 @@ TEST_P(LoadTest, HundredThousandCoincidentTriangles)
                 << describe(alone[i]);
         }
     }
-    // One list of candidates, grown by doubling on the host, and what the meshes take.
+    // One list of candidates, and what the meshes take.
     EXPECT_LT(peakResidentBytes(), before + 12 * Settings().m_candidateLimit + kGrowthBytes);
     // Without the crowd's pair the step is good again.
     pipeline->addPair(0, 1, sound.m_thickness);

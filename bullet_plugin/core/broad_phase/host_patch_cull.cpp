@@ -10,8 +10,10 @@ namespace
 {
 constexpr std::uint32_t kWidth = DRAPE_PATCH_WIDTH;
 constexpr std::size_t kFirstTests = 1 << 12;
-// Tests of the step before from which on threads are worth waking: such a step's cull takes half a millisecond.
-constexpr std::size_t kLeastShared = 1 << 10;
+// Tests of the step before from which on threads are worth waking: such a step's cull takes half a millisecond. And
+// cloth triangles, wherever they are: to find so many far from everything takes half a millisecond, too.
+constexpr std::size_t kLeastTests = 1 << 10;
+constexpr std::size_t kLeastTriangles = 1 << 13;
 
 template <typename T>
 void resize(std::vector<T>& elements, std::size_t count)
@@ -97,9 +99,11 @@ std::size_t HostPatchCull::run(const ClothView& cloth, const HostCloths& cloths,
         const HostTests list = {m_tests.data(), std::uint32_t(m_tests.size()), std::uint32_t(limit)};
         const auto cull = [&](std::size_t packet)
         { m_kernels->m_cull(std::uint32_t(packet), cloth, cloths, patches, list, &counters); };
-        runShared(threads, m_testsBefore >= kLeastShared, (cloths.m_count + kWidth - 1) / kWidth, cull);
+        const bool worth = m_testsBefore >= kLeastTests || cloths.m_count >= kLeastTriangles;
+        runShared(threads, worth, (cloths.m_count + kWidth - 1) / kWidth, cull);
         const std::size_t wanted = m_testsBefore = counters.m_candidates;
         if (wanted <= m_tests.size() || wanted > limit) return retries;
+        m_tests = std::vector<FeatureTest>();  // first, so that both are not there at once
         m_tests.resize(std::min(wanted + wanted / 4, limit));
         counters = before;
     }

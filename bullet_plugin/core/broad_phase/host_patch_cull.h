@@ -28,6 +28,7 @@ public:
     const std::vector<FeatureTest>& tests() const { return m_tests; }
 
     PackedPatches packed() const;
+    const HostKernels& kernels() const { return *m_kernels; }
 
 private:
     void packFeatures(ItemRange patches, const ObstacleView& obstacle);

@@ -34,6 +34,7 @@ std::vector<Piece> piecesOf(const SlotLists& lists)
 void reducePiece(Piece& piece, const SlotLists& lists, const ReductionView& view, Contact* kept)
 {
     std::vector<std::uint32_t> members;
+    std::uint32_t count = 0;
     for (std::uint32_t i = piece.m_first; i < piece.m_last;)
     {
         const std::uint32_t end = slotEnd(&lists, lists.m_hits[i].m_slot);
@@ -43,9 +44,10 @@ void reducePiece(Piece& piece, const SlotLists& lists, const ReductionView& view
         members.resize(reduceSlot(&view, &lists, members.data(), end - i));
         std::sort(members.begin(), members.end());
         for (std::uint32_t member : members)
-            kept[piece.m_kept++] = lists.m_hits[member];
+            kept[count++] = lists.m_hits[member];
         i = end;
     }
+    piece.m_kept = count;
 }
 }  // namespace
 

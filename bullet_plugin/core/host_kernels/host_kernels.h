@@ -70,7 +70,8 @@ struct HostFeatures
     const ObstacleMotion* m_motions;
 };
 
-// first, last: the work-items to run, all of them in this call. item, items: the one to run, of so many in all.
+// first, last: the lanes to pack, or the wide tree's places, all of them in this call. item, items: the work-item to run,
+// of so many in all.
 struct HostKernels
 {
     const char* m_instructions;

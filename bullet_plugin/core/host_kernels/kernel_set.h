@@ -11,6 +11,8 @@
 #include "kernels/lib/feature_meeting.h"
 #include "opencl_words.h"
 
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "team.h takes a mask's bytes for such a CPU's");
+
 namespace drape
 {
 namespace

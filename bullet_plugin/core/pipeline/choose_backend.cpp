@@ -117,7 +117,8 @@ void Pipeline::Implementation::chooseBackend()
     {
         const PooledMesh& cloth = cloths.mesh(slotOf(cloths, id));
         const Surface own = surfaceOf(cloth);
-        m_choice.note(id, id, expectedPairs(own, own, double(cloth.m_selfThickness) * reachOfThickness));
+        m_choice.note(id, id,
+                      kSelfPairWeight * expectedPairs(own, own, double(cloth.m_selfThickness) * reachOfThickness));
     }
     useChosen();
 }
@@ -132,7 +133,7 @@ bool Pipeline::Implementation::mayStayOnHost() const
     for (std::size_t cloth = 0; cloth < cloths.meshCount() && least <= m_report.m_crossover; ++cloth)
     {
         const Surface own = surfaceOf(cloths.mesh(cloth));
-        double most = cloths.mesh(cloth).m_selfThickness > 0.0f ? expectedPairs(own, own, 0) : 0;
+        double most = cloths.mesh(cloth).m_selfThickness > 0.0f ? kSelfPairWeight * expectedPairs(own, own, 0) : 0;
         for (std::size_t obstacle = 0; obstacle < obstacles.meshCount(); ++obstacle)
             most = std::max(most, expectedPairs(own, surfaceOf(obstacles.mesh(obstacle)), 0));
         least += most;

@@ -21,8 +21,8 @@ constexpr float kThickness = 0.02f;
 constexpr double kGap = 0.75 * kThickness;  // vertical
 constexpr double kMargin = 0.1;             // of the sheet around the cloth
 
-constexpr int kClothCells[] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48};  // along a side
-constexpr int kFineness[] = {1, 4};                                    // cells of the sheet in one of the cloth
+constexpr int kClothCells[] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96};  // along a side
+constexpr int kFineness[] = {1, 4};                                            // cells of the sheet in one of the cloth
 
 constexpr int kWarmUpSteps = 2;  // build trees and grow buffers
 constexpr int kFewestSteps = 5, kMostSteps = 15;

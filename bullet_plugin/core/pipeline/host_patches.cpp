@@ -55,7 +55,7 @@ void HostPatches::updateObstacles(const Scene& scene, std::size_t fresh)
 std::size_t HostPatches::findHits(const Scene& scene, const StepPairs& pairs, const Settings& settings,
                                   ThreadTeam& threads, StepCounters& counters)
 {
-    const HostKernels& kernels = hostKernels();
+    const HostKernels& kernels = m_cull.kernels();
     const std::size_t limit = StepLimits(settings).m_contacts;
     const HostFeatures features = {m_cull.tests().data(), counters.m_candidates, clothView(scene, settings),
                                    m_placed.view(scene),  m_cull.packed(),       pairs.m_motions.data()};
@@ -79,6 +79,7 @@ std::size_t HostPatches::findHits(const Scene& scene, const StepPairs& pairs, co
         if (swept > 0) run(kernels.m_findSwept, kSweptItems, swept >= kLeastSweptShared);
         const std::size_t wanted = counters.m_listed;
         if (wanted <= m_hits.size() || wanted > limit) return retries;
+        m_hits = std::vector<Contact>();
         m_hits.resize(std::min(wanted + wanted / 4, limit));
     }
 }
@@ -86,8 +87,9 @@ std::size_t HostPatches::findHits(const Scene& scene, const StepPairs& pairs, co
 bool HostPatches::run(const Scene& scene, const StepPairs& pairs, const Settings& settings, ThreadTeam& threads,
                       StepResult& result)
 {
-    update(scene);
     Stopwatch watch;
+    update(scene);
+    result.m_refitMs = watch.lapMs();
     const StepLimits limits(settings);
     StepCounters counters = {};
     const HostCloths cloths = {

@@ -230,7 +230,7 @@ ContactList Pipeline::finish()
     StepStatistics& statistics = self.m_statistics;
     if (!self.m_stepPairs.m_any || !self.m_submitted)
     {
-        self.m_result = StepResult();
+        self.m_result.clear();
         statistics.m_skipped = true;
     }
     else

@@ -2,10 +2,10 @@
 //
 // The measure is the number of pairs of triangles whose volumes would overlap if the cloth lay on the obstacle with all
 // its area: time of a step in contact goes with the pairs, and hardly with either side's triangles. Of 15 scenes of
-// bench_step (512 to 32,768 cloth triangles, 1,280 to 327,680 obstacle triangles) the host took 0.26 to 0.47 us a pair
-// found, while its time by cloth triangle differed by a factor of 55 and by product of triangles of 39. What is
-// expected here is 1.2 to 7.8 times what was found there: cloth hangs over an obstacle's edge, and volumes of 18 sides
-// are tighter than boxes.
+// bench_step (512 to 32,768 cloth triangles, 1,280 to 327,680 obstacle triangles) the host by its trees took 0.26 to
+// 0.47 us a pair found, while its time by cloth triangle differed by a factor of 55 and by product of triangles of 39.
+// What is expected here is 1.2 to 7.8 times what was found there: cloth hangs over an obstacle's edge, and volumes of
+// 18 sides are tighter than boxes.
 #pragma once
 
 #include <cstddef>
@@ -26,4 +26,8 @@ struct Surface
 
 // reach: m, the distance up to which the pair's features are looked at. At most every pair there is; finite.
 double expectedPairs(const Surface& cloth, const Surface& obstacle, double reach);
+
+// A pair of triangles of a cloth with itself counts for so many: the host finds these by a walk over trees and tests
+// them one by one on one thread, which takes some ten times as long as a pair with an obstacle.
+constexpr double kSelfPairWeight = 10;
 }  // namespace drape

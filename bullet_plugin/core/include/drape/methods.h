@@ -70,9 +70,9 @@ struct TreeMethods
 // How the broad phase finds what may touch.
 enum class Traversal
 {
-    // What was fastest: pairs of features, over patches of obstacle triangles (core/broad_phase/patch_cull.h), or, where
-    // pairs of triangles are asked for, WideGroups on a GPU, Front on the host and else WideLeaves. The others all find
-    // the pairs of triangles whose volumes overlap.
+    // What was fastest: pairs of features, over patches of obstacle triangles (core/broad_phase/patch_cull.h), or,
+    // where pairs of triangles are asked for, WideGroups on a GPU, Front on the host and else WideLeaves. The others
+    // all find the pairs of triangles whose volumes overlap.
     Auto,
     Pairs,       // a work-item per pair of subtrees walks both hierarchies, the larger node opens first
     Single,      // one work-group with a queue, both nodes open (the thesis's simple traversal)
@@ -87,8 +87,9 @@ struct Methods
 {
     Traversal m_traversal = Traversal::Auto;
 
-    // Who builds the hierarchies that traversals walk; unused by the default, which walks patches. Each mesh's tree is built once, from the positions that it was given, before the first step that walks it; pairs of
-    // meshes come above.
+    // Who builds the hierarchies that traversals walk; unused by the default, which walks patches. Each mesh's tree is
+    // built once, from the positions that it was given, before the first step that walks it; pairs of meshes come
+    // above.
     TreeMethods m_tree;
 
     // The cloths' hierarchy is built anew, beside the steps, once its nodes' areas over the root's have grown by this

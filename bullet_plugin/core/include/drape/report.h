@@ -105,8 +105,8 @@ struct StepStatistics
     // Together they are all of Drape's time in a solver's predictMotion and solveConstraints, and none of Bullet's.
     double m_uploadMs = 0;  // bounds, mirroring nodes and enqueueing
     double m_waitMs = 0;    // waiting for the device (all the work, on the host back end)
-    double m_refitMs = 0;   // of the wait, on the host back end over trees; a device's kernels are timed one by one
-    double m_broadMs = 0;   // of the wait, on the host back end
+    double m_refitMs = 0;   // of the wait, on the host back end; a device's kernels are timed one by one
+    double m_broadMs = 0;   // likewise
     double m_narrowMs = 0;  // likewise, with the canonical order
     double m_writeMs = 0;   // sorting contacts by body; cutting paths and what comes of it but the wait
     double m_finishMs = 0;  // contact rounds between and after Bullet's iterations, and the look at strayed nodes

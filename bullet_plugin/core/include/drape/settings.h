@@ -56,22 +56,23 @@ struct Settings
     // the step, at the earliest time; Discrete may lose what is faster than its thickness (README: how much it loses).
     ContactMode m_mode = ContactMode::Automatic;
 
-    // Threads that hold the contacts of large cloths, and of many, in Bullet's solver, that write their nodes for a GPU,
-    // and that the host back end computes on; the caller's among them. They sleep else. 0: as many as the process may use cores, 8 at most. 1: the caller's
-    // alone. 64 at most. No trajectory depends on it.
+    // Threads that hold the contacts of large cloths, and of many, in Bullet's solver, that write their nodes for a
+    // GPU, and that the host back end computes on; the caller's among them. They sleep else. 0: as many as the process
+    // may use cores, 8 at most. 1: the caller's alone. 64 at most. No trajectory depends on it.
     unsigned m_threads = 0;
 
     // Also count the pairs of cloth and obstacle triangles that intersect at the step's start
     // (StepStatistics::m_intersections). Costs a kernel, and the usual search, which finds pairs of features over
-    // patches: pairs of triangles are found instead, by walking both sides' hierarchies after a refit. StepStatistics::m_candidates then counts those.
+    // patches: pairs of triangles are found instead, by walking both sides' hierarchies after a refit.
+    // StepStatistics::m_candidates then counts those.
     bool m_reportIntersections = false;
 
-    // Most pairs that a step may list (of features, on a GPU also of triangles and patches; up to 20 bytes each) and most
-    // contacts (140 bytes each on a device, 130 and more on the host); 2^28 at most,
-    // which stands for more. Steps of two million cloth triangles need a third of either. A step with more leaves out
-    // the cloths that have most of them, until the rest fits, and says so in its status: those cloths collide with
-    // nothing in that step. Queries of whole meshes (drape/queries.h) test as many pairs and list as many answers (8 to
-    // 24 bytes each); of more they give the number.
+    // Most pairs that a step may list (of features, on a GPU also of triangles and patches; up to 20 bytes each) and
+    // most contacts (140 bytes each on a device, 200 on the host); 2^28 at most, which stands for more. Steps of two
+    // million cloth triangles need a third of either. A step with more leaves out the cloths that have most of them,
+    // until the rest fits, and says so in its status: those cloths collide with nothing in that step. Queries of whole
+    // meshes (drape/queries.h) test as many pairs and list as many answers (8 to 24 bytes each); of more they give the
+    // number.
     std::size_t m_candidateLimit = std::size_t(1) << 27;
     std::size_t m_contactLimit = std::size_t(1) << 24;
 
