@@ -259,7 +259,15 @@ void requireAmong(const Steps& some, const Steps& all)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
     Bytes bytes(data, size);
-    const Choices choices = choicesFrom(bytes);
+    Choices choices = choicesFrom(bytes);
+    const drape::Settings unlimited;
+    if (choices.m_settings.m_candidateLimit != unlimited.m_candidateLimit)
+    {
+        // Candidates are of triangles or of features by the traversal, and more or fewer by the mode: a limit leaves
+        // out other cloths.
+        run(bytes, choices);
+        choices.m_settings.m_candidateLimit = unlimited.m_candidateLimit;
+    }
     const Steps steps = run(bytes, choices);
     Choices other = choices;
     if (choices.m_settings.m_mode == drape::ContactMode::Automatic)
@@ -271,7 +279,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     other.m_settings.m_methods = drape::Methods();
     requireSame(steps, run(bytes, other));
     // Which cloths are over a limit depends on what is left out.
-    const drape::Settings unlimited;
     if (!choices.m_tubes || choices.m_settings.m_contactLimit != unlimited.m_contactLimit) return 0;
     other = choices;
     other.m_settings.m_reduceContacts = false;
