@@ -14,13 +14,6 @@ constexpr std::size_t kFirstTests = 1 << 12;
 // cloth triangles, wherever they are: to find so many far from everything takes half a millisecond, too.
 constexpr std::size_t kLeastTests = 1 << 10;
 constexpr std::size_t kLeastTriangles = 1 << 13;
-
-template <typename T>
-void resize(std::vector<T>& elements, std::size_t count)
-{
-    reserveRoom(elements, count);
-    elements.resize(count);
-}
 }  // namespace
 
 void HostPatchCull::setTopology(const MeshPool& obstacles, std::size_t firstSlot)
@@ -30,15 +23,15 @@ void HostPatchCull::setTopology(const MeshPool& obstacles, std::size_t firstSlot
         appendPatches(m_layout, obstacles, slot, obstacles.mesh(slot).m_positions.data(), kWidth);
     makeLevels(m_layout, kWidth);
     m_levelsMoved = true;
-    resize(m_faces, m_layout.m_faceOwners.size() * DRAPE_FACE_FLOATS);
-    resize(m_vertices, m_layout.m_vertexOwners.size() * DRAPE_VERTEX_FLOATS);
-    resize(m_edges, m_layout.m_edgeOwners.size() * DRAPE_EDGE_FLOATS);
-    resize(m_vertexIds, m_layout.m_vertexOwners.size());
-    resize(m_edgeIds, m_layout.m_edgeOwners.size());
-    resize(m_sizes, m_layout.m_patches.size());
+    resizeWithRoom(m_faces, m_layout.m_faceOwners.size() * DRAPE_FACE_FLOATS);
+    resizeWithRoom(m_vertices, m_layout.m_vertexOwners.size() * DRAPE_VERTEX_FLOATS);
+    resizeWithRoom(m_edges, m_layout.m_edgeOwners.size() * DRAPE_EDGE_FLOATS);
+    resizeWithRoom(m_vertexIds, m_layout.m_vertexOwners.size());
+    resizeWithRoom(m_edgeIds, m_layout.m_edgeOwners.size());
+    resizeWithRoom(m_sizes, m_layout.m_patches.size());
     // A vector of lanes is loaded from it, of which some lie behind the last patch's.
-    resize(m_volumes, m_layout.m_patches.size() * DRAPE_WIDE_NODE_FLOATS + kWidth);
-    resize(m_wideNodes, std::size_t(m_layout.m_levels.back()) * DRAPE_WIDE_NODE_FLOATS * kWidth);
+    resizeWithRoom(m_volumes, m_layout.m_patches.size() * DRAPE_WIDE_NODE_FLOATS + kWidth);
+    resizeWithRoom(m_wideNodes, std::size_t(m_layout.m_levels.back()) * DRAPE_WIDE_NODE_FLOATS * kWidth);
 }
 
 void HostPatchCull::pack(SlotRange slots, const ObstacleView& obstacle)

@@ -13,4 +13,12 @@ void reserveRoom(std::vector<T>& elements, std::size_t count)
 {
     if (count > elements.capacity()) elements.reserve(count + count / 4);
 }
+
+// That many elements, with such room.
+template <typename T>
+void resizeWithRoom(std::vector<T>& elements, std::size_t count)
+{
+    reserveRoom(elements, count);
+    elements.resize(count);
+}
 }  // namespace drape

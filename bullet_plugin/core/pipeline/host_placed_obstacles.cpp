@@ -21,14 +21,9 @@ void HostPlacedObstacles::update(const Scene& scene, std::size_t fresh)
 // As kernels/place_obstacles.cl.
 void HostPlacedObstacles::place(const Scene& scene)
 {
-    const auto resize = [](auto& placed, const auto& own)
-    {
-        reserveRoom(placed, own.size());
-        placed.resize(own.size());
-    };
-    resize(m_positions, scene.m_obstaclePositions);
-    resize(m_vertexCones, scene.m_vertexCones);
-    resize(m_edgeCones, scene.m_edgeCones);
+    resizeWithRoom(m_positions, scene.m_obstaclePositions.size());
+    resizeWithRoom(m_vertexCones, scene.m_vertexCones.size());
+    resizeWithRoom(m_edgeCones, scene.m_edgeCones.size());
     for (std::size_t slot = 0; slot < scene.m_places.size(); ++slot)
     {
         if (!moved(slot)) continue;
