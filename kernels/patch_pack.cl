@@ -167,8 +167,8 @@ static void growVolume(Dop* dop, const Dop* other)
 }
 
 // A work-item is a child place of the wide tree's lowest level, of those from first up to last: a patch, or none from
-// patchCount on. Writes what the tree holds of it, on a CPU in volumes side by side too, and its size, m. The volume is grown by a
-// share of the size, which covers the directions of contacts that are rounding noise (see feature_cull.h).
+// patchCount on. Writes what the tree holds of it, on a CPU in volumes side by side too, and its size, m. The volume is grown
+// by a share of the size, which covers the directions of contacts that are rounding noise (see feature_cull.h).
 __kernel void patchVolumes(__global const uint* restrict faceOwners, const uint patchCount, const uint first, const uint last,
                            __global const Triangle* restrict triangles, __global const float* restrict positions,
                            __global const NormalCone* restrict vertexCones, __global const NormalCone* restrict edgeCones,

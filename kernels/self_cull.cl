@@ -12,6 +12,8 @@ typedef struct SelfCloths
     __global const uint* m_faceIds;
     __global const uint* m_vertexIds;
     __global const uint* m_edgeIds;
+    __global const uint* m_faceNodes;
+    __global const uint* m_edgeNodes;
     __global const float* m_faceBoxes;
     __global const float* m_vertexBoxes;
     __global const float* m_edgeBoxes;
@@ -36,6 +38,15 @@ static const FeatureBox* cornersOf(OwnCorners* corners, const SelfCloth* cloth, 
     return own;
 }
 
+// Lanes whose features do not have the node: most features that are near each other share one, and none of these is listed.
+// rows: of the nodes of a block's features, of which each has `count`.
+static LaneMask lanesWithout(__global const uint* rows, const uint block, const uint count, const uint node)
+{
+    LaneMask without = lanesMaskSplat(1);
+    for (uint i = 0; i < count; ++i) without &= lanesLoadIds(rows, block * count + i) != (int)node;
+    return without;
+}
+
 // Triangle `place` of patch `own` against the features of patch `other`, which is not before it. Within a patch every node
 // meets every face from the node's side, and of two edges the one with the lesser index looks for the other. box: of that
 // patch.
@@ -51,7 +62,8 @@ static void pairTriangle(Team* team, const SelfCloths* cloths, OwnCorners* corne
     for (int k = 0; k < 3; ++k)
     {
         if (!(triangle.m_owned & DRAPE_OWNS_VERTEX(k)) || !boxesMeet(&corner[k], box)) continue;
-        const LaneMask mask = boxesOverlap(&faces, &corner[k]);
+        const LaneMask mask =
+            boxesOverlap(&faces, &corner[k]) & lanesWithout(cloths->m_faceNodes, other, 3, triangle.m_vertices[k]);
         forLanes(lane, mask) keepPair(team, cloth, triangle.m_vertices[k], cloths->m_faceIds[other * DRAPE_PATCH_WIDTH + lane],
                                       DRAPE_SELF_TEST_NODE, list);
     }
@@ -59,7 +71,8 @@ static void pairTriangle(Team* team, const SelfCloths* cloths, OwnCorners* corne
     for (uint block = patch.m_vertexBlock; own != other && block < patch.m_vertexBlock + patch.m_vertexBlocks; ++block)
     {
         const BoxLanes vertices = loadBoxes(cloths->m_vertexBoxes + block * DRAPE_BOX_FLOATS * DRAPE_PATCH_WIDTH);
-        const LaneMask mask = boxesOverlap(&vertices, &whole);
+        LaneMask mask = boxesOverlap(&vertices, &whole);
+        for (int k = 0; k < 3; ++k) mask &= lanesWithout(cloths->m_vertexIds, block, 1, triangle.m_vertices[k]);
         forLanes(lane, mask) keepPair(team, cloth, cloths->m_vertexIds[block * DRAPE_PATCH_WIDTH + lane], face,
                                       DRAPE_SELF_TEST_NODE, list);
     }
@@ -77,7 +90,9 @@ static void pairTriangle(Team* team, const SelfCloths* cloths, OwnCorners* corne
         for (int k = 0; k < 3; ++k)
         {
             if (!near[k]) continue;
-            const LaneMask mask = boxesOverlap(&edges, &edgeBox[k]);
+            const LaneMask mask = boxesOverlap(&edges, &edgeBox[k]) &
+                                  lanesWithout(cloths->m_edgeNodes, block, 2, triangle.m_vertices[k]) &
+                                  lanesWithout(cloths->m_edgeNodes, block, 2, triangle.m_vertices[k == 2 ? 0 : k + 1]);
             forLanes(lane, mask)
             {
                 const uint edge = cloths->m_edgeIds[block * DRAPE_PATCH_WIDTH + lane], mine = triangle.m_edges[k];
@@ -132,9 +147,11 @@ static void walkSelf(Team* team, const SelfCloths* cloths, const uint own, const
 }
 
 // A work-item takes a patch: lists the self tests of its features and those of the patches from it on. The tree's volumes are
-// those that selfPack wrote and patchWiden joined. limit: see team.h; counters->m_selfTests must be zero before.
+// those that selfPack wrote and patchWiden joined. faceNodes, edgeNodes: of each block's features, a row of lanes for each of
+// their nodes. limit: see team.h; counters->m_selfTests must be zero before.
 __kernel void selfCull(__global const Patch* restrict patches, const uint patchCount, __global const uint* restrict faceIds,
                        __global const uint* restrict vertexIds, __global const uint* restrict edgeIds,
+                       __global const uint* restrict faceNodes, __global const uint* restrict edgeNodes,
                        __global const Triangle* restrict triangles, __global const Edge* restrict edges,
                        __global const float* start, __global const float* end, __global const float* restrict radius,
                        __global const float* restrict thickness, __global const float* restrict faceBoxes,
@@ -148,8 +165,8 @@ __kernel void selfCull(__global const Patch* restrict patches, const uint patchC
     const uint mesh = patches[own].m_mesh;
     if (radius[mesh] < 0.0f) return;
     const SelfCloths cloths = {{triangles, edges, start, end, radius[mesh], thickness[mesh]},
-                               patches,   faceIds,     vertexIds, edgeIds,   faceBoxes,
-                               vertexBoxes, edgeBoxes, wideNodes, levels,    levelCount};
+                               patches,   faceIds,   vertexIds,   edgeIds,   faceNodes, edgeNodes,
+                               faceBoxes, vertexBoxes, edgeBoxes, wideNodes, levels,    levelCount};
     const TestList tests = {list, capacity, limit, &counters->m_selfTests};
     Team team;
     teamStart(&team);

@@ -1,5 +1,6 @@
 // The cloths' own patches over a step, for cloths that collide with themselves: the patches' volumes and their nodes' boxes. A
 // CPU's are in self_pack_lanes.cl.
+#include "lib/invalid_nodes.h"
 #include "lib/self_cull.h"
 
 // By node: groups join those of the features that they meet.

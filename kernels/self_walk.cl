@@ -40,8 +40,8 @@ static int listPatches(__local SelfWalker* walker, const uint own, __global Cand
     return place <= limit;
 }
 
-// A work-group takes a patch. The tree's volumes are those that selfPack wrote and patchWiden joined. radius: as there. Past the
-// limit a group ends: see lib/team.h. counters->m_selfPairs must be zero before.
+// A work-group takes a patch. The tree's volumes are those that selfPack wrote and patchWiden joined. radius: as there. Past
+// the limit a group ends: see lib/team.h. counters->m_selfPairs must be zero before.
 __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH, 1, 1))) void selfWalk(
     __global const Patch* restrict patches, __global const float* restrict radius, __global const float* restrict wideNodes,
     __global const uint* restrict levels, const uint levelCount, __global Candidate* restrict list, const uint capacity,
@@ -251,7 +251,8 @@ static void gatherSide(__local NearSide* side, const SelfCloth* cloth, const Sel
             gatherVertex(&side->m_vertices, features, i, features->m_vertexIds[owned.m_vertexBlock * DRAPE_PATCH_WIDTH + i],
                          other);
         else
-            gatherEdge(&side->m_edges, cloth, features, edge, features->m_edgeIds[owned.m_edgeBlock * DRAPE_PATCH_WIDTH + edge], other);
+            gatherEdge(&side->m_edges, cloth, features, edge,
+                       features->m_edgeIds[owned.m_edgeBlock * DRAPE_PATCH_WIDTH + edge], other);
     }
 }
 
@@ -351,15 +352,15 @@ static int settleNear(__local SelfCuller* culler, const SelfCloth* cloth, const 
     return within;
 }
 
-// Lists the self tests of the pairs of patches that selfWalk listed, as many as fitted there. limit: see lib/team.h; counters->m_selfTests must be zero before.
-__kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH, 1, 1))) void selfCullPairs(__global const Candidate* restrict pairs, const uint pairCapacity,
-                            __global const Patch* restrict patches, __global const uint* restrict faceIds,
-                            __global const uint* restrict vertexIds, __global const uint* restrict edgeIds,
-                            __global const Triangle* restrict triangles, __global const Edge* restrict edges,
-                            __global const float* start, __global const float* end, __global const float* restrict radius,
-                            __global const float* restrict thickness, __global const float* restrict nodeBoxes,
-                            __global const float* restrict wideNodes, __global FeatureTest* restrict list, const uint capacity, const uint limit,
-                            __global StepCounters* restrict counters)
+// Lists the self tests of the pairs of patches that selfWalk listed, as many as fitted there. limit: see lib/team.h;
+// counters->m_selfTests must be zero before.
+__kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH, 1, 1))) void selfCullPairs(
+    __global const Candidate* restrict pairs, const uint pairCapacity, __global const Patch* restrict patches,
+    __global const uint* restrict faceIds, __global const uint* restrict vertexIds, __global const uint* restrict edgeIds,
+    __global const Triangle* restrict triangles, __global const Edge* restrict edges, __global const float* start,
+    __global const float* end, __global const float* restrict radius, __global const float* restrict thickness,
+    __global const float* restrict nodeBoxes, __global const float* restrict wideNodes, __global FeatureTest* restrict list,
+    const uint capacity, const uint limit, __global StepCounters* restrict counters)
 {
     __local SelfCuller culler;
     const uint count = min(counters->m_selfPairs, pairCapacity);

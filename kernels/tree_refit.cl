@@ -104,7 +104,8 @@ static void setChild(__local Subtrees* subtrees, const uint place, const uint wi
 {
     const uint behind = (place + 1u) / 2u;  // the first leaf behind the parent's split; 0: the root has none
     if (behind <= window) return;
-    subtrees->m_children[2u * (behind - 1u - window) + (place & 1u ? 0u : 1u)] = (ushort)(DRAPE_SUBTREE_GROUP + get_local_id(0));
+    subtrees->m_children[2u * (behind - 1u - window) + (place & 1u ? 0u : 1u)] =
+        (ushort)(DRAPE_SUBTREE_GROUP + get_local_id(0));
 }
 
 static void keepVolume(__local float* volume, const Dop* dop)
@@ -134,8 +135,8 @@ static void mergeSubtrees(__local Subtrees* subtrees, int waits)
     const uint count = subtrees->m_mergeCount;
     for (uint merged = 0; merged < count;)
     {
-        const int ready =
-            waits && subtrees->m_done[subtrees->m_children[2u * item]] && subtrees->m_done[subtrees->m_children[2u * item + 1u]];
+        const int ready = waits && subtrees->m_done[subtrees->m_children[2u * item]] &&
+                          subtrees->m_done[subtrees->m_children[2u * item + 1u]];
         if (ready) subtrees->m_merges[atomic_inc(&subtrees->m_mergesBegun)] = (ushort)item;
         barrier(CLK_LOCAL_MEM_FENCE);
         const uint begun = subtrees->m_mergesBegun;
@@ -245,7 +246,8 @@ static void mergeQueued(__global BvhNode* nodes, __local const Merges* merges, c
 {
     const uint turn = get_local_id(0) / DRAPE_DOP_WORDS, word = get_local_id(0) % DRAPE_DOP_WORDS;
     __global float* words = (__global float*)nodes + word;
-    for (uint next = first + turn; next < last && turn < DRAPE_WORDS_AT_ONCE; next += DRAPE_WORDS_TOGETHER * DRAPE_WORDS_AT_ONCE)
+    for (uint next = first + turn; next < last && turn < DRAPE_WORDS_AT_ONCE;
+         next += DRAPE_WORDS_TOGETHER * DRAPE_WORDS_AT_ONCE)
     {
         float left[DRAPE_WORDS_TOGETHER], right[DRAPE_WORDS_TOGETHER];
         DRAPE_UNROLL

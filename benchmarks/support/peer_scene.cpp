@@ -50,7 +50,8 @@ void PeerScene::selfContacts(const std::vector<Candidate>& pairs, const float* s
         clothView(start, end, m_cloths.triangles().data(), m_cloths.edges().data(),
                   static_cast<std::uint32_t>(m_cloths.vertexCount()),
                   static_cast<std::uint32_t>(m_cloths.triangles().size()), DRAPE_AUTOMATIC, nullptr);
-    const SelfStep step = {m_cloths, selfView(cloth, m_rest.data(), 1.0f + Settings().m_activation), m_self};
+    const SelfStep step = {m_cloths, selfView(cloth, m_rest.data(), 1.0f + Settings().m_activation), m_self,
+                           m_self.m_radius};
     std::vector<Dop> volumes;
     selfVolumes(step, volumes);
     const std::size_t shares = threads == 1 ? 1 : kSharesPerThread * static_cast<std::size_t>(threads);

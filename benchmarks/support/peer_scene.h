@@ -6,7 +6,7 @@
 #include "benchmarks/support/step_scene.h"
 #include "bullet_plugin/core/mesh/mesh_pool.h"
 #include "bullet_plugin/core/narrow_phase/narrow_phase.h"
-#include "bullet_plugin/core/self_collision/self_contacts.h"
+#include "bullet_plugin/core/self_collision/host_self_trees.h"
 
 namespace drape::bench
 {

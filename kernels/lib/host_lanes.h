@@ -34,6 +34,13 @@ DRAPE_FUNCTION void lanesStore(Lanes lanes, float* block, DRAPE_UINT component)
     __builtin_memcpy(block + DRAPE_LANES * component, &lanes, sizeof lanes);
 }
 
+DRAPE_FUNCTION LaneMask lanesLoadIds(const DRAPE_UINT* rows, DRAPE_UINT row)
+{
+    LaneMask ids;
+    __builtin_memcpy(&ids, rows + DRAPE_LANES * row, sizeof ids);
+    return ids;
+}
+
 DRAPE_FUNCTION Lanes lanesSelect(LaneMask mask, Lanes yes, Lanes no)
 {
     return mask ? yes : no;

@@ -32,6 +32,7 @@ typedef DRAPE_VECTOR(float, DRAPE_LANES) Lanes;
 typedef DRAPE_VECTOR(int, DRAPE_LANES) LaneMask;
 #define lanesLoad(block, component) DRAPE_VECTOR(vload, DRAPE_LANES)(component, block)
 #define lanesStore(lanes, block, component) DRAPE_VECTOR(vstore, DRAPE_LANES)(lanes, component, block)
+#define lanesLoadIds(rows, row) DRAPE_VECTOR(as_int, DRAPE_LANES)(DRAPE_VECTOR(vload, DRAPE_LANES)(row, rows))
 #define lanesSelect(mask, yes, no) select((Lanes)(no), (Lanes)(yes), mask)
 #define lanesNot(mask) (~(mask))
 #define lanesSplat(a) ((Lanes)(a))

@@ -62,19 +62,6 @@ DRAPE_FUNCTION int nodeIsValid(const DRAPE_GLOBAL float* start, const DRAPE_GLOB
     return positionIsValid(vec3Load(start, node)) && positionIsValid(vec3Load(end, node));
 }
 
-#ifdef __OPENCL_VERSION__
-// Counts the invalid nodes that the triangle owns, of a cloth that the search for obstacles does not look at.
-static void countInvalidNodes(__global const Triangle* triangle, __global const float* start, __global const float* end,
-                              __global StepCounters* counters)
-{
-    for (int i = 0; i < 3; ++i)
-    {
-        if ((triangle->m_owned & DRAPE_OWNS_VERTEX(i)) && !nodeIsValid(start, end, triangle->m_vertices[i]))
-            atomic_inc(&counters->m_invalidNodes);
-    }
-}
-#endif
-
 // Empty where the node is not valid.
 DRAPE_FUNCTION FeatureBox nodeBox(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end, DRAPE_UINT node,
                                   float radius)
@@ -124,17 +111,11 @@ DRAPE_FUNCTION int nodesFarApart(const Vec3 start[4], const Vec3 end[4], int spl
     return 0;
 }
 
-// Loads nodes at the step's start and end. Returns whether all are valid.
-DRAPE_FUNCTION int loadNodes(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end, const DRAPE_UINT nodes[4],
-                             Vec3 from[4], Vec3 to[4])
+DRAPE_FUNCTION int placesAreValid(const Vec3 from[4], const Vec3 to[4])
 {
     int valid = 1;
     for (int k = 0; k < 4; ++k)
-    {
-        from[k] = vec3Load(start, nodes[k]);
-        to[k] = vec3Load(end, nodes[k]);
         valid &= positionIsValid(from[k]) & positionIsValid(to[k]);
-    }
     return valid;
 }
 
@@ -162,6 +143,15 @@ DRAPE_FUNCTION int nodeVolumesOverlap(const Vec3 from[4], const Vec3 to[4], int 
         if (low > highOther || lowOther > high) return 0;
     }
     return 1;
+}
+
+// What dopGrowInterval() makes of outermost projections where there was nothing before, a lane each.
+DRAPE_FUNCTION void growLaneInterval(Lanes* least, Lanes* greatest, Lanes reach, Lanes inner)
+{
+    const float pad = DRAPE_DOP_PAD;
+    const Lanes from = *least - reach, to = *greatest + reach;
+    *least = from - (pad * (lanesAbs(*least) + inner + lanesAbs(from)) + DRAPE_TINY);
+    *greatest = to + (pad * (lanesAbs(*greatest) + inner + lanesAbs(to)) + DRAPE_TINY);
 }
 
 // Boxes of a block, a lane each.

@@ -17,12 +17,15 @@ typedef struct SelfCloth
     float m_radius, m_thickness;  // m
 } SelfCloth;
 
-#if DRAPE_LANES > 1
-// nodesFarApart() with a lane for each direction, the axes among them.
-static int nodesApart(const Vec3 from[4], const Vec3 to[4], const int split, const float radius)
+// Whether all nodes of two features are valid, and the features' volumes overlap: see nodeVolumesOverlap().
+#if DRAPE_LANES > 1 && DRAPE_DOP_DIRECTIONS <= 3 + DRAPE_DOP_EDGES
+// With a lane for each direction, the axes among them. Bit for bit the same: products with 0, 1 and -1 do not round, and of
+// two nodes that lie outermost the intervals do.
+static int volumesOverlap(const Vec3 from[4], const Vec3 to[4], const int split, const float radius)
 {
     const Directions directions = directionLanes();
-    Lanes low[4], high[4], inner = lanesSplat(0.0f);
+    const Lanes reach = radius * directions.m_norm, inner = lanesSplat(0.0f);
+    Lanes low[4], high[4], sum = inner;
     DRAPE_UNROLL
     for (int k = 0; k < 4; ++k)
     {
@@ -30,25 +33,29 @@ static int nodesApart(const Vec3 from[4], const Vec3 to[4], const int split, con
         const Lanes end = lanesDotUniform(directions.m_along, to[k]);
         low[k] = lanesMin(start, end);
         high[k] = lanesMax(start, end);
-#if DRAPE_DOP_DIRECTIONS == 7 || DRAPE_DOP_DIRECTIONS == 13
-        inner = lanesMax(inner, lanesSplat(drapeMax(vec3Norm1(from[k]), vec3Norm1(to[k]))));  // of any two coordinates
-#endif
+        sum += lanesAbs(start) + lanesAbs(end);
     }
-    const Lanes own = split == 2 ? lanesMin(low[0], low[1]) : low[0];
-    const Lanes ownHigh = split == 2 ? lanesMax(high[0], high[1]) : high[0];
     const Lanes both = lanesMin(low[2], low[3]), bothHigh = lanesMax(high[2], high[3]);
-    const Lanes other = split == 2 ? both : lanesMin(low[1], both);
-    const Lanes otherHigh = split == 2 ? bothHigh : lanesMax(high[1], bothHigh);
-    const Lanes grown = 2.0f * radius * directions.m_norm;
-    const Lanes most = grown + DRAPE_SELF_PAD * (grown + inner) + directions.m_ignored;
-    return anyLane((own - otherHigh > most + DRAPE_SELF_PAD * (lanesAbs(own) + lanesAbs(otherHigh))) |
-                   (other - ownHigh > most + DRAPE_SELF_PAD * (lanesAbs(other) + lanesAbs(ownHigh))));
+    Lanes own = split == 2 ? lanesMin(low[0], low[1]) : low[0];
+    Lanes ownHigh = split == 2 ? lanesMax(high[0], high[1]) : high[0];
+    Lanes other = split == 2 ? both : lanesMin(low[1], both);
+    Lanes otherHigh = split == 2 ? bothHigh : lanesMax(high[1], bothHigh);
+    growLaneInterval(&own, &ownHigh, reach, inner);
+    growLaneInterval(&other, &otherHigh, reach, inner);
+    const LaneMask apart = (own > otherHigh) | (other > ownHigh);
+    // Where even the sum is not far, all are valid.
+    if (!anyLane(apart | lanesNot(sum <= DRAPE_FARTHEST))) return 1;
+    return !anyLane(apart) && placesAreValid(from, to);
 }
 #else
-#define nodesApart(from, to, split, radius) nodesFarApart(from, to, split, radius)
+static int volumesOverlap(const Vec3 from[4], const Vec3 to[4], const int split, const float radius)
+{
+    return placesAreValid(from, to) && !nodesFarApart(from, to, split, radius) &&
+           nodeVolumesOverlap(from, to, split, radius);
+}
 #endif
 
-// Lists a pair whose boxes overlap if the features share no vertex and their volumes overlap. kind: DRAPE_SELF_TEST_NODE …;
+// Lists a pair of features that share no node, and whose boxes overlap, if their volumes do. kind: DRAPE_SELF_TEST_NODE …;
 // a, b: node and face, or edges.
 static void keepPair(DRAPE_TEAM Team* team, const SelfCloth* cloth, const uint a, const uint b, const uint kind,
                      const TestList* list)
@@ -68,14 +75,13 @@ static void keepPair(DRAPE_TEAM Team* team, const SelfCloth* cloth, const uint a
         nodes[0] = a;
         for (int i = 0; i < 3; ++i) nodes[1 + i] = cloth->m_triangles[b].m_vertices[i];
     }
-    // Two nodes of a feature differ.
-    if (nodes[0] == nodes[1] || nodes[0] == nodes[2] || nodes[0] == nodes[3] || nodes[1] == nodes[2] || nodes[1] == nodes[3])
-        return;
     Vec3 from[4], to[4];
-    const int split = edges ? 2 : 1;
-    if (!loadNodes(cloth->m_start, cloth->m_end, nodes, from, to) || nodesApart(from, to, split, cloth->m_radius) ||
-        !nodeVolumesOverlap(from, to, split, cloth->m_radius))
-        return;
+    for (int k = 0; k < 4; ++k)
+    {
+        from[k] = vec3Load(cloth->m_start, nodes[k]);
+        to[k] = vec3Load(cloth->m_end, nodes[k]);
+    }
+    if (!volumesOverlap(from, to, edges ? 2 : 1, cloth->m_radius)) return;
     FeatureTest test;
     test.m_cloth = a;
     test.m_lane = b;

@@ -34,7 +34,7 @@
     namespace drape           \
     {
 #define DRAPE_NAMESPACE_END }
-#define DRAPE_UNROLL _Pragma("GCC unroll 13")
+#define DRAPE_UNROLL _Pragma("GCC unroll 16")
 #endif
 
 DRAPE_NAMESPACE_BEGIN

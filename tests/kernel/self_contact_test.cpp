@@ -9,6 +9,7 @@
 
 #include "bullet_plugin/core/broad_phase/patch_cull.h"
 #include "bullet_plugin/core/compaction/canonical_order.h"
+#include "bullet_plugin/core/self_collision/host_self_trees.h"
 #include "bullet_plugin/core/self_collision/self_contacts.h"
 #include "tests/support/device_side.h"
 #include "tests/support/self_cases.h"
@@ -110,9 +111,9 @@ public:
         const ClothView cloth = clothView(m_side.m_start.data(), m_side.m_end.data(), pool.triangles().data(),
                                           pool.edges().data(), std::uint32_t(pool.vertexCount()),
                                           std::uint32_t(pool.triangles().size()), DRAPE_AUTOMATIC, nullptr);
-        const SelfStep step = {pool, selfView(cloth, m_rest.data(), kReachScale), m_reach};
+        const SelfStep step = {pool, selfView(cloth, m_rest.data(), kReachScale), m_reach, m_reach.m_radius};
         std::vector<Contact> contacts;
-        m_candidates = SelfContactsOnHost().run(step, UINT64_MAX, UINT64_MAX, contacts).m_candidates;
+        m_candidates = HostSelfTrees().run(step, {}, contacts).m_candidates;
         return contacts;
     }
 

@@ -1,5 +1,6 @@
-// The host's kernels of every instruction set that the machine has, against all pairs of triangles tested one by one:
-// the same contacts, bit for bit, with any number of threads. Lists that are too short grow, limits are kept.
+// The host's kernels of every instruction set that the machine has, against all pairs of triangles tested one by one,
+// and, of cloths with themselves, those that a walk over trees finds: the same contacts, bit for bit, with any number
+// of threads. Lists that are too short grow, limits are kept.
 #include "bullet_plugin/core/host_kernels/host_kernels.h"
 
 #include <gtest/gtest.h>
@@ -8,8 +9,11 @@
 
 #include "bullet_plugin/core/broad_phase/host_patch_cull.h"
 #include "bullet_plugin/core/compaction/canonical_order.h"
+#include "bullet_plugin/core/self_collision/host_self_patches.h"
+#include "bullet_plugin/core/self_collision/host_self_trees.h"
 #include "scenes/shapes.h"
 #include "tests/support/cases.h"
+#include "tests/support/self_cases.h"
 #include "tests/support/side.h"
 
 namespace drape::test
@@ -88,6 +92,51 @@ private:
     StepCounters m_counters = {};
 };
 
+// The same of a cloth with itself.
+class HostSelfStep
+{
+public:
+    HostSelfStep(const HostKernels& kernels, const SelfStepCase& step, std::uint32_t mode)
+        : m_side(makeSide({step.m_motion.m_mesh})),
+          m_rest(step.m_rest),
+          m_reach({{step.m_thickness}, {selfGrowth(step.m_thickness * kReachScale)}}),
+          m_patches(kernels)
+    {
+        m_side.m_end = step.m_motion.m_end;
+        ClothView cloth = m_side.cloth();
+        cloth.m_mode = mode;
+        m_view = selfView(cloth, m_rest.data(), kReachScale);
+        m_patches.update(m_side.m_pool, m_rest.data());
+    }
+
+    // Behind `others`.
+    std::vector<Contact> contacts(ThreadTeam& threads, SelfStepLimits limits = {}, std::vector<Contact> others = {})
+    {
+        m_patches.cull(step(), limits.m_candidates, threads);
+        m_patches.findContacts(step(), limits, threads, others);
+        return others;
+    }
+    // Of the last step.
+    SelfCounts counts() const { return m_patches.counts(); }
+
+    std::vector<Contact> expected(SelfCounts& counts) const
+    {
+        std::vector<Contact> contacts;
+        counts = HostSelfTrees().run(step(), {}, contacts);
+        return contacts;
+    }
+
+private:
+    SelfStep step() const { return {m_side.m_pool, m_view, m_reach, m_noObstacles}; }
+
+    Side m_side;
+    std::vector<float> m_rest;
+    SelfReach m_reach;
+    std::vector<float> m_noObstacles = {-1.0f};
+    SelfView m_view;
+    HostSelfPatches m_patches;
+};
+
 // The numbers of the machine's sets, the best first.
 std::vector<std::size_t> sets()
 {
@@ -158,6 +207,57 @@ TEST_P(HostKernelsTest, ListsGrowAndLimitsAreKept)
     host.cull(team, tests);
     EXPECT_EQ(host.counters().m_candidates, tests);
     const std::vector<Contact> found = host.contacts(team), expected = host.expected();
+    EXPECT_TRUE(sameBytes(found, expected)) << difference(found, expected);
+}
+
+TEST_P(HostKernelsTest, SelfContactsAreThoseOfAWalkOverTrees)
+{
+    ThreadTeam alone(1), team(3);
+    SelfCounts all;
+    std::vector<SelfStepCase> steps = selfStepCases();
+    steps.push_back(foldedCase(41, 8, 0.02f, 1520));  // enough triangles for threads
+    for (const SelfStepCase& step : steps)
+    {
+        if (step.m_motion.m_mesh.m_triangles.empty()) continue;
+        for (const std::uint32_t mode : {DRAPE_DISCRETE, DRAPE_CONTINUOUS, DRAPE_AUTOMATIC})
+        {
+            SCOPED_TRACE(step.m_motion.m_name + ", mode " + std::to_string(mode));
+            HostSelfStep host(kernels(), step, mode);
+            SelfCounts counts;
+            const std::vector<Contact> expected = host.expected(counts);
+            for (ThreadTeam* threads : {&alone, &team, &team})
+            {
+                const std::vector<Contact> found = host.contacts(*threads);
+                EXPECT_TRUE(sameBytes(found, expected)) << difference(found, expected);
+                EXPECT_EQ(host.counts().m_candidates, counts.m_candidates);
+                EXPECT_EQ(host.counts().m_invalidNodes, counts.m_invalidNodes);
+            }
+            all.m_contacts += expected.size();
+            all.m_swept += host.counts().m_swept;
+            all.m_invalidNodes += counts.m_invalidNodes;
+        }
+    }
+    EXPECT_GT(all.m_contacts, 5000u);
+    EXPECT_GT(all.m_swept, 100u);
+    EXPECT_GT(all.m_invalidNodes, 0u);
+}
+
+TEST_P(HostKernelsTest, ListsOfSelfContactsGrowAndLimitsAreKept)
+{
+    ThreadTeam team(2);
+    HostSelfStep host(kernels(), foldedCase(41, 8, 0.003f, 1521), DRAPE_AUTOMATIC);
+    SelfCounts counts;
+    const std::vector<Contact> expected = host.expected(counts), one = {expected[0]};
+    EXPECT_EQ(host.contacts(team).size(), expected.size());
+    EXPECT_GT(host.counts().m_retries, 0u) << "the lists were too short";
+    EXPECT_EQ(host.contacts(team, {}, one).size(), 1 + expected.size()) << "others stay";
+    EXPECT_EQ(host.counts().m_retries, 0u) << "now they are long enough";
+
+    EXPECT_TRUE(host.contacts(team, {counts.m_candidates - 1, UINT64_MAX}).empty());
+    EXPECT_GE(host.counts().m_candidates, counts.m_candidates);
+    EXPECT_EQ(host.contacts(team, {UINT64_MAX, expected.size() - 1}, one).size(), 1u) << "none of too many";
+    EXPECT_EQ(host.counts().m_contacts, expected.size());
+    const std::vector<Contact> found = host.contacts(team, {counts.m_candidates, expected.size()});
     EXPECT_TRUE(sameBytes(found, expected)) << difference(found, expected);
 }
 

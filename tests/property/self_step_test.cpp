@@ -143,7 +143,7 @@ TEST_P(SelfStepTest, ListsGrowToWhatIsThere)
     const std::vector<Contact> found = runSelfCase(*pipeline, step), expected = runSelfCase(*host, step);
     EXPECT_TRUE(sameBytes(found, expected)) << difference(found, expected);
     EXPECT_GT(pipeline->statistics().m_selfCandidates, std::size_t(1) << 16);
-    EXPECT_EQ(pipeline->statistics().m_retries > 0, !pipeline->deviceReport().m_onHost);
+    EXPECT_GT(pipeline->statistics().m_retries, 0u);
 }
 
 TEST_P(SelfStepTest, TooManyLeaveTheClothOut)

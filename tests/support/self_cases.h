@@ -25,7 +25,6 @@ SelfCase crumpledCase(int nodes, std::uint32_t seed);
 // The above at several sizes, a mesh of one, two and no triangles, and one with a bad node at the end.
 std::vector<SelfCase> selfCases();
 
-// Null, with a failure recorded, when the back end cannot be had.
 // A step of a cloth that collides with itself.
 struct SelfStepCase
 {
@@ -45,5 +44,6 @@ MeshId addSelfCloth(Pipeline& pipeline, const SelfStepCase& step);
 // Contacts of a cloth with itself, of a pipeline of its own.
 std::vector<Contact> runSelfCase(Pipeline& pipeline, const SelfStepCase& step);
 
+// Null, with a failure recorded, when the back end cannot be had.
 std::unique_ptr<Queries> makeQueries(const Settings& settings);
 }  // namespace drape::test

@@ -87,18 +87,16 @@ std::size_t HostPatchCull::run(const ClothView& cloth, const HostCloths& cloths,
     if (m_layout.m_patches.empty()) return 0;
     const StepCounters before = counters;
     const PackedPatches patches = packed();
-    for (std::size_t retries = 0;; ++retries)
+    const auto fill = [&]
     {
-        const HostTests list = {m_tests.data(), std::uint32_t(m_tests.size()), std::uint32_t(limit)};
-        const auto cull = [&](std::size_t packet)
-        { m_kernels->m_cull(std::uint32_t(packet), cloth, cloths, patches, list, &counters); };
-        const bool worth = m_testsBefore >= kLeastTests || cloths.m_count >= kLeastTriangles;
-        runShared(threads, worth, (cloths.m_count + kWidth - 1) / kWidth, cull);
-        const std::size_t wanted = m_testsBefore = counters.m_candidates;
-        if (wanted <= m_tests.size() || wanted > limit) return retries;
-        m_tests = std::vector<FeatureTest>();  // first, so that both are not there at once
-        m_tests.resize(std::min(wanted + wanted / 4, limit));
         counters = before;
-    }
+        const HostTests list = {m_tests.data(), std::uint32_t(m_tests.size()), std::uint32_t(limit)};
+        const bool worth = m_testsBefore >= kLeastTests || cloths.m_count >= kLeastTriangles;
+        runShared(threads, worth, (cloths.m_count + kWidth - 1) / kWidth,
+                  [&](std::size_t packet)
+                  { m_kernels->m_cull(std::uint32_t(packet), cloth, cloths, patches, list, &counters); });
+        return m_testsBefore = counters.m_candidates;
+    };
+    return fillGrowing(m_tests, limit, fill);
 }
 }  // namespace drape

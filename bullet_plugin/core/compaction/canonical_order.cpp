@@ -33,10 +33,10 @@ void sortContacts(std::vector<Contact>& contacts)
 void orderHits(const Contact* hits, std::size_t count, std::vector<std::uint32_t>& slotCount,
                std::vector<Contact>& contacts, ThreadTeam& threads)
 {
-    std::uint32_t first = 0;
+    std::uint32_t first = std::uint32_t(contacts.size());
     for (std::uint32_t& number : slotCount)
         first += std::exchange(number, first);
-    contacts.resize(count);
+    contacts.resize(contacts.size() + count);
     // Each slot's places fill up in any order, which its sort does away with.
     std::vector<std::uint32_t> last = slotCount;
     const auto place = [&](std::size_t hit)

@@ -14,7 +14,8 @@ void sortCandidates(std::vector<Candidate>& candidates);
 
 // By slot, then obstacle feature.
 void sortContacts(std::vector<Contact>& contacts);
-// The same of hits, of which those of each slot have been counted. The counts are used up.
+// Puts hits behind the contacts that there are, in the same order. Those of each slot have been counted, and the counts
+// are used up.
 void orderHits(const Contact* hits, std::size_t count, std::vector<std::uint32_t>& slotCount,
                std::vector<Contact>& contacts, ThreadTeam& threads);
 }  // namespace drape

@@ -2,14 +2,16 @@
 // instruction sets, of which the machine's best is used. Needs no OpenCL.
 //
 // Threads may run different items of a launch at once; results do not depend on it, but for the order of lists.
-// Arguments are those of the kernels: kernels/patch_pack.cl, patch_cull.cl, narrow_phase_lanes.cl and narrow_phase.cl
-// say what they are. All of one call are of DRAPE_PATCH_WIDTH lanes. The same bits whatever the instruction set.
+// Arguments are those of the kernels: kernels/patch_pack.cl, patch_cull.cl, narrow_phase_lanes.cl and narrow_phase.cl,
+// for cloths with themselves self_pack_lanes.cl, self_cull.cl, self_contact_lanes.cl and self_contact.cl, say what they
+// are. All of one call are of DRAPE_PATCH_WIDTH lanes. The same bits whatever the instruction set.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
 #include "kernels/lib/pair_contact.h"
+#include "kernels/lib/self_contact.h"
 #include "kernels/shared/contact.h"
 #include "kernels/shared/patch.h"
 
@@ -70,8 +72,63 @@ struct HostFeatures
     const ObstacleMotion* m_motions;
 };
 
-// first, last: the lanes to pack, or the wide tree's places, all of them in this call. item, items: the work-item to run,
-// of so many in all.
+// Cloths that collide with themselves: their own patches with the features of each, and where those of the step are
+// packed.
+struct SelfPatches
+{
+    const Patch* m_patches;
+    std::uint32_t m_patchCount;
+    std::uint32_t m_places;  // of the wide tree's first level
+    const std::uint32_t* m_faceIds;
+    const std::uint32_t* m_vertexIds;
+    const std::uint32_t* m_edgeIds;
+    const std::uint32_t* m_faceNodes;
+    const std::uint32_t* m_edgeNodes;
+    const std::uint32_t* m_levels;
+    std::uint32_t m_levelCount;
+    float* m_faceBoxes;
+    float* m_vertexBoxes;
+    float* m_edgeBoxes;
+    float* m_wideNodes;
+};
+
+// m, per cloth: half the reach, negative for those that are not in the step; thickness; the reach of the search for
+// obstacles.
+struct SelfRadii
+{
+    const float* m_radius;
+    const float* m_thickness;
+    const float* m_obstacleRadius;
+};
+
+// What the narrow phase of cloths with themselves reads.
+struct HostSelfFeatures
+{
+    const FeatureTest* m_tests;
+    std::uint32_t m_count;
+    SelfView m_view;
+    std::uint32_t m_firstSlot;
+};
+
+// item, items: the work-item to run, of so many in all. Lists hits: by the first such kernel of a step those that it is
+// sure of, and in swept, which has room for as many as there are tests, the tests that the continuous test decides; by
+// the second, of which there are at least as many items as kinds of features, the hits of those.
+template <class Features>
+using HitKernel = void (*)(std::uint32_t item, std::uint32_t items, const Features& features, HostHits hits,
+                           std::uint32_t* swept, StepCounters* counters);
+
+// A cull's or a packing's item is a patch, a packing's also a place behind the last.
+struct HostSelfKernels
+{
+    void (*m_pack)(std::uint32_t item, const ClothView& cloth, const SelfRadii& radii, const SelfPatches& patches,
+                   StepCounters* counters);
+    void (*m_cull)(std::uint32_t item, const ClothView& cloth, const SelfRadii& radii, const SelfPatches& patches,
+                   HostTests tests, StepCounters* counters);
+    HitKernel<HostSelfFeatures> m_findHits;
+    HitKernel<HostSelfFeatures> m_findSwept;
+};
+
+// first, last: the lanes to pack, or the wide tree's places, all of them in this call.
 struct HostKernels
 {
     const char* m_instructions;
@@ -90,12 +147,9 @@ struct HostKernels
     // Lists the feature tests of a packet, DRAPE_PATCH_WIDTH cloth triangles. Of the cloth its edges are not read.
     void (*m_cull)(std::uint32_t packet, const ClothView& cloth, const HostCloths& cloths, const PackedPatches& patches,
                    HostTests tests, StepCounters* counters);
-    // Lists hits, and in swept, which has room for as many, the tests that the continuous test decides.
-    void (*m_findHits)(std::uint32_t item, std::uint32_t items, const HostFeatures& features, HostHits hits,
-                       std::uint32_t* swept, StepCounters* counters);
-    // Lists the hits of those. items: at least one for each kind of feature.
-    void (*m_findSwept)(std::uint32_t item, std::uint32_t items, const HostFeatures& features, HostHits hits,
-                        std::uint32_t* swept, StepCounters* counters);
+    HitKernel<HostFeatures> m_findHits;
+    HitKernel<HostFeatures> m_findSwept;
+    const HostSelfKernels* m_self;
 };
 
 // Those for this machine. Every set that it can run, the best first: for tests.

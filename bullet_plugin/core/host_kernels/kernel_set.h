@@ -1,10 +1,7 @@
 // The host's kernels for one instruction set, that with which the file that includes this is compiled. It defines
-// DRAPE_KERNEL_SET, the table's name, and DRAPE_INSTRUCTIONS. Whatever is defined here is this file's alone: linkers
-// join inline functions of several files, and a machine may not have this one's instructions.
-#define DRAPE_HOST_KERNELS
-#define DRAPE_CPU
-#define DRAPE_PATCH_WIDTH 16
-#define DRAPE_LANES 16
+// DRAPE_KERNEL_SET, the table's name, DRAPE_SELF_KERNEL_SET, that of the table of cloths with themselves
+// (self_kernel_set.h), and DRAPE_INSTRUCTIONS.
+#include "build_options.h"
 
 #include "host_kernels.h"
 #include "kernels/lib/cull_packet.h"
@@ -112,7 +109,9 @@ void findSwept(uint item, uint items, const HostFeatures& features, HostHits hit
 }
 }  // namespace
 
+extern const HostSelfKernels DRAPE_SELF_KERNEL_SET;
 extern const HostKernels DRAPE_KERNEL_SET;
-const HostKernels DRAPE_KERNEL_SET = {DRAPE_INSTRUCTIONS, packFaces, packVertices, packEdges, packVolumes, widen, cull,
-                                      findHits,           findSwept};
+const HostKernels DRAPE_KERNEL_SET = {
+    DRAPE_INSTRUCTIONS, packFaces, packVertices,          packEdges, packVolumes, widen, cull,
+    findHits,           findSwept, &DRAPE_SELF_KERNEL_SET};
 }  // namespace drape

@@ -68,6 +68,10 @@ inline uint min(uint a, uint b)
 {
     return b < a ? b : a;
 }
+inline uint max(uint a, uint b)
+{
+    return a < b ? b : a;
+}
 inline int popcount(uint a)
 {
     return __builtin_popcount(a);

@@ -182,6 +182,30 @@ void appendPatch(Patches& patches, const std::vector<Triangle>& triangles, const
     patches.m_patches.push_back(patch);
 }
 
+// feature(triangle, place): over all meshes.
+template <typename Feature>
+std::vector<std::uint32_t> idsOf(const std::vector<std::uint32_t>& owners, const std::vector<Triangle>& triangles,
+                                 Feature feature)
+{
+    std::vector<std::uint32_t> ids;
+    ids.reserve(owners.size());
+    for (std::uint32_t owner : owners)
+        ids.push_back(owner == DRAPE_NO_FEATURE
+                          ? DRAPE_NO_FEATURE
+                          : feature(triangles[owner & ((1u << DRAPE_PLACE_SHIFT) - 1u)], owner >> DRAPE_PLACE_SHIFT));
+    return ids;
+}
+
+template <std::size_t count, typename Feature>
+std::vector<std::uint32_t> nodesOf(const std::vector<std::uint32_t>& ids, const std::vector<Feature>& features,
+                                   std::uint32_t width)
+{
+    std::vector<std::uint32_t> nodes(count * ids.size(), DRAPE_NO_FEATURE);
+    for (std::size_t i = 0; i < ids.size(); ++i)
+        for (std::size_t k = 0; k < count && ids[i] != DRAPE_NO_FEATURE; ++k)
+            nodes[(i / width * count + k) * width + i % width] = features[ids[i]].m_vertices[k];
+    return nodes;
+}
 }  // namespace
 
 std::vector<std::uint32_t> clusteredOrder(const PooledMesh& mesh, const float* positions, std::uint32_t width)
@@ -282,6 +306,30 @@ void makeLevels(Patches& patches, std::uint32_t width)
         if (count == 1) break;
     }
     patches.m_levels.push_back(nodes);
+}
+
+std::vector<std::uint32_t> vertexIdsOf(const std::vector<std::uint32_t>& owners, const std::vector<Triangle>& triangles)
+{
+    return idsOf(owners, triangles,
+                 [](const Triangle& triangle, std::uint32_t place) { return triangle.m_vertices[place]; });
+}
+
+std::vector<std::uint32_t> edgeIdsOf(const std::vector<std::uint32_t>& owners, const std::vector<Triangle>& triangles)
+{
+    return idsOf(owners, triangles,
+                 [](const Triangle& triangle, std::uint32_t place) { return triangle.m_edges[place]; });
+}
+
+std::vector<std::uint32_t> faceNodesOf(const std::vector<std::uint32_t>& ids, const std::vector<Triangle>& triangles,
+                                       std::uint32_t width)
+{
+    return nodesOf<3>(ids, triangles, width);
+}
+
+std::vector<std::uint32_t> edgeNodesOf(const std::vector<std::uint32_t>& ids, const std::vector<Edge>& edges,
+                                       std::uint32_t width)
+{
+    return nodesOf<2>(ids, edges, width);
 }
 
 Patches makePatches(const MeshPool& pool, const float* positions, std::uint32_t width)

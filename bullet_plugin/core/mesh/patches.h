@@ -67,6 +67,16 @@ struct LevelPlaces
 // levels have moved. With the last child go the places behind it, which are empty.
 std::vector<LevelPlaces> changedPlaces(const Patches& patches, ItemRange range, bool levelsMoved, std::uint32_t width);
 
+// The vertices, or edges, over all meshes, that lanes' owners name; DRAPE_NO_FEATURE where there is none.
+std::vector<std::uint32_t> vertexIdsOf(const std::vector<std::uint32_t>& owners,
+                                       const std::vector<Triangle>& triangles);
+std::vector<std::uint32_t> edgeIdsOf(const std::vector<std::uint32_t>& owners, const std::vector<Triangle>& triangles);
+// Their nodes, by the ids of faces or edges: of each block a row of lanes for each node that a feature has.
+std::vector<std::uint32_t> faceNodesOf(const std::vector<std::uint32_t>& ids, const std::vector<Triangle>& triangles,
+                                       std::uint32_t width);
+std::vector<std::uint32_t> edgeNodesOf(const std::vector<std::uint32_t>& ids, const std::vector<Edge>& edges,
+                                       std::uint32_t width);
+
 // All of them. width: lanes in a block. positions: m, x y z per joined vertex.
 Patches makePatches(const MeshPool& pool, const float* positions, std::uint32_t width);
 }  // namespace drape

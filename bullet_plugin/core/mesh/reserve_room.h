@@ -1,6 +1,7 @@
-// Room in arrays that grow as meshes come.
+// Room in arrays that grow.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -20,5 +21,19 @@ void resizeWithRoom(std::vector<T>& elements, std::size_t count)
 {
     reserveRoom(elements, count);
     elements.resize(count);
+}
+
+// Has fill() fill the list, which returns how many elements there are in all: again with a longer list where they did
+// not fit, unless they are more than the limit. The list must not be empty. Returns how often it grew.
+template <typename T, typename Fill>
+std::size_t fillGrowing(std::vector<T>& list, std::size_t limit, const Fill& fill)
+{
+    for (std::size_t retries = 0;; ++retries)
+    {
+        const std::size_t wanted = fill();
+        if (wanted <= list.size() || wanted > limit) return retries;
+        list = std::vector<T>();  // first, so that both are not there at once
+        list.resize(std::min(wanted + wanted / 4, limit));
+    }
 }
 }  // namespace drape

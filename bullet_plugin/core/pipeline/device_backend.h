@@ -10,6 +10,7 @@
 #include "bullet_plugin/core/bvh/tree_cost.h"
 #include "bullet_plugin/core/compaction/compaction.h"
 #include "bullet_plugin/core/device/program_set.h"
+#include "bullet_plugin/core/self_collision/self_contacts.h"
 #include "drape/settings.h"
 #include "placed_obstacles.h"
 #include "step.h"

@@ -39,47 +39,30 @@ ReductionView HostBackend::reductionView(const Scene& scene, const StepPairs& pa
 std::vector<std::uint64_t> HostBackend::countCandidates(const Scene& scene, const StepPairs& pairs,
                                                         const Settings& settings)
 {
-    std::vector<std::uint64_t> counts(scene.m_cloths.meshCount(), 0);
-    if (pairs.m_anyPair) counts = m_trees.countCandidates(scene, pairs);
-    if (!pairs.m_anySelf) return counts;
-    const std::vector<std::uint64_t> self =
-        m_self.countPairs(selfStep(scene, pairs, settings), StepLimits(settings).m_candidates);
-    for (std::size_t slot = 0; slot < counts.size(); ++slot)
-        counts[slot] += self[slot];
-    return counts;
+    return m_trees.countCandidates(scene, pairs, selfStep(scene, pairs, settings), StepLimits(settings).m_candidates);
 }
 
 SelfStep HostBackend::selfStep(const Scene& scene, const StepPairs& pairs, const Settings& settings)
 {
     const SelfView view = selfView(clothView(scene, settings), scene.m_clothRest.data(), 1.0f + settings.m_activation);
-    return {scene.m_cloths, view, pairs.m_self};
+    return {scene.m_cloths, view, pairs.m_self, pairs.m_clothRadius};
 }
 
-std::size_t HostBackend::invalidSelfNodes(const Scene& scene, const StepPairs& pairs)
-{
-    std::size_t invalid = 0;
-    for (const Triangle& triangle : scene.m_cloths.triangles())
-    {
-        if (pairs.m_clothRadius[triangle.m_mesh] >= 0.0f || pairs.m_self.m_radius[triangle.m_mesh] < 0.0f) continue;
-        Dop ignored;
-        invalid += leafVolume(&ignored, &triangle, scene.m_clothStart.data(), scene.m_clothEnd.data(), 0.0f);
-    }
-    return invalid;
-}
-
-bool HostBackend::runSelf(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result)
+void HostBackend::runSelf(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result)
 {
     const StepLimits limits(settings);
     const std::size_t others = result.m_contacts.size();
-    result.m_invalidNodes += invalidSelfNodes(scene, pairs);
-    const SelfCounts counts = m_self.run(selfStep(scene, pairs, settings), limits.m_candidates,
-                                         limits.m_contacts - std::min(limits.m_contacts, others), result.m_contacts);
+    const SelfStepLimits left = {limits.m_candidates, limits.m_contacts - std::min(limits.m_contacts, others)};
+    const SelfStep step = selfStep(scene, pairs, settings);
+    const SelfCounts counts =
+        m_overPatches ? m_patches.runSelf(scene, step, left, *m_threads, result) : m_trees.runSelf(step, left, result);
+    result.m_invalidNodes += counts.m_invalidNodes;
+    result.m_retries += counts.m_retries;
     result.m_selfCandidates = counts.m_candidates;
     result.m_selfSweptTests = counts.m_swept;
-    const bool tooMany = others + counts.m_contacts > limits.m_contacts;
+    const bool tooMany = counts.m_contacts > left.m_contacts;
     result.m_overLimit = counts.m_candidates > limits.m_candidates || tooMany;
     if (counts.m_candidates <= limits.m_candidates && tooMany) result.m_contactDemand = others + counts.m_contacts;
-    return !result.m_overLimit;
 }
 
 void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result)

@@ -27,16 +27,13 @@ public:
 private:
     static ReductionView reductionView(const Scene& scene, const StepPairs& pairs);
     static SelfStep selfStep(const Scene& scene, const StepPairs& pairs, const Settings& settings);
-    // Of cloths that are in the step for their collisions with themselves only.
-    static std::size_t invalidSelfNodes(const Scene& scene, const StepPairs& pairs);
     // What pairs of cloth and obstacle give, in canonical order. False when the step is over a limit.
     bool runPairs(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
-    bool runSelf(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
+    void runSelf(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
 
     std::shared_ptr<ThreadTeam> m_threads;
     bool m_overPatches;
     HostPatches m_patches;
     HostTrees m_trees;  // over patches it counts only
-    SelfContactsOnHost m_self;
 };
 }  // namespace drape

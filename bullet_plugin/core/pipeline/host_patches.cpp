@@ -1,22 +1,9 @@
 #include "host_patches.h"
 
-#include <algorithm>
-
-#include "bullet_plugin/core/compaction/canonical_order.h"
 #include "bullet_plugin/core/stopwatch.h"
 
 namespace drape
 {
-namespace
-{
-constexpr std::size_t kFirstHits = 1 << 10;
-constexpr std::size_t kTestsOfItem = 128;  // a run of them (item_runs.h)
-constexpr std::size_t kSweptItems = 32;
-// From so many on, which take a fifth of a millisecond, threads are worth waking.
-constexpr std::size_t kLeastShared = 1 << 10;
-constexpr std::size_t kLeastSweptShared = 1 << 6;
-}  // namespace
-
 void HostPatches::update(const Scene& scene)
 {
     const MeshPool &cloths = scene.m_cloths, &obstacles = scene.m_obstacles;
@@ -34,6 +21,7 @@ void HostPatches::update(const Scene& scene)
         m_obstacleRevision = obstacles.revision();
     }
     if (newObstacles || m_placed.changed(scene)) updateObstacles(scene, fresh);
+    if (scene.m_anySelf) m_self.update(cloths, scene.m_clothRest.data());
 }
 
 void HostPatches::updateObstacles(const Scene& scene, std::size_t fresh)
@@ -49,38 +37,6 @@ void HostPatches::updateObstacles(const Scene& scene, std::size_t fresh)
         if (last == slot) continue;
         m_cull.pack({slot, last}, obstacle);
         slot = last;
-    }
-}
-
-std::size_t HostPatches::findHits(const Scene& scene, const StepPairs& pairs, const Settings& settings,
-                                  ThreadTeam& threads, StepCounters& counters)
-{
-    const HostKernels& kernels = m_cull.kernels();
-    const std::size_t limit = StepLimits(settings).m_contacts;
-    const HostFeatures features = {m_cull.tests().data(), counters.m_candidates, clothView(scene, settings),
-                                   m_placed.view(scene),  m_cull.packed(),       pairs.m_motions.data()};
-    const std::size_t items = (counters.m_candidates + kTestsOfItem - 1) / kTestsOfItem;
-    if (m_hits.empty()) m_hits.resize(kFirstHits);
-    if (m_swept.size() < counters.m_candidates) m_swept.resize(m_cull.tests().size());
-    for (std::size_t retries = 0;; ++retries)
-    {
-        m_slotCount.assign(scene.slotCount(), 0);
-        counters.m_listed = counters.m_swept = 0;
-        const HostHits list = {m_hits.data(), std::uint32_t(m_hits.size()), m_slotCount.data()};
-        const auto run = [&](auto kernel, std::size_t count, bool worth)
-        {
-            runShared(threads, worth, count,
-                      [&](std::size_t item) {
-                          kernel(std::uint32_t(item), std::uint32_t(count), features, list, m_swept.data(), &counters);
-                      });
-        };
-        run(kernels.m_findHits, items, counters.m_candidates >= kLeastShared);
-        const std::size_t swept = counters.m_swept;
-        if (swept > 0) run(kernels.m_findSwept, kSweptItems, swept >= kLeastSweptShared);
-        const std::size_t wanted = counters.m_listed;
-        if (wanted <= m_hits.size() || wanted > limit) return retries;
-        m_hits = std::vector<Contact>();
-        m_hits.resize(std::min(wanted + wanted / 4, limit));
     }
 }
 
@@ -103,14 +59,30 @@ bool HostPatches::run(const Scene& scene, const StepPairs& pairs, const Settings
     if (result.m_overLimit) return false;
     result.m_candidates = counters.m_candidates;
 
-    result.m_retries += findHits(scene, pairs, settings, threads, counters);
+    const HostKernels& kernels = m_cull.kernels();
+    const HostFeatures features = {m_cull.tests().data(), counters.m_candidates, clothView(scene, settings),
+                                   m_placed.view(scene),  m_cull.packed(),       pairs.m_motions.data()};
+    result.m_retries += m_hits.find(kernels.m_findHits, kernels.m_findSwept, &StepCounters::m_swept, features,
+                                    scene.slotCount(), limits.m_contacts, threads, counters);
     result.m_sweptTests = counters.m_swept;
     result.m_overLimit = counters.m_listed > limits.m_contacts;
     if (result.m_overLimit)
         result.m_contactDemand = counters.m_listed;
     else
-        orderHits(m_hits.data(), counters.m_listed, m_slotCount, result.m_contacts, threads);
+        m_hits.order(counters.m_listed, result.m_contacts, threads);
     result.m_narrowMs = watch.lapMs();
     return !result.m_overLimit;
+}
+
+SelfCounts HostPatches::runSelf(const Scene& scene, const SelfStep& step, SelfStepLimits limits, ThreadTeam& threads,
+                                StepResult& result)
+{
+    Stopwatch watch;
+    m_self.update(scene.m_cloths, scene.m_clothRest.data());
+    m_self.cull(step, limits.m_candidates, threads);
+    result.m_broadMs += watch.lapMs();
+    m_self.findContacts(step, limits, threads, result.m_contacts);
+    result.m_narrowMs += watch.lapMs();
+    return m_self.counts();
 }
 }  // namespace drape

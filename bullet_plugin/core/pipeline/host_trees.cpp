@@ -77,11 +77,29 @@ BroadPhaseSide HostTrees::obstacleSide(const Scene& scene) const
     return {m_obstacleNodes, scene.m_obstacleLayout, scene.m_obstacles.order(), scene.m_obstacles.triangles()};
 }
 
-std::vector<std::uint64_t> HostTrees::countCandidates(const Scene& scene, const StepPairs& pairs)
+std::vector<std::uint64_t> HostTrees::countCandidates(const Scene& scene, const StepPairs& pairs, const SelfStep& step,
+                                                      std::uint64_t selfLimit)
 {
-    refitCloths(scene, pairs);
-    return drape::countCandidates(clothSide(scene), obstacleSide(scene), pairs.m_thickness, scene.m_cloths.meshCount(),
-                                  scene.m_obstacles.meshCount());
+    std::vector<std::uint64_t> counts(scene.m_cloths.meshCount(), 0);
+    if (pairs.m_anyPair)
+    {
+        refitCloths(scene, pairs);
+        counts = drape::countCandidates(clothSide(scene), obstacleSide(scene), pairs.m_thickness, counts.size(),
+                                        scene.m_obstacles.meshCount());
+    }
+    if (!pairs.m_anySelf) return counts;
+    const std::vector<std::uint64_t> self = m_self.countPairs(step, selfLimit);
+    for (std::size_t slot = 0; slot < counts.size(); ++slot)
+        counts[slot] += self[slot];
+    return counts;
+}
+
+SelfCounts HostTrees::runSelf(const SelfStep& step, SelfStepLimits limits, StepResult& result)
+{
+    Stopwatch watch;
+    const SelfCounts counts = m_self.run(step, limits, result.m_contacts);
+    result.m_narrowMs += watch.lapMs();
+    return counts;
 }
 
 bool HostTrees::run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result)

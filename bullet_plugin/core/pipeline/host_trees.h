@@ -1,8 +1,9 @@
-// The step's pairs of cloth and obstacle on the calling thread by both sides' hierarchies of triangles: what the
-// traversals that a setting names find, and how many pairs of triangles there are.
+// A step on the calling thread by hierarchies of triangles: what the traversals that a setting names find, contacts of
+// cloths with themselves, and how many pairs of triangles there are.
 #pragma once
 
 #include "bullet_plugin/core/broad_phase/host_traversal.h"
+#include "bullet_plugin/core/self_collision/host_self_trees.h"
 #include "drape/settings.h"
 #include "host_placed_obstacles.h"
 #include "step.h"
@@ -18,8 +19,11 @@ public:
     void update(const Scene& scene);
     // Adds to the result what the pairs give, contacts in canonical order. False when the step is over a limit.
     bool run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
-    // The step's pairs of triangles per cloth slot: exact, however many.
-    std::vector<std::uint64_t> countCandidates(const Scene& scene, const StepPairs& pairs);
+    // Adds what cloths have with themselves, likewise; no contacts where it is over a limit.
+    SelfCounts runSelf(const SelfStep& step, SelfStepLimits limits, StepResult& result);
+    // The step's pairs of triangles per cloth slot: exact, however many; of cloths with themselves up to the limit.
+    std::vector<std::uint64_t> countCandidates(const Scene& scene, const StepPairs& pairs, const SelfStep& step,
+                                               std::uint64_t selfLimit);
 
 private:
     // Those from slot `fresh` on, and of the others those whose positions or places changed.
@@ -36,5 +40,6 @@ private:
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
     std::vector<BvhBlock> m_obstacleBlocks;  // that m_obstacleNodes has
     HostPlacedObstacles m_placed;
+    HostSelfTrees m_self;
 };
 }  // namespace drape

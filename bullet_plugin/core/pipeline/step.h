@@ -12,7 +12,7 @@
 #include "bullet_plugin/core/mesh/mesh_pool.h"
 #include "bullet_plugin/core/narrow_phase/narrow_phase.h"
 #include "bullet_plugin/core/pipeline.h"
-#include "bullet_plugin/core/self_collision/self_contacts.h"
+#include "bullet_plugin/core/self_collision/self_step.h"
 #include "drape/settings.h"
 
 namespace drape

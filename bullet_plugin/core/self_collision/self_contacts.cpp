@@ -1,7 +1,5 @@
 #include "self_contacts.h"
 
-#include <algorithm>
-
 #include "bullet_plugin/core/broad_phase/patch_cull.h"
 #include "bullet_plugin/core/device/list_launch.h"
 
@@ -16,43 +14,7 @@ constexpr std::size_t kFirstTests = 1 << 16;
 constexpr std::size_t kTurns = 4;
 constexpr std::size_t kPairGroupsPerUnit = 24;
 constexpr std::size_t kFirstPairs = 1 << 14;
-
-// The features that the lanes' owners name: their vertices or edges.
-enum class Lane
-{
-    Vertex,
-    Edge
-};
-
-std::vector<cl_uint> featureIds(const std::vector<std::uint32_t>& owners, const std::vector<Triangle>& triangles,
-                                Lane lane)
-{
-    std::vector<cl_uint> ids;
-    ids.reserve(owners.size());
-    for (std::uint32_t owner : owners)
-    {
-        if (owner == DRAPE_NO_FEATURE)
-        {
-            ids.push_back(DRAPE_NO_FEATURE);
-            continue;
-        }
-        const Triangle& triangle = triangles[owner & ((1u << DRAPE_PLACE_SHIFT) - 1u)];
-        const std::uint32_t place = owner >> DRAPE_PLACE_SHIFT;
-        ids.push_back(lane == Lane::Vertex ? triangle.m_vertices[place] : triangle.m_edges[place]);
-    }
-    return ids;
-}
 }  // namespace
-
-bool SelfReach::any() const
-{
-    return std::any_of(m_radius.begin(), m_radius.end(), [](float radius) { return radius >= 0.0f; });
-}
-
-void SelfReach::leaveOut(std::size_t cloth)
-{
-    m_thickness[cloth] = m_radius[cloth] = -1.0f;
-}
 
 void SelfContactStage::create(Device& device, const ProgramLoader& load)
 {
@@ -82,12 +44,20 @@ void SelfContactStage::setTopology(Device& device, const MeshPool& cloths, const
 {
     const std::size_t width = PatchCullStage::width(device);
     m_layout = makePatches(cloths, rest.data(), std::uint32_t(width));
-    const std::vector<cl_uint> vertexIds = featureIds(m_layout.m_vertexOwners, cloths.triangles(), Lane::Vertex);
-    const std::vector<cl_uint> edgeIds = featureIds(m_layout.m_edgeOwners, cloths.triangles(), Lane::Edge);
+    const std::vector<cl_uint> vertexIds = vertexIdsOf(m_layout.m_vertexOwners, cloths.triangles());
+    const std::vector<cl_uint> edgeIds = edgeIdsOf(m_layout.m_edgeOwners, cloths.triangles());
     m_patches.assign(device, m_layout.m_patches);
     m_faceIds.assign(device, m_layout.m_faceOwners);
     m_vertexIds.assign(device, vertexIds);
     m_edgeIds.assign(device, edgeIds);
+    std::vector<cl_uint> faceNodes, edgeNodes;
+    if (!device.isGpu())
+    {
+        faceNodes = faceNodesOf(m_layout.m_faceOwners, cloths.triangles(), std::uint32_t(width));
+        edgeNodes = edgeNodesOf(edgeIds, cloths.edges(), std::uint32_t(width));
+        m_faceNodes.assign(device, faceNodes);
+        m_edgeNodes.assign(device, edgeNodes);
+    }
     m_levels.assign(device, m_layout.m_levels);
     const std::size_t floats = device.isGpu() ? 0 : DRAPE_BOX_FLOATS;
     m_faceBoxes.reserve(device, m_layout.m_faceOwners.size() * floats);
@@ -172,11 +142,11 @@ void SelfContactStage::enqueueCull(Device& device, SelfBuffers step, Buffer<Step
         return;
     }
     m_cull.launch(device, patchCount, kTeamsPerGroup, m_patches.handle(), cl_uint(patchCount), m_faceIds.handle(),
-                  m_vertexIds.handle(), m_edgeIds.handle(), step.m_triangles.handle(), step.m_edges.handle(),
-                  start.handle(), step.m_end.handle(), m_radius.handle(), m_thickness.handle(), m_faceBoxes.handle(),
-                  m_vertexBoxes.handle(), m_edgeBoxes.handle(), m_wideNodes.handle(), m_levels.handle(),
-                  cl_uint(m_layout.m_levels.size() - 1), m_tests.handle(), cl_uint(m_tests.capacity()),
-                  cl_uint(step.m_limit), counters.handle());
+                  m_vertexIds.handle(), m_edgeIds.handle(), m_faceNodes.handle(), m_edgeNodes.handle(),
+                  step.m_triangles.handle(), step.m_edges.handle(), start.handle(), step.m_end.handle(),
+                  m_radius.handle(), m_thickness.handle(), m_faceBoxes.handle(), m_vertexBoxes.handle(),
+                  m_edgeBoxes.handle(), m_wideNodes.handle(), m_levels.handle(), cl_uint(m_layout.m_levels.size() - 1),
+                  m_tests.handle(), cl_uint(m_tests.capacity()), cl_uint(step.m_limit), counters.handle());
 }
 
 void SelfContactStage::enqueueContacts(Device& device, SelfBuffers step, HitBuffers hits,

@@ -1,8 +1,8 @@
+#include "host_self_trees.h"
 
 #include "bullet_plugin/core/bvh/refit.h"
 #include "bullet_plugin/core/compaction/canonical_order.h"
 #include "self_collision.h"
-#include "self_contacts.h"
 
 namespace drape
 {
@@ -18,6 +18,18 @@ bool decide(SelfView& view, const FeatureTest& test, std::uint32_t firstSlot, Co
     return found == DRAPE_IS_CONTACT;
 }
 
+std::uint64_t invalidNodes(const SelfStep& step)
+{
+    std::uint64_t invalid = 0;
+    for (const Triangle& triangle : step.m_cloths.triangles())
+    {
+        if (step.m_obstacleRadius[triangle.m_mesh] >= 0.0f || step.m_reach.m_radius[triangle.m_mesh] < 0.0f) continue;
+        Dop ignored;
+        invalid += leafVolume(&ignored, &triangle, step.start(), step.m_view.m_cloth.m_end, 0.0f);
+    }
+    return invalid;
+}
+
 HostTree treeOf(const MeshPool& cloths, const std::vector<BvhNode>& nodes, const BvhLayout& layout)
 {
     return {nodes, layout, cloths.order(), cloths.triangles()};
@@ -28,7 +40,6 @@ void selfVolumes(const SelfStep& step, std::vector<Dop>& volumes)
 {
     const MeshPool& cloths = step.m_cloths;
     const ClothView& cloth = step.m_view.m_cloth;
-    const float* start = cloth.m_mode == DRAPE_DISCRETE ? cloth.m_end : cloth.m_start;
     volumes.resize(cloths.vertexCount());
     for (std::size_t slot = 0; slot < cloths.meshCount(); ++slot)
     {
@@ -36,17 +47,15 @@ void selfVolumes(const SelfStep& step, std::vector<Dop>& volumes)
         const std::uint32_t first = cloths.mesh(slot).m_firstVertex;
         if (radius < 0.0f) continue;  // nobody asks
         for (std::uint32_t i = first; i < first + cloths.mesh(slot).m_topology.m_vertexCount; ++i)
-            vertexVolume(&volumes[i], start, cloth.m_end, i, radius);
+            vertexVolume(&volumes[i], step.start(), cloth.m_end, i, radius);
     }
 }
 
-SelfFinder::SelfFinder(const SelfStep& step, const std::vector<Dop>& volumes, std::uint64_t candidateLimit,
-                       std::uint64_t contactLimit)
+SelfFinder::SelfFinder(const SelfStep& step, const std::vector<Dop>& volumes, SelfStepLimits limits)
     : m_step(step),
       m_view(step.m_view),
       m_volumes(volumes),
-      m_candidateLimit(candidateLimit),
-      m_contactLimit(contactLimit),
+      m_limits(limits),
       m_firstSlot(firstSelfSlot(step.m_view.m_cloth.m_nodeCount, step.m_view.m_cloth.m_triangleCount,
                                 std::uint32_t(step.m_cloths.edges().size())))
 {
@@ -69,25 +78,19 @@ void SelfFinder::visit(const Candidate& pair)
 void SelfFinder::test(const FeatureTest& test)
 {
     Contact contact;
-    if (++m_counts.m_candidates > m_candidateLimit) return;
-    if (decide(m_view, test, m_firstSlot, &contact, m_counts) && ++m_counts.m_contacts <= m_contactLimit)
+    if (++m_counts.m_candidates > m_limits.m_candidates) return;
+    if (decide(m_view, test, m_firstSlot, &contact, m_counts) && ++m_counts.m_contacts <= m_limits.m_contacts)
         m_found.push_back(contact);
 }
 
 void SelfFinder::append(std::vector<Contact>& contacts)
 {
-    if (!withinLimits() || m_counts.m_contacts > m_contactLimit) return;
+    if (!withinLimits() || m_counts.m_contacts > m_limits.m_contacts) return;
     sortContacts(m_found);
     contacts.insert(contacts.end(), m_found.begin(), m_found.end());
 }
 
-float selfGrowth(float reach)
-{
-    // Far above the roundings of the volumes' comparisons, which they are padded for themselves.
-    return 0.5f * reach * 1.001f;
-}
-
-void SelfContactsOnHost::update(const SelfStep& step)
+void HostSelfTrees::update(const SelfStep& step)
 {
     const MeshPool& cloths = step.m_cloths;
     if (m_revision != cloths.revision())
@@ -96,28 +99,27 @@ void SelfContactsOnHost::update(const SelfStep& step)
         m_layout = makeBvhLayout(std::uint32_t(cloths.triangles().size()));
         m_nodes = makeBvhNodes(m_layout);
     }
-    const ClothView& cloth = step.m_view.m_cloth;
-    const float* start = cloth.m_mode == DRAPE_DISCRETE ? cloth.m_end : cloth.m_start;
     std::size_t ignored = 0;
-    refitOnHost(m_nodes, m_layout, cloths.order(), cloths.triangles(), start, cloth.m_end, step.m_reach.m_radius,
-                ignored);
+    refitOnHost(m_nodes, m_layout, cloths.order(), cloths.triangles(), step.start(), step.m_view.m_cloth.m_end,
+                step.m_reach.m_radius, ignored);
     selfVolumes(step, m_volumes);
 }
 
-SelfCounts SelfContactsOnHost::run(const SelfStep& step, std::uint64_t candidateLimit, std::uint64_t contactLimit,
-                                   std::vector<Contact>& contacts)
+SelfCounts HostSelfTrees::run(const SelfStep& step, SelfStepLimits limits, std::vector<Contact>& contacts)
 {
     update(step);
-    SelfFinder finder(step, m_volumes, candidateLimit, contactLimit);
+    SelfFinder finder(step, m_volumes, limits);
     const HostTree tree = treeOf(step.m_cloths, m_nodes, m_layout);
     leafPairsOnHost(
         tree, tree, DRAPE_WALK_SELF, [&](const Candidate& pair) { finder.visit(pair); },
         [&] { return finder.withinLimits(); });
     finder.append(contacts);
-    return finder.counts();
+    SelfCounts counts = finder.counts();
+    counts.m_invalidNodes = invalidNodes(step);
+    return counts;
 }
 
-std::vector<std::uint64_t> SelfContactsOnHost::countPairs(const SelfStep& step, std::uint64_t limit)
+std::vector<std::uint64_t> HostSelfTrees::countPairs(const SelfStep& step, std::uint64_t limit)
 {
     update(step);
     const std::vector<Triangle>& triangles = step.m_cloths.triangles();

@@ -1,0 +1,66 @@
+// Narrow phase on the host by the kernels of a CPU (host_kernels.h), on the threads of a team: from a list of tests to
+// hits, to contacts in canonical order.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bullet_plugin/core/compaction/canonical_order.h"
+#include "bullet_plugin/core/host_kernels/host_kernels.h"
+#include "bullet_plugin/core/mesh/reserve_room.h"
+#include "bullet_plugin/core/threads/thread_team.h"
+
+namespace drape
+{
+class HostHitFinder
+{
+public:
+    // Lists the hits of features.m_tests, in no particular order, and counts them; beyond the limit the list is not
+    // complete. find, findSwept: kernels of either kind of contacts; swept: their counter. Returns how often the list
+    // was too short and grew.
+    template <class Features>
+    std::size_t find(HitKernel<Features> find, HitKernel<Features> findSwept, std::uint32_t StepCounters::*swept,
+                     const Features& features, std::size_t slots, std::size_t limit, ThreadTeam& threads,
+                     StepCounters& counters)
+    {
+        if (m_hits.empty()) m_hits.resize(kFirstHits);
+        if (m_swept.size() < features.m_count) m_swept.resize(features.m_count + features.m_count / 4);
+        const auto fill = [&]() -> std::size_t
+        {
+            m_slotCount.assign(slots, 0);
+            counters.m_listed = counters.*swept = 0;
+            const HostHits list = {m_hits.data(), std::uint32_t(m_hits.size()), m_slotCount.data()};
+            const auto run = [&](HitKernel<Features> kernel, std::size_t items, bool worth)
+            {
+                runShared(
+                    threads, worth, items,
+                    [&](std::size_t item)
+                    { kernel(std::uint32_t(item), std::uint32_t(items), features, list, m_swept.data(), &counters); });
+            };
+            run(find, (features.m_count + kTestsOfItem - 1) / kTestsOfItem, features.m_count >= kLeastShared);
+            const std::uint32_t left = counters.*swept;
+            if (left > 0) run(findSwept, kSweptItems, left >= kLeastSweptShared);
+            return counters.m_listed;
+        };
+        return fillGrowing(m_hits, limit, fill);
+    }
+
+    // Puts that many hits, all that were found, behind the contacts that there are.
+    void order(std::size_t count, std::vector<Contact>& contacts, ThreadTeam& threads)
+    {
+        orderHits(m_hits.data(), count, m_slotCount, contacts, threads);
+    }
+
+private:
+    static constexpr std::size_t kFirstHits = 1 << 10;
+    static constexpr std::size_t kTestsOfItem = 128;  // a run of them (item_runs.h)
+    static constexpr std::size_t kSweptItems = 32;
+    // From so many on, which take a fifth of a millisecond, threads are worth waking.
+    static constexpr std::size_t kLeastShared = 1 << 10;
+    static constexpr std::size_t kLeastSweptShared = 1 << 6;
+
+    std::vector<Contact> m_hits;
+    std::vector<std::uint32_t> m_slotCount;  // of hits
+    std::vector<std::uint32_t> m_swept;      // tests that the continuous test decides
+};
+}  // namespace drape

@@ -1,0 +1,50 @@
+// Contacts of cloths with themselves on the host, over patches of the cloths' own triangles: SelfContactStage's job, by
+// the kernels of a CPU (host_kernels.h) on the threads of a team.
+#pragma once
+
+#include <vector>
+
+#include "bullet_plugin/core/host_kernels/host_kernels.h"
+#include "bullet_plugin/core/mesh/patches.h"
+#include "bullet_plugin/core/narrow_phase/host_hits.h"
+#include "bullet_plugin/core/threads/thread_team.h"
+#include "self_step.h"
+
+namespace drape
+{
+class HostSelfPatches
+{
+public:
+    explicit HostSelfPatches(const HostKernels& kernels = hostKernels()) : m_kernels(&kernels) {}
+
+    // Does what a step does after cloths came. rest: m, x y z per joined node.
+    void update(const MeshPool& cloths, const float* rest);
+    // Each step, in this order. Lists the pairs of features whose volumes overlap.
+    void cull(const SelfStep& step, std::uint64_t limit, ThreadTeam& threads);
+    // Tests them, unless they were more than their limit. Appends the contacts in canonical order, unless they are more
+    // than theirs.
+    void findContacts(const SelfStep& step, SelfStepLimits limits, ThreadTeam& threads, std::vector<Contact>& contacts);
+
+    // Of the step.
+    SelfCounts counts() const;
+    // Its candidates, in no particular order; what is behind them is old.
+    const std::vector<FeatureTest>& tests() const { return m_tests; }
+
+private:
+    bool isWorth(const SelfStep& step) const;  // to wake threads
+    void pack(const SelfStep& step, ThreadTeam& threads);
+
+    const HostKernels* m_kernels;
+    std::uint32_t m_revision = 0;
+    Patches m_layout;
+    std::vector<std::uint32_t> m_vertexIds, m_edgeIds;  // a face's owner is the face itself
+    std::vector<std::uint32_t> m_faceNodes, m_edgeNodes;
+    std::vector<float> m_faceBoxes, m_vertexBoxes, m_edgeBoxes, m_wideNodes;
+    SelfPatches m_patches = {};  // all of that, for kernels
+    std::vector<FeatureTest> m_tests;
+    HostHitFinder m_hits;
+    StepCounters m_counters = {};
+    std::size_t m_retries = 0;
+    std::size_t m_testsBefore = 0;  // of the last cull
+};
+}  // namespace drape

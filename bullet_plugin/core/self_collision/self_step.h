@@ -1,0 +1,57 @@
+// A step of cloths with themselves, common to the host and devices (kernels/lib/self_contact.h says what contacts are).
+//
+// Input: the cloths' nodes at the step's start and end and at rest, and per cloth the thickness. Output: contacts in
+// canonical order behind those with obstacles. Guarantee: no pair that gives a contact is missed; whoever finds them
+// lists the same candidates and finds the same contacts, bit for bit.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "bullet_plugin/core/mesh/mesh_pool.h"
+#include "kernels/lib/self_contact.h"
+
+namespace drape
+{
+// Per cloth slot, m.
+struct SelfReach
+{
+    std::vector<float> m_thickness;  // negative: the cloth is not tested against itself in the step
+    std::vector<float> m_radius;     // half of how far contacts reach, rounded up; negative likewise
+
+    bool any() const;
+    void leaveOut(std::size_t cloth);
+};
+
+// radius: m, by which volumes of features are grown whose contacts reach to `reach`.
+float selfGrowth(float reach);
+
+// A step of the cloths on the host.
+struct SelfStep
+{
+    const MeshPool& m_cloths;
+    SelfView m_view;
+    const SelfReach& m_reach;
+    const std::vector<float>& m_obstacleRadius;  // m, of the search for obstacles, which counts invalid nodes; or -1
+
+    // Where volumes over the step begin: a discrete step's are those of its end.
+    const float* start() const;
+};
+
+// The most that a step may list. Beyond them there are no contacts, and counts are too low.
+struct SelfStepLimits
+{
+    std::uint64_t m_candidates = UINT64_MAX;
+    std::uint64_t m_contacts = UINT64_MAX;
+};
+
+struct SelfCounts
+{
+    std::uint64_t m_candidates = 0;
+    std::uint64_t m_contacts = 0;
+    std::uint64_t m_swept = 0;         // candidates that the continuous test decided
+    std::uint64_t m_invalidNodes = 0;  // of cloths that the search for obstacles does not look at
+    std::size_t m_retries = 0;         // for lists that were too short
+};
+}  // namespace drape
