@@ -224,7 +224,7 @@ public:
 
     explicit TwoCloths(Pipeline& pipeline)
         : m_pipeline(pipeline),
-          m_step(fallingCase("bowl", onHost() ? 40 : 190, 0.03f, 703)),
+          m_step(fallingCase("bowl", onHost() ? 40 : 370, 0.01f, 703)),
           m_nodes(m_step.m_end.size() / 3),
           m_first(addCloth(pipeline, m_step.m_cloth)),
           m_second(addCloth(pipeline, m_step.m_cloth)),
@@ -287,7 +287,7 @@ protected:
         m_pipeline = make();
         ASSERT_TRUE(m_pipeline);
         m_two = std::make_unique<TwoCloths>(*m_pipeline);
-        ASSERT_TRUE(m_two->onHost() || m_two->m_nodes > std::size_t(1) << 15);
+        ASSERT_TRUE(m_two->onHost() || m_two->m_nodes > std::size_t(1) << 17);
         m_expected = m_two->runSilently({m_two->m_first, m_two->m_second});
         ASSERT_GT(m_expected.size(), 500u);
     }

@@ -62,6 +62,19 @@ public:
                      "clEnqueueCopyBuffer");
     }
 
+    // Becomes that part of another buffer, which must begin at a multiple of kPartBytes, until the other's memory is
+    // another.
+    void bePart(Device& device, Buffer& whole, std::size_t first, std::size_t count)
+    {
+        if (device.failed()) return;
+        const cl_buffer_region region = {first * sizeof(T), count * sizeof(T)};
+        cl_int code = CL_SUCCESS;
+        m_buffer = whole.m_buffer.createSubBuffer(CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region, &code);
+        device.countBuffer();
+        device.check(code, "clCreateSubBuffer", std::to_string(region.size) + " bytes");
+        m_capacity = device.failed() ? 0 : count;
+    }
+
     // Gives the memory back once what is enqueued has used it.
     void release() { *this = Buffer(m_name); }
 
@@ -104,6 +117,9 @@ private:
     std::shared_ptr<const void> m_entry;
     std::size_t m_capacity = 0;
 };
+
+// What the parts of buffers are aligned to. Of today's devices NVIDIA's ask for most.
+constexpr std::size_t kPartBytes = 512;
 
 // Host memory for transfers: pinned where a device is given, plain otherwise. Contents are lost when it grows.
 template <typename T>

@@ -79,10 +79,11 @@ void MeshPool::dropLastVacant()
 
 std::size_t MeshPool::slot(MeshId id) const
 {
-    // Ids are handed out in rising order and meshes keep it.
-    const auto found = std::lower_bound(m_ids.begin(), m_ids.end(), id);
-    const std::size_t slot = std::size_t(found - m_ids.begin());
-    return found != m_ids.end() && *found == id && !m_meshes[slot].m_vacant ? slot : m_ids.size();
+    // Ids are handed out in rising order and meshes keep it: as long as none has gone they follow each other.
+    std::size_t slot = m_ids.empty() ? 0 : std::size_t(id) - std::size_t(m_ids.front());
+    if (slot >= m_ids.size() || m_ids[slot] != id)
+        slot = std::size_t(std::lower_bound(m_ids.begin(), m_ids.end(), id) - m_ids.begin());
+    return slot < m_ids.size() && m_ids[slot] == id && !m_meshes[slot].m_vacant ? slot : m_ids.size();
 }
 
 bool MeshPool::holds(MeshId id) const

@@ -12,6 +12,9 @@ namespace
 constexpr std::size_t kFirstCandidates = 1 << 16;
 constexpr std::size_t kFirstContacts = 1 << 13;
 
+// Floats whose transfer takes less time than the begin of one.
+constexpr std::size_t kFloatsBetween = 1 << 16;
+
 // What a CPU has as one program: the files of every step over patches, or over trees but for the traversal's own, and
 // what cloths need beside them that collide with themselves.
 std::vector<ProgramSet::Names> filesTogether(bool patches, bool reduces)
@@ -145,8 +148,12 @@ void DeviceBackend::updateCloths(const Scene& scene)
     if (patches()) clusterCloths(scene.m_cloths, first);
     m_clothEdges.append(*m_device, scene.m_cloths.edges(), scene.m_cloths.begin(first).m_edge);
     uploadSide(scene.m_cloths, scene.m_clothLayout, m_cloth);
-    m_clothStart.reserve(*m_device, scene.m_clothStart.capacity());
-    m_clothEnd.reserve(*m_device, scene.m_clothEnd.capacity());
+    const std::size_t room = scene.m_clothNodes.room();
+    if (m_clothNodes.reserve(*m_device, 2 * room) || m_clothEnd.capacity() != room)
+    {
+        m_clothStart.bePart(*m_device, m_clothNodes, 0, room);
+        m_clothEnd.bePart(*m_device, m_clothNodes, room, room);
+    }
     m_compaction.resizeSlots(*m_device, scene.allSlotCount());
     if (scene.m_anySelf) m_self.setTopology(*m_device, scene.m_cloths, scene.m_clothRest);
 }
@@ -210,8 +217,15 @@ void DeviceBackend::refitObstacles(const Scene& scene)
 
 void DeviceBackend::writeNodes(const Scene& scene, std::size_t first, std::size_t count)
 {
-    m_clothStart.write(*m_device, scene.m_clothStart.data() + 3 * first, 3 * count, 3 * first);
-    m_clothEnd.write(*m_device, scene.m_clothEnd.data() + 3 * first, 3 * count, 3 * first);
+    const ClothNodes& nodes = scene.m_clothNodes;
+    // What lies between all nodes at the start and those at the end takes less time than a transfer of its own.
+    if (count == scene.m_cloths.vertexCount() && nodes.room() - 3 * count <= kFloatsBetween)
+    {
+        m_clothNodes.write(*m_device, nodes.start(), nodes.room() + 3 * count);
+        return;
+    }
+    m_clothStart.write(*m_device, nodes.start() + 3 * first, 3 * count, 3 * first);
+    m_clothEnd.write(*m_device, nodes.end() + 3 * first, 3 * count, 3 * first);
 }
 
 bool DeviceBackend::sendNodes(const Scene& scene, std::size_t first, std::size_t count)

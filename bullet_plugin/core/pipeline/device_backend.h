@@ -116,7 +116,8 @@ private:
     PlacedObstacles m_placed;
 
     Side m_cloth{"cloth"}, m_obstacle{"obstacle"};
-    Buffer<float> m_clothStart{"cloth positions"}, m_clothEnd{"cloth positions"};
+    Buffer<float> m_clothNodes{"cloth positions"};
+    Buffer<float> m_clothStart, m_clothEnd;  // parts of it, as ClothNodes has them
     Buffer<float> m_thickness{"pairs of meshes"}, m_tube{"pairs of meshes"};
     Buffer<Edge> m_clothEdges{"cloth edges"};
     Buffer<ObstacleMotion> m_motions{"obstacle places"};

@@ -24,8 +24,8 @@ void HostBackend::prepare(const Scene& scene)
 
 ReductionView HostBackend::reductionView(const Scene& scene, const StepPairs& pairs)
 {
-    return {scene.m_clothStart.data(),
-            scene.m_clothEnd.data(),
+    return {scene.m_clothNodes.start(),
+            scene.m_clothNodes.end(),
             scene.m_cloths.triangles().data(),
             scene.m_cloths.edges().data(),
             scene.m_cloths.firsts().data(),

@@ -60,9 +60,9 @@ std::size_t HostTrees::refitCloths(const Scene& scene, const StepPairs& pairs)
     update(scene);
     std::size_t invalidNodes = 0;
     refitOnHost(m_clothNodes, scene.m_clothLayout, scene.m_cloths.order(), scene.m_cloths.triangles(),
-                scene.m_clothStart.data(), scene.m_clothEnd.data(), pairs.m_clothRadius, invalidNodes);
+                scene.m_clothNodes.start(), scene.m_clothNodes.end(), pairs.m_clothRadius, invalidNodes);
     growByMotionsOnHost(m_clothNodes, scene.m_clothLayout, scene.m_cloths.order(), scene.m_cloths.triangles(),
-                        scene.m_clothStart.data(), scene.m_clothEnd.data(), pairs.m_clothRadius, pairs.m_motions,
+                        scene.m_clothNodes.start(), scene.m_clothNodes.end(), pairs.m_clothRadius, pairs.m_motions,
                         pairs.m_thickness, scene.m_obstacles.meshCount());
     return invalidNodes;
 }

@@ -17,6 +17,13 @@
 
 namespace drape
 {
+// Where a pair's meshes are.
+struct PairSlots
+{
+    std::size_t m_cloth;
+    std::size_t m_obstacle;
+};
+
 // A pair named for the coming step; thickness in m.
 struct NamedPair
 {
@@ -52,7 +59,8 @@ struct Pipeline::Implementation
     std::unique_ptr<DeviceBackend> m_deviceBackend;
     std::unique_ptr<HostBackend> m_hostBackend;
     std::vector<NamedPair> m_pairs;
-    std::vector<MeshId> m_selfCloths;  // named for the coming step
+    std::vector<PairSlots> m_pairSlots;  // of those
+    std::vector<MeshId> m_selfCloths;    // named for the coming step
     StepPairs m_stepPairs;
     std::vector<bool> m_paired;  // per obstacle slot, with any cloth in the step
     StepResult m_result;
@@ -102,6 +110,7 @@ struct Pipeline::Implementation
     void watchTree();
     // What depends on where an obstacle is.
     void placeMesh(std::size_t slot);
+    void findSlots();
     void collectPairs();
     void collectMotions();
     void collectSelf();

@@ -8,9 +8,9 @@ namespace drape
 {
 namespace
 {
-// Nodes that go to the device before all are written: 0.4 MB each of start and end, so that a transfer takes longer
-// than it takes to ask for it.
-constexpr std::size_t kNodesTogether = 1 << 15;
+// Nodes that go to the device before all are written: 1.6 MB each of start and end, so that a transfer takes far longer
+// than it takes to ask for it, which a GPU's driver does in 10 us.
+constexpr std::size_t kNodesTogether = 1 << 17;
 // Nodes that one thread writes before it looks for others, and from how many on it is worth waking threads.
 constexpr std::size_t kNodesAlone = 1 << 11;
 constexpr std::size_t kLeastShared = 1 << 14;
@@ -45,7 +45,7 @@ std::vector<NodeStretch> Pipeline::Implementation::stretchesOf(const std::vector
         {
             const std::size_t at = 3 * (mesh.m_firstVertex + first);
             stretches.push_back(NodeStretch{i, first, std::min(kNodesAlone, nodes - first),
-                                            m_scene.m_clothStart.data() + at, m_scene.m_clothEnd.data() + at});
+                                            m_scene.m_clothNodes.start() + at, m_scene.m_clothNodes.end() + at});
         }
     }
     return stretches;
@@ -55,14 +55,14 @@ float* Pipeline::clothStart(MeshId id)
 {
     m_implementation->joinScene();
     Scene& scene = m_implementation->m_scene;
-    return scene.m_clothStart.data() + 3 * std::size_t(scene.m_cloths.mesh(slotOf(scene.m_cloths, id)).m_firstVertex);
+    return scene.m_clothNodes.start() + 3 * std::size_t(scene.m_cloths.mesh(slotOf(scene.m_cloths, id)).m_firstVertex);
 }
 
 float* Pipeline::clothEnd(MeshId id)
 {
     m_implementation->joinScene();
     Scene& scene = m_implementation->m_scene;
-    return scene.m_clothEnd.data() + 3 * std::size_t(scene.m_cloths.mesh(slotOf(scene.m_cloths, id)).m_firstVertex);
+    return scene.m_clothNodes.end() + 3 * std::size_t(scene.m_cloths.mesh(slotOf(scene.m_cloths, id)).m_firstVertex);
 }
 
 void Pipeline::nodesWritten(MeshId id, std::size_t count)

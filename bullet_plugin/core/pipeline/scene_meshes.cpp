@@ -69,18 +69,17 @@ void Pipeline::Implementation::joinCloths(std::size_t first)
     const MeshPool& cloths = m_scene.m_cloths;
     forgetNodes();
     const std::size_t coordinates = 3 * cloths.vertexCount();
-    if (m_scene.m_clothStart.capacity() < coordinates)
+    if (m_scene.m_clothNodes.room() < coordinates)
     {
         // Their contents are lost; a quarter more where it is not the first time.
         const std::size_t room = coordinates + (first > 0 ? coordinates / 4 : 0);
-        m_scene.m_clothStart.reserve(device(), room);
-        m_scene.m_clothEnd.reserve(device(), room);
+        m_scene.m_clothNodes.reserve(device(), room);
         first = 0;
     }
     for (std::size_t slot = first; slot < cloths.meshCount(); ++slot)
     {
         const PooledMesh& mesh = cloths.mesh(slot);
-        for (float* target : {m_scene.m_clothStart.data(), m_scene.m_clothEnd.data()})
+        for (float* target : {m_scene.m_clothNodes.start(), m_scene.m_clothNodes.end()})
         {
             std::copy(mesh.m_positions.begin(), mesh.m_positions.end(), target + 3 * std::size_t(mesh.m_firstVertex));
         }

@@ -147,7 +147,7 @@ void Pipeline::Implementation::watchTree()
     std::vector<std::uint32_t> firstTriangles;
     for (const MeshFirsts& firsts : cloths.firsts())
         firstTriangles.push_back(firsts.m_triangle);
-    const float* end = m_scene.m_clothEnd.data();
+    const float* end = m_scene.m_clothNodes.end();
     m_treeWatch.rebuild(treeMethods(), cloths.triangles(), std::move(firstTriangles),
                         std::vector<float>(end, end + 3 * cloths.vertexCount()));
 }

@@ -17,6 +17,31 @@
 
 namespace drape
 {
+// The joined cloth nodes, x y z each, m, at a step's start and at its end: side by side, so that one transfer can bring
+// both to a device. Contents are lost when there must be more room.
+class ClothNodes
+{
+public:
+    float* start() { return m_floats.data(); }
+    float* end() { return m_floats.data() + m_room; }
+    const float* start() const { return m_floats.data(); }
+    const float* end() const { return m_floats.data() + m_room; }
+    // Floats of each.
+    std::size_t room() const { return m_room; }
+    // device may be null.
+    void reserve(Device* device, std::size_t floats)
+    {
+        if (m_room >= floats && m_room > 0) return;
+        constexpr std::size_t kStep = kPartBytes / sizeof(float);
+        m_room = std::max((floats + kStep - 1) / kStep, std::size_t(1)) * kStep;
+        m_floats.reserve(device, 2 * m_room);
+    }
+
+private:
+    Staging<float> m_floats;
+    std::size_t m_room = 0;
+};
+
 // Both sides' meshes and, per side, the data that belongs to the joined arrays.
 struct Scene
 {
@@ -24,8 +49,7 @@ struct Scene
     MeshPool m_obstacles;
     BvhLayout m_clothLayout;
     BvhLayout m_obstacleLayout;
-    Staging<float> m_clothStart;  // m, x y z per joined cloth node
-    Staging<float> m_clothEnd;
+    ClothNodes m_clothNodes;
     bool m_anySelf = false;                  // whether a cloth collides with itself
     std::vector<float> m_clothRest;          // m, joined, at rest; empty where none does
     std::vector<float> m_obstaclePositions;  // m, joined, as given
@@ -48,7 +72,7 @@ struct Scene
 inline ClothView clothView(const Scene& scene, const Settings& settings)
 {
     const MeshPool& cloths = scene.m_cloths;
-    return clothView(scene.m_clothStart.data(), scene.m_clothEnd.data(), cloths.triangles().data(),
+    return clothView(scene.m_clothNodes.start(), scene.m_clothNodes.end(), cloths.triangles().data(),
                      cloths.edges().data(), std::uint32_t(cloths.vertexCount()),
                      std::uint32_t(cloths.triangles().size()), std::uint32_t(settings.m_mode), nullptr);
 }

@@ -17,6 +17,13 @@ constexpr float kReachPad = 1.001f;
 constexpr float kEdgePad = 1e-4f;
 }  // namespace
 
+void Pipeline::Implementation::findSlots()
+{
+    m_pairSlots.clear();
+    for (const NamedPair& pair : m_pairs)
+        m_pairSlots.push_back({slotOf(m_scene.m_cloths, pair.m_cloth), slotOf(m_scene.m_obstacles, pair.m_obstacle)});
+}
+
 void Pipeline::Implementation::collectPairs()
 {
     const std::size_t obstacleMeshes = m_scene.m_obstacles.meshCount();
@@ -24,10 +31,11 @@ void Pipeline::Implementation::collectPairs()
     m_stepPairs.m_clothRadius.assign(m_scene.m_cloths.meshCount(), -1.0f);
     m_stepPairs.m_anyPair = false;
     m_paired.assign(obstacleMeshes, false);
-    for (const NamedPair& pair : m_pairs)
+    findSlots();
+    for (std::size_t i = 0; i < m_pairs.size(); ++i)
     {
-        const std::size_t cloth = slotOf(m_scene.m_cloths, pair.m_cloth);
-        const std::size_t obstacle = slotOf(m_scene.m_obstacles, pair.m_obstacle);
+        const NamedPair& pair = m_pairs[i];
+        const std::size_t cloth = m_pairSlots[i].m_cloth, obstacle = m_pairSlots[i].m_obstacle;
         assert(pair.m_thickness > 0.0f);
         m_stepPairs.m_thickness[cloth * obstacleMeshes + obstacle] = pair.m_thickness;
         m_paired[obstacle] = true;
@@ -117,17 +125,17 @@ void Pipeline::Implementation::collectTubes()
     m_stepPairs.m_anyTube = false;
     if (!m_settings.m_reduceContacts) return;
     std::vector<bool> exempt(m_scene.m_cloths.meshCount(), false);
-    for (const NamedPair& pair : m_pairs)
+    for (std::size_t i = 0; i < m_pairs.size(); ++i)
     {
-        const PooledMesh& obstacle = obstacles.mesh(slotOf(obstacles, pair.m_obstacle));
-        if (obstacle.m_placing.moves() || obstacle.m_oneSided || !(pair.m_tube >= 0.0f))
-            exempt[slotOf(m_scene.m_cloths, pair.m_cloth)] = true;
+        const PooledMesh& obstacle = obstacles.mesh(m_pairSlots[i].m_obstacle);
+        if (obstacle.m_placing.moves() || obstacle.m_oneSided || !(m_pairs[i].m_tube >= 0.0f))
+            exempt[m_pairSlots[i].m_cloth] = true;
     }
-    for (const NamedPair& pair : m_pairs)
+    for (std::size_t i = 0; i < m_pairs.size(); ++i)
     {
-        const std::size_t cloth = slotOf(m_scene.m_cloths, pair.m_cloth);
-        if (exempt[cloth]) continue;
-        m_stepPairs.m_tube[cloth * obstacles.meshCount() + slotOf(obstacles, pair.m_obstacle)] = pair.m_tube;
+        if (exempt[m_pairSlots[i].m_cloth]) continue;
+        m_stepPairs.m_tube[m_pairSlots[i].m_cloth * obstacles.meshCount() + m_pairSlots[i].m_obstacle] =
+            m_pairs[i].m_tube;
         m_stepPairs.m_anyTube = true;
     }
 }

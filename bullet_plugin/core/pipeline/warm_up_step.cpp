@@ -28,10 +28,9 @@ void makeWarmUpStep(Scene& scene, StepPairs& pairs, float selfThickness)
     addTriangle(scene.m_obstacles);
     scene.m_clothLayout = makeBvhLayout(1);
     scene.m_obstacleLayout = makeBvhLayout(1);
-    scene.m_clothStart.reserve(nullptr, kAbove.size());
-    scene.m_clothEnd.reserve(nullptr, kBelow.size());
-    std::copy(kAbove.begin(), kAbove.end(), scene.m_clothStart.data());
-    std::copy(kBelow.begin(), kBelow.end(), scene.m_clothEnd.data());
+    scene.m_clothNodes.reserve(nullptr, kAbove.size());
+    std::copy(kAbove.begin(), kAbove.end(), scene.m_clothNodes.start());
+    std::copy(kBelow.begin(), kBelow.end(), scene.m_clothNodes.end());
     scene.m_obstaclePositions = kBelow;
     scene.m_vertexCones.assign(3, NormalCone{{0, 0, 1}, -1});
     scene.m_edgeCones.assign(3, NormalCone{{0, 0, 1}, -1});
