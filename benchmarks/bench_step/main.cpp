@@ -97,19 +97,19 @@ std::vector<MethodEntry> chosenMethods(const Options& options)
 }
 
 // Of the methods, those for a scene: without references whose hashes are known, unless they were asked for; sweeps,
-// whose scenes are many, without reduced ones and the front likewise.
+// whose scenes are many, without reduced ones and the front likewise; cloths that meet themselves without the front.
 std::vector<MethodEntry> methodsFor(const SceneSpec& spec, std::vector<MethodEntry> methods, const Options& options,
                                     const MeasureSettings& settings)
 {
     const auto isLeftOut = [&](const MethodEntry& entry)
     {
+        // FCL has no collision of a model with itself.
+        if (spec.m_self && entry.m_name.rfind("fcl", 0) == 0) return true;
         if (contains(options.m_methods, entry.m_name)) return false;
         const bool known = !(entry.m_reduced ? settings.m_expectedReduced : settings.m_expected).empty();
         if (!options.m_methods.empty()) return known;
-        // Neither FCL nor the front has a collision of a model with itself.
-        const bool pairsOnly = entry.m_name == kFront || entry.m_name.rfind("fcl", 0) == 0;
-        const bool extra = entry.m_reduced || entry.m_name == kFront;
-        return (extra && !spec.m_sweep.empty()) || (spec.m_self && pairsOnly);
+        if (entry.m_name == kFront && spec.m_self) return true;
+        return (entry.m_reduced || entry.m_name == kFront) && !spec.m_sweep.empty();
     };
     methods.erase(std::remove_if(methods.begin(), methods.end(), isLeftOut), methods.end());
     return methods;

@@ -3,7 +3,7 @@
 //
 // Every volume is the union of its nodes' volumes (vertexVolume), so a box or a patch's volume holds those of all that
 // it stands for, and which pairs are found does not depend on the patches. Where several nodes' outermost projections
-// alone are padded it is the same, since what dopGrowInterval() makes of a projection rises with it, rounded, too.
+// alone are padded a bound may differ in its last bit, which selfGrowth() covers a thousand times.
 #ifndef DRAPE_LIB_SELF_CULL_H
 #define DRAPE_LIB_SELF_CULL_H
 

@@ -1,4 +1,4 @@
-// Pairs of features of one cloth that a device's broad phase lists (kernels/self_cull.cl, self_walk.cl). For OpenCL C only.
+// Pairs of features of one cloth that a broad phase lists (kernels/self_cull.cl, self_walk.cl). For kernels only.
 #ifndef DRAPE_LIB_SELF_PAIRS_H
 #define DRAPE_LIB_SELF_PAIRS_H
 
@@ -19,8 +19,8 @@ typedef struct SelfCloth
 
 // Whether all nodes of two features are valid, and the features' volumes overlap: see nodeVolumesOverlap().
 #if DRAPE_LANES > 1 && DRAPE_DOP_DIRECTIONS <= 3 + DRAPE_DOP_EDGES
-// With a lane for each direction, the axes among them. Bit for bit the same: products with 0, 1 and -1 do not round, and of
-// two nodes that lie outermost the intervals do.
+// With a lane for each direction, the axes among them. Products with 0, 1 and -1 do not round, so projections are the same.
+// Only the outermost are grown, by which a bound may differ in its last bit, far within what contacts' reach is grown by.
 static int volumesOverlap(const Vec3 from[4], const Vec3 to[4], const int split, const float radius)
 {
     const Directions directions = directionLanes();

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <string>
 
 #include "bullet_plugin/core/broad_phase/host_patch_cull.h"
@@ -92,22 +93,38 @@ private:
     StepCounters m_counters = {};
 };
 
-// The same of a cloth with itself.
+std::vector<TriangleMesh> meshesOf(const std::vector<SelfStepCase>& steps)
+{
+    std::vector<TriangleMesh> meshes;
+    for (const SelfStepCase& step : steps)
+        meshes.push_back(step.m_motion.m_mesh);
+    return meshes;
+}
+
+// The same of cloths with themselves.
 class HostSelfStep
 {
 public:
-    HostSelfStep(const HostKernels& kernels, const SelfStepCase& step, std::uint32_t mode)
-        : m_side(makeSide({step.m_motion.m_mesh})),
-          m_rest(step.m_rest),
-          m_reach({{step.m_thickness}, {selfGrowth(step.m_thickness * kReachScale)}}),
-          m_patches(kernels)
+    HostSelfStep(const HostKernels& kernels, const std::vector<SelfStepCase>& steps, std::uint32_t mode)
+        : m_side(makeSide(meshesOf(steps))), m_obstacleRadius(steps.size(), -1.0f), m_patches(kernels)
     {
-        m_side.m_end = step.m_motion.m_end;
+        m_side.m_end.clear();
+        for (const SelfStepCase& step : steps)
+        {
+            m_side.m_end.insert(m_side.m_end.end(), step.m_motion.m_end.begin(), step.m_motion.m_end.end());
+            m_rest.insert(m_rest.end(), step.m_rest.begin(), step.m_rest.end());
+            m_reach.m_thickness.push_back(step.m_thickness);
+            m_reach.m_radius.push_back(selfGrowth(step.m_thickness * kReachScale));
+        }
         ClothView cloth = m_side.cloth();
         cloth.m_mode = mode;
         m_view = selfView(cloth, m_rest.data(), kReachScale);
         m_patches.update(m_side.m_pool, m_rest.data());
     }
+
+    // Takes a cloth out of the step, or has obstacles looked for, too, of that one.
+    void leaveOut(std::size_t cloth) { m_reach.leaveOut(cloth); }
+    void meetObstacles(std::size_t cloth) { m_obstacleRadius[cloth] = 0.1f; }
 
     // Behind `others`.
     std::vector<Contact> contacts(ThreadTeam& threads, SelfStepLimits limits = {}, std::vector<Contact> others = {})
@@ -127,12 +144,12 @@ public:
     }
 
 private:
-    SelfStep step() const { return {m_side.m_pool, m_view, m_reach, m_noObstacles}; }
+    SelfStep step() const { return {m_side.m_pool, m_view, m_reach, m_obstacleRadius}; }
 
     Side m_side;
     std::vector<float> m_rest;
     SelfReach m_reach;
-    std::vector<float> m_noObstacles = {-1.0f};
+    std::vector<float> m_obstacleRadius;
     SelfView m_view;
     HostSelfPatches m_patches;
 };
@@ -164,6 +181,22 @@ protected:
     {
         std::size_t count = 0;
         return *allHostKernels(count)[GetParam()];
+    }
+
+    // That the host finds what the trees do, alone and by threads. Returns what that was.
+    static SelfCounts expectSame(HostSelfStep& host)
+    {
+        ThreadTeam alone(1), team(3);
+        SelfCounts counts;
+        const std::vector<Contact> expected = host.expected(counts);
+        for (ThreadTeam* threads : {&alone, &team, &team})
+        {
+            const std::vector<Contact> found = host.contacts(*threads);
+            EXPECT_TRUE(sameBytes(found, expected)) << difference(found, expected);
+            EXPECT_EQ(host.counts().m_candidates, counts.m_candidates);
+            EXPECT_EQ(host.counts().m_invalidNodes, counts.m_invalidNodes);
+        }
+        return counts;
     }
 };
 
@@ -212,28 +245,18 @@ TEST_P(HostKernelsTest, ListsGrowAndLimitsAreKept)
 
 TEST_P(HostKernelsTest, SelfContactsAreThoseOfAWalkOverTrees)
 {
-    ThreadTeam alone(1), team(3);
     SelfCounts all;
     std::vector<SelfStepCase> steps = selfStepCases();
     steps.push_back(foldedCase(41, 8, 0.02f, 1520));  // enough triangles for threads
     for (const SelfStepCase& step : steps)
     {
-        if (step.m_motion.m_mesh.m_triangles.empty()) continue;
         for (const std::uint32_t mode : {DRAPE_DISCRETE, DRAPE_CONTINUOUS, DRAPE_AUTOMATIC})
         {
             SCOPED_TRACE(step.m_motion.m_name + ", mode " + std::to_string(mode));
-            HostSelfStep host(kernels(), step, mode);
-            SelfCounts counts;
-            const std::vector<Contact> expected = host.expected(counts);
-            for (ThreadTeam* threads : {&alone, &team, &team})
-            {
-                const std::vector<Contact> found = host.contacts(*threads);
-                EXPECT_TRUE(sameBytes(found, expected)) << difference(found, expected);
-                EXPECT_EQ(host.counts().m_candidates, counts.m_candidates);
-                EXPECT_EQ(host.counts().m_invalidNodes, counts.m_invalidNodes);
-            }
-            all.m_contacts += expected.size();
-            all.m_swept += host.counts().m_swept;
+            HostSelfStep host(kernels(), {step}, mode);
+            const SelfCounts counts = expectSame(host);
+            all.m_contacts += counts.m_contacts;
+            all.m_swept += counts.m_swept;
             all.m_invalidNodes += counts.m_invalidNodes;
         }
     }
@@ -242,10 +265,35 @@ TEST_P(HostKernelsTest, SelfContactsAreThoseOfAWalkOverTrees)
     EXPECT_GT(all.m_invalidNodes, 0u);
 }
 
+// Several at once, of which one is not in the step, and one meets obstacles besides, whose search counts its bad nodes.
+TEST_P(HostKernelsTest, ClothsMeetThemselvesAlone)
+{
+    SelfStepCase spoilt = foldedCase(17, 4, 0.003f, 1523);
+    spoilt.m_motion.m_end[40] = std::numeric_limits<float>::quiet_NaN();
+    const std::vector<SelfStepCase> steps = {foldedCase(25, 4, 0.003f, 1522), spoilt, spoilt,
+                                             foldedCase(13, 3, 0.03f, 1524), spoilt};
+    for (const std::uint32_t mode : {DRAPE_DISCRETE, DRAPE_CONTINUOUS, DRAPE_AUTOMATIC})
+    {
+        SCOPED_TRACE(mode);
+        HostSelfStep host(kernels(), steps, mode);
+        const SelfCounts all = expectSame(host);
+        host.leaveOut(1);
+        const SelfCounts without = expectSame(host);
+        host.meetObstacles(4);
+        const SelfCounts beside = expectSame(host);
+        EXPECT_LT(without.m_contacts + 500, all.m_contacts);
+        EXPECT_GT(without.m_contacts, 2000u);
+        EXPECT_EQ(beside.m_contacts, without.m_contacts);
+        EXPECT_EQ(all.m_invalidNodes, 3u);
+        EXPECT_EQ(without.m_invalidNodes, 2u);
+        EXPECT_EQ(beside.m_invalidNodes, 1u);
+    }
+}
+
 TEST_P(HostKernelsTest, ListsOfSelfContactsGrowAndLimitsAreKept)
 {
     ThreadTeam team(2);
-    HostSelfStep host(kernels(), foldedCase(41, 8, 0.003f, 1521), DRAPE_AUTOMATIC);
+    HostSelfStep host(kernels(), {foldedCase(41, 8, 0.003f, 1521)}, DRAPE_AUTOMATIC);
     SelfCounts counts;
     const std::vector<Contact> expected = host.expected(counts), one = {expected[0]};
     EXPECT_EQ(host.contacts(team).size(), expected.size());

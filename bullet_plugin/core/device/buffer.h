@@ -118,8 +118,8 @@ private:
     std::size_t m_capacity = 0;
 };
 
-// What the parts of buffers are aligned to. Of today's devices NVIDIA's ask for most.
-constexpr std::size_t kPartBytes = 512;
+// What the parts of buffers are aligned to: devices ask for 128 (PoCL), 512 (NVIDIA) and up to 4,096.
+constexpr std::size_t kPartBytes = 4096;
 
 // Host memory for transfers: pinned where a device is given, plain otherwise. Contents are lost when it grows.
 template <typename T>

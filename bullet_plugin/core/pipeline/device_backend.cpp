@@ -142,18 +142,25 @@ void DeviceBackend::clusterCloths(const MeshPool& cloths, std::size_t firstSlot)
     m_cloth.m_order.append(*m_device, m_clustered, cloths.begin(firstSlot).m_triangle);
 }
 
+void DeviceBackend::reserveNodes(std::size_t room)
+{
+    const bool grows = m_clothNodes.capacity() < 2 * room;
+    if (!grows && m_clothEnd.capacity() == room) return;
+    // They would keep the memory that goes.
+    m_clothStart.release();
+    m_clothEnd.release();
+    m_clothNodes.reserve(*m_device, 2 * room);
+    m_clothStart.bePart(*m_device, m_clothNodes, 0, room);
+    m_clothEnd.bePart(*m_device, m_clothNodes, room, room);
+}
+
 void DeviceBackend::updateCloths(const Scene& scene)
 {
     const std::size_t first = firstNew(scene.m_cloths, m_cloth);
     if (patches()) clusterCloths(scene.m_cloths, first);
     m_clothEdges.append(*m_device, scene.m_cloths.edges(), scene.m_cloths.begin(first).m_edge);
     uploadSide(scene.m_cloths, scene.m_clothLayout, m_cloth);
-    const std::size_t room = scene.m_clothNodes.room();
-    if (m_clothNodes.reserve(*m_device, 2 * room) || m_clothEnd.capacity() != room)
-    {
-        m_clothStart.bePart(*m_device, m_clothNodes, 0, room);
-        m_clothEnd.bePart(*m_device, m_clothNodes, room, room);
-    }
+    reserveNodes(scene.m_clothNodes.room());
     m_compaction.resizeSlots(*m_device, scene.allSlotCount());
     if (scene.m_anySelf) m_self.setTopology(*m_device, scene.m_cloths, scene.m_clothRest);
 }

@@ -74,6 +74,8 @@ private:
     void uploadSide(const MeshPool& pool, const BvhLayout& layout, Side& side);
     void updateTopology(const Scene& scene);
     void updateCloths(const Scene& scene);
+    // Floats of the cloths' nodes at a step's start, and as many at its end.
+    void reserveNodes(std::size_t room);
     void clusterCloths(const MeshPool& cloths, std::size_t firstSlot);
     void updateTraversal(const Scene& scene, bool newObstacles);
     // Brings the obstacles from slot `fresh` on, and of the others those that were given other positions or another

@@ -22,6 +22,8 @@ void HostSelfPatches::update(const MeshPool& cloths, const float* rest)
     if (m_revision == cloths.revision()) return;
     m_revision = cloths.revision();
     m_layout = makePatches(cloths, rest, kWidth);
+    m_patches = {};
+    if (m_layout.m_patches.empty()) return;
     m_vertexIds = vertexIdsOf(m_layout.m_vertexOwners, cloths.triangles());
     m_edgeIds = edgeIdsOf(m_layout.m_edgeOwners, cloths.triangles());
     m_faceNodes = faceNodesOf(m_layout.m_faceOwners, cloths.triangles(), kWidth);

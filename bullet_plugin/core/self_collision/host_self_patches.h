@@ -17,7 +17,7 @@ class HostSelfPatches
 public:
     explicit HostSelfPatches(const HostKernels& kernels = hostKernels()) : m_kernels(&kernels) {}
 
-    // Does what a step does after cloths came. rest: m, x y z per joined node.
+    // Does what a step does after cloths came or went: makes all patches anew. rest: m, x y z per joined node.
     void update(const MeshPool& cloths, const float* rest);
     // Each step, in this order. Lists the pairs of features whose volumes overlap.
     void cull(const SelfStep& step, std::uint64_t limit, ThreadTeam& threads);
@@ -27,8 +27,6 @@ public:
 
     // Of the step.
     SelfCounts counts() const;
-    // Its candidates, in no particular order; what is behind them is old.
-    const std::vector<FeatureTest>& tests() const { return m_tests; }
 
 private:
     bool isWorth(const SelfStep& step) const;  // to wake threads
