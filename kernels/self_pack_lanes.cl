@@ -58,12 +58,11 @@ static void growLanes(Lanes* low, Lanes* high, const NodeLanes* nodes, const int
         if (direction >= 3 + DRAPE_DOP_EDGES)
             inner = lanesSelect(node->m_valid, lanesMax(inner, lanesNorm1(p)), inner);
     }
+    const float reach = radius * dopNorm(direction), pad = DRAPE_DOP_PAD;
+    const Lanes from = least - reach, to = greatest + reach;
     const LaneMask any = least <= greatest;
-    *low = least;
-    *high = greatest;
-    growLaneInterval(low, high, lanesSplat(radius * dopNorm(direction)), inner);
-    *low = lanesSelect(any, *low, least);
-    *high = lanesSelect(any, *high, greatest);
+    *low = lanesSelect(any, from - (pad * (lanesAbs(least) + inner + lanesAbs(from)) + DRAPE_TINY), least);
+    *high = lanesSelect(any, to + (pad * (lanesAbs(greatest) + inner + lanesAbs(to)) + DRAPE_TINY), greatest);
 }
 
 static void storeBoxes(__global float* restrict boxes, const uint block, const NodeLanes* nodes, const int count,

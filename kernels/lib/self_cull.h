@@ -145,15 +145,6 @@ DRAPE_FUNCTION int nodeVolumesOverlap(const Vec3 from[4], const Vec3 to[4], int 
     return 1;
 }
 
-// What dopGrowInterval() makes of outermost projections where there was nothing before, a lane each.
-DRAPE_FUNCTION void growLaneInterval(Lanes* least, Lanes* greatest, Lanes reach, Lanes inner)
-{
-    const float pad = DRAPE_DOP_PAD;
-    const Lanes from = *least - reach, to = *greatest + reach;
-    *least = from - (pad * (lanesAbs(*least) + inner + lanesAbs(from)) + DRAPE_TINY);
-    *greatest = to + (pad * (lanesAbs(*greatest) + inner + lanesAbs(to)) + DRAPE_TINY);
-}
-
 // Boxes of a block, a lane each.
 typedef struct BoxLanes
 {

@@ -18,14 +18,12 @@ typedef struct SelfCloth
 } SelfCloth;
 
 // Whether all nodes of two features are valid, and the features' volumes overlap: see nodeVolumesOverlap().
-#if DRAPE_LANES > 1 && DRAPE_DOP_DIRECTIONS <= 3 + DRAPE_DOP_EDGES
-// With a lane for each direction, the axes among them. Products with 0, 1 and -1 do not round, so projections are the same.
-// Only the outermost are grown, by which a bound may differ in its last bit, far within what contacts' reach is grown by.
+#if DRAPE_LANES > 1
+// With a lane for each direction, the axes among them, what roundings cannot turn around; the rest number by number.
 static int volumesOverlap(const Vec3 from[4], const Vec3 to[4], const int split, const float radius)
 {
     const Directions directions = directionLanes();
-    const Lanes reach = radius * directions.m_norm, inner = lanesSplat(0.0f);
-    Lanes low[4], high[4], sum = inner;
+    Lanes low[4], high[4], inner = lanesSplat(0.0f), sum = inner;
     DRAPE_UNROLL
     for (int k = 0; k < 4; ++k)
     {
@@ -34,18 +32,24 @@ static int volumesOverlap(const Vec3 from[4], const Vec3 to[4], const int split,
         low[k] = lanesMin(start, end);
         high[k] = lanesMax(start, end);
         sum += lanesAbs(start) + lanesAbs(end);
+#if DRAPE_DOP_DIRECTIONS == 7 || DRAPE_DOP_DIRECTIONS == 13
+        inner = lanesMax(inner, lanesSplat(drapeMax(vec3Norm1(from[k]), vec3Norm1(to[k]))));  // of any two coordinates
+#endif
     }
     const Lanes both = lanesMin(low[2], low[3]), bothHigh = lanesMax(high[2], high[3]);
-    Lanes own = split == 2 ? lanesMin(low[0], low[1]) : low[0];
-    Lanes ownHigh = split == 2 ? lanesMax(high[0], high[1]) : high[0];
-    Lanes other = split == 2 ? both : lanesMin(low[1], both);
-    Lanes otherHigh = split == 2 ? bothHigh : lanesMax(high[1], bothHigh);
-    growLaneInterval(&own, &ownHigh, reach, inner);
-    growLaneInterval(&other, &otherHigh, reach, inner);
-    const LaneMask apart = (own > otherHigh) | (other > ownHigh);
+    const Lanes own = split == 2 ? lanesMin(low[0], low[1]) : low[0];
+    const Lanes ownHigh = split == 2 ? lanesMax(high[0], high[1]) : high[0];
+    const Lanes other = split == 2 ? both : lanesMin(low[1], both);
+    const Lanes otherHigh = split == 2 ? bothHigh : lanesMax(high[1], bothHigh);
+    const Lanes grown = 2.0f * radius * directions.m_norm;
+    const Lanes gap = own - otherHigh, gapOther = other - ownHigh;
+    const Lanes pad = DRAPE_SELF_PAD * (grown + inner + lanesAbs(own) + lanesAbs(otherHigh));
+    const Lanes padOther = DRAPE_SELF_PAD * (grown + inner + lanesAbs(other) + lanesAbs(ownHigh));
+    if (anyLane((gap > grown + pad + directions.m_ignored) | (gapOther > grown + padOther + directions.m_ignored)))
+        return 0;
     // Where even the sum is not far, all are valid.
-    if (!anyLane(apart | lanesNot(sum <= DRAPE_FARTHEST))) return 1;
-    return !anyLane(apart) && placesAreValid(from, to);
+    const LaneMask unsure = (gap > grown - pad) | (gapOther > grown - padOther) | lanesNot(sum <= DRAPE_FARTHEST);
+    return !anyLane(unsure) || (placesAreValid(from, to) && nodeVolumesOverlap(from, to, split, radius));
 }
 #else
 static int volumesOverlap(const Vec3 from[4], const Vec3 to[4], const int split, const float radius)

@@ -24,7 +24,7 @@ public:
                      StepCounters& counters)
     {
         if (m_hits.empty()) m_hits.resize(kFirstHits);
-        if (m_swept.size() < features.m_count) m_swept.resize(features.m_count + features.m_count / 4);
+        if (m_swept.size() < features.m_count) resizeWithRoom(m_swept, features.m_count);
         const auto fill = [&]() -> std::size_t
         {
             m_slotCount.assign(slots, 0);

@@ -2,7 +2,8 @@
 //
 // Input: the cloths' nodes at the step's start and end and at rest, and per cloth the thickness. Output: contacts in
 // canonical order behind those with obstacles. Guarantee: no pair that gives a contact is missed; whoever finds them
-// lists the same candidates and finds the same contacts, bit for bit.
+// finds the same contacts, bit for bit, and lists the same candidates, but where the last bit of a bound decides about
+// a box or a patch, which is far beyond the contacts' reach.
 #pragma once
 
 #include <cstddef>
