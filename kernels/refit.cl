@@ -3,7 +3,8 @@
 
 // A work-item is a leaf; leafNodes names its node. Reads the triangle's vertices at the step's start and end, writes the leaf's
 // volume, grown by the mesh's radius (m). A negative radius takes the mesh out of the step: its leaves get empty volumes.
-// Positions that are invalid (positionIsValid) are counted by the triangle that owns the vertex. counters must be zero before; its atomic only counts.
+// Positions that are invalid (positionIsValid) are counted by the triangle that owns the vertex. counters must be zero before;
+// its atomic only counts.
 __kernel void refitLeaves(__global BvhNode* restrict nodes, __global const uint* restrict leafNodes,
                           __global const uint* restrict order, __global const Triangle* restrict triangles,
                           __global const float* restrict start, __global const float* restrict end,
