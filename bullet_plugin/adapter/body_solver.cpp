@@ -45,9 +45,10 @@ bool hasContacts(const ContactRounds* rounds)
     return !rounds->contacts().m_features.empty();
 }
 
-bool isOpen(const ContactRounds* rounds)
+// Whether its last round met a worse violation than that share of the thickness.
+bool isOpen(const ContactRounds* rounds, btScalar tolerance)
 {
-    return RoundsTeam::worst(*rounds) > kClosingTolerance * rounds->contacts().m_leastThickness;
+    return RoundsTeam::worst(*rounds) > tolerance * rounds->contacts().m_leastThickness;
 }
 
 bool obstaclesRest(const ContactRounds* rounds)
@@ -144,12 +145,15 @@ void BodySolver::close()
         rounds->restart();
     m_team.gather(m_touching);
     m_team.run(m_touching);
-    select(m_touching, m_open, isOpen);
-    for (int i = 1; i < kClosingRounds && !m_open.empty(); ++i)
+    m_open = m_touching;
+    for (int done = 1; done < kMostClosingRounds; ++done)
     {
+        const btScalar tolerance = done < kClosingRounds ? kClosingTolerance : kMostViolation;
+        keep(m_open, [tolerance](const ContactRounds* rounds) { return isOpen(rounds, tolerance); });
+        if (m_open.empty()) break;
         runAgain(m_open);
-        keep(m_open, isOpen);
     }
+    select(m_touching, m_open, [](const ContactRounds* rounds) { return isOpen(rounds, kClosingTolerance); });
     // What does not converge is left to the faces and edges, which a node outside the obstacle keeps from passing in a
     // later step.
     m_team.runNodes(m_open);

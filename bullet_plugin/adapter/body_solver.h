@@ -17,10 +17,12 @@
 // Bullet's own order only where bodies act on each other: by anchors or rigid contacts on one rigid body, or by soft
 // contacts.
 //
-// Guarantee: at the end no contact is violated by more than kClosingTolerance where kClosingRounds suffice. The same
-// bits with any number of threads. A body with velocity or drift iterations or clusters is given to Bullet in one
-// piece, the rounds before and after it. Cost: linear in the contacts, piterations + kClosingRounds rounds at most, and
-// those that settle what has pushed.
+// Guarantee: at the end no contact is violated by more than kClosingTolerance where kClosingRounds suffice. Where they
+// leave more than the next step would recover, rounds go on, kMostClosingRounds at most: else cloth that hangs on one
+// corner of an obstacle by a single face comes nearer to it with every step, and is impaled in the end. The same bits
+// with any number of threads. A body with velocity or drift iterations or clusters is given to Bullet in one piece, the
+// rounds before and after it. Cost: linear in the contacts, piterations + kMostClosingRounds rounds at most, and those
+// that settle what has pushed.
 #pragma once
 
 #include <memory>
@@ -33,9 +35,11 @@
 namespace drape
 {
 constexpr int kClosingRounds = 8;
+constexpr int kMostClosingRounds = 32;
 
-// Worst violation that may be left, as a share of the thickness.
+// Worst violation that may be left, as a share of the thickness: after fewer than kClosingRounds, and after these.
 constexpr btScalar kClosingTolerance = btScalar(0.01);
+constexpr btScalar kMostViolation = kRecoveredShare;
 
 class BodySolver
 {
