@@ -1,12 +1,14 @@
 #include "warm_up_step.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace drape
 {
 namespace
 {
-const std::vector<float> kAbove = {0, 0, 0.5f, 1, 0, 0.5f, 0, 1, 0.5f}, kBelow = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+// No vectors: a pipeline may be made while an app's objects at namespace scope are, and vectors there might not be yet.
+constexpr float kAbove[] = {0, 0, 0.5f, 1, 0, 0.5f, 0, 1, 0.5f}, kBelow[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
 constexpr float kReach = 0.1f;
 
 void addTriangle(MeshPool& pool)
@@ -16,7 +18,7 @@ void addTriangle(MeshPool& pool)
     mesh.m_id = 0;
     mesh.m_topology = buildTopology(indices, 1, 3);
     mesh.m_order = {0};
-    mesh.m_positions = kBelow;
+    mesh.m_positions.assign(std::begin(kBelow), std::end(kBelow));
     pool.add(std::move(mesh));
     pool.update();
 }
@@ -28,10 +30,10 @@ void makeWarmUpStep(Scene& scene, StepPairs& pairs, float selfThickness)
     addTriangle(scene.m_obstacles);
     scene.m_clothLayout = makeBvhLayout(1);
     scene.m_obstacleLayout = makeBvhLayout(1);
-    scene.m_clothNodes.reserve(nullptr, kAbove.size());
-    std::copy(kAbove.begin(), kAbove.end(), scene.m_clothNodes.start());
-    std::copy(kBelow.begin(), kBelow.end(), scene.m_clothNodes.end());
-    scene.m_obstaclePositions = kBelow;
+    scene.m_clothNodes.reserve(nullptr, std::size(kAbove));
+    std::copy(std::begin(kAbove), std::end(kAbove), scene.m_clothNodes.start());
+    std::copy(std::begin(kBelow), std::end(kBelow), scene.m_clothNodes.end());
+    scene.m_obstaclePositions.assign(std::begin(kBelow), std::end(kBelow));
     scene.m_vertexCones.assign(3, NormalCone{{0, 0, 1}, -1});
     scene.m_edgeCones.assign(3, NormalCone{{0, 0, 1}, -1});
     ObstaclePlacing placing;
@@ -45,7 +47,7 @@ void makeWarmUpStep(Scene& scene, StepPairs& pairs, float selfThickness)
     pairs.m_anyPair = pairs.m_any = true;
     if (!(selfThickness > 0.0f)) return;
     scene.m_anySelf = pairs.m_anySelf = true;
-    scene.m_clothRest = kBelow;
+    scene.m_clothRest.assign(std::begin(kBelow), std::end(kBelow));
     pairs.m_self = SelfReach{{selfThickness}, {selfGrowth(selfThickness)}};
 }
 }  // namespace drape

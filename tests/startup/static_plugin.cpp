@@ -1,0 +1,12 @@
+// A plugin at namespace scope, which is made before main() begins. Ends with 1 where it has not started.
+#include <cstdio>
+
+#include <drape/drape.h>
+
+static drape::Plugin plugin;
+
+int main()
+{
+    std::puts(plugin.ready() ? plugin.report().c_str() : plugin.error().c_str());
+    return plugin.ready() ? 0 : 1;
+}
