@@ -68,6 +68,13 @@ void setPrepared(Mirror& mirror, bool prepared)
     mirror.m_prepared = prepared;
 }
 
+// No algorithm has it.
+template <typename Mirror>
+bool isUnpaired(const Mirror& mirror)
+{
+    return mirror.m_owners == int(mirror.m_prepared);
+}
+
 // The motion of the object's shape, or of a compound's child.
 BodyMotion motionOfShape(const btCollisionObjectWrapper& wrap, KinematicMotions& motions)
 {
@@ -294,7 +301,8 @@ void PluginState::adopt(const PairNote& note)
     ClothMirror& cloth = m_cloths.try_emplace(note.m_cloth, note.m_cloth).first->second;
     ObstacleMirror& obstacle = m_obstacles.try_emplace(note.m_obstacle, note.m_obstacle).first->second;
     cloth.m_lastSeen = obstacle.m_lastSeen = m_step;
-    if (cloth.m_owners == 0) cloth.takeUp();
+    // Where it lies now, prepared or not: the trajectory depends on it.
+    if (isUnpaired(cloth)) cloth.takeUp();
     if (obstacle.m_owners == 0) obstacle.requireReading();
     obstacle.m_oneSided = isOneSided(*note.m_obstacle.m_shape);
 
