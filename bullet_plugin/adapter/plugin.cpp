@@ -122,9 +122,8 @@ std::string Plugin::report() const
     std::snprintf(
         line, sizeof(line), ": %zu cloth and %zu obstacle triangles, %" PRIu64 " candidates, %zu contacts, %.3f ms",
         step.m_clothTriangles, step.m_obstacleTriangles, step.m_candidates, step.m_contacts, step.collisionMs());
-    const bool tellsWhy = device().m_byCost || m_state->error().failed();
-    const std::string reason = tellsWhy ? " (" + device().m_reason + ")" : std::string();
     const std::string remark = step.m_skipped ? "nothing to do" : statusText(step.m_status);
-    return "Drape on " + device().m_device.m_name + reason + line + (remark.empty() ? "" : " (" + remark + ")");
+    return "Drape on " + device().m_device.m_name + " (" + device().m_reason + ")" + line +
+           (remark.empty() ? "" : " (" + remark + ")");
 }
 }  // namespace drape

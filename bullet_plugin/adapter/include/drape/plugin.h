@@ -6,8 +6,9 @@
 // it may go before them, if Bullet's own rule holds (configuration and solver outlive the world). Not so a dispatcher
 // that install() gave it to: that has to go first.
 // One plugin serves one thread; it may serve several worlds of that thread, each with a solver of its own. A dispatcher
-// of several threads (btCollisionDispatcherMt) is not supported: Bullet's soft bodies are not either. SI units, world
-// frame. C++11.
+// of several threads (btCollisionDispatcherMt) is not supported: Bullet's soft bodies are not either. A child that
+// fork() makes has neither the plugin's threads nor its device: it must not use it, nor end it, but end by exec() or
+// _exit(). SI units, world frame. C++11.
 //
 // The thickness of a pair, at which cloth comes to rest, is the soft body's collision margin plus the mesh shape's
 // margin (body->getCollisionShape()->getMargin() + shape->getMargin()); at least 0.1 mm. Bullet makes a soft body's
@@ -65,7 +66,7 @@ public:
     const DeviceReport& device() const;
     const StepStatistics& statistics() const;   // of the last step that one of this plugin's solvers solved
     std::vector<ContactInfo> contacts() const;  // of that step, in canonical order; made by the call
-    std::string report() const;                 // device and last step in one line
+    std::string report() const;                 // device, why it, and the last step in one line
 
     // Empty when Drape handles the pair, else the reason why Bullet's own algorithm does. For a compound the first
     // child that Drape does not handle gives the reason; a mesh there, which Bullet's own cannot take, is named as
