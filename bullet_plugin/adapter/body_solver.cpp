@@ -46,9 +46,22 @@ bool hasContacts(const ContactRounds* rounds)
 }
 
 // Whether its last round met a worse violation than that share of the thickness.
-bool isOpen(const ContactRounds* rounds, btScalar tolerance)
+bool isViolated(const ContactRounds* rounds, btScalar share)
 {
-    return RoundsTeam::worst(*rounds) > tolerance * rounds->contacts().m_leastThickness;
+    return RoundsTeam::worst(*rounds) > share * rounds->contacts().m_leastThickness;
+}
+
+int mostClosingRounds(const ContactRounds* rounds)
+{
+    const std::size_t affordable = kFurtherLooks / std::max<std::size_t>(1, RoundsTeam::blockCount(*rounds));
+    return kClosingRounds + static_cast<int>(std::min(kMostFurther, std::max(kLeastFurther, affordable)));
+}
+
+// Whether it needs another closing round after so many.
+bool isOpen(const ContactRounds* rounds, int done)
+{
+    if (done < kClosingRounds) return isViolated(rounds, kClosingTolerance);
+    return done < mostClosingRounds(rounds) && isViolated(rounds, kMostViolation);
 }
 
 bool obstaclesRest(const ContactRounds* rounds)
@@ -146,14 +159,13 @@ void BodySolver::close()
     m_team.gather(m_touching);
     m_team.run(m_touching);
     m_open = m_touching;
-    for (int done = 1; done < kMostClosingRounds; ++done)
+    for (int done = 1;; ++done)
     {
-        const btScalar tolerance = done < kClosingRounds ? kClosingTolerance : kMostViolation;
-        keep(m_open, [tolerance](const ContactRounds* rounds) { return isOpen(rounds, tolerance); });
+        keep(m_open, [done](const ContactRounds* rounds) { return isOpen(rounds, done); });
         if (m_open.empty()) break;
         runAgain(m_open);
     }
-    select(m_touching, m_open, [](const ContactRounds* rounds) { return isOpen(rounds, kClosingTolerance); });
+    select(m_touching, m_open, [](const ContactRounds* rounds) { return isViolated(rounds, kClosingTolerance); });
     // What does not converge is left to the faces and edges, which a node outside the obstacle keeps from passing in a
     // later step.
     m_team.runNodes(m_open);

@@ -18,13 +18,14 @@
 // contacts.
 //
 // Guarantee: at the end no contact is violated by more than kClosingTolerance where kClosingRounds suffice. Where they
-// leave more than the next step would recover, rounds go on, kMostClosingRounds at most: else cloth that hangs on one
-// corner of an obstacle by a single face comes nearer to it with every step, and is impaled in the end. The same bits
-// with any number of threads. A body with velocity or drift iterations or clusters is given to Bullet in one piece, the
-// rounds before and after it. Cost: linear in the contacts, piterations + kMostClosingRounds rounds at most, and those
-// that settle what has pushed.
+// leave as much as the next step would recover, rounds go on: else cloth that hangs on one corner of an obstacle by a
+// single face comes nearer to it with every step, and is impaled in the end. The same bits with any number of threads.
+// A body with velocity or drift iterations or clusters is given to Bullet in one piece, the rounds before and after it.
+// Cost: linear in the contacts, piterations + kClosingRounds rounds as a rule, mostClosingRounds() instead at most, and
+// those that settle what has pushed.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -35,11 +36,17 @@
 namespace drape
 {
 constexpr int kClosingRounds = 8;
-constexpr int kMostClosingRounds = 32;
 
-// Worst violation that may be left, as a share of the thickness: after fewer than kClosingRounds, and after these.
+// Beyond these as many rounds as look at that many blocks of contacts, a millisecond or two: a body with few contacts
+// may take more rounds. Between the least and the most.
+constexpr std::size_t kFurtherLooks = std::size_t(1) << 16;
+constexpr std::size_t kLeastFurther = 24, kMostFurther = 120;
+
+// Worst violation that may be left, as a share of the thickness: after fewer than kClosingRounds, and after these. The
+// second is less than what the next step recovers, since a round's later contacts may make worse what it met.
 constexpr btScalar kClosingTolerance = btScalar(0.01);
-constexpr btScalar kMostViolation = kRecoveredShare;
+constexpr btScalar kMostViolation = btScalar(0.0625);
+static_assert(kMostViolation < kRecoveredShare, "else cloth comes nearer from step to step");
 
 class BodySolver
 {

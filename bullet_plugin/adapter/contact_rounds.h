@@ -121,6 +121,8 @@ public:
     void limitAndRun(const Bodies& bodies);
     // Worst violation met in the last round, m.
     static btScalar worst(const ContactRounds& body) { return body.worst(); }
+    // Of contacts, which a round looks at.
+    static std::size_t blockCount(const ContactRounds& body) { return body.m_blocks; }
     // A round over the contacts of nodes alone, which hold exactly afterwards but for nodes with several.
     void runNodes(const Bodies& bodies);
     // A round over all contacts, then kSettlingPasses over those that have pushed in this stage and whose planes were
