@@ -1,7 +1,7 @@
 // Looks through the bytes of an OBJ, PLY or STL file for what Assimp repairs or drops in silence: coordinates that are
 // no finite float, indices of vertices that do not exist, files that end too early; and through those of a glTF file
-// for lengths that it has not, which Assimp would make room for, and for what is nested so deep that readers run out of
-// stack. Returns an empty string, or element and reason in one line.
+// for lengths that it has not, which Assimp would make room for, for what is nested so deep that readers run out of
+// stack, and for positions that it would take for floats. Returns an empty string, or element and reason in one line.
 #pragma once
 
 #include <string>

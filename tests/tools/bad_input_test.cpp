@@ -35,32 +35,23 @@ TEST_F(BadInput, notAMesh)
     expectRefused(runSmall({"--obstacle", write("ply.glb", ply)}), {"ply.glb", "not a mesh"});
 }
 
-// Four bytes, least first.
-std::string glbNumber(std::uint32_t value)
-{
-    std::string bytes;
-    for (int i = 0; i < 4; ++i)
-        bytes += char(value >> (8 * i) & 0xffu);
-    return bytes;
-}
-
 // Assimp makes room for what the lengths in a binary file say.
 TEST_F(BadInput, binaryFileThatSaysItIsLonger)
 {
     const std::string json = "{\"asset\":{\"version\":\"2.0\"}}  ", chunk = "JSON" + json;
     const auto header = [](std::uint32_t version, std::size_t length)
-    { return "glTF" + glbNumber(version) + glbNumber(std::uint32_t(length)); };
+    { return "glTF" + littleEndian(version) + littleEndian(std::uint32_t(length)); };
     const std::size_t whole = 12 + 8 + json.size();
-    const std::string size = glbNumber(std::uint32_t(json.size()));
+    const std::string size = littleEndian(std::uint32_t(json.size()));
     expectRefused(runSmall({"--obstacle", write("header.glb", header(2, 0x7d5d0228u) + size + chunk)}),
                   {"header.glb", "header: says 2103247400 bytes"});
-    expectRefused(runSmall({"--obstacle", write("chunk.glb", header(2, whole) + glbNumber(0x6e222c5du) + chunk)}),
+    expectRefused(runSmall({"--obstacle", write("chunk.glb", header(2, whole) + littleEndian(0x6e222c5du) + chunk)}),
                   {"chunk.glb", "chunk 1: says 1847733341 bytes"});
+    expectRefused(runSmall({"--obstacle",
+                            write("second.glb", header(2, whole) + size + chunk + littleEndian(1u << 31) + "BIN ")}),
+                  {"second.glb", "chunk 2: says 2147483648 bytes where there are 0"});
     expectRefused(
-        runSmall({"--obstacle", write("second.glb", header(2, whole) + size + chunk + glbNumber(1u << 31) + "BIN ")}),
-        {"second.glb", "chunk 2: says 2147483648 bytes where there are 0"});
-    expectRefused(
-        runSmall({"--obstacle", write("old.glb", header(1, whole) + glbNumber(1u << 30) + glbNumber(0) + json)}),
+        runSmall({"--obstacle", write("old.glb", header(1, whole) + littleEndian(1u << 30) + littleEndian(0) + json)}),
         {"old.glb", "content: says 1073741824 bytes"});
     expectRefused(runSmall({"--obstacle", write("new.glb", header(3, whole) + size + chunk)}),
                   {"new.glb", "version 3"});
@@ -98,7 +89,7 @@ TEST_F(BadInput, stlThatIsNotWhole)
     expectRefused(runSmall({"--obstacle", write("comma.stl", "solid a\nfacet normal 0 0 1\nvertex 1,5 0 0\n")}),
                   {"line 3", "'1,5' is not a number"});
     std::string binary(80, ' ');
-    binary += glbNumber(2) + std::string(50, '\0');
+    binary += littleEndian(2) + std::string(50, '\0');
     expectRefused(runSmall({"--obstacle", write("short.stl", binary)}), {"2 triangles", "184 bytes", "134"});
 }
 

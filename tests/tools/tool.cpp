@@ -1,28 +1,42 @@
 #include "tests/tools/tool.h"
 
-#include <sys/wait.h>
-
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <thread>
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char** environ;
 
 namespace drape::test
 {
-namespace
-{
-std::string quoted(const std::string& text)
-{
-    std::string out = "'";
-    for (char c : text)
-        out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return out + "'";
-}
-}  // namespace
-
 std::string readAll(const std::string& path)
 {
     std::ifstream file(path, std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+}
+
+bool waitUntil(const std::function<bool()>& isSo)
+{
+    for (int look = 0; look < 6000; ++look)
+    {
+        if (isSo()) return true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+}
+
+std::string littleEndian(std::uint32_t value)
+{
+    std::string bytes;
+    for (int i = 0; i < 4; ++i)
+        bytes += char(value >> (8 * i) & 0xffu);
+    return bytes;
 }
 
 void ToolTest::SetUp()
@@ -34,13 +48,34 @@ void ToolTest::SetUp()
 
 ToolRun ToolTest::run(const std::vector<std::string>& arguments) const
 {
-    std::string command = quoted(m_program);
-    for (const std::string& argument : arguments)
-        command += " " + quoted(argument);
-    command += " >" + quoted(path("stdout.txt")) + " 2>" + quoted(path("stderr.txt"));
-    const int status = std::system(command.c_str());
+    return end(start(arguments));
+}
+
+pid_t ToolTest::start(const std::vector<std::string>& arguments) const
+{
+    std::vector<std::string> words = {m_program};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> pointers;
+    for (std::string& word : words)
+        pointers.push_back(&word[0]);
+    pointers.push_back(nullptr);
+    const std::string out = path("stdout.txt"), err = path("stderr.txt");
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    pid_t process = 0;
+    EXPECT_EQ(posix_spawn(&process, m_program.c_str(), &actions, nullptr, pointers.data(), environ), 0);
+    posix_spawn_file_actions_destroy(&actions);
+    return process;
+}
+
+ToolRun ToolTest::end(pid_t process) const
+{
+    int status = 0;
     ToolRun result;
-    if (status != -1 && WIFEXITED(status)) result.m_exitCode = WEXITSTATUS(status);
+    if (process > 0 && ::waitpid(process, &status, 0) == process && WIFEXITED(status))
+        result.m_exitCode = WEXITSTATUS(status);
     result.m_out = readAll(path("stdout.txt"));
     result.m_err = readAll(path("stderr.txt"));
     return result;

@@ -6,8 +6,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
+
+#include <sys/types.h>
 
 #include "tests/support/environment.h"
 
@@ -27,6 +31,9 @@ protected:
     virtual const char* programVariable() const { return "DRAPE_CLOTH_DROP"; }
 
     ToolRun run(const std::vector<std::string>& arguments) const;
+    // Two halves of run(), for a program that something is done to meanwhile: its process, and its end.
+    pid_t start(const std::vector<std::string>& arguments) const;
+    ToolRun end(pid_t process) const;
     // A 9×9 cloth on the sphere for 10 steps on the host, quiet; `more` follows and wins.
     ToolRun runSmall(const std::vector<std::string>& more) const;
     // The summary of such a run, as JSON text; fails the test when the run fails.
@@ -44,6 +51,12 @@ private:
 };
 
 std::string readAll(const std::string& path);
+
+// Looks now and then until it is so. False when it is not within a minute.
+bool waitUntil(const std::function<bool()>& isSo);
+
+// Four bytes, least first.
+std::string littleEndian(std::uint32_t value);
 
 // Ends the test as skipped where no OpenCL device is expected (DRAPE_TEST_NO_DEVICE=1), as failed where one is missing.
 #define DRAPE_NEED_DEVICE()                                                                        \
