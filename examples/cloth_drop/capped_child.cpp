@@ -8,7 +8,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,6 +18,20 @@ namespace drape
 {
 namespace
 {
+constexpr int kNotRun = 127;  // exit code, as shells have it
+
+// In the new process, where only what is safe in a signal handler may be called. A parent that ends, however it does,
+// takes the child with it: it may be in a step of minutes, and would notice only when it writes. One that ended before
+// that was asked for has left the child to another.
+[[noreturn]] void becomeChild(pid_t parent, int output, char* const* arguments)
+{
+    // The last is for an end of the pipe that is standard output's already, and would be closed.
+    if (::prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 && ::getppid() == parent && ::dup2(output, STDOUT_FILENO) >= 0 &&
+        ::fcntl(STDOUT_FILENO, F_SETFD, 0) == 0)
+        ::execve("/proc/self/exe", arguments, environ);
+    ::_exit(kNotRun);
+}
+
 // Starts the child with its standard output in a pipe; returns the reading end, or −1 with errno.
 int spawnChild(std::vector<std::string>& arguments, pid_t& child)
 {
@@ -27,13 +41,12 @@ int spawnChild(std::vector<std::string>& arguments, pid_t& child)
     for (std::string& argument : arguments)
         pointers.push_back(&argument[0]);
     pointers.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, pipeEnds[1], STDOUT_FILENO);
-    const int code = posix_spawn(&child, "/proc/self/exe", &actions, nullptr, pointers.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
+    const pid_t parent = ::getpid();
+    child = ::fork();
+    if (child == 0) becomeChild(parent, pipeEnds[1], pointers.data());
+    const int code = errno;
     ::close(pipeEnds[1]);
-    if (code == 0) return pipeEnds[0];
+    if (child > 0) return pipeEnds[0];
     ::close(pipeEnds[0]);
     errno = code;
     return -1;
@@ -63,6 +76,15 @@ bool follow(int pipe, CappedLines& lines)
         if (!lines.take(buffer, static_cast<std::size_t>(size))) return false;
     }
 }
+
+// "" for a good end.
+std::string endProblem(int status, int step)
+{
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return "";
+    if (WIFEXITED(status) && WEXITSTATUS(status) == kNotRun) return "cannot start the child process";
+    return "the child process ended in step " + std::to_string(step) +
+           (WIFSIGNALED(status) ? std::string(": ") + ::strsignal(WTERMSIG(status)) : std::string());
+}
 }  // namespace
 
 ChildEnd runCappedChild(std::vector<std::string> arguments, const ChildCap& cap, const CappedLines::OnLine& onLine)
@@ -91,10 +113,7 @@ ChildEnd runCappedChild(std::vector<std::string> arguments, const ChildCap& cap,
     while (::waitpid(child, &status, 0) < 0 && errno == EINTR)
     {
     }
-    const bool good = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-    if (!end.m_capped && end.m_error.empty() && !good)
-        end.m_error = "the child process ended in step " + std::to_string(end.m_step) +
-                      (WIFSIGNALED(status) ? std::string(": ") + ::strsignal(WTERMSIG(status)) : std::string());
+    if (!end.m_capped && end.m_error.empty()) end.m_error = endProblem(status, end.m_step);
     return end;
 }
 }  // namespace drape

@@ -1,0 +1,60 @@
+// The process that a run of Bullet's own collision has: it never outlives the one that started it.
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <fstream>
+#include <string>
+
+#include "tests/tools/tool.h"
+
+namespace drape::test
+{
+namespace
+{
+using CappedChild = ToolTest;
+
+std::string processFile(pid_t process, const std::string& name)
+{
+    return "/proc/" + std::to_string(process) + "/" + name;
+}
+
+// 0: none yet.
+pid_t childOf(pid_t process)
+{
+    pid_t child = 0;
+    std::ifstream(processFile(process, "task/" + std::to_string(process) + "/children")) >> child;
+    return child;
+}
+
+// Whether it has become the program.
+bool streams(pid_t process)
+{
+    return readAll(processFile(process, "cmdline")).find("--stream-steps") != std::string::npos;
+}
+
+// Gone, or ended and not asked for its exit code by whoever has it now.
+bool hasEnded(pid_t process)
+{
+    const std::string status = readAll(processFile(process, "status"));
+    return status.empty() || status.find("State:\tZ") != std::string::npos;
+}
+}  // namespace
+
+// It is stopped first, as if in a step without end: one that runs may notice by itself that nobody reads.
+TEST_F(CappedChild, endsWithItsParent)
+{
+    for (const int signal : {SIGTERM, SIGKILL})
+    {
+        SCOPED_TRACE(signal);
+        const pid_t parent = start(
+            {"--obstacle", "stairs", "--backend", "bullet", "--time-limit", "600", "--steps", "1000000", "--quiet"});
+        ASSERT_TRUE(waitUntil([parent] { return streams(childOf(parent)); }));
+        const pid_t child = childOf(parent);
+        ASSERT_EQ(::kill(child, SIGSTOP), 0);
+        ASSERT_EQ(::kill(parent, signal), 0);
+        EXPECT_NE(end(parent).m_exitCode, 0);
+        EXPECT_TRUE(waitUntil([child] { return hasEnded(child); }));
+        ::kill(child, SIGKILL);
+    }
+}
+}  // namespace drape::test
