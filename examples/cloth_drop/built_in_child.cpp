@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "examples/cloth_drop/interruption.h"
 #include "examples/cloth_drop/progress.h"
 #include "examples/cloth_drop/step_stream.h"
 
@@ -67,12 +68,14 @@ bool runBuiltInChild(const Options& options, BulletMode mode, const ChildCap& ca
 {
     describe(record, mode, scene);
     Progress progress(record.m_backend, options.m_steps, options.m_quiet);
-    const ChildEnd end = runCappedChild(childArguments(options, mode), cap,
-                                        [&](int step, const std::string& line)
-                                        {
-                                            record.m_steps.push_back(stepFromLine(line));
-                                            progress.show(step);
-                                        });
+    const ChildEnd end = runCappedChild(
+        childArguments(options, mode), cap,
+        [&](int step, const std::string& line)
+        {
+            record.m_steps.push_back(stepFromLine(line));
+            progress.show(step);
+        },
+        [] { return interruption().empty(); });
     if (end.m_capped) record.m_cappedAtStep = end.m_step;
     if (!end.m_error.empty()) error = record.m_backend + ": " + end.m_error;
     return error.empty();

@@ -52,21 +52,24 @@ int spawnChild(std::vector<std::string>& arguments, pid_t& child)
     return -1;
 }
 
+constexpr double kLookSeconds = 0.1;  // how often whether it goes on is asked while the child is silent
+
 int waitMs(double seconds)
 {
-    return seconds > 0 ? static_cast<int>(std::min(seconds, 1e6) * 1000) + 1 : 0;  // 0: what is there already
+    return seconds > 0 ? static_cast<int>(std::min(seconds, kLookSeconds) * 1000) + 1 : 0;  // 0: what is there already
 }
 
-// Reads until the child's end (true) or the cap (false).
-bool follow(int pipe, CappedLines& lines)
+// Reads until the child's end (true), or until the cap or the caller ends it (false).
+bool follow(int pipe, CappedLines& lines, const std::function<bool()>& goesOn)
 {
     char buffer[65536];
     for (;;)
     {
-        const double left = lines.running() ? lines.secondsLeft(CappedLines::Clock::now()) : 0;
-        pollfd waiting = {pipe, POLLIN, 0};
+        if (goesOn && !goesOn()) return false;
         // Not running: loading or measuring, which always ends.
-        const int ready = ::poll(&waiting, 1, lines.running() ? waitMs(left) : -1);
+        const double left = lines.running() ? lines.secondsLeft(CappedLines::Clock::now()) : kLookSeconds;
+        pollfd waiting = {pipe, POLLIN, 0};
+        const int ready = ::poll(&waiting, 1, waitMs(left));
         if (ready < 0 && errno != EINTR) return true;
         if (ready == 0 && left <= 0) return false;
         if (ready <= 0) continue;
@@ -76,7 +79,6 @@ bool follow(int pipe, CappedLines& lines)
         if (!lines.take(buffer, static_cast<std::size_t>(size))) return false;
     }
 }
-
 // "" for a good end.
 std::string endProblem(int status, int step)
 {
@@ -87,7 +89,8 @@ std::string endProblem(int status, int step)
 }
 }  // namespace
 
-ChildEnd runCappedChild(std::vector<std::string> arguments, const ChildCap& cap, const CappedLines::OnLine& onLine)
+ChildEnd runCappedChild(std::vector<std::string> arguments, const ChildCap& cap, const CappedLines::OnLine& onLine,
+                        const std::function<bool()>& goesOn)
 {
     ChildEnd end;
     pid_t child = 0;
@@ -100,13 +103,15 @@ ChildEnd runCappedChild(std::vector<std::string> arguments, const ChildCap& cap,
     CappedLines lines(cap, onLine);
     try
     {
-        end.m_capped = !follow(pipe, lines);
+        end.m_capped = !follow(pipe, lines, goesOn);
     }
     catch (const std::exception& exception)
     {
         end.m_error = std::string("the child process sent what cannot be read: ") + exception.what();
     }
     end.m_step = lines.step();
+    // The same signal may have ended the child already.
+    if (end.m_error.empty() && goesOn && !goesOn()) end.m_capped = true;
     if (end.m_capped || !end.m_error.empty()) ::kill(child, SIGKILL);
     ::close(pipe);
     int status = 0;

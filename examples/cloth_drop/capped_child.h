@@ -5,6 +5,7 @@
 // All other lines go to the caller. The child is always gone when the function returns.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -15,11 +16,13 @@ namespace drape
 struct ChildEnd
 {
     int m_step = 0;         // the last step that began, from 1; 0: none
-    bool m_capped = false;  // the cap ended it, in that step
+    bool m_capped = false;  // the cap, or the caller, ended it, in that step
     std::string m_error;    // one line when the child could not be started or failed, else empty
 };
 
 // arguments: the first one names the program. onLine gets the number of the last step and the line; an exception of its
-// own ends the child and becomes the error.
-ChildEnd runCappedChild(std::vector<std::string> arguments, const ChildCap& cap, const CappedLines::OnLine& onLine);
+// own ends the child and becomes the error. goesOn, where it is given, is asked several times a second: false ends the
+// child as the cap does.
+ChildEnd runCappedChild(std::vector<std::string> arguments, const ChildCap& cap, const CappedLines::OnLine& onLine,
+                        const std::function<bool()>& goesOn = {});
 }  // namespace drape

@@ -2,6 +2,7 @@
 #include <chrono>
 
 #include "examples/cloth_drop/built_in_child.h"
+#include "examples/cloth_drop/interruption.h"
 #include "examples/cloth_drop/outputs.h"
 #include "examples/cloth_drop/picture.h"
 #include "examples/cloth_drop/progress.h"
@@ -19,54 +20,70 @@ int fail(int exitCode, const std::string& reason)
 }
 
 // A built-in run with a limit of time is a child's, which is ended within a step that does not.
-int runLimitedBuiltIn(const Options& options, const DropScene& scene, NamedRun& run)
+bool runLimitedBuiltIn(const Options& options, const DropScene& scene, NamedRun& run, std::string& error)
 {
-    std::string error;
+    listenToSignals();
     const ChildCap cap = {options.m_timeLimit, true};
-    const bool ran = runBuiltInChild(options, options.m_bulletMode, cap, scene, run.m_record, error);
-    return ran ? kExitGood : fail(kExitFailed, error);
+    return runBuiltInChild(options, options.m_bulletMode, cap, scene, run.m_record, error);
 }
 
 // Runs the chosen back end. A built-in world is left alive: Bullet's clean-up of its distance field can take minutes.
-int runChosen(const Options& options, const DropScene& scene, NamedRun& run, TriangleMesh& lastFrame)
+bool runChosen(const Options& options, const DropScene& scene, NamedRun& run, TriangleMesh& lastFrame,
+               std::string& error, int& exitCode)
 {
-    if (!options.usesDrape() && options.m_timeLimit > 0) return runLimitedBuiltIn(options, scene, run);
-    std::string error;
-    int exitCode = kExitFailed;
+    exitCode = kExitFailed;
+    if (!options.usesDrape() && options.m_timeLimit > 0) return runLimitedBuiltIn(options, scene, run, error);
     std::unique_ptr<Simulation> simulation = options.usesDrape() ? makeDrapeSimulation(scene, options, error, exitCode)
                                                                  : makeBulletSimulation(scene, options.m_bulletMode);
-    if (!simulation) return fail(exitCode, error);
+    if (!simulation) return false;
+    exitCode = kExitFailed;
+    listenToSignals();
     Progress progress(run.m_name, options.m_steps, options.m_quiet);
     RunHooks hooks;
     hooks.m_afterStep = [&](int number, const StepRecord&) { progress.show(number); };
     const auto start = std::chrono::steady_clock::now();
-    if (options.m_timeLimit > 0)
-    {
-        const std::chrono::duration<double> limit(options.m_timeLimit);
-        hooks.m_goesOn = [=] { return std::chrono::steady_clock::now() - start < limit; };
-    }
+    const bool limited = options.m_timeLimit > 0;
+    const std::chrono::duration<double> limit(options.m_timeLimit);
+    hooks.m_goesOn = [=]
+    { return interruption().empty() && !(limited && std::chrono::steady_clock::now() - start >= limit); };
     const bool ran =
         runSimulation(*simulation, scene, options.m_steps, options.m_frames, hooks, run.m_record, lastFrame, error);
     if (!options.usesDrape()) static_cast<void>(simulation.release());
-    return ran ? kExitGood : fail(kExitFailed, error);
+    return ran;
 }
 
-bool runBuiltIns(const Options& options, const DropScene& scene, std::vector<NamedRun>& runs, std::string& error)
+void runBuiltIns(const Options& options, const DropScene& scene, std::vector<NamedRun>& runs, std::string& error)
 {
     std::vector<std::pair<const char*, BulletMode>> modes = {{"bullet_stock", BulletMode::Stock},
                                                              {"bullet_tuned", BulletMode::Tuned}};
     if (options.m_compareSoftPair) modes.emplace_back("bullet_vfss", BulletMode::SoftPair);
     for (const auto& mode : modes)
     {
+        if (!interruption().empty()) break;
         NamedRun run{mode.first, {}};
         std::string problem;
         if (!runBuiltInChild(options, mode.second, {options.m_compareCap}, scene, run.m_record, problem))
-        {
-            run.m_record.m_trouble = problem;
             error = problem;
-        }
+        run.m_record.m_trouble = problem.empty() ? interruption() : problem;
         runs.push_back(std::move(run));
     }
+}
+
+// All that is asked for, until the run fails or a signal comes; the steps done until then are in its record.
+bool runAll(const Options& options, const DropScene& scene, std::vector<NamedRun>& runs, std::string& error,
+            int& exitCode)
+{
+    TriangleMesh lastFrame;
+    RunRecord& record = runs[0].m_record;
+    if (runChosen(options, scene, runs[0], lastFrame, error, exitCode)) error = interruption();
+    if (!error.empty())
+    {
+        record.m_trouble += (record.m_trouble.empty() ? "" : "; ") + error;
+        return false;
+    }
+    if (!options.m_picture.empty()) writePicture(options.m_picture, lastFrame, scene.m_obstacle, error);
+    if (options.m_compare) runBuiltIns(options, scene, runs, error);
+    if (error.empty()) error = interruption();
     return error.empty();
 }
 
@@ -94,14 +111,13 @@ int run(const Options& options)
     if (!prepareOutputs(options, error)) return fail(kExitBadInput, error);
     std::vector<NamedRun> runs(1);
     runs[0].m_name = options.usesDrape() ? "drape" : "bullet";
-    TriangleMesh lastFrame;
-    const int exitCode = runChosen(options, scene, runs[0], lastFrame);
-    if (exitCode != kExitGood) return exitCode;
-    bool good = options.m_picture.empty() || writePicture(options.m_picture, lastFrame, scene.m_obstacle, error);
-    if (options.m_compare) good = runBuiltIns(options, scene, runs, error) && good;
+    int exitCode = kExitFailed;
+    const bool good = runAll(options, scene, runs, error, exitCode);
+    stopListening();
+    if (!good && runs[0].m_record.m_steps.empty()) return fail(exitCode, error);
     std::string writeError;
     if (!writeOutputs(options, runs, writeError)) return fail(kExitFailed, writeError);
-    return good ? judge(options, runs) : fail(kExitFailed, error);
+    return good ? judge(options, runs) : fail(exitCode, error);
 }
 }  // namespace
 }  // namespace drape

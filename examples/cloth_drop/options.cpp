@@ -15,13 +15,15 @@ namespace drape
 {
 namespace
 {
-// What --help says of --json.
-constexpr const char* kJsonText =
+// What --help says of --json and of how runs end.
+constexpr const char* kResultsText =
     "JSON keys end in their units; step_ms, collision_ms and collision_parts_ms (medians) are over the steps in\n"
     "contact. Of the collision, finding_ms leaves out solving the contacts, which Bullet's own figures leave out, "
     "too.\n"
     "Penetration is how far a node was below the surface, or a vertex of the obstacle above a face. With --compare\n"
-    "there is an object a run: drape, bullet_stock, bullet_tuned and, where asked for, bullet_vfss.";
+    "there is an object a run: drape, bullet_stock, bullet_tuned and, where asked for, bullet_vfss.\n"
+    "The first SIGINT, SIGTERM or SIGHUP ends the run as --time-limit does, but with exit code 1; a second one at "
+    "once.";
 
 constexpr double kLeastThickness = 1e-4;  // m, of Drape
 
@@ -146,7 +148,7 @@ const std::map<std::string, Traversal>& traversalsByName()
 bool parseOptions(int argc, const char* const* argv, Options& options, int& exitCode)
 {
     CLI::App app("Drops a cloth on an obstacle in Bullet and reports what happened.", "cloth_drop");
-    app.footer(std::string(kJsonText) + "\n" + kExitCodesText);
+    app.footer(std::string(kResultsText) + "\n" + kExitCodesText);
     std::string cloth = "33x33", mode = "stock";
     app.option_defaults()->always_capture_default();
     addSceneOptions(app, options, cloth);

@@ -94,7 +94,7 @@ bool writeOutputs(const Options& options, const std::vector<NamedRun>& runs, std
             error = problem;
     };
     write(options.m_csv, asCsv(runs.front().m_record, options.m_dt));
-    write(options.m_json, asJson(runs).dump(2) + "\n");
+    write(options.m_json, asJson(runs, options.m_compare).dump(2) + "\n");
     const bool taken = options.m_csv == kStandardOutput || options.m_json == kStandardOutput;
     if (!options.m_quiet && !taken) std::cout << asTable(runs);
     return flushOutput(error);

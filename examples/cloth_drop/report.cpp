@@ -152,9 +152,9 @@ std::string heading(const std::vector<NamedRun>& runs)
 }
 }  // namespace
 
-Json asJson(const std::vector<NamedRun>& runs)
+Json asJson(const std::vector<NamedRun>& runs, bool byName)
 {
-    if (runs.size() == 1) return asJson(runs.front().m_record);
+    if (!byName) return asJson(runs.front().m_record);
     Json json;
     const RunSummary first = summarise(runs.front().m_record);
     for (const NamedRun& run : runs)

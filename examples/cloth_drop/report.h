@@ -16,8 +16,8 @@ struct NamedRun
     RunRecord m_record;
 };
 
-// One run: its keys. Several: an object per run, and the ratios of the collision medians to the first run's.
-nlohmann::ordered_json asJson(const std::vector<NamedRun>& runs);
+// The one run's keys; or, by name, an object per run, and the ratios of the collision medians to the first run's.
+nlohmann::ordered_json asJson(const std::vector<NamedRun>& runs, bool byName);
 
 // A header line and a row a step.
 std::string asCsv(const RunRecord& record, double dt);

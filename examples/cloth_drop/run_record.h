@@ -26,7 +26,7 @@ struct RunRecord
     std::size_t m_clothTriangles = 0, m_clothNodes = 0, m_obstacleTriangles = 0;
     double m_thickness = 0;
     std::vector<StepRecord> m_steps;
-    int m_cappedAtStep = 0;  // the step, from 1, in which a cap or a limit of time ended the run; 0: none
+    int m_cappedAtStep = 0;  // the step, from 1, in which something ended the run before its last; 0: nothing did
     std::string m_trouble;   // one line, or empty
 };
 

@@ -44,10 +44,10 @@ bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, co
         crossings.follow(positions);
         step.m_nodesThrough = crossings.nodes();
         step.m_hash = hash = hashFloats(hash, lastFrame.m_positions);
-        if (frames && !writeMesh(frameName(framesFolder, "cloth", number), lastFrame, error)) return false;
         if (hooks.m_afterStep) hooks.m_afterStep(number, step);
         record.m_steps.push_back(std::move(step));
-        if (number == steps || !hooks.m_goesOn || hooks.m_goesOn()) continue;
+        const bool written = !frames || writeMesh(frameName(framesFolder, "cloth", number), lastFrame, error);
+        if (written && (number == steps || !hooks.m_goesOn || hooks.m_goesOn())) continue;
         record.m_cappedAtStep = number;
         break;
     }
@@ -56,6 +56,6 @@ bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, co
     record.m_device = simulation.device();
     record.m_deviceReason = simulation.deviceReason();
     record.m_trouble = simulation.trouble();
-    return true;
+    return error.empty();
 }
 }  // namespace drape

@@ -5,6 +5,8 @@
 #include <fstream>
 #include <string>
 
+#include <nlohmann/json.hpp>
+
 #include "tests/tools/tool.h"
 
 namespace drape::test
@@ -56,5 +58,23 @@ TEST_F(CappedChild, endsWithItsParent)
         EXPECT_TRUE(waitUntil([child] { return hasEnded(child); }));
         ::kill(child, SIGKILL);
     }
+}
+
+TEST_F(CappedChild, leavesWhatIsDoneToASignal)
+{
+    const pid_t parent = start({"--obstacle", "stairs", "--cloth", "17x17", "--steps", "100", "--backend", "host",
+                                "--compare", "--quiet", "--json", path("runs.json")});
+    ASSERT_TRUE(waitUntil([parent] { return streams(childOf(parent)); }));
+    const pid_t child = childOf(parent);
+    ASSERT_EQ(::kill(child, SIGSTOP), 0);
+    ASSERT_EQ(::kill(parent, SIGTERM), 0);
+    const ToolRun run = end(parent);
+    EXPECT_EQ(run.m_exitCode, 1);
+    EXPECT_NE(run.m_err.find("signal"), std::string::npos) << run.m_err;
+    EXPECT_TRUE(waitUntil([child] { return hasEnded(child); }));
+    const auto runs = nlohmann::json::parse(readAll(path("runs.json")));
+    EXPECT_EQ(runs.at("drape").at("steps"), 100);
+    EXPECT_FALSE(runs.at("drape").contains("trouble"));
+    ::kill(child, SIGKILL);
 }
 }  // namespace drape::test
