@@ -11,6 +11,8 @@ namespace drape
 {
 namespace
 {
+constexpr const char* kByteOrderMark = "\xef\xbb\xbf";
+
 struct FaceIndex
 {
     long long m_vertex;  // from 1
@@ -107,6 +109,8 @@ std::string scanObj(const std::string& bytes)
     std::string line;
     std::size_t number = 0;
     ObjState state;
+    if (bytes.compare(0, 3, kByteOrderMark) == 0)
+        return "line 1: begins with a UTF-8 byte order mark, which hides what the line says; save the file without";
     while (readLogicalLine(text, line, number))
     {
         std::istringstream words(line.substr(0, line.find('#')));

@@ -99,6 +99,9 @@ TEST_F(BadInput, verticesThatAreDropped)
     expectRefused(runSmall({"--obstacle", write("dot.obj", obj("1 .5 0"))}), {"line 2", "vertex 2", "'.5'"});
     expectRefused(runSmall({"--obstacle", write("seven.obj", obj("1 0 0 1 1 1 1"))}), {"line 2", "7 numbers"});
     expectRefused(runSmall({"--obstacle", write("hex.obj", obj("0x1p0 0 0"))}), {"line 2", "hexadecimal"});
+    // Behind it Assimp knows no keyword.
+    expectRefused(runSmall({"--obstacle", write("mark.obj", "\xef\xbb\xbf" + obj("1 0 0"))}),
+                  {"line 1", "byte order mark"});
     const std::string strips =
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
         "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
