@@ -161,8 +161,8 @@ std::string importMesh(const std::string& path, TriangleMesh& mesh)
     return appendNode(*scene, *scene->mRootNode, aiMatrix4x4(), mesh);
 }
 
-// The mesh as the file has it, or why it cannot be had.
-std::string readMesh(const std::string& path, TriangleMesh& mesh)
+// The mesh as the file has it, or why it cannot be had. `structure`, where it is given, gets that of an OBJ file.
+std::string readMesh(const std::string& path, TriangleMesh& mesh, std::string* structure = nullptr)
 {
     std::string bytes;
     std::string problem = readWholeFile(path, "mesh", bytes);
@@ -173,6 +173,7 @@ std::string readMesh(const std::string& path, TriangleMesh& mesh)
     if (problem.empty() && ending == ".glb") problem = scanGlb(bytes);
     if (problem.empty() && ending == ".gltf") problem = scanGltf(bytes);
     if (problem.empty()) problem = importMesh(path, mesh);
+    if (structure && ending == ".obj") *structure = objStructure(bytes);
     return problem.empty() ? "" : path + ": " + problem;
 }
 }  // namespace
@@ -194,10 +195,13 @@ bool loadMotion(const std::string& startPath, const std::string& endPath, Triang
                 std::string& error)
 {
     TriangleMesh first, last;
-    std::string problem = readMesh(startPath, first);
-    if (problem.empty()) problem = readMesh(endPath, last);
+    std::string firstStructure, lastStructure;
+    std::string problem = readMesh(startPath, first, &firstStructure);
+    if (problem.empty()) problem = readMesh(endPath, last, &lastStructure);
     if (problem.empty() && (first.vertexCount() != last.vertexCount() || first.m_triangles != last.m_triangles))
         problem = endPath + ": has not the vertices and triangles of " + startPath;
+    if (problem.empty() && firstStructure != lastStructure)
+        problem = endPath + ": has not the faces of " + startPath + " in their order";
     if (problem.empty()) joinVertices(first, last.m_positions);
     if (problem.empty() && first.triangleCount() == 0) problem = startPath + ": no triangles";
     if (problem.empty())

@@ -15,6 +15,11 @@ std::string scanGlb(const std::string& bytes);
 // The text of a glTF file, or that in a binary one.
 std::string scanGltf(const std::string& text);
 
+// Of a good OBJ file: the corners of its faces, lines and points, and what sorts them, by number, without a coordinate.
+// Files of which it is the same are read alike: Assimp makes a vertex of each corner, which tells no more whose it is,
+// object by object and material by material.
+std::string objStructure(const std::string& bytes);
+
 // "" when the text is one finite number that fits a float, else why not.
 std::string coordinateProblem(const std::string& word);
 std::string coordinateProblem(double value);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <map>
 #include <sstream>
 #include <vector>
 
@@ -128,5 +129,35 @@ std::string scanObj(const std::string& bytes)
     if (state.m_vertices == 0) return "not a mesh: no vertices";
     if (state.m_largest.empty() && bytes.find("\nf") == std::string::npos) return "no triangles";
     return "";
+}
+
+std::string objStructure(const std::string& bytes)
+{
+    std::istringstream text(bytes);
+    std::string line, structure;
+    std::size_t number = 0;
+    long long vertices = 0;
+    std::map<std::string, std::size_t> names;
+    while (readLogicalLine(text, line, number))
+    {
+        std::istringstream words(line.substr(0, line.find('#')));
+        std::string keyword, word;
+        words >> keyword;
+        if (keyword == "v") ++vertices;
+        if (keyword == "o" || keyword == "g" || keyword == "usemtl")
+        {
+            const std::size_t name = names.emplace(words.str(), names.size()).first->second;
+            structure += keyword + " " + std::to_string(name) + "\n";
+        }
+        if (keyword != "f" && keyword != "l" && keyword != "p") continue;
+        structure += keyword;
+        while (words >> word)
+        {
+            const long long index = std::strtoll(word.c_str(), nullptr, 10);
+            structure += " " + std::to_string(index < 0 ? vertices + 1 + index : index);
+        }
+        structure += "\n";
+    }
+    return structure;
 }
 }  // namespace drape

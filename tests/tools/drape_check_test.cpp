@@ -146,6 +146,24 @@ TEST_F(Check, stepFindsWhatPasses)
     EXPECT_EQ(answer({"step", above, above, "--separation", "0.6"}).at("vf_hits"), 3);
 }
 
+// Which vertex a corner of an OBJ file's face is.
+TEST_F(Check, stepNeedsTheFacesInTheirOrder)
+{
+    const std::string vertices = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\n", faces = "f 1 2 3\nf 1 3 4\n";
+    const std::string start = write("start.obj", vertices + "usemtl a\n" + faces);
+    for (const char* others : {"f 1 3 4\nf 1 2 3\n", "f 2 3 1\nf 1 3 4\n", "f 1 2 3\nf 1 2 4\n"})
+        expectRefused(run({"step", start, write("end.obj", vertices + "usemtl a\n" + others)}),
+                      {"end.obj", "start.obj", "order"});
+    const std::string sorted =
+        write("sorted.obj", vertices + "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\nusemtl a\n" + faces);
+    const std::string others =
+        write("others.obj", vertices + "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\nusemtl c\n" + faces);
+    expectRefused(run({"step", sorted, others}), {"others.obj", "sorted.obj"});
+    // The same by other names.
+    const std::string renamed = "mtllib end.mtl\n" + vertices + "# end\nusemtl b\nf 1//1 -3 -2\nf 1 3/1 4\nvn 0 0 1\n";
+    EXPECT_EQ(answer({"step", start, write("renamed.obj", renamed)}).at("vf_hits"), 0);
+}
+
 // A hundred thousand triangles at one place, all but coincident so that none is a repeated one: told at once, with the
 // exact number, on every back end.
 TEST_F(Check, tooManyPairsAreCountedAndRefused)
