@@ -9,6 +9,8 @@
 
 namespace drape
 {
+constexpr double kGravity = 9.81;  // m/s² downwards
+
 struct DropScene
 {
     TriangleMesh m_obstacle;

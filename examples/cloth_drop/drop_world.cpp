@@ -56,7 +56,7 @@ DropWorld::DropWorld(std::unique_ptr<btCollisionConfiguration> configuration, st
       m_dispatcher(m_configuration.get()),
       m_world(&m_dispatcher, &m_broadphase, &m_rigidSolver, m_configuration.get(), m_solver.get())
 {
-    const btVector3 gravity(0, btScalar(-9.81), 0);
+    const btVector3 gravity(0, static_cast<btScalar>(-kGravity), 0);
     m_world.setGravity(gravity);
     m_world.getWorldInfo().m_gravity = gravity;
 }

@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "examples/cloth_drop/drop_scene.h"
 #include "scenes/shapes.h"
 #include "tools/common/arguments.h"
 #include "tools/common/program.h"
@@ -26,6 +27,12 @@ constexpr const char* kResultsText =
     "once.";
 
 constexpr double kLeastThickness = 1e-4;  // m, of Drape
+
+// Bullet leaves out of all collision what is 10^6 m across, corner to corner (btCollisionWorld::updateSingleAabb), and
+// cloth's bounds have its way of three steps in them (btSoftBody::predictMotion). So far out a float is no finer than
+// 62 mm, either: at the length it is 1 mm, less than cloth falls in its first step.
+constexpr double kLongest = 1e4;   // m
+constexpr double kFarthest = 1e5;  // m, in a step
 
 constexpr int kMostNodesASide = 4096;  // 16.8 million nodes: beyond what a step can hold, below any overflow
 
@@ -61,14 +68,17 @@ std::string shapeList()
 void addSceneOptions(CLI::App& app, Options& options, std::string& cloth)
 {
     const auto positive = CLI::Validator(numberAbove(0, false, "more than 0"), "");
+    const auto length = CLI::Validator(numberUpTo(kLongest, 0, false, "more than 0, 10000 at most"), "");
     app.add_option("--obstacle", options.m_obstacle, "mesh file (OBJ, PLY, STL, glTF) or one of: " + shapeList())
         ->type_name("FILE|SHAPE");
-    app.add_option("--obstacle-size", options.m_obstacleSize, "largest extent of the obstacle, m")->check(positive);
+    app.add_option("--obstacle-size", options.m_obstacleSize, "largest extent of the obstacle, m, 10000 at most")
+        ->check(length);
     app.add_option("--cloth", cloth, "cloth nodes along x and z")->type_name("NxM")->check(CLI::Validator(grid, ""));
-    app.add_option("--cloth-size", options.m_clothSize, "longer side of the cloth, m")->check(positive);
-    app.add_option("--drop-height", options.m_dropHeight, "free fall before the thickness is reached, m")
-        ->check(CLI::Validator(numberAbove(0, true, "0 or more"), ""));
-    app.add_option("--drop-speed", options.m_dropSpeed, "speed of the cloth downwards at the start, m/s")
+    app.add_option("--cloth-size", options.m_clothSize, "longer side of the cloth, m, 10000 at most")->check(length);
+    app.add_option("--drop-height", options.m_dropHeight, "free fall before the thickness is reached, m, 10000 at most")
+        ->check(CLI::Validator(numberUpTo(kLongest, 0, true, "0 or more, 10000 at most"), ""));
+    app.add_option("--drop-speed", options.m_dropSpeed,
+                   "speed of the cloth downwards at the start, m/s; 100000 m a step at most")
         ->check(CLI::Validator(numberAbove(0, true, "0 or more"), ""));
     app.add_option("--steps", options.m_steps, "simulation steps")->check(positive);
     app.add_option("--time-limit", options.m_timeLimit,
@@ -77,8 +87,8 @@ void addSceneOptions(CLI::App& app, Options& options, std::string& cloth)
         ->default_str("none");
     app.add_option("--dt", options.m_dt, "seconds a step")->check(positive);
     app.add_option("--thickness", options.m_thickness,
-                   "gap at rest: half is the cloth's margin, half the obstacle's, m")
-        ->check(CLI::Validator(numberAbove(kLeastThickness, true, "0.0001 or more"), ""));
+                   "gap at rest: half is the cloth's margin, half the obstacle's, m, 0.0001 to 10000")
+        ->check(CLI::Validator(numberUpTo(kLongest, kLeastThickness, true, "0.0001 or more, 10000 at most"), ""));
 }
 
 void addBackendOptions(CLI::App& app, Options& options, std::string& mode)
@@ -121,6 +131,8 @@ void addOutputOptions(CLI::App& app, Options& options)
 
 std::string conflict(const Options& options)
 {
+    if (!((options.m_dropSpeed + kGravity * options.m_dt) * options.m_dt <= kFarthest))
+        return "--drop-speed and --dt let the cloth go more than 100000 m in a step";
     if (!options.usesDrape() && options.m_compare) return "--compare needs a back end of Drape, not --backend bullet";
     if (!options.usesDrape() && !options.m_device.empty()) return "--device means nothing with --backend bullet";
     if (options.m_compareSoftPair && !options.m_compare) return "--compare-vfss needs --compare";

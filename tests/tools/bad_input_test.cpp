@@ -170,6 +170,18 @@ TEST_F(BadInput, numbers)
     expectRefused(runSmall({"--thickness", "0.00009"}), {"--thickness", "0.0001"});
 }
 
+// Bullet would leave it out of collision and say nothing.
+TEST_F(BadInput, scenesOutOfBulletsReach)
+{
+    for (const char* option : {"--obstacle-size", "--cloth-size", "--drop-height", "--thickness"})
+        for (const char* value : {"10001", "1e10", "1e38"})
+            expectRefused(runSmall({option, value}), {option, value, "10000 at most"});
+    for (const char* speed : {"6.1e6", "1e8", "1e38"})
+        expectRefused(runSmall({"--drop-speed", speed}), {"--drop-speed", "100000 m in a step"});
+    expectRefused(runSmall({"--dt", "110"}), {"--dt", "100000 m in a step"});
+    expectRefused(runSmall({"--drop-speed", "1e3", "--dt", "100"}), {"--dt", "100000 m in a step"});
+}
+
 TEST_F(BadInput, clothSizes)
 {
     for (const char* value : {"9", "9x", "x9", "1x9", "9x1", "0x0", "-9x9", "9x9x9", "99999x9"})

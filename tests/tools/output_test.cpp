@@ -241,6 +241,22 @@ TEST_F(Outputs, everyShapeRuns)
     }
 }
 
+// At the ends of what the arguments may be.
+TEST_F(Outputs, theLargestScenesAndTheFastestClothCollide)
+{
+    const Json large = Json::parse(summaryOf({"--obstacle-size", "1e4", "--cloth-size", "1e4"}));
+    EXPECT_EQ(large.at("steps_in_contact"), 10);
+    const Json thick = Json::parse(summaryOf({"--thickness", "1e4"}));
+    EXPECT_EQ(thick.at("steps_in_contact"), 10);
+    const Json fast = Json::parse(summaryOf({"--drop-speed", "5.9e6", "--drop-height", "0", "--steps", "30"}));
+    EXPECT_GT(fast.at("steps_in_contact"), 0);
+    for (const Json& run : {large, thick, fast})
+    {
+        EXPECT_EQ(run.at("nodes_through"), 0);
+        EXPECT_EQ(run.at("intersecting_pairs_end"), 0);
+    }
+}
+
 TEST_F(Outputs, builtInBackEndAlone)
 {
     const Json run = Json::parse(summaryOf({"--backend", "bullet", "--obstacle", "stairs", "--steps", "3"}));

@@ -37,6 +37,15 @@ std::function<std::string(std::string&)> numberAbove(double least, bool inclusiv
     };
 }
 
+std::function<std::string(std::string&)> numberUpTo(double most, double least, bool inclusive, const char* what)
+{
+    return [=, above = numberAbove(least, inclusive, what)](std::string& text) -> std::string
+    {
+        const std::string problem = above(text);
+        return !problem.empty() || std::stod(text) <= most ? problem : "'" + text + "' must be " + what;
+    };
+}
+
 std::string outputFile(std::string& text)
 {
     for (const char* name : {"/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"})

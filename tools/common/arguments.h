@@ -18,6 +18,9 @@ namespace drape
 // `least` (or equal, when inclusive), else the reason, which says `what` it must be.
 std::function<std::string(std::string&)> numberAbove(double least, bool inclusive, const char* what);
 
+// As numberAbove(), and not above `most`.
+std::function<std::string(std::string&)> numberUpTo(double most, double least, bool inclusive, const char* what);
+
 // To transform the name of a file to write: "" when it is not empty. Standard output is - under its other name, too:
 // what else is written there must not be written over.
 std::string outputFile(std::string& text);
