@@ -3,7 +3,6 @@
 // Every scene is run by Drape's host back end first: the hash of its contacts is what all others must have, and
 // likewise where redundant contacts are left out. A row whose hash differs is void, and the program ends with 3.
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 #include <map>
 
@@ -132,20 +131,31 @@ std::vector<SceneSpec> chosenScenes(const Options& options)
 // By scene, and whether redundant contacts are left out.
 using Hashes = std::map<std::pair<std::string, bool>, std::string>;
 
-// Those of the JSON of an earlier run. Throws what the JSON library throws.
-Hashes readReference(const std::string& path)
+// Those of an earlier run; none for an empty path.
+bool readReference(const std::string& path, Hashes& hashes, std::string& error)
 {
-    Hashes hashes;
-    if (path.empty()) return hashes;
-    std::ifstream file(path);
-    const Row all = Row::parse(file);
-    for (const Row& row : all.at("rows"))
+    const auto take = [&hashes](const Row& row)
     {
         const std::string method = row.value("method", "");
         const bool reduced = method == kReducedReference || method == kReduced;
         if (row.value("valid", "") == "yes") hashes[{row.at("scene"), reduced}] = row.at("hash");
+    };
+    return path.empty() || readRows(path, take, error);
+}
+
+std::string nameProblem(const Options& options)
+{
+    std::vector<std::string> scenes, sweeps, methods;
+    for (const SceneSpec& spec : sceneSpecs())
+    {
+        scenes.push_back(spec.m_name);
+        if (!spec.m_sweep.empty() && !contains(sweeps, spec.m_sweep)) sweeps.push_back(spec.m_sweep);
     }
-    return hashes;
+    scenes.insert(scenes.end(), sweeps.begin(), sweeps.end());
+    for (const MethodEntry& entry : allMethods(options))
+        methods.push_back(entry.m_name);
+    const std::string problem = unknownName("--scene", options.m_scenes, scenes);
+    return problem.empty() ? unknownName("--method", options.m_methods, methods) : problem;
 }
 
 void list(const Options& options)
@@ -161,8 +171,9 @@ void list(const Options& options)
 int measure(const Options& options)
 {
     const std::vector<SceneSpec> scenes = chosenScenes(options);
-    if (scenes.empty()) return fail("bench_step", kExitBadInput, "no such scene; --list names them");
-    Hashes reference = readReference(options.m_reference);
+    Hashes reference;
+    std::string problem;
+    if (!readReference(options.m_reference, reference, problem)) return fail("bench_step", kExitBadInput, problem);
     const std::vector<MethodEntry> methods = chosenMethods(options);
     const std::vector<std::string> folders = modelFolders(options.m_models);
     const Clock::time_point begin = Clock::now();
@@ -204,7 +215,9 @@ int run(int argc, char** argv)
         ->type_name("FILE")
         ->check(CLI::ExistingFile);
     int exitCode = kExitGood;
-    if (!parseArguments(app, argc, argv, exitCode)) return exitCode;
+    if (!parseArguments(
+            app, argc, argv, [&options] { return nameProblem(options); }, exitCode))
+        return exitCode;
     if (!options.m_list) return measure(options);
     list(options);
     return kExitGood;

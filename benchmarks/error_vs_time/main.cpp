@@ -5,6 +5,7 @@
 // measuring. Errors come from the independent check (scenes/measure.h), those of queries from exact answers. Drape on a
 // device must give the host's course and answers, bit for bit: a row whose hash differs is void, and the program ends
 // with 3.
+#include <algorithm>
 #include <iostream>
 
 #include <CLI/CLI.hpp>
@@ -35,6 +36,15 @@ int measure(ErrorOptions options)
     if (partWanted(options, kSimulationPart)) good = measureSimulations(options, table) && good;
     const int code = finishTable(kProgram, table, options);
     return code != kExitGood ? code : good ? kExitGood : kExitFailed;
+}
+
+std::string nameProblem(const ErrorOptions& options)
+{
+    std::vector<std::string> knobs;
+    for (const Trial& trial : options.trials(true))
+        if (std::find(knobs.begin(), knobs.end(), trial.m_knob) == knobs.end()) knobs.push_back(trial.m_knob);
+    const std::string problem = unknownName("--scene", options.m_scenes, errorSceneNames(false));
+    return problem.empty() ? unknownName("--knob", options.m_knobs, knobs) : problem;
 }
 
 int runChild(const ErrorOptions& options)
@@ -78,11 +88,14 @@ int main(int argc, char** argv)
     app.add_option("--truth", options.m_truth,
                    "folder of ccd_queries.bin and triangle_pairs.bin (default: DRAPE_TRUTH_DIR); without it only "
                    "queries with answers made here")
-        ->type_name("DIR");
+        ->type_name("DIR")
+        ->check(CLI::ExistingDirectory);
     app.add_option("--child-scene", options.m_childScene)->group("");
     app.add_option("--child-trial", options.m_childTrial)->group("");
     int exitCode = kExitGood;
-    if (!parseArguments(app, argc, argv, exitCode)) return exitCode;
+    if (!parseArguments(
+            app, argc, argv, [&options] { return nameProblem(options); }, exitCode))
+        return exitCode;
     return runGuarded(kProgram,
                       [&]
                       {

@@ -3,7 +3,6 @@
 // Every row carries a hash of its result; where it is not that of the host's version, the row is void and the program
 // ends with 3.
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 
 #include <CLI/CLI.hpp>
@@ -39,17 +38,15 @@ std::vector<float> refitPositions(const std::vector<float>& positions)
     return moved;
 }
 
-void StudyOptions::readReference()
+bool StudyOptions::readReference(std::string& error)
 {
-    if (m_reference.empty()) return;
-    std::ifstream file(m_reference);
-    const Row all = Row::parse(file);
-    for (const Row& row : all.at("rows"))
+    const auto take = [this](const Row& row)
     {
         // Other sides' rows are what is judged.
         if (row.value("valid", "") == "yes" && row.value("dop", 18) == 18)
-            m_hashes[row.value("part", "") + ", " + row.value("model", "")] = row["hash"];
-    }
+            m_hashes[row.value("part", "") + ", " + row.value("model", "")] = row.at("hash");
+    };
+    return m_reference.empty() || readRows(m_reference, take, error);
 }
 
 std::string StudyOptions::expectedHash(const std::string& part, const std::string& model) const
@@ -90,6 +87,14 @@ void forEachModel(const StudyOptions& options, const std::function<void(const st
 
 namespace
 {
+std::string unknownPart(const StudyOptions& options)
+{
+    std::vector<std::string> parts;
+    for (const Part& part : studyParts())
+        parts.push_back(part.m_name);
+    return unknownName("--part", options.m_parts, parts);
+}
+
 int run(int argc, char** argv)
 {
     StudyOptions options;
@@ -101,8 +106,11 @@ int run(int argc, char** argv)
         ->type_name("FILE")
         ->check(CLI::ExistingFile);
     int exitCode = kExitGood;
-    if (!parseArguments(app, argc, argv, exitCode)) return exitCode;
-    options.readReference();
+    if (!parseArguments(
+            app, argc, argv, [&options] { return unknownPart(options); }, exitCode))
+        return exitCode;
+    std::string error;
+    if (!options.readReference(error)) return fail("study", kExitBadInput, error);
     Table table;
     for (const Part& part : studyParts())
     {
@@ -115,7 +123,7 @@ int run(int argc, char** argv)
     }
     if (options.m_list) return kExitGood;
     if (table.rows().empty() && table.anyLeftOut()) return kExitFailed;
-    if (table.rows().empty()) return fail("study", kExitBadInput, "nothing to measure; --list names the parts");
+    if (table.rows().empty()) return fail("study", kExitBadInput, "nothing to measure; --only names no model or scene");
     return finishTable("study", table, options);
 }
 }  // namespace

@@ -20,8 +20,8 @@ struct StudyOptions : CommonOptions
     Clock::time_point m_begin = Clock::now();
     std::map<std::string, std::string> m_hashes;  // of the reference's good rows, see expectedHash()
 
-    // Reads m_reference. Throws what the JSON library throws.
-    void readReference();
+    // Reads m_reference. False, with one line in `error`, when it is not what a study wrote.
+    bool readReference(std::string& error);
     // The hash that the reference has for a part and a model or scene; empty without.
     std::string expectedHash(const std::string& part, const std::string& model) const;
 

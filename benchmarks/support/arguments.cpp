@@ -1,5 +1,7 @@
 #include "benchmarks/support/arguments.h"
 
+#include <algorithm>
+
 #include <CLI/CLI.hpp>
 
 #include "benchmarks/support/machine.h"
@@ -37,10 +39,16 @@ void addCommonOptions(CLI::App& app, CommonOptions& options)
         ->check(CLI::PositiveNumber);
 }
 
-bool parseArguments(CLI::App& app, int argc, const char* const* argv, int& exitCode)
+std::string unknownName(const char* option, const std::vector<std::string>& names,
+                        const std::vector<std::string>& known)
 {
-    return drape::parseArguments(
-        app, argc, argv, [] { return std::string(); }, exitCode);
+    std::string all;
+    for (const std::string& name : known)
+        all += (all.empty() ? "" : ", ") + name;
+    for (const std::string& name : names)
+        if (std::find(known.begin(), known.end(), name) == known.end())
+            return std::string(option) + ": there is no " + name + ", only " + all;
+    return "";
 }
 
 int finishTable(const std::string& program, const Table& table, const CommonOptions& options)

@@ -28,8 +28,9 @@ struct CommonOptions
 
 void addCommonOptions(CLI::App& app, CommonOptions& options);
 
-// As parseArguments() of all programs, with no check of the whole but CLI11's.
-bool parseArguments(CLI::App& app, int argc, const char* const* argv, int& exitCode);
+// "" when all names are known, else one line with the first that is not, and those that are.
+std::string unknownName(const char* option, const std::vector<std::string>& names,
+                        const std::vector<std::string>& known);
 
 // Writes the table where the options say (or a CSV to standard output where they name nothing) and returns the exit
 // code: kExitOtherHash when a row is void, else kExitFailed when something was left out that could not be measured.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
 #include <iostream>
 
 #include "scenes/atomic_file.h"
@@ -92,6 +93,22 @@ void judgeRow(Row& row, const std::string& expectedHash)
     }
     for (const std::string& key : removed)
         row.erase(key);
+}
+
+bool readRows(const std::string& path, const std::function<void(const Row&)>& take, std::string& error)
+{
+    try
+    {
+        std::ifstream file(path);
+        const Row all = Row::parse(file);
+        for (const Row& row : all.at("rows"))
+            take(row);
+    }
+    catch (const Row::exception&)  // of what is no JSON, and of what has not the keys
+    {
+        error = path + ": not the JSON of an earlier run";
+    }
+    return error.empty();
 }
 
 bool writeText(const std::string& path, const std::string& text, std::string& error)

@@ -4,6 +4,7 @@
 // (its result's hash was not the expected one) keeps what says what it was, and loses its figures: see voidRow().
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,9 @@ private:
 // triangles and cloths is removed, so that no figure of a wrong result is ever plotted or quoted; else "valid" is
 // "yes". An empty expected hash leaves the row as it is: nothing to compare with.
 void judgeRow(Row& row, const std::string& expectedHash);
+
+// Hands over the rows of the JSON that a run wrote before. False, with one line in `error`, when the file is none such.
+bool readRows(const std::string& path, const std::function<void(const Row&)>& take, std::string& error);
 
 // Writes to a path, or prints for "-"; nothing for an empty path. False with one line in `error`.
 bool writeText(const std::string& path, const std::string& text, std::string& error);

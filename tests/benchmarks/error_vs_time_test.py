@@ -173,9 +173,12 @@ class ErrorVsTimeTest(FolderTest):
             self.assertFalse(row.get("frame_median_ms"))
 
     def test_what_does_not_exist_is_refused(self):
-        result = self.run_script(PROGRAM, "--part", "simulation", "--scene", "moon")
-        self.assertNotEqual(result.returncode, 0)
-        self.assertIn("moon", result.stderr)
+        for arguments, words in ((["--scene", "moon"], ("moon", "bunny")), (["--knob", "nosuch"], ("nosuch", "substeps")),
+                                 (["--truth", self.path("none")], ("--truth", "none"))):
+            result = self.run_script(PROGRAM, "--quick", "--scene", "stairs", *arguments)
+            self.assertEqual((result.returncode, result.stdout, result.stderr.count("\n")), (2, "", 1), result.stderr)
+            for word in words:
+                self.assertIn(word, result.stderr)
 
     def measure(self, *arguments):
         return self.run_script("bash", os.path.join(SCRIPTS, "run.sh"), "--bin", os.path.dirname(PROGRAM), "--quick", "--commit", "c",

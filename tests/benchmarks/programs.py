@@ -65,6 +65,14 @@ class ProgramTest(unittest.TestCase):
             self.assertNotIn(None, row.values(), "fewer cells than columns")
         return rows
 
+    def refused(self, program, arguments, *words):
+        """One line with every one of the words, and nothing measured."""
+        result = run(program, *arguments)
+        self.assertEqual((result.returncode, result.stdout, result.stderr.count("\n")), (2, "", 1), result.stderr)
+        for word in words:
+            self.assertIn(word, result.stderr)
+        self.assertNotIn("json.exception", result.stderr)
+
     def reference_with_other_hash(self):
         """The JSON of the run before, with one digit of every hash changed."""
         with open(self.path("rows.json")) as file:

@@ -73,7 +73,7 @@ class BenchStep(ProgramTest):
             self.assertEqual(row.get("median_ms", ""), "")
 
     def test_the_same_reference_is_good(self):
-        self.quick("bench_step", "--backend", "host", "--method", "none")
+        self.quick("bench_step", "--backend", "host", "--method", "drape_host")
         os.rename(self.path("rows.json"), self.path("before.json"))
         rows = self.quick("bench_step", "--backend", "host", "--method", "embree_contacts_1", "--reference",
                           self.path("before.json"))
@@ -86,6 +86,17 @@ class BenchStep(ProgramTest):
             result = run("bench_step", *arguments)
             self.assertEqual(result.returncode, 2, arguments)
             self.assertTrue(result.stderr)
+
+    def test_unknown_names_are_refused_with_those_there_are(self):
+        self.refused("bench_step", ["--quick", "--scene", "quick_one", "--scene", "nosuch"], "nosuch", "quick_one")
+        self.refused("bench_step", ["--quick", "--method", "drape_host", "--method", "nosuch"], "nosuch", "embree_pairs_1")
+
+    def test_a_reference_that_is_none_is_refused(self):
+        for text in ("", "[]", '{"rows": [7]}', '{"rows": [{"valid": "yes"}]}'):
+            with open(self.path("none.json"), "w") as file:
+                file.write(text)
+            for program in ("bench_step", "study"):
+                self.refused(program, ["--quick", "--reference", self.path("none.json")], "none.json")
 
 
 class Study(ProgramTest):
@@ -222,7 +233,7 @@ class Study(ProgramTest):
                 self.assertGreater(int(row["volume_tests"]), 0)
 
     def test_bad_input_is_refused(self):
-        self.assertEqual(run("study", "--part", "no_such_part").returncode, 2)
+        self.refused("study", ["--part", "degree", "--part", "no_such_part"], "no_such_part", "degree")
 
 
 if __name__ == "__main__":
