@@ -99,13 +99,9 @@ int judge(const Options& options, const std::vector<NamedRun>& runs)
 
 int run(const Options& options)
 {
-    if (options.m_listDevices)
-    {
-        printDevices();
-        return kExitGood;
-    }
-    DropScene scene;
     std::string error;
+    if (options.m_listDevices) return printDevices(error) ? kExitGood : fail(kExitFailed, error);
+    DropScene scene;
     if (!makeDropScene(options, scene, error)) return fail(kExitBadInput, error);
     if (options.m_streamSteps) streamBuiltIn(options, scene);
     if (!prepareOutputs(options, error)) return fail(kExitBadInput, error);

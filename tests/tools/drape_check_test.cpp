@@ -262,4 +262,12 @@ TEST_F(Check, whatCannotBeWrittenIsToldBefore)
     expectRefused(run({"ccd", file, "--backend", "host", "--json", path("no/such/folder/a.json")}), {"no/such/folder"});
     expectRefused(run({"ccd", file, "--backend", "host", "--json", ""}), {"--json", "empty"});
 }
+
+TEST_F(Check, standardOutputThatIsFullIsTold)
+{
+    expectFullOutputTold({"--help"});
+    expectFullOutputTold({"step", "--help"});
+    expectFullOutputTold({"--list-devices"});
+    expectFullOutputTold({"ccd", write("motions.bin", motionRecord(-1, 1)), "--backend", "host"});
+}
 }  // namespace drape::test

@@ -187,6 +187,13 @@ TEST_F(Outputs, whatFailsToBeWrittenIsAFailedRun)
     EXPECT_NE(run.m_err.find("full: cannot write"), std::string::npos) << run.m_err;
 }
 
+TEST_F(Outputs, standardOutputThatIsFullIsTold)
+{
+    expectFullOutputTold({"--help"});
+    expectFullOutputTold({"--list-devices"});
+    expectFullOutputTold({"--backend", "host", "--cloth", "3x3", "--steps", "1", "--json", "-", "--quiet"});
+}
+
 TEST_F(Outputs, twoOfThemNeedTwoFiles)
 {
     std::filesystem::create_symlink("a", path("link"));

@@ -51,7 +51,15 @@ ToolRun ToolTest::run(const std::vector<std::string>& arguments) const
     return end(start(arguments));
 }
 
-pid_t ToolTest::start(const std::vector<std::string>& arguments) const
+void ToolTest::expectFullOutputTold(const std::vector<std::string>& arguments) const
+{
+    const ToolRun run = end(start(arguments, "/dev/full"));
+    EXPECT_EQ(run.m_exitCode, 1);
+    EXPECT_NE(run.m_err.find("standard output: cannot write\n"), std::string::npos) << run.m_err;
+    EXPECT_EQ(run.m_err.find('\n'), run.m_err.size() - 1) << "one line: " << run.m_err;
+}
+
+pid_t ToolTest::start(const std::vector<std::string>& arguments, const std::string& out) const
 {
     std::vector<std::string> words = {m_program};
     words.insert(words.end(), arguments.begin(), arguments.end());
@@ -59,7 +67,7 @@ pid_t ToolTest::start(const std::vector<std::string>& arguments) const
     for (std::string& word : words)
         pointers.push_back(&word[0]);
     pointers.push_back(nullptr);
-    const std::string out = path("stdout.txt"), err = path("stderr.txt");
+    const std::string err = path("stderr.txt");
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);

@@ -31,8 +31,10 @@ protected:
     virtual const char* programVariable() const { return "DRAPE_CLOTH_DROP"; }
 
     ToolRun run(const std::vector<std::string>& arguments) const;
+    // Of a program whose standard output takes nothing: exit code 1 and one line that says so.
+    void expectFullOutputTold(const std::vector<std::string>& arguments) const;
     // Two halves of run(), for a program that something is done to meanwhile: its process, and its end.
-    pid_t start(const std::vector<std::string>& arguments) const;
+    pid_t start(const std::vector<std::string>& arguments) const { return start(arguments, path("stdout.txt")); }
     ToolRun end(pid_t process) const;
     // A 9×9 cloth on the sphere for 10 steps on the host, quiet; `more` follows and wins.
     ToolRun runSmall(const std::vector<std::string>& more) const;
@@ -46,6 +48,8 @@ protected:
     static void expectRefused(const ToolRun& run, const std::vector<std::string>& words);
 
 private:
+    pid_t start(const std::vector<std::string>& arguments, const std::string& out) const;
+
     std::string m_program;
     const TemporaryFolder m_folder;
 };

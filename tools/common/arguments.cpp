@@ -65,7 +65,7 @@ bool parseArguments(CLI::App& app, int argc, const char* const* argv, const std:
     catch (const CLI::CallForHelp&)
     {
         std::cout << app.help();
-        exitCode = kExitGood;
+        exitCode = flushOutput(problem) ? kExitGood : fail(app.get_name(), kExitFailed, problem);
         return false;
     }
     catch (const CLI::ParseError& error)

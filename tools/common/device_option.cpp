@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "drape/report.h"
+#include "tools/common/program.h"
 
 namespace drape
 {
@@ -19,12 +20,13 @@ bool deviceSettings(const std::string& backend, const std::string& device, Setti
     return error.empty();
 }
 
-void printDevices()
+bool printDevices(std::string& error)
 {
     const std::vector<DeviceInfo> devices = listDevices();
     for (const DeviceInfo& device : devices)
         std::cout << device.m_name << " (" << device.m_platform << ", driver " << device.m_driver
                   << (device.m_isGpu ? ", GPU)" : ")") << "\n";
     if (devices.empty()) std::cout << "no OpenCL device; Drape would run on the host\n";
+    return flushOutput(error);
 }
 }  // namespace drape

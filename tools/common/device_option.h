@@ -11,6 +11,6 @@ namespace drape
 // that lists the devices there are.
 bool deviceSettings(const std::string& backend, const std::string& device, Settings& settings, std::string& error);
 
-// One line a device on standard output.
-void printDevices();
+// One line a device on standard output. False, with a line in `error`, when it could not be written.
+bool printDevices(std::string& error);
 }  // namespace drape

@@ -34,12 +34,8 @@ bool writeAnswer(const Options& options, const nlohmann::ordered_json& answer, s
 
 int run(const Options& options)
 {
-    if (options.m_listDevices)
-    {
-        printDevices();
-        return kExitGood;
-    }
     std::string error;
+    if (options.m_listDevices) return printDevices(error) ? kExitGood : fail("drape_check", kExitFailed, error);
     for (const std::string& input : {options.m_first, options.m_second})
         if (!options.m_json.empty() && options.m_json != "-" && !input.empty() && areOneFile(options.m_json, input))
             return fail("drape_check", kExitBadInput, "--json would write over " + input);
