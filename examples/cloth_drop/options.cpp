@@ -82,7 +82,8 @@ void addSceneOptions(CLI::App& app, Options& options, std::string& cloth)
         ->check(CLI::Validator(numberAbove(0, true, "0 or more"), ""));
     app.add_option("--steps", options.m_steps, "simulation steps")->check(positive);
     app.add_option("--time-limit", options.m_timeLimit,
-                   "seconds, measuring included, after which the run ends with the steps it has done")
+                   "seconds, measuring included, after which the run ends with the steps it has done; with --compare "
+                   "Drape's run alone")
         ->check(positive)
         ->default_str("none");
     app.add_option("--dt", options.m_dt, "seconds a step")->check(positive);
@@ -110,7 +111,8 @@ void addBackendOptions(CLI::App& app, Options& options, std::string& mode)
     app.add_flag("--list-devices", options.m_listDevices, "list the OpenCL devices and leave");
     app.add_flag("--compare", options.m_compare, "then run Bullet's built-in collision on the same scene");
     app.add_flag("--compare-vfss", options.m_compareSoftPair, "with --compare: also two soft bodies (VF_SS)");
-    app.add_option("--compare-cap", options.m_compareCap, "seconds of stepping after which a built-in run is ended")
+    app.add_option("--compare-cap", options.m_compareCap,
+                   "seconds of stepping after which a built-in run of --compare is ended")
         ->check(CLI::Validator(numberAbove(0, false, "more than 0"), ""));
 }
 
