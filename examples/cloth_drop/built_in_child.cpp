@@ -76,7 +76,7 @@ bool runBuiltInChild(const Options& options, BulletMode mode, const ChildCap& ca
             progress.show(step);
         },
         [] { return interruption().empty(); });
-    if (end.m_capped) record.m_cappedAtStep = end.m_step;
+    record.m_capped = end.m_capped;
     if (!end.m_error.empty()) error = record.m_backend + ": " + end.m_error;
     return error.empty();
 }

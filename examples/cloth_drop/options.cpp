@@ -22,7 +22,8 @@ constexpr const char* kResultsText =
     "contact. Of the collision, finding_ms leaves out solving the contacts, which Bullet's own figures leave out, "
     "too.\n"
     "Penetration is how far a node was below the surface, or a vertex of the obstacle above a face. With --compare\n"
-    "there is an object a run: drape, bullet_stock, bullet_tuned and, where asked for, bullet_vfss.\n"
+    "there is an object a run: drape, bullet_stock, bullet_tuned and, where asked for, bullet_vfss. capped_at_step is\n"
+    "the last step that was done before a limit of time, --compare-cap, a signal or a failure ended the run.\n"
     "The first SIGINT, SIGTERM or SIGHUP ends the run as --time-limit does, but with exit code 1; a second one at "
     "once.";
 

@@ -85,7 +85,7 @@ Json asJson(const RunRecord& record)
     json["intersecting_pairs_end"] = summary.m_intersectingPairsEnd;
     json["nan_nodes"] = summary.m_invalidNodes;
     json["hash"] = hashText(summary.m_hash);
-    if (record.m_cappedAtStep > 0) json["capped_at_step"] = record.m_cappedAtStep;
+    if (record.m_capped) json["capped_at_step"] = record.m_steps.size();
     if (!record.m_trouble.empty()) json["trouble"] = record.m_trouble;
     return json;
 }
@@ -144,7 +144,7 @@ std::string heading(const std::vector<NamedRun>& runs)
         const RunRecord& record = run.m_record;
         head += run.m_name + ": " + record.m_backend + " on " + record.m_device + " (" + record.m_deviceReason + ")";
         if (record.m_prepareMs > 0) head += ", ready after " + text("%.0f", record.m_prepareMs) + " ms";
-        if (record.m_cappedAtStep > 0) head += "; ended by the cap in step " + std::to_string(record.m_cappedAtStep);
+        if (record.m_capped) head += "; ended after step " + count(record.m_steps.size());
         if (!record.m_trouble.empty()) head += "; " + record.m_trouble;
         head += "\n";
     }

@@ -26,8 +26,8 @@ struct RunRecord
     std::size_t m_clothTriangles = 0, m_clothNodes = 0, m_obstacleTriangles = 0;
     double m_thickness = 0;
     std::vector<StepRecord> m_steps;
-    int m_cappedAtStep = 0;  // the step, from 1, in which something ended the run before its last; 0: nothing did
-    std::string m_trouble;   // one line, or empty
+    bool m_capped = false;  // something ended the run before its last step: those done are there
+    std::string m_trouble;  // one line, or empty
 };
 
 // Of the steps that had contacts; the first of them is `m_first`. All 0 when there was none.

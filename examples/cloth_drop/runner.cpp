@@ -48,7 +48,7 @@ bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, co
         record.m_steps.push_back(std::move(step));
         const bool written = !frames || writeMesh(frameName(framesFolder, "cloth", number), lastFrame, error);
         if (written && (number == steps || !hooks.m_goesOn || hooks.m_goesOn())) continue;
-        record.m_cappedAtStep = number;
+        record.m_capped = true;
         break;
     }
     // Where cost decides, only the steps tell.
