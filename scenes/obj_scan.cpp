@@ -50,7 +50,8 @@ std::string vertexProblem(std::istringstream& line, ObjState& state)
 std::string faceProblem(std::istringstream& line, ObjState& state, std::size_t lineNumber)
 {
     std::string word;
-    while (line >> word)
+    int corners = 0;
+    for (; line >> word; ++corners)
     {
         char* end = nullptr;
         const long long index = std::strtoll(word.c_str(), &end, 10);
@@ -61,7 +62,7 @@ std::string faceProblem(std::istringstream& line, ObjState& state, std::size_t l
         if (index > 0 && (state.m_largest.empty() || index > state.m_largest[0].m_vertex))
             state.m_largest.assign(1, {index, lineNumber});
     }
-    return "";
+    return corners < 3 ? "a face has at least three corners" : "";
 }
 
 // Reads a line and those it continues on with a backslash; false at the end. `number` counts physical lines.

@@ -95,6 +95,9 @@ public:
         return more < m_lineEnd ? "the line has more numbers than the header says" : "";
     }
 
+    // Behind the last element.
+    bool isAtEnd() const { return m_bytes.find_first_not_of(kBlanks, m_at) == std::string::npos; }
+
     // "" and the next number, or why there is none.
     std::string next(const std::string& type, double& value)
     {
@@ -283,6 +286,6 @@ std::string scanPly(const std::string& bytes)
             if (!problem.empty()) return element.m_name + " " + std::to_string(i + 1) + ": " + problem;
         }
     }
-    return "";
+    return numbers.isAtEnd() ? "" : "has more behind the elements that the PLY header counts";
 }
 }  // namespace drape

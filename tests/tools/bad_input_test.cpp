@@ -145,6 +145,25 @@ TEST_F(BadInput, indexOutOfRange)
                   {"low.ply", "face 1", "out of range"});
 }
 
+TEST_F(BadInput, facesThatAreDropped)
+{
+    const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    for (const char* face : {"f 1 2\n", "f 1\n", "f\n", "f 1/1 # 2 3\n"})
+        expectRefused(runSmall({"--obstacle", write("two.obj", obj + face)}), {"two.obj", "line 5", "three corners"});
+    const std::string header =
+        "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    const std::string text = "ply\nformat ascii 1.0\n" + header + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    expectRefused(runSmall({"--obstacle", write("more.ply", text + "3 2 1 0\n")}), {"more.ply", "header counts"});
+    EXPECT_EQ(runSmall({"--obstacle", write("blank.ply", text + "\r\n \n"), "--steps", "1"}).m_exitCode, 0);
+    std::string binary = "ply\nformat binary_little_endian 1.0\n" + header;
+    for (const std::uint32_t number : {0u, 0u, 0u, 0x3f800000u, 0u, 0u, 0u, 0x3f800000u, 0u})
+        binary += littleEndian(number);
+    const std::string face = "\3" + littleEndian(0) + littleEndian(1) + littleEndian(2);
+    EXPECT_EQ(runSmall({"--obstacle", write("one.ply", binary + face), "--steps", "1"}).m_exitCode, 0);
+    expectRefused(runSmall({"--obstacle", write("more.ply", binary + face + face)}), {"more.ply", "header counts"});
+}
+
 TEST_F(BadInput, vertexThatIsNoNumber)
 {
     for (const char* bad : {"nan", "inf", "-inf", "1e39", "x"})
