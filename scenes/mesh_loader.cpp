@@ -147,12 +147,16 @@ void keepReadersOf(const std::string& ending, Assimp::Importer& importer)
     }
 }
 
-std::string importMesh(const std::string& path, TriangleMesh& mesh)
+// `bytes` stand for the file's own where there are any.
+std::string importMesh(const std::string& path, const std::string& bytes, TriangleMesh& mesh)
 {
     const LogListener listener;
     Assimp::Importer importer;
-    keepReadersOf(endingOf(path), importer);
-    const aiScene* scene = importer.ReadFile(path, 0);
+    const std::string ending = endingOf(path);
+    keepReadersOf(ending, importer);
+    const aiScene* scene = bytes.empty()
+                               ? importer.ReadFile(path, 0)
+                               : importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, ending.c_str() + 1);
     if (!listener.problem().empty()) return listener.problem();
     const std::string problem = scene == nullptr ? "" : faceProblem(*scene);
     if (!problem.empty()) return problem;
@@ -172,7 +176,7 @@ std::string readMesh(const std::string& path, TriangleMesh& mesh, std::string* s
     if (problem.empty() && ending == ".stl") problem = scanStl(bytes);
     if (problem.empty() && ending == ".glb") problem = scanGlb(bytes);
     if (problem.empty() && ending == ".gltf") problem = scanGltf(bytes);
-    if (problem.empty()) problem = importMesh(path, mesh);
+    if (problem.empty()) problem = importMesh(path, ending == ".ply" ? plyWithLineEnd(bytes) : "", mesh);
     if (structure && ending == ".obj") *structure = objStructure(bytes);
     return problem.empty() ? "" : path + ": " + problem;
 }

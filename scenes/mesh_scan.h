@@ -15,6 +15,11 @@ std::string scanGlb(const std::string& bytes);
 // The text of a glTF file, or that in a binary one.
 std::string scanGltf(const std::string& text);
 
+// Of a good binary PLY file whose first vertex begins with a byte that is a line feed: Assimp would take that for the
+// end of the header's last line, and does not where a carriage return ends the line. The file with one; empty for
+// others.
+std::string plyWithLineEnd(const std::string& bytes);
+
 // Of a good OBJ file: the corners of its faces, lines and points, and what sorts them, by number, without a coordinate.
 // Files of which it is the same are read alike: Assimp makes a vertex of each corner, which tells no more whose it is,
 // object by object and material by material.

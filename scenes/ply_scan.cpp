@@ -288,4 +288,13 @@ std::string scanPly(const std::string& bytes)
     }
     return numbers.isAtEnd() ? "" : "has more behind the elements that the PLY header counts";
 }
+
+std::string plyWithLineEnd(const std::string& bytes)
+{
+    Header header;
+    std::size_t bodyStart = 0;
+    readHeader(bytes, header, bodyStart);
+    if (header.m_encoding == Encoding::Text || bytes[bodyStart] != '\n' || bytes[bodyStart - 2] == '\r') return "";
+    return bytes.substr(0, bodyStart - 1) + '\r' + bytes.substr(bodyStart - 1);
+}
 }  // namespace drape

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 
 #include <nlohmann/json.hpp>
 
 #include "bullet_plugin/core/pipeline.h"
 #include "scenes/mesh_loader.h"
+#include "scenes/mesh_writer.h"
 #include "tests/tools/tool.h"
 
 namespace drape::test
@@ -147,6 +149,23 @@ TEST_F(Outputs, framesAreMeshesOneAStep)
     ASSERT_TRUE(loadMesh(path("frames/cloth_0010.ply"), mesh, error)) << error;
     EXPECT_EQ(mesh.triangleCount(), 128u);
     ASSERT_TRUE(loadMesh(path("frames/obstacle.ply"), mesh, error)) << error;
+}
+
+// Its first bytes may look like the end of a line.
+TEST_F(Outputs, aFrameIsReadWhateverItsFirstVertex)
+{
+    for (const char* bytes : {"\x0a\x98\x8b\xbf", "\x0a\x0a\x0a\x3f", "\x0d\x0a\x8b\xbf", "\x20\x0a\x8b\xbf"})
+    {
+        TriangleMesh written, read;
+        float x = 0;
+        std::memcpy(&x, bytes, sizeof x);
+        written.m_positions = {x, 0, 0, 2, 0, 0, 0, 1, 0};
+        written.m_triangles = {0, 1, 2};
+        std::string error;
+        ASSERT_TRUE(writeMesh(path("frame.ply"), written, error)) << error;
+        ASSERT_TRUE(loadMesh(path("frame.ply"), read, error)) << error;
+        EXPECT_EQ(read.m_positions, written.m_positions);
+    }
 }
 
 TEST_F(Outputs, pictureIsAPng)
