@@ -16,8 +16,8 @@ enum ExitCode
 
 // The codes as --help tells them.
 constexpr const char* kExitCodesText =
-    "Exit codes: 0 good, 1 a run failed or its results could not be written, 2 arguments, files or a device that cannot "
-    "be used, 3 another hash.";
+    "Exit codes: 0 good, 1 a run failed or its results could not be written,\n"
+    "2 arguments, files or a device that cannot be used, 3 another hash.";
 
 // Prints "program: reason" and returns the code.
 int fail(const std::string& program, int exitCode, const std::string& reason);
