@@ -9,7 +9,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 bash cmake/install_packages.sh
 bash cmake/build_preset.sh asan drape_test_unit drape_test_oracle drape_test_property drape_test_stress drape_test_bullet \
-  drape_test_tools
+  drape_test_startup drape_test_tools
 
 source tests/reference_data.sh
 export DRAPE_TEST_NO_DEVICE=1
