@@ -15,5 +15,5 @@ source tests/reference_data.sh
 export DRAPE_TEST_NO_DEVICE=1
 export OCL_ICD_VENDORS=/nonexistent
 exec ctest --test-dir build/asan --output-on-failure --no-tests=error --parallel "$(nproc)" \
-  --label-regex '^(unit|oracle|property|stress|bullet|tools)$' \
+  --label-regex '^(unit|oracle|property|stress|bullet|startup|tools)$' \
   --exclude-regex 'tenThousandSteps|Row25|Settled|BunnyDrop|HundredThousand|DropComparison' "$@"

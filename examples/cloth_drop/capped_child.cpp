@@ -79,6 +79,7 @@ bool follow(int pipe, CappedLines& lines, const std::function<bool()>& goesOn)
         if (!lines.take(buffer, static_cast<std::size_t>(size))) return false;
     }
 }
+
 // "" for a good end.
 std::string endProblem(int status, int step)
 {
