@@ -260,7 +260,8 @@ DRAPE_FUNCTION void loadPair(PairTriangles* pair, const ClothView* cloth, const 
 }
 
 // Proves that a pair of triangles is out of reach by the planes of the two, where the cloth's is taken at the step's
-// end. The slack is far above any rounding: what is dropped here gives no contact.
+// end. The slack is far above any rounding: what is dropped here gives no contact. A plane whose normal is too short
+// for a float to hold its length proves nothing.
 DRAPE_FUNCTION int pairApart(const PairTriangles* pair, float reach)
 {
     const FeatureTriangle start = pair->m_start, end = pair->m_end, resting = pair->m_resting;
@@ -280,7 +281,8 @@ DRAPE_FUNCTION int pairApart(const PairTriangles* pair, float reach)
             highResting = drapeMax(highResting, r);
         }
         const float gap = drapeMax(low - highResting, lowResting - high);
-        if (gap > vec3Length(n) * slack) return 1;
+        const float length = areaLengthOf(n);
+        if (length > 0.0f && gap > length * slack) return 1;
     }
     return 0;
 }
