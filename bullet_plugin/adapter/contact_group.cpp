@@ -112,15 +112,19 @@ btVector3 ContactGroup::startOf(const RoundsNodes& nodes, const Row& row)
 void ContactGroup::setPlane(const RoundsNodes& nodes, Row& row, const btScalar weights[3], const btVector3& normal,
                             const btVector3& point)
 {
-    btScalar mobility = 0;
+    btScalar mobility = 0, held = 0, most = 0;
     for (int k = 0; k < row.m_count; ++k)
     {
         const btScalar inverseMass = nodes.m_moved[static_cast<std::size_t>(row.m_moved[k])].m_inverseMass;
         row.m_weights[k] = weights[k];
         row.m_shares[k] = weights[k] * inverseMass;
         mobility += weights[k] * weights[k] * inverseMass;
+        most = std::max(most, inverseMass);
+        if (!(inverseMass > 0)) held += weights[k];
     }
-    row.m_inverseMobility = mobility > 0 ? 1 / mobility : btScalar(0);
+    const btScalar softened = mobility + kHeldSoftness * held * most;
+    row.m_inverseMobility = mobility > 0 ? 1 / softened : btScalar(0);
+    row.m_mended = held > 0 ? mobility * row.m_inverseMobility : btScalar(1);
     row.m_normal = normal;
     row.m_start = startOf(nodes, row);
     const btVector3 carried = carriedFrom(row.m_start, row.m_carry);
@@ -181,7 +185,7 @@ bool ContactGroup::projectNodes(RoundsNodes& nodes, Row& row, btScalar& worst)
     }
     const btScalar along = dot(normal, way), violation = row.m_level - along;
     if (!(violation > 0) && !(row.m_multiplier > 0)) return false;  // also for NaN
-    worst = std::max(worst, violation);
+    worst = std::max(worst, violation * row.m_mended);
     const btScalar pushed = std::max(btScalar(0), row.m_multiplier + violation * row.m_inverseMobility);
     // Friction: takes the point's motion along the surface back, within the cone. A push leaves that motion as it is.
     Quad hold = held - (way - normal * along - carried) * row.m_inverseMobility;

@@ -14,7 +14,9 @@
 // relative to the obstacle's, up to Coulomb's bound on the push (Macklin et al. 2014, Unified Particle Physics, section
 // 6.1), with Bullet's coefficient, kDF times the obstacle's friction. Velocities follow the positions as in Bullet's
 // own update, (x change)/dt (1 - kDP); limitSpeeds() takes out again what a contact gained by recovering a depth that
-// the step began with. So no energy comes from the rounds. Pinned, massless and anchored nodes stay.
+// the step began with. So no energy comes from the rounds. Pinned, massless and anchored nodes stay; a face or an
+// edge that they hold is pushed the less the more of the contact's point is theirs: else its other nodes, with little
+// of the point and all of the push, are thrown as far as they lack leverage.
 //
 // Order: each body's cloth is cut into groups (cloth_parts.h). A round goes over the contacts of nodes and faces from
 // the leaves to the root, then over those of edges likewise; within a group nodes come first: most faces and edges are

@@ -50,6 +50,11 @@ const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, co
     return reasonFromObstacle(obstacle, shape);
 }
 
+bool stockCanTake(const btCollisionObject& obstacle, const btTransform& pose)
+{
+    return pose == obstacle.getWorldTransform();
+}
+
 bool handlesObstacle(const btCollisionObject& obstacle, const btCollisionShape& shape)
 {
     return !reasonFromObstacle(obstacle, shape);

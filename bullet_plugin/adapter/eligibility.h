@@ -12,6 +12,10 @@ class PluginState;
 const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
                            const btCollisionShape& shape);
 
+// Whether Bullet's own algorithm finds a mesh at that pose, the object's own or a compound's child: it takes every mesh
+// to be where its object is.
+bool stockCanTake(const btCollisionObject& obstacle, const btTransform& pose);
+
 // Whether Drape handles an obstacle with that shape beside cloth that it handles.
 bool handlesObstacle(const btCollisionObject& obstacle, const btCollisionShape& shape);
 

@@ -12,16 +12,6 @@ namespace drape
 static_assert(sizeof(PairAlgorithm) <= sizeof(btSoftBodyConcaveCollisionAlgorithm),
               "the dispatcher's pool holds elements of that size");
 
-namespace
-{
-// Bullet's concave algorithm reads its triangles from the object's root shape, which it takes for the mesh: given a
-// compound's child it would call functions that the compound does not have.
-bool stockCanTake(const btCollisionObjectWrapper& obstacle)
-{
-    return obstacle.getCollisionShape() == obstacle.getCollisionObject()->getCollisionShape();
-}
-}  // namespace
-
 PairAlgorithm::PairAlgorithm(const btCollisionAlgorithmConstructionInfo& info, PluginState& state, bool swapped)
     : btCollisionAlgorithm(info), m_state(state), m_swapped(swapped)
 {
@@ -43,7 +33,8 @@ void PairAlgorithm::processCollision(const btCollisionObjectWrapper* wrapA, cons
     if (reasonForStock(m_state, *cloth, *obstacleWrap.getCollisionObject(), *obstacleWrap.getCollisionShape()))
     {
         m_state.forget(this);
-        if (stockCanTake(obstacleWrap)) processStock(wrapA, wrapB, info, result);
+        if (stockCanTake(*obstacleWrap.getCollisionObject(), obstacleWrap.getWorldTransform()))
+            processStock(wrapA, wrapB, info, result);
         return;
     }
     dropStock();

@@ -13,9 +13,9 @@ namespace drape
 {
 namespace
 {
-// First reason among the leaves of a shape; empty when every leaf is handled.
+// First reason among the leaves of a shape at that pose; empty when every leaf is handled.
 std::string reasonInShape(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
-                          const btCollisionShape& shape)
+                          const btCollisionShape& shape, const btTransform& pose)
 {
     if (shape.getShapeType() != COMPOUND_SHAPE_PROXYTYPE)
     {
@@ -25,11 +25,14 @@ std::string reasonInShape(const PluginState& state, const btSoftBody& cloth, con
     const btCompoundShape& compound = static_cast<const btCompoundShape&>(shape);
     for (int i = 0; i < compound.getNumChildShapes(); ++i)
     {
-        const std::string reason = reasonInShape(state, cloth, obstacle, *compound.getChildShape(i));
+        const btTransform childPose = pose * compound.getChildTransform(i);
+        const std::string reason = reasonInShape(state, cloth, obstacle, *compound.getChildShape(i), childPose);
         if (reason.empty()) continue;
-        const bool nobodys = isMeshShape(compound.getChildShape(i)->getShapeType());
+        const bool nobodys =
+            isMeshShape(compound.getChildShape(i)->getShapeType()) && !stockCanTake(obstacle, childPose);
         return "child " + std::to_string(i) + " of the compound: " + reason +
-               (nobodys ? "; Bullet's own algorithm takes no mesh in a compound, so that it collides with nothing"
+               (nobodys ? "; Bullet's own algorithm would take this mesh to be where the compound is, so that it "
+                          "collides with nothing"
                         : "");
     }
     return std::string();
@@ -78,7 +81,7 @@ std::string Plugin::whyStock(const btCollisionObject* objectA, const btCollision
     if (!cloth) return "neither object is a soft body";
     if (!obstacle->getCollisionShape()) return "the obstacle has no collision shape";
     if (btSoftBody::upcast(obstacle)) return "both objects are soft bodies";
-    return reasonInShape(*m_state, *cloth, *obstacle, *obstacle->getCollisionShape());
+    return reasonInShape(*m_state, *cloth, *obstacle, *obstacle->getCollisionShape(), obstacle->getWorldTransform());
 }
 
 void Plugin::prepare(const btCollisionObject* object)

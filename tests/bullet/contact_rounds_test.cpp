@@ -73,7 +73,7 @@ public:
             btScalar speed = 0;
             for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
                 speed += m_body.m_nodes[contact.m_nodes[k]].m_v.dot(contact.m_normal) * contact.m_weights[k];
-            const btScalar excess = speed - m_rows[i].m_speedLimit, mobility = mobilityOf(contact);
+            const btScalar excess = speed - m_rows[i].m_speedLimit, mobility = softenedOf(contact);
             if (!m_rows[i].m_everActed || !(excess > 0) || !(mobility > 0)) continue;
             ++m_slowed;
             for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
@@ -210,10 +210,25 @@ private:
         return mobility;
     }
 
+    // Mobility by which pushes go: more than it is in proportion to what is held of the point.
+    btScalar softenedOf(const StepContact& contact) const
+    {
+        const btScalar mobility = mobilityOf(contact);
+        btScalar held = 0, most = 0;
+        for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+        {
+            const btScalar inverseMass = movableInverseMass(m_body.m_nodes[contact.m_nodes[k]]);
+            if (inverseMass == 0) held += contact.m_weights[k];
+            most = std::max(most, inverseMass);
+        }
+        return mobility > 0 ? mobility + kHeldSoftness * held * most : btScalar(0);
+    }
+
+    // Returns what of the violation the push takes away.
     btScalar project(const StepContact& contact, Row& row, std::vector<btVector3>& x) const
     {
         const btVector3 normal = contact.m_normal, start = startOf(contact);
-        const btScalar mobility = mobilityOf(contact), violation = violationOf(contact, start, x);
+        const btScalar mobility = softenedOf(contact), violation = violationOf(contact, start, x);
         if (!(mobility > 0) || (!(violation > 0) && !(row.m_multiplier > 0))) return 0;
         row.m_acted = row.m_everActed = true;
         const btScalar inverse = 1 / mobility;
@@ -226,7 +241,7 @@ private:
         shift(contact, normal * (pushed - row.m_multiplier) + (held - row.m_held), x);
         row.m_multiplier = pushed;
         row.m_held = held;
-        return violation;
+        return mobilityOf(contact) == mobility ? violation : violation * (mobilityOf(contact) * inverse);
     }
 
     btSoftBody& m_body;

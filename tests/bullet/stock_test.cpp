@@ -124,20 +124,39 @@ TEST_F(Stock, compoundNamesTheChild)
     expectReason(addCloth(), m_world.addObstacle(compound), "child 1");
 }
 
-// Bullet's own algorithm would take the compound for a mesh.
-TEST_F(Stock, aMeshInACompoundThatDrapeLeavesIsNobodys)
+// Bullet's own algorithm takes a compound's mesh to be where the compound is.
+TEST_F(Stock, aMeshInACompoundIsBulletsWhereItLiesAtItsPlace)
 {
-    btCompoundShape compound;
-    compound.addChildShape(btTransform::getIdentity(), &m_shape.shape());
-    btCollisionObject& object = m_world.addObstacle(compound);
-    btSoftBody& cloth = addCloth();
-    EXPECT_EQ(m_plugin.whyStock(&cloth, &object), "");
-    cloth.generateClusters(4);
-    cloth.m_cfg.collisions = btSoftBody::fCollision::CL_RS;
-    expectReason(cloth, object, "collides with nothing");
-    expectReason(cloth, object, "child 0");
-    m_world.step(10);
-    EXPECT_EQ(contactsHeld(cloth), 0);
+    Settings settings;
+    settings.m_backend = Backend::OpenCl;
+    settings.m_device = "no such device";
+    Plugin plugin(settings);
+    ASSERT_FALSE(plugin.ready());
+    for (const bool shifted : {false, true})
+    {
+        SCOPED_TRACE(shifted);
+        DropWorld world(&plugin);
+        const btTransform place(btQuaternion::getIdentity(), btVector3(0, shifted ? btScalar(0.01) : btScalar(0), 0));
+        btCompoundShape compound, nested;
+        nested.addChildShape(place, &m_shape.shape());
+        compound.addChildShape(btTransform::getIdentity(), &nested);
+        const btTransform pose(btQuaternion(btVector3(0, 1, 0), btScalar(0.5)), btVector3(btScalar(0.1), 0, 0));
+        btCollisionObject& object = world.addObstacle(compound, pose);
+        ClothSpec spec;
+        spec.m_centre = btVector3(0, btScalar(0.25), 0);
+        btSoftBody& cloth = world.addCloth(spec);
+        const std::string reason = plugin.whyStock(&cloth, &object);
+        EXPECT_NE(reason.find("child 0"), std::string::npos) << reason;
+        EXPECT_EQ(reason.find("collides with nothing") != std::string::npos, shifted) << reason;
+        int most = 0;
+        for (int step = 0; step < 30; ++step)
+        {
+            world.step();
+            most = std::max(most, contactsHeld(cloth));
+        }
+        EXPECT_EQ(most == 0, shifted) << most << " contacts";
+        world.remove(cloth);
+    }
 }
 
 TEST_F(Stock, aSoftBodyMayOutliveItsSolver)

@@ -1,7 +1,9 @@
 // Bullet's soft body collision configuration with cloth against triangle meshes handed to Drape.
 //
 // Use it in place of btSoftBodyRigidBodyCollisionConfiguration when the dispatcher is built. Pairs that Drape does not
-// handle (Plugin::whyStock tells) get Bullet's own algorithm, decided anew at every step. C++11.
+// handle (Plugin::whyStock tells) get Bullet's own algorithm, decided anew at every step; but Bullet itself asks for an
+// algorithm only once a pair, so that an object whose shape becomes one of another kind needs its pairs cleaned
+// (btOverlappingPairCache::cleanProxyFromPairs). C++11.
 #pragma once
 
 #include <memory>

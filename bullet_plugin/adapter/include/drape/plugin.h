@@ -59,7 +59,7 @@ public:
     Plugin(const Plugin&) = delete;
     Plugin& operator=(const Plugin&) = delete;
 
-    bool ready() const;  // false: every pair goes to Bullet's own algorithm
+    bool ready() const;  // false: every pair goes to Bullet's own algorithm, as far as whyStock() has it
     // What failed, with the whole log; empty when nothing did. ready() all the same: the host took over from a device.
     std::string error() const;
 
@@ -69,8 +69,10 @@ public:
     std::string report() const;                 // device, why it, and the last step in one line
 
     // Empty when Drape handles the pair, else the reason why Bullet's own algorithm does. For a compound the first
-    // child that Drape does not handle gives the reason; a mesh there, which Bullet's own cannot take, is named as
-    // such. Of several worlds it is not asked which have Drape's algorithm: one that has is enough.
+    // child that Drape does not handle gives the reason; a mesh that does not lie where its compound does, which
+    // Bullet's own would miss, is named as such. After an object got a shape of another kind, Bullet keeps what it
+    // chose for the old one until its pairs are cleaned (cleanProxyFromPairs); this goes by the shape that it has. Of
+    // several worlds it is not asked which have Drape's algorithm: one that has is enough.
     std::string whyStock(const btCollisionObject* objectA, const btCollisionObject* objectB) const;
 
     // Reads a soft body, or an obstacle's meshes (a compound's children, too), and brings them to the device: without
