@@ -39,7 +39,7 @@ struct RoundsNodes
 
 // Share of a movable node's inverse mass that a contact's mobility counts as more than it is, where all of the rest of
 // its point is held; in proportion where less is. A node that moves little of the point is then not thrown far for it:
-// at most 2.5 times the violation in a round, at a fifth of the weight, and the less the smaller its weight.
+// at most 2.8 times the violation in a round, at a fifth of the weight, and the less the smaller its weight.
 constexpr btScalar kHeldSoftness = btScalar(0.04);
 
 class ContactGroup

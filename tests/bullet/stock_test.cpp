@@ -159,6 +159,22 @@ TEST_F(Stock, aMeshInACompoundIsBulletsWhereItLiesAtItsPlace)
     }
 }
 
+TEST_F(Stock, aMeshMovedInItsCompoundThatDrapeLeavesIsNobodys)
+{
+    btCompoundShape compound;
+    const btTransform place(btQuaternion::getIdentity(), btVector3(0, btScalar(0.01), 0));
+    compound.addChildShape(place, &m_shape.shape());
+    btCollisionObject& object = m_world.addObstacle(compound);
+    btSoftBody& cloth = addCloth();
+    EXPECT_EQ(m_plugin.whyStock(&cloth, &object), "");
+    cloth.generateClusters(4);
+    cloth.m_cfg.collisions = btSoftBody::fCollision::CL_RS;
+    expectReason(cloth, object, "collides with nothing");
+    expectReason(cloth, object, "child 0");
+    m_world.step(10);
+    EXPECT_EQ(contactsHeld(cloth), 0);
+}
+
 TEST_F(Stock, aSoftBodyMayOutliveItsSolver)
 {
     btSoftBodyWorldInfo info;
