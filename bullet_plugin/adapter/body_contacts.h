@@ -31,6 +31,7 @@ struct BodyContacts
     btScalar m_leastThickness = SIMD_INFINITY, m_mostThickness = 0;  // of the body's pairs
     std::vector<FeatureContacts> m_features;                         // in canonical order
     MotionLimit m_limit;
+    bool m_mayHavePassed = false;  // a contact is left so near that a surface may have been passed
 
     // For a body of another step; what memory it has stays.
     void start(MeshId cloth, btSoftBody* body, const ClothParts& parts)
@@ -42,6 +43,7 @@ struct BodyContacts
         m_mostThickness = 0;
         m_features.clear();
         m_limit.clear();
+        m_mayHavePassed = false;
     }
 };
 }  // namespace drape

@@ -9,29 +9,42 @@ namespace drape
 {
 namespace
 {
-// Bullet's position iterations may be run one by one: each call derives the velocities anew from the step's start, and
-// nothing else that a call does adds up.
+// Bullet's iterations may be run part by part: those on velocities first, those on positions one by one, those against
+// drift last. Each call on positions derives the velocities anew from the step's start, and nothing else that a call
+// does adds up. What clusters and joints do adds up.
 bool iterationsCanBeSplit(const btSoftBody& body)
 {
-    return body.m_cfg.piterations > 1 && body.m_cfg.viterations == 0 && body.m_cfg.diterations == 0 &&
-           body.m_clusters.size() == 0 && body.m_joints.size() == 0;
+    return body.m_clusters.size() == 0 && body.m_joints.size() == 0;
 }
 
-// Calls of Bullet's solver.
+// Calls of Bullet's solver, at least one.
 int callsFor(const btSoftBody& body)
 {
-    return iterationsCanBeSplit(body) ? body.m_cfg.piterations : 1;
+    if (!iterationsCanBeSplit(body)) return 1;
+    const btSoftBody::Config& config = body.m_cfg;
+    return std::max(1, (config.viterations > 0) + std::max(0, config.piterations) + (config.diterations > 0));
 }
 
-// One of them. Returns its time, ms.
-double callBullet(btSoftBody& body)
+// Leaves the iterations of one call, the first is 0.
+void keepIterationsOf(int call, btSoftBody::Config& config)
 {
-    const int iterations = body.m_cfg.piterations;
-    if (iterationsCanBeSplit(body)) body.m_cfg.piterations = 1;
+    const int velocities = config.viterations > 0 ? 1 : 0, positions = std::max(0, config.piterations);
+    if (call >= velocities) config.viterations = 0;
+    config.piterations = call >= velocities && call < velocities + positions ? 1 : 0;
+    if (call < velocities + positions) config.diterations = 0;
+}
+
+// One call. Returns its time, ms.
+double callBullet(btSoftBody& body, int call)
+{
+    const int velocities = body.m_cfg.viterations, positions = body.m_cfg.piterations, drift = body.m_cfg.diterations;
+    if (iterationsCanBeSplit(body)) keepIterationsOf(call, body.m_cfg);
     Stopwatch watch;
     body.solveConstraints();
     const double ms = watch.lapMs();
-    body.m_cfg.piterations = iterations;
+    body.m_cfg.viterations = velocities;
+    body.m_cfg.piterations = positions;
+    body.m_cfg.diterations = drift;
     return ms;
 }
 
@@ -120,7 +133,7 @@ double BodySolver::iterate()
         m_team.runAndSettle(m_turn);
         m_team.scatter(m_turn);
         for (const ContactRounds* rounds : m_iterating)
-            bulletMs += callBullet(bodyOf(rounds));
+            bulletMs += callBullet(bodyOf(rounds), i);
         keep(m_iterating, [i](const ContactRounds* rounds) { return i + 1 < callsFor(bodyOf(rounds)); });
     }
     return bulletMs;
@@ -172,6 +185,8 @@ void BodySolver::close()
     m_team.scatter(m_touching);
     holdOthers();
     m_team.limitSpeeds(m_touching);
+    for (ContactRounds* rounds : m_touching)
+        rounds->contacts().m_mayHavePassed = RoundsTeam::mayHavePassed(*rounds);
 }
 
 double BodySolver::solve(const std::vector<BodyContacts*>& bodies, const FoundContacts& found)

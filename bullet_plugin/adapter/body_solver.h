@@ -20,7 +20,7 @@
 // Guarantee: at the end no contact is violated by more than kClosingTolerance where kClosingRounds suffice. Where they
 // leave as much as the next step would recover, rounds go on: else cloth that hangs on one corner of an obstacle by a
 // single face comes nearer to it with every step, and is impaled in the end. The same bits with any number of threads.
-// A body with velocity or drift iterations or clusters is given to Bullet in one piece, the rounds before and after it.
+// A body with clusters or joints is given to Bullet in one piece, the rounds before and after it.
 // Cost: linear in the contacts, piterations + kClosingRounds rounds as a rule, mostClosingRounds() instead at most, and
 // those that settle what has pushed.
 #pragma once

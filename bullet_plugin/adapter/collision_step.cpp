@@ -15,6 +15,13 @@ bool anyMoves(const btSoftBody& body)
         if (movableInverseMass(body.m_nodes[i]) > 0) return true;
     return false;
 }
+
+void writePositions(const std::vector<btVector3>& positions, std::size_t first, std::size_t count, float* out)
+{
+    for (std::size_t i = first; i < first + count; ++i)
+        for (int axis = 0; axis < 3; ++axis)
+            *out++ = static_cast<float>(positions[i][axis]);
+}
 }  // namespace
 
 BodyContacts* CollisionStep::bodyOf(MeshId cloth)
@@ -74,8 +81,9 @@ void CollisionStep::addPair(const PairNote& note)
     body.m_mostThickness = std::max(body.m_mostThickness, note.m_thickness);
 }
 
-// Writes where nodes go for the device, and remembers it for the limits of motion: a large cloth's nodes are read once.
-void CollisionStep::uploadNodes()
+// Records the paths of the nodes and writes them for the device, so that a large cloth's nodes are read once. Later
+// detections of a step keep the paths' starts.
+void CollisionStep::uploadNodes(Detection detection)
 {
     std::vector<MeshId> cloths;
     for (std::size_t i = 0; i < m_bodies.size(); ++i)
@@ -86,8 +94,13 @@ void CollisionStep::uploadNodes()
     const auto write = [&](const NodeStretch& stretch)
     {
         BodyContacts& body = m_bodies[stretch.m_cloth];
-        m_mirrors[stretch.m_cloth]->writeNodes(stretch);
-        body.m_limit.recordNodes(*body.m_body, stretch.m_first, stretch.m_count);
+        if (detection == Detection::First)
+            body.m_limit.recordNodes(*body.m_body, stretch.m_first, stretch.m_count);
+        else
+            body.m_limit.recordEnds(*body.m_body, stretch.m_first, stretch.m_count);
+        const NodePaths& paths = body.m_limit.paths();
+        writePositions(paths.m_start, stretch.m_first, stretch.m_count, stretch.m_start);
+        writePositions(paths.m_end, stretch.m_first, stretch.m_count, stretch.m_end);
     };
     m_state.pipeline().writeNodes(cloths, write);
 }
@@ -105,7 +118,7 @@ void CollisionStep::begin(const std::vector<PairNote>& notes)
         else if (std::find(m_pinned.begin(), m_pinned.end(), note.m_cloth) == m_pinned.end())
             m_pinned.push_back(note.m_cloth);
     }
-    if (!m_pairs.empty()) submit();
+    if (!m_pairs.empty()) submit(Detection::First);
 }
 
 // How far from its path a node of the pair's cloth may be, m; negative where detection is to leave out no contact. One
@@ -116,9 +129,9 @@ float CollisionStep::tubeOf(const Pair& pair)
     return static_cast<float>(MotionLimit::tube(pair.m_thickness, btScalar(m_state.settings().m_activation)));
 }
 
-void CollisionStep::submit()
+void CollisionStep::submit(Detection detection)
 {
-    uploadNodes();
+    uploadNodes(detection);
     for (const Pair& pair : m_pairs)
         m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_thickness), tubeOf(pair));
     m_state.pipeline().submit();
@@ -175,7 +188,7 @@ bool CollisionStep::cutAtImpactsOf(BodyContacts& body, Cut cut)
         for (std::uint32_t i = 0; feature.m_leastTime < 1 && i < feature.m_count; ++i)
             if (feature.m_contacts[i].m_time < 1)
                 impacts.push_back(m_state.m_found.resolve(*body.m_body, body.m_limit.paths(), feature.m_contacts[i]));
-    return cutAtImpacts(*body.m_body, impacts, cut);
+    return cutAtImpacts(*body.m_body, body.m_limit.paths(), impacts, cut);
 }
 
 bool CollisionStep::cutPaths()
@@ -196,7 +209,7 @@ void CollisionStep::finish()
     const std::size_t kept = m_state.m_statistics.m_obstaclesKept;
     for (int detections = 1; detections < kMostDetections && cutPaths(); ++detections)
     {
-        submit();
+        submit(Detection::Again);
         receiveAll();
     }
     m_state.m_statistics.m_obstaclesKept = kept;  // not those that the step itself brought up to date
@@ -213,15 +226,15 @@ bool CollisionStep::cutStrayed(const std::vector<bool>& strayed, Cut cut)
 void CollisionStep::checkStrayed()
 {
     std::vector<bool> strayed;
-    for (const BodyContacts& body : m_bodies)
-        strayed.push_back(body.m_limit.strayed(*body.m_body));
+    for (BodyContacts& body : m_bodies)
+        strayed.push_back(body.m_mayHavePassed || body.m_limit.strayed(*body.m_body));
     if (std::find(strayed.begin(), strayed.end(), true) == strayed.end()) return;
     // What is reported stays what the solver was given.
     m_state.m_found.keepList();
     const StepStatistics before = m_state.m_statistics;
     for (int detections = 1; detections <= kMostDetections; ++detections)
     {
-        submit();
+        submit(Detection::Again);
         receiveAll();
         if (!cutStrayed(strayed, detections < kMostDetections ? Cut::EachNode : Cut::WholeBody)) break;
     }

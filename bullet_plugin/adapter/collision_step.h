@@ -42,8 +42,14 @@ private:
 
     void addPair(const PairNote& note);
     float tubeOf(const Pair& pair);
-    void uploadNodes();
-    void submit();
+    enum class Detection
+    {
+        First,  // of the step
+        Again
+    };
+
+    void uploadNodes(Detection detection);
+    void submit(Detection detection);
     void receiveAll();
     void receive(const ContactList& contacts);
     bool cutAtImpactsOf(BodyContacts& body, Cut cut);

@@ -132,12 +132,12 @@ void ContactGroup::setPlane(const RoundsNodes& nodes, Row& row, const btScalar w
     row.m_level = normal.dot(point - row.m_start) + row.m_distance;
 }
 
-bool ContactGroup::isViolated(const RoundsNodes& nodes, const Row& row)
+btScalar ContactGroup::violation(const RoundsNodes& nodes, const Row& row)
 {
     btVector3 way = -row.m_start;
     for (int k = 0; k < row.m_count; ++k)
         way += nodes.m_places[static_cast<std::size_t>(row.m_moved[k])] * row.m_weights[k];
-    return row.m_level - row.m_normal.dot(way) > 0;
+    return row.m_level - row.m_normal.dot(way);
 }
 
 // Takes the contact's plane where its features are nearest now; the same plane for the block.
@@ -344,5 +344,12 @@ void ContactGroup::limitSpeeds(const RoundsNodes& nodes) const
         for (const int row : rows.m_row)
             if (row >= 0 && m_rows[static_cast<std::size_t>(row)].m_pushed)
                 limitSpeed(nodes, m_rows[static_cast<std::size_t>(row)]);
+}
+
+bool ContactGroup::mayHavePassed(const RoundsNodes& nodes) const
+{
+    const btScalar least = kNearShare * nodes.m_contacts->m_leastThickness;
+    return std::any_of(m_rows.begin(), m_rows.end(),
+                       [&](const Row& row) { return row.m_pushed && row.m_distance - violation(nodes, row) < least; });
 }
 }  // namespace drape

@@ -42,6 +42,8 @@ struct RoundsNodes
 // at most 2.8 times the violation in a round, at a fifth of the weight, and the less the smaller its weight.
 constexpr btScalar kHeldSoftness = btScalar(0.04);
 
+constexpr btScalar kNearShare = btScalar(0.25);
+
 class ContactGroup
 {
 public:
@@ -70,6 +72,9 @@ public:
     void settle(RoundsNodes& nodes);
     // Takes out of the nodes' velocities what a contact gained by recovering a depth that the step began with.
     void limitSpeeds(const RoundsNodes& nodes) const;
+    // Returns whether a contact that has pushed is left with less than kNearShare of the thickness between its
+    // features' points, so that the features may have passed each other.
+    bool mayHavePassed(const RoundsNodes& nodes) const;
 
 private:
     // Contacts of one cloth feature side by side; lanes beyond the last one are never violated. The gap is
@@ -121,7 +126,8 @@ private:
     static void setPlane(const RoundsNodes& nodes, Row& row, const btScalar weights[3], const btVector3& normal,
                          const btVector3& point);
     static btVector3 startOf(const RoundsNodes& nodes, const Row& row);
-    static bool isViolated(const RoundsNodes& nodes, const Row& row);
+    static btScalar violation(const RoundsNodes& nodes, const Row& row);
+    static bool isViolated(const RoundsNodes& nodes, const Row& row) { return violation(nodes, row) > 0; }
     static void renewPlane(const RoundsNodes& nodes, Row& row, Block& block, int lane);
     static Lanes excessOf(const Block& block, const btVector3* places);
     template <int count>

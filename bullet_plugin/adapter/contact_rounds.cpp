@@ -46,6 +46,7 @@ void ContactRounds::begin()
     }
     m_worst.assign(groups, 0);
     m_settles.assign(groups, 0);
+    m_near.assign(groups, 0);
     m_nodes.m_movedOfNode.assign(m_parts->nodeCount(), -1);
     m_blocks = 0;
     for (const FeatureContacts& feature : m_contacts->m_features)
@@ -137,7 +138,9 @@ void ContactRounds::work(std::size_t index, Pass pass)
         case Pass::Settle:
             return group.settle(m_nodes);
         case Pass::LimitSpeeds:
-            return group.limitSpeeds(m_nodes);
+            group.limitSpeeds(m_nodes);
+            m_near[index] = group.mayHavePassed(m_nodes);
+            return;
     }
 }
 
@@ -156,6 +159,11 @@ void ContactRounds::climb(std::size_t leaf, Pass pass)
 btScalar ContactRounds::worst() const
 {
     return *std::max_element(m_worst.begin(), m_worst.end());
+}
+
+bool ContactRounds::mayHavePassed() const
+{
+    return std::find(m_near.begin(), m_near.end(), 1) != m_near.end();
 }
 
 bool ContactRounds::anySettles() const

@@ -78,6 +78,7 @@ private:
     void keepNear(std::size_t leaf);
     btScalar worst() const;
     bool anySettles() const;
+    bool mayHavePassed() const;
 
     BodyContacts* m_contacts = nullptr;
     const ClothParts* m_parts = nullptr;
@@ -86,6 +87,7 @@ private:
     std::vector<ContactGroup> m_groups;               // those of m_parts; more from earlier bodies
     std::vector<btScalar> m_worst;                    // by group: violation in this round, m
     std::vector<unsigned char> m_settles;             // by group
+    std::vector<unsigned char> m_near;                // by group: whether a contact is left near, see ContactGroup
     std::unique_ptr<std::atomic<bool>[]> m_halfDone;  // by group, as m_groups: one of its halves, in this pass
     std::size_t m_blocks = 0;                         // of all groups
     unsigned m_stage = 0;                             // counts up with each
@@ -132,6 +134,8 @@ public:
     void runAndSettle(const Bodies& bodies);
     // Once, after the last round.
     void limitSpeeds(const Bodies& bodies);
+    // Returns whether a contact is left so near that a surface may have been passed. After limitSpeeds().
+    static bool mayHavePassed(const ContactRounds& body) { return body.mayHavePassed(); }
 
 private:
     struct Leaf

@@ -31,15 +31,15 @@ struct Left
     }
 };
 
-void shorten(btSoftBody::Node& node, const Left& left, btScalar velocityScale)
+void shorten(btSoftBody::Node& node, const btVector3& start, const Left& left, btScalar velocityScale)
 {
-    const btVector3 shift = (node.m_x - carried(left.m_carry, node.m_q)) * (left.m_share - 1);
+    const btVector3 shift = (node.m_x - carried(left.m_carry, start)) * (left.m_share - 1);
     node.m_x += shift;
     node.m_v += shift * velocityScale;
 }
 }  // namespace
 
-bool cutAtImpacts(btSoftBody& body, const std::vector<StepContact>& contacts, Cut cut)
+bool cutAtImpacts(btSoftBody& body, const NodePaths& paths, const std::vector<StepContact>& contacts, Cut cut)
 {
     if (contacts.empty()) return false;
     std::vector<Left> left(static_cast<std::size_t>(body.m_nodes.size()));
@@ -57,7 +57,8 @@ bool cutAtImpacts(btSoftBody& body, const std::vector<StepContact>& contacts, Cu
     {
         const Left& own = cut == Cut::WholeBody ? least : left[static_cast<std::size_t>(i)];
         btSoftBody::Node& node = body.m_nodes[i];
-        if (own.m_share < 1 && movableInverseMass(node) > 0) shorten(node, own, velocityScale);
+        if (own.m_share < 1 && movableInverseMass(node) > 0)
+            shorten(node, paths.m_start[static_cast<std::size_t>(i)], own, velocityScale);
     }
     return true;
 }

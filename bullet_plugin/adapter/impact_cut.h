@@ -2,15 +2,16 @@
 //
 // Why: contacts are found along the whole predicted path and near its end. Behind the first surface they are of places
 // that the node cannot get to, inside the obstacle or beyond, and push it to any side. After a cut detection runs
-// again, with paths that end near the surfaces that count. Input: a body between predictMotion and solveConstraints and
-// its contacts along the present paths. Before an obstacle that moves, a path ends where the obstacle carries it. What
-// a path loses is lost for the step, as if the node had come to a halt there. Cloth that would not pass a surface
-// within the step (it rests, slides, or falls by less than the thickness) is not touched. Cost: linear in the contacts.
+// again, with paths that end near the surfaces that count. Input: a body between predictMotion and the end of
+// solveConstraints, the starts of its paths and its contacts along the present ones. Before an obstacle that moves, a
+// path ends where the obstacle carries it. What a path loses is lost for the step, as if the node had come to a halt
+// there. Cloth that would not pass a surface within the step (it rests, slides, or falls by less than the thickness) is
+// not touched. Cost: linear in the contacts.
 #pragma once
 
 #include <vector>
 
-#include "bullet_plugin/adapter/step_contact.h"
+#include "bullet_plugin/adapter/node_paths.h"
 
 namespace drape
 {
@@ -26,5 +27,5 @@ enum class Cut
 };
 
 // Returns whether any path was cut. Velocities follow, for a body that Bullet has solved.
-bool cutAtImpacts(btSoftBody& body, const std::vector<StepContact>& contacts, Cut cut);
+bool cutAtImpacts(btSoftBody& body, const NodePaths& paths, const std::vector<StepContact>& contacts, Cut cut);
 }  // namespace drape

@@ -115,17 +115,6 @@ MeshId ClothMirror::refresh(Pipeline& pipeline)
     return m_id;
 }
 
-void ClothMirror::writeNodes(const NodeStretch& stretch) const
-{
-    float *start = stretch.m_start, *end = stretch.m_end;
-    for (std::size_t i = stretch.m_first; i < stretch.m_first + stretch.m_count; ++i)
-    {
-        const btSoftBody::Node& node = m_body->m_nodes[static_cast<int>(i)];
-        writePosition(node.m_q, start);
-        writePosition(node.m_x, end);
-    }
-}
-
 void ObstacleMirror::reload(Pipeline& pipeline, const btTransform& pose)
 {
     WorldMesh mesh;

@@ -53,8 +53,6 @@ public:
 
     // Adds the body to the pipeline, or replaces what is there when the topology changed.
     MeshId refresh(Pipeline& pipeline);
-    // Writes nodes' positions at the step's start (m_q) and predicted end (m_x).
-    void writeNodes(const NodeStretch& stretch) const;
     // As the pipeline has them.
     const ClothFaces& faces() const { return m_faces; }
     // Of the nodes as they lay when the topology was read, or when it was last taken up.

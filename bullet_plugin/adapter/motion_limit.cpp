@@ -92,6 +92,12 @@ void MotionLimit::recordNodes(const btSoftBody& body, std::size_t first, std::si
         m_paths.record(i, body.m_nodes[static_cast<int>(i)]);
 }
 
+void MotionLimit::recordEnds(const btSoftBody& body, std::size_t first, std::size_t count)
+{
+    for (std::size_t i = first; i < first + count; ++i)
+        m_paths.recordEnd(i, body.m_nodes[static_cast<int>(i)]);
+}
+
 void MotionLimit::record(const btSoftBody& body, const ClothFaces& faces)
 {
     startRecord(faces);
@@ -110,13 +116,17 @@ MotionLimit::Allowance MotionLimit::allowance(const Region& region, std::size_t 
     return Allowance{own.m_start, m_hasContact[node] ? own.m_start : own.m_end};
 }
 
-bool MotionLimit::strayed(const btSoftBody& body) const
+bool MotionLimit::strayed(const btSoftBody& body)
 {
-    const btScalar most = kStrayReaches * m_leastReach;
+    const btScalar most = kFreeShare * m_leastReach;
     const int count = std::min(body.m_nodes.size(), static_cast<int>(m_paths.m_end.size()));
+    m_restless.clear();
     for (int i = 0; i < count; ++i)
-        if ((body.m_nodes[i].m_x - m_paths.m_end[static_cast<std::size_t>(i)]).length2() > most * most) return true;
-    return false;
+        if ((body.m_nodes[i].m_x - m_paths.m_end[static_cast<std::size_t>(i)]).length2() > most * most)
+            m_restless.push_back(Restless{i, Allowance{SIMD_INFINITY, SIMD_INFINITY}});
+    if (m_restless.empty()) return false;
+    boxPassed(body, true);
+    return std::any_of(m_regions.begin(), m_regions.end(), [this](const Region& region) { return markNear(region); });
 }
 
 bool MotionLimit::isRestless(std::size_t node, const btVector3& place) const

@@ -29,10 +29,6 @@ constexpr btScalar kLeastShare = btScalar(0.1);
 // Most that a node may leave the path's start, as a share of the thickness, which is what is known to be free there.
 constexpr btScalar kMostStartShare = btScalar(0.8);
 
-// How far from the end of its path a node may end before its body counts as strayed, in reaches: contacts push a node
-// back by little more than the thickness (impact_cut.h).
-constexpr btScalar kStrayReaches = btScalar(2);
-
 class MotionLimit
 {
 public:
@@ -50,6 +46,8 @@ public:
     void startRecord(const ClothFaces& faces);
     // Some of them; others may be recorded by another thread meanwhile.
     void recordNodes(const btSoftBody& body, std::size_t first, std::size_t count);
+    // Records only where nodes go now. For the same step as recordNodes().
+    void recordEnds(const btSoftBody& body, std::size_t first, std::size_t count);
     // Both, for all nodes.
     void record(const btSoftBody& body, const ClothFaces& faces);
     // Distance from its path that a node with contacts may go, m.
@@ -59,8 +57,10 @@ public:
     bool hasPinnedNode() const;
     // A node of a contact; after startRecord().
     void addContactNode(int node) { m_hasContact[static_cast<std::size_t>(node)] = 1; }
-    // Whether a node ended so far back along its path that faces and edges may have taken ways nobody looked at.
-    bool strayed(const btSoftBody& body) const;
+    // Returns whether the body may have passed a surface that it has no contact with: a node, held or not, ended more
+    // than kFreeShare of the reach from the end of its path, and it or a face of it came near an obstacle on the way
+    // there.
+    bool strayed(const btSoftBody& body);
     // Brings nodes that left their path too far back; the nearest point of the allowed region.
     void apply(btSoftBody& body);
     // The same for nodes without contacts alone.

@@ -1,5 +1,6 @@
-// A body's nodes in a step before Bullet solves: where each goes, straight from the start to the predicted end. Metres,
-// world frame.
+// The paths of a body's nodes in a step: straight from the start to the predicted end. Metres, world frame.
+//
+// The start is recorded once a step, before Bullet solves: Bullet's drift iterations overwrite btSoftBody::Node::m_q.
 #pragma once
 
 #include <vector>
@@ -22,8 +23,9 @@ struct NodePaths
     void record(std::size_t at, const btSoftBody::Node& node)
     {
         m_start[at] = node.m_q;
-        m_end[at] = node.m_x;
         m_inverseMass[at] = movableInverseMass(node);
+        recordEnd(at, node);
     }
+    void recordEnd(std::size_t at, const btSoftBody::Node& node) { m_end[at] = node.m_x; }
 };
 }  // namespace drape

@@ -40,6 +40,13 @@ DRAPE_FUNCTION int edgeEdgeMet(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, Me
     return DRAPE_IS_CONTACT;
 }
 
+// Whether the lines of two edges passed each other. Of edges that met where they are parallel, so that the meeting has
+// no direction, the side at the end is then the wrong one.
+DRAPE_FUNCTION int edgesChangedSides(float v0, float v1)
+{
+    return (v0 < 0.0f && v1 > 0.0f) || (v0 > 0.0f && v1 < 0.0f);
+}
+
 // Edge moving from e0 to e1 against a resting edge with the given normal cone; both closest points inside their edges.
 // That the cloth's own faces may come nearer beside the edge is no reason to drop it: where cloth bends over a sharp
 // edge of the obstacle, every crossing counts. The first comparisons drop most pairs and need neither division nor
@@ -60,12 +67,12 @@ DRAPE_FUNCTION int edgeEdgeContact(FeatureEdge e0, FeatureEdge e1, FeatureEdge o
             if (!bounds.m_searches) return DRAPE_UNDECIDED;
             ++*bounds.m_searches;
             const Meeting meeting = meetEdge(e0, e1, o, bounds);
-            if (meeting.m_met && known == DRAPE_MAY_MEET && edgeEdgeMet(e0, e1, o, meeting, v0, bounds, contact))
-                return DRAPE_IS_CONTACT;
+            if (meeting.m_met && known == DRAPE_MAY_MEET)
+            {
+                if (edgeEdgeMet(e0, e1, o, meeting, v0, bounds, contact)) return DRAPE_IS_CONTACT;
+                if (edgesChangedSides(v0, v1)) return DRAPE_NO_CONTACT;
+            }
         }
-        // The edges' lines passed each other near by: what the edges themselves met tells on which side they belong.
-        if (known != DRAPE_STAY_APART && ((v0 < 0.0f && v1 > 0.0f) || (v0 > 0.0f && v1 < 0.0f)))
-            return DRAPE_NO_CONTACT;
     }
     const float squared = vec3Dot(direction, direction);
     // Inside both edges the offset is parallel to the direction (or the edges are parallel, and it may be any).

@@ -32,20 +32,17 @@ DRAPE_FUNCTION int faceVertexPassed(const MovingFace* face, Vec3 vertex, float s
 {
     const FeatureTriangle f0 = face->m_start;
     const int known = faceNearness(face, vertex, s0, s1, bounds);
+    if (!asksForMeeting(known, bounds)) return DRAPE_ASK_THE_END;
+    if (!bounds.m_searches) return DRAPE_UNDECIDED;
+    ++*bounds.m_searches;
+    const Meeting meeting = meetFace(face, vertex, bounds);
+    if (!meeting.m_met || known != DRAPE_MAY_MEET) return DRAPE_ASK_THE_END;
     const float before = s0 < 0.0f ? -1.0f : 1.0f, after = s1 < 0.0f ? -1.0f : 1.0f;
-    if (asksForMeeting(known, bounds))
-    {
-        if (!bounds.m_searches) return DRAPE_UNDECIDED;
-        ++*bounds.m_searches;
-        const Meeting meeting = meetFace(face, vertex, bounds);
-        if (meeting.m_met && known == DRAPE_MAY_MEET &&
-            faceVertexMet(f0, face->m_end, vertex, meeting, before, bounds, contact))
-            return DRAPE_IS_CONTACT;
-    }
-    // The face's plane passed the vertex near by: what the face itself met tells on which side it belongs. A thin
-    // face's plane turns freely about its length and tells nothing.
+    if (faceVertexMet(f0, face->m_end, vertex, meeting, before, bounds, contact)) return DRAPE_IS_CONTACT;
+    // The two met where the face has no direction. If they changed sides there, the side at the end is the wrong one. The
+    // plane of a thin face turns freely about the face's length: its sides tell nothing.
     const int sidesTell = !face->m_areaEnd.m_thin && !isThin(f0, vec3Length(face->m_areaStart));
-    return known != DRAPE_STAY_APART && after != before && sidesTell ? DRAPE_NO_CONTACT : DRAPE_ASK_THE_END;
+    return after != before && sidesTell ? DRAPE_NO_CONTACT : DRAPE_ASK_THE_END;
 }
 
 // Whether the neighbour over the edge on which the closest point lies (weights with one zero) is nearer to the vertex.

@@ -2,11 +2,12 @@
 // edge against an obstacle edge. The cloth moves linearly over the step, the obstacle rests.
 //
 // A contact is reported when (a) the node, face or edge met the other feature during the step: then its normal points
-// to the side from which the cloth's point there came; or (b) the two are within reach at the step's end, neither
-// passed the other's plane or line near by without meeting it, and they are locally closest: the direction between them
-// lies in the obstacle feature's normal cone and, where a vertex is nearest to a face's edge, no neighbouring face is
-// nearer. The second condition drops pairs whose neighbours are nearer and whose normals would push sideways. Pairs are
-// dropped for distance only on proof (provenApart).
+// to the side from which the cloth's point there came; or (b) the two did not meet, are within reach at the step's end
+// and are locally closest: the direction between them lies in the obstacle feature's normal cone and, where a vertex is
+// nearest to a face's edge, no neighbouring face is nearer. The normal then points to the side where the cloth's point
+// ends, also where it went around the other feature and through its plane or line. The second condition drops pairs
+// whose neighbours are nearer and whose normals would push sideways. Pairs are dropped for distance only on proof
+// (provenApart).
 //
 // All positions are in a local frame: the caller has subtracted a vertex of the obstacle's triangle, so that rounding
 // scales with the size of the pair and not with its distance from the world's origin.

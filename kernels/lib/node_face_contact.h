@@ -63,7 +63,13 @@ DRAPE_FUNCTION int nodeFaceContact(Vec3 x0, Vec3 x1, const RestingFace* resting,
                          vec3Dot(normal, vec3Sub(x1, point)), time);
             return 1;
         }
-        if (!thin) return 0;  // a thin face's plane turns freely about its length: passed beside it, it tells nothing
+        // The path went around the face, so the node belongs on the side where it ends. The plane of a thin face turns
+        // freely about the face's length: its sides tell nothing.
+        if (!thin)
+        {
+            if (drapeAbs(s1) > areaLength * bounds.m_reachSlack) return 0;
+            normal = vec3Scale(normal, -1.0f);
+        }
     }
 
     const Vec3 weights = closestOnFace(x1, face, thin);

@@ -2,10 +2,9 @@
 //
 // Candidates are the pairs of features of one cloth that share no vertex and whose 18-DOPs over the step, grown by half
 // the reach, overlap (self_collision.h). Of these a contact is reported when (a) the two met during the step, or (b)
-// they are within reach at its end, neither passed the other's plane or line near by without meeting it, and they are
-// locally closest: a node whose nearest point of the face is on its boundary is not nearer to the face beyond, and the
-// points of two edges are inside both. The normal points from the second feature to the side that the first came from.
-// Pairs are dropped for distance only on proof (provenApart).
+// they did not meet, are within reach at its end and locally closest: a node whose nearest point of the face is on its
+// boundary is not nearer to the face beyond, and the points of two edges are inside both. The normal points from the
+// second feature to the side that the first came from, or where it ends if the two did not meet. Pairs are dropped for distance only on proof (provenApart).
 //
 // The thickness of a pair is the cloth's, or half the distance that the two have at rest where that is less: features
 // that lie near each other in the mesh are no contact until the cloth folds there. What touches at rest is joined, as
@@ -256,13 +255,12 @@ DRAPE_FUNCTION int edgesPassedOrNear(const EdgePair* pair, PairBounds bounds, Co
             const Vec3 start[4] = {pair->m_e0.m_a, pair->m_e0.m_b, pair->m_o0.m_a, pair->m_o0.m_b};
             const Vec3 end[4] = {pair->m_e1.m_a, pair->m_e1.m_b, pair->m_o1.m_a, pair->m_o1.m_b};
             const Meeting meeting = meetFeatures(DRAPE_EDGES, start, end, motion, bounds);
-            if (meeting.m_met && known == DRAPE_MAY_MEET && selfEdgesMet(pair, meeting, bounds, contact))
-                return DRAPE_IS_CONTACT;
+            if (meeting.m_met && known == DRAPE_MAY_MEET)
+            {
+                if (selfEdgesMet(pair, meeting, bounds, contact)) return DRAPE_IS_CONTACT;
+                if (edgesChangedSides(pair->m_v0, pair->m_v1)) return DRAPE_NO_CONTACT;
+            }
         }
-        // The lines passed each other near by: what the edges themselves met tells on which side they belong.
-        if (known != DRAPE_STAY_APART &&
-            ((pair->m_v0 < 0.0f && pair->m_v1 > 0.0f) || (pair->m_v0 > 0.0f && pair->m_v1 < 0.0f)))
-            return DRAPE_NO_CONTACT;
     }
     return selfEdgesNear(pair, bounds, contact);
 }

@@ -2,6 +2,8 @@
 // continuous test less often, discrete ones see nothing but the end.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <map>
 
 #include "tests/support/backends.h"
@@ -81,6 +83,16 @@ TriangleMesh pyramid()
     mesh.m_triangles = {1, 0, 4, 2, 1, 4, 3, 2, 4, 0, 3, 4, 0, 1, 2, 0, 2, 3};
     return mesh;
 }
+std::array<std::uint32_t, 3> featuresOf(const Contact& contact)
+{
+    return {contact.m_kind, contact.m_clothFeature, contact.m_obstacleFeature};
+}
+
+// A contact whose features touch has the side that they came from.
+bool hasDirection(const Contact& contact)
+{
+    return std::abs(contact.m_gap1) > 1e-4f;
+}
 }  // namespace
 
 class ContactModesTest : public BackendTest
@@ -134,6 +146,34 @@ TEST_P(ContactModesTest, AutomaticGivesTheContactsOfContinuousForLess)
     }
     EXPECT_GT(contacts, 10000u);
     EXPECT_LT(2 * swept, sweptAlways);
+}
+
+// A feature that goes around another one, through its plane or line beside it, ends as near as it does without a past.
+TEST_P(ContactModesTest, StepsEndDecidesForFeaturesThatDoNotMeet)
+{
+    std::size_t near = 0, missing = 0;
+    for (const StepCase& step : movingCases())
+    {
+        SCOPED_TRACE(step.trace());
+        std::map<std::array<std::uint32_t, 3>, Contact> found;
+        for (const Contact& contact : run(step, ContactMode::Automatic).m_contacts)
+            found[featuresOf(contact)] = contact;
+        for (const Contact& atEnd : run(step, ContactMode::Discrete).m_contacts)
+        {
+            const auto at = found.find(featuresOf(atEnd));
+            ++near;
+            if (at == found.end())
+            {
+                ++missing;
+                continue;
+            }
+            if (at->second.m_time < 1 || !hasDirection(atEnd)) continue;
+            for (int k = 0; k < 3; ++k)
+                EXPECT_NEAR(at->second.m_normal[k], atEnd.m_normal[k], 1e-3f);
+        }
+    }
+    EXPECT_GT(near, 10000u);
+    EXPECT_EQ(missing, 0u);
 }
 
 // Ways shorter than the reach, towards an obstacle and away from it, where what counts as met depends on the obstacle's

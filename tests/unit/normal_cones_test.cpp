@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+
 #include "kernels/lib/feature_contact.h"
 #include "scenes/cloth_grid.h"
 #include "tests/support/cases.h"
@@ -64,6 +67,23 @@ void expectTight(const std::vector<NormalCone>& cones, const std::vector<Directi
         EXPECT_GT(dot(axis, truth[i].m_axis), 1 - 1e-6);
     }
 }
+
+// Every third triangle or so wound the other way, in an order of its own for each seed.
+TriangleMesh rewound(TriangleMesh mesh, std::uint32_t seed)
+{
+    Random random(seed);
+    for (std::size_t t = 0; t < mesh.triangleCount(); ++t)
+        if (random.below(3) == 0) std::swap(mesh.m_triangles[3 * t + 1], mesh.m_triangles[3 * t + 2]);
+    return mesh;
+}
+
+void expectSameCone(const NormalCone& cone, const NormalCone& other)
+{
+    EXPECT_NEAR(cone.m_cosine, other.m_cosine, 1e-6f);
+    if (cone.m_cosine < 0) return;
+    const float along = vec3Dot(cone.m_axis, other.m_axis);
+    EXPECT_NEAR(std::abs(along), 1.0f, 1e-5f);
+}
 }  // namespace
 
 TEST(NormalCones, HoldEveryNormalAroundAFeature)
@@ -76,6 +96,59 @@ TEST(NormalCones, HoldEveryNormalAroundAFeature)
         expectHoldNormals(mesh, cones);
         expectTight(cones.m_vertices, cones.m_true.m_vertices);
         expectTight(cones.m_edges, cones.m_true.m_edges);
+    }
+}
+
+TEST(NormalCones, WindingMakesNoDifference)
+{
+    for (const char* name : {"sphere", "box", "torus", "bowl", "stairs", "terrain"})
+    {
+        for (std::uint32_t seed = 1; seed <= 5; ++seed)
+        {
+            SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(seed));
+            const TriangleMesh mesh = shapeNamed(name), mixed = rewound(mesh, seed);
+            const Cones even = conesOf(mesh);
+            const Topology topology =
+                buildTopology(mixed.m_triangles.data(), mixed.triangleCount(), mixed.vertexCount());
+            std::vector<NormalCone> vertices, edges;
+            computeNormalCones(topology, mixed.m_positions.data(), vertices, edges);
+            for (std::size_t v = 0; v < vertices.size(); ++v)
+                expectSameCone(vertices[v], even.m_vertices[v]);
+            std::map<std::pair<std::uint32_t, std::uint32_t>, NormalCone> byEnds;
+            for (std::size_t e = 0; e < edges.size(); ++e)
+                byEnds[std::minmax(topology.m_edges[e].m_vertices[0], topology.m_edges[e].m_vertices[1])] = edges[e];
+            for (std::size_t e = 0; e < edges.size(); ++e)
+            {
+                const std::uint32_t* ends = even.m_topology.m_edges[e].m_vertices;
+                expectSameCone(byEnds.at(std::minmax(ends[0], ends[1])), even.m_edges[e]);
+            }
+        }
+    }
+}
+
+// A Möbius strip of n quads: no winding of it is even, and each inner edge has a side all the same.
+TEST(NormalCones, StripWithoutSidesHasConesOfItsNormals)
+{
+    constexpr int kQuads = 24;
+    TriangleMesh mesh;
+    for (int i = 0; i < kQuads; ++i)
+    {
+        const double around = 2 * 3.14159265358979 * i / kQuads, twist = around / 2;
+        for (const double across : {-0.2, 0.2})
+            for (const double coordinate : {(1 + across * std::cos(twist)) * std::cos(around), across * std::sin(twist),
+                                            (1 + across * std::cos(twist)) * std::sin(around)})
+                mesh.m_positions.push_back(float(coordinate));
+        const int next = i + 1 == kQuads ? 1 : 2 * i + 2, nextOther = i + 1 == kQuads ? 0 : 2 * i + 3;
+        for (const int corner : {2 * i, 2 * i + 1, next, next, 2 * i + 1, nextOther})
+            mesh.m_triangles.push_back(corner);
+    }
+    const Topology topology = buildTopology(mesh.m_triangles.data(), mesh.triangleCount(), mesh.vertexCount());
+    std::vector<NormalCone> vertices, edges;
+    computeNormalCones(topology, mesh.m_positions.data(), vertices, edges);
+    for (std::size_t e = 0; e < edges.size(); ++e)
+    {
+        if (topology.m_edgeUses[e] != 2) continue;
+        EXPECT_GT(edges[e].m_cosine, 0.9f) << "edge " << e;
     }
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "winding.h"
+
 namespace drape
 {
 namespace
@@ -18,6 +20,14 @@ struct Direction
         z += other.z;
     }
     double dot(const Direction& other) const { return x * other.x + y * other.y + z * other.z; }
+    Direction times(int sign) const
+    {
+        Direction turned;
+        turned.x = sign * x;
+        turned.y = sign * y;
+        turned.z = sign * z;
+        return turned;
+    }
     bool normalize()
     {
         const double length = std::sqrt(dot(*this));
@@ -88,14 +98,18 @@ private:
     std::vector<bool> m_open;
 };
 
+// Calls visit(vertex, its normal, edge, its normal) for each corner and the edge behind it: the triangle's normal,
+// turned to the side that the first triangle there faces; zero where no side is known.
 template <typename Visit>
-void visitCorners(const Topology& topology, const std::vector<Direction>& normals, Visit visit)
+void visitCorners(const Topology& topology, const WindingSigns& signs, const std::vector<Direction>& normals,
+                  Visit visit)
 {
     for (std::size_t t = 0; t < topology.m_triangles.size(); ++t)
     {
         for (int i = 0; i < 3; ++i)
         {
-            visit(topology.m_triangles[t].m_vertices[i], topology.m_triangles[t].m_edges[i], normals[t]);
+            visit(topology.m_triangles[t].m_vertices[i], normals[t].times(signs.atVertex(t, i)),
+                  topology.m_triangles[t].m_edges[i], normals[t].times(signs.atEdge(t, i)));
         }
     }
 }
@@ -109,25 +123,23 @@ void computeNormalCones(const Topology& topology, const float* positions, std::v
     for (const Triangle& triangle : topology.m_triangles)
         normals.push_back(unitNormal(triangle, positions));
 
+    const WindingSigns signs(topology);
     ConeBuilder vertices(topology.m_vertexCount), edges(topology.m_edges.size());
-    visitCorners(topology, normals,
-                 [&](std::uint32_t vertex, std::uint32_t edge, const Direction& normal)
+    visitCorners(topology, signs, normals,
+                 [&](std::uint32_t vertex, const Direction& atVertex, std::uint32_t edge, const Direction& atEdge)
                  {
-                     vertices.addNormal(vertex, normal);
-                     edges.addNormal(edge, normal);
-                     if (normal.dot(normal) == 0.0)
-                     {
-                         vertices.open(vertex);
-                         edges.open(edge);
-                     }
+                     vertices.addNormal(vertex, atVertex);
+                     edges.addNormal(edge, atEdge);
+                     if (atVertex.dot(atVertex) == 0.0) vertices.open(vertex);
+                     if (atEdge.dot(atEdge) == 0.0) edges.open(edge);
                  });
     vertices.normalizeAxes();
     edges.normalizeAxes();
-    visitCorners(topology, normals,
-                 [&](std::uint32_t vertex, std::uint32_t edge, const Direction& normal)
+    visitCorners(topology, signs, normals,
+                 [&](std::uint32_t vertex, const Direction& atVertex, std::uint32_t edge, const Direction& atEdge)
                  {
-                     vertices.widen(vertex, normal);
-                     edges.widen(edge, normal);
+                     vertices.widen(vertex, atVertex);
+                     edges.widen(edge, atEdge);
                  });
     for (std::size_t e = 0; e < topology.m_edges.size(); ++e)
     {

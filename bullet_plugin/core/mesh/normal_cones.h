@@ -4,7 +4,8 @@
 // normals of the adjacent triangles. The cones hold those normals, widened by a third for cloth that turns after
 // contacts were found and by two degrees for rounding. Where the surroundings bound nothing (an open boundary, more
 // than two triangles at an edge, zero areas) the cone admits every direction. Two-sided: the opposite directions are in
-// the cone too (see coneAdmits). O(n).
+// the cone too (see coneAdmits). How triangles are wound makes no difference but for the axis, which leans to the side
+// that the first triangle there faces (winding.h). O(n).
 #pragma once
 
 #include <vector>
