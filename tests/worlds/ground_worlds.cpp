@@ -105,7 +105,7 @@ void buildWaveFloor(WorldBuilder& builder)
     const Hills hills = randomHills(random, {.05, .3}, 9);
     const int cells = 6 + random.below(30);
     const double amplitude = random.within(.05, .5), swing = random.within(2, 20);
-    // Drops by the amplitude in the first step: cloth above it must not be carried along.
+    // Starts at the origin and drops by about the amplitude in the first step.
     const auto motion = [=](double time)
     {
         if (time == 0) return shifted(0, 0, 0);

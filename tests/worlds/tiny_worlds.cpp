@@ -25,6 +25,7 @@ enum TinyShape
 TriangleMesh randomRoof(WorldRandom& random, double size)
 {
     TriangleMesh mesh;
+    mesh.m_positions.reserve(18);
     addVertex(mesh, -size, -size * random.within(.1, 1), -size);
     addVertex(mesh, 0, 0, -size);
     addVertex(mesh, size, -size * random.within(.1, 1), -size);

@@ -102,7 +102,8 @@ private:
         std::vector<pollfd> pipes;
         for (const Worker& worker : m_workers)
             pipes.push_back({worker.m_pipe, POLLIN, 0});
-        if (poll(pipes.data(), pipes.size(), kPollMs) < 0 && errno != EINTR) return false;
+        const int wait = static_cast<int>(std::min<double>(kPollMs, 1000 * m_options.m_timeout));
+        if (poll(pipes.data(), pipes.size(), wait) < 0 && errno != EINTR) return false;
         std::vector<Worker> ended;
         for (std::size_t i = 0; i < pipes.size(); ++i)
         {

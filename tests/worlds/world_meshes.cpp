@@ -71,6 +71,7 @@ TriangleMesh randomBox(WorldRandom& random, const Range& edge)
 TriangleMesh sphereMesh(double radius, int around, int rings)
 {
     TriangleMesh mesh;
+    mesh.m_positions.reserve(3 * static_cast<std::size_t>((rings - 1) * around + 2));
     addVertex(mesh, 0, radius, 0);
     for (int j = 1; j < rings; ++j)
         for (int i = 0; i < around; ++i)
