@@ -3,8 +3,8 @@
 #
 #   --jobs N              processes at a time (as many as there are cores)
 #   --plain-failing N     the most worlds that may fail of 4,000 without modifiers (4)
-#   --modified-failing N  likewise of 4,000 with random modifiers (40)
-#   --tiny-failing N      likewise of 300,000 tiny ones (59)
+#   --modified-failing N  the most of 4,000 with random modifiers (40)
+#   --tiny-failing N      the most of 300,000 tiny ones (59)
 #   --skirts-left N       skirts of the two grids that may still intersect their body in the last step (0)
 #
 # Runs all parts, also after one that fails; the exit code is 1 then. Failing worlds are printed with the options that

@@ -13,7 +13,7 @@ TriangleMesh hillsOf(const Hills& hills, int cells, double size)
     return gridMesh(cells, cells, size, size, hills);
 }
 
-// Every triangle with vertices of its own, which are moved towards its middle; half of them are turned over at random.
+// Gives every triangle vertices of its own, moves them towards its middle, and turns half of the triangles over.
 TriangleMesh shattered(WorldRandom& random, const TriangleMesh& whole, double share)
 {
     TriangleMesh mesh;

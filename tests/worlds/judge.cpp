@@ -120,7 +120,7 @@ void Judge::readSurface(Obstacle& obstacle)
     std::vector<float> positions = mesh.m_positions;
     for (std::size_t i = 0; i < positions.size(); ++i)
         positions[i] *= static_cast<float>(obstacle.m_scaling[static_cast<int>(i % 3)]);
-    std::vector<std::int32_t> triangles;  // without those that name a vertex twice, which have no surface
+    std::vector<std::int32_t> triangles;  // leaves out triangles that name a vertex twice: they have no surface
     for (std::size_t i = 0; i < mesh.m_triangles.size(); i += 3)
     {
         const std::int32_t* t = &mesh.m_triangles[i];

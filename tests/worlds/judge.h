@@ -1,11 +1,11 @@
-// The independent check of a random world: which cloth triangles intersect an obstacle after a step, and which nodes
-// are on another side of a surface than they started on.
+// The independent check of a random world. It finds the cloth triangles that intersect an obstacle after a step, and
+// the nodes that are on another side of a surface than they started on.
 //
 // Shares no code with the product: obstacles are read from the world's own arrays, cloth is taken into each obstacle's
 // frame in double, and intersections are decided exactly there (scenes/exact_predicates.h). A node is through when its
 // paths from step to step have passed an obstacle's triangles more often from the front than from the back, or the
 // other way round; a path that passes in and out again changes nothing. Paths that end the step exactly on a surface
-// have no side, so that each node is followed with a fixed offset of up to 0.1 µm.
+// have no side; a fixed offset of up to 0.1 µm, another one for each node, keeps nodes from such places.
 // Held nodes (without motion or anchored) and the triangles at them are counted separately: what holds them may pull
 // them into an obstacle, which no collision can prevent.
 #pragma once
@@ -20,9 +20,9 @@ namespace drape::test
 {
 struct Findings
 {
-    int m_pairs = 0;         // triangles of cloth and obstacle that have a point in common
-    int m_heldPairs = 0;     // the same, of cloth triangles with a held node
-    int m_through = 0;       // nodes
+    int m_pairs = 0;         // a cloth triangle without held nodes and an obstacle triangle that share a point
+    int m_heldPairs = 0;     // pairs of cloth triangles with a held node
+    int m_through = 0;       // nodes without those that are held
     int m_heldThrough = 0;   // held nodes
     int m_invalidNodes = 0;  // NaN or infinite; they and their triangles take no part in the rest
 };

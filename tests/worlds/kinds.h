@@ -19,21 +19,22 @@ struct WorldSpec
 // The random kinds, the two of tiny worlds, and the grids of skirts, in this order.
 const std::vector<std::string>& kindNames();
 int randomKindCount();
-// -1 for a name that is not known.
+// Returns -1 for a name that is not known.
 int kindByName(const std::string& name);
 
-// Modifiers for worlds of a random kind: these bits, or random ones for each world.
+// The modifiers of worlds of a random kind are these bits, or random ones for each world.
 struct ModifierChoice
 {
     bool m_random = false;
     std::uint32_t m_bits = 0;
 };
 
-// `count` worlds from the seed on: one seed after the other in each kind of `group`, which is a kind's name, "all" for
-// the random kinds, "tiny" or "skirts". A grid ends where its settings do. Empty for a group that is not known.
+// Returns `count` worlds: for one seed after the other, from `seed` on, a world of each kind in `group`. A group is a
+// kind's name, "all" for the random kinds, "tiny" or "skirts". A grid ends with its last setting. Returns nothing for a
+// group that is not known.
 std::vector<WorldSpec> worldsOf(const std::string& group, std::uint64_t seed, std::size_t count,
                                 const ModifierChoice& modifiers);
 
-// The world, started.
+// Builds the world and starts it.
 std::unique_ptr<World> makeWorld(const WorldSpec& spec, WorldBackend backend);
 }  // namespace drape::test

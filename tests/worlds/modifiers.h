@@ -25,13 +25,13 @@ enum Modifier : std::uint32_t
     kDamping = 1u << 13,             // damping, time scale and velocity correction
     kIterations = 1u << 14,          // velocity or drift iterations, one position iteration or none
     kFineCloth = 1u << 15,           // up to 40 nodes a side
-    kDriftIterations = 1u << 16,     // one to three of them
-    kVelocityIterations = 1u << 17,  // one to five of them
+    kDriftIterations = 1u << 16,     // one to three drift iterations
+    kVelocityIterations = 1u << 17,  // one to five velocity iterations
     kLight = 1u << 18,               // every node weighs a milligram
     // Bit 19 is not used.
-    kRatio10 = 1u << 20,   // every tenth node or so is ten times as heavy
-    kRatio100 = 1u << 21,  // a hundred times
-    kRatio1000 = 1u << 22  // a thousand times
+    kRatio10 = 1u << 20,   // about one node in ten is ten times as heavy
+    kRatio100 = 1u << 21,  // a hundred times as heavy
+    kRatio1000 = 1u << 22  // a thousand times as heavy
 };
 
 struct ModifierName
@@ -41,12 +41,12 @@ struct ModifierName
 };
 const std::vector<ModifierName>& modifierNames();
 
-// The names of the bits, joined by commas; "none" for none.
+// Returns the names of the bits, joined by commas, or "none".
 std::string modifierText(std::uint32_t modifiers);
 
 // Reads what modifierText() writes, or a number. False when a name is not known.
 bool parseModifiers(const std::string& text, std::uint32_t& modifiers);
 
-// Random modifiers for one world: each of the first sixteen with a probability of 0.18.
+// Draws modifiers for one world: each of the first sixteen with a probability of 0.18.
 std::uint32_t randomModifiers(int kind, std::uint64_t seed);
 }  // namespace drape::test

@@ -36,7 +36,7 @@ void buildJaws(WorldBuilder& builder)
     WorldRandom& random = builder.random();
     const double least = builder.thickness() * random.within(2.3, 5), speed = random.within(.1, 2);
     const double open = .35 + builder.thickness();
-    random.below(8);  // was the number of a plate's cells; later draws stay what they are
+    random.below(8);  // not used; keeps the later draws what the seeds stand for
     for (const int side : {1, -1})
         builder.addMoving(boxMesh(1, .1, 1),
                           [=](double time)

@@ -31,7 +31,7 @@ void addRunning(CLI::App& app, WorldsOptions& options)
         ->check(CLI::Validator(numberAbove(0, false, "more than 0"), ""));
     app.add_option("--most-failing", options.m_mostFailing, "more failing worlds than these end with exit code 1");
     app.add_option("--most-failing-at-end", options.m_mostFailingAtEnd,
-                   "likewise of worlds whose last step is a failing one");
+                   "more worlds whose last step is a failing one end with exit code 1");
     app.add_flag("--list", options.m_list, "list kinds and modifiers, and leave");
     app.add_flag("--verbose", options.m_verbose, "a line for every world and, of a single one, for every step");
 }

@@ -22,6 +22,6 @@ struct WorldsOptions
     bool m_verbose = false;
 };
 
-// True: go on. False: leave with `exitCode`; what there was to say has been printed.
+// Returns false when the program is to leave with `exitCode`; help or an error has been printed then.
 bool parseOptions(int argc, const char* const* argv, WorldsOptions& options, int& exitCode);
 }  // namespace drape::test

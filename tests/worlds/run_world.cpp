@@ -11,7 +11,7 @@ namespace drape::test
 {
 namespace
 {
-// The host takes over in the same step, and no contact is missing.
+// With these bits the host ran the same step, and no contact is missing.
 constexpr std::uint32_t kComplete = kStepDeviceFailed | kStepDeviceFull;
 
 void note(const Findings& findings, int frame, bool reported, WorldResult& result)

@@ -21,22 +21,22 @@ struct WorldResult
 {
     Outcome m_outcome = Outcome::Good;
     std::int32_t m_steps = 0;          // calls of step() in which something ran
-    std::int32_t m_reportedSteps = 0;  // whose status said that something was given up
-    std::int32_t m_failingSteps = 0;   // with an intersecting pair or a node through that the status does not report
-    std::int32_t m_firstFailing = -1;  // its frame
+    std::int32_t m_reportedSteps = 0;  // steps whose status says that contacts may be missing
+    std::int32_t m_failingSteps = 0;   // intersecting pairs or nodes through, not reported
+    std::int32_t m_firstFailing = -1;  // frame of the first failing step; -1 without one
     std::int32_t m_failsAtEnd = 0;     // 1: the last step is a failing one
     std::int32_t m_pairsMax = 0, m_heldPairsMax = 0, m_throughMax = 0, m_invalidMax = 0;
-    std::uint32_t m_status = 0;  // of all steps together
-    std::int32_t m_signal = 0;   // with Crashed
+    std::uint32_t m_status = 0;  // bits of all steps
+    std::int32_t m_signal = 0;   // that ended the process; 0 without one
     std::uint64_t m_hash = 0;    // of the trajectory: all positions after all steps
 };
 
-// Whether a step with this status tells its user that contacts may be missing.
+// Returns whether a step with this status tells its user that contacts may be missing.
 bool reportsMissingContacts(std::uint32_t status);
 
-// verbose: a line a step on standard output.
+// Prints a line a step on standard output where `verbose` is set.
 WorldResult runWorld(const WorldSpec& spec, WorldBackend backend, bool verbose = false);
 
-// What repeats a world, as options of drape_worlds.
+// Returns the options of drape_worlds that repeat the world.
 std::string repeatText(const WorldSpec& spec);
 }  // namespace drape::test

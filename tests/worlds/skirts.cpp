@@ -34,11 +34,11 @@ struct Skirt
     double m_flare;               // m, wider per ring
 };
 
-// Angle and distance of the body after that many steps.
+// The motion of the body; at() gives its pose after step number `step`, from 0 on.
 struct Motion
 {
     int m_firstStep = 0;
-    int m_turnSteps = 0;  // of half a turn; 0: none
+    int m_turnSteps = 0;  // half a turn takes so many steps; 0: no turn
     double m_speed = 0;   // m/s along x, for a second
     btTransform at(int step) const
     {

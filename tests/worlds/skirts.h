@@ -6,7 +6,7 @@
 
 namespace drape::test
 {
-// The body makes half a turn in 8 to 20 steps: three bodies, three skirts, two clearances, three flares, six durations.
+// The body makes half a turn in 8 to 20 steps: three bodies, three meshes, two clearances, three flares, six durations.
 std::size_t skirtTurnCount();
 void buildSkirtTurn(World& world, std::uint64_t setting);
 

@@ -10,8 +10,8 @@ namespace
 {
 constexpr double kPi = 3.14159265358979;
 
-// Adds, once for every four triangles, a second copy of a triangle, one that names a vertex twice, a triangle without
-// area along an edge, and one with a second vertex at the place of the first.
+// Adds four triangles for every four that there are: a copy, one that names a vertex twice, one without area along an
+// edge, and one that names a copy of the first vertex twice.
 void makeDegenerate(WorldRandom& random, TriangleMesh& mesh)
 {
     const int count = static_cast<int>(mesh.triangleCount());

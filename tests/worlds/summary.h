@@ -13,7 +13,7 @@ class Summary
 public:
     void add(const WorldSpec& spec, const WorldResult& result);
 
-    // Failed, crashed and timed-out worlds.
+    // Counts failed, crashed and timed-out worlds.
     std::size_t failing() const { return m_failing; }
     std::size_t failingAtEnd() const { return m_failingAtEnd; }
     std::size_t startIntersecting() const { return m_startIntersecting; }
@@ -33,6 +33,6 @@ private:
     std::map<std::string, Share> m_byKind, m_byModifier;
 };
 
-// One line: what happened, and the options that repeat it. Hash of the trajectory included.
+// Returns one line: the options that repeat the world, what happened, and the hash of the trajectory.
 std::string resultText(const WorldSpec& spec, const WorldResult& result);
 }  // namespace drape::test

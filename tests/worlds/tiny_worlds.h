@@ -6,6 +6,6 @@
 
 namespace drape::test
 {
-// kinematic: the obstacle turns and swings.
+// The obstacle of a kinematic world turns and swings.
 void buildTinyWorld(World& world, std::uint64_t seed, bool kinematic);
 }  // namespace drape::test

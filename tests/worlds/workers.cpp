@@ -19,7 +19,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kLargestChunk = 200;
 constexpr int kPollMs = 200;
 
-// Shorter than PIPE_BUF: a write puts all of it into the pipe, or none.
+// Is shorter than PIPE_BUF, so that a write puts all of it into the pipe, or nothing.
 struct Message
 {
     std::uint64_t m_world;
@@ -31,7 +31,7 @@ struct Worker
     pid_t m_process = -1;
     int m_pipe = -1;
     std::size_t m_next = 0, m_last = 0;  // the world that it works on, and one past its chunk
-    Clock::time_point m_since;           // that it works on this world
+    Clock::time_point m_since;           // when it began this world
     bool m_timedOut = false;
 };
 
@@ -96,7 +96,7 @@ private:
         return true;
     }
 
-    // Waits for news of any worker. False when a process could not be started.
+    // Waits for results, and ends workers that take too long. Returns false when a process does not start.
     bool listen()
     {
         std::vector<pollfd> pipes;
@@ -119,7 +119,7 @@ private:
         return true;
     }
 
-    // False when the worker's pipe has been closed.
+    // Returns false when the worker has closed its pipe.
     bool receive(Worker& worker)
     {
         Message message;
@@ -132,7 +132,7 @@ private:
         return true;
     }
 
-    // The world that a worker was at when it ended got no result: it is the worker's last word.
+    // Gives the world at which a worker ended early its result, and starts a new worker for the rest of the chunk.
     bool finish(const Worker& worker)
     {
         int status = 0;

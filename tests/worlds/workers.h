@@ -1,7 +1,7 @@
 // Runs many worlds in processes of their own, so that a crash or an endless step is a result and not the end.
 //
 // Worlds are dealt out in chunks, a process a chunk, at most `jobs` at a time. When a world crashes or takes too long
-// its process is gone, and another one goes on with the world after it. Linux: fork() and pipes. The caller must have
+// its process ends, and a new one goes on with the world after it. Uses fork() and pipes of POSIX. The caller must have
 // no thread and no OpenCL device of its own.
 #pragma once
 
@@ -19,7 +19,7 @@ struct WorkerOptions
     double m_timeout = 60;  // s, for one world
 };
 
-// Calls done(world, result) for every world, in the order in which they end. False when no process could be started.
+// Calls done(world, result) for every world, in the order in which they end. Returns false when no process starts.
 bool runWorlds(const std::vector<WorldSpec>& worlds, const WorkerOptions& options,
                const std::function<void(const WorldSpec&, const WorldResult&)>& done);
 }  // namespace drape::test

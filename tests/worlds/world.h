@@ -1,7 +1,7 @@
 // One random world in Bullet: cloths, obstacles of triangle meshes that rest or move, and the time steps.
 //
-// Owns all that is in it. Every number in it is given; nothing here is random but the time steps of two ways of
-// stepping, which have a seed. SI units, y up.
+// Owns its objects. Nothing here is random except the time steps of two ways of stepping, which have a seed. SI units,
+// y up.
 #pragma once
 
 #include <cstdint>
@@ -34,10 +34,10 @@ struct WorldObstacle
     std::unique_ptr<btBvhTriangleMeshShape> m_meshShape;
     std::unique_ptr<btScaledBvhTriangleMeshShape> m_scaledShape;  // null: the mesh shape itself is used
     std::vector<std::unique_ptr<btCompoundShape>> m_compounds;
-    btTransform m_inObject = btTransform::getIdentity();  // of the mesh within its compounds
+    btTransform m_inObject = btTransform::getIdentity();  // pose of the mesh within its compounds
     std::unique_ptr<btCollisionObject> m_object;
-    std::function<btTransform(double time)> m_motion;  // of the object; empty: rests
-    std::function<void(double time)> m_beforeStep;     // for other changes
+    std::function<btTransform(double time)> m_motion;  // pose of the object over time; empty: the object rests
+    std::function<void(double time)> m_beforeStep;     // other changes; may be empty
 
     btCollisionShape& shape();
     btVector3 scaling() const;
@@ -71,7 +71,7 @@ enum class Stepping
 {
     OneStep,     // one step of m_dt
     FixedSteps,  // Bullet divides m_dt into steps of m_fixedDt
-    UnevenTime,  // 2 to 50 ms, divided likewise
+    UnevenTime,  // Bullet divides 2 to 50 ms into steps of m_fixedDt
     UnevenSteps  // one step of 0.1 to 100 ms
 };
 
@@ -85,7 +85,7 @@ public:
 
     WorldObstacle& addObstacle(const TriangleMesh& mesh, const ObstacleSpec& spec);
     WorldCloth& addGrid(const GridSpec& spec);
-    WorldCloth& addCloth(std::unique_ptr<btSoftBody> body);  // with its margin set
+    WorldCloth& addCloth(std::unique_ptr<btSoftBody> body);  // the body has its margin
     void addBody(std::unique_ptr<btRigidBody> body, std::unique_ptr<btCollisionShape> shape);
 
     // Brings the cloths into the world; nothing is added after it.
@@ -96,14 +96,14 @@ public:
     btSoftRigidDynamicsWorld& bullet() { return *m_world; }
     const std::vector<std::unique_ptr<WorldObstacle>>& obstacles() const { return m_obstacles; }
     const std::vector<std::unique_ptr<WorldCloth>>& cloths() const { return m_cloths; }
-    // Status bits of the last step; 0 with Bullet's own collision.
+    // Returns the status bits of the last step, and 0 with Bullet's own collision.
     std::uint32_t status() const { return m_plugin ? m_plugin->statistics().m_status : 0; }
     std::string error() const { return m_plugin ? m_plugin->error() : ""; }
-    // FNV-1a over all positions as float32; start with kHashStart.
+    // Continues an FNV-1a hash over all positions as float32; starts with kHashStart.
     std::uint64_t hash(std::uint64_t hash) const;
     static constexpr std::uint64_t kHashStart = 0xcbf29ce484222325ull;
 
-    double m_clothMargin = .01, m_obstacleMargin = .01;  // m, of what is added from now on
+    double m_clothMargin = .01, m_obstacleMargin = .01;  // m, of objects that are added from now on
     Stepping m_stepping = Stepping::OneStep;
     double m_dt = 1. / 60, m_fixedDt = 1. / 60;  // s
     int m_mostSubsteps = 0;
@@ -129,7 +129,7 @@ private:
     double m_time = 0;
 };
 
-// The pose of compound number `level` (from 1 on) within the one around it.
+// Returns the pose of compound number `level` (from 1 on) within the one around it.
 btTransform compoundPose(int level);
 
 btTransform shifted(double x, double y, double z);

@@ -130,7 +130,7 @@ void WorldBuilder::style(btSoftBody& body, bool mayFly)
     if (has(kFast) && mayFly) throwCloth(body);
 }
 
-// kDriftIterations and kVelocityIterations draw between kMasses and the modifiers of masses that came later.
+// The iterations are drawn between the modifiers of masses; the seeds keep this order.
 void WorldBuilder::styleMasses(btSoftBody& body)
 {
     const int count = body.m_nodes.size();

@@ -1,7 +1,7 @@
-// Builds one random world from a seed and modifiers: what the kinds of worlds have in common.
+// Builds random worlds from a seed and modifiers: the steps that the kinds of worlds share.
 //
-// Numbers are drawn in a fixed order, which is part of what a seed means: a change in it changes every world that was
-// ever reported. Where a function draws more than one number its comment or its statements give the order.
+// Numbers are drawn in a fixed order, which is part of what a seed means: another order makes other
+// worlds of the seeds that were reported. A function that draws several numbers gives their order.
 #pragma once
 
 #include "tests/worlds/modifiers.h"
@@ -15,7 +15,7 @@ struct DropSpec
     double m_size;         // m, along x; z by the number of nodes
     double m_height;       // m, of the cloth's middle
     int m_nodes = 0;       // along either side; 0: random
-    bool m_mayFly = true;  // kFast applies
+    bool m_mayFly = true;  // kFast may throw it
 };
 
 class WorldBuilder
@@ -30,22 +30,22 @@ public:
     double thickness() const { return m_world.m_clothMargin + m_world.m_obstacleMargin; }
     // Room between an obstacle's top and the cloth above it, m.
     double lift() const { return 2.2 * thickness(); }
-    // From now on kKinematic moves no obstacle.
+    // Obstacles that are added from now on rest also with kKinematic.
     void keepObstacles() { m_obstaclesMayMove = false; }
 
-    // An obstacle at rest, with the modifiers that concern obstacles.
+    // Adds an obstacle at rest and applies the modifiers that concern obstacles.
     void addObstacle(const TriangleMesh& mesh, const btTransform& pose = btTransform::getIdentity(),
                      bool mayMove = true);
-    // A wide floor whose middle is at that height.
+    // Adds a wide floor whose middle is at that height.
     void addFloor(double height, double width);
-    // A kinematic obstacle with a motion of its own; the modifiers leave it as it is. It starts where the motion does.
+    // Adds a kinematic obstacle with a motion of its own, which starts at motion(0). Modifiers do not change it.
     WorldObstacle& addMoving(const TriangleMesh& mesh, const std::function<btTransform(double)>& motion);
 
-    // A random cloth at a random angle, and more of them with kMultiple.
+    // Adds a random cloth at a random angle, and more cloths with kMultiple; returns the first one.
     btSoftBody& drop(const DropSpec& spec);
     // Applies the modifiers that concern cloths.
     void style(btSoftBody& body, bool mayFly = true);
-    // A random pose. Draws z, y, x, the angle and the axis, in this order.
+    // Draws z, y, x, the angle and the axis of a pose, in this order.
     btTransform randomPose(const Range& angle, const Range& x, const Range& y, const Range& z);
 
 private:

@@ -23,7 +23,7 @@ struct Hills
 
     double operator()(double x, double z) const;
 };
-// Without a ripple. Frequencies from 2 to `frequency` radians a metre.
+// Draws hills without a ripple, with frequencies from 2 to `frequency` radians a metre.
 Hills randomHills(WorldRandom& random, const Range& height, double frequency);
 
 // Open, centred at the origin, sizeX by sizeZ; flat without a height.
@@ -37,7 +37,8 @@ TriangleMesh randomBox(WorldRandom& random, const Range& edge);
 TriangleMesh sphereMesh(double radius, int around, int rings);
 // A sphere whose radius varies by the share `bumps`.
 TriangleMesh bumpySphere(WorldRandom& random, double radius, int around, int rings, double bumps);
-// Draws the bumps, the rings, the triangles around and the radius, in this order; counts are below `least` + `more`.
+// Draws the bumps, the rings (5 and fewer than `moreRings` more), the triangles around (8 and fewer than `moreAround`
+// more) and the radius, in this order.
 TriangleMesh randomBlob(WorldRandom& random, const Range& radius, int moreAround, int moreRings, double mostBumps);
 
 TriangleMesh torusMesh(double ringRadius, double tubeRadius, int around, int across);

@@ -40,12 +40,12 @@ public:
     {
         return range.m_low == range.m_high ? range.m_low : within(range.m_low, range.m_high);
     }
-    // Every factor is as likely; both bounds are positive.
+    // The logarithm is uniform; both bounds are positive.
     double logWithin(double low, double high) { return std::exp(within(std::log(low), std::log(high))); }
     int below(int count) { return static_cast<int>(next() % static_cast<std::uint64_t>(count)); }
     bool chance(double probability) { return unit() < probability; }
 
-    // A unit vector. Corners of the cube are not cut off, so that diagonals are more likely.
+    // Returns a unit vector. It is drawn from a cube, so that diagonals are more likely.
     btVector3 direction()
     {
         btVector3 v;

@@ -1,5 +1,4 @@
-// A sample of the random worlds for every run of the tests, and tests of what judges them. The whole is
-// tests/run_slow.sh.
+// A sample of the random worlds for every run of the tests, and tests of the judge. tests/run_slow.sh runs all of them.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -16,7 +15,8 @@ namespace drape::test
 {
 namespace
 {
-// Worlds of the sample that fail, as measured: what is missing is known. They are to become 0.
+// The numbers of worlds in the sample that fail today, as measured. They are to fall to 0. The modified ones fail with
+// masses that differ a billion times and with drift iterations.
 constexpr std::size_t kPlainFailing = 0;
 constexpr std::size_t kModifiedFailing = 4;
 constexpr std::size_t kTinyFailing = 2;
@@ -71,7 +71,7 @@ TEST(Worlds, ModifiedOnesKeepClothOutside)
 {
     std::vector<WorldSpec> worlds = worldsOf("all", 100, 84, kRandomModifiers);
     int kind = 0;
-    for (const ModifierName& modifier : modifierNames())  // and each of them alone
+    for (const ModifierName& modifier : modifierNames())  // each modifier alone
         worlds.push_back({kind++, 100, modifier.m_bit});
     expectFewFail(worlds, kModifiedFailing);
 }
@@ -81,7 +81,7 @@ TEST(Worlds, TinyOnesKeepClothOutside)
     expectFewFail(worldsOf("tiny", 0, 2000, kPlain), kTinyFailing);
 }
 
-// The check sees what goes wrong: Bullet's own collision loses cloth in these worlds.
+// Shows that the check sees failures: Bullet's own collision loses cloth in these worlds.
 TEST(Worlds, BulletsOwnCollisionFails)
 {
     WorkerOptions stock;
