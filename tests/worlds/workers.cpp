@@ -5,6 +5,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <exception>
 
 #include <poll.h>
 #include <sys/wait.h>
@@ -35,13 +36,28 @@ struct Worker
     bool m_timedOut = false;
 };
 
-[[noreturn]] void work(const std::vector<WorldSpec>& worlds, std::size_t first, std::size_t last, WorldBackend backend,
-                       int pipe)
+void sendResults(const std::vector<WorldSpec>& worlds, std::size_t first, std::size_t last, WorldBackend backend,
+                 int pipe)
 {
     for (std::size_t i = first; i < last; ++i)
     {
         const Message message{i, runWorld(worlds[i], backend)};
         if (write(pipe, &message, sizeof message) != static_cast<ssize_t>(sizeof message)) _exit(1);
+    }
+}
+
+// Ends the process: nothing of the caller's may run in it.
+[[noreturn]] void work(const std::vector<WorldSpec>& worlds, std::size_t first, std::size_t last, WorldBackend backend,
+                       int pipe)
+{
+    try
+    {
+        sendResults(worlds, first, last, backend, pipe);
+    }
+    catch (const std::exception& error)
+    {
+        std::fprintf(stderr, "%s\n", error.what());
+        _exit(1);
     }
     _exit(0);
 }

@@ -1,6 +1,7 @@
 #include "tests/worlds/world.h"
 
 #include <cstring>
+#include <stdexcept>
 
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 
@@ -9,6 +10,7 @@ namespace drape::test
 namespace
 {
 constexpr double kGravity = -9.81;  // m/s²
+constexpr int kMostUnevenSubsteps = 20;
 
 Settings settingsFor(WorldBackend backend)
 {
@@ -83,6 +85,7 @@ World::World(WorldBackend backend)
     else
     {
         m_plugin = std::make_unique<Plugin>(settingsFor(backend));
+        if (!m_plugin->ready()) throw std::runtime_error("Drape cannot start: " + m_plugin->error());
         m_configuration = std::make_unique<CollisionConfiguration>(*m_plugin);
         m_solver = std::make_unique<SoftBodySolver>(*m_plugin);
     }
@@ -91,6 +94,7 @@ World::World(WorldBackend backend)
                                                          m_configuration.get(), m_solver.get());
     m_world->setGravity(btVector3(0, btScalar(kGravity), 0));
     m_world->getWorldInfo().m_gravity = m_world->getGravity();
+    m_world->setInternalTickCallback(beforeBulletStep, this, true);
 }
 
 World::~World()
@@ -218,6 +222,31 @@ double World::nextDuration()
     return m_dt;
 }
 
+// The statistics are those of the step before, which belongs to the same call unless this is the first one of it.
+void World::beforeBulletStep(btDynamicsWorld* world, btScalar)
+{
+    World& self = *static_cast<World*>(world->getWorldUserInfo());
+    if (self.m_bulletSteps > 0 && self.m_plugin) self.m_status |= self.m_plugin->statistics().m_status;
+    ++self.m_bulletSteps;
+}
+
+int World::stepBullet(double duration)
+{
+    switch (m_stepping)
+    {
+        case Stepping::OneStep:
+            return m_world->stepSimulation(btScalar(duration), 1, btScalar(duration));
+        case Stepping::FixedSteps:
+            return m_world->stepSimulation(btScalar(duration), m_mostSubsteps, btScalar(m_fixedDt));
+        case Stepping::UnevenTime:
+            return m_world->stepSimulation(btScalar(duration), kMostUnevenSubsteps, btScalar(m_fixedDt));
+        case Stepping::UnevenSteps:
+            break;
+    }
+    m_world->stepSimulation(btScalar(duration), 0);
+    return 1;
+}
+
 int World::step()
 {
     const double duration = nextDuration();
@@ -229,19 +258,11 @@ int World::step()
     }
     for (const auto& cloth : m_cloths)
         if (cloth->m_drive) cloth->m_drive(m_time, *cloth->m_body);
-    switch (m_stepping)
-    {
-        case Stepping::OneStep:
-            return m_world->stepSimulation(btScalar(duration), 1, btScalar(duration));
-        case Stepping::FixedSteps:
-            return m_world->stepSimulation(btScalar(duration), m_mostSubsteps, btScalar(m_fixedDt));
-        case Stepping::UnevenTime:
-            return m_world->stepSimulation(btScalar(duration), 20, btScalar(m_fixedDt));
-        case Stepping::UnevenSteps:
-            break;
-    }
-    m_world->stepSimulation(btScalar(duration), 0);
-    return 1;
+    m_status = 0;
+    m_bulletSteps = 0;
+    const int steps = stepBullet(duration);
+    if (m_bulletSteps > 0 && m_plugin) m_status |= m_plugin->statistics().m_status;
+    return steps;
 }
 
 std::uint64_t World::hash(std::uint64_t hash) const

@@ -78,6 +78,7 @@ enum class Stepping
 class World
 {
 public:
+    // Throws where Drape cannot start on the back end.
     explicit World(WorldBackend backend);
     ~World();
     World(const World&) = delete;
@@ -96,9 +97,8 @@ public:
     btSoftRigidDynamicsWorld& bullet() { return *m_world; }
     const std::vector<std::unique_ptr<WorldObstacle>>& obstacles() const { return m_obstacles; }
     const std::vector<std::unique_ptr<WorldCloth>>& cloths() const { return m_cloths; }
-    // Returns the status bits of the last step, and 0 with Bullet's own collision.
-    std::uint32_t status() const { return m_plugin ? m_plugin->statistics().m_status : 0; }
-    std::string error() const { return m_plugin ? m_plugin->error() : ""; }
+    // Returns the status bits of all of Bullet's steps in the last call of step(); 0 with Bullet's own collision.
+    std::uint32_t status() const { return m_status; }
     // Continues an FNV-1a hash over all positions as float32; starts with kHashStart.
     std::uint64_t hash(std::uint64_t hash) const;
     static constexpr std::uint64_t kHashStart = 0xcbf29ce484222325ull;
@@ -112,6 +112,8 @@ public:
 
 private:
     double nextDuration();
+    int stepBullet(double duration);
+    static void beforeBulletStep(btDynamicsWorld* world, btScalar duration);
     void makeShape(WorldObstacle& obstacle, const ObstacleSpec& spec);
     btCollisionShape* wrapInCompounds(WorldObstacle& obstacle, int depth);
 
@@ -127,6 +129,8 @@ private:
     std::vector<std::unique_ptr<btCollisionShape>> m_shapes;
     std::vector<std::unique_ptr<btRigidBody>> m_bodies;
     double m_time = 0;
+    std::uint32_t m_status = 0;
+    int m_bulletSteps = 0;  // that began in this call of step()
 };
 
 // Returns the pose of compound number `level` (from 1 on) within the one around it.
