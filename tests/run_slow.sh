@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# Builds and runs the slow tier, what takes too long for every run of the tests: run_slow.sh [options]
+#
+#   --jobs N              processes at a time (as many as there are cores)
+#   --plain-failing N     the most worlds that may fail of 4,000 without modifiers (4)
+#   --modified-failing N  the most of 4,000 with random modifiers (40)
+#   --tiny-failing N      the most of 300,000 tiny ones (59)
+#   --skirts-left N       skirts of the two grids that may still intersect their body in the last step (0)
+#
+# Runs all parts, also after one that fails; the exit code is 1 then. Failing worlds are printed with the options that
+# repeat them. Takes some 15 minutes on two idle cores.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+jobs=$(nproc)
+plain=4
+modified=40
+tiny=59
+skirts=0
+while [[ $# -gt 0 ]]; do
+  [[ $# -ge 2 && $2 =~ ^[0-9]+$ ]] || { echo "run_slow.sh: $1 needs a number" >&2; exit 2; }
+  case $1 in
+    --jobs) jobs=$2 ;;
+    --plain-failing) plain=$2 ;;
+    --modified-failing) modified=$2 ;;
+    --tiny-failing) tiny=$2 ;;
+    --skirts-left) skirts=$2 ;;
+    *) echo "run_slow.sh: $1 is no option" >&2; exit 2 ;;
+  esac
+  shift 2
+done
+
+bash cmake/install_packages.sh
+bash cmake/build_preset.sh release drape_worlds
+
+failed=0
+worlds() {
+  echo "== drape_worlds $*"
+  build/release/bin/drape_worlds --jobs "$jobs" "$@" || failed=1
+}
+worlds --kind all --count 4000 --most-failing "$plain"
+worlds --kind all --count 4000 --modifiers random --most-failing "$modified"
+worlds --kind tiny --count 300000 --most-failing "$tiny"
+worlds --kind skirts --most-failing 354 --most-failing-at-end "$skirts"
+exit $failed

@@ -1,0 +1,219 @@
+#include "tests/worlds/judge.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "scenes/exact_predicates.h"
+
+namespace drape::test
+{
+namespace
+{
+constexpr std::uint64_t kOffsetSeed = 77;
+constexpr double kOffset = 1e-7;  // m, far below every thickness
+
+Vector3 place(const btSoftBody::Node& node)
+{
+    return {node.m_x.x(), node.m_x.y(), node.m_x.z()};
+}
+
+bool isFinite(const Vector3& p)
+{
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+// The inverse of a pose whose basis is a rotation up to rounding: solved by Cramer's rule in double.
+class InversePose
+{
+public:
+    explicit InversePose(const btTransform& pose)
+        : m_origin{pose.getOrigin().x(), pose.getOrigin().y(), pose.getOrigin().z()}
+    {
+        Vector3 columns[3];
+        for (int i = 0; i < 3; ++i)
+        {
+            const btVector3 column = pose.getBasis().getColumn(i);
+            columns[i] = {column.x(), column.y(), column.z()};
+        }
+        const double determinant = dot(columns[0], cross(columns[1], columns[2]));
+        for (int i = 0; i < 3; ++i)
+            m_rows[i] = (1 / determinant) * cross(columns[(i + 1) % 3], columns[(i + 2) % 3]);
+    }
+
+    Vector3 operator*(const Vector3& point) const
+    {
+        const Vector3 d = point - m_origin;
+        return {dot(m_rows[0], d), dot(m_rows[1], d), dot(m_rows[2], d)};
+    }
+
+private:
+    Vector3 m_rows[3], m_origin;
+};
+
+struct Box
+{
+    Vector3 m_low, m_high;
+
+    explicit Box(const Vector3& p) : m_low(p), m_high(p) {}
+    void add(const Vector3& p)
+    {
+        m_low = {std::min(m_low.x, p.x), std::min(m_low.y, p.y), std::min(m_low.z, p.z)};
+        m_high = {std::max(m_high.x, p.x), std::max(m_high.y, p.y), std::max(m_high.z, p.z)};
+    }
+};
+
+// +1 or -1 when the path crosses the triangle, by the side that it comes from; 0 when it does not, or only touches.
+int passes(const Vector3& from, const Vector3& to, const Vector3 triangle[3])
+{
+    const int before = orientation(triangle[0], triangle[1], triangle[2], from);
+    const int after = orientation(triangle[0], triangle[1], triangle[2], to);
+    if (before * after >= 0) return 0;
+    const int side = orientation(from, to, triangle[0], triangle[1]);
+    if (side == 0 || orientation(from, to, triangle[1], triangle[2]) != side ||
+        orientation(from, to, triangle[2], triangle[0]) != side)
+        return 0;
+    return before;
+}
+}  // namespace
+
+Judge::Judge(const World& world)
+{
+    for (const auto& obstacle : world.obstacles())
+    {
+        m_obstacles.push_back({obstacle.get(), obstacle->scaling(), nullptr});
+        readSurface(m_obstacles.back());
+    }
+    for (const auto& owned : world.cloths())
+    {
+        Cloth cloth;
+        cloth.m_body = owned->m_body.get();
+        WorldRandom random(kOffsetSeed);
+        for (int i = 0; i < cloth.m_body->m_nodes.size(); ++i)
+        {
+            Vector3 offset;
+            offset.x = random.within(-kOffset, kOffset);
+            offset.y = random.within(-kOffset, kOffset);
+            offset.z = random.within(-kOffset, kOffset);
+            cloth.m_offsets.push_back(offset);
+        }
+        cloth.m_held.resize(cloth.m_offsets.size(), false);
+        cloth.m_valid.resize(cloth.m_offsets.size(), true);
+        cloth.m_follows.resize(m_obstacles.size());
+        m_cloths.push_back(std::move(cloth));
+    }
+}
+
+void Judge::markHeld(Cloth& cloth)
+{
+    for (std::size_t i = 0; i < cloth.m_held.size(); ++i)
+    {
+        const btSoftBody::Node& node = cloth.m_body->m_nodes[static_cast<int>(i)];
+        if (!(node.m_im > 0) || node.m_battach) cloth.m_held[i] = true;
+    }
+}
+
+void Judge::readSurface(Obstacle& obstacle)
+{
+    const TriangleMesh& mesh = obstacle.m_obstacle->m_mesh;
+    obstacle.m_scaling = obstacle.m_obstacle->scaling();
+    std::vector<float> positions = mesh.m_positions;
+    for (std::size_t i = 0; i < positions.size(); ++i)
+        positions[i] *= static_cast<float>(obstacle.m_scaling[static_cast<int>(i % 3)]);
+    std::vector<std::int32_t> triangles;  // leaves out triangles that name a vertex twice: they have no surface
+    for (std::size_t i = 0; i < mesh.m_triangles.size(); i += 3)
+    {
+        const std::int32_t* t = &mesh.m_triangles[i];
+        if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) triangles.insert(triangles.end(), t, t + 3);
+    }
+    obstacle.m_surface =
+        std::make_unique<TriangleTree>(positions.data(), mesh.vertexCount(), triangles.data(), triangles.size() / 3);
+}
+
+Findings Judge::look(bool reported)
+{
+    Findings findings;
+    for (Obstacle& obstacle : m_obstacles)
+        if (!(obstacle.m_scaling == obstacle.m_obstacle->scaling())) readSurface(obstacle);
+    for (Cloth& cloth : m_cloths)
+    {
+        markHeld(cloth);
+        const std::size_t count = cloth.m_held.size();
+        for (std::size_t i = 0; i < count; ++i)
+        {
+            cloth.m_valid[i] = isFinite(place(cloth.m_body->m_nodes[static_cast<int>(i)]));
+            findings.m_invalidNodes += cloth.m_valid[i] ? 0 : 1;
+        }
+        std::vector<bool> through(count, false);
+        for (std::size_t o = 0; o < m_obstacles.size(); ++o)
+        {
+            const InversePose intoObstacle(m_obstacles[o].m_obstacle->meshPose());
+            std::vector<Vector3> places;
+            for (std::size_t i = 0; i < count; ++i)
+                places.push_back(intoObstacle * place(cloth.m_body->m_nodes[static_cast<int>(i)]));
+            countPairs(cloth, m_obstacles[o], places, findings);
+            follow(cloth, o, places, reported);
+            for (std::size_t i = 0; i < count; ++i)
+                if (cloth.m_follows[o].m_passes[i] != 0) through[i] = true;
+        }
+        for (std::size_t i = 0; i < count; ++i)
+            if (through[i]) ++(cloth.m_held[i] ? findings.m_heldThrough : findings.m_through);
+    }
+    return findings;
+}
+
+void Judge::countPairs(const Cloth& cloth, const Obstacle& obstacle, const std::vector<Vector3>& places,
+                       Findings& findings) const
+{
+    const btSoftBody& body = *cloth.m_body;
+    for (int f = 0; f < body.m_faces.size(); ++f)
+    {
+        Vector3 face[3];
+        bool valid = true, held = false;
+        for (int k = 0; k < 3; ++k)
+        {
+            const std::size_t node = static_cast<std::size_t>(body.m_faces[f].m_n[k] - &body.m_nodes[0]);
+            valid = valid && cloth.m_valid[node];
+            held = held || cloth.m_held[node];
+            face[k] = places[node];
+        }
+        if (!valid) continue;
+        Box box(face[0]);
+        box.add(face[1]);
+        box.add(face[2]);
+        obstacle.m_surface->visitBox(box.m_low, box.m_high,
+                                     [&](std::int32_t triangle)
+                                     {
+                                         Vector3 corners[3];
+                                         obstacle.m_surface->corners(triangle, corners);
+                                         if (trianglesIntersect(face, corners))
+                                             ++(held ? findings.m_heldPairs : findings.m_pairs);
+                                     });
+    }
+}
+
+void Judge::follow(Cloth& cloth, std::size_t obstacle, const std::vector<Vector3>& places, bool reported)
+{
+    Follow& follow = cloth.m_follows[obstacle];
+    const TriangleTree& surface = *m_obstacles[obstacle].m_surface;
+    std::vector<Vector3> now(places.size());
+    for (std::size_t i = 0; i < places.size(); ++i)
+        now[i] = places[i] + cloth.m_offsets[i];
+    follow.m_passes.resize(places.size(), 0);
+    for (std::size_t i = 0; i < follow.m_last.size() && !reported; ++i)
+    {
+        const Vector3 from = follow.m_last[i], to = now[i];
+        if (!cloth.m_valid[i] || !isFinite(from)) continue;
+        Box box(from);
+        box.add(to);
+        surface.visitBox(box.m_low, box.m_high,
+                         [&](std::int32_t triangle)
+                         {
+                             Vector3 corners[3];
+                             surface.corners(triangle, corners);
+                             follow.m_passes[i] += passes(from, to, corners);
+                         });
+    }
+    follow.m_last = std::move(now);
+}
+}  // namespace drape::test

@@ -1,0 +1,67 @@
+// The independent check of a random world. It finds the cloth triangles that intersect an obstacle after a step, and
+// the nodes that are on another side of a surface than they started on.
+//
+// Shares no code with the product: obstacles are read from the world's own arrays, cloth is taken into each obstacle's
+// frame in double, and intersections are decided exactly there (scenes/exact_predicates.h). A node is through when its
+// paths from step to step have passed an obstacle's triangles more often from the front than from the back, or the
+// other way round; a path that passes in and out again changes nothing. Paths that end the step exactly on a surface
+// have no side; a fixed offset of up to 0.1 µm, another one for each node, keeps nodes from such places.
+// Held nodes (without motion or anchored) and the triangles at them are counted separately: what holds them may pull
+// them into an obstacle, which no collision can prevent.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "scenes/triangle_tree.h"
+#include "tests/worlds/world.h"
+
+namespace drape::test
+{
+struct Findings
+{
+    int m_pairs = 0;         // a cloth triangle without held nodes and an obstacle triangle that share a point
+    int m_heldPairs = 0;     // pairs of cloth triangles with a held node
+    int m_through = 0;       // nodes without those that are held
+    int m_heldThrough = 0;   // held nodes
+    int m_invalidNodes = 0;  // NaN or infinite; they and their triangles take no part in the rest
+};
+
+class Judge
+{
+public:
+    explicit Judge(const World& world);
+
+    // Looks at the world after a step. Nodes that pass in a step that reported something start anew where they are.
+    Findings look(bool reported);
+
+private:
+    struct Obstacle
+    {
+        const WorldObstacle* m_obstacle;
+        btVector3 m_scaling;
+        std::unique_ptr<TriangleTree> m_surface;
+    };
+    struct Follow  // one cloth beside one obstacle
+    {
+        std::vector<Vector3> m_last;  // in the obstacle's frame; empty before the first look
+        std::vector<int> m_passes;    // from the front minus from the back
+    };
+    struct Cloth
+    {
+        const btSoftBody* m_body;
+        std::vector<bool> m_held, m_valid;
+        std::vector<Vector3> m_offsets;
+        std::vector<Follow> m_follows;  // per obstacle
+    };
+
+    void markHeld(Cloth& cloth);
+    void readSurface(Obstacle& obstacle);
+    void countPairs(const Cloth& cloth, const Obstacle& obstacle, const std::vector<Vector3>& places,
+                    Findings& findings) const;
+    void follow(Cloth& cloth, std::size_t obstacle, const std::vector<Vector3>& places, bool reported);
+
+    std::vector<Obstacle> m_obstacles;
+    std::vector<Cloth> m_cloths;
+};
+}  // namespace drape::test

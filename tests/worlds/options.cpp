@@ -1,0 +1,62 @@
+#include "tests/worlds/options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "tests/worlds/modifiers.h"
+#include "tools/common/arguments.h"
+
+namespace drape::test
+{
+namespace
+{
+void addWorlds(CLI::App& app, WorldsOptions& options, std::string& modifiers)
+{
+    app.add_option(
+        "--kind", options.m_kind,
+        "a kind of --list; all: the random ones; tiny: worlds of 4 to 9 nodes; skirts: two grids of settings");
+    app.add_option("--seed", options.m_seed, "the first seed; of a grid the first setting")
+        ->check(CLI::Range(0, 1000000000));
+    app.add_option("--count", options.m_count, "worlds: one seed after the other, in every kind that is asked for");
+    app.add_option(
+        "--modifiers", modifiers,
+        "none, random (each of the first sixteen of --list with probability 0.18), or names joined by commas");
+}
+
+void addRunning(CLI::App& app, WorldsOptions& options)
+{
+    app.add_option("--backend", options.m_backend, "stock: Bullet's own collision, for comparison")
+        ->check(CLI::IsMember({"host", "opencl", "stock"}));
+    app.add_option("--jobs", options.m_jobs, "processes at a time")->check(CLI::Range(1, 1024));
+    app.add_option("--timeout", options.m_timeout, "for one world, s")
+        ->check(CLI::Validator(numberAbove(0, false, "more than 0"), ""));
+    app.add_option("--most-failing", options.m_mostFailing, "more failing worlds than these end with exit code 1");
+    app.add_option("--most-failing-at-end", options.m_mostFailingAtEnd,
+                   "more worlds whose last step is a failing one end with exit code 1");
+    app.add_flag("--list", options.m_list, "list kinds and modifiers, and leave");
+    app.add_flag("--verbose", options.m_verbose, "a line for every world and, of a single one, for every step");
+}
+}  // namespace
+
+bool parseOptions(int argc, const char* const* argv, WorldsOptions& options, int& exitCode)
+{
+    CLI::App app(
+        "Runs random worlds of cloth and obstacles in Bullet, and checks after every step that no cloth triangle\n"
+        "intersects an obstacle and no node went through, unless the step's status says so.",
+        "drape_worlds");
+    app.footer("Exit codes: 0 no more worlds fail than allowed, 1 more do, 2 arguments that cannot be used.");
+    app.option_defaults()->always_capture_default();
+    std::string modifiers = "none";
+    addWorlds(app, options, modifiers);
+    addRunning(app, options);
+    const auto conflict = [&]() -> std::string
+    {
+        options.m_modifiers.m_random = modifiers == "random";
+        if (!options.m_modifiers.m_random && !parseModifiers(modifiers, options.m_modifiers.m_bits))
+            return "--modifiers: '" + modifiers + "' is not known; see --list";
+        if (worldsOf(options.m_kind, 0, 1, options.m_modifiers).empty())
+            return "--kind: '" + options.m_kind + "' is not known; see --list";
+        return "";
+    };
+    return parseArguments(app, argc, argv, conflict, exitCode);
+}
+}  // namespace drape::test
