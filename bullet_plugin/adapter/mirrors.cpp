@@ -132,10 +132,15 @@ void ObstacleMirror::reload(Pipeline& pipeline, const btTransform& pose)
     readMesh(*m_key.m_shape, pose, mesh);
     if (m_id != kNoMesh && mesh.m_topologyHash == m_topologyHash)
     {
-        if (mesh.m_positionHash != m_positionHash) pipeline.moveObstacle(m_id, mesh.m_positions.data());
+        if (mesh.m_positionHash != m_positionHash)
+        {
+            pipeline.moveObstacle(m_id, mesh.m_positions.data());
+            startAnew();
+        }
     }
     else
     {
+        startAnew();
         if (m_id != kNoMesh) pipeline.remove(m_id);
         m_id = kNoMesh;
         if (!mesh.m_triangles.empty())
@@ -172,6 +177,8 @@ MeshId ObstacleMirror::refresh(Pipeline& pipeline, bool kinematic, const BodyMot
     m_signature = signature;
     m_pose = pose;
     m_read = true;
+    if (kinematic && !(motion.m_start == m_end)) startAnew();
+    m_end = motion.m_end;
     if (kinematic && m_id != kNoMesh)
     {
         float start[12], end[12];

@@ -61,6 +61,11 @@ public:
     const ClothParts& parts() const { return m_parts; }
     // For who uses it first, or again: the body may be another one in the same place.
     void takeUp() { m_fullCheck = m_takenUp = true; }
+    // Says that the nodes are no longer where the last step left them: no pair of the cloth counts as free of
+    // intersections until it is checked.
+    void startAnew() { ++m_startRevision; }
+    // Counts up with each startAnew().
+    std::uint64_t startRevision() const { return m_startRevision; }
 
     int m_owners = 0;  // algorithms alive that use this mirror, and who had it prepared
     bool m_prepared = false;
@@ -79,6 +84,7 @@ private:
     const void* m_nodeArray = nullptr;
     const void* m_faceArray = nullptr;
     int m_cursor = 0;
+    std::uint64_t m_startRevision = 0;
     bool m_takenUp = false;  // since the parts were cut
     bool m_fullCheck = true;
 };
@@ -96,6 +102,10 @@ public:
     // True for the shape itself and for the mesh shape that a scaled shape shows, as they were last refreshed.
     bool uses(const btCollisionShape* shape) const { return shape == m_key.m_shape || shape == m_meshShape; }
     void requireReading() { m_read = false; }
+    // Says that the obstacle is no longer where the last step left it, see ClothMirror. refresh() does so itself where
+    // the pose or the mesh changed by anything but the motion over a step.
+    void startAnew() { ++m_startRevision; }
+    std::uint64_t startRevision() const { return m_startRevision; }
 
     int m_owners = 0;
     bool m_prepared = false;
@@ -109,7 +119,9 @@ private:
     ObstacleKey m_key;
     const btCollisionShape* m_meshShape = nullptr;  // compared, never followed
     MeshId m_id = kNoMesh;
-    btTransform m_pose = btTransform::getIdentity();
+    btTransform m_pose = btTransform::getIdentity();  // of the positions that the pipeline holds
+    btTransform m_end = btTransform::getIdentity();   // of the obstacle at the end of the last step
+    std::uint64_t m_startRevision = 0;
     std::uint64_t m_signature = 0, m_topologyHash = 0, m_positionHash = 0;
     bool m_kinematic = false;
     bool m_heldOneSided = false;  // by the pipeline

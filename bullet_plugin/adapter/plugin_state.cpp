@@ -266,6 +266,14 @@ void PluginState::obstacleChanged(const btCollisionShape* shape)
         if (entry.second.uses(shape)) entry.second.requireReading();
 }
 
+void PluginState::startAnew(const btCollisionObject* object)
+{
+    for (auto& entry : m_cloths)
+        if (entry.first == object) entry.second.startAnew();
+    for (auto& entry : m_obstacles)
+        if (entry.first.m_object == object) entry.second.startAnew();
+}
+
 void PluginState::setOneSided(const btCollisionShape* shape, bool oneSided)
 {
     if (oneSided)

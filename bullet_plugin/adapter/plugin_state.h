@@ -82,6 +82,10 @@ public:
     void prepare(const btCollisionObject* const* objects, int count);
     void release(const btCollisionObject* object);
     void obstacleChanged(const btCollisionShape* shape);
+    // Says that the soft body or obstacle is not where its last step left it, or that the last step did not guard it:
+    // its pairs start anew, from where they are in the coming step, and are checked for intersections then. Without a
+    // mirror there is nothing to do: new pairs are checked anyway.
+    void startAnew(const btCollisionObject* object);
     void setOneSided(const btCollisionShape* shape, bool oneSided);
     void dropNotes(const btSoftBodySolver* solver);
     // Those of the given cloths, sorted by address. Of an obstacle whose shape has gone since it was noted none is
