@@ -1,6 +1,7 @@
 #include "bullet_plugin/adapter/collision_step.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 namespace drape
@@ -14,6 +15,19 @@ bool anyMoves(const btSoftBody& body)
     for (int i = 0; i < body.m_nodes.size(); ++i)
         if (movableInverseMass(body.m_nodes[i]) > 0) return true;
     return false;
+}
+
+bool isFinite(const btVector3& v)
+{
+    return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
+}
+
+std::size_t countInvalid(const btSoftBody& body)
+{
+    std::size_t count = 0;
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+        count += !isFinite(body.m_nodes[i].m_q) || !isFinite(body.m_nodes[i].m_x);
+    return count;
 }
 }  // namespace
 
@@ -29,7 +43,7 @@ BodyContacts* CollisionStep::contactsOf(const btSoftBody& body)
     return found == m_byBody.end() ? nullptr : &m_bodies[found->second];
 }
 
-void CollisionStep::addBody(const ClothMirror& cloth, btSoftBody* body)
+void CollisionStep::addBody(ClothMirror& cloth, btSoftBody* body)
 {
     if (m_spare.empty()) m_spare.emplace_back();
     m_bodies.push_back(std::move(m_spare.back()));
@@ -64,7 +78,8 @@ void CollisionStep::addPair(const PairNote& note)
     }
     m_state.m_found.nameObstacle(obstacleId, note.m_obstacle.m_object, note.m_motion);
     if (!m_paired.insert(std::uint64_t(clothId) << 32 | obstacleId).second) return;
-    m_pairs.push_back(Pair{clothId, obstacleId, note.m_thickness});
+    const StartingPair start = {&cloth, &m_state.obstacleMirror(note), note.m_motion, note.m_kinematic};
+    m_pairs.push_back(Pair{clothId, obstacleId, note.m_thickness, start});
     btVector3 low, high;
     note.m_obstacle.m_shape->getAabb(note.m_motion.m_end, low, high);
     BodyContacts& body = *bodyOf(clothId);
@@ -105,14 +120,58 @@ void CollisionStep::begin(const std::vector<PairNote>& notes)
         else if (std::find(m_pinned.begin(), m_pinned.end(), note.m_cloth) == m_pinned.end())
             m_pinned.push_back(note.m_cloth);
     }
+    checkStarts();
     if (!m_pairs.empty()) submit();
 }
 
+void CollisionStep::checkStarts()
+{
+    m_starts.beginStep();
+    m_jumped.resize(std::max(m_jumped.size(), m_bodies.size()));
+    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+        m_mirrors[i]->listJumped(m_jumped[i]);
+    for (const Pair& pair : m_pairs)
+    {
+        const std::size_t body = m_byCloth.at(pair.m_cloth);
+        m_starts.check(pair.m_start, m_jumped[body], m_bodies[body]);
+    }
+    for (BodyContacts& body : m_bodies)
+        preparePushes(body);
+}
+
+// Moves the predicted ends of nodes that are pushed, so that detection and the limit of motion see where they go, and
+// makes contacts of the pushes, so that links do not pull the nodes back.
+void CollisionStep::preparePushes(BodyContacts& body)
+{
+    for (NodePush& push : body.m_pushes)
+    {
+        btSoftBody::Node& node = body.m_body->m_nodes[push.m_node];
+        const btVector3 start = carried(push.m_carry, node.m_q);
+        StepContact contact = {};
+        contact.m_nodes[0] = push.m_node;
+        contact.m_nodes[1] = contact.m_nodes[2] = -1;
+        contact.m_weights[0] = 1;
+        contact.m_normal = push.m_normal;
+        contact.m_point = start + push.m_normal * push.m_distance;
+        contact.m_time = 1;
+        contact.m_startGap = -push.m_distance;
+        contact.m_endGap = push.m_normal.dot(node.m_x - contact.m_point);
+        contact.m_carry = push.m_carry;
+        body.m_pushContacts.push_back(m_state.m_found.addOwn(contact));
+        push.m_speedLimit =
+            (std::max(btScalar(0), contact.m_endGap - contact.m_startGap) + push.m_normal.dot(start - node.m_q)) *
+            body.m_body->m_sst.isdt;
+        if (contact.m_endGap < 0) node.m_x -= push.m_normal * contact.m_endGap;
+    }
+}
+
 // How far from its path a node of the pair's cloth may be, m; negative where detection is to leave out no contact. One
-// of pinned nodes alone is not held, so that it can stand for no other.
+// of pinned nodes alone is not held, so that it can stand for no other, and neither are some of a cloth that is pushed
+// out of an obstacle.
 float CollisionStep::tubeOf(const Pair& pair)
 {
-    if (!m_state.settings().m_reduceContacts || bodyOf(pair.m_cloth)->m_limit.hasPinnedNode()) return -1;
+    const BodyContacts& body = *bodyOf(pair.m_cloth);
+    if (!m_state.settings().m_reduceContacts || body.m_limit.hasPinnedNode() || !body.m_tangled.empty()) return -1;
     return static_cast<float>(MotionLimit::tube(pair.m_thickness, btScalar(m_state.settings().m_activation)));
 }
 
@@ -132,14 +191,91 @@ void CollisionStep::receive(const ContactList& contacts)
         const Contact& first = contacts[i];
         const ClothFeature cloth = m_state.pipeline().clothFeature(first);
         if (!body || body->m_cloth != cloth.m_cloth) body = bodyOf(cloth.m_cloth);
-        FeatureContacts feature{&first, 0, {cloth.m_nodes[0], cloth.m_nodes[1], cloth.m_nodes[2]}, 1};
-        for (; i < contacts.size() && contacts[i].m_slot == first.m_slot; ++i, ++feature.m_count)
-            feature.m_leastTime = std::min(feature.m_leastTime, contacts[i].m_time);
+        const std::size_t begin = i;
+        while (i < contacts.size() && contacts[i].m_slot == first.m_slot)
+            ++i;
         if (!body) continue;
-        for (int k = 0; k < 3 && feature.m_nodes[k] >= 0; ++k)
-            body->m_limit.addContactNode(feature.m_nodes[k]);
-        body->m_features.push_back(feature);
+        const std::uint32_t count = static_cast<std::uint32_t>(i - begin);
+        if (body->m_tangled.empty())
+            addContacts(*body, &first, count, cloth);
+        else
+            addHeldContacts(*body, &first, count, cloth);
     }
+    for (BodyContacts& pushed : m_bodies)
+        addPushes(pushed);
+}
+
+// Contacts of one feature of the cloth.
+void CollisionStep::addContacts(BodyContacts& body, const Contact* first, std::uint32_t count,
+                                const ClothFeature& cloth)
+{
+    FeatureContacts feature{first, count, {cloth.m_nodes[0], cloth.m_nodes[1], cloth.m_nodes[2]}, 1};
+    for (std::uint32_t i = 0; i < count; ++i)
+        feature.m_leastTime = std::min(feature.m_leastTime, first[i].m_time);
+    for (int k = 0; k < 3 && feature.m_nodes[k] >= 0; ++k)
+        body.m_limit.addContactNode(feature.m_nodes[k]);
+    body.m_features.push_back(feature);
+}
+
+// The same, but for those with an obstacle that would keep the feature on the wrong side of it.
+void CollisionStep::addHeldContacts(BodyContacts& body, const Contact* first, std::uint32_t count,
+                                    const ClothFeature& cloth)
+{
+    const auto isHeld = [&](const Contact& contact)
+    {
+        const MeshId obstacle = m_state.pipeline().view(contact).m_obstacle;
+        return std::all_of(body.m_tangled.begin(), body.m_tangled.end(),
+                           [&](const TangledPair& tangled)
+                           { return tangled.m_obstacle != obstacle || tangled.holds(cloth.m_nodes); });
+    };
+    for (const Contact *contact = first, *end = first + count; contact != end;)
+    {
+        const Contact* const next = std::find_if_not(contact, end, isHeld);
+        if (next != contact) addContacts(body, contact, static_cast<std::uint32_t>(next - contact), cloth);
+        contact = std::find_if(next, end, isHeld);
+    }
+}
+
+void CollisionStep::addPushes(BodyContacts& body)
+{
+    std::vector<FeatureContacts> pushes;
+    for (std::size_t i = 0; i < body.m_pushes.size(); ++i)
+    {
+        pushes.push_back(FeatureContacts{&body.m_pushContacts[i], 1, {body.m_pushes[i].m_node, -1, -1}, 1});
+        body.m_limit.addContactNode(body.m_pushes[i].m_node);
+    }
+    body.m_features.insert(body.m_features.begin(), pushes.begin(), pushes.end());  // nodes are first
+}
+
+// Cloths that collided with nothing in this step, or whose nodes were not all looked at, are checked before they count
+// as guarded again.
+void CollisionStep::markUnguarded()
+{
+    for (const MeshId cloth : m_state.pipeline().clothsLeftOut())
+    {
+        const auto found = m_byCloth.find(cloth);
+        if (found != m_byCloth.end()) m_mirrors[found->second]->startAnew();
+    }
+    if (m_state.pipeline().statistics().m_invalidNodes == 0) return;
+    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+    {
+        if (countInvalid(*m_bodies[i].m_body) == 0) continue;
+        m_mirrors[i]->startAnew();
+        m_invalid.insert(m_bodies[i].m_body);
+    }
+}
+
+void CollisionStep::reportInvalid(const btSoftBody& body)
+{
+    if (m_invalid.empty() || m_invalid.count(&body) == 0 || contactsOf(body)) return;
+    const std::size_t count = countInvalid(body);
+    if (count == 0)
+    {
+        m_invalid.erase(&body);
+        return;
+    }
+    m_state.m_statistics.m_status |= kStepInvalidNodes;
+    m_state.m_statistics.m_invalidNodes += count;
 }
 
 // Waits for the detection under way and takes its contacts in place of any earlier ones of this step.
@@ -164,6 +300,9 @@ void CollisionStep::receiveAll()
     all.m_writeMs = before.m_writeMs;
     all.m_finishMs = before.m_finishMs;
     all.m_clothsSkipped = before.m_clothsSkipped;
+    all.m_startsIntersecting = before.m_startsIntersecting;
+    all.m_startIntersections = before.m_startIntersections;
+    markUnguarded();
     m_state.m_found.set(m_state.pipeline(), contacts);
     receive(contacts);
 }
@@ -192,6 +331,9 @@ void CollisionStep::finish()
     m_state.m_statistics.m_skipped = m_pairs.empty();
     if (m_state.pipeline().deviceFailed()) m_state.m_statistics.m_status |= kStepDeviceFailed;
     if (m_pairs.empty()) return;
+    m_state.m_statistics.m_startsIntersecting = m_starts.intersectingPairs();
+    m_state.m_statistics.m_startIntersections = m_starts.intersections();
+    if (m_starts.intersectingPairs() > 0) m_state.m_statistics.m_status |= kStepStartsIntersecting;
     receiveAll();
     const std::size_t kept = m_state.m_statistics.m_obstaclesKept;
     for (int detections = 1; detections < kMostDetections && cutPaths(); ++detections)
@@ -229,5 +371,20 @@ void CollisionStep::checkStrayed()
     m_state.m_statistics.m_reduced = before.m_reduced;
     m_state.m_statistics.m_candidates = before.m_candidates;
     m_state.m_statistics.m_obstaclesKept = before.m_obstaclesKept;
+}
+
+void CollisionStep::end()
+{
+    for (const BodyContacts& body : m_bodies)
+    {
+        for (const NodePush& push : body.m_pushes)
+        {
+            btSoftBody::Node& node = body.m_body->m_nodes[push.m_node];
+            const btScalar excess = node.m_v.dot(push.m_normal) - push.m_speedLimit;
+            if (excess > 0) node.m_v -= push.m_normal * excess;
+        }
+    }
+    for (ClothMirror* mirror : m_mirrors)
+        mirror->rememberEnds();
 }
 }  // namespace drape

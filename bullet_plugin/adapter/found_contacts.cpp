@@ -6,6 +6,9 @@ namespace drape
 {
 namespace
 {
+// Kind of the contacts that addOwn() makes, whose obstacle feature is their index; no kind of the pipeline's.
+constexpr std::uint32_t kOwnKind = 0xffffffffu;
+
 btVector3 vectorOf(const float v[3])
 {
     return btVector3(btScalar(v[0]), btScalar(v[1]), btScalar(v[2]));
@@ -42,6 +45,22 @@ const btTransform* FoundContacts::carryOf(MeshId obstacle) const
     return entry.m_moves ? &entry.m_carry : nullptr;
 }
 
+Contact FoundContacts::addOwn(const StepContact& own)
+{
+    Contact contact = {};
+    contact.m_kind = kOwnKind;
+    contact.m_obstacleFeature = static_cast<std::uint32_t>(m_own.size());
+    contact.m_weights[0] = 1;
+    contact.m_time = 1;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        contact.m_normal[axis] = static_cast<float>(own.m_normal[axis]);
+        contact.m_point[axis] = static_cast<float>(own.m_point[axis]);
+    }
+    m_own.push_back(own);
+    return contact;
+}
+
 void FoundContacts::set(const Pipeline& pipeline, const ContactList& contacts)
 {
     m_pipeline = &pipeline;
@@ -56,6 +75,7 @@ void FoundContacts::keepList()
 
 StepContact FoundContacts::resolve(const btSoftBody& body, const NodePaths& paths, const Contact& found) const
 {
+    if (found.m_kind == kOwnKind) return m_own[found.m_obstacleFeature];
     const ContactView view = m_pipeline->view(found);
     StepContact contact;
     for (int k = 0; k < 3; ++k)

@@ -25,6 +25,8 @@ public:
     void nameObstacle(MeshId obstacle, const btCollisionObject* object, const BodyMotion& motion);
     // What the obstacle's motion in the step does to its points; null when it rests. Stays where it is until clear().
     const btTransform* carryOf(MeshId obstacle) const;
+    // Adds a contact of the caller's own for one node of a body, which resolve() gives back as it is.
+    Contact addOwn(const StepContact& contact);
     void set(const Pipeline& pipeline, const ContactList& contacts);
     // list() stays as it is now until clear(), whatever is found later.
     void keepList();
@@ -48,6 +50,7 @@ private:
 
     std::unordered_map<MeshId, const btSoftBody*> m_bodies;
     std::unordered_map<MeshId, Obstacle> m_obstacles;
+    std::vector<StepContact> m_own;
     const Pipeline* m_pipeline = nullptr;
     ContactList m_contacts;
     std::vector<ContactInfo> m_kept;

@@ -126,6 +126,26 @@ void ClothMirror::writeNodes(const NodeStretch& stretch) const
     }
 }
 
+void ClothMirror::rememberEnds()
+{
+    m_ends.resize(static_cast<std::size_t>(m_body->m_nodes.size()));
+    for (std::size_t i = 0; i < m_ends.size(); ++i)
+        m_ends[i] = m_body->m_nodes[static_cast<int>(i)].m_x;
+}
+
+void ClothMirror::listJumped(std::vector<int>& nodes) const
+{
+    nodes.clear();
+    const bool known = m_ends.size() == static_cast<std::size_t>(m_body->m_nodes.size());
+    for (int i = 0; i < m_body->m_nodes.size(); ++i)
+    {
+        const btVector3& start = m_body->m_nodes[i].m_q;
+        if (known && std::equal(start.m_floats, start.m_floats + 3, m_ends[static_cast<std::size_t>(i)].m_floats))
+            continue;
+        nodes.push_back(i);
+    }
+}
+
 void ObstacleMirror::reload(Pipeline& pipeline, const btTransform& pose)
 {
     WorldMesh mesh;
@@ -135,11 +155,13 @@ void ObstacleMirror::reload(Pipeline& pipeline, const btTransform& pose)
         if (mesh.m_positionHash != m_positionHash)
         {
             pipeline.moveObstacle(m_id, mesh.m_positions.data());
+            ++m_positionRevision;
             startAnew();
         }
     }
     else
     {
+        ++m_positionRevision;
         startAnew();
         if (m_id != kNoMesh) pipeline.remove(m_id);
         m_id = kNoMesh;

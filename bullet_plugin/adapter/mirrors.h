@@ -66,6 +66,11 @@ public:
     void startAnew() { ++m_startRevision; }
     // Counts up with each startAnew().
     std::uint64_t startRevision() const { return m_startRevision; }
+    // Remembers where the nodes are at a step's end.
+    void rememberEnds();
+    // Lists the nodes whose step starts (m_q) elsewhere than the last one that was remembered ended; all of them where
+    // none was.
+    void listJumped(std::vector<int>& nodes) const;
 
     int m_owners = 0;  // algorithms alive that use this mirror, and who had it prepared
     bool m_prepared = false;
@@ -85,7 +90,8 @@ private:
     const void* m_faceArray = nullptr;
     int m_cursor = 0;
     std::uint64_t m_startRevision = 0;
-    bool m_takenUp = false;  // since the parts were cut
+    std::vector<btVector3> m_ends;  // of the last step, by node
+    bool m_takenUp = false;         // since the parts were cut
     bool m_fullCheck = true;
 };
 
@@ -106,6 +112,8 @@ public:
     // the pose or the mesh changed by anything but the motion over a step.
     void startAnew() { ++m_startRevision; }
     std::uint64_t startRevision() const { return m_startRevision; }
+    // Counts up where the pipeline's positions of the obstacle change.
+    std::uint64_t positionRevision() const { return m_positionRevision; }
 
     int m_owners = 0;
     bool m_prepared = false;
@@ -121,7 +129,7 @@ private:
     MeshId m_id = kNoMesh;
     btTransform m_pose = btTransform::getIdentity();  // of the positions that the pipeline holds
     btTransform m_end = btTransform::getIdentity();   // of the obstacle at the end of the last step
-    std::uint64_t m_startRevision = 0;
+    std::uint64_t m_startRevision = 0, m_positionRevision = 0;
     std::uint64_t m_signature = 0, m_topologyHash = 0, m_positionHash = 0;
     bool m_kinematic = false;
     bool m_heldOneSided = false;  // by the pipeline

@@ -111,6 +111,18 @@ const DeviceReport& PluginState::device() const
     return m_pipeline ? m_pipeline->deviceReport() : m_failedDevice;
 }
 
+void PluginState::log(const char* line) const
+{
+    try
+    {
+        if (m_settings.m_log) m_settings.m_log(line);
+    }
+    catch (...)
+    {
+        // The app's function failed; the step goes on.
+    }
+}
+
 void PluginState::fail(const std::string& call, const std::string& detail)
 {
     m_error.m_call = call;

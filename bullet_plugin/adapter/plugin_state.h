@@ -55,6 +55,8 @@ public:
     const Settings& settings() const { return m_settings; }
     // The pipeline's; they outlive it.
     ThreadTeam& threads() { return *m_threads; }
+    // Hands a line to Settings::m_log.
+    void log(const char* line) const;
     // After a failure that the pipeline could not contain: every pair goes to Bullet from now on.
     void fail(const std::string& call, const std::string& detail);
 

@@ -1,0 +1,102 @@
+// Which pairs of a cloth and an obstacle begin their steps free of intersections, and the way out for those that do
+// not.
+//
+// Why: contacts keep a node on the side on which it begins the step. Cloth that begins with its triangles through a
+// mesh's is kept there, for good. Job: a pair is guarded once a check has found none of its triangles intersecting at
+// the start of a step. It is checked when it is new, when the cloth or the obstacle starts anew (mirrors.h), for the
+// faces of nodes that are elsewhere than the last step left them, and in every step while it intersects. Where the
+// obstacle is closed, its outside is known, and nodes on the wrong side are pushed to the nearest place of the surface
+// at a bounded speed; contacts that would keep them inside are dropped (body_contacts.h). Where it is open nothing
+// tells which side is right: such pairs are reported, and held as they are.
+//
+// The right side of a closed mesh is its outside, however its triangles are wound; but for a room, whose triangles look
+// inwards and which holds most of the cloth's nodes. Cloth that is wholly inside intersects nothing, and stays there.
+//
+// Cost: of a guarded pair a comparison for each node; of a new one a pass over the obstacle's triangles if the boxes
+// meet, and O(log n) for each face of the cloth if a triangle comes into the cloth's box. Deterministic, with any
+// number of threads.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "bullet_plugin/adapter/body_contacts.h"
+#include "bullet_plugin/adapter/kinematic_motion.h"
+#include "bullet_plugin/core/queries/mesh_probe.h"
+
+namespace drape
+{
+class ClothMirror;
+class ObstacleMirror;
+class PluginState;
+
+// A pair of the coming step.
+struct StartingPair
+{
+    const ClothMirror* m_cloth;
+    const ObstacleMirror* m_obstacle;
+    BodyMotion m_motion;
+    bool m_kinematic;  // else the obstacle's positions are the world's
+};
+
+class PairStarts
+{
+public:
+    explicit PairStarts(PluginState& state) : m_state(state) {}
+
+    // Once, before the first check() of a step; forgets pairs that were not seen for long.
+    void beginStep();
+    // Checks the pair where it has to be. jumped: nodes that are elsewhere than the last step left them. Where the pair
+    // intersects and can be pushed apart, adds what is to be done to the body. Bullet's nodes are only read.
+    void check(const StartingPair& pair, const std::vector<int>& jumped, BodyContacts& body);
+
+    // Of the step so far: pairs of a cloth and an obstacle that intersect, and how many pairs of their triangles do.
+    std::size_t intersectingPairs() const { return m_intersectingPairs; }
+    std::uint64_t intersections() const { return m_intersections; }
+
+private:
+    struct Guard
+    {
+        std::uint64_t m_clothRevision = 0, m_obstacleRevision = 0;  // as they were checked last
+        std::uint64_t m_intersections = 0;                          // pairs of triangles; 0: guarded
+        std::uint64_t m_lastStep = 0;
+        bool m_checked = false, m_told = false;
+    };
+    struct Probe
+    {
+        std::unique_ptr<MeshProbe> m_probe;
+        std::uint64_t m_revision = 0;  // of the obstacle's positions
+        std::uint64_t m_lastStep = 0;
+    };
+    // A face of the cloth and the obstacle's triangles that it meets.
+    struct MeetingFace
+    {
+        std::uint32_t m_face;
+        std::vector<std::uint32_t> m_triangles;
+    };
+
+    void listFaces(const StartingPair& pair, const std::vector<int>* nodes);
+    bool findPlaces(const StartingPair& pair, const btSoftBody& body);
+    MeshProbe* probeOf(const StartingPair& pair);
+    std::uint64_t findMeeting(const StartingPair& pair, const MeshProbe& probe);
+    void tell(const StartingPair& pair, Guard& guard, bool pushed);
+    void pushApart(const StartingPair& pair, MeshProbe& probe, BodyContacts& body);
+    void findWrongSide(const ClothFaces& faces, const MeshProbe& probe, TangledPair& tangled);
+    void pushNode(const StartingPair& pair, int node, Vec3 way, BodyContacts& body) const;
+    void pushFaces(const StartingPair& pair, const MeshProbe& probe, BodyContacts& body);
+
+    PluginState& m_state;
+    std::unordered_map<std::uint64_t, Guard> m_guards;  // by the cloth's id above the obstacle's
+    std::unordered_map<MeshId, Probe> m_probes;
+    std::uint64_t m_step = 0;
+    std::size_t m_intersectingPairs = 0;
+    std::uint64_t m_intersections = 0;
+    // Of one check, kept for their memory.
+    std::vector<std::uint32_t> m_faces;
+    std::vector<Vec3> m_places;  // by node, in the frame of the obstacle's positions, at the step's start
+    std::vector<MeetingFace> m_meeting;
+    bool m_insideIsRight = false;
+};
+}  // namespace drape

@@ -1,0 +1,71 @@
+// A triangle mesh at rest, and what lies where beside it: which of its triangles another one meets, where its surface
+// is nearest, and, where it is closed, which points are inside.
+//
+// Input: a mesh's topology, the leaf order of its triangles and its positions; all are copied. Guarantee: which
+// triangles meet and what is inside is decided in exact arithmetic on the float positions, except that a point counts
+// as outside where every ray from it runs into an edge. A closed mesh is one in which every edge has an even number of
+// triangles, vertices at one position counted as one: then the parity of crossings is the same along every ray,
+// whatever the triangles' winding. Cost: O(n) to make; O(log n) a question for what lies beside few triangles. Host
+// only. Lengths in metres.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "bullet_plugin/core/bvh/bvh_layout.h"
+#include "bullet_plugin/core/mesh/topology.h"
+#include "drape/mesh_description.h"
+#include "kernels/shared/types.h"
+
+namespace drape
+{
+class MeshProbe
+{
+public:
+    MeshProbe(const Topology& topology, const std::vector<std::uint32_t>& order, const std::vector<float>& positions);
+    // The description's indices are in range.
+    explicit MeshProbe(const MeshDescription& mesh);
+
+    // Lists the triangles that have a point in common with the given one, in ascending order. None where a corner is
+    // not finite or beyond 2^30 m.
+    void listMeeting(const Vec3 corners[3], std::vector<std::uint32_t>& triangles) const;
+    // The mean of the points at which the given triangle's edges pass through the listed ones and theirs through it.
+    // False where there are none: all lie in one plane.
+    bool middleOfMeeting(const Vec3 corners[3], const std::vector<std::uint32_t>& triangles, Vec3& middle) const;
+
+    // Found out by the first call, O(n log n).
+    bool isClosed();
+    // Volume that a closed mesh encloses, m³; negative where its triangles look inwards.
+    double volume() const;
+    // Of a closed mesh.
+    bool isInside(Vec3 point) const;
+    // The surface's nearest point. The mesh has triangles.
+    Vec3 nearest(Vec3 point) const;
+
+private:
+    enum class Closed
+    {
+        Unknown,
+        Yes,
+        No
+    };
+    struct Box
+    {
+        Vec3 m_low, m_high;
+    };
+
+    void build(const std::vector<std::uint32_t>& order);
+    template <class Visit>
+    void forTrianglesIn(const Box& box, const Visit& visit) const;
+    Vec3 corner(std::uint32_t triangle, int i) const;
+    bool countCrossings(Vec3 point, Vec3 target, unsigned& crossings) const;
+
+    std::vector<Triangle> m_triangles;
+    std::vector<float> m_positions;
+    std::vector<std::uint32_t> m_order;
+    BvhLayout m_layout;
+    std::vector<BvhNode> m_nodes;
+    Closed m_closed = Closed::Unknown;
+};
+}  // namespace drape
