@@ -23,6 +23,10 @@ struct FeatureContacts
     float m_leastTime;  // of impact, of all; 1 when nothing was passed
 };
 
+// Most that a node of cloth which was tangled shortly before may have of speed after a step, m/s, relative to the cloth
+// as a whole: links that were stretched meanwhile do not throw it.
+constexpr btScalar kMostTangledSpeed = 3;
+
 // What of a pair that began its step intersecting no contact may hold, since it would be kept on the wrong side.
 struct TangledPair
 {
@@ -61,6 +65,7 @@ struct BodyContacts
     std::vector<FeatureContacts> m_features;                         // in canonical order
     MotionLimit m_limit;
     std::vector<TangledPair> m_tangled;  // of the body's pairs, those that are pushed apart
+    bool m_wasTangled = false;           // in this step or one shortly before
     std::vector<NodePush> m_pushes;
     std::vector<Contact> m_pushContacts;  // one for each of these
 
@@ -75,6 +80,7 @@ struct BodyContacts
         m_features.clear();
         m_limit.clear();
         m_tangled.clear();
+        m_wasTangled = false;
         m_pushes.clear();
         m_pushContacts.clear();
     }

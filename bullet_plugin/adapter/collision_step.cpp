@@ -22,6 +22,21 @@ bool isFinite(const btVector3& v)
     return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
 }
 
+// Nodes are at most kMostTangledSpeed faster than the body as a whole.
+void limitSpeeds(btSoftBody& body)
+{
+    btVector3 mean(0, 0, 0);
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+        mean += body.m_nodes[i].m_v;
+    mean /= btScalar(std::max(1, body.m_nodes.size()));
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+    {
+        btVector3& velocity = body.m_nodes[i].m_v;
+        const btScalar speed = (velocity - mean).length();
+        if (speed > kMostTangledSpeed) velocity = mean + (velocity - mean) * (kMostTangledSpeed / speed);
+    }
+}
+
 std::size_t countInvalid(const btSoftBody& body)
 {
     std::size_t count = 0;
@@ -82,6 +97,10 @@ void CollisionStep::addPair(const PairNote& note)
     m_pairs.push_back(Pair{clothId, obstacleId, note.m_thickness, start});
     btVector3 low, high;
     note.m_obstacle.m_shape->getAabb(note.m_motion.m_end, low, high);
+    // A negative margin makes Bullet's box smaller than the mesh, at a turn by the square root of three.
+    const btScalar lacks = btScalar(1.7321) * std::max(btScalar(0), -note.m_obstacle.m_shape->getMargin());
+    low -= btVector3(lacks, lacks, lacks);
+    high += btVector3(lacks, lacks, lacks);
     BodyContacts& body = *bodyOf(clothId);
     body.m_limit.addObstacle(low, high, note.m_thickness, btScalar(m_state.settings().m_activation),
                              m_state.m_found.carryOf(obstacleId));
@@ -383,6 +402,7 @@ void CollisionStep::end()
             const btScalar excess = node.m_v.dot(push.m_normal) - push.m_speedLimit;
             if (excess > 0) node.m_v -= push.m_normal * excess;
         }
+        if (body.m_wasTangled) limitSpeeds(*body.m_body);
     }
     for (ClothMirror* mirror : m_mirrors)
         mirror->rememberEnds();

@@ -6,6 +6,7 @@
 #include "BulletCollision/BroadphaseCollision/btOverlappingPairCache.h"
 #include "LinearMath/btAabbUtil2.h"
 #include "bullet_plugin/adapter/eligibility.h"
+#include "bullet_plugin/adapter/margins.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
 #include "bullet_plugin/adapter/plugin_state.h"
 
@@ -64,7 +65,7 @@ struct Way
 // The body's part of the reach of contacts, m.
 btScalar reachOf(const btSoftBody& body, btScalar activation)
 {
-    return (1 + activation) * body.getCollisionShape()->getMargin();
+    return (1 + activation) * marginOf(*body.getCollisionShape());
 }
 
 // A body's way through the step as a moving object sees it, beside the bounds that Bullet has of that object: those of
@@ -78,7 +79,7 @@ struct Sight
         m_seen.addMapped(way.m_start, pose * object.m_motion.m_start.inverse());
         m_seen.addMapped(way.m_end, pose * object.m_motion.m_end.inverse());
         shape.getAabb(pose, m_low, m_high);
-        m_reach = reachOf(body, activation) + activation * shape.getMargin();
+        m_reach = reachOf(body, activation) + activation * marginOf(shape);
     }
     bool comesNear() const
     {
@@ -110,8 +111,10 @@ public:
     bool process(const btBroadphaseProxy* proxy) override
     {
         const btCollisionObject* object = static_cast<const btCollisionObject*>(proxy->m_clientObject);
-        if (!object || !object->isKinematicObject()) return true;
+        if (!object || !object->getCollisionShape()) return true;
         const int type = object->getCollisionShape()->getShapeType();
+        if (isMeshShape(type)) m_beyond = std::max(m_beyond, marginBeyondBounds(*object->getCollisionShape()));
+        if (!object->isKinematicObject()) return true;
         if (!isMeshShape(type) && type != COMPOUND_SHAPE_PROXYTYPE) return true;
         const BodyMotion motion = m_motions.observe(*object);
         if (motion.moves()) m_found.push_back(MovingObject{object, motion});
@@ -119,18 +122,20 @@ public:
     }
 
     std::vector<MovingObject> m_found;
+    btScalar m_beyond = 0;  // m
 
 private:
     KinematicMotions& m_motions;
 };
 }  // namespace
 
-std::vector<MovingObject> movingObjects(const btSoftBody& body, KinematicMotions& motions)
+std::vector<MovingObject> movingObjects(const btSoftBody& body, KinematicMotions& motions, btScalar& beyond)
 {
     CollectMoving collect(motions);
     btBroadphaseInterface* broadphase = body.m_worldInfo ? body.m_worldInfo->m_broadphase : nullptr;
     const btVector3 far(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
     if (broadphase) broadphase->aabbTest(-far, far, collect);
+    beyond = std::max(beyond, collect.m_beyond);
     return collect.m_found;
 }
 

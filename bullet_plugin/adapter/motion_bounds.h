@@ -23,8 +23,9 @@ struct MovingObject
 };
 
 // The kinematic meshes and compounds of the body's world that move in this step; observes those that rest, too. None
-// where the body's world info names no broad phase.
-std::vector<MovingObject> movingObjects(const btSoftBody& body, KinematicMotions& motions);
+// where the body's world info names no broad phase. beyond: raised to the most that bounds of the world's meshes, but
+// for children of compounds, lack of their margins (marginBeyondBounds()).
+std::vector<MovingObject> movingObjects(const btSoftBody& body, KinematicMotions& motions, btScalar& beyond);
 
 // Whether a moving object of a pair that Drape handles comes near the sleeping body in this step: Bullet wakes bodies
 // for it only once it has arrived.

@@ -9,6 +9,11 @@
 // at a bounded speed; contacts that would keep them inside are dropped (body_contacts.h). Where it is open nothing
 // tells which side is right: such pairs are reported, and held as they are.
 //
+// Nodes that come out on different sides of something thin leave faces that pass through it. Where that lasts, what is
+// beyond is drawn back, a few rows of nodes at a time, through where the cloth's largest part meets the surface. Where
+// that does not help either, as with a ring that is linked with the cloth, the whole cloth is moved out of the
+// obstacle's box, on the shortest way along an axis. What cannot follow, since it is pinned, stays and is reported.
+//
 // The right side of a closed mesh is its outside, however its triangles are wound; but for a room, whose triangles look
 // inwards and which holds most of the cloth's nodes. Cloth that is wholly inside intersects nothing, and stays there.
 //
@@ -62,6 +67,12 @@ private:
         std::uint64_t m_clothRevision = 0, m_obstacleRevision = 0;  // as they were checked last
         std::uint64_t m_intersections = 0;                          // pairs of triangles; 0: guarded
         std::uint64_t m_lastStep = 0;
+        std::uint64_t m_calmUntil = 0;  // step up to which the cloth counts as tangled shortly before
+        int m_passingSteps = 0;         // in which faces met the obstacle although all nodes were on the right side
+        int m_keptNode = -1;            // of the part of the cloth that others are drawn back to; -1: none are
+        int m_backSteps = 0;            // in which they were
+        int m_outSteps = 0;             // in which the whole cloth was moved out
+        Vec3 m_out = {};                // the way that it takes, unit, in the frame of the obstacle's positions
         bool m_checked = false, m_told = false;
     };
     struct Probe
@@ -81,9 +92,15 @@ private:
     bool findPlaces(const StartingPair& pair, const btSoftBody& body);
     MeshProbe* probeOf(const StartingPair& pair);
     std::uint64_t findMeeting(const StartingPair& pair, const MeshProbe& probe);
+    void tellMargins(const StartingPair& pair) const;
     void tell(const StartingPair& pair, Guard& guard, bool pushed);
-    void pushApart(const StartingPair& pair, MeshProbe& probe, BodyContacts& body);
-    void findWrongSide(const ClothFaces& faces, const MeshProbe& probe, TangledPair& tangled);
+    void pushApart(const StartingPair& pair, MeshProbe& probe, Guard& guard, BodyContacts& body);
+    void findRegions(const ClothFaces& faces, const MeshProbe& probe);
+    int largestPart(const TangledPair& tangled, std::size_t& count) const;
+    void pushToSurface(const StartingPair& pair, const MeshProbe& probe, BodyContacts& body);
+    void drawBack(const StartingPair& pair, const MeshProbe& probe, int keptNode, BodyContacts& body);
+    bool isInsideOnItsWay(const StartingPair& pair, const MeshProbe& probe, const Guard& guard);
+    void moveOut(const StartingPair& pair, const MeshProbe& probe, Guard& guard, BodyContacts& body);
     void pushNode(const StartingPair& pair, int node, Vec3 way, BodyContacts& body) const;
     void pushFaces(const StartingPair& pair, const MeshProbe& probe, BodyContacts& body);
 
@@ -97,6 +114,8 @@ private:
     std::vector<std::uint32_t> m_faces;
     std::vector<Vec3> m_places;  // by node, in the frame of the obstacle's positions, at the step's start
     std::vector<MeetingFace> m_meeting;
+    std::vector<int> m_regions;          // by node: the first node that is reached over faces that meet nothing
+    std::vector<unsigned char> m_wrong;  // likewise: on the wrong side
     bool m_insideIsRight = false;
 };
 }  // namespace drape

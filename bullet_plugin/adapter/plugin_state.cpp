@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <exception>
 
+#include "BulletCollision/CollisionDispatch/btCollisionDispatcher.h"
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
 #include "BulletSoftBody/btSoftBodySolvers.h"
 #include "bullet_plugin/adapter/eligibility.h"
+#include "bullet_plugin/adapter/margins.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
 
 namespace drape
@@ -14,9 +16,6 @@ namespace
 {
 // Steps that a mirror without a pair is kept: two seconds at 60 steps a second.
 constexpr std::uint64_t kKeepSteps = 120;
-
-// Least thickness, m: both margins may be zero, the pipeline needs a positive one.
-constexpr btScalar kMinThickness = btScalar(1e-4);
 
 // Tells a compound's children apart, through nested compounds.
 std::uint64_t childOf(const btCollisionObjectWrapper& wrap)
@@ -137,6 +136,12 @@ void PluginState::fail(const std::string& call, const std::string& detail)
     m_pipeline.reset();
 }
 
+bool PluginState::isWiredTo(const btCollisionDispatcher& dispatcher) const
+{
+    const void* const configuration = const_cast<btCollisionDispatcher&>(dispatcher).getCollisionConfiguration();
+    return m_wirings.count(&dispatcher) + m_wirings.count(configuration) > 0;
+}
+
 btCollisionAlgorithmCreateFunc& PluginState::stockCreateFunction(bool swapped)
 {
     if (swapped) return m_stockCreateSwapped;
@@ -170,8 +175,7 @@ void PluginState::note(const void* owner, btSoftBody& cloth, const btCollisionOb
     note.m_kinematic = obstacle.getCollisionObject()->isKinematicObject();
     note.m_motion = note.m_kinematic ? motionOfShape(obstacle, motionsOf(note.m_solver))
                                      : BodyMotion{obstacle.getWorldTransform(), obstacle.getWorldTransform()};
-    note.m_thickness =
-        std::max(kMinThickness, cloth.getCollisionShape()->getMargin() + obstacle.getCollisionShape()->getMargin());
+    note.m_thickness = thicknessOf(cloth, *obstacle.getCollisionShape());
     m_marginBeyondBounds = std::max(m_marginBeyondBounds, drape::marginBeyondBounds(*obstacle.getCollisionShape()));
     const auto place = m_noteOf.emplace(owner, m_notes.size());
     if (place.second)

@@ -63,7 +63,7 @@ void SoftBodySolver::predictMotion(btScalar dt)
     KinematicMotions& motions = m_state->motionsOf(this);
     motions.beginStep(dt);
     std::vector<MovingObject> moving;
-    if (m_softBodySet.size() > 0) moving = movingObjects(*m_softBodySet[0], motions);
+    if (m_softBodySet.size() > 0) moving = movingObjects(*m_softBodySet[0], motions, m_state->marginBeyondBounds());
     for (int i = 0; i < m_softBodySet.size(); ++i)
     {
         btSoftBody& body = *m_softBodySet[i];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 
 #include "bullet_plugin/core/bvh/morton_order.h"
@@ -204,6 +205,47 @@ bool MeshProbe::middleOfMeeting(const Vec3 corners[3], const std::vector<std::ui
     if (count == 0) return false;
     middle = vec3(float(sum[0] / count), float(sum[1] / count), float(sum[2] / count));
     return true;
+}
+
+Vec3 MeshProbe::sumOfNormals(const std::vector<std::uint32_t>& triangles, Vec3 point) const
+{
+    Vec3 sum = vec3(0, 0, 0);
+    for (const std::uint32_t triangle : triangles)
+    {
+        const Vec3 a = corner(triangle, 0);
+        const Vec3 normal = vec3Cross(vec3Sub(corner(triangle, 1), a), vec3Sub(corner(triangle, 2), a));
+        const float length = vec3Length(normal);
+        if (!(length > 0)) continue;
+        const float side = vec3Dot(normal, vec3Sub(point, a)) < 0 ? -1.0f : 1.0f;
+        sum = vec3AddScaled(sum, normal, side / length);
+    }
+    return sum;
+}
+
+Vec3 MeshProbe::wayOutOfBox(const std::vector<Vec3>& points) const
+{
+    const BvhNode& root = m_nodes[m_layout.root()];
+    Vec3 best = vec3(0, 1, 0);
+    float least = std::numeric_limits<float>::infinity();
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        float low = std::numeric_limits<float>::infinity(), high = -std::numeric_limits<float>::infinity();
+        for (const Vec3& point : points)
+        {
+            if (!positionIsValid(point)) continue;
+            low = std::min(low, at(point, axis));
+            high = std::max(high, at(point, axis));
+        }
+        for (const float sign : {1.0f, -1.0f})
+        {
+            const float way = sign > 0 ? root.m_high[axis] - low : high - root.m_low[axis];
+            if (!(way < least)) continue;
+            least = way;
+            best = vec3(0, 0, 0);
+            at(best, axis) = sign;
+        }
+    }
+    return best;
 }
 
 bool MeshProbe::isClosed()

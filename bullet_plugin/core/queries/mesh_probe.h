@@ -34,6 +34,12 @@ public:
     // False where there are none: all lie in one plane.
     bool middleOfMeeting(const Vec3 corners[3], const std::vector<std::uint32_t>& triangles, Vec3& middle) const;
 
+    // The sum of the listed triangles' unit normals, each on the side on which the point is.
+    Vec3 sumOfNormals(const std::vector<std::uint32_t>& triangles, Vec3 point) const;
+
+    // The axis, or its opposite, along which points leave the mesh's box soonest; unit.
+    Vec3 wayOutOfBox(const std::vector<Vec3>& points) const;
+
     // Found out by the first call, O(n log n).
     bool isClosed();
     // Volume that a closed mesh encloses, m³; negative where its triangles look inwards.
