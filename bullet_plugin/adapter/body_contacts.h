@@ -53,7 +53,8 @@ struct NodePush
     btVector3 m_normal;          // unit, the way to go
     btScalar m_distance;         // m, to go along it in this step
     const btTransform* m_carry;  // see StepContact
-    btScalar m_speedLimit;       // m/s along it, that the node may have afterwards
+    const btVector3* m_carriedStarts;
+    btScalar m_speedLimit;  // m/s along it, that the node may have afterwards
 };
 
 struct BodyContacts

@@ -64,6 +64,7 @@ void CollisionStep::addBody(ClothMirror& cloth, btSoftBody* body)
     m_bodies.push_back(std::move(m_spare.back()));
     m_spare.pop_back();
     m_byCloth[cloth.id()] = m_byBody[body] = m_bodies.size() - 1;
+    m_uploads.push_back(Upload{cloth.id(), m_bodies.size() - 1, nullptr});
     m_bodies.back().start(cloth.id(), body, cloth.parts());
 }
 
@@ -77,6 +78,25 @@ void CollisionStep::clear()
     m_paired.clear();
     m_pinned.clear();
     m_mirrors.clear();
+    m_uploads.clear();
+}
+
+// For an obstacle whose vertices move in this step the cloth has a mesh and starts of its own.
+CollisionStep::Pair CollisionStep::makePair(const PairNote& note, const ClothMirror& cloth, MeshId obstacle)
+{
+    const ObstacleMirror& mirror = m_state.obstacleMirror(note);
+    Pair pair = {cloth.id(), obstacle, note.m_thickness, nullptr, {&cloth, &mirror, note.m_motion, note.m_kinematic}};
+    if (!mirror.before()) return pair;
+    const btScalar reach = note.m_thickness * (1 + btScalar(m_state.settings().m_activation));
+    const DeformedPair& deformed = m_deformed.update(cloth, mirror, note.m_motion, note.m_kinematic, reach);
+    const std::size_t body = m_byCloth.at(cloth.id());
+    m_byCloth[deformed.m_mesh] = body;
+    m_uploads.push_back(Upload{deformed.m_mesh, body, deformed.m_starts.data()});
+    m_state.m_found.nameCloth(deformed.m_mesh, note.m_cloth);
+    m_state.m_found.nameStarts(deformed.m_mesh, deformed.m_carried.data());
+    pair.m_cloth = deformed.m_mesh;
+    pair.m_carriedStarts = deformed.m_carried.data();
+    return pair;
 }
 
 void CollisionStep::addPair(const PairNote& note)
@@ -93,8 +113,7 @@ void CollisionStep::addPair(const PairNote& note)
     }
     m_state.m_found.nameObstacle(obstacleId, note.m_obstacle.m_object, note.m_motion);
     if (!m_paired.insert(std::uint64_t(clothId) << 32 | obstacleId).second) return;
-    const StartingPair start = {&cloth, &m_state.obstacleMirror(note), note.m_motion, note.m_kinematic};
-    m_pairs.push_back(Pair{clothId, obstacleId, note.m_thickness, start});
+    m_pairs.push_back(makePair(note, cloth, obstacleId));
     btVector3 low, high;
     note.m_obstacle.m_shape->getAabb(note.m_motion.m_end, low, high);
     // A negative margin makes Bullet's box smaller than the mesh, at a turn by the square root of three.
@@ -103,7 +122,7 @@ void CollisionStep::addPair(const PairNote& note)
     high += btVector3(lacks, lacks, lacks);
     BodyContacts& body = *bodyOf(clothId);
     body.m_limit.addObstacle(low, high, note.m_thickness, btScalar(m_state.settings().m_activation),
-                             m_state.m_found.carryOf(obstacleId));
+                             m_state.m_found.carryOf(obstacleId), m_pairs.back().m_carriedStarts);
     body.m_leastThickness = std::min(body.m_leastThickness, note.m_thickness);
     body.m_mostThickness = std::max(body.m_mostThickness, note.m_thickness);
 }
@@ -112,16 +131,17 @@ void CollisionStep::addPair(const PairNote& note)
 void CollisionStep::uploadNodes()
 {
     std::vector<MeshId> cloths;
-    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+    for (const Upload& upload : m_uploads)
     {
-        cloths.push_back(m_mirrors[i]->id());
-        m_bodies[i].m_limit.startRecord(m_mirrors[i]->faces());
+        cloths.push_back(upload.m_mesh);
+        if (!upload.m_starts) m_bodies[upload.m_body].m_limit.startRecord(m_mirrors[upload.m_body]->faces());
     }
     const auto write = [&](const NodeStretch& stretch)
     {
-        BodyContacts& body = m_bodies[stretch.m_cloth];
-        m_mirrors[stretch.m_cloth]->writeNodes(stretch);
-        body.m_limit.recordNodes(*body.m_body, stretch.m_first, stretch.m_count);
+        const Upload& upload = m_uploads[stretch.m_cloth];
+        BodyContacts& body = m_bodies[upload.m_body];
+        m_mirrors[upload.m_body]->writeNodes(stretch, upload.m_starts);
+        if (!upload.m_starts) body.m_limit.recordNodes(*body.m_body, stretch.m_first, stretch.m_count);
     };
     m_state.pipeline().writeNodes(cloths, write);
 }
@@ -132,6 +152,7 @@ void CollisionStep::begin(const std::vector<PairNote>& notes)
     m_state.m_found.clear();
     // Adding and removing meshes moves the memory that nodes are written to: mirrors first, nodes after.
     m_state.dropOldMirrors();
+    m_deformed.beginStep();
     for (const PairNote& note : notes)
     {
         if (anyMoves(*note.m_cloth))
@@ -152,7 +173,10 @@ void CollisionStep::checkStarts()
     for (const Pair& pair : m_pairs)
     {
         const std::size_t body = m_byCloth.at(pair.m_cloth);
+        const std::size_t pushes = m_bodies[body].m_pushes.size();
         m_starts.check(pair.m_start, m_jumped[body], m_bodies[body]);
+        for (std::size_t i = pushes; i < m_bodies[body].m_pushes.size(); ++i)
+            m_bodies[body].m_pushes[i].m_carriedStarts = pair.m_carriedStarts;
     }
     for (BodyContacts& body : m_bodies)
         preparePushes(body);
@@ -165,7 +189,7 @@ void CollisionStep::preparePushes(BodyContacts& body)
     for (NodePush& push : body.m_pushes)
     {
         btSoftBody::Node& node = body.m_body->m_nodes[push.m_node];
-        const btVector3 start = carried(push.m_carry, node.m_q);
+        const btVector3 start = carriedStart(push.m_carry, push.m_carriedStarts, push.m_node, node.m_q);
         StepContact contact = {};
         contact.m_nodes[0] = push.m_node;
         contact.m_nodes[1] = contact.m_nodes[2] = -1;
@@ -176,6 +200,7 @@ void CollisionStep::preparePushes(BodyContacts& body)
         contact.m_startGap = -push.m_distance;
         contact.m_endGap = push.m_normal.dot(node.m_x - contact.m_point);
         contact.m_carry = push.m_carry;
+        contact.m_carriedStarts = push.m_carriedStarts;
         body.m_pushContacts.push_back(m_state.m_found.addOwn(contact));
         push.m_speedLimit =
             (std::max(btScalar(0), contact.m_endGap - contact.m_startGap) + push.m_normal.dot(start - node.m_q)) *
@@ -190,7 +215,9 @@ void CollisionStep::preparePushes(BodyContacts& body)
 float CollisionStep::tubeOf(const Pair& pair)
 {
     const BodyContacts& body = *bodyOf(pair.m_cloth);
-    if (!m_state.settings().m_reduceContacts || body.m_limit.hasPinnedNode() || !body.m_tangled.empty()) return -1;
+    if (!m_state.settings().m_reduceContacts || body.m_limit.hasPinnedNode() || !body.m_limit.obstaclesRest() ||
+        !body.m_tangled.empty())
+        return -1;
     return static_cast<float>(MotionLimit::tube(pair.m_thickness, btScalar(m_state.settings().m_activation)));
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bullet_plugin/adapter/body_contacts.h"
+#include "bullet_plugin/adapter/deformed_pairs.h"
 #include "bullet_plugin/adapter/impact_cut.h"
 #include "bullet_plugin/adapter/pair_starts.h"
 #include "bullet_plugin/adapter/plugin_state.h"
@@ -19,7 +20,7 @@ namespace drape
 class CollisionStep
 {
 public:
-    explicit CollisionStep(PluginState& state) : m_state(state), m_starts(state) {}
+    explicit CollisionStep(PluginState& state) : m_state(state), m_deformed(state), m_starts(state) {}
 
     void begin(const std::vector<PairNote>& notes);
     void finish();
@@ -42,12 +43,23 @@ public:
 private:
     struct Pair
     {
-        MeshId m_cloth, m_obstacle;
+        MeshId m_cloth, m_obstacle;  // of a cloth's meshes the pair's own, where its obstacle deforms
         btScalar m_thickness;
+        const btVector3* m_carriedStarts;  // then, see StepContact; null else
         StartingPair m_start;
     };
 
+    // Nodes of a mesh in the pipeline that are to be written.
+    struct Upload
+    {
+        MeshId m_mesh;
+        std::size_t m_body;  // index in m_bodies
+        const btVector3*
+            m_starts;  // where they start, by node; null: where Bullet has them, and their paths are recorded
+    };
+
     void addPair(const PairNote& note);
+    Pair makePair(const PairNote& note, const ClothMirror& cloth, MeshId obstacle);
     void checkStarts();
     void preparePushes(BodyContacts& body);
     void addContacts(BodyContacts& body, const Contact* first, std::uint32_t count, const ClothFeature& cloth);
@@ -73,6 +85,8 @@ private:
     std::unordered_set<std::uint64_t> m_paired;  // a pair's cloth above its obstacle
     std::vector<const btSoftBody*> m_pinned;
     std::vector<ClothMirror*> m_mirrors;  // one for each of m_bodies
+    std::vector<Upload> m_uploads;
+    DeformedPairs m_deformed;
     PairStarts m_starts;
     std::vector<std::vector<int>> m_jumped;           // of checkStarts(), by body
     std::unordered_set<const btSoftBody*> m_invalid;  // with nodes that were not finite; compared, not followed

@@ -14,11 +14,11 @@ btVector3 vectorOf(const float v[3])
     return btVector3(btScalar(v[0]), btScalar(v[1]), btScalar(v[2]));
 }
 
-btScalar gapAt(const StepContact& contact, const std::vector<btVector3>& places, const btTransform* carry)
+btScalar gapAt(const StepContact& contact, const btVector3* places, const btTransform* carry)
 {
     btVector3 at(0, 0, 0);
     for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
-        at += places[static_cast<std::size_t>(contact.m_nodes[k])] * contact.m_weights[k];
+        at += places[contact.m_nodes[k]] * contact.m_weights[k];
     return contact.m_normal.dot(carried(carry, at) - contact.m_point) - contact.m_thickness;
 }
 
@@ -26,8 +26,9 @@ btScalar gapAt(const StepContact& contact, const std::vector<btVector3>& places,
 // its contact without having been inside the obstacle: then the depth at the predicted end is all that is known.
 void setGaps(const btSoftBody& body, const NodePaths& paths, StepContact& contact)
 {
-    contact.m_endGap = gapAt(contact, paths.m_end, nullptr);
-    contact.m_startGap = gapAt(contact, paths.m_start, contact.m_carry);
+    contact.m_endGap = gapAt(contact, paths.m_end.data(), nullptr);
+    contact.m_startGap = contact.m_carriedStarts ? gapAt(contact, contact.m_carriedStarts, nullptr)
+                                                 : gapAt(contact, paths.m_start.data(), contact.m_carry);
     if (contact.m_startGap < -contact.m_thickness && contact.m_startGap < contact.m_endGap)
         contact.m_startGap = contact.m_endGap;
     contact.m_targetGap = targetGap(contact.m_startGap, body.m_cfg.kKHR, contact.m_thickness);
@@ -89,6 +90,8 @@ StepContact FoundContacts::resolve(const btSoftBody& body, const NodePaths& path
     contact.m_time = view.m_time;
     const Obstacle& obstacle = m_obstacles.at(view.m_obstacle);
     contact.m_carry = obstacle.m_moves ? &obstacle.m_carry : nullptr;
+    const auto starts = m_carriedStarts.find(view.m_cloth);
+    contact.m_carriedStarts = starts == m_carriedStarts.end() ? nullptr : starts->second;
     contact.m_friction = body.m_cfg.kDF * obstacle.m_object->getFriction();
     setGaps(body, paths, contact);
     return contact;

@@ -25,6 +25,9 @@ public:
     void nameObstacle(MeshId obstacle, const btCollisionObject* object, const BodyMotion& motion);
     // What the obstacle's motion in the step does to its points; null when it rests. Stays where it is until clear().
     const btTransform* carryOf(MeshId obstacle) const;
+    // Where the obstacle of a mesh of a cloth that is there for one obstacle alone carries the nodes' starts, see
+    // StepContact. They stay the caller's.
+    void nameStarts(MeshId cloth, const btVector3* carriedStarts) { m_carriedStarts[cloth] = carriedStarts; }
     // Adds a contact of the caller's own for one node of a body, which resolve() gives back as it is.
     Contact addOwn(const StepContact& contact);
     void set(const Pipeline& pipeline, const ContactList& contacts);
@@ -50,6 +53,7 @@ private:
 
     std::unordered_map<MeshId, const btSoftBody*> m_bodies;
     std::unordered_map<MeshId, Obstacle> m_obstacles;
+    std::unordered_map<MeshId, const btVector3*> m_carriedStarts;  // by cloth
     std::vector<StepContact> m_own;
     const Pipeline* m_pipeline = nullptr;
     ContactList m_contacts;

@@ -14,6 +14,9 @@ namespace
 // randomizeConstraints gives, are seen within faces / 32768 steps.
 constexpr int kFacesPerCheck = 32768;
 
+// Share of a mesh's size that vertices may move in a step: what moves farther is another pose that the app put there.
+constexpr float kMostMotion = 0.5f;
+
 int nodeIndex(const btSoftBody& body, const btSoftBody::Node* node)
 {
     return static_cast<int>(node - &body.m_nodes[0]);
@@ -99,8 +102,13 @@ MeshId ClothMirror::refresh(Pipeline& pipeline)
     if (m_id != kNoMesh) pipeline.remove(m_id);
     m_id = kNoMesh;
     readTopology();
-    if (triangles.empty() || m_faces.nodeCount() == 0) return m_id;
+    if (!triangles.empty() && m_faces.nodeCount() > 0) m_id = addCopy(pipeline);
+    return m_id;
+}
 
+MeshId ClothMirror::addCopy(Pipeline& pipeline) const
+{
+    const std::vector<std::int32_t>& triangles = m_faces.triangles();
     std::vector<float> positions(3 * m_faces.nodeCount());
     float* out = positions.data();
     for (int i = 0; i < m_body->m_nodes.size(); ++i)
@@ -111,17 +119,16 @@ MeshId ClothMirror::refresh(Pipeline& pipeline)
     mesh.m_positions = positions.data();
     mesh.m_vertexCount = m_faces.nodeCount();
     mesh.m_looseVertices = true;  // what hangs on it, or is left where faces were cut away
-    m_id = pipeline.addCloth(mesh);
-    return m_id;
+    return pipeline.addCloth(mesh);
 }
 
-void ClothMirror::writeNodes(const NodeStretch& stretch) const
+void ClothMirror::writeNodes(const NodeStretch& stretch, const btVector3* starts) const
 {
     float *start = stretch.m_start, *end = stretch.m_end;
     for (std::size_t i = stretch.m_first; i < stretch.m_first + stretch.m_count; ++i)
     {
         const btSoftBody::Node& node = m_body->m_nodes[static_cast<int>(i)];
-        writePosition(node.m_q, start);
+        writePosition(starts ? starts[i] : node.m_q, start);
         writePosition(node.m_x, end);
     }
 }
@@ -152,17 +159,14 @@ void ObstacleMirror::reload(Pipeline& pipeline, const btTransform& pose)
     readMesh(*m_key.m_shape, pose, mesh);
     if (m_id != kNoMesh && mesh.m_topologyHash == m_topologyHash)
     {
-        if (mesh.m_positionHash != m_positionHash)
-        {
-            pipeline.moveObstacle(m_id, mesh.m_positions.data());
-            ++m_positionRevision;
-            startAnew();
-        }
+        if (mesh.m_positionHash != m_positionHash) deform(pipeline, mesh.m_positions, pose == m_pose);
     }
     else
     {
         ++m_positionRevision;
         startAnew();
+        m_before.reset();
+        m_positions.clear();
         if (m_id != kNoMesh) pipeline.remove(m_id);
         m_id = kNoMesh;
         if (!mesh.m_triangles.empty())
@@ -178,6 +182,23 @@ void ObstacleMirror::reload(Pipeline& pipeline, const btTransform& pose)
     }
     m_topologyHash = mesh.m_topologyHash;
     m_positionHash = mesh.m_positionHash;
+}
+
+// Takes other positions, in the same place unless the pose changed with them.
+void ObstacleMirror::deform(Pipeline& pipeline, std::vector<float>& positions, bool samePlace)
+{
+    if (samePlace && m_before && !m_positions.empty())
+        m_before->move(m_positions);
+    else
+        m_before = samePlace ? pipeline.makeProbe(m_id) : nullptr;
+    m_mostMotion = m_before ? m_before->mostMotion(positions) : 0;
+    pipeline.moveObstacle(m_id, positions.data());
+    ++m_positionRevision;
+    m_positions.swap(positions);
+    if (m_before && m_mostMotion <= kMostMotion * m_before->size())
+        m_deformedStep = m_lastSeen;
+    else
+        startAnew();
 }
 
 void ObstacleMirror::drop(Pipeline& pipeline)

@@ -10,6 +10,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <vector>
 
 #include "BulletSoftBody/btSoftBody.h"
 #include "LinearMath/btTransform.h"
@@ -17,6 +19,7 @@
 #include "bullet_plugin/adapter/cloth_parts.h"
 #include "bullet_plugin/adapter/kinematic_motion.h"
 #include "bullet_plugin/core/pipeline.h"
+#include "bullet_plugin/core/queries/mesh_probe.h"
 
 namespace drape
 {
@@ -53,8 +56,10 @@ public:
 
     // Adds the body to the pipeline, or replaces what is there when the topology changed.
     MeshId refresh(Pipeline& pipeline);
-    // Writes nodes' positions at the step's start (m_q) and predicted end (m_x).
-    void writeNodes(const NodeStretch& stretch) const;
+    // Adds a further mesh of the body to the pipeline, as refresh() left the first; the caller's to remove.
+    MeshId addCopy(Pipeline& pipeline) const;
+    // Writes nodes' positions at the step's start (m_q, or `starts`, by node) and predicted end (m_x).
+    void writeNodes(const NodeStretch& stretch, const btVector3* starts = nullptr) const;
     // As the pipeline has them.
     const ClothFaces& faces() const { return m_faces; }
     // Of the nodes as they lay when the topology was read, or when it was last taken up.
@@ -114,6 +119,12 @@ public:
     std::uint64_t startRevision() const { return m_startRevision; }
     // Counts up where the pipeline's positions of the obstacle change.
     std::uint64_t positionRevision() const { return m_positionRevision; }
+    // Where vertices moved in place since the step before, by no more than counts as motion within this step: the mesh
+    // as it was; null else. m_lastSeen is this step.
+    MeshProbe* before() const { return m_deformedStep == m_lastSeen ? m_before.get() : nullptr; }
+    // The pipeline's positions then, and how far the vertex went that moved most, m.
+    const std::vector<float>& positions() const { return m_positions; }
+    float mostMotion() const { return m_mostMotion; }
 
     int m_owners = 0;
     bool m_prepared = false;
@@ -122,6 +133,7 @@ public:
 
 private:
     void reload(Pipeline& pipeline, const btTransform& pose);
+    void deform(Pipeline& pipeline, std::vector<float>& positions, bool samePlace);
     void drop(Pipeline& pipeline);
 
     ObstacleKey m_key;
@@ -130,6 +142,10 @@ private:
     btTransform m_pose = btTransform::getIdentity();  // of the positions that the pipeline holds
     btTransform m_end = btTransform::getIdentity();   // of the obstacle at the end of the last step
     std::uint64_t m_startRevision = 0, m_positionRevision = 0;
+    std::unique_ptr<MeshProbe> m_before;  // of a mesh whose vertices moved
+    std::vector<float> m_positions;       // likewise, as the pipeline has them
+    float m_mostMotion = 0;               // m
+    std::uint64_t m_deformedStep = 0;
     std::uint64_t m_signature = 0, m_topologyHash = 0, m_positionHash = 0;
     bool m_kinematic = false;
     bool m_heldOneSided = false;  // by the pipeline

@@ -136,12 +136,13 @@ bool PairStarts::findPlaces(const StartingPair& pair, const btSoftBody& body)
         }
     }
     if (!(low[0] <= high[0])) return false;
-    return m_probes.count(pair.m_obstacle->id()) > 0 ||
+    return pair.m_obstacle->before() || m_probes.count(pair.m_obstacle->id()) > 0 ||
            m_state.pipeline().anyTriangleIn(pair.m_obstacle->id(), low, high);
 }
 
 MeshProbe* PairStarts::probeOf(const StartingPair& pair)
 {
+    if (MeshProbe* before = pair.m_obstacle->before()) return before;  // the pipeline has it as it is at the end
     Probe& probe = m_probes[pair.m_obstacle->id()];
     probe.m_lastStep = m_step;
     if (!probe.m_probe || probe.m_revision != pair.m_obstacle->positionRevision())
@@ -253,6 +254,7 @@ void PairStarts::pushNode(const StartingPair& pair, int node, Vec3 way, BodyCont
     push.m_distance = std::min(depth + kRecoveredShare * body.m_leastThickness,
                                (kLeastSpeed + kSpeedPerMetre * depth) * body.m_body->m_sst.sdt);
     push.m_speedLimit = SIMD_INFINITY;
+    push.m_carriedStarts = nullptr;
     push.m_carry = m_state.m_found.carryOf(pair.m_obstacle->id());
     body.m_pushes.push_back(push);
 }

@@ -77,6 +77,24 @@ bool passes(Vec3 p, Vec3 q, const Vec3 face[3], std::array<double, 3>& place)
     return true;
 }
 
+// Unit vectors along a triangle's first edge, across it and along its normal.
+struct TriangleFrame
+{
+    Vec3 m_along, m_across, m_normal;
+};
+
+// False where the triangle has no area.
+bool frameOf(const Vec3 corners[3], TriangleFrame& frame)
+{
+    const Vec3 edge = vec3Sub(corners[1], corners[0]), normal = vec3Cross(edge, vec3Sub(corners[2], corners[0]));
+    const float length = vec3Length(edge), area = vec3Length(normal);
+    if (!(length > 0) || !(area > 0)) return false;
+    frame.m_along = vec3Scale(edge, 1 / length);
+    frame.m_normal = vec3Scale(normal, 1 / area);
+    frame.m_across = vec3Cross(frame.m_normal, frame.m_along);
+    return true;
+}
+
 double squaredDistanceToBox(const BvhNode& node, Vec3 p)
 {
     double sum = 0;
@@ -128,8 +146,40 @@ void MeshProbe::build(const std::vector<std::uint32_t>& order)
         triangle.m_mesh = 0;
     m_layout = makeBvhLayout(std::uint32_t(m_order.size()));
     m_nodes = makeBvhNodes(m_layout);
+    refit();
+}
+
+void MeshProbe::refit()
+{
     std::size_t ignored = 0;  // no triangle with an invalid vertex meets another
     refitOnHost(m_nodes, m_layout, m_order, m_triangles, m_positions.data(), m_positions.data(), {0.0f}, ignored);
+}
+
+void MeshProbe::move(const std::vector<float>& positions)
+{
+    m_positions = positions;
+    m_closed = Closed::Unknown;
+    refit();
+}
+
+float MeshProbe::mostMotion(const std::vector<float>& positions) const
+{
+    float most = 0;
+    for (const Triangle& triangle : m_triangles)
+        for (const std::uint32_t vertex : triangle.m_vertices)
+            most = std::max(
+                most, vec3Length(vec3Sub(vec3Load(positions.data(), vertex), vec3Load(m_positions.data(), vertex))));
+    return most;
+}
+
+float MeshProbe::size() const
+{
+    if (m_nodes.empty()) return 0;
+    const BvhNode& root = m_nodes[m_layout.root()];
+    float size = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        size = std::max(size, root.m_high[axis] - root.m_low[axis]);
+    return size;
 }
 
 Vec3 MeshProbe::corner(std::uint32_t triangle, int i) const
@@ -336,25 +386,36 @@ bool MeshProbe::isInside(Vec3 point) const
 
 Vec3 MeshProbe::nearest(Vec3 point) const
 {
-    Vec3 best = point;
-    double least = -1;  // none yet
+    Place place;
+    if (!nearestWithin(point, std::numeric_limits<float>::infinity(), place)) return point;
+    return trianglePoint(corner(place.m_triangle, 0), corner(place.m_triangle, 1), corner(place.m_triangle, 2),
+                         place.m_weights);
+}
+
+bool MeshProbe::nearestWithin(Vec3 point, float distance, Place& place) const
+{
+    if (m_nodes.empty() || !positionIsValid(point)) return false;
+    double least = double(distance) * distance;
+    bool found = false;
     std::vector<std::uint32_t> stack = {m_layout.root()};
     while (!stack.empty())
     {
         const BvhNode& node = m_nodes[stack.back()];
         stack.pop_back();
-        if (least >= 0 && !(squaredDistanceToBox(node, point) < least)) continue;
+        if (!(squaredDistanceToBox(node, point) < least)) continue;
         if (node.m_count == 0)
         {
             const std::uint32_t triangle = m_order[node.m_first];
             Vec3 p[3];
             for (int i = 0; i < 3; ++i)
                 p[i] = vec3Sub(corner(triangle, i), point);
-            const Vec3 off = trianglePoint(p[0], p[1], p[2], closestOnTriangle(vec3(0, 0, 0), p[0], p[1], p[2]));
+            const Vec3 weights = closestOnTriangle(vec3(0, 0, 0), p[0], p[1], p[2]);
+            const Vec3 off = trianglePoint(p[0], p[1], p[2], weights);
             const double squared = double(off.x) * off.x + double(off.y) * off.y + double(off.z) * off.z;
-            if (least >= 0 && !(squared < least)) continue;
+            if (!(squared < least)) continue;
             least = squared;
-            best = vec3Add(point, off);
+            found = true;
+            place = Place{triangle, weights, vec3Length(off)};
             continue;
         }
         // The nearer child is the last one pushed.
@@ -365,6 +426,23 @@ Vec3 MeshProbe::nearest(Vec3 point) const
                   [&](std::uint32_t a, std::uint32_t b)
                   { return squaredDistanceToBox(m_nodes[a], point) > squaredDistanceToBox(m_nodes[b], point); });
     }
-    return best;
+    return found;
+}
+
+Vec3 MeshProbe::carriedWith(const Place& place, Vec3 point, const std::vector<float>& positions) const
+{
+    Vec3 before[3], after[3];
+    for (int i = 0; i < 3; ++i)
+    {
+        before[i] = corner(place.m_triangle, i);
+        after[i] = vec3Load(positions.data(), m_triangles[place.m_triangle].m_vertices[i]);
+    }
+    const Vec3 off = vec3Sub(point, trianglePoint(before[0], before[1], before[2], place.m_weights));
+    const Vec3 carried = trianglePoint(after[0], after[1], after[2], place.m_weights);
+    TriangleFrame from, to;
+    if (!frameOf(before, from) || !frameOf(after, to)) return vec3Add(carried, off);
+    Vec3 turned = vec3Scale(to.m_along, vec3Dot(from.m_along, off));
+    turned = vec3AddScaled(turned, to.m_across, vec3Dot(from.m_across, off));
+    return vec3AddScaled(vec3Add(carried, turned), to.m_normal, vec3Dot(from.m_normal, off));
 }
 }  // namespace drape

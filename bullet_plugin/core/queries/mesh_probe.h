@@ -27,6 +27,12 @@ public:
     // The description's indices are in range.
     explicit MeshProbe(const MeshDescription& mesh);
 
+    // Takes other positions of as many vertices.
+    void move(const std::vector<float>& positions);
+    // How far the vertex of a triangle moves most that other positions give, m, and the largest extent of the box.
+    float mostMotion(const std::vector<float>& positions) const;
+    float size() const;
+
     // Lists the triangles that have a point in common with the given one, in ascending order. None where a corner is
     // not finite or beyond 2^30 m.
     void listMeeting(const Vec3 corners[3], std::vector<std::uint32_t>& triangles) const;
@@ -48,6 +54,17 @@ public:
     bool isInside(Vec3 point) const;
     // The surface's nearest point. The mesh has triangles.
     Vec3 nearest(Vec3 point) const;
+    // A place of the surface: the weights of a triangle's corners, and how far it is, m.
+    struct Place
+    {
+        std::uint32_t m_triangle;
+        Vec3 m_weights;
+        float m_distance;
+    };
+    // The nearest one within the distance; false where there is none.
+    bool nearestWithin(Vec3 point, float distance, Place& place) const;
+    // Where a point goes that goes with a place of the surface, as it turns, when the vertices take other positions.
+    Vec3 carriedWith(const Place& place, Vec3 point, const std::vector<float>& positions) const;
 
 private:
     enum class Closed
@@ -62,6 +79,7 @@ private:
     };
 
     void build(const std::vector<std::uint32_t>& order);
+    void refit();
     template <class Visit>
     void forTrianglesIn(const Box& box, const Visit& visit) const;
     Vec3 corner(std::uint32_t triangle, int i) const;
