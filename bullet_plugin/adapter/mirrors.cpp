@@ -195,7 +195,7 @@ void ObstacleMirror::deform(Pipeline& pipeline, std::vector<float>& positions, b
     pipeline.moveObstacle(m_id, positions.data());
     ++m_positionRevision;
     m_positions.swap(positions);
-    if (m_before && m_mostMotion <= kMostMotion * m_before->size())
+    if (m_before && m_continued && m_mostMotion <= kMostMotion * m_before->size())
         m_deformedStep = m_lastSeen;
     else
         startAnew();

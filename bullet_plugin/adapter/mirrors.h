@@ -129,7 +129,8 @@ public:
     int m_owners = 0;
     bool m_prepared = false;
     std::uint64_t m_lastSeen = 0;
-    bool m_oneSided = false;  // wanted; the next refresh() heeds it
+    bool m_oneSided = false;   // wanted; the next refresh() heeds it
+    bool m_continued = false;  // there was a refresh() in the step before: what changed since is the motion of this one
 
 private:
     void reload(Pipeline& pipeline, const btTransform& pose);

@@ -22,18 +22,38 @@ struct MovingObject
     BodyMotion m_motion;
 };
 
+// A mesh whose box changes from one step to the next where it stands: its vertices move.
+struct ChangingMesh
+{
+    const btCollisionObject* m_object;
+    btVector3 m_low, m_high;  // m, with its margin, now
+    btScalar m_change;        // m, of the side that moved most since the step before
+};
+
+// What of a world moves in a step, or did since the one before.
+struct MovingThings
+{
+    std::vector<MovingObject> m_objects;
+    std::vector<ChangingMesh> m_meshes;
+
+    bool empty() const { return m_objects.empty() && m_meshes.empty(); }
+};
+
 // The kinematic meshes and compounds of the body's world that move in this step; observes those that rest, too. None
-// where the body's world info names no broad phase. beyond: raised to the most that bounds of the world's meshes, but
+// where the body's world info names no broad phase. Also meshes whose boxes change, but for those that move and for
+// children of compounds. beyond: raised to the most that bounds of the world's meshes, but
 // for children of compounds, lack of their margins (marginBeyondBounds()).
-std::vector<MovingObject> movingObjects(const btSoftBody& body, KinematicMotions& motions, btScalar& beyond);
+MovingThings movingThings(const btSoftBody& body, KinematicMotions& motions, btScalar& beyond);
 
 // Whether a moving object of a pair that Drape handles comes near the sleeping body in this step: Bullet wakes bodies
 // for it only once it has arrived.
-bool isReached(const PluginState& state, const btSoftBody& body, const std::vector<MovingObject>& moving);
+bool isReached(const PluginState& state, const btSoftBody& body, const MovingThings& moving);
 
 // Widens the body's bounds to its nodes' paths, grown by the body's part of the reach of contacts and by `extra` (m,
 // what obstacles' bounds lack), and to those paths as moving objects see them, where they come near the object; those
-// with the object's part, too, which its own bounds hold but for the activation. Bounds that are no numbers, because of
-// a node that is none, become those of the other nodes: Bullet would stop simulating the body.
-void coverMotion(btSoftBody& body, btScalar activation, btScalar extra, const std::vector<MovingObject>& moving);
+// with the object's part, too, which its own bounds hold but for the activation. Bounds that a mesh comes near to which
+// goes on changing as it does reach it: its vertices' motion is known from the second step with a pair on. Bounds that
+// are no numbers, because of a node that is none, become those of the other nodes: Bullet would stop simulating the
+// body.
+void coverMotion(btSoftBody& body, btScalar activation, btScalar extra, const MovingThings& moving);
 }  // namespace drape

@@ -264,6 +264,7 @@ void PluginState::prepareShape(const btCollisionObjectWrapper& wrap)
     if (obstacle.m_owners == 0) obstacle.requireReading();
     setPrepared(obstacle, true);
     obstacle.m_oneSided = isOneSided(shape);
+    obstacle.m_continued = false;
     obstacle.refresh(*m_pipeline, object.isKinematicObject(),
                      BodyMotion{wrap.getWorldTransform(), wrap.getWorldTransform()});
 }
@@ -324,6 +325,8 @@ void PluginState::adopt(const PairNote& note)
 {
     ClothMirror& cloth = m_cloths.try_emplace(note.m_cloth, note.m_cloth).first->second;
     ObstacleMirror& obstacle = m_obstacles.try_emplace(note.m_obstacle, note.m_obstacle).first->second;
+    // Each of the solvers counts a step.
+    if (obstacle.m_lastSeen != m_step) obstacle.m_continued = obstacle.m_lastSeen + m_solvers.size() >= m_step;
     cloth.m_lastSeen = obstacle.m_lastSeen = m_step;
     // Where it lies now, prepared or not: the trajectory depends on it.
     if (isUnpaired(cloth)) cloth.takeUp();

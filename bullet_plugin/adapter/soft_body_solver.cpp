@@ -62,8 +62,8 @@ void SoftBodySolver::predictMotion(btScalar dt)
     const btScalar activation = btScalar(m_state->settings().m_activation);
     KinematicMotions& motions = m_state->motionsOf(this);
     motions.beginStep(dt);
-    std::vector<MovingObject> moving;
-    if (m_softBodySet.size() > 0) moving = movingObjects(*m_softBodySet[0], motions, m_state->marginBeyondBounds());
+    MovingThings moving;
+    if (m_softBodySet.size() > 0) moving = movingThings(*m_softBodySet[0], motions, m_state->marginBeyondBounds());
     for (int i = 0; i < m_softBodySet.size(); ++i)
     {
         btSoftBody& body = *m_softBodySet[i];

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "kernels/lib/vec3.h"
+#include "kernels/lib/closest.h"
 #include "scenes/random.h"
 #include "scenes/shapes.h"
 
@@ -79,14 +79,50 @@ TEST(MeshProbe, NearestIsAsNearAsTheNearestOfAllTriangles)
 {
     const TriangleMesh mesh = makeTorus(1, 0.3f, 24, 12);
     const MeshProbe probe = probeOf(mesh);
+    const auto corner = [&](std::size_t index)
+    { return vec3Load(mesh.m_positions.data(), std::uint32_t(mesh.m_triangles[index])); };
     Random random(2);
     for (int i = 0; i < 500; ++i)
     {
         const Vec3 p = randomPlace(random, 4);
-        const float aside = std::sqrt(p.x * p.x + p.z * p.z) - 1;
-        const float toTube = std::fabs(std::sqrt(aside * aside + p.y * p.y) - 0.3f);
-        EXPECT_NEAR(vec3Length(vec3Sub(probe.nearest(p), p)), toTube, 0.02f);
+        float least = 1e9f;
+        for (std::size_t t = 0; t < mesh.triangleCount(); ++t)
+        {
+            const Vec3 a = corner(3 * t), b = corner(3 * t + 1), c = corner(3 * t + 2);
+            const Vec3 place = trianglePoint(a, b, c, closestOnTriangle(p, a, b, c));
+            least = std::min(least, vec3Length(vec3Sub(place, p)));
+        }
+        ASSERT_NEAR(vec3Length(vec3Sub(probe.nearest(p), p)), least, 1e-5f);
+        MeshProbe::Place place;
+        ASSERT_FALSE(probe.nearestWithin(p, 0.99f * least, place));
+        ASSERT_TRUE(probe.nearestWithin(p, 1.01f * least, place));
+        ASSERT_NEAR(place.m_distance, least, 1e-5f);
     }
+}
+
+TEST(MeshProbe, APointGoesWithThePlaceThatItIsNearest)
+{
+    const TriangleMesh mesh = makeSphere(1, 2);
+    MeshProbe probe = probeOf(mesh);
+    std::vector<float> turned;  // by a quarter about z, and moved by (1, 2, 3)
+    for (std::size_t i = 0; i < mesh.vertexCount(); ++i)
+    {
+        const float* const p = &mesh.m_positions[3 * i];
+        turned.insert(turned.end(), {1 - p[1], 2 + p[0], 3 + p[2]});
+    }
+    EXPECT_NEAR(probe.mostMotion(turned), std::sqrt(14.0f), 1.5f);
+    Random random(3);
+    for (int i = 0; i < 200; ++i)
+    {
+        const Vec3 p = randomPlace(random, 3);
+        MeshProbe::Place place;
+        ASSERT_TRUE(probe.nearestWithin(p, 10, place));
+        const Vec3 there = probe.carriedWith(place, p, turned);
+        ASSERT_NEAR(vec3Length(vec3Sub(there, vec3(1 - p.y, 2 + p.x, 3 + p.z))), 0, 1e-5f);
+    }
+    probe.move(turned);
+    EXPECT_TRUE(probe.isInside(vec3(1, 2, 3)));
+    EXPECT_FALSE(probe.isInside(vec3(0, 0, 0)));
 }
 
 TEST(MeshProbe, ListsTrianglesThatMeetAndTheMiddleOfWhereTheyDo)
