@@ -72,7 +72,7 @@ const DeformedPair& DeformedPairs::update(const ClothMirror& cloth, const Obstac
         }
     };
     const std::size_t jobs = (count + kNodesPerJob - 1) / kNodesPerJob;
-    m_state.threads().run(jobs, move);
+    runShared(m_state.threads(), jobs > 1, jobs, move);
     return pair;
 }
 }  // namespace drape

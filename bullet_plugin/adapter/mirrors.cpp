@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "bullet_plugin/adapter/margins.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
 
 namespace drape
@@ -16,6 +17,9 @@ constexpr int kFacesPerCheck = 32768;
 
 // Share of a mesh's size that vertices may move in a step: what moves farther is another pose that the app put there.
 constexpr float kMostMotion = 0.5f;
+
+// Nodes that a thread looks at in one go: less is not worth waking one.
+constexpr std::size_t kNodesPerJob = 4096;
 
 int nodeIndex(const btSoftBody& body, const btSoftBody::Node* node)
 {
@@ -133,24 +137,35 @@ void ClothMirror::writeNodes(const NodeStretch& stretch, const btVector3* starts
     }
 }
 
-void ClothMirror::rememberEnds()
+void ClothMirror::rememberEnds(ThreadTeam& threads)
 {
     m_ends.resize(static_cast<std::size_t>(m_body->m_nodes.size()));
-    for (std::size_t i = 0; i < m_ends.size(); ++i)
-        m_ends[i] = m_body->m_nodes[static_cast<int>(i)].m_x;
+    const auto remember = [this](std::size_t job)
+    {
+        for (std::size_t i = job * kNodesPerJob; i < std::min(m_ends.size(), (job + 1) * kNodesPerJob); ++i)
+            m_ends[i] = m_body->m_nodes[static_cast<int>(i)].m_x;
+    };
+    const std::size_t jobs = (m_ends.size() + kNodesPerJob - 1) / kNodesPerJob;
+    runShared(threads, jobs > 1, jobs, remember);
 }
 
-void ClothMirror::listJumped(std::vector<int>& nodes) const
+void ClothMirror::listJumped(ThreadTeam& threads, std::vector<int>& nodes) const
 {
-    nodes.clear();
-    const bool known = m_ends.size() == static_cast<std::size_t>(m_body->m_nodes.size());
-    for (int i = 0; i < m_body->m_nodes.size(); ++i)
+    const std::size_t count = static_cast<std::size_t>(m_body->m_nodes.size());
+    const bool known = m_ends.size() == count;
+    std::vector<std::vector<int>> found((count + kNodesPerJob - 1) / kNodesPerJob);
+    const auto compare = [&](std::size_t job)
     {
-        const btVector3& start = m_body->m_nodes[i].m_q;
-        if (known && std::equal(start.m_floats, start.m_floats + 3, m_ends[static_cast<std::size_t>(i)].m_floats))
-            continue;
-        nodes.push_back(i);
-    }
+        for (std::size_t i = job * kNodesPerJob; i < std::min(count, (job + 1) * kNodesPerJob); ++i)
+        {
+            const btScalar* const start = m_body->m_nodes[static_cast<int>(i)].m_q.m_floats;
+            if (!known || !std::equal(start, start + 3, m_ends[i].m_floats)) found[job].push_back(static_cast<int>(i));
+        }
+    };
+    runShared(threads, found.size() > 1, found.size(), compare);
+    nodes.clear();
+    for (const std::vector<int>& part : found)
+        nodes.insert(nodes.end(), part.begin(), part.end());
 }
 
 void ObstacleMirror::reload(Pipeline& pipeline, const btTransform& pose)
@@ -195,7 +210,9 @@ void ObstacleMirror::deform(Pipeline& pipeline, std::vector<float>& positions, b
     pipeline.moveObstacle(m_id, positions.data());
     ++m_positionRevision;
     m_positions.swap(positions);
-    if (m_before && m_continued && m_mostMotion <= kMostMotion * m_before->size())
+    // What moved by a margin at most is motion even where it is not known when it moved.
+    const bool isMotion = m_continued || m_mostMotion <= static_cast<float>(marginOf(*m_key.m_shape));
+    if (m_before && isMotion && m_mostMotion <= kMostMotion * m_before->size())
         m_deformedStep = m_lastSeen;
     else
         startAnew();

@@ -20,6 +20,7 @@
 #include "bullet_plugin/adapter/kinematic_motion.h"
 #include "bullet_plugin/core/pipeline.h"
 #include "bullet_plugin/core/queries/mesh_probe.h"
+#include "bullet_plugin/core/threads/thread_team.h"
 
 namespace drape
 {
@@ -72,10 +73,10 @@ public:
     // Counts up with each startAnew().
     std::uint64_t startRevision() const { return m_startRevision; }
     // Remembers where the nodes are at a step's end.
-    void rememberEnds();
+    void rememberEnds(ThreadTeam& threads);
     // Lists the nodes whose step starts (m_q) elsewhere than the last one that was remembered ended; all of them where
     // none was.
-    void listJumped(std::vector<int>& nodes) const;
+    void listJumped(ThreadTeam& threads, std::vector<int>& nodes) const;
 
     int m_owners = 0;  // algorithms alive that use this mirror, and who had it prepared
     bool m_prepared = false;

@@ -134,23 +134,27 @@ public:
     btScalar m_beyond = 0;  // m
 
 private:
-    // The broad phase still has the box of the step before, which Bullet grew by the breaking threshold.
+    // The broad phase still has the box of the step before.
     void addChanging(const btBroadphaseProxy& proxy, const btCollisionObject& object)
     {
         ChangingMesh mesh;
         mesh.m_object = &object;
         object.getCollisionShape()->getAabb(object.getWorldTransform(), mesh.m_low, mesh.m_high);
-        btScalar size = 0;
-        mesh.m_change = 0;
+        const btVector3 extent = mesh.m_high - mesh.m_low;
+        const btScalar size = std::max(extent.x(), std::max(extent.y(), extent.z()));
+        // Bullet grows it by the breaking threshold, but for the one that it has of an object that was just added.
+        mesh.m_change = std::min(changeOf(mesh, proxy, 0), changeOf(mesh, proxy, gContactBreakingThreshold));
+        if (mesh.m_change > kLeastChange * size && mesh.m_change <= size) m_found.m_meshes.push_back(mesh);
+    }
+    static btScalar changeOf(const ChangingMesh& mesh, const btBroadphaseProxy& proxy, btScalar grown)
+    {
+        btScalar change = 0;
         for (int axis = 0; axis < 3; ++axis)
         {
-            size = std::max(size, mesh.m_high[axis] - mesh.m_low[axis]);
-            mesh.m_change =
-                std::max(mesh.m_change, btFabs(mesh.m_low[axis] - gContactBreakingThreshold - proxy.m_aabbMin[axis]));
-            mesh.m_change =
-                std::max(mesh.m_change, btFabs(mesh.m_high[axis] + gContactBreakingThreshold - proxy.m_aabbMax[axis]));
+            change = std::max(change, btFabs(mesh.m_low[axis] - grown - proxy.m_aabbMin[axis]));
+            change = std::max(change, btFabs(mesh.m_high[axis] + grown - proxy.m_aabbMax[axis]));
         }
-        if (mesh.m_change > kLeastChange * size && mesh.m_change <= size) m_found.m_meshes.push_back(mesh);
+        return change;
     }
 
     KinematicMotions& m_motions;

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <map>
+#include <limits>
 #include <utility>
 
 #include "bullet_plugin/adapter/margins.h"
 #include "bullet_plugin/adapter/mirrors.h"
 #include "bullet_plugin/adapter/plugin_state.h"
-#include "bullet_plugin/adapter/step_contact.h"
 #include "kernels/lib/vec3.h"
 
 namespace drape
@@ -19,24 +18,11 @@ namespace
 // without a pair is kept.
 constexpr std::uint64_t kKeepSteps = 120;
 
+// Passes over all of an obstacle's triangles for one pair, before its tree is made for the questions that follow.
+constexpr int kMostPasses = 8;
+
 // Faces that a thread looks at in one go.
 constexpr std::size_t kFacesPerJob = 512;
-
-// Speed at which a node is pushed out, m/s: the least, and what is added for each metre of depth. Cloth moves as fast
-// when it is let fall by a centimetre.
-constexpr btScalar kLeastSpeed = btScalar(0.5);
-constexpr btScalar kSpeedPerMetre = 2;
-
-// Steps for which faces may pass through an obstacle between nodes that are all on the right side before cloth is drawn
-// back: what can come out over an edge or a corner has done so by then. Steps for which it is drawn back, and for which
-// it is moved out, at most; and after which its links count as at rest again. Rows of nodes that are drawn at a time,
-// and how deep they count as for their speed, m.
-constexpr int kPassingSteps = 30;
-constexpr int kBackSteps = 180;
-constexpr int kOutSteps = 1200;
-constexpr int kCalmSteps = 30;
-constexpr int kRowsDrawn = 3;
-constexpr btScalar kDrawnDepth = btScalar(0.1);
 
 Vec3 vec3Of(const btVector3& v)
 {
@@ -51,33 +37,6 @@ void forWholeFaces(const ClothFaces& faces, const Visit& visit)
     const auto isNode = [&](std::int32_t node) { return node >= 0 && std::size_t(node) < faces.nodeCount(); };
     for (std::size_t i = 0; 3 * i + 2 < triangles.size(); ++i)
         if (std::all_of(&triangles[3 * i], &triangles[3 * i] + 3, isNode)) visit(static_cast<std::uint32_t>(i));
-}
-
-// Marks every node that can be reached from the first over faces that do not meet the obstacle.
-template <class Visit>
-void forRegionOf(const ClothFaces& faces, std::size_t first, const std::vector<unsigned char>& faceMeets,
-                 std::vector<unsigned char>& seen, const Visit& visit)
-{
-    std::vector<std::size_t> stack = {first};
-    seen[first] = 1;
-    while (!stack.empty())
-    {
-        const std::size_t node = stack.back();
-        stack.pop_back();
-        visit(node);
-        const auto follow = [&](const std::int32_t* nodes)
-        {
-            if (faceMeets[std::size_t(nodes - faces.triangles().data()) / 3]) return;
-            for (int k = 0; k < 3; ++k)
-            {
-                const std::size_t other = std::size_t(nodes[k]);
-                if (seen[other]) continue;
-                seen[other] = 1;
-                stack.push_back(other);
-            }
-        };
-        faces.forFacesOf(node, follow);
-    }
 }
 }  // namespace
 
@@ -108,24 +67,37 @@ void PairStarts::listFaces(const StartingPair& pair, const std::vector<int>* nod
     m_faces.erase(std::unique(m_faces.begin(), m_faces.end()), m_faces.end());
 }
 
-// Where the nodes are at the step's start, in the frame of the obstacle's positions. Returns whether a triangle of the
-// obstacle may come near one of the faces.
-bool PairStarts::findPlaces(const StartingPair& pair, const btSoftBody& body)
+// Where nodes are at the step's start, in the frame of the obstacle's positions: all, or those of m_faces.
+void PairStarts::findPlaces(const StartingPair& pair, bool all)
 {
-    const btTransform toObstacle = pair.m_kinematic ? pair.m_motion.m_start.inverse() : btTransform::getIdentity();
+    const btSoftBody& body = *pair.m_cloth->body();
+    const btTransform toObstacle = pair.m_motion.m_start.inverse();
     m_places.resize(static_cast<std::size_t>(body.m_nodes.size()));
-    for (std::size_t i = 0; i < m_places.size(); ++i)
+    const auto find = [&](std::size_t node)
     {
-        const btVector3& start = body.m_nodes[static_cast<int>(i)].m_q;
-        m_places[i] = vec3Of(pair.m_kinematic ? toObstacle * start : start);
-    }
-    float low[3] = {SIMD_INFINITY, SIMD_INFINITY, SIMD_INFINITY}, high[3] = {-low[0], -low[1], -low[2]};
+        const btVector3& start = body.m_nodes[static_cast<int>(node)].m_q;
+        m_places[node] = vec3Of(pair.m_kinematic ? toObstacle * start : start);
+    };
+    for (std::size_t node = 0; all && node < m_places.size(); ++node)
+        find(node);
+    if (all) return;
+    const std::vector<std::int32_t>& triangles = pair.m_cloth->faces().triangles();
+    for (const std::uint32_t face : m_faces)
+        for (std::size_t k = 0; k < 3; ++k)
+            find(std::size_t(triangles[3 * std::size_t(face) + k]));
+}
+
+// Whether a triangle of the obstacle may come near one of the faces.
+bool PairStarts::mayMeet(const StartingPair& pair, Guard& guard)
+{
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    float low[3] = {infinity, infinity, infinity}, high[3] = {-infinity, -infinity, -infinity};
     const std::vector<std::int32_t>& triangles = pair.m_cloth->faces().triangles();
     for (const std::uint32_t face : m_faces)
     {
-        for (int k = 0; k < 3; ++k)
+        for (std::size_t k = 0; k < 3; ++k)
         {
-            const Vec3& place = m_places[std::size_t(triangles[3 * std::size_t(face) + std::size_t(k)])];
+            const Vec3& place = m_places[std::size_t(triangles[3 * std::size_t(face) + k])];
             if (!positionIsValid(place)) continue;
             const float coordinates[3] = {place.x, place.y, place.z};
             for (int axis = 0; axis < 3; ++axis)
@@ -136,8 +108,11 @@ bool PairStarts::findPlaces(const StartingPair& pair, const btSoftBody& body)
         }
     }
     if (!(low[0] <= high[0])) return false;
-    return pair.m_obstacle->before() || m_probes.count(pair.m_obstacle->id()) > 0 ||
-           m_state.pipeline().anyTriangleIn(pair.m_obstacle->id(), low, high);
+    // A pair that is checked again and again, because an app moves nodes, has its obstacle's tree made.
+    if (pair.m_obstacle->before() || m_probes.count(pair.m_obstacle->id()) > 0 || guard.m_passes >= kMostPasses)
+        return true;
+    ++guard.m_passes;
+    return m_state.pipeline().anyTriangleIn(pair.m_obstacle->id(), low, high);
 }
 
 MeshProbe* PairStarts::probeOf(const StartingPair& pair)
@@ -169,10 +144,7 @@ std::uint64_t PairStarts::findMeeting(const StartingPair& pair, const MeshProbe&
             if (!meeting.m_triangles.empty()) found[job].push_back(meeting);
         }
     };
-    if (found.size() > 1)
-        m_state.threads().run(found.size(), look);
-    else if (!found.empty())
-        look(0);
+    runShared(m_state.threads(), found.size() > 1, found.size(), look);
     std::uint64_t count = 0;
     m_meeting.clear();
     for (std::vector<MeetingFace>& part : found)
@@ -214,200 +186,6 @@ void PairStarts::tell(const StartingPair& pair, Guard& guard, bool pushed)
     m_state.log(line);
 }
 
-// Fills m_regions and m_wrong from m_meeting.
-void PairStarts::findRegions(const ClothFaces& faces, const MeshProbe& probe)
-{
-    std::vector<unsigned char> faceMeets(faces.triangles().size() / 3, 0), seen(m_places.size(), 0);
-    for (const MeetingFace& meeting : m_meeting)
-        faceMeets[meeting.m_face] = 1;
-    m_regions.assign(m_places.size(), 0);
-    m_wrong.assign(m_places.size(), 0);
-    std::size_t insideCount = 0;
-    for (std::size_t i = 0; i < m_places.size(); ++i)
-    {
-        if (seen[i]) continue;
-        // A region whose faces meet nothing lies on one side.
-        const bool inside = probe.isInside(m_places[i]);
-        const auto mark = [&](std::size_t node)
-        {
-            m_regions[node] = static_cast<int>(i);
-            m_wrong[node] = inside;
-            insideCount += inside;
-        };
-        forRegionOf(faces, i, faceMeets, seen, mark);
-    }
-    m_insideIsRight = 2 * insideCount > m_places.size() && probe.volume() < 0;
-    if (!m_insideIsRight) return;
-    for (unsigned char& wrong : m_wrong)
-        wrong = !wrong;
-}
-
-// way: to the place of the surface where it is to come out, in the frame of the obstacle's positions.
-void PairStarts::pushNode(const StartingPair& pair, int node, Vec3 way, BodyContacts& body) const
-{
-    const btVector3 there(way.x, way.y, way.z);
-    const btScalar depth = there.length();
-    if (!(depth > 0) || !(movableInverseMass(body.m_body->m_nodes[node]) > 0)) return;
-    NodePush push;
-    push.m_node = node;
-    push.m_normal = (pair.m_kinematic ? pair.m_motion.m_end.getBasis() * there : there).normalized();
-    push.m_distance = std::min(depth + kRecoveredShare * body.m_leastThickness,
-                               (kLeastSpeed + kSpeedPerMetre * depth) * body.m_body->m_sst.sdt);
-    push.m_speedLimit = SIMD_INFINITY;
-    push.m_carriedStarts = nullptr;
-    push.m_carry = m_state.m_found.carryOf(pair.m_obstacle->id());
-    body.m_pushes.push_back(push);
-}
-
-// Faces that the obstacle's edges and corners go through between nodes that are all on the right side.
-void PairStarts::pushFaces(const StartingPair& pair, const MeshProbe& probe, BodyContacts& body)
-{
-    const std::vector<std::int32_t>& triangles = pair.m_cloth->faces().triangles();
-    for (const MeetingFace& meeting : m_meeting)
-    {
-        const std::int32_t* const nodes = &triangles[3 * std::size_t(meeting.m_face)];
-        const auto isWrong = [&](std::int32_t node) { return m_wrong[std::size_t(node)] != 0; };
-        if (std::any_of(nodes, nodes + 3, isWrong)) continue;
-        const Vec3 corners[3] = {m_places[std::size_t(nodes[0])], m_places[std::size_t(nodes[1])],
-                                 m_places[std::size_t(nodes[2])]};
-        Vec3 middle;
-        if (!probe.middleOfMeeting(corners, meeting.m_triangles, middle)) continue;
-        if (probe.isInside(middle) == m_insideIsRight) continue;
-        const Vec3 way = vec3Sub(probe.nearest(middle), middle);
-        for (int k = 0; k < 3; ++k)
-            pushNode(pair, nodes[k], way, body);
-    }
-}
-
-// Nodes that are on the wrong side, each to the nearest place of the surface.
-void PairStarts::pushToSurface(const StartingPair& pair, const MeshProbe& probe, BodyContacts& body)
-{
-    std::vector<std::size_t> wrong;
-    for (std::size_t i = 0; i < m_places.size(); ++i)
-        if (m_wrong[i]) wrong.push_back(i);
-    std::vector<Vec3> ways(wrong.size());
-    const auto find = [&](std::size_t i) { ways[i] = vec3Sub(probe.nearest(m_places[wrong[i]]), m_places[wrong[i]]); };
-    m_state.threads().run(wrong.size(), find);
-    for (std::size_t i = 0; i < wrong.size(); ++i)
-        pushNode(pair, static_cast<int>(wrong[i]), ways[i], body);
-    pushFaces(pair, probe, body);
-}
-
-// A node of the largest region on the right side that has faces which meet the obstacle, and the number of such
-// regions.
-int PairStarts::largestPart(const TangledPair& tangled, std::size_t& count) const
-{
-    std::map<int, std::size_t> sizes;
-    for (std::size_t i = 0; i < m_places.size(); ++i)
-        if (tangled.m_meets[i] && !m_wrong[i]) sizes.emplace(m_regions[i], 0);
-    for (const int region : m_regions)
-    {
-        const auto found = sizes.find(region);
-        if (found != sizes.end()) ++found->second;
-    }
-    count = sizes.size();
-    const auto smaller = [](const auto& a, const auto& b) { return a.second < b.second; };
-    const auto largest = std::max_element(sizes.begin(), sizes.end(), smaller);
-    return largest == sizes.end() ? -1 : largest->first;
-}
-
-// Draws the nodes that are next to the kept part through the surface, towards where that part is.
-void PairStarts::drawBack(const StartingPair& pair, const MeshProbe& probe, int keptNode, BodyContacts& body)
-{
-    const ClothFaces& faces = pair.m_cloth->faces();
-    const int kept = m_regions[std::size_t(keptNode)];
-    std::map<int, btVector3> row, drawn;  // by node, the way to go
-    for (const MeetingFace& meeting : m_meeting)
-    {
-        const std::int32_t* const nodes = &faces.triangles()[3 * std::size_t(meeting.m_face)];
-        const auto isKept = [&](std::int32_t node) { return m_regions[std::size_t(node)] == kept; };
-        const std::int32_t* const from = std::find_if(nodes, nodes + 3, isKept);
-        if (from == nodes + 3) continue;
-        const Vec3 way = probe.sumOfNormals(meeting.m_triangles, m_places[std::size_t(*from)]);
-        for (int k = 0; k < 3; ++k)
-            if (!isKept(nodes[k]))
-                row.emplace(nodes[k], btVector3(0, 0, 0)).first->second += btVector3(way.x, way.y, way.z);
-    }
-    for (int rows = 0; rows < kRowsDrawn && !row.empty(); ++rows)
-    {
-        drawn.insert(row.begin(), row.end());
-        std::map<int, btVector3> next;
-        for (const auto& [node, way] : row)
-        {
-            const btVector3 onward = way;
-            const auto follow = [&](const std::int32_t* nodes)
-            {
-                for (int k = 0; k < 3; ++k)
-                    if (m_regions[std::size_t(nodes[k])] != kept && drawn.count(nodes[k]) == 0)
-                        next.emplace(nodes[k], btVector3(0, 0, 0)).first->second += onward;
-            };
-            faces.forFacesOf(std::size_t(node), follow);
-        }
-        row.swap(next);
-    }
-    for (const auto& [node, way] : drawn)
-    {
-        if (!(way.length2() > 0)) continue;
-        m_wrong[std::size_t(node)] = 1;
-        const btVector3 step = way.normalized() * kDrawnDepth;
-        pushNode(pair, node, vec3Of(step), body);
-    }
-}
-
-void PairStarts::moveOut(const StartingPair& pair, const MeshProbe& probe, Guard& guard, BodyContacts& body)
-{
-    if (guard.m_outSteps++ == 0) guard.m_out = probe.wayOutOfBox(m_places);
-    const Vec3 step = vec3Scale(guard.m_out, static_cast<float>(kDrawnDepth));
-    for (std::size_t i = 0; i < m_places.size(); ++i)
-    {
-        m_wrong[i] = 1;
-        pushNode(pair, static_cast<int>(i), step, body);
-    }
-}
-
-void PairStarts::pushApart(const StartingPair& pair, MeshProbe& probe, Guard& guard, BodyContacts& body)
-{
-    TangledPair tangled;
-    tangled.m_obstacle = pair.m_obstacle->id();
-    tangled.m_meets.assign(m_places.size(), 0);
-    const std::vector<std::int32_t>& triangles = pair.m_cloth->faces().triangles();
-    for (const MeetingFace& meeting : m_meeting)
-        for (std::size_t k = 0; k < 3; ++k)
-            tangled.m_meets[std::size_t(triangles[3 * std::size_t(meeting.m_face) + k])] = 1;
-    findRegions(pair.m_cloth->faces(), probe);
-    std::size_t parts = 0;
-    const int largest = largestPart(tangled, parts);
-    if (std::find(m_wrong.begin(), m_wrong.end(), 1) == m_wrong.end()) ++guard.m_passingSteps;
-    if (guard.m_passingSteps <= kPassingSteps)
-    {
-        pushToSurface(pair, probe, body);
-    }
-    else if (guard.m_backSteps < kBackSteps && guard.m_outSteps == 0 && parts > 1)
-    {
-        ++guard.m_backSteps;
-        if (guard.m_keptNode < 0 || m_wrong[std::size_t(guard.m_keptNode)]) guard.m_keptNode = largest;
-        drawBack(pair, probe, guard.m_keptNode, body);
-    }
-    else if (guard.m_outSteps < kOutSteps)
-    {
-        moveOut(pair, probe, guard, body);
-    }
-    else
-    {
-        return;  // held as it is
-    }
-    tangled.m_wrongSide = m_wrong;
-    body.m_tangled.push_back(std::move(tangled));
-}
-
-// Whether nodes of a cloth that is moved out and meets nothing any more are still on the wrong side.
-bool PairStarts::isInsideOnItsWay(const StartingPair& pair, const MeshProbe& probe, const Guard& guard)
-{
-    if (guard.m_outSteps == 0 || guard.m_outSteps >= kOutSteps) return false;
-    findRegions(pair.m_cloth->faces(), probe);
-    return std::find(m_wrong.begin(), m_wrong.end(), 1) != m_wrong.end();
-}
-
 void PairStarts::check(const StartingPair& pair, const std::vector<int>& jumped, BodyContacts& body)
 {
     Guard& guard = m_guards[std::uint64_t(pair.m_cloth->id()) << 32 | pair.m_obstacle->id()];
@@ -423,7 +201,8 @@ void PairStarts::check(const StartingPair& pair, const std::vector<int>& jumped,
     guard.m_obstacleRevision = pair.m_obstacle->startRevision();
     guard.m_intersections = 0;
     listFaces(pair, anew ? nullptr : &jumped);
-    if (!findPlaces(pair, *body.m_body)) return;
+    findPlaces(pair, anew);
+    if (!mayMeet(pair, guard)) return;
     MeshProbe& probe = *probeOf(pair);
     guard.m_intersections = findMeeting(pair, probe);
     if (guard.m_intersections == 0 && !isInsideOnItsWay(pair, probe, guard))
@@ -435,15 +214,13 @@ void PairStarts::check(const StartingPair& pair, const std::vector<int>& jumped,
     if (!anew)
     {
         listFaces(pair, nullptr);
+        findPlaces(pair, true);
         guard.m_intersections = findMeeting(pair, probe);
     }
     ++m_intersectingPairs;
     m_intersections += guard.m_intersections;
     const bool pushed = probe.isClosed();
     tell(pair, guard, pushed);
-    if (!pushed) return;
-    pushApart(pair, probe, guard, body);
-    guard.m_calmUntil = m_step + kCalmSteps;
-    body.m_wasTangled = true;
+    if (pushed) pushApart(pair, probe, guard, body);
 }
 }  // namespace drape

@@ -12,7 +12,8 @@
 // Nodes that come out on different sides of something thin leave faces that pass through it. Where that lasts, what is
 // beyond is drawn back, a few rows of nodes at a time, through where the cloth's largest part meets the surface. Where
 // that does not help either, as with a ring that is linked with the cloth, the whole cloth is moved out of the
-// obstacle's box, on the shortest way along an axis. What cannot follow, since it is pinned, stays and is reported.
+// obstacle's box, on the shortest way along an axis, unless nodes are pinned. What is left is reported, and held as it
+// is.
 //
 // The right side of a closed mesh is its outside, however its triangles are wound; but for a room, whose triangles look
 // inwards and which holds most of the cloth's nodes. Cloth that is wholly inside intersects nothing, and stays there.
@@ -68,6 +69,7 @@ private:
         std::uint64_t m_intersections = 0;                          // pairs of triangles; 0: guarded
         std::uint64_t m_lastStep = 0;
         std::uint64_t m_calmUntil = 0;  // step up to which the cloth counts as tangled shortly before
+        int m_passes = 0;               // over all of the obstacle's triangles
         int m_passingSteps = 0;         // in which faces met the obstacle although all nodes were on the right side
         int m_keptNode = -1;            // of the part of the cloth that others are drawn back to; -1: none are
         int m_backSteps = 0;            // in which they were
@@ -89,7 +91,8 @@ private:
     };
 
     void listFaces(const StartingPair& pair, const std::vector<int>* nodes);
-    bool findPlaces(const StartingPair& pair, const btSoftBody& body);
+    void findPlaces(const StartingPair& pair, bool all);
+    bool mayMeet(const StartingPair& pair, Guard& guard);
     MeshProbe* probeOf(const StartingPair& pair);
     std::uint64_t findMeeting(const StartingPair& pair, const MeshProbe& probe);
     void tellMargins(const StartingPair& pair) const;

@@ -281,6 +281,12 @@ void PluginState::obstacleChanged(const btCollisionShape* shape)
 {
     for (auto& entry : m_obstacles)
         if (entry.second.uses(shape)) entry.second.requireReading();
+    // Cloth that sleeps on it has to see it move; its algorithm is alive, and so is the body.
+    for (const auto& owned : m_owned)
+    {
+        const ObstacleMirror* obstacle = findObstacle(owned.second.m_obstacle);
+        if (obstacle && obstacle->uses(shape)) const_cast<btSoftBody*>(owned.second.m_cloth)->activate();
+    }
 }
 
 void PluginState::startAnew(const btCollisionObject* object)

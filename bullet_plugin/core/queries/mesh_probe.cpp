@@ -5,10 +5,10 @@
 #include <limits>
 #include <utility>
 
+#include "bullet_plugin/core/bvh/bvh_layout.h"
 #include "bullet_plugin/core/bvh/morton_order.h"
-#include "bullet_plugin/core/bvh/refit.h"
 #include "bullet_plugin/core/exact/triangles.h"
-#include "kernels/lib/closest.h"
+#include "axis.h"
 #include "kernels/lib/triangle_pair.h"
 
 namespace drape
@@ -27,16 +27,6 @@ ExactPoint exactPoint(Vec3 p)
 ExactTriangle exactTriangle(const Vec3 corners[3])
 {
     return ExactTriangle{{exactPoint(corners[0]), exactPoint(corners[1]), exactPoint(corners[2])}};
-}
-
-float& at(Vec3& v, int axis)
-{
-    return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
-}
-
-float at(const Vec3& v, int axis)
-{
-    return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
 enum class Crossing
@@ -77,52 +67,6 @@ bool passes(Vec3 p, Vec3 q, const Vec3 face[3], std::array<double, 3>& place)
     return true;
 }
 
-// Unit vectors along a triangle's first edge, across it and along its normal.
-struct TriangleFrame
-{
-    Vec3 m_along, m_across, m_normal;
-};
-
-// False where the triangle has no area.
-bool frameOf(const Vec3 corners[3], TriangleFrame& frame)
-{
-    const Vec3 edge = vec3Sub(corners[1], corners[0]), normal = vec3Cross(edge, vec3Sub(corners[2], corners[0]));
-    const float length = vec3Length(edge), area = vec3Length(normal);
-    if (!(length > 0) || !(area > 0)) return false;
-    frame.m_along = vec3Scale(edge, 1 / length);
-    frame.m_normal = vec3Scale(normal, 1 / area);
-    frame.m_across = vec3Cross(frame.m_normal, frame.m_along);
-    return true;
-}
-
-double squaredDistanceToBox(const BvhNode& node, Vec3 p)
-{
-    double sum = 0;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        const double below = double(node.m_low[axis]) - at(p, axis), above = double(at(p, axis)) - node.m_high[axis];
-        const double off = std::max(0.0, std::max(below, above));
-        sum += off * off;
-    }
-    return sum;
-}
-
-// Equal for vertices at one position.
-std::vector<std::uint32_t> joinedVertices(const std::vector<float>& positions)
-{
-    std::vector<std::uint32_t> order(positions.size() / 3), joined(order.size());
-    for (std::uint32_t i = 0; i < order.size(); ++i)
-        order[i] = i;
-    const auto less = [&](std::uint32_t a, std::uint32_t b)
-    {
-        const float *const p = &positions[3 * std::size_t(a)], *const q = &positions[3 * std::size_t(b)];
-        return std::lexicographical_compare(p, p + 3, q, q + 3);
-    };
-    std::sort(order.begin(), order.end(), less);
-    for (std::size_t i = 0; i < order.size(); ++i)
-        joined[order[i]] = i > 0 && !less(order[i - 1], order[i]) ? joined[order[i - 1]] : order[i];
-    return joined;
-}
 }  // namespace
 
 MeshProbe::MeshProbe(const Topology& topology, const std::vector<std::uint32_t>& order,
@@ -142,44 +86,37 @@ MeshProbe::MeshProbe(const MeshDescription& mesh)
 void MeshProbe::build(const std::vector<std::uint32_t>& order)
 {
     m_order = order;
-    for (Triangle& triangle : m_triangles)
-        triangle.m_mesh = 0;
-    m_layout = makeBvhLayout(std::uint32_t(m_order.size()));
-    m_nodes = makeBvhNodes(m_layout);
+    const BvhLayout layout = makeBvhLayout(std::uint32_t(m_order.size()));
+    for (const BvhNode& node : makeBvhNodes(layout))
+        m_nodes.push_back(Node{{}, {}, node.m_first, node.m_count});
+    if (!m_nodes.empty()) m_root = layout.root();
     refit();
 }
 
 void MeshProbe::refit()
 {
-    std::size_t ignored = 0;  // no triangle with an invalid vertex meets another
-    refitOnHost(m_nodes, m_layout, m_order, m_triangles, m_positions.data(), m_positions.data(), {0.0f}, ignored);
-}
-
-void MeshProbe::move(const std::vector<float>& positions)
-{
-    m_positions = positions;
-    m_closed = Closed::Unknown;
-    refit();
-}
-
-float MeshProbe::mostMotion(const std::vector<float>& positions) const
-{
-    float most = 0;
-    for (const Triangle& triangle : m_triangles)
-        for (const std::uint32_t vertex : triangle.m_vertices)
-            most = std::max(
-                most, vec3Length(vec3Sub(vec3Load(positions.data(), vertex), vec3Load(m_positions.data(), vertex))));
-    return most;
-}
-
-float MeshProbe::size() const
-{
-    if (m_nodes.empty()) return 0;
-    const BvhNode& root = m_nodes[m_layout.root()];
-    float size = 0;
-    for (int axis = 0; axis < 3; ++axis)
-        size = std::max(size, root.m_high[axis] - root.m_low[axis]);
-    return size;
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    for (Node& node : m_nodes)
+    {
+        std::fill_n(node.m_low, 3, infinity);
+        std::fill_n(node.m_high, 3, -infinity);
+        const auto add = [&](const float low[3], const float high[3])
+        {
+            for (int axis = 0; axis < 3; ++axis)
+            {
+                node.m_low[axis] = std::min(node.m_low[axis], low[axis]);
+                node.m_high[axis] = std::max(node.m_high[axis], high[axis]);
+            }
+        };
+        for (std::uint32_t child = 0; child < node.m_count; ++child)
+            add(m_nodes[node.m_first + child].m_low, m_nodes[node.m_first + child].m_high);
+        for (int i = 0; node.m_count == 0 && i < 3; ++i)
+        {
+            const Vec3 place = corner(m_order[node.m_first], i);
+            const float coordinates[3] = {place.x, place.y, place.z};
+            if (positionIsValid(place)) add(coordinates, coordinates);
+        }
+    }
 }
 
 Vec3 MeshProbe::corner(std::uint32_t triangle, int i) const
@@ -192,10 +129,10 @@ template <class Visit>
 void MeshProbe::forTrianglesIn(const Box& box, const Visit& visit) const
 {
     if (m_nodes.empty()) return;
-    std::vector<std::uint32_t> stack = {m_layout.root()};
+    std::vector<std::uint32_t> stack = {m_root};
     while (!stack.empty())
     {
-        const BvhNode& node = m_nodes[stack.back()];
+        const Node& node = m_nodes[stack.back()];
         stack.pop_back();
         bool meets = true;
         for (int axis = 0; axis < 3; ++axis)
@@ -272,74 +209,6 @@ Vec3 MeshProbe::sumOfNormals(const std::vector<std::uint32_t>& triangles, Vec3 p
     return sum;
 }
 
-Vec3 MeshProbe::wayOutOfBox(const std::vector<Vec3>& points) const
-{
-    const BvhNode& root = m_nodes[m_layout.root()];
-    Vec3 best = vec3(0, 1, 0);
-    float least = std::numeric_limits<float>::infinity();
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        float low = std::numeric_limits<float>::infinity(), high = -std::numeric_limits<float>::infinity();
-        for (const Vec3& point : points)
-        {
-            if (!positionIsValid(point)) continue;
-            low = std::min(low, at(point, axis));
-            high = std::max(high, at(point, axis));
-        }
-        for (const float sign : {1.0f, -1.0f})
-        {
-            const float way = sign > 0 ? root.m_high[axis] - low : high - root.m_low[axis];
-            if (!(way < least)) continue;
-            least = way;
-            best = vec3(0, 0, 0);
-            at(best, axis) = sign;
-        }
-    }
-    return best;
-}
-
-bool MeshProbe::isClosed()
-{
-    if (m_closed != Closed::Unknown) return m_closed == Closed::Yes;
-    const std::vector<std::uint32_t> joined = joinedVertices(m_positions);
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
-    for (const Triangle& triangle : m_triangles)
-    {
-        for (int i = 0; i < 3; ++i)
-        {
-            const std::uint32_t a = joined[triangle.m_vertices[i]], b = joined[triangle.m_vertices[(i + 1) % 3]];
-            if (a != b) edges.emplace_back(std::min(a, b), std::max(a, b));
-        }
-    }
-    std::sort(edges.begin(), edges.end());
-    bool even = !edges.empty();
-    for (std::size_t first = 0, next; even && first < edges.size(); first = next)
-    {
-        for (next = first; next < edges.size() && edges[next] == edges[first];)
-            ++next;
-        even = (next - first) % 2 == 0;
-    }
-    m_closed = even ? Closed::Yes : Closed::No;
-    return even;
-}
-
-double MeshProbe::volume() const
-{
-    double sixfold = 0;
-    const Vec3 origin = m_triangles.empty() ? vec3(0, 0, 0) : corner(0, 0);
-    for (std::uint32_t t = 0; t < m_triangles.size(); ++t)
-    {
-        double p[3][3];
-        for (int i = 0; i < 3; ++i)
-            for (int axis = 0; axis < 3; ++axis)
-                p[i][axis] = double(at(corner(t, i), axis)) - at(origin, axis);
-        sixfold += p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) +
-                   p[0][1] * (p[1][2] * p[2][0] - p[1][0] * p[2][2]) +
-                   p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
-    }
-    return sixfold / 6;
-}
-
 // False where a crossing is unclear.
 bool MeshProbe::countCrossings(Vec3 point, Vec3 target, unsigned& crossings) const
 {
@@ -366,7 +235,7 @@ bool MeshProbe::countCrossings(Vec3 point, Vec3 target, unsigned& crossings) con
 bool MeshProbe::isInside(Vec3 point) const
 {
     if (m_nodes.empty() || !positionIsValid(point)) return false;
-    const BvhNode& root = m_nodes[m_layout.root()];
+    const Node& root = m_nodes[m_root];
     for (int axis = 0; axis < 3; ++axis)
         if (at(point, axis) < root.m_low[axis] || at(point, axis) > root.m_high[axis]) return false;
     for (int ray = 0; ray < kRays; ++ray)
@@ -384,65 +253,4 @@ bool MeshProbe::isInside(Vec3 point) const
     return false;
 }
 
-Vec3 MeshProbe::nearest(Vec3 point) const
-{
-    Place place;
-    if (!nearestWithin(point, std::numeric_limits<float>::infinity(), place)) return point;
-    return trianglePoint(corner(place.m_triangle, 0), corner(place.m_triangle, 1), corner(place.m_triangle, 2),
-                         place.m_weights);
-}
-
-bool MeshProbe::nearestWithin(Vec3 point, float distance, Place& place) const
-{
-    if (m_nodes.empty() || !positionIsValid(point)) return false;
-    double least = double(distance) * distance;
-    bool found = false;
-    std::vector<std::uint32_t> stack = {m_layout.root()};
-    while (!stack.empty())
-    {
-        const BvhNode& node = m_nodes[stack.back()];
-        stack.pop_back();
-        if (!(squaredDistanceToBox(node, point) < least)) continue;
-        if (node.m_count == 0)
-        {
-            const std::uint32_t triangle = m_order[node.m_first];
-            Vec3 p[3];
-            for (int i = 0; i < 3; ++i)
-                p[i] = vec3Sub(corner(triangle, i), point);
-            const Vec3 weights = closestOnTriangle(vec3(0, 0, 0), p[0], p[1], p[2]);
-            const Vec3 off = trianglePoint(p[0], p[1], p[2], weights);
-            const double squared = double(off.x) * off.x + double(off.y) * off.y + double(off.z) * off.z;
-            if (!(squared < least)) continue;
-            least = squared;
-            found = true;
-            place = Place{triangle, weights, vec3Length(off)};
-            continue;
-        }
-        // The nearer child is the last one pushed.
-        const std::size_t first = stack.size();
-        for (std::uint32_t child = 0; child < node.m_count; ++child)
-            stack.push_back(node.m_first + child);
-        std::sort(stack.begin() + std::ptrdiff_t(first), stack.end(),
-                  [&](std::uint32_t a, std::uint32_t b)
-                  { return squaredDistanceToBox(m_nodes[a], point) > squaredDistanceToBox(m_nodes[b], point); });
-    }
-    return found;
-}
-
-Vec3 MeshProbe::carriedWith(const Place& place, Vec3 point, const std::vector<float>& positions) const
-{
-    Vec3 before[3], after[3];
-    for (int i = 0; i < 3; ++i)
-    {
-        before[i] = corner(place.m_triangle, i);
-        after[i] = vec3Load(positions.data(), m_triangles[place.m_triangle].m_vertices[i]);
-    }
-    const Vec3 off = vec3Sub(point, trianglePoint(before[0], before[1], before[2], place.m_weights));
-    const Vec3 carried = trianglePoint(after[0], after[1], after[2], place.m_weights);
-    TriangleFrame from, to;
-    if (!frameOf(before, from) || !frameOf(after, to)) return vec3Add(carried, off);
-    Vec3 turned = vec3Scale(to.m_along, vec3Dot(from.m_along, off));
-    turned = vec3AddScaled(turned, to.m_across, vec3Dot(from.m_across, off));
-    return vec3AddScaled(vec3Add(carried, turned), to.m_normal, vec3Dot(from.m_normal, off));
-}
 }  // namespace drape

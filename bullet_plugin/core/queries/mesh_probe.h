@@ -13,7 +13,6 @@
 #include <memory>
 #include <vector>
 
-#include "bullet_plugin/core/bvh/bvh_layout.h"
 #include "bullet_plugin/core/mesh/topology.h"
 #include "drape/mesh_description.h"
 #include "kernels/shared/types.h"
@@ -77,9 +76,16 @@ private:
     {
         Vec3 m_low, m_high;
     };
+    // Of the tree over the triangles: exact boxes, links as in BvhNode.
+    struct Node
+    {
+        float m_low[3], m_high[3];  // m; low above high where no vertex is valid
+        std::uint32_t m_first, m_count;
+    };
 
     void build(const std::vector<std::uint32_t>& order);
     void refit();
+    static double squaredDistance(const Node& node, Vec3 point);
     template <class Visit>
     void forTrianglesIn(const Box& box, const Visit& visit) const;
     Vec3 corner(std::uint32_t triangle, int i) const;
@@ -88,8 +94,8 @@ private:
     std::vector<Triangle> m_triangles;
     std::vector<float> m_positions;
     std::vector<std::uint32_t> m_order;
-    BvhLayout m_layout;
-    std::vector<BvhNode> m_nodes;
+    std::uint32_t m_root = 0;
+    std::vector<Node> m_nodes;  // children before parents
     Closed m_closed = Closed::Unknown;
 };
 }  // namespace drape

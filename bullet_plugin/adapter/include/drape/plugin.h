@@ -19,6 +19,9 @@
 // new pose. One whose pose is set later, by a tick's callback or while it sleeps, moves the whole way from its last
 // pose; one that sleeps has no velocity for Bullet: give it DISABLE_DEACTIVATION. In the first step in which a body is
 // there it rests. A static object's pose that changes is a teleport, and so is the place of a child in its compound.
+//
+// Cloth that begins a step with its triangles through a mesh, because it was put there or the mesh was, is reported
+// (kStepStartsIntersecting) and pushed out of closed meshes; nodes are checked again wherever an app moves them.
 #pragma once
 
 #include <memory>
@@ -96,8 +99,11 @@ public:
     // All objects that are in a world.
     void release(const btCollisionWorld& world);
 
-    // Tells that vertices of a mesh shape were moved in place. Refits (a changed bounding box), scaling and changes
-    // that touch one of the vertices that are sampled each step are noticed without it.
+    // Says that vertices of a mesh shape were moved in place, and wakes soft bodies that sleep beside it. Refits (a
+    // changed bounding box), scaling and changes that touch one of the vertices that are sampled each step are noticed
+    // without it. What vertices moved since the step before is motion within the coming step, as a body's is; more than
+    // half of the mesh's size is another pose, where cloth starts anew. In the first step that an obstacle has a soft
+    // body near, it has not moved.
     void obstacleChanged(const btCollisionShape* shape);
 
     // Whether only a mesh shape's front is solid, the side from which its triangles' corners run counter-clockwise:
