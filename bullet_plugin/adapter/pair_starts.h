@@ -24,6 +24,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <unordered_map>
 #include <vector>
@@ -70,6 +71,7 @@ private:
         std::uint64_t m_lastStep = 0;
         std::uint64_t m_calmUntil = 0;  // step up to which the cloth counts as tangled shortly before
         int m_passes = 0;               // over all of the obstacle's triangles
+        int m_pushedSteps = 0;          // in which nodes were on the wrong side
         int m_passingSteps = 0;         // in which faces met the obstacle although all nodes were on the right side
         int m_keptNode = -1;            // of the part of the cloth that others are drawn back to; -1: none are
         int m_backSteps = 0;            // in which they were
@@ -90,6 +92,8 @@ private:
         std::vector<std::uint32_t> m_triangles;
     };
 
+    using Row = std::map<int, btVector3>;  // by node, the way to go, of any length
+
     void listFaces(const StartingPair& pair, const std::vector<int>* nodes);
     void findPlaces(const StartingPair& pair, bool all);
     bool mayMeet(const StartingPair& pair, Guard& guard);
@@ -97,7 +101,11 @@ private:
     std::uint64_t findMeeting(const StartingPair& pair, const MeshProbe& probe);
     void tellMargins(const StartingPair& pair) const;
     void tell(const StartingPair& pair, Guard& guard, bool pushed);
-    void pushApart(const StartingPair& pair, MeshProbe& probe, Guard& guard, BodyContacts& body);
+    void pushApart(const StartingPair& pair, const MeshProbe& probe, Guard& guard, BodyContacts& body);
+    bool push(const StartingPair& pair, const MeshProbe& probe, const TangledPair& tangled, Guard& guard,
+              BodyContacts& body);
+    Row firstRow(const ClothFaces& faces, const MeshProbe& probe, int kept) const;
+    Row nextRow(const ClothFaces& faces, const Row& row, const Row& drawn, int kept) const;
     void findRegions(const ClothFaces& faces, const MeshProbe& probe);
     int largestPart(const TangledPair& tangled, std::size_t& count) const;
     void pushToSurface(const StartingPair& pair, const MeshProbe& probe, BodyContacts& body);

@@ -18,14 +18,23 @@ namespace
 constexpr btScalar kLeastSpeed = btScalar(0.5);
 constexpr btScalar kSpeedPerMetre = 2;
 
-// Steps for which faces may pass through an obstacle between nodes that are all on the right side before cloth is drawn
-// back: what can come out over an edge or a corner has done so by then. Steps for which it is drawn back, and for which
-// it is moved out, at most; and after which its links count as at rest again. Rows of nodes that are drawn at a time,
-// and how deep they count as for their speed, m.
+// Steps in which nodes are on the wrong side, at most, before another way out is taken than to the nearest surface.
+constexpr int kMostPushedSteps = 240;
+
+// Steps for which faces may pass through an obstacle between nodes that are all on the right side, likewise: what can
+// come out over an edge or a corner has done so by then.
 constexpr int kPassingSteps = 30;
+
+// Most steps for which parts of a cloth are drawn back, and for which all of it is moved out, the second where nodes
+// are pinned: those that follow stretch the cloth.
 constexpr int kBackSteps = 180;
 constexpr int kOutSteps = 1200;
+constexpr int kOutStepsOfPinned = 90;
+
+// Steps after the last push in which links may still be stretched.
 constexpr int kCalmSteps = 30;
+
+// Rows of nodes that are drawn at a time, and the depth by which nodes that are drawn or moved out are as fast, m.
 constexpr int kRowsDrawn = 3;
 constexpr btScalar kDrawnDepth = btScalar(0.1);
 
@@ -162,12 +171,11 @@ int PairStarts::largestPart(const TangledPair& tangled, std::size_t& count) cons
     return largest == sizes.end() ? -1 : largest->first;
 }
 
-// Draws the nodes that are next to the kept part through the surface, towards where that part is.
-void PairStarts::drawBack(const StartingPair& pair, const MeshProbe& probe, int keptNode, BodyContacts& body)
+// Nodes of faces that reach from the kept region into the obstacle or through it, and the way back for each: out of
+// the surface on the kept side.
+PairStarts::Row PairStarts::firstRow(const ClothFaces& faces, const MeshProbe& probe, int kept) const
 {
-    const ClothFaces& faces = pair.m_cloth->faces();
-    const int kept = m_regions[std::size_t(keptNode)];
-    std::map<int, btVector3> row, drawn;  // by node, the way to go
+    Row row;
     for (const MeetingFace& meeting : m_meeting)
     {
         const std::int32_t* const nodes = &faces.triangles()[3 * std::size_t(meeting.m_face)];
@@ -179,29 +187,43 @@ void PairStarts::drawBack(const StartingPair& pair, const MeshProbe& probe, int 
             if (!isKept(nodes[k]))
                 row.emplace(nodes[k], btVector3(0, 0, 0)).first->second += btVector3(way.x, way.y, way.z);
     }
+    return row;
+}
+
+// The nodes beside a row that are neither kept nor drawn yet. They go the same way.
+PairStarts::Row PairStarts::nextRow(const ClothFaces& faces, const Row& row, const Row& drawn, int kept) const
+{
+    Row next;
+    for (const auto& entry : row)
+    {
+        const auto follow = [&](const std::int32_t* nodes)
+        {
+            for (int k = 0; k < 3; ++k)
+                if (m_regions[std::size_t(nodes[k])] != kept && drawn.count(nodes[k]) == 0)
+                    next.emplace(nodes[k], btVector3(0, 0, 0)).first->second += entry.second;
+        };
+        faces.forFacesOf(std::size_t(entry.first), follow);
+    }
+    return next;
+}
+
+// Draws the nodes that are next to the kept part through the surface, towards where that part is.
+void PairStarts::drawBack(const StartingPair& pair, const MeshProbe& probe, int keptNode, BodyContacts& body)
+{
+    const ClothFaces& faces = pair.m_cloth->faces();
+    const int kept = m_regions[std::size_t(keptNode)];
+    Row drawn;
+    Row row = firstRow(faces, probe, kept);
     for (int rows = 0; rows < kRowsDrawn && !row.empty(); ++rows)
     {
         drawn.insert(row.begin(), row.end());
-        std::map<int, btVector3> next;
-        for (const auto& [node, way] : row)
-        {
-            const btVector3 onward = way;
-            const auto follow = [&](const std::int32_t* nodes)
-            {
-                for (int k = 0; k < 3; ++k)
-                    if (m_regions[std::size_t(nodes[k])] != kept && drawn.count(nodes[k]) == 0)
-                        next.emplace(nodes[k], btVector3(0, 0, 0)).first->second += onward;
-            };
-            faces.forFacesOf(std::size_t(node), follow);
-        }
-        row.swap(next);
+        row = nextRow(faces, row, drawn, kept);
     }
-    for (const auto& [node, way] : drawn)
+    for (const auto& entry : drawn)
     {
-        if (!(way.length2() > 0)) continue;
-        m_wrong[std::size_t(node)] = 1;
-        const btVector3 step = way.normalized() * kDrawnDepth;
-        pushNode(pair, node, vec3Of(step), body);
+        if (!(entry.second.length2() > 0)) continue;
+        m_wrong[std::size_t(entry.first)] = 1;
+        pushNode(pair, entry.first, vec3Of(entry.second.normalized() * kDrawnDepth), body);
     }
 }
 
@@ -216,26 +238,21 @@ void PairStarts::moveOut(const StartingPair& pair, const MeshProbe& probe, Guard
     }
 }
 
-void PairStarts::pushApart(const StartingPair& pair, MeshProbe& probe, Guard& guard, BodyContacts& body)
+// Pushes by the way that is due. False where no way is left.
+bool PairStarts::push(const StartingPair& pair, const MeshProbe& probe, const TangledPair& tangled, Guard& guard,
+                      BodyContacts& body)
 {
-    TangledPair tangled;
-    tangled.m_obstacle = pair.m_obstacle->id();
-    tangled.m_meets.assign(m_places.size(), 0);
-    const std::vector<std::int32_t>& triangles = pair.m_cloth->faces().triangles();
-    for (const MeetingFace& meeting : m_meeting)
-        for (std::size_t k = 0; k < 3; ++k)
-            tangled.m_meets[std::size_t(triangles[3 * std::size_t(meeting.m_face) + k])] = 1;
-    findRegions(pair.m_cloth->faces(), probe);
-    std::size_t parts = 0;
-    const int largest = largestPart(tangled, parts);
-    bool anyWrong = false, anyPinned = false;
+    bool anyWrong = false, anyPinned = false, anyPinnedInside = false;
     for (std::size_t i = 0; i < m_wrong.size(); ++i)
     {
         const bool pinned = !(movableInverseMass(body.m_body->m_nodes[static_cast<int>(i)]) > 0);
         anyPinned = anyPinned || pinned;
+        anyPinnedInside = anyPinnedInside || (m_wrong[i] && pinned);
         anyWrong = anyWrong || (m_wrong[i] && !pinned);
     }
-    if (!anyWrong) ++guard.m_passingSteps;
+    if (!anyWrong || ++guard.m_pushedSteps > kMostPushedSteps) ++guard.m_passingSteps;
+    std::size_t parts = 0;
+    const int largest = largestPart(tangled, parts);
     if (guard.m_passingSteps <= kPassingSteps)
     {
         pushToSurface(pair, probe, body);
@@ -246,18 +263,30 @@ void PairStarts::pushApart(const StartingPair& pair, MeshProbe& probe, Guard& gu
         if (guard.m_keptNode < 0 || m_wrong[std::size_t(guard.m_keptNode)]) guard.m_keptNode = largest;
         drawBack(pair, probe, guard.m_keptNode, body);
     }
-    else if (guard.m_outSteps < kOutSteps && !anyPinned)
-    {
-        moveOut(pair, probe, guard, body);
-    }
     else
     {
-        return;  // held as it is
+        const int most = anyPinned ? kOutStepsOfPinned : kOutSteps;
+        if (guard.m_outSteps >= most || anyPinnedInside || m_insideIsRight) return false;
+        moveOut(pair, probe, guard, body);
     }
-    tangled.m_wrongSide = m_wrong;
-    body.m_tangled.push_back(std::move(tangled));
+    return true;
+}
+
+void PairStarts::pushApart(const StartingPair& pair, const MeshProbe& probe, Guard& guard, BodyContacts& body)
+{
+    TangledPair tangled;
+    tangled.m_obstacle = pair.m_obstacle->id();
+    tangled.m_meets.assign(m_places.size(), 0);
+    const std::vector<std::int32_t>& triangles = pair.m_cloth->faces().triangles();
+    for (const MeetingFace& meeting : m_meeting)
+        for (std::size_t k = 0; k < 3; ++k)
+            tangled.m_meets[std::size_t(triangles[3 * std::size_t(meeting.m_face) + k])] = 1;
+    findRegions(pair.m_cloth->faces(), probe);
     guard.m_calmUntil = m_step + kCalmSteps;
     body.m_wasTangled = true;
+    if (!push(pair, probe, tangled, guard, body)) return;
+    tangled.m_wrongSide = m_wrong;
+    body.m_tangled.push_back(std::move(tangled));
 }
 
 // Whether nodes of a cloth that is moved out and meets nothing any more are still on the wrong side.
