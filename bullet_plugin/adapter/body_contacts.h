@@ -27,7 +27,8 @@ struct FeatureContacts
 // as a whole: links that were stretched meanwhile do not throw it.
 constexpr btScalar kMostTangledSpeed = 3;
 
-// What of a pair that began its step intersecting no contact may hold, since it would be kept on the wrong side.
+// Marks the nodes of a pair that began its step intersecting. A contact that would keep one of them on the wrong side
+// must not act.
 struct TangledPair
 {
     MeshId m_obstacle;

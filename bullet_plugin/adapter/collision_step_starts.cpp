@@ -1,4 +1,4 @@
-// How a step begins for pairs that are not guarded, and what is remembered of its end for the next one's start.
+// Handles the start of a step for pairs that are not guarded, and remembers its end for the next step's start.
 #include <algorithm>
 #include <cmath>
 
@@ -82,7 +82,7 @@ void CollisionStep::preparePushes(BodyContacts& body)
     }
 }
 
-// The same, but for those with an obstacle that would keep the feature on the wrong side of it.
+// Adds contacts of one feature, without those that would keep it on the wrong side of their obstacle.
 void CollisionStep::addHeldContacts(BodyContacts& body, const Contact* first, std::uint32_t count,
                                     const ClothFeature& cloth)
 {

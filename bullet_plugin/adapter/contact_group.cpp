@@ -100,7 +100,7 @@ btVector3 ContactGroup::startOf(const RoundsNodes& nodes, const Row& row)
     return start;
 }
 
-// What the obstacle's motion in the step does to that point, m.
+// Returns by how much the obstacle's motion in the step moves that point, m.
 btVector3 ContactGroup::carriedFrom(const RoundsNodes& nodes, const Row& row)
 {
     if (!row.m_carriedStarts) return row.m_carry ? *row.m_carry * row.m_start - row.m_start : btVector3(0, 0, 0);

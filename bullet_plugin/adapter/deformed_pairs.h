@@ -1,4 +1,4 @@
-// Where a cloth's nodes start in a step for an obstacle whose vertices move in that step.
+// Computes where a cloth's nodes start in a step, as an obstacle sees them whose vertices move in that step.
 //
 // Why: in detection an obstacle rests as it is at the step's end, and the cloth moves relative to it. What a rigid
 // motion does to a node's start is one transform for all nodes (kernels/lib/rigid_motion.h). Where vertices move each

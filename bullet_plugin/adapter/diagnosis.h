@@ -1,4 +1,4 @@
-// What is wrong with a world, as far as Drape can see: one line each, for a person.
+// Lists what is wrong with a world, as far as Drape can see: one line each, for a person.
 //
 // Input: a world between steps, before or after its first. Cost: a look at every pair of a soft body and another
 // object, and, where their boxes meet, an exact check of their triangles: milliseconds to seconds, for no step. Errors:

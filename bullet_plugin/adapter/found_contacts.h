@@ -25,8 +25,8 @@ public:
     void nameObstacle(MeshId obstacle, const btCollisionObject* object, const BodyMotion& motion);
     // What the obstacle's motion in the step does to its points; null when it rests. Stays where it is until clear().
     const btTransform* carryOf(MeshId obstacle) const;
-    // Where the obstacle of a mesh of a cloth that is there for one obstacle alone carries the nodes' starts, see
-    // StepContact. They stay the caller's.
+    // Names the places to which an obstacle carries the nodes' starts (see StepContact), for a mesh of a cloth that has
+    // this one obstacle alone. The array stays the caller's.
     void nameStarts(MeshId cloth, const btVector3* carriedStarts) { m_carriedStarts[cloth] = carriedStarts; }
     // Adds a contact of the caller's own for one node of a body, which resolve() gives back as it is.
     Contact addOwn(const StepContact& contact);

@@ -120,8 +120,8 @@ public:
     std::uint64_t startRevision() const { return m_startRevision; }
     // Counts up where the pipeline's positions of the obstacle change.
     std::uint64_t positionRevision() const { return m_positionRevision; }
-    // Where vertices moved in place since the step before, by no more than counts as motion within this step: the mesh
-    // as it was; null else. m_lastSeen is this step.
+    // Returns the mesh as it was in the step before if its vertices moved in place since, by no more than counts as
+    // motion within this step; null otherwise. m_lastSeen is this step.
     MeshProbe* before() const { return m_deformedStep == m_lastSeen ? m_before.get() : nullptr; }
     // The pipeline's positions then, and how far the vertex went that moved most, m.
     const std::vector<float>& positions() const { return m_positions; }

@@ -160,7 +160,7 @@ private:
     KinematicMotions& m_motions;
 };
 
-// Whether the mesh may come near what lies in the box within this step and the next, as fast as it changed.
+// Returns whether the mesh may come near the box within this step and the next, if it goes on changing as fast.
 bool comesNear(const ChangingMesh& mesh, const Extent& extent, btScalar reach)
 {
     const btScalar margin = reach + 2 * mesh.m_change;

@@ -30,7 +30,7 @@ struct ChangingMesh
     btScalar m_change;        // m, of the side that moved most since the step before
 };
 
-// What of a world moves in a step, or did since the one before.
+// Holds the objects of a world that move in a step, and the meshes that changed since the step before.
 struct MovingThings
 {
     std::vector<MovingObject> m_objects;
@@ -40,9 +40,9 @@ struct MovingThings
 };
 
 // The kinematic meshes and compounds of the body's world that move in this step; observes those that rest, too. None
-// where the body's world info names no broad phase. Also meshes whose boxes change, but for those that move and for
-// children of compounds. beyond: raised to the most that bounds of the world's meshes, but
-// for children of compounds, lack of their margins (marginBeyondBounds()).
+// where the body's world info names no broad phase. Also the meshes whose boxes change, except children of compounds
+// and objects that move. beyond: raised to the most that bounds of the world's meshes, except children of compounds,
+// lack of their margins (marginBeyondBounds()).
 MovingThings movingThings(const btSoftBody& body, KinematicMotions& motions, btScalar& beyond);
 
 // Whether a moving object of a pair that Drape handles comes near the sleeping body in this step: Bullet wakes bodies
@@ -51,9 +51,9 @@ bool isReached(const PluginState& state, const btSoftBody& body, const MovingThi
 
 // Widens the body's bounds to its nodes' paths, grown by the body's part of the reach of contacts and by `extra` (m,
 // what obstacles' bounds lack), and to those paths as moving objects see them, where they come near the object; those
-// with the object's part, too, which its own bounds hold but for the activation. Bounds that a mesh comes near to which
-// goes on changing as it does reach it: its vertices' motion is known from the second step with a pair on. Bounds that
-// are no numbers, because of a node that is none, become those of the other nodes: Bullet would stop simulating the
-// body.
+// with the object's part, too, which its own bounds hold but for the activation. Bounds
+// reach a changing mesh one step before it may arrive, because its vertices' motion is known from the second step with
+// a pair on. Bounds that are no numbers, because of a node that is none, become those of the other nodes: Bullet would
+// stop simulating the body.
 void coverMotion(btSoftBody& body, btScalar activation, btScalar extra, const MovingThings& moving);
 }  // namespace drape

@@ -54,7 +54,7 @@ void PairStarts::beginStep()
     drop(m_probes);
 }
 
-// Of all nodes where `nodes` is null.
+// Lists the faces of the given nodes, or all faces if `nodes` is null.
 void PairStarts::listFaces(const StartingPair& pair, const std::vector<int>* nodes)
 {
     const ClothFaces& faces = pair.m_cloth->faces();
@@ -67,7 +67,8 @@ void PairStarts::listFaces(const StartingPair& pair, const std::vector<int>* nod
     m_faces.erase(std::unique(m_faces.begin(), m_faces.end()), m_faces.end());
 }
 
-// Where nodes are at the step's start, in the frame of the obstacle's positions: all, or those of m_faces.
+// Computes the nodes' places at the step's start in the frame of the obstacle's positions: of all nodes, or of those in
+// m_faces.
 void PairStarts::findPlaces(const StartingPair& pair, bool all)
 {
     const btSoftBody& body = *pair.m_cloth->body();
@@ -87,7 +88,7 @@ void PairStarts::findPlaces(const StartingPair& pair, bool all)
             find(std::size_t(triangles[3 * std::size_t(face) + k]));
 }
 
-// Whether a triangle of the obstacle may come near one of the faces.
+// Returns whether a triangle of the obstacle may come near one of the faces.
 bool PairStarts::mayMeet(const StartingPair& pair, Guard& guard)
 {
     constexpr float infinity = std::numeric_limits<float>::infinity();

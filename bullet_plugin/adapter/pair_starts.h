@@ -1,5 +1,4 @@
-// Which pairs of a cloth and an obstacle begin their steps free of intersections, and the way out for those that do
-// not.
+// Finds pairs of a cloth and an obstacle that begin a step with triangles that intersect, and gets them apart.
 //
 // Why: contacts keep a node on the side on which it begins the step. Cloth that begins with its triangles through a
 // mesh's is kept there, for good. Job: a pair is guarded once a check has found none of its triangles intersecting at
@@ -53,13 +52,13 @@ class PairStarts
 public:
     explicit PairStarts(PluginState& state) : m_state(state) {}
 
-    // Once, before the first check() of a step; forgets pairs that were not seen for long.
+    // Begins a step, before its first check(). Forgets pairs that were not seen for long.
     void beginStep();
     // Checks the pair where it has to be. jumped: nodes that are elsewhere than the last step left them. Where the pair
     // intersects and can be pushed apart, adds what is to be done to the body. Bullet's nodes are only read.
     void check(const StartingPair& pair, const std::vector<int>& jumped, BodyContacts& body);
 
-    // Of the step so far: pairs of a cloth and an obstacle that intersect, and how many pairs of their triangles do.
+    // Count, in the step so far, the pairs of a cloth and an obstacle that intersect, and the pairs of their triangles.
     std::size_t intersectingPairs() const { return m_intersectingPairs; }
     std::uint64_t intersections() const { return m_intersections; }
 
@@ -121,7 +120,7 @@ private:
     std::uint64_t m_step = 0;
     std::size_t m_intersectingPairs = 0;
     std::uint64_t m_intersections = 0;
-    // Of one check, kept for their memory.
+    // These belong to one check and are kept for their memory.
     std::vector<std::uint32_t> m_faces;
     std::vector<Vec3> m_places;  // by node, in the frame of the obstacle's positions, at the step's start
     std::vector<MeetingFace> m_meeting;

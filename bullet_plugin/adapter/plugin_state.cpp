@@ -331,7 +331,7 @@ void PluginState::adopt(const PairNote& note)
 {
     ClothMirror& cloth = m_cloths.try_emplace(note.m_cloth, note.m_cloth).first->second;
     ObstacleMirror& obstacle = m_obstacles.try_emplace(note.m_obstacle, note.m_obstacle).first->second;
-    // Each of the solvers counts a step.
+    // Every solver's step counts, so that worlds which take turns are continued, too.
     if (obstacle.m_lastSeen != m_step) obstacle.m_continued = obstacle.m_lastSeen + m_solvers.size() >= m_step;
     cloth.m_lastSeen = obstacle.m_lastSeen = m_step;
     // Where it lies now, prepared or not: the trajectory depends on it.

@@ -289,7 +289,7 @@ void PairStarts::pushApart(const StartingPair& pair, const MeshProbe& probe, Gua
     body.m_tangled.push_back(std::move(tangled));
 }
 
-// Whether nodes of a cloth that is moved out and meets nothing any more are still on the wrong side.
+// Returns whether nodes are still on the wrong side of a cloth that is moved out and meets nothing any more.
 bool PairStarts::isInsideOnItsWay(const StartingPair& pair, const MeshProbe& probe, const Guard& guard)
 {
     if (guard.m_outSteps == 0 || guard.m_outSteps >= kOutSteps) return false;

@@ -30,7 +30,7 @@ inline btVector3 carried(const btTransform* carry, const btVector3& point)
     return carry ? *carry * point : point;
 }
 
-// The same for where a node starts.
+// Returns where the obstacle's motion carries the place at which a node starts.
 inline btVector3 carriedStart(const btTransform* carry, const btVector3* carriedStarts, int node,
                               const btVector3& start)
 {

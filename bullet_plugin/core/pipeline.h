@@ -145,7 +145,7 @@ public:
     // The same for a caller with arrays of its own, of all the cloths one after the other: x y z per vertex.
     void copyNodes(const std::vector<MeshId>& cloths, const float* start, const float* end);
 
-    // Whether a triangle of the obstacle comes into the box (m, in the frame of its positions as they were given).
+    // Returns whether a triangle of the obstacle reaches into the box (m, in the frame of its positions as given).
     // O(n).
     bool anyTriangleIn(MeshId obstacle, const float low[3], const float high[3]);
     // The obstacle for questions about what lies where beside it, in the same frame.

@@ -50,7 +50,7 @@ public:
         m_plugin.obstacleChanged(&m_shape.shape());
         m_world.step();
     }
-    // The same, and nothing intersects or, of a closed mesh, is inside afterwards.
+    // Steps and requires that nothing intersects afterwards, and that nothing is inside of a closed mesh.
     void checkedStep(double time, const Pose& pose, bool closed)
     {
         step(time, pose);
@@ -185,7 +185,7 @@ TEST_P(AnimatedMeshes, ClosedBodiesThatGrowAndTwistKeepClothOutside)
 
 INSTANTIATE_TEST_SUITE_P(Backends, AnimatedMeshes, testing::ValuesIn(allBackends()), backendName);
 
-// As friction of a body's motion does: the cloth goes with a belt.
+// Cloth goes with a belt, as it does with a body that moves.
 TEST(AnimatedMeshesOnHost, FrictionCarriesClothAlongWithTheSurface)
 {
     AnimatedScene scene(hostSettings(), makeTerrain(6, 0, 24, 1), 0.03f, true);

@@ -1,4 +1,4 @@
-// What lies where beside a mesh: inside and outside whatever the winding, the nearest place, and which triangles meet.
+// MeshProbe: inside and outside whatever the winding, the nearest place, and which triangles meet.
 #include "bullet_plugin/core/queries/mesh_probe.h"
 
 #include <gtest/gtest.h>

@@ -36,7 +36,7 @@ enum class Crossing
     Unclear  // the segment runs into an edge or along the face
 };
 
-// Whether the segment passes through the triangle's inside.
+// Decides whether the segment passes through the triangle's inside.
 Crossing crossingOf(const ExactPoint& p, const ExactPoint& q, const ExactTriangle& face)
 {
     const ExactPoint &a = face.m_p[0], &b = face.m_p[1], &c = face.m_p[2];
@@ -48,7 +48,7 @@ Crossing crossingOf(const ExactPoint& p, const ExactPoint& q, const ExactTriangl
     return start * end < 0 && least * most > 0 ? Crossing::One : Crossing::Unclear;
 }
 
-// Where the segment p q passes through the triangle, in double arithmetic; false where it does not.
+// Computes where the segment p q passes through the triangle, in double arithmetic; false if it does not.
 bool passes(Vec3 p, Vec3 q, const Vec3 face[3], std::array<double, 3>& place)
 {
     const ExactTriangle triangle = exactTriangle(face);

@@ -28,7 +28,7 @@ public:
 
     // Takes other positions of as many vertices.
     void move(const std::vector<float>& positions);
-    // How far the vertex of a triangle moves most that other positions give, m, and the largest extent of the box.
+    // Returns how far the vertex that moves most would go to other positions, m; and the largest extent of the box.
     float mostMotion(const std::vector<float>& positions) const;
     float size() const;
 
@@ -45,11 +45,11 @@ public:
     // The axis, or its opposite, along which points leave the mesh's box soonest; unit.
     Vec3 wayOutOfBox(const std::vector<Vec3>& points) const;
 
-    // Found out by the first call, O(n log n).
+    // The first call finds out, O(n log n).
     bool isClosed();
     // Volume that a closed mesh encloses, m³; negative where its triangles look inwards.
     double volume() const;
-    // Of a closed mesh.
+    // The mesh is closed.
     bool isInside(Vec3 point) const;
     // The surface's nearest point. The mesh has triangles.
     Vec3 nearest(Vec3 point) const;
@@ -62,7 +62,8 @@ public:
     };
     // The nearest one within the distance; false where there is none.
     bool nearestWithin(Vec3 point, float distance, Place& place) const;
-    // Where a point goes that goes with a place of the surface, as it turns, when the vertices take other positions.
+    // Moves a point along with a place of the surface, turned as the triangle turns, to where the vertices have other
+    // positions.
     Vec3 carriedWith(const Place& place, Vec3 point, const std::vector<float>& positions) const;
 
 private:
@@ -76,7 +77,7 @@ private:
     {
         Vec3 m_low, m_high;
     };
-    // Of the tree over the triangles: exact boxes, links as in BvhNode.
+    // A node of the tree over the triangles, with an exact box and the links of BvhNode.
     struct Node
     {
         float m_low[3], m_high[3];  // m; low above high where no vertex is valid

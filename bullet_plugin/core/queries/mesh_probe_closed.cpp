@@ -1,4 +1,4 @@
-// Whether a mesh is closed, and what it encloses.
+// Decides whether a mesh is closed, and measures its volume.
 #include <algorithm>
 #include <utility>
 

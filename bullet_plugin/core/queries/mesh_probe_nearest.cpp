@@ -1,4 +1,4 @@
-// Where a mesh's surface is nearest, and where a point goes that goes with it.
+// Finds the nearest places of a mesh's surface, and moves points along with it.
 #include <algorithm>
 #include <limits>
 

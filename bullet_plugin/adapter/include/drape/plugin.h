@@ -78,10 +78,10 @@ public:
     // several worlds it is not asked which have Drape's algorithm: one that has is enough.
     std::string whyStock(const btCollisionObject* objectA, const btCollisionObject* objectB) const;
 
-    // What is wrong with a world as far as the plugin can see it, a line each; empty when nothing is: a world without
-    // the plugin's solver or algorithm, pairs that are left to Bullet and why, cloth whose triangles intersect a mesh
-    // or that lies inside of one, nodes that are not finite, margins that are negative or out of proportion, and what
-    // the last step's status says. For development: it looks at every pair, which takes milliseconds to seconds.
+    // Lists what is wrong with a world as far as the plugin can see, a line each; empty when nothing is: a world
+    // without the plugin's solver or algorithm, pairs that are left to Bullet and why, cloth whose triangles intersect
+    // a mesh or that lies inside of one, nodes that are not finite, margins that are negative or out of proportion, and
+    // what the last step's status says. For development: it looks at every pair, which takes milliseconds to seconds.
     // Between steps.
     std::string diagnose(const btCollisionWorld& world) const;
 
