@@ -23,6 +23,41 @@ struct FeatureContacts
     float m_leastTime;  // of impact, of all; 1 when nothing was passed
 };
 
+// Most that a node of cloth which was tangled shortly before may have of speed after a step, m/s, relative to the cloth
+// as a whole: links that were stretched meanwhile do not throw it.
+constexpr btScalar kMostTangledSpeed = 3;
+
+// Marks the nodes of a pair that began its step intersecting. A contact that would keep one of them on the wrong side
+// must not act.
+struct TangledPair
+{
+    MeshId m_obstacle;
+    std::vector<unsigned char> m_wrongSide;  // by node
+    std::vector<unsigned char> m_meets;      // by node, of faces that meet the obstacle
+
+    bool holds(const int nodes[3]) const
+    {
+        bool allMeet = nodes[1] >= 0;
+        for (int k = 0; k < 3 && nodes[k] >= 0; ++k)
+        {
+            if (m_wrongSide[static_cast<std::size_t>(nodes[k])]) return false;
+            allMeet = allMeet && m_meets[static_cast<std::size_t>(nodes[k])];
+        }
+        return !allMeet;
+    }
+};
+
+// A node on the wrong side of an obstacle, or of a face that is, and where it is to go.
+struct NodePush
+{
+    int m_node;
+    btVector3 m_normal;          // unit, the way to go
+    btScalar m_distance;         // m, to go along it in this step
+    const btTransform* m_carry;  // see StepContact
+    const btVector3* m_carriedStarts;
+    btScalar m_speedLimit;  // m/s along it, that the node may have afterwards
+};
+
 struct BodyContacts
 {
     MeshId m_cloth = kNoMesh;
@@ -31,7 +66,11 @@ struct BodyContacts
     btScalar m_leastThickness = SIMD_INFINITY, m_mostThickness = 0;  // of the body's pairs
     std::vector<FeatureContacts> m_features;                         // in canonical order
     MotionLimit m_limit;
-    bool m_mayHavePassed = false;  // a contact is left so near that a surface may have been passed
+    bool m_mayHavePassed = false;        // a contact is left so near that a surface may have been passed
+    std::vector<TangledPair> m_tangled;  // of the body's pairs, those that are pushed apart
+    bool m_wasTangled = false;           // in this step or one shortly before
+    std::vector<NodePush> m_pushes;
+    std::vector<Contact> m_pushContacts;  // one for each of these
 
     // For a body of another step; what memory it has stays.
     void start(MeshId cloth, btSoftBody* body, const ClothParts& parts)
@@ -44,6 +83,10 @@ struct BodyContacts
         m_features.clear();
         m_limit.clear();
         m_mayHavePassed = false;
+        m_tangled.clear();
+        m_wasTangled = false;
+        m_pushes.clear();
+        m_pushContacts.clear();
     }
 };
 }  // namespace drape

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "bullet_plugin/adapter/vectors.h"
+
 namespace drape
 {
 namespace
@@ -16,11 +18,15 @@ bool anyMoves(const btSoftBody& body)
     return false;
 }
 
-void writePositions(const std::vector<btVector3>& positions, std::size_t first, std::size_t count, float* out)
+// starts: by node, m.
+void writeNodes(const btSoftBody& body, const btVector3* starts, const NodeStretch& stretch)
 {
-    for (std::size_t i = first; i < first + count; ++i)
-        for (int axis = 0; axis < 3; ++axis)
-            *out++ = static_cast<float>(positions[i][axis]);
+    float *start = stretch.m_start, *end = stretch.m_end;
+    for (std::size_t i = stretch.m_first; i < stretch.m_first + stretch.m_count; ++i)
+    {
+        writePosition(starts[i], start);
+        writePosition(body.m_nodes[static_cast<int>(i)].m_x, end);
+    }
 }
 }  // namespace
 
@@ -36,12 +42,13 @@ BodyContacts* CollisionStep::contactsOf(const btSoftBody& body)
     return found == m_byBody.end() ? nullptr : &m_bodies[found->second];
 }
 
-void CollisionStep::addBody(const ClothMirror& cloth, btSoftBody* body)
+void CollisionStep::addBody(ClothMirror& cloth, btSoftBody* body)
 {
     if (m_spare.empty()) m_spare.emplace_back();
     m_bodies.push_back(std::move(m_spare.back()));
     m_spare.pop_back();
     m_byCloth[cloth.id()] = m_byBody[body] = m_bodies.size() - 1;
+    m_uploads.push_back(Upload{cloth.id(), m_bodies.size() - 1, nullptr});
     m_bodies.back().start(cloth.id(), body, cloth.parts());
 }
 
@@ -55,6 +62,25 @@ void CollisionStep::clear()
     m_paired.clear();
     m_pinned.clear();
     m_mirrors.clear();
+    m_uploads.clear();
+}
+
+// For an obstacle whose vertices move in this step the cloth has a mesh and starts of its own.
+CollisionStep::Pair CollisionStep::makePair(const PairNote& note, const ClothMirror& cloth, MeshId obstacle)
+{
+    const ObstacleMirror& mirror = m_state.obstacleMirror(note);
+    Pair pair = {cloth.id(), obstacle, note.m_thickness, nullptr, {&cloth, &mirror, note.m_motion, note.m_kinematic}};
+    if (!mirror.before()) return pair;
+    const btScalar reach = note.m_thickness * (1 + btScalar(m_state.settings().m_activation));
+    const DeformedPair& deformed = m_deformed.update(cloth, mirror, note.m_motion, note.m_kinematic, reach);
+    const std::size_t body = m_byCloth.at(cloth.id());
+    m_byCloth[deformed.m_mesh] = body;
+    m_uploads.push_back(Upload{deformed.m_mesh, body, deformed.m_starts.data()});
+    m_state.m_found.nameCloth(deformed.m_mesh, note.m_cloth);
+    m_state.m_found.nameStarts(deformed.m_mesh, deformed.m_carried.data());
+    pair.m_cloth = deformed.m_mesh;
+    pair.m_carriedStarts = deformed.m_carried.data();
+    return pair;
 }
 
 void CollisionStep::addPair(const PairNote& note)
@@ -71,12 +97,16 @@ void CollisionStep::addPair(const PairNote& note)
     }
     m_state.m_found.nameObstacle(obstacleId, note.m_obstacle.m_object, note.m_motion);
     if (!m_paired.insert(std::uint64_t(clothId) << 32 | obstacleId).second) return;
-    m_pairs.push_back(Pair{clothId, obstacleId, note.m_thickness});
+    m_pairs.push_back(makePair(note, cloth, obstacleId));
     btVector3 low, high;
     note.m_obstacle.m_shape->getAabb(note.m_motion.m_end, low, high);
+    // A negative margin makes Bullet's box smaller than the mesh, at a turn by the square root of three.
+    const btScalar lacks = btScalar(1.7321) * std::max(btScalar(0), -note.m_obstacle.m_shape->getMargin());
+    low -= btVector3(lacks, lacks, lacks);
+    high += btVector3(lacks, lacks, lacks);
     BodyContacts& body = *bodyOf(clothId);
     body.m_limit.addObstacle(low, high, note.m_thickness, btScalar(m_state.settings().m_activation),
-                             m_state.m_found.carryOf(obstacleId));
+                             m_state.m_found.carryOf(obstacleId), m_pairs.back().m_carriedStarts);
     body.m_leastThickness = std::min(body.m_leastThickness, note.m_thickness);
     body.m_mostThickness = std::max(body.m_mostThickness, note.m_thickness);
 }
@@ -86,21 +116,21 @@ void CollisionStep::addPair(const PairNote& note)
 void CollisionStep::uploadNodes(Detection detection)
 {
     std::vector<MeshId> cloths;
-    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+    for (const Upload& upload : m_uploads)
     {
-        cloths.push_back(m_mirrors[i]->id());
-        m_bodies[i].m_limit.startRecord(m_mirrors[i]->faces());
+        cloths.push_back(upload.m_mesh);
+        if (!upload.m_starts) m_bodies[upload.m_body].m_limit.startRecord(m_mirrors[upload.m_body]->faces());
     }
     const auto write = [&](const NodeStretch& stretch)
     {
-        BodyContacts& body = m_bodies[stretch.m_cloth];
+        const Upload& upload = m_uploads[stretch.m_cloth];
+        BodyContacts& body = m_bodies[upload.m_body];
+        if (upload.m_starts) return writeNodes(*body.m_body, upload.m_starts, stretch);
         if (detection == Detection::First)
             body.m_limit.recordNodes(*body.m_body, stretch.m_first, stretch.m_count);
         else
             body.m_limit.recordEnds(*body.m_body, stretch.m_first, stretch.m_count);
-        const NodePaths& paths = body.m_limit.paths();
-        writePositions(paths.m_start, stretch.m_first, stretch.m_count, stretch.m_start);
-        writePositions(paths.m_end, stretch.m_first, stretch.m_count, stretch.m_end);
+        writeNodes(*body.m_body, body.m_limit.paths().m_start.data(), stretch);
     };
     m_state.pipeline().writeNodes(cloths, write);
 }
@@ -111,6 +141,7 @@ void CollisionStep::begin(const std::vector<PairNote>& notes)
     m_state.m_found.clear();
     // Adding and removing meshes moves the memory that nodes are written to: mirrors first, nodes after.
     m_state.dropOldMirrors();
+    m_deformed.beginStep();
     for (const PairNote& note : notes)
     {
         if (anyMoves(*note.m_cloth))
@@ -118,14 +149,19 @@ void CollisionStep::begin(const std::vector<PairNote>& notes)
         else if (std::find(m_pinned.begin(), m_pinned.end(), note.m_cloth) == m_pinned.end())
             m_pinned.push_back(note.m_cloth);
     }
+    checkStarts();
     if (!m_pairs.empty()) submit(Detection::First);
 }
 
 // How far from its path a node of the pair's cloth may be, m; negative where detection is to leave out no contact. One
-// of pinned nodes alone is not held, so that it can stand for no other.
+// of pinned nodes alone is not held, so that it can stand for no other, and neither are some of a cloth that is pushed
+// out of an obstacle.
 float CollisionStep::tubeOf(const Pair& pair)
 {
-    if (!m_state.settings().m_reduceContacts || bodyOf(pair.m_cloth)->m_limit.hasPinnedNode()) return -1;
+    const BodyContacts& body = *bodyOf(pair.m_cloth);
+    if (!m_state.settings().m_reduceContacts || body.m_limit.hasPinnedNode() || !body.m_limit.obstaclesRest() ||
+        !body.m_tangled.empty())
+        return -1;
     return static_cast<float>(MotionLimit::tube(pair.m_thickness, btScalar(m_state.settings().m_activation)));
 }
 
@@ -145,14 +181,30 @@ void CollisionStep::receive(const ContactList& contacts)
         const Contact& first = contacts[i];
         const ClothFeature cloth = m_state.pipeline().clothFeature(first);
         if (!body || body->m_cloth != cloth.m_cloth) body = bodyOf(cloth.m_cloth);
-        FeatureContacts feature{&first, 0, {cloth.m_nodes[0], cloth.m_nodes[1], cloth.m_nodes[2]}, 1};
-        for (; i < contacts.size() && contacts[i].m_slot == first.m_slot; ++i, ++feature.m_count)
-            feature.m_leastTime = std::min(feature.m_leastTime, contacts[i].m_time);
+        const std::size_t begin = i;
+        while (i < contacts.size() && contacts[i].m_slot == first.m_slot)
+            ++i;
         if (!body) continue;
-        for (int k = 0; k < 3 && feature.m_nodes[k] >= 0; ++k)
-            body->m_limit.addContactNode(feature.m_nodes[k]);
-        body->m_features.push_back(feature);
+        const std::uint32_t count = static_cast<std::uint32_t>(i - begin);
+        if (body->m_tangled.empty())
+            addContacts(*body, &first, count, cloth);
+        else
+            addHeldContacts(*body, &first, count, cloth);
     }
+    for (BodyContacts& pushed : m_bodies)
+        addPushes(pushed);
+}
+
+// Contacts of one feature of the cloth.
+void CollisionStep::addContacts(BodyContacts& body, const Contact* first, std::uint32_t count,
+                                const ClothFeature& cloth)
+{
+    FeatureContacts feature{first, count, {cloth.m_nodes[0], cloth.m_nodes[1], cloth.m_nodes[2]}, 1};
+    for (std::uint32_t i = 0; i < count; ++i)
+        feature.m_leastTime = std::min(feature.m_leastTime, first[i].m_time);
+    for (int k = 0; k < 3 && feature.m_nodes[k] >= 0; ++k)
+        body.m_limit.addContactNode(feature.m_nodes[k]);
+    body.m_features.push_back(feature);
 }
 
 // Waits for the detection under way and takes its contacts in place of any earlier ones of this step.
@@ -177,6 +229,9 @@ void CollisionStep::receiveAll()
     all.m_writeMs = before.m_writeMs;
     all.m_finishMs = before.m_finishMs;
     all.m_clothsSkipped = before.m_clothsSkipped;
+    all.m_startsIntersecting = before.m_startsIntersecting;
+    all.m_startIntersections = before.m_startIntersections;
+    markUnguarded();
     m_state.m_found.set(m_state.pipeline(), contacts);
     receive(contacts);
 }
@@ -205,6 +260,9 @@ void CollisionStep::finish()
     m_state.m_statistics.m_skipped = m_pairs.empty();
     if (m_state.pipeline().deviceFailed()) m_state.m_statistics.m_status |= kStepDeviceFailed;
     if (m_pairs.empty()) return;
+    m_state.m_statistics.m_startsIntersecting = m_starts.intersectingPairs();
+    m_state.m_statistics.m_startIntersections = m_starts.intersections();
+    if (m_starts.intersectingPairs() > 0) m_state.m_statistics.m_status |= kStepStartsIntersecting;
     receiveAll();
     const std::size_t kept = m_state.m_statistics.m_obstaclesKept;
     for (int detections = 1; detections < kMostDetections && cutPaths(); ++detections)
@@ -227,7 +285,7 @@ void CollisionStep::checkStrayed()
 {
     std::vector<bool> strayed;
     for (BodyContacts& body : m_bodies)
-        strayed.push_back(body.m_mayHavePassed || body.m_limit.strayed(*body.m_body));
+        strayed.push_back((body.m_mayHavePassed && !body.m_wasTangled) || body.m_limit.strayed(*body.m_body));
     if (std::find(strayed.begin(), strayed.end(), true) == strayed.end()) return;
     // What is reported stays what the solver was given.
     m_state.m_found.keepList();
@@ -243,4 +301,5 @@ void CollisionStep::checkStrayed()
     m_state.m_statistics.m_candidates = before.m_candidates;
     m_state.m_statistics.m_obstaclesKept = before.m_obstaclesKept;
 }
+
 }  // namespace drape

@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "bullet_plugin/adapter/body_contacts.h"
+#include "bullet_plugin/adapter/deformed_pairs.h"
 #include "bullet_plugin/adapter/impact_cut.h"
+#include "bullet_plugin/adapter/pair_starts.h"
 #include "bullet_plugin/adapter/plugin_state.h"
 
 namespace drape
@@ -18,13 +20,18 @@ namespace drape
 class CollisionStep
 {
 public:
-    explicit CollisionStep(PluginState& state) : m_state(state) {}
+    explicit CollisionStep(PluginState& state) : m_state(state), m_deformed(state), m_starts(state) {}
 
     void begin(const std::vector<PairNote>& notes);
     void finish();
     // After the bodies were solved. Where links pulled nodes far off their predicted paths, looks again along the paths
     // that they really took, and ends them before what they would have passed.
     void checkStrayed();
+    // After finish(): says so in the statistics where the body has no pair in this step, but nodes that are still not
+    // finite, as they were when it had one.
+    void reportInvalid(const btSoftBody& body);
+    // Last of a step, after the solver's: takes out of velocities what pushes gave, and remembers where nodes are.
+    void end();
 
     // As before the first begin().
     void clear();
@@ -36,11 +43,29 @@ public:
 private:
     struct Pair
     {
-        MeshId m_cloth, m_obstacle;
+        MeshId m_cloth, m_obstacle;  // of a cloth's meshes the pair's own, where its obstacle deforms
         btScalar m_thickness;
+        const btVector3* m_carriedStarts;  // then, see StepContact; null else
+        StartingPair m_start;
+    };
+
+    // Nodes of a mesh in the pipeline that are to be written.
+    struct Upload
+    {
+        MeshId m_mesh;
+        std::size_t m_body;  // index in m_bodies
+        const btVector3*
+            m_starts;  // where they start, by node; null: where Bullet has them, and their paths are recorded
     };
 
     void addPair(const PairNote& note);
+    Pair makePair(const PairNote& note, const ClothMirror& cloth, MeshId obstacle);
+    void checkStarts();
+    void preparePushes(BodyContacts& body);
+    void addContacts(BodyContacts& body, const Contact* first, std::uint32_t count, const ClothFeature& cloth);
+    void addHeldContacts(BodyContacts& body, const Contact* first, std::uint32_t count, const ClothFeature& cloth);
+    void addPushes(BodyContacts& body);
+    void markUnguarded();
     float tubeOf(const Pair& pair);
     enum class Detection
     {
@@ -56,7 +81,7 @@ private:
     bool cutPaths();
     bool cutStrayed(const std::vector<bool>& strayed, Cut cut);
     BodyContacts* bodyOf(MeshId cloth);
-    void addBody(const ClothMirror& cloth, btSoftBody* body);
+    void addBody(ClothMirror& cloth, btSoftBody* body);
 
     PluginState& m_state;
     std::vector<BodyContacts> m_bodies, m_spare;
@@ -65,6 +90,11 @@ private:
     std::vector<Pair> m_pairs;
     std::unordered_set<std::uint64_t> m_paired;  // a pair's cloth above its obstacle
     std::vector<const btSoftBody*> m_pinned;
-    std::vector<const ClothMirror*> m_mirrors;  // one for each of m_bodies
+    std::vector<ClothMirror*> m_mirrors;  // one for each of m_bodies
+    std::vector<Upload> m_uploads;
+    DeformedPairs m_deformed;
+    PairStarts m_starts;
+    std::vector<std::vector<int>> m_jumped;           // of checkStarts(), by body
+    std::unordered_set<const btSoftBody*> m_invalid;  // with nodes that were not finite; compared, not followed
 };
 }  // namespace drape

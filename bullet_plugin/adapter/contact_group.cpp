@@ -5,15 +5,6 @@
 
 namespace drape
 {
-namespace
-{
-// What the obstacle's motion in the step does to a point, m.
-btVector3 carriedFrom(const btVector3& start, const btTransform* carry)
-{
-    return carry ? *carry * start - start : btVector3(0, 0, 0);
-}
-}  // namespace
-
 void ContactGroup::clear()
 {
     m_features.clear();
@@ -85,13 +76,13 @@ ContactGroup::Row ContactGroup::makeRow(const RoundsNodes& nodes, const Block& b
     row.m_friction = contact.m_friction;
     row.m_distance = contact.m_thickness + contact.m_targetGap;
     row.m_carry = contact.m_carry;
+    row.m_carriedStarts = contact.m_carriedStarts;
     setPlane(nodes, row, contact.m_weights, contact.m_normal, contact.m_point);
     row.m_speedLimit = SIMD_INFINITY;
     if (contact.m_startGap < 0)
     {
         const btScalar recovered = std::max(btScalar(0), contact.m_endGap - contact.m_startGap);
-        row.m_speedLimit =
-            (recovered + row.m_normal.dot(carriedFrom(row.m_start, row.m_carry))) * nodes.m_body->m_sst.isdt;
+        row.m_speedLimit = (recovered + row.m_normal.dot(carriedFrom(nodes, row))) * nodes.m_body->m_sst.isdt;
     }
     return row;
 }
@@ -107,6 +98,17 @@ btVector3 ContactGroup::startOf(const RoundsNodes& nodes, const Row& row)
         start += starts[static_cast<std::size_t>(node)] * row.m_weights[k];
     }
     return start;
+}
+
+// Returns by how much the obstacle's motion in the step moves that point, m.
+btVector3 ContactGroup::carriedFrom(const RoundsNodes& nodes, const Row& row)
+{
+    if (!row.m_carriedStarts) return row.m_carry ? *row.m_carry * row.m_start - row.m_start : btVector3(0, 0, 0);
+    btVector3 carried = -row.m_start;
+    for (int k = 0; k < row.m_count; ++k)
+        carried +=
+            row.m_carriedStarts[nodes.m_moved[static_cast<std::size_t>(row.m_moved[k])].m_node] * row.m_weights[k];
+    return carried;
 }
 
 void ContactGroup::setPlane(const RoundsNodes& nodes, Row& row, const btScalar weights[3], const btVector3& normal,
@@ -127,7 +129,7 @@ void ContactGroup::setPlane(const RoundsNodes& nodes, Row& row, const btScalar w
     row.m_mended = held > 0 ? mobility * row.m_inverseMobility : btScalar(1);
     row.m_normal = normal;
     row.m_start = startOf(nodes, row);
-    const btVector3 carried = carriedFrom(row.m_start, row.m_carry);
+    const btVector3 carried = carriedFrom(nodes, row);
     row.m_carried = carried - normal * normal.dot(carried);
     row.m_level = normal.dot(point - row.m_start) + row.m_distance;
 }

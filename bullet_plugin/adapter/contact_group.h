@@ -118,6 +118,7 @@ private:
         btScalar m_speedLimit;  // m/s outwards when it pushed
         btScalar m_distance;    // m, to keep from the contact's point: the thickness and the target
         const btTransform* m_carry;
+        const btVector3* m_carriedStarts;
     };
 
     void addFeature(const RoundsNodes& nodes, const FeatureContacts& feature);
@@ -126,6 +127,7 @@ private:
     static void setPlane(const RoundsNodes& nodes, Row& row, const btScalar weights[3], const btVector3& normal,
                          const btVector3& point);
     static btVector3 startOf(const RoundsNodes& nodes, const Row& row);
+    static btVector3 carriedFrom(const RoundsNodes& nodes, const Row& row);
     static btScalar violation(const RoundsNodes& nodes, const Row& row);
     static bool isViolated(const RoundsNodes& nodes, const Row& row) { return violation(nodes, row) > 0; }
     static void renewPlane(const RoundsNodes& nodes, Row& row, Block& block, int lane);

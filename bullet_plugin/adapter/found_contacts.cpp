@@ -6,16 +6,19 @@ namespace drape
 {
 namespace
 {
+// Kind of the contacts that addOwn() makes, whose obstacle feature is their index; no kind of the pipeline's.
+constexpr std::uint32_t kOwnKind = 0xffffffffu;
+
 btVector3 vectorOf(const float v[3])
 {
     return btVector3(btScalar(v[0]), btScalar(v[1]), btScalar(v[2]));
 }
 
-btScalar gapAt(const StepContact& contact, const std::vector<btVector3>& places, const btTransform* carry)
+btScalar gapAt(const StepContact& contact, const btVector3* places, const btTransform* carry)
 {
     btVector3 at(0, 0, 0);
     for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
-        at += places[static_cast<std::size_t>(contact.m_nodes[k])] * contact.m_weights[k];
+        at += places[contact.m_nodes[k]] * contact.m_weights[k];
     return contact.m_normal.dot(carried(carry, at) - contact.m_point) - contact.m_thickness;
 }
 
@@ -23,8 +26,9 @@ btScalar gapAt(const StepContact& contact, const std::vector<btVector3>& places,
 // its contact without having been inside the obstacle: then the depth at the predicted end is all that is known.
 void setGaps(const btSoftBody& body, const NodePaths& paths, StepContact& contact)
 {
-    contact.m_endGap = gapAt(contact, paths.m_end, nullptr);
-    contact.m_startGap = gapAt(contact, paths.m_start, contact.m_carry);
+    contact.m_endGap = gapAt(contact, paths.m_end.data(), nullptr);
+    contact.m_startGap = contact.m_carriedStarts ? gapAt(contact, contact.m_carriedStarts, nullptr)
+                                                 : gapAt(contact, paths.m_start.data(), contact.m_carry);
     if (contact.m_startGap < -contact.m_thickness && contact.m_startGap < contact.m_endGap)
         contact.m_startGap = contact.m_endGap;
     contact.m_targetGap = targetGap(contact.m_startGap, body.m_cfg.kKHR, contact.m_thickness);
@@ -42,6 +46,22 @@ const btTransform* FoundContacts::carryOf(MeshId obstacle) const
     return entry.m_moves ? &entry.m_carry : nullptr;
 }
 
+Contact FoundContacts::addOwn(const StepContact& own)
+{
+    Contact contact = {};
+    contact.m_kind = kOwnKind;
+    contact.m_obstacleFeature = static_cast<std::uint32_t>(m_own.size());
+    contact.m_weights[0] = 1;
+    contact.m_time = 1;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        contact.m_normal[axis] = static_cast<float>(own.m_normal[axis]);
+        contact.m_point[axis] = static_cast<float>(own.m_point[axis]);
+    }
+    m_own.push_back(own);
+    return contact;
+}
+
 void FoundContacts::set(const Pipeline& pipeline, const ContactList& contacts)
 {
     m_pipeline = &pipeline;
@@ -56,6 +76,7 @@ void FoundContacts::keepList()
 
 StepContact FoundContacts::resolve(const btSoftBody& body, const NodePaths& paths, const Contact& found) const
 {
+    if (found.m_kind == kOwnKind) return m_own[found.m_obstacleFeature];
     const ContactView view = m_pipeline->view(found);
     StepContact contact;
     for (int k = 0; k < 3; ++k)
@@ -69,6 +90,8 @@ StepContact FoundContacts::resolve(const btSoftBody& body, const NodePaths& path
     contact.m_time = view.m_time;
     const Obstacle& obstacle = m_obstacles.at(view.m_obstacle);
     contact.m_carry = obstacle.m_moves ? &obstacle.m_carry : nullptr;
+    const auto starts = m_carriedStarts.find(view.m_cloth);
+    contact.m_carriedStarts = starts == m_carriedStarts.end() ? nullptr : starts->second;
     contact.m_friction = body.m_cfg.kDF * obstacle.m_object->getFriction();
     setGaps(body, paths, contact);
     return contact;

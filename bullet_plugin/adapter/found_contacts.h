@@ -25,6 +25,11 @@ public:
     void nameObstacle(MeshId obstacle, const btCollisionObject* object, const BodyMotion& motion);
     // What the obstacle's motion in the step does to its points; null when it rests. Stays where it is until clear().
     const btTransform* carryOf(MeshId obstacle) const;
+    // Names the places to which an obstacle carries the nodes' starts (see StepContact), for a mesh of a cloth that has
+    // this one obstacle alone. The array stays the caller's.
+    void nameStarts(MeshId cloth, const btVector3* carriedStarts) { m_carriedStarts[cloth] = carriedStarts; }
+    // Adds a contact of the caller's own for one node of a body, which resolve() gives back as it is.
+    Contact addOwn(const StepContact& contact);
     void set(const Pipeline& pipeline, const ContactList& contacts);
     // list() stays as it is now until clear(), whatever is found later.
     void keepList();
@@ -48,6 +53,8 @@ private:
 
     std::unordered_map<MeshId, const btSoftBody*> m_bodies;
     std::unordered_map<MeshId, Obstacle> m_obstacles;
+    std::unordered_map<MeshId, const btVector3*> m_carriedStarts;  // by cloth
+    std::vector<StepContact> m_own;
     const Pipeline* m_pipeline = nullptr;
     ContactList m_contacts;
     std::vector<ContactInfo> m_kept;

@@ -24,6 +24,7 @@ struct Left
 {
     btScalar m_share = 1;
     const btTransform* m_carry = nullptr;
+    const btVector3* m_carriedStarts = nullptr;
 
     void take(const Left& other)
     {
@@ -31,9 +32,12 @@ struct Left
     }
 };
 
-void shorten(btSoftBody::Node& node, const btVector3& start, const Left& left, btScalar velocityScale)
+void shorten(btSoftBody& body, const NodePaths& paths, int index, const Left& left, btScalar velocityScale)
 {
-    const btVector3 shift = (node.m_x - carried(left.m_carry, start)) * (left.m_share - 1);
+    btSoftBody::Node& node = body.m_nodes[index];
+    const btVector3 start =
+        carriedStart(left.m_carry, left.m_carriedStarts, index, paths.m_start[static_cast<std::size_t>(index)]);
+    const btVector3 shift = (node.m_x - start) * (left.m_share - 1);
     node.m_x += shift;
     node.m_v += shift * velocityScale;
 }
@@ -46,7 +50,7 @@ bool cutAtImpacts(btSoftBody& body, const NodePaths& paths, const std::vector<St
     Left least;
     for (const StepContact& contact : contacts)
     {
-        const Left own{shareLeft(contact), contact.m_carry};
+        const Left own{shareLeft(contact), contact.m_carry, contact.m_carriedStarts};
         least.take(own);
         for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
             left[static_cast<std::size_t>(contact.m_nodes[k])].take(own);
@@ -56,9 +60,7 @@ bool cutAtImpacts(btSoftBody& body, const NodePaths& paths, const std::vector<St
     for (int i = 0; i < body.m_nodes.size(); ++i)
     {
         const Left& own = cut == Cut::WholeBody ? least : left[static_cast<std::size_t>(i)];
-        btSoftBody::Node& node = body.m_nodes[i];
-        if (own.m_share < 1 && movableInverseMass(node) > 0)
-            shorten(node, paths.m_start[static_cast<std::size_t>(i)], own, velocityScale);
+        if (own.m_share < 1 && movableInverseMass(body.m_nodes[i]) > 0) shorten(body, paths, i, own, velocityScale);
     }
     return true;
 }

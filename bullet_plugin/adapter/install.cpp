@@ -20,6 +20,7 @@ bool isSoft(const btBroadphaseProxy* proxy)
 void install(Plugin& plugin, btCollisionDispatcher& dispatcher, btBroadphaseInterface& broadphase)
 {
     PluginState& state = *plugin.state();
+    state.addWiring(&dispatcher);
     for (int type = 0; type < MAX_BROADPHASE_COLLISION_TYPES; ++type)
     {
         if (!isMeshShape(type)) continue;

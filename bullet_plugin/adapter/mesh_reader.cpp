@@ -9,6 +9,7 @@
 #include "BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h"
 #include "BulletCollision/CollisionShapes/btScaledBvhTriangleMeshShape.h"
 #include "BulletCollision/CollisionShapes/btStridingMeshInterface.h"
+#include "bullet_plugin/adapter/margins.h"
 
 namespace drape
 {
@@ -240,7 +241,7 @@ const btCollisionShape* meshShapeOf(const btCollisionShape& shape)
 
 btScalar marginBeyondBounds(const btCollisionShape& shape)
 {
-    return std::max(btScalar(0), shape.getMargin() - resolve(shape).m_shape->getMargin());
+    return std::max(btScalar(0), marginOf(shape) - resolve(shape).m_shape->getMargin());
 }
 
 void readMesh(const btCollisionShape& shape, const btTransform& pose, WorldMesh& mesh)

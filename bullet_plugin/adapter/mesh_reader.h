@@ -30,7 +30,8 @@ bool isMeshShape(int shapeType);
 // The shape that owns the triangles: the child of a scaled shape, else the shape itself.
 const btCollisionShape* meshShapeOf(const btCollisionShape& shape);
 
-// What Bullet's bounds of the shape lack of its margin, m, at least 0: those of a scaled shape hold its child's.
+// Returns how much of its margin Bullet's bounds of the shape lack, m, at least 0: those of a scaled shape hold its
+// child's margin, and a negative margin makes them smaller than the mesh.
 btScalar marginBeyondBounds(const btCollisionShape& shape);
 
 void readMesh(const btCollisionShape& shape, const btTransform& pose, WorldMesh& mesh);

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "bullet_plugin/adapter/margins.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
+#include "bullet_plugin/adapter/vectors.h"
 
 namespace drape
 {
@@ -14,15 +16,15 @@ namespace
 // randomizeConstraints gives, are seen within faces / 32768 steps.
 constexpr int kFacesPerCheck = 32768;
 
+// Share of a mesh's size that vertices may move in a step: what moves farther is another pose that the app put there.
+constexpr float kMostMotion = 0.5f;
+
+// Nodes that a thread looks at in one go: less is not worth waking one.
+constexpr std::size_t kNodesPerJob = 4096;
+
 int nodeIndex(const btSoftBody& body, const btSoftBody::Node* node)
 {
     return static_cast<int>(node - &body.m_nodes[0]);
-}
-
-void writePosition(const btVector3& position, float*& out)
-{
-    for (int axis = 0; axis < 3; ++axis)
-        *out++ = static_cast<float>(position[axis]);
 }
 
 // Three rows of the rotation and the shift.
@@ -99,8 +101,13 @@ MeshId ClothMirror::refresh(Pipeline& pipeline)
     if (m_id != kNoMesh) pipeline.remove(m_id);
     m_id = kNoMesh;
     readTopology();
-    if (triangles.empty() || m_faces.nodeCount() == 0) return m_id;
+    if (!triangles.empty() && m_faces.nodeCount() > 0) m_id = addCopy(pipeline);
+    return m_id;
+}
 
+MeshId ClothMirror::addCopy(Pipeline& pipeline) const
+{
+    const std::vector<std::int32_t>& triangles = m_faces.triangles();
     std::vector<float> positions(3 * m_faces.nodeCount());
     float* out = positions.data();
     for (int i = 0; i < m_body->m_nodes.size(); ++i)
@@ -111,8 +118,38 @@ MeshId ClothMirror::refresh(Pipeline& pipeline)
     mesh.m_positions = positions.data();
     mesh.m_vertexCount = m_faces.nodeCount();
     mesh.m_looseVertices = true;  // what hangs on it, or is left where faces were cut away
-    m_id = pipeline.addCloth(mesh);
-    return m_id;
+    return pipeline.addCloth(mesh);
+}
+
+void ClothMirror::rememberEnds(ThreadTeam& threads)
+{
+    m_ends.resize(static_cast<std::size_t>(m_body->m_nodes.size()));
+    const auto remember = [this](std::size_t job)
+    {
+        for (std::size_t i = job * kNodesPerJob; i < std::min(m_ends.size(), (job + 1) * kNodesPerJob); ++i)
+            m_ends[i] = m_body->m_nodes[static_cast<int>(i)].m_x;
+    };
+    const std::size_t jobs = (m_ends.size() + kNodesPerJob - 1) / kNodesPerJob;
+    runShared(threads, jobs > 1, jobs, remember);
+}
+
+void ClothMirror::listJumped(ThreadTeam& threads, std::vector<int>& nodes) const
+{
+    const std::size_t count = static_cast<std::size_t>(m_body->m_nodes.size());
+    const bool known = m_ends.size() == count;
+    std::vector<std::vector<int>> found((count + kNodesPerJob - 1) / kNodesPerJob);
+    const auto compare = [&](std::size_t job)
+    {
+        for (std::size_t i = job * kNodesPerJob; i < std::min(count, (job + 1) * kNodesPerJob); ++i)
+        {
+            const btScalar* const start = m_body->m_nodes[static_cast<int>(i)].m_q.m_floats;
+            if (!known || !std::equal(start, start + 3, m_ends[i].m_floats)) found[job].push_back(static_cast<int>(i));
+        }
+    };
+    runShared(threads, found.size() > 1, found.size(), compare);
+    nodes.clear();
+    for (const std::vector<int>& part : found)
+        nodes.insert(nodes.end(), part.begin(), part.end());
 }
 
 void ObstacleMirror::reload(Pipeline& pipeline, const btTransform& pose)
@@ -121,10 +158,14 @@ void ObstacleMirror::reload(Pipeline& pipeline, const btTransform& pose)
     readMesh(*m_key.m_shape, pose, mesh);
     if (m_id != kNoMesh && mesh.m_topologyHash == m_topologyHash)
     {
-        if (mesh.m_positionHash != m_positionHash) pipeline.moveObstacle(m_id, mesh.m_positions.data());
+        if (mesh.m_positionHash != m_positionHash) deform(pipeline, mesh.m_positions, pose == m_pose);
     }
     else
     {
+        ++m_positionRevision;
+        startAnew();
+        m_before.reset();
+        m_positions.clear();
         if (m_id != kNoMesh) pipeline.remove(m_id);
         m_id = kNoMesh;
         if (!mesh.m_triangles.empty())
@@ -140,6 +181,25 @@ void ObstacleMirror::reload(Pipeline& pipeline, const btTransform& pose)
     }
     m_topologyHash = mesh.m_topologyHash;
     m_positionHash = mesh.m_positionHash;
+}
+
+// Takes other positions, in the same place unless the pose changed with them.
+void ObstacleMirror::deform(Pipeline& pipeline, std::vector<float>& positions, bool samePlace)
+{
+    if (samePlace && m_before && !m_positions.empty())
+        m_before->move(m_positions);
+    else
+        m_before = samePlace ? pipeline.makeProbe(m_id) : nullptr;
+    m_mostMotion = m_before ? m_before->mostMotion(positions) : 0;
+    pipeline.moveObstacle(m_id, positions.data());
+    ++m_positionRevision;
+    m_positions.swap(positions);
+    // A change by a margin at most counts as motion even if the mesh was not looked at in the step before.
+    const bool isMotion = m_continued || m_mostMotion <= static_cast<float>(marginOf(*m_key.m_shape));
+    if (m_before && isMotion && m_mostMotion <= kMostMotion * m_before->size())
+        m_deformedStep = m_lastSeen;
+    else
+        startAnew();
 }
 
 void ObstacleMirror::drop(Pipeline& pipeline)
@@ -161,6 +221,8 @@ MeshId ObstacleMirror::refresh(Pipeline& pipeline, bool kinematic, const BodyMot
     m_signature = signature;
     m_pose = pose;
     m_read = true;
+    if (kinematic && !(motion.m_start == m_end)) startAnew();
+    m_end = motion.m_end;
     if (kinematic && m_id != kNoMesh)
     {
         float start[12], end[12];

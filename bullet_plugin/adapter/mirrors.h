@@ -10,6 +10,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <vector>
 
 #include "BulletSoftBody/btSoftBody.h"
 #include "LinearMath/btTransform.h"
@@ -17,6 +19,8 @@
 #include "bullet_plugin/adapter/cloth_parts.h"
 #include "bullet_plugin/adapter/kinematic_motion.h"
 #include "bullet_plugin/core/pipeline.h"
+#include "bullet_plugin/core/queries/mesh_probe.h"
+#include "bullet_plugin/core/threads/thread_team.h"
 
 namespace drape
 {
@@ -53,12 +57,24 @@ public:
 
     // Adds the body to the pipeline, or replaces what is there when the topology changed.
     MeshId refresh(Pipeline& pipeline);
+    // Adds a further mesh of the body to the pipeline, as refresh() left the first; the caller's to remove.
+    MeshId addCopy(Pipeline& pipeline) const;
     // As the pipeline has them.
     const ClothFaces& faces() const { return m_faces; }
     // Of the nodes as they lay when the topology was read, or when it was last taken up.
     const ClothParts& parts() const { return m_parts; }
     // For who uses it first, or again: the body may be another one in the same place.
     void takeUp() { m_fullCheck = m_takenUp = true; }
+    // Says that the nodes are no longer where the last step left them: no pair of the cloth counts as free of
+    // intersections until it is checked.
+    void startAnew() { ++m_startRevision; }
+    // Counts up with each startAnew().
+    std::uint64_t startRevision() const { return m_startRevision; }
+    // Remembers where the nodes are at a step's end.
+    void rememberEnds(ThreadTeam& threads);
+    // Lists the nodes whose step starts (m_q) elsewhere than the last one that was remembered ended; all of them where
+    // none was.
+    void listJumped(ThreadTeam& threads, std::vector<int>& nodes) const;
 
     int m_owners = 0;  // algorithms alive that use this mirror, and who had it prepared
     bool m_prepared = false;
@@ -77,7 +93,9 @@ private:
     const void* m_nodeArray = nullptr;
     const void* m_faceArray = nullptr;
     int m_cursor = 0;
-    bool m_takenUp = false;  // since the parts were cut
+    std::uint64_t m_startRevision = 0;
+    std::vector<btVector3> m_ends;  // of the last step, by node
+    bool m_takenUp = false;         // since the parts were cut
     bool m_fullCheck = true;
 };
 
@@ -94,20 +112,40 @@ public:
     // True for the shape itself and for the mesh shape that a scaled shape shows, as they were last refreshed.
     bool uses(const btCollisionShape* shape) const { return shape == m_key.m_shape || shape == m_meshShape; }
     void requireReading() { m_read = false; }
+    // Says that the obstacle is no longer where the last step left it, see ClothMirror. refresh() does so itself where
+    // the pose or the mesh changed by anything but the motion over a step.
+    void startAnew() { ++m_startRevision; }
+    std::uint64_t startRevision() const { return m_startRevision; }
+    // Counts up where the pipeline's positions of the obstacle change.
+    std::uint64_t positionRevision() const { return m_positionRevision; }
+    // Returns the mesh as it was in the step before if its vertices moved in place since, by no more than counts as
+    // motion within this step; null otherwise. m_lastSeen is this step.
+    MeshProbe* before() const { return m_deformedStep == m_lastSeen ? m_before.get() : nullptr; }
+    // The pipeline's positions then, and how far the vertex went that moved most, m.
+    const std::vector<float>& positions() const { return m_positions; }
+    float mostMotion() const { return m_mostMotion; }
 
     int m_owners = 0;
     bool m_prepared = false;
     std::uint64_t m_lastSeen = 0;
-    bool m_oneSided = false;  // wanted; the next refresh() heeds it
+    bool m_oneSided = false;   // wanted; the next refresh() heeds it
+    bool m_continued = false;  // there was a refresh() in the step before: what changed since is the motion of this one
 
 private:
     void reload(Pipeline& pipeline, const btTransform& pose);
+    void deform(Pipeline& pipeline, std::vector<float>& positions, bool samePlace);
     void drop(Pipeline& pipeline);
 
     ObstacleKey m_key;
     const btCollisionShape* m_meshShape = nullptr;  // compared, never followed
     MeshId m_id = kNoMesh;
-    btTransform m_pose = btTransform::getIdentity();
+    btTransform m_pose = btTransform::getIdentity();  // of the positions that the pipeline holds
+    btTransform m_end = btTransform::getIdentity();   // of the obstacle at the end of the last step
+    std::uint64_t m_startRevision = 0, m_positionRevision = 0;
+    std::unique_ptr<MeshProbe> m_before;  // of a mesh whose vertices moved
+    std::vector<float> m_positions;       // likewise, as the pipeline has them
+    float m_mostMotion = 0;               // m
+    std::uint64_t m_deformedStep = 0;
     std::uint64_t m_signature = 0, m_topologyHash = 0, m_positionHash = 0;
     bool m_kinematic = false;
     bool m_heldOneSided = false;  // by the pipeline

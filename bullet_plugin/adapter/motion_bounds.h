@@ -22,17 +22,38 @@ struct MovingObject
     BodyMotion m_motion;
 };
 
+// A mesh whose box changes from one step to the next where it stands: its vertices move.
+struct ChangingMesh
+{
+    const btCollisionObject* m_object;
+    btVector3 m_low, m_high;  // m, with its margin, now
+    btScalar m_change;        // m, of the side that moved most since the step before
+};
+
+// Holds the objects of a world that move in a step, and the meshes that changed since the step before.
+struct MovingThings
+{
+    std::vector<MovingObject> m_objects;
+    std::vector<ChangingMesh> m_meshes;
+
+    bool empty() const { return m_objects.empty() && m_meshes.empty(); }
+};
+
 // The kinematic meshes and compounds of the body's world that move in this step; observes those that rest, too. None
-// where the body's world info names no broad phase.
-std::vector<MovingObject> movingObjects(const btSoftBody& body, KinematicMotions& motions);
+// where the body's world info names no broad phase. Also the meshes whose boxes change, except children of compounds
+// and objects that move. beyond: raised to the most that bounds of the world's meshes, except children of compounds,
+// lack of their margins (marginBeyondBounds()).
+MovingThings movingThings(const btSoftBody& body, KinematicMotions& motions, btScalar& beyond);
 
 // Whether a moving object of a pair that Drape handles comes near the sleeping body in this step: Bullet wakes bodies
 // for it only once it has arrived.
-bool isReached(const PluginState& state, const btSoftBody& body, const std::vector<MovingObject>& moving);
+bool isReached(const PluginState& state, const btSoftBody& body, const MovingThings& moving);
 
 // Widens the body's bounds to its nodes' paths, grown by the body's part of the reach of contacts and by `extra` (m,
 // what obstacles' bounds lack), and to those paths as moving objects see them, where they come near the object; those
-// with the object's part, too, which its own bounds hold but for the activation. Bounds that are no numbers, because of
-// a node that is none, become those of the other nodes: Bullet would stop simulating the body.
-void coverMotion(btSoftBody& body, btScalar activation, btScalar extra, const std::vector<MovingObject>& moving);
+// with the object's part, too, which its own bounds hold but for the activation. Bounds
+// reach a changing mesh one step before it may arrive, because its vertices' motion is known from the second step with
+// a pair on. Bounds that are no numbers, because of a node that is none, become those of the other nodes: Bullet would
+// stop simulating the body.
+void coverMotion(btSoftBody& body, btScalar activation, btScalar extra, const MovingThings& moving);
 }  // namespace drape

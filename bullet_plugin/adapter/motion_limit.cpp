@@ -65,17 +65,18 @@ btScalar MotionLimit::tube(btScalar thickness, btScalar activation)
 }
 
 void MotionLimit::addObstacle(const btVector3& low, const btVector3& high, btScalar thickness, btScalar activation,
-                              const btTransform* carry)
+                              const btTransform* carry, const btVector3* carriedStarts)
 {
     const btScalar reach = thickness * (1 + activation);
     m_leastReach = std::min(m_leastReach, reach);
     const btVector3 margin(reach, reach, reach);
     const btScalar least = tube(thickness, activation);
     m_leastTube = std::min(m_leastTube, least);
-    m_anyMoves = m_anyMoves || carry != nullptr;
+    const bool moves = carry || carriedStarts;
+    m_anyMoves = m_anyMoves || moves;
     m_free = std::min(m_free, kSureShare * std::min(least, kFreeShare * reach));
-    m_regions.push_back(Region{low - margin, high + margin, Allowance{least, kFreeShare * reach}, carry != nullptr,
-                               carry ? *carry : btTransform::getIdentity()});
+    m_regions.push_back(Region{low - margin, high + margin, Allowance{least, kFreeShare * reach}, moves,
+                               carry ? *carry : btTransform::getIdentity(), carriedStarts});
 }
 
 void MotionLimit::startRecord(const ClothFaces& faces)
@@ -254,9 +255,11 @@ bool MotionLimit::applyMoving(btSoftBody& body, const Region& region, btScalar v
         const std::size_t at = static_cast<std::size_t>(restless.m_node);
         if (!m_isNear[at]) continue;
         const Allowance own = allowance(region, at);
-        moved = bringBack(body.m_nodes[restless.m_node], region.m_carry * m_paths.m_start[at], m_paths.m_end[at],
-                          own.m_start, own.m_end, velocityScale) ||
-                moved;
+        const btVector3 start =
+            carriedStart(&region.m_carry, region.m_carriedStarts, restless.m_node, m_paths.m_start[at]);
+        moved =
+            bringBack(body.m_nodes[restless.m_node], start, m_paths.m_end[at], own.m_start, own.m_end, velocityScale) ||
+            moved;
     }
     return moved;
 }

@@ -36,11 +36,11 @@ public:
     void clear();
     // Box of an obstacle that the body has a pair with, the pair's thickness, and the activation as a share of it.
     // Nodes are free where what their faces can pass between the predicted and the solved positions misses every box.
-    // carry: see StepContact.
+    // carry, carriedStarts: see StepContact; the second stays the caller's.
     // While a body's obstacles all rest, a node with contacts ends at most tube() of the thinnest pair from its path:
     // detection may leave out what others imply there.
     void addObstacle(const btVector3& low, const btVector3& high, btScalar thickness, btScalar activation,
-                     const btTransform* carry = nullptr);
+                     const btTransform* carry = nullptr, const btVector3* carriedStarts = nullptr);
     // Before Bullet solves: the prediction is to be remembered, by recordNodes() for all of the nodes. They have no
     // contacts yet. The faces are of as many nodes, and stay as they are until the last apply() or applyToOthers().
     void startRecord(const ClothFaces& faces);
@@ -84,6 +84,7 @@ private:
         Allowance m_allowance;
         bool m_moves;
         btTransform m_carry;
+        const btVector3* m_carriedStarts;
     };
 
     // A node farther from its path's end than is always free.

@@ -2,9 +2,11 @@
 
 #include <cinttypes>
 #include <cstdio>
+#include <exception>
 
 #include "BulletCollision/CollisionDispatch/btCollisionWorld.h"
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
+#include "bullet_plugin/adapter/diagnosis.h"
 #include "bullet_plugin/adapter/eligibility.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
 #include "bullet_plugin/adapter/plugin_state.h"
@@ -82,6 +84,18 @@ std::string Plugin::whyStock(const btCollisionObject* objectA, const btCollision
     if (!obstacle->getCollisionShape()) return "the obstacle has no collision shape";
     if (btSoftBody::upcast(obstacle)) return "both objects are soft bodies";
     return reasonInShape(*m_state, *cloth, *obstacle, *obstacle->getCollisionShape(), obstacle->getWorldTransform());
+}
+
+std::string Plugin::diagnose(const btCollisionWorld& world) const
+{
+    try
+    {
+        return diagnosisOf(*this, world);
+    }
+    catch (const std::exception& exception)
+    {
+        return exception.what();
+    }
 }
 
 void Plugin::prepare(const btCollisionObject* object)

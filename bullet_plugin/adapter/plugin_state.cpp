@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <exception>
 
+#include "BulletCollision/CollisionDispatch/btCollisionDispatcher.h"
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
 #include "BulletSoftBody/btSoftBodySolvers.h"
 #include "bullet_plugin/adapter/eligibility.h"
+#include "bullet_plugin/adapter/margins.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
 
 namespace drape
@@ -14,9 +16,6 @@ namespace
 {
 // Steps that a mirror without a pair is kept: two seconds at 60 steps a second.
 constexpr std::uint64_t kKeepSteps = 120;
-
-// Least thickness, m: both margins may be zero, the pipeline needs a positive one.
-constexpr btScalar kMinThickness = btScalar(1e-4);
 
 // Tells a compound's children apart, through nested compounds.
 std::uint64_t childOf(const btCollisionObjectWrapper& wrap)
@@ -111,6 +110,18 @@ const DeviceReport& PluginState::device() const
     return m_pipeline ? m_pipeline->deviceReport() : m_failedDevice;
 }
 
+void PluginState::log(const char* line) const
+{
+    try
+    {
+        if (m_settings.m_log) m_settings.m_log(line);
+    }
+    catch (...)
+    {
+        // The app's function failed; the step goes on.
+    }
+}
+
 void PluginState::fail(const std::string& call, const std::string& detail)
 {
     m_error.m_call = call;
@@ -123,6 +134,12 @@ void PluginState::fail(const std::string& call, const std::string& detail)
     m_obstacles.clear();
     m_found.clear();
     m_pipeline.reset();
+}
+
+bool PluginState::isWiredTo(const btCollisionDispatcher& dispatcher) const
+{
+    const void* const configuration = const_cast<btCollisionDispatcher&>(dispatcher).getCollisionConfiguration();
+    return m_wirings.count(&dispatcher) + m_wirings.count(configuration) > 0;
 }
 
 btCollisionAlgorithmCreateFunc& PluginState::stockCreateFunction(bool swapped)
@@ -158,8 +175,7 @@ void PluginState::note(const void* owner, btSoftBody& cloth, const btCollisionOb
     note.m_kinematic = obstacle.getCollisionObject()->isKinematicObject();
     note.m_motion = note.m_kinematic ? motionOfShape(obstacle, motionsOf(note.m_solver))
                                      : BodyMotion{obstacle.getWorldTransform(), obstacle.getWorldTransform()};
-    note.m_thickness =
-        std::max(kMinThickness, cloth.getCollisionShape()->getMargin() + obstacle.getCollisionShape()->getMargin());
+    note.m_thickness = thicknessOf(cloth, *obstacle.getCollisionShape());
     m_marginBeyondBounds = std::max(m_marginBeyondBounds, drape::marginBeyondBounds(*obstacle.getCollisionShape()));
     const auto place = m_noteOf.emplace(owner, m_notes.size());
     if (place.second)
@@ -248,6 +264,7 @@ void PluginState::prepareShape(const btCollisionObjectWrapper& wrap)
     if (obstacle.m_owners == 0) obstacle.requireReading();
     setPrepared(obstacle, true);
     obstacle.m_oneSided = isOneSided(shape);
+    obstacle.m_continued = false;
     obstacle.refresh(*m_pipeline, object.isKinematicObject(),
                      BodyMotion{wrap.getWorldTransform(), wrap.getWorldTransform()});
 }
@@ -264,6 +281,20 @@ void PluginState::obstacleChanged(const btCollisionShape* shape)
 {
     for (auto& entry : m_obstacles)
         if (entry.second.uses(shape)) entry.second.requireReading();
+    // Cloth that sleeps on it has to see it move; its algorithm is alive, and so is the body.
+    for (const auto& owned : m_owned)
+    {
+        const ObstacleMirror* obstacle = findObstacle(owned.second.m_obstacle);
+        if (obstacle && obstacle->uses(shape)) const_cast<btSoftBody*>(owned.second.m_cloth)->activate();
+    }
+}
+
+void PluginState::startAnew(const btCollisionObject* object)
+{
+    for (auto& entry : m_cloths)
+        if (entry.first == object) entry.second.startAnew();
+    for (auto& entry : m_obstacles)
+        if (entry.first.m_object == object) entry.second.startAnew();
 }
 
 void PluginState::setOneSided(const btCollisionShape* shape, bool oneSided)
@@ -300,6 +331,8 @@ void PluginState::adopt(const PairNote& note)
 {
     ClothMirror& cloth = m_cloths.try_emplace(note.m_cloth, note.m_cloth).first->second;
     ObstacleMirror& obstacle = m_obstacles.try_emplace(note.m_obstacle, note.m_obstacle).first->second;
+    // Every solver's step counts, so that worlds which take turns are continued, too.
+    if (obstacle.m_lastSeen != m_step) obstacle.m_continued = obstacle.m_lastSeen + m_solvers.size() >= m_step;
     cloth.m_lastSeen = obstacle.m_lastSeen = m_step;
     // Where it lies now, prepared or not: the trajectory depends on it.
     if (isUnpaired(cloth)) cloth.takeUp();

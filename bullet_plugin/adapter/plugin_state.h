@@ -25,6 +25,7 @@
 #include "bullet_plugin/core/pipeline.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 
+class btCollisionDispatcher;
 class btSoftBodySolver;
 
 namespace drape
@@ -55,6 +56,8 @@ public:
     const Settings& settings() const { return m_settings; }
     // The pipeline's; they outlive it.
     ThreadTeam& threads() { return *m_threads; }
+    // Hands a line to Settings::m_log.
+    void log(const char* line) const;
     // After a failure that the pipeline could not contain: every pair goes to Bullet from now on.
     void fail(const std::string& call, const std::string& detail);
 
@@ -65,6 +68,10 @@ public:
     }
     // Whether any dispatcher was given them.
     bool isWired() const { return m_isWired; }
+    // A configuration of this plugin's, or a dispatcher that was given the functions itself.
+    void addWiring(const void* configurationOrDispatcher) { m_wirings.insert(configurationOrDispatcher); }
+    void removeWiring(const void* configuration) { m_wirings.erase(configuration); }
+    bool isWiredTo(const btCollisionDispatcher& dispatcher) const;
     btCollisionAlgorithmCreateFunc& stockCreateFunction(bool swapped);
 
     void addSolver(const btSoftBodySolver* solver);
@@ -74,14 +81,18 @@ public:
     KinematicMotions& motionsOf(const btSoftBodySolver* solver) { return m_motions[solver]; }
 
     void note(const void* owner, btSoftBody& cloth, const btCollisionObjectWrapper& obstacle);
-    // The most that any obstacle noted so far has of margin that its bounds do not hold, m.
-    btScalar marginBeyondBounds() const { return m_marginBeyondBounds; }
+    // The most that any obstacle seen so far has of margin that its bounds do not hold, m.
+    btScalar& marginBeyondBounds() { return m_marginBeyondBounds; }
     void forget(const void* owner);
     // Makes the object's mirrors, those of a compound's children, and brings them to the device; they are owned as if
     // by an algorithm until release().
     void prepare(const btCollisionObject* const* objects, int count);
     void release(const btCollisionObject* object);
     void obstacleChanged(const btCollisionShape* shape);
+    // Says that the soft body or obstacle is not where its last step left it, or that the last step did not guard it:
+    // its pairs start anew, from where they are in the coming step, and are checked for intersections then. Without a
+    // mirror there is nothing to do: new pairs are checked anyway.
+    void startAnew(const btCollisionObject* object);
     void setOneSided(const btCollisionShape* shape, bool oneSided);
     void dropNotes(const btSoftBodySolver* solver);
     // Those of the given cloths, sorted by address. Of an obstacle whose shape has gone since it was noted none is
@@ -122,6 +133,7 @@ private:
     btSoftBodyConcaveCollisionAlgorithm::SwappedCreateFunc m_stockCreateSwapped;
 
     bool m_isWired = false;
+    std::unordered_set<const void*> m_wirings;  // compared, never followed
     std::vector<const btSoftBodySolver*> m_solvers;
     std::unordered_map<const btSoftBodySolver*, KinematicMotions> m_motions;
     std::vector<PairNote> m_notes;                          // in the order of dispatch

@@ -62,8 +62,8 @@ void SoftBodySolver::predictMotion(btScalar dt)
     const btScalar activation = btScalar(m_state->settings().m_activation);
     KinematicMotions& motions = m_state->motionsOf(this);
     motions.beginStep(dt);
-    std::vector<MovingObject> moving;
-    if (m_softBodySet.size() > 0) moving = movingObjects(*m_softBodySet[0], motions);
+    MovingThings moving;
+    if (m_softBodySet.size() > 0) moving = movingThings(*m_softBodySet[0], motions, m_state->marginBeyondBounds());
     for (int i = 0; i < m_softBodySet.size(); ++i)
     {
         btSoftBody& body = *m_softBodySet[i];
@@ -103,6 +103,8 @@ void SoftBodySolver::detect()
         m_work->m_step.begin(m_state->takeNotes(this, m_work->m_predicted));
         const double beginMs = watch.lapMs();
         m_work->m_step.finish();
+        for (int i = 0; i < m_softBodySet.size(); ++i)
+            m_work->m_step.reportInvalid(*m_softBodySet[i]);
         statistics.m_clothsSkipped = m_work->m_asleep + m_work->m_step.pinnedCloths();
         statistics.m_uploadMs = m_work->m_predictMs + beginMs;
         statistics.m_writeMs = watch.lapMs() - statistics.m_waitMs;
@@ -142,9 +144,11 @@ void SoftBodySolver::checkStrayed()
     try
     {
         m_work->m_step.checkStrayed();
+        m_work->m_step.end();
     }
     catch (const std::exception& exception)
     {
+        m_work->m_step.clear();
         m_state->fail("drape::SoftBodySolver::solveConstraints", exception.what());
     }
 }

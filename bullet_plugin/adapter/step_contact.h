@@ -14,18 +14,27 @@ struct StepContact
     btVector3 m_normal;     // unit, from the obstacle to the cloth
     btVector3 m_point;      // on the obstacle
     btScalar m_thickness;
-    btScalar m_time;             // of impact, 0 to 1; 1 when nothing was passed
-    btScalar m_startGap;         // at m_q, as the obstacle sees it
-    btScalar m_endGap;           // at the predicted m_x
-    btScalar m_targetGap;        // not to fall below at the step's end: 0, or less when the step began too close
-    btScalar m_friction;         // the obstacle's friction times the body's kDF
-    const btTransform* m_carry;  // what the obstacle's motion in the step does to its points; null when it rests
+    btScalar m_time;                   // of impact, 0 to 1; 1 when nothing was passed
+    btScalar m_startGap;               // at m_q, as the obstacle sees it
+    btScalar m_endGap;                 // at the predicted m_x
+    btScalar m_targetGap;              // not to fall below at the step's end: 0, or less when the step began too close
+    btScalar m_friction;               // the obstacle's friction times the body's kDF
+    const btTransform* m_carry;        // what the obstacle's motion in the step does to its points; null when it rests
+    const btVector3* m_carriedStarts;  // by node of the body, where an obstacle that deforms carries the places at
+                                       // which nodes start; null where m_carry says so
 };
 
 // Where the obstacle's motion carries a point at the step's start.
 inline btVector3 carried(const btTransform* carry, const btVector3& point)
 {
     return carry ? *carry * point : point;
+}
+
+// Returns where the obstacle's motion carries the place at which a node starts.
+inline btVector3 carriedStart(const btTransform* carry, const btVector3* carriedStarts, int node,
+                              const btVector3& start)
+{
+    return carriedStarts ? carriedStarts[node] : carried(carry, start);
 }
 
 // A node that contacts may move: it has mass and no rigid body holds it.

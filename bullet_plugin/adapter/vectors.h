@@ -26,6 +26,13 @@ inline void store(const Quad& quad, btVector3& vector)
     std::memcpy(vector.m_floats, &quad, sizeof(quad));
 }
 
+// Writes the position as the core has it, in float32, and moves `out` behind it.
+inline void writePosition(const btVector3& position, float*& out)
+{
+    for (int axis = 0; axis < 3; ++axis)
+        *out++ = static_cast<float>(position[axis]);
+}
+
 // For blocks, which are in float32.
 inline Lanes lanesOf(const btVector3& vector)
 {

@@ -22,6 +22,8 @@
 
 namespace drape
 {
+class MeshProbe;
+
 // A contact with its pool-wide indices resolved to meshes: what a solver needs.
 struct ContactView
 {
@@ -143,6 +145,12 @@ public:
     // The same for a caller with arrays of its own, of all the cloths one after the other: x y z per vertex.
     void copyNodes(const std::vector<MeshId>& cloths, const float* start, const float* end);
 
+    // Returns whether a triangle of the obstacle reaches into the box (m, in the frame of its positions as given).
+    // O(n).
+    bool anyTriangleIn(MeshId obstacle, const float low[3], const float high[3]);
+    // The obstacle for questions about what lies where beside it, in the same frame.
+    std::unique_ptr<MeshProbe> makeProbe(MeshId obstacle);
+
     // Names a pair for the coming step; thickness in m > 0. A cloth without a pair costs nothing.
     // tube: m, for a caller that lets no node of the cloth go farther than this from its straight way while it solves:
     // contacts that the others then keep, up to 2 % of the thickness, are left out (kernels/lib/contact_reduction.h).
@@ -165,6 +173,8 @@ public:
     void waitForRebuild();
     // Those of cloths with themselves of the last finish(), in canonical order; valid as long as its other contacts.
     ContactList selfContacts() const;
+    // The cloths that the last finish() left out (kStepClothsLeftOut).
+    const std::vector<MeshId>& clothsLeftOut() const;
     // With statistics of that step (upload and wait times, counts, status; the adapter adds its own).
     const StepStatistics& statistics() const;
     // The kernel launches since the last call, with Settings::m_profileKernels; empty on the host. Waits for the

@@ -148,7 +148,7 @@ TEST_P(Energy, NeverGrowsByContacts)
 }
 
 INSTANTIATE_TEST_SUITE_P(Falls, Energy,
-                         testing::Values(Fall{"sphere", btScalar(0.9)}, Fall{"box", btScalar(0.6)},
+                         testing::Values(Fall{"sphere", btScalar(1.1)}, Fall{"box", btScalar(0.6)},
                                          Fall{"stairs", btScalar(1.2)}, Fall{"torus", btScalar(0.5)}),
                          [](const testing::TestParamInfo<Fall>& info) { return std::string(info.param.m_shape); });
 }  // namespace drape::test

@@ -64,6 +64,7 @@ struct Pipeline::Implementation
     StepPairs m_stepPairs;
     std::vector<bool> m_paired;  // per obstacle slot, with any cloth in the step
     StepResult m_result;
+    std::vector<MeshId> m_leftOut;  // cloths, of the last step
     StepStatistics m_statistics;
     SideHierarchy m_clothHierarchy, m_obstacleHierarchy;
     TreeWatch m_treeWatch;

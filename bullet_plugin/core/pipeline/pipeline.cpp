@@ -228,6 +228,7 @@ ContactList Pipeline::finish()
     Implementation& self = *m_implementation;
     Stopwatch watch;
     StepStatistics& statistics = self.m_statistics;
+    self.m_leftOut.clear();
     if (!self.m_stepPairs.m_any || !self.m_submitted)
     {
         self.m_result.clear();
@@ -274,6 +275,11 @@ void Pipeline::waitForRebuild()
 ContactList Pipeline::selfContacts() const
 {
     return m_implementation->m_result.selfContacts();
+}
+
+const std::vector<MeshId>& Pipeline::clothsLeftOut() const
+{
+    return m_implementation->m_leftOut;
 }
 
 const StepStatistics& Pipeline::statistics() const

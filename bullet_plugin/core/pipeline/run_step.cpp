@@ -56,6 +56,7 @@ void Pipeline::Implementation::leaveOutCloths()
         ++m_statistics.m_clothsLeftOut;
         m_statistics.m_candidates += candidates[slot];
         m_stepPairs.leaveOut(slot);
+        m_leftOut.push_back(m_scene.m_cloths.mesh(slot).m_id);
     }
 }
 }  // namespace drape

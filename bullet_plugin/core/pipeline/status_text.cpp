@@ -1,7 +1,15 @@
+#include <cstdio>
+
 #include "drape/report.h"
+#include "drape/settings.h"
 
 namespace drape
 {
+void logToStandardError(const char* line)
+{
+    std::fprintf(stderr, "drape: %s\n", line);
+}
+
 std::string statusText(std::uint32_t status)
 {
     const struct
@@ -14,6 +22,7 @@ std::string statusText(std::uint32_t status)
         {kStepDeviceFull, "more than the device can hold, so the host ran the step"},
         {kStepClothsLeftOut, "cloths with too many candidates or contacts left out"},
         {kStepCoarsePositions, "an obstacle so far out that its positions are coarser than the thickness"},
+        {kStepStartsIntersecting, "triangles of a cloth and an obstacle that intersected when the step began"},
     };
     std::string text;
     for (const auto& clause : clauses)

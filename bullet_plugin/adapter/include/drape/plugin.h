@@ -19,6 +19,9 @@
 // new pose. One whose pose is set later, by a tick's callback or while it sleeps, moves the whole way from its last
 // pose; one that sleeps has no velocity for Bullet: give it DISABLE_DEACTIVATION. In the first step in which a body is
 // there it rests. A static object's pose that changes is a teleport, and so is the place of a child in its compound.
+//
+// Cloth that begins a step with its triangles through a mesh, because it was put there or the mesh was, is reported
+// (kStepStartsIntersecting) and pushed out of closed meshes; nodes are checked again wherever an app moves them.
 #pragma once
 
 #include <memory>
@@ -75,6 +78,13 @@ public:
     // several worlds it is not asked which have Drape's algorithm: one that has is enough.
     std::string whyStock(const btCollisionObject* objectA, const btCollisionObject* objectB) const;
 
+    // Lists what is wrong with a world as far as the plugin can see, a line each; empty when nothing is: a world
+    // without the plugin's solver or algorithm, pairs that are left to Bullet and why, cloth whose triangles intersect
+    // a mesh or that lies inside of one, nodes that are not finite, margins that are negative or out of proportion, and
+    // what the last step's status says. For development: it looks at every pair, which takes milliseconds to seconds.
+    // Between steps.
+    std::string diagnose(const btCollisionWorld& world) const;
+
     // Reads a soft body, or an obstacle's meshes (a compound's children, too), and brings them to the device: without
     // it the first step in which cloth comes near pays for that. What Drape does not handle costs nothing. Kept,
     // whether paired or not, until release(), before which the object must live; changes are noticed as of any other.
@@ -89,8 +99,11 @@ public:
     // All objects that are in a world.
     void release(const btCollisionWorld& world);
 
-    // Tells that vertices of a mesh shape were moved in place. Refits (a changed bounding box), scaling and changes
-    // that touch one of the vertices that are sampled each step are noticed without it.
+    // Says that vertices of a mesh shape were moved in place, and wakes soft bodies that sleep beside it. Refits (a
+    // changed bounding box), scaling and changes that touch one of the vertices that are sampled each step are noticed
+    // without it. What vertices moved since the step before is motion within the coming step, as a body's is; more than
+    // half of the mesh's size is another pose, where cloth starts anew. In the first step that an obstacle has a soft
+    // body near, it has not moved.
     void obstacleChanged(const btCollisionShape* shape);
 
     // Whether only a mesh shape's front is solid, the side from which its triangles' corners run counter-clockwise:

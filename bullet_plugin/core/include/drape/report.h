@@ -56,7 +56,9 @@ enum StepStatusBits : std::uint32_t
     kStepClothsLeftOut =
         1u << 3,  // more than Settings::m_candidateLimit or m_contactLimit: the largest cloths left out
     kStepCoarsePositions =
-        1u << 4  // an obstacle reaches so far out that neighbouring floats are a thickness apart there
+        1u << 4,  // an obstacle reaches so far out that neighbouring floats are a thickness apart there
+    kStepStartsIntersecting =
+        1u << 5  // a cloth and an obstacle began the step with triangles that intersect: the cloth is not guarded there
 };
 
 // What StepStatistics::m_status says, in words: one clause a bit, joined by "; ". Empty for a good step.
@@ -95,8 +97,12 @@ struct StepStatistics
     std::size_t m_reduced = 0;           // contacts left out because others imply them
     std::size_t m_intersections = 0;     // only with Settings::m_reportIntersections
     std::size_t m_invalidNodes = 0;      // with kStepInvalidNodes
-    std::size_t m_retries = 0;           // stages run again because a buffer was too small
-    std::size_t m_rebuilds = 0;          // of the cloths' hierarchy, that this step was the first to use
+    // With kStepStartsIntersecting: pairs of a cloth and an obstacle that began the step with triangles that intersect,
+    // and how many pairs of triangles these are. The adapter counts.
+    std::size_t m_startsIntersecting = 0;
+    std::uint64_t m_startIntersections = 0;
+    std::size_t m_retries = 0;   // stages run again because a buffer was too small
+    std::size_t m_rebuilds = 0;  // of the cloths' hierarchy, that this step was the first to use
     // What was there and not looked at, or used as it was left; contacts are the same without (tests/README.md).
     std::size_t m_clothsSkipped = 0;  // of the solver's: asleep as it began, pinned or without time; the adapter counts
     std::size_t m_obstaclesKept = 0;  // of the step's pairs: neither built, refitted nor placed anew

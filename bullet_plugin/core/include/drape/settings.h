@@ -4,12 +4,16 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "methods.h"
 
 namespace drape
 {
+// Writes "drape: ", the line and a line feed to standard error.
+void logToStandardError(const char* line);
+
 enum class Backend
 {
     Auto,    // a GPU, else any OpenCL device, and the host where there is none, where it fails (then error() says why),
@@ -83,6 +87,11 @@ struct Settings
     // Folder of compiled kernels and of what was measured. Empty: $XDG_CACHE_HOME/drape or ~/.cache/drape. "none": do
     // not cache. PoCL keeps its kernels itself, whatever is said here: in $XDG_CACHE_HOME/pocl or ~/.cache/pocl.
     std::string m_cacheFolder;
+
+    // Gets a line, without a line feed, for what an app should know of its world and no return value tells: a pair that
+    // begins a step with triangles that intersect, a negative margin, or one as large as the mesh. Each is told once,
+    // not once a step, on the thread that steps the world. nullptr: no lines. What it throws is dropped.
+    std::function<void(const char*)> m_log = logToStandardError;
 
     // Which algorithms; for comparing them. The contacts do not depend on it.
     Methods m_methods;

@@ -1,0 +1,161 @@
+// Handles the start of a step for pairs that are not guarded, and remembers its end for the next step's start.
+#include <algorithm>
+#include <cmath>
+
+#include "bullet_plugin/adapter/collision_step.h"
+
+namespace drape
+{
+namespace
+{
+bool isFinite(const btVector3& v)
+{
+    return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
+}
+
+// Nodes are at most kMostTangledSpeed faster than the body as a whole.
+void limitSpeeds(btSoftBody& body)
+{
+    btVector3 mean(0, 0, 0);
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+        mean += body.m_nodes[i].m_v;
+    mean /= btScalar(std::max(1, body.m_nodes.size()));
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+    {
+        btVector3& velocity = body.m_nodes[i].m_v;
+        const btScalar speed = (velocity - mean).length();
+        if (speed > kMostTangledSpeed) velocity = mean + (velocity - mean) * (kMostTangledSpeed / speed);
+    }
+}
+
+std::size_t countInvalid(const btSoftBody& body)
+{
+    std::size_t count = 0;
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+        count += !isFinite(body.m_nodes[i].m_q) || !isFinite(body.m_nodes[i].m_x);
+    return count;
+}
+}  // namespace
+
+void CollisionStep::checkStarts()
+{
+    m_starts.beginStep();
+    m_jumped.resize(std::max(m_jumped.size(), m_bodies.size()));
+    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+        m_mirrors[i]->listJumped(m_state.threads(), m_jumped[i]);
+    for (const Pair& pair : m_pairs)
+    {
+        const std::size_t body = m_byCloth.at(pair.m_cloth);
+        const std::size_t pushes = m_bodies[body].m_pushes.size();
+        m_starts.check(pair.m_start, m_jumped[body], m_bodies[body]);
+        for (std::size_t i = pushes; i < m_bodies[body].m_pushes.size(); ++i)
+            m_bodies[body].m_pushes[i].m_carriedStarts = pair.m_carriedStarts;
+    }
+    for (BodyContacts& body : m_bodies)
+        preparePushes(body);
+}
+
+// Moves the predicted ends of nodes that are pushed, so that detection and the limit of motion see where they go, and
+// makes contacts of the pushes, so that links do not pull the nodes back.
+void CollisionStep::preparePushes(BodyContacts& body)
+{
+    for (NodePush& push : body.m_pushes)
+    {
+        btSoftBody::Node& node = body.m_body->m_nodes[push.m_node];
+        const btVector3 start = carriedStart(push.m_carry, push.m_carriedStarts, push.m_node, node.m_q);
+        StepContact contact = {};
+        contact.m_nodes[0] = push.m_node;
+        contact.m_nodes[1] = contact.m_nodes[2] = -1;
+        contact.m_weights[0] = 1;
+        contact.m_normal = push.m_normal;
+        contact.m_point = start + push.m_normal * push.m_distance;
+        contact.m_time = 1;
+        contact.m_startGap = -push.m_distance;
+        contact.m_endGap = push.m_normal.dot(node.m_x - contact.m_point);
+        contact.m_carry = push.m_carry;
+        contact.m_carriedStarts = push.m_carriedStarts;
+        body.m_pushContacts.push_back(m_state.m_found.addOwn(contact));
+        push.m_speedLimit =
+            (std::max(btScalar(0), contact.m_endGap - contact.m_startGap) + push.m_normal.dot(start - node.m_q)) *
+            body.m_body->m_sst.isdt;
+        if (contact.m_endGap < 0) node.m_x -= push.m_normal * contact.m_endGap;
+    }
+}
+
+// Adds contacts of one feature, without those that would keep it on the wrong side of their obstacle.
+void CollisionStep::addHeldContacts(BodyContacts& body, const Contact* first, std::uint32_t count,
+                                    const ClothFeature& cloth)
+{
+    const auto isHeld = [&](const Contact& contact)
+    {
+        const MeshId obstacle = m_state.pipeline().view(contact).m_obstacle;
+        return std::all_of(body.m_tangled.begin(), body.m_tangled.end(),
+                           [&](const TangledPair& tangled)
+                           { return tangled.m_obstacle != obstacle || tangled.holds(cloth.m_nodes); });
+    };
+    for (const Contact *contact = first, *end = first + count; contact != end;)
+    {
+        const Contact* const next = std::find_if_not(contact, end, isHeld);
+        if (next != contact) addContacts(body, contact, static_cast<std::uint32_t>(next - contact), cloth);
+        contact = std::find_if(next, end, isHeld);
+    }
+}
+
+void CollisionStep::addPushes(BodyContacts& body)
+{
+    std::vector<FeatureContacts> pushes;
+    for (std::size_t i = 0; i < body.m_pushes.size(); ++i)
+    {
+        pushes.push_back(FeatureContacts{&body.m_pushContacts[i], 1, {body.m_pushes[i].m_node, -1, -1}, 1});
+        body.m_limit.addContactNode(body.m_pushes[i].m_node);
+    }
+    body.m_features.insert(body.m_features.begin(), pushes.begin(), pushes.end());  // nodes are first
+}
+
+// Cloths that collided with nothing in this step, or whose nodes were not all looked at, are checked before they count
+// as guarded again.
+void CollisionStep::markUnguarded()
+{
+    for (const MeshId cloth : m_state.pipeline().clothsLeftOut())
+    {
+        const auto found = m_byCloth.find(cloth);
+        if (found != m_byCloth.end()) m_mirrors[found->second]->startAnew();
+    }
+    if (m_state.pipeline().statistics().m_invalidNodes == 0) return;
+    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+    {
+        if (countInvalid(*m_bodies[i].m_body) == 0) continue;
+        m_mirrors[i]->startAnew();
+        m_invalid.insert(m_bodies[i].m_body);
+    }
+}
+
+void CollisionStep::reportInvalid(const btSoftBody& body)
+{
+    if (m_invalid.empty() || m_invalid.count(&body) == 0 || contactsOf(body)) return;
+    const std::size_t count = countInvalid(body);
+    if (count == 0)
+    {
+        m_invalid.erase(&body);
+        return;
+    }
+    m_state.m_statistics.m_status |= kStepInvalidNodes;
+    m_state.m_statistics.m_invalidNodes += count;
+}
+
+void CollisionStep::end()
+{
+    for (const BodyContacts& body : m_bodies)
+    {
+        for (const NodePush& push : body.m_pushes)
+        {
+            btSoftBody::Node& node = body.m_body->m_nodes[push.m_node];
+            const btScalar excess = node.m_v.dot(push.m_normal) - push.m_speedLimit;
+            if (excess > 0) node.m_v -= push.m_normal * excess;
+        }
+        if (body.m_wasTangled) limitSpeeds(*body.m_body);
+    }
+    for (ClothMirror* mirror : m_mirrors)
+        mirror->rememberEnds(m_state.threads());
+}
+}  // namespace drape

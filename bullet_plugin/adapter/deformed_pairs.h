@@ -1,0 +1,53 @@
+// Computes where a cloth's nodes start in a step, as an obstacle sees them whose vertices move in that step.
+//
+// Why: in detection an obstacle rests as it is at the step's end, and the cloth moves relative to it. What a rigid
+// motion does to a node's start is one transform for all nodes (kernels/lib/rigid_motion.h). Where vertices move each
+// on their own, a node within reach of the surface starts where it would be had it gone along with the surface's
+// nearest place, turned as the triangle turns: on the same side and as far away as it was. Farther out the motion
+// fades, and nodes that the surface cannot come near to in the step start where they are. These starts are a pair's
+// own, so the pair has a mesh of the cloth of its own in the pipeline, whose contacts go to the same body. Cost: a
+// second mesh while the obstacle moves so, and O(log n) a node near it. The same bits with any number of threads.
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "bullet_plugin/adapter/kinematic_motion.h"
+#include "bullet_plugin/core/mesh/mesh_id.h"
+
+namespace drape
+{
+class ClothMirror;
+class ObstacleMirror;
+class PluginState;
+
+struct DeformedPair
+{
+    MeshId m_mesh = kNoMesh;           // of the cloth, for this obstacle alone
+    std::vector<btVector3> m_starts;   // by node, m: what the pipeline takes for the start
+    std::vector<btVector3> m_carried;  // where the obstacle's whole motion carries it
+    std::uint64_t m_lastStep = 0;
+};
+
+class DeformedPairs
+{
+public:
+    explicit DeformedPairs(PluginState& state) : m_state(state) {}
+    ~DeformedPairs();
+    DeformedPairs(const DeformedPairs&) = delete;
+    DeformedPairs& operator=(const DeformedPairs&) = delete;
+
+    // Removes the meshes of pairs that no vertices moved in for long. Before the step's first update().
+    void beginStep();
+    // The pair's own mesh and starts in this step, for an obstacle with a before(). reach: m, of contacts. The result
+    // stays where it is until the next beginStep().
+    const DeformedPair& update(const ClothMirror& cloth, const ObstacleMirror& obstacle, const BodyMotion& motion,
+                               bool kinematic, btScalar reach);
+
+private:
+    PluginState& m_state;
+    std::unordered_map<std::uint64_t, DeformedPair> m_pairs;  // by the cloth's id above the obstacle's
+    std::uint64_t m_step = 0;
+};
+}  // namespace drape

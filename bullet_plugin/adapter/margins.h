@@ -1,0 +1,24 @@
+// The thickness of a pair from Bullet's margins, and what is wrong with them.
+#pragma once
+
+#include <algorithm>
+#include <string>
+
+#include "BulletCollision/CollisionShapes/btCollisionShape.h"
+#include "BulletSoftBody/btSoftBody.h"
+
+namespace drape
+{
+// A negative margin counts as 0, m: Bullet takes any number.
+inline btScalar marginOf(const btCollisionShape& shape)
+{
+    return std::max(btScalar(0), shape.getMargin());
+}
+
+// Distance at which cloth comes to rest, m.
+btScalar thicknessOf(const btSoftBody& cloth, const btCollisionShape& obstacle);
+
+// In one line what is wrong with the margins of a soft body and of a mesh's shape: one is negative, or the thickness is
+// as large as the mesh or the cloth. Empty where nothing is. O(n) in the nodes.
+std::string marginRemark(const btSoftBody& cloth, const btCollisionShape& obstacle);
+}  // namespace drape

@@ -1,0 +1,131 @@
+// Finds pairs of a cloth and an obstacle that begin a step with triangles that intersect, and gets them apart.
+//
+// Why: contacts keep a node on the side on which it begins the step. Cloth that begins with its triangles through a
+// mesh's is kept there, for good. Job: a pair is guarded once a check has found none of its triangles intersecting at
+// the start of a step. It is checked when it is new, when the cloth or the obstacle starts anew (mirrors.h), for the
+// faces of nodes that are elsewhere than the last step left them, and in every step while it intersects. Where the
+// obstacle is closed, its outside is known, and nodes on the wrong side are pushed to the nearest place of the surface
+// at a bounded speed; contacts that would keep them inside are dropped (body_contacts.h). Where it is open nothing
+// tells which side is right: such pairs are reported, and held as they are.
+//
+// Nodes that come out on different sides of something thin leave faces that pass through it. Where that lasts, what is
+// beyond is drawn back, a few rows of nodes at a time, through where the cloth's largest part meets the surface. Where
+// that does not help either, as with a ring that is linked with the cloth, the whole cloth is moved out of the
+// obstacle's box, on the shortest way along an axis, unless nodes are pinned. What is left is reported, and held as it
+// is.
+//
+// The right side of a closed mesh is its outside, however its triangles are wound; but for a room, whose triangles look
+// inwards and which holds most of the cloth's nodes. Cloth that is wholly inside intersects nothing, and stays there.
+//
+// Cost: of a guarded pair a comparison for each node; of a new one a pass over the obstacle's triangles if the boxes
+// meet, and O(log n) for each face of the cloth if a triangle comes into the cloth's box. Deterministic, with any
+// number of threads.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "bullet_plugin/adapter/body_contacts.h"
+#include "bullet_plugin/adapter/kinematic_motion.h"
+#include "bullet_plugin/core/queries/mesh_probe.h"
+
+namespace drape
+{
+class ClothMirror;
+class ObstacleMirror;
+class PluginState;
+
+// A pair of the coming step.
+struct StartingPair
+{
+    const ClothMirror* m_cloth;
+    const ObstacleMirror* m_obstacle;
+    BodyMotion m_motion;
+    bool m_kinematic;  // else the obstacle's positions are the world's
+};
+
+class PairStarts
+{
+public:
+    explicit PairStarts(PluginState& state) : m_state(state) {}
+
+    // Begins a step, before its first check(). Forgets pairs that were not seen for long.
+    void beginStep();
+    // Checks the pair where it has to be. jumped: nodes that are elsewhere than the last step left them. Where the pair
+    // intersects and can be pushed apart, adds what is to be done to the body. Bullet's nodes are only read.
+    void check(const StartingPair& pair, const std::vector<int>& jumped, BodyContacts& body);
+
+    // Count, in the step so far, the pairs of a cloth and an obstacle that intersect, and the pairs of their triangles.
+    std::size_t intersectingPairs() const { return m_intersectingPairs; }
+    std::uint64_t intersections() const { return m_intersections; }
+
+private:
+    struct Guard
+    {
+        std::uint64_t m_clothRevision = 0, m_obstacleRevision = 0;  // as they were checked last
+        std::uint64_t m_intersections = 0;                          // pairs of triangles; 0: guarded
+        std::uint64_t m_lastStep = 0;
+        std::uint64_t m_calmUntil = 0;  // step up to which the cloth counts as tangled shortly before
+        int m_passes = 0;               // over all of the obstacle's triangles
+        int m_pushedSteps = 0;          // in which nodes were on the wrong side
+        int m_passingSteps = 0;         // in which faces met the obstacle although all nodes were on the right side
+        int m_keptNode = -1;            // of the part of the cloth that others are drawn back to; -1: none are
+        int m_backSteps = 0;            // in which they were
+        int m_outSteps = 0;             // in which the whole cloth was moved out
+        Vec3 m_out = {};                // the way that it takes, unit, in the frame of the obstacle's positions
+        bool m_checked = false, m_told = false;
+    };
+    struct Probe
+    {
+        std::unique_ptr<MeshProbe> m_probe;
+        std::uint64_t m_revision = 0;  // of the obstacle's positions
+        std::uint64_t m_lastStep = 0;
+    };
+    // A face of the cloth and the obstacle's triangles that it meets.
+    struct MeetingFace
+    {
+        std::uint32_t m_face;
+        std::vector<std::uint32_t> m_triangles;
+    };
+
+    using Row = std::map<int, btVector3>;  // by node, the way to go, of any length
+
+    void listFaces(const StartingPair& pair, const std::vector<int>* nodes);
+    void findPlaces(const StartingPair& pair, bool all);
+    bool mayMeet(const StartingPair& pair, Guard& guard);
+    MeshProbe* probeOf(const StartingPair& pair);
+    std::uint64_t findMeeting(const StartingPair& pair, const MeshProbe& probe);
+    void tellMargins(const StartingPair& pair) const;
+    void tell(const StartingPair& pair, Guard& guard, bool pushed);
+    void pushApart(const StartingPair& pair, const MeshProbe& probe, Guard& guard, BodyContacts& body);
+    bool push(const StartingPair& pair, const MeshProbe& probe, const TangledPair& tangled, Guard& guard,
+              BodyContacts& body);
+    Row firstRow(const ClothFaces& faces, const MeshProbe& probe, int kept) const;
+    Row nextRow(const ClothFaces& faces, const Row& row, const Row& drawn, int kept) const;
+    void findRegions(const ClothFaces& faces, const MeshProbe& probe);
+    int largestPart(const TangledPair& tangled, std::size_t& count) const;
+    void pushToSurface(const StartingPair& pair, const MeshProbe& probe, BodyContacts& body);
+    void drawBack(const StartingPair& pair, const MeshProbe& probe, int keptNode, BodyContacts& body);
+    bool isInsideOnItsWay(const StartingPair& pair, const MeshProbe& probe, const Guard& guard);
+    void moveOut(const StartingPair& pair, const MeshProbe& probe, Guard& guard, BodyContacts& body);
+    void pushNode(const StartingPair& pair, int node, Vec3 way, BodyContacts& body) const;
+    void pushFaces(const StartingPair& pair, const MeshProbe& probe, BodyContacts& body);
+
+    PluginState& m_state;
+    std::unordered_map<std::uint64_t, Guard> m_guards;  // by the cloth's id above the obstacle's
+    std::unordered_map<MeshId, Probe> m_probes;
+    std::uint64_t m_step = 0;
+    std::size_t m_intersectingPairs = 0;
+    std::uint64_t m_intersections = 0;
+    // These belong to one check and are kept for their memory.
+    std::vector<std::uint32_t> m_faces;
+    std::vector<Vec3> m_places;  // by node, in the frame of the obstacle's positions, at the step's start
+    std::vector<MeetingFace> m_meeting;
+    std::vector<int> m_regions;          // by node: the first node that is reached over faces that meet nothing
+    std::vector<unsigned char> m_wrong;  // likewise: on the wrong side
+    bool m_insideIsRight = false;
+};
+}  // namespace drape

@@ -1,0 +1,102 @@
+// A triangle mesh at rest, and what lies where beside it: which of its triangles another one meets, where its surface
+// is nearest, and, where it is closed, which points are inside.
+//
+// Input: a mesh's topology, the leaf order of its triangles and its positions; all are copied. Guarantee: which
+// triangles meet and what is inside is decided in exact arithmetic on the float positions, except that a point counts
+// as outside where every ray from it runs into an edge. A closed mesh is one in which every edge has an even number of
+// triangles, vertices at one position counted as one: then the parity of crossings is the same along every ray,
+// whatever the triangles' winding. Cost: O(n) to make; O(log n) a question for what lies beside few triangles. Host
+// only. Lengths in metres.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "bullet_plugin/core/mesh/topology.h"
+#include "drape/mesh_description.h"
+#include "kernels/shared/types.h"
+
+namespace drape
+{
+class MeshProbe
+{
+public:
+    MeshProbe(const Topology& topology, const std::vector<std::uint32_t>& order, const std::vector<float>& positions);
+    // The description's indices are in range.
+    explicit MeshProbe(const MeshDescription& mesh);
+
+    // Takes other positions of as many vertices.
+    void move(const std::vector<float>& positions);
+    // Returns how far the vertex that moves most would go to other positions, m; and the largest extent of the box.
+    float mostMotion(const std::vector<float>& positions) const;
+    float size() const;
+
+    // Lists the triangles that have a point in common with the given one, in ascending order. None where a corner is
+    // not finite or beyond 2^30 m.
+    void listMeeting(const Vec3 corners[3], std::vector<std::uint32_t>& triangles) const;
+    // The mean of the points at which the given triangle's edges pass through the listed ones and theirs through it.
+    // False where there are none: all lie in one plane.
+    bool middleOfMeeting(const Vec3 corners[3], const std::vector<std::uint32_t>& triangles, Vec3& middle) const;
+
+    // The sum of the listed triangles' unit normals, each on the side on which the point is.
+    Vec3 sumOfNormals(const std::vector<std::uint32_t>& triangles, Vec3 point) const;
+
+    // The axis, or its opposite, along which points leave the mesh's box soonest; unit.
+    Vec3 wayOutOfBox(const std::vector<Vec3>& points) const;
+
+    // The first call finds out, O(n log n).
+    bool isClosed();
+    // Volume that a closed mesh encloses, m³; negative where its triangles look inwards.
+    double volume() const;
+    // The mesh is closed.
+    bool isInside(Vec3 point) const;
+    // The surface's nearest point. The mesh has triangles.
+    Vec3 nearest(Vec3 point) const;
+    // A place of the surface: the weights of a triangle's corners, and how far it is, m.
+    struct Place
+    {
+        std::uint32_t m_triangle;
+        Vec3 m_weights;
+        float m_distance;
+    };
+    // The nearest one within the distance; false where there is none.
+    bool nearestWithin(Vec3 point, float distance, Place& place) const;
+    // Moves a point along with a place of the surface, turned as the triangle turns, to where the vertices have other
+    // positions.
+    Vec3 carriedWith(const Place& place, Vec3 point, const std::vector<float>& positions) const;
+
+private:
+    enum class Closed
+    {
+        Unknown,
+        Yes,
+        No
+    };
+    struct Box
+    {
+        Vec3 m_low, m_high;
+    };
+    // A node of the tree over the triangles, with an exact box and the links of BvhNode.
+    struct Node
+    {
+        float m_low[3], m_high[3];  // m; low above high where no vertex is valid
+        std::uint32_t m_first, m_count;
+    };
+
+    void build(const std::vector<std::uint32_t>& order);
+    void refit();
+    static double squaredDistance(const Node& node, Vec3 point);
+    template <class Visit>
+    void forTrianglesIn(const Box& box, const Visit& visit) const;
+    Vec3 corner(std::uint32_t triangle, int i) const;
+    bool countCrossings(Vec3 point, Vec3 target, unsigned& crossings) const;
+
+    std::vector<Triangle> m_triangles;
+    std::vector<float> m_positions;
+    std::vector<std::uint32_t> m_order;
+    std::uint32_t m_root = 0;
+    std::vector<Node> m_nodes;  // children before parents
+    Closed m_closed = Closed::Unknown;
+};
+}  // namespace drape
