@@ -11,6 +11,10 @@ namespace
 {
 const char* reasonFromCloth(const PluginState& state, const btSoftBody& cloth)
 {
+    if (!state.ready()) return "Drape could not start; see Plugin::error()";
+    if (!state.isWired())
+        return "no dispatcher has Drape's algorithm: make it with a drape::CollisionConfiguration, or call "
+               "drape::install()";
     // Compared, never followed: a soft body may outlive its world's solver.
     if (!state.ownsSolver(cloth.getSoftBodySolver()))
         return "the world's soft body solver is not a drape::SoftBodySolver of this plugin; a deformable world has its "
@@ -42,12 +46,13 @@ bool disabledFor(const btSoftBody& cloth, const btCollisionObject& obstacle)
 const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
                            const btCollisionShape& shape)
 {
-    if (!state.ready()) return "Drape could not start; see Plugin::error()";
-    if (!state.isWired())
-        return "no dispatcher has Drape's algorithm: make it with a drape::CollisionConfiguration, or call "
-               "drape::install()";
     if (const char* reason = reasonFromCloth(state, cloth)) return reason;
     return reasonFromObstacle(obstacle, shape);
+}
+
+bool handlesCloth(const PluginState& state, const btSoftBody& cloth)
+{
+    return !reasonFromCloth(state, cloth);
 }
 
 bool stockCanTake(const btCollisionObject& obstacle, const btTransform& pose)

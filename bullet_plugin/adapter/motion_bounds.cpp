@@ -1,9 +1,12 @@
 #include "bullet_plugin/adapter/motion_bounds.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "BulletCollision/BroadphaseCollision/btBroadphaseInterface.h"
 #include "BulletCollision/BroadphaseCollision/btOverlappingPairCache.h"
+#include "BulletCollision/CollisionShapes/btCompoundShape.h"
+#include "BulletCollision/NarrowPhaseCollision/btPersistentManifold.h"
 #include "LinearMath/btAabbUtil2.h"
 #include "bullet_plugin/adapter/eligibility.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
@@ -18,6 +21,11 @@ struct Extent
     btVector3 m_low = btVector3(SIMD_INFINITY, SIMD_INFINITY, SIMD_INFINITY), m_high = -m_low;
 
     bool empty() const { return m_low.x() > m_high.x(); }
+    bool meets(const StepObstacle& obstacle, btScalar reach) const
+    {
+        const btVector3 margin(reach, reach, reach);
+        return TestAabbAgainstAabb2(m_low - margin, m_high + margin, obstacle.m_low, obstacle.m_high);
+    }
     void add(const btVector3& p)
     {
         m_low.setMin(p);
@@ -44,7 +52,7 @@ void widen(btSoftBody& body, const Extent& extent, btScalar reach)
     body.m_bounds[1].setMax(extent.m_high + margin);
 }
 
-// Of the places of a body's nodes; nodes that are not finite left out.
+// Extents of a body's nodes at the start and the end of a step, without nodes that are not finite.
 struct Way
 {
     explicit Way(const btSoftBody& body)
@@ -58,38 +66,42 @@ struct Way
         }
     }
 
+    // The paths as an obstacle sees them beside its bounds: those of its own pose, which the motion may not have
+    // reached yet.
+    Extent seenBy(const StepObstacle& obstacle) const
+    {
+        const btTransform& pose = obstacle.m_object->getWorldTransform();
+        Extent seen;
+        seen.addMapped(m_start, pose * obstacle.m_motion.m_start.inverse());
+        seen.addMapped(m_end, pose * obstacle.m_motion.m_end.inverse());
+        return seen;
+    }
+
     Extent m_start, m_end;
 };
 
+// How much farther than the reach an obstacle may be from a body's paths and still widen its bounds, in thresholds that
+// Bullet adds to every bounds. Links pull nodes off their paths, and where Bullet makes the pair then, the motion limit
+// has to know of it.
+constexpr btScalar kNearThresholds = 5;
+
 // The body's part of the reach of contacts, m.
-btScalar reachOf(const btSoftBody& body, btScalar activation)
+btScalar reachOf(const PluginState& state, const btSoftBody& body)
 {
-    return (1 + activation) * body.getCollisionShape()->getMargin();
+    return (1 + btScalar(state.settings().m_activation)) * body.getCollisionShape()->getMargin();
 }
 
-// A body's way through the step as a moving object sees it, beside the bounds that Bullet has of that object: those of
-// its own pose, which the motion may not have reached yet.
-struct Sight
+// What bounds of the shape lack of its part of that reach, m: of a compound the most that a child's lack.
+btScalar reachBeyondBounds(const btCollisionShape& shape, btScalar activation)
 {
-    Sight(const btSoftBody& body, const Way& way, const MovingObject& object, btScalar activation)
-    {
-        const btTransform& pose = object.m_object->getWorldTransform();
-        const btCollisionShape& shape = *object.m_object->getCollisionShape();
-        m_seen.addMapped(way.m_start, pose * object.m_motion.m_start.inverse());
-        m_seen.addMapped(way.m_end, pose * object.m_motion.m_end.inverse());
-        shape.getAabb(pose, m_low, m_high);
-        m_reach = reachOf(body, activation) + activation * shape.getMargin();
-    }
-    bool comesNear() const
-    {
-        const btVector3 margin(m_reach, m_reach, m_reach);
-        return TestAabbAgainstAabb2(m_seen.m_low - margin, m_seen.m_high + margin, m_low, m_high);
-    }
-
-    Extent m_seen;
-    btVector3 m_low, m_high;
-    btScalar m_reach;  // m, but for what the object's bounds hold
-};
+    if (isMeshShape(shape.getShapeType())) return activation * shape.getMargin() + marginBeyondBounds(shape);
+    btScalar most = 0;
+    if (!shape.isCompound()) return most;
+    const btCompoundShape& compound = static_cast<const btCompoundShape&>(shape);
+    for (int i = 0; i < compound.getNumChildShapes(); ++i)
+        most = btMax(most, reachBeyondBounds(*compound.getChildShape(i), activation));
+    return most;
+}
 
 // Whether Bullet would hand their pair on and Drape find contacts of it once the body is awake.
 bool mayTouch(const PluginState& state, const btSoftBody& body, const btCollisionObject& object)
@@ -102,54 +114,69 @@ bool mayTouch(const PluginState& state, const btSoftBody& body, const btCollisio
            handlesAny(state, body, object, *object.getCollisionShape());
 }
 
-class CollectMoving : public btBroadphaseAabbCallback
+class CollectObstacles : public btBroadphaseAabbCallback
 {
 public:
-    explicit CollectMoving(KinematicMotions& motions) : m_motions(motions) {}
+    CollectObstacles(KinematicMotions& motions, btScalar activation, bool resting)
+        : m_motions(motions), m_activation(activation), m_resting(resting)
+    {
+    }
 
     bool process(const btBroadphaseProxy* proxy) override
     {
         const btCollisionObject* object = static_cast<const btCollisionObject*>(proxy->m_clientObject);
-        if (!object || !object->isKinematicObject()) return true;
-        const int type = object->getCollisionShape()->getShapeType();
-        if (!isMeshShape(type) && type != COMPOUND_SHAPE_PROXYTYPE) return true;
-        const BodyMotion motion = m_motions.observe(*object);
-        if (motion.moves()) m_found.push_back(MovingObject{object, motion});
+        if (!object || !object->isStaticOrKinematicObject()) return true;
+        const btCollisionShape& shape = *object->getCollisionShape();
+        if (!isMeshShape(shape.getShapeType()) && shape.getShapeType() != COMPOUND_SHAPE_PROXYTYPE) return true;
+        const btTransform& pose = object->getWorldTransform();
+        StepObstacle obstacle;
+        obstacle.m_object = object;
+        obstacle.m_motion = object->isKinematicObject() ? m_motions.observe(*object) : BodyMotion{pose, pose};
+        if (!obstacle.m_motion.moves() && !m_resting) return true;
+        shape.getAabb(pose, obstacle.m_low, obstacle.m_high);
+        obstacle.m_reach = reachBeyondBounds(shape, m_activation);
+        m_found.push_back(obstacle);
         return true;
     }
 
-    std::vector<MovingObject> m_found;
+    std::vector<StepObstacle> m_found;
 
 private:
     KinematicMotions& m_motions;
+    const btScalar m_activation;
+    const bool m_resting;
 };
 }  // namespace
 
-std::vector<MovingObject> movingObjects(const btSoftBody& body, KinematicMotions& motions)
+std::vector<StepObstacle> stepObstacles(const PluginState& state, const btSoftBody& body, KinematicMotions& motions,
+                                        bool resting)
 {
-    CollectMoving collect(motions);
+    CollectObstacles collect(motions, btScalar(state.settings().m_activation), resting);
     btBroadphaseInterface* broadphase = body.m_worldInfo ? body.m_worldInfo->m_broadphase : nullptr;
     const btVector3 far(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
     if (broadphase) broadphase->aabbTest(-far, far, collect);
     return collect.m_found;
 }
 
-bool isReached(const PluginState& state, const btSoftBody& body, const std::vector<MovingObject>& moving)
+bool isReached(const PluginState& state, const btSoftBody& body, const std::vector<StepObstacle>& obstacles)
 {
-    if (moving.empty()) return false;
+    const auto moves = [](const StepObstacle& obstacle) { return obstacle.m_motion.moves(); };
+    if (std::none_of(obstacles.begin(), obstacles.end(), moves)) return false;
     Way rest(body);
     rest.m_start = rest.m_end;  // the last step that it was awake in is over
     if (rest.m_end.empty()) return false;
-    for (const MovingObject& object : moving)
-    {
-        if (!mayTouch(state, body, *object.m_object)) continue;
-        if (Sight(body, rest, object, btScalar(state.settings().m_activation)).comesNear()) return true;
-    }
-    return false;
+    const btScalar reach = reachOf(state, body);
+    return std::any_of(obstacles.begin(), obstacles.end(),
+                       [&](const StepObstacle& obstacle)
+                       {
+                           return moves(obstacle) && rest.seenBy(obstacle).meets(obstacle, reach + obstacle.m_reach) &&
+                                  mayTouch(state, body, *obstacle.m_object);
+                       });
 }
 
-void coverMotion(btSoftBody& body, btScalar activation, btScalar extra, const std::vector<MovingObject>& moving)
+void coverMotion(const PluginState& state, btSoftBody& body, const std::vector<StepObstacle>& obstacles)
 {
+    if (obstacles.empty()) return;
     const Way way(body);
     if (way.m_end.empty()) return;
     Extent path = way.m_start;
@@ -160,11 +187,16 @@ void coverMotion(btSoftBody& body, btScalar activation, btScalar extra, const st
         body.m_bounds[0] = path.m_low;
         body.m_bounds[1] = path.m_high;
     }
-    widen(body, path, reachOf(body, activation) + extra);
-    for (const MovingObject& object : moving)
+    const btScalar own = reachOf(state, body);
+    for (const StepObstacle& obstacle : obstacles)
     {
-        const Sight sight(body, way, object, activation);
-        if (sight.comesNear()) widen(body, sight.m_seen, sight.m_reach + extra);
+        const btScalar reach = own + obstacle.m_reach;
+        const Extent seen = obstacle.m_motion.moves() ? way.seenBy(obstacle) : path;
+        const btScalar nearness = reach + kNearThresholds * gContactBreakingThreshold;
+        if (!path.meets(obstacle, nearness) && !seen.meets(obstacle, nearness)) continue;
+        if (!mayTouch(state, body, *obstacle.m_object)) continue;
+        widen(body, path, reach);
+        widen(body, seen, reach);
     }
 }
 }  // namespace drape

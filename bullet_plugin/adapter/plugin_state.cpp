@@ -160,7 +160,6 @@ void PluginState::note(const void* owner, btSoftBody& cloth, const btCollisionOb
                                      : BodyMotion{obstacle.getWorldTransform(), obstacle.getWorldTransform()};
     note.m_thickness =
         std::max(kMinThickness, cloth.getCollisionShape()->getMargin() + obstacle.getCollisionShape()->getMargin());
-    m_marginBeyondBounds = std::max(m_marginBeyondBounds, drape::marginBeyondBounds(*obstacle.getCollisionShape()));
     const auto place = m_noteOf.emplace(owner, m_notes.size());
     if (place.second)
         m_notes.push_back(note);

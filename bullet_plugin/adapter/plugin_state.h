@@ -74,8 +74,6 @@ public:
     KinematicMotions& motionsOf(const btSoftBodySolver* solver) { return m_motions[solver]; }
 
     void note(const void* owner, btSoftBody& cloth, const btCollisionObjectWrapper& obstacle);
-    // The most that any obstacle noted so far has of margin that its bounds do not hold, m.
-    btScalar marginBeyondBounds() const { return m_marginBeyondBounds; }
     void forget(const void* owner);
     // Makes the object's mirrors, those of a compound's children, and brings them to the device; they are owned as if
     // by an algorithm until release().
@@ -130,7 +128,6 @@ private:
     std::unordered_map<const btSoftBody*, ClothMirror> m_cloths;
     std::unordered_map<ObstacleKey, ObstacleMirror, ObstacleKeyHash> m_obstacles;
     std::unordered_set<const btCollisionShape*> m_oneSided;  // compared, never followed
-    btScalar m_marginBeyondBounds = 0;
     std::uint64_t m_step = 0;
 };
 }  // namespace drape

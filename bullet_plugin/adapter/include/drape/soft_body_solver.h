@@ -10,13 +10,16 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "BulletSoftBody/btDefaultSoftBodySolver.h"
 
 namespace drape
 {
+class KinematicMotions;
 class Plugin;
 class PluginState;
+struct StepObstacle;
 
 class SoftBodySolver : public btDefaultSoftBodySolver
 {
@@ -30,6 +33,7 @@ public:
 private:
     struct Work;
 
+    std::vector<StepObstacle> wakeReached(KinematicMotions& motions);
     void listPredicted();
     void detect();
     double solveBodies();
