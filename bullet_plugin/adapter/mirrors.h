@@ -57,6 +57,8 @@ public:
     void writeNodes(const NodeStretch& stretch) const;
     // As the pipeline has them.
     const ClothFaces& faces() const { return m_faces; }
+    // Whether faces name nodes that are not the body's. The pipeline does not have these faces.
+    bool hasForeignFaces() const { return m_hasForeignFaces; }
     // Of the nodes as they lay when the topology was read, or when it was last taken up.
     const ClothParts& parts() const { return m_parts; }
     // For who uses it first, or again: the body may be another one in the same place.
@@ -79,6 +81,7 @@ private:
     const void* m_nodeArray = nullptr;
     const void* m_faceArray = nullptr;
     int m_cursor = 0;
+    bool m_hasForeignFaces = false;
     bool m_takenUp = false;  // since the parts were cut
     bool m_fullCheck = true;
 };

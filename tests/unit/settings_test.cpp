@@ -57,8 +57,8 @@ TEST(StatusText, NamesEveryBit)
 {
     EXPECT_EQ(statusText(kStepGood), "");
     std::string all;
-    for (const std::uint32_t bit :
-         {kStepInvalidNodes, kStepDeviceFailed, kStepDeviceFull, kStepClothsLeftOut, kStepCoarsePositions})
+    for (const std::uint32_t bit : {kStepInvalidNodes, kStepDeviceFailed, kStepDeviceFull, kStepClothsLeftOut,
+                                    kStepCoarsePositions, kStepFacesLeftOut})
     {
         EXPECT_NE(statusText(bit), "");
         EXPECT_EQ(statusText(bit).find(';'), std::string::npos);

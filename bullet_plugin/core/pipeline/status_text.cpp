@@ -14,6 +14,7 @@ std::string statusText(std::uint32_t status)
         {kStepDeviceFull, "more than the device can hold, so the host ran the step"},
         {kStepClothsLeftOut, "cloths with too many candidates or contacts left out"},
         {kStepCoarsePositions, "an obstacle so far out that its positions are coarser than the thickness"},
+        {kStepFacesLeftOut, "faces that name another body's nodes left out"},
     };
     std::string text;
     for (const auto& clause : clauses)

@@ -56,7 +56,8 @@ enum StepStatusBits : std::uint32_t
     kStepClothsLeftOut =
         1u << 3,  // more than Settings::m_candidateLimit or m_contactLimit: the largest cloths left out
     kStepCoarsePositions =
-        1u << 4  // an obstacle reaches so far out that neighbouring floats are a thickness apart there
+        1u << 4,                 // an obstacle reaches so far out that neighbouring floats are a thickness apart there
+    kStepFacesLeftOut = 1u << 5  // faces of a soft body that name another body's nodes were left out
 };
 
 // What StepStatistics::m_status says, in words: one clause a bit, joined by "; ". Empty for a good step.
