@@ -12,13 +12,12 @@ namespace
 const char* reasonFromCloth(const PluginState& state, const btSoftBody& cloth)
 {
     if (!state.ready()) return "Drape could not start; see Plugin::error()";
-    if (!state.isWired())
-        return "no dispatcher has Drape's algorithm: make it with a drape::CollisionConfiguration, or call "
-               "drape::install()";
-    // Compared, never followed: a soft body may outlive its world's solver.
-    if (!state.ownsSolver(cloth.getSoftBodySolver()))
+    if (!state.steps(cloth))
         return "the world's soft body solver is not a drape::SoftBodySolver of this plugin; a deformable world has its "
                "own";
+    if (!state.isWired())
+        return "no dispatcher has this plugin's algorithm: make it with a drape::CollisionConfiguration, or call "
+               "drape::install()";
     if (cloth.m_reducedModel) return "the soft body is a reduced deformable model";
     if (cloth.m_cfg.collisions & btSoftBody::fCollision::SDF_RD)
         return "the soft body collides as a deformable (SDF_RD)";

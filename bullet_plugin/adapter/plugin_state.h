@@ -70,6 +70,15 @@ public:
     void addSolver(const btSoftBodySolver* solver);
     void removeSolver(const btSoftBodySolver* solver);
     bool ownsSolver(const btSoftBodySolver* solver) const;
+    // Lists the bodies of the step that the solver begins. They stay listed until its next one.
+    void setStepped(const btSoftBodySolver* solver, const btAlignedObjectArray<btSoftBody*>& bodies);
+    // Returns the solver of this plugin that stepped the body last, in the world that the body is in now; null for
+    // none. A body's own solver may be another one: btSoftBody::setSoftBodySolver() does not change who steps it.
+    const btSoftBodySolver* steppingSolver(const btSoftBody& body) const;
+    // Records that a dispatcher had a pair of the body while no solver of this plugin steps it.
+    void markUnstepped(const btSoftBody& body);
+    // Whether a solver of this plugin steps the body, or will as far as is known.
+    bool steps(const btSoftBody& body) const;
     // How the kinematic objects of that solver's world move in its step.
     KinematicMotions& motionsOf(const btSoftBodySolver* solver) { return m_motions[solver]; }
 
@@ -101,6 +110,13 @@ private:
         ObstacleKey m_obstacle;
     };
 
+    // A body in a world, of which it has the proxy.
+    struct WorldBody
+    {
+        const btSoftBody* m_body;
+        const btBroadphaseProxy* m_proxy;
+    };
+
     void prepareCloth(const btSoftBody& body);
     void prepareShape(const btCollisionObjectWrapper& wrap);
     bool isOneSided(const btCollisionShape& shape) const;
@@ -121,6 +137,8 @@ private:
 
     bool m_isWired = false;
     std::vector<const btSoftBodySolver*> m_solvers;
+    std::unordered_map<const btSoftBodySolver*, std::vector<WorldBody>> m_stepped;  // sorted by body
+    std::unordered_map<const btSoftBody*, const btBroadphaseProxy*> m_unstepped;
     std::unordered_map<const btSoftBodySolver*, KinematicMotions> m_motions;
     std::vector<PairNote> m_notes;                          // in the order of dispatch
     std::unordered_map<const void*, std::size_t> m_noteOf;  // places among them, by owner

@@ -54,6 +54,7 @@ SoftBodySolver::~SoftBodySolver()
 void SoftBodySolver::predictMotion(btScalar dt)
 {
     m_state->dropNotes(this);  // of a dispatch that no solve followed
+    m_state->setStepped(this, m_softBodySet);
     if (!m_state->ready())
     {
         listPredicted();
