@@ -13,26 +13,8 @@ namespace
 // nothing else that a call does adds up.
 bool iterationsCanBeSplit(const btSoftBody& body)
 {
-    return body.m_cfg.piterations > 1 && body.m_cfg.viterations == 0 && body.m_cfg.diterations == 0 &&
+    return body.m_cfg.piterations > 0 && body.m_cfg.viterations == 0 && body.m_cfg.diterations == 0 &&
            body.m_clusters.size() == 0 && body.m_joints.size() == 0;
-}
-
-// Calls of Bullet's solver.
-int callsFor(const btSoftBody& body)
-{
-    return iterationsCanBeSplit(body) ? body.m_cfg.piterations : 1;
-}
-
-// One of them. Returns its time, ms.
-double callBullet(btSoftBody& body)
-{
-    const int iterations = body.m_cfg.piterations;
-    if (iterationsCanBeSplit(body)) body.m_cfg.piterations = 1;
-    Stopwatch watch;
-    body.solveConstraints();
-    const double ms = watch.lapMs();
-    body.m_cfg.piterations = iterations;
-    return ms;
 }
 
 btSoftBody& bodyOf(const ContactRounds* rounds)
@@ -43,6 +25,26 @@ btSoftBody& bodyOf(const ContactRounds* rounds)
 bool hasContacts(const ContactRounds* rounds)
 {
     return !rounds->contacts().m_features.empty();
+}
+
+// Returns the number of calls of Bullet's solver.
+int callsFor(const ContactRounds* rounds)
+{
+    const btSoftBody& body = bodyOf(rounds);
+    if (!iterationsCanBeSplit(body)) return 1;
+    return hasContacts(rounds) ? std::max(kLeastIterations, body.m_cfg.piterations) : body.m_cfg.piterations;
+}
+
+// Calls it once. Returns its time, ms.
+double callBullet(btSoftBody& body)
+{
+    const int iterations = body.m_cfg.piterations;
+    if (iterationsCanBeSplit(body)) body.m_cfg.piterations = 1;
+    Stopwatch watch;
+    body.solveConstraints();
+    const double ms = watch.lapMs();
+    body.m_cfg.piterations = iterations;
+    return ms;
 }
 
 // Whether its last round met a worse violation than that share of the thickness.
@@ -121,7 +123,7 @@ double BodySolver::iterate()
         m_team.scatter(m_turn);
         for (const ContactRounds* rounds : m_iterating)
             bulletMs += callBullet(bodyOf(rounds));
-        keep(m_iterating, [i](const ContactRounds* rounds) { return i + 1 < callsFor(bodyOf(rounds)); });
+        keep(m_iterating, [i](const ContactRounds* rounds) { return i + 1 < callsFor(rounds); });
     }
     return bulletMs;
 }
