@@ -144,8 +144,9 @@ TEST(Wiring, aDispatcherKeepsItsPluginWhenAnotherIsInstalled)
         SCOPED_TRACE(int(wiring));
         Plugin first(hostSettings()), second(hostSettings());
         OwnedWorld scene(&first, wiring);
-        if (wiring == Wiring::SolverOnly)
-            EXPECT_TRUE(install(first, scene.m_world.dispatcher(), scene.m_world.world()));
+        const bool isInstalled =
+            wiring == Wiring::Configuration || install(first, scene.m_world.dispatcher(), scene.m_world.world());
+        EXPECT_TRUE(isInstalled);
         EXPECT_FALSE(install(second, scene.m_world.dispatcher(), scene.m_world.world()));
         scene.expectDrapeHasIt(first);
         scene.expectReason(second, "solver");
