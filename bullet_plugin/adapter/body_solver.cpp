@@ -17,37 +17,6 @@ bool iterationsCanBeSplit(const btSoftBody& body)
     return body.m_clusters.size() == 0 && body.m_joints.size() == 0;
 }
 
-// Calls of Bullet's solver, at least one.
-int callsFor(const btSoftBody& body)
-{
-    if (!iterationsCanBeSplit(body)) return 1;
-    const btSoftBody::Config& config = body.m_cfg;
-    return std::max(1, (config.viterations > 0) + std::max(0, config.piterations) + (config.diterations > 0));
-}
-
-// Leaves the iterations of one call, the first is 0.
-void keepIterationsOf(int call, btSoftBody::Config& config)
-{
-    const int velocities = config.viterations > 0 ? 1 : 0, positions = std::max(0, config.piterations);
-    if (call >= velocities) config.viterations = 0;
-    config.piterations = call >= velocities && call < velocities + positions ? 1 : 0;
-    if (call < velocities + positions) config.diterations = 0;
-}
-
-// One call. Returns its time, ms.
-double callBullet(btSoftBody& body, int call)
-{
-    const int velocities = body.m_cfg.viterations, positions = body.m_cfg.piterations, drift = body.m_cfg.diterations;
-    if (iterationsCanBeSplit(body)) keepIterationsOf(call, body.m_cfg);
-    Stopwatch watch;
-    body.solveConstraints();
-    const double ms = watch.lapMs();
-    body.m_cfg.viterations = velocities;
-    body.m_cfg.piterations = positions;
-    body.m_cfg.diterations = drift;
-    return ms;
-}
-
 btSoftBody& bodyOf(const ContactRounds* rounds)
 {
     return *rounds->contacts().m_body;
@@ -56,6 +25,45 @@ btSoftBody& bodyOf(const ContactRounds* rounds)
 bool hasContacts(const ContactRounds* rounds)
 {
     return !rounds->contacts().m_features.empty();
+}
+
+// Returns how many of Bullet's iterations on positions the body gets.
+int positionIterations(const ContactRounds* rounds)
+{
+    const int iterations = std::max(0, bodyOf(rounds).m_cfg.piterations);
+    return iterations > 0 && hasContacts(rounds) ? std::max(kLeastIterations, iterations) : iterations;
+}
+
+// Returns the number of calls of Bullet's solver, at least one.
+int callsFor(const ContactRounds* rounds)
+{
+    const btSoftBody& body = bodyOf(rounds);
+    if (!iterationsCanBeSplit(body)) return 1;
+    return std::max(1, (body.m_cfg.viterations > 0) + positionIterations(rounds) + (body.m_cfg.diterations > 0));
+}
+
+// Leaves the iterations of one call; the first is 0. positions: iterations on positions in all calls.
+void keepIterationsOf(int call, int positions, btSoftBody::Config& config)
+{
+    const int velocities = config.viterations > 0 ? 1 : 0;
+    if (call >= velocities) config.viterations = 0;
+    config.piterations = call >= velocities && call < velocities + positions ? 1 : 0;
+    if (call < velocities + positions) config.diterations = 0;
+}
+
+// Calls Bullet's solver once. Returns its time, ms.
+double callBullet(const ContactRounds* rounds, int call)
+{
+    btSoftBody& body = bodyOf(rounds);
+    const int velocities = body.m_cfg.viterations, positions = body.m_cfg.piterations, drift = body.m_cfg.diterations;
+    if (iterationsCanBeSplit(body)) keepIterationsOf(call, positionIterations(rounds), body.m_cfg);
+    Stopwatch watch;
+    body.solveConstraints();
+    const double ms = watch.lapMs();
+    body.m_cfg.viterations = velocities;
+    body.m_cfg.piterations = positions;
+    body.m_cfg.diterations = drift;
+    return ms;
 }
 
 // Whether its last round met a worse violation than that share of the thickness.
@@ -133,8 +141,8 @@ double BodySolver::iterate()
         m_team.runAndSettle(m_turn);
         m_team.scatter(m_turn);
         for (const ContactRounds* rounds : m_iterating)
-            bulletMs += callBullet(bodyOf(rounds), i);
-        keep(m_iterating, [i](const ContactRounds* rounds) { return i + 1 < callsFor(bodyOf(rounds)); });
+            bulletMs += callBullet(rounds, i);
+        keep(m_iterating, [i](const ContactRounds* rounds) { return i + 1 < callsFor(rounds); });
     }
     return bulletMs;
 }

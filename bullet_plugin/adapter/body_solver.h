@@ -21,8 +21,8 @@
 // leave as much as the next step would recover, rounds go on: else cloth that hangs on one corner of an obstacle by a
 // single face comes nearer to it with every step, and is impaled in the end. The same bits with any number of threads.
 // A body with clusters or joints is given to Bullet in one piece, the rounds before and after it.
-// Cost: linear in the contacts, piterations + kClosingRounds rounds as a rule, mostClosingRounds() instead at most, and
-// those that settle what has pushed.
+// Cost: linear in the contacts, piterations + kClosingRounds rounds as a rule, an iteration more with piterations 1,
+// mostClosingRounds() instead at most, and those that settle what has pushed.
 #pragma once
 
 #include <cstddef>
@@ -36,6 +36,11 @@
 namespace drape
 {
 constexpr int kClosingRounds = 8;
+
+// Least iterations of Bullet for a body with contacts whose iterations can be run one by one. What a single pass over
+// links and contacts leaves becomes velocity, and where a pass overshoots, the next step undoes it and leaves as much
+// on the other side: cloth of 33 x 33 nodes on a sphere stirs at 600 mm/s for ever with one pass, at 2 with two.
+constexpr int kLeastIterations = 2;
 
 // Beyond these as many rounds as look at that many blocks of contacts, a millisecond or two: a body with few contacts
 // may take more rounds. Between the least and the most.

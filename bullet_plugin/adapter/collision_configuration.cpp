@@ -9,12 +9,6 @@ namespace drape
 CollisionConfiguration::CollisionConfiguration(Plugin& plugin, const btDefaultCollisionConstructionInfo& info)
     : btSoftBodyRigidBodyCollisionConfiguration(info), m_state(plugin.state())
 {
-    m_state->addWiring(this);
-}
-
-CollisionConfiguration::~CollisionConfiguration()
-{
-    m_state->removeWiring(this);
 }
 
 btCollisionAlgorithmCreateFunc* CollisionConfiguration::getCollisionAlgorithmCreateFunc(int proxyType0, int proxyType1)

@@ -259,6 +259,8 @@ void CollisionStep::finish()
     m_state.m_statistics = StepStatistics();
     m_state.m_statistics.m_skipped = m_pairs.empty();
     if (m_state.pipeline().deviceFailed()) m_state.m_statistics.m_status |= kStepDeviceFailed;
+    for (const ClothMirror* cloth : m_mirrors)
+        if (cloth->hasForeignFaces()) m_state.m_statistics.m_status |= kStepFacesLeftOut;
     if (m_pairs.empty()) return;
     m_state.m_statistics.m_startsIntersecting = m_starts.intersectingPairs();
     m_state.m_statistics.m_startIntersections = m_starts.intersections();

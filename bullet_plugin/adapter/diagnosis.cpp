@@ -6,13 +6,13 @@
 #include <memory>
 #include <vector>
 
-#include "BulletCollision/CollisionDispatch/btCollisionDispatcher.h"
 #include "BulletCollision/CollisionDispatch/btCollisionWorld.h"
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
 #include "bullet_plugin/adapter/eligibility.h"
 #include "bullet_plugin/adapter/margins.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
 #include "bullet_plugin/adapter/plugin_state.h"
+#include "bullet_plugin/adapter/wiring.h"
 #include "bullet_plugin/core/queries/mesh_probe.h"
 #include "kernels/lib/vec3.h"
 
@@ -84,8 +84,8 @@ void Diagnosis::addSetup()
 {
     if (!m_plugin.ready()) return add("Drape is off: " + m_plugin.error());
     if (!m_plugin.error().empty()) add(m_plugin.error());
-    const auto* dispatcher = dynamic_cast<const btCollisionDispatcher*>(m_world.getDispatcher());
-    if (!dispatcher || !m_plugin.state()->isWiredTo(*dispatcher))
+    btDispatcher* const dispatcher = const_cast<btDispatcher*>(m_world.getDispatcher());
+    if (!dispatcher || pluginOf(*dispatcher) != m_plugin.state().get())
         add("the world's dispatcher does not have Drape's algorithm: make it with a drape::CollisionConfiguration of "
             "this plugin, or call drape::install()");
 }

@@ -11,10 +11,13 @@ namespace
 {
 const char* reasonFromCloth(const PluginState& state, const btSoftBody& cloth)
 {
-    // Compared, never followed: a soft body may outlive its world's solver.
-    if (!state.ownsSolver(cloth.getSoftBodySolver()))
+    if (!state.ready()) return "Drape could not start; see Plugin::error()";
+    if (!state.steps(cloth))
         return "the world's soft body solver is not a drape::SoftBodySolver of this plugin; a deformable world has its "
                "own";
+    if (!state.isWired())
+        return "no dispatcher has this plugin's algorithm: make it with a drape::CollisionConfiguration, or call "
+               "drape::install()";
     if (cloth.m_reducedModel) return "the soft body is a reduced deformable model";
     if (cloth.m_cfg.collisions & btSoftBody::fCollision::SDF_RD)
         return "the soft body collides as a deformable (SDF_RD)";
@@ -42,12 +45,13 @@ bool disabledFor(const btSoftBody& cloth, const btCollisionObject& obstacle)
 const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
                            const btCollisionShape& shape)
 {
-    if (!state.ready()) return "Drape could not start; see Plugin::error()";
-    if (!state.isWired())
-        return "no dispatcher has Drape's algorithm: make it with a drape::CollisionConfiguration, or call "
-               "drape::install()";
     if (const char* reason = reasonFromCloth(state, cloth)) return reason;
     return reasonFromObstacle(obstacle, shape);
+}
+
+bool handlesCloth(const PluginState& state, const btSoftBody& cloth)
+{
+    return !reasonFromCloth(state, cloth);
 }
 
 bool stockCanTake(const btCollisionObject& obstacle, const btTransform& pose)

@@ -16,6 +16,9 @@ const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, co
 // to be where its object is.
 bool stockCanTake(const btCollisionObject& obstacle, const btTransform& pose);
 
+// Whether Drape handles the soft body beside an obstacle that it handles.
+bool handlesCloth(const PluginState& state, const btSoftBody& cloth);
+
 // Whether Drape handles an obstacle with that shape beside cloth that it handles.
 bool handlesObstacle(const btCollisionObject& obstacle, const btCollisionShape& shape);
 

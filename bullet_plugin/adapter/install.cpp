@@ -5,6 +5,7 @@
 #include "drape/drape.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
 #include "bullet_plugin/adapter/plugin_state.h"
+#include "bullet_plugin/adapter/wiring.h"
 
 namespace drape
 {
@@ -15,26 +16,69 @@ bool isSoft(const btBroadphaseProxy* proxy)
     const btCollisionObject* object = static_cast<const btCollisionObject*>(proxy->m_clientObject);
     return object && object->getInternalType() == btCollisionObject::CO_SOFT_BODY;
 }
-}  // namespace
 
-void install(Plugin& plugin, btCollisionDispatcher& dispatcher, btBroadphaseInterface& broadphase)
+// Throws away the algorithms of pairs with soft bodies, so that the dispatcher makes them anew.
+void cleanSoftPairs(btCollisionDispatcher& dispatcher, btBroadphaseInterface& broadphase)
 {
-    PluginState& state = *plugin.state();
-    state.addWiring(&dispatcher);
-    for (int type = 0; type < MAX_BROADPHASE_COLLISION_TYPES; ++type)
-    {
-        if (!isMeshShape(type)) continue;
-        dispatcher.registerCollisionCreateFunc(SOFTBODY_SHAPE_PROXYTYPE, type, &state.createFunction(false));
-        dispatcher.registerCollisionCreateFunc(type, SOFTBODY_SHAPE_PROXYTYPE, &state.createFunction(true));
-    }
     btOverlappingPairCache& cache = *broadphase.getOverlappingPairCache();
     btBroadphasePairArray& pairs = cache.getOverlappingPairArray();
     for (int i = 0; i < pairs.size(); ++i)
         if (isSoft(pairs[i].m_pProxy0) || isSoft(pairs[i].m_pProxy1)) cache.cleanOverlappingPair(pairs[i], &dispatcher);
 }
 
-void install(Plugin& plugin, btCollisionDispatcher& dispatcher, btCollisionWorld& world)
+// Calls give(typeA, typeB) for the types of soft bodies and meshes, in both orders.
+template <class Give>
+void forMeshTypes(const Give& give)
 {
-    install(plugin, dispatcher, *world.getBroadphase());
+    for (int type = 0; type < MAX_BROADPHASE_COLLISION_TYPES; ++type)
+    {
+        if (!isMeshShape(type)) continue;
+        give(SOFTBODY_SHAPE_PROXYTYPE, type);
+        give(type, SOFTBODY_SHAPE_PROXYTYPE);
+    }
+}
+
+// Returns what the dispatcher had for the types without Drape.
+btCollisionAlgorithmCreateFunc* stockFunction(btCollisionDispatcher& dispatcher, int typeA, int typeB)
+{
+    btCollisionConfiguration* configuration = dispatcher.getCollisionConfiguration();
+    if (CollisionConfiguration* own = dynamic_cast<CollisionConfiguration*>(configuration))
+        return own->btSoftBodyRigidBodyCollisionConfiguration::getCollisionAlgorithmCreateFunc(typeA, typeB);
+    return configuration->getCollisionAlgorithmCreateFunc(typeA, typeB);
+}
+}  // namespace
+
+bool install(Plugin& plugin, btCollisionDispatcher& dispatcher, btBroadphaseInterface& broadphase)
+{
+    PluginState& state = *plugin.state();
+    const PluginState* owner = pluginOf(dispatcher);
+    if (owner && owner != &state) return false;
+    forMeshTypes(
+        [&](int typeA, int typeB)
+        {
+            const bool swapped = typeB == SOFTBODY_SHAPE_PROXYTYPE;
+            dispatcher.registerCollisionCreateFunc(typeA, typeB, &state.createFunction(swapped));
+        });
+    cleanSoftPairs(dispatcher, broadphase);
+    return true;
+}
+
+bool install(Plugin& plugin, btCollisionDispatcher& dispatcher, btCollisionWorld& world)
+{
+    return install(plugin, dispatcher, *world.getBroadphase());
+}
+
+bool uninstall(Plugin& plugin, btCollisionDispatcher& dispatcher, btBroadphaseInterface& broadphase)
+{
+    if (pluginOf(dispatcher) != plugin.state().get()) return false;
+    forMeshTypes([&](int typeA, int typeB)
+                 { dispatcher.registerCollisionCreateFunc(typeA, typeB, stockFunction(dispatcher, typeA, typeB)); });
+    cleanSoftPairs(dispatcher, broadphase);
+    return true;
+}
+
+bool uninstall(Plugin& plugin, btCollisionDispatcher& dispatcher, btCollisionWorld& world)
+{
+    return uninstall(plugin, dispatcher, *world.getBroadphase());
 }
 }  // namespace drape

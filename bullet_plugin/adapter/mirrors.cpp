@@ -22,9 +22,24 @@ constexpr float kMostMotion = 0.5f;
 // Nodes that a thread looks at in one go: less is not worth waking one.
 constexpr std::size_t kNodesPerJob = 4096;
 
+constexpr int kForeign = -1;
+
+// Returns kForeign for a node that is not the body's.
 int nodeIndex(const btSoftBody& body, const btSoftBody::Node* node)
 {
-    return static_cast<int>(node - &body.m_nodes[0]);
+    if (body.m_nodes.size() == 0) return kForeign;
+    const std::less<const btSoftBody::Node*> before;
+    const btSoftBody::Node* const first = &body.m_nodes[0];
+    if (before(node, first) || !before(node, first + body.m_nodes.size())) return kForeign;
+    return static_cast<int>(node - first);
+}
+
+// Turns each triangle with a foreign node into one that repeats an index, which the pipeline ignores, so that the
+// others keep their indices.
+void ignoreForeign(std::vector<std::int32_t>& triangles)
+{
+    for (std::size_t i = 0; i < triangles.size(); i += 3)
+        if (std::count(&triangles[i], &triangles[i] + 3, kForeign) > 0) std::fill(&triangles[i], &triangles[i] + 3, 0);
 }
 
 // Three rows of the rotation and the shift.
@@ -72,6 +87,7 @@ void ClothMirror::readTopology()
     for (int f = 0; f < faces; ++f)
         for (int k = 0; k < 3; ++k)
             triangles.push_back(nodeIndex(*m_body, m_body->m_faces[f].m_n[k]));
+    m_hasForeignFaces = std::count(triangles.begin(), triangles.end(), kForeign) > 0;
     m_faces = ClothFaces(std::move(triangles), static_cast<std::size_t>(nodes));
     cutParts();
     m_nodeArray = nodes > 0 ? &m_body->m_nodes[0] : nullptr;
@@ -112,8 +128,14 @@ MeshId ClothMirror::addCopy(Pipeline& pipeline) const
     float* out = positions.data();
     for (int i = 0; i < m_body->m_nodes.size(); ++i)
         writePosition(m_body->m_nodes[i].m_x, out);
+    std::vector<std::int32_t> known;
+    if (m_hasForeignFaces)
+    {
+        known = triangles;
+        ignoreForeign(known);
+    }
     MeshDescription mesh;
-    mesh.m_triangles = triangles.data();
+    mesh.m_triangles = m_hasForeignFaces ? known.data() : triangles.data();
     mesh.m_triangleCount = triangles.size() / 3;
     mesh.m_positions = positions.data();
     mesh.m_vertexCount = m_faces.nodeCount();

@@ -61,6 +61,8 @@ public:
     MeshId addCopy(Pipeline& pipeline) const;
     // As the pipeline has them.
     const ClothFaces& faces() const { return m_faces; }
+    // Whether faces name nodes that are not the body's. The pipeline does not have these faces.
+    bool hasForeignFaces() const { return m_hasForeignFaces; }
     // Of the nodes as they lay when the topology was read, or when it was last taken up.
     const ClothParts& parts() const { return m_parts; }
     // For who uses it first, or again: the body may be another one in the same place.
@@ -95,7 +97,8 @@ private:
     int m_cursor = 0;
     std::uint64_t m_startRevision = 0;
     std::vector<btVector3> m_ends;  // of the last step, by node
-    bool m_takenUp = false;         // since the parts were cut
+    bool m_hasForeignFaces = false;
+    bool m_takenUp = false;  // since the parts were cut
     bool m_fullCheck = true;
 };
 

@@ -5,6 +5,7 @@
 
 #include "BulletCollision/BroadphaseCollision/btBroadphaseInterface.h"
 #include "BulletCollision/BroadphaseCollision/btOverlappingPairCache.h"
+#include "BulletCollision/CollisionShapes/btCompoundShape.h"
 #include "BulletCollision/NarrowPhaseCollision/btPersistentManifold.h"
 #include "LinearMath/btAabbUtil2.h"
 #include "bullet_plugin/adapter/eligibility.h"
@@ -21,6 +22,11 @@ struct Extent
     btVector3 m_low = btVector3(SIMD_INFINITY, SIMD_INFINITY, SIMD_INFINITY), m_high = -m_low;
 
     bool empty() const { return m_low.x() > m_high.x(); }
+    bool meets(const StepObstacle& obstacle, btScalar reach) const
+    {
+        const btVector3 margin(reach, reach, reach);
+        return TestAabbAgainstAabb2(m_low - margin, m_high + margin, obstacle.m_low, obstacle.m_high);
+    }
     void add(const btVector3& p)
     {
         m_low.setMin(p);
@@ -50,7 +56,7 @@ void widen(btSoftBody& body, const Extent& extent, btScalar reach)
     body.m_bounds[1].setMax(extent.m_high + margin);
 }
 
-// Of the places of a body's nodes; nodes that are not finite left out.
+// Extents of a body's nodes at the start and the end of a step, without nodes that are not finite.
 struct Way
 {
     explicit Way(const btSoftBody& body)
@@ -64,38 +70,53 @@ struct Way
         }
     }
 
+    // The paths as an obstacle sees them beside its bounds: those of its own pose, which the motion may not have
+    // reached yet.
+    Extent seenBy(const StepObstacle& obstacle) const
+    {
+        const btTransform& pose = obstacle.m_object->getWorldTransform();
+        Extent seen;
+        seen.addMapped(m_start, pose * obstacle.m_motion.m_start.inverse());
+        seen.addMapped(m_end, pose * obstacle.m_motion.m_end.inverse());
+        return seen;
+    }
+
     Extent m_start, m_end;
 };
 
-// The body's part of the reach of contacts, m.
-btScalar reachOf(const btSoftBody& body, btScalar activation)
+// Widens the bounds to the place of the obstacle's that is nearest to the middle of the paths.
+void reachTo(btSoftBody& body, const Extent& path, const StepObstacle& obstacle)
 {
-    return (1 + activation) * marginOf(*body.getCollisionShape());
+    btVector3 nearest = (path.m_low + path.m_high) / 2;
+    nearest.setMax(obstacle.m_low);
+    nearest.setMin(obstacle.m_high);
+    Extent there;
+    there.add(nearest);
+    widen(body, there, 0);
 }
 
-// A body's way through the step as a moving object sees it, beside the bounds that Bullet has of that object: those of
-// its own pose, which the motion may not have reached yet.
-struct Sight
-{
-    Sight(const btSoftBody& body, const Way& way, const MovingObject& object, btScalar activation)
-    {
-        const btTransform& pose = object.m_object->getWorldTransform();
-        const btCollisionShape& shape = *object.m_object->getCollisionShape();
-        m_seen.addMapped(way.m_start, pose * object.m_motion.m_start.inverse());
-        m_seen.addMapped(way.m_end, pose * object.m_motion.m_end.inverse());
-        shape.getAabb(pose, m_low, m_high);
-        m_reach = reachOf(body, activation) + activation * marginOf(shape);
-    }
-    bool comesNear() const
-    {
-        const btVector3 margin(m_reach, m_reach, m_reach);
-        return TestAabbAgainstAabb2(m_seen.m_low - margin, m_seen.m_high + margin, m_low, m_high);
-    }
+// How much farther than the reach an obstacle may be from a body's paths and still widen its bounds, in thresholds that
+// Bullet adds to every bounds. Links pull nodes off their paths, and where Bullet makes the pair then, the motion limit
+// has to know of it.
+constexpr btScalar kNearThresholds = 5;
 
-    Extent m_seen;
-    btVector3 m_low, m_high;
-    btScalar m_reach;  // m, but for what the object's bounds hold
-};
+// The body's part of the reach of contacts, m.
+btScalar reachOf(const PluginState& state, const btSoftBody& body)
+{
+    return (1 + btScalar(state.settings().m_activation)) * marginOf(*body.getCollisionShape());
+}
+
+// What bounds of the shape lack of its part of that reach, m: of a compound the most that a child's lack.
+btScalar reachBeyondBounds(const btCollisionShape& shape, btScalar activation)
+{
+    if (isMeshShape(shape.getShapeType())) return activation * marginOf(shape) + marginBeyondBounds(shape);
+    btScalar most = 0;
+    if (!shape.isCompound()) return most;
+    const btCompoundShape& compound = static_cast<const btCompoundShape&>(shape);
+    for (int i = 0; i < compound.getNumChildShapes(); ++i)
+        most = btMax(most, reachBeyondBounds(*compound.getChildShape(i), activation));
+    return most;
+}
 
 // Whether Bullet would hand their pair on and Drape find contacts of it once the body is awake.
 bool mayTouch(const PluginState& state, const btSoftBody& body, const btCollisionObject& object)
@@ -108,45 +129,46 @@ bool mayTouch(const PluginState& state, const btSoftBody& body, const btCollisio
            handlesAny(state, body, object, *object.getCollisionShape());
 }
 
-class CollectMoving : public btBroadphaseAabbCallback
+class CollectObstacles : public btBroadphaseAabbCallback
 {
 public:
-    explicit CollectMoving(KinematicMotions& motions) : m_motions(motions) {}
+    CollectObstacles(KinematicMotions& motions, btScalar activation, bool resting)
+        : m_motions(motions), m_activation(activation), m_resting(resting)
+    {
+    }
 
     bool process(const btBroadphaseProxy* proxy) override
     {
         const btCollisionObject* object = static_cast<const btCollisionObject*>(proxy->m_clientObject);
-        if (!object || !object->getCollisionShape()) return true;
-        const int type = object->getCollisionShape()->getShapeType();
-        if (isMeshShape(type)) m_beyond = std::max(m_beyond, marginBeyondBounds(*object->getCollisionShape()));
-        bool moves = false;
-        if (object->isKinematicObject() && (isMeshShape(type) || type == COMPOUND_SHAPE_PROXYTYPE))
-        {
-            const BodyMotion motion = m_motions.observe(*object);
-            moves = motion.moves();
-            if (moves) m_found.m_objects.push_back(MovingObject{object, motion});
-        }
-        if (isMeshShape(type) && !moves && object->isStaticOrKinematicObject()) addChanging(*proxy, *object);
+        if (!object || !object->getCollisionShape() || !object->isStaticOrKinematicObject()) return true;
+        const btCollisionShape& shape = *object->getCollisionShape();
+        if (!isMeshShape(shape.getShapeType()) && shape.getShapeType() != COMPOUND_SHAPE_PROXYTYPE) return true;
+        const btTransform& pose = object->getWorldTransform();
+        StepObstacle obstacle;
+        obstacle.m_object = object;
+        obstacle.m_motion = object->isKinematicObject() ? m_motions.observe(*object) : BodyMotion{pose, pose};
+        shape.getAabb(pose, obstacle.m_low, obstacle.m_high);
+        const bool mayChange = isMeshShape(shape.getShapeType()) && !obstacle.m_motion.moves();
+        obstacle.m_change = mayChange ? changeOf(obstacle, *proxy) : btScalar(0);
+        if (!obstacle.isActive() && !m_resting) return true;
+        obstacle.m_reach = reachBeyondBounds(shape, m_activation);
+        m_found.push_back(obstacle);
         return true;
     }
 
-    MovingThings m_found;
-    btScalar m_beyond = 0;  // m
+    std::vector<StepObstacle> m_found;
 
 private:
-    // The broad phase still has the box of the step before.
-    void addChanging(const btBroadphaseProxy& proxy, const btCollisionObject& object)
+    // The broad phase still has the box of the step before, grown by the breaking threshold but for an object that was
+    // just added. A box that changes by more than its size is another pose.
+    static btScalar changeOf(const StepObstacle& mesh, const btBroadphaseProxy& proxy)
     {
-        ChangingMesh mesh;
-        mesh.m_object = &object;
-        object.getCollisionShape()->getAabb(object.getWorldTransform(), mesh.m_low, mesh.m_high);
         const btVector3 extent = mesh.m_high - mesh.m_low;
         const btScalar size = std::max(extent.x(), std::max(extent.y(), extent.z()));
-        // Bullet grows it by the breaking threshold, but for the one that it has of an object that was just added.
-        mesh.m_change = std::min(changeOf(mesh, proxy, 0), changeOf(mesh, proxy, gContactBreakingThreshold));
-        if (mesh.m_change > kLeastChange * size && mesh.m_change <= size) m_found.m_meshes.push_back(mesh);
+        const btScalar change = std::min(changeOf(mesh, proxy, 0), changeOf(mesh, proxy, gContactBreakingThreshold));
+        return change > kLeastChange * size && change <= size ? change : btScalar(0);
     }
-    static btScalar changeOf(const ChangingMesh& mesh, const btBroadphaseProxy& proxy, btScalar grown)
+    static btScalar changeOf(const StepObstacle& mesh, const btBroadphaseProxy& proxy, btScalar grown)
     {
         btScalar change = 0;
         for (int axis = 0; axis < 3; ++axis)
@@ -158,46 +180,42 @@ private:
     }
 
     KinematicMotions& m_motions;
+    const btScalar m_activation;
+    const bool m_resting;
 };
-
-// Returns whether the mesh may come near the box within this step and the next, if it goes on changing as fast.
-bool comesNear(const ChangingMesh& mesh, const Extent& extent, btScalar reach)
-{
-    const btScalar margin = reach + 2 * mesh.m_change;
-    const btVector3 grown(margin, margin, margin);
-    return TestAabbAgainstAabb2(extent.m_low - grown, extent.m_high + grown, mesh.m_low, mesh.m_high);
-}
 }  // namespace
 
-MovingThings movingThings(const btSoftBody& body, KinematicMotions& motions, btScalar& beyond)
+std::vector<StepObstacle> stepObstacles(const PluginState& state, const btSoftBody& body, KinematicMotions& motions,
+                                        bool resting)
 {
-    CollectMoving collect(motions);
+    CollectObstacles collect(motions, btScalar(state.settings().m_activation), resting);
     btBroadphaseInterface* broadphase = body.m_worldInfo ? body.m_worldInfo->m_broadphase : nullptr;
     const btVector3 far(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
     if (broadphase) broadphase->aabbTest(-far, far, collect);
-    beyond = std::max(beyond, collect.m_beyond);
     return collect.m_found;
 }
 
-bool isReached(const PluginState& state, const btSoftBody& body, const MovingThings& moving)
+bool isReached(const PluginState& state, const btSoftBody& body, const std::vector<StepObstacle>& obstacles)
 {
-    if (moving.empty()) return false;
+    const auto isActive = [](const StepObstacle& obstacle) { return obstacle.isActive(); };
+    if (std::none_of(obstacles.begin(), obstacles.end(), isActive)) return false;
     Way rest(body);
     rest.m_start = rest.m_end;  // the last step that it was awake in is over
     if (rest.m_end.empty()) return false;
-    for (const MovingObject& object : moving.m_objects)
-    {
-        if (!mayTouch(state, body, *object.m_object)) continue;
-        if (Sight(body, rest, object, btScalar(state.settings().m_activation)).comesNear()) return true;
-    }
-    const btScalar reach = reachOf(body, btScalar(state.settings().m_activation));
-    for (const ChangingMesh& mesh : moving.m_meshes)
-        if (comesNear(mesh, rest.m_end, reach) && mayTouch(state, body, *mesh.m_object)) return true;
-    return false;
+    const btScalar reach = reachOf(state, body);
+    return std::any_of(obstacles.begin(), obstacles.end(),
+                       [&](const StepObstacle& obstacle)
+                       {
+                           if (!obstacle.isActive()) return false;
+                           const btScalar margin = reach + obstacle.m_reach + 2 * obstacle.m_change;
+                           return rest.seenBy(obstacle).meets(obstacle, margin) &&
+                                  mayTouch(state, body, *obstacle.m_object);
+                       });
 }
 
-void coverMotion(btSoftBody& body, btScalar activation, btScalar extra, const MovingThings& moving)
+void coverMotion(const PluginState& state, btSoftBody& body, const std::vector<StepObstacle>& obstacles)
 {
+    if (obstacles.empty()) return;
     const Way way(body);
     if (way.m_end.empty()) return;
     Extent path = way.m_start;
@@ -208,21 +226,18 @@ void coverMotion(btSoftBody& body, btScalar activation, btScalar extra, const Mo
         body.m_bounds[0] = path.m_low;
         body.m_bounds[1] = path.m_high;
     }
-    widen(body, path, reachOf(body, activation) + extra);
-    for (const MovingObject& object : moving.m_objects)
+    const btScalar own = reachOf(state, body);
+    for (const StepObstacle& obstacle : obstacles)
     {
-        const Sight sight(body, way, object, activation);
-        if (sight.comesNear()) widen(body, sight.m_seen, sight.m_reach + extra);
-    }
-    for (const ChangingMesh& mesh : moving.m_meshes)
-    {
-        if (!comesNear(mesh, path, reachOf(body, activation))) continue;
-        btVector3 nearest = (path.m_low + path.m_high) / 2;
-        nearest.setMax(mesh.m_low);
-        nearest.setMin(mesh.m_high);
-        Extent there;
-        there.add(nearest);
-        widen(body, there, 0);
+        const btScalar reach = own + obstacle.m_reach;
+        const Extent seen = obstacle.m_motion.moves() ? way.seenBy(obstacle) : path;
+        const btScalar nearness = reach + kNearThresholds * gContactBreakingThreshold;
+        const bool mayArrive = obstacle.m_change > 0 && path.meets(obstacle, reach + 2 * obstacle.m_change);
+        if (!path.meets(obstacle, nearness) && !seen.meets(obstacle, nearness) && !mayArrive) continue;
+        if (!mayTouch(state, body, *obstacle.m_object)) continue;
+        if (mayArrive) reachTo(body, path, obstacle);
+        widen(body, path, reach);
+        widen(body, seen, reach);
     }
 }
 }  // namespace drape

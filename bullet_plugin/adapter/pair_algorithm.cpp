@@ -30,6 +30,7 @@ void PairAlgorithm::processCollision(const btCollisionObjectWrapper* wrapA, cons
     const btCollisionObjectWrapper& obstacleWrap = m_swapped ? *wrapA : *wrapB;
     btSoftBody* cloth = const_cast<btSoftBody*>(btSoftBody::upcast(clothWrap.getCollisionObject()));
     if (!cloth) return;
+    if (!m_state.steppingSolver(*cloth)) m_state.markUnstepped(*cloth);
     if (reasonForStock(m_state, *cloth, *obstacleWrap.getCollisionObject(), *obstacleWrap.getCollisionShape()))
     {
         m_state.forget(this);

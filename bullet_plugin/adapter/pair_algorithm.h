@@ -18,6 +18,8 @@ public:
     PairAlgorithm(const btCollisionAlgorithmConstructionInfo& info, PluginState& state, bool swapped);
     ~PairAlgorithm() override;
 
+    const PluginState& state() const { return m_state; }
+
     void processCollision(const btCollisionObjectWrapper* wrapA, const btCollisionObjectWrapper* wrapB,
                           const btDispatcherInfo& info, btManifoldResult* result) override;
     btScalar calculateTimeOfImpact(btCollisionObject* objectA, btCollisionObject* objectB, const btDispatcherInfo& info,

@@ -10,6 +10,7 @@
 #include "bullet_plugin/adapter/eligibility.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
 #include "bullet_plugin/adapter/plugin_state.h"
+#include "bullet_plugin/adapter/wiring.h"
 
 namespace drape
 {
@@ -22,6 +23,7 @@ std::string reasonInShape(const PluginState& state, const btSoftBody& cloth, con
     if (shape.getShapeType() != COMPOUND_SHAPE_PROXYTYPE)
     {
         const char* reason = reasonForStock(state, cloth, obstacle, shape);
+        if (!reason) reason = reasonFromDispatcher(state, cloth, obstacle, shape);
         return reason ? reason : "";
     }
     const btCompoundShape& compound = static_cast<const btCompoundShape&>(shape);

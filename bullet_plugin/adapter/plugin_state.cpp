@@ -136,12 +136,6 @@ void PluginState::fail(const std::string& call, const std::string& detail)
     m_pipeline.reset();
 }
 
-bool PluginState::isWiredTo(const btCollisionDispatcher& dispatcher) const
-{
-    const void* const configuration = const_cast<btCollisionDispatcher&>(dispatcher).getCollisionConfiguration();
-    return m_wirings.count(&dispatcher) + m_wirings.count(configuration) > 0;
-}
-
 btCollisionAlgorithmCreateFunc& PluginState::stockCreateFunction(bool swapped)
 {
     if (swapped) return m_stockCreateSwapped;
@@ -157,6 +151,7 @@ void PluginState::removeSolver(const btSoftBodySolver* solver)
 {
     dropNotes(solver);
     m_motions.erase(solver);
+    m_stepped.erase(solver);
     m_solvers.erase(std::remove(m_solvers.begin(), m_solvers.end(), solver), m_solvers.end());
 }
 
@@ -165,18 +160,57 @@ bool PluginState::ownsSolver(const btSoftBodySolver* solver) const
     return std::find(m_solvers.begin(), m_solvers.end(), solver) != m_solvers.end();
 }
 
+void PluginState::setStepped(const btSoftBodySolver* solver, const btAlignedObjectArray<btSoftBody*>& bodies)
+{
+    std::vector<WorldBody>& stepped = m_stepped[solver];
+    stepped.clear();
+    for (int i = 0; i < bodies.size(); ++i)
+    {
+        stepped.push_back(WorldBody{bodies[i], bodies[i]->getBroadphaseHandle()});
+        m_unstepped.erase(bodies[i]);
+    }
+    std::sort(stepped.begin(), stepped.end(),
+              [](const WorldBody& a, const WorldBody& b) { return std::less<const void*>()(a.m_body, b.m_body); });
+}
+
+const btSoftBodySolver* PluginState::steppingSolver(const btSoftBody& body) const
+{
+    for (const auto& entry : m_stepped)
+    {
+        const auto found = std::lower_bound(entry.second.begin(), entry.second.end(), &body,
+                                            [](const WorldBody& stepped, const btSoftBody* other)
+                                            { return std::less<const void*>()(stepped.m_body, other); });
+        if (found != entry.second.end() && found->m_body == &body && found->m_proxy == body.getBroadphaseHandle())
+            return entry.first;
+    }
+    return nullptr;
+}
+
+void PluginState::markUnstepped(const btSoftBody& body)
+{
+    m_unstepped[&body] = body.getBroadphaseHandle();
+}
+
+bool PluginState::steps(const btSoftBody& body) const
+{
+    if (steppingSolver(body)) return true;
+    // Compared, never followed: a soft body may outlive its world's solver.
+    if (!ownsSolver(body.getSoftBodySolver())) return false;
+    const auto found = m_unstepped.find(&body);
+    return found == m_unstepped.end() || found->second != body.getBroadphaseHandle();
+}
+
 void PluginState::note(const void* owner, btSoftBody& cloth, const btCollisionObjectWrapper& obstacle)
 {
     PairNote note;
     note.m_owner = owner;
-    note.m_solver = cloth.getSoftBodySolver();
+    note.m_solver = steppingSolver(cloth);
     note.m_cloth = &cloth;
     note.m_obstacle = ObstacleKey{obstacle.getCollisionObject(), obstacle.getCollisionShape(), childOf(obstacle)};
     note.m_kinematic = obstacle.getCollisionObject()->isKinematicObject();
     note.m_motion = note.m_kinematic ? motionOfShape(obstacle, motionsOf(note.m_solver))
                                      : BodyMotion{obstacle.getWorldTransform(), obstacle.getWorldTransform()};
     note.m_thickness = thicknessOf(cloth, *obstacle.getCollisionShape());
-    m_marginBeyondBounds = std::max(m_marginBeyondBounds, drape::marginBeyondBounds(*obstacle.getCollisionShape()));
     const auto place = m_noteOf.emplace(owner, m_notes.size());
     if (place.second)
         m_notes.push_back(note);

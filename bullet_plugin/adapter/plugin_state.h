@@ -68,21 +68,24 @@ public:
     }
     // Whether any dispatcher was given them.
     bool isWired() const { return m_isWired; }
-    // A configuration of this plugin's, or a dispatcher that was given the functions itself.
-    void addWiring(const void* configurationOrDispatcher) { m_wirings.insert(configurationOrDispatcher); }
-    void removeWiring(const void* configuration) { m_wirings.erase(configuration); }
-    bool isWiredTo(const btCollisionDispatcher& dispatcher) const;
     btCollisionAlgorithmCreateFunc& stockCreateFunction(bool swapped);
 
     void addSolver(const btSoftBodySolver* solver);
     void removeSolver(const btSoftBodySolver* solver);
     bool ownsSolver(const btSoftBodySolver* solver) const;
+    // Lists the bodies of the step that the solver begins. They stay listed until its next one.
+    void setStepped(const btSoftBodySolver* solver, const btAlignedObjectArray<btSoftBody*>& bodies);
+    // Returns the solver of this plugin that stepped the body last, in the world that the body is in now; null for
+    // none. A body's own solver may be another one: btSoftBody::setSoftBodySolver() does not change who steps it.
+    const btSoftBodySolver* steppingSolver(const btSoftBody& body) const;
+    // Records that a dispatcher had a pair of the body while no solver of this plugin steps it.
+    void markUnstepped(const btSoftBody& body);
+    // Whether a solver of this plugin steps the body, or will as far as is known.
+    bool steps(const btSoftBody& body) const;
     // How the kinematic objects of that solver's world move in its step.
     KinematicMotions& motionsOf(const btSoftBodySolver* solver) { return m_motions[solver]; }
 
     void note(const void* owner, btSoftBody& cloth, const btCollisionObjectWrapper& obstacle);
-    // The most that any obstacle seen so far has of margin that its bounds do not hold, m.
-    btScalar& marginBeyondBounds() { return m_marginBeyondBounds; }
     void forget(const void* owner);
     // Makes the object's mirrors, those of a compound's children, and brings them to the device; they are owned as if
     // by an algorithm until release().
@@ -114,6 +117,13 @@ private:
         ObstacleKey m_obstacle;
     };
 
+    // A body in a world, of which it has the proxy.
+    struct WorldBody
+    {
+        const btSoftBody* m_body;
+        const btBroadphaseProxy* m_proxy;
+    };
+
     void prepareCloth(const btSoftBody& body);
     void prepareShape(const btCollisionObjectWrapper& wrap);
     bool isOneSided(const btCollisionShape& shape) const;
@@ -133,8 +143,9 @@ private:
     btSoftBodyConcaveCollisionAlgorithm::SwappedCreateFunc m_stockCreateSwapped;
 
     bool m_isWired = false;
-    std::unordered_set<const void*> m_wirings;  // compared, never followed
     std::vector<const btSoftBodySolver*> m_solvers;
+    std::unordered_map<const btSoftBodySolver*, std::vector<WorldBody>> m_stepped;  // sorted by body
+    std::unordered_map<const btSoftBody*, const btBroadphaseProxy*> m_unstepped;
     std::unordered_map<const btSoftBodySolver*, KinematicMotions> m_motions;
     std::vector<PairNote> m_notes;                          // in the order of dispatch
     std::unordered_map<const void*, std::size_t> m_noteOf;  // places among them, by owner
@@ -142,7 +153,6 @@ private:
     std::unordered_map<const btSoftBody*, ClothMirror> m_cloths;
     std::unordered_map<ObstacleKey, ObstacleMirror, ObstacleKeyHash> m_obstacles;
     std::unordered_set<const btCollisionShape*> m_oneSided;  // compared, never followed
-    btScalar m_marginBeyondBounds = 0;
     std::uint64_t m_step = 0;
 };
 }  // namespace drape

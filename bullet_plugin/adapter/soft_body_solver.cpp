@@ -6,6 +6,7 @@
 #include "BulletSoftBody/btSoftBody.h"
 #include "bullet_plugin/adapter/body_solver.h"
 #include "bullet_plugin/adapter/collision_step.h"
+#include "bullet_plugin/adapter/eligibility.h"
 #include "bullet_plugin/adapter/motion_bounds.h"
 #include "bullet_plugin/adapter/plugin_state.h"
 #include "bullet_plugin/core/stopwatch.h"
@@ -34,6 +35,7 @@ struct SoftBodySolver::Work
     CollisionStep m_step;
     BodySolver m_solver;
     std::vector<BodyContacts*> m_touched;        // of solveBodies()
+    std::vector<btSoftBody*> m_taken;            // bodies that Drape takes, in this step
     std::vector<const btSoftBody*> m_predicted;  // in this step, sorted by address
     std::size_t m_asleep = 0;                    // cloths that are not among them
     double m_predictMs = 0;                      // of this class's share in predictMotion
@@ -52,6 +54,7 @@ SoftBodySolver::~SoftBodySolver()
 void SoftBodySolver::predictMotion(btScalar dt)
 {
     m_state->dropNotes(this);  // of a dispatch that no solve followed
+    m_state->setStepped(this, m_softBodySet);
     if (!m_state->ready())
     {
         listPredicted();
@@ -59,25 +62,42 @@ void SoftBodySolver::predictMotion(btScalar dt)
         return;
     }
     Stopwatch watch;
-    const btScalar activation = btScalar(m_state->settings().m_activation);
     KinematicMotions& motions = m_state->motionsOf(this);
     motions.beginStep(dt);
-    MovingThings moving;
-    if (m_softBodySet.size() > 0) moving = movingThings(*m_softBodySet[0], motions, m_state->marginBeyondBounds());
-    for (int i = 0; i < m_softBodySet.size(); ++i)
-    {
-        btSoftBody& body = *m_softBodySet[i];
-        if (!body.isActive() && isReached(*m_state, body, moving)) body.activate();
-    }
+    const std::vector<StepObstacle> obstacles = wakeReached(motions);
     listPredicted();
     m_work->m_predictMs = watch.lapMs();
     for (int i = 0; i < m_softBodySet.size(); ++i)
         if (m_softBodySet[i]->isActive()) predict(*m_softBodySet[i], dt);
     watch.lapMs();
-    for (int i = 0; i < m_softBodySet.size(); ++i)
-        if (m_softBodySet[i]->isActive())
-            coverMotion(*m_softBodySet[i], activation, m_state->marginBeyondBounds(), moving);
+    for (btSoftBody* body : m_work->m_taken)
+        if (body->isActive()) coverMotion(*m_state, *body, obstacles);
     m_work->m_predictMs += watch.lapMs();
+}
+
+// Lists the bodies that Drape takes, and wakes those of them that a moving obstacle comes to. Returns the obstacles of
+// the step; without those that rest where no such body is awake.
+std::vector<StepObstacle> SoftBodySolver::wakeReached(KinematicMotions& motions)
+{
+    std::vector<btSoftBody*>& taken = m_work->m_taken;
+    taken.clear();
+    bool anyAwake = false;
+    for (int i = 0; i < m_softBodySet.size(); ++i)
+    {
+        if (!handlesCloth(*m_state, *m_softBodySet[i])) continue;
+        taken.push_back(m_softBodySet[i]);
+        anyAwake = anyAwake || m_softBodySet[i]->isActive();
+    }
+    if (taken.empty()) return {};
+    std::vector<StepObstacle> obstacles = stepObstacles(*m_state, *taken[0], motions, anyAwake);
+    bool anyWoken = false;
+    for (btSoftBody* body : taken)
+    {
+        if (body->isActive() || !isReached(*m_state, *body, obstacles)) continue;
+        body->activate();
+        anyWoken = true;
+    }
+    return anyWoken && !anyAwake ? stepObstacles(*m_state, *taken[0], motions, true) : obstacles;
 }
 
 // Bullet's islands and callbacks may wake cloth, or put it to sleep, before it is solved. What was predicted is solved,

@@ -87,6 +87,38 @@ TEST(ClothMirror, seesOtherNodesOfAFaceWithinItsStretchesOfFaces)
     EXPECT_EQ(stepsUntilSeen(130, 1), 2);
 }
 
+// Two cloths hang together by a face that has two nodes of one and one of the other.
+TEST(ClothMirror, leavesOutAFaceWithAnotherBodysNodeAndSaysSo)
+{
+    for (const bool foreign : {false, true})
+    {
+        SCOPED_TRACE(foreign);
+        Plugin plugin(hostSettings());
+        const TriangleMesh box = makeBox(3.0f, 0.4f, 3.0f);
+        MeshShape shape(box);
+        DropWorld world(&plugin);
+        world.addObstacle(shape.shape());
+        ClothSpec spec;
+        spec.m_nodes = 9;
+        spec.m_size = 0.5f;
+        spec.m_centre = btVector3(btScalar(-0.4), btScalar(0.25), 0);
+        btSoftBody& cloth = world.addCloth(spec);
+        spec.m_centre = btVector3(btScalar(0.4), btScalar(0.25), 0);
+        btSoftBody& other = world.addCloth(spec);
+        const int own = cloth.m_faces.size();
+        cloth.appendFace(0, 1, 9);
+        if (foreign) cloth.m_faces[own].m_n[2] = &other.m_nodes[0];
+        for (int step = 0; step < 60; ++step)
+        {
+            world.step();
+            ASSERT_EQ(plugin.statistics().m_status, foreign ? std::uint32_t(kStepFacesLeftOut) : kStepGood)
+                << "step " << step;
+        }
+        for (btSoftBody* body : {&cloth, &other})
+            EXPECT_NEAR(static_cast<double>(lowestOf(*body)) - 0.2, kThickness, 0.1 * kThickness);
+    }
+}
+
 class FacesInPlace : public BackendTest
 {
 };

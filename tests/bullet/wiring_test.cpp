@@ -1,6 +1,8 @@
 // How Drape gets into a Bullet world, and which place of an obstacle it takes for real.
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "BulletCollision/CollisionShapes/btScaledBvhTriangleMeshShape.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
@@ -89,6 +91,115 @@ TEST(Wiring, installTakesOverPairsThatExist)
     install(plugin, world.dispatcher(), world.world());
     expectClean(runMeasured(world, cloth, mesh, kSteps));
     EXPECT_GT(plugin.statistics().m_contacts, 0u);
+}
+
+namespace
+{
+// A cloth just above a box of triangles.
+struct OwnedWorld
+{
+    OwnedWorld(Plugin* plugin, Wiring wiring)
+        : m_shape(makeBox(3.0f, 0.4f, 3.0f)),
+          m_world(plugin, wiring),
+          m_object(m_world.addObstacle(m_shape.shape())),
+          m_cloth(m_world.addCloth(clothAt(btVector3(0, btScalar(0.225), 0))))
+    {
+    }
+
+    void expectDrapeHasIt(const Plugin& plugin)
+    {
+        m_world.step(5);
+        EXPECT_EQ(plugin.whyStock(&m_cloth, &m_object), "");
+        EXPECT_GT(plugin.statistics().m_contacts, 0u);
+        EXPECT_EQ(contactsHeld(m_cloth), 0);
+    }
+    // Steps until Bullet's own algorithm has found contacts.
+    void expectBulletHasIt()
+    {
+        int most = 0;
+        for (int i = 0; i < 30 && most == 0; ++i)
+        {
+            m_world.step();
+            most = contactsHeld(m_cloth);
+        }
+        EXPECT_GT(most, 0);
+    }
+    void expectReason(const Plugin& plugin, const std::string& word)
+    {
+        const std::string reason = plugin.whyStock(&m_cloth, &m_object);
+        EXPECT_NE(reason.find(word), std::string::npos) << "'" << reason << "'";
+    }
+
+    MeshShape m_shape;
+    DropWorld m_world;
+    btCollisionObject& m_object;
+    btSoftBody& m_cloth;
+};
+}  // namespace
+
+TEST(Wiring, aDispatcherKeepsItsPluginWhenAnotherIsInstalled)
+{
+    for (const Wiring wiring : {Wiring::Configuration, Wiring::SolverOnly})
+    {
+        SCOPED_TRACE(int(wiring));
+        Plugin first(hostSettings()), second(hostSettings());
+        OwnedWorld scene(&first, wiring);
+        const bool isInstalled =
+            wiring == Wiring::Configuration || install(first, scene.m_world.dispatcher(), scene.m_world.world());
+        EXPECT_TRUE(isInstalled);
+        EXPECT_FALSE(install(second, scene.m_world.dispatcher(), scene.m_world.world()));
+        scene.expectDrapeHasIt(first);
+        scene.expectReason(second, "solver");
+        EXPECT_TRUE(install(first, scene.m_world.dispatcher(), scene.m_world.world())) << "once more";
+        scene.expectDrapeHasIt(first);
+    }
+}
+
+TEST(Wiring, uninstallGivesPairsBackToBullet)
+{
+    for (const Wiring wiring : {Wiring::Configuration, Wiring::SolverOnly})
+    {
+        SCOPED_TRACE(int(wiring));
+        Plugin first(hostSettings()), second(hostSettings());
+        OwnedWorld scene(&first, wiring);
+        btCollisionDispatcher& dispatcher = scene.m_world.dispatcher();
+        if (wiring == Wiring::SolverOnly) install(first, dispatcher, scene.m_world.world());
+        EXPECT_FALSE(uninstall(second, dispatcher, scene.m_world.world()));
+        scene.expectDrapeHasIt(first);
+        EXPECT_TRUE(uninstall(first, dispatcher, scene.m_world.world()));
+        EXPECT_FALSE(uninstall(first, dispatcher, scene.m_world.world()));
+        scene.expectReason(first, "drape::install()");
+        scene.expectBulletHasIt();
+        EXPECT_TRUE(install(second, dispatcher, scene.m_world.world()));
+        scene.expectReason(second, "solver");
+        scene.expectReason(first, "another plugin");
+        scene.expectBulletHasIt();
+        EXPECT_TRUE(uninstall(second, dispatcher, scene.m_world.world()));
+        EXPECT_TRUE(install(first, dispatcher, scene.m_world.world()));
+        scene.expectDrapeHasIt(first);
+    }
+}
+
+// What a body has for its solver does not decide who steps it.
+TEST(Wiring, aBodyGivenAnotherPluginsSolverStaysWithTheSolverOfItsWorld)
+{
+    Plugin first(hostSettings()), second(hostSettings());
+    SoftBodySolver other(second);
+    OwnedWorld scene(&first, Wiring::Configuration);
+    scene.m_cloth.setSoftBodySolver(&other);
+    scene.expectDrapeHasIt(first);
+    scene.expectReason(second, "algorithm");
+}
+
+TEST(Wiring, aBodyGivenASolverThatStepsNoWorldIsBullets)
+{
+    Plugin plugin(hostSettings());
+    SoftBodySolver solver(plugin);
+    OwnedWorld scene(nullptr, Wiring::SolverOnly);
+    EXPECT_TRUE(install(plugin, scene.m_world.dispatcher(), scene.m_world.world()));
+    scene.m_cloth.setSoftBodySolver(&solver);
+    scene.expectBulletHasIt();
+    scene.expectReason(plugin, "solver");
 }
 
 // Bullet orders a pair by the age of its members, so the order of adding gives both.

@@ -20,7 +20,6 @@ class CollisionConfiguration : public btSoftBodyRigidBodyCollisionConfiguration
 public:
     explicit CollisionConfiguration(
         Plugin& plugin, const btDefaultCollisionConstructionInfo& info = btDefaultCollisionConstructionInfo());
-    ~CollisionConfiguration() override;
 
     btCollisionAlgorithmCreateFunc* getCollisionAlgorithmCreateFunc(int proxyType0, int proxyType1) override;
 

@@ -74,8 +74,9 @@ public:
     // Empty when Drape handles the pair, else the reason why Bullet's own algorithm does. For a compound the first
     // child that Drape does not handle gives the reason; a mesh that does not lie where its compound does, which
     // Bullet's own would miss, is named as such. After an object got a shape of another kind, Bullet keeps what it
-    // chose for the old one until its pairs are cleaned (cleanProxyFromPairs); this goes by the shape that it has. Of
-    // several worlds it is not asked which have Drape's algorithm: one that has is enough.
+    // chose for the old one until its pairs are cleaned (cleanProxyFromPairs); this goes by the shape that it has. For
+    // objects in a world the answer holds for that world's dispatcher and for the solver that steps it. Which solver
+    // that is shows in the first step only: until then it is taken to be the soft body's own.
     std::string whyStock(const btCollisionObject* objectA, const btCollisionObject* objectB) const;
 
     // Lists what is wrong with a world as far as the plugin can see, a line each; empty when nothing is: a world

@@ -3,20 +3,24 @@
 //
 // Give it to btSoftRigidDynamicsWorld's constructor. In solveConstraints it sends the pairs noted during dispatch to
 // the device, waits once (again when the paths of fast nodes had to be cut), and lets Bullet solve, iteration by
-// iteration, with a round over the contacts before each and the closing rounds after the last. Bullet's m_rcontacts and
+// iteration, with a round over the contacts before each and the closing rounds after the last. A body with
+// contacts gets two iterations at least, whatever its piterations (but for 0). Bullet's m_rcontacts and
 // m_scontacts hold Bullet's own contacts only; Plugin::contacts() has Drape's. A body whose step has no time (a step of
 // 0, a timescale of 0 or less) stays as it is, and nothing is looked for. A body that sleeps is woken by a kinematic
 // mesh that comes near it. Bodies of another solver are left to Bullet. One solver serves one world. C++11.
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "BulletSoftBody/btDefaultSoftBodySolver.h"
 
 namespace drape
 {
+class KinematicMotions;
 class Plugin;
 class PluginState;
+struct StepObstacle;
 
 class SoftBodySolver : public btDefaultSoftBodySolver
 {
@@ -30,6 +34,7 @@ public:
 private:
     struct Work;
 
+    std::vector<StepObstacle> wakeReached(KinematicMotions& motions);
     void listPredicted();
     void detect();
     double solveBodies();

@@ -1,0 +1,27 @@
+// Whose algorithm a dispatcher gives to pairs of a soft body and a triangle mesh.
+//
+// Bullet does not tell which functions a dispatcher was given, so an algorithm is made for the pair, asked, and freed.
+// Nothing collides.
+#pragma once
+
+#include "BulletSoftBody/btSoftBody.h"
+
+class btDispatcher;
+
+namespace drape
+{
+class PluginState;
+
+// Returns the state of the plugin whose algorithm the dispatcher gives to the pair; null where it is no plugin's.
+// `shape` is a mesh shape, the obstacle's own or a compound's child.
+const PluginState* pluginOf(btDispatcher& dispatcher, const btSoftBody& cloth, const btCollisionObject& obstacle,
+                            const btCollisionShape& shape);
+
+// The same for any pair of the dispatcher.
+const PluginState* pluginOf(btDispatcher& dispatcher);
+
+// Returns null where the dispatcher of the objects' world has this plugin's algorithm, or where they are in no world;
+// else, in words, why Bullet's own algorithm has the pair.
+const char* reasonFromDispatcher(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
+                                 const btCollisionShape& shape);
+}  // namespace drape
