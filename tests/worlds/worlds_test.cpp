@@ -81,6 +81,26 @@ TEST(Worlds, TinyOnesKeepClothOutside)
     expectFewFail(worldsOf("tiny", 0, 2000, kPlain), kTinyFailing);
 }
 
+// Worlds that failed once: a path around a face that ended within the thickness, a path that ended beyond reach (cloth
+// under tension, a pin that drags cloth over hills, a fan), drift iterations, masses that differ a billion times.
+TEST(Worlds, OnesThatFailedOnceKeepClothOutside)
+{
+    const struct
+    {
+        const char* m_kind;
+        std::uint64_t m_seed;
+        std::uint32_t m_modifiers;
+    } failed[] = {{"tiny_static", 46756, 0}, {"conveyor", 3050, 32}, {"moving_pins", 29, 0},
+                  {"corner", 3141, 16384},   {"boxes", 3010, 2},     {"fan", 29, 0}};
+    std::vector<WorldSpec> worlds;
+    for (const auto& world : failed)
+        for (const WorldSpec& spec : worldsOf(world.m_kind, world.m_seed, 1, ModifierChoice{false, world.m_modifiers}))
+            worlds.push_back(spec);
+    ASSERT_EQ(worlds.size(), 6u);
+    std::string failing;
+    EXPECT_EQ(runSample(worlds, failing).failing(), 0u) << failing;
+}
+
 // Shows that the check sees failures: Bullet's own collision loses cloth in these worlds.
 TEST(Worlds, BulletsOwnCollisionFails)
 {
