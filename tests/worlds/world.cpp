@@ -16,6 +16,7 @@ Settings settingsFor(WorldBackend backend)
 {
     Settings settings;
     settings.m_backend = backend == WorldBackend::Host ? Backend::Host : Backend::OpenCl;
+    settings.m_log = nullptr;
     settings.m_threads = 1;  // worlds run side by side; the number of threads changes no bit
     return settings;
 }

@@ -1,5 +1,6 @@
-// Files of Drape's cache folder. Every trouble (no folder, no space, no permission) reads as "not there"; nothing here
-// fails.
+// Files of Drape's cache folder. Every trouble (no folder, no space, no permission, no memory) reads as "not there";
+// nothing here fails. Files and folders that are not the user's own, or that others can write, are not used, and links
+// to files are not followed: the cache holds programs that are run.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +14,8 @@ std::string cacheFolder(const std::string& setting);
 
 // False when there is no folder or no such file, or it is longer than mostBytes.
 bool readCacheFile(const std::string& folder, const std::string& name, std::size_t mostBytes, std::string& bytes);
-// Written to a temporary file and renamed, so that no reader sees half of it.
+// Written to a new temporary file and renamed, so that no reader sees half of it. Only the user may read the file. The
+// folder is made where there is none.
 void writeCacheFile(const std::string& folder, const std::string& name, const std::string& bytes);
 
 // FNV-1a, 64 bit.
