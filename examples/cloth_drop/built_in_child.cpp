@@ -26,8 +26,7 @@ std::vector<std::string> childArguments(const Options& options, BulletMode mode)
 {
     std::vector<std::string> arguments = {
         "cloth_drop",
-        "--obstacle",
-        options.m_obstacle,
+        "--obstacle=" + options.m_obstacle,  // which may begin with dashes
         "--obstacle-size",
         exactText(options.m_obstacleSize),
         "--cloth",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -192,13 +193,20 @@ bool renderPanel(int height, const std::function<void(int)>& renderRowOf, const 
     };
     std::vector<std::thread> threads;
     for (unsigned i = 1; i < std::max(1u, std::thread::hardware_concurrency()); ++i)
-        threads.emplace_back(
-            [&]
-            {
-                while (takeRow())
+        try
+        {
+            threads.emplace_back(
+                [&]
                 {
-                }
-            });
+                    while (takeRow())
+                    {
+                    }
+                });
+        }
+        catch (const std::system_error&)
+        {
+            break;  // fewer threads draw the same picture
+        }
     while (takeRow())
     {
         if (hooks.m_progress) hooks.m_progress(rowsBefore + rowsDone);

@@ -2,6 +2,8 @@
 // Drape it is.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "tests/tools/tool.h"
 #include "tools/common/suggestion.h"
 
@@ -95,6 +97,17 @@ TEST_F(ClothDropArguments, AnOptionInPlaceOfAFileIsTheMistakeThatIsTold)
     // Where it is meant it can be said.
     ASSERT_EQ(runSmall({"--steps", "1", "--csv=" + path("--steps")}).m_exitCode, 0);
     EXPECT_FALSE(readAll(path("--steps")).empty());
+}
+
+TEST_F(ClothDropArguments, AFileWhoseNameBeginsWithDashesReachesTheRunsInChildren)
+{
+    write("--mesh.obj", "v -1 0 -1\nv 1 0 -1\nv 0 0 1\nf 1 2 3\n");
+    const std::string folder = std::filesystem::current_path();
+    std::filesystem::current_path(path(""));
+    const ToolRun result = run({"--obstacle=--mesh.obj", "--cloth", "3x3", "--steps", "2", "--backend", "host",
+                                "--compare", "--compare-cap", "9", "--quiet"});
+    std::filesystem::current_path(folder);
+    EXPECT_EQ(result.m_exitCode, 0) << result.m_err;
 }
 
 TEST_F(ClothDropArguments, HiddenOptionsAreNotSuggested)
