@@ -13,12 +13,12 @@ namespace drape
 {
 namespace
 {
-// A thickness of more than a quarter of the smaller of the two is most likely in another unit: cloth hovers.
+// A thickness above a quarter of the smaller size is most likely meant in another unit.
 constexpr double kMostThickness = 0.25;
-// Below so many steps of float32 at the scene's size, contacts are of rounding more than of positions.
+// A thickness below this many float32 steps at the scene's size is mostly rounding.
 constexpr double kLeastRoundings = 8;
 
-// What is neither a file nor a shape may be a mistyped shape.
+// Suggests a shape where the name is neither a file nor a shape.
 bool makeObstacle(const std::string& name, TriangleMesh& mesh, std::string& error)
 {
     if (makeShape(name, mesh) || loadMesh(name, mesh, error)) return true;

@@ -10,7 +10,7 @@ namespace drape
 {
 struct Image
 {
-    // White.
+    // Makes a white picture.
     Image(int width, int height)
         : m_width(width),
           m_height(height),
@@ -18,7 +18,7 @@ struct Image
     {
     }
 
-    // r g b of the pixel in column x of row y.
+    // Returns r g b of the pixel in column x of row y.
     std::uint8_t* at(int x, int y)
     {
         return &m_pixels[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(m_width) +

@@ -20,10 +20,18 @@ int fail(int exitCode, const std::string& reason)
     return drape::fail("cloth_drop", exitCode, reason);
 }
 
+// Warns and listens to signals. Called once nothing can refuse the arguments any more, before the first step.
+void beginRun(const Options& options)
+{
+    const std::string remark = thicknessRemark(options);
+    if (!remark.empty()) std::cerr << "cloth_drop: warning: " << remark << std::endl;
+    listenToSignals();
+}
+
 // A built-in run with a limit of time is a child's, which is ended within a step that does not.
 bool runLimitedBuiltIn(const Options& options, const DropScene& scene, NamedRun& run, std::string& error)
 {
-    listenToSignals();
+    beginRun(options);
     const ChildCap cap = {options.m_timeLimit, true};
     return runBuiltInChild(options, options.m_bulletMode, cap, scene, run.m_record, error);
 }
@@ -37,7 +45,7 @@ bool runChosen(const Options& options, const DropScene& scene, NamedRun& run, st
                                                                  : makeBulletSimulation(scene, options.m_bulletMode);
     if (!simulation) return false;
     exitCode = kExitFailed;
-    listenToSignals();
+    beginRun(options);
     Progress progress(run.m_name, options.m_steps, options.m_quiet);
     RunHooks hooks;
     hooks.m_afterStep = [&](int number, const StepRecord&) { progress.show(number); };
@@ -68,7 +76,7 @@ void runBuiltIns(const Options& options, const DropScene& scene, std::vector<Nam
     }
 }
 
-// The run that is asked for. False when it failed or a signal came; the steps done until then are in its record.
+// Runs what the options ask for. Returns false when it failed or a signal came; its record has the steps done so far.
 bool runFirst(const Options& options, const DropScene& scene, NamedRun& run, std::string& error, int& exitCode)
 {
     if (runChosen(options, scene, run, error, exitCode)) error = interruption();
@@ -91,7 +99,7 @@ PicturePanel panelOf(const NamedRun& run, const DropScene& scene)
     return panel;
 }
 
-// Draws the runs' last frames until a signal comes. An error of the run itself stays the one that is told.
+// Draws the runs' last frames, and stops when a signal comes. Keeps an error that is there already.
 void drawPicture(const Options& options, const DropScene& scene, const std::vector<NamedRun>& runs, std::string& error)
 {
     std::vector<PicturePanel> panels;
@@ -117,11 +125,6 @@ int judge(const Options& options, const std::vector<NamedRun>& runs)
     return kExitGood;
 }
 
-void warn(const std::string& remark)
-{
-    if (!remark.empty()) std::cerr << "cloth_drop: warning: " << remark << std::endl;
-}
-
 int run(const Options& options)
 {
     std::string error;
@@ -130,7 +133,6 @@ int run(const Options& options)
     if (!makeDropScene(options, scene, error)) return fail(kExitBadInput, error);
     if (options.m_streamSteps) streamBuiltIn(options, scene);
     if (!prepareOutputs(options, error)) return fail(kExitBadInput, error);
-    warn(thicknessRemark(options));
     std::vector<NamedRun> runs(1);
     runs[0].m_name = options.usesDrape() ? "drape" : "bullet";
     int exitCode = kExitFailed;
@@ -140,7 +142,7 @@ int run(const Options& options)
     const bool draws = ran && !options.m_picture.empty() && interruption().empty();
     if (!draws) stopListening();
     if (!ran && runs[0].m_record.m_steps.empty()) return fail(exitCode, error);
-    // Before the picture, which takes seconds and may be given up.
+    // The results come first: the picture takes seconds and may be given up.
     std::string writeError;
     const bool written = writeOutputs(options, runs, writeError);
     if (draws) drawPicture(options, scene, runs, error);

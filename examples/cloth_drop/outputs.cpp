@@ -56,7 +56,7 @@ bool spares(const Options& options, const Output& file, std::string& error)
     return error.empty();
 }
 
-// A picture is a PNG: another ending would say something else. No ending says nothing.
+// Accepts .png and names without an extension. Any other extension promises a format that is not written.
 bool isPngName(const std::string& path, std::string& error)
 {
     std::string ending = fs::path(path).extension().string();

@@ -17,11 +17,11 @@ namespace drape
 {
 namespace
 {
-// Pixels of a panel, and between panels.
+// Size of the only panel, in pixels.
 constexpr int kWidth = 1280, kHeight = 960;
-constexpr int kSideWidth = 960, kSideHeight = 720;  // of one of several
-constexpr int kGap = 8;
-constexpr int kStrata = 6;  // samples a pixel and axis; each carries one shadow and one sky ray
+constexpr int kSideWidth = 960, kSideHeight = 720;  // of each of several panels
+constexpr int kGap = 8;                             // pixels between panels
+constexpr int kStrata = 6;                          // samples a pixel and axis; each carries one shadow and one sky ray
 constexpr std::size_t kSmoothTriangles =
     100000;  // a coarse cloth is drawn with at least so many: none looks like facets
 constexpr double kPi = 3.14159265358979323846;
@@ -159,7 +159,7 @@ struct Camera
     }
 };
 
-// A row of a panel whose first column in the image is `left`.
+// Draws row y of the panel whose first column in the image is `left`.
 void renderRow(const RayScene& scene, const Camera& camera, int y, int left, Image& image)
 {
     for (int x = 0; x < camera.m_width; ++x)
@@ -178,7 +178,7 @@ void renderRow(const RayScene& scene, const Camera& camera, int y, int left, Ima
     }
 }
 
-// Draws the rows with all cores. False when the caller gave it up.
+// Draws the rows on all cores. Returns false when the caller gave the picture up.
 bool renderPanel(int height, const std::function<void(int)>& renderRowOf, const PictureHooks& hooks, int rowsBefore)
 {
     std::atomic<int> nextRow{0}, rowsDone{0};

@@ -11,8 +11,8 @@
 
 namespace drape
 {
-// A cloth on the obstacle and, where there are several, what is written above it: A to Z in either case, digits and
-// ( ) . , : - / are drawn.
+// One cloth on the obstacle. The two lines of text are drawn above it where there are several panels (see
+// picture_label.h for the characters).
 struct PicturePanel
 {
     TriangleMesh m_cloth;
@@ -21,16 +21,16 @@ struct PicturePanel
 
 struct PictureHooks  // any may be empty
 {
-    std::function<void(int rows)> m_progress;  // so many rows of pictureRows() are drawn; on the calling thread
-    std::function<bool()> m_goesOn;            // asked on the calling thread after each row: false gives the picture up
+    std::function<void(int rows)> m_progress;  // called on the calling thread with the rows drawn of pictureRows()
+    std::function<bool()> m_goesOn;            // called there after each row; false gives the picture up
 };
 
-// The rows of pixels of all panels together.
+// Returns the number of pixel rows of all panels together.
 int pictureRows(std::size_t panels);
 
-// Renders at least one panel and writes a PNG. The first one's cloth and the obstacle decide what is in view; what is
-// below the floor that both stand on is hidden. False, with one line in `error` unless the picture was given up, when
-// there is none then; nothing is written in that case.
+// Renders at least one panel and writes a PNG. The first cloth and the obstacle determine the view; the floor below
+// them hides cloth that fell deeper. Returns false with one line in `error` on failure, and false without one when the
+// picture was given up. Nothing is written then.
 bool writePicture(const std::string& path, const std::vector<PicturePanel>& panels, const TriangleMesh& obstacle,
                   const PictureHooks& hooks, std::string& error);
 }  // namespace drape

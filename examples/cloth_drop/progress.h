@@ -10,10 +10,10 @@ namespace drape
 class Progress
 {
 public:
-    // Silent when `quiet`. `unit` is what is counted.
+    // Prints nothing when `quiet`. `unit` names what is counted.
     Progress(std::string title, int steps, bool quiet, std::string unit = "step");
     ~Progress();
-    // Not from two threads at a time.
+    // Must not be called from two threads at a time.
     void show(int step);
 
 private:

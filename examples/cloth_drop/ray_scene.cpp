@@ -13,8 +13,7 @@ namespace
 // Corners whose smooth normal leans farther than 40 degrees from the face are creases and are drawn flat.
 constexpr double kCreaseCosine = 0.766;
 
-// What is deeper below the floor, in radii of the view, is hidden by it: more than rounding takes from what stands on
-// it.
+// The floor hides points deeper than this below it, in radii of the view. Larger than the rounding of points on it.
 constexpr double kFloorDepth = 1e-4;
 
 RTCRay makeRay(const Vector3& origin, const Vector3& direction, double distance)

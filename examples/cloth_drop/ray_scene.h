@@ -33,7 +33,7 @@ struct SurfacePoint
     bool m_back = false;  // seen from the triangle's back
 };
 
-// What a picture shows: the ball that fills it, and the height of the floor, below which nothing is seen. Metres.
+// Holds the ball that fills a picture, and the height of the floor, which hides everything below. Metres.
 struct View
 {
     Vector3 m_centre;
@@ -41,7 +41,7 @@ struct View
     double m_floor = 0;
 };
 
-// The view of all of the cloth and the obstacle that is finite, on a floor below both.
+// Returns the view of both meshes, on a floor at their lowest vertex. Vertices that are not finite are ignored.
 View viewOf(const TriangleMesh& cloth, const TriangleMesh& obstacle);
 
 class RayScene

@@ -25,7 +25,7 @@ Json asJson(const CollisionParts& parts)
             {"rounds", parts.m_rounds}};
 }
 
-// What is said of the steps in contact: null where there were none.
+// Returns a statistic of the steps in contact, or null when the run had none.
 Json ifInContact(const RunSummary& summary, const Json& value)
 {
     return summary.m_stepsInContact > 0 ? value : Json();
@@ -100,7 +100,7 @@ Json asJson(const RunRecord& record)
     return json;
 }
 
-// The ratio of the medians. None where one of the runs was never in contact, or took no time that can be measured.
+// Returns the ratio of the medians, or nothing when one of the runs was never in contact or took no measurable time.
 std::optional<double> ratio(const RunSummary& other, const RunSummary& own, const TimeSummary RunSummary::*times)
 {
     const bool bothInContact = other.m_stepsInContact > 0 && own.m_stepsInContact > 0;
@@ -135,9 +135,9 @@ std::string row(const std::string& label, const std::vector<std::string>& cells)
     return line + "\n";
 }
 
-constexpr const char* kNone = "-";  // in the table, for what a run has not
+constexpr const char* kNone = "-";  // stands in the table for a missing value
 
-// A number of the steps in contact, where there were any.
+// Returns a statistic of the steps in contact as text.
 std::string textOfContacts(const RunSummary& summary, double value)
 {
     return summary.m_stepsInContact > 0 ? text("%.3f", value) : kNone;

@@ -30,7 +30,7 @@ Json asLine(const StepRecord& step)
             {"hash", step.m_hash}};
 }
 
-// What is not finite has no number in JSON.
+// JSON has null for numbers that are not finite.
 double numberOf(const Json& value)
 {
     return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();

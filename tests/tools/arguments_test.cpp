@@ -1,5 +1,4 @@
-// Command lines of Drape's programs: mistakes are named as the person who typed them would, and --version tells which
-// Drape it is.
+// Tests the command lines of Drape's programs: they name the user's mistake, suggest what is meant, and have --version.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -94,7 +93,7 @@ TEST_F(ClothDropArguments, AnOptionInPlaceOfAFileIsTheMistakeThatIsTold)
     expectRefused(run({"--picture", "-h"}), {"--picture needs a value", "option -h follows"});
     expectRefused(run({"steps", "3"}), {"'steps'", "did you mean --steps?"});
     expectRefused(run({"--steps", "3", "4"}), {"'4'", "belongs to no option"});
-    // Where it is meant it can be said.
+    // Such a name can still be given with an equals sign.
     ASSERT_EQ(runSmall({"--steps", "1", "--csv=" + path("--steps")}).m_exitCode, 0);
     EXPECT_FALSE(readAll(path("--steps")).empty());
 }
@@ -157,6 +156,9 @@ TEST_F(CheckArguments, CommandsAndTheirOptionsAreKnownApart)
     expectRefused(run({"pairs", "a.obj", "--jsno", "1"}), {"no option --jsno", "did you mean --json?"});
     expectRefused(run({"pairs", "a.obj", "--json", "--thickness", "1"}),
                   {"--json needs a value", "--thickness follows"});
+    expectRefused(run({"--thickness", "1", "pairs", "a.obj"}), {"--thickness", "command pairs", "after it"});
+    expectRefused(run({"ccd", "a.bin", "--thickness", "1"}), {"--thickness", "command pairs", "not of ccd"});
+    expectRefused(run({"ccd", "a.bin", "triangles", "b.bin"}), {"command triangles follows ccd"});
     expectRefused(run({"triangles", "a.bin", "--mode", "exakt"}), {"--mode", "did you mean exact?", "moller"});
     expectRefused(run({"pairs", "a.obj", "b.obj", "c.obj"}), {"'c.obj'", "belongs to no option"});
 }

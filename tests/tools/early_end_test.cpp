@@ -78,7 +78,7 @@ TEST_F(EarlyEnd, byAFrameThatCannotBeWrittenKeepsTheStepsDone)
     expectSteps(3);
 }
 
-// A picture takes long enough to be tired of it. What was found is written before.
+// The results are written before the picture, which is given up.
 TEST_F(EarlyEnd, byASignalWhileThePictureIsDrawnKeepsTheResults)
 {
     const pid_t process = start({"--obstacle", "sphere", "--cloth", "9x9", "--backend", "host", "--steps", "12",

@@ -140,7 +140,7 @@ TEST_F(Outputs, nodesThatWentThroughAreCounted)
     }
 }
 
-// Cloth that intersected on its way does not at the end.
+// Fast cloth intersects the obstacle on its way and has left it at the end.
 TEST_F(Outputs, theMostIntersectingPairsOfAnyStepAreCounted)
 {
     const auto expectMost = [this](const Json& run)
@@ -218,7 +218,7 @@ TEST_F(Outputs, aFrameIsReadWhateverItsFirstVertex)
     }
 }
 
-// Of a run in a child of its own, at that: a comparison's below shows Drape's.
+// The run is in a child process, which sends the positions; the comparison below shows Drape's own run.
 TEST_F(Outputs, pictureIsAPng)
 {
     const ToolRun run = runSmall({"--steps", "2", "--backend", "bullet", "--obstacle", "stairs", "--time-limit", "600",
@@ -267,7 +267,7 @@ TEST_F(Outputs, aPictureOfAComparisonShowsEveryRun)
             for (std::size_t x = left; x < left + kWidth; ++x)
             {
                 const std::uint8_t* colour = pixel(x, y);
-                cloth += colour[0] > 2 * colour[2];  // red before, yellow behind; nothing else is
+                cloth += colour[0] > 2 * colour[2];  // the cloth is red in front and yellow at the back
                 const bool dark = y < 100 && colour[0] == 40 && colour[1] == 42 && colour[2] == 46;
                 ink += dark;
                 if (y < 100) label += dark ? '#' : ' ';

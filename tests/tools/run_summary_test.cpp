@@ -1,5 +1,5 @@
-// What cloth_drop's summary says of a run's steps: the most intersecting pairs and when, and nothing of steps in
-// contact where there were none.
+// The summary of a run has the most intersecting pairs with their step, and no statistics of steps in contact when
+// there were none.
 #include <gtest/gtest.h>
 
 #include "examples/cloth_drop/report.h"

@@ -10,14 +10,14 @@ namespace drape
 {
 namespace
 {
-// --name, --name=value or -n, but no number and no lone dashes.
+// Returns true for --name, --name=value and -n, but not for numbers and lone dashes.
 bool looksLikeOption(const std::string& argument)
 {
     if (argument.size() < 2 || argument[0] != '-' || argument == "--") return false;
     return argument[1] == '-' || std::isalpha(static_cast<unsigned char>(argument[1]));
 }
 
-// The value of an option may begin with one dash (a number below zero, a file), but not with two.
+// A value may begin with one dash (a number below zero, a file), but not with two.
 bool looksLikeNoValue(const std::string& argument)
 {
     return argument.size() > 2 && argument.compare(0, 2, "--") == 0;
@@ -28,7 +28,7 @@ std::string nameOf(const std::string& argument)
     return argument.substr(0, argument.find('='));
 }
 
-// A walk along the arguments that knows which command they belong to.
+// Walks along the arguments and keeps track of the command that they belong to.
 class ArgumentWalk
 {
 public:
@@ -48,17 +48,24 @@ public:
     }
 
 private:
-    // An option of the command, or of those that it belongs to.
-    const CLI::Option* find(const std::string& name) const
+    static const CLI::Option* findIn(const CLI::App& app, const std::string& name)
     {
-        for (const CLI::App* app = m_app; app != nullptr; app = app->get_parent())
-            for (const CLI::Option* option : app->get_options())
-                if (name[1] == '-' ? option->check_lname(name.substr(2)) : option->check_sname(name.substr(1)))
-                    return option;
+        for (const CLI::Option* option : app.get_options())
+            if (name[1] == '-' ? option->check_lname(name.substr(2)) : option->check_sname(name.substr(1)))
+                return option;
         return nullptr;
     }
 
-    // Without hidden ones, which have no group.
+    // Finds an option of the current command or of its parents.
+    const CLI::Option* find(const std::string& name) const
+    {
+        const CLI::Option* found = nullptr;
+        for (const CLI::App* app = m_app; app != nullptr && found == nullptr; app = app->get_parent())
+            found = findIn(*app, name);
+        return found;
+    }
+
+    // Leaves out hidden options, which have no group.
     std::vector<std::string> optionNames() const
     {
         std::vector<std::string> names;
@@ -69,18 +76,30 @@ private:
         return names;
     }
 
-    std::vector<const CLI::App*> commands() const
+    static std::vector<const CLI::App*> commandsOf(const CLI::App& app)
     {
-        return m_app->get_subcommands([](const CLI::App*) { return true; });
+        return app.get_subcommands([](const CLI::App*) { return true; });
+    }
+
+    // The option may belong to a command that follows, or to another command.
+    std::string unknownOption(const std::string& name) const
+    {
+        const CLI::App* parent = m_app->get_parent();
+        std::vector<std::string> owners;
+        for (const CLI::App* command : commandsOf(parent == nullptr ? *m_app : *parent))
+            if (findIn(*command, name) != nullptr) owners.push_back(command->get_name());
+        if (owners.empty()) return "there is no option " + name + didYouMean(name, optionNames());
+        return name + " is an option of the command " + joinedWords(owners) +
+               (parent == nullptr ? ", to be given after it" : ", not of " + m_app->get_name());
     }
 
     std::string inOption(const std::string& argument)
     {
         const std::string name = nameOf(argument);
         const CLI::Option* option = find(name);
-        if (option == nullptr) return "there is no option " + name + didYouMean(name, optionNames());
+        if (option == nullptr) return unknownOption(name);
         if (option->get_items_expected_min() == 0 || name.size() < argument.size()) return "";
-        if (m_next == m_arguments.size()) return "";  // CLI11 says so itself
+        if (m_next == m_arguments.size()) return "";  // CLI11 reports the missing value
         const std::string& value = m_arguments[m_next++];
         if (looksLikeNoValue(value) || (looksLikeOption(value) && find(nameOf(value)) != nullptr))
             return missingValue(*option, name, value);
@@ -101,7 +120,7 @@ private:
     std::string inWord(const std::string& word)
     {
         std::vector<std::string> names;
-        for (const CLI::App* command : commands())
+        for (const CLI::App* command : commandsOf(*m_app))
         {
             names.push_back(command->get_name());
             if (!command->check_name(word)) continue;
@@ -114,13 +133,17 @@ private:
             places += option->get_positional();
         if (m_words++ < places) return "";
         if (!names.empty()) return "there is no command " + word + didYouMean(word, names);
+        if (m_app->get_parent() != nullptr)
+            for (const CLI::App* command : commandsOf(*m_app->get_parent()))
+                if (command->check_name(word))
+                    return "the command " + word + " follows " + m_app->get_name() + "; only one is run";
         return "the argument '" + word + "' belongs to no option" + didYouMean(word, optionNames());
     }
 
     const CLI::App* m_app;
     const std::vector<std::string>& m_arguments;
     std::size_t m_next = 0;
-    std::size_t m_words = 0;  // arguments so far that are neither options nor their values, of the command
+    std::size_t m_words = 0;  // positional arguments of the current command so far
 };
 }  // namespace
 

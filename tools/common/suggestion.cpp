@@ -15,7 +15,7 @@ std::string plain(const std::string& word)
     return text;
 }
 
-// The distance of Damerau and Levenshtein in which no part is changed twice ("optimal string alignment").
+// Returns the Damerau-Levenshtein distance in its restricted form ("optimal string alignment").
 std::size_t changesBetween(const std::string& a, const std::string& b)
 {
     std::vector<std::size_t> beforeLast, last(b.size() + 1), row(b.size() + 1);
@@ -36,9 +36,9 @@ std::size_t changesBetween(const std::string& a, const std::string& b)
     return last[b.size()];
 }
 
-constexpr std::size_t kLongest = 100;  // letters; what is longer is no mistyped word, and would take long to compare
+constexpr std::size_t kLongest = 100;  // letters; longer words are not mistyped and would take long to compare
 
-// Returns the number of changes, or more than any near word has.
+// Returns the number of changes between the two, or a number above any limit when they are not near.
 std::size_t changesIfNear(const std::string& text, const std::string& known)
 {
     constexpr std::size_t far = 2 * kLongest;

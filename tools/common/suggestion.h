@@ -10,7 +10,7 @@ namespace drape
 {
 // Returns the nearest of the known words, or "" when none is near. A word is near when it takes few changes to get from
 // one to the other (a letter inserted, dropped or replaced, or two neighbours swapped: one change for every three
-// letters), or when the text is the beginning of it. Of equally near words the first one wins.
+// letters), or when it begins with the text. Among equally near words the first one wins.
 std::string nearestWord(const std::string& text, const std::vector<std::string>& known);
 
 // Returns "; did you mean WORD?" for the nearest word, or "" when none is near.
@@ -19,6 +19,6 @@ std::string didYouMean(const std::string& text, const std::vector<std::string>& 
 // Returns the words joined by ", ".
 std::string joinedWords(const std::vector<std::string>& words);
 
-// Returns one line for a word that is none of the known ones: which it may stand for, and all there are.
+// Returns one line for an unknown word, with the nearest known word and the list of all.
 std::string unknownWord(const std::string& text, const std::vector<std::string>& known);
 }  // namespace drape
