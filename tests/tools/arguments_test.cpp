@@ -88,6 +88,8 @@ TEST_F(ClothDropArguments, AnOptionInPlaceOfAFileIsTheMistakeThatIsTold)
 {
     expectRefused(run({"--csv", "--steps", "3"}), {"--csv needs a value (FILE)", "option --steps follows"});
     expectRefused(run({"--csv", "--quiet"}), {"--csv needs a value", "option --quiet follows"});
+    expectRefused(run({"--csv=", "--steps", "3"}), {"--csv= has no value"});
+    expectRefused(run({"--csv=", "steps.csv"}), {"--csv= has no value"});
     expectRefused(run({"--json", "--csv=a.csv"}), {"--json needs a value", "option --csv follows"});
     expectRefused(run({"--csv", "--setps", "3"}), {"--csv needs a value", "--setps", "did you mean --steps?"});
     expectRefused(run({"--picture", "-h"}), {"--picture needs a value", "option -h follows"});
@@ -154,6 +156,8 @@ TEST_F(CheckArguments, CommandsAndTheirOptionsAreKnownApart)
     expectRefused(run({"frobnicate"}), {"no command frobnicate"});
     expectRefused(run({"pairs", "a.obj", "--thicknes", "1"}), {"no option --thicknes", "did you mean --thickness?"});
     expectRefused(run({"pairs", "a.obj", "--jsno", "1"}), {"no option --jsno", "did you mean --json?"});
+    expectRefused(run({"--json", "--thickness", "1", "pairs", "a.obj"}),
+                  {"--json needs a value", "option --thickness"});
     expectRefused(run({"pairs", "a.obj", "--json", "--thickness", "1"}),
                   {"--json needs a value", "--thickness follows"});
     expectRefused(run({"--thickness", "1", "pairs", "a.obj"}), {"--thickness", "command pairs", "after it"});

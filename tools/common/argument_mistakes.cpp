@@ -81,13 +81,20 @@ private:
         return app.get_subcommands([](const CLI::App*) { return true; });
     }
 
-    // The option may belong to a command that follows, or to another command.
-    std::string unknownOption(const std::string& name) const
+    // Returns the commands that have the option: one that may follow, or others than the current one.
+    std::vector<std::string> ownersOf(const std::string& name) const
     {
         const CLI::App* parent = m_app->get_parent();
         std::vector<std::string> owners;
         for (const CLI::App* command : commandsOf(parent == nullptr ? *m_app : *parent))
             if (findIn(*command, name) != nullptr) owners.push_back(command->get_name());
+        return owners;
+    }
+
+    std::string unknownOption(const std::string& name) const
+    {
+        const CLI::App* parent = m_app->get_parent();
+        const std::vector<std::string> owners = ownersOf(name);
         if (owners.empty()) return "there is no option " + name + didYouMean(name, optionNames());
         return name + " is an option of the command " + joinedWords(owners) +
                (parent == nullptr ? ", to be given after it" : ", not of " + m_app->get_name());
@@ -98,7 +105,10 @@ private:
         const std::string name = nameOf(argument);
         const CLI::Option* option = find(name);
         if (option == nullptr) return unknownOption(name);
-        if (option->get_items_expected_min() == 0 || name.size() < argument.size()) return "";
+        if (option->get_items_expected_min() == 0) return "";
+        // CLI11 would take the next argument for the value.
+        if (name.size() + 1 == argument.size()) return argument + " has no value after the equals sign";
+        if (name.size() < argument.size()) return "";
         if (m_next == m_arguments.size()) return "";  // CLI11 reports the missing value
         const std::string& value = m_arguments[m_next++];
         if (looksLikeNoValue(value) || (looksLikeOption(value) && find(nameOf(value)) != nullptr))
@@ -113,7 +123,8 @@ private:
     {
         const std::string follower = nameOf(next);
         const std::string needs = name + " needs a value (" + option.get_type_name() + "), but ";
-        if (find(follower) != nullptr) return needs + "the option " + follower + " follows it";
+        if (find(follower) != nullptr || !ownersOf(follower).empty())
+            return needs + "the option " + follower + " follows it";
         return needs + follower + " follows it, which is no option" + didYouMean(follower, optionNames());
     }
 
