@@ -30,7 +30,8 @@ def cloth_line(row):
     what = BUILT_IN.get(row["run"]) or ("Drape, all contacts" if row["all_contacts"] else "Drape")
     where = row["device"] + (f", {row['steps']} steps, ended by the limit of time" if "capped_at_step" in row else "")
     times, finding = row["collision_ms"], row.get("finding_ms")
-    return [what, where, f"{times['median']:,.2f} ({times['p95']:,.2f})",
+    # A run without a step in contact has no times of such steps.
+    return [what, where, f"{times['median']:,.2f} ({times['p95']:,.2f})" if times else count(None),
             f"{finding['median']:,.2f}" if finding else count(None), f"{1000 * row['penetration_max_m']:,.0f}",
             count(row["intersecting_pairs_end"]), count(row["nodes_below_surface"]), count(row["nodes_through"]),
             f"`{row['hash']}`"]

@@ -1,6 +1,6 @@
 # The test install.consumer: installs Drape into WORK, then builds and runs examples/consumer against what was
-# installed, once as a CMake package and once by pkg-config; by pkg-config also the README's program, which it runs, and
-# its fragment, which it compiles.
+# installed, once as a CMake package and once by pkg-config; by pkg-config also every block of C++ in the README, as it
+# stands.
 # Input: BUILD (Drape's build folder), SOURCE (the consumer), README, WORK (made anew), LIBDIR, COMPILER, SANITIZE.
 cmake_minimum_required(VERSION 3.25)
 function(must)
@@ -28,39 +28,38 @@ must(${COMPILER} -std=c++11 ${flags} ${SOURCE}/main.cpp -o ${WORK}/consumer_by_p
   -Wl,-rpath,${prefix}/${LIBDIR})
 must(${WORK}/consumer_by_pkg_config)
 
-# Blocks of C++ in the order in which the README has them; semicolons would part a list.
+# Every block of C++ in the README must be a program that compiles as it stands, with nothing around it, and runs well.
 file(READ ${README} text)
-string(REPLACE ";" "@semicolon@" text "${text}")
-string(REGEX MATCHALL "```cpp\n[^`]*```" blocks "${text}")
-list(LENGTH blocks count)
-if(NOT count EQUAL 2)
-  message(FATAL_ERROR "The README has ${count} blocks of C++, of which this test knows two")
+set(opening "\n```[ ]*(cpp|c\\+\\+|C\\+\\+|cc|cxx)[^\n]*\n")
+set(count 0)
+string(REGEX MATCH "${opening}" fence "${text}")
+while(fence)
+  string(FIND "${text}" "${fence}" begin)
+  string(LENGTH "${fence}" length)
+  math(EXPR begin "${begin} + ${length}")
+  string(SUBSTRING "${text}" ${begin} -1 text)
+  string(FIND "${text}" "\n```" end)
+  if(end EQUAL -1)
+    message(FATAL_ERROR "A block of C++ in ${README} does not end")
+  endif()
+  math(EXPR next "${end} + 4")
+  string(SUBSTRING "${text}" 0 ${end} block)
+  string(SUBSTRING "${text}" ${next} -1 text)
+  math(EXPR count "${count} + 1")
+  set(program ${WORK}/readme_${count})
+  file(WRITE ${program}.cpp "${block}\n")
+  must(${COMPILER} -std=c++11 ${flags} ${program}.cpp -o ${program} ${package_flags}
+    -Wl,-rpath,${prefix}/${LIBDIR})
+  execute_process(COMMAND ${program} OUTPUT_VARIABLE report_${count} COMMAND_ERROR_IS_FATAL ANY)
+  message("${report_${count}}")
+  string(REGEX MATCH "${opening}" fence "${text}")
+endwhile()
+if(count LESS 2)
+  message(FATAL_ERROR "The README has ${count} blocks of C++, fewer than the app's and the queries'")
 endif()
-set(sources "")
-foreach(block IN LISTS blocks)
-  string(REGEX REPLACE "^```cpp\n(.*)```$" "\\1" block "${block}")
-  list(APPEND sources "${block}")
-endforeach()
-list(GET sources 0 program)
-list(GET sources 1 fragment)
-string(REGEX MATCHALL "#include [^\n]*" includes "${fragment}")
-string(REGEX REPLACE "#include [^\n]*" "" fragment "${fragment}")
-list(JOIN includes "\n" includes)
-set(fragment "${includes}
-void ask(const drape::MeshDescription& meshA, const drape::MeshDescription& meshB, const drape::CcdQuery& ccdQuery)
-{
-${fragment}
-}
-")
-foreach(name program fragment)
-  string(REPLACE "@semicolon@" ";" ${name} "${${name}}")
-  file(WRITE ${WORK}/readme_${name}.cpp "${${name}}")
-endforeach()
-must(${COMPILER} -std=c++11 -fsyntax-only ${WORK}/readme_fragment.cpp ${package_flags})
-must(${COMPILER} -std=c++11 ${flags} ${WORK}/readme_program.cpp -o ${WORK}/readme_program ${package_flags}
-  -Wl,-rpath,${prefix}/${LIBDIR})
-execute_process(COMMAND ${WORK}/readme_program OUTPUT_VARIABLE report COMMAND_ERROR_IS_FATAL ANY)
-message("${report}")
-if(NOT report MATCHES "^Drape on .* ([1-9][0-9]*) contacts" OR NOT report MATCHES "\n\n$")
-  message(FATAL_ERROR "The README's program does not report contacts of a pair that Drape has")
+if(NOT report_1 MATCHES "^Drape on .* ([1-9][0-9]*) contacts" OR NOT report_1 MATCHES "\n\n$")
+  message(FATAL_ERROR "The README's first program does not report contacts of a pair that Drape has")
+endif()
+if(NOT report_2 MATCHES "^1 near, 1 intersecting\nhit at 0\\.[45]")
+  message(FATAL_ERROR "The README's second program does not find what meets")
 endif()

@@ -206,10 +206,10 @@ int run(int argc, char** argv)
     CLI::App app("Measures whole collision steps of Drape and its peers.", "bench_step");
     addCommonOptions(app, options);
     app.add_option("--scene", options.m_scenes, "only these scenes or sweeps");
-    app.add_option("--set", options.m_set,
-                   "sweep: the scenes of all sweeps, whole sizes from 512 to 2 M of cloth triangles")
-        ->check(CLI::IsMember({"sweep"}))
-        ->excludes("--scene");
+    CLI::Option* set = app.add_option(
+        "--set", options.m_set, "sweep: the scenes of all sweeps, whole sizes from 512 to 2 M of cloth triangles");
+    set->excludes("--scene");
+    acceptOnly(set, {"sweep"});
     app.add_option("--method", options.m_methods, "only these methods, and the reference");
     app.add_option("--reference", options.m_reference, "JSON of an earlier run: contacts must have its hashes")
         ->type_name("FILE")

@@ -78,8 +78,9 @@ int main(int argc, char** argv)
                  kProgram);
     ErrorOptions options;
     addCommonOptions(app, options);
-    app.add_option("--part", options.m_part, "only this part (default: both; the simulations with --scene or --knob)")
-        ->check(CLI::IsMember({kDetectorPart, kSimulationPart}));
+    acceptOnly(app.add_option("--part", options.m_part,
+                              "only this part (default: both; the simulations with --scene or --knob)"),
+               {kDetectorPart, kSimulationPart});
     app.add_option("--scene", options.m_scenes, "only these (repeat it); --list names them");
     app.add_option("--knob", options.m_knobs, "only these besides the defaults (repeat it); --list names them");
     app.add_option("--cap", options.m_capSeconds, "seconds of stepping for one trial")->check(CLI::PositiveNumber);

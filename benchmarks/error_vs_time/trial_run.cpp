@@ -24,8 +24,8 @@ std::vector<std::string> childArguments(const ErrorOptions& options, const std::
                                           options.m_backend,
                                           "--frames",
                                           std::to_string(options.m_frames)};
-    if (!options.m_device.empty()) arguments.insert(arguments.end(), {"--device", options.m_device});
-    if (!options.m_models.empty()) arguments.insert(arguments.end(), {"--models", options.m_models});
+    if (!options.m_device.empty()) arguments.push_back("--device=" + options.m_device);
+    if (!options.m_models.empty()) arguments.push_back("--models=" + options.m_models);
     if (options.m_quick) arguments.push_back("--quick");
     return arguments;
 }

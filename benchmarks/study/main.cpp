@@ -87,12 +87,22 @@ void forEachModel(const StudyOptions& options, const std::function<void(const st
 
 namespace
 {
-std::string unknownPart(const StudyOptions& options)
+std::string nameProblem(const StudyOptions& options)
 {
-    std::vector<std::string> parts;
+    std::vector<std::string> parts, only = studyModels(false);
     for (const Part& part : studyParts())
         parts.push_back(part.m_name);
-    return unknownName("--part", options.m_parts, parts);
+    StudyOptions all;
+    for (const bool quick : {true, false})
+    {
+        all.m_quick = quick;
+        for (const std::string& model : studyModels(quick))
+            if (std::find(only.begin(), only.end(), model) == only.end()) only.push_back(model);
+        for (const SceneSpec& spec : studyScenes(all))
+            only.push_back(spec.m_name);
+    }
+    const std::string problem = unknownName("--part", options.m_parts, parts);
+    return problem.empty() ? unknownName("--only", options.m_only, only) : problem;
 }
 
 int run(int argc, char** argv)
@@ -107,7 +117,7 @@ int run(int argc, char** argv)
         ->check(CLI::ExistingFile);
     int exitCode = kExitGood;
     if (!parseArguments(
-            app, argc, argv, [&options] { return unknownPart(options); }, exitCode))
+            app, argc, argv, [&options] { return nameProblem(options); }, exitCode))
         return exitCode;
     std::string error;
     if (!options.readReference(error)) return fail("study", kExitBadInput, error);

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "benchmarks/support/machine.h"
+#include "tools/common/suggestion.h"
 
 namespace drape::bench
 {
@@ -21,8 +22,8 @@ void addCommonOptions(CLI::App& app, CommonOptions& options)
 {
     app.option_defaults()->always_capture_default();
     app.add_option("--device", options.m_device, "part of an OpenCL device's or platform's name")->type_name("TEXT");
-    app.add_option("--backend", options.m_backend, "auto: a GPU, else any OpenCL device, else the host")
-        ->check(CLI::IsMember({"auto", "opencl", "host"}));
+    acceptOnly(app.add_option("--backend", options.m_backend, "auto: a GPU, else any OpenCL device, else the host"),
+               {"auto", "opencl", "host"});
     app.add_option("--models", options.m_models, "folder of bunny_69k.obj, dragon_871k.ply, spot_6k.obj")
         ->type_name("DIR");
     app.add_option("--csv", options.m_csv, "write the rows; - is standard output")->type_name("FILE");
@@ -42,12 +43,9 @@ void addCommonOptions(CLI::App& app, CommonOptions& options)
 std::string unknownName(const char* option, const std::vector<std::string>& names,
                         const std::vector<std::string>& known)
 {
-    std::string all;
-    for (const std::string& name : known)
-        all += (all.empty() ? "" : ", ") + name;
     for (const std::string& name : names)
         if (std::find(known.begin(), known.end(), name) == known.end())
-            return std::string(option) + ": there is no " + name + ", only " + all;
+            return std::string(option) + ": " + unknownWord(name, known);
     return "";
 }
 

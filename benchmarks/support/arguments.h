@@ -28,7 +28,7 @@ struct CommonOptions
 
 void addCommonOptions(CLI::App& app, CommonOptions& options);
 
-// "" when all names are known, else one line with the first that is not, and those that are.
+// "" when all names are known, else one line with the first that is not, the one that may be meant, and all there are.
 std::string unknownName(const char* option, const std::vector<std::string>& names,
                         const std::vector<std::string>& known);
 

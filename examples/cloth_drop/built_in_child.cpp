@@ -24,31 +24,33 @@ std::string exactText(double value)
 
 std::vector<std::string> childArguments(const Options& options, BulletMode mode)
 {
-    return {"cloth_drop",
-            "--obstacle",
-            options.m_obstacle,
-            "--obstacle-size",
-            exactText(options.m_obstacleSize),
-            "--cloth",
-            std::to_string(options.m_clothColumns) + "x" + std::to_string(options.m_clothRows),
-            "--cloth-size",
-            exactText(options.m_clothSize),
-            "--drop-height",
-            exactText(options.m_dropHeight),
-            "--drop-speed",
-            exactText(options.m_dropSpeed),
-            "--steps",
-            std::to_string(options.m_steps),
-            "--dt",
-            exactText(options.m_dt),
-            "--thickness",
-            exactText(options.m_thickness),
-            "--backend",
-            "bullet",
-            "--bullet-mode",
-            modeName(mode),
-            "--quiet",
-            "--stream-steps"};
+    std::vector<std::string> arguments = {
+        "cloth_drop",
+        "--obstacle=" + options.m_obstacle,  // which may begin with dashes
+        "--obstacle-size",
+        exactText(options.m_obstacleSize),
+        "--cloth",
+        std::to_string(options.m_clothColumns) + "x" + std::to_string(options.m_clothRows),
+        "--cloth-size",
+        exactText(options.m_clothSize),
+        "--drop-height",
+        exactText(options.m_dropHeight),
+        "--drop-speed",
+        exactText(options.m_dropSpeed),
+        "--steps",
+        std::to_string(options.m_steps),
+        "--dt",
+        exactText(options.m_dt),
+        "--thickness",
+        exactText(options.m_thickness),
+        "--backend",
+        "bullet",
+        "--bullet-mode",
+        modeName(mode),
+        "--quiet",
+        "--stream-steps"};
+    if (!options.m_picture.empty()) arguments.emplace_back("--stream-positions");
+    return arguments;
 }
 
 void describe(RunRecord& record, BulletMode mode, const DropScene& scene)
@@ -60,6 +62,7 @@ void describe(RunRecord& record, BulletMode mode, const DropScene& scene)
     record.m_clothNodes = scene.m_cloth.m_mesh.vertexCount();
     record.m_obstacleTriangles = scene.m_obstacle.triangleCount();
     record.m_thickness = scene.m_thickness;
+    record.m_lastPositions = scene.m_cloth.m_mesh.m_positions;
 }
 }  // namespace
 
@@ -72,7 +75,7 @@ bool runBuiltInChild(const Options& options, BulletMode mode, const ChildCap& ca
         childArguments(options, mode), cap,
         [&](int step, const std::string& line)
         {
-            record.m_steps.push_back(stepFromLine(line));
+            record.m_steps.push_back(stepFromLine(line, record.m_lastPositions));
             progress.show(step);
         },
         [] { return interruption().empty(); });
@@ -84,6 +87,6 @@ bool runBuiltInChild(const Options& options, BulletMode mode, const ChildCap& ca
 void streamBuiltIn(const Options& options, const DropScene& scene)
 {
     const std::unique_ptr<Simulation> simulation = makeBulletSimulation(scene, options.m_bulletMode);
-    streamRun(*simulation, scene, options.m_steps);
+    streamRun(*simulation, scene, options.m_steps, {}, options.m_streamPositions);
 }
 }  // namespace drape

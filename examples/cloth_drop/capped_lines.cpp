@@ -46,9 +46,9 @@ double CappedLines::secondsLeft(Clock::time_point time) const
 
 bool CappedLines::take(const char* text, std::size_t size)
 {
+    std::size_t start = 0, from = m_text.size();  // the text kept so far has no line feed
     m_text.append(text, size);
-    std::size_t start = 0;
-    for (std::size_t end; (end = m_text.find('\n', start)) != std::string::npos; start = end + 1)
+    for (std::size_t end; (end = m_text.find('\n', from)) != std::string::npos; from = start = end + 1)
         if (!takeLine(m_text.substr(start, end - start))) return false;
     m_text.erase(0, start);
     return true;

@@ -23,4 +23,8 @@ struct DropScene
 
 // False, with one line in `error`, when the obstacle cannot be had.
 bool makeDropScene(const Options& options, DropScene& scene, std::string& error);
+
+// Returns one line when the thickness is out of proportion to the scene, which most likely is not meant: above a
+// quarter of the obstacle's or the cloth's size, or below what float32 tells apart there. Else "".
+std::string thicknessRemark(const Options& options);
 }  // namespace drape

@@ -1,5 +1,6 @@
 // cloth_drop: drops a cloth on an obstacle in Bullet, with Drape or Bullet's built-in collision, and reports.
 #include <chrono>
+#include <iostream>
 
 #include "examples/cloth_drop/built_in_child.h"
 #include "examples/cloth_drop/interruption.h"
@@ -19,17 +20,24 @@ int fail(int exitCode, const std::string& reason)
     return drape::fail("cloth_drop", exitCode, reason);
 }
 
+// Warns and listens to signals. Called once nothing can refuse the arguments any more, before the first step.
+void beginRun(const Options& options)
+{
+    const std::string remark = thicknessRemark(options);
+    if (!remark.empty()) std::cerr << "cloth_drop: warning: " << remark << std::endl;
+    listenToSignals();
+}
+
 // A built-in run with a limit of time is a child's, which is ended within a step that does not.
 bool runLimitedBuiltIn(const Options& options, const DropScene& scene, NamedRun& run, std::string& error)
 {
-    listenToSignals();
+    beginRun(options);
     const ChildCap cap = {options.m_timeLimit, true};
     return runBuiltInChild(options, options.m_bulletMode, cap, scene, run.m_record, error);
 }
 
 // Runs the chosen back end. A built-in world is left alive: Bullet's clean-up of its distance field can take minutes.
-bool runChosen(const Options& options, const DropScene& scene, NamedRun& run, TriangleMesh& lastFrame,
-               std::string& error, int& exitCode)
+bool runChosen(const Options& options, const DropScene& scene, NamedRun& run, std::string& error, int& exitCode)
 {
     exitCode = kExitFailed;
     if (!options.usesDrape() && options.m_timeLimit > 0) return runLimitedBuiltIn(options, scene, run, error);
@@ -37,7 +45,7 @@ bool runChosen(const Options& options, const DropScene& scene, NamedRun& run, Tr
                                                                  : makeBulletSimulation(scene, options.m_bulletMode);
     if (!simulation) return false;
     exitCode = kExitFailed;
-    listenToSignals();
+    beginRun(options);
     Progress progress(run.m_name, options.m_steps, options.m_quiet);
     RunHooks hooks;
     hooks.m_afterStep = [&](int number, const StepRecord&) { progress.show(number); };
@@ -46,8 +54,7 @@ bool runChosen(const Options& options, const DropScene& scene, NamedRun& run, Tr
     const std::chrono::duration<double> limit(options.m_timeLimit);
     hooks.m_goesOn = [=]
     { return interruption().empty() && !(limited && std::chrono::steady_clock::now() - start >= limit); };
-    const bool ran =
-        runSimulation(*simulation, scene, options.m_steps, options.m_frames, hooks, run.m_record, lastFrame, error);
+    const bool ran = runSimulation(*simulation, scene, options.m_steps, options.m_frames, hooks, run.m_record, error);
     if (!options.usesDrape()) static_cast<void>(simulation.release());
     return ran;
 }
@@ -69,22 +76,43 @@ void runBuiltIns(const Options& options, const DropScene& scene, std::vector<Nam
     }
 }
 
-// All that is asked for, until the run fails or a signal comes; the steps done until then are in its record.
-bool runAll(const Options& options, const DropScene& scene, std::vector<NamedRun>& runs, std::string& error,
-            int& exitCode)
+// Runs what the options ask for. Returns false when it failed or a signal came; its record has the steps done so far.
+bool runFirst(const Options& options, const DropScene& scene, NamedRun& run, std::string& error, int& exitCode)
 {
-    TriangleMesh lastFrame;
-    RunRecord& record = runs[0].m_record;
-    if (runChosen(options, scene, runs[0], lastFrame, error, exitCode)) error = interruption();
-    if (!error.empty())
-    {
-        record.m_trouble += (record.m_trouble.empty() ? "" : "; ") + error;
-        return false;
-    }
-    if (!options.m_picture.empty()) writePicture(options.m_picture, lastFrame, scene.m_obstacle, error);
-    if (options.m_compare) runBuiltIns(options, scene, runs, error);
-    if (error.empty()) error = interruption();
-    return error.empty();
+    if (runChosen(options, scene, run, error, exitCode)) error = interruption();
+    if (error.empty()) return true;
+    std::string& trouble = run.m_record.m_trouble;
+    trouble += (trouble.empty() ? "" : "; ") + error;
+    return false;
+}
+
+PicturePanel panelOf(const NamedRun& run, const DropScene& scene)
+{
+    PicturePanel panel;
+    panel.m_cloth = scene.m_cloth.m_mesh;
+    if (!run.m_record.m_lastPositions.empty()) panel.m_cloth.m_positions = run.m_record.m_lastPositions;
+    const RunSummary summary = summarise(run.m_record);
+    panel.m_title = (run.m_name == "drape" ? "Drape, " : "") + run.m_record.m_backend;
+    panel.m_remark = "step " + std::to_string(run.m_record.m_steps.size()) + ": " +
+                     std::to_string(summary.m_intersectingPairsEnd) + " pairs intersect, " +
+                     std::to_string(summary.m_nodesThrough) + " nodes through";
+    return panel;
+}
+
+// Draws the runs' last frames, and stops when a signal comes. Keeps an error that is there already.
+void drawPicture(const Options& options, const DropScene& scene, const std::vector<NamedRun>& runs, std::string& error)
+{
+    std::vector<PicturePanel> panels;
+    for (const NamedRun& run : runs)
+        panels.push_back(panelOf(run, scene));
+    Progress progress("picture", pictureRows(panels.size()), options.m_quiet, "row");
+    PictureHooks hooks;
+    hooks.m_progress = [&](int rows) { progress.show(rows); };
+    hooks.m_goesOn = [] { return interruption().empty(); };
+    std::string problem;
+    if (writePicture(options.m_picture, panels, scene.m_obstacle, hooks, problem)) return;
+    if (problem.empty()) problem = interruption() + "; no picture is written";
+    if (error.empty()) error = problem;
 }
 
 int judge(const Options& options, const std::vector<NamedRun>& runs)
@@ -108,12 +136,19 @@ int run(const Options& options)
     std::vector<NamedRun> runs(1);
     runs[0].m_name = options.usesDrape() ? "drape" : "bullet";
     int exitCode = kExitFailed;
-    const bool good = runAll(options, scene, runs, error, exitCode);
-    stopListening();
-    if (!good && runs[0].m_record.m_steps.empty()) return fail(exitCode, error);
+    const bool ran = runFirst(options, scene, runs[0], error, exitCode);
+    if (ran && options.m_compare) runBuiltIns(options, scene, runs, error);
+    if (error.empty()) error = interruption();
+    const bool draws = ran && !options.m_picture.empty() && interruption().empty();
+    if (!draws) stopListening();
+    if (!ran && runs[0].m_record.m_steps.empty()) return fail(exitCode, error);
+    // The results come first: the picture takes seconds and may be given up.
     std::string writeError;
-    if (!writeOutputs(options, runs, writeError)) return fail(kExitFailed, writeError);
-    return good ? judge(options, runs) : fail(exitCode, error);
+    const bool written = writeOutputs(options, runs, writeError);
+    if (draws) drawPicture(options, scene, runs, error);
+    stopListening();
+    if (!written) return fail(kExitFailed, writeError);
+    return error.empty() ? judge(options, runs) : fail(exitCode, error);
 }
 }  // namespace
 }  // namespace drape

@@ -45,7 +45,8 @@ struct Options
     std::string m_csv, m_json, m_frames, m_picture;
     std::string m_validateHash;  // 16 lower-case hex digits or empty
     bool m_quiet = false;
-    bool m_streamSteps = false;  // for a child of --compare: a line a step on standard output, nothing else
+    bool m_streamSteps = false;      // for a child of --compare: a line a step on standard output, nothing else
+    bool m_streamPositions = false;  // each line with the nodes' positions
 
     bool usesDrape() const { return m_backend != "bullet"; }
 };

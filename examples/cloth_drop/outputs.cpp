@@ -1,5 +1,7 @@
 #include "examples/cloth_drop/outputs.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -54,6 +56,15 @@ bool spares(const Options& options, const Output& file, std::string& error)
     return error.empty();
 }
 
+// Accepts .png and names without an extension. Any other extension promises a format that is not written.
+bool isPngName(const std::string& path, std::string& error)
+{
+    std::string ending = fs::path(path).extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (!ending.empty() && ending != ".png") error = "--picture writes a PNG, and " + path + " does not end in .png";
+    return error.empty();
+}
+
 bool makeFolder(const std::string& path, std::string& error)
 {
     std::error_code code, ignored;
@@ -79,8 +90,8 @@ bool prepareOutputs(const Options& options, std::string& error)
             error = std::string(output.m_option) + " would write over the file of --obstacle, " + obstacle.m_path;
         if (!error.empty()) return false;
     }
-    return areApart(outputs[0], outputs[1], error) && areApart(outputs[0], outputs[2], error) &&
-           areApart(outputs[1], outputs[2], error);
+    return isPngName(options.m_picture, error) && areApart(outputs[0], outputs[1], error) &&
+           areApart(outputs[0], outputs[2], error) && areApart(outputs[1], outputs[2], error);
 }
 
 bool writeOutputs(const Options& options, const std::vector<NamedRun>& runs, std::string& error)

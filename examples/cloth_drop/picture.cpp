@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "examples/cloth_drop/image.h"
+#include "examples/cloth_drop/picture_label.h"
 #include "examples/cloth_drop/ray_scene.h"
 #include "examples/cloth_drop/smooth_mesh.h"
 
@@ -14,8 +17,11 @@ namespace drape
 {
 namespace
 {
+// Size of the only panel, in pixels.
 constexpr int kWidth = 1280, kHeight = 960;
-constexpr int kStrata = 6;  // samples a pixel and axis; each carries one shadow and one sky ray
+constexpr int kSideWidth = 960, kSideHeight = 720;  // of each of several panels
+constexpr int kGap = 8;                             // pixels between panels
+constexpr int kStrata = 6;                          // samples a pixel and axis; each carries one shadow and one sky ray
 constexpr std::size_t kSmoothTriangles =
     100000;  // a coarse cloth is drawn with at least so many: none looks like facets
 constexpr double kPi = 3.14159265358979323846;
@@ -104,12 +110,12 @@ Vector3 albedo(const SurfacePoint& hit)
 Vector3 shade(const RayScene& scene, const Vector3& direction, const SurfacePoint& hit, std::uint32_t pixel, int index)
 {
     if (hit.m_surface == Surface::None) return sky(direction);
-    const Vector3 origin = hit.m_point + (1e-4 * scene.radius()) * hit.m_flat;
+    const Vector3 origin = hit.m_point + (1e-4 * scene.view().m_radius) * hit.m_flat;
     const Vector3 towardsLight = lightDirection(stratum(pixel, index, 1));
     const Vector3 skyRay = cosineDirection(hit.m_normal, stratum(pixel, index, 2));
     const double facing = std::max(0.0, dot(hit.m_normal, towardsLight));
     const bool lit = facing > 0 && !scene.blocked(origin, towardsLight, 1e9);
-    const bool open = dot(hit.m_flat, skyRay) > 0 && !scene.blocked(origin, skyRay, 1.5 * scene.radius());
+    const bool open = dot(hit.m_flat, skyRay) > 0 && !scene.blocked(origin, skyRay, 1.5 * scene.view().m_radius);
     Vector3 light = (lit ? facing / kPi : 0.0) * kKeyLight;
     // Sky from above, a little light back from the floor from below.
     const Vector3 fill = skyRay.y > 0 ? kSkyLight : 0.45 * kSkyLight;
@@ -121,7 +127,7 @@ Vector3 shade(const RayScene& scene, const Vector3& direction, const SurfacePoin
         colour += (open ? 0.12 * grazing : 0.0) * kSkyLight;
     }
     if (hit.m_surface != Surface::Floor) return colour;
-    const double away = length(hit.m_point - scene.centre()) / scene.radius();
+    const double away = length(hit.m_point - scene.view().m_centre) / scene.view().m_radius;
     return mix(colour, sky(direction), std::clamp((away - 2.0) / 6.0, 0.0, 1.0));
 }
 
@@ -135,28 +141,30 @@ std::uint8_t encode(double linear)
 struct Camera
 {
     Vector3 m_eye, m_forward, m_right, m_up;
+    int m_width, m_height;  // pixels
 
-    explicit Camera(const RayScene& scene)
+    Camera(const View& view, int width, int height) : m_width(width), m_height(height)
     {
         m_forward = normalized({-0.45, -0.30, -1.0});
-        const double distance = 0.86 * scene.radius() / std::sin(0.5 * kFieldOfView);
-        m_eye = scene.centre() - distance * m_forward;
+        const double distance = 0.86 * view.m_radius / std::sin(0.5 * kFieldOfView);
+        m_eye = view.m_centre - distance * m_forward;
         m_right = normalized(cross(m_forward, {0, 1, 0}));
         m_up = cross(m_right, m_forward);
     }
 
     Vector3 direction(double x, double y) const
     {
-        const double scale = 2 * std::tan(0.5 * kFieldOfView) / kHeight;
-        return normalized(m_forward + scale * (x - 0.5 * kWidth) * m_right + scale * (0.5 * kHeight - y) * m_up);
+        const double scale = 2 * std::tan(0.5 * kFieldOfView) / m_height;
+        return normalized(m_forward + scale * (x - 0.5 * m_width) * m_right + scale * (0.5 * m_height - y) * m_up);
     }
 };
 
-void renderRow(const RayScene& scene, const Camera& camera, int y, Image& image)
+// Draws row y of the panel whose first column in the image is `left`.
+void renderRow(const RayScene& scene, const Camera& camera, int y, int left, Image& image)
 {
-    for (int x = 0; x < kWidth; ++x)
+    for (int x = 0; x < camera.m_width; ++x)
     {
-        const auto pixel = static_cast<std::uint32_t>(y * kWidth + x);
+        const auto pixel = static_cast<std::uint32_t>(y * camera.m_width + x);
         Vector3 sum;
         for (int index = 0; index < kStrata * kStrata; ++index)
         {
@@ -166,39 +174,94 @@ void renderRow(const RayScene& scene, const Camera& camera, int y, Image& image)
         }
         const Vector3 mean = (1.0 / (kStrata * kStrata)) * sum;
         for (int axis = 0; axis < 3; ++axis)
-            image.m_pixels[3 * pixel + static_cast<unsigned>(axis)] = encode(mean[axis]);
+            image.at(left + x, y)[axis] = encode(mean[axis]);
     }
 }
-}  // namespace
 
-bool writePicture(const std::string& path, const TriangleMesh& cloth, const TriangleMesh& obstacle, std::string& error)
+// Draws the rows on all cores. Returns false when the caller gave the picture up.
+bool renderPanel(int height, const std::function<void(int)>& renderRowOf, const PictureHooks& hooks, int rowsBefore)
+{
+    std::atomic<int> nextRow{0}, rowsDone{0};
+    std::atomic<bool> givenUp{false};
+    const auto takeRow = [&]
+    {
+        const int row = givenUp ? height : nextRow++;
+        if (row >= height) return false;
+        renderRowOf(row);
+        ++rowsDone;
+        return true;
+    };
+    std::vector<std::thread> threads;
+    for (unsigned i = 1; i < std::max(1u, std::thread::hardware_concurrency()); ++i)
+        try
+        {
+            threads.emplace_back(
+                [&]
+                {
+                    while (takeRow())
+                    {
+                    }
+                });
+        }
+        catch (const std::system_error&)
+        {
+            break;  // fewer threads draw the same picture
+        }
+    while (takeRow())
+    {
+        if (hooks.m_progress) hooks.m_progress(rowsBefore + rowsDone);
+        if (hooks.m_goesOn && !hooks.m_goesOn()) givenUp = true;
+    }
+    for (std::thread& thread : threads)
+        thread.join();
+    if (hooks.m_progress && !givenUp) hooks.m_progress(rowsBefore + height);
+    return !givenUp;
+}
+
+ShadedMesh shadedCloth(const TriangleMesh& cloth)
 {
     int levels = 0;
     for (std::size_t count = cloth.triangleCount(); count > 0 && count < kSmoothTriangles; count *= 4)
         ++levels;
-    const RayScene scene(smoothMesh(cloth, levels), {obstacle, vertexNormals(obstacle), true});
-    if (!scene.good())
+    return smoothMesh(cloth, levels);
+}
+
+int heightOf(std::size_t panels)
+{
+    return panels > 1 ? kSideHeight : kHeight;
+}
+}  // namespace
+
+int pictureRows(std::size_t panels)
+{
+    return static_cast<int>(panels) * heightOf(panels);
+}
+
+bool writePicture(const std::string& path, const std::vector<PicturePanel>& panels, const TriangleMesh& obstacle,
+                  const PictureHooks& hooks, std::string& error)
+{
+    const bool several = panels.size() > 1;
+    const int width = several ? kSideWidth : kWidth, height = heightOf(panels.size());
+    const int count = static_cast<int>(panels.size());
+    Image image(count * width + (count - 1) * kGap, height);
+    View view;
+    for (int i = 0; i < count; ++i)
     {
-        error = path + ": cannot draw: Embree did not start";
-        return false;
+        const PicturePanel& panel = panels[static_cast<std::size_t>(i)];
+        ShadedMesh cloth = shadedCloth(panel.m_cloth);
+        if (i == 0) view = viewOf(cloth.m_mesh, obstacle);
+        const RayScene scene(std::move(cloth), {obstacle, vertexNormals(obstacle), true}, view);
+        if (!scene.good())
+        {
+            error = path + ": cannot draw: Embree did not start";
+            return false;
+        }
+        const Camera camera(view, width, height);
+        const int left = i * (width + kGap);
+        const auto row = [&](int y) { renderRow(scene, camera, y, left, image); };
+        if (!renderPanel(height, row, hooks, i * height)) return false;
+        if (several) drawLabel(panel.m_title, panel.m_remark, left, width, image);
     }
-    Image image;
-    image.m_width = kWidth;
-    image.m_height = kHeight;
-    image.m_pixels.resize(std::size_t{3} * kWidth * kHeight);
-    const Camera camera(scene);
-    std::atomic<int> nextRow{0};
-    const auto work = [&]
-    {
-        for (int row; (row = nextRow++) < kHeight;)
-            renderRow(scene, camera, row, image);
-    };
-    std::vector<std::thread> threads;
-    for (unsigned i = 1; i < std::max(1u, std::thread::hardware_concurrency()); ++i)
-        threads.emplace_back(work);
-    work();
-    for (std::thread& thread : threads)
-        thread.join();
     return writePng(path, image, error);
 }
 }  // namespace drape

@@ -1,13 +1,36 @@
 // Draws the cloth on the obstacle: soft key light, sky light with ambient occlusion, anti-aliased, on a studio floor.
-// Uses all processor cores; the same input gives the same picture on one machine. Some seconds for the default size.
+// Several cloths are drawn side by side, from the same place. Uses all processor cores; the same input gives the same
+// picture on one machine. Some seconds for a cloth.
 #pragma once
 
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "scenes/mesh.h"
 
 namespace drape
 {
-// Renders and writes a PNG. False with one line in `error`.
-bool writePicture(const std::string& path, const TriangleMesh& cloth, const TriangleMesh& obstacle, std::string& error);
+// One cloth on the obstacle. The two lines of text are drawn above it where there are several panels (see
+// picture_label.h for the characters).
+struct PicturePanel
+{
+    TriangleMesh m_cloth;
+    std::string m_title, m_remark;
+};
+
+struct PictureHooks  // any may be empty
+{
+    std::function<void(int rows)> m_progress;  // called on the calling thread with the rows drawn of pictureRows()
+    std::function<bool()> m_goesOn;            // called there after each row; false gives the picture up
+};
+
+// Returns the number of pixel rows of all panels together.
+int pictureRows(std::size_t panels);
+
+// Renders at least one panel and writes a PNG. The first cloth and the obstacle determine the view; the floor below
+// them hides cloth that fell deeper. Returns false with one line in `error` on failure, and false without one when the
+// picture was given up. Nothing is written then.
+bool writePicture(const std::string& path, const std::vector<PicturePanel>& panels, const TriangleMesh& obstacle,
+                  const PictureHooks& hooks, std::string& error);
 }  // namespace drape

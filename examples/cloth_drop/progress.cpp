@@ -13,8 +13,9 @@ constexpr int kBarWidth = 30;
 constexpr auto kRedraw = std::chrono::milliseconds(50);  // fast enough to look alive, too seldom to cost anything
 }  // namespace
 
-Progress::Progress(std::string title, int steps, bool quiet)
+Progress::Progress(std::string title, int steps, bool quiet, std::string unit)
     : m_title(std::move(title)),
+      m_unit(std::move(unit)),
       m_steps(steps),
       m_quiet(quiet),
       m_terminal(::isatty(STDERR_FILENO) == 1),
@@ -36,7 +37,8 @@ void Progress::drawBar(int step) const
         bar[i] = i < filled ? '#' : '.';
     bar[kBarWidth] = '\0';
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count();
-    std::fprintf(stderr, "\r%s [%s] step %d of %d, %.1f s ", m_title.c_str(), bar, step, m_steps, seconds);
+    std::fprintf(stderr, "\r%s [%s] %s %d of %d, %.1f s ", m_title.c_str(), bar, m_unit.c_str(), step, m_steps,
+                 seconds);
     std::fflush(stderr);
 }
 
@@ -54,6 +56,6 @@ void Progress::show(int step)
     const int tenths = static_cast<int>(10LL * step / m_steps);
     if (tenths == m_tenths) return;
     m_tenths = tenths;
-    std::fprintf(stderr, "%s: %d %% (step %d of %d)\n", m_title.c_str(), 10 * tenths, step, m_steps);
+    std::fprintf(stderr, "%s: %d %% (%s %d of %d)\n", m_title.c_str(), 10 * tenths, m_unit.c_str(), step, m_steps);
 }
 }  // namespace drape

@@ -1,4 +1,5 @@
-// Shows how far a run is, on standard error: a bar when that is a terminal, else a line every tenth of the way.
+// Shows how far a run or a picture is, on standard error: a bar when that is a terminal, else a line every tenth of the
+// way.
 #pragma once
 
 #include <chrono>
@@ -9,15 +10,16 @@ namespace drape
 class Progress
 {
 public:
-    // Silent when `quiet`.
-    Progress(std::string title, int steps, bool quiet);
+    // Prints nothing when `quiet`. `unit` names what is counted.
+    Progress(std::string title, int steps, bool quiet, std::string unit = "step");
     ~Progress();
+    // Must not be called from two threads at a time.
     void show(int step);
 
 private:
     void drawBar(int step) const;
 
-    std::string m_title;
+    std::string m_title, m_unit;
     int m_steps;
     bool m_quiet;
     bool m_terminal;

@@ -13,6 +13,9 @@ namespace
 // Corners whose smooth normal leans farther than 40 degrees from the face are creases and are drawn flat.
 constexpr double kCreaseCosine = 0.766;
 
+// The floor hides points deeper than this below it, in radii of the view. Larger than the rounding of points on it.
+constexpr double kFloorDepth = 1e-4;
+
 RTCRay makeRay(const Vector3& origin, const Vector3& direction, double distance)
 {
     RTCRay ray{};
@@ -28,8 +31,14 @@ RTCRay makeRay(const Vector3& origin, const Vector3& direction, double distance)
 }
 // Embree 4 dropped the context that version 3 asks for.
 #if RTC_VERSION_MAJOR >= 4
-void intersect(RTCScene scene, RTCRayHit& query) { rtcIntersect1(scene, &query); }
-void occlude(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray); }
+void intersect(RTCScene scene, RTCRayHit& query)
+{
+    rtcIntersect1(scene, &query);
+}
+void occlude(RTCScene scene, RTCRay& ray)
+{
+    rtcOccluded1(scene, &ray);
+}
 #else
 void intersect(RTCScene scene, RTCRayHit& query)
 {
@@ -46,26 +55,35 @@ void occlude(RTCScene scene, RTCRay& ray)
 #endif
 }  // namespace
 
-RayScene::RayScene(ShadedMesh cloth, ShadedMesh obstacle) : m_meshes{std::move(cloth), std::move(obstacle)}
+View viewOf(const TriangleMesh& cloth, const TriangleMesh& obstacle)
+{
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    double low[3] = {kFar, kFar, kFar}, high[3] = {-kFar, -kFar, -kFar};
+    for (const TriangleMesh* mesh : {&cloth, &obstacle})
+        for (std::size_t i = 0; i < mesh->m_positions.size(); ++i)
+        {
+            const double value = mesh->m_positions[i];
+            if (!std::isfinite(value)) continue;
+            low[i % 3] = std::min(low[i % 3], value);
+            high[i % 3] = std::max(high[i % 3], value);
+        }
+    const Vector3 first = {low[0], low[1], low[2]}, last = {high[0], high[1], high[2]};
+    View view;
+    view.m_centre = 0.5 * (first + last);
+    view.m_radius = std::max(0.5 * length(last - first), 1e-6);
+    view.m_floor = first.y;
+    return view;
+}
+
+RayScene::RayScene(ShadedMesh cloth, ShadedMesh obstacle, const View& view)
+    : m_meshes{std::move(cloth), std::move(obstacle)}, m_view(view)
 {
     m_device = rtcNewDevice(nullptr);
     if (m_device == nullptr) return;
     m_scene = rtcNewScene(m_device);
-    Bounds all = boundsOf(m_meshes[1].m_mesh);
-    const Bounds clothBounds = boundsOf(m_meshes[0].m_mesh);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        all.m_low[axis] = std::min(all.m_low[axis], clothBounds.m_low[axis]);
-        all.m_high[axis] = std::max(all.m_high[axis], clothBounds.m_high[axis]);
-    }
     for (int index = 0; index < 2; ++index)
         addMesh(m_meshes[index].m_mesh, index);
     rtcCommitScene(m_scene);
-    const Vector3 low = {all.m_low[0], all.m_low[1], all.m_low[2]},
-                  high = {all.m_high[0], all.m_high[1], all.m_high[2]};
-    m_centre = 0.5 * (low + high);
-    m_radius = std::max(0.5 * length(high - low), 1e-6);
-    m_floor = low.y;
     m_good = rtcGetDeviceError(m_device) == RTC_ERROR_NONE;
 }
 
@@ -97,9 +115,10 @@ SurfacePoint RayScene::trace(const Vector3& origin, const Vector3& direction) co
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     intersect(m_scene, query);
     SurfacePoint hit;
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+    const double height = origin.y + static_cast<double>(query.ray.tfar) * direction.y;
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID || height < m_view.m_floor - kFloorDepth * m_view.m_radius)
     {
-        const double toFloor = direction.y < 0 ? (m_floor - origin.y) / direction.y : -1;
+        const double toFloor = direction.y < 0 ? (m_view.m_floor - origin.y) / direction.y : -1;
         if (toFloor <= 0) return hit;
         hit.m_surface = Surface::Floor;
         hit.m_point = origin + toFloor * direction;

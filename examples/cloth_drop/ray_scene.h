@@ -33,10 +33,21 @@ struct SurfacePoint
     bool m_back = false;  // seen from the triangle's back
 };
 
+// Holds the ball that fills a picture, and the height of the floor, which hides everything below. Metres.
+struct View
+{
+    Vector3 m_centre;
+    double m_radius = 1;
+    double m_floor = 0;
+};
+
+// Returns the view of both meshes, on a floor at their lowest vertex. Vertices that are not finite are ignored.
+View viewOf(const TriangleMesh& cloth, const TriangleMesh& obstacle);
+
 class RayScene
 {
 public:
-    RayScene(ShadedMesh cloth, ShadedMesh obstacle);
+    RayScene(ShadedMesh cloth, ShadedMesh obstacle, const View& view);
     ~RayScene();
     RayScene(const RayScene&) = delete;
     RayScene& operator=(const RayScene&) = delete;
@@ -46,8 +57,7 @@ public:
     SurfacePoint trace(const Vector3& origin, const Vector3& direction) const;
     bool blocked(const Vector3& origin, const Vector3& direction, double distance) const;
 
-    const Vector3& centre() const { return m_centre; }
-    double radius() const { return m_radius; }  // of a ball around cloth and obstacle
+    const View& view() const { return m_view; }
 
 private:
     void addMesh(const TriangleMesh& mesh, int index);
@@ -55,8 +65,7 @@ private:
     RTCDevice m_device = nullptr;
     RTCScene m_scene = nullptr;
     ShadedMesh m_meshes[2];  // cloth, obstacle
-    Vector3 m_centre;
-    double m_radius = 1, m_floor = 0;
+    View m_view;
     bool m_good = false;
 };
 }  // namespace drape

@@ -1,7 +1,9 @@
 #include "examples/cloth_drop/report.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <functional>
+#include <optional>
 
 namespace drape
 {
@@ -21,6 +23,12 @@ Json asJson(const CollisionParts& parts)
             {"wait", parts.m_wait},
             {"write", parts.m_write},
             {"rounds", parts.m_rounds}};
+}
+
+// Returns a statistic of the steps in contact, or null when the run had none.
+Json ifInContact(const RunSummary& summary, const Json& value)
+{
+    return summary.m_stepsInContact > 0 ? value : Json();
 }
 
 // Sums over the run: what the broad phase left, what needed the continuous test, contacts solved and left out,
@@ -68,21 +76,23 @@ Json asJson(const RunRecord& record)
     json["cloth_triangles"] = record.m_clothTriangles;
     json["obstacle_triangles"] = record.m_obstacleTriangles;
     json["thickness_m"] = record.m_thickness;
-    json["step_ms"] = asJson(summary.m_step);
-    json["collision_ms"] = asJson(summary.m_collision);
-    json["finding_ms"] = asJson(summary.m_finding);
+    json["step_ms"] = ifInContact(summary, asJson(summary.m_step));
+    json["collision_ms"] = ifInContact(summary, asJson(summary.m_collision));
+    json["finding_ms"] = ifInContact(summary, asJson(summary.m_finding));
     if (!record.m_backend.empty() && record.m_backend.rfind("bullet", 0) != 0)
     {
-        json["collision_parts_ms"] = asJson(summary.m_parts);
+        json["collision_parts_ms"] = ifInContact(summary, asJson(summary.m_parts));
         json["work"] = workJson(record);
     }
     json["contacts_max"] = summary.m_contactsMax;
     json["penetration_max_m"] = summary.m_penetrationMax;
-    json["penetration_p99_m"] = summary.m_penetrationP99;
+    json["penetration_p99_m"] = ifInContact(summary, summary.m_penetrationP99);
     json["gap_min_m"] = summary.m_gapMin;
     json["nodes_below_surface"] = summary.m_nodesBelow;
     json["nodes_through"] = summary.m_nodesThrough;
     json["intersecting_pairs_end"] = summary.m_intersectingPairsEnd;
+    json["intersecting_pairs_max"] = summary.m_intersectingPairsMax;
+    json["intersecting_pairs_max_step"] = summary.m_intersectingPairsMaxStep;
     json["nan_nodes"] = summary.m_invalidNodes;
     json["hash"] = hashText(summary.m_hash);
     if (record.m_capped) json["capped_at_step"] = record.m_steps.size();
@@ -90,9 +100,17 @@ Json asJson(const RunRecord& record)
     return json;
 }
 
-double ratio(const TimeSummary& other, const TimeSummary& own)
+// Returns the ratio of the medians, or nothing when one of the runs was never in contact or took no measurable time.
+std::optional<double> ratio(const RunSummary& other, const RunSummary& own, const TimeSummary RunSummary::*times)
 {
-    return own.m_median > 0 ? other.m_median / own.m_median : 0;
+    const bool bothInContact = other.m_stepsInContact > 0 && own.m_stepsInContact > 0;
+    if (!bothInContact || !((own.*times).m_median > 0)) return {};
+    return (other.*times).m_median / (own.*times).m_median;
+}
+
+Json asJson(const std::optional<double>& value)
+{
+    return value ? Json(*value) : Json();
 }
 
 std::string text(const char* format, double value)
@@ -117,6 +135,14 @@ std::string row(const std::string& label, const std::vector<std::string>& cells)
     return line + "\n";
 }
 
+constexpr const char* kNone = "-";  // stands in the table for a missing value
+
+// Returns a statistic of the steps in contact as text.
+std::string textOfContacts(const RunSummary& summary, double value)
+{
+    return summary.m_stepsInContact > 0 ? text("%.3f", value) : kNone;
+}
+
 void addTimes(std::string& table, const std::string& label, const std::vector<RunSummary>& summaries,
               const TimeSummary RunSummary::*times)
 {
@@ -128,7 +154,7 @@ void addTimes(std::string& table, const std::string& label, const std::vector<Ru
     {
         std::vector<std::string> cells;
         for (const RunSummary& summary : summaries)
-            cells.push_back(text("%.3f", summary.*times.*part.second));
+            cells.push_back(textOfContacts(summary, summary.*times.*part.second));
         table += row(label + ", " + part.first, cells);
     }
 }
@@ -163,8 +189,8 @@ Json asJson(const std::vector<NamedRun>& runs, bool byName)
     {
         const std::string name = runs[i].m_name.substr(runs[i].m_name.find('_') + 1);
         const RunSummary other = summarise(runs[i].m_record);
-        json["ratio_" + name] = ratio(other.m_collision, first.m_collision);
-        json["ratio_" + name + "_finding"] = ratio(other.m_finding, first.m_finding);
+        json["ratio_" + name] = asJson(ratio(other, first, &RunSummary::m_collision));
+        json["ratio_" + name + "_finding"] = asJson(ratio(other, first, &RunSummary::m_finding));
     }
     return json;
 }
@@ -207,23 +233,45 @@ std::string asTable(const std::vector<NamedRun>& runs)
     };
     add("steps (in contact)", [&](std::size_t i)
         { return count(runs[i].m_record.m_steps.size()) + " (" + count(summaries[i].m_stepsInContact) + ")"; });
-    addTimes(table, "step, ms", summaries, &RunSummary::m_step);
-    addTimes(table, "collision, ms", summaries, &RunSummary::m_collision);
-    add("of it finding contacts, median", [&](std::size_t i) { return text("%.3f", summaries[i].m_finding.m_median); });
+    const bool anyContact = std::any_of(summaries.begin(), summaries.end(),
+                                        [](const RunSummary& summary) { return summary.m_stepsInContact > 0; });
+    if (anyContact)
+    {
+        addTimes(table, "step, ms", summaries, &RunSummary::m_step);
+        addTimes(table, "collision, ms", summaries, &RunSummary::m_collision);
+        add("of it finding contacts, median",
+            [&](std::size_t i) { return textOfContacts(summaries[i], summaries[i].m_finding.m_median); });
+    }
     add("contacts, most", [&](std::size_t i) { return count(summaries[i].m_contactsMax); });
     add("penetration, most, mm", [&](std::size_t i) { return text("%.3f", 1000 * summaries[i].m_penetrationMax); });
-    add("penetration, p99, mm", [&](std::size_t i) { return text("%.3f", 1000 * summaries[i].m_penetrationP99); });
+    if (anyContact)
+        add("penetration, p99, mm",
+            [&](std::size_t i) { return textOfContacts(summaries[i], 1000 * summaries[i].m_penetrationP99); });
     add("gap, least, mm", [&](std::size_t i) { return text("%.3f", 1000 * summaries[i].m_gapMin); });
     add("nodes below surface, end", [&](std::size_t i) { return count(summaries[i].m_nodesBelow); });
     add("nodes that went through", [&](std::size_t i) { return count(summaries[i].m_nodesThrough); });
     add("intersecting pairs, end", [&](std::size_t i) { return count(summaries[i].m_intersectingPairsEnd); });
+    add("intersecting pairs, most (step)",
+        [&](std::size_t i)
+        {
+            const RunSummary& summary = summaries[i];
+            return count(summary.m_intersectingPairsMax) +
+                   (summary.m_intersectingPairsMax > 0 ? " (" + count(summary.m_intersectingPairsMaxStep) + ")" : "");
+        });
     add("NaN nodes", [&](std::size_t i) { return count(summaries[i].m_invalidNodes); });
     add("hash", [&](std::size_t i) { return hashText(summaries[i].m_hash); });
     if (runs.size() == 1) return table;
-    add("collision median, ratio",
-        [&](std::size_t i) { return text("%.1f", ratio(summaries[i].m_collision, summaries[0].m_collision)); });
-    add("finding median, ratio",
-        [&](std::size_t i) { return text("%.1f", ratio(summaries[i].m_finding, summaries[0].m_finding)); });
+    const auto addRatio = [&](const char* label, const TimeSummary RunSummary::*times)
+    {
+        add(label,
+            [&, times](std::size_t i)
+            {
+                const std::optional<double> value = ratio(summaries[i], summaries[0], times);
+                return value ? text("%.1f", *value) : kNone;
+            });
+    };
+    addRatio("collision median, ratio", &RunSummary::m_collision);
+    addRatio("finding median, ratio", &RunSummary::m_finding);
     return table;
 }
 }  // namespace drape

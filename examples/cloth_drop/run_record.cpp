@@ -61,6 +61,11 @@ RunSummary summarise(const RunRecord& record)
         summary.m_contactsMax = std::max(summary.m_contactsMax, step.m_times.m_contacts);
         summary.m_penetrationMax = std::max(summary.m_penetrationMax, measure.m_penetrationMax);
         summary.m_gapMin = i == 0 ? measure.m_gapMin : std::min(summary.m_gapMin, measure.m_gapMin);
+        if (measure.m_intersectingPairs > summary.m_intersectingPairsMax)
+        {
+            summary.m_intersectingPairsMax = measure.m_intersectingPairs;
+            summary.m_intersectingPairsMaxStep = i + 1;
+        }
         summary.m_invalidNodes = std::max(summary.m_invalidNodes, measure.m_invalidNodes);
         depths.insert(depths.end(), measure.m_nodeDepths.begin(), measure.m_nodeDepths.end());
         if (step.m_times.m_contacts == 0) continue;

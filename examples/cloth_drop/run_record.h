@@ -26,8 +26,9 @@ struct RunRecord
     std::size_t m_clothTriangles = 0, m_clothNodes = 0, m_obstacleTriangles = 0;
     double m_thickness = 0;
     std::vector<StepRecord> m_steps;
-    bool m_capped = false;  // something ended the run before its last step: those done are there
-    std::string m_trouble;  // one line, or empty
+    std::vector<float> m_lastPositions;  // x y z per cloth node after the last step; a child's only where asked for
+    bool m_capped = false;               // something ended the run before its last step: those done are there
+    std::string m_trouble;               // one line, or empty
 };
 
 // Of the steps that had contacts; the first of them is `m_first`. All 0 when there was none.
@@ -47,10 +48,12 @@ struct RunSummary
     double m_penetrationMax = 0;
     double m_penetrationP99 = 0;  // over every cloth node in every step in contact; nodes that are not below count as 0
     double m_gapMin = 0;
-    std::size_t m_nodesBelow = 0;            // after the last step
-    std::size_t m_nodesThrough = 0;          // that ever went through the obstacle's surface
-    std::size_t m_intersectingPairsEnd = 0;  // after the last step
-    std::size_t m_invalidNodes = 0;          // most in any step
+    std::size_t m_nodesBelow = 0;                // after the last step
+    std::size_t m_nodesThrough = 0;              // that ever went through the obstacle's surface
+    std::size_t m_intersectingPairsEnd = 0;      // after the last step
+    std::size_t m_intersectingPairsMax = 0;      // after any step
+    std::size_t m_intersectingPairsMaxStep = 0;  // the first step that had so many, from 1; 0: no step had any
+    std::size_t m_invalidNodes = 0;              // most in any step
     std::uint64_t m_hash = 0;
 };
 

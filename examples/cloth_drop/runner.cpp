@@ -1,5 +1,7 @@
 #include "examples/cloth_drop/runner.h"
 
+#include <utility>
+
 #include "scenes/crossings.h"
 #include "scenes/mesh_writer.h"
 
@@ -20,10 +22,10 @@ RunRecord startRecord(const Simulation& simulation, const DropScene& scene)
 }  // namespace
 
 bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, const std::string& framesFolder,
-                   const RunHooks& hooks, RunRecord& record, TriangleMesh& lastFrame, std::string& error)
+                   const RunHooks& hooks, RunRecord& record, std::string& error)
 {
     record = startRecord(simulation, scene);
-    lastFrame = scene.m_cloth.m_mesh;
+    TriangleMesh lastFrame = scene.m_cloth.m_mesh;
     PenetrationMeter meter(scene.m_obstacle, scene.m_cloth.m_mesh);
     Crossings crossings(scene.m_obstacle, scene.m_cloth.m_mesh.m_positions);
     std::uint64_t hash = kHashStart;
@@ -56,6 +58,7 @@ bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, co
     record.m_device = simulation.device();
     record.m_deviceReason = simulation.deviceReason();
     record.m_trouble = simulation.trouble();
+    record.m_lastPositions = std::move(lastFrame.m_positions);
     return error.empty();
 }
 }  // namespace drape

@@ -17,8 +17,7 @@ struct RunHooks  // any may be empty
 };
 
 // A run that does not go on is capped at its last step. False, with one line in `error`, when a frame could not be
-// written; that ends the run, whose record has the steps done. `framesFolder` empty: no frames. `lastFrame` is the
-// cloth as it is after the last step.
+// written; that ends the run, whose record has the steps done. `framesFolder` empty: no frames.
 bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, const std::string& framesFolder,
-                   const RunHooks& hooks, RunRecord& record, TriangleMesh& lastFrame, std::string& error);
+                   const RunHooks& hooks, RunRecord& record, std::string& error);
 }  // namespace drape

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 
 #include <nlohmann/json.hpp>
 
@@ -28,11 +29,30 @@ Json asLine(const StepRecord& step)
             {"speed", step.m_speed},
             {"hash", step.m_hash}};
 }
+
+// JSON has null for numbers that are not finite.
+double numberOf(const Json& value)
+{
+    return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+}
 }  // namespace
 
 StepRecord stepFromLine(const std::string& text)
 {
+    std::vector<float> positions;
+    return stepFromLine(text, positions);
+}
+
+StepRecord stepFromLine(const std::string& text, std::vector<float>& positions)
+{
     const Json line = Json::parse(text);
+    const auto given = line.find("positions");
+    if (given != line.end())
+    {
+        positions.clear();
+        for (const Json& coordinate : *given)
+            positions.push_back(static_cast<float>(numberOf(coordinate)));
+    }
     StepRecord step;
     step.m_times.m_stepMs = line.at("times").at(0);
     step.m_times.m_collisionMs = line.at("times").at(1);
@@ -48,7 +68,8 @@ StepRecord stepFromLine(const std::string& text)
     return step;
 }
 
-void streamRun(Simulation& simulation, const DropScene& scene, int steps, const std::function<std::string()>& lastLine)
+void streamRun(Simulation& simulation, const DropScene& scene, int steps, const std::function<std::string()>& lastLine,
+               bool positions)
 {
     RunHooks hooks;
     bool good = true;
@@ -62,12 +83,13 @@ void streamRun(Simulation& simulation, const DropScene& scene, int steps, const 
     hooks.m_afterStep = [&](int, const StepRecord& step)
     {
         send(measuredLine());
-        send(asLine(step).dump());
+        Json line = asLine(step);
+        if (positions) line["positions"] = simulation.positions();
+        send(line.dump());
     };
     RunRecord record;
-    TriangleMesh lastFrame;
     std::string error;
-    const bool ran = runSimulation(simulation, scene, steps, "", hooks, record, lastFrame, error);
+    const bool ran = runSimulation(simulation, scene, steps, "", hooks, record, error);
     if (ran && lastLine) send(lastLine());
     std::_Exit(ran ? kExitGood : kExitFailed);
 }

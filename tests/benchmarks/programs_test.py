@@ -236,5 +236,27 @@ class Study(ProgramTest):
         self.refused("study", ["--part", "degree", "--part", "no_such_part"], "no_such_part", "degree")
 
 
+class CommandLines(ProgramTest):
+    PROGRAMS = ("bench_step", "study", "study_dop6", "error_vs_time")
+
+    def test_the_version_is_told(self):
+        for program in self.PROGRAMS:
+            result = run(program, "--version")
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            self.assertRegex(result.stdout, r"^\w+ \(Drape\) \d+\.\d+\.\d+\n$")
+
+    def test_mistakes_are_told_with_what_is_meant(self):
+        for program in self.PROGRAMS:
+            self.refused(program, ["--qiuck"], "no option --qiuck", "did you mean --quick?")
+            self.refused(program, ["--backend", "hots"], "--backend", "did you mean host?")
+            self.refused(program, ["--csv", "--quick"], "--csv needs a value", "option --quick follows")
+        self.refused("bench_step", ["--scene", "thesos"], "--scene", "did you mean thesis?")
+        self.refused("bench_step", ["--method", "embree_pair_1"], "--method", "did you mean embree_pairs_1?")
+        self.refused("study", ["--part", "refti"], "--part", "did you mean refit?")
+        self.refused("study", ["--only", "dargon"], "--only", "did you mean dragon?")
+        self.refused("error_vs_time", ["--part", "simulatoin"], "--part", "did you mean simulation?")
+        self.refused("error_vs_time", ["--scene", "stiars"], "--scene", "did you mean stairs?")
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -64,6 +64,13 @@ class Scripts(ProgramTest):
         self.assertEqual({row["run"] for row in self.content("cloth_drop")["rows"]}, {"drape"})
         self.assertEqual(self.cloth_drop("--no-such-option", STEPS="2").returncode, 1)
 
+    def test_a_scene_that_is_never_in_contact_has_no_times(self):
+        result = self.cloth_drop("--cloth", "9x9", "--drop-height", "1", "--no-compare", STEPS="1")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        for row in self.content("cloth_drop")["rows"]:
+            self.assertIsNone(row["collision_ms"])
+        self.assertIn("| Drape | host | – | – | 0 |", self.tables())
+
     def test_back_ends_that_differ_are_told(self):
         """A program whose hash is its back end's."""
         with open(self.path("cloth_drop"), "w") as file:

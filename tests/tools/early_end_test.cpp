@@ -78,6 +78,27 @@ TEST_F(EarlyEnd, byAFrameThatCannotBeWrittenKeepsTheStepsDone)
     expectSteps(3);
 }
 
+// The results are written before the picture, which is given up.
+TEST_F(EarlyEnd, byASignalWhileThePictureIsDrawnKeepsTheResults)
+{
+    const pid_t process = start({"--obstacle", "sphere", "--cloth", "9x9", "--backend", "host", "--steps", "12",
+                                 "--csv", path("csv"), "--json", path("json"), "--picture", path("picture.png")});
+    ASSERT_TRUE(waitUntil([this] { return readAll(path("stderr.txt")).find("picture: 10 %") != std::string::npos; }));
+    EXPECT_TRUE(nlohmann::json::accept(readAll(path("json")))) << "written before the picture";
+    ASSERT_EQ(::kill(process, SIGINT), 0);
+    const ToolRun run = end(process);
+    EXPECT_EQ(run.m_exitCode, 1);
+    EXPECT_NE(run.m_err.find("ended by a signal: Interrupt; no picture"), std::string::npos) << run.m_err;
+    EXPECT_EQ(run.m_err.find("picture: 100 %"), std::string::npos) << "drawn to its end all the same";
+    EXPECT_FALSE(std::filesystem::exists(path("picture.png")));
+    const auto summary = nlohmann::json::parse(readAll(path("json")));
+    EXPECT_EQ(summary.at("steps"), 12);
+    EXPECT_FALSE(summary.contains("capped_at_step"));
+    const std::string csv = readAll(path("csv"));
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 13);
+    EXPECT_NE(run.m_out.find("hash"), std::string::npos) << "the table";
+}
+
 TEST_F(Interruption, isNotedOnceAndEndsTheProgramThen)
 {
     const auto listen = []

@@ -5,8 +5,11 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <set>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
+#include <png.h>
 
 #include "bullet_plugin/core/pipeline.h"
 #include "scenes/mesh_loader.h"
@@ -29,8 +32,9 @@ void expectRun(const Json& run, int steps)
 {
     for (const char* key : {"backend", "device", "device_reason", "hash"})
         EXPECT_TRUE(run.at(key).is_string()) << key;
-    for (const char* key : {"steps", "cloth_triangles", "obstacle_triangles", "contacts_max", "nodes_below_surface",
-                            "nodes_through", "intersecting_pairs_end", "nan_nodes"})
+    for (const char* key :
+         {"steps", "cloth_triangles", "obstacle_triangles", "contacts_max", "nodes_below_surface", "nodes_through",
+          "intersecting_pairs_end", "intersecting_pairs_max", "intersecting_pairs_max_step", "nan_nodes"})
         EXPECT_TRUE(run.at(key).is_number_unsigned()) << key;
     for (const char* key : {"thickness_m", "penetration_max_m", "penetration_p99_m", "gap_min_m"})
         EXPECT_TRUE(run.at(key).is_number()) << key;
@@ -136,6 +140,52 @@ TEST_F(Outputs, nodesThatWentThroughAreCounted)
     }
 }
 
+// Fast cloth intersects the obstacle on its way and has left it at the end.
+TEST_F(Outputs, theMostIntersectingPairsOfAnyStepAreCounted)
+{
+    const auto expectMost = [this](const Json& run)
+    {
+        std::istringstream rows(readAll(path("steps.csv")));
+        std::size_t step = 0, most = 0, mostStep = 0;
+        std::string row;
+        std::getline(rows, row);
+        for (; std::getline(rows, row); ++step)
+        {
+            std::istringstream cells(row);
+            std::string cell;
+            for (int column = 0; column < 9; ++column)
+                std::getline(cells, cell, ',');
+            const std::size_t pairs = std::stoul(cell);
+            if (pairs <= most) continue;
+            most = pairs;
+            mostStep = step + 1;
+        }
+        EXPECT_EQ(run.at("intersecting_pairs_max"), most);
+        EXPECT_EQ(run.at("intersecting_pairs_max_step"), mostStep);
+        return most;
+    };
+    const std::vector<std::string> fast = {"--drop-speed", "60", "--csv", path("steps.csv")};
+    for (const char* backend : {"host", "bullet"})
+    {
+        SCOPED_TRACE(backend);
+        std::vector<std::string> arguments = {"--backend", backend, "--mode", "discrete"};
+        arguments.insert(arguments.end(), fast.begin(), fast.end());
+        const Json run = Json::parse(summaryOf(arguments));
+        EXPECT_GT(expectMost(run), run.at("intersecting_pairs_end")) << "not the last step's alone";
+    }
+    const Json held = Json::parse(summaryOf(fast));
+    EXPECT_EQ(expectMost(held), 0u);
+}
+
+TEST_F(Outputs, aRunThatIsNeverInContactHasNoTimesOfContacts)
+{
+    const Json run = Json::parse(summaryOf({"--drop-height", "1", "--steps", "2"}));
+    EXPECT_EQ(run.at("steps_in_contact"), 0);
+    for (const char* key : {"step_ms", "collision_ms", "finding_ms", "collision_parts_ms", "penetration_p99_m"})
+        EXPECT_TRUE(run.at(key).is_null()) << key;
+    EXPECT_GT(run.at("gap_min_m"), 0);
+}
+
 TEST_F(Outputs, framesAreMeshesOneAStep)
 {
     ASSERT_EQ(runSmall({"--frames", path("frames")}).m_exitCode, 0);
@@ -168,9 +218,12 @@ TEST_F(Outputs, aFrameIsReadWhateverItsFirstVertex)
     }
 }
 
+// The run is in a child process, which sends the positions; the comparison below shows Drape's own run.
 TEST_F(Outputs, pictureIsAPng)
 {
-    ASSERT_EQ(runSmall({"--steps", "2", "--picture", path("last.png")}).m_exitCode, 0);
+    const ToolRun run = runSmall({"--steps", "2", "--backend", "bullet", "--obstacle", "stairs", "--time-limit", "600",
+                                  "--picture", path("last.png")});
+    ASSERT_EQ(run.m_exitCode, 0) << run.m_err;
     const std::string png = readAll(path("last.png"));
     ASSERT_GT(png.size(), 1000u);
     EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
@@ -180,6 +233,64 @@ TEST_F(Outputs, pictureIsAPng)
     {
         EXPECT_GE(bigEndian(png, at), 200u);
         EXPECT_LE(bigEndian(png, at), 10000u);
+    }
+}
+
+TEST_F(Outputs, aPictureOfAComparisonShowsEveryRun)
+{
+    const ToolRun run =
+        this->run({"--obstacle", "stairs", "--cloth", "9x9", "--backend", "host", "--steps", "40", "--drop-speed", "20",
+                   "--compare", "--picture", path("all.PNG"), "--json", path("all.json")});
+    ASSERT_EQ(run.m_exitCode, 0) << run.m_err;
+    EXPECT_NE(run.m_err.find("picture: 100 % (row 2160 of 2160)"), std::string::npos) << run.m_err;
+    png_image header{};
+    header.version = PNG_IMAGE_VERSION;
+    ASSERT_NE(png_image_begin_read_from_file(&header, path("all.PNG").c_str()), 0) << header.message;
+    header.format = PNG_FORMAT_RGB;
+    constexpr std::size_t kWidth = 960, kHeight = 720, kGap = 8;
+    ASSERT_EQ(header.width, 3 * kWidth + 2 * kGap);
+    ASSERT_EQ(header.height, kHeight);
+    std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(header));
+    ASSERT_NE(png_image_finish_read(&header, nullptr, pixels.data(), 0, nullptr), 0) << header.message;
+    const auto pixel = [&](std::size_t x, std::size_t y) { return &pixels[3 * (y * header.width + x)]; };
+    std::set<std::string> panels, labels;
+    for (std::size_t panel = 0; panel < 3; ++panel)
+    {
+        const std::size_t left = panel * (kWidth + kGap);
+        if (panel > 0)
+        {
+            EXPECT_EQ(pixel(left - 1, kHeight / 2)[0], 255) << "between two";
+        }
+        std::size_t cloth = 0, ink = 0;
+        std::string all, label;
+        for (std::size_t y = 0; y < kHeight; ++y)
+            for (std::size_t x = left; x < left + kWidth; ++x)
+            {
+                const std::uint8_t* colour = pixel(x, y);
+                cloth += colour[0] > 2 * colour[2];  // the cloth is red in front and yellow at the back
+                const bool dark = y < 100 && colour[0] == 40 && colour[1] == 42 && colour[2] == 46;
+                ink += dark;
+                if (y < 100) label += dark ? '#' : ' ';
+                if (y >= 100) all.append(colour, colour + 3);
+            }
+        EXPECT_GT(ink, 1000u) << "title and remark of panel " << panel;
+        if (panel == 0)
+        {
+            EXPECT_GT(cloth, 10000u);
+        }
+        panels.insert(all);
+        labels.insert(label);
+    }
+    EXPECT_GE(panels.size(), 2u) << "Bullet's cloth lies elsewhere";
+    EXPECT_EQ(labels.size(), 3u);
+}
+
+TEST_F(Outputs, aPictureThatWouldBeNoPngIsRefused)
+{
+    for (const char* name : {"last.jpg", "last.JPEG", "last.gif", "last.png.bak", "last.pngg"})
+    {
+        expectRefused(runSmall({"--picture", path(name)}), {"--picture", "PNG", name});
+        EXPECT_FALSE(std::filesystem::exists(path(name)));
     }
 }
 

@@ -1,14 +1,37 @@
 #include "tests/worlds/options.h"
 
+#include <sstream>
+
 #include <CLI/CLI.hpp>
 
 #include "tests/worlds/modifiers.h"
 #include "tools/common/arguments.h"
+#include "tools/common/suggestion.h"
 
 namespace drape::test
 {
 namespace
 {
+std::string modifierProblem(const std::string& text, std::uint32_t& bits)
+{
+    if (parseModifiers(text, bits)) return "";
+    std::vector<std::string> known = {"none", "random"};
+    for (const ModifierName& modifier : modifierNames())
+        known.push_back(modifier.m_name);
+    std::istringstream words(text);
+    for (std::string word; std::getline(words, word, ',');)
+        if (!parseModifiers(word, bits)) return "--modifiers: " + unknownWord(word, known);
+    return "--modifiers: '" + text + "' is not known; see --list";
+}
+
+std::string kindProblem(const WorldsOptions& options)
+{
+    if (!worldsOf(options.m_kind, 0, 1, options.m_modifiers).empty()) return "";
+    std::vector<std::string> known = {"all", "tiny", "skirts"};
+    known.insert(known.end(), kindNames().begin(), kindNames().end());
+    return "--kind: " + unknownWord(options.m_kind, known);
+}
+
 void addWorlds(CLI::App& app, WorldsOptions& options, std::string& modifiers)
 {
     app.add_option(
@@ -24,8 +47,8 @@ void addWorlds(CLI::App& app, WorldsOptions& options, std::string& modifiers)
 
 void addRunning(CLI::App& app, WorldsOptions& options)
 {
-    app.add_option("--backend", options.m_backend, "stock: Bullet's own collision, for comparison")
-        ->check(CLI::IsMember({"host", "opencl", "stock"}));
+    acceptOnly(app.add_option("--backend", options.m_backend, "stock: Bullet's own collision, for comparison"),
+               {"host", "opencl", "stock"});
     app.add_option("--jobs", options.m_jobs, "processes at a time")->check(CLI::Range(1, 1024));
     app.add_option("--timeout", options.m_timeout, "for one world, s")
         ->check(CLI::Validator(numberAbove(0, false, "more than 0"), ""));
@@ -51,11 +74,9 @@ bool parseOptions(int argc, const char* const* argv, WorldsOptions& options, int
     const auto conflict = [&]() -> std::string
     {
         options.m_modifiers.m_random = modifiers == "random";
-        if (!options.m_modifiers.m_random && !parseModifiers(modifiers, options.m_modifiers.m_bits))
-            return "--modifiers: '" + modifiers + "' is not known; see --list";
-        if (worldsOf(options.m_kind, 0, 1, options.m_modifiers).empty())
-            return "--kind: '" + options.m_kind + "' is not known; see --list";
-        return "";
+        const std::string problem =
+            options.m_modifiers.m_random ? "" : modifierProblem(modifiers, options.m_modifiers.m_bits);
+        return problem.empty() ? kindProblem(options) : problem;
     };
     return parseArguments(app, argc, argv, conflict, exitCode);
 }

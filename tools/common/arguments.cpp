@@ -1,9 +1,13 @@
 #include "tools/common/arguments.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 
 #include <CLI/CLI.hpp>
+
+#include "tools/common/argument_mistakes.h"
+#include "tools/common/suggestion.h"
 
 namespace drape
 {
@@ -53,24 +57,47 @@ std::string outputFile(std::string& text)
     return text.empty() ? "is empty" : "";
 }
 
+void acceptOnly(CLI::Option* option, const std::vector<std::string>& names)
+{
+    std::string all;
+    for (const std::string& name : names)
+        all += (all.empty() ? "{" : ",") + name;
+    const auto isKnown = [names](const std::string& text)
+    { return std::find(names.begin(), names.end(), text) == names.end() ? unknownWord(text, names) : std::string(); };
+    option->check(CLI::Validator(isKnown, all + "}"));
+}
+
 bool parseArguments(CLI::App& app, int argc, const char* const* argv, const std::function<std::string()>& conflict,
                     int& exitCode)
 {
+    app.set_version_flag("--version", app.get_name() + " (Drape) " + DRAPE_VERSION, "print the version and leave");
     std::string problem;
+    const auto printAndLeave = [&](const std::string& text)
+    {
+        std::cout << text;
+        exitCode = flushOutput(problem) ? kExitGood : fail(app.get_name(), kExitFailed, problem);
+        return false;
+    };
+    const auto mistake = [&]
+    { return argumentMistake(app, std::vector<std::string>(argv + std::min(argc, 1), argv + argc)); };
     try
     {
         app.parse(argc, argv);
-        problem = conflict();
+        problem = mistake();
+        if (problem.empty()) problem = conflict();
     }
     catch (const CLI::CallForHelp&)
     {
-        std::cout << app.help();
-        exitCode = flushOutput(problem) ? kExitGood : fail(app.get_name(), kExitFailed, problem);
-        return false;
+        return printAndLeave(app.help());
+    }
+    catch (const CLI::CallForVersion& version)
+    {
+        return printAndLeave(version.what() + std::string("\n"));
     }
     catch (const CLI::ParseError& error)
     {
-        problem = error.what();
+        problem = mistake();
+        if (problem.empty()) problem = error.what();
     }
     if (problem.empty()) return true;
     exitCode = fail(app.get_name(), kExitBadInput, problem);

@@ -4,13 +4,15 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "tools/common/program.h"
 
 namespace CLI
 {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace drape
 {
@@ -25,8 +27,12 @@ std::function<std::string(std::string&)> numberUpTo(double most, double least, b
 // what else is written there must not be written over.
 std::string outputFile(std::string& text);
 
-// Parses; `conflict` then tells what is wrong with the whole ("" for nothing). True: go on. False: leave with
-// `exitCode`; what there was to say has been printed (help, or one line on standard error).
+// Makes the option refuse every value that is none of the names, and say which one may be meant.
+void acceptOnly(CLI::Option* option, const std::vector<std::string>& names);
+
+// Adds --version and parses; mistakes are named as argument_mistakes.h has it. `conflict` then tells what is wrong with
+// the whole ("" for nothing). True: go on. False: leave with `exitCode`; what there was to say has been printed (help,
+// the version, or one line on standard error).
 bool parseArguments(CLI::App& app, int argc, const char* const* argv, const std::function<std::string()>& conflict,
                     int& exitCode);
 

@@ -49,10 +49,10 @@ void addTriangles(CLI::App& app, Options& options, std::string& mode)
 {
     CLI::App& command = *app.add_subcommand("triangles", "do triangles intersect? Records with answers");
     addFile(command, "FILE", options.m_first, "records of 76 bytes: 18 floats, answer");
-    command
-        .add_option("--mode", mode,
-                    "fast: never misses, reports a few that nearly touch; exact; moller: the thesis's, for comparison")
-        ->check(CLI::IsMember({"fast", "exact", "moller"}));
+    acceptOnly(command.add_option(
+                   "--mode", mode,
+                   "fast: never misses, reports a few that nearly touch; exact; moller: the thesis's, for comparison"),
+               {"fast", "exact", "moller"});
     command.callback([&options] { options.m_command = Command::Triangles; });
 }
 
@@ -83,8 +83,8 @@ bool parseOptions(int argc, const char* const* argv, Options& options, int& exit
     options.m_tolerance = defaultCcdSettings().m_tolerance;
     app.option_defaults()->always_capture_default();
     app.fallthrough();
-    app.add_option("--backend", options.m_backend, "auto: a GPU, else any OpenCL device, else the host")
-        ->check(CLI::IsMember({"auto", "opencl", "host"}));
+    acceptOnly(app.add_option("--backend", options.m_backend, "auto: a GPU, else any OpenCL device, else the host"),
+               {"auto", "opencl", "host"});
     app.add_option("--device", options.m_device, "part of an OpenCL device's or platform's name")->type_name("TEXT");
     app.add_option("--json", options.m_json, "write the answer; - is standard output")
         ->type_name("FILE")

@@ -1,0 +1,75 @@
+// The summary of a run has the most intersecting pairs with their step, and no statistics of steps in contact when
+// there were none.
+#include <gtest/gtest.h>
+
+#include "examples/cloth_drop/report.h"
+#include "examples/cloth_drop/step_stream.h"
+
+namespace drape::test
+{
+namespace
+{
+NamedRun runOf(const std::string& name, const std::vector<std::size_t>& pairs, std::size_t contacts)
+{
+    NamedRun run;
+    run.m_name = name;
+    run.m_record.m_backend = "host";
+    for (const std::size_t count : pairs)
+    {
+        StepRecord step;
+        step.m_times.m_stepMs = 2;
+        step.m_times.m_collisionMs = 1;
+        step.m_times.m_contacts = contacts;
+        step.m_measure.m_intersectingPairs = count;
+        run.m_record.m_steps.push_back(step);
+    }
+    return run;
+}
+}  // namespace
+
+TEST(RunSummary, HasTheMostIntersectingPairsAndTheFirstStepThatHadThem)
+{
+    const auto most = [](const std::vector<std::size_t>& pairs)
+    {
+        const auto json = asJson({runOf("drape", pairs, 7)}, false);
+        const std::pair<std::size_t, std::size_t> found = {json.at("intersecting_pairs_max"),
+                                                           json.at("intersecting_pairs_max_step")};
+        EXPECT_EQ(json.at("intersecting_pairs_end"), pairs.empty() ? 0 : pairs.back());
+        return found;
+    };
+    using Most = std::pair<std::size_t, std::size_t>;
+    EXPECT_EQ(most({0, 3, 5, 5, 1, 0}), Most(5, 3));
+    EXPECT_EQ(most({4}), Most(4, 1));
+    EXPECT_EQ(most({0, 0, 9}), Most(9, 3));
+    EXPECT_EQ(most({0, 0}), Most(0, 0));
+    EXPECT_EQ(most({}), Most(0, 0));
+    EXPECT_NE(asTable({runOf("drape", {0, 3, 5, 1}, 7)}).find("5 (3)"), std::string::npos);
+}
+
+TEST(RunSummary, SaysNothingOfStepsInContactWhereThereWereNone)
+{
+    const auto json = asJson({runOf("drape", {0, 0}, 0)}, false);
+    EXPECT_EQ(json.at("steps_in_contact"), 0);
+    for (const char* key : {"step_ms", "collision_ms", "finding_ms", "collision_parts_ms", "penetration_p99_m"})
+        EXPECT_TRUE(json.at(key).is_null()) << key;
+    const std::string table = asTable({runOf("drape", {0, 0}, 0)});
+    for (const char* label : {"step, ms", "collision, ms", "finding", "p99"})
+        EXPECT_EQ(table.find(label), std::string::npos) << table;
+    EXPECT_NE(table.find("2 (0)"), std::string::npos) << table;
+}
+
+TEST(RunSummary, HasNoRatioToARunThatWasNeverInContact)
+{
+    const std::vector<NamedRun> runs = {runOf("drape", {0}, 7), runOf("bullet_stock", {0}, 0),
+                                        runOf("bullet_tuned", {0}, 7)};
+    const auto json = asJson(runs, true);
+    for (const char* key : {"ratio_stock", "ratio_stock_finding"})
+        EXPECT_TRUE(json.at(key).is_null()) << key;
+    EXPECT_EQ(json.at("ratio_tuned"), 1);
+    EXPECT_TRUE(json.at("bullet_stock").at("step_ms").is_null());
+    EXPECT_EQ(json.at("drape").at("step_ms").at("median"), 2);
+    const std::string table = asTable(runs);
+    const std::size_t row = table.find("step, ms, median");
+    EXPECT_NE(table.substr(row, table.find('\n', row) - row).find(" - "), std::string::npos) << table;
+}
+}  // namespace drape::test
