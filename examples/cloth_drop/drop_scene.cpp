@@ -7,8 +7,11 @@ namespace drape
 {
 bool makeDropScene(const Options& options, DropScene& scene, std::string& error)
 {
-    if (!makeShape(options.m_obstacle, scene.m_obstacle) && !loadMesh(options.m_obstacle, scene.m_obstacle, error))
+    LoadReport report;
+    if (!makeShape(options.m_obstacle, scene.m_obstacle) &&
+        !loadMesh(options.m_obstacle, Joining::ByPosition, scene.m_obstacle, report, error))
         return false;
+    scene.m_notes = report.m_notes;
     if (!(boundsOf(scene.m_obstacle).largestExtent() > 0))
     {
         error = options.m_obstacle + ": all vertices: the mesh has no extent";

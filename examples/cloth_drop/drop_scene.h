@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "examples/cloth_drop/options.h"
 #include "scenes/cloth_grid.h"
@@ -19,6 +20,7 @@ struct DropScene
     double m_dt = 0;         // s
     double m_thickness = 0;  // m; each side's margin is half of it
     double m_mass = 1.0;     // kg, of the cloth
+    std::vector<std::string> m_notes;  // what was left out or lost of the obstacle's file, one line each
 };
 
 // False, with one line in `error`, when the obstacle cannot be had.

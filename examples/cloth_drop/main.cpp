@@ -1,5 +1,6 @@
 // cloth_drop: drops a cloth on an obstacle in Bullet, with Drape or Bullet's built-in collision, and reports.
 #include <chrono>
+#include <iostream>
 
 #include "examples/cloth_drop/built_in_child.h"
 #include "examples/cloth_drop/interruption.h"
@@ -104,6 +105,8 @@ int run(const Options& options)
     DropScene scene;
     if (!makeDropScene(options, scene, error)) return fail(kExitBadInput, error);
     if (options.m_streamSteps) streamBuiltIn(options, scene);
+    for (const std::string& note : scene.m_notes)
+        std::cerr << "cloth_drop: " << note << "\n";
     if (!prepareOutputs(options, error)) return fail(kExitBadInput, error);
     std::vector<NamedRun> runs(1);
     runs[0].m_name = options.usesDrape() ? "drape" : "bullet";
