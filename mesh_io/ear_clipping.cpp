@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace drape
 {
@@ -68,7 +69,7 @@ void EarClipping::start(const std::vector<Point2>& outline)
     m_queue.clear();
     m_visits = 0;
     m_head = 0;
-    buildBoxes();
+    buildTree();
     for (Corner i = 0; i < count; ++i)
         if (!turnsLeft(i)) setBlocker(i, true);
     // Corner 1 first: its ear is what a fan from corner 0 begins with.
@@ -76,7 +77,7 @@ void EarClipping::start(const std::vector<Point2>& outline)
         push(m_next[i]);
 }
 
-void EarClipping::buildBoxes()
+void EarClipping::buildTree()
 {
     const std::size_t count = m_points.size();
     m_leaves = 1;
@@ -84,21 +85,34 @@ void EarClipping::buildBoxes()
         m_leaves *= 2;
     constexpr double far = std::numeric_limits<double>::infinity();
     m_boxes.assign(2 * m_leaves, Box{{far, far}, {-far, -far}, 0});
-    for (std::size_t i = 0; i < count; ++i)
-    {
-        Box& box = m_boxes[m_leaves + i / kLeafSize];
+    m_order.resize(count);
+    std::iota(m_order.begin(), m_order.end(), Corner(0));
+    sortSubtree(1, 0, m_leaves * kLeafSize);
+    m_leafOf.resize(count);
+    for (std::size_t slot = 0; slot < count; ++slot)
+        m_leafOf[m_order[slot]] = m_leaves + slot / kLeafSize;
+}
+
+// Splits slots `first` to `last` of the order in halves at the longer side of their bounds. Slots at or beyond the
+// number of corners are empty.
+void EarClipping::sortSubtree(std::size_t node, std::size_t first, std::size_t last)
+{
+    const std::size_t end = std::min(last, m_order.size()), middle = (first + last) / 2;
+    if (first >= end) return;
+    Box& box = m_boxes[node];
+    for (std::size_t slot = first; slot < end; ++slot)
         for (int axis = 0; axis < 2; ++axis)
         {
-            box.m_low[axis] = std::min(box.m_low[axis], m_points[i][axis]);
-            box.m_high[axis] = std::max(box.m_high[axis], m_points[i][axis]);
+            box.m_low[axis] = std::min(box.m_low[axis], m_points[m_order[slot]][axis]);
+            box.m_high[axis] = std::max(box.m_high[axis], m_points[m_order[slot]][axis]);
         }
-    }
-    for (std::size_t i = m_leaves; i-- > 1;)
-        for (int axis = 0; axis < 2; ++axis)
-        {
-            m_boxes[i].m_low[axis] = std::min(m_boxes[2 * i].m_low[axis], m_boxes[2 * i + 1].m_low[axis]);
-            m_boxes[i].m_high[axis] = std::max(m_boxes[2 * i].m_high[axis], m_boxes[2 * i + 1].m_high[axis]);
-        }
+    if (node >= m_leaves) return;
+    const int axis = box.m_high[0] - box.m_low[0] < box.m_high[1] - box.m_low[1];
+    if (middle < end)
+        std::nth_element(&m_order[first], &m_order[middle], m_order.data() + end,
+                         [this, axis](Corner a, Corner b) { return m_points[a][axis] < m_points[b][axis]; });
+    sortSubtree(2 * node, first, middle);
+    sortSubtree(2 * node + 1, middle, last);
 }
 
 // Ears that waited for a corner that blocks no longer are candidates again.
@@ -106,7 +120,7 @@ void EarClipping::setBlocker(Corner corner, bool blocks)
 {
     if (m_isBlocker[corner] == static_cast<char>(blocks)) return;
     m_isBlocker[corner] = blocks;
-    for (std::size_t box = m_leaves + corner / kLeafSize; box > 0; box /= 2)
+    for (std::size_t box = m_leafOf[corner]; box > 0; box /= 2)
         m_boxes[box].m_blockers += blocks ? 1u : ~0u;
     if (blocks) return;
     std::vector<Corner> waiting;
@@ -186,8 +200,11 @@ EarClipping::Corner EarClipping::findBlocker(Corner corner)
             continue;
         }
         const std::size_t first = (box - m_leaves) * kLeafSize, last = std::min(first + kLeafSize, m_points.size());
-        for (Corner other = static_cast<Corner>(first); other < last; ++other)
+        for (std::size_t slot = first; slot < last; ++slot)
+        {
+            const Corner other = m_order[slot];
             if (m_isBlocker[other] && other != before && other != after && blocks(other, ear)) return other;
+        }
     }
     return kNone;
 }

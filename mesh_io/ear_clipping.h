@@ -1,8 +1,8 @@
 // Ear clipping of one simple polygon in the plane.
 //
 // A corner is an ear where its triangle turns to the left and holds no other corner that does not. An ear that is
-// blocked waits for its blocker alone, and blockers are found in a tree of boxes over runs of the outline, so that
-// outlines with many thousands of corners are quick.
+// blocked waits for its blocker alone, and blockers are found in a k-d tree of the corners, so that outlines with many
+// thousands of corners are quick.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ public:
 private:
     using Corner = std::uint32_t;
 
-    // Boxes are those of all corners in a run. Counts are of the corners that can block an ear.
+    // The bounds of all corners in a subtree, and the number of those that can block an ear.
     struct Box
     {
         double m_low[2], m_high[2];
@@ -39,7 +39,8 @@ private:
     };
 
     void start(const std::vector<Point2>& outline);
-    void buildBoxes();
+    void buildTree();
+    void sortSubtree(std::size_t node, std::size_t first, std::size_t last);
     void setBlocker(Corner corner, bool blocks);
     void update(Corner corner);
     void push(Corner corner);
@@ -59,7 +60,9 @@ private:
     std::vector<char> m_isRemoved, m_isQueued, m_isBlocker;
     std::vector<std::vector<Corner>> m_waiting;  // for each corner, the ears that it blocks
     std::deque<Corner> m_queue;
-    std::vector<Box> m_boxes;  // a complete binary tree: the children of i are 2 i and 2 i + 1
+    std::vector<Corner> m_order;          // corners in the order of the tree's leaves
+    std::vector<std::size_t> m_leafOf;    // for each corner
+    std::vector<Box> m_boxes;             // a complete binary tree: the children of i are 2 i and 2 i + 1
     std::size_t m_leaves = 0;
     std::uint64_t m_visits = 0;
     Corner m_head = 0;  // a corner that is left

@@ -33,7 +33,7 @@ public:
         const EarClipping::Outcome outcome = m_clipping.split(m_outline, m_numbers);
         if (outcome == EarClipping::Outcome::TooLong)
             return "face " + std::to_string(face + 1) + ": the outline of " + std::to_string(count) +
-                   " corners crosses itself so often that it cannot be triangulated in bounded time";
+                   " corners takes too long to triangulate";
         m_notSimple += outcome == EarClipping::Outcome::NotSimple;
         for (const std::int32_t number : m_numbers)
             m_triangles.push_back(m_corners[number]);
