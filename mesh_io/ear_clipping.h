@@ -21,7 +21,7 @@ public:
     enum class Outcome
     {
         Simple,
-        NotSimple,  // the outline meets itself: some triangles overlap
+        NotSimple,  // no ear was left, since the outline meets itself: triangles may overlap
         TooLong     // given up after kMostVisits boxes per corner; not all triangles are there
     };
 

@@ -61,22 +61,31 @@ private:
     bool m_bigEndian;
 };
 
-// Text has one element a line, and what follows on the line is passed over. A few writers break lines elsewhere: where
-// there are fewer lines than elements, line ends are blanks, and the numbers must be as many as the header says.
+// Text has one element a line, and what follows on the line is passed over. A few writers break lines elsewhere. Where
+// there are fewer lines than elements, or the first line is too short, line ends are blanks, and the numbers must be as
+// many as the header says.
 class TextNumbers : public PlyNumbers
 {
 public:
     TextNumbers(const std::string& bytes, const PlyHeader& header)
         : m_bytes(bytes), m_cursor(bytes, header.m_bodyStart), m_headerLines(header.m_lines)
     {
-        std::uint64_t elements = 0;
+        std::uint64_t elements = 0, lines = 0;
+        std::size_t needed = 0, words = 0;  // numbers that the first element has at least; words of the first line
         for (const PlyElement& element : header.m_elements)
-            if (!element.m_properties.empty()) elements += element.m_count;
-        std::uint64_t lines = 0;
+        {
+            if (element.m_properties.empty() || element.m_count == 0) continue;
+            if (elements == 0) needed = element.m_properties.size();
+            elements += element.m_count;
+        }
         TextCursor cursor = m_cursor;
         for (cursor.skipSpace(); !cursor.atEnd() && lines < elements; cursor.skipSpace(), ++lines)
+        {
+            while (lines == 0 && !cursor.word().empty())
+                ++words;
             cursor.nextLine();
-        m_byLines = lines >= elements;
+        }
+        m_byLines = lines >= elements && words >= needed;
         m_isStrict = header.m_unknownLines > 0;
     }
 

@@ -96,7 +96,7 @@ std::string chooseCentre(const std::vector<const MeshFile*>& files, LoadReport& 
             report.m_rounding = centred;
         }
     }
-    if (!std::isfinite(report.m_rounding)) return "a coordinate does not fit a float";
+    if (!std::isfinite(report.m_rounding)) return "a coordinate does not fit a float (float32)";
     if (!report.isCentred()) return "";
     char text[160];
     std::snprintf(text, sizeof text, "centred: %.17g %.17g %.17g subtracted before rounding to float, which changes %.2g",
@@ -182,7 +182,7 @@ bool loadMotion(const std::string& startPath, const std::string& endPath, Joinin
     if (!readMeshFile(startPath, first, error) || !readMeshFile(endPath, last, error)) return false;
     std::string problem;
     if (first.vertexCount() != last.vertexCount())
-        problem = endPath + ": has " + counted(last.vertexCount(), "vertex position") + ", " + startPath + " has " +
+        problem = endPath + ": has " + std::to_string(last.vertexCount()) + " vertices, " + startPath + " has " +
                   std::to_string(first.vertexCount());
     else if (first.m_faceEnds != last.m_faceEnds || first.m_corners != last.m_corners)
         problem = endPath + ": does not have the faces of " + startPath + " in the same order";
