@@ -81,8 +81,8 @@ Centre middleOf(const std::vector<const MeshFile*>& files)
     return middle;
 }
 
-// Chooses the centre and says what rounding will change. Returns "" or why positions do not fit floats.
-std::string chooseCentre(const std::vector<const MeshFile*>& files, LoadReport& report)
+// Chooses the centre and says what rounding will change.
+void chooseCentre(const std::string& name, const std::vector<const MeshFile*>& files, LoadReport& report)
 {
     report.m_centre = {};
     report.m_rounding = roundingOf(files, report.m_centre);
@@ -96,21 +96,32 @@ std::string chooseCentre(const std::vector<const MeshFile*>& files, LoadReport& 
             report.m_rounding = centred;
         }
     }
-    if (!std::isfinite(report.m_rounding)) return "a coordinate does not fit a float (float32)";
-    if (!report.isCentred()) return "";
-    char text[160];
-    std::snprintf(text, sizeof text, "centred: %.17g %.17g %.17g subtracted before rounding to float, which changes %.2g",
+    if (!report.isCentred()) return;
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  ": centred: (%.17g, %.17g, %.17g) is subtracted before coordinates are rounded to float32, which "
+                  "changes them by at most %.2g",
                   report.m_centre[0], report.m_centre[1], report.m_centre[2], report.m_rounding);
-    report.m_notes.push_back(text);
-    return "";
+    report.m_notes.push_back(name + text);
 }
 
-std::vector<float> roundPositions(const MeshFile& file, const Centre& centre)
+// Returns "" and the positions less the centre as floats, or which vertex of a face does not fit.
+std::string roundPositions(const std::string& path, const MeshFile& file, const Centre& centre,
+                           std::vector<float>& positions)
 {
-    std::vector<float> positions(file.m_positions.size());
+    positions.resize(file.m_positions.size());
     for (std::size_t i = 0; i < positions.size(); ++i)
         positions[i] = rounded(file.m_positions[i] - centre[i % 3]);
-    return positions;
+    std::string problem;
+    forUsedVertices(file,
+                    [&](std::size_t vertex)
+                    {
+                        const float* p = &positions[3 * vertex];
+                        if (problem.empty() && !(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])))
+                            problem = path + ": vertex " + std::to_string(vertex + 1) +
+                                      ": a coordinate does not fit a float";
+                    });
+    return problem;
 }
 
 void addNotes(const std::string& path, const std::vector<std::string>& notes, LoadReport& report)
@@ -126,9 +137,10 @@ std::string makeMesh(const std::string& path, const MeshFile& file, Joining join
 {
     TriangleMesh made;
     std::vector<std::string> notes = file.m_notes;
-    const std::string problem = triangulate(file, made.m_triangles, notes);
+    std::string problem = triangulate(file, made.m_triangles, notes);
     if (!problem.empty()) return path + ": " + problem;
-    made.m_positions = roundPositions(file, report.m_centre);
+    problem = roundPositions(path, file, report.m_centre, made.m_positions);
+    if (!problem.empty()) return problem;
     const bool byPosition = joining == Joining::ByPosition || !file.m_hasIndices;
     std::vector<float> start;
     if (end == nullptr) start = made.m_positions;
@@ -154,8 +166,8 @@ bool loadMesh(const std::string& path, Joining joining, TriangleMesh& mesh, Load
     MeshFile file;
     report = LoadReport();
     if (!readMeshFile(path, file, error)) return false;
-    std::string problem = chooseCentre({&file}, report);
-    problem = problem.empty() ? makeMesh(path, file, joining, mesh, nullptr, report) : path + ": " + problem;
+    chooseCentre(path, {&file}, report);
+    const std::string problem = makeMesh(path, file, joining, mesh, nullptr, report);
     if (!problem.empty()) error = problem;
     return problem.empty();
 }
@@ -166,9 +178,8 @@ bool loadMeshes(const std::string& firstPath, const std::string& secondPath, Joi
     MeshFile firstFile, secondFile;
     report = LoadReport();
     if (!readMeshFile(firstPath, firstFile, error) || !readMeshFile(secondPath, secondFile, error)) return false;
-    std::string problem = chooseCentre({&firstFile, &secondFile}, report);
-    if (!problem.empty()) problem = firstPath + ", " + secondPath + ": " + problem;
-    if (problem.empty()) problem = makeMesh(firstPath, firstFile, joining, first, nullptr, report);
+    chooseCentre(firstPath + ", " + secondPath, {&firstFile, &secondFile}, report);
+    std::string problem = makeMesh(firstPath, firstFile, joining, first, nullptr, report);
     if (problem.empty()) problem = makeMesh(secondPath, secondFile, joining, second, nullptr, report);
     if (!problem.empty()) error = problem;
     return problem.empty();
@@ -186,17 +197,10 @@ bool loadMotion(const std::string& startPath, const std::string& endPath, Joinin
                   std::to_string(first.vertexCount());
     else if (first.m_faceEnds != last.m_faceEnds || first.m_corners != last.m_corners)
         problem = endPath + ": does not have the faces of " + startPath + " in the same order";
-    if (problem.empty())
-    {
-        problem = chooseCentre({&first, &last}, report);
-        if (!problem.empty()) problem = startPath + ", " + endPath + ": " + problem;
-    }
+    if (problem.empty()) chooseCentre(startPath + ", " + endPath, {&first, &last}, report);
     std::vector<float> moved;
-    if (problem.empty())
-    {
-        moved = roundPositions(last, report.m_centre);
-        problem = makeMesh(startPath, first, joining, mesh, &moved, report);
-    }
+    if (problem.empty()) problem = roundPositions(endPath, last, report.m_centre, moved);
+    if (problem.empty()) problem = makeMesh(startPath, first, joining, mesh, &moved, report);
     addNotes(endPath, last.m_notes, report);
     if (problem.empty())
         end = std::move(moved);
