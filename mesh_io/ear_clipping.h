@@ -60,9 +60,9 @@ private:
     std::vector<char> m_isRemoved, m_isQueued, m_isBlocker;
     std::vector<std::vector<Corner>> m_waiting;  // for each corner, the ears that it blocks
     std::deque<Corner> m_queue;
-    std::vector<Corner> m_order;          // corners in the order of the tree's leaves
-    std::vector<std::size_t> m_leafOf;    // for each corner
-    std::vector<Box> m_boxes;             // a complete binary tree: the children of i are 2 i and 2 i + 1
+    std::vector<Corner> m_order;        // corners in the order of the tree's leaves
+    std::vector<std::size_t> m_leafOf;  // for each corner
+    std::vector<Box> m_boxes;           // a complete binary tree: the children of i are 2 i and 2 i + 1
     std::size_t m_leaves = 0;
     std::uint64_t m_visits = 0;
     Corner m_head = 0;  // a corner that is left

@@ -14,8 +14,8 @@ bool findType(const Json& object, NumberType& type)
 {
     std::size_t code = 0;
     if (!readCount(object, "componentType", 0, code)) return false;
-    constexpr NumberType types[] = {NumberType::Int8,   NumberType::Uint8, NumberType::Int16,  NumberType::Uint16,
-                                    NumberType::Int32,  NumberType::Uint32, NumberType::Float32};
+    constexpr NumberType types[] = {NumberType::Int8,  NumberType::Uint8,  NumberType::Int16,  NumberType::Uint16,
+                                    NumberType::Int32, NumberType::Uint32, NumberType::Float32};
     constexpr std::size_t first = 5120;
     if (code < first || code >= first + std::size(types) || types[code - first] == NumberType::Int32) return false;
     type = types[code - first];
@@ -53,7 +53,8 @@ std::string decodePercents(const std::string& uri)
     std::string text;
     for (std::size_t i = 0; i < uri.size(); ++i)
     {
-        const bool escape = uri[i] == '%' && i + 2 < uri.size() && hexDigit(uri[i + 1]) >= 0 && hexDigit(uri[i + 2]) >= 0;
+        const bool escape =
+            uri[i] == '%' && i + 2 < uri.size() && hexDigit(uri[i + 1]) >= 0 && hexDigit(uri[i + 2]) >= 0;
         text.push_back(escape ? static_cast<char>(16 * hexDigit(uri[i + 1]) + hexDigit(uri[i + 2])) : uri[i]);
         if (escape) i += 2;
     }
@@ -72,12 +73,12 @@ std::string GltfBuffers::read(const Json& reference, const char* type, std::size
     const Json& accessor = follow(at(m_content, "accessors"), reference);
     const std::string problem =
         accessor.is_object() ? readAccessor(accessor, type, columns, numbers) : "does not exist";
-    return problem.empty() ? "" : "accessor " + reference.dump(-1, ' ', true, Json::error_handler_t::replace).substr(0, 64) +
-                                      ": " + problem;
+    return problem.empty() ? ""
+                           : "accessor " + reference.dump(-1, ' ', true, Json::error_handler_t::replace).substr(0, 64) +
+                                 ": " + problem;
 }
 
-std::string GltfBuffers::readAccessor(const Json& accessor, const char* type, std::size_t columns,
-                                      GltfNumbers& numbers)
+std::string GltfBuffers::readAccessor(const Json& accessor, const char* type, std::size_t columns, GltfNumbers& numbers)
 {
     Layout layout;
     if (at(accessor, "type") != type) return std::string("is not ") + type;

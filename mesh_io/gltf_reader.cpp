@@ -14,7 +14,7 @@ namespace
 // Of brackets and of nodes. The specification has no limit; readers that recurse would run out of stack.
 constexpr std::size_t kMostDepth = 512;
 // Nodes may repeat a mesh: a file may become this many vertices or corners for each of its bytes, and as many besides.
-constexpr std::size_t kMostPerByte = 256, kMostBesides = std::size_t(1) << 22;
+constexpr std::size_t kMostPerByte = 256, kMostBesides = std::size_t(1) << 20;
 
 enum Mode
 {
@@ -100,10 +100,7 @@ class GltfReader
 public:
     GltfReader(const Json& content, const std::string* binary, const FindBuffer& findBuffer, std::size_t fileBytes,
                MeshFile& mesh)
-        : m_content(content),
-          m_fileBytes(fileBytes),
-          m_buffers(content, binary, findBuffer, kMostBesides),
-          m_mesh(mesh)
+        : m_content(content), m_fileBytes(fileBytes), m_buffers(content, binary, findBuffer, kMostBesides), m_mesh(mesh)
     {
         m_mesh.m_hasIndices = false;
     }
@@ -242,7 +239,7 @@ private:
         const bool moves = m != kIdentity;  // without a transform every number stays as it is
         for (std::size_t i = 0; i < positions.rows(); ++i)
         {
-            const double *p = &positions.m_values[3 * i];
+            const double* p = &positions.m_values[3 * i];
             if (moves)
                 m_mesh.addVertex(m[0] * p[0] + m[4] * p[1] + m[8] * p[2] + m[12],
                                  m[1] * p[0] + m[5] * p[1] + m[9] * p[2] + m[13],
@@ -263,7 +260,8 @@ private:
         const std::size_t step = mode == kTriangles ? 3 : 1;
         if (m_mesh.m_corners.size() + 3 * (order.size() / step) > 3 * most())
             return "its nodes repeat meshes to more than " + std::to_string(most()) + " triangles";
-        const auto vertex = [&](std::size_t i) { return static_cast<std::int32_t>(vertices.m_first + std::size_t(order[i])); };
+        const auto vertex = [&](std::size_t i)
+        { return static_cast<std::int32_t>(vertices.m_first + std::size_t(order[i])); };
         for (std::size_t i = 0; i + 2 < order.size(); i += step)
         {
             const bool odd = mode == kTriangleStrip && i % 2 == 1;
@@ -299,10 +297,17 @@ std::string tooLong(const std::string& what, std::size_t length, std::size_t the
     return what + ": says " + std::to_string(length) + " bytes where there are " + std::to_string(there);
 }
 
-constexpr std::size_t kHeaderBytes = 12;        // magic, version, length of the file
-constexpr std::size_t kFirstHeaderBytes = 20;   // glTF 1.0: length and format of the content besides
-constexpr std::size_t kChunkHeaderBytes = 8;    // length and type
+constexpr std::size_t kHeaderBytes = 12;            // magic, version, length of the file
+constexpr std::size_t kFirstHeaderBytes = 20;       // glTF 1.0: length and format of the content besides
+constexpr std::size_t kChunkHeaderBytes = 8;        // length and type
 constexpr std::uint32_t kBinaryChunk = 0x004e4942;  // "BIN" and a zero byte
+
+// Text is padded with spaces; some writers use zero bytes.
+std::string withoutPadding(std::string text)
+{
+    text.resize(text.find_last_not_of('\0') + 1);
+    return text;
+}
 
 // The first chunk is the JSON text, the next one may be the first buffer, more are for extensions.
 std::string findChunks(const std::string& bytes, std::size_t length, std::string& text, std::string& binary,
@@ -316,7 +321,7 @@ std::string findChunks(const std::string& bytes, std::size_t length, std::string
         const std::uint32_t type = littleUint32(bytes, place + 4);
         if (size > there) return tooLong("chunk " + std::to_string(chunk), size, there);
         place += kChunkHeaderBytes;
-        if (chunk == 1) text = bytes.substr(place, size);
+        if (chunk == 1) text = withoutPadding(bytes.substr(place, size));
         if (chunk > 1 && type == kBinaryChunk && !hasBinary)
         {
             binary = bytes.substr(place, size);

@@ -25,13 +25,13 @@ inline const Json& follow(const Json& items, const Json& reference)
 {
     static const Json none;
     if (reference.is_string()) return at(items, reference.get_ref<const std::string&>().c_str());
-    const bool there = items.is_array() && reference.is_number_unsigned() &&
-                       reference.get<std::uint64_t>() < items.size();
+    const bool there =
+        items.is_array() && reference.is_number_unsigned() && reference.get<std::uint64_t>() < items.size();
     return there ? items[reference.get<std::size_t>()] : none;
 }
 
-// Reads a whole number from 0 to 2^53. `absent` where the key is missing. Returns false for anything else. JSON does not
-// tell 3 from 3.0.
+// Reads a whole number from 0 to 2^53. `absent` where the key is missing. Returns false for anything else. JSON does
+// not tell 3 from 3.0.
 inline bool readCount(const Json& object, const char* key, std::size_t absent, std::size_t& count)
 {
     const Json& value = at(object, key);

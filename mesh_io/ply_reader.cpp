@@ -49,10 +49,7 @@ public:
     {
         return smallestSize == 0 || count <= (m_bytes.size() - m_place) / smallestSize;
     }
-    std::string rest() override
-    {
-        return m_place == m_bytes.size() ? "" : counted(m_bytes.size() - m_place, "byte");
-    }
+    std::string rest() override { return m_place == m_bytes.size() ? "" : counted(m_bytes.size() - m_place, "byte"); }
     bool mustEnd() const override { return false; }
 
 private:
@@ -211,8 +208,8 @@ private:
             smallest += property.smallestSize();
         if (smallest == 0) return "";  // nothing to read
         if (!m_numbers.canHold(element.m_count, smallest))
-            return "the file ends too early: the PLY header says " + std::to_string(element.m_count) +
-                   " of element '" + element.m_name.substr(0, 32) + "'";
+            return "the file ends too early: the PLY header says " + std::to_string(element.m_count) + " of element '" +
+                   element.m_name.substr(0, 32) + "'";
         const Role role = roleOf(element);
         if (role == Role::Vertex) findCoordinates(element);
         const int corners = role == Role::Face || role == Role::Strip ? cornersOf(element) : -1;

@@ -30,7 +30,7 @@ std::string parse(const std::string& path, const std::string& ending, const std:
     if (ending == ".obj") return readObj(bytes, mesh);
     if (ending == ".ply") return readPly(bytes, mesh);
     if (ending == ".stl") return readStl(bytes, mesh);
-    if (ending == ".glb") return readGlb(bytes, findBuffer, mesh);
+    if (bytes.compare(0, 4, "glTF") == 0) return readGlb(bytes, findBuffer, mesh);
     return readGltf(bytes, findBuffer, mesh);
 }
 
@@ -54,7 +54,8 @@ std::string cornersProblem(const MeshFile& mesh)
 // Text of a file may be in a message: it must not break the line.
 std::string oneLine(std::string text)
 {
-    std::replace_if(text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
     return text;
 }
 }  // namespace

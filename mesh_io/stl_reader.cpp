@@ -58,12 +58,12 @@ public:
             ended = false;
             const std::string problem = readFacet();
             if (!problem.empty())
-                return "line " + std::to_string(m_cursor.line()) + ": facet " +
-                       std::to_string(m_mesh.faceCount() + 1) + " " + problem;
+                return "line " + std::to_string(m_cursor.line()) + ": facet " + std::to_string(m_mesh.faceCount() + 1) +
+                       " " + problem;
         }
         if (m_mesh.faceCount() == 0) return "not a mesh: no facets";
-        return ended ? "" : "the file ends too early, after " + counted(m_mesh.faceCount(), "facet") +
-                                ", without endsolid";
+        return ended ? ""
+                     : "the file ends too early, after " + counted(m_mesh.faceCount(), "facet") + ", without endsolid";
     }
 
 private:
@@ -103,16 +103,16 @@ private:
     MeshFile& m_mesh;
 };
 
+// Binary files may begin with "solid", too. Their count of triangles has a zero byte below 16 million.
 bool isText(const std::string& bytes)
 {
-    return sameWord(TextCursor(bytes).wordOfAnyLine(), "solid") && bytes.find('\0') == std::string::npos;
+    return sameWord(TextCursor(bytes).wordOfAnyLine(), "solid") && bytes.find('\0') >= kHeaderBytes;
 }
 }  // namespace
 
 std::string readStl(const std::string& bytes, MeshFile& mesh)
 {
     mesh.m_hasIndices = false;
-    // Binary files may begin with "solid", but their length is exact, or zero bytes tell them from text.
     const bool binary = bytes.size() >= kHeaderBytes &&
                         bytes.size() == kHeaderBytes + littleUint32(bytes, kHeaderBytes - 4) * kTriangleBytes;
     if (!binary && isText(bytes)) return StlTextReader(bytes, mesh).read();

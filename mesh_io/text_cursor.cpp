@@ -88,7 +88,8 @@ std::string numberText(double value)
 std::string quoted(std::string_view word)
 {
     std::string text(word.substr(0, 32));
-    std::replace_if(text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
     return "'" + text + "'";
 }
 

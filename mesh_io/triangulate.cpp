@@ -103,7 +103,8 @@ std::string triangulate(const MeshFile& mesh, std::vector<std::int32_t>& triangl
         if (!problem.empty()) return problem;
     }
     if (triangulator.notSimple() > 0)
-        notes.push_back(counted(triangulator.notSimple(), "face") + " whose outline meets itself: triangles may overlap");
+        notes.push_back(counted(triangulator.notSimple(), "face") +
+                        " whose outline meets itself: triangles may overlap");
     return "";
 }
 }  // namespace drape

@@ -118,8 +118,8 @@ std::string roundPositions(const std::string& path, const MeshFile& file, const 
                     {
                         const float* p = &positions[3 * vertex];
                         if (problem.empty() && !(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])))
-                            problem = path + ": vertex " + std::to_string(vertex + 1) +
-                                      ": a coordinate does not fit a float";
+                            problem =
+                                path + ": vertex " + std::to_string(vertex + 1) + ": a coordinate does not fit a float";
                     });
     return problem;
 }

@@ -1,10 +1,10 @@
 // Loads triangle meshes from OBJ, PLY, STL and glTF files.
 //
-// Polygons become triangles, and triangles that repeat a vertex are dropped, as are vertices without triangles. Positions
-// are read in double precision and rounded to float once. Where a mesh lies so far from the origin that floats would
-// keep fewer than an eighth of what they could, a centre is subtracted before: LoadReport says which, and how much the
-// rounding changed. Damaged files are refused: false, and `error` holds one line with file, element (counted from 1) and
-// reason. Each file is parsed once.
+// Polygons become triangles, and triangles that repeat a vertex are dropped, as are vertices without triangles.
+// Positions are read in double precision and rounded to float once. Where a mesh lies so far from the origin that
+// floats would keep fewer than an eighth of what they could, a centre is subtracted before: LoadReport says which, and
+// how much the rounding changed. Damaged files are refused: false, and `error` holds one line with file, element
+// (counted from 1) and reason. Each file is parsed once.
 #pragma once
 
 #include <array>
@@ -23,10 +23,10 @@ enum class Joining
 
 struct LoadReport
 {
-    bool m_isJoined = false;                  // whether vertices of any file were joined by position
-    std::array<double, 3> m_centre{};         // subtracted from all positions of all files, in their unit; often zero
-    double m_rounding = 0;                    // the largest change of a coordinate by rounding, in the files' unit
-    std::vector<std::string> m_notes;         // what was left out or lost, one line each
+    bool m_isJoined = false;           // whether vertices of any file were joined by position
+    std::array<double, 3> m_centre{};  // subtracted from all positions of all files, in their unit; often zero
+    double m_rounding = 0;             // the largest change of a coordinate by rounding, in the files' unit
+    std::vector<std::string> m_notes;  // what was left out or lost, one line each
 
     bool isCentred() const { return m_centre != std::array<double, 3>{}; }
 };

@@ -84,6 +84,9 @@ TEST_F(MeshLoader, ReadsDocumentedFormatsAlone)
     EXPECT_EQ(load(write("box.OBJ", kBox), Joining::ByPosition, report).triangleCount(), 12u);
     for (const char* ending : {".off", ".x", ".dae", ".obj.txt", ""})
         expectRefused(write("box" + std::string(ending), kBox), {"not a mesh", ".obj", ".glb"});
+    // Both kinds of glTF go by either name.
+    expectRefused(write("empty.glb", "{}"), {"empty.glb", "no triangles"});
+    expectRefused(write("cut.gltf", "glTF"), {"cut.gltf", "not binary glTF"});
     expectRefused(write("obj.ply", kBox), {"obj.ply", "no PLY header"});
 }
 
@@ -106,7 +109,8 @@ TEST_F(MeshLoader, ReadsBuffersBesideTheFile)
 TEST_F(MeshLoader, CentresBeforeItRounds)
 {
     LoadReport report;
-    const TriangleMesh mesh = load(write("far.obj", farBox(5400000.1, 480000.7, 312.3, 0.001)), Joining::ByIndex, report);
+    const TriangleMesh mesh =
+        load(write("far.obj", farBox(5400000.1, 480000.7, 312.3, 0.001)), Joining::ByIndex, report);
     ASSERT_EQ(mesh.vertexCount(), 8u);
     EXPECT_TRUE(report.isCentred());
     EXPECT_LT(report.m_rounding, 1e-9);
@@ -141,7 +145,8 @@ TEST_F(MeshLoader, LeavesPositionsThatFloatsHold)
 
 TEST_F(MeshLoader, PutsTwoMeshesIntoOneFrame)
 {
-    const std::string a = write("a.obj", farBox(5400000.1, 0, 0, 0.5)), b = write("b.obj", farBox(5400001.3, 0, 0, 0.5));
+    const std::string a = write("a.obj", farBox(5400000.1, 0, 0, 0.5)),
+                      b = write("b.obj", farBox(5400001.3, 0, 0, 0.5));
     TriangleMesh first, second;
     LoadReport report;
     std::string error;
@@ -156,7 +161,8 @@ TEST_F(MeshLoader, PutsTwoMeshesIntoOneFrame)
 TEST_F(MeshLoader, JoinsByPositionWhereAFileHasNoIndicesOrWhereAsked)
 {
     // Two triangles side by side, whose common edge has vertices of its own on either side.
-    const std::string split = write("split.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 0 1 -0\nv 1 1 0\nf 1 2 3\nf 4 6 5\n");
+    const std::string split =
+        write("split.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 0 1 -0\nv 1 1 0\nf 1 2 3\nf 4 6 5\n");
     std::string stl = "solid s\n";
     for (const char* corners : {"vertex 0 0 0 vertex 1 0 0 vertex 0 1 0", "vertex 1 0 0 vertex 1 1 0 vertex 0 1 0"})
         stl += std::string("facet normal 0 0 1 outer loop\n") + replaced(corners, " v", "\nv") + "\nendloop endfacet\n";

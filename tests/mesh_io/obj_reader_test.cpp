@@ -67,8 +67,7 @@ TEST(ObjReader, KeepsDoublePrecisionAndEveryDigit)
 {
     MeshFile mesh;
     ASSERT_EQ(readObj("v 5400000.123456789 .5 -.25\nv +1 2. 1e-5\nv 0 0 4.9e-324\nf 1 2 3\n", mesh), "");
-    EXPECT_EQ(mesh.m_positions,
-              std::vector<double>({5400000.123456789, 0.5, -0.25, 1, 2, 1e-5, 0, 0, 4.9e-324}));
+    EXPECT_EQ(mesh.m_positions, std::vector<double>({5400000.123456789, 0.5, -0.25, 1, 2, 1e-5, 0, 0, 4.9e-324}));
 }
 
 TEST(ObjReader, KeepsPolygons)

@@ -115,10 +115,11 @@ TEST(Triangulate, SplitsQuadrilateralsAtCornerZeroUnlessThatLeavesThem)
 TEST(Triangulate, CoversPolygonsOfEveryShapeInEveryPlane)
 {
     std::vector<Points> shapes = {
-        {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}},                    // an L
-        {{0, 0}, {1, 0}, {2, 0}, {2, 2}, {1, 2}, {0, 2}, {0, 1}},            // corners within straight edges
+        {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}},          // an L
+        {{0, 0}, {1, 0}, {2, 0}, {2, 2}, {1, 2}, {0, 2}, {0, 1}},  // corners within straight edges
         {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}},  // a hole, cut open
-        comb(5, 10), spiral(40, 3)};
+        comb(5, 10),
+        spiral(40, 3)};
     for (unsigned seed = 0; seed < 200; ++seed)
         shapes.push_back(star(5 + seed % 40, seed));
     for (std::size_t i = 0; i < shapes.size(); ++i)
@@ -157,8 +158,8 @@ TEST(Triangulate, IsQuickForManyThousandCorners)
 
 TEST(Triangulate, SplitsAnOutlineThatMeetsItselfAndSaysSoWhereNoEarIsLeft)
 {
-    for (const Points& outline :
-         {Points{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {1, 0}}, Points{{0, 0}, {0, 4}, {3, 1}, {3, 4}, {0, 1}, {3, 0}, {1, 2}}})
+    for (const Points& outline : {Points{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {1, 0}},
+                                  Points{{0, 0}, {0, 4}, {3, 1}, {3, 4}, {0, 1}, {3, 0}, {1, 2}}})
     {
         std::vector<std::int32_t> triangles;
         std::vector<std::string> notes;

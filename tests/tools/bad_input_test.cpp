@@ -48,8 +48,8 @@ TEST_F(BadInput, binaryFileThatSaysItIsLonger)
                   {"header.glb", "header: says 2103247400 bytes"});
     expectRefused(runSmall({"--obstacle", write("chunk.glb", header(2, whole) + littleEndian(0x6e222c5du) + chunk)}),
                   {"chunk.glb", "chunk 1: says 1847733341 bytes"});
-    expectRefused(runSmall({"--obstacle",
-                            write("second.glb", header(2, whole + 8) + size + chunk + littleEndian(1u << 31) + "BIN ")}),
+    expectRefused(runSmall({"--obstacle", write("second.glb", header(2, whole + 8) + size + chunk +
+                                                                  littleEndian(1u << 31) + "BIN ")}),
                   {"second.glb", "chunk 2: says 2147483648 bytes where there are 0"});
     expectRefused(
         runSmall({"--obstacle", write("old.glb", header(1, whole) + littleEndian(1u << 30) + littleEndian(0) + json)}),
@@ -107,9 +107,8 @@ TEST_F(BadInput, isNotWhatOtherReadersOpen)
     const std::string strips =
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
         "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-    for (const std::string& file :
-         {write("dot.obj", obj("1 .5 0")), write("seven.obj", obj("1 0 0 1 1 1 1")),
-          write("mark.obj", "\xef\xbb\xbf" + obj("1 0 0")), write("strips.ply", strips)})
+    for (const std::string& file : {write("dot.obj", obj("1 .5 0")), write("seven.obj", obj("1 0 0 1 1 1 1")),
+                                    write("mark.obj", "\xef\xbb\xbf" + obj("1 0 0")), write("strips.ply", strips)})
     {
         const ToolRun result = runSmall({"--obstacle", file, "--steps", "1"});
         EXPECT_EQ(result.m_exitCode, 0) << result.m_err;

@@ -167,8 +167,8 @@ TEST_F(Check, stepNeedsTheFacesInTheirOrder)
     EXPECT_EQ(answer({"step", start, write("renamed.obj", renamed)}).at("vf_hits"), 0);
 }
 
-// Four bars meet at one position, each with a vertex of its own there: they touch. Bars that share the vertex by index do
-// not count.
+// Four bars meet at one position, each with a vertex of its own there: they touch. Bars that share the vertex by index
+// do not count.
 TEST_F(Check, pairsTakeIndexedFilesByTheirIndices)
 {
     const char* ends[4] = {"1 0 0\nv 1 0 1", "0 1 0\nv 0 1 1", "-1 0 0\nv -1 0 1", "0 -1 0\nv 0 -1 1"};
@@ -176,7 +176,8 @@ TEST_F(Check, pairsTakeIndexedFilesByTheirIndices)
     for (int i = 0; i < 4; ++i)
     {
         apart += "v 0 0 0\nv " + std::string(ends[i]) + "\n";
-        faces += "f " + std::to_string(3 * i + 1) + " " + std::to_string(3 * i + 2) + " " + std::to_string(3 * i + 3) + "\n";
+        faces +=
+            "f " + std::to_string(3 * i + 1) + " " + std::to_string(3 * i + 2) + " " + std::to_string(3 * i + 3) + "\n";
         shared += "v " + std::string(ends[i]) + "\n";
         sharedFaces += "f 1 " + std::to_string(2 * i + 2) + " " + std::to_string(2 * i + 3) + "\n";
         const std::string end = ends[i];

@@ -42,9 +42,10 @@ void addLimit(CLI::App& command, Options& options)
 
 void addJoin(CLI::App& command, Options& options)
 {
-    command.add_flag("--join", options.m_join,
-                     "join vertices at equal positions; without it vertices are those of the file's indices, and joined "
-                     "only where it has none (STL)");
+    command.add_flag(
+        "--join", options.m_join,
+        "join vertices at equal positions; without it vertices are those of the file's indices, and joined "
+        "only where it has none (STL)");
 }
 
 void addCcd(CLI::App& app, Options& options)
