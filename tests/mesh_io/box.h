@@ -1,10 +1,14 @@
 // A box from −1 to 1 as text and numbers, for files of every format.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdint>
 #include <cstring>
 #include <string>
 #include <vector>
+
+#include "mesh_io/mesh_file.h"
 
 namespace drape::test
 {
@@ -64,5 +68,22 @@ inline std::string replaced(std::string text, const std::string& from, const std
     for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
         text.replace(at, from.size(), to);
     return text;
+}
+
+// The box with the vertices and faces of this header, in their order.
+inline void expectIsBox(const MeshFile& mesh)
+{
+    EXPECT_EQ(mesh.m_corners, boxCorners());
+    EXPECT_EQ(mesh.vertexCount(), 8u);
+    for (std::size_t i = 0; i < mesh.m_positions.size() && i < 24; ++i)
+        EXPECT_EQ(mesh.m_positions[i], kBoxVertices[i / 3][i % 3]);
+}
+
+// A reason that has all of the words.
+inline void expectProblem(const std::string& problem, const std::vector<std::string>& words)
+{
+    EXPECT_NE(problem, "");
+    for (const std::string& word : words)
+        EXPECT_NE(problem.find(word), std::string::npos) << problem;
 }
 }  // namespace drape::test

@@ -13,21 +13,15 @@ const std::string kVertices = boxVertexLines("v "), kFaces = boxFaceLines("f", 1
 void expectBox(const std::string& text)
 {
     MeshFile mesh;
-    ASSERT_EQ(readObj(text, mesh), "");
-    EXPECT_EQ(mesh.m_corners, boxCorners());
-    ASSERT_EQ(mesh.vertexCount(), 8u);
-    for (std::size_t i = 0; i < 24; ++i)
-        EXPECT_EQ(mesh.m_positions[i], kBoxVertices[i / 3][i % 3]);
+    EXPECT_EQ(readObj(text, mesh), "");
+    expectIsBox(mesh);
     EXPECT_TRUE(mesh.m_hasIndices);
 }
 
 void expectRefused(const std::string& text, const std::vector<std::string>& words)
 {
     MeshFile mesh;
-    const std::string problem = readObj(text, mesh);
-    EXPECT_NE(problem, "");
-    for (const std::string& word : words)
-        EXPECT_NE(problem.find(word), std::string::npos) << problem;
+    expectProblem(readObj(text, mesh), words);
 }
 }  // namespace
 

@@ -38,20 +38,14 @@ MeshFile expectBox(const std::string& text)
 {
     MeshFile mesh;
     EXPECT_EQ(readPly(text, mesh), "");
-    EXPECT_EQ(mesh.m_corners, boxCorners());
-    EXPECT_EQ(mesh.vertexCount(), 8u);
-    for (std::size_t i = 0; i < mesh.m_positions.size(); ++i)
-        EXPECT_EQ(mesh.m_positions[i], kBoxVertices[i / 3][i % 3]);
+    expectIsBox(mesh);
     return mesh;
 }
 
 void expectRefused(const std::string& text, const std::vector<std::string>& words)
 {
     MeshFile mesh;
-    const std::string problem = readPly(text, mesh);
-    EXPECT_NE(problem, "");
-    for (const std::string& word : words)
-        EXPECT_NE(problem.find(word), std::string::npos) << problem;
+    expectProblem(readPly(text, mesh), words);
 }
 }  // namespace
 

@@ -58,10 +58,7 @@ MeshFile expectBox(const std::string& bytes)
 void expectRefused(const std::string& bytes, const std::vector<std::string>& words)
 {
     MeshFile mesh;
-    const std::string problem = readStl(bytes, mesh);
-    EXPECT_NE(problem, "");
-    for (const std::string& word : words)
-        EXPECT_NE(problem.find(word), std::string::npos) << problem;
+    expectProblem(readStl(bytes, mesh), words);
 }
 }  // namespace
 
