@@ -92,6 +92,8 @@ std::string GltfBuffers::readAccessor(const Json& accessor, const char* type, st
     std::string problem;
     if (!view.is_null())
         problem = readView(view, layout, numbers.m_values);
+    else if (at(accessor, "sparse").is_null())
+        problem = "has no data, unless in an extension that is not read";
     else if (layout.m_count > m_mostRows)
         problem = "has " + std::to_string(layout.m_count) + " elements without data";
     else

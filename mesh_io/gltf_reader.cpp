@@ -126,6 +126,7 @@ public:
             }
             level.swap(next);
         }
+        if (at(m_content, "nodes").empty()) return readLooseMeshes();
         if (m_hasSkins) m_mesh.m_notes.push_back("skins and morph targets not applied");
         return "";
     }
@@ -179,6 +180,19 @@ private:
             for (const Json& mesh : at(node, "meshes"))
                 if (problem.empty()) problem = readMesh(mesh, toWorld);
         return problem;
+    }
+
+    // A file without nodes is a collection of meshes.
+    std::string readLooseMeshes()
+    {
+        const Json& meshes = at(m_content, "meshes");
+        std::size_t index = 0;
+        for (const auto& mesh : meshes.items())
+        {
+            const std::string problem = readMesh(meshes.is_object() ? Json(mesh.key()) : Json(index++), kIdentity);
+            if (!problem.empty()) return problem;
+        }
+        return "";
     }
 
     std::string readMesh(const Json& reference, const Matrix& toWorld)

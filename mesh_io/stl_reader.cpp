@@ -47,7 +47,7 @@ public:
     std::string read()
     {
         bool ended = false;
-        for (std::string_view word = m_cursor.wordOfAnyLine(); !word.empty(); word = m_cursor.wordOfAnyLine())
+        for (std::string_view word = keyword(); !word.empty(); word = keyword())
         {
             if (!sameWord(word, "facet"))
             {
@@ -67,11 +67,20 @@ public:
     }
 
 private:
+    // The next word; "end facet" and the like count as one.
+    std::string_view keyword()
+    {
+        const std::string_view word = m_cursor.wordOfAnyLine();
+        if (!sameWord(word, "end")) return word;
+        const std::string_view what = m_cursor.word();
+        if (sameWord(what, "solid")) return "endsolid";
+        return sameWord(what, "facet") ? "endfacet" : "endloop";
+    }
+
     std::string readFacet()
     {
         int vertices = 0;
-        for (std::string_view word = m_cursor.wordOfAnyLine(); !sameWord(word, "endfacet");
-             word = m_cursor.wordOfAnyLine())
+        for (std::string_view word = keyword(); !sameWord(word, "endfacet"); word = keyword())
         {
             if (word.empty()) return "is not complete: the file ends too early";
             if (sameWord(word, "facet") || sameWord(word, "endsolid")) return "has no endfacet";

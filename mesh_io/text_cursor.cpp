@@ -65,10 +65,19 @@ std::string_view TextCursor::wordOfAnyLine()
 std::string readNumber(std::string_view word, double& value)
 {
     // strtod would take a hexadecimal number, which readers of mesh files do not agree on.
-    const bool plain = word.find_first_of("xX") == std::string_view::npos;
+    const bool plain = !word.empty() && word.find_first_of("xX") == std::string_view::npos;
     char* end = nullptr;
-    if (!word.empty() && plain) value = std::strtod(word.data(), &end);
-    return end == word.data() + word.size() && !word.empty() && plain ? "" : quoted(word) + " is not a decimal number";
+    if (plain) value = std::strtod(word.data(), &end);
+    if (plain && end == word.data() + word.size()) return "";
+    const std::size_t exponent = word.find_first_of("dD");
+    if (plain && exponent != std::string_view::npos && end == word.data() + exponent && exponent > 0)
+    {
+        std::string text(word);
+        text[exponent] = 'e';
+        value = std::strtod(text.c_str(), &end);
+        if (end == text.c_str() + text.size()) return "";
+    }
+    return quoted(word) + " is not a decimal number";
 }
 
 std::string readInteger(std::string_view word, long long& value)

@@ -39,7 +39,8 @@ private:
     std::size_t m_line = 1;
 };
 
-// Reads a decimal number in the syntax of C; nan and inf are numbers, too. The byte behind the word must be part of the
+// Reads a decimal number in the syntax of C, or of Fortran, whose exponents may begin with D; nan and inf are numbers,
+// too. The byte behind the word must be part of the
 // same string, as it is for the words of a TextCursor. Returns "" or the reason why the word is not a number.
 std::string readNumber(std::string_view word, double& value);
 // As readNumber(), for a whole number without fraction or exponent.

@@ -124,6 +124,16 @@ std::string roundPositions(const std::string& path, const MeshFile& file, const 
     return problem;
 }
 
+// Parses a file once where both are the same.
+bool readBoth(const std::string& firstPath, const std::string& secondPath, MeshFile& first, MeshFile& second,
+              std::string& error)
+{
+    if (!readMeshFile(firstPath, first, error)) return false;
+    if (firstPath != secondPath) return readMeshFile(secondPath, second, error);
+    second = first;
+    return true;
+}
+
 void addNotes(const std::string& path, const std::vector<std::string>& notes, LoadReport& report)
 {
     for (const std::string& note : notes)
@@ -177,7 +187,7 @@ bool loadMeshes(const std::string& firstPath, const std::string& secondPath, Joi
 {
     MeshFile firstFile, secondFile;
     report = LoadReport();
-    if (!readMeshFile(firstPath, firstFile, error) || !readMeshFile(secondPath, secondFile, error)) return false;
+    if (!readBoth(firstPath, secondPath, firstFile, secondFile, error)) return false;
     chooseCentre(firstPath + ", " + secondPath, {&firstFile, &secondFile}, report);
     std::string problem = makeMesh(firstPath, firstFile, joining, first, nullptr, report);
     if (problem.empty()) problem = makeMesh(secondPath, secondFile, joining, second, nullptr, report);
@@ -190,7 +200,7 @@ bool loadMotion(const std::string& startPath, const std::string& endPath, Joinin
 {
     MeshFile first, last;
     report = LoadReport();
-    if (!readMeshFile(startPath, first, error) || !readMeshFile(endPath, last, error)) return false;
+    if (!readBoth(startPath, endPath, first, last, error)) return false;
     std::string problem;
     if (first.vertexCount() != last.vertexCount())
         problem = endPath + ": has " + std::to_string(last.vertexCount()) + " vertices, " + startPath + " has " +

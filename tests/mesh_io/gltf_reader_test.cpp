@@ -78,6 +78,7 @@ TEST(GltfReader, ReadsBinary)
         expectIsBox(readGood(glb(text + std::string(std::size_t(spaces), ' '), boxData(), false)));
     EXPECT_EQ(readGood(plain + "more").m_notes.size(), 1u);
     expectIsBox(readGood(glb(replaced(text, kRest, "'extras':0}"), boxData())));  // without an asset
+    expectIsBox(readGood(glb(replaced(text, kNodes, ""), boxData())));            // meshes without nodes
     expectIsBox(readGood(glb(text + std::string(3, '\0'), boxData(), false)));    // padded with zero bytes
     expectIsBox(readGood(glb(replaced(text, "5126", "5126.0"), boxData())));
 }
@@ -215,6 +216,7 @@ TEST(GltfReader, RefusesDamage)
     expectRefused(replaced(text, "'byteLength':96", "'byteLength':97"), {"accessor 1", "169"});
     expectRefused(replaced(text, "'byteLength':168", "'byteLength':169"), {"buffer 0", "169 bytes", "168"});
     expectRefused(replaced(text, "'bufferView':1,", "'bufferView':5,"), {"accessor 1", "bufferView"});
+    expectRefused(replaced(text, "'bufferView':1,", ""), {"accessor 1", "no data"});
     expectRefused(replaced(text, "'POSITION':1", "'POSITION':9"), {"accessor 9", "does not exist"});
     expectRefused(replaced(text, "'nodes':[0]", "'nodes':[3]"), {"node 3", "out of range"});
     expectRefused(replaced(text, "{'mesh':0}", "{'mesh':4}"), {"mesh 4", "out of range"});
@@ -228,7 +230,9 @@ TEST(GltfReader, RefusesDamage)
 TEST(GltfReader, BoundsWhatAFileSaysItHolds)
 {
     const std::string text = box(kBinBuffer);
-    const std::string zeros = replaced(text, "'bufferView':1,", "");
+    const std::string zeros =
+        replaced(text, "'bufferView':1,",
+                 "'sparse':{'count':1,'indices':{'bufferView':0,'componentType':5123},'values':{'bufferView':1}},");
     expectRefused(replaced(zeros, "'count':8", "'count':9000000000"), {"accessor 1", "without data"});
     // Nodes that repeat a mesh of a million vertices that are not there.
     std::string nodes = "'nodes':[{'mesh':0}", roots = "0";

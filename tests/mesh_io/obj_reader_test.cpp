@@ -52,6 +52,7 @@ TEST(ObjReader, ReadsWhatOtherReadersOpen)
     expectBox(boxVertexLines("v ", " 1.0 0.5 0.5 0.5\n") + kFaces);
     expectBox(replaced(kVertices, "1", "1.e0") + kFaces);
     expectBox(replaced(kVertices, "1", "01.0E+00") + kFaces);
+    expectBox(replaced(kVertices, "1", "0.1D+01") + kFaces);
     expectBox(plain + "l 1 2\np 3\ncurv 0 1 1 2\nvp 0.5\n");
     // A path that ends with a backslash does not swallow the next line.
     expectBox("# C:\\models\\\nusemtl C:\\\no box\ng a b\ns off\n" + plain);
@@ -91,6 +92,7 @@ TEST(ObjReader, RefusesDamage)
     expectRefused(kVertices + "f 1 2 3.5\n", {"line 9", "'3.5'"});
     expectRefused("v 1 0\n", {"line 1", "vertex 1", "fewer than three"});
     expectRefused("v 1,5 0 0\n", {"vertex 1", "'1,5' is not a decimal number"});
+    expectRefused("v 1D 0 0\n", {"'1D' is not a decimal number"});
     expectRefused("v 0x1p0 0 0\n", {"'0x1p0' is not a decimal number"});
     expectRefused(kVertices + kFaces + "f 1 2", {"line 21", "ends within a face"});
     expectRefused(kVertices + kFaces + "v 1 2", {"line 21", "fewer than three"});

@@ -71,6 +71,7 @@ TEST(StlReader, ReadsText)
     expectBox(replaced(replaced(plain, "facet", "FACET"), "vertex", "Vertex"));
     expectBox("solid box\n" + facets(0, 12, "nan nan nan") + "endsolid box\n");
     expectBox("solid 1\n" + facets(0, 6) + "endsolid 1\nsolid 2\n" + facets(6, 12) + "endsolid 2");
+    expectBox(replaced(replaced(plain, "endfacet", "end facet"), "endsolid", "End Solid"));
     expectBox(plain + std::string(7, '\0'));
     expectBox("\n solid\n" + replaced(facets(0, 12), "\nouter loop", " outer loop") + "endsolid");
 }
