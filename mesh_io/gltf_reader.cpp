@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "mesh_io/gltf_buffers.h"
+#include "mesh_io/gltf_content.h"
 #include "mesh_io/readers.h"
 #include "mesh_io/text_cursor.h"
 
@@ -35,6 +36,13 @@ Matrix multiply(const Matrix& a, const Matrix& b)
             for (int i = 0; i < 4; ++i)
                 product[4 * column + row] += a[4 * i + row] * b[4 * column + i];
     return product;
+}
+
+// Of the part that turns and scales.
+double determinant(const Matrix& m)
+{
+    return m[0] * (m[5] * m[10] - m[6] * m[9]) + m[4] * (m[9] * m[2] - m[10] * m[1]) +
+           m[8] * (m[1] * m[6] - m[2] * m[5]);
 }
 
 bool readMatrix(const Json& node, Matrix& matrix)
@@ -119,10 +127,10 @@ public:
             {
                 // Nodes are trees. A node with two parents would be read twice, its children four times.
                 bool& seen = visited[nameOf(reference)];
-                if (seen) return "node " + nameOf(reference) + " has two parents";
+                if (seen) return "node " + shortName(reference) + " has two parents";
                 seen = true;
                 const std::string problem = readNode(reference, parent, next);
-                if (!problem.empty()) return "node " + nameOf(reference) + ": " + problem;
+                if (!problem.empty()) return "node " + shortName(reference) + ": " + problem;
             }
             level.swap(next);
         }
@@ -132,10 +140,13 @@ public:
     }
 
 private:
+    // A reference as a key.
     static std::string nameOf(const Json& reference)
     {
-        return reference.dump(-1, ' ', true, Json::error_handler_t::replace).substr(0, 64);
+        return reference.dump(-1, ' ', true, Json::error_handler_t::replace);
     }
+    // The same for messages.
+    static std::string shortName(const Json& reference) { return nameOf(reference).substr(0, 64); }
 
     // The nodes of the default scene, else of the first, else all that are no other node's children.
     std::vector<Json> roots() const
@@ -198,7 +209,7 @@ private:
     std::string readMesh(const Json& reference, const Matrix& toWorld)
     {
         const Json& mesh = follow(at(m_content, "meshes"), reference);
-        if (!mesh.is_object()) return "mesh " + nameOf(reference) + " is out of range";
+        if (!mesh.is_object()) return "mesh " + shortName(reference) + " is out of range";
         // Primitives that share positions share vertices.
         std::map<std::string, Vertices> known;
         std::size_t number = 0;
@@ -207,7 +218,7 @@ private:
         {
             const std::string problem = readPrimitive(primitive, toWorld, known);
             if (!problem.empty())
-                return "mesh " + nameOf(reference) + ": primitive " + std::to_string(number) + ": " + problem;
+                return "mesh " + shortName(reference) + ": primitive " + std::to_string(number) + ": " + problem;
             ++number;
         }
         return "";
@@ -216,6 +227,7 @@ private:
     struct Vertices
     {
         std::size_t m_first = 0, m_count = 0;
+        bool m_isMirrored = false;  // by the node's transform, which turns the winding around
     };
 
     std::string readPrimitive(const Json& primitive, const Matrix& toWorld, std::map<std::string, Vertices>& known)
@@ -246,7 +258,7 @@ private:
         GltfNumbers positions;
         const std::string problem = m_buffers.read(reference, "VEC3", 3, positions);
         if (!problem.empty()) return problem;
-        vertices = {m_mesh.vertexCount(), positions.rows()};
+        vertices = {m_mesh.vertexCount(), positions.rows(), determinant(m) < 0};
         if (vertices.m_first + vertices.m_count > std::min(most(), kMostVertices))
             return "its nodes repeat meshes to more than " + std::to_string(std::min(most(), kMostVertices)) +
                    " vertices";
@@ -278,9 +290,9 @@ private:
         { return static_cast<std::int32_t>(vertices.m_first + std::size_t(order[i])); };
         for (std::size_t i = 0; i + 2 < order.size(); i += step)
         {
-            const bool odd = mode == kTriangleStrip && i % 2 == 1;
+            const bool turned = (mode == kTriangleStrip && i % 2 == 1) != vertices.m_isMirrored;
             const std::size_t first = mode == kTriangleFan ? 0 : i;
-            m_mesh.addTriangle(vertex(odd ? i + 1 : first), vertex(odd ? i : i + 1), vertex(i + 2));
+            m_mesh.addTriangle(vertex(turned ? i + 1 : first), vertex(turned ? first : i + 1), vertex(i + 2));
         }
         return "";
     }
@@ -295,9 +307,10 @@ private:
     GltfNumbers m_order;
     bool m_hasSkins = false;
 };
+}  // namespace
 
-std::string readContent(const std::string& text, const std::string* binary, std::size_t fileBytes,
-                        const FindBuffer& findBuffer, MeshFile& mesh)
+std::string readGltfContent(const std::string& text, const std::string* binary, std::size_t fileBytes,
+                            const FindBuffer& findBuffer, MeshFile& mesh)
 {
     if (isNestedTooDeep(text)) return "not a mesh: brackets nested deeper than " + std::to_string(kMostDepth);
     const Json content = Json::parse(text, nullptr, false);
@@ -306,75 +319,8 @@ std::string readContent(const std::string& text, const std::string* binary, std:
     return problem.empty() ? GltfReader(content, binary, findBuffer, fileBytes, mesh).read() : problem;
 }
 
-std::string tooLong(const std::string& what, std::size_t length, std::size_t there)
-{
-    return what + ": says " + std::to_string(length) + " bytes where there are " + std::to_string(there);
-}
-
-constexpr std::size_t kHeaderBytes = 12;            // magic, version, length of the file
-constexpr std::size_t kFirstHeaderBytes = 20;       // glTF 1.0: length and format of the content besides
-constexpr std::size_t kChunkHeaderBytes = 8;        // length and type
-constexpr std::uint32_t kBinaryChunk = 0x004e4942;  // "BIN" and a zero byte
-
-// Text is padded with spaces; some writers use zero bytes.
-std::string withoutPadding(std::string text)
-{
-    text.resize(text.find_last_not_of('\0') + 1);
-    return text;
-}
-
-// The first chunk is the JSON text, the next one may be the first buffer, more are for extensions.
-std::string findChunks(const std::string& bytes, std::size_t length, std::string& text, std::string& binary,
-                       bool& hasBinary)
-{
-    std::size_t place = kHeaderBytes;
-    hasBinary = false;
-    for (int chunk = 1; place + kChunkHeaderBytes <= length; ++chunk)
-    {
-        const std::size_t size = littleUint32(bytes, place), there = length - place - kChunkHeaderBytes;
-        const std::uint32_t type = littleUint32(bytes, place + 4);
-        if (size > there) return tooLong("chunk " + std::to_string(chunk), size, there);
-        place += kChunkHeaderBytes;
-        if (chunk == 1) text = withoutPadding(bytes.substr(place, size));
-        if (chunk > 1 && type == kBinaryChunk && !hasBinary)
-        {
-            binary = bytes.substr(place, size);
-            hasBinary = true;
-        }
-        place += size;
-    }
-    return "";
-}
-}  // namespace
-
 std::string readGltf(const std::string& bytes, const FindBuffer& findBuffer, MeshFile& mesh)
 {
-    return readContent(bytes, nullptr, bytes.size(), findBuffer, mesh);
-}
-
-std::string readGlb(const std::string& bytes, const FindBuffer& findBuffer, MeshFile& mesh)
-{
-    if (bytes.size() < kHeaderBytes || bytes.compare(0, 4, "glTF") != 0) return "not a mesh: not binary glTF";
-    const std::size_t version = littleUint32(bytes, 4), length = littleUint32(bytes, 8);
-    if (version != 1 && version != 2) return "glTF version " + std::to_string(version) + " is neither 1 nor 2";
-    if (length > bytes.size()) return tooLong("header", length, bytes.size());
-    if (bytes.size() > length)
-        mesh.m_notes.push_back(counted(bytes.size() - length, "byte") + " behind the glTF not read");
-    std::string text, binary;
-    bool hasBinary = true;
-    if (version == 2)
-    {
-        const std::string problem = findChunks(bytes, length, text, binary, hasBinary);
-        if (!problem.empty()) return problem;
-    }
-    else
-    {
-        if (length < kFirstHeaderBytes) return "not a mesh: not binary glTF";
-        const std::size_t size = littleUint32(bytes, kHeaderBytes), there = length - kFirstHeaderBytes;
-        if (size > there) return tooLong("content", size, there);
-        text = bytes.substr(kFirstHeaderBytes, size);
-        binary = bytes.substr(kFirstHeaderBytes + size, there - size);
-    }
-    return readContent(text, hasBinary ? &binary : nullptr, bytes.size(), findBuffer, mesh);
+    return readGltfContent(bytes, nullptr, bytes.size(), findBuffer, mesh);
 }
 }  // namespace drape

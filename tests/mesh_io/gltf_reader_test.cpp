@@ -154,6 +154,27 @@ TEST(GltfReader, AppliesTransformsInDouble)
     EXPECT_EQ(mesh.m_corners[36], mesh.m_corners[0] + 8);
 }
 
+TEST(GltfReader, TurnsTheWindingOfWhatIsMirrored)
+{
+    const std::string text = replaced(box(kBinBuffer), "{'mesh':0}", "{'mesh':0,'scale':[1,-1,1]}");
+    const MeshFile mesh = readGood(glb(text, boxData()));
+    std::vector<std::int32_t> corners = boxCorners();
+    for (std::size_t i = 0; i < corners.size(); i += 3)
+        std::swap(corners[i], corners[i + 1]);
+    EXPECT_EQ(mesh.m_corners, corners);
+}
+
+TEST(GltfReader, TellsLongNamesApart)
+{
+    const std::string name(100, 'n');
+    const std::string text =
+        replaced(replaced(replaced(box(kBinBuffer), "'nodes':[{'mesh':0}]",
+                                   "'nodes':{'" + name + "1':{'mesh':0},'" + name + "2':{'mesh':0}}"),
+                          "'scenes':[{'nodes':[0]}]", "'scenes':[{}]"),
+                 "'scene':0,", "");
+    EXPECT_EQ(readGood(glb(text, boxData())).faceCount(), 24u);
+}
+
 TEST(GltfReader, ReadsStripsFansAndFacesWithoutIndices)
 {
     const auto cornersOf = [](const std::string& primitive)
