@@ -72,8 +72,6 @@ endif()
 
 if(DRAPE_TOOLS OR DRAPE_WITH_TESTS OR DRAPE_WITH_BENCHMARKS OR DRAPE_BUILD_FUZZERS)
   find_package(PkgConfig REQUIRED)
-  # By pkg-config: the CMake files of Debian's assimp ask for packages that a user of it does not need.
-  pkg_check_modules(assimp REQUIRED IMPORTED_TARGET assimp)
   pkg_check_modules(gmpxx REQUIRED IMPORTED_TARGET gmpxx)
   find_package(nlohmann_json CONFIG REQUIRED)
 endif()

@@ -13,8 +13,8 @@ packages=(
   libbullet-dev ocl-icd-opencl-dev opencl-c-headers opencl-clhpp-headers
   # an OpenCL device on any machine
   pocl-opencl-icd
-  # tools: arguments, meshes, JSON, PNG, rays; exact arithmetic for the independent check
-  libcli11-dev libassimp-dev nlohmann-json3-dev libpng-dev libembree-dev libgmp-dev
+  # tools: arguments, JSON, PNG, rays; exact arithmetic for the independent check
+  libcli11-dev nlohmann-json3-dev libpng-dev libembree-dev libgmp-dev
   # data: the bunny
   glmark2-data
 )

@@ -76,37 +76,47 @@ std::size_t joinVertices(TriangleMesh& mesh)
 
 std::size_t joinVertices(TriangleMesh& mesh, std::vector<float>& end)
 {
-    TriangleMesh joined;
-    std::vector<float> joinedEnd;
-    joined.m_triangles.reserve(mesh.m_triangles.size());
     std::unordered_map<PositionKey, std::int32_t, PositionHash> known;
     known.reserve(mesh.vertexCount());
+    // The first vertex at a position stands for all.
+    std::vector<std::int32_t> vertices(mesh.vertexCount());
+    for (std::size_t vertex = 0; vertex < vertices.size(); ++vertex)
+    {
+        const PositionKey key = keyOf(&mesh.m_positions[3 * vertex], &end[3 * vertex]);
+        vertices[vertex] = known.emplace(key, static_cast<std::int32_t>(vertex)).first->second;
+    }
+    for (std::int32_t& index : mesh.m_triangles)
+        index = vertices[static_cast<std::size_t>(index)];
+    return keepUsedVertices(mesh, end);
+}
+
+std::size_t keepUsedVertices(TriangleMesh& mesh, std::vector<float>& end)
+{
+    TriangleMesh kept;
+    std::vector<float> keptEnd;
+    kept.m_triangles.reserve(mesh.m_triangles.size());
+    std::vector<std::int32_t> numbers(mesh.vertexCount(), -1);
     for (std::size_t t = 0; t < mesh.triangleCount(); ++t)
     {
-        PositionKey keys[3];
-        const float* corners[3][2];
+        const std::int32_t* corners = &mesh.m_triangles[3 * t];
+        if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
         for (int corner = 0; corner < 3; ++corner)
         {
-            const std::size_t vertex = static_cast<std::size_t>(mesh.m_triangles[3 * t + corner]);
-            corners[corner][0] = &mesh.m_positions[3 * vertex];
-            corners[corner][1] = &end[3 * vertex];
-            keys[corner] = keyOf(corners[corner][0], corners[corner][1]);
-        }
-        if (keys[0] == keys[1] || keys[1] == keys[2] || keys[2] == keys[0]) continue;
-        for (int corner = 0; corner < 3; ++corner)
-        {
-            const auto found = known.emplace(keys[corner], static_cast<std::int32_t>(joined.vertexCount()));
-            if (found.second)
+            const std::size_t vertex = static_cast<std::size_t>(corners[corner]);
+            std::int32_t& number = numbers[vertex];
+            if (number < 0)
             {
-                joined.m_positions.insert(joined.m_positions.end(), corners[corner][0], corners[corner][0] + 3);
-                joinedEnd.insert(joinedEnd.end(), corners[corner][1], corners[corner][1] + 3);
+                number = static_cast<std::int32_t>(kept.vertexCount());
+                kept.m_positions.insert(kept.m_positions.end(), &mesh.m_positions[3 * vertex],
+                                        &mesh.m_positions[3 * vertex] + 3);
+                keptEnd.insert(keptEnd.end(), &end[3 * vertex], &end[3 * vertex] + 3);
             }
-            joined.m_triangles.push_back(found.first->second);
+            kept.m_triangles.push_back(number);
         }
     }
-    const std::size_t dropped = mesh.triangleCount() - joined.triangleCount();
-    mesh = std::move(joined);
-    end = std::move(joinedEnd);
+    const std::size_t dropped = mesh.triangleCount() - kept.triangleCount();
+    mesh = std::move(kept);
+    end = std::move(keptEnd);
     return dropped;
 }
 

@@ -42,6 +42,11 @@ std::size_t joinVertices(TriangleMesh& mesh);
 // after.
 std::size_t joinVertices(TriangleMesh& mesh, std::vector<float>& end);
 
+// Drops triangles that repeat an index and vertices that no triangle uses, from the mesh and from `end` (x y z per
+// vertex). Vertices at equal positions stay apart. They are numbered in the order of their first use, as by
+// joinVertices(). Returns how many triangles were dropped.
+std::size_t keepUsedVertices(TriangleMesh& mesh, std::vector<float>& end);
+
 // Splits every triangle into four at its edges' middles; shared edges stay shared.
 TriangleMesh subdivide(const TriangleMesh& mesh);
 }  // namespace drape

@@ -1,195 +1,219 @@
 #include "scenes/mesh_loader.h"
 
 #include <algorithm>
-#include <cctype>
-#include <filesystem>
-#include <sstream>
+#include <cmath>
+#include <cstdio>
+#include <limits>
 
-#include <assimp/BaseImporter.h>
-#include <assimp/DefaultLogger.hpp>
-#include <assimp/Importer.hpp>
-#include <assimp/LogStream.hpp>
-#include <assimp/config.h>
-#include <assimp/importerdesc.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
-#include "scenes/mesh_scan.h"
-#include "scenes/read_file.h"
+#include "mesh_io/read_mesh_file.h"
+#include "mesh_io/triangulate.h"
 
 namespace drape
 {
 namespace
 {
-std::string endingOf(const std::string& path)
+using Centre = std::array<double, 3>;
+
+// Centring has to make rounding errors this much smaller. Below it positions keep the bits that the file has.
+constexpr double kWorthwhile = 8;
+
+float rounded(double value)
 {
-    std::string ending = std::filesystem::path(path).extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-    return ending;
+    return static_cast<float>(value);
 }
 
-std::string oneLine(std::string text)
+// Calls use(vertex) for the vertices that faces use.
+template <typename Use>
+void forUsedVertices(const MeshFile& file, Use use)
 {
-    for (char& c : text)
-        if (c == '\n' || c == '\r') c = ' ';
-    while (!text.empty() && text.back() == ' ')
-        text.pop_back();
-    return text;
+    std::vector<bool> isUsed(file.vertexCount(), false);
+    for (const std::int32_t corner : file.m_corners)
+        isUsed[static_cast<std::size_t>(corner)] = true;
+    for (std::size_t vertex = 0; vertex < isUsed.size(); ++vertex)
+        if (isUsed[vertex]) use(vertex);
 }
 
-std::string appendMesh(const aiMesh& part, const aiMatrix4x4& toWorld, TriangleMesh& mesh)
+// The largest rounding error of all coordinates less the centre; infinite where one does not fit a float.
+double roundingOf(const std::vector<const MeshFile*>& files, const Centre& centre)
 {
-    const std::size_t first = mesh.vertexCount();
-    for (unsigned int v = 0; v < part.mNumVertices; ++v)
+    double largest = 0;
+    for (const MeshFile* file : files)
+        forUsedVertices(*file,
+                        [&](std::size_t vertex)
+                        {
+                            for (std::size_t axis = 0; axis < 3; ++axis)
+                            {
+                                const double value = file->m_positions[3 * vertex + axis] - centre[axis];
+                                largest = std::max(largest, std::fabs(static_cast<double>(rounded(value)) - value));
+                            }
+                        });
+    return largest;
+}
+
+// The middle of all files' bounds, rounded to a fraction of their extent: a short number, whose subtraction is exact in
+// most cases.
+Centre middleOf(const std::vector<const MeshFile*>& files)
+{
+    constexpr double far = std::numeric_limits<double>::infinity();
+    Centre low = {far, far, far}, high = {-far, -far, -far};
+    for (const MeshFile* file : files)
+        forUsedVertices(*file,
+                        [&](std::size_t vertex)
+                        {
+                            for (std::size_t axis = 0; axis < 3; ++axis)
+                            {
+                                low[axis] = std::min(low[axis], file->m_positions[3 * vertex + axis]);
+                                high[axis] = std::max(high[axis], file->m_positions[3 * vertex + axis]);
+                            }
+                        });
+    double extent = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        extent = std::max(extent, 0.5 * high[axis] - 0.5 * low[axis]);
+    Centre middle;
+    for (std::size_t axis = 0; axis < 3; ++axis)
     {
-        const aiVector3D position = toWorld * part.mVertices[v];
-        for (const float value : {position.x, position.y, position.z})
+        middle[axis] = 0.5 * low[axis] + 0.5 * high[axis];
+        if (!(extent > 0)) continue;
+        const double step = std::ldexp(1.0, std::max(std::ilogb(extent) - 3, -1000));
+        const double steps = std::nearbyint(middle[axis] / step);
+        if (std::isfinite(steps)) middle[axis] = steps * step;
+    }
+    return middle;
+}
+
+// Chooses the centre and says what rounding will change.
+void chooseCentre(const std::string& name, const std::vector<const MeshFile*>& files, LoadReport& report)
+{
+    report.m_centre = {};
+    report.m_rounding = roundingOf(files, report.m_centre);
+    if (report.m_rounding > 0)
+    {
+        const Centre middle = middleOf(files);
+        const double centred = roundingOf(files, middle);
+        if (centred * kWorthwhile <= report.m_rounding && std::isfinite(centred))
         {
-            const std::string problem = coordinateProblem(static_cast<double>(value));
-            if (!problem.empty()) return "vertex " + std::to_string(first + v + 1) + ": " + problem;
-            mesh.m_positions.push_back(value);
+            report.m_centre = middle;
+            report.m_rounding = centred;
         }
     }
-    for (unsigned int f = 0; f < part.mNumFaces; ++f)
-    {
-        const aiFace& face = part.mFaces[f];
-        if (face.mNumIndices != 3) continue;  // points and lines carry no surface
-        for (int corner = 0; corner < 3; ++corner)
-            mesh.m_triangles.push_back(static_cast<std::int32_t>(first + face.mIndices[corner]));
-    }
-    return "";
+    if (!report.isCentred()) return;
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  ": centred: (%.17g, %.17g, %.17g) is subtracted before coordinates are rounded to float32, which "
+                  "changes them by at most %.2g",
+                  report.m_centre[0], report.m_centre[1], report.m_centre[2], report.m_rounding);
+    report.m_notes.push_back(name + text);
 }
 
-std::string appendNode(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent, TriangleMesh& mesh)
+// Returns "" and the positions less the centre as floats, or which vertex of a face does not fit.
+std::string roundPositions(const std::string& path, const MeshFile& file, const Centre& centre,
+                           std::vector<float>& positions)
 {
-    const aiMatrix4x4 toWorld = parent * node.mTransformation;
-    for (unsigned int i = 0; i < node.mNumMeshes; ++i)
-    {
-        const std::string problem = appendMesh(*scene.mMeshes[node.mMeshes[i]], toWorld, mesh);
-        if (!problem.empty()) return problem;
-    }
-    for (unsigned int i = 0; i < node.mNumChildren; ++i)
-    {
-        const std::string problem = appendNode(scene, *node.mChildren[i], toWorld, mesh);
-        if (!problem.empty()) return problem;
-    }
-    return "";
+    positions.resize(file.m_positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i)
+        positions[i] = rounded(file.m_positions[i] - centre[i % 3]);
+    std::string problem;
+    forUsedVertices(file,
+                    [&](std::size_t vertex)
+                    {
+                        const float* p = &positions[3 * vertex];
+                        if (problem.empty() && !(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])))
+                            problem =
+                                path + ": vertex " + std::to_string(vertex + 1) + ": a coordinate does not fit a float";
+                    });
+    return problem;
 }
 
-// Assimp drops glTF faces with bad indices and only says so in its log: listens to that while it lives.
-class LogListener
+// Parses a file once where both are the same.
+bool readBoth(const std::string& firstPath, const std::string& secondPath, MeshFile& first, MeshFile& second,
+              std::string& error)
 {
-public:
-    LogListener()
-    {
-        Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
-        Assimp::DefaultLogger::get()->attachStream(new Stream(m_problem), Assimp::Logger::Warn | Assimp::Logger::Err);
-    }
-    ~LogListener() { Assimp::DefaultLogger::kill(); }  // the logger owns the stream
-    LogListener(const LogListener&) = delete;
-    LogListener& operator=(const LogListener&) = delete;
-
-    // "" or what was dropped.
-    const std::string& problem() const { return m_problem; }
-
-private:
-    struct Stream : Assimp::LogStream
-    {
-        explicit Stream(std::string& problem) : m_problem(problem) {}
-        void write(const char* message) override
-        {
-            const std::string text = message;
-            if (text.find("out-of-range") != std::string::npos || text.find("out of range") != std::string::npos)
-                m_problem = "face index is out of range";
-        }
-        std::string& m_problem;
-    };
-    std::string m_problem;
-};
-
-// What Assimp's steps after reading take for granted, with an assertion: every face has a corner, and each is a vertex.
-std::string faceProblem(const aiScene& scene)
-{
-    for (unsigned int m = 0; m < scene.mNumMeshes; ++m)
-    {
-        const aiMesh& part = *scene.mMeshes[m];
-        for (unsigned int f = 0; f < part.mNumFaces; ++f)
-        {
-            const aiFace& face = part.mFaces[f];
-            if (face.mNumIndices == 0) return "face " + std::to_string(f + 1) + ": no corners";
-            for (unsigned int corner = 0; corner < face.mNumIndices; ++corner)
-                if (face.mIndices[corner] >= part.mNumVertices)
-                    return "face " + std::to_string(f + 1) + ": index " + std::to_string(face.mIndices[corner]) +
-                           " is out of range (" + std::to_string(part.mNumVertices) + " vertices)";
-        }
-    }
-    return "";
+    if (!readMeshFile(firstPath, first, error)) return false;
+    if (firstPath != secondPath) return readMeshFile(secondPath, second, error);
+    second = first;
+    return true;
 }
 
-bool reads(const aiImporterDesc& reader, const std::string& ending)
+void addNotes(const std::string& path, const std::vector<std::string>& notes, LoadReport& report)
 {
-    std::istringstream endings(reader.mFileExtensions);
-    for (std::string known; endings >> known;)
-        if ("." + known == ending) return true;
-    return false;
+    for (const std::string& note : notes)
+        report.m_notes.push_back(path + ": " + note);
 }
 
-// A file is what its ending says: Assimp would go by its content where no reader of that ending wants it, past what is
-// looked through here before.
-void keepReadersOf(const std::string& ending, Assimp::Importer& importer)
+// Triangles of a file that has been read, with positions less the report's centre. `end`, where it is not null, has the
+// positions of the same vertices at another time.
+std::string makeMesh(const std::string& path, const MeshFile& file, Joining joining, TriangleMesh& mesh,
+                     std::vector<float>* end, LoadReport& report)
 {
-    for (std::size_t i = importer.GetImporterCount(); i-- > 0;)
-    {
-        if (reads(*importer.GetImporterInfo(i), ending)) continue;
-        Assimp::BaseImporter* reader = importer.GetImporter(i);
-        importer.UnregisterLoader(reader);
-        delete reader;  // unregistered, it is the caller's
-    }
-}
-
-// `bytes` stand for the file's own where there are any.
-std::string importMesh(const std::string& path, const std::string& bytes, TriangleMesh& mesh)
-{
-    const LogListener listener;
-    Assimp::Importer importer;
-    const std::string ending = endingOf(path);
-    keepReadersOf(ending, importer);
-    const aiScene* scene = bytes.empty()
-                               ? importer.ReadFile(path, 0)
-                               : importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, ending.c_str() + 1);
-    if (!listener.problem().empty()) return listener.problem();
-    const std::string problem = scene == nullptr ? "" : faceProblem(*scene);
+    TriangleMesh made;
+    std::vector<std::string> notes = file.m_notes;
+    std::string problem = triangulate(file, made.m_triangles, notes);
+    if (!problem.empty()) return path + ": " + problem;
+    problem = roundPositions(path, file, report.m_centre, made.m_positions);
     if (!problem.empty()) return problem;
-    if (scene != nullptr) scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
-    if (scene == nullptr || scene->mRootNode == nullptr) return "not a mesh: " + oneLine(importer.GetErrorString());
-    return appendNode(*scene, *scene->mRootNode, aiMatrix4x4(), mesh);
-}
-
-// The mesh as the file has it, or why it cannot be had. `structure`, where it is given, gets that of an OBJ file.
-std::string readMesh(const std::string& path, TriangleMesh& mesh, std::string* structure = nullptr)
-{
-    std::string bytes;
-    std::string problem = readWholeFile(path, "mesh", bytes);
-    const std::string ending = endingOf(path);
-    if (problem.empty() && ending == ".obj") problem = scanObj(bytes);
-    if (problem.empty() && ending == ".ply") problem = scanPly(bytes);
-    if (problem.empty() && ending == ".stl") problem = scanStl(bytes);
-    if (problem.empty() && ending == ".glb") problem = scanGlb(bytes);
-    if (problem.empty() && ending == ".gltf") problem = scanGltf(bytes);
-    if (problem.empty()) problem = importMesh(path, ending == ".ply" ? plyWithLineEnd(bytes) : "", mesh);
-    if (structure && ending == ".obj") *structure = objStructure(bytes);
-    return problem.empty() ? "" : path + ": " + problem;
+    const bool byPosition = joining == Joining::ByPosition || !file.m_hasIndices;
+    std::vector<float> start;
+    if (end == nullptr) start = made.m_positions;
+    std::vector<float>& moved = end ? *end : start;
+    const std::size_t dropped = byPosition ? joinVertices(made, moved) : keepUsedVertices(made, moved);
+    if (made.triangleCount() == 0) return path + ": no triangles";
+    if (dropped > 0) notes.push_back(counted(dropped, "triangle") + " with a vertex twice left out");
+    report.m_isJoined = report.m_isJoined || byPosition;
+    addNotes(path, notes, report);
+    mesh = std::move(made);
+    return "";
 }
 }  // namespace
 
 bool loadMesh(const std::string& path, TriangleMesh& mesh, std::string& error)
 {
-    TriangleMesh loaded;
-    std::string problem = readMesh(path, loaded);
-    if (problem.empty()) joinVertices(loaded);
-    if (problem.empty() && loaded.triangleCount() == 0) problem = path + ": no triangles";
+    LoadReport report;
+    return loadMesh(path, Joining::ByPosition, mesh, report, error);
+}
+
+bool loadMesh(const std::string& path, Joining joining, TriangleMesh& mesh, LoadReport& report, std::string& error)
+{
+    MeshFile file;
+    report = LoadReport();
+    if (!readMeshFile(path, file, error)) return false;
+    chooseCentre(path, {&file}, report);
+    const std::string problem = makeMesh(path, file, joining, mesh, nullptr, report);
+    if (!problem.empty()) error = problem;
+    return problem.empty();
+}
+
+bool loadMeshes(const std::string& firstPath, const std::string& secondPath, Joining joining, TriangleMesh& first,
+                TriangleMesh& second, LoadReport& report, std::string& error)
+{
+    MeshFile firstFile, secondFile;
+    report = LoadReport();
+    if (!readBoth(firstPath, secondPath, firstFile, secondFile, error)) return false;
+    chooseCentre(firstPath + ", " + secondPath, {&firstFile, &secondFile}, report);
+    std::string problem = makeMesh(firstPath, firstFile, joining, first, nullptr, report);
+    if (problem.empty()) problem = makeMesh(secondPath, secondFile, joining, second, nullptr, report);
+    if (!problem.empty()) error = problem;
+    return problem.empty();
+}
+
+bool loadMotion(const std::string& startPath, const std::string& endPath, Joining joining, TriangleMesh& mesh,
+                std::vector<float>& end, LoadReport& report, std::string& error)
+{
+    MeshFile first, last;
+    report = LoadReport();
+    if (!readBoth(startPath, endPath, first, last, error)) return false;
+    std::string problem;
+    if (first.vertexCount() != last.vertexCount())
+        problem = endPath + ": has " + std::to_string(last.vertexCount()) + " vertices, " + startPath + " has " +
+                  std::to_string(first.vertexCount());
+    else if (first.m_faceEnds != last.m_faceEnds || first.m_corners != last.m_corners)
+        problem = endPath + ": does not have the faces of " + startPath + " in the same order";
+    if (problem.empty()) chooseCentre(startPath + ", " + endPath, {&first, &last}, report);
+    std::vector<float> moved;
+    if (problem.empty()) problem = roundPositions(endPath, last, report.m_centre, moved);
+    if (problem.empty()) problem = makeMesh(startPath, first, joining, mesh, &moved, report);
+    addNotes(endPath, last.m_notes, report);
     if (problem.empty())
-        mesh = std::move(loaded);
+        end = std::move(moved);
     else
         error = problem;
     return problem.empty();
@@ -198,23 +222,7 @@ bool loadMesh(const std::string& path, TriangleMesh& mesh, std::string& error)
 bool loadMotion(const std::string& startPath, const std::string& endPath, TriangleMesh& mesh, std::vector<float>& end,
                 std::string& error)
 {
-    TriangleMesh first, last;
-    std::string firstStructure, lastStructure;
-    std::string problem = readMesh(startPath, first, &firstStructure);
-    if (problem.empty()) problem = readMesh(endPath, last, &lastStructure);
-    if (problem.empty() && (first.vertexCount() != last.vertexCount() || first.m_triangles != last.m_triangles))
-        problem = endPath + ": has not the vertices and triangles of " + startPath;
-    if (problem.empty() && firstStructure != lastStructure)
-        problem = endPath + ": has not the faces of " + startPath + " in their order";
-    if (problem.empty()) joinVertices(first, last.m_positions);
-    if (problem.empty() && first.triangleCount() == 0) problem = startPath + ": no triangles";
-    if (problem.empty())
-    {
-        mesh = std::move(first);
-        end = std::move(last.m_positions);
-    }
-    else
-        error = problem;
-    return problem.empty();
+    LoadReport report;
+    return loadMotion(startPath, endPath, Joining::ByPosition, mesh, end, report, error);
 }
 }  // namespace drape

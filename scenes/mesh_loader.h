@@ -1,10 +1,13 @@
-// Loads a triangle mesh from a file: OBJ, PLY, STL, glTF and what else Assimp reads.
+// Loads triangle meshes from OBJ, PLY, STL and glTF files.
 //
-// Polygons become triangles, the transforms of the file's nodes are applied, vertices at equal positions are joined,
-// triangles that repeat a vertex are dropped. A file with an error is refused, never repaired: false, and `error` holds
-// one line with file, element (counted from 1, as editors do) and reason. Uses Assimp's logger, so one call at a time.
+// Polygons become triangles, and triangles that repeat a vertex are dropped, as are vertices without triangles.
+// Positions are read in double precision and rounded to float once. Where a mesh lies so far from the origin that
+// floats would keep fewer than an eighth of what they could, a centre is subtracted before: LoadReport says which, and
+// how much the rounding changed. Damaged files are refused: false, and `error` holds one line with file, element
+// (counted from 1) and reason. Each file is parsed once.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -12,10 +15,33 @@
 
 namespace drape
 {
-bool loadMesh(const std::string& path, TriangleMesh& mesh, std::string& error);
+enum class Joining
+{
+    ByIndex,    // vertices are those of the file's indices; joined by position where a file has none, as STL
+    ByPosition  // vertices at equal positions are joined: what a solid obstacle needs
+};
 
-// A mesh that moves: the same vertices and triangles in both files, positions at the start and at the end (x y z per
-// vertex). Vertices that are at one place in both are joined.
+struct LoadReport
+{
+    bool m_isJoined = false;           // whether vertices of any file were joined by position
+    std::array<double, 3> m_centre{};  // subtracted from all positions of all files, in their unit; often zero
+    double m_rounding = 0;             // the largest change of a coordinate by rounding, in the files' unit
+    std::vector<std::string> m_notes;  // what was left out or lost, one line each
+
+    bool isCentred() const { return m_centre != std::array<double, 3>{}; }
+};
+
+bool loadMesh(const std::string& path, TriangleMesh& mesh, std::string& error);
+bool loadMesh(const std::string& path, Joining joining, TriangleMesh& mesh, LoadReport& report, std::string& error);
+
+// Two meshes in one frame: the same centre is subtracted from both.
+bool loadMeshes(const std::string& firstPath, const std::string& secondPath, Joining joining, TriangleMesh& first,
+                TriangleMesh& second, LoadReport& report, std::string& error);
+
+// A mesh that moves: both files have the same number of vertices and the same faces in the same order. `end` gets the
+// positions at the end, x y z per vertex of the mesh. Vertices are joined where they are at one position in both files.
+bool loadMotion(const std::string& startPath, const std::string& endPath, Joining joining, TriangleMesh& mesh,
+                std::vector<float>& end, LoadReport& report, std::string& error);
 bool loadMotion(const std::string& startPath, const std::string& endPath, TriangleMesh& mesh, std::vector<float>& end,
                 std::string& error);
 }  // namespace drape

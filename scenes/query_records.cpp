@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "scenes/read_file.h"
+#include "mesh_io/read_file.h"
 
 namespace drape
 {

@@ -19,9 +19,9 @@ constexpr double kMostThickness = 0.25;
 constexpr double kLeastRoundings = 8;
 
 // Suggests a shape where the name is neither a file nor a shape.
-bool makeObstacle(const std::string& name, TriangleMesh& mesh, std::string& error)
+bool makeObstacle(const std::string& name, TriangleMesh& mesh, LoadReport& report, std::string& error)
 {
-    if (makeShape(name, mesh) || loadMesh(name, mesh, error)) return true;
+    if (makeShape(name, mesh) || loadMesh(name, Joining::ByPosition, mesh, report, error)) return true;
     std::error_code code;
     if (std::filesystem::exists(name, code) || code) return false;
     const std::string nearest = didYouMean(name, shapeNames());
@@ -35,7 +35,9 @@ bool makeObstacle(const std::string& name, TriangleMesh& mesh, std::string& erro
 
 bool makeDropScene(const Options& options, DropScene& scene, std::string& error)
 {
-    if (!makeObstacle(options.m_obstacle, scene.m_obstacle, error)) return false;
+    LoadReport report;
+    if (!makeObstacle(options.m_obstacle, scene.m_obstacle, report, error)) return false;
+    scene.m_notes = report.m_notes;
     if (!(boundsOf(scene.m_obstacle).largestExtent() > 0))
     {
         error = options.m_obstacle + ": all vertices: the mesh has no extent";

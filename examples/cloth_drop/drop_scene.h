@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "examples/cloth_drop/options.h"
 #include "scenes/cloth_grid.h"
@@ -15,10 +16,11 @@ struct DropScene
 {
     TriangleMesh m_obstacle;
     ClothGrid m_cloth;
-    double m_dropSpeed = 0;  // m/s downwards, of the whole cloth at the start
-    double m_dt = 0;         // s
-    double m_thickness = 0;  // m; each side's margin is half of it
-    double m_mass = 1.0;     // kg, of the cloth
+    double m_dropSpeed = 0;            // m/s downwards, of the whole cloth at the start
+    double m_dt = 0;                   // s
+    double m_thickness = 0;            // m; each side's margin is half of it
+    double m_mass = 1.0;               // kg, of the cloth
+    std::vector<std::string> m_notes;  // what was left out or lost of the obstacle's file, one line each
 };
 
 // False, with one line in `error`, when the obstacle cannot be had.

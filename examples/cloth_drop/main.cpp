@@ -132,6 +132,8 @@ int run(const Options& options)
     DropScene scene;
     if (!makeDropScene(options, scene, error)) return fail(kExitBadInput, error);
     if (options.m_streamSteps) streamBuiltIn(options, scene);
+    for (const std::string& note : scene.m_notes)
+        std::cerr << "cloth_drop: " << note << "\n";
     if (!prepareOutputs(options, error)) return fail(kExitBadInput, error);
     std::vector<NamedRun> runs(1);
     runs[0].m_name = options.usesDrape() ? "drape" : "bullet";

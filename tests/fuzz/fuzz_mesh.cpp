@@ -1,6 +1,6 @@
 // Any bytes as a mesh file: the loader refuses them in one line, or gives a mesh whose every index and number is good.
 //
-// The first byte chooses the format.
+// The first byte chooses the format and which vertices are joined.
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -18,7 +18,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const drape::fuzz::InputFile file(endings[data[0] % 5], data + 1, size - 1);
     drape::TriangleMesh mesh;
     std::string error;
-    const bool loaded = drape::loadMesh(file.path(), mesh, error);
+    const drape::Joining joining = data[0] / 5 % 2 == 0 ? drape::Joining::ByPosition : drape::Joining::ByIndex;
+    drape::LoadReport report;
+    const bool loaded = drape::loadMesh(file.path(), joining, mesh, report, error);
     require(loaded == error.empty());
     require(error.find('\n') == std::string::npos);
     if (!loaded) return 0;
@@ -27,5 +29,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         require(index >= 0 && std::size_t(index) < mesh.vertexCount());
     for (float coordinate : mesh.m_positions)
         require(std::isfinite(coordinate));
+    require(std::isfinite(report.m_rounding));
     return 0;
 }

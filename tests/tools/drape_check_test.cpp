@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
+
+#include <sys/stat.h>
 
 #include <nlohmann/json.hpp>
 
@@ -146,7 +149,6 @@ TEST_F(Check, stepFindsWhatPasses)
     EXPECT_EQ(answer({"step", above, above, "--separation", "0.6"}).at("vf_hits"), 3);
 }
 
-// Which vertex a corner of an OBJ file's face is.
 TEST_F(Check, stepNeedsTheFacesInTheirOrder)
 {
     const std::string vertices = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\n", faces = "f 1 2 3\nf 1 3 4\n";
@@ -154,14 +156,86 @@ TEST_F(Check, stepNeedsTheFacesInTheirOrder)
     for (const char* others : {"f 1 3 4\nf 1 2 3\n", "f 2 3 1\nf 1 3 4\n", "f 1 2 3\nf 1 2 4\n"})
         expectRefused(run({"step", start, write("end.obj", vertices + "usemtl a\n" + others)}),
                       {"end.obj", "start.obj", "order"});
+    // Materials and groups do not reorder faces.
     const std::string sorted =
         write("sorted.obj", vertices + "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\nusemtl a\n" + faces);
     const std::string others =
         write("others.obj", vertices + "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\nusemtl c\n" + faces);
-    expectRefused(run({"step", sorted, others}), {"others.obj", "sorted.obj"});
+    EXPECT_EQ(answer({"step", sorted, others}).at("vf_hits"), 0);
     // The same by other names.
     const std::string renamed = "mtllib end.mtl\n" + vertices + "# end\nusemtl b\nf 1//1 -3 -2\nf 1 3/1 4\nvn 0 0 1\n";
     EXPECT_EQ(answer({"step", start, write("renamed.obj", renamed)}).at("vf_hits"), 0);
+}
+
+// Four bars meet at one position, each with a vertex of its own there: they touch. Bars that share the vertex by index
+// do not count.
+TEST_F(Check, pairsTakeIndexedFilesByTheirIndices)
+{
+    const char* ends[4] = {"1 0 0\nv 1 0 1", "0 1 0\nv 0 1 1", "-1 0 0\nv -1 0 1", "0 -1 0\nv 0 -1 1"};
+    std::string apart, faces, shared = "v 0 0 0\n", sharedFaces, stl = "solid bars\n";
+    for (int i = 0; i < 4; ++i)
+    {
+        apart += "v 0 0 0\nv " + std::string(ends[i]) + "\n";
+        faces +=
+            "f " + std::to_string(3 * i + 1) + " " + std::to_string(3 * i + 2) + " " + std::to_string(3 * i + 3) + "\n";
+        shared += "v " + std::string(ends[i]) + "\n";
+        sharedFaces += "f 1 " + std::to_string(2 * i + 2) + " " + std::to_string(2 * i + 3) + "\n";
+        const std::string end = ends[i];
+        const std::size_t second = end.find('v');
+        stl += "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex " + end.substr(0, second) + "vertex " +
+               end.substr(second + 2) + "\nendloop\nendfacet\n";
+    }
+    const std::string apartFile = write("apart.obj", apart + faces), stlFile = write("bars.stl", stl + "endsolid\n");
+    const Json byIndex = answer({"pairs", apartFile});
+    EXPECT_EQ(byIndex.at("vertices"), "by index");
+    EXPECT_EQ(byIndex.at("pairs_within"), 6);
+    EXPECT_EQ(byIndex.at("intersecting_pairs"), 6);
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"pairs", apartFile, "--join"}, {"pairs", stlFile}})
+    {
+        const Json joined = answer(arguments);
+        EXPECT_EQ(joined.at("vertices"), "joined by position");
+        EXPECT_EQ(joined.at("pairs_within"), 0);
+    }
+    EXPECT_EQ(answer({"pairs", write("shared.obj", shared + sharedFaces)}).at("pairs_within"), 0);
+    const Json step = answer({"step", apartFile, apartFile});
+    EXPECT_EQ(step.at("vertices"), "by index");
+    EXPECT_GT(step.at("vf_hits"), 0);
+    EXPECT_EQ(answer({"step", apartFile, apartFile, "--join"}).at("vf_hits"), 0);
+    for (const char* command : {"pairs", "step"})
+    {
+        const ToolRun help = run({command, "--help"});
+        for (const char* word : {"--join", "STL", "OBJ, PLY, STL, glTF"})
+            EXPECT_NE(help.m_out.find(word), std::string::npos) << help.m_out;
+    }
+}
+
+// As surveys have them: float32 would keep half a metre.
+TEST_F(Check, coordinatesFarFromTheOriginKeepTheirDigits)
+{
+    const auto triangleAt = [](double x)
+    {
+        char text[160];
+        std::snprintf(text, sizeof text, "v %.6f 480000.1 0\nv %.6f 480001.1 0\nv %.6f 480000.1 1\nf 1 2 3\n", x, x, x);
+        return std::string(text);
+    };
+    const std::string a = write("a.obj", triangleAt(5400000.1)), b = write("b.obj", triangleAt(5400000.11));
+    EXPECT_EQ(answer({"pairs", a, b, "--thickness", "0.0101"}).at("pairs_within"), 1);
+    const Json apart = answer({"pairs", a, b, "--thickness", "0.0099"});
+    EXPECT_EQ(apart.at("pairs_within"), 0);
+    ASSERT_TRUE(apart.contains("centre"));
+    EXPECT_NEAR(apart.at("centre").at(0).get<double>(), 5400000, 1);
+    EXPECT_LT(apart.at("rounding_error").get<double>(), 1e-7);
+    EXPECT_NE(apart.at("notes").at(0).get<std::string>().find("centred"), std::string::npos);
+}
+
+TEST_F(Check, readsDocumentedFormatsAlone)
+{
+    expectRefused(run({"pairs", write("mesh.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")}),
+                  {"mesh.off", "not a mesh", ".ply"});
+    ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+    expectRefused(run({"pairs", path("pipe")}), {"is a pipe"});
+    expectRefused(run({"ccd", path("pipe")}), {"is a pipe", "file of records"});
 }
 
 // A hundred thousand triangles at one place, all but coincident so that none is a repeated one: told at once, with the

@@ -129,14 +129,33 @@ bool answerTriangles(const Options& options, Json& answer, std::string& error, i
     return false;
 }
 
+Joining joiningOf(const Options& options)
+{
+    return options.m_join ? Joining::ByPosition : Joining::ByIndex;
+}
+
+// Says how the files became meshes: which vertices are one, and what rounding to float32 changed.
+void addReport(const LoadReport& report, Json& answer)
+{
+    answer["vertices"] = report.m_isJoined ? "joined by position" : "by index";
+    answer["rounding_error"] = report.m_rounding;
+    if (report.isCentred()) answer["centre"] = report.m_centre;
+    if (!report.m_notes.empty()) answer["notes"] = report.m_notes;
+}
+
 bool answerPairs(const Options& options, Json& answer, std::string& error, int& exitCode)
 {
     const bool two = !options.m_second.empty();
     TriangleMesh a, b;
     exitCode = kExitBadInput;
-    if (!loadMesh(options.m_first, a, error) || (two && !loadMesh(options.m_second, b, error))) return false;
+    LoadReport report;
+    const Joining joining = joiningOf(options);
+    if (two ? !loadMeshes(options.m_first, options.m_second, joining, a, b, report, error)
+            : !loadMesh(options.m_first, joining, a, report, error))
+        return false;
     if (refuseFar(options.m_first, a.m_positions, error) || refuseFar(options.m_second, b.m_positions, error))
         return false;
+    addReport(report, answer);
     const std::unique_ptr<Queries> queries = openQueries(options, answer, error, exitCode);
     if (!queries) return false;
     const MeshDescription second = describeMesh(b);
@@ -161,8 +180,10 @@ bool answerStep(const Options& options, Json& answer, std::string& error, int& e
     TriangleMesh mesh;
     std::vector<float> end;
     exitCode = kExitBadInput;
-    if (!loadMotion(options.m_first, options.m_second, mesh, end, error)) return false;
+    LoadReport report;
+    if (!loadMotion(options.m_first, options.m_second, joiningOf(options), mesh, end, report, error)) return false;
     if (refuseFar(options.m_first, mesh.m_positions, error) || refuseFar(options.m_second, end, error)) return false;
+    addReport(report, answer);
     const std::unique_ptr<Queries> queries = openQueries(options, answer, error, exitCode);
     if (!queries) return false;
     MeshMotion found;

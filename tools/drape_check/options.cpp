@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "mesh_io/read_mesh_file.h"
 #include "tools/common/arguments.h"
 #include "tools/common/program.h"
 
@@ -9,7 +10,9 @@ namespace drape
 {
 namespace
 {
-void addFile(CLI::App& command, const char* name, std::string& target, const char* what, bool needed = true)
+const std::string kMeshFile = std::string("mesh file (") + kMeshFormats + ")";
+
+void addFile(CLI::App& command, const char* name, std::string& target, const std::string& what, bool needed = true)
 {
     CLI::Option* option = command.add_option(name, target, what)->type_name("PATH");
     if (needed) option->required();
@@ -37,6 +40,14 @@ void addLimit(CLI::App& command, Options& options)
         ->check(CLI::Range(std::size_t(1), std::size_t(1) << 28));
 }
 
+void addJoin(CLI::App& command, Options& options)
+{
+    command.add_flag(
+        "--join", options.m_join,
+        "join vertices at equal positions; without it vertices are those of the file's indices, and joined "
+        "only where it has none (STL)");
+}
+
 void addCcd(CLI::App& app, Options& options)
 {
     CLI::App& command = *app.add_subcommand("ccd", "do moving vertices, faces and edges touch? Records with answers");
@@ -59,17 +70,20 @@ void addTriangles(CLI::App& app, Options& options, std::string& mode)
 void addMeshes(CLI::App& app, Options& options)
 {
     CLI::App& pairs = *app.add_subcommand("pairs", "which triangles of two meshes, or of one, are near or intersect?");
-    addFile(pairs, "A", options.m_first, "mesh file");
-    addFile(pairs, "B", options.m_second, "mesh file; without it A with itself, less pairs that share a vertex", false);
+    addFile(pairs, "A", options.m_first, kMeshFile);
+    addFile(pairs, "B", options.m_second,
+            "mesh file; without it A with itself, less pairs that share a vertex by index (see --join)", false);
     pairs.add_option("--thickness", options.m_thickness, "near means no farther than this, m")
         ->check(CLI::Validator(numberAbove(0, true, "0 or more"), ""));
+    addJoin(pairs, options);
     addLimit(pairs, options);
     pairs.callback([&options] { options.m_command = Command::Pairs; });
 
     CLI::App& step = *app.add_subcommand("step", "which features of a moving mesh touch one another during a step?");
-    addFile(step, "A0", options.m_first, "mesh file: the start");
-    addFile(step, "A1", options.m_second, "mesh file: the end, with the same vertices and triangles");
+    addFile(step, "A0", options.m_first, kMeshFile + ": the start");
+    addFile(step, "A1", options.m_second, "mesh file: the end, with the same vertices and faces");
     addMotionOptions(step, options);
+    addJoin(step, options);
     addLimit(step, options);
     step.callback([&options] { options.m_command = Command::Step; });
 }

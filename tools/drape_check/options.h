@@ -23,6 +23,7 @@ struct Options
     std::string m_first, m_second;                               // files; m_second is empty for a mesh with itself
     double m_thickness = 0;                                      // pairs
     std::size_t m_candidateLimit = Settings().m_candidateLimit;  // pairs and step
+    bool m_join = false;                                         // pairs and step: join vertices at equal positions
     TriangleTest m_test = TriangleTest::Certified;
     double m_separation = 0;  // ccd and step
     double m_tolerance = 0;
