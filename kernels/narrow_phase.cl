@@ -67,15 +67,15 @@ static KindShare kindShare(const uint kind)
     return share;
 }
 
-// A work-item takes every stride-th of the tests that narrowPhaseFeature left to the continuous test and lists their hits.
-// None of these is a node's: its way crosses a face that rests in closed form.
-__kernel void narrowPhaseSwept(DRAPE_FEATURE_ARGUMENTS, __global const uint* restrict swept)
+// A work-item takes every stride-th of the tests that narrowPhaseFeature left to the continuous test and lists their hits,
+// unless there are more than mostSwept. None of these is a node's: its way crosses a face that rests in closed form.
+__kernel void narrowPhaseSwept(DRAPE_FEATURE_ARGUMENTS, __global const uint* restrict swept, const uint mostSwept)
 {
     DRAPE_FEATURE_VIEWS;
     uint searches = 0;
     ClothView cloth = DRAPE_CLOTH_VIEW(&searches);
     const KindShare share = kindShare(1);
-    const uint count = counters->m_swept;
+    const uint count = counters->m_swept <= mostSwept ? counters->m_swept : 0;
     for (uint i = share.m_first; i < count; i += share.m_stride)
     {
         const FeatureTest test = tests[swept[i]];
@@ -86,14 +86,15 @@ __kernel void narrowPhaseSwept(DRAPE_FEATURE_ARGUMENTS, __global const uint* res
     }
 }
 
-// Both in one launch, for tests that are few: each runs the continuous test where it needs it.
-__kernel void narrowPhaseFew(DRAPE_FEATURE_ARGUMENTS)
+// Both in one launch, for tests that are few: each runs the continuous test where it needs it. Nothing is done where there
+// are more than mostTests.
+__kernel void narrowPhaseFew(DRAPE_FEATURE_ARGUMENTS, const uint mostTests)
 {
     DRAPE_FEATURE_VIEWS;
     uint searches = 0;
     ClothView cloth = DRAPE_CLOTH_VIEW(&searches);
     const KindShare share = kindShare(0);
-    const uint count = min(counters->m_candidates, testCapacity);
+    const uint count = counters->m_candidates <= mostTests ? min(counters->m_candidates, testCapacity) : 0;
     for (uint i = share.m_first; i < count; i += share.m_stride)
     {
         const FeatureTest test = tests[i];

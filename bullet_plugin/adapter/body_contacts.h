@@ -66,6 +66,8 @@ struct BodyContacts
     btScalar m_leastThickness = SIMD_INFINITY, m_mostThickness = 0;  // of the body's pairs
     std::vector<FeatureContacts> m_features;                         // in canonical order
     MotionLimit m_limit;
+    bool m_leftOut = false;              // of this step: the body collides with nothing
+    bool m_heldTogether = false;         // since the last detection, see stretch.h
     bool m_mayHavePassed = false;        // a contact is left so near that a surface may have been passed
     std::vector<TangledPair> m_tangled;  // of the body's pairs, those that are pushed apart
     bool m_wasTangled = false;           // in this step or one shortly before
@@ -82,6 +84,7 @@ struct BodyContacts
         m_mostThickness = 0;
         m_features.clear();
         m_limit.clear();
+        m_leftOut = m_heldTogether = false;
         m_mayHavePassed = false;
         m_tangled.clear();
         m_wasTangled = false;

@@ -1,14 +1,19 @@
 #include "bullet_plugin/adapter/collision_step.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
+#include "bullet_plugin/adapter/stretch.h"
 #include "bullet_plugin/adapter/vectors.h"
 
 namespace drape
 {
 namespace
 {
+// Of cloth that had come apart before, and is held together.
+constexpr float kHeldAllowance = 2;
+
 // Whether contacts could move any of its nodes.
 bool anyMoves(const btSoftBody& body)
 {
@@ -169,8 +174,26 @@ void CollisionStep::submit(Detection detection)
 {
     uploadNodes(detection);
     for (const Pair& pair : m_pairs)
+    {
+        if (bodyOf(pair.m_cloth)->m_leftOut) continue;
         m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_thickness), tubeOf(pair));
+    }
     m_state.pipeline().submit();
+}
+
+// Takes the contacts of the detection under way; of another one where bodies were held together, as they are now.
+void CollisionStep::receiveHeld()
+{
+    receiveAll();
+    if (!m_heldTogether) return;
+    m_state.m_statistics.m_status &= ~std::uint32_t(kStepClothsLeftOut);
+    m_state.m_statistics.m_clothsLeftOut = 0;
+    m_state.m_statistics.m_status |= kStepMotionHeldBack;
+    submit(Detection::Again);
+    receiveAll();
+    for (BodyContacts& body : m_bodies)
+        body.m_heldTogether = false;
+    m_heldTogether = false;
 }
 
 void CollisionStep::receive(const ContactList& contacts)
@@ -184,7 +207,7 @@ void CollisionStep::receive(const ContactList& contacts)
         const std::size_t begin = i;
         while (i < contacts.size() && contacts[i].m_slot == first.m_slot)
             ++i;
-        if (!body) continue;
+        if (!body || body->m_leftOut) continue;
         const std::uint32_t count = static_cast<std::uint32_t>(i - begin);
         if (body->m_tangled.empty())
             addContacts(*body, &first, count, cloth);
@@ -207,12 +230,22 @@ void CollisionStep::addContacts(BodyContacts& body, const Contact* first, std::u
     body.m_features.push_back(feature);
 }
 
+// How many times as many tests as ordinary motion needs the cloth may make.
+float CollisionStep::allowanceOf(MeshId cloth) const
+{
+    const std::size_t index = m_byCloth.at(cloth);
+    const BodyContacts& body = m_bodies[index];
+    const Stretch stretch = stretchOf(*body.m_body, m_mirrors[index]->faces(), body.m_limit.paths());
+    if (!(stretch.m_start > kMostStretch) && (body.m_heldTogether || !(stretch.m_end > kMostStretch))) return HUGE_VALF;
+    return body.m_heldTogether ? kHeldAllowance : 1.0f;
+}
+
 // Waits for the detection under way and takes its contacts in place of any earlier ones of this step.
 void CollisionStep::receiveAll()
 {
     for (BodyContacts& body : m_bodies)
         body.m_features.clear();
-    const ContactList contacts = m_state.pipeline().finish();
+    const ContactList contacts = m_state.pipeline().finish([this](MeshId cloth) { return allowanceOf(cloth); });
     const StepStatistics before = m_state.m_statistics;
     StepStatistics& all = m_state.m_statistics;
     all = m_state.pipeline().statistics();
@@ -236,14 +269,20 @@ void CollisionStep::receiveAll()
     receive(contacts);
 }
 
-bool CollisionStep::cutAtImpactsOf(BodyContacts& body, Cut cut)
+// The body's contacts that are met on its nodes' paths.
+std::vector<StepContact> CollisionStep::impactsOf(const BodyContacts& body) const
 {
     std::vector<StepContact> impacts;
     for (const FeatureContacts& feature : body.m_features)
         for (std::uint32_t i = 0; feature.m_leastTime < 1 && i < feature.m_count; ++i)
             if (feature.m_contacts[i].m_time < 1)
                 impacts.push_back(m_state.m_found.resolve(*body.m_body, body.m_limit.paths(), feature.m_contacts[i]));
-    return cutAtImpacts(*body.m_body, body.m_limit.paths(), impacts, cut);
+    return impacts;
+}
+
+bool CollisionStep::cutAtImpactsOf(BodyContacts& body, Cut cut)
+{
+    return cutAtImpacts(*body.m_body, body.m_limit.paths(), impactsOf(body), cut);
 }
 
 bool CollisionStep::cutPaths()
@@ -265,12 +304,12 @@ void CollisionStep::finish()
     m_state.m_statistics.m_startsIntersecting = m_starts.intersectingPairs();
     m_state.m_statistics.m_startIntersections = m_starts.intersections();
     if (m_starts.intersectingPairs() > 0) m_state.m_statistics.m_status |= kStepStartsIntersecting;
-    receiveAll();
+    receiveHeld();
     const std::size_t kept = m_state.m_statistics.m_obstaclesKept;
     for (int detections = 1; detections < kMostDetections && cutPaths(); ++detections)
     {
         submit(Detection::Again);
-        receiveAll();
+        receiveHeld();
     }
     m_state.m_statistics.m_obstaclesKept = kept;  // not those that the step itself brought up to date
 }
@@ -283,6 +322,28 @@ bool CollisionStep::cutStrayed(const std::vector<bool>& strayed, Cut cut)
     return any;
 }
 
+// After the last cut. Bodies whose paths still pass a surface are checked where they are in the next step; but for what
+// is at nodes that go where an app takes them.
+void CollisionStep::reportPassed(const std::vector<bool>& strayed)
+{
+    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+    {
+        if (!strayed[i]) continue;
+        std::vector<StepContact> impacts = impactsOf(m_bodies[i]);
+        const std::vector<btScalar>& inverseMass = m_bodies[i].m_limit.paths().m_inverseMass;
+        const auto isHeld = [&](const StepContact& impact)
+        {
+            return std::any_of(impact.m_nodes, impact.m_nodes + 3,
+                               [&](int node)
+                               { return node >= 0 && !(inverseMass[static_cast<std::size_t>(node)] > 0); });
+        };
+        impacts.erase(std::remove_if(impacts.begin(), impacts.end(), isHeld), impacts.end());
+        if (!anyCuts(impacts)) continue;
+        m_state.m_statistics.m_status |= kStepSurfacePassed;
+        m_mirrors[i]->startAnew();
+    }
+}
+
 void CollisionStep::checkStrayed()
 {
     std::vector<bool> strayed;
@@ -292,10 +353,15 @@ void CollisionStep::checkStrayed()
     // What is reported stays what the solver was given.
     m_state.m_found.keepList();
     const StepStatistics before = m_state.m_statistics;
-    for (int detections = 1; detections <= kMostDetections; ++detections)
+    for (int detections = 1;; ++detections)
     {
         submit(Detection::Again);
-        receiveAll();
+        receiveHeld();
+        if (detections > kMostDetections)
+        {
+            reportPassed(strayed);
+            break;
+        }
         if (!cutStrayed(strayed, detections < kMostDetections ? Cut::EachNode : Cut::WholeBody)) break;
     }
     m_state.m_statistics.m_contacts = before.m_contacts;

@@ -66,6 +66,7 @@ private:
     void addHeldContacts(BodyContacts& body, const Contact* first, std::uint32_t count, const ClothFeature& cloth);
     void addPushes(BodyContacts& body);
     void markUnguarded();
+    void leaveOut(std::size_t index);
     float tubeOf(const Pair& pair);
     enum class Detection
     {
@@ -76,7 +77,11 @@ private:
     void uploadNodes(Detection detection);
     void submit(Detection detection);
     void receiveAll();
+    void receiveHeld();
+    float allowanceOf(MeshId cloth) const;
     void receive(const ContactList& contacts);
+    std::vector<StepContact> impactsOf(const BodyContacts& body) const;
+    void reportPassed(const std::vector<bool>& strayed);
     bool cutAtImpactsOf(BodyContacts& body, Cut cut);
     bool cutPaths();
     bool cutStrayed(const std::vector<bool>& strayed, Cut cut);
@@ -92,9 +97,11 @@ private:
     std::vector<const btSoftBody*> m_pinned;
     std::vector<ClothMirror*> m_mirrors;  // one for each of m_bodies
     std::vector<Upload> m_uploads;
+    bool m_heldTogether = false;  // any body, since the last detection
     DeformedPairs m_deformed;
     PairStarts m_starts;
     std::vector<std::vector<int>> m_jumped;           // of checkStarts(), by body
     std::unordered_set<const btSoftBody*> m_invalid;  // with nodes that were not finite; compared, not followed
+    std::unordered_set<const btSoftBody*> m_told;     // that they are left out; likewise
 };
 }  // namespace drape

@@ -1,8 +1,12 @@
 // Handles the start of a step for pairs that are not guarded, and remembers its end for the next step's start.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <utility>
+#include <vector>
 
 #include "bullet_plugin/adapter/collision_step.h"
+#include "bullet_plugin/adapter/stretch.h"
 
 namespace drape
 {
@@ -13,18 +17,27 @@ bool isFinite(const btVector3& v)
     return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
 }
 
-// Nodes are at most kMostTangledSpeed faster than the body as a whole.
-void limitSpeeds(btSoftBody& body)
+// Nodes are at most kMostTangledSpeed faster than the body as a whole; than what holds it, of a body that is left out:
+// what is pulled after pins that were put elsewhere does not shoot past them.
+void limitSpeeds(btSoftBody& body, bool leftOut)
 {
-    btVector3 mean(0, 0, 0);
-    for (int i = 0; i < body.m_nodes.size(); ++i)
-        mean += body.m_nodes[i].m_v;
-    mean /= btScalar(std::max(1, body.m_nodes.size()));
+    std::vector<btVector3> velocities;
+    bool held = false;
     for (int i = 0; i < body.m_nodes.size(); ++i)
     {
-        btVector3& velocity = body.m_nodes[i].m_v;
-        const btScalar speed = (velocity - mean).length();
-        if (speed > kMostTangledSpeed) velocity = mean + (velocity - mean) * (kMostTangledSpeed / speed);
+        const btSoftBody::Node& node = body.m_nodes[i];
+        if (!(movableInverseMass(node) > 0))
+            held = true;
+        else if (isFinite(node.m_v))
+            velocities.push_back(node.m_v);
+    }
+    const btVector3 common = leftOut && held ? btVector3(0, 0, 0) : medianOf(std::move(velocities));
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+    {
+        btSoftBody::Node& node = body.m_nodes[i];
+        if (!(movableInverseMass(node) > 0)) continue;  // it goes where the app takes it
+        const btScalar speed = (node.m_v - common).length();
+        if (speed > kMostTangledSpeed) node.m_v = common + (node.m_v - common) * (kMostTangledSpeed / speed);
     }
 }
 
@@ -112,6 +125,32 @@ void CollisionStep::addPushes(BodyContacts& body)
     body.m_features.insert(body.m_features.begin(), pushes.begin(), pushes.end());  // nodes are first
 }
 
+// A body that needs too many tests is held together, and looked at again. Where that is not enough, because it had come
+// apart before, it is left out of the step, which is told once, until a step takes it again.
+void CollisionStep::leaveOut(std::size_t index)
+{
+    BodyContacts& body = m_bodies[index];
+    const ClothFaces& faces = m_mirrors[index]->faces();
+    const Stretch stretch = stretchOf(*body.m_body, faces, body.m_limit.paths());
+    if (stretch.m_end > kMostStretch && !body.m_heldTogether)
+    {
+        holdTogether(*body.m_body, faces, body.m_limit.paths());
+        body.m_heldTogether = m_heldTogether = true;
+        return;
+    }
+    m_mirrors[index]->startAnew();
+    body.m_leftOut = body.m_wasTangled = true;
+    body.m_limit.clear();
+    if (!m_told.insert(body.m_body).second) return;
+    char line[256];
+    std::snprintf(
+        line, sizeof(line),
+        "soft body %p needs more tests than a step may make, and collides with nothing meanwhile; its longest "
+        "edge is %.3g times its longest link at rest",
+        static_cast<const void*>(body.m_body), double(std::max(stretch.m_start, stretch.m_end)));
+    m_state.log(line);
+}
+
 // Cloths that collided with nothing in this step, or whose nodes were not all looked at, are checked before they count
 // as guarded again.
 void CollisionStep::markUnguarded()
@@ -119,7 +158,7 @@ void CollisionStep::markUnguarded()
     for (const MeshId cloth : m_state.pipeline().clothsLeftOut())
     {
         const auto found = m_byCloth.find(cloth);
-        if (found != m_byCloth.end()) m_mirrors[found->second]->startAnew();
+        if (found != m_byCloth.end()) leaveOut(found->second);
     }
     if (m_state.pipeline().statistics().m_invalidNodes == 0) return;
     for (std::size_t i = 0; i < m_bodies.size(); ++i)
@@ -147,13 +186,14 @@ void CollisionStep::end()
 {
     for (const BodyContacts& body : m_bodies)
     {
+        if (!body.m_leftOut) m_told.erase(body.m_body);
         for (const NodePush& push : body.m_pushes)
         {
             btSoftBody::Node& node = body.m_body->m_nodes[push.m_node];
             const btScalar excess = node.m_v.dot(push.m_normal) - push.m_speedLimit;
             if (excess > 0) node.m_v -= push.m_normal * excess;
         }
-        if (body.m_wasTangled) limitSpeeds(*body.m_body);
+        if (body.m_wasTangled) limitSpeeds(*body.m_body, body.m_leftOut);
     }
     for (ClothMirror* mirror : m_mirrors)
         mirror->rememberEnds(m_state.threads());

@@ -43,6 +43,12 @@ void shorten(btSoftBody& body, const NodePaths& paths, int index, const Left& le
 }
 }  // namespace
 
+bool anyCuts(const std::vector<StepContact>& contacts)
+{
+    return std::any_of(contacts.begin(), contacts.end(),
+                       [](const StepContact& contact) { return shareLeft(contact) < 1; });
+}
+
 bool cutAtImpacts(btSoftBody& body, const NodePaths& paths, const std::vector<StepContact>& contacts, Cut cut)
 {
     if (contacts.empty()) return false;

@@ -26,6 +26,9 @@ enum class Cut
                // time; but for obstacles that move otherwise than the one of that impact
 };
 
+// Whether a path would be cut at any of them.
+bool anyCuts(const std::vector<StepContact>& contacts);
+
 // Returns whether any path was cut. Velocities follow, for a body that Bullet has solved.
 bool cutAtImpacts(btSoftBody& body, const NodePaths& paths, const std::vector<StepContact>& contacts, Cut cut);
 }  // namespace drape

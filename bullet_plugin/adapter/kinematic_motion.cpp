@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "BulletCollision/CollisionShapes/btCollisionShape.h"
 #include "BulletDynamics/Dynamics/btRigidBody.h"
@@ -85,11 +86,20 @@ bool isNear(const btTransform& from, const btTransform& to, const btVector3& vel
 // out of its simulation whose box is 10^6 m across.
 constexpr btScalar kMostShift = 100, kMostRadii = 100, kMostOfAll = btScalar(2.5e5);
 
-btScalar mostShift(const btCollisionObject& object)
+// Radii that a body goes at least where nodes that went along tell a teleport. Nearer places overlap, and what a body
+// pushes before it does no harm there.
+constexpr btScalar kFarRadii = 2;
+
+btScalar radiusOf(const btCollisionObject& object)
 {
     btVector3 centre;
     btScalar radius = 0;
     if (object.getCollisionShape()) object.getCollisionShape()->getBoundingSphere(centre, radius);
+    return radius;
+}
+
+btScalar mostShift(btScalar radius)
+{
     return std::min(std::max(kMostShift, kMostRadii * radius), kMostOfAll);
 }
 
@@ -120,9 +130,10 @@ BodyMotion motionInStep(const btTransform& from, const btTransform& to, const bt
     return BodyMotion{moved(to, linearVelocity * -dt, angularVelocity, -angularVelocity.length() * dt), to};
 }
 
-void KinematicMotions::beginStep(btScalar dt)
+void KinematicMotions::beginStep(btScalar dt, MovedAlong movedAlong)
 {
     m_dt = dt;
+    m_movedAlong = std::move(movedAlong);
     for (auto tracked = m_tracked.begin(); tracked != m_tracked.end();)
         tracked = tracked->second.m_step < m_step ? m_tracked.erase(tracked) : std::next(tracked);
     ++m_step;
@@ -157,8 +168,18 @@ void KinematicMotions::advance(Tracked& tracked, const btCollisionObject& object
     }
     BodyMotion& motion = tracked.m_motion;
     motion = whole && m_dt > 0 ? BodyMotion{from, pose} : motionInStep(from, pose, velocity, angularVelocity, m_dt);
-    if ((motion.m_end.getOrigin() - motion.m_start.getOrigin()).length() > mostShift(object))
-        motion = BodyMotion{pose, pose};
+    const btScalar shift = (motion.m_end.getOrigin() - motion.m_start.getOrigin()).length();
+    if (shift > mostShift(radiusOf(object)) || isTeleport(from, object)) motion = BodyMotion{pose, pose};
+}
+
+// Whether cloth went along from where the object was to where Bullet has it; several substeps' motion is one then.
+bool KinematicMotions::isTeleport(const btTransform& from, const btCollisionObject& object) const
+{
+    if (!m_movedAlong) return false;
+    const btTransform& pose = object.getWorldTransform();
+    const btScalar radius = radiusOf(object);
+    if (!((pose.getOrigin() - from.getOrigin()).length() > kFarRadii * radius)) return false;
+    return m_movedAlong(pose * from.inverse(), radius);
 }
 
 BodyMotion KinematicMotions::observe(const btCollisionObject& object)

@@ -3,9 +3,11 @@
 // Bullet gives a kinematic object its pose at the end of stepSimulation() in the first of its substeps, and a velocity:
 // the difference to its interpolation transform over the time of all substeps (btRigidBody::saveKinematicState). So a
 // pose that changes with a velocity is motion, and a pose that changes without one is a jump: that is how
-// setInterpolationWorldTransform() with the same pose tells a teleport, to Bullet and to Drape. So does a motion by
-// more than 100 m and 100 times the shape's radius in one step, or by more than 250 km: a body that an app parks out of
-// sight.
+// setInterpolationWorldTransform() with the same pose tells a teleport, to Bullet and to Drape. Most apps set the world
+// transform alone, which looks like motion. Two things tell it from one: the app moved nodes of a cloth along with the
+// body, as it does with what a character wears, by more than the body is large; or the way is longer than 100 m and 100
+// times the shape's radius, or than 250 km: a body that is parked out of sight. Distance tells nothing else: what is
+// thrown goes as many of its radii in a step.
 //
 // Job: remember where each object was at the end of the step before and say where it is at this one's start and end.
 // The motion of several substeps is shared out among them, at constant velocity. An object that was not there in the
@@ -20,6 +22,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <unordered_map>
 
 #include "LinearMath/btTransform.h"
@@ -45,8 +48,14 @@ BodyMotion motionInStep(const btTransform& from, const btTransform& to, const bt
 class KinematicMotions
 {
 public:
-    // Forgets objects that were not observed in the step before.
-    void beginStep(btScalar dt);
+    // Whether an app moved nodes of a cloth as the map does, to within `slack` (m), since the last step ended.
+    using MovedAlong = std::function<bool(const btTransform& map, btScalar slack)>;
+
+    // Forgets objects that were not observed in the step before. movedAlong: for this step, asked of objects that moved
+    // far; null: no.
+    void beginStep(btScalar dt, MovedAlong movedAlong = nullptr);
+    // The object is where its pose says; how it came there is no motion.
+    void teleported(const btCollisionObject& object) { m_tracked.erase(&object); }
     // The object's motion in this step; the same until the next begins.
     BodyMotion observe(const btCollisionObject& object);
 
@@ -61,9 +70,11 @@ private:
     };
 
     void advance(Tracked& tracked, const btCollisionObject& object) const;
+    bool isTeleport(const btTransform& from, const btCollisionObject& object) const;
 
     std::unordered_map<const btCollisionObject*, Tracked> m_tracked;  // never followed
     std::uint64_t m_step = 0;
     btScalar m_dt = 0;
+    MovedAlong m_movedAlong;
 };
 }  // namespace drape

@@ -174,6 +174,19 @@ void ClothMirror::listJumped(ThreadTeam& threads, std::vector<int>& nodes) const
         nodes.insert(nodes.end(), part.begin(), part.end());
 }
 
+bool ClothMirror::movedAlong(const btTransform& map, btScalar slack) const
+{
+    if (m_ends.size() != static_cast<std::size_t>(m_body->m_nodes.size())) return false;
+    for (std::size_t i = 0; i < m_ends.size(); ++i)
+    {
+        const btVector3& place = m_body->m_nodes[static_cast<int>(i)].m_x;
+        const btVector3 moved = map * m_ends[i];
+        if ((place - m_ends[i]).length2() > (moved - place).length2() && (moved - place).length2() <= slack * slack)
+            return true;
+    }
+    return false;
+}
+
 void ObstacleMirror::reload(Pipeline& pipeline, const btTransform& pose)
 {
     WorldMesh mesh;

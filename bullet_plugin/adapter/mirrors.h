@@ -77,6 +77,9 @@ public:
     // Lists the nodes whose step starts (m_q) elsewhere than the last one that was remembered ended; all of them where
     // none was.
     void listJumped(ThreadTeam& threads, std::vector<int>& nodes) const;
+    // Before a step's motion is predicted: whether a node was moved from where the last step left it as the map moves
+    // it, to within `slack` (m). The body is alive, and the last step was the one before this.
+    bool movedAlong(const btTransform& map, btScalar slack) const;
 
     int m_owners = 0;  // algorithms alive that use this mirror, and who had it prepared
     bool m_prepared = false;

@@ -128,6 +128,11 @@ void Plugin::obstacleChanged(const btCollisionShape* shape)
     m_state->obstacleChanged(shape);
 }
 
+void Plugin::teleported(const btCollisionObject* object)
+{
+    if (object) m_state->teleported(object);
+}
+
 void Plugin::setOneSided(const btCollisionShape* shape, bool oneSided)
 {
     m_state->setOneSided(shape, oneSided);

@@ -331,6 +331,25 @@ void PluginState::startAnew(const btCollisionObject* object)
         if (entry.first.m_object == object) entry.second.startAnew();
 }
 
+void PluginState::teleported(const btCollisionObject* object)
+{
+    for (auto& motions : m_motions)
+        motions.second.teleported(*object);
+    startAnew(object);
+}
+
+bool PluginState::movedAlong(const std::vector<btSoftBody*>& bodies, const btTransform& map, btScalar slack)
+{
+    return std::any_of(bodies.begin(), bodies.end(),
+                       [&](const btSoftBody* body)
+                       {
+                           const ClothMirror* const mirror = findCloth(body);
+                           // Every solver's step counts, so that worlds which take turns are continued, too.
+                           return mirror && mirror->m_lastSeen + m_solvers.size() > m_step &&
+                                  mirror->movedAlong(map, slack);
+                       });
+}
+
 void PluginState::setOneSided(const btCollisionShape* shape, bool oneSided)
 {
     if (oneSided)

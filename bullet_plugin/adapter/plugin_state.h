@@ -96,6 +96,11 @@ public:
     // its pairs start anew, from where they are in the coming step, and are checked for intersections then. Without a
     // mirror there is nothing to do: new pairs are checked anyway.
     void startAnew(const btCollisionObject* object);
+    // Says that the object is not where it moved, but where it was put: no solver's next step takes its pose for a
+    // motion, and its pairs start anew.
+    void teleported(const btCollisionObject* object);
+    // Whether an app moved nodes of one of these bodies, which took part in the step before, as the map does.
+    bool movedAlong(const std::vector<btSoftBody*>& bodies, const btTransform& map, btScalar slack);
     void setOneSided(const btCollisionShape* shape, bool oneSided);
     void dropNotes(const btSoftBodySolver* solver);
     // Those of the given cloths, sorted by address. Of an obstacle whose shape has gone since it was noted none is

@@ -63,7 +63,9 @@ void SoftBodySolver::predictMotion(btScalar dt)
     }
     Stopwatch watch;
     KinematicMotions& motions = m_state->motionsOf(this);
-    motions.beginStep(dt);
+    listTaken();
+    motions.beginStep(dt, [this](const btTransform& map, btScalar slack)
+                      { return m_state->movedAlong(m_work->m_taken, map, slack); });
     const std::vector<StepObstacle> obstacles = wakeReached(motions);
     listPredicted();
     m_work->m_predictMs = watch.lapMs();
@@ -75,20 +77,22 @@ void SoftBodySolver::predictMotion(btScalar dt)
     m_work->m_predictMs += watch.lapMs();
 }
 
-// Lists the bodies that Drape takes, and wakes those of them that a moving obstacle comes to. Returns the obstacles of
-// the step; without those that rest where no such body is awake.
+// Lists the bodies that Drape takes.
+void SoftBodySolver::listTaken()
+{
+    m_work->m_taken.clear();
+    for (int i = 0; i < m_softBodySet.size(); ++i)
+        if (handlesCloth(*m_state, *m_softBodySet[i])) m_work->m_taken.push_back(m_softBodySet[i]);
+}
+
+// Wakes those of the bodies taken that a moving obstacle comes to. Returns the obstacles of the step; without those
+// that rest where no such body is awake.
 std::vector<StepObstacle> SoftBodySolver::wakeReached(KinematicMotions& motions)
 {
-    std::vector<btSoftBody*>& taken = m_work->m_taken;
-    taken.clear();
-    bool anyAwake = false;
-    for (int i = 0; i < m_softBodySet.size(); ++i)
-    {
-        if (!handlesCloth(*m_state, *m_softBodySet[i])) continue;
-        taken.push_back(m_softBodySet[i]);
-        anyAwake = anyAwake || m_softBodySet[i]->isActive();
-    }
+    const std::vector<btSoftBody*>& taken = m_work->m_taken;
     if (taken.empty()) return {};
+    const bool anyAwake =
+        std::any_of(taken.begin(), taken.end(), [](const btSoftBody* body) { return body->isActive(); });
     std::vector<StepObstacle> obstacles = stepObstacles(*m_state, *taken[0], motions, anyAwake);
     bool anyWoken = false;
     for (btSoftBody* body : taken)

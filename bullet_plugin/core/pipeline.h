@@ -166,7 +166,11 @@ public:
     // Enqueues the step for the pairs named since the last finish(); returns without waiting.
     void submit();
     // Waits, grows buffers and repeats where needed. Contacts are valid until the next submit().
-    ContactList finish();
+    // allowance: asked of the cloths of a step that needs more tests than ordinary motion does (ordinary_work.h): how
+    // many times as many the cloth may make. Infinity for cloth that keeps its size; little for one that came apart or
+    // whose pins were put elsewhere. Cloths that need more than that are left out. Null: infinity.
+    using Allowance = std::function<float(MeshId)>;
+    ContactList finish(const Allowance& allowance = nullptr);
     // Waits for a hierarchy that is being built beside the steps (Methods::m_rebuildDecay): the next submit() uses it.
     // Without it, time decides which step does, but no contact depends on it: for measurements and tests. Between
     // finish() and submit().

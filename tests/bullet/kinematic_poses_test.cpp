@@ -25,6 +25,94 @@ TEST_P(Kinematic, equalTransformsAreATeleport)
     EXPECT_LT(meanOf(scene.m_cloth).y(), btScalar(-3));
 }
 
+namespace
+{
+// How an app puts a kinematic body, and the cloth around it, elsewhere.
+enum class Put
+{
+    BothTransforms,
+    WorldTransformAlone,
+    AndSaysSo  // the world transform alone, and Plugin::teleported() of the body
+};
+
+// Hash of the cloth over 30 steps after the jump, in every bit of every step.
+std::uint64_t hashAfterJump(const Settings& settings, Put put, bool wholeCloth, const btTransform& to, int substeps)
+{
+    KinematicScene scene(makeSphere(0.3f, 3), btTransform::getIdentity(), 1.0f, btVector3(0, btScalar(0.35), 0),
+                         settings);
+    scene.m_cloth.setMass(0, 0);
+    scene.m_cloth.setMass(16, 0);
+    for (int step = 0; step < 30; ++step)
+        scene.step(btTransform::getIdentity());
+    EXPECT_GT(scene.m_most, 0u);
+    scene.m_body.setWorldTransform(to);
+    if (put == Put::BothTransforms) scene.m_body.setInterpolationWorldTransform(to);
+    if (put == Put::AndSaysSo) scene.m_plugin.teleported(&scene.m_body);
+    if (wholeCloth)
+        scene.m_cloth.transform(to);
+    else
+        for (const int pin : {0, 16})
+            scene.m_cloth.m_nodes[pin].m_x = to * scene.m_cloth.m_nodes[pin].m_x;
+    std::uint64_t hash = kHashStart;
+    for (int frame = 0; frame < 30; ++frame)
+    {
+        scene.m_world.world().stepSimulation(btScalar(substeps) * kDt, substeps, kDt);
+        hash = hashOf(scene.m_cloth, hash);
+    }
+    return hash;
+}
+}  // namespace
+
+// A character with its cloth, put elsewhere by the world transform alone: nothing is swept there, whether the whole
+// cloth went along or its pins alone, turned or not, in one step or in several substeps.
+TEST_P(Kinematic, bodiesThatAreMovedWithTheirClothAreTeleported)
+{
+    const btTransform turned(btQuaternion(btVector3(0, 1, 0), btScalar(2.5)), btVector3(-4, 1, 2));
+    for (const btTransform& to : {shiftedBy(btVector3(2, 0, 0)), shiftedBy(btVector3(10, 0, 5)), turned})
+    {
+        for (const bool whole : {true, false})
+        {
+            for (const int substeps : {1, 3})
+            {
+                SCOPED_TRACE("to x " + std::to_string(to.getOrigin().x()) + (whole ? ", whole" : ", pins") + ", " +
+                             std::to_string(substeps) + " substeps");
+                const auto hash = [&](Put put)
+                { return hashAfterJump(GetParam().m_settings, put, whole, to, substeps); };
+                EXPECT_EQ(hash(Put::WorldTransformAlone), hash(Put::BothTransforms));
+            }
+        }
+    }
+}
+
+// What is thrown at cloth that an app moved otherwise, or not at all, is swept.
+TEST_P(Kinematic, bodiesThatAreThrownPastMovedClothAreSwept)
+{
+    for (const btVector3& shift : {btVector3(0, 0, 0), btVector3(0, 0, btScalar(0.01)), btVector3(0, 0, btScalar(0.3))})
+    {
+        KinematicScene scene(makeBox(0.6f, 0.02f, 0.6f), shiftedBy(btVector3(0, -3, 0)), 1.0f, btVector3(0, 0, 0),
+                             GetParam().m_settings);
+        scene.step(shiftedBy(btVector3(0, -3, 0)));
+        scene.m_cloth.translate(shift);
+        scene.step(shiftedBy(btVector3(0, 3, 0)));
+        EXPECT_GT(scene.m_most, 0u) << shift.z();
+    }
+}
+
+TEST_P(Kinematic, bodiesThatAreSaidToBeTeleportedSweepNothing)
+{
+    KinematicScene scene(makeBox(4, 0.2f, 4), shiftedBy(btVector3(0, -3, 0)), 1.0f, btVector3(0, 0, 0),
+                         GetParam().m_settings);
+    scene.step(shiftedBy(btVector3(0, -3, 0)));
+    scene.m_plugin.teleported(nullptr);
+    scene.m_plugin.teleported(&scene.m_body);  // before the pose is set, as well as after
+    scene.step(shiftedBy(btVector3(0, 3, 0)));
+    EXPECT_EQ(scene.m_most, 0u);
+    scene.step(shiftedBy(btVector3(0, -3, 0)));  // and this is motion
+    EXPECT_GT(scene.m_most, 0u);
+    EXPECT_EQ(hashAfterJump(GetParam().m_settings, Put::AndSaysSo, true, shiftedBy(btVector3(1, 0, 0)), 1),
+              hashAfterJump(GetParam().m_settings, Put::BothTransforms, true, shiftedBy(btVector3(1, 0, 0)), 1));
+}
+
 // A body that an app parks out of sight, far or so far that Bullet would take cloth beside its way out of the
 // simulation, takes nothing along, and is met again where it comes back.
 TEST_P(Kinematic, bodiesThatAreParkedFarAwayTakeNothingAlong)

@@ -75,6 +75,50 @@ TEST(MeshProbe, VerticesAtOnePositionAreOneForClosedness)
     EXPECT_FALSE(probeOf(makeTerrain(2, 0.1f, 8, 1)).isClosed());
 }
 
+// As apps make spheres: sines and cosines of a whole turn are off by rounding, at the seam and at both poles.
+TEST(MeshProbe, SeamsOffByRoundingAreClosed)
+{
+    constexpr int kSteps = 32;
+    const double pi = std::acos(-1.0);
+    for (const double size : {0.01, 1.0, 1000.0})
+    {
+        const auto at = [&](int i, int j)
+        {
+            const double a = 2 * pi * i / kSteps, b = pi * j / kSteps;
+            return vec3(float(size * std::cos(a) * std::sin(b)), float(size * std::cos(b)),
+                        float(size * std::sin(a) * std::sin(b)));
+        };
+        TriangleMesh mesh;
+        const auto add = [&](const Vec3& corner)
+        {
+            mesh.m_triangles.push_back(std::int32_t(mesh.m_triangles.size()));
+            mesh.m_positions.insert(mesh.m_positions.end(), {corner.x, corner.y, corner.z});
+        };
+        for (int i = 0; i < kSteps; ++i)
+            for (int j = 0; j < kSteps; ++j)
+                for (const Vec3& corner :
+                     {at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)})
+                    add(corner);
+        ASSERT_NE(at(0, 1).z, at(kSteps, 1).z) << "the seam is exact here";
+        MeshProbe probe = probeOf(mesh);
+        EXPECT_TRUE(probe.isClosed()) << size;
+        Random random(7);
+        for (int i = 0; i < 500; ++i)
+        {
+            const Vec3 p = randomPlace(random, float(3 * size));
+            const double distance = std::sqrt(double(p.x) * p.x + double(p.y) * p.y + double(p.z) * p.z) / size;
+            if (distance < 0.98 || distance > 1)
+            {
+                ASSERT_EQ(probe.isInside(p), distance < 1) << distance;
+            }
+        }
+        // A gap that is no rounding.
+        for (float& z : mesh.m_positions)
+            if (z == at(kSteps, 1).z) z += float(1e-4 * size);
+        EXPECT_FALSE(probeOf(mesh).isClosed()) << size;
+    }
+}
+
 TEST(MeshProbe, NearestIsAsNearAsTheNearestOfAllTriangles)
 {
     const TriangleMesh mesh = makeTorus(1, 0.3f, 24, 12);

@@ -168,7 +168,7 @@ void PatchCullStage::enqueueWalk(Device& device, Cloths cloths, Buffer<StepCount
                   cloths.m_thickness.handle(), cl_uint(cloths.m_obstacleMeshes), cloths.m_reachScale,
                   cl_uint(cloths.m_mode), cloths.m_motions.handle(), cl_uint(cloths.m_motionCount),
                   m_wideNodes.handle(), m_levels.handle(), cl_uint(m_layout.m_levels.size() - 1), m_patches.handle(),
-                  m_pairs.handle(), cl_uint(m_pairs.capacity()), cl_uint(cloths.m_limit), counters.handle(),
+                  m_pairs.handle(), cl_uint(m_pairs.capacity()), cl_uint(cloths.m_pairLimit), counters.handle(),
                   cl_uint(packet));
 }
 

@@ -49,7 +49,9 @@ public:
         std::uint32_t m_mode;               // DRAPE_DISCRETE …
         Buffer<ObstacleMotion>& m_motions;  // of the obstacles that move in the step, in the order of slots
         std::size_t m_motionCount;
-        std::size_t m_limit;  // tests; the count is exact up to it, a greater one says only that there are more
+        // Tests, and pairs of triangles and patches: counts are exact up to it, a greater one says only that there are
+        // more.
+        std::size_t m_limit, m_pairLimit;
     };
     // Returns after enqueueing. counters' candidates and invalid nodes must be zero before.
     void enqueue(Device& device, Cloths cloths, Buffer<StepCounters>& counters);

@@ -80,9 +80,10 @@ void cull(uint packet, const ClothView& cloth, const HostCloths& cloths, const P
             });
 }
 
-template <class Kernel>
+// more: what the kernel takes after the list of swept tests.
+template <class Kernel, class... More>
 void runFeatures(Kernel kernel, uint item, uint items, const HostFeatures& all, HostHits hits, uint* swept,
-                 StepCounters* counters)
+                 StepCounters* counters, More... more)
 {
     const ClothView& cloth = all.m_cloth;
     const ObstacleView& obstacle = all.m_obstacle;
@@ -94,7 +95,7 @@ void runFeatures(Kernel kernel, uint item, uint items, const HostFeatures& all, 
                        cloth.m_nodeCount, cloth.m_triangleCount, cloth.m_mode, obstacle.m_triangles,
                        obstacle.m_vertexCones, obstacle.m_edgeCones, patches.m_faces, patches.m_vertices,
                        patches.m_edges, patches.m_faceIds, patches.m_vertexIds, patches.m_edgeIds, all.m_motions,
-                       hits.m_hits, hits.m_capacity, nullptr, hits.m_slotCount, nullptr, counters, swept);
+                       hits.m_hits, hits.m_capacity, nullptr, hits.m_slotCount, nullptr, counters, swept, more...);
             });
 }
 
@@ -105,7 +106,7 @@ void findHits(uint item, uint items, const HostFeatures& features, HostHits hits
 
 void findSwept(uint item, uint items, const HostFeatures& features, HostHits hits, uint* swept, StepCounters* counters)
 {
-    runFeatures(narrowPhaseSwept, item, items, features, hits, swept, counters);
+    runFeatures(narrowPhaseSwept, item, items, features, hits, swept, counters, UINT_MAX);
 }
 }  // namespace
 

@@ -15,12 +15,18 @@ namespace drape
 class HostHitFinder
 {
 public:
-    // Lists the hits of features.m_tests, in no particular order, and counts them; beyond the limit the list is not
+    struct Limits
+    {
+        std::size_t m_hits;
+        std::size_t m_swept;  // tests that the continuous test decides
+    };
+
+    // Lists the hits of features.m_tests, in no particular order, and counts them; beyond a limit the list is not
     // complete. find, findSwept: kernels of either kind of contacts; swept: their counter. Returns how often the list
     // was too short and grew.
     template <class Features>
     std::size_t find(HitKernel<Features> find, HitKernel<Features> findSwept, std::uint32_t StepCounters::*swept,
-                     const Features& features, std::size_t slots, std::size_t limit, ThreadTeam& threads,
+                     const Features& features, std::size_t slots, Limits limits, ThreadTeam& threads,
                      StepCounters& counters)
     {
         if (m_hits.empty()) m_hits.resize(kFirstHits);
@@ -39,10 +45,11 @@ public:
             };
             run(find, (features.m_count + kTestsOfItem - 1) / kTestsOfItem, features.m_count >= kLeastShared);
             const std::uint32_t left = counters.*swept;
+            if (left > limits.m_swept) return 0;
             if (left > 0) run(findSwept, kSweptItems, left >= kLeastSweptShared);
             return counters.m_listed;
         };
-        return fillGrowing(m_hits, limit, fill);
+        return fillGrowing(m_hits, limits.m_hits, fill);
     }
 
     // Puts that many hits, all that were found, behind the contacts that there are.

@@ -1,5 +1,7 @@
 #include "narrow_phase.h"
 
+#include <algorithm>
+
 #include "bullet_plugin/core/device/list_launch.h"
 
 namespace drape
@@ -9,6 +11,8 @@ namespace
 // Feature tests per compute unit up to which one launch is faster than two: the continuous test takes registers, which
 // leave room for few groups at a time.
 constexpr std::size_t kFewTestsPerUnit = 128;
+// How many times as many tests as that one launch does: where a step is suddenly larger, two are worth another try.
+constexpr std::size_t kMostOfFew = 16;
 // Of a GPU's launch over the feature tests, as in kernels/narrow_phase.cl: a group shares them out by kind.
 constexpr std::size_t kFeatureGroupGpu = 256;
 // Of a GPU's launches of the continuous test, work-items a compute unit: as many as the test's 250 registers leave room
@@ -49,10 +53,10 @@ void NarrowPhaseStage::enqueue(Device& device, NarrowPhaseBuffers sides, std::si
 
 void NarrowPhaseStage::enqueueFeatures(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount,
                                        std::size_t triangleCount, std::uint32_t mode, PatchCullStage& cull,
-                                       std::size_t expectedTests, HitBuffers hits, Buffer<StepCounters>& counters)
+                                       Expected expected, HitBuffers hits, Buffer<StepCounters>& counters)
 {
     PatchCullStage::Features features = cull.features();
-    const auto launch = [&](Kernel& kernel, std::size_t width, std::size_t group, auto&... list)
+    const auto launch = [&](Kernel& kernel, std::size_t width, std::size_t group, const auto&... list)
     {
         kernel.launch(device, width, group, cull.tests().handle(), cl_uint(cull.tests().capacity()),
                       sides.m_clothStart.handle(), sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(),
@@ -62,17 +66,20 @@ void NarrowPhaseStage::enqueueFeatures(Device& device, NarrowPhaseBuffers sides,
                       features.m_faceIds.handle(), features.m_vertexIds.handle(), features.m_edgeIds.handle(),
                       sides.m_motions.handle(), hits.m_hits.handle(), cl_uint(hits.m_hits.capacity()),
                       hits.m_hitPlaces.handle(), hits.m_slotCount.handle(), hits.m_slotSums.handle(), counters.handle(),
-                      list.handle()...);
+                      list...);
     };
+    const cl_uint mostSwept = cl_uint(std::min(expected.m_mostSwept, std::size_t(CL_UINT_MAX)));
     m_sweptTests.reserve(device, cull.tests().capacity());
-    const bool few = expectedTests <= device.computeUnits() * kFewTestsPerUnit;
+    const bool few = expected.m_tests <= device.computeUnits() * kFewTestsPerUnit;
+    const bool one = mode != DRAPE_DISCRETE && few;
+    m_mostTests = one ? device.computeUnits() * kFewTestsPerUnit * kMostOfFew : SIZE_MAX;
     const bool gpu = device.isGpu();
     const std::size_t featureGroup = gpu ? kFeatureGroupGpu : 1;
     const std::size_t sweptGroup = gpu ? kSweptGroupGpu : listGroup(device);
     const std::size_t sweptWidth = gpu ? device.computeUnits() * kSweptItemsGpu : listWidth(device);
-    if (mode == DRAPE_DISCRETE || !few) launch(m_feature, laneListWidth(device), featureGroup, m_sweptTests);
-    if (mode != DRAPE_DISCRETE && !few) launch(m_swept, sweptWidth, sweptGroup, m_sweptTests);
-    if (mode != DRAPE_DISCRETE && few) launch(m_few, sweptWidth, sweptGroup);
+    if (!one) launch(m_feature, laneListWidth(device), featureGroup, m_sweptTests.handle());
+    if (mode != DRAPE_DISCRETE && !few) launch(m_swept, sweptWidth, sweptGroup, m_sweptTests.handle(), mostSwept);
+    if (one) launch(m_few, sweptWidth, sweptGroup, cl_uint(m_mostTests));
 }
 
 void NarrowPhaseStage::enqueueIntersect(Device& device, NarrowPhaseBuffers sides, Buffer<Candidate>& candidates,

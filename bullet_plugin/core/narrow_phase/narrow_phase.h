@@ -68,6 +68,12 @@ struct NarrowPhaseBuffers
 class NarrowPhaseStage
 {
 public:
+    struct Expected
+    {
+        std::size_t m_tests;      // about as many; speed alone depends on it
+        std::size_t m_mostSwept;  // with more tests that need the continuous test than this, their hits are not listed
+    };
+
     // features: for what a cull leaves, else for pairs of triangles. The kernels of what is not used are not built.
     void create(Device& device, const ProgramLoader& load, bool features);
 
@@ -79,15 +85,18 @@ public:
                  const NarrowPhaseSettings& settings, Buffer<Candidate>& candidates, HitBuffers hits,
                  Buffer<StepCounters>& counters);
     // The hits of the feature tests that a cull left. mode: DRAPE_DISCRETE …; a discrete step is one launch less, and
-    // so is one with few tests. expectedTests: about as many; speed alone depends on it.
+    // so is one with few tests.
     void enqueueFeatures(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
-                         std::uint32_t mode, PatchCullStage& cull, std::size_t expectedTests, HitBuffers hits,
+                         std::uint32_t mode, PatchCullStage& cull, Expected expected, HitBuffers hits,
                          Buffer<StepCounters>& counters);
+    // Whether that did nothing, because there were that many tests and far fewer were expected.
+    bool skipped(std::size_t tests) const { return tests > m_mostTests; }
     // The candidates whose triangles intersect, in any order. Their counter must be zero before.
     void enqueueIntersect(Device& device, NarrowPhaseBuffers sides, Buffer<Candidate>& candidates,
                           Buffer<StepCounters>& counters);
 
 private:
+    std::size_t m_mostTests = SIZE_MAX;  // of the last launches
     Kernel m_test, m_feature, m_swept, m_few, m_intersect;
     Buffer<Candidate> m_intersections{"step intersections"};
     Buffer<cl_uint> m_sweptTests{"step candidates"};

@@ -326,7 +326,9 @@ void DeviceBackend::enqueueBroad(const Scene& scene, const StepPairs& pairs)
             *m_device,
             {m_cloth.m_order, m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, m_thickness,
              scene.m_cloths.triangles().size(), obstacleMeshes, 1.0f + m_settings.m_activation,
-             std::uint32_t(m_settings.m_mode), m_motions, pairs.m_motions.size(), StepLimits(m_settings).m_candidates},
+             std::uint32_t(m_settings.m_mode), m_motions, pairs.m_motions.size(),
+             std::min(StepLimits(m_settings).m_candidates, pairs.m_limits.m_tests),
+             StepLimits(m_settings).m_candidates},
             counters());
         return;
     }
@@ -354,7 +356,7 @@ void DeviceBackend::enqueueNarrow(const Scene& scene, const StepPairs& pairs)
     if (pairs.m_anyPair && patches())
     {
         m_narrowPhase.enqueueFeatures(*m_device, narrowPhaseBuffers(pairs), nodes, triangles, mode, m_patchCull,
-                                      m_testsBefore, hits, counters());
+                                      {m_testsBefore, pairs.m_limits.m_swept}, hits, counters());
     }
     else if (pairs.m_anyPair)
     {

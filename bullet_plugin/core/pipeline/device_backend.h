@@ -98,7 +98,7 @@ private:
     StepCounters countersRead() const;
     void takeCounts(const StepCounters& counters);
     // Whether the last run demanded more than the settings allow; the result says what.
-    bool overLimit(StepResult& result);
+    bool overLimit(const StepPairs& pairs, StepResult& result);
     // Makes room for what the last run demanded. Returns whether the step must run again.
     bool grow();
     void readAll(StepResult& result);

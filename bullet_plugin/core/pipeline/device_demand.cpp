@@ -39,20 +39,29 @@ void DeviceBackend::takeCounts(const StepCounters& counters)
     m_hitsBefore = counters.m_listed;
 }
 
-bool DeviceBackend::overLimit(StepResult& result)
+bool DeviceBackend::overLimit(const StepPairs& pairs, StepResult& result)
 {
     const StepCounters counters = countersRead();
     const StepLimits limits(m_settings);
+    const std::size_t mostTests = std::min(limits.m_candidates, pairs.m_limits.m_tests);
     // Hits are all of them only where every candidate was there to be tested.
     const bool ofObstacles = patches() ? counters.m_patchPairs <= m_patchCull.pairs().capacity() &&
                                              counters.m_candidates <= m_patchCull.tests().capacity()
                                        : counters.m_candidates <= m_candidates.capacity();
     const bool ofSelf =
         counters.m_selfPairs <= m_self.pairs().capacity() && counters.m_selfTests <= m_self.tests().capacity();
-    if (std::max({counters.m_candidates, counters.m_patchPairs, counters.m_selfPairs, counters.m_selfTests}) >
-        limits.m_candidates)
+    if (patches() && counters.m_candidates > mostTests && mostTests < limits.m_candidates)
+    {
+        result.m_overLimit = result.m_overTests = true;
+    }
+    else if (std::max({counters.m_candidates, counters.m_patchPairs, counters.m_selfPairs, counters.m_selfTests}) >
+             limits.m_candidates)
     {
         result.m_overLimit = true;
+    }
+    else if (patches() && ofObstacles && counters.m_swept > pairs.m_limits.m_swept)
+    {
+        result.m_overLimit = result.m_overTests = true;
     }
     else if (ofObstacles && ofSelf && counters.m_listed > limits.m_contacts)
     {
@@ -95,6 +104,7 @@ bool DeviceBackend::grow()
            [&](std::size_t count) { m_self.reserveTests(device, count); });
     demand(std::min(std::size_t(counters.m_listed), StepLimits(m_settings).m_contacts), m_compaction.hitCapacity(),
            sizeof(Contact), [&](std::size_t count) { m_compaction.reserveHits(device, count); });
+    again = again || (patches() && m_narrowPhase.skipped(counters.m_candidates));
     if (counters.m_crowded > 0)
     {
         again |= m_stepsToOrder == 0;
@@ -113,7 +123,7 @@ bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResul
     m_device->wait();
     while (!m_device->failed())
     {
-        if (overLimit(result)) return true;
+        if (overLimit(pairs, result)) return true;
         if (!grow()) break;
         if (m_limitReached) return false;
         ++result.m_retries;

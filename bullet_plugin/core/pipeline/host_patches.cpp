@@ -1,5 +1,7 @@
 #include "host_patches.h"
 
+#include <algorithm>
+
 #include "bullet_plugin/core/stopwatch.h"
 
 namespace drape
@@ -47,15 +49,17 @@ bool HostPatches::run(const Scene& scene, const StepPairs& pairs, const Settings
     update(scene);
     result.m_refitMs = watch.lapMs();
     const StepLimits limits(settings);
+    const std::size_t mostTests = std::min(limits.m_candidates, pairs.m_limits.m_tests);
     StepCounters counters = {};
     const HostCloths cloths = {
         m_clothOrder.data(),      std::uint32_t(m_clothOrder.size()),           pairs.m_clothRadius.data(),
         pairs.m_thickness.data(), std::uint32_t(scene.m_obstacles.meshCount()), 1.0f + settings.m_activation,
         pairs.m_motions.data(),   std::uint32_t(pairs.m_motions.size())};
-    result.m_retries = m_cull.run(clothView(scene, settings), cloths, limits.m_candidates, threads, counters);
+    result.m_retries = m_cull.run(clothView(scene, settings), cloths, mostTests, threads, counters);
     result.m_invalidNodes = counters.m_invalidNodes;
     result.m_broadMs = watch.lapMs();
-    result.m_overLimit = counters.m_candidates > limits.m_candidates;
+    result.m_overLimit = counters.m_candidates > mostTests;
+    result.m_overTests = result.m_overLimit && mostTests < limits.m_candidates;
     if (result.m_overLimit) return false;
     result.m_candidates = counters.m_candidates;
 
@@ -63,8 +67,10 @@ bool HostPatches::run(const Scene& scene, const StepPairs& pairs, const Settings
     const HostFeatures features = {m_cull.tests().data(), counters.m_candidates, clothView(scene, settings),
                                    m_placed.view(scene),  m_cull.packed(),       pairs.m_motions.data()};
     result.m_retries += m_hits.find(kernels.m_findHits, kernels.m_findSwept, &StepCounters::m_swept, features,
-                                    scene.slotCount(), limits.m_contacts, threads, counters);
+                                    scene.slotCount(), {limits.m_contacts, pairs.m_limits.m_swept}, threads, counters);
     result.m_sweptTests = counters.m_swept;
+    result.m_overLimit = result.m_overTests = counters.m_swept > pairs.m_limits.m_swept;
+    if (result.m_overLimit) return false;
     result.m_overLimit = counters.m_listed > limits.m_contacts;
     if (result.m_overLimit)
         result.m_contactDemand = counters.m_listed;

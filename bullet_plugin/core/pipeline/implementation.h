@@ -3,6 +3,7 @@
 
 #include <cassert>
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -77,6 +78,7 @@ struct Pipeline::Implementation
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
     std::uint32_t m_stepRevision = 0;                 // of the obstacles, in the last step with a pair
     std::size_t m_nodesWritten = 0, m_nodesSent = 0;  // the first so many nodes of all cloths, for the coming step
+    bool m_neededMore = false;                        // tests than ordinary motion does, the last step
     bool m_submitted = false;
     bool m_deviceLeft = false;  // it failed
 
@@ -113,6 +115,7 @@ struct Pipeline::Implementation
     void placeMesh(std::size_t slot);
     void findSlots();
     void collectPairs();
+    void addOrdinaryTests(std::size_t cloth, std::size_t obstacle);
     void collectMotions();
     void collectSelf();
     // How many obstacles of the pairs the step uses as the one before left them; takes them all.
@@ -146,7 +149,16 @@ struct Pipeline::Implementation
     void complete();
     // Takes out contacts on the back of one-sided obstacles.
     void dropBackContacts();
-    // Takes cloths out of the step until what is left is within the limits.
+    // Takes a cloth out of the step; candidates: that it has, as far as they were counted.
+    void leaveOut(std::size_t slot, std::uint64_t candidates);
+    // Takes cloths out of the step until what is left is within the settings' limits.
     void leaveOutCloths();
+    // After a step with more tests than ordinary motion needs: takes out the cloths that need more than their
+    // allowance. The others may make as many as the settings allow.
+    void leaveOutStretched(const Allowance& allowance);
+    // Before a step on the host that is likely to need more, as the one before did: does without the limits of ordinary
+    // motion where every cloth may have more.
+    void expectMore(const Allowance& allowance);
+    bool needsMore(std::size_t slot, const std::vector<std::size_t>& taking, TestLimits limits);
 };
 }  // namespace drape

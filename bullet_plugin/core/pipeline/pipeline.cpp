@@ -223,7 +223,7 @@ void Pipeline::submit()
     self.m_statistics.m_uploadMs = watch.lapMs();
 }
 
-ContactList Pipeline::finish()
+ContactList Pipeline::finish(const Allowance& allowance)
 {
     Implementation& self = *m_implementation;
     Stopwatch watch;
@@ -236,13 +236,20 @@ ContactList Pipeline::finish()
     }
     else
     {
+        const TestLimits ordinary = self.m_stepPairs.m_limits;
+        self.expectMore(allowance);
         self.complete();
         while (self.m_result.m_overLimit)
         {
-            self.leaveOutCloths();
+            if (self.m_result.m_overTests)
+                self.leaveOutStretched(allowance);
+            else
+                self.leaveOutCloths();
             self.enqueue();
             self.complete();
         }
+        self.m_neededMore =
+            self.m_result.m_candidates > ordinary.m_tests || self.m_result.m_sweptTests > ordinary.m_swept;
     }
     self.m_submitted = false;
     self.dropBackContacts();

@@ -1,4 +1,6 @@
-// Runs a step on the back end in use, and again without the largest cloths where it is over the settings' limits.
+// Runs a step on the back end in use, and again without some cloths where it is over limits: without those that are
+// stretched over those of ordinary motion, without the largest over the settings'.
+#include <cmath>
 #include <numeric>
 
 #include "cloths_over_budget.h"
@@ -50,13 +52,54 @@ void Pipeline::Implementation::leaveOutCloths()
     for (std::size_t slot = 0; slot < candidates.size(); ++slot)
         if (m_stepPairs.m_clothRadius[slot] >= 0.0f || m_stepPairs.m_self.m_radius[slot] >= 0.0f)
             taking.push_back(slot);
-    m_statistics.m_status |= kStepClothsLeftOut;
     for (std::size_t slot : clothsOverBudget(taking, candidates, budget))
+        leaveOut(slot, candidates[slot]);
+}
+
+void Pipeline::Implementation::leaveOut(std::size_t slot, std::uint64_t candidates)
+{
+    m_statistics.m_status |= kStepClothsLeftOut;
+    ++m_statistics.m_clothsLeftOut;
+    m_statistics.m_candidates += candidates;
+    m_stepPairs.leaveOut(slot);
+    m_leftOut.push_back(m_scene.m_cloths.mesh(slot).m_id);
+}
+
+void Pipeline::Implementation::expectMore(const Allowance& allowance)
+{
+    if (!m_neededMore || !m_report.m_onHost) return;
+    const std::vector<float>& radius = m_stepPairs.m_clothRadius;
+    for (std::size_t slot = 0; allowance && slot < radius.size(); ++slot)
+        if (radius[slot] >= 0.0f && std::isfinite(allowance(m_scene.m_cloths.mesh(slot).m_id))) return;
+    m_stepPairs.m_limits = TestLimits();
+}
+
+void Pipeline::Implementation::leaveOutStretched(const Allowance& allowance)
+{
+    std::vector<std::size_t> taking;
+    for (std::size_t slot = 0; slot < m_stepPairs.m_clothRadius.size(); ++slot)
+        if (m_stepPairs.m_clothRadius[slot] >= 0.0f) taking.push_back(slot);
+    for (const std::size_t slot : taking)
     {
-        ++m_statistics.m_clothsLeftOut;
-        m_statistics.m_candidates += candidates[slot];
-        m_stepPairs.leaveOut(slot);
-        m_leftOut.push_back(m_scene.m_cloths.mesh(slot).m_id);
+        const float share = allowance ? allowance(m_scene.m_cloths.mesh(slot).m_id) : HUGE_VALF;
+        if (!std::isfinite(share)) continue;
+        const TestLimits own = m_stepPairs.m_ordinary[slot].times(share);
+        if ((taking.size() > 1 || share > 1) && !needsMore(slot, taking, own)) continue;
+        leaveOut(slot, own.m_tests + 1);
     }
+    m_stepPairs.m_limits = TestLimits();
+}
+
+// Whether the one of these cloths would need more tests in a step of its own.
+bool Pipeline::Implementation::needsMore(std::size_t slot, const std::vector<std::size_t>& taking, TestLimits limits)
+{
+    StepPairs alone = m_stepPairs;
+    for (const std::size_t other : taking)
+        if (other != slot) alone.leaveOut(other);
+    alone.m_limits = limits;
+    alone.m_anySelf = false;
+    StepResult result;
+    m_hostBackend->run(m_scene, alone, m_settings, result);
+    return result.m_overLimit;
 }
 }  // namespace drape

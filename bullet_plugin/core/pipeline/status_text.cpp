@@ -24,6 +24,8 @@ std::string statusText(std::uint32_t status)
         {kStepCoarsePositions, "an obstacle so far out that its positions are coarser than the thickness"},
         {kStepStartsIntersecting, "triangles of a cloth and an obstacle that intersected when the step began"},
         {kStepFacesLeftOut, "faces that name another body's nodes left out"},
+        {kStepSurfacePassed, "a surface may have been passed where links pulled"},
+        {kStepMotionHeldBack, "nodes of cloth that came apart held back"},
     };
     std::string text;
     for (const auto& clause : clauses)

@@ -13,6 +13,7 @@
 #include "bullet_plugin/core/narrow_phase/narrow_phase.h"
 #include "bullet_plugin/core/pipeline.h"
 #include "bullet_plugin/core/self_collision/self_step.h"
+#include "ordinary_work.h"
 #include "drape/settings.h"
 
 namespace drape
@@ -97,6 +98,8 @@ struct StepPairs
     bool m_anyTube = false;
     std::vector<float> m_clothRadius;       // m, per cloth slot: the largest reach of its pairs, -1 without one
     std::vector<ObstacleMotion> m_motions;  // of the obstacles that have a pair and move, in the order of slots
+    std::vector<TestLimits> m_ordinary;     // per cloth slot: what its pairs need in ordinary motion
+    TestLimits m_limits;                    // of the step, over patches
     SelfReach m_self;
     bool m_anyPair = false;      // cloth and obstacle
     bool m_anySelf = false;      // cloth and itself
@@ -129,8 +132,9 @@ struct StepResult
     std::vector<Contact> m_contacts;  // of the host
     ContactList m_deviceContacts;     // the device back end's memory, until its next step
     std::vector<Candidate> m_intersections;
-    // More candidates or contacts than the settings allow: nothing else of the result counts then but m_contactDemand.
+    // More candidates or contacts than the limits allow: nothing else of the result counts then but m_contactDemand.
     bool m_overLimit = false;
+    bool m_overTests = false;           // these are the limits of StepPairs
     std::uint64_t m_contactDemand = 0;  // where contacts were too many: how many; 0 where candidates were
     std::size_t m_candidates = 0;
     std::size_t m_volumeTests = 0;

@@ -24,11 +24,24 @@ void Pipeline::Implementation::findSlots()
         m_pairSlots.push_back({slotOf(m_scene.m_cloths, pair.m_cloth), slotOf(m_scene.m_obstacles, pair.m_obstacle)});
 }
 
+// Of a pair that is about to be collected.
+void Pipeline::Implementation::addOrdinaryTests(std::size_t cloth, std::size_t obstacle)
+{
+    const auto triangles = [](const MeshPool& pool, std::size_t slot)
+    { return pool.mesh(slot).m_topology.m_triangles.size(); };
+    TestLimits own = ordinaryTestsBeside(triangles(m_scene.m_obstacles, obstacle));
+    if (m_stepPairs.m_clothRadius[cloth] < 0.0f) own += ordinaryTests(triangles(m_scene.m_cloths, cloth));
+    m_stepPairs.m_ordinary[cloth] += own;
+    m_stepPairs.m_limits += own;
+}
+
 void Pipeline::Implementation::collectPairs()
 {
     const std::size_t obstacleMeshes = m_scene.m_obstacles.meshCount();
     m_stepPairs.m_thickness.assign(m_scene.m_cloths.meshCount() * obstacleMeshes, -1.0f);
     m_stepPairs.m_clothRadius.assign(m_scene.m_cloths.meshCount(), -1.0f);
+    m_stepPairs.m_ordinary.assign(m_scene.m_cloths.meshCount(), TestLimits{0, 0});
+    m_stepPairs.m_limits = TestLimits{0, 0};
     m_stepPairs.m_anyPair = false;
     m_paired.assign(obstacleMeshes, false);
     findSlots();
@@ -41,6 +54,7 @@ void Pipeline::Implementation::collectPairs()
         m_paired[obstacle] = true;
         if (m_scene.m_obstacles.mesh(obstacle).m_coordinateStep > pair.m_thickness)
             m_statistics.m_status |= kStepCoarsePositions;
+        addOrdinaryTests(cloth, obstacle);
         float& radius = m_stepPairs.m_clothRadius[cloth];
         radius = std::max(radius, pair.m_thickness * (1.0f + m_settings.m_activation) * kReachPad +
                                       kEdgePad * m_scene.m_obstacles.mesh(obstacle).m_longestEdge);

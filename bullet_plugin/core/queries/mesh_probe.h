@@ -4,9 +4,9 @@
 // Input: a mesh's topology, the leaf order of its triangles and its positions; all are copied. Guarantee: which
 // triangles meet and what is inside is decided in exact arithmetic on the float positions, except that a point counts
 // as outside where every ray from it runs into an edge. A closed mesh is one in which every edge has an even number of
-// triangles, vertices at one position counted as one: then the parity of crossings is the same along every ray,
-// whatever the triangles' winding. Cost: O(n) to make; O(log n) a question for what lies beside few triangles. Host
-// only. Lengths in metres.
+// triangles, vertices at one position counted as one, up to a millionth of the mesh's size: then the parity of
+// crossings is the same along every ray that misses such a seam, whatever the triangles' winding. Cost: O(n) to make;
+// O(log n) a question for what lies beside few triangles. Host only. Lengths in metres.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,7 @@
 // Decides whether a mesh is closed, and measures its volume.
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "axis.h"
@@ -9,12 +11,18 @@ namespace drape
 {
 namespace
 {
-// Equal for vertices at one position.
-std::vector<std::uint32_t> joinedVertices(const std::vector<float>& positions)
+// Distance of vertices that count as one, as a share of the mesh's size: where a surface that is made by sines and
+// cosines comes back to its seam or its pole, its vertices are off by rounding.
+constexpr double kSeam = 1e-6;
+
+// A direction along which the vertices of grids, boxes and flat parts do not lie one over the other.
+constexpr double kAlong[3] = {0.5257, 0.6821, 0.5083};
+
+// For each vertex the first of those at its position.
+std::vector<std::uint32_t> firstsAtPositions(const std::vector<float>& positions)
 {
-    std::vector<std::uint32_t> order(positions.size() / 3), joined(order.size());
-    for (std::uint32_t i = 0; i < order.size(); ++i)
-        order[i] = i;
+    std::vector<std::uint32_t> order(positions.size() / 3), firsts(order.size());
+    std::iota(order.begin(), order.end(), 0u);
     const auto less = [&](std::uint32_t a, std::uint32_t b)
     {
         const float *const p = &positions[3 * std::size_t(a)], *const q = &positions[3 * std::size_t(b)];
@@ -22,7 +30,53 @@ std::vector<std::uint32_t> joinedVertices(const std::vector<float>& positions)
     };
     std::sort(order.begin(), order.end(), less);
     for (std::size_t i = 0; i < order.size(); ++i)
-        joined[order[i]] = i > 0 && !less(order[i - 1], order[i]) ? joined[order[i - 1]] : order[i];
+        firsts[order[i]] = i > 0 && !less(order[i - 1], order[i]) ? firsts[order[i - 1]] : order[i];
+    return firsts;
+}
+
+double alongOf(const float* position)
+{
+    return kAlong[0] * position[0] + kAlong[1] * position[1] + kAlong[2] * position[2];
+}
+
+bool areNear(const float* p, const float* q, double distance)
+{
+    return std::fabs(double(p[0]) - q[0]) <= distance && std::fabs(double(p[1]) - q[1]) <= distance &&
+           std::fabs(double(p[2]) - q[2]) <= distance;
+}
+
+// Equal for vertices that count as one. distance: m.
+std::vector<std::uint32_t> joinedVertices(const std::vector<float>& positions, double distance)
+{
+    std::vector<std::uint32_t> joined = firstsAtPositions(positions);
+    struct Placed
+    {
+        double m_along;
+        std::uint32_t m_vertex;
+    };
+    std::vector<Placed> placed;
+    for (std::uint32_t vertex = 0; vertex < joined.size(); ++vertex)
+    {
+        const double along = alongOf(&positions[3 * std::size_t(vertex)]);
+        if (joined[vertex] == vertex && std::isfinite(along)) placed.push_back(Placed{along, vertex});
+    }
+    std::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) { return a.m_along < b.m_along; });
+    const auto root = [&](std::uint32_t vertex)
+    {
+        while (joined[vertex] != vertex)
+            vertex = joined[vertex] = joined[joined[vertex]];
+        return vertex;
+    };
+    for (std::size_t i = 0; i < placed.size(); ++i)
+    {
+        const float* const own = &positions[3 * std::size_t(placed[i].m_vertex)];
+        // The direction is a unit one: so far apart along it are vertices at most that are near along every axis.
+        for (std::size_t j = i + 1; j < placed.size() && placed[j].m_along - placed[i].m_along <= 1.75 * distance; ++j)
+            if (areNear(own, &positions[3 * std::size_t(placed[j].m_vertex)], distance))
+                joined[root(placed[j].m_vertex)] = root(placed[i].m_vertex);
+    }
+    for (std::uint32_t vertex = 0; vertex < joined.size(); ++vertex)
+        joined[vertex] = root(vertex);
     return joined;
 }
 }  // namespace
@@ -30,7 +84,7 @@ std::vector<std::uint32_t> joinedVertices(const std::vector<float>& positions)
 bool MeshProbe::isClosed()
 {
     if (m_closed != Closed::Unknown) return m_closed == Closed::Yes;
-    const std::vector<std::uint32_t> joined = joinedVertices(m_positions);
+    const std::vector<std::uint32_t> joined = joinedVertices(m_positions, kSeam * double(size()));
     std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
     for (const Triangle& triangle : m_triangles)
     {

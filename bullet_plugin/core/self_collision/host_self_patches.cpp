@@ -98,7 +98,7 @@ void HostSelfPatches::findContacts(const SelfStep& step, SelfStepLimits limits, 
     const HostSelfFeatures features = {m_tests.data(), m_counters.m_selfTests, step.m_view, firstSlot};
     const HostSelfKernels& kernels = *m_kernels->m_self;
     m_retries += m_hits.find(kernels.m_findHits, kernels.m_findSwept, &StepCounters::m_selfSwept, features,
-                             2 * std::size_t(firstSlot), limits.m_contacts, threads, m_counters);
+                             2 * std::size_t(firstSlot), {limits.m_contacts, SIZE_MAX}, threads, m_counters);
     if (m_counters.m_listed <= limits.m_contacts) m_hits.order(m_counters.m_listed, contacts, threads);
 }
 

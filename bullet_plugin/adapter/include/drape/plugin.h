@@ -16,9 +16,11 @@
 //
 // Kinematic rigid bodies move over the step by the velocity that Bullet derives, when stepSimulation() begins, from the
 // interpolation transform and the world transform (or the motion state's). To teleport one, set both transforms to the
-// new pose. One whose pose is set later, by a tick's callback or while it sleeps, moves the whole way from its last
-// pose; one that sleeps has no velocity for Bullet: give it DISABLE_DEACTIVATION. In the first step in which a body is
-// there it rests. A static object's pose that changes is a teleport, and so is the place of a child in its compound.
+// new pose, or call teleported(). A change of the world transform alone is taken for a teleport, too, where nodes of a
+// cloth beside the body were moved along with it, by more than the body's diameter. One whose pose is set later, by a
+// tick's callback or while it sleeps, moves the whole way from its last pose; one that sleeps has no velocity for
+// Bullet: give it DISABLE_DEACTIVATION. In the first step in which a body is there it rests. A static object's pose
+// that changes is a teleport, and so is the place of a child in its compound.
 //
 // Cloth that begins a step with its triangles through a mesh, because it was put there or the mesh was, is reported
 // (kStepStartsIntersecting) and pushed out of closed meshes; nodes are checked again wherever an app moves them.
@@ -106,6 +108,11 @@ public:
     // half of the mesh's size is another pose, where cloth starts anew. In the first step that an obstacle has a soft
     // body near, it has not moved.
     void obstacleChanged(const btCollisionShape* shape);
+
+    // Says that an obstacle or a soft body was put where it is and did not move there, or is about to be, before the
+    // next step: nothing is swept on its way, and what intersects there is reported and pushed apart. Needed where an
+    // app sets a kinematic body's world transform alone. Unknown objects are left as they are.
+    void teleported(const btCollisionObject* object);
 
     // Whether only a mesh shape's front is solid, the side from which its triangles' corners run counter-clockwise:
     // cloth that is behind may come out instead of being caught inside. A mirrored mesh (scaled by a negative number)

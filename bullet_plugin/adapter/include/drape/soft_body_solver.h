@@ -34,6 +34,7 @@ public:
 private:
     struct Work;
 
+    void listTaken();
     std::vector<StepObstacle> wakeReached(KinematicMotions& motions);
     void listPredicted();
     void detect();

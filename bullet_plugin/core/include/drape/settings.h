@@ -74,9 +74,9 @@ struct Settings
     // Most pairs that a step may list (of features, on a GPU also of triangles and patches; up to 20 bytes each) and
     // most contacts (140 bytes each on a device, 200 on the host); 2^28 at most, which stands for more. Steps of two
     // million cloth triangles need a third of either. A step with more leaves out the cloths that have most of them,
-    // until the rest fits, and says so in its status: those cloths collide with nothing in that step. Queries of whole
-    // meshes (drape/queries.h) test as many pairs and list as many answers (8 to 24 bytes each); of more they give the
-    // number.
+    // until the rest fits, and says so in its status: those cloths collide with nothing in that step. Cloth that came
+    // apart may make fewer, see kStepMotionHeldBack. Queries of whole meshes (drape/queries.h) test as many pairs and
+    // list as many answers (8 to 24 bytes each); of more they give the number.
     std::size_t m_candidateLimit = std::size_t(1) << 27;
     std::size_t m_contactLimit = std::size_t(1) << 24;
 

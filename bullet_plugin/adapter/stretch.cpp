@@ -1,0 +1,98 @@
+#include "bullet_plugin/adapter/stretch.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "BulletSoftBody/btSoftBody.h"
+
+namespace drape
+{
+namespace
+{
+btScalar longestAtRest(const btSoftBody& body)
+{
+    btScalar longest = 0;
+    for (int i = 0; i < body.m_links.size(); ++i)
+        if (!body.m_links[i].m_bbending) longest = std::max(longest, body.m_links[i].m_rl);
+    return longest;
+}
+
+// place: of a node, by its index. NaN counts as infinitely far.
+template <class Place>
+btScalar longestEdge(const ClothFaces& faces, const Place& place)
+{
+    btScalar longest2 = 0;
+    const std::vector<std::int32_t>& nodes = faces.triangles();
+    const auto isNode = [&](std::int32_t node) { return node >= 0 && std::size_t(node) < faces.nodeCount(); };
+    for (std::size_t first = 0; first + 2 < nodes.size(); first += 3)
+    {
+        for (std::size_t k = 0; k < 3; ++k)
+        {
+            const std::int32_t a = nodes[first + k], b = nodes[first + (k + 1) % 3];
+            if (!isNode(a) || !isNode(b)) continue;
+            const btScalar length2 = (place(std::size_t(a)) - place(std::size_t(b))).length2();
+            if (!(length2 <= longest2)) longest2 = length2 > longest2 ? length2 : SIMD_INFINITY;
+        }
+    }
+    return btSqrt(longest2);
+}
+
+// Of the movable nodes whose motion is finite.
+btVector3 medianMotion(const btSoftBody& body, const NodePaths& paths)
+{
+    std::vector<btVector3> motions;
+    for (std::size_t i = 0; i < paths.m_start.size(); ++i)
+    {
+        const btVector3 motion = body.m_nodes[static_cast<int>(i)].m_x - paths.m_start[i];
+        if (paths.m_inverseMass[i] > 0 && motion.length2() < SIMD_INFINITY) motions.push_back(motion);
+    }
+    return medianOf(std::move(motions));
+}
+}  // namespace
+
+btVector3 medianOf(std::vector<btVector3> vectors)
+{
+    btVector3 median(0, 0, 0);
+    for (int axis = 0; axis < 3 && !vectors.empty(); ++axis)
+    {
+        const auto middle = vectors.begin() + std::ptrdiff_t(vectors.size() / 2);
+        std::nth_element(vectors.begin(), middle, vectors.end(),
+                         [axis](const btVector3& a, const btVector3& b) { return a[axis] < b[axis]; });
+        median[axis] = (*middle)[axis];
+    }
+    return median;
+}
+
+btScalar unitOf(const btSoftBody& body, const ClothFaces& faces, const NodePaths& paths)
+{
+    const btScalar rest = longestAtRest(body);
+    return rest > 0 ? rest : longestEdge(faces, [&](std::size_t node) { return paths.m_start[node]; });
+}
+
+Stretch stretchOf(const btSoftBody& body, const ClothFaces& faces, const NodePaths& paths)
+{
+    const btScalar unit = unitOf(body, faces, paths);
+    const btScalar start = longestEdge(faces, [&](std::size_t node) { return paths.m_start[node]; });
+    const btScalar end = longestEdge(faces, [&](std::size_t node) { return body.m_nodes[static_cast<int>(node)].m_x; });
+    const auto times = [unit](btScalar length) { return unit > 0 ? length / unit : length > 0 ? SIMD_INFINITY : 1; };
+    return {times(start), times(end)};
+}
+
+void holdTogether(btSoftBody& body, const ClothFaces& faces, const NodePaths& paths)
+{
+    const btScalar most = unitOf(body, faces, paths) / 2;
+    const btVector3 common = medianMotion(body, paths);
+    const btScalar velocityScale = body.m_sst.isdt * (1 - body.m_cfg.kDP);
+    for (std::size_t i = 0; i < paths.m_start.size(); ++i)
+    {
+        btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
+        const btVector3 own = node.m_x - paths.m_start[i] - common;
+        const btScalar length = own.length();
+        if (!(paths.m_inverseMass[i] > 0) || !(length > most) || !(length < SIMD_INFINITY)) continue;
+        const btVector3 shift = own * (most / length - 1);
+        node.m_x += shift;
+        node.m_v += shift * velocityScale;
+    }
+}
+}  // namespace drape

@@ -1,0 +1,41 @@
+// Whether a soft body is still of its own size, and how it is kept from coming apart.
+//
+// Why: cloth that came apart, because links lost against forces or pins were put elsewhere without the rest, has faces
+// that reach across whole obstacles. What they pass costs more than a step may take, and no contact brings them in
+// order (Pipeline::finish()).
+#pragma once
+
+#include <vector>
+
+#include "bullet_plugin/adapter/cloth_faces.h"
+#include "bullet_plugin/adapter/node_paths.h"
+
+class btSoftBody;
+
+namespace drape
+{
+// Times the longest link at rest that an edge of a face is long at most in a step that may make as many tests as it
+// needs. Links that are stretched most by what a scene does to them, at a few of Bullet's iterations, are two to three
+// times as long.
+constexpr btScalar kMostStretch = 4;
+
+// The longest edge of a face, as a multiple of the body's unit of length; infinity where a node is not finite.
+struct Stretch
+{
+    btScalar m_start;  // at the start of the nodes' paths
+    btScalar m_end;    // where they are now
+};
+
+// By component; zero of none.
+btVector3 medianOf(std::vector<btVector3> vectors);
+
+// The longest link at rest, bending links left out; of a body without links the longest edge at the start, m.
+btScalar unitOf(const btSoftBody& body, const ClothFaces& faces, const NodePaths& paths);
+
+// O(n) in the links and faces.
+Stretch stretchOf(const btSoftBody& body, const ClothFaces& faces, const NodePaths& paths);
+
+// Shortens what each movable node goes beside the body's common motion, the median of all, to half a unit. Velocities
+// follow, so that nodes which fly apart lose what drives them. O(n).
+void holdTogether(btSoftBody& body, const ClothFaces& faces, const NodePaths& paths);
+}  // namespace drape
