@@ -177,8 +177,8 @@ void PairStarts::tell(const StartingPair& pair, Guard& guard, bool pushed)
     guard.m_told = true;
     char line[320];
     std::snprintf(line, sizeof(line),
-                  "soft body %p begins a step with %zu of its triangles through the mesh of object %p (%llu pairs of "
-                  "triangles); %s",
+                  "soft body %p begins a step with %zu of its faces and links through the mesh of object %p (%llu pairs "
+                  "with its triangles); %s",
                   static_cast<const void*>(pair.m_cloth->body()), m_meeting.size(),
                   static_cast<const void*>(pair.m_obstacle->key().m_object),
                   static_cast<unsigned long long>(guard.m_intersections),

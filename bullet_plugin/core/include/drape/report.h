@@ -59,7 +59,8 @@ enum StepStatusBits : std::uint32_t
         1u << 4,  // an obstacle reaches so far out that neighbouring floats are a thickness apart there
     kStepStartsIntersecting =
         1u << 5,  // a cloth and an obstacle began the step with triangles that intersect: the cloth is not guarded there
-    kStepFacesLeftOut = 1u << 6  // faces of a soft body that name another body's nodes were left out
+    // Faces of a soft body, or links that are not part of a surface, name another body's nodes and were left out.
+    kStepFacesLeftOut = 1u << 6
 };
 
 // What StepStatistics::m_status says, in words: one clause a bit, joined by "; ". Empty for a good step.
