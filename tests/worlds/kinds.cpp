@@ -44,7 +44,8 @@ constexpr RandomKind kRandomKinds[] = {{"terrain", buildTerrain},
                                        {"wave_floor", buildWaveFloor},
                                        {"slats", buildSlats},
                                        {"drawer", buildDrawer},
-                                       {"chimney", buildChimney}};
+                                       {"chimney", buildChimney},
+                                       {"ropes", buildRopes}};
 constexpr int kRandomKindCount = static_cast<int>(sizeof kRandomKinds / sizeof *kRandomKinds);
 constexpr int kTinyStatic = kRandomKindCount;
 constexpr int kTinyKinematic = kTinyStatic + 1;
