@@ -40,7 +40,7 @@ TEST(SolidLinks, areAllOfARopeButBendingLinks)
     EXPECT_EQ(solidOf(*rope), (Nodes{0, 1, 1, 2, 2, 3}));
     EXPECT_TRUE(hasSolidLink(*rope));
     for (int i = 0; i < rope->m_links.size(); ++i)
-        rope->m_links[i].m_bbending = 1;
+        rope->m_links[i].m_bbending = -1;
     EXPECT_FALSE(hasSolidLink(*rope));
     EXPECT_TRUE(solidOf(*rope).empty());
 }
