@@ -264,5 +264,73 @@ TEST_P(Ropes, hangFromAClothAsItsFringe)
     }
 }
 
+// Across a box, as one link whose ends are outside, upright, and through a ring twice.
+TEST_P(Ropes, thatBeginThroughAMeshAreToldAndComeOut)
+{
+    const struct
+    {
+        TriangleMesh m_obstacle;
+        btVector3 m_from, m_to;
+        int m_links;
+    } starts[] = {{makeBox(1.0f, 0.4f, 1.0f), {btScalar(-1.2), btScalar(0.1), 0}, {btScalar(1.2), btScalar(0.1), 0}, 40},
+                  {makeBox(1.0f, 0.4f, 1.0f), {btScalar(-1.2), btScalar(0.1), 0}, {btScalar(1.2), btScalar(0.1), 0}, 1},
+                  {makeBox(1.0f, 0.4f, 1.0f), {0, btScalar(-0.9), btScalar(0.1)}, {0, 1, btScalar(0.1)}, 20},
+                  {makeTorus(0.5f, 0.1f, 24, 12), {btScalar(-1.2), 0, 0}, {btScalar(1.2), btScalar(0.02), 0}, 30}};
+    for (const auto& start : starts)
+    {
+        SCOPED_TRACE(start.m_links);
+        Settings settings = GetParam().m_settings;
+        settings.m_log = nullptr;
+        Plugin plugin(settings);
+        MeshShape shape(start.m_obstacle);
+        DropWorld world(&plugin);
+        world.addObstacle(shape.shape());
+        const std::unique_ptr<btSoftBody> rope =
+            makeRope(world.world().getWorldInfo(), start.m_from, start.m_to, start.m_links);
+        world.world().addSoftBody(rope.get());
+        EXPECT_NE(plugin.diagnose(world.world()).find("triangles intersect"), std::string::npos);
+        PenetrationMeter meter(start.m_obstacle, meshWithLinks(*rope));
+        world.step();
+        EXPECT_EQ(plugin.statistics().m_status, std::uint32_t(kStepStartsIntersecting));
+        EXPECT_GE(plugin.statistics().m_startIntersections, 2u);
+        world.step(239);
+        EXPECT_EQ(plugin.statistics().m_status, std::uint32_t(kStepGood));
+        const StepMeasure measure = meter.measure(positionsOf(*rope).data());
+        EXPECT_EQ(measure.nodesBelow(), 0u);
+        EXPECT_EQ(measure.m_intersectingPairs, 0u);
+        world.world().removeSoftBody(rope.get());
+    }
+}
+
+// Two ropes sewn to one another by a link of the first.
+TEST_P(Ropes, withALinkToAnotherBodySaySo)
+{
+    Plugin plugin(GetParam().m_settings);
+    MeshShape shape(makeBox(1.0f, 0.4f, 1.0f));
+    DropWorld world(&plugin);
+    world.addObstacle(shape.shape());
+    std::unique_ptr<btSoftBody> ropes[2];
+    for (int i = 0; i < 2; ++i)
+    {
+        const btVector3 middle(0, btScalar(0.25), btScalar(0.3) * btScalar(i)), half(btScalar(0.4), 0, 0);
+        ropes[i] = makeRope(world.world().getWorldInfo(), middle - half, middle + half, 10);
+        world.world().addSoftBody(ropes[i].get());
+    }
+    world.step();
+    EXPECT_EQ(plugin.statistics().m_status, std::uint32_t(kStepGood));
+    ropes[0]->appendLink(5, 6);
+    ropes[0]->m_links[ropes[0]->m_links.size() - 1].m_n[1] = &ropes[1]->m_nodes[5];
+    for (int step = 0; step < 60; ++step)
+    {
+        world.step();
+        ASSERT_EQ(plugin.statistics().m_status, std::uint32_t(kStepFacesLeftOut)) << "step " << step;
+    }
+    for (const auto& rope : ropes)
+    {
+        EXPECT_GT(lowestOf(*rope), btScalar(0.2));
+        world.world().removeSoftBody(rope.get());
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Backend, Ropes, testing::ValuesIn(allBackends()), backendName);
 }  // namespace drape::test
