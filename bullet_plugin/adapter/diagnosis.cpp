@@ -208,8 +208,8 @@ void Diagnosis::addIntersections(const btSoftBody& cloth, const btCollisionObjec
         format("soft body %p and object %p: ", static_cast<const void*>(&cloth), static_cast<const void*>(&object));
     if (pairs > 0)
         add(pair + format("%zu pairs of the cloth's faces or links and the mesh's triangles intersect, %zu of %d nodes "
-                          "are inside; %s", pairs, inside,
-                          cloth.m_nodes.size(),
+                          "are inside; %s",
+                          pairs, inside, cloth.m_nodes.size(),
                           closed ? "the mesh is closed, so that the cloth is pushed out"
                                  : "the mesh is open, so that nothing tells which side is right"));
     else if (inside == std::size_t(cloth.m_nodes.size()) && inside > 0)

@@ -3,10 +3,10 @@
 // Input: the live body or shape of the current step, never one remembered from before. Output: the pipeline's mesh id,
 // or kNoMesh for a mesh without triangles. Guarantee: a cloth whose faces, solid links or nodes were replaced, cut or
 // refined is rebuilt, at once where a count or an array tells, else within as many steps as it has stretches of 32,768
-// faces, or twice as many as it has of 1,024 links; an
-// obstacle that moved, was scaled or deformed is moved, and rebuilt when its triangles changed. An unchanged obstacle,
-// and a kinematic one that only moved, costs meshSignature(), an unchanged cloth a comparison of some indices. Metres;
-// a kinematic obstacle's positions are in its own frame, all others in the world's.
+// faces, or twice as many as it has of 1,024 links; an obstacle that moved, was scaled or deformed is moved, and
+// rebuilt when its triangles changed. An unchanged obstacle, and a kinematic one that only moved, costs
+// meshSignature(), an unchanged cloth a comparison of some indices. Metres; a kinematic obstacle's positions are in its
+// own frame, all others in the world's.
 #pragma once
 
 #include <cstdint>

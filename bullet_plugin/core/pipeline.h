@@ -191,9 +191,9 @@ public:
 
     // Resolves a contact of the last finish().
     ContactView view(const Contact& contact) const;
-    // A DRAPE_FACE_VERTEX contact with the face's nodes (m, x y z each, in the view's order; of an edge's two the second
-    // one twice) at other places. False
-    // where their direction means nothing: the face touches the vertex, or came past it. O(1).
+    // A DRAPE_FACE_VERTEX contact with the face's nodes (m, x y z each, in the view's order; of an edge's two the
+    // second one twice) at other places. False where their direction means nothing: the face touches the vertex, or
+    // came past it. O(1).
     static bool planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane);
     // Resolves one of selfContacts().
     SelfContactView viewSelf(const Contact& contact) const;

@@ -1,5 +1,5 @@
-// Triangles that stand for an edge that is not a face's, or for a vertex without a triangle: the second and third corner
-// are one vertex. They have no area; as faces they meet an obstacle's vertex with their one edge.
+// Triangles that stand for an edge that is not a face's, or for a vertex without a triangle: the second and third
+// corner are one vertex. They have no area; as faces they meet an obstacle's vertex with their one edge.
 #ifndef DRAPE_LIB_SEGMENT_H
 #define DRAPE_LIB_SEGMENT_H
 

@@ -22,8 +22,7 @@ inline TriangleMesh meshWithLinks(const btSoftBody& body)
     SolidLinks links;
     links.read(body, mesh.m_triangles);
     for (std::size_t i = 0; i < links.nodes().size(); i += 2)
-        mesh.m_triangles.insert(mesh.m_triangles.end(),
-                                {links.nodes()[i], links.nodes()[i + 1], links.nodes()[i + 1]});
+        mesh.m_triangles.insert(mesh.m_triangles.end(), {links.nodes()[i], links.nodes()[i + 1], links.nodes()[i + 1]});
     return mesh;
 }
 
@@ -59,16 +58,22 @@ private:
     Crossings m_crossings;
 };
 
+// The margin, iterations and friction of these tests' bodies.
+inline void style(btSoftBody& body, btScalar mass)
+{
+    body.setTotalMass(mass);
+    body.getCollisionShape()->setMargin(kMargin);
+    body.m_cfg.piterations = 4;
+    body.m_cfg.kDP = btScalar(0.02);
+    body.m_cfg.kDF = btScalar(0.6);
+}
+
 // Of `links` links from one place to another, 0.1 kg a metre.
 inline std::unique_ptr<btSoftBody> makeRope(btSoftBodyWorldInfo& info, const btVector3& from, const btVector3& to,
                                             int links, int fixedEnds = 0)
 {
     std::unique_ptr<btSoftBody> rope(btSoftBodyHelpers::CreateRope(info, from, to, links - 1, fixedEnds));
-    rope->setTotalMass(btScalar(0.1) * (to - from).length());
-    rope->getCollisionShape()->setMargin(kMargin);
-    rope->m_cfg.piterations = 4;
-    rope->m_cfg.kDP = btScalar(0.02);
-    rope->m_cfg.kDF = btScalar(0.6);
+    style(*rope, btScalar(0.1) * (to - from).length());
     return rope;
 }
 

@@ -64,14 +64,14 @@ std::unique_ptr<btSoftBody> makeFringed(btSoftBodyWorldInfo& info, btScalar heig
 {
     constexpr int kSide = 17;
     const btScalar half = btScalar(0.5), threads = btScalar(0.07);
-    std::unique_ptr<btSoftBody> cloth(
-        btSoftBodyHelpers::CreatePatch(info, btVector3(-half, height, -half), btVector3(half, height, -half),
-                                       btVector3(-half, height, half), btVector3(half, height, half), kSide, kSide, 0,
-                                       true));
+    std::unique_ptr<btSoftBody> cloth(btSoftBodyHelpers::CreatePatch(
+        info, btVector3(-half, height, -half), btVector3(half, height, -half), btVector3(-half, height, half),
+        btVector3(half, height, half), kSide, kSide, 0, true));
     for (int i = 0; i < kSide * kSide; ++i)
     {
         const int column = i % kSide, row = i / kSide;
-        const btVector3 out(btScalar((column == kSide - 1) - (column == 0)), 0, btScalar((row == kSide - 1) - (row == 0)));
+        const btVector3 out(btScalar((column == kSide - 1) - (column == 0)), 0,
+                            btScalar((row == kSide - 1) - (row == 0)));
         for (int k = 1; k <= 3 && !out.isZero(); ++k)
         {
             cloth->appendNode(cloth->m_nodes[i].m_x + out * (threads * btScalar(k)), 1);
@@ -79,11 +79,7 @@ std::unique_ptr<btSoftBody> makeFringed(btSoftBodyWorldInfo& info, btScalar heig
             cloth->appendLink(k == 1 ? i : last - 1, last);
         }
     }
-    cloth->setTotalMass(1);
-    cloth->getCollisionShape()->setMargin(kMargin);
-    cloth->m_cfg.piterations = 4;
-    cloth->m_cfg.kDP = btScalar(0.02);
-    cloth->m_cfg.kDF = btScalar(0.6);
+    style(*cloth, 1);
     return cloth;
 }
 
@@ -135,15 +131,15 @@ TEST_P(RopesDropped, endEveryStepOutsideWithTheSameBitsOnEveryBackend)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Drops, RopesDropped,
-    testing::Values(RopeDrop{"sphere", 0}, RopeDrop{"sphere", 10}, RopeDrop{"sphere", 200}, RopeDrop{"box", 0},
-                    RopeDrop{"box", 50}, RopeDrop{"stairs", 2}, RopeDrop{"stairs", 50}, RopeDrop{"torus", 10},
-                    RopeDrop{"bowl", 3}, RopeDrop{"needle", 0}, RopeDrop{"needle", 10}, RopeDrop{"needle", 100},
-                    RopeDrop{"rod", 0}, RopeDrop{"rod", 20}, RopeDrop{"rod", 100}, RopeDrop{"bunny", 0},
-                    RopeDrop{"bunny", 10}, RopeDrop{"bunny", 50}),
-    [](const testing::TestParamInfo<RopeDrop>& info)
-    { return info.param.m_obstacle + std::to_string(info.param.m_speed); });
+INSTANTIATE_TEST_SUITE_P(Drops, RopesDropped,
+                         testing::Values(RopeDrop{"sphere", 0}, RopeDrop{"sphere", 10}, RopeDrop{"sphere", 200},
+                                         RopeDrop{"box", 0}, RopeDrop{"box", 50}, RopeDrop{"stairs", 2},
+                                         RopeDrop{"stairs", 50}, RopeDrop{"torus", 10}, RopeDrop{"bowl", 3},
+                                         RopeDrop{"needle", 0}, RopeDrop{"needle", 10}, RopeDrop{"needle", 100},
+                                         RopeDrop{"rod", 0}, RopeDrop{"rod", 20}, RopeDrop{"rod", 100},
+                                         RopeDrop{"bunny", 0}, RopeDrop{"bunny", 10}, RopeDrop{"bunny", 50}),
+                         [](const testing::TestParamInfo<RopeDrop>& info)
+                         { return info.param.m_obstacle + std::to_string(info.param.m_speed); });
 
 class Ropes : public BackendTest
 {
@@ -155,8 +151,8 @@ TEST_P(Ropes, withAWeightHangOverAnEdge)
 {
     RopeWorld world(makeBox(1.0f, 0.4f, 1.0f), GetParam().m_settings);
     const btScalar height = btScalar(0.2 + 1.5 * kThickness);
-    btSoftBody& rope =
-        world.add(makeRope(world.info(), btVector3(0, height, btScalar(0.01)), btVector3(1, height, btScalar(0.02)), 8, 1));
+    btSoftBody& rope = world.add(
+        makeRope(world.info(), btVector3(0, height, btScalar(0.01)), btVector3(1, height, btScalar(0.02)), 8, 1));
     rope.setMass(8, rope.getMass(7) * 100);
     rope.m_cfg.piterations = 20;
     world.run(400);
@@ -175,8 +171,8 @@ TEST_P(Ropes, areDraggedOverAnEdge)
         SCOPED_TRACE(speed);
         RopeWorld world(makeBox(1.0f, 0.4f, 1.0f), GetParam().m_settings);
         const btScalar height = btScalar(0.2 + 1.5 * kThickness);
-        btSoftBody& rope = world.add(
-            makeRope(world.info(), btVector3(btScalar(0.6), height, 0), btVector3(btScalar(-1.4), height, btScalar(0.1)), 40));
+        btSoftBody& rope = world.add(makeRope(world.info(), btVector3(btScalar(0.6), height, 0),
+                                              btVector3(btScalar(-1.4), height, btScalar(0.1)), 40));
         for (int step = 0; step < 90 && !HasFailure(); ++step)
         {
             btSoftBody::Node& end = rope.m_nodes[0];
@@ -196,8 +192,7 @@ TEST_P(Ropes, stayWoundOnARod)
         SCOPED_TRACE(speed);
         RopeWorld world(makeRod(kRodRadius, kRodRadius), GetParam().m_settings);
         constexpr int kLinks = 60;
-        std::unique_ptr<btSoftBody> wound =
-            makeRope(world.info(), btVector3(0, 0, 0), btVector3(2, 0, 0), kLinks);
+        std::unique_ptr<btSoftBody> wound = makeRope(world.info(), btVector3(0, 0, 0), btVector3(2, 0, 0), kLinks);
         const auto angleOf = [](const btVector3& p) { return std::atan2(double(p.y()), double(p.x())); };
         for (int i = 0; i <= kLinks; ++i)
         {
@@ -230,8 +225,10 @@ TEST_P(Ropes, stayWoundOnARod)
 TEST_P(Ropes, restOnPostsBetweenTheirNodes)
 {
     const btScalar wide = btScalar(0.45);
-    TriangleMesh posts = placed(makeBox(0.04f, 1.0f, 0.04f), btTransform(btQuaternion::getIdentity(), btVector3(-wide, btScalar(-0.5), 0)));
-    const TriangleMesh other = placed(makeBox(0.04f, 1.0f, 0.04f), btTransform(btQuaternion::getIdentity(), btVector3(wide, btScalar(-0.5), 0)));
+    TriangleMesh posts = placed(makeBox(0.04f, 1.0f, 0.04f),
+                                btTransform(btQuaternion::getIdentity(), btVector3(-wide, btScalar(-0.5), 0)));
+    const TriangleMesh other = placed(makeBox(0.04f, 1.0f, 0.04f),
+                                      btTransform(btQuaternion::getIdentity(), btVector3(wide, btScalar(-0.5), 0)));
     const std::int32_t first = std::int32_t(posts.vertexCount());
     posts.m_positions.insert(posts.m_positions.end(), other.m_positions.begin(), other.m_positions.end());
     for (const std::int32_t index : other.m_triangles)
@@ -272,10 +269,11 @@ TEST_P(Ropes, thatBeginThroughAMeshAreToldAndComeOut)
         TriangleMesh m_obstacle;
         btVector3 m_from, m_to;
         int m_links;
-    } starts[] = {{makeBox(1.0f, 0.4f, 1.0f), {btScalar(-1.2), btScalar(0.1), 0}, {btScalar(1.2), btScalar(0.1), 0}, 40},
-                  {makeBox(1.0f, 0.4f, 1.0f), {btScalar(-1.2), btScalar(0.1), 0}, {btScalar(1.2), btScalar(0.1), 0}, 1},
-                  {makeBox(1.0f, 0.4f, 1.0f), {0, btScalar(-0.9), btScalar(0.1)}, {0, 1, btScalar(0.1)}, 20},
-                  {makeTorus(0.5f, 0.1f, 24, 12), {btScalar(-1.2), 0, 0}, {btScalar(1.2), btScalar(0.02), 0}, 30}};
+    } starts[] = {
+        {makeBox(1.0f, 0.4f, 1.0f), {btScalar(-1.2), btScalar(0.1), 0}, {btScalar(1.2), btScalar(0.1), 0}, 40},
+        {makeBox(1.0f, 0.4f, 1.0f), {btScalar(-1.2), btScalar(0.1), 0}, {btScalar(1.2), btScalar(0.1), 0}, 1},
+        {makeBox(1.0f, 0.4f, 1.0f), {0, btScalar(-0.9), btScalar(0.1)}, {0, 1, btScalar(0.1)}, 20},
+        {makeTorus(0.5f, 0.1f, 24, 12), {btScalar(-1.2), 0, 0}, {btScalar(1.2), btScalar(0.02), 0}, 30}};
     for (const auto& start : starts)
     {
         SCOPED_TRACE(start.m_links);

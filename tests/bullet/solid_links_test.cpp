@@ -25,9 +25,8 @@ Nodes solidOf(const btSoftBody& body)
 
 std::unique_ptr<btSoftBody> makePatch(btSoftBodyWorldInfo& info)
 {
-    return std::unique_ptr<btSoftBody>(btSoftBodyHelpers::CreatePatch(info, btVector3(0, 0, 0), btVector3(1, 0, 0),
-                                                                      btVector3(0, 0, 1), btVector3(1, 0, 1), 4, 4, 0,
-                                                                      true));
+    return std::unique_ptr<btSoftBody>(btSoftBodyHelpers::CreatePatch(
+        info, btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(0, 0, 1), btVector3(1, 0, 1), 4, 4, 0, true));
 }
 }  // namespace
 

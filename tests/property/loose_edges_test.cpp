@@ -18,7 +18,8 @@ namespace drape::test
 {
 namespace
 {
-// Takes triangles out of the cloth, all but every `kept`-th, and leaves their edges; 0 takes all out. Returns the edges.
+// Takes triangles out of the cloth, all but every `kept`-th, and leaves their edges; 0 takes all out. Returns the
+// edges.
 std::vector<std::int32_t> unravel(TriangleMesh& cloth, std::size_t kept)
 {
     std::vector<std::int32_t> edges, triangles;
@@ -54,8 +55,8 @@ std::vector<Contact> runNet(Pipeline& pipeline, const StepCase& step, const std:
 bool isOfSegment(const Contact& contact, const Side& cloth)
 {
     const auto& triangles = cloth.m_pool.triangles();
-    return contact.m_kind == DRAPE_FACE_VERTEX && triangles[contact.m_clothFeature].m_vertices[1] ==
-                                                      triangles[contact.m_clothFeature].m_vertices[2];
+    return contact.m_kind == DRAPE_FACE_VERTEX &&
+           triangles[contact.m_clothFeature].m_vertices[1] == triangles[contact.m_clothFeature].m_vertices[2];
 }
 
 std::vector<StepCase> netCases()
@@ -135,8 +136,8 @@ TEST_P(LooseEdges, areReducedAlikeOnEveryBackend)
     EXPECT_GT(reduced, 100u);
 }
 
-// Segments at rest at random beside an obstacle: each that is within the thickness has a contact with a point of it that
-// is as near as any.
+// Segments at rest at random beside an obstacle: each that is within the thickness has a contact with a point of it
+// that is as near as any.
 TEST_P(LooseEdges, haveAContactWhereTheyAreNearest)
 {
     constexpr float kReach = 0.05f;
@@ -157,7 +158,8 @@ TEST_P(LooseEdges, haveAContactWhereTheyAreNearest)
             float middle[3], along[3];
             for (int axis = 0; axis < 3; ++axis)
             {
-                middle[axis] = step.m_obstacle.m_positions[3 * vertex + std::size_t(axis)] + random.uniform(-0.1f, 0.1f);
+                middle[axis] =
+                    step.m_obstacle.m_positions[3 * vertex + std::size_t(axis)] + random.uniform(-0.1f, 0.1f);
                 along[axis] = random.uniform(-0.15f, 0.15f);
             }
             for (const float side : {-1.0f, 1.0f})
@@ -186,7 +188,8 @@ TEST_P(LooseEdges, haveAContactWhereTheyAreNearest)
             {
                 float other[9];
                 for (std::size_t k = 0; k < 9; ++k)
-                    other[k] = step.m_obstacle.m_positions[3 * std::size_t(step.m_obstacle.m_triangles[3 * t + k / 3]) + k % 3];
+                    other[k] = step.m_obstacle
+                                   .m_positions[3 * std::size_t(step.m_obstacle.m_triangles[3 * t + k / 3]) + k % 3];
                 const ExactTriangle triangle = exactTriangle(other);
                 meets = meets || trianglesMeet(segment, triangle);
                 least = std::min(least, std::sqrt(squaredDistance(segment, triangle)));

@@ -176,9 +176,9 @@ void Judge::countPairs(const Cloth& cloth, const Obstacle& obstacle, const std::
     {
         const btSoftBody::Link& link = body.m_links[i];
         const btSoftBody::Node* const nodes[3] = {link.m_n[0], link.m_n[1], link.m_n[1]};
-        const auto hasFace = [&](int k) { return cloth.m_hasFace[static_cast<std::size_t>(nodes[k] - &body.m_nodes[0])]; };
-        if (!link.m_bbending && !(hasFace(0) && hasFace(1)))
-            countPairsOf(nodes, cloth, obstacle, places, findings);
+        const auto hasFace = [&](int k)
+        { return cloth.m_hasFace[static_cast<std::size_t>(nodes[k] - &body.m_nodes[0])]; };
+        if (!link.m_bbending && !(hasFace(0) && hasFace(1))) countPairsOf(nodes, cloth, obstacle, places, findings);
     }
 }
 

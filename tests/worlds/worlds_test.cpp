@@ -80,7 +80,7 @@ TEST(Worlds, ModifiedOnesKeepClothOutside)
 
 TEST(Worlds, RopesStayOutside)
 {
-    expectFewFail(worldsOf("ropes", 0, 40, kPlain), kRopesFailing);
+    expectFewFail(worldsOf("ropes", 0, 120, kPlain), kRopesFailing);
 }
 
 TEST(Worlds, TinyOnesKeepClothOutside)

@@ -31,8 +31,8 @@ struct Topology
 Topology buildTopology(const std::int32_t* triangles, std::size_t triangleCount, std::size_t vertexCount);
 
 // Adds edges that are not a triangle's, 2 indices each, in [0, vertexCount). Each becomes a triangle that has the
-// second vertex twice (kernels/lib/segment.h): it owns the edge between the two as its first, and those of the two that nobody owned. Edges
-// that repeat an index or one that is there are left out. Before addPoints(). O(n log n).
+// second vertex twice (kernels/lib/segment.h): it owns the edge between the two as its first, and those of the two that
+// nobody owned. Edges that repeat an index or one that is there are left out. Before addPoints(). O(n log n).
 void addEdges(Topology& topology, const std::int32_t* edges, std::size_t edgeCount);
 
 // Adds a point for each vertex that no triangle has: a triangle that is that vertex three times and owns it, with an

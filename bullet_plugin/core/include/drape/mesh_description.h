@@ -21,8 +21,8 @@ struct MeshDescription
     bool m_oneSided = false;
     // Of a cloth: vertices without a triangle collide as its nodes do.
     bool m_looseVertices = false;
-    // Edges of a cloth that are not a triangle's, as of a rope: 2 vertices each. They collide as its triangles' edges do,
-    // and so do their vertices. One that an edge of a triangle or an earlier one repeats is ignored.
+    // Edges of a cloth that are not a triangle's, as of a rope: 2 vertices each. They collide as its triangles' edges
+    // do, and so do their vertices. One that an edge of a triangle or an earlier one repeats is ignored.
     const std::int32_t* m_edges = nullptr;
     std::size_t m_edgeCount = 0;
     // Of a cloth: the thickness at which it collides with itself, m; 0: it does not. A pair of its features comes no
