@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <utility>
 
 #include "bullet_plugin/core/exact/triangles.h"
+#include "bullet_plugin/core/mesh/topology.h"
 #include "scenes/describe_mesh.h"
 #include "tests/support/backends.h"
 #include "tests/support/pipeline_driver.h"
@@ -202,6 +205,54 @@ TEST_P(LooseEdges, haveAContactWhereTheyAreNearest)
     }
     EXPECT_GT(near, 200);
     EXPECT_GT(atVertices, 50);
+}
+
+// Queries find the edges that meet an obstacle, or are near it, exactly, and name them as they were given.
+TEST_P(LooseEdges, areAskedForTogetherWithTriangles)
+{
+    const std::unique_ptr<Queries> queries = makeQueries(GetParam().m_settings);
+    ASSERT_TRUE(queries);
+    StepCase step = fallingCase("torus", 16, 0.03f, 872);
+    std::vector<std::int32_t> edges = unravel(step.m_cloth, 5);
+    edges.insert(edges.begin(), {3, 3, edges[0], edges[1], edges[1], edges[0]});  // ignored, or the later ones are
+    const std::size_t triangles = step.m_cloth.triangleCount();
+    MeshDescription cloth = describeMesh(step.m_cloth);
+    cloth.m_positions = step.m_end.data();
+    cloth.m_edges = edges.data();
+    cloth.m_edgeCount = edges.size() / 2;
+    const MeshDescription obstacle = describeMesh(step.m_obstacle);
+    MeshPairs found;
+    ASSERT_TRUE(queries->meshPairs(cloth, &obstacle, 0.0f, found)) << queries->error().text();
+    const auto cornersOf = [](const std::vector<float>& positions, std::int32_t a, std::int32_t b, std::int32_t c)
+    {
+        float corners[9];
+        const std::int32_t vertices[3] = {a, b, c};
+        for (std::size_t k = 0; k < 9; ++k)
+            corners[k] = positions[3 * std::size_t(vertices[k / 3]) + k % 3];
+        return exactTriangle(corners);
+    };
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> expected, reported;
+    const Topology known = buildTopology(step.m_cloth.m_triangles.data(), triangles, step.m_cloth.vertexCount());
+    std::set<std::pair<std::int32_t, std::int32_t>> seen;
+    for (const Edge& edge : known.m_edges)
+        seen.insert(std::minmax(std::int32_t(edge.m_vertices[0]), std::int32_t(edge.m_vertices[1])));
+    for (std::size_t i = 0; i < triangles + cloth.m_edgeCount; ++i)
+    {
+        const std::int32_t* const v = i < triangles ? &step.m_cloth.m_triangles[3 * i] : &edges[2 * (i - triangles)];
+        if (i >= triangles && (v[0] == v[1] || !seen.insert(std::minmax(v[0], v[1])).second)) continue;
+        const ExactTriangle own = cornersOf(step.m_end, v[0], v[1], i < triangles ? v[2] : v[1]);
+        for (std::size_t t = 0; t < step.m_obstacle.triangleCount(); ++t)
+        {
+            const std::int32_t* const w = &step.m_obstacle.m_triangles[3 * t];
+            if (trianglesMeet(own, cornersOf(step.m_obstacle.m_positions, w[0], w[1], w[2])))
+                expected.emplace_back(std::uint32_t(i), std::uint32_t(t));
+        }
+    }
+    for (const NearTriangles& pair : found.m_intersecting)
+        reported.emplace_back(pair.m_a, pair.m_b);
+    EXPECT_EQ(reported, expected);
+    EXPECT_GT(
+        std::count_if(expected.begin(), expected.end(), [&](const auto& pair) { return pair.first >= triangles; }), 50);
 }
 
 // A rope that collides with itself: nothing at rest, and the crossing where it lies over itself.

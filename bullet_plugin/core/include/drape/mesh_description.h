@@ -15,7 +15,7 @@ struct MeshDescription
     std::size_t m_triangleCount = 0;
     const float* m_positions = nullptr;  // x y z per vertex, m
     std::size_t m_vertexCount = 0;
-    // What follows counts in steps alone, not in queries.
+    // What follows counts in steps alone, not in queries; but Queries::meshPairs takes m_edges.
     // Of an obstacle: only its front counts, the side from which its triangles' corners run counter-clockwise. Cloth
     // behind it is free to come out.
     bool m_oneSided = false;
