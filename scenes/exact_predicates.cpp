@@ -16,6 +16,17 @@ int signOf(double value)
     return (value > 0) - (value < 0);
 }
 
+bool areSame(const Vector3& a, const Vector3& b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+// Whether two of the points are one, as of a segment that stands for a triangle.
+bool anySame(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d)
+{
+    return areSame(a, b) || areSame(a, c) || areSame(a, d) || areSame(b, c) || areSame(b, d) || areSame(c, d);
+}
+
 int exactOrientation(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d)
 {
     mpq_class m[3][3];
@@ -37,6 +48,7 @@ int orientation2(const Vector3& a, const Vector3& b, const Vector3& c, int along
     const double right = (a[v] - c[v]) * (b[u] - c[u]);
     const double area = left - right;
     if (std::fabs(area) > kBound2 * (std::fabs(left) + std::fabs(right))) return signOf(area);
+    if (areSame(a, b) || areSame(b, c) || areSame(c, a)) return 0;
     const mpq_class exact = (mpq_class(a[u]) - mpq_class(c[u])) * (mpq_class(b[v]) - mpq_class(c[v])) -
                             (mpq_class(a[v]) - mpq_class(c[v])) * (mpq_class(b[u]) - mpq_class(c[u]));
     return sgn(exact);
@@ -106,7 +118,7 @@ int orientation(const Vector3& a, const Vector3& b, const Vector3& c, const Vect
                              (std::fabs(ca1) + std::fabs(ca2)) * std::fabs(ad.y) +
                              (std::fabs(ab1) + std::fabs(ab2)) * std::fabs(ad.z);
     if (std::fabs(volume) > kBound3 * permanent) return signOf(volume);
-    return exactOrientation(a, b, c, d);
+    return anySame(a, b, c, d) ? 0 : exactOrientation(a, b, c, d);
 }
 
 bool segmentMeetsTriangle(const Vector3& p, const Vector3& q, const Vector3 t[3])

@@ -1,4 +1,5 @@
-// A cloth's faces, and which of them each node has.
+// A cloth's faces, and which of them each node has. A link that collides counts as a face that has its second node
+// twice.
 //
 // Cost: O(n) once a topology.
 #pragma once

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "kernels/lib/segment.h"
+
 namespace drape
 {
 void ContactGroup::clear()
@@ -149,9 +151,11 @@ void ContactGroup::renewPlane(const RoundsNodes& nodes, Row& row, Block& block, 
     for (int k = 0; k < row.m_count; ++k)
         for (int axis = 0; axis < 3; ++axis)
             places[k][axis] = static_cast<float>(nodes.m_places[static_cast<std::size_t>(row.m_moved[k])][axis]);
+    if (row.m_count == 2) std::copy(places[1], places[1] + 3, places[2]);  // a link
     ContactPlane plane;
     if (!FoundContacts::planeAt(block.m_contacts[lane], places, plane)) return;
     row.m_renewed = true;
+    if (row.m_count == 2) joinCorners(plane.m_weights);
     const btScalar weights[3] = {plane.m_weights[0], plane.m_weights[1], plane.m_weights[2]};
     const btVector3 point(plane.m_point[0], plane.m_point[1], plane.m_point[2]);
     setPlane(nodes, row, weights, btVector3(plane.m_normal[0], plane.m_normal[1], plane.m_normal[2]), point);

@@ -12,6 +12,7 @@
 #include "bullet_plugin/adapter/margins.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
 #include "bullet_plugin/adapter/plugin_state.h"
+#include "bullet_plugin/adapter/solid_links.h"
 #include "bullet_plugin/adapter/wiring.h"
 #include "bullet_plugin/core/queries/mesh_probe.h"
 #include "kernels/lib/vec3.h"
@@ -39,13 +40,28 @@ bool mayCollide(const btCollisionObject& a, const btCollisionObject& b)
            (q->m_collisionFilterGroup & p->m_collisionFilterMask);
 }
 
+// Of the body's faces, else of its links.
 double meanEdgeOf(const btSoftBody& cloth)
 {
     double sum = 0;
+    for (int i = 0; cloth.m_faces.size() == 0 && i < cloth.m_links.size(); ++i)
+        sum += double((cloth.m_links[i].m_n[0]->m_x - cloth.m_links[i].m_n[1]->m_x).length());
+    if (cloth.m_faces.size() == 0) return sum / std::max(1, cloth.m_links.size());
     for (int f = 0; f < cloth.m_faces.size(); ++f)
         for (int k = 0; k < 3; ++k)
             sum += double((cloth.m_faces[f].m_n[k]->m_x - cloth.m_faces[f].m_n[(k + 1) % 3]->m_x).length());
     return sum / std::max(1, 3 * cloth.m_faces.size());
+}
+
+SolidLinks solidLinksOf(const btSoftBody& cloth)
+{
+    std::vector<std::int32_t> faces;
+    for (int f = 0; f < cloth.m_faces.size(); ++f)
+        for (const btSoftBody::Node* node : cloth.m_faces[f].m_n)
+            faces.push_back(nodeIndex(cloth, node));
+    SolidLinks links;
+    links.read(cloth, faces);
+    return links;
 }
 
 class Diagnosis
@@ -133,11 +149,10 @@ void Diagnosis::addPair(const btSoftBody& cloth, const btCollisionObject& object
     const double thickness = double(thicknessOf(cloth, shape)), edge = meanEdgeOf(cloth);
     if (thickness > kMostEdges * edge)
         add(pair +
-            format("the thickness (%g m) is %.3g times the mean edge of the cloth's faces (%g m); pairs grow with "
-                   "its square",
+            format("the thickness (%g m) is %.3g times the mean edge of the cloth (%g m); pairs grow with its square",
                    thickness, thickness / edge, edge));
     if (thickness < kLeastEdges * edge)
-        add(pair + format("the thickness (%g m) is a %.0fth of the mean edge of the cloth's faces (%g m)", thickness,
+        add(pair + format("the thickness (%g m) is a %.0fth of the mean edge of the cloth (%g m)", thickness,
                           edge / thickness, edge));
     addIntersections(cloth, object, shape, pose);
 }
@@ -178,14 +193,23 @@ void Diagnosis::addIntersections(const btSoftBody& cloth, const btCollisionObjec
         probe->listMeeting(corners, meeting);
         pairs += meeting.size();
     }
+    const SolidLinks links = solidLinksOf(cloth);
+    for (std::size_t i = 0; i < links.nodes().size(); i += 2)
+    {
+        const Vec3 end = placeOf(cloth.m_nodes[links.nodes()[i + 1]]);
+        const Vec3 corners[3] = {placeOf(cloth.m_nodes[links.nodes()[i]]), end, end};
+        probe->listMeeting(corners, meeting);
+        pairs += meeting.size();
+    }
     const bool closed = probe->isClosed();
     for (int i = 0; closed && i < cloth.m_nodes.size(); ++i)
         inside += probe->isInside(placeOf(cloth.m_nodes[i]));
     const std::string pair =
         format("soft body %p and object %p: ", static_cast<const void*>(&cloth), static_cast<const void*>(&object));
     if (pairs > 0)
-        add(pair + format("%zu pairs of their triangles intersect, %zu of %d nodes are inside; %s", pairs, inside,
-                          cloth.m_nodes.size(),
+        add(pair + format("%zu pairs of the cloth's faces or links and the mesh's triangles intersect, %zu of %d nodes "
+                          "are inside; %s",
+                          pairs, inside, cloth.m_nodes.size(),
                           closed ? "the mesh is closed, so that the cloth is pushed out"
                                  : "the mesh is open, so that nothing tells which side is right"));
     else if (inside == std::size_t(cloth.m_nodes.size()) && inside > 0)

@@ -4,6 +4,7 @@
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
 #include "bullet_plugin/adapter/plugin_state.h"
+#include "bullet_plugin/adapter/solid_links.h"
 
 namespace drape
 {
@@ -23,7 +24,9 @@ const char* reasonFromCloth(const PluginState& state, const btSoftBody& cloth)
         return "the soft body collides as a deformable (SDF_RD)";
     if (!(cloth.m_cfg.collisions & btSoftBody::fCollision::SDF_RS))
         return "the soft body does not collide by its nodes (SDF_RS is off, cluster mode)";
-    if (cloth.m_faces.size() == 0) return "the soft body has no faces";
+    if (cloth.m_faces.size() > 0) return nullptr;
+    if (cloth.m_tetras.size() > 0) return "the soft body has tetrahedra but no faces";
+    if (!hasSolidLink(cloth)) return "the soft body has neither faces nor links that could collide without them";
     return nullptr;
 }
 

@@ -22,18 +22,6 @@ constexpr float kMostMotion = 0.5f;
 // Nodes that a thread looks at in one go: less is not worth waking one.
 constexpr std::size_t kNodesPerJob = 4096;
 
-constexpr int kForeign = -1;
-
-// Returns kForeign for a node that is not the body's.
-int nodeIndex(const btSoftBody& body, const btSoftBody::Node* node)
-{
-    if (body.m_nodes.size() == 0) return kForeign;
-    const std::less<const btSoftBody::Node*> before;
-    const btSoftBody::Node* const first = &body.m_nodes[0];
-    if (before(node, first) || !before(node, first + body.m_nodes.size())) return kForeign;
-    return static_cast<int>(node - first);
-}
-
 // Turns each triangle with a foreign node into one that repeats an index, which the pipeline ignores, so that the
 // others keep their indices.
 void ignoreForeign(std::vector<std::int32_t>& triangles)
@@ -66,14 +54,14 @@ bool ClothMirror::sameFaces(int begin, int end) const
 bool ClothMirror::topologyChanged()
 {
     const int faces = m_body->m_faces.size();
-    if (static_cast<std::size_t>(m_body->m_nodes.size()) != m_faces.nodeCount() ||
-        static_cast<std::size_t>(3 * faces) != m_faces.triangles().size())
-        return true;
-    if (faces == 0) return false;
-    const bool all = m_fullCheck || m_nodeArray != &m_body->m_nodes[0] || m_faceArray != &m_body->m_faces[0];
+    if (static_cast<std::size_t>(m_body->m_nodes.size()) != m_faces.nodeCount() || faces != m_faceCount) return true;
+    if (m_body->m_nodes.size() == 0) return false;
+    const void* const faceArray = faces > 0 ? &m_body->m_faces[0] : nullptr;
+    const bool all = m_fullCheck || m_nodeArray != &m_body->m_nodes[0] || m_faceArray != faceArray;
     m_fullCheck = false;
     m_nodeArray = &m_body->m_nodes[0];
-    m_faceArray = &m_body->m_faces[0];
+    m_faceArray = faceArray;
+    if (m_links.changed(*m_body, all)) return true;
     if (all) return !sameFaces(0, faces);
     const int begin = m_cursor < faces ? m_cursor : 0;
     m_cursor = std::min(faces, begin + kFacesPerCheck);
@@ -88,6 +76,10 @@ void ClothMirror::readTopology()
         for (int k = 0; k < 3; ++k)
             triangles.push_back(nodeIndex(*m_body, m_body->m_faces[f].m_n[k]));
     m_hasForeignFaces = std::count(triangles.begin(), triangles.end(), kForeign) > 0;
+    m_faceCount = faces;
+    m_links.read(*m_body, triangles);
+    for (std::size_t i = 0; i < m_links.nodes().size(); i += 2)
+        triangles.insert(triangles.end(), {m_links.nodes()[i], m_links.nodes()[i + 1], m_links.nodes()[i + 1]});
     m_faces = ClothFaces(std::move(triangles), static_cast<std::size_t>(nodes));
     cutParts();
     m_nodeArray = nodes > 0 ? &m_body->m_nodes[0] : nullptr;
@@ -128,15 +120,18 @@ MeshId ClothMirror::addCopy(Pipeline& pipeline) const
     float* out = positions.data();
     for (int i = 0; i < m_body->m_nodes.size(); ++i)
         writePosition(m_body->m_nodes[i].m_x, out);
+    const std::size_t faceIndices = 3 * static_cast<std::size_t>(m_faceCount);
     std::vector<std::int32_t> known;
     if (m_hasForeignFaces)
     {
-        known = triangles;
+        known.assign(triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(faceIndices));
         ignoreForeign(known);
     }
     MeshDescription mesh;
     mesh.m_triangles = m_hasForeignFaces ? known.data() : triangles.data();
-    mesh.m_triangleCount = triangles.size() / 3;
+    mesh.m_triangleCount = faceIndices / 3;
+    mesh.m_edges = m_links.nodes().data();
+    mesh.m_edgeCount = m_links.nodes().size() / 2;
     mesh.m_positions = positions.data();
     mesh.m_vertexCount = m_faces.nodeCount();
     mesh.m_looseVertices = true;  // what hangs on it, or is left where faces were cut away

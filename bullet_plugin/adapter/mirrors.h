@@ -1,11 +1,12 @@
 // What the pipeline holds of one soft body and of one obstacle, kept up to date with Bullet.
 //
 // Input: the live body or shape of the current step, never one remembered from before. Output: the pipeline's mesh id,
-// or kNoMesh for a mesh without triangles. Guarantee: a cloth whose faces or nodes were replaced, cut or refined is
-// rebuilt, at once where a count or an array tells, else within as many steps as it has stretches of 32,768 faces; an
-// obstacle that moved, was scaled or deformed is moved, and rebuilt when its triangles changed. An unchanged obstacle,
-// and a kinematic one that only moved, costs meshSignature(), an unchanged cloth a comparison of some indices. Metres;
-// a kinematic obstacle's positions are in its own frame, all others in the world's.
+// or kNoMesh for a mesh without triangles. Guarantee: a cloth whose faces, solid links or nodes were replaced, cut or
+// refined is rebuilt, at once where a count or an array tells, else within as many steps as it has stretches of 32,768
+// faces, or twice as many as it has of 1,024 links; an obstacle that moved, was scaled or deformed is moved, and
+// rebuilt when its triangles changed. An unchanged obstacle, and a kinematic one that only moved, costs
+// meshSignature(), an unchanged cloth a comparison of some indices. Metres; a kinematic obstacle's positions are in its
+// own frame, all others in the world's.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +19,7 @@
 #include "bullet_plugin/adapter/cloth_faces.h"
 #include "bullet_plugin/adapter/cloth_parts.h"
 #include "bullet_plugin/adapter/kinematic_motion.h"
+#include "bullet_plugin/adapter/solid_links.h"
 #include "bullet_plugin/core/pipeline.h"
 #include "bullet_plugin/core/queries/mesh_probe.h"
 #include "bullet_plugin/core/threads/thread_team.h"
@@ -59,10 +61,10 @@ public:
     MeshId refresh(Pipeline& pipeline);
     // Adds a further mesh of the body to the pipeline, as refresh() left the first; the caller's to remove.
     MeshId addCopy(Pipeline& pipeline) const;
-    // As the pipeline has them.
+    // As the pipeline has them: the body's faces, then its solid links, each as a face that has its second node twice.
     const ClothFaces& faces() const { return m_faces; }
-    // Whether faces name nodes that are not the body's. The pipeline does not have these faces.
-    bool hasForeignFaces() const { return m_hasForeignFaces; }
+    // Whether faces, or links that would be solid, name nodes that are not the body's. The pipeline does not have them.
+    bool hasForeignFaces() const { return m_hasForeignFaces || m_links.hasForeign(); }
     // Of the nodes as they lay when the topology was read, or when it was last taken up.
     const ClothParts& parts() const { return m_parts; }
     // For who uses it first, or again: the body may be another one in the same place.
@@ -94,6 +96,8 @@ private:
     const btSoftBody* m_body;  // followed only while a pair of the current step names it
     MeshId m_id = kNoMesh;
     ClothFaces m_faces;
+    SolidLinks m_links;
+    int m_faceCount = 0;  // of m_faces, without links
     ClothParts m_parts;
     const void* m_nodeArray = nullptr;
     const void* m_faceArray = nullptr;

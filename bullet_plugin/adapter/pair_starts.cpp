@@ -176,14 +176,15 @@ void PairStarts::tell(const StartingPair& pair, Guard& guard, bool pushed)
     if (guard.m_told) return;
     guard.m_told = true;
     char line[320];
-    std::snprintf(line, sizeof(line),
-                  "soft body %p begins a step with %zu of its triangles through the mesh of object %p (%llu pairs of "
-                  "triangles); %s",
-                  static_cast<const void*>(pair.m_cloth->body()), m_meeting.size(),
-                  static_cast<const void*>(pair.m_obstacle->key().m_object),
-                  static_cast<unsigned long long>(guard.m_intersections),
-                  pushed ? "the mesh is closed, so that the cloth is pushed out"
-                         : "the mesh is open, so that nothing tells which side is right, and the cloth stays as it is");
+    std::snprintf(
+        line, sizeof(line),
+        "soft body %p begins a step with %zu of its faces and links through the mesh of object %p (%llu pairs "
+        "with its triangles); %s",
+        static_cast<const void*>(pair.m_cloth->body()), m_meeting.size(),
+        static_cast<const void*>(pair.m_obstacle->key().m_object),
+        static_cast<unsigned long long>(guard.m_intersections),
+        pushed ? "the mesh is closed, so that the cloth is pushed out"
+               : "the mesh is open, so that nothing tells which side is right, and the cloth stays as it is");
     m_state.log(line);
 }
 

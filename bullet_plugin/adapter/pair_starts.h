@@ -12,7 +12,7 @@
 // beyond is drawn back, a few rows of nodes at a time, through where the cloth's largest part meets the surface. Where
 // that does not help either, as with a ring that is linked with the cloth, the whole cloth is moved out of the
 // obstacle's box, on the shortest way along an axis, unless nodes are pinned. What is left is reported, and held as it
-// is.
+// is. Links that collide are triangles without area here (cloth_faces.h).
 //
 // The right side of a closed mesh is its outside, however its triangles are wound; but for a room, whose triangles look
 // inwards and which holds most of the cloth's nodes. Cloth that is wholly inside intersects nothing, and stays there.

@@ -134,7 +134,7 @@ void PairStarts::pushFaces(const StartingPair& pair, const MeshProbe& probe, Bod
         if (!probe.middleOfMeeting(corners, meeting.m_triangles, middle)) continue;
         if (probe.isInside(middle) == m_insideIsRight) continue;
         const Vec3 way = vec3Sub(probe.nearest(middle), middle);
-        for (int k = 0; k < 3; ++k)
+        for (int k = 0; k < (nodes[1] == nodes[2] ? 2 : 3); ++k)
             pushNode(pair, nodes[k], way, body);
     }
 }

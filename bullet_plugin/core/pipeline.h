@@ -29,7 +29,7 @@ struct ContactView
 {
     MeshId m_cloth;
     MeshId m_obstacle;
-    std::uint32_t m_kind;     // DRAPE_NODE_FACE …
+    std::uint32_t m_kind;     // DRAPE_NODE_FACE …; of an edge that is not a triangle's at a vertex DRAPE_FACE_VERTEX
     std::int32_t m_nodes[3];  // nodes of the cloth feature, indices in that cloth; -1 where unused
     std::int32_t m_triangle;  // a cloth triangle that holds the feature, index as given to addCloth; -1: none does
     float m_weights[3];       // of m_nodes, sum 1
@@ -195,8 +195,9 @@ public:
 
     // Resolves a contact of the last finish().
     ContactView view(const Contact& contact) const;
-    // A DRAPE_FACE_VERTEX contact with the face's nodes (m, x y z each, in the view's order) at other places. False
-    // where their direction means nothing: the face touches the vertex, or came past it. O(1).
+    // A DRAPE_FACE_VERTEX contact with the face's nodes (m, x y z each, in the view's order; of an edge's two the
+    // second one twice) at other places. False where their direction means nothing: the face touches the vertex, or
+    // came past it. O(1).
     static bool planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane);
     // Resolves one of selfContacts().
     SelfContactView viewSelf(const Contact& contact) const;

@@ -22,10 +22,34 @@ DRAPE_FUNCTION NormalCone closestFeatureCone(Vec3 weights, const DRAPE_GLOBAL Tr
     return edgeCones[triangle->m_edges[2]];
 }
 
-// Whether a path through the face's plane went through the face, which it came as near as `distance`, m.
-DRAPE_FUNCTION int wentThrough(Vec3 x0, Vec3 x1, const FeatureTriangle* face, float distance, PairBounds bounds)
+// Share of a pair's extent by which the point of a face that is closest to one in its plane may slide along the face:
+// its weights err by u L⁴ over the square of the doubled area, which of faces that are not thin is more than DRAPE_THIN
+// L².
+#define DRAPE_SLIDE 1e-3f
+
+// Whether a point of the face's plane lies in the face, or less than the slack (m) outside of its edges. The area
+// vector may have any length.
+DRAPE_FUNCTION int isWithinEdges(Vec3 point, const FeatureTriangle* face, Vec3 area, float slack)
 {
-    if (distance > DRAPE_SEAM * bounds.m_extent) return 0;
+    int within = 1;
+    DRAPE_UNROLL
+    for (int i = 0; i < 3; ++i)
+    {
+        const FeatureEdge edge = triangleEdge(face, i);
+        const Vec3 outwards = vec3Cross(vec3Sub(edge.m_b, edge.m_a), area);
+        within &= vec3Dot(outwards, vec3Sub(point, edge.m_a)) <= slack * vec3Length(outwards);
+    }
+    return within;
+}
+
+// Whether a path through the face's plane went through the face. hit: the point of the path in the plane, which was
+// found `distance` (m) from the face.
+DRAPE_FUNCTION int wentThrough(Vec3 x0, Vec3 x1, const FeatureTriangle* face, Vec3 area, Vec3 hit, float distance,
+                               PairBounds bounds)
+{
+    const float seam = DRAPE_SEAM * bounds.m_extent;
+    if (distance > seam && !(distance <= DRAPE_SLIDE * bounds.m_extent && isWithinEdges(hit, face, area, seam)))
+        return 0;
     if (distance <= DRAPE_WAY_REACH * bounds.m_reach) return 1;
     const Vec3 start[4] = {x0, face->m_p[0], face->m_p[1], face->m_p[2]};
     const Vec3 end[4] = {x1, face->m_p[0], face->m_p[1], face->m_p[2]};
@@ -57,7 +81,7 @@ DRAPE_FUNCTION int nodeFaceContact(Vec3 x0, Vec3 x1, const RestingFace* resting,
         const Vec3 hit = vec3Mix(x0, x1, time);
         const Vec3 weights = closestOnFace(hit, face, thin);
         const Vec3 point = featurePoint(face, weights);
-        if (wentThrough(x0, x1, &face, vec3Length(vec3Sub(hit, point)), bounds))
+        if (wentThrough(x0, x1, &face, area, hit, vec3Length(vec3Sub(hit, point)), bounds))
         {
             storeContact(contact, normal, point, vec3(1.0f, 0.0f, 0.0f), vec3Dot(normal, vec3Sub(x0, point)),
                          vec3Dot(normal, vec3Sub(x1, point)), time);

@@ -8,6 +8,7 @@
 #include "finite_corners.h"
 #include "node_face_contact.h"
 #include "rigid_motion.h"
+#include "segment.h"
 
 DRAPE_NAMESPACE_BEGIN
 
@@ -158,6 +159,7 @@ DRAPE_FUNCTION int pairFaceVertex(const ClothView* cloth, DRAPE_UINT clothTriang
     nameFeatures(contact, cloth, DRAPE_FACE_VERTEX, clothTriangle, obstacleVertex);
     const int found = faceVertexContact(&face, beyond, cloth->m_start, cloth->m_end, vertex, vec3(0.0f, 0.0f, 0.0f),
                                         cone, pairBounds(cloth, extent, reach), contact);
+    if (found == DRAPE_IS_CONTACT && isSegment(triangle)) joinCorners(contact->m_weights);
     return finishContact(found, vertex, contact);
 }
 

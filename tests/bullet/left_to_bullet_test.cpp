@@ -101,6 +101,13 @@ TEST(LeftToBullet, RopesOnABoxKeepBulletsBits)
     expectStockBits({{&ground, btVector3(0, 0, 0)}}, makeRopes, 120);
 }
 
+TEST(LeftToBullet, RopesKeepBulletsBitsFarFromAMesh)
+{
+    btBoxShape ground(kGround);
+    MeshShape mesh(makeSphere(0.5f, 2));
+    expectStockBits({{&ground, btVector3(0, 0, 0)}, {&mesh.shape(), btVector3(20, 0, 0)}}, makeRopes, 120);
+}
+
 TEST(LeftToBullet, SoftBodiesThatDrapeWouldTakeKeepBulletsBitsWithoutAMesh)
 {
     btBoxShape ground(kGround);

@@ -25,7 +25,7 @@ ObstacleView Side::obstacle() const
     return {m_start.data(), m_pool.triangles().data(), m_vertexCones.data(), m_edgeCones.data()};
 }
 
-Side makeSide(const std::vector<TriangleMesh>& meshes)
+Side makeSide(const std::vector<TriangleMesh>& meshes, const std::vector<std::int32_t>& edges)
 {
     Side side;
     for (std::size_t i = 0; i < meshes.size(); ++i)
@@ -35,6 +35,7 @@ Side makeSide(const std::vector<TriangleMesh>& meshes)
         mesh.m_positions = meshes[i].m_positions;
         mesh.m_topology =
             buildTopology(meshes[i].m_triangles.data(), meshes[i].triangleCount(), meshes[i].vertexCount());
+        if (i == 0) addEdges(mesh.m_topology, edges.data(), edges.size() / 2);
         mesh.m_order = mortonOrderOnHost(mesh.m_topology.m_triangles, mesh.m_positions.data());
         std::vector<NormalCone> vertexCones, edgeCones;
         computeNormalCones(mesh.m_topology, mesh.m_positions.data(), vertexCones, edgeCones);

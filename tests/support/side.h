@@ -30,8 +30,8 @@ struct Side
     ObstacleView obstacle() const;
 };
 
-// Ids are 0, 1, …
-Side makeSide(const std::vector<TriangleMesh>& meshes);
+// Ids are 0, 1, …; edges: of the first mesh, besides those of triangles (see MeshDescription).
+Side makeSide(const std::vector<TriangleMesh>& meshes, const std::vector<std::int32_t>& edges = {});
 
 // Another hierarchy over the same triangles, built on the host from the positions at the step's start. Volumes are
 // empty.

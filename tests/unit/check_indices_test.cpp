@@ -66,6 +66,24 @@ TEST(CheckIndices, NamesTheFirstThatIsOutOfRange)
                                 std::to_string(mesh.vertexCount()) + " vertices");
 }
 
+TEST(CheckIndices, NamesTheFirstEdgeThatIsOutOfRange)
+{
+    const TriangleMesh mesh = makeSphere(0.5f, 1);
+    MeshDescription description = describeMesh(mesh);
+    const std::int32_t edges[] = {0, 1, 1, std::int32_t(mesh.vertexCount())};
+    description.m_edges = edges;
+    description.m_edgeCount = 1;
+    Error error;
+    EXPECT_TRUE(checkIndices(description, "call", error));
+    description.m_edgeCount = 2;
+    EXPECT_FALSE(checkIndices(description, "call", error));
+    EXPECT_EQ(error.text(), "call: a mesh with an index out of range\nedge 1 has the index " +
+                                std::to_string(mesh.vertexCount()) + " among " + std::to_string(mesh.vertexCount()) +
+                                " vertices");
+    description.m_edges = nullptr;
+    EXPECT_FALSE(checkIndices(description, "call", error));
+}
+
 TEST(CheckIndices, AdmitsEveryIndexInRangeAndNoTriangles)
 {
     Error error;

@@ -1,6 +1,7 @@
 // Named cases of kernels/lib/feature_contact.h: what is reported, with which normal, gaps, weights and time.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "scenes/cloth_grid.h"
@@ -67,6 +68,51 @@ std::vector<float> hangingTriangle(float y)
     return {0, y, 0, 1, y + 1, 0, 0, y + 1, 1};
 }
 }  // namespace
+
+// A face fifty times as long as it is wide is not thin yet, but its closest point to where a path went through it may
+// slide along it by more than the seam.
+TEST(FeatureContact, NodesThatWentThroughALongFaceMetIt)
+{
+    Random random(880);
+    for (int i = 0; i < 20000; ++i)
+    {
+        SCOPED_TRACE(i);
+        const float length = random.uniform(1.0f, 2.0f), width = length * random.uniform(0.0202f, 0.05f);
+        const float shift = random.uniform(0.0f, 1.0f) * length, rise = random.uniform(-0.5f, 0.5f);
+        const float turn = random.uniform(0.0f, 3.14f), cosine = std::cos(turn), sine = std::sin(turn);
+        const float corners[3][2] = {{-1.0f, 0}, {length - 1.0f, 0}, {shift - 1.0f, width}};
+        std::vector<float> face;
+        for (std::uint32_t k = 0, first = random.below(3); k < 3; ++k)
+        {
+            const float* const corner = corners[(first + k) % 3];
+            face.insert(face.end(), {corner[0], corner[1] * cosine + rise * corner[0], corner[1] * sine});
+        }
+        const float weights[3] = {random.uniform(0.05f, 1.0f), random.uniform(0.05f, 1.0f),
+                                  random.uniform(0.05f, 1.0f)};
+        const float sum = weights[0] + weights[1] + weights[2];
+        float hit[3] = {0, 0, 0};
+        for (std::size_t k = 0; k < 9; ++k)
+            hit[k % 3] += weights[k / 3] / sum * face[k];
+        // Through the face, across its plane, and to within the reach on the other side.
+        const float normal[3] = {rise * sine, -sine, cosine};
+        std::vector<float> start, end;
+        for (const float aside : {0.0f, 0.3f, 0.6f})
+        {
+            for (int axis = 0; axis < 3; ++axis)
+            {
+                start.push_back(hit[axis] + aside + 0.1f * normal[axis]);
+                end.push_back(hit[axis] + aside - 0.03f * normal[axis]);
+            }
+        }
+        const std::vector<Contact> found =
+            contacts(makeStep(looseTriangles(start), end, looseTriangles(face)), DRAPE_NODE_FACE);
+        const auto ofFirst = std::find_if(found.begin(), found.end(),
+                                          [](const Contact& contact) { return contact.m_clothFeature == 0; });
+        ASSERT_NE(ofFirst, found.end());
+        ASSERT_LT(ofFirst->m_time, 1.0f);
+        ASSERT_GT(ofFirst->m_gap0, 0.0f) << "the side that it came from";
+    }
+}
 
 TEST(NodeFace, NearAtTheEndOfTheStep)
 {

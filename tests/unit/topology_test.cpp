@@ -215,4 +215,37 @@ TEST(Topology, PointsAreOfVerticesWithoutATriangle)
     addPoints(topology);
     EXPECT_EQ(topology.m_triangles.size(), 4u) << "each has its own";
 }
+
+// Of a triangle: a chain that hangs from it, an edge that two of its vertices share, one that is given twice, one from
+// a vertex to itself.
+TEST(Topology, EdgesWithoutATriangleAreTrianglesWithoutArea)
+{
+    const std::int32_t triangles[] = {0, 1, 2};
+    const std::int32_t edges[] = {2, 3, 1, 0, 3, 4, 4, 3, 3, 3};
+    Topology topology = buildTopology(triangles, 1, 6);
+    addEdges(topology, edges, 5);
+    ASSERT_EQ(topology.m_triangles.size(), 3u);
+    EXPECT_EQ(topology.m_faceCount, 1u);
+    ASSERT_EQ(topology.m_edges.size(), 5u);
+    const std::uint32_t ends[2][2] = {{2, 3}, {3, 4}};
+    for (std::uint32_t i = 0; i < 2; ++i)
+    {
+        const Triangle& segment = topology.m_triangles[1 + i];
+        const std::uint32_t vertices[3] = {ends[i][0], ends[i][1], ends[i][1]};
+        for (int k = 0; k < 3; ++k)
+        {
+            EXPECT_EQ(segment.m_vertices[k], vertices[k]);
+            EXPECT_EQ(segment.m_edges[k], 3 + i);
+        }
+        EXPECT_EQ(segment.m_owned, DRAPE_OWNS_EDGE(0) | DRAPE_OWNS_VERTEX(1)) << "the first has an owner already";
+        EXPECT_EQ(topology.m_edges[3 + i].m_vertices[0], ends[i][0]);
+        EXPECT_EQ(topology.m_edges[3 + i].m_vertices[1], ends[i][1]);
+        EXPECT_EQ(topology.m_edgeTriangle[3 + i], 1 + i);
+        EXPECT_EQ(topology.m_vertexTriangle[ends[i][1]], 1 + i);
+        EXPECT_EQ(topology.m_sourceTriangle[1 + i], kUnused);
+    }
+    addPoints(topology);
+    ASSERT_EQ(topology.m_triangles.size(), 4u) << "only the last vertex is left";
+    EXPECT_EQ(topology.m_triangles[3].m_vertices[0], 5u);
+}
 }  // namespace drape::test

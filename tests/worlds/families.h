@@ -42,4 +42,7 @@ void buildRod(WorldBuilder& builder);         // an edge that is wound up on a r
 void buildPressure(WorldBuilder& builder);    // a closed body under pressure
 void buildMovingPins(WorldBuilder& builder);  // corners that are dragged over hills
 void buildAnchors(WorldBuilder& builder);     // cloth anchored to a rigid body
+
+// Ropes, and cloth with a fringe, over something round or sharp (rope_worlds.cpp).
+void buildRopes(WorldBuilder& builder);
 }  // namespace drape::test

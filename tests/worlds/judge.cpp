@@ -99,6 +99,10 @@ Judge::Judge(const World& world)
         }
         cloth.m_held.resize(cloth.m_offsets.size(), false);
         cloth.m_valid.resize(cloth.m_offsets.size(), true);
+        cloth.m_hasFace.resize(cloth.m_offsets.size(), false);
+        for (int f = 0; f < cloth.m_body->m_faces.size(); ++f)
+            for (const btSoftBody::Node* node : cloth.m_body->m_faces[f].m_n)
+                cloth.m_hasFace[static_cast<std::size_t>(node - &cloth.m_body->m_nodes[0])] = true;
         cloth.m_follows.resize(m_obstacles.size());
         m_cloths.push_back(std::move(cloth));
     }
@@ -167,29 +171,41 @@ void Judge::countPairs(const Cloth& cloth, const Obstacle& obstacle, const std::
 {
     const btSoftBody& body = *cloth.m_body;
     for (int f = 0; f < body.m_faces.size(); ++f)
+        countPairsOf(body.m_faces[f].m_n, cloth, obstacle, places, findings);
+    for (int i = 0; i < body.m_links.size(); ++i)
     {
-        Vector3 face[3];
-        bool valid = true, held = false;
-        for (int k = 0; k < 3; ++k)
-        {
-            const std::size_t node = static_cast<std::size_t>(body.m_faces[f].m_n[k] - &body.m_nodes[0]);
-            valid = valid && cloth.m_valid[node];
-            held = held || cloth.m_held[node];
-            face[k] = places[node];
-        }
-        if (!valid) continue;
-        Box box(face[0]);
-        box.add(face[1]);
-        box.add(face[2]);
-        obstacle.m_surface->visitBox(box.m_low, box.m_high,
-                                     [&](std::int32_t triangle)
-                                     {
-                                         Vector3 corners[3];
-                                         obstacle.m_surface->corners(triangle, corners);
-                                         if (trianglesIntersect(face, corners))
-                                             ++(held ? findings.m_heldPairs : findings.m_pairs);
-                                     });
+        const btSoftBody::Link& link = body.m_links[i];
+        const btSoftBody::Node* const nodes[3] = {link.m_n[0], link.m_n[1], link.m_n[1]};
+        const auto hasFace = [&](int k)
+        { return cloth.m_hasFace[static_cast<std::size_t>(nodes[k] - &body.m_nodes[0])]; };
+        if (!link.m_bbending && !(hasFace(0) && hasFace(1))) countPairsOf(nodes, cloth, obstacle, places, findings);
     }
+}
+
+void Judge::countPairsOf(const btSoftBody::Node* const nodes[3], const Cloth& cloth, const Obstacle& obstacle,
+                         const std::vector<Vector3>& places, Findings& findings) const
+{
+    Vector3 face[3];
+    bool valid = true, held = false;
+    for (int k = 0; k < 3; ++k)
+    {
+        const std::size_t node = static_cast<std::size_t>(nodes[k] - &cloth.m_body->m_nodes[0]);
+        valid = valid && cloth.m_valid[node];
+        held = held || cloth.m_held[node];
+        face[k] = places[node];
+    }
+    if (!valid) return;
+    Box box(face[0]);
+    box.add(face[1]);
+    box.add(face[2]);
+    obstacle.m_surface->visitBox(box.m_low, box.m_high,
+                                 [&](std::int32_t triangle)
+                                 {
+                                     Vector3 corners[3];
+                                     obstacle.m_surface->corners(triangle, corners);
+                                     if (trianglesIntersect(face, corners))
+                                         ++(held ? findings.m_heldPairs : findings.m_pairs);
+                                 });
 }
 
 void Judge::follow(Cloth& cloth, std::size_t obstacle, const std::vector<Vector3>& places, bool reported)

@@ -6,8 +6,9 @@
 // paths from step to step have passed an obstacle's triangles more often from the front than from the back, or the
 // other way round; a path that passes in and out again changes nothing. Paths that end the step exactly on a surface
 // have no side; a fixed offset of up to 0.1 µm, another one for each node, keeps nodes from such places.
-// Held nodes (without motion or anchored) and the triangles at them are counted separately: what holds them may pull
-// them into an obstacle, which no collision can prevent.
+// Links that hang from cloth, or are a rope's, count as triangles without area: those, but for bending links, of which
+// a node has no face. Held nodes (without motion or anchored) and the triangles at them are counted separately: what
+// holds them may pull them into an obstacle, which no collision can prevent.
 #pragma once
 
 #include <memory>
@@ -20,10 +21,10 @@ namespace drape::test
 {
 struct Findings
 {
-    int m_pairs = 0;         // a cloth triangle without held nodes and an obstacle triangle that share a point
-    int m_heldPairs = 0;     // pairs of cloth triangles with a held node
-    int m_through = 0;       // nodes without those that are held
-    int m_heldThrough = 0;   // held nodes
+    int m_pairs = 0;        // a cloth triangle or string without held nodes and an obstacle triangle that share a point
+    int m_heldPairs = 0;    // the same with a held node
+    int m_through = 0;      // nodes without those that are held
+    int m_heldThrough = 0;  // held nodes
     int m_invalidNodes = 0;  // NaN or infinite; they and their triangles take no part in the rest
 };
 
@@ -50,7 +51,7 @@ private:
     struct Cloth
     {
         const btSoftBody* m_body;
-        std::vector<bool> m_held, m_valid;
+        std::vector<bool> m_held, m_valid, m_hasFace;
         std::vector<Vector3> m_offsets;
         std::vector<Follow> m_follows;  // per obstacle
     };
@@ -59,6 +60,8 @@ private:
     void readSurface(Obstacle& obstacle);
     void countPairs(const Cloth& cloth, const Obstacle& obstacle, const std::vector<Vector3>& places,
                     Findings& findings) const;
+    void countPairsOf(const btSoftBody::Node* const nodes[3], const Cloth& cloth, const Obstacle& obstacle,
+                      const std::vector<Vector3>& places, Findings& findings) const;
     void follow(Cloth& cloth, std::size_t obstacle, const std::vector<Vector3>& places, bool reported);
 
     std::vector<Obstacle> m_obstacles;

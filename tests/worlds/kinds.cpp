@@ -44,8 +44,12 @@ constexpr RandomKind kRandomKinds[] = {{"terrain", buildTerrain},
                                        {"wave_floor", buildWaveFloor},
                                        {"slats", buildSlats},
                                        {"drawer", buildDrawer},
-                                       {"chimney", buildChimney}};
+                                       {"chimney", buildChimney},
+                                       {"ropes", buildRopes}};
 constexpr int kRandomKindCount = static_cast<int>(sizeof kRandomKinds / sizeof *kRandomKinds);
+// The kinds of the group "all": ropes came later, and are a group of their own, so that its lists stay as they were
+// counted.
+constexpr int kAllCount = kRandomKindCount - 1;
 constexpr int kTinyStatic = kRandomKindCount;
 constexpr int kTinyKinematic = kTinyStatic + 1;
 constexpr int kSkirtTurn = kTinyStatic + 2;
@@ -67,7 +71,7 @@ bool kindsOf(const std::string& group, int& first, int& last)
     if (group == "all")
     {
         first = 0;
-        last = kRandomKindCount;
+        last = kAllCount;
     }
     if (group == "tiny")
     {

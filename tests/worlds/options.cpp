@@ -34,9 +34,9 @@ std::string kindProblem(const WorldsOptions& options)
 
 void addWorlds(CLI::App& app, WorldsOptions& options, std::string& modifiers)
 {
-    app.add_option(
-        "--kind", options.m_kind,
-        "a kind of --list; all: the random ones; tiny: worlds of 4 to 9 nodes; skirts: two grids of settings");
+    app.add_option("--kind", options.m_kind,
+                   "a kind of --list; all: the random ones but ropes; tiny: worlds of 4 to 9 nodes; skirts: two grids "
+                   "of settings");
     app.add_option("--seed", options.m_seed, "the first seed; of a grid the first setting")
         ->check(CLI::Range(0, 1000000000));
     app.add_option("--count", options.m_count, "worlds: one seed after the other, in every kind that is asked for");
@@ -63,7 +63,8 @@ void addRunning(CLI::App& app, WorldsOptions& options)
 bool parseOptions(int argc, const char* const* argv, WorldsOptions& options, int& exitCode)
 {
     CLI::App app(
-        "Runs random worlds of cloth and obstacles in Bullet, and checks after every step that no cloth triangle\n"
+        "Runs random worlds of cloth and obstacles in Bullet, and checks after every step that no cloth triangle or "
+        "rope\n"
         "intersects an obstacle and no node went through, unless the step's status says so.",
         "drape_worlds");
     app.footer("Exit codes: 0 no more worlds fail than allowed, 1 more do, 2 arguments that cannot be used.");

@@ -21,6 +21,7 @@ namespace
 constexpr std::size_t kPlainFailing = 0;
 constexpr std::size_t kModifiedFailing = 2;
 constexpr std::size_t kTinyFailing = 1;
+constexpr std::size_t kRopesFailing = 0;
 
 constexpr ModifierChoice kPlain = {};
 constexpr ModifierChoice kRandomModifiers = {true, 0};
@@ -75,6 +76,11 @@ TEST(Worlds, ModifiedOnesKeepClothOutside)
     for (const ModifierName& modifier : modifierNames())  // each modifier alone
         worlds.push_back({kind++, 100, modifier.m_bit});
     expectFewFail(worlds, kModifiedFailing);
+}
+
+TEST(Worlds, RopesStayOutside)
+{
+    expectFewFail(worldsOf("ropes", 0, 120, kPlain), kRopesFailing);
 }
 
 TEST(Worlds, TinyOnesKeepClothOutside)
@@ -230,6 +236,26 @@ TEST(Judge, CountsWhatIsHeldApart)
     EXPECT_GT(findings.m_heldPairs, 0);
     EXPECT_EQ(findings.m_through, 0);
     EXPECT_EQ(findings.m_heldThrough, 1);
+}
+
+// A thread between two nodes that stay where they are: the sheet is a strip that passes between them.
+TEST(Judge, FindsAThreadThatWasPassed)
+{
+    World world(WorldBackend::Host);
+    WorldObstacle& strip = world.addObstacle(gridMesh(1, 1, .1, .1), {});
+    WorldCloth& cloth = world.addGrid({3, 3, 1, 1, shifted(0, .5, 0)});
+    btSoftBody& body = *cloth.m_body;
+    for (int k = 0; k < 2; ++k)
+        body.appendNode(btVector3(btScalar(k - .5), btScalar(.1), 0), 1);
+    body.appendLink(9, 10);
+    body.appendLink(3, 5);  // across the cloth
+    Judge judge(world);
+    for (const btScalar height : {btScalar(0), btScalar(.1), btScalar(.2), btScalar(.5)})
+    {
+        strip.m_object->setWorldTransform(shifted(0, double(height), 0) * turned(btVector3(0, 0, 1), .3));
+        const Findings findings = judge.look(false);
+        EXPECT_EQ(findings.m_pairs > 0, height == btScalar(.1) || height == btScalar(.5));
+    }
 }
 
 // The obstacle moves through the cloth, and its scale and compounds are heeded.

@@ -16,6 +16,7 @@ constexpr std::size_t kVacantKept = 64;
 void MeshPool::add(PooledMesh mesh)
 {
     m_triangleCount += mesh.m_topology.m_triangles.size();
+    m_faceCount += mesh.m_topology.m_faceCount;
     m_ids.push_back(mesh.m_id);
     m_meshes.push_back(std::move(mesh));
     m_changed = true;
@@ -28,6 +29,7 @@ bool MeshPool::remove(MeshId id)
     PooledMesh& mesh = m_meshes[found];
     mesh.m_vacant = true;
     m_vacantTriangles += mesh.m_topology.m_triangles.size();
+    m_faceCount -= mesh.m_topology.m_faceCount;
     ++m_vacantCount;
     return true;
 }

@@ -79,6 +79,8 @@ public:
     MeshFirsts begin(std::size_t slot) const;
     // Of meshes that are there.
     std::size_t presentTriangles() const { return m_triangleCount - m_vacantTriangles; }
+    // The same without triangles that stand for edges and points.
+    std::size_t presentFaces() const { return m_faceCount; }
 
     std::size_t vertexCount() const { return m_vertexCount; }
     const std::vector<Triangle>& triangles() const { return m_triangles; }
@@ -103,6 +105,7 @@ private:
     std::vector<MeshFirsts> m_firsts;
     std::size_t m_vertexCount = 0;
     std::size_t m_triangleCount = 0;  // of all slots
+    std::size_t m_faceCount = 0;      // of meshes that are there
     std::size_t m_vacantTriangles = 0;
     std::size_t m_vacantCount = 0;
     std::size_t m_placed = 0;  // leading slots whose places in the joined arrays stand

@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <set>
+#include <utility>
 
 namespace drape
 {
@@ -131,7 +132,38 @@ Topology buildTopology(const std::int32_t* triangles, std::size_t triangleCount,
         for (int i = 0; i < 3; ++i)
             addEdge(topology, known, index, i);
     }
+    topology.m_faceCount = topology.m_triangles.size();
     return topology;
+}
+
+void addEdges(Topology& topology, const std::int32_t* edges, std::size_t edgeCount)
+{
+    using VertexPair = std::pair<std::uint32_t, std::uint32_t>;
+    const auto pairOf = [](std::uint32_t a, std::uint32_t b) { return VertexPair(std::min(a, b), std::max(a, b)); };
+    std::set<VertexPair> known;
+    for (std::size_t e = 0; edgeCount > 0 && e < topology.m_edges.size(); ++e)
+        known.insert(pairOf(topology.m_edges[e].m_vertices[0], topology.m_edges[e].m_vertices[1]));
+    for (std::size_t source = 0; source < edgeCount; ++source)
+    {
+        const std::uint32_t a = std::uint32_t(edges[2 * source]), b = std::uint32_t(edges[2 * source + 1]);
+        assert(a < topology.m_vertexCount && b < topology.m_vertexCount);
+        if (a == b || !known.insert(pairOf(a, b)).second) continue;
+        const std::uint32_t edge = std::uint32_t(topology.m_edges.size());
+        const std::uint32_t index = std::uint32_t(topology.m_triangles.size());
+        Triangle triangle = {{a, b, b}, {edge, edge, edge}, DRAPE_OWNS_EDGE(0), 0};
+        for (int i = 0; i < 2; ++i)
+        {
+            std::uint32_t& owner = topology.m_vertexTriangle[triangle.m_vertices[i]];
+            if (owner != kNone) continue;
+            owner = index;
+            triangle.m_owned |= DRAPE_OWNS_VERTEX(i);
+        }
+        topology.m_edges.push_back(Edge{{a, b}, {b, b}});
+        topology.m_edgeTriangle.push_back(index);
+        topology.m_edgeUses.push_back(1);
+        topology.m_triangles.push_back(triangle);
+        topology.m_sourceTriangle.push_back(kNone);
+    }
 }
 
 void addPoints(Topology& topology)

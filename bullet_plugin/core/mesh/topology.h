@@ -4,7 +4,7 @@
 // repeat an index, or all three vertices of an earlier triangle, are left out. Every vertex and every edge that a
 // triangle uses is owned by exactly one triangle, the first. Edges are numbered by their first use, so the result
 // depends on the input alone. O(n) for surfaces, O(n^1.5) at worst. A vertex without a triangle has none unless it is
-// given a point.
+// given a point, or an edge that is not a triangle's: both are triangles without area, behind the others.
 #pragma once
 
 #include <cstdint>
@@ -18,15 +18,22 @@ struct Topology
 {
     std::vector<Triangle> m_triangles;
     std::vector<Edge> m_edges;
-    std::vector<std::uint32_t> m_sourceTriangle;  // index as given, per kept triangle; 0xffffffff for points
+    // Index as given, per kept triangle; 0xffffffff for those without area that stand for edges and points.
+    std::vector<std::uint32_t> m_sourceTriangle;
     std::vector<std::uint32_t> m_edgeTriangle;    // a kept triangle per edge: its owner
     std::vector<std::uint32_t> m_vertexTriangle;  // a kept triangle per vertex; 0xffffffff when unused
     std::vector<std::uint8_t> m_edgeUses;         // triangles per edge, 255 for more
     std::size_t m_vertexCount = 0;
+    std::size_t m_faceCount = 0;  // triangles without those that stand for edges and points
 };
 
 // triangles: 3 indices each, in [0, vertexCount); check_indices.h looks at a caller's.
 Topology buildTopology(const std::int32_t* triangles, std::size_t triangleCount, std::size_t vertexCount);
+
+// Adds edges that are not a triangle's, 2 indices each, in [0, vertexCount). Each becomes a triangle that has the
+// second vertex twice (kernels/lib/segment.h): it owns the edge between the two as its first, and those of the two that
+// nobody owned. Edges that repeat an index or one that is there are left out. Before addPoints(). O(n log n).
+void addEdges(Topology& topology, const std::int32_t* edges, std::size_t edgeCount);
 
 // Adds a point for each vertex that no triangle has: a triangle that is that vertex three times and owns it, with an
 // edge from it to itself that nobody owns.

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "implementation.h"
+#include "kernels/lib/segment.h"
 
 namespace drape
 {
@@ -30,7 +31,7 @@ PooledFeature pooledFeature(const MeshPool& cloths, const Contact& contact)
         const Triangle& triangle = cloths.triangles()[index];
         feature.m_slot = triangle.m_mesh;
         feature.m_keptTriangle = index - cloths.mesh(feature.m_slot).m_firstTriangle;
-        std::copy(triangle.m_vertices, triangle.m_vertices + 3, feature.m_nodes);
+        std::copy(triangle.m_vertices, triangle.m_vertices + (isSegment(&triangle) ? 2 : 3), feature.m_nodes);
     }
     else
     {

@@ -16,6 +16,7 @@ PooledMesh Pipeline::Implementation::makeMesh(const MeshDescription& description
     PooledMesh mesh;
     mesh.m_id = m_nextId++;
     mesh.m_topology = buildTopology(description.m_triangles, description.m_triangleCount, description.m_vertexCount);
+    addEdges(mesh.m_topology, description.m_edges, description.m_edgeCount);
     if (description.m_looseVertices) addPoints(mesh.m_topology);
     mesh.m_positions.assign(description.m_positions, description.m_positions + 3 * description.m_vertexCount);
     mesh.m_area = surfaceArea(mesh.m_topology.m_triangles, mesh.m_positions.data());

@@ -15,7 +15,8 @@
 
 namespace drape
 {
-// m², of the triangles with finite vertices. positions: m, x y z per vertex.
+// m², of the triangles with finite vertices; of one that stands for an edge, half of the square over it, as of a grid's
+// triangle with that side. positions: m, x y z per vertex.
 double surfaceArea(const std::vector<Triangle>& triangles, const float* positions);
 
 struct Surface

@@ -23,7 +23,7 @@ std::string statusText(std::uint32_t status)
         {kStepClothsLeftOut, "cloths with too many candidates or contacts left out"},
         {kStepCoarsePositions, "an obstacle so far out that its positions are coarser than the thickness"},
         {kStepStartsIntersecting, "triangles of a cloth and an obstacle that intersected when the step began"},
-        {kStepFacesLeftOut, "faces that name another body's nodes left out"},
+        {kStepFacesLeftOut, "faces or links that name another body's nodes left out"},
         {kStepSurfacePassed, "a surface may have been passed where links pulled"},
         {kStepMotionHeldBack, "nodes of cloth that came apart held back"},
     };

@@ -68,8 +68,8 @@ void Pipeline::Implementation::collectPairs()
     m_pairs.clear();
     const std::size_t clothTriangles = m_scene.m_cloths.triangles().size();
     const std::size_t obstacleTriangles = m_scene.m_obstacles.triangles().size();
-    m_statistics.m_clothTriangles = m_scene.m_cloths.presentTriangles();
-    m_statistics.m_obstacleTriangles = m_scene.m_obstacles.presentTriangles();
+    m_statistics.m_clothTriangles = m_scene.m_cloths.presentFaces();
+    m_statistics.m_obstacleTriangles = m_scene.m_obstacles.presentFaces();
     if (clothTriangles == 0 || obstacleTriangles == 0) m_stepPairs.m_anyPair = false;
     collectSelf();
     m_stepPairs.m_any = m_stepPairs.m_anyPair || m_stepPairs.m_anySelf;

@@ -179,8 +179,8 @@ bool Queries::meshPairs(const MeshDescription& a, const MeshDescription* b, floa
     if (b && !checkIndices(*b, "meshPairs", self.m_error)) return false;
     if (!self.require(std::isfinite(radius) && radius >= 0.0f, "meshPairs", "a radius that is negative or not finite"))
         return false;
-    QueryMesh first = makeQueryMesh(a, a.m_positions), other;
-    if (b) other = makeQueryMesh(*b, b->m_positions);
+    QueryMesh first = makeQueryMeshWithEdges(a, a.m_positions), other;
+    if (b) other = makeQueryMeshWithEdges(*b, b->m_positions);
     QueryMesh& second = b ? other : first;
     PairDecision decision(first, second, double(radius), self.m_limits.m_contacts, found);
     const std::uint64_t limit = self.m_limits.m_candidates;

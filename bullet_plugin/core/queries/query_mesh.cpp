@@ -1,20 +1,57 @@
 #include "query_mesh.h"
 
+#include <utility>
+
 #include "bullet_plugin/core/bvh/morton_order.h"
 #include "bullet_plugin/core/bvh/refit.h"
 
 namespace drape
 {
-QueryMesh makeQueryMesh(const MeshDescription& description, const float* end)
+namespace
+{
+// Those that are kept stand in the order in which they were given.
+void addNumberedEdges(Topology& topology, const MeshDescription& description)
+{
+    std::size_t kept = topology.m_triangles.size();
+    addEdges(topology, description.m_edges, description.m_edgeCount);
+    for (std::size_t i = 0; i < description.m_edgeCount && kept < topology.m_triangles.size(); ++i)
+    {
+        const std::uint32_t* const vertices = topology.m_triangles[kept].m_vertices;
+        if (vertices[0] != std::uint32_t(description.m_edges[2 * i]) ||
+            vertices[1] != std::uint32_t(description.m_edges[2 * i + 1]))
+            continue;
+        topology.m_sourceTriangle[kept++] = std::uint32_t(description.m_triangleCount + i);
+    }
+}
+
+QueryMesh makeMesh(Topology topology, const MeshDescription& description, const float* end)
 {
     QueryMesh mesh;
-    mesh.m_topology = buildTopology(description.m_triangles, description.m_triangleCount, description.m_vertexCount);
+    mesh.m_topology = std::move(topology);
     mesh.m_order = mortonOrderOnHost(mesh.m_topology.m_triangles, description.m_positions);
     mesh.m_layout = makeBvhLayout(std::uint32_t(mesh.m_order.size()));
     mesh.m_nodes = makeBvhNodes(mesh.m_layout);
     mesh.m_start = description.m_positions;
     mesh.m_end = end;
     return mesh;
+}
+
+Topology topologyOf(const MeshDescription& description)
+{
+    return buildTopology(description.m_triangles, description.m_triangleCount, description.m_vertexCount);
+}
+}  // namespace
+
+QueryMesh makeQueryMesh(const MeshDescription& description, const float* end)
+{
+    return makeMesh(topologyOf(description), description, end);
+}
+
+QueryMesh makeQueryMeshWithEdges(const MeshDescription& description, const float* end)
+{
+    Topology topology = topologyOf(description);
+    addNumberedEdges(topology, description);
+    return makeMesh(std::move(topology), description, end);
 }
 
 void refitBoth(QueryMesh& a, QueryMesh& b, float radius)

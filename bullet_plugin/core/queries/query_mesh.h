@@ -40,6 +40,9 @@ void refitBoth(QueryMesh& a, QueryMesh& b, float radius);
 // Which pairs of their triangles are asked for: DRAPE_WALK_…
 std::uint32_t walkOf(const QueryMesh& a, const QueryMesh& b);
 
-// Positions are not copied.
+// Positions are not copied. The description's edges are left out.
 QueryMesh makeQueryMesh(const MeshDescription& description, const float* end);
+
+// The same with the edges, as triangles without area, numbered behind the triangles.
+QueryMesh makeQueryMeshWithEdges(const MeshDescription& description, const float* end);
 }  // namespace drape

@@ -32,7 +32,8 @@ enum class TriangleTest
     Moller      // with an absolute tolerance, for comparison: misses pairs and reports others
 };
 
-// Two triangles by their index as given: of the first mesh, and of the second or, with itself, the later one.
+// Two triangles by their index as given: of the first mesh, and of the second or, with itself, the later one. Edges of
+// MeshDescription::m_edges are triangles without area here, numbered behind the triangles.
 struct NearTriangles
 {
     std::uint32_t m_a, m_b;

@@ -50,22 +50,25 @@ std::string whyNoDevice(const Settings& settings);
 enum StepStatusBits : std::uint32_t
 {
     kStepGood = 0,
-    kStepInvalidNodes = 1u << 0,   // nodes that are NaN, infinite or beyond 2^30 m were left out
-    kStepDeviceFailed = 1u << 1,   // the device failed; this and later steps run on the host
-    kStepDeviceFull = 1u << 2,     // a list needed more than the device can hold; the step ran on the host
-    kStepClothsLeftOut = 1u << 3,  // cloths that need too many tests collide with nothing in the step: the largest
-                                   // where there are more than Settings::m_candidateLimit or m_contactLimit, and cloth
-                                   // that came apart and reaches across an obstacle
-    kStepCoarsePositions =
-        1u << 4,  // an obstacle reaches so far out that neighbouring floats are a thickness apart there
-    kStepStartsIntersecting =
-        1u
-        << 5,  // a cloth and an obstacle began the step with triangles that intersect: the cloth is not guarded there
-    kStepFacesLeftOut = 1u << 6,  // faces of a soft body that name another body's nodes were left out
-    kStepSurfacePassed =
-        1u << 7,  // a cloth's links pulled it so far that it may have passed a surface; the next step checks it
-    kStepMotionHeldBack =
-        1u << 8  // nodes of a cloth that came apart went less far than they would have; its contacts are all there
+    // Nodes that are NaN, infinite or beyond 2^30 m were left out.
+    kStepInvalidNodes = 1u << 0,
+    // The device failed; this and later steps run on the host.
+    kStepDeviceFailed = 1u << 1,
+    // A list needed more than the device can hold; the step ran on the host.
+    kStepDeviceFull = 1u << 2,
+    // Cloths that need too many tests collide with nothing in the step: the largest where there are more than
+    // Settings::m_candidateLimit or m_contactLimit, and cloth that came apart and reaches across an obstacle.
+    kStepClothsLeftOut = 1u << 3,
+    // An obstacle reaches so far out that neighbouring floats are a thickness apart there.
+    kStepCoarsePositions = 1u << 4,
+    // A cloth and an obstacle began the step with triangles that intersect: the cloth is not guarded there.
+    kStepStartsIntersecting = 1u << 5,
+    // Faces of a soft body, or links that are not part of a surface, name another body's nodes and were left out.
+    kStepFacesLeftOut = 1u << 6,
+    // A cloth's links pulled it so far that it may have passed a surface; the next step checks it.
+    kStepSurfacePassed = 1u << 7,
+    // Nodes of a cloth that came apart went less far than they would have; its contacts are all there.
+    kStepMotionHeldBack = 1u << 8
 };
 
 // What StepStatistics::m_status says, in words: one clause a bit, joined by "; ". Empty for a good step.

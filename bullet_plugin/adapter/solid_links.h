@@ -1,0 +1,60 @@
+// The links of a soft body that collide: those that are not part of a surface.
+//
+// A link is solid unless it is one of Bullet's bending links (btSoftBody::generateBendingConstraints), or both of its
+// nodes lie on one surface: a connected set of faces and tetrahedra, which collides for them. So all links of a rope
+// are solid, the threads of a fringe, and what joins two pieces of cloth in one body, but no link across a cloth.
+// Links that name another body's nodes are not solid. Input: the live body; faces as node indices. Cost: read() is
+// linear in the body, almost; changed() in the links that it looks at.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "BulletSoftBody/btSoftBody.h"
+
+namespace drape
+{
+constexpr int kForeign = -1;
+
+// Returns the index of a node of the body; kForeign for one that is not the body's.
+int nodeIndex(const btSoftBody& body, const btSoftBody::Node* node);
+
+// Whether a body without faces and tetrahedra has a solid link.
+bool hasSolidLink(const btSoftBody& body);
+
+class SolidLinks
+{
+public:
+    // faces: three nodes each; those with a node that is not the body's are no part of a surface.
+    void read(const btSoftBody& body, const std::vector<std::int32_t>& faces);
+    // Two nodes each, in the body's order. None joins a node to itself.
+    const std::vector<std::int32_t>& nodes() const { return m_nodes; }
+    // Whether a link that would be solid names a node that is not the body's.
+    bool hasForeign() const { return m_hasForeign; }
+    // Whether the solid links are others than were read, in any order. Looks at all links where their number or place
+    // in memory changed or `all` is true, else at some more in each call, and tells once it has seen all. The body has
+    // as many nodes as were read, and the same faces.
+    bool changed(const btSoftBody& body, bool all);
+
+private:
+    struct Ends
+    {
+        int m_a, m_b;
+    };
+
+    void joinSurfaces(const btSoftBody& body, const std::vector<std::int32_t>& faces);
+    bool isSolid(Ends ends) const;
+    std::uint64_t sumOf(const btSoftBody& body, int begin, int end) const;
+    void remember(const btSoftBody& body);
+
+    std::vector<std::int32_t> m_nodes;
+    std::vector<int> m_surface;  // by node: a node of the same surface, the same for all of it; kNoSurface
+    std::uint64_t m_sum = 0;     // of what sumOf() adds up, over all links
+    std::uint64_t m_seen = 0;    // the same of those up to m_cursor
+    int m_cursor = 0;
+    int m_linkCount = 0, m_tetraCount = 0;
+    const void* m_linkArray = nullptr;  // compared, never followed
+    bool m_hasForeign = false;
+};
+}  // namespace drape
