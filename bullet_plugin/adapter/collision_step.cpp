@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "bullet_plugin/adapter/vectors.h"
+#include "bullet_plugin/core/mesh/reserve_room.h"
 
 namespace drape
 {
@@ -44,6 +45,8 @@ BodyContacts* CollisionStep::contactsOf(const btSoftBody& body)
 
 void CollisionStep::addBody(ClothMirror& cloth, btSoftBody* body)
 {
+    // Room for all, so that clear() takes no memory.
+    reserveRoom(m_spare, m_bodies.size() + m_spare.size() + 1);
     if (m_spare.empty()) m_spare.emplace_back();
     m_bodies.push_back(std::move(m_spare.back()));
     m_spare.pop_back();

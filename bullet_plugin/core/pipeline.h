@@ -4,7 +4,8 @@
 // reduction, compaction. Input: node positions at the step's start and end, obstacle positions when they change, and
 // the pairs to test. Output: contacts in canonical order in host memory. Guarantee: same input, same contacts, bit for
 // bit, on every back end; a buffer that is too small grows and the stage runs again. Cost: one submission, one wait a
-// step. Knows no Bullet. Lengths in metres, world frame. Not thread-safe: one pipeline belongs to one thread.
+// step. Knows no Bullet. Lengths in metres, world frame. Not thread-safe: one pipeline belongs to one thread. Errors:
+// where memory runs out, calls throw, and nothing but restart() may follow.
 #pragma once
 
 #include <cstdint>
@@ -101,6 +102,10 @@ public:
     ~Pipeline();
     Pipeline(const Pipeline&) = delete;
     Pipeline& operator=(const Pipeline&) = delete;
+
+    // For a pipeline of which a call ended by an exception: lets go of all meshes, whose ids are not given again, and
+    // keeps the back ends. Throws, with nothing changed, where memory runs out.
+    void restart();
 
     const DeviceReport& deviceReport() const;
 

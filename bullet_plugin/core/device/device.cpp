@@ -1,5 +1,8 @@
 #include "device.h"
 
+#include "bullet_plugin/core/public_call.h"
+#include "opencl_lock.h"
+
 namespace drape
 {
 namespace
@@ -31,6 +34,7 @@ void appendDevices(const cl::Platform& platform, std::vector<FoundDevice>& found
 // GPUs first, otherwise in the loader's order.
 std::vector<FoundDevice> findDevices()
 {
+    const OpenClLock lock;
     std::vector<cl::Platform> platforms;
     std::vector<FoundDevice> all, sorted;
     if (cl::Platform::get(&platforms) != CL_SUCCESS) return sorted;
@@ -47,16 +51,23 @@ std::vector<FoundDevice> findDevices()
 }
 }  // namespace
 
-std::vector<DeviceInfo> listDevices()
+std::vector<DeviceInfo> deviceInfos()
 {
+    const OpenClLock lock;  // until the devices found are released
     std::vector<DeviceInfo> infos;
     for (const FoundDevice& entry : findDevices())
         infos.push_back(entry.m_info);
     return infos;
 }
 
+std::vector<DeviceInfo> listDevices()
+{
+    return guardedOr(std::vector<DeviceInfo>(), [] { return deviceInfos(); });
+}
+
 std::unique_ptr<Device> Device::open(std::size_t index, Error& error, bool profiled)
 {
+    const OpenClLock lock;
     const std::vector<FoundDevice> found = findDevices();
     if (index >= found.size())
     {
@@ -85,14 +96,27 @@ std::unique_ptr<Device> Device::open(std::size_t index, Error& error, bool profi
     return device;
 }
 
-bool Device::check(cl_int code, const std::string& call, const std::string& detail)
+Device::~Device()
 {
-    if (code != CL_SUCCESS && !m_error.failed())
+    const OpenClLock lock;
+    m_queue = cl::CommandQueue();
+    m_context = cl::Context();
+    m_device = cl::Device();
+}
+
+bool Device::check(cl_int code, const std::string& call, const std::string& detail) noexcept
+{
+    if (code == CL_SUCCESS || m_error.failed()) return !m_error.failed();
+    try
     {
-        m_error.m_call = call + " failed with OpenCL code " + std::to_string(code) + " on " + m_info.m_name;
         m_error.m_detail = detail;
+        m_error.m_call = call + " failed with OpenCL code " + std::to_string(code) + " on " + m_info.m_name;
     }
-    return !m_error.failed();
+    catch (const std::bad_alloc&)
+    {
+        m_error.m_call = "OpenCL failed";  // short enough to take no memory
+    }
+    return false;
 }
 
 void Device::flush()

@@ -7,6 +7,9 @@
 #include <locale>
 #include <sstream>
 
+#include "bullet_plugin/core/public_call.h"
+#include "device.h"
+
 namespace drape
 {
 namespace
@@ -58,10 +61,14 @@ std::string hostSince(const DeviceInfo& device, const Error& error)
 
 std::string whyNoDevice(const Settings& settings)
 {
-    Error error;
-    double pairs;
-    if (chooseDevice(settings, error).m_byCost) wantedCrossover(settings, pairs, error);
-    return error.failed() ? error.m_call + "; " + error.m_detail : std::string();
+    return guardedOr(std::string(kOutOfMemory),
+                     [&]
+                     {
+                         Error error;
+                         double pairs;
+                         if (chooseDevice(settings, error).m_byCost) wantedCrossover(settings, pairs, error);
+                         return error.failed() ? error.m_call + "; " + error.m_detail : std::string();
+                     });
 }
 
 DeviceChoice chooseDevice(const Settings& settings, Error& error)
@@ -74,7 +81,7 @@ DeviceChoice chooseDevice(const Settings& settings, Error& error)
     if (settings.m_backend == Backend::OpenCl && lowered(wanted) == "host")
     {
         error.m_call = "an OpenCL device was asked for, and the host by " + origin + " \"" + wanted + "\"";
-        error.m_detail = listing(listDevices());
+        error.m_detail = listing(deviceInfos());
         return choice;
     }
     if (settings.m_backend == Backend::Host || lowered(wanted) == "host")
@@ -83,7 +90,7 @@ DeviceChoice chooseDevice(const Settings& settings, Error& error)
             settings.m_backend == Backend::Host ? "the host back end was asked for" : "asked for by " + origin;
         return choice;
     }
-    const std::vector<DeviceInfo> devices = listDevices();
+    const std::vector<DeviceInfo> devices = deviceInfos();
     if (!wanted.empty()) return chooseByName(devices, wanted, origin, error);
     if (devices.empty())
     {

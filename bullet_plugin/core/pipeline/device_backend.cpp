@@ -90,18 +90,18 @@ void DeviceBackend::warmUp(float selfThickness)
         finish(scene, pairs, result);
     }
     if (!patches()) m_refit.warmUp(*m_device, m_cloth.m_nodes);
-    m_device->wait();
     forgetScene();
+}
+
+void DeviceBackend::forgetScene() noexcept
+{
+    m_device->wait();
+    m_cloth.m_revision = m_obstacle.m_revision = 0;
+    m_placed.forget();
     m_sentThickness.clear();
     m_sentTube.clear();
     m_sentRadius.clear();
     m_testsBefore = m_hitsBefore = SIZE_MAX;
-}
-
-void DeviceBackend::forgetScene()
-{
-    m_cloth.m_revision = m_obstacle.m_revision = 0;
-    m_placed.forget();
 }
 
 void DeviceBackend::prepareSelf()
@@ -123,16 +123,15 @@ void DeviceBackend::uploadSide(const MeshPool& pool, const BvhLayout& layout, Si
     side.m_triangles.append(*m_device, pool.triangles(), pool.begin(first).m_triangle);
     if (m_settings.m_reduceContacts) side.m_firsts.assign(*m_device, pool.firsts());
     // The cull over patches needs no hierarchy of triangles.
-    std::vector<BvhNode> nodes;
     if (!patches())
     {
         side.m_order.assign(*m_device, pool.order());
         side.m_layout = layoutByHeights(layout);
-        nodes = makeBvhNodes(side.m_layout);
+        const std::vector<BvhNode> nodes = makeBvhNodes(side.m_layout);
+        const WaitAtEnd wait(*m_device);
         side.m_nodes.assign(*m_device, nodes);
         m_refit.makeLevels(*m_device, side.m_layout, side.m_levels);
     }
-    if (!nodes.empty()) m_device->wait();  // they are a local
 }
 
 // The cull over patches needs an order of the cloths alone: that of their own patches, since it walks for packets.
@@ -214,12 +213,12 @@ void DeviceBackend::updateObstacles(const Scene& scene, std::size_t fresh)
 void DeviceBackend::refitObstacles(const Scene& scene)
 {
     const std::vector<float> noRadius(scene.m_obstacles.meshCount(), 0.0f);
+    const WaitAtEnd wait(*m_device);
     m_obstacle.m_radius.assign(*m_device, noRadius);
     m_refit.enqueue(*m_device, m_obstacle.m_layout, m_obstacle.m_levels, m_obstacle.m_nodes, m_obstacle.m_order,
                     m_obstacle.m_triangles, m_placed.positions(), m_placed.positions(), m_obstacle.m_radius,
                     m_refitCounters);
     m_broadPhase.obstaclesRefitted(*m_device, m_obstacle.m_nodes);
-    m_device->wait();  // noRadius is a local
 }
 
 void DeviceBackend::writeNodes(const Scene& scene, std::size_t first, std::size_t count)

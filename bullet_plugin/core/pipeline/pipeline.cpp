@@ -84,6 +84,30 @@ std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& erro
     return pipeline;
 }
 
+void Pipeline::restart()
+{
+    Implementation& old = *m_implementation;
+    std::unique_ptr<Implementation> fresh = std::make_unique<Implementation>();
+    fresh->m_settings = old.m_settings;
+    fresh->m_report = old.m_report;
+    fresh->m_error = old.m_error;
+    fresh->m_openClDevice = old.m_openClDevice;
+    fresh->m_deviceReason = old.m_deviceReason;
+    fresh->m_nextId = old.m_nextId;
+    fresh->m_deviceLeft = old.m_deviceLeft;
+    fresh->m_threads = old.m_threads;
+    fresh->m_hostBackend = std::make_unique<HostBackend>(fresh->m_settings, fresh->m_threads);
+    if (old.m_choice.active())
+    {
+        fresh->m_choice.begin(old.m_choice.crossover());
+        fresh->useChosen();
+    }
+    // Nothing throws from here on.
+    if (old.m_deviceBackend) old.m_deviceBackend->forgetScene();
+    fresh->m_deviceBackend = std::move(old.m_deviceBackend);
+    m_implementation = std::move(fresh);
+}
+
 const DeviceReport& Pipeline::deviceReport() const
 {
     return m_implementation->m_report;

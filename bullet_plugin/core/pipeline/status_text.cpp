@@ -1,5 +1,6 @@
 #include <cstdio>
 
+#include "bullet_plugin/core/public_call.h"
 #include "drape/report.h"
 #include "drape/settings.h"
 
@@ -24,10 +25,15 @@ std::string statusText(std::uint32_t status)
         {kStepCoarsePositions, "an obstacle so far out that its positions are coarser than the thickness"},
         {kStepStartsIntersecting, "triangles of a cloth and an obstacle that intersected when the step began"},
         {kStepFacesLeftOut, "faces that name another body's nodes left out"},
+        {kStepOutOfMemory, "memory ran out and cloth beside meshes stood still"},
     };
-    std::string text;
-    for (const auto& clause : clauses)
-        if (status & clause.m_bit) text += (text.empty() ? "" : "; ") + std::string(clause.m_text);
-    return text;
+    return guardedOr(std::string(kOutOfMemory),
+                     [&]
+                     {
+                         std::string text;
+                         for (const auto& clause : clauses)
+                             if (status & clause.m_bit) text += (text.empty() ? "" : "; ") + std::string(clause.m_text);
+                         return text;
+                     });
 }
 }  // namespace drape

@@ -83,7 +83,7 @@ public:
     // Chooses the device and makes its kernels ready; keeps the settings' limits. Returns null and fills error when
     // settings ask for what is not there or does not work, or are out of their ranges. Backend::Auto is the first
     // device, whatever the work, and the host where there is none or it fails: then error() of what is returned says
-    // why.
+    // why. Returns null, too, where memory runs out.
     static std::unique_ptr<Queries> create(const Settings& settings, Error& error);
     ~Queries();
     Queries(const Queries&) = delete;
@@ -91,8 +91,9 @@ public:
 
     const DeviceReport& deviceReport() const;
 
-    // Each returns false when the device failed, a mesh has an index out of range, an array is missing, or a kind or a
-    // length is none; error() says how of the last that did.
+    // Each returns false when the device failed, a mesh has an index out of range, an array is missing, a kind or a
+    // length is none, or memory ran out; error() says how of the last that did. Then nothing is found, and results are
+    // not to be read; further calls may succeed. No exception leaves this class.
     const Error& error() const;
 
     // results: count of them.

@@ -39,11 +39,12 @@ struct DeviceReport
 
 struct Settings;
 
-// Every OpenCL device there is, in the order in which Drape would choose. Empty when there is none.
+// Every OpenCL device there is, in the order in which Drape would choose. Empty when there is none, and where memory
+// runs out.
 std::vector<DeviceInfo> listDevices();
 
 // Whether what settings and DRAPE_DEVICE ask for is there: empty, or in one line why not and which devices there are.
-// Where cost decides it also says what is wrong with DRAPE_CROSSOVER.
+// Where cost decides it also says what is wrong with DRAPE_CROSSOVER. "out of memory" where that is why it cannot tell.
 std::string whyNoDevice(const Settings& settings);
 
 // Bits of StepStatistics::m_status. Zero is a good step.
@@ -58,11 +59,15 @@ enum StepStatusBits : std::uint32_t
     kStepCoarsePositions =
         1u << 4,  // an obstacle reaches so far out that neighbouring floats are a thickness apart there
     kStepStartsIntersecting =
-        1u << 5,  // a cloth and an obstacle began the step with triangles that intersect: the cloth is not guarded there
-    kStepFacesLeftOut = 1u << 6  // faces of a soft body that name another body's nodes were left out
+        1u
+        << 5,  // a cloth and an obstacle began the step with triangles that intersect: the cloth is not guarded there
+    kStepFacesLeftOut = 1u << 6,  // faces of a soft body that name another body's nodes were left out
+    // Memory ran out in the step, or in a call before it: cloth that Drape takes stood still. Steps after it go on.
+    kStepOutOfMemory = 1u << 9
 };
 
-// What StepStatistics::m_status says, in words: one clause a bit, joined by "; ". Empty for a good step.
+// What StepStatistics::m_status says, in words: one clause a bit, joined by "; ". Empty for a good step. "out of
+// memory" where there is none for the text.
 std::string statusText(std::uint32_t status);
 
 // One kernel launch as the device timed it; only with Settings::m_profileKernels.
