@@ -9,12 +9,9 @@ namespace drape
 {
 namespace
 {
-const char* reasonFromCloth(const PluginState& state, const btSoftBody& cloth)
+// Why Drape does not handle cloth that a solver of the plugin steps; null where it does.
+const char* reasonFromSteppedCloth(const PluginState& state, const btSoftBody& cloth)
 {
-    if (!state.ready()) return "Drape could not start; see Plugin::error()";
-    if (!state.steps(cloth))
-        return "the world's soft body solver is not a drape::SoftBodySolver of this plugin; a deformable world has its "
-               "own";
     if (!state.isWired())
         return "no dispatcher has this plugin's algorithm: make it with a drape::CollisionConfiguration, or call "
                "drape::install()";
@@ -25,6 +22,15 @@ const char* reasonFromCloth(const PluginState& state, const btSoftBody& cloth)
         return "the soft body does not collide by its nodes (SDF_RS is off, cluster mode)";
     if (cloth.m_faces.size() == 0) return "the soft body has no faces";
     return nullptr;
+}
+
+const char* reasonFromCloth(const PluginState& state, const btSoftBody& cloth)
+{
+    if (!state.ready()) return "Drape could not start; see Plugin::error()";
+    if (!state.steps(cloth))
+        return "the world's soft body solver is not a drape::SoftBodySolver of this plugin; a deformable world has its "
+               "own";
+    return reasonFromSteppedCloth(state, cloth);
 }
 
 const char* reasonFromObstacle(const btCollisionObject& obstacle, const btCollisionShape& shape)
@@ -52,6 +58,11 @@ const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, co
 bool handlesCloth(const PluginState& state, const btSoftBody& cloth)
 {
     return !reasonFromCloth(state, cloth);
+}
+
+bool handlesSteppedCloth(const PluginState& state, const btSoftBody& cloth)
+{
+    return state.ready() && !reasonFromSteppedCloth(state, cloth);
 }
 
 bool stockCanTake(const btCollisionObject& obstacle, const btTransform& pose)

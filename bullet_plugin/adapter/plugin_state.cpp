@@ -179,8 +179,8 @@ bool PluginState::ownsSolver(const btSoftBodySolver* solver) const
 void PluginState::setStepped(const btSoftBodySolver* solver, const btAlignedObjectArray<btSoftBody*>& bodies)
 {
     std::vector<WorldBody>& stepped = m_stepped[solver];
+    stepped.reserve(static_cast<std::size_t>(bodies.size()));  // before the last step's list goes
     stepped.clear();
-    stepped.reserve(static_cast<std::size_t>(bodies.size()));
     for (int i = 0; i < bodies.size(); ++i)
     {
         stepped.push_back(WorldBody{bodies[i], bodies[i]->getBroadphaseHandle()});

@@ -32,12 +32,11 @@ void holdStill(btSoftBody& body, const BodyContacts* contacts)
 {
     const std::size_t count = static_cast<std::size_t>(body.m_nodes.size());
     const NodePaths* const paths = contacts ? &contacts->m_limit.paths() : nullptr;
-    const bool known = paths && paths->m_start.size() == count;
     const btVector3 fall = body.m_worldInfo->m_gravity * body.m_sst.sdt;
     for (std::size_t i = 0; i < count; ++i)
     {
         btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
-        if (known)
+        if (paths)
         {
             node.m_v = (paths->m_end[i] - paths->m_start[i]) * body.m_sst.isdt;
             node.m_q = paths->m_start[i];
@@ -71,6 +70,7 @@ struct SoftBodySolver::Work
     std::vector<btSoftBody*> m_taken;            // bodies that Drape takes, in this step
     std::vector<const btSoftBody*> m_predicted;  // in this step, sorted by address
     bool m_listed = false;                       // m_predicted is whole
+    bool m_detected = false;                     // the paths of all bodies with a pair are recorded
     std::size_t m_asleep = 0;                    // cloths that are not among them
     double m_predictMs = 0;                      // of this class's share in predictMotion
     std::uint64_t m_failures;                    // of the state's, those that a step of this solver has told of
@@ -183,6 +183,7 @@ void SoftBodySolver::detect()
     step.finish();
     for (int i = 0; i < m_softBodySet.size(); ++i)
         step.reportInvalid(*m_softBodySet[i]);
+    work.m_detected = true;
     statistics.m_clothsSkipped = work.m_asleep + step.pinnedCloths();
     statistics.m_uploadMs = work.m_predictMs + beginMs;
     statistics.m_writeMs = watch.lapMs() - statistics.m_waitMs;
@@ -238,8 +239,8 @@ void SoftBodySolver::endFailedStep()
     {
         btSoftBody& body = *m_softBodySet[i];
         if (work.isSolved(i) || !work.isPredicted(body) || !(body.m_sst.sdt > 0)) continue;
-        if (handlesCloth(*m_state, body))
-            holdStill(body, work.contactsOf(body));
+        if (handlesSteppedCloth(*m_state, body))
+            holdStill(body, work.m_detected ? work.contactsOf(body) : nullptr);
         else
             solveByBullet(body);
     }
@@ -258,6 +259,7 @@ void SoftBodySolver::solveConstraints(btScalar dt)
     const auto failed = [&](const CaughtException& caught)
     { m_state->fail("drape::SoftBodySolver::solveConstraints", caught); };
     m_work->m_solved.clear();
+    m_work->m_detected = false;
     if (m_work->m_failures == m_state->failures()) guarded([&] { solveStep(); }, failed);
     if (m_work->m_failures != m_state->failures()) endFailedStep();
 }
