@@ -104,7 +104,8 @@ public:
     Pipeline& operator=(const Pipeline&) = delete;
 
     // For a pipeline of which a call ended by an exception: lets go of all meshes, whose ids are not given again, and
-    // keeps the back ends. Throws, with nothing changed, where memory runs out.
+    // opens the device anew, which takes as long as at a second start. Throws, with nothing changed, where memory runs
+    // out.
     void restart();
 
     const DeviceReport& deviceReport() const;

@@ -94,7 +94,7 @@ void forEachAllocation(long every, const std::function<bool(long)>& scenario)
         }
         number += every;
     }
-    EXPECT_GT(number, every);
+    EXPECT_GE(number, every);
     EXPECT_LT(number, kMostAllocations);
 }
 
@@ -161,7 +161,7 @@ TEST(OutOfMemory, StepsGoOnAfterMemoryIsShortForLong)
 
 TEST(OutOfMemory, StepsOnADeviceGoOn)
 {
-    inOwnProcess([] { expectStepsGoOn(12, Which::One, 5, Backend::OpenCl); });
+    inOwnProcess([] { expectStepsGoOn(12, Which::One, 29, Backend::OpenCl); });
 }
 
 TEST(OutOfMemory, ClothStandsStillInAStepWithout)
@@ -321,11 +321,11 @@ TEST(OutOfMemory, QueriesFailAndSaySo)
     inOwnProcess(
         []
         {
-            const TriangleMesh sphere = makeSphere(1, 2);
+            const TriangleMesh sphere = makeSphere(1, 0);
             const MeshDescription mesh = describeMesh(sphere);
             std::vector<float> end = sphere.m_positions;
             for (float& coordinate : end)
-                coordinate = -coordinate;
+                coordinate *= 0.9f;
             const Settings settings = Scene::settingsOf(Backend::Host);
             forEachAllocation(1,
                               [&](long number)
@@ -340,13 +340,16 @@ TEST(OutOfMemory, QueriesFailAndSaySo)
                                           if (!queries) return;
                                           MeshPairs pairs;
                                           MeshMotion motion;
-                                          if (!queries->meshPairs(mesh, nullptr, 0.1f, pairs))
-                                              EXPECT_TRUE(queries->error().failed() && pairs.m_candidates == 0);
-                                          if (!queries->meshMotion(mesh, end.data(), defaultCcdSettings(), motion))
-                                              EXPECT_TRUE(queries->error().failed() && motion.m_trianglePairs == 0);
+                                          const bool paired = queries->meshPairs(mesh, nullptr, 0.1f, pairs);
+                                          const bool moved =
+                                              queries->meshMotion(mesh, end.data(), defaultCcdSettings(), motion);
+                                          EXPECT_TRUE(paired || (queries->error().failed() && !pairs.m_candidates));
+                                          EXPECT_TRUE(moved || (queries->error().failed() && !motion.m_trianglePairs));
                                           // The allocation that fails has failed.
-                                          if (queries->error().failed())
+                                          if (!paired || !moved)
+                                          {
                                               EXPECT_TRUE(queries->meshPairs(mesh, nullptr, 0.1f, pairs));
+                                          }
                                       });
                               });
         });

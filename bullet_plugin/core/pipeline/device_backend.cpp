@@ -90,18 +90,18 @@ void DeviceBackend::warmUp(float selfThickness)
         finish(scene, pairs, result);
     }
     if (!patches()) m_refit.warmUp(*m_device, m_cloth.m_nodes);
-    forgetScene();
-}
-
-void DeviceBackend::forgetScene() noexcept
-{
     m_device->wait();
-    m_cloth.m_revision = m_obstacle.m_revision = 0;
-    m_placed.forget();
+    forgetScene();
     m_sentThickness.clear();
     m_sentTube.clear();
     m_sentRadius.clear();
     m_testsBefore = m_hitsBefore = SIZE_MAX;
+}
+
+void DeviceBackend::forgetScene()
+{
+    m_cloth.m_revision = m_obstacle.m_revision = 0;
+    m_placed.forget();
 }
 
 void DeviceBackend::prepareSelf()

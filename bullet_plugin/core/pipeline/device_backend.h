@@ -28,9 +28,6 @@ public:
     Device& device() { return *m_device; }
     bool fromCache() const { return m_programs.fromCache(); }
 
-    // The next scene is brought here from its first mesh on. Waits for what is under way with the one before.
-    void forgetScene() noexcept;
-
     // Builds the kernels of cloths that collide with themselves, at the first call.
     void prepareSelf();
 
@@ -70,6 +67,8 @@ private:
     };
 
     void warmUp(float selfThickness = 0.0f);
+    // The next scene is brought here from its first mesh on.
+    void forgetScene();
     // The first slot that the device does not know as it is.
     std::size_t firstNew(const MeshPool& pool, const Side& side) const;
     void uploadSide(const MeshPool& pool, const BvhLayout& layout, Side& side);

@@ -36,11 +36,10 @@ void Pipeline::Implementation::goOnWithoutDevice(const Error& error)
     m_choice.end();
 }
 
-bool Pipeline::Implementation::openDevice(const DeviceChoice& choice, Error& error)
+bool Pipeline::Implementation::openDevice(Error& error)
 {
     Stopwatch watch;
-    m_openClDevice = choice.m_device;
-    std::unique_ptr<Device> device = Device::open(choice.m_index, error, m_settings.m_profileKernels);
+    std::unique_ptr<Device> device = Device::open(m_deviceIndex, error, m_settings.m_profileKernels);
     if (!device) return false;
     m_deviceBackend.reset(new DeviceBackend(std::move(device), m_settings));
     if (m_deviceBackend->device().failed())
@@ -73,7 +72,9 @@ std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& erro
     self.m_report.m_reason = self.m_deviceReason = choice.m_reason;
     self.m_report.m_device.m_name = "host";
     if (choice.m_onHost) return pipeline;
-    if (!self.openDevice(choice, error))
+    self.m_openClDevice = choice.m_device;
+    self.m_deviceIndex = choice.m_index;
+    if (!self.openDevice(error))
     {
         if (!choice.m_byCost) return nullptr;
         self.goOnWithoutDevice(error);
@@ -92,19 +93,23 @@ void Pipeline::restart()
     fresh->m_report = old.m_report;
     fresh->m_error = old.m_error;
     fresh->m_openClDevice = old.m_openClDevice;
+    fresh->m_deviceIndex = old.m_deviceIndex;
     fresh->m_deviceReason = old.m_deviceReason;
     fresh->m_nextId = old.m_nextId;
     fresh->m_deviceLeft = old.m_deviceLeft;
     fresh->m_threads = old.m_threads;
     fresh->m_hostBackend = std::make_unique<HostBackend>(fresh->m_settings, fresh->m_threads);
-    if (old.m_choice.active())
+    const bool hasDevice = old.m_deviceBackend && !old.m_deviceLeft;
+    Error error;
+    if (hasDevice && !fresh->openDevice(error))
+    {
+        fresh->goOnWithoutDevice(error);
+    }
+    else if (old.m_choice.active())
     {
         fresh->m_choice.begin(old.m_choice.crossover());
         fresh->useChosen();
     }
-    // Nothing throws from here on.
-    if (old.m_deviceBackend) old.m_deviceBackend->forgetScene();
-    fresh->m_deviceBackend = std::move(old.m_deviceBackend);
     m_implementation = std::move(fresh);
 }
 
