@@ -32,7 +32,7 @@ struct DeviceReport
                                  // has most
     double m_crossover = 0;      // of these pairs: the host up to it, the device above; infinite: never
     // "measured now", "measured before", "set", or "its steps are not the host's": such a device is not used, and
-    // the error says so.
+    // the error says so. Measured ", on a busy machine" it is measured again at later starts, three at most.
     std::string m_crossoverSource;
     double m_measureMs = 0;  // that it took to measure now
 };
