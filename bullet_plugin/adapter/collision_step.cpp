@@ -68,6 +68,16 @@ void CollisionStep::clear()
     m_uploads.clear();
 }
 
+void CollisionStep::giveBackRoom()
+{
+    clear();
+    m_bodies = std::vector<BodyContacts>();
+    m_spare = std::vector<BodyContacts>();
+    m_jumped = std::vector<std::vector<int>>();
+    m_pairs = std::vector<Pair>();
+    m_uploads = std::vector<Upload>();
+}
+
 // For an obstacle whose vertices move in this step the cloth has a mesh and starts of its own.
 CollisionStep::Pair CollisionStep::makePair(const PairNote& note, const ClothMirror& cloth, MeshId obstacle)
 {

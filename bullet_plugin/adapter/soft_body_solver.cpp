@@ -10,6 +10,7 @@
 #include "bullet_plugin/adapter/plugin_state.h"
 #include "bullet_plugin/core/public_call.h"
 #include "bullet_plugin/core/stopwatch.h"
+#include "bullet_plugin/core/usage_watch.h"
 
 namespace drape
 {
@@ -24,6 +25,13 @@ void predict(btSoftBody& body, btScalar dt)
     if (!passes) body.m_cfg.timescale = 0;
     body.predictMotion(passes ? dt : btScalar(0));
     body.m_cfg.timescale = timescale;
+}
+
+// What the step's memory grows with.
+std::size_t elementsOf(const StepStatistics& step)
+{
+    return step.m_clothTriangles + step.m_obstacleTriangles + step.m_contacts +
+           static_cast<std::size_t>(step.m_candidates);
 }
 
 // Ends the body's step where it began, with the velocities that it would have without gravity. For cloth whose contacts
@@ -50,7 +58,7 @@ void holdStill(btSoftBody& body, const BodyContacts* contacts)
 // What is kept from step to step.
 struct SoftBodySolver::Work
 {
-    explicit Work(PluginState& state) : m_solver(state.threads()), m_failures(state.failures()) {}
+    explicit Work(PluginState& state) : m_solver(new BodySolver(state.threads())), m_failures(state.failures()) {}
 
     bool isPredicted(const btSoftBody& body) const
     {
@@ -63,8 +71,18 @@ struct SoftBodySolver::Work
     }
     BodyContacts* contactsOf(const btSoftBody& body) { return m_step ? m_step->contactsOf(body) : nullptr; }
 
+    // Gives back memory that only earlier, larger steps needed. Before a step's begin().
+    void giveBackRoom(PluginState& state)
+    {
+        m_solver.reset(new BodySolver(state.threads()));
+        m_step->giveBackRoom();
+        state.m_found.clear();
+        state.pipeline().giveBackRoom();
+    }
+
     std::unique_ptr<CollisionStep> m_step;  // null until it is needed
-    BodySolver m_solver;
+    std::unique_ptr<BodySolver> m_solver;
+    UsageWatch m_usage;
     std::vector<BodyContacts*> m_touched;        // of solveBodies()
     std::vector<unsigned char> m_solved;         // likewise, by body: Bullet has solved it, or the contacts were
     std::vector<btSoftBody*> m_taken;            // bodies that Drape takes, in this step
@@ -177,6 +195,7 @@ void SoftBodySolver::detect()
     if (!work.m_step) work.m_step = std::make_unique<CollisionStep>(*m_state);
     CollisionStep& step = *work.m_step;
     StepStatistics& statistics = m_state->m_statistics;
+    if (work.m_usage.hasFallen(elementsOf(statistics))) work.giveBackRoom(*m_state);
     Stopwatch watch;
     step.begin(m_state->takeNotes(this, work.m_predicted));
     const double beginMs = watch.lapMs();
@@ -212,7 +231,7 @@ double SoftBodySolver::solveBodies()
         solveByBullet(*body);
         bulletMs += watch.lapMs();
     }
-    return bulletMs + work.m_solver.solve(work.m_touched, m_state->m_found);
+    return bulletMs + work.m_solver->solve(work.m_touched, m_state->m_found);
 }
 
 void SoftBodySolver::solveStep()

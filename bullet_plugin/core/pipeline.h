@@ -124,6 +124,10 @@ public:
     // finish(); contacts of the last step are not to be looked at any more.
     void prepare();
 
+    // Gives back host memory that only earlier steps with more meshes and contacts needed. Contacts of the last step
+    // are not to be looked at any more. Not between submit() and finish().
+    void giveBackRoom();
+
     // New positions (x y z per vertex) of an obstacle that moved or was deformed; what hangs on them is made anew, the
     // other obstacles stay as they are. Counts as a teleport: the motion between old and new is not swept.
     void moveObstacle(MeshId obstacle, const float* positions);

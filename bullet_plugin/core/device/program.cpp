@@ -7,6 +7,7 @@
 
 #include "embedded_kernels.h"
 #include "kernels/shared/mesh.h"
+#include "missing_device.h"
 #include "opencl_lock.h"
 #include "program_cache.h"
 
@@ -113,7 +114,7 @@ bool build(Device& device, cl::Program& program, const std::string& what, const 
 
 bool keepsItsOwn(const DeviceInfo& device)
 {
-    return device.m_platform == "Portable Computing Language";
+    return device.m_platform == kPoclPlatform;
 }
 
 std::string assembleSources(const std::vector<std::string>& paths)

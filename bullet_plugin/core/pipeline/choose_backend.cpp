@@ -36,17 +36,19 @@ bool Pipeline::Implementation::costDecides(const DeviceChoice& choice) const
 double Pipeline::Implementation::findCrossover(Pipeline& pipeline)
 {
     const CrossoverCache cache(m_settings, m_openClDevice, device()->computeUnits());
-    Crossover crossover;
-    if (cache.load(crossover))
+    const char* const onBusy = ", on a busy machine";
+    Crossover before, crossover;
+    const bool known = cache.load(before);
+    if (known && !isProvisional(before))
     {
-        m_report.m_crossoverSource = "measured before";
-        return crossover.m_pairs;
+        m_report.m_crossoverSource = std::string("measured before") + (before.m_busyStarts > 0 ? onBusy : "");
+        return before.m_pairs;
     }
     Stopwatch watch;
-    m_report.m_crossoverSource = "measured now";
+    bool busy = false;
     const bool measured = measureLadder(
         pipeline, m_settings.m_activation, [&](bool onHost) { m_report.m_onHost = onHost || device()->failed(); },
-        crossover.m_rungs);
+        crossover.m_rungs, busy);
     // Nobody has seen these steps, whose meshes' ids are given again.
     m_nextId = 0;
     m_clothHierarchy = m_obstacleHierarchy = SideHierarchy();
@@ -54,7 +56,10 @@ double Pipeline::Implementation::findCrossover(Pipeline& pipeline)
     m_result = StepResult();
     if (measured && !device()->failed())
     {
+        if (busy) crossover.m_rungs = leastTimes(crossover.m_rungs, before.m_rungs);
+        crossover.m_busyStarts = busy ? before.m_busyStarts + 1 : 0;
         crossover.m_pairs = bestCrossover(crossover.m_rungs);
+        m_report.m_crossoverSource = std::string("measured now") + (busy ? onBusy : "");
         cache.store(crossover);
     }
     else

@@ -73,7 +73,7 @@ struct Pipeline::Implementation
     std::vector<MeshId> m_notedSelf;
     DeviceInfo m_openClDevice;
     std::size_t m_deviceIndex = 0;  // into deviceInfos()
-    std::string m_deviceReason;  // why this device and no other
+    std::string m_deviceReason;     // why this device and no other
     MeshId m_nextId = 0;
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
     std::uint32_t m_stepRevision = 0;                 // of the obstacles, in the last step with a pair

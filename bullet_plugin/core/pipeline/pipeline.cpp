@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "bullet_plugin/core/mesh/check_indices.h"
+#include "bullet_plugin/core/mesh/reserve_room.h"
 #include "bullet_plugin/core/stopwatch.h"
 #include "check_settings.h"
 #include "scene_work.h"
@@ -176,6 +177,24 @@ void Pipeline::prepare()
     if (!onDevice) return;
     self.m_deviceBackend->prepare(self.m_scene);
     if (self.m_deviceBackend->device().failed()) self.leaveDevice();
+}
+
+void Pipeline::giveBackRoom()
+{
+    Implementation& self = *m_implementation;
+    assert(!self.m_submitted);
+    Scene& scene = self.m_scene;
+    self.joinScene();
+    if (Device* device = self.device()) device->wait();  // it may still read the scene's arrays
+    self.m_result = StepResult();
+    scene.m_cloths.giveBackRoom();
+    scene.m_obstacles.giveBackRoom();
+    dropRoom(scene.m_clothRest);
+    dropRoom(scene.m_obstaclePositions);
+    dropRoom(scene.m_vertexCones);
+    dropRoom(scene.m_edgeCones);
+    dropRoom(scene.m_places);
+    self.m_hostBackend->giveBackRoom();
 }
 
 void Pipeline::moveObstacle(MeshId id, const float* positions)
