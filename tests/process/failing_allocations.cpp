@@ -1,4 +1,4 @@
-#include "tests/memory/failing_allocations.h"
+#include "tests/process/failing_allocations.h"
 
 #include <atomic>
 #include <cstddef>

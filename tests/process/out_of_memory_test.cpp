@@ -11,7 +11,8 @@
 #include "scenes/describe_mesh.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
-#include "tests/memory/failing_allocations.h"
+#include "tests/process/failing_allocations.h"
+#include "tests/support/environment.h"
 #include "tests/support/own_process.h"
 
 namespace drape::test
@@ -161,6 +162,7 @@ TEST(OutOfMemory, StepsGoOnAfterMemoryIsShortForLong)
 
 TEST(OutOfMemory, StepsOnADeviceGoOn)
 {
+    if (!isDeviceExpected()) GTEST_SKIP();
     inOwnProcess([] { expectStepsGoOn(12, Which::One, 29, Backend::OpenCl); });
 }
 

@@ -8,6 +8,7 @@
 
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
+#include "tests/support/environment.h"
 #include "tests/support/own_process.h"
 
 namespace drape::test
@@ -57,12 +58,13 @@ TEST(TwoThreads, ListDevicesAtOnce)
             onThreads([&](int i) { found[i] = listDevices().size(); });
             for (const std::size_t count : found)
                 EXPECT_EQ(count, listDevices().size());
-            EXPECT_GT(found[0], 0u);
+            EXPECT_TRUE(found[0] > 0 || !isDeviceExpected());
         });
 }
 
 TEST(TwoThreads, MakeAndUsePluginsAtOnce)
 {
+    if (!isDeviceExpected()) GTEST_SKIP();
     inOwnProcess(
         []
         {
@@ -84,6 +86,7 @@ TEST(TwoThreads, MakeAndUsePluginsAtOnce)
 
 TEST(TwoThreads, MakeQueriesAndPluginsAtOnce)
 {
+    if (!isDeviceExpected()) GTEST_SKIP();
     inOwnProcess(
         []
         {
