@@ -9,6 +9,7 @@
 #include "bullet_plugin/core/usage_watch.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
+#include "tests/support/environment.h"
 
 namespace drape::test
 {
@@ -45,7 +46,8 @@ void runCrowd(DropWorld& world, int steps)
 
 struct Scene
 {
-    Scene() : m_plugin(hostSettings()), m_floor(makeBox(8, 0.2f, 8)), m_world(&m_plugin)
+    explicit Scene(const Settings& settings = hostSettings())
+        : m_plugin(settings), m_floor(makeBox(8, 0.2f, 8)), m_world(&m_plugin)
     {
         m_world.addObstacle(m_floor.shape());
         ClothSpec spec;
@@ -98,6 +100,22 @@ TEST(Memory, GivingItBackChangesNoTrajectory)
         }
     }
     EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+TEST(Memory, OfADeviceIsGivenBackWithoutAChange)
+{
+    if (!isDeviceExpected()) GTEST_SKIP();
+    Settings settings;
+    settings.m_backend = Backend::OpenCl;
+    Scene scene(settings), onHost;
+    for (Scene* each : {&scene, &onHost})
+    {
+        runCrowd(each->m_world, 30);
+        each->m_world.step(2 * UsageWatch::kWindow);
+        runCrowd(each->m_world, 10);
+    }
+    EXPECT_EQ(hashOf(*scene.m_cloth), hashOf(*onHost.m_cloth));
+    EXPECT_EQ(scene.m_plugin.statistics().m_status, kStepGood);
 }
 
 TEST(UsageWatch, FallsOnceAfterAWindowWellBelowTheMost)

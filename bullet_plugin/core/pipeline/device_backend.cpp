@@ -52,8 +52,7 @@ DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& set
     m_placed.create(*m_device, load("place_obstacles"));
     m_motions.reserve(*m_device, 1);
     m_candidates.reserve(*m_device, 1);
-    m_patchCull.reserveTests(*m_device, kFirstCandidates);
-    m_compaction.reserveHits(*m_device, kFirstContacts);
+    reserveFirst();
     m_narrowPhase.reserveIntersections(*m_device, 1);
     for (Buffer<StepCounters>& counters : m_counters)
     {
@@ -61,7 +60,6 @@ DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& set
         counters.fill(*m_device, 0, 1);
     }
     m_refitCounters.reserve(*m_device, 1);
-    m_contactsRead.reserve(m_device.get(), DRAPE_CONTACT_HEAD + kFirstContacts);
     warmUp();
 }
 
@@ -69,6 +67,23 @@ DeviceBackend::~DeviceBackend()
 {
     // Transfers into host memory that is about to go must have ended.
     m_device->wait();
+}
+
+void DeviceBackend::reserveFirst()
+{
+    m_patchCull.reserveTests(*m_device, kFirstCandidates);
+    m_compaction.reserveHits(*m_device, kFirstContacts);
+    m_contactsRead = std::make_unique<Staging<Contact>>();
+    m_contactsRead->reserve(m_device.get(), DRAPE_CONTACT_HEAD + kFirstContacts);
+    m_contactsAsked = std::min(m_contactsAsked, kFirstContacts);
+}
+
+void DeviceBackend::giveBackRoom()
+{
+    m_device->wait();
+    if (patches()) m_patchCull.giveBackRoom(*m_device);
+    m_compaction.giveBackRoom();
+    reserveFirst();
 }
 
 // A step of one triangle over another: some drivers compile a kernel again at its first launch with a group size.

@@ -185,8 +185,9 @@ void Pipeline::giveBackRoom()
     assert(!self.m_submitted);
     Scene& scene = self.m_scene;
     self.joinScene();
-    if (Device* device = self.device()) device->wait();  // it may still read the scene's arrays
     self.m_result = StepResult();
+    if (Device* device = self.device()) device->wait();  // it may still read the scene's arrays
+    if (self.m_deviceBackend && !self.m_deviceLeft) self.m_deviceBackend->giveBackRoom();
     scene.m_cloths.giveBackRoom();
     scene.m_obstacles.giveBackRoom();
     dropRoom(scene.m_clothRest);
