@@ -98,10 +98,12 @@ std::vector<DeviceInfo> listDevices()
 std::unique_ptr<Device> Device::open(std::size_t index, Error& error, bool profiled)
 {
     const OpenClLock lock;
-    const std::vector<FoundDevice> found = findDevices().m_found;
+    const DeviceSearch search = findDevices();
+    const std::vector<FoundDevice>& found = search.m_found;
     if (index >= found.size())
     {
-        error.m_call = "the OpenCL device is gone";
+        error.m_call = "the OpenCL device is no longer found";
+        if (found.empty()) error.m_detail = whyNoDeviceFound(search.m_refused, search.m_poclWithoutDevice);
         return nullptr;
     }
     std::unique_ptr<Device> device(new Device);

@@ -46,7 +46,7 @@ double Pipeline::Implementation::findCrossover(Pipeline& pipeline)
     }
     Stopwatch watch;
     bool busy = false;
-    const bool measured = measureLadder(
+    const char* const why = measureLadder(
         pipeline, m_settings.m_activation, [&](bool onHost) { m_report.m_onHost = onHost || device()->failed(); },
         crossover.m_rungs, busy);
     // Nobody has seen these steps, whose meshes' ids are given again.
@@ -54,7 +54,7 @@ double Pipeline::Implementation::findCrossover(Pipeline& pipeline)
     m_clothHierarchy = m_obstacleHierarchy = SideHierarchy();
     m_statistics = StepStatistics();
     m_result = StepResult();
-    if (measured && !device()->failed())
+    if (!why && !device()->failed())
     {
         if (busy) crossover.m_rungs = leastTimes(crossover.m_rungs, before.m_rungs);
         crossover.m_busyStarts = busy ? before.m_busyStarts + 1 : 0;
@@ -64,7 +64,7 @@ double Pipeline::Implementation::findCrossover(Pipeline& pipeline)
     }
     else
     {
-        m_report.m_crossoverSource = device()->failed() ? "" : "its steps are not the host's";
+        m_report.m_crossoverSource = device()->failed() ? "" : why;
         if (!device()->failed()) m_error.m_call = m_openClDevice.m_name + " is not used: " + m_report.m_crossoverSource;
         crossover.m_pairs = std::numeric_limits<double>::infinity();
     }

@@ -154,8 +154,9 @@ private:
     double m_expectedPairs;
 };
 
-bool measureRung(Pipeline& pipeline, Rung& scene, const std::function<void(bool)>& use, CrossoverRung& rung,
-                 std::vector<double>& spread)
+// Returns null, or why the device cannot be measured.
+const char* measureRung(Pipeline& pipeline, Rung& scene, const std::function<void(bool)>& use, CrossoverRung& rung,
+                        std::vector<double>& spread)
 {
     std::vector<Contact> host, device;
     rung.m_pairs = scene.expected();
@@ -165,13 +166,17 @@ bool measureRung(Pipeline& pipeline, Rung& scene, const std::function<void(bool)
     use(false);
     rung.m_deviceMs = scene.leastMs(spread);
     scene.run(0, device);
-    return (pipeline.statistics().m_status & (kStepDeviceFailed | kStepDeviceFull)) == 0 && !host.empty() &&
-           host.size() == device.size() && std::memcmp(host.data(), device.data(), host.size() * sizeof(Contact)) == 0;
+    const std::uint32_t status = pipeline.statistics().m_status;
+    if (status & kStepDeviceFailed) return "it failed";
+    if (status & kStepDeviceFull) return "it cannot hold the lists of a step";
+    const bool same = host.size() == device.size() &&
+                      (host.empty() || std::memcmp(host.data(), device.data(), host.size() * sizeof(Contact)) == 0);
+    return same ? nullptr : "its steps are not the host's";
 }
 }  // namespace
 
-bool measureLadder(Pipeline& pipeline, float activation, const std::function<void(bool onHost)>& use,
-                   std::vector<CrossoverRung>& rungs, bool& busy)
+const char* measureLadder(Pipeline& pipeline, float activation, const std::function<void(bool onHost)>& use,
+                          std::vector<CrossoverRung>& rungs, bool& busy)
 {
     const MachineLoad load;
     std::vector<double> spread;
@@ -182,7 +187,7 @@ bool measureLadder(Pipeline& pipeline, float activation, const std::function<voi
         {
             Rung scene(pipeline, cells, fineness, activation);
             CrossoverRung rung;
-            if (!measureRung(pipeline, scene, use, rung, spread)) return false;
+            if (const char* const why = measureRung(pipeline, scene, use, rung, spread)) return why;
             rungs.push_back(rung);
             ahead = rung.m_hostMs > kAhead * rung.m_deviceMs ? ahead + 1 : 0;
             if (ahead == 2 || rung.m_hostMs > kLongestStepMs) break;
@@ -190,6 +195,6 @@ bool measureLadder(Pipeline& pipeline, float activation, const std::function<voi
     }
     const double sum = std::accumulate(spread.begin(), spread.end(), 0.0);
     busy = sum > std::log(kMostSpread) * double(spread.size()) || load.isBusy(pipeline.threads()->size());
-    return true;
+    return nullptr;
 }
 }  // namespace drape
