@@ -58,7 +58,7 @@ TEST(StatusText, NamesEveryBit)
     EXPECT_EQ(statusText(kStepGood), "");
     std::string all;
     for (const std::uint32_t bit : {kStepInvalidNodes, kStepDeviceFailed, kStepDeviceFull, kStepClothsLeftOut,
-                                    kStepCoarsePositions, kStepStartsIntersecting, kStepFacesLeftOut})
+                                    kStepCoarsePositions, kStepStartsIntersecting, kStepFacesLeftOut, kStepOutOfMemory})
     {
         EXPECT_NE(statusText(bit), "");
         EXPECT_EQ(statusText(bit).find(';'), std::string::npos);

@@ -32,6 +32,7 @@ void expectReason(const std::string& wanted, const std::string& unwanted)
 
 TEST(MissingDevice, NoDescriptorsIsNotTheCache)
 {
+    if (!isDeviceExpected()) GTEST_SKIP() << "the loader is told to find no driver";
     inOwnProcess(
         []
         {
