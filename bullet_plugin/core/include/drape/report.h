@@ -31,8 +31,9 @@ struct DeviceReport
     double m_expectedPairs = 0;  // of triangles: as many as there were, lay every cloth wholly on the obstacle where it
                                  // has most
     double m_crossover = 0;      // of these pairs: the host up to it, the device above; infinite: never
-    // "measured now", "measured before", "set", or "its steps are not the host's": such a device is not used, and
-    // the error says so. Measured ", on a busy machine" it is measured again at later starts, three at most.
+    // "measured now", "measured before", "set", or why such a device is not used, for example "its steps are not the
+    // host's", as the error says, too. Measured ", on a busy machine" it is measured again at later starts, three at
+    // most.
     std::string m_crossoverSource;
     double m_measureMs = 0;  // that it took to measure now
 };
