@@ -4,9 +4,8 @@
 // Job: batches of single pairs, and whole meshes with their own hierarchies, made for the call. Guarantee: no true pair
 // is denied; the same answers, bit for bit, on every back end. Lists grow and the work is done in batches; what is
 // beyond Settings::m_candidateLimit and m_contactLimit is counted and said to be so, so that memory and time are
-// bounded. Cost: each call uploads, computes and waits, in the
-// default floating-point environment, whatever the app's is. Lengths in metres. Knows no Bullet and needs no plugin.
-// Not thread-safe. C++11, no OpenCL header needed.
+// bounded. Cost: each call uploads, computes and waits, in the default floating-point environment, whatever the app's
+// is. Lengths in metres. Knows no Bullet and needs no plugin. Not thread-safe. C++11, no OpenCL header needed.
 #pragma once
 
 #include <cstddef>
