@@ -22,11 +22,16 @@ bool fails()
     return true;
 }
 
+void* allocateOrNull(std::size_t bytes, std::size_t alignment) noexcept
+{
+    if (fails()) return nullptr;
+    const std::size_t rounded = (bytes + alignment) / alignment * alignment;
+    return std::aligned_alloc(alignment, rounded);
+}
+
 void* allocate(std::size_t bytes, std::size_t alignment)
 {
-    if (fails()) throw std::bad_alloc();
-    const std::size_t rounded = (bytes + alignment) / alignment * alignment;
-    if (void* const memory = std::aligned_alloc(alignment, rounded)) return memory;
+    if (void* const memory = allocateOrNull(bytes, alignment)) return memory;
     throw std::bad_alloc();
 }
 }  // namespace
@@ -46,6 +51,22 @@ void* operator new(std::size_t bytes, std::align_val_t alignment)
 void* operator new[](std::size_t bytes, std::align_val_t alignment)
 {
     return allocate(bytes, std::size_t(alignment));
+}
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept
+{
+    return allocateOrNull(bytes, alignof(std::max_align_t));
+}
+void* operator new[](std::size_t bytes, const std::nothrow_t&) noexcept
+{
+    return allocateOrNull(bytes, alignof(std::max_align_t));
+}
+void operator delete(void* memory, const std::nothrow_t&) noexcept
+{
+    std::free(memory);
+}
+void operator delete[](void* memory, const std::nothrow_t&) noexcept
+{
+    std::free(memory);
 }
 void operator delete(void* memory) noexcept
 {
