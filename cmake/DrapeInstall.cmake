@@ -20,8 +20,10 @@ install(FILES ${PROJECT_BINARY_DIR}/package/DrapeConfig.cmake ${PROJECT_BINARY_D
 
 if(DRAPE_BULLET_DOUBLE)
   set(DRAPE_PC_BULLET bullet-float64)
+  set(DRAPE_PC_DOUBLE 1)
 else()
   set(DRAPE_PC_BULLET bullet)
+  set(DRAPE_PC_DOUBLE 0)
 endif()
 # What a static library leaves to be linked.
 if(DRAPE_LIBRARY_TYPE STREQUAL "STATIC_LIBRARY")

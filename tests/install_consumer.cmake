@@ -1,7 +1,8 @@
 # The test install.consumer: installs Drape into WORK, then builds and runs examples/consumer against what was
 # installed, once as a CMake package and once by pkg-config; by pkg-config also every block of C++ in the README, as it
 # stands.
-# Input: BUILD (Drape's build folder), SOURCE (the consumer), README, WORK (made anew), LIBDIR, COMPILER, SANITIZE.
+# Input: BUILD (Drape's build folder), SOURCE (the consumer), README, WORK (made anew), LIBDIR, COMPILER, SANITIZE,
+# DOUBLE (the precision of Bullet that Drape is built for).
 cmake_minimum_required(VERSION 3.25)
 function(must)
   execute_process(COMMAND ${ARGV} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
@@ -27,6 +28,22 @@ separate_arguments(package_flags UNIX_COMMAND "${package_flags}")
 must(${COMPILER} -std=c++11 ${flags} ${SOURCE}/main.cpp -o ${WORK}/consumer_by_pkg_config ${package_flags}
   -Wl,-rpath,${prefix}/${LIBDIR})
 must(${WORK}/consumer_by_pkg_config)
+
+# An app in the other precision: told by the compiler where it has the package's flags, else by the linker.
+set(other -DBT_USE_DOUBLE_PRECISION)
+if(DOUBLE)
+  set(other -UBT_USE_DOUBLE_PRECISION)
+endif()
+file(WRITE ${WORK}/other_precision.cpp "#include <drape/plugin.h>\nint main() { drape::Plugin plugin; }\n")
+foreach(stage "is built for Bullet in" "drapeIsBuiltForBulletIn(Double|Single)Precision")
+  execute_process(COMMAND ${COMPILER} -std=c++11 ${flags} ${WORK}/other_precision.cpp -o ${WORK}/other_precision
+      ${package_flags} ${other} COMMAND_ECHO STDOUT
+    OUTPUT_VARIABLE output ERROR_VARIABLE output RESULT_VARIABLE result)
+  if(result EQUAL 0 OR NOT output MATCHES "${stage}")
+    message(FATAL_ERROR "An app in the other precision is not told so:\n${output}")
+  endif()
+  list(APPEND other -UDRAPE_BULLET_DOUBLE)
+endforeach()
 
 # Every block of C++ in the README must be a program that compiles as it stands, with nothing around it, and runs well.
 file(READ ${README} text)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "bullet_plugin/core/float_environment.h"
 #include "bullet_plugin/core/stopwatch.h"
 
 namespace drape
@@ -58,7 +59,7 @@ double callBullet(const ContactRounds* rounds, int call)
     const int velocities = body.m_cfg.viterations, positions = body.m_cfg.piterations, drift = body.m_cfg.diterations;
     if (iterationsCanBeSplit(body)) keepIterationsOf(call, positionIterations(rounds), body.m_cfg);
     Stopwatch watch;
-    body.solveConstraints();
+    solveByBullet(body);
     const double ms = watch.lapMs();
     body.m_cfg.viterations = velocities;
     body.m_cfg.piterations = positions;
@@ -106,6 +107,12 @@ void keep(RoundsTeam::Bodies& bodies, const Holds& holds)
     bodies.erase(std::remove_if(bodies.begin(), bodies.end(), drops), bodies.end());
 }
 }  // namespace
+
+void solveByBullet(btSoftBody& body)
+{
+    const CallersFloats floats;
+    body.solveConstraints();
+}
 
 void BodySolver::begin(const std::vector<BodyContacts*>& bodies, const FoundContacts& found)
 {

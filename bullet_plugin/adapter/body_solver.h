@@ -53,6 +53,9 @@ constexpr btScalar kClosingTolerance = btScalar(0.01);
 constexpr btScalar kMostViolation = btScalar(0.0625);
 static_assert(kMostViolation < kRecoveredShare, "else cloth comes nearer from step to step");
 
+// Runs Bullet's own solver for the body, in the floating-point environment of the app.
+void solveByBullet(btSoftBody& body);
+
 class BodySolver
 {
 public:

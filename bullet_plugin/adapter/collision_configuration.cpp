@@ -13,8 +13,11 @@ CollisionConfiguration::CollisionConfiguration(Plugin& plugin, const btDefaultCo
 
 btCollisionAlgorithmCreateFunc* CollisionConfiguration::getCollisionAlgorithmCreateFunc(int proxyType0, int proxyType1)
 {
+    const auto stock = [&]
+    { return btSoftBodyRigidBodyCollisionConfiguration::getCollisionAlgorithmCreateFunc(proxyType0, proxyType1); };
+    if (!m_state) return stock();
     if (proxyType0 == SOFTBODY_SHAPE_PROXYTYPE && isMeshShape(proxyType1)) return &m_state->createFunction(false);
     if (isMeshShape(proxyType0) && proxyType1 == SOFTBODY_SHAPE_PROXYTYPE) return &m_state->createFunction(true);
-    return btSoftBodyRigidBodyCollisionConfiguration::getCollisionAlgorithmCreateFunc(proxyType0, proxyType1);
+    return stock();
 }
 }  // namespace drape

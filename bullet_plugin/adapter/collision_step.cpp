@@ -6,6 +6,7 @@
 
 #include "bullet_plugin/adapter/stretch.h"
 #include "bullet_plugin/adapter/vectors.h"
+#include "bullet_plugin/core/mesh/reserve_room.h"
 
 namespace drape
 {
@@ -49,6 +50,8 @@ BodyContacts* CollisionStep::contactsOf(const btSoftBody& body)
 
 void CollisionStep::addBody(ClothMirror& cloth, btSoftBody* body)
 {
+    // Room for all, so that clear() takes no memory.
+    reserveRoom(m_spare, m_bodies.size() + m_spare.size() + 1);
     if (m_spare.empty()) m_spare.emplace_back();
     m_bodies.push_back(std::move(m_spare.back()));
     m_spare.pop_back();
@@ -68,6 +71,16 @@ void CollisionStep::clear()
     m_pinned.clear();
     m_mirrors.clear();
     m_uploads.clear();
+}
+
+void CollisionStep::giveBackRoom()
+{
+    clear();
+    m_bodies = std::vector<BodyContacts>();
+    m_spare = std::vector<BodyContacts>();
+    m_jumped = std::vector<std::vector<int>>();
+    m_pairs = std::vector<Pair>();
+    m_uploads = std::vector<Upload>();
 }
 
 // For an obstacle whose vertices move in this step the cloth has a mesh and starts of its own.

@@ -35,6 +35,8 @@ public:
 
     // As before the first begin().
     void clear();
+    // Gives back the memory of earlier steps' bodies. Before begin().
+    void giveBackRoom();
     // Cloths with a pair in this step that no contact could move: all of their nodes are pinned.
     std::size_t pinnedCloths() const { return m_pinned.size(); }
     // Null when the body has no pair in this step.

@@ -10,12 +10,9 @@ namespace drape
 {
 namespace
 {
-const char* reasonFromCloth(const PluginState& state, const btSoftBody& cloth)
+// Why Drape does not handle cloth that a solver of the plugin steps; null where it does.
+const char* reasonFromSteppedCloth(const PluginState& state, const btSoftBody& cloth)
 {
-    if (!state.ready()) return "Drape could not start; see Plugin::error()";
-    if (!state.steps(cloth))
-        return "the world's soft body solver is not a drape::SoftBodySolver of this plugin; a deformable world has its "
-               "own";
     if (!state.isWired())
         return "no dispatcher has this plugin's algorithm: make it with a drape::CollisionConfiguration, or call "
                "drape::install()";
@@ -28,6 +25,15 @@ const char* reasonFromCloth(const PluginState& state, const btSoftBody& cloth)
     if (cloth.m_tetras.size() > 0) return "the soft body has tetrahedra but no faces";
     if (!hasSolidLink(cloth)) return "the soft body has neither faces nor links that could collide without them";
     return nullptr;
+}
+
+const char* reasonFromCloth(const PluginState& state, const btSoftBody& cloth)
+{
+    if (!state.ready()) return "Drape could not start; see Plugin::error()";
+    if (!state.steps(cloth))
+        return "the world's soft body solver is not a drape::SoftBodySolver of this plugin; a deformable world has its "
+               "own";
+    return reasonFromSteppedCloth(state, cloth);
 }
 
 const char* reasonFromObstacle(const btCollisionObject& obstacle, const btCollisionShape& shape)
@@ -55,6 +61,11 @@ const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, co
 bool handlesCloth(const PluginState& state, const btSoftBody& cloth)
 {
     return !reasonFromCloth(state, cloth);
+}
+
+bool handlesSteppedCloth(const PluginState& state, const btSoftBody& cloth)
+{
+    return state.ready() && !reasonFromSteppedCloth(state, cloth);
 }
 
 bool stockCanTake(const btCollisionObject& obstacle, const btTransform& pose)

@@ -20,6 +20,9 @@ bool stockCanTake(const btCollisionObject& obstacle, const btTransform& pose);
 // Whether Drape handles the soft body beside an obstacle that it handles.
 bool handlesCloth(const PluginState& state, const btSoftBody& cloth);
 
+// The same where a solver of the plugin is known to step it.
+bool handlesSteppedCloth(const PluginState& state, const btSoftBody& cloth);
+
 // Whether Drape handles an obstacle with that shape beside cloth that it handles.
 bool handlesObstacle(const btCollisionObject& obstacle, const btCollisionShape& shape);
 

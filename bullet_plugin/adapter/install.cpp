@@ -6,6 +6,7 @@
 #include "bullet_plugin/adapter/mesh_reader.h"
 #include "bullet_plugin/adapter/plugin_state.h"
 #include "bullet_plugin/adapter/wiring.h"
+#include "bullet_plugin/core/public_call.h"
 
 namespace drape
 {
@@ -50,17 +51,22 @@ btCollisionAlgorithmCreateFunc* stockFunction(btCollisionDispatcher& dispatcher,
 
 bool install(Plugin& plugin, btCollisionDispatcher& dispatcher, btBroadphaseInterface& broadphase)
 {
+    if (!plugin.state()) return false;
     PluginState& state = *plugin.state();
-    const PluginState* owner = pluginOf(dispatcher);
-    if (owner && owner != &state) return false;
-    forMeshTypes(
-        [&](int typeA, int typeB)
-        {
-            const bool swapped = typeB == SOFTBODY_SHAPE_PROXYTYPE;
-            dispatcher.registerCollisionCreateFunc(typeA, typeB, &state.createFunction(swapped));
-        });
-    cleanSoftPairs(dispatcher, broadphase);
-    return true;
+    const auto give = [&](int typeA, int typeB)
+    {
+        const bool swapped = typeB == SOFTBODY_SHAPE_PROXYTYPE;
+        dispatcher.registerCollisionCreateFunc(typeA, typeB, &state.createFunction(swapped));
+    };
+    return guardedOr(false,
+                     [&]
+                     {
+                         const PluginState* owner = pluginOf(dispatcher);
+                         if (owner && owner != &state) return false;
+                         forMeshTypes(give);
+                         cleanSoftPairs(dispatcher, broadphase);
+                         return true;
+                     });
 }
 
 bool install(Plugin& plugin, btCollisionDispatcher& dispatcher, btCollisionWorld& world)
@@ -70,11 +76,17 @@ bool install(Plugin& plugin, btCollisionDispatcher& dispatcher, btCollisionWorld
 
 bool uninstall(Plugin& plugin, btCollisionDispatcher& dispatcher, btBroadphaseInterface& broadphase)
 {
-    if (pluginOf(dispatcher) != plugin.state().get()) return false;
-    forMeshTypes([&](int typeA, int typeB)
-                 { dispatcher.registerCollisionCreateFunc(typeA, typeB, stockFunction(dispatcher, typeA, typeB)); });
-    cleanSoftPairs(dispatcher, broadphase);
-    return true;
+    if (!plugin.state()) return false;
+    const auto give = [&](int typeA, int typeB)
+    { dispatcher.registerCollisionCreateFunc(typeA, typeB, stockFunction(dispatcher, typeA, typeB)); };
+    return guardedOr(false,
+                     [&]
+                     {
+                         if (pluginOf(dispatcher) != plugin.state().get()) return false;
+                         forMeshTypes(give);
+                         cleanSoftPairs(dispatcher, broadphase);
+                         return true;
+                     });
 }
 
 bool uninstall(Plugin& plugin, btCollisionDispatcher& dispatcher, btCollisionWorld& world)

@@ -6,6 +6,7 @@
 #include "BulletSoftBody/btSoftBodyConcaveCollisionAlgorithm.h"
 #include "bullet_plugin/adapter/eligibility.h"
 #include "bullet_plugin/adapter/plugin_state.h"
+#include "bullet_plugin/core/public_call.h"
 
 namespace drape
 {
@@ -27,20 +28,30 @@ void PairAlgorithm::processCollision(const btCollisionObjectWrapper* wrapA, cons
                                      const btDispatcherInfo& info, btManifoldResult* result)
 {
     const btCollisionObjectWrapper& clothWrap = m_swapped ? *wrapB : *wrapA;
-    const btCollisionObjectWrapper& obstacleWrap = m_swapped ? *wrapA : *wrapB;
     btSoftBody* cloth = const_cast<btSoftBody*>(btSoftBody::upcast(clothWrap.getCollisionObject()));
     if (!cloth) return;
-    if (!m_state.steppingSolver(*cloth)) m_state.markUnstepped(*cloth);
-    if (reasonForStock(m_state, *cloth, *obstacleWrap.getCollisionObject(), *obstacleWrap.getCollisionShape()))
+    const bool forStock = guarded([&] { return !take(*cloth, m_swapped ? *wrapA : *wrapB); },
+                                  [&](const CaughtException& caught)
+                                  {
+                                      m_state.fail("drape::PairAlgorithm::processCollision", caught);
+                                      return false;
+                                  });
+    if (forStock) processStock(wrapA, wrapB, info, result);
+}
+
+// Notes the pair for the coming solve. Returns false where Bullet's own algorithm is to have it.
+bool PairAlgorithm::take(btSoftBody& cloth, const btCollisionObjectWrapper& obstacleWrap)
+{
+    const btCollisionObject& obstacle = *obstacleWrap.getCollisionObject();
+    if (!m_state.steppingSolver(cloth)) m_state.markUnstepped(cloth);
+    if (reasonForStock(m_state, cloth, obstacle, *obstacleWrap.getCollisionShape()))
     {
         m_state.forget(this);
-        if (stockCanTake(*obstacleWrap.getCollisionObject(), obstacleWrap.getWorldTransform()))
-            processStock(wrapA, wrapB, info, result);
-        return;
+        return !stockCanTake(obstacle, obstacleWrap.getWorldTransform());
     }
     dropStock();
-    if (cloth->isActive() && respond(*cloth, *obstacleWrap.getCollisionObject()))
-        m_state.note(this, *cloth, obstacleWrap);
+    if (cloth.isActive() && respond(cloth, obstacle)) m_state.note(this, cloth, obstacleWrap);
+    return true;
 }
 
 void PairAlgorithm::processStock(const btCollisionObjectWrapper* wrapA, const btCollisionObjectWrapper* wrapB,

@@ -8,6 +8,8 @@
 #include "BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h"
 #include "BulletCollision/CollisionDispatch/btCollisionCreateFunc.h"
 
+class btSoftBody;
+
 namespace drape
 {
 class PluginState;
@@ -27,6 +29,7 @@ public:
     void getAllContactManifolds(btManifoldArray& manifolds) override;
 
 private:
+    bool take(btSoftBody& cloth, const btCollisionObjectWrapper& obstacleWrap);
     void processStock(const btCollisionObjectWrapper* wrapA, const btCollisionObjectWrapper* wrapB,
                       const btDispatcherInfo& info, btManifoldResult* result);
     void dropStock();

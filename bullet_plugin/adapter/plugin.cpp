@@ -2,7 +2,6 @@
 
 #include <cinttypes>
 #include <cstdio>
-#include <exception>
 
 #include "BulletCollision/CollisionDispatch/btCollisionWorld.h"
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
@@ -11,6 +10,7 @@
 #include "bullet_plugin/adapter/mesh_reader.h"
 #include "bullet_plugin/adapter/plugin_state.h"
 #include "bullet_plugin/adapter/wiring.h"
+#include "bullet_plugin/core/public_call.h"
 
 namespace drape
 {
@@ -41,38 +41,8 @@ std::string reasonInShape(const PluginState& state, const btSoftBody& cloth, con
     }
     return std::string();
 }
-}  // namespace
 
-Plugin::Plugin(const Settings& settings) : m_state(std::make_shared<PluginState>(settings)) {}
-
-Plugin::~Plugin() = default;
-
-bool Plugin::ready() const
-{
-    return m_state->ready();
-}
-
-std::string Plugin::error() const
-{
-    return m_state->error().failed() ? m_state->error().text() : std::string();
-}
-
-const DeviceReport& Plugin::device() const
-{
-    return m_state->device();
-}
-
-const StepStatistics& Plugin::statistics() const
-{
-    return m_state->m_statistics;
-}
-
-std::vector<ContactInfo> Plugin::contacts() const
-{
-    return m_state->m_found.list();
-}
-
-std::string Plugin::whyStock(const btCollisionObject* objectA, const btCollisionObject* objectB) const
+std::string reasonOf(const PluginState& state, const btCollisionObject* objectA, const btCollisionObject* objectB)
 {
     if (!objectA || !objectB) return "one of the objects is missing";
     const btSoftBody* cloth = btSoftBody::upcast(objectA);
@@ -85,69 +55,143 @@ std::string Plugin::whyStock(const btCollisionObject* objectA, const btCollision
     if (!cloth) return "neither object is a soft body";
     if (!obstacle->getCollisionShape()) return "the obstacle has no collision shape";
     if (btSoftBody::upcast(obstacle)) return "both objects are soft bodies";
-    return reasonInShape(*m_state, *cloth, *obstacle, *obstacle->getCollisionShape(), obstacle->getWorldTransform());
+    return reasonInShape(state, *cloth, *obstacle, *obstacle->getCollisionShape(), obstacle->getWorldTransform());
+}
+
+std::string reportOf(const Plugin& plugin, const Error& error)
+{
+    if (!plugin.ready()) return "Drape is off: " + error.m_call;
+    const StepStatistics& step = plugin.statistics();
+    char line[320];
+    std::snprintf(
+        line, sizeof(line), ": %zu cloth and %zu obstacle triangles, %" PRIu64 " candidates, %zu contacts, %.3f ms",
+        step.m_clothTriangles, step.m_obstacleTriangles, step.m_candidates, step.m_contacts, step.collisionMs());
+    const std::string remark = step.m_skipped ? "nothing to do" : statusText(step.m_status);
+    const DeviceReport& device = plugin.device();
+    return "Drape on " + device.m_device.m_name + " (" + device.m_reason + ")" + line +
+           (remark.empty() ? "" : " (" + remark + ")");
+}
+
+// A short text, so that it takes no memory.
+std::string outOfMemory()
+{
+    return kOutOfMemory;
+}
+
+// Returns work(), or why that failed.
+template <class Work>
+std::string textOf(const Work& work)
+{
+    return guarded(work, [](const CaughtException& caught)
+                   { return guardedOr(outOfMemory(), [&] { return std::string(caught.m_text); }); });
+}
+
+// What a plugin without a state answers: memory ran out as it was made.
+const DeviceReport& noDevice()
+{
+    static const DeviceReport report = []
+    {
+        DeviceReport none;
+        none.m_device.m_name = "none";
+        none.m_reason = kOutOfMemory;
+        return none;
+    }();
+    return report;
+}
+}  // namespace
+
+Plugin::Plugin(const Settings& settings)
+    : m_state(guardedOr(std::shared_ptr<PluginState>(), [&] { return std::make_shared<PluginState>(settings); }))
+{
+}
+
+Plugin::~Plugin()
+{
+    const DefaultFloats floats;
+    m_state.reset();
+}
+
+bool Plugin::ready() const
+{
+    return m_state && m_state->ready();
+}
+
+std::string Plugin::error() const
+{
+    if (!m_state) return outOfMemory();
+    return textOf([&] { return m_state->error().failed() ? m_state->error().text() : std::string(); });
+}
+
+const DeviceReport& Plugin::device() const
+{
+    return m_state ? m_state->device() : noDevice();
+}
+
+const StepStatistics& Plugin::statistics() const
+{
+    static const StepStatistics none;
+    return m_state ? m_state->m_statistics : none;
+}
+
+std::vector<ContactInfo> Plugin::contacts() const
+{
+    if (!m_state) return {};
+    return guardedOr(std::vector<ContactInfo>(), [&] { return m_state->m_found.list(); });
+}
+
+std::string Plugin::whyStock(const btCollisionObject* objectA, const btCollisionObject* objectB) const
+{
+    if (!m_state) return outOfMemory();
+    return textOf([&] { return reasonOf(*m_state, objectA, objectB); });
 }
 
 std::string Plugin::diagnose(const btCollisionWorld& world) const
 {
-    try
-    {
-        return diagnosisOf(*this, world);
-    }
-    catch (const std::exception& exception)
-    {
-        return exception.what();
-    }
+    if (!m_state) return outOfMemory();
+    return textOf([&] { return diagnosisOf(*this, world); });
 }
 
 void Plugin::prepare(const btCollisionObject* object)
 {
-    m_state->prepare(&object, 1);
+    if (m_state) m_state->prepare(&object, 1);
 }
 
 void Plugin::prepare(const btCollisionWorld& world)
 {
     const btCollisionObjectArray& objects = world.getCollisionObjectArray();
-    if (objects.size() > 0) m_state->prepare(&objects[0], objects.size());
+    if (m_state && objects.size() > 0) m_state->prepare(&objects[0], objects.size());
 }
 
 void Plugin::release(const btCollisionObject* object)
 {
-    m_state->release(object);
+    if (m_state) m_state->release(object);
 }
 
 void Plugin::release(const btCollisionWorld& world)
 {
     const btCollisionObjectArray& objects = world.getCollisionObjectArray();
     for (int i = 0; i < objects.size(); ++i)
-        m_state->release(objects[i]);
+        release(objects[i]);
 }
 
 void Plugin::obstacleChanged(const btCollisionShape* shape)
 {
-    m_state->obstacleChanged(shape);
+    if (m_state) m_state->obstacleChanged(shape);
 }
 
 void Plugin::teleported(const btCollisionObject* object)
 {
-    if (object) m_state->teleported(object);
+    if (m_state && object) m_state->teleported(object);
 }
 
 void Plugin::setOneSided(const btCollisionShape* shape, bool oneSided)
 {
-    m_state->setOneSided(shape, oneSided);
+    if (m_state) m_state->setOneSided(shape, oneSided);
 }
 
 std::string Plugin::report() const
 {
-    if (!ready()) return "Drape is off: " + m_state->error().m_call;
-    const StepStatistics& step = statistics();
-    char line[320];
-    std::snprintf(
-        line, sizeof(line), ": %zu cloth and %zu obstacle triangles, %" PRIu64 " candidates, %zu contacts, %.3f ms",
-        step.m_clothTriangles, step.m_obstacleTriangles, step.m_candidates, step.m_contacts, step.collisionMs());
-    const std::string remark = step.m_skipped ? "nothing to do" : statusText(step.m_status);
-    return "Drape on " + device().m_device.m_name + " (" + device().m_reason + ")" + line +
-           (remark.empty() ? "" : " (" + remark + ")");
+    if (!m_state) return outOfMemory();
+    return textOf([&] { return reportOf(*this, m_state->error()); });
 }
 }  // namespace drape

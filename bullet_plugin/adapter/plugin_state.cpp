@@ -1,7 +1,6 @@
 #include "bullet_plugin/adapter/plugin_state.h"
 
 #include <algorithm>
-#include <exception>
 
 #include "BulletCollision/CollisionDispatch/btCollisionDispatcher.h"
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
@@ -9,6 +8,8 @@
 #include "bullet_plugin/adapter/eligibility.h"
 #include "bullet_plugin/adapter/margins.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
+#include "bullet_plugin/core/mesh/reserve_room.h"
+#include "bullet_plugin/core/public_call.h"
 
 namespace drape
 {
@@ -90,15 +91,12 @@ PluginState::PluginState(const Settings& settings)
     : m_settings(settings), m_create(*this, false), m_createSwapped(*this, true)
 {
     m_stockCreateSwapped.m_swapped = true;
-    try
-    {
-        m_pipeline = Pipeline::create(settings, m_error);
-    }
-    catch (const std::exception& exception)
-    {
-        m_error.m_call = "drape::Plugin";
-        m_error.m_detail = exception.what();
-    }
+    m_pipeline = guarded([&] { return Pipeline::create(settings, m_error); },
+                         [&](const CaughtException& caught)
+                         {
+                             setError(m_error, "drape::Plugin", caught);
+                             return std::unique_ptr<Pipeline>();
+                         });
     if (!m_pipeline && !m_error.failed()) m_error.m_call = "drape::Plugin";
     m_threads = m_pipeline ? m_pipeline->threads() : std::make_shared<ThreadTeam>(1);
     m_failedDevice.m_device.m_name = "none";
@@ -112,6 +110,7 @@ const DeviceReport& PluginState::device() const
 
 void PluginState::log(const char* line) const
 {
+    const CallersFloats floats;
     try
     {
         if (m_settings.m_log) m_settings.m_log(line);
@@ -122,18 +121,35 @@ void PluginState::log(const char* line) const
     }
 }
 
-void PluginState::fail(const std::string& call, const std::string& detail)
+void PluginState::forgetScene() noexcept
 {
-    m_error.m_call = call;
-    m_error.m_detail = detail;
-    m_failedDevice.m_reason = call;
     m_notes.clear();
     m_noteOf.clear();
     m_owned.clear();
     m_cloths.clear();
     m_obstacles.clear();
     m_found.clear();
+}
+
+void PluginState::fail(const char* call, const CaughtException& caught) noexcept
+{
+    ++m_failures;
+    forgetScene();
+    if (caught.m_isMemory)
+    {
+        m_mustRestart = true;
+        return;
+    }
+    setError(m_error, call, caught);
+    m_failedDevice.m_reason.swap(m_failedReason);
     m_pipeline.reset();
+}
+
+void PluginState::restart()
+{
+    if (!m_mustRestart) return;
+    m_pipeline->restart();
+    m_mustRestart = false;
 }
 
 btCollisionAlgorithmCreateFunc& PluginState::stockCreateFunction(bool swapped)
@@ -163,6 +179,7 @@ bool PluginState::ownsSolver(const btSoftBodySolver* solver) const
 void PluginState::setStepped(const btSoftBodySolver* solver, const btAlignedObjectArray<btSoftBody*>& bodies)
 {
     std::vector<WorldBody>& stepped = m_stepped[solver];
+    stepped.reserve(static_cast<std::size_t>(bodies.size()));  // before the last step's list goes
     stepped.clear();
     for (int i = 0; i < bodies.size(); ++i)
     {
@@ -211,19 +228,33 @@ void PluginState::note(const void* owner, btSoftBody& cloth, const btCollisionOb
     note.m_motion = note.m_kinematic ? motionOfShape(obstacle, motionsOf(note.m_solver))
                                      : BodyMotion{obstacle.getWorldTransform(), obstacle.getWorldTransform()};
     note.m_thickness = thicknessOf(cloth, *obstacle.getCollisionShape());
-    const auto place = m_noteOf.emplace(owner, m_notes.size());
-    if (place.second)
-        m_notes.push_back(note);
-    else
-        m_notes[place.first->second] = note;
+    const auto noted = m_noteOf.find(owner);
+    if (noted != m_noteOf.end())
+    {
+        m_notes[noted->second] = note;
+        return;
+    }
+    reserveRoom(m_notes, m_notes.size() + 1);
+    m_noteOf.emplace(owner, m_notes.size());
+    m_notes.push_back(note);
 }
 
-void PluginState::dropNotesIf(const std::function<bool(const PairNote&)>& drops)
+// Takes no memory: algorithms end, and with them their notes, whether there is any or not.
+template <class Drops>
+void PluginState::dropNotesIf(const Drops& drops)
 {
-    m_notes.erase(std::remove_if(m_notes.begin(), m_notes.end(), drops), m_notes.end());
-    m_noteOf.clear();
-    for (std::size_t i = 0; i < m_notes.size(); ++i)
-        m_noteOf[m_notes[i].m_owner] = i;
+    std::size_t kept = 0;
+    for (const PairNote& note : m_notes)
+    {
+        if (drops(note))
+        {
+            m_noteOf.erase(note.m_owner);
+            continue;
+        }
+        m_noteOf.find(note.m_owner)->second = kept;
+        m_notes[kept++] = note;
+    }
+    m_notes.erase(m_notes.begin() + static_cast<std::ptrdiff_t>(kept), m_notes.end());
 }
 
 void PluginState::forget(const void* owner)
@@ -249,24 +280,24 @@ bool PluginState::isOneSided(const btCollisionShape& shape) const
 void PluginState::prepare(const btCollisionObject* const* objects, int count)
 {
     if (!ready()) return;
-    try
+    guarded([&] { prepareAll(objects, count); },
+            [&](const CaughtException& caught) { fail("drape::Plugin::prepare", caught); });
+}
+
+void PluginState::prepareAll(const btCollisionObject* const* objects, int count)
+{
+    restart();
+    m_found.keepList();  // by meshes as they are
+    for (int i = 0; i < count; ++i)
     {
-        m_found.keepList();  // by meshes as they are
-        for (int i = 0; i < count; ++i)
-        {
-            if (!objects[i]) continue;
-            const btCollisionObject& object = *objects[i];
-            if (const btSoftBody* body = btSoftBody::upcast(&object))
-                prepareCloth(*body);
-            else if (object.getCollisionShape())
-                prepareShape({nullptr, object.getCollisionShape(), &object, object.getWorldTransform(), -1, -1});
-        }
-        m_pipeline->prepare();
+        if (!objects[i]) continue;
+        const btCollisionObject& object = *objects[i];
+        if (const btSoftBody* body = btSoftBody::upcast(&object))
+            prepareCloth(*body);
+        else if (object.getCollisionShape())
+            prepareShape({nullptr, object.getCollisionShape(), &object, object.getWorldTransform(), -1, -1});
     }
-    catch (const std::exception& exception)
-    {
-        fail("drape::Plugin::prepare", exception.what());
-    }
+    m_pipeline->prepare();
 }
 
 void PluginState::prepareCloth(const btSoftBody& body)
@@ -352,10 +383,14 @@ bool PluginState::movedAlong(const std::vector<btSoftBody*>& bodies, const btTra
 
 void PluginState::setOneSided(const btCollisionShape* shape, bool oneSided)
 {
-    if (oneSided)
-        m_oneSided.insert(shape);
-    else
-        m_oneSided.erase(shape);
+    const auto set = [&]
+    {
+        if (oneSided)
+            m_oneSided.insert(shape);
+        else
+            m_oneSided.erase(shape);
+    };
+    guarded(set, [&](const CaughtException& caught) { fail("drape::Plugin::setOneSided", caught); });
 }
 
 void PluginState::dropNotes(const btSoftBodySolver* solver)

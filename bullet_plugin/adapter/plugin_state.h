@@ -9,7 +9,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <unordered_map>
 #include <unordered_set>
@@ -23,6 +22,7 @@
 #include "bullet_plugin/adapter/mirrors.h"
 #include "bullet_plugin/adapter/pair_algorithm.h"
 #include "bullet_plugin/core/pipeline.h"
+#include "bullet_plugin/core/public_call.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 
 class btCollisionDispatcher;
@@ -58,8 +58,13 @@ public:
     ThreadTeam& threads() { return *m_threads; }
     // Hands a line to Settings::m_log.
     void log(const char* line) const;
-    // After a failure that the pipeline could not contain: every pair goes to Bullet from now on.
-    void fail(const std::string& call, const std::string& detail);
+    // After an exception that ended a call, of which the pipeline may have any part done. Where memory ran out, it is
+    // to begin anew, without meshes; else every pair goes to Bullet from now on.
+    void fail(const char* call, const CaughtException& caught) noexcept;
+    // Counts up with each fail().
+    std::uint64_t failures() const { return m_failures; }
+    // Has the pipeline begin anew where fail() wants that. Throws where memory is still too short.
+    void restart();
 
     btCollisionAlgorithmCreateFunc& createFunction(bool swapped)
     {
@@ -136,13 +141,20 @@ private:
     ObstacleMirror* findObstacle(const ObstacleKey& key);
     void adopt(const PairNote& note);
     void disown(const Owned& owned);
-    void dropNotesIf(const std::function<bool(const PairNote&)>& drops);
+    template <class Drops>
+    void dropNotesIf(const Drops& drops);
+    void prepareAll(const btCollisionObject* const* objects, int count);
+    // Forgets all that is known of pairs and their meshes.
+    void forgetScene() noexcept;
 
     const Settings m_settings;
     std::unique_ptr<Pipeline> m_pipeline;
     std::shared_ptr<ThreadTeam> m_threads;
     Error m_error;
     DeviceReport m_failedDevice;
+    std::string m_failedReason = "an exception ended a call, see Plugin::error()";  // made before it is needed
+    std::uint64_t m_failures = 0;
+    bool m_mustRestart = false;
     PairCreateFunction m_create, m_createSwapped;
     btSoftBodyConcaveCollisionAlgorithm::CreateFunc m_stockCreate;
     btSoftBodyConcaveCollisionAlgorithm::SwappedCreateFunc m_stockCreateSwapped;

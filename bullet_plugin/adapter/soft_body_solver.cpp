@@ -1,7 +1,6 @@
 #include "drape/soft_body_solver.h"
 
 #include <algorithm>
-#include <exception>
 
 #include "BulletSoftBody/btSoftBody.h"
 #include "bullet_plugin/adapter/body_solver.h"
@@ -9,7 +8,9 @@
 #include "bullet_plugin/adapter/eligibility.h"
 #include "bullet_plugin/adapter/motion_bounds.h"
 #include "bullet_plugin/adapter/plugin_state.h"
+#include "bullet_plugin/core/public_call.h"
 #include "bullet_plugin/core/stopwatch.h"
+#include "bullet_plugin/core/usage_watch.h"
 
 namespace drape
 {
@@ -25,53 +26,125 @@ void predict(btSoftBody& body, btScalar dt)
     body.predictMotion(passes ? dt : btScalar(0));
     body.m_cfg.timescale = timescale;
 }
+
+// What the step's memory grows with.
+std::size_t elementsOf(const StepStatistics& step)
+{
+    return step.m_clothTriangles + step.m_obstacleTriangles + step.m_contacts +
+           static_cast<std::size_t>(step.m_candidates);
+}
+
+// Ends the body's step where it began, with the velocities that it would have without gravity. For cloth whose contacts
+// are not known: what stands still passes nothing that rests. Takes no memory. contacts: null where none are known.
+void holdStill(btSoftBody& body, const BodyContacts* contacts)
+{
+    const std::size_t count = static_cast<std::size_t>(body.m_nodes.size());
+    const NodePaths* const paths = contacts ? &contacts->m_limit.paths() : nullptr;
+    const btVector3 fall = body.m_worldInfo->m_gravity * body.m_sst.sdt;
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
+        if (paths)
+        {
+            node.m_v = (paths->m_end[i] - paths->m_start[i]) * body.m_sst.isdt;
+            node.m_q = paths->m_start[i];
+        }
+        if (node.m_im > 0) node.m_v -= fall;
+        node.m_x = node.m_q;
+    }
+}
 }  // namespace
 
 // What is kept from step to step.
 struct SoftBodySolver::Work
 {
-    explicit Work(PluginState& state) : m_step(state), m_solver(state.threads()) {}
+    explicit Work(PluginState& state) : m_solver(new BodySolver(state.threads())), m_failures(state.failures()) {}
 
-    CollisionStep m_step;
-    BodySolver m_solver;
+    bool isPredicted(const btSoftBody& body) const
+    {
+        return m_listed ? std::binary_search(m_predicted.begin(), m_predicted.end(), &body) : body.isActive();
+    }
+    bool isSolved(int body) const
+    {
+        const std::size_t at = static_cast<std::size_t>(body);
+        return at < m_solved.size() && m_solved[at];
+    }
+    BodyContacts* contactsOf(const btSoftBody& body) { return m_step ? m_step->contactsOf(body) : nullptr; }
+
+    // Gives back memory that only earlier, larger steps needed. Before a step's begin().
+    void giveBackRoom(PluginState& state)
+    {
+        m_solver.reset(new BodySolver(state.threads()));
+        m_step->giveBackRoom();
+        state.m_found.clear();
+        state.pipeline().giveBackRoom();
+    }
+
+    std::unique_ptr<CollisionStep> m_step;  // null until it is needed
+    std::unique_ptr<BodySolver> m_solver;
+    UsageWatch m_usage;
     std::vector<BodyContacts*> m_touched;        // of solveBodies()
+    std::vector<unsigned char> m_solved;         // likewise, by body: Bullet has solved it, or the contacts were
     std::vector<btSoftBody*> m_taken;            // bodies that Drape takes, in this step
     std::vector<const btSoftBody*> m_predicted;  // in this step, sorted by address
+    bool m_listed = false;                       // m_predicted is whole
+    bool m_detected = false;                     // the paths of all bodies with a pair are recorded
     std::size_t m_asleep = 0;                    // cloths that are not among them
     double m_predictMs = 0;                      // of this class's share in predictMotion
+    std::uint64_t m_failures;                    // of the state's, those that a step of this solver has told of
 };
 
-SoftBodySolver::SoftBodySolver(Plugin& plugin) : m_state(plugin.state()), m_work(new Work(*m_state))
+SoftBodySolver::SoftBodySolver(Plugin& plugin) : m_state(plugin.state())
 {
-    m_state->addSolver(this);
+    if (!m_state) return;
+    const auto start = [&]
+    {
+        m_work.reset(new Work(*m_state));
+        m_state->addSolver(this);
+    };
+    guarded(start, [&](const CaughtException&) { m_work.reset(); });
 }
 
 SoftBodySolver::~SoftBodySolver()
 {
-    m_state->removeSolver(this);
+    if (m_work) m_state->removeSolver(this);
 }
 
 void SoftBodySolver::predictMotion(btScalar dt)
 {
+    if (!m_work) return btDefaultSoftBodySolver::predictMotion(dt);
+    const auto failed = [&](const CaughtException& caught)
+    { m_state->fail("drape::SoftBodySolver::predictMotion", caught); };
+    std::vector<StepObstacle> obstacles;
+    guarded([&] { beginStep(dt, obstacles); }, failed);
+    if (!m_state->ready()) return btDefaultSoftBodySolver::predictMotion(dt);
+    for (int i = 0; i < m_softBodySet.size(); ++i)
+        if (m_softBodySet[i]->isActive()) predict(*m_softBodySet[i], dt);
+    guarded([&] { coverMotions(obstacles); }, failed);
+}
+
+// Of predictMotion(), all that comes before Bullet's part.
+void SoftBodySolver::beginStep(btScalar dt, std::vector<StepObstacle>& obstacles)
+{
+    m_work->m_listed = false;
+    m_work->m_taken.clear();
     m_state->dropNotes(this);  // of a dispatch that no solve followed
     m_state->setStepped(this, m_softBodySet);
-    if (!m_state->ready())
-    {
-        listPredicted();
-        btDefaultSoftBodySolver::predictMotion(dt);
-        return;
-    }
+    if (!m_state->ready()) return listPredicted();
     Stopwatch watch;
     KinematicMotions& motions = m_state->motionsOf(this);
     listTaken();
     motions.beginStep(dt, [this](const btTransform& map, btScalar slack)
                       { return m_state->movedAlong(m_work->m_taken, map, slack); });
-    const std::vector<StepObstacle> obstacles = wakeReached(motions);
+    obstacles = wakeReached(motions);
     listPredicted();
     m_work->m_predictMs = watch.lapMs();
-    for (int i = 0; i < m_softBodySet.size(); ++i)
-        if (m_softBodySet[i]->isActive()) predict(*m_softBodySet[i], dt);
-    watch.lapMs();
+}
+
+// Of predictMotion(), all that comes after it.
+void SoftBodySolver::coverMotions(const std::vector<StepObstacle>& obstacles)
+{
+    Stopwatch watch;
     for (btSoftBody* body : m_work->m_taken)
         if (body->isActive()) coverMotion(*m_state, *body, obstacles);
     m_work->m_predictMs += watch.lapMs();
@@ -113,87 +186,104 @@ void SoftBodySolver::listPredicted()
     for (int i = 0; i < m_softBodySet.size(); ++i)
         if (m_softBodySet[i]->isActive()) predicted.push_back(m_softBodySet[i]);
     std::sort(predicted.begin(), predicted.end());
+    m_work->m_listed = true;
     m_work->m_asleep = static_cast<std::size_t>(m_softBodySet.size()) - predicted.size();
 }
 
+// Finds the contacts of the step.
 void SoftBodySolver::detect()
 {
-    m_work->m_step.clear();
-    if (!m_state->ready()) return;
-    try
-    {
-        StepStatistics& statistics = m_state->m_statistics;
-        Stopwatch watch;
-        m_work->m_step.begin(m_state->takeNotes(this, m_work->m_predicted));
-        const double beginMs = watch.lapMs();
-        m_work->m_step.finish();
-        for (int i = 0; i < m_softBodySet.size(); ++i)
-            m_work->m_step.reportInvalid(*m_softBodySet[i]);
-        statistics.m_clothsSkipped = m_work->m_asleep + m_work->m_step.pinnedCloths();
-        statistics.m_uploadMs = m_work->m_predictMs + beginMs;
-        statistics.m_writeMs = watch.lapMs() - statistics.m_waitMs;
-    }
-    catch (const std::exception& exception)
-    {
-        m_work->m_step.clear();
-        m_state->fail("drape::SoftBodySolver::solveConstraints", exception.what());
-    }
+    Work& work = *m_work;
+    if (!m_state->ready()) return work.m_step.reset();
+    m_state->restart();
+    if (!work.m_step) work.m_step = std::make_unique<CollisionStep>(*m_state);
+    CollisionStep& step = *work.m_step;
+    StepStatistics& statistics = m_state->m_statistics;
+    if (work.m_usage.hasFallen(elementsOf(statistics))) work.giveBackRoom(*m_state);
+    Stopwatch watch;
+    step.begin(m_state->takeNotes(this, work.m_predicted));
+    const double beginMs = watch.lapMs();
+    step.finish();
+    for (int i = 0; i < m_softBodySet.size(); ++i)
+        step.reportInvalid(*m_softBodySet[i]);
+    work.m_detected = true;
+    statistics.m_clothsSkipped = work.m_asleep + step.pinnedCloths();
+    statistics.m_uploadMs = work.m_predictMs + beginMs;
+    statistics.m_writeMs = watch.lapMs() - statistics.m_waitMs;
 }
 
 // Returns the time of Bullet's part, ms.
 double SoftBodySolver::solveBodies()
 {
-    const std::vector<const btSoftBody*>& predicted = m_work->m_predicted;
+    Work& work = *m_work;
+    work.m_touched.clear();
+    work.m_touched.reserve(static_cast<std::size_t>(m_softBodySet.size()));
+    work.m_solved.assign(static_cast<std::size_t>(m_softBodySet.size()), 0);
     double bulletMs = 0;
-    m_work->m_touched.clear();
     for (int i = 0; i < m_softBodySet.size(); ++i)
     {
         btSoftBody* body = m_softBodySet[i];
         // Bullet's links would move the nodes and its velocities are what they moved over the time: not numbers.
-        if (!std::binary_search(predicted.begin(), predicted.end(), body) || !(body->m_sst.sdt > 0)) continue;
-        if (BodyContacts* contacts = m_work->m_step.contactsOf(*body))
+        if (!work.isPredicted(*body) || !(body->m_sst.sdt > 0)) continue;
+        if (BodyContacts* contacts = work.contactsOf(*body))
         {
-            m_work->m_touched.push_back(contacts);
+            work.m_touched.push_back(contacts);
             continue;
         }
         Stopwatch watch;
-        body->solveConstraints();
+        work.m_solved[static_cast<std::size_t>(i)] = 1;
+        solveByBullet(*body);
         bulletMs += watch.lapMs();
     }
-    return bulletMs + m_work->m_solver.solve(m_work->m_touched, m_state->m_found);
+    return bulletMs + work.m_solver->solve(work.m_touched, m_state->m_found);
 }
 
-void SoftBodySolver::checkStrayed()
-{
-    try
-    {
-        m_work->m_step.checkStrayed();
-        m_work->m_step.end();
-    }
-    catch (const std::exception& exception)
-    {
-        m_work->m_step.clear();
-        m_state->fail("drape::SoftBodySolver::solveConstraints", exception.what());
-    }
-}
-
-void SoftBodySolver::solveConstraints(btScalar)
+void SoftBodySolver::solveStep()
 {
     detect();
     StepStatistics& statistics = m_state->m_statistics;
     const double waitMs = statistics.m_waitMs;
     Stopwatch watch;
-    double bulletMs = 0;
-    try
+    const double bulletMs = solveBodies();
+    if (m_work->m_step)
     {
-        bulletMs = solveBodies();
+        m_work->m_step->checkStrayed();
+        m_work->m_step->end();
     }
-    catch (const std::exception& exception)
-    {
-        m_work->m_step.clear();
-        m_state->fail("drape::SoftBodySolver::solveConstraints", exception.what());
-    }
-    checkStrayed();
     statistics.m_finishMs = watch.lapMs() - bulletMs - (statistics.m_waitMs - waitMs);
+}
+
+// Ends a step in which an exception was caught: Bullet solves what Drape does not take, and cloth that it takes stands
+// still. Takes no memory.
+void SoftBodySolver::endFailedStep()
+{
+    Work& work = *m_work;
+    for (int i = 0; i < m_softBodySet.size(); ++i)
+    {
+        btSoftBody& body = *m_softBodySet[i];
+        if (work.isSolved(i) || !work.isPredicted(body) || !(body.m_sst.sdt > 0)) continue;
+        if (handlesSteppedCloth(*m_state, body))
+            holdStill(body, work.m_detected ? work.contactsOf(body) : nullptr);
+        else
+            solveByBullet(body);
+    }
+    work.m_step.reset();
+    work.m_failures = m_state->failures();
+    if (!m_state->ready()) return;
+    m_state->m_statistics = StepStatistics();
+    m_state->m_statistics.m_status |= kStepOutOfMemory;
+    if (m_state->pipeline().deviceFailed()) m_state->m_statistics.m_status |= kStepDeviceFailed;
+}
+
+void SoftBodySolver::solveConstraints(btScalar dt)
+{
+    if (!m_work) return btDefaultSoftBodySolver::solveConstraints(dt);
+    const DefaultFloats floats;
+    const auto failed = [&](const CaughtException& caught)
+    { m_state->fail("drape::SoftBodySolver::solveConstraints", caught); };
+    m_work->m_solved.clear();
+    m_work->m_detected = false;
+    if (m_work->m_failures == m_state->failures()) guarded([&] { solveStep(); }, failed);
+    if (m_work->m_failures != m_state->failures()) endFailedStep();
 }
 }  // namespace drape

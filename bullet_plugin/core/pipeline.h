@@ -4,7 +4,8 @@
 // reduction, compaction. Input: node positions at the step's start and end, obstacle positions when they change, and
 // the pairs to test. Output: contacts in canonical order in host memory. Guarantee: same input, same contacts, bit for
 // bit, on every back end; a buffer that is too small grows and the stage runs again. Cost: one submission, one wait a
-// step. Knows no Bullet. Lengths in metres, world frame. Not thread-safe: one pipeline belongs to one thread.
+// step. Knows no Bullet. Lengths in metres, world frame. Not thread-safe: one pipeline belongs to one thread. Errors:
+// where memory runs out, calls throw, and nothing but restart() may follow.
 #pragma once
 
 #include <cstdint>
@@ -102,6 +103,11 @@ public:
     Pipeline(const Pipeline&) = delete;
     Pipeline& operator=(const Pipeline&) = delete;
 
+    // For a pipeline of which a call ended by an exception: lets go of all meshes, whose ids are not given again, and
+    // opens the device anew, which takes as long as at a second start. Throws, with nothing changed, where memory runs
+    // out.
+    void restart();
+
     const DeviceReport& deviceReport() const;
 
     // Both copy what they are given. Topology is fixed until remove(). Return kNoMesh, with nothing added, for a mesh
@@ -117,6 +123,10 @@ public:
     // leave these meshes' steps to the host: the next step does not pay for it. Waits. Not between submit() and
     // finish(); contacts of the last step are not to be looked at any more.
     void prepare();
+
+    // Gives back host memory that only earlier steps with more meshes and contacts needed. Contacts of the last step
+    // are not to be looked at any more. Not between submit() and finish().
+    void giveBackRoom();
 
     // New positions (x y z per vertex) of an obstacle that moved or was deformed; what hangs on them is made anew, the
     // other obstacles stay as they are. Counts as a teleport: the motion between old and new is not swept.

@@ -1,7 +1,8 @@
 #include "tests/support/backends.h"
 
-#include <cstdlib>
 #include <ostream>
+
+#include "tests/support/environment.h"
 
 namespace drape::test
 {
@@ -52,8 +53,7 @@ void PrintTo(const BackendCase& backend, std::ostream* stream)
 void requireBackend(const BackendCase& backend)
 {
     if (!backend.m_missing) return;
-    const char* allowed = std::getenv("DRAPE_TEST_NO_DEVICE");
-    if (allowed && std::string(allowed) == "1") GTEST_SKIP() << "no OpenCL device, as DRAPE_TEST_NO_DEVICE says";
+    if (!isDeviceExpected()) GTEST_SKIP() << "no OpenCL device, as DRAPE_TEST_NO_DEVICE says";
     GTEST_FAIL() << "no OpenCL device was found (Debian: pocl-opencl-icd); DRAPE_TEST_NO_DEVICE=1 skips this test";
 }
 

@@ -30,6 +30,13 @@ private:
     std::string m_previous;
 };
 
+// Whether a machine without an OpenCL device is to fail tests that need one.
+inline bool isDeviceExpected()
+{
+    const char* const none = std::getenv("DRAPE_TEST_NO_DEVICE");
+    return !none || std::string(none) != "1";
+}
+
 // An empty folder that goes with what is in it.
 class TemporaryFolder
 {

@@ -9,10 +9,12 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <sstream>
 
 #include "bullet_plugin/core/device/cache_file.h"
 #include "bullet_plugin/core/mesh/topology.h"
 #include "bullet_plugin/core/pipeline/backend_choice.h"
+#include "bullet_plugin/core/pipeline/machine_load.h"
 #include "bullet_plugin/core/pipeline/scene_work.h"
 #include "scenes/cloth_grid.h"
 #include "scenes/shapes.h"
@@ -93,6 +95,45 @@ TEST(BestCrossover, EndsAreAlwaysAndNever)
 {
     EXPECT_EQ(bestCrossover({{10, 2, 1}, {100, 20, 1}}), 0);
     EXPECT_EQ(bestCrossover({{10, 1, 2}, {100, 1, 20}}), kInfinity);
+}
+
+TEST(LeastTimes, AreTakenByRung)
+{
+    const std::vector<CrossoverRung> rungs = leastTimes({{10, 1, 4}, {100, 5, 6}}, {{1000, 7, 8}, {10, 2, 3}});
+    ASSERT_EQ(rungs.size(), 3u);
+    EXPECT_EQ(rungs[0].m_hostMs, 1);
+    EXPECT_EQ(rungs[0].m_deviceMs, 3);
+    EXPECT_EQ(rungs[1].m_hostMs, 5);
+    EXPECT_EQ(rungs[2].m_deviceMs, 8);
+}
+
+TEST(MachineLoad, ReadsWhatTheSystemCounts)
+{
+    std::istringstream stat("cpu  100 20 30 1000 50 6 7 8 90 9\ncpu0 1 2 3\ncpu1 1 2 3\nintr 5\n"),
+        cut("cpu 1 2\ncpu0 1\n"), none("");
+    CoreTimes times;
+    ASSERT_TRUE(readCoreTimes(stat, 100, times));
+    EXPECT_DOUBLE_EQ(times.m_busy, 1.71);
+    EXPECT_DOUBLE_EQ(times.m_all, 12.21);
+    EXPECT_EQ(times.m_cores, 2u);
+    EXPECT_FALSE(readCoreTimes(cut, 100, times));
+    EXPECT_FALSE(readCoreTimes(none, 100, times));
+    EXPECT_EQ(times.m_cores, 2u);
+}
+
+TEST(MachineLoad, IsBusyWhereOthersLeaveTooFewCores)
+{
+    const CoreTimes first = {10, 100, 8};
+    const auto busy = [&](double busySeconds, unsigned threads) {
+        return isBusyBetween(first, {10 + busySeconds, 108, 8}, 1.5, threads);
+    };  // one second
+    EXPECT_FALSE(busy(1.5, 8));
+    EXPECT_FALSE(busy(1.7, 8));
+    EXPECT_TRUE(busy(2.5, 8));
+    EXPECT_FALSE(busy(2.5, 2));
+    EXPECT_FALSE(busy(7.5, 2));
+    EXPECT_TRUE(busy(8, 2));
+    EXPECT_FALSE(isBusyBetween(first, first, 0, 8));
 }
 
 TEST(BackendChoice, AGrowingSceneMovesOnceAndComesBackBelowHalf)
@@ -182,6 +223,19 @@ TEST_F(CrossoverCacheTest, RoundTrip)
         EXPECT_EQ(loaded.m_rungs[1].m_deviceMs, 1.5);
     }
     EXPECT_NE(text().find("device of two lines"), std::string::npos) << "it can be read";
+}
+
+TEST_F(CrossoverCacheTest, ABusyMachineIsRememberedForSomeStarts)
+{
+    for (const int busyStarts : {0, 1, kMostBusyStarts - 1, kMostBusyStarts})
+    {
+        m_stored.m_busyStarts = busyStarts;
+        cache().store(m_stored);
+        Crossover loaded;
+        ASSERT_TRUE(cache().load(loaded));
+        EXPECT_EQ(loaded.m_busyStarts, busyStarts);
+        EXPECT_EQ(isProvisional(loaded), busyStarts > 0 && busyStarts < kMostBusyStarts);
+    }
 }
 
 TEST_F(CrossoverCacheTest, AnotherDriverIsStaleAndReplaced)

@@ -59,7 +59,7 @@ TEST(StatusText, NamesEveryBit)
     std::string all;
     for (const std::uint32_t bit :
          {kStepInvalidNodes, kStepDeviceFailed, kStepDeviceFull, kStepClothsLeftOut, kStepCoarsePositions,
-          kStepStartsIntersecting, kStepFacesLeftOut, kStepSurfacePassed, kStepMotionHeldBack})
+          kStepStartsIntersecting, kStepFacesLeftOut, kStepSurfacePassed, kStepMotionHeldBack, kStepOutOfMemory})
     {
         EXPECT_NE(statusText(bit), "");
         EXPECT_EQ(statusText(bit).find(';'), std::string::npos);

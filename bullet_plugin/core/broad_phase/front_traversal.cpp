@@ -39,14 +39,14 @@ void FrontTraversal::setTopology(Device& device, const Hierarchy& cloth, const H
 {
     m_hasFront = false;
     const std::vector<BvhLink> clothLinks = makeLinks(cloth), obstacleLinks = makeLinks(obstacle);
-    m_clothLinks.assign(device, clothLinks);
-    m_obstacleLinks.assign(device, obstacleLinks);
     const std::size_t perUnit = device.isGpu() ? kStartPerUnitGpu : kStartPerUnitCpu;
     const StartPairs start = makeStartPairs(cloth, obstacle, device.computeUnits() * perUnit);
+    const WaitAtEnd wait(device);
+    m_clothLinks.assign(device, clothLinks);
+    m_obstacleLinks.assign(device, obstacleLinks);
     m_start.assign(device, start.m_pairs);
     m_startCount = start.m_pairs.size();
     m_floorDepth = start.m_depth;
-    device.wait();  // what was sent are locals
 }
 
 void FrontTraversal::enqueue(Device& device, const TraversalStep& step)

@@ -64,6 +64,17 @@ void HostPatchCull::packFeatures(ItemRange patches, const ObstacleView& obstacle
                            m_edges.data(), m_edgeIds.data());
 }
 
+void HostPatchCull::giveBackRoom()
+{
+    for (std::vector<float>* floats : {&m_faces, &m_vertices, &m_edges, &m_sizes, &m_volumes, &m_wideNodes})
+        dropRoom(*floats);
+    for (std::vector<std::uint32_t>* ids : {&m_vertexIds, &m_edgeIds, &m_layout.m_faceOwners, &m_layout.m_faceFeatures,
+                                            &m_layout.m_vertexOwners, &m_layout.m_edgeOwners})
+        dropRoom(*ids);
+    dropRoom(m_layout.m_patches);
+    m_tests = std::vector<FeatureTest>();
+}
+
 PackedPatches HostPatchCull::packed() const
 {
     return {m_layout.m_patches.data(),

@@ -27,6 +27,9 @@ public:
     // Of the last run: as many as counted, and what is behind them is old.
     const std::vector<FeatureTest>& tests() const { return m_tests; }
 
+    // Gives back room that only earlier, larger scenes needed.
+    void giveBackRoom();
+
     PackedPatches packed() const;
     const HostKernels& kernels() const { return *m_kernels; }
 

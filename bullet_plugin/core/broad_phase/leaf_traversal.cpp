@@ -11,10 +11,10 @@ constexpr std::size_t kGroup = 32;
 void LeafTraversal::setTopology(Device& device, const Hierarchy& cloth, const Hierarchy& obstacle)
 {
     const std::vector<std::uint32_t> leaves = leafNodes(cloth);
+    const WaitAtEnd wait(device);
     m_leaves.assign(device, leaves);
     m_leafCount = cl_uint(leaves.size());
     m_obstacleRoot = obstacle.m_root;
-    device.wait();  // leaves is a local
 }
 
 void LeafTraversal::enqueue(Device& device, const TraversalStep& step)

@@ -15,9 +15,9 @@ void PairTraversal::setTopology(Device& device, const Hierarchy& cloth, const Hi
 {
     const std::size_t perUnit = device.isGpu() ? kItemsPerUnitGpu : kItemsPerUnitCpu;
     const StartPairs start = makeStartPairs(cloth, obstacle, device.computeUnits() * perUnit);
+    const WaitAtEnd wait(device);
     m_starts.assign(device, start.m_pairs);
     m_startCount = cl_uint(start.m_pairs.size());
-    device.wait();  // start is a local
 }
 
 void PairTraversal::enqueue(Device& device, const TraversalStep& step)

@@ -40,12 +40,24 @@ void PatchCullStage::create(Device& device, const ProgramLoader& load)
     const cl::Program cull = load(device.isGpu() ? "patch_cull_pairs" : "patch_cull"), pack = load("patch_pack");
     if (device.isGpu()) m_walk.create(device, load("patch_walk"), "patchWalk");
     m_cull.create(device, cull, device.isGpu() ? "patchCullPairs" : "patchCull");
-    m_pairs.reserve(device, device.isGpu() ? kFirstPairs : 1);
+    reserveFirstPairs(device);
     m_packFaces.create(device, pack, "patchPackFaces");
     m_packVertices.create(device, pack, "patchPackVertices");
     m_packEdges.create(device, pack, "patchPackEdges");
     m_volumes.create(device, pack, "patchVolumes");
     m_widen.create(device, pack, "patchWiden");
+}
+
+void PatchCullStage::reserveFirstPairs(Device& device)
+{
+    m_pairs.reserve(device, device.isGpu() ? kFirstPairs : 1);
+}
+
+void PatchCullStage::giveBackRoom(Device& device)
+{
+    m_tests.release();
+    m_pairs.release();
+    reserveFirstPairs(device);
 }
 
 void PatchCullStage::setTopology(Device& device, const MeshPool& obstacles, std::size_t firstSlot)

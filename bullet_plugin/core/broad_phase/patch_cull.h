@@ -62,6 +62,8 @@ public:
     // The list of pairs of cloth triangles and patches on a GPU. Where it was too short, other counts are too low.
     Buffer<FeatureTest>& pairs() { return m_pairs; }
     void reservePairs(Device& device, std::size_t count) { m_pairs.reserve(device, count); }
+    // Gives back the memory of both lists but for as much as a new stage has. Tests are to be reserved again.
+    void giveBackRoom(Device& device);
 
     // The packed features; ids tell a lane's triangle, vertex or edge.
     struct Features
@@ -76,6 +78,7 @@ public:
     Features features() { return {m_faces, m_vertices, m_edges, m_faceOwners, m_vertexIds, m_edgeIds}; }
 
 private:
+    void reserveFirstPairs(Device& device);
     void bringOwners(Device& device, ItemRange vertices, ItemRange edges);
     void packFeatures(Device& device, ItemRange patches, Buffer<Triangle>& triangles, Buffer<float>& positions,
                       Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones);

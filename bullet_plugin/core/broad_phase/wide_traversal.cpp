@@ -27,18 +27,18 @@ WideTraversal::WideTraversal(Device& device, const cl::Program& program, bool gr
 void WideTraversal::setObstacles(Device& device, const Hierarchy& obstacle)
 {
     const WideLayout layout = makeWideLayout(obstacle);
+    const WaitAtEnd wait(device);
     m_nodes.assign(device, layout.m_nodes);
     m_sources.assign(device, layout.m_sources);
     m_slots = cl_uint(layout.m_sources.size());
-    device.wait();  // layout is a local
 }
 
 void WideTraversal::setTopology(Device& device, const Hierarchy& cloth, const Hierarchy&)
 {
     const std::vector<std::uint32_t> leaves = leafNodes(cloth);
+    const WaitAtEnd wait(device);
     m_leaves.assign(device, leaves);
     m_leafCount = cl_uint(leaves.size());
-    device.wait();  // leaves is a local
 }
 
 void WideTraversal::obstaclesRefitted(Device& device, Buffer<BvhNode>& obstacleNodes)

@@ -92,9 +92,9 @@ void RefitStage::makeLevels(Device& device, const BvhLayout& layout, Levels& lev
     for (std::uint32_t leaf = 0; leaf < leafNodes.size(); ++leaf)
         leafNodes[leaf] = layout.leafNode(leaf);
     levels.m_climbed = table.size() / 2;
+    const WaitAtEnd wait(device);
     levels.m_table.assign(device, table);
     levels.m_leafNodes.assign(device, leafNodes);
-    device.wait();  // what was sent are locals; topology changes are rare
 }
 
 void RefitStage::enqueue(Device& device, const BvhLayout& layout, Levels& levels, Buffer<BvhNode>& nodes,

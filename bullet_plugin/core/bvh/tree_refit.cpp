@@ -124,9 +124,9 @@ void TreeRefitStage::enqueueSubtrees(Device& device, DeviceTree& tree, LeafBuffe
 void TreeRefitStage::listHeights(Device& device, DeviceTree& tree)
 {
     const TreeHeights heights = heightsOf(tree.download(device));
+    const WaitAtEnd wait(device);
     tree.m_heightSplits.assign(device, heights.m_splits);
     tree.m_heights = heights.m_ranges;
-    device.wait();  // heights is a local
 }
 
 void TreeRefitStage::enqueueLevels(Device& device, DeviceTree& tree, LeafBuffers leaves)

@@ -68,6 +68,15 @@ void CompactionStage::reserveHits(Device& device, std::size_t count)
     reserveHitPlaces(device);
 }
 
+void CompactionStage::giveBackRoom()
+{
+    m_hits.release();
+    m_contacts.release();
+    m_members.release();
+    m_keys.release();
+    m_hitPlaces.release();
+}
+
 // Slots with more hits than `ranked`.
 void CompactionStage::enqueueOrder(Device& device, cl_uint ranked, StepTally tally)
 {

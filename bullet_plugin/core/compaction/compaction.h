@@ -38,6 +38,8 @@ public:
     // Room for a list of hits and as many contacts.
     void reserveHits(Device& device, std::size_t count);
     std::size_t hitCapacity() const { return m_hits.capacity(); }
+    // Gives back the memory of both; hits are to be reserved again.
+    void giveBackRoom();
 
     // What the stages before list their hits in.
     HitBuffers hits() { return {m_hits, m_hitPlaces, m_slotCount, m_slotSums}; }

@@ -1,8 +1,8 @@
 // An OpenCL device with its context and in-order queue.
 //
 // Errors are sticky: after the first failure every later call on the device is a no-op and error() says what failed,
-// with which code and log. The pipeline checks once a step. Not thread-safe. The only folder that includes OpenCL
-// headers is this one.
+// with which code and log. The pipeline checks once a step. A device belongs to one thread; several threads may open
+// and close devices of their own (opencl_lock.h). The only folder that includes OpenCL headers is this one.
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -19,12 +19,18 @@
 
 namespace drape
 {
+// What listDevices() lists. Throws where memory runs out.
+std::vector<DeviceInfo> deviceInfos();
+
 class Device
 {
 public:
-    // Opens the index-th device of listDevices(). Null, with error filled, when the context or queue cannot be made.
+    // Opens the index-th device of deviceInfos(). Null, with error filled, when the context or queue cannot be made.
     // profiled: the queue takes every launch's time, see profiler.h.
     static std::unique_ptr<Device> open(std::size_t index, Error& error, bool profiled = false);
+    ~Device();
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
 
     const DeviceInfo& info() const { return m_info; }
     bool isGpu() const { return m_info.m_isGpu; }
@@ -32,7 +38,7 @@ public:
     const Error& error() const { return m_error; }
 
     // Records a failure when code is not CL_SUCCESS. Returns whether the device is still good.
-    bool check(cl_int code, const std::string& call, const std::string& detail = std::string());
+    bool check(cl_int code, const std::string& call, const std::string& detail = std::string()) noexcept;
 
     cl::Context& context() { return m_context; }
     cl::CommandQueue& queue() { return m_queue; }
@@ -66,5 +72,19 @@ private:
     std::unique_ptr<Profiler> m_profiler;
     MemoryLedger m_memory;
     Error m_error;
+};
+
+// Waits for the device at its end: declared behind what a scope transfers from or to, so that this lives until then,
+// however the scope is left.
+class WaitAtEnd
+{
+public:
+    explicit WaitAtEnd(Device& device) : m_device(device) {}
+    ~WaitAtEnd() { m_device.wait(); }
+    WaitAtEnd(const WaitAtEnd&) = delete;
+    WaitAtEnd& operator=(const WaitAtEnd&) = delete;
+
+private:
+    Device& m_device;
 };
 }  // namespace drape

@@ -7,6 +7,10 @@
 #include <locale>
 #include <sstream>
 
+#include "bullet_plugin/core/public_call.h"
+#include "device.h"
+#include "missing_device.h"
+
 namespace drape
 {
 namespace
@@ -30,8 +34,9 @@ std::string listing(const std::vector<DeviceInfo>& devices)
     return text;
 }
 
+// whyNone: why there is no device, where there is none.
 DeviceChoice chooseByName(const std::vector<DeviceInfo>& devices, const std::string& wanted, const std::string& origin,
-                          Error& error)
+                          const std::string& whyNone, Error& error)
 {
     DeviceChoice choice;
     for (std::size_t i = 0; i < devices.size(); ++i)
@@ -47,6 +52,7 @@ DeviceChoice chooseByName(const std::vector<DeviceInfo>& devices, const std::str
     }
     error.m_call = "no OpenCL device matches " + origin + " \"" + wanted + "\"";
     error.m_detail = listing(devices);
+    if (devices.empty()) error.m_detail += "; no OpenCL device was found: " + whyNone;
     return choice;
 }
 }  // namespace
@@ -58,10 +64,14 @@ std::string hostSince(const DeviceInfo& device, const Error& error)
 
 std::string whyNoDevice(const Settings& settings)
 {
-    Error error;
-    double pairs;
-    if (chooseDevice(settings, error).m_byCost) wantedCrossover(settings, pairs, error);
-    return error.failed() ? error.m_call + "; " + error.m_detail : std::string();
+    return guardedOr(std::string(kOutOfMemory),
+                     [&]
+                     {
+                         Error error;
+                         double pairs;
+                         if (chooseDevice(settings, error).m_byCost) wantedCrossover(settings, pairs, error);
+                         return error.failed() ? error.m_call + "; " + error.m_detail : std::string();
+                     });
 }
 
 DeviceChoice chooseDevice(const Settings& settings, Error& error)
@@ -74,7 +84,7 @@ DeviceChoice chooseDevice(const Settings& settings, Error& error)
     if (settings.m_backend == Backend::OpenCl && lowered(wanted) == "host")
     {
         error.m_call = "an OpenCL device was asked for, and the host by " + origin + " \"" + wanted + "\"";
-        error.m_detail = listing(listDevices());
+        error.m_detail = listing(deviceInfos());
         return choice;
     }
     if (settings.m_backend == Backend::Host || lowered(wanted) == "host")
@@ -83,18 +93,16 @@ DeviceChoice chooseDevice(const Settings& settings, Error& error)
             settings.m_backend == Backend::Host ? "the host back end was asked for" : "asked for by " + origin;
         return choice;
     }
-    const std::vector<DeviceInfo> devices = listDevices();
-    if (!wanted.empty()) return chooseByName(devices, wanted, origin, error);
+    std::string whyNone;
+    const std::vector<DeviceInfo> devices = deviceInfos(whyNone);
+    if (!wanted.empty()) return chooseByName(devices, wanted, origin, whyNone, error);
     if (devices.empty())
     {
-        choice.m_reason =
-            "no OpenCL device was found (PoCL shows none where it cannot write its cache, XDG_CACHE_HOME)";
+        choice.m_reason = "no OpenCL device was found: " + whyNone;
         if (settings.m_backend == Backend::OpenCl)
         {
             error.m_call = "an OpenCL device was asked for, and none was found";
-            error.m_detail =
-                "install a driver, for example the package pocl-opencl-icd, which needs a cache folder that it "
-                "can write (XDG_CACHE_HOME)";
+            error.m_detail = whyNone + "; a driver for any CPU is PoCL (package pocl-opencl-icd)";
         }
         return choice;
     }

@@ -4,8 +4,9 @@ namespace drape
 {
 std::shared_ptr<const void> MemoryLedger::enter(const std::string& name, std::size_t bytes)
 {
-    (*m_bytes)[name] += bytes;
-    const auto leave = [book = m_bytes, name, bytes](const void*) { (*book)[name] -= bytes; };
+    std::size_t* const sum = &(*m_bytes)[name];  // stays where it is
+    *sum += bytes;
+    const auto leave = [book = m_bytes, sum, bytes](const void*) { *sum -= bytes; };
     return std::shared_ptr<const void>(m_bytes.get(), leave);
 }
 

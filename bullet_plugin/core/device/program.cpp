@@ -7,6 +7,8 @@
 
 #include "embedded_kernels.h"
 #include "kernels/shared/mesh.h"
+#include "missing_device.h"
+#include "opencl_lock.h"
 #include "program_cache.h"
 
 namespace drape
@@ -112,7 +114,7 @@ bool build(Device& device, cl::Program& program, const std::string& what, const 
 
 bool keepsItsOwn(const DeviceInfo& device)
 {
-    return device.m_platform == "Portable Computing Language";
+    return device.m_platform == kPoclPlatform;
 }
 
 std::string assembleSources(const std::vector<std::string>& paths)
@@ -147,6 +149,7 @@ std::string translateLog(const std::string& log, const std::string& source)
 
 cl::Program compileSource(Device& device, const std::string& what, const std::string& source)
 {
+    const OpenClLock lock;
     cl_int code = CL_SUCCESS;
     cl::Program program(device.context(), source, false, &code);
     if (device.check(code, "clCreateProgramWithSource", what)) build(device, program, what, source);
@@ -173,6 +176,7 @@ cl::Program buildJoinedProgram(Device& device, const std::vector<std::string>& n
     const bool kept = keepsItsOwn(device.info());
     if (!kept && cache.load(key, binary))
     {
+        const OpenClLock lock;
         cl_int code = CL_SUCCESS;
         cl::Program program(device.context(), {device.handle()}, cl::Program::Binaries{binary}, nullptr, &code);
         if (code == CL_SUCCESS && program.build(std::vector<cl::Device>{device.handle()}, kOptions) == CL_SUCCESS)
@@ -183,6 +187,7 @@ cl::Program buildJoinedProgram(Device& device, const std::vector<std::string>& n
     }
     cl::Program program = compileSource(device, what, source);
     if (device.failed() || kept) return program;
+    const OpenClLock lock;
     std::vector<std::vector<unsigned char>> binaries;
     if (program.getInfo(CL_PROGRAM_BINARIES, &binaries) == CL_SUCCESS && binaries.size() == 1)
     {
@@ -196,6 +201,7 @@ void Kernel::create(Device& device, const cl::Program& program, const char* name
     m_name = name;
     m_arguments.clear();
     if (device.failed()) return;
+    const OpenClLock lock;
     cl_int code = CL_SUCCESS;
     m_kernel = cl::Kernel(program, name, &code);
     device.check(code, "clCreateKernel", name);

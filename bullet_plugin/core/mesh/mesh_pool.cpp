@@ -173,6 +173,16 @@ void MeshPool::update()
     m_placed = m_meshes.size();
 }
 
+void MeshPool::giveBackRoom()
+{
+    dropRoom(m_meshes);
+    dropRoom(m_ids);
+    dropRoom(m_triangles);
+    dropRoom(m_edges);
+    dropRoom(m_order);
+    dropRoom(m_firsts);
+}
+
 void MeshPool::joinOrder(const PooledMesh& mesh)
 {
     for (std::size_t leaf = 0; leaf < mesh.m_order.size(); ++leaf)

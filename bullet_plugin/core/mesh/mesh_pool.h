@@ -71,6 +71,8 @@ public:
     // Another leaf order of the meshes' triangles: local ones by slot, null where it stays. Counts as an update that
     // changed something.
     void reorder(const std::vector<const std::vector<std::uint32_t>*>& orders);
+    // Gives back room that only earlier, larger pools needed. The joined arrays move.
+    void giveBackRoom();
     // Counts up with every update that changed something.
     std::uint32_t revision() const { return m_revision; }
     // The first slot that took its place after that revision; those before are as they were, but for vacancies.

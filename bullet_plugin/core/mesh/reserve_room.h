@@ -23,6 +23,13 @@ void resizeWithRoom(std::vector<T>& elements, std::size_t count)
     elements.resize(count);
 }
 
+// Gives back room that is not used where it is more than three quarters.
+template <typename T>
+void dropRoom(std::vector<T>& elements)
+{
+    if (elements.capacity() / 4 > elements.size()) elements.shrink_to_fit();
+}
+
 // Has fill() fill the list, which returns how many elements there are in all: again with a longer list where they did
 // not fit, unless they are more than the limit. The list must not be empty. Returns how often it grew.
 template <typename T, typename Fill>

@@ -58,6 +58,14 @@ public:
         orderHits(m_hits.data(), count, m_slotCount, contacts, threads);
     }
 
+    // Gives back the memory of all that was found.
+    void giveBackRoom()
+    {
+        m_hits = std::vector<Contact>();
+        m_slotCount = std::vector<std::uint32_t>();
+        m_swept = std::vector<std::uint32_t>();
+    }
+
 private:
     static constexpr std::size_t kFirstHits = 1 << 10;
     static constexpr std::size_t kTestsOfItem = 128;  // a run of them (item_runs.h)

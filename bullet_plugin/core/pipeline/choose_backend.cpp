@@ -36,30 +36,35 @@ bool Pipeline::Implementation::costDecides(const DeviceChoice& choice) const
 double Pipeline::Implementation::findCrossover(Pipeline& pipeline)
 {
     const CrossoverCache cache(m_settings, m_openClDevice, device()->computeUnits());
-    Crossover crossover;
-    if (cache.load(crossover))
+    const char* const onBusy = ", on a busy machine";
+    Crossover before, crossover;
+    const bool known = cache.load(before);
+    if (known && !isProvisional(before))
     {
-        m_report.m_crossoverSource = "measured before";
-        return crossover.m_pairs;
+        m_report.m_crossoverSource = std::string("measured before") + (before.m_busyStarts > 0 ? onBusy : "");
+        return before.m_pairs;
     }
     Stopwatch watch;
-    m_report.m_crossoverSource = "measured now";
-    const bool measured = measureLadder(
+    bool busy = false;
+    const char* const why = measureLadder(
         pipeline, m_settings.m_activation, [&](bool onHost) { m_report.m_onHost = onHost || device()->failed(); },
-        crossover.m_rungs);
+        crossover.m_rungs, busy);
     // Nobody has seen these steps, whose meshes' ids are given again.
     m_nextId = 0;
     m_clothHierarchy = m_obstacleHierarchy = SideHierarchy();
     m_statistics = StepStatistics();
     m_result = StepResult();
-    if (measured && !device()->failed())
+    if (!why && !device()->failed())
     {
+        if (busy) crossover.m_rungs = leastTimes(crossover.m_rungs, before.m_rungs);
+        crossover.m_busyStarts = busy ? before.m_busyStarts + 1 : 0;
         crossover.m_pairs = bestCrossover(crossover.m_rungs);
+        m_report.m_crossoverSource = std::string("measured now") + (busy ? onBusy : "");
         cache.store(crossover);
     }
     else
     {
-        m_report.m_crossoverSource = device()->failed() ? "" : "its steps are not the host's";
+        m_report.m_crossoverSource = device()->failed() ? "" : why;
         if (!device()->failed()) m_error.m_call = m_openClDevice.m_name + " is not used: " + m_report.m_crossoverSource;
         crossover.m_pairs = std::numeric_limits<double>::infinity();
     }

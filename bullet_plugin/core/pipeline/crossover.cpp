@@ -16,7 +16,7 @@ namespace drape
 {
 namespace
 {
-constexpr const char* kHead = "drape crossover 1\n";
+constexpr const char* kHead = "drape crossover 2\n";
 constexpr std::size_t kMostBytes = 1 << 20;
 constexpr int kHostRevision = 4;  // counts up with what changes how long the host's steps take
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -76,6 +76,25 @@ double bestCrossover(std::vector<CrossoverRung> rungs)
     return best;
 }
 
+std::vector<CrossoverRung> leastTimes(std::vector<CrossoverRung> rungs, const std::vector<CrossoverRung>& others)
+{
+    for (const CrossoverRung& other : others)
+    {
+        // Scenes are the same at every start; their pairs were rounded as they were written.
+        const auto same = std::find_if(rungs.begin(), rungs.end(),
+                                       [&](const CrossoverRung& rung)
+                                       { return std::fabs(rung.m_pairs - other.m_pairs) <= 1e-6 * other.m_pairs; });
+        if (same == rungs.end())
+        {
+            rungs.push_back(other);
+            continue;
+        }
+        same->m_hostMs = std::min(same->m_hostMs, other.m_hostMs);
+        same->m_deviceMs = std::min(same->m_deviceMs, other.m_deviceMs);
+    }
+    return rungs;
+}
+
 CrossoverCache::CrossoverCache(const Settings& settings, const DeviceInfo& device, std::size_t computeUnits)
     : m_folder(cacheFolder(settings.m_cacheFolder))
 {
@@ -113,7 +132,8 @@ bool CrossoverCache::load(Crossover& crossover) const
         if (!(lines >> rung.m_pairs >> rung.m_hostMs >> rung.m_deviceMs)) return false;
         read.m_rungs.push_back(rung);
     }
-    if (word != "crossover" || !(lines >> word)) return false;
+    if (word != "busy" || !(lines >> read.m_busyStarts) || read.m_busyStarts < 0) return false;
+    if (!(lines >> word) || word != "crossover" || !(lines >> word)) return false;
     if (word == "never")
         read.m_pairs = kNever;
     else if (std::istringstream number(word); number.imbue(std::locale::classic()), !(number >> read.m_pairs))
@@ -128,7 +148,7 @@ void CrossoverCache::store(const Crossover& crossover) const
     text << kHead << m_machine << m_state;
     for (const CrossoverRung& rung : crossover.m_rungs)
         text << "rung " << rung.m_pairs << " " << rung.m_hostMs << " " << rung.m_deviceMs << "\n";
-    text << "crossover ";
+    text << "busy " << crossover.m_busyStarts << "\ncrossover ";
     if (std::isinf(crossover.m_pairs))
         text << "never\n";
     else

@@ -3,7 +3,8 @@
 //
 // The file is text, one line for each rung of the ladder of scenes that was measured. What does not name this very
 // device, driver, host, version and settings, or is damaged, reads as "not there", and is measured again and replaced;
-// whoever wants it measured anew deletes crossover-*.txt.
+// whoever wants it measured anew deletes crossover-*.txt. One that was measured on a busy machine is kept for the time
+// being: later starts measure again.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +28,20 @@ struct Crossover
 {
     double m_pairs = 0;  // 0: the device was faster in all scenes; infinite: the host was
     std::vector<CrossoverRung> m_rungs;
+    int m_busyStarts = 0;  // starts that measured it, all on a busy machine; 0: the machine was idle
 };
+
+// Starts at which a busy machine is measured. What is measured then is kept, for want of a better time.
+constexpr int kMostBusyStarts = 4;
+
+// Whether a crossover that was read is to be measured again.
+inline bool isProvisional(const Crossover& crossover)
+{
+    return crossover.m_busyStarts > 0 && crossover.m_busyStarts < kMostBusyStarts;
+}
+
+// The least times of both measurements, by rung; what disturbs them only adds to them.
+std::vector<CrossoverRung> leastTimes(std::vector<CrossoverRung> rungs, const std::vector<CrossoverRung>& others);
 
 // Where to divide the rungs so that the steps below on the host and those above on the device lose least against the
 // faster of both: least sum of the logarithms of the ratios. Of the ends, and the middles between neighbours.

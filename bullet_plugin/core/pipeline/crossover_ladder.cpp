@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
+#include <numeric>
 
 #include "bullet_plugin/core/mesh/topology.h"
 #include "bullet_plugin/core/stopwatch.h"
+#include "machine_load.h"
 #include "scene_work.h"
 
 namespace drape
@@ -28,7 +29,10 @@ constexpr int kWarmUpSteps = 2;  // build trees and grow buffers
 constexpr int kFewestSteps = 5, kMostSteps = 15;
 constexpr double kStepsMs = 10;       // for the steps of one rung on one back end, if more than the fewest
 constexpr double kLongestStepMs = 5;  // of the host; the next rung is not climbed
-constexpr double kAhead = 2;          // times that the device is faster; so on two rungs, and the ladder ends
+// How many times as long as the shortest the middle one of a scene's steps may take, on average over all scenes. Beyond
+// it half of the steps were disturbed, and the shortest may have been, too.
+constexpr double kMostSpread = 1.6;
+constexpr double kAhead = 2;  // times that the device is faster; so on two rungs, and the ladder ends
 
 struct Sheet
 {
@@ -116,19 +120,23 @@ public:
         return ms;
     }
 
-    double leastMs()
+    // spread: gets the logarithm of how many times as long the middle one of the steps took.
+    double leastMs(std::vector<double>& spread)
     {
         std::vector<Contact> contacts;
-        double least = std::numeric_limits<double>::infinity(), sum = 0;
+        std::vector<double> times;
+        double sum = 0;
         for (int step = 0; step < kWarmUpSteps; ++step)
             run(step, contacts);
         for (int i = 0; i < kMostSteps && (i < kFewestSteps || sum < kStepsMs); ++i)
         {
             const double ms = run(kWarmUpSteps + i, contacts);
-            least = std::min(least, ms);
+            times.push_back(ms);
             sum += ms;
         }
-        return least;
+        std::sort(times.begin(), times.end());
+        spread.push_back(std::log(times[times.size() / 2] / times[0]));
+        return times[0];
     }
 
 private:
@@ -146,24 +154,32 @@ private:
     double m_expectedPairs;
 };
 
-bool measureRung(Pipeline& pipeline, Rung& scene, const std::function<void(bool)>& use, CrossoverRung& rung)
+// Returns null, or why the device cannot be measured.
+const char* measureRung(Pipeline& pipeline, Rung& scene, const std::function<void(bool)>& use, CrossoverRung& rung,
+                        std::vector<double>& spread)
 {
     std::vector<Contact> host, device;
     rung.m_pairs = scene.expected();
     use(true);
-    rung.m_hostMs = scene.leastMs();
+    rung.m_hostMs = scene.leastMs(spread);
     scene.run(0, host);
     use(false);
-    rung.m_deviceMs = scene.leastMs();
+    rung.m_deviceMs = scene.leastMs(spread);
     scene.run(0, device);
-    return (pipeline.statistics().m_status & (kStepDeviceFailed | kStepDeviceFull)) == 0 && !host.empty() &&
-           host.size() == device.size() && std::memcmp(host.data(), device.data(), host.size() * sizeof(Contact)) == 0;
+    const std::uint32_t status = pipeline.statistics().m_status;
+    if (status & kStepDeviceFailed) return "it failed";
+    if (status & kStepDeviceFull) return "it cannot hold the lists of a step";
+    const bool same = host.size() == device.size() &&
+                      (host.empty() || std::memcmp(host.data(), device.data(), host.size() * sizeof(Contact)) == 0);
+    return same ? nullptr : "its steps are not the host's";
 }
 }  // namespace
 
-bool measureLadder(Pipeline& pipeline, float activation, const std::function<void(bool onHost)>& use,
-                   std::vector<CrossoverRung>& rungs)
+const char* measureLadder(Pipeline& pipeline, float activation, const std::function<void(bool onHost)>& use,
+                          std::vector<CrossoverRung>& rungs, bool& busy)
 {
+    const MachineLoad load;
+    std::vector<double> spread;
     for (const int fineness : kFineness)
     {
         int ahead = 0;
@@ -171,12 +187,14 @@ bool measureLadder(Pipeline& pipeline, float activation, const std::function<voi
         {
             Rung scene(pipeline, cells, fineness, activation);
             CrossoverRung rung;
-            if (!measureRung(pipeline, scene, use, rung)) return false;
+            if (const char* const why = measureRung(pipeline, scene, use, rung, spread)) return why;
             rungs.push_back(rung);
             ahead = rung.m_hostMs > kAhead * rung.m_deviceMs ? ahead + 1 : 0;
             if (ahead == 2 || rung.m_hostMs > kLongestStepMs) break;
         }
     }
-    return true;
+    const double sum = std::accumulate(spread.begin(), spread.end(), 0.0);
+    busy = sum > std::log(kMostSpread) * double(spread.size()) || load.isBusy(pipeline.threads()->size());
+    return nullptr;
 }
 }  // namespace drape

@@ -13,7 +13,8 @@
 namespace drape
 {
 // use: has the pipeline's coming steps run on the host, or the device. activation: the pipeline's.
-// False where the device cannot be measured: it failed, or its steps are not the host's.
-bool measureLadder(Pipeline& pipeline, float activation, const std::function<void(bool onHost)>& use,
-                   std::vector<CrossoverRung>& rungs);
+// busy: whether other processes kept the machine busy meanwhile, or the times of a scene varied widely.
+// Returns null, or why the device cannot be measured: it failed, cannot hold a step, or its steps are not the host's.
+const char* measureLadder(Pipeline& pipeline, float activation, const std::function<void(bool onHost)>& use,
+                          std::vector<CrossoverRung>& rungs, bool& busy);
 }  // namespace drape

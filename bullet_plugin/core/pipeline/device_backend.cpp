@@ -52,8 +52,7 @@ DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& set
     m_placed.create(*m_device, load("place_obstacles"));
     m_motions.reserve(*m_device, 1);
     m_candidates.reserve(*m_device, 1);
-    m_patchCull.reserveTests(*m_device, kFirstCandidates);
-    m_compaction.reserveHits(*m_device, kFirstContacts);
+    reserveFirst();
     m_narrowPhase.reserveIntersections(*m_device, 1);
     for (Buffer<StepCounters>& counters : m_counters)
     {
@@ -61,7 +60,6 @@ DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& set
         counters.fill(*m_device, 0, 1);
     }
     m_refitCounters.reserve(*m_device, 1);
-    m_contactsRead.reserve(m_device.get(), DRAPE_CONTACT_HEAD + kFirstContacts);
     warmUp();
 }
 
@@ -69,6 +67,23 @@ DeviceBackend::~DeviceBackend()
 {
     // Transfers into host memory that is about to go must have ended.
     m_device->wait();
+}
+
+void DeviceBackend::reserveFirst()
+{
+    m_patchCull.reserveTests(*m_device, kFirstCandidates);
+    m_compaction.reserveHits(*m_device, kFirstContacts);
+    m_contactsRead = std::make_unique<Staging<Contact>>();
+    m_contactsRead->reserve(m_device.get(), DRAPE_CONTACT_HEAD + kFirstContacts);
+    m_contactsAsked = std::min(m_contactsAsked, kFirstContacts);
+}
+
+void DeviceBackend::giveBackRoom()
+{
+    m_device->wait();
+    if (patches()) m_patchCull.giveBackRoom(*m_device);
+    m_compaction.giveBackRoom();
+    reserveFirst();
 }
 
 // A step of one triangle over another: some drivers compile a kernel again at its first launch with a group size.
@@ -123,16 +138,15 @@ void DeviceBackend::uploadSide(const MeshPool& pool, const BvhLayout& layout, Si
     side.m_triangles.append(*m_device, pool.triangles(), pool.begin(first).m_triangle);
     if (m_settings.m_reduceContacts) side.m_firsts.assign(*m_device, pool.firsts());
     // The cull over patches needs no hierarchy of triangles.
-    std::vector<BvhNode> nodes;
     if (!patches())
     {
         side.m_order.assign(*m_device, pool.order());
         side.m_layout = layoutByHeights(layout);
-        nodes = makeBvhNodes(side.m_layout);
+        const std::vector<BvhNode> nodes = makeBvhNodes(side.m_layout);
+        const WaitAtEnd wait(*m_device);
         side.m_nodes.assign(*m_device, nodes);
         m_refit.makeLevels(*m_device, side.m_layout, side.m_levels);
     }
-    if (!nodes.empty()) m_device->wait();  // they are a local
 }
 
 // The cull over patches needs an order of the cloths alone: that of their own patches, since it walks for packets.
@@ -214,12 +228,12 @@ void DeviceBackend::updateObstacles(const Scene& scene, std::size_t fresh)
 void DeviceBackend::refitObstacles(const Scene& scene)
 {
     const std::vector<float> noRadius(scene.m_obstacles.meshCount(), 0.0f);
+    const WaitAtEnd wait(*m_device);
     m_obstacle.m_radius.assign(*m_device, noRadius);
     m_refit.enqueue(*m_device, m_obstacle.m_layout, m_obstacle.m_levels, m_obstacle.m_nodes, m_obstacle.m_order,
                     m_obstacle.m_triangles, m_placed.positions(), m_placed.positions(), m_obstacle.m_radius,
                     m_refitCounters);
     m_broadPhase.obstaclesRefitted(*m_device, m_obstacle.m_nodes);
-    m_device->wait();  // noRadius is a local
 }
 
 void DeviceBackend::writeNodes(const Scene& scene, std::size_t first, std::size_t count)

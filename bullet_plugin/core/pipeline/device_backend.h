@@ -33,6 +33,8 @@ public:
 
     // Brings meshes that came, and obstacles that moved, to the device, and waits.
     void prepare(const Scene& scene);
+    // Gives back memory of lists that only earlier steps with more contacts needed. Waits.
+    void giveBackRoom();
     // Begins to bring nodes of the cloths, start and end, to the device before the step is submitted. False where the
     // device does not know the cloths yet.
     bool sendNodes(const Scene& scene, std::size_t first, std::size_t count);
@@ -66,6 +68,8 @@ private:
         std::uint32_t m_revision = 0;
     };
 
+    // Makes room for as much as a first step may list.
+    void reserveFirst();
     void warmUp(float selfThickness = 0.0f);
     // The next scene is brought here from its first mesh on.
     void forgetScene();
@@ -132,7 +136,7 @@ private:
     std::size_t m_turn = 0;
     int m_stepsToOrder = 1;
     std::size_t m_testsBefore = SIZE_MAX, m_hitsBefore = SIZE_MAX;  // feature tests and hits of the step before
-    Staging<Contact> m_contactsRead;                                // behind a head as on the device
+    std::unique_ptr<Staging<Contact>> m_contactsRead;               // behind a head as on the device
     std::size_t m_contactsAsked = 0;
     std::vector<float> m_sentThickness, m_sentTube, m_sentRadius;
 };

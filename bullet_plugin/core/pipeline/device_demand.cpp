@@ -21,14 +21,14 @@ constexpr int kStepsToOrder = 64;
 
 void DeviceBackend::readContacts(std::size_t count)
 {
-    m_compaction.contacts().read(*m_device, m_contactsRead.data(), DRAPE_CONTACT_HEAD + count);
+    m_compaction.contacts().read(*m_device, m_contactsRead->data(), DRAPE_CONTACT_HEAD + count);
 }
 
 StepCounters DeviceBackend::countersRead() const
 {
     StepCounters counters;
     static_assert(sizeof(counters) <= DRAPE_CONTACT_HEAD * sizeof(Contact));
-    std::memcpy(&counters, m_contactsRead.data(), sizeof(counters));
+    std::memcpy(&counters, m_contactsRead->data(), sizeof(counters));
     return counters;
 }
 
@@ -159,13 +159,13 @@ void DeviceBackend::readAll(StepResult& result)
     const bool inHand = count <= m_contactsAsked;
     if (!inHand)
     {
-        m_contactsRead.reserve(m_device.get(), DRAPE_CONTACT_HEAD + withHeadroom(count));
+        m_contactsRead->reserve(m_device.get(), DRAPE_CONTACT_HEAD + withHeadroom(count));
         readContacts(count);
     }
     if (!inHand || m_settings.m_reportIntersections) m_device->wait();
-    result.m_deviceContacts = ContactList{m_contactsRead.data() + DRAPE_CONTACT_HEAD, count};
+    result.m_deviceContacts = ContactList{m_contactsRead->data() + DRAPE_CONTACT_HEAD, count};
     m_contactsAsked = std::min(
-        {count + count / 16 + 256, m_contactsRead.capacity() - DRAPE_CONTACT_HEAD, m_compaction.hitCapacity()});
+        {count + count / 16 + 256, m_contactsRead->capacity() - DRAPE_CONTACT_HEAD, m_compaction.hitCapacity()});
     sortCandidates(result.m_intersections);
 }
 }  // namespace drape

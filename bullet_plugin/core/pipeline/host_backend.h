@@ -21,6 +21,9 @@ public:
     // Runs the whole step.
     void run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
 
+    // Gives back room that only earlier, larger steps needed. Between steps.
+    void giveBackRoom() { m_patches.giveBackRoom(); }
+
     // The step's pairs of triangles per cloth slot: exact, however many; of cloths with themselves up to the limit.
     std::vector<std::uint64_t> countCandidates(const Scene& scene, const StepPairs& pairs, const Settings& settings);
 

@@ -23,6 +23,16 @@ public:
     SelfCounts runSelf(const Scene& scene, const SelfStep& step, SelfStepLimits limits, ThreadTeam& threads,
                        StepResult& result);
 
+    // Gives back room that only earlier, larger steps needed. Between steps.
+    void giveBackRoom()
+    {
+        m_cull.giveBackRoom();
+        m_placed.giveBackRoom();
+        dropRoom(m_clothOrder);
+        m_hits.giveBackRoom();
+        m_self.giveBackRoom();
+    }
+
 private:
     void updateObstacles(const Scene& scene, std::size_t fresh);
 

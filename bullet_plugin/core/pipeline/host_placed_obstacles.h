@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "bullet_plugin/core/mesh/reserve_room.h"
 #include "obstacle_changes.h"
 
 namespace drape
@@ -17,6 +18,13 @@ public:
     void update(const Scene& scene, std::size_t fresh);
     // By the last update().
     bool moved(std::size_t slot) const { return m_changes.moved(slot); }
+
+    void giveBackRoom()
+    {
+        dropRoom(m_positions);
+        dropRoom(m_vertexCones);
+        dropRoom(m_edgeCones);
+    }
 
     ObstacleView view(const Scene& scene) const;
 

@@ -73,7 +73,8 @@ struct Pipeline::Implementation
     std::vector<NamedPair> m_notedPairs;  // those that m_choice has taken in last
     std::vector<MeshId> m_notedSelf;
     DeviceInfo m_openClDevice;
-    std::string m_deviceReason;  // why this device and no other
+    std::size_t m_deviceIndex = 0;  // into deviceInfos()
+    std::string m_deviceReason;     // why this device and no other
     MeshId m_nextId = 0;
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
     std::uint32_t m_stepRevision = 0;                 // of the obstacles, in the last step with a pair
@@ -126,8 +127,9 @@ struct Pipeline::Implementation
     void collectTubes();
     // Makes a device ready for cloths that collide with themselves.
     void prepareSelf();
-    // False, with error filled, when the device cannot be opened or its kernels made ready; nothing of it is kept.
-    bool openDevice(const DeviceChoice& choice, Error& error);
+    // False, with error filled, when the device that was chosen cannot be opened or its kernels made ready; nothing of
+    // it is kept.
+    bool openDevice(Error& error);
     // After the device's failure everything goes on, on the host, to the end.
     void leaveDevice();
     void goOnWithoutDevice(const Error& error);

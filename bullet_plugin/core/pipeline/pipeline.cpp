@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "bullet_plugin/core/mesh/check_indices.h"
+#include "bullet_plugin/core/mesh/reserve_room.h"
 #include "bullet_plugin/core/stopwatch.h"
 #include "check_settings.h"
 #include "scene_work.h"
@@ -36,11 +37,10 @@ void Pipeline::Implementation::goOnWithoutDevice(const Error& error)
     m_choice.end();
 }
 
-bool Pipeline::Implementation::openDevice(const DeviceChoice& choice, Error& error)
+bool Pipeline::Implementation::openDevice(Error& error)
 {
     Stopwatch watch;
-    m_openClDevice = choice.m_device;
-    std::unique_ptr<Device> device = Device::open(choice.m_index, error, m_settings.m_profileKernels);
+    std::unique_ptr<Device> device = Device::open(m_deviceIndex, error, m_settings.m_profileKernels);
     if (!device) return false;
     m_deviceBackend.reset(new DeviceBackend(std::move(device), m_settings));
     if (m_deviceBackend->device().failed())
@@ -73,7 +73,9 @@ std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& erro
     self.m_report.m_reason = self.m_deviceReason = choice.m_reason;
     self.m_report.m_device.m_name = "host";
     if (choice.m_onHost) return pipeline;
-    if (!self.openDevice(choice, error))
+    self.m_openClDevice = choice.m_device;
+    self.m_deviceIndex = choice.m_index;
+    if (!self.openDevice(error))
     {
         if (!choice.m_byCost) return nullptr;
         self.goOnWithoutDevice(error);
@@ -82,6 +84,34 @@ std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& erro
     }
     if (self.costDecides(choice) && !self.beginChoice(*pipeline, error)) return nullptr;
     return pipeline;
+}
+
+void Pipeline::restart()
+{
+    Implementation& old = *m_implementation;
+    std::unique_ptr<Implementation> fresh = std::make_unique<Implementation>();
+    fresh->m_settings = old.m_settings;
+    fresh->m_report = old.m_report;
+    fresh->m_error = old.m_error;
+    fresh->m_openClDevice = old.m_openClDevice;
+    fresh->m_deviceIndex = old.m_deviceIndex;
+    fresh->m_deviceReason = old.m_deviceReason;
+    fresh->m_nextId = old.m_nextId;
+    fresh->m_deviceLeft = old.m_deviceLeft;
+    fresh->m_threads = old.m_threads;
+    fresh->m_hostBackend = std::make_unique<HostBackend>(fresh->m_settings, fresh->m_threads);
+    const bool hasDevice = old.m_deviceBackend && !old.m_deviceLeft;
+    Error error;
+    if (hasDevice && !fresh->openDevice(error))
+    {
+        fresh->goOnWithoutDevice(error);
+    }
+    else if (old.m_choice.active())
+    {
+        fresh->m_choice.begin(old.m_choice.crossover());
+        fresh->useChosen();
+    }
+    m_implementation = std::move(fresh);
 }
 
 const DeviceReport& Pipeline::deviceReport() const
@@ -147,6 +177,25 @@ void Pipeline::prepare()
     if (!onDevice) return;
     self.m_deviceBackend->prepare(self.m_scene);
     if (self.m_deviceBackend->device().failed()) self.leaveDevice();
+}
+
+void Pipeline::giveBackRoom()
+{
+    Implementation& self = *m_implementation;
+    assert(!self.m_submitted);
+    Scene& scene = self.m_scene;
+    self.joinScene();
+    self.m_result = StepResult();
+    if (Device* device = self.device()) device->wait();  // it may still read the scene's arrays
+    if (self.m_deviceBackend && !self.m_deviceLeft) self.m_deviceBackend->giveBackRoom();
+    scene.m_cloths.giveBackRoom();
+    scene.m_obstacles.giveBackRoom();
+    dropRoom(scene.m_clothRest);
+    dropRoom(scene.m_obstaclePositions);
+    dropRoom(scene.m_vertexCones);
+    dropRoom(scene.m_edgeCones);
+    dropRoom(scene.m_places);
+    self.m_hostBackend->giveBackRoom();
 }
 
 void Pipeline::moveObstacle(MeshId id, const float* positions)

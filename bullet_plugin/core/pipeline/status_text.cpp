@@ -1,5 +1,6 @@
 #include <cstdio>
 
+#include "bullet_plugin/core/public_call.h"
 #include "drape/report.h"
 #include "drape/settings.h"
 
@@ -26,10 +27,15 @@ std::string statusText(std::uint32_t status)
         {kStepFacesLeftOut, "faces or links that name another body's nodes left out"},
         {kStepSurfacePassed, "a surface may have been passed where links pulled"},
         {kStepMotionHeldBack, "nodes of cloth that came apart held back"},
+        {kStepOutOfMemory, "memory ran out and cloth beside meshes stood still"},
     };
-    std::string text;
-    for (const auto& clause : clauses)
-        if (status & clause.m_bit) text += (text.empty() ? "" : "; ") + std::string(clause.m_text);
-    return text;
+    return guardedOr(std::string(kOutOfMemory),
+                     [&]
+                     {
+                         std::string text;
+                         for (const auto& clause : clauses)
+                             if (status & clause.m_bit) text += (text.empty() ? "" : "; ") + std::string(clause.m_text);
+                         return text;
+                     });
 }
 }  // namespace drape

@@ -8,6 +8,7 @@
 #include "bullet_plugin/core/mesh/check_indices.h"
 #include "bullet_plugin/core/pipeline/check_settings.h"
 #include "bullet_plugin/core/pipeline/step.h"
+#include "bullet_plugin/core/public_call.h"
 #include "bullet_plugin/core/self_collision/leaf_pair_count.h"
 #include "bullet_plugin/core/stopwatch.h"
 #include "kernels/lib/triangle_pair.h"
@@ -23,6 +24,25 @@ struct Queries::Implementation
     DeviceReport m_report;
     Error m_error;
     std::unique_ptr<QueryDevice> m_device;  // null on the host
+
+    static std::unique_ptr<Queries> make(const Settings& settings, Error& error);
+    bool motions(const CcdQuery* queries, std::size_t count, const CcdSettings& settings, CcdResult* results);
+    bool triangles(const TriangleQuery* queries, std::size_t count, TriangleTest test, std::uint32_t* results);
+    bool meshPairs(const MeshDescription& a, const MeshDescription* b, float radius, MeshPairs& found);
+    bool meshMotion(const MeshDescription& description, const float* end, const CcdSettings& settings,
+                    MeshMotion& found);
+
+    // Returns what a public function's work does; false, with the error filled, where it throws.
+    template <class Work>
+    bool answer(const char* call, const Work& work)
+    {
+        return guarded(work,
+                       [&](const CaughtException& caught)
+                       {
+                           setError(m_error, call, caught);
+                           return false;
+                       });
+    }
 
     bool check(bool good)
     {
@@ -84,9 +104,52 @@ CcdSettings defaultCcdSettings()
 }
 
 Queries::Queries(const Settings& settings) : m_implementation(new Implementation(settings)) {}
-Queries::~Queries() = default;
+
+Queries::~Queries()
+{
+    const DefaultFloats floats;
+    m_implementation.reset();
+}
 
 std::unique_ptr<Queries> Queries::create(const Settings& settings, Error& error)
+{
+    return guarded([&] { return Implementation::make(settings, error); },
+                   [&](const CaughtException& caught)
+                   {
+                       setError(error, "drape::Queries::create", caught);
+                       return std::unique_ptr<Queries>();
+                   });
+}
+
+bool Queries::motions(const CcdQuery* queries, std::size_t count, const CcdSettings& settings, CcdResult* results)
+{
+    return m_implementation->answer("motions",
+                                    [&] { return m_implementation->motions(queries, count, settings, results); });
+}
+
+bool Queries::triangles(const TriangleQuery* queries, std::size_t count, TriangleTest test, std::uint32_t* results)
+{
+    return m_implementation->answer("triangles",
+                                    [&] { return m_implementation->triangles(queries, count, test, results); });
+}
+
+bool Queries::meshPairs(const MeshDescription& a, const MeshDescription* b, float radius, MeshPairs& found)
+{
+    const bool good =
+        m_implementation->answer("meshPairs", [&] { return m_implementation->meshPairs(a, b, radius, found); });
+    if (!good) found = MeshPairs();
+    return good;
+}
+
+bool Queries::meshMotion(const MeshDescription& mesh, const float* end, const CcdSettings& settings, MeshMotion& found)
+{
+    const bool good = m_implementation->answer(
+        "meshMotion", [&] { return m_implementation->meshMotion(mesh, end, settings, found); });
+    if (!good) found = MeshMotion();
+    return good;
+}
+
+std::unique_ptr<Queries> Queries::Implementation::make(const Settings& settings, Error& error)
 {
     Stopwatch watch;
     error = Error();
@@ -130,17 +193,16 @@ const Error& Queries::error() const
     return m_implementation->m_error;
 }
 
-bool Queries::motions(const CcdQuery* queries, std::size_t count, const CcdSettings& settings, CcdResult* results)
+bool Queries::Implementation::motions(const CcdQuery* queries, std::size_t count, const CcdSettings& settings,
+                                      CcdResult* results)
 {
-    Implementation& self = *m_implementation;
-    if (!self.require(count == 0 || (queries && results), "motions", "an array is missing") ||
-        !self.requireSettings(settings, "motions"))
+    if (!require(count == 0 || (queries && results), "motions", "an array is missing") ||
+        !requireSettings(settings, "motions"))
         return false;
     const CcdQuery* const unknown =
         std::find_if(queries, queries + count, [](const CcdQuery& query) { return query.m_kind > DRAPE_EDGES; });
-    if (!self.require(unknown == queries + count, "motions", "a query with a kind that is neither of the two"))
-        return false;
-    if (self.m_device) return self.check(self.m_device->motions(queries, count, settings, results));
+    if (!require(unknown == queries + count, "motions", "a query with a kind that is neither of the two")) return false;
+    if (m_device) return check(m_device->motions(queries, count, settings, results));
     for (std::size_t i = 0; i < count; ++i)
     {
         Vec3 start[4], end[4];
@@ -154,40 +216,40 @@ bool Queries::motions(const CcdQuery* queries, std::size_t count, const CcdSetti
     return true;
 }
 
-bool Queries::triangles(const TriangleQuery* queries, std::size_t count, TriangleTest test, std::uint32_t* results)
+bool Queries::Implementation::triangles(const TriangleQuery* queries, std::size_t count, TriangleTest test,
+                                        std::uint32_t* results)
 {
-    Implementation& self = *m_implementation;
-    if (!self.require(count == 0 || (queries && results), "triangles", "an array is missing") ||
-        !self.require(test >= TriangleTest::Certified && test <= TriangleTest::Moller, "triangles", "an unknown test"))
+    if (!require(count == 0 || (queries && results), "triangles", "an array is missing") ||
+        !require(test >= TriangleTest::Certified && test <= TriangleTest::Moller, "triangles", "an unknown test"))
         return false;
     const std::uint32_t fast = test == TriangleTest::Moller ? DRAPE_TEST_MOLLER : DRAPE_TEST_CERTIFIED;
-    if (self.m_device && !self.check(self.m_device->triangles(queries, count, fast, results))) return false;
+    if (m_device && !check(m_device->triangles(queries, count, fast, results))) return false;
     for (std::size_t i = 0; i < count; ++i)
     {
-        if (!self.m_device) results[i] = testOnHost(queries[i], fast);
+        if (!m_device) results[i] = testOnHost(queries[i], fast);
         if (test == TriangleTest::Exact && results[i] != 0)
             results[i] = trianglesMeet(exactTriangle(queries[i].m_a), exactTriangle(queries[i].m_b));
     }
     return true;
 }
 
-bool Queries::meshPairs(const MeshDescription& a, const MeshDescription* b, float radius, MeshPairs& found)
+bool Queries::Implementation::meshPairs(const MeshDescription& a, const MeshDescription* b, float radius,
+                                        MeshPairs& found)
 {
-    Implementation& self = *m_implementation;
     found = MeshPairs();
-    if (!checkIndices(a, "meshPairs", self.m_error)) return false;
-    if (b && !checkIndices(*b, "meshPairs", self.m_error)) return false;
-    if (!self.require(std::isfinite(radius) && radius >= 0.0f, "meshPairs", "a radius that is negative or not finite"))
+    if (!checkIndices(a, "meshPairs", m_error)) return false;
+    if (b && !checkIndices(*b, "meshPairs", m_error)) return false;
+    if (!require(std::isfinite(radius) && radius >= 0.0f, "meshPairs", "a radius that is negative or not finite"))
         return false;
     QueryMesh first = makeQueryMeshWithEdges(a, a.m_positions), other;
     if (b) other = makeQueryMeshWithEdges(*b, b->m_positions);
     QueryMesh& second = b ? other : first;
-    PairDecision decision(first, second, double(radius), self.m_limits.m_contacts, found);
-    const std::uint64_t limit = self.m_limits.m_candidates;
+    PairDecision decision(first, second, double(radius), m_limits.m_contacts, found);
+    const std::uint64_t limit = m_limits.m_candidates;
     bool within = true;
-    if (!self.m_device)
+    if (!m_device)
         within = pairsOnHost(first, second, radius, limit, found.m_candidates, decision);
-    else if (!self.check(self.m_device->meshPairs(first, second, radius, limit, found.m_candidates, decision, within)))
+    else if (!check(m_device->meshPairs(first, second, radius, limit, found.m_candidates, decision, within)))
         return false;
     decision.finish();
     if (within) return true;
@@ -198,26 +260,25 @@ bool Queries::meshPairs(const MeshDescription& a, const MeshDescription* b, floa
     return true;
 }
 
-bool Queries::meshMotion(const MeshDescription& description, const float* end, const CcdSettings& settings,
-                         MeshMotion& found)
+bool Queries::Implementation::meshMotion(const MeshDescription& description, const float* end,
+                                         const CcdSettings& settings, MeshMotion& found)
 {
-    Implementation& self = *m_implementation;
     found = MeshMotion();
-    if (!checkIndices(description, "meshMotion", self.m_error)) return false;
-    if (!self.require(end || description.m_vertexCount == 0, "meshMotion", "an array is missing") ||
-        !self.requireSettings(settings, "meshMotion"))
+    if (!checkIndices(description, "meshMotion", m_error)) return false;
+    if (!require(end || description.m_vertexCount == 0, "meshMotion", "an array is missing") ||
+        !requireSettings(settings, "meshMotion"))
         return false;
     QueryMesh mesh = makeQueryMesh(description, end);
-    const SelfLimits limits = {self.m_limits.m_candidates, self.m_limits.m_contacts};
+    const SelfLimits limits = {m_limits.m_candidates, m_limits.m_contacts};
     SelfCollisions collisions;
-    if (!self.m_device)
+    if (!m_device)
     {
         mesh.refit(selfRadius(settings));
         const HostMotion motion = {mesh.tree(), mesh.m_topology.m_edges, mesh.m_start, mesh.m_end,
                                    description.m_vertexCount};
         selfCollideOnHost(motion, settings, limits, collisions);
     }
-    else if (!self.check(self.m_device->meshMotion(mesh, settings, limits, collisions)))
+    else if (!check(m_device->meshMotion(mesh, settings, limits, collisions)))
         return false;
     sortHits(collisions.m_hits);
     found.m_limits = (collisions.m_untested ? kQueryCandidateLimit : kQueryWhole) |

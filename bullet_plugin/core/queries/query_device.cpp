@@ -68,6 +68,7 @@ void QueryDevice::upload(const QueryMesh& source, float radius, Mesh& mesh)
     const std::size_t floats = 3 * source.m_topology.m_vertexCount;
     const std::vector<std::uint32_t> last = lastLeaves(source.m_nodes, source.m_layout.leafCount());
     const std::vector<float> radii = {radius};
+    const WaitAtEnd wait(device);
     mesh.m_nodes.assign(device, source.m_nodes);
     mesh.m_order.assign(device, source.m_order);
     mesh.m_lastLeaf.assign(device, last);
@@ -82,7 +83,6 @@ void QueryDevice::upload(const QueryMesh& source, float radius, Mesh& mesh)
     m_refitCounters.fill(device, 0, 1);
     m_refit.enqueue(device, source.m_layout, mesh.m_levels, mesh.m_nodes, mesh.m_order, mesh.m_triangles, mesh.m_start,
                     mesh.m_end, mesh.m_radius, m_refitCounters);
-    device.wait();  // locals were uploaded
 }
 
 DeviceTreeView QueryDevice::tree(const QueryMesh& source, Mesh& mesh) const

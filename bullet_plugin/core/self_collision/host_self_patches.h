@@ -27,6 +27,12 @@ public:
 
     // Of the step.
     SelfCounts counts() const;
+    // Gives back the memory of all that was found.
+    void giveBackRoom()
+    {
+        m_tests = std::vector<FeatureTest>();
+        m_hits.giveBackRoom();
+    }
 
 private:
     bool isWorth(const SelfStep& step) const;  // to wake threads

@@ -46,11 +46,12 @@ void SelfContactStage::setTopology(Device& device, const MeshPool& cloths, const
     m_layout = makePatches(cloths, rest.data(), std::uint32_t(width));
     const std::vector<cl_uint> vertexIds = vertexIdsOf(m_layout.m_vertexOwners, cloths.triangles());
     const std::vector<cl_uint> edgeIds = edgeIdsOf(m_layout.m_edgeOwners, cloths.triangles());
+    std::vector<cl_uint> faceNodes, edgeNodes;
+    const WaitAtEnd wait(device);
     m_patches.assign(device, m_layout.m_patches);
     m_faceIds.assign(device, m_layout.m_faceOwners);
     m_vertexIds.assign(device, vertexIds);
     m_edgeIds.assign(device, edgeIds);
-    std::vector<cl_uint> faceNodes, edgeNodes;
     if (!device.isGpu())
     {
         faceNodes = faceNodesOf(m_layout.m_faceOwners, cloths.triangles(), std::uint32_t(width));
@@ -65,7 +66,6 @@ void SelfContactStage::setTopology(Device& device, const MeshPool& cloths, const
     m_edgeBoxes.reserve(device, edgeIds.size() * floats);
     m_wideNodes.reserve(device, m_layout.m_levels.back() * DRAPE_WIDE_NODE_FLOATS * width);
     m_rest.assign(device, rest);
-    device.wait();  // ids are locals; topology changes are rare
 }
 
 void SelfContactStage::setReach(Device& device, const SelfReach& reach)

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h"
+#include "drape/precision.h"
 
 namespace drape
 {

@@ -2,13 +2,16 @@
 //
 // Job: choose the device, keep the mirrors of cloths and obstacles, answer questions about the last step. Input:
 // Settings. Guarantee: no exception leaves this class; when Drape cannot start, error() says why and every pair goes to
-// Bullet's own algorithm. Make it before the collision configuration and the solver; they keep its state alive, so that
-// it may go before them, if Bullet's own rule holds (configuration and solver outlive the world). Not so a dispatcher
-// that install() gave it to: that has to go first.
-// One plugin serves one thread; it may serve several worlds of that thread, each with a solver of its own. A dispatcher
-// of several threads (btCollisionDispatcherMt) is not supported: Bullet's soft bodies are not either. A child that
-// fork() makes has neither the plugin's threads nor its device: it must not use it, nor end it, but end by exec() or
-// _exit(). SI units, world frame. C++11.
+// Bullet's own algorithm. Where memory runs out, a call does what its comment says then; later calls and steps go on.
+// All of it computes in the default floating-point environment, whatever traps, rounding or flushing the app has set,
+// and leaves the app's as it was. SI units, world frame. C++11.
+//
+// Make it before the collision configuration and the solver; they keep its state alive, so that it may go before them,
+// if Bullet's own rule holds (configuration and solver outlive the world). Not so a dispatcher that install() gave it
+// to: that has to go first. One plugin serves one thread; it may serve several worlds of that thread, each with a
+// solver of its own. Several threads may have a plugin each. A dispatcher of several threads (btCollisionDispatcherMt)
+// is not supported: Bullet's soft bodies are not either. A child that fork() makes has neither the plugin's threads nor
+// its device: it must not use it, nor end it, but end by exec() or _exit().
 //
 // The thickness of a pair, at which cloth comes to rest, is the soft body's collision margin plus the mesh shape's
 // margin (body->getCollisionShape()->getMargin() + shape->getMargin()); at least 0.1 mm. Bullet makes a soft body's
@@ -30,6 +33,7 @@
 #include <string>
 #include <vector>
 
+#include "drape/precision.h"
 #include "drape/report.h"
 #include "drape/settings.h"
 
@@ -66,33 +70,38 @@ public:
 
     bool ready() const;  // false: every pair goes to Bullet's own algorithm, as far as whyStock() has it
     // What failed, with the whole log; empty when nothing did. ready() all the same: the host took over from a device.
+    // "out of memory" where there is none for the text, or was none for the plugin.
     std::string error() const;
 
     const DeviceReport& device() const;
-    const StepStatistics& statistics() const;   // of the last step that one of this plugin's solvers solved
-    std::vector<ContactInfo> contacts() const;  // of that step, in canonical order; made by the call
-    std::string report() const;                 // device, why it, and the last step in one line
+    const StepStatistics& statistics() const;  // of the last step that one of this plugin's solvers solved
+    // Of that step, in canonical order; made by the call. Empty where memory runs out.
+    std::vector<ContactInfo> contacts() const;
+    // Device, why it, and the last step in one line. "out of memory" where there is none for it.
+    std::string report() const;
 
     // Empty when Drape handles the pair, else the reason why Bullet's own algorithm does. For a compound the first
     // child that Drape does not handle gives the reason; a mesh that does not lie where its compound does, which
     // Bullet's own would miss, is named as such. After an object got a shape of another kind, Bullet keeps what it
     // chose for the old one until its pairs are cleaned (cleanProxyFromPairs); this goes by the shape that it has. For
     // objects in a world the answer holds for that world's dispatcher and for the solver that steps it. Which solver
-    // that is shows in the first step only: until then it is taken to be the soft body's own.
+    // that is shows in the first step only: until then it is taken to be the soft body's own. "out of memory" where
+    // that keeps it from telling.
     std::string whyStock(const btCollisionObject* objectA, const btCollisionObject* objectB) const;
 
     // Lists what is wrong with a world as far as the plugin can see, a line each; empty when nothing is: a world
     // without the plugin's solver or algorithm, pairs that are left to Bullet and why, cloth whose triangles intersect
     // a mesh or that lies inside of one, nodes that are not finite, margins that are negative or out of proportion, and
     // what the last step's status says. For development: it looks at every pair, which takes milliseconds to seconds.
-    // Between steps.
+    // Between steps. "out of memory" where that keeps it from telling.
     std::string diagnose(const btCollisionWorld& world) const;
 
     // Reads a soft body, or an obstacle's meshes (a compound's children, too), and brings them to the device: without
     // it the first step in which cloth comes near pays for that. What Drape does not handle costs nothing. Kept,
     // whether paired or not, until release(), before which the object must live; changes are noticed as of any other.
     // An object in a world or not; not while that is stepped. Where cost decides between host and device
-    // (Settings::m_crossover), for the device, and for the host while all that is prepared may stay there.
+    // (Settings::m_crossover), for the device, and for the host while all that is prepared may stay there. Where memory
+    // runs out, nothing stays prepared, and cloth stands still in the next step, whose status says so.
     void prepare(const btCollisionObject* object);
     // All of a world's objects at once, which on the host takes less time than one after the other.
     void prepare(const btCollisionWorld& world);
@@ -117,7 +126,8 @@ public:
     // Whether only a mesh shape's front is solid, the side from which its triangles' corners run counter-clockwise:
     // cloth that is behind may come out instead of being caught inside. A mirrored mesh (scaled by a negative number)
     // keeps its front. Off unless it is switched on. The shape (a scaled one's own, or the mesh shape that it shows) is
-    // remembered by its address until it is switched off again.
+    // remembered by its address until it is switched off again. Where memory runs out it stays as it was, and cloth
+    // stands still in the next step, whose status says so.
     void setOneSided(const btCollisionShape* shape, bool oneSided);
 
     // For the other classes of this library.

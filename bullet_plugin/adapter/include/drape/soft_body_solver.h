@@ -7,13 +7,18 @@
 // contacts gets two iterations at least, whatever its piterations (but for 0). Bullet's m_rcontacts and
 // m_scontacts hold Bullet's own contacts only; Plugin::contacts() has Drape's. A body whose step has no time (a step of
 // 0, a timescale of 0 or less) stays as it is, and nothing is looked for. A body that sleeps is woken by a kinematic
-// mesh that comes near it. Bodies of another solver are left to Bullet. One solver serves one world. C++11.
+// mesh that comes near it. Bodies of another solver are left to Bullet. One solver serves one world.
+//
+// No exception leaves this class. Where memory runs out in a step, cloth that Drape takes stands still in it, and the
+// step's status says so (kStepOutOfMemory); the next step goes on. A solver that could not be made for want of memory
+// acts as Bullet's default one, and Plugin::whyStock says so. C++11.
 #pragma once
 
 #include <memory>
 #include <vector>
 
 #include "BulletSoftBody/btDefaultSoftBodySolver.h"
+#include "drape/precision.h"
 
 namespace drape
 {
@@ -34,12 +39,15 @@ public:
 private:
     struct Work;
 
+    void beginStep(btScalar dt, std::vector<StepObstacle>& obstacles);
     void listTaken();
     std::vector<StepObstacle> wakeReached(KinematicMotions& motions);
     void listPredicted();
+    void coverMotions(const std::vector<StepObstacle>& obstacles);
     void detect();
     double solveBodies();
-    void checkStrayed();
+    void solveStep();
+    void endFailedStep();
 
     std::shared_ptr<PluginState> m_state;
     std::unique_ptr<Work> m_work;

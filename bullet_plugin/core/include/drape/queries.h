@@ -4,8 +4,8 @@
 // Job: batches of single pairs, and whole meshes with their own hierarchies, made for the call. Guarantee: no true pair
 // is denied; the same answers, bit for bit, on every back end. Lists grow and the work is done in batches; what is
 // beyond Settings::m_candidateLimit and m_contactLimit is counted and said to be so, so that memory and time are
-// bounded. Cost: each call uploads, computes and waits. Lengths in metres. Knows no Bullet and needs no plugin. Not
-// thread-safe. C++11, no OpenCL header needed.
+// bounded. Cost: each call uploads, computes and waits, in the default floating-point environment, whatever the app's
+// is. Lengths in metres. Knows no Bullet and needs no plugin. Not thread-safe. C++11, no OpenCL header needed.
 #pragma once
 
 #include <cstddef>
@@ -84,7 +84,7 @@ public:
     // Chooses the device and makes its kernels ready; keeps the settings' limits. Returns null and fills error when
     // settings ask for what is not there or does not work, or are out of their ranges. Backend::Auto is the first
     // device, whatever the work, and the host where there is none or it fails: then error() of what is returned says
-    // why.
+    // why. Returns null, too, where memory runs out.
     static std::unique_ptr<Queries> create(const Settings& settings, Error& error);
     ~Queries();
     Queries(const Queries&) = delete;
@@ -92,8 +92,9 @@ public:
 
     const DeviceReport& deviceReport() const;
 
-    // Each returns false when the device failed, a mesh has an index out of range, an array is missing, or a kind or a
-    // length is none; error() says how of the last that did.
+    // Each returns false when the device failed, a mesh has an index out of range, an array is missing, a kind or a
+    // length is none, or memory ran out; error() says how of the last that did. Then nothing is found, and results are
+    // not to be read; further calls may succeed. No exception leaves this class.
     const Error& error() const;
 
     // results: count of them.

@@ -31,19 +31,21 @@ struct DeviceReport
     double m_expectedPairs = 0;  // of triangles: as many as there were, lay every cloth wholly on the obstacle where it
                                  // has most
     double m_crossover = 0;      // of these pairs: the host up to it, the device above; infinite: never
-    // "measured now", "measured before", "set", or "its steps are not the host's": such a device is not used, and
-    // the error says so.
+    // "measured now", "measured before", "set", or why such a device is not used, for example "its steps are not the
+    // host's", as the error says, too. Measured ", on a busy machine" it is measured again at later starts, three at
+    // most.
     std::string m_crossoverSource;
     double m_measureMs = 0;  // that it took to measure now
 };
 
 struct Settings;
 
-// Every OpenCL device there is, in the order in which Drape would choose. Empty when there is none.
+// Every OpenCL device there is, in the order in which Drape would choose. Empty when there is none, and where memory
+// runs out.
 std::vector<DeviceInfo> listDevices();
 
 // Whether what settings and DRAPE_DEVICE ask for is there: empty, or in one line why not and which devices there are.
-// Where cost decides it also says what is wrong with DRAPE_CROSSOVER.
+// Where cost decides it also says what is wrong with DRAPE_CROSSOVER. "out of memory" where that is why it cannot tell.
 std::string whyNoDevice(const Settings& settings);
 
 // Bits of StepStatistics::m_status. Zero is a good step.
@@ -68,10 +70,13 @@ enum StepStatusBits : std::uint32_t
     // A cloth's links pulled it so far that it may have passed a surface; the next step checks it.
     kStepSurfacePassed = 1u << 7,
     // Nodes of a cloth that came apart went less far than they would have; its contacts are all there.
-    kStepMotionHeldBack = 1u << 8
+    kStepMotionHeldBack = 1u << 8,
+    // Memory ran out in the step, or in a call before it: cloth that Drape takes stood still. Steps after it go on.
+    kStepOutOfMemory = 1u << 9
 };
 
-// What StepStatistics::m_status says, in words: one clause a bit, joined by "; ". Empty for a good step.
+// What StepStatistics::m_status says, in words: one clause a bit, joined by "; ". Empty for a good step. "out of
+// memory" where there is none for the text.
 std::string statusText(std::uint32_t status);
 
 // One kernel launch as the device timed it; only with Settings::m_profileKernels.

@@ -43,8 +43,10 @@ struct Settings
     // over between two steps, and comes back below half of it. 0: always the device. Infinite: always the host.
     // Negative: the environment variable DRAPE_CROSSOVER, and if that is empty, what is measured for the machine, the
     // device, m_mode, m_activation and m_reduceContacts: once, which takes a second or two while the first pipeline
-    // with them is made, and kept in the cache folder (crossover-*.txt). Cost decides over the default traversal alone
-    // (Methods::m_traversal), and not with m_reportIntersections or m_profileKernels: then the device runs every step.
+    // with them is made, and kept in the cache folder (crossover-*.txt). Where other processes kept the machine busy
+    // meanwhile, or its times varied widely, it is measured again at the next starts, three at most. Cost decides over
+    // the default traversal alone (Methods::m_traversal), and not with m_reportIntersections or m_profileKernels: then
+    // the device runs every step.
     double m_crossover = -1;
 
     // Contacts are reported up to thickness + m_activation × thickness, so that the solver knows of a surface before

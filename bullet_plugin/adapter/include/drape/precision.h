@@ -1,0 +1,31 @@
+// Keeps an app in one of Bullet's precisions from being built with a library in the other: their records differ in size
+// and the app would crash.
+//
+// BT_USE_DOUBLE_PRECISION is Bullet's macro, as the app has it; DRAPE_BULLET_DOUBLE is the library's, which its CMake
+// package and its pkg-config file define. Where neither of these is used, the linker misses a symbol whose name says
+// which precision the app asks for. Cost: a pointer in each translation unit.
+#pragma once
+
+#ifdef BT_USE_DOUBLE_PRECISION
+#if defined(DRAPE_BULLET_DOUBLE) && !DRAPE_BULLET_DOUBLE
+#error "This Drape library is built for Bullet in single precision, and BT_USE_DOUBLE_PRECISION is defined."
+#endif
+#define DRAPE_BUILT_FOR drapeIsBuiltForBulletInDoublePrecision
+#else
+#if defined(DRAPE_BULLET_DOUBLE) && DRAPE_BULLET_DOUBLE
+#error "This Drape library is built for Bullet in double precision, and BT_USE_DOUBLE_PRECISION is not defined."
+#endif
+#define DRAPE_BUILT_FOR drapeIsBuiltForBulletInSinglePrecision
+#endif
+
+namespace drape
+{
+extern const char DRAPE_BUILT_FOR;
+
+namespace
+{
+__attribute__((used)) const char* const kBuiltFor = &DRAPE_BUILT_FOR;
+}
+}  // namespace drape
+
+#undef DRAPE_BUILT_FOR

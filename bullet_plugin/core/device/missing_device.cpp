@@ -1,0 +1,63 @@
+#include "missing_device.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
+namespace drape
+{
+namespace
+{
+std::string variable(const char* name)
+{
+    const char* const value = std::getenv(name);
+    return value ? value : "";
+}
+}  // namespace
+
+std::string poclCacheFolder()
+{
+    const std::string own = variable("POCL_CACHE_DIR"), cache = variable("XDG_CACHE_HOME");
+    if (!own.empty()) return own;
+    return (cache.empty() ? variable("HOME") + "/.cache" : cache) + "/pocl/kcache";
+}
+
+bool canBeWritten(const std::string& folder)
+{
+    std::filesystem::path path = folder;
+    std::error_code ignored;
+    while (!std::filesystem::exists(path, ignored) && path.has_parent_path() && path != path.parent_path())
+        path = path.parent_path();
+    return std::filesystem::is_directory(path, ignored) && access(path.c_str(), W_OK | X_OK) == 0;
+}
+
+int descriptorsLeft()
+{
+    int opened[kEnoughDescriptors], count = 0;
+    while (count < kEnoughDescriptors && (opened[count] = open("/dev/null", O_RDONLY | O_CLOEXEC)) >= 0)
+        ++count;
+    for (int i = 0; i < count; ++i)
+        close(opened[i]);
+    return count;
+}
+
+std::string whyNoDeviceFound(const std::string& seen, bool poclWithoutDevice)
+{
+    const int descriptors = descriptorsLeft();
+    if (descriptors < kEnoughDescriptors)
+        return "this process can open " + std::to_string(descriptors) +
+               " files more, and drivers are found by opening files";
+    if (seen.empty())
+    {
+        const std::string vendors = variable("OCL_ICD_VENDORS");
+        return "the OpenCL loader finds no driver in " +
+               (vendors.empty() ? "/etc/OpenCL/vendors" : "OCL_ICD_VENDORS, " + vendors);
+    }
+    if (poclWithoutDevice && !canBeWritten(poclCacheFolder()))
+        return seen + "; its cache folder cannot be written: " + poclCacheFolder();
+    return seen;
+}
+}  // namespace drape

@@ -1,0 +1,43 @@
+// The floating-point environment that Drape computes in, whatever the app has set for its threads.
+//
+// Apps enable traps (feenableexcept), flush subnormal numbers to zero or round another way. Drape compares lanes that
+// may be NaN, and its answers must have the same bits on every back end. So each public function computes in the
+// default environment: no traps, subnormal numbers kept, rounding to nearest. The app's environment comes back
+// afterwards as it was, with its exception flags; nothing is raised by that. Cost: some 50 ns.
+#pragma once
+
+#include <cfenv>
+
+namespace drape
+{
+// Has the calling thread compute in the default environment while this lives. One within another does nothing.
+class DefaultFloats
+{
+public:
+    DefaultFloats() noexcept;
+    ~DefaultFloats();
+    DefaultFloats(const DefaultFloats&) = delete;
+    DefaultFloats& operator=(const DefaultFloats&) = delete;
+
+private:
+    friend class CallersFloats;
+
+    std::fenv_t m_callers;
+    bool m_isOuter;
+};
+
+// Gives the calling thread its own environment back while this lives within a DefaultFloats: for code of Bullet and of
+// the app that Drape calls and that would run in it without Drape. What flags that code raises stay raised. Does
+// nothing where no DefaultFloats lives.
+class CallersFloats
+{
+public:
+    CallersFloats() noexcept;
+    ~CallersFloats();
+    CallersFloats(const CallersFloats&) = delete;
+    CallersFloats& operator=(const CallersFloats&) = delete;
+
+private:
+    DefaultFloats* m_within;
+};
+}  // namespace drape

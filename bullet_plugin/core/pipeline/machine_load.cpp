@@ -1,0 +1,78 @@
+#include "machine_load.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace drape
+{
+namespace
+{
+// Part of a core that others may take besides: what an idle system does.
+constexpr double kMostIdleLoad = 0.25;
+
+double ownSeconds()
+{
+    rusage usage = {};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& time) { return double(time.tv_sec) + 1e-6 * double(time.tv_usec); };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+CoreTimes timesNow()
+{
+    CoreTimes times;
+    std::ifstream stat("/proc/stat");
+    readCoreTimes(stat, double(sysconf(_SC_CLK_TCK)), times);
+    return times;
+}
+}  // namespace
+
+bool readCoreTimes(std::istream& stat, double ticksPerSecond, CoreTimes& times)
+{
+    // cpu user nice system idle iowait irq softirq steal …, then a line for each core.
+    constexpr int kFields = 8, kIdle = 3, kWaiting = 4;
+    CoreTimes read;
+    std::string line;
+    while (std::getline(stat, line) && line.compare(0, 3, "cpu") == 0)
+    {
+        if (line.size() > 3 && line[3] != ' ')
+        {
+            ++read.m_cores;
+            continue;
+        }
+        std::istringstream fields(line.substr(3));
+        for (int field = 0; field < kFields; ++field)
+        {
+            double ticks = 0;
+            if (!(fields >> ticks)) return false;
+            read.m_all += ticks / ticksPerSecond;
+            if (field != kIdle && field != kWaiting) read.m_busy += ticks / ticksPerSecond;
+        }
+    }
+    if (read.m_cores == 0 || !(read.m_all > 0)) return false;
+    times = read;
+    return true;
+}
+
+bool isBusyBetween(const CoreTimes& first, const CoreTimes& last, double ownSeconds, unsigned threads)
+{
+    const double all = last.m_all - first.m_all;
+    if (last.m_cores == 0 || !(all > 0)) return false;
+    const double coresPerSecond = double(last.m_cores) / all;
+    const double others = std::max(0.0, last.m_busy - first.m_busy - ownSeconds) * coresPerSecond;
+    const double spare = std::max(0.0, double(last.m_cores) - double(threads));
+    return others > spare + kMostIdleLoad;
+}
+
+MachineLoad::MachineLoad() : m_first(timesNow()), m_ownSeconds(ownSeconds()) {}
+
+bool MachineLoad::isBusy(unsigned threads) const
+{
+    return isBusyBetween(m_first, timesNow(), ownSeconds() - m_ownSeconds, threads);
+}
+}  // namespace drape

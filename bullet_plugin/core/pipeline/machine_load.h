@@ -1,0 +1,36 @@
+// How busy other processes keep the machine while something is measured. Linux; elsewhere it never looks busy.
+#pragma once
+
+#include <istream>
+
+namespace drape
+{
+// Seconds of all cores together since the system started.
+struct CoreTimes
+{
+    double m_busy = 0;  // with what a hypervisor gave to others
+    double m_all = 0;
+    unsigned m_cores = 0;
+};
+
+// Reads /proc/stat. Returns false, with nothing changed, where it is not as expected.
+bool readCoreTimes(std::istream& stat, double ticksPerSecond, CoreTimes& times);
+
+// Whether others took so much of the machine between two times that `threads` threads did not have a core each.
+// ownSeconds: time of cores that this process took.
+bool isBusyBetween(const CoreTimes& first, const CoreTimes& last, double ownSeconds, unsigned threads);
+
+class MachineLoad
+{
+public:
+    // Looks from now on.
+    MachineLoad();
+
+    // Whether the machine was busy since then, see isBusyBetween().
+    bool isBusy(unsigned threads) const;
+
+private:
+    CoreTimes m_first;
+    double m_ownSeconds;
+};
+}  // namespace drape

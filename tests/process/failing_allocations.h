@@ -1,0 +1,25 @@
+// Makes allocations of operator new fail, one after the other, in a program that links failing_allocations.cpp.
+#pragma once
+
+namespace drape::test
+{
+// While one lives, the allocation with that number, counted from 0 over all threads, throws std::bad_alloc: it alone,
+// or it and all after it.
+class FailingAllocations
+{
+public:
+    enum class Which
+    {
+        One,
+        AllFromThere
+    };
+
+    explicit FailingAllocations(long number, Which which = Which::One);
+    ~FailingAllocations();
+    FailingAllocations(const FailingAllocations&) = delete;
+    FailingAllocations& operator=(const FailingAllocations&) = delete;
+
+    // Whether there were so many allocations.
+    static bool hasFailed();
+};
+}  // namespace drape::test
