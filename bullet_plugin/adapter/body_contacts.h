@@ -68,6 +68,7 @@ struct BodyContacts
     MotionLimit m_limit;
     bool m_leftOut = false;              // of this step: the body collides with nothing
     bool m_heldTogether = false;         // since the last detection, see stretch.h
+    bool m_obstacleJumps = false;        // one of its obstacles goes farther in the step than it is large, or turns far
     bool m_mayHavePassed = false;        // a contact is left so near that a surface may have been passed
     std::vector<TangledPair> m_tangled;  // of the body's pairs, those that are pushed apart
     bool m_wasTangled = false;           // in this step or one shortly before
@@ -84,7 +85,7 @@ struct BodyContacts
         m_mostThickness = 0;
         m_features.clear();
         m_limit.clear();
-        m_leftOut = m_heldTogether = false;
+        m_leftOut = m_heldTogether = m_obstacleJumps = false;
         m_mayHavePassed = false;
         m_tangled.clear();
         m_wasTangled = false;

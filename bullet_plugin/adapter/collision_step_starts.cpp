@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -125,14 +126,15 @@ void CollisionStep::addPushes(BodyContacts& body)
     body.m_features.insert(body.m_features.begin(), pushes.begin(), pushes.end());  // nodes are first
 }
 
-// A body that needs too many tests is held together, and looked at again. Where that is not enough, because it had come
-// apart before, it is left out of the step, which is told once, until a step takes it again.
+// A body that needs too many tests. One that is not of its own size is held together, and looked at again. Where that
+// is not enough it is left out of the step, which is told once, until a step takes it again.
 void CollisionStep::leaveOut(std::size_t index)
 {
     BodyContacts& body = m_bodies[index];
     const ClothFaces& faces = m_mirrors[index]->faces();
     const Stretch stretch = stretchOf(*body.m_body, faces, body.m_limit.paths());
-    if (stretch.m_end > kMostStretch && !body.m_heldTogether)
+    const bool isStretched = stretch.m_start > kMostStretch || stretch.m_end > kMostStretch;
+    if (isStretched && !body.m_heldTogether)
     {
         holdTogether(*body.m_body, faces, body.m_limit.paths());
         body.m_heldTogether = m_heldTogether = true;
@@ -145,8 +147,8 @@ void CollisionStep::leaveOut(std::size_t index)
     char line[256];
     std::snprintf(
         line, sizeof(line),
-        "soft body %p needs more tests than a step may make, and collides with nothing meanwhile; its longest "
-        "edge is %.3g times its longest link at rest",
+        "soft body %p needs more tests than a step may make, and does not collide in this step; a link is %.3g "
+        "times as long as at rest",
         static_cast<const void*>(body.m_body), double(std::max(stretch.m_start, stretch.m_end)));
     m_state.log(line);
 }
@@ -155,11 +157,14 @@ void CollisionStep::leaveOut(std::size_t index)
 // as guarded again.
 void CollisionStep::markUnguarded()
 {
+    std::set<std::size_t> leftOut;  // a body has a mesh for each obstacle that deforms
     for (const MeshId cloth : m_state.pipeline().clothsLeftOut())
     {
         const auto found = m_byCloth.find(cloth);
-        if (found != m_byCloth.end()) leaveOut(found->second);
+        if (found != m_byCloth.end()) leftOut.insert(found->second);
     }
+    for (const std::size_t index : leftOut)
+        leaveOut(index);
     if (m_state.pipeline().statistics().m_invalidNodes == 0) return;
     for (std::size_t i = 0; i < m_bodies.size(); ++i)
     {

@@ -126,8 +126,8 @@ void Diagnosis::addCloth(const btSoftBody& cloth)
         addPair(cloth, object, *object.getCollisionShape(), object.getWorldTransform());
     }
     for (const auto& [reason, count] : reasons)
-        add(format("soft body %p: Bullet's own collision has its pairs with %d objects: %s", name, count,
-                   reason.c_str()));
+        add(format("soft body %p: Bullet's own collision has its pairs with %d %s: %s", name, count,
+                   count == 1 ? "object" : "objects", reason.c_str()));
 }
 
 // The leaves of the object's shape that Drape handles.
@@ -210,7 +210,7 @@ void Diagnosis::addIntersections(const btSoftBody& cloth, const btCollisionObjec
         add(pair + format("%zu pairs of the cloth's faces or links and the mesh's triangles intersect, %zu of %d nodes "
                           "are inside; %s",
                           pairs, inside, cloth.m_nodes.size(),
-                          closed ? "the mesh is closed, so that the cloth is pushed out"
+                          closed ? "the mesh is closed, so that nodes that are not held are pushed out"
                                  : "the mesh is open, so that nothing tells which side is right"));
     else if (inside == std::size_t(cloth.m_nodes.size()) && inside > 0)
         add(pair +

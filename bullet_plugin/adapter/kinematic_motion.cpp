@@ -90,6 +90,9 @@ constexpr btScalar kMostShift = 100, kMostRadii = 100, kMostOfAll = btScalar(2.5
 // pushes before it does no harm there.
 constexpr btScalar kFarRadii = 2;
 
+// Likewise of a turn, radians, and times the motion of the step before: what goes on as it went is carried, not put.
+constexpr btScalar kFarTurn = SIMD_HALF_PI, kFaster = 4;
+
 btScalar radiusOf(const btCollisionObject& object)
 {
     btVector3 centre;
@@ -167,19 +170,26 @@ void KinematicMotions::advance(Tracked& tracked, const btCollisionObject& object
                                       substepsBetween(noticed, pose, velocity, angularVelocity, m_dt) > 0);
     }
     BodyMotion& motion = tracked.m_motion;
+    const BodyMotion before = motion;
     motion = whole && m_dt > 0 ? BodyMotion{from, pose} : motionInStep(from, pose, velocity, angularVelocity, m_dt);
     const btScalar shift = (motion.m_end.getOrigin() - motion.m_start.getOrigin()).length();
-    if (shift > mostShift(radiusOf(object)) || isTeleport(from, object)) motion = BodyMotion{pose, pose};
+    if (shift > mostShift(radiusOf(object)) || isTeleport(from, before, object)) motion = BodyMotion{pose, pose};
 }
 
-// Whether cloth went along from where the object was to where Bullet has it; several substeps' motion is one then.
-bool KinematicMotions::isTeleport(const btTransform& from, const btCollisionObject& object) const
+// Whether cloth went along from where the object was to where Bullet has it, and the object did not go there at about
+// the speed that it had; several substeps' motion is one then.
+bool KinematicMotions::isTeleport(const btTransform& from, const BodyMotion& before,
+                                  const btCollisionObject& object) const
 {
     if (!m_movedAlong) return false;
     const btTransform& pose = object.getWorldTransform();
     const btScalar radius = radiusOf(object);
-    if (!((pose.getOrigin() - from.getOrigin()).length() > kFarRadii * radius)) return false;
-    return m_movedAlong(pose * from.inverse(), radius);
+    const auto shift = [](const btTransform& a, const btTransform& b)
+    { return (b.getOrigin() - a.getOrigin()).length(); };
+    const bool isFar = shift(from, pose) > std::max(kFarRadii * radius, kFaster * shift(before.m_start, before.m_end));
+    const bool isTurned = turnBetween(from, pose).m_angle >
+                          std::max(kFarTurn, kFaster * turnBetween(before.m_start, before.m_end).m_angle);
+    return (isFar || isTurned) && m_movedAlong(object, pose * from.inverse(), radius);
 }
 
 BodyMotion KinematicMotions::observe(const btCollisionObject& object)

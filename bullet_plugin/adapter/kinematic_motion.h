@@ -4,10 +4,11 @@
 // the difference to its interpolation transform over the time of all substeps (btRigidBody::saveKinematicState). So a
 // pose that changes with a velocity is motion, and a pose that changes without one is a jump: that is how
 // setInterpolationWorldTransform() with the same pose tells a teleport, to Bullet and to Drape. Most apps set the world
-// transform alone, which looks like motion. Two things tell it from one: the app moved nodes of a cloth along with the
-// body, as it does with what a character wears, by more than the body is large; or the way is longer than 100 m and 100
-// times the shape's radius, or than 250 km: a body that is parked out of sight. Distance tells nothing else: what is
-// thrown goes as many of its radii in a step.
+// transform alone, which looks like motion. Two things tell it from one, for a way of more than the body's diameter or
+// a turn of more than a right angle, and of more than four times what the step before was:
+// cloth hangs on the body by an anchor, or the app moved nodes of a cloth along with it, as with what a character
+// wears. A body that is parked out of sight goes a way that is longer than 100 m and 100 times the shape's radius, or
+// than 250 km. Distance tells nothing else: what is thrown goes as many of its radii in a step.
 //
 // Job: remember where each object was at the end of the step before and say where it is at this one's start and end.
 // The motion of several substeps is shared out among them, at constant velocity. An object that was not there in the
@@ -48,8 +49,9 @@ BodyMotion motionInStep(const btTransform& from, const btTransform& to, const bt
 class KinematicMotions
 {
 public:
-    // Whether an app moved nodes of a cloth as the map does, to within `slack` (m), since the last step ended.
-    using MovedAlong = std::function<bool(const btTransform& map, btScalar slack)>;
+    // Whether a cloth hangs on the object by an anchor, or an app moved nodes of one as the map does, to within `slack`
+    // (m), since the last step ended.
+    using MovedAlong = std::function<bool(const btCollisionObject& object, const btTransform& map, btScalar slack)>;
 
     // Forgets objects that were not observed in the step before. movedAlong: for this step, asked of objects that moved
     // far; null: no.
@@ -70,7 +72,7 @@ private:
     };
 
     void advance(Tracked& tracked, const btCollisionObject& object) const;
-    bool isTeleport(const btTransform& from, const btCollisionObject& object) const;
+    bool isTeleport(const btTransform& from, const BodyMotion& before, const btCollisionObject& object) const;
 
     std::unordered_map<const btCollisionObject*, Tracked> m_tracked;  // never followed
     std::uint64_t m_step = 0;

@@ -369,11 +369,14 @@ void PluginState::teleported(const btCollisionObject* object)
     startAnew(object);
 }
 
-bool PluginState::movedAlong(const std::vector<btSoftBody*>& bodies, const btTransform& map, btScalar slack)
+bool PluginState::movedAlong(const std::vector<btSoftBody*>& bodies, const btCollisionObject& object,
+                             const btTransform& map, btScalar slack)
 {
     return std::any_of(bodies.begin(), bodies.end(),
                        [&](const btSoftBody* body)
                        {
+                           for (int i = 0; i < body->m_anchors.size(); ++i)
+                               if (body->m_anchors[i].m_body == &object) return true;
                            const ClothMirror* const mirror = findCloth(body);
                            // Every solver's step counts, so that worlds which take turns are continued, too.
                            return mirror && mirror->m_lastSeen + m_solvers.size() > m_step &&

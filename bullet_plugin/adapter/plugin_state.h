@@ -104,8 +104,10 @@ public:
     // Says that the object is not where it moved, but where it was put: no solver's next step takes its pose for a
     // motion, and its pairs start anew.
     void teleported(const btCollisionObject* object);
-    // Whether an app moved nodes of one of these bodies, which took part in the step before, as the map does.
-    bool movedAlong(const std::vector<btSoftBody*>& bodies, const btTransform& map, btScalar slack);
+    // Whether one of these bodies hangs on the object by an anchor, or an app moved nodes of one as the map does, since
+    // the last step, in which it took part.
+    bool movedAlong(const std::vector<btSoftBody*>& bodies, const btCollisionObject& object, const btTransform& map,
+                    btScalar slack);
     void setOneSided(const btCollisionShape* shape, bool oneSided);
     void dropNotes(const btSoftBodySolver* solver);
     // Those of the given cloths, sorted by address. Of an obstacle whose shape has gone since it was noted none is

@@ -134,8 +134,8 @@ void SoftBodySolver::beginStep(btScalar dt, std::vector<StepObstacle>& obstacles
     Stopwatch watch;
     KinematicMotions& motions = m_state->motionsOf(this);
     listTaken();
-    motions.beginStep(dt, [this](const btTransform& map, btScalar slack)
-                      { return m_state->movedAlong(m_work->m_taken, map, slack); });
+    motions.beginStep(dt, [this](const btCollisionObject& object, const btTransform& map, btScalar slack)
+                      { return m_state->movedAlong(m_work->m_taken, object, map, slack); });
     obstacles = wakeReached(motions);
     listPredicted();
     m_work->m_predictMs = watch.lapMs();

@@ -10,11 +10,30 @@ namespace drape
 {
 namespace
 {
-btScalar longestAtRest(const btSoftBody& body)
+// Rest lengths of links that do not bend.
+std::vector<btScalar> lengthsAtRest(const btSoftBody& body)
+{
+    std::vector<btScalar> lengths;
+    for (int i = 0; i < body.m_links.size(); ++i)
+        if (!body.m_links[i].m_bbending) lengths.push_back(body.m_links[i].m_rl);
+    return lengths;
+}
+
+// The largest multiple of its rest length that such a link is long. Links far shorter than the unit count by it.
+template <class Place>
+btScalar longestLink(const btSoftBody& body, btScalar unit, const Place& place)
 {
     btScalar longest = 0;
     for (int i = 0; i < body.m_links.size(); ++i)
-        if (!body.m_links[i].m_bbending) longest = std::max(longest, body.m_links[i].m_rl);
+    {
+        const btSoftBody::Link& link = body.m_links[i];
+        const auto indexOf = [&](const btSoftBody::Node* node) { return std::size_t(node - &body.m_nodes[0]); };
+        const std::size_t a = indexOf(link.m_n[0]), b = indexOf(link.m_n[1]);
+        const std::size_t count = std::size_t(body.m_nodes.size());
+        if (link.m_bbending || a >= count || b >= count) continue;
+        const btScalar times = (place(a) - place(b)).length() / std::max(link.m_rl, unit / 4);
+        if (!(times <= longest)) longest = times > longest ? times : SIMD_INFINITY;
+    }
     return longest;
 }
 
@@ -66,17 +85,21 @@ btVector3 medianOf(std::vector<btVector3> vectors)
 
 btScalar unitOf(const btSoftBody& body, const ClothFaces& faces, const NodePaths& paths)
 {
-    const btScalar rest = longestAtRest(body);
-    return rest > 0 ? rest : longestEdge(faces, [&](std::size_t node) { return paths.m_start[node]; });
+    std::vector<btScalar> rest = lengthsAtRest(body);
+    if (rest.empty()) return longestEdge(faces, [&](std::size_t node) { return paths.m_start[node]; });
+    const auto middle = rest.begin() + std::ptrdiff_t(rest.size() / 2);
+    std::nth_element(rest.begin(), middle, rest.end());
+    return *middle;
 }
 
 Stretch stretchOf(const btSoftBody& body, const ClothFaces& faces, const NodePaths& paths)
 {
     const btScalar unit = unitOf(body, faces, paths);
-    const btScalar start = longestEdge(faces, [&](std::size_t node) { return paths.m_start[node]; });
-    const btScalar end = longestEdge(faces, [&](std::size_t node) { return body.m_nodes[static_cast<int>(node)].m_x; });
-    const auto times = [unit](btScalar length) { return unit > 0 ? length / unit : length > 0 ? SIMD_INFINITY : 1; };
-    return {times(start), times(end)};
+    const auto start = [&](std::size_t node) { return paths.m_start[node]; };
+    const auto end = [&](std::size_t node) { return body.m_nodes[static_cast<int>(node)].m_x; };
+    if (!(unit > 0)) return {1, 1};
+    if (!lengthsAtRest(body).empty()) return {longestLink(body, unit, start), longestLink(body, unit, end)};
+    return {longestEdge(faces, start) / unit, longestEdge(faces, end) / unit};
 }
 
 void holdTogether(btSoftBody& body, const ClothFaces& faces, const NodePaths& paths)

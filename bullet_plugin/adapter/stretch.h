@@ -14,12 +14,13 @@ class btSoftBody;
 
 namespace drape
 {
-// Times the longest link at rest that an edge of a face is long at most in a step that may make as many tests as it
+// Times its rest length that a link is long at most in a step that may make as many tests as it
 // needs. Links that are stretched most by what a scene does to them, at a few of Bullet's iterations, are two to three
 // times as long.
 constexpr btScalar kMostStretch = 4;
 
-// The longest edge of a face, as a multiple of the body's unit of length; infinity where a node is not finite.
+// How many times its rest length the link is long that is stretched most; infinity where a node is not finite. Of a
+// body without links, the longest edge of a face as a multiple of the longest one at the start.
 struct Stretch
 {
     btScalar m_start;  // at the start of the nodes' paths
@@ -29,7 +30,8 @@ struct Stretch
 // By component; zero of none.
 btVector3 medianOf(std::vector<btVector3> vectors);
 
-// The longest link at rest, bending links left out; of a body without links the longest edge at the start, m.
+// The median of the links' rest lengths, bending links left out; of a body without links the longest edge at the start,
+// m.
 btScalar unitOf(const btSoftBody& body, const ClothFaces& faces, const NodePaths& paths);
 
 // O(n) in the links and faces.

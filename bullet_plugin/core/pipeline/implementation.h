@@ -80,6 +80,7 @@ struct Pipeline::Implementation
     std::uint32_t m_stepRevision = 0;                 // of the obstacles, in the last step with a pair
     std::size_t m_nodesWritten = 0, m_nodesSent = 0;  // the first so many nodes of all cloths, for the coming step
     bool m_neededMore = false;                        // tests than ordinary motion does, the last step
+    bool m_limitsRaised = false;                      // above those of ordinary motion, in this step
     bool m_submitted = false;
     bool m_deviceLeft = false;  // it failed
 
@@ -155,12 +156,13 @@ struct Pipeline::Implementation
     void leaveOut(std::size_t slot, std::uint64_t candidates);
     // Takes cloths out of the step until what is left is within the settings' limits.
     void leaveOutCloths();
-    // After a step with more tests than ordinary motion needs: takes out the cloths that need more than their
-    // allowance. The others may make as many as the settings allow.
+    // After a step over the limits of StepPairs: takes out the cloths that need more than they may, and gives the
+    // others what they may.
     void leaveOutStretched(const Allowance& allowance);
-    // Before a step on the host that is likely to need more, as the one before did: does without the limits of ordinary
-    // motion where every cloth may have more.
+    // Before a step on the host that is likely to need more than ordinary motion, as the one before did: gives every
+    // cloth what it may need, where that is more.
     void expectMore(const Allowance& allowance);
+    TestLimits allowed(std::size_t slot, float share) const;
     bool needsMore(std::size_t slot, const std::vector<std::size_t>& taking, TestLimits limits);
 };
 }  // namespace drape

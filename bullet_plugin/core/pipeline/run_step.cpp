@@ -65,13 +65,26 @@ void Pipeline::Implementation::leaveOut(std::size_t slot, std::uint64_t candidat
     m_leftOut.push_back(m_scene.m_cloths.mesh(slot).m_id);
 }
 
+// What a slot's cloth may need, and at least what it does in ordinary motion.
+TestLimits Pipeline::Implementation::allowed(std::size_t slot, float share) const
+{
+    return std::isfinite(share) ? m_stepPairs.m_ordinary[slot].times(share) : TestLimits();
+}
+
 void Pipeline::Implementation::expectMore(const Allowance& allowance)
 {
+    m_limitsRaised = false;
     if (!m_neededMore || !m_report.m_onHost) return;
-    const std::vector<float>& radius = m_stepPairs.m_clothRadius;
-    for (std::size_t slot = 0; allowance && slot < radius.size(); ++slot)
-        if (radius[slot] >= 0.0f && std::isfinite(allowance(m_scene.m_cloths.mesh(slot).m_id))) return;
-    m_stepPairs.m_limits = TestLimits();
+    TestLimits all = {0, 0};
+    for (std::size_t slot = 0; slot < m_stepPairs.m_clothRadius.size(); ++slot)
+    {
+        if (m_stepPairs.m_clothRadius[slot] < 0.0f) continue;
+        const float share = allowance ? allowance(m_scene.m_cloths.mesh(slot).m_id) : HUGE_VALF;
+        if (share <= 1) return;
+        all += allowed(slot, share);
+    }
+    m_stepPairs.m_limits = all;
+    m_limitsRaised = true;
 }
 
 void Pipeline::Implementation::leaveOutStretched(const Allowance& allowance)
@@ -79,15 +92,19 @@ void Pipeline::Implementation::leaveOutStretched(const Allowance& allowance)
     std::vector<std::size_t> taking;
     for (std::size_t slot = 0; slot < m_stepPairs.m_clothRadius.size(); ++slot)
         if (m_stepPairs.m_clothRadius[slot] >= 0.0f) taking.push_back(slot);
+    TestLimits all = {0, 0};
     for (const std::size_t slot : taking)
     {
         const float share = allowance ? allowance(m_scene.m_cloths.mesh(slot).m_id) : HUGE_VALF;
-        if (!std::isfinite(share)) continue;
-        const TestLimits own = m_stepPairs.m_ordinary[slot].times(share);
-        if ((taking.size() > 1 || share > 1) && !needsMore(slot, taking, own)) continue;
-        leaveOut(slot, own.m_tests + 1);
+        const TestLimits own = allowed(slot, share);
+        const bool isAsked = share <= 1 || (m_limitsRaised && std::isfinite(share));
+        if (isAsked && (taking.size() == 1 || needsMore(slot, taking, own)))
+            leaveOut(slot, own.m_tests + 1);
+        else
+            all += own;
     }
-    m_stepPairs.m_limits = TestLimits();
+    m_stepPairs.m_limits = all;
+    m_limitsRaised = true;
 }
 
 // Whether the one of these cloths would need more tests in a step of its own.

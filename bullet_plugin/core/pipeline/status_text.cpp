@@ -18,15 +18,15 @@ std::string statusText(std::uint32_t status)
         std::uint32_t m_bit;
         const char* m_text;
     } clauses[] = {
-        {kStepInvalidNodes, "nodes that are not finite or beyond 2^30 m left out"},
+        {kStepInvalidNodes, "nodes that are not finite, or lie beyond 2^30 m, were left out"},
         {kStepDeviceFailed, "the device failed and the host took over"},
-        {kStepDeviceFull, "more than the device can hold, so the host ran the step"},
-        {kStepClothsLeftOut, "cloths with too many candidates or contacts left out"},
-        {kStepCoarsePositions, "an obstacle so far out that its positions are coarser than the thickness"},
-        {kStepStartsIntersecting, "triangles of a cloth and an obstacle that intersected when the step began"},
-        {kStepFacesLeftOut, "faces or links that name another body's nodes left out"},
+        {kStepDeviceFull, "the step needed more than the device can hold, so the host ran it"},
+        {kStepClothsLeftOut, "cloths that need too many tests were left out"},
+        {kStepCoarsePositions, "an obstacle lies so far out that its positions are coarser than the thickness"},
+        {kStepStartsIntersecting, "triangles of a cloth and an obstacle intersected when the step began"},
+        {kStepFacesLeftOut, "faces or links that name another body's nodes were left out"},
         {kStepSurfacePassed, "a surface may have been passed where links pulled"},
-        {kStepMotionHeldBack, "nodes of cloth that came apart held back"},
+        {kStepMotionHeldBack, "nodes of a cloth that came apart were held back"},
         {kStepOutOfMemory, "memory ran out and cloth beside meshes stood still"},
     };
     return guardedOr(std::string(kOutOfMemory),

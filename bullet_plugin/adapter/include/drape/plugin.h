@@ -7,11 +7,11 @@
 // and leaves the app's as it was. SI units, world frame. C++11.
 //
 // Make it before the collision configuration and the solver; they keep its state alive, so that it may go before them,
-// if Bullet's own rule holds (configuration and solver outlive the world). Not so a dispatcher that install() gave it
-// to: that has to go first. One plugin serves one thread; it may serve several worlds of that thread, each with a
+// if Bullet's own rule holds (configuration and solver outlive the world). A dispatcher given to install() must be
+// destroyed before the plugin. One plugin serves one thread; it may serve several worlds of that thread, each with a
 // solver of its own. Several threads may have a plugin each. A dispatcher of several threads (btCollisionDispatcherMt)
-// is not supported: Bullet's soft bodies are not either. A child that fork() makes has neither the plugin's threads nor
-// its device: it must not use it, nor end it, but end by exec() or _exit().
+// is not supported: Bullet's soft bodies are not safe with it either. A child that fork() makes has neither the
+// plugin's threads nor its device: it must not use or destroy the plugin, and has to end by exec() or _exit().
 //
 // The thickness of a pair, at which cloth comes to rest, is the soft body's collision margin plus the mesh shape's
 // margin (body->getCollisionShape()->getMargin() + shape->getMargin()); at least 0.1 mm. Bullet makes a soft body's
@@ -19,11 +19,12 @@
 //
 // Kinematic rigid bodies move over the step by the velocity that Bullet derives, when stepSimulation() begins, from the
 // interpolation transform and the world transform (or the motion state's). To teleport one, set both transforms to the
-// new pose, or call teleported(). A change of the world transform alone is taken for a teleport, too, where nodes of a
-// cloth beside the body were moved along with it, by more than the body's diameter. One whose pose is set later, by a
-// tick's callback or while it sleeps, moves the whole way from its last pose; one that sleeps has no velocity for
-// Bullet: give it DISABLE_DEACTIVATION. In the first step in which a body is there it rests. A static object's pose
-// that changes is a teleport, and so is the place of a child in its compound.
+// new pose: Bullet's anchors, too, follow the velocity that it derives. Where the world transform alone is set, Drape
+// takes a sudden change by more than the body's diameter, or a right angle, for a teleport if cloth hangs on the body
+// by an anchor or the app moved nodes of a cloth along with it, or if teleported() says so. A pose that is set later,
+// by a tick's callback or while the body sleeps, is motion from the last one (DISABLE_DEACTIVATION keeps it awake). A
+// body rests in the first step in which it is there. A change of a static object's pose, or of a child's in its
+// compound, is a teleport.
 //
 // Cloth that begins a step with its triangles through a mesh, because it was put there or the mesh was, is reported
 // (kStepStartsIntersecting) and pushed out of closed meshes; nodes are checked again wherever an app moves them.

@@ -90,9 +90,9 @@ struct Settings
     // not cache. PoCL keeps its kernels itself, whatever is said here: in $XDG_CACHE_HOME/pocl or ~/.cache/pocl.
     std::string m_cacheFolder;
 
-    // Gets a line, without a line feed, for what an app should know of its world and no return value tells: a pair that
-    // begins a step with triangles that intersect, a negative margin, or one as large as the mesh. Each is told once,
-    // not once a step, on the thread that steps the world. nullptr: no lines. What it throws is dropped.
+    // Gets a line, without a line feed, for what an app should know of its world and no return value says: a pair that
+    // begins a step with intersecting triangles, cloth that is left out, a margin that is negative or as large as the
+    // mesh. Once while it lasts, on the thread that steps the world. nullptr: no lines. What it throws is dropped.
     std::function<void(const char*)> m_log = logToStandardError;
 
     // Which algorithms; for comparing them. The contacts do not depend on it.
