@@ -12,9 +12,9 @@ namespace drape
 {
 namespace
 {
-// How many times as many tests as ordinary motion needs cloth may make that is apart where the step begins, or beside
-// an obstacle that jumps. Thrown at the bunny at 200 m/s, which tears it, cloth of 2,048 triangles makes twice as many,
-// and nine times as many of the continuous ones.
+// How many times as many tests as ordinary motion needs cloth may make that came apart, or is beside an obstacle that
+// jumps. Thrown at the bunny at 200 m/s, which tears it, cloth of 2,048 triangles makes twice as many, and nine times
+// as many of the continuous ones.
 constexpr float kMostAllowance = 16;
 
 // Whether an obstacle of that size, m, goes twice as far in a step, or turns by more than a right angle.
@@ -265,7 +265,7 @@ float CollisionStep::allowanceOf(MeshId cloth) const
     const Stretch stretch = stretchOf(*body.m_body, m_mirrors[index]->faces(), body.m_limit.paths());
     const bool isApart = stretch.m_start > kMostStretch;
     if (!body.m_heldTogether && (isApart || stretch.m_end > kMostStretch)) return 1;
-    return isApart || body.m_obstacleJumps ? kMostAllowance : HUGE_VALF;
+    return isApart || body.m_heldTogether || body.m_obstacleJumps ? kMostAllowance : HUGE_VALF;
 }
 
 // Waits for the detection under way and takes its contacts in place of any earlier ones of this step.

@@ -86,9 +86,8 @@ bool isNear(const btTransform& from, const btTransform& to, const btVector3& vel
 // out of its simulation whose box is 10^6 m across.
 constexpr btScalar kMostShift = 100, kMostRadii = 100, kMostOfAll = btScalar(2.5e5);
 
-// Radii that a body goes at least where nodes that went along tell a teleport. Nearer places overlap, and what a body
-// pushes before it does no harm there.
-constexpr btScalar kFarRadii = 2;
+// Radii that a body goes at least where nodes that went along tell a teleport.
+constexpr btScalar kFarRadii = 1;
 
 // Likewise of a turn, radians, and times the motion of the step before: what goes on as it went is carried, not put.
 constexpr btScalar kFarTurn = SIMD_HALF_PI, kFaster = 4;
@@ -170,7 +169,8 @@ void KinematicMotions::advance(Tracked& tracked, const btCollisionObject& object
                                       substepsBetween(noticed, pose, velocity, angularVelocity, m_dt) > 0);
     }
     BodyMotion& motion = tracked.m_motion;
-    const BodyMotion before = motion;
+    const BodyMotion before = tracked.m_change;
+    tracked.m_change = BodyMotion{from, pose};
     motion = whole && m_dt > 0 ? BodyMotion{from, pose} : motionInStep(from, pose, velocity, angularVelocity, m_dt);
     const btScalar shift = (motion.m_end.getOrigin() - motion.m_start.getOrigin()).length();
     if (shift > mostShift(radiusOf(object)) || isTeleport(from, before, object)) motion = BodyMotion{pose, pose};
@@ -199,7 +199,7 @@ BodyMotion KinematicMotions::observe(const btCollisionObject& object)
     if (found == m_tracked.end())
     {
         const BodyMotion rest = {pose, pose};
-        m_tracked[&object] = Tracked{rest, m_step, pose, noticedBy(object), true};
+        m_tracked[&object] = Tracked{rest, rest, m_step, pose, noticedBy(object), true};
         return rest;
     }
     Tracked& tracked = found->second;

@@ -4,7 +4,7 @@
 // the difference to its interpolation transform over the time of all substeps (btRigidBody::saveKinematicState). So a
 // pose that changes with a velocity is motion, and a pose that changes without one is a jump: that is how
 // setInterpolationWorldTransform() with the same pose tells a teleport, to Bullet and to Drape. Most apps set the world
-// transform alone, which looks like motion. Two things tell it from one, for a way of more than the body's diameter or
+// transform alone, which looks like motion. Two things tell it from one, for a way of more than the body's radius or
 // a turn of more than a right angle, and of more than four times what the step before was:
 // cloth hangs on the body by an anchor, or the app moved nodes of a cloth along with it, as with what a character
 // wears. A body that is parked out of sight goes a way that is longer than 100 m and 100 times the shape's radius, or
@@ -65,6 +65,7 @@ private:
     struct Tracked
     {
         BodyMotion m_motion;
+        BodyMotion m_change;  // of the pose from the step before, swept or not
         std::uint64_t m_step;
         btTransform m_pose;     // that Bullet had; the motion's end is on the way there while substeps share it
         btTransform m_noticed;  // the pose at which Bullet had taken the velocity

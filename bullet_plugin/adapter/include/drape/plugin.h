@@ -20,7 +20,7 @@
 // Kinematic rigid bodies move over the step by the velocity that Bullet derives, when stepSimulation() begins, from the
 // interpolation transform and the world transform (or the motion state's). To teleport one, set both transforms to the
 // new pose: Bullet's anchors, too, follow the velocity that it derives. Where the world transform alone is set, Drape
-// takes a sudden change by more than the body's diameter, or a right angle, for a teleport if cloth hangs on the body
+// takes a sudden change by more than the body's radius, or a right angle, for a teleport if cloth hangs on the body
 // by an anchor or the app moved nodes of a cloth along with it, or if teleported() says so. A pose that is set later,
 // by a tick's callback or while the body sleeps, is motion from the last one (DISABLE_DEACTIVATION keeps it awake). A
 // body rests in the first step in which it is there. A change of a static object's pose, or of a child's in its
