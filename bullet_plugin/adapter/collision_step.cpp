@@ -13,9 +13,8 @@ namespace drape
 namespace
 {
 // How many times as many tests as ordinary motion needs cloth may make that came apart, or is beside an obstacle that
-// jumps. Thrown at the bunny at 200 m/s, which tears it, cloth of 2,048 triangles makes twice as many, and nine times
-// as many of the continuous ones.
-constexpr float kMostAllowance = 16;
+// jumps.
+constexpr float kMostAllowance = 8;
 
 // Whether an obstacle of that size, m, goes twice as far in a step, or turns by more than a right angle.
 bool jumps(const BodyMotion& motion, btScalar size)

@@ -19,7 +19,7 @@ namespace drape::test
 namespace
 {
 // Times as many tests as in ordinary motion that any cloth may make.
-constexpr std::size_t kMostTimes = 16;
+constexpr std::size_t kMostTimes = 8;
 
 // Hills of so many triangles under a cloth that lies a little above them.
 class Hills
@@ -114,8 +114,8 @@ TEST_P(StretchedCloth, ThatFliesApartIsHeldTogether)
             ASSERT_NE(hills.statistics().m_status, std::uint32_t(kStepGood)) << step;
         }
         // The tests of triangles for this step alone would be sixty million.
-        ASSERT_LE(hills.statistics().m_candidates, hills.ordinary(cloth).m_tests + 1);
-        ASSERT_LE(hills.statistics().m_sweptTests, hills.ordinary(cloth).m_swept);
+        ASSERT_LE(hills.statistics().m_candidates, kMostTimes * hills.ordinary(cloth).m_tests + 1);
+        ASSERT_LE(hills.statistics().m_sweptTests, kMostTimes * hills.ordinary(cloth).m_swept);
         const StepMeasure measure = meter.measure(positionsOf(cloth).data());
         ASSERT_EQ(measure.m_intersectingPairs, 0u) << step;
         ASSERT_EQ(measure.nodesBelow(), 0u) << step;
@@ -165,7 +165,6 @@ TEST_P(StretchedCloth, ThatIsLeftOutIsToldOnce)
 TEST_P(StretchedCloth, LeavesOthersAsTheyAre)
 {
     std::uint64_t hashes[2];
-    Random random(1);
     for (const bool beside : {false, true})
     {
         Hills hills(GetParam().m_settings);
@@ -175,8 +174,7 @@ TEST_P(StretchedCloth, LeavesOthersAsTheyAre)
         std::uint32_t status = 0;
         for (int step = 0; step < 20; ++step)
         {
-            for (int i = 0; other && step == 10 && i < other->m_nodes.size(); ++i)
-                other->m_nodes[i].m_x = btVector3(random.within(-2, 2), random.within(-1, 1), random.within(-2, 2));
+            if (other && step == 10) blowApart(*other, 200);
             hills.step();
             status |= hills.statistics().m_status;
             hash = hashOf(cloth, hash);

@@ -104,7 +104,6 @@ bool DeviceBackend::grow()
            [&](std::size_t count) { m_self.reserveTests(device, count); });
     demand(std::min(std::size_t(counters.m_listed), StepLimits(m_settings).m_contacts), m_compaction.hitCapacity(),
            sizeof(Contact), [&](std::size_t count) { m_compaction.reserveHits(device, count); });
-    again = again || (patches() && m_narrowPhase.skipped(counters.m_candidates));
     if (counters.m_crowded > 0)
     {
         again |= m_stepsToOrder == 0;
@@ -124,9 +123,12 @@ bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResul
     while (!m_device->failed())
     {
         if (overLimit(pairs, result)) return true;
-        if (!grow()) break;
+        // Not done, for another kind of launch: no list was too small.
+        const bool skipped = patches() && m_narrowPhase.skipped(countersRead().m_candidates);
+        const bool grown = grow();
+        if (!grown && !skipped) break;
         if (m_limitReached) return false;
-        ++result.m_retries;
+        if (grown) ++result.m_retries;
         takeCounts(countersRead());
         enqueueStep(scene, pairs);
         m_device->wait();

@@ -68,7 +68,9 @@ void Pipeline::Implementation::leaveOut(std::size_t slot, std::uint64_t candidat
 // What a slot's cloth may need, and at least what it does in ordinary motion.
 TestLimits Pipeline::Implementation::allowed(std::size_t slot, float share) const
 {
-    return std::isfinite(share) ? m_stepPairs.m_ordinary[slot].times(share) : TestLimits();
+    const TestLimits& ordinary = m_stepPairs.m_ordinary[slot];
+    if (share <= 1) return TestLimits{ordinary.m_tests, SIZE_MAX};
+    return std::isfinite(share) ? ordinary.times(share) : TestLimits();
 }
 
 void Pipeline::Implementation::expectMore(const Allowance& allowance)

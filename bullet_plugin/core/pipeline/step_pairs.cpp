@@ -32,7 +32,8 @@ void Pipeline::Implementation::addOrdinaryTests(std::size_t cloth, std::size_t o
     TestLimits own = ordinaryTestsBeside(triangles(m_scene.m_obstacles, obstacle));
     if (m_stepPairs.m_clothRadius[cloth] < 0.0f) own += ordinaryTests(triangles(m_scene.m_cloths, cloth));
     m_stepPairs.m_ordinary[cloth] += own;
-    m_stepPairs.m_limits += own;
+    // How many need the continuous test depends on the mode, on which no contact may depend.
+    m_stepPairs.m_limits += TestLimits{own.m_tests, SIZE_MAX};
 }
 
 void Pipeline::Implementation::collectPairs()
