@@ -9,11 +9,11 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 bash cmake/install_packages.sh
 bash cmake/build_preset.sh asan drape_test_unit drape_test_mesh_io drape_test_oracle drape_test_property \
-  drape_test_stress drape_test_bullet drape_test_process drape_test_startup drape_test_tools
+  drape_test_stress drape_test_bullet drape_test_startup drape_test_tools
 
 source tests/reference_data.sh
 export DRAPE_TEST_NO_DEVICE=1
 export OCL_ICD_VENDORS=/nonexistent
 exec ctest --test-dir build/asan --output-on-failure --no-tests=error --parallel "$(nproc)" \
-  --label-regex '^(unit|mesh_io|oracle|property|stress|bullet|process|startup|tools)$' \
+  --label-regex '^(unit|mesh_io|oracle|property|stress|bullet|startup|tools)$' \
   --exclude-regex 'tenThousandSteps|Row25|Settled|BunnyDrop|HundredThousand|DropComparison' "$@"

@@ -3,8 +3,9 @@
 #
 #   --jobs N              processes at a time (as many as there are cores)
 #   --plain-failing N     the most worlds that may fail of 4,000 without modifiers (0)
-#   --modified-failing N  the most of 4,000 with random modifiers (24)
+#   --modified-failing N  the most of 4,000 with random modifiers (13)
 #   --tiny-failing N      the most of 300,000 tiny ones (12)
+#   --ropes-failing N     the most of 2,000 with ropes (0)
 #   --skirts-left N       skirts of the two grids that may still intersect their body in the last step (0)
 #
 # Runs all parts, also after one that fails; the exit code is 1 then. Failing worlds are printed with the options that
@@ -14,9 +15,10 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 jobs=$(nproc)
 plain=0
-modified=24
+modified=13
 tiny=12
 skirts=0
+ropes=0
 while [[ $# -gt 0 ]]; do
   [[ $# -ge 2 && $2 =~ ^[0-9]+$ ]] || { echo "run_slow.sh: $1 needs a number" >&2; exit 2; }
   case $1 in
@@ -25,6 +27,7 @@ while [[ $# -gt 0 ]]; do
     --modified-failing) modified=$2 ;;
     --tiny-failing) tiny=$2 ;;
     --skirts-left) skirts=$2 ;;
+    --ropes-failing) ropes=$2 ;;
     *) echo "run_slow.sh: $1 is no option" >&2; exit 2 ;;
   esac
   shift 2
@@ -41,5 +44,6 @@ worlds() {
 worlds --kind all --count 4000 --most-failing "$plain"
 worlds --kind all --count 4000 --modifiers random --most-failing "$modified"
 worlds --kind tiny --count 300000 --most-failing "$tiny"
+worlds --kind ropes --count 2000 --most-failing "$ropes"
 worlds --kind skirts --most-failing 354 --most-failing-at-end "$skirts"
 exit $failed

@@ -296,6 +296,10 @@ TEST_P(WorldRows, Row24NodesAndFacesAddedAndRemoved)
     while (cloth.m_faces.size() > 0)
         cloth.m_faces.pop_back();
     world.step(2);
+    EXPECT_GT(plugin.statistics().m_contacts, 0u) << "links without faces collide";
+    while (cloth.m_links.size() > 0)
+        cloth.m_links.pop_back();
+    world.step(2);
     EXPECT_EQ(plugin.statistics().m_contacts, 0u);
 }
 
