@@ -16,7 +16,7 @@ namespace
 // jumps.
 constexpr float kMostAllowance = 8;
 
-// Whether an obstacle of that size, m, goes twice as far in a step, or turns by more than a right angle.
+// Returns whether an obstacle goes twice its size (m) in a step, or turns by more than a right angle.
 bool jumps(const BodyMotion& motion, btScalar size)
 {
     const btMatrix3x3 turn = motion.m_end.getBasis() * motion.m_start.getBasis().transpose();
@@ -256,7 +256,7 @@ void CollisionStep::addContacts(BodyContacts& body, const Contact* first, std::u
     body.m_features.push_back(feature);
 }
 
-// How many times as many tests as ordinary motion needs the cloth may make.
+// Returns how many times as many tests as in ordinary motion the cloth may make.
 float CollisionStep::allowanceOf(MeshId cloth) const
 {
     const std::size_t index = m_byCloth.at(cloth);

@@ -89,7 +89,8 @@ constexpr btScalar kMostShift = 100, kMostRadii = 100, kMostOfAll = btScalar(2.5
 // Radii that a body goes at least where nodes that went along tell a teleport.
 constexpr btScalar kFarRadii = 1;
 
-// Likewise of a turn, radians, and times the motion of the step before: what goes on as it went is carried, not put.
+// Least turn of such a body, radians, and how many times as large as in the step before its motion has to be: a body
+// that goes on as it went is carried, not put elsewhere.
 constexpr btScalar kFarTurn = SIMD_HALF_PI, kFaster = 4;
 
 btScalar radiusOf(const btCollisionObject& object)

@@ -57,7 +57,7 @@ btScalar longestEdge(const ClothFaces& faces, const Place& place)
     return btSqrt(longest2);
 }
 
-// Of the movable nodes whose motion is finite.
+// Takes the movable nodes whose motion is finite.
 btVector3 medianMotion(const btSoftBody& body, const NodePaths& paths)
 {
     std::vector<btVector3> motions;

@@ -1,4 +1,4 @@
-// Whether a soft body is still of its own size, and how it is kept from coming apart.
+// Tells whether a soft body is still of its own size, and keeps it from coming apart.
 //
 // Why: cloth that came apart, because links lost against forces or pins were put elsewhere without the rest, has faces
 // that reach across whole obstacles. What they pass costs more than a step may take, and no contact brings them in
@@ -14,20 +14,19 @@ class btSoftBody;
 
 namespace drape
 {
-// Times its rest length that a link is long at most in a step that may make as many tests as it
-// needs. Links that are stretched most by what a scene does to them, at a few of Bullet's iterations, are two to three
-// times as long.
+// A link may be this many times as long as at rest in a step that makes as many tests as it needs. The links that a
+// scene stretches most, at a few of Bullet's iterations, are two to three times as long.
 constexpr btScalar kMostStretch = 4;
 
-// How many times its rest length the link is long that is stretched most; infinity where a node is not finite. Of a
-// body without links, the longest edge of a face as a multiple of the longest one at the start.
+// The length of the link that is stretched most, as a multiple of its rest length; infinity where a node is not finite.
+// For a body without links, the longest edge of a face as a multiple of the longest one at the start.
 struct Stretch
 {
     btScalar m_start;  // at the start of the nodes' paths
     btScalar m_end;    // where they are now
 };
 
-// By component; zero of none.
+// Returns the median of each component; zero for no vectors.
 btVector3 medianOf(std::vector<btVector3> vectors);
 
 // The median of the links' rest lengths, bending links left out; of a body without links the longest edge at the start,

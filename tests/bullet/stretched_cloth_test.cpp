@@ -201,73 +201,87 @@ TEST_P(StretchedCloth, IsNotWhatIsOnlyFast)
     EXPECT_GT(hills.statistics().m_contacts, 0u);
 }
 
-// A character that is put elsewhere with its pins, while the rest of its cape stays behind and is pulled after it.
+namespace
+{
+// A ball with a cape over it, which the test puts elsewhere by the ball's world transform alone.
+class Respawn
+{
+public:
+    Respawn(const Settings& settings, int nodes, int levels, const btVector3& jump)
+        : m_pose(btMatrix3x3::getIdentity(), jump),
+          m_mesh(makeSphere(0.4f, levels)),
+          m_shape(m_mesh),
+          m_plugin(settings),
+          m_world(&m_plugin),
+          m_body(m_world.addKinematic(m_shape.shape())),
+          m_cape(m_world.addCloth(specOf(nodes)))
+    {
+    }
+
+    // Steps after the jump, to where the cape lies outside of the ball again.
+    void jumpAndSettle()
+    {
+        m_body.setWorldTransform(m_pose);
+        std::uint64_t most = 0;
+        for (int step = 0; step < 300; ++step)
+        {
+            m_world.step();
+            most = std::max(most, m_plugin.statistics().m_candidates);
+        }
+        EXPECT_LT(most, 1000000u);
+        EXPECT_EQ(m_plugin.statistics().m_status, std::uint32_t(kStepGood));
+        for (int i = 0; i < m_cape.m_nodes.size(); ++i)
+            ASSERT_LT((m_cape.m_nodes[i].m_x - m_pose.getOrigin()).length(), 2) << i;
+        PenetrationMeter meter(placed(m_mesh, m_pose), meshOf(m_cape));
+        EXPECT_EQ(meter.measure(positionsOf(m_cape).data()).m_intersectingPairs, 0u);
+    }
+
+private:
+    static ClothSpec specOf(int nodes)
+    {
+        ClothSpec spec;
+        spec.m_nodes = nodes;
+        spec.m_centre = btVector3(0, btScalar(0.45), 0);
+        return spec;
+    }
+
+    const btTransform m_pose;
+    const TriangleMesh m_mesh;
+    MeshShape m_shape;
+    Plugin m_plugin;
+
+public:
+    DropWorld m_world;
+    btRigidBody& m_body;
+    btSoftBody& m_cape;
+};
+}  // namespace
+
+// The app moves the pins along, while the rest of the cape stays behind and is pulled after them.
 TEST_P(StretchedCloth, ThatIsPulledAfterItsPinsComesBack)
 {
-    Plugin plugin(GetParam().m_settings);
-    const TriangleMesh mesh = makeSphere(0.4f, 5);
-    MeshShape shape(mesh);
-    DropWorld world(&plugin);
-    btRigidBody& body = world.addKinematic(shape.shape());
-    ClothSpec spec;
-    spec.m_nodes = 33;
-    spec.m_centre = btVector3(0, btScalar(0.45), 0);
-    btSoftBody& cape = world.addCloth(spec);
-    for (int i = 0; i < spec.m_nodes; ++i)
-        cape.setMass(i, 0);
-    world.step(60);
+    constexpr int kPins = 33;
     const btVector3 jump(10, 0, 5);
+    Respawn respawn(GetParam().m_settings, kPins, 5, jump);
+    for (int i = 0; i < kPins; ++i)
+        respawn.m_cape.setMass(i, 0);
+    respawn.m_world.step(60);
     std::vector<btVector3> pins;
-    const btTransform pose(btMatrix3x3::getIdentity(), jump);
-    body.setWorldTransform(pose);
-    for (int i = 0; i < spec.m_nodes; ++i)
-        pins.push_back(cape.m_nodes[i].m_x += jump);
-    std::uint64_t most = 0;
-    for (int step = 0; step < 300; ++step)
-    {
-        world.step();
-        most = std::max(most, plugin.statistics().m_candidates);
-    }
-    EXPECT_LT(most, 1000000u);
-    EXPECT_EQ(plugin.statistics().m_status, std::uint32_t(kStepGood));
-    for (int i = 0; i < spec.m_nodes; ++i)
-        ASSERT_EQ(cape.m_nodes[i].m_x, pins[std::size_t(i)]) << "a pin moved: " << i;
-    for (int i = 0; i < cape.m_nodes.size(); ++i)
-        ASSERT_LT((cape.m_nodes[i].m_x - jump).length(), 2) << i;
-    PenetrationMeter meter(placed(mesh, pose), meshOf(cape));
-    EXPECT_EQ(meter.measure(positionsOf(cape).data()).m_intersectingPairs, 0u);
+    for (int i = 0; i < kPins; ++i)
+        pins.push_back(respawn.m_cape.m_nodes[i].m_x += jump);
+    respawn.jumpAndSettle();
+    for (int i = 0; i < kPins; ++i)
+        ASSERT_EQ(respawn.m_cape.m_nodes[i].m_x, pins[std::size_t(i)]) << "a pin moved: " << i;
 }
 
-// The same by anchors, and the app moves nothing but the body, by its world transform alone.
+// Anchors hold the cape, and the app moves nothing but the body.
 TEST_P(StretchedCloth, ThatHangsOnARespawnedBodyComesBack)
 {
-    Plugin plugin(GetParam().m_settings);
-    const TriangleMesh mesh = makeSphere(0.4f, 4);
-    MeshShape shape(mesh);
-    DropWorld world(&plugin);
-    btRigidBody& body = world.addKinematic(shape.shape());
-    ClothSpec spec;
-    spec.m_nodes = 25;
-    spec.m_centre = btVector3(0, btScalar(0.45), 0);
-    btSoftBody& cape = world.addCloth(spec);
-    for (int i = 0; i < spec.m_nodes; i += 4)
-        cape.appendAnchor(i, &body);
-    world.step(60);
-    const btVector3 jump(20, 0, 5);
-    const btTransform pose(btMatrix3x3::getIdentity(), jump);
-    body.setWorldTransform(pose);
-    std::uint64_t most = 0;
-    for (int step = 0; step < 300; ++step)
-    {
-        world.step();
-        most = std::max(most, plugin.statistics().m_candidates);
-    }
-    EXPECT_LT(most, 1000000u);
-    EXPECT_EQ(plugin.statistics().m_status, std::uint32_t(kStepGood));
-    for (int i = 0; i < cape.m_nodes.size(); ++i)
-        ASSERT_LT((cape.m_nodes[i].m_x - jump).length(), 2) << i;
-    PenetrationMeter meter(placed(mesh, pose), meshOf(cape));
-    EXPECT_EQ(meter.measure(positionsOf(cape).data()).m_intersectingPairs, 0u);
+    Respawn respawn(GetParam().m_settings, 25, 4, btVector3(20, 0, 5));
+    for (int i = 0; i < 25; i += 4)
+        respawn.m_cape.appendAnchor(i, &respawn.m_body);
+    respawn.m_world.step(60);
+    respawn.jumpAndSettle();
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, StretchedCloth, testing::ValuesIn(allBackends()), backendName);

@@ -65,7 +65,7 @@ void Pipeline::Implementation::leaveOut(std::size_t slot, std::uint64_t candidat
     m_leftOut.push_back(m_scene.m_cloths.mesh(slot).m_id);
 }
 
-// What a slot's cloth may need, and at least what it does in ordinary motion.
+// Returns the tests that a slot's cloth may make: `share` times as many as in ordinary motion, at least as many.
 TestLimits Pipeline::Implementation::allowed(std::size_t slot, float share) const
 {
     const TestLimits& ordinary = m_stepPairs.m_ordinary[slot];
@@ -109,7 +109,7 @@ void Pipeline::Implementation::leaveOutStretched(const Allowance& allowance)
     m_limitsRaised = true;
 }
 
-// Whether the one of these cloths would need more tests in a step of its own.
+// Returns whether the cloth in this slot, one of those taking part, needs more tests in a step of its own.
 bool Pipeline::Implementation::needsMore(std::size_t slot, const std::vector<std::size_t>& taking, TestLimits limits)
 {
     StepPairs alone = m_stepPairs;
