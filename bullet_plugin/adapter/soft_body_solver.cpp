@@ -8,6 +8,7 @@
 #include "bullet_plugin/adapter/eligibility.h"
 #include "bullet_plugin/adapter/motion_bounds.h"
 #include "bullet_plugin/adapter/plugin_state.h"
+#include "bullet_plugin/core/float_environment.h"
 #include "bullet_plugin/core/public_call.h"
 #include "bullet_plugin/core/stopwatch.h"
 #include "bullet_plugin/core/usage_watch.h"
@@ -68,6 +69,23 @@ struct SoftBodySolver::Work
     {
         const std::size_t at = static_cast<std::size_t>(body);
         return at < m_solved.size() && m_solved[at];
+    }
+    // Bullet's links would move the nodes of a body without time, and divide by that time: the result is NaN.
+    bool isSteppedBody(const btSoftBody& body) const { return isPredicted(body) && body.m_sst.sdt > 0; }
+    // Runs Bullet's solver for the bodies without contacts from index `first` on, up to the next one with contacts,
+    // whose index is returned. Scenes may have thousands of small bodies: the environment changes once for all of them.
+    int solveByBullet(const btAlignedObjectArray<btSoftBody*>& bodies, int first)
+    {
+        const CallersFloats floats;
+        int i = first;
+        for (; i < bodies.size(); ++i)
+        {
+            if (!isSteppedBody(*bodies[i])) continue;
+            if (contactsOf(*bodies[i])) break;
+            m_solved[static_cast<std::size_t>(i)] = 1;
+            bodies[i]->solveConstraints();
+        }
+        return i;
     }
     BodyContacts* contactsOf(const btSoftBody& body) { return m_step ? m_step->contactsOf(body) : nullptr; }
 
@@ -220,19 +238,18 @@ double SoftBodySolver::solveBodies()
     work.m_touched.reserve(static_cast<std::size_t>(m_softBodySet.size()));
     work.m_solved.assign(static_cast<std::size_t>(m_softBodySet.size()), 0);
     double bulletMs = 0;
-    for (int i = 0; i < m_softBodySet.size(); ++i)
+    for (int i = 0; i < m_softBodySet.size();)
     {
-        btSoftBody* body = m_softBodySet[i];
-        // Bullet's links would move the nodes and its velocities are what they moved over the time: not numbers.
-        if (!work.isPredicted(*body) || !(body->m_sst.sdt > 0)) continue;
-        if (BodyContacts* contacts = work.contactsOf(*body))
+        btSoftBody& body = *m_softBodySet[i];
+        BodyContacts* const contacts = work.isSteppedBody(body) ? work.contactsOf(body) : nullptr;
+        if (contacts)
         {
             work.m_touched.push_back(contacts);
+            ++i;
             continue;
         }
         Stopwatch watch;
-        work.m_solved[static_cast<std::size_t>(i)] = 1;
-        solveByBullet(*body);
+        i = work.solveByBullet(m_softBodySet, i);
         bulletMs += watch.lapMs();
     }
     return bulletMs + work.m_solver->solve(work.m_touched, m_state->m_found);
@@ -261,11 +278,11 @@ void SoftBodySolver::endFailedStep()
     for (int i = 0; i < m_softBodySet.size(); ++i)
     {
         btSoftBody& body = *m_softBodySet[i];
-        if (work.isSolved(i) || !work.isPredicted(body) || !(body.m_sst.sdt > 0)) continue;
+        if (work.isSolved(i) || !work.isSteppedBody(body)) continue;
         if (handlesSteppedCloth(*m_state, body))
             holdStill(body, work.m_detected ? work.contactsOf(body) : nullptr);
         else
-            solveByBullet(body);
+            drape::solveByBullet(body);
     }
     work.m_step.reset();
     work.m_failures = m_state->failures();
