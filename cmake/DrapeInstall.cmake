@@ -25,7 +25,7 @@ else()
   set(DRAPE_PC_BULLET bullet)
   set(DRAPE_PC_DOUBLE 0)
 endif()
-# What a static library leaves to be linked.
+# Lists the libraries that a user of the static library must link.
 if(DRAPE_LIBRARY_TYPE STREQUAL "STATIC_LIBRARY")
   set(DRAPE_PC_STATIC_REQUIRES ", OpenCL")
   set(DRAPE_PC_STATIC_LIBS " -pthread")

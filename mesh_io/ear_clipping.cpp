@@ -209,7 +209,7 @@ EarClipping::Corner EarClipping::findBlocker(Corner corner)
     return kNone;
 }
 
-// Whether one of the ear's edges, or its bounds, parts it from the box.
+// Returns true if one of the ear's edges, or its bounds, separates it from the box.
 bool EarClipping::isOutside(const Box& box, const Point2* ear) const
 {
     for (int axis = 0; axis < 2; ++axis)

@@ -20,7 +20,7 @@ struct MeshFile
     std::vector<std::int32_t> m_corners;  // zero-based vertex indices, face after face
     std::vector<std::size_t> m_faceEnds;  // for each face, one past its last corner in m_corners
     bool m_hasIndices = true;             // false: each face has vertices of its own, as in STL
-    std::vector<std::string> m_notes;     // what was left out or cannot be represented, one line each
+    std::vector<std::string> m_notes;     // parts that were left out or cannot be represented, one line each
 
     std::size_t vertexCount() const { return m_positions.size() / 3; }
     std::size_t faceCount() const { return m_faceEnds.size(); }

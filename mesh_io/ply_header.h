@@ -20,7 +20,7 @@ struct PlyProperty
 {
     std::string m_name;
     bool m_isList = false;
-    NumberType m_countType = NumberType::Uint8;  // of a list's length
+    NumberType m_countType = NumberType::Uint8;  // type of a list's length
     NumberType m_type = NumberType::Float32;
 
     // The fewest bytes that a value takes in a binary file.

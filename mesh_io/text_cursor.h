@@ -43,7 +43,7 @@ private:
 // too. The byte behind the word must be part of the
 // same string, as it is for the words of a TextCursor. Returns "" or the reason why the word is not a number.
 std::string readNumber(std::string_view word, double& value);
-// As readNumber(), for a whole number without fraction or exponent.
+// Reads a whole number without fraction or exponent; otherwise equal to readNumber().
 std::string readInteger(std::string_view word, long long& value);
 
 // A number for a message: whole numbers as such, others with up to 17 digits.
@@ -52,6 +52,6 @@ std::string numberText(double value);
 // The word in quotes for a message, cut after 32 bytes, unprintable bytes as '?'.
 std::string quoted(std::string_view word);
 
-// Whether two words are equal but for upper and lower case of ASCII letters.
+// Returns true if two words are equal apart from upper and lower case of ASCII letters.
 bool sameWord(std::string_view a, std::string_view b);
 }  // namespace drape

@@ -8,7 +8,7 @@ namespace drape
 {
 namespace
 {
-// Where a vertex is at the start and at the end of a motion.
+// The position of a vertex at the start and at the end of a motion.
 struct PositionKey
 {
     std::array<std::uint32_t, 6> m_bits;

@@ -23,10 +23,10 @@ enum class Joining
 
 struct LoadReport
 {
-    bool m_isJoined = false;           // whether vertices of any file were joined by position
+    bool m_isJoined = false;           // true if vertices were joined by position, for any file
     std::array<double, 3> m_centre{};  // subtracted from all positions of all files, in their unit; often zero
     double m_rounding = 0;             // the largest change of a coordinate by rounding, in the files' unit
-    std::vector<std::string> m_notes;  // what was left out or lost, one line each
+    std::vector<std::string> m_notes;  // parts that were left out or lost, one line each
 
     bool isCentred() const { return m_centre != std::array<double, 3>{}; }
 };

@@ -15,7 +15,7 @@ namespace drape::bench
 {
 namespace
 {
-// What the bounds callback reads.
+// The boxes that the bounds callback reads.
 struct Boxes
 {
     const Triangle* m_triangles = nullptr;
@@ -51,7 +51,8 @@ void keepEachOnce(std::vector<Candidate>& pairs)
 {
     for (Candidate& pair : pairs)
         if (pair.m_obstacle < pair.m_cloth) std::swap(pair.m_cloth, pair.m_obstacle);
-    tbb::parallel_sort(pairs.begin(), pairs.end(), [](const Candidate& a, const Candidate& b)
+    tbb::parallel_sort(pairs.begin(), pairs.end(),
+                       [](const Candidate& a, const Candidate& b)
                        { return a.m_cloth != b.m_cloth ? a.m_cloth < b.m_cloth : a.m_obstacle < b.m_obstacle; });
     const auto same = [](const Candidate& a, const Candidate& b)
     { return a.m_cloth == b.m_cloth && a.m_obstacle == b.m_obstacle; };

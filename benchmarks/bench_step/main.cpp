@@ -131,7 +131,7 @@ std::vector<SceneSpec> chosenScenes(const Options& options)
 // By scene, and whether redundant contacts are left out.
 using Hashes = std::map<std::pair<std::string, bool>, std::string>;
 
-// Those of an earlier run; none for an empty path.
+// Reads the hashes of an earlier run; reads none for an empty path.
 bool readReference(const std::string& path, Hashes& hashes, std::string& error)
 {
     const auto take = [&hashes](const Row& row)

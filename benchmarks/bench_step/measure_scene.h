@@ -17,8 +17,8 @@ struct MeasureSettings
     std::string m_expected, m_expectedReduced;
 };
 
-// What a method did over a period and some timed ones after it. hash is that of the first period; where a later period
-// gave other contacts it says so instead.
+// The results of a method over an untimed period and some timed ones. `hash` belongs to the first period. If a later
+// period gave other contacts, `hash` says so instead.
 struct MethodRun
 {
     Row m_description;

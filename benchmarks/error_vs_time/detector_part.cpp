@@ -96,7 +96,7 @@ public:
             if (set.m_times.empty() || !set.m_truth[i] || !hits.back()) continue;
             const double error = set.m_times[i] - double(results[i].m_time);
             early.push_back(std::abs(error));
-            late += error < -1e-9;  // what the true times themselves are good for
+            late += error < -1e-9;  // the accuracy of the true times
         }
         fillAnswers(row, set.m_truth, hits);
         fillErrors(row, "time_error", early);

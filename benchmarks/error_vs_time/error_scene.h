@@ -24,7 +24,7 @@ struct ErrorScene
     bool m_symmetric = false;  // its resting shape can be compared between runs: others fold this way or that
 };
 
-// Of all, or of the few small ones of a quick run.
+// Returns the names of all scenes, or of the few small ones of a quick run.
 std::vector<std::string> errorSceneNames(bool quick);
 
 // False with one line in `error` for a model that is not there.

@@ -1,10 +1,11 @@
-// error_vs_time: what a frame costs against how wrong the cloth is, scene by scene, for Drape's knobs and for Bullet's
-// built-in collision at equal simulated time; and what a query costs against how wrong its answer is.
+// error_vs_time: measures the cost of a frame against the error of the cloth, and the cost of a query against the error
+// of its answer.
 //
-// Each trial runs the whole scene in Bullet. Times are of stepSimulation, a frame of 1/60 s at a time, without
-// measuring. Errors come from the independent check (scenes/measure.h), those of queries from exact answers. Drape on a
-// device must give the host's course and answers, bit for bit: a row whose hash differs is void, and the program ends
-// with 3.
+// Measures each scene with Drape's settings and with Bullet's built-in collision at equal simulated time. Each trial
+// runs the whole scene in Bullet. Times are of stepSimulation, a frame of 1/60 s at a time, without the checks. Errors
+// of cloth come from the independent check (scenes/measure.h), errors of queries from exact answers. Drape on a device
+// must give the host's trajectory and answers, bit for bit. A row whose hash differs is void, and the program ends with
+// 3.
 #include <algorithm>
 #include <iostream>
 

@@ -46,7 +46,8 @@ double volumeAt(const Moving& moving, std::uint32_t kind, double time)
     return dot(d, cross(e, g));
 }
 
-// How far inside both features the meeting point of the coplanar four is, in parts of the features; below 0: outside.
+// Returns how far inside both features the meeting point of the coplanar four is, relative to the features' size.
+// Negative values are outside.
 double insideAt(const Moving& moving, std::uint32_t kind, double time)
 {
     Vector3 d, e, g;
@@ -107,7 +108,7 @@ double rootBetween(const Cubic& f, double low, double high)
     return (low + high) / 2;
 }
 
-// Whether double can tell, and then whether the features touch and when first.
+// Returns whether double precision can decide. If so, sets whether the features touch and the first time.
 bool truthOf(const Moving& moving, std::uint32_t kind, bool& touch, double& time)
 {
     touch = false;

@@ -15,16 +15,16 @@ constexpr int kHopeless = 3;
 // Drape's rest trials have twenty times the frames of others: so many times the others' seconds.
 constexpr double kRestCaps = 3;
 
-// What the trials of a scene are judged by.
+// The reference data that the trials of a scene are judged by.
 struct SceneState
 {
     std::string m_name;
     bool m_symmetric = false;
     bool m_moves = false;            // the obstacle does
-    std::string m_hash;              // of Drape's defaults, on the host where that run was whole
+    std::string m_hash;              // hash of Drape's defaults, on the host if that run was complete
     std::vector<float> m_reference;  // positions at the end of the reference
     std::vector<TrialResult> m_results;
-    std::vector<bool> m_sameContacts;  // as the results' trials have it
+    std::vector<bool> m_sameContacts;  // one flag for each of m_results
     int m_stalled = 0;                 // Bullet's latest trials that stalled, without one that did not
 
     void add(TrialResult result, const Trial& trial)

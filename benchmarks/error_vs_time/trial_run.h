@@ -26,7 +26,7 @@ struct ErrorOptions : CommonOptions
     std::string m_truth;  // folder
     std::vector<std::string> m_scenes;
     std::vector<std::string> m_knobs;  // empty: all
-    double m_capSeconds = 45;          // of stepping, for one trial
+    double m_capSeconds = 45;          // limit of the stepping time of one trial
     int m_frames = 0;                  // 0: as many as the kind of run has
     std::string m_childScene;          // in a child: what to run
     int m_childTrial = -1;
@@ -35,10 +35,10 @@ struct ErrorOptions : CommonOptions
     std::vector<Trial> trials(bool withDevice) const { return makeTrials(m_quick, withDevice, frames()); }
 };
 
-// Whether Drape would run on a device, and not on the host.
+// Returns true if Drape would run on a device and not on the host.
 bool hasDevice(const ErrorOptions& options);
 
-// What a row says of itself before, and instead of, being run. why: how it ended.
+// Describes a trial that has not run or has failed. `why` says how it ended.
 Row describeTrial(const std::string& scene, const Trial& trial, const std::string& why);
 
 // A trial's row, and where the cloth was at the end (x y z per node; empty when the trial did not get there).
@@ -46,7 +46,7 @@ struct TrialResult
 {
     Row m_row;
     std::vector<float> m_final;
-    std::string m_hash;   // of the whole course
+    std::string m_hash;   // hash of the whole trajectory
     std::string m_error;  // one line when it could not be run
 };
 

@@ -14,17 +14,17 @@
 
 namespace drape::bench
 {
-// What a cloth has after a step, J.
+// The energies of a cloth after a step, J.
 struct ClothEnergy
 {
     double m_motion = 0;  // kinetic and of height
-    // At most what the links can turn into motion. They are no springs with an energy of their own: Bullet's solver
-    // moves a link's ends together by a share of its stretch each iteration, so that in a step of dt they get at most
-    // the speed (1 - (1 - stiffness)^iterations) stretch / dt.
+    // Upper bound of the energy that the links can turn into motion. Links are no springs with an energy of their own.
+    // In each iteration Bullet's solver moves a link's ends together by a share of its stretch. In a step of dt the
+    // ends get at most the speed (1 - (1 - stiffness)^iterations) stretch / dt.
     double m_links = 0;
 };
 
-// What a trial does to its scene: fall, thickness and time step.
+// Applies a trial to its scene: fall, thickness and time step.
 ErrorScene sceneOf(const ErrorScene& scene, const Trial& trial);
 
 class TrialSimulation : public Simulation

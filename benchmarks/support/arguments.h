@@ -1,4 +1,4 @@
-// What every benchmark program may be told on its command line.
+// Command-line options that all benchmark programs share.
 #pragma once
 
 #include <string>
@@ -32,7 +32,7 @@ void addCommonOptions(CLI::App& app, CommonOptions& options);
 std::string unknownName(const char* option, const std::vector<std::string>& names,
                         const std::vector<std::string>& known);
 
-// Writes the table where the options say (or a CSV to standard output where they name nothing) and returns the exit
-// code: kExitOtherHash when a row is void, else kExitFailed when something was left out that could not be measured.
+// Writes the table to the files that the options name, or as CSV to standard output if they name none. Returns
+// kExitOtherHash if a row is void, else kExitFailed if something could not be measured.
 int finishTable(const std::string& program, const Table& table, const CommonOptions& options);
 }  // namespace drape::bench

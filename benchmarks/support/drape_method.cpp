@@ -89,7 +89,7 @@ public:
     std::vector<Row> extraRows() const override
     {
         std::vector<Row> rows;
-        if (m_profiled) return rows;  // the same as without
+        if (m_profiled) return rows;  // equal to the rows without profiling
         for (const MemoryUse& use : m_pipeline->deviceMemory())
             rows.push_back({{"stage", "memory: " + use.m_name}, {"bytes", use.m_bytes}});
         return rows;

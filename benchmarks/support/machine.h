@@ -1,4 +1,4 @@
-// What a row's figures were measured on.
+// Describes the machine that a row was measured on.
 #pragma once
 
 #include <string>

@@ -31,10 +31,10 @@ public:
 
 private:
     MeshPool m_cloths, m_obstacles;
-    std::vector<float> m_positions;  // of the obstacle
+    std::vector<float> m_positions;  // positions of the obstacle
     std::vector<NormalCone> m_vertexCones, m_edgeCones;
     std::vector<float> m_thickness;
-    std::vector<float> m_rest;  // of the cloths
+    std::vector<float> m_rest;  // rest positions of the cloths
     SelfReach m_self;
 };
 }  // namespace drape::bench

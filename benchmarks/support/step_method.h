@@ -25,7 +25,7 @@ struct StepOutcome
     std::size_t m_contacts = 0;
     std::size_t m_volumeTests = 0;  // 0: not counted
     std::size_t m_rebuilds = 0;     // see StepStatistics
-    std::string m_hash;             // of the contacts, or empty for a method that finds only candidates
+    std::string m_hash;             // hash of the contacts; empty for a method that finds only candidates
 };
 
 class StepMethod
@@ -55,8 +55,8 @@ std::unique_ptr<StepMethod> makeDrapeMethod(const StepScene& scene, const Settin
 // The same, with redundant contacts left out, as the plugin has it.
 std::unique_ptr<StepMethod> makeReducedMethod(const StepScene& scene, const Settings& settings, std::string& error);
 
-// How far Drape looks with default settings: thickness and activation.
+// Returns the distance within which Drape finds contacts with default settings: thickness and activation.
 float contactReach(const StepScene& scene);
-// The same from a cloth to itself; 0 where it does not collide with itself.
+// Returns the reach of a cloth to itself, or 0 if it does not collide with itself.
 float selfReach(const StepScene& scene);
 }  // namespace drape::bench

@@ -11,11 +11,11 @@ namespace
 {
 constexpr double kClothSize = 2.4;  // m, over a 2 m obstacle, as in cloth_drop
 constexpr double kPatchSize = 0.3;  // m, of one of many cloths
-// Of the thickness: the vertical gap. On the steepest drape 0.48 of the thickness are left, of which the motion takes
-// 0.2 and a bit: cloth is near the surface, and does not pass it.
+// The vertical gap as a share of the thickness. On the steepest drape 0.48 of the thickness remains, and the motion
+// takes a little over 0.2 of it. The cloth is near the surface and does not pass it.
 constexpr double kGap = 0.75;
-constexpr double kWay = 0.15;  // of the thickness, a step: 3 mm at 20 mm
-constexpr double kFoldGap = 0.8;  // of the thickness with itself: the vertical gap between a folded cloth's halves
+constexpr double kWay = 0.15;     // motion per step as a share of the thickness: 3 mm at 20 mm
+constexpr double kFoldGap = 0.8;  // vertical gap between a folded cloth's halves, as a share of their thickness
 constexpr std::uint32_t kSeed = 7;
 
 std::string sizeName(int cells)

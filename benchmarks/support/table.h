@@ -19,7 +19,7 @@ class Table
 public:
     void add(const Row& row);
     const std::vector<Row>& rows() const { return m_rows; }
-    // Whether a row is void.
+    // Returns true if a row is void.
     bool anyVoid() const;
 
     // Names on standard error what could not be measured; the program then ends with kExitFailed (finishTable()).

@@ -52,7 +52,7 @@ int spawnChild(std::vector<std::string>& arguments, pid_t& child)
     return -1;
 }
 
-constexpr double kLookSeconds = 0.1;  // how often whether it goes on is asked while the child is silent
+constexpr double kLookSeconds = 0.1;  // interval between checks for an interruption while the child is silent
 
 int waitMs(double seconds)
 {
@@ -111,7 +111,7 @@ ChildEnd runCappedChild(std::vector<std::string> arguments, const ChildCap& cap,
         end.m_error = std::string("the child process sent what cannot be read: ") + exception.what();
     }
     end.m_step = lines.step();
-    // The same signal may have ended the child already.
+    // The signal may have ended the child already.
     if (end.m_error.empty() && goesOn && !goesOn()) end.m_capped = true;
     if (end.m_capped || !end.m_error.empty()) ::kill(child, SIGKILL);
     ::close(pipe);

@@ -37,7 +37,8 @@ public:
     ~DropWorld();
 
     void addMeshObstacle(const DropScene& scene);  // a static btBvhTriangleMeshShape
-    // The same as a kinematic body at the origin; its setWorldTransform() before a step says where it goes in the step.
+    // Adds the obstacle as a kinematic body at the origin. Call setWorldTransform() before a step to set its pose at
+    // the end of the step.
     btRigidBody& addMovingObstacle(const DropScene& scene);
     void addSoftObstacle(const DropScene& scene);  // a soft body of massless nodes, for VF_SS
     void addCloth(const DropScene& scene, bool softPairs);

@@ -33,7 +33,7 @@ void listenToSignals()
             continue;
         struct sigaction action = {};
         action.sa_handler = note;
-        action.sa_flags = SA_RESTART;  // what is being written goes on
+        action.sa_flags = SA_RESTART;  // interrupted writes continue
         ::sigaction(signal.m_number, &action, nullptr);
     }
 }

@@ -1,7 +1,9 @@
-// Signals that ask the program to end: SIGINT, SIGTERM and SIGHUP. While it listens the first of them is only noted, so
-// that a run may end after the step under way and keep what it has; the next one does what it did before: it ends the
-// program at once, unless somebody else has a handler (an OpenCL driver's compiler removes its files). Signals that are
-// ignored when listening begins (nohup) stay so.
+// Listens for signals that ask the program to end: SIGINT, SIGTERM and SIGHUP.
+//
+// While it listens, the first signal is only noted, so that a run can end after the current step and keep its results.
+// The next signal has its earlier effect: it ends the program at once, or calls the handler that was installed before.
+// An OpenCL driver's compiler, for example, has a handler that removes its files. Signals that are ignored when
+// listening begins (nohup) remain ignored.
 #pragma once
 
 #include <string>

@@ -17,7 +17,7 @@ namespace drape
 {
 namespace
 {
-// What --help says of --json and of how runs end.
+// The part of --help that explains --json and the exit codes.
 constexpr const char* kResultsText =
     "JSON keys end in their units. step_ms, collision_ms, collision_parts_ms (medians) and penetration_p99_m are over\n"
     "the steps in contact, and null where there were none. Of the collision, finding_ms leaves out solving the\n"

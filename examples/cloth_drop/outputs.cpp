@@ -45,7 +45,7 @@ bool isFrame(const std::string& name)
             name.compare(name.size() - end.size(), end.size(), end) == 0);
 }
 
-// What is read stays, and what is written is not written over.
+// Refuses an output file that --frames would overwrite.
 bool spares(const Options& options, const Output& file, std::string& error)
 {
     if (file.m_path.empty() || file.m_path == kStandardOutput) return true;

@@ -19,7 +19,7 @@ namespace
 {
 // Size of the only panel, in pixels.
 constexpr int kWidth = 1280, kHeight = 960;
-constexpr int kSideWidth = 960, kSideHeight = 720;  // of each of several panels
+constexpr int kSideWidth = 960, kSideHeight = 720;  // size of each panel if there are several
 constexpr int kGap = 8;                             // pixels between panels
 constexpr int kStrata = 6;                          // samples a pixel and axis; each carries one shadow and one sky ray
 constexpr std::size_t kSmoothTriangles =

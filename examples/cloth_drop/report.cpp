@@ -31,9 +31,9 @@ Json ifInContact(const RunSummary& summary, const Json& value)
     return summary.m_stepsInContact > 0 ? value : Json();
 }
 
-// Sums over the run: what the broad phase left, what needed the continuous test, contacts solved and left out,
-// hierarchies of the cloth built anew, cloths not looked at and obstacles used as they were, steps with nothing to do,
-// and steps that the host back end ran.
+// Returns sums over the run. Counts the candidates of the broad phase, the continuous tests, the solved and the omitted
+// contacts, and rebuilt hierarchies of the cloth. Also counts skipped cloths, obstacles reused without change, idle
+// steps, and steps that the host back end ran.
 Json workJson(const RunRecord& record)
 {
     std::uint64_t candidates = 0, swept = 0, contacts = 0, implied = 0;

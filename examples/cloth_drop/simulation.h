@@ -13,7 +13,7 @@
 
 namespace drape
 {
-// Of StepTimes::m_collisionMs, ms; see StepStatistics.
+// Parts of StepTimes::m_collisionMs, ms; see StepStatistics.
 struct CollisionParts
 {
     double m_dispatch = 0;  // Bullet's collision detection, and Drape's part in it
@@ -27,10 +27,10 @@ struct CollisionParts
 struct StepTimes
 {
     double m_stepMs = 0;       // wall time of stepSimulation
-    double m_collisionMs = 0;  // of it: Bullet's collision detection, and all that Drape does
-    CollisionParts m_parts;    // of that; 0 of the built-in
+    double m_collisionMs = 0;  // part of the step: Bullet's collision detection and all work of Drape
+    CollisionParts m_parts;    // parts of m_collisionMs; 0 for the built-in collision
     std::size_t m_contacts = 0;
-    // What Drape did for it, as in StepStatistics; 0 of the built-in.
+    // Work counts as in StepStatistics; 0 for the built-in collision.
     std::uint64_t m_candidates = 0;
     std::size_t m_sweptTests = 0;
     std::size_t m_reduced = 0;

@@ -67,8 +67,8 @@ drape::MeshDescription describe(const std::vector<float>& positions, const std::
     return mesh;
 }
 
-// Of two triangles side by side the second is pierced by a third one, which is 5 cm from the first; a point that goes
-// through a face meets it half-way.
+// Checks known answers. A third triangle pierces the second of two adjacent triangles and is 5 cm from the first. A
+// point that goes through a face meets it half-way.
 bool answersAreRight(const drape::Settings& settings)
 {
     drape::Error error;

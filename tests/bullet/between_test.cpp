@@ -1,4 +1,4 @@
-// What an app changes between Bullet's dispatch and the solve: actions and the tick's callback run there.
+// Changes that an app makes between Bullet's dispatch and the solve, in actions and in the tick's callback.
 #include <gtest/gtest.h>
 
 #include <functional>

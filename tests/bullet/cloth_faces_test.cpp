@@ -21,7 +21,7 @@ std::vector<Face> facesOf(const ClothFaces& faces, std::size_t node)
     return found;
 }
 
-// Those whose nodes are all there, once for each place that has the node.
+// Returns the faces whose nodes all exist, once for each corner that is the node.
 std::vector<Face> lookedUp(const std::vector<std::int32_t>& triangles, std::int32_t nodeCount, std::int32_t node)
 {
     std::vector<Face> found;

@@ -1,4 +1,4 @@
-// What is noticed of a cloth whose faces get other nodes where they stand, which no count tells.
+// Changes of a cloth's faces that no count shows: faces get other nodes in place.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -20,7 +20,7 @@ std::unique_ptr<btSoftBody> makePatch(btSoftBodyWorldInfo& info, int nodes)
         info, btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(0, 0, 1), btVector3(1, 0, 1), nodes, nodes, 0, true));
 }
 
-// How many steps pass, after `before` others, until other nodes for the last face are in the pipeline.
+// Returns the number of steps, after `before` others, until the pipeline has the other nodes of the last face.
 int stepsUntilSeen(int nodes, int before)
 {
     btSoftBodyWorldInfo info;
@@ -147,7 +147,7 @@ TEST_P(FacesInPlace, countInTheSameStep)
     world.world().removeSoftBody(body.get());
 }
 
-// What hangs on a cloth without faces, or is left of it where some were cut away.
+// Nodes without faces hang on a cloth or remain after faces were cut away.
 TEST_P(FacesInPlace, nodesWithoutFacesCollideToo)
 {
     Plugin plugin(GetParam().m_settings);

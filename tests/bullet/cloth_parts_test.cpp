@@ -1,4 +1,4 @@
-// How a cloth is cut into parts: every node in one leaf of bounded size, and no node shared by groups side by side.
+// Cutting a cloth into parts: every node is in one leaf of bounded size, and adjacent groups share no node.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -21,7 +21,7 @@ std::vector<btVector3> placesOf(const TriangleMesh& mesh)
     return places;
 }
 
-// Whether the group is the other or one of those that it is made of.
+// Returns true if the group is the other one or one of its parts.
 bool isWithin(std::size_t group, std::size_t other)
 {
     while (group > other)

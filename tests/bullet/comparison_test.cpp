@@ -1,4 +1,4 @@
-// The same drops with Drape, on every back end, and with Bullet's built-in collision.
+// Compares drops with Drape on every back end with drops with Bullet's built-in collision.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -17,7 +17,7 @@ struct Drop
 {
     const char* m_name;
     TriangleMesh m_obstacle;
-    btVector3 m_centre;  // of the cloth
+    btVector3 m_centre;  // centre of the cloth
 };
 
 // Round and coarse, round and fine, sharp: each lands within 20 steps.
@@ -70,8 +70,8 @@ TEST_P(DropComparison, everyBackendLeavesTheSameCloth)
 
 INSTANTIATE_TEST_SUITE_P(Device, DropComparison, testing::ValuesIn(openClBackends()), backendName);
 
-// Where Bullet's own collision leaves the cloth goes into the report. Asserted is only that it does not hold these
-// scenes: some part of the cloth or the obstacle passes by more than the thickness, and by far.
+// The report records the final position of the cloth with Bullet's own collision. The test asserts only that Bullet
+// fails in these scenes: some part of the cloth or the obstacle passes by much more than the thickness.
 TEST(DropComparison, builtInCollisionLeaksWhereDrapeDoesNot)
 {
     Plugin plugin(hostSettings());

@@ -136,13 +136,14 @@ private:
         return worst;
     }
 
-    // Where the contact's point of the cloth was at the step's start: all is seen from there.
+    // Returns the position of the contact's cloth point at the step's start, which is the origin of all its
+    // coordinates.
     btVector3 startOf(const StepContact& contact) const
     {
         return pointOf(contact, m_paths.m_start, btVector3(0, 0, 0));
     }
 
-    // What the obstacle's motion does to that point.
+    // Returns the displacement that the obstacle's motion gives to that point.
     static btVector3 carriedFrom(const StepContact& contact, const btVector3& start)
     {
         return contact.m_carry ? *contact.m_carry * start - start : btVector3(0, 0, 0);

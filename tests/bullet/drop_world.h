@@ -99,7 +99,7 @@ TriangleMesh placed(const TriangleMesh& mesh, const btTransform& pose, const btV
 constexpr std::uint64_t kHashStart = 0xcbf29ce484222325ull;
 std::uint64_t hashOf(const btSoftBody& cloth, std::uint64_t hash = kHashStart);
 
-// What the independent check saw over a number of steps.
+// The results of the independent check over a number of steps.
 struct Course
 {
     double m_penetrationMax = 0;  // m, of all steps

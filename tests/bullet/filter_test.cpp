@@ -1,4 +1,4 @@
-// What Bullet apps use to keep things apart, asleep or in place works with Drape as without it.
+// Filters, sleeping and masses of Bullet apps have their usual effect with Drape.
 #include <gtest/gtest.h>
 
 #include <cmath>

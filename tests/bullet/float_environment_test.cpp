@@ -22,7 +22,7 @@ namespace drape::test
 namespace
 {
 constexpr int kTraps = FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW;
-constexpr unsigned kFlush = 0x8040;  // of results and of operands
+constexpr unsigned kFlush = 0x8040;  // flush results and operands
 
 // Sets the environment of this thread until it ends.
 class AppFloats

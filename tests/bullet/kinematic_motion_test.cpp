@@ -103,7 +103,7 @@ TEST(KinematicMotion, afterBulletTookTheVelocityIsSweptWhole)
     for (int substep = 0; substep < 3; ++substep)
     {
         const btScalar next = x + btScalar(0.1) * btScalar(1 + substep);
-        observed.place(next);  // as a tick's callback does
+        observed.place(next);  // like a tick's callback
         observed.step();
         observed.expectMotion(x, next);
         x = next;
@@ -130,7 +130,7 @@ TEST(KinematicMotion, teleportsFarAreNotSwept)
     shared.place(btScalar(0.4));
     shared.beginFrame(4);
     shared.step();
-    teleport(shared);  // as a tick's callback in the second substep does
+    teleport(shared);  // like a tick's callback in the second substep
     shared.step();
     shared.expectMotion(btScalar(499.9), 500, 1e-3);
 

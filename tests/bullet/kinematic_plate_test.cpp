@@ -13,7 +13,7 @@
 
 namespace drape::test
 {
-// How fast a plate comes, and how Drape looks at it.
+// The speed of a plate and the mode of Drape.
 struct PlateCase
 {
     int m_speed;  // m/s

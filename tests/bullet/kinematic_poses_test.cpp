@@ -27,7 +27,7 @@ TEST_P(Kinematic, equalTransformsAreATeleport)
 
 namespace
 {
-// How an app puts a kinematic body, and the cloth around it, elsewhere.
+// The ways in which an app moves a kinematic body and the cloth around it to another position.
 enum class Put
 {
     BothTransforms,
@@ -63,8 +63,8 @@ std::uint64_t hashAfterJump(const Settings& settings, Put put, bool wholeCloth, 
 }
 }  // namespace
 
-// A character with its cloth, put elsewhere by the world transform alone: nothing is swept there, whether the whole
-// cloth went along or its pins alone, turned or not, in one step or in several substeps.
+// Teleports a character with its cloth by the world transform alone. Nothing is swept. The whole cloth moves along or
+// only its pins, rotated or not, in one step or in several substeps.
 TEST_P(Kinematic, bodiesThatAreMovedWithTheirClothAreTeleported)
 {
     const btTransform turned(btQuaternion(btVector3(0, 1, 0), btScalar(2.5)), btVector3(-4, 1, 2));
@@ -84,7 +84,7 @@ TEST_P(Kinematic, bodiesThatAreMovedWithTheirClothAreTeleported)
     }
 }
 
-// What is thrown at cloth that an app moved otherwise, or not at all, is swept.
+// Bodies that are thrown at cloth are swept if an app moved the cloth differently or not at all.
 TEST_P(Kinematic, bodiesThatAreThrownPastMovedClothAreSwept)
 {
     for (const btVector3& shift : {btVector3(0, 0, 0), btVector3(0, 0, btScalar(0.01)), btVector3(0, 0, btScalar(0.3))})
@@ -113,8 +113,8 @@ TEST_P(Kinematic, bodiesThatAreSaidToBeTeleportedSweepNothing)
               hashAfterJump(GetParam().m_settings, Put::BothTransforms, true, shiftedBy(btVector3(1, 0, 0)), 1));
 }
 
-// A body that an app parks out of sight, far or so far that Bullet would take cloth beside its way out of the
-// simulation, takes nothing along, and is met again where it comes back.
+// Parks a body out of sight. It may be so far away that Bullet would remove cloth beside its path from the simulation.
+// The body drags nothing along, and cloth collides with it again after its return.
 TEST_P(Kinematic, bodiesThatAreParkedFarAwayTakeNothingAlong)
 {
     for (const btVector3& place : {btVector3(1000, 0, 0), btVector3(0, 1000, 0), btVector3(0, -1e5f, 0),
@@ -143,7 +143,7 @@ TEST_P(Kinematic, substepsShareTheMotion)
                          GetParam().m_settings);
     KinematicScene parts(makeBox(4, 0.2f, 4), btTransform::getIdentity(), 1.0f, btVector3(0, btScalar(0.15), 0),
                          GetParam().m_settings);
-    // What has just come rests in its first step.
+    // A new body rests in its first step.
     whole.step(btTransform::getIdentity());
     parts.step(btTransform::getIdentity());
     for (int frame = 1; frame <= 20; ++frame)

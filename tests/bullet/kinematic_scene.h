@@ -58,7 +58,7 @@ public:
         m_world.step();
         m_most = std::max(m_most, m_plugin.statistics().m_contacts);
     }
-    // The same, and nothing is on the wrong side afterwards.
+    // Steps, and expects that nothing is on the wrong side afterwards.
     void checkedStep(const btTransform& pose)
     {
         step(pose);

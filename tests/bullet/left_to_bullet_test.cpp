@@ -24,7 +24,7 @@ struct Placed
     btVector3 m_place;  // m
 };
 
-// Of all steps: the bodies' hash and the largest number of Bullet's pairs.
+// The results of all steps: the bodies' hash and the largest number of Bullet's pairs.
 struct Outcome
 {
     std::uint64_t m_hash = 0;

@@ -191,8 +191,8 @@ void expectFiniteContacts(const Plugin& plugin)
 }
 }  // namespace
 
-// Bullet takes no step of no time at all; in one of a microsecond nodes go as far as their speed takes them and gravity
-// makes it, whether they come to the surface in it or not, and what divides by the time makes no speed out of nothing.
+// Bullet skips steps of zero duration. In a step of a microsecond nodes move by their speed and by gravity, whether
+// they reach the surface or not. Divisions by the time step create no speed.
 TEST_P(Lifetime, aStepOfHardlyAnyTimeMovesNothing)
 {
     constexpr btScalar kHardly = btScalar(1e-6);       // s

@@ -1,5 +1,5 @@
-// What limits the motion of nodes near obstacles: places that are held one by one are those of the whole body at once,
-// nodes go along with what moves, and triangles hold their nodes.
+// Motion limits of nodes near obstacles. Points limited one by one equal those of the whole body at once, nodes follow
+// a moving obstacle, and triangles limit their nodes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -142,7 +142,8 @@ TEST(MotionLimit, recordsNodesInAnyStretches)
     }
 }
 
-// Of faces that share nodes, in any order, by any of their nodes and twice: each holds all of its nodes.
+// Each face limits all of its nodes. Faces share nodes, come in any order and with any node first, and may be given
+// twice.
 TEST(MotionLimit, heedsEveryFaceOfANode)
 {
     SCOPED_TRACE("seed 5");
@@ -151,7 +152,7 @@ TEST(MotionLimit, heedsEveryFaceOfANode)
     {
         btSoftBodyWorldInfo info;
         Strayed strayed(info, 5);
-        Random random(6);  // the same faces in each turn
+        Random random(6);  // identical faces in each iteration
         std::vector<std::int32_t> triangles;
         for (int i = 0; i < 3 * 2 * kNodes; ++i)
             triangles.push_back(std::int32_t(random.uniform(0, kNodes - 0.001f)));
@@ -190,7 +191,8 @@ TEST(MotionLimit, heedsEveryFaceOfANode)
 
 namespace
 {
-// Where a node at rest at the origin may stay that ended at `to`, beside an obstacle that went up by 1 m or rested.
+// Returns the limited position of a node that rested at the origin and ended at `to`. The obstacle beside it went up by
+// 1 m or rested.
 btVector3 limited(const btVector3& to, bool moves)
 {
     btSoftBodyWorldInfo info;

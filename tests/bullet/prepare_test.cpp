@@ -1,4 +1,4 @@
-// What an app has brought to the device before a step needs it.
+// Preparation by an app before a step needs the data on the device.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -53,7 +53,7 @@ struct PreparedWorld
     btSoftBody& m_cloth;
 };
 
-// What is prepared is there while the cloth is elsewhere, and no longer once it is released.
+// Prepared data stays while the cloth is elsewhere, and is gone after its release.
 void staysUntil(const Settings& settings, const std::function<void(PreparedWorld&)>& release)
 {
     PreparedWorld world(settings);

@@ -1,4 +1,4 @@
-// Where cloth comes to rest, and how still it lies there.
+// Cloth comes to rest and lies still.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ constexpr double kGapTolerance = 0.02 * kThickness;  // m
 // A step of free fall adds g·dt = 0.16 m/s; cloth at rest loses it again in the same step.
 constexpr double kSpeedAtRest = 0.02;  // m/s
 
-// What is promised of cloth that had time to settle, over kStepsAtRest steps.
+// The guarantees for cloth that had time to settle, over kStepsAtRest steps.
 constexpr double kSpeedSettled = 0.001;  // m/s
 constexpr int kStepsToSettle = 500, kStepsAtRest = 2000;
 
@@ -162,8 +162,8 @@ TEST_P(SettledCloth, liesStill)
 
 namespace
 {
-// Drops cloth_drop's cloth of 2,048 triangles and expects it to lie still on the mesh after a fall in m: RMS over all
-// steps, where it hangs over edges friction lets it slip now and then, in no step faster than worstStep (m/s).
+// Drops cloth_drop's cloth of 2,048 triangles from `fall` (m) and expects it to lie still on the mesh: RMS speed over
+// all steps. At edges friction lets hanging cloth slip now and then; no step is faster than worstStep (m/s).
 void expectLiesStill(Rest& rest, const TriangleMesh& mesh, float size, btScalar fall, double worstStep)
 {
     MeshShape shape(mesh);
@@ -307,9 +307,9 @@ TEST(IterationsOfBullet, aSingleOneBringsClothToRestAsFourDo)
     }
 }
 
-// Not of Drape's making, and what finer cloth that hangs over an obstacle stirs by: Bullet's links alone, without an
-// obstacle or contacts, keep cloth of 4,225 nodes that is pinned in its middle fluttering, where one of 1,089 comes to
-// rest. RMS over the last 200 of 1,000 steps 122 and 0.1 mm/s.
+// Bullet's links alone, without an obstacle or contacts, keep fine hanging cloth in motion. Cloth of 4,225 nodes that
+// is pinned in its middle keeps fluttering; cloth of 1,089 nodes comes to rest. RMS over the last 200 of 1,000 steps:
+// 122 and 0.1 mm/s.
 TEST(HangingCloth, fluttersByBulletsLinksAlone)
 {
     for (const int nodes : {33, 65})

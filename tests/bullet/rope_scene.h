@@ -68,7 +68,7 @@ inline void style(btSoftBody& body, btScalar mass)
     body.m_cfg.kDF = btScalar(0.6);
 }
 
-// Of `links` links from one place to another, 0.1 kg a metre.
+// Makes a rope of `links` links between two points, 0.1 kg a metre.
 inline std::unique_ptr<btSoftBody> makeRope(btSoftBodyWorldInfo& info, const btVector3& from, const btVector3& to,
                                             int links, int fixedEnds = 0)
 {
@@ -128,7 +128,7 @@ public:
             least = std::min(least, check.m_leastGap);
         return least;
     }
-    std::size_t contactsOfKind(int nodes) const  // that name so many nodes
+    std::size_t contactsOfKind(int nodes) const  // counts contacts with so many nodes
     {
         const std::vector<ContactInfo> contacts = m_plugin.contacts();
         return std::size_t(std::count_if(contacts.begin(), contacts.end(),

@@ -1,6 +1,6 @@
-// What the adapter does not look at again changes nothing: obstacles whose vertices are not read anew, cloth that
-// sleeps, cloth that is pinned; and the device that a small scene does not use. Contacts and trajectories, bit for bit,
-// with the skip and with it defeated, on every back end.
+// Skipped work changes nothing: obstacles whose vertices are not read again, sleeping cloth, pinned cloth, and the
+// device that a small scene does not use. Compares contacts and trajectories with the skip and with it defeated, bit
+// for bit, on every back end.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -16,8 +16,8 @@ namespace drape::test
 namespace
 {
 constexpr std::uint32_t kSeed = 1300;
-constexpr std::size_t kMostBodies = 5;    // of each sort
-constexpr std::uint32_t kStepsApart = 8;  // of two changes, on average
+constexpr std::size_t kMostBodies = 5;    // of each type
+constexpr std::uint32_t kStepsApart = 8;  // steps between two changes, on average
 
 // A world and what lives in it, driven by one row of random numbers.
 class Zoo
@@ -231,7 +231,7 @@ TEST_P(Soak, tenThousandStepsOfChange)
     expectEmptied(zoo);
 }
 
-// What the sanitizers run.
+// The sanitizers run this test.
 TEST_P(Soak, aThousandStepsOfChange)
 {
     SCOPED_TRACE("seed " + std::to_string(kSeed));

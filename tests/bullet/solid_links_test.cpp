@@ -59,7 +59,7 @@ TEST(SolidLinks, areThoseThatHangFromASurfaceOrJoinTwo)
     for (int i = 0; i < 5; ++i)
         body->appendNode(btVector3(2, 0, btScalar(i)), 1);
     body->appendFace(16, 17, 18);
-    body->appendLink(15, 16);  // of two surfaces
+    body->appendLink(15, 16);  // a link between two surfaces
     body->appendLink(3, 19);   // hangs
     body->appendLink(19, 20);
     body->appendLink(16, 18);
@@ -120,7 +120,7 @@ TEST(SolidLinks, areOthersWhenOneHasAnotherNodeButNotInAnotherOrder)
     }
 }
 
-// What was cut away, or tied on, is there in the same step.
+// Removed and added links count in the same step.
 TEST(SolidLinks, countInTheStepInWhichTheyChange)
 {
     Plugin plugin(hostSettings());

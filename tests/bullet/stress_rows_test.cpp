@@ -138,7 +138,7 @@ TEST_P(WorldRows, Row15TeleportIntoTheClothGivesNoGiantImpulse)
 
 namespace
 {
-// Where the nodes are and how fast they go, bit for bit.
+// Returns the nodes' positions and velocities, bit for bit.
 std::vector<float> stateOf(const btSoftBody& cloth)
 {
     std::vector<float> state = positionsOf(cloth);

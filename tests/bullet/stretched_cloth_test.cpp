@@ -48,7 +48,7 @@ public:
     }
 
     TriangleMesh m_mesh;
-    std::vector<std::string> m_lines;  // of the log
+    std::vector<std::string> m_lines;  // lines of the log
 
 private:
     Settings withLog(Settings settings)
@@ -98,7 +98,7 @@ class StretchedCloth : public BackendTest
 {
 };
 
-// Where every node goes its own way the cloth stays in one piece, and is held like any other.
+// Cloth whose nodes all move apart stays in one piece and collides like any other.
 TEST_P(StretchedCloth, ThatFliesApartIsHeldTogether)
 {
     Hills hills(GetParam().m_settings);

@@ -1,4 +1,4 @@
-// How Drape gets into a Bullet world, and which place of an obstacle it takes for real.
+// Drape's integration into a Bullet world, and the choice of an obstacle's pose.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -180,7 +180,7 @@ TEST(Wiring, uninstallGivesPairsBackToBullet)
     }
 }
 
-// What a body has for its solver does not decide who steps it.
+// The solver of a body does not decide which solver steps it.
 TEST(Wiring, aBodyGivenAnotherPluginsSolverStaysWithTheSolverOfItsWorld)
 {
     Plugin first(hostSettings()), second(hostSettings());

@@ -1,4 +1,4 @@
-// What the culls take for granted of a device's own functions.
+// Properties of the device's built-in functions that the culls rely on.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -50,7 +50,7 @@ public:
                      m_obstacleBuffers.m_vertexCones, m_obstacleBuffers.m_edgeCones);
     }
 
-    // What fits of the list.
+    // Returns the part of the list that fits.
     std::vector<FeatureTest> run(std::size_t capacity, StepCounters& counters)
     {
         Buffer<StepCounters> counterBuffer;
@@ -183,7 +183,7 @@ TEST_P(PatchCullTest, ListsEveryContactBesideSkippedAndInvalidTriangles)
     {
         StepCase step = soupCase(41, 183, true, 360 + std::uint32_t(skipped));
         SCOPED_TRACE(step.trace() + ", " + std::to_string(skipped) + " skipped");
-        // Of three triangles a corner each, of one all three.
+        // One corner each of three triangles, and all three of one.
         const std::size_t vertices[] = {4, 27, 62, 96, 97, 98};
         for (std::size_t i = 0; i < 6; ++i)
             step.m_end[3 * vertices[i] + i % 3] = bad[i % 3];
@@ -320,7 +320,7 @@ TEST_P(PatchCullTest, ObstaclesThatComeLaterArePackedAsIfAllCameAtOnce)
     struct Scene
     {
         std::vector<TriangleMesh> m_meshes;
-        std::size_t m_firstSlot;  // that is new
+        std::size_t m_firstSlot;  // first new slot
     };
     const Scene scenes[] = {{{sphere}, 0},
                             {{sphere, box}, 1},

@@ -1,6 +1,6 @@
-// The host's kernels of every instruction set that the machine has, against all pairs of triangles tested one by one,
-// and, of cloths with themselves, those that a walk over trees finds: the same contacts, bit for bit, with any number
-// of threads. Lists that are too short grow, limits are kept.
+// The host's kernels of every available instruction set give the contacts of a test of all pairs of triangles.
+// Self-collision is compared with a walk over trees. Contacts are equal bit for bit, with any number of threads. Lists
+// that are too short grow, and limits are kept.
 #include "bullet_plugin/core/host_kernels/host_kernels.h"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ public:
         return m_cull.run(m_view, cloths, limit, threads, m_counters);
     }
 
-    // Of the last cull.
+    // Returns the contacts of the last cull.
     std::vector<Contact> contacts(ThreadTeam& threads)
     {
         const MeshPool& pool = m_cloth.m_pool;
@@ -101,7 +101,7 @@ std::vector<TriangleMesh> meshesOf(const std::vector<SelfStepCase>& steps)
     return meshes;
 }
 
-// The same of cloths with themselves.
+// Runs a host step of cloths with themselves.
 class HostSelfStep
 {
 public:
@@ -133,7 +133,7 @@ public:
         m_patches.findContacts(step(), limits, threads, others);
         return others;
     }
-    // Of the last step.
+    // Returns the counts of the last step.
     SelfCounts counts() const { return m_patches.counts(); }
 
     std::vector<Contact> expected(SelfCounts& counts) const
@@ -183,7 +183,7 @@ protected:
         return *allHostKernels(count)[GetParam()];
     }
 
-    // That the host finds what the trees do, alone and by threads. Returns what that was.
+    // Expects the host to find the pairs of the trees, with one and with more threads. Returns the counts.
     static SelfCounts expectSame(HostSelfStep& host)
     {
         ThreadTeam alone(1), team(3);

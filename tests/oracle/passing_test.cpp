@@ -25,7 +25,7 @@ bool insideMargin(double value)
     return value > kCrossMargin && value < 1 - kCrossMargin;
 }
 
-// Whether the segment x0 x1 crosses the triangle within the margins.
+// Returns true if the segment x0 x1 crosses the triangle within the margins.
 bool crosses(const Vector3& x0, const Vector3& x1, const Vector3 corners[3], Vector3& cameFrom)
 {
     const Vector3 u = corners[1] - corners[0], v = corners[2] - corners[0], area = cross(u, v);

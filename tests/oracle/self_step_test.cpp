@@ -1,5 +1,5 @@
-// Contacts of a cloth with itself against all of its pairs of features, in double precision: what is near at the step's
-// end and what passed through one another must be reported, and nothing that did neither.
+// Compares contacts of a cloth with itself with all of its pairs of features, in double precision. Features that are
+// near at the step's end or passed through one another must be reported, and no others.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -56,7 +56,7 @@ double extent(const Four& four)
 struct Nearest
 {
     double m_distance;
-    double m_weights[3];  // of the face, or places along the edges
+    double m_weights[3];  // weights of the face, or positions along the edges
     Vector3 m_offset;     // from the second feature to the first
 };
 
@@ -145,12 +145,12 @@ public:
         return true;
     }
 
-    // Whether the two crossed one another, by the margins, at a time when their volume changed its sign.
+    // Returns true if the two crossed one another within the margins, at a time when their volume changed its sign.
     bool mustMeet(const std::uint32_t nodes[4], bool edges) const
     {
         constexpr int kSamples = 16;
         const Four start = at(m_side.m_start, nodes), end = at(m_side.m_end, nodes);
-        // What touches at rest is joined.
+        // Features that touch at rest are joined.
         if (!(reach(nodes, edges) > 1e-6)) return false;
         double low = 0, before = volume(start, edges);
         for (int i = 1; i <= kSamples; ++i)
@@ -217,7 +217,7 @@ void expectRequired(const Oracle& oracle, const std::map<Key, Contact>& found, C
             check(true, first, second);
 }
 
-// What is reported is near at the end, or touches at the time that it gives.
+// Expects the contact to be near at the end, or to touch at the time that it gives.
 void expectTrue(const Oracle& oracle, const Contact& contact)
 {
     const bool edges = contact.m_kind == DRAPE_SELF_EDGE_EDGE;
@@ -278,7 +278,8 @@ TEST_P(SelfStepOracle, ReportsWhatIsNearAndWhatMetAndNothingElse)
     EXPECT_LT(all.m_reported, 3 * (all.m_near + all.m_met)) << "the oracle asks for much of what is reported";
 }
 
-// Of a published step (46,598 nodes) every pair that the certified test finds to touch and that crossed by the margins.
+// Checks every pair of a published step (46,598 nodes) that the certified test finds to touch and that crossed within
+// the margins.
 TEST_P(SelfStepOracle, PublishedClothBallStep)
 {
     SelfStepCase step;

@@ -19,7 +19,7 @@ public:
     FailingAllocations(const FailingAllocations&) = delete;
     FailingAllocations& operator=(const FailingAllocations&) = delete;
 
-    // Whether there were so many allocations.
+    // Returns true if the failing allocation was reached.
     static bool hasFailed();
 };
 }  // namespace drape::test

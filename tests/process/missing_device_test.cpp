@@ -1,4 +1,4 @@
-// What is told where a machine shows no OpenCL device: what is known, not what is usual.
+// Messages on a machine without an OpenCL device state facts about the machine, not guesses.
 #include "bullet_plugin/core/device/missing_device.h"
 
 #include <gtest/gtest.h>

@@ -50,7 +50,7 @@ struct Scene
         }
     }
 
-    // Whether all is as after a step that nothing was wrong with.
+    // Expects the state after a step without failure.
     void expectGood()
     {
         EXPECT_TRUE(m_plugin.ready()) << m_plugin.error();

@@ -1,5 +1,5 @@
-// Where cost decides: a scene that moves between the back ends in the middle gives the contacts of one that does not,
-// and the report says where it runs and why.
+// The automatic choice of the back end. A scene that changes its back end midway gives the contacts of one that does
+// not. The report names the back end and the reason.
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
@@ -61,7 +61,7 @@ bool isMeasuredNow(const Pipeline& pipeline)
     return pipeline.deviceReport().m_crossoverSource.rfind("measured now", 0) == 0;
 }
 
-// Whether the machine was busy as the crossover was measured.
+// Returns true if the machine was busy while the crossover was measured.
 bool wasBusy(const Pipeline& pipeline)
 {
     return pipeline.deviceReport().m_crossoverSource.find("busy") != std::string::npos;
@@ -200,7 +200,7 @@ TEST_P(BackendMove, AnObstacleThatIsScaledCountsAnew)
     EXPECT_GT(pipeline->deviceReport().m_expectedPairs, before);
 }
 
-// What the host walks for 81,920 triangles takes it many times as long as the step.
+// The host's preparation of 81,920 triangles takes many times as long as the step.
 TEST_P(BackendMove, PrepareLeavesTheHostNothingToBuild)
 {
     const auto firstStepMs = [](double crossover, bool prepared)

@@ -252,8 +252,8 @@ TEST_P(ContactModesTest, RestingClothNeedsNoContinuousTest)
     }
 }
 
-// A face whose plane crosses the apex twice, once within the face and once outside of it: the signs of the volumes at
-// the step's two ends are the same, and yet the face went past.
+// The face's plane crosses the apex twice, once within the face and once outside of it. The signs of the volumes at the
+// step's two ends are equal, and yet the face went past.
 TEST_P(ContactModesTest, FaceThatPassesAndTiltsBackIsFound)
 {
     StepCase step = {"tilting face", 0, looseTriangles({-1, 0.1f, -1, 1, 0.1f, -1, 0, 0.1f, 1}), pyramid(), {}, 0.02f};
@@ -276,8 +276,8 @@ TEST_P(ContactModesTest, FaceThatPassesAndTiltsBackIsFound)
     }
 }
 
-// The same run backwards: the plane crosses the apex outside of the face first, and then within it. The volume's sign
-// at the start does not tell from which side the face came.
+// Runs the motion backwards: the plane crosses the apex outside of the face first, and then within it. The volume's
+// sign at the start does not determine the side that the face came from.
 TEST_P(ContactModesTest, FaceThatTiltsAndThenPassesIsFound)
 {
     StepCase step = {"tilted face", 0, looseTriangles({-3, -1, -1, -1, -0.2f, -1, -2, -0.6f, 1}), pyramid(), {}, 0.02f};

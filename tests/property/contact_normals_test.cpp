@@ -23,8 +23,8 @@ constexpr double kStep = kOffset / 50;
 constexpr float kThickness = 0.025f;  // a fifth more than the offset: every contact is one to be solved
 constexpr double kReach = 1.5 * double(kThickness);
 constexpr int kTracks = 6;
-constexpr double kFlag = 0.08;  // how far a node's triangle reaches up
-constexpr double kRunUp = 0.7;  // how far ways begin and end beside a crease, radians about it
+constexpr double kFlag = 0.08;  // height of a node's triangle
+constexpr double kRunUp = 0.7;  // angle about the crease at which paths begin and end, radians
 constexpr double kUnit = 1.0 / 16777216;
 
 // A surface, convex, and the ways over it: arcs about the origin, over its top.
@@ -32,9 +32,9 @@ struct Surface
 {
     std::string m_name;
     TriangleMesh m_mesh;
-    double m_radius;     // of the arcs
+    double m_radius;     // radius of the arcs
     double m_turn;       // they go this far to either side of the top, radians
-    double m_leastTurn;  // of the normals on the way, radians
+    double m_leastTurn;  // turn of the normals along the path, radians
     double m_extent;     // largest coordinate of a node's triangle and one of the surface's, relative to the latter
     Vector3 m_along;     // arcs may lie anywhere along this
 };
@@ -250,12 +250,14 @@ class ContactNormalsTest : public BackendTest
 {
 };
 
-// The offset from a convex body is a Lipschitz function of the place, with constant 1, so over a step of length s the
-// direction at distance g turns by asin(s / g) at most; so does each face's own. Rounding errs by e = 24 u extent in a
-// gap (three weighted corners, a frame's shift and the difference), so of nearly equal ones either may seem the
-// deepest: that one's foot is within 2 sqrt(e g) of the true one, its direction off by 2 sqrt(e / g), before and after.
-// Together, the contacts ask for no more than the deepest does: moved by what it lacks, the node has the others at the
-// thickness, too (a body on one side of its plane lets nothing else be nearer while the lack is less than the gap).
+// The offset from a convex body is a Lipschitz function of the position, with constant 1. Over a step of length s the
+// direction at distance g turns by asin(s / g) at most, and so does each face's own.
+// Rounding errs by e = 24 u extent in a gap (three weighted corners, a frame's shift and the difference). Any of
+// several nearly equal contacts may therefore seem the deepest. Its foot is within 2 sqrt(e g) of the true one, its
+// direction off by 2 sqrt(e / g), before and after.
+// All contacts together require no more than the deepest does. After a correction by its depth, the other contacts are
+// at the thickness, too. A body on one side of its plane lets nothing else be nearer while the correction is less than
+// the gap.
 TEST_P(ContactNormalsTest, SmoothOverConvexCreases)
 {
     Random random(1500);

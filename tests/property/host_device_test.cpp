@@ -1,6 +1,6 @@
-// Every back end gives the same contacts, bit for bit, over random sequences of steps in which meshes come, go and
-// move: those of all pairs of triangles that a walk over trees finds on the host, which has nothing of the culls over
-// patches.
+// Every back end gives identical contacts, bit for bit, over random sequences of steps in which meshes are added,
+// removed and moved. The reference is a walk over trees on the host, which tests all pairs of triangles and uses none
+// of the culls over patches.
 #include <gtest/gtest.h>
 
 #include "scenes/cloth_grid.h"

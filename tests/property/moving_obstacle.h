@@ -44,7 +44,7 @@ std::vector<float> mapped(const Motion& motion, const std::vector<float>& positi
 constexpr std::array<double, 3> kNoShift = {0, 0, 0};
 constexpr double kAngles[] = {0.0, 0.05, 0.7, 2.5};
 
-// What moves how: a cloth at rest or falling over an obstacle that turns and shifts within the step.
+// A moving case: a cloth at rest or falling over an obstacle that rotates and shifts within the step.
 struct MovingCase
 {
     StepCase m_step;

@@ -35,7 +35,7 @@ Motion relative(const Motion& pose, const Motion& of)
     return result;
 }
 
-// The same as runMoving() with the obstacle at rest at its end and the cloth's start moved instead.
+// Runs the case of runMoving() with the obstacle at rest at its end pose and the cloth's start moved instead.
 std::vector<Contact> runOpposite(Pipeline& pipeline, const MovingCase& moving)
 {
     StepCase step = moving.m_step;
@@ -49,7 +49,7 @@ bool sameFeatures(const Contact& a, const Contact& b)
     return a.m_slot == b.m_slot && a.m_kind == b.m_kind && a.m_obstacleFeature == b.m_obstacleFeature;
 }
 
-// How many contacts of `a` are in `b` with numbers that differ by rounding only; both in canonical order.
+// Counts the contacts of `a` that are in `b` with numbers that differ by rounding only. Both are in canonical order.
 std::size_t countAlike(const std::vector<Contact>& a, const std::vector<Contact>& b)
 {
     std::size_t alike = 0;

@@ -21,9 +21,9 @@ Motion shiftOf(double x, double y, double z)
     return motionOf(0, {x, y, z}, random);
 }
 
-// A triangle of cloth over the edge of a thin plate that rises by half a metre a step, 45 m up: its last node ends
-// level with the plate's upper face to the last bit, 24 mm beside it, where the edge between upper face and side admits
-// it.
+// Makes a triangle of cloth over the edge of a thin plate that rises by half a metre a step, 45 m up. Its last node
+// ends level with the plate's upper face to the last bit, 24 mm beside it. The edge between upper face and side admits
+// the node there.
 MovingCase plateCase()
 {
     StepCase step = {"plate", 0, {}, makeBox(1.2f, 0.004f, 1.2f), {}, 0.02f};

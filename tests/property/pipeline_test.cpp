@@ -236,7 +236,7 @@ public:
     const std::vector<float>& start() const { return m_step.m_cloth.m_positions; }
     const std::vector<float>& end() const { return m_step.m_end; }
 
-    // What stands where nodes are still to be written.
+    // Fills nodes that are still to be written with a wrong value.
     void spoil(float* nodes) { std::fill_n(nodes, 3 * m_nodes, 1e3f); }
     void addPair(MeshId cloth) { m_pipeline.addPair(cloth, m_obstacle, m_step.m_thickness); }
 

@@ -1,5 +1,5 @@
-// What a pipeline keeps from step to step saves time only: hierarchies of obstacles that rest and are not refitted, the
-// front of the last step, trees and patches, buffers on the device. One traversal for each kind of what is kept.
+// The state that a pipeline keeps from step to step only saves time: hierarchies of resting obstacles, the front of the
+// last step, trees and patches, buffers on the device. One traversal represents each kind of state.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,4 @@
-// What must not matter: the numbering of triangles, the order of their corners, a power of two as unit, the place in
-// space.
+// Invariances: the numbering of triangles, the order of their corners, a power of two as unit, the position in space.
 #include <gtest/gtest.h>
 
 #include <algorithm>

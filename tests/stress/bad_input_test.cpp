@@ -22,7 +22,7 @@ namespace
 const float kInfinity = std::numeric_limits<float>::infinity();
 const float kNan = std::numeric_limits<float>::quiet_NaN();
 
-// Whether a contact's cloth feature uses one of the nodes.
+// Returns true if a contact's cloth feature uses one of the nodes.
 bool touches(const Pipeline& pipeline, const Contact& contact, const std::set<std::int32_t>& nodes)
 {
     const ContactView view = pipeline.view(contact);
@@ -36,7 +36,7 @@ bool touches(const Pipeline& pipeline, const Contact& contact, const std::set<st
 // 2^-23 each, and a normal is a difference of them over some millimetres.
 constexpr float kFrameRounding = 1e-3f;
 
-// Whether the contact of the same features is there, with a normal and gap that differ by no more than the tolerance.
+// Returns true if the list has a contact of the same features, with a normal and gap within the tolerance.
 bool holds(const std::vector<Contact>& contacts, const Contact& wanted, float tolerance = 0.0f)
 {
     return std::any_of(contacts.begin(), contacts.end(),
@@ -52,7 +52,7 @@ bool holds(const std::vector<Contact>& contacts, const Contact& wanted, float to
                        });
 }
 
-// Whether a contact's obstacle feature uses one of the vertices.
+// Returns true if a contact's obstacle feature uses one of the vertices.
 bool usesVertex(const Side& obstacle, const Contact& contact, const std::set<std::uint32_t>& vertices)
 {
     if (contact.m_kind == DRAPE_FACE_VERTEX) return vertices.count(contact.m_obstacleFeature) > 0;
@@ -115,7 +115,7 @@ TEST_P(BadInputTest, NanAndInfiniteNodesAreIsolatedAndCounted)
     }
     EXPECT_GT(kept, sound.size() / 2);
     EXPECT_LT(kept, sound.size());
-    // What is new are faces beside a bad one, whose neighbour took the contact at their common edge.
+    // New contacts belong to faces beside a bad one, whose neighbour took the contact at their common edge.
     for (const Contact& contact : contacts)
     {
         EXPECT_TRUE(contact.m_kind == DRAPE_FACE_VERTEX || holds(sound, contact)) << describe(contact);
@@ -244,7 +244,7 @@ TEST_P(BadInputTest, EmptyAndTinyMeshes)
     TriangleMesh repeated = one;
     repeated.m_triangles = {0, 0, 1};
     const TriangleMesh meshes[] = {one, two, unused, TriangleMesh(), repeated};
-    constexpr int kWithTriangles = 3;  // of the meshes, the first
+    constexpr int kWithTriangles = 3;  // the first meshes have triangles
     for (int i = 0; i < 5; ++i)
     {
         for (int j = 0; j < 5; ++j)

@@ -55,8 +55,9 @@ struct NamedMotion
     float m_time;
 };
 
-// A hinge that swings about the y axis from slope -1 to slope 1, and a vertex at height z that moves along x against
-// it: its height above the face is z - (2t - 1)², so it is below at both ends of the step and above in between.
+// Makes a hinge that swings about the y axis from slope -1 to slope 1, and a vertex at height z that moves along x
+// against it. The vertex' height above the face is z - (2t - 1)². It is below at both ends of the step and above in
+// between.
 FourPoints hinge(float z)
 {
     return {DRAPE_VERTEX_FACE,

@@ -135,7 +135,7 @@ TEST_P(LoadTest, LimitsLeaveOutTheLargestCloths)
     ASSERT_TRUE(unlimited);
     const std::vector<Contact> alone = runCase(*unlimited, step);
     const std::uint64_t candidates = unlimited->statistics().m_candidates;
-    // Of cloths left out the pairs of triangles are counted, on the host.
+    // The host counts the pairs of triangles of omitted cloths.
     Settings onHost;
     onHost.m_backend = Backend::Host;
     onHost.m_methods.m_traversal = Traversal::Pairs;

@@ -63,7 +63,7 @@ void exchangeSides(FeatureKey& key)
     std::swap_ranges(&key[1], &key[1] + 3, &key[4]);
 }
 
-// Whether the contacts are between the same features; says which are in one list only.
+// Returns true if the contacts are between the same features. Reports contacts that are in one list only.
 bool expectSameKeys(const std::vector<Keyed>& found, const std::vector<Keyed>& wanted)
 {
     const auto less = [](const Keyed& a, const Keyed& b) { return a.m_key < b.m_key; };
@@ -92,7 +92,7 @@ void expectSameButForNumbers(const std::vector<Keyed>& found, const std::vector<
     }
 }
 
-// Where a node is nearest to a vertex of a face, and nearer than the thickness: by brute force, sorted.
+// Returns the nodes that are nearest to a vertex of a face, and nearer than the thickness: by brute force, sorted.
 std::vector<FeatureKey> nodesNearVertices(const StepCase& step)
 {
     std::vector<FeatureKey> keys;
@@ -130,8 +130,8 @@ void takeNodesNearVertices(std::vector<Keyed>& contacts, const StepCase& step)
     contacts.erase(taken, contacts.end());
 }
 
-// The same contacts with cloth and obstacle exchanged. The local frame has its origin at the other feature: gaps differ
-// by rounding.
+// Expects equal contacts with cloth and obstacle exchanged. The local frame has its origin at the other feature, so
+// gaps differ by rounding.
 void expectExchanged(std::vector<Keyed> found, const StepCase& swapped, std::vector<Keyed> wanted, const StepCase& step)
 {
     takeNodesNearVertices(found, swapped);
@@ -214,7 +214,7 @@ protected:
         return keyed;
     }
 
-    // Of the triangles at the step's start.
+    // Returns the pairs of the triangles at the step's start.
     MeshPairs pairsOf(const StepCase& step)
     {
         return meshPairsOn(GetParam().m_settings, step.m_cloth, step.m_obstacle, step.m_thickness);
@@ -362,8 +362,8 @@ TEST_P(MeshRows, Row20NonManifoldAndDuplicateFaces)
     EXPECT_GE(keyed.size(), reference.m_contacts.size());
 }
 
-// The same pairs and contacts whichever mesh is the cloth and however its triangles are numbered. (Device against host,
-// bit for bit, is HostDeviceTest's.)
+// Pairs and contacts do not depend on which mesh is the cloth or on the numbering of its triangles. (HostDeviceTest
+// compares device and host, bit for bit.)
 TEST_P(MeshRows, Row23SidesSwappedAndTrianglesShuffled)
 {
     std::size_t nearVertices = 0;

@@ -33,7 +33,7 @@ Sides makeSides(const StepCase& step)
     return sides;
 }
 
-// Of loose triangles: the one that owns the feature.
+// Returns the one loose triangle that owns the feature.
 std::uint32_t triangleOfEdge(const Side& side, std::uint32_t edge)
 {
     return side.m_pool.edges()[edge].m_vertices[0] / 3;
@@ -68,7 +68,7 @@ Vector3 normalOf(const Contact& contact)
     return {contact.m_normal[0], contact.m_normal[1], contact.m_normal[2]};
 }
 
-// Whether the closest point is farther than `rounding` from every corner.
+// Returns true if the closest point is farther than `rounding` from every corner.
 bool awayFromCorners(const Vector3& point, const std::array<Vector3, 3>& corners, double rounding)
 {
     return std::all_of(corners.begin(), corners.end(),
@@ -273,8 +273,8 @@ TEST(Needles, AtRestNoneIsLostAndDirectionsAreTrue)
     EXPECT_GT(near, 1000u);
 }
 
-// As at rest what is near has contacts. A node whose path crosses a face has a contact of its triangle there, and all
-// that met have normals to the side that they came from.
+// Near features have contacts, as at rest. A node whose path crosses a face has a contact of its triangle there. All
+// features that met have normals to the side that they came from.
 TEST(Needles, MovingNoneIsPassedAndSidesAreTrue)
 {
     std::size_t near = 0, crossed = 0;

@@ -33,7 +33,7 @@ bool exactlyIntersect(const TrianglePair& pair)
     return drape::trianglesIntersect(a, b);
 }
 
-// Whether the pair has a node-face or face-vertex contact with a gap of at most `gap` (m).
+// Returns true if the pair has a node-face or face-vertex contact with a gap of at most `gap` (m).
 bool touchesWithin(const std::vector<Contact>& contacts, float gap)
 {
     return std::any_of(contacts.begin(), contacts.end(),
@@ -110,8 +110,8 @@ SelfStepCase restingOnItself(const TriangleMesh& mesh)
 }
 }  // namespace
 
-// Of one mesh with itself: triangles that share a vertex by index cross for no query, and features that share one touch
-// neither in a motion nor in a step; by position alone they do.
+// Tests one mesh against itself. No query reports a crossing of triangles that share a vertex by index. Features that
+// share one touch neither in a motion nor in a step. Features that share only a position do.
 TEST_P(StressRows, Row02SharedByIndexIsSkipped)
 {
     const std::unique_ptr<Queries> queries = makeQueries(GetParam().m_settings);
@@ -197,7 +197,7 @@ TEST_P(StressRows, Row05NeedlesZeroAreasAndDuplicateVertices)
     EXPECT_EQ(run(meeting).m_intersecting, meeting.size()) << "seed 1005";
 }
 
-// As narrow as floats near zero alone can be: 1e-8 m, around the origin.
+// Uses the narrowest needles that only floats near zero can represent: 1e-8 m, around the origin.
 TEST_P(StressRows, Row05NeedlesOfTenNanometresAtTheOrigin)
 {
     constexpr float kWidth = 1e-8f;  // m

@@ -40,7 +40,7 @@ protected:
     void SetUp() override;
 };
 
-// The same with the device of an OpenCL back end open.
+// A BackendTest with the device of an OpenCL back end open.
 class DeviceTest : public BackendTest
 {
 protected:

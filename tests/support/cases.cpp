@@ -247,7 +247,7 @@ StepCase needleCase(Thin thin, int triangles, float size, bool moving, std::uint
         for (std::size_t k = step.m_end.size(); k < step.m_cloth.m_positions.size(); ++k)
             step.m_end.push_back(step.m_cloth.m_positions[k] + way[k % 3]);
     }
-    // What lies near at the step's end is wanted.
+    // Features that are near at the step's end are wanted.
     step.m_end.swap(step.m_cloth.m_positions);
     return step;
 }

@@ -47,9 +47,9 @@ TriangleMesh looseTriangles(const std::vector<float>& corners);
 // Loose triangles with a square metre's half each, all at one place at height y.
 TriangleMesh coincidentTriangles(int count, float y);
 
-// Meshes that hierarchies may fail at: all centroids equal, all corners in one point, lines whose triangles grow in
-// distance, an even line, and a soup with nodes that are NaN, infinite and near the largest float. triangles: of the
-// large ones.
+// Returns meshes that hierarchies may fail at. All centroids are equal, all corners lie in one point, or triangles lie
+// on a line at growing or even distances. A soup has nodes that are NaN, infinite and near the largest float.
+// `triangles` is the size of the large ones.
 using NamedMesh = std::pair<std::string, TriangleMesh>;
 std::vector<NamedMesh> degenerateMeshes(int triangles);
 
@@ -63,7 +63,7 @@ void disturb(std::vector<float>& positions, float size, Random& random);
 
 // A cloth of nodes × nodes draped over the shape; ends of the step equal.
 StepCase drapedCase(const std::string& shape, int nodes, float thickness, std::uint32_t seed);
-// The same, falling and shaking through the surface within the step.
+// Makes the cloth fall and shake through the surface within the step.
 StepCase fallingCase(const std::string& shape, int nodes, float thickness, std::uint32_t seed);
 // Triangles that share nothing, crossing one another; at rest or moving.
 StepCase soupCase(int clothTriangles, int obstacleTriangles, bool moving, std::uint32_t seed);

@@ -31,7 +31,8 @@ struct RequiredContact
     Vector3 m_normal;  // unit, from the obstacle to the cloth
 };
 
-// Of cloth.m_end against obstacle.m_start; the cloth must not have passed anything. In canonical order.
+// Returns the contacts of cloth.m_end against obstacle.m_start in canonical order. The cloth must not have passed
+// anything.
 std::vector<RequiredContact> requiredContacts(const Side& cloth, const Side& obstacle, double reach);
 
 // From the obstacle's feature to the cloth's, the cloth at its end, between their closest points.
@@ -41,6 +42,6 @@ double contactDistance(const Contact& contact, const Side& cloth, const Side& ob
 // Largest coordinate of the features that a contact names, relative to one of the obstacle's vertices.
 double contactExtent(const Contact& contact, const Side& cloth, const Side& obstacle);
 
-// Whether the contact is the required one: kind and features.
+// Returns true if the contact is the required one: kind and features.
 bool sameFeatures(const RequiredContact& required, const Contact& contact);
 }  // namespace drape::test

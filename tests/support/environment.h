@@ -30,7 +30,7 @@ private:
     std::string m_previous;
 };
 
-// Whether a machine without an OpenCL device is to fail tests that need one.
+// Returns true if tests that need an OpenCL device must fail on a machine without one.
 inline bool isDeviceExpected()
 {
     const char* const none = std::getenv("DRAPE_TEST_NO_DEVICE");

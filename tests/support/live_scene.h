@@ -33,8 +33,8 @@ private:
         MeshId m_id;
         TriangleMesh m_mesh;
         std::vector<float> m_home;
-        std::vector<float> m_start;               // of a cloth, in the coming step
-        std::vector<float> m_poseBefore, m_pose;  // of an obstacle that has a place, likewise; else empty
+        std::vector<float> m_start;               // start positions of a cloth in the coming step
+        std::vector<float> m_poseBefore, m_pose;  // poses of a placed obstacle in the coming step; else empty
     };
     struct LivePair
     {

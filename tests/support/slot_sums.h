@@ -1,4 +1,4 @@
-// What kernels/lib/slot_sums.h must come to.
+// Expected results of kernels/lib/slot_sums.h.
 #pragma once
 
 #include <vector>

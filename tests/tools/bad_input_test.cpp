@@ -1,4 +1,4 @@
-// What cloth_drop refuses: one clear line and exit code 2, nothing run, nothing written.
+// Inputs that cloth_drop refuses with one clear line and exit code 2. Nothing runs and nothing is written.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -100,7 +100,7 @@ TEST_F(BadInput, pipesAndDevicesAreNotWaitedFor)
     expectRefused(runSmall({"--obstacle", "/dev/zero"}), {"/dev/zero", "is a device"});
 }
 
-// What other readers open is no bad input.
+// Accepts input that other readers open.
 TEST_F(BadInput, isNotWhatOtherReadersOpen)
 {
     const auto obj = [](const std::string& vertex) { return "v 0 0 0\nv " + vertex + "\nv 0 1 0\nf 1 2 3\n"; };
@@ -117,7 +117,7 @@ TEST_F(BadInput, isNotWhatOtherReadersOpen)
     expectRefused(runSmall({"--obstacle", write("hex.obj", obj("0x1p0 0 0"))}), {"line 2", "'0x1p0'", "decimal"});
 }
 
-// What is left out, or lost by rounding, is said.
+// Reports parts that are left out or lost by rounding.
 TEST_F(BadInput, losesAreTold)
 {
     const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";

@@ -28,7 +28,7 @@ pid_t childOf(pid_t process)
     return child;
 }
 
-// Whether it has become the program.
+// Returns true if the process has become the program.
 bool streams(pid_t process)
 {
     return readAll(processFile(process, "cmdline")).find("--stream-steps") != std::string::npos;

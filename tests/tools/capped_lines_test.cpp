@@ -1,4 +1,4 @@
-// What is kept of a child's steps when its cap ends them, however the text comes.
+// The steps of a child that are kept when its time limit ends it, however the text is cut.
 #include "examples/cloth_drop/capped_lines.h"
 
 #include <gtest/gtest.h>

@@ -162,7 +162,7 @@ TEST_F(Check, stepNeedsTheFacesInTheirOrder)
     const std::string others =
         write("others.obj", vertices + "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\nusemtl c\n" + faces);
     EXPECT_EQ(answer({"step", sorted, others}).at("vf_hits"), 0);
-    // The same by other names.
+    // The same mesh with other names.
     const std::string renamed = "mtllib end.mtl\n" + vertices + "# end\nusemtl b\nf 1//1 -3 -2\nf 1 3/1 4\nvn 0 0 1\n";
     EXPECT_EQ(answer({"step", start, write("renamed.obj", renamed)}).at("vf_hits"), 0);
 }
@@ -210,7 +210,7 @@ TEST_F(Check, pairsTakeIndexedFilesByTheirIndices)
     }
 }
 
-// As surveys have them: float32 would keep half a metre.
+// Surveys have such coordinates; float32 would lose half a metre.
 TEST_F(Check, coordinatesFarFromTheOriginKeepTheirDigits)
 {
     const auto triangleAt = [](double x)
@@ -263,7 +263,7 @@ TEST_F(Check, tooManyPairsAreCountedAndRefused)
         EXPECT_NE(step.m_err.find("4999950000"), std::string::npos) << step.m_err;
         EXPECT_EQ(Json::parse(step.m_out).at("triangle_pairs"), 4999950000u);
     }
-    // Of features, which are counted of the triangles' pairs that may be tested.
+    // Counts features, which come from the pairs of triangles that may be tested.
     const std::string above = write("above.obj", meshAt(0.5f)), below = write("below.obj", meshAt(-0.5f));
     const Json whole = answer({"step", above, below});
     const std::string limit = std::to_string(whole.at("triangle_pairs").get<int>());

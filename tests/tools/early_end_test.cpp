@@ -28,7 +28,7 @@ protected:
     }
     std::string frames() const { return path("frames"); }
 
-    // As many rows as the summary says, and at least so many.
+    // Expects as many rows as the summary says, and at least `least`.
     void expectSteps(int least) const
     {
         const auto summary = nlohmann::json::parse(readAll(path("json")));

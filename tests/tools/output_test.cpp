@@ -1,4 +1,4 @@
-// What cloth_drop writes and how it ends.
+// Output files and exit codes of cloth_drop.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What programs tell PoCL about its threads.
+// The environment variables that programs set for PoCL's threads.
 #include "tools/common/pocl_threads.h"
 
 #include <gtest/gtest.h>

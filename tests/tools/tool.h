@@ -31,7 +31,7 @@ protected:
     virtual const char* programVariable() const { return "DRAPE_CLOTH_DROP"; }
 
     ToolRun run(const std::vector<std::string>& arguments) const;
-    // Of a program whose standard output takes nothing: exit code 1 and one line that says so.
+    // Runs a program whose standard output is full, and expects exit code 1 and one line that says so.
     void expectFullOutputTold(const std::vector<std::string>& arguments) const;
     // Two halves of run(), for a program that something is done to meanwhile: its process, and its end.
     pid_t start(const std::vector<std::string>& arguments) const { return start(arguments, path("stdout.txt")); }

@@ -63,7 +63,7 @@ TEST_F(CacheFileTest, LinksAreNotFollowed)
     fs::permissions(m_folder, fs::perms::owner_all);
     fs::create_symlink(precious, at("read"));
     EXPECT_FALSE(reads("read"));
-    // Where the temporary file would be, and the file itself.
+    // Names that the temporary file may have, and the file itself.
     for (const std::string& name :
          {"name." + std::to_string(getpid()), "name." + std::to_string(getpid()) + ".0", std::string("name")})
         fs::create_symlink(precious, at(name));

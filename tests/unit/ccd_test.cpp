@@ -39,8 +39,8 @@ Vec3 gridPoint(Random& random, int size)
     return vec3(float(grid(random, size)), float(grid(random, size)), float(grid(random, size)));
 }
 
-// Features that have a point in common at half of the step, exactly: corners there are multiples of 4, the point is a
-// mean of corners with weights that are quarters, and every vertex goes from `there - way` to `there + way`.
+// Makes features that have exactly one point in common at half of the step. The corners there are multiples of 4, and
+// the point is a mean of corners with weights that are quarters. Every vertex goes from `there - way` to `there + way`.
 Motion touchingMotion(Random& random, std::uint32_t kind)
 {
     Motion motion;
@@ -251,7 +251,7 @@ Motion passingMotion(Random& random, float time, float u, float v, float turn)
     return motion;
 }
 
-// Where a path leads in time, from the begin of the box that is `width` wide.
+// Returns the position of a path in time, relative to the beginning of the box that is `width` wide.
 double pathOffset(const CcdPath& path, double width)
 {
     double offset = 0;

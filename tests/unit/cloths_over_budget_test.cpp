@@ -24,7 +24,7 @@ TEST(ClothsOverBudget, oneGoesWhateverIsCounted)
     EXPECT_TRUE(clothsOverBudget({}, {0, 0}, 100).empty());
 }
 
-// What is out already counts nothing, and must not stand for one that goes now.
+// A cloth that is already out counts nothing, and must not replace one that has to go.
 TEST(ClothsOverBudget, onlyThoseThatTakePart)
 {
     EXPECT_EQ(clothsOverBudget({0}, {0, 0}, 100), (Slots{0}));

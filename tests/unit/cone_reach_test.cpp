@@ -1,4 +1,4 @@
-// How far contacts whose directions lie in a cone reach along the volumes' directions.
+// The reach of contacts whose directions lie in a cone, along the volumes' directions.
 #include "kernels/lib/cone_reach.h"
 
 #include <gtest/gtest.h>

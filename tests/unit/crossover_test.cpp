@@ -144,7 +144,7 @@ TEST(BackendChoice, AGrowingSceneMovesOnceAndComesBackBelowHalf)
     EXPECT_TRUE(choice.active());
     EXPECT_TRUE(choice.isOnHost());
     choice.note(1, 7, 600);
-    choice.note(1, 8, 900);  // of one cloth's obstacles the worst counts
+    choice.note(1, 8, 900);  // the worst of one cloth's obstacles counts
     EXPECT_EQ(choice.pairs(), 900);
     EXPECT_TRUE(choice.isOnHost());
     choice.note(2, 7, 200);

@@ -73,7 +73,8 @@ void expectNodesMakeTheVolume(const CullVolumes& packet, const Vec3* corners, Co
     for (int k = 0; k < 3; ++k)
     {
         const int next = (k + 1) % 3, last = (k + 2) % 3;
-        // What is at a node, or beside an edge as far as contacts reach, is in its reach; the node opposite may not be.
+        // Points at a node, or beside an edge within the contact distance, are in its reach. The opposite node may be
+        // outside.
         const Vec3 middle = vec3Scale(vec3Add(corners[3 + next], corners[3 + last]), 0.5f);
         const Vec3 beside = vec3Add(middle, vec3(0.0f, packet.m_radius, 0.0f));
         EXPECT_EQ(outOfReach(packet, corners, corners[3 + k]) &
@@ -86,7 +87,7 @@ void expectNodesMakeTheVolume(const CullVolumes& packet, const Vec3* corners, Co
     }
 }
 
-// Of valid triangles.
+// Expects equal volumes of valid triangles.
 void expectSameVolume(const StepCase& step, const Triangle& triangle, std::uint32_t mode, const ObstacleMotion* motion,
                       Counts& counts)
 {
@@ -148,7 +149,7 @@ TEST(CullPacket, VolumesAreThoseOfSingleTriangles)
     EXPECT_GT(counts.m_out, counts.m_tried / 4);
 }
 
-// What is not in the step is near nothing, wherever it is.
+// A triangle that is not in the step is near nothing, wherever it is.
 TEST(CullPacket, NegativeRadiusIsEmpty)
 {
     LanesVec3 corners[6] = {};

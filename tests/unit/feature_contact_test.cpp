@@ -192,8 +192,8 @@ TEST(NodeFace, PathsThroughSeamsAreCaught)
     }
 }
 
-// Over a flat floor of many faces a node has one contact, with the face below it: the neighbours' edges are nearer to
-// no other point than the face, so their cones turn the node away.
+// A node over a flat floor of many faces has one contact, with the face below it. The neighbours' edges are nearer to
+// no other point than the face, so their cones reject the node.
 TEST(NodeFace, ConesRejectNeighboursOnAFlatFloor)
 {
     const TriangleMesh floor = makeClothGrid(9, 9, 0.8f, 0.0f).m_mesh;

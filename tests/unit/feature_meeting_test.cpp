@@ -1,5 +1,4 @@
-// What tells without a search that two features do not meet in a step is never wrong, and tells it of most that come
-// near.
+// The quick test that two features do not meet in a step is never wrong, and decides most near pairs.
 #include "kernels/lib/feature_meeting.h"
 
 #include <gtest/gtest.h>
@@ -55,7 +54,7 @@ Vec3 turned(Vec3 p)
     return vec3((2 * p.x + 2 * p.y - p.z) / 3, (-p.x + 2 * p.y + 2 * p.z) / 3, (2 * p.x - p.y + 2 * p.z) / 3);
 }
 
-// How many of each answer there were.
+// Counts each kind of answer.
 struct Answers
 {
     int m_count[3] = {0, 0, 0};

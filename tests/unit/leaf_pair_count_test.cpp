@@ -46,7 +46,7 @@ TriangleMesh randomMesh(std::uint32_t seed)
     for (float& coordinate : mesh.m_positions)
         coordinate *= scale;
     disturb(mesh.m_positions, random.below(2) ? 0.0f : 0.1f, random);
-    // Of a fan often its middle.
+    // Spoils one of the first vertices, often the middle of a fan.
     if (random.below(3) == 0) mesh.m_positions[3 * random.below(3)] = NAN;
     return mesh;
 }

@@ -75,7 +75,7 @@ TEST(MeshProbe, VerticesAtOnePositionAreOneForClosedness)
     EXPECT_FALSE(probeOf(makeTerrain(2, 0.1f, 8, 1)).isClosed());
 }
 
-// As apps make spheres: sines and cosines of a whole turn are off by rounding, at the seam and at both poles.
+// Simulates spheres of apps: sines and cosines of a full turn are off by rounding, at the seam and at both poles.
 TEST(MeshProbe, SeamsOffByRoundingAreClosed)
 {
     constexpr int kSteps = 32;

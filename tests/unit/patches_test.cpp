@@ -18,7 +18,7 @@ namespace
 {
 constexpr std::uint32_t kWidth = 32;
 
-// Of a side of one mesh.
+// Returns the clustered triangles of a side of one mesh.
 std::vector<std::uint32_t> clustered(const Side& side)
 {
     return clusteredOrder(side.m_pool.mesh(0), side.m_start.data(), kWidth);

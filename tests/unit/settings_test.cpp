@@ -15,7 +15,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 using Change = std::function<void(Methods&)>;
 
-// Of making a pipeline on the host with changed settings; empty where it was made.
+// Returns the error of making a pipeline on the host with changed settings; empty on success.
 std::string errorOfSettings(const std::function<void(Settings&)>& change)
 {
     Settings settings;

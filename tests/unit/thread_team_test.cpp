@@ -63,7 +63,7 @@ TEST_P(ThreadTeamTest, wakesThreadsThatSleep)
     }
 }
 
-// What a job wrote is there for the caller and for whoever works on the next one.
+// Results of a job are visible to the caller and to the threads that run the next job.
 TEST_P(ThreadTeamTest, showsWhatJobsWrote)
 {
     ThreadTeam team(GetParam());

@@ -88,8 +88,9 @@ TEST(Worlds, TinyOnesKeepClothOutside)
     expectFewFail(worldsOf("tiny", 0, 2000, kPlain), kTinyFailing);
 }
 
-// Worlds that failed once: a path around a face that ended within the thickness, a path that ended beyond reach (cloth
-// under tension, a pin that drags cloth over hills, a fan), drift iterations, masses that differ a billion times.
+// Worlds that failed once. In one a path around a face ended within the thickness, in others a path ended beyond reach
+// (cloth under tension, a pin that drags cloth over hills, a fan). Others have drift iterations or masses that differ a
+// billion times.
 TEST(Worlds, OnesThatFailedOnceKeepClothOutside)
 {
     const struct

@@ -16,11 +16,11 @@ class Option;
 
 namespace drape
 {
-// Checks for CLI11: "" when the text is a number that is finite as float32, and not 0 there unless it is 0, above
-// `least` (or equal, when inclusive), else the reason, which says `what` it must be.
+// Returns a check for CLI11. The check returns "" if the text is a number above `least` (or equal, when inclusive) that
+// is finite as float32 and not rounded to 0. Otherwise it returns the reason, which says `what` it must be.
 std::function<std::string(std::string&)> numberAbove(double least, bool inclusive, const char* what);
 
-// As numberAbove(), and not above `most`.
+// Returns a check like numberAbove() that also refuses numbers above `most`.
 std::function<std::string(std::string&)> numberUpTo(double most, double least, bool inclusive, const char* what);
 
 // To transform the name of a file to write: "" when it is not empty. Standard output is - under its other name, too:

@@ -1,4 +1,4 @@
-// How Drape's programs run and end: exit codes, one line on standard error, nothing thrown out of main.
+// Entry and exit of Drape's programs: exit codes, one line on standard error, no exception out of main.
 #pragma once
 
 #include <functional>
@@ -28,7 +28,7 @@ int runGuarded(const std::string& program, const std::function<int()>& work);
 // Flushes standard output. False, with a line in `error` unless there is one, when it could not be written.
 bool flushOutput(std::string& error);
 
-// Whether a file could be written there (- and an empty path always), told before the work is done. Else one line in
-// `error`.
+// Returns true if a file could be written there, before the work is done. - and an empty path are always accepted.
+// Otherwise sets `error` to one line.
 bool couldWrite(const std::string& path, std::string& error);
 }  // namespace drape

@@ -82,7 +82,7 @@ bool score(const std::vector<bool>& truth, AnswerAll answerAll, Hit hit, Json& a
     return true;
 }
 
-// Of positions beyond them the tests tell nothing (drape/queries.h).
+// The tests decide nothing for positions beyond this (drape/queries.h).
 constexpr float kFarthest = 1073741824.0f;  // m, 2^30
 
 bool refuseFar(const std::string& path, const std::vector<float>& positions, std::string& error)

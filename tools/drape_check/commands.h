@@ -1,4 +1,4 @@
-// What drape_check does: a question answered by the core, and the answer as named numbers.
+// Runs the commands of drape_check: the core answers a question, and the answer is named numbers.
 #pragma once
 
 #include <nlohmann/json.hpp>
