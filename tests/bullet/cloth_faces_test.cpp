@@ -37,7 +37,7 @@ std::vector<Face> lookedUp(const std::vector<std::int32_t>& triangles, std::int3
 }
 }  // namespace
 
-TEST(ClothFaces, ofEachNodeAreThoseThatHaveIt)
+TEST(ClothFaces, FacesOfANodeAreTheFacesThatContainIt)
 {
     Random random(17);
     SCOPED_TRACE("seed 17");
@@ -60,7 +60,7 @@ TEST(ClothFaces, ofEachNodeAreThoseThatHaveIt)
     }
 }
 
-TEST(ClothFaces, mayBeNone)
+TEST(ClothFaces, AClothMayHaveNoFaces)
 {
     EXPECT_EQ(ClothFaces().nodeCount(), 0u);
     const ClothFaces faces({}, 2);

@@ -60,7 +60,7 @@ std::unique_ptr<btSoftBody> twoTriangles(btSoftBodyWorldInfo& info)
 
 // A mirror is found by its body's address, where another body of the same faces may lie once the first is gone: nothing
 // that a trajectory depends on may be left of that.
-TEST(ClothMirror, thatIsTakenUpHasPartsOfWhereTheNodesAre)
+TEST(ClothMirror, ANewMirrorHasPartsOfTheNodesPositions)
 {
     btSoftBodyWorldInfo info;
     const std::unique_ptr<btSoftBody> body = makePatch(info, 80);
@@ -79,7 +79,7 @@ TEST(ClothMirror, thatIsTakenUpHasPartsOfWhereTheNodesAre)
     EXPECT_EQ(reused.parts().order(), fresh.parts().order());
 }
 
-TEST(ClothMirror, seesOtherNodesOfAFaceWithinItsStretchesOfFaces)
+TEST(ClothMirror, NoticesOtherNodesOfAFaceWithinOneRound)
 {
     EXPECT_EQ(stepsUntilSeen(5, 3), 1);
     EXPECT_EQ(stepsUntilSeen(129, 3), 1);  // 32,768 faces
@@ -88,7 +88,7 @@ TEST(ClothMirror, seesOtherNodesOfAFaceWithinItsStretchesOfFaces)
 }
 
 // Two cloths hang together by a face that has two nodes of one and one of the other.
-TEST(ClothMirror, leavesOutAFaceWithAnotherBodysNodeAndSaysSo)
+TEST(ClothMirror, LeavesOutAFaceWithAnotherBodysNodeAndReportsIt)
 {
     for (const bool foreign : {false, true})
     {
@@ -125,7 +125,7 @@ class FacesInPlace : public BackendTest
 };
 
 // No count tells that the second face spans over the pyramid from now on.
-TEST_P(FacesInPlace, countInTheSameStep)
+TEST_P(FacesInPlace, ChangesCountInTheSameStep)
 {
     Plugin plugin(GetParam().m_settings);
     DropWorld world(&plugin);
@@ -148,7 +148,7 @@ TEST_P(FacesInPlace, countInTheSameStep)
 }
 
 // Nodes without faces hang on a cloth or remain after faces were cut away.
-TEST_P(FacesInPlace, nodesWithoutFacesCollideToo)
+TEST_P(FacesInPlace, NodesWithoutFacesCollideToo)
 {
     Plugin plugin(GetParam().m_settings);
     MeshShape slab(makeBox(4.0f, 0.4f, 4.0f));

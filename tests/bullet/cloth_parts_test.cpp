@@ -64,7 +64,7 @@ void expectSmallest(const ClothParts& parts, const int nodes[3])
 }
 }  // namespace
 
-TEST(ClothParts, haveEachNodeOnce)
+TEST(ClothParts, ContainEachNodeOnce)
 {
     for (const int columns : {1, 2, 16, 17, 33, 90})
     {
@@ -75,7 +75,7 @@ TEST(ClothParts, haveEachNodeOnce)
     }
 }
 
-TEST(ClothParts, faceBelongsToTheSmallestGroup)
+TEST(ClothParts, AFaceBelongsToTheSmallestGroup)
 {
     const TriangleMesh mesh = makeClothGrid(129, 120, 1.0f, 0.0f).m_mesh;
     ClothParts parts;
@@ -94,7 +94,7 @@ TEST(ClothParts, faceBelongsToTheSmallestGroup)
     EXPECT_GT(inLeaves, mesh.triangleCount() * 8 / 10);
 }
 
-TEST(ClothParts, takeAnyPlaces)
+TEST(ClothParts, AcceptAnyPositions)
 {
     const btScalar nan = std::numeric_limits<btScalar>::quiet_NaN(), infinity = SIMD_INFINITY;
     std::vector<btVector3> places(9000, btVector3(1, 2, 3));

@@ -51,7 +51,7 @@ class DropComparison : public BackendTest
 {
 };
 
-TEST_P(DropComparison, everyBackendLeavesTheSameCloth)
+TEST_P(DropComparison, EveryBackendGivesTheSameCloth)
 {
     for (const Drop& drop : drops())
     {
@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(Device, DropComparison, testing::ValuesIn(openClBackend
 
 // The report records the final position of the cloth with Bullet's own collision. The test asserts only that Bullet
 // fails in these scenes: some part of the cloth or the obstacle passes by much more than the thickness.
-TEST(DropComparison, builtInCollisionLeaksWhereDrapeDoesNot)
+TEST(DropComparison, BuiltInCollisionLeaksAndDrapeDoesNot)
 {
     Plugin plugin(hostSettings());
     for (const Drop& drop : drops())
@@ -87,7 +87,7 @@ TEST(DropComparison, builtInCollisionLeaksWhereDrapeDoesNot)
     }
 }
 
-TEST(DropComparison, runsRepeatBitForBit)
+TEST(DropComparison, RunsRepeatBitForBit)
 {
     const Drop drop = drops().back();
     Plugin first(hostSettings()), second(hostSettings());

@@ -371,7 +371,7 @@ class ContactRoundsTest : public testing::TestWithParam<RoundsCase>
 };
 }  // namespace
 
-TEST_P(ContactRoundsTest, areThoseOverEveryContact)
+TEST_P(ContactRoundsTest, RoundsEqualTheOracleOverEveryContact)
 {
     Error error;
     const std::unique_ptr<Pipeline> pipeline = Pipeline::create(hostSettings(), error);

@@ -30,7 +30,7 @@ protected:
 }  // namespace
 
 // After every step nothing is on the wrong side and nothing intersects.
-TEST_P(FastDropping, endsEveryStepOutside)
+TEST_P(FastDropping, EndsEveryStepOutside)
 {
     const FastDrop& drop = std::get<0>(GetParam());
     TriangleMesh mesh;

@@ -58,7 +58,7 @@ class HeldNodes : public BackendTest
 }  // namespace
 
 // A corner's node is dragged to the ground by a box that lies on it.
-TEST_P(HeldNodes, anAnchoredNodeStaysWithItsBox)
+TEST_P(HeldNodes, AnAnchoredNodeStaysWithItsBox)
 {
     MeshShape ground(makeWaves(0));
     Plugin plugin(GetParam().m_settings);
@@ -83,7 +83,7 @@ TEST_P(HeldNodes, anAnchoredNodeStaysWithItsBox)
 }
 
 // The app moves a node without mass along, a little above the waves' tops.
-TEST_P(HeldNodes, aNodeIsDraggedOverWaves)
+TEST_P(HeldNodes, ANodeIsDraggedOverWaves)
 {
     MeshShape waves(makeWaves(0.1));
     Plugin plugin(GetParam().m_settings);

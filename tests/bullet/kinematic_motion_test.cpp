@@ -6,7 +6,7 @@
 
 namespace drape::test
 {
-TEST(KinematicMotion, isWhatVelocityAndPosesSay)
+TEST(KinematicMotion, FollowsFromVelocityAndPoses)
 {
     const btTransform from = btTransform::getIdentity(), to = shiftedBy(btVector3(3, 0, 0));
     const btVector3 none(0, 0, 0);
@@ -60,7 +60,7 @@ private:
 
 // Frames faster than steps, moved by what keeps the pose before as interpolation transform: the velocity is the last
 // frame's. The first step takes it for one of three substeps, no later one does.
-TEST(KinematicMotion, ofSeveralPosesAStepIsSweptWhole)
+TEST(KinematicMotion, SeveralPosesInAStepAreSweptAsOneMotion)
 {
     ObservedBody observed;
     btScalar x = 0, last = 0;
@@ -95,7 +95,7 @@ TEST(KinematicMotion, ofSeveralPosesAStepIsSweptWhole)
     }
 }
 
-TEST(KinematicMotion, afterBulletTookTheVelocityIsSweptWhole)
+TEST(KinematicMotion, AMotionWhoseVelocityBulletTookIsSweptWhole)
 {
     ObservedBody observed;
     observed.beginFrame(3);
@@ -118,7 +118,7 @@ TEST(KinematicMotion, afterBulletTookTheVelocityIsSweptWhole)
 }
 
 // Teleports by both transforms stay teleports where motion had been swept whole, or was being shared.
-TEST(KinematicMotion, teleportsFarAreNotSwept)
+TEST(KinematicMotion, DistantTeleportsAreNotSwept)
 {
     const btTransform far = shiftedBy(btVector3(500, 0, 0));
     const auto teleport = [&](ObservedBody& observed)
@@ -157,7 +157,7 @@ TEST(KinematicMotion, teleportsFarAreNotSwept)
 }
 
 // Bullet's first velocity after poses that it did not see is from the last that it saw.
-TEST(KinematicMotion, goesOnWhereBulletCatchesUp)
+TEST(KinematicMotion, ContinuesWhenBulletCatchesUp)
 {
     ObservedBody asleep;
     asleep.beginFrame();
@@ -189,7 +189,7 @@ TEST(KinematicMotion, goesOnWhereBulletCatchesUp)
     }
 }
 
-TEST(KinematicMotion, sharesTurnsAmongSubsteps)
+TEST(KinematicMotion, DividesRotationsAmongSubsteps)
 {
     const btQuaternion turn(btVector3(0, 1, 0), btScalar(0.8));
     const btTransform from = btTransform::getIdentity(), to(turn);

@@ -67,7 +67,7 @@ protected:
 };
 
 // At no time is anything behind its upper side.
-TEST_P(KinematicPlate, pushesClothAndIsNotPassed)
+TEST_P(KinematicPlate, PushesClothAndNothingPasses)
 {
     const float thick = 0.02f;
     raisePlate(GetParam(), 6, thick,
@@ -76,7 +76,7 @@ TEST_P(KinematicPlate, pushesClothAndIsNotPassed)
 }
 
 // It is smaller than the cloth: what hangs over its edges is not torn through it.
-TEST_P(KinematicPlate, isWrappedByALargerCloth)
+TEST_P(KinematicPlate, ALargerClothWrapsIt)
 {
     raisePlate(GetParam(), 0.5f, 0.05f,
                [](const btSoftBody& cloth, btScalar height)
@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(Plates, KinematicPlate, testing::ValuesIn(plateCases())
                          });
 
 // The links pull edges across its corners whose nodes all lie beside it.
-TEST_P(Kinematic, thinPlateIsWrappedByClothThatLiesAskew)
+TEST_P(Kinematic, AThinPlateIsWrappedByClothThatLiesAskew)
 {
     constexpr btScalar kSpeed = 30, kMostShift = btScalar(0.12);  // m/s, m
     for (std::uint32_t seed = 1; seed <= 8; ++seed)

@@ -10,7 +10,7 @@
 namespace drape::test
 {
 // With both of Bullet's transforms set there is no velocity and nothing on the way is touched.
-TEST_P(Kinematic, equalTransformsAreATeleport)
+TEST_P(Kinematic, EqualTransformsAreATeleport)
 {
     KinematicScene scene(makeBox(4, 0.2f, 4), shiftedBy(btVector3(0, -3, 0)), 1.0f, btVector3(0, 0, 0),
                          GetParam().m_settings);
@@ -65,7 +65,7 @@ std::uint64_t hashAfterJump(const Settings& settings, Put put, bool wholeCloth, 
 
 // Teleports a character with its cloth by the world transform alone. Nothing is swept. The whole cloth moves along or
 // only its pins, rotated or not, in one step or in several substeps.
-TEST_P(Kinematic, bodiesThatAreMovedWithTheirClothAreTeleported)
+TEST_P(Kinematic, BodiesThatAreMovedWithTheirClothAreTeleported)
 {
     const btTransform turned(btQuaternion(btVector3(0, 1, 0), btScalar(2.5)), btVector3(-4, 1, 2));
     for (const btTransform& to : {shiftedBy(btVector3(2, 0, 0)), shiftedBy(btVector3(10, 0, 5)), turned})
@@ -85,7 +85,7 @@ TEST_P(Kinematic, bodiesThatAreMovedWithTheirClothAreTeleported)
 }
 
 // Bodies that are thrown at cloth are swept if an app moved the cloth differently or not at all.
-TEST_P(Kinematic, bodiesThatAreThrownPastMovedClothAreSwept)
+TEST_P(Kinematic, BodiesThatAreThrownPastMovedClothAreSwept)
 {
     for (const btVector3& shift : {btVector3(0, 0, 0), btVector3(0, 0, btScalar(0.01)), btVector3(0, 0, btScalar(0.3))})
     {
@@ -98,7 +98,7 @@ TEST_P(Kinematic, bodiesThatAreThrownPastMovedClothAreSwept)
     }
 }
 
-TEST_P(Kinematic, bodiesThatAreSaidToBeTeleportedSweepNothing)
+TEST_P(Kinematic, BodiesDeclaredAsTeleportedSweepNothing)
 {
     KinematicScene scene(makeBox(4, 0.2f, 4), shiftedBy(btVector3(0, -3, 0)), 1.0f, btVector3(0, 0, 0),
                          GetParam().m_settings);
@@ -115,7 +115,7 @@ TEST_P(Kinematic, bodiesThatAreSaidToBeTeleportedSweepNothing)
 
 // Parks a body out of sight. It may be so far away that Bullet would remove cloth beside its path from the simulation.
 // The body drags nothing along, and cloth collides with it again after its return.
-TEST_P(Kinematic, bodiesThatAreParkedFarAwayTakeNothingAlong)
+TEST_P(Kinematic, BodiesThatAreParkedFarAwayDragNothingAlong)
 {
     for (const btVector3& place : {btVector3(1000, 0, 0), btVector3(0, 1000, 0), btVector3(0, -1e5f, 0),
                                    btVector3(0, -1e6f, 0), btVector3(0, btScalar(1e30), 0)})
@@ -137,7 +137,7 @@ TEST_P(Kinematic, bodiesThatAreParkedFarAwayTakeNothingAlong)
 }
 
 // A frame of several substeps is the motion of its parts.
-TEST_P(Kinematic, substepsShareTheMotion)
+TEST_P(Kinematic, SubstepsShareTheMotion)
 {
     KinematicScene whole(makeBox(4, 0.2f, 4), btTransform::getIdentity(), 1.0f, btVector3(0, btScalar(0.15), 0),
                          GetParam().m_settings);
@@ -160,7 +160,7 @@ TEST_P(Kinematic, substepsShareTheMotion)
 }
 
 // Bullet takes velocities before it calls: this motion begins without one.
-TEST_P(Kinematic, bodyMovedByATicksCallbackTakesClothAlong)
+TEST_P(Kinematic, ABodyMovedByATicksCallbackDragsClothAlong)
 {
     KinematicScene scene(makeBox(4, 0.2f, 4), shiftedBy(btVector3(0, -1, 0)), 1.0f, btVector3(0, 0, 0),
                          GetParam().m_settings);
@@ -176,7 +176,7 @@ TEST_P(Kinematic, bodyMovedByATicksCallbackTakesClothAlong)
     EXPECT_GT(lowestOf(scene.m_cloth), btScalar(3));
 }
 
-TEST_P(Kinematic, childOfACompoundMovesWithIt)
+TEST_P(Kinematic, AChildOfACompoundMovesWithIt)
 {
     Plugin plugin(GetParam().m_settings);
     MeshShape mesh(makeBox(3, 0.2f, 3));
@@ -198,7 +198,7 @@ TEST_P(Kinematic, childOfACompoundMovesWithIt)
     }
 }
 
-TEST_P(Kinematic, bodyThatBeginsToMoveWakesCloth)
+TEST_P(Kinematic, ABodyThatBeginsToMoveWakesCloth)
 {
     KinematicScene scene(makeBox(4, 0.2f, 4), btTransform::getIdentity(), 1.0f, btVector3(0, btScalar(0.15), 0),
                          GetParam().m_settings);
@@ -213,7 +213,7 @@ TEST_P(Kinematic, bodyThatBeginsToMoveWakesCloth)
 }
 
 // A plate that is past sleeping cloth within one step finds it awake; one that does not collide with it, asleep.
-TEST_P(Kinematic, bodyThatComesFastWakesClothInTime)
+TEST_P(Kinematic, AFastBodyWakesClothInTime)
 {
     for (const bool collide : {true, false})
     {
@@ -232,7 +232,7 @@ TEST_P(Kinematic, bodyThatComesFastWakesClothInTime)
 }
 
 // Nor does one wake cloth whose pairs Drape leaves to Bullet.
-TEST_P(Kinematic, bodyThatIsNotDrapesLetsClothSleep)
+TEST_P(Kinematic, ABodyOfBulletLetsClothSleep)
 {
     Plugin plugin(GetParam().m_settings);
     DropWorld world(&plugin);

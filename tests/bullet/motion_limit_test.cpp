@@ -74,7 +74,7 @@ bool isNumber(const btVector3& place)
 }
 }  // namespace
 
-TEST(MotionLimit, holdsNodesWithContactsOneByOne)
+TEST(MotionLimit, LimitsNodesWithContactsOneByOne)
 {
     btSoftBodyWorldInfo info;
     SCOPED_TRACE("seed 4");
@@ -96,7 +96,7 @@ TEST(MotionLimit, holdsNodesWithContactsOneByOne)
     EXPECT_GT(left, kNodes / 24);
 }
 
-TEST(MotionLimit, holdsTheOthersApart)
+TEST(MotionLimit, LimitsNodesWithoutContactsSeparately)
 {
     btSoftBodyWorldInfo info;
     SCOPED_TRACE("seed 4");
@@ -121,7 +121,7 @@ TEST(MotionLimit, holdsTheOthersApart)
 }
 
 // In stretches, as threads do.
-TEST(MotionLimit, recordsNodesInAnyStretches)
+TEST(MotionLimit, RecordsNodesInAnyRanges)
 {
     btSoftBodyWorldInfo info;
     SCOPED_TRACE("seed 4");
@@ -144,7 +144,7 @@ TEST(MotionLimit, recordsNodesInAnyStretches)
 
 // Each face limits all of its nodes. Faces share nodes, come in any order and with any node first, and may be given
 // twice.
-TEST(MotionLimit, heedsEveryFaceOfANode)
+TEST(MotionLimit, HonoursEveryFaceOfANode)
 {
     SCOPED_TRACE("seed 5");
     std::vector<btVector3> expected;
@@ -213,7 +213,7 @@ btVector3 limited(const btVector3& to, bool moves)
 }  // namespace
 
 // A node goes with the obstacle as far as that goes, and no farther from that way than beside one at rest.
-TEST(KinematicMotion, takesTheLimitOfNodesWithIt)
+TEST(KinematicMotion, MovesTheLimitOfNodes)
 {
     const btVector3 half(0, btScalar(0.5), 0), beside(btScalar(0.5), btScalar(0.5), 0), beyond(0, 2, 0);
     EXPECT_TRUE(limited(half, true) == half);
@@ -224,7 +224,7 @@ TEST(KinematicMotion, takesTheLimitOfNodesWithIt)
 }
 
 // All nodes are beside the obstacle before and after they were pulled, only their triangle comes over its corner.
-TEST(MotionLimit, holdsTrianglesThatArePulledOverACorner)
+TEST(MotionLimit, LimitsTrianglesThatArePulledOverACorner)
 {
     const btVector3 places[] = {
         {btScalar(2.2), btScalar(0.5), 0}, {btScalar(0.5), btScalar(2.2), 0}, {btScalar(2.2), btScalar(2.2), 0}};

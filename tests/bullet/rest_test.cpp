@@ -72,7 +72,7 @@ class RestingCloth : public BackendTest
 {
 };
 
-TEST_P(RestingCloth, liesAtTheThicknessOnAPlane)
+TEST_P(RestingCloth, LiesAtTheThicknessOnAPlane)
 {
     Rest rest(GetParam().m_settings);
     const TriangleMesh box = makeBox(3.0f, 0.4f, 3.0f);
@@ -85,7 +85,7 @@ TEST_P(RestingCloth, liesAtTheThicknessOnAPlane)
     EXPECT_LT(rest.greatestSpeed(cloth, 60), kSpeedAtRest);
 }
 
-TEST_P(RestingCloth, liesAtTheThicknessOnASphere)
+TEST_P(RestingCloth, LiesAtTheThicknessOnASphere)
 {
     Rest rest(GetParam().m_settings);
     const TriangleMesh sphere = makeSphere(0.5f, 4);
@@ -131,7 +131,7 @@ class SettledPile : public BackendTest
 // The speed that Bullet keeps and the motion that is seen: a correction of places alone would show in the second only.
 // RMS over all steps: cloth that hangs over a sphere slips now and then, on which steps is chance of the height it fell
 // from.
-TEST_P(SettledCloth, liesStill)
+TEST_P(SettledCloth, LiesStill)
 {
     const Bed& bed = std::get<0>(GetParam());
     Rest rest(std::get<1>(GetParam()).m_settings);
@@ -213,7 +213,7 @@ TriangleMesh makePileOfBoards()
 
 // The bunny has 69,666 triangles and a height of 2 m. With planes as the predicted step's end has them, and contacts
 // that do not settle, cloth that falls by 0.5 m stirs at 1.3 mm/s.
-TEST_P(SettledBunny, liesStill)
+TEST_P(SettledBunny, LiesStill)
 {
     TriangleMesh bunny;
     if (!loadBunny(bunny)) return;
@@ -228,7 +228,7 @@ TEST_P(SettledBunny, liesStill)
 }
 
 // With contacts' planes left as the predicted step's end has them, faces rock on the boards' corners for ever: 20 mm/s.
-TEST_P(SettledPile, liesStill)
+TEST_P(SettledPile, LiesStill)
 {
     Rest rest(GetParam().m_settings);
     expectLiesStill(rest, makePileOfBoards(), 1.8f, btScalar(0.3), kWorstStep);
@@ -278,7 +278,7 @@ TriangleMesh makeGlobe()
 
 // README's cloth, with one iteration as Bullet has it by default. The RMS is over all steps and nodes. The fastest node
 // is one that slips: twice what was measured with four iterations, 22 mm/s.
-TEST(IterationsOfBullet, aSingleOneBringsClothToRestAsFourDo)
+TEST(IterationsOfBullet, ASingleIterationBringsClothToRestLikeFour)
 {
     for (const int iterations : {1, 4})
     {
@@ -310,7 +310,7 @@ TEST(IterationsOfBullet, aSingleOneBringsClothToRestAsFourDo)
 // Bullet's links alone, without an obstacle or contacts, keep fine hanging cloth in motion. Cloth of 4,225 nodes that
 // is pinned in its middle keeps fluttering; cloth of 1,089 nodes comes to rest. RMS over the last 200 of 1,000 steps:
 // 122 and 0.1 mm/s.
-TEST(HangingCloth, fluttersByBulletsLinksAlone)
+TEST(HangingCloth, FluttersBecauseOfBulletsLinksAlone)
 {
     for (const int nodes : {33, 65})
     {
@@ -343,7 +343,7 @@ TEST(HangingCloth, fluttersByBulletsLinksAlone)
     }
 }
 
-TEST_P(RestingCloth, thicknessIsTheSumOfBothMargins)
+TEST_P(RestingCloth, TheThicknessIsTheSumOfBothMargins)
 {
     Rest rest(GetParam().m_settings);
     MeshShape shape(makeBox(3.0f, 0.4f, 3.0f));
@@ -357,7 +357,7 @@ TEST_P(RestingCloth, thicknessIsTheSumOfBothMargins)
 }
 
 // The contact rounds must not feed energy in: no slow creep over many steps.
-TEST_P(RestingCloth, staysWhereItLies)
+TEST_P(RestingCloth, StaysWhereItLies)
 {
     Rest rest(GetParam().m_settings);
     MeshShape shape(makeBox(3.0f, 0.4f, 3.0f));

@@ -117,7 +117,7 @@ std::uint64_t drop(const RopeDrop& drop, const Settings& settings, int steps)
 }
 }  // namespace
 
-TEST_P(RopesDropped, endEveryStepOutsideWithTheSameBitsOnEveryBackend)
+TEST_P(RopesDropped, EndEveryStepOutsideWithTheSameBitsOnEveryBackend)
 {
     std::uint64_t first = 0;
     for (const BackendCase& backend : allBackends())
@@ -147,7 +147,7 @@ class Ropes : public BackendTest
 
 // A weight of a hundred nodes hangs over the edge of a box on links that are longer than the box's edge is from the
 // ground: the edge has to hold links, not nodes.
-TEST_P(Ropes, withAWeightHangOverAnEdge)
+TEST_P(Ropes, HangOverAnEdgeWithAWeight)
 {
     RopeWorld world(makeBox(1.0f, 0.4f, 1.0f), GetParam().m_settings);
     const btScalar height = btScalar(0.2 + 1.5 * kThickness);
@@ -164,7 +164,7 @@ TEST_P(Ropes, withAWeightHangOverAnEdge)
 }
 
 // Pulled by its end over the top and around the edge, at several speeds.
-TEST_P(Ropes, areDraggedOverAnEdge)
+TEST_P(Ropes, StayOutsideWhenDraggedOverAnEdge)
 {
     for (const int speed : {1, 5, 20})
     {
@@ -185,7 +185,7 @@ TEST_P(Ropes, areDraggedOverAnEdge)
 }
 
 // Two and a half turns around a rod, the ends drawn tight: a link that passed the rod would take a turn away.
-TEST_P(Ropes, stayWoundOnARod)
+TEST_P(Ropes, StayWoundOnARod)
 {
     for (const int speed : {1, 10, 60})
     {
@@ -222,7 +222,7 @@ TEST_P(Ropes, stayWoundOnARod)
 }
 
 // Lies on two posts, with no node near either.
-TEST_P(Ropes, restOnPostsBetweenTheirNodes)
+TEST_P(Ropes, RestOnPostsBetweenTheirNodes)
 {
     const btScalar wide = btScalar(0.45);
     TriangleMesh posts = placed(makeBox(0.04f, 1.0f, 0.04f),
@@ -244,7 +244,7 @@ TEST_P(Ropes, restOnPostsBetweenTheirNodes)
 }
 
 // A cloth with threads of three links along its rim that comes down on something sharp and on something round.
-TEST_P(Ropes, hangFromAClothAsItsFringe)
+TEST_P(Ropes, HangFromAClothAsItsFringe)
 {
     for (const auto& [obstacle, speed] : {std::make_pair("needle", 0), std::make_pair("needle", 30),
                                           std::make_pair("torus", 0), std::make_pair("box", 30)})
@@ -262,7 +262,7 @@ TEST_P(Ropes, hangFromAClothAsItsFringe)
 }
 
 // Across a box, as one link whose ends are outside, upright, and through a ring twice.
-TEST_P(Ropes, thatBeginThroughAMeshAreToldAndComeOut)
+TEST_P(Ropes, ThoseBeginningThroughAMeshAreReportedAndComeOut)
 {
     const struct
     {
@@ -301,7 +301,7 @@ TEST_P(Ropes, thatBeginThroughAMeshAreToldAndComeOut)
 }
 
 // Two ropes sewn to one another by a link of the first.
-TEST_P(Ropes, withALinkToAnotherBodySaySo)
+TEST_P(Ropes, LinksToAnotherBodyAreReported)
 {
     Plugin plugin(GetParam().m_settings);
     MeshShape shape(makeBox(1.0f, 0.4f, 1.0f));

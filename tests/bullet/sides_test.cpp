@@ -34,7 +34,7 @@ float heightAfterFall(bool oneSided, bool kinematic)
 }
 }  // namespace
 
-TEST(Sides, clothInsideOfABoxStaysThereOrFallsOut)
+TEST(Sides, ClothInsideOfABoxStaysThereOrFallsOut)
 {
     for (const bool kinematic : {false, true})
     {
@@ -43,7 +43,7 @@ TEST(Sides, clothInsideOfABoxStaysThereOrFallsOut)
     }
 }
 
-TEST(Sides, aOneSidedBoxHoldsClothThatComesFromOutside)
+TEST(Sides, AOneSidedBoxHoldsClothThatComesFromOutside)
 {
     Plugin plugin(hostSettings());
     MeshShape box(makeBox(2, 2, 2));
@@ -142,18 +142,18 @@ void Sheets::expectHeld(bool below, bool oneSided)
 }
 }  // namespace
 
-TEST_P(Sheets, twoSidedHoldClothOnEitherSide)
+TEST_P(Sheets, TwoSidedSheetsHoldClothOnEitherSide)
 {
     for (const bool below : {false, true})
         expectHeld(below, false);
 }
 
-TEST_P(Sheets, oneSidedHoldClothOnTheirFront)
+TEST_P(Sheets, OneSidedSheetsHoldClothOnTheirFront)
 {
     expectHeld(false, true);
 }
 
-TEST_P(Sheets, oneSidedLetClothThroughFromBehind)
+TEST_P(Sheets, OneSidedSheetsLetClothThroughFromBehind)
 {
     SheetScene scene(backend().m_settings, amplitude(), true, speed(), true);
     for (int step = 0; step < kSheetSteps; ++step)

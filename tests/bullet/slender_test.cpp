@@ -64,7 +64,7 @@ protected:
 };
 }  // namespace
 
-TEST_P(Slender, needlesHoldCloth)
+TEST_P(Slender, NeedlesHoldCloth)
 {
     for (const double radius : {0.003, 0.02, 0.05})
     {
@@ -74,7 +74,7 @@ TEST_P(Slender, needlesHoldCloth)
 }
 
 // At 50 m/s Bullet's links stretch to three times their length.
-TEST_P(Slender, postsHoldClothThatIsThrown)
+TEST_P(Slender, PostsHoldClothThatIsThrown)
 {
     const btTransform down(btQuaternion::getIdentity(), btVector3(0, btScalar(-kHeight / 2), 0));
     for (const btScalar speed : {10, 50})

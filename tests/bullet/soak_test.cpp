@@ -219,7 +219,7 @@ protected:
     }
 };
 
-TEST_P(Soak, tenThousandStepsOfChange)
+TEST_P(Soak, TenThousandStepsOfChangeKeepClothOutside)
 {
     constexpr int kSteps = 10000, kWarmUp = 1000;
     SCOPED_TRACE("seed " + std::to_string(kSeed));
@@ -232,7 +232,7 @@ TEST_P(Soak, tenThousandStepsOfChange)
 }
 
 // The sanitizers run this test.
-TEST_P(Soak, aThousandStepsOfChange)
+TEST_P(Soak, AThousandStepsOfChangeKeepClothOutside)
 {
     SCOPED_TRACE("seed " + std::to_string(kSeed));
     Zoo zoo(GetParam().m_settings);

@@ -30,7 +30,7 @@ std::unique_ptr<btSoftBody> makePatch(btSoftBodyWorldInfo& info)
 }
 }  // namespace
 
-TEST(SolidLinks, areAllOfARopeButBendingLinks)
+TEST(SolidLinks, AllLinksOfARopeButBendingLinksCount)
 {
     btSoftBodyWorldInfo info;
     const std::unique_ptr<btSoftBody> rope = makeRope(info, btVector3(0, 0, 0), btVector3(1, 0, 0), 3);
@@ -44,7 +44,7 @@ TEST(SolidLinks, areAllOfARopeButBendingLinks)
     EXPECT_TRUE(solidOf(*rope).empty());
 }
 
-TEST(SolidLinks, areNoneWithinASurface)
+TEST(SolidLinks, LinksWithinASurfaceDoNotCount)
 {
     btSoftBodyWorldInfo info;
     const std::unique_ptr<btSoftBody> patch = makePatch(info);
@@ -52,7 +52,7 @@ TEST(SolidLinks, areNoneWithinASurface)
     EXPECT_TRUE(solidOf(*patch).empty());
 }
 
-TEST(SolidLinks, areThoseThatHangFromASurfaceOrJoinTwo)
+TEST(SolidLinks, LinksThatHangFromASurfaceOrJoinTwoCount)
 {
     btSoftBodyWorldInfo info;
     const std::unique_ptr<btSoftBody> body = makePatch(info);
@@ -67,7 +67,7 @@ TEST(SolidLinks, areThoseThatHangFromASurfaceOrJoinTwo)
 }
 
 // A tetrahedron is a surface, too, with what is inside of it.
-TEST(SolidLinks, areNoneWithinTetrahedra)
+TEST(SolidLinks, LinksWithinTetrahedraDoNotCount)
 {
     btSoftBodyWorldInfo info;
     const btVector3 places[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}, {2, 2, 2}};
@@ -80,7 +80,7 @@ TEST(SolidLinks, areNoneWithinTetrahedra)
     EXPECT_EQ(solidOf(body), (Nodes{4, 5}));
 }
 
-TEST(SolidLinks, thatNameAnotherBodysNodeAreLeftOutAndTold)
+TEST(SolidLinks, LinksWithAnotherBodysNodeAreLeftOutAndReported)
 {
     btSoftBodyWorldInfo info;
     const std::unique_ptr<btSoftBody> rope = makeRope(info, btVector3(0, 0, 0), btVector3(1, 0, 0), 3);
@@ -92,7 +92,7 @@ TEST(SolidLinks, thatNameAnotherBodysNodeAreLeftOutAndTold)
     EXPECT_TRUE(links.hasForeign());
 }
 
-TEST(SolidLinks, areOthersWhenOneHasAnotherNodeButNotInAnotherOrder)
+TEST(SolidLinks, ChangeWithANodeOfALinkButNotWithTheirOrder)
 {
     btSoftBodyWorldInfo info;
     for (const int count : {10, 5000})
@@ -121,7 +121,7 @@ TEST(SolidLinks, areOthersWhenOneHasAnotherNodeButNotInAnotherOrder)
 }
 
 // Removed and added links count in the same step.
-TEST(SolidLinks, countInTheStepInWhichTheyChange)
+TEST(SolidLinks, ChangesCountInTheSameStep)
 {
     Plugin plugin(hostSettings());
     DropWorld world(&plugin);
@@ -147,7 +147,7 @@ TEST(SolidLinks, countInTheStepInWhichTheyChange)
     world.world().removeSoftBody(&body);
 }
 
-TEST(SolidLinks, areWhatDrapeTakesABodyWithoutFacesFor)
+TEST(SolidLinks, DrapeTakesABodyWithoutFacesForItsLinks)
 {
     Plugin plugin(hostSettings());
     DropWorld world(&plugin);

@@ -70,7 +70,7 @@ class ThreadsTest : public testing::TestWithParam<bool>
 };
 }  // namespace
 
-TEST_P(ThreadsTest, giveTheSameCourses)
+TEST_P(ThreadsTest, AnyNumberOfThreadsGivesTheSameTrajectory)
 {
     const Courses alone = run(1, GetParam());
     ASSERT_GT(alone.m_contactsMax, kShared);

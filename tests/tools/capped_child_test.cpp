@@ -43,7 +43,7 @@ bool hasEnded(pid_t process)
 }  // namespace
 
 // It is stopped first, as if in a step without end: one that runs may notice by itself that nobody reads.
-TEST_F(CappedChild, endsWithItsParent)
+TEST_F(CappedChild, EndsWithItsParent)
 {
     for (const int signal : {SIGTERM, SIGKILL})
     {
@@ -60,7 +60,7 @@ TEST_F(CappedChild, endsWithItsParent)
     }
 }
 
-TEST_F(CappedChild, leavesWhatIsDoneToASignal)
+TEST_F(CappedChild, LeavesTheHandlingOfASignalUnchanged)
 {
     const pid_t parent = start({"--obstacle", "stairs", "--cloth", "17x17", "--steps", "100", "--backend", "host",
                                 "--compare", "--quiet", "--json", path("runs.json")});

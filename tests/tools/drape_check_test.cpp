@@ -90,7 +90,7 @@ private:
     }
 };
 
-TEST_F(Check, ccdCountsMissesAndFalseHits)
+TEST_F(Check, CcdCountsMissesAndFalseHits)
 {
     // A hit and a miss that are true, a hit that is said to be none, and a miss that is said to be a hit.
     const std::string file =
@@ -108,7 +108,7 @@ TEST_F(Check, ccdCountsMissesAndFalseHits)
     EXPECT_EQ(timed.at("misses"), 1);
 }
 
-TEST_F(Check, trianglesInEveryMode)
+TEST_F(Check, TrianglesAreCountedInEveryMode)
 {
     const std::string file = write("pairs.bin", triangleRecord(-0.5f, 1) + triangleRecord(0.001f, 0));
     for (const char* mode : {"fast", "exact", "moller"})
@@ -124,7 +124,7 @@ TEST_F(Check, trianglesInEveryMode)
     EXPECT_EQ(answer({"triangles", close, "--mode", "exact"}).at("false_hits"), 0);
 }
 
-TEST_F(Check, pairsOfOneMeshAndOfTwo)
+TEST_F(Check, PairsOfOneMeshAndOfTwoAreCounted)
 {
     const std::string near = write("near.obj", meshAt(0.01f)), through = write("through.obj", meshAt(-0.5f));
     const Json alone = answer({"pairs", near, "--thickness", "0.011"});
@@ -138,7 +138,7 @@ TEST_F(Check, pairsOfOneMeshAndOfTwo)
     EXPECT_EQ(both.at("pairs_within"), 5);
 }
 
-TEST_F(Check, stepFindsWhatPasses)
+TEST_F(Check, StepFindsPassingFeatures)
 {
     const std::string above = write("above.obj", meshAt(0.5f)), below = write("below.obj", meshAt(-0.5f));
     const Json passing = answer({"step", above, below});
@@ -149,7 +149,7 @@ TEST_F(Check, stepFindsWhatPasses)
     EXPECT_EQ(answer({"step", above, above, "--separation", "0.6"}).at("vf_hits"), 3);
 }
 
-TEST_F(Check, stepNeedsTheFacesInTheirOrder)
+TEST_F(Check, StepNeedsTheFacesInTheirOrder)
 {
     const std::string vertices = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\n", faces = "f 1 2 3\nf 1 3 4\n";
     const std::string start = write("start.obj", vertices + "usemtl a\n" + faces);
@@ -169,7 +169,7 @@ TEST_F(Check, stepNeedsTheFacesInTheirOrder)
 
 // Four bars meet at one position, each with a vertex of its own there: they touch. Bars that share the vertex by index
 // do not count.
-TEST_F(Check, pairsTakeIndexedFilesByTheirIndices)
+TEST_F(Check, PairsUseTheIndicesOfIndexedFiles)
 {
     const char* ends[4] = {"1 0 0\nv 1 0 1", "0 1 0\nv 0 1 1", "-1 0 0\nv -1 0 1", "0 -1 0\nv 0 -1 1"};
     std::string apart, faces, shared = "v 0 0 0\n", sharedFaces, stl = "solid bars\n";
@@ -211,7 +211,7 @@ TEST_F(Check, pairsTakeIndexedFilesByTheirIndices)
 }
 
 // Surveys have such coordinates; float32 would lose half a metre.
-TEST_F(Check, coordinatesFarFromTheOriginKeepTheirDigits)
+TEST_F(Check, CoordinatesFarFromTheOriginKeepTheirDigits)
 {
     const auto triangleAt = [](double x)
     {
@@ -229,7 +229,7 @@ TEST_F(Check, coordinatesFarFromTheOriginKeepTheirDigits)
     EXPECT_NE(apart.at("notes").at(0).get<std::string>().find("centred"), std::string::npos);
 }
 
-TEST_F(Check, readsDocumentedFormatsAlone)
+TEST_F(Check, ReadsOnlyDocumentedFormats)
 {
     expectRefused(run({"pairs", write("mesh.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")}),
                   {"mesh.off", "not a mesh", ".ply"});
@@ -240,7 +240,7 @@ TEST_F(Check, readsDocumentedFormatsAlone)
 
 // A hundred thousand triangles at one place, all but coincident so that none is a repeated one: told at once, with the
 // exact number, on every back end.
-TEST_F(Check, tooManyPairsAreCountedAndRefused)
+TEST_F(Check, TooManyPairsAreCountedAndRefused)
 {
     std::string text = "v 0 0 0\nv 0 1 0\n";
     for (int i = 0; i < 100000; ++i)
@@ -277,7 +277,7 @@ TEST_F(Check, tooManyPairsAreCountedAndRefused)
     expectRefused(run({"pairs", above, "--candidate-limit", "0"}), {"--candidate-limit"});
 }
 
-TEST_F(Check, writesItsAnswer)
+TEST_F(Check, WritesItsAnswer)
 {
     const std::string file = write("motions.bin", motionRecord(-1, 1));
     const ToolRun plain = run({"ccd", file, "--backend", "host"});
@@ -295,7 +295,7 @@ TEST_F(Check, writesItsAnswer)
     EXPECT_EQ(run({"--list-devices"}).m_exitCode, 0);
 }
 
-TEST_F(Check, refusesBadInput)
+TEST_F(Check, RefusesBadInput)
 {
     const std::string good = write("good.bin", motionRecord(-1, 1));
     const std::string mesh = write("mesh.obj", meshAt(1));
@@ -313,7 +313,7 @@ TEST_F(Check, refusesBadInput)
                   {"other.obj", "mesh.obj"});
 }
 
-TEST_F(Check, refusesBadRecords)
+TEST_F(Check, RefusesBadRecords)
 {
     const std::string good = motionRecord(-1, 1);
     expectRefused(run({"ccd", path("nowhere.bin")}), {"nowhere.bin", "no such file"});
@@ -330,14 +330,14 @@ TEST_F(Check, refusesBadRecords)
     expectRefused(run({"ccd", write("nan.bin", motionRecord(std::nanf(""), 0))}), {"nan.bin", "finite"});
 }
 
-TEST_F(Check, whatCannotBeWrittenIsToldBefore)
+TEST_F(Check, UnwritableFilesAreReportedBefore)
 {
     const std::string file = write("motions.bin", motionRecord(-1, 1));
     expectRefused(run({"ccd", file, "--backend", "host", "--json", path("no/such/folder/a.json")}), {"no/such/folder"});
     expectRefused(run({"ccd", file, "--backend", "host", "--json", ""}), {"--json", "empty"});
 }
 
-TEST_F(Check, standardOutputThatIsFullIsTold)
+TEST_F(Check, AFullStandardOutputIsReported)
 {
     expectFullOutputTold({"--help"});
     expectFullOutputTold({"step", "--help"});

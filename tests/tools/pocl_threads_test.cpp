@@ -62,14 +62,14 @@ private:
 };
 }  // namespace
 
-TEST_F(PoclThreads, keepToTheirCoresWhereAllAreThisProcesss)
+TEST_F(PoclThreads, KeepToTheirCoresIfTheProcessHasAllCores)
 {
     keepPoclThreadsApart();
     EXPECT_EQ(affinity(), wanted(m_cores));
 }
 
 // PoCL ends the program when it may not put a thread on a core.
-TEST_F(PoclThreads, areLeftAloneWhereACoreIsMissing)
+TEST_F(PoclThreads, AreLeftAloneIfACoreIsMissing)
 {
     cpu_set_t one;
     CPU_ZERO(&one);
@@ -82,7 +82,7 @@ TEST_F(PoclThreads, areLeftAloneWhereACoreIsMissing)
     EXPECT_EQ(affinity(), wanted(one));
 }
 
-TEST_F(PoclThreads, areLeftAloneWhereTheirNumberIsSet)
+TEST_F(PoclThreads, AreLeftAloneIfTheirNumberIsSet)
 {
     for (const char* name : kNumbers)
     {
@@ -94,7 +94,7 @@ TEST_F(PoclThreads, areLeftAloneWhereTheirNumberIsSet)
     }
 }
 
-TEST_F(PoclThreads, areTheUsersToDecide)
+TEST_F(PoclThreads, FollowTheUsersVariable)
 {
     ::setenv(kAffinity, "0", 1);
     keepPoclThreadsApart();

@@ -180,7 +180,7 @@ Motion fallingEdge()
 }
 }  // namespace
 
-TEST(Ccd, timeIsThatOfTheFirstTouch)
+TEST(Ccd, TheTimeIsThatOfTheFirstTouch)
 {
     const CcdResult vertex = run(fallingVertex()), edge = run(fallingEdge());
     const float tolerance = ccdDefaults().m_timeTolerance;
@@ -194,7 +194,7 @@ TEST(Ccd, timeIsThatOfTheFirstTouch)
     EXPECT_NEAR(edge.m_u, 0.5f, 0.51f);
 }
 
-TEST(Ccd, touchesOnAGridAreNeverMissedNorLate)
+TEST(Ccd, TouchesOnAGridAreNeverMissedNorLate)
 {
     Random random(70);
     CcdSettings whether = ccdDefaults();
@@ -209,7 +209,7 @@ TEST(Ccd, touchesOnAGridAreNeverMissedNorLate)
     }
 }
 
-TEST(Ccd, everyTouchThatNewtonFindsIsAHitInTime)
+TEST(Ccd, EveryTouchThatNewtonFindsIsAHitInTime)
 {
     Random random(71);
     int hits = 0, confirmed = 0;
@@ -263,7 +263,7 @@ double pathOffset(const CcdPath& path, double width)
     return offset;
 }
 
-TEST(Ccd, mostMeetingsAreProvedWithoutASearch)
+TEST(Ccd, MostMeetingsAreProvedWithoutASearch)
 {
     Random random(75);
     CcdSettings settings = ccdDefaults();
@@ -287,7 +287,7 @@ TEST(Ccd, mostMeetingsAreProvedWithoutASearch)
     EXPECT_LT(searched, cases / 50);
 }
 
-TEST(Ccd, mostMissesBesideAnySideTakeFewLooks)
+TEST(Ccd, MostMissesBesideAnySideTakeFewSteps)
 {
     Random random(76);
     const int cases = 3000;
@@ -306,7 +306,7 @@ TEST(Ccd, mostMissesBesideAnySideTakeFewLooks)
 }
 
 // Halving in time from any piece of the step and coming back gives the piece again, bit for bit.
-TEST(Ccd, halvesOfAPieceOfTheStepAreThePiece)
+TEST(Ccd, HalvesOfAnIntervalCoverTheInterval)
 {
     Random random(77);
     for (int i = 0; i < 2000; ++i)
@@ -337,7 +337,7 @@ TEST(Ccd, halvesOfAPieceOfTheStepAreThePiece)
     }
 }
 
-TEST(Ccd, toleranceOfNothingEnds)
+TEST(Ccd, ASearchWithZeroToleranceEnds)
 {
     for (float tolerance : {0.0f, -1.0f, 1e-45f, 1e-12f, 5e-10f})
     {
@@ -352,7 +352,7 @@ TEST(Ccd, toleranceOfNothingEnds)
     }
 }
 
-TEST(Ccd, unitsOfLengthThatArePowersOfTwoChangeNoBit)
+TEST(Ccd, UnitsOfLengthThatArePowersOfTwoChangeNoBit)
 {
     Random random(72);
     int hits = 0;
@@ -368,7 +368,7 @@ TEST(Ccd, unitsOfLengthThatArePowersOfTwoChangeNoBit)
     EXPECT_GT(hits, 25);
 }
 
-TEST(Ccd, theSideOfAPairDoesNotMatter)
+TEST(Ccd, TheOrderOfAPairDoesNotMatter)
 {
     Random random(73);
     for (int i = 0; i < 2000; ++i)
@@ -391,7 +391,7 @@ TEST(Ccd, theSideOfAPairDoesNotMatter)
     }
 }
 
-TEST(Ccd, separationIsADistance)
+TEST(Ccd, SeparationIsADistance)
 {
     // A vertex that passes a face at its corner's side, and one that stops above it.
     for (float gap : {0.5f, 0.01f, 1e-4f})
@@ -415,7 +415,7 @@ TEST(Ccd, separationIsADistance)
     }
 }
 
-TEST(Ccd, separationMovesTheTimeForward)
+TEST(Ccd, SeparationMovesTheTimeForward)
 {
     CcdSettings settings = ccdDefaults();
     settings.m_separation = 0.5f;
@@ -425,7 +425,7 @@ TEST(Ccd, separationMovesTheTimeForward)
     EXPECT_GE(result.m_time, 0.12f);
 }
 
-TEST(Ccd, exhaustedSearchGivesTheSafeAnswer)
+TEST(Ccd, AnExhaustedSearchGivesTheSafeAnswer)
 {
     Random random(74);
     int exhausted = 0;
@@ -445,7 +445,7 @@ TEST(Ccd, exhaustedSearchGivesTheSafeAnswer)
     EXPECT_GT(exhausted, 1000);
 }
 
-TEST(Ccd, badNumbersAreNoHitAndLargeOnesAreFinite)
+TEST(Ccd, BadNumbersAreNoHitAndLargeOnesAreFinite)
 {
     const float infinity = std::numeric_limits<float>::infinity();
     for (float bad : {infinity, -infinity, std::numeric_limits<float>::quiet_NaN()})
@@ -467,7 +467,7 @@ TEST(Ccd, badNumbersAreNoHitAndLargeOnesAreFinite)
     EXPECT_FALSE(run(apart).m_hit);
 }
 
-TEST(Ccd, pointsThatCoincideTouch)
+TEST(Ccd, PointsThatCoincideTouch)
 {
     Motion motion = fallingVertex();
     for (int i = 0; i < 4; ++i)

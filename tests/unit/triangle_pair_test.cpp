@@ -44,7 +44,7 @@ Pair randomPair(Random& random, float size, float offset, float shift)
 }
 }  // namespace
 
-TEST(TrianglePair, radiusIsKeptToItsRounding)
+TEST(TrianglePair, ReportsEveryPairWithinTheRoundedRadius)
 {
     Random random(93);
     for (float offset : {0.0f, 100.0f})
@@ -71,7 +71,7 @@ TEST(TrianglePair, radiusIsKeptToItsRounding)
     }
 }
 
-TEST(TrianglePair, radiusToTheLastBit)
+TEST(TrianglePair, TheRadiusCountsToTheLastBit)
 {
     // Parallel faces at a gap that the radius meets exactly, exceeds by a bit, or misses by one in ten thousand.
     for (float gap : {1.0f, 0.01f, 3e-5f})
@@ -84,7 +84,7 @@ TEST(TrianglePair, radiusToTheLastBit)
     }
 }
 
-TEST(TrianglePair, unitsOfLengthThatArePowersOfTwoChangeNothing)
+TEST(TrianglePair, UnitsOfLengthThatArePowersOfTwoChangeNothing)
 {
     Random random(94);
     int meets = 0;
@@ -110,7 +110,7 @@ TEST(TrianglePair, unitsOfLengthThatArePowersOfTwoChangeNothing)
     EXPECT_GT(meets, 100);
 }
 
-TEST(TrianglePair, badNumbersAreDenied)
+TEST(TrianglePair, BadNumbersAreNoHit)
 {
     Pair pair;
     for (int i = 0; i < 3; ++i)
@@ -121,7 +121,7 @@ TEST(TrianglePair, badNumbersAreDenied)
     EXPECT_EQ(trianglePairTest(pair.m_a, pair.m_b, 1e30f), 0u);
 }
 
-TEST(Moller, rightWhereTheToleranceDoesNotMatter)
+TEST(Moller, IsRightWhereTheToleranceDoesNotMatter)
 {
     Random random(95);
     int meets = 0, judged = 0;
@@ -147,7 +147,7 @@ TEST(Moller, rightWhereTheToleranceDoesNotMatter)
     EXPECT_LT(meets, judged * 4 / 5);
 }
 
-TEST(Moller, reportsLayersThatDoNotMeetAndTheCertifiedTestDoesNot)
+TEST(Moller, ReportsLayersThatDoNotMeetAndTheCertifiedTestDoesNot)
 {
     Random random(96);
     int moller = 0;
