@@ -15,7 +15,7 @@ public:
     // positions: x y z per node at the start.
     Crossings(const TriangleMesh& obstacle, const std::vector<float>& positions);
 
-    // To be called after every step with the nodes' new places; those that are not finite are left out.
+    // Call this after every step with the nodes' new positions. Positions that are not finite are left out.
     void follow(const std::vector<float>& positions);
     std::size_t nodes() const;
 

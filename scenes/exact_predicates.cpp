@@ -87,7 +87,7 @@ bool meetsBoundary(const Vector3& p, const Vector3& q, const Vector3 t[3])
     return segmentsMeet(p, q, t[0], t[1]) || segmentsMeet(p, q, t[1], t[2]) || segmentsMeet(p, q, t[2], t[0]);
 }
 
-// For a point in the plane of a triangle that has area; in all views, for the reason above.
+// Tests a point in the plane of a triangle that has area, in all views for the reason above.
 bool coplanarPointInside(const Vector3& point, const Vector3 t[3])
 {
     for (int along = 0; along < 3; ++along)

@@ -56,7 +56,7 @@ void placePair(std::uint32_t kind, const Vector3& origin, Random& random, Vector
     points[1] = origin;
     points[2] = origin + random.within(0.2, 1) * kSize * u;
     points[3] = origin + random.within(0.2, 1) * kSize * v + random.within(-0.5, 0.5) * kSize * u;
-    // Over the face's middle, one of its edges or one of its corners.
+    // Aims at the face's middle, one of its edges or one of its corners.
     const double where = random.unit();
     if (where < 0.5)
         points[0] = (1.0 / 3) * (points[1] + points[2] + points[3]) + distance * normal;

@@ -10,7 +10,7 @@ namespace drape::bench
 {
 namespace
 {
-// So many runs of Bullet's collision on a scene that stalled one after the other, and the rest of them is left out.
+// The remaining runs of Bullet's collision on a scene are left out after this many consecutive runs that stalled.
 constexpr int kHopeless = 3;
 // Drape's rest trials have twenty times the frames of others: so many times the others' seconds.
 constexpr double kRestCaps = 3;
@@ -54,7 +54,7 @@ void judge(SceneState& state)
     for (std::size_t i = 0; i < state.m_results.size(); ++i)
     {
         TrialResult& result = state.m_results[i];
-        // At equal time and of the same fall.
+        // The runs have equal time steps and the same fall.
         const bool comparable =
             state.m_symmetric && !result.m_row.value("seed", 0) && result.m_row.value("knob", "") != "rest";
         if (comparable && result.m_final.size() == state.m_reference.size() && !result.m_final.empty())
@@ -83,7 +83,7 @@ bool runOrLeave(const ErrorOptions& options, SceneState& scene, const Trial& tri
     if (!hopeless && fits)
     {
         result = runTrial(options, scene.m_name, trial, number, std::min(cap, secondsLeft));
-        // It did not stall: the time of the whole program ended.
+        // The trial did not stall: the time of the whole program ended.
         fits = secondsLeft >= cap || result.m_row["ended"] != "capped";
     }
     if (hopeless || !fits) result.m_row = describeTrial(scene.m_name, trial, hopeless ? "left out" : "no time");

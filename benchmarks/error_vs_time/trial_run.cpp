@@ -30,8 +30,8 @@ std::vector<std::string> childArguments(const ErrorOptions& options, const std::
     return arguments;
 }
 
-// Over what the fall gave: the largest rise of the energy of motion from any step to a later one, and how much of such
-// a rise no link had held.
+// Energy gained beyond that of the fall: the largest rise of the kinetic energy from any step to a later one, and the
+// part of such a rise that no link had stored.
 struct EnergyErrors
 {
     double m_rise = 0, m_gain = 0;

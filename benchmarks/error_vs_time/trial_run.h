@@ -50,12 +50,12 @@ struct TrialResult
     std::string m_error;  // one line when it could not be run
 };
 
-// In the parent. number: of the trial, as the child makes the same list.
+// Runs in the parent. `number` is the index of the trial; the child makes the same list.
 TrialResult runTrial(const ErrorOptions& options, const std::string& scene, const Trial& trial, int number,
                      double capSeconds);
 
-// In the child, with the scene as it is without the trial: does not return but with an exit code for what could not be
-// started.
+// Runs in the child, with the scene before the trial's changes. Returns only if the trial could not be started, with an
+// exit code.
 int streamTrial(const ErrorOptions& options, const ErrorScene& scene, const Trial& trial);
 
 // RMS distance of two courses' last positions, m.

@@ -100,7 +100,7 @@ private:
         field.Reset();  // only now the voxel size counts
     }
 
-    // From where the last step ended to where this one will.
+    // Moves the obstacle from the end of the last step to the end of this one.
     void moveObstacle()
     {
         m_height += m_rise * m_dt;

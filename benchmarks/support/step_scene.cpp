@@ -53,7 +53,7 @@ std::vector<SceneSpec> makeSpecs()
         specs.push_back({"both_" + sizeName(cells), "both", std::string("sphere_") + spheres[level], cells, 1,
                          kClothSize, 0, false});
     }
-    // From the smallest to the largest cloth, on the smallest obstacle, a middle one and the largest.
+    // The sweep goes from the smallest to the largest cloth, on the smallest obstacle, a middle one and the largest.
     for (const char* size : {"1k", "82k", "1m"})
         for (const int cells : {16, 64, 256, 1024})
             specs.push_back({"cloth_" + sizeName(cells) + "_on_" + size, std::string("on_") + size,

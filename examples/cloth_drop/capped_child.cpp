@@ -20,9 +20,9 @@ namespace
 {
 constexpr int kNotRun = 127;  // exit code, as shells have it
 
-// In the new process, where only what is safe in a signal handler may be called. A parent that ends, however it does,
-// takes the child with it: it may be in a step of minutes, and would notice only when it writes. One that ended before
-// that was asked for has left the child to another.
+// Runs in the new process, where only functions that are safe in a signal handler may be called. When the parent ends
+// for any reason, the child ends too. Otherwise it could continue a step of minutes and notice only at its next write.
+// If the parent ended before this request, the child already belongs to another process.
 [[noreturn]] void becomeChild(pid_t parent, int output, char* const* arguments)
 {
     // The last is for an end of the pipe that is standard output's already, and would be closed.
@@ -66,7 +66,7 @@ bool follow(int pipe, CappedLines& lines, const std::function<bool()>& goesOn)
     for (;;)
     {
         if (goesOn && !goesOn()) return false;
-        // Not running: loading or measuring, which always ends.
+        // The child is not in a step: it is loading or measuring, which always ends.
         const double left = lines.running() ? lines.secondsLeft(CappedLines::Clock::now()) : kLookSeconds;
         pollfd waiting = {pipe, POLLIN, 0};
         const int ready = ::poll(&waiting, 1, waitMs(left));

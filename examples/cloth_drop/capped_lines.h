@@ -19,7 +19,7 @@ struct ChildCap
     bool m_measuring = false;  // counts what is done between steps, too
 };
 
-// In the child, which shares the clock.
+// Functions for the child, which shares the clock.
 std::string stepLine();
 std::string steppedLine();
 std::string measuredLine();

@@ -10,7 +10,7 @@
 
 namespace drape
 {
-// Not while it listens already.
+// Must not be called while listening.
 void listenToSignals();
 // Back to what was before. What has come stays noted. Safe in a signal handler.
 void stopListening();

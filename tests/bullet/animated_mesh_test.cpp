@@ -215,7 +215,7 @@ TEST(AnimatedMeshesOnHost, ABodyThatMovesWhileItsVerticesDo)
     EXPECT_GT(double(lowestOf(scene.m_cloth)), -1.5);
 }
 
-// Another pose far away is no motion: the cloth is not dragged there, and what intersects is told.
+// A jump to another pose far away is no motion: the cloth is not dragged there, and intersections are reported.
 TEST(AnimatedMeshesOnHost, AMeshThatBecomesAnotherPoseStartsAnew)
 {
     AnimatedScene scene(hostSettings(), makeBox(0.4f, 0.4f, 0.4f), 0.23f, true);

@@ -1,4 +1,4 @@
-// Which faces of a cloth each node has, against a look at all of them.
+// Finds the faces of each node, compared with a search of all faces.
 #include "bullet_plugin/adapter/cloth_faces.h"
 
 #include <gtest/gtest.h>

@@ -329,7 +329,7 @@ void runBoth(RoundsTeam& team, ContactRounds& rounds, PlainRounds& plain, std::s
     team.scatter(bodies);
 }
 
-// Between the rounds nodes are moved at random, as links move them, so that contacts come to act and cease to.
+// The test moves nodes at random between the rounds, as links do, so that contacts become active and inactive.
 void runAll(RoundsTeam& team, ContactRounds& rounds, PlainRounds& plain, btSoftBody& plainBody, std::size_t contacts,
             Random& random)
 {

@@ -89,7 +89,7 @@ TriangleMesh meshOf(const btSoftBody& cloth);
 btScalar lowestOf(const btSoftBody& cloth);  // m, least y of a node
 double rmsSpeed(const btSoftBody& cloth);    // m/s
 int contactsHeld(const btSoftBody& cloth);   // constraints that the body has for Bullet's solver
-// In every bit.
+// Compares every bit.
 bool sameContacts(const std::vector<ContactInfo>& a, const std::vector<ContactInfo>& b);
 
 // The mesh with its vertices scaled, then moved by the pose.

@@ -99,7 +99,7 @@ TEST_P(Friction, SticksBelowTheAngle)
     }
 }
 
-// Above the angle it slides, as a block does: with the acceleration g (sin - friction cos).
+// The cloth slides above the angle, like a block, with the acceleration g (sin - friction cos).
 TEST_P(Friction, SlidesAboveTheAngle)
 {
     for (const bool springs : {false, true})

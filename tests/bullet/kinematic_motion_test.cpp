@@ -75,7 +75,7 @@ TEST(KinematicMotion, SeveralPosesInAStepAreSweptAsOneMotion)
         observed.expectMotion(last, step == 0 ? btScalar(0.1) : x);
         last = step == 0 ? btScalar(0.1) : x;
     }
-    // From here on Bullet's substeps move it: the second of them shows it.
+    // Bullet's substeps move the body from here on; the second of them shows it.
     observed.place(x + btScalar(0.4));
     observed.beginFrame(4);
     observed.step();
@@ -108,7 +108,7 @@ TEST(KinematicMotion, AMotionWhoseVelocityBulletTookIsSweptWhole)
         observed.expectMotion(x, next);
         x = next;
     }
-    // Both transforms: a teleport even there, where Bullet's velocity is none.
+    // Setting both transforms is a teleport even at a velocity of zero in Bullet.
     observed.beginFrame();
     observed.beginFrame();
     observed.place(7);
@@ -149,7 +149,7 @@ TEST(KinematicMotion, DistantTeleportsAreNotSwept)
     faster.beginFrame();
     faster.step();
     faster.expectMotion(500, btScalar(500.1), 1e-3);
-    // And that was the end of it: the next frame of substeps is shared.
+    // The motion ended there: the next frame of substeps is shared.
     faster.place(btScalar(500.5));
     faster.beginFrame(4);
     faster.step();

@@ -66,7 +66,7 @@ protected:
     void SetUp() override { requireBackend(GetParam().m_backend); }
 };
 
-// At no time is anything behind its upper side.
+// Nothing is ever behind the plate's upper side.
 TEST_P(KinematicPlate, PushesClothAndNothingPasses)
 {
     const float thick = 0.02f;
@@ -75,7 +75,7 @@ TEST_P(KinematicPlate, PushesClothAndNothingPasses)
                { ASSERT_GT(lowestOf(cloth), height + btScalar(thick) / 2); });
 }
 
-// It is smaller than the cloth: what hangs over its edges is not torn through it.
+// The plate is smaller than the cloth. The cloth that hangs over its edges is not pulled through it.
 TEST_P(KinematicPlate, ALargerClothWrapsIt)
 {
     raisePlate(GetParam(), 0.5f, 0.05f,
@@ -133,7 +133,7 @@ protected:
         int nodes = 0, missed = 0;
         for (int phase = 0; phase < kPhases; ++phase)
         {
-            // Its upper side begins out of reach, two thicknesses below the cloth or more.
+            // The plate's upper side begins out of reach, two thicknesses below the cloth or more.
             btScalar height = btScalar(-0.06) - speed * kDt * btScalar(phase) / kPhases;
             KinematicScene scene(makeBox(6, 0.02f, 6), shiftedBy(btVector3(0, height, 0)), 1.0f, btVector3(0, 0, 0),
                                  settings);

@@ -9,7 +9,7 @@
 
 namespace drape::test
 {
-// With both of Bullet's transforms set there is no velocity and nothing on the way is touched.
+// Setting both of Bullet's transforms gives no velocity, and nothing along the path is touched.
 TEST_P(Kinematic, EqualTransformsAreATeleport)
 {
     KinematicScene scene(makeBox(4, 0.2f, 4), shiftedBy(btVector3(0, -3, 0)), 1.0f, btVector3(0, 0, 0),
@@ -231,7 +231,7 @@ TEST_P(Kinematic, AFastBodyWakesClothInTime)
     }
 }
 
-// Nor does one wake cloth whose pairs Drape leaves to Bullet.
+// A body whose pairs with the cloth Drape leaves to Bullet does not wake the cloth.
 TEST_P(Kinematic, ABodyOfBulletLetsClothSleep)
 {
     Plugin plugin(GetParam().m_settings);

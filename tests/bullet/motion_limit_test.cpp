@@ -120,7 +120,7 @@ TEST(MotionLimit, LimitsNodesWithoutContactsSeparately)
     EXPECT_GT(brought, kNodes / 12);
 }
 
-// In stretches, as threads do.
+// Records ranges of nodes, as threads do.
 TEST(MotionLimit, RecordsNodesInAnyRanges)
 {
     btSoftBodyWorldInfo info;

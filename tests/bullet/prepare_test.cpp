@@ -98,7 +98,7 @@ TEST_P(Prepared, TheFirstStepFindsWhatItNeeds)
     EXPECT_GT(prepared.m_plugin.statistics().m_contacts, 100u);
 }
 
-// It has turned by the time that its pair has it cut into parts, whose order of work its bits depend on.
+// The cloth has turned before its pair cuts it into parts. Its bits depend on the order of work of these parts.
 TEST_P(Prepared, ALargeClothTakesTheSamePath)
 {
     ClothSpec spec = above(0.8);

@@ -227,7 +227,8 @@ TEST_P(SettledBunny, LiesStill)
     }
 }
 
-// With contacts' planes left as the predicted step's end has them, faces rock on the boards' corners for ever: 20 mm/s.
+// Faces would rock on the boards' corners for ever, at 20 mm/s, if contacts' planes stayed those of the predicted
+// step's end.
 TEST_P(SettledPile, LiesStill)
 {
     Rest rest(GetParam().m_settings);

@@ -118,8 +118,8 @@ TEST_P(Skips, ObstaclesThatAreNotReadAnew)
     EXPECT_EQ(keptAllTheSame, kept);
 }
 
-// In one world another cloth sleeps in touch with the slab, in the other there is none. It keeps its place until the
-// slab moves and wakes it.
+// A second cloth sleeps in touch with the slab in one world only. It keeps its position until the slab moves and wakes
+// it.
 TEST_P(Skips, ClothThatSleeps)
 {
     SkipWorld with(GetParam().m_settings), without(GetParam().m_settings);

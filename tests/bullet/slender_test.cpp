@@ -16,7 +16,7 @@ namespace
 constexpr double kHeight = 2;  // m
 constexpr int kSides = 6, kSteps = 240;
 
-// Its tip is at (0, 0, 0), its axis downwards.
+// Makes a needle with its tip at (0, 0, 0) and its axis downwards.
 TriangleMesh makeNeedle(double radius)
 {
     TriangleMesh mesh;
@@ -73,7 +73,7 @@ TEST_P(Slender, NeedlesHoldCloth)
     }
 }
 
-// At 50 m/s Bullet's links stretch to three times their length.
+// Bullet's links stretch to three times their length at 50 m/s.
 TEST_P(Slender, PostsHoldClothThatIsThrown)
 {
     const btTransform down(btQuaternion::getIdentity(), btVector3(0, btScalar(-kHeight / 2), 0));

@@ -72,7 +72,7 @@ private:
         return btVector3(btScalar(x), btScalar(y), btScalar(z));
     }
 
-    // It rises, sinks and turns where it is.
+    // The board rises, sinks and turns in place.
     btTransform boardPose() const
     {
         const btScalar height = btScalar(0.25) * std::sin(btScalar(0.05) * btScalar(m_boardSteps));
@@ -206,7 +206,7 @@ protected:
             EXPECT_GE(zoo.changes(kind), each) << "kind " << kind;
     }
 
-    // Nothing is left of all that: a new cloth falls as in a new world.
+    // Expects no remains: a new cloth falls as in a new world.
     void expectEmptied(Zoo& zoo)
     {
         zoo.clear();

@@ -1,4 +1,4 @@
-// Which links of a soft body collide, and what is noticed of them when they change where they stand.
+// Finds the links of a soft body that collide, and notices changes in place.
 #include "bullet_plugin/adapter/solid_links.h"
 
 #include <gtest/gtest.h>
@@ -127,7 +127,7 @@ TEST(SolidLinks, ChangesCountInTheSameStep)
     DropWorld world(&plugin);
     MeshShape box(makeBox(1.0f, 1.0f, 1.0f));
     const btCollisionObject& object = world.addObstacle(box.shape());
-    // Beside the box, so that only a link between the ends comes near it.
+    // The ends are beside the box, so that only a link between them comes near it.
     const btVector3 places[] = {{btScalar(-0.7), btScalar(0.51), 0}, {btScalar(0.7), btScalar(0.51), 0}, {2, 2, 0}};
     const btScalar masses[] = {1, 1, 1};
     btSoftBody body(&world.world().getWorldInfo(), 3, places, masses);

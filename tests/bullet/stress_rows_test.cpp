@@ -29,7 +29,7 @@ btTransform at(double x, double y, double z)
     return btTransform(btQuaternion::getIdentity(), btVector3(btScalar(x), btScalar(y), btScalar(z)));
 }
 
-// Both transforms: a kinematic body of which the world transform alone changes has moved there within the step.
+// Sets both transforms. A kinematic body of which only the world transform changes has moved there within the step.
 void teleport(btCollisionObject& object, const btTransform& pose)
 {
     object.setWorldTransform(pose);
@@ -80,7 +80,7 @@ std::uint64_t WorldRows::hashBesideABall(bool kinematic, bool jumping)
     std::uint64_t hash = kHashStart;
     for (int step = 0; step < 60; ++step)
     {
-        // Above the cloth, far below it, and beside it, each jump through it.
+        // The ball jumps above the cloth, far below it, and beside it, each time through it.
         if (jumping) teleport(ball, at(step % 3 == 2 ? 2 : 0, step % 3 == 1 ? -3 : 3, 0));
         world.step();
         hash = hashOf(cloth, hash);
@@ -220,7 +220,7 @@ TEST_P(WorldRows, Row16HugeTimeStepsStayFinite)
         {
             world.world().stepSimulation(dt, 1, dt);
             ASSERT_TRUE(allFinite(cloth));
-            // At most each feature of the cloth with each of the box, in fact far fewer.
+            // An upper bound is each feature of the cloth with each of the box; there are far fewer.
             EXPECT_LT(plugin.statistics().m_contacts, 10000u);
             EXPECT_EQ(plugin.statistics().m_status, std::uint32_t(kStepGood));
         }

@@ -124,7 +124,7 @@ TEST_P(StretchedCloth, ThatFliesApartIsHeldTogether)
     EXPECT_TRUE(hills.m_lines.empty());
 }
 
-// Its starts are stretched already, so that holding it together helps little.
+// The cloth's start is stretched already, so that limiting its stretch helps little.
 TEST_P(StretchedCloth, ThatIsApartMakesNoMoreTestsThanItMay)
 {
     Hills hills(GetParam().m_settings);
@@ -144,7 +144,7 @@ TEST_P(StretchedCloth, ThatIsApartMakesNoMoreTestsThanItMay)
     }
 }
 
-// By the settings' limit.
+// The settings' limit leaves the cloth out.
 TEST_P(StretchedCloth, ThatIsLeftOutIsToldOnce)
 {
     Settings settings = GetParam().m_settings;
@@ -161,7 +161,7 @@ TEST_P(StretchedCloth, ThatIsLeftOutIsToldOnce)
     EXPECT_EQ(toldLeftOut(hills.m_lines), 1u);
 }
 
-// Another cloth beside it keeps its contacts, bit for bit.
+// A second cloth beside it keeps its contacts, bit for bit.
 TEST_P(StretchedCloth, LeavesOthersAsTheyAre)
 {
     std::uint64_t hashes[2];

@@ -117,7 +117,7 @@ TEST_P(BroadPhaseTest, OnlyPairedMeshesMeet)
     expectAllAgree(sides);
 }
 
-// With one obstacle its mesh is not looked up: the cloth without a pair has empty volumes.
+// A single obstacle's mesh is not looked up: the cloth without a pair has empty volumes.
 TEST_P(BroadPhaseTest, UnpairedClothMeetsNothing)
 {
     Sides sides = makeSides(makeSide({makeSoup(1, 0.2f, 90, 1), makeSoup(1, 0.2f, 100, 2)}),

@@ -27,7 +27,7 @@ __kernel void takeItems(const uint count, const uint parts, __global uint* taken
 }
 )";
 
-// For each item: the parts that took it, as bits, how often any did, and the last taker.
+// Records for each item the parts that took it, as bits, how often any did, and the last taker.
 struct Taken
 {
     std::vector<cl_uint> m_parts, m_times, m_taker;

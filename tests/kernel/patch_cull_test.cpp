@@ -270,7 +270,7 @@ public:
                        [&](const char* name) { return programOf(device, name, PatchCullStage::defines(device)); });
     }
 
-    // From that slot on; those before are as they were.
+    // Packs from that slot on; earlier slots remain unchanged.
     void pack(const std::vector<TriangleMesh>& meshes, std::size_t firstSlot)
     {
         const Side side = makeSide(meshes);

@@ -195,7 +195,7 @@ TEST_P(SelfContactTest, FullListsOfHitsCountOn)
     }
 }
 
-// On a GPU, where pairs of patches are listed.
+// GPUs list pairs of patches.
 TEST_P(SelfContactTest, FullListsOfPatchesCountOn)
 {
     DeviceSelf self(*m_device, foldedCase(25, 4, 0.003f, 130));

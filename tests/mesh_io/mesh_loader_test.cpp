@@ -84,7 +84,7 @@ TEST_F(MeshLoader, ReadsDocumentedFormatsAlone)
     EXPECT_EQ(load(write("box.OBJ", kBox), Joining::ByPosition, report).triangleCount(), 12u);
     for (const char* ending : {".off", ".x", ".dae", ".obj.txt", ""})
         expectRefused(write("box" + std::string(ending), kBox), {"not a mesh", ".obj", ".glb"});
-    // Both kinds of glTF go by either name.
+    // Each kind of glTF may have either extension.
     expectRefused(write("empty.glb", "{}"), {"empty.glb", "no triangles"});
     expectRefused(write("cut.gltf", "glTF"), {"cut.gltf", "not binary glTF"});
     expectRefused(write("obj.ply", kBox), {"obj.ply", "no PLY header"});

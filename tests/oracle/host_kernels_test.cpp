@@ -126,7 +126,7 @@ public:
     void leaveOut(std::size_t cloth) { m_reach.leaveOut(cloth); }
     void meetObstacles(std::size_t cloth) { m_obstacleRadius[cloth] = 0.1f; }
 
-    // Behind `others`.
+    // Returns the contacts, appended to `others`.
     std::vector<Contact> contacts(ThreadTeam& threads, SelfStepLimits limits = {}, std::vector<Contact> others = {})
     {
         m_patches.cull(step(), limits.m_candidates, threads);

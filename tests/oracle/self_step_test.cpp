@@ -121,7 +121,7 @@ public:
         return std::min(double(m_step.m_thickness), 0.5 * rest) * (1 + m_activation);
     }
 
-    // Near at the end, locally closest and not passed, all of it by the margins.
+    // Returns true if the pair is near at the end, locally closest and not passed, each within the margins.
     bool mustBeNear(const std::uint32_t nodes[4], bool edges, std::uint32_t face) const
     {
         const Four start = at(m_side.m_start, nodes), end = at(m_side.m_end, nodes);
@@ -297,7 +297,7 @@ TEST_P(SelfStepOracle, PublishedClothBallStep)
     ASSERT_TRUE(
         queries->meshMotion(describeMesh(step.m_motion.m_mesh), step.m_motion.m_end.data(), settings, touching));
     const Oracle oracle(step, GetParam().m_settings.m_activation);
-    // By kind and nodes, those of each feature sorted, of two edges the lesser first.
+    // The key is the kind and the nodes. Nodes of each feature are sorted; of two edges the lesser is first.
     const auto keyOf = [](bool edges, const std::uint32_t nodes[4])
     {
         std::array<std::uint32_t, 5> key = {edges, nodes[0], nodes[1], nodes[2], nodes[3]};

@@ -14,7 +14,7 @@ namespace drape::test
 {
 namespace
 {
-// In the local frame of the second triangle's first vertex, as the pipeline calls it.
+// Tests in the local frame of the second triangle's first vertex, like the pipeline.
 bool found(const float* p)
 {
     FeatureTriangle triangles[2];

@@ -60,7 +60,7 @@ TEST(MissingDevice, ACacheThatCannotBeWrittenIsNamed)
         {
             const ScopedVariable own("POCL_CACHE_DIR", nullptr), cache("XDG_CACHE_HOME", "/dev/null/cache");
             const std::string why = whyNoDevice(openClSettings());
-            // On a machine with other devices, or without PoCL, there is nothing to tell.
+            // There is nothing to report on a machine with other devices, or without PoCL.
             if (why.find(kPoclPlatform) != std::string::npos)
             {
                 EXPECT_NE(why.find("cannot be written: /dev/null/cache/pocl"), std::string::npos) << why;

@@ -115,7 +115,7 @@ bool withFailing(long number, Which which, const Call& call)
     return FailingAllocations::hasFailed();
 }
 
-// In a world after so many steps.
+// Lets an allocation fail in a world after this many steps.
 void expectStepsGoOn(int stepsBefore, Which which, long every, Backend backend = Backend::Host)
 {
     long told = 0;

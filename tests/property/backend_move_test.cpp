@@ -286,7 +286,7 @@ TEST_P(BackendMove, TheCrossoverIsMeasuredOnce)
     expectFromCache(*fourth, *third);
 }
 
-// While other processes have all of the cores.
+// Other processes use all of the cores meanwhile.
 TEST_P(BackendMove, ABusyMachineIsMeasuredAgain)
 {
     const TemporaryFolder folder;
@@ -323,7 +323,7 @@ TEST_P(BackendMove, MeasuringLeavesNothingBehind)
     }
 }
 
-// More meshes than the measurement had, whose numbers are theirs.
+// Adds more meshes than the measurement had; they reuse its numbers.
 TEST_P(BackendMove, MeshesThatComeAfterMeasuringHaveTreesOfTheirOwn)
 {
     constexpr std::size_t kMeshes = 80, kTriangles = 30;

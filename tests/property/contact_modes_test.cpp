@@ -229,7 +229,7 @@ TEST_P(ContactModesTest, DiscreteSeesTheEndOnly)
         EXPECT_EQ(moving.m_swept, 0u);
         for (const Contact& contact : moving.m_contacts)
             EXPECT_EQ(contact.m_time, 1.0f);
-        // At rest where it ends, it gives the same contacts but for where the nodes were.
+        // The cloth at rest in its end positions gives the same contacts, apart from the nodes' start.
         step.m_cloth.m_positions = step.m_end;
         std::vector<Contact> resting = run(step, ContactMode::Discrete).m_contacts;
         ASSERT_EQ(resting.size(), moving.m_contacts.size());

@@ -110,7 +110,7 @@ public:
         }
     }
 
-    // At the offset above the point nearest to q, as floats have it.
+    // Returns the point at the offset above the point nearest to q, rounded to floats.
     Vector3 offsetAbove(const Vector3& q) const
     {
         NearestOnTriangle best = {INFINITY, {}, {}};
@@ -295,7 +295,7 @@ TEST_P(ContactNormalsTest, SmoothOverConvexCreases)
     }
 }
 
-// In a valley the node goes down one face and up the other, at the offset of each: wherever it is within reach of both,
+// A node in a valley goes down one face and up the other, at the offset of each. Wherever it is within reach of both,
 // both have a contact, with the face's own normal.
 TEST_P(ContactNormalsTest, BothFacesOfAConcaveCrease)
 {

@@ -54,8 +54,8 @@ TEST_P(HostDeviceTest, RandomSequences)
     EXPECT_EQ(m_device->deviceReport().m_onHost, isHost());
 }
 
-// So small that a simulator of a device gets through it (tests/CMakeLists.txt). Each step twice: a device may go about
-// one in another way once it knows how much there is to do.
+// The scene is small enough for a simulator of a device (tests/CMakeLists.txt). Each step runs twice, since a device
+// may choose another method once it knows the amount of work.
 TEST_P(HostDeviceTest, FewTriangles)
 {
     ASSERT_TRUE(makeBoth());

@@ -78,7 +78,7 @@ TEST_P(SidesTest, OpenMeshLetsClothThroughFromBehind)
         translate(step.m_end, 0, -2 * from, 0);
         EXPECT_GT(run(step, false).size(), 0u);
         EXPECT_EQ(run(step, true).size(), from > 0 ? run(step, false).size() : 0u);
-        // Over its edge, which has no neighbour to say which way is out, it is the same.
+        // The result over the edge, which has no neighbour to determine the outside, is equal.
         for (std::vector<float>* positions : {&step.m_cloth.m_positions, &step.m_end})
             translate(*positions, 0, 0, -0.5f);
         EXPECT_GT(run(step, false).size(), 0u);

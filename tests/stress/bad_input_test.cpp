@@ -105,7 +105,7 @@ TEST_P(BadInputTest, NanAndInfiniteNodesAreIsolatedAndCounted)
     EXPECT_TRUE(m_pipeline->statistics().m_status & kStepInvalidNodes);
     for (const Contact& contact : contacts)
         EXPECT_FALSE(touches(*m_pipeline, contact, bad)) << describe(contact);
-    // Nothing else is lost, whichever triangle owns it, and nothing else changes.
+    // No other contact is lost, whichever triangle owns it, and no other contact changes.
     std::size_t kept = 0;
     for (const Contact& contact : sound)
     {
@@ -296,7 +296,7 @@ TEST_P(BadInputTest, TrianglesWithAnInvalidCornerAreInNoPair)
     for (const float value : {kNan, kInfinity, -1.1e9f, -3e38f})
     {
         SCOPED_TRACE(value);
-        // Its two other corners on either side of the sound triangle, in it, and away from it.
+        // The triangle's two other corners are on either side of the sound triangle, in it, and away from it.
         for (const float height : {-0.5f, 0.0f, 5.0f})
         {
             const TriangleMesh broken = looseTriangles({value, 1, 0, 0, height, 0, 0, 0.5f, 0});

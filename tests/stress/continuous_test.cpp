@@ -27,7 +27,7 @@ SelfCase plateThroughCloth(float speed)
     motion.m_name = "plate at " + std::to_string(speed) + " m/s";
     motion.m_mesh = makeClothGrid(17, 17, 1.0f, 0.0f).m_mesh;
     TriangleMesh plate = makeBox(0.4f, 0.001f, 0.3f);
-    // Its middle is at the cloth at 0.37 of the step.
+    // The plate's middle is at the cloth at 0.37 of the step.
     translate(plate.m_positions, 0.013f, 0.37f * speed * kStep, 0.021f);
     const std::int32_t first = std::int32_t(motion.m_mesh.vertexCount());
     motion.m_mesh.m_positions.insert(motion.m_mesh.m_positions.end(), plate.m_positions.begin(),

@@ -119,7 +119,7 @@ TEST_P(LoadTest, HundredThousandCoincidentTriangles)
     }
     // One list of candidates, and what the meshes take.
     EXPECT_LT(peakResidentBytes(), before + 12 * Settings().m_candidateLimit + kGrowthBytes);
-    // Without the crowd's pair the step is good again.
+    // The step is good again without the crowd's pair.
     pipeline->addPair(0, 1, sound.m_thickness);
     EXPECT_EQ(runStep(*pipeline).size(), alone.size());
     EXPECT_EQ(pipeline->statistics().m_status, std::uint32_t(kStepGood));

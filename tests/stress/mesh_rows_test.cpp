@@ -220,7 +220,7 @@ protected:
         return meshPairsOn(GetParam().m_settings, step.m_cloth, step.m_obstacle, step.m_thickness);
     }
 
-    // Nothing within the thickness is missed, nothing beyond it is kept, in the numbers as they were rounded.
+    // Expects every pair within the thickness and none beyond it, in the rounded numbers.
     void expectTruth(const StepCase& step, const std::vector<Contact>& contacts)
     {
         Side cloth = makeSide({step.m_cloth});

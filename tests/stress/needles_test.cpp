@@ -75,8 +75,9 @@ bool awayFromCorners(const Vector3& point, const std::array<Vector3, 3>& corners
                        [&](const Vector3& corner) { return length(point - corner) > rounding; });
 }
 
-// Which pairs of features must have a contact: around loose triangles every direction is open, so all that are within
-// 0.9 of the reach, whatever their shape; at a cloth's corner its node has the contact, at an edge's end the others.
+// Finds the pairs of features that must have a contact. Around loose triangles every direction is open, so all pairs
+// within 0.9 of the reach are required, whatever their shape. At a cloth's corner its node has the contact, at an
+// edge's end the others.
 class RequiredPairs
 {
 public:

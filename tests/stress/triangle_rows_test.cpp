@@ -145,7 +145,7 @@ TEST_P(StressRows, Row03VertexExactlyOnAFaceInAllOrders)
     expectAllHit(touching);
     for (const std::vector<Contact>& contacts : run(allOrders(touching)).m_contacts)
         EXPECT_TRUE(touchesWithin(contacts, 0.0f));
-    // And an obstacle's vertex on the cloth's face.
+    // The second case is an obstacle's vertex on the cloth's face.
     expectAllHit({kFace, touching.m_cloth});
 }
 
@@ -172,7 +172,7 @@ TEST_P(StressRows, Row05NeedlesZeroAreasAndDuplicateVertices)
         expectNoneHit({away, kFace});
         expectNoneHit({kFace, away});
     }
-    // Near, not touching: the segment's end and the point are within the thickness.
+    // The shapes are near but do not touch: the segment's end and the point are within the thickness.
     for (const Corners& shape : {segment, doubled, point})
     {
         Corners above = shape;
@@ -181,7 +181,7 @@ TEST_P(StressRows, Row05NeedlesZeroAreasAndDuplicateVertices)
         for (const std::vector<Contact>& contacts : run(allOrders({above, kFace})).m_contacts)
             EXPECT_TRUE(touchesWithin(contacts, 0.5001f * kThickness));
     }
-    // At random: no needle that truly meets the face is missed.
+    // Random needles: none that truly meets the face is missed.
     Random random(1005);
     std::vector<TrianglePair> meeting;
     while (meeting.size() < 200)
@@ -225,7 +225,8 @@ TEST_P(StressRows, Row05NeedlesOfTenNanometresAtTheOrigin)
         for (const std::vector<Contact>& contacts : run(allOrders({needle, below})).m_contacts)
             EXPECT_TRUE(touchesWithin(contacts, 0.5001f * kThickness));
     }
-    // At random, their tips at the origin: none that truly meets the face is missed, whichever of the two is the cloth.
+    // Random needles with their tips at the origin: none that truly meets the face is missed, with either of the two as
+    // the cloth.
     Random random(1006);
     std::vector<TrianglePair> meeting, swapped;
     for (int tries = 0; tries < 1000; ++tries)

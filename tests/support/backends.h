@@ -26,11 +26,11 @@ struct BackendCase
 std::vector<BackendCase> openClBackends();  // at least one; perhaps missing
 std::vector<BackendCase> allBackends();     // the host first
 
-// For INSTANTIATE_TEST_SUITE_P.
+// Names the cases of INSTANTIATE_TEST_SUITE_P.
 std::string backendName(const testing::TestParamInfo<BackendCase>& info);
 void PrintTo(const BackendCase& backend, std::ostream* stream);
 
-// For SetUp(): fails or skips the test when the back end is not there.
+// Call this in SetUp(). Fails or skips the test if the back end is missing.
 void requireBackend(const BackendCase& backend);
 
 // A fixture whose parameter is a back end that is there.

@@ -96,8 +96,8 @@ TriangleMesh repeated(int count, const std::vector<float>& triangle)
     return looseTriangles(corners);
 }
 
-// From x (m) on, each triangle's centroid is farther than the one before by a third: a mean or a code parts off one
-// triangle at a time.
+// Makes a line of triangles from x (m) on. Each centroid is farther than the one before by a third: a mean or a code
+// splits off one triangle at a time.
 TriangleMesh doublingLine(int count, float x)
 {
     std::vector<float> corners;

@@ -68,8 +68,8 @@ StepCase fallingCase(const std::string& shape, int nodes, float thickness, std::
 // Triangles that share nothing, crossing one another; at rest or moving.
 StepCase soupCase(int clothTriangles, int obstacleTriangles, bool moving, std::uint32_t seed);
 
-// Which side's triangles are needles and caps, turned at random, 10³ to 10⁷ times as long as they are wide before their
-// corners are rounded; the other's are fat.
+// Selects the side whose triangles are needles and caps, rotated at random, 10³ to 10⁷ times as long as they are wide
+// before their corners are rounded. The other side's triangles are fat.
 enum class Thin
 {
     Cloth,

@@ -24,7 +24,7 @@ public:
     // Gives the coming step to a pipeline that is none of the scene's, with every mesh added anew: of the steps before,
     // nothing that it kept can matter. added: what the call before added, empty at first.
     void giveAnew(Pipeline& pipeline, std::vector<MeshId>& added) const;
-    // In the order in which giveAnew() adds.
+    // Returns the meshes in the order in which giveAnew() adds them.
     std::vector<MeshId> ids() const;
 
 private:

@@ -59,7 +59,7 @@ TEST_F(BadInput, ABinaryFileWithAWrongLengthIsRefused)
     expectRefused(runSmall({"--obstacle", write("none.glb", header(2, whole) + size + chunk)}), {"none.glb"});
 }
 
-// Whose readers call themselves for every level.
+// Readers of the nodes call themselves for every level.
 TEST_F(BadInput, GltfNestedTooDeepIsRefused)
 {
     expectRefused(runSmall({"--obstacle", write("deep.gltf", std::string(200000, '['))}), {"deep.gltf", "deeper"});

@@ -42,7 +42,7 @@ bool hasEnded(pid_t process)
 }
 }  // namespace
 
-// It is stopped first, as if in a step without end: one that runs may notice by itself that nobody reads.
+// The child is stopped first, as if in an endless step. A running child may notice by itself that nobody reads.
 TEST_F(CappedChild, EndsWithItsParent)
 {
     for (const int signal : {SIGTERM, SIGKILL})

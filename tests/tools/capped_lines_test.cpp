@@ -13,7 +13,7 @@ namespace
 {
 constexpr std::size_t kWhole = 1 << 20;
 
-// At a time in ms.
+// Returns a line with a time in ms.
 std::string line(const char* word, int time)
 {
     return std::string(word) + " " + std::to_string(1000000LL * time) + "\n";

@@ -100,7 +100,7 @@ TEST_F(Check, CcdCountsMissesAndFalseHits)
     EXPECT_EQ(json.at("misses"), 1);
     EXPECT_EQ(json.at("false_hits"), 1);
     EXPECT_GT(json.at("us_per_query"), 0);
-    // Within the separation all four touch.
+    // All four touch within the separation.
     const Json near = answer({"ccd", file, "--separation", "0.2"});
     EXPECT_EQ(near.at("misses"), 0);
     EXPECT_EQ(near.at("false_hits"), 2);

@@ -201,7 +201,7 @@ TEST_F(Outputs, FramesAreOneMeshForEachStep)
     ASSERT_TRUE(loadMesh(path("frames/obstacle.ply"), mesh, error)) << error;
 }
 
-// Its first bytes may look like the end of a line.
+// The first bytes of a frame may look like the end of a line.
 TEST_F(Outputs, AFrameIsReadWhateverItsFirstVertex)
 {
     for (const char* bytes : {"\x0a\x98\x8b\xbf", "\x0a\x0a\x0a\x3f", "\x0d\x0a\x8b\xbf", "\x20\x0a\x8b\xbf"})
@@ -378,7 +378,7 @@ TEST_F(Outputs, EveryShapeRuns)
     }
 }
 
-// At the ends of what the arguments may be.
+// Uses the limits of the arguments.
 TEST_F(Outputs, TheLargestScenesAndTheFastestClothCollide)
 {
     const Json large = Json::parse(summaryOf({"--obstacle-size", "1e4", "--cloth-size", "1e4"}));

@@ -17,7 +17,7 @@ namespace
 constexpr char kAffinity[] = "POCL_AFFINITY";
 constexpr const char* kNumbers[] = {"POCL_MAX_PTHREAD_COUNT", "POCL_CPU_MAX_CU_COUNT", "POCL_MAX_COMPUTE_UNITS"};
 
-// Without any of the variables; puts back what it finds.
+// Removes the variables, and restores them afterwards.
 class PoclThreads : public testing::Test
 {
 protected:

@@ -166,7 +166,7 @@ TEST_F(AtomicFile, OneFileUnderTwoNamesIsRecognised)
         ::close(descriptor);
 }
 
-// By a child, which is no root where the test is.
+// Runs in a child that gives up root's rights if the test has them.
 TEST_F(AtomicFile, AReadOnlyFileStays)
 {
     expectWritten("a", "old");

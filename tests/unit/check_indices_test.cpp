@@ -26,7 +26,7 @@ TriangleMesh withIndex(std::int32_t index, std::size_t corner)
     return mesh;
 }
 
-// Below the range, just past it and far past it.
+// Indices are below the range, just past it and far past it.
 std::vector<TriangleMesh> badMeshes()
 {
     const std::int32_t vertices = std::int32_t(makeSphere(0.5f, 1).vertexCount());

@@ -1,4 +1,4 @@
-// Which cloths are left out of a step that is over its limits.
+// Chooses the cloths that are left out of a step over its limits.
 #include "bullet_plugin/core/pipeline/cloths_over_budget.h"
 
 #include <gtest/gtest.h>

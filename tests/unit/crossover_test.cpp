@@ -1,5 +1,5 @@
-// Which scenes run on the host where cost decides: the work that meshes let expect, the crossover of measured times,
-// its file, and the rule by which a scene moves.
+// The automatic choice of scenes that run on the host: the expected work of meshes, the crossover of measured times,
+// its file, and the rule by which a scene changes its back end.
 #include "bullet_plugin/core/pipeline/crossover.h"
 
 #include <gtest/gtest.h>
@@ -56,9 +56,9 @@ TEST(SceneWork, GrowsWithBothSidesAndTheReach)
     EXPECT_GT(expectedPairs(fine, obstacle, 0.03), pairs);
     EXPECT_GT(expectedPairs(cloth, denser, 0.03), pairs);
     EXPECT_GT(expectedPairs(cloth, obstacle, 0.06), pairs);
-    // It is the density that counts: an obstacle twice as large in area with twice the triangles makes no more.
+    // Only the density counts: an obstacle twice as large in area with twice the triangles gives no more pairs.
     EXPECT_DOUBLE_EQ(expectedPairs(cloth, {2560, 6.0}, 0.03), pairs);
-    // Both sides' roles are alike.
+    // Both sides have equal roles.
     EXPECT_DOUBLE_EQ(expectedPairs(obstacle, cloth, 0.03), pairs);
 }
 

@@ -39,7 +39,7 @@ Directions directionLane(int i)
     return {lanesVec3(dopProject(axes[0], i), dopProject(axes[1], i), dopProject(axes[2], i)), dopNorm(i), 0.0f};
 }
 
-// Which nodes and edges are out of reach of a patch that is a point without a cone, bits as in Triangle::m_owned.
+// Returns the nodes and edges out of reach of a patch that is a point without a cone, bits as in Triangle::m_owned.
 std::uint32_t outOfReach(const CullVolumes& packet, const Vec3* corners, Vec3 point)
 {
     std::uint32_t out = 0;

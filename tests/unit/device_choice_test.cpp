@@ -1,4 +1,4 @@
-// Which device settings and DRAPE_DEVICE come to, and what is said about it.
+// Resolves device settings and DRAPE_DEVICE, and checks the messages about them.
 #include "bullet_plugin/core/device/device_choice.h"
 
 #include <gtest/gtest.h>

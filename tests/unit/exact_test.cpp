@@ -59,7 +59,7 @@ TEST(Exact, OrientationOfPointsNearlyInAPlaneIsExact)
     int zero = 0, filtered = 0;
     for (int i = 0; i < 20000; ++i)
     {
-        // On the plane through three points, to the last bit of a float, or off it by that bit.
+        // The point is on the plane through three points, to the last bit of a float, or off it by that bit.
         ExactPoint p[4];
         for (int k = 0; k < 3; ++k)
             p[k] = asPoint(random.uniform(-1, 1) + 100, random.uniform(-1, 1), random.uniform(-1, 1));

@@ -173,7 +173,7 @@ TEST(NodeFace, PathsThroughSeamsAreCaught)
     for (int i = 0; i < 3000; ++i)
     {
         SCOPED_TRACE("seed 17, path " + std::to_string(i));
-        // On a grid line or a grid point, approached at a slant.
+        // The node is on a grid line or a grid point, approached at a slant.
         const float x = i % 3 == 0 ? 0.0f : i % 3 == 1 ? random.uniform(-1.9f, 1.9f) : float(random.below(3)) - 1.0f;
         const float z = i % 3 == 1 ? 0.0f : i % 3 == 0 ? random.uniform(-1.9f, 1.9f) : float(random.below(3)) - 1.0f;
         const float dx = random.uniform(-1, 1), dz = random.uniform(-1, 1), t = random.uniform(0.1f, 0.9f);

@@ -47,7 +47,7 @@ TEST(MeshProbe, InsideOfABoxIsInsideWhateverTheWinding)
             const bool inside = std::max(std::fabs(p.x), std::max(std::fabs(p.y), std::fabs(p.z))) < 0.5f;
             ASSERT_EQ(probe.isInside(p), inside) << p.x << " " << p.y << " " << p.z;
         }
-        // On lines through corners and edges, where a ray along an axis would run into them.
+        // The points are on lines through corners and edges, where a ray along an axis would meet them.
         EXPECT_TRUE(probe.isInside(vec3(0, 0, 0)));
         EXPECT_FALSE(probe.isInside(vec3(0.75f, 0.5f, 0.5f)));
         for (std::size_t t = std::size_t(turned); t < mesh.triangleCount(); t += 2)

@@ -1,4 +1,4 @@
-// Which obstacles a back end brings up to date: those that came, were given other positions or have another place.
+// Finds the obstacles that a back end must update: new ones, and ones with other positions or another pose.
 #include "bullet_plugin/core/pipeline/obstacle_changes.h"
 
 #include <gtest/gtest.h>

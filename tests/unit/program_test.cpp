@@ -94,8 +94,7 @@ TEST(AssembleSource, OfSeveralFilesHasWhatTheyIncludeOnce)
     EXPECT_TRUE(assembleSources({"kernels/refit.cl", "kernels/no_such.cl"}).empty());
 }
 
-// For drivers that ignore line directives: a marker in the assembled source, named by its own line, is found in its
-// file.
+// Some drivers ignore line directives. A marker in the assembled source, named by its own line, is found in its file.
 TEST(TranslateLog, NamesFileAndLineOfEveryKernelLine)
 {
     const std::string source = assembleSource("kernels/refit.cl");

@@ -126,7 +126,7 @@ TEST_P(ThreadTeamTest, ThreadsRoundLikeTheCaller)
     }
 }
 
-// By default there are as many threads as cores, within a limit.
+// The default number of threads is the number of cores, within a limit.
 TEST(ThreadTeam, HasADefaultSize)
 {
     const ThreadTeam team(0);

@@ -7,7 +7,7 @@
 
 namespace drape
 {
-// In the answer, where there is more to test than may be.
+// The key in the answer if there is more to test than allowed.
 constexpr const char* kLimitReached = "limit_reached";
 
 // The numbers of the command, in the order to print. False: `error` holds one line and `exitCode` what it comes to;
