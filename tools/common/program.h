@@ -14,10 +14,10 @@ enum ExitCode
     kExitOtherHash = 3  // a hash is not the one to be: --validate-hash, or a row of a benchmark
 };
 
-// The codes as --help tells them.
+// The part of --help that lists the codes of cloth_drop.
 constexpr const char* kExitCodesText =
-    "Exit codes: 0 good, 1 a run failed or its results could not be written,\n"
-    "2 arguments, files or a device that cannot be used, 3 another hash.";
+    "Exit codes: 0 success, 1 a run failed or its results could not be written,\n"
+    "2 arguments, files or a device cannot be used, 3 the hash differs from --validate-hash.";
 
 // Prints "program: reason" and returns the code.
 int fail(const std::string& program, int exitCode, const std::string& reason);
