@@ -191,7 +191,7 @@ TEST(FloatEnvironment, OtherEnvironmentsChangeNoAnswer)
     }
 }
 
-TEST(FloatEnvironment, IsTheAppsAgainAfterEachCall)
+TEST(FloatEnvironment, TheAppsEnvironmentReturnsAfterEachCall)
 {
     Settings settings = hostSettings();
     int roundingInLog = -1;

@@ -63,7 +63,7 @@ struct Scene
 };
 }  // namespace
 
-TEST(Memory, OfACrowdIsGivenBack)
+TEST(Memory, MemoryOfACrowdIsReleased)
 {
 #if defined(__SANITIZE_ADDRESS__)
     GTEST_SKIP() << "the sanitizer's allocator counts nothing";
@@ -102,7 +102,7 @@ TEST(Memory, GivingItBackChangesNoTrajectory)
     EXPECT_EQ(hashes[0], hashes[1]);
 }
 
-TEST(Memory, OfADeviceIsGivenBackWithoutAChange)
+TEST(Memory, MemoryOfADeviceIsReleasedWithoutAChange)
 {
     if (!isDeviceExpected()) GTEST_SKIP();
     Settings settings;

@@ -99,7 +99,7 @@ class StretchedCloth : public BackendTest
 };
 
 // Cloth whose nodes all move apart stays in one piece and collides like any other.
-TEST_P(StretchedCloth, ThatFliesApartIsHeldTogether)
+TEST_P(StretchedCloth, ClothThatFliesApartIsHeldTogether)
 {
     Hills hills(GetParam().m_settings);
     btSoftBody& cloth = hills.addCloth();
@@ -125,7 +125,7 @@ TEST_P(StretchedCloth, ThatFliesApartIsHeldTogether)
 }
 
 // The cloth's start is stretched already, so that limiting its stretch helps little.
-TEST_P(StretchedCloth, ThatIsApartMakesNoMoreTestsThanItMay)
+TEST_P(StretchedCloth, ClothInPiecesMakesABoundedNumberOfTests)
 {
     Hills hills(GetParam().m_settings);
     btSoftBody& cloth = hills.addCloth();
@@ -145,7 +145,7 @@ TEST_P(StretchedCloth, ThatIsApartMakesNoMoreTestsThanItMay)
 }
 
 // The settings' limit leaves the cloth out.
-TEST_P(StretchedCloth, ThatIsLeftOutIsToldOnce)
+TEST_P(StretchedCloth, AnOmittedClothIsReportedOnce)
 {
     Settings settings = GetParam().m_settings;
     settings.m_candidateLimit = 100;
@@ -186,7 +186,7 @@ TEST_P(StretchedCloth, LeavesOthersAsTheyAre)
 }
 
 // Cloth that keeps its size at 200 m/s.
-TEST_P(StretchedCloth, IsNotWhatIsOnlyFast)
+TEST_P(StretchedCloth, FastClothIsNotStretchedCloth)
 {
     Hills hills(GetParam().m_settings);
     btSoftBody& cloth = hills.addCloth(40, btVector3(0, 1, 0));
@@ -258,7 +258,7 @@ public:
 }  // namespace
 
 // The app moves the pins along, while the rest of the cape stays behind and is pulled after them.
-TEST_P(StretchedCloth, ThatIsPulledAfterItsPinsComesBack)
+TEST_P(StretchedCloth, ClothPulledAfterItsPinsComesBack)
 {
     constexpr int kPins = 33;
     const btVector3 jump(10, 0, 5);
@@ -275,7 +275,7 @@ TEST_P(StretchedCloth, ThatIsPulledAfterItsPinsComesBack)
 }
 
 // Anchors hold the cape, and the app moves nothing but the body.
-TEST_P(StretchedCloth, ThatHangsOnARespawnedBodyComesBack)
+TEST_P(StretchedCloth, ClothThatHangsOnARespawnedBodyComesBack)
 {
     Respawn respawn(GetParam().m_settings, 25, 4, btVector3(20, 0, 5));
     for (int i = 0; i < 25; i += 4)

@@ -46,7 +46,7 @@ std::vector<ContactView> viewsOf(const Pipeline& pipeline, const std::vector<Con
 }
 
 // One pipeline lives through the steps, the other is given every mesh anew in each of them.
-TEST_P(SkipsTest, WhatIsKeptGivesTheContactsOfWhatIsMadeAnew)
+TEST_P(SkipsTest, KeptStateGivesTheContactsOfNewState)
 {
     std::size_t contacts = 0, reduced = 0;
     for (std::uint32_t seed = 980; seed < 983; ++seed)

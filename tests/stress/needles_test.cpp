@@ -254,7 +254,7 @@ StripCase nodeOverStrip(float size, float width, float height, bool moving, Rand
 }
 }  // namespace
 
-TEST(Needles, AtRestNoneIsLostAndDirectionsAreTrue)
+TEST(Needles, RestingNeedlesLoseNoContactAndDirectionsAreTrue)
 {
     std::size_t near = 0;
     for (const Thin thin : {Thin::Cloth, Thin::Obstacle, Thin::Both})

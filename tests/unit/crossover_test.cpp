@@ -97,7 +97,7 @@ TEST(BestCrossover, EndsAreAlwaysAndNever)
     EXPECT_EQ(bestCrossover({{10, 1, 2}, {100, 1, 20}}), kInfinity);
 }
 
-TEST(LeastTimes, AreTakenByRung)
+TEST(LeastTimes, LeastTimesAreTakenForEachRung)
 {
     const std::vector<CrossoverRung> rungs = leastTimes({{10, 1, 4}, {100, 5, 6}}, {{1000, 7, 8}, {10, 2, 3}});
     ASSERT_EQ(rungs.size(), 3u);
@@ -121,7 +121,7 @@ TEST(MachineLoad, ReadsWhatTheSystemCounts)
     EXPECT_EQ(times.m_cores, 2u);
 }
 
-TEST(MachineLoad, IsBusyWhereOthersLeaveTooFewCores)
+TEST(MachineLoad, TheMachineIsBusyIfOthersLeaveTooFewCores)
 {
     const CoreTimes first = {10, 100, 8};
     const auto busy = [&](double busySeconds, unsigned threads) {

@@ -83,7 +83,7 @@ Answers answersFor(std::uint32_t kind, float way, Random& random)
 }
 }  // namespace
 
-TEST(FeatureMeeting, WhatIsKnownWithoutASearchIsTrue)
+TEST(FeatureMeeting, AnswersWithoutASearchAreTrue)
 {
     for (const std::uint32_t kind : {DRAPE_VERTEX_FACE, DRAPE_EDGES})
         for (const float way : {0.003f, 0.03f, 0.3f})

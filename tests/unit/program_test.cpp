@@ -84,7 +84,7 @@ TEST(AssembleSource, UnknownFileIsEmpty)
     EXPECT_TRUE(assembleSource("kernels/no_such.cl").empty());
 }
 
-TEST(AssembleSource, OfSeveralFilesHasWhatTheyIncludeOnce)
+TEST(AssembleSource, SeveralFilesIncludeAFileOnce)
 {
     const std::string source = assembleSources({"kernels/refit.cl", "kernels/place_obstacles.cl"});
     expectLinesAreWhereTheySay(source);

@@ -155,7 +155,7 @@ TEST(Worlds, SeedsKeepTheirWorlds)
     EXPECT_EQ(hash, 0x564b9f5a8fc0ed4au);
 }
 
-TEST(Modifiers, AreReadAsTheyAreWritten)
+TEST(Modifiers, EqualTheirTextAfterReading)
 {
     for (const std::uint32_t bits : {0u, std::uint32_t(kStiff), std::uint32_t(kMargin | kRatio1000)})
     {
