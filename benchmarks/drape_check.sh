@@ -37,7 +37,7 @@ import json, os, subprocess, sys
 import machine
 
 program, commit, truth, target, *wanted = sys.argv[1:]
-# Key, a name for the variant, arguments, files of the folder.
+# Each question has a key, a name for the variant, arguments, and files of the folder.
 QUESTIONS = (("ccd", "", ["ccd"], ["ccd_queries.bin"]),
              ("triangles", "fast", ["triangles", "--mode", "fast"], ["triangle_pairs.bin"]),
              ("triangles", "exact", ["triangles", "--mode", "exact"], ["triangle_pairs.bin"]),

@@ -89,7 +89,7 @@ if [[ -x $bin/error_vs_time ]]; then
   note $?
 fi
 
-# Debian's interpreter first: its matplotlib is not seen by others.
+# Prefers Debian's interpreter, since others do not find its matplotlib.
 python=/usr/bin/python3
 [[ -x $python ]] || python=python3
 if "$python" -c 'import matplotlib' 2>/dev/null; then

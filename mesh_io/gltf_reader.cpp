@@ -15,7 +15,8 @@ namespace
 // Limits the nesting of brackets and of nodes. The specification has no limit; recursive readers would run out of
 // stack.
 constexpr std::size_t kMostDepth = 512;
-// Nodes may repeat a mesh: a file may become this many vertices or corners for each of its bytes, and as many besides.
+// Limits the size of a mesh. Nodes may repeat a mesh: each byte of a file may give this many vertices or corners, plus
+// a constant.
 constexpr std::size_t kMostPerByte = 256, kMostBesides = std::size_t(1) << 20;
 
 enum Mode
@@ -141,7 +142,7 @@ public:
     }
 
 private:
-    // A reference as a key.
+    // Returns a reference as a key.
     static std::string nameOf(const Json& reference)
     {
         return reference.dump(-1, ' ', true, Json::error_handler_t::replace);
@@ -149,7 +150,7 @@ private:
     // Returns the name, shortened for messages.
     static std::string shortName(const Json& reference) { return nameOf(reference).substr(0, 64); }
 
-    // The nodes of the default scene, else of the first, else all that are no other node's children.
+    // Returns the nodes of the default scene, else of the first, else all nodes that are no child.
     std::vector<Json> roots() const
     {
         const Json &scenes = at(m_content, "scenes"), &nodes = at(m_content, "nodes");
@@ -298,7 +299,7 @@ private:
         return "";
     }
 
-    // The most vertices and the most triangles.
+    // Returns the largest number of vertices and of triangles.
     std::size_t most() const { return kMostBesides + kMostPerByte * (m_fileBytes + m_buffers.loadedBytes()); }
 
     const Json& m_content;

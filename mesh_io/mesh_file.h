@@ -1,4 +1,4 @@
-// A mesh as a file has it: vertices in double precision and polygons of vertex indices. The readers fill it.
+// A mesh with the contents of a file: vertices in double precision and polygons of vertex indices. The readers fill it.
 //
 // Nothing is merged, reordered, centred or rounded. Indices are valid once readMeshFile() has returned the mesh.
 #pragma once
@@ -52,7 +52,7 @@ inline std::string counted(std::size_t count, const std::string& noun)
     return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-// The note for faces that endFace() removed; none for 0.
+// Adds a note about the faces that endFace() removed, if any.
 inline void noteShortFaces(std::size_t count, MeshFile& mesh)
 {
     if (count > 0) mesh.m_notes.push_back(counted(count, "face") + " with fewer than three corners left out");

@@ -12,7 +12,7 @@ class PlyNumbers
 {
 public:
     virtual ~PlyNumbers() = default;
-    // Called before and after each element. Return "" or what is wrong with its extent.
+    // Called before and after each element. Return "" or the error of its extent.
     virtual std::string startElement() = 0;
     virtual std::string endElement() = 0;
     // Reads the next number. Returns "" or why there is none.

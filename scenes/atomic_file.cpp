@@ -45,8 +45,8 @@ fs::path inRealFolder(const fs::path& path)
     return code ? path : folder / path.filename();
 }
 
-// A link's end, whether or not anything is there. What a process's descriptor links to need not be a path: it is left
-// as it is.
+// Returns a link's target, whether it exists or not. A process's descriptor need not link to a path; it is left
+// unchanged.
 fs::path followed(const fs::path& link)
 {
     std::error_code code;
@@ -68,7 +68,7 @@ Target targetOf(const std::string& path)
     return target;
 }
 
-// 0 or the error's number.
+// Returns 0 or the error's number.
 int writeTo(const std::string& path, const std::string& bytes)
 {
     std::FILE* file = std::fopen(path.c_str(), "wb");

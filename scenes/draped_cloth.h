@@ -31,7 +31,7 @@ struct ClothPlace
 
 TriangleMesh drapeCloth(const HeightField& field, const ClothPlace& place);
 
-// `count` such places at random where the obstacle is under the centre.
+// Returns `count` random places where the obstacle is under the centre.
 std::vector<ClothPlace> scatterCloths(const HeightField& field, const ClothPlace& place, int count, std::uint32_t seed);
 
 // A repeatable motion of cloth nodes: small periodic sways, so that any number of steps stays in contact and every step

@@ -40,7 +40,7 @@ int exactOrientation(const Vector3& a, const Vector3& b, const Vector3& c, const
     return sgn(volume);
 }
 
-// Sign of the area of a, b, c seen along an axis.
+// Returns the sign of the area of a, b, c seen along an axis.
 int orientation2(const Vector3& a, const Vector3& b, const Vector3& c, int along)
 {
     const int u = kNext[along], v = kNext[u];
@@ -136,7 +136,7 @@ bool segmentMeetsTriangle(const Vector3& p, const Vector3& q, const Vector3 t[3]
 
 bool trianglesIntersect(const Vector3 a[3], const Vector3 b[3])
 {
-    // All of one triangle strictly on one side of the other's plane: apart.
+    // All of one triangle is strictly on one side of the other's plane: they do not meet.
     const int b0 = orientation(a[0], a[1], a[2], b[0]);
     if (b0 != 0 && b0 == orientation(a[0], a[1], a[2], b[1]) && b0 == orientation(a[0], a[1], a[2], b[2])) return false;
     const int a0 = orientation(b[0], b[1], b[2], a[0]);

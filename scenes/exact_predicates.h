@@ -9,7 +9,7 @@
 
 namespace drape
 {
-// Sign of the volume of (a, b, c, d): positive when d sees a, b, c clockwise, 0 when the four lie in one plane.
+// Returns the sign of the volume of (a, b, c, d): positive if d sees a, b, c clockwise, 0 if the four lie in one plane.
 int orientation(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d);
 
 // Returns true if two closed triangles have a point in common. Touching counts. Triangles without area are segments or

@@ -37,7 +37,7 @@ struct StepMeasure
 class PenetrationMeter
 {
 public:
-    // `cloth` gives triangles and the nodes' places at the start, which count as good.
+    // `cloth` gives triangles and the nodes' positions at the start, which count as correct.
     PenetrationMeter(const TriangleMesh& obstacle, const TriangleMesh& cloth);
 
     // Measures the nodes' new places: x y z per node. To be called after every step, since motion is followed.

@@ -78,7 +78,7 @@ std::size_t joinVertices(TriangleMesh& mesh, std::vector<float>& end)
 {
     std::unordered_map<PositionKey, std::int32_t, PositionHash> known;
     known.reserve(mesh.vertexCount());
-    // The first vertex at a position stands for all.
+    // The first vertex at a position represents all.
     std::vector<std::int32_t> vertices(mesh.vertexCount());
     for (std::size_t vertex = 0; vertex < vertices.size(); ++vertex)
     {

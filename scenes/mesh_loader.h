@@ -34,12 +34,12 @@ struct LoadReport
 bool loadMesh(const std::string& path, TriangleMesh& mesh, std::string& error);
 bool loadMesh(const std::string& path, Joining joining, TriangleMesh& mesh, LoadReport& report, std::string& error);
 
-// Two meshes in one frame: the same centre is subtracted from both.
+// Loads two meshes in one frame: the same centre is subtracted from both.
 bool loadMeshes(const std::string& firstPath, const std::string& secondPath, Joining joining, TriangleMesh& first,
                 TriangleMesh& second, LoadReport& report, std::string& error);
 
-// A mesh that moves: both files have the same number of vertices and the same faces in the same order. `end` gets the
-// positions at the end, x y z per vertex of the mesh. Vertices are joined where they are at one position in both files.
+// Loads a moving mesh. Both files have the same number of vertices and the same faces in the same order. `end` gets the
+// positions at the end, x y z per vertex of the mesh. Vertices are joined if they are at one position in both files.
 bool loadMotion(const std::string& startPath, const std::string& endPath, Joining joining, TriangleMesh& mesh,
                 std::vector<float>& end, LoadReport& report, std::string& error);
 bool loadMotion(const std::string& startPath, const std::string& endPath, TriangleMesh& mesh, std::vector<float>& end,

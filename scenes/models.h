@@ -13,14 +13,14 @@
 
 namespace drape
 {
-// The thesis's models or what stands for them, by size.
+// Returns the thesis's models or their replacements, by size.
 const std::vector<std::string>& studyModelNames();
 
 // Returns the folders that are searched for model files: the folder named by --models, by DRAPE_MODELS_DIR, then
 // Debian's glmark2-data.
 std::vector<std::string> modelFolders(const std::string& given);
 
-// False with one line in `error` for a name that is not known or a file that is not there.
+// Returns false with one line in `error` for an unknown name or a missing file.
 bool makeModel(const std::string& name, const std::vector<std::string>& folders, TriangleMesh& mesh,
                std::string& error);
 }  // namespace drape

@@ -30,7 +30,7 @@ public:
     // closest feature is on the boundary of an open mesh, where no side is defined.
     int sideOf(const Vector3& point, const ClosestPoint& closest) const;
 
-    // Closed meshes: whether the point is in the solid, all things considered.
+    // Returns whether the point is in the solid of a closed mesh, including the winding number.
     bool inside(const Vector3& point, const ClosestPoint& closest) const;
 
 private:

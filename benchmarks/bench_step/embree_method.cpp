@@ -46,7 +46,7 @@ void boundTriangle(const RTCBoundsFunctionArguments* arguments)
     *arguments->bounds_o = {low[0], low[1], low[2], 0, high[0], high[1], high[2], 0};
 }
 
-// rtcCollide gives a pair of a scene with itself from either side, or from one of them.
+// rtcCollide reports a pair of a scene with itself from both sides, or from one of them.
 void keepEachOnce(std::vector<Candidate>& pairs)
 {
     for (Candidate& pair : pairs)

@@ -35,7 +35,7 @@ const char* const kReducedReference = "drape_host_reduced";
 const char* const kReduced = "drape_reduced";
 const char* const kReducedKernels = "drape_reduced_kernels";
 
-// The host first: it is the reference.
+// The host comes first, since it is the reference.
 std::vector<MethodEntry> allMethods(const Options& options)
 {
     Settings host;

@@ -106,7 +106,7 @@ double angleBetween(const Vector3& a, const Vector3& b)
     return std::atan2(length(cross(a, b)), dot(a, b)) * 180 / 3.14159265358979;
 }
 
-// Two-sided contacts name the side that the cloth was on: a pair at a distance of nothing has none.
+// Two-sided contacts name the cloth's side. A pair at distance zero has none.
 void addErrors(Row& row, const DistanceSet& set, const std::vector<Answer>& answers)
 {
     std::vector<double> distances, normals;

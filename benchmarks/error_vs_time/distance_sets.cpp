@@ -37,7 +37,7 @@ double randomDistance(Random& random)
     return kPairThickness * (random.unit() < 0.5 ? 1 - off : 1 + off);
 }
 
-// The pair as it was meant, before rounding.
+// Makes the pair before rounding.
 void placePair(std::uint32_t kind, const Vector3& origin, Random& random, Vector3 points[4])
 {
     const Vector3 u = randomDirection(random), other = randomDirection(random);
@@ -66,7 +66,7 @@ void placePair(std::uint32_t kind, const Vector3& origin, Random& random, Vector
         points[0] = points[1] + distance * normalized(normal - random.unit() * (u + 2.0 * v));
 }
 
-// False where the closest points of edges are too near to an end to be sure.
+// Returns false if the closest points of edges are too near to an end for a certain answer.
 bool findTruth(DistancePair& pair, const Vector3 p[4])
 {
     Vector3 offset;

@@ -46,7 +46,7 @@ TriangleMesh makePile()
     return pile;
 }
 
-// The named obstacle, its cloth's side in m, and how far above the top the cloth starts.
+// Makes the named obstacle, and sets its cloth's side in m and the height above the top at which the cloth starts.
 bool makeObstacle(ErrorScene& scene, const std::vector<std::string>& folders, float& clothSize, float& drop,
                   std::string& error)
 {

@@ -27,7 +27,7 @@ struct ErrorScene
 // Returns the names of all scenes, or of the few small ones of a quick run.
 std::vector<std::string> errorSceneNames(bool quick);
 
-// False with one line in `error` for a model that is not there.
+// Returns false with one line in `error` if the model does not exist.
 bool makeErrorScene(const std::string& name, bool quick, const std::vector<std::string>& modelFolders,
                     ErrorScene& scene, std::string& error);
 

@@ -12,7 +12,7 @@ namespace
 {
 // The remaining runs of Bullet's collision on a scene are left out after this many consecutive runs that stalled.
 constexpr int kHopeless = 3;
-// Drape's rest trials have twenty times the frames of others: so many times the others' seconds.
+// Drape's rest trials have twenty times the frames of others, and get this multiple of their time.
 constexpr double kRestCaps = 3;
 
 // The reference data that the trials of a scene are judged by.
@@ -124,8 +124,8 @@ bool measureSimulations(const ErrorOptions& options, Table& table)
     const std::vector<Trial> trials = options.trials(hasDevice(options));
     std::vector<SceneState> scenes;
     bool good = makeStates(options, scenes);
-    // Round by round, each on one scene after the other: what does not fit into the time are the later values of every
-    // knob, before a scene, before a knob.
+    // Each round runs on one scene after the other. If the time is short, the later values of every setting are left
+    // out before a scene or a setting.
     for (int round = 0; round < roundsOf(trials); ++round)
     {
         for (SceneState& scene : scenes)

@@ -45,6 +45,6 @@ struct Trial
 // of every trial but those that wait for the cloth to come to rest. A rest trial's value is the seed of its fall.
 std::vector<Trial> makeTrials(bool quick, bool withDevice, int frames);
 
-// 1 + the last round of any trial.
+// Returns 1 + the last round of any trial.
 int roundsOf(const std::vector<Trial>& trials);
 }  // namespace drape::bench

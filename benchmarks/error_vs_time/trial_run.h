@@ -16,8 +16,8 @@ namespace drape::bench
 inline constexpr const char* kProgram = "error_vs_time";
 inline constexpr const char* kDetectorPart = "detector";
 inline constexpr const char* kSimulationPart = "simulation";
-// Column: whose hash on the host a row must have, "defaults" of its scene or the "same" query's. merge_errors.py judges
-// rows by it that were measured in different runs.
+// The column with the reference of a row's hash: "defaults" of its scene on the host, or the "same" query.
+// merge_errors.py uses it to judge rows of different runs.
 inline constexpr const char* kMustMatch = "must_match";
 
 struct ErrorOptions : CommonOptions
@@ -41,7 +41,7 @@ bool hasDevice(const ErrorOptions& options);
 // Describes a trial that has not run or has failed. `why` says how it ended.
 Row describeTrial(const std::string& scene, const Trial& trial, const std::string& why);
 
-// A trial's row, and where the cloth was at the end (x y z per node; empty when the trial did not get there).
+// A trial's row, and the cloth's positions at the end (x y z per node; empty if the trial did not reach it).
 struct TrialResult
 {
     Row m_row;
@@ -58,6 +58,6 @@ TrialResult runTrial(const ErrorOptions& options, const std::string& scene, cons
 // exit code.
 int streamTrial(const ErrorOptions& options, const ErrorScene& scene, const Trial& trial);
 
-// RMS distance of two courses' last positions, m.
+// Returns the RMS distance of the last positions of two runs, m.
 double shapeDistance(const std::vector<float>& a, const std::vector<float>& b);
 }  // namespace drape::bench

@@ -30,16 +30,16 @@ ErrorScene sceneOf(const ErrorScene& scene, const Trial& trial);
 class TrialSimulation : public Simulation
 {
 public:
-    // RMS speed (m/s) of the nodes after each step, against the obstacle.
+    // Returns the RMS speed (m/s) of the nodes after each step, relative to the obstacle.
     virtual const std::vector<double>& speeds() const = 0;
-    // After each step.
+    // Returns the energies after each step.
     virtual const std::vector<ClothEnergy>& energies() const = 0;
-    // Nodes that went through the obstacle's surface in any step so far.
+    // Returns the number of nodes that went through the obstacle's surface in any step so far.
     virtual std::size_t crossed() const = 0;
 };
 
-// scene: as sceneOf() makes it. settings: of Drape, but for what the trial sets. Null with one line in `error` when
-// Drape cannot start.
+// Makes the simulation of a scene from sceneOf(). `settings` are Drape's, apart from the trial's own. Returns null with
+// one line in `error` if Drape cannot start.
 std::unique_ptr<TrialSimulation> makeTrialSimulation(const ErrorScene& scene, const Trial& trial, Settings settings,
                                                      std::string& error);
 }  // namespace drape::bench

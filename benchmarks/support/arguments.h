@@ -28,7 +28,8 @@ struct CommonOptions
 
 void addCommonOptions(CLI::App& app, CommonOptions& options);
 
-// "" when all names are known, else one line with the first that is not, the one that may be meant, and all there are.
+// Returns "" if all names are known. Otherwise returns one line with the first unknown name, a similar name, and all
+// known names.
 std::string unknownName(const char* option, const std::vector<std::string>& names,
                         const std::vector<std::string>& known);
 

@@ -1,4 +1,4 @@
-// One way of doing a collision step, timed stage by stage: Drape on a back end, or a peer.
+// An implementation of a collision step, timed stage by stage: Drape on a back end, or a peer.
 #pragma once
 
 #include <cstdint>
@@ -33,8 +33,8 @@ class StepMethod
 public:
     virtual ~StepMethod() = default;
 
-    // One step of all cloths: x y z per node at the step's start and end, in the scene's order. Only the work itself is
-    // timed, not the hashing.
+    // Runs one step of all cloths: x y z per node at the step's start and end, in the scene's order. Only the work
+    // itself is timed, not the hashing.
     virtual StepOutcome step(const float* start, const float* end) = 0;
 
     // Has the cloths come anew, in the shape that they are at rest: what the method keeps from step to step is as at
@@ -49,8 +49,8 @@ public:
     virtual std::vector<Row> extraRows() const { return {}; }
 };
 
-// The pipeline, host to host. Its contacts' hash is the reference where the settings ask for the host. The scene
-// outlives the method.
+// Makes the pipeline's method, host to host. With the host back end its contacts' hash is the reference. The scene must
+// outlive the method.
 std::unique_ptr<StepMethod> makeDrapeMethod(const StepScene& scene, const Settings& settings, std::string& error);
 // The same, with redundant contacts left out, as the plugin has it.
 std::unique_ptr<StepMethod> makeReducedMethod(const StepScene& scene, const Settings& settings, std::string& error);

@@ -64,7 +64,8 @@ std::vector<SceneSpec> makeSpecs()
     return specs;
 }
 
-// Steps until the motion repeats. Large scenes repeat sooner: their host reference takes seconds a step.
+// Returns the number of steps until the motion repeats. Large scenes repeat sooner: their host reference takes seconds
+// a step.
 int periodOf(const SceneSpec& spec, std::size_t obstacleTriangles)
 {
     if (spec.m_quick) return 3;
@@ -72,7 +73,7 @@ int periodOf(const SceneSpec& spec, std::size_t obstacleTriangles)
     return spec.clothTriangles() <= 40000 ? 12 : spec.clothTriangles() <= 300000 ? 8 : 4;
 }
 
-// A draped cloth whose second half, in the direction of its columns, is laid over the first, a gap (m) above.
+// Lays the second half of a draped cloth, in the direction of its columns, over the first, a gap (m) above.
 void foldCloth(std::vector<float>& positions, int cells, float gap)
 {
     const std::size_t side = static_cast<std::size_t>(cells) + 1;

@@ -31,7 +31,7 @@ struct SceneSpec
     }
 };
 
-// m: the thickness of the acceptance scenes, on obstacles of 2 m.
+// The thickness of the acceptance scenes, on obstacles of 2 m, in m.
 constexpr double kThickness = 0.02;
 
 const std::vector<SceneSpec>& sceneSpecs();

@@ -26,9 +26,9 @@ public:
     void leaveOut(const std::string& what);
     bool anyLeftOut() const { return m_anyLeftOut; }
 
-    // A header line and a line a row; texts with commas or quotes are quoted. Missing values are empty.
+    // Returns a header line and a line per row; texts with commas or quotes are quoted. Missing values are empty.
     std::string csv() const;
-    // {"machine": …, "rows": […]}.
+    // Returns {"machine": …, "rows": […]}.
     std::string json(const Row& machine) const;
 
 private:

@@ -25,7 +25,7 @@ constexpr int kNotRun = 127;  // exit code, as shells have it
 // If the parent ended before this request, the child already belongs to another process.
 [[noreturn]] void becomeChild(pid_t parent, int output, char* const* arguments)
 {
-    // The last is for an end of the pipe that is standard output's already, and would be closed.
+    // The last condition covers an end of the pipe that already is standard output, and would be closed.
     if (::prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 && ::getppid() == parent && ::dup2(output, STDOUT_FILENO) >= 0 &&
         ::fcntl(STDOUT_FILENO, F_SETFD, 0) == 0)
         ::execve("/proc/self/exe", arguments, environ);
@@ -80,7 +80,7 @@ bool follow(int pipe, CappedLines& lines, const std::function<bool()>& goesOn)
     }
 }
 
-// "" for a good end.
+// Returns "" for a successful end.
 std::string endProblem(int status, int step)
 {
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return "";

@@ -32,14 +32,14 @@ public:
 
     CappedLines(const ChildCap& cap, const OnLine& onLine) : m_cap(cap), m_onLine(onLine) {}
 
-    // The next part of the text, which may end within a line. False from the first time beyond the cap on. Passes on
-    // what onLine throws, and std::exception for times that are none.
+    // Takes the next part of the text, which may end within a line. Returns false once the time limit is exceeded.
+    // Passes on exceptions of onLine, and throws std::exception for invalid times.
     bool take(const char* text, std::size_t size);
     // Returns true while the clock of the limit runs: between a step's two lines, or from the first step on.
     bool running() const { return m_running; }
     // Returns the seconds that are left at `time` while the clock runs.
     double secondsLeft(Clock::time_point time) const;
-    // The last step that began, from 1; 0: none.
+    // Returns the last step that began, from 1, or 0 if there is none.
     int step() const { return m_step; }
 
 private:

@@ -23,7 +23,7 @@ struct DropScene
     std::vector<std::string> m_notes;  // parts of the obstacle's file that were left out or lost, one line each
 };
 
-// False, with one line in `error`, when the obstacle cannot be had.
+// Returns false, with one line in `error`, if the obstacle cannot be made.
 bool makeDropScene(const Options& options, DropScene& scene, std::string& error);
 
 // Returns one line if the thickness is out of proportion to the scene, which is probably a mistake, else "". The

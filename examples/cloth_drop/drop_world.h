@@ -32,7 +32,7 @@ private:
 class DropWorld
 {
 public:
-    // `solver` may be null: Bullet's default. Bodies are not in the world yet.
+    // `solver` may be null for Bullet's default. Bodies are not in the world yet.
     DropWorld(std::unique_ptr<btCollisionConfiguration> configuration, std::unique_ptr<btSoftBodySolver> solver);
     ~DropWorld();
 
@@ -46,7 +46,7 @@ public:
     TimedWorld& world() { return m_world; }
     btSoftBody& cloth() { return *m_cloth; }
 
-    // One step; returns its wall time in ms.
+    // Runs one step and returns its wall time in ms.
     double step(double dt);
 
 private:

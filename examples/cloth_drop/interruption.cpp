@@ -13,8 +13,7 @@ struct Listened
     struct sigaction m_before;
 };
 
-// A handler is given nothing of its program's, so that what it needs is here: what it takes the place of, and 0 or the
-// signal that came.
+// A handler gets no data of its program, so its data is here: the replaced handler, and the received signal or 0.
 Listened listened[] = {{SIGINT, {}}, {SIGTERM, {}}, {SIGHUP, {}}};
 volatile std::sig_atomic_t noted = 0;
 

@@ -12,8 +12,8 @@ namespace drape
 {
 // Must not be called while listening.
 void listenToSignals();
-// Back to what was before. What has come stays noted. Safe in a signal handler.
+// Restores the earlier handlers. Received signals stay noted. Safe in a signal handler.
 void stopListening();
-// "" or what came, in words.
+// Returns the received signal in words, or "".
 std::string interruption();
 }  // namespace drape

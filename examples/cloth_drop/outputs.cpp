@@ -25,7 +25,7 @@ struct Output
     const std::string& m_path;
 };
 
-// Two that go to one place would leave one of them.
+// Refuses two outputs to one file, of which only one would remain.
 bool areApart(const Output& one, const Output& other, std::string& error)
 {
     if (one.m_path.empty() || other.m_path.empty()) return true;

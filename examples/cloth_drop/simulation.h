@@ -46,26 +46,28 @@ class Simulation
 public:
     virtual ~Simulation() = default;
 
-    // One step of the scene's dt.
+    // Runs one step of the scene's dt.
     virtual StepTimes step() = 0;
 
-    // x y z per cloth node, m; valid until the next step.
+    // Returns x y z per cloth node, m; valid until the next step.
     virtual const std::vector<float>& positions() = 0;
 
-    // Text for the report, as of the last step; empty strings where there is no device.
+    // Returns text for the report, as of the last step; an empty string if there is no device.
     virtual std::string backend() const = 0;
     virtual std::string device() const = 0;
     virtual std::string deviceReason() const = 0;
     virtual double prepareMs() const = 0;  // making the kernels and meshes ready, not part of any step
 
-    // One line when the back end left its path during the run (a device that failed), else empty.
+    // Returns one line if a device failed during the run and the back end changed, else "".
     virtual std::string trouble() const = 0;
 };
 
-// Bullet's built-in collision. Destroying it can take minutes (Bullet's distance field looks for each triangle).
+// Makes the simulation with Bullet's built-in collision. Destroying it can take minutes (Bullet's distance field looks
+// for each triangle).
 std::unique_ptr<Simulation> makeBulletSimulation(const DropScene& scene, BulletMode mode);
 
-// Drape on the back end that the options name. Null with the reason in `error` and the exit code when it cannot start.
+// Makes the simulation with Drape on the chosen back end. Returns null with the reason in `error` and the exit code if
+// it cannot start.
 std::unique_ptr<Simulation> makeDrapeSimulation(const DropScene& scene, const Options& options, std::string& error,
                                                 int& exitCode);
 }  // namespace drape

@@ -13,7 +13,7 @@
 
 namespace drape
 {
-// Unit normals, weighted by area; zero for a vertex without area around it.
+// Returns unit normals, weighted by area; zero for a vertex without area around it.
 std::vector<Vector3> vertexNormals(const TriangleMesh& mesh);
 
 struct ShadedMesh

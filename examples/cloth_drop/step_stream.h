@@ -1,4 +1,4 @@
-// A run in a child process: its steps as lines of text that the parent reads back (see capped_lines.h).
+// Streams a run in a child process: its steps are lines of text that the parent reads (see capped_lines.h).
 #pragma once
 
 #include <functional>

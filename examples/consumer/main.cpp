@@ -20,7 +20,7 @@ const int kSteps = 90;
 const btScalar kStepTime = btScalar(1.0 / 60.0);  // s
 const btScalar kDrop = btScalar(0.3);             // m
 
-// Two triangles, 4 m wide, at height 0.
+// Adds two triangles, 4 m wide, at height 0.
 void addGround(btTriangleMesh& mesh)
 {
     const btVector3 a(-2, 0, -2), b(2, 0, -2), c(2, 0, 2), d(-2, 0, 2);

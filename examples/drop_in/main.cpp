@@ -11,7 +11,7 @@
 
 namespace
 {
-// A wavy floor of 2 × 40 × 40 triangles, 4 m wide.
+// Adds a wavy floor of 2 × 40 × 40 triangles, 4 m wide.
 void addFloor(btTriangleMesh& mesh)
 {
     const int cells = 40;

@@ -56,7 +56,7 @@ std::function<std::string(std::string&)> numberAbove(double least, bool inclusiv
         double value = 0;
         const std::string problem = asNumber(text, value);
         if (!problem.empty()) return problem;
-        // The programs compute with float: what is beyond it is no finite number there, and what is below it 0.
+        // The programs compute with float: a larger number is infinite there, and a smaller one is 0.
         if (value > 0 && !(static_cast<float>(value) > 0)) return "'" + text + "' is too small for float32";
         return value > least || (inclusive && value >= least) ? "" : "'" + text + "' must be " + what;
     };

@@ -39,7 +39,7 @@ void acceptOnly(CLI::Option* option, const std::vector<std::string>& names);
 bool parseArguments(CLI::App& app, int argc, const char* const* argv, const std::function<std::string()>& conflict,
                     int& exitCode);
 
-// A program's main: `parse` fills the options as parseArguments does, `run` does the work and gives the exit code.
+// Runs a program: `parse` fills the options like parseArguments, `run` does the work and returns the exit code.
 template <typename Options>
 int runProgram(const char* program, int argc, char** argv, bool (*parse)(int, const char* const*, Options&, int&),
                int (*run)(const Options&))

@@ -20,7 +20,7 @@ double microsecondsSince(Clock::time_point start)
     return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
 }
 
-// Null, with `error` and `exitCode`, when the back end that was asked for cannot be had.
+// Returns null, with `error` and `exitCode`, if the requested back end is not available.
 std::unique_ptr<Queries> openQueries(const Options& options, Json& answer, std::string& error, int& exitCode)
 {
     Settings settings;

@@ -10,8 +10,8 @@ namespace drape
 // The key in the answer if there is more to test than allowed.
 constexpr const char* kLimitReached = "limit_reached";
 
-// The numbers of the command, in the order to print. False: `error` holds one line and `exitCode` what it comes to;
-// with kLimitReached in it the answer is the numbers that could be told all the same. Reads the files before it opens a
-// device.
+// Computes the numbers of the command, in the order of printing. On failure it returns false with one line in `error`
+// and the exit code. If the answer contains kLimitReached, its numbers are valid all the same. Reads the files before
+// it opens a device.
 bool runCommand(const Options& options, nlohmann::ordered_json& answer, std::string& error, int& exitCode);
 }  // namespace drape
