@@ -56,7 +56,7 @@ MethodRun runMethod(StepMethod& method, const StepScene& scene, const MeasureSet
     const int period = scene.period();
     std::vector<std::string> hashes(static_cast<std::size_t>(period), kNoHash);
     Clock::time_point begin;
-    // Copies of the positions stand for an application's integrator, which has just written them. Frames untouched for a
+    // Copies of the positions stand for an application's integrator, which has just written them. Frames unused for a
     // whole period would have to come from memory first.
     const std::size_t floats = scene.floats();
     std::vector<float> start, end;

@@ -43,7 +43,7 @@ int stepsUntilSeen(int nodes, int before)
     return -1;
 }
 
-// Two triangles on either side of the tip of a pyramid, which lies under neither.
+// Makes two triangles on either side of the tip of a pyramid, which lies under neither.
 std::unique_ptr<btSoftBody> twoTriangles(btSoftBodyWorldInfo& info)
 {
     const btScalar height = btScalar(0.015);
@@ -58,8 +58,8 @@ std::unique_ptr<btSoftBody> twoTriangles(btSoftBodyWorldInfo& info)
 }
 }  // namespace
 
-// A mirror is found by its body's address, where another body of the same faces may lie once the first is gone: nothing
-// that a trajectory depends on may be left of that.
+// Mirrors are found by their bodies' addresses. A new body with the same faces may have the address of a deleted one.
+// No earlier state that affects a trajectory may remain then.
 TEST(ClothMirror, ANewMirrorHasPartsOfTheNodesPositions)
 {
     btSoftBodyWorldInfo info;
@@ -87,7 +87,7 @@ TEST(ClothMirror, NoticesOtherNodesOfAFaceWithinOneRound)
     EXPECT_EQ(stepsUntilSeen(130, 1), 2);
 }
 
-// Two cloths hang together by a face that has two nodes of one and one of the other.
+// Two cloths are joined by a face that has two nodes of one and one of the other.
 TEST(ClothMirror, LeavesOutAFaceWithAnotherBodysNodeAndReportsIt)
 {
     for (const bool foreign : {false, true})
@@ -124,7 +124,7 @@ class FacesInPlace : public BackendTest
 {
 };
 
-// No count tells that the second face spans over the pyramid from now on.
+// No count shows that the second face spans over the pyramid from now on.
 TEST_P(FacesInPlace, ChangesCountInTheSameStep)
 {
     Plugin plugin(GetParam().m_settings);

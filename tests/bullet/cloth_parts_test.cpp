@@ -46,7 +46,7 @@ void expectLeaves(const ClothParts& parts, std::size_t nodes)
     EXPECT_EQ(parts.firstNode(parts.leafCount()), nodes);
 }
 
-// The smallest group that holds all three.
+// Expects the smallest group that contains all three.
 void expectSmallest(const ClothParts& parts, const int nodes[3])
 {
     const std::size_t group = parts.groupOf(nodes);

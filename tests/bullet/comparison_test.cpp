@@ -20,7 +20,7 @@ struct Drop
     btVector3 m_centre;  // centre of the cloth
 };
 
-// Round and coarse, round and fine, sharp: each lands within 20 steps.
+// Makes three cases: round and coarse, round and fine, and sharp. Each lands within 20 steps.
 std::vector<Drop> drops()
 {
     return {{"coarse_sphere", makeSphere(0.4f, 1), btVector3(0, btScalar(0.5), 0)},

@@ -1,5 +1,5 @@
-// Contact rounds that leave most contacts alone, and are shared by threads, against rounds that project every one in
-// turn: equal to the bit.
+// Contact rounds that skip most contacts and run on several threads equal rounds that project every contact in turn,
+// bit for bit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,8 +17,8 @@ namespace drape::test
 {
 namespace
 {
-// Every contact, without any short cut: group by group of the cloth, children first, each in canonical order; in a
-// round edges after all others.
+// Projects every contact, without any short cut. The order is group by group of the cloth, children first, each in
+// canonical order. Edges come after all others in a round.
 class PlainRounds
 {
 public:
@@ -211,7 +211,7 @@ private:
         return mobility;
     }
 
-    // Mobility by which pushes go: more than it is in proportion to what is held of the point.
+    // Returns the mobility that pushes use. It exceeds its proportional value if a part of the point is held.
     btScalar softenedOf(const StepContact& contact) const
     {
         const btScalar mobility = mobilityOf(contact);
@@ -306,7 +306,7 @@ void expectSameNodes(const btSoftBody& a, const btSoftBody& b)
         }
 }
 
-// A round of both: every fourth begins anew, and the one after it settles.
+// Runs a round of both. Every fourth begins anew, and the one after it settles.
 void runBoth(RoundsTeam& team, ContactRounds& rounds, PlainRounds& plain, std::size_t round)
 {
     const RoundsTeam::Bodies bodies{&rounds};

@@ -1,4 +1,4 @@
-// Cloth that comes down fast: by many times its thickness, and through the whole obstacle, in one step.
+// Cloth that falls fast: by many times its thickness, and through the whole obstacle, in one step.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -112,7 +112,7 @@ TEST_F(Filters, PinnedNodesDoNotMove)
         EXPECT_EQ(cloth.m_nodes[pins[i]].m_x, places[i]) << "node " << pins[i];
 }
 
-// A pin inside the thickness, or even in the obstacle, is the app's choice: it stays, and the rest stays finite.
+// A pin inside the thickness, or even in the obstacle, is the app's choice. It stays, and the rest remains finite.
 TEST_F(Filters, PinnedNodesBelowTheThicknessStay)
 {
     m_world.addObstacle(m_shape.shape());

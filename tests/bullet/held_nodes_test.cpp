@@ -1,5 +1,5 @@
-// Nodes that contacts may not move, by anchors or without mass, near a surface: contacts of faces and edges between
-// them and their neighbours have little to push with.
+// Nodes that contacts may not move, by anchors or without mass, near a surface. Contacts of faces and edges between
+// them and their neighbours have little freedom to push.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace
 {
 constexpr btScalar kFast = 15;  // m/s; what falls and is dragged here does so at 3, an anchor shakes its node at 8
 
-// A square of 4 m, in waves about y = 0.
+// Makes a square of 4 m, in waves about y = 0.
 TriangleMesh makeWaves(double height)
 {
     constexpr int kCells = 8;

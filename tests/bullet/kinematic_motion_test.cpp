@@ -1,4 +1,4 @@
-// The motion of a kinematic body within a step, of the poses and velocities that Bullet has of it.
+// The motion of a kinematic body within a step, derived from Bullet's poses and velocities.
 #include <gtest/gtest.h>
 
 #include "bullet_plugin/adapter/kinematic_motion.h"
@@ -17,7 +17,7 @@ TEST(KinematicMotion, FollowsFromVelocityAndPoses)
     const BodyMotion third = motionInStep(from, to, btVector3(1 / kDt, 0, 0), none, kDt);
     EXPECT_TRUE(third.m_start == from);
     EXPECT_NEAR(third.m_end.getOrigin().x(), 1, 1e-5);
-    // Jumped far and moved a little.
+    // The body jumped far and moved a little.
     const BodyMotion mixed = motionInStep(from, to, btVector3(0, 1, 0), none, kDt);
     EXPECT_TRUE(mixed.m_end == to);
     EXPECT_NEAR((mixed.m_end.getOrigin() - mixed.m_start.getOrigin()).y(), kDt, 1e-6);
@@ -37,7 +37,7 @@ public:
     }
     btRigidBody& body() { return m_body; }
     void place(btScalar x) { m_body.setWorldTransform(shiftedBy(btVector3(x, 0, 0))); }
-    // stepSimulation() with so many substeps begins.
+    // Begins stepSimulation() with this number of substeps.
     void beginFrame(int substeps = 1) { m_body.saveKinematicState(btScalar(substeps) * kDt); }
     void step()
     {
@@ -156,7 +156,7 @@ TEST(KinematicMotion, DistantTeleportsAreNotSwept)
     faster.expectMotion(btScalar(500.1), btScalar(500.2), 1e-3);
 }
 
-// Bullet's first velocity after poses that it did not see is from the last that it saw.
+// Bullet's first velocity after poses that it did not see refers to the last pose that it saw.
 TEST(KinematicMotion, ContinuesWhenBulletCatchesUp)
 {
     ObservedBody asleep;

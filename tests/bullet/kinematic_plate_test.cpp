@@ -1,5 +1,5 @@
-// Kinematic plates that come up under a cloth at any speed: they take it along and are not passed, and what discrete
-// steps miss is what is documented.
+// Kinematic plates that come up under a cloth at any speed. They carry the cloth along and nothing passes. Discrete
+// steps miss only the documented cases.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -37,8 +37,8 @@ std::vector<PlateCase> plateCases()
     return cases;
 }
 
-// A plate that comes up under a cloth of 1 m at the given speed, takes it along for 1 m and stops. check: after every
-// step, with the height of the plate's middle.
+// Moves a plate up under a cloth of 1 m at the given speed, carries the cloth along for 1 m and stops. Calls `check`
+// after every step with the height of the plate's middle.
 template <typename Check>
 void raisePlate(const PlateCase& plate, float size, float thick, Check check)
 {
@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(Plates, KinematicPlate, testing::ValuesIn(plateCases())
                                     plate.m_backend.m_name;
                          });
 
-// The links pull edges across its corners whose nodes all lie beside it.
+// The links pull edges across the plate's corners; the edges' nodes all lie beside it.
 TEST_P(Kinematic, AThinPlateIsWrappedByClothThatLiesAskew)
 {
     constexpr btScalar kSpeed = 30, kMostShift = btScalar(0.12);  // m/s, m

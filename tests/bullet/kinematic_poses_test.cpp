@@ -1,5 +1,5 @@
-// Kinematic obstacles by the poses that an app gives them: what is motion and what a teleport, in frames of several
-// substeps, from callbacks and in compounds, and what wakes cloth.
+// Kinematic obstacles with the poses of an app. Covers motion and teleports in frames of several substeps, from
+// callbacks and in compounds, and the waking of cloth.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -35,7 +35,7 @@ enum class Put
     AndSaysSo  // the world transform alone, and Plugin::teleported() of the body
 };
 
-// Hash of the cloth over 30 steps after the jump, in every bit of every step.
+// Returns a hash of the cloth over 30 steps after the jump, over every bit of every step.
 std::uint64_t hashAfterJump(const Settings& settings, Put put, bool wholeCloth, const btTransform& to, int substeps)
 {
     KinematicScene scene(makeSphere(0.3f, 3), btTransform::getIdentity(), 1.0f, btVector3(0, btScalar(0.35), 0),
@@ -159,7 +159,7 @@ TEST_P(Kinematic, SubstepsShareTheMotion)
     EXPECT_GT(parts.m_most, 0u);
 }
 
-// Bullet takes velocities before it calls: this motion begins without one.
+// Bullet takes velocities before it calls the callback: this motion begins without one.
 TEST_P(Kinematic, ABodyMovedByATicksCallbackDragsClothAlong)
 {
     KinematicScene scene(makeBox(4, 0.2f, 4), shiftedBy(btVector3(0, -1, 0)), 1.0f, btVector3(0, 0, 0),
@@ -212,7 +212,8 @@ TEST_P(Kinematic, ABodyThatBeginsToMoveWakesCloth)
     EXPECT_TRUE(scene.m_cloth.isActive());
 }
 
-// A plate that is past sleeping cloth within one step finds it awake; one that does not collide with it, asleep.
+// A plate that passes sleeping cloth within one step wakes it. A plate that does not collide with the cloth leaves it
+// asleep.
 TEST_P(Kinematic, AFastBodyWakesClothInTime)
 {
     for (const bool collide : {true, false})

@@ -24,7 +24,7 @@ inline btVector3 meanOf(const btSoftBody& cloth)
     return sum / btScalar(cloth.m_nodes.size());
 }
 
-// The cloth as the obstacle sees it.
+// Returns the cloth in the obstacle's frame.
 inline std::vector<float> seenFrom(const btTransform& pose, const btSoftBody& cloth)
 {
     std::vector<float> positions;

@@ -98,7 +98,7 @@ TEST(Kinematic, EveryBackEndGivesTheSameTrajectory)
     EXPECT_EQ(std::count(hashes.begin(), hashes.end(), hashes[0]), std::ptrdiff_t(hashes.size()));
 }
 
-// A beam that turns fast, about the vertical and about a level axis.
+// The beam rotates fast, about the vertical and about a level axis.
 TEST_P(Kinematic, AFastBeamKeepsClothOutside)
 {
     for (const btVector3& axis : {btVector3(0, 1, 0), btVector3(0, 0, 1)})
@@ -116,6 +116,6 @@ TEST_P(Kinematic, AFastBeamKeepsClothOutside)
     }
 }
 
-// The tests of plates and of poses, in files of their own, are among them.
+// Tests of plates and of poses, in files of their own, use this instantiation, too.
 INSTANTIATE_TEST_SUITE_P(Backend, Kinematic, testing::ValuesIn(allBackends()), backendName);
 }  // namespace drape::test

@@ -115,8 +115,8 @@ TEST_P(Lifetime, SeveralClothsAndObstaclesWorkAtOnce)
                                 [cloth](const ContactInfo& contact) { return contact.m_cloth == cloth; }));
 }
 
-// Nodes without springs, so that only Drape could carry the bad node's place to others. Bullet's bounds begin with the
-// first node, and with one that is infinite they are so.
+// The nodes have no springs, so that only Drape could spread the bad node's position. Bullet's bounds begin with the
+// first node, and are infinite if it is.
 TEST_P(Lifetime, ANodeThatIsNoNumberIsCountedAndKeptToItself)
 {
     const btScalar nan = std::numeric_limits<btScalar>::quiet_NaN(),

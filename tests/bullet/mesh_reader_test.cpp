@@ -1,4 +1,4 @@
-// Bullet's mesh formats come to the same triangles: types and strides of vertices and indices, parts, wrong counts.
+// Bullet's mesh formats give equal triangles: types and strides of vertices and indices, parts, wrong counts.
 #include "bullet_plugin/adapter/mesh_reader.h"
 
 #include <gtest/gtest.h>
@@ -124,7 +124,7 @@ TEST(MeshReader, ScalingAndPoseAreApplied)
     }
 }
 
-// Bullet never looks at the number of vertices, so that apps get away with any.
+// Bullet never reads the number of vertices, so apps may pass any.
 TEST(MeshReader, TheStatedNumberOfVerticesDoesNotMatter)
 {
     const TriangleMesh mesh = makeSphere(1.0f, 1);

@@ -21,7 +21,7 @@ namespace
 constexpr int kNodes = 600;
 constexpr btScalar kActivation = btScalar(0.5);
 
-// Nodes that went somewhere, some of them pinned and one of them nowhere; every third has contacts.
+// Nodes with a displacement. Some are pinned and one has none; every third has contacts.
 struct Strayed
 {
     std::unique_ptr<btSoftBody> m_body;
@@ -212,7 +212,7 @@ btVector3 limited(const btVector3& to, bool moves)
 }
 }  // namespace
 
-// A node goes with the obstacle as far as that goes, and no farther from that way than beside one at rest.
+// A node moves with the obstacle, and no farther from its path than beside an obstacle at rest.
 TEST(KinematicMotion, MovesTheLimitOfNodes)
 {
     const btVector3 half(0, btScalar(0.5), 0), beside(btScalar(0.5), btScalar(0.5), 0), beyond(0, 2, 0);
@@ -223,7 +223,7 @@ TEST(KinematicMotion, MovesTheLimitOfNodes)
     EXPECT_NEAR(limited(beyond, true).y(), 1 + kThickness / 2, 1e-6);
 }
 
-// All nodes are beside the obstacle before and after they were pulled, only their triangle comes over its corner.
+// All nodes are beside the obstacle before and after they were pulled; only their triangle comes over its corner.
 TEST(MotionLimit, LimitsTrianglesThatArePulledOverACorner)
 {
     const btVector3 places[] = {

@@ -32,7 +32,7 @@ constexpr int kStepsToSettle = 500, kStepsAtRest = 2000;
 // the cloth slips now and then, 0.5 on the pile of boards; on the bunny, where it slips over the ears, 4.5.
 constexpr double kWorstStep = 0.0026, kWorstStepOnBunny = 0.009;
 
-// m/s, from the places before and after a step.
+// Returns the RMS speed in m/s, from the positions before and after a step.
 double rmsMotion(const std::vector<float>& before, const std::vector<float>& after)
 {
     double sum = 0;
@@ -193,7 +193,7 @@ void expectLiesStill(Rest& rest, const TriangleMesh& mesh, float size, btScalar 
 
 constexpr int kBoards = 24;
 
-// Thin boards over each other, each turned against the last: their corners poke into the cloth's faces.
+// Makes thin boards on top of each other, each rotated against the last. Their corners press into the cloth's faces.
 TriangleMesh makePileOfBoards()
 {
     TriangleMesh pile;
@@ -211,8 +211,8 @@ TriangleMesh makePileOfBoards()
 }
 }  // namespace
 
-// The bunny has 69,666 triangles and a height of 2 m. With planes as the predicted step's end has them, and contacts
-// that do not settle, cloth that falls by 0.5 m stirs at 1.3 mm/s.
+// The bunny has 69,666 triangles and a height of 2 m. Cloth that falls by 0.5 m would keep moving at 1.3 mm/s with
+// planes of the predicted step's end and contacts that do not settle.
 TEST_P(SettledBunny, LiesStill)
 {
     TriangleMesh bunny;
@@ -254,7 +254,7 @@ INSTANTIATE_TEST_SUITE_P(Backend, SettledPile, testing::ValuesIn(allBackends()),
 
 namespace
 {
-// A sphere of radius 1 m with triangles between meridians and parallels.
+// Makes a sphere of radius 1 m with triangles between meridians and parallels.
 TriangleMesh makeGlobe()
 {
     constexpr int kParts = 48;
@@ -277,8 +277,8 @@ TriangleMesh makeGlobe()
 }
 }  // namespace
 
-// README's cloth, with one iteration as Bullet has it by default. The RMS is over all steps and nodes. The fastest node
-// is one that slips: twice what was measured with four iterations, 22 mm/s.
+// README's cloth, with Bullet's default of one iteration. The RMS is over all steps and nodes. The fastest node slips;
+// the limit is twice the value measured with four iterations, 22 mm/s.
 TEST(IterationsOfBullet, ASingleIterationBringsClothToRestLikeFour)
 {
     for (const int iterations : {1, 4})
@@ -357,7 +357,7 @@ TEST_P(RestingCloth, TheThicknessIsTheSumOfBothMargins)
     EXPECT_FLOAT_EQ(rest.m_plugin.contacts().front().m_thickness, 0.04f);
 }
 
-// The contact rounds must not feed energy in: no slow creep over many steps.
+// The contact rounds must not add energy: the cloth does not creep over many steps.
 TEST_P(RestingCloth, StaysWhereItLies)
 {
     Rest rest(GetParam().m_settings);

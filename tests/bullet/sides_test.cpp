@@ -1,4 +1,4 @@
-// Plugin::setOneSided: cloth inside a closed mesh is held by its walls, or comes out of it. Sheets without thickness
+// Plugin::setOneSided: the walls of a closed mesh hold cloth inside, or the cloth comes out. Sheets without thickness
 // hold cloth on either side, or on their front alone.
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace drape::test
 {
 namespace
 {
-// Height of a cloth's middle node after it was let go inside a box of 2 m around the origin.
+// Returns the height of a cloth's middle node after its fall inside a box of 2 m around the origin.
 float heightAfterFall(bool oneSided, bool kinematic)
 {
     Plugin plugin(hostSettings());

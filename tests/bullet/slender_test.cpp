@@ -1,5 +1,5 @@
-// Cloth that hangs on something slender: a vertex or two under faces four times as long as the thickness bear all of
-// it, and the faces around them close in.
+// Cloth that hangs on a slender obstacle. One or two vertices under faces four times as long as the thickness carry all
+// of the cloth, and the faces around them close in.
 #include <gtest/gtest.h>
 
 #include <cmath>

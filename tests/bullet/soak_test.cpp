@@ -163,7 +163,7 @@ private:
     std::size_t m_changes[kKinds] = {};
 };
 
-// A cloth that falls on a sphere, as in a world of its own.
+// Drops a cloth on a sphere, as in a world of its own.
 std::uint64_t fallOnSphere(DropWorld& world, MeshShape& sphere)
 {
     btCollisionObject& ball =
@@ -184,7 +184,7 @@ std::uint64_t fallOnSphere(DropWorld& world, MeshShape& sphere)
 class Soak : public BackendTest
 {
 protected:
-    // Steps that change something; `each`: at least so many changes of each kind.
+    // Runs steps that change something; `each` is the least number of changes of each kind.
     void live(Zoo& zoo, int steps, std::size_t each)
     {
         std::size_t inContact = 0;

@@ -66,7 +66,7 @@ TEST(SolidLinks, LinksThatHangFromASurfaceOrJoinTwoCount)
     EXPECT_EQ(solidOf(*body), (Nodes{15, 16, 3, 19, 19, 20}));
 }
 
-// A tetrahedron is a surface, too, with what is inside of it.
+// A tetrahedron and its inside count as a surface, too.
 TEST(SolidLinks, LinksWithinTetrahedraDoNotCount)
 {
     btSoftBodyWorldInfo info;

@@ -57,7 +57,7 @@ protected:
     WorldRows() : m_box(makeBox(3.0f, 0.4f, 3.0f)), m_boxShape(m_box) {}
 
     std::uint64_t hashBesideABall(bool kinematic, bool jumping);
-    // The fastest node of a cloth on the box while a ball jumps into it time and again.
+    // Returns the fastest node's speed of a cloth on the box while a ball jumps into it repeatedly.
     double fastestWithABallInside(bool kinematic);
 
     static btCollisionObject& addBall(DropWorld& world, MeshShape& sphere, const btTransform& pose, bool kinematic)
@@ -89,8 +89,7 @@ std::uint64_t WorldRows::hashBesideABall(bool kinematic, bool jumping)
     return hash;
 }
 
-// An obstacle that jumps from one side of the cloth to the other sweeps nothing: the cloth does what it does without
-// it.
+// An obstacle that jumps from one side of the cloth to the other sweeps nothing: the cloth moves as without it.
 TEST_P(WorldRows, Row15TeleportSweepsNothing)
 {
     for (const bool kinematic : {false, true})
@@ -128,10 +127,10 @@ double WorldRows::fastestWithABallInside(bool kinematic)
     return speed;
 }
 
-// Into the middle of the cloth: what is pushed out is pushed gently.
+// The ball jumps into the middle of the cloth, and pushes it out gently.
 TEST_P(WorldRows, Row15TeleportIntoTheClothGivesNoGiantImpulse)
 {
-    // The ball's radius in one step would be 9 m/s.
+    // A displacement of the ball's radius in one step would be 9 m/s.
     for (const bool kinematic : {false, true})
         EXPECT_LT(fastestWithABallInside(kinematic), 9.0) << "kinematic " << kinematic;
 }
@@ -149,7 +148,7 @@ std::vector<float> stateOf(const btSoftBody& cloth)
 }
 }  // namespace
 
-// Bullet's world takes no step of no time; an app that calls the solver may.
+// Bullet's world skips steps of zero duration, but an app may call the solver.
 TEST_P(WorldRows, Row16StepOfNoTimeMovesNothing)
 {
     Plugin plugin(GetParam().m_settings);
@@ -177,8 +176,7 @@ TEST_P(WorldRows, Row16StepOfNoTimeMovesNothing)
     EXPECT_NEAR(double(lowestOf(cloth)) - double(kTop), kThickness, 0.05 * kThickness);
 }
 
-// A cloth whose time stands still in a world that goes on, in the way of a plate that comes up through it and of a
-// cloth that falls beside it.
+// The cloth's time stands still in a running world. A plate comes up through it and another cloth falls beside it.
 TEST_P(WorldRows, Row16ClothWithoutTimeStaysAsItIs)
 {
     Plugin plugin(GetParam().m_settings);
@@ -227,7 +225,7 @@ TEST_P(WorldRows, Row16HugeTimeStepsStayFinite)
     }
 }
 
-// Pinned cloth on a static obstacle: the pair is skipped, nothing moves; masses that come back bring the contacts back.
+// The pair of pinned cloth and a static obstacle is skipped, and nothing moves. New masses restore the contacts.
 TEST_P(WorldRows, Row17BothSidesPinned)
 {
     Plugin plugin(GetParam().m_settings);
@@ -252,8 +250,8 @@ TEST_P(WorldRows, Row17BothSidesPinned)
     EXPECT_NEAR(double(lowestOf(cloth)) - double(kTop), kThickness, 0.05 * kThickness);
 }
 
-// Faces come and go while the cloth lies on the box. Each change is seen in the same step: what has no face has no
-// contact on its own face, what got one has.
+// Faces are added and removed while the cloth lies on the box. Each change counts in the same step: a node that lost
+// its faces has no contact of them, and a node that got a face has one.
 TEST_P(WorldRows, Row24NodesAndFacesAddedAndRemoved)
 {
     Plugin plugin(GetParam().m_settings);
@@ -303,7 +301,7 @@ TEST_P(WorldRows, Row24NodesAndFacesAddedAndRemoved)
     EXPECT_EQ(plugin.statistics().m_contacts, 0u);
 }
 
-// No drift, no growth of memory, and the cloth lies still.
+// The cloth does not drift, memory does not grow, and the cloth lies still.
 TEST_P(WorldRows, Row25TenThousandStepsAtRest)
 {
     constexpr int kSettle = 300, kSteps = 10000;

@@ -1,5 +1,5 @@
-// Cloth that came apart or whose pins were put elsewhere: its steps stay short, say what they gave up, and the cloth
-// comes back. Cloth that keeps its size gets all the tests that it needs, however fast it is.
+// Cloth that came apart or whose pins were moved elsewhere. Its steps stay short and report what they left out, and the
+// cloth comes back. Cloth that keeps its size gets all the tests that it needs, at any speed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -62,7 +62,7 @@ private:
     DropWorld m_world;
 };
 
-// Every node goes its own way, downwards.
+// Moves every node on a path of its own, downwards.
 void blowApart(btSoftBody& cloth, btScalar speed)
 {
     Random random(1);
@@ -73,7 +73,7 @@ void blowApart(btSoftBody& cloth, btScalar speed)
     }
 }
 
-// The longest edge of a face as a multiple of the longest link at rest.
+// Returns the longest edge of a face as a multiple of the longest link at rest.
 double stretchNow(const btSoftBody& cloth)
 {
     double longest = 0, rest = 0;
@@ -185,7 +185,7 @@ TEST_P(StretchedCloth, LeavesOthersAsTheyAre)
     EXPECT_EQ(hashes[0], hashes[1]);
 }
 
-// Cloth that keeps its size at 200 m/s.
+// Cloth keeps its size at 200 m/s.
 TEST_P(StretchedCloth, FastClothIsNotStretchedCloth)
 {
     Hills hills(GetParam().m_settings);
@@ -203,7 +203,7 @@ TEST_P(StretchedCloth, FastClothIsNotStretchedCloth)
 
 namespace
 {
-// A ball with a cape over it, which the test puts elsewhere by the ball's world transform alone.
+// A ball with a cape over it. The test moves it elsewhere by the ball's world transform alone.
 class Respawn
 {
 public:
@@ -218,7 +218,7 @@ public:
     {
     }
 
-    // Steps after the jump, to where the cape lies outside of the ball again.
+    // Steps after the jump until the cape lies outside of the ball again.
     void jumpAndSettle()
     {
         m_body.setWorldTransform(m_pose);

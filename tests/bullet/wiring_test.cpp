@@ -65,7 +65,7 @@ TEST(Wiring, InstallOnALivingDispatcherEqualsTheConfiguration)
     EXPECT_EQ(hashOf(one), hashOf(two));
 }
 
-// The solver alone, with Bullet's own configuration, is easily taken for enough.
+// The solver alone, with Bullet's own configuration, is easily mistaken for a complete setup.
 TEST(Wiring, WhyStockNamesADispatcherWithoutDrape)
 {
     MeshShape shape(makeSphere(0.4f, 2));
@@ -269,7 +269,7 @@ TEST(Wiring, ScaledAndMirroredShapesAreHandled)
     }
 }
 
-// Bullet's bounds of a scaled shape hold the margin of the shape that it scales, here none.
+// Bullet's bounds of a scaled shape include the margin of the unscaled shape, here 0.
 TEST(Wiring, AScaledShapeKeepsItsOwnMargin)
 {
     constexpr float kOwn = 0.1f;

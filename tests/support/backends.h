@@ -49,9 +49,9 @@ protected:
     std::unique_ptr<Device> m_device;
 };
 
-// Null, with a failure recorded, when it cannot be made.
+// Returns null, with a failure recorded, if it cannot be made.
 std::unique_ptr<Pipeline> makePipeline(const Settings& settings);
-// The device of an OpenCL back end; null, with a failure recorded, when it cannot be opened. profiled: see
-// Device::open().
+// Opens the device of an OpenCL back end. Returns null, with a failure recorded, if it cannot be opened. `profiled`:
+// see Device::open().
 std::unique_ptr<Device> openDevice(const BackendCase& backend, bool profiled = false);
 }  // namespace drape::test

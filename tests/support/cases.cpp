@@ -64,7 +64,7 @@ void append(TriangleMesh& mesh, const RandomTriangle& triangle, const Vector3& p
     }
 }
 
-// Height of the surface over (x, z), the highest; false when there is none.
+// Computes the height of the highest surface over (x, z). Returns false if there is none.
 bool surfaceHeight(const TriangleMesh& mesh, double x, double z, double& height)
 {
     bool found = false;
@@ -196,7 +196,7 @@ StepCase drapedCase(const std::string& shape, int nodes, float thickness, std::u
                      shapeNamed(shape),
                      {},
                      thickness};
-    // Off the shape's symmetries and away from its vertices.
+    // The cloth is moved off the shape's symmetries and away from its vertices.
     translate(step.m_cloth.m_positions, random.uniform(-0.1f, 0.1f), 0.0f, random.uniform(-0.1f, 0.1f));
     disturb(step.m_cloth.m_positions, 0.005f, random);
     drapeOver(step.m_obstacle, step.m_cloth, 0.1f * thickness, 1.4f * thickness, random);

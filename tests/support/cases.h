@@ -41,10 +41,10 @@ struct StepCase
 
 TriangleMesh shapeNamed(const std::string& name);
 
-// A mesh of one triangle or more: corners in order, none shared.
+// Makes a mesh of one triangle or more: corners in order, none shared.
 TriangleMesh looseTriangles(const std::vector<float>& corners);
 
-// Loose triangles with a square metre's half each, all at one place at height y.
+// Makes loose triangles of half a square metre each, all at one position at height y.
 TriangleMesh coincidentTriangles(int count, float y);
 
 // Returns meshes that hierarchies may fail at. All centroids are equal, all corners lie in one point, or triangles lie
@@ -61,7 +61,7 @@ void translate(std::vector<float>& positions, float x, float y, float z);
 // Adds a random offset of at most `size` in each coordinate.
 void disturb(std::vector<float>& positions, float size, Random& random);
 
-// A cloth of nodes × nodes draped over the shape; ends of the step equal.
+// Makes a cloth of nodes × nodes draped over the shape; the step's start and end are equal.
 StepCase drapedCase(const std::string& shape, int nodes, float thickness, std::uint32_t seed);
 // Makes the cloth fall and shake through the surface within the step.
 StepCase fallingCase(const std::string& shape, int nodes, float thickness, std::uint32_t seed);
@@ -76,10 +76,10 @@ enum class Thin
     Obstacle,
     Both
 };
-// Loose triangles of up to `size` (m), cloth triangle i near obstacle triangle i; at rest, or each of them moving along
-// a line of its own of up to five thicknesses.
+// Makes loose triangles of up to `size` (m), cloth triangle i near obstacle triangle i. They are at rest, or each moves
+// along a line of its own by up to five thicknesses.
 StepCase needleCase(Thin thin, int triangles, float size, bool moving, std::uint32_t seed);
 
-// The obstacle's triangles over the box of the cloth grown by `margin`; vertices nobody uses are dropped.
+// Returns the obstacle's triangles over the box of the cloth grown by `margin`; unused vertices are dropped.
 TriangleMesh partNear(const TriangleMesh& obstacle, const std::vector<float>& positions, float margin);
 }  // namespace drape::test

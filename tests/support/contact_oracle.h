@@ -37,9 +37,9 @@ std::vector<RequiredContact> requiredContacts(const Side& cloth, const Side& obs
 
 // Returns the offset from the obstacle's feature to the cloth's between their closest points, the cloth at its end.
 Vector3 contactOffset(const Contact& contact, const Side& cloth, const Side& obstacle);
-// True distance of the features that a contact names, the cloth at its end.
+// Returns the true distance of the features that a contact names, the cloth at its end.
 double contactDistance(const Contact& contact, const Side& cloth, const Side& obstacle);
-// Largest coordinate of the features that a contact names, relative to one of the obstacle's vertices.
+// Returns the largest coordinate of the features that a contact names, relative to one of the obstacle's vertices.
 double contactExtent(const Contact& contact, const Side& cloth, const Side& obstacle);
 
 // Returns true if the contact is the required one: kind and features.

@@ -23,7 +23,7 @@ struct DeviceSide
     bool allIntact(Device& device);
 };
 
-// The program of kernels/<name>.cl from the tests' cache.
+// Returns the program of kernels/<name>.cl from the tests' cache.
 cl::Program programOf(Device& device, const std::string& name, const std::string& defines = std::string());
 // Loads programs for stages that need several.
 ProgramLoader programsOf(Device& device);

@@ -37,7 +37,7 @@ inline bool isDeviceExpected()
     return !none || std::string(none) != "1";
 }
 
-// An empty folder that goes with what is in it.
+// An empty folder that is removed with its contents.
 class TemporaryFolder
 {
 public:

@@ -30,7 +30,7 @@ TEST_F(BadInput, AFileThatIsNoMeshIsRefused)
     expectRefused(runSmall({"--obstacle", write("empty.ply", "")}), {"empty.ply", "empty"});
     expectRefused(runSmall({"--obstacle", write("broken.ply", "ply\nformat ascii 1.0\nelement")}), {"broken.ply"});
     expectRefused(runSmall({"--obstacle", write("broken.stl", "sol")}), {"broken.stl", "not a mesh"});
-    // A file is what its ending says, whatever another reader would make of it.
+    // A file's extension decides its format, even if another reader could read it.
     const std::string ply =
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
         "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
@@ -192,7 +192,7 @@ TEST_F(BadInput, BadNumbersAreRefused)
     expectRefused(runSmall({"--thickness", "0.00009"}), {"--thickness", "0.0001"});
 }
 
-// Bullet would leave it out of collision and say nothing.
+// Bullet would leave the cloth out of collision without a message.
 TEST_F(BadInput, ScenesOutOfBulletsReachAreRefused)
 {
     for (const char* option : {"--obstacle-size", "--cloth-size", "--drop-height", "--thickness"})

@@ -1,4 +1,4 @@
-// The process that a run of Bullet's own collision has: it never outlives the one that started it.
+// The process of a run of Bullet's own collision never outlives its parent.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -20,7 +20,7 @@ std::string processFile(pid_t process, const std::string& name)
     return "/proc/" + std::to_string(process) + "/" + name;
 }
 
-// 0: none yet.
+// Returns 0 if there is no child yet.
 pid_t childOf(pid_t process)
 {
     pid_t child = 0;
@@ -34,7 +34,7 @@ bool streams(pid_t process)
     return readAll(processFile(process, "cmdline")).find("--stream-steps") != std::string::npos;
 }
 
-// Gone, or ended and not asked for its exit code by whoever has it now.
+// Returns true if the process is gone, or ended without its exit code being read.
 bool hasEnded(pid_t process)
 {
     const std::string status = readAll(processFile(process, "status"));

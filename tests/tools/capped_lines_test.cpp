@@ -19,7 +19,7 @@ std::string line(const char* word, int time)
     return std::string(word) + " " + std::to_string(1000000LL * time) + "\n";
 }
 
-// Steps of 10 ms, each measured for 30, one after the other.
+// Returns the lines of steps of 10 ms, each measured for 30, one after the other.
 std::string stepsOf(int count)
 {
     std::string text;

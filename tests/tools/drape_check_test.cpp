@@ -1,4 +1,4 @@
-// drape_check: its numbers on small inputs whose truth is plain, on every back end, and what it refuses.
+// drape_check: its numbers on small inputs with a known truth, on every back end, and the inputs that it refuses.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ namespace
 {
 using Json = nlohmann::json;
 
-// A record's bytes, as the files have them.
+// Returns a record's bytes in the file's format.
 std::string record(const std::vector<float>& coordinates, const std::vector<std::int32_t>& numbers)
 {
     std::string bytes(4 * (coordinates.size() + numbers.size()), '\0');
@@ -30,7 +30,7 @@ std::string record(const std::vector<float>& coordinates, const std::vector<std:
 
 const std::vector<float> kFace = {-3, -3, 0, 3, -3, 0, 0, 3, 0};
 
-// A vertex that goes from z = 1 to `end` over the face at rest, and the answer to give.
+// Returns the record of a vertex that goes from z = 1 to `end` over the face at rest, with the given answer.
 std::string motionRecord(float end, std::int32_t answer)
 {
     std::vector<float> points = {0, 0, 1};
@@ -47,7 +47,7 @@ std::string triangleRecord(float height, std::int32_t answer)
     return record(corners, {answer});
 }
 
-// A grid of two triangles, and one loose triangle at a height above them.
+// Returns a grid of two triangles, and one loose triangle at a height above them.
 std::string meshAt(float height)
 {
     const std::string z = std::to_string(height);
@@ -61,7 +61,7 @@ class Check : public ToolTest
 protected:
     const char* programVariable() const override { return "DRAPE_CHECK"; }
 
-    // The answers of the back ends, which must be the same but for back end, device and times.
+    // Returns the answer of the back ends, which must be equal apart from back end, device and times.
     Json answer(std::vector<std::string> arguments) const
     {
         arguments.insert(arguments.end(), {"--json", "-", "--backend", "host"});
@@ -92,7 +92,7 @@ private:
 
 TEST_F(Check, CcdCountsMissesAndFalseHits)
 {
-    // A hit and a miss that are true, a hit that is said to be none, and a miss that is said to be a hit.
+    // The records are a true hit and a true miss, a hit recorded as a miss, and a miss recorded as a hit.
     const std::string file =
         write("motions.bin", motionRecord(-1, 1) + motionRecord(0.1f, 0) + motionRecord(-1, 0) + motionRecord(0.1f, 1));
     const Json json = answer({"ccd", file});
@@ -119,7 +119,7 @@ TEST_F(Check, TrianglesAreCountedInEveryMode)
         EXPECT_EQ(json.at("misses"), 0);
         EXPECT_EQ(json.at("false_hits"), 0);
     }
-    // Nearer than the rounding of floats lets the fast mode tell.
+    // The fast mode cannot decide below the rounding of floats.
     const std::string close = write("close.bin", triangleRecord(1e-44f, 0));
     EXPECT_EQ(answer({"triangles", close, "--mode", "exact"}).at("false_hits"), 0);
 }
@@ -238,8 +238,8 @@ TEST_F(Check, ReadsOnlyDocumentedFormats)
     expectRefused(run({"ccd", path("pipe")}), {"is a pipe", "file of records"});
 }
 
-// A hundred thousand triangles at one place, all but coincident so that none is a repeated one: told at once, with the
-// exact number, on every back end.
+// A hundred thousand triangles at one position, almost coincident so that none is a repeated one. Every back end
+// reports the exact number at once.
 TEST_F(Check, TooManyPairsAreCountedAndRefused)
 {
     std::string text = "v 0 0 0\nv 0 1 0\n";

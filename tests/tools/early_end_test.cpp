@@ -45,7 +45,7 @@ protected:
 class Interruption : public testing::Test
 {
 protected:
-    // A new process for each: other tests leave threads and handlers behind.
+    // Each test has a new process: other tests leave threads and handlers behind.
     void SetUp() override { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
 };
 }  // namespace

@@ -27,7 +27,7 @@ bool isHash(const std::string& text)
     return text.size() == 16 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
-// Every key of a run, each with its type.
+// Expects every key of a run, each with its type.
 void expectRun(const Json& run, int steps)
 {
     for (const char* key : {"backend", "device", "device_reason", "hash"})
@@ -140,7 +140,7 @@ TEST_F(Outputs, NodesThatWentThroughAreCounted)
     }
 }
 
-// Fast cloth intersects the obstacle on its way and has left it at the end.
+// Fast cloth intersects the obstacle during the run and has left it at the end.
 TEST_F(Outputs, TheMostIntersectingPairsOfAnyStepAreCounted)
 {
     const auto expectMost = [this](const Json& run)
@@ -218,7 +218,7 @@ TEST_F(Outputs, AFrameIsReadWhateverItsFirstVertex)
     }
 }
 
-// The run is in a child process, which sends the positions; the comparison below shows Drape's own run.
+// The run is in a child process, which sends the positions. The comparison below shows Drape's own run.
 TEST_F(Outputs, PictureIsAPng)
 {
     const ToolRun run = runSmall({"--steps", "2", "--backend", "bullet", "--obstacle", "stairs", "--time-limit", "600",
@@ -401,7 +401,7 @@ TEST_F(Outputs, TheBuiltInBackEndRunsAlone)
     EXPECT_NE(std::string(run.at("backend")).find("bullet"), std::string::npos);
 }
 
-// A limit that is passed at once: what was done until then is written, by every back end.
+// The limit is exceeded at once: every back end writes the steps until then.
 TEST_F(Outputs, ALimitOfTimeKeepsTheStepsDone)
 {
     const Json run = Json::parse(summaryOf({"--time-limit", "1e-9", "--csv", path("steps.csv")}));
@@ -409,7 +409,7 @@ TEST_F(Outputs, ALimitOfTimeKeepsTheStepsDone)
     EXPECT_EQ(run.at("capped_at_step"), 1);
     const std::string csv = readAll(path("steps.csv"));
     EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 2);
-    // Bullet's own may not end a step, so that the one in hand is given up: the last one done is none.
+    // Bullet's own collision may not end a step. The current step is then given up, and the last complete one is none.
     const Json builtIn =
         Json::parse(summaryOf({"--backend", "bullet", "--obstacle", "stairs", "--time-limit", "1e-9"}));
     EXPECT_EQ(builtIn.at("capped_at_step"), 0);

@@ -37,7 +37,7 @@ protected:
             ::setenv(variable.first.c_str(), variable.second.c_str(), 1);
     }
 
-    // "" where it is not set.
+    // Returns "" if the variable is not set.
     static std::string affinity()
     {
         const char* value = std::getenv(kAffinity);
@@ -68,7 +68,7 @@ TEST_F(PoclThreads, KeepToTheirCoresIfTheProcessHasAllCores)
     EXPECT_EQ(affinity(), wanted(m_cores));
 }
 
-// PoCL ends the program when it may not put a thread on a core.
+// PoCL ends the program if it may not put a thread on a core.
 TEST_F(PoclThreads, AreLeftAloneIfACoreIsMissing)
 {
     cpu_set_t one;
