@@ -169,7 +169,8 @@ public:
     }
 
 private:
-    // The buffers of a step whose list has these hits and had no room for `unlisted` others. Returns the list's room.
+    // Makes the buffers of a step whose list has these hits and had no room for `unlisted` others. Returns the list's
+    // room.
     cl_uint prepare(const std::vector<Contact>& hits, const std::vector<cl_uint>& slotCount, cl_uint unlisted)
     {
         const cl_uint capacity = cl_uint(std::max<std::size_t>(1, hits.size()));
@@ -186,7 +187,7 @@ private:
         return capacity;
     }
 
-    // Up to the members' list. Returns the room of the hits' list.
+    // Runs the stage up to the members' list. Returns the room of the hits' list.
     cl_uint enqueueFew(const std::vector<Contact>& hits, std::uint32_t slots)
     {
         std::vector<cl_uint> slotCount(slots, 0), places;
@@ -234,7 +235,7 @@ private:
         EXPECT_TRUE(intact(m_device, m_contacts) && intact(m_device, m_next));
     }
 
-    // The contacts; their head must tell `count`.
+    // Returns the contacts; their head must contain `count`.
     std::vector<Contact> written(std::size_t count)
     {
         std::vector<Contact> found = contents(m_device, m_contacts, DRAPE_CONTACT_HEAD + count);
@@ -336,7 +337,7 @@ TEST_P(CompactionTest, TakesWhatAFullListHas)
     EXPECT_FALSE(device->failed()) << device->error().text();
 }
 
-// Eight times the hits in one slot are 64 times the time by counting, and 12 times by the sort.
+// Eight times the hits in one slot would take 64 times as long by counting; the sort takes 12 times as long.
 TEST_P(CompactionTest, GrowsLittleMoreThanTheHitsOfASlot)
 {
     const std::unique_ptr<Device> device = openDevice(GetParam(), true);

@@ -125,7 +125,7 @@ TEST_P(ItemRunsTest, NeighboursOnACpuAreOneWorkItemsUpToTheLongestRun)
     ASSERT_FALSE(device->failed()) << device->error().text();
 }
 
-// A work-item takes an item more than another in each of its turns, at most.
+// The numbers of items of two work-items differ by one in each turn, at most.
 TEST_P(ItemRunsTest, WorkItemsTakeEqualShares)
 {
     const std::unique_ptr<Device> device = openDevice(GetParam());

@@ -15,7 +15,7 @@ namespace drape::test
 {
 namespace
 {
-// A work-item takes the roots of a block's lanes, or on a GPU of its own lane's.
+// Returns a kernel in which a work-item takes the roots of a block's lanes, or on a GPU of its own lane.
 std::string rootsOf(const Device& device)
 {
     const char* const stored =

@@ -1,4 +1,4 @@
-// The profiler: one time per launch, in order, and none unless it was asked for.
+// The profiler returns one time per launch, in order, and none unless it is requested.
 #include "bullet_plugin/core/device/profiler.h"
 
 #include <gtest/gtest.h>

@@ -117,7 +117,7 @@ public:
         return contacts;
     }
 
-    // Room for pairs of patches; 0: what the stage has.
+    // Room for pairs of patches; 0 keeps the stage's own.
     std::size_t m_pairCapacity = 0;
     StepCounters m_read = {};
     std::uint64_t m_candidates = 0;

@@ -49,7 +49,7 @@ struct Tally
     std::size_t m_required[3] = {}, m_missed = 0, m_reported = 0;
 };
 
-// Contacts come by kind, cloth feature and obstacle feature.
+// Contacts are ordered by kind, cloth feature and obstacle feature.
 const Contact* find(const std::vector<Contact>& contacts, const RequiredContact& required)
 {
     const auto key = std::make_tuple(required.m_kind, required.m_clothFeature, required.m_obstacleFeature);
@@ -130,7 +130,7 @@ TEST(ContactsOracle, RandomSoups)
     EXPECT_GT(required, 300u);
 }
 
-// Rounding scales with the pair, not with the place: the truth of the rounded input, 1 km away.
+// Rounding scales with the pair, not with the position: the truth is that of the rounded input, 1 km away.
 TEST(ContactsOracle, FarFromTheOrigin)
 {
     StepCase step = drapedCase("torus", 14, 0.03f, 340);

@@ -23,7 +23,7 @@ namespace
 {
 constexpr float kReachScale = 1.5f;
 
-// A step's cull and narrow phase by one set of kernels.
+// Runs a step's cull and narrow phase with one set of kernels.
 class HostStep
 {
 public:
@@ -154,7 +154,7 @@ private:
     HostSelfPatches m_patches;
 };
 
-// The numbers of the machine's sets, the best first.
+// Returns the numbers of the machine's sets, the best first.
 std::vector<std::size_t> sets()
 {
     std::size_t count = 0;
@@ -265,7 +265,8 @@ TEST_P(HostKernelsTest, SelfContactsAreThoseOfAWalkOverTrees)
     EXPECT_GT(all.m_invalidNodes, 0u);
 }
 
-// Several at once, of which one is not in the step, and one meets obstacles besides, whose search counts its bad nodes.
+// Several cloths run at once. One of them is not in the step, and one also meets obstacles, whose search counts its bad
+// nodes.
 TEST_P(HostKernelsTest, ClothsMeetThemselvesAlone)
 {
     SelfStepCase spoilt = foldedCase(17, 4, 0.003f, 1523);

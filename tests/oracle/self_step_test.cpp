@@ -21,7 +21,7 @@ namespace drape::test
 {
 namespace
 {
-// A crossing keeps this from the features' borders, in weights; rounding moves them by about 1e-6.
+// A crossing has this distance from the features' borders, in weights; rounding moves them by about 1e-6.
 constexpr double kCrossMargin = 1e-3;
 
 // Positions of a pair's four nodes: a node and a face's, or those of two edges.
@@ -72,7 +72,7 @@ Nearest nearest(const Four& four, bool edges)
     return {on.m_distance, {on.m_weights[0], on.m_weights[1], on.m_weights[2]}, p[0] - on.m_point};
 }
 
-// Sine of the angle between the edges, or that of a fat face: what makes places well-conditioned.
+// Returns true if positions are well-conditioned, by the sine of the angle between the edges, or that of a fat face.
 bool isConditioned(const Four& four, bool edges)
 {
     const Vector3 u = edges ? four.m_p[1] - four.m_p[0] : four.m_p[2] - four.m_p[1];
@@ -189,7 +189,7 @@ struct Checked
     std::size_t m_near = 0, m_met = 0, m_reported = 0;
 };
 
-// Everything that must be reported is. kept: only these nodes' pairs, or all.
+// Expects every required contact. `kept`: only these nodes' pairs, or all.
 void expectRequired(const Oracle& oracle, const std::map<Key, Contact>& found, ContactMode mode, Checked& checked)
 {
     const MeshPool& pool = oracle.side().m_pool;

@@ -1,7 +1,7 @@
-// A node's contact normals beside creases: where a surface is convex they turn no faster than the surface lets them, at
-// a concave crease both faces have theirs.
+// A node's contact normals beside creases. At convex creases they turn no faster than the surface permits; at a concave
+// crease both faces have theirs.
 //
-// Nodes slide at a constant offset over edges and vertices, in steps of a fiftieth of the offset; each is a corner of a
+// Nodes slide at a constant offset over edges and vertices, in steps of a fiftieth of the offset. Each is a corner of a
 // triangle of its own that stands off the surface. Lengths in metres.
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ constexpr double kFlag = 0.08;  // height of a node's triangle
 constexpr double kRunUp = 0.7;  // angle about the crease at which paths begin and end, radians
 constexpr double kUnit = 1.0 / 16777216;
 
-// A surface, convex, and the ways over it: arcs about the origin, over its top.
+// A convex surface and the paths over it: arcs about the origin, over its top.
 struct Surface
 {
     std::string m_name;
@@ -44,7 +44,7 @@ void addVertex(TriangleMesh& mesh, const Vector3& p)
     mesh.m_positions.insert(mesh.m_positions.end(), {float(p.x), float(p.y), float(p.z)});
 }
 
-// Two faces that meet at the z axis, each 0.3 wide, turned down by half the angle (up where it is negative).
+// Makes two faces that meet at the z axis, each 0.3 wide, turned down by half the angle (up if it is negative).
 TriangleMesh creaseMesh(double angle)
 {
     TriangleMesh mesh;
@@ -68,7 +68,7 @@ Surface creaseSurface(double degrees)
             {0, 0, 0.1}};
 }
 
-// Faces about the top of a cone, at uneven angles.
+// Makes faces about the top of a cone, at uneven angles.
 Surface fanSurface(int faces, double slope)
 {
     Surface fan = {"fan of " + std::to_string(faces), {}, 0.08, slope + kRunUp, slope, 0.4, {}};
@@ -131,7 +131,7 @@ private:
     std::vector<Face> m_faces;
 };
 
-// The ways of some nodes, one node of a triangle each, all in as many steps.
+// The paths of some nodes, one node of a triangle each, all with equally many steps.
 struct Slide
 {
     std::vector<std::vector<Vector3>> m_ways;
@@ -191,7 +191,7 @@ const Contact& deepest(const NodeContacts& contacts)
         ->second;
 }
 
-// Moved along the deepest one's normal by what that lacks of the thickness, the node has all others there, too.
+// Moves the node along the deepest contact's normal by its depth, and expects all other contacts at the thickness, too.
 void expectAsTheDeepest(const NodeContacts& contacts, double slack)
 {
     const Contact& first = deepest(contacts);
@@ -202,7 +202,7 @@ void expectAsTheDeepest(const NodeContacts& contacts, double slack)
     }
 }
 
-// Contacts with the same face, one step after the other. error: of a gap.
+// Compares contacts with the same face in consecutive steps. `error` is that of a gap.
 void expectFacesTurnAsSlowly(const NodeContacts& before, const NodeContacts& after, double way, double error)
 {
     for (const auto& [face, contact] : after)

@@ -93,7 +93,7 @@ TEST_P(HostDeviceTest, FewTriangles)
 
 TEST_P(HostDeviceTest, LargeStepGrowsBuffersAndAgrees)
 {
-    // Whoever reports intersections walks over trees.
+    // A pipeline that reports intersections walks over trees.
     ASSERT_TRUE(makeBoth(!isHost()));
     const StepCase step = soupCase(3000, 3000, true, 810);
     SCOPED_TRACE(step.trace());
@@ -126,7 +126,7 @@ TEST_P(HostDeviceTest, StepsFarLongerThanTheReach)
     }
 }
 
-// Two runs of the same on one device: the order of its work-items leaves no trace.
+// Two runs on one device are equal: the order of its work-items leaves no trace.
 TEST_P(HostDeviceTest, RunsRepeat)
 {
     const StepCase step = fallingCase("terrain", 33, 0.03f, 820);

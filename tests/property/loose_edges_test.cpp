@@ -156,7 +156,7 @@ TEST_P(LooseEdges, EachHasAContactAtItsNearestPoint)
         std::vector<std::int32_t> edges;
         for (int i = 0; i < kSegments; ++i)
         {
-            // Around a vertex of the obstacle.
+            // The position is around a vertex of the obstacle.
             const std::uint32_t vertex = random.below(std::uint32_t(step.m_obstacle.vertexCount()));
             float middle[3], along[3];
             for (int axis = 0; axis < 3; ++axis)
@@ -255,7 +255,7 @@ TEST_P(LooseEdges, QueriesTakeThemTogetherWithTriangles)
         std::count_if(expected.begin(), expected.end(), [&](const auto& pair) { return pair.first >= triangles; }), 50);
 }
 
-// A rope that collides with itself: nothing at rest, and the crossing where it lies over itself.
+// The rope collides with itself. It has no contacts at rest, and the crossing if it lies over itself.
 TEST_P(LooseEdges, CollideWithThemselvesOnlyAtFolds)
 {
     TriangleMesh rope;

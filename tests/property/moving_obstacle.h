@@ -16,7 +16,7 @@
 
 namespace drape::test
 {
-// A turn by `angle` about a random axis through `centre`, then a shift, in double.
+// A rotation by `angle` about a random axis through `centre`, then a shift, in double.
 struct Motion
 {
     double m_rows[3][4];
@@ -51,7 +51,7 @@ struct MovingCase
     Motion m_start, m_end;
 };
 
-// The obstacle ends where the case has it, so that the cloth passes it.
+// Makes the obstacle end in the case's pose, so that the cloth passes it.
 MovingCase movingCase(const std::string& shape, double angle, const std::array<double, 3>& shift, std::uint32_t seed);
 
 std::vector<Contact> runMoving(Pipeline& pipeline, const MovingCase& moving);

@@ -16,7 +16,7 @@ namespace drape::test
 {
 namespace
 {
-// pose after the inverse of `of`, which is rigid.
+// Returns `pose` after the inverse of `of`, which is rigid.
 Motion relative(const Motion& pose, const Motion& of)
 {
     Motion result;
@@ -82,7 +82,7 @@ TEST_P(MovingObstacleTest, GivesWhatTheOppositeMotionOfTheClothGives)
         const std::vector<Contact> contacts = runMoving(*pipeline, moving);
         const std::vector<Contact> expected = runOpposite(*opposite, moving);
         ASSERT_GT(expected.size(), 100u);
-        // Rounding decides a few at the edge of the reach and of cones.
+        // Rounding decides a few contacts at the edge of the reach and of cones.
         EXPECT_GE(countAlike(contacts, expected), contacts.size() - contacts.size() / 50);
         EXPECT_GE(countAlike(expected, contacts), expected.size() - expected.size() / 50);
     }
@@ -196,6 +196,6 @@ TEST_P(MovingObstacleTest, RestCostsNoLaunch)
     EXPECT_TRUE(moving > without || GetParam().m_device < 0);
 }
 
-// The tests of scenery and of rounding, in files of their own, are among them.
+// Tests of scenery and of rounding, in files of their own, use this instantiation, too.
 INSTANTIATE_TEST_SUITE_P(Backends, MovingObstacleTest, testing::ValuesIn(allBackends()), backendName);
 }  // namespace drape::test

@@ -35,7 +35,7 @@ MovingCase plateCase()
     return {step, shiftOf(0, 45, 0), shiftOf(0, 45.5, 0)};
 }
 
-// Every traversal gives on this back end what the host gives.
+// Expects every traversal on this back end to give the host's contacts.
 void expectHostsContacts(const BackendCase& backend, const MovingCase& moving, const std::vector<Contact>& expected)
 {
     std::vector<Traversal> traversals = allTraversals();
@@ -65,7 +65,7 @@ TEST_P(MovingObstacleTest, NodeThatEndsLevelWithAPlatesFaceBesideIt)
     expectHostsContacts(GetParam(), moving, expected);
 }
 
-// Faces of 3 mm whose corners are rounded to 0.1 mm where they are placed, so that they turn, and their cones do not.
+// The faces have 3 mm and their corners are rounded to 0.1 mm at their pose, so that they turn, and their cones do not.
 TEST_P(MovingObstacleTest, SmallFacesPlacedFarOut)
 {
     for (std::uint32_t seed = 970; seed < 974; ++seed)

@@ -29,8 +29,8 @@ protected:
     }
 };
 
-// Contacts as a caller sees them, whose meshes are named by their places among `ids`: what was there before gives
-// features other numbers.
+// Returns contacts whose meshes are named by their positions among `ids`, since earlier meshes give features other
+// numbers.
 std::vector<ContactView> viewsOf(const Pipeline& pipeline, const std::vector<Contact>& contacts,
                                  const std::vector<MeshId>& ids)
 {
@@ -45,7 +45,7 @@ std::vector<ContactView> viewsOf(const Pipeline& pipeline, const std::vector<Con
     return views;
 }
 
-// One pipeline lives through the steps, the other is given every mesh anew in each of them.
+// One pipeline lives through the steps; the other gets every mesh again in each of them.
 TEST_P(SkipsTest, KeptStateGivesTheContactsOfNewState)
 {
     std::size_t contacts = 0, reduced = 0;

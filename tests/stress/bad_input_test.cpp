@@ -141,7 +141,7 @@ TEST_P(BadInputTest, InvalidObstacleVerticesAreIsolated)
     StepCase step = fallingCase("sphere", 20, 0.03f, 902);
     SCOPED_TRACE(step.trace());
     const std::vector<Contact> sound = run(step);
-    // Two that the cloth touches.
+    // The cloth touches the two nodes.
     std::set<std::uint32_t> bad;
     for (std::size_t i = 0; i < sound.size() && bad.size() < 2; i += 7)
     {
@@ -175,7 +175,7 @@ TEST_P(BadInputTest, HugeAndDenormalNodesStayFinite)
             step.m_end[at] = value;
         const std::vector<Contact> contacts = run(step);
         EXPECT_GT(contacts.size(), 100u);
-        // Farther out than a million kilometres they count as invalid: three nodes.
+        // Nodes farther out than a million kilometres count as invalid: three nodes.
         EXPECT_EQ(m_pipeline->statistics().m_invalidNodes, std::fabs(value) > DRAPE_FARTHEST ? 3u : 0u);
     }
 }
@@ -255,7 +255,8 @@ TEST_P(BadInputTest, EmptyAndTinyMeshes)
             translate(step.m_end, 0.05f, 0.04f, 0.0f);
             const std::vector<Contact> contacts = run(step);
             EXPECT_EQ(contacts.empty(), i >= kWithTriangles || j >= kWithTriangles);
-            // 4 cm above each other, or beside each other's border and farther, up to one and a half thicknesses.
+            // The features are 4 cm above each other, or beside each other's border and farther, up to one and a half
+            // thicknesses.
             for (const Contact& contact : contacts)
             {
                 EXPECT_TRUE(contact.m_gap1 > 0.0399f && contact.m_gap1 < 0.1501f) << describe(contact);
@@ -289,7 +290,7 @@ TEST_P(BadInputTest, UnusedVerticesWidenNoVolume)
     }
 }
 
-// A triangle with a corner that no mesh can have is in no pair, wherever its other corners are.
+// A triangle with a corner outside of the valid range is in no pair, wherever its other corners are.
 TEST_P(BadInputTest, TrianglesWithAnInvalidCornerAreInNoPair)
 {
     const TriangleMesh sound = looseTriangles({-1, 0, -1, 1, 0, -1, 0, 0, 1});
@@ -320,7 +321,7 @@ TEST_P(BadInputTest, TwoIdenticalMeshes)
     ASSERT_TRUE(pipeline);
     const std::vector<Contact> contacts = runCase(*pipeline, step);
     expectFinite(contacts);
-    // Each with itself and with those around its corners, and no others.
+    // Each triangle meets itself and those around its corners, and no others.
     const std::vector<NearTriangles> meeting = meetingPairs(mesh, mesh);
     ASSERT_GT(meeting.size(), 10 * mesh.triangleCount());
     EXPECT_EQ(pipeline->statistics().m_intersections, meeting.size());

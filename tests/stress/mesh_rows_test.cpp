@@ -203,7 +203,7 @@ protected:
         return result;
     }
 
-    // Sorted by what they are between.
+    // Returns the contacts sorted by their features.
     std::vector<Keyed> keyedContacts(const StepCase& step)
     {
         const Side cloth = makeSide({step.m_cloth}), obstacle = makeSide({step.m_obstacle});
@@ -238,7 +238,7 @@ protected:
         }
         for (const Contact& contact : contacts)
         {
-            // 6.6e-5 of the extent: what the certified distance keeps unnecessarily (bound 4).
+            // The certified distance keeps pairs unnecessarily up to 6.6e-5 of the extent (bound 4).
             EXPECT_LE(contactDistance(contact, cloth, obstacle) - double(step.m_thickness),
                       6.6e-5 * contactExtent(contact, cloth, obstacle))
                 << describe(contact);
@@ -298,7 +298,7 @@ TEST_P(MeshRows, Row13FlippedWindingAndInvertedElements)
 {
     StepCase original = fallingCase("torus", 16, 0.03f, 1113);
     SCOPED_TRACE(original.trace());
-    // Every fifth node goes to the other side of its neighbours in the step: faces turn over.
+    // Every fifth node moves to the other side of its neighbours in the step: faces turn over.
     for (std::size_t node = 0; node < original.m_cloth.vertexCount(); node += 5)
         original.m_end[3 * node] += node % 2 ? 0.16f : -0.16f;
     StepCase ended = original;

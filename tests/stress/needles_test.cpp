@@ -87,7 +87,7 @@ public:
             m_found.insert({contact.m_kind, contact.m_clothFeature, contact.m_obstacleFeature});
     }
 
-    // Only those of a thin face: planes and edges of others may have passed something near by, which then has no
+    // Keeps only pairs of a thin face. Planes and edges of others may have passed something near by, which then has no
     // contact with them.
     void ofThinFaces(Thin thin)
     {
@@ -200,7 +200,7 @@ std::size_t expectCrossingsFound(const Sides& sides)
     return crossed;
 }
 
-// A contact that was met before the step's end: where the cloth's point started, it was in front of the normal.
+// Expects of a contact that was met before the step's end that the cloth's point started in front of the normal.
 void expectSidesOfMeetings(const Sides& sides)
 {
     for (const Contact& contact : sides.m_contacts)

@@ -70,7 +70,7 @@ TEST_P(StressRows, Row01CoplanarOverlappingAndDisjoint)
     EXPECT_TRUE(run(allOrders(disjoint)).m_all.empty());
 }
 
-// One vertex in common, two, or all, in meshes that know nothing of each other.
+// The meshes are separate and have one vertex in common, two, or all.
 TEST_P(StressRows, Row02SharedByPositionTouchesAtDistanceZero)
 {
     const TrianglePair vertex = {{0, 0, 0, -1, 1, 0, -1, 1, -1}, kFace};
@@ -88,7 +88,7 @@ TEST_P(StressRows, Row02SharedByPositionTouchesAtDistanceZero)
 
 namespace
 {
-// The face and a second triangle in one mesh: `shared` of its corners are the face's first ones, by index or by
+// Makes the face and a second triangle in one mesh. The first `shared` of its corners are the face's, by index or by
 // position only.
 TriangleMesh twoTriangles(const Corners& second, std::int32_t shared, bool byIndex)
 {
@@ -100,7 +100,7 @@ TriangleMesh twoTriangles(const Corners& second, std::int32_t shared, bool byInd
     return mesh;
 }
 
-// A step at rest of a cloth whose second triangle was far from its first before.
+// Makes a step at rest of a cloth whose second triangle was far from its first before.
 SelfStepCase restingOnItself(const TriangleMesh& mesh)
 {
     SelfStepCase step = {{"two triangles", mesh, mesh.m_positions}, mesh.m_positions, kThickness};
@@ -325,12 +325,12 @@ TEST_P(StressRows, Row10TwoIdenticalMeshesMeetInEveryPair)
 
 TEST_P(StressRows, Row21ParallelAndCollinearEdges)
 {
-    // Edges on one line that overlap in part, wholly, or in one point, with faces to opposite sides.
+    // The edges lie on one line and overlap in part, wholly, or in one point, with faces to opposite sides.
     expectAllHit({{1, 0, 0, 3, 0, 0, 2, 1, -1}, kFace});
     expectAllHit({{-1, 0, 0, 5, 0, 0, 2, 1, -1}, kFace});
     expectAllHit({{4, 0, 0, 6, 0, 0, 5, 1, -1}, kFace});
     expectNoneHit({{4.01f, 0, 0, 6, 0, 0, 5, 1, -1}, kFace});
-    // Parallel, half a thickness apart.
+    // The edges are parallel, half a thickness apart.
     for (const std::vector<Contact>& contacts :
          run(allOrders({{1, 0, -0.005f, 3, 0, -0.005f, 2, 1, -1}, kFace})).m_contacts)
     {

@@ -56,7 +56,7 @@ Motion touchingMotion(Random& random, std::uint32_t kind)
     }
     else
     {
-        // The second edge passes through the place u on the first, at its middle.
+        // The second edge passes through the position u on the first, at its middle.
         const Vec3 place = vec3Mix(there[0], there[1], u);
         const Vec3 half = gridPoint(random, 16);
         there[2] = vec3Sub(place, half);
@@ -84,7 +84,7 @@ Motion randomMotion(Random& random, float speed)
     return motion;
 }
 
-// Offset between the place (u,v) on the features at the time t, in double, and its derivatives.
+// Computes the offset between the positions (u,v) on the features at the time t, in double, and its derivatives.
 void offsetOf(const Motion& motion, const double x[3], double offset[3], double jacobian[3][3])
 {
     const double t = x[0], u = x[1], v = x[2];
@@ -116,7 +116,8 @@ double determinant(const double m[3][3])
            m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
-// The earliest time of a touch well inside the features that Newton's method finds from 40 random starts; 2 for none.
+// Returns the earliest time of a touch well inside the features that Newton's method finds from 40 random starts; 2 for
+// none.
 double touchByNewton(const Motion& motion, Random& random)
 {
     double earliest = 2;
@@ -163,7 +164,7 @@ bool sameResult(const CcdResult& a, const CcdResult& b)
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-// A vertex that falls through the middle of a face at rest.
+// Makes a vertex that falls through the middle of a face at rest.
 Motion fallingVertex()
 {
     return {DRAPE_VERTEX_FACE,
@@ -171,7 +172,7 @@ Motion fallingVertex()
             {at(0, 0, -3), at(-3, -3, 0), at(3, -3, 0), at(0, 3, 0)}};
 }
 
-// Two edges that cross, the first falling through the second.
+// Makes two edges that cross, the first falling through the second.
 Motion fallingEdge()
 {
     return {DRAPE_EDGES,
@@ -230,8 +231,8 @@ TEST(Ccd, EveryTouchThatNewtonFindsIsAHitInTime)
     EXPECT_GT(confirmed, hits * 9 / 10) << "hits that Newton's method does not find should be few";
 }
 
-// A vertex and a face that are in one plane at the given time, the vertex at the weights u and v there, while the
-// corners move by up to `turn` besides.
+// Makes a vertex and a face that are in one plane at the given time, the vertex at the weights u and v there. The
+// corners also move by up to `turn`.
 Motion passingMotion(Random& random, float time, float u, float v, float turn)
 {
     Motion motion = {DRAPE_VERTEX_FACE, {}, {}};
@@ -277,7 +278,7 @@ TEST(Ccd, MostMeetingsAreProvedWithoutASearch)
         const CcdResult result = run(passingMotion(random, time, u, v, 0.1f), settings);
         searched += result.m_boxes > 2;
         ASSERT_TRUE(result.m_hit) << "seed 75, case " << i;
-        // Looked for to the tolerance, and given as much earlier.
+        // The search reaches the tolerance, and the time is earlier by as much.
         ASSERT_LE(result.m_time, time) << "seed 75, case " << i;
         ASSERT_GE(result.m_time, time - 2.1f * settings.m_timeTolerance) << "seed 75, case " << i;
         if (result.m_boxes > 2) continue;
@@ -393,7 +394,7 @@ TEST(Ccd, TheOrderOfAPairDoesNotMatter)
 
 TEST(Ccd, SeparationIsADistance)
 {
-    // A vertex that passes a face at its corner's side, and one that stops above it.
+    // One vertex passes a face at its corner's side, and one stops above it.
     for (float gap : {0.5f, 0.01f, 1e-4f})
     {
         Motion above = fallingVertex();
@@ -456,7 +457,7 @@ TEST(Ccd, BadNumbersAreNoHitAndLargeOnesAreFinite)
     }
     for (float size : {1e38f, 1e-38f, 1e-44f})
     {
-        // 3e38 apart: their difference does not fit a float unless it is scaled first.
+        // The features are 3e38 apart: their difference does not fit a float unless it is scaled first.
         const CcdResult result = run(scaled(fallingVertex(), size));
         EXPECT_TRUE(result.m_hit) << size;
         EXPECT_LE(result.m_time, 0.25f) << size;

@@ -32,7 +32,7 @@ int cullVolume(CullVolume* cull, const ObstacleMotion* motion, const Triangle* t
     return cullMeets(&corners, kRadius, motion);
 }
 
-// The lane of direction i.
+// Returns the lane of direction i.
 Directions directionLane(int i)
 {
     const Vec3 axes[] = {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1)};
@@ -59,7 +59,7 @@ std::uint32_t outOfReach(const CullVolumes& packet, const Vec3* corners, Vec3 po
     return out;
 }
 
-// corners: those that the packet's volume is made of.
+// `corners` are those of the packet's volume.
 void expectNodesMakeTheVolume(const CullVolumes& packet, const Vec3* corners, Counts& counts)
 {
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
@@ -122,7 +122,7 @@ void expectSameVolume(const StepCase& step, const Triangle& triangle, std::uint3
 
 TEST(CullPacket, VolumesAreThoseOfSingleTriangles)
 {
-    // A turn by a right angle and a shift, of an obstacle in one half of the cloth.
+    // The obstacle rotates by a right angle and shifts, in one half of the cloth.
     const ObstacleMotion motion = {{0, -1, 0, 0.02f, 1, 0, 0, -0.01f, 0, 0, 1, 0.005f}, {-2, -2, -2}, {0, 2, 2}, 0};
     Counts counts;
     for (const bool moving : {false, true})

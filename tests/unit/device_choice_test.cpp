@@ -10,7 +10,7 @@ namespace drape::test
 {
 namespace
 {
-// DRAPE_DEVICE for a scope.
+// Sets DRAPE_DEVICE for a scope.
 struct DeviceVariable : ScopedVariable
 {
     explicit DeviceVariable(const char* value) : ScopedVariable("DRAPE_DEVICE", value) {}

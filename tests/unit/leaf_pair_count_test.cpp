@@ -1,4 +1,4 @@
-// Exact numbers of a mesh's pairs that are not visited.
+// Exact numbers of a mesh's pairs that no traversal visits.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ std::uint64_t countedOneByOne(const QueryMesh& a, const QueryMesh& b, std::uint3
     return count;
 }
 
-// Loose triangles, a fan or a cloth, crumpled or shrunk to a crowd, sometimes with a vertex that is not finite.
+// Makes loose triangles, a fan or a cloth, crumpled or shrunk to a crowd, sometimes with a vertex that is not finite.
 TriangleMesh randomMesh(std::uint32_t seed)
 {
     Random random(seed);

@@ -112,7 +112,7 @@ TEST(MeshProbe, SeamsOffByRoundingAreClosed)
                 ASSERT_EQ(probe.isInside(p), distance < 1) << distance;
             }
         }
-        // A gap that is no rounding.
+        // The gap is larger than rounding.
         for (float& z : mesh.m_positions)
             if (z == at(kSteps, 1).z) z += float(1e-4 * size);
         EXPECT_FALSE(probeOf(mesh).isClosed()) << size;

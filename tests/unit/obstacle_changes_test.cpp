@@ -31,7 +31,7 @@ protected:
     }
     void give(std::size_t slot) { m_scene.m_obstacles.mesh(slot).m_given = ++m_scene.m_obstacleMotion; }
 
-    // A letter a slot: given, placed, or nothing.
+    // Returns a letter for each slot: given, placed, or nothing.
     std::string taken(std::size_t fresh)
     {
         m_changes.take(m_scene, fresh);

@@ -127,9 +127,9 @@ TEST_P(ProgramTest, BrokenKernelNamesFileLineAndLog)
     std::string source = assembleSource("kernels/refit.cl");
     const std::size_t at = source.find("dopStore(nodes + leaf");
     ASSERT_NE(at, std::string::npos);
-    // A variable: a missing function may pass for one to be linked.
+    // A variable breaks the source; a missing function could pass for one to be linked.
     source.insert(at, "thisIsNoVariable = 7;");
-    // The line of refit.cl that was broken.
+    // Finds the broken line of refit.cl.
     const std::string before = source.substr(source.rfind("#line", at), at - source.rfind("#line", at));
     const std::size_t line = std::stoul(before.substr(6)) + countOf(before, "\n") - 1;
 

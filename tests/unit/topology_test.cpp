@@ -137,7 +137,7 @@ TEST(Topology, DuplicateFacesAreDropped)
         std::vector<std::int32_t> triangles;
         std::vector<std::uint32_t> first;
         std::set<std::set<std::int32_t>> distinct;
-        // Few vertices: up to 5 triangles at an edge, and each of them several times.
+        // The few vertices give up to 5 triangles at an edge, and each of them several times.
         const std::uint32_t vertices = 4 + random.below(4);
         for (std::uint32_t t = 0; t < 200; ++t)
         {
