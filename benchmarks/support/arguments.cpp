@@ -31,9 +31,9 @@ void addCommonOptions(CLI::App& app, CommonOptions& options)
     app.add_option("--commit", options.m_commit, "commit that is measured, for the results");
     app.add_flag("--quick", options.m_quick, "measure small inputs only, for some seconds");
     app.add_flag("--list", options.m_list, "list all measurements and exit");
-    app.add_option(
-           "--repeats", options.m_repeats,
-           "largest number of repetitions of a measurement; the study repeats 5 times if one takes less than 50 ms")
+    app.add_option("--repeats", options.m_repeats,
+                   "largest number of repetitions of a measurement; the study repeats at least 5 times if one takes "
+                   "less than 50 ms")
         ->check(CLI::Validator(wholeNumber(1, 1000000000), ""));
     app.add_option("--seconds", options.m_seconds, "time limit for the repetitions of one measurement, s")
         ->check(CLI::Validator(numberAbove(0, false, "more than 0"), ""));
