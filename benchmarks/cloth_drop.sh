@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
-# The thesis's scene, a cloth dropped on the bunny, on every back end: cloth_drop.sh OUT_DIR [options]
+# Drops the cloth of the thesis's scene on the bunny, on every back end: cloth_drop.sh OUT_DIR [options]
 #
 #   --device NAME    part of an OpenCL device's name; may be given again (default: every device)
 #   --no-compare     without Bullet's own collision, stock and tuned, which takes minutes
-#   other options    are cloth_drop's, of every run (as --cloth 65x65)
+#   other options    are passed to cloth_drop in every run (for example --cloth 65x65)
 #
-# Runs 240 steps on each device and on the host back end, with contacts that others imply left out and solved
-# (--all-contacts), then Bullet's own collision beside the first. Writes OUT_DIR/cloth_drop.json, what cloth_drop says of
-# each with commit, machine, scene and options, and prints a table: medians of the collision and of finding contacts,
-# deepest penetration, intersecting pairs and nodes inside at the end, nodes that went through, and the trajectory's
-# hash. Needs cloth_drop, Bash and Python. Measure on an idle machine. Ends with 1 when a run failed or Drape's back ends
-# differ. These may be set: BIN (build/release/bin), BUNNY, COMMIT (git describe), and STEPS.
+# Runs 240 steps on each device and on the host back end, with all contacts and without redundant ones (--all-contacts).
+# Runs Bullet's own collision beside the first. Writes OUT_DIR/cloth_drop.json: the summary of each run with commit,
+# machine, scene and options. Prints a table of medians of the collision and of finding contacts, deepest penetration,
+# intersecting pairs and nodes inside at the end. The table also has the nodes that went through and the trajectory's
+# hash. Needs cloth_drop, Bash and Python. Measure on an idle machine. Ends with 1 if a run failed or Drape's back ends
+# differ. Environment: BIN (build/release/bin), BUNNY, COMMIT (git describe), and STEPS.
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)

@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
 # Answers published queries with exact answers: drape_check.sh OUT_DIR --truth DIR [options]
 #
-#   --truth DIR      folder of ccd_queries.bin, triangle_pairs.bin, cloth_ball92.ply and cloth_ball93.ply; what is not
-#                    there is named and left out
+#   --truth DIR      folder of ccd_queries.bin, triangle_pairs.bin, cloth_ball92.ply and cloth_ball93.ply;
+#                    missing files are named and left out
 #   --device NAME    part of an OpenCL device's name; may be given again (default: every device)
 #   --bin DIR        folder of drape_check (default: BIN, else build/release/bin)
-#   --commit TEXT    what is measured (default: git describe)
+#   --commit TEXT    the measured commit (default: git describe)
 #
-# Runs ccd, triangles (fast, exact and moller), pairs (of each frame with itself and of the two, intersecting at thickness 0)
-# and step on the host and on the devices, and writes OUT_DIR/drape_check.json: what
-# drape_check says of each, with commit and machine. Needs drape_check, Bash and Python. Measure on an idle machine. Ends
-# with 1 when something could not be measured.
+# Runs ccd, triangles (fast, exact and moller), pairs and step on the host and on the devices. pairs compares each frame
+# with itself and both frames, intersecting at thickness 0. Writes OUT_DIR/drape_check.json: the answers of each run
+# with commit and machine. Needs drape_check, Bash and Python. Measure on an idle machine. Ends with 1 if something
+# could not be measured.
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -37,7 +37,7 @@ import json, os, subprocess, sys
 import machine
 
 program, commit, truth, target, *wanted = sys.argv[1:]
-# Key, a name for the variant, arguments, files of the folder.
+# Each question has a key, a name for the variant, arguments, and files of the folder.
 QUESTIONS = (("ccd", "", ["ccd"], ["ccd_queries.bin"]),
              ("triangles", "fast", ["triangles", "--mode", "fast"], ["triangle_pairs.bin"]),
              ("triangles", "exact", ["triangles", "--mode", "exact"], ["triangle_pairs.bin"]),

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# The cloth of cloth_drop thrown at the bunny: drop_speeds.sh OUT_DIR [options of cloth_drop, as --device NAME]
+# Throws the cloth of cloth_drop at the bunny: drop_speeds.sh OUT_DIR [options of cloth_drop, e.g. --device NAME]
 #
 # Runs 2, 10, 50 and 200 m/s for 100 steps with Drape in each of its modes, and Bullet's own collision beside it. Writes
-# OUT_DIR/drop_speeds.json, with commit and machine, and prints a table: the most intersecting pairs and nodes on the
-# wrong side at the end of any step, nodes that went through the bunny, contacts at most, and the trajectory's hash. A run
-# that takes longer than its limit is ended, and its row is of the steps until then. Needs cloth_drop, Bash and Python.
-# These may be set: BIN (build/release/bin), BUNNY, COMMIT (git describe), LIMIT (60 s a run), SPEEDS and STEPS.
+# OUT_DIR/drop_speeds.json, with commit and machine. Prints a table of the most intersecting pairs and nodes on the
+# wrong side at the end of any step. The table also has the nodes that went through the bunny, the most contacts, and
+# the trajectory's hash. A run that exceeds its time limit is ended; its row covers the steps until then. Needs
+# cloth_drop, Bash and Python. Environment: BIN (build/release/bin), BUNNY, COMMIT (git describe), LIMIT (60 s a run),
+# SPEEDS and STEPS.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 out=${1:?OUT_DIR}

@@ -73,7 +73,7 @@ bunny=/usr/share/glmark2/models/bunny.obj
 [[ -z $models || ! -f $models/bunny_69k.obj ]] || bunny=$models/bunny_69k.obj
 if [[ -z $quick && -x $bin/cloth_drop && -f $bunny ]]; then
   BIN=$bin BUNNY=$bunny COMMIT=$commit bash "$here/cloth_drop.sh" "$out" ${device:+--device "$device"} || worst=1
-  # Its slow runs are Bullet's and the discrete ones, twelve: 0.04 of the minutes.
+  # The slow runs are Bullet's and the discrete ones, twelve: 0.04 of the minutes.
   BIN=$bin BUNNY=$bunny COMMIT=$commit LIMIT=$(minutes_of 0.2) \
     bash "$here/drop_speeds.sh" "$out" ${device:+--device "$device"} || worst=1
 fi
@@ -89,7 +89,7 @@ if [[ -x $bin/error_vs_time ]]; then
   note $?
 fi
 
-# Debian's interpreter first: its matplotlib is not seen by others.
+# Prefers Debian's interpreter, since others do not find its matplotlib.
 python=/usr/bin/python3
 [[ -x $python ]] || python=python3
 if "$python" -c 'import matplotlib' 2>/dev/null; then

@@ -74,7 +74,7 @@ measure() {
   "$bin/$program" --commit "$commit" --part "$part" --minutes "$share" --json "$work/$name.json" --csv "$work/$name.csv" \
     "${arguments[@]}" "$@"
   local code=$?
-  # Without a row: nothing of the part is wanted, or fitted.
+  # A file without a row means that nothing of the part is wanted, or fitted.
   [[ -e $work/$name.json || $code != 2 ]] || code=$([[ -n $only ]] && echo 0 || echo 1)
   note "$code"
   [[ ! -e $work/$name.json ]] || "$python" "$here/merge_study.py" "$out" "$work/$name.json" || [[ $? == 3 ]] || note 1

@@ -44,7 +44,7 @@ if(DRAPE_BUILD_BENCHMARKS AND (PROJECT_IS_TOP_LEVEL OR NOT DRAPE_BUILD_BENCHMARK
   if(PKG_CONFIG_FOUND)
     pkg_check_modules(fcl ${need} IMPORTED_TARGET fcl)
     if(TARGET PkgConfig::fcl)
-      # fcl.pc asks for C++11; CMake 3.28 puts that behind our own C++17, where it would win.
+      # fcl.pc asks for C++11. CMake 3.28 puts this behind our own C++17, where it would win.
       list(FILTER fcl_CFLAGS_OTHER EXCLUDE REGEX "^-std=")
       set_property(TARGET PkgConfig::fcl PROPERTY INTERFACE_COMPILE_OPTIONS ${fcl_CFLAGS_OTHER})
     endif()

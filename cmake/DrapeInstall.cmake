@@ -25,12 +25,12 @@ else()
   set(DRAPE_PC_BULLET bullet)
   set(DRAPE_PC_DOUBLE 0)
 endif()
-# What a static library leaves to be linked.
+# Lists the libraries that a user of the static library must link.
 if(DRAPE_LIBRARY_TYPE STREQUAL "STATIC_LIBRARY")
   set(DRAPE_PC_STATIC_REQUIRES ", OpenCL")
   set(DRAPE_PC_STATIC_LIBS " -pthread")
 endif()
-# Relative to the .pc file, so that cmake --install --prefix and a moved tree stay right.
+# The path is relative to the .pc file, so that it stays right after cmake --install --prefix or a move of the tree.
 set(pc_dir ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig)
 file(RELATIVE_PATH DRAPE_PC_PREFIX ${pc_dir} ${CMAKE_INSTALL_PREFIX})
 file(RELATIVE_PATH DRAPE_PC_INCLUDEDIR ${pc_dir} ${CMAKE_INSTALL_FULL_INCLUDEDIR})

@@ -16,7 +16,7 @@ function(drape_target target)
     if(DRAPE_BUILD_FUZZERS)
       target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)  # tells libFuzzer what an input reached
     endif()
-    # Public, so that whatever links a library that calls the sanitizers' run time links that run time too.
+    # The option is public, so that every user of a library that calls the sanitizers' run time links it, too.
     target_link_options(${target} PUBLIC -fsanitize=address,undefined)
   endif()
 endfunction()

@@ -13,7 +13,7 @@ foreach(name IN LISTS files)
   if("00" IN_LIST pairs)
     message(FATAL_ERROR "${ROOT}/${name} contains a zero byte")
   endif()
-  # 24 values a line: short enough for any editor and compiler.
+  # 24 values a line are short enough for any editor and compiler.
   string(REGEX REPLACE "(..)" "'\\\\x\\1'," values "${bytes}")
   string(REPEAT "......." 24 line)
   string(REGEX REPLACE "(${line})" "\\1\n" values "${values}")

@@ -42,7 +42,7 @@ done
 
 as_root=()
 if [[ $(id -u) != 0 ]]; then
-  # sudo without a password, or one that can ask for it.
+  # sudo works without a password, or can ask for one.
   if command -v sudo >/dev/null && { sudo -n true 2>/dev/null || [[ -t 0 ]]; }; then
     as_root=(sudo)
   else

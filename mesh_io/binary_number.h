@@ -26,7 +26,7 @@ inline std::size_t numberSize(NumberType type)
     return sizes[static_cast<int>(type)];
 }
 
-// The number at `bytes`, which is exact in a double.
+// Returns the number at `bytes`, which is exact in a double.
 inline double decodeNumber(NumberType type, const char* bytes, bool bigEndian)
 {
     const std::size_t size = numberSize(type);

@@ -11,7 +11,7 @@ namespace
 constexpr std::size_t kLeafSize = 4;
 constexpr int kTries = 64;  // corners to look at for one that turns left, where no ear is left
 
-// Twice the area of a triangle, positive where it turns to the left.
+// Returns twice the area of a triangle, positive if it turns to the left.
 double area(const Point2& a, const Point2& b, const Point2& c)
 {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -43,7 +43,7 @@ EarClipping::Outcome EarClipping::split(const std::vector<Point2>& outline, std:
         }
         clip(ear, triangles);
     }
-    // The last triangle begins with its lowest corner, as a polygon does.
+    // The last triangle begins with its lowest corner, like a polygon.
     const Corner second = m_next[m_head], third = m_next[second];
     const Corner first = std::min({m_head, second, third});
     for (const Corner corner : {first, m_next[first], m_previous[first]})
@@ -72,7 +72,7 @@ void EarClipping::start(const std::vector<Point2>& outline)
     buildTree();
     for (Corner i = 0; i < count; ++i)
         if (!turnsLeft(i)) setBlocker(i, true);
-    // Corner 1 first: its ear is what a fan from corner 0 begins with.
+    // Corner 1 comes first: a fan from corner 0 begins with its ear.
     for (Corner i = 0; i < count; ++i)
         push(m_next[i]);
 }
@@ -209,7 +209,7 @@ EarClipping::Corner EarClipping::findBlocker(Corner corner)
     return kNone;
 }
 
-// Whether one of the ear's edges, or its bounds, parts it from the box.
+// Returns true if one of the ear's edges, or its bounds, separates it from the box.
 bool EarClipping::isOutside(const Box& box, const Point2* ear) const
 {
     for (int axis = 0; axis < 2; ++axis)
@@ -220,7 +220,7 @@ bool EarClipping::isOutside(const Box& box, const Point2* ear) const
     for (int edge = 0; edge < 3; ++edge)
     {
         const Point2 &a = ear[edge], &b = ear[(edge + 1) % 3];
-        // The box's corner that is farthest to the left of the edge.
+        // The corner is the box's farthest to the left of the edge.
         const Point2 corner = {b[1] - a[1] > 0 ? box.m_low[0] : box.m_high[0],
                                b[0] - a[0] > 0 ? box.m_high[1] : box.m_low[1]};
         if (area(a, b, corner) < 0) return true;

@@ -22,7 +22,7 @@ bool findType(const Json& object, NumberType& type)
     return true;
 }
 
-// The divisor of a normalized number; 1 for floats. Specification: glTF 2.0, section 3.11.
+// Returns the divisor of a normalized number; 1 for floats. Specification: glTF 2.0, section 3.11.
 double largestOf(NumberType type)
 {
     switch (type)

@@ -33,7 +33,7 @@ public:
     // Returns "" or the reason, which names the accessor.
     std::string read(const Json& reference, const char* type, std::size_t columns, GltfNumbers& numbers);
 
-    // The size of all buffers that have been read.
+    // Returns the size of all buffers that have been read.
     std::size_t loadedBytes() const { return m_loadedBytes; }
 
 private:

@@ -12,9 +12,11 @@ namespace drape
 {
 namespace
 {
-// Of brackets and of nodes. The specification has no limit; readers that recurse would run out of stack.
+// Limits the nesting of brackets and of nodes. The specification has no limit; recursive readers would run out of
+// stack.
 constexpr std::size_t kMostDepth = 512;
-// Nodes may repeat a mesh: a file may become this many vertices or corners for each of its bytes, and as many besides.
+// Limits the size of a mesh. Nodes may repeat a mesh: each byte of a file may give this many vertices or corners, plus
+// a constant.
 constexpr std::size_t kMostPerByte = 256, kMostBesides = std::size_t(1) << 20;
 
 enum Mode
@@ -38,7 +40,7 @@ Matrix multiply(const Matrix& a, const Matrix& b)
     return product;
 }
 
-// Of the part that turns and scales.
+// Returns the determinant of the upper 3x3 matrix, which rotates and scales.
 double determinant(const Matrix& m)
 {
     return m[0] * (m[5] * m[10] - m[6] * m[9]) + m[4] * (m[9] * m[2] - m[10] * m[1]) +
@@ -140,15 +142,15 @@ public:
     }
 
 private:
-    // A reference as a key.
+    // Returns a reference as a key.
     static std::string nameOf(const Json& reference)
     {
         return reference.dump(-1, ' ', true, Json::error_handler_t::replace);
     }
-    // The same for messages.
+    // Returns the name, shortened for messages.
     static std::string shortName(const Json& reference) { return nameOf(reference).substr(0, 64); }
 
-    // The nodes of the default scene, else of the first, else all that are no other node's children.
+    // Returns the nodes of the default scene, else of the first, else all nodes that are no child.
     std::vector<Json> roots() const
     {
         const Json &scenes = at(m_content, "scenes"), &nodes = at(m_content, "nodes");
@@ -297,7 +299,7 @@ private:
         return "";
     }
 
-    // The most vertices and the most triangles.
+    // Returns the largest number of vertices and of triangles.
     std::size_t most() const { return kMostBesides + kMostPerByte * (m_fileBytes + m_buffers.loadedBytes()); }
 
     const Json& m_content;

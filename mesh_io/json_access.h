@@ -11,7 +11,7 @@ namespace drape
 {
 using Json = nlohmann::json;
 
-// The value of an object's key; null where there is none.
+// Returns the value of an object's key, or null.
 inline const Json& at(const Json& object, const char* key)
 {
     static const Json none;
@@ -19,7 +19,7 @@ inline const Json& at(const Json& object, const char* key)
     return found == object.end() ? none : *found;
 }
 
-// The item that a reference leads to: an index into an array (glTF 2.0) or a name in an object (glTF 1.0). Null where
+// Returns the item of a reference: an index into an array (glTF 2.0) or a name in an object (glTF 1.0). Returns null if
 // there is none.
 inline const Json& follow(const Json& items, const Json& reference)
 {

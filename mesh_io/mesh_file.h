@@ -1,4 +1,4 @@
-// A mesh as a file has it: vertices in double precision and polygons of vertex indices. The readers fill it.
+// A mesh with the contents of a file: vertices in double precision and polygons of vertex indices. The readers fill it.
 //
 // Nothing is merged, reordered, centred or rounded. Indices are valid once readMeshFile() has returned the mesh.
 #pragma once
@@ -20,7 +20,7 @@ struct MeshFile
     std::vector<std::int32_t> m_corners;  // zero-based vertex indices, face after face
     std::vector<std::size_t> m_faceEnds;  // for each face, one past its last corner in m_corners
     bool m_hasIndices = true;             // false: each face has vertices of its own, as in STL
-    std::vector<std::string> m_notes;     // what was left out or cannot be represented, one line each
+    std::vector<std::string> m_notes;     // parts that were left out or cannot be represented, one line each
 
     std::size_t vertexCount() const { return m_positions.size() / 3; }
     std::size_t faceCount() const { return m_faceEnds.size(); }
@@ -52,7 +52,7 @@ inline std::string counted(std::size_t count, const std::string& noun)
     return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-// The note for faces that endFace() removed; none for 0.
+// Adds a note about the faces that endFace() removed, if any.
 inline void noteShortFaces(std::size_t count, MeshFile& mesh)
 {
     if (count > 0) mesh.m_notes.push_back(counted(count, "face") + " with fewer than three corners left out");

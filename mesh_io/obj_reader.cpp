@@ -25,8 +25,8 @@ public:
     }
 
 private:
-    // The next word of the statement, which goes on in the next line after a backslash. Empty at its end, also where a
-    // comment begins.
+    // Returns the next word of the statement, which continues in the next line after a backslash. Returns an empty word
+    // at its end or before a comment.
     std::string_view statementWord()
     {
         for (;;)
@@ -53,7 +53,7 @@ private:
         }
     }
 
-    // A weight or a colour may follow the three coordinates. Polygons have no use for either.
+    // A weight or a colour may follow the three coordinates. It is ignored.
     std::string readVertex()
     {
         double position[3];

@@ -69,7 +69,7 @@ std::string readFormat(std::istringstream& words, PlyHeader& header)
     return "";
 }
 
-// The end of a line as the file's first line has it; empty where there is no line.
+// Returns the line end that the file's first line has, or an empty text without a line.
 std::string lineEndOf(const std::string& bytes)
 {
     const std::size_t end = bytes.find_first_of("\r\n");

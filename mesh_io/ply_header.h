@@ -20,10 +20,10 @@ struct PlyProperty
 {
     std::string m_name;
     bool m_isList = false;
-    NumberType m_countType = NumberType::Uint8;  // of a list's length
+    NumberType m_countType = NumberType::Uint8;  // type of a list's length
     NumberType m_type = NumberType::Float32;
 
-    // The fewest bytes that a value takes in a binary file.
+    // Returns the fewest bytes of a value in a binary file.
     std::size_t smallestSize() const { return numberSize(m_isList ? m_countType : m_type); }
 };
 
@@ -33,7 +33,7 @@ struct PlyElement
     std::uint64_t m_count = 0;
     std::vector<PlyProperty> m_properties;
 
-    // The property's index, or -1.
+    // Returns the property's index, or -1.
     int find(const std::string& name, bool isList) const;
 };
 

@@ -38,8 +38,8 @@ private:
     bool m_bigEndian;
 };
 
-// Text has one element a line, and what follows on the line is passed over. A few writers break lines elsewhere. Where
-// there are fewer lines than elements, or the first line is too short, line ends are blanks, and the numbers must be as
+// Reads text with one element a line; the rest of a line is skipped. A few writers break lines elsewhere. If there are
+// fewer lines than elements, or the first line is too short, line ends count as blanks. The numbers must then be as
 // many as the header says.
 class TextNumbers : public PlyNumbers
 {

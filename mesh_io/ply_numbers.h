@@ -12,16 +12,17 @@ class PlyNumbers
 {
 public:
     virtual ~PlyNumbers() = default;
-    // Called before and after each element. Return "" or what is wrong with its extent.
+    // Called before and after each element. Return "" or the error of its extent.
     virtual std::string startElement() = 0;
     virtual std::string endElement() = 0;
     // Reads the next number. Returns "" or why there is none.
     virtual std::string next(NumberType type, double& value) = 0;
-    // Whether `count` elements could be there, each of at least the size given. Keeps memory within the file's size.
+    // Returns true if `count` elements of at least the given size fit into the rest of the file. Keeps memory within
+    // the file's size.
     virtual bool canHold(std::uint64_t count, std::size_t smallestSize) const = 0;
     // Describes what follows the last element: empty for nothing.
     virtual std::string rest() = 0;
-    // Whether nothing may follow the last element.
+    // Returns true if nothing may follow the last element.
     virtual bool mustEnd() const = 0;
 };
 

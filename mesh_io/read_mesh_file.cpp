@@ -51,7 +51,7 @@ std::string cornersProblem(const MeshFile& mesh)
     return "";
 }
 
-// Text of a file may be in a message: it must not break the line.
+// Removes line breaks: a message may quote the file's text.
 std::string oneLine(std::string text)
 {
     std::replace_if(

@@ -1,9 +1,9 @@
 // Readers of mesh files, one for each format. Each parses the file's bytes once.
 //
-// All fill an empty mesh with what the file says and return "", or the reason why the file cannot be read: one line
-// that names the line, vertex or face, counted from 1 as editors do. Faces refer to vertices that exist. Positions may
-// be NaN or infinite. A file that ends too early is refused. Memory stays within a small multiple of the file's size,
-// or of what its nodes repeat in glTF. Any bytes are safe.
+// All fill an empty mesh with the file's content and return "". On failure they return one line with the reason. It
+// names the line, vertex or face, counted from 1 as in editors. Faces refer to vertices that exist. Positions may be
+// NaN or infinite. A truncated file is refused. Memory stays within a small multiple of the file's size, or of the
+// meshes that glTF nodes repeat. Any bytes are safe.
 #pragma once
 
 #include <functional>

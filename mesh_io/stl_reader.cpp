@@ -67,7 +67,7 @@ public:
     }
 
 private:
-    // The next word; "end facet" and the like count as one.
+    // Returns the next word; "end facet" and the like count as one.
     std::string_view keyword()
     {
         const std::string_view word = m_cursor.wordOfAnyLine();

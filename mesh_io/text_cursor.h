@@ -17,7 +17,7 @@ public:
     explicit TextCursor(const std::string& text, std::size_t start = 0);
 
     std::size_t place() const { return m_place; }
-    // The number of the current line, counted from 1 at `start`.
+    // Returns the number of the current line, counted from 1 at `start`.
     std::size_t line() const { return m_line; }
     bool atEnd() const { return m_place == m_text.size(); }
     bool atLineEnd() const { return atEnd() || m_text[m_place] == '\n' || m_text[m_place] == '\r'; }
@@ -43,15 +43,15 @@ private:
 // too. The byte behind the word must be part of the
 // same string, as it is for the words of a TextCursor. Returns "" or the reason why the word is not a number.
 std::string readNumber(std::string_view word, double& value);
-// As readNumber(), for a whole number without fraction or exponent.
+// Reads a whole number without fraction or exponent; otherwise equal to readNumber().
 std::string readInteger(std::string_view word, long long& value);
 
-// A number for a message: whole numbers as such, others with up to 17 digits.
+// Returns a number for a message: whole numbers without decimals, others with up to 17 digits.
 std::string numberText(double value);
 
-// The word in quotes for a message, cut after 32 bytes, unprintable bytes as '?'.
+// Returns the word in quotes for a message, cut after 32 bytes, unprintable bytes as '?'.
 std::string quoted(std::string_view word);
 
-// Whether two words are equal but for upper and lower case of ASCII letters.
+// Returns true if two words are equal apart from upper and lower case of ASCII letters.
 bool sameWord(std::string_view a, std::string_view b);
 }  // namespace drape

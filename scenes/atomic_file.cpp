@@ -14,11 +14,11 @@ namespace
 {
 namespace fs = std::filesystem;
 
-// Where the bytes go in the end.
+// The final destination of the bytes.
 struct Target
 {
     fs::path m_path;           // no link, of a file
-    struct stat m_status;      // of what is there
+    struct stat m_status;      // status of the existing file
     int m_code = 0;            // why there is nothing: ENOENT, or worse
     bool m_isInPlace = false;  // written where it is
 
@@ -37,7 +37,7 @@ bool fail(const std::string& path, int code, std::string& error)
     return fail(path, std::strerror(code), error);
 }
 
-// The same place without links on the way to it, as far as there is one.
+// Resolves links in the existing part of the path.
 fs::path inRealFolder(const fs::path& path)
 {
     std::error_code code;
@@ -45,8 +45,8 @@ fs::path inRealFolder(const fs::path& path)
     return code ? path : folder / path.filename();
 }
 
-// A link's end, whether or not anything is there. What a process's descriptor links to need not be a path: it is left
-// as it is.
+// Returns a link's target, whether it exists or not. A process's descriptor need not link to a path; it is left
+// unchanged.
 fs::path followed(const fs::path& link)
 {
     std::error_code code;
@@ -68,7 +68,7 @@ Target targetOf(const std::string& path)
     return target;
 }
 
-// 0 or the error's number.
+// Returns 0 or the error's number.
 int writeTo(const std::string& path, const std::string& bytes)
 {
     std::FILE* file = std::fopen(path.c_str(), "wb");

@@ -12,10 +12,10 @@ namespace drape
 {
 bool writeFileAtomically(const std::string& path, const std::string& bytes, std::string& error);
 
-// Whether that could be done, told before there is anything to write. Else one line in `error`.
+// Returns true if the file could be written, before there is anything to write. Otherwise sets `error` to one line.
 bool canWriteFile(const std::string& path, std::string& error);
 
-// Whether what is written to one path would take the place of what is written to the other, under whatever names. A
-// device takes both.
+// Returns true if writing one path would replace the file at the other path, whatever their names. A device accepts
+// both.
 bool areOneFile(const std::string& one, const std::string& other);
 }  // namespace drape

@@ -18,7 +18,7 @@ struct ClothGrid
     std::vector<std::int32_t> m_bendingSprings;  // 2 nodes each: two grid cells apart along rows, columns and diagonals
 };
 
-// A cloth of columns × rows nodes (each ≥ 2), square cells, longer side `size` m, centred at x = z = 0, height y.
+// Makes a cloth of columns × rows nodes (each ≥ 2), square cells, longer side `size` m, centred at x = z = 0, height y.
 // Diagonals alternate from cell to cell, so the cloth has no preferred direction. Normals point up.
 ClothGrid makeClothGrid(int columns, int rows, float size, float y);
 }  // namespace drape

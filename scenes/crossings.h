@@ -1,5 +1,7 @@
-// Nodes that went through the obstacle: those whose way from one step's end to the next met its surface, exactly
-// tested. A node that flew through something thin is not inside of it afterwards, so that depths do not tell. Metres.
+// Finds nodes that went through the obstacle: their path from one step's end to the next met its surface, tested
+// exactly.
+//
+// A node that flew through something thin is not inside of it afterwards, so its depth does not show it. Metres.
 #pragma once
 
 #include <vector>
@@ -12,10 +14,10 @@ namespace drape
 class Crossings
 {
 public:
-    // positions: x y z per node at the start.
+    // `positions` holds x y z per node at the start.
     Crossings(const TriangleMesh& obstacle, const std::vector<float>& positions);
 
-    // To be called after every step with the nodes' new places; those that are not finite are left out.
+    // Call this after every step with the nodes' new positions. Positions that are not finite are left out.
     void follow(const std::vector<float>& positions);
     std::size_t nodes() const;
 

@@ -1,4 +1,4 @@
-// A mesh as the collision pipeline takes it. The mesh must outlive the description.
+// Describes a mesh for the collision pipeline. The mesh must outlive the description.
 #pragma once
 
 #include "bullet_plugin/core/pipeline.h"

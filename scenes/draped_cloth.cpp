@@ -47,8 +47,8 @@ std::vector<double> nodeHeights(const HeightField& field, const TriangleMesh& cl
     return heights;
 }
 
-// No node lower than the slope lets it hang from any other: two sweeps over the grid, there and back, carry heights to
-// all nodes through straight and diagonal neighbours.
+// Raises nodes until no node hangs more steeply than the slope from any other. Two sweeps over the grid, there and
+// back, carry heights to all nodes through straight and diagonal neighbours.
 void limitSlope(std::vector<double>& heights, int nodes, double cell)
 {
     const int neighbours[4][2] = {{-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
@@ -136,7 +136,7 @@ std::vector<ClothPlace> scatterCloths(const HeightField& field, const ClothPlace
     Random random(seed);
     const Bounds& bounds = field.bounds();
     std::vector<ClothPlace> places;
-    // A floor plan of which a thousandth is not covered is no obstacle to drape over: then the cloths lie anywhere.
+    // A floor plan with more than a thousandth covered is an obstacle. Otherwise the cloths lie anywhere.
     long tries = 1000L * count;
     while (places.size() < static_cast<std::size_t>(count))
     {
@@ -158,7 +158,7 @@ void ClothMotion::positions(const std::vector<float>& rest, int step, float* out
     const double x = amplitude * std::sin(phase), z = amplitude * std::cos(phase);
     for (std::size_t i = 0; i < rest.size(); i += 3)
     {
-        // Two metres a wave along x, three along z: neighbours move alike, far parts against one another.
+        // The wave has two metres along x and three along z: neighbours move alike, distant parts against one another.
         const double wave = amplitude * std::sin(phase + kPi * rest[i] + 2 * kPi / 3 * rest[i + 2]);
         out[i] = static_cast<float>(rest[i] + x);
         out[i + 1] = static_cast<float>(rest[i + 1] + wave);

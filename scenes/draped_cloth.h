@@ -1,8 +1,9 @@
-// Cloths lying on an obstacle, as after a fall: for measurements that need contact without a simulation.
+// Cloths lying on an obstacle as after a fall, for measurements that need contact without a simulation.
 //
-// A cloth hangs over the highest surface under it, nowhere steeper than kDrapeSlope, with the given vertical gap: its
-// nodes, and points inside of its triangles as dense as the obstacle, are above the surface by the gap (to a tenth of
-// it). Nodes beside the obstacle hang down from it. Deterministic. Linear in the nodes plus the points looked at.
+// A cloth hangs over the highest surface under it with the given vertical gap, nowhere steeper than kDrapeSlope. Its
+// nodes are above the surface by the gap, within a tenth of it. So are sample points inside its triangles, which are as
+// dense as the obstacle. Nodes beside the obstacle hang down from it. Deterministic. Cost: linear in the nodes plus the
+// sample points.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +31,7 @@ struct ClothPlace
 
 TriangleMesh drapeCloth(const HeightField& field, const ClothPlace& place);
 
-// `count` such places at random where the obstacle is under the centre.
+// Returns `count` random places where the obstacle is under the centre.
 std::vector<ClothPlace> scatterCloths(const HeightField& field, const ClothPlace& place, int count, std::uint32_t seed);
 
 // A repeatable motion of cloth nodes: small periodic sways, so that any number of steps stays in contact and every step

@@ -8,7 +8,7 @@ namespace
 {
 constexpr double kUnit = 1.1102230246251565e-16;      // 2⁻⁵³
 constexpr double kBound3 = (7 + 56 * kUnit) * kUnit;  // Shewchuk 1997, orient3d, stage A
-constexpr double kBound2 = (3 + 16 * kUnit) * kUnit;  // the same, orient2d
+constexpr double kBound2 = (3 + 16 * kUnit) * kUnit;  // error bound of orient2d
 constexpr int kNext[3] = {1, 2, 0};
 
 int signOf(double value)
@@ -21,7 +21,7 @@ bool areSame(const Vector3& a, const Vector3& b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-// Whether two of the points are one, as of a segment that stands for a triangle.
+// Returns true if two of the points are equal, so that a segment stands for a triangle.
 bool anySame(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d)
 {
     return areSame(a, b) || areSame(a, c) || areSame(a, d) || areSame(b, c) || areSame(b, d) || areSame(c, d);
@@ -40,7 +40,7 @@ int exactOrientation(const Vector3& a, const Vector3& b, const Vector3& c, const
     return sgn(volume);
 }
 
-// Sign of the area of a, b, c seen along an axis.
+// Returns the sign of the area of a, b, c seen along an axis.
 int orientation2(const Vector3& a, const Vector3& b, const Vector3& c, int along)
 {
     const int u = kNext[along], v = kNext[u];
@@ -74,8 +74,8 @@ bool segmentsMeet2(const Vector3& p, const Vector3& q, const Vector3& r, const V
            (rsp == 0 && onSegment2(r, s, p, along)) || (rsq == 0 && onSegment2(r, s, q, along));
 }
 
-// Segments meet iff they lie in one plane and meet in all three axis views: at least one view is one-to-one on the
-// plane (or line) that holds them, and a common point shows in every view.
+// Segments meet if and only if they lie in one plane and meet in all three axis views. At least one view is one-to-one
+// on the plane (or line) that contains them, and a common point shows in every view.
 bool segmentsMeet(const Vector3& p, const Vector3& q, const Vector3& r, const Vector3& s)
 {
     return segmentsMeet2(p, q, r, s, 0) && segmentsMeet2(p, q, r, s, 1) && segmentsMeet2(p, q, r, s, 2) &&
@@ -87,7 +87,7 @@ bool meetsBoundary(const Vector3& p, const Vector3& q, const Vector3 t[3])
     return segmentsMeet(p, q, t[0], t[1]) || segmentsMeet(p, q, t[1], t[2]) || segmentsMeet(p, q, t[2], t[0]);
 }
 
-// For a point in the plane of a triangle that has area; in all views, for the reason above.
+// Tests a point in the plane of a triangle that has area, in all views for the reason above.
 bool coplanarPointInside(const Vector3& point, const Vector3 t[3])
 {
     for (int along = 0; along < 3; ++along)
@@ -136,7 +136,7 @@ bool segmentMeetsTriangle(const Vector3& p, const Vector3& q, const Vector3 t[3]
 
 bool trianglesIntersect(const Vector3 a[3], const Vector3 b[3])
 {
-    // All of one triangle strictly on one side of the other's plane: apart.
+    // All of one triangle is strictly on one side of the other's plane: they do not meet.
     const int b0 = orientation(a[0], a[1], a[2], b[0]);
     if (b0 != 0 && b0 == orientation(a[0], a[1], a[2], b[1]) && b0 == orientation(a[0], a[1], a[2], b[2])) return false;
     const int a0 = orientation(b[0], b[1], b[2], a[0]);

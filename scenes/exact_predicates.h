@@ -9,12 +9,13 @@
 
 namespace drape
 {
-// Sign of the volume of (a, b, c, d): positive when d sees a, b, c clockwise, 0 when the four lie in one plane.
+// Returns the sign of the volume of (a, b, c, d): positive if d sees a, b, c clockwise, 0 if the four lie in one plane.
 int orientation(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d);
 
-// Whether two closed triangles have a point in common: touching counts, triangles without area are segments or points.
+// Returns true if two closed triangles have a point in common. Touching counts. Triangles without area are segments or
+// points.
 bool trianglesIntersect(const Vector3 a[3], const Vector3 b[3]);
 
-// Whether the closed segment p q and the closed triangle have a point in common.
+// Returns true if the closed segment p q and the closed triangle have a point in common.
 bool segmentMeetsTriangle(const Vector3& p, const Vector3& q, const Vector3 triangle[3]);
 }  // namespace drape

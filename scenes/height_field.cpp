@@ -10,7 +10,7 @@ namespace
 // Cells a side at most: 4 million cells are 16 MB, and a mesh of a million triangles has no finer ones.
 constexpr std::size_t kMostCells = 2048;
 
-// Height of the triangle over (x, z); false when it is beside.
+// Computes the height of the triangle over (x, z). Returns false if the triangle is beside it.
 bool heightOver(const float* const corners[3], double x, double z, double& height)
 {
     const double x0 = corners[0][0], z0 = corners[0][2];

@@ -17,7 +17,7 @@ class HeightField
 public:
     explicit HeightField(const TriangleMesh& mesh);
 
-    // False when no triangle lies over or under the point.
+    // Returns false if no triangle lies over or under the point.
     bool highest(double x, double z, double& height) const;
 
     const Bounds& bounds() const { return m_bounds; }

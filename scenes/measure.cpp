@@ -89,7 +89,7 @@ void PenetrationMeter::measureNode(std::size_t node, StepMeasure& step)
     const double distance = std::sqrt(closest.m_squaredDistance);
     state.m_upper = distance;
     state.m_below = nodeBelow(node, closest);
-    // A node that is below, or whose side is not known, is looked at again each step.
+    // A node that is below, or whose side is unknown, is checked again each step.
     state.m_lower = state.m_below || (!m_surface.closed() && state.m_side == 0) ? 0 : distance;
     if (!state.m_below) return lowerGap(step, distance);
     step.m_nodeDepths.push_back(static_cast<float>(distance));

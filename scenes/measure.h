@@ -1,17 +1,18 @@
-// The independent check of a cloth run: where the cloth is relative to the obstacle's surface after a step.
+// The independent check of a cloth run: the position of the cloth relative to the obstacle's surface after a step.
 //
 // Shares no code with the product: double precision, own tree, exact predicates for intersections. Input: the obstacle
 // (fixed), the cloth's triangles, the cloth's nodes after each step. Lengths in metres. Guarantee: the distances are
 // true minima up to double rounding; intersections are exact. Cost: some milliseconds a step for 2,048 against 69,666
 // triangles.
 //
-// Below the surface means: in the solid, for a closed obstacle; for an open one, on the other side than the node was,
-// having passed through the surface. An obstacle vertex is above the cloth when the piece of obstacle that it belongs
-// to sticks out through the cloth: starting at obstacle triangles that the cloth cuts, the obstacle's surface is
-// followed over vertices that are on the cloth's outer side and whose closest cloth point is below the obstacle's
-// surface; a vertex' depth is the distance to that point. The outer side of a cloth face is the one away from the
-// obstacle, told by those of its nodes that are not below the surface; if all are, the side its normal pointed to at
-// the start.
+// A point is below the surface of a closed obstacle if it is inside. For an open obstacle it must have passed through
+// the surface and be on the other side than the node was.
+//
+// An obstacle vertex is above the cloth if its piece of the obstacle sticks out through the cloth. The check starts at
+// obstacle triangles that the cloth cuts. It follows the obstacle's surface over vertices on the cloth's outer side
+// whose closest cloth point is below the obstacle's surface. A vertex' depth is the distance to that point. The outer
+// side of a cloth face is the one away from the obstacle. The nodes of the face that are not below the surface
+// determine it; if all are below, the face's normal at the start does.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +37,7 @@ struct StepMeasure
 class PenetrationMeter
 {
 public:
-    // `cloth` gives triangles and the nodes' places at the start, which count as good.
+    // `cloth` gives triangles and the nodes' positions at the start, which count as correct.
     PenetrationMeter(const TriangleMesh& obstacle, const TriangleMesh& cloth);
 
     // Measures the nodes' new places: x y z per node. To be called after every step, since motion is followed.
@@ -66,8 +67,8 @@ private:
     std::vector<float> m_positions;  // valid ones only
     std::vector<Vector3> m_before;   // places of the step before
     std::vector<NodeState> m_nodes;
-    std::vector<std::vector<std::int32_t>> m_neighbours;  // of each obstacle vertex
-    std::vector<std::int32_t> m_cutTriangles;             // of the obstacle, in this step; may repeat
+    std::vector<std::vector<std::int32_t>> m_neighbours;  // neighbours of each obstacle vertex
+    std::vector<std::int32_t> m_cutTriangles;             // obstacle triangles cut in this step; may repeat
     double m_reach;                                       // m, nodes nearer than this are measured each step
 };
 }  // namespace drape

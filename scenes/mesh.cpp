@@ -8,7 +8,7 @@ namespace drape
 {
 namespace
 {
-// Where a vertex is at the start and at the end of a motion.
+// The position of a vertex at the start and at the end of a motion.
 struct PositionKey
 {
     std::array<std::uint32_t, 6> m_bits;
@@ -78,7 +78,7 @@ std::size_t joinVertices(TriangleMesh& mesh, std::vector<float>& end)
 {
     std::unordered_map<PositionKey, std::int32_t, PositionHash> known;
     known.reserve(mesh.vertexCount());
-    // The first vertex at a position stands for all.
+    // The first vertex at a position represents all.
     std::vector<std::int32_t> vertices(mesh.vertexCount());
     for (std::size_t vertex = 0; vertex < vertices.size(); ++vertex)
     {

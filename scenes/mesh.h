@@ -38,8 +38,7 @@ void placeOnFloor(TriangleMesh& mesh, float size);
 // Merges vertices whose three coordinates are equal (−0 equals 0), drops triangles that repeat an index and vertices
 // that no triangle uses. Order is kept otherwise. Returns how many triangles were dropped.
 std::size_t joinVertices(TriangleMesh& mesh);
-// The same for a mesh that moves to `end` (x y z per vertex): vertices are merged that are at one place before and
-// after.
+// Joins vertices of a mesh that moves to `end` (x y z per vertex) if their positions are equal before and after.
 std::size_t joinVertices(TriangleMesh& mesh, std::vector<float>& end);
 
 // Drops triangles that repeat an index and vertices that no triangle uses, from the mesh and from `end` (x y z per

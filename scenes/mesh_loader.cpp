@@ -33,7 +33,7 @@ void forUsedVertices(const MeshFile& file, Use use)
         if (isUsed[vertex]) use(vertex);
 }
 
-// The largest rounding error of all coordinates less the centre; infinite where one does not fit a float.
+// Returns the largest rounding error of all coordinates relative to the centre; infinite if one does not fit a float.
 double roundingOf(const std::vector<const MeshFile*>& files, const Centre& centre)
 {
     double largest = 0;
@@ -50,8 +50,8 @@ double roundingOf(const std::vector<const MeshFile*>& files, const Centre& centr
     return largest;
 }
 
-// The middle of all files' bounds, rounded to a fraction of their extent: a short number, whose subtraction is exact in
-// most cases.
+// Returns the middle of all files' bounds, rounded to a fraction of their extent: a short number, whose subtraction is
+// exact in most cases.
 Centre middleOf(const std::vector<const MeshFile*>& files)
 {
     constexpr double far = std::numeric_limits<double>::infinity();

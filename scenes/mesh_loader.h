@@ -23,10 +23,10 @@ enum class Joining
 
 struct LoadReport
 {
-    bool m_isJoined = false;           // whether vertices of any file were joined by position
+    bool m_isJoined = false;           // true if vertices were joined by position, for any file
     std::array<double, 3> m_centre{};  // subtracted from all positions of all files, in their unit; often zero
     double m_rounding = 0;             // the largest change of a coordinate by rounding, in the files' unit
-    std::vector<std::string> m_notes;  // what was left out or lost, one line each
+    std::vector<std::string> m_notes;  // parts that were left out or lost, one line each
 
     bool isCentred() const { return m_centre != std::array<double, 3>{}; }
 };
@@ -34,12 +34,12 @@ struct LoadReport
 bool loadMesh(const std::string& path, TriangleMesh& mesh, std::string& error);
 bool loadMesh(const std::string& path, Joining joining, TriangleMesh& mesh, LoadReport& report, std::string& error);
 
-// Two meshes in one frame: the same centre is subtracted from both.
+// Loads two meshes in one frame: the same centre is subtracted from both.
 bool loadMeshes(const std::string& firstPath, const std::string& secondPath, Joining joining, TriangleMesh& first,
                 TriangleMesh& second, LoadReport& report, std::string& error);
 
-// A mesh that moves: both files have the same number of vertices and the same faces in the same order. `end` gets the
-// positions at the end, x y z per vertex of the mesh. Vertices are joined where they are at one position in both files.
+// Loads a moving mesh. Both files have the same number of vertices and the same faces in the same order. `end` gets the
+// positions at the end, x y z per vertex of the mesh. Vertices are joined if they are at one position in both files.
 bool loadMotion(const std::string& startPath, const std::string& endPath, Joining joining, TriangleMesh& mesh,
                 std::vector<float>& end, LoadReport& report, std::string& error);
 bool loadMotion(const std::string& startPath, const std::string& endPath, TriangleMesh& mesh, std::vector<float>& end,

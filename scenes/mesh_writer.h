@@ -10,6 +10,6 @@ namespace drape
 {
 bool writeMesh(const std::string& path, const TriangleMesh& mesh, std::string& error);
 
-// folder/stem_0042.ply for number 42: four digits at least, so that names sort in time.
+// Returns folder/stem_0042.ply for number 42: four digits at least, so that names sort by time.
 std::string frameName(const std::string& folder, const std::string& stem, int number);
 }  // namespace drape

@@ -41,7 +41,7 @@ bool loadFile(const ModelFile& model, const std::vector<std::string>& folders, T
     return false;
 }
 
-// The thesis's sizes, where it used scans that are not at hand: 16,301 is a torus less one triangle.
+// Makes shapes with the sizes of the thesis's scans that are not available: 16,301 is a torus less one triangle.
 bool makeShapeNamed(const std::string& name, TriangleMesh& mesh)
 {
     const std::pair<const char*, int> spheres[] = {{"sphere_1k", 3},  {"sphere_5k", 4},   {"sphere_20k", 5},

@@ -9,7 +9,7 @@ namespace drape
 {
 namespace
 {
-// Of the file, as it lies there.
+// A record in the byte layout of the file.
 struct MotionRecord
 {
     float m_points[24];

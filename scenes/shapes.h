@@ -37,6 +37,6 @@ TriangleMesh makeSoup(float size, float edge, int count, std::uint32_t seed);
 // Names that makeShape knows.
 const std::vector<std::string>& shapeNames();
 
-// The named shape at a resolution fit for a demonstration; false when the name is unknown.
+// Makes the named shape at a resolution for demonstrations. Returns false if the name is unknown.
 bool makeShape(const std::string& name, TriangleMesh& mesh);
 }  // namespace drape

@@ -1,10 +1,11 @@
-// Which side of a triangle mesh a point is on, and how far from it: in double, for the independent check.
+// Finds the side of a triangle mesh that a point is on, and its distance, in double precision for the independent
+// check.
 //
-// The side is that of the angle-weighted pseudonormal of the closest feature (Baerentzen and Aanaes 2005), which is
-// right for watertight meshes without self-intersections. On closed meshes a verdict "inside" is confirmed by the
-// generalised winding number (Jacobson et al. 2013; far groups of triangles count as one dipole, Barill et al. 2018),
-// so that self-intersections and inner sheets make no false alarm; at edges of more than two faces it decides alone. On
-// open meshes a side is only known off the boundary.
+// The angle-weighted pseudonormal of the closest feature determines the side (Baerentzen and Aanaes 2005). It is right
+// for watertight meshes without self-intersections. On closed meshes the generalised winding number confirms a verdict
+// "inside" (Jacobson et al. 2013; far groups of triangles count as one dipole, Barill et al. 2018). Self-intersections
+// and inner sheets therefore cause no false alarm. At edges of more than two faces the winding number alone decides. On
+// open meshes the side is only known away from the boundary.
 #pragma once
 
 #include <array>
@@ -25,11 +26,11 @@ public:
     // Every edge is shared by as many faces in one direction as in the other: the surface bounds a solid.
     bool closed() const { return m_closed; }
 
-    // The closest point and the pseudonormal's side of it: +1 outside (or in front), −1 inside (or behind), 0 when the
-    // closest feature is on the boundary of an open mesh, where no side can be told.
+    // Returns the side of the point at its closest point: +1 outside (in front), −1 inside (behind). Returns 0 if the
+    // closest feature is on the boundary of an open mesh, where no side is defined.
     int sideOf(const Vector3& point, const ClosestPoint& closest) const;
 
-    // Closed meshes: whether the point is in the solid, all things considered.
+    // Returns whether the point is in the solid of a closed mesh, including the winding number.
     bool inside(const Vector3& point, const ClosestPoint& closest) const;
 
 private:

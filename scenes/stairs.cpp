@@ -30,7 +30,7 @@ void addSideVertices(TriangleMesh& mesh, float width, float height, double z, in
         addVertex(mesh, x(i), y(i + 1), z);
 }
 
-// The wall below tread i: a fan from its lower right corner.
+// Adds the wall below tread i: a fan from its lower right corner.
 void addWall(TriangleMesh& mesh, const StairVertices& at, int side, int i)
 {
     const int rim[4] = {at.base(side, i), at.low(side, i), at.high(side, i), at.low(side, i + 1)};

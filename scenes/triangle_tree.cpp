@@ -33,7 +33,8 @@ Vector3 upper(const Vector3& a, const Vector3& b)
     return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
 
-// Closest point by the Voronoi regions of vertices, edges and face (Ericson, Real-Time Collision Detection, 5.1.5).
+// Returns the closest point by the Voronoi regions of vertices, edges and face (Ericson, Real-Time Collision Detection,
+// 5.1.5).
 ClosestPoint closestOnTriangle(const Vector3& p, const Vector3 t[3])
 {
     const auto result = [&p](const Vector3& point, Feature feature, int index)

@@ -36,10 +36,10 @@ public:
     TriangleTree(const float* positions, std::size_t vertexCount, const std::int32_t* triangles,
                  std::size_t triangleCount);
 
-    // New positions for the same vertices.
+    // Takes new positions of the same vertices.
     void refit(const float* positions);
 
-    // The closest point of the surface within the squared radius (inclusive).
+    // Returns the closest point of the surface within the squared radius (inclusive).
     ClosestPoint closest(const Vector3& point, double squaredRadius) const;
 
     // Calls visit(triangle) for each triangle whose box meets the box [low, high].

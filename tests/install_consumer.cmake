@@ -1,6 +1,7 @@
-# The test install.consumer: installs Drape into WORK, then builds and runs examples/consumer against what was
-# installed, once as a CMake package and once by pkg-config; by pkg-config also every block of C++ in the README, as it
-# stands.
+# The test install.consumer installs Drape into WORK, then builds and runs examples/consumer against the installation.
+#
+# It builds once as a CMake package and once using pkg-config. It also compiles every block of C++ in the README using
+# pkg-config.
 # Input: BUILD (Drape's build folder), SOURCE (the consumer), README, WORK (made anew), LIBDIR, COMPILER, SANITIZE,
 # DOUBLE (the precision of Bullet that Drape is built for).
 cmake_minimum_required(VERSION 3.25)

@@ -16,4 +16,4 @@ export DRAPE_TEST_NO_DEVICE=1
 export OCL_ICD_VENDORS=/nonexistent
 exec ctest --test-dir build/asan --output-on-failure --no-tests=error --parallel "$(nproc)" \
   --label-regex '^(unit|mesh_io|oracle|property|stress|bullet|startup|tools)$' \
-  --exclude-regex 'tenThousandSteps|Row25|Settled|BunnyDrop|HundredThousand|DropComparison' "$@"
+  --exclude-regex 'TenThousandSteps|Row25|Settled|BunnyDrop|HundredThousand|DropComparison' "$@"

@@ -11,5 +11,5 @@ bash cmake/build_preset.sh release
 
 source tests/reference_data.sh
 
-# A -j among the arguments comes later and wins.
+# A later -j among the arguments wins.
 exec ctest --test-dir build/release --output-on-failure --no-tests=error --parallel "$(nproc)" "$@"

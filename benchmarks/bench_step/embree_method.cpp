@@ -15,7 +15,7 @@ namespace drape::bench
 {
 namespace
 {
-// What the bounds callback reads.
+// The boxes that the bounds callback reads.
 struct Boxes
 {
     const Triangle* m_triangles = nullptr;
@@ -46,12 +46,13 @@ void boundTriangle(const RTCBoundsFunctionArguments* arguments)
     *arguments->bounds_o = {low[0], low[1], low[2], 0, high[0], high[1], high[2], 0};
 }
 
-// rtcCollide gives a pair of a scene with itself from either side, or from one of them.
+// rtcCollide reports a pair of a scene with itself from both sides, or from one of them.
 void keepEachOnce(std::vector<Candidate>& pairs)
 {
     for (Candidate& pair : pairs)
         if (pair.m_obstacle < pair.m_cloth) std::swap(pair.m_cloth, pair.m_obstacle);
-    tbb::parallel_sort(pairs.begin(), pairs.end(), [](const Candidate& a, const Candidate& b)
+    tbb::parallel_sort(pairs.begin(), pairs.end(),
+                       [](const Candidate& a, const Candidate& b)
                        { return a.m_cloth != b.m_cloth ? a.m_cloth < b.m_cloth : a.m_obstacle < b.m_obstacle; });
     const auto same = [](const Candidate& a, const Candidate& b)
     { return a.m_cloth == b.m_cloth && a.m_obstacle == b.m_obstacle; };

@@ -70,7 +70,8 @@ public:
         const Clock::time_point begin = Clock::now();
         if (m_grown)
         {
-            // The update keeps the nodes of the step before, at which this one starts: its volumes hold the motion.
+            // The update keeps the nodes of the step before, which is the start of this one. The volumes then hold the
+            // motion.
             m_cloth.beginUpdateModel();
             m_cloth.updateSubModel(fclVectors(end, m_nodes));
             m_cloth.endUpdateModel(true, true);

@@ -35,7 +35,7 @@ const char* const kReducedReference = "drape_host_reduced";
 const char* const kReduced = "drape_reduced";
 const char* const kReducedKernels = "drape_reduced_kernels";
 
-// The host first: it is the reference.
+// The host comes first, since it is the reference.
 std::vector<MethodEntry> allMethods(const Options& options)
 {
     Settings host;
@@ -131,7 +131,7 @@ std::vector<SceneSpec> chosenScenes(const Options& options)
 // By scene, and whether redundant contacts are left out.
 using Hashes = std::map<std::pair<std::string, bool>, std::string>;
 
-// Those of an earlier run; none for an empty path.
+// Reads the hashes of an earlier run; reads none for an empty path.
 bool readReference(const std::string& path, Hashes& hashes, std::string& error)
 {
     const auto take = [&hashes](const Row& row)
@@ -183,7 +183,7 @@ int measure(const Options& options)
     {
         TriangleMesh obstacle;
         std::string error;
-        if (millisecondsSince(begin) > 60000 * options.m_minutes) error = "left out: the time is used up";
+        if (millisecondsSince(begin) > 60000 * options.m_minutes) error = "left out: the time limit is reached";
         if (!error.empty() || !makeModel(spec.m_model, folders, obstacle, error))
         {
             std::cerr << "bench_step: " << spec.m_name << ": " << error << std::endl;
@@ -205,13 +205,13 @@ int run(int argc, char** argv)
     Options options;
     CLI::App app("Measures whole collision steps of Drape and its peers.", "bench_step");
     addCommonOptions(app, options);
-    app.add_option("--scene", options.m_scenes, "only these scenes or sweeps");
-    CLI::Option* set = app.add_option(
-        "--set", options.m_set, "sweep: the scenes of all sweeps, whole sizes from 512 to 2 M of cloth triangles");
+    app.add_option("--scene", options.m_scenes, "measure only these scenes or sweeps");
+    CLI::Option* set = app.add_option("--set", options.m_set,
+                                      "sweep: the scenes of all sweeps, from 512 to 2 million cloth triangles");
     set->excludes("--scene");
     acceptOnly(set, {"sweep"});
-    app.add_option("--method", options.m_methods, "only these methods, and the reference");
-    app.add_option("--reference", options.m_reference, "JSON of an earlier run: contacts must have its hashes")
+    app.add_option("--method", options.m_methods, "measure only these methods and the reference");
+    app.add_option("--reference", options.m_reference, "JSON of an earlier run whose hashes the contacts must have")
         ->type_name("FILE")
         ->check(CLI::ExistingFile);
     int exitCode = kExitGood;

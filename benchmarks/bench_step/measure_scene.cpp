@@ -24,7 +24,7 @@ void addStages(MethodRun& run, const StepOutcome& outcome)
     }
 }
 
-// One hash of the hashes of a period's steps.
+// Combines the hashes of a period's steps into one hash.
 std::string periodHash(const std::vector<std::string>& hashes)
 {
     std::uint64_t hash = kEmptyHash;
@@ -56,8 +56,8 @@ MethodRun runMethod(StepMethod& method, const StepScene& scene, const MeasureSet
     const int period = scene.period();
     std::vector<std::string> hashes(static_cast<std::size_t>(period), kNoHash);
     Clock::time_point begin;
-    // The positions lie where an application's integrator has just written them; frames untouched for a whole period
-    // would have to come from memory first.
+    // Copies of the positions stand for an application's integrator, which has just written them. Frames unused for a
+    // whole period would have to come from memory first.
     const std::size_t floats = scene.floats();
     std::vector<float> start, end;
     for (int step = 0; step < kWarmUpSteps + settings.m_repeats * period; ++step)

@@ -17,8 +17,8 @@ struct MeasureSettings
     std::string m_expected, m_expectedReduced;
 };
 
-// What a method did over a period and some timed ones after it. hash is that of the first period; where a later period
-// gave other contacts it says so instead.
+// The results of a method over an untimed period and some timed ones. `hash` belongs to the first period. If a later
+// period gave other contacts, `hash` says so instead.
 struct MethodRun
 {
     Row m_description;
@@ -30,8 +30,8 @@ struct MethodRun
 
 MethodRun runMethod(StepMethod& method, const StepScene& scene, const MeasureSettings& settings);
 
-// The first method gives the reference hash, and the first reduced one that of the reduced. A method that cannot run is
-// reported on standard error and leaves no row; false then.
+// Measures the methods. The first one gives the reference hash, and the first reduced one the reference of the reduced
+// methods. A method that cannot run is reported on standard error and leaves no row; the function then returns false.
 bool measureScene(const StepScene& scene, const std::vector<MethodEntry>& methods, const MeasureSettings& settings,
                   Table& table);
 }  // namespace drape::bench

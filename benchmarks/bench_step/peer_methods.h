@@ -9,7 +9,7 @@
 
 namespace drape::bench
 {
-// A method by the name that rows carry. m_make returns null with one line in `error` when it cannot run here.
+// A method and its name in the rows. m_make returns null with one line in `error` if it cannot run here.
 struct MethodEntry
 {
     std::string m_name;
@@ -17,13 +17,14 @@ struct MethodEntry
     bool m_reduced = false;  // leaves redundant contacts out: its hash is that of the reference that does
 };
 
-// Embree: user geometry with a box per triangle over the step's motion, grown by `reach` m, refitted and collided.
-// With contacts: followed by Drape's host narrow phase over its candidates, on the same threads. reach must then be
+// Makes Embree's method: user geometry with a box per triangle over the step's motion, grown by `reach` m, refitted and
+// collided. With contacts, Drape's host narrow phase tests the candidates on the same threads. `reach` must then be
 // contactReach().
 std::unique_ptr<StepMethod> makeEmbreeMethod(const StepScene& scene, int threads, float reach, bool contacts,
                                              std::string& error);
 
-// FCL: 18-DOP trees in float, refitted and collided by one thread. grown: volumes over the step's motion, grown by
-// contactReach(), pairs of triangles out; else as FCL does it: the triangles that intersect at the step's end.
+// Makes FCL's method: 18-DOP trees in float, refitted and collided by one thread. With `grown`, volumes cover the
+// step's motion, grown by contactReach(), and the results are pairs of triangles. Otherwise FCL returns the triangles
+// that intersect at the step's end.
 std::unique_ptr<StepMethod> makeFclMethod(const StepScene& scene, bool grown, std::string& error);
 }  // namespace drape::bench

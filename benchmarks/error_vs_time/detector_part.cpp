@@ -25,7 +25,8 @@ struct Sets
     std::vector<TriangleSet> m_triangles;
 };
 
-// The published queries with exact answers, where their folder is named; false when it is and they cannot be read.
+// Adds the published queries with exact answers if their folder is named. Returns false if it is named and they cannot
+// be read.
 bool addPublished(const ErrorOptions& options, Sets& sets, std::string& error)
 {
     const char* variable = std::getenv("DRAPE_TRUTH_DIR");
@@ -51,7 +52,7 @@ struct MotionVariant
     CcdSettings m_settings;
 };
 
-// Around the defaults: how far places are searched, and how far the time.
+// Lists variants around the defaults: the accuracy of the distance and of the time.
 std::vector<MotionVariant> motionVariants()
 {
     std::vector<MotionVariant> variants = {{{"defaults", 0, ""}, defaultCcdSettings()}};
@@ -71,7 +72,7 @@ std::vector<MotionVariant> motionVariants()
 const std::pair<TriangleTest, const char*> kTriangleTests[] = {
     {TriangleTest::Certified, "certified"}, {TriangleTest::Exact, "exact"}, {TriangleTest::Moller, "Möller"}};
 
-// One back end's answers. The host goes first: its hashes are what a device's must be.
+// Holds one back end's answers. The host goes first: a device must have its hashes.
 class Asker
 {
 public:
@@ -96,7 +97,7 @@ public:
             if (set.m_times.empty() || !set.m_truth[i] || !hits.back()) continue;
             const double error = set.m_times[i] - double(results[i].m_time);
             early.push_back(std::abs(error));
-            late += error < -1e-9;  // what the true times themselves are good for
+            late += error < -1e-9;  // the accuracy of the true times
         }
         fillAnswers(row, set.m_truth, hits);
         fillErrors(row, "time_error", early);

@@ -1,4 +1,4 @@
-// The part that asks single queries: what one costs against how wrong its answer is, for the variants of the narrow
+// The part that measures the cost of single queries against the error of their answers, for the variants of the narrow
 // phase, without any simulation.
 #pragma once
 

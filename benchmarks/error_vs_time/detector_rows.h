@@ -9,7 +9,7 @@
 
 namespace drape::bench
 {
-// A variant of a test: what is turned, its value, and the value's name where it is no number.
+// A variant of a test: the varied setting, its value, and the value's name if it is no number.
 struct Variant
 {
     std::string m_knob;
@@ -22,7 +22,8 @@ Row detectorRow(const std::string& set, const std::string& method, const Variant
 // Counts of true pairs, misses and false hits.
 void fillAnswers(Row& row, const std::vector<bool>& truth, const std::vector<bool>& hits);
 
-// Half, 99 % and all of the errors are at most so large: <name>_p50, _p99 and _max. Nothing where there is none.
+// Adds the median, the 99 % quantile and the maximum of the errors: <name>_p50, _p99 and _max. Adds nothing if there
+// are none.
 void fillErrors(Row& row, const std::string& name, std::vector<double> errors);
 
 // Answers all queries several times (the first time is not counted: drivers may compile then) and fills the µs of one.

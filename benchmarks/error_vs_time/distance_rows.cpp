@@ -12,7 +12,7 @@ namespace drape::bench
 {
 namespace
 {
-// What a variant says of a pair.
+// The answer of a variant for one pair.
 struct Answer
 {
     float m_distance = 0;  // m
@@ -25,8 +25,8 @@ Vec3 pointOf(const DistancePair& pair, int point)
     return vec3Load(pair.m_points, std::uint32_t(point));
 }
 
-// Two triangles of four vertices each: for a vertex and a face 0 0 0 and 1 2 3, for edges 0 1 1 and 2 3 3, so that the
-// first vertex and the first edge are the pair's.
+// Tests two triangles of four vertices each. The vertices are 0 0 0 and 1 2 3 for a vertex and a face,
+// and 0 1 1 and 2 3 3 for edges. The first vertex and the first edge are the pair's.
 class ContactTest
 {
 public:
@@ -106,7 +106,7 @@ double angleBetween(const Vector3& a, const Vector3& b)
     return std::atan2(length(cross(a, b)), dot(a, b)) * 180 / 3.14159265358979;
 }
 
-// Two-sided contacts name the side that the cloth was on: a pair at a distance of nothing has none.
+// Two-sided contacts name the cloth's side. A pair at distance zero has none.
 void addErrors(Row& row, const DistanceSet& set, const std::vector<Answer>& answers)
 {
     std::vector<double> distances, normals;

@@ -1,4 +1,4 @@
-// The narrow phase's own tests of resting pairs, beside the same question in plain float and in double.
+// Compares the narrow phase's tests of resting pairs with tests in plain float and in double.
 #pragma once
 
 #include <cstddef>

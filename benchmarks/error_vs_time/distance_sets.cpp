@@ -37,7 +37,7 @@ double randomDistance(Random& random)
     return kPairThickness * (random.unit() < 0.5 ? 1 - off : 1 + off);
 }
 
-// The pair as it was meant, before rounding.
+// Makes the pair before rounding.
 void placePair(std::uint32_t kind, const Vector3& origin, Random& random, Vector3 points[4])
 {
     const Vector3 u = randomDirection(random), other = randomDirection(random);
@@ -56,7 +56,7 @@ void placePair(std::uint32_t kind, const Vector3& origin, Random& random, Vector
     points[1] = origin;
     points[2] = origin + random.within(0.2, 1) * kSize * u;
     points[3] = origin + random.within(0.2, 1) * kSize * v + random.within(-0.5, 0.5) * kSize * u;
-    // Over the face's middle, one of its edges or one of its corners.
+    // Aims at the face's middle, one of its edges or one of its corners.
     const double where = random.unit();
     if (where < 0.5)
         points[0] = (1.0 / 3) * (points[1] + points[2] + points[3]) + distance * normal;
@@ -66,7 +66,7 @@ void placePair(std::uint32_t kind, const Vector3& origin, Random& random, Vector
         points[0] = points[1] + distance * normalized(normal - random.unit() * (u + 2.0 * v));
 }
 
-// False where the closest points of edges are too near to an end to be sure.
+// Returns false if the closest points of edges are too near to an end for a certain answer.
 bool findTruth(DistancePair& pair, const Vector3 p[4])
 {
     Vector3 offset;

@@ -33,9 +33,9 @@ struct DistanceSet
 // Pairs of centimetres at the distances from the origin that make float positions coarse.
 std::vector<DistanceSet> makeDistanceSets(std::size_t pairs);
 
-// Nearest point of a triangle, in double.
+// Returns the nearest point of a triangle, in double.
 Vector3 nearestOnTriangle(const Vector3& p, const Vector3 corners[3]);
 
-// From the closest point of the edge p[2] p[3] to that of p[0] p[1], both inside of them, in double.
+// Returns the offset from the closest point of the edge p[2] p[3] to that of p[0] p[1], both inside of them, in double.
 Vector3 offsetOfEdges(const Vector3 p[4]);
 }  // namespace drape::bench

@@ -18,7 +18,8 @@ constexpr int kBoards = 24;
 constexpr float kBoardThickness = 0.008f;  // m
 constexpr float kBoardPitch = 0.03f;       // m: the gaps are 22 mm wide
 constexpr float kBoardTurn = 0.26f;        // rad, 15 degrees
-// How much falls differ: any turn, shifts that leave the obstacle under the cloth, and throws.
+// Bounds the random differences between falls: any rotation, shifts that leave the obstacle under the cloth, and
+// throws.
 constexpr double kShift = 0.25;  // m
 constexpr double kThrow = 8;     // m/s downwards
 
@@ -45,7 +46,7 @@ TriangleMesh makePile()
     return pile;
 }
 
-// The named obstacle, its cloth's side in m, and how far above the top the cloth starts.
+// Makes the named obstacle, and sets its cloth's side in m and the height above the top at which the cloth starts.
 bool makeObstacle(ErrorScene& scene, const std::vector<std::string>& folders, float& clothSize, float& drop,
                   std::string& error)
 {

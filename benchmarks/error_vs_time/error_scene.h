@@ -24,10 +24,10 @@ struct ErrorScene
     bool m_symmetric = false;  // its resting shape can be compared between runs: others fold this way or that
 };
 
-// Of all, or of the few small ones of a quick run.
+// Returns the names of all scenes, or of the few small ones of a quick run.
 std::vector<std::string> errorSceneNames(bool quick);
 
-// False with one line in `error` for a model that is not there.
+// Returns false with one line in `error` if the model does not exist.
 bool makeErrorScene(const std::string& name, bool quick, const std::vector<std::string>& modelFolders,
                     ErrorScene& scene, std::string& error);
 

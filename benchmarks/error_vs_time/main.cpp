@@ -1,10 +1,11 @@
-// error_vs_time: what a frame costs against how wrong the cloth is, scene by scene, for Drape's knobs and for Bullet's
-// built-in collision at equal simulated time; and what a query costs against how wrong its answer is.
+// error_vs_time: measures the cost of a frame against the error of the cloth, and the cost of a query against the error
+// of its answer.
 //
-// Each trial runs the whole scene in Bullet. Times are of stepSimulation, a frame of 1/60 s at a time, without
-// measuring. Errors come from the independent check (scenes/measure.h), those of queries from exact answers. Drape on a
-// device must give the host's course and answers, bit for bit: a row whose hash differs is void, and the program ends
-// with 3.
+// Measures each scene with Drape's settings and with Bullet's built-in collision at equal simulated time. Each trial
+// runs the whole scene in Bullet. Times are of stepSimulation, a frame of 1/60 s at a time, without the checks. Errors
+// of cloth come from the independent check (scenes/measure.h), errors of queries from exact answers. Drape on a device
+// must give the host's trajectory and answers, bit for bit. A row whose hash differs is void, and the program ends with
+// 3.
 #include <algorithm>
 #include <iostream>
 
@@ -52,7 +53,8 @@ int runChild(const ErrorOptions& options)
     const std::vector<Trial> trials = options.trials(hasDevice(options));
     ErrorScene scene;
     std::string error;
-    if (std::size_t(options.m_childTrial) >= trials.size()) return fail(kProgram, kExitBadInput, "no such trial");
+    if (std::size_t(options.m_childTrial) >= trials.size())
+        return fail(kProgram, kExitBadInput, "there is no trial of this number");
     if (!makeErrorScene(options.m_childScene, options.m_quick, modelFolders(options.m_models), scene, error))
         return fail(kProgram, kExitBadInput, error);
     return streamTrial(options, scene, trials[std::size_t(options.m_childTrial)]);
@@ -74,21 +76,24 @@ int main(int argc, char** argv)
 {
     using namespace drape;
     using namespace drape::bench;
-    CLI::App app("What a frame costs against how wrong the cloth is, and a query against how wrong its answer is.",
-                 kProgram);
+    CLI::App app(
+        "Measures the cost of a frame against the error of the cloth, and of a query against the error of its answer.",
+        kProgram);
     ErrorOptions options;
     addCommonOptions(app, options);
     acceptOnly(app.add_option("--part", options.m_part,
-                              "only this part (default: both; the simulations with --scene or --knob)"),
+                              "measure only this part (default: both; with --scene or --knob the simulations)"),
                {kDetectorPart, kSimulationPart});
-    app.add_option("--scene", options.m_scenes, "only these (repeat it); --list names them");
-    app.add_option("--knob", options.m_knobs, "only these besides the defaults (repeat it); --list names them");
-    app.add_option("--cap", options.m_capSeconds, "seconds of stepping for one trial")->check(CLI::PositiveNumber);
-    app.add_option("--frames", options.m_frames, "frames of 1/60 s; 0: 120, or 40 of a quick run; rest has its own")
-        ->check(CLI::NonNegativeNumber);
+    app.add_option("--scene", options.m_scenes, "measure only these scenes; --list names them");
+    app.add_option("--knob", options.m_knobs, "measure only these settings besides the defaults; --list names them");
+    app.add_option("--cap", options.m_capSeconds, "time limit for the stepping of one trial, s")
+        ->check(CLI::Validator(numberAbove(0, false, "more than 0"), ""));
+    app.add_option("--frames", options.m_frames,
+                   "number of frames of 1/60 s; 0: 120, or 40 with --quick; rest trials have a number of their own")
+        ->check(CLI::Validator(wholeNumber(0, 1000000000), ""));
     app.add_option("--truth", options.m_truth,
                    "folder of ccd_queries.bin and triangle_pairs.bin (default: DRAPE_TRUTH_DIR); without it only "
-                   "queries with answers made here")
+                   "queries made by this program are answered")
         ->type_name("DIR")
         ->check(CLI::ExistingDirectory);
     app.add_option("--child-scene", options.m_childScene)->group("");

@@ -12,7 +12,7 @@ namespace drape::bench
 namespace
 {
 constexpr double kSize = 0.05;  // m, of features and motions
-// Relative distance from where the truth changes below which a pair is not taken: double errs by less than 1e-11, for
+// Pairs nearer than this relative distance to a change of the truth are left out. Double errs by less than 1e-11, for
 // positions of up to 100 m and sizes of centimetres.
 constexpr double kSure = 1e-8;
 
@@ -29,7 +29,7 @@ Vector3 randomPoint(Random& random, double size)
     return {x, y, z};
 }
 
-// The three vectors that lie in one plane when the four points do: the offset, and two along the features.
+// Computes three vectors that lie in one plane if the four points do: the offset, and two along the features.
 void vectorsAt(const Moving& moving, std::uint32_t kind, double time, Vector3& d, Vector3& e, Vector3& g)
 {
     const Vector3 p[4] = {moving.at(0, time), moving.at(1, time), moving.at(2, time), moving.at(3, time)};
@@ -46,7 +46,8 @@ double volumeAt(const Moving& moving, std::uint32_t kind, double time)
     return dot(d, cross(e, g));
 }
 
-// How far inside both features the meeting point of the coplanar four is, in parts of the features; below 0: outside.
+// Returns how far inside both features the meeting point of the coplanar four is, relative to the features' size.
+// Negative values are outside.
 double insideAt(const Moving& moving, std::uint32_t kind, double time)
 {
     Vector3 d, e, g;
@@ -63,7 +64,7 @@ double insideAt(const Moving& moving, std::uint32_t kind, double time)
     return std::min({u, 1 - u, v, 1 - v});
 }
 
-// A cubic by its values at four places.
+// A cubic, given by its values at four positions.
 struct Cubic
 {
     double m_c[4];
@@ -96,7 +97,7 @@ std::vector<double> turns(const Cubic& f)
     return ends;
 }
 
-// The root between two places of different sign.
+// Returns the root between two positions of different sign.
 double rootBetween(const Cubic& f, double low, double high)
 {
     for (int i = 0; i < 100; ++i)
@@ -107,7 +108,7 @@ double rootBetween(const Cubic& f, double low, double high)
     return (low + high) / 2;
 }
 
-// Whether double can tell, and then whether the features touch and when first.
+// Returns whether double precision can decide. If so, sets whether the features touch and the first time.
 bool truthOf(const Moving& moving, std::uint32_t kind, bool& touch, double& time)
 {
     touch = false;

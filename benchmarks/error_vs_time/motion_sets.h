@@ -16,11 +16,11 @@ struct MotionSet
 {
     std::string m_name;
     std::vector<CcdQuery> m_queries;
-    std::vector<bool> m_truth;    // whether they touch in the step
+    std::vector<bool> m_truth;    // true if they touch in the step
     std::vector<double> m_times;  // when first, part of the step; 1 where they do not. Empty: not known
 };
 
-// Pairs of some centimetres, half of them aimed to touch: near the origin, 100 m from it, and such that meet within
-// a thousandth to a millionth of the features' size of a border, inside or outside.
+// Makes pairs of a few centimetres, half of them aimed to touch. They lie near the origin or 100 m from it. Some meet
+// inside or outside of a border, at a distance of a thousandth to a millionth of the features' size.
 std::vector<MotionSet> makeMotionSets(std::size_t queries);
 }  // namespace drape::bench

@@ -1,10 +1,10 @@
-// The float nearest to a double, as a double.
+// Rounds a double to the nearest float, as a double.
 #pragma once
 
 namespace drape::bench
 {
-// Through memory: at -O2 the vectorizer of GCC 12.2 takes a chain of conversions to float and back for nothing and
-// keeps the double as it was.
+// Rounds through memory. At -O2 the vectorizer of GCC 12.2 removes a chain of conversions to float and back, and keeps
+// the double unrounded.
 inline double roundToFloat(double value)
 {
     const volatile float rounded = float(value);

@@ -34,7 +34,7 @@ done
 [[ -n $out ]] || { sed -n '2,19s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 2; }
 mkdir -p "$out" || exit 1
 
-# Debian's interpreter first: its matplotlib is not seen by others.
+# Prefers Debian's interpreter, since others do not find its matplotlib.
 python=/usr/bin/python3
 [[ -x $python ]] || python=python3
 work=$(mktemp -d)

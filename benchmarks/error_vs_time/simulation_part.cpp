@@ -10,21 +10,21 @@ namespace drape::bench
 {
 namespace
 {
-// So many runs of Bullet's collision on a scene that stalled one after the other, and the rest of them is left out.
+// The remaining runs of Bullet's collision on a scene are left out after this many consecutive runs that stalled.
 constexpr int kHopeless = 3;
-// Drape's rest trials have twenty times the frames of others: so many times the others' seconds.
+// Drape's rest trials have twenty times the frames of others, and get this multiple of their time.
 constexpr double kRestCaps = 3;
 
-// What the trials of a scene are judged by.
+// The reference data that the trials of a scene are judged by.
 struct SceneState
 {
     std::string m_name;
     bool m_symmetric = false;
     bool m_moves = false;            // the obstacle does
-    std::string m_hash;              // of Drape's defaults, on the host where that run was whole
+    std::string m_hash;              // hash of Drape's defaults, on the host if that run was complete
     std::vector<float> m_reference;  // positions at the end of the reference
     std::vector<TrialResult> m_results;
-    std::vector<bool> m_sameContacts;  // as the results' trials have it
+    std::vector<bool> m_sameContacts;  // one flag for each of m_results
     int m_stalled = 0;                 // Bullet's latest trials that stalled, without one that did not
 
     void add(TrialResult result, const Trial& trial)
@@ -54,7 +54,7 @@ void judge(SceneState& state)
     for (std::size_t i = 0; i < state.m_results.size(); ++i)
     {
         TrialResult& result = state.m_results[i];
-        // At equal time and of the same fall.
+        // The runs have equal time steps and the same fall.
         const bool comparable =
             state.m_symmetric && !result.m_row.value("seed", 0) && result.m_row.value("knob", "") != "rest";
         if (comparable && result.m_final.size() == state.m_reference.size() && !result.m_final.empty())
@@ -83,7 +83,7 @@ bool runOrLeave(const ErrorOptions& options, SceneState& scene, const Trial& tri
     if (!hopeless && fits)
     {
         result = runTrial(options, scene.m_name, trial, number, std::min(cap, secondsLeft));
-        // It did not stall: the time of the whole program ended.
+        // The trial did not stall: the time of the whole program ended.
         fits = secondsLeft >= cap || result.m_row["ended"] != "capped";
     }
     if (hopeless || !fits) result.m_row = describeTrial(scene.m_name, trial, hopeless ? "left out" : "no time");
@@ -124,8 +124,8 @@ bool measureSimulations(const ErrorOptions& options, Table& table)
     const std::vector<Trial> trials = options.trials(hasDevice(options));
     std::vector<SceneState> scenes;
     bool good = makeStates(options, scenes);
-    // Round by round, each on one scene after the other: what does not fit into the time are the later values of every
-    // knob, before a scene, before a knob.
+    // Each round runs on one scene after the other. If the time is short, the later values of every setting are left
+    // out before a scene or a setting.
     for (int round = 0; round < roundsOf(trials); ++round)
     {
         for (SceneState& scene : scenes)

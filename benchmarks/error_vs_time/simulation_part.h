@@ -1,4 +1,4 @@
-// The part that runs whole simulations: every trial on every scene, and what its error was.
+// The part that runs whole simulations: every trial on every scene, and its error.
 #pragma once
 
 #include "benchmarks/error_vs_time/trial_run.h"

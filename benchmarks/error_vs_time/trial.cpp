@@ -10,15 +10,15 @@ namespace
 constexpr int kReferenceSubsteps = 16;
 // Voxels small enough for the bunny's ears; the knobs beside the voxel are turned at this size.
 constexpr double kSmallVoxel = 0.05;  // m
-// Cloth at rest is promised to move by at most 1 mm/s, RMS, over 2,000 steps; before them it gets time to settle. A
-// quick run only shows that it is measured so.
+// Cloth at rest must move by at most 1 mm/s, RMS, over 2,000 steps; before them it gets time to settle. A quick run
+// only shows that the measurement works.
 constexpr int kSettleFrames = 400, kRestFrames = 2000;
 constexpr int kQuickSettleFrames = 30, kQuickRestFrames = 50;
-// Share of the frames of other trials, the last ones, over which the cloth's speed is taken.
+// The cloth's speed is measured over this share of the frames of other trials, at their end.
 constexpr double kLateShare = 0.1;
 constexpr int kFallsOfDrape = 8, kFallsOfBullet = 4, kRestFallsOfDrape = 3;
 
-// Drape's ways to find pairs, in the order in which they are tried.
+// Drape's traversals, in the order of their trials.
 const std::pair<Traversal, const char*> kTraversals[] = {
     {Traversal::Front, "front"},
     {Traversal::Groups, "groups"},
@@ -29,7 +29,7 @@ const std::pair<Traversal, const char*> kTraversals[] = {
     {Traversal::Single, "single"},
 };
 
-// The values that say most first: each is a round of its own.
+// The most significant values come first: each is a round of its own.
 template <typename T>
 void sweep(std::vector<Trial>& trials, Trial base, const char* knob, T Trial::*field, const std::vector<double>& values)
 {
@@ -45,7 +45,7 @@ void sweep(std::vector<Trial>& trials, Trial base, const char* knob, T Trial::*f
     }
 }
 
-// The time of impact of Discrete differs; all else must not.
+// The time of impact of Discrete differs; everything else must not.
 void addModes(std::vector<Trial>& trials, Trial base)
 {
     base.m_knob = "mode";
@@ -96,7 +96,7 @@ void addContacts(std::vector<Trial>& trials, Trial base)
     trials.push_back(withAllContacts(base));
 }
 
-// The usual fall first, then, of Drape, the same with all contacts and other falls.
+// Adds the usual fall first. Drape's trials then repeat it with all contacts and with other falls.
 void addRest(std::vector<Trial>& trials, Trial base, bool quick)
 {
     base.m_knob = "rest";

@@ -30,8 +30,8 @@ std::vector<std::string> childArguments(const ErrorOptions& options, const std::
     return arguments;
 }
 
-// Over what the fall gave: the largest rise of the energy of motion from any step to a later one, and how much of such
-// a rise no link had held.
+// Energy gained beyond that of the fall: the largest rise of the kinetic energy from any step to a later one, and the
+// part of such a rise that no link had stored.
 struct EnergyErrors
 {
     double m_rise = 0, m_gain = 0;
@@ -53,7 +53,7 @@ EnergyErrors energyErrors(const std::vector<ClothEnergy>& energies)
     return {errors.m_rise / fall, errors.m_gain / fall};
 }
 
-// RMS of the last `count` speeds.
+// Returns the RMS of the last `count` speeds.
 double lateSpeed(const std::vector<double>& speeds, std::size_t count)
 {
     count = std::min(count, speeds.size());
@@ -118,7 +118,7 @@ void fillTimes(Row& row, const std::vector<StepRecord>& steps, std::size_t subst
     row["collision_median_ms"] = collisions.median();
 }
 
-// The errors of whole courses only: those of a capped one would look better than they are.
+// Adds errors of complete runs only: those of a capped run would look better than they are.
 void fillErrors(Row& row, const std::vector<StepRecord>& steps, std::size_t nodes)
 {
     double deepest = 0;
@@ -207,7 +207,7 @@ int streamTrial(const ErrorOptions& options, const ErrorScene& scene, const Tria
                   end["late_speed"] =
                       lateSpeed(simulation->speeds(), std::size_t(trial.m_speedFrames) * std::size_t(trial.m_substeps));
                   end["crossed"] = simulation->crossed();
-                  // An obstacle that moves does work.
+                  // A moving obstacle does work.
                   if (own.m_rise == 0)
                   {
                       const EnergyErrors errors = energyErrors(simulation->energies());

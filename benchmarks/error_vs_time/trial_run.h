@@ -16,8 +16,8 @@ namespace drape::bench
 inline constexpr const char* kProgram = "error_vs_time";
 inline constexpr const char* kDetectorPart = "detector";
 inline constexpr const char* kSimulationPart = "simulation";
-// Column: whose hash on the host a row must have, "defaults" of its scene or the "same" query's. merge_errors.py judges
-// rows by it that were measured in different runs.
+// The column with the reference of a row's hash: "defaults" of its scene on the host, or the "same" query.
+// merge_errors.py uses it to judge rows of different runs.
 inline constexpr const char* kMustMatch = "must_match";
 
 struct ErrorOptions : CommonOptions
@@ -26,7 +26,7 @@ struct ErrorOptions : CommonOptions
     std::string m_truth;  // folder
     std::vector<std::string> m_scenes;
     std::vector<std::string> m_knobs;  // empty: all
-    double m_capSeconds = 45;          // of stepping, for one trial
+    double m_capSeconds = 45;          // limit of the stepping time of one trial
     int m_frames = 0;                  // 0: as many as the kind of run has
     std::string m_childScene;          // in a child: what to run
     int m_childTrial = -1;
@@ -35,29 +35,29 @@ struct ErrorOptions : CommonOptions
     std::vector<Trial> trials(bool withDevice) const { return makeTrials(m_quick, withDevice, frames()); }
 };
 
-// Whether Drape would run on a device, and not on the host.
+// Returns true if Drape would run on a device and not on the host.
 bool hasDevice(const ErrorOptions& options);
 
-// What a row says of itself before, and instead of, being run. why: how it ended.
+// Describes a trial that has not run or has failed. `why` says how it ended.
 Row describeTrial(const std::string& scene, const Trial& trial, const std::string& why);
 
-// A trial's row, and where the cloth was at the end (x y z per node; empty when the trial did not get there).
+// A trial's row, and the cloth's positions at the end (x y z per node; empty if the trial did not reach it).
 struct TrialResult
 {
     Row m_row;
     std::vector<float> m_final;
-    std::string m_hash;   // of the whole course
+    std::string m_hash;   // hash of the whole trajectory
     std::string m_error;  // one line when it could not be run
 };
 
-// In the parent. number: of the trial, as the child makes the same list.
+// Runs in the parent. `number` is the index of the trial; the child makes the same list.
 TrialResult runTrial(const ErrorOptions& options, const std::string& scene, const Trial& trial, int number,
                      double capSeconds);
 
-// In the child, with the scene as it is without the trial: does not return but with an exit code for what could not be
-// started.
+// Runs in the child, with the scene before the trial's changes. Returns only if the trial could not be started, with an
+// exit code.
 int streamTrial(const ErrorOptions& options, const ErrorScene& scene, const Trial& trial);
 
-// RMS distance of two courses' last positions, m.
+// Returns the RMS distance of the last positions of two runs, m.
 double shapeDistance(const std::vector<float>& a, const std::vector<float>& b);
 }  // namespace drape::bench

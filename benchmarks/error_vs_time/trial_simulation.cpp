@@ -12,14 +12,14 @@ namespace drape::bench
 {
 namespace
 {
-// Enough cells of the distance field that none is thrown away.
+// The field has enough cells, so that none is thrown away.
 constexpr int kFieldHashSize = 1048573;
 constexpr int kFieldCells = 16000000;
 
 class WorldSimulation : public TrialSimulation
 {
 public:
-    // plugin: null for Bullet's own collision.
+    // `plugin` is null for Bullet's own collision.
     WorldSimulation(const ErrorScene& scene, const Trial& trial, std::unique_ptr<Plugin> plugin)
         : m_plugin(std::move(plugin)),
           m_world(makeConfiguration(m_plugin.get()), makeSolver(m_plugin.get())),
@@ -36,7 +36,7 @@ public:
         m_world.addCloth(scene.m_drop, false);
         btSoftBody& cloth = m_world.cloth();
         cloth.m_cfg.piterations = trial.m_iterations;
-        // Air drag is a share of the speed a step: the same share of it in a second at any step.
+        // Air drag is a share of the speed per step. The factor gives the same share per second for any time step.
         cloth.m_cfg.kDP = btScalar(1 - std::pow(1 - double(cloth.m_cfg.kDP), 1.0 / trial.m_substeps));
     }
 
@@ -58,7 +58,7 @@ public:
         return times;
     }
 
-    // Asked for once after each step, outside of its time.
+    // Called once after each step, outside of its time.
     const std::vector<float>& positions() override
     {
         copyPositions(m_world.cloth(), m_positions);
@@ -100,7 +100,7 @@ private:
         field.Reset();  // only now the voxel size counts
     }
 
-    // From where the last step ended to where this one will.
+    // Moves the obstacle from the end of the last step to the end of this one.
     void moveObstacle()
     {
         m_height += m_rise * m_dt;

@@ -14,32 +14,32 @@
 
 namespace drape::bench
 {
-// What a cloth has after a step, J.
+// The energies of a cloth after a step, J.
 struct ClothEnergy
 {
     double m_motion = 0;  // kinetic and of height
-    // At most what the links can turn into motion. They are no springs with an energy of their own: Bullet's solver
-    // moves a link's ends together by a share of its stretch each iteration, so that in a step of dt they get at most
-    // the speed (1 - (1 - stiffness)^iterations) stretch / dt.
+    // Upper bound of the energy that the links can turn into motion. Links are no springs with an energy of their own.
+    // In each iteration Bullet's solver moves a link's ends together by a share of its stretch. In a step of dt the
+    // ends get at most the speed (1 - (1 - stiffness)^iterations) stretch / dt.
     double m_links = 0;
 };
 
-// What a trial does to its scene: fall, thickness and time step.
+// Applies a trial to its scene: fall, thickness and time step.
 ErrorScene sceneOf(const ErrorScene& scene, const Trial& trial);
 
 class TrialSimulation : public Simulation
 {
 public:
-    // RMS speed (m/s) of the nodes after each step, against the obstacle.
+    // Returns the RMS speed (m/s) of the nodes after each step, relative to the obstacle.
     virtual const std::vector<double>& speeds() const = 0;
-    // After each step.
+    // Returns the energies after each step.
     virtual const std::vector<ClothEnergy>& energies() const = 0;
-    // Nodes that went through the obstacle's surface in any step so far.
+    // Returns the number of nodes that went through the obstacle's surface in any step so far.
     virtual std::size_t crossed() const = 0;
 };
 
-// scene: as sceneOf() makes it. settings: of Drape, but for what the trial sets. Null with one line in `error` when
-// Drape cannot start.
+// Makes the simulation of a scene from sceneOf(). `settings` are Drape's, apart from the trial's own. Returns null with
+// one line in `error` if Drape cannot start.
 std::unique_ptr<TrialSimulation> makeTrialSimulation(const ErrorScene& scene, const Trial& trial, Settings settings,
                                                      std::string& error);
 }  // namespace drape::bench

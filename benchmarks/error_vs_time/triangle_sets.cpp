@@ -11,7 +11,7 @@ namespace
 constexpr double kSize = 0.01;    // m
 constexpr double kLayer = 0.001;  // m
 
-// height: of the three corners' y above `at`, rough: how far they differ in it.
+// Places three corners at heights around `height` above `at`; `rough` is the range of their heights.
 void place(Vector3 corners[3], double at, double height, double rough, Random& random)
 {
     for (int i = 0; i < 3; ++i)

@@ -13,7 +13,7 @@ Settings CommonOptions::settings() const
 {
     Settings settings;
     settings.m_device = m_device;
-    settings.m_crossover = 0;  // methods are named by their back end, however small the scene
+    settings.m_crossover = 0;  // a method runs on the back end of its name, however small the scene
     settings.m_backend = m_backend == "host" ? Backend::Host : m_backend == "opencl" ? Backend::OpenCl : Backend::Auto;
     return settings;
 }
@@ -26,18 +26,20 @@ void addCommonOptions(CLI::App& app, CommonOptions& options)
                {"auto", "opencl", "host"});
     app.add_option("--models", options.m_models, "folder of bunny_69k.obj, dragon_871k.ply, spot_6k.obj")
         ->type_name("DIR");
-    app.add_option("--csv", options.m_csv, "write the rows; - is standard output")->type_name("FILE");
-    app.add_option("--json", options.m_json, "write machine and rows; - is standard output")->type_name("FILE");
-    app.add_option("--commit", options.m_commit, "what was measured, for the record");
-    app.add_flag("--quick", options.m_quick, "small inputs only, some seconds");
-    app.add_flag("--list", options.m_list, "list what can be measured and leave");
-    app.add_option(
-           "--repeats", options.m_repeats,
-           "times a measurement is repeated, at most; in the study at least 5 times where it takes less than 50 ms")
-        ->check(CLI::PositiveNumber);
-    app.add_option("--seconds", options.m_seconds, "for the repeats of one measurement")->check(CLI::PositiveNumber);
-    app.add_option("--minutes", options.m_minutes, "for all; what does not fit is named and left out")
-        ->check(CLI::PositiveNumber);
+    app.add_option("--csv", options.m_csv, "write the rows as CSV; - is standard output")->type_name("FILE");
+    app.add_option("--json", options.m_json, "write machine and rows as JSON; - is standard output")->type_name("FILE");
+    app.add_option("--commit", options.m_commit, "commit that is measured, for the results");
+    app.add_flag("--quick", options.m_quick, "measure small inputs only, for some seconds");
+    app.add_flag("--list", options.m_list, "list all measurements and exit");
+    app.add_option("--repeats", options.m_repeats,
+                   "largest number of repetitions of a measurement; the study repeats at least 5 times if one takes "
+                   "less than 50 ms")
+        ->check(CLI::Validator(wholeNumber(1, 1000000000), ""));
+    app.add_option("--seconds", options.m_seconds, "time limit for the repetitions of one measurement, s")
+        ->check(CLI::Validator(numberAbove(0, false, "more than 0"), ""));
+    app.add_option("--minutes", options.m_minutes,
+                   "time limit for all measurements, min; those that do not fit are listed and left out")
+        ->check(CLI::Validator(numberAbove(0, false, "more than 0"), ""));
 }
 
 std::string unknownName(const char* option, const std::vector<std::string>& names,
@@ -56,7 +58,7 @@ int finishTable(const std::string& program, const Table& table, const CommonOpti
     if (!writeText(nowhere ? "-" : options.m_csv, table.csv(), error) ||
         !writeText(options.m_json, table.json(describeMachine(options.m_commit)), error))
         return fail(program, kExitFailed, error);
-    if (table.anyVoid()) return fail(program, kExitOtherHash, "rows are void: their results are not the reference's");
+    if (table.anyVoid()) return fail(program, kExitOtherHash, "rows are void: their results differ from the reference");
     return table.anyLeftOut() ? kExitFailed : kExitGood;
 }
 }  // namespace drape::bench

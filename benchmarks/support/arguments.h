@@ -1,4 +1,4 @@
-// What every benchmark program may be told on its command line.
+// Command-line options that all benchmark programs share.
 #pragma once
 
 #include <string>
@@ -28,11 +28,12 @@ struct CommonOptions
 
 void addCommonOptions(CLI::App& app, CommonOptions& options);
 
-// "" when all names are known, else one line with the first that is not, the one that may be meant, and all there are.
+// Returns "" if all names are known. Otherwise returns one line with the first unknown name, a similar name, and all
+// known names.
 std::string unknownName(const char* option, const std::vector<std::string>& names,
                         const std::vector<std::string>& known);
 
-// Writes the table where the options say (or a CSV to standard output where they name nothing) and returns the exit
-// code: kExitOtherHash when a row is void, else kExitFailed when something was left out that could not be measured.
+// Writes the table to the files that the options name, or as CSV to standard output if they name none. Returns
+// kExitOtherHash if a row is void, else kExitFailed if something could not be measured.
 int finishTable(const std::string& program, const Table& table, const CommonOptions& options);
 }  // namespace drape::bench

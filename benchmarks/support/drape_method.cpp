@@ -1,4 +1,4 @@
-// Drape's pipeline as a caller sees it.
+// Runs Drape's pipeline as a caller does.
 #include <algorithm>
 #include <map>
 
@@ -28,7 +28,7 @@ std::string stageOfKernel(const std::string& kernel)
 class DrapeMethod : public StepMethod
 {
 public:
-    // tube: see Pipeline::addPair; negative where all contacts are kept.
+    // `tube`: see Pipeline::addPair; negative if all contacts are kept.
     DrapeMethod(std::unique_ptr<Pipeline> pipeline, const StepScene& scene, float tube, bool profiled)
         : m_pipeline(std::move(pipeline)), m_scene(scene), m_tube(tube), m_profiled(profiled)
     {
@@ -71,7 +71,7 @@ public:
         std::uint64_t hash = hashOf(std::vector<Contact>(contacts.begin(), contacts.end()));
         if (collidesWithItself()) hash = hashOf(std::vector<Contact>(self.begin(), self.end()), hash);
         outcome.m_hash = hashText(hash);
-        // A step that left its device is no measurement of it.
+        // A step that left its device is no measurement of the device.
         if (statistics.m_status & (kStepDeviceFailed | kStepDeviceFull)) outcome.m_hash = "left the device";
         return outcome;
     }
@@ -89,7 +89,7 @@ public:
     std::vector<Row> extraRows() const override
     {
         std::vector<Row> rows;
-        if (m_profiled) return rows;  // the same as without
+        if (m_profiled) return rows;  // equal to the rows without profiling
         for (const MemoryUse& use : m_pipeline->deviceMemory())
             rows.push_back({{"stage", "memory: " + use.m_name}, {"bytes", use.m_bytes}});
         return rows;
@@ -120,7 +120,7 @@ private:
         }
         outcome.m_stages.push_back({"submit", statistics.m_uploadMs});
         outcome.m_stages.push_back({"wait", statistics.m_waitMs});
-        // Profiled: each kernel's launches together, each stage's kernels, and all.
+        // Adds the times of each kernel, of each stage's kernels, and of all.
         std::map<std::string, double> kernels;
         for (const KernelTime& launch : m_pipeline->takeKernelTimes())
         {
@@ -166,7 +166,7 @@ std::unique_ptr<StepMethod> makeReducedMethod(const StepScene& scene, const Sett
 
 float contactReach(const StepScene& scene)
 {
-    // A thousandth more than the feature tests look, as the pipeline takes it, for the rounding of both.
+    // A thousandth beyond the reach of the feature tests, like the pipeline, allows for the rounding of both.
     return scene.m_thickness * (1.0f + Settings().m_activation) * 1.001f;
 }
 

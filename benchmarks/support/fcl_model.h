@@ -36,7 +36,7 @@ void buildFclModel(FclModel& model, std::size_t triangles, Corners corners, cons
     model.endModel();
 }
 
-// New positions of the same vertices, bottom-up.
+// Refits the model to new positions of the same vertices, bottom-up.
 inline void refitFclModel(FclModel& model, const float* positions, std::size_t vertices)
 {
     model.beginReplaceModel();

@@ -1,4 +1,4 @@
-// What a row's figures were measured on.
+// Describes the machine that a row was measured on.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace drape::bench
 {
-// Processor, cores in use, date, commit as given.
+// Returns processor, cores in use, date, and the given commit.
 Row describeMachine(const std::string& commit);
 
-// "device" and "driver" of a row.
+// Fills "device" and "driver" of a row.
 void fillDevice(Row& row, const DeviceInfo& device);
 }  // namespace drape::bench

@@ -1,4 +1,5 @@
-// A scene as the peers and Drape's host narrow phase take it: joined topology, cones, and the step's positions.
+// A scene in the form that the peers and Drape's host narrow phase read: joined topology, cones, and the step's
+// positions.
 #pragma once
 
 #include <vector>
@@ -20,21 +21,21 @@ public:
     std::size_t clothNodes() const { return m_cloths.vertexCount(); }
     const std::vector<float>& obstaclePositions() const { return m_positions; }
 
-    // The contacts of the candidates, each pair of the scene's thickness, in canonical order, on up to `threads`
-    // threads. start and end: x y z per cloth node.
+    // Computes the contacts of the candidates in canonical order, on up to `threads` threads. Each pair has the scene's
+    // thickness. `start` and `end` hold x y z per cloth node.
     void narrowPhase(const std::vector<Candidate>& candidates, const float* start, const float* end, int threads,
                      std::vector<Contact>& contacts) const;
 
-    // The contacts of cloths with themselves of pairs of their triangles, each pair once, likewise.
+    // Computes the contacts of cloths with themselves for pairs of their triangles, each pair once, in the same order.
     void selfContacts(const std::vector<Candidate>& pairs, const float* start, const float* end, int threads,
                       std::vector<Contact>& contacts) const;
 
 private:
     MeshPool m_cloths, m_obstacles;
-    std::vector<float> m_positions;  // of the obstacle
+    std::vector<float> m_positions;  // positions of the obstacle
     std::vector<NormalCone> m_vertexCones, m_edgeCones;
     std::vector<float> m_thickness;
-    std::vector<float> m_rest;  // of the cloths
+    std::vector<float> m_rest;  // rest positions of the cloths
     SelfReach m_self;
 };
 }  // namespace drape::bench

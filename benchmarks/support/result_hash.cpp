@@ -8,7 +8,7 @@ namespace drape::bench
 std::uint64_t hashBytes(std::uint64_t hash, const void* bytes, std::size_t count)
 {
     const unsigned char* from = static_cast<const unsigned char*>(bytes);
-    // FNV-1a's step on words, with the high bits folded down, since a product carries changes upwards only.
+    // Mixes words by FNV-1a's step, with the high bits folded down, since a product carries changes upwards only.
     const auto mix = [&hash](std::uint64_t word)
     {
         hash = (hash ^ word) * 0x100000001b3ull;

@@ -1,4 +1,4 @@
-// A hash of a result's bytes, to tell whether two ways of computing it agree in every bit.
+// Hashes a result's bytes. Two computations that agree in every bit have equal hashes.
 #pragma once
 
 #include <cstddef>
@@ -20,6 +20,6 @@ std::uint64_t hashOf(const std::vector<T>& values, std::uint64_t hash = kEmptyHa
     return hashBytes(hash, values.data(), values.size() * sizeof(T));
 }
 
-// 16 hex digits.
+// Returns 16 hex digits.
 std::string hashText(std::uint64_t hash);
 }  // namespace drape::bench

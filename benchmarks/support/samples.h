@@ -24,9 +24,9 @@ public:
     bool empty() const { return m_values.empty(); }
     std::size_t count() const { return m_values.size(); }
     double sum() const;
-    // The value below which the share (0 to 1) of the samples lies: the nearest of them. 0 when there is none.
+    // Returns the sample nearest to the quantile `share` (0 to 1), or 0 without samples.
     double quantile(double share) const;
-    // The middle value; the mean of the two middle ones of an even number. 0 when there is none.
+    // Returns the median, or 0 without samples. An even number of samples has the mean of the two middle ones.
     double median() const;
 
     // Sets <prefix>min_ms, <prefix>median_ms and <prefix>p95_ms, and without a prefix how many samples they are of;

@@ -1,4 +1,4 @@
-// One way of doing a collision step, timed stage by stage: Drape on a back end, or a peer.
+// An implementation of a collision step, timed stage by stage: Drape on a back end, or a peer.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct StepOutcome
     std::size_t m_contacts = 0;
     std::size_t m_volumeTests = 0;  // 0: not counted
     std::size_t m_rebuilds = 0;     // see StepStatistics
-    std::string m_hash;             // of the contacts, or empty for a method that finds only candidates
+    std::string m_hash;             // hash of the contacts; empty for a method that finds only candidates
 };
 
 class StepMethod
@@ -33,8 +33,8 @@ class StepMethod
 public:
     virtual ~StepMethod() = default;
 
-    // One step of all cloths: x y z per node at the step's start and end, in the scene's order. Only the work itself is
-    // timed, not the hashing.
+    // Runs one step of all cloths: x y z per node at the step's start and end, in the scene's order. Only the work
+    // itself is timed, not the hashing.
     virtual StepOutcome step(const float* start, const float* end) = 0;
 
     // Has the cloths come anew, in the shape that they are at rest: what the method keeps from step to step is as at
@@ -49,14 +49,14 @@ public:
     virtual std::vector<Row> extraRows() const { return {}; }
 };
 
-// The pipeline, host to host. Its contacts' hash is the reference where the settings ask for the host. The scene
-// outlives the method.
+// Makes the pipeline's method, host to host. With the host back end its contacts' hash is the reference. The scene must
+// outlive the method.
 std::unique_ptr<StepMethod> makeDrapeMethod(const StepScene& scene, const Settings& settings, std::string& error);
 // The same, with redundant contacts left out, as the plugin has it.
 std::unique_ptr<StepMethod> makeReducedMethod(const StepScene& scene, const Settings& settings, std::string& error);
 
-// How far Drape looks with default settings: thickness and activation.
+// Returns the distance within which Drape finds contacts with default settings: thickness and activation.
 float contactReach(const StepScene& scene);
-// The same from a cloth to itself; 0 where it does not collide with itself.
+// Returns the reach of a cloth to itself, or 0 if it does not collide with itself.
 float selfReach(const StepScene& scene);
 }  // namespace drape::bench

@@ -11,11 +11,11 @@ namespace
 {
 constexpr double kClothSize = 2.4;  // m, over a 2 m obstacle, as in cloth_drop
 constexpr double kPatchSize = 0.3;  // m, of one of many cloths
-// Of the thickness: the vertical gap. On the steepest drape 0.48 of the thickness are left, of which the motion takes
-// 0.2 and a bit: cloth is near the surface, and does not pass it.
+// The vertical gap as a share of the thickness. On the steepest drape 0.48 of the thickness remains, and the motion
+// takes a little over 0.2 of it. The cloth is near the surface and does not pass it.
 constexpr double kGap = 0.75;
-constexpr double kWay = 0.15;  // of the thickness, a step: 3 mm at 20 mm
-constexpr double kFoldGap = 0.8;  // of the thickness with itself: the vertical gap between a folded cloth's halves
+constexpr double kWay = 0.15;     // motion per step as a share of the thickness: 3 mm at 20 mm
+constexpr double kFoldGap = 0.8;  // vertical gap between a folded cloth's halves, as a share of their thickness
 constexpr std::uint32_t kSeed = 7;
 
 std::string sizeName(int cells)
@@ -53,7 +53,7 @@ std::vector<SceneSpec> makeSpecs()
         specs.push_back({"both_" + sizeName(cells), "both", std::string("sphere_") + spheres[level], cells, 1,
                          kClothSize, 0, false});
     }
-    // From the smallest to the largest cloth, on the smallest obstacle, a middle one and the largest.
+    // The sweep goes from the smallest to the largest cloth, on the smallest obstacle, a middle one and the largest.
     for (const char* size : {"1k", "82k", "1m"})
         for (const int cells : {16, 64, 256, 1024})
             specs.push_back({"cloth_" + sizeName(cells) + "_on_" + size, std::string("on_") + size,
@@ -64,7 +64,8 @@ std::vector<SceneSpec> makeSpecs()
     return specs;
 }
 
-// Steps until the motion repeats. Large scenes repeat sooner: their host reference takes seconds a step.
+// Returns the number of steps until the motion repeats. Large scenes repeat sooner: their host reference takes seconds
+// a step.
 int periodOf(const SceneSpec& spec, std::size_t obstacleTriangles)
 {
     if (spec.m_quick) return 3;
@@ -72,7 +73,7 @@ int periodOf(const SceneSpec& spec, std::size_t obstacleTriangles)
     return spec.clothTriangles() <= 40000 ? 12 : spec.clothTriangles() <= 300000 ? 8 : 4;
 }
 
-// A draped cloth whose second half, in the direction of its columns, is laid over the first, a gap (m) above.
+// Lays the second half of a draped cloth, in the direction of its columns, over the first, a gap (m) above.
 void foldCloth(std::vector<float>& positions, int cells, float gap)
 {
     const std::size_t side = static_cast<std::size_t>(cells) + 1;

@@ -31,13 +31,13 @@ struct SceneSpec
     }
 };
 
-// m: the thickness of the acceptance scenes, on obstacles of 2 m.
+// The thickness of the acceptance scenes, on obstacles of 2 m, in m.
 constexpr double kThickness = 0.02;
 
 const std::vector<SceneSpec>& sceneSpecs();
 
-// Of a cell's side: the thickness of a cloth with itself. With the default activation contacts reach to 0.6 of it, which
-// is less than the altitude of a cell's triangles, 0.7.
+// The thickness of a cloth with itself as a share of a cell's side. With the default activation contacts reach to 0.6
+// of the side, which is less than the altitude of a cell's triangles, 0.7.
 constexpr double kSelfShare = 0.4;
 
 struct StepScene
@@ -50,7 +50,7 @@ struct StepScene
     std::vector<std::vector<float>> m_frames;  // a period: all cloths' nodes at the start of each step
 
     int period() const { return static_cast<int>(m_frames.size()); }
-    std::size_t floats() const { return m_frames.front().size(); }  // of all nodes' positions
+    std::size_t floats() const { return m_frames.front().size(); }  // number of floats of all nodes' positions
     const float* start(int step) const { return m_frames[static_cast<std::size_t>(step % period())].data(); }
     const float* end(int step) const { return start(step + 1); }
 };

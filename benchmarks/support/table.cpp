@@ -11,7 +11,7 @@ namespace drape::bench
 {
 namespace
 {
-// What a void row may keep of its numbers: its inputs.
+// Inputs, the only numbers that a void row keeps.
 const char* const kInputs[] = {
     "triangles", "cloths", "cloth_triangles", "obstacle_triangles", "thickness_m", "threads", "step", "dop",
     "decay",     "value",  "activation",      "substeps",           "iterations",  "voxel_m", "seed"};
@@ -104,7 +104,7 @@ bool readRows(const std::string& path, const std::function<void(const Row&)>& ta
         for (const Row& row : all.at("rows"))
             take(row);
     }
-    catch (const Row::exception&)  // of what is no JSON, and of what has not the keys
+    catch (const Row::exception&)  // invalid JSON, or JSON without the keys
     {
         error = path + ": not the JSON of an earlier run";
     }

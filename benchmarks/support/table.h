@@ -19,16 +19,16 @@ class Table
 public:
     void add(const Row& row);
     const std::vector<Row>& rows() const { return m_rows; }
-    // Whether a row is void.
+    // Returns true if a row is void.
     bool anyVoid() const;
 
     // Names on standard error what could not be measured; the program then ends with kExitFailed (finishTable()).
     void leaveOut(const std::string& what);
     bool anyLeftOut() const { return m_anyLeftOut; }
 
-    // A header line and a line a row; texts with commas or quotes are quoted. Missing values are empty.
+    // Returns a header line and a line per row; texts with commas or quotes are quoted. Missing values are empty.
     std::string csv() const;
-    // {"machine": …, "rows": […]}.
+    // Returns {"machine": …, "rows": […]}.
     std::string json(const Row& machine) const;
 
 private:

@@ -14,10 +14,10 @@
 
 namespace drape
 {
-// In the parent. False with one line in `error` when the child could not be started or failed.
+// Runs in the parent. Returns false with one line in `error` if the child could not be started or failed.
 bool runBuiltInChild(const Options& options, BulletMode mode, const ChildCap& cap, const DropScene& scene,
                      RunRecord& record, std::string& error);
 
-// In the child: runs and streams. Does not return: Bullet's own clean-up could take minutes.
+// Runs in the child and streams its steps. Does not return, since Bullet's own clean-up could take minutes.
 [[noreturn]] void streamBuiltIn(const Options& options, const DropScene& scene);
 }  // namespace drape

@@ -6,7 +6,7 @@ namespace drape
 {
 namespace
 {
-// The tuned field: enough cells that none is thrown away, and voxels below the bunny's ears' width.
+// The tuned field has enough cells, so that none is thrown away, and voxels smaller than the bunny's ears' width.
 constexpr int kTunedHashSize = 1048573;
 constexpr int kTunedCells = 16000000;
 constexpr btScalar kTunedVoxel = 0.05f;  // m

@@ -20,12 +20,12 @@ namespace
 {
 constexpr int kNotRun = 127;  // exit code, as shells have it
 
-// In the new process, where only what is safe in a signal handler may be called. A parent that ends, however it does,
-// takes the child with it: it may be in a step of minutes, and would notice only when it writes. One that ended before
-// that was asked for has left the child to another.
+// Runs in the new process, where only functions that are safe in a signal handler may be called. When the parent ends
+// for any reason, the child ends too. Otherwise it could continue a step of minutes and notice only at its next write.
+// If the parent ended before this request, the child already belongs to another process.
 [[noreturn]] void becomeChild(pid_t parent, int output, char* const* arguments)
 {
-    // The last is for an end of the pipe that is standard output's already, and would be closed.
+    // The last condition covers an end of the pipe that already is standard output, and would be closed.
     if (::prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 && ::getppid() == parent && ::dup2(output, STDOUT_FILENO) >= 0 &&
         ::fcntl(STDOUT_FILENO, F_SETFD, 0) == 0)
         ::execve("/proc/self/exe", arguments, environ);
@@ -52,7 +52,7 @@ int spawnChild(std::vector<std::string>& arguments, pid_t& child)
     return -1;
 }
 
-constexpr double kLookSeconds = 0.1;  // how often whether it goes on is asked while the child is silent
+constexpr double kLookSeconds = 0.1;  // interval between checks for an interruption while the child is silent
 
 int waitMs(double seconds)
 {
@@ -66,7 +66,7 @@ bool follow(int pipe, CappedLines& lines, const std::function<bool()>& goesOn)
     for (;;)
     {
         if (goesOn && !goesOn()) return false;
-        // Not running: loading or measuring, which always ends.
+        // The child is not in a step: it is loading or measuring, which always ends.
         const double left = lines.running() ? lines.secondsLeft(CappedLines::Clock::now()) : kLookSeconds;
         pollfd waiting = {pipe, POLLIN, 0};
         const int ready = ::poll(&waiting, 1, waitMs(left));
@@ -80,7 +80,7 @@ bool follow(int pipe, CappedLines& lines, const std::function<bool()>& goesOn)
     }
 }
 
-// "" for a good end.
+// Returns "" for a successful end.
 std::string endProblem(int status, int step)
 {
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return "";
@@ -111,7 +111,7 @@ ChildEnd runCappedChild(std::vector<std::string> arguments, const ChildCap& cap,
         end.m_error = std::string("the child process sent what cannot be read: ") + exception.what();
     }
     end.m_step = lines.step();
-    // The same signal may have ended the child already.
+    // The signal may have ended the child already.
     if (end.m_error.empty() && goesOn && !goesOn()) end.m_capped = true;
     if (end.m_capped || !end.m_error.empty()) ::kill(child, SIGKILL);
     ::close(pipe);

@@ -20,9 +20,9 @@ struct ChildEnd
     std::string m_error;    // one line when the child could not be started or failed, else empty
 };
 
-// arguments: the first one names the program. onLine gets the number of the last step and the line; an exception of its
-// own ends the child and becomes the error. goesOn, where it is given, is asked several times a second: false ends the
-// child as the cap does.
+// Runs a child. The first of `arguments` names the program. `onLine` gets the number of the last step and the line; its
+// exceptions end the child and become the error. `goesOn`, if given, is called several times a second. If it returns
+// false, the child is ended like at its time limit.
 ChildEnd runCappedChild(std::vector<std::string> arguments, const ChildCap& cap, const CappedLines::OnLine& onLine,
                         const std::function<bool()>& goesOn = {});
 }  // namespace drape

@@ -1,8 +1,9 @@
-// What a child process says of its steps, and when its cap ends them (see capped_child.h).
+// Interprets the lines that a child process prints about its steps, and decides when its time limit ends them (see
+// capped_child.h).
 //
-// Before a step the child writes stepLine(), after it steppedLine(), and when it has measured it measuredLine(), each
-// with the time of the call; all other lines go to the caller. What is kept goes by these times, not by when they are
-// read: several steps may come at once.
+// The child writes stepLine() before a step, steppedLine() after it, and measuredLine() after measuring it. Each line
+// contains the time of the call. All other lines go to the caller. The times in the lines decide which steps are kept,
+// since several steps may be read at once.
 #pragma once
 
 #include <chrono>
@@ -18,7 +19,7 @@ struct ChildCap
     bool m_measuring = false;  // counts what is done between steps, too
 };
 
-// In the child, which shares the clock.
+// Functions for the child, which shares the clock.
 std::string stepLine();
 std::string steppedLine();
 std::string measuredLine();
@@ -31,14 +32,14 @@ public:
 
     CappedLines(const ChildCap& cap, const OnLine& onLine) : m_cap(cap), m_onLine(onLine) {}
 
-    // The next part of the text, which may end within a line. False from the first time beyond the cap on. Passes on
-    // what onLine throws, and std::exception for times that are none.
+    // Takes the next part of the text, which may end within a line. Returns false once the time limit is exceeded.
+    // Passes on exceptions of onLine, and throws std::exception for invalid times.
     bool take(const char* text, std::size_t size);
-    // Whether the cap's clock runs: between a step's two lines, or from the first step's on.
+    // Returns true while the clock of the limit runs: between a step's two lines, or from the first step on.
     bool running() const { return m_running; }
-    // Of the cap at `time`, while it runs.
+    // Returns the seconds that are left at `time` while the clock runs.
     double secondsLeft(Clock::time_point time) const;
-    // The last step that began, from 1; 0: none.
+    // Returns the last step that began, from 1, or 0 if there is none.
     int step() const { return m_step; }
 
 private:
@@ -46,7 +47,7 @@ private:
 
     ChildCap m_cap;
     OnLine m_onLine;
-    std::string m_text;  // of a line that has not ended
+    std::string m_text;  // text of a line that has not ended
     bool m_running = false;
     Clock::time_point m_start;
     double m_spent = 0;

@@ -71,7 +71,7 @@ private:
     std::unique_ptr<Plugin> m_plugin;  // before the world, which uses it
     DropWorld m_world;
     double m_dt;
-    double m_meshesMs = 0;  // of preparing cloth and obstacle
+    double m_meshesMs = 0;  // time to prepare cloth and obstacle
     std::uint32_t m_status = 0;
     std::vector<float> m_positions;
 };

@@ -20,13 +20,14 @@ struct DropScene
     double m_dt = 0;                   // s
     double m_thickness = 0;            // m; each side's margin is half of it
     double m_mass = 1.0;               // kg, of the cloth
-    std::vector<std::string> m_notes;  // what was left out or lost of the obstacle's file, one line each
+    std::vector<std::string> m_notes;  // parts of the obstacle's file that were left out or lost, one line each
 };
 
-// False, with one line in `error`, when the obstacle cannot be had.
+// Returns false, with one line in `error`, if the obstacle cannot be made.
 bool makeDropScene(const Options& options, DropScene& scene, std::string& error);
 
-// Returns one line when the thickness is out of proportion to the scene, which most likely is not meant: above a
-// quarter of the obstacle's or the cloth's size, or below what float32 tells apart there. Else "".
+// Returns one line if the thickness is out of proportion to the scene, which is probably a mistake, else "". The
+// thickness is too large above a quarter of the obstacle's or the cloth's size. It is too small below the resolution of
+// float32 there.
 std::string thicknessRemark(const Options& options);
 }  // namespace drape

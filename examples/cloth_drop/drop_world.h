@@ -32,12 +32,13 @@ private:
 class DropWorld
 {
 public:
-    // `solver` may be null: Bullet's default. Bodies are not in the world yet.
+    // `solver` may be null for Bullet's default. Bodies are not in the world yet.
     DropWorld(std::unique_ptr<btCollisionConfiguration> configuration, std::unique_ptr<btSoftBodySolver> solver);
     ~DropWorld();
 
     void addMeshObstacle(const DropScene& scene);  // a static btBvhTriangleMeshShape
-    // The same as a kinematic body at the origin; its setWorldTransform() before a step says where it goes in the step.
+    // Adds the obstacle as a kinematic body at the origin. Call setWorldTransform() before a step to set its pose at
+    // the end of the step.
     btRigidBody& addMovingObstacle(const DropScene& scene);
     void addSoftObstacle(const DropScene& scene);  // a soft body of massless nodes, for VF_SS
     void addCloth(const DropScene& scene, bool softPairs);
@@ -45,7 +46,7 @@ public:
     TimedWorld& world() { return m_world; }
     btSoftBody& cloth() { return *m_cloth; }
 
-    // One step; returns its wall time in ms.
+    // Runs one step and returns its wall time in ms.
     double step(double dt);
 
 private:

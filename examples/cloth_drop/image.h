@@ -29,6 +29,6 @@ struct Image
     std::vector<std::uint8_t> m_pixels;  // r g b per pixel, top row first, sRGB
 };
 
-// False with one line in `error`.
+// Returns false with one line in `error` on failure.
 bool writePng(const std::string& path, const Image& image, std::string& error);
 }  // namespace drape

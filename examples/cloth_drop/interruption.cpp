@@ -13,8 +13,7 @@ struct Listened
     struct sigaction m_before;
 };
 
-// A handler is given nothing of its program's, so that what it needs is here: what it takes the place of, and 0 or the
-// signal that came.
+// A handler gets no data of its program, so its data is here: the replaced handler, and the received signal or 0.
 Listened listened[] = {{SIGINT, {}}, {SIGTERM, {}}, {SIGHUP, {}}};
 volatile std::sig_atomic_t noted = 0;
 
@@ -33,7 +32,7 @@ void listenToSignals()
             continue;
         struct sigaction action = {};
         action.sa_handler = note;
-        action.sa_flags = SA_RESTART;  // what is being written goes on
+        action.sa_flags = SA_RESTART;  // interrupted writes continue
         ::sigaction(signal.m_number, &action, nullptr);
     }
 }

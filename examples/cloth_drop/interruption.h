@@ -1,17 +1,19 @@
-// Signals that ask the program to end: SIGINT, SIGTERM and SIGHUP. While it listens the first of them is only noted, so
-// that a run may end after the step under way and keep what it has; the next one does what it did before: it ends the
-// program at once, unless somebody else has a handler (an OpenCL driver's compiler removes its files). Signals that are
-// ignored when listening begins (nohup) stay so.
+// Listens for signals that ask the program to end: SIGINT, SIGTERM and SIGHUP.
+//
+// While it listens, the first signal is only noted, so that a run can end after the current step and keep its results.
+// The next signal has its earlier effect: it ends the program at once, or calls the handler that was installed before.
+// An OpenCL driver's compiler, for example, has a handler that removes its files. Signals that are ignored when
+// listening begins (nohup) remain ignored.
 #pragma once
 
 #include <string>
 
 namespace drape
 {
-// Not while it listens already.
+// Must not be called while listening.
 void listenToSignals();
-// Back to what was before. What has come stays noted. Safe in a signal handler.
+// Restores the earlier handlers. Received signals stay noted. Safe in a signal handler.
 void stopListening();
-// "" or what came, in words.
+// Returns the received signal in words, or "".
 std::string interruption();
 }  // namespace drape

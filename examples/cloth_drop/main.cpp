@@ -28,7 +28,7 @@ void beginRun(const Options& options)
     listenToSignals();
 }
 
-// A built-in run with a limit of time is a child's, which is ended within a step that does not.
+// Runs the built-in collision with a time limit in a child, which can be ended within a step that does not end.
 bool runLimitedBuiltIn(const Options& options, const DropScene& scene, NamedRun& run, std::string& error)
 {
     beginRun(options);
@@ -144,7 +144,7 @@ int run(const Options& options)
     const bool draws = ran && !options.m_picture.empty() && interruption().empty();
     if (!draws) stopListening();
     if (!ran && runs[0].m_record.m_steps.empty()) return fail(exitCode, error);
-    // The results come first: the picture takes seconds and may be given up.
+    // The results are written first: the picture takes seconds and may be given up.
     std::string writeError;
     const bool written = writeOutputs(options, runs, writeError);
     if (draws) drawPicture(options, scene, runs, error);

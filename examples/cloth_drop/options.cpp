@@ -17,18 +17,19 @@ namespace drape
 {
 namespace
 {
-// What --help says of --json and of how runs end.
+// The part of --help that explains --json and the exit codes.
 constexpr const char* kResultsText =
-    "JSON keys end in their units. step_ms, collision_ms, collision_parts_ms (medians) and penetration_p99_m are over\n"
-    "the steps in contact, and null where there were none. Of the collision, finding_ms leaves out solving the\n"
-    "contacts, which Bullet's own figures leave out, too. Penetration is how far a node was below the surface, or a\n"
-    "vertex of the obstacle above a face. intersecting_pairs_max is the largest number of intersecting pairs of\n"
-    "triangles after any step, intersecting_pairs_max_step the first step that had it (0: none had any). Each step\n"
-    "is checked, exactly and outside of the measured times; --csv has the number of each. With --compare there is an\n"
-    "object a run: drape, bullet_stock, bullet_tuned and, where asked for, bullet_vfss. capped_at_step is the last\n"
-    "step that was done before a limit of time, --compare-cap, a signal or a failure ended the run.\n"
-    "The first SIGINT, SIGTERM or SIGHUP ends the run as --time-limit does, but with exit code 1 and without a\n"
-    "picture; one that is being drawn is given up. A second signal ends the program at once.";
+    "JSON keys end in their units. step_ms, collision_ms, collision_parts_ms (medians) and penetration_p99_m cover "
+    "the\n"
+    "steps in contact; they are null if there were none. finding_ms is the collision without solving the contacts.\n"
+    "Bullet's own collision_ms contains no solving, either. Penetration is the depth of a node below the surface, or\n"
+    "of a vertex of the obstacle above a face. intersecting_pairs_max is the largest number of intersecting pairs of\n"
+    "triangles after any step. intersecting_pairs_max_step is the first step with that number (0: there was no pair).\n"
+    "An exact check runs after each step, outside of the measured times; --csv lists its results for every step. With\n"
+    "--compare there is one object for each run: drape, bullet_stock, bullet_tuned and, with --compare-vfss,\n"
+    "bullet_vfss. capped_at_step is the last complete step before a time limit, --compare-cap, a signal or a failure\n"
+    "ended the run. The first SIGINT, SIGTERM or SIGHUP ends the run like --time-limit, but with exit code 1 and\n"
+    "without a picture. A second signal ends the program at once.";
 
 constexpr double kLeastThickness = 1e-4;  // m, of Drape
 
@@ -79,43 +80,47 @@ void addSceneOptions(CLI::App& app, Options& options, std::string& cloth)
         ->check(CLI::Validator(numberAbove(0, true, "0 or more"), ""));
     app.add_option("--steps", options.m_steps, "simulation steps")->check(positive);
     app.add_option("--time-limit", options.m_timeLimit,
-                   "seconds, measuring included, after which the run ends with the steps it has done; with --compare "
-                   "Drape's run alone")
+                   "seconds, including the check, after which the run ends and reports its steps; with --compare it "
+                   "limits Drape's run only")
         ->check(positive)
         ->default_str("none");
-    app.add_option("--dt", options.m_dt, "seconds a step")->check(positive);
+    app.add_option("--dt", options.m_dt, "time step, s")->check(positive);
     app.add_option("--thickness", options.m_thickness,
-                   "gap at rest: half is the cloth's margin, half the obstacle's, m, 0.0001 to 10000")
+                   "gap at rest, the sum of the cloth's and the obstacle's equal margins, m, 0.0001 to 10000")
         ->check(CLI::Validator(numberUpTo(kLongest, kLeastThickness, true, "0.0001 or more, 10000 at most"), ""));
 }
 
 void addBackendOptions(CLI::App& app, Options& options, std::string& mode)
 {
-    acceptOnly(app.add_option(
-                   "--backend", options.m_backend,
-                   "auto: a GPU, else any OpenCL device, unless the scene costs less on the host; bullet: built in"),
-               {"auto", "opencl", "host", "bullet"});
-    acceptOnly(app.add_option("--mode", options.m_contactMode, "how Drape looks at motion within a step"),
+    acceptOnly(
+        app.add_option(
+            "--backend", options.m_backend,
+            "auto: a GPU, else any OpenCL device, but the host if it is faster; bullet: Bullet's built-in collision"),
+        {"auto", "opencl", "host", "bullet"});
+    acceptOnly(app.add_option("--mode", options.m_contactMode, "how Drape treats motion within a step"),
                {"discrete", "continuous", "automatic"});
-    app.add_flag("--all-contacts", options.m_allContacts, "solve contacts too that others imply");
+    app.add_flag("--all-contacts", options.m_allContacts, "also solve redundant contacts");
     app.add_option("--threads", options.m_threads,
-                   "that hold contacts, and of the host; 0: as many as there are cores, 8 at most")
-        ->check(CLI::Range(0, 64));
+                   "number of threads of the solver and of the host back end, 0 to 64; 0: one per core, 8 at most")
+        ->check(CLI::Validator(wholeNumber(0, 64), ""));
     std::vector<std::string> traversals;
     for (const auto& traversal : traversalsByName())
         traversals.push_back(traversal.first);
     acceptOnly(
         app.add_option("--traversal", options.m_traversal, "how Drape's broad phase goes; the contacts are the same"),
         traversals);
-    acceptOnly(
-        app.add_option("--bullet-mode", mode, "distance field of --backend bullet, or the obstacle as a soft body"),
-        {"stock", "tuned", "vfss"});
+    acceptOnly(app.add_option(
+                   "--bullet-mode", mode,
+                   "with --backend bullet: distance field with stock or tuned settings, or two soft bodies (VF_SS)"),
+               {"stock", "tuned", "vfss"});
     app.add_option("--device", options.m_device, "part of an OpenCL device's or platform's name")->type_name("TEXT");
-    app.add_flag("--list-devices", options.m_listDevices, "list the OpenCL devices and leave");
-    app.add_flag("--compare", options.m_compare, "then run Bullet's built-in collision on the same scene");
-    app.add_flag("--compare-vfss", options.m_compareSoftPair, "with --compare: also two soft bodies (VF_SS)");
+    app.add_flag("--list-devices", options.m_listDevices, "list the OpenCL devices and exit");
+    app.add_flag("--compare", options.m_compare,
+                 "afterwards run the same scene with Bullet's built-in collision, stock and tuned");
+    app.add_flag("--compare-vfss", options.m_compareSoftPair,
+                 "with --compare: also run Bullet with two soft bodies (VF_SS)");
     app.add_option("--compare-cap", options.m_compareCap,
-                   "seconds of stepping after which a built-in run of --compare is ended")
+                   "seconds of stepping after which each built-in run of --compare ends")
         ->check(CLI::Validator(numberAbove(0, false, "more than 0"), ""));
 }
 
@@ -123,15 +128,15 @@ void addOutputOptions(CLI::App& app, Options& options)
 {
     const auto add = [&app](const char* name, std::string& path, const char* type, const char* text)
     { app.add_option(name, path, text)->type_name(type)->transform(CLI::Validator(outputFile, "")); };
-    add("--csv", options.m_csv, "FILE", "write a row a step; - is standard output");
+    add("--csv", options.m_csv, "FILE", "write a row for each step; - is standard output");
     add("--json", options.m_json, "FILE", "write the summary; - is standard output");
-    add("--frames", options.m_frames, "DIR", "write obstacle.ply and a cloth_NNNN.ply a step");
+    add("--frames", options.m_frames, "DIR", "write obstacle.ply, and cloth_NNNN.ply for each step");
     add("--picture", options.m_picture, "FILE.png",
-        "write a shaded picture, a PNG, of the last frame; with --compare of every run's, side by side");
-    app.add_option("--validate-hash", options.m_validateHash, "exit with 3 unless the run's hash is this")
+        "write a shaded picture (PNG) of the last frame; with --compare it shows all runs side by side");
+    app.add_option("--validate-hash", options.m_validateHash, "exit with 3 if the run's hash differs from H")
         ->type_name("H")
         ->transform(CLI::Validator(hash, ""));
-    app.add_flag("--quiet", options.m_quiet, "no progress and no summary");
+    app.add_flag("--quiet", options.m_quiet, "print neither progress nor summary");
     app.add_flag("--stream-steps", options.m_streamSteps, "")->group("");
     app.add_flag("--stream-positions", options.m_streamPositions, "")->group("");
 }
@@ -139,9 +144,9 @@ void addOutputOptions(CLI::App& app, Options& options)
 std::string conflict(const Options& options)
 {
     if (!((options.m_dropSpeed + kGravity * options.m_dt) * options.m_dt <= kFarthest))
-        return "--drop-speed and --dt let the cloth go more than 100000 m in a step";
+        return "--drop-speed and --dt let the cloth move more than 100000 m in a step";
     if (!options.usesDrape() && options.m_compare) return "--compare needs a back end of Drape, not --backend bullet";
-    if (!options.usesDrape() && !options.m_device.empty()) return "--device means nothing with --backend bullet";
+    if (!options.usesDrape() && !options.m_device.empty()) return "--device has no effect with --backend bullet";
     if (options.m_compareSoftPair && !options.m_compare) return "--compare-vfss needs --compare";
     if (!options.usesDrape() && options.m_timeLimit > 0 && !options.m_frames.empty())
         return "--time-limit with --backend bullet leaves no cloth for --frames";
@@ -173,9 +178,13 @@ bool parseOptions(int argc, const char* const* argv, Options& options, int& exit
     addSceneOptions(app, options, cloth);
     addBackendOptions(app, options, mode);
     addOutputOptions(app, options);
-    if (!parseArguments(
-            app, argc, argv, [&options] { return conflict(options); }, exitCode))
-        return false;
+    const auto problem = [&]() -> std::string
+    {
+        if (options.usesDrape() && app.count("--bullet-mode") > 0)
+            return "--bullet-mode needs --backend bullet; --compare runs stock and tuned, --compare-vfss also vfss";
+        return conflict(options);
+    };
+    if (!parseArguments(app, argc, argv, problem, exitCode)) return false;
     std::sscanf(cloth.c_str(), "%d%*c%d", &options.m_clothColumns, &options.m_clothRows);
     static const std::map<std::string, BulletMode> modes = {
         {"stock", BulletMode::Stock}, {"tuned", BulletMode::Tuned}, {"vfss", BulletMode::SoftPair}};

@@ -54,6 +54,7 @@ struct Options
 // Ways of Methods::m_traversal, as --traversal names them.
 const std::map<std::string, Traversal>& traversalsByName();
 
-// True: go on. False: leave with `exitCode`; what there was to say has been printed (help, or one line on stderr).
+// Returns true if the program goes on. Returns false if it must leave with `exitCode`, after printing the help or one
+// line on standard error.
 bool parseOptions(int argc, const char* const* argv, Options& options, int& exitCode);
 }  // namespace drape

@@ -25,7 +25,7 @@ struct Output
     const std::string& m_path;
 };
 
-// Two that go to one place would leave one of them.
+// Refuses two outputs to one file, of which only one would remain.
 bool areApart(const Output& one, const Output& other, std::string& error)
 {
     if (one.m_path.empty() || other.m_path.empty()) return true;
@@ -45,7 +45,7 @@ bool isFrame(const std::string& name)
             name.compare(name.size() - end.size(), end.size(), end) == 0);
 }
 
-// What is read stays, and what is written is not written over.
+// Refuses an output file that --frames would overwrite.
 bool spares(const Options& options, const Output& file, std::string& error)
 {
     if (file.m_path.empty() || file.m_path == kStandardOutput) return true;

@@ -1,5 +1,5 @@
-// The files a run leaves: checked before the run, so that an hour's work is not lost to a mistyped folder, written
-// after.
+// The output files of a run. They are checked before the run, so that a mistyped folder does not cost an hour's work,
+// and written after it.
 #pragma once
 
 #include <string>

@@ -19,7 +19,7 @@ namespace
 {
 // Size of the only panel, in pixels.
 constexpr int kWidth = 1280, kHeight = 960;
-constexpr int kSideWidth = 960, kSideHeight = 720;  // of each of several panels
+constexpr int kSideWidth = 960, kSideHeight = 720;  // size of each panel if there are several
 constexpr int kGap = 8;                             // pixels between panels
 constexpr int kStrata = 6;                          // samples a pixel and axis; each carries one shadow and one sky ray
 constexpr std::size_t kSmoothTriangles =
@@ -47,8 +47,8 @@ double hashUnit(std::uint32_t seed)
     return ((state >> 22) ^ state) * (1.0 / 4294967296.0);
 }
 
-// One of kStrata² cells, jittered and turned by a pixel's own offset, so that a pixel's samples cover the square
-// evenly.
+// Returns one of kStrata² cells, jittered and rotated by a pixel's own offset, so that a pixel's samples cover the
+// square evenly.
 Sample stratum(std::uint32_t pixel, int index, std::uint32_t purpose)
 {
     const int cells = kStrata * kStrata;
@@ -117,7 +117,7 @@ Vector3 shade(const RayScene& scene, const Vector3& direction, const SurfacePoin
     const bool lit = facing > 0 && !scene.blocked(origin, towardsLight, 1e9);
     const bool open = dot(hit.m_flat, skyRay) > 0 && !scene.blocked(origin, skyRay, 1.5 * scene.view().m_radius);
     Vector3 light = (lit ? facing / kPi : 0.0) * kKeyLight;
-    // Sky from above, a little light back from the floor from below.
+    // The sky lights from above, and the floor reflects a little light from below.
     const Vector3 fill = skyRay.y > 0 ? kSkyLight : 0.45 * kSkyLight;
     light += (open ? 1.0 : 0.12) * fill;
     Vector3 colour = multiply(albedo(hit), light);

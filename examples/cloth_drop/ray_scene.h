@@ -29,7 +29,7 @@ struct SurfacePoint
     Surface m_surface = Surface::None;
     Vector3 m_point;
     Vector3 m_normal;     // smooth, towards the ray's origin
-    Vector3 m_flat;       // of the triangle, towards the ray's origin
+    Vector3 m_flat;       // normal of the triangle, towards the ray's origin
     bool m_back = false;  // seen from the triangle's back
 };
 

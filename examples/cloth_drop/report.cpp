@@ -31,9 +31,9 @@ Json ifInContact(const RunSummary& summary, const Json& value)
     return summary.m_stepsInContact > 0 ? value : Json();
 }
 
-// Sums over the run: what the broad phase left, what needed the continuous test, contacts solved and left out,
-// hierarchies of the cloth built anew, cloths not looked at and obstacles used as they were, steps with nothing to do,
-// and steps that the host back end ran.
+// Returns sums over the run. Counts the candidates of the broad phase, the continuous tests, the solved and the omitted
+// contacts, and rebuilt hierarchies of the cloth. Also counts skipped cloths, obstacles reused without change, idle
+// steps, and steps that the host back end ran.
 Json workJson(const RunRecord& record)
 {
     std::uint64_t candidates = 0, swept = 0, contacts = 0, implied = 0;
@@ -169,7 +169,7 @@ std::string heading(const std::vector<NamedRun>& runs)
     {
         const RunRecord& record = run.m_record;
         head += run.m_name + ": " + record.m_backend + " on " + record.m_device + " (" + record.m_deviceReason + ")";
-        if (record.m_prepareMs > 0) head += ", ready after " + text("%.0f", record.m_prepareMs) + " ms";
+        if (record.m_prepareMs > 0) head += ", prepared in " + text("%.0f", record.m_prepareMs) + " ms";
         if (record.m_capped) head += "; ended after step " + count(record.m_steps.size());
         if (!record.m_trouble.empty()) head += "; " + record.m_trouble;
         head += "\n";
@@ -239,19 +239,19 @@ std::string asTable(const std::vector<NamedRun>& runs)
     {
         addTimes(table, "step, ms", summaries, &RunSummary::m_step);
         addTimes(table, "collision, ms", summaries, &RunSummary::m_collision);
-        add("of it finding contacts, median",
+        add("finding contacts, ms, median",
             [&](std::size_t i) { return textOfContacts(summaries[i], summaries[i].m_finding.m_median); });
     }
-    add("contacts, most", [&](std::size_t i) { return count(summaries[i].m_contactsMax); });
-    add("penetration, most, mm", [&](std::size_t i) { return text("%.3f", 1000 * summaries[i].m_penetrationMax); });
+    add("contacts, maximum", [&](std::size_t i) { return count(summaries[i].m_contactsMax); });
+    add("penetration, maximum, mm", [&](std::size_t i) { return text("%.3f", 1000 * summaries[i].m_penetrationMax); });
     if (anyContact)
         add("penetration, p99, mm",
             [&](std::size_t i) { return textOfContacts(summaries[i], 1000 * summaries[i].m_penetrationP99); });
-    add("gap, least, mm", [&](std::size_t i) { return text("%.3f", 1000 * summaries[i].m_gapMin); });
+    add("gap, minimum, mm", [&](std::size_t i) { return text("%.3f", 1000 * summaries[i].m_gapMin); });
     add("nodes below surface, end", [&](std::size_t i) { return count(summaries[i].m_nodesBelow); });
     add("nodes that went through", [&](std::size_t i) { return count(summaries[i].m_nodesThrough); });
     add("intersecting pairs, end", [&](std::size_t i) { return count(summaries[i].m_intersectingPairsEnd); });
-    add("intersecting pairs, most (step)",
+    add("intersecting pairs, maximum (step)",
         [&](std::size_t i)
         {
             const RunSummary& summary = summaries[i];

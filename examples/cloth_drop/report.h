@@ -22,6 +22,6 @@ nlohmann::ordered_json asJson(const std::vector<NamedRun>& runs, bool byName);
 // A header line and a row a step.
 std::string asCsv(const RunRecord& record, double dt);
 
-// For reading: a column per run.
+// Returns a table for reading, with a column per run.
 std::string asTable(const std::vector<NamedRun>& runs);
 }  // namespace drape

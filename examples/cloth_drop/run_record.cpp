@@ -30,7 +30,7 @@ TimeSummary summariseTimes(std::vector<double> times)
     return summary;
 }
 
-// Of the steps that had contacts.
+// Returns the median over the steps that had contacts.
 double medianOf(const RunRecord& record, double CollisionParts::*part)
 {
     std::vector<double> times;

@@ -1,4 +1,4 @@
-// What was measured in a run, step by step, and its summary. Times in ms, lengths in metres.
+// Holds the measurements of a run, step by step, and their summary. Times are in ms, lengths in metres.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct StepRecord
     StepMeasure m_measure;
     std::size_t m_nodesThrough = 0;  // whose way met the obstacle's surface, in this step or before (Crossings)
     double m_speed = 0;              // m/s, root mean square of the nodes' speeds over the step
-    std::uint64_t m_hash = 0;        // of all positions up to and with this step
+    std::uint64_t m_hash = 0;        // hash of all positions up to and including this step
 };
 
 struct RunRecord
@@ -31,7 +31,7 @@ struct RunRecord
     std::string m_trouble;               // one line, or empty
 };
 
-// Of the steps that had contacts; the first of them is `m_first`. All 0 when there was none.
+// Summarises the steps that had contacts; `m_first` is the first of them. All values are 0 if there was none.
 struct TimeSummary
 {
     double m_first = 0, m_median = 0, m_p95 = 0, m_max = 0;
@@ -41,15 +41,14 @@ struct RunSummary
 {
     std::size_t m_stepsInContact = 0;
     TimeSummary m_step, m_collision;
-    TimeSummary
-        m_finding;  // of the collision, all but solving: Bullet does that with its contacts elsewhere in the step
+    TimeSummary m_finding;   // the collision without solving; Bullet solves contacts in another part of the step
     CollisionParts m_parts;  // medians of each, over the same steps
     std::size_t m_contactsMax = 0;
     double m_penetrationMax = 0;
     double m_penetrationP99 = 0;  // over every cloth node in every step in contact; nodes that are not below count as 0
     double m_gapMin = 0;
     std::size_t m_nodesBelow = 0;                // after the last step
-    std::size_t m_nodesThrough = 0;              // that ever went through the obstacle's surface
+    std::size_t m_nodesThrough = 0;              // nodes that ever went through the obstacle's surface
     std::size_t m_intersectingPairsEnd = 0;      // after the last step
     std::size_t m_intersectingPairsMax = 0;      // after any step
     std::size_t m_intersectingPairsMaxStep = 0;  // the first step that had so many, from 1; 0: no step had any

@@ -53,7 +53,7 @@ bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, co
         record.m_capped = true;
         break;
     }
-    // Where cost decides, only the steps tell.
+    // With the automatic choice only the steps show which back end ran.
     record.m_backend = simulation.backend();
     record.m_device = simulation.device();
     record.m_deviceReason = simulation.deviceReason();

@@ -16,8 +16,8 @@ struct RunHooks  // any may be empty
     std::function<void(int, const StepRecord&)> m_afterStep;  // measured too
 };
 
-// A run that does not go on is capped at its last step. False, with one line in `error`, when a frame could not be
-// written; that ends the run, whose record has the steps done. `framesFolder` empty: no frames.
+// Runs the simulation. A run that is stopped is capped at its last step. Returns false, with one line in `error`, if a
+// frame could not be written; the record then has the steps until that frame. An empty `framesFolder` writes no frames.
 bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, const std::string& framesFolder,
                    const RunHooks& hooks, RunRecord& record, std::string& error);
 }  // namespace drape

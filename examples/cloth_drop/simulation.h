@@ -13,7 +13,7 @@
 
 namespace drape
 {
-// Of StepTimes::m_collisionMs, ms; see StepStatistics.
+// Parts of StepTimes::m_collisionMs, ms; see StepStatistics.
 struct CollisionParts
 {
     double m_dispatch = 0;  // Bullet's collision detection, and Drape's part in it
@@ -27,10 +27,10 @@ struct CollisionParts
 struct StepTimes
 {
     double m_stepMs = 0;       // wall time of stepSimulation
-    double m_collisionMs = 0;  // of it: Bullet's collision detection, and all that Drape does
-    CollisionParts m_parts;    // of that; 0 of the built-in
+    double m_collisionMs = 0;  // part of the step: Bullet's collision detection and all work of Drape
+    CollisionParts m_parts;    // parts of m_collisionMs; 0 for the built-in collision
     std::size_t m_contacts = 0;
-    // What Drape did for it, as in StepStatistics; 0 of the built-in.
+    // Work counts as in StepStatistics; 0 for the built-in collision.
     std::uint64_t m_candidates = 0;
     std::size_t m_sweptTests = 0;
     std::size_t m_reduced = 0;
@@ -46,26 +46,28 @@ class Simulation
 public:
     virtual ~Simulation() = default;
 
-    // One step of the scene's dt.
+    // Runs one step of the scene's dt.
     virtual StepTimes step() = 0;
 
-    // x y z per cloth node, m; valid until the next step.
+    // Returns x y z per cloth node, m; valid until the next step.
     virtual const std::vector<float>& positions() = 0;
 
-    // Text for the report, as of the last step; empty strings where there is no device.
+    // Returns text for the report, as of the last step; an empty string if there is no device.
     virtual std::string backend() const = 0;
     virtual std::string device() const = 0;
     virtual std::string deviceReason() const = 0;
     virtual double prepareMs() const = 0;  // making the kernels and meshes ready, not part of any step
 
-    // One line when the back end left its path during the run (a device that failed), else empty.
+    // Returns one line if a device failed during the run and the back end changed, else "".
     virtual std::string trouble() const = 0;
 };
 
-// Bullet's built-in collision. Destroying it can take minutes (Bullet's distance field looks for each triangle).
+// Makes the simulation with Bullet's built-in collision. Destroying it can take minutes (Bullet's distance field looks
+// for each triangle).
 std::unique_ptr<Simulation> makeBulletSimulation(const DropScene& scene, BulletMode mode);
 
-// Drape on the back end that the options name. Null with the reason in `error` and the exit code when it cannot start.
+// Makes the simulation with Drape on the chosen back end. Returns null with the reason in `error` and the exit code if
+// it cannot start.
 std::unique_ptr<Simulation> makeDrapeSimulation(const DropScene& scene, const Options& options, std::string& error,
                                                 int& exitCode);
 }  // namespace drape

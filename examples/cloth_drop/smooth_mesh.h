@@ -1,7 +1,9 @@
-// A finer, rounder copy of a mesh for drawing: each level splits every triangle in four and puts the edges' middles on
-// the curve that the normals at both ends suggest (the edge curve of PN triangles, Vlachos et al. 2001). The normals of
-// the given mesh are blended along, so that shading shows no seams. Cost: 4 times the triangles a level. For pictures
-// only: the surface differs from the simulated one by parts of the edge length.
+// Makes a finer, rounder copy of a mesh for drawing.
+//
+// Each level splits every triangle in four. It moves the edges' midpoints onto the curve that the normals at both ends
+// suggest (the edge curve of PN triangles, Vlachos et al. 2001). The normals of the given mesh are interpolated, so
+// that shading shows no seams. Cost: 4 times the triangles per level. For pictures only: the surface differs from the
+// simulated one by parts of the edge length.
 #pragma once
 
 #include <vector>
@@ -11,7 +13,7 @@
 
 namespace drape
 {
-// Unit normals, weighted by area; zero for a vertex without area around it.
+// Returns unit normals, weighted by area; zero for a vertex without area around it.
 std::vector<Vector3> vertexNormals(const TriangleMesh& mesh);
 
 struct ShadedMesh

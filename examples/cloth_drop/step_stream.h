@@ -1,4 +1,4 @@
-// A run in a child process: its steps as lines of text that the parent reads back (see capped_lines.h).
+// Streams a run in a child process: its steps are lines of text that the parent reads (see capped_lines.h).
 #pragma once
 
 #include <functional>
@@ -9,13 +9,13 @@
 
 namespace drape
 {
-// In the parent: what a line says, and the cloth nodes' positions where the line has them. Throws what the JSON library
-// throws.
+// Runs in the parent. Returns the contents of a line, with the cloth nodes' positions if the line has them. Throws the
+// JSON library's exceptions.
 StepRecord stepFromLine(const std::string& line);
 StepRecord stepFromLine(const std::string& line, std::vector<float>& positions);
 
-// In the child: runs, and writes a step's lines (capped_lines.h) and what was measured as a line of JSON, `positions`
-// among it where asked for; at the end what lastLine returns, where it is given. Does not return: Bullet's own clean-up
+// Runs in the child. Writes each step's lines (capped_lines.h) and its measurements as a line of JSON, with `positions`
+// if requested. At the end it writes the result of lastLine, if given. Does not return, since Bullet's own clean-up
 // could take minutes.
 [[noreturn]] void streamRun(Simulation& simulation, const DropScene& scene, int steps,
                             const std::function<std::string()>& lastLine = {}, bool positions = false);

@@ -20,7 +20,7 @@ const int kSteps = 90;
 const btScalar kStepTime = btScalar(1.0 / 60.0);  // s
 const btScalar kDrop = btScalar(0.3);             // m
 
-// Two triangles, 4 m wide, at height 0.
+// Adds two triangles, 4 m wide, at height 0.
 void addGround(btTriangleMesh& mesh)
 {
     const btVector3 a(-2, 0, -2), b(2, 0, -2), c(2, 0, 2), d(-2, 0, 2);
@@ -67,8 +67,8 @@ drape::MeshDescription describe(const std::vector<float>& positions, const std::
     return mesh;
 }
 
-// Of two triangles side by side the second is pierced by a third one, which is 5 cm from the first; a point that goes
-// through a face meets it half-way.
+// Checks known answers. A third triangle pierces the second of two adjacent triangles and is 5 cm from the first. A
+// point that goes through a face meets it half-way.
 bool answersAreRight(const drape::Settings& settings)
 {
     drape::Error error;

@@ -2,6 +2,7 @@
 // marked "Drape" differ from an app without it. Prints the device, the resting height and one line on the last step.
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 
 #include "BulletSoftBody/btSoftBodyHelpers.h"
 #include "BulletSoftBody/btSoftRigidDynamicsWorld.h"
@@ -10,7 +11,7 @@
 
 namespace
 {
-// A wavy floor of 2 × 40 × 40 triangles, 4 m wide.
+// Adds a wavy floor of 2 × 40 × 40 triangles, 4 m wide.
 void addFloor(btTriangleMesh& mesh)
 {
     const int cells = 40;
@@ -26,10 +27,27 @@ void addFloor(btTriangleMesh& mesh)
             mesh.addTriangle(corner(i + 1, j), corner(i, j + 1), corner(i + 1, j + 1), true);
         }
 }
+
+// Returns the exit code for arguments: the program has none but --help and --version.
+int answerArgument(const char* argument)
+{
+    if (std::strcmp(argument, "--version") == 0)
+        std::puts("drop_in (Drape) " DROP_IN_VERSION);
+    else if (std::strcmp(argument, "--help") == 0 || std::strcmp(argument, "-h") == 0)
+        std::puts(
+            "Usage: drop_in [--help] [--version]\nDrops a cloth on a wavy floor with Drape, and prints its height.");
+    else
+    {
+        std::fprintf(stderr, "drop_in: there is no option %s; see --help\n", argument);
+        return 2;
+    }
+    return 0;
+}
 }  // namespace
 
-int main()
+int main(int argc, char** argv)
 {
+    if (argc > 1) return answerArgument(argv[1]);
     drape::Plugin plugin;                                 // Drape
     drape::CollisionConfiguration configuration(plugin);  // Drape
     drape::SoftBodySolver solver(plugin);                 // Drape

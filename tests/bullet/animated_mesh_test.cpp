@@ -18,7 +18,7 @@ namespace
 {
 using Pose = std::function<void(double time, float* vertex)>;
 
-// A cloth beside a mesh that is posed before each step. At time 0 vertices are where they are given.
+// Poses a mesh beside a cloth before each step. At time 0 vertices have their given positions.
 class AnimatedScene
 {
 public:
@@ -81,7 +81,7 @@ private:
     }
 };
 
-// Fast enough for several thicknesses of 20 mm a step.
+// The speeds move several thicknesses of 20 mm a step.
 constexpr double kSpeeds[] = {0.5, 1.5, 6};
 
 class AnimatedMeshes : public BackendTest
@@ -89,7 +89,7 @@ class AnimatedMeshes : public BackendTest
 };
 }  // namespace
 
-// Thrown up and caught again: the plate and the cloth lose each other for a while.
+// The cloth is thrown up and caught again: it and the plate lose contact for a while.
 TEST_P(AnimatedMeshes, APlateThatGoesUpAndDownKeepsClothOnItsSide)
 {
     for (const bool kinematic : {true, false})
@@ -185,7 +185,7 @@ TEST_P(AnimatedMeshes, ClosedBodiesThatGrowAndTwistKeepClothOutside)
 
 INSTANTIATE_TEST_SUITE_P(Backends, AnimatedMeshes, testing::ValuesIn(allBackends()), backendName);
 
-// Cloth goes with a belt, as it does with a body that moves.
+// Cloth moves with a belt, as it does with a moving body.
 TEST(AnimatedMeshesOnHost, FrictionCarriesClothAlongWithTheSurface)
 {
     AnimatedScene scene(hostSettings(), makeTerrain(6, 0, 24, 1), 0.03f, true);
@@ -215,7 +215,7 @@ TEST(AnimatedMeshesOnHost, ABodyThatMovesWhileItsVerticesDo)
     EXPECT_GT(double(lowestOf(scene.m_cloth)), -1.5);
 }
 
-// Another pose far away is no motion: the cloth is not dragged there, and what intersects is told.
+// A jump to another pose far away is no motion: the cloth is not dragged there, and intersections are reported.
 TEST(AnimatedMeshesOnHost, AMeshThatBecomesAnotherPoseStartsAnew)
 {
     AnimatedScene scene(hostSettings(), makeBox(0.4f, 0.4f, 0.4f), 0.23f, true);

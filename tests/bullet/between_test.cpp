@@ -1,4 +1,4 @@
-// What an app changes between Bullet's dispatch and the solve: actions and the tick's callback run there.
+// Changes that an app makes between Bullet's dispatch and the solve, in actions and in the tick's callback.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -29,7 +29,7 @@ protected:
         spec.m_centre = btVector3(0, btScalar(height), 0);
         return m_world->addCloth(spec);
     }
-    // A step with the job between dispatch and solve.
+    // Runs a step with the job between dispatch and solve.
     void stepWith(const std::function<void()>& job)
     {
         m_job = job;

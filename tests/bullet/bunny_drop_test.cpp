@@ -67,7 +67,7 @@ protected:
 };
 }  // namespace
 
-TEST_P(BunnyDrop, endsEveryStepOutsideInBothModesOnEveryBackEnd)
+TEST_P(BunnyDrop, EndsEveryStepOutsideInBothModesOnEveryBackEnd)
 {
     std::uint64_t first = 0;
     for (const BackendCase& backend : allBackends())

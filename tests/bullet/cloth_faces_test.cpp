@@ -1,4 +1,4 @@
-// Which faces of a cloth each node has, against a look at all of them.
+// Finds the faces of each node, compared with a search of all faces.
 #include "bullet_plugin/adapter/cloth_faces.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ std::vector<Face> facesOf(const ClothFaces& faces, std::size_t node)
     return found;
 }
 
-// Those whose nodes are all there, once for each place that has the node.
+// Returns the faces whose nodes all exist, once for each corner that is the node.
 std::vector<Face> lookedUp(const std::vector<std::int32_t>& triangles, std::int32_t nodeCount, std::int32_t node)
 {
     std::vector<Face> found;
@@ -37,7 +37,7 @@ std::vector<Face> lookedUp(const std::vector<std::int32_t>& triangles, std::int3
 }
 }  // namespace
 
-TEST(ClothFaces, ofEachNodeAreThoseThatHaveIt)
+TEST(ClothFaces, FacesOfANodeAreTheFacesThatContainIt)
 {
     Random random(17);
     SCOPED_TRACE("seed 17");
@@ -60,7 +60,7 @@ TEST(ClothFaces, ofEachNodeAreThoseThatHaveIt)
     }
 }
 
-TEST(ClothFaces, mayBeNone)
+TEST(ClothFaces, AClothMayHaveNoFaces)
 {
     EXPECT_EQ(ClothFaces().nodeCount(), 0u);
     const ClothFaces faces({}, 2);

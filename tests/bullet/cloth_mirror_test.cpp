@@ -1,4 +1,4 @@
-// What is noticed of a cloth whose faces get other nodes where they stand, which no count tells.
+// Changes of a cloth's faces that no count shows: faces get other nodes in place.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -20,7 +20,7 @@ std::unique_ptr<btSoftBody> makePatch(btSoftBodyWorldInfo& info, int nodes)
         info, btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(0, 0, 1), btVector3(1, 0, 1), nodes, nodes, 0, true));
 }
 
-// How many steps pass, after `before` others, until other nodes for the last face are in the pipeline.
+// Returns the number of steps, after `before` others, until the pipeline has the other nodes of the last face.
 int stepsUntilSeen(int nodes, int before)
 {
     btSoftBodyWorldInfo info;
@@ -43,7 +43,7 @@ int stepsUntilSeen(int nodes, int before)
     return -1;
 }
 
-// Two triangles on either side of the tip of a pyramid, which lies under neither.
+// Makes two triangles on either side of the tip of a pyramid, which lies under neither.
 std::unique_ptr<btSoftBody> twoTriangles(btSoftBodyWorldInfo& info)
 {
     const btScalar height = btScalar(0.015);
@@ -58,9 +58,9 @@ std::unique_ptr<btSoftBody> twoTriangles(btSoftBodyWorldInfo& info)
 }
 }  // namespace
 
-// A mirror is found by its body's address, where another body of the same faces may lie once the first is gone: nothing
-// that a trajectory depends on may be left of that.
-TEST(ClothMirror, thatIsTakenUpHasPartsOfWhereTheNodesAre)
+// Mirrors are found by their bodies' addresses. A new body with the same faces may have the address of a deleted one.
+// No earlier state that affects a trajectory may remain then.
+TEST(ClothMirror, ANewMirrorHasPartsOfTheNodesPositions)
 {
     btSoftBodyWorldInfo info;
     const std::unique_ptr<btSoftBody> body = makePatch(info, 80);
@@ -79,7 +79,7 @@ TEST(ClothMirror, thatIsTakenUpHasPartsOfWhereTheNodesAre)
     EXPECT_EQ(reused.parts().order(), fresh.parts().order());
 }
 
-TEST(ClothMirror, seesOtherNodesOfAFaceWithinItsStretchesOfFaces)
+TEST(ClothMirror, NoticesOtherNodesOfAFaceWithinOneRound)
 {
     EXPECT_EQ(stepsUntilSeen(5, 3), 1);
     EXPECT_EQ(stepsUntilSeen(129, 3), 1);  // 32,768 faces
@@ -87,8 +87,8 @@ TEST(ClothMirror, seesOtherNodesOfAFaceWithinItsStretchesOfFaces)
     EXPECT_EQ(stepsUntilSeen(130, 1), 2);
 }
 
-// Two cloths hang together by a face that has two nodes of one and one of the other.
-TEST(ClothMirror, leavesOutAFaceWithAnotherBodysNodeAndSaysSo)
+// Two cloths are joined by a face that has two nodes of one and one of the other.
+TEST(ClothMirror, LeavesOutAFaceWithAnotherBodysNodeAndReportsIt)
 {
     for (const bool foreign : {false, true})
     {
@@ -124,8 +124,8 @@ class FacesInPlace : public BackendTest
 {
 };
 
-// No count tells that the second face spans over the pyramid from now on.
-TEST_P(FacesInPlace, countInTheSameStep)
+// No count shows that the second face spans over the pyramid from now on.
+TEST_P(FacesInPlace, ChangesCountInTheSameStep)
 {
     Plugin plugin(GetParam().m_settings);
     DropWorld world(&plugin);
@@ -147,8 +147,8 @@ TEST_P(FacesInPlace, countInTheSameStep)
     world.world().removeSoftBody(body.get());
 }
 
-// What hangs on a cloth without faces, or is left of it where some were cut away.
-TEST_P(FacesInPlace, nodesWithoutFacesCollideToo)
+// Nodes without faces hang on a cloth or remain after faces were cut away.
+TEST_P(FacesInPlace, NodesWithoutFacesCollideToo)
 {
     Plugin plugin(GetParam().m_settings);
     MeshShape slab(makeBox(4.0f, 0.4f, 4.0f));

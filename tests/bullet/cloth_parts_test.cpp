@@ -1,4 +1,4 @@
-// How a cloth is cut into parts: every node in one leaf of bounded size, and no node shared by groups side by side.
+// Cutting a cloth into parts: every node is in one leaf of bounded size, and adjacent groups share no node.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -21,7 +21,7 @@ std::vector<btVector3> placesOf(const TriangleMesh& mesh)
     return places;
 }
 
-// Whether the group is the other or one of those that it is made of.
+// Returns true if the group is the other one or one of its parts.
 bool isWithin(std::size_t group, std::size_t other)
 {
     while (group > other)
@@ -46,7 +46,7 @@ void expectLeaves(const ClothParts& parts, std::size_t nodes)
     EXPECT_EQ(parts.firstNode(parts.leafCount()), nodes);
 }
 
-// The smallest group that holds all three.
+// Expects the smallest group that contains all three.
 void expectSmallest(const ClothParts& parts, const int nodes[3])
 {
     const std::size_t group = parts.groupOf(nodes);
@@ -64,7 +64,7 @@ void expectSmallest(const ClothParts& parts, const int nodes[3])
 }
 }  // namespace
 
-TEST(ClothParts, haveEachNodeOnce)
+TEST(ClothParts, ContainEachNodeOnce)
 {
     for (const int columns : {1, 2, 16, 17, 33, 90})
     {
@@ -75,7 +75,7 @@ TEST(ClothParts, haveEachNodeOnce)
     }
 }
 
-TEST(ClothParts, faceBelongsToTheSmallestGroup)
+TEST(ClothParts, AFaceBelongsToTheSmallestGroup)
 {
     const TriangleMesh mesh = makeClothGrid(129, 120, 1.0f, 0.0f).m_mesh;
     ClothParts parts;
@@ -94,7 +94,7 @@ TEST(ClothParts, faceBelongsToTheSmallestGroup)
     EXPECT_GT(inLeaves, mesh.triangleCount() * 8 / 10);
 }
 
-TEST(ClothParts, takeAnyPlaces)
+TEST(ClothParts, AcceptAnyPositions)
 {
     const btScalar nan = std::numeric_limits<btScalar>::quiet_NaN(), infinity = SIMD_INFINITY;
     std::vector<btVector3> places(9000, btVector3(1, 2, 3));

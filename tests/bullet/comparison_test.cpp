@@ -1,4 +1,4 @@
-// The same drops with Drape, on every back end, and with Bullet's built-in collision.
+// Compares drops with Drape on every back end with drops with Bullet's built-in collision.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -17,10 +17,10 @@ struct Drop
 {
     const char* m_name;
     TriangleMesh m_obstacle;
-    btVector3 m_centre;  // of the cloth
+    btVector3 m_centre;  // centre of the cloth
 };
 
-// Round and coarse, round and fine, sharp: each lands within 20 steps.
+// Makes three cases: round and coarse, round and fine, and sharp. Each lands within 20 steps.
 std::vector<Drop> drops()
 {
     return {{"coarse_sphere", makeSphere(0.4f, 1), btVector3(0, btScalar(0.5), 0)},
@@ -51,7 +51,7 @@ class DropComparison : public BackendTest
 {
 };
 
-TEST_P(DropComparison, everyBackendLeavesTheSameCloth)
+TEST_P(DropComparison, EveryBackendGivesTheSameCloth)
 {
     for (const Drop& drop : drops())
     {
@@ -70,9 +70,9 @@ TEST_P(DropComparison, everyBackendLeavesTheSameCloth)
 
 INSTANTIATE_TEST_SUITE_P(Device, DropComparison, testing::ValuesIn(openClBackends()), backendName);
 
-// Where Bullet's own collision leaves the cloth goes into the report. Asserted is only that it does not hold these
-// scenes: some part of the cloth or the obstacle passes by more than the thickness, and by far.
-TEST(DropComparison, builtInCollisionLeaksWhereDrapeDoesNot)
+// The report records the final position of the cloth with Bullet's own collision. The test asserts only that Bullet
+// fails in these scenes: some part of the cloth or the obstacle passes by much more than the thickness.
+TEST(DropComparison, BuiltInCollisionLeaksAndDrapeDoesNot)
 {
     Plugin plugin(hostSettings());
     for (const Drop& drop : drops())
@@ -87,7 +87,7 @@ TEST(DropComparison, builtInCollisionLeaksWhereDrapeDoesNot)
     }
 }
 
-TEST(DropComparison, runsRepeatBitForBit)
+TEST(DropComparison, RunsRepeatBitForBit)
 {
     const Drop drop = drops().back();
     Plugin first(hostSettings()), second(hostSettings());

@@ -1,5 +1,5 @@
-// Contact rounds that leave most contacts alone, and are shared by threads, against rounds that project every one in
-// turn: equal to the bit.
+// Contact rounds that skip most contacts and run on several threads equal rounds that project every contact in turn,
+// bit for bit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,8 +17,8 @@ namespace drape::test
 {
 namespace
 {
-// Every contact, without any short cut: group by group of the cloth, children first, each in canonical order; in a
-// round edges after all others.
+// Projects every contact, without any short cut. The order is group by group of the cloth, children first, each in
+// canonical order. Edges come after all others in a round.
 class PlainRounds
 {
 public:
@@ -136,13 +136,14 @@ private:
         return worst;
     }
 
-    // Where the contact's point of the cloth was at the step's start: all is seen from there.
+    // Returns the position of the contact's cloth point at the step's start, which is the origin of all its
+    // coordinates.
     btVector3 startOf(const StepContact& contact) const
     {
         return pointOf(contact, m_paths.m_start, btVector3(0, 0, 0));
     }
 
-    // What the obstacle's motion does to that point.
+    // Returns the displacement that the obstacle's motion gives to that point.
     static btVector3 carriedFrom(const StepContact& contact, const btVector3& start)
     {
         return contact.m_carry ? *contact.m_carry * start - start : btVector3(0, 0, 0);
@@ -210,7 +211,7 @@ private:
         return mobility;
     }
 
-    // Mobility by which pushes go: more than it is in proportion to what is held of the point.
+    // Returns the mobility that pushes use. It exceeds its proportional value if a part of the point is held.
     btScalar softenedOf(const StepContact& contact) const
     {
         const btScalar mobility = mobilityOf(contact);
@@ -305,7 +306,7 @@ void expectSameNodes(const btSoftBody& a, const btSoftBody& b)
         }
 }
 
-// A round of both: every fourth begins anew, and the one after it settles.
+// Runs a round of both. Every fourth begins anew, and the one after it settles.
 void runBoth(RoundsTeam& team, ContactRounds& rounds, PlainRounds& plain, std::size_t round)
 {
     const RoundsTeam::Bodies bodies{&rounds};
@@ -328,7 +329,7 @@ void runBoth(RoundsTeam& team, ContactRounds& rounds, PlainRounds& plain, std::s
     team.scatter(bodies);
 }
 
-// Between the rounds nodes are moved at random, as links move them, so that contacts come to act and cease to.
+// The test moves nodes at random between the rounds, as links do, so that contacts become active and inactive.
 void runAll(RoundsTeam& team, ContactRounds& rounds, PlainRounds& plain, btSoftBody& plainBody, std::size_t contacts,
             Random& random)
 {
@@ -370,7 +371,7 @@ class ContactRoundsTest : public testing::TestWithParam<RoundsCase>
 };
 }  // namespace
 
-TEST_P(ContactRoundsTest, areThoseOverEveryContact)
+TEST_P(ContactRoundsTest, RoundsEqualTheOracleOverEveryContact)
 {
     Error error;
     const std::unique_ptr<Pipeline> pipeline = Pipeline::create(hostSettings(), error);

@@ -59,9 +59,9 @@ public:
     ~DropWorld();
 
     btSoftBody& addCloth(const ClothSpec& spec, int group = 1, int mask = -1);
-    // The shape stays the caller's and must outlive the object.
+    // The caller keeps the shape, which must outlive the object.
     btCollisionObject& addObstacle(btCollisionShape& shape, const btTransform& pose = btTransform::getIdentity());
-    // A kinematic body at rest there. Its motion is what setWorldTransform() before a step says.
+    // Adds a kinematic body at rest at the pose. Call setWorldTransform() before a step to set its motion.
     btRigidBody& addKinematic(btCollisionShape& shape, const btTransform& pose = btTransform::getIdentity());
     void remove(btSoftBody& cloth);            // and frees it
     void remove(btCollisionObject& obstacle);  // and frees it
@@ -89,17 +89,17 @@ TriangleMesh meshOf(const btSoftBody& cloth);
 btScalar lowestOf(const btSoftBody& cloth);  // m, least y of a node
 double rmsSpeed(const btSoftBody& cloth);    // m/s
 int contactsHeld(const btSoftBody& cloth);   // constraints that the body has for Bullet's solver
-// In every bit.
+// Compares every bit.
 bool sameContacts(const std::vector<ContactInfo>& a, const std::vector<ContactInfo>& b);
 
-// The mesh with its vertices scaled, then moved by the pose.
+// Returns the mesh with its vertices scaled, then moved by the pose.
 TriangleMesh placed(const TriangleMesh& mesh, const btTransform& pose, const btVector3& scaling = btVector3(1, 1, 1));
 
 // FNV-1a over the bits of all positions so far; start with kHashStart.
 constexpr std::uint64_t kHashStart = 0xcbf29ce484222325ull;
 std::uint64_t hashOf(const btSoftBody& cloth, std::uint64_t hash = kHashStart);
 
-// What the independent check saw over a number of steps.
+// The results of the independent check over a number of steps.
 struct Course
 {
     double m_penetrationMax = 0;  // m, of all steps

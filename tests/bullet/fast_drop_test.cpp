@@ -1,4 +1,4 @@
-// Cloth that comes down fast: by many times its thickness, and through the whole obstacle, in one step.
+// Cloth that falls fast: by many times its thickness, and through the whole obstacle, in one step.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ protected:
 }  // namespace
 
 // After every step nothing is on the wrong side and nothing intersects.
-TEST_P(FastDropping, endsEveryStepOutside)
+TEST_P(FastDropping, EndsEveryStepOutside)
 {
     const FastDrop& drop = std::get<0>(GetParam());
     TriangleMesh mesh;

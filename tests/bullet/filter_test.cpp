@@ -1,4 +1,4 @@
-// What Bullet apps use to keep things apart, asleep or in place works with Drape as without it.
+// Filters, sleeping and masses of Bullet apps have their usual effect with Drape.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -41,7 +41,7 @@ protected:
 };
 }  // namespace
 
-TEST_F(Filters, disabledObjectsAreIgnoredUntilTheyAreEnabled)
+TEST_F(Filters, DisabledObjectsAreIgnoredUntilTheyAreEnabled)
 {
     btCollisionObject& box = m_world.addObstacle(m_shape.shape());
     btSoftBody& ghost = m_world.addCloth(spec());
@@ -51,21 +51,21 @@ TEST_F(Filters, disabledObjectsAreIgnoredUntilTheyAreEnabled)
     expectClean(runMeasured(m_world, solid, m_box, 60));
 }
 
-TEST_F(Filters, collisionGroups)
+TEST_F(Filters, CollisionGroupsAreHonoured)
 {
     m_world.addObstacle(m_shape.shape());
     expectFallsThrough(m_world.addCloth(spec(), btBroadphaseProxy::SensorTrigger,
                                         btBroadphaseProxy::AllFilter ^ btBroadphaseProxy::StaticFilter));
 }
 
-TEST_F(Filters, obstacleWithoutContactResponse)
+TEST_F(Filters, AnObstacleWithoutContactResponseHoldsNothing)
 {
     btCollisionObject& box = m_world.addObstacle(m_shape.shape());
     box.setCollisionFlags(box.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
     expectFallsThrough(m_world.addCloth(spec()));
 }
 
-TEST_F(Filters, clothWithoutContactResponse)
+TEST_F(Filters, ClothWithoutContactResponseIsNotHeld)
 {
     m_world.addObstacle(m_shape.shape());
     btSoftBody& cloth = m_world.addCloth(spec());
@@ -73,7 +73,7 @@ TEST_F(Filters, clothWithoutContactResponse)
     expectFallsThrough(cloth);
 }
 
-TEST_F(Filters, sleepingClothKeepsItsPlaceAndPilesUpNoContacts)
+TEST_F(Filters, SleepingClothKeepsItsPositionAndCollectsNoContacts)
 {
     m_world.addObstacle(m_shape.shape());
     btSoftBody& cloth = m_world.addCloth(spec());
@@ -94,7 +94,7 @@ TEST_F(Filters, sleepingClothKeepsItsPlaceAndPilesUpNoContacts)
     EXPECT_GT(m_plugin.statistics().m_contacts, 0u);
 }
 
-TEST_F(Filters, pinnedNodesDoNotMove)
+TEST_F(Filters, PinnedNodesDoNotMove)
 {
     m_world.addObstacle(m_shape.shape());
     ClothSpec hanging = spec();
@@ -112,8 +112,8 @@ TEST_F(Filters, pinnedNodesDoNotMove)
         EXPECT_EQ(cloth.m_nodes[pins[i]].m_x, places[i]) << "node " << pins[i];
 }
 
-// A pin inside the thickness, or even in the obstacle, is the app's choice: it stays, and the rest stays finite.
-TEST_F(Filters, pinnedNodesBelowTheThicknessStay)
+// A pin inside the thickness, or even in the obstacle, is the app's choice. It stays, and the rest remains finite.
+TEST_F(Filters, PinnedNodesBelowTheThicknessStay)
 {
     m_world.addObstacle(m_shape.shape());
     ClothSpec low = spec();

@@ -22,7 +22,7 @@ namespace drape::test
 namespace
 {
 constexpr int kTraps = FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW;
-constexpr unsigned kFlush = 0x8040;  // of results and of operands
+constexpr unsigned kFlush = 0x8040;  // flush results and operands
 
 // Sets the environment of this thread until it ends.
 class AppFloats
@@ -53,7 +53,7 @@ void roundUp()
     std::fesetround(FE_UPWARD);
 }
 
-// All of the environment that a program can ask for.
+// The part of the environment that a program can query.
 struct Seen
 {
     unsigned m_csr = _mm_getcsr();
@@ -82,8 +82,8 @@ struct Scene
     btSoftBody* m_cloth;
 };
 
-// Cloth and obstacle that do not move, so that Bullet computes nothing before Drape does; all coordinates have bits to
-// round.
+// Returns the contacts of cloth and obstacle that do not move, so that Bullet computes nothing before Drape does. All
+// coordinates have bits to round.
 std::vector<ContactInfo> contactsAtRest(const Settings& settings, const std::function<void()>& set)
 {
     Plugin plugin(settings);
@@ -191,7 +191,7 @@ TEST(FloatEnvironment, OtherEnvironmentsChangeNoAnswer)
     }
 }
 
-TEST(FloatEnvironment, IsTheAppsAgainAfterEachCall)
+TEST(FloatEnvironment, TheAppsEnvironmentReturnsAfterEachCall)
 {
     Settings settings = hostSettings();
     int roundingInLog = -1;

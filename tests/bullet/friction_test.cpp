@@ -15,7 +15,7 @@ namespace
 {
 constexpr double kGravity = 9.81;  // m/s²
 
-// A cloth on a flat box, and gravity that leans: the same as a slope.
+// A cloth on a flat box under inclined gravity, which is equivalent to a slope.
 struct Slope
 {
     Plugin m_plugin;
@@ -45,7 +45,7 @@ struct Slope
 
     double friction() const { return static_cast<double>(m_cloth->m_cfg.kDF); }  // times the obstacle's 1
 
-    // m, of the node that went farthest down the slope, or least far.
+    // Returns the distance down the slope (m) of the node that moved farthest, or least far.
     double farthest(const std::vector<float>& before, bool least) const
     {
         double found = least ? 1e9 : -1e9;
@@ -59,7 +59,7 @@ struct Slope
     }
 };
 
-// J, of the nodes' motion and height.
+// Returns the kinetic and potential energy of the nodes, J.
 double energyOf(const btSoftBody& body)
 {
     double energy = 0;
@@ -99,7 +99,7 @@ TEST_P(Friction, SticksBelowTheAngle)
     }
 }
 
-// Above the angle it slides, as a block does: with the acceleration g (sin - friction cos).
+// The cloth slides above the angle, like a block, with the acceleration g (sin - friction cos).
 TEST_P(Friction, SlidesAboveTheAngle)
 {
     for (const bool springs : {false, true})

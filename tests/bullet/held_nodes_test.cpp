@@ -1,5 +1,5 @@
-// Nodes that contacts may not move, by anchors or without mass, near a surface: contacts of faces and edges between
-// them and their neighbours have little to push with.
+// Nodes that contacts may not move, by anchors or without mass, near a surface. Contacts of faces and edges between
+// them and their neighbours have little freedom to push.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace
 {
 constexpr btScalar kFast = 15;  // m/s; what falls and is dragged here does so at 3, an anchor shakes its node at 8
 
-// A square of 4 m, in waves about y = 0.
+// Makes a square of 4 m, in waves about y = 0.
 TriangleMesh makeWaves(double height)
 {
     constexpr int kCells = 8;
@@ -58,7 +58,7 @@ class HeldNodes : public BackendTest
 }  // namespace
 
 // A corner's node is dragged to the ground by a box that lies on it.
-TEST_P(HeldNodes, anAnchoredNodeStaysWithItsBox)
+TEST_P(HeldNodes, AnAnchoredNodeStaysWithItsBox)
 {
     MeshShape ground(makeWaves(0));
     Plugin plugin(GetParam().m_settings);
@@ -83,7 +83,7 @@ TEST_P(HeldNodes, anAnchoredNodeStaysWithItsBox)
 }
 
 // The app moves a node without mass along, a little above the waves' tops.
-TEST_P(HeldNodes, aNodeIsDraggedOverWaves)
+TEST_P(HeldNodes, ANodeIsDraggedOverWaves)
 {
     MeshShape waves(makeWaves(0.1));
     Plugin plugin(GetParam().m_settings);

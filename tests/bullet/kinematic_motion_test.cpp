@@ -1,4 +1,4 @@
-// The motion of a kinematic body within a step, of the poses and velocities that Bullet has of it.
+// The motion of a kinematic body within a step, derived from Bullet's poses and velocities.
 #include <gtest/gtest.h>
 
 #include "bullet_plugin/adapter/kinematic_motion.h"
@@ -6,7 +6,7 @@
 
 namespace drape::test
 {
-TEST(KinematicMotion, isWhatVelocityAndPosesSay)
+TEST(KinematicMotion, FollowsFromVelocityAndPoses)
 {
     const btTransform from = btTransform::getIdentity(), to = shiftedBy(btVector3(3, 0, 0));
     const btVector3 none(0, 0, 0);
@@ -17,7 +17,7 @@ TEST(KinematicMotion, isWhatVelocityAndPosesSay)
     const BodyMotion third = motionInStep(from, to, btVector3(1 / kDt, 0, 0), none, kDt);
     EXPECT_TRUE(third.m_start == from);
     EXPECT_NEAR(third.m_end.getOrigin().x(), 1, 1e-5);
-    // Jumped far and moved a little.
+    // The body jumped far and moved a little.
     const BodyMotion mixed = motionInStep(from, to, btVector3(0, 1, 0), none, kDt);
     EXPECT_TRUE(mixed.m_end == to);
     EXPECT_NEAR((mixed.m_end.getOrigin() - mixed.m_start.getOrigin()).y(), kDt, 1e-6);
@@ -37,7 +37,7 @@ public:
     }
     btRigidBody& body() { return m_body; }
     void place(btScalar x) { m_body.setWorldTransform(shiftedBy(btVector3(x, 0, 0))); }
-    // stepSimulation() with so many substeps begins.
+    // Begins stepSimulation() with this number of substeps.
     void beginFrame(int substeps = 1) { m_body.saveKinematicState(btScalar(substeps) * kDt); }
     void step()
     {
@@ -60,7 +60,7 @@ private:
 
 // Frames faster than steps, moved by what keeps the pose before as interpolation transform: the velocity is the last
 // frame's. The first step takes it for one of three substeps, no later one does.
-TEST(KinematicMotion, ofSeveralPosesAStepIsSweptWhole)
+TEST(KinematicMotion, SeveralPosesInAStepAreSweptAsOneMotion)
 {
     ObservedBody observed;
     btScalar x = 0, last = 0;
@@ -75,7 +75,7 @@ TEST(KinematicMotion, ofSeveralPosesAStepIsSweptWhole)
         observed.expectMotion(last, step == 0 ? btScalar(0.1) : x);
         last = step == 0 ? btScalar(0.1) : x;
     }
-    // From here on Bullet's substeps move it: the second of them shows it.
+    // Bullet's substeps move the body from here on; the second of them shows it.
     observed.place(x + btScalar(0.4));
     observed.beginFrame(4);
     observed.step();
@@ -95,7 +95,7 @@ TEST(KinematicMotion, ofSeveralPosesAStepIsSweptWhole)
     }
 }
 
-TEST(KinematicMotion, afterBulletTookTheVelocityIsSweptWhole)
+TEST(KinematicMotion, AMotionWhoseVelocityBulletTookIsSweptWhole)
 {
     ObservedBody observed;
     observed.beginFrame(3);
@@ -103,12 +103,12 @@ TEST(KinematicMotion, afterBulletTookTheVelocityIsSweptWhole)
     for (int substep = 0; substep < 3; ++substep)
     {
         const btScalar next = x + btScalar(0.1) * btScalar(1 + substep);
-        observed.place(next);  // as a tick's callback does
+        observed.place(next);  // like a tick's callback
         observed.step();
         observed.expectMotion(x, next);
         x = next;
     }
-    // Both transforms: a teleport even there, where Bullet's velocity is none.
+    // Setting both transforms is a teleport even at a velocity of zero in Bullet.
     observed.beginFrame();
     observed.beginFrame();
     observed.place(7);
@@ -118,7 +118,7 @@ TEST(KinematicMotion, afterBulletTookTheVelocityIsSweptWhole)
 }
 
 // Teleports by both transforms stay teleports where motion had been swept whole, or was being shared.
-TEST(KinematicMotion, teleportsFarAreNotSwept)
+TEST(KinematicMotion, DistantTeleportsAreNotSwept)
 {
     const btTransform far = shiftedBy(btVector3(500, 0, 0));
     const auto teleport = [&](ObservedBody& observed)
@@ -130,7 +130,7 @@ TEST(KinematicMotion, teleportsFarAreNotSwept)
     shared.place(btScalar(0.4));
     shared.beginFrame(4);
     shared.step();
-    teleport(shared);  // as a tick's callback in the second substep does
+    teleport(shared);  // like a tick's callback in the second substep
     shared.step();
     shared.expectMotion(btScalar(499.9), 500, 1e-3);
 
@@ -149,15 +149,15 @@ TEST(KinematicMotion, teleportsFarAreNotSwept)
     faster.beginFrame();
     faster.step();
     faster.expectMotion(500, btScalar(500.1), 1e-3);
-    // And that was the end of it: the next frame of substeps is shared.
+    // The motion ended there: the next frame of substeps is shared.
     faster.place(btScalar(500.5));
     faster.beginFrame(4);
     faster.step();
     faster.expectMotion(btScalar(500.1), btScalar(500.2), 1e-3);
 }
 
-// Bullet's first velocity after poses that it did not see is from the last that it saw.
-TEST(KinematicMotion, goesOnWhereBulletCatchesUp)
+// Bullet's first velocity after poses that it did not see refers to the last pose that it saw.
+TEST(KinematicMotion, ContinuesWhenBulletCatchesUp)
 {
     ObservedBody asleep;
     asleep.beginFrame();
@@ -189,7 +189,7 @@ TEST(KinematicMotion, goesOnWhereBulletCatchesUp)
     }
 }
 
-TEST(KinematicMotion, sharesTurnsAmongSubsteps)
+TEST(KinematicMotion, DividesRotationsAmongSubsteps)
 {
     const btQuaternion turn(btVector3(0, 1, 0), btScalar(0.8));
     const btTransform from = btTransform::getIdentity(), to(turn);

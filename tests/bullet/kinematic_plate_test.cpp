@@ -1,5 +1,5 @@
-// Kinematic plates that come up under a cloth at any speed: they take it along and are not passed, and what discrete
-// steps miss is what is documented.
+// Kinematic plates that come up under a cloth at any speed. They carry the cloth along and nothing passes. Discrete
+// steps miss only the documented cases.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace drape::test
 {
-// How fast a plate comes, and how Drape looks at it.
+// The speed of a plate and the mode of Drape.
 struct PlateCase
 {
     int m_speed;  // m/s
@@ -37,8 +37,8 @@ std::vector<PlateCase> plateCases()
     return cases;
 }
 
-// A plate that comes up under a cloth of 1 m at the given speed, takes it along for 1 m and stops. check: after every
-// step, with the height of the plate's middle.
+// Moves a plate up under a cloth of 1 m at the given speed, carries the cloth along for 1 m and stops. Calls `check`
+// after every step with the height of the plate's middle.
 template <typename Check>
 void raisePlate(const PlateCase& plate, float size, float thick, Check check)
 {
@@ -66,8 +66,8 @@ protected:
     void SetUp() override { requireBackend(GetParam().m_backend); }
 };
 
-// At no time is anything behind its upper side.
-TEST_P(KinematicPlate, pushesClothAndIsNotPassed)
+// Nothing is ever behind the plate's upper side.
+TEST_P(KinematicPlate, PushesClothAndNothingPasses)
 {
     const float thick = 0.02f;
     raisePlate(GetParam(), 6, thick,
@@ -75,8 +75,8 @@ TEST_P(KinematicPlate, pushesClothAndIsNotPassed)
                { ASSERT_GT(lowestOf(cloth), height + btScalar(thick) / 2); });
 }
 
-// It is smaller than the cloth: what hangs over its edges is not torn through it.
-TEST_P(KinematicPlate, isWrappedByALargerCloth)
+// The plate is smaller than the cloth. The cloth that hangs over its edges is not pulled through it.
+TEST_P(KinematicPlate, ALargerClothWrapsIt)
 {
     raisePlate(GetParam(), 0.5f, 0.05f,
                [](const btSoftBody& cloth, btScalar height)
@@ -92,8 +92,8 @@ INSTANTIATE_TEST_SUITE_P(Plates, KinematicPlate, testing::ValuesIn(plateCases())
                                     plate.m_backend.m_name;
                          });
 
-// The links pull edges across its corners whose nodes all lie beside it.
-TEST_P(Kinematic, thinPlateIsWrappedByClothThatLiesAskew)
+// The links pull edges across the plate's corners; the edges' nodes all lie beside it.
+TEST_P(Kinematic, AThinPlateIsWrappedByClothThatLiesAskew)
 {
     constexpr btScalar kSpeed = 30, kMostShift = btScalar(0.12);  // m/s, m
     for (std::uint32_t seed = 1; seed <= 8; ++seed)
@@ -133,7 +133,7 @@ protected:
         int nodes = 0, missed = 0;
         for (int phase = 0; phase < kPhases; ++phase)
         {
-            // Its upper side begins out of reach, two thicknesses below the cloth or more.
+            // The plate's upper side begins out of reach, two thicknesses below the cloth or more.
             btScalar height = btScalar(-0.06) - speed * kDt * btScalar(phase) / kPhases;
             KinematicScene scene(makeBox(6, 0.02f, 6), shiftedBy(btVector3(0, height, 0)), 1.0f, btVector3(0, 0, 0),
                                  settings);

@@ -1,5 +1,5 @@
-// Kinematic obstacles by the poses that an app gives them: what is motion and what a teleport, in frames of several
-// substeps, from callbacks and in compounds, and what wakes cloth.
+// Kinematic obstacles with the poses of an app. Covers motion and teleports in frames of several substeps, from
+// callbacks and in compounds, and the waking of cloth.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace drape::test
 {
-// With both of Bullet's transforms set there is no velocity and nothing on the way is touched.
-TEST_P(Kinematic, equalTransformsAreATeleport)
+// Setting both of Bullet's transforms gives no velocity, and nothing along the path is touched.
+TEST_P(Kinematic, EqualTransformsAreATeleport)
 {
     KinematicScene scene(makeBox(4, 0.2f, 4), shiftedBy(btVector3(0, -3, 0)), 1.0f, btVector3(0, 0, 0),
                          GetParam().m_settings);
@@ -27,7 +27,7 @@ TEST_P(Kinematic, equalTransformsAreATeleport)
 
 namespace
 {
-// How an app puts a kinematic body, and the cloth around it, elsewhere.
+// The ways in which an app moves a kinematic body and the cloth around it to another position.
 enum class Put
 {
     BothTransforms,
@@ -35,7 +35,7 @@ enum class Put
     AndSaysSo  // the world transform alone, and Plugin::teleported() of the body
 };
 
-// Hash of the cloth over 30 steps after the jump, in every bit of every step.
+// Returns a hash of the cloth over 30 steps after the jump, over every bit of every step.
 std::uint64_t hashAfterJump(const Settings& settings, Put put, bool wholeCloth, const btTransform& to, int substeps)
 {
     KinematicScene scene(makeSphere(0.3f, 3), btTransform::getIdentity(), 1.0f, btVector3(0, btScalar(0.35), 0),
@@ -63,9 +63,9 @@ std::uint64_t hashAfterJump(const Settings& settings, Put put, bool wholeCloth, 
 }
 }  // namespace
 
-// A character with its cloth, put elsewhere by the world transform alone: nothing is swept there, whether the whole
-// cloth went along or its pins alone, turned or not, in one step or in several substeps.
-TEST_P(Kinematic, bodiesThatAreMovedWithTheirClothAreTeleported)
+// Teleports a character with its cloth by the world transform alone. Nothing is swept. The whole cloth moves along or
+// only its pins, rotated or not, in one step or in several substeps.
+TEST_P(Kinematic, BodiesThatAreMovedWithTheirClothAreTeleported)
 {
     const btTransform turned(btQuaternion(btVector3(0, 1, 0), btScalar(2.5)), btVector3(-4, 1, 2));
     for (const btTransform& to : {shiftedBy(btVector3(2, 0, 0)), shiftedBy(btVector3(10, 0, 5)), turned})
@@ -84,8 +84,8 @@ TEST_P(Kinematic, bodiesThatAreMovedWithTheirClothAreTeleported)
     }
 }
 
-// What is thrown at cloth that an app moved otherwise, or not at all, is swept.
-TEST_P(Kinematic, bodiesThatAreThrownPastMovedClothAreSwept)
+// Bodies that are thrown at cloth are swept if an app moved the cloth differently or not at all.
+TEST_P(Kinematic, BodiesThatAreThrownPastMovedClothAreSwept)
 {
     for (const btVector3& shift : {btVector3(0, 0, 0), btVector3(0, 0, btScalar(0.01)), btVector3(0, 0, btScalar(0.3))})
     {
@@ -98,7 +98,7 @@ TEST_P(Kinematic, bodiesThatAreThrownPastMovedClothAreSwept)
     }
 }
 
-TEST_P(Kinematic, bodiesThatAreSaidToBeTeleportedSweepNothing)
+TEST_P(Kinematic, BodiesDeclaredAsTeleportedSweepNothing)
 {
     KinematicScene scene(makeBox(4, 0.2f, 4), shiftedBy(btVector3(0, -3, 0)), 1.0f, btVector3(0, 0, 0),
                          GetParam().m_settings);
@@ -113,9 +113,9 @@ TEST_P(Kinematic, bodiesThatAreSaidToBeTeleportedSweepNothing)
               hashAfterJump(GetParam().m_settings, Put::BothTransforms, true, shiftedBy(btVector3(1, 0, 0)), 1));
 }
 
-// A body that an app parks out of sight, far or so far that Bullet would take cloth beside its way out of the
-// simulation, takes nothing along, and is met again where it comes back.
-TEST_P(Kinematic, bodiesThatAreParkedFarAwayTakeNothingAlong)
+// Parks a body out of sight. It may be so far away that Bullet would remove cloth beside its path from the simulation.
+// The body drags nothing along, and cloth collides with it again after its return.
+TEST_P(Kinematic, BodiesThatAreParkedFarAwayDragNothingAlong)
 {
     for (const btVector3& place : {btVector3(1000, 0, 0), btVector3(0, 1000, 0), btVector3(0, -1e5f, 0),
                                    btVector3(0, -1e6f, 0), btVector3(0, btScalar(1e30), 0)})
@@ -137,13 +137,13 @@ TEST_P(Kinematic, bodiesThatAreParkedFarAwayTakeNothingAlong)
 }
 
 // A frame of several substeps is the motion of its parts.
-TEST_P(Kinematic, substepsShareTheMotion)
+TEST_P(Kinematic, SubstepsShareTheMotion)
 {
     KinematicScene whole(makeBox(4, 0.2f, 4), btTransform::getIdentity(), 1.0f, btVector3(0, btScalar(0.15), 0),
                          GetParam().m_settings);
     KinematicScene parts(makeBox(4, 0.2f, 4), btTransform::getIdentity(), 1.0f, btVector3(0, btScalar(0.15), 0),
                          GetParam().m_settings);
-    // What has just come rests in its first step.
+    // A new body rests in its first step.
     whole.step(btTransform::getIdentity());
     parts.step(btTransform::getIdentity());
     for (int frame = 1; frame <= 20; ++frame)
@@ -159,8 +159,8 @@ TEST_P(Kinematic, substepsShareTheMotion)
     EXPECT_GT(parts.m_most, 0u);
 }
 
-// Bullet takes velocities before it calls: this motion begins without one.
-TEST_P(Kinematic, bodyMovedByATicksCallbackTakesClothAlong)
+// Bullet takes velocities before it calls the callback: this motion begins without one.
+TEST_P(Kinematic, ABodyMovedByATicksCallbackDragsClothAlong)
 {
     KinematicScene scene(makeBox(4, 0.2f, 4), shiftedBy(btVector3(0, -1, 0)), 1.0f, btVector3(0, 0, 0),
                          GetParam().m_settings);
@@ -176,7 +176,7 @@ TEST_P(Kinematic, bodyMovedByATicksCallbackTakesClothAlong)
     EXPECT_GT(lowestOf(scene.m_cloth), btScalar(3));
 }
 
-TEST_P(Kinematic, childOfACompoundMovesWithIt)
+TEST_P(Kinematic, AChildOfACompoundMovesWithIt)
 {
     Plugin plugin(GetParam().m_settings);
     MeshShape mesh(makeBox(3, 0.2f, 3));
@@ -198,7 +198,7 @@ TEST_P(Kinematic, childOfACompoundMovesWithIt)
     }
 }
 
-TEST_P(Kinematic, bodyThatBeginsToMoveWakesCloth)
+TEST_P(Kinematic, ABodyThatBeginsToMoveWakesCloth)
 {
     KinematicScene scene(makeBox(4, 0.2f, 4), btTransform::getIdentity(), 1.0f, btVector3(0, btScalar(0.15), 0),
                          GetParam().m_settings);
@@ -212,8 +212,9 @@ TEST_P(Kinematic, bodyThatBeginsToMoveWakesCloth)
     EXPECT_TRUE(scene.m_cloth.isActive());
 }
 
-// A plate that is past sleeping cloth within one step finds it awake; one that does not collide with it, asleep.
-TEST_P(Kinematic, bodyThatComesFastWakesClothInTime)
+// A plate that passes sleeping cloth within one step wakes it. A plate that does not collide with the cloth leaves it
+// asleep.
+TEST_P(Kinematic, AFastBodyWakesClothInTime)
 {
     for (const bool collide : {true, false})
     {
@@ -231,8 +232,8 @@ TEST_P(Kinematic, bodyThatComesFastWakesClothInTime)
     }
 }
 
-// Nor does one wake cloth whose pairs Drape leaves to Bullet.
-TEST_P(Kinematic, bodyThatIsNotDrapesLetsClothSleep)
+// A body whose pairs with the cloth Drape leaves to Bullet does not wake the cloth.
+TEST_P(Kinematic, ABodyOfBulletLetsClothSleep)
 {
     Plugin plugin(GetParam().m_settings);
     DropWorld world(&plugin);

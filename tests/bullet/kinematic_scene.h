@@ -24,7 +24,7 @@ inline btVector3 meanOf(const btSoftBody& cloth)
     return sum / btScalar(cloth.m_nodes.size());
 }
 
-// The cloth as the obstacle sees it.
+// Returns the cloth in the obstacle's frame.
 inline std::vector<float> seenFrom(const btTransform& pose, const btSoftBody& cloth)
 {
     std::vector<float> positions;
@@ -58,7 +58,7 @@ public:
         m_world.step();
         m_most = std::max(m_most, m_plugin.statistics().m_contacts);
     }
-    // The same, and nothing is on the wrong side afterwards.
+    // Steps, and expects that nothing is on the wrong side afterwards.
     void checkedStep(const btTransform& pose)
     {
         step(pose);

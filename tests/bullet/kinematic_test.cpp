@@ -33,7 +33,7 @@ btScalar lagAfterRide(KinematicScene& scene, btScalar friction, btScalar& ridden
 }
 }  // namespace
 
-TEST_P(Kinematic, platformCarriesClothAlongByFriction)
+TEST_P(Kinematic, APlatformCarriesClothAlongByFriction)
 {
     KinematicScene scene(makeBox(5, 0.2f, 5), btTransform::getIdentity(), 0.8f, btVector3(0, btScalar(0.15), 0),
                          GetParam().m_settings);
@@ -44,7 +44,7 @@ TEST_P(Kinematic, platformCarriesClothAlongByFriction)
     EXPECT_NEAR(lowestOf(scene.m_cloth), btScalar(0.1) + kThickness, btScalar(0.003));
 }
 
-TEST_P(Kinematic, platformWithoutFrictionSlipsAway)
+TEST_P(Kinematic, APlatformWithoutFrictionSlipsAway)
 {
     KinematicScene scene(makeBox(5, 0.2f, 5), btTransform::getIdentity(), 0.8f, btVector3(0, btScalar(0.15), 0),
                          GetParam().m_settings);
@@ -55,7 +55,7 @@ TEST_P(Kinematic, platformWithoutFrictionSlipsAway)
 }
 
 // Turns under the cloth, about two axes.
-TEST_P(Kinematic, turningObstacleKeepsClothOutside)
+TEST_P(Kinematic, ARotatingObstacleKeepsClothOutside)
 {
     for (const char* name : {"sphere", "torus", "box"})
     {
@@ -77,7 +77,7 @@ TEST_P(Kinematic, turningObstacleKeepsClothOutside)
     }
 }
 
-TEST(Kinematic, everyBackEndGivesTheSameTrajectory)
+TEST(Kinematic, EveryBackEndGivesTheSameTrajectory)
 {
     std::vector<std::uint64_t> hashes;
     for (const BackendCase& backend : allBackends())
@@ -98,8 +98,8 @@ TEST(Kinematic, everyBackEndGivesTheSameTrajectory)
     EXPECT_EQ(std::count(hashes.begin(), hashes.end(), hashes[0]), std::ptrdiff_t(hashes.size()));
 }
 
-// A beam that turns fast, about the vertical and about a level axis.
-TEST_P(Kinematic, fastBeamKeepsClothOutside)
+// The beam rotates fast, about the vertical and about a level axis.
+TEST_P(Kinematic, AFastBeamKeepsClothOutside)
 {
     for (const btVector3& axis : {btVector3(0, 1, 0), btVector3(0, 0, 1)})
     {
@@ -116,6 +116,6 @@ TEST_P(Kinematic, fastBeamKeepsClothOutside)
     }
 }
 
-// The tests of plates and of poses, in files of their own, are among them.
+// Tests of plates and of poses, in files of their own, use this instantiation, too.
 INSTANTIATE_TEST_SUITE_P(Backend, Kinematic, testing::ValuesIn(allBackends()), backendName);
 }  // namespace drape::test

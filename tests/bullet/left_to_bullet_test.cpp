@@ -24,7 +24,7 @@ struct Placed
     btVector3 m_place;  // m
 };
 
-// Of all steps: the bodies' hash and the largest number of Bullet's pairs.
+// The results of all steps: the bodies' hash and the largest number of Bullet's pairs.
 struct Outcome
 {
     std::uint64_t m_hash = 0;
@@ -64,7 +64,7 @@ void expectStockBits(const std::vector<Placed>& obstacles, MakeBodies make, int 
 
 const btVector3 kGround(2, btScalar(0.2), 2);  // m, half of its sides
 
-// Upright, so that they tip over onto each other and the ground.
+// Makes upright ropes, which tip over onto each other and the ground.
 Bodies makeRopes(btSoftBodyWorldInfo& info)
 {
     Bodies ropes;

@@ -34,7 +34,7 @@ class Lifetime : public BackendTest
 {
 };
 
-TEST_P(Lifetime, clothsAreAddedAndRemovedWhileRunning)
+TEST_P(Lifetime, ClothsAreAddedAndRemovedWhileRunning)
 {
     Plugin plugin(GetParam().m_settings);
     const TriangleMesh mesh = makeSphere(0.3f, 2);
@@ -61,7 +61,7 @@ TEST_P(Lifetime, clothsAreAddedAndRemovedWhileRunning)
     }
 }
 
-TEST_P(Lifetime, obstaclesAreAddedAndRemovedWhileRunning)
+TEST_P(Lifetime, ObstaclesAreAddedAndRemovedWhileRunning)
 {
     Plugin plugin(GetParam().m_settings);
     DropWorld world(&plugin);
@@ -81,7 +81,7 @@ TEST_P(Lifetime, obstaclesAreAddedAndRemovedWhileRunning)
     EXPECT_EQ(plugin.statistics().m_contacts, 0u);
 }
 
-TEST_P(Lifetime, severalClothsAndObstaclesAtOnce)
+TEST_P(Lifetime, SeveralClothsAndObstaclesWorkAtOnce)
 {
     Plugin plugin(GetParam().m_settings);
     const TriangleMesh floor = makeBox(4.0f, 0.2f, 4.0f), sphere = makeSphere(0.3f, 2);
@@ -115,9 +115,9 @@ TEST_P(Lifetime, severalClothsAndObstaclesAtOnce)
                                 [cloth](const ContactInfo& contact) { return contact.m_cloth == cloth; }));
 }
 
-// Nodes without springs, so that only Drape could carry the bad node's place to others. Bullet's bounds begin with the
-// first node, and with one that is infinite they are so.
-TEST_P(Lifetime, aNodeThatIsNoNumberIsCountedAndKeptToItself)
+// The nodes have no springs, so that only Drape could spread the bad node's position. Bullet's bounds begin with the
+// first node, and are infinite if it is.
+TEST_P(Lifetime, ANodeThatIsNoNumberIsCountedAndKeptToItself)
 {
     const btScalar nan = std::numeric_limits<btScalar>::quiet_NaN(),
                    infinite = std::numeric_limits<btScalar>::infinity();
@@ -191,9 +191,9 @@ void expectFiniteContacts(const Plugin& plugin)
 }
 }  // namespace
 
-// Bullet takes no step of no time at all; in one of a microsecond nodes go as far as their speed takes them and gravity
-// makes it, whether they come to the surface in it or not, and what divides by the time makes no speed out of nothing.
-TEST_P(Lifetime, aStepOfHardlyAnyTimeMovesNothing)
+// Bullet skips steps of zero duration. In a step of a microsecond nodes move by their speed and by gravity, whether
+// they reach the surface or not. Divisions by the time step create no speed.
+TEST_P(Lifetime, AStepOfHardlyAnyTimeMovesNothing)
 {
     constexpr btScalar kHardly = btScalar(1e-6);       // s
     constexpr double kGravity = 10, kRounding = 6e-8;  // m/s²; m, two ulps of a coordinate below 0.5 m
@@ -227,7 +227,7 @@ TEST_P(Lifetime, aStepOfHardlyAnyTimeMovesNothing)
 
 INSTANTIATE_TEST_SUITE_P(Backend, Lifetime, testing::ValuesIn(allBackends()), backendName);
 
-TEST(Lifetime, theWholeWorldMayGoBeforeThePlugin)
+TEST(Lifetime, TheWorldMayBeDeletedBeforeThePlugin)
 {
     Plugin plugin(hostSettings());
     for (int round = 0; round < 3; ++round)
@@ -241,7 +241,7 @@ TEST(Lifetime, theWholeWorldMayGoBeforeThePlugin)
     }
 }
 
-TEST(Lifetime, thePluginMayGoBeforeTheWorld)
+TEST(Lifetime, ThePluginMayBeDeletedBeforeTheWorld)
 {
     auto plugin = std::make_unique<Plugin>(hostSettings());
     MeshShape shape(makeBox(2.0f, 0.4f, 2.0f));

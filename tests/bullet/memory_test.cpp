@@ -1,4 +1,4 @@
-// Memory that a large scene needed for a while is given back once a small one is left.
+// A large scene's memory is released once a small scene is left.
 #include <gtest/gtest.h>
 
 #include <malloc.h>
@@ -21,7 +21,7 @@ std::size_t heapBytes()
     return info.uordblks + info.hblkhd;
 }
 
-// Many cloths on many balls, for so many steps.
+// Runs many cloths on many balls for this number of steps.
 void runCrowd(DropWorld& world, int steps)
 {
     std::vector<std::unique_ptr<MeshShape>> shapes;
@@ -63,7 +63,7 @@ struct Scene
 };
 }  // namespace
 
-TEST(Memory, OfACrowdIsGivenBack)
+TEST(Memory, MemoryOfACrowdIsReleased)
 {
 #if defined(__SANITIZE_ADDRESS__)
     GTEST_SKIP() << "the sanitizer's allocator counts nothing";
@@ -102,7 +102,7 @@ TEST(Memory, GivingItBackChangesNoTrajectory)
     EXPECT_EQ(hashes[0], hashes[1]);
 }
 
-TEST(Memory, OfADeviceIsGivenBackWithoutAChange)
+TEST(Memory, MemoryOfADeviceIsReleasedWithoutAChange)
 {
     if (!isDeviceExpected()) GTEST_SKIP();
     Settings settings;

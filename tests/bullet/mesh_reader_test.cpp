@@ -1,4 +1,4 @@
-// Bullet's mesh formats come to the same triangles: types and strides of vertices and indices, parts, wrong counts.
+// Bullet's mesh formats give equal triangles: types and strides of vertices and indices, parts, wrong counts.
 #include "bullet_plugin/adapter/mesh_reader.h"
 
 #include <gtest/gtest.h>
@@ -94,7 +94,7 @@ void expectSame(const WorldMesh& read, const TriangleMesh& mesh)
 }
 }  // namespace
 
-TEST(MeshReader, everyTypeAndStrideGivesTheSameMesh)
+TEST(MeshReader, EveryTypeAndStrideGivesTheSameMesh)
 {
     const TriangleMesh mesh = makeSphere(1.0f, 2);
     ASSERT_LT(mesh.vertexCount(), 256u);
@@ -105,7 +105,7 @@ TEST(MeshReader, everyTypeAndStrideGivesTheSameMesh)
     expectSame(read(Part::make<double, std::uint8_t>(mesh, PHY_DOUBLE, PHY_UCHAR)), mesh);
 }
 
-TEST(MeshReader, scalingAndPoseAreApplied)
+TEST(MeshReader, ScalingAndPoseAreApplied)
 {
     const TriangleMesh mesh = makeBox(1.0f, 2.0f, 3.0f);
     Part part = plainPart(mesh);
@@ -124,8 +124,8 @@ TEST(MeshReader, scalingAndPoseAreApplied)
     }
 }
 
-// Bullet never looks at the number of vertices, so that apps get away with any.
-TEST(MeshReader, theStatedNumberOfVerticesDoesNotMatter)
+// Bullet never reads the number of vertices, so apps may pass any.
+TEST(MeshReader, TheStatedNumberOfVerticesDoesNotMatter)
 {
     const TriangleMesh mesh = makeSphere(1.0f, 1);
     for (const int stated : {0, 1, int(mesh.vertexCount()) - 1, int(mesh.vertexCount()) + 100})
@@ -138,7 +138,7 @@ TEST(MeshReader, theStatedNumberOfVerticesDoesNotMatter)
 }
 
 // Exporters cut one mesh into parts by material, all with the whole array of vertices.
-TEST(MeshReader, partsOfOneArrayTakeTheVerticesThatTheyUse)
+TEST(MeshReader, PartsOfOneArrayReadOnlyTheirVertices)
 {
     const TriangleMesh mesh = makeSphere(1.0f, 2);
     constexpr std::size_t kParts = 8;
@@ -165,7 +165,7 @@ TEST(MeshReader, partsOfOneArrayTakeTheVerticesThatTheyUse)
     EXPECT_LT(whole.m_positions.size(), 2 * mesh.m_positions.size());
 }
 
-TEST(MeshReader, trianglesThatCannotBeReadAreLeftOut)
+TEST(MeshReader, TrianglesThatCannotBeReadAreLeftOut)
 {
     TriangleMesh mesh = makeBox(1.0f, 1.0f, 1.0f);
     const std::size_t triangles = mesh.triangleCount();
@@ -192,7 +192,7 @@ TEST(MeshReader, trianglesThatCannotBeReadAreLeftOut)
 }
 
 // Parts whose indices are far apart are read by their indices, others by the stretch that they span.
-TEST(MeshReader, scatteredIndicesGiveTheSameMesh)
+TEST(MeshReader, ScatteredIndicesGiveTheSameMesh)
 {
     const TriangleMesh box = makeBox(1.0f, 2.0f, 3.0f);
     constexpr std::size_t kApart = 1000;
@@ -205,7 +205,7 @@ TEST(MeshReader, scatteredIndicesGiveTheSameMesh)
     expectSame(read(plainPart(scattered)), box);
 }
 
-TEST(MeshReader, anyVertexOfASmallMeshMovedInPlaceChangesTheSignature)
+TEST(MeshReader, AnyVertexOfASmallMeshMovedInPlaceChangesTheSignature)
 {
     TriangleMesh quad;
     quad.m_positions = {0, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 1};
@@ -230,7 +230,7 @@ TEST(MeshReader, anyVertexOfASmallMeshMovedInPlaceChangesTheSignature)
             }
 }
 
-TEST(MeshReader, aLargeMeshMovedInPlaceChangesTheSignature)
+TEST(MeshReader, ALargeMeshMovedInPlaceChangesTheSignature)
 {
     TriangleMesh mesh = makeSphere(1.0f, 5);
     ASSERT_GT(mesh.triangleCount(), 1000u);

@@ -1,5 +1,5 @@
-// What limits the motion of nodes near obstacles: places that are held one by one are those of the whole body at once,
-// nodes go along with what moves, and triangles hold their nodes.
+// Motion limits of nodes near obstacles. Points limited one by one equal those of the whole body at once, nodes follow
+// a moving obstacle, and triangles limit their nodes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace
 constexpr int kNodes = 600;
 constexpr btScalar kActivation = btScalar(0.5);
 
-// Nodes that went somewhere, some of them pinned and one of them nowhere; every third has contacts.
+// Nodes with a displacement. Some are pinned and one has none; every third has contacts.
 struct Strayed
 {
     std::unique_ptr<btSoftBody> m_body;
@@ -74,7 +74,7 @@ bool isNumber(const btVector3& place)
 }
 }  // namespace
 
-TEST(MotionLimit, holdsNodesWithContactsOneByOne)
+TEST(MotionLimit, LimitsNodesWithContactsOneByOne)
 {
     btSoftBodyWorldInfo info;
     SCOPED_TRACE("seed 4");
@@ -96,7 +96,7 @@ TEST(MotionLimit, holdsNodesWithContactsOneByOne)
     EXPECT_GT(left, kNodes / 24);
 }
 
-TEST(MotionLimit, holdsTheOthersApart)
+TEST(MotionLimit, LimitsNodesWithoutContactsSeparately)
 {
     btSoftBodyWorldInfo info;
     SCOPED_TRACE("seed 4");
@@ -120,8 +120,8 @@ TEST(MotionLimit, holdsTheOthersApart)
     EXPECT_GT(brought, kNodes / 12);
 }
 
-// In stretches, as threads do.
-TEST(MotionLimit, recordsNodesInAnyStretches)
+// Records ranges of nodes, as threads do.
+TEST(MotionLimit, RecordsNodesInAnyRanges)
 {
     btSoftBodyWorldInfo info;
     SCOPED_TRACE("seed 4");
@@ -142,8 +142,9 @@ TEST(MotionLimit, recordsNodesInAnyStretches)
     }
 }
 
-// Of faces that share nodes, in any order, by any of their nodes and twice: each holds all of its nodes.
-TEST(MotionLimit, heedsEveryFaceOfANode)
+// Each face limits all of its nodes. Faces share nodes, come in any order and with any node first, and may be given
+// twice.
+TEST(MotionLimit, HonoursEveryFaceOfANode)
 {
     SCOPED_TRACE("seed 5");
     std::vector<btVector3> expected;
@@ -151,7 +152,7 @@ TEST(MotionLimit, heedsEveryFaceOfANode)
     {
         btSoftBodyWorldInfo info;
         Strayed strayed(info, 5);
-        Random random(6);  // the same faces in each turn
+        Random random(6);  // identical faces in each iteration
         std::vector<std::int32_t> triangles;
         for (int i = 0; i < 3 * 2 * kNodes; ++i)
             triangles.push_back(std::int32_t(random.uniform(0, kNodes - 0.001f)));
@@ -190,7 +191,8 @@ TEST(MotionLimit, heedsEveryFaceOfANode)
 
 namespace
 {
-// Where a node at rest at the origin may stay that ended at `to`, beside an obstacle that went up by 1 m or rested.
+// Returns the limited position of a node that rested at the origin and ended at `to`. The obstacle beside it went up by
+// 1 m or rested.
 btVector3 limited(const btVector3& to, bool moves)
 {
     btSoftBodyWorldInfo info;
@@ -210,8 +212,8 @@ btVector3 limited(const btVector3& to, bool moves)
 }
 }  // namespace
 
-// A node goes with the obstacle as far as that goes, and no farther from that way than beside one at rest.
-TEST(KinematicMotion, takesTheLimitOfNodesWithIt)
+// A node moves with the obstacle, and no farther from its path than beside an obstacle at rest.
+TEST(KinematicMotion, MovesTheLimitOfNodes)
 {
     const btVector3 half(0, btScalar(0.5), 0), beside(btScalar(0.5), btScalar(0.5), 0), beyond(0, 2, 0);
     EXPECT_TRUE(limited(half, true) == half);
@@ -221,8 +223,8 @@ TEST(KinematicMotion, takesTheLimitOfNodesWithIt)
     EXPECT_NEAR(limited(beyond, true).y(), 1 + kThickness / 2, 1e-6);
 }
 
-// All nodes are beside the obstacle before and after they were pulled, only their triangle comes over its corner.
-TEST(MotionLimit, holdsTrianglesThatArePulledOverACorner)
+// All nodes are beside the obstacle before and after they were pulled; only their triangle comes over its corner.
+TEST(MotionLimit, LimitsTrianglesThatArePulledOverACorner)
 {
     const btVector3 places[] = {
         {btScalar(2.2), btScalar(0.5), 0}, {btScalar(0.5), btScalar(2.2), 0}, {btScalar(2.2), btScalar(2.2), 0}};

@@ -1,4 +1,4 @@
-// What an app has brought to the device before a step needs it.
+// Preparation by an app before a step needs the data on the device.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -53,7 +53,7 @@ struct PreparedWorld
     btSoftBody& m_cloth;
 };
 
-// What is prepared is there while the cloth is elsewhere, and no longer once it is released.
+// Prepared data stays while the cloth is elsewhere, and is gone after its release.
 void staysUntil(const Settings& settings, const std::function<void(PreparedWorld&)>& release)
 {
     PreparedWorld world(settings);
@@ -82,7 +82,7 @@ class Prepared : public BackendTest
 {
 };
 
-TEST_P(Prepared, theFirstStepFindsWhatItNeeds)
+TEST_P(Prepared, TheFirstStepFindsWhatItNeeds)
 {
     PreparedWorld prepared(GetParam().m_settings), plain(GetParam().m_settings);
     prepared.m_plugin.prepare(&prepared.m_obstacle);
@@ -98,8 +98,8 @@ TEST_P(Prepared, theFirstStepFindsWhatItNeeds)
     EXPECT_GT(prepared.m_plugin.statistics().m_contacts, 100u);
 }
 
-// It has turned by the time that its pair has it cut into parts, whose order of work its bits depend on.
-TEST_P(Prepared, largeClothTakesTheSameWay)
+// The cloth has turned before its pair cuts it into parts. Its bits depend on the order of work of these parts.
+TEST_P(Prepared, ALargeClothTakesTheSamePath)
 {
     ClothSpec spec = above(0.8);
     spec.m_nodes = 50;
@@ -119,7 +119,7 @@ TEST_P(Prepared, largeClothTakesTheSameWay)
     EXPECT_EQ(hashOf(prepared.m_cloth), hashOf(plain.m_cloth));
 }
 
-TEST_P(Prepared, whatIsPreparedStaysUntilItIsReleased)
+TEST_P(Prepared, PreparedDataStaysUntilItsRelease)
 {
     staysUntil(GetParam().m_settings,
                [](PreparedWorld& world)
@@ -129,13 +129,13 @@ TEST_P(Prepared, whatIsPreparedStaysUntilItIsReleased)
                });
 }
 
-TEST_P(Prepared, aWorldIsReleasedAtOnce)
+TEST_P(Prepared, AWorldIsReleasedAtOnce)
 {
     staysUntil(GetParam().m_settings, [](PreparedWorld& world) { world.m_plugin.release(world.m_world.world()); });
 }
 
 // Meshes that come are numbered anew; those of the last step's contacts keep their names.
-TEST_P(Prepared, contactsOfTheLastStepStay)
+TEST_P(Prepared, ContactsOfTheLastStepStay)
 {
     PreparedWorld world(GetParam().m_settings);
     world.m_world.addCloth(above(0.5));
@@ -152,7 +152,7 @@ TEST_P(Prepared, contactsOfTheLastStepStay)
     EXPECT_FALSE(sameContacts(before, world.m_plugin.contacts()));
 }
 
-TEST_P(Prepared, aWorldAtOnce)
+TEST_P(Prepared, AWorldIsPreparedAtOnce)
 {
     Plugin plugin(GetParam().m_settings);
     DropWorld world(&plugin);
@@ -168,8 +168,8 @@ TEST_P(Prepared, aWorldAtOnce)
     EXPECT_EQ(plugin.whyStock(&cloth, world.world().getCollisionObjectArray()[0]), "");
 }
 
-// A compound's meshes, and what changed after it was prepared.
-TEST_P(Prepared, childrenAndChanges)
+// Prepares a compound's meshes, and changes after the preparation.
+TEST_P(Prepared, ChildrenAndChangesArePrepared)
 {
     MeshShape sphere(makeSphere(0.3f, 2)), slab(makeBox(2.0f, 0.1f, 2.0f));
     btBoxShape box(btVector3(1, 1, 1));
@@ -200,7 +200,7 @@ TEST_P(Prepared, childrenAndChanges)
     EXPECT_GT(plugin.statistics().m_contacts, 100u);
 }
 
-TEST_P(Prepared, whatIsNotHandledIsLeftAlone)
+TEST_P(Prepared, UnsupportedObjectsAreLeftAlone)
 {
     Plugin plugin(GetParam().m_settings);
     btBoxShape box(btVector3(1, 1, 1));

@@ -1,4 +1,4 @@
-// Where cloth comes to rest, and how still it lies there.
+// Cloth comes to rest and lies still.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ constexpr double kGapTolerance = 0.02 * kThickness;  // m
 // A step of free fall adds g·dt = 0.16 m/s; cloth at rest loses it again in the same step.
 constexpr double kSpeedAtRest = 0.02;  // m/s
 
-// What is promised of cloth that had time to settle, over kStepsAtRest steps.
+// The guarantees for cloth that had time to settle, over kStepsAtRest steps.
 constexpr double kSpeedSettled = 0.001;  // m/s
 constexpr int kStepsToSettle = 500, kStepsAtRest = 2000;
 
@@ -32,7 +32,7 @@ constexpr int kStepsToSettle = 500, kStepsAtRest = 2000;
 // the cloth slips now and then, 0.5 on the pile of boards; on the bunny, where it slips over the ears, 4.5.
 constexpr double kWorstStep = 0.0026, kWorstStepOnBunny = 0.009;
 
-// m/s, from the places before and after a step.
+// Returns the RMS speed in m/s, from the positions before and after a step.
 double rmsMotion(const std::vector<float>& before, const std::vector<float>& after)
 {
     double sum = 0;
@@ -72,7 +72,7 @@ class RestingCloth : public BackendTest
 {
 };
 
-TEST_P(RestingCloth, liesAtTheThicknessOnAPlane)
+TEST_P(RestingCloth, LiesAtTheThicknessOnAPlane)
 {
     Rest rest(GetParam().m_settings);
     const TriangleMesh box = makeBox(3.0f, 0.4f, 3.0f);
@@ -85,7 +85,7 @@ TEST_P(RestingCloth, liesAtTheThicknessOnAPlane)
     EXPECT_LT(rest.greatestSpeed(cloth, 60), kSpeedAtRest);
 }
 
-TEST_P(RestingCloth, liesAtTheThicknessOnASphere)
+TEST_P(RestingCloth, LiesAtTheThicknessOnASphere)
 {
     Rest rest(GetParam().m_settings);
     const TriangleMesh sphere = makeSphere(0.5f, 4);
@@ -131,7 +131,7 @@ class SettledPile : public BackendTest
 // The speed that Bullet keeps and the motion that is seen: a correction of places alone would show in the second only.
 // RMS over all steps: cloth that hangs over a sphere slips now and then, on which steps is chance of the height it fell
 // from.
-TEST_P(SettledCloth, liesStill)
+TEST_P(SettledCloth, LiesStill)
 {
     const Bed& bed = std::get<0>(GetParam());
     Rest rest(std::get<1>(GetParam()).m_settings);
@@ -162,8 +162,8 @@ TEST_P(SettledCloth, liesStill)
 
 namespace
 {
-// Drops cloth_drop's cloth of 2,048 triangles and expects it to lie still on the mesh after a fall in m: RMS over all
-// steps, where it hangs over edges friction lets it slip now and then, in no step faster than worstStep (m/s).
+// Drops cloth_drop's cloth of 2,048 triangles from `fall` (m) and expects it to lie still on the mesh: RMS speed over
+// all steps. At edges friction lets hanging cloth slip now and then; no step is faster than worstStep (m/s).
 void expectLiesStill(Rest& rest, const TriangleMesh& mesh, float size, btScalar fall, double worstStep)
 {
     MeshShape shape(mesh);
@@ -193,7 +193,7 @@ void expectLiesStill(Rest& rest, const TriangleMesh& mesh, float size, btScalar 
 
 constexpr int kBoards = 24;
 
-// Thin boards over each other, each turned against the last: their corners poke into the cloth's faces.
+// Makes thin boards on top of each other, each rotated against the last. Their corners press into the cloth's faces.
 TriangleMesh makePileOfBoards()
 {
     TriangleMesh pile;
@@ -211,9 +211,9 @@ TriangleMesh makePileOfBoards()
 }
 }  // namespace
 
-// The bunny has 69,666 triangles and a height of 2 m. With planes as the predicted step's end has them, and contacts
-// that do not settle, cloth that falls by 0.5 m stirs at 1.3 mm/s.
-TEST_P(SettledBunny, liesStill)
+// The bunny has 69,666 triangles and a height of 2 m. Cloth that falls by 0.5 m would keep moving at 1.3 mm/s with
+// planes of the predicted step's end and contacts that do not settle.
+TEST_P(SettledBunny, LiesStill)
 {
     TriangleMesh bunny;
     if (!loadBunny(bunny)) return;
@@ -227,8 +227,9 @@ TEST_P(SettledBunny, liesStill)
     }
 }
 
-// With contacts' planes left as the predicted step's end has them, faces rock on the boards' corners for ever: 20 mm/s.
-TEST_P(SettledPile, liesStill)
+// Faces would rock on the boards' corners for ever, at 20 mm/s, if contacts' planes stayed those of the predicted
+// step's end.
+TEST_P(SettledPile, LiesStill)
 {
     Rest rest(GetParam().m_settings);
     expectLiesStill(rest, makePileOfBoards(), 1.8f, btScalar(0.3), kWorstStep);
@@ -253,7 +254,7 @@ INSTANTIATE_TEST_SUITE_P(Backend, SettledPile, testing::ValuesIn(allBackends()),
 
 namespace
 {
-// A sphere of radius 1 m with triangles between meridians and parallels.
+// Makes a sphere of radius 1 m with triangles between meridians and parallels.
 TriangleMesh makeGlobe()
 {
     constexpr int kParts = 48;
@@ -276,9 +277,9 @@ TriangleMesh makeGlobe()
 }
 }  // namespace
 
-// README's cloth, with one iteration as Bullet has it by default. The RMS is over all steps and nodes. The fastest node
-// is one that slips: twice what was measured with four iterations, 22 mm/s.
-TEST(IterationsOfBullet, aSingleOneBringsClothToRestAsFourDo)
+// README's cloth, with Bullet's default of one iteration. The RMS is over all steps and nodes. The fastest node slips;
+// the limit is twice the value measured with four iterations, 22 mm/s.
+TEST(IterationsOfBullet, ASingleIterationBringsClothToRestLikeFour)
 {
     for (const int iterations : {1, 4})
     {
@@ -307,10 +308,10 @@ TEST(IterationsOfBullet, aSingleOneBringsClothToRestAsFourDo)
     }
 }
 
-// Not of Drape's making, and what finer cloth that hangs over an obstacle stirs by: Bullet's links alone, without an
-// obstacle or contacts, keep cloth of 4,225 nodes that is pinned in its middle fluttering, where one of 1,089 comes to
-// rest. RMS over the last 200 of 1,000 steps 122 and 0.1 mm/s.
-TEST(HangingCloth, fluttersByBulletsLinksAlone)
+// Bullet's links alone, without an obstacle or contacts, keep fine hanging cloth in motion. Cloth of 4,225 nodes that
+// is pinned in its middle keeps fluttering; cloth of 1,089 nodes comes to rest. RMS over the last 200 of 1,000 steps:
+// 122 and 0.1 mm/s.
+TEST(HangingCloth, FluttersBecauseOfBulletsLinksAlone)
 {
     for (const int nodes : {33, 65})
     {
@@ -343,7 +344,7 @@ TEST(HangingCloth, fluttersByBulletsLinksAlone)
     }
 }
 
-TEST_P(RestingCloth, thicknessIsTheSumOfBothMargins)
+TEST_P(RestingCloth, TheThicknessIsTheSumOfBothMargins)
 {
     Rest rest(GetParam().m_settings);
     MeshShape shape(makeBox(3.0f, 0.4f, 3.0f));
@@ -356,8 +357,8 @@ TEST_P(RestingCloth, thicknessIsTheSumOfBothMargins)
     EXPECT_FLOAT_EQ(rest.m_plugin.contacts().front().m_thickness, 0.04f);
 }
 
-// The contact rounds must not feed energy in: no slow creep over many steps.
-TEST_P(RestingCloth, staysWhereItLies)
+// The contact rounds must not add energy: the cloth does not creep over many steps.
+TEST_P(RestingCloth, StaysWhereItLies)
 {
     Rest rest(GetParam().m_settings);
     MeshShape shape(makeBox(3.0f, 0.4f, 3.0f));

@@ -15,7 +15,7 @@
 
 namespace drape::test
 {
-// The body's faces, then its links that collide as triangles that have their second node twice.
+// Returns the body's faces, then its colliding links as triangles that have their second node twice.
 inline TriangleMesh meshWithLinks(const btSoftBody& body)
 {
     TriangleMesh mesh = meshOf(body);
@@ -58,7 +58,7 @@ private:
     Crossings m_crossings;
 };
 
-// The margin, iterations and friction of these tests' bodies.
+// Sets the margin, iterations and friction of these tests' bodies.
 inline void style(btSoftBody& body, btScalar mass)
 {
     body.setTotalMass(mass);
@@ -68,7 +68,7 @@ inline void style(btSoftBody& body, btScalar mass)
     body.m_cfg.kDF = btScalar(0.6);
 }
 
-// Of `links` links from one place to another, 0.1 kg a metre.
+// Makes a rope of `links` links between two points, 0.1 kg a metre.
 inline std::unique_ptr<btSoftBody> makeRope(btSoftBodyWorldInfo& info, const btVector3& from, const btVector3& to,
                                             int links, int fixedEnds = 0)
 {
@@ -100,7 +100,7 @@ public:
         m_checks.emplace_back(m_obstacle, *m_bodies.back());
         return *m_bodies.back();
     }
-    // Steps, and looks at every body after each. Stops at the first failure.
+    // Steps, and checks every body after each step. Stops at the first failure.
     void run(int steps)
     {
         for (int i = 0; i < steps && !testing::Test::HasFailure(); ++i)
@@ -128,7 +128,7 @@ public:
             least = std::min(least, check.m_leastGap);
         return least;
     }
-    std::size_t contactsOfKind(int nodes) const  // that name so many nodes
+    std::size_t contactsOfKind(int nodes) const  // counts contacts with so many nodes
     {
         const std::vector<ContactInfo> contacts = m_plugin.contacts();
         return std::size_t(std::count_if(contacts.begin(), contacts.end(),

@@ -18,7 +18,7 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr int kRodSides = 7;
 constexpr double kRodRadius = 0.05, kRodLength = 3;  // m
 
-// A prism around the z axis, closed; with radius 0 at the far end a needle.
+// Makes a closed prism around the z axis. A radius of 0 at the far end gives a needle.
 TriangleMesh makeRod(double radius, double farRadius)
 {
     TriangleMesh mesh;
@@ -40,7 +40,7 @@ TriangleMesh makeRod(double radius, double farRadius)
     return mesh;
 }
 
-// The tip upwards, at the height 0.
+// Makes a needle with its tip upwards, at height 0.
 TriangleMesh makeNeedle(double radius)
 {
     const btQuaternion upright(btVector3(1, 0, 0), btScalar(-kPi / 2));
@@ -59,7 +59,8 @@ TriangleMesh obstacleNamed(const std::string& name)
     return mesh;
 }
 
-// A square of 17 x 17 nodes and 1 m, each node of its rim with a thread of three links that goes straight outwards.
+// Makes a square of 17 x 17 nodes and 1 m. Each node of its rim has a thread of three links that goes straight
+// outwards.
 std::unique_ptr<btSoftBody> makeFringed(btSoftBodyWorldInfo& info, btScalar height)
 {
     constexpr int kSide = 17;
@@ -93,7 +94,7 @@ class RopesDropped : public testing::TestWithParam<RopeDrop>
 {
 };
 
-// Ropes that fall across the middle, in several directions. Returns the hash of all steps.
+// Drops ropes across the middle, in several directions. Returns the hash of all steps.
 std::uint64_t drop(const RopeDrop& drop, const Settings& settings, int steps)
 {
     const TriangleMesh obstacle = obstacleNamed(drop.m_obstacle);
@@ -117,7 +118,7 @@ std::uint64_t drop(const RopeDrop& drop, const Settings& settings, int steps)
 }
 }  // namespace
 
-TEST_P(RopesDropped, endEveryStepOutsideWithTheSameBitsOnEveryBackend)
+TEST_P(RopesDropped, EndEveryStepOutsideWithTheSameBitsOnEveryBackend)
 {
     std::uint64_t first = 0;
     for (const BackendCase& backend : allBackends())
@@ -145,9 +146,9 @@ class Ropes : public BackendTest
 {
 };
 
-// A weight of a hundred nodes hangs over the edge of a box on links that are longer than the box's edge is from the
-// ground: the edge has to hold links, not nodes.
-TEST_P(Ropes, withAWeightHangOverAnEdge)
+// A weight of a hundred nodes hangs over the edge of a box. Its links are longer than the height of the edge above the
+// ground, so the edge must support links, not nodes.
+TEST_P(Ropes, HangOverAnEdgeWithAWeight)
 {
     RopeWorld world(makeBox(1.0f, 0.4f, 1.0f), GetParam().m_settings);
     const btScalar height = btScalar(0.2 + 1.5 * kThickness);
@@ -163,8 +164,8 @@ TEST_P(Ropes, withAWeightHangOverAnEdge)
     EXPECT_GT(world.leastGap(), kThickness / 4);
 }
 
-// Pulled by its end over the top and around the edge, at several speeds.
-TEST_P(Ropes, areDraggedOverAnEdge)
+// The rope is pulled by its end over the top and around the edge, at several speeds.
+TEST_P(Ropes, StayOutsideWhenDraggedOverAnEdge)
 {
     for (const int speed : {1, 5, 20})
     {
@@ -184,8 +185,8 @@ TEST_P(Ropes, areDraggedOverAnEdge)
     }
 }
 
-// Two and a half turns around a rod, the ends drawn tight: a link that passed the rod would take a turn away.
-TEST_P(Ropes, stayWoundOnARod)
+// The rope has two and a half turns around a rod, its ends drawn tight. A link that passed the rod would remove a turn.
+TEST_P(Ropes, StayWoundOnARod)
 {
     for (const int speed : {1, 10, 60})
     {
@@ -222,7 +223,7 @@ TEST_P(Ropes, stayWoundOnARod)
 }
 
 // Lies on two posts, with no node near either.
-TEST_P(Ropes, restOnPostsBetweenTheirNodes)
+TEST_P(Ropes, RestOnPostsBetweenTheirNodes)
 {
     const btScalar wide = btScalar(0.45);
     TriangleMesh posts = placed(makeBox(0.04f, 1.0f, 0.04f),
@@ -243,8 +244,8 @@ TEST_P(Ropes, restOnPostsBetweenTheirNodes)
     EXPECT_GT(world.leastGap(), kThickness / 2);
 }
 
-// A cloth with threads of three links along its rim that comes down on something sharp and on something round.
-TEST_P(Ropes, hangFromAClothAsItsFringe)
+// Cloth with threads of three links along its rim falls on something sharp and on something round.
+TEST_P(Ropes, HangFromAClothAsItsFringe)
 {
     for (const auto& [obstacle, speed] : {std::make_pair("needle", 0), std::make_pair("needle", 30),
                                           std::make_pair("torus", 0), std::make_pair("box", 30)})
@@ -262,7 +263,7 @@ TEST_P(Ropes, hangFromAClothAsItsFringe)
 }
 
 // Across a box, as one link whose ends are outside, upright, and through a ring twice.
-TEST_P(Ropes, thatBeginThroughAMeshAreToldAndComeOut)
+TEST_P(Ropes, ThoseBeginningThroughAMeshAreReportedAndComeOut)
 {
     const struct
     {
@@ -300,8 +301,8 @@ TEST_P(Ropes, thatBeginThroughAMeshAreToldAndComeOut)
     }
 }
 
-// Two ropes sewn to one another by a link of the first.
-TEST_P(Ropes, withALinkToAnotherBodySaySo)
+// A link of the first rope joins it to the second.
+TEST_P(Ropes, LinksToAnotherBodyAreReported)
 {
     Plugin plugin(GetParam().m_settings);
     MeshShape shape(makeBox(1.0f, 0.4f, 1.0f));

@@ -1,4 +1,4 @@
-// Plugin::setOneSided: cloth inside a closed mesh is held by its walls, or comes out of it. Sheets without thickness
+// Plugin::setOneSided: the walls of a closed mesh hold cloth inside, or the cloth comes out. Sheets without thickness
 // hold cloth on either side, or on their front alone.
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace drape::test
 {
 namespace
 {
-// Height of a cloth's middle node after it was let go inside a box of 2 m around the origin.
+// Returns the height of a cloth's middle node after its fall inside a box of 2 m around the origin.
 float heightAfterFall(bool oneSided, bool kinematic)
 {
     Plugin plugin(hostSettings());
@@ -34,7 +34,7 @@ float heightAfterFall(bool oneSided, bool kinematic)
 }
 }  // namespace
 
-TEST(Sides, clothInsideOfABoxStaysThereOrFallsOut)
+TEST(Sides, ClothInsideOfABoxStaysThereOrFallsOut)
 {
     for (const bool kinematic : {false, true})
     {
@@ -43,7 +43,7 @@ TEST(Sides, clothInsideOfABoxStaysThereOrFallsOut)
     }
 }
 
-TEST(Sides, aOneSidedBoxHoldsClothThatComesFromOutside)
+TEST(Sides, AOneSidedBoxHoldsClothThatComesFromOutside)
 {
     Plugin plugin(hostSettings());
     MeshShape box(makeBox(2, 2, 2));
@@ -142,18 +142,18 @@ void Sheets::expectHeld(bool below, bool oneSided)
 }
 }  // namespace
 
-TEST_P(Sheets, twoSidedHoldClothOnEitherSide)
+TEST_P(Sheets, TwoSidedSheetsHoldClothOnEitherSide)
 {
     for (const bool below : {false, true})
         expectHeld(below, false);
 }
 
-TEST_P(Sheets, oneSidedHoldClothOnTheirFront)
+TEST_P(Sheets, OneSidedSheetsHoldClothOnTheirFront)
 {
     expectHeld(false, true);
 }
 
-TEST_P(Sheets, oneSidedLetClothThroughFromBehind)
+TEST_P(Sheets, OneSidedSheetsLetClothThroughFromBehind)
 {
     SheetScene scene(backend().m_settings, amplitude(), true, speed(), true);
     for (int step = 0; step < kSheetSteps; ++step)

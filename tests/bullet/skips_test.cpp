@@ -1,6 +1,6 @@
-// What the adapter does not look at again changes nothing: obstacles whose vertices are not read anew, cloth that
-// sleeps, cloth that is pinned; and the device that a small scene does not use. Contacts and trajectories, bit for bit,
-// with the skip and with it defeated, on every back end.
+// Skipped work changes nothing: obstacles whose vertices are not read again, sleeping cloth, pinned cloth, and the
+// device that a small scene does not use. Compares contacts and trajectories with the skip and with it defeated, bit
+// for bit, on every back end.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ ClothSpec clothAt(double x, double y)
     return spec;
 }
 
-// The contacts of one cloth, with what names objects of a world taken out.
+// Returns the contacts of one cloth without the names of objects of its world.
 std::vector<ContactInfo> contactsOf(const Plugin& plugin, const btSoftBody& cloth)
 {
     std::vector<ContactInfo> contacts;
@@ -82,7 +82,7 @@ static_assert(sizeof(ContactInfo) == 2 * sizeof(void*) + 3 * sizeof(int) + 11 * 
 class Skips : public BackendTest
 {
 protected:
-    // Steps both worlds; before each step of the second one `defeat` is called. The cloth of both must do the same.
+    // Steps both worlds; calls `defeat` before each step of the second one. The cloth of both must move equally.
     void expectSame(SkipWorld& skipping, SkipWorld& defeated, const std::function<void()>& defeat)
     {
         std::size_t contacts = 0;
@@ -118,8 +118,8 @@ TEST_P(Skips, ObstaclesThatAreNotReadAnew)
     EXPECT_EQ(keptAllTheSame, kept);
 }
 
-// In one world another cloth sleeps in touch with the slab, in the other there is none. It keeps its place until the
-// slab moves and wakes it.
+// A second cloth sleeps in touch with the slab in one world only. It keeps its position until the slab moves and wakes
+// it.
 TEST_P(Skips, ClothThatSleeps)
 {
     SkipWorld with(GetParam().m_settings), without(GetParam().m_settings);
@@ -137,8 +137,8 @@ TEST_P(Skips, ClothThatSleeps)
                });
 }
 
-// All of its nodes are pinned, so that no contact could move it; with another node, which belongs to no face and falls
-// far away, the pair is looked at all the same.
+// All of the cloth's nodes are pinned, so that no contact could move it. The pair is tested all the same if another
+// node, which belongs to no face, falls far away.
 TEST_P(Skips, ClothThatIsPinned)
 {
     SkipWorld skipping(GetParam().m_settings), defeated(GetParam().m_settings);
@@ -170,8 +170,8 @@ TEST_P(Skips, ClothThatIsPinned)
 }
 
 #ifdef NDEBUG
-// Drape's time in a step of a world in which all cloth sleeps on its obstacles, some of them kinematic: on the host,
-// and not a launch on a device.
+// Limits Drape's time in a step of a world in which all cloth sleeps on its obstacles, some of them kinematic. The step
+// runs on the host, and launches nothing on a device.
 TEST_P(Skips, AWorldAtRestCostsFiveMicroseconds)
 {
     Settings settings = GetParam().m_settings;
@@ -203,7 +203,7 @@ TEST_P(Skips, AWorldAtRestCostsFiveMicroseconds)
 }
 #endif
 
-// A scene runs on the host until a second cloth makes it worth the device.
+// A scene runs on the host until a second cloth makes the device faster.
 TEST_P(Skips, TheDeviceWhereTheSceneIsTooSmallForIt)
 {
     if (GetParam().m_device > 0) GTEST_SKIP() << "cost decides about the first device only";

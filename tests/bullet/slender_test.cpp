@@ -1,5 +1,5 @@
-// Cloth that hangs on something slender: a vertex or two under faces four times as long as the thickness bear all of
-// it, and the faces around them close in.
+// Cloth that hangs on a slender obstacle. One or two vertices under faces four times as long as the thickness carry all
+// of the cloth, and the faces around them close in.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace
 constexpr double kHeight = 2;  // m
 constexpr int kSides = 6, kSteps = 240;
 
-// Its tip is at (0, 0, 0), its axis downwards.
+// Makes a needle with its tip at (0, 0, 0) and its axis downwards.
 TriangleMesh makeNeedle(double radius)
 {
     TriangleMesh mesh;
@@ -64,7 +64,7 @@ protected:
 };
 }  // namespace
 
-TEST_P(Slender, needlesHoldCloth)
+TEST_P(Slender, NeedlesHoldCloth)
 {
     for (const double radius : {0.003, 0.02, 0.05})
     {
@@ -73,8 +73,8 @@ TEST_P(Slender, needlesHoldCloth)
     }
 }
 
-// At 50 m/s Bullet's links stretch to three times their length.
-TEST_P(Slender, postsHoldClothThatIsThrown)
+// Bullet's links stretch to three times their length at 50 m/s.
+TEST_P(Slender, PostsHoldClothThatIsThrown)
 {
     const btTransform down(btQuaternion::getIdentity(), btVector3(0, btScalar(-kHeight / 2), 0));
     for (const btScalar speed : {10, 50})

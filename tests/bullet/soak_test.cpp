@@ -16,8 +16,8 @@ namespace drape::test
 namespace
 {
 constexpr std::uint32_t kSeed = 1300;
-constexpr std::size_t kMostBodies = 5;    // of each sort
-constexpr std::uint32_t kStepsApart = 8;  // of two changes, on average
+constexpr std::size_t kMostBodies = 5;    // of each type
+constexpr std::uint32_t kStepsApart = 8;  // steps between two changes, on average
 
 // A world and what lives in it, driven by one row of random numbers.
 class Zoo
@@ -72,7 +72,7 @@ private:
         return btVector3(btScalar(x), btScalar(y), btScalar(z));
     }
 
-    // It rises, sinks and turns where it is.
+    // The board rises, sinks and turns in place.
     btTransform boardPose() const
     {
         const btScalar height = btScalar(0.25) * std::sin(btScalar(0.05) * btScalar(m_boardSteps));
@@ -163,7 +163,7 @@ private:
     std::size_t m_changes[kKinds] = {};
 };
 
-// A cloth that falls on a sphere, as in a world of its own.
+// Drops a cloth on a sphere, as in a world of its own.
 std::uint64_t fallOnSphere(DropWorld& world, MeshShape& sphere)
 {
     btCollisionObject& ball =
@@ -184,7 +184,7 @@ std::uint64_t fallOnSphere(DropWorld& world, MeshShape& sphere)
 class Soak : public BackendTest
 {
 protected:
-    // Steps that change something; `each`: at least so many changes of each kind.
+    // Runs steps that change something; `each` is the least number of changes of each kind.
     void live(Zoo& zoo, int steps, std::size_t each)
     {
         std::size_t inContact = 0;
@@ -206,7 +206,7 @@ protected:
             EXPECT_GE(zoo.changes(kind), each) << "kind " << kind;
     }
 
-    // Nothing is left of all that: a new cloth falls as in a new world.
+    // Expects no remains: a new cloth falls as in a new world.
     void expectEmptied(Zoo& zoo)
     {
         zoo.clear();
@@ -219,7 +219,7 @@ protected:
     }
 };
 
-TEST_P(Soak, tenThousandStepsOfChange)
+TEST_P(Soak, TenThousandStepsOfChangeKeepClothOutside)
 {
     constexpr int kSteps = 10000, kWarmUp = 1000;
     SCOPED_TRACE("seed " + std::to_string(kSeed));
@@ -231,8 +231,8 @@ TEST_P(Soak, tenThousandStepsOfChange)
     expectEmptied(zoo);
 }
 
-// What the sanitizers run.
-TEST_P(Soak, aThousandStepsOfChange)
+// The sanitizers run this test.
+TEST_P(Soak, AThousandStepsOfChangeKeepClothOutside)
 {
     SCOPED_TRACE("seed " + std::to_string(kSeed));
     Zoo zoo(GetParam().m_settings);

@@ -1,4 +1,4 @@
-// Which links of a soft body collide, and what is noticed of them when they change where they stand.
+// Finds the links of a soft body that collide, and notices changes in place.
 #include "bullet_plugin/adapter/solid_links.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ std::unique_ptr<btSoftBody> makePatch(btSoftBodyWorldInfo& info)
 }
 }  // namespace
 
-TEST(SolidLinks, areAllOfARopeButBendingLinks)
+TEST(SolidLinks, AllLinksOfARopeButBendingLinksCount)
 {
     btSoftBodyWorldInfo info;
     const std::unique_ptr<btSoftBody> rope = makeRope(info, btVector3(0, 0, 0), btVector3(1, 0, 0), 3);
@@ -44,7 +44,7 @@ TEST(SolidLinks, areAllOfARopeButBendingLinks)
     EXPECT_TRUE(solidOf(*rope).empty());
 }
 
-TEST(SolidLinks, areNoneWithinASurface)
+TEST(SolidLinks, LinksWithinASurfaceDoNotCount)
 {
     btSoftBodyWorldInfo info;
     const std::unique_ptr<btSoftBody> patch = makePatch(info);
@@ -52,22 +52,22 @@ TEST(SolidLinks, areNoneWithinASurface)
     EXPECT_TRUE(solidOf(*patch).empty());
 }
 
-TEST(SolidLinks, areThoseThatHangFromASurfaceOrJoinTwo)
+TEST(SolidLinks, LinksThatHangFromASurfaceOrJoinTwoCount)
 {
     btSoftBodyWorldInfo info;
     const std::unique_ptr<btSoftBody> body = makePatch(info);
     for (int i = 0; i < 5; ++i)
         body->appendNode(btVector3(2, 0, btScalar(i)), 1);
     body->appendFace(16, 17, 18);
-    body->appendLink(15, 16);  // of two surfaces
+    body->appendLink(15, 16);  // a link between two surfaces
     body->appendLink(3, 19);   // hangs
     body->appendLink(19, 20);
     body->appendLink(16, 18);
     EXPECT_EQ(solidOf(*body), (Nodes{15, 16, 3, 19, 19, 20}));
 }
 
-// A tetrahedron is a surface, too, with what is inside of it.
-TEST(SolidLinks, areNoneWithinTetrahedra)
+// A tetrahedron and its inside count as a surface, too.
+TEST(SolidLinks, LinksWithinTetrahedraDoNotCount)
 {
     btSoftBodyWorldInfo info;
     const btVector3 places[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}, {2, 2, 2}};
@@ -80,7 +80,7 @@ TEST(SolidLinks, areNoneWithinTetrahedra)
     EXPECT_EQ(solidOf(body), (Nodes{4, 5}));
 }
 
-TEST(SolidLinks, thatNameAnotherBodysNodeAreLeftOutAndTold)
+TEST(SolidLinks, LinksWithAnotherBodysNodeAreLeftOutAndReported)
 {
     btSoftBodyWorldInfo info;
     const std::unique_ptr<btSoftBody> rope = makeRope(info, btVector3(0, 0, 0), btVector3(1, 0, 0), 3);
@@ -92,7 +92,7 @@ TEST(SolidLinks, thatNameAnotherBodysNodeAreLeftOutAndTold)
     EXPECT_TRUE(links.hasForeign());
 }
 
-TEST(SolidLinks, areOthersWhenOneHasAnotherNodeButNotInAnotherOrder)
+TEST(SolidLinks, ChangeWithANodeOfALinkButNotWithTheirOrder)
 {
     btSoftBodyWorldInfo info;
     for (const int count : {10, 5000})
@@ -120,14 +120,14 @@ TEST(SolidLinks, areOthersWhenOneHasAnotherNodeButNotInAnotherOrder)
     }
 }
 
-// What was cut away, or tied on, is there in the same step.
-TEST(SolidLinks, countInTheStepInWhichTheyChange)
+// Removed and added links count in the same step.
+TEST(SolidLinks, ChangesCountInTheSameStep)
 {
     Plugin plugin(hostSettings());
     DropWorld world(&plugin);
     MeshShape box(makeBox(1.0f, 1.0f, 1.0f));
     const btCollisionObject& object = world.addObstacle(box.shape());
-    // Beside the box, so that only a link between the ends comes near it.
+    // The ends are beside the box, so that only a link between them comes near it.
     const btVector3 places[] = {{btScalar(-0.7), btScalar(0.51), 0}, {btScalar(0.7), btScalar(0.51), 0}, {2, 2, 0}};
     const btScalar masses[] = {1, 1, 1};
     btSoftBody body(&world.world().getWorldInfo(), 3, places, masses);
@@ -147,7 +147,7 @@ TEST(SolidLinks, countInTheStepInWhichTheyChange)
     world.world().removeSoftBody(&body);
 }
 
-TEST(SolidLinks, areWhatDrapeTakesABodyWithoutFacesFor)
+TEST(SolidLinks, DrapeTakesABodyWithoutFacesForItsLinks)
 {
     Plugin plugin(hostSettings());
     DropWorld world(&plugin);

@@ -1,5 +1,5 @@
-// Cloth that begins a step with its triangles through a mesh: it is told at once, comes out of closed meshes without
-// being thrown, and is guarded again from then on. Margins that are none are told, too.
+// Cloth that begins a step with its triangles through a mesh. The report names it at once. It comes out of closed
+// meshes without being thrown, and is guarded again from then on. Invalid margins are reported, too.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace drape::test
 {
 namespace
 {
-// The settings with a log that a test can read.
+// Returns the settings with a log that a test can read.
 Settings logged(Settings settings, std::vector<std::string>& lines)
 {
     settings.m_log = [&lines](const char* line) { lines.push_back(line); };
@@ -44,7 +44,7 @@ double fastestOf(const btSoftBody& cloth)
     return speed;
 }
 
-// A cloth beside a mesh, with what was told of them.
+// A cloth beside a mesh, and the messages about them.
 class StartScene
 {
 public:
@@ -68,7 +68,7 @@ public:
     const StepStatistics& statistics() const { return m_plugin.statistics(); }
     bool isTold() const { return (statistics().m_status & kStepStartsIntersecting) != 0; }
 
-    // The next step tells; within so many nothing intersects any more, and that stays.
+    // Expects a message in the next step, and no intersection after `steps` steps.
     void expectToComeOut(int steps)
     {
         const StepMeasure first = step();
@@ -157,7 +157,7 @@ TEST_P(Starts, WindingDoesNotDecideWhichSideIsOut)
     for (std::size_t t = 0; t < mesh.triangleCount(); t += 2)
         std::swap(mesh.m_triangles[3 * t], mesh.m_triangles[3 * t + 1]);
     StartScene scene(GetParam().m_settings, mesh, clothAt(0.35f));
-    // The meter goes by winding: only what Drape says of it is looked at.
+    // The meter uses the winding number; the test reads only Drape's report.
     scene.m_world.step();
     EXPECT_TRUE(scene.isTold());
     for (int i = 0; i < 60; ++i)

@@ -55,12 +55,12 @@ protected:
 };
 }  // namespace
 
-TEST_F(Stock, nothingStandsInTheWayOfAStaticMesh)
+TEST_F(Stock, DrapeTakesAStaticMesh)
 {
     EXPECT_EQ(m_plugin.whyStock(&addCloth(), &m_world.addObstacle(m_shape.shape())), "");
 }
 
-TEST_F(Stock, boxShapeHoldsTheCloth)
+TEST_F(Stock, ABoxShapeHoldsTheCloth)
 {
     btBoxShape box(btVector3(1, btScalar(0.2), 1));
     btCollisionObject& object = m_world.addObstacle(box);
@@ -70,18 +70,18 @@ TEST_F(Stock, boxShapeHoldsTheCloth)
     EXPECT_GT(lowestOf(cloth), btScalar(0.19));
 }
 
-TEST_F(Stock, nothingStandsInTheWayOfAKinematicMesh)
+TEST_F(Stock, DrapeTakesAKinematicMesh)
 {
     EXPECT_EQ(m_plugin.whyStock(&addCloth(), &m_world.addKinematic(m_shape.shape())), "");
 }
 
-TEST_F(Stock, dynamicMesh)
+TEST_F(Stock, ADynamicMeshIsLeftToBullet)
 {
     btRigidBody body(btScalar(1), nullptr, &m_shape.shape(), btVector3(1, 1, 1));
     expectReason(addCloth(), body, "dynamic");
 }
 
-TEST_F(Stock, aMeshThatTurnsDynamicAndBackChangesHandsBothTimes)
+TEST_F(Stock, AMeshThatTurnsDynamicAndBackChangesItsOwnerBothTimes)
 {
     btCollisionObject& object = m_world.addObstacle(m_shape.shape());
     btSoftBody& cloth = addCloth();
@@ -95,7 +95,7 @@ TEST_F(Stock, aMeshThatTurnsDynamicAndBackChangesHandsBothTimes)
     EXPECT_GT(m_plugin.statistics().m_contacts, 0u);
 }
 
-TEST_F(Stock, clusterMode)
+TEST_F(Stock, ClusterModeIsLeftToBullet)
 {
     btCollisionObject& object = m_world.addObstacle(m_shape.shape());
     btSoftBody& cloth = addCloth();
@@ -106,7 +106,7 @@ TEST_F(Stock, clusterMode)
     EXPECT_EQ(m_plugin.statistics().m_contacts, 0u);
 }
 
-TEST_F(Stock, gimpactShape)
+TEST_F(Stock, AGimpactShapeIsLeftToBullet)
 {
     btTriangleMesh triangles;
     triangles.addTriangle(btVector3(-1, 0, -1), btVector3(0, 0, 1), btVector3(1, 0, -1));
@@ -115,7 +115,7 @@ TEST_F(Stock, gimpactShape)
     expectReason(addCloth(), m_world.addObstacle(shape), "GImpact");
 }
 
-TEST_F(Stock, compoundNamesTheChild)
+TEST_F(Stock, TheReasonNamesTheChildOfACompound)
 {
     btBoxShape box(btVector3(1, 1, 1));
     btCompoundShape compound;
@@ -125,7 +125,7 @@ TEST_F(Stock, compoundNamesTheChild)
 }
 
 // Bullet's own algorithm takes a compound's mesh to be where the compound is.
-TEST_F(Stock, aMeshInACompoundIsBulletsWhereItLiesAtItsPlace)
+TEST_F(Stock, AMeshInACompoundIsLeftToBulletAtItsPose)
 {
     Settings settings;
     settings.m_backend = Backend::OpenCl;
@@ -159,7 +159,7 @@ TEST_F(Stock, aMeshInACompoundIsBulletsWhereItLiesAtItsPlace)
     }
 }
 
-TEST_F(Stock, aMeshMovedInItsCompoundThatDrapeLeavesIsNobodys)
+TEST_F(Stock, AMeshMovedInACompoundThatDrapeLeavesHasNoContacts)
 {
     btCompoundShape compound;
     const btTransform place(btQuaternion::getIdentity(), btVector3(0, btScalar(0.01), 0));
@@ -175,7 +175,7 @@ TEST_F(Stock, aMeshMovedInItsCompoundThatDrapeLeavesIsNobodys)
     EXPECT_EQ(contactsHeld(cloth), 0);
 }
 
-TEST_F(Stock, aSoftBodyMayOutliveItsSolver)
+TEST_F(Stock, ASoftBodyMayOutliveItsSolver)
 {
     btSoftBodyWorldInfo info;
     const btVector3 places[] = {btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(0, 0, 1)};
@@ -192,7 +192,7 @@ TEST_F(Stock, aSoftBodyMayOutliveItsSolver)
     expectReason(cloth, object, "deformable world");
 }
 
-TEST_F(Stock, pairsThatAreNotClothAndObstacle)
+TEST_F(Stock, OtherPairsThanClothAndObstacleAreLeftToBullet)
 {
     btCollisionObject shapeless;
     expectReason(addCloth(), shapeless, "no collision shape");
@@ -204,14 +204,14 @@ TEST_F(Stock, pairsThatAreNotClothAndObstacle)
     EXPECT_NE(m_plugin.whyStock(&one, &two), "");
 }
 
-TEST_F(Stock, worldWithoutDrapesSolver)
+TEST_F(Stock, AWorldWithoutDrapesSolverIsLeftToBullet)
 {
     DropWorld other(nullptr);
     btCollisionObject& object = other.addObstacle(m_shape.shape());
     expectReason(other.addCloth(ClothSpec()), object, "solver");
 }
 
-TEST(StockWithoutDevice, anUnknownDeviceIsAnErrorThatListsThoseThereAre)
+TEST(StockWithoutDevice, AnUnknownDeviceIsAnErrorThatListsTheDevices)
 {
     Settings settings;
     settings.m_device = "no device has this name";
@@ -227,7 +227,7 @@ TEST(StockWithoutDevice, anUnknownDeviceIsAnErrorThatListsThoseThereAre)
     }
 }
 
-TEST(StockWithoutDevice, aDeviceThatNobodyAskedForAndThatFailsLeavesTheHost)
+TEST(StockWithoutDevice, AFailingDeviceThatWasNotRequestedLeavesTheHost)
 {
     const std::vector<DeviceInfo> devices = listDevices();
     if (devices.empty() || devices[0].m_platform != "Portable Computing Language")
@@ -262,7 +262,7 @@ TEST(StockWithoutDevice, aDeviceThatNobodyAskedForAndThatFailsLeavesTheHost)
         });
 }
 
-TEST(StockWithoutDevice, theAppRunsOnWithBulletsOwnCollision)
+TEST(StockWithoutDevice, TheAppRunsOnWithBulletsOwnCollision)
 {
     Settings settings;
     settings.m_device = "no device has this name";

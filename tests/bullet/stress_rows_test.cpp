@@ -29,7 +29,7 @@ btTransform at(double x, double y, double z)
     return btTransform(btQuaternion::getIdentity(), btVector3(btScalar(x), btScalar(y), btScalar(z)));
 }
 
-// Both transforms: a kinematic body of which the world transform alone changes has moved there within the step.
+// Sets both transforms. A kinematic body of which only the world transform changes has moved there within the step.
 void teleport(btCollisionObject& object, const btTransform& pose)
 {
     object.setWorldTransform(pose);
@@ -57,7 +57,7 @@ protected:
     WorldRows() : m_box(makeBox(3.0f, 0.4f, 3.0f)), m_boxShape(m_box) {}
 
     std::uint64_t hashBesideABall(bool kinematic, bool jumping);
-    // The fastest node of a cloth on the box while a ball jumps into it time and again.
+    // Returns the fastest node's speed of a cloth on the box while a ball jumps into it repeatedly.
     double fastestWithABallInside(bool kinematic);
 
     static btCollisionObject& addBall(DropWorld& world, MeshShape& sphere, const btTransform& pose, bool kinematic)
@@ -80,7 +80,7 @@ std::uint64_t WorldRows::hashBesideABall(bool kinematic, bool jumping)
     std::uint64_t hash = kHashStart;
     for (int step = 0; step < 60; ++step)
     {
-        // Above the cloth, far below it, and beside it, each jump through it.
+        // The ball jumps above the cloth, far below it, and beside it, each time through it.
         if (jumping) teleport(ball, at(step % 3 == 2 ? 2 : 0, step % 3 == 1 ? -3 : 3, 0));
         world.step();
         hash = hashOf(cloth, hash);
@@ -89,8 +89,7 @@ std::uint64_t WorldRows::hashBesideABall(bool kinematic, bool jumping)
     return hash;
 }
 
-// An obstacle that jumps from one side of the cloth to the other sweeps nothing: the cloth does what it does without
-// it.
+// An obstacle that jumps from one side of the cloth to the other sweeps nothing: the cloth moves as without it.
 TEST_P(WorldRows, Row15TeleportSweepsNothing)
 {
     for (const bool kinematic : {false, true})
@@ -128,17 +127,17 @@ double WorldRows::fastestWithABallInside(bool kinematic)
     return speed;
 }
 
-// Into the middle of the cloth: what is pushed out is pushed gently.
+// The ball jumps into the middle of the cloth, and pushes it out gently.
 TEST_P(WorldRows, Row15TeleportIntoTheClothGivesNoGiantImpulse)
 {
-    // The ball's radius in one step would be 9 m/s.
+    // A displacement of the ball's radius in one step would be 9 m/s.
     for (const bool kinematic : {false, true})
         EXPECT_LT(fastestWithABallInside(kinematic), 9.0) << "kinematic " << kinematic;
 }
 
 namespace
 {
-// Where the nodes are and how fast they go, bit for bit.
+// Returns the nodes' positions and velocities, bit for bit.
 std::vector<float> stateOf(const btSoftBody& cloth)
 {
     std::vector<float> state = positionsOf(cloth);
@@ -149,7 +148,7 @@ std::vector<float> stateOf(const btSoftBody& cloth)
 }
 }  // namespace
 
-// Bullet's world takes no step of no time; an app that calls the solver may.
+// Bullet's world skips steps of zero duration, but an app may call the solver.
 TEST_P(WorldRows, Row16StepOfNoTimeMovesNothing)
 {
     Plugin plugin(GetParam().m_settings);
@@ -177,8 +176,7 @@ TEST_P(WorldRows, Row16StepOfNoTimeMovesNothing)
     EXPECT_NEAR(double(lowestOf(cloth)) - double(kTop), kThickness, 0.05 * kThickness);
 }
 
-// A cloth whose time stands still in a world that goes on, in the way of a plate that comes up through it and of a
-// cloth that falls beside it.
+// The cloth's time stands still in a running world. A plate comes up through it and another cloth falls beside it.
 TEST_P(WorldRows, Row16ClothWithoutTimeStaysAsItIs)
 {
     Plugin plugin(GetParam().m_settings);
@@ -220,14 +218,14 @@ TEST_P(WorldRows, Row16HugeTimeStepsStayFinite)
         {
             world.world().stepSimulation(dt, 1, dt);
             ASSERT_TRUE(allFinite(cloth));
-            // At most each feature of the cloth with each of the box, in fact far fewer.
+            // An upper bound is each feature of the cloth with each of the box; there are far fewer.
             EXPECT_LT(plugin.statistics().m_contacts, 10000u);
             EXPECT_EQ(plugin.statistics().m_status, std::uint32_t(kStepGood));
         }
     }
 }
 
-// Pinned cloth on a static obstacle: the pair is skipped, nothing moves; masses that come back bring the contacts back.
+// The pair of pinned cloth and a static obstacle is skipped, and nothing moves. New masses restore the contacts.
 TEST_P(WorldRows, Row17BothSidesPinned)
 {
     Plugin plugin(GetParam().m_settings);
@@ -252,8 +250,8 @@ TEST_P(WorldRows, Row17BothSidesPinned)
     EXPECT_NEAR(double(lowestOf(cloth)) - double(kTop), kThickness, 0.05 * kThickness);
 }
 
-// Faces come and go while the cloth lies on the box. Each change is seen in the same step: what has no face has no
-// contact on its own face, what got one has.
+// Faces are added and removed while the cloth lies on the box. Each change counts in the same step: a node that lost
+// its faces has no contact of them, and a node that got a face has one.
 TEST_P(WorldRows, Row24NodesAndFacesAddedAndRemoved)
 {
     Plugin plugin(GetParam().m_settings);
@@ -303,7 +301,7 @@ TEST_P(WorldRows, Row24NodesAndFacesAddedAndRemoved)
     EXPECT_EQ(plugin.statistics().m_contacts, 0u);
 }
 
-// No drift, no growth of memory, and the cloth lies still.
+// The cloth does not drift, memory does not grow, and the cloth lies still.
 TEST_P(WorldRows, Row25TenThousandStepsAtRest)
 {
     constexpr int kSettle = 300, kSteps = 10000;

@@ -1,5 +1,5 @@
-// Cloth that came apart or whose pins were put elsewhere: its steps stay short, say what they gave up, and the cloth
-// comes back. Cloth that keeps its size gets all the tests that it needs, however fast it is.
+// Cloth that came apart or whose pins were moved elsewhere. Its steps stay short and report what they left out, and the
+// cloth comes back. Cloth that keeps its size gets all the tests that it needs, at any speed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ public:
     }
 
     TriangleMesh m_mesh;
-    std::vector<std::string> m_lines;  // of the log
+    std::vector<std::string> m_lines;  // lines of the log
 
 private:
     Settings withLog(Settings settings)
@@ -62,7 +62,7 @@ private:
     DropWorld m_world;
 };
 
-// Every node goes its own way, downwards.
+// Moves every node on a path of its own, downwards.
 void blowApart(btSoftBody& cloth, btScalar speed)
 {
     Random random(1);
@@ -73,7 +73,7 @@ void blowApart(btSoftBody& cloth, btScalar speed)
     }
 }
 
-// The longest edge of a face as a multiple of the longest link at rest.
+// Returns the longest edge of a face as a multiple of the longest link at rest.
 double stretchNow(const btSoftBody& cloth)
 {
     double longest = 0, rest = 0;
@@ -98,8 +98,8 @@ class StretchedCloth : public BackendTest
 {
 };
 
-// Where every node goes its own way the cloth stays in one piece, and is held like any other.
-TEST_P(StretchedCloth, ThatFliesApartIsHeldTogether)
+// Cloth whose nodes all move apart stays in one piece and collides like any other.
+TEST_P(StretchedCloth, ClothThatFliesApartIsHeldTogether)
 {
     Hills hills(GetParam().m_settings);
     btSoftBody& cloth = hills.addCloth();
@@ -124,8 +124,8 @@ TEST_P(StretchedCloth, ThatFliesApartIsHeldTogether)
     EXPECT_TRUE(hills.m_lines.empty());
 }
 
-// Its starts are stretched already, so that holding it together helps little.
-TEST_P(StretchedCloth, ThatIsApartMakesNoMoreTestsThanItMay)
+// The cloth's start is stretched already, so that limiting its stretch helps little.
+TEST_P(StretchedCloth, ClothInPiecesMakesABoundedNumberOfTests)
 {
     Hills hills(GetParam().m_settings);
     btSoftBody& cloth = hills.addCloth();
@@ -144,8 +144,8 @@ TEST_P(StretchedCloth, ThatIsApartMakesNoMoreTestsThanItMay)
     }
 }
 
-// By the settings' limit.
-TEST_P(StretchedCloth, ThatIsLeftOutIsToldOnce)
+// The settings' limit leaves the cloth out.
+TEST_P(StretchedCloth, AnOmittedClothIsReportedOnce)
 {
     Settings settings = GetParam().m_settings;
     settings.m_candidateLimit = 100;
@@ -161,7 +161,7 @@ TEST_P(StretchedCloth, ThatIsLeftOutIsToldOnce)
     EXPECT_EQ(toldLeftOut(hills.m_lines), 1u);
 }
 
-// Another cloth beside it keeps its contacts, bit for bit.
+// A second cloth beside it keeps its contacts, bit for bit.
 TEST_P(StretchedCloth, LeavesOthersAsTheyAre)
 {
     std::uint64_t hashes[2];
@@ -185,8 +185,8 @@ TEST_P(StretchedCloth, LeavesOthersAsTheyAre)
     EXPECT_EQ(hashes[0], hashes[1]);
 }
 
-// Cloth that keeps its size at 200 m/s.
-TEST_P(StretchedCloth, IsNotWhatIsOnlyFast)
+// Cloth keeps its size at 200 m/s.
+TEST_P(StretchedCloth, FastClothIsNotStretchedCloth)
 {
     Hills hills(GetParam().m_settings);
     btSoftBody& cloth = hills.addCloth(40, btVector3(0, 1, 0));
@@ -203,7 +203,7 @@ TEST_P(StretchedCloth, IsNotWhatIsOnlyFast)
 
 namespace
 {
-// A ball with a cape over it, which the test puts elsewhere by the ball's world transform alone.
+// A ball with a cape over it. The test moves it elsewhere by the ball's world transform alone.
 class Respawn
 {
 public:
@@ -218,7 +218,7 @@ public:
     {
     }
 
-    // Steps after the jump, to where the cape lies outside of the ball again.
+    // Steps after the jump until the cape lies outside of the ball again.
     void jumpAndSettle()
     {
         m_body.setWorldTransform(m_pose);
@@ -258,7 +258,7 @@ public:
 }  // namespace
 
 // The app moves the pins along, while the rest of the cape stays behind and is pulled after them.
-TEST_P(StretchedCloth, ThatIsPulledAfterItsPinsComesBack)
+TEST_P(StretchedCloth, ClothPulledAfterItsPinsComesBack)
 {
     constexpr int kPins = 33;
     const btVector3 jump(10, 0, 5);
@@ -275,7 +275,7 @@ TEST_P(StretchedCloth, ThatIsPulledAfterItsPinsComesBack)
 }
 
 // Anchors hold the cape, and the app moves nothing but the body.
-TEST_P(StretchedCloth, ThatHangsOnARespawnedBodyComesBack)
+TEST_P(StretchedCloth, ClothThatHangsOnARespawnedBodyComesBack)
 {
     Respawn respawn(GetParam().m_settings, 25, 4, btVector3(20, 0, 5));
     for (int i = 0; i < 25; i += 4)

@@ -12,7 +12,7 @@ namespace drape::test
 namespace
 {
 constexpr int kSteps = 18;
-// Contacts from which the rounds over them are shared: 512 blocks of four.
+// Rounds over at least this many contacts are shared by threads: 512 blocks of four.
 constexpr std::size_t kShared = 2048;
 
 struct Courses
@@ -70,7 +70,7 @@ class ThreadsTest : public testing::TestWithParam<bool>
 };
 }  // namespace
 
-TEST_P(ThreadsTest, giveTheSameCourses)
+TEST_P(ThreadsTest, AnyNumberOfThreadsGivesTheSameTrajectory)
 {
     const Courses alone = run(1, GetParam());
     ASSERT_GT(alone.m_contactsMax, kShared);

@@ -1,4 +1,4 @@
-// How Drape gets into a Bullet world, and which place of an obstacle it takes for real.
+// Drape's integration into a Bullet world, and the choice of an obstacle's pose.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -49,7 +49,7 @@ void expectHeld(btCollisionShape& shape, const btTransform& pose, const Triangle
 }
 }  // namespace
 
-TEST(Wiring, installOnALivingDispatcherIsAsGoodAsTheConfiguration)
+TEST(Wiring, InstallOnALivingDispatcherEqualsTheConfiguration)
 {
     MeshShape shape(makeSphere(0.4f, 2));
     Plugin configured(hostSettings()), installed(hostSettings());
@@ -65,8 +65,8 @@ TEST(Wiring, installOnALivingDispatcherIsAsGoodAsTheConfiguration)
     EXPECT_EQ(hashOf(one), hashOf(two));
 }
 
-// The solver alone, with Bullet's own configuration, is easily taken for enough.
-TEST(Wiring, whyStockNamesADispatcherWithoutDrape)
+// The solver alone, with Bullet's own configuration, is easily mistaken for a complete setup.
+TEST(Wiring, WhyStockNamesADispatcherWithoutDrape)
 {
     MeshShape shape(makeSphere(0.4f, 2));
     Plugin plugin(hostSettings());
@@ -78,7 +78,7 @@ TEST(Wiring, whyStockNamesADispatcherWithoutDrape)
     EXPECT_EQ(plugin.whyStock(&cloth, &object), "");
 }
 
-TEST(Wiring, installTakesOverPairsThatExist)
+TEST(Wiring, InstallTakesOverPairsThatExist)
 {
     const TriangleMesh mesh = makeBox(3.0f, 0.4f, 3.0f);
     MeshShape shape(mesh);
@@ -137,7 +137,7 @@ struct OwnedWorld
 };
 }  // namespace
 
-TEST(Wiring, aDispatcherKeepsItsPluginWhenAnotherIsInstalled)
+TEST(Wiring, ADispatcherKeepsItsPluginWhenAnotherIsInstalled)
 {
     for (const Wiring wiring : {Wiring::Configuration, Wiring::SolverOnly})
     {
@@ -155,7 +155,7 @@ TEST(Wiring, aDispatcherKeepsItsPluginWhenAnotherIsInstalled)
     }
 }
 
-TEST(Wiring, uninstallGivesPairsBackToBullet)
+TEST(Wiring, UninstallGivesPairsBackToBullet)
 {
     for (const Wiring wiring : {Wiring::Configuration, Wiring::SolverOnly})
     {
@@ -180,8 +180,8 @@ TEST(Wiring, uninstallGivesPairsBackToBullet)
     }
 }
 
-// What a body has for its solver does not decide who steps it.
-TEST(Wiring, aBodyGivenAnotherPluginsSolverStaysWithTheSolverOfItsWorld)
+// The solver of a body does not decide which solver steps it.
+TEST(Wiring, ABodyGivenAnotherPluginsSolverStaysWithTheSolverOfItsWorld)
 {
     Plugin first(hostSettings()), second(hostSettings());
     SoftBodySolver other(second);
@@ -191,7 +191,7 @@ TEST(Wiring, aBodyGivenAnotherPluginsSolverStaysWithTheSolverOfItsWorld)
     scene.expectReason(second, "algorithm");
 }
 
-TEST(Wiring, aBodyGivenASolverThatStepsNoWorldIsBullets)
+TEST(Wiring, ABodyWhoseSolverStepsNoWorldIsLeftToBullet)
 {
     Plugin plugin(hostSettings());
     SoftBodySolver solver(plugin);
@@ -203,7 +203,7 @@ TEST(Wiring, aBodyGivenASolverThatStepsNoWorldIsBullets)
 }
 
 // Bullet orders a pair by the age of its members, so the order of adding gives both.
-TEST(Wiring, bothOrdersOfAPairGiveTheSameMotion)
+TEST(Wiring, BothOrdersOfAPairGiveTheSameMotion)
 {
     MeshShape shape(makeSphere(0.4f, 2));
     Plugin plugin(hostSettings());
@@ -219,14 +219,14 @@ TEST(Wiring, bothOrdersOfAPairGiveTheSameMotion)
     EXPECT_EQ(hashOf(one), hashOf(two));
 }
 
-TEST(Wiring, poseOfTheObject)
+TEST(Wiring, ThePoseOfTheObjectIsUsed)
 {
     const TriangleMesh mesh = makeStairs(1.0f, 0.5f, 1.0f, 3);
     MeshShape shape(mesh);
     expectHeld(shape.shape(), tilted(), placed(mesh, tilted()));
 }
 
-TEST(Wiring, childOfACompoundWithATransform)
+TEST(Wiring, TheTransformOfACompoundsChildIsUsed)
 {
     const TriangleMesh mesh = makeTorus(0.4f, 0.15f, 24, 12);
     MeshShape shape(mesh);
@@ -236,7 +236,7 @@ TEST(Wiring, childOfACompoundWithATransform)
     expectHeld(compound, tilted(), placed(mesh, tilted() * child));
 }
 
-TEST(Wiring, twoChildrenOfTheSameShapeAreTwoObstacles)
+TEST(Wiring, TwoChildrenOfTheSameShapeAreTwoObstacles)
 {
     const TriangleMesh mesh = makeSphere(0.2f, 2);
     MeshShape shape(mesh);
@@ -255,7 +255,7 @@ TEST(Wiring, twoChildrenOfTheSameShapeAreTwoObstacles)
     expectHeld(compound, btTransform::getIdentity(), both);
 }
 
-TEST(Wiring, scaledAndMirroredShapes)
+TEST(Wiring, ScaledAndMirroredShapesAreHandled)
 {
     const TriangleMesh mesh = makeStairs(1.0f, 0.5f, 1.0f, 3);
     for (const btVector3& scaling : {btVector3(btScalar(0.7), btScalar(1.3), btScalar(0.9)),
@@ -269,8 +269,8 @@ TEST(Wiring, scaledAndMirroredShapes)
     }
 }
 
-// Bullet's bounds of a scaled shape hold the margin of the shape that it scales, here none.
-TEST(Wiring, aScaledShapesOwnMargin)
+// Bullet's bounds of a scaled shape include the margin of the unscaled shape, here 0.
+TEST(Wiring, AScaledShapeKeepsItsOwnMargin)
 {
     constexpr float kOwn = 0.1f;
     MeshShape shape(makeBox(3.0f, 0.4f, 3.0f));
@@ -297,7 +297,7 @@ TEST(Wiring, aScaledShapesOwnMargin)
     }
 }
 
-TEST(Wiring, aMirroredShapeKeepsItsFront)
+TEST(Wiring, AMirroredShapeKeepsItsFront)
 {
     const TriangleMesh mesh = makeBox(3.0f, 0.4f, 3.0f);
     MeshShape shape(mesh);
@@ -316,7 +316,7 @@ TEST(Wiring, aMirroredShapeKeepsItsFront)
     }
 }
 
-TEST(Wiring, verticesMovedInPlaceAreNoticed)
+TEST(Wiring, VerticesMovedInPlaceAreNoticed)
 {
     const TriangleMesh mesh = makeBox(3.0f, 0.4f, 3.0f);
     MeshShape shape(mesh);

@@ -11,7 +11,7 @@
 
 namespace drape::fuzz
 {
-// A failure of the target, not of the input: libFuzzer keeps the input.
+// Requires a condition of the target, not of the input: libFuzzer keeps the input.
 inline void require(bool good)
 {
     if (!good) std::abort();
@@ -25,10 +25,11 @@ public:
     bool left() const { return m_at < m_size; }
     std::uint8_t byte() { return left() ? m_data[m_at++] : 0; }
     std::uint32_t below(std::uint32_t count) { return byte() % count; }
-    // The input's last byte, which is read no more: for choices that came to a target after its corpus.
+    // Returns the input's last byte, which is not read again. It serves choices that were added to a target after its
+    // corpus.
     std::uint8_t last() { return left() ? m_data[--m_size] : 0; }
 
-    // Mostly numbers that meet each other, and any bits at all.
+    // Returns mostly numbers that meet each other, and sometimes any bits.
     float number()
     {
         const std::uint8_t kind = byte();
@@ -36,7 +37,7 @@ public:
         if (kind < 240) return std::ldexp(float(std::int8_t(byte())), int(byte()) - 128);
         return floatOf(word());
     }
-    // A length: not negative, not much longer than a planet.
+    // Returns a length that is not negative and not much longer than a planet.
     float length()
     {
         const float value = std::fabs(number());

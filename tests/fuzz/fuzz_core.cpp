@@ -1,9 +1,10 @@
-// Anything as meshes, motions and settings, on the host back end: some steps with meshes that come, go and move.
+// Fuzzes meshes, motions and settings on the host back end, over some steps with meshes that are added, removed and
+// moved.
 //
-// What must hold: no crash, no undefined behaviour, contacts that are finite, unit, in canonical order and within the
-// limits; a mesh with an index out of range is refused. Contacts of an automatic step are those of a continuous one,
-// those of any methods are those of the default ones, and those of a step that leaves out what others imply are among
-// those of one that does not.
+// Expects no crash, no undefined behaviour, and contacts that are finite, unit, in canonical order and within the
+// limits. A mesh with an index out of range is refused. Contacts of an automatic step equal those of a continuous one,
+// and all methods give the default's contacts. A step that leaves out redundant contacts gives a subset of all
+// contacts.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -31,7 +32,7 @@ struct Mesh
 
 constexpr std::size_t kMostMeshes = 4;
 
-// What a whole input is about.
+// Settings that apply to a whole input.
 struct Choices
 {
     drape::Settings m_settings;
@@ -278,7 +279,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     other = choices;
     other.m_settings.m_methods = drape::Methods();
     requireSame(steps, run(bytes, other));
-    // Which cloths are over a limit depends on what is left out.
+    // The cloths over a limit depend on the omitted contacts.
     if (!choices.m_tubes || choices.m_settings.m_contactLimit != unlimited.m_contactLimit) return 0;
     other = choices;
     other.m_settings.m_reduceContacts = false;

@@ -1,9 +1,9 @@
-// Anything as questions to drape/queries.h on the host back end: single pairs, meshes against each other and
-// themselves, meshes that move.
+// Fuzzes the questions of drape/queries.h on the host back end: single pairs, meshes against each other and themselves,
+// meshes that move.
 //
-// What must hold: no crash, no undefined behaviour; a mesh with an index out of range is refused; exact answers are
-// those of rational arithmetic over every pair; what touches at the step's start or end is a hit; answers are sorted
-// and their indices those of the meshes.
+// Expects no crash and no undefined behaviour. A mesh with an index out of range is refused. Exact answers equal
+// rational arithmetic over every pair. Features that touch at the step's start or end are a hit. Answers are sorted and
+// their indices belong to the meshes.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -61,7 +61,7 @@ drape::CcdSettings settingsFrom(Bytes& bytes)
     return settings;
 }
 
-// Whether the pair's four points touch where they are.
+// Returns true if the pair's four points touch at these positions.
 bool touches(std::uint32_t kind, const Vector3 p[4])
 {
     const bool edges = kind == DRAPE_EDGES;

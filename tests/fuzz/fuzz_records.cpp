@@ -1,5 +1,5 @@
-// Any bytes as a file of queries with their answers: the reader refuses it in one line that names the file, or gives
-// every record of it, with numbers that are finite and as the file has them.
+// Fuzzes files of queries with their answers. The reader refuses the bytes in one line that names the file, or returns
+// every record with finite numbers that equal the file's.
 //
 // The first byte chooses between motions and pairs of triangles.
 #include <cmath>

@@ -117,7 +117,7 @@ TEST_P(BroadPhaseTest, OnlyPairedMeshesMeet)
     expectAllAgree(sides);
 }
 
-// With one obstacle its mesh is not looked up: the cloth without a pair has empty volumes.
+// A single obstacle's mesh is not looked up: the cloth without a pair has empty volumes.
 TEST_P(BroadPhaseTest, UnpairedClothMeetsNothing)
 {
     Sides sides = makeSides(makeSide({makeSoup(1, 0.2f, 90, 1), makeSoup(1, 0.2f, 100, 2)}),
@@ -133,7 +133,7 @@ TEST_P(BroadPhaseTest, TrianglesWithoutAValidNodeMeetNothing)
 {
     StepCase step = soupCase(200, 300, true, 70);
     SCOPED_TRACE(step.trace());
-    // Loose triangles of nine coordinates: all three nodes of two, one node of a third.
+    // The triangles are loose and have nine coordinates: spoils all three nodes of two, and one node of a third.
     for (const std::size_t at : {0u, 3u, 6u})
     {
         step.m_end[9 * 11 + at] = std::numeric_limits<float>::quiet_NaN();
@@ -250,7 +250,7 @@ TEST_P(BroadPhaseTest, FullListCountsOnAndWritesNothingBeyond)
     }
 }
 
-// Past the limit a traversal may end early, says so by its count, and the next run starts from what is complete.
+// A traversal may end early past the limit. Its count shows this, and the next run starts from a complete state.
 TEST_P(BroadPhaseTest, LimitIsExact)
 {
     Sides sides = makeSides(soupCase(257, 601, false, 74));
@@ -275,7 +275,7 @@ TEST_P(BroadPhaseTest, LimitIsExact)
     }
 }
 
-// The counted tests of volumes are those that the host's version of the same traversal makes.
+// The counted tests of volumes equal those of the host's version of the same traversal.
 TEST_P(BroadPhaseTest, CountsTests)
 {
     Sides sides = makeSides(fallingCase("torus", 33, 0.02f, 73));

@@ -16,8 +16,8 @@ namespace drape::test
 namespace
 {
 constexpr std::size_t kGroup = 64;
-constexpr std::size_t kBlock = 1024;  // as in kernels/compaction.cl
-constexpr cl_uint kRankedGpu = 512;   // as in compaction.cpp
+constexpr std::size_t kBlock = 1024;  // equals the value in kernels/compaction.cl
+constexpr cl_uint kRankedGpu = 512;   // equals the value in compaction.cpp
 
 // Hits with distinct features per slot, in random order. crowded: most of them in one slot.
 std::vector<Contact> randomHits(std::size_t count, std::uint32_t slots, bool crowded, Random& random)
@@ -89,7 +89,7 @@ public:
         return found;
     }
 
-    // The same where every work-item sums for itself.
+    // Runs the variant in which every work-item sums for itself.
     std::vector<Contact> runFew(const std::vector<Contact>& hits, std::uint32_t slots)
     {
         const cl_uint capacity = enqueueFew(hits, slots);
@@ -142,7 +142,7 @@ public:
     // Hits that a list had no room for, where work-items sum for themselves.
     cl_uint m_unlisted = 0;
 
-    // That run() orders them, as a CPU takes them and as a GPU does, and by work-items in pairs.
+    // Expects run() to order the hits on a CPU and on a GPU, and with work-items in pairs.
     void expectOrdered(const std::vector<Contact>& hits, std::uint32_t slots)
     {
         std::vector<Contact> ordered = hits;
@@ -160,7 +160,7 @@ public:
         }
     }
 
-    // How long the kernels take for hits of one slot; of a device that was opened profiled.
+    // Returns the time of the kernels for hits of one slot. The device must be opened with profiling.
     double orderMs(const std::vector<Contact>& hits)
     {
         m_device.profiler()->take();
@@ -169,7 +169,8 @@ public:
     }
 
 private:
-    // The buffers of a step whose list has these hits and had no room for `unlisted` others. Returns the list's room.
+    // Makes the buffers of a step whose list has these hits and had no room for `unlisted` others. Returns the list's
+    // room.
     cl_uint prepare(const std::vector<Contact>& hits, const std::vector<cl_uint>& slotCount, cl_uint unlisted)
     {
         const cl_uint capacity = cl_uint(std::max<std::size_t>(1, hits.size()));
@@ -186,7 +187,7 @@ private:
         return capacity;
     }
 
-    // Up to the members' list. Returns the room of the hits' list.
+    // Runs the stage up to the members' list. Returns the room of the hits' list.
     cl_uint enqueueFew(const std::vector<Contact>& hits, std::uint32_t slots)
     {
         std::vector<cl_uint> slotCount(slots, 0), places;
@@ -234,7 +235,7 @@ private:
         EXPECT_TRUE(intact(m_device, m_contacts) && intact(m_device, m_next));
     }
 
-    // The contacts; their head must tell `count`.
+    // Returns the contacts; their head must contain `count`.
     std::vector<Contact> written(std::size_t count)
     {
         std::vector<Contact> found = contents(m_device, m_contacts, DRAPE_CONTACT_HEAD + count);
@@ -245,7 +246,7 @@ private:
         return found;
     }
 
-    // That sums over the slots themselves place these as sums of blocks did.
+    // Expects equal positions from sums over the slots and from sums over blocks.
     void expectPlacesWithoutSums(std::uint32_t slots)
     {
         const cl_uint hits = contents(m_device, m_counters, 1)[0].m_hits;
@@ -292,8 +293,8 @@ TEST_P(CompactionTest, OrdersBySlotAndFeature)
     EXPECT_FALSE(device->failed()) << device->error().text();
 }
 
-// As when thousands of coincident obstacle triangles lie over one cloth triangle. The lengths are those around what is
-// counted and around powers of two, where the sort's network is cut off.
+// Simulates thousands of coincident obstacle triangles over one cloth triangle. The lengths are those around the
+// counted limit and around powers of two, where the sorting network is cut off.
 TEST_P(CompactionTest, OrdersCrowdedSlots)
 {
     const std::unique_ptr<Device> device = openDevice(GetParam());
@@ -322,7 +323,7 @@ TEST_P(CompactionTest, OrdersCrowdedSlots)
     EXPECT_FALSE(device->failed()) << device->error().text();
 }
 
-// As of a step that must run again with more room: what is in the list comes out in order.
+// Simulates a step that must run again with more room: the listed part comes out in order.
 TEST_P(CompactionTest, TakesWhatAFullListHas)
 {
     const std::unique_ptr<Device> device = openDevice(GetParam());
@@ -336,7 +337,7 @@ TEST_P(CompactionTest, TakesWhatAFullListHas)
     EXPECT_FALSE(device->failed()) << device->error().text();
 }
 
-// Eight times the hits in one slot are 64 times the time by counting, and 12 times by the sort.
+// Eight times the hits in one slot would take 64 times as long by counting; the sort takes 12 times as long.
 TEST_P(CompactionTest, GrowsLittleMoreThanTheHitsOfASlot)
 {
     const std::unique_ptr<Device> device = openDevice(GetParam(), true);

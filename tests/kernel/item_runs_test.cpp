@@ -27,7 +27,7 @@ __kernel void takeItems(const uint count, const uint parts, __global uint* taken
 }
 )";
 
-// Of each item: the parts that took it, as bits, how often any did, and the last taker.
+// Records for each item the parts that took it, as bits, how often any did, and the last taker.
 struct Taken
 {
     std::vector<cl_uint> m_parts, m_times, m_taker;
@@ -62,7 +62,7 @@ private:
     Kernel m_kernel;
 };
 
-// How often the next item is another work-item's.
+// Returns the number of items whose successor belongs to another work-item.
 cl_uint changes(const std::vector<cl_uint>& taker)
 {
     cl_uint count = 0;
@@ -71,7 +71,7 @@ cl_uint changes(const std::vector<cl_uint>& taker)
     return count;
 }
 
-// How many items more than another a work-item takes, at most.
+// Returns the largest difference between the numbers of items of two work-items.
 cl_uint imbalance(const std::vector<cl_uint>& taker, cl_uint takers)
 {
     std::vector<cl_uint> share(takers, 0);
@@ -125,7 +125,7 @@ TEST_P(ItemRunsTest, NeighboursOnACpuAreOneWorkItemsUpToTheLongestRun)
     ASSERT_FALSE(device->failed()) << device->error().text();
 }
 
-// A work-item takes an item more than another in each of its turns, at most.
+// The numbers of items of two work-items differ by one in each turn, at most.
 TEST_P(ItemRunsTest, WorkItemsTakeEqualShares)
 {
     const std::unique_ptr<Device> device = openDevice(GetParam());

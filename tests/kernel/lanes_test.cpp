@@ -1,4 +1,4 @@
-// What the culls take for granted of a device's own functions.
+// Properties of the device's built-in functions that the culls rely on.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace drape::test
 {
 namespace
 {
-// A work-item takes the roots of a block's lanes, or on a GPU of its own lane's.
+// Returns a kernel in which a work-item takes the roots of a block's lanes, or on a GPU of its own lane.
 std::string rootsOf(const Device& device)
 {
     const char* const stored =

@@ -64,8 +64,8 @@ TEST_P(MemoryLedgerTest, APipelineNamesItsBuffers)
     EXPECT_GE(bytesOf(uses, "step contacts"), sizeof(Contact));
 }
 
-// What a step holds by the triangle, all in: at most 400 bytes of a cloth and 250 of an obstacle that rests. What is
-// not an obstacle's counts to the cloth, buffers that have not grown from their first size among it.
+// Bounds the memory of a step per triangle: at most 400 bytes of a cloth and 250 of a resting obstacle. All memory that
+// is not an obstacle's counts to the cloth, including buffers that still have their initial size.
 TEST_P(MemoryLedgerTest, BytesATriangle)
 {
     const std::unique_ptr<Pipeline> pipeline = makePipeline(GetParam().m_settings);

@@ -1,5 +1,5 @@
-// The cull over patches: every feature test that gives a contact is listed, each at most once, and what is listed is
-// the demand past a full list.
+// The cull over patches lists every feature test that gives a contact, each at most once. The demand past a full list
+// is the number of tests.
 #include "bullet_plugin/core/broad_phase/patch_cull.h"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ public:
                      m_obstacleBuffers.m_vertexCones, m_obstacleBuffers.m_edgeCones);
     }
 
-    // What fits of the list.
+    // Returns the part of the list that fits.
     std::vector<FeatureTest> run(std::size_t capacity, StepCounters& counters)
     {
         Buffer<StepCounters> counterBuffer;
@@ -118,7 +118,7 @@ private:
     std::map<Buffer<cl_uint>*, std::vector<cl_uint>> m_ids;
 };
 
-// Every contact's test is listed once; most of all feature pairs are not: less than `share` of them is.
+// Expects that every contact's test is listed once, and that less than `share` of all feature pairs is listed.
 StepCounters expectContactsListed(Device& device, const StepCase& step, std::uint32_t mode, double share = 0.5,
                                   const TriangleMesh& skipped = {})
 {
@@ -183,7 +183,7 @@ TEST_P(PatchCullTest, ListsEveryContactBesideSkippedAndInvalidTriangles)
     {
         StepCase step = soupCase(41, 183, true, 360 + std::uint32_t(skipped));
         SCOPED_TRACE(step.trace() + ", " + std::to_string(skipped) + " skipped");
-        // Of three triangles a corner each, of one all three.
+        // One corner each of three triangles, and all three of one.
         const std::size_t vertices[] = {4, 27, 62, 96, 97, 98};
         for (std::size_t i = 0; i < 6; ++i)
             step.m_end[3 * vertices[i] + i % 3] = bad[i % 3];
@@ -207,7 +207,7 @@ TEST_P(PatchCullTest, ListsEveryContactOfShapes)
     }
 }
 
-// Thin triangles are kept by their distance alone, so that more is listed.
+// Thin triangles are kept by their distance alone, so that the list is longer.
 TEST_P(PatchCullTest, ListsEveryContactOfNeedles)
 {
     std::uint32_t seed = 340;
@@ -223,8 +223,8 @@ TEST_P(PatchCullTest, ListsEveryContactOfNeedles)
     }
 }
 
-// An edge of 0.03 mm, 14 m from its triangle's first corner: relative to that corner its ends are rounded so far that
-// the edge turns by two degrees.
+// The edge has 0.03 mm and is 14 m from its triangle's first corner. Relative to that corner its ends are rounded so
+// far that the edge turns by two degrees.
 TEST_P(PatchCullTest, ListsAShortEdgeFarFromTheFirstCorner)
 {
     const TriangleMesh cloth = looseTriangles({-8.54378986f, 5.84034204f, 9.6088419f, -0.0835678056f, 0.983666301f,
@@ -236,8 +236,8 @@ TEST_P(PatchCullTest, ListsAShortEdgeFarFromTheFirstCorner)
         expectContactsListed(*m_device, step, mode, 1.0);
 }
 
-// A node level with a box's upper face to the last bit, 24 mm beside it: the edges' cones admit what lies in the face's
-// plane, however little the node is above it.
+// The node is level with a box's upper face to the last bit, 24 mm beside it. The edges' cones admit points in the
+// face's plane, at any height of the node above it.
 TEST_P(PatchCullTest, ListsANodeLevelWithAFaceBesideIt)
 {
     const TriangleMesh cloth = looseTriangles({0.55f, 0.31f, 0.0f, 0.55f, 0.31f, 0.06f, 0.524f, 0.3f, 0.03f});
@@ -270,7 +270,7 @@ public:
                        [&](const char* name) { return programOf(device, name, PatchCullStage::defines(device)); });
     }
 
-    // From that slot on; those before are as they were.
+    // Packs from that slot on; earlier slots remain unchanged.
     void pack(const std::vector<TriangleMesh>& meshes, std::size_t firstSlot)
     {
         const Side side = makeSide(meshes);
@@ -320,7 +320,7 @@ TEST_P(PatchCullTest, ObstaclesThatComeLaterArePackedAsIfAllCameAtOnce)
     struct Scene
     {
         std::vector<TriangleMesh> m_meshes;
-        std::size_t m_firstSlot;  // that is new
+        std::size_t m_firstSlot;  // first new slot
     };
     const Scene scenes[] = {{{sphere}, 0},
                             {{sphere, box}, 1},

@@ -1,4 +1,4 @@
-// The profiler: one time per launch, in order, and none unless it was asked for.
+// The profiler returns one time per launch, in order, and none unless it is requested.
 #include "bullet_plugin/core/device/profiler.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ TEST_P(ProfilerTest, AStepsLaunchesAreTimed)
     settings.m_profileKernels = true;
     const std::unique_ptr<Pipeline> pipeline = makePipeline(settings);
     ASSERT_TRUE(pipeline);
-    pipeline->takeKernelTimes();  // those of the warm-up
+    pipeline->takeKernelTimes();  // discards those of the warm-up
     const StepCase step = drapedCase("sphere", 9, 0.02f, 3);
     SCOPED_TRACE(step.trace());
     runCase(*pipeline, step);

@@ -18,7 +18,7 @@ namespace drape::test
 {
 namespace
 {
-// A seventh of them touch within the step.
+// Makes queries, a seventh of which touch within the step.
 std::vector<CcdQuery> motionQueries(std::size_t count, std::uint32_t seed)
 {
     Random random(seed);
@@ -28,7 +28,7 @@ std::vector<CcdQuery> motionQueries(std::size_t count, std::uint32_t seed)
         query.m_kind = random.below(2);
         for (int i = 0; i < 12; ++i)
         {
-            // Some on a grid, so that they touch at their borders.
+            // Some positions are on a grid, so that features touch at their borders.
             const bool whole = random.below(3) == 0;
             query.m_start[i] = whole ? float(random.below(4)) : random.uniform(0, 3);
             query.m_end[i] = whole ? float(random.below(4)) : random.uniform(0, 3);
@@ -146,7 +146,7 @@ TEST_P(QueriesTest, MeshesAreTheHosts)
 
 INSTANTIATE_TEST_SUITE_P(Devices, QueriesTest, testing::ValuesIn(openClBackends()), backendName);
 
-// The stage itself, with guarded lists.
+// Tests the stage itself, with guarded lists.
 class SelfCollisionTest : public DeviceTest
 {
 };

@@ -26,7 +26,7 @@ struct Field
     {                                     \
         "sizeof(" #type ")", sizeof(type) \
     }
-// OpenCL C has no offsetof; the difference of addresses in a real object says it.
+// OpenCL C has no offsetof; the difference of addresses in a real object gives it.
 #define DRAPE_TEST_OFFSET(type, field)                                                                  \
     Field                                                                                               \
     {                                                                                                   \

@@ -1,5 +1,5 @@
-// The kernels of cloths with themselves, one after the other: what they list is what the host lists, each pair once,
-// the demand past a full list is the true one, and nothing is written behind a buffer.
+// The kernels of self-collision, one after the other. They list the host's pairs, each once. The demand past a full
+// list is the true one, and nothing is written behind a buffer.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -117,13 +117,13 @@ public:
         return contacts;
     }
 
-    // Room for pairs of patches; 0: what the stage has.
+    // Room for pairs of patches; 0 keeps the stage's own.
     std::size_t m_pairCapacity = 0;
     StepCounters m_read = {};
     std::uint64_t m_candidates = 0;
 
 private:
-    // That each hit has a place of its own among those of its slot.
+    // Expects that each hit has its own position among those of its slot.
     static void expectPlaces(const std::vector<Contact>& hits, const std::vector<cl_uint>& places, std::size_t behind)
     {
         std::map<cl_uint, std::set<cl_uint>> ofSlot;
@@ -195,7 +195,7 @@ TEST_P(SelfContactTest, FullListsOfHitsCountOn)
     }
 }
 
-// On a GPU, where pairs of patches are listed.
+// GPUs list pairs of patches.
 TEST_P(SelfContactTest, FullListsOfPatchesCountOn)
 {
     DeviceSelf self(*m_device, foldedCase(25, 4, 0.003f, 130));

@@ -17,7 +17,7 @@ constexpr int kBoxVertices[8][3] = {{-1, -1, 1}, {-1, -1, -1}, {-1, 1, -1}, {-1,
 constexpr int kBoxTriangles[12][3] = {{3, 2, 1}, {3, 1, 0}, {1, 5, 4}, {1, 4, 0}, {2, 6, 5}, {2, 5, 1},
                                       {7, 6, 2}, {7, 2, 3}, {4, 7, 3}, {4, 3, 0}, {5, 6, 7}, {5, 7, 4}};
 
-// The corners of the triangles, as m_corners has them.
+// Returns the corners of the triangles in the order of m_corners.
 inline std::vector<std::int32_t> boxCorners()
 {
     std::vector<std::int32_t> corners;
@@ -26,7 +26,7 @@ inline std::vector<std::int32_t> boxCorners()
     return corners;
 }
 
-// A line for each vertex: prefix, x y z, suffix.
+// Returns a line for each vertex: prefix, x y z, suffix.
 inline std::string boxVertexLines(const std::string& prefix, const std::string& suffix = "\n")
 {
     std::string text;
@@ -35,7 +35,7 @@ inline std::string boxVertexLines(const std::string& prefix, const std::string& 
     return text;
 }
 
-// A line for each triangle: prefix, its indices from `base` on, suffix. '%' in `corner` stands for an index.
+// Returns a line for each triangle: prefix, its indices from `base` on, suffix. '%' in `corner` stands for an index.
 inline std::string boxFaceLines(const std::string& prefix, int base, const std::string& corner = "%",
                                 const std::string& suffix = "\n")
 {
@@ -54,7 +54,7 @@ inline std::string boxFaceLines(const std::string& prefix, int base, const std::
     return text;
 }
 
-// The bytes of a number, least first or most first.
+// Returns the bytes of a number, least first or most first.
 template <typename T>
 std::string bytesOf(T value, bool bigEndian = false)
 {
@@ -70,7 +70,7 @@ inline std::string replaced(std::string text, const std::string& from, const std
     return text;
 }
 
-// The box with the vertices and faces of this header, in their order.
+// Expects the box with the vertices and faces of this header, in their order.
 inline void expectIsBox(const MeshFile& mesh)
 {
     EXPECT_EQ(mesh.m_corners, boxCorners());
@@ -79,7 +79,7 @@ inline void expectIsBox(const MeshFile& mesh)
         EXPECT_EQ(mesh.m_positions[i], kBoxVertices[i / 3][i % 3]);
 }
 
-// A reason that has all of the words.
+// Expects a reason that has all of the words.
 inline void expectProblem(const std::string& problem, const std::vector<std::string>& words)
 {
     EXPECT_NE(problem, "");

@@ -1,4 +1,4 @@
-// glTF files of both versions, as text and binary: what other readers open is read, and damage is refused.
+// glTF files of both versions, as text and binary. Files that other readers open are accepted, and damage is refused.
 #include <gtest/gtest.h>
 
 #include "mesh_io/readers.h"
@@ -255,7 +255,7 @@ TEST(GltfReader, BoundsWhatAFileSaysItHolds)
         replaced(text, "'bufferView':1,",
                  "'sparse':{'count':1,'indices':{'bufferView':0,'componentType':5123},'values':{'bufferView':1}},");
     expectRefused(replaced(zeros, "'count':8", "'count':9000000000"), {"accessor 1", "without data"});
-    // Nodes that repeat a mesh of a million vertices that are not there.
+    // The nodes repeat a mesh of a million vertices that do not exist.
     std::string nodes = "'nodes':[{'mesh':0}", roots = "0";
     for (int i = 1; i < 100; ++i)
     {

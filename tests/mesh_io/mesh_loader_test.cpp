@@ -48,7 +48,7 @@ private:
 
 const std::string kBox = boxVertexLines("v ") + boxFaceLines("f", 1);
 
-// The box far out, with coordinates that floats cannot tell apart there.
+// Returns the box far from the origin, with coordinates that floats cannot distinguish there.
 std::string farBox(double x, double y, double z, double size)
 {
     std::string text;
@@ -84,7 +84,7 @@ TEST_F(MeshLoader, ReadsDocumentedFormatsAlone)
     EXPECT_EQ(load(write("box.OBJ", kBox), Joining::ByPosition, report).triangleCount(), 12u);
     for (const char* ending : {".off", ".x", ".dae", ".obj.txt", ""})
         expectRefused(write("box" + std::string(ending), kBox), {"not a mesh", ".obj", ".glb"});
-    // Both kinds of glTF go by either name.
+    // Each kind of glTF may have either extension.
     expectRefused(write("empty.glb", "{}"), {"empty.glb", "no triangles"});
     expectRefused(write("cut.gltf", "glTF"), {"cut.gltf", "not binary glTF"});
     expectRefused(write("obj.ply", kBox), {"obj.ply", "no PLY header"});
@@ -136,7 +136,7 @@ TEST_F(MeshLoader, LeavesPositionsThatFloatsHold)
     EXPECT_GT(report.m_rounding, 0);
     EXPECT_LT(report.m_rounding, 1e-7);
     EXPECT_TRUE(report.m_notes.empty());
-    // Far out, but every coordinate is a float.
+    // The box is far from the origin, but every coordinate is a float.
     const TriangleMesh exact = load(write("exact.obj", farBox(4194304, 0, 0, 0.5)), Joining::ByIndex, report);
     EXPECT_FALSE(report.isCentred());
     EXPECT_EQ(report.m_rounding, 0);
@@ -160,7 +160,7 @@ TEST_F(MeshLoader, PutsTwoMeshesIntoOneFrame)
 
 TEST_F(MeshLoader, JoinsByPositionWhereAFileHasNoIndicesOrWhereAsked)
 {
-    // Two triangles side by side, whose common edge has vertices of its own on either side.
+    // The triangles are side by side, and their common edge has vertices of its own on either side.
     const std::string split =
         write("split.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 0 1 -0\nv 1 1 0\nf 1 2 3\nf 4 6 5\n");
     std::string stl = "solid s\n";

@@ -1,4 +1,4 @@
-// OBJ files: what other readers open is read, and what is refused has a reason that is true.
+// OBJ files. Files that other readers open are accepted, and every refusal has a true reason.
 #include <gtest/gtest.h>
 
 #include "mesh_io/readers.h"

@@ -1,4 +1,4 @@
-// PLY files in the three encodings: what other readers open is read, and damage is refused.
+// PLY files in the three encodings. Files that other readers open are accepted, and damage is refused.
 #include <gtest/gtest.h>
 
 #include "mesh_io/readers.h"
@@ -53,7 +53,7 @@ TEST(PlyReader, ReadsEveryEncoding)
 {
     for (const std::string& bytes : {kText, binary(false), binary(true)})
         EXPECT_TRUE(expectBox(bytes).m_notes.empty());
-    // The header ends as its first line does, whatever byte the data begins with.
+    // The header's lines end like its first line, whatever byte the data begins with.
     for (bool bigEndian : {false, true})
         for (const char* end : {"\r\n", "\r"})
         {

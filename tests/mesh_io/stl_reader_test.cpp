@@ -1,4 +1,4 @@
-// STL files, text and binary: what other readers open is read, and damage is refused.
+// STL files, text and binary. Files that other readers open are accepted, and damage is refused.
 #include <gtest/gtest.h>
 
 #include "mesh_io/readers.h"

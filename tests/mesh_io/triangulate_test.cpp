@@ -15,7 +15,7 @@ using Points = std::vector<std::array<double, 2>>;
 
 constexpr double kPi = 3.14159265358979323846;
 
-// One face in the plane that `axis` is normal to.
+// Makes one face in the plane that `axis` is normal to.
 MeshFile faceOf(const Points& points, int axis = 2)
 {
     MeshFile mesh;
@@ -43,7 +43,7 @@ double areaOf(const Points& points, const std::int32_t* corners, std::size_t cou
     return area;
 }
 
-// n − 2 triangles, none of them turned, whose areas add up to the outline's: they cover it once.
+// Expects n − 2 triangles, none of them flipped, whose areas add up to the outline's: they cover it once.
 void expectCovered(const Points& points, const MeshFile& mesh)
 {
     std::vector<std::int32_t> triangles;

@@ -25,7 +25,7 @@ void cornersAt(const Side& side, std::uint32_t triangle, double time, Vector3 co
     }
 }
 
-// A lower bound that spares most of the distances: the gap of the boxes.
+// Returns a lower bound that avoids most of the distances: the gap of the boxes.
 bool boxesApart(const Vector3 a[3], const Vector3 b[3], double reach)
 {
     for (int axis = 0; axis < 3; ++axis)

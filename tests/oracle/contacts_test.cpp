@@ -14,13 +14,15 @@ namespace drape::test
 {
 namespace
 {
-// What is kept though beyond reach, in parts of the pair's extent L. A pair is dropped when the support gap along the
-// float offset exceeds reach by more than 12 u √3 L = 1.3e-6 L; the offset's own error, some tens of u L over the
-// distance, bends the axis and costs the rest. The bound measured over 20 million borderline pairs is 6.6e-5 L.
+// Bounds the pairs that are kept although beyond reach, relative to the pair's extent L. A pair is dropped if the
+// support gap along the float offset exceeds reach by more than 12 u √3 L = 1.3e-6 L. The offset's own error, some tens
+// of u L over the distance, bends the axis and costs the rest. The bound measured over 20 million borderline pairs is
+// 6.6e-5 L.
 constexpr double kKeptBeyond = 6.6e-5;
 
-// Error of a unit normal: an offset between closest points errs by a few dozen u of the extent, over its length;
-// closest points inside thin features slide along them, which the oracle's margins bound to 1 / kSineMargin of that.
+// Returns the error of a unit normal. An offset between closest points errs by a few dozen u of the extent, over its
+// length. Closest points inside thin features slide along them; the oracle's margins bound this to 1 / kSineMargin of
+// the error.
 double normalError(const RequiredContact& required)
 {
     constexpr double kUnit = 5.97e-8;  // 2^-24, rounded up
@@ -47,7 +49,7 @@ struct Tally
     std::size_t m_required[3] = {}, m_missed = 0, m_reported = 0;
 };
 
-// Contacts come by kind, cloth feature and obstacle feature.
+// Contacts are ordered by kind, cloth feature and obstacle feature.
 const Contact* find(const std::vector<Contact>& contacts, const RequiredContact& required)
 {
     const auto key = std::make_tuple(required.m_kind, required.m_clothFeature, required.m_obstacleFeature);
@@ -128,7 +130,7 @@ TEST(ContactsOracle, RandomSoups)
     EXPECT_GT(required, 300u);
 }
 
-// Rounding scales with the pair, not with the place: the truth of the rounded input, 1 km away.
+// Rounding scales with the pair, not with the position: the truth is that of the rounded input, 1 km away.
 TEST(ContactsOracle, FarFromTheOrigin)
 {
     StepCase step = drapedCase("torus", 14, 0.03f, 340);

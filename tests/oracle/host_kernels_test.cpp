@@ -1,6 +1,6 @@
-// The host's kernels of every instruction set that the machine has, against all pairs of triangles tested one by one,
-// and, of cloths with themselves, those that a walk over trees finds: the same contacts, bit for bit, with any number
-// of threads. Lists that are too short grow, limits are kept.
+// The host's kernels of every available instruction set give the contacts of a test of all pairs of triangles.
+// Self-collision is compared with a walk over trees. Contacts are equal bit for bit, with any number of threads. Lists
+// that are too short grow, and limits are kept.
 #include "bullet_plugin/core/host_kernels/host_kernels.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ namespace
 {
 constexpr float kReachScale = 1.5f;
 
-// A step's cull and narrow phase by one set of kernels.
+// Runs a step's cull and narrow phase with one set of kernels.
 class HostStep
 {
 public:
@@ -51,7 +51,7 @@ public:
         return m_cull.run(m_view, cloths, limit, threads, m_counters);
     }
 
-    // Of the last cull.
+    // Returns the contacts of the last cull.
     std::vector<Contact> contacts(ThreadTeam& threads)
     {
         const MeshPool& pool = m_cloth.m_pool;
@@ -101,7 +101,7 @@ std::vector<TriangleMesh> meshesOf(const std::vector<SelfStepCase>& steps)
     return meshes;
 }
 
-// The same of cloths with themselves.
+// Runs a host step of cloths with themselves.
 class HostSelfStep
 {
 public:
@@ -126,14 +126,14 @@ public:
     void leaveOut(std::size_t cloth) { m_reach.leaveOut(cloth); }
     void meetObstacles(std::size_t cloth) { m_obstacleRadius[cloth] = 0.1f; }
 
-    // Behind `others`.
+    // Returns the contacts, appended to `others`.
     std::vector<Contact> contacts(ThreadTeam& threads, SelfStepLimits limits = {}, std::vector<Contact> others = {})
     {
         m_patches.cull(step(), limits.m_candidates, threads);
         m_patches.findContacts(step(), limits, threads, others);
         return others;
     }
-    // Of the last step.
+    // Returns the counts of the last step.
     SelfCounts counts() const { return m_patches.counts(); }
 
     std::vector<Contact> expected(SelfCounts& counts) const
@@ -154,7 +154,7 @@ private:
     HostSelfPatches m_patches;
 };
 
-// The numbers of the machine's sets, the best first.
+// Returns the numbers of the machine's sets, the best first.
 std::vector<std::size_t> sets()
 {
     std::size_t count = 0;
@@ -183,7 +183,7 @@ protected:
         return *allHostKernels(count)[GetParam()];
     }
 
-    // That the host finds what the trees do, alone and by threads. Returns what that was.
+    // Expects the host to find the pairs of the trees, with one and with more threads. Returns the counts.
     static SelfCounts expectSame(HostSelfStep& host)
     {
         ThreadTeam alone(1), team(3);
@@ -265,7 +265,8 @@ TEST_P(HostKernelsTest, SelfContactsAreThoseOfAWalkOverTrees)
     EXPECT_GT(all.m_invalidNodes, 0u);
 }
 
-// Several at once, of which one is not in the step, and one meets obstacles besides, whose search counts its bad nodes.
+// Several cloths run at once. One of them is not in the step, and one also meets obstacles, whose search counts its bad
+// nodes.
 TEST_P(HostKernelsTest, ClothsMeetThemselvesAlone)
 {
     SelfStepCase spoilt = foldedCase(17, 4, 0.003f, 1523);

@@ -1,5 +1,5 @@
-// Motion against the truth: a node, face or edge that passes through another feature during the step is reported on the
-// side it came from.
+// Compares motion with the truth: a node, face or edge that passes through another feature during the step is reported
+// on the side it came from.
 #include <gtest/gtest.h>
 
 #include "tests/support/cases.h"
@@ -10,8 +10,8 @@ namespace drape::test
 {
 namespace
 {
-// A path counts as crossing a face when it does so this far, in weights and in time, from every border: rounding moves
-// both by about 1e-6.
+// A path crosses a face if it does so this far, in weights and in time, from every border: rounding moves both by about
+// 1e-6.
 constexpr double kCrossMargin = 1e-3;
 
 struct Crossing
@@ -25,7 +25,7 @@ bool insideMargin(double value)
     return value > kCrossMargin && value < 1 - kCrossMargin;
 }
 
-// Whether the segment x0 x1 crosses the triangle within the margins.
+// Returns true if the segment x0 x1 crosses the triangle within the margins.
 bool crosses(const Vector3& x0, const Vector3& x1, const Vector3 corners[3], Vector3& cameFrom)
 {
     const Vector3 u = corners[1] - corners[0], v = corners[2] - corners[0], area = cross(u, v);
@@ -100,7 +100,7 @@ TEST(PassingOracle, NodesThroughFaces)
         expectCrossingsReported(soupCase(200, 200, true, seed), 10);
 }
 
-// A face that falls flat over vertices: the mirror image of nodes through faces, in the cloth's frame.
+// A face falls flat over vertices. The case mirrors nodes through faces, in the cloth's frame.
 TEST(PassingOracle, FacesOverVertices)
 {
     std::size_t found = 0;
@@ -114,7 +114,7 @@ TEST(PassingOracle, FacesOverVertices)
         Side cloth = makeSide({step.m_cloth});
         const Side obstacle = makeSide({step.m_obstacle});
         cloth.m_end = step.m_end;
-        // Seen from the cloth, the obstacle's vertices move the other way.
+        // The obstacle's vertices move the other way in the cloth's frame.
         Side vertices = makeSide({step.m_obstacle});
         translate(vertices.m_end, -motion[0], -motion[1], -motion[2]);
         const std::vector<Contact> contacts = contactsOfAllPairs(cloth, obstacle, step.m_thickness);
@@ -131,8 +131,7 @@ TEST(PassingOracle, FacesOverVertices)
     EXPECT_GT(found, 40u);
 }
 
-// Edges that fall across edges: the quadrangle that the cloth's edge sweeps, as two triangles, crosses the obstacle's
-// edge.
+// Edges fall across edges: the quadrangle that the cloth's edge sweeps, as two triangles, crosses the obstacle's edge.
 TEST(PassingOracle, EdgesOverEdges)
 {
     std::size_t found = 0;
@@ -158,7 +157,7 @@ TEST(PassingOracle, EdgesOverEdges)
                 const Vector3 c = position(obstacle.m_start, ends[0]), d = position(obstacle.m_start, ends[1]);
                 Vector3 unused;
                 if (!crosses(c, d, sweeps[0], unused) && !crosses(c, d, sweeps[1], unused)) continue;
-                // Edges nearly parallel have no direction to speak of.
+                // Nearly parallel edges have no well-defined direction.
                 if (length(cross(b0 - a0, d - c)) < 0.02 * length(b0 - a0) * length(d - c)) continue;
                 ++found;
                 const Contact* contact = find(contacts, DRAPE_EDGE_EDGE, e, o);

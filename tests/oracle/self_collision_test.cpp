@@ -46,7 +46,7 @@ bool touches(const SelfCase& motion, std::uint32_t kind, const std::uint32_t ver
     return ccdOfKind(kind, start, end, settings).m_hit != 0;
 }
 
-// All vertices against all faces and all edges against all edges, but for those that share a vertex.
+// Tests all vertices against all faces and all edges against all edges, apart from those that share a vertex.
 std::set<FeatureKey> bruteForce(const SelfCase& motion, const CcdSettings& settings)
 {
     const std::vector<std::int32_t>& indices = motion.m_mesh.m_triangles;
@@ -118,7 +118,7 @@ TEST_P(SelfOracle, TouchingFeaturesAreThoseOfAllPairs)
             EXPECT_EQ(keys.size(), found.m_touching.size()) << "no pair twice";
             const std::set<FeatureKey> truth = bruteForce(motion, settings);
             EXPECT_TRUE(std::includes(keys.begin(), keys.end(), truth.begin(), truth.end()));
-            // The brute force meets edges in another order, which may decide pairs that nearly touch otherwise.
+            // The brute force tests edges in another order, which may decide pairs that nearly touch differently.
             EXPECT_LE(keys.size(), truth.size() + truth.size() / 500);
             EXPECT_LE(found.m_touching.size(), found.m_vertexFaceCandidates + found.m_edgeCandidates);
             EXPECT_GE(truth.size(), motion.m_mesh.triangleCount() > 100 ? 50u : 0u) << "the case says something";

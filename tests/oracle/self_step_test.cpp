@@ -1,5 +1,5 @@
-// Contacts of a cloth with itself against all of its pairs of features, in double precision: what is near at the step's
-// end and what passed through one another must be reported, and nothing that did neither.
+// Compares contacts of a cloth with itself with all of its pairs of features, in double precision. Features that are
+// near at the step's end or passed through one another must be reported, and no others.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace drape::test
 {
 namespace
 {
-// A crossing keeps this from the features' borders, in weights; rounding moves them by about 1e-6.
+// A crossing has this distance from the features' borders, in weights; rounding moves them by about 1e-6.
 constexpr double kCrossMargin = 1e-3;
 
 // Positions of a pair's four nodes: a node and a face's, or those of two edges.
@@ -56,7 +56,7 @@ double extent(const Four& four)
 struct Nearest
 {
     double m_distance;
-    double m_weights[3];  // of the face, or places along the edges
+    double m_weights[3];  // weights of the face, or positions along the edges
     Vector3 m_offset;     // from the second feature to the first
 };
 
@@ -72,7 +72,7 @@ Nearest nearest(const Four& four, bool edges)
     return {on.m_distance, {on.m_weights[0], on.m_weights[1], on.m_weights[2]}, p[0] - on.m_point};
 }
 
-// Sine of the angle between the edges, or that of a fat face: what makes places well-conditioned.
+// Returns true if positions are well-conditioned, by the sine of the angle between the edges, or that of a fat face.
 bool isConditioned(const Four& four, bool edges)
 {
     const Vector3 u = edges ? four.m_p[1] - four.m_p[0] : four.m_p[2] - four.m_p[1];
@@ -121,7 +121,7 @@ public:
         return std::min(double(m_step.m_thickness), 0.5 * rest) * (1 + m_activation);
     }
 
-    // Near at the end, locally closest and not passed, all of it by the margins.
+    // Returns true if the pair is near at the end, locally closest and not passed, each within the margins.
     bool mustBeNear(const std::uint32_t nodes[4], bool edges, std::uint32_t face) const
     {
         const Four start = at(m_side.m_start, nodes), end = at(m_side.m_end, nodes);
@@ -145,12 +145,12 @@ public:
         return true;
     }
 
-    // Whether the two crossed one another, by the margins, at a time when their volume changed its sign.
+    // Returns true if the two crossed one another within the margins, at a time when their volume changed its sign.
     bool mustMeet(const std::uint32_t nodes[4], bool edges) const
     {
         constexpr int kSamples = 16;
         const Four start = at(m_side.m_start, nodes), end = at(m_side.m_end, nodes);
-        // What touches at rest is joined.
+        // Features that touch at rest are joined.
         if (!(reach(nodes, edges) > 1e-6)) return false;
         double low = 0, before = volume(start, edges);
         for (int i = 1; i <= kSamples; ++i)
@@ -189,7 +189,7 @@ struct Checked
     std::size_t m_near = 0, m_met = 0, m_reported = 0;
 };
 
-// Everything that must be reported is. kept: only these nodes' pairs, or all.
+// Expects every required contact. `kept`: only these nodes' pairs, or all.
 void expectRequired(const Oracle& oracle, const std::map<Key, Contact>& found, ContactMode mode, Checked& checked)
 {
     const MeshPool& pool = oracle.side().m_pool;
@@ -217,7 +217,7 @@ void expectRequired(const Oracle& oracle, const std::map<Key, Contact>& found, C
             check(true, first, second);
 }
 
-// What is reported is near at the end, or touches at the time that it gives.
+// Expects the contact to be near at the end, or to touch at the time that it gives.
 void expectTrue(const Oracle& oracle, const Contact& contact)
 {
     const bool edges = contact.m_kind == DRAPE_SELF_EDGE_EDGE;
@@ -278,7 +278,8 @@ TEST_P(SelfStepOracle, ReportsWhatIsNearAndWhatMetAndNothingElse)
     EXPECT_LT(all.m_reported, 3 * (all.m_near + all.m_met)) << "the oracle asks for much of what is reported";
 }
 
-// Of a published step (46,598 nodes) every pair that the certified test finds to touch and that crossed by the margins.
+// Checks every pair of a published step (46,598 nodes) that the certified test finds to touch and that crossed within
+// the margins.
 TEST_P(SelfStepOracle, PublishedClothBallStep)
 {
     SelfStepCase step;
@@ -296,7 +297,7 @@ TEST_P(SelfStepOracle, PublishedClothBallStep)
     ASSERT_TRUE(
         queries->meshMotion(describeMesh(step.m_motion.m_mesh), step.m_motion.m_end.data(), settings, touching));
     const Oracle oracle(step, GetParam().m_settings.m_activation);
-    // By kind and nodes, those of each feature sorted, of two edges the lesser first.
+    // The key is the kind and the nodes. Nodes of each feature are sorted; of two edges the lesser is first.
     const auto keyOf = [](bool edges, const std::uint32_t nodes[4])
     {
         std::array<std::uint32_t, 5> key = {edges, nodes[0], nodes[1], nodes[2], nodes[3]};

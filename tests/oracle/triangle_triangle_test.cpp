@@ -14,7 +14,7 @@ namespace drape::test
 {
 namespace
 {
-// In the local frame of the second triangle's first vertex, as the pipeline calls it.
+// Tests in the local frame of the second triangle's first vertex, like the pipeline.
 bool found(const float* p)
 {
     FeatureTriangle triangles[2];
@@ -47,7 +47,8 @@ struct Score
     }
 };
 
-// Two random triangles of the size around a point; on an integer grid when size is 0, so that they touch in every way.
+// Makes two random triangles of the size around a point. A size of 0 places them on an integer grid, so that they touch
+// in every way.
 void randomPair(Random& random, float size, float offset, float* p)
 {
     for (int i = 0; i < 18; ++i)
@@ -133,7 +134,8 @@ TEST(TriangleTriangleOracle, PublishedPairs)
         score.add(record.m_corners, record.m_truth != 0);
     ASSERT_GT(score.m_pairs, 1000u);
     EXPECT_EQ(score.m_missed, 0u);
-    // The test is conservative within 12 units in the last place of the extent; measured on these sets: a handful.
+    // The test is conservative within 12 units in the last place of the extent. A handful of false hits was measured on
+    // these sets.
     EXPECT_LE(score.m_false, 50u);
     RecordProperty("pairs", int(score.m_pairs));
     RecordProperty("false_hits", int(score.m_false));

@@ -32,7 +32,7 @@ struct Score
     }
 };
 
-// A vertex's place at the step's start and end.
+// The position of a vertex at the step's start and end.
 using Place = std::array<float, 6>;
 
 Place placeOf(const float* start, const float* end)
@@ -65,7 +65,7 @@ protected:
         ASSERT_TRUE(m_queries);
     }
 
-    // False where the test is to return, as findTruth().
+    // Returns false if the test must return, like findTruth().
     template <typename Records>
     bool read(const std::string& name, Records& records)
     {

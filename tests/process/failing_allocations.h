@@ -3,8 +3,8 @@
 
 namespace drape::test
 {
-// While one lives, the allocation with that number, counted from 0 over all threads, throws std::bad_alloc: it alone,
-// or it and all after it.
+// Makes an allocation fail during its lifetime: the one with the given number, counted from 0 over all threads, throws
+// std::bad_alloc. Optionally all later allocations fail, too.
 class FailingAllocations
 {
 public:
@@ -19,7 +19,7 @@ public:
     FailingAllocations(const FailingAllocations&) = delete;
     FailingAllocations& operator=(const FailingAllocations&) = delete;
 
-    // Whether there were so many allocations.
+    // Returns true if the failing allocation was reached.
     static bool hasFailed();
 };
 }  // namespace drape::test

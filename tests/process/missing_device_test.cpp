@@ -1,4 +1,4 @@
-// What is told where a machine shows no OpenCL device: what is known, not what is usual.
+// Messages on a machine without an OpenCL device state facts about the machine, not guesses.
 #include "bullet_plugin/core/device/missing_device.h"
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ TEST(MissingDevice, ACacheThatCannotBeWrittenIsNamed)
         {
             const ScopedVariable own("POCL_CACHE_DIR", nullptr), cache("XDG_CACHE_HOME", "/dev/null/cache");
             const std::string why = whyNoDevice(openClSettings());
-            // On a machine with other devices, or without PoCL, there is nothing to tell.
+            // There is nothing to report on a machine with other devices, or without PoCL.
             if (why.find(kPoclPlatform) != std::string::npos)
             {
                 EXPECT_NE(why.find("cannot be written: /dev/null/cache/pocl"), std::string::npos) << why;

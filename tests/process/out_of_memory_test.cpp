@@ -1,5 +1,5 @@
-// Each allocation in turn fails, in each of the public functions: no exception comes out, what a function returns then
-// is what its comment says, and the world goes on.
+// Each allocation in turn fails, in each of the public functions. No exception leaves a function, its result follows
+// its comment, and the world continues.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ using Which = FailingAllocations::Which;
 constexpr int kFailingSteps = 4, kStepsAfter = 8;
 constexpr long kMostAllocations = 100000;
 
-// Cloth that lies on a floor and on a box that turns.
+// Cloth lies on a floor and on a rotating box.
 struct Scene
 {
     explicit Scene(Backend backend = Backend::Host)
@@ -50,7 +50,7 @@ struct Scene
         }
     }
 
-    // Whether all is as after a step that nothing was wrong with.
+    // Expects the state after a step without failure.
     void expectGood()
     {
         EXPECT_TRUE(m_plugin.ready()) << m_plugin.error();
@@ -115,7 +115,7 @@ bool withFailing(long number, Which which, const Call& call)
     return FailingAllocations::hasFailed();
 }
 
-// In a world after so many steps.
+// Lets an allocation fail in a world after this many steps.
 void expectStepsGoOn(int stepsBefore, Which which, long every, Backend backend = Backend::Host)
 {
     long told = 0;

@@ -1,5 +1,5 @@
-// Where cost decides: a scene that moves between the back ends in the middle gives the contacts of one that does not,
-// and the report says where it runs and why.
+// The automatic choice of the back end. A scene that changes its back end midway gives the contacts of one that does
+// not. The report names the back end and the reason.
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
@@ -30,7 +30,7 @@ namespace
 {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Automatic: the device is the first one there is.
+// Returns automatic settings: the device is the first one.
 Settings byCost(double crossover)
 {
     Settings settings;
@@ -38,7 +38,7 @@ Settings byCost(double crossover)
     return settings;
 }
 
-// A cloth over a ball, with a pair.
+// Adds a cloth over a ball, with a pair.
 MeshId addDraped(Pipeline& pipeline, MeshId ball, int nodes)
 {
     const TriangleMesh mesh = makeClothGrid(nodes, nodes, 0.8f, 0.51f).m_mesh;
@@ -61,7 +61,7 @@ bool isMeasuredNow(const Pipeline& pipeline)
     return pipeline.deviceReport().m_crossoverSource.rfind("measured now", 0) == 0;
 }
 
-// Whether the machine was busy as the crossover was measured.
+// Returns true if the machine was busy while the crossover was measured.
 bool wasBusy(const Pipeline& pipeline)
 {
     return pipeline.deviceReport().m_crossoverSource.find("busy") != std::string::npos;
@@ -103,7 +103,7 @@ private:
 };
 }  // namespace
 
-// One device: the first. Nothing of the environment decides.
+// Uses the first device only. The environment decides nothing.
 class BackendMove : public BackendTest
 {
 protected:
@@ -171,7 +171,7 @@ TEST_P(BackendMove, AGrowingSceneMovesOnceAndTheReportSaysWhy)
     EXPECT_EQ(report.m_device.m_name, listDevices()[0].m_name);
     EXPECT_GT(report.m_expectedPairs, 6000);
 
-    // A step in which the large one has no pair is no other scene.
+    // A step in which the large cloth has no pair is no other scene.
     pipeline->addPair(small, ball, 0.02f);
     runStep(*pipeline);
     EXPECT_FALSE(report.m_onHost);
@@ -200,7 +200,7 @@ TEST_P(BackendMove, AnObstacleThatIsScaledCountsAnew)
     EXPECT_GT(pipeline->deviceReport().m_expectedPairs, before);
 }
 
-// What the host walks for 81,920 triangles takes it many times as long as the step.
+// The host's preparation of 81,920 triangles takes many times as long as the step.
 TEST_P(BackendMove, PrepareLeavesTheHostNothingToBuild)
 {
     const auto firstStepMs = [](double crossover, bool prepared)
@@ -262,7 +262,7 @@ TEST_P(BackendMove, WhoAsksForABackEndGetsItUnmeasured)
     EXPECT_TRUE(crossoverFiles(folder.path()).empty());
 }
 
-// Once for a cache folder; a damaged file is measured again.
+// The crossover is measured once for a cache folder; a damaged file is measured again.
 TEST_P(BackendMove, TheCrossoverIsMeasuredOnce)
 {
     const TemporaryFolder folder;
@@ -286,7 +286,7 @@ TEST_P(BackendMove, TheCrossoverIsMeasuredOnce)
     expectFromCache(*fourth, *third);
 }
 
-// While other processes have all of the cores.
+// Other processes use all of the cores meanwhile.
 TEST_P(BackendMove, ABusyMachineIsMeasuredAgain)
 {
     const TemporaryFolder folder;
@@ -301,7 +301,7 @@ TEST_P(BackendMove, ABusyMachineIsMeasuredAgain)
     EXPECT_TRUE(isMeasuredNow(*makePipeline(settings)));
 }
 
-// A pipeline that has measured is as one that has not: ids begin at 0, no memory of the ladder's steps.
+// A pipeline that has measured equals one that has not: ids begin at 0, and the ladder's steps leave no memory.
 TEST_P(BackendMove, MeasuringLeavesNothingBehind)
 {
     const TemporaryFolder folder;
@@ -323,7 +323,7 @@ TEST_P(BackendMove, MeasuringLeavesNothingBehind)
     }
 }
 
-// More meshes than the measurement had, whose numbers are theirs.
+// Adds more meshes than the measurement had; they reuse its numbers.
 TEST_P(BackendMove, MeshesThatComeAfterMeasuringHaveTreesOfTheirOwn)
 {
     constexpr std::size_t kMeshes = 80, kTriangles = 30;

@@ -1,5 +1,5 @@
-// The three ways to look at motion (Settings::m_mode): automatic steps give the contacts of continuous ones and run the
-// continuous test less often, discrete ones see nothing but the end.
+// The three modes of motion (Settings::m_mode). Automatic steps give the contacts of continuous ones and run the
+// continuous test less often. Discrete steps use only the end positions.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -23,7 +23,7 @@ struct Outcome
     std::size_t m_swept = 0;
 };
 
-// The case with its motion scaled about the step's end.
+// Returns the case with its motion scaled about the step's end.
 StepCase faster(StepCase step, float factor)
 {
     for (std::size_t i = 0; i < step.m_end.size(); ++i)
@@ -47,8 +47,8 @@ std::vector<StepCase> movingCases()
     return cases;
 }
 
-// A slope of a kilometre, of two triangles, and cloth beside it whose gap goes from one to the other, m: thin cloth
-// against long edges. Normal (1, 1, 0) / √2.
+// Makes a slope of a kilometre, of two triangles, and cloth beside it whose gap goes from one value to the other, m.
+// The cloth is thin and the edges are long. Normal (1, 1, 0) / √2.
 StepCase slopeCase(float gapBefore, float gapAfter)
 {
     StepCase step;
@@ -76,7 +76,7 @@ StepCase slopeCase(float gapBefore, float gapAfter)
     return step;
 }
 
-// A pyramid whose apex, vertex 4, is the origin.
+// Makes a pyramid whose apex, vertex 4, is the origin.
 TriangleMesh pyramid()
 {
     TriangleMesh mesh = looseTriangles({-1, -2, -1, 1, -2, -1, 1, -2, 1, -1, -2, 1, 0, 0, 0});
@@ -88,7 +88,7 @@ std::array<std::uint32_t, 3> featuresOf(const Contact& contact)
     return {contact.m_kind, contact.m_clothFeature, contact.m_obstacleFeature};
 }
 
-// A contact whose features touch has the side that they came from.
+// Returns true if the contact's normal points to the side that touching features came from.
 bool hasDirection(const Contact& contact)
 {
     return std::abs(contact.m_gap1) > 1e-4f;
@@ -98,7 +98,7 @@ bool hasDirection(const Contact& contact)
 class ContactModesTest : public BackendTest
 {
 protected:
-    // startPose: of the obstacle, which ends where the case has it; null where it rests.
+    // Runs the step. `startPose` is the obstacle's; it ends where the case has it. Null means that the obstacle rests.
     Outcome run(const StepCase& step, ContactMode mode, const float* startPose = nullptr)
     {
         Pipeline* const pipeline = pipelineOf(mode);
@@ -116,7 +116,7 @@ protected:
     }
 
 private:
-    // One for all of a test's cases: making one takes PoCL a fifth of a second.
+    // Returns one pipeline for all of a test's cases: making one takes PoCL a fifth of a second.
     Pipeline* pipelineOf(ContactMode mode)
     {
         std::unique_ptr<Pipeline>& pipeline = m_pipelines[mode];
@@ -148,7 +148,8 @@ TEST_P(ContactModesTest, AutomaticGivesTheContactsOfContinuousForLess)
     EXPECT_LT(2 * swept, sweptAlways);
 }
 
-// A feature that goes around another one, through its plane or line beside it, ends as near as it does without a past.
+// A feature that goes around another one, through its plane or line beside it, ends as near as it would without its
+// path.
 TEST_P(ContactModesTest, StepsEndDecidesForFeaturesThatDoNotMeet)
 {
     std::size_t near = 0, missing = 0;
@@ -206,7 +207,7 @@ TEST_P(ContactModesTest, AutomaticGivesTheContactsOfContinuousAtLongEdges)
 
 TEST_P(ContactModesTest, AutomaticGivesTheContactsOfContinuousWhereObstaclesMove)
 {
-    // A turn by 0.1 about z, and a shift that is slow or fast.
+    // The obstacle rotates by 0.1 about z, and shifts slowly or fast.
     for (const float shift : {0.01f, 0.5f})
     {
         const float before[12] = {0.995004f, -0.099833f, 0, shift, 0.099833f, 0.995004f, 0, -shift, 0, 0, 1, 0};
@@ -229,7 +230,7 @@ TEST_P(ContactModesTest, DiscreteSeesTheEndOnly)
         EXPECT_EQ(moving.m_swept, 0u);
         for (const Contact& contact : moving.m_contacts)
             EXPECT_EQ(contact.m_time, 1.0f);
-        // At rest where it ends, it gives the same contacts but for where the nodes were.
+        // The cloth at rest in its end positions gives the same contacts, apart from the nodes' start.
         step.m_cloth.m_positions = step.m_end;
         std::vector<Contact> resting = run(step, ContactMode::Discrete).m_contacts;
         ASSERT_EQ(resting.size(), moving.m_contacts.size());
@@ -252,8 +253,8 @@ TEST_P(ContactModesTest, RestingClothNeedsNoContinuousTest)
     }
 }
 
-// A face whose plane crosses the apex twice, once within the face and once outside of it: the signs of the volumes at
-// the step's two ends are the same, and yet the face went past.
+// The face's plane crosses the apex twice, once within the face and once outside of it. The signs of the volumes at the
+// step's two ends are equal, and yet the face went past.
 TEST_P(ContactModesTest, FaceThatPassesAndTiltsBackIsFound)
 {
     StepCase step = {"tilting face", 0, looseTriangles({-1, 0.1f, -1, 1, 0.1f, -1, 0, 0.1f, 1}), pyramid(), {}, 0.02f};
@@ -276,8 +277,8 @@ TEST_P(ContactModesTest, FaceThatPassesAndTiltsBackIsFound)
     }
 }
 
-// The same run backwards: the plane crosses the apex outside of the face first, and then within it. The volume's sign
-// at the start does not tell from which side the face came.
+// Runs the motion backwards: the plane crosses the apex outside of the face first, and then within it. The volume's
+// sign at the start does not determine the side that the face came from.
 TEST_P(ContactModesTest, FaceThatTiltsAndThenPassesIsFound)
 {
     StepCase step = {"tilted face", 0, looseTriangles({-3, -1, -1, -1, -0.2f, -1, -2, -0.6f, 1}), pyramid(), {}, 0.02f};
@@ -298,8 +299,8 @@ TEST_P(ContactModesTest, FaceThatTiltsAndThenPassesIsFound)
     }
 }
 
-// An edge that turns past the direction of the obstacle's edge before it goes through it: its volume has the same sign
-// at the start and at the end.
+// The edge turns past the direction of the obstacle's edge before it goes through it. Its volume has the same sign at
+// the start and at the end.
 TEST_P(ContactModesTest, EdgeThatTurnsAndThenPassesIsFound)
 {
     StepCase step = {"turning edge",

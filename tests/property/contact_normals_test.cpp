@@ -1,7 +1,7 @@
-// A node's contact normals beside creases: where a surface is convex they turn no faster than the surface lets them, at
-// a concave crease both faces have theirs.
+// A node's contact normals beside creases. At convex creases they turn no faster than the surface permits; at a concave
+// crease both faces have theirs.
 //
-// Nodes slide at a constant offset over edges and vertices, in steps of a fiftieth of the offset; each is a corner of a
+// Nodes slide at a constant offset over edges and vertices, in steps of a fiftieth of the offset. Each is a corner of a
 // triangle of its own that stands off the surface. Lengths in metres.
 #include <gtest/gtest.h>
 
@@ -23,18 +23,18 @@ constexpr double kStep = kOffset / 50;
 constexpr float kThickness = 0.025f;  // a fifth more than the offset: every contact is one to be solved
 constexpr double kReach = 1.5 * double(kThickness);
 constexpr int kTracks = 6;
-constexpr double kFlag = 0.08;  // how far a node's triangle reaches up
-constexpr double kRunUp = 0.7;  // how far ways begin and end beside a crease, radians about it
+constexpr double kFlag = 0.08;  // height of a node's triangle
+constexpr double kRunUp = 0.7;  // angle about the crease at which paths begin and end, radians
 constexpr double kUnit = 1.0 / 16777216;
 
-// A surface, convex, and the ways over it: arcs about the origin, over its top.
+// A convex surface and the paths over it: arcs about the origin, over its top.
 struct Surface
 {
     std::string m_name;
     TriangleMesh m_mesh;
-    double m_radius;     // of the arcs
+    double m_radius;     // radius of the arcs
     double m_turn;       // they go this far to either side of the top, radians
-    double m_leastTurn;  // of the normals on the way, radians
+    double m_leastTurn;  // turn of the normals along the path, radians
     double m_extent;     // largest coordinate of a node's triangle and one of the surface's, relative to the latter
     Vector3 m_along;     // arcs may lie anywhere along this
 };
@@ -44,7 +44,7 @@ void addVertex(TriangleMesh& mesh, const Vector3& p)
     mesh.m_positions.insert(mesh.m_positions.end(), {float(p.x), float(p.y), float(p.z)});
 }
 
-// Two faces that meet at the z axis, each 0.3 wide, turned down by half the angle (up where it is negative).
+// Makes two faces that meet at the z axis, each 0.3 wide, turned down by half the angle (up if it is negative).
 TriangleMesh creaseMesh(double angle)
 {
     TriangleMesh mesh;
@@ -68,7 +68,7 @@ Surface creaseSurface(double degrees)
             {0, 0, 0.1}};
 }
 
-// Faces about the top of a cone, at uneven angles.
+// Makes faces about the top of a cone, at uneven angles.
 Surface fanSurface(int faces, double slope)
 {
     Surface fan = {"fan of " + std::to_string(faces), {}, 0.08, slope + kRunUp, slope, 0.4, {}};
@@ -110,7 +110,7 @@ public:
         }
     }
 
-    // At the offset above the point nearest to q, as floats have it.
+    // Returns the point at the offset above the point nearest to q, rounded to floats.
     Vector3 offsetAbove(const Vector3& q) const
     {
         NearestOnTriangle best = {INFINITY, {}, {}};
@@ -131,7 +131,7 @@ private:
     std::vector<Face> m_faces;
 };
 
-// The ways of some nodes, one node of a triangle each, all in as many steps.
+// The paths of some nodes, one node of a triangle each, all with equally many steps.
 struct Slide
 {
     std::vector<std::vector<Vector3>> m_ways;
@@ -191,7 +191,7 @@ const Contact& deepest(const NodeContacts& contacts)
         ->second;
 }
 
-// Moved along the deepest one's normal by what that lacks of the thickness, the node has all others there, too.
+// Moves the node along the deepest contact's normal by its depth, and expects all other contacts at the thickness, too.
 void expectAsTheDeepest(const NodeContacts& contacts, double slack)
 {
     const Contact& first = deepest(contacts);
@@ -202,7 +202,7 @@ void expectAsTheDeepest(const NodeContacts& contacts, double slack)
     }
 }
 
-// Contacts with the same face, one step after the other. error: of a gap.
+// Compares contacts with the same face in consecutive steps. `error` is that of a gap.
 void expectFacesTurnAsSlowly(const NodeContacts& before, const NodeContacts& after, double way, double error)
 {
     for (const auto& [face, contact] : after)
@@ -250,12 +250,14 @@ class ContactNormalsTest : public BackendTest
 {
 };
 
-// The offset from a convex body is a Lipschitz function of the place, with constant 1, so over a step of length s the
-// direction at distance g turns by asin(s / g) at most; so does each face's own. Rounding errs by e = 24 u extent in a
-// gap (three weighted corners, a frame's shift and the difference), so of nearly equal ones either may seem the
-// deepest: that one's foot is within 2 sqrt(e g) of the true one, its direction off by 2 sqrt(e / g), before and after.
-// Together, the contacts ask for no more than the deepest does: moved by what it lacks, the node has the others at the
-// thickness, too (a body on one side of its plane lets nothing else be nearer while the lack is less than the gap).
+// The offset from a convex body is a Lipschitz function of the position, with constant 1. Over a step of length s the
+// direction at distance g turns by asin(s / g) at most, and so does each face's own.
+// Rounding errs by e = 24 u extent in a gap (three weighted corners, a frame's shift and the difference). Any of
+// several nearly equal contacts may therefore seem the deepest. Its foot is within 2 sqrt(e g) of the true one, its
+// direction off by 2 sqrt(e / g), before and after.
+// All contacts together require no more than the deepest does. After a correction by its depth, the other contacts are
+// at the thickness, too. A body on one side of its plane lets nothing else be nearer while the correction is less than
+// the gap.
 TEST_P(ContactNormalsTest, SmoothOverConvexCreases)
 {
     Random random(1500);
@@ -293,7 +295,7 @@ TEST_P(ContactNormalsTest, SmoothOverConvexCreases)
     }
 }
 
-// In a valley the node goes down one face and up the other, at the offset of each: wherever it is within reach of both,
+// A node in a valley goes down one face and up the other, at the offset of each. Wherever it is within reach of both,
 // both have a contact, with the face's own normal.
 TEST_P(ContactNormalsTest, BothFacesOfAConcaveCrease)
 {

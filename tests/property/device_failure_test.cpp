@@ -1,4 +1,4 @@
-// A device whose kernels do not build: at the start, where nobody asked for it, and between steps. The host goes on
+// A device whose kernels do not build: at the start, if it was not requested, and between steps. The host continues
 // with the same contacts, and status, report and error say so to the end.
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@ namespace drape::test
 {
 namespace
 {
-// PoCL adds these to every build, and no kernel of ours is C with them. It remembers a build that failed for as long as
-// the process lives, so that each test has one of its own.
+// PoCL adds these to every build, and none of our kernels is valid C with them. It remembers a failed build for as long
+// as the process lives, so that each test has one of its own.
 constexpr const char* kBuildFlags = "POCL_EXTRA_BUILD_FLAGS";
 constexpr const char* kBroken = "-Dvec3Sub=@";
 

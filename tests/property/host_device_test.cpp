@@ -1,6 +1,6 @@
-// Every back end gives the same contacts, bit for bit, over random sequences of steps in which meshes come, go and
-// move: those of all pairs of triangles that a walk over trees finds on the host, which has nothing of the culls over
-// patches.
+// Every back end gives identical contacts, bit for bit, over random sequences of steps in which meshes are added,
+// removed and moved. The reference is a walk over trees on the host, which tests all pairs of triangles and uses none
+// of the culls over patches.
 #include <gtest/gtest.h>
 
 #include "scenes/cloth_grid.h"
@@ -54,8 +54,8 @@ TEST_P(HostDeviceTest, RandomSequences)
     EXPECT_EQ(m_device->deviceReport().m_onHost, isHost());
 }
 
-// So small that a simulator of a device gets through it (tests/CMakeLists.txt). Each step twice: a device may go about
-// one in another way once it knows how much there is to do.
+// The scene is small enough for a simulator of a device (tests/CMakeLists.txt). Each step runs twice, since a device
+// may choose another method once it knows the amount of work.
 TEST_P(HostDeviceTest, FewTriangles)
 {
     ASSERT_TRUE(makeBoth());
@@ -93,7 +93,7 @@ TEST_P(HostDeviceTest, FewTriangles)
 
 TEST_P(HostDeviceTest, LargeStepGrowsBuffersAndAgrees)
 {
-    // Whoever reports intersections walks over trees.
+    // A pipeline that reports intersections walks over trees.
     ASSERT_TRUE(makeBoth(!isHost()));
     const StepCase step = soupCase(3000, 3000, true, 810);
     SCOPED_TRACE(step.trace());
@@ -126,7 +126,7 @@ TEST_P(HostDeviceTest, StepsFarLongerThanTheReach)
     }
 }
 
-// Two runs of the same on one device: the order of its work-items leaves no trace.
+// Two runs on one device are equal: the order of its work-items leaves no trace.
 TEST_P(HostDeviceTest, RunsRepeat)
 {
     const StepCase step = fallingCase("terrain", 33, 0.03f, 820);

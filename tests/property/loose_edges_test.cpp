@@ -80,7 +80,7 @@ class LooseEdges : public BackendTest
 {
 };
 
-TEST_P(LooseEdges, haveTheContactsOfAllPairsWithEveryTraversal)
+TEST_P(LooseEdges, EveryTraversalFindsTheContactsOfAllPairs)
 {
     std::size_t all = 0, ofSegments = 0;
     for (StepCase step : netCases())
@@ -121,7 +121,7 @@ TEST_P(LooseEdges, haveTheContactsOfAllPairsWithEveryTraversal)
 }
 
 // With reduction: the same bits as the host.
-TEST_P(LooseEdges, areReducedAlikeOnEveryBackend)
+TEST_P(LooseEdges, EveryBackendReducesThemAlike)
 {
     std::size_t reduced = 0;
     for (StepCase step : netCases())
@@ -141,7 +141,7 @@ TEST_P(LooseEdges, areReducedAlikeOnEveryBackend)
 
 // Segments at rest at random beside an obstacle: each that is within the thickness has a contact with a point of it
 // that is as near as any.
-TEST_P(LooseEdges, haveAContactWhereTheyAreNearest)
+TEST_P(LooseEdges, EachHasAContactAtItsNearestPoint)
 {
     constexpr float kReach = 0.05f;
     const std::unique_ptr<Pipeline> pipeline = makePipeline(GetParam().m_settings);
@@ -156,7 +156,7 @@ TEST_P(LooseEdges, haveAContactWhereTheyAreNearest)
         std::vector<std::int32_t> edges;
         for (int i = 0; i < kSegments; ++i)
         {
-            // Around a vertex of the obstacle.
+            // The position is around a vertex of the obstacle.
             const std::uint32_t vertex = random.below(std::uint32_t(step.m_obstacle.vertexCount()));
             float middle[3], along[3];
             for (int axis = 0; axis < 3; ++axis)
@@ -208,7 +208,7 @@ TEST_P(LooseEdges, haveAContactWhereTheyAreNearest)
 }
 
 // Queries find the edges that meet an obstacle, or are near it, exactly, and name them as they were given.
-TEST_P(LooseEdges, areAskedForTogetherWithTriangles)
+TEST_P(LooseEdges, QueriesTakeThemTogetherWithTriangles)
 {
     const std::unique_ptr<Queries> queries = makeQueries(GetParam().m_settings);
     ASSERT_TRUE(queries);
@@ -255,8 +255,8 @@ TEST_P(LooseEdges, areAskedForTogetherWithTriangles)
         std::count_if(expected.begin(), expected.end(), [&](const auto& pair) { return pair.first >= triangles; }), 50);
 }
 
-// A rope that collides with itself: nothing at rest, and the crossing where it lies over itself.
-TEST_P(LooseEdges, collideWithThemselvesOnlyWhereTheyFold)
+// The rope collides with itself. It has no contacts at rest, and the crossing if it lies over itself.
+TEST_P(LooseEdges, CollideWithThemselvesOnlyAtFolds)
 {
     TriangleMesh rope;
     std::vector<std::int32_t> edges;

@@ -16,7 +16,7 @@
 
 namespace drape::test
 {
-// A turn by `angle` about a random axis through `centre`, then a shift, in double.
+// A rotation by `angle` about a random axis through `centre`, then a shift, in double.
 struct Motion
 {
     double m_rows[3][4];
@@ -44,14 +44,14 @@ std::vector<float> mapped(const Motion& motion, const std::vector<float>& positi
 constexpr std::array<double, 3> kNoShift = {0, 0, 0};
 constexpr double kAngles[] = {0.0, 0.05, 0.7, 2.5};
 
-// What moves how: a cloth at rest or falling over an obstacle that turns and shifts within the step.
+// A moving case: a cloth at rest or falling over an obstacle that rotates and shifts within the step.
 struct MovingCase
 {
     StepCase m_step;
     Motion m_start, m_end;
 };
 
-// The obstacle ends where the case has it, so that the cloth passes it.
+// Makes the obstacle end in the case's pose, so that the cloth passes it.
 MovingCase movingCase(const std::string& shape, double angle, const std::array<double, 3>& shift, std::uint32_t seed);
 
 std::vector<Contact> runMoving(Pipeline& pipeline, const MovingCase& moving);

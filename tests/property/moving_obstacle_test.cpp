@@ -16,7 +16,7 @@ namespace drape::test
 {
 namespace
 {
-// pose after the inverse of `of`, which is rigid.
+// Returns `pose` after the inverse of `of`, which is rigid.
 Motion relative(const Motion& pose, const Motion& of)
 {
     Motion result;
@@ -35,7 +35,7 @@ Motion relative(const Motion& pose, const Motion& of)
     return result;
 }
 
-// The same as runMoving() with the obstacle at rest at its end and the cloth's start moved instead.
+// Runs the case of runMoving() with the obstacle at rest at its end pose and the cloth's start moved instead.
 std::vector<Contact> runOpposite(Pipeline& pipeline, const MovingCase& moving)
 {
     StepCase step = moving.m_step;
@@ -49,7 +49,7 @@ bool sameFeatures(const Contact& a, const Contact& b)
     return a.m_slot == b.m_slot && a.m_kind == b.m_kind && a.m_obstacleFeature == b.m_obstacleFeature;
 }
 
-// How many contacts of `a` are in `b` with numbers that differ by rounding only; both in canonical order.
+// Counts the contacts of `a` that are in `b` with numbers that differ by rounding only. Both are in canonical order.
 std::size_t countAlike(const std::vector<Contact>& a, const std::vector<Contact>& b)
 {
     std::size_t alike = 0;
@@ -82,7 +82,7 @@ TEST_P(MovingObstacleTest, GivesWhatTheOppositeMotionOfTheClothGives)
         const std::vector<Contact> contacts = runMoving(*pipeline, moving);
         const std::vector<Contact> expected = runOpposite(*opposite, moving);
         ASSERT_GT(expected.size(), 100u);
-        // Rounding decides a few at the edge of the reach and of cones.
+        // Rounding decides a few contacts at the edge of the reach and of cones.
         EXPECT_GE(countAlike(contacts, expected), contacts.size() - contacts.size() / 50);
         EXPECT_GE(countAlike(expected, contacts), expected.size() - expected.size() / 50);
     }
@@ -196,6 +196,6 @@ TEST_P(MovingObstacleTest, RestCostsNoLaunch)
     EXPECT_TRUE(moving > without || GetParam().m_device < 0);
 }
 
-// The tests of scenery and of rounding, in files of their own, are among them.
+// Tests of scenery and of rounding, in files of their own, use this instantiation, too.
 INSTANTIATE_TEST_SUITE_P(Backends, MovingObstacleTest, testing::ValuesIn(allBackends()), backendName);
 }  // namespace drape::test

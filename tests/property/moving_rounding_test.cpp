@@ -21,9 +21,9 @@ Motion shiftOf(double x, double y, double z)
     return motionOf(0, {x, y, z}, random);
 }
 
-// A triangle of cloth over the edge of a thin plate that rises by half a metre a step, 45 m up: its last node ends
-// level with the plate's upper face to the last bit, 24 mm beside it, where the edge between upper face and side admits
-// it.
+// Makes a triangle of cloth over the edge of a thin plate that rises by half a metre a step, 45 m up. Its last node
+// ends level with the plate's upper face to the last bit, 24 mm beside it. The edge between upper face and side admits
+// the node there.
 MovingCase plateCase()
 {
     StepCase step = {"plate", 0, {}, makeBox(1.2f, 0.004f, 1.2f), {}, 0.02f};
@@ -35,7 +35,7 @@ MovingCase plateCase()
     return {step, shiftOf(0, 45, 0), shiftOf(0, 45.5, 0)};
 }
 
-// Every traversal gives on this back end what the host gives.
+// Expects every traversal on this back end to give the host's contacts.
 void expectHostsContacts(const BackendCase& backend, const MovingCase& moving, const std::vector<Contact>& expected)
 {
     std::vector<Traversal> traversals = allTraversals();
@@ -65,7 +65,7 @@ TEST_P(MovingObstacleTest, NodeThatEndsLevelWithAPlatesFaceBesideIt)
     expectHostsContacts(GetParam(), moving, expected);
 }
 
-// Faces of 3 mm whose corners are rounded to 0.1 mm where they are placed, so that they turn, and their cones do not.
+// The faces have 3 mm and their corners are rounded to 0.1 mm at their pose, so that they turn, and their cones do not.
 TEST_P(MovingObstacleTest, SmallFacesPlacedFarOut)
 {
     for (std::uint32_t seed = 970; seed < 974; ++seed)

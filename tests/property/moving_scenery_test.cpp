@@ -32,7 +32,7 @@ struct Scenery
     }
 };
 
-// All cloths against all obstacles, a pair left out.
+// Runs all cloths against all obstacles, apart from one pair.
 std::vector<Contact> runScenery(Pipeline& pipeline, const Scenery& scenery)
 {
     std::vector<MeshId> cloths, obstacles;
@@ -53,7 +53,7 @@ std::vector<Contact> runScenery(Pipeline& pipeline, const Scenery& scenery)
     return runStep(pipeline);
 }
 
-// The contacts of every pair of triangles, without a broad phase.
+// Returns the contacts of every pair of triangles, without a broad phase.
 std::vector<Contact> contactsOfAllPairs(const Scenery& scenery, float reachScale)
 {
     std::vector<TriangleMesh> cloths, obstacles;

@@ -12,8 +12,8 @@ namespace drape::test
 {
 namespace
 {
-// Upright slivers whose heights, 1e-8 to 1e-38 m, are kept in full by a coordinate that is 0 otherwise, and fat
-// triangles beside them, within reach and a little beyond. swapped: the slivers are the cloth.
+// Makes upright slivers and fat triangles beside them, within reach and a little beyond. A coordinate that is otherwise
+// 0 keeps the slivers' heights, 1e-8 to 1e-38 m, in full. `swapped`: the slivers are the cloth.
 StepCase flatCase(bool swapped, std::uint32_t seed)
 {
     Random random(seed);
@@ -37,7 +37,7 @@ StepCase flatCase(bool swapped, std::uint32_t seed)
 class NeedlesOnBackends : public BackendTest
 {
 protected:
-    // The host's contacts by the default traversal, and the same by every traversal.
+    // Expects every traversal to give the host's contacts by the default traversal.
     void expectSame(const StepCase& step, ContactMode mode)
     {
         Settings host;
@@ -72,7 +72,7 @@ TEST_P(NeedlesOnBackends, SameContactsByEveryTraversal)
     }
 }
 
-// Their planes' normals are shorter than a float can tell: such a plane proves nothing about what is beside it.
+// The planes' normals are too short for a float. Such a plane proves nothing about points beside it.
 TEST_P(NeedlesOnBackends, SameContactsWhereAreasHaveNoLength)
 {
     for (const ContactMode mode : {ContactMode::Discrete, ContactMode::Continuous})

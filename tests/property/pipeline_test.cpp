@@ -18,7 +18,7 @@ protected:
     std::unique_ptr<Pipeline> make() { return makePipeline(GetParam().m_settings); }
 };
 
-// A contact's own data fit together: weights, gaps and point give the nodes' places.
+// A contact's own data are consistent: weights, gaps and point give the nodes' positions.
 TEST_P(PipelineTest, ContactsAreConsistent)
 {
     for (const StepCase& step : {fallingCase("bowl", 24, 0.03f, 700), soupCase(200, 200, true, 701)})
@@ -184,7 +184,7 @@ TEST_P(PipelineTest, PairsAreIndependent)
     EXPECT_EQ(matched, all.size());
 }
 
-// A hierarchy that was built long ago and refitted finds what a new one finds.
+// A hierarchy that was built long ago and refitted gives the contacts of a new one.
 TEST_P(PipelineTest, RefitEqualsRebuild)
 {
     const std::unique_ptr<Pipeline> old = make();
@@ -216,7 +216,7 @@ TEST_P(PipelineTest, RefitEqualsRebuild)
 
 namespace
 {
-// Two cloths of more nodes than go to a device together, alike, over a bowl.
+// Two equal cloths over a bowl, with more nodes than go to a device together.
 class TwoCloths
 {
 public:
@@ -236,11 +236,11 @@ public:
     const std::vector<float>& start() const { return m_step.m_cloth.m_positions; }
     const std::vector<float>& end() const { return m_step.m_end; }
 
-    // What stands where nodes are still to be written.
+    // Fills nodes that are still to be written with a wrong value.
     void spoil(float* nodes) { std::fill_n(nodes, 3 * m_nodes, 1e3f); }
     void addPair(MeshId cloth) { m_pipeline.addPair(cloth, m_obstacle, m_step.m_thickness); }
 
-    // A step whose nodes are written a seventh at a time, and told of each time.
+    // Runs a step whose nodes are written a seventh at a time, with a notice each time.
     std::vector<Contact> run(const std::vector<MeshId>& cloths, const Tell& written)
     {
         for (const MeshId cloth : cloths)
@@ -278,7 +278,7 @@ void expectSame(const std::vector<Contact>& found, const std::vector<Contact>& e
 }
 }  // namespace
 
-// Two cloths whose contacts are known by nodes that were written in silence.
+// Two cloths whose contacts are known from nodes that were written without a notice.
 class PipelineNodesTest : public PipelineTest
 {
 protected:
@@ -297,7 +297,7 @@ protected:
     std::vector<Contact> m_expected;
 };
 
-// Told of in parts, a part, the wrong order or not at all.
+// The notices come in parts, for a part, in the wrong order or not at all.
 TEST_P(PipelineNodesTest, NodesMayGoBeforeAllAreWritten)
 {
     TwoCloths& two = *m_two;
@@ -307,13 +307,13 @@ TEST_P(PipelineNodesTest, NodesMayGoBeforeAllAreWritten)
     expectSame(two.run({first, second}, told), m_expected);
     expectSame(two.run({second, first}, told), m_expected);
     expectSame(two.run({first, second}, halfTold), m_expected);
-    // Told of before a cloth goes.
+    // The notice comes before the cloth is removed.
     m_pipeline->nodesWritten(first, two.m_nodes);
     m_pipeline->remove(second);
     expectSame(two.run({first}, told), two.runSilently({first}));
 }
 
-// The place of a cloth that has gone stays, and nobody writes its nodes.
+// The position of a removed cloth stays, and nobody writes its nodes.
 TEST_P(PipelineNodesTest, NodesBehindAClothThatHasGoneMayGo)
 {
     const auto told = [&](MeshId cloth, std::size_t count) { m_pipeline->nodesWritten(cloth, count); };
@@ -323,7 +323,7 @@ TEST_P(PipelineNodesTest, NodesBehindAClothThatHasGoneMayGo)
     expectSame(m_two->run({m_two->m_second}, told), expected);
 }
 
-// One cloth after the other, and both at once.
+// The cloths are written one after the other, or both at once.
 TEST_P(PipelineNodesTest, NodesThatAreCopiedAreThoseThatAreWritten)
 {
     TwoCloths& two = *m_two;
@@ -347,7 +347,7 @@ TEST_P(PipelineNodesTest, NodesThatAreCopiedAreThoseThatAreWritten)
     expectSame(runStep(*m_pipeline), m_expected);
 }
 
-// A device goes through few tests with another kernel once a step has told that they are few.
+// A device runs few tests with another kernel once a step has shown that they are few.
 TEST_P(PipelineTest, FewTestsGiveTheSameContacts)
 {
     std::size_t swept = 0, contacts = 0;

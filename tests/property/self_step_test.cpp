@@ -27,7 +27,7 @@ std::vector<Contact> listed(ContactList contacts)
     return {contacts.begin(), contacts.end()};
 }
 
-// The folded cloth over a sphere that it touches.
+// Runs the folded cloth over a sphere that it touches.
 SelfResult runOverSphere(const Settings& settings, const SelfStepCase& step, bool self)
 {
     SelfResult result;
@@ -49,7 +49,7 @@ SelfResult runOverSphere(const Settings& settings, const SelfStepCase& step, boo
     return result;
 }
 
-// The host by its trees, which shares no cull with what is tested.
+// Returns settings of the host with trees, which share no cull with the tested code.
 Settings treeSettings()
 {
     Settings settings;
@@ -136,7 +136,7 @@ TEST_P(SelfStepTest, ContactsWithObstaclesStayWhatTheyAre)
     }
 }
 
-// The lists start smaller than what this cloth needs.
+// The lists start smaller than this cloth needs.
 TEST_P(SelfStepTest, ListsGrowToWhatIsThere)
 {
     const SelfStepCase step = {crumpledCase(70, 121), crumpledCase(70, 121).m_mesh.m_positions, 0.01f};
@@ -220,7 +220,7 @@ TEST_P(SelfStepTest, ClothsDoNotMeetOneAnother)
     EXPECT_GT(expected.size(), 100u);
 }
 
-// A cloth that asks for it but is not named costs nothing, and one that is flat at rest has no contacts.
+// A cloth with self-collision that is not named costs nothing, and one that is flat at rest has no contacts.
 TEST_P(SelfStepTest, ClothsThatAreNotNamedAndFlatOnes)
 {
     const std::unique_ptr<Pipeline> pipeline = makePipeline(GetParam().m_settings);

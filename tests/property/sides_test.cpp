@@ -1,4 +1,4 @@
-// One-sided obstacles: contacts on their front are those of two-sided ones, those on their back are none.
+// One-sided obstacles have the contacts of two-sided ones on their front, and none on their back.
 #include <gtest/gtest.h>
 
 #include "scenes/describe_mesh.h"
@@ -27,7 +27,7 @@ protected:
     }
 };
 
-// A cloth scaled about the sphere's middle, to lie inside or outside of it.
+// Makes a cloth scaled about the sphere's middle, to lie inside or outside of it.
 StepCase aroundSphere(float radius)
 {
     StepCase step = {"around a sphere", 0, shapeNamed("sphere"), shapeNamed("sphere"), {}, 0.03f};
@@ -64,7 +64,7 @@ TEST_P(SidesTest, ClosedMeshHoldsFromOutsideOnly)
 
 TEST_P(SidesTest, OpenMeshLetsClothThroughFromBehind)
 {
-    // Faces up where its corners run counter-clockwise seen from above.
+    // The floor faces up if its corners run counter-clockwise seen from above.
     const TriangleMesh floor = looseTriangles({-1, 0, -1, 0, 0, 1, 1, 0, -1});
     for (const float from : {0.2f, -0.2f})
     {
@@ -78,7 +78,7 @@ TEST_P(SidesTest, OpenMeshLetsClothThroughFromBehind)
         translate(step.m_end, 0, -2 * from, 0);
         EXPECT_GT(run(step, false).size(), 0u);
         EXPECT_EQ(run(step, true).size(), from > 0 ? run(step, false).size() : 0u);
-        // Over its edge, which has no neighbour to say which way is out, it is the same.
+        // The result over the edge, which has no neighbour to determine the outside, is equal.
         for (std::vector<float>* positions : {&step.m_cloth.m_positions, &step.m_end})
             translate(*positions, 0, 0, -0.5f);
         EXPECT_GT(run(step, false).size(), 0u);

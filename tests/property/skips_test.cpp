@@ -1,5 +1,5 @@
-// What a pipeline keeps from step to step saves time only: hierarchies of obstacles that rest and are not refitted, the
-// front of the last step, trees and patches, buffers on the device. One traversal for each kind of what is kept.
+// The state that a pipeline keeps from step to step only saves time: hierarchies of resting obstacles, the front of the
+// last step, trees and patches, buffers on the device. One traversal represents each kind of state.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,8 +29,8 @@ protected:
     }
 };
 
-// Contacts as a caller sees them, whose meshes are named by their places among `ids`: what was there before gives
-// features other numbers.
+// Returns contacts whose meshes are named by their positions among `ids`, since earlier meshes give features other
+// numbers.
 std::vector<ContactView> viewsOf(const Pipeline& pipeline, const std::vector<Contact>& contacts,
                                  const std::vector<MeshId>& ids)
 {
@@ -45,8 +45,8 @@ std::vector<ContactView> viewsOf(const Pipeline& pipeline, const std::vector<Con
     return views;
 }
 
-// One pipeline lives through the steps, the other is given every mesh anew in each of them.
-TEST_P(SkipsTest, WhatIsKeptGivesTheContactsOfWhatIsMadeAnew)
+// One pipeline lives through the steps; the other gets every mesh again in each of them.
+TEST_P(SkipsTest, KeptStateGivesTheContactsOfNewState)
 {
     std::size_t contacts = 0, reduced = 0;
     for (std::uint32_t seed = 980; seed < 983; ++seed)

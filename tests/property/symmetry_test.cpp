@@ -1,5 +1,4 @@
-// What must not matter: the numbering of triangles, the order of their corners, a power of two as unit, the place in
-// space.
+// Invariances: the numbering of triangles, the order of their corners, a power of two as unit, the position in space.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,8 +27,8 @@ std::map<FeatureKey, Contact> keyedContacts(const StepCase& step)
     return keyed;
 }
 
-// Another numbering moves the local frame and so the rounding: at seams one neighbour or the other reports, and a
-// distance at the reach falls to either side. All other contacts agree.
+// Compares contacts under another numbering, which moves the local frame and so the rounding. At seams one neighbour or
+// the other reports, and a distance at the reach falls to either side. All other contacts agree.
 void expectSameUpToNumbering(const StepCase& a, const StepCase& b)
 {
     const std::map<FeatureKey, Contact> first = keyedContacts(a), second = keyedContacts(b);

@@ -1,4 +1,4 @@
-// A plugin at namespace scope, which is made before main() begins. Ends with 1 where it has not started.
+// A plugin at namespace scope, which is made before main() begins. Ends with 1 if it has not started.
 #include <cstdio>
 
 #include <drape/drape.h>

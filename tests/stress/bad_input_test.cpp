@@ -22,7 +22,7 @@ namespace
 const float kInfinity = std::numeric_limits<float>::infinity();
 const float kNan = std::numeric_limits<float>::quiet_NaN();
 
-// Whether a contact's cloth feature uses one of the nodes.
+// Returns true if a contact's cloth feature uses one of the nodes.
 bool touches(const Pipeline& pipeline, const Contact& contact, const std::set<std::int32_t>& nodes)
 {
     const ContactView view = pipeline.view(contact);
@@ -36,7 +36,7 @@ bool touches(const Pipeline& pipeline, const Contact& contact, const std::set<st
 // 2^-23 each, and a normal is a difference of them over some millimetres.
 constexpr float kFrameRounding = 1e-3f;
 
-// Whether the contact of the same features is there, with a normal and gap that differ by no more than the tolerance.
+// Returns true if the list has a contact of the same features, with a normal and gap within the tolerance.
 bool holds(const std::vector<Contact>& contacts, const Contact& wanted, float tolerance = 0.0f)
 {
     return std::any_of(contacts.begin(), contacts.end(),
@@ -52,7 +52,7 @@ bool holds(const std::vector<Contact>& contacts, const Contact& wanted, float to
                        });
 }
 
-// Whether a contact's obstacle feature uses one of the vertices.
+// Returns true if a contact's obstacle feature uses one of the vertices.
 bool usesVertex(const Side& obstacle, const Contact& contact, const std::set<std::uint32_t>& vertices)
 {
     if (contact.m_kind == DRAPE_FACE_VERTEX) return vertices.count(contact.m_obstacleFeature) > 0;
@@ -105,7 +105,7 @@ TEST_P(BadInputTest, NanAndInfiniteNodesAreIsolatedAndCounted)
     EXPECT_TRUE(m_pipeline->statistics().m_status & kStepInvalidNodes);
     for (const Contact& contact : contacts)
         EXPECT_FALSE(touches(*m_pipeline, contact, bad)) << describe(contact);
-    // Nothing else is lost, whichever triangle owns it, and nothing else changes.
+    // No other contact is lost, whichever triangle owns it, and no other contact changes.
     std::size_t kept = 0;
     for (const Contact& contact : sound)
     {
@@ -115,7 +115,7 @@ TEST_P(BadInputTest, NanAndInfiniteNodesAreIsolatedAndCounted)
     }
     EXPECT_GT(kept, sound.size() / 2);
     EXPECT_LT(kept, sound.size());
-    // What is new are faces beside a bad one, whose neighbour took the contact at their common edge.
+    // New contacts belong to faces beside a bad one, whose neighbour took the contact at their common edge.
     for (const Contact& contact : contacts)
     {
         EXPECT_TRUE(contact.m_kind == DRAPE_FACE_VERTEX || holds(sound, contact)) << describe(contact);
@@ -141,7 +141,7 @@ TEST_P(BadInputTest, InvalidObstacleVerticesAreIsolated)
     StepCase step = fallingCase("sphere", 20, 0.03f, 902);
     SCOPED_TRACE(step.trace());
     const std::vector<Contact> sound = run(step);
-    // Two that the cloth touches.
+    // The cloth touches the two nodes.
     std::set<std::uint32_t> bad;
     for (std::size_t i = 0; i < sound.size() && bad.size() < 2; i += 7)
     {
@@ -175,7 +175,7 @@ TEST_P(BadInputTest, HugeAndDenormalNodesStayFinite)
             step.m_end[at] = value;
         const std::vector<Contact> contacts = run(step);
         EXPECT_GT(contacts.size(), 100u);
-        // Farther out than a million kilometres they count as invalid: three nodes.
+        // Nodes farther out than a million kilometres count as invalid: three nodes.
         EXPECT_EQ(m_pipeline->statistics().m_invalidNodes, std::fabs(value) > DRAPE_FARTHEST ? 3u : 0u);
     }
 }
@@ -244,7 +244,7 @@ TEST_P(BadInputTest, EmptyAndTinyMeshes)
     TriangleMesh repeated = one;
     repeated.m_triangles = {0, 0, 1};
     const TriangleMesh meshes[] = {one, two, unused, TriangleMesh(), repeated};
-    constexpr int kWithTriangles = 3;  // of the meshes, the first
+    constexpr int kWithTriangles = 3;  // the first meshes have triangles
     for (int i = 0; i < 5; ++i)
     {
         for (int j = 0; j < 5; ++j)
@@ -255,7 +255,8 @@ TEST_P(BadInputTest, EmptyAndTinyMeshes)
             translate(step.m_end, 0.05f, 0.04f, 0.0f);
             const std::vector<Contact> contacts = run(step);
             EXPECT_EQ(contacts.empty(), i >= kWithTriangles || j >= kWithTriangles);
-            // 4 cm above each other, or beside each other's border and farther, up to one and a half thicknesses.
+            // The features are 4 cm above each other, or beside each other's border and farther, up to one and a half
+            // thicknesses.
             for (const Contact& contact : contacts)
             {
                 EXPECT_TRUE(contact.m_gap1 > 0.0399f && contact.m_gap1 < 0.1501f) << describe(contact);
@@ -289,14 +290,14 @@ TEST_P(BadInputTest, UnusedVerticesWidenNoVolume)
     }
 }
 
-// A triangle with a corner that no mesh can have is in no pair, wherever its other corners are.
+// A triangle with a corner outside of the valid range is in no pair, wherever its other corners are.
 TEST_P(BadInputTest, TrianglesWithAnInvalidCornerAreInNoPair)
 {
     const TriangleMesh sound = looseTriangles({-1, 0, -1, 1, 0, -1, 0, 0, 1});
     for (const float value : {kNan, kInfinity, -1.1e9f, -3e38f})
     {
         SCOPED_TRACE(value);
-        // Its two other corners on either side of the sound triangle, in it, and away from it.
+        // The triangle's two other corners are on either side of the sound triangle, in it, and away from it.
         for (const float height : {-0.5f, 0.0f, 5.0f})
         {
             const TriangleMesh broken = looseTriangles({value, 1, 0, 0, height, 0, 0, 0.5f, 0});
@@ -320,7 +321,7 @@ TEST_P(BadInputTest, TwoIdenticalMeshes)
     ASSERT_TRUE(pipeline);
     const std::vector<Contact> contacts = runCase(*pipeline, step);
     expectFinite(contacts);
-    // Each with itself and with those around its corners, and no others.
+    // Each triangle meets itself and those around its corners, and no others.
     const std::vector<NearTriangles> meeting = meetingPairs(mesh, mesh);
     ASSERT_GT(meeting.size(), 10 * mesh.triangleCount());
     EXPECT_EQ(pipeline->statistics().m_intersections, meeting.size());

@@ -20,14 +20,14 @@ namespace
 {
 constexpr float kStep = 1.0f / 60.0f;  // s
 
-// A cloth at rest and a plate 1 mm thick that flies through it at a speed, m/s. The plate's vertices come last.
+// Makes a cloth at rest and a plate 1 mm thick that flies through it at a speed, m/s. The plate's vertices come last.
 SelfCase plateThroughCloth(float speed)
 {
     SelfCase motion;
     motion.m_name = "plate at " + std::to_string(speed) + " m/s";
     motion.m_mesh = makeClothGrid(17, 17, 1.0f, 0.0f).m_mesh;
     TriangleMesh plate = makeBox(0.4f, 0.001f, 0.3f);
-    // Its middle is at the cloth at 0.37 of the step.
+    // The plate's middle is at the cloth at 0.37 of the step.
     translate(plate.m_positions, 0.013f, 0.37f * speed * kStep, 0.021f);
     const std::int32_t first = std::int32_t(motion.m_mesh.vertexCount());
     motion.m_mesh.m_positions.insert(motion.m_mesh.m_positions.end(), plate.m_positions.begin(),
@@ -55,8 +55,9 @@ struct NamedMotion
     float m_time;
 };
 
-// A hinge that swings about the y axis from slope -1 to slope 1, and a vertex at height z that moves along x against
-// it: its height above the face is z - (2t - 1)², so it is below at both ends of the step and above in between.
+// Makes a hinge that swings about the y axis from slope -1 to slope 1, and a vertex at height z that moves along x
+// against it. The vertex' height above the face is z - (2t - 1)². It is below at both ends of the step and above in
+// between.
 FourPoints hinge(float z)
 {
     return {DRAPE_VERTEX_FACE,
@@ -64,7 +65,7 @@ FourPoints hinge(float z)
             {vec3(1, 0, z), vec3(-4, -4, -4), vec3(4, -4, 4), vec3(0, 8, 0)}};
 }
 
-// A face whose second and third corners change places: in the middle of the step it is a segment along x.
+// Makes a face whose second and third corners change places. In the middle of the step it is a segment along x.
 FourPoints hourglass(Vec3 start, Vec3 end)
 {
     return {DRAPE_VERTEX_FACE,
@@ -72,7 +73,7 @@ FourPoints hourglass(Vec3 start, Vec3 end)
             {end, vec3(0, 0, 0), vec3(4, -4, 0), vec3(4, 4, 0)}};
 }
 
-// Everything in the plane z = 0: a face slides over a vertex at (x, y).
+// Makes a face that slides over a vertex at (x, y), everything in the plane z = 0.
 FourPoints sliding(float x, float y)
 {
     return {DRAPE_VERTEX_FACE,
@@ -80,7 +81,7 @@ FourPoints sliding(float x, float y)
             {vec3(x, y, 0), vec3(4, -1, 0), vec3(6, -1, 0), vec3(5, 1, 0)}};
 }
 
-// Two edges in the plane z = 0, the first rising from y = -2 to y = 2; the second from x0 to x1 at y = 0.
+// Makes two edges in the plane z = 0: the first rises from y = -2 to y = 2, the second goes from x0 to x1 at y = 0.
 FourPoints edgesInPlane(float x0, float x1)
 {
     return {DRAPE_EDGES,
@@ -140,10 +141,10 @@ TEST_P(Continuous, Row14FastObstacleThroughThinCloth)
             if (touching.m_kind != DRAPE_VERTEX_FACE) continue;
             const std::uint32_t vertex = touching.m_vertices[0];
             (vertex < plate ? passed : corners).insert(vertex);
-            // The cloth is met when the plate's lower or upper side is there.
+            // The plate's lower or upper side meets the cloth.
             EXPECT_NEAR(touching.m_time, 0.37f, 0.51f * 0.001f / (speed * kStep) + 1e-4f);
         }
-        // Every cloth vertex in the plate's way, and no other; each of the plate's corners passes the cloth.
+        // Counts every cloth vertex in the plate's path, and no other; each of the plate's corners passes the cloth.
         std::size_t inTheWay = 0;
         for (std::uint32_t vertex = 0; vertex < plate; ++vertex)
         {
@@ -154,7 +155,7 @@ TEST_P(Continuous, Row14FastObstacleThroughThinCloth)
         }
         EXPECT_GT(inTheWay, 20u);
         EXPECT_EQ(corners.size(), 8u);
-        // Tested at the step's ends alone, all of them tunnel: nothing intersects there.
+        // Tests of the step's ends alone find nothing: nothing intersects there.
         for (const std::vector<float>* positions : {&motion.m_mesh.m_positions, &motion.m_end})
         {
             TriangleMesh frozen = motion.m_mesh;
@@ -183,7 +184,8 @@ TEST_P(Continuous, Row22DoubleRootsHourglassesAndMotionInOnePlane)
         ASSERT_TRUE(m_queries->motions(&query, 1, settings, &result));
         EXPECT_EQ(result.m_hit != 0, motion.m_touches);
         if (!motion.m_touches) continue;
-        // Never late; early by the tolerance of the time, or where the approach is a tangent by the root of rounding.
+        // The time is never late. It is early by the tolerance of the time, or by the root of rounding if the approach
+        // is a tangent.
         EXPECT_LE(result.m_time, motion.m_time + 1e-6f);
         EXPECT_GE(result.m_time, motion.m_time - 3 * settings.m_timeTolerance - 3e-3f);
     }

@@ -1,5 +1,4 @@
-// Row 9 of the stress table: a host that flushes denormals to zero, as an app's audio or physics code may have set it
-// to.
+// Row 9 of the stress table: the host flushes denormals to zero, as an app's audio or physics code may have set.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,7 +38,7 @@ void addTiny(std::vector<float>& positions, Random& random)
         coordinate += float(std::pow(10.0, random.uniform(-44, -20))) * (random.below(2) ? 1.0f : -1.0f);
 }
 
-// A cloth at rest on the shape, or falling through it, the shape moved by so little that only zeros change.
+// Makes a cloth at rest on the shape, or falling through it. The shape is moved by so little that only zeros change.
 StepCase tinyCase(const char* shape, float lift, bool moving, std::uint32_t seed)
 {
     Random random(seed);
@@ -90,7 +89,7 @@ TEST(FlushedDenormals, TheHostFindsTheSameContacts)
     EXPECT_GT(contacts, 1000u);
 }
 
-// A whole sphere no larger than that is a point to the cloth over it, which it touches all the same.
+// A whole sphere below that size is a point for the cloth over it, and the cloth touches it all the same.
 TEST(FlushedDenormals, TinyObstaclesAreMet)
 {
     Settings settings;

@@ -34,10 +34,10 @@ TEST_P(LoadTest, CoincidentTriangles)
     EXPECT_GE(statistics.m_candidates, std::size_t(kClothTriangles) * kObstacleTriangles);
     EXPECT_LE(statistics.m_retries, 3u);
     EXPECT_GT(statistics.m_retries, 0u);
-    // Three nodes of every cloth triangle against every obstacle triangle at least.
+    // At least three nodes of every cloth triangle touch every obstacle triangle.
     EXPECT_GE(contacts.size(), 3u * kClothTriangles * kObstacleTriangles);
     EXPECT_EQ(statistics.m_status, std::uint32_t(kStepGood));
-    // The next step has room already and gives the same.
+    // The next step has room already and gives equal contacts.
     pipeline->addPair(0, 1, step.m_thickness);
     const std::vector<Contact> again = runStep(*pipeline);
     EXPECT_EQ(pipeline->statistics().m_retries, 0u);
@@ -117,9 +117,9 @@ TEST_P(LoadTest, HundredThousandCoincidentTriangles)
                 << describe(alone[i]);
         }
     }
-    // One list of candidates, and what the meshes take.
+    // The step needs one list of candidates, and the memory of the meshes.
     EXPECT_LT(peakResidentBytes(), before + 12 * Settings().m_candidateLimit + kGrowthBytes);
-    // Without the crowd's pair the step is good again.
+    // The step is good again without the crowd's pair.
     pipeline->addPair(0, 1, sound.m_thickness);
     EXPECT_EQ(runStep(*pipeline).size(), alone.size());
     EXPECT_EQ(pipeline->statistics().m_status, std::uint32_t(kStepGood));
@@ -135,7 +135,7 @@ TEST_P(LoadTest, LimitsLeaveOutTheLargestCloths)
     ASSERT_TRUE(unlimited);
     const std::vector<Contact> alone = runCase(*unlimited, step);
     const std::uint64_t candidates = unlimited->statistics().m_candidates;
-    // Of cloths left out the pairs of triangles are counted, on the host.
+    // The host counts the pairs of triangles of omitted cloths.
     Settings onHost;
     onHost.m_backend = Backend::Host;
     onHost.m_methods.m_traversal = Traversal::Pairs;
@@ -146,7 +146,7 @@ TEST_P(LoadTest, LimitsLeaveOutTheLargestCloths)
     {
         SCOPED_TRACE(byContacts ? "contacts" : "candidates");
         Settings settings = GetParam().m_settings;
-        // Room for one of three equal cloths, with something to spare.
+        // The limit has room for one of three equal cloths, with some reserve.
         (byContacts ? settings.m_contactLimit : settings.m_candidateLimit) =
             byContacts ? alone.size() * 3 / 2 : std::size_t(candidates) * 3 / 2;
         const std::unique_ptr<Pipeline> pipeline = makePipeline(settings);
@@ -191,7 +191,7 @@ TEST_P(LoadTest, ThousandMetresASecondThroughAThinSheet)
         std::set<std::uint32_t> caught;
         for (const Contact& contact : runCase(*pipeline, step))
         {
-            // Against the motion; the sheet's own normal, where it is the sheet's.
+            // The normal points against the motion; a contact of the sheet has the sheet's own normal.
             EXPECT_LT(
                 contact.m_normal[0] * motion[0] + contact.m_normal[1] * motion[1] + contact.m_normal[2] * motion[2],
                 0.0f)

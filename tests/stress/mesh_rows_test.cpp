@@ -63,7 +63,7 @@ void exchangeSides(FeatureKey& key)
     std::swap_ranges(&key[1], &key[1] + 3, &key[4]);
 }
 
-// Whether the contacts are between the same features; says which are in one list only.
+// Returns true if the contacts are between the same features. Reports contacts that are in one list only.
 bool expectSameKeys(const std::vector<Keyed>& found, const std::vector<Keyed>& wanted)
 {
     const auto less = [](const Keyed& a, const Keyed& b) { return a.m_key < b.m_key; };
@@ -92,7 +92,7 @@ void expectSameButForNumbers(const std::vector<Keyed>& found, const std::vector<
     }
 }
 
-// Where a node is nearest to a vertex of a face, and nearer than the thickness: by brute force, sorted.
+// Returns the nodes that are nearest to a vertex of a face, and nearer than the thickness: by brute force, sorted.
 std::vector<FeatureKey> nodesNearVertices(const StepCase& step)
 {
     std::vector<FeatureKey> keys;
@@ -130,8 +130,8 @@ void takeNodesNearVertices(std::vector<Keyed>& contacts, const StepCase& step)
     contacts.erase(taken, contacts.end());
 }
 
-// The same contacts with cloth and obstacle exchanged. The local frame has its origin at the other feature: gaps differ
-// by rounding.
+// Expects equal contacts with cloth and obstacle exchanged. The local frame has its origin at the other feature, so
+// gaps differ by rounding.
 void expectExchanged(std::vector<Keyed> found, const StepCase& swapped, std::vector<Keyed> wanted, const StepCase& step)
 {
     takeNodesNearVertices(found, swapped);
@@ -203,7 +203,7 @@ protected:
         return result;
     }
 
-    // Sorted by what they are between.
+    // Returns the contacts sorted by their features.
     std::vector<Keyed> keyedContacts(const StepCase& step)
     {
         const Side cloth = makeSide({step.m_cloth}), obstacle = makeSide({step.m_obstacle});
@@ -214,13 +214,13 @@ protected:
         return keyed;
     }
 
-    // Of the triangles at the step's start.
+    // Returns the pairs of the triangles at the step's start.
     MeshPairs pairsOf(const StepCase& step)
     {
         return meshPairsOn(GetParam().m_settings, step.m_cloth, step.m_obstacle, step.m_thickness);
     }
 
-    // Nothing within the thickness is missed, nothing beyond it is kept, in the numbers as they were rounded.
+    // Expects every pair within the thickness and none beyond it, in the rounded numbers.
     void expectTruth(const StepCase& step, const std::vector<Contact>& contacts)
     {
         Side cloth = makeSide({step.m_cloth});
@@ -238,7 +238,7 @@ protected:
         }
         for (const Contact& contact : contacts)
         {
-            // 6.6e-5 of the extent: what the certified distance keeps unnecessarily (bound 4).
+            // The certified distance keeps pairs unnecessarily up to 6.6e-5 of the extent (bound 4).
             EXPECT_LE(contactDistance(contact, cloth, obstacle) - double(step.m_thickness),
                       6.6e-5 * contactExtent(contact, cloth, obstacle))
                 << describe(contact);
@@ -298,7 +298,7 @@ TEST_P(MeshRows, Row13FlippedWindingAndInvertedElements)
 {
     StepCase original = fallingCase("torus", 16, 0.03f, 1113);
     SCOPED_TRACE(original.trace());
-    // Every fifth node goes to the other side of its neighbours in the step: faces turn over.
+    // Every fifth node moves to the other side of its neighbours in the step: faces turn over.
     for (std::size_t node = 0; node < original.m_cloth.vertexCount(); node += 5)
         original.m_end[3 * node] += node % 2 ? 0.16f : -0.16f;
     StepCase ended = original;
@@ -362,8 +362,8 @@ TEST_P(MeshRows, Row20NonManifoldAndDuplicateFaces)
     EXPECT_GE(keyed.size(), reference.m_contacts.size());
 }
 
-// The same pairs and contacts whichever mesh is the cloth and however its triangles are numbered. (Device against host,
-// bit for bit, is HostDeviceTest's.)
+// Pairs and contacts do not depend on which mesh is the cloth or on the numbering of its triangles. (HostDeviceTest
+// compares device and host, bit for bit.)
 TEST_P(MeshRows, Row23SidesSwappedAndTrianglesShuffled)
 {
     std::size_t nearVertices = 0;

@@ -33,7 +33,7 @@ Sides makeSides(const StepCase& step)
     return sides;
 }
 
-// Of loose triangles: the one that owns the feature.
+// Returns the one loose triangle that owns the feature.
 std::uint32_t triangleOfEdge(const Side& side, std::uint32_t edge)
 {
     return side.m_pool.edges()[edge].m_vertices[0] / 3;
@@ -68,15 +68,16 @@ Vector3 normalOf(const Contact& contact)
     return {contact.m_normal[0], contact.m_normal[1], contact.m_normal[2]};
 }
 
-// Whether the closest point is farther than `rounding` from every corner.
+// Returns true if the closest point is farther than `rounding` from every corner.
 bool awayFromCorners(const Vector3& point, const std::array<Vector3, 3>& corners, double rounding)
 {
     return std::all_of(corners.begin(), corners.end(),
                        [&](const Vector3& corner) { return length(point - corner) > rounding; });
 }
 
-// Which pairs of features must have a contact: around loose triangles every direction is open, so all that are within
-// 0.9 of the reach, whatever their shape; at a cloth's corner its node has the contact, at an edge's end the others.
+// Finds the pairs of features that must have a contact. Around loose triangles every direction is open, so all pairs
+// within 0.9 of the reach are required, whatever their shape. At a cloth's corner its node has the contact, at an
+// edge's end the others.
 class RequiredPairs
 {
 public:
@@ -86,7 +87,7 @@ public:
             m_found.insert({contact.m_kind, contact.m_clothFeature, contact.m_obstacleFeature});
     }
 
-    // Only those of a thin face: planes and edges of others may have passed something near by, which then has no
+    // Keeps only pairs of a thin face. Planes and edges of others may have passed something near by, which then has no
     // contact with them.
     void ofThinFaces(Thin thin)
     {
@@ -199,7 +200,7 @@ std::size_t expectCrossingsFound(const Sides& sides)
     return crossed;
 }
 
-// A contact that was met before the step's end: where the cloth's point started, it was in front of the normal.
+// Expects of a contact that was met before the step's end that the cloth's point started in front of the normal.
 void expectSidesOfMeetings(const Sides& sides)
 {
     for (const Contact& contact : sides.m_contacts)
@@ -253,7 +254,7 @@ StripCase nodeOverStrip(float size, float width, float height, bool moving, Rand
 }
 }  // namespace
 
-TEST(Needles, AtRestNoneIsLostAndDirectionsAreTrue)
+TEST(Needles, RestingNeedlesLoseNoContactAndDirectionsAreTrue)
 {
     std::size_t near = 0;
     for (const Thin thin : {Thin::Cloth, Thin::Obstacle, Thin::Both})
@@ -273,8 +274,8 @@ TEST(Needles, AtRestNoneIsLostAndDirectionsAreTrue)
     EXPECT_GT(near, 1000u);
 }
 
-// As at rest what is near has contacts. A node whose path crosses a face has a contact of its triangle there, and all
-// that met have normals to the side that they came from.
+// Near features have contacts, as at rest. A node whose path crosses a face has a contact of its triangle there. All
+// features that met have normals to the side that they came from.
 TEST(Needles, MovingNoneIsPassedAndSidesAreTrue)
 {
     std::size_t near = 0, crossed = 0;

@@ -91,7 +91,7 @@ TEST_P(QueryLimitsTest, LimitsArePassedByOne)
         }
 }
 
-// What a motion finds is counted in full when it is too much to list, and when its features are too many to test.
+// The hits of a motion are counted in full when they are too many to list, and when its features are too many to test.
 TEST_P(QueryLimitsTest, MotionsBeyondTheirLimits)
 {
     const SelfCase motion = soupSelfCase(300, 116);

@@ -33,7 +33,7 @@ bool exactlyIntersect(const TrianglePair& pair)
     return drape::trianglesIntersect(a, b);
 }
 
-// Whether the pair has a node-face or face-vertex contact with a gap of at most `gap` (m).
+// Returns true if the pair has a node-face or face-vertex contact with a gap of at most `gap` (m).
 bool touchesWithin(const std::vector<Contact>& contacts, float gap)
 {
     return std::any_of(contacts.begin(), contacts.end(),
@@ -70,7 +70,7 @@ TEST_P(StressRows, Row01CoplanarOverlappingAndDisjoint)
     EXPECT_TRUE(run(allOrders(disjoint)).m_all.empty());
 }
 
-// One vertex in common, two, or all, in meshes that know nothing of each other.
+// The meshes are separate and have one vertex in common, two, or all.
 TEST_P(StressRows, Row02SharedByPositionTouchesAtDistanceZero)
 {
     const TrianglePair vertex = {{0, 0, 0, -1, 1, 0, -1, 1, -1}, kFace};
@@ -88,7 +88,7 @@ TEST_P(StressRows, Row02SharedByPositionTouchesAtDistanceZero)
 
 namespace
 {
-// The face and a second triangle in one mesh: `shared` of its corners are the face's first ones, by index or by
+// Makes the face and a second triangle in one mesh. The first `shared` of its corners are the face's, by index or by
 // position only.
 TriangleMesh twoTriangles(const Corners& second, std::int32_t shared, bool byIndex)
 {
@@ -100,7 +100,7 @@ TriangleMesh twoTriangles(const Corners& second, std::int32_t shared, bool byInd
     return mesh;
 }
 
-// A step at rest of a cloth whose second triangle was far from its first before.
+// Makes a step at rest of a cloth whose second triangle was far from its first before.
 SelfStepCase restingOnItself(const TriangleMesh& mesh)
 {
     SelfStepCase step = {{"two triangles", mesh, mesh.m_positions}, mesh.m_positions, kThickness};
@@ -110,8 +110,8 @@ SelfStepCase restingOnItself(const TriangleMesh& mesh)
 }
 }  // namespace
 
-// Of one mesh with itself: triangles that share a vertex by index cross for no query, and features that share one touch
-// neither in a motion nor in a step; by position alone they do.
+// Tests one mesh against itself. No query reports a crossing of triangles that share a vertex by index. Features that
+// share one touch neither in a motion nor in a step. Features that share only a position do.
 TEST_P(StressRows, Row02SharedByIndexIsSkipped)
 {
     const std::unique_ptr<Queries> queries = makeQueries(GetParam().m_settings);
@@ -145,7 +145,7 @@ TEST_P(StressRows, Row03VertexExactlyOnAFaceInAllOrders)
     expectAllHit(touching);
     for (const std::vector<Contact>& contacts : run(allOrders(touching)).m_contacts)
         EXPECT_TRUE(touchesWithin(contacts, 0.0f));
-    // And an obstacle's vertex on the cloth's face.
+    // The second case is an obstacle's vertex on the cloth's face.
     expectAllHit({kFace, touching.m_cloth});
 }
 
@@ -172,7 +172,7 @@ TEST_P(StressRows, Row05NeedlesZeroAreasAndDuplicateVertices)
         expectNoneHit({away, kFace});
         expectNoneHit({kFace, away});
     }
-    // Near, not touching: the segment's end and the point are within the thickness.
+    // The shapes are near but do not touch: the segment's end and the point are within the thickness.
     for (const Corners& shape : {segment, doubled, point})
     {
         Corners above = shape;
@@ -181,7 +181,7 @@ TEST_P(StressRows, Row05NeedlesZeroAreasAndDuplicateVertices)
         for (const std::vector<Contact>& contacts : run(allOrders({above, kFace})).m_contacts)
             EXPECT_TRUE(touchesWithin(contacts, 0.5001f * kThickness));
     }
-    // At random: no needle that truly meets the face is missed.
+    // Random needles: none that truly meets the face is missed.
     Random random(1005);
     std::vector<TrianglePair> meeting;
     while (meeting.size() < 200)
@@ -197,7 +197,7 @@ TEST_P(StressRows, Row05NeedlesZeroAreasAndDuplicateVertices)
     EXPECT_EQ(run(meeting).m_intersecting, meeting.size()) << "seed 1005";
 }
 
-// As narrow as floats near zero alone can be: 1e-8 m, around the origin.
+// Uses the narrowest needles that only floats near zero can represent: 1e-8 m, around the origin.
 TEST_P(StressRows, Row05NeedlesOfTenNanometresAtTheOrigin)
 {
     constexpr float kWidth = 1e-8f;  // m
@@ -225,7 +225,8 @@ TEST_P(StressRows, Row05NeedlesOfTenNanometresAtTheOrigin)
         for (const std::vector<Contact>& contacts : run(allOrders({needle, below})).m_contacts)
             EXPECT_TRUE(touchesWithin(contacts, 0.5001f * kThickness));
     }
-    // At random, their tips at the origin: none that truly meets the face is missed, whichever of the two is the cloth.
+    // Random needles with their tips at the origin: none that truly meets the face is missed, with either of the two as
+    // the cloth.
     Random random(1006);
     std::vector<TrianglePair> meeting, swapped;
     for (int tries = 0; tries < 1000; ++tries)
@@ -324,12 +325,12 @@ TEST_P(StressRows, Row10TwoIdenticalMeshesMeetInEveryPair)
 
 TEST_P(StressRows, Row21ParallelAndCollinearEdges)
 {
-    // Edges on one line that overlap in part, wholly, or in one point, with faces to opposite sides.
+    // The edges lie on one line and overlap in part, wholly, or in one point, with faces to opposite sides.
     expectAllHit({{1, 0, 0, 3, 0, 0, 2, 1, -1}, kFace});
     expectAllHit({{-1, 0, 0, 5, 0, 0, 2, 1, -1}, kFace});
     expectAllHit({{4, 0, 0, 6, 0, 0, 5, 1, -1}, kFace});
     expectNoneHit({{4.01f, 0, 0, 6, 0, 0, 5, 1, -1}, kFace});
-    // Parallel, half a thickness apart.
+    // The edges are parallel, half a thickness apart.
     for (const std::vector<Contact>& contacts :
          run(allOrders({{1, 0, -0.005f, 3, 0, -0.005f, 2, 1, -1}, kFace})).m_contacts)
     {

@@ -26,11 +26,11 @@ struct BackendCase
 std::vector<BackendCase> openClBackends();  // at least one; perhaps missing
 std::vector<BackendCase> allBackends();     // the host first
 
-// For INSTANTIATE_TEST_SUITE_P.
+// Names the cases of INSTANTIATE_TEST_SUITE_P.
 std::string backendName(const testing::TestParamInfo<BackendCase>& info);
 void PrintTo(const BackendCase& backend, std::ostream* stream);
 
-// For SetUp(): fails or skips the test when the back end is not there.
+// Call this in SetUp(). Fails or skips the test if the back end is missing.
 void requireBackend(const BackendCase& backend);
 
 // A fixture whose parameter is a back end that is there.
@@ -40,7 +40,7 @@ protected:
     void SetUp() override;
 };
 
-// The same with the device of an OpenCL back end open.
+// A BackendTest with the device of an OpenCL back end open.
 class DeviceTest : public BackendTest
 {
 protected:
@@ -49,9 +49,9 @@ protected:
     std::unique_ptr<Device> m_device;
 };
 
-// Null, with a failure recorded, when it cannot be made.
+// Returns null, with a failure recorded, if it cannot be made.
 std::unique_ptr<Pipeline> makePipeline(const Settings& settings);
-// The device of an OpenCL back end; null, with a failure recorded, when it cannot be opened. profiled: see
-// Device::open().
+// Opens the device of an OpenCL back end. Returns null, with a failure recorded, if it cannot be opened. `profiled`:
+// see Device::open().
 std::unique_ptr<Device> openDevice(const BackendCase& backend, bool profiled = false);
 }  // namespace drape::test

@@ -29,7 +29,7 @@ void guard(Device& device, Buffer<T>& buffer, std::size_t count)
         "clEnqueueFillBuffer");
 }
 
-// As guard(), filled with the source.
+// Fills the guarded buffer with the source; otherwise equal to guard().
 template <typename T>
 void guardCopy(Device& device, Buffer<T>& buffer, const std::vector<T>& source)
 {

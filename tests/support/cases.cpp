@@ -64,7 +64,7 @@ void append(TriangleMesh& mesh, const RandomTriangle& triangle, const Vector3& p
     }
 }
 
-// Height of the surface over (x, z), the highest; false when there is none.
+// Computes the height of the highest surface over (x, z). Returns false if there is none.
 bool surfaceHeight(const TriangleMesh& mesh, double x, double z, double& height)
 {
     bool found = false;
@@ -96,8 +96,8 @@ TriangleMesh repeated(int count, const std::vector<float>& triangle)
     return looseTriangles(corners);
 }
 
-// From x (m) on, each triangle's centroid is farther than the one before by a third: a mean or a code parts off one
-// triangle at a time.
+// Makes a line of triangles from x (m) on. Each centroid is farther than the one before by a third: a mean or a code
+// splits off one triangle at a time.
 TriangleMesh doublingLine(int count, float x)
 {
     std::vector<float> corners;
@@ -196,7 +196,7 @@ StepCase drapedCase(const std::string& shape, int nodes, float thickness, std::u
                      shapeNamed(shape),
                      {},
                      thickness};
-    // Off the shape's symmetries and away from its vertices.
+    // The cloth is moved off the shape's symmetries and away from its vertices.
     translate(step.m_cloth.m_positions, random.uniform(-0.1f, 0.1f), 0.0f, random.uniform(-0.1f, 0.1f));
     disturb(step.m_cloth.m_positions, 0.005f, random);
     drapeOver(step.m_obstacle, step.m_cloth, 0.1f * thickness, 1.4f * thickness, random);
@@ -247,7 +247,7 @@ StepCase needleCase(Thin thin, int triangles, float size, bool moving, std::uint
         for (std::size_t k = step.m_end.size(); k < step.m_cloth.m_positions.size(); ++k)
             step.m_end.push_back(step.m_cloth.m_positions[k] + way[k % 3]);
     }
-    // What lies near at the step's end is wanted.
+    // Features that are near at the step's end are wanted.
     step.m_end.swap(step.m_cloth.m_positions);
     return step;
 }

@@ -41,15 +41,15 @@ struct StepCase
 
 TriangleMesh shapeNamed(const std::string& name);
 
-// A mesh of one triangle or more: corners in order, none shared.
+// Makes a mesh of one triangle or more: corners in order, none shared.
 TriangleMesh looseTriangles(const std::vector<float>& corners);
 
-// Loose triangles with a square metre's half each, all at one place at height y.
+// Makes loose triangles of half a square metre each, all at one position at height y.
 TriangleMesh coincidentTriangles(int count, float y);
 
-// Meshes that hierarchies may fail at: all centroids equal, all corners in one point, lines whose triangles grow in
-// distance, an even line, and a soup with nodes that are NaN, infinite and near the largest float. triangles: of the
-// large ones.
+// Returns meshes that hierarchies may fail at. All centroids are equal, all corners lie in one point, or triangles lie
+// on a line at growing or even distances. A soup has nodes that are NaN, infinite and near the largest float.
+// `triangles` is the size of the large ones.
 using NamedMesh = std::pair<std::string, TriangleMesh>;
 std::vector<NamedMesh> degenerateMeshes(int triangles);
 
@@ -61,25 +61,25 @@ void translate(std::vector<float>& positions, float x, float y, float z);
 // Adds a random offset of at most `size` in each coordinate.
 void disturb(std::vector<float>& positions, float size, Random& random);
 
-// A cloth of nodes × nodes draped over the shape; ends of the step equal.
+// Makes a cloth of nodes × nodes draped over the shape; the step's start and end are equal.
 StepCase drapedCase(const std::string& shape, int nodes, float thickness, std::uint32_t seed);
-// The same, falling and shaking through the surface within the step.
+// Makes the cloth fall and shake through the surface within the step.
 StepCase fallingCase(const std::string& shape, int nodes, float thickness, std::uint32_t seed);
 // Triangles that share nothing, crossing one another; at rest or moving.
 StepCase soupCase(int clothTriangles, int obstacleTriangles, bool moving, std::uint32_t seed);
 
-// Which side's triangles are needles and caps, turned at random, 10³ to 10⁷ times as long as they are wide before their
-// corners are rounded; the other's are fat.
+// Selects the side whose triangles are needles and caps, rotated at random, 10³ to 10⁷ times as long as they are wide
+// before their corners are rounded. The other side's triangles are fat.
 enum class Thin
 {
     Cloth,
     Obstacle,
     Both
 };
-// Loose triangles of up to `size` (m), cloth triangle i near obstacle triangle i; at rest, or each of them moving along
-// a line of its own of up to five thicknesses.
+// Makes loose triangles of up to `size` (m), cloth triangle i near obstacle triangle i. They are at rest, or each moves
+// along a line of its own by up to five thicknesses.
 StepCase needleCase(Thin thin, int triangles, float size, bool moving, std::uint32_t seed);
 
-// The obstacle's triangles over the box of the cloth grown by `margin`; vertices nobody uses are dropped.
+// Returns the obstacle's triangles over the box of the cloth grown by `margin`; unused vertices are dropped.
 TriangleMesh partNear(const TriangleMesh& obstacle, const std::vector<float>& positions, float margin);
 }  // namespace drape::test

@@ -1,9 +1,8 @@
-// Which contacts a step at rest must report, by brute force in double precision over all features.
+// Finds the contacts that a step at rest must report, by brute force in double precision over all features.
 //
-// The conditions are those that kernels/lib/feature_contact.h states: within reach and locally closest. Only pairs that
-// satisfy them strictly, by the margins below, are required: at a seam between two features rounding decides which of
-// them reports, and both answers are good. Own code; see oracle.h. Lengths in metres. O(features²) with a box test
-// first.
+// The conditions are those of kernels/lib/feature_contact.h: within reach and locally closest. Only pairs that satisfy
+// them strictly, by the margins below, are required. At a seam between two features rounding decides which of them
+// reports, and both answers are correct. Own code; see oracle.h. Lengths in metres. O(features²) with a box test first.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +15,12 @@ namespace drape::test
 {
 // A required pair is nearer than reach × (1 - this): twelve roundings of a distance are 7e-7 of it.
 constexpr double kReachMargin = 1e-5;
-// Its closest points keep this weight from a feature's border. Rounding moves them by about 1e-6 of an edge, or that
-// over the sine of the angle between two edges, which is kept above kSineMargin.
+// A required pair's closest points keep this weight from a feature's border. Rounding moves them by about 1e-6 of an
+// edge, or that over the sine of the angle between two edges, which is kept above kSineMargin.
 constexpr double kWeightMargin = 1e-3;
 constexpr double kSineMargin = 0.02;
-// Its features are farther apart than this part of the pair's extent: closer, their direction is noise (DRAPE_SEAM).
+// A required pair's features are farther apart than this part of the pair's extent. The direction between closer
+// features is noise (DRAPE_SEAM).
 constexpr double kTouchMargin = 2e-5;
 
 struct RequiredContact
@@ -31,16 +31,17 @@ struct RequiredContact
     Vector3 m_normal;  // unit, from the obstacle to the cloth
 };
 
-// Of cloth.m_end against obstacle.m_start; the cloth must not have passed anything. In canonical order.
+// Returns the contacts of cloth.m_end against obstacle.m_start in canonical order. The cloth must not have passed
+// anything.
 std::vector<RequiredContact> requiredContacts(const Side& cloth, const Side& obstacle, double reach);
 
-// From the obstacle's feature to the cloth's, the cloth at its end, between their closest points.
+// Returns the offset from the obstacle's feature to the cloth's between their closest points, the cloth at its end.
 Vector3 contactOffset(const Contact& contact, const Side& cloth, const Side& obstacle);
-// True distance of the features that a contact names, the cloth at its end.
+// Returns the true distance of the features that a contact names, the cloth at its end.
 double contactDistance(const Contact& contact, const Side& cloth, const Side& obstacle);
-// Largest coordinate of the features that a contact names, relative to one of the obstacle's vertices.
+// Returns the largest coordinate of the features that a contact names, relative to one of the obstacle's vertices.
 double contactExtent(const Contact& contact, const Side& cloth, const Side& obstacle);
 
-// Whether the contact is the required one: kind and features.
+// Returns true if the contact is the required one: kind and features.
 bool sameFeatures(const RequiredContact& required, const Contact& contact);
 }  // namespace drape::test

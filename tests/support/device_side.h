@@ -23,9 +23,9 @@ struct DeviceSide
     bool allIntact(Device& device);
 };
 
-// The program of kernels/<name>.cl from the tests' cache.
+// Returns the program of kernels/<name>.cl from the tests' cache.
 cl::Program programOf(Device& device, const std::string& name, const std::string& defines = std::string());
-// For stages that need several.
+// Loads programs for stages that need several.
 ProgramLoader programsOf(Device& device);
 
 // Zeroed counters on the device, and reading them back.

@@ -30,14 +30,14 @@ private:
     std::string m_previous;
 };
 
-// Whether a machine without an OpenCL device is to fail tests that need one.
+// Returns true if tests that need an OpenCL device must fail on a machine without one.
 inline bool isDeviceExpected()
 {
     const char* const none = std::getenv("DRAPE_TEST_NO_DEVICE");
     return !none || std::string(none) != "1";
 }
 
-// An empty folder that goes with what is in it.
+// An empty folder that is removed with its contents.
 class TemporaryFolder
 {
 public:

@@ -51,7 +51,7 @@ void LiveScene::moveObstacles()
     }
 }
 
-// Two of three times where it was.
+// Moves the obstacle in one of three cases.
 void LiveScene::place(LiveMesh& obstacle)
 {
     obstacle.m_poseBefore = obstacle.m_pose;

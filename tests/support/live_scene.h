@@ -24,7 +24,7 @@ public:
     // Gives the coming step to a pipeline that is none of the scene's, with every mesh added anew: of the steps before,
     // nothing that it kept can matter. added: what the call before added, empty at first.
     void giveAnew(Pipeline& pipeline, std::vector<MeshId>& added) const;
-    // In the order in which giveAnew() adds.
+    // Returns the meshes in the order in which giveAnew() adds them.
     std::vector<MeshId> ids() const;
 
 private:
@@ -33,8 +33,8 @@ private:
         MeshId m_id;
         TriangleMesh m_mesh;
         std::vector<float> m_home;
-        std::vector<float> m_start;               // of a cloth, in the coming step
-        std::vector<float> m_poseBefore, m_pose;  // of an obstacle that has a place, likewise; else empty
+        std::vector<float> m_start;               // start positions of a cloth in the coming step
+        std::vector<float> m_poseBefore, m_pose;  // poses of a placed obstacle in the coming step; else empty
     };
     struct LivePair
     {

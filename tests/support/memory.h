@@ -1,4 +1,4 @@
-// How much memory this process holds, and how much more is no leak. Linux.
+// Measures the memory of this process, and defines the growth that counts as no leak. Linux.
 #pragma once
 
 #include <cstddef>

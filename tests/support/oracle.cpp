@@ -42,7 +42,7 @@ NearestOnTriangle nearestOnTriangle(const Vector3& p, const Vector3 corners[3])
     if (determinant > 1e-24 * uu * vv)
     {
         double second = (wu * vv - wv * uv) / determinant, third = (wv * uu - wu * uv) / determinant;
-        // The determinant of a thin triangle has lost digits: what is left along its edges is solved for again.
+        // The determinant of a thin triangle has lost digits. The remainder along its edges is solved for again.
         for (int round = 0; round < 3; ++round)
         {
             const Vector3 left = w - (second * u + third * v);

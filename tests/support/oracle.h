@@ -31,7 +31,7 @@ struct NearestOnSegments
 };
 NearestOnSegments nearestOnSegments(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d);
 
-// 0 when they have a point in common (exact), else the least distance.
+// Returns 0 if they have a point in common (exact), else the least distance.
 double triangleDistance(const Vector3 a[3], const Vector3 b[3]);
 
 // All normals of the triangles around a feature lie within the half-angle of the axis. everything: no bound.

@@ -1,4 +1,4 @@
-// What changes the process that it runs in for good, in one of its own.
+// Runs code that changes its process for good in a process of its own.
 #pragma once
 
 #include <gtest/gtest.h>

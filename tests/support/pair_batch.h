@@ -25,10 +25,10 @@ struct BatchResult
     std::vector<Contact> m_all;
 };
 
-// Of all pairs at the thickness (m). Records a failure and returns nothing when there is no pipeline.
+// Runs all pairs at the thickness (m). Records a failure and returns nothing if there is no pipeline.
 BatchResult runBatch(const Settings& settings, const std::vector<TrianglePair>& pairs, float thickness);
 
-// The pair in all 36 orders of its corners.
+// Returns the pair in all 36 orders of its corners.
 std::vector<TrianglePair> allOrders(const TrianglePair& pair);
 
 // Fails the test unless every number of each contact is finite and each normal has length one.

@@ -15,9 +15,9 @@ MeshId addObstacle(Pipeline& pipeline, const TriangleMesh& mesh);
 // Writes the cloth's nodes for the coming step.
 void setMotion(Pipeline& pipeline, MeshId cloth, const std::vector<float>& start, const std::vector<float>& end);
 
-// submit() and finish().
+// Calls submit() and finish().
 std::vector<Contact> runStep(Pipeline& pipeline);
 
-// A pipeline's contacts of one case. tube: as of Pipeline::addPair.
+// Returns a pipeline's contacts of one case. `tube`: see Pipeline::addPair.
 std::vector<Contact> runCase(Pipeline& pipeline, const StepCase& step, float tube = -1.0f);
 }  // namespace drape::test

@@ -13,7 +13,7 @@ namespace drape::test
 {
 namespace
 {
-// Empty where it is not set.
+// Returns "" if the variable is not set.
 std::string variable(const char* name)
 {
     const char* const value = std::getenv(name);

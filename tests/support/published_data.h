@@ -11,11 +11,11 @@
 
 namespace drape::test
 {
-// The Stanford bunny of 69,666 triangles: bunny_69k.obj in the folder DRAPE_MODELS_DIR, else the one of Debian's
+// Loads the Stanford bunny of 69,666 triangles: bunny_69k.obj in the folder DRAPE_MODELS_DIR, else the one of Debian's
 // glmark2-data.
 bool loadBunny(TriangleMesh& bunny);
 
-// The path of a file in the folder DRAPE_TRUTH_DIR.
+// Finds the path of a file in the folder DRAPE_TRUTH_DIR.
 bool findTruth(const std::string& name, std::string& path);
 
 // A model of studyModelNames() in scenes/models.h. Where its file is not there the test goes on with the others, and

@@ -18,11 +18,11 @@ struct SelfCase
     std::vector<float> m_end;  // positions at its end
 };
 
-// Loose triangles that fly through one another.
+// Makes loose triangles that fly through one another.
 SelfCase soupSelfCase(int triangles, std::uint32_t seed);
-// A cloth of nodes × nodes that crumples: every node goes to a place of its own near a plane.
+// Makes a cloth of nodes × nodes that crumples: every node moves to a position of its own near a plane.
 SelfCase crumpledCase(int nodes, std::uint32_t seed);
-// The above at several sizes, a mesh of one, two and no triangles, and one with a bad node at the end.
+// Returns the cases above at several sizes, a mesh of one, two and no triangles, and one with a bad node at the end.
 std::vector<SelfCase> selfCases();
 
 // A step of a cloth that collides with itself.
@@ -33,10 +33,10 @@ struct SelfStepCase
     float m_thickness;          // m
 };
 
-// A cloth of nodes × nodes folded into layers that lie on one another, a little disturbed, and moved by up to `motion`
-// (m) in a direction of each node's own. (nodes - 1) is a multiple of layers.
+// Makes a cloth of nodes × nodes folded into layers that lie on one another, a little disturbed, and moved by up to
+// `motion` (m) in a direction of each node's own. (nodes - 1) is a multiple of layers.
 SelfStepCase foldedCase(int nodes, int layers, float motion, std::uint32_t seed);
-// Folded, crumpled, torn, with a bad node, of one triangle and of none.
+// Returns folded, crumpled and torn cloths, one with a bad node, of one triangle and of none.
 std::vector<SelfStepCase> selfStepCases();
 
 // Adds the cloth, names it for the step and sets its nodes.

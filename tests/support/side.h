@@ -53,8 +53,8 @@ std::vector<Contact> contactsOfAllPairs(const Side& cloth, const Side& obstacle,
 bool contains(const std::vector<Candidate>& sorted, std::uint32_t cloth, std::uint32_t obstacle);
 
 // Names a contact by its kind and the vertices of its features, whatever the numbers of triangles and edges and the
-// order of their corners: kind, up to three vertices of the cloth's feature, up to three of the obstacle's, each
-// sorted.
+// order of their corners. The key is the kind, up to three vertices of the cloth's feature, and up to three of the
+// obstacle's, each sorted.
 using FeatureKey = std::array<std::uint32_t, 7>;
 FeatureKey featureKey(const Contact& contact, const Side& cloth, const Side& obstacle);
 

@@ -1,4 +1,4 @@
-// What kernels/lib/slot_sums.h must come to.
+// Expected results of kernels/lib/slot_sums.h.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace drape::test
 {
-// The sums over slots that have so many hits each.
+// Returns the sums over slots that have these numbers of hits.
 inline std::vector<std::uint32_t> slotSumsOf(const std::vector<std::uint32_t>& counts)
 {
     std::vector<std::uint32_t> sums(DRAPE_SLOT_SUMS, 0);

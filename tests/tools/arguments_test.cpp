@@ -34,7 +34,7 @@ TEST(Suggestion, IsTheNearestWord)
         EXPECT_EQ(nearestWord(typed, options), meant) << typed;
 }
 
-TEST(Suggestion, IsNoneWhereNothingIsNear)
+TEST(Suggestion, IsEmptyIfNothingIsNear)
 {
     const Words options = {"--steps", "--dt", "--json"};
     for (const char* typed : {"--colour", "--no-such-option", "", "-", "--", "--x", "3", "--frobnicate"})
@@ -95,7 +95,7 @@ TEST_F(ClothDropArguments, AnOptionInPlaceOfAFileIsTheMistakeThatIsTold)
     expectRefused(run({"--picture", "-h"}), {"--picture needs a value", "option -h follows"});
     expectRefused(run({"steps", "3"}), {"'steps'", "did you mean --steps?"});
     expectRefused(run({"--steps", "3", "4"}), {"'4'", "belongs to no option"});
-    // Such a name can still be given with an equals sign.
+    // The equals sign still allows such a name.
     ASSERT_EQ(runSmall({"--steps", "1", "--csv=" + path("--steps")}).m_exitCode, 0);
     EXPECT_FALSE(readAll(path("--steps")).empty());
 }
@@ -109,6 +109,21 @@ TEST_F(ClothDropArguments, AFileWhoseNameBeginsWithDashesReachesTheRunsInChildre
                                 "--compare", "--compare-cap", "9", "--quiet"});
     std::filesystem::current_path(folder);
     EXPECT_EQ(result.m_exitCode, 0) << result.m_err;
+}
+
+TEST_F(ClothDropArguments, MistakesOfValuesAreToldInPlainSentences)
+{
+    expectRefused(run({"--threads", "many"}), {"--threads", "'many' must be a whole number from 0 to 64"});
+    expectRefused(run({"--threads", "99"}), {"'99' must be a whole number from 0 to 64"});
+    expectRefused(run({"--steps", "1.5"}), {"--steps cannot take the value '1.5'"});
+    expectRefused(run({"--steps", "3", "--steps", "4"}), {"--steps may be given only once"});
+    expectRefused(run({"--steps"}), {"--steps needs a value"});
+}
+
+TEST_F(ClothDropArguments, ABulletModeWithoutBulletIsRefused)
+{
+    expectRefused(runSmall({"--bullet-mode", "vfss"}), {"--bullet-mode needs --backend bullet"});
+    expectRefused(runSmall({"--bullet-mode", "vfss", "--compare"}), {"--compare-vfss"});
 }
 
 TEST_F(ClothDropArguments, HiddenOptionsAreNotSuggested)
@@ -165,6 +180,14 @@ TEST_F(CheckArguments, CommandsAndTheirOptionsAreKnownApart)
     expectRefused(run({"ccd", "a.bin", "triangles", "b.bin"}), {"command triangles follows ccd"});
     expectRefused(run({"triangles", "a.bin", "--mode", "exakt"}), {"--mode", "did you mean exact?", "moller"});
     expectRefused(run({"pairs", "a.obj", "b.obj", "c.obj"}), {"'c.obj'", "belongs to no option"});
+    expectRefused(run({"pairs"}), {"A is missing"});
+}
+
+TEST_F(CheckArguments, HelpListsTheExitCodesThatExist)
+{
+    const std::string help = run({"--help"}).m_out;
+    EXPECT_NE(help.find("--candidate-limit"), std::string::npos) << help;
+    EXPECT_EQ(help.find("hash"), std::string::npos) << help;
 }
 
 class WorldsArguments : public ToolTest

@@ -1,4 +1,4 @@
-// What cloth_drop refuses: one clear line and exit code 2, nothing run, nothing written.
+// Inputs that cloth_drop refuses with one clear line and exit code 2. Nothing runs and nothing is written.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -14,30 +14,30 @@ namespace drape::test
 {
 using BadInput = ToolTest;
 
-TEST_F(BadInput, missingFile)
+TEST_F(BadInput, AMissingFileIsRefused)
 {
     expectRefused(runSmall({"--obstacle", path("nowhere.obj")}), {"nowhere.obj", "no such file"});
 }
 
-TEST_F(BadInput, folder)
+TEST_F(BadInput, AFolderIsRefused)
 {
     expectRefused(runSmall({"--obstacle", path("")}), {"folder"});
 }
 
-TEST_F(BadInput, notAMesh)
+TEST_F(BadInput, AFileThatIsNoMeshIsRefused)
 {
     expectRefused(runSmall({"--obstacle", write("letter.txt", "Dear reader,\n")}), {"letter.txt", "not a mesh"});
     expectRefused(runSmall({"--obstacle", write("empty.ply", "")}), {"empty.ply", "empty"});
     expectRefused(runSmall({"--obstacle", write("broken.ply", "ply\nformat ascii 1.0\nelement")}), {"broken.ply"});
     expectRefused(runSmall({"--obstacle", write("broken.stl", "sol")}), {"broken.stl", "not a mesh"});
-    // A file is what its ending says, whatever another reader would make of it.
+    // A file's extension decides its format, even if another reader could read it.
     const std::string ply =
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
         "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
     expectRefused(runSmall({"--obstacle", write("ply.glb", ply)}), {"ply.glb", "not a mesh"});
 }
 
-TEST_F(BadInput, binaryFileThatSaysItIsLonger)
+TEST_F(BadInput, ABinaryFileWithAWrongLengthIsRefused)
 {
     const std::string json = "{\"asset\":{\"version\":\"2.0\"}}  ", chunk = "JSON" + json;
     const auto header = [](std::uint32_t version, std::size_t length)
@@ -59,8 +59,8 @@ TEST_F(BadInput, binaryFileThatSaysItIsLonger)
     expectRefused(runSmall({"--obstacle", write("none.glb", header(2, whole) + size + chunk)}), {"none.glb"});
 }
 
-// Whose readers call themselves for every level.
-TEST_F(BadInput, gltfNestedTooDeep)
+// Readers of the nodes call themselves for every level.
+TEST_F(BadInput, GltfNestedTooDeepIsRefused)
 {
     expectRefused(runSmall({"--obstacle", write("deep.gltf", std::string(200000, '['))}), {"deep.gltf", "deeper"});
     std::string chain = "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{}", twice = chain, quoted = chain;
@@ -76,7 +76,7 @@ TEST_F(BadInput, gltfNestedTooDeep)
     EXPECT_EQ(result.m_err.find("deeper"), std::string::npos) << result.m_err;
 }
 
-TEST_F(BadInput, stlThatIsNotWhole)
+TEST_F(BadInput, AnIncompleteStlIsRefused)
 {
     const std::string facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n";
     const std::string whole = "solid a\n" + facet + "endfacet\n";
@@ -93,15 +93,15 @@ TEST_F(BadInput, stlThatIsNotWhole)
     expectRefused(runSmall({"--obstacle", write("short.stl", binary)}), {"2 triangles", "184 bytes", "134"});
 }
 
-TEST_F(BadInput, pipesAndDevicesAreNotWaitedFor)
+TEST_F(BadInput, PipesAndDevicesAreNotWaitedFor)
 {
     ASSERT_EQ(mkfifo(path("pipe.obj").c_str(), 0600), 0);
     expectRefused(runSmall({"--obstacle", path("pipe.obj")}), {"pipe.obj", "is a pipe"});
     expectRefused(runSmall({"--obstacle", "/dev/zero"}), {"/dev/zero", "is a device"});
 }
 
-// What other readers open is no bad input.
-TEST_F(BadInput, isNotWhatOtherReadersOpen)
+// Accepts input that other readers open.
+TEST_F(BadInput, FilesThatOtherReadersOpenAreAccepted)
 {
     const auto obj = [](const std::string& vertex) { return "v 0 0 0\nv " + vertex + "\nv 0 1 0\nf 1 2 3\n"; };
     const std::string strips =
@@ -117,8 +117,8 @@ TEST_F(BadInput, isNotWhatOtherReadersOpen)
     expectRefused(runSmall({"--obstacle", write("hex.obj", obj("0x1p0 0 0"))}), {"line 2", "'0x1p0'", "decimal"});
 }
 
-// What is left out, or lost by rounding, is said.
-TEST_F(BadInput, losesAreTold)
+// Reports parts that are left out or lost by rounding.
+TEST_F(BadInput, LossesAreReported)
 {
     const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     const ToolRun two = runSmall({"--obstacle", write("two.obj", obj + "f 1 2\n"), "--steps", "1"});
@@ -130,7 +130,7 @@ TEST_F(BadInput, losesAreTold)
     EXPECT_NE(far.m_err.find("far.obj: centred"), std::string::npos) << far.m_err;
 }
 
-TEST_F(BadInput, whatIsReadIsNotWrittenOver)
+TEST_F(BadInput, InputFilesAreNotOverwritten)
 {
     const std::string mesh = write("in.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     for (const char* option : {"--json", "--csv", "--picture"})
@@ -146,14 +146,14 @@ TEST_F(BadInput, whatIsReadIsNotWrittenOver)
     expectRefused(runSmall({"--frames", mesh}), {"in.obj", "folder"});
 }
 
-TEST_F(BadInput, noTriangles)
+TEST_F(BadInput, AMeshWithoutTrianglesIsRefused)
 {
     expectRefused(runSmall({"--obstacle", write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n")}), {"points.obj"});
     expectRefused(runSmall({"--obstacle", write("repeats.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2\n")}),
                   {"repeats.obj", "no triangles"});
 }
 
-TEST_F(BadInput, indexOutOfRange)
+TEST_F(BadInput, AnIndexOutOfRangeIsRefused)
 {
     const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     expectRefused(runSmall({"--obstacle", write("high.obj", vertices + "f 1 2 4\n")}), {"high.obj", "out of range"});
@@ -167,7 +167,7 @@ TEST_F(BadInput, indexOutOfRange)
                   {"low.ply", "face 1", "out of range"});
 }
 
-TEST_F(BadInput, vertexThatIsNoNumber)
+TEST_F(BadInput, AVertexThatIsNoNumberIsRefused)
 {
     for (const char* bad : {"nan", "inf", "-inf", "1e39", "x"})
     {
@@ -177,7 +177,7 @@ TEST_F(BadInput, vertexThatIsNoNumber)
     }
 }
 
-TEST_F(BadInput, numbers)
+TEST_F(BadInput, BadNumbersAreRefused)
 {
     for (const char* option : {"--obstacle-size", "--cloth-size", "--steps", "--dt", "--thickness", "--time-limit"})
         for (const char* value :
@@ -192,8 +192,8 @@ TEST_F(BadInput, numbers)
     expectRefused(runSmall({"--thickness", "0.00009"}), {"--thickness", "0.0001"});
 }
 
-// Bullet would leave it out of collision and say nothing.
-TEST_F(BadInput, scenesOutOfBulletsReach)
+// Bullet would leave the cloth out of collision without a message.
+TEST_F(BadInput, ScenesOutOfBulletsReachAreRefused)
 {
     for (const char* option : {"--obstacle-size", "--cloth-size", "--drop-height", "--thickness"})
         for (const char* value : {"10001", "1e10", "1e38"})
@@ -204,7 +204,7 @@ TEST_F(BadInput, scenesOutOfBulletsReach)
     expectRefused(runSmall({"--drop-speed", "1e3", "--dt", "100"}), {"--dt", "100000 m in a step"});
 }
 
-TEST_F(BadInput, clothSizes)
+TEST_F(BadInput, BadClothSizesAreRefused)
 {
     for (const char* value : {"9", "9x", "x9", "1x9", "9x1", "0x0", "-9x9", "9x9x9", "99999x9"})
     {
@@ -213,7 +213,7 @@ TEST_F(BadInput, clothSizes)
     }
 }
 
-TEST_F(BadInput, optionsThatDoNotExistOrContradict)
+TEST_F(BadInput, UnknownAndContradictoryOptionsAreRefused)
 {
     expectRefused(runSmall({"--no-such-option"}), {"--no-such-option"});
     expectRefused(runSmall({"--backend", "abacus"}), {"abacus"});
@@ -223,7 +223,7 @@ TEST_F(BadInput, optionsThatDoNotExistOrContradict)
     expectRefused(runSmall({"--backend", "bullet", "--time-limit", "9", "--frames", path("frames")}), {"--time-limit"});
 }
 
-TEST_F(BadInput, unknownDeviceListsThoseThereAre)
+TEST_F(BadInput, AnUnknownDeviceIsRefusedWithAListOfDevices)
 {
     DRAPE_NEED_DEVICE();
     std::vector<std::string> words = {"no such device"};
@@ -233,14 +233,14 @@ TEST_F(BadInput, unknownDeviceListsThoseThereAre)
     expectRefused(runSmall({"--backend", "opencl", "--device", "no such device"}), words);
 }
 
-TEST_F(BadInput, crossoverThatIsNoNumber)
+TEST_F(BadInput, ACrossoverThatIsNoNumberIsRefused)
 {
     DRAPE_NEED_DEVICE();
     const ScopedVariable byCost("DRAPE_DEVICE", nullptr), crossover("DRAPE_CROSSOVER", "many");
     expectRefused(runSmall({"--backend", "auto"}), {"DRAPE_CROSSOVER", "many"});
 }
 
-TEST_F(BadInput, writesNothing)
+TEST_F(BadInput, RefusedRunsWriteNothing)
 {
     expectRefused(runSmall({"--obstacle", path("nowhere.obj"), "--json", path("a.json"), "--csv", path("a.csv"),
                             "--frames", path("frames"), "--picture", path("a.png")}),

@@ -1,4 +1,4 @@
-// The process that a run of Bullet's own collision has: it never outlives the one that started it.
+// The process of a run of Bullet's own collision never outlives its parent.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -20,7 +20,7 @@ std::string processFile(pid_t process, const std::string& name)
     return "/proc/" + std::to_string(process) + "/" + name;
 }
 
-// 0: none yet.
+// Returns 0 if there is no child yet.
 pid_t childOf(pid_t process)
 {
     pid_t child = 0;
@@ -28,13 +28,13 @@ pid_t childOf(pid_t process)
     return child;
 }
 
-// Whether it has become the program.
+// Returns true if the process has become the program.
 bool streams(pid_t process)
 {
     return readAll(processFile(process, "cmdline")).find("--stream-steps") != std::string::npos;
 }
 
-// Gone, or ended and not asked for its exit code by whoever has it now.
+// Returns true if the process is gone, or ended without its exit code being read.
 bool hasEnded(pid_t process)
 {
     const std::string status = readAll(processFile(process, "status"));
@@ -42,8 +42,8 @@ bool hasEnded(pid_t process)
 }
 }  // namespace
 
-// It is stopped first, as if in a step without end: one that runs may notice by itself that nobody reads.
-TEST_F(CappedChild, endsWithItsParent)
+// The child is stopped first, as if in an endless step. A running child may notice by itself that nobody reads.
+TEST_F(CappedChild, EndsWithItsParent)
 {
     for (const int signal : {SIGTERM, SIGKILL})
     {
@@ -60,7 +60,7 @@ TEST_F(CappedChild, endsWithItsParent)
     }
 }
 
-TEST_F(CappedChild, leavesWhatIsDoneToASignal)
+TEST_F(CappedChild, LeavesTheHandlingOfASignalUnchanged)
 {
     const pid_t parent = start({"--obstacle", "stairs", "--cloth", "17x17", "--steps", "100", "--backend", "host",
                                 "--compare", "--quiet", "--json", path("runs.json")});

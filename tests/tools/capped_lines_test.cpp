@@ -1,4 +1,4 @@
-// What is kept of a child's steps when its cap ends them, however the text comes.
+// The steps of a child that are kept when its time limit ends it, however the text is cut.
 #include "examples/cloth_drop/capped_lines.h"
 
 #include <gtest/gtest.h>
@@ -13,13 +13,13 @@ namespace
 {
 constexpr std::size_t kWhole = 1 << 20;
 
-// At a time in ms.
+// Returns a line with a time in ms.
 std::string line(const char* word, int time)
 {
     return std::string(word) + " " + std::to_string(1000000LL * time) + "\n";
 }
 
-// Steps of 10 ms, each measured for 30, one after the other.
+// Returns the lines of steps of 10 ms, each measured for 30, one after the other.
 std::string stepsOf(int count)
 {
     std::string text;

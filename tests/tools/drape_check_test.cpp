@@ -1,4 +1,4 @@
-// drape_check: its numbers on small inputs whose truth is plain, on every back end, and what it refuses.
+// drape_check: its numbers on small inputs with a known truth, on every back end, and the inputs that it refuses.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ namespace
 {
 using Json = nlohmann::json;
 
-// A record's bytes, as the files have them.
+// Returns a record's bytes in the file's format.
 std::string record(const std::vector<float>& coordinates, const std::vector<std::int32_t>& numbers)
 {
     std::string bytes(4 * (coordinates.size() + numbers.size()), '\0');
@@ -30,7 +30,7 @@ std::string record(const std::vector<float>& coordinates, const std::vector<std:
 
 const std::vector<float> kFace = {-3, -3, 0, 3, -3, 0, 0, 3, 0};
 
-// A vertex that goes from z = 1 to `end` over the face at rest, and the answer to give.
+// Returns the record of a vertex that goes from z = 1 to `end` over the face at rest, with the given answer.
 std::string motionRecord(float end, std::int32_t answer)
 {
     std::vector<float> points = {0, 0, 1};
@@ -47,7 +47,7 @@ std::string triangleRecord(float height, std::int32_t answer)
     return record(corners, {answer});
 }
 
-// A grid of two triangles, and one loose triangle at a height above them.
+// Returns a grid of two triangles, and one loose triangle at a height above them.
 std::string meshAt(float height)
 {
     const std::string z = std::to_string(height);
@@ -61,7 +61,7 @@ class Check : public ToolTest
 protected:
     const char* programVariable() const override { return "DRAPE_CHECK"; }
 
-    // The answers of the back ends, which must be the same but for back end, device and times.
+    // Returns the answer of the back ends, which must be equal apart from back end, device and times.
     Json answer(std::vector<std::string> arguments) const
     {
         arguments.insert(arguments.end(), {"--json", "-", "--backend", "host"});
@@ -90,9 +90,9 @@ private:
     }
 };
 
-TEST_F(Check, ccdCountsMissesAndFalseHits)
+TEST_F(Check, CcdCountsMissesAndFalseHits)
 {
-    // A hit and a miss that are true, a hit that is said to be none, and a miss that is said to be a hit.
+    // The records are a true hit and a true miss, a hit recorded as a miss, and a miss recorded as a hit.
     const std::string file =
         write("motions.bin", motionRecord(-1, 1) + motionRecord(0.1f, 0) + motionRecord(-1, 0) + motionRecord(0.1f, 1));
     const Json json = answer({"ccd", file});
@@ -100,7 +100,7 @@ TEST_F(Check, ccdCountsMissesAndFalseHits)
     EXPECT_EQ(json.at("misses"), 1);
     EXPECT_EQ(json.at("false_hits"), 1);
     EXPECT_GT(json.at("us_per_query"), 0);
-    // Within the separation all four touch.
+    // All four touch within the separation.
     const Json near = answer({"ccd", file, "--separation", "0.2"});
     EXPECT_EQ(near.at("misses"), 0);
     EXPECT_EQ(near.at("false_hits"), 2);
@@ -108,7 +108,7 @@ TEST_F(Check, ccdCountsMissesAndFalseHits)
     EXPECT_EQ(timed.at("misses"), 1);
 }
 
-TEST_F(Check, trianglesInEveryMode)
+TEST_F(Check, TrianglesAreCountedInEveryMode)
 {
     const std::string file = write("pairs.bin", triangleRecord(-0.5f, 1) + triangleRecord(0.001f, 0));
     for (const char* mode : {"fast", "exact", "moller"})
@@ -119,12 +119,12 @@ TEST_F(Check, trianglesInEveryMode)
         EXPECT_EQ(json.at("misses"), 0);
         EXPECT_EQ(json.at("false_hits"), 0);
     }
-    // Nearer than the rounding of floats lets the fast mode tell.
+    // The fast mode cannot decide below the rounding of floats.
     const std::string close = write("close.bin", triangleRecord(1e-44f, 0));
     EXPECT_EQ(answer({"triangles", close, "--mode", "exact"}).at("false_hits"), 0);
 }
 
-TEST_F(Check, pairsOfOneMeshAndOfTwo)
+TEST_F(Check, PairsOfOneMeshAndOfTwoAreCounted)
 {
     const std::string near = write("near.obj", meshAt(0.01f)), through = write("through.obj", meshAt(-0.5f));
     const Json alone = answer({"pairs", near, "--thickness", "0.011"});
@@ -138,7 +138,7 @@ TEST_F(Check, pairsOfOneMeshAndOfTwo)
     EXPECT_EQ(both.at("pairs_within"), 5);
 }
 
-TEST_F(Check, stepFindsWhatPasses)
+TEST_F(Check, StepFindsPassingFeatures)
 {
     const std::string above = write("above.obj", meshAt(0.5f)), below = write("below.obj", meshAt(-0.5f));
     const Json passing = answer({"step", above, below});
@@ -149,7 +149,7 @@ TEST_F(Check, stepFindsWhatPasses)
     EXPECT_EQ(answer({"step", above, above, "--separation", "0.6"}).at("vf_hits"), 3);
 }
 
-TEST_F(Check, stepNeedsTheFacesInTheirOrder)
+TEST_F(Check, StepNeedsTheFacesInTheirOrder)
 {
     const std::string vertices = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\n", faces = "f 1 2 3\nf 1 3 4\n";
     const std::string start = write("start.obj", vertices + "usemtl a\n" + faces);
@@ -162,14 +162,14 @@ TEST_F(Check, stepNeedsTheFacesInTheirOrder)
     const std::string others =
         write("others.obj", vertices + "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\nusemtl c\n" + faces);
     EXPECT_EQ(answer({"step", sorted, others}).at("vf_hits"), 0);
-    // The same by other names.
+    // The same mesh with other names.
     const std::string renamed = "mtllib end.mtl\n" + vertices + "# end\nusemtl b\nf 1//1 -3 -2\nf 1 3/1 4\nvn 0 0 1\n";
     EXPECT_EQ(answer({"step", start, write("renamed.obj", renamed)}).at("vf_hits"), 0);
 }
 
 // Four bars meet at one position, each with a vertex of its own there: they touch. Bars that share the vertex by index
 // do not count.
-TEST_F(Check, pairsTakeIndexedFilesByTheirIndices)
+TEST_F(Check, PairsUseTheIndicesOfIndexedFiles)
 {
     const char* ends[4] = {"1 0 0\nv 1 0 1", "0 1 0\nv 0 1 1", "-1 0 0\nv -1 0 1", "0 -1 0\nv 0 -1 1"};
     std::string apart, faces, shared = "v 0 0 0\n", sharedFaces, stl = "solid bars\n";
@@ -210,8 +210,8 @@ TEST_F(Check, pairsTakeIndexedFilesByTheirIndices)
     }
 }
 
-// As surveys have them: float32 would keep half a metre.
-TEST_F(Check, coordinatesFarFromTheOriginKeepTheirDigits)
+// Surveys have such coordinates; float32 would lose half a metre.
+TEST_F(Check, CoordinatesFarFromTheOriginKeepTheirDigits)
 {
     const auto triangleAt = [](double x)
     {
@@ -229,7 +229,7 @@ TEST_F(Check, coordinatesFarFromTheOriginKeepTheirDigits)
     EXPECT_NE(apart.at("notes").at(0).get<std::string>().find("centred"), std::string::npos);
 }
 
-TEST_F(Check, readsDocumentedFormatsAlone)
+TEST_F(Check, ReadsOnlyDocumentedFormats)
 {
     expectRefused(run({"pairs", write("mesh.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")}),
                   {"mesh.off", "not a mesh", ".ply"});
@@ -238,9 +238,9 @@ TEST_F(Check, readsDocumentedFormatsAlone)
     expectRefused(run({"ccd", path("pipe")}), {"is a pipe", "file of records"});
 }
 
-// A hundred thousand triangles at one place, all but coincident so that none is a repeated one: told at once, with the
-// exact number, on every back end.
-TEST_F(Check, tooManyPairsAreCountedAndRefused)
+// A hundred thousand triangles at one position, almost coincident so that none is a repeated one. Every back end
+// reports the exact number at once.
+TEST_F(Check, TooManyPairsAreCountedAndRefused)
 {
     std::string text = "v 0 0 0\nv 0 1 0\n";
     for (int i = 0; i < 100000; ++i)
@@ -263,7 +263,7 @@ TEST_F(Check, tooManyPairsAreCountedAndRefused)
         EXPECT_NE(step.m_err.find("4999950000"), std::string::npos) << step.m_err;
         EXPECT_EQ(Json::parse(step.m_out).at("triangle_pairs"), 4999950000u);
     }
-    // Of features, which are counted of the triangles' pairs that may be tested.
+    // Counts features, which come from the pairs of triangles that may be tested.
     const std::string above = write("above.obj", meshAt(0.5f)), below = write("below.obj", meshAt(-0.5f));
     const Json whole = answer({"step", above, below});
     const std::string limit = std::to_string(whole.at("triangle_pairs").get<int>());
@@ -277,7 +277,7 @@ TEST_F(Check, tooManyPairsAreCountedAndRefused)
     expectRefused(run({"pairs", above, "--candidate-limit", "0"}), {"--candidate-limit"});
 }
 
-TEST_F(Check, writesItsAnswer)
+TEST_F(Check, WritesItsAnswer)
 {
     const std::string file = write("motions.bin", motionRecord(-1, 1));
     const ToolRun plain = run({"ccd", file, "--backend", "host"});
@@ -295,7 +295,7 @@ TEST_F(Check, writesItsAnswer)
     EXPECT_EQ(run({"--list-devices"}).m_exitCode, 0);
 }
 
-TEST_F(Check, refusesBadInput)
+TEST_F(Check, RefusesBadInput)
 {
     const std::string good = write("good.bin", motionRecord(-1, 1));
     const std::string mesh = write("mesh.obj", meshAt(1));
@@ -313,7 +313,7 @@ TEST_F(Check, refusesBadInput)
                   {"other.obj", "mesh.obj"});
 }
 
-TEST_F(Check, refusesBadRecords)
+TEST_F(Check, RefusesBadRecords)
 {
     const std::string good = motionRecord(-1, 1);
     expectRefused(run({"ccd", path("nowhere.bin")}), {"nowhere.bin", "no such file"});
@@ -330,14 +330,14 @@ TEST_F(Check, refusesBadRecords)
     expectRefused(run({"ccd", write("nan.bin", motionRecord(std::nanf(""), 0))}), {"nan.bin", "finite"});
 }
 
-TEST_F(Check, whatCannotBeWrittenIsToldBefore)
+TEST_F(Check, UnwritableFilesAreReportedBefore)
 {
     const std::string file = write("motions.bin", motionRecord(-1, 1));
     expectRefused(run({"ccd", file, "--backend", "host", "--json", path("no/such/folder/a.json")}), {"no/such/folder"});
     expectRefused(run({"ccd", file, "--backend", "host", "--json", ""}), {"--json", "empty"});
 }
 
-TEST_F(Check, standardOutputThatIsFullIsTold)
+TEST_F(Check, AFullStandardOutputIsReported)
 {
     expectFullOutputTold({"--help"});
     expectFullOutputTold({"step", "--help"});

@@ -28,7 +28,7 @@ protected:
     }
     std::string frames() const { return path("frames"); }
 
-    // As many rows as the summary says, and at least so many.
+    // Expects as many rows as the summary says, and at least `least`.
     void expectSteps(int least) const
     {
         const auto summary = nlohmann::json::parse(readAll(path("json")));
@@ -45,13 +45,13 @@ protected:
 class Interruption : public testing::Test
 {
 protected:
-    // A new process for each: other tests leave threads and handlers behind.
+    // Each test has a new process: other tests leave threads and handlers behind.
     void SetUp() override { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
 };
 }  // namespace
 
 // An OpenCL driver may have handlers of its own.
-TEST_F(EarlyEnd, bySignalsKeepsTheStepsDone)
+TEST_F(EarlyEnd, ASignalKeepsTheStepsDone)
 {
     std::vector<std::pair<std::string, int>> cases = {{"host", SIGINT}, {"host", SIGTERM}, {"host", SIGHUP}};
     if (!listDevices().empty()) cases.emplace_back("opencl", SIGINT);
@@ -69,7 +69,7 @@ TEST_F(EarlyEnd, bySignalsKeepsTheStepsDone)
     }
 }
 
-TEST_F(EarlyEnd, byAFrameThatCannotBeWrittenKeepsTheStepsDone)
+TEST_F(EarlyEnd, AFrameThatCannotBeWrittenKeepsTheStepsDone)
 {
     std::filesystem::create_directories(frames() + "/cloth_0003.ply");
     const ToolRun run = this->run(longRun());
@@ -79,7 +79,7 @@ TEST_F(EarlyEnd, byAFrameThatCannotBeWrittenKeepsTheStepsDone)
 }
 
 // The results are written before the picture, which is given up.
-TEST_F(EarlyEnd, byASignalWhileThePictureIsDrawnKeepsTheResults)
+TEST_F(EarlyEnd, ASignalWhileThePictureIsDrawnKeepsTheResults)
 {
     const pid_t process = start({"--obstacle", "sphere", "--cloth", "9x9", "--backend", "host", "--steps", "12",
                                  "--csv", path("csv"), "--json", path("json"), "--picture", path("picture.png")});
@@ -99,7 +99,7 @@ TEST_F(EarlyEnd, byASignalWhileThePictureIsDrawnKeepsTheResults)
     EXPECT_NE(run.m_out.find("hash"), std::string::npos) << "the table";
 }
 
-TEST_F(Interruption, isNotedOnceAndEndsTheProgramThen)
+TEST_F(Interruption, TheFirstSignalIsNotedAndTheSecondEndsTheProgram)
 {
     const auto listen = []
     {
@@ -112,7 +112,7 @@ TEST_F(Interruption, isNotedOnceAndEndsTheProgramThen)
     EXPECT_EXIT(listen(), testing::KilledBySignal(SIGTERM), "");
 }
 
-TEST_F(Interruption, leavesIgnoredSignalsIgnored)
+TEST_F(Interruption, LeavesIgnoredSignalsIgnored)
 {
     const auto listen = []
     {
@@ -124,7 +124,7 @@ TEST_F(Interruption, leavesIgnoredSignalsIgnored)
     EXPECT_EXIT(listen(), testing::ExitedWithCode(0), "");
 }
 
-TEST_F(Interruption, isLeftToTheDefaultAfterwards)
+TEST_F(Interruption, SignalsHaveTheirDefaultAfterwards)
 {
     const auto listen = []
     {

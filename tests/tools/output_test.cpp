@@ -1,4 +1,4 @@
-// What cloth_drop writes and how it ends.
+// Output files and exit codes of cloth_drop.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ bool isHash(const std::string& text)
     return text.size() == 16 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
-// Every key of a run, each with its type.
+// Expects every key of a run, each with its type.
 void expectRun(const Json& run, int steps)
 {
     for (const char* key : {"backend", "device", "device_reason", "hash"})
@@ -57,7 +57,7 @@ std::uint32_t bigEndian(const std::string& bytes, std::size_t at)
 
 using Outputs = ToolTest;
 
-TEST_F(Outputs, jsonHasEveryKey)
+TEST_F(Outputs, JsonHasEveryKey)
 {
     const Json run = Json::parse(summaryOf({}));
     expectRun(run, 10);
@@ -86,7 +86,7 @@ TEST_F(Outputs, jsonHasEveryKey)
     EXPECT_NEAR(run.at("thickness_m"), 0.02, 1e-9);
 }
 
-TEST_F(Outputs, hostAndOpenClGiveTheSameHash)
+TEST_F(Outputs, HostAndOpenClGiveTheSameHash)
 {
     DRAPE_NEED_DEVICE();
     const Json host = Json::parse(summaryOf({"--backend", "host"}));
@@ -99,7 +99,7 @@ TEST_F(Outputs, hostAndOpenClGiveTheSameHash)
     EXPECT_GT(device.at("contacts_max"), 0);
 }
 
-TEST_F(Outputs, validateHashDecidesTheExitCode)
+TEST_F(Outputs, ValidateHashDecidesTheExitCode)
 {
     std::string hash = Json::parse(summaryOf({})).at("hash");
     EXPECT_EQ(runSmall({"--validate-hash", hash}).m_exitCode, 0);
@@ -111,7 +111,7 @@ TEST_F(Outputs, validateHashDecidesTheExitCode)
     EXPECT_TRUE(Json::accept(readAll(path("still.json")))) << "the results are written all the same";
 }
 
-TEST_F(Outputs, csvHasARowAStep)
+TEST_F(Outputs, CsvHasARowForEachStep)
 {
     ASSERT_EQ(runSmall({"--csv", path("steps.csv")}).m_exitCode, 0);
     const std::string csv = readAll(path("steps.csv"));
@@ -123,7 +123,7 @@ TEST_F(Outputs, csvHasARowAStep)
 }
 
 // Cloth that flew past the obstacle is not below its surface.
-TEST_F(Outputs, nodesThatWentThroughAreCounted)
+TEST_F(Outputs, NodesThatWentThroughAreCounted)
 {
     for (const char* mode : {"discrete", "automatic"})
     {
@@ -140,8 +140,8 @@ TEST_F(Outputs, nodesThatWentThroughAreCounted)
     }
 }
 
-// Fast cloth intersects the obstacle on its way and has left it at the end.
-TEST_F(Outputs, theMostIntersectingPairsOfAnyStepAreCounted)
+// Fast cloth intersects the obstacle during the run and has left it at the end.
+TEST_F(Outputs, TheMostIntersectingPairsOfAnyStepAreCounted)
 {
     const auto expectMost = [this](const Json& run)
     {
@@ -177,7 +177,7 @@ TEST_F(Outputs, theMostIntersectingPairsOfAnyStepAreCounted)
     EXPECT_EQ(expectMost(held), 0u);
 }
 
-TEST_F(Outputs, aRunThatIsNeverInContactHasNoTimesOfContacts)
+TEST_F(Outputs, ARunWithoutContactsHasNoTimesOfContacts)
 {
     const Json run = Json::parse(summaryOf({"--drop-height", "1", "--steps", "2"}));
     EXPECT_EQ(run.at("steps_in_contact"), 0);
@@ -186,7 +186,7 @@ TEST_F(Outputs, aRunThatIsNeverInContactHasNoTimesOfContacts)
     EXPECT_GT(run.at("gap_min_m"), 0);
 }
 
-TEST_F(Outputs, framesAreMeshesOneAStep)
+TEST_F(Outputs, FramesAreOneMeshForEachStep)
 {
     ASSERT_EQ(runSmall({"--frames", path("frames")}).m_exitCode, 0);
     int cloths = 0, others = 0;
@@ -201,8 +201,8 @@ TEST_F(Outputs, framesAreMeshesOneAStep)
     ASSERT_TRUE(loadMesh(path("frames/obstacle.ply"), mesh, error)) << error;
 }
 
-// Its first bytes may look like the end of a line.
-TEST_F(Outputs, aFrameIsReadWhateverItsFirstVertex)
+// The first bytes of a frame may look like the end of a line.
+TEST_F(Outputs, AFrameIsReadWhateverItsFirstVertex)
 {
     for (const char* bytes : {"\x0a\x98\x8b\xbf", "\x0a\x0a\x0a\x3f", "\x0d\x0a\x8b\xbf", "\x20\x0a\x8b\xbf"})
     {
@@ -218,8 +218,8 @@ TEST_F(Outputs, aFrameIsReadWhateverItsFirstVertex)
     }
 }
 
-// The run is in a child process, which sends the positions; the comparison below shows Drape's own run.
-TEST_F(Outputs, pictureIsAPng)
+// The run is in a child process, which sends the positions. The comparison below shows Drape's own run.
+TEST_F(Outputs, PictureIsAPng)
 {
     const ToolRun run = runSmall({"--steps", "2", "--backend", "bullet", "--obstacle", "stairs", "--time-limit", "600",
                                   "--picture", path("last.png")});
@@ -236,7 +236,7 @@ TEST_F(Outputs, pictureIsAPng)
     }
 }
 
-TEST_F(Outputs, aPictureOfAComparisonShowsEveryRun)
+TEST_F(Outputs, APictureOfAComparisonShowsEveryRun)
 {
     const ToolRun run =
         this->run({"--obstacle", "stairs", "--cloth", "9x9", "--backend", "host", "--steps", "40", "--drop-speed", "20",
@@ -285,7 +285,7 @@ TEST_F(Outputs, aPictureOfAComparisonShowsEveryRun)
     EXPECT_EQ(labels.size(), 3u);
 }
 
-TEST_F(Outputs, aPictureThatWouldBeNoPngIsRefused)
+TEST_F(Outputs, APictureThatIsNoPngIsRefused)
 {
     for (const char* name : {"last.jpg", "last.JPEG", "last.gif", "last.png.bak", "last.pngg"})
     {
@@ -294,7 +294,7 @@ TEST_F(Outputs, aPictureThatWouldBeNoPngIsRefused)
     }
 }
 
-TEST_F(Outputs, whatCannotBeWrittenIsToldBeforeTheRun)
+TEST_F(Outputs, UnwritableFilesAreReportedBeforeTheRun)
 {
     for (const char* option : {"--json", "--csv", "--picture"})
     {
@@ -308,7 +308,7 @@ TEST_F(Outputs, whatCannotBeWrittenIsToldBeforeTheRun)
     expectRefused(runSmall({"--picture", "-"}), {"--picture"});
 }
 
-TEST_F(Outputs, whatFailsToBeWrittenIsAFailedRun)
+TEST_F(Outputs, AFailedWriteIsAFailedRun)
 {
     ASSERT_TRUE(std::filesystem::is_character_file("/dev/full"));
     std::filesystem::create_symlink("/dev/full", path("full"));
@@ -317,14 +317,14 @@ TEST_F(Outputs, whatFailsToBeWrittenIsAFailedRun)
     EXPECT_NE(run.m_err.find("full: cannot write"), std::string::npos) << run.m_err;
 }
 
-TEST_F(Outputs, standardOutputThatIsFullIsTold)
+TEST_F(Outputs, AFullStandardOutputIsReported)
 {
     expectFullOutputTold({"--help"});
     expectFullOutputTold({"--list-devices"});
     expectFullOutputTold({"--backend", "host", "--cloth", "3x3", "--steps", "1", "--json", "-", "--quiet"});
 }
 
-TEST_F(Outputs, twoOfThemNeedTwoFiles)
+TEST_F(Outputs, TwoOutputsNeedTwoFiles)
 {
     std::filesystem::create_symlink("a", path("link"));
     expectRefused(runSmall({"--csv", path("a"), "--json", path("a")}), {"--csv and --json"});
@@ -335,7 +335,7 @@ TEST_F(Outputs, twoOfThemNeedTwoFiles)
     EXPECT_EQ(runSmall({"--csv", "/dev/null", "--json", "/dev/null"}).m_exitCode, 0);
 }
 
-TEST_F(Outputs, csvOnStandardOutputIsTheFile)
+TEST_F(Outputs, CsvOnStandardOutputEqualsTheFile)
 {
     for (const char* name : {"-", "/dev/stdout"})
     {
@@ -347,7 +347,7 @@ TEST_F(Outputs, csvOnStandardOutputIsTheFile)
     }
 }
 
-TEST_F(Outputs, quietSaysNothingAndHelpIsGood)
+TEST_F(Outputs, QuietPrintsNothingAndHelpSucceeds)
 {
     const ToolRun quiet = runSmall({});
     EXPECT_EQ(quiet.m_exitCode, 0);
@@ -358,7 +358,7 @@ TEST_F(Outputs, quietSaysNothingAndHelpIsGood)
         EXPECT_NE(help.m_out.find(option), std::string::npos) << option;
 }
 
-TEST_F(Outputs, listDevicesNamesThemAll)
+TEST_F(Outputs, ListDevicesNamesThemAll)
 {
     const ToolRun result = run({"--list-devices"});
     EXPECT_EQ(result.m_exitCode, 0);
@@ -367,7 +367,7 @@ TEST_F(Outputs, listDevicesNamesThemAll)
         EXPECT_NE(result.m_out.find(device.m_name), std::string::npos) << result.m_out;
 }
 
-TEST_F(Outputs, everyShapeRuns)
+TEST_F(Outputs, EveryShapeRuns)
 {
     for (const char* shape : {"sphere", "bowl", "stairs"})
     {
@@ -378,8 +378,8 @@ TEST_F(Outputs, everyShapeRuns)
     }
 }
 
-// At the ends of what the arguments may be.
-TEST_F(Outputs, theLargestScenesAndTheFastestClothCollide)
+// Uses the limits of the arguments.
+TEST_F(Outputs, TheLargestScenesAndTheFastestClothCollide)
 {
     const Json large = Json::parse(summaryOf({"--obstacle-size", "1e4", "--cloth-size", "1e4"}));
     EXPECT_EQ(large.at("steps_in_contact"), 10);
@@ -394,29 +394,29 @@ TEST_F(Outputs, theLargestScenesAndTheFastestClothCollide)
     }
 }
 
-TEST_F(Outputs, builtInBackEndAlone)
+TEST_F(Outputs, TheBuiltInBackEndRunsAlone)
 {
     const Json run = Json::parse(summaryOf({"--backend", "bullet", "--obstacle", "stairs", "--steps", "3"}));
     expectRun(run, 3);
     EXPECT_NE(std::string(run.at("backend")).find("bullet"), std::string::npos);
 }
 
-// A limit that is passed at once: what was done until then is written, by every back end.
-TEST_F(Outputs, aLimitOfTimeKeepsTheStepsDone)
+// The limit is exceeded at once: every back end writes the steps until then.
+TEST_F(Outputs, ALimitOfTimeKeepsTheStepsDone)
 {
     const Json run = Json::parse(summaryOf({"--time-limit", "1e-9", "--csv", path("steps.csv")}));
     expectRun(run, 1);
     EXPECT_EQ(run.at("capped_at_step"), 1);
     const std::string csv = readAll(path("steps.csv"));
     EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 2);
-    // Bullet's own may not end a step, so that the one in hand is given up: the last one done is none.
+    // Bullet's own collision may not end a step. The current step is then given up, and the last complete one is none.
     const Json builtIn =
         Json::parse(summaryOf({"--backend", "bullet", "--obstacle", "stairs", "--time-limit", "1e-9"}));
     EXPECT_EQ(builtIn.at("capped_at_step"), 0);
     EXPECT_EQ(builtIn.at("steps"), 0);
 }
 
-TEST_F(Outputs, aLimitOfTimeThatIsNotReachedChangesNothing)
+TEST_F(Outputs, ALimitOfTimeThatIsNotReachedChangesNothing)
 {
     for (const char* backend : {"host", "bullet"})
     {
@@ -432,7 +432,7 @@ TEST_F(Outputs, aLimitOfTimeThatIsNotReachedChangesNothing)
     }
 }
 
-TEST_F(Outputs, compareHasThreeRunsAndTwoRatios)
+TEST_F(Outputs, CompareHasThreeRunsAndTwoRatios)
 {
     const Json all = Json::parse(summaryOf({"--obstacle", "stairs", "--compare", "--compare-cap", "10"}));
     for (const char* name : {"drape", "bullet_stock", "bullet_tuned"})

@@ -1,4 +1,4 @@
-// What programs tell PoCL about its threads.
+// The environment variables that programs set for PoCL's threads.
 #include "tools/common/pocl_threads.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace
 constexpr char kAffinity[] = "POCL_AFFINITY";
 constexpr const char* kNumbers[] = {"POCL_MAX_PTHREAD_COUNT", "POCL_CPU_MAX_CU_COUNT", "POCL_MAX_COMPUTE_UNITS"};
 
-// Without any of the variables; puts back what it finds.
+// Removes the variables, and restores them afterwards.
 class PoclThreads : public testing::Test
 {
 protected:
@@ -37,7 +37,7 @@ protected:
             ::setenv(variable.first.c_str(), variable.second.c_str(), 1);
     }
 
-    // "" where it is not set.
+    // Returns "" if the variable is not set.
     static std::string affinity()
     {
         const char* value = std::getenv(kAffinity);
@@ -62,14 +62,14 @@ private:
 };
 }  // namespace
 
-TEST_F(PoclThreads, keepToTheirCoresWhereAllAreThisProcesss)
+TEST_F(PoclThreads, KeepToTheirCoresIfTheProcessHasAllCores)
 {
     keepPoclThreadsApart();
     EXPECT_EQ(affinity(), wanted(m_cores));
 }
 
-// PoCL ends the program when it may not put a thread on a core.
-TEST_F(PoclThreads, areLeftAloneWhereACoreIsMissing)
+// PoCL ends the program if it may not put a thread on a core.
+TEST_F(PoclThreads, AreLeftAloneIfACoreIsMissing)
 {
     cpu_set_t one;
     CPU_ZERO(&one);
@@ -82,7 +82,7 @@ TEST_F(PoclThreads, areLeftAloneWhereACoreIsMissing)
     EXPECT_EQ(affinity(), wanted(one));
 }
 
-TEST_F(PoclThreads, areLeftAloneWhereTheirNumberIsSet)
+TEST_F(PoclThreads, AreLeftAloneIfTheirNumberIsSet)
 {
     for (const char* name : kNumbers)
     {
@@ -94,7 +94,7 @@ TEST_F(PoclThreads, areLeftAloneWhereTheirNumberIsSet)
     }
 }
 
-TEST_F(PoclThreads, areTheUsersToDecide)
+TEST_F(PoclThreads, FollowTheUsersVariable)
 {
     ::setenv(kAffinity, "0", 1);
     keepPoclThreadsApart();

@@ -1,5 +1,5 @@
-// The summary of a run has the most intersecting pairs with their step, and no statistics of steps in contact when
-// there were none.
+// The summary of a run has the most intersecting pairs with their step, and no statistics of steps in contact if there
+// were none.
 #include <gtest/gtest.h>
 
 #include "examples/cloth_drop/report.h"

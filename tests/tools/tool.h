@@ -31,20 +31,20 @@ protected:
     virtual const char* programVariable() const { return "DRAPE_CLOTH_DROP"; }
 
     ToolRun run(const std::vector<std::string>& arguments) const;
-    // Of a program whose standard output takes nothing: exit code 1 and one line that says so.
+    // Runs a program whose standard output is full, and expects exit code 1 and one line that says so.
     void expectFullOutputTold(const std::vector<std::string>& arguments) const;
-    // Two halves of run(), for a program that something is done to meanwhile: its process, and its end.
+    // The two halves of run(), for a program that a test acts on meanwhile: its process, and its end.
     pid_t start(const std::vector<std::string>& arguments) const { return start(arguments, path("stdout.txt")); }
     ToolRun end(pid_t process) const;
-    // A 9×9 cloth on the sphere for 10 steps on the host, quiet; `more` follows and wins.
+    // Runs a 9×9 cloth on the sphere for 10 steps on the host, quiet. Options in `more` follow and win.
     ToolRun runSmall(const std::vector<std::string>& more) const;
-    // The summary of such a run, as JSON text; fails the test when the run fails.
+    // Returns the summary of such a run as JSON text; fails the test if the run fails.
     std::string summaryOf(const std::vector<std::string>& more) const;
 
     std::string path(const std::string& name) const { return m_folder.path() + "/" + name; }
     std::string write(const std::string& name, const std::string& text) const;  // returns the path
 
-    // Exit code 2 and one line on stderr that holds every one of the words.
+    // Expects exit code 2 and one line on stderr that contains all of the words.
     static void expectRefused(const ToolRun& run, const std::vector<std::string>& words);
 
 private:
@@ -59,7 +59,7 @@ std::string readAll(const std::string& path);
 // Looks now and then until it is so. False when it is not within a minute.
 bool waitUntil(const std::function<bool()>& isSo);
 
-// Four bytes, least first.
+// Returns four bytes, least first.
 std::string littleEndian(std::uint32_t value);
 
 // Ends the test as skipped where no OpenCL device is expected (DRAPE_TEST_NO_DEVICE=1), as failed where one is missing.

@@ -60,7 +60,7 @@ protected:
 };
 }  // namespace
 
-TEST_F(AtomicFile, isNewOrReplacedWithItsPermissions)
+TEST_F(AtomicFile, ReplacesAFileAndKeepsItsPermissions)
 {
     expectWritten("a", "first");
     EXPECT_EQ(contentOf(path("a")), "first");
@@ -71,7 +71,7 @@ TEST_F(AtomicFile, isNewOrReplacedWithItsPermissions)
     EXPECT_EQ(entries(), 1u) << "what was temporary is left";
 }
 
-TEST_F(AtomicFile, linksStayLinks)
+TEST_F(AtomicFile, LinksStayLinks)
 {
     fs::create_directory(path("folder"));
     expectWritten("folder/target", "old");
@@ -86,7 +86,7 @@ TEST_F(AtomicFile, linksStayLinks)
     EXPECT_EQ(contentOf(path("folder/later")), "made");
 }
 
-TEST_F(AtomicFile, pipesAreWrittenTo)
+TEST_F(AtomicFile, PipesAreWrittenTo)
 {
     ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
     std::string read;
@@ -97,7 +97,7 @@ TEST_F(AtomicFile, pipesAreWrittenTo)
     EXPECT_TRUE(fs::is_fifo(path("pipe")));
 }
 
-TEST_F(AtomicFile, devicesStayAndAFullOneIsAnError)
+TEST_F(AtomicFile, DevicesStayAndAFullOneIsAnError)
 {
     ASSERT_TRUE(fs::is_character_file("/dev/full"));
     fs::create_symlink("/dev/full", path("full"));  // were it replaced, only the link would be
@@ -108,14 +108,14 @@ TEST_F(AtomicFile, devicesStayAndAFullOneIsAnError)
     EXPECT_TRUE(fs::is_character_file(path("full")));
 }
 
-TEST_F(AtomicFile, saysWhyNot)
+TEST_F(AtomicFile, ReportsTheReasonOfAFailure)
 {
     fs::create_directory(path("folder"));
     expectRefused("folder", "is a folder");
     expectRefused("nowhere/a", "no folder");
 }
 
-TEST_F(AtomicFile, linksInACircleAreNoPlace)
+TEST_F(AtomicFile, LinksInACircleAreRefused)
 {
     fs::create_symlink("two", path("one"));
     fs::create_symlink("one", path("two"));
@@ -123,7 +123,7 @@ TEST_F(AtomicFile, linksInACircleAreNoPlace)
     EXPECT_TRUE(fs::is_symlink(path("one")));
 }
 
-TEST_F(AtomicFile, whatADescriptorNamesIsWrittenInPlace)
+TEST_F(AtomicFile, AFileNamedByADescriptorIsWrittenInPlace)
 {
     expectWritten("a", "old");
     const int descriptor = ::open(path("a").c_str(), O_RDONLY);
@@ -138,7 +138,7 @@ TEST_F(AtomicFile, whatADescriptorNamesIsWrittenInPlace)
     EXPECT_EQ(entries(), 2u);
 }
 
-TEST_F(AtomicFile, oneFileUnderTwoNames)
+TEST_F(AtomicFile, OneFileUnderTwoNamesIsRecognised)
 {
     fs::create_symlink("later", path("dangling"));
     EXPECT_TRUE(areOneFile(path("dangling"), path("later")));
@@ -166,8 +166,8 @@ TEST_F(AtomicFile, oneFileUnderTwoNames)
         ::close(descriptor);
 }
 
-// By a child, which is no root where the test is.
-TEST_F(AtomicFile, whatIsReadOnlyStays)
+// Runs in a child that gives up root's rights if the test has them.
+TEST_F(AtomicFile, AReadOnlyFileStays)
 {
     expectWritten("a", "old");
     fs::permissions(m_folder, fs::perms::all);

@@ -63,7 +63,7 @@ TEST_F(CacheFileTest, LinksAreNotFollowed)
     fs::permissions(m_folder, fs::perms::owner_all);
     fs::create_symlink(precious, at("read"));
     EXPECT_FALSE(reads("read"));
-    // Where the temporary file would be, and the file itself.
+    // Names that the temporary file may have, and the file itself.
     for (const std::string& name :
          {"name." + std::to_string(getpid()), "name." + std::to_string(getpid()) + ".0", std::string("name")})
         fs::create_symlink(precious, at(name));
@@ -73,7 +73,7 @@ TEST_F(CacheFileTest, LinksAreNotFollowed)
     EXPECT_FALSE(fs::is_symlink(at("name")));
 }
 
-TEST_F(CacheFileTest, WhatOthersCanWriteIsNotBelieved)
+TEST_F(CacheFileTest, FilesThatOthersCanWriteAreNotTrusted)
 {
     writeCacheFile(m_folder, "name", "bytes");
     fs::permissions(at("name"), fs::perms::others_write, fs::perm_options::add);
@@ -90,7 +90,7 @@ TEST_F(CacheFileTest, WhatOthersCanWriteIsNotBelieved)
     EXPECT_EQ(fs::status(m_folder).permissions(), fs::perms::all | fs::perms::sticky_bit);
 }
 
-TEST_F(CacheFileTest, WhatBelongsToOthersIsNotBelieved)
+TEST_F(CacheFileTest, FilesOfOthersAreNotTrusted)
 {
     if (geteuid() != 0) GTEST_SKIP() << "only root can give files away";
     constexpr uid_t kSomebody = 12345;

@@ -29,7 +29,7 @@ TEST(CandidateCount, EqualsTheListedPairs)
         for (int i = 0; i < 5; ++i)
         {
             TriangleMesh mesh = soupCase(1 + int(random.below(60)), 1, false, seed + std::uint32_t(i)).m_cloth;
-            // Shrunk to a crowd, or not.
+            // The mesh is shrunk to a crowd, or not.
             const float scale = random.below(2) ? 0.01f : 1.0f;
             for (float& coordinate : mesh.m_positions)
                 coordinate *= scale;

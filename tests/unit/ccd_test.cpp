@@ -39,8 +39,8 @@ Vec3 gridPoint(Random& random, int size)
     return vec3(float(grid(random, size)), float(grid(random, size)), float(grid(random, size)));
 }
 
-// Features that have a point in common at half of the step, exactly: corners there are multiples of 4, the point is a
-// mean of corners with weights that are quarters, and every vertex goes from `there - way` to `there + way`.
+// Makes features that have exactly one point in common at half of the step. The corners there are multiples of 4, and
+// the point is a mean of corners with weights that are quarters. Every vertex goes from `there - way` to `there + way`.
 Motion touchingMotion(Random& random, std::uint32_t kind)
 {
     Motion motion;
@@ -56,7 +56,7 @@ Motion touchingMotion(Random& random, std::uint32_t kind)
     }
     else
     {
-        // The second edge passes through the place u on the first, at its middle.
+        // The second edge passes through the position u on the first, at its middle.
         const Vec3 place = vec3Mix(there[0], there[1], u);
         const Vec3 half = gridPoint(random, 16);
         there[2] = vec3Sub(place, half);
@@ -84,7 +84,7 @@ Motion randomMotion(Random& random, float speed)
     return motion;
 }
 
-// Offset between the place (u,v) on the features at the time t, in double, and its derivatives.
+// Computes the offset between the positions (u,v) on the features at the time t, in double, and its derivatives.
 void offsetOf(const Motion& motion, const double x[3], double offset[3], double jacobian[3][3])
 {
     const double t = x[0], u = x[1], v = x[2];
@@ -116,7 +116,8 @@ double determinant(const double m[3][3])
            m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
-// The earliest time of a touch well inside the features that Newton's method finds from 40 random starts; 2 for none.
+// Returns the earliest time of a touch well inside the features that Newton's method finds from 40 random starts; 2 for
+// none.
 double touchByNewton(const Motion& motion, Random& random)
 {
     double earliest = 2;
@@ -163,7 +164,7 @@ bool sameResult(const CcdResult& a, const CcdResult& b)
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-// A vertex that falls through the middle of a face at rest.
+// Makes a vertex that falls through the middle of a face at rest.
 Motion fallingVertex()
 {
     return {DRAPE_VERTEX_FACE,
@@ -171,7 +172,7 @@ Motion fallingVertex()
             {at(0, 0, -3), at(-3, -3, 0), at(3, -3, 0), at(0, 3, 0)}};
 }
 
-// Two edges that cross, the first falling through the second.
+// Makes two edges that cross, the first falling through the second.
 Motion fallingEdge()
 {
     return {DRAPE_EDGES,
@@ -180,7 +181,7 @@ Motion fallingEdge()
 }
 }  // namespace
 
-TEST(Ccd, timeIsThatOfTheFirstTouch)
+TEST(Ccd, TheTimeIsThatOfTheFirstTouch)
 {
     const CcdResult vertex = run(fallingVertex()), edge = run(fallingEdge());
     const float tolerance = ccdDefaults().m_timeTolerance;
@@ -194,7 +195,7 @@ TEST(Ccd, timeIsThatOfTheFirstTouch)
     EXPECT_NEAR(edge.m_u, 0.5f, 0.51f);
 }
 
-TEST(Ccd, touchesOnAGridAreNeverMissedNorLate)
+TEST(Ccd, TouchesOnAGridAreNeverMissedNorLate)
 {
     Random random(70);
     CcdSettings whether = ccdDefaults();
@@ -209,7 +210,7 @@ TEST(Ccd, touchesOnAGridAreNeverMissedNorLate)
     }
 }
 
-TEST(Ccd, everyTouchThatNewtonFindsIsAHitInTime)
+TEST(Ccd, EveryTouchThatNewtonFindsIsAHitInTime)
 {
     Random random(71);
     int hits = 0, confirmed = 0;
@@ -230,8 +231,8 @@ TEST(Ccd, everyTouchThatNewtonFindsIsAHitInTime)
     EXPECT_GT(confirmed, hits * 9 / 10) << "hits that Newton's method does not find should be few";
 }
 
-// A vertex and a face that are in one plane at the given time, the vertex at the weights u and v there, while the
-// corners move by up to `turn` besides.
+// Makes a vertex and a face that are in one plane at the given time, the vertex at the weights u and v there. The
+// corners also move by up to `turn`.
 Motion passingMotion(Random& random, float time, float u, float v, float turn)
 {
     Motion motion = {DRAPE_VERTEX_FACE, {}, {}};
@@ -251,7 +252,7 @@ Motion passingMotion(Random& random, float time, float u, float v, float turn)
     return motion;
 }
 
-// Where a path leads in time, from the begin of the box that is `width` wide.
+// Returns the position of a path in time, relative to the beginning of the box that is `width` wide.
 double pathOffset(const CcdPath& path, double width)
 {
     double offset = 0;
@@ -263,7 +264,7 @@ double pathOffset(const CcdPath& path, double width)
     return offset;
 }
 
-TEST(Ccd, mostMeetingsAreProvedWithoutASearch)
+TEST(Ccd, MostMeetingsAreProvedWithoutASearch)
 {
     Random random(75);
     CcdSettings settings = ccdDefaults();
@@ -277,7 +278,7 @@ TEST(Ccd, mostMeetingsAreProvedWithoutASearch)
         const CcdResult result = run(passingMotion(random, time, u, v, 0.1f), settings);
         searched += result.m_boxes > 2;
         ASSERT_TRUE(result.m_hit) << "seed 75, case " << i;
-        // Looked for to the tolerance, and given as much earlier.
+        // The search reaches the tolerance, and the time is earlier by as much.
         ASSERT_LE(result.m_time, time) << "seed 75, case " << i;
         ASSERT_GE(result.m_time, time - 2.1f * settings.m_timeTolerance) << "seed 75, case " << i;
         if (result.m_boxes > 2) continue;
@@ -287,7 +288,7 @@ TEST(Ccd, mostMeetingsAreProvedWithoutASearch)
     EXPECT_LT(searched, cases / 50);
 }
 
-TEST(Ccd, mostMissesBesideAnySideTakeFewLooks)
+TEST(Ccd, MostMissesBesideAnySideTakeFewSteps)
 {
     Random random(76);
     const int cases = 3000;
@@ -306,7 +307,7 @@ TEST(Ccd, mostMissesBesideAnySideTakeFewLooks)
 }
 
 // Halving in time from any piece of the step and coming back gives the piece again, bit for bit.
-TEST(Ccd, halvesOfAPieceOfTheStepAreThePiece)
+TEST(Ccd, HalvesOfAnIntervalCoverTheInterval)
 {
     Random random(77);
     for (int i = 0; i < 2000; ++i)
@@ -337,7 +338,7 @@ TEST(Ccd, halvesOfAPieceOfTheStepAreThePiece)
     }
 }
 
-TEST(Ccd, toleranceOfNothingEnds)
+TEST(Ccd, ASearchWithZeroToleranceEnds)
 {
     for (float tolerance : {0.0f, -1.0f, 1e-45f, 1e-12f, 5e-10f})
     {
@@ -352,7 +353,7 @@ TEST(Ccd, toleranceOfNothingEnds)
     }
 }
 
-TEST(Ccd, unitsOfLengthThatArePowersOfTwoChangeNoBit)
+TEST(Ccd, UnitsOfLengthThatArePowersOfTwoChangeNoBit)
 {
     Random random(72);
     int hits = 0;
@@ -368,7 +369,7 @@ TEST(Ccd, unitsOfLengthThatArePowersOfTwoChangeNoBit)
     EXPECT_GT(hits, 25);
 }
 
-TEST(Ccd, theSideOfAPairDoesNotMatter)
+TEST(Ccd, TheOrderOfAPairDoesNotMatter)
 {
     Random random(73);
     for (int i = 0; i < 2000; ++i)
@@ -391,9 +392,9 @@ TEST(Ccd, theSideOfAPairDoesNotMatter)
     }
 }
 
-TEST(Ccd, separationIsADistance)
+TEST(Ccd, SeparationIsADistance)
 {
-    // A vertex that passes a face at its corner's side, and one that stops above it.
+    // One vertex passes a face at its corner's side, and one stops above it.
     for (float gap : {0.5f, 0.01f, 1e-4f})
     {
         Motion above = fallingVertex();
@@ -415,7 +416,7 @@ TEST(Ccd, separationIsADistance)
     }
 }
 
-TEST(Ccd, separationMovesTheTimeForward)
+TEST(Ccd, SeparationMovesTheTimeForward)
 {
     CcdSettings settings = ccdDefaults();
     settings.m_separation = 0.5f;
@@ -425,7 +426,7 @@ TEST(Ccd, separationMovesTheTimeForward)
     EXPECT_GE(result.m_time, 0.12f);
 }
 
-TEST(Ccd, exhaustedSearchGivesTheSafeAnswer)
+TEST(Ccd, AnExhaustedSearchGivesTheSafeAnswer)
 {
     Random random(74);
     int exhausted = 0;
@@ -445,7 +446,7 @@ TEST(Ccd, exhaustedSearchGivesTheSafeAnswer)
     EXPECT_GT(exhausted, 1000);
 }
 
-TEST(Ccd, badNumbersAreNoHitAndLargeOnesAreFinite)
+TEST(Ccd, BadNumbersAreNoHitAndLargeOnesAreFinite)
 {
     const float infinity = std::numeric_limits<float>::infinity();
     for (float bad : {infinity, -infinity, std::numeric_limits<float>::quiet_NaN()})
@@ -456,7 +457,7 @@ TEST(Ccd, badNumbersAreNoHitAndLargeOnesAreFinite)
     }
     for (float size : {1e38f, 1e-38f, 1e-44f})
     {
-        // 3e38 apart: their difference does not fit a float unless it is scaled first.
+        // The features are 3e38 apart: their difference does not fit a float unless it is scaled first.
         const CcdResult result = run(scaled(fallingVertex(), size));
         EXPECT_TRUE(result.m_hit) << size;
         EXPECT_LE(result.m_time, 0.25f) << size;
@@ -467,7 +468,7 @@ TEST(Ccd, badNumbersAreNoHitAndLargeOnesAreFinite)
     EXPECT_FALSE(run(apart).m_hit);
 }
 
-TEST(Ccd, pointsThatCoincideTouch)
+TEST(Ccd, PointsThatCoincideTouch)
 {
     Motion motion = fallingVertex();
     for (int i = 0; i < 4; ++i)

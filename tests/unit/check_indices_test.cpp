@@ -18,7 +18,7 @@ namespace
 {
 constexpr std::size_t kBadTriangle = 5;
 
-// A sphere whose sixth triangle has the index as a corner.
+// Makes a sphere whose sixth triangle has the index as a corner.
 TriangleMesh withIndex(std::int32_t index, std::size_t corner)
 {
     TriangleMesh mesh = makeSphere(0.5f, 1);
@@ -26,7 +26,7 @@ TriangleMesh withIndex(std::int32_t index, std::size_t corner)
     return mesh;
 }
 
-// Below the range, just past it and far past it.
+// Indices are below the range, just past it and far past it.
 std::vector<TriangleMesh> badMeshes()
 {
     const std::int32_t vertices = std::int32_t(makeSphere(0.5f, 1).vertexCount());
@@ -94,7 +94,7 @@ TEST(CheckIndices, AdmitsEveryIndexInRangeAndNoTriangles)
     EXPECT_FALSE(error.failed());
 }
 
-// The good meshes beside them give what they give alone.
+// The good meshes beside the bad one give the contacts that they give alone.
 TEST(CheckIndices, PipelineRefusesTheMeshAndGoesOn)
 {
     const StepCase step = fallingCase("sphere", 12, 0.03f, 41);

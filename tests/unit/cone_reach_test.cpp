@@ -1,4 +1,4 @@
-// How far contacts whose directions lie in a cone reach along the volumes' directions.
+// The reach of contacts whose directions lie in a cone, along the volumes' directions.
 #include "kernels/lib/cone_reach.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ Vec3 randomUnit(Random& random)
     }
 }
 
-// At the angle to the axis whose cosine is given.
+// Returns a direction at the angle to the axis whose cosine is given.
 Vec3 turned(Vec3 axis, float cosine, Random& random)
 {
     Vec3 across = vec3Cross(axis, randomUnit(random));

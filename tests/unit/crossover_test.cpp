@@ -1,5 +1,5 @@
-// Which scenes run on the host where cost decides: the work that meshes let expect, the crossover of measured times,
-// its file, and the rule by which a scene moves.
+// The automatic choice of scenes that run on the host: the expected work of meshes, the crossover of measured times,
+// its file, and the rule by which a scene changes its back end.
 #include "bullet_plugin/core/pipeline/crossover.h"
 
 #include <gtest/gtest.h>
@@ -56,9 +56,9 @@ TEST(SceneWork, GrowsWithBothSidesAndTheReach)
     EXPECT_GT(expectedPairs(fine, obstacle, 0.03), pairs);
     EXPECT_GT(expectedPairs(cloth, denser, 0.03), pairs);
     EXPECT_GT(expectedPairs(cloth, obstacle, 0.06), pairs);
-    // It is the density that counts: an obstacle twice as large in area with twice the triangles makes no more.
+    // Only the density counts: an obstacle twice as large in area with twice the triangles gives no more pairs.
     EXPECT_DOUBLE_EQ(expectedPairs(cloth, {2560, 6.0}, 0.03), pairs);
-    // Both sides' roles are alike.
+    // Both sides have equal roles.
     EXPECT_DOUBLE_EQ(expectedPairs(obstacle, cloth, 0.03), pairs);
 }
 
@@ -97,7 +97,7 @@ TEST(BestCrossover, EndsAreAlwaysAndNever)
     EXPECT_EQ(bestCrossover({{10, 1, 2}, {100, 1, 20}}), kInfinity);
 }
 
-TEST(LeastTimes, AreTakenByRung)
+TEST(LeastTimes, LeastTimesAreTakenForEachRung)
 {
     const std::vector<CrossoverRung> rungs = leastTimes({{10, 1, 4}, {100, 5, 6}}, {{1000, 7, 8}, {10, 2, 3}});
     ASSERT_EQ(rungs.size(), 3u);
@@ -121,7 +121,7 @@ TEST(MachineLoad, ReadsWhatTheSystemCounts)
     EXPECT_EQ(times.m_cores, 2u);
 }
 
-TEST(MachineLoad, IsBusyWhereOthersLeaveTooFewCores)
+TEST(MachineLoad, TheMachineIsBusyIfOthersLeaveTooFewCores)
 {
     const CoreTimes first = {10, 100, 8};
     const auto busy = [&](double busySeconds, unsigned threads) {
@@ -144,7 +144,7 @@ TEST(BackendChoice, AGrowingSceneMovesOnceAndComesBackBelowHalf)
     EXPECT_TRUE(choice.active());
     EXPECT_TRUE(choice.isOnHost());
     choice.note(1, 7, 600);
-    choice.note(1, 8, 900);  // of one cloth's obstacles the worst counts
+    choice.note(1, 8, 900);  // the worst of one cloth's obstacles counts
     EXPECT_EQ(choice.pairs(), 900);
     EXPECT_TRUE(choice.isOnHost());
     choice.note(2, 7, 200);

@@ -32,14 +32,14 @@ int cullVolume(CullVolume* cull, const ObstacleMotion* motion, const Triangle* t
     return cullMeets(&corners, kRadius, motion);
 }
 
-// The lane of direction i.
+// Returns the lane of direction i.
 Directions directionLane(int i)
 {
     const Vec3 axes[] = {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1)};
     return {lanesVec3(dopProject(axes[0], i), dopProject(axes[1], i), dopProject(axes[2], i)), dopNorm(i), 0.0f};
 }
 
-// Which nodes and edges are out of reach of a patch that is a point without a cone, bits as in Triangle::m_owned.
+// Returns the nodes and edges out of reach of a patch that is a point without a cone, bits as in Triangle::m_owned.
 std::uint32_t outOfReach(const CullVolumes& packet, const Vec3* corners, Vec3 point)
 {
     std::uint32_t out = 0;
@@ -59,7 +59,7 @@ std::uint32_t outOfReach(const CullVolumes& packet, const Vec3* corners, Vec3 po
     return out;
 }
 
-// corners: those that the packet's volume is made of.
+// `corners` are those of the packet's volume.
 void expectNodesMakeTheVolume(const CullVolumes& packet, const Vec3* corners, Counts& counts)
 {
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
@@ -73,7 +73,8 @@ void expectNodesMakeTheVolume(const CullVolumes& packet, const Vec3* corners, Co
     for (int k = 0; k < 3; ++k)
     {
         const int next = (k + 1) % 3, last = (k + 2) % 3;
-        // What is at a node, or beside an edge as far as contacts reach, is in its reach; the node opposite may not be.
+        // Points at a node, or beside an edge within the contact distance, are in its reach. The opposite node may be
+        // outside.
         const Vec3 middle = vec3Scale(vec3Add(corners[3 + next], corners[3 + last]), 0.5f);
         const Vec3 beside = vec3Add(middle, vec3(0.0f, packet.m_radius, 0.0f));
         EXPECT_EQ(outOfReach(packet, corners, corners[3 + k]) &
@@ -86,7 +87,7 @@ void expectNodesMakeTheVolume(const CullVolumes& packet, const Vec3* corners, Co
     }
 }
 
-// Of valid triangles.
+// Expects equal volumes of valid triangles.
 void expectSameVolume(const StepCase& step, const Triangle& triangle, std::uint32_t mode, const ObstacleMotion* motion,
                       Counts& counts)
 {
@@ -121,7 +122,7 @@ void expectSameVolume(const StepCase& step, const Triangle& triangle, std::uint3
 
 TEST(CullPacket, VolumesAreThoseOfSingleTriangles)
 {
-    // A turn by a right angle and a shift, of an obstacle in one half of the cloth.
+    // The obstacle rotates by a right angle and shifts, in one half of the cloth.
     const ObstacleMotion motion = {{0, -1, 0, 0.02f, 1, 0, 0, -0.01f, 0, 0, 1, 0.005f}, {-2, -2, -2}, {0, 2, 2}, 0};
     Counts counts;
     for (const bool moving : {false, true})
@@ -148,7 +149,7 @@ TEST(CullPacket, VolumesAreThoseOfSingleTriangles)
     EXPECT_GT(counts.m_out, counts.m_tried / 4);
 }
 
-// What is not in the step is near nothing, wherever it is.
+// A triangle that is not in the step is near nothing, wherever it is.
 TEST(CullPacket, NegativeRadiusIsEmpty)
 {
     LanesVec3 corners[6] = {};

@@ -1,4 +1,4 @@
-// Which device settings and DRAPE_DEVICE come to, and what is said about it.
+// Resolves device settings and DRAPE_DEVICE, and checks the messages about them.
 #include "bullet_plugin/core/device/device_choice.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace drape::test
 {
 namespace
 {
-// DRAPE_DEVICE for a scope.
+// Sets DRAPE_DEVICE for a scope.
 struct DeviceVariable : ScopedVariable
 {
     explicit DeviceVariable(const char* value) : ScopedVariable("DRAPE_DEVICE", value) {}

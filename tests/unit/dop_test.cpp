@@ -11,7 +11,7 @@ namespace drape::test
 {
 namespace
 {
-// As kernels/lib/dop.h names them, for every number of sides.
+// The directions of kernels/lib/dop.h, for every number of sides.
 const int kAxes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 const int kEdges[6][3] = {{1, 1, 0}, {1, 0, 1}, {0, 1, 1}, {1, -1, 0}, {1, 0, -1}, {0, 1, -1}};
 const int kCorners[4][3] = {{1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
@@ -157,7 +157,7 @@ TEST(Dop, InvalidPositionsStayOutOfTheVolume)
                 TriangleMesh mesh = good, left = good;
                 std::vector<float> end = good.m_positions;
                 (atEnd ? end : mesh.m_positions)[at] = bad;
-                // The same volume as of a triangle whose bad corner lies on another one.
+                // The volume equals that of a triangle whose bad corner lies on another one.
                 const std::size_t corner = at / 3, other = (corner + 1) % 3;
                 std::copy_n(&good.m_positions[3 * other], 3, &left.m_positions[3 * corner]);
                 const Dop dop = volumeOf(mesh, end, 0, 0.1f), expected = volumeOf(left, left.m_positions, 0, 0.1f);

@@ -39,7 +39,7 @@ ExactTriangle gridTriangle(Random& random, std::uint32_t size, float step)
 }
 }  // namespace
 
-TEST(Exact, expansionsDoNotRound)
+TEST(Exact, ExpansionsDoNotRound)
 {
     const Expansion tiny = Expansion::difference(std::ldexp(1.0, -149), 0);
     const Expansion large = Expansion::difference(std::ldexp(1.0, 127), 0);
@@ -53,13 +53,13 @@ TEST(Exact, expansionsDoNotRound)
     EXPECT_EQ(((a + b) * (a - b) - (a * a - b * b)).sign(), 0);
 }
 
-TEST(Exact, orientationOfPointsNearlyInAPlane)
+TEST(Exact, OrientationOfPointsNearlyInAPlaneIsExact)
 {
     Random random(90);
     int zero = 0, filtered = 0;
     for (int i = 0; i < 20000; ++i)
     {
-        // On the plane through three points, to the last bit of a float, or off it by that bit.
+        // The point is on the plane through three points, to the last bit of a float, or off it by that bit.
         ExactPoint p[4];
         for (int k = 0; k < 3; ++k)
             p[k] = asPoint(random.uniform(-1, 1) + 100, random.uniform(-1, 1), random.uniform(-1, 1));
@@ -78,7 +78,7 @@ TEST(Exact, orientationOfPointsNearlyInAPlane)
     EXPECT_GT(filtered, 10000);
 }
 
-TEST(Exact, trianglesMeetAsRationalNumbersSay)
+TEST(Exact, TriangleIntersectionsEqualRationalArithmetic)
 {
     Random random(91);
     for (std::uint32_t size : {2u, 3u, 5u})
@@ -101,7 +101,7 @@ TEST(Exact, trianglesMeetAsRationalNumbersSay)
     }
 }
 
-TEST(Exact, distancesAreThoseOfBruteForce)
+TEST(Exact, DistancesEqualBruteForce)
 {
     Random random(92);
     int apart = 0;
@@ -120,7 +120,7 @@ TEST(Exact, distancesAreThoseOfBruteForce)
     EXPECT_GT(apart, 1000);
 }
 
-TEST(Exact, distancesOfTrianglesWithoutArea)
+TEST(Exact, DistancesOfTrianglesWithoutAreaAreExact)
 {
     const float point[9] = {1, 2, 3, 1, 2, 3, 1, 2, 3}, segment[9] = {1, 2, 5, 3, 2, 5, 2, 2, 5};
     const float face[9] = {0, 0, 1, 4, 0, 1, 0, 8, 1};

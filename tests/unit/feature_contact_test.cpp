@@ -57,12 +57,12 @@ void expectNormal(const Contact& contact, float x, float y, float z)
     EXPECT_NEAR(contact.m_normal[2], z, 1e-6f);
 }
 
-// A large face in the plane y = 0, seen from above counter-clockwise.
+// Makes a large face in the plane y = 0, counter-clockwise seen from above.
 TriangleMesh floorTriangle()
 {
     return looseTriangles({-4, 0, 4, 4, 0, 4, 0, 0, -4});
 }
-// A small triangle whose node 0 hangs lowest, at height y.
+// Makes a small triangle whose node 0 hangs lowest, at height y.
 std::vector<float> hangingTriangle(float y)
 {
     return {0, y, 0, 1, y + 1, 0, 0, y + 1, 1};
@@ -93,7 +93,7 @@ TEST(FeatureContact, NodesThatWentThroughALongFaceMetIt)
         float hit[3] = {0, 0, 0};
         for (std::size_t k = 0; k < 9; ++k)
             hit[k % 3] += weights[k / 3] / sum * face[k];
-        // Through the face, across its plane, and to within the reach on the other side.
+        // The node goes through the face, across its plane, and to within the reach on the other side.
         const float normal[3] = {rise * sine, -sine, cosine};
         std::vector<float> start, end;
         for (const float aside : {0.0f, 0.3f, 0.6f})
@@ -173,7 +173,7 @@ TEST(NodeFace, PathsThroughSeamsAreCaught)
     for (int i = 0; i < 3000; ++i)
     {
         SCOPED_TRACE("seed 17, path " + std::to_string(i));
-        // On a grid line or a grid point, approached at a slant.
+        // The node is on a grid line or a grid point, approached at a slant.
         const float x = i % 3 == 0 ? 0.0f : i % 3 == 1 ? random.uniform(-1.9f, 1.9f) : float(random.below(3)) - 1.0f;
         const float z = i % 3 == 1 ? 0.0f : i % 3 == 0 ? random.uniform(-1.9f, 1.9f) : float(random.below(3)) - 1.0f;
         const float dx = random.uniform(-1, 1), dz = random.uniform(-1, 1), t = random.uniform(0.1f, 0.9f);
@@ -192,8 +192,8 @@ TEST(NodeFace, PathsThroughSeamsAreCaught)
     }
 }
 
-// Over a flat floor of many faces a node has one contact, with the face below it: the neighbours' edges are nearer to
-// no other point than the face, so their cones turn the node away.
+// A node over a flat floor of many faces has one contact, with the face below it. The neighbours' edges are nearer to
+// no other point than the face, so their cones reject the node.
 TEST(NodeFace, ConesRejectNeighboursOnAFlatFloor)
 {
     const TriangleMesh floor = makeClothGrid(9, 9, 0.8f, 0.0f).m_mesh;
@@ -292,12 +292,12 @@ TEST(Degenerate, ZeroAreasGiveFiniteContactsOnTheRightSide)
             EXPECT_NEAR(contact.m_gap1, 0.05f, 1e-4f);
         }
         EXPECT_FALSE(contacts(makeStep(looseTriangles(node), node, sliver), DRAPE_NODE_FACE).empty());
-        // The other way round: the cloth is the sliver.
+        // The roles are exchanged: the cloth is the sliver.
         contacts(makeStep(sliver, sliver.m_positions, floorTriangle()), DRAPE_FACE_VERTEX);
     }
 }
 
-// Lengths below 1e-18 m have squares that floats hold badly, or not at all.
+// Floats represent squares of lengths below 1e-18 m badly, or not at all.
 TEST(Degenerate, NormalsAreUnitWhereSquaresOfDistancesAreDenormal)
 {
     std::size_t found = 0;

@@ -1,5 +1,5 @@
-// The cull of single features, a lane at a time: what gives a contact is kept, also of triangles that are thin, tiny
-// against the reach or the other, or far longer than an edge of theirs.
+// The cull of single features, a lane at a time. It keeps every feature pair that gives a contact. Triangles may be
+// thin, tiny against the reach or the other, or far longer than one of their edges.
 #include "kernels/lib/feature_cull.h"
 
 #include <gtest/gtest.h>
@@ -64,7 +64,7 @@ public:
         return pairContact(test, &m_cloth, &m_obstacle, m_pair, m_pairReach, &contact) == DRAPE_IS_CONTACT;
     }
 
-    // Whether the cull of faces lets any test of the pair be.
+    // Returns true if the cull of faces keeps any test of the pair.
     bool isNear() const
     {
         Lane face = {};
@@ -118,8 +118,8 @@ private:
 
 struct Counts
 {
-    std::size_t m_pairs = 0, m_near = 0;     // of triangles
-    std::size_t m_kept = 0, m_contacts = 0;  // of features
+    std::size_t m_pairs = 0, m_near = 0;     // pairs of triangles
+    std::size_t m_kept = 0, m_contacts = 0;  // pairs of features
 };
 
 // A step's meshes as PairOfTriangles reads them.
@@ -166,7 +166,7 @@ void expectContactsKept(PairOfTriangles& pair, Candidate triangles, Counts& coun
     }
 }
 
-// Of cloth triangle i and obstacle triangle i.
+// Tests cloth triangle i against obstacle triangle i.
 void expectContactsKept(const StepCase& step, std::uint32_t mode, Counts& counts)
 {
     SCOPED_TRACE(step.trace() + ", mode " + std::to_string(mode));

@@ -1,5 +1,4 @@
-// What tells without a search that two features do not meet in a step is never wrong, and tells it of most that come
-// near.
+// The quick test that two features do not meet in a step is never wrong, and decides most near pairs.
 #include "kernels/lib/feature_meeting.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +24,7 @@ PairBounds boundsOf(const Vec3* start, const Vec3* end)
     return {extent, kReach, kReach * 1.001f, DRAPE_AUTOMATIC, nullptr};
 }
 
-// Edges as ccd.h takes them: the ends of the one, then of the other.
+// Passes edges in the order of ccd.h: the ends of the one, then of the other.
 int knownOfEdges(const Vec3* start, const Vec3* end)
 {
     const FeatureEdge e0 = {start[0], start[1]}, e1 = {end[0], end[1]}, o0 = {start[2], start[3]},
@@ -36,7 +35,7 @@ int knownOfEdges(const Vec3* start, const Vec3* end)
     return edgesNearness(e0, e1, o0, o1, motion, volume(e0, o0), volume(e1, o1), boundsOf(start, end));
 }
 
-// A vertex that rests and a face.
+// Tests a resting vertex and a face.
 int knownOfFace(const Vec3* start, const Vec3* end)
 {
     MovingFace face;
@@ -49,13 +48,13 @@ int knownOfFace(const Vec3* start, const Vec3* end)
     return faceNearness(&face, start[0], s0, s1, boundsOf(start, end));
 }
 
-// Turned so that no axis is an edge's or a normal's.
+// Rotates the point so that no axis is an edge's or a normal's.
 Vec3 turned(Vec3 p)
 {
     return vec3((2 * p.x + 2 * p.y - p.z) / 3, (-p.x + 2 * p.y + 2 * p.z) / 3, (2 * p.x - p.y + 2 * p.z) / 3);
 }
 
-// How many of each answer there were.
+// Counts each kind of answer.
 struct Answers
 {
     int m_count[3] = {0, 0, 0};
@@ -84,7 +83,7 @@ Answers answersFor(std::uint32_t kind, float way, Random& random)
 }
 }  // namespace
 
-TEST(FeatureMeeting, WhatIsKnownWithoutASearchIsTrue)
+TEST(FeatureMeeting, AnswersWithoutASearchAreTrue)
 {
     for (const std::uint32_t kind : {DRAPE_VERTEX_FACE, DRAPE_EDGES})
         for (const float way : {0.003f, 0.03f, 0.3f})
@@ -98,8 +97,8 @@ TEST(FeatureMeeting, WhatIsKnownWithoutASearchIsTrue)
         }
 }
 
-// Cloth that slides along a surface without leaving its side asks for no search; one that goes through it does, and so
-// does one that just reaches it.
+// Cloth that slides along a surface without leaving its side needs no search. Cloth that goes through it, or just
+// reaches it, does.
 TEST(FeatureMeeting, SlidingFeaturesAreParted)
 {
     const Vec3 way = vec3(0.005f, 0.0f, 0.003f);

@@ -7,7 +7,7 @@
 
 namespace drape::test
 {
-// Every subset of invalid corners, at the start or the end, by each coordinate.
+// Tests every subset of invalid corners, at the start or the end, by each coordinate.
 TEST(FiniteCorners, ValidFeaturesAndStandIns)
 {
     const float kBad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -1e10f};

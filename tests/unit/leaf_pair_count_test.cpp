@@ -1,4 +1,4 @@
-// Exact numbers of a mesh's pairs that are not visited.
+// Exact numbers of a mesh's pairs that no traversal visits.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ std::uint64_t countedOneByOne(const QueryMesh& a, const QueryMesh& b, std::uint3
     return count;
 }
 
-// Loose triangles, a fan or a cloth, crumpled or shrunk to a crowd, sometimes with a vertex that is not finite.
+// Makes loose triangles, a fan or a cloth, crumpled or shrunk to a crowd, sometimes with a vertex that is not finite.
 TriangleMesh randomMesh(std::uint32_t seed)
 {
     Random random(seed);
@@ -46,7 +46,7 @@ TriangleMesh randomMesh(std::uint32_t seed)
     for (float& coordinate : mesh.m_positions)
         coordinate *= scale;
     disturb(mesh.m_positions, random.below(2) ? 0.0f : 0.1f, random);
-    // Of a fan often its middle.
+    // Spoils one of the first vertices, often the middle of a fan.
     if (random.below(3) == 0) mesh.m_positions[3 * random.below(3)] = NAN;
     return mesh;
 }

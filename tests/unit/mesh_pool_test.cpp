@@ -105,7 +105,7 @@ TEST(MeshPool, KeepsIdsWhenOthersGo)
     expectJoined(pool);
 }
 
-// What a user of the joined arrays has to look at again.
+// Users of the joined arrays must read these slots again.
 TEST(MeshPool, TellsFromWhichSlotOnPlacesAreNew)
 {
     MeshPool pool;

@@ -47,7 +47,7 @@ TEST(MeshProbe, InsideOfABoxIsInsideWhateverTheWinding)
             const bool inside = std::max(std::fabs(p.x), std::max(std::fabs(p.y), std::fabs(p.z))) < 0.5f;
             ASSERT_EQ(probe.isInside(p), inside) << p.x << " " << p.y << " " << p.z;
         }
-        // On lines through corners and edges, where a ray along an axis would run into them.
+        // The points are on lines through corners and edges, where a ray along an axis would meet them.
         EXPECT_TRUE(probe.isInside(vec3(0, 0, 0)));
         EXPECT_FALSE(probe.isInside(vec3(0.75f, 0.5f, 0.5f)));
         for (std::size_t t = std::size_t(turned); t < mesh.triangleCount(); t += 2)
@@ -75,7 +75,7 @@ TEST(MeshProbe, VerticesAtOnePositionAreOneForClosedness)
     EXPECT_FALSE(probeOf(makeTerrain(2, 0.1f, 8, 1)).isClosed());
 }
 
-// As apps make spheres: sines and cosines of a whole turn are off by rounding, at the seam and at both poles.
+// Simulates spheres of apps: sines and cosines of a full turn are off by rounding, at the seam and at both poles.
 TEST(MeshProbe, SeamsOffByRoundingAreClosed)
 {
     constexpr int kSteps = 32;
@@ -112,7 +112,7 @@ TEST(MeshProbe, SeamsOffByRoundingAreClosed)
                 ASSERT_EQ(probe.isInside(p), distance < 1) << distance;
             }
         }
-        // A gap that is no rounding.
+        // The gap is larger than rounding.
         for (float& z : mesh.m_positions)
             if (z == at(kSteps, 1).z) z += float(1e-4 * size);
         EXPECT_FALSE(probeOf(mesh).isClosed()) << size;

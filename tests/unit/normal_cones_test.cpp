@@ -68,7 +68,7 @@ void expectTight(const std::vector<NormalCone>& cones, const std::vector<Directi
     }
 }
 
-// Every third triangle or so wound the other way, in an order of its own for each seed.
+// Winds about every third triangle the other way, in an order of its own for each seed.
 TriangleMesh rewound(TriangleMesh mesh, std::uint32_t seed)
 {
     Random random(seed);

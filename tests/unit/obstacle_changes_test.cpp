@@ -1,4 +1,4 @@
-// Which obstacles a back end brings up to date: those that came, were given other positions or have another place.
+// Finds the obstacles that a back end must update: new ones, and ones with other positions or another pose.
 #include "bullet_plugin/core/pipeline/obstacle_changes.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ protected:
     }
     void give(std::size_t slot) { m_scene.m_obstacles.mesh(slot).m_given = ++m_scene.m_obstacleMotion; }
 
-    // A letter a slot: given, placed, or nothing.
+    // Returns a letter for each slot: given, placed, or nothing.
     std::string taken(std::size_t fresh)
     {
         m_changes.take(m_scene, fresh);

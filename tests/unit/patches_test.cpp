@@ -18,7 +18,7 @@ namespace
 {
 constexpr std::uint32_t kWidth = 32;
 
-// Of a side of one mesh.
+// Returns the clustered triangles of a side of one mesh.
 std::vector<std::uint32_t> clustered(const Side& side)
 {
     return clusteredOrder(side.m_pool.mesh(0), side.m_start.data(), kWidth);
@@ -32,7 +32,7 @@ void expectEachOnce(std::vector<std::uint32_t> order, std::size_t count)
     EXPECT_EQ(order, all);
 }
 
-// m, of the boxes around runs of kWidth triangles, in the mean.
+// Returns the mean diagonal (m) of the boxes around runs of kWidth triangles.
 double meanDiagonal(const Side& side, const std::vector<std::uint32_t>& order)
 {
     double sum = 0;
@@ -110,7 +110,7 @@ TEST(PatchesTest, PatchesOfASurfaceAreFarSmallerThanRunsOfTheLeafOrder)
     const Side side = makeSide({makeSphere(1.0f, 5)});
     const std::vector<std::uint32_t> order = clustered(side);
     EXPECT_LT(meanDiagonal(side, order), 0.8 * meanDiagonal(side, side.m_pool.order()));
-    // A disc of 32 triangles' area.
+    // The bound is a disc of 32 triangles' area.
     const double area = 4 * 3.14159265 / double(side.m_pool.triangles().size()) * kWidth;
     EXPECT_LT(meanDiagonal(side, order), 2.0 * std::sqrt(area)) << "twice a square's side";
 }

@@ -103,7 +103,7 @@ TEST_F(ProgramCacheTest, ForeignFileAndFolderInItsPlace)
 
 TEST_F(ProgramCacheTest, FolderThatCannotBeWritten)
 {
-    // A file where a folder should be: not even root can write below it.
+    // A file has a folder's name: not even root can write below it.
     std::ofstream(m_folder + "/file") << "x";
     const ProgramCache cache(m_folder + "/file/below");
     cache.store("key", m_binary);

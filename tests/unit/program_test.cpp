@@ -84,7 +84,7 @@ TEST(AssembleSource, UnknownFileIsEmpty)
     EXPECT_TRUE(assembleSource("kernels/no_such.cl").empty());
 }
 
-TEST(AssembleSource, OfSeveralFilesHasWhatTheyIncludeOnce)
+TEST(AssembleSource, SeveralFilesIncludeAFileOnce)
 {
     const std::string source = assembleSources({"kernels/refit.cl", "kernels/place_obstacles.cl"});
     expectLinesAreWhereTheySay(source);
@@ -94,8 +94,7 @@ TEST(AssembleSource, OfSeveralFilesHasWhatTheyIncludeOnce)
     EXPECT_TRUE(assembleSources({"kernels/refit.cl", "kernels/no_such.cl"}).empty());
 }
 
-// For drivers that ignore line directives: a marker in the assembled source, named by its own line, is found in its
-// file.
+// Some drivers ignore line directives. A marker in the assembled source, named by its own line, is found in its file.
 TEST(TranslateLog, NamesFileAndLineOfEveryKernelLine)
 {
     const std::string source = assembleSource("kernels/refit.cl");
@@ -128,9 +127,9 @@ TEST_P(ProgramTest, BrokenKernelNamesFileLineAndLog)
     std::string source = assembleSource("kernels/refit.cl");
     const std::size_t at = source.find("dopStore(nodes + leaf");
     ASSERT_NE(at, std::string::npos);
-    // A variable: a missing function may pass for one to be linked.
+    // A variable breaks the source; a missing function could pass for one to be linked.
     source.insert(at, "thisIsNoVariable = 7;");
-    // The line of refit.cl that was broken.
+    // Finds the broken line of refit.cl.
     const std::string before = source.substr(source.rfind("#line", at), at - source.rfind("#line", at));
     const std::size_t line = std::stoul(before.substr(6)) + countOf(before, "\n") - 1;
 

@@ -36,7 +36,7 @@ protected:
 };
 }  // namespace
 
-TEST_F(QueriesInput, settings)
+TEST_F(QueriesInput, BadSettingsAreRefused)
 {
     Settings settings;
     settings.m_backend = Backend(7);
@@ -45,7 +45,7 @@ TEST_F(QueriesInput, settings)
     EXPECT_EQ(error.m_call.rfind("Settings::m_backend", 0), 0u) << error.text();
 }
 
-TEST_F(QueriesInput, motions)
+TEST_F(QueriesInput, BadMotionsAreRefused)
 {
     CcdQuery query = {};
     CcdResult result = {};
@@ -69,7 +69,7 @@ TEST_F(QueriesInput, motions)
     EXPECT_TRUE(m_queries->motions(nullptr, 0, settings, nullptr));
 }
 
-TEST_F(QueriesInput, triangles)
+TEST_F(QueriesInput, BadTrianglesAreRefused)
 {
     const TriangleQuery query = {};
     std::uint32_t result = 0;
@@ -79,7 +79,7 @@ TEST_F(QueriesInput, triangles)
     EXPECT_TRUE(m_queries->triangles(nullptr, 0, TriangleTest::Exact, nullptr));
 }
 
-TEST_F(QueriesInput, meshes)
+TEST_F(QueriesInput, BadMeshesAreRefused)
 {
     const TriangleMesh sphere = makeSphere(0.5f, 1);
     const MeshDescription mesh = describeMesh(sphere);

@@ -15,7 +15,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 using Change = std::function<void(Methods&)>;
 
-// Of making a pipeline on the host with changed settings; empty where it was made.
+// Returns the error of making a pipeline on the host with changed settings; empty on success.
 std::string errorOfSettings(const std::function<void(Settings&)>& change)
 {
     Settings settings;
@@ -38,7 +38,7 @@ void expectRefused(const std::string& text, const Change& change)
 }
 }  // namespace
 
-TEST(SettingsRanges, WhatIsOutOfThemIsRefused)
+TEST(SettingsRanges, ValuesOutOfRangeAreRefused)
 {
     for (const float activation : {-0.1f, 4.1f, kNaN, kInfinity})
     {
@@ -68,7 +68,7 @@ TEST(StatusText, NamesEveryBit)
     EXPECT_EQ(statusText(0xffffffffu), all);
 }
 
-TEST(MethodsRanges, WhatIsOutOfThemIsRefused)
+TEST(MethodsRanges, ValuesOutOfRangeAreRefused)
 {
     expectRefused("m_traversal is 8", [](Methods& m) { m.m_traversal = Traversal(8); });
     expectRefused("m_tree.m_builder is -1", [](Methods& m) { m.m_tree.m_builder = TreeBuilder(-1); });
@@ -96,7 +96,7 @@ TEST(MethodsRanges, WhatIsOutOfThemIsRefused)
     expectRefused("m_rebuildDecay is nan", [](Methods& m) { m.m_rebuildDecay = kNaN; });
 }
 
-TEST(MethodsRanges, WhatIsAtTheirEndsIsTaken)
+TEST(MethodsRanges, ValuesAtTheEndsAreAccepted)
 {
     EXPECT_EQ(errorOf([](Methods&) {}), "");
     EXPECT_EQ(errorOf(

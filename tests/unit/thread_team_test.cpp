@@ -29,7 +29,7 @@ void expectEachOnce(ThreadTeam& team, std::size_t count)
 }
 }  // namespace
 
-TEST_P(ThreadTeamTest, runsEachItemOnce)
+TEST_P(ThreadTeamTest, RunsEachItemOnce)
 {
     ThreadTeam team(GetParam());
     EXPECT_EQ(team.size(), GetParam());
@@ -38,7 +38,7 @@ TEST_P(ThreadTeamTest, runsEachItemOnce)
 }
 
 // Threads that still look for the items of one job while the next one is offered.
-TEST_P(ThreadTeamTest, keepsJobsApart)
+TEST_P(ThreadTeamTest, KeepsJobsApart)
 {
     ThreadTeam team(GetParam());
     std::size_t wanted = 0;
@@ -53,7 +53,7 @@ TEST_P(ThreadTeamTest, keepsJobsApart)
     }
 }
 
-TEST_P(ThreadTeamTest, wakesThreadsThatSleep)
+TEST_P(ThreadTeamTest, WakesThreadsThatSleep)
 {
     ThreadTeam team(GetParam());
     for (int i = 0; i < 20; ++i)
@@ -63,8 +63,8 @@ TEST_P(ThreadTeamTest, wakesThreadsThatSleep)
     }
 }
 
-// What a job wrote is there for the caller and for whoever works on the next one.
-TEST_P(ThreadTeamTest, showsWhatJobsWrote)
+// Results of a job are visible to the caller and to the threads that run the next job.
+TEST_P(ThreadTeamTest, ResultsOfJobsAreVisibleToAllThreads)
 {
     ThreadTeam team(GetParam());
     constexpr std::size_t kItems = 97;
@@ -78,7 +78,7 @@ TEST_P(ThreadTeamTest, showsWhatJobsWrote)
         ASSERT_EQ(value, 2000u);
 }
 
-TEST_P(ThreadTeamTest, tellsTheCallerOfFailures)
+TEST_P(ThreadTeamTest, ReportsFailuresToTheCaller)
 {
     ThreadTeam team(GetParam());
     for (int i = 0; i < 100; ++i)
@@ -100,7 +100,7 @@ TEST_P(ThreadTeamTest, tellsTheCallerOfFailures)
     }
 }
 
-TEST_P(ThreadTeamTest, takesFailuresOfManyItems)
+TEST_P(ThreadTeamTest, SurvivesFailuresOfManyItems)
 {
     ThreadTeam team(GetParam());
     for (int i = 0; i < 100; ++i)
@@ -111,7 +111,7 @@ TEST_P(ThreadTeamTest, takesFailuresOfManyItems)
 }
 
 // Items round as the caller does, whoever runs them and whatever the caller did before.
-TEST_P(ThreadTeamTest, roundsAsTheCaller)
+TEST_P(ThreadTeamTest, ThreadsRoundLikeTheCaller)
 {
     ThreadTeam team(GetParam());
     for (const int mode : {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TONEAREST})
@@ -126,8 +126,8 @@ TEST_P(ThreadTeamTest, roundsAsTheCaller)
     }
 }
 
-// By default there are as many threads as cores, within a limit.
-TEST(ThreadTeam, hasADefaultSize)
+// The default number of threads is the number of cores, within a limit.
+TEST(ThreadTeam, HasADefaultSize)
 {
     const ThreadTeam team(0);
     EXPECT_GE(team.size(), 1u);

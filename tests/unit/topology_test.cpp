@@ -20,7 +20,7 @@ Topology topologyOf(const TriangleMesh& mesh)
     return buildTopology(mesh.m_triangles.data(), mesh.triangleCount(), mesh.vertexCount());
 }
 
-// What every topology must satisfy, whatever the mesh.
+// Checks the invariants of every topology, whatever the mesh.
 void expectSound(const Topology& topology)
 {
     std::map<std::uint32_t, int> vertexOwners, edgeOwners, edgeUses;
@@ -137,7 +137,7 @@ TEST(Topology, DuplicateFacesAreDropped)
         std::vector<std::int32_t> triangles;
         std::vector<std::uint32_t> first;
         std::set<std::set<std::int32_t>> distinct;
-        // Few vertices: up to 5 triangles at an edge, and each of them several times.
+        // The few vertices give up to 5 triangles at an edge, and each of them several times.
         const std::uint32_t vertices = 4 + random.below(4);
         for (std::uint32_t t = 0; t < 200; ++t)
         {
@@ -191,7 +191,7 @@ TEST(Topology, DependsOnTheInputAlone)
         ASSERT_EQ(std::memcmp(&a.m_triangles[i], &b.m_triangles[i], sizeof(Triangle)), 0);
     }
 }
-// Of a triangle, one that has a vertex twice, and two vertices that nothing has.
+// The mesh has a triangle, one that has a vertex twice, and two vertices without a triangle.
 TEST(Topology, PointsAreOfVerticesWithoutATriangle)
 {
     const std::int32_t triangles[] = {0, 1, 2, 3, 3, 0};
@@ -216,8 +216,8 @@ TEST(Topology, PointsAreOfVerticesWithoutATriangle)
     EXPECT_EQ(topology.m_triangles.size(), 4u) << "each has its own";
 }
 
-// Of a triangle: a chain that hangs from it, an edge that two of its vertices share, one that is given twice, one from
-// a vertex to itself.
+// The mesh is a triangle with edges: a chain that hangs from it, an edge between two of its vertices, one that is given
+// twice, and one from a vertex to itself.
 TEST(Topology, EdgesWithoutATriangleAreTrianglesWithoutArea)
 {
     const std::int32_t triangles[] = {0, 1, 2};

@@ -29,7 +29,7 @@ struct Pair
     }
 };
 
-// Two triangles of a size around an offset, the second shifted.
+// Makes two triangles of a size around an offset, the second shifted.
 Pair randomPair(Random& random, float size, float offset, float shift)
 {
     Pair pair;
@@ -44,7 +44,7 @@ Pair randomPair(Random& random, float size, float offset, float shift)
 }
 }  // namespace
 
-TEST(TrianglePair, radiusIsKeptToItsRounding)
+TEST(TrianglePair, ReportsEveryPairWithinTheRoundedRadius)
 {
     Random random(93);
     for (float offset : {0.0f, 100.0f})
@@ -59,7 +59,7 @@ TEST(TrianglePair, radiusIsKeptToItsRounding)
                 const double distance = pair.distance();
                 const float radius = float(distance) * random.uniform(0.5f, 1.5f);
                 const bool found = (trianglePairTest(pair.m_a, pair.m_b, radius) & DRAPE_PAIR_NEAR) != 0;
-                // Kept unnecessarily only within 6.6e-5 of the extent, which is at most 6 sizes.
+                // A pair is kept unnecessarily only within 6.6e-5 of the extent, which is at most 6 sizes.
                 ASSERT_TRUE(found || distance > radius) << i;
                 ASSERT_TRUE(!found || distance <= radius + 4e-4 * size) << i;
                 near += found;
@@ -71,9 +71,10 @@ TEST(TrianglePair, radiusIsKeptToItsRounding)
     }
 }
 
-TEST(TrianglePair, radiusToTheLastBit)
+TEST(TrianglePair, TheRadiusCountsToTheLastBit)
 {
-    // Parallel faces at a gap that the radius meets exactly, exceeds by a bit, or misses by one in ten thousand.
+    // The faces are parallel at a gap that the radius meets exactly, exceeds by a bit, or misses by one in ten
+    // thousand.
     for (float gap : {1.0f, 0.01f, 3e-5f})
     {
         const Vec3 a[3] = {vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)};
@@ -84,7 +85,7 @@ TEST(TrianglePair, radiusToTheLastBit)
     }
 }
 
-TEST(TrianglePair, unitsOfLengthThatArePowersOfTwoChangeNothing)
+TEST(TrianglePair, UnitsOfLengthThatArePowersOfTwoChangeNothing)
 {
     Random random(94);
     int meets = 0;
@@ -110,7 +111,7 @@ TEST(TrianglePair, unitsOfLengthThatArePowersOfTwoChangeNothing)
     EXPECT_GT(meets, 100);
 }
 
-TEST(TrianglePair, badNumbersAreDenied)
+TEST(TrianglePair, BadNumbersAreNoHit)
 {
     Pair pair;
     for (int i = 0; i < 3; ++i)
@@ -121,7 +122,7 @@ TEST(TrianglePair, badNumbersAreDenied)
     EXPECT_EQ(trianglePairTest(pair.m_a, pair.m_b, 1e30f), 0u);
 }
 
-TEST(Moller, rightWhereTheToleranceDoesNotMatter)
+TEST(Moller, IsRightWhereTheToleranceDoesNotMatter)
 {
     Random random(95);
     int meets = 0, judged = 0;
@@ -133,7 +134,7 @@ TEST(Moller, rightWhereTheToleranceDoesNotMatter)
         const double distance = pair.distance();
         if (distance > 0 && distance < 1e-2) continue;
         const float barely = 1e-3f;
-        // Shrunk towards its middle, a triangle that still meets does not barely touch.
+        // A triangle shrunk towards its middle that still meets does not barely touch.
         Pair small = pair;
         const Vec3 middle = vec3Scale(vec3Add(vec3Add(pair.m_a[0], pair.m_a[1]), pair.m_a[2]), 1.0f / 3.0f);
         for (Vec3& p : small.m_a)
@@ -147,13 +148,13 @@ TEST(Moller, rightWhereTheToleranceDoesNotMatter)
     EXPECT_LT(meets, judged * 4 / 5);
 }
 
-TEST(Moller, reportsLayersThatDoNotMeetAndTheCertifiedTestDoesNot)
+TEST(Moller, ReportsLayersThatDoNotMeetAndTheCertifiedTestDoesNot)
 {
     Random random(96);
     int moller = 0;
     for (int i = 0; i < 1000; ++i)
     {
-        // 1 cm triangles in layers 1 mm apart.
+        // The triangles have 1 cm and lie in layers 1 mm apart.
         Pair pair = randomPair(random, 0.01f, 0, 0);
         for (int k = 0; k < 3; ++k)
         {

@@ -23,7 +23,7 @@ bool isFinite(const Vector3& p)
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-// The inverse of a pose whose basis is a rotation up to rounding: solved by Cramer's rule in double.
+// Inverts a pose whose basis is a rotation up to rounding: solves by Cramer's rule in double.
 class InversePose
 {
 public:
@@ -63,7 +63,8 @@ struct Box
     }
 };
 
-// +1 or -1 when the path crosses the triangle, by the side that it comes from; 0 when it does not, or only touches.
+// Returns +1 or -1 if the path crosses the triangle, by the side that it comes from, and 0 if it does not, or only
+// touches.
 int passes(const Vector3& from, const Vector3& to, const Vector3 triangle[3])
 {
     const int before = orientation(triangle[0], triangle[1], triangle[2], from);

@@ -13,7 +13,7 @@ struct WorldSpec
 {
     int m_kind = 0;  // index into kindNames()
     std::uint64_t m_seed = 0;
-    std::uint32_t m_modifiers = 0;  // of random kinds; the others have none
+    std::uint32_t m_modifiers = 0;  // modifiers of random kinds; the others have none
 };
 
 // The random kinds, the two of tiny worlds, and the grids of skirts, in this order.

@@ -35,11 +35,12 @@ std::string kindProblem(const WorldsOptions& options)
 void addWorlds(CLI::App& app, WorldsOptions& options, std::string& modifiers)
 {
     app.add_option("--kind", options.m_kind,
-                   "a kind of --list; all: the random ones but ropes; tiny: worlds of 4 to 9 nodes; skirts: two grids "
-                   "of settings");
-    app.add_option("--seed", options.m_seed, "the first seed; of a grid the first setting")
-        ->check(CLI::Range(0, 1000000000));
-    app.add_option("--count", options.m_count, "worlds: one seed after the other, in every kind that is asked for");
+                   "a kind of --list; all: the random ones without ropes; tiny: worlds of 4 to 9 nodes; skirts: two "
+                   "grids of settings");
+    app.add_option("--seed", options.m_seed, "first seed, or first setting of a grid, 0 to 1000000000")
+        ->check(CLI::Validator(wholeNumber(0, 1000000000), ""));
+    app.add_option("--count", options.m_count, "number of worlds of every chosen kind, with consecutive seeds")
+        ->check(CLI::Validator(wholeNumber(0, 1000000000), ""));
     app.add_option(
         "--modifiers", modifiers,
         "none, random (each of the first sixteen of --list with probability 0.18), or names joined by commas");
@@ -47,16 +48,20 @@ void addWorlds(CLI::App& app, WorldsOptions& options, std::string& modifiers)
 
 void addRunning(CLI::App& app, WorldsOptions& options)
 {
-    acceptOnly(app.add_option("--backend", options.m_backend, "stock: Bullet's own collision, for comparison"),
+    acceptOnly(app.add_option("--backend", options.m_backend,
+                              "where Drape runs; stock: Bullet's own collision, for comparison"),
                {"host", "opencl", "stock"});
-    app.add_option("--jobs", options.m_jobs, "processes at a time")->check(CLI::Range(1, 1024));
-    app.add_option("--timeout", options.m_timeout, "for one world, s")
+    app.add_option("--jobs", options.m_jobs, "number of parallel processes, 1 to 1024")
+        ->check(CLI::Validator(wholeNumber(1, 1024), ""));
+    app.add_option("--timeout", options.m_timeout, "time limit of one world, s")
         ->check(CLI::Validator(numberAbove(0, false, "more than 0"), ""));
-    app.add_option("--most-failing", options.m_mostFailing, "more failing worlds than these end with exit code 1");
+    app.add_option("--most-failing", options.m_mostFailing,
+                   "largest number of failing worlds that still ends with exit code 0");
     app.add_option("--most-failing-at-end", options.m_mostFailingAtEnd,
-                   "more worlds whose last step is a failing one end with exit code 1");
-    app.add_flag("--list", options.m_list, "list kinds and modifiers, and leave");
-    app.add_flag("--verbose", options.m_verbose, "a line for every world and, of a single one, for every step");
+                   "largest number of worlds failing in their last step that still ends with exit code 0");
+    app.add_flag("--list", options.m_list, "list kinds and modifiers, and exit");
+    app.add_flag("--verbose", options.m_verbose,
+                 "print a line for every world; with a single world also for every step");
 }
 }  // namespace
 
@@ -65,9 +70,9 @@ bool parseOptions(int argc, const char* const* argv, WorldsOptions& options, int
     CLI::App app(
         "Runs random worlds of cloth and obstacles in Bullet, and checks after every step that no cloth triangle or "
         "rope\n"
-        "intersects an obstacle and no node went through, unless the step's status says so.",
+        "intersects an obstacle and no node went through, unless the step's status reports it.",
         "drape_worlds");
-    app.footer("Exit codes: 0 no more worlds fail than allowed, 1 more do, 2 arguments that cannot be used.");
+    app.footer("Exit codes: 0 success, 1 more worlds fail than allowed, 2 arguments cannot be used.");
     app.option_defaults()->always_capture_default();
     std::string modifiers = "none";
     addWorlds(app, options, modifiers);

@@ -24,7 +24,7 @@ TriangleMesh randomSpikes(WorldRandom& random)
     return spikes;
 }
 
-// Along x.
+// Makes a rod along x.
 TriangleMesh randomRod(WorldRandom& random)
 {
     const int around = 3 + random.below(9);
@@ -44,7 +44,7 @@ TriangleMesh randomRing(WorldRandom& random)
     return torusMesh(ring, tube, around, across);
 }
 
-// Something to lie on, to be wound around, or sharp.
+// Makes a support to lie on, to be wound around, or a sharp one.
 TriangleMesh randomSupport(WorldRandom& random)
 {
     switch (random.below(6))
@@ -64,7 +64,7 @@ TriangleMesh randomSupport(WorldRandom& random)
     }
 }
 
-// Whole above `height`, across the middle.
+// Makes a rope that is complete above `height`, across the middle.
 std::unique_ptr<btSoftBody> randomRope(WorldBuilder& builder, double height)
 {
     WorldRandom& random = builder.random();
@@ -85,7 +85,7 @@ std::unique_ptr<btSoftBody> randomRope(WorldBuilder& builder, double height)
     return rope;
 }
 
-// A chain of links on every node of one of the cloth's sides.
+// Adds a chain of links to every node of one of the cloth's sides.
 void addFringe(btSoftBody& cloth, WorldRandom& random)
 {
     const int links = 1 + random.below(4), step = 1 + random.below(2), nodes = std::min(8, cloth.m_nodes.size());

@@ -11,7 +11,7 @@ namespace drape::test
 {
 namespace
 {
-// With these bits no contact is missing: the host ran the same step, or nodes went less far.
+// Contacts are complete despite these bits: the host ran the same step, or nodes moved a shorter distance.
 constexpr std::uint32_t kComplete = kStepDeviceFailed | kStepDeviceFull | kStepMotionHeldBack;
 
 void note(const Findings& findings, int frame, bool reported, WorldResult& result)

@@ -27,8 +27,8 @@ struct WorldResult
     std::int32_t m_failsAtEnd = 0;     // 1: the last step is a failing one
     std::int32_t m_pairsMax = 0, m_heldPairsMax = 0, m_throughMax = 0, m_invalidMax = 0;
     std::uint32_t m_status = 0;  // bits of all steps
-    std::int32_t m_signal = 0;   // that ended the process; 0 without one
-    std::uint64_t m_hash = 0;    // of the trajectory: all positions after all steps
+    std::int32_t m_signal = 0;   // signal that ended the process; 0 without one
+    std::uint64_t m_hash = 0;    // hash of the trajectory: all positions after all steps
 };
 
 // Returns whether a step with this status tells its user that contacts may be missing.

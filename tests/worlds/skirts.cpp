@@ -16,7 +16,7 @@ constexpr double kPi = 3.14159265358979;
 constexpr double kRadius = .3;                           // m, of the body
 constexpr double kMargin = .005;                         // m, of cloth and body
 constexpr double kMass = .4;                             // kg
-constexpr int kRings = 14;                               // of the skirt, below the waist
+constexpr int kRings = 14;                               // rings of the skirt, below the waist
 constexpr double kRingHeight = .04, kWaistHeight = .05;  // m
 constexpr double kStepsPerSecond = 60;
 

@@ -58,7 +58,7 @@ TriangleMesh randomSlats(WorldRandom& random)
     return mesh;
 }
 
-// Four walls of 2 m around a square shaft, from the floor down.
+// Makes four walls of 2 m around a square shaft, from the floor down.
 TriangleMesh randomShaft(WorldRandom& random, double width)
 {
     TriangleMesh mesh;

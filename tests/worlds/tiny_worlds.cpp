@@ -21,7 +21,7 @@ enum TinyShape
     kTinyShapes
 };
 
-// Two quads that meet in a ridge.
+// Makes two quads that meet in a ridge.
 TriangleMesh randomRoof(WorldRandom& random, double size)
 {
     TriangleMesh mesh;

@@ -20,7 +20,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kLargestChunk = 200;
 constexpr int kPollMs = 200;
 
-// Is shorter than PIPE_BUF, so that a write puts all of it into the pipe, or nothing.
+// The message is shorter than PIPE_BUF, so that a write puts all of it into the pipe, or nothing.
 struct Message
 {
     std::uint64_t m_world;

@@ -130,7 +130,7 @@ private:
     std::vector<std::unique_ptr<btRigidBody>> m_bodies;
     double m_time = 0;
     std::uint32_t m_status = 0;
-    int m_bulletSteps = 0;  // that began in this call of step()
+    int m_bulletSteps = 0;  // Bullet steps that began in this call of step()
 };
 
 // Returns the pose of compound number `level` (from 1 on) within the one around it.

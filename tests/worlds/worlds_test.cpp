@@ -88,8 +88,9 @@ TEST(Worlds, TinyOnesKeepClothOutside)
     expectFewFail(worldsOf("tiny", 0, 2000, kPlain), kTinyFailing);
 }
 
-// Worlds that failed once: a path around a face that ended within the thickness, a path that ended beyond reach (cloth
-// under tension, a pin that drags cloth over hills, a fan), drift iterations, masses that differ a billion times.
+// Worlds that failed once. In one a path around a face ended within the thickness, in others a path ended beyond reach
+// (cloth under tension, a pin that drags cloth over hills, a fan). Others have drift iterations or masses that differ a
+// billion times.
 TEST(Worlds, OnesThatFailedOnceKeepClothOutside)
 {
     const struct
@@ -154,7 +155,7 @@ TEST(Worlds, SeedsKeepTheirWorlds)
     EXPECT_EQ(hash, 0x564b9f5a8fc0ed4au);
 }
 
-TEST(Modifiers, AreReadAsTheyAreWritten)
+TEST(Modifiers, EqualTheirTextAfterReading)
 {
     for (const std::uint32_t bits : {0u, std::uint32_t(kStiff), std::uint32_t(kMargin | kRatio1000)})
     {

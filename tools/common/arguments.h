@@ -16,27 +16,30 @@ class Option;
 
 namespace drape
 {
-// Checks for CLI11: "" when the text is a number that is finite as float32, and not 0 there unless it is 0, above
-// `least` (or equal, when inclusive), else the reason, which says `what` it must be.
+// Returns a check for CLI11. The check returns "" if the text is a number above `least` (or equal, when inclusive) that
+// is finite as float32 and not rounded to 0. Otherwise it returns the reason, which says `what` it must be.
 std::function<std::string(std::string&)> numberAbove(double least, bool inclusive, const char* what);
 
-// As numberAbove(), and not above `most`.
+// Returns a check like numberAbove() that also refuses numbers above `most`.
 std::function<std::string(std::string&)> numberUpTo(double most, double least, bool inclusive, const char* what);
 
-// To transform the name of a file to write: "" when it is not empty. Standard output is - under its other name, too:
-// what else is written there must not be written over.
+// Returns a check for CLI11 that accepts whole numbers from `least` to `most`.
+std::function<std::string(std::string&)> wholeNumber(long long least, long long most);
+
+// Transforms the name of an output file. Returns "" if it is not empty. Standard output becomes - under its other
+// names, too, so that two outputs cannot overwrite each other there.
 std::string outputFile(std::string& text);
 
 // Makes the option refuse every value that is none of the names, and say which one may be meant.
 void acceptOnly(CLI::Option* option, const std::vector<std::string>& names);
 
-// Adds --version and parses; mistakes are named as argument_mistakes.h has it. `conflict` then tells what is wrong with
-// the whole ("" for nothing). True: go on. False: leave with `exitCode`; what there was to say has been printed (help,
-// the version, or one line on standard error).
+// Adds --version and parses. argument_mistakes.h names the mistakes. `conflict` then returns the reason why the options
+// contradict each other, or "". Returns true if the program goes on. Returns false if it must leave with `exitCode`,
+// after printing the help, the version, or one line on standard error.
 bool parseArguments(CLI::App& app, int argc, const char* const* argv, const std::function<std::string()>& conflict,
                     int& exitCode);
 
-// A program's main: `parse` fills the options as parseArguments does, `run` does the work and gives the exit code.
+// Runs a program: `parse` fills the options like parseArguments, `run` does the work and returns the exit code.
 template <typename Options>
 int runProgram(const char* program, int argc, char** argv, bool (*parse)(int, const char* const*, Options&, int&),
                int (*run)(const Options&))

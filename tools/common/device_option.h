@@ -7,10 +7,11 @@
 
 namespace drape
 {
-// backend: auto, opencl or host. device: part of a name, or empty. Where nothing fits: false and one line in `error`
-// that lists the devices there are.
+// Sets the back end. `backend` is auto, opencl or host; `device` is part of a name, or empty. If no device fits,
+// returns false and one line in `error` that lists the devices.
 bool deviceSettings(const std::string& backend, const std::string& device, Settings& settings, std::string& error);
 
-// One line a device on standard output. False, with a line in `error`, when it could not be written.
+// Prints one line for each device on standard output. Returns false, with a line in `error`, if it could not be
+// written.
 bool printDevices(std::string& error);
 }  // namespace drape

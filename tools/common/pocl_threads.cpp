@@ -17,7 +17,7 @@ bool runsOnEveryCore()
     return ::sched_getaffinity(0, sizeof allowed, &allowed) == 0 && CPU_COUNT(&allowed) == cores;
 }
 
-// PoCL then makes as many threads as they say, more than there are cores if so.
+// PoCL then makes this number of threads, even if it is larger than the number of cores.
 bool threadsAreSet()
 {
     for (const char* name : {"POCL_MAX_PTHREAD_COUNT", "POCL_CPU_MAX_CU_COUNT", "POCL_MAX_COMPUTE_UNITS"})

@@ -1,13 +1,13 @@
-// Where PoCL's threads run, for programs that have a machine to themselves.
+// Places PoCL's threads on cores, for programs that have a machine to themselves.
 #pragma once
 
 namespace drape
 {
-// Tells PoCL to keep each of its threads on a core of its own (POCL_AFFINITY=1), unless that variable or one
-// for their number is set, or this process may not run on every core: a thread without a core ends the program. Before
-// the first OpenCL call and any thread.
+// Tells PoCL to keep each of its threads on a core of its own (POCL_AFFINITY=1).
+// Does nothing if that variable or one for their number is set, or if this process may not run on every core: a thread
+// without a core ends the program. Call it before the first OpenCL call and before any thread starts.
 //
-// Why: on a virtual machine Linux often wakes them on one core, one behind the other. For a library it is not to
-// decide: a thread that must stay on its core waits there for whatever else is busy.
+// Reason: on a virtual machine Linux often wakes the threads on one core, one behind the other. A library must not
+// decide this: a thread that must stay on its core waits there for other busy threads.
 void keepPoclThreadsApart();
 }  // namespace drape

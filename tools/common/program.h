@@ -1,4 +1,4 @@
-// How Drape's programs run and end: exit codes, one line on standard error, nothing thrown out of main.
+// Entry and exit of Drape's programs: exit codes, one line on standard error, no exception out of main.
 #pragma once
 
 #include <functional>
@@ -14,10 +14,10 @@ enum ExitCode
     kExitOtherHash = 3  // a hash is not the one to be: --validate-hash, or a row of a benchmark
 };
 
-// The codes as --help tells them.
+// The part of --help that lists the codes of cloth_drop.
 constexpr const char* kExitCodesText =
-    "Exit codes: 0 good, 1 a run failed or its results could not be written,\n"
-    "2 arguments, files or a device that cannot be used, 3 another hash.";
+    "Exit codes: 0 success, 1 a run failed or its results could not be written,\n"
+    "2 arguments, files or a device cannot be used, 3 the hash differs from --validate-hash.";
 
 // Prints "program: reason" and returns the code.
 int fail(const std::string& program, int exitCode, const std::string& reason);
@@ -28,7 +28,7 @@ int runGuarded(const std::string& program, const std::function<int()>& work);
 // Flushes standard output. False, with a line in `error` unless there is one, when it could not be written.
 bool flushOutput(std::string& error);
 
-// Whether a file could be written there (- and an empty path always), told before the work is done. Else one line in
-// `error`.
+// Returns true if a file could be written there, before the work is done. - and an empty path are always accepted.
+// Otherwise sets `error` to one line.
 bool couldWrite(const std::string& path, std::string& error);
 }  // namespace drape

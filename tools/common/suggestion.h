@@ -8,9 +8,9 @@
 
 namespace drape
 {
-// Returns the nearest of the known words, or "" when none is near. A word is near when it takes few changes to get from
-// one to the other (a letter inserted, dropped or replaced, or two neighbours swapped: one change for every three
-// letters), or when it begins with the text. Among equally near words the first one wins.
+// Returns the nearest of the known words, or "" if none is near. A word is near if it begins with the text or few
+// changes lead from one to the other. A change is a letter inserted, dropped or replaced, or two neighbours swapped;
+// one is allowed for every three letters. The first of equally near words wins.
 std::string nearestWord(const std::string& text, const std::vector<std::string>& known);
 
 // Returns "; did you mean WORD?" for the nearest word, or "" when none is near.

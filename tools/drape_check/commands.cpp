@@ -20,7 +20,7 @@ double microsecondsSince(Clock::time_point start)
     return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
 }
 
-// Null, with `error` and `exitCode`, when the back end that was asked for cannot be had.
+// Returns null, with `error` and `exitCode`, if the requested back end is not available.
 std::unique_ptr<Queries> openQueries(const Options& options, Json& answer, std::string& error, int& exitCode)
 {
     Settings settings;
@@ -82,7 +82,7 @@ bool score(const std::vector<bool>& truth, AnswerAll answerAll, Hit hit, Json& a
     return true;
 }
 
-// Of positions beyond them the tests tell nothing (drape/queries.h).
+// The tests decide nothing for positions beyond this (drape/queries.h).
 constexpr float kFarthest = 1073741824.0f;  // m, 2^30
 
 bool refuseFar(const std::string& path, const std::vector<float>& positions, std::string& error)

@@ -1,4 +1,4 @@
-// What drape_check does: a question answered by the core, and the answer as named numbers.
+// Runs the commands of drape_check: the core answers a question, and the answer is named numbers.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,11 +7,11 @@
 
 namespace drape
 {
-// In the answer, where there is more to test than may be.
+// The key in the answer if there is more to test than allowed.
 constexpr const char* kLimitReached = "limit_reached";
 
-// The numbers of the command, in the order to print. False: `error` holds one line and `exitCode` what it comes to;
-// with kLimitReached in it the answer is the numbers that could be told all the same. Reads the files before it opens a
-// device.
+// Computes the numbers of the command, in the order of printing. On failure it returns false with one line in `error`
+// and the exit code. If the answer contains kLimitReached, its numbers are valid all the same. Reads the files before
+// it opens a device.
 bool runCommand(const Options& options, nlohmann::ordered_json& answer, std::string& error, int& exitCode);
 }  // namespace drape

@@ -10,6 +10,10 @@ namespace drape
 {
 namespace
 {
+constexpr const char* kCheckExitCodes =
+    "Exit codes: 0 success, 1 the computation failed or its answer could not be written,\n"
+    "2 arguments, files or a device cannot be used, or there are more pairs than --candidate-limit.";
+
 const std::string kMeshFile = std::string("mesh file (") + kMeshFormats + ")";
 
 void addFile(CLI::App& command, const char* name, std::string& target, const std::string& what, bool needed = true)
@@ -20,15 +24,15 @@ void addFile(CLI::App& command, const char* name, std::string& target, const std
 
 void addMotionOptions(CLI::App& command, Options& options)
 {
-    command.add_option("--separation", options.m_separation, "features this near count as touching, m")
+    command.add_option("--separation", options.m_separation, "distance up to which features count as touching, m")
         ->check(CLI::Validator(numberAbove(0, true, "0 or more"), ""));
     command
         .add_option("--tolerance", options.m_tolerance,
-                    "of the distance, relative to the pair's extent: the search ends there")
+                    "accuracy of the distance at which the search ends, relative to the pair's extent")
         ->check(CLI::Validator(numberAbove(0, false, "more than 0"), ""));
     command
         .add_option("--time-tolerance", options.m_timeTolerance,
-                    "of the step: the time of impact is searched to this; 1: whether, not when")
+                    "accuracy of the time of impact, as a part of the step; 1: do not search for the time")
         ->check(CLI::Validator(numberAbove(0, false, "more than 0"), ""));
 }
 
@@ -36,21 +40,22 @@ void addLimit(CLI::App& command, Options& options)
 {
     command
         .add_option("--candidate-limit", options.m_candidateLimit,
-                    "the most pairs of triangles, or of features, to test; of more the number is told")
-        ->check(CLI::Range(std::size_t(1), std::size_t(1) << 28));
+                    "largest number of pairs of triangles, or of features, to test, 1 to 268435456; "
+                    "with more pairs the command reports their number and ends with 2")
+        ->check(CLI::Validator(wholeNumber(1, 1 << 28), ""));
 }
 
 void addJoin(CLI::App& command, Options& options)
 {
     command.add_flag(
         "--join", options.m_join,
-        "join vertices at equal positions; without it vertices are those of the file's indices, and joined "
-        "only where it has none (STL)");
+        "join vertices at equal positions; without it only vertices of files without indices (STL) are joined");
 }
 
 void addCcd(CLI::App& app, Options& options)
 {
-    CLI::App& command = *app.add_subcommand("ccd", "do moving vertices, faces and edges touch? Records with answers");
+    CLI::App& command =
+        *app.add_subcommand("ccd", "do moving vertices, faces and edges touch? Reads records with answers");
     addFile(command, "FILE", options.m_first, "records of 104 bytes: 24 floats, kind, answer");
     addMotionOptions(command, options);
     command.callback([&options] { options.m_command = Command::Ccd; });
@@ -58,12 +63,13 @@ void addCcd(CLI::App& app, Options& options)
 
 void addTriangles(CLI::App& app, Options& options, std::string& mode)
 {
-    CLI::App& command = *app.add_subcommand("triangles", "do triangles intersect? Records with answers");
+    CLI::App& command = *app.add_subcommand("triangles", "do triangles intersect? Reads records with answers");
     addFile(command, "FILE", options.m_first, "records of 76 bytes: 18 floats, answer");
-    acceptOnly(command.add_option(
-                   "--mode", mode,
-                   "fast: never misses, reports a few that nearly touch; exact; moller: the thesis's, for comparison"),
-               {"fast", "exact", "moller"});
+    acceptOnly(
+        command.add_option(
+            "--mode", mode,
+            "fast: misses none and also reports a few that nearly touch; exact; moller: Möller's test, for comparison"),
+        {"fast", "exact", "moller"});
     command.callback([&options] { options.m_command = Command::Triangles; });
 }
 
@@ -71,9 +77,11 @@ void addMeshes(CLI::App& app, Options& options)
 {
     CLI::App& pairs = *app.add_subcommand("pairs", "which triangles of two meshes, or of one, are near or intersect?");
     addFile(pairs, "A", options.m_first, kMeshFile);
-    addFile(pairs, "B", options.m_second,
-            "mesh file; without it A with itself, less pairs that share a vertex by index (see --join)", false);
-    pairs.add_option("--thickness", options.m_thickness, "near means no farther than this, m")
+    addFile(
+        pairs, "B", options.m_second,
+        "mesh file; without it A is compared with itself, leaving out pairs that share a vertex by index (see --join)",
+        false);
+    pairs.add_option("--thickness", options.m_thickness, "largest distance of near triangles, m")
         ->check(CLI::Validator(numberAbove(0, true, "0 or more"), ""));
     addJoin(pairs, options);
     addLimit(pairs, options);
@@ -91,8 +99,9 @@ void addMeshes(CLI::App& app, Options& options)
 
 bool parseOptions(int argc, const char* const* argv, Options& options, int& exitCode)
 {
-    CLI::App app("Answers collision questions with Drape and says how often it was wrong.", "drape_check");
-    app.footer(kExitCodesText);
+    CLI::App app("Answers collision questions with Drape. Counts its errors if the file has the true answers.",
+                 "drape_check");
+    app.footer(kCheckExitCodes);
     std::string mode = "fast";
     options.m_tolerance = defaultCcdSettings().m_tolerance;
     app.option_defaults()->always_capture_default();
@@ -103,7 +112,7 @@ bool parseOptions(int argc, const char* const* argv, Options& options, int& exit
     app.add_option("--json", options.m_json, "write the answer; - is standard output")
         ->type_name("FILE")
         ->transform(CLI::Validator(outputFile, ""));
-    app.add_flag("--list-devices", options.m_listDevices, "list the OpenCL devices and leave");
+    app.add_flag("--list-devices", options.m_listDevices, "list the OpenCL devices and exit");
     app.add_flag("--quiet", options.m_quiet, "print nothing");
     addCcd(app, options);
     addTriangles(app, options, mode);
