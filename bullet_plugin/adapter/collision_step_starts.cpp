@@ -69,8 +69,8 @@ void CollisionStep::checkStarts()
         preparePushes(body);
 }
 
-// Moves the predicted ends of nodes that are pushed, so that detection and the limit of motion see where they go, and
-// makes contacts of the pushes, so that links do not pull the nodes back.
+// Moves the predicted ends of nodes that are pushed, so that detection and the motion limit see where they go. Makes
+// contacts of the pushes, so that links do not pull the nodes back.
 void CollisionStep::preparePushes(BodyContacts& body)
 {
     for (NodePush& push : body.m_pushes)

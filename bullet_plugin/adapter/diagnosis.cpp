@@ -40,7 +40,7 @@ bool mayCollide(const btCollisionObject& a, const btCollisionObject& b)
            (q->m_collisionFilterGroup & p->m_collisionFilterMask);
 }
 
-// Of the body's faces, else of its links.
+// Returns the mean length of the body's face edges, or of its links if it has no faces.
 double meanEdgeOf(const btSoftBody& cloth)
 {
     double sum = 0;

@@ -23,7 +23,8 @@ public:
     void clear() { *this = FoundContacts(); }
     void nameCloth(MeshId cloth, const btSoftBody* body) { m_bodies[cloth] = body; }
     void nameObstacle(MeshId obstacle, const btCollisionObject* object, const BodyMotion& motion);
-    // What the obstacle's motion in the step does to its points; null when it rests. Stays where it is until clear().
+    // Returns the motion of the obstacle's points in the step; null when it rests. The transform stays in place until
+    // clear().
     const btTransform* carryOf(MeshId obstacle) const;
     // Names the places to which an obstacle carries the nodes' starts (see StepContact), for a mesh of a cloth that has
     // this one obstacle alone. The array stays the caller's.

@@ -88,7 +88,8 @@ void ClothMirror::readTopology()
     m_cursor = 0;
 }
 
-// What a trajectory depends on, so that nothing of a body that lay here before may be left in it.
+// Cuts the cloth anew: the trajectory depends on the cut, so nothing of a former body at this address may remain in
+// it.
 void ClothMirror::cutParts()
 {
     std::vector<btVector3> places;

@@ -1,25 +1,19 @@
-// Finds pairs of a cloth and an obstacle that begin a step with triangles that intersect, and gets them apart.
+// Finds pairs of a cloth and an obstacle that begin a step with intersecting triangles, and separates them.
 //
-// Why: contacts keep a node on the side on which it begins the step. Cloth that begins with its triangles through a
-// mesh's is kept there, for good. Job: a pair is guarded once a check has found none of its triangles intersecting at
-// the start of a step. It is checked when it is new, when the cloth or the obstacle starts anew (mirrors.h), for the
-// faces of nodes that are elsewhere than the last step left them, and in every step while it intersects. Where the
-// obstacle is closed, its outside is known, and nodes on the wrong side are pushed to the nearest place of the surface
-// at a bounded speed; contacts that would keep them inside are dropped (body_contacts.h). Where it is open nothing
-// tells which side is right: such pairs are reported, and held as they are.
 //
-// Nodes that come out on different sides of something thin leave faces that pass through it. Where that lasts, what is
-// beyond is drawn back, a few rows of nodes at a time, through where the cloth's largest part meets the surface. Where
-// that does not help either, as with a ring that is linked with the cloth, the whole cloth is moved out of the
-// obstacle's box, on the shortest way along an axis, unless nodes are pinned. What is left is reported, and held as it
-// is. Links that collide are triangles without area here (cloth_faces.h).
+// Reason: contacts keep a node on the side on which it begins the step. Cloth that begins a step through a mesh would
+// stay there.
 //
-// The right side of a closed mesh is its outside, however its triangles are wound; but for a room, whose triangles look
-// inwards and which holds most of the cloth's nodes. Cloth that is wholly inside intersects nothing, and stays there.
 //
-// Cost: of a guarded pair a comparison for each node; of a new one a pass over the obstacle's triangles if the boxes
-// meet, and O(log n) for each face of the cloth if a triangle comes into the cloth's box. Deterministic, with any
-// number of threads.
+// Job: a pair is guarded once a check found none of its triangles intersecting at a step's start. Checks run when the
+// pair is new, when the cloth or obstacle starts anew (mirrors.h), for faces of displaced nodes, and in every step
+// while the pair intersects. Nodes on the wrong side of a closed obstacle are pushed to its nearest surface point at
+// a bounded speed. Pairs with an open obstacle are only reported.
+//
+//
+// Cost: a comparison per node of a guarded pair; for a new one a pass over the obstacle's triangles if the boxes
+// meet, and O(log n) per cloth face if a triangle enters the cloth's box. Deterministic with any number of threads.
+// Details: docs/design_notes/tangled_starts.md.
 #pragma once
 
 #include <cstdint>
@@ -120,7 +114,7 @@ private:
     std::uint64_t m_step = 0;
     std::size_t m_intersectingPairs = 0;
     std::uint64_t m_intersections = 0;
-    // These belong to one check and are kept for their memory.
+    // Working memory of one check, kept between checks.
     std::vector<std::uint32_t> m_faces;
     std::vector<Vec3> m_places;  // by node, in the frame of the obstacle's positions, at the step's start
     std::vector<MeetingFace> m_meeting;

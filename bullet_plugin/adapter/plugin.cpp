@@ -86,7 +86,7 @@ std::string textOf(const Work& work)
                    { return guardedOr(outOfMemory(), [&] { return std::string(caught.m_text); }); });
 }
 
-// What a plugin without a state answers: memory ran out as it was made.
+// Answer of a plugin without a state: memory ran out while it was made.
 const DeviceReport& noDevice()
 {
     static const DeviceReport report = []

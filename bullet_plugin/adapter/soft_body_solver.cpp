@@ -16,8 +16,8 @@ namespace drape
 {
 namespace
 {
-// As Bullet does, but that time which runs backwards stands still: Bullet bounds a node's speed by what is negative
-// then.
+// Predicts the motion as Bullet does, but treats a negative time step as zero. Bullet would derive a negative speed
+// bound from it.
 void predict(btSoftBody& body, btScalar dt)
 {
     const btScalar timescale = body.m_cfg.timescale;
@@ -27,7 +27,7 @@ void predict(btSoftBody& body, btScalar dt)
     body.m_cfg.timescale = timescale;
 }
 
-// What the step's memory grows with.
+// Returns the number of elements that the step's memory is proportional to.
 std::size_t elementsOf(const StepStatistics& step)
 {
     return step.m_clothTriangles + step.m_obstacleTriangles + step.m_contacts +
@@ -55,7 +55,7 @@ void holdStill(btSoftBody& body, const BodyContacts* contacts)
 }
 }  // namespace
 
-// What is kept from step to step.
+// Working data kept from step to step.
 struct SoftBodySolver::Work
 {
     explicit Work(PluginState& state) : m_solver(new BodySolver(state.threads())), m_failures(state.failures()) {}
@@ -123,7 +123,7 @@ void SoftBodySolver::predictMotion(btScalar dt)
     guarded([&] { coverMotions(obstacles); }, failed);
 }
 
-// Of predictMotion(), all that comes before Bullet's part.
+// Runs the part of predictMotion() before Bullet's.
 void SoftBodySolver::beginStep(btScalar dt, std::vector<StepObstacle>& obstacles)
 {
     m_work->m_listed = false;
@@ -141,7 +141,7 @@ void SoftBodySolver::beginStep(btScalar dt, std::vector<StepObstacle>& obstacles
     m_work->m_predictMs = watch.lapMs();
 }
 
-// Of predictMotion(), all that comes after it.
+// Runs the part of predictMotion() after Bullet's.
 void SoftBodySolver::coverMotions(const std::vector<StepObstacle>& obstacles)
 {
     Stopwatch watch;

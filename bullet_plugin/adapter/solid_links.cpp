@@ -20,7 +20,7 @@ const void* arrayOf(const btSoftBody& body)
     return body.m_links.size() > 0 ? &body.m_links[0] : nullptr;
 }
 
-// Of a surface's nodes each names another one, until one names itself.
+// Returns the root of the node's surface. Each node names a parent; a root names itself.
 int rootOf(std::vector<int>& parents, int node)
 {
     int root = node;
@@ -96,7 +96,7 @@ bool SolidLinks::isSolid(Ends ends) const
     return surface == kNoSurface || surface != m_surface[std::size_t(ends.m_b)];
 }
 
-// Of the solid links and of those with a foreign node, in any order.
+// Returns an order-independent hash of the range's solid links and the links with a foreign node.
 std::uint64_t SolidLinks::sumOf(const btSoftBody& body, int begin, int end) const
 {
     std::uint64_t sum = 0;

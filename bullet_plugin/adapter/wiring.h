@@ -17,7 +17,7 @@ class PluginState;
 const PluginState* pluginOf(btDispatcher& dispatcher, const btSoftBody& cloth, const btCollisionObject& obstacle,
                             const btCollisionShape& shape);
 
-// The same for any pair of the dispatcher.
+// Returns the state of the plugin whose algorithm the dispatcher gives to any pair; null if there is none.
 const PluginState* pluginOf(btDispatcher& dispatcher);
 
 // Returns null where the dispatcher of the objects' world has this plugin's algorithm, or where they are in no world;
