@@ -19,8 +19,8 @@ public:
     static constexpr std::size_t kShare = 4;
     static constexpr std::size_t kLeast = 1 << 12;  // elements that are kept in any case
 
-    // Once a step, with the number of elements that it used. Returns whether the room of earlier steps is to be given
-    // back now.
+    // Records the number of elements that a step used; call once a step. Returns whether the memory of earlier steps
+    // should be released now.
     bool hasFallen(std::size_t used)
     {
         m_most = std::max(m_most, used);

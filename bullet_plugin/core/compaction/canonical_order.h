@@ -9,10 +9,10 @@
 
 namespace drape
 {
-// By cloth triangle, then obstacle triangle.
+// Sorts by cloth triangle, then by obstacle triangle.
 void sortCandidates(std::vector<Candidate>& candidates);
 
-// By slot, then obstacle feature.
+// Sorts by cloth feature index (slot), then by obstacle feature.
 void sortContacts(std::vector<Contact>& contacts);
 // Puts hits behind the contacts that there are, in the same order. Those of each slot have been counted, and the counts
 // are used up.

@@ -41,16 +41,16 @@ public:
     // Gives back the memory of both; hits are to be reserved again.
     void giveBackRoom();
 
-    // What the stages before list their hits in.
+    // Buffers for the unsorted contacts of the stages before.
     HitBuffers hits() { return {m_hits, m_hitPlaces, m_slotCount, m_slotSums}; }
-    // Behind a head of DRAPE_CONTACT_HEAD places, which holds the step's counters.
+    // Contacts, behind a head of DRAPE_CONTACT_HEAD elements that holds the step's counters.
     Buffer<Contact>& contacts() { return m_contacts; }
 
     // Returns after enqueueing. reduction: null where no contact is to be left out.
     void enqueue(Device& device, StepTally tally, const ReductionBuffers* reduction = nullptr);
 
 private:
-    // Where slots are few on a GPU every work-item sums for itself.
+    // Returns whether slots are few on a GPU, so that every work-item sums for itself.
     bool hasSums() { return m_slotSums.capacity() > 0; }
     void enqueueGather(Device& device, StepTally tally, cl_uint ranked, const ReductionBuffers* reduction);
     void enqueueOrder(Device& device, cl_uint ranked, StepTally tally);

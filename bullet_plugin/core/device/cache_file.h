@@ -9,7 +9,8 @@
 
 namespace drape
 {
-// What Settings::m_cacheFolder means: empty for $XDG_CACHE_HOME/drape or ~/.cache/drape, "none" for no cache (empty).
+// Returns the folder that Settings::m_cacheFolder names: empty for $XDG_CACHE_HOME/drape or ~/.cache/drape, "none"
+// for no cache (empty).
 std::string cacheFolder(const std::string& setting);
 
 // False when there is no folder or no such file, or it is longer than mostBytes.

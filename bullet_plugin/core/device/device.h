@@ -19,7 +19,7 @@
 
 namespace drape
 {
-// What listDevices() lists. Throws where memory runs out.
+// Returns the devices that listDevices() lists. Throws if memory runs out.
 std::vector<DeviceInfo> deviceInfos();
 
 class Device

@@ -1,4 +1,4 @@
-// Which device settings and the environment ask for.
+// Chooses the device that settings and the environment name.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace drape
 {
-// What settings (and DRAPE_DEVICE) come to on this machine.
+// The device that settings (and DRAPE_DEVICE) select on this machine.
 struct DeviceChoice
 {
     bool m_onHost = true;

@@ -29,7 +29,7 @@ public:
     {
         return [this](const char* name) { return load(name); };
     }
-    // Whether all that were loaded were in the cache.
+    // Returns whether all loaded programs came from the cache.
     bool fromCache() const { return m_fromCache; }
 
 private:

@@ -54,13 +54,13 @@ public:
     // Returns false when the id is not of this pool. So do they here.
     bool remove(MeshId id);
 
-    // With vacant ones.
+    // Returns the number of slots, vacant ones included.
     std::size_t meshCount() const { return m_meshes.size(); }
     PooledMesh& mesh(std::size_t slot) { return m_meshes[slot]; }
     const PooledMesh& mesh(std::size_t slot) const { return m_meshes[slot]; }
     // meshCount() when the id is not, or no longer, of this pool.
     std::size_t slot(MeshId id) const;
-    // Whether the id has a slot, if only a vacant one.
+    // Returns whether the id has a slot, possibly a vacant one.
     bool holds(MeshId id) const;
     // Slots of the meshes that hold a joined vertex or edge.
     std::size_t slotOfVertex(std::uint32_t vertex) const;
@@ -77,11 +77,11 @@ public:
     std::uint32_t revision() const { return m_revision; }
     // The first slot that took its place after that revision; those before are as they were, but for vacancies.
     std::size_t firstSince(std::uint32_t revision) const;
-    // Where a slot's vertices, triangles and edges begin; of meshCount(), where all end.
+    // Returns the offsets of a slot's vertices, triangles and edges; for meshCount() their ends.
     MeshFirsts begin(std::size_t slot) const;
-    // Of meshes that are there.
+    // Counts triangles of meshes that are not removed.
     std::size_t presentTriangles() const { return m_triangleCount - m_vacantTriangles; }
-    // The same without triangles that stand for edges and points.
+    // Counts the same triangles, without those that stand for edges and points.
     std::size_t presentFaces() const { return m_faceCount; }
 
     std::size_t vertexCount() const { return m_vertexCount; }

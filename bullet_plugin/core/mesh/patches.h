@@ -63,8 +63,8 @@ struct LevelPlaces
     std::size_t m_level, m_children;
     ItemRange m_places;
 };
-// Those to be made anew, lowest level first, where the patches `range` changed; with all of the upper levels where
-// levels have moved. With the last child go the places behind it, which are empty.
+// Returns the nodes to rebuild, lowest level first, after the patches `range` changed; all of the upper levels if
+// levels have moved. A range that includes the last child includes the empty positions behind it.
 std::vector<LevelPlaces> changedPlaces(const Patches& patches, ItemRange range, bool levelsMoved, std::uint32_t width);
 
 // The vertices, or edges, over all meshes, that lanes' owners name; DRAPE_NO_FEATURE where there is none.

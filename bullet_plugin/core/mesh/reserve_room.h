@@ -15,7 +15,7 @@ void reserveRoom(std::vector<T>& elements, std::size_t count)
     if (count > elements.capacity()) elements.reserve(count + count / 4);
 }
 
-// That many elements, with such room.
+// Resizes to that many elements, with spare room.
 template <typename T>
 void resizeWithRoom(std::vector<T>& elements, std::size_t count)
 {

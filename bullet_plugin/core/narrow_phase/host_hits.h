@@ -70,7 +70,7 @@ private:
     static constexpr std::size_t kFirstHits = 1 << 10;
     static constexpr std::size_t kTestsOfItem = 128;  // a run of them (item_runs.h)
     static constexpr std::size_t kSweptItems = 32;
-    // From so many on, which take a fifth of a millisecond, threads are worth waking.
+    // Minimum tests for waking threads; that many take a fifth of a millisecond.
     static constexpr std::size_t kLeastShared = 1 << 10;
     static constexpr std::size_t kLeastSweptShared = 1 << 6;
 

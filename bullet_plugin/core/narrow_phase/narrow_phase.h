@@ -33,14 +33,14 @@ struct NarrowPhaseSettings
     MotionList m_motions = {};  // on the host
 };
 
-// What the narrow phase counted on the host: contacts, and pairs of features that the continuous test decided.
+// Counts of the host's narrow phase: contacts, and feature pairs that the continuous test decided.
 struct NarrowPhaseCounts
 {
     std::uint64_t m_contacts = 0;
     std::uint64_t m_swept = 0;
 };
 
-// With more contacts than limit the list is left empty.
+// Leaves the list empty if there are more contacts than the limit.
 NarrowPhaseCounts narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth,
                                     const ObstacleView& obstacle, const NarrowPhaseSettings& settings,
                                     std::vector<Contact>& contacts, std::size_t limit = SIZE_MAX);
@@ -89,7 +89,7 @@ public:
     void enqueueFeatures(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
                          std::uint32_t mode, PatchCullStage& cull, Expected expected, HitBuffers hits,
                          Buffer<StepCounters>& counters);
-    // Whether that did nothing, because there were that many tests and far fewer were expected.
+    // Returns whether the launch did nothing because there were `tests` tests and far fewer were expected.
     bool skipped(std::size_t tests) const { return tests > m_mostTests; }
     // The candidates whose triangles intersect, in any order. Their counter must be zero before.
     void enqueueIntersect(Device& device, NarrowPhaseBuffers sides, Buffer<Candidate>& candidates,

@@ -1,4 +1,4 @@
-// Where a face is nearest to the vertex of its contact once the cloth's nodes have moved on.
+// Computes where a face is nearest to its contact's vertex once the cloth's nodes have moved.
 #include "bullet_plugin/core/pipeline.h"
 #include "kernels/lib/feature_contact.h"
 

@@ -101,7 +101,7 @@ private:
     void readContacts(std::size_t count);
     StepCounters countersRead() const;
     void takeCounts(const StepCounters& counters);
-    // Whether the last run demanded more than the settings allow; the result says what.
+    // Returns whether the last run exceeded the settings' limits; the result says which.
     bool overLimit(const StepPairs& pairs, StepResult& result);
     // Makes room for what the last run demanded. Returns whether the step must run again.
     bool grow();
@@ -130,7 +130,7 @@ private:
     std::vector<cl_uint> m_clustered;  // as m_cloth.m_order
     std::vector<ObstacleMotion> m_sentMotions;
     Buffer<Candidate> m_candidates{"step candidates"};
-    // Of a step and the next by turns, see StepTally.
+    // Counters of a step and the next, alternating; see StepTally.
     Buffer<StepCounters> m_counters[2] = {Buffer<StepCounters>("step counters"), Buffer<StepCounters>("step counters")};
     Buffer<StepCounters> m_refitCounters{"step counters"};  // of obstacles, which nobody reads
     std::size_t m_turn = 0;

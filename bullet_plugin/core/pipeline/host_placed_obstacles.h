@@ -12,11 +12,11 @@ namespace drape
 class HostPlacedObstacles
 {
 public:
-    // Whether positions or places may have changed since update().
+    // Returns whether positions or poses may have changed since update().
     bool changed(const Scene& scene) const { return m_changes.any(scene); }
-    // Those from slot `fresh` on, and of the others those that were given other positions or another place.
+    // Updates obstacles from slot `fresh` on, and earlier ones whose positions or poses changed.
     void update(const Scene& scene, std::size_t fresh);
-    // By the last update().
+    // Returns whether the last update() moved the obstacle.
     bool moved(std::size_t slot) const { return m_changes.moved(slot); }
 
     void giveBackRoom()

@@ -1,4 +1,5 @@
-// How busy other processes keep the machine while something is measured. Linux; elsewhere it never looks busy.
+// Measures how busy other processes keep the machine during a measurement. Linux only; other systems never appear
+// busy.
 #pragma once
 
 #include <istream>
@@ -16,8 +17,8 @@ struct CoreTimes
 // Reads /proc/stat. Returns false, with nothing changed, where it is not as expected.
 bool readCoreTimes(std::istream& stat, double ticksPerSecond, CoreTimes& times);
 
-// Whether others took so much of the machine between two times that `threads` threads did not have a core each.
-// ownSeconds: time of cores that this process took.
+// Returns whether other processes took so much time between two samples that `threads` threads did not have a core
+// each. ownSeconds: core time of this process.
 bool isBusyBetween(const CoreTimes& first, const CoreTimes& last, double ownSeconds, unsigned threads);
 
 class MachineLoad
@@ -26,7 +27,7 @@ public:
     // Looks from now on.
     MachineLoad();
 
-    // Whether the machine was busy since then, see isBusyBetween().
+    // Returns whether the machine was busy since then; see isBusyBetween().
     bool isBusy(unsigned threads) const;
 
 private:

@@ -8,8 +8,8 @@ namespace drape
 {
 namespace
 {
-// Nodes that go to the device before all are written: 1.6 MB each of start and end, so that a transfer takes far longer
-// than it takes to ask for it, which a GPU's driver does in 10 us.
+// Nodes per early transfer, before all are written: 1.6 MB each of start and end. Such a transfer takes far longer
+// than its enqueueing, which costs 10 us in a GPU's driver.
 constexpr std::size_t kNodesTogether = 1 << 17;
 // Nodes that one thread writes before it looks for others, and from how many on it is worth waking threads.
 constexpr std::size_t kNodesAlone = 1 << 11;

@@ -1,8 +1,8 @@
-// The obstacles of a scene on a device, where they are in the world: positions and normal cones, joined as in the
-// scene.
+// A scene's obstacles on a device, in world coordinates: positions and normal cones, joined as in the scene.
 //
-// Where one has a place, all are kept in their own frames, too, and placed on the device. Cost: what changed goes up
-// and is placed; obstacles that rest cost nothing.
+//
+// If one obstacle has a pose, all are also kept in their own frames, and placed on the device. Cost: changed
+// obstacles are uploaded and placed; resting obstacles cost nothing.
 #pragma once
 
 #include <vector>
@@ -19,7 +19,7 @@ public:
     // The next scene is brought here from its first mesh on.
     void forget();
 
-    // Whether positions or places may have changed since update().
+    // Returns whether positions or poses may have changed since update().
     bool changed(const Scene& scene) const { return m_changes.any(scene); }
     // Brings the obstacles from slot `fresh` on, and of the others those that were given other positions or another
     // place. Returns after enqueueing, with runs of the slots whose places in the world are new; the scene must stay as
@@ -40,7 +40,7 @@ private:
     bool m_anyPosed = false;  // as the scene at the last update
     Buffer<float> m_positions{"obstacle positions"};
     Buffer<NormalCone> m_vertexCones{"obstacle cones"}, m_edgeCones{"obstacle cones"};
-    // In the obstacles' own frames; only where one has a place.
+    // Data in the obstacles' own frames; only if one has a pose.
     Buffer<float> m_ownPositions{"obstacle positions in own frame"};
     Buffer<NormalCone> m_ownVertexCones{"obstacle cones in own frame"}, m_ownEdgeCones{"obstacle cones in own frame"};
     Buffer<ObstaclePlace> m_places{"obstacle places"};

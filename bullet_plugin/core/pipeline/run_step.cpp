@@ -44,7 +44,7 @@ void Pipeline::Implementation::leaveOutCloths()
     std::uint64_t budget = limits.m_candidates;
     if (m_result.m_contactDemand > 0)
     {
-        // As many candidates as should give contacts within their limit, at the rate of this step.
+        // Allows as many candidates as should give contacts within their limit, at this step's rate.
         const std::uint64_t all = std::accumulate(candidates.begin(), candidates.end(), std::uint64_t(0));
         budget = std::uint64_t(double(all) * double(limits.m_contacts) / double(m_result.m_contactDemand));
     }

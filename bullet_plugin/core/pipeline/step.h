@@ -1,4 +1,4 @@
-// What a step reads and what it gives, common to the host and the device back end.
+// Input and output of a step, common to the host and device back ends.
 #pragma once
 
 #include <algorithm>
@@ -43,7 +43,7 @@ private:
     std::size_t m_room = 0;
 };
 
-// Both sides' meshes and, per side, the data that belongs to the joined arrays.
+// Both sides' meshes and, per side, the data of the joined arrays.
 struct Scene
 {
     MeshPool m_cloths;
@@ -65,7 +65,7 @@ struct Scene
     {
         return m_cloths.vertexCount() + m_cloths.triangles().size() + m_cloths.edges().size();
     }
-    // With those of contacts of cloths with themselves behind, where there can be any.
+    // Counts the slots, and as many behind them for contacts of cloths with themselves if there can be any.
     std::size_t allSlotCount() const { return m_anySelf ? 2 * slotCount() : slotCount(); }
 };
 
@@ -106,7 +106,7 @@ struct StepPairs
     bool m_any = false;          // either
     bool m_measureTree = false;  // the result shall have the cost of the cloths' hierarchy
 
-    // As many as there were when the pairs were collected.
+    // Returns the number of obstacle slots when the pairs were collected.
     std::size_t obstacleSlots() const { return m_thickness.size() / m_clothRadius.size(); }
     float thickness(std::size_t cloth, std::size_t obstacle) const
     {
@@ -148,7 +148,7 @@ struct StepResult
     double m_treeCost = 0;                                // where it was asked for, see tree_cost.h
     double m_refitMs = 0, m_broadMs = 0, m_narrowMs = 0;  // on the host back end
 
-    // As new, but for the memory of the host's contacts.
+    // Resets the result; the memory of the host's contacts is kept.
     void clear()
     {
         std::vector<Contact> contacts = std::move(m_contacts);
@@ -157,7 +157,7 @@ struct StepResult
         m_contacts = std::move(contacts);
     }
 
-    // Those with obstacles, then those of cloths with themselves.
+    // Returns contacts with obstacles, then those of cloths with themselves.
     ContactList allContacts() const
     {
         return m_contacts.empty() ? m_deviceContacts : ContactList{m_contacts.data(), m_contacts.size()};

@@ -49,7 +49,7 @@ struct Queries::Implementation
         if (!good) m_error = m_device->error();
         return good;
     }
-    // Whether what a caller gave is usable; else the error names the call and what is wrong.
+    // Returns whether a caller's input is usable; otherwise the error names the call and the problem.
     bool require(bool good, const char* call, const std::string& wrong)
     {
         if (good) return true;

@@ -23,8 +23,8 @@ struct QueryMesh
     void refit(float radius);
 };
 
-// By how much (m) the volumes of two meshes grow so that they overlap wherever the two come within the radius; a and b
-// may be the same mesh.
+// Growth (m) of two meshes' volumes that makes them overlap wherever the meshes come within the radius; a and b may
+// be the same mesh.
 struct MeshRadii
 {
     MeshRadii(const QueryMesh& a, const QueryMesh& b, float radius)
@@ -37,12 +37,12 @@ struct MeshRadii
 // Refits both on the host by these radii.
 void refitBoth(QueryMesh& a, QueryMesh& b, float radius);
 
-// Which pairs of their triangles are asked for: DRAPE_WALK_…
+// Returns which triangle pairs are queried: DRAPE_WALK_…
 std::uint32_t walkOf(const QueryMesh& a, const QueryMesh& b);
 
 // Positions are not copied. The description's edges are left out.
 QueryMesh makeQueryMesh(const MeshDescription& description, const float* end);
 
-// The same with the edges, as triangles without area, numbered behind the triangles.
+// Makes the mesh with its edges, as triangles without area, numbered behind the triangles.
 QueryMesh makeQueryMeshWithEdges(const MeshDescription& description, const float* end);
 }  // namespace drape

@@ -25,7 +25,7 @@ public:
     // than theirs.
     void findContacts(const SelfStep& step, SelfStepLimits limits, ThreadTeam& threads, std::vector<Contact>& contacts);
 
-    // Of the step.
+    // Returns the step's counts.
     SelfCounts counts() const;
     // Gives back the memory of all that was found.
     void giveBackRoom()

@@ -1,5 +1,5 @@
-// Contacts of cloths with themselves on the host by a walk over a hierarchy of their triangles, on the calling thread:
-// the tests of what the product does (host_self_patches.h), and how many pairs of triangles there are.
+// Finds contacts of cloths with themselves on the host by traversing a hierarchy of their triangles, on the calling
+// thread. Serves as a check of the product's method (host_self_patches.h), and counts triangle pairs.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ public:
     SelfFinder(const SelfStep& step, const std::vector<Dop>& volumes, SelfStepLimits limits = {});
 
     void visit(const Candidate& pair);
-    // Of candidates: beyond them nothing is tested.
+    // Returns whether the candidates are within their limit; nothing is tested beyond it.
     bool withinLimits() const { return m_counts.m_candidates <= m_limits.m_candidates; }
     const SelfCounts& counts() const { return m_counts; }
     // Appends the contacts in canonical order, none where there are more than a limit.

@@ -63,7 +63,7 @@ struct SelfCollisions
     bool m_untested = false;               // more candidates than may be tested: there are no hits
 
     std::uint64_t hits() const { return m_hitCount[0] + m_hitCount[1]; }
-    // What a search does that finds more candidates than it may test.
+    // Records a search that finds more candidates than it may test.
     void leaveUntested();
     // Counts a hit and lists it as long as all may be listed.
     void add(const FeatureHit& hit, const SelfLimits& limits);
@@ -77,7 +77,7 @@ void selfCollideOnHost(const HostMotion& motion, const CcdSettings& settings, co
 
 void sortHits(std::vector<FeatureHit>& hits);
 
-// The same on a device.
+// Device buffers of the same view.
 struct DeviceTreeView
 {
     Buffer<BvhNode>& m_nodes;
@@ -122,7 +122,7 @@ public:
     void enqueueTests(Device& device, DeviceMotion motion, const CcdSettings& settings);
     void enqueueReadCounters(Device& device);
 
-    // What the last batch demanded, after waiting.
+    // Returns the last batch's demand, after waiting.
     const SelfCounters& counters() const { return m_read; }
     enum class Demand
     {
@@ -131,7 +131,7 @@ public:
         TooMuch  // run a smaller batch
     };
     Demand meetDemand(Device& device);
-    // Of the pairs of triangles alone.
+    // Queries the triangle pairs alone.
     Demand meetPairs(Device& device);
     // Bytes that one list may grow to. A batch of one leaf may exceed it.
     void limitLists(std::size_t bytes) { m_listBytes = bytes; }

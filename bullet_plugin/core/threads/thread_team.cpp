@@ -71,7 +71,7 @@ void ThreadTeam::start()
     }
 }
 
-// As far as the process may use others; where it cannot be had they run anywhere.
+// Moves the threads to other cores, as far as the process may use them; otherwise they run anywhere.
 void ThreadTeam::keepOffCallersCore()
 {
     const int core = ::sched_getcpu();
@@ -116,9 +116,8 @@ void ThreadTeam::share(std::size_t count, Call call, const void* context)
     std::rethrow_exception(std::exchange(m_failure, nullptr));
 }
 
-// Of those that sleep, which then wakes two others: a call that wakes takes the one who makes it up to 50 us on a
-// virtual machine. Either this sees a thread that is about to sleep, or that one sees the job: both store before they
-// load.
+// Wakes one sleeping thread, which then wakes two others: waking takes the caller up to 50 us on a virtual machine.
+// Either this call sees a thread that is about to sleep, or the thread sees the job: both store before they load.
 void ThreadTeam::wakeOne()
 {
     if (m_sleepers.load() == 0) return;
@@ -174,7 +173,7 @@ void ThreadTeam::work(unsigned thread)
     }
 }
 
-// Until there is another job than the one done last; false when the team ends.
+// Waits for another job than the last one; returns false when the team ends.
 bool ThreadTeam::awaitJob(std::uint32_t done)
 {
     using Clock = std::chrono::steady_clock;
