@@ -1,6 +1,8 @@
-// Compaction: hits into canonical order, by slot (cloth feature) and then obstacle feature. A counting sort over the slots:
-// sums per block, first place of every slot, members of every slot, and the place of each hit among them: by counting where a
-// slot has few, by a sort where it has many. On a GPU few slots take a launch less or two (compaction_few.cl).
+// Compaction puts unsorted contacts into canonical order: by slot (cloth feature), then by obstacle feature.
+//
+// It is a counting sort over the slots: sums per block, the first position of every slot, the members of every slot,
+// and the position of each contact among them. That position comes from counting where a slot has few members, from a
+// sort where it has many. On a GPU, few slots take one or two launches less (compaction_few.cl).
 #include "lib/ask_for.h"
 #include "lib/group_scan.h"
 #include "lib/hit_list.h"
@@ -108,10 +110,11 @@ __kernel void compactionOrder(const uint hitCapacity, __global const uint* restr
     }
 }
 
-// `parts` work-items (1, 2 or 4) share a hit, and go through their part of the members' list: they count the members of the
-// same slot with a lesser obstacle feature, and copy the hit to where that number puts it. Where the slot has more members
-// than `ranked` compactionOrder has sorted them and the hit keeps its place. A feature pair is tested once, so features of a
-// slot differ and every place is written once. keys: see compactionGather. contacts: behind a head with the counters. Leaves
+// Copies each contact to its position in canonical order. `parts` work-items (1, 2 or 4) share a contact, and each
+// goes through its part of the members' list. They count the members of the same slot with a lesser obstacle feature;
+// that number is the contact's position in its slot. Where the slot has more members than `ranked`, compactionOrder
+// has sorted them and the contact keeps its position. A feature pair is tested once, so features of a slot differ and
+// every position is written once. keys: see compactionGather. contacts: behind a head with the counters. Leaves
 // slotCount and slotSums zero for the next step where slotSums is not null.
 __kernel void compactionWrite(__global const Contact* restrict hits, const uint hitCapacity,
                               __global const uint* restrict slotFirst, const uint slots, const uint ranked,

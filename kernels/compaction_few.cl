@@ -1,8 +1,8 @@
-// What compaction.cl does in two or three launches, in one for slots that are few, on a GPU: every work-item tells for itself
-// what is before its slot.
+// Does the work of two or three launches of compaction.cl in one, for few slots on a GPU: every work-item sums the
+// slots before its own.
 #include "lib/hit_list.h"
 
-// Where a slot's hits begin, and whether they are more than `ranked`. slotKept: see the kernel.
+// Stores where a slot's contacts begin, and records whether they exceed `ranked`. slotKept: see the kernel.
 static void placeSlot(__global const uint* restrict slotCount, __global const uint* restrict slotSums,
                       __local const uint* wide, const uint slot, const uint ranked, __global uint* restrict slotFirst,
                       __global uint* restrict slotKept, __global StepCounters* restrict counters)
@@ -31,7 +31,7 @@ __kernel void compactionGatherFew(__global const Contact* restrict hits, const u
     for (uint i = id; i < DRAPE_SLOT_SUMS && keptSums; i += size) keptSums[i] = 0;
     for (uint slot = id; slot < slots; slot += size)
         placeSlot(slotCount, slotSums, wide, slot, ranked, slotFirst, slotKept, counters);
-    // From the work-items on that have taken a slot less.
+    // Starts with the work-items that have processed one slot less.
     for (uint hit = (id + size - slots % size) % size; hit < count; hit += size)
     {
         const uint slot = hits[hit].m_slot;

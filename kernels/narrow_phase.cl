@@ -46,15 +46,15 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_FEATURE_GROUP, 1, 1))) void n
 }
 #endif
 
-// Groups take turns at the kinds of tests, and each its tests one by one, its first lane's after every other group's: lanes
-// of one kind wait for those of another, and few tests, which take long, are then not in each other's way. On a CPU, too:
-// next to the tests themselves it costs little that what neighbours read is not in the cache.
+// Divides the tests among groups by kind: groups alternate between the kinds. Lanes of different kinds in one group
+// would wait for each other. Consecutive tests of a kind go to different groups, so that a few long tests do not
+// delay each other. This applies to a CPU, too: compared with the tests themselves, misses of the cache cost little.
 typedef struct KindShare
 {
     uint m_kind, m_first, m_stride;
 } KindShare;
 
-// Of the kinds from `kind` on. There must be a group for each.
+// Divides the kinds from `kind` on. There must be a group for each.
 static KindShare kindShare(const uint kind)
 {
     KindShare share;
@@ -86,8 +86,8 @@ __kernel void narrowPhaseSwept(DRAPE_FEATURE_ARGUMENTS, __global const uint* res
     }
 }
 
-// Both in one launch, for tests that are few: each runs the continuous test where it needs it. Nothing is done where there
-// are more than mostTests.
+// Runs both phases in one launch, for few tests: each runs the continuous test where it needs it. Does nothing if
+// there are more than mostTests.
 __kernel void narrowPhaseFew(DRAPE_FEATURE_ARGUMENTS, const uint mostTests)
 {
     DRAPE_FEATURE_VIEWS;

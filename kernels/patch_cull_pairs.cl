@@ -56,7 +56,8 @@ typedef struct Culler
     uint m_counts[3];  // of m_nodes, m_faces and m_edges
 } Culler;
 
-// Whether a cloth triangle is so large against a patch, of that size, that most of the patch's features are near it.
+// Returns whether a cloth triangle is so large compared with a patch of that size that most of the patch's features
+// are near it.
 static int reachesAll(__local const CullTriangle* cull, const CullReach reach, const float size)
 {
     return cull->m_radius + reach.m_near > 0.5f * size;
@@ -156,7 +157,7 @@ static void listAllTasks(__local Culler* culler, const uint count)
     }
 }
 
-// From where this lane's place lies in a block (lanesLoad()) to where it lies in the part: only the sum of the two is
+// Returns the shift from this lane's position in a block (lanesLoad()) to its position in the part: only their sum is
 // read.
 static int partShift(const uint part)
 {

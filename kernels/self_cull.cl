@@ -1,6 +1,6 @@
-// Broad phase of cloths with themselves on a CPU, over patches of the cloths' own triangles: every patch walks the wide tree
-// and tests its features against those of the patches from itself on in order, a vector of lanes at a time. What is left are
-// pairs of features whose volumes over the step overlap, each once.
+// Broad phase of cloths with themselves on a CPU, over patches of the cloths' own triangles. Every patch traverses
+// the wide tree and tests its features against those of itself and of later patches, a vector of lanes at a time. The
+// output is pairs of features whose volumes over the step overlap, each once.
 #include "lib/self_pairs.h"
 #include "lib/wide_walk.h"
 

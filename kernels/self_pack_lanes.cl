@@ -1,4 +1,5 @@
-// As self_pack.cl, on a CPU: a work-item packs a patch, a vector of its features at a time, and writes their boxes besides.
+// The CPU version of self_pack.cl: a work-item packs a patch, a vector of its features at a time, and also writes the
+// features' boxes.
 #include "lib/cull_packet.h"
 #include "lib/invalid_nodes.h"
 #include "lib/self_cull.h"
@@ -79,7 +80,7 @@ static void storeBoxes(__global float* restrict boxes, const uint block, const N
     }
 }
 
-// At the patch's place in the first level of the wide tree; empty where no face is valid.
+// Stores the volume at the patch's position in the first level of the wide tree; empty if no face is valid.
 static void storeVolume(__global float* restrict wideNodes, const uint patch, const NodeLanes* corners, const float radius)
 {
     __global float* out =

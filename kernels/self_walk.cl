@@ -290,7 +290,7 @@ static void crossNodes(__local SelfCuller* culler, const SelfCloth* cloth, __loc
     }
 }
 
-// The same of edges. once: both sides are one, and of a pair the first has the lesser index.
+// Pairs the edges of two patches. once: both are the same patch, and the first edge of a pair has the lesser index.
 static void crossEdges(__local SelfCuller* culler, const SelfCloth* cloth, __local const NearEdges* own,
                        __local const NearEdges* others, const int once, const TestList* list)
 {
@@ -374,7 +374,7 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDT
     {
         const Candidate pair = pairs[i];
         const uint next = patches[pair.m_cloth].m_mesh;
-        // What is noted is tried with its own cloth's radius.
+        // Tests the noted pairs with their own cloth's radius before it changes.
         if (next != mesh && !settleNear(&culler, &cloth, &tests, 1)) return;
         mesh = next;
         cloth.m_radius = radius[mesh];

@@ -1,14 +1,11 @@
 // Solves one step of some bodies. Bullet's own solver handles links, anchors and its own contacts; Gauss-Seidel
 // sweeps over Drape's contacts run between its iterations and after them.
 //
-//
 // Input: bodies after predictMotion and their contacts. Output: their positions and velocities at the step's end.
-//
 //
 // Guarantee: no contact ends violated by more than kClosingTolerance if kClosingRounds sweeps suffice. Sweeps
 // continue while a violation exceeds what the next step would recover. Results are the same bits with any number of
 // threads. A body with clusters or joints is given to Bullet in one piece, with sweeps before and after.
-//
 //
 // Cost: linear in the contacts; usually piterations + kClosingRounds sweeps, one iteration more with piterations 1,
 // at most mostClosingRounds() closing sweeps, and the settling passes. Reasons: docs/design_notes/contact_sweeps.md.

@@ -1,12 +1,10 @@
 // Cuts a cloth into parts of neighbouring nodes, so that several threads can work on parts side by side.
 //
-//
 // The parts are the leaves of a complete binary tree of groups, numbered as a heap. Group 1 is the whole cloth, the
 // children of group g are 2 g and 2 g + 1, and the last leafCount() groups are the leaves. A face or an edge belongs
 // to the smallest group that contains all of its nodes. Two groups of which neither contains the other share no node.
 // Working from the leaves to the root, all groups of one height at once, is therefore one order of work with any
 // number of threads.
-//
 //
 // Cost: O(n log n) per topology. Source: recursive coordinate bisection (Berger and Bokhari 1987).
 #pragma once

@@ -1,7 +1,6 @@
 // Runs Gauss-Seidel sweeps on positions over the contacts of one group of a cloth (cloth_parts.h), in canonical
 // order.
 //
-//
 // contact_rounds.h explains what a contact does and why. Most contacts never act in a step. A sweep tests them in
 // blocks of one cloth feature, in float32 with a margin for rounding. A contact gets a row when it is first found
 // violated or pushing. The results equal those of projecting every contact. Groups that share no node may run side by

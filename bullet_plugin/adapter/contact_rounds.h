@@ -1,15 +1,12 @@
 // Runs Gauss-Seidel sweeps over the contacts of some bodies, on positions.
 //
-//
 // Input: bodies between predictMotion and the end of solveConstraints, and their contacts in canonical order. Each
 // sweep projects every contact once: C = n.(sum w_i x_i - p) - thickness - target >= 0, weighted by inverse mass
 // (Müller et al. 2007, Position Based Dynamics, section 3.3). Friction is Coulomb's (Macklin et al. 2014, Unified
 // Particle Physics, section 6.1) with Bullet's coefficient: kDF times the obstacle's friction.
 //
-//
 // Output: positions, and velocities (x change)/dt (1 - kDP) as in Bullet's own update. limitSpeeds() keeps the sweeps
 // from adding energy. Pinned, massless and anchored nodes stay fixed.
-//
 //
 // Guarantee: the same bits with any number of threads; the order depends on the cloth's cut alone (cloth_parts.h).
 // Cost: linear in the contacts, most of which never act (contact_group.h). Reasons:

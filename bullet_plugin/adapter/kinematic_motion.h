@@ -1,11 +1,9 @@
 // Determines how kinematic objects move in a step, from the poses and velocities that Bullet keeps.
 //
-//
 // Input: the objects' poses, interpolation transforms and velocities. Output: each object's pose at the step's start
 // and end. Several substeps share a motion evenly, at constant velocity. An object that was absent in the step before
 // rests. If the velocity does not fit the change of pose (teleported and moved at once), the object arrives at its
 // pose with its velocity, over this step alone.
-//
 //
 // A pose that changes with a velocity is motion; one that changes without is a jump. Large motion that looks like a
 // teleport is a jump, too. Cost: O(1) per object. Rules, reasons and limits: docs/design_notes/kinematic_motion.md.

@@ -1,15 +1,12 @@
 // Keeps the pipeline's mesh of one soft body, or of one obstacle, up to date with Bullet.
 //
-//
 // Input: the live body or shape of the current step, never one remembered from before. Output: the pipeline's mesh
 // id, or kNoMesh for a mesh without triangles.
-//
 //
 // Guarantee: a cloth whose faces, solid links or nodes were replaced, cut or refined is rebuilt. This happens at once
 // if a count or an array reveals it. Otherwise it takes as many steps as the cloth has runs of 32,768 faces, or twice
 // its runs of 1,024 links. An obstacle that moved, was scaled or deformed is moved, and rebuilt when its triangles
 // changed.
-//
 //
 // Cost: meshSignature() for an unchanged obstacle or a kinematic one that only moved; a comparison of some indices
 // for an unchanged cloth. Metres; positions are in a kinematic obstacle's own frame, else in the world's.

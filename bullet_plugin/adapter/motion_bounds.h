@@ -1,11 +1,9 @@
 // Widens the bounds of soft bodies to cover a step's motion, so that Bullet's broad phase makes every pair that Drape
 // needs. Wakes sleeping bodies before a kinematic object reaches them.
 //
-//
 // Bullet's own bounds come from the node tree of the step before and lag behind fast cloth. Its bounds of a kinematic
 // object cover the pose at the end alone. Only bodies that Drape handles get wider bounds, and only near a mesh that
 // Drape handles: wider bounds make more pairs for Bullet, in another order.
-//
 //
 // Input: bodies before and after predictMotion, before Bullet computes its pairs. Output: wider m_bounds. Cost:
 // linear in the nodes of bodies that Drape handles (sleeping ones only while something moves), in the world's

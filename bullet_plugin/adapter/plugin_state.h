@@ -1,7 +1,6 @@
 // State shared by Plugin, CollisionConfiguration, SoftBodySolver and the pair algorithms: the pipeline, the pairs
 // noted since the last solve, and the mirrors of their bodies and meshes.
 //
-//
 // Life of a pair: its algorithm notes it during dispatch (note), a solver takes the notes of its bodies
 // (CollisionStep), and the algorithm's end forgets it. Notes are kept by algorithm, so they cannot pile up, and are
 // dropped when a step begins. Mirrors outlive their pairs by kKeepSteps, because bouncing cloth loses and regains its

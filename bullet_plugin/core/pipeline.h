@@ -134,7 +134,6 @@ public:
     // Sets the obstacle's own frame at the start and end of the coming steps, until the next call. A pose is three
     // rows of three factors and a shift (m); world = pose × position.
     //
-    //
     // Different poses are a rigid motion over the step, treated like the cloth's. Contacts are those at the end pose;
     // their gaps and times are relative to the obstacle, m_gap0 at its start pose. With equal poses the obstacle
     // rests, and a change since the call before is a teleport. From the first call on, its positions are in its own

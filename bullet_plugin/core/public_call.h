@@ -1,6 +1,5 @@
 // Wraps every public function: sets the default floating-point environment and stops exceptions.
 //
-//
 // Work that may throw, which is all that allocates, runs within guarded(). Nothing else of the library catches
 // exceptions for the sake of the interface.
 #pragma once

@@ -1,17 +1,19 @@
-// Continuous collision of a vertex with a face and of an edge with an edge: do they come within a separation while all
-// their vertices move linearly over the step, and when first?
+// Continuous collision of a vertex with a face and of an edge with an edge: decides whether they come within a
+// separation while all their vertices move linearly over the step, and when first.
 //
-// Both are one question: where is F(t,u,v) of ccd_motion.h within the separation of zero? A box of (t,u,v) is dropped
-// when the bounds of F over it prove it away, else halved in the direction in which F varies most, the earlier half
-// first. A box that provably holds a zero is a hit, and so is what cannot be dropped at the finest size.
-// Method: B. Wang et al., A large-scale benchmark and an inclusion-based algorithm for continuous collision detection,
-// 2021; bounds of our own, since theirs are not conservative for every frame (see ccdSlack), and views along the
-// directions in which t, u and v come apart, which take an eighth of the boxes that the axes alone need. Before any
-// search a guess (ccd_guess.h): nearly all meetings of a step are proved by two boxes, and nearly all misses by one.
+// Both ask where F(t,u,v) of ccd_motion.h is within the separation of zero. A box of (t,u,v) is dropped if the bounds
+// of F over it exclude that. Otherwise it is halved in the direction in which F varies most, and the earlier half
+// comes first. A box that provably contains a zero is a hit, and so is a box of the finest size that cannot be
+// dropped.
 //
-// Guarantee: no pair that truly comes within the separation is called apart, and the time is no later than the true
-// one. Pairs that miss each other by less than about 1e-6 of their extent may be called hits. Input that is not finite
-// is no hit. Host and devices give the same bits. Cost: the depth of the search is bounded by 63 and kept in 24 bytes.
+// Method: B. Wang et al., A large-scale benchmark and an inclusion-based algorithm for continuous collision
+// detection, 2021. The bounds are our own, since theirs are not conservative for every frame (see ccdSlack). Views
+// along the directions in which t, u and v separate take an eighth of the boxes that the axes alone need. A guess
+// precedes the search (ccd_guess.h): two boxes prove nearly all meetings of a step, and one box nearly all misses.
+//
+// Guarantee: a pair that truly comes within the separation is never called apart, and the time is no later than the
+// true one. Pairs that miss each other by less than about 1e-6 of their extent may be called hits. Input that is not
+// finite is no hit. Host and devices give the same bits. Cost: the search's depth is at most 63, stored in 24 bytes.
 #ifndef DRAPE_LIB_CCD_H
 #define DRAPE_LIB_CCD_H
 
@@ -59,8 +61,8 @@ typedef struct CcdPath
     int m_depth;
 } CcdPath;
 
-// Whether the halves of the box in time begin and end at multiples of 2^-24, as it does. Only then are times, and what
-// is left of the step at them, exact, and the halves are the box again.
+// Returns whether the halves of the box in time begin and end at multiples of 2^-24, as the box does. Only then are
+// times, and the rest of the step after them, exact, and the halves cover exactly the box.
 DRAPE_FUNCTION int ccdHalvesInTime(const CcdBox* box)
 {
     const float width = 0.5f * box->m_width[0], middle = box->m_low[0] + width;
@@ -140,7 +142,7 @@ DRAPE_FUNCTION CcdBox ccdTaskBox(const CcdTask* task)
     return box;
 }
 
-// Whether there is nothing to find in the box, told before it is looked at.
+// Returns whether the box is known to hold no result before it is tested.
 DRAPE_FUNCTION int ccdPasses(const CcdMotion* m, const CcdTask* task, const CcdBox* box, const CcdResult* result)
 {
     if (m->m_triangular && box->m_low[1] + box->m_low[2] > 1.0f) return 1;
@@ -204,9 +206,9 @@ DRAPE_FUNCTION int ccdGuess(CcdMotion* m, const CcdTask* whole, CcdResult* resul
     return guess->m_low[0] > 0.0f;
 }
 
-// What is looked at before the whole step is searched, at first with views aimed by a guess: 0, the whole, with one
-// look; 1, what is before the guess, 2, the guess's time, and 3, what is after it. All begin and end at multiples of
-// 2^-24.
+// Pieces that are searched before the whole step, at first with views aimed by a guess. 0: the whole step, with one
+// box test; 1: the time before the guess; 2: the guess's time; 3: the time after it. All begin and end at multiples
+// of 2^-24.
 #define DRAPE_CCD_PIECES 4
 DRAPE_FUNCTION CcdTask ccdPiece(const CcdTask* whole, DRAPE_UINT part, const CcdBox* guess, int piece)
 {
@@ -217,10 +219,12 @@ DRAPE_FUNCTION CcdTask ccdPiece(const CcdTask* whole, DRAPE_UINT part, const Ccd
     return task;
 }
 
-// A guess first: a hit where nothing comes before it, and else perhaps proof that there is none. Where that fails, the
-// whole step, for hit and time at once. Where that takes too many boxes (features that touch along a line, or nearly),
-// it is asked whether there is a hit at all, and then in which half of the step, in which half of that, and so on: an
-// earlier half without a hit is over, and one that takes too many boxes counts as having one.
+// Starts from a guess: a hit if nothing precedes it, otherwise perhaps a proof that there is none. If that fails,
+// searches the whole step for hit and time at once.
+//
+// That may take too many boxes, for features that touch along a line, or nearly. Then the search first decides
+// whether there is a hit at all, and bisects the step for its time. An earlier half without a hit is finished; a half
+// that takes too many boxes counts as having one.
 DRAPE_RARE_FUNCTION CcdResult ccdFind(CcdMotion* m, CcdSettings settings)
 {
     const int timed = settings.m_timeTolerance < 1.0f;

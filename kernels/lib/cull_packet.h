@@ -15,11 +15,11 @@ typedef struct CullVolumes
     Lanes m_noise, m_rounding;  // m
 } CullVolumes;
 
-// Of positions whose |x| + |y| + |z| is at most 1, most that roundings take from a volume: as dopGrowInterval() and
-// cullInterval() have it, with that sum in the place of every projection.
+// Bound on the rounding errors of a volume, for positions whose |x| + |y| + |z| is at most 1: the bound of
+// dopGrowInterval() and cullInterval(), with that sum in place of every projection.
 #define DRAPE_PACKET_PAD 6.1e-7f
 
-// How triangles of a packet move. m_stays: those that are not swept; m_moved: m, squared, of the fastest corner.
+// Motion of a packet's triangles. m_stays: triangles that are not swept; m_moved: m, squared, of the fastest corner.
 typedef struct PacketMotion
 {
     LaneMask m_stays;
@@ -187,7 +187,7 @@ DRAPE_FUNCTION void nodeIntervals(NodeIntervals* nodes, const Directions* direct
     }
 }
 
-// Where cloth is that may be near a patch, along the directions, m.
+// Region, along the directions, in which cloth may be near a patch, m.
 typedef struct NearPatch
 {
     Lanes m_low, m_high;
@@ -210,7 +210,7 @@ DRAPE_FUNCTION LaneMask nodeIsOut(const NodeIntervals* nodes, int k, NearPatch n
     return (near.m_low > nodes->m_high[k]) | (near.m_high < nodes->m_low[k]);
 }
 
-// The same of the edge from node k on.
+// Returns the directions along which the edge from node k on is out of reach of the patch.
 DRAPE_FUNCTION LaneMask edgeIsOut(const NodeIntervals* nodes, int k, NearPatch near)
 {
     const int next = k == 2 ? 0 : k + 1;

@@ -1,7 +1,8 @@
-// What is left of a triangle when corners of it are invalid: NaN, infinite or too far out (see positionIsValid).
+// Reduces a triangle with invalid corners (NaN, infinite or too far out, see positionIsValid) to its valid ones.
 //
-// A triangle with an invalid corner still owns features of its other corners (DRAPE_OWNS_VERTEX), which must be tested:
-// it acts as the segment or point that its valid corners span, and what uses an invalid corner makes no contact.
+// A triangle with an invalid corner still owns features of its other corners (DRAPE_OWNS_VERTEX), which must be
+// tested. It acts as the segment or point that its valid corners span. A feature with an invalid corner makes no
+// contact.
 #ifndef DRAPE_LIB_FINITE_CORNERS_H
 #define DRAPE_LIB_FINITE_CORNERS_H
 

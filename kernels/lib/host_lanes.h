@@ -66,7 +66,7 @@ DRAPE_FUNCTION Lanes lanesSqrt(Lanes a)
     return sqrt(a);
 }
 
-// Of each lane's mask a byte.
+// Stores one byte per lane of the mask.
 DRAPE_FUNCTION void laneBytes(LaneMask mask, DRAPE_ULONG* bytes)
 {
     typedef signed char Bytes __attribute__((vector_size(DRAPE_LANES)));

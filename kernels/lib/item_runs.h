@@ -1,6 +1,7 @@
-// Which items of a list, whose length is only on the device, a work-item of a launch of fixed width takes. On a GPU every
-// stride-th: neighbours then read side by side. On a CPU runs of adjacent ones, one after the other: what lies side by side
-// in a list lies side by side in space, and finds what it reads in the cache. For kernels only.
+// Assigns the items of a list to the work-items of a launch of fixed width; the list's length is known only on the
+// device. On a GPU a work-item takes every stride-th item: neighbours then read adjacent items. On a CPU it takes
+// runs of adjacent items, one after the other: adjacent items lie close in space, and their data is in the cache. For
+// kernels only.
 #ifndef DRAPE_LIB_ITEM_RUNS_H
 #define DRAPE_LIB_ITEM_RUNS_H
 
@@ -51,7 +52,7 @@ static ItemRuns itemRuns(const uint count, const uint parts)
 }
 
 #ifdef DRAPE_CPU
-// For what takes a run at a time, from m_item to m_end.
+// Takes the next run, from m_item to m_end.
 static void nextRun(ItemRuns* runs)
 {
     runs->m_run += runs->m_takers;

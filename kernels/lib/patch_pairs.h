@@ -32,8 +32,8 @@ typedef struct PatchTree
     __global const Patch* m_patches;
 } PatchTree;
 
-// What kernels that walk read, and the list that they write. radius: m, per cloth, negative for those that are not in
-// the step. limit: see team.h. counters' numbers must be zero before. The order of the list does not matter.
+// Inputs and output list of traversal kernels. radius: m, per cloth, negative for cloths outside the step. limit: see
+// team.h. Counters must be zero before. The list has no particular order.
 #define DRAPE_WALK_ARGUMENTS                                                                                           \
     __global const uint *restrict clothOrder, __global const Triangle *restrict clothTriangles, const uint clothCount, \
         __global const float *restrict start, __global const float *restrict end,                                      \
@@ -63,8 +63,8 @@ static float thicknessWith(const StepCloths* cloths, const uint cloth, const uin
     return cloths->m_thickness[cloths->m_triangles[cloth].m_mesh * cloths->m_obstacleMeshes + mesh];
 }
 
-// Whether a cloth triangle is to be tested against a patch of the obstacles that move so (all that rest, or one that
-// moves); then *pair holds what.
+// Returns whether a cloth triangle must be tested against a patch of the obstacles with this motion (all resting
+// ones, or one that moves); *pair then holds the test.
 static int pairWith(FeatureTest* pair, const StepCloths* cloths, const PatchTree* tree, const uint cloth,
                     const uint motion, const uint patch)
 {

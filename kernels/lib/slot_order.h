@@ -41,8 +41,8 @@ static void sortMembers(__global uint* members, __global uint* keys, const uint 
     }
 }
 
-// The same for DRAPE_COUNTED members at most, the keys left as they are: each goes behind as many as have a lesser one. own,
-// ownKeys: that many.
+// Sorts at most DRAPE_COUNTED members by counting and leaves the keys unchanged: a member's position is the number of
+// members with a lesser key. own, ownKeys: hold that many.
 static void countMembers(__global uint* members, __global const uint* keys, const uint count, __local uint* own,
                          __local uint* ownKeys)
 {

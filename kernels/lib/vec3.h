@@ -46,7 +46,7 @@ DRAPE_FUNCTION float drapeClamp01(float a)
     return drapeMin(drapeMax(a, 0.0f), 1.0f);
 }
 
-// By the exponent's bits: compilers may not fold it away, and a flushed denormal stays finite.
+// Tests the exponent's bits: compilers may not fold this away, and a flushed denormal stays finite.
 DRAPE_FUNCTION int drapeIsFinite(float a)
 {
     return (drapeBits(a) & 0x7f800000u) != 0x7f800000u;
@@ -122,7 +122,7 @@ DRAPE_FUNCTION int vec3IsFinite(Vec3 a)
 // finite.
 #define DRAPE_FARTHEST 1073741824.0f  // 2^30
 
-// Whether geometry can use the position: finite and not farther out than DRAPE_FARTHEST.
+// Returns whether geometry can use the position: finite and not farther out than DRAPE_FARTHEST.
 DRAPE_FUNCTION int positionIsValid(Vec3 p)
 {
     return vec3IsFinite(p) && vec3NormMax(p) <= DRAPE_FARTHEST;

@@ -8,7 +8,8 @@
 #define DRAPE_LEVEL_SHIFT 28
 // Levels of the wide tree over 2^28 triangles.
 #define DRAPE_LEVELS 7
-// Of a walk that takes a node at a time from the lowest level that is left: each level has the children of one on the stack.
+// Stack size of a traversal that takes a node at a time from the lowest remaining level: each level has the children
+// of one node on the stack.
 #define DRAPE_WALK_STACK (DRAPE_LEVELS * DRAPE_PATCH_WIDTH)
 
 // Nodes that a group with as many times DRAPE_PATCH_WIDTH lanes looks at together, at most.
@@ -42,7 +43,7 @@ static uint beginWalk(__local uint* stack, __global const uint* levels, const ui
     return nodes;
 }
 
-// How many nodes are taken from the stack together: those on top that are of one level.
+// Returns how many nodes are taken from the stack together: those on top that belong to one level.
 static uint nodesInTurn(__local const uint* stack, const uint depth, const uint most)
 {
     uint nodes = 1;

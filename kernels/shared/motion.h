@@ -1,4 +1,4 @@
-// Where obstacles are and how they move in a step. 32-bit scalars only, no padding.
+// Poses of obstacles and their motion in a step. 32-bit scalars only, no padding.
 #ifndef DRAPE_SHARED_MOTION_H
 #define DRAPE_SHARED_MOTION_H
 

@@ -1,7 +1,6 @@
 // Computes where the unsorted contacts of each slot (cloth feature) begin in a list ordered by slot: a prefix sum
 // over the slots' counts (kernels/compaction.cl).
 //
-//
 // Input: the number of contacts of each slot. Output: the first position of each slot and, in the step's counters,
 // the number of contacts and of slots with more than a given number. Cost: one launch with few slots, else two.
 #pragma once

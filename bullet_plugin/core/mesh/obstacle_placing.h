@@ -1,6 +1,5 @@
 // Computes an obstacle's frames at a step's start and end, and the records that the step reads.
 //
-//
 // Input: poses and the mesh's box. Output: records of kernels/shared/motion.h. Everything is computed in double and
 // rounded once; boxes are padded for the rounding of positions that are placed in float. Host only, O(1).
 #pragma once

@@ -1,7 +1,6 @@
 // Times a pipeline's two back ends on a ladder of scenes. Cloths from two to some thousands of triangles lie draped
 // over a wavy sheet and sway; sheets are as coarse as the cloth or four times finer.
 //
-//
 // Output: rungs for bestCrossover(). Guarantee: the pipeline is left without meshes. A sheet's ladder ends where the
 // device is well ahead or a step on the host takes long. Cost: a second or two.
 #pragma once

@@ -1,7 +1,6 @@
 // Estimates how many feature tests a step makes before the pipeline checks its cloths, and the numbers that bound
 // their work.
 //
-//
 // Reason: faces of cloth that came apart, or whose pins were moved elsewhere, reach across an obstacle. Each is
 // tested against nearly all of it. This takes seconds and gigabytes, for cloth that no solver can bring to rest in
 // that step. Fast cloth that keeps its size may need many tests, too. It gets them, up to a multiple of these numbers

@@ -1,6 +1,5 @@
 // A scene's obstacles on a device, in world coordinates: positions and normal cones, joined as in the scene.
 //
-//
 // If one obstacle has a pose, all are also kept in their own frames, and placed on the device. Cost: changed
 // obstacles are uploaded and placed; resting obstacles cost nothing.
 #pragma once

@@ -1,9 +1,7 @@
 // Estimates the work of a step over a cloth and an obstacle from their meshes, before any step has run.
 //
-//
 // The measure is the number of triangle pairs whose volumes would overlap if the cloth lay on the obstacle with all
 // its area. A contact step's time is proportional to the pairs, and depends little on either side's triangles.
-//
 //
 // Measured with the host's trees on 15 scenes of bench_step, with 512 to 32,768 cloth and 1,280 to 327,680 obstacle
 // triangles: 0.26 to 0.47 us per pair found. The time per cloth triangle varied by a factor of 55, per product of

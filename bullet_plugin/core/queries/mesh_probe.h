@@ -1,11 +1,9 @@
 // A triangle mesh at rest that answers queries: which of its triangles another triangle meets, where its surface is
 // nearest and, if it is closed, which points are inside.
 //
-//
 // Input: a mesh's topology, the leaf order of its triangles and its positions; all are copied. Guarantee: meetings
 // and insideness are decided in exact arithmetic on the float positions. The exception is a point from which every
 // ray runs into an edge: it counts as outside.
-//
 //
 // In a closed mesh every edge has an even number of triangles. Vertices at one position, up to a millionth of the
 // mesh's size, count as one. The parity of crossings is then the same along every ray that misses such a seam,

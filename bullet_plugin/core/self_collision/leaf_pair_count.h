@@ -1,6 +1,5 @@
 // Counts the pairs that leafPairsOnHost() would visit, without visiting them: exact, in 64 bits.
 //
-//
 // Intended for queries with possibly more pairs than can be tested. Subtrees whose leaves all overlap each other
 // count at once, and so do the triangles around a vertex. A crowd of coincident triangles therefore costs little more
 // than its hierarchy. Otherwise the cost is that of a traversal. Host only.

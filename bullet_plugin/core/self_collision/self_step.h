@@ -1,6 +1,5 @@
 // A step of cloths with themselves, common to the host and devices; kernels/lib/self_contact.h defines contacts.
 //
-//
 // Input: the cloths' nodes at the step's start, its end and at rest, and the thickness per cloth. Output: contacts in
 // canonical order behind those with obstacles. Guarantee: no pair that gives a contact is missed; all back ends find
 // the same contacts, bit for bit. They also list the same candidates, unless the last bit of a bound decides about a

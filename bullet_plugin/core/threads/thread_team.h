@@ -1,15 +1,12 @@
 // A few threads that share short jobs with the calling thread.
 //
-//
 // Job: run a function once per item, on any free thread. Each thread begins with its own range of the items, so that
 // their data tends to be in its core's cache, then helps with other ranges. Items are claimed one by one: a late
 // thread delays the caller only if it loses its core within an item. Results must not depend on the thread or the
 // order. All threads round as the caller does.
 //
-//
 // Errors: an item's exception reaches the caller once all begun items have ended; the rest are skipped. run() belongs
 // to one thread at a time, and no item calls it. A child made by fork() must not use the team.
-//
 //
 // Cost: about a microsecond per job while threads are awake. Details: docs/design_notes/threads.md.
 #pragma once
