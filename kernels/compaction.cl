@@ -1,8 +1,8 @@
 // Compaction puts unsorted contacts into canonical order: by slot (cloth feature), then by obstacle feature.
 //
-// It is a counting sort over the slots: sums per block, the first position of every slot, the members of every slot,
-// and the position of each contact among them. That position comes from counting where a slot has few members, from a
-// sort where it has many. On a GPU, few slots take one or two launches less (compaction_few.cl).
+// The method is a counting sort over the slots: sums per block, the first position of every slot, the members of
+// every slot, and the position of each contact among them. That position comes from counting where a slot has few
+// members, from a sort where it has many. On a GPU, few slots take one or two launches less (compaction_few.cl).
 #include "lib/ask_for.h"
 #include "lib/group_scan.h"
 #include "lib/hit_list.h"
@@ -31,8 +31,8 @@ __kernel void compactionCount(__global const uint* restrict slotCount, const uin
     if (get_local_id(0) == 0) blockCount[get_group_id(0)] = total;
 }
 
-// Writes where the hits of each slot of the group's block begin, the first at `place`, and counts the slots that have more
-// than `ranked`. Returns where the hits behind the block begin.
+// Writes where the contacts of each slot of the group's block begin, the first at `place`, and counts the slots that
+// have more than `ranked`. Returns where the contacts after the block begin.
 static uint placeBlock(__global const uint* restrict slotCount, const uint slots, const uint ranked, const uint place,
                        __global uint* restrict slotFirst, __global StepCounters* restrict counters, __local uint* scratch)
 {
@@ -47,9 +47,10 @@ static uint placeBlock(__global const uint* restrict slotCount, const uint slots
     return place + total;
 }
 
-// A work-group takes a block of slots, and sums the hits of those before itself. The last one stores counters->m_hits. sums:
-// of blocks, by compactionCount, and perBlock 1; where slots are few it is slotCount, and perBlock DRAPE_BLOCK. ranked: most
-// hits of a slot that the launch behind puts in order itself; those with more are counted.
+// Processes a block of slots per work-group, and sums the contacts of all earlier slots. The last group stores
+// counters->m_hits. sums: of blocks, by compactionCount, and perBlock 1; for few slots sums is slotCount, and
+// perBlock DRAPE_BLOCK. ranked: maximum contacts of a slot that the next launch sorts itself; slots with more are
+// counted.
 __kernel void compactionPlace(__global const uint* restrict slotCount, const uint slots, const uint ranked,
                               __global const uint* restrict sums, const uint perBlock,
                               __global uint* restrict slotFirst, __global StepCounters* restrict counters,
@@ -60,9 +61,9 @@ __kernel void compactionPlace(__global const uint* restrict slotCount, const uin
     if (get_group_id(0) == get_num_groups(0) - 1 && get_local_id(0) == 0) counters->m_hits = hits;
 }
 
-// A work-item goes through its part of the hits' list and lists a hit among its slot's members, last to first as the items
-// come; the atomic gives each a place of its own. keys: the obstacle features of members. Leaves slotCount zero for the next
-// step, and its counters; slotKept, where it is not null, for the kernel that tells what stays.
+// Lists each contact among its slot's members. A work-item goes through its part of the contacts' list; the atomic
+// gives each contact its own position, filled from last to first. keys: the obstacle features of members. Leaves
+// slotCount and the next step's counters zero; also slotKept, if it is not null, for the reduction's kernel.
 __kernel void compactionGather(__global const Contact* restrict hits, const uint hitCapacity,
                                __global volatile uint* slotCount, __global const uint* restrict slotFirst,
                                const uint slots, __global uint* restrict members, __global uint* restrict keys,

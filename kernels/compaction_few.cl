@@ -12,9 +12,9 @@ static void placeSlot(__global const uint* restrict slotCount, __global const ui
     if (slotKept) slotKept[slot] = 0;
 }
 
-// A work-item takes slots, and hits, which it lists among their slots' members. hitPlaces, slotCount, slotSums: as listHit()
-// leaves them. slotFirst gets where each slot's members begin; keys, members: as compactionGather. slotKept, keptSums: made
-// zero for the kernels that tell what stays; null where all does. Leaves the next step's counters zero.
+// Processes slots, and contacts, which a work-item lists among their slots' members. hitPlaces, slotCount, slotSums:
+// see listHit(). slotFirst: first position of each slot's members. keys, members: see compactionGather. slotKept,
+// keptSums: set to zero for the reduction's kernels; null without reduction. Leaves the next step's counters zero.
 __kernel void compactionGatherFew(__global const Contact* restrict hits, const uint hitCapacity,
                                   __global const uint* restrict hitPlaces, __global const uint* restrict slotCount,
                                   __global const uint* restrict slotSums, const uint slots, const uint ranked,

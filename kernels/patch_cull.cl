@@ -164,8 +164,8 @@ static LaneMask getCorners(LanesVec3* p, const float* rows)
     return sum <= DRAPE_FARTHEST;
 }
 
-// Takes the packet's volumes for its motion. Returns whether any of its triangles may come near the obstacle. Counts
-// the invalid nodes where it takes those for the obstacles that rest, which is once.
+// Computes the packet's volumes for its motion. Returns whether any of its triangles may come near the obstacle.
+// Counts the invalid nodes along with the resting obstacles, which happens once.
 static int takeVolumes(Packet* packet, const StepCloths* cloths, __global StepCounters* counters)
 {
     __global const ObstacleMotion* motion = motionOf(cloths, packet->m_motion);

@@ -35,7 +35,7 @@ typedef struct CullPair
     CullReach m_reach;
     uint m_looker;
     uint m_own;    // the triangle's nodes and edges that it owns and that are valid, bits as in Triangle::m_owned
-    uint m_all;    // whether it is so large against the patch that it is near most of it
+    uint m_all;  // so large compared with the patch that it is near most of it
     uint m_parts;  // of the patch that the triangle is near
 } CullPair;
 

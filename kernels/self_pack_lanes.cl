@@ -96,8 +96,8 @@ static void storeVolume(__global float* restrict wideNodes, const uint patch, co
     }
 }
 
-// A work-item takes a patch, or one of the empty places behind patchCount; places: all of the tree's first level. Other
-// arguments as in self_pack.cl; boxes in blocks.
+// Packs a patch, or one of the empty positions behind patchCount, per work-item; places: all of the tree's first
+// level. Other arguments as in self_pack.cl; boxes in blocks.
 __kernel void selfPack(
     __global const Patch* restrict patches, const uint patchCount, const uint places, __global const uint* restrict faceIds,
     __global const uint* restrict vertexIds, __global const uint* restrict edgeIds,

@@ -102,7 +102,8 @@ typedef struct SelfFeatures
 #define DRAPE_NEAR (8 * DRAPE_PATCH_WIDTH)
 #define DRAPE_KIND_SHIFT 31
 
-// Boxes of a patch's features of one kind, of those that are near the other patch of the pair: the others' are empty.
+// Boxes of a patch's features of one kind that are near the other patch of the pair; the boxes of other features are
+// empty.
 typedef struct NearFaces
 {
     float m_boxes[DRAPE_BOX_FLOATS * DRAPE_PATCH_WIDTH];
@@ -138,7 +139,7 @@ typedef struct SelfCuller
     uint m_nearCount;
 } SelfCuller;
 
-// Puts a box in its place, an empty one where it does not meet the other patch's: then its lower bound is not finite.
+// Stores a box, or an empty one if it does not meet the other patch's: its lower bound is not finite then.
 static void putBox(__local float* boxes, const uint width, const uint place, FeatureBox box, const FeatureBox* other)
 {
     if (!boxesMeet(&box, other)) box = emptyBox();
@@ -233,7 +234,7 @@ static int gatherFaces(__local NearSide* sides, const SelfCloth* cloth, const Se
     return sides[0].m_near && sides[1].m_near;
 }
 
-// Gathers the other features of a patch, a lane each. other: the other patch's box.
+// Gathers the other features of a patch, one per lane. other: the other patch's box.
 static void gatherSide(__local NearSide* side, const SelfCloth* cloth, const SelfFeatures* features, const uint patch,
                        const FeatureBox* other)
 {

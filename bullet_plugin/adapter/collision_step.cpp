@@ -204,7 +204,8 @@ void CollisionStep::submit(Detection detection)
     m_state.pipeline().submit();
 }
 
-// Takes the contacts of the detection under way; of another one where bodies were held together, as they are now.
+// Takes the contacts of the current detection. If that holds bodies together, detects again and takes the new
+// contacts.
 void CollisionStep::receiveHeld()
 {
     receiveAll();

@@ -126,8 +126,8 @@ void CollisionStep::addPushes(BodyContacts& body)
     body.m_features.insert(body.m_features.begin(), pushes.begin(), pushes.end());  // nodes are first
 }
 
-// A body that needs too many tests. One that is not of its own size is held together, and looked at again. Where that
-// is not enough it is left out of the step, which is told once, until a step takes it again.
+// Handles a body that needs too many tests. A body that has changed its size is held together and detected again. If
+// that is not enough, the body is left out of the step. This is reported once, until a step includes it again.
 void CollisionStep::leaveOut(std::size_t index)
 {
     BodyContacts& body = m_bodies[index];

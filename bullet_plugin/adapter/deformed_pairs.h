@@ -42,8 +42,8 @@ public:
 
     // Removes the meshes of pairs that no vertices moved in for long. Before the step's first update().
     void beginStep();
-    // The pair's own mesh and starts in this step, for an obstacle with a before(). reach: m, of contacts. The result
-    // stays where it is until the next beginStep().
+    // Returns the pair's own mesh and starts in this step, for an obstacle with a before(). reach: m, of contacts.
+    // The result stays valid until the next beginStep().
     const DeformedPair& update(const ClothMirror& cloth, const ObstacleMirror& obstacle, const BodyMotion& motion,
                                bool kinematic, btScalar reach);
 

@@ -1,8 +1,8 @@
-// The contacts that detection found last, and what Bullet calls the meshes they name.
+// The contacts of the last detection, and Bullet's objects for the meshes that they name.
 //
-// Job: resolve single contacts for those that work with them, and all of them for Plugin::contacts(), each only when it
-// is asked for. Input: the pipeline's list, which stays the pipeline's: it counts until the pipeline's next submit.
-// Cost: of what is resolved.
+// Job: resolve single contacts for the solver, and all of them for Plugin::contacts(), each on demand. Input: the
+// pipeline's list, which the pipeline owns; it is valid until the pipeline's next submit. Cost: proportional to the
+// contacts resolved.
 #pragma once
 
 #include <unordered_map>
@@ -37,8 +37,8 @@ public:
 
     // The contact's places and gaps along the paths of the body's nodes.
     StepContact resolve(const btSoftBody& body, const NodePaths& paths, const Contact& contact) const;
-    // A contact with its nodes at other places, see Pipeline. Only faces at a vertex turn theirs, and one that was met
-    // keeps it: else false.
+    // Resolves a contact with its nodes at other positions, see Pipeline. Only faces at a vertex turn their contacts,
+    // and a contact that was met keeps its plane; returns false for all others.
     static bool planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane);
     std::vector<ContactInfo> list() const;
 

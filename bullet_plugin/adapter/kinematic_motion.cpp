@@ -86,7 +86,7 @@ bool isNear(const btTransform& from, const btTransform& to, const btVector3& vel
 // out of its simulation whose box is 10^6 m across.
 constexpr btScalar kMostShift = 100, kMostRadii = 100, kMostOfAll = btScalar(2.5e5);
 
-// Radii that a body goes at least where nodes that went along tell a teleport.
+// Minimum motion of a body, in radii, for nodes that moved along to indicate a teleport.
 constexpr btScalar kFarRadii = 1;
 
 // Minimum turn of such a body, radians, and minimum ratio of its motion to that of the step before. A body that

@@ -214,7 +214,7 @@ void ObstacleMirror::reload(Pipeline& pipeline, const btTransform& pose)
     m_positionHash = mesh.m_positionHash;
 }
 
-// Takes other positions, in the same place unless the pose changed with them.
+// Takes new positions; the pose is unchanged unless it came with them.
 void ObstacleMirror::deform(Pipeline& pipeline, std::vector<float>& positions, bool samePlace)
 {
     if (samePlace && m_before && !m_positions.empty())

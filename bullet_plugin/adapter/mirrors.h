@@ -163,6 +163,6 @@ private:
     std::uint64_t m_signature = 0, m_topologyHash = 0, m_positionHash = 0;
     bool m_kinematic = false;
     bool m_heldOneSided = false;  // by the pipeline
-    bool m_read = false;          // the pipeline holds what the shape held when it was last read
+    bool m_read = false;          // the pipeline has what the shape had when it was last read
 };
 }  // namespace drape

@@ -27,8 +27,8 @@ bool meet(const btVector3& low, const btVector3& high, const btVector3& otherLow
     return meet;
 }
 
-// Brings the place back to the path where it is farther off than the radius, which goes from one end's to the other's.
-// Returns by how much it moved.
+// Moves a position back to the path if it is farther off than the radius, which varies linearly between the ends.
+// Returns the displacement, m.
 btVector3 shiftToPath(const btVector3& start, const btVector3& end, btScalar startRadius, btScalar endRadius,
                       const btVector3& place)
 {

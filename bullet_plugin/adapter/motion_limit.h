@@ -1,16 +1,12 @@
-// Keeps nodes near obstacles where detection has looked.
+// Keeps nodes near obstacles within the region that detection has searched.
 //
-// Why: contacts are found along the predicted motion and within the reach (thickness and activation) of its end.
-// Bullet's links can pull a node several times as far in one step, through a surface that nothing was reported of; the
-// next step would then take the wrong side for its own. Rule: near an obstacle a node ends close to the straight path
-// of its prediction. A node that has contacts may leave it by the activation distance, so that all surfaces it can come
-// too close to are among its contacts. A node without contacts is farther from every surface than the reach at the
-// path's end, and may leave that end by most of it; towards the path's start, where only the thickness is known to be
-// free, it may leave by less. What links could not do in this step they do in the next. The velocity follows the
-// position, as in Bullet's own update, so that no energy comes from it. A node is near an obstacle when it or any of
-// its faces is: a face whose nodes all lie beside a corner may be pulled over it. Nodes away from every obstacle are
-// not touched. Near an obstacle that moves the path is the one that the obstacle sees. Metres, world frame. Cost:
-// linear in the nodes; again for those that left their paths and their faces, by each obstacle that is near.
+// Rule: near an obstacle a node ends close to the straight path of its prediction. A node with contacts may leave the
+// path by the activation distance. A node without contacts may leave the path's end by most of the reach, and less
+// towards the path's start. A node is near an obstacle if it or any of its faces is. Other nodes are not changed.
+//
+// The path is relative to a moving obstacle. The velocity follows the position, as in Bullet's own update, so the
+// limit adds no energy. Metres, world frame. Cost: linear in the nodes; again for nodes that left their paths and
+// their faces, per near obstacle. Reasons: docs/design_notes/motion_limit.md.
 #pragma once
 
 #include <vector>
@@ -34,11 +30,11 @@ class MotionLimit
 public:
     // Forgets the obstacles; what memory it has stays.
     void clear();
-    // Box of an obstacle that the body has a pair with, the pair's thickness, and the activation as a share of it.
-    // Nodes are free where what their faces can pass between the predicted and the solved positions misses every box.
-    // carry, carriedStarts: see StepContact; the second stays the caller's.
-    // While a body's obstacles all rest, a node with contacts ends at most tube() of the thinnest pair from its path:
-    // detection may leave out what others imply there.
+    // Adds the box of an obstacle of one of the body's pairs, the pair's thickness, and the activation as a share of
+    // it. Nodes are free if everything that their faces can pass between the predicted and the solved positions
+    // misses every box. carry, carriedStarts: see StepContact; the caller owns the second. While all obstacles of a
+    // body rest, a node with contacts ends at most tube() of the thinnest pair from its path. Detection may leave out
+    // contacts that others imply there.
     void addObstacle(const btVector3& low, const btVector3& high, btScalar thickness, btScalar activation,
                      const btTransform* carry = nullptr, const btVector3* carriedStarts = nullptr);
     // Starts recording the prediction, before Bullet solves; recordNodes() then records all nodes. No node has

@@ -45,8 +45,8 @@ public:
 
     // Begins a step, before its first check(). Forgets pairs that were not seen for long.
     void beginStep();
-    // Checks the pair where it has to be. jumped: nodes that are elsewhere than the last step left them. Where the pair
-    // intersects and can be pushed apart, adds what is to be done to the body. Bullet's nodes are only read.
+    // Checks the pair where necessary. jumped: nodes that are not where the last step left them. If the pair
+    // intersects and can be separated, adds the necessary pushes to the body. Reads Bullet's nodes only.
     void check(const StartingPair& pair, const std::vector<int>& jumped, BodyContacts& body);
 
     // Count, in the step so far, the pairs of a cloth and an obstacle that intersect, and the pairs of their triangles.

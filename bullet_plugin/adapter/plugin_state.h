@@ -63,7 +63,7 @@ public:
     void fail(const char* call, const CaughtException& caught) noexcept;
     // Counts up with each fail().
     std::uint64_t failures() const { return m_failures; }
-    // Has the pipeline begin anew where fail() wants that. Throws where memory is still too short.
+    // Restarts the pipeline if fail() requested it. Throws if memory is still short.
     void restart();
 
     btCollisionAlgorithmCreateFunc& createFunction(bool swapped)
@@ -101,8 +101,8 @@ public:
     // start anew from their positions in the coming step, and are checked for intersections then. Does nothing
     // without a mirror: new pairs are checked anyway.
     void startAnew(const btCollisionObject* object);
-    // Says that the object is not where it moved, but where it was put: no solver's next step takes its pose for a
-    // motion, and its pairs start anew.
+    // Declares that the object was placed instead of moved: no solver's next step treats its pose as a motion, and
+    // its pairs start anew.
     void teleported(const btCollisionObject* object);
     // Returns whether one of these bodies is anchored to the object, or an app moved nodes of one as the map does,
     // since the last step, in which the body took part.

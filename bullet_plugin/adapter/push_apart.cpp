@@ -21,12 +21,12 @@ constexpr btScalar kSpeedPerMetre = 2;
 // Steps in which nodes are on the wrong side, at most, before another way out is taken than to the nearest surface.
 constexpr int kMostPushedSteps = 240;
 
-// Steps for which faces may pass through an obstacle between nodes that are all on the right side, likewise: what can
-// come out over an edge or a corner has done so by then.
+// Maximum steps in which faces may pass through an obstacle between nodes that are all on the right side, before
+// another way out is taken. Parts that can come out over an edge or a corner have done so by then.
 constexpr int kPassingSteps = 30;
 
-// Most steps for which parts of a cloth are drawn back, and for which all of it is moved out, the second where nodes
-// are pinned: those that follow stretch the cloth.
+// Maximum steps for which parts of a cloth are drawn back, and for which all of it is moved out; the second where
+// nodes are pinned. Longer pushes would stretch the cloth.
 constexpr int kBackSteps = 180;
 constexpr int kOutSteps = 1200;
 constexpr int kOutStepsOfPinned = 90;
@@ -102,7 +102,7 @@ void PairStarts::findRegions(const ClothFaces& faces, const MeshProbe& probe)
         wrong = !wrong;
 }
 
-// way: to the place of the surface where it is to come out, in the frame of the obstacle's positions.
+// way: displacement to the surface point where the node comes out, in the frame of the obstacle's positions.
 void PairStarts::pushNode(const StartingPair& pair, int node, Vec3 way, BodyContacts& body) const
 {
     const btVector3 there(way.x, way.y, way.z);
@@ -238,7 +238,7 @@ void PairStarts::moveOut(const StartingPair& pair, const MeshProbe& probe, Guard
     }
 }
 
-// Pushes by the way that is due. False where no way is left.
+// Pushes in the current way. Returns false if no way is left.
 bool PairStarts::push(const StartingPair& pair, const MeshProbe& probe, const TangledPair& tangled, Guard& guard,
                       BodyContacts& body)
 {

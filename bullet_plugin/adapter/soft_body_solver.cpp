@@ -158,8 +158,8 @@ void SoftBodySolver::listTaken()
         if (handlesCloth(*m_state, *m_softBodySet[i])) m_work->m_taken.push_back(m_softBodySet[i]);
 }
 
-// Wakes those of the bodies taken that a moving obstacle comes to. Returns the obstacles of the step; without those
-// that rest where no such body is awake.
+// Wakes bodies that a moving obstacle reaches. Returns the obstacles of the step, without resting ones if no such
+// body is awake.
 std::vector<StepObstacle> SoftBodySolver::wakeReached(KinematicMotions& motions)
 {
     const std::vector<btSoftBody*>& taken = m_work->m_taken;
@@ -177,8 +177,8 @@ std::vector<StepObstacle> SoftBodySolver::wakeReached(KinematicMotions& motions)
     return anyWoken && !anyAwake ? stepObstacles(*m_state, *taken[0], motions, true) : obstacles;
 }
 
-// Bullet's islands and callbacks may wake cloth, or put it to sleep, before it is solved. What was predicted is solved,
-// with the contacts along its path; what was not waits for the next step.
+// Lists the bodies that were predicted. Bullet's islands and callbacks may wake cloth, or put it to sleep, before it
+// is solved. Predicted bodies are solved with the contacts along their paths; others wait for the next step.
 void SoftBodySolver::listPredicted()
 {
     std::vector<const btSoftBody*>& predicted = m_work->m_predicted;

@@ -9,8 +9,8 @@ namespace drape
 {
 namespace
 {
-// Links that are looked at in one step. What Bullet's own functions do to links alters their number or place in memory,
-// or only their order; another node for a link that stays where it is is seen within links / 1024 steps, or twice that.
+// Links checked per step. Bullet's own functions change the number, the address or only the order of links. A link
+// that gets another node in place is detected within links / 1024 steps, or twice that.
 constexpr int kLinksPerCheck = 1024;
 
 constexpr int kNoSurface = -1;

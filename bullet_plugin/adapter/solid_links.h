@@ -49,7 +49,7 @@ private:
     void remember(const btSoftBody& body);
 
     std::vector<std::int32_t> m_nodes;
-    std::vector<int> m_surface;  // by node: a node of the same surface, the same for all of it; kNoSurface
+    std::vector<int> m_surface;  // by node: the representative node of its surface; kNoSurface
     std::uint64_t m_sum = 0;     // of what sumOf() adds up, over all links
     std::uint64_t m_seen = 0;    // the same of those up to m_cursor
     int m_cursor = 0;

@@ -36,7 +36,7 @@ btScalar unitOf(const btSoftBody& body, const ClothFaces& faces, const NodePaths
 // O(n) in the links and faces.
 Stretch stretchOf(const btSoftBody& body, const ClothFaces& faces, const NodePaths& paths);
 
-// Shortens what each movable node goes beside the body's common motion, the median of all, to half a unit. Velocities
-// follow, so that nodes which fly apart lose what drives them. O(n).
+// Shortens each movable node's motion relative to the body's common motion, the median, to at most half a unit.
+// Velocities follow, so that nodes which fly apart lose their speed. O(n).
 void holdTogether(btSoftBody& body, const ClothFaces& faces, const NodePaths& paths);
 }  // namespace drape

@@ -20,8 +20,8 @@ const PluginState* pluginOf(btDispatcher& dispatcher, const btSoftBody& cloth, c
 // Returns the state of the plugin whose algorithm the dispatcher gives to any pair; null if there is none.
 const PluginState* pluginOf(btDispatcher& dispatcher);
 
-// Returns null where the dispatcher of the objects' world has this plugin's algorithm, or where they are in no world;
-// else, in words, why Bullet's own algorithm has the pair.
+// Returns the reason, in words, why Bullet's own algorithm handles the pair. Returns null if the dispatcher of the
+// objects' world has this plugin's algorithm, or if they are in no world.
 const char* reasonFromDispatcher(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
                                  const btCollisionShape& shape);
 }  // namespace drape

@@ -127,8 +127,8 @@ public:
     // are not to be looked at any more. Not between submit() and finish().
     void giveBackRoom();
 
-    // New positions (x y z per vertex) of an obstacle that moved or was deformed; what hangs on them is made anew, the
-    // other obstacles stay as they are. Counts as a teleport: the motion between old and new is not swept.
+    // Sets new positions (x y z per vertex) of an obstacle that moved or was deformed. Dependent data is rebuilt;
+    // other obstacles are unchanged. Counts as a teleport: the motion between old and new is not swept.
     void moveObstacle(MeshId obstacle, const float* positions);
 
     // Sets the obstacle's own frame at the start and end of the coming steps, until the next call. A pose is three
@@ -144,13 +144,12 @@ public:
     // it (pinned if the device supports it); valid until addCloth, remove or submit.
     float* clothStart(MeshId cloth);
     float* clothEnd(MeshId cloth);
-    // Tells that the first `count` nodes of a cloth are written, start and end, and stay so until submit(): they may go
-    // to the device while the caller writes others. Optional. It helps where cloths are told of in the order in which
-    // they were added, and large ones a part at a time.
+    // Declares that the first `count` nodes of a cloth are written, start and end, and stay unchanged until submit().
+    // Their transfer may start while the caller writes others. Optional. It helps if cloths are declared in the order
+    // in which they were added, and large ones a part at a time.
     void nodesWritten(MeshId cloth, std::size_t count);
-    // All of that for several cloths: calls write() for stretches of their nodes, and tells of them as they are
-    // written. A GPU's pipeline shares many stretches with threads(): calls must not depend on their order, and several
-    // may be under way at once.
+    // Writes and declares the nodes of several cloths: calls write() for ranges of their nodes. A GPU's pipeline
+    // shares many ranges with threads(): calls must not depend on their order, and several may run at once.
     void writeNodes(const std::vector<MeshId>& cloths, const std::function<void(const NodeStretch&)>& write);
     // Copies the nodes from a caller's arrays, which hold all the cloths one after the other: x y z per vertex.
     void copyNodes(const std::vector<MeshId>& cloths, const float* start, const float* end);
@@ -158,7 +157,7 @@ public:
     // Returns whether a triangle of the obstacle reaches into the box (m, in the frame of its positions as given).
     // O(n).
     bool anyTriangleIn(MeshId obstacle, const float low[3], const float high[3]);
-    // The obstacle for questions about what lies where beside it, in the same frame.
+    // Returns the obstacle for queries about nearby points and triangles, in the same frame.
     std::unique_ptr<MeshProbe> makeProbe(MeshId obstacle);
 
     // Names a pair for the coming step; thickness in m > 0. A cloth without a pair costs nothing. tube: path

@@ -1,9 +1,8 @@
-// When memory that is kept from step to step is worth giving back.
+// Decides when to release memory that is kept from step to step.
 //
-// Arrays keep their room, because a scene needs about as much in one step as in the one before. Where it has needed no
-// more than a quarter of its most for kWindow steps, ten seconds at 60 a second, the room is given back once. So memory
-// is bounded by what the last ten seconds needed, and a scene that stays as it is never pays. Cost: a comparison a
-// step.
+// Arrays keep their capacity, because successive steps need about the same. If a scene has needed at most a quarter
+// of its maximum for kWindow steps, ten seconds at 60 a second, the memory is released once. Memory is therefore
+// bounded by the needs of the last ten seconds, and a steady scene pays nothing. Cost: a comparison per step.
 #pragma once
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 // Continuous collision of a vertex with a face and of an edge with an edge: decides whether they come within a
 // separation while all their vertices move linearly over the step, and when first.
 //
-// Both ask where F(t,u,v) of ccd_motion.h is within the separation of zero. A box of (t,u,v) is dropped if the bounds
-// of F over it exclude that. Otherwise it is halved in the direction in which F varies most, and the earlier half
-// comes first. A box that provably contains a zero is a hit, and so is a box of the finest size that cannot be
-// dropped.
+// The question in both cases is where F(t,u,v) of ccd_motion.h is within the separation of zero. A box of (t,u,v) is
+// dropped if the bounds of F over it exclude that. Otherwise it is halved in the direction in which F varies most,
+// and the earlier half comes first. A box that provably contains a zero is a hit, and so is a box of the finest size
+// that cannot be dropped.
 //
 // Method: B. Wang et al., A large-scale benchmark and an inclusion-based algorithm for continuous collision
 // detection, 2021. The bounds are our own, since theirs are not conservative for every frame (see ccdSlack). Views
@@ -52,8 +52,8 @@ DRAPE_FUNCTION CcdSettings ccdDefaults(void)
     return ccdSettings(0.0f, 1e-6f, 6.1035156e-5f, 4096u);
 }
 
-// The way from the whole domain to a box: a place per halving, 0 the first. Bit i of m_upper: the box is in the upper
-// half; m_axis holds the direction in two bit sets.
+// The path of halvings from the whole domain to a box, 0 the first. Bit i of m_upper: the box is in the upper half;
+// m_axis holds the direction in two bit sets.
 typedef struct CcdPath
 {
     DRAPE_ULONG m_upper;
@@ -149,7 +149,7 @@ DRAPE_FUNCTION int ccdPasses(const CcdMotion* m, const CcdTask* task, const CcdB
     return result->m_hit && box->m_low[0] + task->m_timeTolerance >= result->m_time;
 }
 
-// Looks at a box: the direction in which to halve it, or -1 when it is done with. Stores a hit.
+// Tests a box. Returns the direction in which to halve it, or -1 when it is finished. Stores a hit.
 DRAPE_FUNCTION int ccdLook(const CcdMotion* m, const CcdTask* task, const CcdBox* box, CcdResult* result)
 {
     CcdRanges ranges;
@@ -188,8 +188,8 @@ DRAPE_FUNCTION CcdResult ccdSearch(CcdMotion* m, const CcdTask* task)
     return result;
 }
 
-// Aims the views at where the features are in one plane, or at the begin of a box about it that holds a zero: then the
-// result is a hit unless something comes before it. Returns 0 where nothing can.
+// Aims the views at the time when the features are in one plane, or at the beginning of a box about it that holds a
+// zero: the result is then a hit unless something precedes it. Returns 0 if nothing can.
 DRAPE_FUNCTION int ccdGuess(CcdMotion* m, const CcdTask* whole, CcdResult* result, CcdBox* aim, CcdBox* guess)
 {
     const int inside = ccdGuessBox(m, whole->m_timeTolerance, aim, guess);
@@ -222,7 +222,7 @@ DRAPE_FUNCTION CcdTask ccdPiece(const CcdTask* whole, DRAPE_UINT part, const Ccd
 // Starts from a guess: a hit if nothing precedes it, otherwise perhaps a proof that there is none. If that fails,
 // searches the whole step for hit and time at once.
 //
-// That may take too many boxes, for features that touch along a line, or nearly. Then the search first decides
+// Some searches take too many boxes, for features that touch along a line, or nearly. The search then first decides
 // whether there is a hit at all, and bisects the step for its time. An earlier half without a hit is finished; a half
 // that takes too many boxes counts as having one.
 DRAPE_RARE_FUNCTION CcdResult ccdFind(CcdMotion* m, CcdSettings settings)
@@ -252,14 +252,14 @@ DRAPE_RARE_FUNCTION CcdResult ccdFind(CcdMotion* m, CcdSettings settings)
         {
             const int empty = !result.m_hit && !exhausted;
             if (empty && (found.m_hit || round == -DRAPE_CCD_PIECES || round == -1)) return found;
-            // The whole is to be looked at: nothing is known but that there may be a hit.
+            // Searches the whole step: all that is known is that there may be a hit.
             if (!empty && round > -DRAPE_CCD_PIECES) round = -1;
             if (round == -1) task = whole;
             continue;
         }
         if (round == 0 && !exhausted) return result;
         if (round == 1 && !exhausted && !result.m_hit) return result;
-        // A refuted half ends the part of the step without a hit; else the hit in it is the one to go on with.
+        // A refuted half ends the part of the step without a hit; otherwise the search continues with the hit in it.
         const int hit = result.m_hit || exhausted;
         if (hit && result.m_hit) found = result;
         if (!timed || (round > 1 && task.m_width <= settings.m_timeTolerance))

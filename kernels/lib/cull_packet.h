@@ -74,9 +74,9 @@ DRAPE_FUNCTION Lanes packetIntervals(CullVolumes* cull, const LanesVec3* p)
     return size;
 }
 
-// p: corners at the step's start as the obstacle sees them, then at its end, all valid; unswept triangles lose the
-// starts. whole: not so where a corner was invalid and another is in its place. Returns the triangles that may come
-// near the obstacle; others, and those of negative radius, get an empty volume.
+// p: corners at the step's start relative to the obstacle, then at its end, all valid; unswept triangles lose the
+// starts. whole: false for a triangle in which another corner replaces an invalid one. Returns the triangles that may
+// come near the obstacle; others, and those of negative radius, get an empty volume.
 DRAPE_FUNCTION LaneMask cullVolumes(CullVolumes* cull, LanesVec3* p, Lanes radius, LaneMask whole, DRAPE_UINT mode,
                                     const DRAPE_GLOBAL ObstacleMotion* motion)
 {

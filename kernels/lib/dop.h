@@ -56,7 +56,7 @@ DRAPE_FUNCTION float dopProject(Vec3 p, int i)
     return corner % 2 == 0 ? sum + p.z : sum - p.z;
 }
 
-// |x| + |y| where a direction's projection has three terms, else 0: what the rounding of the first sum is bounded by.
+// |x| + |y| where a direction's projection has three terms, else 0: bounds the rounding of the first sum.
 DRAPE_FUNCTION float dopInner(Vec3 p, int i)
 {
     return i < 3 + DRAPE_DOP_EDGES ? 0.0f : drapeAbs(p.x) + drapeAbs(p.y);

@@ -64,9 +64,9 @@ DRAPE_FUNCTION int furtherApart(Vec3 n, float low, float high, float distance, P
 #define DRAPE_ARE_PARTED 1
 #define DRAPE_MAY_MEET 2
 
-// The answer for features that come near. n: normal of the plane; low: the least product with it of the one's corners
-// at the step's start and end, high: the greatest of the other's. What is on one side at both stays there on a straight
-// way.
+// Classifies features that come near. n: normal of the plane; low: the least product of n with the first feature's
+// corners at the step's start and end, high: the greatest with the second's. A point on one side at both ends stays
+// there on a straight path.
 DRAPE_FUNCTION int nearnessAcross(Vec3 n, float low, float high, PairBounds bounds)
 {
     return furtherApart(n, low, high, 0.0f, bounds) ? DRAPE_ARE_PARTED : DRAPE_MAY_MEET;
@@ -78,8 +78,9 @@ DRAPE_FUNCTION int asksForMeeting(int known, PairBounds bounds)
     return bounds.m_mode == DRAPE_CONTINUOUS || known == DRAPE_MAY_MEET;
 }
 
-// The unit normal with the given direction on the side that the cloth's point came from. way: of that point in the
-// step, a straight line; where it goes along the surface, `side` tells, 1 for the direction itself.
+// Returns the unit normal with the given direction on the side from which the cloth's point came. way: displacement
+// of that point in the step, a straight line. If it runs along the surface, `side` decides: 1 for the direction
+// itself.
 DRAPE_FUNCTION Vec3 meetingNormal(Vec3 direction, float length, Vec3 way, float side, PairBounds bounds)
 {
     const Vec3 normal = vec3Direction(direction, length);
@@ -158,7 +159,7 @@ typedef struct Meeting
 {
     int m_met;
     float m_time;   // of the step, never late
-    float m_place;  // of the step, where the features are to be looked at: as near as a few steps come
+    float m_place;  // time in the step at which to test the features: as near as a few iterations come
 } Meeting;
 
 DRAPE_FUNCTION Meeting meetFeatures(DRAPE_UINT kind, const Vec3 start[4], const Vec3 end[4], float motion,

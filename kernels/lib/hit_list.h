@@ -30,7 +30,7 @@ typedef struct HitList
 } HitList;
 
 #ifndef DRAPE_HOST_KERNELS
-// A contact is four of these, and where it lies in a list it is aligned so: a store of less leaves a GPU's memory more to do.
+// Vectors per contact. A listed contact is aligned to one; a narrower store costs a GPU's memory more.
 #define DRAPE_CONTACT_QUARTERS 4
 typedef char ContactFits[sizeof(Contact) == DRAPE_CONTACT_QUARTERS * sizeof(uint4) ? 1 : -1];
 

@@ -8,7 +8,7 @@
 // Longest run: what its items read stays in a core's own cache, and runs even out among the cores.
 #define DRAPE_MOST_RUN 128u
 
-// m_item: the one at hand; there is none left where it is not below the list's length.
+// m_item: the current item; none is left once it reaches the list's length.
 #ifdef DRAPE_CPU
 typedef struct ItemRuns
 {

@@ -11,8 +11,8 @@
 #include "lanes.h"
 
 // Input rows of a test, one lane each: positions (x y z) of the cloth's feature at the step's start and then at its
-// end, of the obstacle's feature, its cone (except of faces), and the reach. All in metres, in the world's frame;
-// starts are relative to the obstacle.
+// end, and of the obstacle's feature. Its cone (except of faces) and the reach follow. All in metres, in the world's
+// frame; starts are relative to the obstacle.
 #define DRAPE_NODE_FACE_ROWS 16
 #define DRAPE_FACE_VERTEX_ROWS 26
 #define DRAPE_EDGE_EDGE_ROWS 23
@@ -400,8 +400,9 @@ static LanesVec3 laneOffset(const LaneEdges* edges, const LanePlaces places)
                     exactAddScaled(lanesZero(), edges->m_far, places.m_t));
 }
 
-// Two edges at the step's end: the volume that they span where they are closest, and the offset there, with its least
-// product with an end of the first edge and its greatest with one of the second. m_comesNear: as for a face.
+// Two edges at the step's end: the volume that they span where they are closest, and the offset there. The offset has
+// its least product with an end of the first edge and its greatest with one of the second. m_comesNear: as for a
+// face.
 typedef struct LaneCrossing
 {
     LanesVec3 m_direction, m_offset;

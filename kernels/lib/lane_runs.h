@@ -23,7 +23,7 @@ static uint kindOf(const LaneWork* work, const uint item);
 static void putTest(float* rows, const uint lane, LaneWork* work, const uint item);
 // Computes the lanes' contacts of tests of one kind.
 static void askLanes(LaneContacts* contacts, const float* rows, const LaneWork* work, const uint kind);
-// Stores the contact of a lane, asking what it depends on besides if it `asks`. Returns DRAPE_NO_CONTACT, ….
+// Stores the contact of a lane, with the further checks if it `asks`. Returns DRAPE_NO_CONTACT, ….
 static int takeContact(const LaneContacts* contacts, const float* rows, const uint lane, const LaneWork* work,
                        const uint item, const int asks, Contact* contact);
 // Does a test by itself.

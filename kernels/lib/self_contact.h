@@ -175,7 +175,7 @@ DRAPE_FUNCTION int selfNodeFace(const SelfView* view, DRAPE_UINT node, DRAPE_UIN
     }
     else if (found == DRAPE_IS_CONTACT)
     {
-        // Found as the face's contact with the node: the other way round.
+        // Reverses the contact, which was found as the face's with the node.
         const Vec3 weights = vec3(contact->m_weights[0], contact->m_weights[1], contact->m_weights[2]);
         const Vec3 normal = vec3(-contact->m_normal[0], -contact->m_normal[1], -contact->m_normal[2]);
         const Vec3 before = featurePoint(face.m_start, weights), after = featurePoint(face.m_end, weights);

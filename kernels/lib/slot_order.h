@@ -19,10 +19,10 @@ static void orderPair(__global uint* members, __global uint* keys, const uint lo
     members[high] = member;
 }
 
-// A work-group sorts count members by their keys, in place, both lists alike: Batcher's bitonic network, its merges begun with
-// a mirrored step so that the lesser always goes to the lower place. So places from count on count as greater than all and
-// need not exist. In a step every place is in one pair; the barrier orders the steps. It goes through lists side by side: the
-// hits themselves, looked up for each pair, are more than a CPU's cache holds.
+// Sorts `count` members by their keys, in place, with both lists alike; one work-group. Batcher's bitonic network,
+// whose merges begin with a mirrored step so that the lesser key always goes to the lower position. Positions from
+// `count` on therefore count as greater than all and need not exist. Every position is in one pair per step; the
+// barrier orders the steps. The two lists are separate from the contacts, which are more than a CPU's cache holds.
 static void sortMembers(__global uint* members, __global uint* keys, const uint count)
 {
     for (uint size = 2; size / 2 < count; size *= 2)

@@ -98,7 +98,8 @@ DRAPE_FUNCTION float vec3Length(Vec3 a)
 {
     return drapeSqrt(vec3Dot(a, a));
 }
-// a at length 1. length: of a, > 0. Where it is so small that its square loses digits as a denormal, it is taken anew.
+// Scales a to length 1. length: of a, > 0. It is computed anew if its square is so small that it loses digits as a
+// denormal.
 DRAPE_FUNCTION Vec3 vec3Direction(Vec3 a, float length)
 {
     if (length > 1e-18f) return vec3Scale(a, 1.0f / length);

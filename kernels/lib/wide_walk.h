@@ -14,7 +14,7 @@
 
 // Nodes that a group with as many times DRAPE_PATCH_WIDTH lanes looks at together, at most.
 #define DRAPE_WALK_NODES 4
-// The root's children where they are this few are where a group's walk begins.
+// Maximum number of the root's children at which a group's traversal begins with them.
 #define DRAPE_WALK_BEGIN 4
 
 static uint walkEntry(const uint level, const uint index)

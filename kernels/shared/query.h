@@ -45,7 +45,7 @@ typedef struct SelfCounters
     DRAPE_UINT m_tooDeep;  // hierarchies too deep for the traversal's stack
 } SelfCounters;
 
-// Far above what a list holds, and so far below 2^32 that additions under way cannot wrap around.
+// Count far above any list's length, and so far below 2^32 that concurrent additions cannot wrap around.
 #define DRAPE_DEMAND_LIMIT 0x80000000u
 
 DRAPE_NAMESPACE_END

@@ -24,7 +24,7 @@ public:
     // complete, and counters say only that there are more. Returns how often the list was too short and grew.
     std::size_t run(const ClothView& cloth, const HostCloths& cloths, std::size_t limit, ThreadTeam& threads,
                     StepCounters& counters);
-    // Of the last run: as many as counted, and what is behind them is old.
+    // Tests of the last run: the first ones up to its count; the rest is old.
     const std::vector<FeatureTest>& tests() const { return m_tests; }
 
     // Gives back room that only earlier, larger scenes needed.

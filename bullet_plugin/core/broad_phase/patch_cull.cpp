@@ -9,7 +9,7 @@ namespace
 constexpr std::uint32_t kWidthGpu = 32;  // a warp
 constexpr std::uint32_t kWidthCpu = 16;  // a vector of 512 bits
 constexpr std::size_t kGroup = 64;
-// On a GPU, the number of triangles from which on walks are for packets of them.
+// Number of triangles from which a GPU traverses for packets of them.
 constexpr std::size_t kManyTriangles = 1 << 15;
 // Nodes that a group which walks looks at together, for a packet and for one triangle, and pairs that one which culls
 // does.
@@ -89,7 +89,7 @@ void PatchCullStage::setTopology(Device& device, const MeshPool& obstacles, std:
         m_patchVolumes.extend(device, volumesNow, volumes);
     else
         m_patchVolumes.reserve(device, 1);
-    // The lowest level, which comes first, stays: a place a patch, in nodes of so many.
+    // Keeps the lowest level, which comes first: one position per patch, in nodes of `lanes` patches.
     const std::size_t kept = (patches + lanes - 1) / lanes * lanes * DRAPE_WIDE_NODE_FLOATS;
     m_wideNodes.extend(device, m_layout.m_levels.back() * DRAPE_WIDE_NODE_FLOATS * lanes, kept);
 }
@@ -110,7 +110,7 @@ void PatchCullStage::bringOwners(Device& device, ItemRange vertices, ItemRange e
         ItemRange all = wanted;
         if (!held.empty()) all = {std::min(held.m_first, wanted.m_first), std::max(held.m_last, wanted.m_last)};
         buffer.extend(device, all.m_last, held.empty() ? 0 : held.m_last);
-        // Where there is something before what is held, that is brought again.
+        // Uploads the whole range again if it grows at its beginning.
         const std::size_t first = held.empty() || all.m_first < held.m_first ? all.m_first : held.m_last;
         buffer.write(device, owners.data() + first, all.m_last - first, first);
         held = all;

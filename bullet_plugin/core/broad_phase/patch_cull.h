@@ -34,7 +34,7 @@ public:
     // Gives back what only pack() reads; it brings that again when it is called.
     void releasePacking();
 
-    // What a step reads of the cloths and pairs.
+    // Data of the cloths and pairs that a step reads.
     struct Cloths
     {
         Buffer<cl_uint>& m_order;
@@ -95,7 +95,7 @@ private:
     Buffer<Patch> m_patches{"obstacle patches"};
     Buffer<cl_uint> m_faceFeatures{"obstacle face features"};  // of a GPU
     Buffer<cl_uint> m_vertexOwners{"obstacle packing"}, m_edgeOwners{"obstacle packing"};
-    // Of each lane; a face's owner is the face itself.
+    // Owners by lane; a face's owner is the face itself.
     Buffer<cl_uint> m_faceOwners{"obstacle face numbers"}, m_vertexIds{"obstacle vertex numbers"};
     Buffer<cl_uint> m_edgeIds{"obstacle edge numbers"};
     Buffer<cl_uint> m_levels{"obstacle wide nodes"};

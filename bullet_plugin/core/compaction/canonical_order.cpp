@@ -15,7 +15,7 @@ void sortCandidates(std::vector<Candidate>& candidates)
 
 namespace
 {
-// Hits, or slots, that a thread takes at a time, and hits from which on others are worth waking.
+// Contacts, or slots, per thread and turn, and the minimum number of contacts for waking other threads.
 constexpr std::size_t kPiece = 512;
 constexpr std::size_t kLeastShared = 1 << 12;
 

@@ -8,8 +8,8 @@ namespace
 {
 constexpr std::size_t kSortGroup = 256;    // one group sorts a slot, however large
 constexpr std::size_t kSortBlockGpu = 32;  // slots that a group sorts one after the other
-// Most hits of a slot that a GPU puts in order by counting lesser ones, where no reduction follows: what a group of
-// compactionOrder would count in local memory, a launch more.
+// Maximum contacts of a slot that a GPU sorts by counting lesser ones, without a following reduction. compactionOrder
+// would count the same in local memory, with one launch more.
 constexpr cl_uint kRankedGpu = 512;
 constexpr cl_uint kRankedReducedGpu = 256;  // where one follows: DRAPE_HELD of kernels/contact_reduction_hits.cl
 

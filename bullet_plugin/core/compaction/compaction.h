@@ -1,11 +1,10 @@
-// Compaction: the hits of a step, listed as they were found, into contacts in canonical order
-// (kernels/shared/contact.h), without those that others imply where that is asked for.
+// Compaction sorts a step's unsorted contacts into canonical order (kernels/shared/contact.h), and optionally leaves
+// out contacts that others imply.
 //
-// Input: hits() filled, with each slot's number of them, and how many there are in the step's counters. Output:
-// contacts(), and their number in the counters; the slots' numbers and the next step's counters are left zero.
-// Guarantee: the host's contacts, bit for bit. Where the list is full hits are counted on, and the step must run again
-// with more room. Cost: on a GPU two or three launches where slots are few, else three to five; what reduction takes
-// besides is said there.
+// Input: hits() filled, each slot's number of contacts, and the total in the step's counters. Output: contacts(), and
+// their number in the counters; the slots' numbers and the next step's counters are left zero. Guarantee: the host's
+// contacts, bit for bit. A full list still counts its demand, and the step must run again with a larger one. Cost:
+// two or three launches on a GPU with few slots, else three to five; the reduction's cost is documented there.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +15,9 @@
 
 namespace drape
 {
-// The step's counters, and those of the next step. m_ordered: slots with too many hits for the last launch are put in
-// order before it; where they are not and there are some, which the counters tell, the step must run again. m_hits:
-// about as many are expected; speed alone depends on it.
+// Counters of the step and of the next step. m_ordered: a separate launch sorts slots with too many contacts for the
+// last launch. Without it the step must run again if the counters show such slots. m_hits: expected number of
+// contacts; affects speed alone.
 struct StepTally
 {
     Buffer<StepCounters>& m_now;

@@ -26,7 +26,7 @@ std::string hostSince(const DeviceInfo& device, const Error& error);
 // error is filled when a device was asked for that is not there; its detail lists those that are.
 DeviceChoice chooseDevice(const Settings& settings, Error& error);
 
-// The crossover, in pairs of triangles, that settings or else DRAPE_CROSSOVER ask for; negative where neither does.
-// Returns false, and fills error, where the variable is not a number from 0 on.
+// Reads the crossover, in triangle pairs, from the settings or else from DRAPE_CROSSOVER; negative if neither sets
+// it. Returns false, and fills error, if the variable is not a number from 0 on.
 bool wantedCrossover(const Settings& settings, double& pairs, Error& error);
 }  // namespace drape

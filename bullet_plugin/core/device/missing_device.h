@@ -24,7 +24,7 @@ bool canBeWritten(const std::string& folder);
 constexpr int kEnoughDescriptors = 8;
 int descriptorsLeft();
 
-// One line. seen: what platforms and devices there were and why none of them will do, empty where there was no
-// platform.
+// Describes the missing device in one line. seen: the platforms and devices found and why each is unusable; empty if
+// there was no platform.
 std::string whyNoDeviceFound(const std::string& seen, bool poclWithoutDevice);
 }  // namespace drape

@@ -1,9 +1,9 @@
 // All meshes of one side (cloths or obstacles) as one: vertices, triangles, edges and leaf order joined end to end.
 //
-// Job: keep the meshes and join them into arrays; revision() tells when those changed, firstSince() from which mesh on.
-// A mesh keeps its id; its slot is its place in the joined arrays, which update() makes current. A mesh that comes goes
-// behind the others; one that goes leaves its slot vacant, as of a mesh that has no pair, until more is vacant than
-// not: so either costs what the mesh holds, not what the pool does. Host memory only.
+// Job: keep the meshes and join them into arrays. revision() reports changes of the arrays, firstSince() the first
+// changed mesh. A mesh keeps its id. Its slot is its index in the joined arrays, which update() makes current. A new
+// mesh is appended. A removed mesh leaves its slot vacant, like a mesh without a pair, until more is vacant than in
+// use. Adding or removing therefore costs in proportion to the mesh, not the pool. Host memory only.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct PooledMesh
 {
     MeshId m_id = kNoMesh;
     Topology m_topology;
-    std::vector<float> m_positions;         // m, as last given: in its own frame where it has a place, else the world's
+    std::vector<float> m_positions;         // m, as last given: in its own frame if it has a pose, else the world's
     double m_area = 0;                      // m², of the triangles
     bool m_oneSided = false;                // obstacles only: see MeshDescription
     float m_selfThickness = 0;              // m, cloths only, likewise
@@ -91,7 +91,7 @@ public:
     const std::vector<MeshFirsts>& firsts() const { return m_firsts; }
 
 private:
-    // Gives vacant slots back: all of them, or the last of those that have their places.
+    // Releases vacant slots: all of them, or the last ones.
     bool hasWideGaps() const;
     void closeGaps();
     void dropLastVacant();

@@ -42,8 +42,9 @@ Vec3 middleOf(const Triangle& triangle, const float* positions)
     return vec3Scale(sum, 1.0f / 3.0f);
 }
 
-// Takes triangles one after the other: of those beside the patch at hand one that is near its middle, sooner if its
-// neighbours are taken, so that no hole stays behind; where there is none, the nearest of the next in leaf order.
+// Takes triangles one after the other. Among the neighbours of the current patch it prefers one near the patch's
+// middle, and one whose neighbours are taken, so that no hole remains. Without a neighbour it takes the nearest of
+// the next triangles in leaf order.
 class Clustering
 {
 public:

@@ -1,9 +1,9 @@
-// Patches of the obstacles: connected triangles as far as there are, begun in leaf order, and the lists of features
-// that they own (see kernels/shared/patch.h).
+// Patches of the obstacles: triangles that are connected as far as possible, begun in leaf order, and the lists of
+// features that they own (see kernels/shared/patch.h).
 //
 // Input: meshes' triangles and leaf order. Output: per patch its blocks, per lane the feature. A patch never holds
-// triangles of two meshes, and is full but for the last one of a mesh. Every triangle, and every vertex and edge of
-// one, is in exactly one lane. O(n); meshes can be put behind those that are there for what they are themselves.
+// triangles of two meshes, and is full except the last one of a mesh. Every triangle, and every vertex and edge of
+// one, is in exactly one lane. O(n); appending meshes costs in proportion to the new meshes alone.
 #pragma once
 
 #include <cstdint>
@@ -43,7 +43,7 @@ void clusterMeshes(const MeshPool& pool, std::size_t first, std::uint32_t width,
 
 // Leaves the patches of the first `slots` meshes; levels are not those of what is left.
 void keepPatches(Patches& patches, std::size_t slots, std::uint32_t width);
-// Adds those of the pool's next mesh. positions: as above. Levels are not those of what is there then.
+// Adds the patches of the pool's next mesh. positions: as above. Does not update the levels.
 void appendPatches(Patches& patches, const MeshPool& pool, std::size_t slot, const float* positions,
                    std::uint32_t width);
 void makeLevels(Patches& patches, std::uint32_t width);

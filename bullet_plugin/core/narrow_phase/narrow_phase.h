@@ -1,5 +1,5 @@
-// Narrow phase: which candidates touch. On a device they are listed as hits, which compaction puts in order; on the
-// host they are contacts in canonical order at once. Both give the same, bit for bit.
+// Narrow phase: determines which candidates touch. A device lists unsorted contacts, which compaction sorts; the host
+// lists contacts in canonical order at once. Both give the same contacts, bit for bit.
 #pragma once
 
 #include <cstdint>
@@ -74,7 +74,7 @@ public:
         std::size_t m_mostSwept;  // with more tests that need the continuous test than this, their hits are not listed
     };
 
-    // features: for what a cull leaves, else for pairs of triangles. The kernels of what is not used are not built.
+    // features: builds the kernels for feature tests, else those for triangle pairs.
     void create(Device& device, const ProgramLoader& load, bool features);
 
     void reserveIntersections(Device& device, std::size_t count) { m_intersections.reserve(device, count); }

@@ -82,8 +82,8 @@ private:
     void reserveNodes(std::size_t room);
     void clusterCloths(const MeshPool& cloths, std::size_t firstSlot);
     void updateTraversal(const Scene& scene, bool newObstacles);
-    // Brings the obstacles from slot `fresh` on, and of the others those that were given other positions or another
-    // place, to the device and to the world, and renews what depends on it.
+    // Uploads and places the obstacles from slot `fresh` on, and earlier ones whose positions or poses changed, and
+    // renews dependent data.
     void updateObstacles(const Scene& scene, std::size_t fresh);
     void refitObstacles(const Scene& scene);
     void writeNodes(const Scene& scene, std::size_t first, std::size_t count);

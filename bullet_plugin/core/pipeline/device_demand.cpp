@@ -44,7 +44,7 @@ bool DeviceBackend::overLimit(const StepPairs& pairs, StepResult& result)
     const StepCounters counters = countersRead();
     const StepLimits limits(m_settings);
     const std::size_t mostTests = std::min(limits.m_candidates, pairs.m_limits.m_tests);
-    // Hits are all of them only where every candidate was there to be tested.
+    // The count of contacts is complete only if every candidate was tested.
     const bool ofObstacles = patches() ? counters.m_patchPairs <= m_patchCull.pairs().capacity() &&
                                              counters.m_candidates <= m_patchCull.tests().capacity()
                                        : counters.m_candidates <= m_candidates.capacity();

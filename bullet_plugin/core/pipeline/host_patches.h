@@ -19,7 +19,7 @@ public:
     // Adds to the result what the pairs give, contacts in canonical order. False when the step is over a limit.
     bool run(const Scene& scene, const StepPairs& pairs, const Settings& settings, ThreadTeam& threads,
              StepResult& result);
-    // Adds what cloths have with themselves, likewise; no contacts where it is over a limit.
+    // Adds contacts of cloths with themselves in the same way; none if that exceeds a limit.
     SelfCounts runSelf(const Scene& scene, const SelfStep& step, SelfStepLimits limits, ThreadTeam& threads,
                        StepResult& result);
 

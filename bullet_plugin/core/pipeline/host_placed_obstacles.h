@@ -1,5 +1,4 @@
-// The obstacles of a scene where they are in the world, on the host: the scene's own arrays where no obstacle has a
-// place.
+// A scene's obstacles in world coordinates, on the host: the scene's own arrays if no obstacle has a pose.
 #pragma once
 
 #include <vector>

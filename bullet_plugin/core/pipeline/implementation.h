@@ -98,7 +98,7 @@ struct Pipeline::Implementation
     std::vector<NodeStretch> stretchesOf(const std::vector<MeshId>& cloths);
     // Counts nodes of cloths that are gone as written, up to node `last`.
     void passVacantNodes(std::size_t last);
-    // Nodes that were told to be written are not those of the coming step. Transfers of them end.
+    // Forgets nodes declared as written: they are not those of the coming step. Ends their transfers.
     void forgetNodes();
     void joinObstacles(std::size_t first);
     // Returns the settings' methods, with the builder of the back end in use.
@@ -141,7 +141,7 @@ struct Pipeline::Implementation
     bool beginChoice(Pipeline& pipeline, Error& error);
     // Has the coming steps run where the scene's work says, and the report say why.
     void useChosen();
-    // Takes in the pairs that are named for the coming step, where they are not those of the last one.
+    // Processes the pairs named for the coming step, if they differ from those of the last one.
     void chooseBackend();
     // Returns whether the host may run the steps of all current meshes. If cost decides, assumes pairs of a thickness
     // near zero, which make the least work.

@@ -11,7 +11,7 @@ namespace
 // Nodes per early transfer, before all are written: 1.6 MB each of start and end. Such a transfer takes far longer
 // than its enqueueing, which costs 10 us in a GPU's driver.
 constexpr std::size_t kNodesTogether = 1 << 17;
-// Nodes that one thread writes before it looks for others, and from how many on it is worth waking threads.
+// Nodes that one thread writes per turn, and the minimum number of nodes for waking threads.
 constexpr std::size_t kNodesAlone = 1 << 11;
 constexpr std::size_t kLeastShared = 1 << 14;
 }  // namespace

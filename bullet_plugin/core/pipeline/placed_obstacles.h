@@ -20,9 +20,9 @@ public:
 
     // Returns whether positions or poses may have changed since update().
     bool changed(const Scene& scene) const { return m_changes.any(scene); }
-    // Brings the obstacles from slot `fresh` on, and of the others those that were given other positions or another
-    // place. Returns after enqueueing, with runs of the slots whose places in the world are new; the scene must stay as
-    // it is until the device was waited for, and the device must have been since the last call.
+    // Uploads and places the obstacles from slot `fresh` on, and earlier ones whose positions or poses changed.
+    // Returns after enqueueing, with runs of the slots whose world positions are new. The scene must stay unchanged
+    // until a wait for the device, and the device must have been waited for since the last call.
     std::vector<SlotRange> update(Device& device, const Scene& scene, std::size_t fresh);
 
     Buffer<float>& positions() { return m_positions; }

@@ -1,5 +1,5 @@
-// Runs a step on the back end in use, and again without some cloths where it is over limits: without those that are
-// stretched over those of ordinary motion, without the largest over the settings'.
+// Runs a step on the current back end, and repeats it without some cloths if it exceeds limits: without stretched
+// cloths for the limits of ordinary motion, without the largest for the settings' limits.
 #include <cmath>
 #include <numeric>
 

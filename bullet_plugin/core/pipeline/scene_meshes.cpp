@@ -1,4 +1,4 @@
-// Meshes of the scene: what is told from one as it comes or moves, and all of a side joined into one.
+// Meshes of the scene: measures a mesh when it is added or moved, and joins all meshes of a side.
 #include <algorithm>
 #include <cmath>
 #include <limits>

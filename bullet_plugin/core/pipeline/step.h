@@ -43,7 +43,7 @@ private:
     std::size_t m_room = 0;
 };
 
-// Both sides' meshes and, per side, the data of the joined arrays.
+// Meshes of both sides and, per side, the data of the joined arrays.
 struct Scene
 {
     MeshPool m_cloths;

@@ -64,8 +64,7 @@ public:
     };
     // The nearest one within the distance; false where there is none.
     bool nearestWithin(Vec3 point, float distance, Place& place) const;
-    // Moves a point along with a place of the surface, turned as the triangle turns, to where the vertices have other
-    // positions.
+    // Moves a point along with its surface point to the vertices' other positions, turned as the triangle turns.
     Vec3 carriedWith(const Place& place, Vec3 point, const std::vector<float>& positions) const;
 
 private:

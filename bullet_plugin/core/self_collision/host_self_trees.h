@@ -11,7 +11,7 @@
 
 namespace drape
 {
-// Volumes of the cloths' nodes over the step; those of cloths that are not in it stay as they are.
+// Updates the volumes of the cloths' nodes over the step; cloths outside it are unchanged.
 void selfVolumes(const SelfStep& step, std::vector<Dop>& volumes);
 
 // Finds the contacts of pairs of triangles that are handed to it, in any order, each once.

@@ -39,7 +39,7 @@ public:
 
     // New cloths. rest: m, x y z per joined node. Waits for the upload.
     void setTopology(Device& device, const MeshPool& cloths, const std::vector<float>& rest);
-    // Enqueues what changed of the reaches, which must stay as they are until the device was waited for.
+    // Enqueues changes of the reaches, which must stay unchanged until a wait for the device.
     void setReach(Device& device, const SelfReach& reach);
 
     // Lists the tests; their counters must be zero before. Both functions return after enqueueing.

@@ -85,7 +85,7 @@ private:
     // Written before the items are offered, and not again before all of them are done.
     Call m_call = nullptr;
     const void* m_context = nullptr;
-    std::fenv_t m_environment;  // the caller's way to round and to treat subnormals, for whoever helps
+    std::fenv_t m_environment;  // the caller's rounding mode and treatment of subnormals, for every helper
 
     std::unique_ptr<Stretch[]> m_stretches;  // by thread, the caller's first
     std::atomic<std::uint32_t> m_job{0};     // number of the last one offered
