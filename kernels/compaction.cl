@@ -137,7 +137,7 @@ __kernel void compactionWrite(__global const Contact* restrict hits, const uint 
         const int sorted = last - first > ranked;
         const uint key = keys[i];
         uint before = 0;
-        // Loads together, which on a GPU wait for each other else.
+        // Loads several keys together; on a GPU the loads would otherwise wait for each other.
         __attribute__((opencl_unroll_hint(DRAPE_TOGETHER)))
         for (uint j = first; j < last && !sorted; ++j) before += keys[j] < key;
         copyHit(contacts + DRAPE_CONTACT_HEAD + (sorted ? i : first + before), hit, parts);

@@ -5,9 +5,9 @@
 // Work-items of a group (kFeatureGroupGpu in narrow_phase.cpp).
 #define DRAPE_FEATURE_GROUP 256
 
-// Shares out to a group's work-items as many tests as they are, from `first` on, so that those of one kind are next to
-// each other: lanes of one kind wait for those of another. Returns this work-item's test, `count` where it has none. By
-// all of the group together. The next turn's writes need no barrier: it clears `kinds` after everyone has passed the
+// Assigns a group's work-items as many tests, from `first` on, so that tests of one kind are adjacent: lanes of
+// different kinds would wait for each other. Returns this work-item's test, or `count` if it has none. The whole
+// group calls it together. The next turn's writes need no barrier: it clears `kinds` after everyone has passed the
 // last one here, and writes `order` after two of its own.
 static uint testByKind(__global const FeatureTest* tests, const uint first, const uint count, __local uint* kinds,
                        __local ushort* order)
@@ -67,8 +67,9 @@ static KindShare kindShare(const uint kind)
     return share;
 }
 
-// A work-item takes every stride-th of the tests that narrowPhaseFeature left to the continuous test and lists their hits,
-// unless there are more than mostSwept. None of these is a node's: its way crosses a face that rests in closed form.
+// Runs every stride-th of the tests that narrowPhaseFeature left to the continuous test, per work-item, and lists
+// their contacts, unless there are more than mostSwept. None of these is a node's test: a node's path crosses a
+// resting face in closed form.
 __kernel void narrowPhaseSwept(DRAPE_FEATURE_ARGUMENTS, __global const uint* restrict swept, const uint mostSwept)
 {
     DRAPE_FEATURE_VIEWS;

@@ -28,7 +28,7 @@
 typedef char PairsFit[DRAPE_CULL_PAIRS <= 32 && DRAPE_CULL_PAIRS <= DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH ? 1 : -1];
 typedef char PartsFit[DRAPE_EDGE_PARTS + 3u * DRAPE_PARTS <= 32u ? 1 : -1];
 
-// A pair at hand. m_looker: the place of its cloth triangle's.
+// The current pair. m_looker: index of its cloth triangle's cull query.
 typedef struct CullPair
 {
     FeatureTest m_pair;
@@ -212,8 +212,8 @@ static void cullTasks(__local Culler* culler, const PatchFeatures* features, con
     for (uint i = first; i < culler->m_counts[2]; i += stride) cullEdge(culler, features, culler->m_edges[i], list);
 }
 
-// Pairs that a group takes at a time. As long as they suffice for the groups that the device runs together, one wave of
-// them, with as many pairs each; else for as many rounds of all groups as need be.
+// Returns the number of pairs that a group takes at a time. If one wave, the groups that the device runs together,
+// can take all pairs, each group of it takes equally many. Otherwise all groups take as many turns as necessary.
 static uint pairsOfGroup(const uint count, const uint groups, const uint turns)
 {
     const uint wave = max(groups / DRAPE_CULL_WAVES, 1u);

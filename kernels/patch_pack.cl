@@ -20,7 +20,7 @@ static void packVec3(__global float* restrict out, const uint first, const Vec3 
     out[(first + 2) * DRAPE_PATCH_WIDTH] = v.z;
 }
 
-// The obstacles' triangles where they are.
+// The obstacles' triangles at their positions.
 typedef struct ObstacleFaces
 {
     __global const Triangle* m_triangles;
@@ -126,7 +126,7 @@ static void wideStore(__global float* restrict wideNodes, const uint child, cons
     }
 }
 
-// The triangles of a patch, those of them that are there.
+// The triangles of a patch, without empty lanes.
 typedef struct PatchFaces
 {
     __global const uint* m_owners;
@@ -166,9 +166,10 @@ static void growVolume(Dop* dop, const Dop* other)
     }
 }
 
-// A work-item is a child place of the wide tree's lowest level, of those from first up to last: a patch, or none from
-// patchCount on. Writes what the tree holds of it, on a CPU in volumes side by side too, and its size, m. The volume is grown
-// by a share of the size, which covers the directions of contacts that are rounding noise (see feature_cull.h).
+// Packs a child position of the wide tree's lowest level, from first up to last, per work-item: a patch, or none from
+// patchCount on. Writes the tree's data of the patch, on a CPU also as adjacent volumes, and its size, m. The volume
+// is grown by a share of the size, which covers the directions of contacts that are rounding noise (see
+// feature_cull.h).
 __kernel void patchVolumes(__global const uint* restrict faceOwners, const uint patchCount, const uint first, const uint last,
                            __global const Triangle* restrict triangles, __global const float* restrict positions,
                            __global const NormalCone* restrict vertexCones, __global const NormalCone* restrict edgeCones,

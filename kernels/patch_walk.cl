@@ -15,7 +15,7 @@ typedef struct Walkers
     uint m_found[DRAPE_WALK_FOUND];
     uint m_foundCount;
     CullVolume m_volumes[DRAPE_PATCH_WIDTH];  // of a packet's triangles, empty where one cannot come near the obstacle
-    CullVolume m_joined;                      // of all of them, or of the one triangle
+    CullVolume m_joined;  // of all the packet's triangles, or of the single triangle
 } Walkers;
 
 // A walk over the obstacles that rest, or over one that moves.
@@ -131,7 +131,7 @@ static void joinVolumes(__local Walkers* walkers)
     *(ofRadii ? &joined->m_radius : joined->m_volume.m_high + lane) = most;
 }
 
-// Stores a volume's interval in one direction, empty where the triangle cannot come near the obstacle.
+// Stores a volume's interval in one direction, empty if the triangle cannot come near the obstacle.
 static void storeInterval(__local CullVolume* volume, const CullCorners* corners, const int near, const uint direction)
 {
     float low = INFINITY, high = -INFINITY;

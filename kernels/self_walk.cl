@@ -128,7 +128,7 @@ typedef struct NearSide
     NearFaces m_faces;
     NearVertices m_vertices;
     NearEdges m_edges;
-    uint m_near;  // whether a face is
+    uint m_near;  // true if a face is near
 } NearSide;
 
 typedef struct SelfCuller
@@ -257,7 +257,7 @@ static void gatherSide(__local NearSide* side, const SelfCloth* cloth, const Sel
     }
 }
 
-// Notes a pair whose boxes overlap; where there is no room left it is tried at once.
+// Notes a pair whose boxes overlap, or tests it at once if there is no room.
 static void noteNear(__local SelfCuller* culler, const SelfCloth* cloth, const uint a, const uint b, const uint kind,
                      const TestList* list)
 {
@@ -311,7 +311,7 @@ static void crossEdges(__local SelfCuller* culler, const SelfCloth* cloth, __loc
     }
 }
 
-// Notes the pairs of features of two patches, of one if they are the same, whose boxes overlap.
+// Notes the feature pairs of two patches, or of one with itself, whose boxes overlap.
 static void crossPatches(__local SelfCuller* culler, const SelfCloth* cloth, const SelfFeatures* features,
                          const Candidate pair, const TestList* list)
 {

@@ -55,9 +55,8 @@ private:
     struct Upload
     {
         MeshId m_mesh;
-        std::size_t m_body;  // index in m_bodies
-        const btVector3*
-            m_starts;  // where they start, by node; null: where Bullet has them, and their paths are recorded
+        std::size_t m_body;         // index in m_bodies
+        const btVector3* m_starts;  // start positions by node; null: Bullet's own, and their paths are recorded
     };
 
     void addPair(const PairNote& note);

@@ -36,7 +36,7 @@ void limitSpeeds(btSoftBody& body, bool leftOut)
     for (int i = 0; i < body.m_nodes.size(); ++i)
     {
         btSoftBody::Node& node = body.m_nodes[i];
-        if (!(movableInverseMass(node) > 0)) continue;  // it goes where the app takes it
+        if (!(movableInverseMass(node) > 0)) continue;  // the app moves it
         const btScalar speed = (node.m_v - common).length();
         if (speed > kMostTangledSpeed) node.m_v = common + (node.m_v - common) * (kMostTangledSpeed / speed);
     }

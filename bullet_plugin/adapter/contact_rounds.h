@@ -79,7 +79,7 @@ private:
     unsigned m_stage = 0;                             // current stage
 };
 
-// Sweeps over several bodies at once. The team's threads share them where that is worth waking them.
+// Sweeps over several bodies at once. The team's threads share them if waking the threads pays.
 class RoundsTeam
 {
 public:

@@ -28,7 +28,7 @@ struct DeformedPair
 {
     MeshId m_mesh = kNoMesh;           // of the cloth, for this obstacle alone
     std::vector<btVector3> m_starts;   // by node, m: what the pipeline takes for the start
-    std::vector<btVector3> m_carried;  // where the obstacle's whole motion carries it
+    std::vector<btVector3> m_carried;  // position to which the obstacle's whole motion carries it
     std::uint64_t m_lastStep = 0;
 };
 

@@ -173,7 +173,7 @@ MeshProbe* Diagnosis::probeOf(const btCollisionShape& shape)
     return probe.get();
 }
 
-// Checks the two at their present places, where the next step begins.
+// Checks the two at their current positions, where the next step begins.
 void Diagnosis::addIntersections(const btSoftBody& cloth, const btCollisionObject& object,
                                  const btCollisionShape& shape, const btTransform& pose)
 {

@@ -32,7 +32,7 @@ public:
     // Adds a contact of the caller's own for one node of a body, which resolve() gives back as it is.
     Contact addOwn(const StepContact& contact);
     void set(const Pipeline& pipeline, const ContactList& contacts);
-    // list() stays as it is now until clear(), whatever is found later.
+    // Keeps list() as it is now until clear(), whatever is found later.
     void keepList();
 
     // The contact's places and gaps along the paths of the body's nodes.

@@ -11,15 +11,15 @@ namespace drape
 {
 namespace
 {
-// Faces whose indices are compared in one step. Every change that Bullet's own functions make (appendFace, cutLink,
-// refine) alters a count or an array and is seen at once; other nodes for a face that stays where it is, as
-// randomizeConstraints gives, are seen within faces / 32768 steps.
+// Faces whose indices are compared per step. Every change by Bullet's own functions (appendFace, cutLink, refine)
+// alters a count or an array and is detected at once. A face that gets other nodes in place, as from
+// randomizeConstraints, is detected within faces / 32768 steps.
 constexpr int kFacesPerCheck = 32768;
 
 // Share of a mesh's size that vertices may move in a step: what moves farther is another pose that the app put there.
 constexpr float kMostMotion = 0.5f;
 
-// Nodes that a thread looks at in one go: less is not worth waking one.
+// Nodes that a thread checks per turn; fewer do not justify waking one.
 constexpr std::size_t kNodesPerJob = 4096;
 
 // Turns each triangle with a foreign node into one that repeats an index, which the pipeline ignores, so that the

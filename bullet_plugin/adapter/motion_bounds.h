@@ -32,9 +32,9 @@ struct StepObstacle
     bool isActive() const { return m_motion.moves() || m_change > 0; }
 };
 
-// Lists the obstacles of the body's world that move or change in this step, and those that rest where `resting` is
-// true. Observes the kinematic ones that rest in either case. Children of compounds and meshes that move are not asked
-// whether they change. Empty where the body's world info names no broad phase.
+// Lists the obstacles of the body's world that move or change in this step, and the resting ones if `resting` is
+// true. Observes kinematic obstacles in either case, also resting ones. Does not check children of compounds and
+// moving meshes for changes. Empty if the body's world info names no broad phase.
 std::vector<StepObstacle> stepObstacles(const PluginState& state, const btSoftBody& body, KinematicMotions& motions,
                                         bool resting);
 

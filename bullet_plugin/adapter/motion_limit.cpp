@@ -40,7 +40,7 @@ btVector3 shiftToPath(const btVector3& start, const btVector3& end, btScalar sta
     return off * (radius / distance - 1);
 }
 
-// Brings a node back in the same way. Returns whether it was moved.
+// Brings a node back to the path in the same way. Returns whether it was moved.
 bool bringBack(btSoftBody::Node& node, const btVector3& start, const btVector3& end, btScalar startRadius,
                btScalar endRadius, btScalar velocityScale)
 {

@@ -28,7 +28,7 @@ constexpr btScalar kMostStartShare = btScalar(0.8);
 class MotionLimit
 {
 public:
-    // Forgets the obstacles; what memory it has stays.
+    // Forgets the obstacles; memory is kept.
     void clear();
     // Adds the box of an obstacle of one of the body's pairs, the pair's thickness, and the activation as a share of
     // it. Nodes are free if everything that their faces can pass between the predicted and the solved positions
@@ -41,9 +41,9 @@ public:
     // contacts yet. The faces refer to the same nodes, and must stay unchanged until the last apply() or
     // applyToOthers().
     void startRecord(const ClothFaces& faces);
-    // Some of them; others may be recorded by another thread meanwhile.
+    // Records some of the nodes; another thread may record others meanwhile.
     void recordNodes(const btSoftBody& body, std::size_t first, std::size_t count);
-    // Records only where nodes go now. For the same step as recordNodes().
+    // Records the nodes' current ends alone, for the same step as recordNodes().
     void recordEnds(const btSoftBody& body, std::size_t first, std::size_t count);
     // Calls startRecord() and records all nodes.
     void record(const btSoftBody& body, const ClothFaces& faces);

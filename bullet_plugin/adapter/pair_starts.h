@@ -56,7 +56,7 @@ public:
 private:
     struct Guard
     {
-        std::uint64_t m_clothRevision = 0, m_obstacleRevision = 0;  // as they were checked last
+        std::uint64_t m_clothRevision = 0, m_obstacleRevision = 0;  // at the last check
         std::uint64_t m_intersections = 0;                          // pairs of triangles; 0: guarded
         std::uint64_t m_lastStep = 0;
         std::uint64_t m_calmUntil = 0;  // step up to which the cloth counts as tangled shortly before
@@ -116,7 +116,7 @@ private:
     std::vector<Vec3> m_places;  // by node, in the frame of the obstacle's positions, at the step's start
     std::vector<MeetingFace> m_meeting;
     std::vector<int> m_regions;          // by node: the first node that is reached over faces that meet nothing
-    std::vector<unsigned char> m_wrong;  // likewise: on the wrong side
+    std::vector<unsigned char> m_wrong;  // by node: on the wrong side
     bool m_insideIsRight = false;
 };
 }  // namespace drape

@@ -38,7 +38,7 @@ constexpr int kCalmSteps = 30;
 constexpr int kRowsDrawn = 3;
 constexpr btScalar kDrawnDepth = btScalar(0.1);
 
-// Nodes from which on their nearest places are worth waking threads for.
+// Minimum nodes for waking threads to find their nearest surface points.
 constexpr std::size_t kLeastShared = 64;
 
 Vec3 vec3Of(const btVector3& v)
@@ -190,7 +190,7 @@ PairStarts::Row PairStarts::firstRow(const ClothFaces& faces, const MeshProbe& p
     return row;
 }
 
-// The nodes beside a row that are neither kept nor drawn yet. They go the same way.
+// Collects the nodes beside a row that are neither kept nor drawn yet. They move in the same way.
 PairStarts::Row PairStarts::nextRow(const ClothFaces& faces, const Row& row, const Row& drawn, int kept) const
 {
     Row next;

@@ -34,8 +34,9 @@ std::size_t elementsOf(const StepStatistics& step)
            static_cast<std::size_t>(step.m_candidates);
 }
 
-// Ends the body's step where it began, with the velocities that it would have without gravity. For cloth whose contacts
-// are not known: what stands still passes nothing that rests. Takes no memory. contacts: null where none are known.
+// Ends the body's step at its start, with the velocities that it would have without gravity. Used for cloth with
+// unknown contacts: a cloth at rest passes no resting obstacle. Allocates no memory. contacts: null if none are
+// known.
 void holdStill(btSoftBody& body, const BodyContacts* contacts)
 {
     const std::size_t count = static_cast<std::size_t>(body.m_nodes.size());

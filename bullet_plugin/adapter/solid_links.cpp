@@ -31,7 +31,7 @@ int rootOf(std::vector<int>& parents, int node)
     return root;
 }
 
-// A number for a link, of which a sum over many is as good as none other's.
+// Hashes a link, so that a sum over many links is practically unique.
 std::uint64_t mixed(int a, int b)
 {
     std::uint64_t key = std::uint64_t(std::uint32_t(std::min(a, b))) << 32 | std::uint32_t(std::max(a, b));

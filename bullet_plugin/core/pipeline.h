@@ -72,7 +72,7 @@ struct ContactPlane
     float m_weights[3];  // of the face's nodes, sum 1
 };
 
-// Some adjacent nodes of a cloth, and where they are to be written: x y z per node.
+// A range of adjacent nodes of a cloth, and the memory to write them to: x y z per node.
 struct NodeStretch
 {
     std::size_t m_cloth;  // index in the caller's list
@@ -206,8 +206,8 @@ public:
 
     // Resolves a contact of the last finish().
     ContactView view(const Contact& contact) const;
-    // A DRAPE_FACE_VERTEX contact with the face's nodes (m, x y z each, in the view's order; of an edge's two the
-    // second one twice) at other places. False where their direction means nothing: the face touches the vertex, or
+    // Turns a DRAPE_FACE_VERTEX contact to other positions of the face's nodes (m, x y z each, in the view's order;
+    // an edge repeats its second node). Returns false if the direction is undefined: the face touches the vertex, or
     // came past it. O(1).
     static bool planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane);
     // Resolves one of selfContacts().

@@ -20,7 +20,7 @@ constexpr const char* kOutOfMemory = "out of memory";
 // Describes an exception that ended a public function.
 struct CaughtException
 {
-    bool m_isMemory;     // else a fault of Drape's, or of what it calls
+    bool m_isMemory;     // else a fault of Drape or of code that it calls
     const char* m_text;  // valid within the handler
 };
 

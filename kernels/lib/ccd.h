@@ -1,15 +1,9 @@
 // Continuous collision of a vertex with a face and of an edge with an edge: decides whether they come within a
 // separation while all their vertices move linearly over the step, and when first.
 //
-// The question in both cases is where F(t,u,v) of ccd_motion.h is within the separation of zero. A box of (t,u,v) is
-// dropped if the bounds of F over it exclude that. Otherwise it is halved in the direction in which F varies most,
-// and the earlier half comes first. A box that provably contains a zero is a hit, and so is a box of the finest size
-// that cannot be dropped.
-//
-// Method: B. Wang et al., A large-scale benchmark and an inclusion-based algorithm for continuous collision
-// detection, 2021. The bounds are our own, since theirs are not conservative for every frame (see ccdSlack). Views
-// along the directions in which t, u and v separate take an eighth of the boxes that the axes alone need. A guess
-// precedes the search (ccd_guess.h): two boxes prove nearly all meetings of a step, and one box nearly all misses.
+// Input: a motion (ccd_motion.h), separation, tolerances and a limit of boxes. Method: bisection of boxes of (t,u,v),
+// after B. Wang et al., A large-scale benchmark and an inclusion-based algorithm for continuous collision detection,
+// 2021, with bounds of our own. docs/design_notes/ccd.md explains it.
 //
 // Guarantee: a pair that truly comes within the separation is never called apart, and the time is no later than the
 // true one. Pairs that miss each other by less than about 1e-6 of their extent may be called hits. Input that is not
@@ -44,9 +38,9 @@ DRAPE_FUNCTION CcdSettings ccdSettings(float separation, float tolerance, float 
     return settings;
 }
 
-// 1e-6: 0 misses and 157 false hits on the 6,598 published negatives. A step is seldom worth more than 2^-14 of
-// it (1 µs of 1/60 s). Of the 114,540 published hits three take more than 4,096 boxes to be found; 22 is the mean, and
-// 90 for the time.
+// Default settings. A tolerance of 1e-6 gives 0 misses and 157 false hits on the 6,598 published negatives. A step is
+// seldom worth more than 2^-14 of it (1 µs of 1/60 s). Three of the 114,540 published hits take more than 4,096 boxes
+// to be found; the mean is 22, and 90 for the time.
 DRAPE_FUNCTION CcdSettings ccdDefaults(void)
 {
     return ccdSettings(0.0f, 1e-6f, 6.1035156e-5f, 4096u);
@@ -162,9 +156,9 @@ DRAPE_FUNCTION int ccdLook(const CcdMotion* m, const CcdTask* task, const CcdBox
     return axis;
 }
 
-// Depth first, the earlier half first. After a hit only boxes that start earlier by the time tolerance are looked at,
-// so the hit in hand at the end is the earliest to that tolerance. With more boxes than the limit it is not, or is
-// none: then m_boxes says so. The views must be aimed.
+// Searches depth first, the earlier half first. After a hit it tests only boxes that start earlier by the time
+// tolerance, so that the final hit is the earliest to that tolerance. If the search exceeds its limit of boxes, as
+// m_boxes shows, the hit may be missing or later. The views must be aimed.
 DRAPE_FUNCTION CcdResult ccdSearch(CcdMotion* m, const CcdTask* task)
 {
     CcdResult result = {0u, 1.0f, 0.0f, 0.0f, 0u};
@@ -189,7 +183,7 @@ DRAPE_FUNCTION CcdResult ccdSearch(CcdMotion* m, const CcdTask* task)
 }
 
 // Aims the views at the time when the features are in one plane, or at the beginning of a box about it that holds a
-// zero: the result is then a hit unless something precedes it. Returns 0 if nothing can.
+// zero. The result is then a hit unless something precedes it. Returns 0 if nothing can.
 DRAPE_FUNCTION int ccdGuess(CcdMotion* m, const CcdTask* whole, CcdResult* result, CcdBox* aim, CcdBox* guess)
 {
     const int inside = ccdGuessBox(m, whole->m_timeTolerance, aim, guess);

@@ -131,8 +131,8 @@ DRAPE_FUNCTION Vec3 ccdRate(const CcdVectors* v, float place0, float place1)
     return vec3AddScaled(rate, vec3Sub(v->m_g1, v->m_g0), -place1);
 }
 
-// Aims the skew views at what F does in the middle of a box: there each varies with t, u or v alone. What they prove
-// holds everywhere. Directions whose volume is below 1e-5, far above its rounding, count as dependent.
+// Aims the skew views at the derivatives of F in the middle of a box: each view varies with t, u or v alone there.
+// Their proofs hold everywhere. Directions whose volume is below 1e-5, far above its rounding, count as dependent.
 DRAPE_FUNCTION void ccdAim(CcdMotion* m, const CcdBox* box)
 {
     const CcdVectors* v = &m->m_vectors;

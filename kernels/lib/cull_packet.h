@@ -193,7 +193,7 @@ typedef struct NearPatch
     Lanes m_low, m_high;
 } NearPatch;
 
-// low, high, share: what the wide tree holds of the patch. radius, least: the triangle's, see CullVolume.
+// low, high, share: data of the patch in the wide tree. radius, least: the triangle's, see CullVolume.
 DRAPE_FUNCTION NearPatch nearPatch(const Directions* directions, Lanes low, Lanes high, Lanes share, float radius,
                                    float least)
 {

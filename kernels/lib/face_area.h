@@ -44,7 +44,7 @@ DRAPE_FUNCTION float areaLengthOf(Vec3 area)
 typedef struct LongFace
 {
     int m_turn;     // the corner at which the edge begins in the face's order
-    int m_swapped;  // whether the third corner is nearer to the edge's other end
+    int m_swapped;  // true if the third corner is nearer to the edge's other end
     Vec3 m_near;    // m, that end
     Vec3 m_along;   // from there to the edge's far end
     Vec3 m_side;    // from there to the third corner
@@ -122,7 +122,7 @@ DRAPE_FUNCTION FaceArea faceArea(FeatureTriangle f)
 // The best of several points of a face.
 typedef struct NearPoint
 {
-    float m_square;  // of its distance, m²
+    float m_square;  // squared distance, m²
     Vec3 m_weights;
 } NearPoint;
 

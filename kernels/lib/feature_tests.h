@@ -88,7 +88,7 @@ static uint kindOfTest(const FeatureTest feature)
     return test < DRAPE_TEST_FACE ? 0 : test == DRAPE_TEST_FACE ? 1 : 2;
 }
 
-// Tests the item-th feature pair; lists its hit, or in swept that the continuous test must tell.
+// Tests the item-th feature pair. Lists its contact, or the test in `swept` if only the continuous test can decide.
 static void testFeature(__global const FeatureTest* tests, const uint item, ClothView* cloth,
                         const ObstacleView* obstacle, const PackedFeatures* packed,
                         __global const ObstacleMotion* motions, const HitList* list, __global uint* swept,

@@ -19,9 +19,9 @@ DRAPE_FUNCTION float cornersSum(const Vec3* p)
     return (vec3Norm1(p[0]) + vec3Norm1(p[1])) + vec3Norm1(p[2]);
 }
 
-// Puts a valid corner in the place of each that is not valid at the step's start and end (m, three each; may be the
-// same array). Returns the features that are valid, bits as in Triangle::m_owned: the valid corners and the edges
-// between them; without any, the corners stay as they are.
+// Replaces each corner that is invalid at the step's start or end by a valid one (m, three each; may be the same
+// array). Returns the valid features, bits as in Triangle::m_owned: the valid corners and the edges between them.
+// Without a valid corner all stay unchanged.
 DRAPE_FUNCTION DRAPE_UINT replaceInvalidCorners(Vec3* start, Vec3* end)
 {
     // Quick for the usual: a sum that has NaN or something too large in it fails the comparison.

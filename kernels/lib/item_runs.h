@@ -12,7 +12,7 @@
 #ifdef DRAPE_CPU
 typedef struct ItemRuns
 {
-    uint m_item, m_end;  // of its run
+    uint m_item, m_end;  // of the current run
     uint m_run, m_runs;
     uint m_takers;  // of runs, in turn
     uint m_count;

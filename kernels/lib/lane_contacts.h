@@ -1,9 +1,9 @@
 // Computes contacts of as many feature tests of one kind as there are lanes, on a CPU. The results have the same bits
 // as those of node_face_contact.h, face_vertex_contact.h and edge_edge_contact.h.
 //
-// Exceptional lanes stay open, and the caller tests them one by one: thin faces, features that may meet, nodes that
-// passed a face's plane, features that may be out of reach after all, edges that touch or are nearly parallel, and
-// invalid positions. Not for continuous steps, which search every pair for a meeting.
+// Exceptional lanes stay open, and the caller tests them one by one. Exceptions are thin faces, features that may
+// meet, nodes that passed a face's plane, features that may be out of reach after all, touching or nearly parallel
+// edges, and invalid positions. Not for continuous steps, which search every pair for a meeting.
 #ifndef DRAPE_LIB_LANE_CONTACTS_H
 #define DRAPE_LIB_LANE_CONTACTS_H
 

@@ -1,4 +1,4 @@
-// The contacts of pairs of features, by where their positions are: see feature_contact.h for what a contact is.
+// Contacts of feature pairs, from their positions in memory; feature_contact.h defines a contact.
 #ifndef DRAPE_LIB_PAIR_CONTACT_H
 #define DRAPE_LIB_PAIR_CONTACT_H
 
@@ -23,8 +23,8 @@ typedef struct ClothView
     DRAPE_UINT m_nodeCount;
     DRAPE_UINT m_triangleCount;
     DRAPE_UINT m_mode;                            // DRAPE_DISCRETE …
-    DRAPE_UINT* m_searches;                       // as in PairBounds
-    const DRAPE_GLOBAL ObstacleMotion* m_motion;  // of the obstacle at hand; null where it rests
+    DRAPE_UINT* m_searches;  // see PairBounds
+    const DRAPE_GLOBAL ObstacleMotion* m_motion;  // of the current obstacle; null where it rests
 } ClothView;
 
 typedef struct ObstacleView

@@ -51,13 +51,13 @@ typedef struct PatchTree
         wideNodes, levels, levelCount, patches \
     }
 
-// motion: 0 for none, else 1 + its place.
+// motion: 0 for none, else 1 + its index.
 static __global const ObstacleMotion* motionOf(const StepCloths* cloths, const uint motion)
 {
     return motion == 0 ? 0 : cloths->m_motions + (motion - 1);
 }
 
-// The pair's thickness, m; negative where it is not tested.
+// Returns the pair's thickness, m; negative for an untested pair.
 static float thicknessWith(const StepCloths* cloths, const uint cloth, const uint mesh)
 {
     return cloths->m_thickness[cloths->m_triangles[cloth].m_mesh * cloths->m_obstacleMeshes + mesh];

@@ -15,7 +15,7 @@ DRAPE_NAMESPACE_BEGIN
 // Pairs that a traversal returns.
 #define DRAPE_WALK_OTHER 0u       // with every leaf of another mesh
 #define DRAPE_WALK_SELF 1u        // with later leaves of the same mesh
-#define DRAPE_WALK_SELF_APART 2u  // the same, without triangles that share a vertex
+#define DRAPE_WALK_SELF_APART 2u  // later leaves of the same mesh, without triangles that share a vertex
 
 // One side of a walk. Leaves lie first among the nodes, one triangle each, in their order (see bvh_layout.h).
 typedef struct WalkSide

@@ -50,7 +50,7 @@ DRAPE_FUNCTION int boxesMeet(const FeatureBox* a, const FeatureBox* b)
     return meet;
 }
 
-// Grows an interval along one direction to hold a node's place; as dopAddPoint has it.
+// Grows an interval along one direction to contain a node's position, like dopAddPoint.
 DRAPE_FUNCTION void growInterval(Vec3 p, float radius, int direction, float* low, float* high)
 {
     const float v = dopProject(p, direction);

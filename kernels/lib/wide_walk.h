@@ -33,7 +33,7 @@ static uint entryIndex(const uint entry)
     return entry & ((1u << DRAPE_LEVEL_SHIFT) - 1u);
 }
 
-// Puts the root on the stack, or its children where they are few. Returns how many.
+// Puts the root on the stack, or its children if they are few. Returns the number of entries.
 static uint beginWalk(__local uint* stack, __global const uint* levels, const uint top)
 {
     const uint children = top > 1 ? levels[top - 1] - levels[top - 2] : 0;

@@ -89,7 +89,7 @@ typedef struct StepCounters
     DRAPE_UINT m_patchPairs;  // of cloth triangles and patches, where they are listed
     DRAPE_UINT m_selfPairs;   // of patches of cloths with themselves, where they are listed
     DRAPE_UINT m_selfTests;   // pairs of features of cloths with themselves
-    DRAPE_UINT m_selfSwept;   // of these, that the continuous test decided
+    DRAPE_UINT m_selfSwept;  // of m_selfTests, those that the continuous test decided
     DRAPE_UINT m_visits;  // volume tests of the broad phase; only in programs built with DRAPE_COUNT_VISITS
 } StepCounters;
 

@@ -58,7 +58,7 @@ typedef struct FeatureTest
     DRAPE_UINT m_cloth;
     DRAPE_UINT m_lane;
     float m_reach;        // m
-    DRAPE_UINT m_motion;  // 1 + place of the obstacle's motion in the step's list; 0 where it rests
+    DRAPE_UINT m_motion;  // 1 + index of the obstacle's motion in the step's list; 0 where it rests
 } FeatureTest;
 #define DRAPE_TEST_SHIFT 29
 #define DRAPE_TEST_NODE 0u

@@ -17,7 +17,7 @@ public:
 
     // New obstacles from that slot on, which must be packed next, even where none came.
     void setTopology(const MeshPool& obstacles, std::size_t firstSlot);
-    // Packs the features of those obstacles where the view has them.
+    // Packs the features of those obstacles at the view's positions.
     void pack(SlotRange slots, const ObstacleView& obstacle);
 
     // Lists the step's feature tests, and counts them and invalid nodes. limit: of tests; with more the list is not

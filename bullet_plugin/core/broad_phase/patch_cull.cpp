@@ -83,7 +83,7 @@ void PatchCullStage::setTopology(Device& device, const MeshPool& obstacles, std:
     m_vertexIds.extend(device, m_layout.m_vertexOwners.size(), vertices);
     m_edgeIds.extend(device, m_layout.m_edgeOwners.size(), edges);
     m_sizes.extend(device, m_layout.m_patches.size(), patches);
-    // A vector of lanes is loaded from it, of which some lie behind the last patch's.
+    // A vector of lanes is loaded from it; some of them lie behind the last patch's.
     const std::size_t volumesNow = m_layout.m_patches.size() * DRAPE_WIDE_NODE_FLOATS + lanes;
     if (!device.isGpu())
         m_patchVolumes.extend(device, volumesNow, volumes);

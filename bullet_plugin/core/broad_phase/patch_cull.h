@@ -31,7 +31,7 @@ public:
     // enqueueing.
     void pack(Device& device, SlotRange slots, Buffer<Triangle>& triangles, Buffer<float>& positions,
               Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones);
-    // Gives back what only pack() reads; it brings that again when it is called.
+    // Releases data that only pack() reads; pack() uploads it again.
     void releasePacking();
 
     // Data of the cloths and pairs that a step reads.

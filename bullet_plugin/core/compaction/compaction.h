@@ -37,7 +37,7 @@ public:
     // Room for a list of hits and as many contacts.
     void reserveHits(Device& device, std::size_t count);
     std::size_t hitCapacity() const { return m_hits.capacity(); }
-    // Gives back the memory of both; hits are to be reserved again.
+    // Releases the memory of both lists; reserve it again before use.
     void giveBackRoom();
 
     // Buffers for the unsorted contacts of the stages before.
@@ -45,7 +45,7 @@ public:
     // Contacts, behind a head of DRAPE_CONTACT_HEAD elements that holds the step's counters.
     Buffer<Contact>& contacts() { return m_contacts; }
 
-    // Returns after enqueueing. reduction: null where no contact is to be left out.
+    // Returns after enqueueing. reduction: null to keep every contact.
     void enqueue(Device& device, StepTally tally, const ReductionBuffers* reduction = nullptr);
 
 private:

@@ -28,7 +28,7 @@ public:
 
     std::size_t slotCount() const { return m_slots; }
     bool few() const { return m_slots <= kFewSlots; }
-    // Returns after enqueueing. The counter of crowded slots, those with more than `ranked` hits, counts on.
+    // Returns after enqueueing. Increments the counter of crowded slots, which have more than `ranked` contacts.
     void enqueue(Device& device, Buffer<cl_uint>& slotCounts, Buffer<cl_uint>& slotFirsts, cl_uint ranked,
                  Buffer<StepCounters>& counters);
 

@@ -14,7 +14,7 @@ constexpr const char* kPoclPlatform = "Portable Computing Language";
 // Does the same as deviceInfos(), and sets whyNone to the reason if there is no device.
 std::vector<DeviceInfo> deviceInfos(std::string& whyNone);
 
-// Folder in which PoCL keeps its kernels: POCL_CACHE_DIR, else one in XDG_CACHE_HOME, else in ~/.cache.
+// Returns PoCL's kernel cache: POCL_CACHE_DIR, else a folder in XDG_CACHE_HOME, else in ~/.cache.
 std::string poclCacheFolder();
 
 // Returns whether files can be created in the folder, or in the existing folder that would contain it.

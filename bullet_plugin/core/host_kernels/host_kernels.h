@@ -117,7 +117,7 @@ template <class Features>
 using HitKernel = void (*)(std::uint32_t item, std::uint32_t items, const Features& features, HostHits hits,
                            std::uint32_t* swept, StepCounters* counters);
 
-// A cull's or a packing's item is a patch, a packing's also a place behind the last.
+// Items of a cull or a packing are patches; a packing also has the positions behind the last.
 struct HostSelfKernels
 {
     void (*m_pack)(std::uint32_t item, const ClothView& cloth, const SelfRadii& radii, const SelfPatches& patches,
@@ -128,7 +128,7 @@ struct HostSelfKernels
     HitKernel<HostSelfFeatures> m_findSwept;
 };
 
-// first, last: the lanes to pack, or the wide tree's places, all of them in this call.
+// first, last: the lanes to pack, or the wide tree's positions; one call takes all of them.
 struct HostKernels
 {
     const char* m_instructions;

@@ -1,5 +1,5 @@
-// Words of OpenCL C in C++, for kernels of a CPU that threads run an item at a time: those whose work-items need no
-// other's, in groups of one. Their text is included behind this in a namespace of its own.
+// OpenCL C's words in C++, for CPU kernels that threads run an item at a time: kernels with independent work-items,
+// in groups of one. Their text is included after this in a namespace of its own.
 #pragma once
 
 #include <climits>

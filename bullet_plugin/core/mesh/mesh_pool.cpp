@@ -9,7 +9,7 @@ namespace drape
 {
 namespace
 {
-// Vacant slots that are kept whatever they hold: each costs a place in every table of meshes.
+// Vacant slots that are always kept, whatever their size: each costs an entry in every table of meshes.
 constexpr std::size_t kVacantKept = 64;
 }  // namespace
 

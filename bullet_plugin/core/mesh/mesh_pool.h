@@ -30,7 +30,7 @@ struct PooledMesh
     MeshBox m_box = {};         // m, of the positions, obstacles only
     float m_longestEdge = 0;    // m, obstacles only
     ObstaclePlacing m_placing;  // obstacles only
-    bool m_placedAnew = false;  // obstacles only: new, or given other positions or a place, since the last step
+    bool m_placedAnew = false;  // obstacles only: new, or with new positions or pose, since the last step
     std::uint32_t m_given = 0;  // obstacles only: when its positions were given anew, by Scene::m_obstacleMotion
     std::vector<std::uint32_t> m_order;  // leaf order, local triangles
     std::uint32_t m_firstVertex = 0;
@@ -49,7 +49,7 @@ struct SlotRange
 class MeshPool
 {
 public:
-    // Ids must rise. Slots of the others stay until update().
+    // Adds a mesh; ids must rise. Slots of the other meshes stay until update().
     void add(PooledMesh mesh);
     // Returns false when the id is not of this pool. So do they here.
     bool remove(MeshId id);
@@ -106,7 +106,7 @@ private:
     std::vector<std::uint32_t> m_order;
     std::vector<MeshFirsts> m_firsts;
     std::size_t m_vertexCount = 0;
-    std::size_t m_triangleCount = 0;  // of all slots
+    std::size_t m_triangleCount = 0;  // in all slots
     std::size_t m_faceCount = 0;      // of meshes that are there
     std::size_t m_vacantTriangles = 0;
     std::size_t m_vacantCount = 0;

@@ -31,7 +31,7 @@ EdgeTriangles trianglesOfEdges(const Topology& topology)
     return sides;
 }
 
-// Triangles of the leaf order that are looked at where a patch has no neighbours left.
+// Triangles of the leaf order that are examined when a patch has no neighbours left.
 constexpr std::size_t kAhead = 64;
 
 Vec3 middleOf(const Triangle& triangle, const float* positions)

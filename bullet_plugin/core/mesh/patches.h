@@ -41,7 +41,7 @@ std::vector<std::uint32_t> clusteredOrder(const PooledMesh& mesh, const float* p
 // Joined triangles of all of the pool's meshes in that order; those before slot `first` are there.
 void clusterMeshes(const MeshPool& pool, std::size_t first, std::uint32_t width, std::vector<std::uint32_t>& order);
 
-// Leaves the patches of the first `slots` meshes; levels are not those of what is left.
+// Keeps the patches of the first `slots` meshes; does not update the levels.
 void keepPatches(Patches& patches, std::size_t slots, std::uint32_t width);
 // Adds the patches of the pool's next mesh. positions: as above. Does not update the levels.
 void appendPatches(Patches& patches, const MeshPool& pool, std::size_t slot, const float* positions,

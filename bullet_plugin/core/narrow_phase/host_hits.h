@@ -52,7 +52,7 @@ public:
         return fillGrowing(m_hits, limits.m_hits, fill);
     }
 
-    // Puts that many hits, all that were found, behind the contacts that there are.
+    // Appends the `count` unsorted contacts, which are all that were found, to the existing ones.
     void order(std::size_t count, std::vector<Contact>& contacts, ThreadTeam& threads)
     {
         orderHits(m_hits.data(), count, m_slotCount, contacts, threads);

@@ -21,7 +21,7 @@ namespace drape
 class DeviceBackend
 {
 public:
-    // Builds the kernels and runs each once. On failure device().failed() tells and the error holds the log.
+    // Builds the kernels and runs each once. On failure device().failed() is true and the error holds the log.
     DeviceBackend(std::unique_ptr<Device> device, const Settings& settings);
     ~DeviceBackend();
 
@@ -127,7 +127,7 @@ private:
     Buffer<float> m_thickness{"pairs of meshes"}, m_tube{"pairs of meshes"};
     Buffer<Edge> m_clothEdges{"cloth edges"};
     Buffer<ObstacleMotion> m_motions{"obstacle places"};
-    std::vector<cl_uint> m_clustered;  // as m_cloth.m_order
+    std::vector<cl_uint> m_clustered;  // order, like m_cloth.m_order
     std::vector<ObstacleMotion> m_sentMotions;
     Buffer<Candidate> m_candidates{"step candidates"};
     // Counters of a step and the next, alternating; see StepTally.

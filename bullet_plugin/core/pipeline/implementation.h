@@ -60,7 +60,7 @@ struct Pipeline::Implementation
     std::unique_ptr<DeviceBackend> m_deviceBackend;
     std::unique_ptr<HostBackend> m_hostBackend;
     std::vector<NamedPair> m_pairs;
-    std::vector<PairSlots> m_pairSlots;  // of those
+    std::vector<PairSlots> m_pairSlots;  // slots of the named pairs
     std::vector<MeshId> m_selfCloths;    // named for the coming step
     StepPairs m_stepPairs;
     std::vector<bool> m_paired;  // per obstacle slot, with any cloth in the step
@@ -70,7 +70,7 @@ struct Pipeline::Implementation
     SideHierarchy m_clothHierarchy, m_obstacleHierarchy;
     TreeWatch m_treeWatch;
     BackendChoice m_choice;               // active where cost decides
-    std::vector<NamedPair> m_notedPairs;  // those that m_choice has taken in last
+    std::vector<NamedPair> m_notedPairs;  // pairs that m_choice knows
     std::vector<MeshId> m_notedSelf;
     DeviceInfo m_openClDevice;
     std::size_t m_deviceIndex = 0;  // into deviceInfos()

@@ -9,12 +9,12 @@ namespace drape
 // Seconds of all cores together since the system started.
 struct CoreTimes
 {
-    double m_busy = 0;  // with what a hypervisor gave to others
+    double m_busy = 0;  // including the time that a hypervisor gave to others
     double m_all = 0;
     unsigned m_cores = 0;
 };
 
-// Reads /proc/stat. Returns false, with nothing changed, where it is not as expected.
+// Reads /proc/stat. Returns false, with nothing changed, if its format is unexpected.
 bool readCoreTimes(std::istream& stat, double ticksPerSecond, CoreTimes& times);
 
 // Returns whether other processes took so much time between two samples that `threads` threads did not have a core

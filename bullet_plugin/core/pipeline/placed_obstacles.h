@@ -36,7 +36,7 @@ private:
 
     Kernel m_place;
     ObstacleChanges m_changes;
-    bool m_anyPosed = false;  // as the scene at the last update
+    bool m_anyPosed = false;  // at the last update
     Buffer<float> m_positions{"obstacle positions"};
     Buffer<NormalCone> m_vertexCones{"obstacle cones"}, m_edgeCones{"obstacle cones"};
     // Data in the obstacles' own frames; only if one has a pose.

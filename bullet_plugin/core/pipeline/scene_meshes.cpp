@@ -72,7 +72,7 @@ void Pipeline::Implementation::joinCloths(std::size_t first)
     const std::size_t coordinates = 3 * cloths.vertexCount();
     if (m_scene.m_clothNodes.room() < coordinates)
     {
-        // Their contents are lost; a quarter more where it is not the first time.
+        // The contents are lost. Adds a quarter of spare room unless this is the first time.
         const std::size_t room = coordinates + (first > 0 ? coordinates / 4 : 0);
         m_scene.m_clothNodes.reserve(device(), room);
         first = 0;

@@ -29,7 +29,7 @@ struct Surface
 // reach: m, the distance up to which the pair's features are looked at. At most every pair there is; finite.
 double expectedPairs(const Surface& cloth, const Surface& obstacle, double reach);
 
-// A pair of triangles of a cloth with itself counts for so many: as long the host takes for one that is expected, next
-// to one with an obstacle, where the cloth lies flat. Where it is folded in four it takes fifty times as long.
+// Weight of a triangle pair of a cloth with itself: the host's time for an expected pair relative to a pair with an
+// obstacle, for a flat cloth. A cloth folded in four takes fifty times as long.
 constexpr double kSelfPairWeight = 6;
 }  // namespace drape

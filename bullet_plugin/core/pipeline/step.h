@@ -51,7 +51,7 @@ struct Scene
     BvhLayout m_clothLayout;
     BvhLayout m_obstacleLayout;
     ClothNodes m_clothNodes;
-    bool m_anySelf = false;                  // whether a cloth collides with itself
+    bool m_anySelf = false;                  // true if a cloth collides with itself
     std::vector<float> m_clothRest;          // m, joined, at rest; empty where none does
     std::vector<float> m_obstaclePositions;  // m, joined, as given
     std::vector<NormalCone> m_vertexCones;   // joined, as the positions
@@ -94,7 +94,7 @@ struct StepLimits
 struct StepPairs
 {
     std::vector<float> m_thickness;  // m, cloth slots × obstacle slots, -1 where there is no pair
-    std::vector<float> m_tube;       // m, likewise; -1 where no contact is left out
+    std::vector<float> m_tube;       // m; -1 to keep every contact
     bool m_anyTube = false;
     std::vector<float> m_clothRadius;       // m, per cloth slot: the largest reach of its pairs, -1 without one
     std::vector<ObstacleMotion> m_motions;  // of the obstacles that have a pair and move, in the order of slots
@@ -135,7 +135,7 @@ struct StepResult
     // More candidates or contacts than the limits allow: nothing else of the result counts then but m_contactDemand.
     bool m_overLimit = false;
     bool m_overTests = false;           // these are the limits of StepPairs
-    std::uint64_t m_contactDemand = 0;  // where contacts were too many: how many; 0 where candidates were
+    std::uint64_t m_contactDemand = 0;  // number of contacts if they exceeded the limit; 0 if candidates did
     std::size_t m_candidates = 0;
     std::size_t m_volumeTests = 0;
     std::size_t m_sweptTests = 0;
@@ -145,7 +145,7 @@ struct StepResult
     std::size_t m_invalidNodes = 0;
     std::size_t m_retries = 0;
     std::size_t m_intersectionCount = 0;
-    double m_treeCost = 0;                                // where it was asked for, see tree_cost.h
+    double m_treeCost = 0;                                // on request, see tree_cost.h
     double m_refitMs = 0, m_broadMs = 0, m_narrowMs = 0;  // on the host back end
 
     // Resets the result; the memory of the host's contacts is kept.

@@ -55,7 +55,7 @@ public:
     bool isInside(Vec3 point) const;
     // The surface's nearest point. The mesh has triangles.
     Vec3 nearest(Vec3 point) const;
-    // A place of the surface: the weights of a triangle's corners, and how far it is, m.
+    // A point of the surface: the weights of a triangle's corners, and its distance, m.
     struct Place
     {
         std::uint32_t m_triangle;

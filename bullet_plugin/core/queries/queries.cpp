@@ -32,7 +32,7 @@ struct Queries::Implementation
     bool meshMotion(const MeshDescription& description, const float* end, const CcdSettings& settings,
                     MeshMotion& found);
 
-    // Returns what a public function's work does; false, with the error filled, where it throws.
+    // Returns the result of a public function's work; false, with the error filled, if it throws.
     template <class Work>
     bool answer(const char* call, const Work& work)
     {

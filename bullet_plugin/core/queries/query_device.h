@@ -13,7 +13,7 @@ namespace drape
 class QueryDevice
 {
 public:
-    // Builds the kernels. On failure device().failed() tells and the error holds the log.
+    // Builds the kernels. On failure device().failed() is true and the error holds the log.
     QueryDevice(std::unique_ptr<Device> device, const Settings& settings);
 
     Device& device() { return *m_device; }

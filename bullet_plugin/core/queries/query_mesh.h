@@ -16,7 +16,7 @@ struct QueryMesh
     BvhLayout m_layout;
     std::vector<BvhNode> m_nodes;  // volumes empty until the host refits them
     const float* m_start = nullptr;
-    const float* m_end = nullptr;  // the same for a mesh at rest
+    const float* m_end = nullptr;  // equal to the start for a mesh at rest
 
     HostTree tree() const { return {m_nodes, m_layout, m_order, m_topology.m_triangles}; }
     // Volumes grown by the radius.

@@ -52,7 +52,7 @@ struct SelfLimits
     std::uint64_t m_hits = ~std::uint64_t(0);
 };
 
-// Counts are exact, but those of features 0 where the pairs of triangles were too many.
+// Exact counts, except that those of features are 0 if there were too many triangle pairs.
 struct SelfCollisions
 {
     std::uint64_t m_trianglePairs = 0;

@@ -135,8 +135,8 @@ void ThreadTeam::workOn(unsigned thread)
         }
 }
 
-// Claims an item and runs it; false where none is left. What the caller wrote of the job is read after the claim alone:
-// until that item is done the caller does not come to write another job's.
+// Claims an item and runs it; returns false if none is left. The caller's data of the job is read only after the
+// claim: until that item is finished, the caller cannot write another job's.
 bool ThreadTeam::workOnce(Stretch& stretch, bool helps)
 {
     std::uint64_t claim = stretch.m_claim.load(std::memory_order_acquire);
