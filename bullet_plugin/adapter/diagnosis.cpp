@@ -210,12 +210,12 @@ void Diagnosis::addIntersections(const btSoftBody& cloth, const btCollisionObjec
         add(pair + format("%zu pairs of the cloth's faces or links and the mesh's triangles intersect, %zu of %d nodes "
                           "are inside; %s",
                           pairs, inside, cloth.m_nodes.size(),
-                          closed ? "the mesh is closed, so that nodes that are not held are pushed out"
-                                 : "the mesh is open, so that nothing tells which side is right"));
+                          closed ? "the mesh is closed, so that nodes that are not pinned are pushed out"
+                                 : "the mesh is open, so that the right side is unknown"));
     else if (inside == std::size_t(cloth.m_nodes.size()) && inside > 0)
         add(pair +
-            "the cloth is wholly inside of the closed mesh, and stays there unless Plugin::setOneSided says "
-            "that only its front is solid");
+            "the cloth is wholly inside the closed mesh, and stays there unless Plugin::setOneSided declares "
+            "only its front solid");
 }
 }  // namespace
 

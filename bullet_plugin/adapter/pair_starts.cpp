@@ -184,7 +184,7 @@ void PairStarts::tell(const StartingPair& pair, Guard& guard, bool pushed)
         static_cast<const void*>(pair.m_obstacle->key().m_object),
         static_cast<unsigned long long>(guard.m_intersections),
         pushed ? "the mesh is closed, so that the cloth is pushed out"
-               : "the mesh is open, so that nothing tells which side is right, and the cloth stays as it is");
+               : "the mesh is open, so that the right side is unknown, and the cloth stays as it is");
     m_state.log(line);
 }
 

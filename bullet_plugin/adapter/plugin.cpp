@@ -35,7 +35,7 @@ std::string reasonInShape(const PluginState& state, const btSoftBody& cloth, con
         const bool nobodys =
             isMeshShape(compound.getChildShape(i)->getShapeType()) && !stockCanTake(obstacle, childPose);
         return "child " + std::to_string(i) + " of the compound: " + reason +
-               (nobodys ? "; Bullet's own algorithm would take this mesh to be where the compound is, so that it "
+               (nobodys ? "; Bullet's own algorithm would assume this mesh to be where the compound is, so that it "
                           "collides with nothing"
                         : "");
     }

@@ -11,8 +11,7 @@ constexpr std::size_t kSortBlockGpu = 32;  // slots that a group sorts one after
 // Maximum contacts of a slot that a GPU sorts by counting lesser ones, without a following reduction. compactionOrder
 // would count the same in local memory, with one launch more.
 constexpr cl_uint kRankedGpu = 512;
-constexpr cl_uint kRankedReducedGpu =
-    256;  // with a following reduction: DRAPE_HELD of kernels/contact_reduction_hits.cl
+constexpr cl_uint kRankedReducedGpu = 256;  // with a reduction: DRAPE_HELD of kernels/contact_reduction_hits.cl
 
 cl_uint rankedOn(const Device& device, bool reduced)
 {

@@ -171,7 +171,7 @@ const char* measureRung(Pipeline& pipeline, Rung& scene, const std::function<voi
     if (status & kStepDeviceFull) return "it cannot hold the lists of a step";
     const bool same = host.size() == device.size() &&
                       (host.empty() || std::memcmp(host.data(), device.data(), host.size() * sizeof(Contact)) == 0);
-    return same ? nullptr : "its steps are not the host's";
+    return same ? nullptr : "its contacts differ from the host's";
 }
 }  // namespace
 
