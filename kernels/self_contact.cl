@@ -16,7 +16,7 @@ __kernel void selfFeature(DRAPE_SELF_ARGUMENTS, __global uint* restrict swept)
 }
 #endif
 
-// A work-item goes through its part of the tests that selfFeature left to the continuous test and lists their hits.
+// Runs the tests that selfFeature left to the continuous test, each work-item its part, and lists their contacts.
 __kernel void selfSwept(DRAPE_SELF_ARGUMENTS, __global const uint* restrict swept)
 {
     const HitList list = DRAPE_HIT_LIST;

@@ -16,7 +16,8 @@ typedef struct SelfWalker
     uint m_place;
 } SelfWalker;
 
-// Lists the patches kept, where there are `least` of them, by all lanes together. Returns whether the list is within its limit.
+// Lists the kept patches if there are at least `least`; all lanes together. Returns whether the list is within its
+// limit.
 static int listPatches(__local SelfWalker* walker, const uint own, __global Candidate* restrict list, const uint capacity,
                        const uint limit, __global volatile uint* demand, const uint least)
 {
@@ -271,7 +272,8 @@ static void noteNear(__local SelfCuller* culler, const SelfCloth* cloth, const u
     culler->m_nearB[slot] = b | (kind << DRAPE_KIND_SHIFT);
 }
 
-// Nodes of one side against faces of the other: lanes have nodes, and each DRAPE_PATCH_WIDTH of them a share of the faces.
+// Tests nodes of one side against faces of the other: lanes have nodes, and each DRAPE_PATCH_WIDTH of them a share of
+// the faces.
 static void crossNodes(__local SelfCuller* culler, const SelfCloth* cloth, __local const NearVertices* vertices,
                        __local const NearFaces* faces, const TestList* list)
 {

@@ -268,7 +268,7 @@ float CollisionStep::allowanceOf(MeshId cloth) const
     return isApart || body.m_heldTogether || body.m_obstacleJumps ? kMostAllowance : HUGE_VALF;
 }
 
-// Waits for the detection under way and takes its contacts in place of any earlier ones of this step.
+// Waits for the current detection. Its contacts replace any earlier ones of this step.
 void CollisionStep::receiveAll()
 {
     for (BodyContacts& body : m_bodies)

@@ -30,7 +30,7 @@ public:
     // Reports, after finish(), a body without a pair in this step whose nodes are still not finite, as they were when
     // it had one.
     void reportInvalid(const btSoftBody& body);
-    // Last of a step, after the solver's: takes out of velocities what pushes gave, and remembers where nodes are.
+    // Ends a step, after the solver: removes from velocities what pushes gave, and records the nodes' positions.
     void end();
 
     // Restores the state before the first begin().

@@ -16,7 +16,7 @@ namespace
 // randomizeConstraints, is detected within faces / 32768 steps.
 constexpr int kFacesPerCheck = 32768;
 
-// Share of a mesh's size that vertices may move in a step: what moves farther is another pose that the app put there.
+// Share of a mesh's size that vertices may move in a step. Farther motion counts as another pose set by the app.
 constexpr float kMostMotion = 0.5f;
 
 // Nodes that a thread checks per turn; fewer do not justify waking one.

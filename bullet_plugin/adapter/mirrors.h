@@ -80,8 +80,7 @@ public:
     std::uint64_t startRevision() const { return m_startRevision; }
     // Remembers where the nodes are at a step's end.
     void rememberEnds(ThreadTeam& threads);
-    // Lists the nodes whose step starts (m_q) elsewhere than the last one that was remembered ended; all of them where
-    // none was.
+    // Lists the nodes whose step starts (m_q) away from the last recorded end; all nodes if no end was recorded.
     void listJumped(ThreadTeam& threads, std::vector<int>& nodes) const;
     // Returns whether, before a step's motion is predicted, a node was moved from its position after the last step as
     // the map moves it, to within `slack` (m). The body is alive, and the last step was the one before this.

@@ -67,8 +67,8 @@ void PairStarts::listFaces(const StartingPair& pair, const std::vector<int>* nod
     m_faces.erase(std::unique(m_faces.begin(), m_faces.end()), m_faces.end());
 }
 
-// Computes the nodes' places at the step's start in the frame of the obstacle's positions: of all nodes, or of those in
-// m_faces.
+// Computes the nodes' positions at the step's start in the frame of the obstacle's positions: of all nodes, or of
+// those in m_faces.
 void PairStarts::findPlaces(const StartingPair& pair, bool all)
 {
     const btSoftBody& body = *pair.m_cloth->body();

@@ -64,7 +64,7 @@ struct ClothFeature
     std::int32_t m_nodes[3];  // indices in that cloth; -1 where unused
 };
 
-// A contact of a face and a vertex with the cloth's nodes somewhere else: where the two are nearest there.
+// The plane of a face-vertex contact after the cloth's nodes moved, at the points where the two are nearest then.
 struct ContactPlane
 {
     float m_normal[3];   // unit, on the side of the contact's

@@ -136,7 +136,8 @@ DRAPE_FUNCTION LaneMask cullPacketChild(const CullVolumes* cull, const DRAPE_GLO
     return near;
 }
 
-// Directions of the volumes, a lane each. Lanes that are none hold zero, and infinity in m_ignored, which is zero else.
+// Directions of the volumes, one per lane. Unused lanes hold zero, and infinity in m_ignored, which is zero
+// elsewhere.
 typedef struct Directions
 {
     LanesVec3 m_along;

@@ -32,7 +32,7 @@ DRAPE_FUNCTION float triangleExtent(FeatureTriangle f)
     return drapeMax(drapeMax(vec3NormMax(f.m_p[0]), vec3NormMax(f.m_p[1])), vec3NormMax(f.m_p[2]));
 }
 
-// Length of an area vector, m²; 0 where its square is too small for a float to hold it well.
+// Returns the length of an area vector, m²; 0 if its square is too small for a float's full precision.
 DRAPE_FUNCTION float areaLengthOf(Vec3 area)
 {
     const float length = vec3Length(area);

@@ -1,18 +1,12 @@
 // Contacts of single features: a cloth node against an obstacle face, a cloth face against an obstacle vertex, a
 // cloth edge against an obstacle edge. The cloth moves linearly over the step, the obstacle rests.
 //
-// A contact is reported in two cases:
-// - (a) The features met during the step. The normal then points to the side from which the cloth's point there came.
-// - (b) They did not meet, are within reach at the step's end and are locally closest. The direction between them
-//   lies in the obstacle feature's normal cone, and if a vertex is nearest to a face's edge, no neighbouring face is
-//   nearer. The normal then points to the side of the cloth's point at the end, even if it went around the other
-//   feature and through its plane or line.
+// A contact is reported in two cases: (a) the features met during the step, or (b) they did not meet, are within
+// reach at the step's end and are locally closest. The normal points to the side from which the cloth's point came,
+// or to its side at the end if the two did not meet. Pairs are dropped for distance only on proof (provenApart).
 //
-// Condition (b) drops pairs whose neighbours are nearer and whose normals would push sideways. Pairs are dropped for
-// distance only on proof (provenApart).
-//
-// Positions are in a local frame: the caller has subtracted a vertex of the obstacle's triangle. Rounding then scales
-// with the size of the pair and not with its distance from the world's origin.
+// Positions are in a local frame: the caller has subtracted a vertex of the obstacle's triangle.
+// docs/design_notes/contact_geometry.md gives the exact conditions.
 #ifndef DRAPE_LIB_FEATURE_CONTACT_H
 #define DRAPE_LIB_FEATURE_CONTACT_H
 

@@ -78,7 +78,8 @@ DRAPE_FUNCTION int cullNormal(const Vec3* p, Vec3* normal, float* height)
     return !(length > DRAPE_CULL_THIN * longest);
 }
 
-// A triangle's normal as a cone; every direction where it is not sure to a share that the cull's slack covers.
+// Returns a triangle's normal as a cone, or every direction if its error may exceed the share that the cull's slack
+// covers.
 DRAPE_FUNCTION NormalCone faceCone(const Vec3* p)
 {
     Vec3 normal;
@@ -159,7 +160,7 @@ DRAPE_FUNCTION LaneMask cullFaces(const DRAPE_TEAM CullTriangle* cull, CullReach
                   corner.z + (ab.z - ca.z) * (1.0f / 3.0f));
     const Lanes away = lanesDot(offset, offset);
     const Lanes far = around + reach.m_farthest, met = around + reach.m_met;
-    // A direction whose tangent with the normal is the spread goes no farther beside than that share of its length.
+    // A direction whose tangent with the normal equals the spread extends sideways at most that share of its length.
     const Lanes wide = around + reach.m_near * lanesMin(lanesLoad(block, 9), lanesSplat(1.0f));
     const LanesVec3 side = lanesCross(offset, area);
     const LaneMask beside = (lanesDot(side, side) > wide * wide * square) & (away > met * met) &

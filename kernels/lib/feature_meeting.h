@@ -1,13 +1,9 @@
 // Decides whether a cloth feature and an obstacle feature meet during the step.
 //
 // The certified search of ccd.h gives the answer. An automatic step runs it only where simpler tests leave a meeting
-// possible, and a continuous step uses its answer only there, so that both give the same contacts.
-//
-// Two features that meet are, at the step's start and at its end, no further apart than the cloth's feature moves.
-// That distance has a lower bound: the volume that the two span, divided by the corresponding area. Where the edges
-// are nearly parallel, or the vertex is beside the face, planes between the two at the step's end bound it. Also, no
-// plane separates features that meet from the step's start to its end. The plane across the offset at the end
-// separates some 99 % of the features that are near enough for all other tests.
+// possible, and a continuous step uses its answer only there, so that both give the same contacts. The simpler tests
+// bound the distance at the step's start and end, and look for a plane that separates the features.
+// docs/design_notes/contact_geometry.md explains them.
 #ifndef DRAPE_LIB_FEATURE_MEETING_H
 #define DRAPE_LIB_FEATURE_MEETING_H
 

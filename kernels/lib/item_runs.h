@@ -5,7 +5,7 @@
 #ifndef DRAPE_LIB_ITEM_RUNS_H
 #define DRAPE_LIB_ITEM_RUNS_H
 
-// Longest run: what its items read stays in a core's own cache, and runs even out among the cores.
+// Longest run: its items' data stays in a core's own cache, and runs are balanced among the cores.
 #define DRAPE_MOST_RUN 128u
 
 // m_item: the current item; none is left once it reaches the list's length.

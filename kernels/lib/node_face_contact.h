@@ -69,7 +69,7 @@ DRAPE_FUNCTION int nodeFaceContact(Vec3 x0, Vec3 x1, const RestingFace* resting,
     const float s1 = vec3Dot(area, vec3Sub(x1, face.m_p[0]));
     const float before = bounds.m_mode == DRAPE_DISCRETE ? s1 : s0;
     const float side = before < 0.0f ? -1.0f : 1.0f;
-    // A face whose area is too small for a length has no side; what is near is told below.
+    // A face whose area is too small for a length has no side; the tests below find what is near.
     const int passed = areaLength > 0.0f && side * s1 < 0.0f;
     // |s1| / |area| is a lower bound of the distance.
     if (!passed && drapeAbs(s1) > areaLength * bounds.m_reachSlack) return 0;

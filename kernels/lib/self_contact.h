@@ -1,20 +1,14 @@
 // Contacts of a cloth with itself: a node against a face, an edge against an edge, both moving linearly over the
 // step.
 //
-// Candidates are feature pairs of one cloth that share no vertex and whose 18-DOPs over the step, grown by half the
+// Candidates are feature pairs of one cloth that share no vertex and whose volumes over the step, grown by half the
 // reach, overlap (self_collision.h). A candidate is a contact in two cases: (a) the features met during the step, or
-// (b) they did not meet, are within reach at its end and are locally closest. Locally closest means that no face
-// beyond a boundary point is nearer to the node, and that both edges' points are inside. The normal points from the
-// second feature to the side from which the first came, or to its end if the two did not meet. Pairs are dropped for
+// (b) they did not meet, are within reach at its end and are locally closest. The normal points from the second
+// feature to the side from which the first came, or to its end if the two did not meet. Pairs are dropped for
 // distance only on proof (provenApart).
 //
-// A pair's thickness is the cloth's, or half the pair's rest distance if that is less: features that are near each
-// other in the mesh make no contact until the cloth folds there. Features that touch at rest are joined, like
-// features that share a vertex. The two kinds of pairs follow Bridson, Fedkiw and Anderson, Robust treatment of
-// collisions, contact and friction for cloth animation, 2002.
-//
-// Positions are in a frame that moves with the second edge's first end, or with the node. A common motion then makes
-// no difference, and rounding scales with the size of the pair.
+// A pair's thickness is the cloth's, or half the pair's rest distance if that is less.
+// docs/design_notes/contact_geometry.md gives the exact conditions and the frames.
 #ifndef DRAPE_LIB_SELF_CONTACT_H
 #define DRAPE_LIB_SELF_CONTACT_H
 

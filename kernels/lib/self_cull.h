@@ -213,7 +213,7 @@ DRAPE_FUNCTION DRAPE_UINT patchesBelow(DRAPE_UINT level)
     return below;
 }
 
-// Children of a wide node whose volumes overlap a volume; what their contacts can reach is not looked at.
+// Returns the children of a wide node whose volumes overlap a volume; ignores the reach of their contacts.
 DRAPE_FUNCTION LaneMask wideOverlaps(const Dop* volume, const DRAPE_GLOBAL float* node)
 {
     LaneMask near = lanesMaskSplat(1);

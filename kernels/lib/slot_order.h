@@ -4,7 +4,7 @@
 
 #include "../shared/contact.h"
 
-// Members of a slot that a work-group puts in order by counting, in local memory; more are sorted where they are.
+// Maximum members of a slot that a work-group sorts by counting, in local memory; more are sorted in place.
 #define DRAPE_COUNTED 512
 
 // Puts one pair of places in order.

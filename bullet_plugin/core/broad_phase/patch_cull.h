@@ -59,7 +59,7 @@ public:
     // The list of the last step, and room in it.
     Buffer<FeatureTest>& tests() { return m_tests; }
     void reserveTests(Device& device, std::size_t count) { m_tests.reserve(device, count); }
-    // The list of pairs of cloth triangles and patches on a GPU. Where it was too short, other counts are too low.
+    // The list of pairs of cloth triangles and patches on a GPU. If it was too short, other counts are too low.
     Buffer<FeatureTest>& pairs() { return m_pairs; }
     void reservePairs(Device& device, std::size_t count) { m_pairs.reserve(device, count); }
     // Gives back the memory of both lists but for as much as a new stage has. Tests are to be reserved again.

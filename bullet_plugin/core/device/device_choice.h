@@ -23,7 +23,7 @@ struct DeviceChoice
 // The reason of a report where the host took over from a device that failed.
 std::string hostSince(const DeviceInfo& device, const Error& error);
 
-// error is filled when a device was asked for that is not there; its detail lists those that are.
+// Fills error if the requested device is missing; its detail lists the devices found.
 DeviceChoice chooseDevice(const Settings& settings, Error& error);
 
 // Reads the crossover, in triangle pairs, from the settings or else from DRAPE_CROSSOVER; negative if neither sets

@@ -68,14 +68,14 @@ public:
 
     // Joins what came since the last call; the joined arrays are valid after it. Free when nothing did.
     void update();
-    // Another leaf order of the meshes' triangles: local ones by slot, null where it stays. Counts as an update that
-    // changed something.
+    // Sets another leaf order of the meshes' triangles: local orders by slot, null where unchanged. Counts as an
+    // update that changed something.
     void reorder(const std::vector<const std::vector<std::uint32_t>*>& orders);
     // Gives back room that only earlier, larger pools needed. The joined arrays move.
     void giveBackRoom();
     // Counts up with every update that changed something.
     std::uint32_t revision() const { return m_revision; }
-    // The first slot that took its place after that revision; those before are as they were, but for vacancies.
+    // Returns the first slot that changed after that revision; earlier ones are unchanged, except for vacancies.
     std::size_t firstSince(std::uint32_t revision) const;
     // Returns the offsets of a slot's vertices, triangles and edges; for meshCount() their ends.
     MeshFirsts begin(std::size_t slot) const;

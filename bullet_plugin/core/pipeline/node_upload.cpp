@@ -1,4 +1,4 @@
-// Nodes of the coming step: where callers write them, and how they go to a device while others are written.
+// Nodes of the coming step: the memory that callers write, and the transfer to a device while others are written.
 #include <algorithm>
 #include <cassert>
 

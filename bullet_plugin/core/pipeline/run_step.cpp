@@ -109,7 +109,7 @@ void Pipeline::Implementation::leaveOutStretched(const Allowance& allowance)
     m_limitsRaised = true;
 }
 
-// Returns whether the cloth in this slot, one of those taking part, needs more tests in a step of its own.
+// Returns whether the active cloth in this slot exceeds the limits of tests in a step of its own.
 bool Pipeline::Implementation::needsMore(std::size_t slot, const std::vector<std::size_t>& taking, TestLimits limits)
 {
     StepPairs alone = m_stepPairs;

@@ -17,7 +17,7 @@ class HostSelfPatches
 public:
     explicit HostSelfPatches(const HostKernels& kernels = hostKernels()) : m_kernels(&kernels) {}
 
-    // Does what a step does after cloths came or went: makes all patches anew. rest: m, x y z per joined node.
+    // Rebuilds all patches, as a step does after cloths were added or removed. rest: m, x y z per joined node.
     void update(const MeshPool& cloths, const float* rest);
     // Each step, in this order. Lists the pairs of features whose volumes overlap.
     void cull(const SelfStep& step, std::uint64_t limit, ThreadTeam& threads);

@@ -49,7 +49,7 @@ public:
 
     Buffer<FeatureTest>& tests() { return m_tests; }
     void reserveTests(Device& device, std::size_t count);
-    // The list of pairs of patches on a GPU. Where it was too short, other counts are too low.
+    // The list of pairs of patches on a GPU. If it was too short, other counts are too low.
     Buffer<Candidate>& pairs() { return m_pairs; }
     void reservePairs(Device& device, std::size_t count) { m_pairs.reserve(device, count); }
 
