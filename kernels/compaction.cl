@@ -22,7 +22,7 @@ static uint countShare(__global const uint* slotCount, const uint slots, uint* f
     return sum;
 }
 
-// A work-group sums the hits of one block of slots. scratch: one uint per work-item.
+// Sums the contacts of one block of slots per work-group. scratch: one uint per work-item.
 __kernel void compactionCount(__global const uint* restrict slotCount, const uint slots,
                               __global uint* restrict blockCount, __local uint* scratch)
 {

@@ -4,7 +4,7 @@
 #include "lib/self_pairs.h"
 #include "lib/wide_walk.h"
 
-// The cloth at hand, and the step's packed features.
+// The current cloth, and the step's packed features.
 typedef struct SelfCloths
 {
     SelfCloth m_cloth;

@@ -153,8 +153,8 @@ void CollisionStep::leaveOut(std::size_t index)
     m_state.log(line);
 }
 
-// Cloths that collided with nothing in this step, or whose nodes were not all looked at, are checked before they count
-// as guarded again.
+// Marks cloths that collided with nothing in this step, or whose nodes were not all checked: they are checked before
+// they count as guarded again.
 void CollisionStep::markUnguarded()
 {
     std::set<std::size_t> leftOut;  // a body has a mesh for each obstacle that deforms

@@ -7,9 +7,9 @@ namespace drape
 {
 class PluginState;
 
-// Null when Drape handles the pair, else the reason in words. `shape` is the shape that meets the cloth: the object's
-// own, or the child of its compound. Cost: a few comparisons, but of a body without faces a look at its leading links
-// that are bending links.
+// Returns null if Drape handles the pair, else the reason in words. `shape` is the shape that meets the cloth: the
+// object's own, or the child of its compound. Cost: a few comparisons; for a body without faces also a check of its
+// leading links, which are bending links.
 const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
                            const btCollisionShape& shape);
 

@@ -26,8 +26,8 @@ public:
     // Returns the motion of the obstacle's points in the step; null when it rests. The transform stays in place until
     // clear().
     const btTransform* carryOf(MeshId obstacle) const;
-    // Names the places to which an obstacle carries the nodes' starts (see StepContact), for a mesh of a cloth that has
-    // this one obstacle alone. The array stays the caller's.
+    // Sets the positions to which an obstacle carries the nodes' starts (see StepContact), for a mesh of a cloth that
+    // has this one obstacle alone. The caller owns the array.
     void nameStarts(MeshId cloth, const btVector3* carriedStarts) { m_carriedStarts[cloth] = carriedStarts; }
     // Adds a contact of the caller's own for one node of a body, which resolve() gives back as it is.
     Contact addOwn(const StepContact& contact);
@@ -35,7 +35,7 @@ public:
     // Keeps list() as it is now until clear(), whatever is found later.
     void keepList();
 
-    // The contact's places and gaps along the paths of the body's nodes.
+    // Resolves the contact's points and gaps along the paths of the body's nodes.
     StepContact resolve(const btSoftBody& body, const NodePaths& paths, const Contact& contact) const;
     // Resolves a contact with its nodes at other positions, see Pipeline. Only faces at a vertex turn their contacts,
     // and a contact that was met keeps its plane; returns false for all others.

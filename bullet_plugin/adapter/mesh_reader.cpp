@@ -142,7 +142,7 @@ public:
     }
 
     const std::vector<std::int64_t>& indices() const { return m_indices; }
-    // Place of a used one among indices(); negative for a negative index.
+    // Returns the position of a used index among indices(); negative for a negative index.
     std::int32_t place(std::int64_t index) const
     {
         if (index < 0) return -1;

@@ -225,7 +225,7 @@ void ObstacleMirror::deform(Pipeline& pipeline, std::vector<float>& positions, b
     pipeline.moveObstacle(m_id, positions.data());
     ++m_positionRevision;
     m_positions.swap(positions);
-    // A change by a margin at most counts as motion even if the mesh was not looked at in the step before.
+    // A change by a margin at most counts as motion even if the mesh was not checked in the step before.
     const bool isMotion = m_continued || m_mostMotion <= static_cast<float>(marginOf(*m_key.m_shape));
     if (m_before && isMotion && m_mostMotion <= kMostMotion * m_before->size())
         m_deformedStep = m_lastSeen;

@@ -29,8 +29,7 @@
 
 namespace drape
 {
-// An obstacle as Bullet's dispatch sees it: a compound gives one for each child, told apart by the chain of child
-// indices.
+// An obstacle in Bullet's dispatch: a compound gives one for each child, distinguished by the chain of child indices.
 struct ObstacleKey
 {
     const btCollisionObject* m_object;

@@ -84,7 +84,7 @@ struct Way
     Extent m_start, m_end;
 };
 
-// Widens the bounds to the place of the obstacle's that is nearest to the middle of the paths.
+// Widens the bounds to the obstacle's surface point that is nearest to the middle of the paths.
 void reachTo(btSoftBody& body, const Extent& path, const StepObstacle& obstacle)
 {
     btVector3 nearest = (path.m_low + path.m_high) / 2;

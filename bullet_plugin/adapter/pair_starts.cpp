@@ -14,14 +14,14 @@ namespace drape
 {
 namespace
 {
-// Steps after which a pair that is not seen, or an obstacle that nothing is asked of, is forgotten: as long as a mirror
-// without a pair is kept.
+// Steps after which an absent pair, or an obstacle without queries, is forgotten: as long as a mirror without a pair
+// is kept.
 constexpr std::uint64_t kKeepSteps = 120;
 
 // Passes over all of an obstacle's triangles for one pair, before its tree is made for the questions that follow.
 constexpr int kMostPasses = 8;
 
-// Faces that a thread looks at in one go.
+// Faces that a thread processes per turn.
 constexpr std::size_t kFacesPerJob = 512;
 
 Vec3 vec3Of(const btVector3& v)

@@ -18,7 +18,7 @@ namespace
 // Steps that a mirror without a pair is kept: two seconds at 60 steps a second.
 constexpr std::uint64_t kKeepSteps = 120;
 
-// Tells a compound's children apart, through nested compounds.
+// Distinguishes a compound's children, through nested compounds.
 std::uint64_t childOf(const btCollisionObjectWrapper& wrap)
 {
     std::uint64_t child = 0;

@@ -1,4 +1,4 @@
-// The way out for a cloth that begins a step with its triangles through a closed mesh.
+// Moves a cloth that begins a step with its triangles through a closed mesh out of the mesh.
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -18,7 +18,7 @@ namespace
 constexpr btScalar kLeastSpeed = btScalar(0.5);
 constexpr btScalar kSpeedPerMetre = 2;
 
-// Steps in which nodes are on the wrong side, at most, before another way out is taken than to the nearest surface.
+// Maximum steps with nodes on the wrong side before a way out other than to the nearest surface is taken.
 constexpr int kMostPushedSteps = 240;
 
 // Maximum steps in which faces may pass through an obstacle between nodes that are all on the right side, before
@@ -139,7 +139,7 @@ void PairStarts::pushFaces(const StartingPair& pair, const MeshProbe& probe, Bod
     }
 }
 
-// Nodes that are on the wrong side, each to the nearest place of the surface.
+// Pushes the nodes on the wrong side, each to the nearest point of the surface.
 void PairStarts::pushToSurface(const StartingPair& pair, const MeshProbe& probe, BodyContacts& body)
 {
     std::vector<std::size_t> wrong;
@@ -171,8 +171,8 @@ int PairStarts::largestPart(const TangledPair& tangled, std::size_t& count) cons
     return largest == sizes.end() ? -1 : largest->first;
 }
 
-// Nodes of faces that reach from the kept region into the obstacle or through it, and the way back for each: out of
-// the surface on the kept side.
+// Collects nodes of faces that reach from the kept region into the obstacle or through it, each with its way back:
+// out of the surface on the kept side.
 PairStarts::Row PairStarts::firstRow(const ClothFaces& faces, const MeshProbe& probe, int kept) const
 {
     Row row;

@@ -1,7 +1,7 @@
-// Whose algorithm a dispatcher gives to pairs of a soft body and a triangle mesh.
+// Finds whose algorithm a dispatcher gives to pairs of a soft body and a triangle mesh.
 //
-// Bullet does not tell which functions a dispatcher was given, so an algorithm is made for the pair, asked, and freed.
-// Nothing collides.
+// Bullet does not report the functions of a dispatcher. An algorithm is therefore made for the pair, queried, and
+// freed. Nothing collides.
 #pragma once
 
 #include "BulletSoftBody/btSoftBody.h"

@@ -95,9 +95,9 @@ struct ContactList
 class Pipeline
 {
 public:
-    // Chooses the device and makes its kernels ready. Returns null and fills error when settings ask for what is not
-    // there or does not work, or for methods out of their ranges. A device that nobody asked for and that does not work
-    // leaves the host: see deviceReport() and lastError().
+    // Chooses the device and builds its kernels. Returns null and fills error if the settings request an unavailable
+    // or failing device, or methods out of their ranges. If a device that was not requested fails, the host remains:
+    // see deviceReport() and lastError().
     static std::unique_ptr<Pipeline> create(const Settings& settings, Error& error);
     ~Pipeline();
     Pipeline(const Pipeline&) = delete;
@@ -123,8 +123,8 @@ public:
     // finish(). Invalidates the last step's contacts.
     void prepare();
 
-    // Gives back host memory that only earlier steps with more meshes and contacts needed. Contacts of the last step
-    // are not to be looked at any more. Not between submit() and finish().
+    // Releases host memory that only earlier steps with more meshes and contacts needed. Invalidates the last step's
+    // contacts. Do not call between submit() and finish().
     void giveBackRoom();
 
     // Sets new positions (x y z per vertex) of an obstacle that moved or was deformed. Dependent data is rebuilt;

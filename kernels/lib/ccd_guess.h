@@ -1,5 +1,5 @@
-// A guess at where and when two features meet: a small box of (t,u,v) about the time at which they lie in one plane,
-// found by false position. Proving the box a hit, and that nothing is before it, is up to ccd.h.
+// Guesses where and when two features meet: a small box of (t,u,v) about the time at which they lie in one plane,
+// found by false position. ccd.h has to prove that the box is a hit and that nothing precedes it.
 #ifndef DRAPE_LIB_CCD_GUESS_H
 #define DRAPE_LIB_CCD_GUESS_H
 

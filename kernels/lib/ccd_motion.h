@@ -197,7 +197,7 @@ typedef struct CcdRanges
     float m_low1[DRAPE_CCD_VIEWS], m_high1[DRAPE_CCD_VIEWS];
 } CcdRanges;
 
-// Least and greatest F in view i over the box's places at time t.
+// Computes the least and greatest F in view i over the box's points at time t.
 DRAPE_FUNCTION void ccdRange(const CcdMotion* m, int i, const CcdBox* box, float t, float* low, float* high)
 {
     const float u0 = box->m_low[1], u1 = box->m_low[1] + box->m_width[1];

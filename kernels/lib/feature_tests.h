@@ -64,7 +64,7 @@ static int featureContact(const FeatureTest feature, const ClothView* cloth, con
                         packed->m_edgeIds[lane], feature.m_reach, contact);
 }
 
-// The step's cloths and obstacles as the kernels below read them, and the hits that they list.
+// The step's cloths and obstacles as the kernels below read them, and the contacts that they list.
 #define DRAPE_FEATURE_ARGUMENTS                                                                                            \
     __global const FeatureTest *restrict tests, const uint testCapacity, __global const float *restrict clothStart,        \
         __global const float *restrict clothEnd, __global const Triangle *restrict clothTriangles,                         \

@@ -1,5 +1,4 @@
-// The list of a step's hits, in no particular order: compaction brings them into the canonical one.
-// For kernels only.
+// A step's list of unsorted contacts; compaction sorts it into canonical order. For kernels only.
 #ifndef DRAPE_LIB_HIT_LIST_H
 #define DRAPE_LIB_HIT_LIST_H
 

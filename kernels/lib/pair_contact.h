@@ -65,7 +65,7 @@ DRAPE_FUNCTION ObstacleView obstacleView(const DRAPE_GLOBAL float* positions, co
     return view;
 }
 
-// A node at the step's start, as the obstacle at hand sees it.
+// A node at the step's start, relative to the current obstacle.
 DRAPE_FUNCTION Vec3 nodeStart(const ClothView* cloth, DRAPE_UINT node)
 {
     return startSeen(cloth->m_motion, vec3Load(cloth->m_start, node));

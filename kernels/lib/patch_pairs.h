@@ -1,5 +1,5 @@
-// Pairs of a cloth triangle and a patch of the obstacles: which there are in a step, what looks at a patch, and how the
-// feature tests that are left are listed. For kernels only; see team.h for who does it.
+// Pairs of a cloth triangle and a patch of the obstacles: selects a step's pairs, the data for testing a patch, and
+// the list of remaining feature tests. For kernels only; see team.h for the team that runs them.
 #ifndef DRAPE_LIB_PATCH_PAIRS_H
 #define DRAPE_LIB_PATCH_PAIRS_H
 

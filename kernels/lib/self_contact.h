@@ -209,7 +209,8 @@ DRAPE_FUNCTION int selfEdgesMet(const EdgePair* pair, Meeting meeting, PairBound
     return DRAPE_IS_CONTACT;
 }
 
-// Two edges at the step's end. Of parallel edges an end is as near as any place: the node's contact.
+// Two edges at the step's end. For parallel edges an end is as near as any other point, and belongs to the node's
+// contact.
 DRAPE_FUNCTION int selfEdgesNear(const EdgePair* pair, PairBounds bounds, Contact* contact)
 {
     const FeatureEdge e = pair->m_e1, o = pair->m_o1;

@@ -7,7 +7,7 @@
 // Maximum members of a slot that a work-group sorts by counting, in local memory; more are sorted in place.
 #define DRAPE_COUNTED 512
 
-// Puts one pair of places in order.
+// Sorts one pair of positions.
 static void orderPair(__global uint* members, __global uint* keys, const uint low, const uint high)
 {
     const uint a = keys[low], b = keys[high];

@@ -12,10 +12,10 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// Share of the reach by which ways of features that met may be apart, less than volumes hold beyond them in any direction
-// (DRAPE_CULL_MET of feature_cull.h).
+// Share of the reach by which paths of features that met may be apart. Volumes contain more than this in any
+// direction (DRAPE_CULL_MET of feature_cull.h).
 #define DRAPE_WAY_REACH 0.01f
-// Share of a pair's extent by which distances round.
+// Rounding error of distances, as a share of a pair's extent.
 #define DRAPE_WAY_ROUNDING 3e-6f
 
 // Returns whether the paths of two features, of the first `count` points and of the others, are not proved farther

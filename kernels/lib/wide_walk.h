@@ -12,7 +12,7 @@
 // of one node on the stack.
 #define DRAPE_WALK_STACK (DRAPE_LEVELS * DRAPE_PATCH_WIDTH)
 
-// Nodes that a group with as many times DRAPE_PATCH_WIDTH lanes looks at together, at most.
+// Maximum nodes that a group tests together; the group has as many times DRAPE_PATCH_WIDTH lanes.
 #define DRAPE_WALK_NODES 4
 // Maximum number of the root's children at which a group's traversal begins with them.
 #define DRAPE_WALK_BEGIN 4
@@ -27,7 +27,7 @@ static uint entryLevel(const uint entry)
     return entry >> DRAPE_LEVEL_SHIFT;
 }
 
-// The node's place in its level.
+// Returns the node's index in its level.
 static uint entryIndex(const uint entry)
 {
     return entry & ((1u << DRAPE_LEVEL_SHIFT) - 1u);

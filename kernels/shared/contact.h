@@ -38,8 +38,8 @@ typedef struct Contact
     float m_time;  // time of impact in [0, 1]; 1 when the surfaces are near at the step's end
 } Contact;
 
-// Places before the first contact in the list that a step leaves on a device: they hold its StepCounters, so that one
-// transfer brings both.
+// Elements before the first contact in a device's list. They hold the step's StepCounters, so that one transfer reads
+// both.
 #define DRAPE_CONTACT_HEAD 1u
 
 DRAPE_NAMESPACE_END

@@ -38,8 +38,8 @@ typedef struct Patch
 // Size of a feature's box over the step, low then high, of a cloth that collides with itself.
 #define DRAPE_BOX_FLOATS 6
 
-// A lane's owner: a triangle that owns its feature in the low bits, the feature's place in that triangle above. Lanes
-// that are not used hold DRAPE_NO_FEATURE and positions that are NaN, which no test keeps.
+// A lane's owner: a triangle that owns its feature in the low bits, the feature's index in that triangle above.
+// Unused lanes hold DRAPE_NO_FEATURE and NaN positions, which no test keeps.
 #define DRAPE_PLACE_SHIFT 30
 #define DRAPE_NO_FEATURE 0xffffffffu
 

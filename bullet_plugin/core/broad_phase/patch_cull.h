@@ -65,7 +65,7 @@ public:
     // Gives back the memory of both lists but for as much as a new stage has. Tests are to be reserved again.
     void giveBackRoom(Device& device);
 
-    // The packed features; ids tell a lane's triangle, vertex or edge.
+    // The packed features; ids name a lane's triangle, vertex or edge.
     struct Features
     {
         Buffer<float>& m_faces;

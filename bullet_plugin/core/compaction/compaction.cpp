@@ -77,7 +77,7 @@ void CompactionStage::giveBackRoom()
     m_hitPlaces.release();
 }
 
-// Slots with more hits than `ranked`.
+// Sorts the slots with more contacts than `ranked`.
 void CompactionStage::enqueueOrder(Device& device, cl_uint ranked, StepTally tally)
 {
     const std::size_t slots = m_places.slotCount();
@@ -87,7 +87,7 @@ void CompactionStage::enqueueOrder(Device& device, cl_uint ranked, StepTally tal
                    tally.m_now.handle());
 }
 
-// Places of slots, and their members.
+// Computes the first position of each slot, and lists its members.
 void CompactionStage::enqueueGather(Device& device, StepTally tally, cl_uint ranked, const ReductionBuffers* reduction)
 {
     const cl_uint hitCapacity = cl_uint(m_hits.capacity()), slots = cl_uint(m_places.slotCount());

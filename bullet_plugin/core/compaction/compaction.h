@@ -34,7 +34,7 @@ public:
 
     // Room for the slots of a cloth side: its nodes, faces and edges.
     void resizeSlots(Device& device, std::size_t slotCount);
-    // Room for a list of hits and as many contacts.
+    // Reserves memory for a list of unsorted contacts and as many sorted ones.
     void reserveHits(Device& device, std::size_t count);
     std::size_t hitCapacity() const { return m_hits.capacity(); }
     // Releases the memory of both lists; reserve it again before use.

@@ -19,7 +19,7 @@ using uint = std::uint32_t;
 using ulong = std::uint64_t;
 using ushort = std::uint16_t;
 
-// The thread's work-item at hand, and how many there are.
+// The thread's current work-item, and the number of work-items.
 thread_local uint t_item, t_items;
 
 inline uint get_global_id(int)

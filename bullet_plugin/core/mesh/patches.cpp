@@ -183,7 +183,7 @@ void appendPatch(Patches& patches, const std::vector<Triangle>& triangles, const
     patches.m_patches.push_back(patch);
 }
 
-// feature(triangle, place): over all meshes.
+// feature(triangle, index): numbered over all meshes.
 template <typename Feature>
 std::vector<std::uint32_t> idsOf(const std::vector<std::uint32_t>& owners, const std::vector<Triangle>& triangles,
                                  Feature feature)

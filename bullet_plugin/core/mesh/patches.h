@@ -24,7 +24,7 @@ struct Patches
     std::vector<std::uint32_t> m_levels;  // first wide node of each level, lowest first, then the number of nodes
 };
 
-// Places of a list from m_first up to m_last.
+// Positions of a list from m_first up to m_last.
 struct ItemRange
 {
     std::size_t m_first, m_last;
@@ -57,7 +57,7 @@ struct PatchLanes
 };
 PatchLanes lanesOf(const Patches& patches, ItemRange range, std::uint32_t width);
 
-// Places of one level of the wide tree, of `children` that are there.
+// Positions of one level of the wide tree; `children` of them exist.
 struct LevelPlaces
 {
     std::size_t m_level, m_children;

@@ -1,5 +1,5 @@
-// Narrow phase on the host by the kernels of a CPU (host_kernels.h), on the threads of a team: from a list of tests to
-// hits, to contacts in canonical order.
+// Narrow phase on the host with a CPU's kernels (host_kernels.h), on a team's threads: turns a list of tests into
+// unsorted contacts, and these into contacts in canonical order.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +21,9 @@ public:
         std::size_t m_swept;  // tests that the continuous test decides
     };
 
-    // Lists the hits of features.m_tests, in no particular order, and counts them; beyond a limit the list is not
-    // complete. find, findSwept: kernels of either kind of contacts; swept: their counter. Returns how often the list
-    // was too short and grew.
+    // Lists the contacts of features.m_tests, unsorted, and counts them; beyond a limit the list is not complete.
+    // find, findSwept: kernels of either kind of contacts; swept: their counter. Returns how often the list was too
+    // short and grew.
     template <class Features>
     std::size_t find(HitKernel<Features> find, HitKernel<Features> findSwept, std::uint32_t StepCounters::*swept,
                      const Features& features, std::size_t slots, Limits limits, ThreadTeam& threads,

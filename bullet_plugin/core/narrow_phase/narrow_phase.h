@@ -80,12 +80,12 @@ public:
     void reserveIntersections(Device& device, std::size_t count) { m_intersections.reserve(device, count); }
     Buffer<Candidate>& intersections() { return m_intersections; }
 
-    // All return after enqueueing. The hits of pairs of triangles.
+    // Lists the contacts of triangle pairs. All functions return after enqueueing.
     void enqueue(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
                  const NarrowPhaseSettings& settings, Buffer<Candidate>& candidates, HitBuffers hits,
                  Buffer<StepCounters>& counters);
-    // The hits of the feature tests that a cull left. mode: DRAPE_DISCRETE …; a discrete step is one launch less, and
-    // so is one with few tests.
+    // Lists the contacts of the feature tests that remain after a cull. mode: DRAPE_DISCRETE …; a discrete step takes
+    // one launch less, and so does one with few tests.
     void enqueueFeatures(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
                          std::uint32_t mode, PatchCullStage& cull, Expected expected, HitBuffers hits,
                          Buffer<StepCounters>& counters);

@@ -6,7 +6,7 @@ namespace drape
 {
 namespace
 {
-// The place of a face that is nearest to the vertex, which is the origin.
+// Computes the point of a face that is nearest to the vertex, which is the origin.
 struct Nearest
 {
     Vec3 m_weights;  // of the cloth's nodes

@@ -1,5 +1,5 @@
-// A step on the host over patches, the obstacles' and, for contacts of cloths with themselves, the cloths': the
-// product's own way, with the kernels of a CPU on the threads of a team.
+// A step on the host over patches of the obstacles and, for contacts of cloths with themselves, of the cloths. This
+// is the product's method, with a CPU's kernels on a team's threads.
 #pragma once
 
 #include "bullet_plugin/core/broad_phase/host_patch_cull.h"

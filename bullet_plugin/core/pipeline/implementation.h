@@ -107,7 +107,7 @@ struct Pipeline::Implementation
     bool walksHierarchies() const;
     // Builds both sides' hierarchies with the current methods.
     void buildHierarchies();
-    // Has both sides' layouts at hand for the host.
+    // Builds both sides' layouts for the host if necessary.
     void layOut();
     // Uses a hierarchy of the cloths that was built anew.
     void takeRebuilt();

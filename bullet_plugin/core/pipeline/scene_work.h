@@ -26,7 +26,8 @@ struct Surface
     double m_area = 0;  // m²
 };
 
-// reach: m, the distance up to which the pair's features are looked at. At most every pair there is; finite.
+// reach: m, the distance up to which the pair's features are tested. The result is finite, and at most the number of
+// all pairs.
 double expectedPairs(const Surface& cloth, const Surface& obstacle, double reach);
 
 // Weight of a triangle pair of a cloth with itself: the host's time for an expected pair relative to a pair with an

@@ -9,7 +9,7 @@ namespace drape
 {
 namespace
 {
-// Volumes reach a little further than the feature tests, by more than those round, so that which pairs were candidates
+// Extra reach of volumes beyond the feature tests, more than the rounding of those. The choice of candidates then
 // never decides whether a pair is a contact.
 constexpr float kReachPad = 1.001f;
 // Extra reach of candidates beyond contacts, as a share of the obstacle's longest edge. The search for meetings

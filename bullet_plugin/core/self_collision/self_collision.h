@@ -31,7 +31,7 @@ struct HostTree
 };
 
 // Calls visit for each pair; kind: DRAPE_WALK_…, with a and b the same tree for a mesh with itself. Ends when goesOn,
-// asked before each pair, says no.
+// called before each pair, returns false.
 void leafPairsOnHost(const HostTree& a, const HostTree& b, std::uint32_t kind,
                      const std::function<void(const Candidate&)>& visit, const std::function<bool()>& goesOn = nullptr);
 
@@ -65,7 +65,7 @@ struct SelfCollisions
     std::uint64_t hits() const { return m_hitCount[0] + m_hitCount[1]; }
     // Records a search that finds more candidates than it may test.
     void leaveUntested();
-    // Counts a hit and lists it as long as all may be listed.
+    // Counts a hit, and lists it while the list is within its limit.
     void add(const FeatureHit& hit, const SelfLimits& limits);
 };
 
@@ -103,7 +103,7 @@ public:
 
     void create(Device& device, const cl::Program& program);
 
-    // Leaves of one batch, by their places in the order.
+    // Leaves of one batch, by their positions in the order.
     struct Batch
     {
         std::uint32_t m_first = 0;

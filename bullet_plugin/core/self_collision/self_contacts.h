@@ -44,7 +44,7 @@ public:
 
     // Lists the tests; their counters must be zero before. Both functions return after enqueueing.
     void enqueueCull(Device& device, SelfBuffers step, Buffer<StepCounters>& counters);
-    // Their hits join the list.
+    // Lists the contacts of the tests.
     void enqueueContacts(Device& device, SelfBuffers step, HitBuffers hits, Buffer<StepCounters>& counters);
 
     Buffer<FeatureTest>& tests() { return m_tests; }

@@ -20,7 +20,7 @@ namespace
 // Looks between two that leave the core to another thread, should one wait for it.
 constexpr int kLooksTogether = 64;
 
-// Tells the core that this is a loop that waits.
+// Hints to the core that this is a waiting loop.
 inline void pause()
 {
 #if defined(__x86_64__) || defined(__i386__)
