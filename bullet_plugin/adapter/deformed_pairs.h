@@ -1,14 +1,13 @@
-// Computes where a cloth's nodes start in a step, relative to an obstacle whose vertices move in that step.
+// Computes where a cloth's nodes start in a step, relative to an obstacle whose vertices move in that step. Detection
+// treats the obstacle as resting at the step's end; a rigid motion would be one transform of all starts
+// (kernels/lib/rigid_motion.h).
 //
-// Reason: in detection an obstacle rests as it is at the step's end, and the cloth moves relative to it. A rigid
-// motion is one transform of all nodes' starts (kernels/lib/rigid_motion.h). Independently moving vertices need a
-// start per node. A node within reach of the surface starts where it would be had it moved along with the surface's
-// nearest point, turned as the triangle turns: on the same side and at the same distance. Farther out the motion
-// fades; nodes beyond the surface's reach in the step keep their starts.
+// A node within reach of the surface starts where it would be had it moved along with the surface's nearest point,
+// turned as the triangle turns: on the same side and at the same distance. Farther out the motion fades; nodes beyond
+// the surface's reach in the step keep their starts.
 //
-// The starts belong to one pair, so the pair has its own mesh of the cloth in the pipeline, whose contacts go to the
-// same body. Cost: a second mesh during such motion, and O(log n) per node near the obstacle. The same bits with any
-// number of threads.
+// The pair has its own mesh of the cloth in the pipeline, whose contacts go to the same body. Cost: a second mesh
+// during such motion, and O(log n) per node near the obstacle. The same bits with any number of threads.
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,6 @@
 // Ends the predicted path of nodes just before the first surface that the nodes, or their faces or edges, would pass.
-//
-// Reason: contacts are found along the whole predicted path and near its end. Contacts behind the first surface
-// belong to positions that the node cannot reach, and may push it to either side. Detection runs again after a cut,
-// with paths that end near the relevant surfaces.
+// Contacts behind that surface belong to positions that the node cannot reach, and may push it to either side.
+// Detection runs again after a cut.
 //
 // Input: a body between predictMotion and the end of solveConstraints, the starts of its paths and its contacts along
 // the current paths. Before a moving obstacle, a path ends where the obstacle carries it. The rest of the path is

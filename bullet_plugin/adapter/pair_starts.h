@@ -1,12 +1,9 @@
-// Finds pairs of a cloth and an obstacle that begin a step with intersecting triangles, and separates them.
+// Finds pairs of a cloth and an obstacle that begin a step with intersecting triangles, and separates them. Contacts
+// alone would keep such cloth on the wrong side.
 //
-// Reason: contacts keep a node on the side on which it begins the step. Cloth that begins a step through a mesh would
-// stay there.
-//
-// Job: a pair is guarded once a check found none of its triangles intersecting at a step's start. Checks run when the
-// pair is new, when the cloth or obstacle starts anew (mirrors.h), for faces of displaced nodes, and in every step
-// while the pair intersects. Nodes on the wrong side of a closed obstacle are pushed to its nearest surface point at
-// a bounded speed. Pairs with an open obstacle are only reported.
+// Job: a pair is guarded once a check found none of its triangles intersecting at a step's start. New, restarted and
+// intersecting pairs are checked, and faces of displaced nodes. Nodes on the wrong side of a closed obstacle are
+// pushed to its nearest surface point at a bounded speed. Pairs with an open obstacle are only reported.
 //
 // Cost: a comparison per node of a guarded pair; for a new one a pass over the obstacle's triangles if the boxes
 // meet, and O(log n) per cloth face if a triangle enters the cloth's box. Deterministic with any number of threads.

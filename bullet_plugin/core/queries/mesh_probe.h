@@ -2,10 +2,10 @@
 // nearest and, if it is closed, which points are inside.
 //
 // Input: a mesh's topology, the leaf order of its triangles and its positions; all are copied. Guarantee: meetings
-// and insideness are decided in exact arithmetic on the float positions. The exception is a point from which every
+// and insides are decided in exact arithmetic on the float positions. The exception is a point from which every
 // ray runs into an edge: it counts as outside.
 //
-// In a closed mesh every edge has an even number of triangles. Vertices at one position, up to a millionth of the
+// Every edge of a closed mesh has an even number of triangles. Vertices at one position, up to a millionth of the
 // mesh's size, count as one. The parity of crossings is then the same along every ray that misses such a seam,
 // whatever the triangles' winding. Cost: O(n) to build; O(log n) per query beside few triangles. Host only. Lengths
 // in metres.
