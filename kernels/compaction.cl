@@ -1,6 +1,8 @@
-// Compaction: hits into canonical order, by slot (cloth feature) and then obstacle feature. A counting sort over the slots:
-// sums per block, first place of every slot, members of every slot, and the place of each hit among them: by counting where a
-// slot has few, by a sort where it has many. On a GPU few slots take a launch less or two (compaction_few.cl).
+// Compaction puts unsorted contacts into canonical order: by slot (cloth feature), then by obstacle feature.
+//
+// The method is a counting sort over the slots: sums per block, the first position of every slot, the members of
+// every slot, and the position of each contact among them. That position comes from counting where a slot has few
+// members, from a sort where it has many. On a GPU, few slots take one or two launches less (compaction_few.cl).
 #include "lib/ask_for.h"
 #include "lib/group_scan.h"
 #include "lib/hit_list.h"
@@ -20,7 +22,7 @@ static uint countShare(__global const uint* slotCount, const uint slots, uint* f
     return sum;
 }
 
-// A work-group sums the hits of one block of slots. scratch: one uint per work-item.
+// Sums the contacts of one block of slots per work-group. scratch: one uint per work-item.
 __kernel void compactionCount(__global const uint* restrict slotCount, const uint slots,
                               __global uint* restrict blockCount, __local uint* scratch)
 {
@@ -29,8 +31,8 @@ __kernel void compactionCount(__global const uint* restrict slotCount, const uin
     if (get_local_id(0) == 0) blockCount[get_group_id(0)] = total;
 }
 
-// Writes where the hits of each slot of the group's block begin, the first at `place`, and counts the slots that have more
-// than `ranked`. Returns where the hits behind the block begin.
+// Writes where the contacts of each slot of the group's block begin, the first at `place`, and counts the slots that
+// have more than `ranked`. Returns where the contacts after the block begin.
 static uint placeBlock(__global const uint* restrict slotCount, const uint slots, const uint ranked, const uint place,
                        __global uint* restrict slotFirst, __global StepCounters* restrict counters, __local uint* scratch)
 {
@@ -45,9 +47,10 @@ static uint placeBlock(__global const uint* restrict slotCount, const uint slots
     return place + total;
 }
 
-// A work-group takes a block of slots, and sums the hits of those before itself. The last one stores counters->m_hits. sums:
-// of blocks, by compactionCount, and perBlock 1; where slots are few it is slotCount, and perBlock DRAPE_BLOCK. ranked: most
-// hits of a slot that the launch behind puts in order itself; those with more are counted.
+// Processes a block of slots per work-group, and sums the contacts of all earlier slots. The last group stores
+// counters->m_hits. sums: of blocks, by compactionCount, and perBlock 1; for few slots sums is slotCount, and
+// perBlock DRAPE_BLOCK. ranked: maximum contacts of a slot that the next launch sorts itself; slots with more are
+// counted.
 __kernel void compactionPlace(__global const uint* restrict slotCount, const uint slots, const uint ranked,
                               __global const uint* restrict sums, const uint perBlock,
                               __global uint* restrict slotFirst, __global StepCounters* restrict counters,
@@ -58,9 +61,9 @@ __kernel void compactionPlace(__global const uint* restrict slotCount, const uin
     if (get_group_id(0) == get_num_groups(0) - 1 && get_local_id(0) == 0) counters->m_hits = hits;
 }
 
-// A work-item goes through its part of the hits' list and lists a hit among its slot's members, last to first as the items
-// come; the atomic gives each a place of its own. keys: the obstacle features of members. Leaves slotCount zero for the next
-// step, and its counters; slotKept, where it is not null, for the kernel that tells what stays.
+// Lists each contact among its slot's members. A work-item goes through its part of the contacts' list; the atomic
+// gives each contact its own position, filled from last to first. keys: the obstacle features of members. Leaves
+// slotCount and the next step's counters zero; also slotKept, if it is not null, for the reduction's kernel.
 __kernel void compactionGather(__global const Contact* restrict hits, const uint hitCapacity,
                                __global volatile uint* slotCount, __global const uint* restrict slotFirst,
                                const uint slots, __global uint* restrict members, __global uint* restrict keys,
@@ -108,10 +111,11 @@ __kernel void compactionOrder(const uint hitCapacity, __global const uint* restr
     }
 }
 
-// `parts` work-items (1, 2 or 4) share a hit, and go through their part of the members' list: they count the members of the
-// same slot with a lesser obstacle feature, and copy the hit to where that number puts it. Where the slot has more members
-// than `ranked` compactionOrder has sorted them and the hit keeps its place. A feature pair is tested once, so features of a
-// slot differ and every place is written once. keys: see compactionGather. contacts: behind a head with the counters. Leaves
+// Copies each contact to its position in canonical order. `parts` work-items (1, 2 or 4) share a contact, and each
+// goes through its part of the members' list. They count the members of the same slot with a lesser obstacle feature;
+// that number is the contact's position in its slot. Where the slot has more members than `ranked`, compactionOrder
+// has sorted them and the contact keeps its position. A feature pair is tested once, so features of a slot differ and
+// every position is written once. keys: see compactionGather. contacts: behind a head with the counters. Leaves
 // slotCount and slotSums zero for the next step where slotSums is not null.
 __kernel void compactionWrite(__global const Contact* restrict hits, const uint hitCapacity,
                               __global const uint* restrict slotFirst, const uint slots, const uint ranked,
@@ -133,7 +137,7 @@ __kernel void compactionWrite(__global const Contact* restrict hits, const uint 
         const int sorted = last - first > ranked;
         const uint key = keys[i];
         uint before = 0;
-        // Loads together, which on a GPU wait for each other else.
+        // Loads several keys together; on a GPU the loads would otherwise wait for each other.
         __attribute__((opencl_unroll_hint(DRAPE_TOGETHER)))
         for (uint j = first; j < last && !sorted; ++j) before += keys[j] < key;
         copyHit(contacts + DRAPE_CONTACT_HEAD + (sorted ? i : first + before), hit, parts);

@@ -1,8 +1,8 @@
-// What compaction.cl does in two or three launches, in one for slots that are few, on a GPU: every work-item tells for itself
-// what is before its slot.
+// Does the work of two or three launches of compaction.cl in one, for few slots on a GPU: every work-item sums the
+// slots before its own.
 #include "lib/hit_list.h"
 
-// Where a slot's hits begin, and whether they are more than `ranked`. slotKept: see the kernel.
+// Stores where a slot's contacts begin, and records whether they exceed `ranked`. slotKept: see the kernel.
 static void placeSlot(__global const uint* restrict slotCount, __global const uint* restrict slotSums,
                       __local const uint* wide, const uint slot, const uint ranked, __global uint* restrict slotFirst,
                       __global uint* restrict slotKept, __global StepCounters* restrict counters)
@@ -12,9 +12,9 @@ static void placeSlot(__global const uint* restrict slotCount, __global const ui
     if (slotKept) slotKept[slot] = 0;
 }
 
-// A work-item takes slots, and hits, which it lists among their slots' members. hitPlaces, slotCount, slotSums: as listHit()
-// leaves them. slotFirst gets where each slot's members begin; keys, members: as compactionGather. slotKept, keptSums: made
-// zero for the kernels that tell what stays; null where all does. Leaves the next step's counters zero.
+// Processes slots, and contacts, which a work-item lists among their slots' members. hitPlaces, slotCount, slotSums:
+// see listHit(). slotFirst: first position of each slot's members. keys, members: see compactionGather. slotKept,
+// keptSums: set to zero for the reduction's kernels; null without reduction. Leaves the next step's counters zero.
 __kernel void compactionGatherFew(__global const Contact* restrict hits, const uint hitCapacity,
                                   __global const uint* restrict hitPlaces, __global const uint* restrict slotCount,
                                   __global const uint* restrict slotSums, const uint slots, const uint ranked,
@@ -31,7 +31,7 @@ __kernel void compactionGatherFew(__global const Contact* restrict hits, const u
     for (uint i = id; i < DRAPE_SLOT_SUMS && keptSums; i += size) keptSums[i] = 0;
     for (uint slot = id; slot < slots; slot += size)
         placeSlot(slotCount, slotSums, wide, slot, ranked, slotFirst, slotKept, counters);
-    // From the work-items on that have taken a slot less.
+    // Starts with the work-items that have processed one slot less.
     for (uint hit = (id + size - slots % size) % size; hit < count; hit += size)
     {
         const uint slot = hits[hit].m_slot;

@@ -5,9 +5,9 @@
 // Work-items of a group (kFeatureGroupGpu in narrow_phase.cpp).
 #define DRAPE_FEATURE_GROUP 256
 
-// Shares out to a group's work-items as many tests as they are, from `first` on, so that those of one kind are next to
-// each other: lanes of one kind wait for those of another. Returns this work-item's test, `count` where it has none. By
-// all of the group together. The next turn's writes need no barrier: it clears `kinds` after everyone has passed the
+// Assigns a group's work-items as many tests, from `first` on, so that tests of one kind are adjacent: lanes of
+// different kinds would wait for each other. Returns this work-item's test, or `count` if it has none. The whole
+// group calls it together. The next turn's writes need no barrier: it clears `kinds` after everyone has passed the
 // last one here, and writes `order` after two of its own.
 static uint testByKind(__global const FeatureTest* tests, const uint first, const uint count, __local uint* kinds,
                        __local ushort* order)
@@ -27,9 +27,9 @@ static uint testByKind(__global const FeatureTest* tests, const uint first, cons
     return item < count ? first + order[lane] : count;
 }
 
-// A group goes through its part of the feature tests that the cull lists, as many at a time as it has work-items, and lists
-// the hits; the tests that need the continuous test it lists in swept, in no particular order. counters->m_swept must be
-// zero before. A CPU's narrowPhaseFeature is in narrow_phase_lanes.cl.
+// Runs the feature tests that the cull lists, each group its part, as many at a time as it has work-items, and lists
+// the contacts. Tests that need the continuous test go to `swept`, unsorted. counters->m_swept must be zero before. A
+// CPU's narrowPhaseFeature is in narrow_phase_lanes.cl.
 __kernel __attribute__((reqd_work_group_size(DRAPE_FEATURE_GROUP, 1, 1))) void narrowPhaseFeature(
     DRAPE_FEATURE_ARGUMENTS, __global uint* restrict swept)
 {
@@ -46,15 +46,15 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_FEATURE_GROUP, 1, 1))) void n
 }
 #endif
 
-// Groups take turns at the kinds of tests, and each its tests one by one, its first lane's after every other group's: lanes
-// of one kind wait for those of another, and few tests, which take long, are then not in each other's way. On a CPU, too:
-// next to the tests themselves it costs little that what neighbours read is not in the cache.
+// Divides the tests among groups by kind: groups alternate between the kinds. Lanes of different kinds in one group
+// would wait for each other. Consecutive tests of a kind go to different groups, so that a few long tests do not
+// delay each other. This applies to a CPU, too: compared with the tests themselves, misses of the cache cost little.
 typedef struct KindShare
 {
     uint m_kind, m_first, m_stride;
 } KindShare;
 
-// Of the kinds from `kind` on. There must be a group for each.
+// Divides the kinds from `kind` on. There must be a group for each.
 static KindShare kindShare(const uint kind)
 {
     KindShare share;
@@ -67,8 +67,9 @@ static KindShare kindShare(const uint kind)
     return share;
 }
 
-// A work-item takes every stride-th of the tests that narrowPhaseFeature left to the continuous test and lists their hits,
-// unless there are more than mostSwept. None of these is a node's: its way crosses a face that rests in closed form.
+// Runs every stride-th of the tests that narrowPhaseFeature left to the continuous test, per work-item, and lists
+// their contacts, unless there are more than mostSwept. None of these is a node's test: a node's path crosses a
+// resting face in closed form.
 __kernel void narrowPhaseSwept(DRAPE_FEATURE_ARGUMENTS, __global const uint* restrict swept, const uint mostSwept)
 {
     DRAPE_FEATURE_VIEWS;
@@ -86,8 +87,8 @@ __kernel void narrowPhaseSwept(DRAPE_FEATURE_ARGUMENTS, __global const uint* res
     }
 }
 
-// Both in one launch, for tests that are few: each runs the continuous test where it needs it. Nothing is done where there
-// are more than mostTests.
+// Runs both phases in one launch, for few tests: each runs the continuous test where it needs it. Does nothing if
+// there are more than mostTests.
 __kernel void narrowPhaseFew(DRAPE_FEATURE_ARGUMENTS, const uint mostTests)
 {
     DRAPE_FEATURE_VIEWS;

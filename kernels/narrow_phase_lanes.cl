@@ -27,7 +27,7 @@ static void testOne(LaneWork* work, const uint item)
                 work->m_swept, work->m_counters);
 }
 
-// From `row` on.
+// Stores the cone in the rows from `row` on.
 static void putCone(float* rows, const uint row, const uint lane, const NormalCone cone)
 {
     putVec3(rows, row, lane, cone.m_axis);
@@ -148,7 +148,7 @@ static void askForTest(const LaneWork* work, const FeatureTest feature)
     else askForLane(packed->m_edges, DRAPE_EDGE_FLOATS, packed->m_edgeIds, lane);
 }
 
-// Then, once that is there, what it leads to.
+// Prefetches, once askForTest() has loaded the test's data, the data that it refers to.
 static void askForNodes(const LaneWork* work, const FeatureTest feature)
 {
     const ClothView* cloth = &work->m_cloth;
@@ -169,11 +169,11 @@ static void askForRun(const LaneWork* work, const uint first, const uint end)
     for (uint item = first; item < end; ++item) askForNodes(work, work->m_tests[item]);
 }
 
-// From so many tests on what they read is seldom in the caches.
+// Number of tests from which their data is seldom in the caches.
 #define DRAPE_FAR_TESTS (1u << 17)
 
-// A work-item goes through its part of the feature tests that patchCull lists and lists the hits; the tests that need the
-// continuous test it lists in swept, in no particular order. counters->m_swept must be zero before.
+// Runs the feature tests that patchCull lists, each work-item its part, and lists the contacts. Tests that need the
+// continuous test go to `swept`, unsorted. counters->m_swept must be zero before.
 __kernel void narrowPhaseFeature(DRAPE_FEATURE_ARGUMENTS, __global uint* restrict swept)
 {
     DRAPE_FEATURE_VIEWS;

@@ -1,7 +1,7 @@
-// Broad phase over patches on a CPU: packets of cloth triangles that lie near each other walk the wide tree of the
-// obstacles' patches by the volume that joins theirs. Of each triangle of a packet, the nodes and edges that may be
-// near a patch found, and its face, are tested against the patch's features, a vector of lanes at a time, and the
-// feature tests that are left are listed.
+// Broad phase over patches on a CPU. Packets of neighbouring cloth triangles traverse the wide tree of the obstacles'
+// patches with their joint volume. For each patch found, the packet's triangles are tested: their nodes and edges
+// that may be near the patch, and their faces, against the patch's features, a vector of lanes at a time. The
+// remaining feature tests are listed.
 #include "lib/cull_packet.h"
 #include "lib/patch_pairs.h"
 
@@ -45,9 +45,9 @@ static const Looker* lookerOf(Packet* packet, const StepCloths* cloths, const ui
     return looker;
 }
 
-// Of a triangle's nodes and edges among `owned` those that are not proved out of reach of a patch, bits as in
-// Triangle::m_owned: what cullPacketChild() asks of triangles. volume: the patch's, as patchVolumes of patch_pack.cl
-// leaves it.
+// Returns the triangle's nodes and edges among `owned` that are not proved out of reach of a patch, bits as in
+// Triangle::m_owned: the test of cullPacketChild() for features instead of triangles. volume: the patch's, as stored
+// by patchVolumes of patch_pack.cl.
 static uint featuresNear(const Packet* packet, const uint triangle, const uint owned, __global const float* volume)
 {
     const NodeIntervals* nodes = packet->m_nodes + triangle;
@@ -164,8 +164,8 @@ static LaneMask getCorners(LanesVec3* p, const float* rows)
     return sum <= DRAPE_FARTHEST;
 }
 
-// Takes the packet's volumes for its motion. Returns whether any of its triangles may come near the obstacle. Counts
-// the invalid nodes where it takes those for the obstacles that rest, which is once.
+// Computes the packet's volumes for its motion. Returns whether any of its triangles may come near the obstacle.
+// Counts the invalid nodes along with the resting obstacles, which happens once.
 static int takeVolumes(Packet* packet, const StepCloths* cloths, __global StepCounters* counters)
 {
     __global const ObstacleMotion* motion = motionOf(cloths, packet->m_motion);

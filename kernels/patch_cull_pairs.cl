@@ -21,25 +21,26 @@
 #define DRAPE_VERTEX_PARTS (DRAPE_FACE_PARTS + DRAPE_PARTS)
 #define DRAPE_EDGE_PARTS (DRAPE_VERTEX_PARTS + 3u * DRAPE_PARTS)
 
-// The part of this lane's place in a block.
+// The part of a block to which this lane's position belongs.
 #define DRAPE_OWN_PART (teamLane() % DRAPE_PATCH_WIDTH / DRAPE_PART)
 
-// A pair's place has five bits of a task, its parts are bits of a word, and each pair has a lane.
+// Five bits of a task hold a pair's index, its parts are bits of a word, and each pair has a lane.
 typedef char PairsFit[DRAPE_CULL_PAIRS <= 32 && DRAPE_CULL_PAIRS <= DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH ? 1 : -1];
 typedef char PartsFit[DRAPE_EDGE_PARTS + 3u * DRAPE_PARTS <= 32u ? 1 : -1];
 
-// A pair at hand. m_looker: the place of its cloth triangle's.
+// The current pair. m_looker: index of its cloth triangle's cull query.
 typedef struct CullPair
 {
     FeatureTest m_pair;
     CullReach m_reach;
     uint m_looker;
     uint m_own;    // the triangle's nodes and edges that it owns and that are valid, bits as in Triangle::m_owned
-    uint m_all;    // whether it is so large against the patch that it is near most of it
+    uint m_all;  // so large compared with the patch that it is near most of it
     uint m_parts;  // of the patch that the triangle is near
 } CullPair;
 
-// Tests at hand: of a pair, one of its triangle's nodes or edges or (0) its face, and a part of the patch's features.
+// A current group of tests: of a pair, one of its triangle's nodes or edges or (0) its face, and a part of the
+// patch's features.
 #define DRAPE_TASK(pair, feature, part) ((ushort)((pair) | (feature) << 5 | (part) << 7))
 #define DRAPE_TASK_PAIR(task) ((task) & 31u)
 #define DRAPE_TASK_FEATURE(task) ((task) >> 5 & 3u)
@@ -56,7 +57,8 @@ typedef struct Culler
     uint m_counts[3];  // of m_nodes, m_faces and m_edges
 } Culler;
 
-// Whether a cloth triangle is so large against a patch, of that size, that most of the patch's features are near it.
+// Returns whether a cloth triangle is so large compared with a patch of that size that most of the patch's features
+// are near it.
 static int reachesAll(__local const CullTriangle* cull, const CullReach reach, const float size)
 {
     return cull->m_radius + reach.m_near > 0.5f * size;
@@ -134,7 +136,7 @@ static void listTasks(__local ushort* tasks, volatile __local uint* count, const
     }
 }
 
-// Lists the tests of all pairs at hand, a lane for each pair and kind.
+// Lists the tests of all current pairs, one lane for each pair and kind.
 static void listAllTasks(__local Culler* culler, const uint count)
 {
     for (uint i = teamLane(); i < 3 * DRAPE_CULL_PAIRS; i += teamWidth())
@@ -156,7 +158,7 @@ static void listAllTasks(__local Culler* culler, const uint count)
     }
 }
 
-// From where this lane's place lies in a block (lanesLoad()) to where it lies in the part: only the sum of the two is
+// Returns the shift from this lane's position in a block (lanesLoad()) to its position in the part: only their sum is
 // read.
 static int partShift(const uint part)
 {
@@ -211,8 +213,8 @@ static void cullTasks(__local Culler* culler, const PatchFeatures* features, con
     for (uint i = first; i < culler->m_counts[2]; i += stride) cullEdge(culler, features, culler->m_edges[i], list);
 }
 
-// Pairs that a group takes at a time. As long as they suffice for the groups that the device runs together, one wave of
-// them, with as many pairs each; else for as many rounds of all groups as need be.
+// Returns the number of pairs that a group takes at a time. If one wave, the groups that the device runs together,
+// can take all pairs, each group of it takes equally many. Otherwise all groups take as many turns as necessary.
 static uint pairsOfGroup(const uint count, const uint groups, const uint turns)
 {
     const uint wave = max(groups / DRAPE_CULL_WAVES, 1u);

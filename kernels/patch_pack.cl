@@ -20,7 +20,7 @@ static void packVec3(__global float* restrict out, const uint first, const Vec3 
     out[(first + 2) * DRAPE_PATCH_WIDTH] = v.z;
 }
 
-// The obstacles' triangles where they are.
+// The obstacles' triangles at their positions.
 typedef struct ObstacleFaces
 {
     __global const Triangle* m_triangles;
@@ -106,8 +106,8 @@ __kernel void patchPackEdges(__global const uint* restrict owners, const uint fi
     out[9 * DRAPE_PATCH_WIDTH] = cones[edge].m_cosine;
 }
 
-// A child's place in a wide node: its volume, and how far along each direction a contact of its features can reach, as a
-// share of the reach.
+// A child of a wide node: its volume and, along each direction, the reach of a contact of its features as a share of
+// the reach.
 typedef struct WideChild
 {
     Dop m_volume;
@@ -126,7 +126,7 @@ static void wideStore(__global float* restrict wideNodes, const uint child, cons
     }
 }
 
-// The triangles of a patch, those of them that are there.
+// The triangles of a patch, without empty lanes.
 typedef struct PatchFaces
 {
     __global const uint* m_owners;
@@ -166,9 +166,10 @@ static void growVolume(Dop* dop, const Dop* other)
     }
 }
 
-// A work-item is a child place of the wide tree's lowest level, of those from first up to last: a patch, or none from
-// patchCount on. Writes what the tree holds of it, on a CPU in volumes side by side too, and its size, m. The volume is grown
-// by a share of the size, which covers the directions of contacts that are rounding noise (see feature_cull.h).
+// Packs a child position of the wide tree's lowest level, from first up to last, per work-item: a patch, or none from
+// patchCount on. Writes the tree's data of the patch, on a CPU also as adjacent volumes, and its size, m. The volume
+// is grown by a share of the size, which covers the directions of contacts that are rounding noise (see
+// feature_cull.h).
 __kernel void patchVolumes(__global const uint* restrict faceOwners, const uint patchCount, const uint first, const uint last,
                            __global const Triangle* restrict triangles, __global const float* restrict positions,
                            __global const NormalCone* restrict vertexCones, __global const NormalCone* restrict edgeCones,
@@ -213,8 +214,8 @@ __kernel void patchVolumes(__global const uint* restrict faceOwners, const uint 
 #endif
 }
 
-// A work-item writes one number of a child place of one level, those from first up to last: a node of the level below, or none
-// from nodeCount on. below and level: that level's nodes and this one's.
+// Writes one number of a child position of one level per work-item, from first up to last: a node of the level below,
+// or none from nodeCount on. below and level: that level's nodes and this one's.
 __kernel void patchWiden(__global float* restrict wideNodes, const uint below, const uint nodeCount, const uint level,
                          const uint first, const uint last)
 {

@@ -1,13 +1,13 @@
-// Broad phase over patches on a GPU, in two launches. A group's lanes that did all of it for one cloth triangle would do one
-// thing after the other with most of the machine idle: so the walk only lists the pairs of a triangle and a patch that it may
-// touch, and the groups of the second launch (patch_cull_pairs.cl) share them out. A group walks for one triangle where there
-// are few, and else for a packet of triangles that lie near each other.
+// Broad phase over patches on a GPU, in two launches. If one group did all of the work for a cloth triangle, its
+// steps would run one after the other with most of the machine idle. The traversal therefore only lists pairs of a
+// triangle and a patch that it may touch, and the groups of the second launch share them (patch_cull_pairs.cl). A
+// group traverses for one triangle where there are few, otherwise for a packet of neighbouring triangles.
 #include "lib/patch_pairs.h"
 
 // Patches found before they are made into pairs.
 #define DRAPE_WALK_FOUND (2 * DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH)
 
-// What a group shares.
+// Local memory of a group.
 typedef struct Walkers
 {
     Team m_team;
@@ -15,7 +15,7 @@ typedef struct Walkers
     uint m_found[DRAPE_WALK_FOUND];
     uint m_foundCount;
     CullVolume m_volumes[DRAPE_PATCH_WIDTH];  // of a packet's triangles, empty where one cannot come near the obstacle
-    CullVolume m_joined;                      // of all of them, or of the one triangle
+    CullVolume m_joined;  // of all the packet's triangles, or of the single triangle
 } Walkers;
 
 // A walk over the obstacles that rest, or over one that moves.
@@ -131,7 +131,7 @@ static void joinVolumes(__local Walkers* walkers)
     *(ofRadii ? &joined->m_radius : joined->m_volume.m_high + lane) = most;
 }
 
-// Stores a volume's interval in one direction, empty where the triangle cannot come near the obstacle.
+// Stores a volume's interval in one direction, empty if the triangle cannot come near the obstacle.
 static void storeInterval(__local CullVolume* volume, const CullCorners* corners, const int near, const uint direction)
 {
     float low = INFINITY, high = -INFINITY;

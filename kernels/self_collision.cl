@@ -104,7 +104,7 @@ __kernel void selfFeatures(__global const Candidate* restrict pairs, const uint 
     }
 }
 
-// A work-item goes through its part of the pairs of one kind and lists those that touch during the step.
+// Tests the pairs of one kind, each work-item its part, and lists those that touch during the step.
 __kernel void selfTest(const uint kind, __global const FeaturePair* restrict pairs, const uint pairCapacity,
                        __global const Triangle* restrict triangles, __global const Edge* restrict edges,
                        __global const float* restrict start, __global const float* restrict end, const float separation,

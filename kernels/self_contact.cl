@@ -3,8 +3,8 @@
 #include "lib/self_tests.h"
 
 #ifndef DRAPE_CPU
-// A work-item goes through its part of the tests that the cull lists and lists the hits; the tests that need the continuous
-// test it lists in swept, in no particular order. counters->m_selfSwept must be zero before. A CPU's selfFeature is in
+// Runs the tests that the cull lists, each work-item its part, and lists the contacts. Tests that need the continuous
+// test go to `swept`, unsorted. counters->m_selfSwept must be zero before. A CPU's selfFeature is in
 // self_contact_lanes.cl.
 __kernel void selfFeature(DRAPE_SELF_ARGUMENTS, __global uint* restrict swept)
 {
@@ -16,7 +16,7 @@ __kernel void selfFeature(DRAPE_SELF_ARGUMENTS, __global uint* restrict swept)
 }
 #endif
 
-// A work-item goes through its part of the tests that selfFeature left to the continuous test and lists their hits.
+// Runs the tests that selfFeature left to the continuous test, each work-item its part, and lists their contacts.
 __kernel void selfSwept(DRAPE_SELF_ARGUMENTS, __global const uint* restrict swept)
 {
     const HitList list = DRAPE_HIT_LIST;

@@ -83,7 +83,7 @@ static int takeContact(const LaneContacts* contacts, const float* rows, const ui
     return finishContact(DRAPE_IS_CONTACT, origin, contact);
 }
 
-// As selfFeature of self_contact.cl.
+// CPU version of selfFeature in self_contact.cl.
 __kernel void selfFeature(DRAPE_SELF_ARGUMENTS, __global uint* restrict swept)
 {
     const HitList list = DRAPE_HIT_LIST;

@@ -1,10 +1,10 @@
-// Broad phase of cloths with themselves on a CPU, over patches of the cloths' own triangles: every patch walks the wide tree
-// and tests its features against those of the patches from itself on in order, a vector of lanes at a time. What is left are
-// pairs of features whose volumes over the step overlap, each once.
+// Broad phase of cloths with themselves on a CPU, over patches of the cloths' own triangles. Every patch traverses
+// the wide tree and tests its features against those of itself and of later patches, a vector of lanes at a time. The
+// output is pairs of features whose volumes over the step overlap, each once.
 #include "lib/self_pairs.h"
 #include "lib/wide_walk.h"
 
-// The cloth at hand, and the step's packed features.
+// The current cloth, and the step's packed features.
 typedef struct SelfCloths
 {
     SelfCloth m_cloth;
@@ -38,8 +38,8 @@ static const FeatureBox* cornersOf(OwnCorners* corners, const SelfCloth* cloth, 
     return own;
 }
 
-// Lanes whose features do not have the node: most features that are near each other share one, and none of these is listed.
-// rows: of the nodes of a block's features, of which each has `count`.
+// Returns the lanes whose features do not contain the node. Most features that are near each other share one, and
+// such pairs are not listed. rows: nodes of a block's features, `count` each.
 static LaneMask lanesWithout(__global const uint* rows, const uint block, const uint count, const uint node)
 {
     LaneMask without = lanesMaskSplat(1);
@@ -47,9 +47,9 @@ static LaneMask lanesWithout(__global const uint* rows, const uint block, const 
     return without;
 }
 
-// Triangle `place` of patch `own` against the features of patch `other`, which is not before it. Within a patch every node
-// meets every face from the node's side, and of two edges the one with the lesser index looks for the other. box: of that
-// patch.
+// Tests triangle `place` of patch `own` against the features of patch `other`, which is the same or a later one.
+// Within a patch every node is tested against every face from the node's side, and of two edges the one with the
+// lesser index finds the other. box: of patch `other`.
 static void pairTriangle(Team* team, const SelfCloths* cloths, OwnCorners* corners, const uint own, const uint place,
                          const uint other, const FeatureBox* box, const TestList* list)
 {

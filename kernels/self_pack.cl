@@ -3,7 +3,7 @@
 #include "lib/invalid_nodes.h"
 #include "lib/self_cull.h"
 
-// By node: groups join those of the features that they meet.
+// Stores the box by node: groups join the boxes of the features that they meet.
 static void storeNode(__global float* restrict boxes, const uint node, const FeatureBox box)
 {
     for (int i = 0; i < 3; ++i)
@@ -13,10 +13,11 @@ static void storeNode(__global float* restrict boxes, const uint node, const Fea
     }
 }
 
-// A work-group of DRAPE_PATCH_WIDTH takes a patch, or one of the empty places behind patchCount: writes its volume, in the
-// first level of the wide tree, and the boxes of its nodes at the nodes' places. Ids are those of the lanes' features,
-// DRAPE_NO_FEATURE where there is none. start: the end's positions in a discrete step. radius: m, per cloth, half the reach,
-// negative for cloths that do not collide with themselves; obstacleRadius: of the search for obstacles.
+// Packs a patch per work-group of DRAPE_PATCH_WIDTH, or one of the empty positions behind patchCount. Writes the
+// patch's volume, in the first level of the wide tree, and its nodes' boxes, by node. Ids are those of the lanes'
+// features, DRAPE_NO_FEATURE where there is none. start: the end's positions in a discrete step. radius: m, per
+// cloth, half the reach, negative for cloths that do not collide with themselves; obstacleRadius: of the search for
+// obstacles.
 __kernel __attribute__((reqd_work_group_size(DRAPE_PATCH_WIDTH, 1, 1))) void selfPack(
     __global const Patch* restrict patches, const uint patchCount, __global const uint* restrict faceIds,
     __global const uint* restrict vertexIds, __global const Triangle* restrict triangles, __global const float* start,

@@ -1,4 +1,5 @@
-// As self_pack.cl, on a CPU: a work-item packs a patch, a vector of its features at a time, and writes their boxes besides.
+// The CPU version of self_pack.cl: a work-item packs a patch, a vector of its features at a time, and also writes the
+// features' boxes.
 #include "lib/cull_packet.h"
 #include "lib/invalid_nodes.h"
 #include "lib/self_cull.h"
@@ -79,7 +80,7 @@ static void storeBoxes(__global float* restrict boxes, const uint block, const N
     }
 }
 
-// At the patch's place in the first level of the wide tree; empty where no face is valid.
+// Stores the volume at the patch's position in the first level of the wide tree; empty if no face is valid.
 static void storeVolume(__global float* restrict wideNodes, const uint patch, const NodeLanes* corners, const float radius)
 {
     __global float* out =
@@ -95,8 +96,8 @@ static void storeVolume(__global float* restrict wideNodes, const uint patch, co
     }
 }
 
-// A work-item takes a patch, or one of the empty places behind patchCount; places: all of the tree's first level. Other
-// arguments as in self_pack.cl; boxes in blocks.
+// Packs a patch, or one of the empty positions behind patchCount, per work-item; places: all of the tree's first
+// level. Other arguments as in self_pack.cl; boxes in blocks.
 __kernel void selfPack(
     __global const Patch* restrict patches, const uint patchCount, const uint places, __global const uint* restrict faceIds,
     __global const uint* restrict vertexIds, __global const uint* restrict edgeIds,

@@ -16,7 +16,8 @@ typedef struct SelfWalker
     uint m_place;
 } SelfWalker;
 
-// Lists the patches kept, where there are `least` of them, by all lanes together. Returns whether the list is within its limit.
+// Lists the kept patches if there are at least `least`; all lanes together. Returns whether the list is within its
+// limit.
 static int listPatches(__local SelfWalker* walker, const uint own, __global Candidate* restrict list, const uint capacity,
                        const uint limit, __global volatile uint* demand, const uint least)
 {
@@ -102,7 +103,8 @@ typedef struct SelfFeatures
 #define DRAPE_NEAR (8 * DRAPE_PATCH_WIDTH)
 #define DRAPE_KIND_SHIFT 31
 
-// Boxes of a patch's features of one kind, of those that are near the other patch of the pair: the others' are empty.
+// Boxes of a patch's features of one kind that are near the other patch of the pair; the boxes of other features are
+// empty.
 typedef struct NearFaces
 {
     float m_boxes[DRAPE_BOX_FLOATS * DRAPE_PATCH_WIDTH];
@@ -127,7 +129,7 @@ typedef struct NearSide
     NearFaces m_faces;
     NearVertices m_vertices;
     NearEdges m_edges;
-    uint m_near;  // whether a face is
+    uint m_near;  // true if a face is near
 } NearSide;
 
 typedef struct SelfCuller
@@ -138,7 +140,7 @@ typedef struct SelfCuller
     uint m_nearCount;
 } SelfCuller;
 
-// Puts a box in its place, an empty one where it does not meet the other patch's: then its lower bound is not finite.
+// Stores a box, or an empty one if it does not meet the other patch's: its lower bound is not finite then.
 static void putBox(__local float* boxes, const uint width, const uint place, FeatureBox box, const FeatureBox* other)
 {
     if (!boxesMeet(&box, other)) box = emptyBox();
@@ -233,7 +235,7 @@ static int gatherFaces(__local NearSide* sides, const SelfCloth* cloth, const Se
     return sides[0].m_near && sides[1].m_near;
 }
 
-// Gathers the other features of a patch, a lane each. other: the other patch's box.
+// Gathers the other features of a patch, one per lane. other: the other patch's box.
 static void gatherSide(__local NearSide* side, const SelfCloth* cloth, const SelfFeatures* features, const uint patch,
                        const FeatureBox* other)
 {
@@ -256,7 +258,7 @@ static void gatherSide(__local NearSide* side, const SelfCloth* cloth, const Sel
     }
 }
 
-// Notes a pair whose boxes overlap; where there is no room left it is tried at once.
+// Notes a pair whose boxes overlap, or tests it at once if there is no room.
 static void noteNear(__local SelfCuller* culler, const SelfCloth* cloth, const uint a, const uint b, const uint kind,
                      const TestList* list)
 {
@@ -270,7 +272,8 @@ static void noteNear(__local SelfCuller* culler, const SelfCloth* cloth, const u
     culler->m_nearB[slot] = b | (kind << DRAPE_KIND_SHIFT);
 }
 
-// Nodes of one side against faces of the other: lanes have nodes, and each DRAPE_PATCH_WIDTH of them a share of the faces.
+// Tests nodes of one side against faces of the other: lanes have nodes, and each DRAPE_PATCH_WIDTH of them a share of
+// the faces.
 static void crossNodes(__local SelfCuller* culler, const SelfCloth* cloth, __local const NearVertices* vertices,
                        __local const NearFaces* faces, const TestList* list)
 {
@@ -290,7 +293,7 @@ static void crossNodes(__local SelfCuller* culler, const SelfCloth* cloth, __loc
     }
 }
 
-// The same of edges. once: both sides are one, and of a pair the first has the lesser index.
+// Pairs the edges of two patches. once: both are the same patch, and the first edge of a pair has the lesser index.
 static void crossEdges(__local SelfCuller* culler, const SelfCloth* cloth, __local const NearEdges* own,
                        __local const NearEdges* others, const int once, const TestList* list)
 {
@@ -310,7 +313,7 @@ static void crossEdges(__local SelfCuller* culler, const SelfCloth* cloth, __loc
     }
 }
 
-// Notes the pairs of features of two patches, of one if they are the same, whose boxes overlap.
+// Notes the feature pairs of two patches, or of one with itself, whose boxes overlap.
 static void crossPatches(__local SelfCuller* culler, const SelfCloth* cloth, const SelfFeatures* features,
                          const Candidate pair, const TestList* list)
 {
@@ -374,7 +377,7 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDT
     {
         const Candidate pair = pairs[i];
         const uint next = patches[pair.m_cloth].m_mesh;
-        // What is noted is tried with its own cloth's radius.
+        // Tests the noted pairs with their own cloth's radius before it changes.
         if (next != mesh && !settleNear(&culler, &cloth, &tests, 1)) return;
         mesh = next;
         cloth.m_radius = radius[mesh];

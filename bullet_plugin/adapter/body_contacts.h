@@ -1,7 +1,5 @@
-// One body's contacts of a step, by cloth feature, as detection gave them.
-//
-// Most of a body's contacts never act in a step: one is resolved when it is needed (found_contacts.h), not before.
-// Metres, world frame.
+// One body's contacts of a step, by cloth feature, as detection gave them. Most never act in a step, so a contact is
+// resolved only when it is needed (found_contacts.h). Metres, world frame.
 #pragma once
 
 #include <cstdint>
@@ -19,21 +17,21 @@ struct FeatureContacts
 {
     const Contact* m_contacts;  // the pipeline's, until its next submit
     std::uint32_t m_count;
-    int m_nodes[3];     // of the body; -1 where unused
-    float m_leastTime;  // of impact, of all; 1 when nothing was passed
+    int m_nodes[3];     // indices of the body's nodes; -1 where unused
+    float m_leastTime;  // earliest time of impact; 1 when nothing was passed
 };
 
-// Most that a node of cloth which was tangled shortly before may have of speed after a step, m/s, relative to the cloth
-// as a whole: links that were stretched meanwhile do not throw it.
+// Largest speed after a step, m/s relative to the cloth as a whole, of a node whose cloth was tangled shortly before.
+// Keeps links that were stretched meanwhile from throwing the node.
 constexpr btScalar kMostTangledSpeed = 3;
 
-// Marks the nodes of a pair that began its step intersecting. A contact that would keep one of them on the wrong side
-// must not act.
+// Marks the nodes of a pair that began its step intersecting. A contact that would keep a marked node on the wrong
+// side must not act.
 struct TangledPair
 {
     MeshId m_obstacle;
     std::vector<unsigned char> m_wrongSide;  // by node
-    std::vector<unsigned char> m_meets;      // by node, of faces that meet the obstacle
+    std::vector<unsigned char> m_meets;      // by node: belongs to a face that meets the obstacle
 
     bool holds(const int nodes[3]) const
     {
@@ -47,35 +45,35 @@ struct TangledPair
     }
 };
 
-// A node on the wrong side of an obstacle, or of a face that is, and where it is to go.
+// A displacement for a node on the wrong side of an obstacle, or for a node of a face on the wrong side.
 struct NodePush
 {
     int m_node;
-    btVector3 m_normal;          // unit, the way to go
-    btScalar m_distance;         // m, to go along it in this step
+    btVector3 m_normal;          // unit, direction of the push
+    btScalar m_distance;         // m, to move along the normal in this step
     const btTransform* m_carry;  // see StepContact
     const btVector3* m_carriedStarts;
-    btScalar m_speedLimit;  // m/s along it, that the node may have afterwards
+    btScalar m_speedLimit;  // m/s along the normal after the push
 };
 
 struct BodyContacts
 {
     MeshId m_cloth = kNoMesh;
     btSoftBody* m_body = nullptr;
-    const ClothParts* m_parts = nullptr;                             // the mirror's, of the body's nodes
-    btScalar m_leastThickness = SIMD_INFINITY, m_mostThickness = 0;  // of the body's pairs
+    const ClothParts* m_parts = nullptr;                             // owned by the cloth's mirror
+    btScalar m_leastThickness = SIMD_INFINITY, m_mostThickness = 0;  // over the body's pairs
     std::vector<FeatureContacts> m_features;                         // in canonical order
     MotionLimit m_limit;
-    bool m_leftOut = false;              // of this step: the body collides with nothing
+    bool m_leftOut = false;              // the body collides with nothing in this step
     bool m_heldTogether = false;         // since the last detection, see stretch.h
-    bool m_obstacleJumps = false;        // one of its obstacles goes farther in the step than it is large, or turns far
+    bool m_obstacleJumps = false;        // an obstacle moves farther in the step than its size, or turns far
     bool m_mayHavePassed = false;        // a contact is left so near that a surface may have been passed
-    std::vector<TangledPair> m_tangled;  // of the body's pairs, those that are pushed apart
+    std::vector<TangledPair> m_tangled;  // the body's pairs that are pushed apart
     bool m_wasTangled = false;           // in this step or one shortly before
     std::vector<NodePush> m_pushes;
-    std::vector<Contact> m_pushContacts;  // one for each of these
+    std::vector<Contact> m_pushContacts;  // one per push
 
-    // For a body of another step; what memory it has stays.
+    // Resets the record for a body of another step. Memory is kept.
     void start(MeshId cloth, btSoftBody* body, const ClothParts& parts)
     {
         m_cloth = cloth;

@@ -10,9 +10,9 @@ namespace drape
 {
 namespace
 {
-// Bullet's iterations may be run part by part: those on velocities first, those on positions one by one, those against
-// drift last. Each call on positions derives the velocities anew from the step's start, and nothing else that a call
-// does adds up. What clusters and joints do adds up.
+// Bullet's iterations may be run part by part: those on velocities first, those on positions one by one, those
+// against drift last. Each call on positions derives the velocities anew from the step's start, and nothing else in a
+// call accumulates. Clusters and joints do accumulate.
 bool iterationsCanBeSplit(const btSoftBody& body)
 {
     return body.m_clusters.size() == 0 && body.m_joints.size() == 0;
@@ -43,7 +43,7 @@ int callsFor(const ContactRounds* rounds)
     return std::max(1, (body.m_cfg.viterations > 0) + positionIterations(rounds) + (body.m_cfg.diterations > 0));
 }
 
-// Leaves the iterations of one call; the first is 0. positions: iterations on positions in all calls.
+// Sets the iterations of one call; the first call is 0. positions: iterations on positions in all calls.
 void keepIterationsOf(int call, int positions, btSoftBody::Config& config)
 {
     const int velocities = config.viterations > 0 ? 1 : 0;
@@ -67,7 +67,7 @@ double callBullet(const ContactRounds* rounds, int call)
     return ms;
 }
 
-// Whether its last round met a worse violation than that share of the thickness.
+// Returns whether the last sweep met a violation worse than `share` of the thickness.
 bool isViolated(const ContactRounds* rounds, btScalar share)
 {
     return RoundsTeam::worst(*rounds) > share * rounds->contacts().m_leastThickness;
@@ -79,7 +79,7 @@ int mostClosingRounds(const ContactRounds* rounds)
     return kClosingRounds + static_cast<int>(std::min(kMostFurther, std::max(kLeastFurther, affordable)));
 }
 
-// Whether it needs another closing round after so many.
+// Returns whether the body needs another closing sweep after `done` sweeps.
 bool isOpen(const ContactRounds* rounds, int done)
 {
     if (done < kClosingRounds) return isViolated(rounds, kClosingTolerance);
@@ -91,7 +91,7 @@ bool obstaclesRest(const ContactRounds* rounds)
     return rounds->contacts().m_limit.obstaclesRest();
 }
 
-// Those of `from` for which it holds, another list.
+// Copies the bodies of `from` for which holds(body) is true to `to`, another list.
 template <class Holds>
 void select(const RoundsTeam::Bodies& from, RoundsTeam::Bodies& to, const Holds& holds)
 {
@@ -99,7 +99,7 @@ void select(const RoundsTeam::Bodies& from, RoundsTeam::Bodies& to, const Holds&
     std::copy_if(from.begin(), from.end(), std::back_inserter(to), holds);
 }
 
-// Leaves those for which it holds.
+// Keeps the bodies for which holds(body) is true.
 template <class Holds>
 void keep(RoundsTeam::Bodies& bodies, const Holds& holds)
 {
@@ -143,7 +143,7 @@ double BodySolver::iterate()
         if (i > 0) applyLimits(m_iterating);
         select(m_iterating, m_turn, hasContacts);
         for (ContactRounds* rounds : m_turn)
-            rounds->restart();  // what contacts pushed before the links' last pull is the links' business now
+            rounds->restart();  // the links' last pull takes over what contacts pushed before it
         m_team.gather(m_turn);
         m_team.runAndSettle(m_turn);
         m_team.scatter(m_turn);
@@ -154,8 +154,8 @@ double BodySolver::iterate()
     return bulletMs;
 }
 
-// A round after the first. The nodes of those whose obstacles rest stay with the threads; of others the limit asks
-// where all nodes are.
+// Runs a sweep after the first. Nodes whose obstacles all rest stay with the threads. For the other bodies the motion
+// limit reads every node's position.
 void BodySolver::runAgain(const Bodies& bodies)
 {
     select(bodies, m_resting, obstaclesRest);
@@ -167,8 +167,8 @@ void BodySolver::runAgain(const Bodies& bodies)
     m_team.run(m_others);
 }
 
-// Nodes without contacts do not move in a round, but what their faces pass does, and may have come near an obstacle. No
-// contact depends on where they are.
+// Limits nodes without contacts. A sweep does not move them, but it moves their faces, which may have come near an
+// obstacle. No contact depends on these nodes' positions.
 void BodySolver::holdOthers()
 {
     m_team.forBodies(m_touching,
@@ -194,8 +194,8 @@ void BodySolver::close()
         runAgain(m_open);
     }
     select(m_touching, m_open, [](const ContactRounds* rounds) { return isViolated(rounds, kClosingTolerance); });
-    // What does not converge is left to the faces and edges, which a node outside the obstacle keeps from passing in a
-    // later step.
+    // Nodes go last: contacts that do not converge leave their violation with faces and edges. A node outside the
+    // obstacle keeps its faces and edges from passing it in a later step.
     m_team.runNodes(m_open);
     m_team.scatter(m_touching);
     holdOthers();

@@ -1,28 +1,14 @@
-// One step of some bodies: Bullet's own solver for everything that Bullet knows (links, anchors, its own contacts), and
-// rounds over Drape's contacts between its iterations and after them.
+// Solves one step of some bodies. Bullet's own solver handles links, anchors and its own contacts; Gauss-Seidel
+// sweeps over Drape's contacts run between its iterations and after them.
 //
-// Why not btSoftBody::RContact and SContact: Bullet's solver never takes back what an RContact pushed, and its
-// SContact, once it acts, pulls as well as it pushes. Cloth of 33 x 33 nodes draped over a sphere then stirs for ever:
-// measured, 17 mm/s (RMS) with both, 6 with RContacts alone, less than 1 so. Bullet's default sequence also ends with
-// its links, which pull nodes back in.
+// Input: bodies after predictMotion and their contacts. Output: their positions and velocities at the step's end.
 //
-// Between the iterations, too, nodes go no farther from their paths than the motion limit allows: a contact at the edge
-// of detection's reach then has no say, whether it was found or not. Without it links pull nodes of stretched cloth
-// several times as far in an iteration, contacts that come and go at the edge of the reach take turns to push, and
-// cloth at rest on the bunny stirs at up to 2.6 mm/s (RMS) for ever; with it, at 0.3 over 2,000 steps, a slip of 2.5
-// among them.
+// Guarantee: no contact ends violated by more than kClosingTolerance if kClosingRounds sweeps suffice. Sweeps
+// continue while a violation exceeds what the next step would recover. Results are the same bits with any number of
+// threads. A body with clusters or joints is given to Bullet in one piece, with sweeps before and after.
 //
-// All bodies do an iteration before any does the next: the rounds of all are shared by the threads of a team, Bullet's
-// part is the caller's, a body at a time, those without contacts of Drape's before all others. That differs from
-// Bullet's own order only where bodies act on each other: by anchors or rigid contacts on one rigid body, or by soft
-// contacts.
-//
-// Guarantee: at the end no contact is violated by more than kClosingTolerance where kClosingRounds suffice. Where they
-// leave as much as the next step would recover, rounds go on: else cloth that hangs on one corner of an obstacle by a
-// single face comes nearer to it with every step, and is impaled in the end. The same bits with any number of threads.
-// A body with clusters or joints is given to Bullet in one piece, the rounds before and after it.
-// Cost: linear in the contacts, piterations + kClosingRounds rounds as a rule, an iteration more with piterations 1,
-// mostClosingRounds() instead at most, and those that settle what has pushed.
+// Cost: linear in the contacts; usually piterations + kClosingRounds sweeps, one iteration more with piterations 1,
+// at most mostClosingRounds() closing sweeps, and the settling passes. Reasons: docs/design_notes/contact_sweeps.md.
 #pragma once
 
 #include <cstddef>
@@ -37,18 +23,20 @@ namespace drape
 {
 constexpr int kClosingRounds = 8;
 
-// Least iterations of Bullet for a body with contacts whose iterations can be run one by one. What a single pass over
-// links and contacts leaves becomes velocity, and where a pass overshoots, the next step undoes it and leaves as much
-// on the other side: cloth of 33 x 33 nodes on a sphere stirs at 600 mm/s for ever with one pass, at 2 with two.
+// Minimum iterations of Bullet for a body with contacts whose iterations can be run one by one. The error left by a
+// single pass over links and contacts becomes velocity. Where the pass overshoots, the next step corrects it and
+// overshoots on the other side. A cloth of 33 x 33 nodes on a sphere keeps moving at 600 mm/s with one pass, at 2
+// mm/s with two.
 constexpr int kLeastIterations = 2;
 
-// Beyond these as many rounds as look at that many blocks of contacts, a millisecond or two: a body with few contacts
-// may take more rounds. Between the least and the most.
+// Budget of further sweeps, in contact blocks examined: a millisecond or two. A body with few contacts may take more
+// sweeps, between the minimum and the maximum below.
 constexpr std::size_t kFurtherLooks = std::size_t(1) << 16;
 constexpr std::size_t kLeastFurther = 24, kMostFurther = 120;
 
-// Worst violation that may be left, as a share of the thickness: after fewer than kClosingRounds, and after these. The
-// second is less than what the next step recovers, since a round's later contacts may make worse what it met.
+// Worst violation that may remain, as a share of the thickness: before kClosingRounds sweeps are done, and after. The
+// second is less than what the next step recovers, since later contacts of a sweep may increase a violation that was
+// measured earlier in it.
 constexpr btScalar kClosingTolerance = btScalar(0.01);
 constexpr btScalar kMostViolation = btScalar(0.0625);
 static_assert(kMostViolation < kRecoveredShare, "else cloth comes nearer from step to step");
@@ -77,7 +65,7 @@ private:
 
     RoundsTeam m_team;
     std::vector<std::unique_ptr<ContactRounds>> m_rounds;  // kept for their memory
-    // Of the step; of these those with contacts, and those of one iteration or round.
+    // Bodies of the step, bodies with contacts, and subsets of one iteration or sweep.
     Bodies m_all, m_touching, m_iterating, m_turn, m_open, m_resting, m_others;
 };
 }  // namespace drape

@@ -1,7 +1,5 @@
-// A cloth's faces, and which of them each node has. A link that collides counts as a face that has its second node
-// twice.
-//
-// Cost: O(n) once a topology.
+// Lists a cloth's faces and the faces of each node. A link that collides counts as a face that repeats its second
+// node. Cost: O(n) per topology.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +14,7 @@ class ClothFaces
 {
 public:
     ClothFaces() = default;
-    // triangles: three nodes each. One with a node that is not in [0, nodeCount) is no face of any node.
+    // triangles: three nodes each. A triangle with a node outside [0, nodeCount) is no face of any node.
     ClothFaces(std::vector<std::int32_t> triangles, std::size_t nodeCount)
         : m_triangles(std::move(triangles)), m_firsts(nodeCount + 2, 0)
     {
@@ -24,7 +22,8 @@ public:
         for (std::size_t i = 2; i < m_firsts.size(); ++i)
             m_firsts[i] += m_firsts[i - 1];
         m_facesOfNode.resize(m_firsts.back());
-        // A node's first is where its next face goes, until it is where the next node's begin.
+        // A node's entry of m_firsts is the position for its next face while faces are added. Afterwards it is where
+        // the next node's faces begin.
         forValid([this](std::size_t node, std::size_t face)
                  { m_facesOfNode[m_firsts[node + 1]++] = static_cast<std::uint32_t>(face); });
     }
@@ -33,7 +32,8 @@ public:
     // Three nodes each.
     const std::vector<std::int32_t>& triangles() const { return m_triangles; }
 
-    // Calls visit(nodes), nodes the face's three, for each face that has the node; again where it has it twice.
+    // Calls visit(nodes) for each face of the node, with the face's three nodes; twice for a face that repeats the
+    // node.
     template <class Visit>
     void forFacesOf(std::size_t node, const Visit& visit) const
     {
@@ -42,7 +42,7 @@ public:
     }
 
 private:
-    // Calls visit(node, face) for the nodes of each face whose three there are.
+    // Calls visit(node, face) for the nodes of each face whose three nodes are valid.
     template <class Visit>
     void forValid(const Visit& visit) const
     {
@@ -56,7 +56,7 @@ private:
     }
 
     std::vector<std::int32_t> m_triangles;
-    std::vector<std::size_t> m_firsts;  // by node, in m_facesOfNode; then the last one's end, twice
+    std::vector<std::size_t> m_firsts;  // by node, index in m_facesOfNode; then the last one's end, twice
     std::vector<std::uint32_t> m_facesOfNode;
 };
 }  // namespace drape

@@ -8,7 +8,7 @@ namespace drape
 {
 namespace
 {
-// Cuts stretches of an order of nodes in halves along their longest axis.
+// Bisects ranges of a node order along their longest axis.
 class Bisection
 {
 public:
@@ -20,7 +20,7 @@ public:
         const auto before = [&](int a, int b)
         {
             const btScalar x = place(a)[axis], y = place(b)[axis];
-            return x < y || (x == y && a < b);  // no order but this one, whatever library sorts
+            return x < y || (x == y && a < b);  // a total order, whichever library sorts
         };
         const auto at = [&](std::size_t i) { return m_order.begin() + static_cast<std::ptrdiff_t>(i); };
         std::nth_element(at(first), at(middle(first, last)), at(last), before);

@@ -1,12 +1,12 @@
-// A cloth cut into parts of neighbouring nodes, so that what is done to the nodes of one part can be done beside what
-// is done to those of another.
+// Cuts a cloth into parts of neighbouring nodes, so that several threads can work on parts side by side.
 //
-// The parts are the leaves of a complete binary tree of groups, numbered as a heap: group 1 is the whole cloth, the
-// children of group g are 2 g and 2 g + 1, and the last leafCount() groups are the leaves. A face or an edge belongs to
-// the smallest group that holds all of its nodes. What belongs to groups none of which holds the other shares no node.
-// So working from the leaves to the root, groups of one height at once, is one order of work, whoever does it.
+// The parts are the leaves of a complete binary tree of groups, numbered as a heap. Group 1 is the whole cloth, the
+// children of group g are 2 g and 2 g + 1, and the last leafCount() groups are the leaves. A face or an edge belongs
+// to the smallest group that contains all of its nodes. Two groups of which neither contains the other share no node.
+// Working from the leaves to the root, all groups of one height at once, is therefore one order of work with any
+// number of threads.
 //
-// Cost: O(n log n) once a topology. Source: recursive coordinate bisection (Berger and Bokhari 1987).
+// Cost: O(n log n) per topology. Source: recursive coordinate bisection (Berger and Bokhari 1987).
 #pragma once
 
 #include <cstddef>
@@ -19,31 +19,31 @@ namespace drape
 class ClothParts
 {
 public:
-    // Of a part. Sharing a cloth of a thousand nodes saves 0.1 ms of a step on two cores, and at rest it slips a little
-    // more often: on the bunny faster than 9 mm/s in 4 of 36 falls with parts of 256 to 1,024 nodes, in none of 12
-    // whole.
+    // Maximum nodes of a part. Sharing a cloth of a thousand nodes saves 0.1 ms of a step on two cores, but the cloth
+    // slips a little more often at rest. On the bunny it moved faster than 9 mm/s in 4 of 36 falls with parts of 256
+    // to 1,024 nodes, and in none of 12 falls as a whole.
     static constexpr std::size_t kMostNodes = 2048;
 
-    // places: of all nodes, m; where they lie at rest, or at any other time: it decides how well the parts are cut, and
-    // with them the order of work. What is no number counts as 0.
+    // places: positions of all nodes, m, at rest or at any other time. They determine how well the parts are cut and
+    // the order of work. A position that is not a number counts as 0.
     void cut(std::vector<btVector3> places);
 
     std::size_t nodeCount() const { return m_leafOf.size(); }
     std::size_t leafCount() const { return m_firsts.size() - 1; }
-    std::size_t groupCount() const { return 2 * leafCount(); }  // with a group 0 that has nothing
+    std::size_t groupCount() const { return 2 * leafCount(); }  // includes the unused group 0
     std::size_t firstLeaf() const { return leafCount(); }
 
-    // Nodes leaf by leaf; those of the leaf i are from firstNode(i) to firstNode(i + 1).
+    // Nodes leaf by leaf: leaf i has those from firstNode(i) to firstNode(i + 1).
     const std::vector<int>& order() const { return m_order; }
     std::size_t firstNode(std::size_t leaf) const { return m_firsts[leaf]; }
 
-    // Of a feature with these nodes, -1 where it has fewer than three.
+    // Returns the group of a feature. nodes: -1 beyond the feature's last node.
     std::size_t groupOf(const int nodes[3]) const
     {
         std::size_t group = m_leafOf[static_cast<std::size_t>(nodes[0])];
         for (int k = 1; k < 3 && nodes[k] >= 0; ++k)
         {
-            // Of a group and one of the same height or lower: up until they are one.
+            // Climbs from both groups to their common ancestor; one is at the other's height or lower.
             std::size_t other = m_leafOf[static_cast<std::size_t>(nodes[k])];
             while (group != other)
             {
@@ -57,7 +57,7 @@ public:
     }
 
 private:
-    std::vector<std::size_t> m_leafOf;  // by node, the group
+    std::vector<std::size_t> m_leafOf;  // by node, its leaf group
     std::vector<int> m_order;
     std::vector<std::size_t> m_firsts{0, 0};
 };

@@ -12,8 +12,7 @@ namespace drape
 {
 namespace
 {
-// How many times as many tests as ordinary motion needs cloth may make that came apart, or is beside an obstacle that
-// jumps.
+// Factor on the tests that ordinary motion needs, for cloth that came apart or is beside an obstacle that jumps.
 constexpr float kMostAllowance = 8;
 
 // Returns whether an obstacle goes twice its size (m) in a step, or turns by more than a right angle.
@@ -24,7 +23,7 @@ bool jumps(const BodyMotion& motion, btScalar size)
            turn[0][0] + turn[1][1] + turn[2][2] < 1;
 }
 
-// Whether contacts could move any of its nodes.
+// Returns whether contacts could move any of the body's nodes.
 bool anyMoves(const btSoftBody& body)
 {
     if (!(body.m_sst.sdt > 0)) return false;
@@ -92,7 +91,8 @@ void CollisionStep::giveBackRoom()
     m_uploads = std::vector<Upload>();
 }
 
-// For an obstacle whose vertices move in this step the cloth has a mesh and starts of its own.
+// Makes the pipeline's pair. Beside an obstacle whose vertices move in this step, the cloth has a mesh and starts of
+// its own.
 CollisionStep::Pair CollisionStep::makePair(const PairNote& note, const ClothMirror& cloth, MeshId obstacle)
 {
     const ObstacleMirror& mirror = m_state.obstacleMirror(note);
@@ -181,9 +181,9 @@ void CollisionStep::begin(const std::vector<PairNote>& notes)
     if (!m_pairs.empty()) submit(Detection::First);
 }
 
-// How far from its path a node of the pair's cloth may be, m; negative where detection is to leave out no contact. One
-// of pinned nodes alone is not held, so that it can stand for no other, and neither are some of a cloth that is pushed
-// out of an obstacle.
+// Returns how far a node of the pair's cloth may be from its path, m; negative where detection must keep every
+// contact. Contacts of pinned nodes alone are not enforced, so they can replace no other. Some contacts of a cloth
+// that is pushed out of an obstacle are not enforced either.
 float CollisionStep::tubeOf(const Pair& pair)
 {
     const BodyContacts& body = *bodyOf(pair.m_cloth);
@@ -204,12 +204,13 @@ void CollisionStep::submit(Detection detection)
     m_state.pipeline().submit();
 }
 
-// Takes the contacts of the detection under way; of another one where bodies were held together, as they are now.
+// Takes the contacts of the current detection. If that holds bodies together, detects again and takes the new
+// contacts.
 void CollisionStep::receiveHeld()
 {
     receiveAll();
     if (!m_heldTogether) return;
-    // Those that are looked at again are not left out yet.
+    // Bodies that are examined again are not left out yet.
     StepStatistics& statistics = m_state.m_statistics;
     const auto isLeftOut = [](const BodyContacts& body) { return body.m_leftOut; };
     statistics.m_clothsLeftOut = std::size_t(std::count_if(m_bodies.begin(), m_bodies.end(), isLeftOut));
@@ -267,7 +268,7 @@ float CollisionStep::allowanceOf(MeshId cloth) const
     return isApart || body.m_heldTogether || body.m_obstacleJumps ? kMostAllowance : HUGE_VALF;
 }
 
-// Waits for the detection under way and takes its contacts in place of any earlier ones of this step.
+// Waits for the current detection. Its contacts replace any earlier ones of this step.
 void CollisionStep::receiveAll()
 {
     for (BodyContacts& body : m_bodies)
@@ -349,8 +350,8 @@ bool CollisionStep::cutStrayed(const std::vector<bool>& strayed, Cut cut)
     return any;
 }
 
-// After the last cut. Bodies whose paths still pass a surface are checked where they are in the next step; but for what
-// is at nodes that go where an app takes them.
+// Reports bodies whose paths still pass a surface after the last cut. The next step checks them where they are,
+// except at nodes that the app moves.
 void CollisionStep::reportPassed(const std::vector<bool>& strayed)
 {
     for (std::size_t i = 0; i < m_bodies.size(); ++i)
@@ -377,7 +378,7 @@ void CollisionStep::checkStrayed()
     for (BodyContacts& body : m_bodies)
         strayed.push_back((body.m_mayHavePassed && !body.m_wasTangled) || body.m_limit.strayed(*body.m_body));
     if (std::find(strayed.begin(), strayed.end(), true) == strayed.end()) return;
-    // What is reported stays what the solver was given.
+    // Keeps the reported contacts as the solver received them.
     m_state.m_found.keepList();
     const StepStatistics before = m_state.m_statistics;
     for (int detections = 1;; ++detections)

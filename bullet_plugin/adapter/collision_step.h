@@ -24,16 +24,16 @@ public:
 
     void begin(const std::vector<PairNote>& notes);
     void finish();
-    // After the bodies were solved. Where links pulled nodes far off their predicted paths, looks again along the paths
-    // that they really took, and ends them before what they would have passed.
+    // Detects again, once the bodies are solved, along the real paths of bodies whose links pulled nodes far off
+    // their predicted paths. Ends those paths before anything that they would have passed.
     void checkStrayed();
-    // After finish(): says so in the statistics where the body has no pair in this step, but nodes that are still not
-    // finite, as they were when it had one.
+    // Reports, after finish(), a body without a pair in this step whose nodes are still not finite, as they were when
+    // it had one.
     void reportInvalid(const btSoftBody& body);
-    // Last of a step, after the solver's: takes out of velocities what pushes gave, and remembers where nodes are.
+    // Ends a step, after the solver: removes from velocities what pushes gave, and records the nodes' positions.
     void end();
 
-    // As before the first begin().
+    // Restores the state before the first begin().
     void clear();
     // Gives back the memory of earlier steps' bodies. Before begin().
     void giveBackRoom();
@@ -55,9 +55,8 @@ private:
     struct Upload
     {
         MeshId m_mesh;
-        std::size_t m_body;  // index in m_bodies
-        const btVector3*
-            m_starts;  // where they start, by node; null: where Bullet has them, and their paths are recorded
+        std::size_t m_body;         // index in m_bodies
+        const btVector3* m_starts;  // start positions by node; null: Bullet's own, and their paths are recorded
     };
 
     void addPair(const PairNote& note);

@@ -36,7 +36,7 @@ void limitSpeeds(btSoftBody& body, bool leftOut)
     for (int i = 0; i < body.m_nodes.size(); ++i)
     {
         btSoftBody::Node& node = body.m_nodes[i];
-        if (!(movableInverseMass(node) > 0)) continue;  // it goes where the app takes it
+        if (!(movableInverseMass(node) > 0)) continue;  // the app moves it
         const btScalar speed = (node.m_v - common).length();
         if (speed > kMostTangledSpeed) node.m_v = common + (node.m_v - common) * (kMostTangledSpeed / speed);
     }
@@ -69,8 +69,8 @@ void CollisionStep::checkStarts()
         preparePushes(body);
 }
 
-// Moves the predicted ends of nodes that are pushed, so that detection and the limit of motion see where they go, and
-// makes contacts of the pushes, so that links do not pull the nodes back.
+// Moves the predicted ends of nodes that are pushed, so that detection and the motion limit see where they go. Makes
+// contacts of the pushes, so that links do not pull the nodes back.
 void CollisionStep::preparePushes(BodyContacts& body)
 {
     for (NodePush& push : body.m_pushes)
@@ -126,8 +126,8 @@ void CollisionStep::addPushes(BodyContacts& body)
     body.m_features.insert(body.m_features.begin(), pushes.begin(), pushes.end());  // nodes are first
 }
 
-// A body that needs too many tests. One that is not of its own size is held together, and looked at again. Where that
-// is not enough it is left out of the step, which is told once, until a step takes it again.
+// Handles a body that needs too many tests. A body that has changed its size is held together and detected again. If
+// that is not enough, the body is left out of the step. This is reported once, until a step includes it again.
 void CollisionStep::leaveOut(std::size_t index)
 {
     BodyContacts& body = m_bodies[index];
@@ -153,8 +153,8 @@ void CollisionStep::leaveOut(std::size_t index)
     m_state.log(line);
 }
 
-// Cloths that collided with nothing in this step, or whose nodes were not all looked at, are checked before they count
-// as guarded again.
+// Marks cloths that collided with nothing in this step, or whose nodes were not all checked: they are checked before
+// they count as guarded again.
 void CollisionStep::markUnguarded()
 {
     std::set<std::size_t> leftOut;  // a body has a mesh for each obstacle that deforms

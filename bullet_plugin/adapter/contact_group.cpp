@@ -89,7 +89,7 @@ ContactGroup::Row ContactGroup::makeRow(const RoundsNodes& nodes, const Block& b
     return row;
 }
 
-// Of the row's point of the cloth.
+// Returns the position of the row's point of the cloth at the step's start.
 btVector3 ContactGroup::startOf(const RoundsNodes& nodes, const Row& row)
 {
     const std::vector<btVector3>& starts = nodes.m_contacts->m_limit.paths().m_start;
@@ -102,7 +102,7 @@ btVector3 ContactGroup::startOf(const RoundsNodes& nodes, const Row& row)
     return start;
 }
 
-// Returns by how much the obstacle's motion in the step moves that point, m.
+// Returns how far the obstacle's motion in the step moves the row's point, m.
 btVector3 ContactGroup::carriedFrom(const RoundsNodes& nodes, const Row& row)
 {
     if (!row.m_carriedStarts) return row.m_carry ? *row.m_carry * row.m_start - row.m_start : btVector3(0, 0, 0);
@@ -144,7 +144,7 @@ btScalar ContactGroup::violation(const RoundsNodes& nodes, const Row& row)
     return row.m_level - row.m_normal.dot(way);
 }
 
-// Takes the contact's plane where its features are nearest now; the same plane for the block.
+// Renews the contact's plane where its features are nearest now; the block gets the same plane.
 void ContactGroup::renewPlane(const RoundsNodes& nodes, Row& row, Block& block, int lane)
 {
     float places[3][3];
@@ -193,7 +193,7 @@ bool ContactGroup::projectNodes(RoundsNodes& nodes, Row& row, btScalar& worst)
     if (!(violation > 0) && !(row.m_multiplier > 0)) return false;  // also for NaN
     worst = std::max(worst, violation * row.m_mended);
     const btScalar pushed = std::max(btScalar(0), row.m_multiplier + violation * row.m_inverseMobility);
-    // Friction: takes the point's motion along the surface back, within the cone. A push leaves that motion as it is.
+    // Friction removes the point's motion along the surface, within the cone. A push does not change that motion.
     Quad hold = held - (way - normal * along - carried) * row.m_inverseMobility;
     const btScalar most = row.m_friction * pushed;
     const btScalar wanted2 = dot(hold, hold);
@@ -211,7 +211,7 @@ bool ContactGroup::projectNodes(RoundsNodes& nodes, Row& row, btScalar& worst)
     return true;
 }
 
-// How far each lane's contact may be violated, m: no less than it is.
+// Returns an upper bound of each lane's violation, m.
 inline Lanes ContactGroup::excessOf(const Block& block, const btVector3* places)
 {
     if (block.m_count == 1) return excessOfNodes<1>(block, places);
@@ -234,8 +234,8 @@ inline Lanes ContactGroup::excessOfNodes(const Block& block, const btVector3* pl
     return block.m_level - (block.m_normal[0] * at[0] + block.m_normal[1] * at[1] + block.m_normal[2] * at[2]);
 }
 
-// Projects the contacts of a block that are due, in order: those that push and those that may be violated. Returns the
-// worst violation, 0 without one.
+// Projects the due contacts of a block in order: those that push and those that may be violated. Returns the worst
+// violation, or 0.
 btScalar ContactGroup::projectBlock(RoundsNodes& nodes, std::size_t index, unsigned due)
 {
     Block& block = m_blocks[index];
@@ -336,7 +336,7 @@ void ContactGroup::limitSpeed(const RoundsNodes& nodes, const Row& row)
                      row.m_normal) *
                  row.m_weights[k];
     const btScalar excess = speed - row.m_speedLimit;
-    if (!(excess > 0) || !(row.m_inverseMobility > 0)) return;  // a plane taken anew may rest on pinned nodes alone
+    if (!(excess > 0) || !(row.m_inverseMobility > 0)) return;  // a renewed plane may rest on pinned nodes alone
     for (int k = 0; k < row.m_count; ++k)
     {
         const RoundsNodes::Moved& moved = nodes.m_moved[static_cast<std::size_t>(row.m_moved[k])];

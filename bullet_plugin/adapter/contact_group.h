@@ -1,11 +1,10 @@
-// Gauss-Seidel over some of a body's contacts, on positions: those whose nodes lie in one group of the cloth's
-// (cloth_parts.h), in canonical order.
+// Runs Gauss-Seidel sweeps on positions over the contacts of one group of a cloth (cloth_parts.h), in canonical
+// order.
 //
-// What a contact does, and why, is told in contact_rounds.h. Most contacts never act in a step. A look goes over them
-// by blocks of one cloth feature, in float32 and with a margin for rounding; only for those that may be violated, or
-// push already, there is a row, made when it is first needed. The results are those of projecting every contact. Groups
-// that share no node may be worked on side by side: they write nothing of RoundsNodes but what belongs to their own
-// nodes.
+// contact_rounds.h explains what a contact does and why. Most contacts never act in a step. A sweep tests them in
+// blocks of one cloth feature, in float32 with a margin for rounding. A contact gets a row when it is first found
+// violated or pushing. The results equal those of projecting every contact. Groups that share no node may run side by
+// side: each writes only its own nodes' entries of RoundsNodes.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +16,8 @@
 
 namespace drape
 {
-// What the groups of a body share in a step: its nodes that contacts refer to, numbered leaf by leaf. Where they are is
-// in m_places: Bullet's nodes are far apart.
+// Data that the groups of a body share in a step: the nodes that contacts refer to, numbered leaf by leaf. m_places
+// holds their positions, since Bullet's nodes are far apart in memory.
 struct RoundsNodes
 {
     struct Moved
@@ -32,14 +31,15 @@ struct RoundsNodes
     btSoftBody* m_body = nullptr;
     std::vector<int> m_movedOfNode;  // index in m_moved, -1 for none
     std::vector<Moved> m_moved;
-    std::vector<btVector3> m_places;       // of m_moved
-    std::vector<unsigned char> m_shifted;  // likewise: in this round
-    float m_margin = 0;                    // m, of the blocks' levels, for rounding
+    std::vector<btVector3> m_places;       // by moved node
+    std::vector<unsigned char> m_shifted;  // by moved node: moved in this sweep
+    float m_margin = 0;                    // m, rounding margin of the blocks' levels
 };
 
-// Share of a movable node's inverse mass that a contact's mobility counts as more than it is, where all of the rest of
-// its point is held; in proportion where less is. A node that moves little of the point is then not thrown far for it:
-// at most 2.8 times the violation in a round, at a fifth of the weight, and the less the smaller its weight.
+// Share of a movable node's inverse mass that is added to a contact's mobility where the rest of its point is fixed;
+// proportionally less where less of it is fixed. It keeps a node with little weight in the point from being thrown
+// far. The node moves at most 2.8 times the violation in a sweep, at a weight of a fifth, and less the smaller its
+// weight.
 constexpr btScalar kHeldSoftness = btScalar(0.04);
 
 constexpr btScalar kNearShare = btScalar(0.25);
@@ -47,11 +47,11 @@ constexpr btScalar kNearShare = btScalar(0.25);
 class ContactGroup
 {
 public:
-    // For a body of another step; memory is kept.
+    // Resets the group for a body of another step; memory is kept.
     void clear();
-    // Features in canonical order, of nodes first. They stay where they are until the last look.
+    // Adds a feature; features come in canonical order, nodes first. They must stay in place until the last sweep.
     void add(const FeatureContacts& feature) { m_features.push_back(&feature); }
-    // Once, after the last feature; the nodes' margin is known then.
+    // Builds the blocks. Call once, after the last feature, when the nodes' margin is known.
     void makeBlocks(const RoundsNodes& nodes);
 
     bool empty() const { return m_features.empty(); }
@@ -62,33 +62,33 @@ public:
         NodesAndFaces,
         Edges
     };
-    // Looks at every contact of such features once and projects those that are due. Returns the worst violation met, m,
-    // of what its nodes can mend. Where the stage is another one than before, nothing is pushed yet.
+    // Tests every contact of these features once and projects those that are due. Returns the worst violation met, m,
+    // as far as the contact's nodes can correct it. A new stage begins with no pushes.
     btScalar look(RoundsNodes& nodes, unsigned stage, Kinds kinds);
-    // Lists, for settle(), the contacts that have pushed in this stage and whose planes were taken anew. Returns
-    // whether there are any.
+    // Lists, for settle(), the contacts that have pushed in this stage and whose planes were renewed. Returns whether
+    // there are any.
     bool listSettling();
-    // Projects these once more.
+    // Projects the listed contacts once more.
     void settle(RoundsNodes& nodes);
-    // Takes out of the nodes' velocities what a contact gained by recovering a depth that the step began with.
+    // Removes from the nodes' velocities what a contact gained by recovering a depth that the step began with.
     void limitSpeeds(const RoundsNodes& nodes) const;
-    // Returns whether a contact that has pushed is left with less than kNearShare of the thickness between its
-    // features' points, so that the features may have passed each other.
+    // Returns whether a contact that has pushed ends with less than kNearShare of the thickness between its features'
+    // points, so that the features may have passed each other.
     bool mayHavePassed(const RoundsNodes& nodes) const;
 
 private:
-    // Contacts of one cloth feature side by side; lanes beyond the last one are never violated. The gap is
-    // n.(x0 + w1 (x1 - x0) + w2 (x2 - x0)) - level. The level is raised by a margin for rounding.
+    // Contacts of one cloth feature side by side; lanes beyond the last one are never violated. The gap is n.(x0 + w1
+    // (x1 - x0) + w2 (x2 - x0)) - level. The level is raised by a margin for rounding.
     struct Block
     {
-        Block() {}  // leaves everything to who adds it
+        Block() {}  // uninitialised: the code that adds the block fills it
 
         Lanes m_normal[3];
         Lanes m_level;
         Lanes m_weights[2];  // of the second and third node
-        int m_moved[3];      // the first one again where unused
-        int m_count;         // of nodes
-        int m_lanes;         // in use
+        int m_moved[3];      // indices of moved nodes; the first one again where unused
+        int m_count;         // number of nodes
+        int m_lanes;         // lanes in use
         const Contact* m_contacts;
     };
     // Indices in m_rows by a block's lanes, -1 for none.
@@ -96,27 +96,27 @@ private:
     {
         int m_row[kLanes] = {-1, -1, -1, -1};
     };
-    // A contact that acts. All is seen from where its point of the cloth, sum w x, was at the step's start.
+    // A contact that acts. Positions are relative to its point of the cloth, sum w x, at the step's start.
     struct Row
     {
         btVector3 m_normal;
         btVector3 m_start;
-        btVector3 m_carried;  // m, along the surface, what the obstacle's motion in the step does to it
-        btVector3 m_held;     // by friction, in this stage, in units of the multiplier
+        btVector3 m_carried;  // m, along the surface, displacement by the obstacle's motion in the step
+        btVector3 m_held;     // friction applied in this stage, in units of the multiplier
         btScalar m_weights[3];
-        btScalar m_shares[3];  // of a unit multiplier, by node
+        btScalar m_shares[3];  // by node, displacement per unit multiplier
         int m_moved[3];
         int m_count;
         btScalar m_level;            // m, least n.(sum w x - start)
-        btScalar m_inverseMobility;  // of what a unit multiplier moves the weighted point by; 0: nothing moves
-        btScalar m_mended;           // share of a violation that a push takes away: 1 where no node is held
+        btScalar m_inverseMobility;  // of the weighted point per unit multiplier; 0: nothing moves
+        btScalar m_mended;           // share of a violation that a push corrects: 1 where no node is fixed
         btScalar m_friction;
         btScalar m_multiplier;  // pushed in this stage
-        unsigned m_stage;       // for which the plane was renewed
+        unsigned m_stage;       // in which the plane was renewed
         bool m_renewed;         // in any stage
         bool m_pushed;          // in any stage
-        btScalar m_speedLimit;  // m/s outwards when it pushed
-        btScalar m_distance;    // m, to keep from the contact's point: the thickness and the target
+        btScalar m_speedLimit;  // m/s outwards when the contact pushed
+        btScalar m_distance;    // m, distance to keep from the contact's point: thickness plus target
         const btTransform* m_carry;
         const btVector3* m_carriedStarts;
     };
@@ -143,13 +143,13 @@ private:
 
     std::vector<const FeatureContacts*> m_features;
     std::vector<Block> m_blocks;         // in canonical order
-    std::size_t m_nodeBlocks = 0;        // of features of one node
-    std::size_t m_faceBlocks = 0;        // of those and of three
-    std::vector<BlockRows> m_rowsOf;     // of each block
-    std::vector<unsigned char> m_holds;  // likewise: a bit for each lane whose row has pushed in this stage
+    std::size_t m_nodeBlocks = 0;        // blocks of node features
+    std::size_t m_faceBlocks = 0;        // blocks of node and face features
+    std::vector<BlockRows> m_rowsOf;     // by block
+    std::vector<unsigned char> m_holds;  // by block: a bit for each lane whose row has pushed in this stage
     std::vector<Row> m_rows;
     std::vector<std::size_t> m_holding;  // blocks with rows that have pushed in this stage
-    std::vector<Row*> m_settling;        // of those the rows whose planes were taken anew; until the next look
-    unsigned m_stage = 0;                // of the last look
+    std::vector<Row*> m_settling;        // their rows whose planes were renewed; until the next sweep
+    unsigned m_stage = 0;                // of the last sweep
 };
 }  // namespace drape

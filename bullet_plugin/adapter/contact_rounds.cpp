@@ -7,13 +7,13 @@ namespace drape
 {
 namespace
 {
-// More than what the two ways of computing a violation round apart, as a share of the coordinates.
+// Bound, as a share of the coordinates, on the rounding difference between the two computations of a violation.
 constexpr float kRounding = 256 * std::numeric_limits<float>::epsilon();
 
-// From how many blocks of contacts on sharing a step's rounds saves more than waking threads takes, which is up to 50
-// us on a virtual machine: a round over so many takes 15.
+// Minimum contact blocks for sharing a step's sweeps among threads. A sweep over that many takes 15 us. Waking
+// threads takes up to 50 us per step on a virtual machine.
 constexpr std::size_t kLeastShared = 512;
-// The same of nodes, for what a step does to each a dozen times: 3 ns each.
+// Minimum nodes for sharing the passes over nodes. A step makes a dozen such passes, at 3 ns a node.
 constexpr std::size_t kLeastNodesShared = 8192;
 
 float largestCoordinate(const btVector3& v)
@@ -59,7 +59,7 @@ void ContactRounds::begin()
     numberMoved();
 }
 
-// Leaf by leaf, so that threads that work on different leaves seldom write to one line of a cache.
+// Numbers the moved nodes leaf by leaf, so that threads on different leaves seldom write to the same cache line.
 void ContactRounds::numberMoved()
 {
     const NodePaths& paths = m_contacts->m_limit.paths();
@@ -85,7 +85,7 @@ void ContactRounds::numberMoved()
     m_nodes.m_margin = kRounding * (farthest + static_cast<float>(m_contacts->m_mostThickness));
 }
 
-// Takes over where the nodes are now. One thread for a body: Bullet, which has written them, reads them next.
+// Reads the nodes' positions. One thread handles a body: Bullet has written its nodes and reads them next.
 void ContactRounds::gather()
 {
     for (std::size_t i = 0; i < m_nodes.m_moved.size(); ++i)
@@ -106,7 +106,7 @@ void ContactRounds::scatter()
     }
 }
 
-// Nodes of a leaf, where the body's limit says no more of others.
+// Limits the motion of a leaf's nodes. Only for bodies whose limit needs no other nodes.
 void ContactRounds::keepNear(std::size_t leaf)
 {
     for (std::size_t i = m_firstMoved[leaf]; i < m_firstMoved[leaf + 1]; ++i)
@@ -150,7 +150,7 @@ void ContactRounds::climb(std::size_t leaf, Pass pass)
     for (std::size_t group = m_parts->firstLeaf() + leaf;; group /= 2)
     {
         if (!m_groups[group].empty()) work(group, pass);
-        // The second of two halves goes on, and sees what the first one wrote.
+        // The second half to finish continues, and sees what the first one wrote.
         if (group == 1 || !m_halfDone[group / 2].exchange(true, std::memory_order_acq_rel)) return;
         m_halfDone[group / 2].store(false, std::memory_order_relaxed);
     }

@@ -14,7 +14,7 @@ namespace
 // Steps that the mesh of a pair without a moving vertex is kept: two seconds at 60 steps a second.
 constexpr std::uint64_t kKeepSteps = 120;
 
-// Nodes that a thread looks at in one go.
+// Nodes that a thread processes per turn.
 constexpr std::size_t kNodesPerJob = 256;
 
 // A node's start in the frame of the obstacle's positions. Whole within `whole` of the surface, fading to nothing at

@@ -1,12 +1,13 @@
-// Computes where a cloth's nodes start in a step, as an obstacle sees them whose vertices move in that step.
+// Computes where a cloth's nodes start in a step, relative to an obstacle whose vertices move in that step. Detection
+// treats the obstacle as resting at the step's end; a rigid motion would be one transform of all starts
+// (kernels/lib/rigid_motion.h).
 //
-// Why: in detection an obstacle rests as it is at the step's end, and the cloth moves relative to it. What a rigid
-// motion does to a node's start is one transform for all nodes (kernels/lib/rigid_motion.h). Where vertices move each
-// on their own, a node within reach of the surface starts where it would be had it gone along with the surface's
-// nearest place, turned as the triangle turns: on the same side and as far away as it was. Farther out the motion
-// fades, and nodes that the surface cannot come near to in the step start where they are. These starts are a pair's
-// own, so the pair has a mesh of the cloth of its own in the pipeline, whose contacts go to the same body. Cost: a
-// second mesh while the obstacle moves so, and O(log n) a node near it. The same bits with any number of threads.
+// A node within reach of the surface starts where it would be had it moved along with the surface's nearest point,
+// turned as the triangle turns: on the same side and at the same distance. Farther out the motion fades; nodes beyond
+// the surface's reach in the step keep their starts.
+//
+// The pair has its own mesh of the cloth in the pipeline, whose contacts go to the same body. Cost: a second mesh
+// during such motion, and O(log n) per node near the obstacle. The same bits with any number of threads.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +27,7 @@ struct DeformedPair
 {
     MeshId m_mesh = kNoMesh;           // of the cloth, for this obstacle alone
     std::vector<btVector3> m_starts;   // by node, m: what the pipeline takes for the start
-    std::vector<btVector3> m_carried;  // where the obstacle's whole motion carries it
+    std::vector<btVector3> m_carried;  // position to which the obstacle's whole motion carries it
     std::uint64_t m_lastStep = 0;
 };
 
@@ -40,8 +41,8 @@ public:
 
     // Removes the meshes of pairs that no vertices moved in for long. Before the step's first update().
     void beginStep();
-    // The pair's own mesh and starts in this step, for an obstacle with a before(). reach: m, of contacts. The result
-    // stays where it is until the next beginStep().
+    // Returns the pair's own mesh and starts in this step, for an obstacle with a before(). reach: m, of contacts.
+    // The result stays valid until the next beginStep().
     const DeformedPair& update(const ClothMirror& cloth, const ObstacleMirror& obstacle, const BodyMotion& motion,
                                bool kinematic, btScalar reach);
 

@@ -40,7 +40,7 @@ bool mayCollide(const btCollisionObject& a, const btCollisionObject& b)
            (q->m_collisionFilterGroup & p->m_collisionFilterMask);
 }
 
-// Of the body's faces, else of its links.
+// Returns the mean length of the body's face edges, or of its links if it has no faces.
 double meanEdgeOf(const btSoftBody& cloth)
 {
     double sum = 0;
@@ -173,7 +173,7 @@ MeshProbe* Diagnosis::probeOf(const btCollisionShape& shape)
     return probe.get();
 }
 
-// Checks the two at their present places, where the next step begins.
+// Checks the two at their current positions, where the next step begins.
 void Diagnosis::addIntersections(const btSoftBody& cloth, const btCollisionObject& object,
                                  const btCollisionShape& shape, const btTransform& pose)
 {
@@ -210,12 +210,12 @@ void Diagnosis::addIntersections(const btSoftBody& cloth, const btCollisionObjec
         add(pair + format("%zu pairs of the cloth's faces or links and the mesh's triangles intersect, %zu of %d nodes "
                           "are inside; %s",
                           pairs, inside, cloth.m_nodes.size(),
-                          closed ? "the mesh is closed, so that nodes that are not held are pushed out"
-                                 : "the mesh is open, so that nothing tells which side is right"));
+                          closed ? "the mesh is closed, so that nodes that are not pinned are pushed out"
+                                 : "the mesh is open, so that the right side is unknown"));
     else if (inside == std::size_t(cloth.m_nodes.size()) && inside > 0)
         add(pair +
-            "the cloth is wholly inside of the closed mesh, and stays there unless Plugin::setOneSided says "
-            "that only its front is solid");
+            "the cloth is wholly inside the closed mesh, and stays there unless Plugin::setOneSided declares "
+            "only its front solid");
 }
 }  // namespace
 

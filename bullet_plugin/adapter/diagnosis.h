@@ -1,8 +1,8 @@
-// Lists what is wrong with a world, as far as Drape can see: one line each, for a person.
+// Lists the problems of a world that Drape can detect: one line each, for a person.
 //
-// Input: a world between steps, before or after its first. Cost: a look at every pair of a soft body and another
-// object, and, where their boxes meet, an exact check of their triangles: milliseconds to seconds, for no step. Errors:
-// exceptions pass through.
+// Input: a world between steps, before or after its first. Cost: a check of every pair of a soft body and another
+// object and, where their boxes meet, an exact check of their triangles: milliseconds to seconds, outside any step.
+// Errors: exceptions pass through.
 #pragma once
 
 #include <string>

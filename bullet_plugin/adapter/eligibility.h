@@ -1,4 +1,4 @@
-// Which pairs Drape handles. Every other pair goes to Bullet's own algorithm, with one of these reasons.
+// Decides which pairs Drape handles. Bullet's own algorithm handles every other pair, for one of these reasons.
 #pragma once
 
 #include "BulletSoftBody/btSoftBody.h"
@@ -7,30 +7,29 @@ namespace drape
 {
 class PluginState;
 
-// Null when Drape handles the pair, else the reason in words. `shape` is the shape that meets the cloth: the object's
-// own, or the child of its compound. Cost: a few comparisons, but of a body without faces a look at its leading links
-// that are bending links.
+// Returns null if Drape handles the pair, else the reason in words. `shape` is the shape that meets the cloth: the
+// object's own, or the child of its compound. Cost: a few comparisons; for a body without faces also a check of its
+// leading links, which are bending links.
 const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
                            const btCollisionShape& shape);
 
-// Whether Bullet's own algorithm finds a mesh at that pose, the object's own or a compound's child: it takes every mesh
-// to be where its object is.
+// Returns whether Bullet's own algorithm finds a mesh at that pose: the object's own, or a compound child's. Bullet
+// assumes that every mesh is where its object is.
 bool stockCanTake(const btCollisionObject& obstacle, const btTransform& pose);
 
-// Whether Drape handles the soft body beside an obstacle that it handles.
+// Returns whether Drape handles the soft body beside an obstacle that it handles.
 bool handlesCloth(const PluginState& state, const btSoftBody& cloth);
 
-// The same where a solver of the plugin is known to step it.
+// Returns whether handlesCloth() and a solver of the plugin is known to step the body.
 bool handlesSteppedCloth(const PluginState& state, const btSoftBody& cloth);
 
-// Whether Drape handles an obstacle with that shape beside cloth that it handles.
+// Returns whether Drape handles an obstacle with that shape beside cloth that it handles.
 bool handlesObstacle(const btCollisionObject& obstacle, const btCollisionShape& shape);
 
-// Whether Drape handles the cloth and any leaf of the obstacle's shape, which may be a compound.
+// Returns whether Drape handles the cloth and any leaf of the obstacle's shape, which may be a compound.
 bool handlesAny(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
                 const btCollisionShape& shape);
 
-// Whether the two answer each other's touch: not objects that ignore each other, not where either side has no contact
-// response.
+// Returns whether the two respond to contact: neither ignores the other, and both have contact response.
 bool respond(const btSoftBody& cloth, const btCollisionObject& obstacle);
 }  // namespace drape

@@ -22,8 +22,8 @@ btScalar gapAt(const StepContact& contact, const btVector3* places, const btTran
     return contact.m_normal.dot(carried(carry, at) - contact.m_point) - contact.m_thickness;
 }
 
-// Both gaps, along the contact's normal. A feature that slid around an edge of the obstacle began behind the plane of
-// its contact without having been inside the obstacle: then the depth at the predicted end is all that is known.
+// Sets both gaps along the contact's normal. A feature that slid around an edge of the obstacle began behind its
+// contact's plane without having been inside the obstacle. Only the depth at the predicted end is known then.
 void setGaps(const btSoftBody& body, const NodePaths& paths, StepContact& contact)
 {
     contact.m_endGap = gapAt(contact, paths.m_end.data(), nullptr);

@@ -1,8 +1,8 @@
-// The contacts that detection found last, and what Bullet calls the meshes they name.
+// The contacts of the last detection, and Bullet's objects for the meshes that they name.
 //
-// Job: resolve single contacts for those that work with them, and all of them for Plugin::contacts(), each only when it
-// is asked for. Input: the pipeline's list, which stays the pipeline's: it counts until the pipeline's next submit.
-// Cost: of what is resolved.
+// Job: resolve single contacts for the solver, and all of them for Plugin::contacts(), each on demand. Input: the
+// pipeline's list, which the pipeline owns; it is valid until the pipeline's next submit. Cost: proportional to the
+// contacts resolved.
 #pragma once
 
 #include <unordered_map>
@@ -23,21 +23,22 @@ public:
     void clear() { *this = FoundContacts(); }
     void nameCloth(MeshId cloth, const btSoftBody* body) { m_bodies[cloth] = body; }
     void nameObstacle(MeshId obstacle, const btCollisionObject* object, const BodyMotion& motion);
-    // What the obstacle's motion in the step does to its points; null when it rests. Stays where it is until clear().
+    // Returns the motion of the obstacle's points in the step; null when it rests. The transform stays in place until
+    // clear().
     const btTransform* carryOf(MeshId obstacle) const;
-    // Names the places to which an obstacle carries the nodes' starts (see StepContact), for a mesh of a cloth that has
-    // this one obstacle alone. The array stays the caller's.
+    // Sets the positions to which an obstacle carries the nodes' starts (see StepContact), for a mesh of a cloth that
+    // has this one obstacle alone. The caller owns the array.
     void nameStarts(MeshId cloth, const btVector3* carriedStarts) { m_carriedStarts[cloth] = carriedStarts; }
     // Adds a contact of the caller's own for one node of a body, which resolve() gives back as it is.
     Contact addOwn(const StepContact& contact);
     void set(const Pipeline& pipeline, const ContactList& contacts);
-    // list() stays as it is now until clear(), whatever is found later.
+    // Keeps list() as it is now until clear(), whatever is found later.
     void keepList();
 
-    // The contact's places and gaps along the paths of the body's nodes.
+    // Resolves the contact's points and gaps along the paths of the body's nodes.
     StepContact resolve(const btSoftBody& body, const NodePaths& paths, const Contact& contact) const;
-    // A contact with its nodes at other places, see Pipeline. Only faces at a vertex turn theirs, and one that was met
-    // keeps it: else false.
+    // Resolves a contact with its nodes at other positions, see Pipeline. Only faces at a vertex turn their contacts,
+    // and a contact that was met keeps its plane; returns false for all others.
     static bool planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane);
     std::vector<ContactInfo> list() const;
 

@@ -6,11 +6,11 @@ namespace drape
 {
 namespace
 {
-// Distance before the surface at which a path ends, as a share of the thickness: near enough for every contact there,
-// far enough from the other side.
+// Distance before the surface at which a path ends, as a share of the thickness. It is near enough for every contact
+// there and far enough from the other side.
 constexpr btScalar kStandOff = btScalar(0.5);
 
-// Share of the path that is left, 1 when the contact cuts nothing: nothing was met, or the cloth's point moves away.
+// Returns the share of the path to keep: 1 when nothing was met or the cloth's point moves away.
 btScalar shareLeft(const StepContact& contact)
 {
     if (!(contact.m_time < 1) || contact.m_endGap >= contact.m_startGap) return 1;
@@ -19,7 +19,7 @@ btScalar shareLeft(const StepContact& contact)
     return distance > standOff ? contact.m_time * (1 - standOff / distance) : btScalar(0);
 }
 
-// What is left of a node's path, as the obstacle of its first impact sees it.
+// The kept share of a node's path, relative to the obstacle of its first impact.
 struct Left
 {
     btScalar m_share = 1;

@@ -1,12 +1,11 @@
-// Ends the predicted path of nodes just before the first surface that they, or a face or an edge of theirs, would pass.
+// Ends the predicted path of nodes just before the first surface that the nodes, or their faces or edges, would pass.
+// Contacts behind that surface belong to positions that the node cannot reach, and may push it to either side.
+// Detection runs again after a cut.
 //
-// Why: contacts are found along the whole predicted path and near its end. Behind the first surface they are of places
-// that the node cannot get to, inside the obstacle or beyond, and push it to any side. After a cut detection runs
-// again, with paths that end near the surfaces that count. Input: a body between predictMotion and the end of
-// solveConstraints, the starts of its paths and its contacts along the present ones. Before an obstacle that moves, a
-// path ends where the obstacle carries it. What a path loses is lost for the step, as if the node had come to a halt
-// there. Cloth that would not pass a surface within the step (it rests, slides, or falls by less than the thickness) is
-// not touched. Cost: linear in the contacts.
+// Input: a body between predictMotion and the end of solveConstraints, the starts of its paths and its contacts along
+// the current paths. Before a moving obstacle, a path ends where the obstacle carries it. The rest of the path is
+// lost for the step, as if the node had stopped there. Cloth that would pass no surface within the step (it rests,
+// slides, or falls by less than the thickness) is not changed. Cost: linear in the contacts.
 #pragma once
 
 #include <vector>
@@ -15,20 +14,20 @@
 
 namespace drape
 {
-// Detections of one step at most. Faces and edges between a node that was cut and one that was not may pass other
-// features than before, so that one cut is not always enough; measured, three are at 200 m/s.
+// Maximum detections per step. Faces and edges between a cut and an uncut node may pass other features than before,
+// so one cut is not always enough. Three were enough at 200 m/s, measured.
 constexpr int kMostDetections = 6;
 
 enum class Cut
 {
-    EachNode,  // each node by its own first impact
-    WholeBody  // every node by the first impact of all: free of impacts for certain, since all keep their order in
-               // time; but for obstacles that move otherwise than the one of that impact
+    EachNode,  // cuts each node at its own first impact
+    WholeBody  // cuts every node at the first impact of all, which is free of impacts: all keep their order in
+               // time, except for obstacles that move unlike the one of that impact
 };
 
-// Whether a path would be cut at any of them.
+// Returns whether a path would be cut at any of the contacts.
 bool anyCuts(const std::vector<StepContact>& contacts);
 
-// Returns whether any path was cut. Velocities follow, for a body that Bullet has solved.
+// Returns whether any path was cut. Updates velocities too, for a body that Bullet has solved.
 bool cutAtImpacts(btSoftBody& body, const NodePaths& paths, const std::vector<StepContact>& contacts, Cut cut);
 }  // namespace drape

@@ -71,7 +71,7 @@ btScalar substepsBetween(const btTransform& from, const btTransform& to, const b
     return count;
 }
 
-// Whether the change of the pose may be that of several poses before one step, of which the velocity knows the last.
+// Returns whether the change of pose may combine several poses set before one step. The velocity knows only the last.
 bool isNear(const btTransform& from, const btTransform& to, const btVector3& velocity, const btVector3& angularVelocity,
             btScalar dt)
 {
@@ -86,11 +86,11 @@ bool isNear(const btTransform& from, const btTransform& to, const btVector3& vel
 // out of its simulation whose box is 10^6 m across.
 constexpr btScalar kMostShift = 100, kMostRadii = 100, kMostOfAll = btScalar(2.5e5);
 
-// Radii that a body goes at least where nodes that went along tell a teleport.
+// Minimum motion of a body, in radii, for nodes that moved along to indicate a teleport.
 constexpr btScalar kFarRadii = 1;
 
-// Least turn of such a body, radians, and how many times as large as in the step before its motion has to be: a body
-// that goes on as it went is carried, not put elsewhere.
+// Minimum turn of such a body, radians, and minimum ratio of its motion to that of the step before. A body that
+// continues its motion is carried, not teleported.
 constexpr btScalar kFarTurn = SIMD_HALF_PI, kFaster = 4;
 
 btScalar radiusOf(const btCollisionObject& object)
@@ -177,8 +177,8 @@ void KinematicMotions::advance(Tracked& tracked, const btCollisionObject& object
     if (shift > mostShift(radiusOf(object)) || isTeleport(from, before, object)) motion = BodyMotion{pose, pose};
 }
 
-// Whether cloth went along from where the object was to where Bullet has it, and the object did not go there at about
-// the speed that it had; several substeps' motion is one then.
+// Returns whether this is a teleport: cloth moved along from the object's last pose to Bullet's pose, and the object
+// did not move at about its former speed. The motion of several substeps counts as one.
 bool KinematicMotions::isTeleport(const btTransform& from, const BodyMotion& before,
                                   const btCollisionObject& object) const
 {

@@ -1,25 +1,12 @@
-// How kinematic objects move in a step, from what Bullet knows of them.
+// Determines how kinematic objects move in a step, from the poses and velocities that Bullet keeps.
 //
-// Bullet gives a kinematic object its pose at the end of stepSimulation() in the first of its substeps, and a velocity:
-// the difference to its interpolation transform over the time of all substeps (btRigidBody::saveKinematicState). So a
-// pose that changes with a velocity is motion, and a pose that changes without one is a jump: that is how
-// setInterpolationWorldTransform() with the same pose tells a teleport, to Bullet and to Drape. Most apps set the world
-// transform alone, which looks like motion. Two things tell it from one, for a way of more than the body's radius or
-// a turn of more than a right angle, and of more than four times what the step before was:
-// cloth hangs on the body by an anchor, or the app moved nodes of a cloth along with it, as with what a character
-// wears. A body that is parked out of sight goes a way that is longer than 100 m and 100 times the shape's radius, or
-// than 250 km. Distance tells nothing else: what is thrown goes as many of its radii in a step.
+// Input: the objects' poses, interpolation transforms and velocities. Output: each object's pose at the step's start
+// and end. Several substeps share a motion evenly, at constant velocity. An object that was absent in the step before
+// rests. If the velocity does not fit the change of pose (teleported and moved at once), the object arrives at its
+// pose with its velocity, over this step alone.
 //
-// Job: remember where each object was at the end of the step before and say where it is at this one's start and end.
-// The motion of several substeps is shared out among them, at constant velocity. An object that was not there in the
-// step before rests. Where the velocity does not fit the change of the pose (teleported and moved at once), the object
-// comes to its pose with its velocity, over this step alone.
-//
-// Bullet does not know of every motion. A pose set after it took the velocity (by a tick's callback, or while the body
-// sleeps) differs from the interpolation transform; where Bullet catches up, its velocity is from where it left off.
-// Several poses set by setCenterOfMassTransform() before a step leave the last one's velocity, which looks like one of
-// several substeps until the next pose comes too soon. All these are swept the whole way, the last from then on. A last
-// pose set twice has no velocity, and is a jump. O(1) an object.
+// A pose that changes with a velocity is motion; one that changes without is a jump. Large motion that looks like a
+// teleport is a jump, too. Cost: O(1) per object. Rules, reasons and limits: docs/design_notes/kinematic_motion.md.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +24,7 @@ struct BodyMotion
     btTransform m_start, m_end;
 
     bool moves() const { return !(m_start == m_end); }
-    // What the motion does to a point of the object.
+    // Returns the transform that the motion applies to a point of the object.
     btTransform map() const { return m_end * m_start.inverse(); }
 };
 
@@ -49,8 +36,8 @@ BodyMotion motionInStep(const btTransform& from, const btTransform& to, const bt
 class KinematicMotions
 {
 public:
-    // Whether a cloth hangs on the object by an anchor, or an app moved nodes of one as the map does, to within `slack`
-    // (m), since the last step ended.
+    // Returns whether, since the last step ended, a cloth is anchored to the object or an app moved nodes of a cloth
+    // as the map does, to within `slack` (m).
     using MovedAlong = std::function<bool(const btCollisionObject& object, const btTransform& map, btScalar slack)>;
 
     // Forgets objects that were not observed in the step before. movedAlong: for this step, asked of objects that moved

@@ -18,7 +18,7 @@ inline btScalar marginOf(const btCollisionShape& shape)
 // Distance at which cloth comes to rest, m.
 btScalar thicknessOf(const btSoftBody& cloth, const btCollisionShape& obstacle);
 
-// In one line what is wrong with the margins of a soft body and of a mesh's shape: one is negative, or the thickness is
-// as large as the mesh or the cloth. Empty where nothing is. O(n) in the nodes.
+// Describes in one line a problem with the margins of a soft body and a mesh's shape: one is negative, or the
+// thickness is as large as the mesh or the cloth. Empty if there is none. O(n) in the nodes.
 std::string marginRemark(const btSoftBody& cloth, const btCollisionShape& obstacle);
 }  // namespace drape

@@ -15,8 +15,8 @@ namespace drape
 {
 namespace
 {
-// Corners of a part whose vertices meshSignature() looks at: all of a small part's, and of a larger one enough that a
-// deformation of a whole mesh is seen, few enough that looking costs a microsecond.
+// Number of corners per part that meshSignature() samples: all of a small part's. A larger part has enough samples to
+// detect a deformation of the whole mesh, and few enough to cost only a microsecond.
 constexpr std::int64_t kSmallPart = 384;
 constexpr std::int64_t kSamplesPerPart = 32;
 
@@ -142,7 +142,7 @@ public:
     }
 
     const std::vector<std::int64_t>& indices() const { return m_indices; }
-    // Place of a used one among indices(); negative for a negative index.
+    // Returns the position of a used index among indices(); negative for a negative index.
     std::int32_t place(std::int64_t index) const
     {
         if (index < 0) return -1;
@@ -201,7 +201,7 @@ bool isFinite(const WorldMesh& mesh, std::size_t vertex)
     return std::isfinite(at[0]) && std::isfinite(at[1]) && std::isfinite(at[2]);
 }
 
-// Of a mirrored mesh the corners the other way round, so that a triangle's front stays its front.
+// Appends the part's triangles. Reverses the corners of a mirrored mesh, so that a triangle's front stays its front.
 void appendTriangles(const LockedPart& part, const UsedVertices& used, std::size_t first, bool mirrored,
                      WorldMesh& mesh)
 {

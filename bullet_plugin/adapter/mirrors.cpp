@@ -11,15 +11,15 @@ namespace drape
 {
 namespace
 {
-// Faces whose indices are compared in one step. Every change that Bullet's own functions make (appendFace, cutLink,
-// refine) alters a count or an array and is seen at once; other nodes for a face that stays where it is, as
-// randomizeConstraints gives, are seen within faces / 32768 steps.
+// Faces whose indices are compared per step. Every change by Bullet's own functions (appendFace, cutLink, refine)
+// alters a count or an array and is detected at once. A face that gets other nodes in place, as from
+// randomizeConstraints, is detected within faces / 32768 steps.
 constexpr int kFacesPerCheck = 32768;
 
-// Share of a mesh's size that vertices may move in a step: what moves farther is another pose that the app put there.
+// Share of a mesh's size that vertices may move in a step. Farther motion counts as another pose set by the app.
 constexpr float kMostMotion = 0.5f;
 
-// Nodes that a thread looks at in one go: less is not worth waking one.
+// Nodes that a thread checks per turn; fewer do not justify waking one.
 constexpr std::size_t kNodesPerJob = 4096;
 
 // Turns each triangle with a foreign node into one that repeats an index, which the pipeline ignores, so that the
@@ -88,7 +88,8 @@ void ClothMirror::readTopology()
     m_cursor = 0;
 }
 
-// What a trajectory depends on, so that nothing of a body that lay here before may be left in it.
+// Cuts the cloth anew: the trajectory depends on the cut, so nothing of a former body at this address may remain in
+// it.
 void ClothMirror::cutParts()
 {
     std::vector<btVector3> places;
@@ -213,7 +214,7 @@ void ObstacleMirror::reload(Pipeline& pipeline, const btTransform& pose)
     m_positionHash = mesh.m_positionHash;
 }
 
-// Takes other positions, in the same place unless the pose changed with them.
+// Takes new positions; the pose is unchanged unless it came with them.
 void ObstacleMirror::deform(Pipeline& pipeline, std::vector<float>& positions, bool samePlace)
 {
     if (samePlace && m_before && !m_positions.empty())
@@ -224,7 +225,7 @@ void ObstacleMirror::deform(Pipeline& pipeline, std::vector<float>& positions, b
     pipeline.moveObstacle(m_id, positions.data());
     ++m_positionRevision;
     m_positions.swap(positions);
-    // A change by a margin at most counts as motion even if the mesh was not looked at in the step before.
+    // A change by a margin at most counts as motion even if the mesh was not checked in the step before.
     const bool isMotion = m_continued || m_mostMotion <= static_cast<float>(marginOf(*m_key.m_shape));
     if (m_before && isMotion && m_mostMotion <= kMostMotion * m_before->size())
         m_deformedStep = m_lastSeen;

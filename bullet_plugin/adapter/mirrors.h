@@ -1,12 +1,15 @@
-// What the pipeline holds of one soft body and of one obstacle, kept up to date with Bullet.
+// Keeps the pipeline's mesh of one soft body, or of one obstacle, up to date with Bullet.
 //
-// Input: the live body or shape of the current step, never one remembered from before. Output: the pipeline's mesh id,
-// or kNoMesh for a mesh without triangles. Guarantee: a cloth whose faces, solid links or nodes were replaced, cut or
-// refined is rebuilt, at once where a count or an array tells, else within as many steps as it has stretches of 32,768
-// faces, or twice as many as it has of 1,024 links; an obstacle that moved, was scaled or deformed is moved, and
-// rebuilt when its triangles changed. An unchanged obstacle, and a kinematic one that only moved, costs
-// meshSignature(), an unchanged cloth a comparison of some indices. Metres; a kinematic obstacle's positions are in its
-// own frame, all others in the world's.
+// Input: the live body or shape of the current step, never one remembered from before. Output: the pipeline's mesh
+// id, or kNoMesh for a mesh without triangles.
+//
+// Guarantee: a cloth whose faces, solid links or nodes were replaced, cut or refined is rebuilt. This happens at once
+// if a count or an array reveals it. Otherwise it takes as many steps as the cloth has runs of 32,768 faces, or twice
+// its runs of 1,024 links. An obstacle that moved, was scaled or deformed is moved, and rebuilt when its triangles
+// changed.
+//
+// Cost: meshSignature() for an unchanged obstacle or a kinematic one that only moved; a comparison of some indices
+// for an unchanged cloth. Metres; positions are in a kinematic obstacle's own frame, else in the world's.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +29,7 @@
 
 namespace drape
 {
-// An obstacle as Bullet's dispatch sees it: a compound gives one for each child, told apart by the chain of child
-// indices.
+// An obstacle in Bullet's dispatch: a compound gives one for each child, distinguished by the chain of child indices.
 struct ObstacleKey
 {
     const btCollisionObject* m_object;
@@ -61,13 +63,14 @@ public:
     MeshId refresh(Pipeline& pipeline);
     // Adds a further mesh of the body to the pipeline, as refresh() left the first; the caller's to remove.
     MeshId addCopy(Pipeline& pipeline) const;
-    // As the pipeline has them: the body's faces, then its solid links, each as a face that has its second node twice.
+    // Faces as the pipeline has them: the body's faces, then its solid links, each as a face that repeats its second
+    // node.
     const ClothFaces& faces() const { return m_faces; }
-    // Whether faces, or links that would be solid, name nodes that are not the body's. The pipeline does not have them.
+    // Returns whether faces, or links that would be solid, name nodes outside the body. The pipeline omits them.
     bool hasForeignFaces() const { return m_hasForeignFaces || m_links.hasForeign(); }
-    // Of the nodes as they lay when the topology was read, or when it was last taken up.
+    // Parts cut by the nodes' positions when the topology was read or last revalidated.
     const ClothParts& parts() const { return m_parts; }
-    // For who uses it first, or again: the body may be another one in the same place.
+    // Requests a full check by a first or returning user: the body may be another one at the same address.
     void takeUp() { m_fullCheck = m_takenUp = true; }
     // Says that the nodes are no longer where the last step left them: no pair of the cloth counts as free of
     // intersections until it is checked.
@@ -76,11 +79,10 @@ public:
     std::uint64_t startRevision() const { return m_startRevision; }
     // Remembers where the nodes are at a step's end.
     void rememberEnds(ThreadTeam& threads);
-    // Lists the nodes whose step starts (m_q) elsewhere than the last one that was remembered ended; all of them where
-    // none was.
+    // Lists the nodes whose step starts (m_q) away from the last recorded end; all nodes if no end was recorded.
     void listJumped(ThreadTeam& threads, std::vector<int>& nodes) const;
-    // Before a step's motion is predicted: whether a node was moved from where the last step left it as the map moves
-    // it, to within `slack` (m). The body is alive, and the last step was the one before this.
+    // Returns whether, before a step's motion is predicted, a node was moved from its position after the last step as
+    // the map moves it, to within `slack` (m). The body is alive, and the last step was the one before this.
     bool movedAlong(const btTransform& map, btScalar slack) const;
 
     int m_owners = 0;  // algorithms alive that use this mirror, and who had it prepared
@@ -159,6 +161,6 @@ private:
     std::uint64_t m_signature = 0, m_topologyHash = 0, m_positionHash = 0;
     bool m_kinematic = false;
     bool m_heldOneSided = false;  // by the pipeline
-    bool m_read = false;          // the pipeline holds what the shape held when it was last read
+    bool m_read = false;          // the pipeline has what the shape had when it was last read
 };
 }  // namespace drape

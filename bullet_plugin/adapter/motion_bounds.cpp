@@ -84,7 +84,7 @@ struct Way
     Extent m_start, m_end;
 };
 
-// Widens the bounds to the place of the obstacle's that is nearest to the middle of the paths.
+// Widens the bounds to the obstacle's surface point that is nearest to the middle of the paths.
 void reachTo(btSoftBody& body, const Extent& path, const StepObstacle& obstacle)
 {
     btVector3 nearest = (path.m_low + path.m_high) / 2;
@@ -95,9 +95,8 @@ void reachTo(btSoftBody& body, const Extent& path, const StepObstacle& obstacle)
     widen(body, there, 0);
 }
 
-// How much farther than the reach an obstacle may be from a body's paths and still widen its bounds, in thresholds that
-// Bullet adds to every bounds. Links pull nodes off their paths, and where Bullet makes the pair then, the motion limit
-// has to know of it.
+// Distance beyond the reach, in Bullet's bounds thresholds, at which an obstacle still widens the bounds of a body's
+// paths. Links pull nodes off their paths. If Bullet makes the pair then, the motion limit has to know the obstacle.
 constexpr btScalar kNearThresholds = 5;
 
 // The body's part of the reach of contacts, m.
@@ -106,7 +105,7 @@ btScalar reachOf(const PluginState& state, const btSoftBody& body)
     return (1 + btScalar(state.settings().m_activation)) * marginOf(*body.getCollisionShape());
 }
 
-// What bounds of the shape lack of its part of that reach, m: of a compound the most that a child's lack.
+// Returns how far the shape's bounds fall short of its part of that reach, m: for a compound the most of any child.
 btScalar reachBeyondBounds(const btCollisionShape& shape, btScalar activation)
 {
     if (isMeshShape(shape.getShapeType())) return activation * marginOf(shape) + marginBeyondBounds(shape);
@@ -118,7 +117,7 @@ btScalar reachBeyondBounds(const btCollisionShape& shape, btScalar activation)
     return most;
 }
 
-// Whether Bullet would hand their pair on and Drape find contacts of it once the body is awake.
+// Returns whether Bullet would hand the pair on and Drape would find its contacts once the body is awake.
 bool mayTouch(const PluginState& state, const btSoftBody& body, const btCollisionObject& object)
 {
     btOverlappingPairCache* pairs = body.m_worldInfo->m_broadphase->getOverlappingPairCache();

@@ -10,7 +10,7 @@ namespace
 // Share of the least distance allowed that needs no closer look; the rest is for rounding.
 constexpr btScalar kSureShare = btScalar(0.99);
 
-// Where on the way from start to end, 0 to 1, the point is nearest.
+// Returns the parameter, 0 to 1, of the path's closest position to the point.
 btScalar closestOnPath(const btVector3& start, const btVector3& end, const btVector3& point)
 {
     const btVector3 way = end - start;
@@ -27,8 +27,8 @@ bool meet(const btVector3& low, const btVector3& high, const btVector3& otherLow
     return meet;
 }
 
-// Brings the place back to the path where it is farther off than the radius, which goes from one end's to the other's.
-// Returns by how much it moved.
+// Moves a position back to the path if it is farther off than the radius, which varies linearly between the ends.
+// Returns the displacement, m.
 btVector3 shiftToPath(const btVector3& start, const btVector3& end, btScalar startRadius, btScalar endRadius,
                       const btVector3& place)
 {
@@ -40,7 +40,7 @@ btVector3 shiftToPath(const btVector3& start, const btVector3& end, btScalar sta
     return off * (radius / distance - 1);
 }
 
-// The same for a node. Returns whether it was.
+// Brings a node back to the path in the same way. Returns whether it was moved.
 bool bringBack(btSoftBody::Node& node, const btVector3& start, const btVector3& end, btScalar startRadius,
                btScalar endRadius, btScalar velocityScale)
 {
@@ -136,7 +136,7 @@ bool MotionLimit::isRestless(std::size_t node, const btVector3& place) const
     return !(off2 <= m_free * m_free) && m_paths.m_inverseMass[node] > 0;
 }
 
-// Such a node is held by every obstacle that rests, and by each in the same way along its path.
+// Limits the node alone: every resting obstacle enforces the same region along its path.
 bool MotionLimit::keepNear(std::size_t node, btVector3& place) const
 {
     if (!isRestless(node, place)) return false;
@@ -174,8 +174,8 @@ void MotionLimit::addPassed(const btSoftBody& body, int a, int b, int c)
     m_passed.push_back(passed);
 }
 
-// Of restless nodes, and of triangles that have one; where obstacles rest, those without contacts are all that is
-// asked.
+// Boxes the motion of restless nodes, and of triangles with such a node. Beside resting obstacles only nodes without
+// contacts matter.
 void MotionLimit::boxPassed(const btSoftBody& body, bool withContacts)
 {
     m_passed.clear();
@@ -195,7 +195,7 @@ void MotionLimit::boxPassed(const btSoftBody& body, bool withContacts)
         const int own = m_passed[i].m_nodes[0];
         const auto addFace = [&](const std::int32_t* face)
         {
-            // By the first of its nodes alone.
+            // Adds the face once, for the first of its boxed nodes.
             if (*std::find_if(face, face + 3, isBoxed) == own) addPassed(body, face[0], face[1], face[2]);
         };
         m_faces->forFacesOf(static_cast<std::size_t>(own), addFace);
@@ -229,7 +229,8 @@ void MotionLimit::applyResting(btSoftBody& body, btScalar velocityScale, bool wi
         for (Restless& restless : m_restless)
         {
             const std::size_t at = static_cast<std::size_t>(restless.m_node);
-            // What met a node's face on the way to the end may be away from all boxes there.
+            // Tests the way to the end: a surface that met a node's face there may be away from all boxes at the
+            // current position.
             if (!(m_hasContact[at] ? withContacts : anyNear && m_isNear[at])) continue;
             const Allowance own = allowance(region, at);
             restless.m_allowed.m_start = std::min(restless.m_allowed.m_start, own.m_start);

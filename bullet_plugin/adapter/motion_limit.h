@@ -1,16 +1,12 @@
-// Keeps nodes near obstacles where detection has looked.
+// Keeps nodes near obstacles within the region that detection has searched.
 //
-// Why: contacts are found along the predicted motion and within the reach (thickness and activation) of its end.
-// Bullet's links can pull a node several times as far in one step, through a surface that nothing was reported of; the
-// next step would then take the wrong side for its own. Rule: near an obstacle a node ends close to the straight path
-// of its prediction. A node that has contacts may leave it by the activation distance, so that all surfaces it can come
-// too close to are among its contacts. A node without contacts is farther from every surface than the reach at the
-// path's end, and may leave that end by most of it; towards the path's start, where only the thickness is known to be
-// free, it may leave by less. What links could not do in this step they do in the next. The velocity follows the
-// position, as in Bullet's own update, so that no energy comes from it. A node is near an obstacle when it or any of
-// its faces is: a face whose nodes all lie beside a corner may be pulled over it. Nodes away from every obstacle are
-// not touched. Near an obstacle that moves the path is the one that the obstacle sees. Metres, world frame. Cost:
-// linear in the nodes; again for those that left their paths and their faces, by each obstacle that is near.
+// Rule: near an obstacle a node ends close to the straight path of its prediction. A node with contacts may leave the
+// path by the activation distance. A node without contacts may leave the path's end by most of the reach, and less
+// towards the path's start. A node is near an obstacle if it or any of its faces is. Other nodes are not changed.
+//
+// The path is relative to a moving obstacle. The velocity follows the position, as in Bullet's own update, so the
+// limit adds no energy. Metres, world frame. Cost: linear in the nodes; again for nodes that left their paths and
+// their faces, per near obstacle. Reasons: docs/design_notes/motion_limit.md.
 #pragma once
 
 #include <vector>
@@ -32,44 +28,45 @@ constexpr btScalar kMostStartShare = btScalar(0.8);
 class MotionLimit
 {
 public:
-    // Forgets the obstacles; what memory it has stays.
+    // Forgets the obstacles; memory is kept.
     void clear();
-    // Box of an obstacle that the body has a pair with, the pair's thickness, and the activation as a share of it.
-    // Nodes are free where what their faces can pass between the predicted and the solved positions misses every box.
-    // carry, carriedStarts: see StepContact; the second stays the caller's.
-    // While a body's obstacles all rest, a node with contacts ends at most tube() of the thinnest pair from its path:
-    // detection may leave out what others imply there.
+    // Adds the box of an obstacle of one of the body's pairs, the pair's thickness, and the activation as a share of
+    // it. Nodes are free if everything that their faces can pass between the predicted and the solved positions
+    // misses every box. carry, carriedStarts: see StepContact; the caller owns the second. While all obstacles of a
+    // body rest, a node with contacts ends at most tube() of the thinnest pair from its path. Detection may leave out
+    // contacts that others imply there.
     void addObstacle(const btVector3& low, const btVector3& high, btScalar thickness, btScalar activation,
                      const btTransform* carry = nullptr, const btVector3* carriedStarts = nullptr);
-    // Before Bullet solves: the prediction is to be remembered, by recordNodes() for all of the nodes. They have no
-    // contacts yet. The faces are of as many nodes, and stay as they are until the last apply() or applyToOthers().
+    // Starts recording the prediction, before Bullet solves; recordNodes() then records all nodes. No node has
+    // contacts yet. The faces refer to the same nodes, and must stay unchanged until the last apply() or
+    // applyToOthers().
     void startRecord(const ClothFaces& faces);
-    // Some of them; others may be recorded by another thread meanwhile.
+    // Records some of the nodes; another thread may record others meanwhile.
     void recordNodes(const btSoftBody& body, std::size_t first, std::size_t count);
-    // Records only where nodes go now. For the same step as recordNodes().
+    // Records the nodes' current ends alone, for the same step as recordNodes().
     void recordEnds(const btSoftBody& body, std::size_t first, std::size_t count);
-    // Both, for all nodes.
+    // Calls startRecord() and records all nodes.
     void record(const btSoftBody& body, const ClothFaces& faces);
     // Distance from its path that a node with contacts may go, m.
     static btScalar tube(btScalar thickness, btScalar activation);
     const NodePaths& paths() const { return m_paths; }
-    // Whether there is a node that no contact may move; once all are recorded.
+    // Returns whether there is a node that no contact may move. Call once all nodes are recorded.
     bool hasPinnedNode() const;
     // A node of a contact; after startRecord().
     void addContactNode(int node) { m_hasContact[static_cast<std::size_t>(node)] = 1; }
-    // Returns whether the body may have passed a surface that it has no contact with: a node, held or not, ended more
-    // than kFreeShare of the reach from the end of its path, and it or a face of it came near an obstacle on the way
-    // there.
+    // Returns whether the body may have passed a surface without a contact. This is so if a node, limited or not,
+    // ended more than kFreeShare of the reach from its path's end, and the node or one of its faces came near an
+    // obstacle on the way.
     bool strayed(const btSoftBody& body);
     // Brings nodes that left their path too far back; the nearest point of the allowed region.
     void apply(btSoftBody& body);
-    // The same for nodes without contacts alone.
+    // Does the same as apply() for nodes without contacts alone.
     void applyToOthers(btSoftBody& body);
-    // Whether all of the obstacles do. Then keepNear() does for a node with contacts what apply() does, wherever the
+    // Returns whether all obstacles rest. keepNear() then replaces apply() for a node with contacts, wherever the
     // other nodes are.
     bool obstaclesRest() const { return !m_anyMoves; }
-    // For a node with contacts that is at `place`, while the obstacles rest: within the tube of the thinnest pair.
-    // Returns whether it was brought back.
+    // Limits a node with contacts at `place` while the obstacles rest: it stays within the path tolerance of the
+    // thinnest pair. Returns whether the node was brought back.
     bool keepNear(std::size_t node, btVector3& place) const;
 
 private:
@@ -93,7 +90,7 @@ private:
         int m_node;
         Allowance m_allowed;  // by the obstacles that rest
     };
-    // What a node or a triangle may pass between its predicted and its present place.
+    // The volume that a node or a triangle may pass between its predicted and its current position.
     struct Passed
     {
         btVector3 m_low, m_high;
@@ -108,7 +105,7 @@ private:
     bool markNear(const Region& region);
     Allowance allowance(const Region& region, std::size_t node) const;
     void applyResting(btSoftBody& body, btScalar velocityScale, bool withContacts);
-    // Whether a node was brought back.
+    // Returns whether a node was brought back.
     bool applyMoving(btSoftBody& body, const Region& region, btScalar velocityScale);
 
     std::vector<Region> m_regions;
@@ -119,7 +116,7 @@ private:
     NodePaths m_paths;
     std::vector<unsigned char> m_hasContact;
     const ClothFaces* m_faces = nullptr;
-    // Of one apply(), kept for their memory.
+    // Data of one apply(), kept for its memory.
     std::vector<Restless> m_restless;
     std::vector<unsigned char> m_isBoxed, m_isNear;  // by node: what it passed; near the region looked at last
     std::vector<Passed> m_passed;

@@ -12,7 +12,7 @@ namespace drape
 struct NodePaths
 {
     std::vector<btVector3> m_start, m_end;  // by node
-    std::vector<btScalar> m_inverseMass;    // likewise, 0 where contacts may not move it
+    std::vector<btScalar> m_inverseMass;    // by node; 0 where contacts may not move it
 
     void resize(std::size_t count)
     {

@@ -39,7 +39,7 @@ void PairAlgorithm::processCollision(const btCollisionObjectWrapper* wrapA, cons
     if (forStock) processStock(wrapA, wrapB, info, result);
 }
 
-// Notes the pair for the coming solve. Returns false where Bullet's own algorithm is to have it.
+// Notes the pair for the coming solve. Returns false if Bullet's own algorithm must handle it.
 bool PairAlgorithm::take(btSoftBody& cloth, const btCollisionObjectWrapper& obstacleWrap)
 {
     const btCollisionObject& obstacle = *obstacleWrap.getCollisionObject();

@@ -39,7 +39,7 @@ private:
     const bool m_swapped;                     // the mesh is the first of the pair
 };
 
-// What the dispatcher calls for a new pair. `swapped`: the mesh comes first.
+// The function that the dispatcher calls for a new pair. `swapped`: the mesh comes first.
 class PairCreateFunction : public btCollisionAlgorithmCreateFunc
 {
 public:

@@ -14,14 +14,14 @@ namespace drape
 {
 namespace
 {
-// Steps after which a pair that is not seen, or an obstacle that nothing is asked of, is forgotten: as long as a mirror
-// without a pair is kept.
+// Steps after which an absent pair, or an obstacle without queries, is forgotten: as long as a mirror without a pair
+// is kept.
 constexpr std::uint64_t kKeepSteps = 120;
 
 // Passes over all of an obstacle's triangles for one pair, before its tree is made for the questions that follow.
 constexpr int kMostPasses = 8;
 
-// Faces that a thread looks at in one go.
+// Faces that a thread processes per turn.
 constexpr std::size_t kFacesPerJob = 512;
 
 Vec3 vec3Of(const btVector3& v)
@@ -67,8 +67,8 @@ void PairStarts::listFaces(const StartingPair& pair, const std::vector<int>* nod
     m_faces.erase(std::unique(m_faces.begin(), m_faces.end()), m_faces.end());
 }
 
-// Computes the nodes' places at the step's start in the frame of the obstacle's positions: of all nodes, or of those in
-// m_faces.
+// Computes the nodes' positions at the step's start in the frame of the obstacle's positions: of all nodes, or of
+// those in m_faces.
 void PairStarts::findPlaces(const StartingPair& pair, bool all)
 {
     const btSoftBody& body = *pair.m_cloth->body();
@@ -184,7 +184,7 @@ void PairStarts::tell(const StartingPair& pair, Guard& guard, bool pushed)
         static_cast<const void*>(pair.m_obstacle->key().m_object),
         static_cast<unsigned long long>(guard.m_intersections),
         pushed ? "the mesh is closed, so that the cloth is pushed out"
-               : "the mesh is open, so that nothing tells which side is right, and the cloth stays as it is");
+               : "the mesh is open, so that the right side is unknown, and the cloth stays as it is");
     m_state.log(line);
 }
 

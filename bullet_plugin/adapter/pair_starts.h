@@ -1,25 +1,13 @@
-// Finds pairs of a cloth and an obstacle that begin a step with triangles that intersect, and gets them apart.
+// Finds pairs of a cloth and an obstacle that begin a step with intersecting triangles, and separates them. Contacts
+// alone would keep such cloth on the wrong side.
 //
-// Why: contacts keep a node on the side on which it begins the step. Cloth that begins with its triangles through a
-// mesh's is kept there, for good. Job: a pair is guarded once a check has found none of its triangles intersecting at
-// the start of a step. It is checked when it is new, when the cloth or the obstacle starts anew (mirrors.h), for the
-// faces of nodes that are elsewhere than the last step left them, and in every step while it intersects. Where the
-// obstacle is closed, its outside is known, and nodes on the wrong side are pushed to the nearest place of the surface
-// at a bounded speed; contacts that would keep them inside are dropped (body_contacts.h). Where it is open nothing
-// tells which side is right: such pairs are reported, and held as they are.
+// Job: a pair is guarded once a check found none of its triangles intersecting at a step's start. New, restarted and
+// intersecting pairs are checked, and faces of displaced nodes. Nodes on the wrong side of a closed obstacle are
+// pushed to its nearest surface point at a bounded speed. Pairs with an open obstacle are only reported.
 //
-// Nodes that come out on different sides of something thin leave faces that pass through it. Where that lasts, what is
-// beyond is drawn back, a few rows of nodes at a time, through where the cloth's largest part meets the surface. Where
-// that does not help either, as with a ring that is linked with the cloth, the whole cloth is moved out of the
-// obstacle's box, on the shortest way along an axis, unless nodes are pinned. What is left is reported, and held as it
-// is. Links that collide are triangles without area here (cloth_faces.h).
-//
-// The right side of a closed mesh is its outside, however its triangles are wound; but for a room, whose triangles look
-// inwards and which holds most of the cloth's nodes. Cloth that is wholly inside intersects nothing, and stays there.
-//
-// Cost: of a guarded pair a comparison for each node; of a new one a pass over the obstacle's triangles if the boxes
-// meet, and O(log n) for each face of the cloth if a triangle comes into the cloth's box. Deterministic, with any
-// number of threads.
+// Cost: a comparison per node of a guarded pair; for a new one a pass over the obstacle's triangles if the boxes
+// meet, and O(log n) per cloth face if a triangle enters the cloth's box. Deterministic with any number of threads.
+// Details: docs/design_notes/tangled_starts.md.
 #pragma once
 
 #include <cstdint>
@@ -54,8 +42,8 @@ public:
 
     // Begins a step, before its first check(). Forgets pairs that were not seen for long.
     void beginStep();
-    // Checks the pair where it has to be. jumped: nodes that are elsewhere than the last step left them. Where the pair
-    // intersects and can be pushed apart, adds what is to be done to the body. Bullet's nodes are only read.
+    // Checks the pair where necessary. jumped: nodes that are not where the last step left them. If the pair
+    // intersects and can be separated, adds the necessary pushes to the body. Reads Bullet's nodes only.
     void check(const StartingPair& pair, const std::vector<int>& jumped, BodyContacts& body);
 
     // Count, in the step so far, the pairs of a cloth and an obstacle that intersect, and the pairs of their triangles.
@@ -65,7 +53,7 @@ public:
 private:
     struct Guard
     {
-        std::uint64_t m_clothRevision = 0, m_obstacleRevision = 0;  // as they were checked last
+        std::uint64_t m_clothRevision = 0, m_obstacleRevision = 0;  // at the last check
         std::uint64_t m_intersections = 0;                          // pairs of triangles; 0: guarded
         std::uint64_t m_lastStep = 0;
         std::uint64_t m_calmUntil = 0;  // step up to which the cloth counts as tangled shortly before
@@ -120,12 +108,12 @@ private:
     std::uint64_t m_step = 0;
     std::size_t m_intersectingPairs = 0;
     std::uint64_t m_intersections = 0;
-    // These belong to one check and are kept for their memory.
+    // Working memory of one check, kept between checks.
     std::vector<std::uint32_t> m_faces;
     std::vector<Vec3> m_places;  // by node, in the frame of the obstacle's positions, at the step's start
     std::vector<MeetingFace> m_meeting;
     std::vector<int> m_regions;          // by node: the first node that is reached over faces that meet nothing
-    std::vector<unsigned char> m_wrong;  // likewise: on the wrong side
+    std::vector<unsigned char> m_wrong;  // by node: on the wrong side
     bool m_insideIsRight = false;
 };
 }  // namespace drape

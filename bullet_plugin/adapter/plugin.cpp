@@ -35,7 +35,7 @@ std::string reasonInShape(const PluginState& state, const btSoftBody& cloth, con
         const bool nobodys =
             isMeshShape(compound.getChildShape(i)->getShapeType()) && !stockCanTake(obstacle, childPose);
         return "child " + std::to_string(i) + " of the compound: " + reason +
-               (nobodys ? "; Bullet's own algorithm would take this mesh to be where the compound is, so that it "
+               (nobodys ? "; Bullet's own algorithm would assume this mesh to be where the compound is, so that it "
                           "collides with nothing"
                         : "");
     }
@@ -86,7 +86,7 @@ std::string textOf(const Work& work)
                    { return guardedOr(outOfMemory(), [&] { return std::string(caught.m_text); }); });
 }
 
-// What a plugin without a state answers: memory ran out as it was made.
+// Answer of a plugin without a state: memory ran out while it was made.
 const DeviceReport& noDevice()
 {
     static const DeviceReport report = []

@@ -18,7 +18,7 @@ namespace
 // Steps that a mirror without a pair is kept: two seconds at 60 steps a second.
 constexpr std::uint64_t kKeepSteps = 120;
 
-// Tells a compound's children apart, through nested compounds.
+// Distinguishes a compound's children, through nested compounds.
 std::uint64_t childOf(const btCollisionObjectWrapper& wrap)
 {
     std::uint64_t child = 0;
@@ -27,8 +27,8 @@ std::uint64_t childOf(const btCollisionObjectWrapper& wrap)
     return child;
 }
 
-// Whether objects still have the shapes that were noted: what runs between dispatch and solve, actions and the tick's
-// callback, may give an object another shape, or a compound other children. Compares addresses.
+// Checks whether objects still have the noted shapes. Actions and the tick's callback run between dispatch and solve,
+// and may change an object's shape or a compound's children. Compares addresses.
 class PresentShapes
 {
 public:
@@ -308,7 +308,7 @@ void PluginState::prepareCloth(const btSoftBody& body)
     cloth.refresh(*m_pipeline);
 }
 
-// At rest where it is.
+// Prepares the obstacle as resting in place.
 void PluginState::prepareShape(const btCollisionObjectWrapper& wrap)
 {
     const btCollisionShape& shape = *wrap.getCollisionShape();
@@ -425,7 +425,7 @@ void PluginState::adopt(const PairNote& note)
     // Every solver's step counts, so that worlds which take turns are continued, too.
     if (obstacle.m_lastSeen != m_step) obstacle.m_continued = obstacle.m_lastSeen + m_solvers.size() >= m_step;
     cloth.m_lastSeen = obstacle.m_lastSeen = m_step;
-    // Where it lies now, prepared or not: the trajectory depends on it.
+    // Uses the cloth's current position, prepared or not: the trajectory depends on it.
     if (isUnpaired(cloth)) cloth.takeUp();
     if (obstacle.m_owners == 0) obstacle.requireReading();
     obstacle.m_oneSided = isOneSided(*note.m_obstacle.m_shape);

@@ -1,11 +1,11 @@
-// What Plugin, CollisionConfiguration, SoftBodySolver and the pair algorithms share: the pipeline, the pairs noted
-// since the last solve, and the mirrors of the bodies and meshes in them.
+// State shared by Plugin, CollisionConfiguration, SoftBodySolver and the pair algorithms: the pipeline, the pairs
+// noted since the last solve, and the mirrors of their bodies and meshes.
 //
 // Life of a pair: its algorithm notes it during dispatch (note), a solver takes the notes of its bodies
-// (CollisionStep), the algorithm's end forgets it. Notes are kept by algorithm, so that they cannot pile up, and
-// dropped when a step begins. Mirrors outlive their pairs by kKeepSteps, because cloth that bounces makes and loses its
-// pair again and again; without an algorithm alive their pointers are only compared, never followed, and what they hold
-// is checked in full before it is used.
+// (CollisionStep), and the algorithm's end forgets it. Notes are kept by algorithm, so they cannot pile up, and are
+// dropped when a step begins. Mirrors outlive their pairs by kKeepSteps, because bouncing cloth loses and regains its
+// pair repeatedly. Without a live algorithm, mirrors' pointers are only compared, never followed, and their contents
+// are checked in full before use.
 #pragma once
 
 #include <cstdint>
@@ -49,7 +49,7 @@ public:
     PluginState& operator=(const PluginState&) = delete;
 
     bool ready() const { return m_pipeline != nullptr; }
-    // What kept Drape from starting, or what the device failed of while the host went on.
+    // The reason why Drape could not start, or the device's failure after which the host took over.
     const Error& error() const { return m_pipeline ? m_pipeline->lastError() : m_error; }
     const DeviceReport& device() const;
     Pipeline& pipeline() { return *m_pipeline; }
@@ -58,12 +58,12 @@ public:
     ThreadTeam& threads() { return *m_threads; }
     // Hands a line to Settings::m_log.
     void log(const char* line) const;
-    // After an exception that ended a call, of which the pipeline may have any part done. Where memory ran out, it is
-    // to begin anew, without meshes; else every pair goes to Bullet from now on.
+    // Handles an exception that ended a call at an unknown point of the pipeline's work. If memory ran out, the
+    // pipeline begins anew without meshes; otherwise every pair goes to Bullet from now on.
     void fail(const char* call, const CaughtException& caught) noexcept;
     // Counts up with each fail().
     std::uint64_t failures() const { return m_failures; }
-    // Has the pipeline begin anew where fail() wants that. Throws where memory is still too short.
+    // Restarts the pipeline if fail() requested it. Throws if memory is still short.
     void restart();
 
     btCollisionAlgorithmCreateFunc& createFunction(bool swapped)
@@ -71,7 +71,7 @@ public:
         m_isWired = true;
         return swapped ? m_createSwapped : m_create;
     }
-    // Whether any dispatcher was given them.
+    // Returns whether any dispatcher was given the plugin's algorithms.
     bool isWired() const { return m_isWired; }
     btCollisionAlgorithmCreateFunc& stockCreateFunction(bool swapped);
 
@@ -85,9 +85,9 @@ public:
     const btSoftBodySolver* steppingSolver(const btSoftBody& body) const;
     // Records that a dispatcher had a pair of the body while no solver of this plugin steps it.
     void markUnstepped(const btSoftBody& body);
-    // Whether a solver of this plugin steps the body, or will as far as is known.
+    // Returns whether a solver of this plugin steps the body, or will as far as is known.
     bool steps(const btSoftBody& body) const;
-    // How the kinematic objects of that solver's world move in its step.
+    // Returns the motions of kinematic objects in the step of that solver's world.
     KinematicMotions& motionsOf(const btSoftBodySolver* solver) { return m_motions[solver]; }
 
     void note(const void* owner, btSoftBody& cloth, const btCollisionObjectWrapper& obstacle);
@@ -97,21 +97,20 @@ public:
     void prepare(const btCollisionObject* const* objects, int count);
     void release(const btCollisionObject* object);
     void obstacleChanged(const btCollisionShape* shape);
-    // Says that the soft body or obstacle is not where its last step left it, or that the last step did not guard it:
-    // its pairs start anew, from where they are in the coming step, and are checked for intersections then. Without a
-    // mirror there is nothing to do: new pairs are checked anyway.
+    // Marks the soft body or obstacle as displaced since its last step, or as not guarded by that step. Its pairs
+    // start anew from their positions in the coming step, and are checked for intersections then. Does nothing
+    // without a mirror: new pairs are checked anyway.
     void startAnew(const btCollisionObject* object);
-    // Says that the object is not where it moved, but where it was put: no solver's next step takes its pose for a
-    // motion, and its pairs start anew.
+    // Declares that the object was placed instead of moved: no solver's next step treats its pose as a motion, and
+    // its pairs start anew.
     void teleported(const btCollisionObject* object);
-    // Whether one of these bodies hangs on the object by an anchor, or an app moved nodes of one as the map does, since
-    // the last step, in which it took part.
+    // Returns whether one of these bodies is anchored to the object, or an app moved nodes of one as the map does,
+    // since the last step, in which the body took part.
     bool movedAlong(const std::vector<btSoftBody*>& bodies, const btCollisionObject& object, const btTransform& map,
                     btScalar slack);
     void setOneSided(const btCollisionShape* shape, bool oneSided);
     void dropNotes(const btSoftBodySolver* solver);
-    // Those of the given cloths, sorted by address. Of an obstacle whose shape has gone since it was noted none is
-    // taken.
+    // Takes the notes of the given cloths, which are sorted by address. Omits obstacles whose noted shape is gone.
     std::vector<PairNote> takeNotes(const btSoftBodySolver* solver, const std::vector<const btSoftBody*>& cloths);
 
     // The mirrors of a noted pair, made when there are none. Counts the step for dropOldMirrors().

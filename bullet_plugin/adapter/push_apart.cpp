@@ -1,4 +1,4 @@
-// The way out for a cloth that begins a step with its triangles through a closed mesh.
+// Moves a cloth that begins a step with its triangles through a closed mesh out of the mesh.
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -18,15 +18,15 @@ namespace
 constexpr btScalar kLeastSpeed = btScalar(0.5);
 constexpr btScalar kSpeedPerMetre = 2;
 
-// Steps in which nodes are on the wrong side, at most, before another way out is taken than to the nearest surface.
+// Maximum steps with nodes on the wrong side before a way out other than to the nearest surface is taken.
 constexpr int kMostPushedSteps = 240;
 
-// Steps for which faces may pass through an obstacle between nodes that are all on the right side, likewise: what can
-// come out over an edge or a corner has done so by then.
+// Maximum steps in which faces may pass through an obstacle between nodes that are all on the right side, before
+// another way out is taken. Parts that can come out over an edge or a corner have done so by then.
 constexpr int kPassingSteps = 30;
 
-// Most steps for which parts of a cloth are drawn back, and for which all of it is moved out, the second where nodes
-// are pinned: those that follow stretch the cloth.
+// Maximum steps for which parts of a cloth are drawn back, and for which all of it is moved out; the second where
+// nodes are pinned. Longer pushes would stretch the cloth.
 constexpr int kBackSteps = 180;
 constexpr int kOutSteps = 1200;
 constexpr int kOutStepsOfPinned = 90;
@@ -38,7 +38,7 @@ constexpr int kCalmSteps = 30;
 constexpr int kRowsDrawn = 3;
 constexpr btScalar kDrawnDepth = btScalar(0.1);
 
-// Nodes from which on their nearest places are worth waking threads for.
+// Minimum nodes for waking threads to find their nearest surface points.
 constexpr std::size_t kLeastShared = 64;
 
 Vec3 vec3Of(const btVector3& v)
@@ -102,7 +102,7 @@ void PairStarts::findRegions(const ClothFaces& faces, const MeshProbe& probe)
         wrong = !wrong;
 }
 
-// way: to the place of the surface where it is to come out, in the frame of the obstacle's positions.
+// way: displacement to the surface point where the node comes out, in the frame of the obstacle's positions.
 void PairStarts::pushNode(const StartingPair& pair, int node, Vec3 way, BodyContacts& body) const
 {
     const btVector3 there(way.x, way.y, way.z);
@@ -139,7 +139,7 @@ void PairStarts::pushFaces(const StartingPair& pair, const MeshProbe& probe, Bod
     }
 }
 
-// Nodes that are on the wrong side, each to the nearest place of the surface.
+// Pushes the nodes on the wrong side, each to the nearest point of the surface.
 void PairStarts::pushToSurface(const StartingPair& pair, const MeshProbe& probe, BodyContacts& body)
 {
     std::vector<std::size_t> wrong;
@@ -171,8 +171,8 @@ int PairStarts::largestPart(const TangledPair& tangled, std::size_t& count) cons
     return largest == sizes.end() ? -1 : largest->first;
 }
 
-// Nodes of faces that reach from the kept region into the obstacle or through it, and the way back for each: out of
-// the surface on the kept side.
+// Collects nodes of faces that reach from the kept region into the obstacle or through it, each with its way back:
+// out of the surface on the kept side.
 PairStarts::Row PairStarts::firstRow(const ClothFaces& faces, const MeshProbe& probe, int kept) const
 {
     Row row;
@@ -190,7 +190,7 @@ PairStarts::Row PairStarts::firstRow(const ClothFaces& faces, const MeshProbe& p
     return row;
 }
 
-// The nodes beside a row that are neither kept nor drawn yet. They go the same way.
+// Collects the nodes beside a row that are neither kept nor drawn yet. They move in the same way.
 PairStarts::Row PairStarts::nextRow(const ClothFaces& faces, const Row& row, const Row& drawn, int kept) const
 {
     Row next;
@@ -238,7 +238,7 @@ void PairStarts::moveOut(const StartingPair& pair, const MeshProbe& probe, Guard
     }
 }
 
-// Pushes by the way that is due. False where no way is left.
+// Pushes in the current way. Returns false if no way is left.
 bool PairStarts::push(const StartingPair& pair, const MeshProbe& probe, const TangledPair& tangled, Guard& guard,
                       BodyContacts& body)
 {

@@ -17,8 +17,8 @@ namespace drape
 {
 namespace
 {
-// As Bullet does, but that time which runs backwards stands still: Bullet bounds a node's speed by what is negative
-// then.
+// Predicts the motion as Bullet does, but treats a negative time step as zero. Bullet would derive a negative speed
+// bound from it.
 void predict(btSoftBody& body, btScalar dt)
 {
     const btScalar timescale = body.m_cfg.timescale;
@@ -28,15 +28,16 @@ void predict(btSoftBody& body, btScalar dt)
     body.m_cfg.timescale = timescale;
 }
 
-// What the step's memory grows with.
+// Returns the number of elements that the step's memory is proportional to.
 std::size_t elementsOf(const StepStatistics& step)
 {
     return step.m_clothTriangles + step.m_obstacleTriangles + step.m_contacts +
            static_cast<std::size_t>(step.m_candidates);
 }
 
-// Ends the body's step where it began, with the velocities that it would have without gravity. For cloth whose contacts
-// are not known: what stands still passes nothing that rests. Takes no memory. contacts: null where none are known.
+// Ends the body's step at its start, with the velocities that it would have without gravity. Used for cloth with
+// unknown contacts: a cloth at rest passes no resting obstacle. Allocates no memory. contacts: null if none are
+// known.
 void holdStill(btSoftBody& body, const BodyContacts* contacts)
 {
     const std::size_t count = static_cast<std::size_t>(body.m_nodes.size());
@@ -56,7 +57,7 @@ void holdStill(btSoftBody& body, const BodyContacts* contacts)
 }
 }  // namespace
 
-// What is kept from step to step.
+// Working data kept from step to step.
 struct SoftBodySolver::Work
 {
     explicit Work(PluginState& state) : m_solver(new BodySolver(state.threads())), m_failures(state.failures()) {}
@@ -141,7 +142,7 @@ void SoftBodySolver::predictMotion(btScalar dt)
     guarded([&] { coverMotions(obstacles); }, failed);
 }
 
-// Of predictMotion(), all that comes before Bullet's part.
+// Runs the part of predictMotion() before Bullet's.
 void SoftBodySolver::beginStep(btScalar dt, std::vector<StepObstacle>& obstacles)
 {
     m_work->m_listed = false;
@@ -159,7 +160,7 @@ void SoftBodySolver::beginStep(btScalar dt, std::vector<StepObstacle>& obstacles
     m_work->m_predictMs = watch.lapMs();
 }
 
-// Of predictMotion(), all that comes after it.
+// Runs the part of predictMotion() after Bullet's.
 void SoftBodySolver::coverMotions(const std::vector<StepObstacle>& obstacles)
 {
     Stopwatch watch;
@@ -176,8 +177,8 @@ void SoftBodySolver::listTaken()
         if (handlesCloth(*m_state, *m_softBodySet[i])) m_work->m_taken.push_back(m_softBodySet[i]);
 }
 
-// Wakes those of the bodies taken that a moving obstacle comes to. Returns the obstacles of the step; without those
-// that rest where no such body is awake.
+// Wakes bodies that a moving obstacle reaches. Returns the obstacles of the step, without resting ones if no such
+// body is awake.
 std::vector<StepObstacle> SoftBodySolver::wakeReached(KinematicMotions& motions)
 {
     const std::vector<btSoftBody*>& taken = m_work->m_taken;
@@ -195,8 +196,8 @@ std::vector<StepObstacle> SoftBodySolver::wakeReached(KinematicMotions& motions)
     return anyWoken && !anyAwake ? stepObstacles(*m_state, *taken[0], motions, true) : obstacles;
 }
 
-// Bullet's islands and callbacks may wake cloth, or put it to sleep, before it is solved. What was predicted is solved,
-// with the contacts along its path; what was not waits for the next step.
+// Lists the bodies that were predicted. Bullet's islands and callbacks may wake cloth, or put it to sleep, before it
+// is solved. Predicted bodies are solved with the contacts along their paths; others wait for the next step.
 void SoftBodySolver::listPredicted()
 {
     std::vector<const btSoftBody*>& predicted = m_work->m_predicted;

@@ -9,8 +9,8 @@ namespace drape
 {
 namespace
 {
-// Links that are looked at in one step. What Bullet's own functions do to links alters their number or place in memory,
-// or only their order; another node for a link that stays where it is is seen within links / 1024 steps, or twice that.
+// Links checked per step. Bullet's own functions change the number, the address or only the order of links. A link
+// that gets another node in place is detected within links / 1024 steps, or twice that.
 constexpr int kLinksPerCheck = 1024;
 
 constexpr int kNoSurface = -1;
@@ -20,7 +20,7 @@ const void* arrayOf(const btSoftBody& body)
     return body.m_links.size() > 0 ? &body.m_links[0] : nullptr;
 }
 
-// Of a surface's nodes each names another one, until one names itself.
+// Returns the root of the node's surface. Each node names a parent; a root names itself.
 int rootOf(std::vector<int>& parents, int node)
 {
     int root = node;
@@ -31,7 +31,7 @@ int rootOf(std::vector<int>& parents, int node)
     return root;
 }
 
-// A number for a link, of which a sum over many is as good as none other's.
+// Hashes a link, so that a sum over many links is practically unique.
 std::uint64_t mixed(int a, int b)
 {
     std::uint64_t key = std::uint64_t(std::uint32_t(std::min(a, b))) << 32 | std::uint32_t(std::max(a, b));
@@ -96,7 +96,7 @@ bool SolidLinks::isSolid(Ends ends) const
     return surface == kNoSurface || surface != m_surface[std::size_t(ends.m_b)];
 }
 
-// Of the solid links and of those with a foreign node, in any order.
+// Returns an order-independent hash of the range's solid links and the links with a foreign node.
 std::uint64_t SolidLinks::sumOf(const btSoftBody& body, int begin, int end) const
 {
     std::uint64_t sum = 0;

@@ -20,7 +20,7 @@ constexpr int kForeign = -1;
 // Returns the index of a node of the body; kForeign for one that is not the body's.
 int nodeIndex(const btSoftBody& body, const btSoftBody::Node* node);
 
-// Whether a body without faces and tetrahedra has a solid link.
+// Returns whether a body without faces and tetrahedra has a solid link.
 bool hasSolidLink(const btSoftBody& body);
 
 class SolidLinks
@@ -30,11 +30,11 @@ public:
     void read(const btSoftBody& body, const std::vector<std::int32_t>& faces);
     // Two nodes each, in the body's order. None joins a node to itself.
     const std::vector<std::int32_t>& nodes() const { return m_nodes; }
-    // Whether a link that would be solid names a node that is not the body's.
+    // Returns whether a link that would be solid names a node outside the body.
     bool hasForeign() const { return m_hasForeign; }
-    // Whether the solid links are others than were read, in any order. Looks at all links where their number or place
-    // in memory changed or `all` is true, else at some more in each call, and tells once it has seen all. The body has
-    // as many nodes as were read, and the same faces.
+    // Returns whether the set of solid links differs from the one that was read. Checks all links if their number or
+    // address changed or `all` is true. Otherwise each call checks some more, and the answer comes after the last of
+    // them. The body's node count and faces must be unchanged.
     bool changed(const btSoftBody& body, bool all);
 
 private:
@@ -49,9 +49,9 @@ private:
     void remember(const btSoftBody& body);
 
     std::vector<std::int32_t> m_nodes;
-    std::vector<int> m_surface;  // by node: a node of the same surface, the same for all of it; kNoSurface
+    std::vector<int> m_surface;  // by node: the representative node of its surface; kNoSurface
     std::uint64_t m_sum = 0;     // of what sumOf() adds up, over all links
-    std::uint64_t m_seen = 0;    // the same of those up to m_cursor
+    std::uint64_t m_seen = 0;    // sum over the links up to m_cursor
     int m_cursor = 0;
     int m_linkCount = 0, m_tetraCount = 0;
     const void* m_linkArray = nullptr;  // compared, never followed

@@ -1,8 +1,8 @@
-// Tells whether a soft body is still of its own size, and keeps it from coming apart.
+// Checks whether a soft body still has its own size, and keeps it from coming apart.
 //
-// Why: cloth that came apart, because links lost against forces or pins were put elsewhere without the rest, has faces
-// that reach across whole obstacles. What they pass costs more than a step may take, and no contact brings them in
-// order (Pipeline::finish()).
+// Reason: cloth comes apart if its links lose against forces, or if its pins are moved elsewhere without the rest.
+// Its faces then reach across whole obstacles. The features that they pass cost more than a step may take, and no
+// contact restores the cloth (Pipeline::finish()).
 #pragma once
 
 #include <vector>
@@ -36,7 +36,7 @@ btScalar unitOf(const btSoftBody& body, const ClothFaces& faces, const NodePaths
 // O(n) in the links and faces.
 Stretch stretchOf(const btSoftBody& body, const ClothFaces& faces, const NodePaths& paths);
 
-// Shortens what each movable node goes beside the body's common motion, the median of all, to half a unit. Velocities
-// follow, so that nodes which fly apart lose what drives them. O(n).
+// Shortens each movable node's motion relative to the body's common motion, the median, to at most half a unit.
+// Velocities follow, so that nodes which fly apart lose their speed. O(n).
 void holdTogether(btSoftBody& body, const ClothFaces& faces, const NodePaths& paths);
 }  // namespace drape

@@ -12,8 +12,8 @@ namespace drape
 constexpr int kLanes = 4;  // contacts side by side
 using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
 
-// A vector of Bullet's, the last number of which does not count, loaded and stored whole: a contact reads what the one
-// before has just written, and a load waits for stores of less than itself to reach the cache.
+// A whole vector of Bullet's, whose fourth number is unused. It is loaded and stored in one piece: a contact reads
+// what the one before has just written, and a load waits for narrower stores to reach the cache.
 using Quad = btScalar __attribute__((vector_size(4 * sizeof(btScalar))));
 
 inline void load(const btVector3& vector, Quad& quad)
@@ -33,7 +33,7 @@ inline void writePosition(const btVector3& position, float*& out)
         *out++ = static_cast<float>(position[axis]);
 }
 
-// For blocks, which are in float32.
+// Converts to float32, as blocks use it.
 inline Lanes lanesOf(const btVector3& vector)
 {
     Quad quad;

@@ -1,7 +1,7 @@
-// Whose algorithm a dispatcher gives to pairs of a soft body and a triangle mesh.
+// Finds whose algorithm a dispatcher gives to pairs of a soft body and a triangle mesh.
 //
-// Bullet does not tell which functions a dispatcher was given, so an algorithm is made for the pair, asked, and freed.
-// Nothing collides.
+// Bullet does not report the functions of a dispatcher. An algorithm is therefore made for the pair, queried, and
+// freed. Nothing collides.
 #pragma once
 
 #include "BulletSoftBody/btSoftBody.h"
@@ -17,11 +17,11 @@ class PluginState;
 const PluginState* pluginOf(btDispatcher& dispatcher, const btSoftBody& cloth, const btCollisionObject& obstacle,
                             const btCollisionShape& shape);
 
-// The same for any pair of the dispatcher.
+// Returns the state of the plugin whose algorithm the dispatcher gives to any pair; null if there is none.
 const PluginState* pluginOf(btDispatcher& dispatcher);
 
-// Returns null where the dispatcher of the objects' world has this plugin's algorithm, or where they are in no world;
-// else, in words, why Bullet's own algorithm has the pair.
+// Returns the reason, in words, why Bullet's own algorithm handles the pair. Returns null if the dispatcher of the
+// objects' world has this plugin's algorithm, or if they are in no world.
 const char* reasonFromDispatcher(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
                                  const btCollisionShape& shape);
 }  // namespace drape

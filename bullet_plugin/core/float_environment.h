@@ -26,9 +26,9 @@ private:
     bool m_isOuter;
 };
 
-// Gives the calling thread its own environment back while this lives within a DefaultFloats: for code of Bullet and of
-// the app that Drape calls and that would run in it without Drape. What flags that code raises stay raised. Does
-// nothing where no DefaultFloats lives.
+// Restores the calling thread's own environment within a DefaultFloats, for code of Bullet and of the app that Drape
+// calls and that would run in it without Drape. Exception flags that this code raises stay raised. Does nothing
+// outside a DefaultFloats.
 class CallersFloats
 {
 public:

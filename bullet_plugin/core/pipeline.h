@@ -64,7 +64,7 @@ struct ClothFeature
     std::int32_t m_nodes[3];  // indices in that cloth; -1 where unused
 };
 
-// A contact of a face and a vertex with the cloth's nodes somewhere else: where the two are nearest there.
+// The plane of a face-vertex contact after the cloth's nodes moved, at the points where the two are nearest then.
 struct ContactPlane
 {
     float m_normal[3];   // unit, on the side of the contact's
@@ -72,7 +72,7 @@ struct ContactPlane
     float m_weights[3];  // of the face's nodes, sum 1
 };
 
-// Some adjacent nodes of a cloth, and where they are to be written: x y z per node.
+// A range of adjacent nodes of a cloth, and the memory to write them to: x y z per node.
 struct NodeStretch
 {
     std::size_t m_cloth;  // index in the caller's list
@@ -95,77 +95,76 @@ struct ContactList
 class Pipeline
 {
 public:
-    // Chooses the device and makes its kernels ready. Returns null and fills error when settings ask for what is not
-    // there or does not work, or for methods out of their ranges. A device that nobody asked for and that does not work
-    // leaves the host: see deviceReport() and lastError().
+    // Chooses the device and builds its kernels. Returns null and fills error if the settings request an unavailable
+    // or failing device, or methods out of their ranges. If a device that was not requested fails, the host remains:
+    // see deviceReport() and lastError().
     static std::unique_ptr<Pipeline> create(const Settings& settings, Error& error);
     ~Pipeline();
     Pipeline(const Pipeline&) = delete;
     Pipeline& operator=(const Pipeline&) = delete;
 
-    // For a pipeline of which a call ended by an exception: lets go of all meshes, whose ids are not given again, and
-    // opens the device anew, which takes as long as at a second start. Throws, with nothing changed, where memory runs
-    // out.
+    // Recovers a pipeline after a call ended by an exception: releases all meshes, whose ids are not reused, and
+    // opens the device anew, which takes as long as a second start. Throws, with nothing changed, if memory runs out.
     void restart();
 
     const DeviceReport& deviceReport() const;
 
-    // Both copy what they are given. Topology is fixed until remove(). Return kNoMesh, with nothing added, for a mesh
-    // with an index out of range; lastError() names it. The next step costs more by what the mesh holds, now and then,
-    // where memory grows or gaps close, by what all do; with a traversal that is not the default, and for a cloth
-    // beside one that collides with itself, by what all of its side do. remove() costs next to nothing; gaps close once
-    // more is vacant than not.
+    // Add a mesh; both copy their input. Topology is fixed until remove(). They return kNoMesh, with nothing added,
+    // for a mesh with an index out of range; lastError() names it. The next step costs more in proportion to the
+    // mesh, and occasionally, where memory grows or gaps close, in proportion to all meshes. It costs in proportion
+    // to all meshes of the same side with a traversal that is not the default, and for a cloth beside one that
+    // collides with itself. remove() costs next to nothing; gaps close once more is vacant than in use.
     MeshId addCloth(const MeshDescription& mesh);
     MeshId addObstacle(const MeshDescription& mesh);
     void remove(MeshId mesh);
 
-    // Brings meshes that came to the device now, and builds what the host walks where there is none or where cost may
-    // leave these meshes' steps to the host: the next step does not pay for it. Waits. Not between submit() and
-    // finish(); contacts of the last step are not to be looked at any more.
+    // Uploads new meshes to the device now, and builds the host's data where it is missing and cost may leave these
+    // meshes' steps to the host. The next step then does not pay for this. Waits. Do not call between submit() and
+    // finish(). Invalidates the last step's contacts.
     void prepare();
 
-    // Gives back host memory that only earlier steps with more meshes and contacts needed. Contacts of the last step
-    // are not to be looked at any more. Not between submit() and finish().
+    // Releases host memory that only earlier steps with more meshes and contacts needed. Invalidates the last step's
+    // contacts. Do not call between submit() and finish().
     void giveBackRoom();
 
-    // New positions (x y z per vertex) of an obstacle that moved or was deformed; what hangs on them is made anew, the
-    // other obstacles stay as they are. Counts as a teleport: the motion between old and new is not swept.
+    // Sets new positions (x y z per vertex) of an obstacle that moved or was deformed. Dependent data is rebuilt;
+    // other obstacles are unchanged. Counts as a teleport: the motion between old and new is not swept.
     void moveObstacle(MeshId obstacle, const float* positions);
 
-    // Where the obstacle's own frame is at the start and at the end of the coming steps, until the next call: three
-    // rows of three factors and a shift (m), world = pose × position. Poses that differ are a rigid motion over the
-    // step, which counts as the cloth's does: contacts are those at the end pose, their gaps and times those that the
-    // obstacle sees, m_gap0 taken at its start pose. Equal poses: it rests there, and a change since the call before is
-    // a teleport. From the first call on, its positions are those of its own frame. Costs no pass over the vertices on
-    // the host when a device has the pipeline.
+    // Sets the obstacle's own frame at the start and end of the coming steps, until the next call. A pose is three
+    // rows of three factors and a shift (m); world = pose × position.
+    //
+    // Different poses are a rigid motion over the step, treated like the cloth's. Contacts are those at the end pose;
+    // their gaps and times are relative to the obstacle, m_gap0 at its start pose. With equal poses the obstacle
+    // rests, and a change since the call before is a teleport. From the first call on, its positions are in its own
+    // frame. Costs no pass over the vertices on the host when the pipeline has a device.
     void placeObstacle(MeshId obstacle, const float startPose[12], const float endPose[12]);
 
-    // Where the caller writes a cloth's nodes for the coming step: x y z per vertex at the step's start and end. The
-    // memory is the pipeline's (pinned where the device has it), valid until addCloth, remove or submit.
+    // Memory for a cloth's nodes in the coming step: x y z per vertex at the step's start and end. The pipeline owns
+    // it (pinned if the device supports it); valid until addCloth, remove or submit.
     float* clothStart(MeshId cloth);
     float* clothEnd(MeshId cloth);
-    // Tells that the first `count` nodes of a cloth are written, start and end, and stay so until submit(): they may go
-    // to the device while the caller writes others. Optional. It helps where cloths are told of in the order in which
-    // they were added, and large ones a part at a time.
+    // Declares that the first `count` nodes of a cloth are written, start and end, and stay unchanged until submit().
+    // Their transfer may start while the caller writes others. Optional. It helps if cloths are declared in the order
+    // in which they were added, and large ones a part at a time.
     void nodesWritten(MeshId cloth, std::size_t count);
-    // All of that for several cloths: calls write() for stretches of their nodes, and tells of them as they are
-    // written. A GPU's pipeline shares many stretches with threads(): calls must not depend on their order, and several
-    // may be under way at once.
+    // Writes and declares the nodes of several cloths: calls write() for ranges of their nodes. A GPU's pipeline
+    // shares many ranges with threads(): calls must not depend on their order, and several may run at once.
     void writeNodes(const std::vector<MeshId>& cloths, const std::function<void(const NodeStretch&)>& write);
-    // The same for a caller with arrays of its own, of all the cloths one after the other: x y z per vertex.
+    // Copies the nodes from a caller's arrays, which hold all the cloths one after the other: x y z per vertex.
     void copyNodes(const std::vector<MeshId>& cloths, const float* start, const float* end);
 
     // Returns whether a triangle of the obstacle reaches into the box (m, in the frame of its positions as given).
     // O(n).
     bool anyTriangleIn(MeshId obstacle, const float low[3], const float high[3]);
-    // The obstacle for questions about what lies where beside it, in the same frame.
+    // Returns the obstacle for queries about nearby points and triangles, in the same frame.
     std::unique_ptr<MeshProbe> makeProbe(MeshId obstacle);
 
-    // Names a pair for the coming step; thickness in m > 0. A cloth without a pair costs nothing.
-    // tube: m, for a caller that lets no node of the cloth go farther than this from its straight way while it solves:
-    // contacts that the others then keep, up to 2 % of the thickness, are left out (kernels/lib/contact_reduction.h).
-    // Negative: none of that cloth are, nor of one that has a pair with a one-sided obstacle or one that moves in the
-    // step.
+    // Names a pair for the coming step; thickness in m > 0. A cloth without a pair costs nothing. tube: path
+    // tolerance, m, of a caller that lets no node of the cloth go farther than this from its straight path while it
+    // solves. Contacts that the others then enforce up to 2 % of the thickness are left out
+    // (kernels/lib/contact_reduction.h). With a negative value no contact of that cloth is left out, nor of one that
+    // has a pair with a one-sided obstacle or one that moves in the step.
     void addPair(MeshId cloth, MeshId obstacle, float thickness, float tube = -1.0f);
 
     // Names a cloth that collides with itself (MeshDescription::m_selfThickness > 0) in the coming step. Its features
@@ -185,28 +184,30 @@ public:
     // Without it, time decides which step does, but no contact depends on it: for measurements and tests. Between
     // finish() and submit().
     void waitForRebuild();
-    // Those of cloths with themselves of the last finish(), in canonical order; valid as long as its other contacts.
+    // Returns contacts of cloths with themselves of the last finish(), in canonical order; valid as long as its other
+    // contacts.
     ContactList selfContacts() const;
     // The cloths that the last finish() left out (kStepClothsLeftOut).
     const std::vector<MeshId>& clothsLeftOut() const;
-    // With statistics of that step (upload and wait times, counts, status; the adapter adds its own).
+    // Returns statistics of that step (upload and wait times, counts, status; the adapter adds its own).
     const StepStatistics& statistics() const;
     // The kernel launches since the last call, with Settings::m_profileKernels; empty on the host. Waits for the
     // device.
     std::vector<KernelTime> takeKernelTimes();
-    // What the device's buffers hold, by name; empty on the host.
+    // Returns the sizes of the device's buffers by name; empty on the host.
     std::vector<MemoryUse> deviceMemory() const;
-    // Those that Settings::m_threads asks for; never null. For the pipeline's caller, between its calls, too.
+    // Returns the threads set by Settings::m_threads; never null. The pipeline's caller may use them, too, between
+    // its calls.
     const std::shared_ptr<ThreadTeam>& threads() const;
-    // Whether a device failed, so that the host runs every step from then on.
+    // Returns whether a device failed, so that the host runs every step from then on.
     bool deviceFailed() const;
     // Message of the device's failure when the status says so, or of the mesh that was refused since.
     const Error& lastError() const;
 
     // Resolves a contact of the last finish().
     ContactView view(const Contact& contact) const;
-    // A DRAPE_FACE_VERTEX contact with the face's nodes (m, x y z each, in the view's order; of an edge's two the
-    // second one twice) at other places. False where their direction means nothing: the face touches the vertex, or
+    // Turns a DRAPE_FACE_VERTEX contact to other positions of the face's nodes (m, x y z each, in the view's order;
+    // an edge repeats its second node). Returns false if the direction is undefined: the face touches the vertex, or
     // came past it. O(1).
     static bool planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane);
     // Resolves one of selfContacts().

@@ -1,6 +1,6 @@
-// What every public function runs in: the default floating-point environment, and a place where exceptions end.
+// Wraps every public function: sets the default floating-point environment and stops exceptions.
 //
-// Work that may throw, which is all that allocates, is done within guarded(). Nothing else of the library catches
+// Work that may throw, which is all that allocates, runs within guarded(). Nothing else of the library catches
 // exceptions for the sake of the interface.
 #pragma once
 
@@ -17,10 +17,10 @@ namespace drape
 // Short enough for a std::string to hold without allocating.
 constexpr const char* kOutOfMemory = "out of memory";
 
-// What an exception that ended a public function was.
+// Describes an exception that ended a public function.
 struct CaughtException
 {
-    bool m_isMemory;     // else a fault of Drape's, or of what it calls
+    bool m_isMemory;     // else a fault of Drape or of code that it calls
     const char* m_text;  // valid within the handler
 };
 
@@ -66,7 +66,7 @@ auto guarded(const Work& work, const Failed& failed) noexcept -> decltype(work()
     }
 }
 
-// The same with a value made without allocating in place of failed().
+// Does the same with a value, made without allocating, in place of failed().
 template <class Work, class Value>
 auto guardedOr(Value value, const Work& work) noexcept -> decltype(work())
 {

@@ -1,9 +1,8 @@
-// When memory that is kept from step to step is worth giving back.
+// Decides when to release memory that is kept from step to step.
 //
-// Arrays keep their room, because a scene needs about as much in one step as in the one before. Where it has needed no
-// more than a quarter of its most for kWindow steps, ten seconds at 60 a second, the room is given back once. So memory
-// is bounded by what the last ten seconds needed, and a scene that stays as it is never pays. Cost: a comparison a
-// step.
+// Arrays keep their capacity, because successive steps need about the same. If a scene has needed at most a quarter
+// of its maximum for kWindow steps, ten seconds at 60 a second, the memory is released once. Memory is therefore
+// bounded by the needs of the last ten seconds, and a steady scene pays nothing. Cost: a comparison per step.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +18,8 @@ public:
     static constexpr std::size_t kShare = 4;
     static constexpr std::size_t kLeast = 1 << 12;  // elements that are kept in any case
 
-    // Once a step, with the number of elements that it used. Returns whether the room of earlier steps is to be given
-    // back now.
+    // Records the number of elements that a step used; call once a step. Returns whether the memory of earlier steps
+    // should be released now.
     bool hasFallen(std::size_t used)
     {
         m_most = std::max(m_most, used);

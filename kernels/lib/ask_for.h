@@ -1,4 +1,4 @@
-// What a CPU's work-item reads soon, brought nearer before its turn. For kernels only.
+// Prefetches data that a CPU's work-item reads soon. For kernels only.
 #ifndef DRAPE_LIB_ASK_FOR_H
 #define DRAPE_LIB_ASK_FOR_H
 

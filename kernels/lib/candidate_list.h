@@ -1,4 +1,4 @@
-// How traversals publish what they find. For devices only.
+// Appends the results of traversals to a list. For devices only.
 #ifndef DRAPE_LIB_CANDIDATE_LIST_H
 #define DRAPE_LIB_CANDIDATE_LIST_H
 
@@ -13,8 +13,9 @@
 #define DRAPE_VISITS(counters, count) (void)(count)
 #endif
 
-// Whether the step tests the meshes of two triangles against each other. thickness holds cloths × obstacles values,
-// negative where it does not. With one obstacle there is nothing to look up: a cloth without a pair has empty volumes.
+// Returns whether the step tests the meshes of two triangles against each other. thickness holds cloths × obstacles
+// values, negative for pairs that are not tested. One obstacle needs no look-up: a cloth without a pair has empty
+// volumes.
 static int meshesPaired(const Candidate candidate, __global const Triangle* clothTriangles,
                         __global const Triangle* obstacleTriangles, __global const float* thickness,
                         const uint obstacleMeshes)
@@ -41,9 +42,9 @@ static int flushCandidates(__global Candidate* restrict candidates, __global Ste
     return place <= limit;
 }
 
-// The same for pairs that a work-group gathered (candidates or a front's pairs): every work-item calls it, and all have
-// passed a barrier since the last was gathered. Two barriers, so that place and gathered may be used again after it.
-// Returns the same as flushCandidates() to all.
+// Appends pairs that a work-group gathered (candidates or a front's pairs). Every work-item calls it after a barrier
+// that follows the last gathered pair. Two barriers allow the reuse of `place` and `gathered` afterwards. Returns the
+// result of flushCandidates() to all.
 static int groupFlush(__global uint2* restrict list, __global uint* restrict demand, const uint capacity,
                       const uint limit, __local const uint2* gathered, const uint count, __local uint* place)
 {

@@ -1,17 +1,13 @@
-// Continuous collision of a vertex with a face and of an edge with an edge: do they come within a separation while all
-// their vertices move linearly over the step, and when first?
+// Continuous collision of a vertex with a face and of an edge with an edge: decides whether they come within a
+// separation while all their vertices move linearly over the step, and when first.
 //
-// Both are one question: where is F(t,u,v) of ccd_motion.h within the separation of zero? A box of (t,u,v) is dropped
-// when the bounds of F over it prove it away, else halved in the direction in which F varies most, the earlier half
-// first. A box that provably holds a zero is a hit, and so is what cannot be dropped at the finest size.
-// Method: B. Wang et al., A large-scale benchmark and an inclusion-based algorithm for continuous collision detection,
-// 2021; bounds of our own, since theirs are not conservative for every frame (see ccdSlack), and views along the
-// directions in which t, u and v come apart, which take an eighth of the boxes that the axes alone need. Before any
-// search a guess (ccd_guess.h): nearly all meetings of a step are proved by two boxes, and nearly all misses by one.
+// Input: a motion (ccd_motion.h), separation, tolerances and a limit of boxes. Method: bisection of boxes of (t,u,v),
+// after B. Wang et al., A large-scale benchmark and an inclusion-based algorithm for continuous collision detection,
+// 2021, with bounds of our own. docs/design_notes/ccd.md explains it.
 //
-// Guarantee: no pair that truly comes within the separation is called apart, and the time is no later than the true
-// one. Pairs that miss each other by less than about 1e-6 of their extent may be called hits. Input that is not finite
-// is no hit. Host and devices give the same bits. Cost: the depth of the search is bounded by 63 and kept in 24 bytes.
+// Guarantee: a pair that truly comes within the separation is never called apart, and the time is no later than the
+// true one. Pairs that miss each other by less than about 1e-6 of their extent may be called hits. Input that is not
+// finite is no hit. Host and devices give the same bits. Cost: the search's depth is at most 63, stored in 24 bytes.
 #ifndef DRAPE_LIB_CCD_H
 #define DRAPE_LIB_CCD_H
 
@@ -42,16 +38,16 @@ DRAPE_FUNCTION CcdSettings ccdSettings(float separation, float tolerance, float 
     return settings;
 }
 
-// 1e-6: 0 misses and 157 false hits on the 6,598 published negatives. A step is seldom worth more than 2^-14 of
-// it (1 µs of 1/60 s). Of the 114,540 published hits three take more than 4,096 boxes to be found; 22 is the mean, and
-// 90 for the time.
+// Default settings. A tolerance of 1e-6 gives 0 misses and 157 false hits on the 6,598 published negatives. A step is
+// seldom worth more than 2^-14 of it (1 µs of 1/60 s). Three of the 114,540 published hits take more than 4,096 boxes
+// to be found; the mean is 22, and 90 for the time.
 DRAPE_FUNCTION CcdSettings ccdDefaults(void)
 {
     return ccdSettings(0.0f, 1e-6f, 6.1035156e-5f, 4096u);
 }
 
-// The way from the whole domain to a box: a place per halving, 0 the first. Bit i of m_upper: the box is in the upper
-// half; m_axis holds the direction in two bit sets.
+// The path of halvings from the whole domain to a box, 0 the first. Bit i of m_upper: the box is in the upper half;
+// m_axis holds the direction in two bit sets.
 typedef struct CcdPath
 {
     DRAPE_ULONG m_upper;
@@ -59,8 +55,8 @@ typedef struct CcdPath
     int m_depth;
 } CcdPath;
 
-// Whether the halves of the box in time begin and end at multiples of 2^-24, as it does. Only then are times, and what
-// is left of the step at them, exact, and the halves are the box again.
+// Returns whether the halves of the box in time begin and end at multiples of 2^-24, as the box does. Only then are
+// times, and the rest of the step after them, exact, and the halves cover exactly the box.
 DRAPE_FUNCTION int ccdHalvesInTime(const CcdBox* box)
 {
     const float width = 0.5f * box->m_width[0], middle = box->m_low[0] + width;
@@ -140,14 +136,14 @@ DRAPE_FUNCTION CcdBox ccdTaskBox(const CcdTask* task)
     return box;
 }
 
-// Whether there is nothing to find in the box, told before it is looked at.
+// Returns whether the box is known to hold no result before it is tested.
 DRAPE_FUNCTION int ccdPasses(const CcdMotion* m, const CcdTask* task, const CcdBox* box, const CcdResult* result)
 {
     if (m->m_triangular && box->m_low[1] + box->m_low[2] > 1.0f) return 1;
     return result->m_hit && box->m_low[0] + task->m_timeTolerance >= result->m_time;
 }
 
-// Looks at a box: the direction in which to halve it, or -1 when it is done with. Stores a hit.
+// Tests a box. Returns the direction in which to halve it, or -1 when it is finished. Stores a hit.
 DRAPE_FUNCTION int ccdLook(const CcdMotion* m, const CcdTask* task, const CcdBox* box, CcdResult* result)
 {
     CcdRanges ranges;
@@ -160,9 +156,9 @@ DRAPE_FUNCTION int ccdLook(const CcdMotion* m, const CcdTask* task, const CcdBox
     return axis;
 }
 
-// Depth first, the earlier half first. After a hit only boxes that start earlier by the time tolerance are looked at,
-// so the hit in hand at the end is the earliest to that tolerance. With more boxes than the limit it is not, or is
-// none: then m_boxes says so. The views must be aimed.
+// Searches depth first, the earlier half first. After a hit it tests only boxes that start earlier by the time
+// tolerance, so that the final hit is the earliest to that tolerance. If the search exceeds its limit of boxes, as
+// m_boxes shows, the hit may be missing or later. The views must be aimed.
 DRAPE_FUNCTION CcdResult ccdSearch(CcdMotion* m, const CcdTask* task)
 {
     CcdResult result = {0u, 1.0f, 0.0f, 0.0f, 0u};
@@ -186,8 +182,8 @@ DRAPE_FUNCTION CcdResult ccdSearch(CcdMotion* m, const CcdTask* task)
     return result;
 }
 
-// Aims the views at where the features are in one plane, or at the begin of a box about it that holds a zero: then the
-// result is a hit unless something comes before it. Returns 0 where nothing can.
+// Aims the views at the time when the features are in one plane, or at the beginning of a box about it that holds a
+// zero. The result is then a hit unless something precedes it. Returns 0 if nothing can.
 DRAPE_FUNCTION int ccdGuess(CcdMotion* m, const CcdTask* whole, CcdResult* result, CcdBox* aim, CcdBox* guess)
 {
     const int inside = ccdGuessBox(m, whole->m_timeTolerance, aim, guess);
@@ -204,9 +200,9 @@ DRAPE_FUNCTION int ccdGuess(CcdMotion* m, const CcdTask* whole, CcdResult* resul
     return guess->m_low[0] > 0.0f;
 }
 
-// What is looked at before the whole step is searched, at first with views aimed by a guess: 0, the whole, with one
-// look; 1, what is before the guess, 2, the guess's time, and 3, what is after it. All begin and end at multiples of
-// 2^-24.
+// Pieces that are searched before the whole step, at first with views aimed by a guess. 0: the whole step, with one
+// box test; 1: the time before the guess; 2: the guess's time; 3: the time after it. All begin and end at multiples
+// of 2^-24.
 #define DRAPE_CCD_PIECES 4
 DRAPE_FUNCTION CcdTask ccdPiece(const CcdTask* whole, DRAPE_UINT part, const CcdBox* guess, int piece)
 {
@@ -217,10 +213,12 @@ DRAPE_FUNCTION CcdTask ccdPiece(const CcdTask* whole, DRAPE_UINT part, const Ccd
     return task;
 }
 
-// A guess first: a hit where nothing comes before it, and else perhaps proof that there is none. Where that fails, the
-// whole step, for hit and time at once. Where that takes too many boxes (features that touch along a line, or nearly),
-// it is asked whether there is a hit at all, and then in which half of the step, in which half of that, and so on: an
-// earlier half without a hit is over, and one that takes too many boxes counts as having one.
+// Starts from a guess: a hit if nothing precedes it, otherwise perhaps a proof that there is none. If that fails,
+// searches the whole step for hit and time at once.
+//
+// Some searches take too many boxes, for features that touch along a line, or nearly. The search then first decides
+// whether there is a hit at all, and bisects the step for its time. An earlier half without a hit is finished; a half
+// that takes too many boxes counts as having one.
 DRAPE_RARE_FUNCTION CcdResult ccdFind(CcdMotion* m, CcdSettings settings)
 {
     const int timed = settings.m_timeTolerance < 1.0f;
@@ -248,14 +246,14 @@ DRAPE_RARE_FUNCTION CcdResult ccdFind(CcdMotion* m, CcdSettings settings)
         {
             const int empty = !result.m_hit && !exhausted;
             if (empty && (found.m_hit || round == -DRAPE_CCD_PIECES || round == -1)) return found;
-            // The whole is to be looked at: nothing is known but that there may be a hit.
+            // Searches the whole step: all that is known is that there may be a hit.
             if (!empty && round > -DRAPE_CCD_PIECES) round = -1;
             if (round == -1) task = whole;
             continue;
         }
         if (round == 0 && !exhausted) return result;
         if (round == 1 && !exhausted && !result.m_hit) return result;
-        // A refuted half ends the part of the step without a hit; else the hit in it is the one to go on with.
+        // A refuted half ends the part of the step without a hit; otherwise the search continues with the hit in it.
         const int hit = result.m_hit || exhausted;
         if (hit && result.m_hit) found = result;
         if (!timed || (round > 1 && task.m_width <= settings.m_timeTolerance))

@@ -1,5 +1,5 @@
-// A guess at where and when two features meet: a small box of (t,u,v) about the time at which they lie in one plane,
-// found by false position. Proving the box a hit, and that nothing is before it, is up to ccd.h.
+// Guesses where and when two features meet: a small box of (t,u,v) about the time at which they lie in one plane,
+// found by false position. ccd.h has to prove that the box is a hit and that nothing precedes it.
 #ifndef DRAPE_LIB_CCD_GUESS_H
 #define DRAPE_LIB_CCD_GUESS_H
 
@@ -77,7 +77,7 @@ DRAPE_FUNCTION int ccdGuessBox(const CcdMotion* m, float timeTolerance, CcdBox* 
     const float beyond = m->m_triangular ? 0.5f * (1.0f - along[0] - along[1]) : 1.0f - most;
     const float margin = drapeMin(least, beyond);
     const int inside = crossing >= 0.0f && margin >= DRAPE_CCD_GUESS_FINEST;
-    // As wide in v as in u: F's variation along u with v and t is to be less than along u itself.
+    // The box is as wide in v as in u: F's variation along u with v and t must be less than along u itself.
     const float width = inside ? powerOfTwoBelow(drapeMin(margin, DRAPE_CCD_GUESS_PLACE)) : 1.0f;
     aim->m_low[0] = time;
     aim->m_width[0] = 0.0f;

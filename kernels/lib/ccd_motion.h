@@ -1,7 +1,7 @@
-// The motion of a vertex and a face, or of two edges, over a step, as F(t,u,v) = D(t) - u E(t) - v G(t): the offset
-// between the place (u,v) on the features at the time t, with D, E and G differences of vertices that are linear in t.
-// F is linear in each of t, u and v, so over a box its extremes are at the box's corners; this holds along any
-// direction, and what a direction proves holds whatever the direction. See ccd.h for the search that uses it.
+// The motion of a vertex and a face, or of two edges, over a step: F(t,u,v) = D(t) - u E(t) - v G(t). F is the offset
+// between the points (u,v) on the features at the time t; D, E and G are differences of vertices that are linear in
+// t. F is linear in each of t, u and v, so over a box its extremes are at the box's corners. This holds along any
+// direction, and a proof along any direction is valid. See ccd.h for the search that uses it.
 #ifndef DRAPE_LIB_CCD_MOTION_H
 #define DRAPE_LIB_CCD_MOTION_H
 
@@ -70,11 +70,11 @@ DRAPE_FUNCTION float ccdMost(float a, float b)
     return drapeMax(drapeAbs(a), drapeAbs(b));
 }
 
-// With u = 2^-24 and M_D, M_E, M_G the largest |D|, |E|, |G| at the step's ends: each end is one rounding of a
-// difference (u M), each value between is two products and a sum (2 u M), u E and v G are products (u M), and the two
-// last sums round at most M_D + M_E + M_G each. Together 6 u (M_D + M_E + M_G); 7 u covers the second-order terms and
-// the rounding of the slack. Flushed denormals add 2^-126 each, before scaling (12 coordinates and their differences)
-// and after it.
+// Bounds the rounding errors of F along axis i. Let u = 2^-24, and M_D, M_E, M_G be the largest |D|, |E|, |G| at the
+// step's ends. Each end is one rounding of a difference (u M). Each value between is two products and a sum (2 u M).
+// The products u E and v G add u M each. The two last sums round at most M_D + M_E + M_G each. Together this is 6 u
+// (M_D + M_E + M_G); 7 u covers the second-order terms and the rounding of the slack. Flushed denormals add 2^-126
+// each, before scaling (12 coordinates and their differences) and after it.
 DRAPE_FUNCTION float ccdSlack(const CcdMotion* m, int i)
 {
     const float sevenUnits = 4.1723251e-7f;
@@ -109,9 +109,9 @@ DRAPE_FUNCTION void ccdAddAxis(CcdMotion* m, int i, Vec3 unit)
     m->m_reach[i] = m->m_separation + m->m_slack[i];
 }
 
-// A view along any direction. It is made of the vectors' rounded coordinates: to the slack of the view itself comes,
-// for each vector, u |n|₁ M for its rounding and 3 u |n|₁ M for the dot product, M ≤ 1 in the frame: for D, E and G
-// together 12 u |n|₁, and their flushed products.
+// Adds a view along any direction, made of the vectors' rounded coordinates. The view's own slack grows by two terms
+// for each vector: u |n|₁ M for its rounding and 3 u |n|₁ M for the dot product, with M ≤ 1 in the frame. For D, E
+// and G together these are 12 u |n|₁, plus their flushed products.
 DRAPE_FUNCTION Vec3 ccdAddSkewView(CcdMotion* m, int i, Vec3 direction)
 {
     const Vec3 n = vec3Scale(direction, localScale(vec3NormMax(direction)));
@@ -123,7 +123,7 @@ DRAPE_FUNCTION Vec3 ccdAddSkewView(CcdMotion* m, int i, Vec3 direction)
     return n;
 }
 
-// How F varies with t at a place.
+// Returns the derivative of F with respect to t at a point of the features.
 DRAPE_FUNCTION Vec3 ccdRate(const CcdVectors* v, float place0, float place1)
 {
     Vec3 rate = vec3Sub(v->m_d1, v->m_d0);
@@ -131,8 +131,8 @@ DRAPE_FUNCTION Vec3 ccdRate(const CcdVectors* v, float place0, float place1)
     return vec3AddScaled(rate, vec3Sub(v->m_g1, v->m_g0), -place1);
 }
 
-// Aims the skew views at what F does in the middle of a box: there each varies with t, u or v alone. What they prove
-// holds everywhere. Directions whose volume is below 1e-5, far above its rounding, count as dependent.
+// Aims the skew views at the derivatives of F in the middle of a box: each view varies with t, u or v alone there.
+// Their proofs hold everywhere. Directions whose volume is below 1e-5, far above its rounding, count as dependent.
 DRAPE_FUNCTION void ccdAim(CcdMotion* m, const CcdBox* box)
 {
     const CcdVectors* v = &m->m_vectors;
@@ -197,7 +197,7 @@ typedef struct CcdRanges
     float m_low1[DRAPE_CCD_VIEWS], m_high1[DRAPE_CCD_VIEWS];
 } CcdRanges;
 
-// Least and greatest F in view i over the box's places at time t.
+// Computes the least and greatest F in view i over the box's points at time t.
 DRAPE_FUNCTION void ccdRange(const CcdMotion* m, int i, const CcdBox* box, float t, float* low, float* high)
 {
     const float u0 = box->m_low[1], u1 = box->m_low[1] + box->m_width[1];
@@ -223,7 +223,7 @@ DRAPE_FUNCTION void ccdBounds(const CcdMotion* m, const CcdBox* box, CcdRanges* 
 #define DRAPE_CCD_OPEN 1
 #define DRAPE_CCD_WITHIN 2
 
-// Whether F stays beyond the separation over the whole box (proved), or within it (to rounding), or neither.
+// Classifies the box: F provably stays beyond the separation over all of it, or within it (to rounding), or neither.
 DRAPE_FUNCTION int ccdTest(const CcdMotion* m, const CcdRanges* r)
 {
     int apart = 0;
@@ -249,13 +249,13 @@ DRAPE_FUNCTION int ccdTest(const CcdMotion* m, const CcdRanges* r)
     return within ? DRAPE_CCD_WITHIN : DRAPE_CCD_OPEN;
 }
 
-// Whether F stays beyond the separation over that part of the box in which u + v ≤ 1, seen along the view for that
+// Returns whether F stays beyond the separation over the part of the box with u + v ≤ 1, along the view for that
 // side.
 DRAPE_FUNCTION int ccdBeyondSide(const CcdMotion* m, const CcdBox* box)
 {
     const int i = DRAPE_CCD_ALONG_SIDE;
     if (!m->m_triangular) return 0;
-    // In u + v and v, see ccdAimAtSide().
+    // The part in coordinates u + v and v, see ccdAimAtSide().
     CcdBox part = *box;
     part.m_low[1] = box->m_low[1] + box->m_low[2];
     part.m_width[1] = drapeMin(box->m_width[1] + box->m_width[2], 1.0f - part.m_low[1]);
@@ -265,7 +265,7 @@ DRAPE_FUNCTION int ccdBeyondSide(const CcdMotion* m, const CcdBox* box)
     return drapeMin(low0, low1) > m->m_reach[i] || -drapeMax(high0, high1) > m->m_reach[i];
 }
 
-// Whether F changes sign from one end of the box to the other in view i, everywhere: between the ranges there.
+// Returns whether F changes sign in view i between the ends of the box, everywhere: between the ranges at both ends.
 DRAPE_FUNCTION int ccdCrosses(float low0, float high0, float low1, float high1, float slack)
 {
     return (high0 < -slack && low1 > slack) || (low0 > slack && high1 < -slack);

@@ -54,7 +54,8 @@ DRAPE_FUNCTION void closestOnSegments(Vec3 a, Vec3 b, Vec3 c, Vec3 d, float* s, 
     const Vec3 u = vec3Sub(b, a), v = vec3Sub(d, c), w = vec3Sub(a, c);
     const float uu = vec3Dot(u, u), vv = vec3Dot(v, v), uv = vec3Dot(u, v), uw = vec3Dot(u, w), vw = vec3Dot(v, w);
     const float determinant = uu * vv - uv * uv;
-    // Where the second is a point, the first must still go to it; of parallel segments any start will do.
+    // If the second segment is a point, the first must still be projected on it; for parallel segments any start is
+    // valid.
     float first = drapeClamp01(vv > 0.0f ? drapeRatio(uv * vw - uw * vv, determinant) : drapeRatio(-uw, uu));
     float second = drapeRatio(uv * first + vw, vv);
     if (second < 0.0f || second > 1.0f)

@@ -1,10 +1,12 @@
-// How far a contact can reach along a direction of the volumes, given the cone that its direction lies in.
+// Bounds how far a contact can reach along a direction of the volumes, given the cone of the contact's direction.
 //
 // A contact without a meeting joins two points by an offset that the obstacle feature's normal cone admits
-// (feature_contact.h). So where all features of a patch face much the same way, cloth beside the patch is out of reach
-// long before it is as far off as the reach: across a cone's axis, an offset of length r goes r sin(half-angle) at
-// most. Cones are double, as coneAdmits() takes them. Results are rounded to the safe side by DRAPE_CONE_PAD, thousands
-// of roundings of the cones' own numbers.
+// (feature_contact.h). Across a cone's axis, an offset of length r extends at most r sin(half-angle). If all features
+// of a patch face much the same way, cloth beside the patch is therefore out of reach long before its distance
+// exceeds the reach.
+//
+// Cones are double, as coneAdmits() takes them. Results are rounded to the safe side by DRAPE_CONE_PAD, thousands of
+// roundings of the cones' own numbers.
 #ifndef DRAPE_LIB_CONE_REACH_H
 #define DRAPE_LIB_CONE_REACH_H
 
@@ -13,7 +15,7 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// Of a cosine or a share of the reach.
+// Padding of a cosine or of a share of the reach.
 #define DRAPE_CONE_PAD 1e-3f
 
 DRAPE_FUNCTION NormalCone normalCone(Vec3 axis, float cosine)

@@ -15,11 +15,11 @@ typedef struct CullVolumes
     Lanes m_noise, m_rounding;  // m
 } CullVolumes;
 
-// Of positions whose |x| + |y| + |z| is at most 1, most that roundings take from a volume: as dopGrowInterval() and
-// cullInterval() have it, with that sum in the place of every projection.
+// Bound on the rounding errors of a volume, for positions whose |x| + |y| + |z| is at most 1: the bound of
+// dopGrowInterval() and cullInterval(), with that sum in place of every projection.
 #define DRAPE_PACKET_PAD 6.1e-7f
 
-// How triangles of a packet move. m_stays: those that are not swept; m_moved: m, squared, of the fastest corner.
+// Motion of a packet's triangles. m_stays: triangles that are not swept; m_moved: m, squared, of the fastest corner.
 typedef struct PacketMotion
 {
     LaneMask m_stays;
@@ -74,9 +74,9 @@ DRAPE_FUNCTION Lanes packetIntervals(CullVolumes* cull, const LanesVec3* p)
     return size;
 }
 
-// p: corners at the step's start as the obstacle sees them, then at its end, all valid; unswept triangles lose the
-// starts. whole: not so where a corner was invalid and another is in its place. Returns the triangles that may come
-// near the obstacle; others, and those of negative radius, get an empty volume.
+// p: corners at the step's start relative to the obstacle, then at its end, all valid; unswept triangles lose the
+// starts. whole: false for a triangle in which another corner replaces an invalid one. Returns the triangles that may
+// come near the obstacle; others, and those of negative radius, get an empty volume.
 DRAPE_FUNCTION LaneMask cullVolumes(CullVolumes* cull, LanesVec3* p, Lanes radius, LaneMask whole, DRAPE_UINT mode,
                                     const DRAPE_GLOBAL ObstacleMotion* motion)
 {
@@ -136,7 +136,8 @@ DRAPE_FUNCTION LaneMask cullPacketChild(const CullVolumes* cull, const DRAPE_GLO
     return near;
 }
 
-// Directions of the volumes, a lane each. Lanes that are none hold zero, and infinity in m_ignored, which is zero else.
+// Directions of the volumes, one per lane. Unused lanes hold zero, and infinity in m_ignored, which is zero
+// elsewhere.
 typedef struct Directions
 {
     LanesVec3 m_along;
@@ -187,13 +188,13 @@ DRAPE_FUNCTION void nodeIntervals(NodeIntervals* nodes, const Directions* direct
     }
 }
 
-// Where cloth is that may be near a patch, along the directions, m.
+// Region, along the directions, in which cloth may be near a patch, m.
 typedef struct NearPatch
 {
     Lanes m_low, m_high;
 } NearPatch;
 
-// low, high, share: what the wide tree holds of the patch. radius, least: the triangle's, see CullVolume.
+// low, high, share: data of the patch in the wide tree. radius, least: the triangle's, see CullVolume.
 DRAPE_FUNCTION NearPatch nearPatch(const Directions* directions, Lanes low, Lanes high, Lanes share, float radius,
                                    float least)
 {
@@ -210,7 +211,7 @@ DRAPE_FUNCTION LaneMask nodeIsOut(const NodeIntervals* nodes, int k, NearPatch n
     return (near.m_low > nodes->m_high[k]) | (near.m_high < nodes->m_low[k]);
 }
 
-// The same of the edge from node k on.
+// Returns the directions along which the edge from node k on is out of reach of the patch.
 DRAPE_FUNCTION LaneMask edgeIsOut(const NodeIntervals* nodes, int k, NearPatch near)
 {
     const int next = k == 2 ? 0 : k + 1;

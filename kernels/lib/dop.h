@@ -56,7 +56,7 @@ DRAPE_FUNCTION float dopProject(Vec3 p, int i)
     return corner % 2 == 0 ? sum + p.z : sum - p.z;
 }
 
-// |x| + |y| where a direction's projection has three terms, else 0: what the rounding of the first sum is bounded by.
+// |x| + |y| where a direction's projection has three terms, else 0: bounds the rounding of the first sum.
 DRAPE_FUNCTION float dopInner(Vec3 p, int i)
 {
     return i < 3 + DRAPE_DOP_EDGES ? 0.0f : drapeAbs(p.x) + drapeAbs(p.y);
@@ -114,7 +114,8 @@ DRAPE_FUNCTION void dopMergeChildren(DRAPE_GLOBAL BvhNode* nodes, DRAPE_UINT ind
     dopStore(node, &dop);
 }
 
-// Not proved separate. An empty volume (+∞, -∞) overlaps nothing; volumes never hold NaN (see triangleVolume).
+// Returns whether the nodes are not proved separate. An empty volume (+∞, -∞) overlaps nothing; volumes never hold
+// NaN (see triangleVolume).
 DRAPE_FUNCTION int nodesOverlap(const DRAPE_GLOBAL BvhNode* a, const DRAPE_GLOBAL BvhNode* b)
 {
     int separate = 0;
@@ -130,8 +131,8 @@ DRAPE_FUNCTION float nodeExtent(const DRAPE_GLOBAL BvhNode* node)
     return (node->m_high[0] - node->m_low[0]) + (node->m_high[1] - node->m_low[1]) + (node->m_high[2] - node->m_low[2]);
 }
 
-// Of two overlapping nodes that are not both leaves, whether a traversal opens a: the larger one, so that both sides
-// shrink together.
+// Returns whether a traversal opens a, for two overlapping nodes that are not both leaves: the larger one, so that
+// both sides shrink together.
 DRAPE_FUNCTION int opensFirst(const DRAPE_GLOBAL BvhNode* a, const DRAPE_GLOBAL BvhNode* b)
 {
     if (a->m_count == 0) return 0;
@@ -173,7 +174,8 @@ DRAPE_FUNCTION int cornersVolume(Dop* dop, Vec3* p, int moves, float radius)
     return valid == DRAPE_ALL_FEATURES;
 }
 
-// The same of positions at the step's start and end. They may be the same array, which takes half the time.
+// Computes the volume of the positions at the step's start and end. Both may be the same array, which takes half the
+// time.
 DRAPE_FUNCTION int triangleVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
                                   const DRAPE_GLOBAL float* end, float radius)
 {

@@ -40,8 +40,8 @@ DRAPE_FUNCTION int edgeEdgeMet(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, Me
     return DRAPE_IS_CONTACT;
 }
 
-// Whether the lines of two edges passed each other. Of edges that met where they are parallel, so that the meeting has
-// no direction, the side at the end is then the wrong one.
+// Returns whether the lines of two edges passed each other. The side at the end is then the wrong one for edges that
+// met while parallel, whose meeting has no direction.
 DRAPE_FUNCTION int edgesChangedSides(float v0, float v1)
 {
     return (v0 < 0.0f && v1 > 0.0f) || (v0 > 0.0f && v1 < 0.0f);

@@ -1,9 +1,9 @@
-// The area vector of a face and its closest point to a position, for thin faces too.
+// Computes the area vector of a face and its closest point to a position, for thin faces too.
 //
-// The cross product of two edges of length L turns by up to 2 u L² / area, u = 2^-24, and a closest point made of such
-// products slides along the face as far. A thin face is therefore taken by its longest edge and the third corner's
-// offset from it: their cross product errs by 3 u only, and so does a height over the face's plane by a few u of the
-// pair's extent. Where that offset itself is rounding noise, the face has no side and acts as its three edges.
+// The cross product of two edges of length L turns by up to 2 u L² / area, u = 2^-24, and a closest point computed
+// from such products slides along the face as far. A thin face therefore uses its longest edge and the third corner's
+// offset from it. Their cross product errs by 3 u only, and a height over the face's plane by a few u of the pair's
+// extent. If that offset itself is rounding noise, the face has no side and acts as its three edges.
 #ifndef DRAPE_LIB_FACE_AREA_H
 #define DRAPE_LIB_FACE_AREA_H
 
@@ -32,7 +32,7 @@ DRAPE_FUNCTION float triangleExtent(FeatureTriangle f)
     return drapeMax(drapeMax(vec3NormMax(f.m_p[0]), vec3NormMax(f.m_p[1])), vec3NormMax(f.m_p[2]));
 }
 
-// Length of an area vector, m²; 0 where its square is too small for a float to hold it well.
+// Returns the length of an area vector, m²; 0 if its square is too small for a float's full precision.
 DRAPE_FUNCTION float areaLengthOf(Vec3 area)
 {
     const float length = vec3Length(area);
@@ -44,7 +44,7 @@ DRAPE_FUNCTION float areaLengthOf(Vec3 area)
 typedef struct LongFace
 {
     int m_turn;     // the corner at which the edge begins in the face's order
-    int m_swapped;  // whether the third corner is nearer to the edge's other end
+    int m_swapped;  // true if the third corner is nearer to the edge's other end
     Vec3 m_near;    // m, that end
     Vec3 m_along;   // from there to the edge's far end
     Vec3 m_side;    // from there to the third corner
@@ -122,7 +122,7 @@ DRAPE_FUNCTION FaceArea faceArea(FeatureTriangle f)
 // The best of several points of a face.
 typedef struct NearPoint
 {
-    float m_square;  // of its distance, m²
+    float m_square;  // squared distance, m²
     Vec3 m_weights;
 } NearPoint;
 
@@ -138,7 +138,8 @@ DRAPE_FUNCTION void tryEdge(NearPoint* best, Vec3 p, Vec3 a, Vec3 b, Vec3 unitA,
     best->m_weights = vec3AddScaled(vec3Scale(unitA, 1.0f - place), unitB, place);
 }
 
-// As closestOnTriangle(), for a thin face: the nearest of the closest points on the edges and of the foot inside.
+// Computes closestOnTriangle() for a thin face: the nearest of the closest points on the edges and of the foot
+// inside.
 DRAPE_COLD_FUNCTION Vec3 closestOnThin(Vec3 p, FeatureTriangle f)
 {
     const Vec3 x = vec3(1.0f, 0.0f, 0.0f), y = vec3(0.0f, 1.0f, 0.0f), z = vec3(0.0f, 0.0f, 1.0f);

@@ -22,10 +22,10 @@ DRAPE_FUNCTION int faceVertexMet(FeatureTriangle f0, FeatureTriangle f1, Vec3 ve
     return DRAPE_IS_CONTACT;
 }
 
-// What faceVertexPassed answers when the motion decides nothing: the step's end does.
+// Answer of faceVertexPassed if the motion decides nothing and the step's end must.
 #define DRAPE_ASK_THE_END 3
 
-// What the motion alone tells of a face and a vertex. s0, s1: the vertex's distance from the face's plane times the
+// Classifies a face and a vertex by their motion alone. s0, s1: the vertex's distance from the face's plane times the
 // length of the face's area vector, at the step's start and end.
 DRAPE_FUNCTION int faceVertexPassed(const MovingFace* face, Vec3 vertex, float s0, float s1, PairBounds bounds,
                                     Contact* contact)
@@ -45,8 +45,8 @@ DRAPE_FUNCTION int faceVertexPassed(const MovingFace* face, Vec3 vertex, float s
     return after != before && sidesTell ? DRAPE_NO_CONTACT : DRAPE_ASK_THE_END;
 }
 
-// Whether the neighbour over the edge on which the closest point lies (weights with one zero) is nearer to the vertex.
-// beyond, start, end, origin: as for faceVertexContact(). offset: from the vertex to that point; seam: m.
+// Returns whether the neighbour over the edge on which the closest point lies (weights with one zero) is nearer to
+// the vertex. beyond, start, end, origin: see faceVertexContact(). offset: from the vertex to that point; seam: m.
 DRAPE_FUNCTION int neighbourIsNearer(Vec3 weights, const DRAPE_UINT* beyond, const DRAPE_GLOBAL float* start,
                                      const DRAPE_GLOBAL float* end, Vec3 origin, Vec3 point, Vec3 offset, float seam)
 {
@@ -93,7 +93,7 @@ DRAPE_FUNCTION int faceVertexContact(const MovingFace* face, const DRAPE_UINT* b
     {
         normal = vec3Direction(offset, distance);
         if (!coneAdmits(cone, normal)) return 0;
-        // Of a thin face's long edges either may seem the nearer one: distances squared err by 4 u of the square, so
+        // Either long edge of a thin face may seem the nearer one. Squared distances err by 4 u of the square, so
         // that the offset leans by the root of that.
         const float seam = thin ? DRAPE_SEAM * bounds.m_extent + 5e-4f * distance : DRAPE_SEAM * distance;
         if (zeros == 1 && neighbourIsNearer(weights, beyond, start, end, origin, point, offset, seam)) return 0;

@@ -1,16 +1,12 @@
-// Contacts of single features: a cloth node against an obstacle face, a cloth face against an obstacle vertex, a cloth
-// edge against an obstacle edge. The cloth moves linearly over the step, the obstacle rests.
+// Contacts of single features: a cloth node against an obstacle face, a cloth face against an obstacle vertex, a
+// cloth edge against an obstacle edge. The cloth moves linearly over the step, the obstacle rests.
 //
-// A contact is reported when (a) the node, face or edge met the other feature during the step: then its normal points
-// to the side from which the cloth's point there came; or (b) the two did not meet, are within reach at the step's end
-// and are locally closest: the direction between them lies in the obstacle feature's normal cone and, where a vertex is
-// nearest to a face's edge, no neighbouring face is nearer. The normal then points to the side where the cloth's point
-// ends, also where it went around the other feature and through its plane or line. The second condition drops pairs
-// whose neighbours are nearer and whose normals would push sideways. Pairs are dropped for distance only on proof
-// (provenApart).
+// A contact is reported in two cases: (a) the features met during the step, or (b) they did not meet, are within
+// reach at the step's end and are locally closest. The normal points to the side from which the cloth's point came,
+// or to its side at the end if the two did not meet. Pairs are dropped for distance only on proof (provenApart).
 //
-// All positions are in a local frame: the caller has subtracted a vertex of the obstacle's triangle, so that rounding
-// scales with the size of the pair and not with its distance from the world's origin.
+// Positions are in a local frame: the caller has subtracted a vertex of the obstacle's triangle.
+// docs/design_notes/contact_geometry.md gives the exact conditions.
 #ifndef DRAPE_LIB_FEATURE_CONTACT_H
 #define DRAPE_LIB_FEATURE_CONTACT_H
 
@@ -20,8 +16,8 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// Relative size of a distance at which its direction is rounding noise, and width of the seam between neighbouring
-// features in which a path that hits both, or by rounding neither, still counts as a hit.
+// Relative size of a distance at which its direction is rounding noise. Also the width of the seam between
+// neighbouring features in which a path that hits both, or by rounding neither, counts as a hit.
 #define DRAPE_SEAM 1e-5f
 
 typedef struct FeatureEdge
@@ -93,8 +89,8 @@ typedef struct PairBounds
     DRAPE_UINT* m_searches;
 } PairBounds;
 
-// What a feature test returns: no contact, a contact, or that only the continuous test can tell, which is not to
-// be run.
+// Results of a feature test: no contact, a contact, or undecided because only the continuous test can decide and must
+// not run.
 #define DRAPE_NO_CONTACT 0
 #define DRAPE_IS_CONTACT 1
 #define DRAPE_UNDECIDED 2
@@ -130,7 +126,7 @@ DRAPE_FUNCTION void storeContact(Contact* contact, Vec3 normal, Vec3 point, Vec3
     contact->m_time = time;
 }
 
-// True when q, a point of the edge, sees the point nearer than the face beyond the edge does: their offset does not
+// Returns whether q, a point of the edge, is nearer to the point than the face beyond the edge. Their offset must not
 // lean towards that face's third vertex by more than the seam's width, m.
 DRAPE_FUNCTION int leansAway(Vec3 offset, Vec3 opposite, Vec3 q, float seam)
 {

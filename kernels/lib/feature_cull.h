@@ -24,9 +24,9 @@ DRAPE_NAMESPACE_BEGIN
 // A triangle whose doubled area is below this share of its longest edge squared is thin, edges whose directions have a
 // sine below it are parallel. Then 3 roundings of a cross product turn it by less than 2e-5.
 #define DRAPE_CULL_THIN 0.01f
-// Share of the pair's size by which the offset of a contact may be off the direction that the cones admit: edges whose
-// directions have a small sine s have places that err by up to 3e-7 / s², and the offset then errs by s times that,
-// which is most, 5.5e-4, where the place errs by the edge.
+// Maximum deviation of a contact's offset from the direction that the cones admit, as a share of the pair's size.
+// Points on edges whose directions have a small sine s err by up to 3e-7 / s². The offset then errs by s times that.
+// The maximum, 5.5e-4, is reached where the point errs by the length of the edge.
 #define DRAPE_CULL_NOISE 1e-3f
 // Share of the reach that features may be apart that count as having met, see meetingSettings().
 #define DRAPE_CULL_MET 0.02f
@@ -58,9 +58,10 @@ typedef struct CullReach
     float m_slack, m_near, m_met, m_before, m_farthest;
 } CullReach;
 
-// A triangle whose least altitude, or an edge whose length times the sine between edges, is below these shares of the
-// reach or of the pair's size: rounding in the narrow phase's frame turns it by more than the cull's slack covers, or
-// by so much that a place along it means nothing (2 √3 u over the share: 1e-4 and 0.02).
+// Limits as shares of the reach or of the pair's size, for a triangle's least altitude, or an edge's length times the
+// sine between edges. Below them, rounding in the narrow phase's frame turns the feature by more than the cull's
+// slack covers, or by so much that a point along it means nothing. The angles are 2 √3 u over the share: 1e-4 and
+// 0.02.
 #define DRAPE_CULL_SMALL 2.5e-3f
 #define DRAPE_CULL_TURNED 2e-3f
 #define DRAPE_CULL_SHORT 1e-5f
@@ -77,7 +78,8 @@ DRAPE_FUNCTION int cullNormal(const Vec3* p, Vec3* normal, float* height)
     return !(length > DRAPE_CULL_THIN * longest);
 }
 
-// A triangle's normal as a cone; every direction where it is not sure to a share that the cull's slack covers.
+// Returns a triangle's normal as a cone, or every direction if its error may exceed the share that the cull's slack
+// covers.
 DRAPE_FUNCTION NormalCone faceCone(const Vec3* p)
 {
     Vec3 normal;
@@ -140,9 +142,9 @@ DRAPE_FUNCTION CullReach cullReach(const DRAPE_TEAM CullTriangle* cull, float re
     return result;
 }
 
-// Faces of which the cloth triangle may be near a corner, an edge or the inside: as near as contacts are in any
-// direction, and beside the face only as far as the cones of those admit the direction (see cone_reach.h). Faces with
-// corners that are NaN are kept, since a corner may be good.
+// Selects faces of which a corner, an edge or the inside may be near the cloth triangle. Contacts in any direction
+// have one reach; beside the face the reach is only as far as the features' cones admit the direction (see
+// cone_reach.h). Faces with NaN corners are kept, since a corner may be valid.
 DRAPE_FUNCTION LaneMask cullFaces(const DRAPE_TEAM CullTriangle* cull, CullReach reach, const DRAPE_GLOBAL float* block)
 {
     const LanesVec3 a = lanesLoadVec3(block, 0), b = lanesLoadVec3(block, 3), c = lanesLoadVec3(block, 6);
@@ -150,7 +152,7 @@ DRAPE_FUNCTION LaneMask cullFaces(const DRAPE_TEAM CullTriangle* cull, CullReach
     const LanesVec3 area = lanesCross(ca, ab);
     const Lanes square = lanesDot(area, area);
     const Lanes longest = lanesMax(lanesMax(lanesDot(ab, ab), lanesDot(bc, bc)), lanesDot(ca, ca));
-    // From a corner to the middle it is 2/3 of a median, which the longest edge bounds.
+    // The distance from a corner to the middle is 2/3 of a median, which the longest edge bounds.
     const Lanes around = 0.66667f * lanesSqrt(longest) + (cull->m_radius + 5.0f * reach.m_slack);
     const LanesVec3 corner = lanesSubUniform(lanesSubUniform(a, cull->m_origin), cull->m_middle);
     const LanesVec3 offset =
@@ -158,7 +160,7 @@ DRAPE_FUNCTION LaneMask cullFaces(const DRAPE_TEAM CullTriangle* cull, CullReach
                   corner.z + (ab.z - ca.z) * (1.0f / 3.0f));
     const Lanes away = lanesDot(offset, offset);
     const Lanes far = around + reach.m_farthest, met = around + reach.m_met;
-    // A direction whose tangent with the normal is the spread goes no farther beside than that share of its length.
+    // A direction whose tangent with the normal equals the spread extends sideways at most that share of its length.
     const Lanes wide = around + reach.m_near * lanesMin(lanesLoad(block, 9), lanesSplat(1.0f));
     const LanesVec3 side = lanesCross(offset, area);
     const LaneMask beside = (lanesDot(side, side) > wide * wide * square) & (away > met * met) &
@@ -245,10 +247,10 @@ DRAPE_FUNCTION LaneMask cullNodeFace(const DRAPE_TEAM CullTriangle* cull, int i,
         (before * height <= 0.0f) | (lanesMin(depth, before * before) <= reach.m_slack * reach.m_slack * square);
     const LaneMask level = depth <= square * lanesSelect(passed, lanesSplat(reach.m_farthest * reach.m_farthest),
                                                          lanesSplat(reach.m_near * reach.m_near));
-    // How far outside an edge the node may be: where the edge's or a corner's cone still admits the direction to it, or
-    // as far as it can have moved since it passed. (x + y)² ≤ 1.1 x² + 11 y². A spread that is bounded is less than 6,
-    // so that six times the height's rounding are within the slack. One that is not says nothing of the height: level
-    // with the face it may be nothing.
+    // Maximum distance of the node outside an edge: as far as the edge's or a corner's cone still admits the
+    // direction to it, or as far as it can have moved since it passed. Uses (x + y)² ≤ 1.1 x² + 11 y². A bounded
+    // spread is less than 6, so that six times the height's rounding are within the slack. An unbounded spread says
+    // nothing about the height: level with the face it may be nothing.
     const Lanes spread = lanesLoad(block, 9), most = square * (reach.m_near * reach.m_near);
     const Lanes slope =
         lanesSelect(spread < lanesSplat(DRAPE_ANY_SPREAD), lanesMin(depth * spread * spread, most), most);
@@ -262,7 +264,7 @@ DRAPE_FUNCTION LaneMask cullNodeFace(const DRAPE_TEAM CullTriangle* cull, int i,
     return around & (thin | (level & inside));
 }
 
-// What the tests of a block of edges share.
+// Values that the tests of a block of edges share.
 typedef struct CullEdges
 {
     LanesVec3 m_a, m_along, m_axis;
@@ -326,16 +328,16 @@ DRAPE_FUNCTION LaneMask cullEdgeEdge(const DRAPE_TEAM CullTriangle* cull, int i,
     return around & (parallel | (shorter & near) | (inside & ((near & (admitted | turned)) | met)));
 }
 
-// Where to look for what may be in contact with a cloth triangle over the step. m_volume holds its way where it is
-// swept, else its end; m_radius: m, the largest reach; m_least: m, what is looked for in any direction, however little
-// the cones admit of it (cone_reach.h): as far as an unswept triangle moves, and more than what counts as met.
+// Region to search for contacts of a cloth triangle over the step. m_volume: its path if it is swept, else its end.
+// m_radius: m, the largest reach. m_least: m, the reach in any direction, however little the cones admit it
+// (cone_reach.h). It is as far as an unswept triangle moves, and more than the distance that counts as met.
 typedef struct CullVolume
 {
     Dop m_volume;
     float m_radius, m_least;
 } CullVolume;
 
-// What a cloth triangle's volume is made of.
+// Positions from which a cloth triangle's volume is made.
 typedef struct CullCorners
 {
     Vec3 m_p[6];         // m, at the step's start and end; without the sweep at the end twice
@@ -383,7 +385,8 @@ DRAPE_FUNCTION int cullCorners(CullCorners* corners, float* least, const DRAPE_G
     return corners->m_valid != 0u;
 }
 
-// Whether the volume, grown by the radius, meets the box of an obstacle's positions that moves; yes where it rests.
+// Returns whether the volume, grown by the radius, meets the box of a moving obstacle's positions; always true for a
+// resting one.
 DRAPE_FUNCTION int cullMeets(const CullCorners* corners, float radius, const DRAPE_GLOBAL ObstacleMotion* motion)
 {
     int meets = 1;
@@ -396,7 +399,8 @@ DRAPE_FUNCTION int cullMeets(const CullCorners* corners, float radius, const DRA
     return meets;
 }
 
-// Whether the triangle is not proved out of reach of one child of a wide node (patch.h), in its features' directions.
+// Returns whether the triangle is not proved out of reach of one child of a wide node (patch.h), along the features'
+// directions.
 DRAPE_FUNCTION int cullWideChild(const DRAPE_TEAM CullVolume* cull, const DRAPE_GLOBAL float* child)
 {
     int near = 1;
@@ -410,7 +414,7 @@ DRAPE_FUNCTION int cullWideChild(const DRAPE_TEAM CullVolume* cull, const DRAPE_
     return near;
 }
 
-// The same for all children at once.
+// Tests all children of the node at once.
 DRAPE_FUNCTION LaneMask cullWideNode(const DRAPE_TEAM CullVolume* cull, const DRAPE_GLOBAL float* node)
 {
     LaneMask near = lanesMaskSplat(1);

@@ -1,12 +1,9 @@
-// Whether a cloth feature and an obstacle feature meet during the step.
+// Decides whether a cloth feature and an obstacle feature meet during the step.
 //
-// The certified search of ccd.h answers it; an automatic step asks it only where they may, as far as simpler tests
-// tell, and a continuous one heeds it only there, so that both give the same contacts. Two features that meet are, at
-// the step's start and at its end, no further apart than the cloth's feature moves. That distance is bounded from below
-// by the volume that the two span, divided by the area that belongs to it, and, where the edges are nearly parallel or
-// the vertex is beside the face, by planes between the two at the step's end. And no plane parts them from its start to
-// its end: of the features near enough for all that, some ninety-nine of a hundred are parted so by the plane across
-// their offset at the end.
+// The certified search of ccd.h gives the answer. An automatic step runs it only where simpler tests leave a meeting
+// possible, and a continuous step uses its answer only there, so that both give the same contacts. The simpler tests
+// bound the distance at the step's start and end, and look for a plane that separates the features.
+// docs/design_notes/contact_geometry.md explains them.
 #ifndef DRAPE_LIB_FEATURE_MEETING_H
 #define DRAPE_LIB_FEATURE_MEETING_H
 
@@ -50,35 +47,36 @@ DRAPE_FUNCTION int volumeAdmitsMeeting(float volume, float area, float distance,
     return drapeAbs(volume) <= area * distance + 10.0f * DRAPE_SEAM * (extent * extent * extent);
 }
 
-// Whether the plane with the given normal (any length) proves two features further apart; see provenApart().
+// Returns whether the plane with the given normal (any length) proves two features further apart; see provenApart().
 DRAPE_FUNCTION int furtherApart(Vec3 n, float low, float high, float distance, PairBounds bounds)
 {
     bounds.m_reach = distance;
     return provenApart(n, low, high, bounds);
 }
 
-// What is known of two features in a step without a search: they stay too far apart to meet; they come near, but one
-// plane parts them from start to end; or they may meet.
+// Result of the tests without a search: the features stay too far apart to meet; they come near, but one plane
+// separates them from start to end; or they may meet.
 #define DRAPE_STAY_APART 0
 #define DRAPE_ARE_PARTED 1
 #define DRAPE_MAY_MEET 2
 
-// The answer for features that come near. n: normal of the plane; low: the least product with it of the one's corners
-// at the step's start and end, high: the greatest of the other's. What is on one side at both stays there on a straight
-// way.
+// Classifies features that come near. n: normal of the plane; low: the least product of n with the first feature's
+// corners at the step's start and end, high: the greatest with the second's. A point on one side at both ends stays
+// there on a straight path.
 DRAPE_FUNCTION int nearnessAcross(Vec3 n, float low, float high, PairBounds bounds)
 {
     return furtherApart(n, low, high, 0.0f, bounds) ? DRAPE_ARE_PARTED : DRAPE_MAY_MEET;
 }
 
-// Whether the mode asks for the search. known: see DRAPE_STAY_APART.
+// Returns whether the mode requires the search. known: see DRAPE_STAY_APART.
 DRAPE_FUNCTION int asksForMeeting(int known, PairBounds bounds)
 {
     return bounds.m_mode == DRAPE_CONTINUOUS || known == DRAPE_MAY_MEET;
 }
 
-// The unit normal with the given direction on the side that the cloth's point came from. way: of that point in the
-// step, a straight line; where it goes along the surface, `side` tells, 1 for the direction itself.
+// Returns the unit normal with the given direction on the side from which the cloth's point came. way: displacement
+// of that point in the step, a straight line. If it runs along the surface, `side` decides: 1 for the direction
+// itself.
 DRAPE_FUNCTION Vec3 meetingNormal(Vec3 direction, float length, Vec3 way, float side, PairBounds bounds)
 {
     const Vec3 normal = vec3Direction(direction, length);
@@ -137,7 +135,7 @@ DRAPE_FUNCTION int edgesNearness(FeatureEdge e0, FeatureEdge e1, FeatureEdge o0,
     return nearnessAcross(offset, drapeMin(low, lowBefore), drapeMax(high, highBefore), bounds);
 }
 
-// The same with a resting edge.
+// Computes the nearness of a moving and a resting edge.
 DRAPE_FUNCTION int edgeNearness(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, float v0, float v1, PairBounds bounds)
 {
     return edgesNearness(e0, e1, o, o, edgeMotion(e0, e1), v0, v1, bounds);
@@ -157,7 +155,7 @@ typedef struct Meeting
 {
     int m_met;
     float m_time;   // of the step, never late
-    float m_place;  // of the step, where the features are to be looked at: as near as a few steps come
+    float m_place;  // time in the step at which to test the features: as near as a few iterations come
 } Meeting;
 
 DRAPE_FUNCTION Meeting meetFeatures(DRAPE_UINT kind, const Vec3 start[4], const Vec3 end[4], float motion,

@@ -64,7 +64,7 @@ static int featureContact(const FeatureTest feature, const ClothView* cloth, con
                         packed->m_edgeIds[lane], feature.m_reach, contact);
 }
 
-// The step's cloths and obstacles as the kernels below read them, and the hits that they list.
+// The step's cloths and obstacles as the kernels below read them, and the contacts that they list.
 #define DRAPE_FEATURE_ARGUMENTS                                                                                            \
     __global const FeatureTest *restrict tests, const uint testCapacity, __global const float *restrict clothStart,        \
         __global const float *restrict clothEnd, __global const Triangle *restrict clothTriangles,                         \
@@ -88,7 +88,7 @@ static uint kindOfTest(const FeatureTest feature)
     return test < DRAPE_TEST_FACE ? 0 : test == DRAPE_TEST_FACE ? 1 : 2;
 }
 
-// Tests the item-th feature pair; lists its hit, or in swept that the continuous test must tell.
+// Tests the item-th feature pair. Lists its contact, or the test in `swept` if only the continuous test can decide.
 static void testFeature(__global const FeatureTest* tests, const uint item, ClothView* cloth,
                         const ObstacleView* obstacle, const PackedFeatures* packed,
                         __global const ObstacleMotion* motions, const HitList* list, __global uint* swept,

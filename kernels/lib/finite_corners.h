@@ -1,7 +1,8 @@
-// What is left of a triangle when corners of it are invalid: NaN, infinite or too far out (see positionIsValid).
+// Reduces a triangle with invalid corners (NaN, infinite or too far out, see positionIsValid) to its valid ones.
 //
-// A triangle with an invalid corner still owns features of its other corners (DRAPE_OWNS_VERTEX), which must be tested:
-// it acts as the segment or point that its valid corners span, and what uses an invalid corner makes no contact.
+// A triangle with an invalid corner still owns features of its other corners (DRAPE_OWNS_VERTEX), which must be
+// tested. It acts as the segment or point that its valid corners span. A feature with an invalid corner makes no
+// contact.
 #ifndef DRAPE_LIB_FINITE_CORNERS_H
 #define DRAPE_LIB_FINITE_CORNERS_H
 
@@ -18,9 +19,9 @@ DRAPE_FUNCTION float cornersSum(const Vec3* p)
     return (vec3Norm1(p[0]) + vec3Norm1(p[1])) + vec3Norm1(p[2]);
 }
 
-// Puts a valid corner in the place of each that is not valid at the step's start and end (m, three each; may be the
-// same array). Returns the features that are valid, bits as in Triangle::m_owned: the valid corners and the edges
-// between them; without any, the corners stay as they are.
+// Replaces each corner that is invalid at the step's start or end by a valid one (m, three each; may be the same
+// array). Returns the valid features, bits as in Triangle::m_owned: the valid corners and the edges between them.
+// Without a valid corner all stay unchanged.
 DRAPE_FUNCTION DRAPE_UINT replaceInvalidCorners(Vec3* start, Vec3* end)
 {
     // Quick for the usual: a sum that has NaN or something too large in it fails the comparison.

@@ -5,7 +5,7 @@
 #ifdef __OPENCL_VERSION__
 #include "dop.h"
 
-// The sum of every work-item's value, for all of them. scratch holds one ulong per work-item.
+// Returns the sum of every work-item's value to all of them. scratch holds one ulong per work-item.
 static ulong groupSum(__local ulong* scratch, const ulong value)
 {
     const uint id = get_local_id(0);

@@ -1,5 +1,4 @@
-// The list of a step's hits, in no particular order: compaction brings them into the canonical one.
-// For kernels only.
+// A step's list of unsorted contacts; compaction sorts it into canonical order. For kernels only.
 #ifndef DRAPE_LIB_HIT_LIST_H
 #define DRAPE_LIB_HIT_LIST_H
 
@@ -7,9 +6,10 @@
 #include "../shared/mesh.h"
 #include "slot_sums.h"
 
-// What a kernel that finds hits writes. slotCount counts those of each slot that are in the list; slotSums adds them up, and
-// hitPlaces gets how many hits of its slot were before a hit, where slots are few on a GPU; elsewhere both are null. slotCount,
-// slotSums and counters->m_listed must be zero before the step's first such kernel. m_listed counts on when the list is full.
+// Outputs of a kernel that finds contacts. slotCount: number of listed contacts per slot. slotSums: sums of
+// slotCount. hitPlaces: per contact, the number of its slot's contacts before it. The last two exist where slots are
+// few on a GPU; elsewhere both are null. slotCount, slotSums and counters->m_listed must be zero before the step's
+// first such kernel. m_listed counts on when the list is full.
 #define DRAPE_HIT_ARGUMENTS                                                                                           \
     __global Contact *restrict hits, const uint hitCapacity, __global uint *restrict hitPlaces,                       \
         __global volatile uint *slotCount, __global volatile uint *slotSums, __global StepCounters *counters
@@ -29,7 +29,7 @@ typedef struct HitList
 } HitList;
 
 #ifndef DRAPE_HOST_KERNELS
-// A contact is four of these, and where it lies in a list it is aligned so: a store of less leaves a GPU's memory more to do.
+// Vectors per contact. A listed contact is aligned to one; a narrower store costs a GPU's memory more.
 #define DRAPE_CONTACT_QUARTERS 4
 typedef char ContactFits[sizeof(Contact) == DRAPE_CONTACT_QUARTERS * sizeof(uint4) ? 1 : -1];
 

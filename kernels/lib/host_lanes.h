@@ -1,5 +1,5 @@
-// Vectors of lanes in C++, by GCC's and Clang's vector types: what lanes.h is made of in the host's kernels, and what
-// team.h asks of a mask. Included by lanes.h, within its namespace.
+// Vectors of lanes in C++, as vector types of GCC and Clang: the base of lanes.h in the host's kernels, and the mask
+// functions for team.h. Included by lanes.h, within its namespace.
 #ifndef DRAPE_LIB_HOST_LANES_H
 #define DRAPE_LIB_HOST_LANES_H
 
@@ -66,7 +66,7 @@ DRAPE_FUNCTION Lanes lanesSqrt(Lanes a)
     return sqrt(a);
 }
 
-// Of each lane's mask a byte.
+// Stores one byte per lane of the mask.
 DRAPE_FUNCTION void laneBytes(LaneMask mask, DRAPE_ULONG* bytes)
 {
     typedef signed char Bytes __attribute__((vector_size(DRAPE_LANES)));

@@ -4,7 +4,7 @@
 
 #include "self_cull.h"
 
-// Counts those that the triangle owns, of a cloth that the search for obstacles does not look at.
+// Counts invalid nodes that the triangle owns, of a cloth that the search for obstacles does not visit.
 static void countInvalidNodes(__global const Triangle* triangle, __global const float* start, __global const float* end,
                               __global StepCounters* counters)
 {

@@ -1,17 +1,18 @@
-// Which items of a list, whose length is only on the device, a work-item of a launch of fixed width takes. On a GPU every
-// stride-th: neighbours then read side by side. On a CPU runs of adjacent ones, one after the other: what lies side by side
-// in a list lies side by side in space, and finds what it reads in the cache. For kernels only.
+// Assigns the items of a list to the work-items of a launch of fixed width; the list's length is known only on the
+// device. On a GPU a work-item takes every stride-th item: neighbours then read adjacent items. On a CPU it takes
+// runs of adjacent items, one after the other: adjacent items lie close in space, and their data is in the cache. For
+// kernels only.
 #ifndef DRAPE_LIB_ITEM_RUNS_H
 #define DRAPE_LIB_ITEM_RUNS_H
 
-// Longest run: what its items read stays in a core's own cache, and runs even out among the cores.
+// Longest run: its items' data stays in a core's own cache, and runs are balanced among the cores.
 #define DRAPE_MOST_RUN 128u
 
-// m_item: the one at hand; there is none left where it is not below the list's length.
+// m_item: the current item; none is left once it reaches the list's length.
 #ifdef DRAPE_CPU
 typedef struct ItemRuns
 {
-    uint m_item, m_end;  // of its run
+    uint m_item, m_end;  // of the current run
     uint m_run, m_runs;
     uint m_takers;  // of runs, in turn
     uint m_count;
@@ -51,7 +52,7 @@ static ItemRuns itemRuns(const uint count, const uint parts)
 }
 
 #ifdef DRAPE_CPU
-// For what takes a run at a time, from m_item to m_end.
+// Takes the next run, from m_item to m_end.
 static void nextRun(ItemRuns* runs)
 {
     runs->m_run += runs->m_takers;

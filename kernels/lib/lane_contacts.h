@@ -1,24 +1,25 @@
-// Contacts of as many feature tests of one kind as there are lanes, on a CPU: what node_face_contact.h,
-// face_vertex_contact.h and edge_edge_contact.h compute for one pair, rounded alike, so the same bits. Lanes with anything
-// out of the ordinary stay open, for the caller to test one by one: thin faces, features that may meet, nodes that passed a
-// face's plane, features that may be out of reach after all, edges that touch or are nearly parallel, positions that are
-// invalid. Not for continuous steps, which search every pair for a meeting.
+// Computes contacts of as many feature tests of one kind as there are lanes, on a CPU. The results have the same bits
+// as those of node_face_contact.h, face_vertex_contact.h and edge_edge_contact.h.
+//
+// Exceptional lanes stay open, and the caller tests them one by one. Exceptions are thin faces, features that may
+// meet, nodes that passed a face's plane, features that may be out of reach after all, touching or nearly parallel
+// edges, and invalid positions. Not for continuous steps, which search every pair for a meeting.
 #ifndef DRAPE_LIB_LANE_CONTACTS_H
 #define DRAPE_LIB_LANE_CONTACTS_H
 
 #include "feature_meeting.h"
 #include "lanes.h"
 
-// Numbers of a test as the caller gives them, a row of lanes each: positions (x y z) of the cloth's feature at the
-// step's start and then at its end, of the obstacle's feature, its cone (but of faces), the reach. All in metres, in the
-// world's frame; starts as the obstacle sees them.
+// Input rows of a test, one lane each: positions (x y z) of the cloth's feature at the step's start and then at its
+// end, and of the obstacle's feature. Its cone (except of faces) and the reach follow. All in metres, in the world's
+// frame; starts are relative to the obstacle.
 #define DRAPE_NODE_FACE_ROWS 16
 #define DRAPE_FACE_VERTEX_ROWS 26
 #define DRAPE_EDGE_EDGE_ROWS 23
 
-// m_found: contacts, of which the caller has to ask those in m_asks for what depends on neighbours: a node nearest to an
-// edge or corner for that one's cone, a vertex nearest to an edge for the face beyond. m_point: on the feature of two or
-// three corners, and m_offset from the obstacle's closest point to the cloth's, m_distance long, in the frame of the
+// m_found: contacts. The caller must check those in m_asks against neighbours: a node nearest to an edge or corner
+// against its cone, a vertex nearest to an edge against the face beyond. m_point: on the feature of two or three
+// corners. m_offset: from the obstacle's closest point to the cloth's, m_distance long. Both are in the frame of the
 // obstacle's first position.
 typedef struct LaneContacts
 {
@@ -27,7 +28,7 @@ typedef struct LaneContacts
     Lanes m_distance, m_gap0, m_gap1;
 } LaneContacts;
 
-// As PairBounds.
+// Lanes of PairBounds.
 typedef struct LaneBounds
 {
     Lanes m_extent, m_reach, m_reachSlack;
@@ -267,7 +268,7 @@ static LanesVec3 lanePlane(const LaneArea* area, const Lanes sign)
     return exactScale(area->m_vector, sign * exactRatio(lanesSplat(1.0f), area->m_length));
 }
 
-// Of positions all of which are valid, surely.
+// Returns lanes whose positions are all certainly valid.
 static LaneMask laneValid(const float* rows, const int count)
 {
     Lanes sum = lanesSplat(0.0f);
@@ -366,7 +367,7 @@ static Lanes edgesExtent(const LaneEdges* edges)
     return lanesMax(lanesMax(exactNormMax(edges->m_a), exactNormMax(edges->m_b)), exactNormMax(edges->m_far));
 }
 
-// Where along two edges closest points are; see closestOnSegments().
+// Parameters of the closest points along two edges; see closestOnSegments().
 typedef struct LanePlaces
 {
     Lanes m_s, m_t;
@@ -392,15 +393,16 @@ static LanePlaces lanePlaces(const LaneEdges* edges)
     return places;
 }
 
-// From the second edge to the first.
+// Returns the offset from the second edge to the first.
 static LanesVec3 laneOffset(const LaneEdges* edges, const LanePlaces places)
 {
     return lanesSub(exactAddScaled(edges->m_a, lanesSub(edges->m_b, edges->m_a), places.m_s),
                     exactAddScaled(lanesZero(), edges->m_far, places.m_t));
 }
 
-// What two edges span at the step's end, where they are closest, and the offset there, with its least product with an
-// end of the first edge and its greatest with one of the second. m_comesNear: as for a face.
+// Two edges at the step's end: the volume that they span where they are closest, and the offset there. The offset has
+// its least product with an end of the first edge and its greatest with one of the second. m_comesNear: as for a
+// face.
 typedef struct LaneCrossing
 {
     LanesVec3 m_direction, m_offset;

@@ -14,16 +14,16 @@
 // Fewer tests of a kind than this are done one by one.
 #define DRAPE_FEWEST_LANES 3u
 
-// What a work-item's tests need.
+// Data for a work-item's tests.
 typedef struct LaneWork LaneWork;
 
-// Of a test, below DRAPE_LANE_KINDS.
+// Returns the kind of a test, below DRAPE_LANE_KINDS.
 static uint kindOf(const LaneWork* work, const uint item);
 // Puts the numbers of a test into its lane.
 static void putTest(float* rows, const uint lane, LaneWork* work, const uint item);
-// What the lanes say of tests of a kind.
+// Computes the lanes' contacts of tests of one kind.
 static void askLanes(LaneContacts* contacts, const float* rows, const LaneWork* work, const uint kind);
-// Stores the contact of a lane, asking what it depends on besides if it `asks`. Returns DRAPE_NO_CONTACT, ….
+// Stores the contact of a lane, with the further checks if it `asks`. Returns DRAPE_NO_CONTACT, ….
 static int takeContact(const LaneContacts* contacts, const float* rows, const uint lane, const LaneWork* work,
                        const uint item, const int asks, Contact* contact);
 // Does a test by itself.

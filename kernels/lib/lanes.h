@@ -1,8 +1,10 @@
-// One value per lane: a vector of DRAPE_LANES floats where a work-item computes a whole block by itself (CPUs, in
-// OpenCL C and in the host's kernels), a float where each work-item of a group is a lane (GPUs) and elsewhere in C++,
-// where a block is one lane. Products (lanesFma(), lanesDot…, lanesCross…) and lanesSqrt() are for what is compared
-// with a slack only: fma and the built-in functions do not round alike everywhere. The others round as they are
-// written: lane_contacts.h relies on it.
+// One value per lane. Lanes is a vector of DRAPE_LANES floats where a work-item computes a whole block (CPUs, in
+// OpenCL C and in the host's kernels). It is one float where each work-item of a group is a lane (GPUs), and
+// elsewhere in C++, where a block is one lane.
+//
+// Products (lanesFma(), lanesDot…, lanesCross…) and lanesSqrt() are only for values that are compared with a slack:
+// fma and the built-in functions round differently between platforms. The other functions round as written;
+// lane_contacts.h relies on it.
 #ifndef DRAPE_LIB_LANES_H
 #define DRAPE_LIB_LANES_H
 
@@ -15,8 +17,8 @@ DRAPE_NAMESPACE_BEGIN
 // motion, 2e-4 of a feature: a root of any of these errs by a twentieth of it.
 #define DRAPE_ROOT_ERROR 1e-5f
 
-// What a team's lanes share (see team.h) lies in memory of its own where they are a group's work-items: private to
-// each, it would be kept as often as there are lanes.
+// A team's shared data (see team.h) lies in local memory if its lanes are a group's work-items: private memory would
+// store it once per lane.
 #if defined(__OPENCL_VERSION__) && DRAPE_LANES == 1
 #define DRAPE_TEAM __local
 #else
@@ -57,7 +59,8 @@ DRAPE_FUNCTION float laneOf(const Lanes* lanes, DRAPE_UINT lane)
 {
     return ((const float*)lanes)[lane];
 }
-// Of a number and NaN these give a, not the number: on a CPU fmax and fmin take three instructions more for that.
+// Returns a, not the number, for a number and NaN: on a CPU fmax and fmin take three more instructions to return the
+// number.
 DRAPE_FUNCTION Lanes lanesMax(Lanes a, Lanes b)
 {
     return a < b ? b : a;

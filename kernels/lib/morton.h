@@ -6,7 +6,7 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// Spreads ten bits to every third place.
+// Spreads ten bits to every third bit position.
 DRAPE_FUNCTION DRAPE_UINT mortonSpread(DRAPE_UINT v)
 {
     v = (v | (v << 16)) & 0x030000ffu;

@@ -22,13 +22,13 @@ DRAPE_FUNCTION NormalCone closestFeatureCone(Vec3 weights, const DRAPE_GLOBAL Tr
     return edgeCones[triangle->m_edges[2]];
 }
 
-// Share of a pair's extent by which the point of a face that is closest to one in its plane may slide along the face:
-// its weights err by u L⁴ over the square of the doubled area, which of faces that are not thin is more than DRAPE_THIN
-// L².
+// Maximum slide along the face, as a share of a pair's extent, of the face's closest point to a point in its plane.
+// The point's weights err by u L⁴ over the square of the doubled area. The doubled area exceeds DRAPE_THIN L² for
+// faces that are not thin.
 #define DRAPE_SLIDE 1e-3f
 
-// Whether a point of the face's plane lies in the face, or less than the slack (m) outside of its edges. The area
-// vector may have any length.
+// Returns whether a point of the face's plane lies in the face, or less than the slack (m) outside of its edges. The
+// area vector may have any length.
 DRAPE_FUNCTION int isWithinEdges(Vec3 point, const FeatureTriangle* face, Vec3 area, float slack)
 {
     int within = 1;
@@ -42,8 +42,8 @@ DRAPE_FUNCTION int isWithinEdges(Vec3 point, const FeatureTriangle* face, Vec3 a
     return within;
 }
 
-// Whether a path through the face's plane went through the face. hit: the point of the path in the plane, which was
-// found `distance` (m) from the face.
+// Returns whether a path through the face's plane went through the face. hit: the point of the path in the plane,
+// which was found `distance` (m) from the face.
 DRAPE_FUNCTION int wentThrough(Vec3 x0, Vec3 x1, const FeatureTriangle* face, Vec3 area, Vec3 hit, float distance,
                                PairBounds bounds)
 {
@@ -69,7 +69,7 @@ DRAPE_FUNCTION int nodeFaceContact(Vec3 x0, Vec3 x1, const RestingFace* resting,
     const float s1 = vec3Dot(area, vec3Sub(x1, face.m_p[0]));
     const float before = bounds.m_mode == DRAPE_DISCRETE ? s1 : s0;
     const float side = before < 0.0f ? -1.0f : 1.0f;
-    // A face whose area is too small for a length has no side; what is near is told below.
+    // A face whose area is too small for a length has no side; the tests below find what is near.
     const int passed = areaLength > 0.0f && side * s1 < 0.0f;
     // |s1| / |area| is a lower bound of the distance.
     if (!passed && drapeAbs(s1) > areaLength * bounds.m_reachSlack) return 0;

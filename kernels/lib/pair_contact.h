@@ -1,4 +1,4 @@
-// The contacts of pairs of features, by where their positions are: see feature_contact.h for what a contact is.
+// Contacts of feature pairs, from their positions in memory; feature_contact.h defines a contact.
 #ifndef DRAPE_LIB_PAIR_CONTACT_H
 #define DRAPE_LIB_PAIR_CONTACT_H
 
@@ -23,8 +23,8 @@ typedef struct ClothView
     DRAPE_UINT m_nodeCount;
     DRAPE_UINT m_triangleCount;
     DRAPE_UINT m_mode;                            // DRAPE_DISCRETE …
-    DRAPE_UINT* m_searches;                       // as in PairBounds
-    const DRAPE_GLOBAL ObstacleMotion* m_motion;  // of the obstacle at hand; null where it rests
+    DRAPE_UINT* m_searches;  // see PairBounds
+    const DRAPE_GLOBAL ObstacleMotion* m_motion;  // of the current obstacle; null where it rests
 } ClothView;
 
 typedef struct ObstacleView
@@ -65,7 +65,7 @@ DRAPE_FUNCTION ObstacleView obstacleView(const DRAPE_GLOBAL float* positions, co
     return view;
 }
 
-// A node at the step's start, as the obstacle at hand sees it.
+// A node at the step's start, relative to the current obstacle.
 DRAPE_FUNCTION Vec3 nodeStart(const ClothView* cloth, DRAPE_UINT node)
 {
     return startSeen(cloth->m_motion, vec3Load(cloth->m_start, node));

@@ -1,5 +1,5 @@
-// Pairs of a cloth triangle and a patch of the obstacles: which there are in a step, what looks at a patch, and how the
-// feature tests that are left are listed. For kernels only; see team.h for who does it.
+// Pairs of a cloth triangle and a patch of the obstacles: selects a step's pairs, the data for testing a patch, and
+// the list of remaining feature tests. For kernels only; see team.h for the team that runs them.
 #ifndef DRAPE_LIB_PATCH_PAIRS_H
 #define DRAPE_LIB_PATCH_PAIRS_H
 
@@ -32,8 +32,8 @@ typedef struct PatchTree
     __global const Patch* m_patches;
 } PatchTree;
 
-// What kernels that walk read, and the list that they write. radius: m, per cloth, negative for those that are not in
-// the step. limit: see team.h. counters' numbers must be zero before. The order of the list does not matter.
+// Inputs and output list of traversal kernels. radius: m, per cloth, negative for cloths outside the step. limit: see
+// team.h. Counters must be zero before. The list has no particular order.
 #define DRAPE_WALK_ARGUMENTS                                                                                           \
     __global const uint *restrict clothOrder, __global const Triangle *restrict clothTriangles, const uint clothCount, \
         __global const float *restrict start, __global const float *restrict end,                                      \
@@ -51,20 +51,20 @@ typedef struct PatchTree
         wideNodes, levels, levelCount, patches \
     }
 
-// motion: 0 for none, else 1 + its place.
+// motion: 0 for none, else 1 + its index.
 static __global const ObstacleMotion* motionOf(const StepCloths* cloths, const uint motion)
 {
     return motion == 0 ? 0 : cloths->m_motions + (motion - 1);
 }
 
-// The pair's thickness, m; negative where it is not tested.
+// Returns the pair's thickness, m; negative for an untested pair.
 static float thicknessWith(const StepCloths* cloths, const uint cloth, const uint mesh)
 {
     return cloths->m_thickness[cloths->m_triangles[cloth].m_mesh * cloths->m_obstacleMeshes + mesh];
 }
 
-// Whether a cloth triangle is to be tested against a patch of the obstacles that move so (all that rest, or one that
-// moves); then *pair holds what.
+// Returns whether a cloth triangle must be tested against a patch of the obstacles with this motion (all resting
+// ones, or one that moves); *pair then holds the test.
 static int pairWith(FeatureTest* pair, const StepCloths* cloths, const PatchTree* tree, const uint cloth,
                     const uint motion, const uint patch)
 {

@@ -42,10 +42,10 @@ DRAPE_FUNCTION const DRAPE_GLOBAL ObstacleMotion* findMotion(const DRAPE_GLOBAL 
     return 0;
 }
 
-// Whether a step looks at the way of a triangle from its first three corners to its last. What it meets that moves less
-// than the radius is within the radius of where it ends: in an automatic step only what moves further is swept. The rest of
-// the radius is for what counts as met, which may be apart by 1e-5 of the pair's size (meetingDistance): the radius holds
-// 1e-4 of the obstacle's longest edge for it. A NaN position counts as far.
+// Returns whether a step sweeps a triangle's path from its first three corners to its last. A triangle that moves
+// less than the radius meets only features within the radius of its end, so an automatic step sweeps only farther
+// motion. The rest of the radius covers features that count as met while they are apart by 1e-5 of the pair's size
+// (meetingDistance): the radius contains 1e-4 of the obstacle's longest edge for it. A NaN position counts as far.
 DRAPE_FUNCTION int isSwept(const Vec3* p, float radius, DRAPE_UINT mode)
 {
     if (mode != DRAPE_AUTOMATIC) return mode == DRAPE_CONTINUOUS;
@@ -71,8 +71,8 @@ DRAPE_FUNCTION void cornersSeen(Vec3* p, const DRAPE_GLOBAL ObstacleMotion* moti
     }
 }
 
-// Whether a volume, grown by the radius, can come near the obstacle: it is not empty, and where the obstacle moves it
-// meets the box of the obstacle's positions.
+// Returns whether a volume, grown by the radius, can come near the obstacle. It must not be empty, and must meet the
+// box of the obstacle's positions if the obstacle moves.
 DRAPE_FUNCTION int mayComeNear(const Dop* dop, float radius, const DRAPE_GLOBAL ObstacleMotion* motion)
 {
     int near = dop->m_low[0] <= dop->m_high[0];

@@ -12,7 +12,7 @@ DRAPE_FUNCTION int isSegment(const DRAPE_GLOBAL Triangle* triangle)
     return triangle->m_vertices[1] == triangle->m_vertices[2];
 }
 
-// Gives what the third corner of a segment weighs to the second, which is the same vertex.
+// Adds the weight of a segment's third corner to the second, which is the same vertex.
 DRAPE_FUNCTION void joinCorners(float* weights)
 {
     weights[1] += weights[2];

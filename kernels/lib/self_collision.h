@@ -12,10 +12,10 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// Which pairs a walk gives.
+// Pairs that a traversal returns.
 #define DRAPE_WALK_OTHER 0u       // with every leaf of another mesh
 #define DRAPE_WALK_SELF 1u        // with later leaves of the same mesh
-#define DRAPE_WALK_SELF_APART 2u  // the same, without triangles that share a vertex
+#define DRAPE_WALK_SELF_APART 2u  // later leaves of the same mesh, without triangles that share a vertex
 
 // One side of a walk. Leaves lie first among the nodes, one triangle each, in their order (see bvh_layout.h).
 typedef struct WalkSide
@@ -121,7 +121,7 @@ DRAPE_FUNCTION int featureIsValid(const DRAPE_GLOBAL Dop* volumes, const Feature
     return valid;
 }
 
-// Not proved apart, and all vertices valid.
+// Returns whether the features are not proved apart and all vertices are valid.
 DRAPE_FUNCTION int featuresOverlap(const DRAPE_GLOBAL Dop* volumes, const FeatureVertices* a, const FeatureVertices* b)
 {
     if (!featureIsValid(volumes, a) || !featureIsValid(volumes, b)) return 0;
@@ -154,7 +154,8 @@ DRAPE_FUNCTION FeatureVertices faceOf(const DRAPE_GLOBAL Triangle* triangle)
     return face;
 }
 
-// What a pair of triangles owns: at most three vertices of each against the other's face, and nine pairs of edges.
+// Feature pairs that a pair of triangles owns: at most three vertices of each against the other's face, and nine
+// pairs of edges.
 typedef struct FeaturePairs
 {
     FeaturePair m_vertexFace[6];
@@ -197,7 +198,7 @@ DRAPE_FUNCTION void addEdgePairs(FeaturePairs* pairs, const DRAPE_GLOBAL Triangl
                 (first.m_vertices[1] == second.m_vertices[0]) | (first.m_vertices[1] == second.m_vertices[1]);
             if (shared || !(b->m_owned & DRAPE_OWNS_EDGE(j))) continue;
             if (!featuresOverlap(volumes, &first, &second)) continue;
-            // The same order whichever triangle comes first.
+            // Keeps the same order whichever triangle comes first.
             pairs->m_edges[pairs->m_edgesCount].m_a = a->m_edges[i] < b->m_edges[j] ? a->m_edges[i] : b->m_edges[j];
             pairs->m_edges[pairs->m_edgesCount++].m_b = a->m_edges[i] < b->m_edges[j] ? b->m_edges[j] : a->m_edges[i];
         }

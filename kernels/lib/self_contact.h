@@ -1,18 +1,14 @@
-// Contacts of a cloth with itself: a node against a face, an edge against an edge, both moving linearly over the step.
+// Contacts of a cloth with itself: a node against a face, an edge against an edge, both moving linearly over the
+// step.
 //
-// Candidates are the pairs of features of one cloth that share no vertex and whose 18-DOPs over the step, grown by half
-// the reach, overlap (self_collision.h). Of these a contact is reported when (a) the two met during the step, or (b)
-// they did not meet, are within reach at its end and locally closest: a node whose nearest point of the face is on its
-// boundary is not nearer to the face beyond, and the points of two edges are inside both. The normal points from the
-// second feature to the side that the first came from, or where it ends if the two did not meet. Pairs are dropped for distance only on proof (provenApart).
+// Candidates are feature pairs of one cloth that share no vertex and whose volumes over the step, grown by half the
+// reach, overlap (self_collision.h). A candidate is a contact in two cases: (a) the features met during the step, or
+// (b) they did not meet, are within reach at its end and are locally closest. The normal points from the second
+// feature to the side from which the first came, or to its end if the two did not meet. Pairs are dropped for
+// distance only on proof (provenApart).
 //
-// The thickness of a pair is the cloth's, or half the distance that the two have at rest where that is less: features
-// that lie near each other in the mesh are no contact until the cloth folds there. What touches at rest is joined, as
-// what shares a vertex is. Cf. Bridson, Fedkiw and Anderson, Robust treatment of collisions, contact and friction for
-// cloth animation, 2002, for the two kinds of pairs.
-//
-// Positions are taken in a frame that moves with the second edge's first end, or with the node: a motion that both
-// features share makes no difference, and rounding scales with the size of the pair.
+// A pair's thickness is the cloth's, or half the pair's rest distance if that is less.
+// docs/design_notes/contact_geometry.md gives the exact conditions and the frames.
 #ifndef DRAPE_LIB_SELF_CONTACT_H
 #define DRAPE_LIB_SELF_CONTACT_H
 
@@ -89,8 +85,8 @@ DRAPE_FUNCTION void selfStore(Contact* contact, Vec3 normal, Vec3 point, Vec3 we
     storeContact(contact, normal, point, weights, vec3Dot(normal, before), vec3Dot(normal, after), time);
 }
 
-// Whether the face beyond one of the edges on which the nearest point lies is nearer: then the contact is that face's.
-// The frame is the node's, so the offset from the point to the node is its opposite.
+// Returns whether the face beyond one of the edges on which the nearest point lies is nearer: the contact then
+// belongs to that face. The frame is the node's, so the offset from the point to the node is its opposite.
 DRAPE_FUNCTION int nearerBeyond(const ClothView* cloth, const DRAPE_GLOBAL Triangle* triangle, Vec3 node, Vec3 point,
                                 Vec3 weights, float seam)
 {
@@ -173,7 +169,7 @@ DRAPE_FUNCTION int selfNodeFace(const SelfView* view, DRAPE_UINT node, DRAPE_UIN
     }
     else if (found == DRAPE_IS_CONTACT)
     {
-        // Found as the face's contact with the node: the other way round.
+        // Reverses the contact, which was found as the face's with the node.
         const Vec3 weights = vec3(contact->m_weights[0], contact->m_weights[1], contact->m_weights[2]);
         const Vec3 normal = vec3(-contact->m_normal[0], -contact->m_normal[1], -contact->m_normal[2]);
         const Vec3 before = featurePoint(face.m_start, weights), after = featurePoint(face.m_end, weights);
@@ -189,7 +185,7 @@ typedef struct EdgePair
     float m_v0, m_v1;  // six times the signed volumes at the step's start and end
 } EdgePair;
 
-// From the second edge to the first, at places s and t.
+// Returns the offset from the second edge to the first, at parameters s and t.
 DRAPE_FUNCTION Vec3 edgeOffset(FeatureEdge e, FeatureEdge o, float s, float t)
 {
     return vec3Sub(vec3Mix(e.m_a, e.m_b, s), vec3Mix(o.m_a, o.m_b, t));
@@ -213,7 +209,8 @@ DRAPE_FUNCTION int selfEdgesMet(const EdgePair* pair, Meeting meeting, PairBound
     return DRAPE_IS_CONTACT;
 }
 
-// Two edges at the step's end. Of parallel edges an end is as near as any place: the node's contact.
+// Two edges at the step's end. For parallel edges an end is as near as any other point, and belongs to the node's
+// contact.
 DRAPE_FUNCTION int selfEdgesNear(const EdgePair* pair, PairBounds bounds, Contact* contact)
 {
     const FeatureEdge e = pair->m_e1, o = pair->m_o1;

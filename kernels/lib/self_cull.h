@@ -1,9 +1,9 @@
-// Pairs of features of one cloth that may touch in a step: boxes of features a block of lanes at a time, then the
-// features' own volumes.
+// Finds pairs of features of one cloth that may touch in a step: tests boxes of features a block of lanes at a time,
+// then the features' own volumes.
 //
-// Every volume is the union of its nodes' volumes (vertexVolume), so a box or a patch's volume holds those of all that
-// it stands for, and which pairs are found does not depend on the patches. Where several nodes' outermost projections
-// alone are padded a bound may differ in its last bit, which selfGrowth() covers a thousand times.
+// Every volume is the union of its nodes' volumes (vertexVolume). A box or a patch's volume therefore contains those
+// of all its features, and the pairs found do not depend on the patches. If only the outermost projections of several
+// nodes are padded, a bound may differ in its last bit; selfGrowth() covers a thousand times that.
 #ifndef DRAPE_LIB_SELF_CULL_H
 #define DRAPE_LIB_SELF_CULL_H
 
@@ -50,7 +50,7 @@ DRAPE_FUNCTION int boxesMeet(const FeatureBox* a, const FeatureBox* b)
     return meet;
 }
 
-// Grows an interval along one direction to hold a node's place; as dopAddPoint has it.
+// Grows an interval along one direction to contain a node's position, like dopAddPoint.
 DRAPE_FUNCTION void growInterval(Vec3 p, float radius, int direction, float* low, float* high)
 {
     const float v = dopProject(p, direction);
@@ -78,12 +78,12 @@ DRAPE_FUNCTION FeatureBox nodeBox(const DRAPE_GLOBAL float* start, const DRAPE_G
     return box;
 }
 
-// What two volumes are padded by and no more than, as a share of what they are grown by, of the bounds that face each
-// other and of the inner sum: each by less than 3e-7.
+// Maximum padding of two volumes, as a share of their growth, of the bounds that face each other and of the inner
+// sum. Each share is less than 3e-7.
 #define DRAPE_SELF_PAD 1e-6f
 
-// Whether a direction beyond the axes separates two features by more than their volumes are grown and padded: then
-// nodeVolumesOverlap() says no, which takes three times as long. Nodes and split as there.
+// Returns whether a direction beyond the axes separates two features by more than their volumes are grown and padded.
+// nodeVolumesOverlap() would then return false, in three times the time. Nodes and split as there.
 DRAPE_FUNCTION int nodesFarApart(const Vec3 start[4], const Vec3 end[4], int split, float radius)
 {
     DRAPE_UNROLL
@@ -119,14 +119,15 @@ DRAPE_FUNCTION int placesAreValid(const Vec3 from[4], const Vec3 to[4])
     return valid;
 }
 
-// Whether the volumes of two features, of their valid nodes joined, overlap where their boxes do: the first `split` of
-// four nodes are the first feature's. The same answer as featuresOverlap() gives for the nodes' volumes.
+// Returns whether the volumes of two features overlap, given that their boxes do. A volume joins its feature's valid
+// nodes; the first `split` of four nodes are the first feature's. The answer equals featuresOverlap() of the nodes'
+// volumes.
 DRAPE_FUNCTION int nodeVolumesOverlap(const Vec3 from[4], const Vec3 to[4], int split, float radius)
 {
     DRAPE_UNROLL
     for (int i = 3; i < DRAPE_DOP_DIRECTIONS; ++i)
     {
-        // Not an array of two: a GPU would keep it in memory.
+        // Four scalars instead of arrays of two, which a GPU would keep in memory.
         float low = DRAPE_INFINITY, high = -DRAPE_INFINITY, lowOther = DRAPE_INFINITY, highOther = -DRAPE_INFINITY;
         DRAPE_UNROLL
         for (int k = 0; k < 4; ++k)
@@ -212,7 +213,7 @@ DRAPE_FUNCTION DRAPE_UINT patchesBelow(DRAPE_UINT level)
     return below;
 }
 
-// Children of a wide node whose volumes overlap a volume; what their contacts can reach is not looked at.
+// Returns the children of a wide node whose volumes overlap a volume; ignores the reach of their contacts.
 DRAPE_FUNCTION LaneMask wideOverlaps(const Dop* volume, const DRAPE_GLOBAL float* node)
 {
     LaneMask near = lanesMaskSplat(1);

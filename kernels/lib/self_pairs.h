@@ -17,9 +17,10 @@ typedef struct SelfCloth
     float m_radius, m_thickness;  // m
 } SelfCloth;
 
-// Whether all nodes of two features are valid, and the features' volumes overlap: see nodeVolumesOverlap().
+// Returns whether all nodes of two features are valid, and the features' volumes overlap: see nodeVolumesOverlap().
 #if DRAPE_LANES > 1
-// With a lane for each direction, the axes among them, what roundings cannot turn around; the rest number by number.
+// Tests one direction per lane, including the axes, as far as rounding cannot change the answer; decides the rest
+// with scalars.
 static int volumesOverlap(const Vec3 from[4], const Vec3 to[4], const int split, const float radius)
 {
     const Directions directions = directionLanes();
@@ -47,7 +48,7 @@ static int volumesOverlap(const Vec3 from[4], const Vec3 to[4], const int split,
     const Lanes padOther = DRAPE_SELF_PAD * (grown + inner + lanesAbs(other) + lanesAbs(ownHigh));
     if (anyLane((gap > grown + pad + directions.m_ignored) | (gapOther > grown + padOther + directions.m_ignored)))
         return 0;
-    // Where even the sum is not far, all are valid.
+    // If even the sum is not far, all nodes are valid.
     const LaneMask unsure = (gap > grown - pad) | (gapOther > grown - padOther) | lanesNot(sum <= DRAPE_FARTHEST);
     return !anyLane(unsure) || (placesAreValid(from, to) && nodeVolumesOverlap(from, to, split, radius));
 }

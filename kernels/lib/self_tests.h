@@ -14,7 +14,7 @@
 #define DRAPE_SELF_VIEW(searches) \
     selfView(clothView(start, end, triangles, edges, nodeCount, triangleCount, mode, searches), rest, reachScale)
 
-// Tests the item-th pair; lists its hit, or in swept that the continuous test must tell.
+// Tests the item-th pair. Lists its contact, or the test in `swept` if only the continuous test can decide.
 static void testSelf(__global const FeatureTest* tests, const uint item, const SelfView* view, const uint firstSlot,
                      const HitList* list, __global uint* swept, __global StepCounters* counters)
 {

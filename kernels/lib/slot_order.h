@@ -4,10 +4,10 @@
 
 #include "../shared/contact.h"
 
-// Members of a slot that a work-group puts in order by counting, in local memory; more are sorted where they are.
+// Maximum members of a slot that a work-group sorts by counting, in local memory; more are sorted in place.
 #define DRAPE_COUNTED 512
 
-// Puts one pair of places in order.
+// Sorts one pair of positions.
 static void orderPair(__global uint* members, __global uint* keys, const uint low, const uint high)
 {
     const uint a = keys[low], b = keys[high];
@@ -19,10 +19,10 @@ static void orderPair(__global uint* members, __global uint* keys, const uint lo
     members[high] = member;
 }
 
-// A work-group sorts count members by their keys, in place, both lists alike: Batcher's bitonic network, its merges begun with
-// a mirrored step so that the lesser always goes to the lower place. So places from count on count as greater than all and
-// need not exist. In a step every place is in one pair; the barrier orders the steps. It goes through lists side by side: the
-// hits themselves, looked up for each pair, are more than a CPU's cache holds.
+// Sorts `count` members by their keys, in place, with both lists alike; one work-group. Batcher's bitonic network,
+// whose merges begin with a mirrored step so that the lesser key always goes to the lower position. Positions from
+// `count` on therefore count as greater than all and need not exist. Every position is in one pair per step; the
+// barrier orders the steps. The two lists are separate from the contacts, which are more than a CPU's cache holds.
 static void sortMembers(__global uint* members, __global uint* keys, const uint count)
 {
     for (uint size = 2; size / 2 < count; size *= 2)
@@ -41,8 +41,8 @@ static void sortMembers(__global uint* members, __global uint* keys, const uint 
     }
 }
 
-// The same for DRAPE_COUNTED members at most, the keys left as they are: each goes behind as many as have a lesser one. own,
-// ownKeys: that many.
+// Sorts at most DRAPE_COUNTED members by counting and leaves the keys unchanged: a member's position is the number of
+// members with a lesser key. own, ownKeys: hold that many.
 static void countMembers(__global uint* members, __global const uint* keys, const uint count, __local uint* own,
                          __local uint* ownKeys)
 {

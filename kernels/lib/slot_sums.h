@@ -1,11 +1,12 @@
-// Where slots' hits begin in a list by slots, where slots are few: what counts a slot's hits adds them up by rows of slots,
-// too, so that every work-item can tell for itself, and no launch has to sum before. For kernels only.
+// Sums that give the position of a slot's contacts in a list ordered by slot, for few slots. Kernels that count a
+// slot's contacts also add them up by rows of slots. Every work-item can then sum for itself, and no extra launch has
+// to sum before. For kernels only.
 #ifndef DRAPE_LIB_SLOT_SUMS_H
 #define DRAPE_LIB_SLOT_SUMS_H
 
 #include "../shared/slot_sums.h"
 
-// So many hits more of a slot. sums: DRAPE_SLOT_SUMS.
+// Adds `hits` contacts of a slot. sums: DRAPE_SLOT_SUMS elements.
 static void addToSums(__global volatile uint* sums, const uint slot, const uint hits)
 {
     atomic_add(sums + slot / DRAPE_SUMMED, hits);
@@ -37,7 +38,7 @@ static uint sumOfWide(__local const uint* wide, const uint count)
     return sum;
 }
 
-// How many hits the slots before this one have. counts: of each slot; wide: by sumRows().
+// Returns the number of contacts in the slots before this one. counts: of each slot; wide: from sumRows().
 static uint hitsBefore(__global const uint* counts, __global const uint* sums, __local const uint* wide, const uint slot)
 {
     const uint row = slot / DRAPE_SUMMED, firstRow = row / DRAPE_SUMMED * DRAPE_SUMMED;

@@ -1,10 +1,10 @@
-// A team does one piece of a cull: one work-item with vectors of lanes (DRAPE_LANES 8 or 16), or one work-group whose
-// work-items are the lanes (DRAPE_LANES 1), of which there are DRAPE_PATCH_WIDTH or a multiple. Which of the two is a
-// build option; the text is the same.
+// A team is the unit that does one piece of a cull. It is one work-item with vectors of lanes (DRAPE_LANES 8 or 16),
+// or one work-group whose work-items are the lanes (DRAPE_LANES 1), DRAPE_PATCH_WIDTH of them or a multiple. A build
+// option selects which; the text is the same.
 //
-// What a team finds it gathers and moves to a list with one atomic for many. The list's demand counts on past the
-// capacity; what does not fit is not written, and the host repeats the step with a larger list. Past the limit the team
-// ends: the step is over it whatever follows, and a count that ran on could wrap around. For kernels only.
+// A team gathers its results and moves many of them to a list with one atomic. The list's demand counts on past the
+// capacity. Results that do not fit are not written, and the host repeats the step with a larger list. Past the limit
+// the team ends: the step exceeds it in any case, and a count that ran on could wrap around. For kernels only.
 #ifndef DRAPE_LIB_TEAM_H
 #define DRAPE_LIB_TEAM_H
 
@@ -41,7 +41,7 @@ static uint byteBits(const ulong bytes)
 }
 
 #ifndef DRAPE_HOST_KERNELS
-// Of each lane's mask a byte.
+// Stores one byte per lane of the mask.
 static void laneBytes(const LaneMask mask, ulong* bytes)
 {
 #if DRAPE_LANES == 16
@@ -114,7 +114,7 @@ static void teamStart(DRAPE_TEAM Team* team)
     teamSync();
 }
 
-// By any lane alone. slot: by which it raised m_keptCount.
+// Stores a test; called by any single lane. slot: value of m_keptCount from which the lane raised it.
 static void teamPut(DRAPE_TEAM Team* team, const TestList* list, const uint slot, const FeatureTest test)
 {
     if (slot < DRAPE_TEAM_KEPT)
@@ -149,7 +149,7 @@ static int teamFlush(DRAPE_TEAM Team* team, const TestList* list)
     return place <= list->m_limit;
 }
 
-// The same, moving where little room is left.
+// Moves the kept tests only where little room is left. Returns the same as teamFlush().
 static int teamMakeRoom(DRAPE_TEAM Team* team, const TestList* list)
 {
     teamSync();

@@ -1,4 +1,4 @@
-// What a triangle is sorted by when leaves are ordered.
+// Key by which triangles are sorted when leaves are ordered.
 #ifndef DRAPE_LIB_TRIANGLE_ORDER_H
 #define DRAPE_LIB_TRIANGLE_ORDER_H
 

@@ -1,9 +1,10 @@
-// Two triangles of any meshes: do they intersect, do they come within a radius? For callers that want this answer and
-// no contact: the pair is brought into its own frame here, by a vertex of it and a power of two, so that neither the
-// distance from the origin nor the unit of length matters.
+// Decides whether two triangles of any meshes intersect, or come within a radius. For callers that need no contact:
+// the pair is transformed into its own frame, by one of its vertices and a power of two. Neither the distance from
+// the origin nor the unit of length then matters.
 //
-// Guarantee: no pair that truly intersects (is truly within the radius) is denied; one that misses by less than about
-// 1e-6 of its extent (7e-5 for distances) may be reported. Positions that are not finite: the pair is denied.
+// Guarantee: a pair that truly intersects (is truly within the radius) is never rejected. A pair that misses by less
+// than about 1e-6 of its extent (7e-5 for distances) may be reported. Pairs with positions that are not finite are
+// rejected.
 #ifndef DRAPE_LIB_TRIANGLE_PAIR_H
 #define DRAPE_LIB_TRIANGLE_PAIR_H
 
@@ -97,8 +98,8 @@ DRAPE_FUNCTION DRAPE_UINT trianglePairTest(const Vec3 a[3], const Vec3 b[3], flo
     return meets || featuresNear(&pair, bounds) ? meets | DRAPE_PAIR_NEAR : 0u;
 }
 
-// Of two triangles of meshes. One with an invalid corner (positionIsValid) is in no pair: its volume is that of its
-// other corners, so that which others it meets would be chance.
+// Answers for two triangles of meshes. A triangle with an invalid corner (positionIsValid) is in no pair: its volume
+// is that of its other corners, so its pairs would be arbitrary.
 DRAPE_FUNCTION PairAnswer trianglePairAnswer(Candidate pair, const DRAPE_GLOBAL float* positionsA,
                                              const DRAPE_GLOBAL Triangle* trianglesA,
                                              const DRAPE_GLOBAL float* positionsB,
@@ -119,7 +120,7 @@ DRAPE_FUNCTION PairAnswer trianglePairAnswer(Candidate pair, const DRAPE_GLOBAL 
     return answer;
 }
 
-// Whether the triangles of a query meet, by the test asked for.
+// Returns whether the triangles of a query meet, by the given test.
 DRAPE_FUNCTION DRAPE_UINT triangleQuery(FeatureTriangle a, FeatureTriangle b, DRAPE_UINT test)
 {
     if (test == DRAPE_TEST_MOLLER) return mollerIntersect(a, b) ? 1u : 0u;

@@ -46,7 +46,7 @@ DRAPE_FUNCTION float drapeClamp01(float a)
     return drapeMin(drapeMax(a, 0.0f), 1.0f);
 }
 
-// By the exponent's bits: compilers may not fold it away, and a flushed denormal stays finite.
+// Tests the exponent's bits: compilers may not fold this away, and a flushed denormal stays finite.
 DRAPE_FUNCTION int drapeIsFinite(float a)
 {
     return (drapeBits(a) & 0x7f800000u) != 0x7f800000u;
@@ -98,7 +98,8 @@ DRAPE_FUNCTION float vec3Length(Vec3 a)
 {
     return drapeSqrt(vec3Dot(a, a));
 }
-// a at length 1. length: of a, > 0. Where it is so small that its square loses digits as a denormal, it is taken anew.
+// Scales a to length 1. length: of a, > 0. It is computed anew if its square is so small that it loses digits as a
+// denormal.
 DRAPE_FUNCTION Vec3 vec3Direction(Vec3 a, float length)
 {
     if (length > 1e-18f) return vec3Scale(a, 1.0f / length);
@@ -122,7 +123,7 @@ DRAPE_FUNCTION int vec3IsFinite(Vec3 a)
 // finite.
 #define DRAPE_FARTHEST 1073741824.0f  // 2^30
 
-// Whether geometry can use the position: finite and not farther out than DRAPE_FARTHEST.
+// Returns whether geometry can use the position: finite and not farther out than DRAPE_FARTHEST.
 DRAPE_FUNCTION int positionIsValid(Vec3 p)
 {
     return vec3IsFinite(p) && vec3NormMax(p) <= DRAPE_FARTHEST;

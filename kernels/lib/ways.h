@@ -1,8 +1,9 @@
-// Features that the feature tests take for met or near, against the directions of the volumes.
+// Tests features that the feature tests accept as met or near against the directions of the volumes.
 //
-// Tests drop a pair only on proof, so that where a feature is long, far from the other or degenerate, rounding may keep one
-// that is farther apart than the reach: farther than volumes hold, which then were to blame for whether there is a contact.
-// What is told here is proof, too, and the same that any traversal's volumes give: what is kept, all of them hold.
+// Feature tests drop a pair only on proof. If a feature is long, far from the other or degenerate, rounding may keep
+// a pair that is farther apart than the reach, and than volumes contain. The volumes would then decide whether there
+// is a contact. The tests here are proofs, too, and are the same as those of any traversal's volumes: every
+// traversal's volumes contain the pairs that remain.
 #ifndef DRAPE_LIB_WAYS_H
 #define DRAPE_LIB_WAYS_H
 
@@ -11,14 +12,14 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// Share of the reach by which ways of features that met may be apart, less than volumes hold beyond them in any direction
-// (DRAPE_CULL_MET of feature_cull.h).
+// Share of the reach by which paths of features that met may be apart. Volumes contain more than this in any
+// direction (DRAPE_CULL_MET of feature_cull.h).
 #define DRAPE_WAY_REACH 0.01f
-// Share of a pair's extent by which distances round.
+// Rounding error of distances, as a share of a pair's extent.
 #define DRAPE_WAY_ROUNDING 3e-6f
 
-// Whether the ways of two features, of the first `count` points and of the others, are not proved farther apart than the
-// distance, m.
+// Returns whether the paths of two features, of the first `count` points and of the others, are not proved farther
+// apart than the distance, m.
 DRAPE_FUNCTION int waysOverlap(const Vec3 start[4], const Vec3 end[4], int count, float distance)
 {
     int overlap = 1;
@@ -37,7 +38,7 @@ DRAPE_FUNCTION int waysOverlap(const Vec3 start[4], const Vec3 end[4], int count
     return overlap;
 }
 
-// Whether features whose distance was found to be this, m, are farther apart than the reach after all.
+// Returns whether features with this computed distance, m, are farther apart than the reach after all.
 DRAPE_FUNCTION int outOfReach(float distance, const Vec3 points[4], int count, PairBounds bounds)
 {
     return distance > bounds.m_reach - DRAPE_WAY_ROUNDING * bounds.m_extent &&

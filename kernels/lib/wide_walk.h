@@ -8,12 +8,13 @@
 #define DRAPE_LEVEL_SHIFT 28
 // Levels of the wide tree over 2^28 triangles.
 #define DRAPE_LEVELS 7
-// Of a walk that takes a node at a time from the lowest level that is left: each level has the children of one on the stack.
+// Stack size of a traversal that takes a node at a time from the lowest remaining level: each level has the children
+// of one node on the stack.
 #define DRAPE_WALK_STACK (DRAPE_LEVELS * DRAPE_PATCH_WIDTH)
 
-// Nodes that a group with as many times DRAPE_PATCH_WIDTH lanes looks at together, at most.
+// Maximum nodes that a group tests together; the group has as many times DRAPE_PATCH_WIDTH lanes.
 #define DRAPE_WALK_NODES 4
-// The root's children where they are this few are where a group's walk begins.
+// Maximum number of the root's children at which a group's traversal begins with them.
 #define DRAPE_WALK_BEGIN 4
 
 static uint walkEntry(const uint level, const uint index)
@@ -26,13 +27,13 @@ static uint entryLevel(const uint entry)
     return entry >> DRAPE_LEVEL_SHIFT;
 }
 
-// The node's place in its level.
+// Returns the node's index in its level.
 static uint entryIndex(const uint entry)
 {
     return entry & ((1u << DRAPE_LEVEL_SHIFT) - 1u);
 }
 
-// Puts the root on the stack, or its children where they are few. Returns how many.
+// Puts the root on the stack, or its children if they are few. Returns the number of entries.
 static uint beginWalk(__local uint* stack, __global const uint* levels, const uint top)
 {
     const uint children = top > 1 ? levels[top - 1] - levels[top - 2] : 0;
@@ -42,7 +43,7 @@ static uint beginWalk(__local uint* stack, __global const uint* levels, const ui
     return nodes;
 }
 
-// How many nodes are taken from the stack together: those on top that are of one level.
+// Returns how many nodes are taken from the stack together: those on top that belong to one level.
 static uint nodesInTurn(__local const uint* stack, const uint depth, const uint most)
 {
     uint nodes = 1;

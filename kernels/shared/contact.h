@@ -32,14 +32,14 @@ typedef struct Contact
     float m_gap1;           // m, signed distance along the normal at the step's end, thickness not subtracted
     float m_point[3];       // m, contact point on the obstacle, world frame
     float m_gap0;           // m, the same at the step's start
-    // Of the cloth feature's nodes; sum 1; unused ones 0. Of a self contact: of the face's nodes, or the places along
-    // the first and the second edge, each from its first node (0) to its second (1).
+    // Weights of the cloth feature's nodes, sum 1; unused ones 0. Self contacts: weights of the face's nodes, or the
+    // parameters along the first and the second edge, each from its first node (0) to its second (1).
     float m_weights[3];
     float m_time;  // time of impact in [0, 1]; 1 when the surfaces are near at the step's end
 } Contact;
 
-// Places before the first contact in the list that a step leaves on a device: they hold its StepCounters, so that one
-// transfer brings both.
+// Elements before the first contact in a device's list. They hold the step's StepCounters, so that one transfer reads
+// both.
 #define DRAPE_CONTACT_HEAD 1u
 
 DRAPE_NAMESPACE_END

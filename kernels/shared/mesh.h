@@ -26,7 +26,7 @@ typedef struct Edge
     DRAPE_UINT m_opposite[2];
 } Edge;
 
-// Where the vertices, triangles and edges of a mesh begin among those of its side, per slot.
+// Offsets of a mesh's vertices, triangles and edges among those of its side, per slot.
 typedef struct MeshFirsts
 {
     DRAPE_UINT m_vertex;
@@ -69,12 +69,12 @@ typedef struct Candidate
     DRAPE_UINT m_obstacle;  // triangle
 } Candidate;
 
-// How a step looks at the cloth's motion; see Settings::m_mode.
+// Treatment of the cloth's motion in a step; see Settings::m_mode.
 #define DRAPE_DISCRETE 0u
 #define DRAPE_CONTINUOUS 1u
 #define DRAPE_AUTOMATIC 2u
 
-// What a step counts on the device. Demands count on when a buffer is full, so the host learns the true size.
+// Numbers that a step counts on the device. Demands count on when a buffer is full, so the host learns the true size.
 typedef struct StepCounters
 {
     DRAPE_UINT m_candidates;
@@ -89,7 +89,7 @@ typedef struct StepCounters
     DRAPE_UINT m_patchPairs;  // of cloth triangles and patches, where they are listed
     DRAPE_UINT m_selfPairs;   // of patches of cloths with themselves, where they are listed
     DRAPE_UINT m_selfTests;   // pairs of features of cloths with themselves
-    DRAPE_UINT m_selfSwept;   // of these, that the continuous test decided
+    DRAPE_UINT m_selfSwept;  // of m_selfTests, those that the continuous test decided
     DRAPE_UINT m_visits;  // volume tests of the broad phase; only in programs built with DRAPE_COUNT_VISITS
 } StepCounters;
 

@@ -1,4 +1,4 @@
-// Where obstacles are and how they move in a step. 32-bit scalars only, no padding.
+// Poses of obstacles and their motion in a step. 32-bit scalars only, no padding.
 #ifndef DRAPE_SHARED_MOTION_H
 #define DRAPE_SHARED_MOTION_H
 
@@ -9,7 +9,7 @@ DRAPE_NAMESPACE_BEGIN
 // Maps are three rows of three factors and a shift.
 #define DRAPE_MAP_FLOATS 12
 
-// One obstacle's place in the world, per slot.
+// One obstacle's pose in the world, per slot.
 typedef struct ObstaclePlace
 {
     float m_pose[DRAPE_MAP_FLOATS];  // from the mesh's own frame to the world

@@ -31,33 +31,34 @@ typedef struct Patch
 // Spread: how far beside the face, over how far above it, a node can be that one of its edges' or corners' cones
 // admits; DRAPE_ANY_SPREAD where they admit as much as any, a direction in the face's own plane among them.
 #define DRAPE_ANY_SPREAD 1e18f
-// Of every direction: low, high, and how far a contact can reach as a share of the reach (lib/cone_reach.h).
+// Size of a child of a wide node: for every direction low, high, and the reach of a contact as a share of the full
+// reach (lib/cone_reach.h).
 #define DRAPE_WIDE_NODE_FLOATS (3 * DRAPE_DOP_DIRECTIONS)
 
-// Of a cloth that collides with itself: a feature's box over the step, low then high.
+// Size of a feature's box over the step, low then high, of a cloth that collides with itself.
 #define DRAPE_BOX_FLOATS 6
 
-// A lane's owner: a triangle that owns its feature in the low bits, the feature's place in that triangle above. Lanes
-// that are not used hold DRAPE_NO_FEATURE and positions that are NaN, which no test keeps.
+// A lane's owner: a triangle that owns its feature in the low bits, the feature's index in that triangle above.
+// Unused lanes hold DRAPE_NO_FEATURE and NaN positions, which no test keeps.
 #define DRAPE_PLACE_SHIFT 30
 #define DRAPE_NO_FEATURE 0xffffffffu
 
-// What a face's triangle owns, in one word: its bits as in Triangle::m_owned, above them the lanes of its first vertex
-// and of its first edge, counted from the patch's first of each. Its further ones follow those.
+// Features that a face's triangle owns, in one word: its bits as in Triangle::m_owned, above them the lanes of its
+// first vertex and of its first edge, counted from the patch's first of each. Further ones follow these.
 #define DRAPE_FEATURES_OWNED(features) ((features)&0x3fu)
 #define DRAPE_FEATURES_VERTEX(features) (((features) >> 8) & 0xffu)
 #define DRAPE_FEATURES_EDGE(features) (((features) >> 16) & 0xffu)
 
-// A feature test that the cull could not drop: a cloth triangle with the test above it, and a lane of the faces (tests
-// 0 to 2: corner of the cloth triangle), vertices (3) or edges (4 to 6: edge of the cloth triangle). Also a pair of a
-// cloth triangle and a patch, whose index is then in the place of the lane; and a pair of features of one cloth
-// (lib/self_contact.h).
+// A feature test that the cull could not drop: a cloth triangle with the test in its upper bits, and an obstacle
+// lane. Lanes are of faces (tests 0 to 2: corner of the cloth triangle), vertices (3) or edges (4 to 6: edge of the
+// cloth triangle). The record also stores a pair of a cloth triangle and a patch, with the patch's index in place of
+// the lane, and a pair of features of one cloth (lib/self_contact.h).
 typedef struct FeatureTest
 {
     DRAPE_UINT m_cloth;
     DRAPE_UINT m_lane;
     float m_reach;        // m
-    DRAPE_UINT m_motion;  // 1 + place of the obstacle's motion in the step's list; 0 where it rests
+    DRAPE_UINT m_motion;  // 1 + index of the obstacle's motion in the step's list; 0 where it rests
 } FeatureTest;
 #define DRAPE_TEST_SHIFT 29
 #define DRAPE_TEST_NODE 0u

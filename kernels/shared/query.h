@@ -1,5 +1,5 @@
-// Which tests answer questions about triangles, and what a mesh finds against itself. The questions that a caller may
-// ask are declared in a public header. The same declarations serve C++ and OpenCL C: 32-bit scalars only, no padding.
+// Tests that answer triangle queries, and collisions of a mesh with itself. A public header declares the queries that
+// a caller may make. The same declarations serve C++ and OpenCL C: 32-bit scalars only, no padding.
 #ifndef DRAPE_SHARED_QUERY_H
 #define DRAPE_SHARED_QUERY_H
 
@@ -8,7 +8,7 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// Which test answers a TriangleQuery on the device.
+// Test that answers a TriangleQuery on the device.
 #define DRAPE_TEST_CERTIFIED 0u
 #define DRAPE_TEST_MOLLER 1u
 
@@ -45,7 +45,7 @@ typedef struct SelfCounters
     DRAPE_UINT m_tooDeep;  // hierarchies too deep for the traversal's stack
 } SelfCounters;
 
-// Far above what a list holds, and so far below 2^32 that additions under way cannot wrap around.
+// Count far above any list's length, and so far below 2^32 that concurrent additions cannot wrap around.
 #define DRAPE_DEMAND_LIMIT 0x80000000u
 
 DRAPE_NAMESPACE_END

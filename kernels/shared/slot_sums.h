@@ -1,4 +1,4 @@
-// Sums over the hits of cloth features' slots (kernels/lib/slot_sums.h), where slots are few.
+// Sums over the contacts of cloth features' slots (kernels/lib/slot_sums.h), for few slots.
 #ifndef DRAPE_SHARED_SLOT_SUMS_H
 #define DRAPE_SHARED_SLOT_SUMS_H
 

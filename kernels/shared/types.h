@@ -8,11 +8,12 @@
 #define DRAPE_INT int
 #define DRAPE_GLOBAL __global
 #define DRAPE_FUNCTION static inline
-// For what is seldom called and large: inlined it would cost its callers registers.
+// Marks large functions that are seldom called: inlined they would cost their callers registers.
 #define DRAPE_RARE_FUNCTION static __attribute__((noinline))
 #define DRAPE_NAMESPACE_BEGIN
 #define DRAPE_NAMESPACE_END
-// Before a loop over a volume's directions, whose bodies differ: without it compilers keep the choices in the loop.
+// Precedes a loop over a volume's directions, whose bodies differ: without it compilers keep the branches in the
+// loop.
 #define DRAPE_UNROLL _Pragma("unroll")
 #else
 #include <cmath>
@@ -47,8 +48,8 @@ typedef struct Vec3
 
 DRAPE_NAMESPACE_END
 
-// For what is seldom called and small. On a GPU a call costs a kernel a stack frame wherever it may happen; inlined it
-// costs less.
+// Marks small functions that are seldom called. On a GPU a call costs a kernel a stack frame wherever it may happen;
+// inlining costs less.
 #if defined(DRAPE_HOST_KERNELS) || defined(DRAPE_CPU)
 #define DRAPE_COLD_FUNCTION DRAPE_RARE_FUNCTION
 #else

@@ -10,8 +10,8 @@ namespace
 {
 constexpr std::uint32_t kWidth = DRAPE_PATCH_WIDTH;
 constexpr std::size_t kFirstTests = 1 << 12;
-// Tests of the step before from which on threads are worth waking: such a step's cull takes half a millisecond. And
-// cloth triangles, wherever they are: to find so many far from everything takes half a millisecond, too.
+// Minimum tests of the step before for waking threads: such a step's cull takes half a millisecond. Also the minimum
+// cloth triangles, wherever they are: culling that many far from everything takes half a millisecond, too.
 constexpr std::size_t kLeastTests = 1 << 10;
 constexpr std::size_t kLeastTriangles = 1 << 13;
 }  // namespace
@@ -29,7 +29,7 @@ void HostPatchCull::setTopology(const MeshPool& obstacles, std::size_t firstSlot
     resizeWithRoom(m_vertexIds, m_layout.m_vertexOwners.size());
     resizeWithRoom(m_edgeIds, m_layout.m_edgeOwners.size());
     resizeWithRoom(m_sizes, m_layout.m_patches.size());
-    // A vector of lanes is loaded from it, of which some lie behind the last patch's.
+    // A vector of lanes is loaded from it; some of them lie behind the last patch's.
     resizeWithRoom(m_volumes, m_layout.m_patches.size() * DRAPE_WIDE_NODE_FLOATS + kWidth);
     resizeWithRoom(m_wideNodes, std::size_t(m_layout.m_levels.back()) * DRAPE_WIDE_NODE_FLOATS * kWidth);
 }

@@ -17,14 +17,14 @@ public:
 
     // New obstacles from that slot on, which must be packed next, even where none came.
     void setTopology(const MeshPool& obstacles, std::size_t firstSlot);
-    // Packs the features of those obstacles where the view has them.
+    // Packs the features of those obstacles at the view's positions.
     void pack(SlotRange slots, const ObstacleView& obstacle);
 
     // Lists the step's feature tests, and counts them and invalid nodes. limit: of tests; with more the list is not
     // complete, and counters say only that there are more. Returns how often the list was too short and grew.
     std::size_t run(const ClothView& cloth, const HostCloths& cloths, std::size_t limit, ThreadTeam& threads,
                     StepCounters& counters);
-    // Of the last run: as many as counted, and what is behind them is old.
+    // Tests of the last run: the first ones up to its count; the rest is old.
     const std::vector<FeatureTest>& tests() const { return m_tests; }
 
     // Gives back room that only earlier, larger scenes needed.

@@ -9,10 +9,9 @@ namespace
 constexpr std::uint32_t kWidthGpu = 32;  // a warp
 constexpr std::uint32_t kWidthCpu = 16;  // a vector of 512 bits
 constexpr std::size_t kGroup = 64;
-// On a GPU, the number of triangles from which on walks are for packets of them.
+// Number of triangles from which a GPU traverses for packets of them.
 constexpr std::size_t kManyTriangles = 1 << 15;
-// Nodes that a group which walks looks at together, for a packet and for one triangle, and pairs that one which culls
-// does.
+// Nodes that a traversing group tests together, for a packet and for one triangle, and pairs per culling group.
 constexpr std::size_t kWalkTurns = 4;
 constexpr std::size_t kWalkTurnsAlone = 2;
 constexpr std::size_t kCullTurns = 4;
@@ -83,13 +82,13 @@ void PatchCullStage::setTopology(Device& device, const MeshPool& obstacles, std:
     m_vertexIds.extend(device, m_layout.m_vertexOwners.size(), vertices);
     m_edgeIds.extend(device, m_layout.m_edgeOwners.size(), edges);
     m_sizes.extend(device, m_layout.m_patches.size(), patches);
-    // A vector of lanes is loaded from it, of which some lie behind the last patch's.
+    // A vector of lanes is loaded from it; some of them lie behind the last patch's.
     const std::size_t volumesNow = m_layout.m_patches.size() * DRAPE_WIDE_NODE_FLOATS + lanes;
     if (!device.isGpu())
         m_patchVolumes.extend(device, volumesNow, volumes);
     else
         m_patchVolumes.reserve(device, 1);
-    // The lowest level, which comes first, stays: a place a patch, in nodes of so many.
+    // Keeps the lowest level, which comes first: one position per patch, in nodes of `lanes` patches.
     const std::size_t kept = (patches + lanes - 1) / lanes * lanes * DRAPE_WIDE_NODE_FLOATS;
     m_wideNodes.extend(device, m_layout.m_levels.back() * DRAPE_WIDE_NODE_FLOATS * lanes, kept);
 }
@@ -110,7 +109,7 @@ void PatchCullStage::bringOwners(Device& device, ItemRange vertices, ItemRange e
         ItemRange all = wanted;
         if (!held.empty()) all = {std::min(held.m_first, wanted.m_first), std::max(held.m_last, wanted.m_last)};
         buffer.extend(device, all.m_last, held.empty() ? 0 : held.m_last);
-        // Where there is something before what is held, that is brought again.
+        // Uploads the whole range again if it grows at its beginning.
         const std::size_t first = held.empty() || all.m_first < held.m_first ? all.m_first : held.m_last;
         buffer.write(device, owners.data() + first, all.m_last - first, first);
         held = all;

@@ -31,10 +31,10 @@ public:
     // enqueueing.
     void pack(Device& device, SlotRange slots, Buffer<Triangle>& triangles, Buffer<float>& positions,
               Buffer<NormalCone>& vertexCones, Buffer<NormalCone>& edgeCones);
-    // Gives back what only pack() reads; it brings that again when it is called.
+    // Releases data that only pack() reads; pack() uploads it again.
     void releasePacking();
 
-    // What a step reads of the cloths and pairs.
+    // Data of the cloths and pairs that a step reads.
     struct Cloths
     {
         Buffer<cl_uint>& m_order;
@@ -59,13 +59,13 @@ public:
     // The list of the last step, and room in it.
     Buffer<FeatureTest>& tests() { return m_tests; }
     void reserveTests(Device& device, std::size_t count) { m_tests.reserve(device, count); }
-    // The list of pairs of cloth triangles and patches on a GPU. Where it was too short, other counts are too low.
+    // The list of pairs of cloth triangles and patches on a GPU. If it was too short, other counts are too low.
     Buffer<FeatureTest>& pairs() { return m_pairs; }
     void reservePairs(Device& device, std::size_t count) { m_pairs.reserve(device, count); }
     // Gives back the memory of both lists but for as much as a new stage has. Tests are to be reserved again.
     void giveBackRoom(Device& device);
 
-    // The packed features; ids tell a lane's triangle, vertex or edge.
+    // The packed features; ids name a lane's triangle, vertex or edge.
     struct Features
     {
         Buffer<float>& m_faces;
@@ -95,7 +95,7 @@ private:
     Buffer<Patch> m_patches{"obstacle patches"};
     Buffer<cl_uint> m_faceFeatures{"obstacle face features"};  // of a GPU
     Buffer<cl_uint> m_vertexOwners{"obstacle packing"}, m_edgeOwners{"obstacle packing"};
-    // Of each lane; a face's owner is the face itself.
+    // Owners by lane; a face's owner is the face itself.
     Buffer<cl_uint> m_faceOwners{"obstacle face numbers"}, m_vertexIds{"obstacle vertex numbers"};
     Buffer<cl_uint> m_edgeIds{"obstacle edge numbers"};
     Buffer<cl_uint> m_levels{"obstacle wide nodes"};

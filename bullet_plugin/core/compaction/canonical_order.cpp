@@ -15,7 +15,7 @@ void sortCandidates(std::vector<Candidate>& candidates)
 
 namespace
 {
-// Hits, or slots, that a thread takes at a time, and hits from which on others are worth waking.
+// Contacts, or slots, per thread and turn, and the minimum number of contacts for waking other threads.
 constexpr std::size_t kPiece = 512;
 constexpr std::size_t kLeastShared = 1 << 12;
 
@@ -37,7 +37,7 @@ void orderHits(const Contact* hits, std::size_t count, std::vector<std::uint32_t
     for (std::uint32_t& number : slotCount)
         first += std::exchange(number, first);
     contacts.resize(contacts.size() + count);
-    // Each slot's places fill up in any order, which its sort does away with.
+    // Fills each slot's positions in any order; the sort of the slot follows.
     std::vector<std::uint32_t> last = slotCount;
     const auto place = [&](std::size_t hit)
     { contacts[__atomic_fetch_add(&last[hits[hit].m_slot], 1u, __ATOMIC_RELAXED)] = hits[hit]; };

@@ -9,13 +9,13 @@
 
 namespace drape
 {
-// By cloth triangle, then obstacle triangle.
+// Sorts by cloth triangle, then by obstacle triangle.
 void sortCandidates(std::vector<Candidate>& candidates);
 
-// By slot, then obstacle feature.
+// Sorts by cloth feature index (slot), then by obstacle feature.
 void sortContacts(std::vector<Contact>& contacts);
-// Puts hits behind the contacts that there are, in the same order. Those of each slot have been counted, and the counts
-// are used up.
+// Appends unsorted contacts to the existing ones, in the same order. slotCount: contacts of each slot; used as
+// working memory.
 void orderHits(const Contact* hits, std::size_t count, std::vector<std::uint32_t>& slotCount,
                std::vector<Contact>& contacts, ThreadTeam& threads);
 }  // namespace drape

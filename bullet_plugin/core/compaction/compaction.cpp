@@ -8,10 +8,10 @@ namespace
 {
 constexpr std::size_t kSortGroup = 256;    // one group sorts a slot, however large
 constexpr std::size_t kSortBlockGpu = 32;  // slots that a group sorts one after the other
-// Most hits of a slot that a GPU puts in order by counting lesser ones, where no reduction follows: what a group of
-// compactionOrder would count in local memory, a launch more.
+// Maximum contacts of a slot that a GPU sorts by counting lesser ones, without a following reduction. compactionOrder
+// would count the same in local memory, with one launch more.
 constexpr cl_uint kRankedGpu = 512;
-constexpr cl_uint kRankedReducedGpu = 256;  // where one follows: DRAPE_HELD of kernels/contact_reduction_hits.cl
+constexpr cl_uint kRankedReducedGpu = 256;  // with a reduction: DRAPE_HELD of kernels/contact_reduction_hits.cl
 
 cl_uint rankedOn(const Device& device, bool reduced)
 {
@@ -77,7 +77,7 @@ void CompactionStage::giveBackRoom()
     m_hitPlaces.release();
 }
 
-// Slots with more hits than `ranked`.
+// Sorts the slots with more contacts than `ranked`.
 void CompactionStage::enqueueOrder(Device& device, cl_uint ranked, StepTally tally)
 {
     const std::size_t slots = m_places.slotCount();
@@ -87,7 +87,7 @@ void CompactionStage::enqueueOrder(Device& device, cl_uint ranked, StepTally tal
                    tally.m_now.handle());
 }
 
-// Places of slots, and their members.
+// Computes the first position of each slot, and lists its members.
 void CompactionStage::enqueueGather(Device& device, StepTally tally, cl_uint ranked, const ReductionBuffers* reduction)
 {
     const cl_uint hitCapacity = cl_uint(m_hits.capacity()), slots = cl_uint(m_places.slotCount());

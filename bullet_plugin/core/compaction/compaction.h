@@ -1,11 +1,10 @@
-// Compaction: the hits of a step, listed as they were found, into contacts in canonical order
-// (kernels/shared/contact.h), without those that others imply where that is asked for.
+// Compaction sorts a step's unsorted contacts into canonical order (kernels/shared/contact.h), and optionally leaves
+// out contacts that others imply.
 //
-// Input: hits() filled, with each slot's number of them, and how many there are in the step's counters. Output:
-// contacts(), and their number in the counters; the slots' numbers and the next step's counters are left zero.
-// Guarantee: the host's contacts, bit for bit. Where the list is full hits are counted on, and the step must run again
-// with more room. Cost: on a GPU two or three launches where slots are few, else three to five; what reduction takes
-// besides is said there.
+// Input: hits() filled, each slot's number of contacts, and the total in the step's counters. Output: contacts(), and
+// their number in the counters; the slots' numbers and the next step's counters are left zero. Guarantee: the host's
+// contacts, bit for bit. A full list still counts its demand, and the step must run again with a larger one. Cost:
+// two or three launches on a GPU with few slots, else three to five; the reduction's cost is documented there.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +15,9 @@
 
 namespace drape
 {
-// The step's counters, and those of the next step. m_ordered: slots with too many hits for the last launch are put in
-// order before it; where they are not and there are some, which the counters tell, the step must run again. m_hits:
-// about as many are expected; speed alone depends on it.
+// Counters of the step and of the next step. m_ordered: a separate launch sorts slots with too many contacts for the
+// last launch. Without it the step must run again if the counters show such slots. m_hits: expected number of
+// contacts; affects speed alone.
 struct StepTally
 {
     Buffer<StepCounters>& m_now;
@@ -35,22 +34,22 @@ public:
 
     // Room for the slots of a cloth side: its nodes, faces and edges.
     void resizeSlots(Device& device, std::size_t slotCount);
-    // Room for a list of hits and as many contacts.
+    // Reserves memory for a list of unsorted contacts and as many sorted ones.
     void reserveHits(Device& device, std::size_t count);
     std::size_t hitCapacity() const { return m_hits.capacity(); }
-    // Gives back the memory of both; hits are to be reserved again.
+    // Releases the memory of both lists; reserve it again before use.
     void giveBackRoom();
 
-    // What the stages before list their hits in.
+    // Buffers for the unsorted contacts of the stages before.
     HitBuffers hits() { return {m_hits, m_hitPlaces, m_slotCount, m_slotSums}; }
-    // Behind a head of DRAPE_CONTACT_HEAD places, which holds the step's counters.
+    // Contacts, behind a head of DRAPE_CONTACT_HEAD elements that holds the step's counters.
     Buffer<Contact>& contacts() { return m_contacts; }
 
-    // Returns after enqueueing. reduction: null where no contact is to be left out.
+    // Returns after enqueueing. reduction: null to keep every contact.
     void enqueue(Device& device, StepTally tally, const ReductionBuffers* reduction = nullptr);
 
 private:
-    // Where slots are few on a GPU every work-item sums for itself.
+    // Returns whether slots are few on a GPU, so that every work-item sums for itself.
     bool hasSums() { return m_slotSums.capacity() > 0; }
     void enqueueGather(Device& device, StepTally tally, cl_uint ranked, const ReductionBuffers* reduction);
     void enqueueOrder(Device& device, cl_uint ranked, StepTally tally);

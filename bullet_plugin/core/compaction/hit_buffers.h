@@ -1,4 +1,4 @@
-// The list of a step's hits on a device, as the kernels that find them take it (kernels/lib/hit_list.h).
+// A step's unsorted contacts on a device, as the kernels that find them write them (kernels/lib/hit_list.h).
 #pragma once
 
 #include "bullet_plugin/core/device/buffer.h"

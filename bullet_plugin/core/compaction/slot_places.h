@@ -1,7 +1,8 @@
-// Where the hits of each slot begin in a list by slots: sums over the numbers of those before (kernels/compaction.cl).
+// Computes where the unsorted contacts of each slot (cloth feature) begin in a list ordered by slot: a prefix sum
+// over the slots' counts (kernels/compaction.cl).
 //
-// Input: how many hits each slot has. Output: the first place of each, and in the step's counters how many hits there
-// are and how many slots have more than so many. Cost: one launch where slots are few, else two.
+// Input: the number of contacts of each slot. Output: the first position of each slot and, in the step's counters,
+// the number of contacts and of slots with more than a given number. Cost: one launch with few slots, else two.
 #pragma once
 
 #include "bullet_plugin/core/device/buffer.h"
@@ -27,7 +28,7 @@ public:
 
     std::size_t slotCount() const { return m_slots; }
     bool few() const { return m_slots <= kFewSlots; }
-    // Returns after enqueueing. The counter of crowded slots, those with more than `ranked` hits, counts on.
+    // Returns after enqueueing. Increments the counter of crowded slots, which have more than `ranked` contacts.
     void enqueue(Device& device, Buffer<cl_uint>& slotCounts, Buffer<cl_uint>& slotFirsts, cl_uint ranked,
                  Buffer<StepCounters>& counters);
 

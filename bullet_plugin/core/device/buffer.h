@@ -38,8 +38,8 @@ public:
         return true;
     }
 
-    // The same, but the first `kept` elements stay where there are any, and then up to a quarter is added for the next
-    // time.
+    // Grows like reserve() but keeps the first `kept` elements, if any. The new size then includes up to a quarter of
+    // spare room.
     void extend(Device& device, std::size_t count, std::size_t kept)
     {
         if (kept == 0 || m_capacity >= count)
@@ -91,7 +91,7 @@ public:
         reserve(device, source.size());
         write(device, source.data(), source.size());
     }
-    // Those from `first` on; what was before stays.
+    // Uploads the elements from `first` on; earlier ones stay.
     void append(Device& device, const std::vector<T>& source, std::size_t first)
     {
         extend(device, source.size(), first);
@@ -118,7 +118,7 @@ private:
     std::size_t m_capacity = 0;
 };
 
-// What the parts of buffers are aligned to: devices ask for 128 (PoCL), 512 (NVIDIA) and up to 4,096.
+// Alignment of sub-buffers: devices require 128 (PoCL), 512 (NVIDIA) and up to 4,096.
 constexpr std::size_t kPartBytes = 4096;
 
 // Host memory for transfers: pinned where a device is given, plain otherwise. Contents are lost when it grows.

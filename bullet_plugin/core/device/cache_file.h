@@ -9,10 +9,11 @@
 
 namespace drape
 {
-// What Settings::m_cacheFolder means: empty for $XDG_CACHE_HOME/drape or ~/.cache/drape, "none" for no cache (empty).
+// Returns the folder that Settings::m_cacheFolder names: empty for $XDG_CACHE_HOME/drape or ~/.cache/drape, "none"
+// for no cache (empty).
 std::string cacheFolder(const std::string& setting);
 
-// False when there is no folder or no such file, or it is longer than mostBytes.
+// Returns false if there is no folder or no such file, or the file is longer than mostBytes.
 bool readCacheFile(const std::string& folder, const std::string& name, std::size_t mostBytes, std::string& bytes);
 // Written to a new temporary file and renamed, so that no reader sees half of it. Only the user may read the file. The
 // folder is made where there is none.

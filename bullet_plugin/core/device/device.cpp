@@ -16,7 +16,7 @@ struct FoundDevice
     DeviceInfo m_info;
 };
 
-// What a look at the machine gives.
+// The result of a search for devices.
 struct DeviceSearch
 {
     std::vector<FoundDevice> m_found;  // GPUs first, otherwise in the loader's order

@@ -19,7 +19,7 @@
 
 namespace drape
 {
-// What listDevices() lists. Throws where memory runs out.
+// Returns the devices that listDevices() lists. Throws if memory runs out.
 std::vector<DeviceInfo> deviceInfos();
 
 class Device
@@ -52,7 +52,7 @@ public:
     // Waits for all work enqueued so far.
     void wait();
 
-    // Buffers made so far: while it is the same, a handle stands for the same buffer.
+    // Number of buffers made so far: while it is unchanged, a handle stands for the same buffer.
     std::size_t bufferCount() const { return m_bufferCount; }
     void countBuffer() { ++m_bufferCount; }
 

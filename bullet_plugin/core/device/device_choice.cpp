@@ -83,14 +83,14 @@ DeviceChoice chooseDevice(const Settings& settings, Error& error)
     const std::string origin = fromVariable ? "DRAPE_DEVICE" : "the name";
     if (settings.m_backend == Backend::OpenCl && lowered(wanted) == "host")
     {
-        error.m_call = "an OpenCL device was asked for, and the host by " + origin + " \"" + wanted + "\"";
+        error.m_call = "an OpenCL device was requested, but the host by " + origin + " \"" + wanted + "\"";
         error.m_detail = listing(deviceInfos());
         return choice;
     }
     if (settings.m_backend == Backend::Host || lowered(wanted) == "host")
     {
         choice.m_reason =
-            settings.m_backend == Backend::Host ? "the host back end was asked for" : "asked for by " + origin;
+            settings.m_backend == Backend::Host ? "the host back end was requested" : "requested by " + origin;
         return choice;
     }
     std::string whyNone;
@@ -101,7 +101,7 @@ DeviceChoice chooseDevice(const Settings& settings, Error& error)
         choice.m_reason = "no OpenCL device was found: " + whyNone;
         if (settings.m_backend == Backend::OpenCl)
         {
-            error.m_call = "an OpenCL device was asked for, and none was found";
+            error.m_call = "an OpenCL device was requested, but none was found";
             error.m_detail = whyNone + "; a driver for any CPU is PoCL (package pocl-opencl-icd)";
         }
         return choice;

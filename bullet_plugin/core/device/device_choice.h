@@ -1,4 +1,4 @@
-// Which device settings and the environment ask for.
+// Chooses the device that settings and the environment name.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace drape
 {
-// What settings (and DRAPE_DEVICE) come to on this machine.
+// The device that settings (and DRAPE_DEVICE) select on this machine.
 struct DeviceChoice
 {
     bool m_onHost = true;
@@ -23,10 +23,10 @@ struct DeviceChoice
 // The reason of a report where the host took over from a device that failed.
 std::string hostSince(const DeviceInfo& device, const Error& error);
 
-// error is filled when a device was asked for that is not there; its detail lists those that are.
+// Fills error if the requested device is missing; its detail lists the devices found.
 DeviceChoice chooseDevice(const Settings& settings, Error& error);
 
-// The crossover, in pairs of triangles, that settings or else DRAPE_CROSSOVER ask for; negative where neither does.
-// Returns false, and fills error, where the variable is not a number from 0 on.
+// Reads the crossover, in triangle pairs, from the settings or else from DRAPE_CROSSOVER; negative if neither sets
+// it. Returns false, and fills error, if the variable is not a number from 0 on.
 bool wantedCrossover(const Settings& settings, double& pairs, Error& error);
 }  // namespace drape

@@ -24,8 +24,8 @@ inline std::size_t listGroup(const Device& device)
     return device.isGpu() ? kListGroupGpu : kListGroupCpu;
 }
 
-// The same where about so many items are expected: a GPU starts no more work-items than these and a few in reserve, but
-// not so few that many more items than expected would take long.
+// Returns the width for a list of about `items` items. A GPU starts little more than one work-item per item, but
+// enough of them that a much longer list does not take long.
 inline std::size_t listWidth(const Device& device, std::size_t items)
 {
     const std::size_t most = listWidth(device), group = listGroup(device);
@@ -33,8 +33,8 @@ inline std::size_t listWidth(const Device& device, std::size_t items)
     return std::clamp((items + items / 8 + group) / group * group, most / 8, most);
 }
 
-// The same where a CPU's work-item does as many items side by side as a vector has lanes: few work-items, each in a
-// group of its own, so that each has many.
+// Returns the width for a list whose items a CPU's work-item processes a vector of lanes at a time. Few work-items,
+// each in a group of its own, then have many items each.
 constexpr std::size_t kLaneItemsCpu = 16;
 
 inline std::size_t laneListWidth(const Device& device)

@@ -1,4 +1,5 @@
-// What the buffers of a device hold, by name: for reports of memory. Not thread-safe. Costs a map entry an allocation.
+// Records the size of a device's buffers by name, for memory reports. Not thread-safe. Costs a map entry per
+// allocation.
 #pragma once
 
 #include <map>

@@ -11,20 +11,20 @@ namespace drape
 // The platform that PoCL calls itself.
 constexpr const char* kPoclPlatform = "Portable Computing Language";
 
-// As deviceInfos(). whyNone: gets the reason where there is none.
+// Does the same as deviceInfos(), and sets whyNone to the reason if there is no device.
 std::vector<DeviceInfo> deviceInfos(std::string& whyNone);
 
-// Folder in which PoCL keeps its kernels: POCL_CACHE_DIR, else one in XDG_CACHE_HOME, else in ~/.cache.
+// Returns PoCL's kernel cache: POCL_CACHE_DIR, else a folder in XDG_CACHE_HOME, else in ~/.cache.
 std::string poclCacheFolder();
 
-// Whether files can be made in the folder, or in the one that is to have it.
+// Returns whether files can be created in the folder, or in the existing folder that would contain it.
 bool canBeWritten(const std::string& folder);
 
-// How many files more this process may open, kEnoughDescriptors at most. Opens that many for a moment.
+// Returns how many more files this process may open, at most kEnoughDescriptors. Opens that many for a moment.
 constexpr int kEnoughDescriptors = 8;
 int descriptorsLeft();
 
-// One line. seen: what platforms and devices there were and why none of them will do, empty where there was no
-// platform.
+// Describes the missing device in one line. seen: the platforms and devices found and why each is unusable; empty if
+// there was no platform.
 std::string whyNoDeviceFound(const std::string& seen, bool poclWithoutDevice);
 }  // namespace drape

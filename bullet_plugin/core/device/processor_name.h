@@ -5,6 +5,6 @@
 
 namespace drape
 {
-// As /proc/cpuinfo has it; "unknown" where it says none.
+// Returns the name in /proc/cpuinfo, or "unknown".
 std::string processorName();
 }  // namespace drape

@@ -31,9 +31,9 @@ struct ProgramBuild
     bool m_fromCache = false;
 };
 
-// Whether the platform keeps what it has compiled itself. PoCL does, a kernel for each size of group that it was
-// launched with. Asked for a binary it compiles every kernel once more, for groups of any size: that no launch needs,
-// and it takes twice as long as all the rest.
+// Returns whether the platform caches its own compilations. PoCL does: a kernel for each group size that it was
+// launched with. A request for a binary makes PoCL compile every kernel again for groups of any size. No launch needs
+// that, and it takes twice as long as everything else.
 bool keepsItsOwn(const DeviceInfo& device);
 
 // Builds "kernels/<name>.cl" of all the names as one program, with contraction off and correctly rounded ÷ and √;
@@ -81,7 +81,7 @@ private:
         const cl_int code = m_kernel.setArg(index, value);
         if (code != CL_SUCCESS) device.check(code, "clSetKernelArg " + std::to_string(index), m_name);
     }
-    // What tells an argument's values apart, as far as they are set here.
+    // Identifies an argument's value, as far as this class sets it.
     using Identity = std::uint64_t;
     static Identity identity(const cl::Buffer& value) { return reinterpret_cast<Identity>(value()); }
     static Identity identity(const cl::LocalSpaceArg& value) { return value.size_; }
@@ -93,7 +93,7 @@ private:
         std::memcpy(&result, &value, sizeof(T));
         return result;
     }
-    // Whether the argument has the value; if not, it counts as having it from now on.
+    // Returns whether the argument has the value; if not, records it as the current value.
     bool isSet(cl_uint index, Identity value);
     // A new buffer may have the handle of one that is gone.
     void forgetOldBuffers(const Device& device);

@@ -9,7 +9,7 @@ namespace drape
 {
 namespace
 {
-// In front of the binary: what it is, how long and its hash, so that a damaged file is recognised.
+// Precedes the binary: its kind, length and hash, so that a damaged file is recognised.
 struct Header
 {
     char m_magic[8];

@@ -18,8 +18,8 @@ class ProgramSet
 public:
     using Names = std::vector<std::string>;  // of "kernels/<name>.cl"
 
-    // together: files that are one program on a CPU; of those in several, the first counts. cacheFolder, defines: see
-    // buildJoinedProgram(). The device stays.
+    // together: files that form one program on a CPU; if a file is in several, the first counts. cacheFolder,
+    // defines: see buildJoinedProgram(). The device is kept.
     ProgramSet(Device& device, std::string cacheFolder, std::vector<Names> together,
                std::string defines = std::string());
 
@@ -29,7 +29,7 @@ public:
     {
         return [this](const char* name) { return load(name); };
     }
-    // Whether all that were loaded were in the cache.
+    // Returns whether all loaded programs came from the cache.
     bool fromCache() const { return m_fromCache; }
 
 private:

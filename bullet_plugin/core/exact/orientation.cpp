@@ -10,7 +10,7 @@ namespace
 {
 constexpr double kUnit = 1.1102230246251565e-16;      // 2^-53
 constexpr double kBound3 = (7 + 56 * kUnit) * kUnit;  // Shewchuk 1997, orient3d, stage A
-constexpr double kBound2 = (3 + 16 * kUnit) * kUnit;  // the same, orient2d
+constexpr double kBound2 = (3 + 16 * kUnit) * kUnit;  // for orient2d
 
 int signOf(double value)
 {

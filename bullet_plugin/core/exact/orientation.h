@@ -1,7 +1,7 @@
 // Exact signs of areas and volumes of points with float coordinates.
 //
-// Signs come from doubles where an error bound (Shewchuk 1997, stage A) says that they can, else from expansions: never
-// wrong for finite floats. Cost: some nanoseconds, microseconds where the points are (nearly) in one plane.
+// Signs come from doubles where an error bound (Shewchuk 1997, stage A) allows it, else from expansions: never wrong
+// for finite floats. Cost: some nanoseconds; microseconds for points (nearly) in one plane.
 #pragma once
 
 #include <array>

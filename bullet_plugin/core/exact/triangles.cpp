@@ -105,7 +105,7 @@ ExactPoint cross(const ExactPoint& a, const ExactPoint& b)
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-// Of the point w + s u - t v, s and t in [0, 1], from the origin.
+// Returns the squared distance from the origin of the points w + s u - t v, s and t in [0, 1].
 double segmentsSquared(const ExactPoint& w, const ExactPoint& u, const ExactPoint& v)
 {
     const double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, w), vw = dot(v, w);
@@ -126,7 +126,8 @@ double segmentsSquared(const ExactPoint& w, const ExactPoint& u, const ExactPoin
     return least;
 }
 
-// Of the point from the triangle's plane, when it is above or below the triangle's inside; else beyond any.
+// Returns the point's squared distance from the triangle's plane if it is above or below the triangle's inside;
+// otherwise a value beyond any distance.
 double faceSquared(const ExactPoint& p, const ExactTriangle& t)
 {
     const ExactPoint normal = cross(minus(t.m_p[1], t.m_p[0]), minus(t.m_p[2], t.m_p[0]));

@@ -1,7 +1,7 @@
-// Two triangles with float corners: whether they have a point in common, exactly, and how far apart they are.
+// Decides exactly whether two triangles with float corners have a common point, and computes their distance.
 //
-// Closed sets: touching counts, a triangle without area is a segment or a point. For callers who ask for the truth, on
-// the host: the device's tests (kernels/lib/triangle_pair.h) leave few pairs to ask for.
+// Triangles are closed sets: touching counts, and a triangle without area is a segment or a point. For exact answers
+// on the host: the device's tests (kernels/lib/triangle_pair.h) leave few pairs undecided.
 #pragma once
 
 #include "orientation.h"

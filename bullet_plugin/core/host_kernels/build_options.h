@@ -1,6 +1,6 @@
-// What a device of a CPU's kind builds its kernels with, for the host's: before any other header of theirs. Whatever
-// they define is one file's alone then: linkers join inline functions of several files, and a machine may not have this
-// one's instructions.
+// Sets the build options of a CPU device for the host's kernels. Include it before any other kernel header. Every
+// definition that follows belongs to one file alone: linkers merge inline functions of several files, and a machine
+// may lack this file's instructions.
 #pragma once
 
 #define DRAPE_HOST_KERNELS

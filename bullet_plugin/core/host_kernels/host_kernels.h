@@ -61,7 +61,7 @@ struct HostHits
     std::uint32_t* m_slotCount;
 };
 
-// What the narrow phase reads. motions: as HostCloths has them.
+// Input of the narrow phase. motions: see HostCloths.
 struct HostFeatures
 {
     const FeatureTest* m_tests;
@@ -101,7 +101,7 @@ struct SelfRadii
     const float* m_obstacleRadius;
 };
 
-// What the narrow phase of cloths with themselves reads.
+// Input of the narrow phase of cloths with themselves.
 struct HostSelfFeatures
 {
     const FeatureTest* m_tests;
@@ -110,14 +110,14 @@ struct HostSelfFeatures
     std::uint32_t m_firstSlot;
 };
 
-// item, items: the work-item to run, of so many in all. Lists hits: by the first such kernel of a step those that it is
-// sure of, and in swept, which has room for as many as there are tests, the tests that the continuous test decides; by
-// the second, of which there are at least as many items as kinds of features, the hits of those.
+// Runs work-item `item` of `items` and lists unsorted contacts. The first such kernel of a step lists the contacts
+// that it is sure of. It puts the tests that the continuous test decides into `swept`, which has room for every test.
+// The second kernel lists the contacts among these; it has at least as many items as there are kinds of features.
 template <class Features>
 using HitKernel = void (*)(std::uint32_t item, std::uint32_t items, const Features& features, HostHits hits,
                            std::uint32_t* swept, StepCounters* counters);
 
-// A cull's or a packing's item is a patch, a packing's also a place behind the last.
+// Items of a cull or a packing are patches; a packing also has the positions behind the last.
 struct HostSelfKernels
 {
     void (*m_pack)(std::uint32_t item, const ClothView& cloth, const SelfRadii& radii, const SelfPatches& patches,
@@ -128,7 +128,7 @@ struct HostSelfKernels
     HitKernel<HostSelfFeatures> m_findSwept;
 };
 
-// first, last: the lanes to pack, or the wide tree's places, all of them in this call.
+// first, last: the lanes to pack, or the wide tree's positions; one call takes all of them.
 struct HostKernels
 {
     const char* m_instructions;
@@ -152,7 +152,8 @@ struct HostKernels
     const HostSelfKernels* m_self;
 };
 
-// Those for this machine. Every set that it can run, the best first: for tests.
+// Returns the kernels for this machine. allHostKernels() returns every set that the machine can run, the best first,
+// for tests.
 const HostKernels& hostKernels();
 const HostKernels* const* allHostKernels(std::size_t& count);
 }  // namespace drape

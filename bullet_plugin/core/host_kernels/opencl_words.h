@@ -1,5 +1,5 @@
-// Words of OpenCL C in C++, for kernels of a CPU that threads run an item at a time: those whose work-items need no
-// other's, in groups of one. Their text is included behind this in a namespace of its own.
+// OpenCL C's words in C++, for CPU kernels that threads run an item at a time: kernels with independent work-items,
+// in groups of one. Their text is included after this in a namespace of its own.
 #pragma once
 
 #include <climits>
@@ -19,7 +19,7 @@ using uint = std::uint32_t;
 using ulong = std::uint64_t;
 using ushort = std::uint16_t;
 
-// The thread's work-item at hand, and how many there are.
+// The thread's current work-item, and the number of work-items.
 thread_local uint t_item, t_items;
 
 inline uint get_global_id(int)

@@ -1,7 +1,7 @@
-// Whether a mesh that a caller hands over can be used: its arrays are there, and every index names a vertex.
+// Checks that a caller's mesh is usable: its arrays exist, and every index names a vertex.
 //
-// Input: a description as given. Output: false, and in `error` the call, with the first bad index, its triangle or edge
-// and the number of vertices. Nothing past the arrays' ends is read. O(triangles).
+// Input: a description as given. Output: false, and in `error` the call with the first bad index, its triangle or
+// edge and the number of vertices. Nothing past the arrays' ends is read. O(triangles).
 #pragma once
 
 #include "drape/error.h"

@@ -1,4 +1,4 @@
-// What meshes are called by.
+// Identifies meshes.
 #pragma once
 
 #include <cstdint>

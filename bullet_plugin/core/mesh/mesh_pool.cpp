@@ -9,7 +9,7 @@ namespace drape
 {
 namespace
 {
-// Vacant slots that are kept whatever they hold: each costs a place in every table of meshes.
+// Vacant slots that are always kept, whatever their size: each costs an entry in every table of meshes.
 constexpr std::size_t kVacantKept = 64;
 }  // namespace
 
@@ -111,7 +111,7 @@ std::size_t MeshPool::slotOfEdge(std::uint32_t edge) const
 
 std::size_t MeshPool::firstSince(std::uint32_t revision) const
 {
-    // Places are taken in the order of slots.
+    // Slots are placed in order, so m_joined is sorted.
     const auto later = [](std::uint32_t r, const PooledMesh& mesh) { return r < mesh.m_joined; };
     return std::size_t(std::upper_bound(m_meshes.begin(), m_meshes.end(), revision, later) - m_meshes.begin());
 }

@@ -1,9 +1,9 @@
 // All meshes of one side (cloths or obstacles) as one: vertices, triangles, edges and leaf order joined end to end.
 //
-// Job: keep the meshes and join them into arrays; revision() tells when those changed, firstSince() from which mesh on.
-// A mesh keeps its id; its slot is its place in the joined arrays, which update() makes current. A mesh that comes goes
-// behind the others; one that goes leaves its slot vacant, as of a mesh that has no pair, until more is vacant than
-// not: so either costs what the mesh holds, not what the pool does. Host memory only.
+// Job: keep the meshes and join them into arrays. revision() reports changes of the arrays, firstSince() the first
+// changed mesh. A mesh keeps its id. Its slot is its index in the joined arrays, which update() makes current. A new
+// mesh is appended. A removed mesh leaves its slot vacant, like a mesh without a pair, until more is vacant than in
+// use. Adding or removing therefore costs in proportion to the mesh, not the pool. Host memory only.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct PooledMesh
 {
     MeshId m_id = kNoMesh;
     Topology m_topology;
-    std::vector<float> m_positions;         // m, as last given: in its own frame where it has a place, else the world's
+    std::vector<float> m_positions;         // m, as last given: in its own frame if it has a pose, else the world's
     double m_area = 0;                      // m², of the triangles
     bool m_oneSided = false;                // obstacles only: see MeshDescription
     float m_selfThickness = 0;              // m, cloths only, likewise
@@ -30,7 +30,7 @@ struct PooledMesh
     MeshBox m_box = {};         // m, of the positions, obstacles only
     float m_longestEdge = 0;    // m, obstacles only
     ObstaclePlacing m_placing;  // obstacles only
-    bool m_placedAnew = false;  // obstacles only: new, or given other positions or a place, since the last step
+    bool m_placedAnew = false;  // obstacles only: new, or with new positions or pose, since the last step
     std::uint32_t m_given = 0;  // obstacles only: when its positions were given anew, by Scene::m_obstacleMotion
     std::vector<std::uint32_t> m_order;  // leaf order, local triangles
     std::uint32_t m_firstVertex = 0;
@@ -49,18 +49,18 @@ struct SlotRange
 class MeshPool
 {
 public:
-    // Ids must rise. Slots of the others stay until update().
+    // Adds a mesh; ids must rise. Slots of the other meshes stay until update().
     void add(PooledMesh mesh);
     // Returns false when the id is not of this pool. So do they here.
     bool remove(MeshId id);
 
-    // With vacant ones.
+    // Returns the number of slots, vacant ones included.
     std::size_t meshCount() const { return m_meshes.size(); }
     PooledMesh& mesh(std::size_t slot) { return m_meshes[slot]; }
     const PooledMesh& mesh(std::size_t slot) const { return m_meshes[slot]; }
     // meshCount() when the id is not, or no longer, of this pool.
     std::size_t slot(MeshId id) const;
-    // Whether the id has a slot, if only a vacant one.
+    // Returns whether the id has a slot, possibly a vacant one.
     bool holds(MeshId id) const;
     // Slots of the meshes that hold a joined vertex or edge.
     std::size_t slotOfVertex(std::uint32_t vertex) const;
@@ -68,20 +68,20 @@ public:
 
     // Joins what came since the last call; the joined arrays are valid after it. Free when nothing did.
     void update();
-    // Another leaf order of the meshes' triangles: local ones by slot, null where it stays. Counts as an update that
-    // changed something.
+    // Sets another leaf order of the meshes' triangles: local orders by slot, null where unchanged. Counts as an
+    // update that changed something.
     void reorder(const std::vector<const std::vector<std::uint32_t>*>& orders);
     // Gives back room that only earlier, larger pools needed. The joined arrays move.
     void giveBackRoom();
     // Counts up with every update that changed something.
     std::uint32_t revision() const { return m_revision; }
-    // The first slot that took its place after that revision; those before are as they were, but for vacancies.
+    // Returns the first slot that changed after that revision; earlier ones are unchanged, except for vacancies.
     std::size_t firstSince(std::uint32_t revision) const;
-    // Where a slot's vertices, triangles and edges begin; of meshCount(), where all end.
+    // Returns the offsets of a slot's vertices, triangles and edges; for meshCount() their ends.
     MeshFirsts begin(std::size_t slot) const;
-    // Of meshes that are there.
+    // Counts triangles of meshes that are not removed.
     std::size_t presentTriangles() const { return m_triangleCount - m_vacantTriangles; }
-    // The same without triangles that stand for edges and points.
+    // Counts the same triangles, without those that stand for edges and points.
     std::size_t presentFaces() const { return m_faceCount; }
 
     std::size_t vertexCount() const { return m_vertexCount; }
@@ -91,7 +91,7 @@ public:
     const std::vector<MeshFirsts>& firsts() const { return m_firsts; }
 
 private:
-    // Gives vacant slots back: all of them, or the last of those that have their places.
+    // Releases vacant slots: all of them, or the last ones.
     bool hasWideGaps() const;
     void closeGaps();
     void dropLastVacant();
@@ -106,7 +106,7 @@ private:
     std::vector<std::uint32_t> m_order;
     std::vector<MeshFirsts> m_firsts;
     std::size_t m_vertexCount = 0;
-    std::size_t m_triangleCount = 0;  // of all slots
+    std::size_t m_triangleCount = 0;  // in all slots
     std::size_t m_faceCount = 0;      // of meshes that are there
     std::size_t m_vacantTriangles = 0;
     std::size_t m_vacantCount = 0;

@@ -1,6 +1,6 @@
-// Where an obstacle's own frame is at a step's start and end, and what of it the step reads.
+// Computes an obstacle's frames at a step's start and end, and the records that the step reads.
 //
-// Input: poses and the mesh's box. Output: records of kernels/shared/motion.h. Everything is worked out in double and
+// Input: poses and the mesh's box. Output: records of kernels/shared/motion.h. Everything is computed in double and
 // rounded once; boxes are padded for the rounding of positions that are placed in float. Host only, O(1).
 #pragma once
 

@@ -31,7 +31,7 @@ EdgeTriangles trianglesOfEdges(const Topology& topology)
     return sides;
 }
 
-// Triangles of the leaf order that are looked at where a patch has no neighbours left.
+// Triangles of the leaf order that are examined when a patch has no neighbours left.
 constexpr std::size_t kAhead = 64;
 
 Vec3 middleOf(const Triangle& triangle, const float* positions)
@@ -42,8 +42,9 @@ Vec3 middleOf(const Triangle& triangle, const float* positions)
     return vec3Scale(sum, 1.0f / 3.0f);
 }
 
-// Takes triangles one after the other: of those beside the patch at hand one that is near its middle, sooner if its
-// neighbours are taken, so that no hole stays behind; where there is none, the nearest of the next in leaf order.
+// Takes triangles one after the other. Among the neighbours of the current patch it prefers one near the patch's
+// middle, and one whose neighbours are taken, so that no hole remains. Without a neighbour it takes the nearest of
+// the next triangles in leaf order.
 class Clustering
 {
 public:
@@ -182,7 +183,7 @@ void appendPatch(Patches& patches, const std::vector<Triangle>& triangles, const
     patches.m_patches.push_back(patch);
 }
 
-// feature(triangle, place): over all meshes.
+// feature(triangle, index): numbered over all meshes.
 template <typename Feature>
 std::vector<std::uint32_t> idsOf(const std::vector<std::uint32_t>& owners, const std::vector<Triangle>& triangles,
                                  Feature feature)

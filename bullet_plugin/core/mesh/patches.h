@@ -1,9 +1,9 @@
-// Patches of the obstacles: connected triangles as far as there are, begun in leaf order, and the lists of features
-// that they own (see kernels/shared/patch.h).
+// Patches of the obstacles: triangles that are connected as far as possible, begun in leaf order, and the lists of
+// features that they own (see kernels/shared/patch.h).
 //
 // Input: meshes' triangles and leaf order. Output: per patch its blocks, per lane the feature. A patch never holds
-// triangles of two meshes, and is full but for the last one of a mesh. Every triangle, and every vertex and edge of
-// one, is in exactly one lane. O(n); meshes can be put behind those that are there for what they are themselves.
+// triangles of two meshes, and is full except the last one of a mesh. Every triangle, and every vertex and edge of
+// one, is in exactly one lane. O(n); appending meshes costs in proportion to the new meshes alone.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct Patches
     std::vector<std::uint32_t> m_levels;  // first wide node of each level, lowest first, then the number of nodes
 };
 
-// Places of a list from m_first up to m_last.
+// Positions of a list from m_first up to m_last.
 struct ItemRange
 {
     std::size_t m_first, m_last;
@@ -41,9 +41,9 @@ std::vector<std::uint32_t> clusteredOrder(const PooledMesh& mesh, const float* p
 // Joined triangles of all of the pool's meshes in that order; those before slot `first` are there.
 void clusterMeshes(const MeshPool& pool, std::size_t first, std::uint32_t width, std::vector<std::uint32_t>& order);
 
-// Leaves the patches of the first `slots` meshes; levels are not those of what is left.
+// Keeps the patches of the first `slots` meshes; does not update the levels.
 void keepPatches(Patches& patches, std::size_t slots, std::uint32_t width);
-// Adds those of the pool's next mesh. positions: as above. Levels are not those of what is there then.
+// Adds the patches of the pool's next mesh. positions: as above. Does not update the levels.
 void appendPatches(Patches& patches, const MeshPool& pool, std::size_t slot, const float* positions,
                    std::uint32_t width);
 void makeLevels(Patches& patches, std::uint32_t width);
@@ -57,14 +57,14 @@ struct PatchLanes
 };
 PatchLanes lanesOf(const Patches& patches, ItemRange range, std::uint32_t width);
 
-// Places of one level of the wide tree, of `children` that are there.
+// Positions of one level of the wide tree; `children` of them exist.
 struct LevelPlaces
 {
     std::size_t m_level, m_children;
     ItemRange m_places;
 };
-// Those to be made anew, lowest level first, where the patches `range` changed; with all of the upper levels where
-// levels have moved. With the last child go the places behind it, which are empty.
+// Returns the nodes to rebuild, lowest level first, after the patches `range` changed; all of the upper levels if
+// levels have moved. A range that includes the last child includes the empty positions behind it.
 std::vector<LevelPlaces> changedPlaces(const Patches& patches, ItemRange range, bool levelsMoved, std::uint32_t width);
 
 // The vertices, or edges, over all meshes, that lanes' owners name; DRAPE_NO_FEATURE where there is none.

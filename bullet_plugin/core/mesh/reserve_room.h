@@ -7,15 +7,15 @@
 
 namespace drape
 {
-// Room for that many elements and, where there was not, a quarter more: so what is there is copied seldom. On a system
-// that gives pages as they are written, room that is not used takes no memory.
+// Reserves room for that many elements and, if it has to grow, a quarter more, so that elements are seldom copied. On
+// a system that allocates pages on first write, unused room takes no memory.
 template <typename T>
 void reserveRoom(std::vector<T>& elements, std::size_t count)
 {
     if (count > elements.capacity()) elements.reserve(count + count / 4);
 }
 
-// That many elements, with such room.
+// Resizes to that many elements, with spare room.
 template <typename T>
 void resizeWithRoom(std::vector<T>& elements, std::size_t count)
 {
@@ -23,7 +23,7 @@ void resizeWithRoom(std::vector<T>& elements, std::size_t count)
     elements.resize(count);
 }
 
-// Gives back room that is not used where it is more than three quarters.
+// Releases unused room if it is more than three quarters.
 template <typename T>
 void dropRoom(std::vector<T>& elements)
 {

@@ -12,8 +12,8 @@ namespace
 {
 constexpr std::uint32_t kNone = 0xffffffffu;
 
-// Finds a topology's edges by their vertices: those of a vertex hang together in a chain, and an edge hangs at the end
-// of which fewer triangles have a corner, so that a fan's chains are short.
+// Finds a topology's edges by their vertices. Each vertex has a chain of edges. An edge belongs to the chain of its
+// end with fewer triangle corners, so that a fan's chains are short.
 class EdgeFinder
 {
 public:
@@ -59,8 +59,8 @@ private:
 
 using CrowdedTriangles = std::set<std::array<std::uint32_t, 3>>;
 
-// Whether a triangle of the same three vertices was added before. An edge remembers the third vertices of its first two
-// triangles; a triangle that is a later one at all its edges is remembered in `crowded`.
+// Returns whether a triangle of the same three vertices was added before. An edge remembers the third vertices of its
+// first two triangles. A triangle that is a later one at all its edges is remembered in `crowded`.
 bool repeatsTriangle(const Topology& topology, const EdgeFinder& known, CrowdedTriangles& crowded,
                      const std::uint32_t* v)
 {

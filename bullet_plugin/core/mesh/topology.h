@@ -27,7 +27,7 @@ struct Topology
     std::size_t m_faceCount = 0;  // triangles without those that stand for edges and points
 };
 
-// triangles: 3 indices each, in [0, vertexCount); check_indices.h looks at a caller's.
+// triangles: 3 indices each, in [0, vertexCount); check_indices.h checks a caller's.
 Topology buildTopology(const std::int32_t* triangles, std::size_t triangleCount, std::size_t vertexCount);
 
 // Adds edges that are not a triangle's, 2 indices each, in [0, vertexCount). Each becomes a triangle that has the

@@ -61,7 +61,7 @@ bool WindingSigns::markTurnedEdges(const Topology& topology)
     return any;
 }
 
-// From the vertex's first triangle to those around it, over the edges that they share.
+// Spreads from the vertex's first triangle to those around it, over the edges that they share.
 void WindingSigns::spread(const Topology& topology, std::uint32_t triangle, std::uint32_t vertex)
 {
     std::vector<std::uint32_t> open(1, triangle);

@@ -1,5 +1,5 @@
-// Narrow phase on the host by the kernels of a CPU (host_kernels.h), on the threads of a team: from a list of tests to
-// hits, to contacts in canonical order.
+// Narrow phase on the host with a CPU's kernels (host_kernels.h), on a team's threads: turns a list of tests into
+// unsorted contacts, and these into contacts in canonical order.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +21,9 @@ public:
         std::size_t m_swept;  // tests that the continuous test decides
     };
 
-    // Lists the hits of features.m_tests, in no particular order, and counts them; beyond a limit the list is not
-    // complete. find, findSwept: kernels of either kind of contacts; swept: their counter. Returns how often the list
-    // was too short and grew.
+    // Lists the contacts of features.m_tests, unsorted, and counts them; beyond a limit the list is not complete.
+    // find, findSwept: kernels of either kind of contacts; swept: their counter. Returns how often the list was too
+    // short and grew.
     template <class Features>
     std::size_t find(HitKernel<Features> find, HitKernel<Features> findSwept, std::uint32_t StepCounters::*swept,
                      const Features& features, std::size_t slots, Limits limits, ThreadTeam& threads,
@@ -52,7 +52,7 @@ public:
         return fillGrowing(m_hits, limits.m_hits, fill);
     }
 
-    // Puts that many hits, all that were found, behind the contacts that there are.
+    // Appends the `count` unsorted contacts, which are all that were found, to the existing ones.
     void order(std::size_t count, std::vector<Contact>& contacts, ThreadTeam& threads)
     {
         orderHits(m_hits.data(), count, m_slotCount, contacts, threads);
@@ -70,7 +70,7 @@ private:
     static constexpr std::size_t kFirstHits = 1 << 10;
     static constexpr std::size_t kTestsOfItem = 128;  // a run of them (item_runs.h)
     static constexpr std::size_t kSweptItems = 32;
-    // From so many on, which take a fifth of a millisecond, threads are worth waking.
+    // Minimum tests for waking threads; that many take a fifth of a millisecond.
     static constexpr std::size_t kLeastShared = 1 << 10;
     static constexpr std::size_t kLeastSweptShared = 1 << 6;
 

@@ -11,12 +11,13 @@ namespace
 // Feature tests per compute unit up to which one launch is faster than two: the continuous test takes registers, which
 // leave room for few groups at a time.
 constexpr std::size_t kFewTestsPerUnit = 128;
-// How many times as many tests as that one launch does: where a step is suddenly larger, two are worth another try.
+// Maximum tests that a single launch processes, as a multiple of that number. If a step is suddenly larger, it is worth
+// running again with two launches.
 constexpr std::size_t kMostOfFew = 16;
-// Of a GPU's launch over the feature tests, as in kernels/narrow_phase.cl: a group shares them out by kind.
+// Group size of a GPU's launch over the feature tests, as in kernels/narrow_phase.cl: a group divides them by kind.
 constexpr std::size_t kFeatureGroupGpu = 256;
-// Of a GPU's launches of the continuous test, work-items a compute unit: as many as the test's 250 registers leave room
-// for on the H200, in groups of a warp.
+// Work-items per compute unit, and group size, of a GPU's launches of the continuous test. The test's 250 registers
+// leave room for that many on the H200, in groups of a warp.
 constexpr std::size_t kSweptItemsGpu = 256, kSweptGroupGpu = 32;
 }  // namespace
 

@@ -1,5 +1,5 @@
-// Narrow phase: which candidates touch. On a device they are listed as hits, which compaction puts in order; on the
-// host they are contacts in canonical order at once. Both give the same, bit for bit.
+// Narrow phase: determines which candidates touch. A device lists unsorted contacts, which compaction sorts; the host
+// lists contacts in canonical order at once. Both give the same contacts, bit for bit.
 #pragma once
 
 #include <cstdint>
@@ -33,14 +33,14 @@ struct NarrowPhaseSettings
     MotionList m_motions = {};  // on the host
 };
 
-// What the narrow phase counted on the host: contacts, and pairs of features that the continuous test decided.
+// Counts of the host's narrow phase: contacts, and feature pairs that the continuous test decided.
 struct NarrowPhaseCounts
 {
     std::uint64_t m_contacts = 0;
     std::uint64_t m_swept = 0;
 };
 
-// With more contacts than limit the list is left empty.
+// Leaves the list empty if there are more contacts than the limit.
 NarrowPhaseCounts narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth,
                                     const ObstacleView& obstacle, const NarrowPhaseSettings& settings,
                                     std::vector<Contact>& contacts, std::size_t limit = SIZE_MAX);
@@ -74,22 +74,22 @@ public:
         std::size_t m_mostSwept;  // with more tests that need the continuous test than this, their hits are not listed
     };
 
-    // features: for what a cull leaves, else for pairs of triangles. The kernels of what is not used are not built.
+    // features: builds the kernels for feature tests, else those for triangle pairs.
     void create(Device& device, const ProgramLoader& load, bool features);
 
     void reserveIntersections(Device& device, std::size_t count) { m_intersections.reserve(device, count); }
     Buffer<Candidate>& intersections() { return m_intersections; }
 
-    // All return after enqueueing. The hits of pairs of triangles.
+    // Lists the contacts of triangle pairs. All functions return after enqueueing.
     void enqueue(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
                  const NarrowPhaseSettings& settings, Buffer<Candidate>& candidates, HitBuffers hits,
                  Buffer<StepCounters>& counters);
-    // The hits of the feature tests that a cull left. mode: DRAPE_DISCRETE …; a discrete step is one launch less, and
-    // so is one with few tests.
+    // Lists the contacts of the feature tests that remain after a cull. mode: DRAPE_DISCRETE …; a discrete step takes
+    // one launch less, and so does one with few tests.
     void enqueueFeatures(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
                          std::uint32_t mode, PatchCullStage& cull, Expected expected, HitBuffers hits,
                          Buffer<StepCounters>& counters);
-    // Whether that did nothing, because there were that many tests and far fewer were expected.
+    // Returns whether the launch did nothing because there were `tests` tests and far fewer were expected.
     bool skipped(std::size_t tests) const { return tests > m_mostTests; }
     // The candidates whose triangles intersect, in any order. Their counter must be zero before.
     void enqueueIntersect(Device& device, NarrowPhaseBuffers sides, Buffer<Candidate>& candidates,

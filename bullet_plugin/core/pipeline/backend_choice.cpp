@@ -6,8 +6,8 @@ namespace drape
 {
 namespace
 {
-// Share of the crossover below which a scene comes back to the host. Around the crossover both cost alike, and what is
-// expected of a scene is right to a factor of some two either way.
+// Share of the crossover below which a scene returns to the host. Around the crossover both back ends cost the same,
+// and the estimate of a scene's work is right within a factor of about two.
 constexpr double kReturnShare = 0.5;
 }  // namespace
 

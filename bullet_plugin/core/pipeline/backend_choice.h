@@ -1,10 +1,12 @@
-// On which back end a scene's steps run where the settings leave that to cost.
+// Chooses the back end of a scene's steps if the settings leave the choice to cost.
 //
-// Input: the crossover, in expected pairs of triangles (scene_work.h), and which cloth has a pair with which obstacle.
-// A cloth counts with the obstacle that makes most work for it, of those it has had a pair with: it cannot lie on two
-// with all its area. The scene begins on the host, and moves to the device when its work passes the crossover; it comes
-// back only below half of it, once meshes are gone, so that it does not go to and fro. Both back ends give the same
-// contacts bit for bit, so a move changes nothing but time.
+// Input: the crossover, in expected triangle pairs (scene_work.h), and which cloth has a pair with which obstacle. A
+// cloth counts with the obstacle that makes most work for it among its pairs so far: it cannot lie on two with all
+// its area.
+//
+// The scene begins on the host, and moves to the device when its work passes the crossover. It returns only below
+// half of it, once meshes are removed, to avoid alternation. Both back ends give the same contacts bit for bit, so a
+// move changes only time.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +19,7 @@ namespace drape
 class BackendChoice
 {
 public:
-    // From here on the work decides. 0: the device from the first pair on; infinite: the host.
+    // Lets the work decide from now on. 0: the device from the first pair on; infinite: the host.
     void begin(double crossover);
     void end() { m_active = false; }
     bool active() const { return m_active; }

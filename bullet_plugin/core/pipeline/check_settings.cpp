@@ -34,7 +34,7 @@ bool checkSettings(const Settings& settings, Error& error)
     const TreeMethods& tree = methods.m_tree;
     const TopDownSettings& topDown = tree.m_topDown;
     const char* const group = "a power of two, 16 to 256";
-    // What is not a number is in no range.
+    // NaN is in no range.
     const Field fields[] = {
         choice("Settings::m_backend", settings.m_backend, Backend::Host),
         choice("Settings::m_mode", settings.m_mode, ContactMode::Automatic),

@@ -1,4 +1,4 @@
-// Which cloths a step leaves out where it is over the settings' limits.
+// Selects the cloths that a step leaves out when it exceeds the settings' limits.
 #pragma once
 
 #include <algorithm>
@@ -8,9 +8,9 @@
 
 namespace drape
 {
-// Of the cloth slots that take part those to take out so that the others have at most `budget` candidates together:
-// those with the most, of equals the last ones. At least one where any takes part, whatever the candidates are: a step
-// is too large by its pairs of features, these are of triangles. candidates: by slot.
+// Returns the cloth slots to leave out so that the other active ones have at most `budget` candidates together: the
+// slots with the most candidates, the last ones among equals. Returns at least one if any is active: a step is too
+// large by its feature pairs, while candidates are triangle pairs. candidates: by slot.
 inline std::vector<std::size_t> clothsOverBudget(std::vector<std::size_t> slots,
                                                  const std::vector<std::uint64_t>& candidates, std::uint64_t budget)
 {

@@ -1,4 +1,4 @@
-// Where a face is nearest to the vertex of its contact once the cloth's nodes have moved on.
+// Computes where a face is nearest to its contact's vertex once the cloth's nodes have moved.
 #include "bullet_plugin/core/pipeline.h"
 #include "kernels/lib/feature_contact.h"
 
@@ -6,7 +6,7 @@ namespace drape
 {
 namespace
 {
-// The place of a face that is nearest to the vertex, which is the origin.
+// Computes the point of a face that is nearest to the vertex, which is the origin.
 struct Nearest
 {
     Vec3 m_weights;  // of the cloth's nodes

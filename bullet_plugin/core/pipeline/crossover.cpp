@@ -39,7 +39,7 @@ std::string kernelsHash()
     return hexText(hash);
 }
 
-// Where its threads run decides how long a step takes PoCL.
+// The cores that its threads run on determine PoCL's time for a step.
 std::string threadsOf(const DeviceInfo& device)
 {
     const char* const variable = device.m_isGpu ? nullptr : std::getenv("POCL_AFFINITY");

@@ -34,7 +34,7 @@ struct Crossover
 // Starts at which a busy machine is measured. What is measured then is kept, for want of a better time.
 constexpr int kMostBusyStarts = 4;
 
-// Whether a crossover that was read is to be measured again.
+// Returns whether a stored crossover must be measured again.
 inline bool isProvisional(const Crossover& crossover)
 {
     return crossover.m_busyStarts > 0 && crossover.m_busyStarts < kMostBusyStarts;
@@ -43,8 +43,8 @@ inline bool isProvisional(const Crossover& crossover)
 // The least times of both measurements, by rung; what disturbs them only adds to them.
 std::vector<CrossoverRung> leastTimes(std::vector<CrossoverRung> rungs, const std::vector<CrossoverRung>& others);
 
-// Where to divide the rungs so that the steps below on the host and those above on the device lose least against the
-// faster of both: least sum of the logarithms of the ratios. Of the ends, and the middles between neighbours.
+// Returns the best division of the rungs: steps below run on the host, those above on the device. It minimises the
+// sum of the logarithms of the time ratios to the faster back end, over the ends and the middles between neighbours.
 double bestCrossover(std::vector<CrossoverRung> rungs);
 
 // The crossover of one device with these settings, on disk.

@@ -29,8 +29,8 @@ constexpr int kWarmUpSteps = 2;  // build trees and grow buffers
 constexpr int kFewestSteps = 5, kMostSteps = 15;
 constexpr double kStepsMs = 10;       // for the steps of one rung on one back end, if more than the fewest
 constexpr double kLongestStepMs = 5;  // of the host; the next rung is not climbed
-// How many times as long as the shortest the middle one of a scene's steps may take, on average over all scenes. Beyond
-// it half of the steps were disturbed, and the shortest may have been, too.
+// Maximum ratio of the median to the shortest time of a scene's steps, averaged over all scenes. Beyond it half of
+// the steps were disturbed, and possibly the shortest.
 constexpr double kMostSpread = 1.6;
 constexpr double kAhead = 2;  // times that the device is faster; so on two rungs, and the ladder ends
 
@@ -70,7 +70,7 @@ Sheet makeSheet(int cells, double side, double above)
     return sheet;
 }
 
-// Where the cloth is at the start of a step: it sways by 3 mm a step at most, and no step is as the one before.
+// Places the cloth at a step's start. It sways by at most 3 mm a step, and no step equals the one before.
 void placeCloth(const Sheet& cloth, int step, float* out)
 {
     const double phase = 0.6 * step;
@@ -171,7 +171,7 @@ const char* measureRung(Pipeline& pipeline, Rung& scene, const std::function<voi
     if (status & kStepDeviceFull) return "it cannot hold the lists of a step";
     const bool same = host.size() == device.size() &&
                       (host.empty() || std::memcmp(host.data(), device.data(), host.size() * sizeof(Contact)) == 0);
-    return same ? nullptr : "its steps are not the host's";
+    return same ? nullptr : "its contacts differ from the host's";
 }
 }  // namespace
 

@@ -1,8 +1,8 @@
-// Times a pipeline's two back ends on a ladder of scenes: cloths that lie draped over a wavy sheet and sway, from two
-// triangles to some thousands, on sheets as coarse as the cloth and four times finer.
+// Times a pipeline's two back ends on a ladder of scenes. Cloths from two to some thousands of triangles lie draped
+// over a wavy sheet and sway; sheets are as coarse as the cloth or four times finer.
 //
-// Output: rungs for bestCrossover(). Guarantee: the pipeline is left without meshes. Ends a sheet's ladder where the
-// device is well ahead or a step of the host takes long. Cost: a second or two.
+// Output: rungs for bestCrossover(). Guarantee: the pipeline is left without meshes. A sheet's ladder ends where the
+// device is well ahead or a step on the host takes long. Cost: a second or two.
 #pragma once
 
 #include <functional>

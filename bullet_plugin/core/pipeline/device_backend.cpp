@@ -15,8 +15,8 @@ constexpr std::size_t kFirstContacts = 1 << 13;
 // Floats whose transfer takes less time than the begin of one.
 constexpr std::size_t kFloatsBetween = 1 << 16;
 
-// What a CPU has as one program: the files of every step over patches, or over trees but for the traversal's own, and
-// what cloths need beside them that collide with themselves.
+// Files that a CPU builds as one program: those of every step over patches, or over trees except the traversal's own,
+// and those for cloths that collide with themselves.
 std::vector<ProgramSet::Names> filesTogether(bool patches, bool reduces)
 {
     ProgramSet::Names step = {"compaction", "place_obstacles"};
@@ -160,7 +160,7 @@ void DeviceBackend::reserveNodes(std::size_t room)
 {
     const bool grows = m_clothNodes.capacity() < 2 * room;
     if (!grows && m_clothEnd.capacity() == room) return;
-    // They would keep the memory that goes.
+    // Releases both sub-buffers, which would keep the old memory alive.
     m_clothStart.release();
     m_clothEnd.release();
     m_clothNodes.reserve(*m_device, 2 * room);
@@ -192,8 +192,8 @@ void DeviceBackend::updateTopology(const Scene& scene)
     }
     if (!patches() && (newCloths || newObstacles)) updateTraversal(scene, newObstacles);
     if (newObstacles || m_placed.changed(scene)) updateObstacles(scene, fresh);
-    // What only packing reads goes when obstacles that rest are packed; those whose positions are given anew later keep
-    // it from then on.
+    // Releases data that only packing reads, once resting obstacles are packed. Obstacles whose positions change
+    // later keep it from then on.
     if (newObstacles && !scene.m_anyPosed) m_patchCull.releasePacking();
 }
 
@@ -239,7 +239,7 @@ void DeviceBackend::refitObstacles(const Scene& scene)
 void DeviceBackend::writeNodes(const Scene& scene, std::size_t first, std::size_t count)
 {
     const ClothNodes& nodes = scene.m_clothNodes;
-    // What lies between all nodes at the start and those at the end takes less time than a transfer of its own.
+    // Transfers start and end together if the gap between them takes less time than a second transfer.
     if (count == scene.m_cloths.vertexCount() && nodes.room() - 3 * count <= kFloatsBetween)
     {
         m_clothNodes.write(*m_device, nodes.start(), nodes.room() + 3 * count);
@@ -361,7 +361,7 @@ void DeviceBackend::enqueueBroad(const Scene& scene, const StepPairs& pairs)
                                      StepLimits(m_settings).m_candidates});
 }
 
-// Those of them that touch.
+// Tests the candidates for contact.
 void DeviceBackend::enqueueNarrow(const Scene& scene, const StepPairs& pairs)
 {
     const std::size_t nodes = scene.m_cloths.vertexCount(), triangles = scene.m_cloths.triangles().size();

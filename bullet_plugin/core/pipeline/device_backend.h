@@ -21,7 +21,7 @@ namespace drape
 class DeviceBackend
 {
 public:
-    // Builds the kernels and runs each once. On failure device().failed() tells and the error holds the log.
+    // Builds the kernels and runs each once. On failure device().failed() is true and the error holds the log.
     DeviceBackend(std::unique_ptr<Device> device, const Settings& settings);
     ~DeviceBackend();
 
@@ -82,8 +82,8 @@ private:
     void reserveNodes(std::size_t room);
     void clusterCloths(const MeshPool& cloths, std::size_t firstSlot);
     void updateTraversal(const Scene& scene, bool newObstacles);
-    // Brings the obstacles from slot `fresh` on, and of the others those that were given other positions or another
-    // place, to the device and to the world, and renews what depends on it.
+    // Uploads and places the obstacles from slot `fresh` on, and earlier ones whose positions or poses changed, and
+    // renews dependent data.
     void updateObstacles(const Scene& scene, std::size_t fresh);
     void refitObstacles(const Scene& scene);
     void writeNodes(const Scene& scene, std::size_t first, std::size_t count);
@@ -101,7 +101,7 @@ private:
     void readContacts(std::size_t count);
     StepCounters countersRead() const;
     void takeCounts(const StepCounters& counters);
-    // Whether the last run demanded more than the settings allow; the result says what.
+    // Returns whether the last run exceeded the settings' limits; the result says which.
     bool overLimit(const StepPairs& pairs, StepResult& result);
     // Makes room for what the last run demanded. Returns whether the step must run again.
     bool grow();
@@ -127,10 +127,10 @@ private:
     Buffer<float> m_thickness{"pairs of meshes"}, m_tube{"pairs of meshes"};
     Buffer<Edge> m_clothEdges{"cloth edges"};
     Buffer<ObstacleMotion> m_motions{"obstacle places"};
-    std::vector<cl_uint> m_clustered;  // as m_cloth.m_order
+    std::vector<cl_uint> m_clustered;  // order, like m_cloth.m_order
     std::vector<ObstacleMotion> m_sentMotions;
     Buffer<Candidate> m_candidates{"step candidates"};
-    // Of a step and the next by turns, see StepTally.
+    // Counters of a step and the next, alternating; see StepTally.
     Buffer<StepCounters> m_counters[2] = {Buffer<StepCounters>("step counters"), Buffer<StepCounters>("step counters")};
     Buffer<StepCounters> m_refitCounters{"step counters"};  // of obstacles, which nobody reads
     std::size_t m_turn = 0;

@@ -1,5 +1,4 @@
-// What a step on the device demanded, and what it gave: lists that were too small grow, limits are kept, contacts are
-// read.
+// Handles the results of a step on the device: grows lists that were too small, enforces limits and reads contacts.
 #include <algorithm>
 #include <cstring>
 
@@ -15,7 +14,8 @@ std::size_t withHeadroom(std::size_t count)
     return count + count / 4 + 1024;
 }
 
-// For so many steps after one in which slots had many hits they are put in order; without it such a step runs twice.
+// Number of steps, after one with crowded slots, that sort the contacts of such slots. Without the sort such a step
+// runs twice.
 constexpr int kStepsToOrder = 64;
 }  // namespace
 
@@ -32,7 +32,7 @@ StepCounters DeviceBackend::countersRead() const
     return counters;
 }
 
-// What the next launches are chosen by.
+// Records the counts that determine the next launches.
 void DeviceBackend::takeCounts(const StepCounters& counters)
 {
     m_testsBefore = counters.m_candidates;
@@ -44,7 +44,7 @@ bool DeviceBackend::overLimit(const StepPairs& pairs, StepResult& result)
     const StepCounters counters = countersRead();
     const StepLimits limits(m_settings);
     const std::size_t mostTests = std::min(limits.m_candidates, pairs.m_limits.m_tests);
-    // Hits are all of them only where every candidate was there to be tested.
+    // The count of contacts is complete only if every candidate was tested.
     const bool ofObstacles = patches() ? counters.m_patchPairs <= m_patchCull.pairs().capacity() &&
                                              counters.m_candidates <= m_patchCull.tests().capacity()
                                        : counters.m_candidates <= m_candidates.capacity();
@@ -123,7 +123,7 @@ bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResul
     while (!m_device->failed())
     {
         if (overLimit(pairs, result)) return true;
-        // Not done, for another kind of launch: no list was too small.
+        // A skipped launch did nothing, so no list was too small: the step runs again with the other kind of launch.
         const bool skipped = patches() && m_narrowPhase.skipped(countersRead().m_candidates);
         const bool grown = grow();
         if (!grown && !skipped) break;

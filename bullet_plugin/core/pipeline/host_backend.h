@@ -30,7 +30,7 @@ public:
 private:
     static ReductionView reductionView(const Scene& scene, const StepPairs& pairs);
     static SelfStep selfStep(const Scene& scene, const StepPairs& pairs, const Settings& settings);
-    // What pairs of cloth and obstacle give, in canonical order. False when the step is over a limit.
+    // Finds contacts of cloth-obstacle pairs, in canonical order. Returns false if the step exceeds a limit.
     bool runPairs(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
     void runSelf(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
 

@@ -1,5 +1,5 @@
-// A step on the host over patches, the obstacles' and, for contacts of cloths with themselves, the cloths': the
-// product's own way, with the kernels of a CPU on the threads of a team.
+// A step on the host over patches of the obstacles and, for contacts of cloths with themselves, of the cloths. This
+// is the product's method, with a CPU's kernels on a team's threads.
 #pragma once
 
 #include "bullet_plugin/core/broad_phase/host_patch_cull.h"
@@ -19,7 +19,7 @@ public:
     // Adds to the result what the pairs give, contacts in canonical order. False when the step is over a limit.
     bool run(const Scene& scene, const StepPairs& pairs, const Settings& settings, ThreadTeam& threads,
              StepResult& result);
-    // Adds what cloths have with themselves, likewise; no contacts where it is over a limit.
+    // Adds contacts of cloths with themselves in the same way; none if that exceeds a limit.
     SelfCounts runSelf(const Scene& scene, const SelfStep& step, SelfStepLimits limits, ThreadTeam& threads,
                        StepResult& result);
 

@@ -18,7 +18,7 @@ void HostPlacedObstacles::update(const Scene& scene, std::size_t fresh)
     if (scene.m_anyPosed) place(scene);
 }
 
-// As kernels/place_obstacles.cl.
+// Places obstacles exactly as kernels/place_obstacles.cl does.
 void HostPlacedObstacles::place(const Scene& scene)
 {
     resizeWithRoom(m_positions, scene.m_obstaclePositions.size());

@@ -1,5 +1,4 @@
-// The obstacles of a scene where they are in the world, on the host: the scene's own arrays where no obstacle has a
-// place.
+// A scene's obstacles in world coordinates, on the host: the scene's own arrays if no obstacle has a pose.
 #pragma once
 
 #include <vector>
@@ -12,11 +11,11 @@ namespace drape
 class HostPlacedObstacles
 {
 public:
-    // Whether positions or places may have changed since update().
+    // Returns whether positions or poses may have changed since update().
     bool changed(const Scene& scene) const { return m_changes.any(scene); }
-    // Those from slot `fresh` on, and of the others those that were given other positions or another place.
+    // Updates obstacles from slot `fresh` on, and earlier ones whose positions or poses changed.
     void update(const Scene& scene, std::size_t fresh);
-    // By the last update().
+    // Returns whether the last update() moved the obstacle.
     bool moved(std::size_t slot) const { return m_changes.moved(slot); }
 
     void giveBackRoom()

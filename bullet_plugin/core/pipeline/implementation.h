@@ -1,4 +1,4 @@
-// What a Pipeline holds: the scene, both back ends, and the step under way.
+// The data of a Pipeline: the scene, both back ends, and the current step.
 #pragma once
 
 #include <cassert>
@@ -18,7 +18,7 @@
 
 namespace drape
 {
-// Where a pair's meshes are.
+// Slots of a pair's meshes.
 struct PairSlots
 {
     std::size_t m_cloth;
@@ -60,7 +60,7 @@ struct Pipeline::Implementation
     std::unique_ptr<DeviceBackend> m_deviceBackend;
     std::unique_ptr<HostBackend> m_hostBackend;
     std::vector<NamedPair> m_pairs;
-    std::vector<PairSlots> m_pairSlots;  // of those
+    std::vector<PairSlots> m_pairSlots;  // slots of the named pairs
     std::vector<MeshId> m_selfCloths;    // named for the coming step
     StepPairs m_stepPairs;
     std::vector<bool> m_paired;  // per obstacle slot, with any cloth in the step
@@ -70,7 +70,7 @@ struct Pipeline::Implementation
     SideHierarchy m_clothHierarchy, m_obstacleHierarchy;
     TreeWatch m_treeWatch;
     BackendChoice m_choice;               // active where cost decides
-    std::vector<NamedPair> m_notedPairs;  // those that m_choice has taken in last
+    std::vector<NamedPair> m_notedPairs;  // pairs that m_choice knows
     std::vector<MeshId> m_notedSelf;
     DeviceInfo m_openClDevice;
     std::size_t m_deviceIndex = 0;  // into deviceInfos()
@@ -89,62 +89,62 @@ struct Pipeline::Implementation
     bool runsOnGpu() { return !m_report.m_onHost && device()->isGpu(); }
     Device* device() { return m_deviceBackend ? &m_deviceBackend->device() : nullptr; }
     PooledMesh makeMesh(const MeshDescription& description);
-    // What depends on an obstacle's positions.
+    // Computes data that depends on an obstacle's positions.
     static void measureObstacle(PooledMesh& mesh);
     void joinScene();
-    // From that slot on.
+    // Joins cloths from that slot on.
     void joinCloths(std::size_t first);
     void joinRest();
     std::vector<NodeStretch> stretchesOf(const std::vector<MeshId>& cloths);
     // Counts nodes of cloths that are gone as written, up to node `last`.
     void passVacantNodes(std::size_t last);
-    // Nodes that were told to be written are not those of the coming step. Transfers of them end.
+    // Forgets nodes declared as written: they are not those of the coming step. Ends their transfers.
     void forgetNodes();
     void joinObstacles(std::size_t first);
-    // Those of the settings, the builder as the back end in use has it.
+    // Returns the settings' methods, with the builder of the back end in use.
     TreeMethods treeMethods() const;
-    // Whether the coming step walks both sides' hierarchies of triangles.
+    // Returns whether the coming step traverses both sides' hierarchies of triangles.
     bool walksHierarchies() const;
-    // Of both sides, by these methods.
+    // Builds both sides' hierarchies with the current methods.
     void buildHierarchies();
-    // Has both sides' layouts at hand for the host.
+    // Builds both sides' layouts for the host if necessary.
     void layOut();
     // Uses a hierarchy of the cloths that was built anew.
     void takeRebuilt();
     // Has one built where the last step found the cloths' hierarchy decayed.
     void watchTree();
-    // What depends on where an obstacle is.
+    // Computes data that depends on an obstacle's pose.
     void placeMesh(std::size_t slot);
     void findSlots();
     void collectPairs();
     void addOrdinaryTests(std::size_t cloth, std::size_t obstacle);
     void collectMotions();
     void collectSelf();
-    // How many obstacles of the pairs the step uses as the one before left them; takes them all.
+    // Returns how many obstacles of the pairs the step uses unchanged since the one before; records them all.
     std::size_t countKept();
-    // From here on the obstacles that are there are as a step left them.
+    // Records the obstacles' current state as used by a step.
     void takeObstacles();
-    // Which pairs' contacts may be reduced, and how far their cloths' nodes stay near their ways.
+    // Determines which pairs' contacts may be reduced, and the path tolerance of their cloths' nodes.
     void collectTubes();
     // Makes a device ready for cloths that collide with themselves.
     void prepareSelf();
     // False, with error filled, when the device that was chosen cannot be opened or its kernels made ready; nothing of
     // it is kept.
     bool openDevice(Error& error);
-    // After the device's failure everything goes on, on the host, to the end.
+    // Continues on the host for good after the device's failure.
     void leaveDevice();
     void goOnWithoutDevice(const Error& error);
-    // Whether cost decides between the host and the device that was chosen.
+    // Returns whether cost decides between the host and the chosen device.
     bool costDecides(const DeviceChoice& choice) const;
-    // From the cache, or measured.
+    // Reads the crossover from the cache, or measures it.
     double findCrossover(Pipeline& pipeline);
     bool beginChoice(Pipeline& pipeline, Error& error);
     // Has the coming steps run where the scene's work says, and the report say why.
     void useChosen();
-    // Takes in the pairs that are named for the coming step, where they are not those of the last one.
+    // Processes the pairs named for the coming step, if they differ from those of the last one.
     void chooseBackend();
-    // Whether the host may have the steps of all meshes that are there: where cost decides, by pairs of a thickness
-    // near zero, the least that any have.
+    // Returns whether the host may run the steps of all current meshes. If cost decides, assumes pairs of a thickness
+    // near zero, which make the least work.
     bool mayStayOnHost() const;
     void runOnHost();
     // The step of the pairs that are left, on the back end in use.
@@ -156,11 +156,11 @@ struct Pipeline::Implementation
     void leaveOut(std::size_t slot, std::uint64_t candidates);
     // Takes cloths out of the step until what is left is within the settings' limits.
     void leaveOutCloths();
-    // After a step over the limits of StepPairs: takes out the cloths that need more than they may, and gives the
-    // others what they may.
+    // Handles a step over the limits of StepPairs: removes cloths that need more than their allowance, and gives the
+    // others theirs.
     void leaveOutStretched(const Allowance& allowance);
-    // Before a step on the host that is likely to need more than ordinary motion, as the one before did: gives every
-    // cloth what it may need, where that is more.
+    // Raises every cloth's limits to its allowance, where that is more, before a step on the host that is likely to
+    // exceed ordinary motion, like the one before.
     void expectMore(const Allowance& allowance);
     TestLimits allowed(std::size_t slot, float share) const;
     bool needsMore(std::size_t slot, const std::vector<std::size_t>& taking, TestLimits limits);

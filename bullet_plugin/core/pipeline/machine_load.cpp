@@ -12,7 +12,7 @@ namespace drape
 {
 namespace
 {
-// Part of a core that others may take besides: what an idle system does.
+// Share of a core that other processes may take: the load of an idle system.
 constexpr double kMostIdleLoad = 0.25;
 
 double ownSeconds()

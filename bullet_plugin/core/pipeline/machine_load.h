@@ -1,4 +1,5 @@
-// How busy other processes keep the machine while something is measured. Linux; elsewhere it never looks busy.
+// Measures how busy other processes keep the machine during a measurement. Linux only; other systems never appear
+// busy.
 #pragma once
 
 #include <istream>
@@ -8,16 +9,16 @@ namespace drape
 // Seconds of all cores together since the system started.
 struct CoreTimes
 {
-    double m_busy = 0;  // with what a hypervisor gave to others
+    double m_busy = 0;  // including the time that a hypervisor gave to others
     double m_all = 0;
     unsigned m_cores = 0;
 };
 
-// Reads /proc/stat. Returns false, with nothing changed, where it is not as expected.
+// Reads /proc/stat. Returns false, with nothing changed, if its format is unexpected.
 bool readCoreTimes(std::istream& stat, double ticksPerSecond, CoreTimes& times);
 
-// Whether others took so much of the machine between two times that `threads` threads did not have a core each.
-// ownSeconds: time of cores that this process took.
+// Returns whether other processes took so much time between two samples that `threads` threads did not have a core
+// each. ownSeconds: core time of this process.
 bool isBusyBetween(const CoreTimes& first, const CoreTimes& last, double ownSeconds, unsigned threads);
 
 class MachineLoad
@@ -26,7 +27,7 @@ public:
     // Looks from now on.
     MachineLoad();
 
-    // Whether the machine was busy since then, see isBusyBetween().
+    // Returns whether the machine was busy since then; see isBusyBetween().
     bool isBusy(unsigned threads) const;
 
 private:

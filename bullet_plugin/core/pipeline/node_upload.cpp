@@ -1,4 +1,4 @@
-// Nodes of the coming step: where callers write them, and how they go to a device while others are written.
+// Nodes of the coming step: the memory that callers write, and the transfer to a device while others are written.
 #include <algorithm>
 #include <cassert>
 
@@ -8,10 +8,10 @@ namespace drape
 {
 namespace
 {
-// Nodes that go to the device before all are written: 1.6 MB each of start and end, so that a transfer takes far longer
-// than it takes to ask for it, which a GPU's driver does in 10 us.
+// Nodes per early transfer, before all are written: 1.6 MB each of start and end. Such a transfer takes far longer
+// than its enqueueing, which costs 10 us in a GPU's driver.
 constexpr std::size_t kNodesTogether = 1 << 17;
-// Nodes that one thread writes before it looks for others, and from how many on it is worth waking threads.
+// Nodes that one thread writes per turn, and the minimum number of nodes for waking threads.
 constexpr std::size_t kNodesAlone = 1 << 11;
 constexpr std::size_t kLeastShared = 1 << 14;
 }  // namespace

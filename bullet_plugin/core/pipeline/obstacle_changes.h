@@ -1,4 +1,4 @@
-// Which obstacles a back end has to bring up to date: what it brought last is remembered, and held against the scene.
+// Determines which obstacles a back end must update: compares the state that it used last with the scene.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,8 @@ namespace drape
 class ObstacleChanges
 {
 public:
-    // Whether positions or places may have changed since take(); of meshes that came or went revisions tell.
+    // Returns whether positions or poses may have changed since take(). Revisions report meshes that were added or
+    // removed.
     bool any(const Scene& scene) const
     {
         return m_motion != scene.m_obstacleMotion || m_placing != scene.m_obstaclePlacing;
@@ -20,10 +21,10 @@ public:
     void take(const Scene& scene, std::size_t fresh);
     void forget() { *this = ObstacleChanges(); }
 
-    // By the last take(): whether the obstacle has other positions in its own frame, or also another place.
+    // Changes found by the last take(): new positions in the obstacle's own frame, or also a new pose.
     bool given(std::size_t slot) const { return m_changes[slot] == Change::Given; }
     bool moved(std::size_t slot) const { return m_changes[slot] != Change::None; }
-    // As taken; they stay where they are until the next take().
+    // Returns the poses as recorded; they stay in place until the next take().
     const std::vector<ObstaclePlace>& places() const { return m_places; }
 
 private:

@@ -1,10 +1,10 @@
-// How many tests of features a step makes before the pipeline asks whether its cloths are as they should be, and by
-// which numbers it then bounds their work.
+// Estimates how many feature tests a step makes before the pipeline checks its cloths, and the numbers that bound
+// their work.
 //
-// Why: faces of cloth that came apart, or whose pins were put elsewhere, reach across an obstacle, and each has a test
-// with nearly all of it: seconds of them, and gigabytes, for cloth that no solver can bring to rest in that step. Cloth
-// that keeps its size may need many tests, too, where it is fast; it gets them, up to a multiple of these numbers that
-// the pipeline's caller gives (Pipeline::finish()).
+// Reason: faces of cloth that came apart, or whose pins were moved elsewhere, reach across an obstacle. Each is
+// tested against nearly all of it. This takes seconds and gigabytes, for cloth that no solver can bring to rest in
+// that step. Fast cloth that keeps its size may need many tests, too. It gets them, up to a multiple of these numbers
+// set by the pipeline's caller (Pipeline::finish()).
 #pragma once
 
 #include <algorithm>
@@ -40,7 +40,7 @@ inline TestLimits ordinaryTests(std::size_t clothTriangles)
     return {(std::size_t(1) << 17) + 64 * clothTriangles, (std::size_t(1) << 13) + 2 * clothTriangles};
 }
 
-// What each obstacle of a cloth adds to that.
+// Returns the tests that each obstacle of a cloth adds.
 inline TestLimits ordinaryTestsBeside(std::size_t obstacleTriangles)
 {
     return {24 * obstacleTriangles, obstacleTriangles / 2};

@@ -5,8 +5,8 @@ namespace drape
 namespace
 {
 constexpr std::size_t kPlaceGroup = 64;
-// Triangles of obstacles between two that changed which are brought up to date with them: no more than what the
-// launches of a run cost, 0.1 ms, of which a triangle takes 0.2 us on two cores.
+// Maximum unchanged obstacle triangles between two changed ranges that are updated together with them. They cost at
+// most as much as a range's launches, 0.1 ms; a triangle takes 0.2 us on two cores.
 constexpr std::size_t kTrianglesBetweenCpu = 1 << 8;
 constexpr std::size_t kTrianglesBetweenGpu = 1 << 14;
 

@@ -1,8 +1,7 @@
-// The obstacles of a scene on a device, where they are in the world: positions and normal cones, joined as in the
-// scene.
+// A scene's obstacles on a device, in world coordinates: positions and normal cones, joined as in the scene.
 //
-// Where one has a place, all are kept in their own frames, too, and placed on the device. Cost: what changed goes up
-// and is placed; obstacles that rest cost nothing.
+// If one obstacle has a pose, all are also kept in their own frames, and placed on the device. Cost: changed
+// obstacles are uploaded and placed; resting obstacles cost nothing.
 #pragma once
 
 #include <vector>
@@ -19,11 +18,11 @@ public:
     // The next scene is brought here from its first mesh on.
     void forget();
 
-    // Whether positions or places may have changed since update().
+    // Returns whether positions or poses may have changed since update().
     bool changed(const Scene& scene) const { return m_changes.any(scene); }
-    // Brings the obstacles from slot `fresh` on, and of the others those that were given other positions or another
-    // place. Returns after enqueueing, with runs of the slots whose places in the world are new; the scene must stay as
-    // it is until the device was waited for, and the device must have been since the last call.
+    // Uploads and places the obstacles from slot `fresh` on, and earlier ones whose positions or poses changed.
+    // Returns after enqueueing, with runs of the slots whose world positions are new. The scene must stay unchanged
+    // until a wait for the device, and the device must have been waited for since the last call.
     std::vector<SlotRange> update(Device& device, const Scene& scene, std::size_t fresh);
 
     Buffer<float>& positions() { return m_positions; }
@@ -37,10 +36,10 @@ private:
 
     Kernel m_place;
     ObstacleChanges m_changes;
-    bool m_anyPosed = false;  // as the scene at the last update
+    bool m_anyPosed = false;  // at the last update
     Buffer<float> m_positions{"obstacle positions"};
     Buffer<NormalCone> m_vertexCones{"obstacle cones"}, m_edgeCones{"obstacle cones"};
-    // In the obstacles' own frames; only where one has a place.
+    // Data in the obstacles' own frames; only if one has a pose.
     Buffer<float> m_ownPositions{"obstacle positions in own frame"};
     Buffer<NormalCone> m_ownVertexCones{"obstacle cones in own frame"}, m_ownEdgeCones{"obstacle cones in own frame"};
     Buffer<ObstaclePlace> m_places{"obstacle places"};

@@ -1,5 +1,5 @@
-// Runs a step on the back end in use, and again without some cloths where it is over limits: without those that are
-// stretched over those of ordinary motion, without the largest over the settings'.
+// Runs a step on the current back end, and repeats it without some cloths if it exceeds limits: without stretched
+// cloths for the limits of ordinary motion, without the largest for the settings' limits.
 #include <cmath>
 #include <numeric>
 
@@ -44,7 +44,7 @@ void Pipeline::Implementation::leaveOutCloths()
     std::uint64_t budget = limits.m_candidates;
     if (m_result.m_contactDemand > 0)
     {
-        // As many candidates as should give contacts within their limit, at the rate of this step.
+        // Allows as many candidates as should give contacts within their limit, at this step's rate.
         const std::uint64_t all = std::accumulate(candidates.begin(), candidates.end(), std::uint64_t(0));
         budget = std::uint64_t(double(all) * double(limits.m_contacts) / double(m_result.m_contactDemand));
     }
@@ -109,7 +109,7 @@ void Pipeline::Implementation::leaveOutStretched(const Allowance& allowance)
     m_limitsRaised = true;
 }
 
-// Returns whether the cloth in this slot, one of those taking part, needs more tests in a step of its own.
+// Returns whether the active cloth in this slot exceeds the limits of tests in a step of its own.
 bool Pipeline::Implementation::needsMore(std::size_t slot, const std::vector<std::size_t>& taking, TestLimits limits)
 {
     StepPairs alone = m_stepPairs;

@@ -1,4 +1,4 @@
-// Meshes of the scene: what is told from one as it comes or moves, and all of a side joined into one.
+// Meshes of the scene: measures a mesh when it is added or moved, and joins all meshes of a side.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -72,7 +72,7 @@ void Pipeline::Implementation::joinCloths(std::size_t first)
     const std::size_t coordinates = 3 * cloths.vertexCount();
     if (m_scene.m_clothNodes.room() < coordinates)
     {
-        // Their contents are lost; a quarter more where it is not the first time.
+        // The contents are lost. Adds a quarter of spare room unless this is the first time.
         const std::size_t room = coordinates + (first > 0 ? coordinates / 4 : 0);
         m_scene.m_clothNodes.reserve(device(), room);
         first = 0;

@@ -1,11 +1,12 @@
-// How much work a step over a cloth and an obstacle is, told from their meshes before any step has run.
+// Estimates the work of a step over a cloth and an obstacle from their meshes, before any step has run.
 //
-// The measure is the number of pairs of triangles whose volumes would overlap if the cloth lay on the obstacle with all
-// its area: time of a step in contact goes with the pairs, and hardly with either side's triangles. Of 15 scenes of
-// bench_step (512 to 32,768 cloth triangles, 1,280 to 327,680 obstacle triangles) the host by its trees took 0.26 to
-// 0.47 us a pair found, while its time by cloth triangle differed by a factor of 55 and by product of triangles of 39.
-// What is expected here is 1.2 to 7.8 times what was found there: cloth hangs over an obstacle's edge, and volumes of
-// 18 sides are tighter than boxes.
+// The measure is the number of triangle pairs whose volumes would overlap if the cloth lay on the obstacle with all
+// its area. A contact step's time is proportional to the pairs, and depends little on either side's triangles.
+//
+// Measured with the host's trees on 15 scenes of bench_step, with 512 to 32,768 cloth and 1,280 to 327,680 obstacle
+// triangles: 0.26 to 0.47 us per pair found. The time per cloth triangle varied by a factor of 55, per product of
+// triangles by 39. The estimate is 1.2 to 7.8 times the pairs found there: cloth hangs over an obstacle's edge, and
+// volumes of 18 sides are tighter than boxes.
 #pragma once
 
 #include <cstddef>
@@ -25,10 +26,11 @@ struct Surface
     double m_area = 0;  // m²
 };
 
-// reach: m, the distance up to which the pair's features are looked at. At most every pair there is; finite.
+// reach: m, the distance up to which the pair's features are tested. The result is finite, and at most the number of
+// all pairs.
 double expectedPairs(const Surface& cloth, const Surface& obstacle, double reach);
 
-// A pair of triangles of a cloth with itself counts for so many: as long the host takes for one that is expected, next
-// to one with an obstacle, where the cloth lies flat. Where it is folded in four it takes fifty times as long.
+// Weight of a triangle pair of a cloth with itself: the host's time for an expected pair relative to a pair with an
+// obstacle, for a flat cloth. A cloth folded in four takes fifty times as long.
 constexpr double kSelfPairWeight = 6;
 }  // namespace drape

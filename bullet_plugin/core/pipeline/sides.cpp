@@ -8,7 +8,8 @@ namespace drape
 {
 namespace
 {
-// Where the front of an obstacle's feature is, not normalised; zero where the surface around it has no direction.
+// Returns the front direction of an obstacle's feature, not normalised; zero if the surrounding surface has no
+// direction.
 std::array<float, 3> frontOf(const PooledMesh& mesh, std::uint32_t kind, std::uint32_t feature)
 {
     std::array<float, 3> front;

@@ -1,4 +1,4 @@
-// What a step reads and what it gives, common to the host and the device back end.
+// Input and output of a step, common to the host and device back ends.
 #pragma once
 
 #include <algorithm>
@@ -43,7 +43,7 @@ private:
     std::size_t m_room = 0;
 };
 
-// Both sides' meshes and, per side, the data that belongs to the joined arrays.
+// Meshes of both sides and, per side, the data of the joined arrays.
 struct Scene
 {
     MeshPool m_cloths;
@@ -51,7 +51,7 @@ struct Scene
     BvhLayout m_clothLayout;
     BvhLayout m_obstacleLayout;
     ClothNodes m_clothNodes;
-    bool m_anySelf = false;                  // whether a cloth collides with itself
+    bool m_anySelf = false;                  // true if a cloth collides with itself
     std::vector<float> m_clothRest;          // m, joined, at rest; empty where none does
     std::vector<float> m_obstaclePositions;  // m, joined, as given
     std::vector<NormalCone> m_vertexCones;   // joined, as the positions
@@ -65,7 +65,7 @@ struct Scene
     {
         return m_cloths.vertexCount() + m_cloths.triangles().size() + m_cloths.edges().size();
     }
-    // With those of contacts of cloths with themselves behind, where there can be any.
+    // Counts the slots, and as many behind them for contacts of cloths with themselves if there can be any.
     std::size_t allSlotCount() const { return m_anySelf ? 2 * slotCount() : slotCount(); }
 };
 
@@ -94,7 +94,7 @@ struct StepLimits
 struct StepPairs
 {
     std::vector<float> m_thickness;  // m, cloth slots × obstacle slots, -1 where there is no pair
-    std::vector<float> m_tube;       // m, likewise; -1 where no contact is left out
+    std::vector<float> m_tube;       // m; -1 to keep every contact
     bool m_anyTube = false;
     std::vector<float> m_clothRadius;       // m, per cloth slot: the largest reach of its pairs, -1 without one
     std::vector<ObstacleMotion> m_motions;  // of the obstacles that have a pair and move, in the order of slots
@@ -106,7 +106,7 @@ struct StepPairs
     bool m_any = false;          // either
     bool m_measureTree = false;  // the result shall have the cost of the cloths' hierarchy
 
-    // As many as there were when the pairs were collected.
+    // Returns the number of obstacle slots when the pairs were collected.
     std::size_t obstacleSlots() const { return m_thickness.size() / m_clothRadius.size(); }
     float thickness(std::size_t cloth, std::size_t obstacle) const
     {
@@ -135,7 +135,7 @@ struct StepResult
     // More candidates or contacts than the limits allow: nothing else of the result counts then but m_contactDemand.
     bool m_overLimit = false;
     bool m_overTests = false;           // these are the limits of StepPairs
-    std::uint64_t m_contactDemand = 0;  // where contacts were too many: how many; 0 where candidates were
+    std::uint64_t m_contactDemand = 0;  // number of contacts if they exceeded the limit; 0 if candidates did
     std::size_t m_candidates = 0;
     std::size_t m_volumeTests = 0;
     std::size_t m_sweptTests = 0;
@@ -145,10 +145,10 @@ struct StepResult
     std::size_t m_invalidNodes = 0;
     std::size_t m_retries = 0;
     std::size_t m_intersectionCount = 0;
-    double m_treeCost = 0;                                // where it was asked for, see tree_cost.h
+    double m_treeCost = 0;                                // on request, see tree_cost.h
     double m_refitMs = 0, m_broadMs = 0, m_narrowMs = 0;  // on the host back end
 
-    // As new, but for the memory of the host's contacts.
+    // Resets the result; the memory of the host's contacts is kept.
     void clear()
     {
         std::vector<Contact> contacts = std::move(m_contacts);
@@ -157,7 +157,7 @@ struct StepResult
         m_contacts = std::move(contacts);
     }
 
-    // Those with obstacles, then those of cloths with themselves.
+    // Returns contacts with obstacles, then those of cloths with themselves.
     ContactList allContacts() const
     {
         return m_contacts.empty() ? m_deviceContacts : ContactList{m_contacts.data(), m_contacts.size()};

@@ -1,5 +1,5 @@
-// What the coming step is to do: its pairs of cloth and obstacle, cloths that collide with themselves, obstacles that
-// move, and whose contacts may be reduced.
+// Collects the work of the coming step: pairs of cloth and obstacle, cloths that collide with themselves, moving
+// obstacles, and pairs whose contacts may be reduced.
 #include <algorithm>
 #include <cassert>
 
@@ -9,11 +9,11 @@ namespace drape
 {
 namespace
 {
-// Volumes reach a little further than the feature tests, by more than those round, so that which pairs were candidates
+// Extra reach of volumes beyond the feature tests, more than the rounding of those. The choice of candidates then
 // never decides whether a pair is a contact.
 constexpr float kReachPad = 1.001f;
-// Share of the longest edge of an obstacle by which candidates are looked for farther than contacts reach: the search
-// for meetings takes features for met that are apart by a share of their size (isSwept in kernels/lib/rigid_motion.h).
+// Extra reach of candidates beyond contacts, as a share of the obstacle's longest edge. The search for meetings
+// counts features as met that are apart by a share of their size (isSwept in kernels/lib/rigid_motion.h).
 constexpr float kEdgePad = 1e-4f;
 }  // namespace
 
@@ -24,7 +24,7 @@ void Pipeline::Implementation::findSlots()
         m_pairSlots.push_back({slotOf(m_scene.m_cloths, pair.m_cloth), slotOf(m_scene.m_obstacles, pair.m_obstacle)});
 }
 
-// Of a pair that is about to be collected.
+// Adds the ordinary tests of a pair that is about to be collected.
 void Pipeline::Implementation::addOrdinaryTests(std::size_t cloth, std::size_t obstacle)
 {
     const auto triangles = [](const MeshPool& pool, std::size_t slot)
@@ -32,7 +32,7 @@ void Pipeline::Implementation::addOrdinaryTests(std::size_t cloth, std::size_t o
     TestLimits own = ordinaryTestsBeside(triangles(m_scene.m_obstacles, obstacle));
     if (m_stepPairs.m_clothRadius[cloth] < 0.0f) own += ordinaryTests(triangles(m_scene.m_cloths, cloth));
     m_stepPairs.m_ordinary[cloth] += own;
-    // How many need the continuous test depends on the mode, on which no contact may depend.
+    // Leaves the continuous tests unbounded: their number depends on the mode, and no contact may depend on the mode.
     m_stepPairs.m_limits += TestLimits{own.m_tests, SIZE_MAX};
 }
 
@@ -109,8 +109,8 @@ void Pipeline::Implementation::collectMotions()
 std::size_t Pipeline::Implementation::countKept()
 {
     const MeshPool& obstacles = m_scene.m_obstacles;
-    // On a device that walks it the obstacles' hierarchy is made or refitted with new ones and those that move, on the
-    // host where it is not joined out of the obstacles' own. Patches are an obstacle's own.
+    // Builds or refits the obstacles' hierarchy with new and moving obstacles, on a device that traverses it, and on
+    // the host unless it is joined from the obstacles' own. Patches belong to one obstacle.
     const bool asOne = !goesOverPatches(m_settings) && !(m_report.m_onHost && m_scene.m_obstacleLayout.joined());
     bool allAnew = asOne && m_stepRevision != m_obstacleRevision;
     std::size_t kept = 0;
@@ -131,8 +131,8 @@ void Pipeline::Implementation::takeObstacles()
         m_scene.m_obstacles.mesh(slot).m_placedAnew = false;
 }
 
-// A cloth's contacts are reduced where all its obstacles rest and are two-sided: the solver keeps a node near its way
-// as each moving obstacle sees it, and contacts on the back of a one-sided one are not held.
+// Reduces a cloth's contacts if all its obstacles rest and are two-sided. The solver keeps a node near its path
+// relative to each moving obstacle, and does not enforce contacts on the back of a one-sided one.
 void Pipeline::Implementation::collectTubes()
 {
     const MeshPool& obstacles = m_scene.m_obstacles;

@@ -15,8 +15,8 @@ namespace drape
 {
 namespace
 {
-// Rays that are tried before a point counts as outside. Each leans by other shares of its length, so that no regular
-// mesh has edges in the way of all.
+// Rays that are tried before a point counts as outside. Each is inclined differently, so that no regular mesh has
+// edges in the way of all.
 constexpr int kRays = 12;
 
 ExactPoint exactPoint(Vec3 p)

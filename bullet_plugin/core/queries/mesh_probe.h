@@ -1,12 +1,14 @@
-// A triangle mesh at rest, and what lies where beside it: which of its triangles another one meets, where its surface
-// is nearest, and, where it is closed, which points are inside.
+// A triangle mesh at rest that answers queries: which of its triangles another triangle meets, where its surface is
+// nearest and, if it is closed, which points are inside.
 //
-// Input: a mesh's topology, the leaf order of its triangles and its positions; all are copied. Guarantee: which
-// triangles meet and what is inside is decided in exact arithmetic on the float positions, except that a point counts
-// as outside where every ray from it runs into an edge. A closed mesh is one in which every edge has an even number of
-// triangles, vertices at one position counted as one, up to a millionth of the mesh's size: then the parity of
-// crossings is the same along every ray that misses such a seam, whatever the triangles' winding. Cost: O(n) to make;
-// O(log n) a question for what lies beside few triangles. Host only. Lengths in metres.
+// Input: a mesh's topology, the leaf order of its triangles and its positions; all are copied. Guarantee: meetings
+// and insides are decided in exact arithmetic on the float positions. The exception is a point from which every
+// ray runs into an edge: it counts as outside.
+//
+// Every edge of a closed mesh has an even number of triangles. Vertices at one position, up to a millionth of the
+// mesh's size, count as one. The parity of crossings is then the same along every ray that misses such a seam,
+// whatever the triangles' winding. Cost: O(n) to build; O(log n) per query beside few triangles. Host only. Lengths
+// in metres.
 #pragma once
 
 #include <cstdint>
@@ -53,7 +55,7 @@ public:
     bool isInside(Vec3 point) const;
     // The surface's nearest point. The mesh has triangles.
     Vec3 nearest(Vec3 point) const;
-    // A place of the surface: the weights of a triangle's corners, and how far it is, m.
+    // A point of the surface: the weights of a triangle's corners, and its distance, m.
     struct Place
     {
         std::uint32_t m_triangle;
@@ -62,8 +64,7 @@ public:
     };
     // The nearest one within the distance; false where there is none.
     bool nearestWithin(Vec3 point, float distance, Place& place) const;
-    // Moves a point along with a place of the surface, turned as the triangle turns, to where the vertices have other
-    // positions.
+    // Moves a point along with its surface point to the vertices' other positions, turned as the triangle turns.
     Vec3 carriedWith(const Place& place, Vec3 point, const std::vector<float>& positions) const;
 
 private:

@@ -11,14 +11,14 @@ namespace drape
 {
 namespace
 {
-// Distance of vertices that count as one, as a share of the mesh's size: where a surface that is made by sines and
-// cosines comes back to its seam or its pole, its vertices are off by rounding.
+// Distance of vertices that count as one, as a share of the mesh's size. A surface computed from sines and cosines
+// returns to its seam or pole with rounding errors.
 constexpr double kSeam = 1e-6;
 
 // A direction along which the vertices of grids, boxes and flat parts do not lie one over the other.
 constexpr double kAlong[3] = {0.5257, 0.6821, 0.5083};
 
-// For each vertex the first of those at its position.
+// Returns, for each vertex, the first vertex at its position.
 std::vector<std::uint32_t> firstsAtPositions(const std::vector<float>& positions)
 {
     std::vector<std::uint32_t> order(positions.size() / 3), firsts(order.size());

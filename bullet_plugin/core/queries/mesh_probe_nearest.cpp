@@ -1,4 +1,4 @@
-// Finds the nearest places of a mesh's surface, and moves points along with it.
+// Finds the nearest points of a mesh's surface, and moves points along with it.
 #include <algorithm>
 #include <limits>
 

@@ -32,7 +32,7 @@ struct Queries::Implementation
     bool meshMotion(const MeshDescription& description, const float* end, const CcdSettings& settings,
                     MeshMotion& found);
 
-    // Returns what a public function's work does; false, with the error filled, where it throws.
+    // Returns the result of a public function's work; false, with the error filled, if it throws.
     template <class Work>
     bool answer(const char* call, const Work& work)
     {
@@ -49,7 +49,7 @@ struct Queries::Implementation
         if (!good) m_error = m_device->error();
         return good;
     }
-    // Whether what a caller gave is usable; else the error names the call and what is wrong.
+    // Returns whether a caller's input is usable; otherwise the error names the call and the problem.
     bool require(bool good, const char* call, const std::string& wrong)
     {
         if (good) return true;
@@ -201,7 +201,7 @@ bool Queries::Implementation::motions(const CcdQuery* queries, std::size_t count
         return false;
     const CcdQuery* const unknown =
         std::find_if(queries, queries + count, [](const CcdQuery& query) { return query.m_kind > DRAPE_EDGES; });
-    if (!require(unknown == queries + count, "motions", "a query with a kind that is neither of the two")) return false;
+    if (!require(unknown == queries + count, "motions", "a query of unknown kind")) return false;
     if (m_device) return check(m_device->motions(queries, count, settings, results));
     for (std::size_t i = 0; i < count; ++i)
     {

@@ -13,7 +13,7 @@ namespace drape
 class QueryDevice
 {
 public:
-    // Builds the kernels. On failure device().failed() tells and the error holds the log.
+    // Builds the kernels. On failure device().failed() is true and the error holds the log.
     QueryDevice(std::unique_ptr<Device> device, const Settings& settings);
 
     Device& device() { return *m_device; }
@@ -29,7 +29,7 @@ public:
     // the host, after refitting the meshes there.
     bool meshPairs(QueryMesh& a, QueryMesh& b, float radius, std::uint64_t limit, std::uint64_t& candidates,
                    PairDecision& decision, bool& within);
-    // Likewise.
+    // Finds collisions of a mesh's motion with itself, and stops at the limits in the same way.
     bool meshMotion(QueryMesh& mesh, const CcdSettings& settings, const SelfLimits& limits, SelfCollisions& found);
 
 private:

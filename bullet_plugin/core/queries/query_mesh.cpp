@@ -9,7 +9,7 @@ namespace drape
 {
 namespace
 {
-// Those that are kept stand in the order in which they were given.
+// Adds the edges and numbers those that are kept, which stay in the given order.
 void addNumberedEdges(Topology& topology, const MeshDescription& description)
 {
     std::size_t kept = topology.m_triangles.size();

@@ -16,15 +16,15 @@ struct QueryMesh
     BvhLayout m_layout;
     std::vector<BvhNode> m_nodes;  // volumes empty until the host refits them
     const float* m_start = nullptr;
-    const float* m_end = nullptr;  // the same for a mesh at rest
+    const float* m_end = nullptr;  // equal to the start for a mesh at rest
 
     HostTree tree() const { return {m_nodes, m_layout, m_order, m_topology.m_triangles}; }
     // Volumes grown by the radius.
     void refit(float radius);
 };
 
-// By how much (m) the volumes of two meshes grow so that they overlap wherever the two come within the radius; a and b
-// may be the same mesh.
+// Growth (m) of two meshes' volumes that makes them overlap wherever the meshes come within the radius; a and b may
+// be the same mesh.
 struct MeshRadii
 {
     MeshRadii(const QueryMesh& a, const QueryMesh& b, float radius)
@@ -37,12 +37,12 @@ struct MeshRadii
 // Refits both on the host by these radii.
 void refitBoth(QueryMesh& a, QueryMesh& b, float radius);
 
-// Which pairs of their triangles are asked for: DRAPE_WALK_…
+// Returns which triangle pairs are queried: DRAPE_WALK_…
 std::uint32_t walkOf(const QueryMesh& a, const QueryMesh& b);
 
 // Positions are not copied. The description's edges are left out.
 QueryMesh makeQueryMesh(const MeshDescription& description, const float* end);
 
-// The same with the edges, as triangles without area, numbered behind the triangles.
+// Makes the mesh with its edges, as triangles without area, numbered behind the triangles.
 QueryMesh makeQueryMeshWithEdges(const MeshDescription& description, const float* end);
 }  // namespace drape

@@ -17,7 +17,7 @@ class HostSelfPatches
 public:
     explicit HostSelfPatches(const HostKernels& kernels = hostKernels()) : m_kernels(&kernels) {}
 
-    // Does what a step does after cloths came or went: makes all patches anew. rest: m, x y z per joined node.
+    // Rebuilds all patches, as a step does after cloths were added or removed. rest: m, x y z per joined node.
     void update(const MeshPool& cloths, const float* rest);
     // Each step, in this order. Lists the pairs of features whose volumes overlap.
     void cull(const SelfStep& step, std::uint64_t limit, ThreadTeam& threads);
@@ -25,7 +25,7 @@ public:
     // than theirs.
     void findContacts(const SelfStep& step, SelfStepLimits limits, ThreadTeam& threads, std::vector<Contact>& contacts);
 
-    // Of the step.
+    // Returns the step's counts.
     SelfCounts counts() const;
     // Gives back the memory of all that was found.
     void giveBackRoom()

@@ -8,7 +8,7 @@ namespace drape
 {
 namespace
 {
-// Whether a candidate is a contact.
+// Returns whether a candidate is a contact.
 bool decide(SelfView& view, const FeatureTest& test, std::uint32_t firstSlot, Contact* contact, SelfCounts& counts)
 {
     std::uint32_t searches = 0;

@@ -1,5 +1,5 @@
-// Contacts of cloths with themselves on the host by a walk over a hierarchy of their triangles, on the calling thread:
-// the tests of what the product does (host_self_patches.h), and how many pairs of triangles there are.
+// Finds contacts of cloths with themselves on the host by traversing a hierarchy of their triangles, on the calling
+// thread. Serves as a check of the product's method (host_self_patches.h), and counts triangle pairs.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace drape
 {
-// Volumes of the cloths' nodes over the step; those of cloths that are not in it stay as they are.
+// Updates the volumes of the cloths' nodes over the step; cloths outside it are unchanged.
 void selfVolumes(const SelfStep& step, std::vector<Dop>& volumes);
 
 // Finds the contacts of pairs of triangles that are handed to it, in any order, each once.
@@ -22,7 +22,7 @@ public:
     SelfFinder(const SelfStep& step, const std::vector<Dop>& volumes, SelfStepLimits limits = {});
 
     void visit(const Candidate& pair);
-    // Of candidates: beyond them nothing is tested.
+    // Returns whether the candidates are within their limit; nothing is tested beyond it.
     bool withinLimits() const { return m_counts.m_candidates <= m_limits.m_candidates; }
     const SelfCounts& counts() const { return m_counts; }
     // Appends the contacts in canonical order, none where there are more than a limit.

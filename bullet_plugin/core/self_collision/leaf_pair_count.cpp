@@ -37,14 +37,15 @@ public:
     {
     }
 
-    // Of all leaves of a with all of b.
+    // Counts overlapping pairs of all leaves of a with all leaves of b.
     std::uint64_t countBetween()
     {
         m_stack = {{m_a.m_layout.root(), m_b.m_layout.root()}};
         return run([&](const NodePair& pair) { return between(pair); });
     }
 
-    // Of the leaves of a with one another, b being the same tree. A node with itself stands for its leaves' pairs.
+    // Counts overlapping pairs among the leaves of a, b being the same tree. A node paired with itself stands for its
+    // leaves' pairs.
     std::uint64_t countWithin()
     {
         m_stack = {{m_a.m_layout.root(), m_a.m_layout.root()}};
@@ -111,7 +112,7 @@ std::uint64_t overlapsAmong(const HostTree& tree, const NodePair* leaves, std::s
     return overlaps;
 }
 
-// Over all features of one kind, the pairs of overlapping leaves whose triangles have it in common.
+// Counts, over all features of one kind, the pairs of overlapping leaves whose triangles share the feature.
 std::uint64_t sharingPairs(const HostTree& tree, DRAPE_UINT (Triangle::*features)[3])
 {
     std::vector<NodePair> users;  // feature and leaf

@@ -31,7 +31,7 @@ struct HostTree
 };
 
 // Calls visit for each pair; kind: DRAPE_WALK_…, with a and b the same tree for a mesh with itself. Ends when goesOn,
-// asked before each pair, says no.
+// called before each pair, returns false.
 void leafPairsOnHost(const HostTree& a, const HostTree& b, std::uint32_t kind,
                      const std::function<void(const Candidate&)>& visit, const std::function<bool()>& goesOn = nullptr);
 
@@ -52,7 +52,7 @@ struct SelfLimits
     std::uint64_t m_hits = ~std::uint64_t(0);
 };
 
-// Counts are exact, but those of features 0 where the pairs of triangles were too many.
+// Exact counts, except that those of features are 0 if there were too many triangle pairs.
 struct SelfCollisions
 {
     std::uint64_t m_trianglePairs = 0;
@@ -63,9 +63,9 @@ struct SelfCollisions
     bool m_untested = false;               // more candidates than may be tested: there are no hits
 
     std::uint64_t hits() const { return m_hitCount[0] + m_hitCount[1]; }
-    // What a search does that finds more candidates than it may test.
+    // Records a search that finds more candidates than it may test.
     void leaveUntested();
-    // Counts a hit and lists it as long as all may be listed.
+    // Counts a hit, and lists it while the list is within its limit.
     void add(const FeatureHit& hit, const SelfLimits& limits);
 };
 
@@ -77,7 +77,7 @@ void selfCollideOnHost(const HostMotion& motion, const CcdSettings& settings, co
 
 void sortHits(std::vector<FeatureHit>& hits);
 
-// The same on a device.
+// Device buffers of the same view.
 struct DeviceTreeView
 {
     Buffer<BvhNode>& m_nodes;
@@ -103,7 +103,7 @@ public:
 
     void create(Device& device, const cl::Program& program);
 
-    // Leaves of one batch, by their places in the order.
+    // Leaves of one batch, by their positions in the order.
     struct Batch
     {
         std::uint32_t m_first = 0;
@@ -122,7 +122,7 @@ public:
     void enqueueTests(Device& device, DeviceMotion motion, const CcdSettings& settings);
     void enqueueReadCounters(Device& device);
 
-    // What the last batch demanded, after waiting.
+    // Returns the last batch's demand, after waiting.
     const SelfCounters& counters() const { return m_read; }
     enum class Demand
     {
@@ -131,7 +131,7 @@ public:
         TooMuch  // run a smaller batch
     };
     Demand meetDemand(Device& device);
-    // Of the pairs of triangles alone.
+    // Queries the triangle pairs alone.
     Demand meetPairs(Device& device);
     // Bytes that one list may grow to. A batch of one leaf may exceed it.
     void limitLists(std::size_t bytes) { m_listBytes = bytes; }

@@ -10,7 +10,7 @@ namespace
 constexpr std::size_t kGroup = 64;
 constexpr std::size_t kTeamsPerGroup = 8;  // patches per group where a work-item is a team
 constexpr std::size_t kFirstTests = 1 << 16;
-// On a GPU, warps of a group that walks the tree, or takes pairs of patches; see kernels/self_walk.cl.
+// Warps of a GPU's group that traverses the tree, or that takes pairs of patches; see kernels/self_walk.cl.
 constexpr std::size_t kTurns = 4;
 constexpr std::size_t kPairGroupsPerUnit = 24;
 constexpr std::size_t kFirstPairs = 1 << 14;

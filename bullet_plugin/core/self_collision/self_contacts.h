@@ -15,7 +15,7 @@
 
 namespace drape
 {
-// What the device's stage reads of a step. start: the end's in a discrete step.
+// Step data that the device's stage reads. start: the end's positions in a discrete step.
 struct SelfBuffers
 {
     Buffer<Triangle>& m_triangles;
@@ -39,17 +39,17 @@ public:
 
     // New cloths. rest: m, x y z per joined node. Waits for the upload.
     void setTopology(Device& device, const MeshPool& cloths, const std::vector<float>& rest);
-    // Enqueues what changed of the reaches, which must stay as they are until the device was waited for.
+    // Enqueues changes of the reaches, which must stay unchanged until a wait for the device.
     void setReach(Device& device, const SelfReach& reach);
 
-    // Both return after enqueueing. Lists the tests; counters' numbers of them must be zero before.
+    // Lists the tests; their counters must be zero before. Both functions return after enqueueing.
     void enqueueCull(Device& device, SelfBuffers step, Buffer<StepCounters>& counters);
-    // Their hits join the list.
+    // Lists the contacts of the tests.
     void enqueueContacts(Device& device, SelfBuffers step, HitBuffers hits, Buffer<StepCounters>& counters);
 
     Buffer<FeatureTest>& tests() { return m_tests; }
     void reserveTests(Device& device, std::size_t count);
-    // The list of pairs of patches on a GPU. Where it was too short, other counts are too low.
+    // The list of pairs of patches on a GPU. If it was too short, other counts are too low.
     Buffer<Candidate>& pairs() { return m_pairs; }
     void reservePairs(Device& device, std::size_t count) { m_pairs.reserve(device, count); }
 
@@ -65,7 +65,7 @@ private:
     Buffer<cl_uint> m_faceIds{"self patches"}, m_vertexIds{"self patches"}, m_edgeIds{"self patches"};
     Buffer<cl_uint> m_faceNodes{"self patches"}, m_edgeNodes{"self patches"};  // on a CPU
     Buffer<cl_uint> m_levels{"self patches"};
-    // On a GPU those of nodes alone, by node.
+    // Boxes of features; on a GPU those of nodes alone, by node.
     Buffer<float> m_faceBoxes{"self boxes"}, m_vertexBoxes{"self boxes"}, m_edgeBoxes{"self boxes"};
     Buffer<float> m_wideNodes{"self wide nodes"};
     Buffer<float> m_rest{"cloth positions"}, m_radius{"self patches"}, m_thickness{"self patches"};

@@ -1,9 +1,9 @@
-// A step of cloths with themselves, common to the host and devices (kernels/lib/self_contact.h says what contacts are).
+// A step of cloths with themselves, common to the host and devices; kernels/lib/self_contact.h defines contacts.
 //
-// Input: the cloths' nodes at the step's start and end and at rest, and per cloth the thickness. Output: contacts in
-// canonical order behind those with obstacles. Guarantee: no pair that gives a contact is missed; whoever finds them
-// finds the same contacts, bit for bit, and lists the same candidates, but where the last bit of a bound decides about
-// a box or a patch, which is far beyond the contacts' reach.
+// Input: the cloths' nodes at the step's start, its end and at rest, and the thickness per cloth. Output: contacts in
+// canonical order behind those with obstacles. Guarantee: no pair that gives a contact is missed; all back ends find
+// the same contacts, bit for bit. They also list the same candidates, unless the last bit of a bound decides about a
+// box or a patch, far beyond the contacts' reach.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace drape
 {
-// Per cloth slot, m.
+// Values per cloth slot, m.
 struct SelfReach
 {
     std::vector<float> m_thickness;  // negative: the cloth is not tested against itself in the step
@@ -36,7 +36,7 @@ struct SelfStep
     const SelfReach& m_reach;
     const std::vector<float>& m_obstacleRadius;  // m, of the search for obstacles, which counts invalid nodes; or -1
 
-    // Where volumes over the step begin: a discrete step's are those of its end.
+    // Positions where volumes over the step begin: those of the end in a discrete step.
     const float* start() const;
 };
 

@@ -20,7 +20,7 @@ namespace
 // Looks between two that leave the core to another thread, should one wait for it.
 constexpr int kLooksTogether = 64;
 
-// Tells the core that this is a loop that waits.
+// Hints to the core that this is a waiting loop.
 inline void pause()
 {
 #if defined(__x86_64__) || defined(__i386__)
@@ -71,7 +71,7 @@ void ThreadTeam::start()
     }
 }
 
-// As far as the process may use others; where it cannot be had they run anywhere.
+// Moves the threads to other cores, as far as the process may use them; otherwise they run anywhere.
 void ThreadTeam::keepOffCallersCore()
 {
     const int core = ::sched_getcpu();
@@ -116,9 +116,8 @@ void ThreadTeam::share(std::size_t count, Call call, const void* context)
     std::rethrow_exception(std::exchange(m_failure, nullptr));
 }
 
-// Of those that sleep, which then wakes two others: a call that wakes takes the one who makes it up to 50 us on a
-// virtual machine. Either this sees a thread that is about to sleep, or that one sees the job: both store before they
-// load.
+// Wakes one sleeping thread, which then wakes two others: waking takes the caller up to 50 us on a virtual machine.
+// Either this call sees a thread that is about to sleep, or the thread sees the job: both store before they load.
 void ThreadTeam::wakeOne()
 {
     if (m_sleepers.load() == 0) return;
@@ -136,8 +135,8 @@ void ThreadTeam::workOn(unsigned thread)
         }
 }
 
-// Claims an item and runs it; false where none is left. What the caller wrote of the job is read after the claim alone:
-// until that item is done the caller does not come to write another job's.
+// Claims an item and runs it; returns false if none is left. The caller's data of the job is read only after the
+// claim: until that item is finished, the caller cannot write another job's.
 bool ThreadTeam::workOnce(Stretch& stretch, bool helps)
 {
     std::uint64_t claim = stretch.m_claim.load(std::memory_order_acquire);
@@ -174,7 +173,7 @@ void ThreadTeam::work(unsigned thread)
     }
 }
 
-// Until there is another job than the one done last; false when the team ends.
+// Waits for another job than the last one; returns false when the team ends.
 bool ThreadTeam::awaitJob(std::uint32_t done)
 {
     using Clock = std::chrono::steady_clock;

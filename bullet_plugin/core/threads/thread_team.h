@@ -1,20 +1,14 @@
-// A few threads that share short jobs with the thread that calls.
+// A few threads that share short jobs with the calling thread.
 //
-// Job: run a function once for each of some items, on whichever thread is free. Each thread begins with a stretch of
-// the items of its own, the same one in every job of as many items, so that what an item works on tends to be in its
-// core's cache; then it helps with those of others. Items are claimed one by one, never assigned: a thread that the
-// system does not run in time finds nothing left, and the caller does all of it where no other comes. Only one that
-// loses its core within an item makes the caller wait. So what a job computes must not depend on who runs it, nor on
-// the order of its items; all threads round as the caller does.
+// Job: run a function once per item, on any free thread. Each thread begins with its own range of the items, so that
+// their data tends to be in its core's cache, then helps with other ranges. Items are claimed one by one: a late
+// thread delays the caller only if it loses its core within an item. Results must not depend on the thread or the
+// order. All threads round as the caller does.
 //
-// Threads are started by the first job that has more than one item. They keep off the core that the caller runs on:
-// Linux would wake them there and, on a virtual machine, leave them there, one behind the other. They take no signals.
-// Cost: about a microsecond a job while they are awake. They look for the next job for kAwakeMicroseconds, then sleep;
-// waking one of them, which wakes two others, takes the caller 5 to 50.
+// Errors: an item's exception reaches the caller once all begun items have ended; the rest are skipped. run() belongs
+// to one thread at a time, and no item calls it. A child made by fork() must not use the team.
 //
-// Errors: what an item throws is thrown to the caller once all that were begun have ended; items that were not begun
-// are left out then. Where threads cannot be started there are fewer. run() belongs to one thread at a time, and no
-// item calls it. A child that fork() makes has none of the threads, and must not use the team.
+// Cost: about a microsecond per job while threads are awake. Details: docs/design_notes/threads.md.
 #pragma once
 
 #include <atomic>
@@ -35,12 +29,12 @@ class ThreadTeam
 public:
     // Longer than a solver's iterations between two jobs of a cloth of some thousand triangles.
     static constexpr int kAwakeMicroseconds = 200;
-    // By default: what more of them save is lost again where the caller reads what they wrote.
+    // Default maximum: the time saved by more threads is lost again where the caller reads their output.
     static constexpr unsigned kMostByDefault = 8;
 
     // threads: the caller's among them. 0: as many as the process may use cores, kMostByDefault at most.
     explicit ThreadTeam(unsigned threads);
-    // How many that are.
+    // Returns the team's size for the setting.
     static unsigned sizeFor(unsigned threads);
     ~ThreadTeam();
     ThreadTeam(const ThreadTeam&) = delete;
@@ -91,7 +85,7 @@ private:
     // Written before the items are offered, and not again before all of them are done.
     Call m_call = nullptr;
     const void* m_context = nullptr;
-    std::fenv_t m_environment;  // the caller's way to round and to treat subnormals, for whoever helps
+    std::fenv_t m_environment;  // the caller's rounding mode and treatment of subnormals, for every helper
 
     std::unique_ptr<Stretch[]> m_stretches;  // by thread, the caller's first
     std::atomic<std::uint32_t> m_job{0};     // number of the last one offered
@@ -105,7 +99,7 @@ private:
     std::atomic<bool> m_ends{false};
 };
 
-// The same, by the caller alone where it is not worth waking others.
+// Does the same, on the caller alone if waking other threads is not worth it.
 template <class Job>
 void runShared(ThreadTeam& threads, bool worth, std::size_t count, const Job& job)
 {
