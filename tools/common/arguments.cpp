@@ -8,6 +8,7 @@
 
 #include "tools/common/argument_mistakes.h"
 #include "tools/common/suggestion.h"
+#include "drape/version.h"
 
 namespace drape
 {
