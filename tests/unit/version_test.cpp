@@ -13,12 +13,12 @@ TEST(Version, StringIsMadeOfTheNumbers)
 {
     const std::string numbers = std::to_string(DRAPE_VERSION_MAJOR) + "." + std::to_string(DRAPE_VERSION_MINOR) + "." +
                                 std::to_string(DRAPE_VERSION_PATCH);
-    EXPECT_EQ(numbers, DRAPE_VERSION);
+    EXPECT_EQ(numbers, DRAPE_VERSION_STRING);
 }
 
 TEST(Version, HeaderAndCMakeAgree)
 {
-    EXPECT_STREQ(DRAPE_TEST_VERSION, DRAPE_VERSION);
+    EXPECT_STREQ(DRAPE_TEST_VERSION, DRAPE_VERSION_STRING);
 }
 }  // namespace
 }  // namespace drape::test

@@ -11,4 +11,4 @@
 // The patch version, an integer.
 #define DRAPE_VERSION_PATCH 0
 // The whole version as a string: "major.minor.patch".
-#define DRAPE_VERSION "0.2.0"
+#define DRAPE_VERSION_STRING "0.2.0"
