@@ -36,7 +36,7 @@ enum class ContactMode : std::uint32_t
     Automatic    // finds the contacts of Continuous, but runs the test only if motion is large enough
 };
 
-// What an app may choose before Drape starts.
+// Holds the choices of an app before Drape starts.
 struct Settings
 {
     // Selects the back end. Default: Auto.
@@ -81,7 +81,7 @@ struct Settings
     // like m_candidateLimit. Queries of meshes list as many answers.
     std::size_t m_contactLimit = std::size_t(1) << 24;
 
-    // Makes the device time every kernel launch, for Drape's own benchmarks. Costs some microseconds per launch.
+    // Makes the device time every kernel launch, for Drape's own benchmarks: every step runs on the device then.
     bool m_profileKernels = false;
 
     // Folder for compiled kernels and measurements. Empty means $XDG_CACHE_HOME/drape or ~/.cache/drape; "none" turns
