@@ -71,7 +71,8 @@ void acceptOnly(CLI::Option* option, const std::vector<std::string>& names)
 bool parseArguments(CLI::App& app, int argc, const char* const* argv, const std::function<std::string()>& conflict,
                     int& exitCode)
 {
-    app.set_version_flag("--version", app.get_name() + " (Drape) " + DRAPE_VERSION_STRING, "print the version and leave");
+    app.set_version_flag("--version", app.get_name() + " (Drape) " + DRAPE_VERSION_STRING,
+                         "print the version and leave");
     std::string problem;
     const auto printAndLeave = [&](const std::string& text)
     {
