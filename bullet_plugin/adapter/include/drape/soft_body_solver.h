@@ -1,7 +1,7 @@
 // Bullet's default soft body solver with Drape's collision step before it and contact rounds between its iterations.
 //
 // Pass it to btSoftRigidDynamicsWorld's constructor. solveConstraints() finds the contacts of the pairs noted during
-// dispatch, waits for the device once (again if fast paths are cut short), and lets Bullet iterate, with a contact
+// dispatch and waits for the device once, or again if fast paths are cut short. Bullet then iterates, with a contact
 // round before each iteration and closing rounds after the last. A body with contacts gets at least two iterations,
 // unless its piterations is 0. Bodies without a time step stay unchanged, and bodies of another solver are left to
 // Bullet. A kinematic mesh that comes near a sleeping body wakes it.

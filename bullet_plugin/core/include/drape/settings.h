@@ -88,10 +88,10 @@ struct Settings
     // the cache off. PoCL always keeps its kernels itself, in $XDG_CACHE_HOME/pocl or ~/.cache/pocl.
     std::string m_cacheFolder;
 
-    // Receives one line without a line feed about a problem of the world that no return value reports: a pair that
-    // starts a step intersecting, cloth that is left out, a margin that is negative or as large as the mesh. Called
-    // once while the problem lasts, on the thread that steps the world. nullptr means no lines. Exceptions from it are
-    // dropped.
+    // Receives one line without a line feed about a problem of the world that no return value reports. Problems are a
+    // pair that starts a step intersecting, cloth that is left out, and a margin that is negative or as large as the
+    // mesh. Called once while the problem lasts, on the thread that steps the world. nullptr means no lines. Exceptions
+    // from it are dropped.
     std::function<void(const char*)> m_log = logToStandardError;
 
     // Selects algorithms, for comparing them. Contacts do not depend on it.
