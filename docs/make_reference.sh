@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Makes the API reference of the installed headers: make_reference.sh [FOLDER]
 #
-# Writes FOLDER/html/index.html (build/reference by default). Needs Doxygen (apt-get install doxygen). Fails on any
+# Writes FOLDER/html/index.html (build/reference by default). Needs Doxygen (apt-get install doxygen). Fails on a
 # warning, such as a public function without a comment.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -47,10 +47,10 @@ struct ContactInfo
 // comes to rest at this distance. Bullet's default margin of a soft body is 0.25 m; set a smaller one.
 //
 // A kinematic rigid body moves over the step with the velocity that Bullet derives from its interpolation transform and
-// its world transform or motion state. To teleport it, set both transforms. If only the world transform is set, a change
-// by more than the body's radius, or a right angle, can be a teleport. Drape treats it as one if cloth is anchored to
-// the body, if the app moved nodes along with it, or after teleported(). A body is at rest in its first step. A change
-// of a static object's pose, or of a child's in its compound, is a teleport.
+// its world transform or motion state. To teleport it, set both transforms. If only the world transform is set, a
+// change by more than the body's radius, or a right angle, can be a teleport. Drape treats it as one if cloth is
+// anchored to the body, if the app moved nodes along with it, or after teleported(). A body is at rest in its first
+// step. A change of a static object's pose, or of a child's in its compound, is a teleport.
 //
 // If memory runs out, a call does what its comment says, and later calls and steps go on.
 class Plugin
