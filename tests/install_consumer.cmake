@@ -1,9 +1,9 @@
 # The test install.consumer installs Drape into WORK, then builds and runs examples/consumer against the installation.
 #
-# It builds once as a CMake package and once using pkg-config. It also compiles every block of C++ in the README using
-# pkg-config.
-# Input: BUILD (Drape's build folder), SOURCE (the consumer), README, WORK (made anew), LIBDIR, COMPILER, SANITIZE,
-# DOUBLE (the precision of Bullet that Drape is built for).
+# It builds once as a CMake package and once using pkg-config. It also compiles and runs every block of C++ in README.md
+# and docs/*.md using pkg-config.
+# Input: BUILD (Drape's build folder), SOURCE (the consumer), DOCUMENTS (the folder of README.md and docs/), WORK (made
+# anew), LIBDIR, COMPILER, SANITIZE, DOUBLE (the precision of Bullet that Drape is built for).
 cmake_minimum_required(VERSION 3.25)
 function(must)
   execute_process(COMMAND ${ARGV} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
@@ -46,38 +46,44 @@ foreach(stage "is built for Bullet in" "drapeIsBuiltForBulletIn(Double|Single)Pr
   list(APPEND other -UDRAPE_BULLET_DOUBLE)
 endforeach()
 
-# Every block of C++ in the README must be a program that compiles as it stands, with nothing around it, and runs well.
-file(READ ${README} text)
+# Every block of C++ in the documents must be a program that compiles as it stands, with nothing around it, and runs well.
 set(opening "\n```[ ]*(cpp|c\\+\\+|C\\+\\+|cc|cxx)[^\n]*\n")
 set(count 0)
-string(REGEX MATCH "${opening}" fence "${text}")
-while(fence)
-  string(FIND "${text}" "${fence}" begin)
-  string(LENGTH "${fence}" length)
-  math(EXPR begin "${begin} + ${length}")
-  string(SUBSTRING "${text}" ${begin} -1 text)
-  string(FIND "${text}" "\n```" end)
-  if(end EQUAL -1)
-    message(FATAL_ERROR "A block of C++ in ${README} does not end")
-  endif()
-  math(EXPR next "${end} + 4")
-  string(SUBSTRING "${text}" 0 ${end} block)
-  string(SUBSTRING "${text}" ${next} -1 text)
-  math(EXPR count "${count} + 1")
-  set(program ${WORK}/readme_${count})
-  file(WRITE ${program}.cpp "${block}\n")
-  must(${COMPILER} -std=c++11 ${flags} ${program}.cpp -o ${program} ${package_flags}
-    -Wl,-rpath,${prefix}/${LIBDIR})
-  execute_process(COMMAND ${program} OUTPUT_VARIABLE report_${count} COMMAND_ERROR_IS_FATAL ANY)
-  message("${report_${count}}")
+file(GLOB documents ${DOCUMENTS}/docs/*.md)
+foreach(document ${DOCUMENTS}/README.md ${documents})
+  file(READ ${document} text)
+  cmake_path(GET document STEM name)
+  set(${name}_count 0)
   string(REGEX MATCH "${opening}" fence "${text}")
-endwhile()
-if(count LESS 2)
-  message(FATAL_ERROR "The README has ${count} blocks of C++, fewer than the app's and the queries'")
+  while(fence)
+    string(FIND "${text}" "${fence}" begin)
+    string(LENGTH "${fence}" length)
+    math(EXPR begin "${begin} + ${length}")
+    string(SUBSTRING "${text}" ${begin} -1 text)
+    string(FIND "${text}" "\n```" end)
+    if(end EQUAL -1)
+      message(FATAL_ERROR "A block of C++ in ${document} does not end")
+    endif()
+    math(EXPR next "${end} + 4")
+    string(SUBSTRING "${text}" 0 ${end} block)
+    string(SUBSTRING "${text}" ${next} -1 text)
+    math(EXPR count "${count} + 1")
+    math(EXPR ${name}_count "${${name}_count} + 1")
+    set(program ${WORK}/${name}_${${name}_count})
+    file(WRITE ${program}.cpp "${block}\n")
+    must(${COMPILER} -std=c++11 ${flags} ${program}.cpp -o ${program} ${package_flags}
+      -Wl,-rpath,${prefix}/${LIBDIR})
+    execute_process(COMMAND ${program} OUTPUT_VARIABLE ${name}_${${name}_count} COMMAND_ERROR_IS_FATAL ANY)
+    message("${${name}_${${name}_count}}")
+    string(REGEX MATCH "${opening}" fence "${text}")
+  endwhile()
+endforeach()
+if(NOT README_1 MATCHES "^Drape on .* ([1-9][0-9]*) contacts" OR NOT README_1 MATCHES "\n\n$")
+  message(FATAL_ERROR "The README's program does not report contacts of a pair that Drape handles")
 endif()
-if(NOT report_1 MATCHES "^Drape on .* ([1-9][0-9]*) contacts" OR NOT report_1 MATCHES "\n\n$")
-  message(FATAL_ERROR "The README's first program does not report contacts of a pair that Drape has")
+if(NOT queries_1 MATCHES "^1 near, 1 intersecting\nhit at 0\\.[45]")
+  message(FATAL_ERROR "The program of docs/queries.md does not find the pair that meets")
 endif()
-if(NOT report_2 MATCHES "^1 near, 1 intersecting\nhit at 0\\.[45]")
-  message(FATAL_ERROR "The README's second program does not find what meets")
+if(NOT using_1 MATCHES "^step: \nDrape handles the pair\n")
+  message(FATAL_ERROR "The program of docs/using.md does not run with Drape")
 endif()

@@ -8,6 +8,7 @@
 
 #include "tools/common/argument_mistakes.h"
 #include "tools/common/suggestion.h"
+#include "drape/version.h"
 
 namespace drape
 {
@@ -110,7 +111,8 @@ void acceptOnly(CLI::Option* option, const std::vector<std::string>& names)
 bool parseArguments(CLI::App& app, int argc, const char* const* argv, const std::function<std::string()>& conflict,
                     int& exitCode)
 {
-    app.set_version_flag("--version", app.get_name() + " (Drape) " + DRAPE_VERSION, "print the version and exit");
+    app.set_version_flag("--version", app.get_name() + " (Drape) " + DRAPE_VERSION_STRING,
+                         "print the version and exit");
     std::string problem;
     const auto printAndLeave = [&](const std::string& text)
     {

@@ -11,6 +11,7 @@
 #include "bullet_plugin/core/device/embedded_kernels.h"
 #include "bullet_plugin/core/device/processor_name.h"
 #include "bullet_plugin/core/threads/thread_team.h"
+#include "drape/version.h"
 
 namespace drape
 {
@@ -103,7 +104,7 @@ CrossoverCache::CrossoverCache(const Settings& settings, const DeviceInfo& devic
             << computeUnits << threadsOf(device) << "\nhost " << oneLine(processorName()) << " threads "
             << ThreadTeam::sizeFor(settings.m_threads) << "\nsettings mode " << int(settings.m_mode) << " activation "
             << settings.m_activation << " reduce " << settings.m_reduceContacts << "\n";
-    state << "driver " << oneLine(device.m_driver) << "\ndrape " << DRAPE_VERSION << " kernels " << kernelsHash()
+    state << "driver " << oneLine(device.m_driver) << "\ndrape " << DRAPE_VERSION_STRING << " kernels " << kernelsHash()
           << " host " << kHostRevision << "\n";
     m_machine = machine.str();
     m_state = state.str();

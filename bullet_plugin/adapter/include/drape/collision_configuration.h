@@ -1,8 +1,8 @@
-// Bullet's soft body collision configuration with cloth against triangle meshes handed to Drape.
+// Bullet's soft body collision configuration with Drape's algorithm for cloth against triangle meshes.
 //
-// Use it in place of btSoftBodyRigidBodyCollisionConfiguration when the dispatcher is built. Pairs that Drape does not
-// handle (Plugin::whyStock tells) get Bullet's own algorithm, decided anew at every step; but Bullet itself asks for an
-// algorithm only once a pair, so that an object whose shape becomes one of another kind needs its pairs cleaned
+// Use it in place of btSoftBodyRigidBodyCollisionConfiguration when the dispatcher is built. Drape decides at every
+// step which pairs it handles; Plugin::whyStock() names the reason for the others, which Bullet's own algorithm
+// handles. Bullet asks for an algorithm once per pair: after an object's shape changes its kind, clean its pairs
 // (btOverlappingPairCache::cleanProxyFromPairs). C++11.
 #pragma once
 
@@ -16,12 +16,15 @@ namespace drape
 class Plugin;
 class PluginState;
 
+// Registers Drape's algorithm. It shares the plugin's state and must outlive the world, as Bullet demands.
 class CollisionConfiguration : public btSoftBodyRigidBodyCollisionConfiguration
 {
 public:
+    // Registers the algorithm of `plugin`; `info` is passed to Bullet.
     explicit CollisionConfiguration(
         Plugin& plugin, const btDefaultCollisionConstructionInfo& info = btDefaultCollisionConstructionInfo());
 
+    // Returns Drape's algorithm for a soft body and a concave mesh, Bullet's own otherwise. Called by Bullet.
     btCollisionAlgorithmCreateFunc* getCollisionAlgorithmCreateFunc(int proxyType0, int proxyType1) override;
 
 private:

@@ -1,5 +1,5 @@
 // Drape: cloth against triangle meshes in Bullet, computed on an OpenCL device or the host. This header includes the
-// rest.
+// other headers that a Bullet app needs.
 //
 //   drape::Plugin plugin;
 //   drape::CollisionConfiguration configuration(plugin);   // instead of btSoftBodyRigidBodyCollisionConfiguration
@@ -13,6 +13,7 @@
 #include "drape/report.h"
 #include "drape/settings.h"
 #include "drape/soft_body_solver.h"
+#include "drape/version.h"
 
 class btBroadphaseInterface;
 class btCollisionDispatcher;
@@ -20,17 +21,19 @@ class btCollisionWorld;
 
 namespace drape
 {
-// For a dispatcher that exists already: registers Drape's algorithm in both orders and throws away the algorithms of
-// pairs with soft bodies that the broad phase holds, so that they are made anew. The world must have been built with a
-// SoftBodySolver of this plugin, else its cloths stay with Bullet (Plugin::whyStock says so). The plugin must outlive
-// the dispatcher, or be taken out of it by uninstall(). Call between steps. A dispatcher has one plugin: returns false,
-// with nothing changed, where it has another one's algorithm, or where memory runs out.
+// Adds the plugin to a dispatcher that exists already. Registers Drape's algorithm in both orders and discards the
+// algorithms of soft body pairs in the broad phase, so that Bullet makes them anew. Build the world with a
+// SoftBodySolver of this plugin; otherwise its cloths stay with Bullet, and Plugin::whyStock() says so. The plugin must
+// outlive the dispatcher or leave it through uninstall(). Call between steps. Returns false and changes nothing if the
+// dispatcher has another plugin's algorithm or memory runs out.
 bool install(Plugin& plugin, btCollisionDispatcher& dispatcher, btBroadphaseInterface& broadphase);
+// Adds the plugin to the dispatcher, with the broad phase of `world`; see the other overload.
 bool install(Plugin& plugin, btCollisionDispatcher& dispatcher, btCollisionWorld& world);
 
-// Gives such pairs back to Bullet's own algorithm, whether the plugin came by install() or by a CollisionConfiguration,
-// and frees the plugin's algorithms. Call between steps. Returns false, with nothing changed, where the dispatcher does
-// not have this plugin's algorithm, or where memory runs out.
+// Gives soft body pairs back to Bullet's own algorithm and frees the plugin's algorithms, after install() or with a
+// CollisionConfiguration. Call between steps. Returns false and changes nothing if the dispatcher does not have this
+// plugin's algorithm or memory runs out.
 bool uninstall(Plugin& plugin, btCollisionDispatcher& dispatcher, btBroadphaseInterface& broadphase);
+// Removes the plugin from the dispatcher, with the broad phase of `world`; see the other overload.
 bool uninstall(Plugin& plugin, btCollisionDispatcher& dispatcher, btCollisionWorld& world);
 }  // namespace drape

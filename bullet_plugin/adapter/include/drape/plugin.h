@@ -1,33 +1,13 @@
-// The plugin: one Drape pipeline with its device, and everything an app may ask it.
+// The plugin: one Drape pipeline with its device, and the questions an app may ask about it.
 //
-// Job: choose the device, keep the mirrors of cloths and obstacles, answer questions about the last step. Input:
-// Settings. Guarantee: no exception leaves this class; when Drape cannot start, error() says why and every pair goes to
-// Bullet's own algorithm. Where memory runs out, a call does what its comment says then; later calls and steps go on.
-// All of it computes in the default floating-point environment, whatever traps, rounding or flushing the app has set,
-// and leaves the app's as it was. SI units, world frame. C++11.
+// Input: Settings. Guarantee: no exception leaves this class. If Drape cannot start, error() says why and Bullet's own
+// algorithm handles every pair. Calls compute in the default floating-point environment and restore the app's. SI
+// units, world frame. C++11.
 //
-// Make it before the collision configuration and the solver; they keep its state alive, so that it may go before them,
-// if Bullet's own rule holds (configuration and solver outlive the world). A dispatcher given to install() must be
-// destroyed before the plugin. One plugin serves one thread; it may serve several worlds of that thread, each with a
-// solver of its own. Several threads may have a plugin each. A dispatcher of several threads (btCollisionDispatcherMt)
-// is not supported: Bullet's soft bodies are not safe with it either. A child that fork() makes has neither the
-// plugin's threads nor its device: it must not use or destroy the plugin, and has to end by exec() or _exit().
-//
-// The thickness of a pair, at which cloth comes to rest, is the soft body's collision margin plus the mesh shape's
-// margin (body->getCollisionShape()->getMargin() + shape->getMargin()); at least 0.1 mm. Bullet makes a soft body's
-// margin 0.25 m.
-//
-// Kinematic rigid bodies move over the step by the velocity that Bullet derives, when stepSimulation() begins, from the
-// interpolation transform and the world transform (or the motion state's). To teleport one, set both transforms to the
-// new pose: Bullet's anchors, too, follow the velocity that it derives. Where the world transform alone is set, Drape
-// takes a sudden change by more than the body's radius, or a right angle, for a teleport if cloth hangs on the body
-// by an anchor or the app moved nodes of a cloth along with it, or if teleported() says so. A pose that is set later,
-// by a tick's callback or while the body sleeps, is motion from the last one (DISABLE_DEACTIVATION keeps it awake). A
-// body rests in the first step in which it is there. A change of a static object's pose, or of a child's in its
-// compound, is a teleport.
-//
-// Cloth that begins a step with its triangles through a mesh, because it was put there or the mesh was, is reported
-// (kStepStartsIntersecting) and pushed out of closed meshes; nodes are checked again wherever an app moves them.
+// Make the plugin before the collision configuration and the solver. They share its state, so the plugin may be
+// destroyed first; a dispatcher given to install() must be destroyed before the plugin. One plugin serves one thread
+// and any number of worlds of that thread, each with its own solver. btCollisionDispatcherMt is not supported. A child
+// made by fork() must not use or destroy the plugin; it must end with exec() or _exit().
 #pragma once
 
 #include <memory>
@@ -47,91 +27,101 @@ namespace drape
 {
 class PluginState;
 
-// One contact of the last step, for debugging and drawing; redundant ones, which others already enforce, are left out
-// (Settings::m_reduceContacts). The pointers are those of that step: do not keep them.
+// One contact of the last step, for debugging and drawing. The pointers are valid until the objects are removed; do not
+// keep them over a step.
 struct ContactInfo
 {
-    const btSoftBody* m_cloth;
-    const btCollisionObject* m_obstacle;
-    int m_nodes[3];      // of the cloth feature, indices into m_cloth->m_nodes; -1 where unused
-    float m_weights[3];  // of these nodes, sum 1
-    float m_normal[3];   // unit, from the obstacle to the cloth
-    float m_point[3];    // m, on the obstacle
-    float m_gap;         // m, at the predicted end of the step, thickness subtracted
-    float m_thickness;   // m
+    const btSoftBody* m_cloth;            // the cloth
+    const btCollisionObject* m_obstacle;  // the obstacle
+    int m_nodes[3];                       // indices of the cloth feature in m_cloth->m_nodes; -1 if unused
+    float m_weights[3];                   // weights of these nodes, with the sum 1
+    float m_normal[3];                    // unit vector from the obstacle to the cloth
+    float m_point[3];                     // point on the obstacle, m
+    float m_gap;                          // distance at the step's predicted end, thickness subtracted, m
+    float m_thickness;                    // thickness of the pair, m
 };
 
+// Owns the device and the copies of cloths and obstacles on it.
+//
+// The thickness of a pair is the soft body's collision margin plus the mesh shape's margin, and at least 0.1 mm. Cloth
+// comes to rest at this distance. Bullet's default margin of a soft body is 0.25 m; set a smaller one.
+//
+// A kinematic rigid body moves over the step with the velocity that Bullet derives from its interpolation transform and
+// its world transform or motion state. To teleport it, set both transforms. If only the world transform is set, a
+// change by more than the body's radius, or a right angle, can be a teleport. Drape treats it as one if cloth is
+// anchored to the body, if the app moved nodes along with it, or after teleported(). A body is at rest in its first
+// step. A change of a static object's pose, or of a child's in its compound, is a teleport.
+//
+// If memory runs out, a call does what its comment says, and later calls and steps go on.
 class Plugin
 {
 public:
+    // Chooses the device and compiles its kernels: milliseconds to seconds, see DeviceReport. Failures are in error().
     explicit Plugin(const Settings& settings = Settings());
+    // Releases the pipeline unless a configuration or solver still uses it.
     ~Plugin();
+    // A plugin owns a device: no copies.
     Plugin(const Plugin&) = delete;
+    // A plugin owns a device: no copies.
     Plugin& operator=(const Plugin&) = delete;
 
-    bool ready() const;  // false: every pair goes to Bullet's own algorithm, as far as whyStock() has it
-    // What failed, with the whole log; empty when nothing did. ready() all the same: the host took over from a device.
-    // "out of memory" where there is none for the text, or was none for the plugin.
+    // Returns true if Drape runs. If false, Bullet's own algorithm handles every pair.
+    bool ready() const;
+    // Returns the failure with its whole log; empty if there was none. May be set although ready() is true: then the
+    // host took over from a device. "out of memory" if memory ran out.
     std::string error() const;
 
+    // Returns the device and the reason for it. Valid as long as the plugin.
     const DeviceReport& device() const;
-    const StepStatistics& statistics() const;  // of the last step that one of this plugin's solvers solved
-    // Of that step, in canonical order; made by the call. Empty where memory runs out.
+    // Returns the statistics of the last step of this plugin's solvers. Valid as long as the plugin.
+    const StepStatistics& statistics() const;
+    // Returns the contacts of that step in canonical order; the call makes the list. Empty if memory runs out.
     std::vector<ContactInfo> contacts() const;
-    // Device, why it, and the last step in one line. "out of memory" where there is none for it.
+    // Returns one line with the device, the reason for it and the last step. "out of memory" if memory runs out.
     std::string report() const;
 
-    // Empty when Drape handles the pair, else the reason why Bullet's own algorithm does. For a compound the first
-    // child that Drape does not handle gives the reason; a mesh that does not lie where its compound does, which
-    // Bullet's own would miss, is named as such. After an object got a shape of another kind, Bullet keeps what it
-    // chose for the old one until its pairs are cleaned (cleanProxyFromPairs); this goes by the shape that it has. For
-    // objects in a world the answer holds for that world's dispatcher and for the solver that steps it. Which solver
-    // that is shows in the first step only: until then it is taken to be the soft body's own. "out of memory" where
-    // that keeps it from telling.
+    // Returns an empty string if Drape handles the pair, otherwise the reason why Bullet's own algorithm does. For a
+    // compound the first child that Drape does not handle gives the reason. For objects in a world the answer is about
+    // that world's dispatcher and solver; before the first step the solver is taken from the soft body. "out of memory"
+    // if memory runs out.
     std::string whyStock(const btCollisionObject* objectA, const btCollisionObject* objectB) const;
 
-    // Lists what is wrong with a world as far as the plugin can see, a line each; empty when nothing is: a world
-    // without the plugin's solver or algorithm, pairs that are left to Bullet and why, cloth whose triangles intersect
-    // a mesh or that lies inside of one, nodes that are not finite, margins that are negative or out of proportion, and
-    // what the last step's status says. For development: it looks at every pair, which takes milliseconds to seconds.
-    // Between steps. "out of memory" where that keeps it from telling.
+    // Lists problems of a world, one line each; empty if there are none. Checks the world's solver and dispatcher,
+    // pairs left to Bullet, cloth that intersects a mesh or lies inside one, nodes that are not finite, margins out of
+    // proportion, and the last step's status. For development: takes milliseconds to seconds. Call between steps. "out
+    // of memory" if memory runs out.
     std::string diagnose(const btCollisionWorld& world) const;
 
-    // Reads a soft body, or an obstacle's meshes (a compound's children, too), and brings them to the device: without
-    // it the first step in which cloth comes near pays for that. What Drape does not handle costs nothing. Kept,
-    // whether paired or not, until release(), before which the object must live; changes are noticed as of any other.
-    // An object in a world or not; not while that is stepped. Where cost decides between host and device
-    // (Settings::m_crossover), for the device, and for the host while all that is prepared may stay there. Where memory
-    // runs out, nothing stays prepared, and cloth stands still in the next step, whose status says so.
+    // Brings a soft body or an obstacle's meshes to the device, so that the first step near it does not pay for this.
+    // The object need not be in a world. It is kept until release(); it must live until then. Objects that Drape does
+    // not handle cost nothing. Call between steps. If memory runs out, nothing is prepared, and cloth stands still in
+    // the next step with kStepOutOfMemory.
     void prepare(const btCollisionObject* object);
-    // All of a world's objects at once, which on the host takes less time than one after the other.
+    // Prepares all objects of a world at once, which is faster on the host.
     void prepare(const btCollisionWorld& world);
-    // From now on the object is kept as one that was never prepared: for two seconds of steps after its last pair. One
-    // that was not prepared may be given.
+    // Ends prepare(): the object is kept for two seconds of steps after its last pair. Accepts objects that were never
+    // prepared.
     void release(const btCollisionObject* object);
-    // All objects that are in a world.
+    // Releases all objects of a world.
     void release(const btCollisionWorld& world);
 
-    // Says that vertices of a mesh shape were moved in place, and wakes soft bodies that sleep beside it. Refits (a
-    // changed bounding box), scaling and changes that touch one of the vertices that are sampled each step are noticed
-    // without it. What vertices moved since the step before is motion within the coming step, as a body's is; more than
-    // half of the mesh's size is another pose, where cloth starts anew. In the first step that an obstacle has a soft
-    // body near, it has not moved.
+    // Announces that vertices of a mesh shape moved in place, and wakes soft bodies that sleep beside it. Drape notices
+    // changed bounding boxes, scaling and sampled vertices without this call. The change is motion within the coming
+    // step; vertices that move by more than half of the mesh's size are a teleport.
     void obstacleChanged(const btCollisionShape* shape);
 
-    // Says that an obstacle or a soft body was put where it is and did not move there, or is about to be, before the
-    // next step: nothing is swept on its way, and what intersects there is reported and pushed apart. Needed where an
-    // app sets a kinematic body's world transform alone. Unknown objects are left as they are.
+    // Announces that an obstacle or a soft body is put elsewhere before the next step. Drape then sweeps no path, and
+    // reports and pushes apart what intersects. Needed if an app sets only a kinematic body's world transform. Ignores
+    // unknown objects.
     void teleported(const btCollisionObject* object);
 
-    // Whether only a mesh shape's front is solid, the side from which its triangles' corners run counter-clockwise:
-    // cloth that is behind may come out instead of being caught inside. A mirrored mesh (scaled by a negative number)
-    // keeps its front. Off unless it is switched on. The shape (a scaled one's own, or the mesh shape that it shows) is
-    // remembered by its address until it is switched off again. Where memory runs out it stays as it was, and cloth
-    // stands still in the next step, whose status says so.
+    // Makes only the front of a mesh shape solid: the side from which its triangles run counter-clockwise. Cloth behind
+    // it may come out. Off by default. A mirrored mesh keeps its front. The shape is remembered by its address until
+    // this is switched off. If memory runs out, nothing changes, and cloth stands still in the next step with
+    // kStepOutOfMemory.
     void setOneSided(const btCollisionShape* shape, bool oneSided);
 
-    // For the other classes of this library.
+    // Returns the state shared with Drape's other classes; not for apps.
     const std::shared_ptr<PluginState>& state() const { return m_state; }
 
 private:

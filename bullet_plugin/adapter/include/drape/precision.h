@@ -1,9 +1,8 @@
-// Keeps an app in one of Bullet's precisions from being built with a library in the other: their records differ in size
-// and the app would crash.
+// Keeps an app in one of Bullet's precisions from linking a library built for the other: their records differ in size.
 //
-// BT_USE_DOUBLE_PRECISION is Bullet's macro, as the app has it; DRAPE_BULLET_DOUBLE is the library's, which its CMake
-// package and its pkg-config file define. Where neither of these is used, the linker misses a symbol whose name says
-// which precision the app asks for. Cost: a pointer in each translation unit.
+// BT_USE_DOUBLE_PRECISION is Bullet's macro, set by the app. DRAPE_BULLET_DOUBLE describes the library; its CMake
+// package and its pkg-config file define it. The preprocessor reports a mismatch if both are known. Otherwise the
+// linker misses a symbol whose name says which precision the app asks for. Cost: one pointer per translation unit.
 #pragma once
 
 #ifdef BT_USE_DOUBLE_PRECISION

@@ -1,17 +1,13 @@
-// Bullet's default soft body solver with Drape's collision step in front of it and contact rounds between its
-// iterations.
+// Bullet's default soft body solver with Drape's collision step before it and contact rounds between its iterations.
 //
-// Give it to btSoftRigidDynamicsWorld's constructor. In solveConstraints it sends the pairs noted during dispatch to
-// the device, waits once (again when the paths of fast nodes had to be cut), and lets Bullet solve, iteration by
-// iteration, with a round over the contacts before each and the closing rounds after the last. A body with
-// contacts gets two iterations at least, whatever its piterations (but for 0). Bullet's m_rcontacts and
-// m_scontacts hold Bullet's own contacts only; Plugin::contacts() has Drape's. A body whose step has no time (a step of
-// 0, a timescale of 0 or less) stays as it is, and nothing is looked for. A body that sleeps is woken by a kinematic
-// mesh that comes near it. Bodies of another solver are left to Bullet. One solver serves one world.
+// Pass it to btSoftRigidDynamicsWorld's constructor. solveConstraints() finds the contacts of the pairs noted during
+// dispatch and waits for the device once, or again if fast paths are cut short. Bullet then iterates, with a contact
+// round before each iteration and closing rounds after the last. A body with contacts gets at least two iterations,
+// unless its piterations is 0. Bodies without a time step stay unchanged, and bodies of another solver are left to
+// Bullet. A kinematic mesh that comes near a sleeping body wakes it.
 //
-// No exception leaves this class. Where memory runs out in a step, cloth that Drape takes stands still in it, and the
-// step's status says so (kStepOutOfMemory); the next step goes on. A solver that could not be made for want of memory
-// acts as Bullet's default one, and Plugin::whyStock says so. C++11.
+// Guarantee: no exception leaves this class. If memory runs out in a step, cloth that Drape handles stands still and
+// the status reports kStepOutOfMemory. Cost: see StepStatistics. C++11.
 #pragma once
 
 #include <memory>
@@ -27,13 +23,20 @@ class Plugin;
 class PluginState;
 struct StepObstacle;
 
+// Solves the soft bodies of one world. Bullet's m_rcontacts and m_scontacts hold the contacts of Bullet's own pairs
+// only; Plugin::contacts() returns Drape's.
 class SoftBodySolver : public btDefaultSoftBodySolver
 {
 public:
+    // Makes a solver that shares the plugin's state. If memory runs out it acts like Bullet's default solver, and
+    // Plugin::whyStock() says so.
     explicit SoftBodySolver(Plugin& plugin);
+    // Destroy the solver after the world that uses it.
     ~SoftBodySolver() override;
 
+    // Predicts the soft bodies over `dt` (s). Called by Bullet.
     void predictMotion(btScalar dt) override;
+    // Finds the contacts and solves the soft bodies over `dt` (s). Called by Bullet.
     void solveConstraints(btScalar dt) override;
 
 private:

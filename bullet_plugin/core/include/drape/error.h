@@ -1,18 +1,25 @@
-// A failure of the environment (no device, a kernel that does not build), or settings, meshes and queries that cannot
-// be used: the call that failed, the kernel, triangle or field it concerned, and the whole log. No exception crosses
-// the public interface.
+// The description of a failure.
+//
+// Drape reports a failure of the environment (no device, a kernel that does not build) and unusable input (settings,
+// meshes, queries) as an Error. No exception crosses the public interface. C++11.
 #pragma once
 
 #include <string>
 
+// Everything of Drape's interface but the query records' macros.
 namespace drape
 {
+// Names the call that failed and its cause. An Error owns its text.
 struct Error
 {
-    std::string m_call;    // what was attempted, with the OpenCL code; empty when nothing failed
-    std::string m_detail;  // kernel, file, log; may have many lines
+    // The call that failed, with the OpenCL code; empty if nothing failed.
+    std::string m_call;
+    // The kernel, triangle or field concerned, and the whole log; may have many lines.
+    std::string m_detail;
 
+    // Returns true if this describes a failure.
     bool failed() const { return !m_call.empty(); }
+    // Returns the call, then the detail on lines of its own.
     std::string text() const { return m_detail.empty() ? m_call : m_call + "\n" + m_detail; }
 };
 }  // namespace drape

@@ -1,5 +1,6 @@
-// A triangle mesh as a caller hands it over: the caller's own arrays, which are read during the call only. Lengths in
-// metres. C++11.
+// A triangle mesh as the caller passes it: pointers to the caller's arrays.
+//
+// Drape reads the arrays during the call only and keeps no pointer. Lengths are metres. C++11.
 #pragma once
 
 #include <cstddef>
@@ -7,28 +8,33 @@
 
 namespace drape
 {
-// Triangles over vertices. A mesh with an index outside [0, vertexCount), or without one of its arrays, is refused by
-// every call, with an Error; triangles and edges that repeat an index are ignored.
+// Triangles over vertices. Every call refuses a mesh with an index outside [0, m_vertexCount) or a missing array, and
+// reports an Error. Triangles and edges that repeat an index are ignored. The fields behind m_vertexCount apply to
+// steps; queries read m_edges only.
 struct MeshDescription
 {
-    const std::int32_t* m_triangles = nullptr;  // 3 per triangle
+    // Vertex indices, 3 per triangle.
+    const std::int32_t* m_triangles = nullptr;
+    // Number of triangles.
     std::size_t m_triangleCount = 0;
-    const float* m_positions = nullptr;  // x y z per vertex, m
+    // Vertex positions, x y z per vertex, m.
+    const float* m_positions = nullptr;
+    // Number of vertices.
     std::size_t m_vertexCount = 0;
-    // What follows counts in steps alone, not in queries; but Queries::meshPairs takes m_edges.
-    // Of an obstacle: only its front counts, the side from which its triangles' corners run counter-clockwise. Cloth
-    // behind it is free to come out.
+    // Makes only the front of an obstacle solid: the side from which its triangles run counter-clockwise. Cloth behind
+    // it may come out.
     bool m_oneSided = false;
-    // Of a cloth: vertices without a triangle collide as its nodes do.
+    // Lets vertices of a cloth that are in no triangle collide like its other nodes.
     bool m_looseVertices = false;
-    // Edges of a cloth that are not a triangle's, as of a rope: 2 vertices each. They collide as its triangles' edges
-    // do, and so do their vertices. One that an edge of a triangle or an earlier one repeats is ignored.
+    // Edges of a cloth that belong to no triangle, such as those of a rope; 2 vertex indices each. They and their
+    // vertices collide like the edges and vertices of triangles. Repeated edges are ignored.
     const std::int32_t* m_edges = nullptr;
+    // Number of edges in m_edges.
     std::size_t m_edgeCount = 0;
-    // Of a cloth: the thickness at which it collides with itself, m; 0: it does not. A pair of its features comes no
-    // nearer than this, or than half of the distance that they have at rest where that is less.
+    // Thickness at which a cloth collides with itself, m; 0 turns this off. Two features keep this distance, or half of
+    // their distance at rest if that is less.
     float m_selfThickness = 0.0f;
-    // Of a cloth that does: where its nodes are at rest, x y z per vertex, m. Null: m_positions.
+    // Positions of a cloth's nodes at rest, x y z per vertex, m; used with m_selfThickness. Null means m_positions.
     const float* m_restPositions = nullptr;
 };
 }  // namespace drape

@@ -1,7 +1,7 @@
-// Questions about moving features and single triangles, with their answers: the records of drape/queries.h.
+// Records of questions about moving features and triangles, and of their answers; see drape/queries.h.
 //
-// The same declarations serve C++ and OpenCL C, so that a device reads what a caller wrote: 32-bit scalars only, no
-// padding. Lengths in metres. Needs no other header. C++11.
+// C++ and OpenCL C share these declarations, so that a device reads what the caller wrote: 32-bit scalars only, no
+// padding. Lengths are metres. Needs no other header. C++11.
 #ifndef DRAPE_QUERY_RECORDS_H
 #define DRAPE_QUERY_RECORDS_H
 
@@ -10,38 +10,56 @@ namespace drape
 {
 #endif
 
-// Kinds of feature pairs.
+// Kind of a feature pair: a vertex and a face.
 #define DRAPE_VERTEX_FACE 0u
+// Kind of a feature pair: two edges.
 #define DRAPE_EDGES 1u
 
-// Do four moving vertices touch: a vertex and a face, or two edges?
+// Asks if two moving features touch: a vertex and a face, or two edges.
 typedef struct CcdQuery
 {
-    float m_start[12];  // m, x y z of the four at the step's start: the vertex and the face's, or edge by edge
+    // x y z of the four vertices at the step's start, m: the vertex and the face's corners, or edge by edge.
+    float m_start[12];
+    // x y z of the four vertices at the step's end, m, in the order of m_start.
     float m_end[12];
-    unsigned int m_kind;  // DRAPE_VERTEX_FACE or DRAPE_EDGES
+    // DRAPE_VERTEX_FACE or DRAPE_EDGES.
+    unsigned int m_kind;
 } CcdQuery;
 
-// How continuous collision searches; defaultCcdSettings() has the working defaults.
+// Parameters of the continuous search; defaultCcdSettings() returns working defaults.
 typedef struct CcdSettings
 {
-    float m_separation;       // m, ≥ 0: features this near count as touching
-    float m_tolerance;        // of the pair's extent: where the features' offset varies by less, they touch
-    float m_timeTolerance;    // of the step: the time is searched to this; 1: any hit will do and its time is 0
-    unsigned int m_boxLimit;  // boxes looked at before a search ends with the safe answer, a hit
+    // Distance at which features count as touching, m, ≥ 0.
+    float m_separation;
+    // Variation of the features' offset below which they count as touching, relative to the pair's extent.
+    float m_tolerance;
+    // Resolution of the time of impact, as a fraction of the step. With 1 any hit ends the search and its time is 0.
+    float m_timeTolerance;
+    // Number of boxes after which the search ends with the safe answer, a hit.
+    unsigned int m_boxLimit;
 } CcdSettings;
 
+// Answers a CcdQuery.
 typedef struct CcdResult
 {
-    unsigned int m_hit;  // 1: they touch, or nearly (m_tolerance); 0: proved apart
-    float m_time;        // part of the step, ≤ the true time of impact; 1 without a hit
-    float m_u, m_v;  // where they touch: weights of the face's second and third corner, or of the edges' second ends
-    unsigned int m_boxes;  // looked at, the cost
+    // 1 if the features touch or nearly touch (m_tolerance); 0 if they are proved apart.
+    unsigned int m_hit;
+    // Fraction of the step, never later than the true time of impact; 1 without a hit.
+    float m_time;
+    // Weight of the face's second corner, or of the first edge's second end, at the impact.
+    float m_u;
+    // Weight of the face's third corner, or of the second edge's second end, at the impact.
+    float m_v;
+    // Number of boxes that the search examined, its cost.
+    unsigned int m_boxes;
 } CcdResult;
 
+// Asks if two triangles intersect.
 typedef struct TriangleQuery
 {
-    float m_a[9];  // m, x y z of three corners
+    // x y z of the first triangle's corners, m.
+    float m_a[9];
+    // x y z of the second triangle's corners, m.
     float m_b[9];
 } TriangleQuery;
 

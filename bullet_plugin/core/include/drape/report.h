@@ -1,5 +1,6 @@
-// What Drape tells about itself: the device it runs on and why, and what the last step did and cost.
-// Times are milliseconds of wall time. C++11, no OpenCL header needed.
+// Reports: the device in use, the reason for it, and the work and cost of the last step.
+//
+// Times are milliseconds of wall time. The records own their text. C++11, no OpenCL header.
 #pragma once
 
 #include <cstddef>
@@ -9,128 +10,162 @@
 
 namespace drape
 {
+// Names an OpenCL device.
 struct DeviceInfo
 {
-    std::string m_platform;
-    std::string m_name;
-    std::string m_driver;
-    bool m_isGpu = false;
+    std::string m_platform;  // name of the OpenCL platform
+    std::string m_name;      // name of the device
+    std::string m_driver;    // version of the driver
+    bool m_isGpu = false;    // true for a GPU
 };
 
+// Describes the device in use and the reason for it.
 struct DeviceReport
 {
-    bool m_onHost = true;      // the host back end computes
-    DeviceInfo m_device;       // its name is "host" then
-    std::string m_reason;      // one line: why this device and no other, with figures where cost decides
-    double m_buildMs = 0;      // making the kernels ready, warm-up included
-    bool m_fromCache = false;  // all of them were in Drape's cache; never on PoCL, which keeps its own
+    // True if the host back end computes.
+    bool m_onHost = true;
+    // The device; its name is "host" for the host back end.
+    DeviceInfo m_device;
+    // One line: the reason for this device, with figures if cost decides.
+    std::string m_reason;
+    // Time to load the kernels, warm-up included.
+    double m_buildMs = 0;
+    // True if every kernel came from Drape's cache. Always false on PoCL, which has its own cache.
+    bool m_fromCache = false;
 
-    // Where cost decides between the host and a device (Backend::Auto); then m_onHost, m_device and m_reason are those
-    // of the last step with a pair, and of a scene without one before it.
+    // True if cost decides between the host and a device (Backend::Auto). Then m_onHost, m_device and m_reason describe
+    // the last step with a pair or, before it, a scene without one.
     bool m_byCost = false;
-    double m_expectedPairs = 0;  // of triangles: as many as there were, lay every cloth wholly on the obstacle where it
-                                 // has most
-    double m_crossover = 0;      // of these pairs: the host up to it, the device above; infinite: never
-    // "measured now", "measured before", "set", or why such a device is not used, for example "its steps are not the
-    // host's", as the error says, too. Measured ", on a busy machine" it is measured again at later starts, three at
-    // most.
+    // Estimated number of triangle pairs: the pairs there would be if every cloth lay wholly on the obstacle.
+    double m_expectedPairs = 0;
+    // Number of expected pairs above which the device is used; infinite means never.
+    double m_crossover = 0;
+    // Origin of the crossover: "measured now", "measured before", "set", or the reason why the device is not used. The
+    // text ends in ", on a busy machine" if the measurement will be repeated, at three later starts at most.
     std::string m_crossoverSource;
-    double m_measureMs = 0;  // that it took to measure now
+    // Time of the measurement; 0 if there was none at this start.
+    double m_measureMs = 0;
 };
 
 struct Settings;
 
-// Every OpenCL device there is, in the order in which Drape would choose. Empty when there is none, and where memory
-// runs out.
+// Returns every OpenCL device in Drape's order of preference. Empty if there is none or memory runs out.
 std::vector<DeviceInfo> listDevices();
 
-// Whether what settings and DRAPE_DEVICE ask for is there: empty, or in one line why not and which devices there are.
-// Where cost decides it also says what is wrong with DRAPE_CROSSOVER. "out of memory" where that is why it cannot tell.
+// Returns an empty string if the device is available that `settings` and DRAPE_DEVICE request. Otherwise one line names
+// the reason and the devices there are. If cost decides, it also checks DRAPE_CROSSOVER. "out of memory" if memory runs
+// out.
 std::string whyNoDevice(const Settings& settings);
 
 // Bits of StepStatistics::m_status. Zero is a good step.
 enum StepStatusBits : std::uint32_t
 {
+    // The step is good.
     kStepGood = 0,
-    // Nodes that are NaN, infinite or beyond 2^30 m were left out.
+    // Nodes that are not finite or beyond 2^30 m were left out.
     kStepInvalidNodes = 1u << 0,
     // The device failed; this and later steps run on the host.
     kStepDeviceFailed = 1u << 1,
-    // A list needed more than the device can hold; the step ran on the host.
+    // A list needed more memory than the device has; the step ran on the host.
     kStepDeviceFull = 1u << 2,
-    // Cloths that need too many tests collide with nothing in the step: the largest where there are more than
-    // Settings::m_candidateLimit or m_contactLimit, and cloth that came apart and reaches across an obstacle.
+    // Cloths that need too many tests do not collide in this step: the largest ones beyond Settings::m_candidateLimit
+    // or m_contactLimit, or cloth that came apart and reaches across an obstacle.
     kStepClothsLeftOut = 1u << 3,
-    // An obstacle reaches so far out that neighbouring floats are a thickness apart there.
+    // An obstacle is so far from the origin that neighbouring floats differ by a thickness.
     kStepCoarsePositions = 1u << 4,
-    // A cloth and an obstacle began the step with triangles that intersect: the cloth is not guarded there.
+    // The triangles of a cloth and an obstacle intersected at the step's start; they are not guarded.
     kStepStartsIntersecting = 1u << 5,
-    // Faces of a soft body, or links that are not part of a surface, name another body's nodes and were left out.
+    // Faces or links of a soft body name another body's nodes and were left out.
     kStepFacesLeftOut = 1u << 6,
-    // A cloth's links pulled it so far that it may have passed a surface; the next step checks it.
+    // The links of a cloth pulled it so far that it may have passed a surface; the next step checks it.
     kStepSurfacePassed = 1u << 7,
-    // Nodes of a cloth that came apart went less far than they would have; its contacts are all there.
+    // Nodes of a cloth that came apart moved less far than predicted; its contacts are complete.
     kStepMotionHeldBack = 1u << 8,
-    // Memory ran out in the step, or in a call before it: cloth that Drape takes stood still. Steps after it go on.
+    // Memory ran out in the step or in a call before it. Cloth that Drape handles stood still; later steps go on.
     kStepOutOfMemory = 1u << 9
 };
 
-// What StepStatistics::m_status says, in words: one clause a bit, joined by "; ". Empty for a good step. "out of
-// memory" where there is none for the text.
+// Returns `status` in words: one clause per bit, joined by "; ". Empty for a good step; "out of memory" if memory runs
+// out.
 std::string statusText(std::uint32_t status);
 
-// One kernel launch as the device timed it; only with Settings::m_profileKernels.
+// One kernel launch as the device timed it; needs Settings::m_profileKernels.
 struct KernelTime
 {
-    std::string m_kernel;
-    double m_startMs = 0;  // since the first launch of the same list began
-    double m_ms = 0;       // from its start to its end
+    std::string m_kernel;  // name of the kernel
+    double m_startMs = 0;  // start, relative to the first launch of the same list
+    double m_ms = 0;       // duration
 };
 
-// Memory that a device holds for one purpose.
+// Device memory in use for one purpose.
 struct MemoryUse
 {
-    std::string m_name;
-    std::size_t m_bytes = 0;
+    std::string m_name;       // the purpose
+    std::size_t m_bytes = 0;  // bytes allocated
 };
 
+// The work and cost of one step. Counts are of the whole step, over all cloths and obstacles.
 struct StepStatistics
 {
+    // StepStatusBits.
     std::uint32_t m_status = kStepGood;
+    // Number of cloth triangles.
     std::size_t m_clothTriangles = 0;
+    // Number of obstacle triangles.
     std::size_t m_obstacleTriangles = 0;
-    // What the broad phase left: pairs of features; of cloths left out, and with a traversal that is not the default,
-    // pairs of triangles.
+    // Pairs of features that the broad phase found; pairs of triangles for cloths that were left out.
     std::uint64_t m_candidates = 0;
-    std::size_t m_volumeTests = 0;       // over pairs of triangles; on a device see Methods::m_countTests
-    std::size_t m_sweptTests = 0;        // pairs of features that needed the continuous test
-    std::size_t m_clothsLeftOut = 0;     // with kStepClothsLeftOut
-    std::size_t m_contacts = 0;          // contacts published
-    std::uint64_t m_selfCandidates = 0;  // pairs of features of cloths that collide with themselves
-    std::size_t m_selfSweptTests = 0;    // of these, that needed the continuous test
-    std::size_t m_selfContacts = 0;      // contacts of cloths with themselves
-    std::size_t m_reduced = 0;           // contacts left out because others imply them
-    std::size_t m_intersections = 0;     // only with Settings::m_reportIntersections
-    std::size_t m_invalidNodes = 0;      // with kStepInvalidNodes
-    // With kStepStartsIntersecting: pairs of a cloth and an obstacle that began the step with triangles that intersect,
-    // and how many pairs of triangles these are. The adapter counts.
+    // Tests of bounding volumes over pairs of triangles, where they are counted.
+    std::size_t m_volumeTests = 0;
+    // Pairs of features that needed the continuous test.
+    std::size_t m_sweptTests = 0;
+    // Number of cloths left out, with kStepClothsLeftOut.
+    std::size_t m_clothsLeftOut = 0;
+    // Number of contacts.
+    std::size_t m_contacts = 0;
+    // Pairs of features of cloths that collide with themselves.
+    std::uint64_t m_selfCandidates = 0;
+    // Pairs among m_selfCandidates that needed the continuous test.
+    std::size_t m_selfSweptTests = 0;
+    // Contacts of cloths with themselves.
+    std::size_t m_selfContacts = 0;
+    // Redundant contacts that were left out.
+    std::size_t m_reduced = 0;
+    // Intersecting triangle pairs at the step's start; only with Settings::m_reportIntersections.
+    std::size_t m_intersections = 0;
+    // Number of nodes left out, with kStepInvalidNodes.
+    std::size_t m_invalidNodes = 0;
+    // Pairs of a cloth and an obstacle that started the step intersecting, with kStepStartsIntersecting.
     std::size_t m_startsIntersecting = 0;
+    // Pairs of triangles that intersected at the step's start, with kStepStartsIntersecting.
     std::uint64_t m_startIntersections = 0;
-    std::size_t m_retries = 0;   // stages run again because a buffer was too small
-    std::size_t m_rebuilds = 0;  // of the cloths' hierarchy, that this step was the first to use
-    // What was there and not looked at, or used as it was left; contacts are the same without (tests/README.md).
-    std::size_t m_clothsSkipped = 0;  // of the solver's: asleep as it began, pinned or without time; the adapter counts
-    std::size_t m_obstaclesKept = 0;  // of the step's pairs: neither built, refitted nor placed anew
-    bool m_skipped = false;           // nothing to do: no pair, or nothing that could touch
-    bool m_onHost = false;            // the host back end ran the step, by choice or in place of the device
-    // Together they are all of Drape's time in a solver's predictMotion and solveConstraints, and none of Bullet's.
-    double m_uploadMs = 0;  // bounds, mirroring nodes and enqueueing
-    double m_waitMs = 0;    // waiting for the device (all the work, on the host back end)
-    double m_refitMs = 0;   // of the wait, on the host back end; a device's kernels are timed one by one
-    double m_broadMs = 0;   // likewise
-    double m_narrowMs = 0;  // likewise, with the canonical order
-    double m_writeMs = 0;   // sorting contacts by body; cutting paths and what comes of it but the wait
-    double m_finishMs = 0;  // contact rounds between and after Bullet's iterations, and the look at strayed nodes
+    // Stages that ran again because a buffer was too small.
+    std::size_t m_retries = 0;
+    // Rebuilds of the cloths' hierarchy that this step was the first to use.
+    std::size_t m_rebuilds = 0;
+    // Cloths without work: asleep at the step's start, pinned, or without a time step.
+    std::size_t m_clothsSkipped = 0;
+    // Obstacles of the step's pairs that were not built, refitted or moved.
+    std::size_t m_obstaclesKept = 0;
+    // True if there was nothing to do: no pair, or nothing that could touch.
+    bool m_skipped = false;
+    // True if the host back end ran the step, by choice or in place of the device.
+    bool m_onHost = false;
+    // Time for bounds, reading nodes and enqueueing.
+    double m_uploadMs = 0;
+    // Time spent waiting for the device; all of the work on the host back end.
+    double m_waitMs = 0;
+    // Part of m_waitMs for refitting; host back end only.
+    double m_refitMs = 0;
+    // Part of m_waitMs for the broad phase; host back end only.
+    double m_broadMs = 0;
+    // Part of m_waitMs for the narrow phase and the canonical order; host back end only.
+    double m_narrowMs = 0;
+    // Time for sorting contacts by body and for ending paths at the first impact, without waits.
+    double m_writeMs = 0;
+    // Time for contact rounds between and after Bullet's iterations, and for checking displaced nodes.
+    double m_finishMs = 0;
+    // Returns all of Drape's time in the solver's predictMotion and solveConstraints, without Bullet's.
     double collisionMs() const { return m_uploadMs + m_waitMs + m_writeMs + m_finishMs; }
 };
 }  // namespace drape

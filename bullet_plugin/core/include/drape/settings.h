@@ -1,5 +1,7 @@
-// What a user may choose before Drape starts: where it computes and how far it looks.
-// Every field has a working default. Lengths are metres. C++11, no OpenCL header needed.
+// Settings of a plugin or of queries: where Drape computes, how it looks at motion, and its limits.
+//
+// Every field has a working default. A value out of range makes the constructor or create() fail with an Error that
+// names the field. Lengths are metres. C++11, no OpenCL header.
 #pragma once
 
 #include <cstddef>
@@ -11,91 +13,88 @@
 
 namespace drape
 {
-// Writes "drape: ", the line and a line feed to standard error.
+// Writes "drape: ", `line` and a line feed to standard error.
 void logToStandardError(const char* line);
 
+// Selects where Drape computes.
 enum class Backend
 {
-    Auto,    // a GPU, else any OpenCL device, and the host where there is none, where it fails (then error() says why),
-             // or where the scene is too small to pay for it
-    OpenCl,  // an OpenCL device or an error
-    Host     // the same functions as C++, on m_threads threads and without OpenCL
+    // A GPU, else any OpenCL device. The host if there is no device, if it fails (error() then says why), or if the
+    // scene is too small for it.
+    Auto,
+    // An OpenCL device; a failure if there is none.
+    OpenCl,
+    // The host: the same functions compiled as C++, on m_threads threads and without OpenCL.
+    Host
 };
 
-// How a step looks at the cloth's motion between its start and its end.
+// Selects how a step looks at the cloth's motion between its start and its end.
 enum class ContactMode : std::uint32_t
 {
-    Discrete,    // only at what is near at the end: the fastest, for cloth that moves less than its thickness in a step
-    Continuous,  // the certified continuous test for every pair of features that the broad phase leaves
-    Automatic    // the same contacts as Continuous, but the test only where motion is large enough to meet something
+    Discrete,    // looks at the end only; the fastest, for cloth that moves less than its thickness in a step
+    Continuous,  // runs the certified continuous test on every candidate
+    Automatic    // finds the contacts of Continuous, but runs the test only if motion is large enough
 };
 
+// Holds the choices of an app before Drape starts.
 struct Settings
 {
+    // Selects the back end. Default: Auto.
     Backend m_backend = Backend::Auto;
 
-    // Part of an OpenCL device's or platform's name, compared without case. Empty: the environment variable
-    // DRAPE_DEVICE, and if that is empty too, the order of Backend::Auto. "host" asks for the host back end.
+    // Part of an OpenCL device's or platform's name, case-insensitive; "host" selects the host back end. Empty means
+    // the environment variable DRAPE_DEVICE, and if that is empty the order of Backend::Auto.
     std::string m_device;
 
-    // With Backend::Auto and no device named: the work from which a scene runs on the device, in pairs of triangles
-    // that its meshes let expect; below it the host is used. Both give the same contacts, so a scene that grows moves
-    // over between two steps, and comes back below half of it. 0: always the device. Infinite: always the host.
-    // Negative: the environment variable DRAPE_CROSSOVER, and if that is empty, what is measured for the machine, the
-    // device, m_mode, m_activation and m_reduceContacts: once, which takes a second or two while the first pipeline
-    // with them is made, and kept in the cache folder (crossover-*.txt). Where other processes kept the machine busy
-    // meanwhile, or its times varied widely, it is measured again at the next starts, three at most. Cost decides over
-    // the default traversal alone (Methods::m_traversal), and not with m_reportIntersections or m_profileKernels: then
-    // the device runs every step.
+    // The scene size from which the device is used, in expected triangle pairs; applies to Backend::Auto without a
+    // named device. 0 means always the device, infinite always the host. A scene that shrinks returns to the host below
+    // half of it. Negative (the default) means the environment variable DRAPE_CROSSOVER and, if that is empty, a
+    // measurement. The measurement takes a second or two at the first start and is kept in the cache folder. It is
+    // repeated at the next starts, three at most, if the machine was busy. Contacts do not depend on this.
     double m_crossover = -1;
 
-    // Contacts are reported up to thickness + m_activation × thickness, so that the solver knows of a surface before
-    // the thickness is violated. Range 0 to 4. Larger: safer under stiff links, more contacts.
+    // Distance beyond the thickness up to which contacts are reported, as a fraction of the thickness. Range 0 to 4.
+    // Larger values are safer under stiff links and cost more contacts.
     float m_activation = 0.5f;
 
-    // Leave out redundant contacts: those that others already enforce, up to 2 % of the thickness, within the distance
-    // that nodes may go from their predicted paths while they are solved. Off: all contacts are solved; the same cloth
-    // at rest, but for that.
+    // Leaves out contacts that others already enforce, up to 2 % of the thickness.
     bool m_reduceContacts = true;
 
-    // Continuous and Automatic find every face and edge that meets a feature of the obstacle on its linear way through
-    // the step, at the earliest time; Discrete may lose what is faster than its thickness (README: how much it loses).
+    // Selects how motion within a step is treated. Continuous and Automatic find every face and edge that meets a
+    // feature of the obstacle on its straight path, at the earliest time. Discrete may miss faster motion than a
+    // thickness per step.
     ContactMode m_mode = ContactMode::Automatic;
 
-    // Threads that hold the contacts of large cloths, and of many, in Bullet's solver, that write their nodes for a
-    // GPU, and that the host back end computes on; the caller's among them. They sleep else. 0: as many as the process
-    // may use cores, 8 at most. 1: the caller's alone. 64 at most. No trajectory depends on it.
+    // Number of threads, the caller's included: they solve contacts of large or many cloths, write nodes for a GPU, and
+    // run the host back end. Range 0 to 64. 0 means the number of available cores, 8 at most; 1 means the caller's
+    // thread alone. Results do not depend on it.
     unsigned m_threads = 0;
 
-    // Also count the pairs of cloth and obstacle triangles that intersect at the step's start
-    // (StepStatistics::m_intersections). Costs a kernel, and the usual search, which finds pairs of features over
-    // patches: pairs of triangles are found instead, by walking both sides' hierarchies after a refit.
-    // StepStatistics::m_candidates then counts those.
+    // Counts the triangle pairs that intersect at the step's start (StepStatistics::m_intersections). Slower: this uses
+    // another search.
     bool m_reportIntersections = false;
 
-    // Most pairs that a step may list (of features, on a GPU also of triangles and patches; up to 20 bytes each) and
-    // most contacts (140 bytes each on a device, 200 on the host); 2^28 at most, which stands for more. Steps of two
-    // million cloth triangles need a third of either. A step with more leaves out the cloths that have most of them,
-    // until the rest fits, and says so in its status: those cloths collide with nothing in that step. Cloth that came
-    // apart may make fewer, see kStepMotionHeldBack. Queries of whole meshes (drape/queries.h) test as many pairs and
-    // list as many answers (8 to 24 bytes each); of more they give the number.
+    // Largest number of candidates in a step, up to 20 bytes each; 2^28 at most. A step that exceeds it leaves out the
+    // cloths with the most candidates and reports kStepClothsLeftOut. Queries of meshes test as many pairs.
     std::size_t m_candidateLimit = std::size_t(1) << 27;
+    // Largest number of contacts in a step, 140 bytes each on a device and 200 on the host; 2^28 at most. Otherwise
+    // like m_candidateLimit. Queries of meshes list as many answers.
     std::size_t m_contactLimit = std::size_t(1) << 24;
 
-    // Have the device time every kernel launch, for benchmarks over the core alone (Pipeline::takeKernelTimes(), which
-    // is not installed). Costs some microseconds a launch.
+    // Makes the device time every kernel launch, for Drape's own benchmarks: every step runs on the device then.
     bool m_profileKernels = false;
 
-    // Folder of compiled kernels and of what was measured. Empty: $XDG_CACHE_HOME/drape or ~/.cache/drape. "none": do
-    // not cache. PoCL keeps its kernels itself, whatever is said here: in $XDG_CACHE_HOME/pocl or ~/.cache/pocl.
+    // Folder for compiled kernels and measurements. Empty means $XDG_CACHE_HOME/drape or ~/.cache/drape; "none" turns
+    // the cache off. PoCL always keeps its kernels itself, in $XDG_CACHE_HOME/pocl or ~/.cache/pocl.
     std::string m_cacheFolder;
 
-    // Gets a line, without a line feed, for what an app should know of its world and no return value says: a pair that
-    // begins a step with intersecting triangles, cloth that is left out, a margin that is negative or as large as the
-    // mesh. Once while it lasts, on the thread that steps the world. nullptr: no lines. What it throws is dropped.
+    // Receives one line without a line feed about a problem of the world that no return value reports. Problems are a
+    // pair that starts a step intersecting, cloth that is left out, and a margin that is negative or as large as the
+    // mesh. Called once while the problem lasts, on the thread that steps the world. nullptr means no lines. Exceptions
+    // from it are dropped.
     std::function<void(const char*)> m_log = logToStandardError;
 
-    // Which algorithms; for comparing them. The contacts do not depend on it.
+    // Selects algorithms, for comparing them. Contacts do not depend on it.
     Methods m_methods;
 };
 }  // namespace drape
