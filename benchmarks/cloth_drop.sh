@@ -6,10 +6,9 @@
 #   other options    are cloth_drop's, of every run (as --cloth 65x65)
 #
 # Runs 240 steps on each device and on the host back end, with contacts that others imply left out and solved
-# (--all-contacts), then Bullet's own collision beside the first. Writes OUT_DIR/cloth_drop.json, what cloth_drop says of
-# each with commit, machine, scene and options, and prints a table: medians of the collision and of finding contacts,
-# deepest penetration, intersecting pairs and nodes inside at the end, nodes that went through, and the trajectory's
-# hash. Needs cloth_drop, Bash and Python. Measure on an idle machine. Ends with 1 when a run failed or Drape's back ends
+# (--all-contacts), then Bullet's own collision beside the first. Writes cloth_drop's answers to OUT_DIR/cloth_drop.json,
+# with commit, machine, scene and options, and prints a table: times of the collision and of finding contacts, deepest
+# penetration, intersecting pairs at the end, nodes that went through, and the trajectory's hash. Needs cloth_drop, Bash and Python. Measure on an idle machine. Ends with 1 when a run failed or Drape's back ends
 # differ. These may be set: BIN (build/release/bin), BUNNY, COMMIT (git describe), and STEPS.
 set -euo pipefail
 
@@ -34,7 +33,7 @@ PYTHONPATH=$here exec python3 - "$bin/cloth_drop" "$commit" "$bunny" "${STEPS:-2
   "$(printf '%s\n' "${devices[@]}")" "${options[@]}" <<'PYTHON'
 import json, subprocess, sys
 
-import hashes, machine, script_tables
+import hashes, machine, reduce
 
 program, commit, bunny, steps, compare, target, wanted, *options = sys.argv[1:]
 
@@ -63,9 +62,11 @@ for index, backend in enumerate(backends):
 with open(target, "w") as file:
     json.dump(content, file, indent=2)
     file.write("\n")
-for row in content["rows"]:
-    print(*script_tables.cloth_line(row))
-differences = hashes.differences({target: content})
+reduced = [{"program": "cloth_drop", "commit": commit, **row} for row in reduce.worlds([(row, content) for row in content["rows"]])]
+for row in reduced:
+    print(*(row.get(name, "") for name in ("method", "device", "setting", "stage", "median_ms", "p95_ms", "penetration_mm",
+                                           "intersecting_pairs", "nodes_through", "ended", "hash")))
+differences = hashes.differences([(target, reduced)])
 for line in differences:
     print("cloth_drop.sh: " + line, file=sys.stderr)
 sys.exit(bool(failed or differences))
