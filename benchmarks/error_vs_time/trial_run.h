@@ -16,8 +16,7 @@ namespace drape::bench
 inline constexpr const char* kProgram = "error_vs_time";
 inline constexpr const char* kDetectorPart = "detector";
 inline constexpr const char* kSimulationPart = "simulation";
-// Column: whose hash on the host a row must have, "defaults" of its scene or the "same" query's. merge_errors.py judges
-// rows by it that were measured in different runs.
+// Column: whose hash on the host a row must have, "defaults" of its scene or the "same" query's.
 inline constexpr const char* kMustMatch = "must_match";
 
 struct ErrorOptions : CommonOptions
