@@ -93,7 +93,8 @@ PROGRAMS = {"bench_step": steps, "error_vs_time": errors, "cloth_drop": worlds, 
 def main():
     if len(sys.argv) != 3:
         sys.exit(__doc__)
-    reduced = [{"program": program, **row} for program, rows_of in PROGRAMS.items() for row in rows_of(raw_rows(sys.argv[1], program))]
+    reduced = [{"program": program, **row} for program, rows_of in PROGRAMS.items()
+               for row in rows_of(raw_rows(sys.argv[1], program))]
     if not reduced:
         sys.exit(f"reduce.py: no results in {sys.argv[1]}")
     sys.exit(update_csv(sys.argv[2], COLUMNS, GROUP, reduced))

@@ -56,10 +56,12 @@ def step_table(rows):
         return ""
     lines = [[label] + [time_text(first(rows, scene=scene, method=method)) for scene in scenes]
              for method, label in METHODS.items() if select(rows, method=method)]
-    for label, column, method in (("candidates of the host", "candidates", "drape_host"), ("contacts", "contacts", "drape_host"),
-                                  ("contacts less redundant ones", "contacts", "drape_host_reduced")):
-        if select(rows, method=method):
-            lines.append([label] + [count(first(rows, scene=scene, method=method).get(column)) for scene in scenes])
+    # Contacts are the same on every back end; candidates are not.
+    for label, column, methods in (("candidates of the host", "candidates", ("drape_host",)),
+                                   ("contacts", "contacts", ("drape_host", "drape")),
+                                   ("contacts less redundant ones", "contacts", ("drape_host_reduced", "drape_reduced"))):
+        counts = [[row[column] for method in methods for row in select(rows, scene=scene, method=method)] for scene in scenes]
+        lines.append([label] + [count(found[0] if found else None) for found in counts])
     lines.append(["device memory, MiB"] + [figure(first(rows, scene=scene, method="drape").get("bytes", 0) / 2 ** 20)
                                            for scene in scenes])
     return ("## Whole steps\n\nHost to host, ms: median (95th percentile).\n\n"
@@ -85,7 +87,7 @@ def growth_table(rows):
             points = [(size(row), row["median_ms"]) for row in select(mine, method=method) if "median_ms" in row]
             grows = fit_exponent(points)
             if len(points) > 2 and grows is not None:
-                lines.append([label, METHODS.get(method, method)] + [f"{figure(points[0][1])} to {figure(points[-1][1])}", f"{grows:.2f}"])
+                lines.append([label, METHODS[method], f"{figure(points[0][1])} to {figure(points[-1][1])}", f"{grows:.2f}"])
     return ("Growth of a step's time over the sweeps, ms from the smallest to the largest size, and the exponent p of the fit "
             "time ~ sizeᵖ:\n\n" + table(["size", "method", "ms", "p"], lines)) if lines else ""
 
@@ -102,8 +104,9 @@ def drop_table(rows):
         lines.append([RUNS[row["method"]] + f", {setting}" * bool(setting), row["device"] + capped, time_text(row),
                       figure(finding.get("median_ms")), figure(row["penetration_mm"]), count(row.get("intersecting_pairs")),
                       count(row.get("nodes_through")), f"`{row['hash']}`"])
-    return ("## A cloth dropped on the bunny\n\n2,048 triangles of cloth, 240 steps (`cloth_drop.sh`). Times are medians (95th percentiles) "
-            "of the steps in contact. Bullet's times include finding contacts alone; its solver takes them afterwards.\n\n"
+    return ("## A cloth dropped on the bunny\n\n2,048 triangles of cloth, 240 steps (`cloth_drop.sh`). Times are medians "
+            "(95th percentiles) of the steps in contact. Bullet's times include finding contacts alone; its "
+            "solver takes them afterwards.\n\n"
             + table(["", "on", "collision, ms", "finding contacts, ms", "deepest penetration, mm", "intersecting pairs, end",
                      "nodes through", "hash"], lines))
 
@@ -121,21 +124,23 @@ def speed_table(rows):
                 + ", no contact" * (not row["contacts"]) + capped)
 
     lines = [[RUNS[run]] + [text(first(rows, method=run, setting=speed)) for speed in speeds] for run in in_order(rows, "method")]
-    return ("## A cloth thrown at the bunny\n\n100 steps (`drop_speeds.sh`): most intersecting pairs after any step / nodes through the "
-            "surface / deepest penetration in mm. Runs with fewer steps met the time limit.\n\n" + table([""] + speeds, lines))
+    return ("## A cloth thrown at the bunny\n\n100 steps (`drop_speeds.sh`): most intersecting pairs after any step / "
+            "nodes through the surface / deepest penetration in mm. Runs with fewer steps met the time limit.\n\n"
+            + table([""] + speeds, lines))
 
 
 def check_table(rows):
     lines = [[f"{row['scene']} {row.get('setting', '')}".strip(), row["device"], count(row.get("queries", row.get("candidates"))),
-              count(row.get("misses")), count(row.get("false_hits")), count(row.get("contacts")), figure(row["median_ms"]) if row["median_ms"] >= 1 else f"{row['median_ms']:.3g}"]
-             for row in rows]
+              count(row.get("misses")), count(row.get("false_hits")), count(row.get("contacts")),
+              figure(row["median_ms"]) if row["median_ms"] >= 1 else f"{row['median_ms']:.3g}"] for row in rows]
     return ("## Published queries with exact answers\n\n`drape_check.sh`. Of `ccd` and `triangles` the time is that of one query. "
             "`pairs` counts intersecting triangles of the cloth-ball scene, `step` its edge-edge pairs.\n\n"
             + table(["question", "on", "queries or candidates", "misses", "false hits", "found", "ms"], lines)) if lines else ""
 
 
 def summary(name, rows):
-    commits = ", ".join(f"{program} {'/'.join(in_order(select(rows, program=program), 'commit'))}" for program in in_order(rows, "program"))
+    commits = ", ".join(f"{program} {'/'.join(in_order(select(rows, program=program), 'commit'))}"
+                        for program in in_order(rows, "program"))
     devices = ", ".join(device for device in in_order(rows, "device") if device != "host") or "none"
     text = (f"# {name}\n\n{rows[0]['machine']}; OpenCL device: {devices}. Commits: {commits}.\n\n"
             f"`report.py` makes this page from [{name}.csv]({name}.csv).\n\n")

@@ -1,7 +1,8 @@
 """Tables of error_vs_time: what a frame costs against how wrong the cloth is."""
 from results import count, figure, in_order, select, table
 
-NAMES = {"drape": "Drape, device", "drape_host": "Drape, host", "bullet": "Bullet built in", "plain": "closest points in floats or doubles"}
+NAMES = {"drape": "Drape, device", "drape_host": "Drape, host", "bullet": "Bullet built in",
+         "plain": "closest points in floats or doubles"}
 # Column, heading, form.
 ERRORS = (("penetration_mm", "deepest penetration, mm", figure), ("intersecting_pairs", "intersecting pairs, most", count),
           ("nodes_through", "nodes through", count), ("speed_mm_s", "RMS speed, mm/s", figure),
@@ -17,7 +18,7 @@ def is_clean(row):
 
 
 def scene_lines(rows):
-    """Yields every method's defaults and, of Bullet's knobs, the run with the fewest nodes through, then the shallowest, then the fastest."""
+    """Yields every method's defaults and Bullet's best run with another knob: the fewest nodes through, then the shallowest."""
     for scene in in_order(rows, "scene"):
         mine = select(rows, scene=scene)
         turned = [row for row in select(mine, method="bullet", ended="whole") if knob(row) not in ("defaults", "fall", "rest")]
@@ -25,7 +26,8 @@ def scene_lines(rows):
         for row in select(mine, setting="defaults") + best:
             line = [scene, NAMES[row["method"]], row["setting"]]
             if row["ended"] == "whole":
-                yield line + [f"{figure(row['median_ms'])} ({figure(row['p95_ms'])})"] + [form(row.get(column)) for column, _, form in ERRORS]
+                yield (line + [f"{figure(row['median_ms'])} ({figure(row['p95_ms'])})"]
+                       + [form(row.get(column)) for column, _, form in ERRORS])
             else:
                 yield line + [f"{row['ended']} in frame {row.get('steps', 0) + 1:.0f}"] + ["–"] * len(ERRORS)
 
@@ -44,9 +46,10 @@ def knob_table(rows):
         for row in select(rows, method=method):
             if knob(row) not in ("fall", "rest"):
                 lines.setdefault((NAMES[method], row["setting"]), {})[row["scene"]] = knob_cell(row)
-    return ("Median ms of a frame with each setting. Brackets give the errors: deepest penetration in mm, p most intersecting pairs, n "
-            "nodes through.\n\n" + table(["method", "setting", *scenes],
-                                         [[*line, *(cells.get(scene, "–") for scene in scenes)] for line, cells in lines.items()]))
+    return ("Median ms of a frame with each setting. Brackets give the errors: deepest penetration in mm, p most intersecting "
+            "pairs, n nodes through.\n\n"
+            + table(["method", "setting", *scenes],
+                    [[*line, *(cells.get(scene, "–") for scene in scenes)] for line, cells in lines.items()]))
 
 
 def fall_table(rows):
@@ -70,7 +73,8 @@ def fall_table(rows):
 def text(rows):
     if not rows:
         return ""
-    return ("## Error against run time\n\nFive scenes of 2 s (`error_vs_time`). A frame lasts 1/60 s; its time is the median (95th percentile).\n\n"
+    return ("## Error against run time\n\nFive scenes of 2 s (`error_vs_time`). A frame lasts 1/60 s; its time is the median "
+            "(95th percentile).\n\n"
             + table(["scene", "method", "setting", "frame, ms"] + [title for _, title, _ in ERRORS], list(scene_lines(rows)))
             + knob_table(rows) + fall_table(rows))
 
@@ -78,4 +82,5 @@ def text(rows):
 def query_table(rows):
     lines = [[row["scene"], NAMES[row["method"]], row["setting"], f"{1000 * row['median_ms']:.3g}", count(row.get("misses")),
               count(row.get("false_hits"))] for row in rows]
-    return ("## Single queries\n\n" + table(["queries", "method", "setting", "µs a query", "misses", "false hits"], lines)) if lines else ""
+    head = ["queries", "method", "setting", "µs a query", "misses", "false hits"]
+    return ("## Single queries\n\n" + table(head, lines)) if lines else ""

@@ -15,7 +15,7 @@ def panels(count, columns):
     drawn, grid = plt.subplots(lines, columns, figsize=(4.2 * columns, 3.3 * lines + 0.5), squeeze=False)
     for unused in grid.flat[count:]:
         unused.set_visible(False)
-    return drawn, grid.flat
+    return drawn, list(grid.flat)[:count]
 
 
 def finish(drawn, all_axes, path, columns):
@@ -35,7 +35,8 @@ def draw_steps(path, rows, sweeps, methods):
     for sweep, axes in zip(shown, all_axes):
         size, label = sweeps[sweep]
         for index, method in enumerate(methods):
-            points = sorted((size(row), row["median_ms"]) for row in select(rows, setting=sweep, method=method) if "median_ms" in row)
+            points = sorted((size(row), row["median_ms"]) for row in select(rows, setting=sweep, method=method)
+                            if "median_ms" in row)
             if points:
                 axes.plot(*zip(*points), "-" if method.startswith("drape") else "--", color=f"C{index}", marker=".",
                           label=methods[method])
@@ -59,7 +60,9 @@ def draw_errors(path, rows):
             if points:
                 axes.plot(*zip(*points), "o", color=colour, markersize=3, alpha=0.7, label=name)
         axes.set(xscale="log", title=scene, xlabel="frame, ms", ylabel=label)
-        axes.set_yscale("symlog", linthresh=0.1 if column == "penetration_mm" else 1)
+        least = 0.1 if column == "penetration_mm" else 1  # linear below
+        axes.set_yscale("symlog", linthresh=least)
+        axes.set_ylim(-least / 2, None)
     finish(drawn, all_axes, path, 3)
 
 

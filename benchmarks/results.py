@@ -37,7 +37,9 @@ def read_csv(path):
 
 
 def cell(value):
-    return f"{value:.5g}" if isinstance(value, float) and abs(value) < 1e5 else f"{value:.0f}" if isinstance(value, float) else value
+    if not isinstance(value, float):
+        return value
+    return f"{value:.5g}" if abs(value) < 1e5 else f"{value:.0f}"
 
 
 def update_csv(path, columns, group, rows):

@@ -63,7 +63,8 @@ def span(ratios, digits=2):
 
 def ratios_of(rows, part, slow, fast):
     """Returns by how many times `fast` beats `slow` on each model."""
-    times = [{row["model"]: time_of(row) for row in select(rows, part=of, variant=variant)} for of, variant in ((part[0], slow), (part[-1], fast))]
+    times = [{row["model"]: time_of(row) for row in select(rows, part=of, variant=variant)}
+             for of, variant in ((part[0], slow), (part[-1], fast))]
     return [times[0][model] / times[1][model] for model in times[0] if model in times[1]]
 
 
@@ -77,8 +78,8 @@ def traversals(rows, slow, fast):
 
 def tests(rows):
     """Returns the ratio on the largest number of pairs."""
-    found = [max(select(rows, part="triangle_tests", variant="Möller", backend=backend), key=lambda row: row["pairs"], default=None)
-             for backend in ("host", "opencl")]
+    found = [max(select(rows, part="triangle_tests", variant="Möller", backend=backend), key=lambda row: row["pairs"],
+                 default=None) for backend in ("host", "opencl")]
     return [time_of(found[0]) / time_of(found[1])] if all(found) else []
 
 
@@ -112,7 +113,8 @@ def speedups(machines):
 
 
 def compaction(machines):
-    lines = [[name] + [f"{100 * row['share']:.1f} %" for model in THESIS_MODELS for row in select(rows, part="compaction", model=model)]
+    lines = [[name] + [f"{100 * row['share']:.1f} %" for model in THESIS_MODELS
+                       for row in select(rows, part="compaction", model=model)]
              for name, rows in machines if select(rows, part="compaction")]
     return table(["machine"] + list(THESIS_MODELS.values()), [line for line in lines if len(line) == 7])
 
@@ -129,7 +131,8 @@ def traversal(machines):
                     stages = sum(row.get(stage, 0) for stage in ("refit_ms", "broad_ms", "narrow_ms", "order_ms"))
                     line.append(f"{count(row.get('volume_tests'))} / {figure(row['broad_ms'])} / {figure(stages)}" if row else "–")
             lines.append(line)
-    return table(["machine", "traversal"] + [f"{scene}, {phase}" for scene in ("thesis", "fine") for phase in PHASES.values()], lines)
+    phases = [f"{scene}, {phase}" for scene in ("thesis", "fine") for phase in PHASES.values()]
+    return table(["machine", "traversal"] + phases, lines)
 
 
 def triangle_tests(machines):
@@ -152,15 +155,20 @@ def quality(machines):
     return table(["machine", "builder", "on", "construction, ms", "volume tests of a step"], lines)
 
 
+LEAF_SIZES = (1, 2, 4, 8, 16)
+
+
 def shape(machines):
     lines = []
     for name, rows in machines:
         for backend in ("host", "opencl"):
             for children in ("2 children", "4 children"):
-                mine = [row for row in select(rows, part="shape", model="bunny_1m", backend=backend) if row["variant"].startswith(children)]
-                if mine:
-                    lines.append([name, backend, children] + [f"{figure(row['median_ms'])} / {count(row['volume_tests'])}" for row in mine])
-    return table(["machine", "on", "nodes"] + [f"leaves of {size}" for size in (1, 2, 4, 8, 16)], [line for line in lines if len(line) == 8])
+                mine = [row for row in select(rows, part="shape", model="bunny_1m", backend=backend)
+                        if row["variant"].startswith(children)]
+                if len(mine) == len(LEAF_SIZES):
+                    lines.append([name, backend, children]
+                                 + [f"{figure(row['median_ms'])} / {count(row['volume_tests'])}" for row in mine])
+    return table(["machine", "on", "nodes"] + [f"leaves of {size}" for size in LEAF_SIZES], lines)
 
 
 def degree(machines):
@@ -170,8 +178,8 @@ def degree(machines):
             for sides in (6, 14, 18, 26):
                 mine = select(rows, part="degree", backend=backend, dop=sides)
                 trees = {row["stage"]: row for row in select(mine, model="bunny_1m")}
-                whole = [next((row for row in select(mine, model=scene, stage="step") if row["variant"].endswith(("host", "default"))), {})
-                         for scene in ("thesis", "fine")]
+                whole = [next((row for row in select(mine, model=scene, stage="step")
+                               if row["variant"].endswith(("host", "default"))), {}) for scene in ("thesis", "fine")]
                 if trees:
                     lines.append([name, backend, str(sides)] + [figure(time_of(trees[stage])) for stage in ("build", "refit", "walk")]
                                  + [count(trees["walk"]["candidates"])] + [figure(row.get("median_ms")) for row in whole])

@@ -37,8 +37,8 @@ class Run(ProgramTest):
 class Reduced(ProgramTest):
     @staticmethod
     def step(step, time, **cells):
-        return {"part": "traversal", "model": "thesis", "variant": "v", "backend": "host", "device": "host", "threads": 1, "triangles": 5,
-                "step": step, "phase": "rest", "broad_ms": time, "step_ms": 2 * time, "hash": "h", "valid": "yes", **cells}
+        return {"part": "traversal", "model": "thesis", "variant": "v", "backend": "host", "device": "host", "threads": 1,
+                "triangles": 5, "step": step, "phase": "rest", "broad_ms": time, "step_ms": 2 * time, "hash": "h", "valid": "yes", **cells}
 
     def reduce(self, *rows):
         self.write_results("raw/study_x.json", rows)
@@ -68,8 +68,8 @@ class Committed(ProgramTest):
             for row in read_csv(path):
                 self.assertRegex(row["hash"], "^[0-9a-f]{16}$", row)
                 self.assertRegex(row["commit"], "^[0-9a-f]{7}$", row)
-                identity = tuple(row[name] for name in ("part", "model", "variant", "phase", "level", "stage", "backend", "threads", "dop",
-                                                        "pairs"))
+                identity = tuple(row[name] for name in ("part", "model", "variant", "phase", "level", "stage", "backend", "threads",
+                                                        "dop", "pairs"))
                 self.assertNotIn(identity, seen, "twice")
                 seen.add(identity)
 
