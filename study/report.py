@@ -119,10 +119,10 @@ def compaction(machines):
     return table(["machine"] + list(THESIS_MODELS.values()), [line for line in lines if len(line) == 7])
 
 
-def traversal(machines):
+def steps_table(machines, part):
     lines = []
     for name, rows in machines:
-        mine = select(rows, part="traversal")
+        mine = select(rows, part=part)
         for variant in in_order(mine, "variant"):
             line = [name, variant]
             for scene in ("thesis", "fine"):
@@ -132,7 +132,26 @@ def traversal(machines):
                     line.append(f"{count(row.get('volume_tests'))} / {figure(row['broad_ms'])} / {figure(stages)}" if row else "–")
             lines.append(line)
     phases = [f"{scene}, {phase}" for scene in ("thesis", "fine") for phase in PHASES.values()]
-    return table(["machine", "traversal"] + phases, lines)
+    return table(["machine", part] + phases, lines)
+
+
+def traversal(machines):
+    return steps_table(machines, "traversal")
+
+
+def builder(machines):
+    return steps_table(machines, "builder")
+
+
+def obstacles(machines):
+    """Whole steps beside the largest model."""
+    lines, variants = [], ("nothing happens", "one comes", "one goes", "two move")
+    for name, rows in machines:
+        for backend in ("host", "opencl"):
+            times = {row["variant"]: row.get("median_ms") for row in select(rows, part="obstacles", model="bunny_1m", backend=backend)}
+            if times:
+                lines.append([name, backend] + [figure(times.get(variant)) for variant in variants])
+    return table(["machine", "on", "nothing changes", "one obstacle is added", "one is removed", "two move"], lines)
 
 
 def triangle_tests(machines):
@@ -188,7 +207,8 @@ def degree(machines):
 
 
 TABLES = {"speedups": speedups, "construction": construction, "compaction": compaction, "refit": refit, "traversal": traversal,
-          "triangle_tests": triangle_tests, "quality": quality, "shape": shape, "degree": degree}
+          "builder": builder, "triangle_tests": triangle_tests, "quality": quality, "shape": shape, "degree": degree,
+          "obstacles": obstacles}
 
 
 def update_findings(path, machines):
