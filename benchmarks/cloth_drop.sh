@@ -1,16 +1,15 @@
 #!/usr/bin/env bash
-# Drops the cloth of the thesis's scene on the bunny, on every back end: cloth_drop.sh OUT_DIR [options]
+# The thesis's scene, a cloth dropped on the bunny, on every back end: cloth_drop.sh OUT_DIR [options]
 #
 #   --device NAME    part of an OpenCL device's name; may be given again (default: every device)
 #   --no-compare     without Bullet's own collision, stock and tuned, which takes minutes
-#   other options    are passed to cloth_drop in every run (for example --cloth 65x65)
+#   other options    are cloth_drop's, of every run (as --cloth 65x65)
 #
-# Runs 240 steps on each device and on the host back end, with all contacts and without redundant ones (--all-contacts).
-# Runs Bullet's own collision beside the first. Writes OUT_DIR/cloth_drop.json: the summary of each run with commit,
-# machine, scene and options. Prints a table of medians of the collision and of finding contacts, deepest penetration,
-# intersecting pairs and nodes inside at the end. The table also has the nodes that went through and the trajectory's
-# hash. Needs cloth_drop, Bash and Python. Measure on an idle machine. Ends with 1 if a run failed or Drape's back ends
-# differ. Environment: BIN (build/release/bin), BUNNY, COMMIT (git describe), and STEPS.
+# Runs 240 steps on each device and on the host back end, and Bullet's own collision beside the first. Writes
+# OUT_DIR/cloth_drop.json: the summary of each run with commit, machine, scene and options. Prints a table: times of the
+# collision and of finding contacts, deepest penetration, intersecting pairs at the end, nodes that went through, and the
+# trajectory's hash. Needs cloth_drop, Bash and Python. Measure on an idle machine. Ends with 1 if a run failed or
+# Drape's back ends differ. Environment: BIN (build/release/bin), BUNNY, COMMIT (git describe), and STEPS.
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -34,7 +33,7 @@ PYTHONPATH=$here exec python3 - "$bin/cloth_drop" "$commit" "$bunny" "${STEPS:-2
   "$(printf '%s\n' "${devices[@]}")" "${options[@]}" <<'PYTHON'
 import json, subprocess, sys
 
-import hashes, machine, script_tables
+import hashes, machine, reduce
 
 program, commit, bunny, steps, compare, target, wanted, *options = sys.argv[1:]
 
@@ -63,9 +62,11 @@ for index, backend in enumerate(backends):
 with open(target, "w") as file:
     json.dump(content, file, indent=2)
     file.write("\n")
-for row in content["rows"]:
-    print(*script_tables.cloth_line(row))
-differences = hashes.differences({target: content})
+reduced = [{"program": "cloth_drop", "commit": commit, **row} for row in reduce.worlds([(row, content) for row in content["rows"]])]
+for row in reduced:
+    print(*(row.get(name, "") for name in ("method", "device", "setting", "stage", "median_ms", "p95_ms", "penetration_mm",
+                                           "intersecting_pairs", "nodes_through", "ended", "hash")))
+differences = hashes.differences([(target, reduced)])
 for line in differences:
     print("cloth_drop.sh: " + line, file=sys.stderr)
 sys.exit(bool(failed or differences))

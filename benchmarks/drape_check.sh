@@ -58,7 +58,7 @@ description = machine.describe(program, commit)
 if not wanted:
     wanted = list(dict.fromkeys(device["device"] for device in description["devices"]))
 backends = [["--backend", "host"]] + [["--backend", "opencl", "--device", name] for name in wanted]
-content, failed = {"machine": description}, False
+content, failed = {"machine": description, "rows": []}, False
 for key, variant, arguments, names in QUESTIONS:
     files = [os.path.join(truth, name) for name in names]
     if not all(os.path.exists(path) for path in files):
@@ -69,7 +69,7 @@ for key, variant, arguments, names in QUESTIONS:
         found = answer(arguments + files, backend)
         failed = failed or found is None
         if found is not None:
-            content.setdefault(key, []).append({**({"mode": variant} if variant else {}), **found})
+            content["rows"].append({"question": key, **({"mode": variant} if variant else {}), **found})
             print(key, variant, *(f"{name} {value}" for name, value in found.items()))
 with open(target, "w") as file:
     json.dump(content, file, indent=2)

@@ -1,61 +1,73 @@
-"""Reads what the benchmark programs wrote. Void rows are left out: no figure of a wrong result is ever shown."""
+"""Results of the benchmarks: raw JSON files as the programs write them, and the small CSV that a machine's are reduced to."""
 import csv
 import json
 import math
 import os
 
 
-def read_rows(folder, name):
-    """Rows of FOLDER/NAME.csv as dictionaries, numbers as floats, empty cells left out. Empty without the file."""
-    path = os.path.join(folder, name + ".csv")
-    if not os.path.exists(path):
-        return []
+def raw_rows(folder, program):
+    """Returns (row, content of its file) for every row of the files PROGRAM*.json. Each row has its commit and machine."""
+    found = []
+    for name in sorted(os.listdir(folder)):
+        if name.startswith(program) and name.endswith(".json"):
+            with open(os.path.join(folder, name)) as file:
+                content = json.load(file)
+            machine = content["machine"]
+            common = {"commit": machine["commit"], "machine": f"{machine['processor']}, {machine['cores']:.0f} cores"}
+            found += [({**common, **row}, content) for row in content["rows"]]
+    return found
+
+
+# Columns that hold text even where it looks like a number.
+TEXTS = ("hash", "commit", "device", "variant", "setting", "machine", "method", "stage")
+
+
+def number(text):
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def read_csv(path):
+    """Returns rows as dictionaries. Numbers are floats; empty cells are left out."""
     with open(path, newline="") as file:
-        return [number_cells(row) for row in csv.DictReader(file) if row.get("valid") != "no"]
+        return [{name: text if name in TEXTS else number(text) for name, text in row.items() if text}
+                for row in csv.DictReader(file)]
 
 
-def read_steps(folder):
-    """Rows of bench_step, and of what it left to the run that was its --reference (bench_step_reference.csv): scenes'
-    methods without a row of their own."""
-    rows = read_rows(folder, "bench_step")
-    measured = {(row["scene"], row["method"]) for row in rows}
-    scenes = {row["scene"] for row in rows}
-    return rows + [row for row in read_rows(folder, "bench_step_reference")
-                   if row["scene"] in scenes and (row["scene"], row["method"]) not in measured]
+def cell(value):
+    if not isinstance(value, float):
+        return value
+    return f"{value:.5g}" if abs(value) < 1e5 else f"{value:.0f}"
 
 
-def count_void(folder, name):
-    path = os.path.join(folder, name + ".csv")
-    if not os.path.exists(path):
-        return 0
-    with open(path, newline="") as file:
-        return sum(row.get("valid") == "no" for row in csv.DictReader(file))
+def update_csv(path, columns, group, rows):
+    """Adds rows to a machine's CSV. They replace all old rows with the same values in the columns of `group`.
 
+    Names void rows and leaves them out. Returns the exit code: 0, 3 with void rows, 2 for another machine's file.
+    """
+    void = [row for row in rows if row.get("valid") == "no"]
+    for row in void:
+        print("void:", ", ".join(str(row.get(name, "")) for name in group))
+    rows = [row for row in rows if row.get("valid") != "no"]
+    old = read_csv(path) if os.path.exists(path) else []
+    machines = {row["machine"] for row in old + rows}
+    if len(machines) > 1:
+        print(f"{path}: results of several machines: {'; '.join(sorted(machines))}")
+        return 2
 
-def number_cells(row):
-    texts = ("hash", "commit", "driver", "device", "variant")
-    cells = {}
-    for name, text in row.items():
-        if not text:
-            continue
-        try:
-            cells[name] = text if name in texts else float(text)
-        except ValueError:
-            cells[name] = text
-    return cells
+    def key(row):
+        return tuple(str(cell(float(value)) if isinstance(value, (int, float)) else value or "") for value in map(row.get, group))
 
-
-def read_machine(folder, name):
-    with open(os.path.join(folder, name + ".json")) as file:
-        return json.load(file)["machine"]
-
-
-def read_json(folder, name):
-    path = os.path.join(folder, name + ".json")
-    if not os.path.exists(path):
-        return None
-    with open(path) as file:
-        return json.load(file)
+    anew = {key(row) for row in rows}
+    with open(path + ".part", "w", newline="") as file:
+        writer = csv.DictWriter(file, columns, restval="", extrasaction="ignore", lineterminator="\n")
+        writer.writeheader()
+        writer.writerows({name: cell(value) for name, value in row.items()}
+                         for row in [row for row in old if key(row) not in anew] + rows)
+    os.replace(path + ".part", path)
+    return 3 if void else 0
 
 
 def select(rows, **wanted):
@@ -63,12 +75,28 @@ def select(rows, **wanted):
 
 
 def in_order(rows, key):
-    """The values of a column in the order of first use."""
+    """Returns the values of a column in the order of their first use."""
     return list(dict.fromkeys(row[key] for row in rows if key in row))
 
 
+def figure(value):
+    """Returns a number with three digits and no exponent."""
+    if value is None:
+        return "–"
+    digits = 0 if value >= 100 or value == 0 else 1 if value >= 10 else 2 if value >= 1 else 3
+    return f"{value:,.{digits}f}"
+
+
+def count(value):
+    return "–" if value is None else f"{value:,.0f}"
+
+
+def table(head, lines):
+    return "".join("| " + " | ".join(line) + " |\n" for line in [head, ["---"] * len(head), *lines]) + "\n"
+
+
 def fit_exponent(points):
-    """p of the least-squares fit y = c x^p in logarithms; None with fewer than two different x."""
+    """Returns p of the least-squares fit y = c x^p in logarithms; None with fewer than two different x."""
     logs = [(math.log(x), math.log(y)) for x, y in points if x > 0 and y > 0]
     if len({x for x, _ in logs}) < 2:
         return None
@@ -76,23 +104,3 @@ def fit_exponent(points):
     mean_y = sum(y for _, y in logs) / len(logs)
     spread = sum((x - mean_x) ** 2 for x, _ in logs)
     return sum((x - mean_x) * (y - mean_y) for x, y in logs) / spread
-
-
-def n_log_n_exponent(sizes):
-    """What fit_exponent() gives for times of n log n at these sizes."""
-    return fit_exponent([(size, size * math.log(size)) for size in sizes if size > 1])
-
-
-# The size that a sweep of bench_step varies, and how it is called.
-SWEEPS = {
-    "cloth": (lambda row: row["cloth_triangles"], "cloth triangles, on the bunny"),
-    "obstacle": (lambda row: row["obstacle_triangles"], "obstacle triangles (spheres) under 2,048 of cloth"),
-    "both": (lambda row: row["cloth_triangles"] + row["obstacle_triangles"], "triangles of cloth and sphere together"),
-    "on_1k": (lambda row: row["cloth_triangles"], "cloth triangles, on a sphere of 1,280"),
-    "on_82k": (lambda row: row["cloth_triangles"], "cloth triangles, on a sphere of 81,920"),
-    "on_1m": (lambda row: row["cloth_triangles"], "cloth triangles, on a sphere of 1,310,720"),
-    "cloths": (lambda row: row["cloths"], "cloths of 512 triangles, on the bunny"),
-}
-
-# The stages of a step; on a device, the sums of their kernels' times.
-STAGES = ("refit", "broad", "self", "narrow", "order")

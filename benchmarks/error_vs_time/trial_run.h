@@ -17,7 +17,6 @@ inline constexpr const char* kProgram = "error_vs_time";
 inline constexpr const char* kDetectorPart = "detector";
 inline constexpr const char* kSimulationPart = "simulation";
 // The column with the reference of a row's hash: "defaults" of its scene on the host, or the "same" query.
-// merge_errors.py uses it to judge rows of different runs.
 inline constexpr const char* kMustMatch = "must_match";
 
 struct ErrorOptions : CommonOptions

@@ -8,6 +8,7 @@ import tempfile
 import unittest
 
 PROGRAMS = sys.argv.pop(1)
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 
 
 def run(program, *arguments):
@@ -27,27 +28,21 @@ class ProgramTest(unittest.TestCase):
 
     @staticmethod
     def script(name, *arguments):
-        path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "benchmarks", name)
-        return subprocess.run([sys.executable, path, *arguments], capture_output=True, text=True, timeout=600)
+        return subprocess.run([sys.executable, os.path.join(ROOT, name), *arguments], capture_output=True, text=True, timeout=600)
+
+    def read(self, name):
+        with open(self.path(name)) as file:
+            return file.read()
+
+    def write_results(self, name, rows, content=(), **machine):
+        """Writes raw results as the programs do."""
+        os.makedirs(os.path.dirname(self.path(name)), exist_ok=True)
+        described = {"date": "2026-01-01", "commit": "abc1234", "processor": "p", "cores": 2, "devices": [], **machine}
+        with open(self.path(name), "w") as file:
+            json.dump({"machine": described, "rows": rows, **dict(content)}, file)
 
     def path(self, name):
         return os.path.join(self.folder, name)
-
-    def summary(self):
-        """The tables of the results beside."""
-        readme = self.write_readme("<!-- results: made by summary.py --><!-- end of results -->")
-        result = self.script("summary.py", self.folder)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertNotIn("does not say its commit", result.stderr)
-        with open(readme) as file:
-            return file.read()
-
-    def write_readme(self, text, folder="results"):
-        path = self.path(os.path.join(folder, "README.md"))
-        os.makedirs(os.path.dirname(path), exist_ok=True)
-        with open(path, "w") as file:
-            file.write(text)
-        return path
 
     def quick(self, program, *arguments):
         """Rows of a quick run; every row has every column, and JSON says the same as CSV."""

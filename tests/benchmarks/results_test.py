@@ -1,160 +1,132 @@
-"""Results of the study that were measured in parts become one, and those that are published are good.
+"""Raw results become a small CSV, the CSV becomes tables and plots, and the committed CSVs are good.
 
 Usage: results_test.py FOLDER_OF_PROGRAMS
 """
-import json
+import glob
 import os
-import shutil
-import subprocess
 import unittest
 
-from programs import PROGRAMS, ProgramTest, read_csv
+from programs import ROOT, ProgramTest, read_csv
 
 
-class Merge(ProgramTest):
-    """Results of parts become one, whatever the order they were measured in."""
+class Reduced(ProgramTest):
+    """reduce.py on rows that are made here."""
 
-    def study(self, name, rows, **machine):
-        content = {"machine": {"date": "2026-01-01", "commit": "a", "processor": "p", "cores": 2, "devices": [], **machine},
-                   "rows": rows}
-        with open(self.path(name), "w") as file:
-            json.dump(content, file)
-        return self.path(name)
+    @staticmethod
+    def row(**cells):
+        return {"scene": "thesis", "sweep": "", "method": "drape_host", "stage": "step", "device": "host", "cloth_triangles": 2,
+                "obstacle_triangles": 3, "min_ms": 1.0, "median_ms": 2.0, "p95_ms": 3.0, "hash": "0123456789abcdef",
+                "valid": "yes", **cells}
 
-    def merged(self):
-        with open(self.path("out/study.json")) as file:
-            return json.load(file)
+    def reduce(self, *rows, **machine):
+        self.write_results("raw/bench_step.json", rows, **machine)
+        result = self.script("benchmarks/reduce.py", self.path("raw"), self.path("m.csv"))
+        return result.returncode, result.stdout + result.stderr
 
-    def merge(self, *names):
-        return self.script("merge_study.py", self.path("out"), *names)
+    def cells(self, column):
+        return [row[column] for row in read_csv(self.path("m.csv"))]
 
-    def test_parts_join_and_newer_ones_replace(self):
-        host = {"part": "construction", "model": "m", "backend": "host", "triangles": 5, "valid": "yes",
-                "hash": "h"}
-        refit = {**host, "part": "refit", "median_ms": 1.0}
-        first = self.study("first.json", [refit, {**host, "variant": "x", "median_ms": 1.0}, {**host, "variant": "gone"}])
-        self.assertEqual(self.merge(first).returncode, 0)
-        small = {**host, "model": "s", "triangles": 3}
-        device = {**host, "backend": "opencl"}
-        second = self.study("second.json", [device, {**host, "variant": "x", "median_ms": 2.0}, small], commit="b")
-        self.assertEqual(self.merge(second).returncode, 0)
-        b = {"commit": "b"}
-        self.assertEqual(self.merged()["rows"], [{**small, **b}, {**host, **b, "variant": "x", "median_ms": 2.0},
-                                                 {**device, **b}, {**refit, "commit": "a"}])
-        self.assertEqual(set(self.merged()["machine"]["commit"].split(", ")), {"a", "b"})
-        rows = read_csv(self.path("out/study.csv"))
-        self.assertEqual([row["median_ms"] for row in rows], ["", "2", "", "1"])
+    def test_new_rows_replace_old_rows_of_their_scene_and_method(self):
+        self.assertEqual(self.reduce(self.row(), self.row(scene="fine")), (0, ""))
+        self.assertEqual(self.reduce(self.row(median_ms=4.0), self.row(method="drape"), commit="def5678"), (0, ""))
+        self.assertEqual(self.cells("scene"), ["fine", "thesis", "thesis"])
+        self.assertEqual(self.cells("median_ms"), ["2", "4", "2"])
+        self.assertEqual(self.cells("commit"), ["abc1234", "def5678", "def5678"])
+
+    def test_rows_that_no_table_uses_are_left_out(self):
+        self.reduce(self.row(), self.row(stage="submit"), self.row(method="drape_kernels", stage="kernel: patchCull"),
+                    self.row(sweep="cloth", method="fcl_collide"))
+        self.assertEqual(self.cells("stage"), ["step"])
+
+    def test_memory_is_summed(self):
+        self.reduce(self.row(), self.row(stage="memory: cloth edges", bytes=3), self.row(stage="memory: step hits", bytes=4))
+        self.assertEqual(self.cells("bytes"), ["7"])
+
+    def test_void_rows_are_named_and_left_out(self):
+        code, said = self.reduce(self.row(), self.row(scene="fine", valid="no"))
+        self.assertEqual((code, self.cells("scene")), (3, ["thesis"]))
+        self.assertIn("fine", said)
 
     def test_another_machine_is_refused(self):
-        row = {"part": "refit", "model": "m", "backend": "host", "hash": "h"}
-        self.assertEqual(self.merge(self.study("first.json", [row])).returncode, 0)
-        result = self.merge(self.study("second.json", [{**row, "part": "quality"}], processor="q"))
-        self.assertEqual(result.returncode, 2)
-        self.assertIn("another machine", result.stderr)
-        self.assertEqual(self.merged()["rows"], [{**row, "commit": "a"}])
+        self.reduce(self.row())
+        code, said = self.reduce(self.row(median_ms=9.0), processor="q")
+        self.assertEqual((code, self.cells("median_ms")), (2, ["2"]))
+        self.assertIn("several machines", said)
 
-    def test_rows_without_a_back_end_or_a_hash_are_refused(self):
-        row = {"part": "refit", "model": "m", "backend": "host", "hash": "h"}
-        self.assertEqual(self.merge(self.study("first.json", [row])).returncode, 0)
-        for column in ("backend", "hash"):
-            result = self.merge(self.study("second.json", [row, {**row, column: ""}]))
-            self.assertEqual(result.returncode, 2)
-            self.assertIn(f"no {column}", result.stderr)
-            self.assertEqual(len(self.merged()["rows"]), 1)
 
-    def test_commits_that_were_replaced_are_no_longer_named(self):
-        row = {"part": "refit", "model": "m", "backend": "host", "hash": "h"}
-        self.assertEqual(self.merge(self.study("first.json", [row])).returncode, 0)
-        self.assertEqual(self.merge(self.study("second.json", [row], commit="b")).returncode, 0)
-        self.assertEqual(self.merged()["machine"]["commit"], "b")
+class Reports(ProgramTest):
+    def test_tables_and_plots_of_a_quick_run(self):
+        self.quick("bench_step")
+        os.makedirs(self.path("raw"))
+        os.rename(self.path("rows.json"), self.path("raw/bench_step.json"))
+        self.assertEqual(self.script("benchmarks/reduce.py", self.path("raw"), self.path("m.csv")).returncode, 0)
+        rows = read_csv(self.path("m.csv"))
+        self.assertEqual({row["scene"] for row in rows}, {"quick_one", "quick_many", "quick_self"})
+        self.assertEqual(self.script("benchmarks/report.py", self.path("m.csv")).returncode, 0)
+        self.assertTrue(self.read("m.md").startswith("# m\n"))
 
-    def test_a_void_row_is_told(self):
-        void = {"part": "refit", "model": "m", "backend": "host", "hash": "h", "valid": "no"}
-        self.assertEqual(self.merge(self.study("first.json", [void])).returncode, 3)
-
-    def run_study(self, *arguments):
-        path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "benchmarks", "run_study.sh")
-        return subprocess.run(["bash", path, "--bin", PROGRAMS, "--quick", "--repeats", "2", *arguments, self.path("out")],
-                              capture_output=True, text=True, timeout=600)
-
-    def test_parts_run_one_after_the_other(self):
-        result = self.run_study("--parts", "refit,peers")
+    def test_plots_of_the_committed_results(self):
+        try:
+            import matplotlib  # noqa: F401
+        except ModuleNotFoundError:
+            self.skipTest("python3-matplotlib is not installed")
+        result = self.script("benchmarks/report.py", *CSVS, "--out", self.folder, "--plots", self.folder)
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertEqual({row["part"] for row in self.merged()["rows"] if row["backend"] == "fcl"},
-                         {"construction", "refit"})
-        result = self.run_study("--parts", "quality", "--only", "sphere_1k")
-        self.assertEqual(result.returncode, 0, result.stderr)
-        rows = self.merged()["rows"]
-        self.assertEqual({row["model"] for row in rows if row["part"] == "quality"}, {"sphere_1k"})
-        self.assertTrue([row for row in rows if row["part"] == "refit"])
-        self.assertEqual(self.run_study("--parts", "nonsense").returncode, 2)
+        for path in CSVS:
+            self.assertIn("</svg>", self.read(os.path.basename(path)[:-4] + "_steps.svg"))
 
 
-RESULTS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "benchmarks", "results")
+class Hashes(ProgramTest):
+    """Trajectories of several machines."""
 
-# What makes a row of the study one of its own.
-IDENTITY = ("part", "model", "variant", "backend", "device", "threads", "dop", "degree", "leaf_size", "kernel", "level", "step",
-            "pairs")
+    def report(self, *machines):
+        """machines: cells of the one row of each. Returns the exit code and the message."""
+        names = []
+        for index, cells in enumerate(machines):
+            names.append(self.path(f"{index}.csv"))
+            row = {"machine": "m", "commit": "abc1234", "program": "cloth_drop", "scene": "o 1", "setting": "", "method": "drape",
+                   "stage": "collision", "device": "gpu", "steps": "240", "penetration_mm": "0", "ended": "whole", "hash": "1", **cells}
+            with open(names[-1], "w") as file:
+                file.write(",".join(row) + "\n" + ",".join(row.values()) + "\n")
+        result = self.script("benchmarks/report.py", *names)
+        self.assertEqual(os.path.exists(self.path("0.md")), result.returncode == 0, "no table of results that are refused")
+        return result.returncode, result.stderr
+
+    def test_one_trajectory_with_two_hashes_is_refused(self):
+        code, said = self.report({}, {"hash": "2", "method": "drape_host", "device": "host"})
+        self.assertEqual(code, 1)
+        for words in ("abc1234", "1 (0, drape)", "2 (1, drape_host)"):
+            self.assertIn(words, said)
+
+    def test_other_runs_may_differ(self):
+        for other in ({"commit": "abc1235"}, {"scene": "o 2"}, {"setting": "all contacts"}, {"steps": "52"},
+                      {"method": "bullet_stock"}, {"commit": "abc1234-dirty"}):
+            with self.subTest(**other):
+                self.assertEqual(self.report({}, {"hash": "2", **other})[0], 0)
+
+
+CSVS = sorted(glob.glob(os.path.join(ROOT, "benchmarks", "results", "*.csv")))
 
 
 class Committed(ProgramTest):
-    """Results that are published: every row was judged, is good, and says when it was measured."""
-
-    def machines(self):
-        names = sorted(name for name in os.listdir(RESULTS) if os.path.exists(os.path.join(RESULTS, name, "study.json")))
-        self.assertTrue(names)
-        return names
-
-    def test_every_row_of_the_study_has_a_good_hash(self):
-        for name in self.machines():
-            with open(os.path.join(RESULTS, name, "study.json")) as file:
-                content = json.load(file)
-            self.assertTrue(content["rows"])
+    def test_every_answer_has_a_hash_and_a_commit(self):
+        self.assertTrue(CSVS)
+        for path in CSVS:
             seen = set()
-            for row in content["rows"]:
-                identity = name, *(row.get(column) for column in IDENTITY)
-                for column in ("backend", "commit"):
-                    self.assertTrue(row.get(column), (identity, column))
-                self.assertRegex(row.get("hash", ""), "^[0-9a-f]{16}$", identity)
-                self.assertEqual(row.get("valid"), "yes", identity)
+            for row in read_csv(path):
+                self.assertRegex(row["commit"], "^[0-9a-f]{7}$", row)
+                identity = tuple(row[name] for name in ("program", "scene", "setting", "method", "stage", "device"))
                 self.assertNotIn(identity, seen, "twice")
                 seen.add(identity)
-            commits = {row["commit"] for row in content["rows"]}
-            self.assertEqual(set(content["machine"]["commit"].split(", ")), commits)
-            cells = read_csv(os.path.join(RESULTS, name, "study.csv"))
-            self.assertEqual([(row["part"], row["hash"]) for row in cells],
-                             [(row["part"], row["hash"]) for row in content["rows"]])
-
-    def test_every_step_that_gives_contacts_has_a_good_hash(self):
-        for name in self.machines():
-            for row in read_csv(os.path.join(RESULTS, name, "bench_step.csv")):
-                judged = row["method"].startswith("drape") or row["method"].startswith("embree_contacts")
-                if judged and not row["stage"].startswith("memory: "):
+                if row["program"] == "bench_step" and row["method"].startswith(("drape", "embree_contacts")):
                     self.assertRegex(row["hash"], "^[0-9a-f]{16}$", row)
-                    self.assertEqual(row["valid"], "yes", row)
-                self.assertNotEqual(row["valid"], "no", row)
 
-    def test_peers_refitted_to_other_places(self):
-        """A peer's tree after its refit is of the sheared mesh, everywhere, and not the one that was built."""
-        refitted = {}
-        for name in self.machines():
-            with open(os.path.join(RESULTS, name, "study.json")) as file:
-                rows = [row for row in json.load(file)["rows"] if row["backend"] in ("embree", "fcl")]
-            built = {(row["model"], row["variant"], row["threads"]): row["hash"] for row in rows if row["part"] == "construction"}
-            self.assertTrue(built)
-            for row in (row for row in rows if row["part"] == "refit"):
-                identity = row["model"], row["variant"], row["threads"]
-                self.assertNotEqual(row["hash"], built[identity], identity)
-                self.assertEqual(refitted.setdefault(identity, row["hash"]), row["hash"], identity)
-        self.assertTrue(refitted)
-
-    def test_one_trajectory_has_one_hash(self):
-        """summary.py refuses them otherwise, here into another file."""
-        shutil.copytree(RESULTS, self.path("results"), ignore=shutil.ignore_patterns("*.png"))
-        shutil.copy(os.path.join(os.path.dirname(RESULTS), "README.md"), self.folder)
-        result = self.script("summary.py", self.folder)
+    def test_summaries_are_those_of_the_data(self):
+        result = self.script("benchmarks/report.py", *CSVS, "--out", self.folder)
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertNotIn("does not say its commit", result.stderr)
+        for path in CSVS:
+            with open(path[:-4] + ".md") as file:
+                self.assertEqual(file.read(), self.read(os.path.basename(path)[:-4] + ".md"))
 
 
 if __name__ == "__main__":
