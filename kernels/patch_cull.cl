@@ -16,7 +16,7 @@ typedef struct Packet
     uint m_motion;
     CullVolumes m_volumes;
     CullVolume m_joined;
-    float m_corners[DRAPE_CORNER_ROWS * DRAPE_LANES];  // that the volumes are made of
+    float m_corners[DRAPE_CORNER_ROWS * DRAPE_LANES];  // corners from which the volumes are made
     Looker m_lookers[DRAPE_LANES];
     NodeIntervals m_nodes[DRAPE_LANES];
     uint m_looks;  // bit i: whether looker i and its nodes are ready

@@ -36,7 +36,7 @@ typedef struct CullPair
     uint m_looker;
     uint m_own;    // the triangle's nodes and edges that it owns and that are valid, bits as in Triangle::m_owned
     uint m_all;  // so large compared with the patch that it is near most of it
-    uint m_parts;  // of the patch that the triangle is near
+    uint m_parts;  // bit per part of the patch that the triangle is near
 } CullPair;
 
 // Tests at hand: of a pair, one of its triangle's nodes or edges or (0) its face, and a part of the patch's features.
@@ -48,12 +48,12 @@ typedef struct CullPair
 typedef struct Culler
 {
     Team m_team;
-    Looker m_lookers[DRAPE_CULL_PAIRS];  // of each pair that has another cloth triangle than the pair before
+    Looker m_lookers[DRAPE_CULL_PAIRS];  // one per run of pairs with the same triangle and motion
     CullPair m_pairs[DRAPE_CULL_PAIRS];
     ushort m_nodes[DRAPE_CULL_PAIRS * 3 * DRAPE_PARTS];
     ushort m_faces[DRAPE_CULL_PAIRS * 3 * DRAPE_PARTS];
     ushort m_edges[DRAPE_CULL_PAIRS * 9 * DRAPE_PARTS];
-    uint m_counts[3];  // of m_nodes, m_faces and m_edges
+    uint m_counts[3];  // counts of m_nodes, m_faces and m_edges
 } Culler;
 
 // Returns whether a cloth triangle is so large compared with a patch of that size that most of the patch's features

@@ -14,8 +14,8 @@ typedef struct Walkers
     uint m_stack[DRAPE_WALK_NODES * DRAPE_WALK_STACK];
     uint m_found[DRAPE_WALK_FOUND];
     uint m_foundCount;
-    CullVolume m_volumes[DRAPE_PATCH_WIDTH];  // of a packet's triangles, empty where one cannot come near the obstacle
-    CullVolume m_joined;  // of all the packet's triangles, or of the single triangle
+    CullVolume m_volumes[DRAPE_PATCH_WIDTH];  // volumes of a packet's triangles; empty if out of the obstacle's reach
+    CullVolume m_joined;  // union of the volumes, or the single triangle's
 } Walkers;
 
 // A walk over the obstacles that rest, or over one that moves.

@@ -17,7 +17,7 @@ typedef struct SelfCloths
     __global const float* m_faceBoxes;
     __global const float* m_vertexBoxes;
     __global const float* m_edgeBoxes;
-    __global const float* m_nodes;  // of the wide tree
+    __global const float* m_nodes;  // nodes of the wide tree
     __global const uint* m_levels;
     uint m_levelCount;
 } SelfCloths;

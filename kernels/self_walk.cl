@@ -93,8 +93,8 @@ typedef struct SelfFeatures
     __global const uint* m_faceIds;
     __global const uint* m_vertexIds;
     __global const uint* m_edgeIds;
-    __global const float* m_boxes;  // of the nodes
-    __global const float* m_nodes;  // of the wide tree
+    __global const float* m_boxes;  // boxes of the nodes
+    __global const float* m_nodes;  // nodes of the wide tree
 } SelfFeatures;
 
 // Features that a patch owns at most, of a kind.
@@ -135,7 +135,7 @@ typedef struct NearSide
 typedef struct SelfCuller
 {
     Team m_team;
-    NearSide m_sides[2];  // of the pair's first and second patch
+    NearSide m_sides[2];  // first and second patch of the pair
     uint m_nearA[DRAPE_NEAR], m_nearB[DRAPE_NEAR];  // pairs of features, kind above the second
     uint m_nearCount;
 } SelfCuller;

@@ -45,9 +45,9 @@ public:
 private:
     struct Pair
     {
-        MeshId m_cloth, m_obstacle;  // of a cloth's meshes the pair's own, where its obstacle deforms
+        MeshId m_cloth, m_obstacle;  // m_cloth: the pair's own mesh of the cloth if its obstacle deforms
         btScalar m_thickness;
-        const btVector3* m_carriedStarts;  // then, see StepContact; null else
+        const btVector3* m_carriedStarts;  // start positions in that case, see StepContact; else null
         StartingPair m_start;
     };
 
@@ -71,7 +71,7 @@ private:
     float tubeOf(const Pair& pair);
     enum class Detection
     {
-        First,  // of the step
+        First,  // the step's first one
         Again
     };
 
@@ -101,8 +101,8 @@ private:
     bool m_heldTogether = false;  // any body, since the last detection
     DeformedPairs m_deformed;
     PairStarts m_starts;
-    std::vector<std::vector<int>> m_jumped;           // of checkStarts(), by body
+    std::vector<std::vector<int>> m_jumped;           // result of checkStarts(), by body
     std::unordered_set<const btSoftBody*> m_invalid;  // with nodes that were not finite; compared, not followed
-    std::unordered_set<const btSoftBody*> m_told;     // that they are left out; likewise
+    std::unordered_set<const btSoftBody*> m_told;     // bodies reported as left out; compared, not followed
 };
 }  // namespace drape

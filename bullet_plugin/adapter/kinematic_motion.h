@@ -52,9 +52,9 @@ private:
     struct Tracked
     {
         BodyMotion m_motion;
-        BodyMotion m_change;  // of the pose from the step before, swept or not
+        BodyMotion m_change;  // change of the pose since the step before, swept or not
         std::uint64_t m_step;
-        btTransform m_pose;     // that Bullet had; the motion's end is on the way there while substeps share it
+        btTransform m_pose;     // Bullet's pose; m_motion ends before it while substeps share the motion
         btTransform m_noticed;  // the pose at which Bullet had taken the velocity
         bool m_shares;          // motion that looks like one of several substeps is shared out among them
     };

@@ -20,7 +20,7 @@ struct WorldMesh
 {
     std::vector<std::int32_t> m_triangles;  // 3 per triangle
     std::vector<float> m_positions;         // x y z per vertex, m, world frame
-    std::uint64_t m_topologyHash = 0;       // of the triangles and the number of vertices
+    std::uint64_t m_topologyHash = 0;       // hash of the triangles and the number of vertices
     std::uint64_t m_positionHash = 0;
 };
 

@@ -71,7 +71,7 @@ public:
     bool hasForeignFaces() const { return m_hasForeignFaces || m_links.hasForeign(); }
     // Parts cut by the nodes' positions when the topology was read or last revalidated.
     const ClothParts& parts() const { return m_parts; }
-    // Requests a full check by a first or returning user: the body may be another one at the same address.
+    // Requests a full check, before a first or renewed use: the body may be another one at the same address.
     void takeUp() { m_fullCheck = m_takenUp = true; }
     // Says that the nodes are no longer where the last step left them: no pair of the cloth counts as free of
     // intersections until it is checked.
@@ -100,13 +100,13 @@ private:
     MeshId m_id = kNoMesh;
     ClothFaces m_faces;
     SolidLinks m_links;
-    int m_faceCount = 0;  // of m_faces, without links
+    int m_faceCount = 0;  // entries of m_faces without links
     ClothParts m_parts;
     const void* m_nodeArray = nullptr;
     const void* m_faceArray = nullptr;
     int m_cursor = 0;
     std::uint64_t m_startRevision = 0;
-    std::vector<btVector3> m_ends;  // of the last step, by node
+    std::vector<btVector3> m_ends;  // end positions of the last step, by node
     bool m_hasForeignFaces = false;
     bool m_takenUp = false;  // since the parts were cut
     bool m_fullCheck = true;
@@ -152,11 +152,11 @@ private:
     ObstacleKey m_key;
     const btCollisionShape* m_meshShape = nullptr;  // compared, never followed
     MeshId m_id = kNoMesh;
-    btTransform m_pose = btTransform::getIdentity();  // of the positions that the pipeline holds
-    btTransform m_end = btTransform::getIdentity();   // of the obstacle at the end of the last step
+    btTransform m_pose = btTransform::getIdentity();  // pose of the positions in the pipeline
+    btTransform m_end = btTransform::getIdentity();   // pose of the obstacle at the last step's end
     std::uint64_t m_startRevision = 0, m_positionRevision = 0;
-    std::unique_ptr<MeshProbe> m_before;  // of a mesh whose vertices moved
-    std::vector<float> m_positions;       // likewise, as the pipeline has them
+    std::unique_ptr<MeshProbe> m_before;  // probe of a mesh whose vertices moved
+    std::vector<float> m_positions;       // its positions in the pipeline
     float m_mostMotion = 0;               // m
     std::uint64_t m_deformedStep = 0;
     std::uint64_t m_signature = 0, m_topologyHash = 0, m_positionHash = 0;

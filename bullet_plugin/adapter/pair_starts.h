@@ -63,7 +63,7 @@ private:
         int m_passes = 0;               // over all of the obstacle's triangles
         int m_pushedSteps = 0;          // in which nodes were on the wrong side
         int m_passingSteps = 0;         // in which faces met the obstacle although all nodes were on the right side
-        int m_keptNode = -1;            // of the part of the cloth that others are drawn back to; -1: none are
+        int m_keptNode = -1;            // a node of the part that the rest is drawn back to; -1: no such part
         int m_backSteps = 0;            // in which they were
         int m_outSteps = 0;             // in which the whole cloth was moved out
         Vec3 m_out = {};                // the way that it takes, unit, in the frame of the obstacle's positions
@@ -72,7 +72,7 @@ private:
     struct Probe
     {
         std::unique_ptr<MeshProbe> m_probe;
-        std::uint64_t m_revision = 0;  // of the obstacle's positions
+        std::uint64_t m_revision = 0;  // revision of the obstacle's positions
         std::uint64_t m_lastStep = 0;
     };
     // A face of the cloth and the obstacle's triangles that it meets.

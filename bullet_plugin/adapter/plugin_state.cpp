@@ -57,7 +57,7 @@ private:
         }
     }
 
-    std::unordered_map<const btCollisionObject*, Shapes> m_children;  // of compounds, nested ones' too
+    std::unordered_map<const btCollisionObject*, Shapes> m_children;  // shapes inside compounds, nested ones included
 };
 
 // Counted among the mirror's owners.

@@ -37,7 +37,7 @@ struct PairNote
     btSoftBody* m_cloth;
     ObstacleKey m_obstacle;
     bool m_kinematic;     // else the obstacle rests at the motion's end
-    BodyMotion m_motion;  // of the shape, which may be a compound's child
+    BodyMotion m_motion;  // the shape's motion; the shape may be a compound's child
     btScalar m_thickness;
 };
 

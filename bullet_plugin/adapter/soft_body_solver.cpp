@@ -84,15 +84,15 @@ struct SoftBodySolver::Work
     std::unique_ptr<CollisionStep> m_step;  // null until it is needed
     std::unique_ptr<BodySolver> m_solver;
     UsageWatch m_usage;
-    std::vector<BodyContacts*> m_touched;        // of solveBodies()
-    std::vector<unsigned char> m_solved;         // likewise, by body: Bullet has solved it, or the contacts were
+    std::vector<BodyContacts*> m_touched;        // working memory of solveBodies()
+    std::vector<unsigned char> m_solved;         // by body: solved by Bullet or by its contacts
     std::vector<btSoftBody*> m_taken;            // bodies that Drape takes, in this step
     std::vector<const btSoftBody*> m_predicted;  // in this step, sorted by address
     bool m_listed = false;                       // m_predicted is whole
     bool m_detected = false;                     // the paths of all bodies with a pair are recorded
     std::size_t m_asleep = 0;                    // cloths that are not among them
-    double m_predictMs = 0;                      // of this class's share in predictMotion
-    std::uint64_t m_failures;                    // of the state's, those that a step of this solver has told of
+    double m_predictMs = 0;                      // time of this class in predictMotion
+    std::uint64_t m_failures;                    // failures of the state that a step of this solver has reported
 };
 
 SoftBodySolver::SoftBodySolver(Plugin& plugin) : m_state(plugin.state())
@@ -129,7 +129,7 @@ void SoftBodySolver::beginStep(btScalar dt, std::vector<StepObstacle>& obstacles
 {
     m_work->m_listed = false;
     m_work->m_taken.clear();
-    m_state->dropNotes(this);  // of a dispatch that no solve followed
+    m_state->dropNotes(this);  // notes of a dispatch that no solve followed
     m_state->setStepped(this, m_softBodySet);
     if (!m_state->ready()) return listPredicted();
     Stopwatch watch;

@@ -50,7 +50,7 @@ private:
 
     std::vector<std::int32_t> m_nodes;
     std::vector<int> m_surface;  // by node: the representative node of its surface; kNoSurface
-    std::uint64_t m_sum = 0;     // of what sumOf() adds up, over all links
+    std::uint64_t m_sum = 0;     // sumOf() over all links
     std::uint64_t m_seen = 0;    // sum over the links up to m_cursor
     int m_cursor = 0;
     int m_linkCount = 0, m_tetraCount = 0;

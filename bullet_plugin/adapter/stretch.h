@@ -23,7 +23,7 @@ constexpr btScalar kMostStretch = 4;
 struct Stretch
 {
     btScalar m_start;  // at the start of the nodes' paths
-    btScalar m_end;    // where they are now
+    btScalar m_end;    // at the nodes' current positions
 };
 
 // Returns the median of each component; zero for no vectors.

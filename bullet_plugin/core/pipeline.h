@@ -33,7 +33,7 @@ struct ContactView
     std::uint32_t m_kind;     // DRAPE_NODE_FACE …; of an edge that is not a triangle's at a vertex DRAPE_FACE_VERTEX
     std::int32_t m_nodes[3];  // nodes of the cloth feature, indices in that cloth; -1 where unused
     std::int32_t m_triangle;  // a cloth triangle that holds the feature, index as given to addCloth; -1: none does
-    float m_weights[3];       // of m_nodes, sum 1
+    float m_weights[3];       // by m_nodes, sum 1
     float m_normal[3];        // unit, from the obstacle to the side the cloth came from
     float m_point[3];         // m, on the obstacle
     float m_gap0, m_gap1;  // m, along the normal at the step's start and end as the obstacle sees them, thickness not
@@ -49,7 +49,7 @@ struct SelfContactView
     MeshId m_cloth;
     std::uint32_t m_kind;     // DRAPE_SELF_NODE_FACE or DRAPE_SELF_EDGE_EDGE
     std::int32_t m_nodes[4];  // node, face's three; or two of each edge; indices in the cloth
-    float m_weights[4];       // of m_nodes; those of either feature add up to 1
+    float m_weights[4];       // by m_nodes; each feature's add up to 1
     float m_normal[3];        // unit, from the second feature to the side the first came from
     float m_point[3];         // m, on the second feature at the step's end
     float m_gap0, m_gap1;     // m, along the normal at the step's start and end, thickness not subtracted
@@ -69,7 +69,7 @@ struct ContactPlane
 {
     float m_normal[3];   // unit, on the side of the contact's
     float m_point[3];    // m, on the obstacle
-    float m_weights[3];  // of the face's nodes, sum 1
+    float m_weights[3];  // by node of the face, sum 1
 };
 
 // A range of adjacent nodes of a cloth, and the memory to write them to: x y z per node.
@@ -77,7 +77,7 @@ struct NodeStretch
 {
     std::size_t m_cloth;  // index in the caller's list
     std::size_t m_first, m_count;
-    float *m_start, *m_end;  // of the first of them at the step's start and end
+    float *m_start, *m_end;  // first node's positions at the step's start and end
 };
 
 // Contacts where the back end left them.

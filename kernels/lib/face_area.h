@@ -48,7 +48,7 @@ typedef struct LongFace
     Vec3 m_near;    // m, that end
     Vec3 m_along;   // from there to the edge's far end
     Vec3 m_side;    // from there to the third corner
-    float m_place;  // of the third corner along the edge, as a part of it
+    float m_place;  // the third corner's position along the edge, as a fraction of it
     Vec3 m_rise;    // the third corner's offset from the edge; 0 where it is noise
 } LongFace;
 

@@ -74,7 +74,7 @@ typedef struct RestingFace
 typedef struct MovingFace
 {
     FeatureTriangle m_start, m_end;
-    Vec3 m_areaStart;  // as triangleNormal() has it
+    Vec3 m_areaStart;  // computed by triangleNormal()
     FaceArea m_areaEnd;
 } MovingFace;
 

@@ -268,7 +268,7 @@ DRAPE_FUNCTION LaneMask cullNodeFace(const DRAPE_TEAM CullTriangle* cull, int i,
 typedef struct CullEdges
 {
     LanesVec3 m_a, m_along, m_axis;
-    Lanes m_cosine;  // of the cone, loosened, squared with its sign
+    Lanes m_cosine;  // cone's loosened cosine, squared with its sign
     Lanes m_length, m_square;
 } CullEdges;
 

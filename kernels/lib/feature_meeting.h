@@ -154,7 +154,7 @@ DRAPE_FUNCTION CcdSettings meetingSettings(float motion, PairBounds bounds)
 typedef struct Meeting
 {
     int m_met;
-    float m_time;   // of the step, never late
+    float m_time;   // time in the step, never late
     float m_place;  // time in the step at which to test the features: as near as a few iterations come
 } Meeting;
 

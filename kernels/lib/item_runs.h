@@ -12,9 +12,9 @@
 #ifdef DRAPE_CPU
 typedef struct ItemRuns
 {
-    uint m_item, m_end;  // of the current run
+    uint m_item, m_end;  // current run
     uint m_run, m_runs;
-    uint m_takers;  // of runs, in turn
+    uint m_takers;  // work-items that take runs in turn
     uint m_count;
 } ItemRuns;
 

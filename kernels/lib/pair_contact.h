@@ -24,7 +24,7 @@ typedef struct ClothView
     DRAPE_UINT m_triangleCount;
     DRAPE_UINT m_mode;                            // DRAPE_DISCRETE …
     DRAPE_UINT* m_searches;  // see PairBounds
-    const DRAPE_GLOBAL ObstacleMotion* m_motion;  // of the current obstacle; null where it rests
+    const DRAPE_GLOBAL ObstacleMotion* m_motion;  // motion of the current obstacle; null if it rests
 } ClothView;
 
 typedef struct ObstacleView

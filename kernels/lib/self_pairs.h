@@ -34,7 +34,7 @@ static int volumesOverlap(const Vec3 from[4], const Vec3 to[4], const int split,
         high[k] = lanesMax(start, end);
         sum += lanesAbs(start) + lanesAbs(end);
 #if DRAPE_DOP_DIRECTIONS == 7 || DRAPE_DOP_DIRECTIONS == 13
-        inner = lanesMax(inner, lanesSplat(drapeMax(vec3Norm1(from[k]), vec3Norm1(to[k]))));  // of any two coordinates
+        inner = lanesMax(inner, lanesSplat(drapeMax(vec3Norm1(from[k]), vec3Norm1(to[k]))));  // any two coordinates
 #endif
     }
     const Lanes both = lanesMin(low[2], low[3]), bothHigh = lanesMax(high[2], high[3]);

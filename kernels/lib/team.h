@@ -16,7 +16,7 @@
 
 typedef struct Team
 {
-    uint m_depth;  // of a walk's stack, where the lanes share it
+    uint m_depth;  // depth of the stack that a walk's lanes share
     FeatureTest m_kept[DRAPE_TEAM_KEPT];
     uint m_keptCount;
     uint m_place;  // in the list, of what was moved last

@@ -22,7 +22,7 @@ DRAPE_NAMESPACE_BEGIN
 typedef struct TrianglePair
 {
     FeatureTriangle m_a, m_b;
-    float m_scale;  // of the frame, prescale included
+    float m_scale;  // scale of the frame, prescale included
     float m_extent;
 } TrianglePair;
 

@@ -40,7 +40,7 @@ typedef struct MeshFirsts
 typedef struct NormalCone
 {
     Vec3 m_axis;     // unit
-    float m_cosine;  // of the half-angle
+    float m_cosine;  // cosine of the half-angle
 } NormalCone;
 
 // Half the volumes' sides: 9 in the product; 3, 7 and 13 are for studies. An option of the host's build, passed on to
@@ -86,10 +86,10 @@ typedef struct StepCounters
     DRAPE_UINT m_front;   // pairs of the front for the next step
     DRAPE_UINT m_spill;   // most pairs that did not fit into a traversal's local queue
     DRAPE_UINT m_swept;   // pairs of features that the continuous test decided
-    DRAPE_UINT m_patchPairs;  // of cloth triangles and patches, where they are listed
-    DRAPE_UINT m_selfPairs;   // of patches of cloths with themselves, where they are listed
+    DRAPE_UINT m_patchPairs;  // listed pairs of cloth triangles and patches
+    DRAPE_UINT m_selfPairs;   // listed pairs of patches of cloths with themselves
     DRAPE_UINT m_selfTests;   // pairs of features of cloths with themselves
-    DRAPE_UINT m_selfSwept;  // of m_selfTests, those that the continuous test decided
+    DRAPE_UINT m_selfSwept;  // pairs in m_selfTests that the continuous test decided
     DRAPE_UINT m_visits;  // volume tests of the broad phase; only in programs built with DRAPE_COUNT_VISITS
 } StepCounters;
 

@@ -24,7 +24,7 @@ typedef struct FeatureHit
     DRAPE_UINT m_kind;
     DRAPE_UINT m_a;
     DRAPE_UINT m_b;
-    float m_time;  // of impact, part of the step
+    float m_time;  // time of impact, fraction of the step
 } FeatureHit;
 
 // A pair of triangles that meets or is near, as bits of kernels/lib/triangle_pair.h.

@@ -42,6 +42,6 @@ private:
     std::vector<float> m_faces, m_vertices, m_edges, m_sizes, m_volumes, m_wideNodes;
     std::vector<std::uint32_t> m_vertexIds, m_edgeIds;  // a face's owner is the face itself
     std::vector<FeatureTest> m_tests;
-    std::size_t m_testsBefore = 0;  // of the last run
+    std::size_t m_testsBefore = 0;  // tests of the last run
 };
 }  // namespace drape

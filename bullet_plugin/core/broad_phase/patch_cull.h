@@ -47,7 +47,7 @@ public:
         std::size_t m_obstacleMeshes;
         float m_reachScale;
         std::uint32_t m_mode;               // DRAPE_DISCRETE …
-        Buffer<ObstacleMotion>& m_motions;  // of the obstacles that move in the step, in the order of slots
+        Buffer<ObstacleMotion>& m_motions;  // motions of the moving obstacles, in the order of slots
         std::size_t m_motionCount;
         // Tests, and pairs of triangles and patches: counts are exact up to it, a greater one says only that there are
         // more.
@@ -93,7 +93,7 @@ private:
     bool m_levelsMoved = false;                                        // since the last pack()
     ItemRange m_vertexOwnersHeld = {0, 0}, m_edgeOwnersHeld = {0, 0};  // by the buffers
     Buffer<Patch> m_patches{"obstacle patches"};
-    Buffer<cl_uint> m_faceFeatures{"obstacle face features"};  // of a GPU
+    Buffer<cl_uint> m_faceFeatures{"obstacle face features"};  // only on a GPU
     Buffer<cl_uint> m_vertexOwners{"obstacle packing"}, m_edgeOwners{"obstacle packing"};
     // Owners by lane; a face's owner is the face itself.
     Buffer<cl_uint> m_faceOwners{"obstacle face numbers"}, m_vertexIds{"obstacle vertex numbers"};

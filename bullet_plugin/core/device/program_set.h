@@ -16,7 +16,7 @@ namespace drape
 class ProgramSet
 {
 public:
-    using Names = std::vector<std::string>;  // of "kernels/<name>.cl"
+    using Names = std::vector<std::string>;  // names in "kernels/<name>.cl"
 
     // together: files that form one program on a CPU; if a file is in several, the first counts. cacheFolder,
     // defines: see buildJoinedProgram(). The device is kept.

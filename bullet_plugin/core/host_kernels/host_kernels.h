@@ -78,7 +78,7 @@ struct SelfPatches
 {
     const Patch* m_patches;
     std::uint32_t m_patchCount;
-    std::uint32_t m_places;  // of the wide tree's first level
+    std::uint32_t m_places;  // positions in the wide tree's first level
     const std::uint32_t* m_faceIds;
     const std::uint32_t* m_vertexIds;
     const std::uint32_t* m_edgeIds;

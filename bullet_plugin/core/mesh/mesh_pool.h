@@ -100,14 +100,14 @@ private:
     void joinOrder(const PooledMesh& mesh);
 
     std::vector<PooledMesh> m_meshes;
-    std::vector<MeshId> m_ids;  // of the meshes, next to each other to be searched
+    std::vector<MeshId> m_ids;  // the meshes' ids, contiguous for the search
     std::vector<Triangle> m_triangles;
     std::vector<Edge> m_edges;
     std::vector<std::uint32_t> m_order;
     std::vector<MeshFirsts> m_firsts;
     std::size_t m_vertexCount = 0;
     std::size_t m_triangleCount = 0;  // in all slots
-    std::size_t m_faceCount = 0;      // of meshes that are there
+    std::size_t m_faceCount = 0;      // triangles of the meshes in use
     std::size_t m_vacantTriangles = 0;
     std::size_t m_vacantCount = 0;
     std::size_t m_placed = 0;  // leading slots whose places in the joined arrays stand

@@ -75,7 +75,7 @@ private:
     static constexpr std::size_t kLeastSweptShared = 1 << 6;
 
     std::vector<Contact> m_hits;
-    std::vector<std::uint32_t> m_slotCount;  // of hits
+    std::vector<std::uint32_t> m_slotCount;  // number of contacts by slot
     std::vector<std::uint32_t> m_swept;      // tests that the continuous test decides
 };
 }  // namespace drape

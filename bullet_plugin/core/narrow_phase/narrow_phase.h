@@ -96,7 +96,7 @@ public:
                           Buffer<StepCounters>& counters);
 
 private:
-    std::size_t m_mostTests = SIZE_MAX;  // of the last launches
+    std::size_t m_mostTests = SIZE_MAX;  // tests of the last launches
     Kernel m_test, m_feature, m_swept, m_few, m_intersect;
     Buffer<Candidate> m_intersections{"step intersections"};
     Buffer<cl_uint> m_sweptTests{"step candidates"};

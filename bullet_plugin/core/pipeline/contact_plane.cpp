@@ -9,7 +9,7 @@ namespace
 // The place of a face that is nearest to the vertex, which is the origin.
 struct Nearest
 {
-    Vec3 m_weights;  // of the cloth's nodes
+    Vec3 m_weights;  // by node of the cloth
     Vec3 m_offset;   // from the vertex
     Vec3 m_across;   // the face's area vector where the offset is parallel to it; else 0
 };

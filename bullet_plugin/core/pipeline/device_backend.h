@@ -132,7 +132,7 @@ private:
     Buffer<Candidate> m_candidates{"step candidates"};
     // Counters of a step and the next, alternating; see StepTally.
     Buffer<StepCounters> m_counters[2] = {Buffer<StepCounters>("step counters"), Buffer<StepCounters>("step counters")};
-    Buffer<StepCounters> m_refitCounters{"step counters"};  // of obstacles, which nobody reads
+    Buffer<StepCounters> m_refitCounters{"step counters"};  // counters of obstacle refits, never read
     std::size_t m_turn = 0;
     int m_stepsToOrder = 1;
     std::size_t m_testsBefore = SIZE_MAX, m_hitsBefore = SIZE_MAX;  // feature tests and hits of the step before

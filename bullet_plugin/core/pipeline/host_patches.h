@@ -39,7 +39,7 @@ private:
     HostPatchCull m_cull;
     HostPlacedObstacles m_placed;
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
-    std::vector<std::uint32_t> m_clothOrder;  // that of the cloths' own patches, since it walks for packets
+    std::vector<std::uint32_t> m_clothOrder;  // order of the cloths' own patches, traversed in packets
     HostHitFinder m_hits;
     HostSelfPatches m_self;
 };

@@ -77,7 +77,7 @@ struct Pipeline::Implementation
     std::string m_deviceReason;     // why this device and no other
     MeshId m_nextId = 0;
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
-    std::uint32_t m_stepRevision = 0;                 // of the obstacles, in the last step with a pair
+    std::uint32_t m_stepRevision = 0;                 // m_obstacleRevision in the last step with a pair
     std::size_t m_nodesWritten = 0, m_nodesSent = 0;  // the first so many nodes of all cloths, for the coming step
     bool m_neededMore = false;                        // tests than ordinary motion does, the last step
     bool m_limitsRaised = false;                      // above those of ordinary motion, in this step

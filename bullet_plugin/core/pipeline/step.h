@@ -52,7 +52,7 @@ struct Scene
     BvhLayout m_obstacleLayout;
     ClothNodes m_clothNodes;
     bool m_anySelf = false;                  // true if a cloth collides with itself
-    std::vector<float> m_clothRest;          // m, joined, at rest; empty where none does
+    std::vector<float> m_clothRest;          // m, joined, at rest; empty without m_anySelf
     std::vector<float> m_obstaclePositions;  // m, joined, as given
     std::vector<NormalCone> m_vertexCones;   // joined, as the positions
     std::vector<NormalCone> m_edgeCones;
@@ -97,9 +97,9 @@ struct StepPairs
     std::vector<float> m_tube;       // m; -1 to keep every contact
     bool m_anyTube = false;
     std::vector<float> m_clothRadius;       // m, per cloth slot: the largest reach of its pairs, -1 without one
-    std::vector<ObstacleMotion> m_motions;  // of the obstacles that have a pair and move, in the order of slots
+    std::vector<ObstacleMotion> m_motions;  // motions of the moving obstacles with a pair, in the order of slots
     std::vector<TestLimits> m_ordinary;     // per cloth slot: what its pairs need in ordinary motion
-    TestLimits m_limits;                    // of the step, over patches
+    TestLimits m_limits;                    // the step's limits, over patches
     SelfReach m_self;
     bool m_anyPair = false;      // cloth and obstacle
     bool m_anySelf = false;      // cloth and itself
@@ -129,7 +129,7 @@ struct StepPairs
 
 struct StepResult
 {
-    std::vector<Contact> m_contacts;  // of the host
+    std::vector<Contact> m_contacts;  // the host's contacts
     ContactList m_deviceContacts;     // the device back end's memory, until its next step
     std::vector<Candidate> m_intersections;
     // More candidates or contacts than the limits allow: nothing else of the result counts then but m_contactDemand.

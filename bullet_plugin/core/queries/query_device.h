@@ -63,7 +63,7 @@ private:
     bool takeHits(const SelfLimits& limits, SelfCollisions& found);
 
     std::unique_ptr<Device> m_device;
-    Error m_noRoom;  // of the last walk, which alone ends
+    Error m_noRoom;  // error of the last walk; the device stays usable
     ProgramSet m_programs;
     RefitStage m_refit;
     SelfCollisionStage m_stage;

@@ -49,6 +49,6 @@ private:
     HostHitFinder m_hits;
     StepCounters m_counters = {};
     std::size_t m_retries = 0;
-    std::size_t m_testsBefore = 0;  // of the last cull
+    std::size_t m_testsBefore = 0;  // tests of the last cull
 };
 }  // namespace drape

@@ -54,7 +54,7 @@ private:
 
     BvhLayout m_layout;
     std::vector<BvhNode> m_nodes;
-    std::vector<Dop> m_volumes;  // of the nodes
+    std::vector<Dop> m_volumes;  // the nodes' volumes
     std::uint32_t m_revision = 0;
 };
 }  // namespace drape

@@ -87,7 +87,7 @@ void SelfContactStage::enqueuePack(Device& device, SelfBuffers step, Buffer<floa
                                    Buffer<StepCounters>& counters)
 {
     const std::size_t width = PatchCullStage::width(device);
-    const std::size_t places = m_layout.m_levels[1] * width;  // of the first level's children
+    const std::size_t places = m_layout.m_levels[1] * width;  // positions among the first level's children
     const cl_uint patchCount = cl_uint(m_layout.m_patches.size());
     if (device.isGpu())
         m_pack.launch(device, places * width, width, m_patches.handle(), patchCount, m_faceIds.handle(),

@@ -52,7 +52,7 @@ struct SelfCounts
     std::uint64_t m_candidates = 0;
     std::uint64_t m_contacts = 0;
     std::uint64_t m_swept = 0;         // candidates that the continuous test decided
-    std::uint64_t m_invalidNodes = 0;  // of cloths that the search for obstacles does not look at
+    std::uint64_t m_invalidNodes = 0;  // invalid nodes of cloths that the obstacle search skips
     std::size_t m_retries = 0;         // for lists that were too short
 };
 }  // namespace drape

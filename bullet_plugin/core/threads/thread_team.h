@@ -91,7 +91,7 @@ private:
     std::atomic<std::uint32_t> m_job{0};     // number of the last one offered
     std::atomic<std::size_t> m_unfinished{0};
     std::atomic<bool> m_failed{false};
-    std::exception_ptr m_failure;  // of the item that failed first
+    std::exception_ptr m_failure;  // exception of the item that failed first
 
     std::mutex m_mutex;
     std::condition_variable m_offered;
