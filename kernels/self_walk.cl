@@ -1,6 +1,6 @@
-// Broad phase of cloths with themselves on a GPU, in two launches: every patch walks the wide tree and lists the patches from
-// itself on in order whose volumes overlap its own; then groups share these pairs of patches out. What is left are pairs of
-// features whose volumes over the step overlap, each once.
+// Broad phase of cloths with themselves on a GPU, in two launches. In the first, every patch traverses the wide tree and
+// lists itself and later patches whose volumes overlap its own. In the second, groups share these pairs of patches. The
+// output is pairs of features whose volumes over the step overlap, each once.
 #include "lib/self_pairs.h"
 #include "lib/wide_walk.h"
 

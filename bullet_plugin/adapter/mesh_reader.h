@@ -1,10 +1,9 @@
-// Reading a Bullet triangle mesh shape: all parts, strides, float or double vertices, 8, 16 or 32 bit indices, scaling.
+// Reads a Bullet triangle mesh shape: all parts, strides, float or double vertices, 8, 16 or 32 bit indices, scaling.
 //
-// Input: a shape that isMeshShape() accepts and a pose. Output: triangles and world positions (m) as the core takes
-// them, transformed in btScalar before they are rounded to float; vertices that no triangle uses are left out, and so
-// are triangles with a negative index or a vertex that is not finite. As Bullet does, this trusts indices and not the
-// number of vertices that a part states. Cost: a few passes over the mesh; meshSignature() looks at a bounded number of
-// vertices only.
+// Input: a shape that isMeshShape() accepts and a pose. Output: triangles and world positions (m) for the core,
+// transformed in btScalar before they are rounded to float. Unused vertices are left out, and so are triangles with a
+// negative index or a vertex that is not finite. Like Bullet, this trusts indices and not the number of vertices that
+// a part states. Cost: a few passes over the mesh; meshSignature() reads a bounded number of vertices only.
 #pragma once
 
 #include <cstdint>

@@ -8,7 +8,7 @@
 // while the pair intersects. Nodes on the wrong side of a closed obstacle are pushed to its nearest surface point at
 // a bounded speed. Pairs with an open obstacle are only reported.
 //
-// Cost: a comparison per node of a guarded pair; for a new one a pass over the obstacle's triangles if the boxes
+// Cost: a comparison per node of a guarded pair. A new pair takes a pass over the obstacle's triangles if the boxes
 // meet, and O(log n) per cloth face if a triangle enters the cloth's box. Deterministic with any number of threads.
 // Details: docs/design_notes/tangled_starts.md.
 #pragma once

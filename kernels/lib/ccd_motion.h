@@ -15,8 +15,8 @@ typedef struct CcdVectors
     Vec3 m_d0, m_d1, m_e0, m_e1, m_g0, m_g1;
 } CcdVectors;
 
-// F seen along several directions, each taken as exact: along x, y and z; along the features' common normal, where F
-// does not vary with u and v; and along the two where it does not vary with t and v, or with t and u.
+// Views of F along several directions, each taken as exact. The first three are x, y and z. Along the features' common
+// normal F does not vary with u and v. Along the other two it does not vary with t and v, or with t and u.
 #define DRAPE_CCD_VIEWS 6
 #define DRAPE_CCD_NORMAL 3
 #define DRAPE_CCD_ALONG_U 4

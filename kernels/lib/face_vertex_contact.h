@@ -56,10 +56,11 @@ DRAPE_FUNCTION int neighbourIsNearer(Vec3 weights, const DRAPE_UINT* beyond, con
            positionIsValid(vec3Load(start, neighbour));
 }
 
-// Moving face against a resting vertex with the given normal cone. A vertex nearest to an edge of the face counts here
-// too (weights with one zero); one nearest to a node is the node's contact. beyond: the third vertices of the
-// neighbours over the face's three edges (m_a … m_c), into start and end, positions at the step's start and end; a
-// neighbour whose third vertex is invalid makes no contacts and counts as absent. origin: of the local frame.
+// Tests a moving face against a resting vertex with the given normal cone. A vertex nearest to an edge of the face
+// counts here too (weights with one zero); one nearest to a node is the node's contact. beyond: the third vertices of
+// the neighbours over the face's three edges (m_a … m_c), as indices into start and end. start, end: positions at the
+// step's start and end. A neighbour whose third vertex is invalid makes no contacts and counts as absent. origin: of
+// the local frame.
 DRAPE_FUNCTION int faceVertexContact(const MovingFace* face, const DRAPE_UINT* beyond, const DRAPE_GLOBAL float* start,
                                      const DRAPE_GLOBAL float* end, Vec3 origin, Vec3 vertex, NormalCone cone,
                                      PairBounds bounds, Contact* contact)

@@ -50,9 +50,10 @@ typedef struct CullTriangle
     int m_thinStart, m_thinEnd;
 } CullTriangle;
 
-// Reach of a cull, m. m_slack: loosens every comparison; m_near: distance at the end; m_met: distance at the start and
-// at the end of features that met in between, as far as the triangle moves; m_before: the same where it counts at the
-// start, anything where every meeting is to be looked for; m_farthest: the larger of m_near and m_met.
+// Reach of a cull, m. m_slack: loosens every comparison. m_near: distance at the end. m_met: distance at the step's
+// start and at its end of features that met in between, as far as the triangle moves. m_before: limit of the distance
+// at the start: m_met, or DRAPE_CULL_ANYWHERE if every meeting must be found. m_farthest: the larger of m_near and
+// m_met.
 typedef struct CullReach
 {
     float m_slack, m_near, m_met, m_before, m_farthest;
@@ -307,9 +308,9 @@ DRAPE_FUNCTION LaneMask cullEdgeEdge(const DRAPE_TEAM CullTriangle* cull, int i,
     const Lanes facing = lanesDot(edges->m_axis, direction);
     const LaneMask admitted = facing * facing >= edges->m_cosine * square;
 
-    // Places of the closest points of the two lines, times the square; loosened by rounding, which also turns the
-    // cloth's edge, seen over the gap between the lines, and where the edges may have met by how far they can have
-    // moved since.
+    // Parameters of the two lines' closest points, times the square. They are loosened by rounding, which also turns
+    // the cloth's edge as seen over the gap between the lines. If the edges may have met, they are also loosened by
+    // the edges' possible motion since.
     const Lanes s = lanesDot(lanesCross(offset, along), direction);
     const Lanes t = lanesDot(lanesCrossUniform(across, offset), direction);
     const Lanes size = lanesNorm1(offset) + edges->m_length + cull->m_diameter;

@@ -1,13 +1,13 @@
-// Contacts of a cloth with itself, as many tests of one kind as there are lanes, on a CPU: self_contact.h as
-// lane_contacts.h does the contacts with obstacles. Left open besides: nodes against faces that are thin at rest.
+// Computes the contacts of self_contact.h for as many tests of one kind as there are lanes, on a CPU, like
+// lane_contacts.h for obstacles. Lanes with a node against a face that is thin at rest also stay open.
 #ifndef DRAPE_LIB_LANE_SELF_CONTACTS_H
 #define DRAPE_LIB_LANE_SELF_CONTACTS_H
 
 #include "lane_contacts.h"
 #include "self_contact.h"
 
-// Numbers of a test, a row of lanes each: positions (x y z, m) of the node or the first edge at the step's start, then of
-// the face or the second edge; the same at the step's end; the same at rest; the cloth's thickness, m.
+// Input rows of a test, one lane each: positions (x y z, m) of the node or the first edge, then of the face or the
+// second edge. They stand at the step's start, then at its end, then at rest. The cloth's thickness, m, follows.
 #define DRAPE_SELF_POSITIONS 4
 #define DRAPE_SELF_ROWS (3 * 3 * DRAPE_SELF_POSITIONS + 1)
 

@@ -1,6 +1,7 @@
-// Obstacles that move in the step. Their positions are those at the step's end, and the cloth's motion is taken as they
-// see it: a node that starts at x starts at m_map x for them. The path between is a straight line in their frame, exact
-// for motion without rotation; a point at distance r of a rotation by the angle a is off by r (1 - cos(a / 2)) at most.
+// Obstacles that move in the step. Their positions are those at the step's end, and the cloth's motion is relative to
+// the obstacle: a node that starts at x starts at m_map x. The path between is a straight line in the obstacle's frame.
+// This is exact for motion without rotation. Under a rotation by the angle a, a point at distance r of the axis is off
+// by at most r (1 - cos(a / 2)).
 #ifndef DRAPE_LIB_RIGID_MOTION_H
 #define DRAPE_LIB_RIGID_MOTION_H
 

@@ -28,8 +28,8 @@ typedef struct Patch
 #define DRAPE_FACE_FLOATS 10
 #define DRAPE_VERTEX_FLOATS 7
 #define DRAPE_EDGE_FLOATS 10
-// Spread: how far beside the face, over how far above it, a node can be that one of its edges' or corners' cones
-// admits; DRAPE_ANY_SPREAD where they admit as much as any, a direction in the face's own plane among them.
+// Spread of a face: largest ratio of a node's distance beside the face to its height above it that a cone of the
+// face's edges or corners admits. DRAPE_ANY_SPREAD: no bound; cones admit directions in or near the face's plane.
 #define DRAPE_ANY_SPREAD 1e18f
 // Size of a child of a wide node: for every direction low, high, and the reach of a contact as a share of the full
 // reach (lib/cone_reach.h).

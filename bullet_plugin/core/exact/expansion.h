@@ -1,9 +1,9 @@
-// Numbers without rounding: sums of doubles that do not overlap, of which the last tells the sign.
+// Numbers without rounding: sums of doubles that do not overlap; the last one determines the sign.
 //
-// Sums, differences and products are exact as long as no term leaves the range of a double; terms down to the product
-// of three smallest floats (2^-447) and up to that of three largest (2^384) are far inside. Cost: quadratic in the
-// number of terms; for predicates whose double filter did not decide. Method: J. R. Shewchuk, Adaptive precision
-// floating-point arithmetic and fast robust geometric predicates, 1997.
+// Sums, differences and products are exact as long as no term leaves the range of a double. Products of three floats
+// stay far inside, from 2^-447 for the smallest to 2^384 for the largest. Cost: quadratic in the number of terms; for
+// predicates whose double filter did not decide. Method: J. R. Shewchuk, Adaptive precision floating-point arithmetic
+// and fast robust geometric predicates, 1997.
 #pragma once
 
 #include <cmath>
