@@ -21,10 +21,10 @@
 #define DRAPE_VERTEX_PARTS (DRAPE_FACE_PARTS + DRAPE_PARTS)
 #define DRAPE_EDGE_PARTS (DRAPE_VERTEX_PARTS + 3u * DRAPE_PARTS)
 
-// The part of this lane's place in a block.
+// The part of a block to which this lane's position belongs.
 #define DRAPE_OWN_PART (teamLane() % DRAPE_PATCH_WIDTH / DRAPE_PART)
 
-// A pair's place has five bits of a task, its parts are bits of a word, and each pair has a lane.
+// Five bits of a task hold a pair's index, its parts are bits of a word, and each pair has a lane.
 typedef char PairsFit[DRAPE_CULL_PAIRS <= 32 && DRAPE_CULL_PAIRS <= DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH ? 1 : -1];
 typedef char PartsFit[DRAPE_EDGE_PARTS + 3u * DRAPE_PARTS <= 32u ? 1 : -1];
 
@@ -39,7 +39,8 @@ typedef struct CullPair
     uint m_parts;  // bit per part of the patch that the triangle is near
 } CullPair;
 
-// Tests at hand: of a pair, one of its triangle's nodes or edges or (0) its face, and a part of the patch's features.
+// A current group of tests: of a pair, one of its triangle's nodes or edges or (0) its face, and a part of the
+// patch's features.
 #define DRAPE_TASK(pair, feature, part) ((ushort)((pair) | (feature) << 5 | (part) << 7))
 #define DRAPE_TASK_PAIR(task) ((task) & 31u)
 #define DRAPE_TASK_FEATURE(task) ((task) >> 5 & 3u)
@@ -104,8 +105,8 @@ static void takePairs(__local Culler* culler, const StepCloths* cloths, const Pa
     teamSync();
 }
 
-// Marks the parts that hold the face of this lane and the features which it owns, where the pair's cloth triangle may
-// be near it.
+// Marks the parts that contain this lane's face and the features that it owns, if the pair's cloth triangle may be near
+// the face.
 static void markParts(__local CullPair* pair, __local const CullTriangle* cull, const PatchFeatures* features,
                       __global const uint* faceFeatures)
 {
@@ -135,7 +136,7 @@ static void listTasks(__local ushort* tasks, volatile __local uint* count, const
     }
 }
 
-// Lists the tests of all pairs at hand, a lane for each pair and kind.
+// Lists the tests of all current pairs, one lane for each pair and kind.
 static void listAllTasks(__local Culler* culler, const uint count)
 {
     for (uint i = teamLane(); i < 3 * DRAPE_CULL_PAIRS; i += teamWidth())

@@ -27,7 +27,7 @@ class PluginState;
 struct DeformedPair
 {
     MeshId m_mesh = kNoMesh;           // the cloth's mesh for this obstacle alone
-    std::vector<btVector3> m_starts;   // by node, m: what the pipeline takes for the start
+    std::vector<btVector3> m_starts;   // by node, m: start positions for the pipeline
     std::vector<btVector3> m_carried;  // position to which the obstacle's whole motion carries it
     std::uint64_t m_lastStep = 0;
 };

@@ -53,7 +53,7 @@ btTransform moved(const btTransform& from, const btVector3& shift, const btVecto
     return to;
 }
 
-// Substeps that the velocity takes for the change of the pose, 0 when the two do not fit.
+// Returns the number of substeps in which the velocity makes the change of pose; 0 if the two do not fit.
 btScalar substepsBetween(const btTransform& from, const btTransform& to, const btVector3& velocity,
                          const btVector3& angularVelocity, btScalar dt)
 {
@@ -82,8 +82,8 @@ bool isNear(const btTransform& from, const btTransform& to, const btVector3& vel
     return shift.length() <= farthest + kShiftNoise && turnBetween(from, to).m_angle <= most + kMostPoses * kAngleNoise;
 }
 
-// Farther than this, m and radii of the shape, no step moves an object: it was put elsewhere. Bullet takes a soft body
-// out of its simulation whose box is 10^6 m across.
+// Distances, in m, in radii of the shape, and in m, beyond which an object was placed instead of moved. Bullet removes
+// a soft body from its simulation if its box is 10^6 m across.
 constexpr btScalar kMostShift = 100, kMostRadii = 100, kMostOfAll = btScalar(2.5e5);
 
 // Minimum motion of a body, in radii, for nodes that moved along to indicate a teleport.

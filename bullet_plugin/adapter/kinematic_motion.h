@@ -40,8 +40,8 @@ public:
     // as the map does, to within `slack` (m).
     using MovedAlong = std::function<bool(const btCollisionObject& object, const btTransform& map, btScalar slack)>;
 
-    // Forgets objects that were not observed in the step before. movedAlong: for this step, asked of objects that moved
-    // far; null: no.
+    // Forgets objects that were not observed in the step before. movedAlong: called in this step for objects that moved
+    // far; null: always false.
     void beginStep(btScalar dt, MovedAlong movedAlong = nullptr);
     // The object is where its pose says; how it came there is no motion.
     void teleported(const btCollisionObject& object) { m_tracked.erase(&object); }

@@ -25,7 +25,7 @@ btScalar sizeOf(const btSoftBody& cloth)
     return largestOf(high - low);
 }
 
-// Bullet's box holds the margin.
+// Bullet's box includes the margin.
 btScalar sizeOf(const btCollisionShape& shape)
 {
     btVector3 low, high;

@@ -29,8 +29,8 @@ bool isMeshShape(int shapeType);
 // The shape that owns the triangles: the child of a scaled shape, else the shape itself.
 const btCollisionShape* meshShapeOf(const btCollisionShape& shape);
 
-// Returns how much of its margin Bullet's bounds of the shape lack, m, at least 0: those of a scaled shape hold its
-// child's margin, and a negative margin makes them smaller than the mesh.
+// Returns the part of its margin that Bullet's bounds of the shape lack, m, at least 0. Bounds of a scaled shape
+// include its child's margin, and a negative margin makes them smaller than the mesh.
 btScalar marginBeyondBounds(const btCollisionShape& shape);
 
 void readMesh(const btCollisionShape& shape, const btTransform& pose, WorldMesh& mesh);

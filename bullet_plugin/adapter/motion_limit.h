@@ -118,7 +118,7 @@ private:
     const ClothFaces* m_faces = nullptr;
     // Data of one apply(), kept for its memory.
     std::vector<Restless> m_restless;
-    std::vector<unsigned char> m_isBoxed, m_isNear;  // by node: what it passed; near the region looked at last
+    std::vector<unsigned char> m_isBoxed, m_isNear;  // by node: is in m_passed; is near the region tested last
     std::vector<Passed> m_passed;
     btVector3 m_allLow, m_allHigh;  // around all of them
 };

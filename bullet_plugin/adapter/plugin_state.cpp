@@ -117,7 +117,7 @@ void PluginState::log(const char* line) const
     }
     catch (...)
     {
-        // The app's function failed; the step goes on.
+        // The app's function failed; the step continues.
     }
 }
 

@@ -1,10 +1,10 @@
-// The links of a soft body that collide: those that are not part of a surface.
+// Finds the links of a soft body that collide: those that are not part of a surface.
 //
 // A link is solid unless it is one of Bullet's bending links (btSoftBody::generateBendingConstraints), or both of its
-// nodes lie on one surface: a connected set of faces and tetrahedra, which collides for them. So all links of a rope
-// are solid, the threads of a fringe, and what joins two pieces of cloth in one body, but no link across a cloth.
+// nodes lie on one surface: a connected set of faces and tetrahedra, which collides for them. All links of a rope are
+// solid, the threads of a fringe, and links that join two pieces of cloth in one body, but no link across a cloth.
 // Links that name another body's nodes are not solid. Input: the live body; faces as node indices. Cost: read() is
-// linear in the body, almost; changed() in the links that it looks at.
+// almost linear in the body, changed() linear in the links that it checks.
 #pragma once
 
 #include <cstddef>

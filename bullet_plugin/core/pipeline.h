@@ -175,9 +175,9 @@ public:
     // Enqueues the step for the pairs named since the last finish(); returns without waiting.
     void submit();
     // Waits, grows buffers and repeats where needed. Contacts are valid until the next submit().
-    // allowance: asked of the cloths of a step that needs more tests than ordinary motion does (ordinary_work.h): how
-    // many times as many the cloth may make. Infinity for cloth that keeps its size; little for one that came apart or
-    // whose pins were put elsewhere. Cloths that need more than that are left out. Null: infinity.
+    // allowance: returns a factor on the tests that a cloth's ordinary motion needs (ordinary_work.h), if a step needs
+    // more. Infinity for cloth that keeps its size; little for cloth that came apart or whose pins were displaced.
+    // Cloths that need more are left out. Null: infinity.
     using Allowance = std::function<float(MeshId)>;
     ContactList finish(const Allowance& allowance = nullptr);
     // Waits for a hierarchy that is being built beside the steps (Methods::m_rebuildDecay): the next submit() uses it.

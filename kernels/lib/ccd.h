@@ -20,8 +20,8 @@ DRAPE_NAMESPACE_BEGIN
 // path's 64 bits.
 #define DRAPE_CCD_LEVELS 21
 
-// Halvings after which the views are aimed anew. On the published queries 3 to 8 cost the same, and never doing it five
-// times as much.
+// Halvings after which the views are aimed again. On the published queries 3 to 8 cost the same, and never aiming again
+// costs five times as much.
 #define DRAPE_CCD_AIM 6
 
 // Searches for the time may take this part of the boxes that the search for any hit may take: 256 of 4,096 by default.
@@ -91,8 +91,8 @@ DRAPE_FUNCTION void ccdDescend(CcdBox* box, CcdPath* path, int axis)
     ccdWidenAlong(box, axis, 0.5f);
 }
 
-// Goes on to the next box that was put off: the upper half of the latest halving of which the lower half is done.
-// Returns whether there is one.
+// Continues with the next deferred box: the upper half of the latest halving whose lower half is done. Returns whether
+// there is one.
 DRAPE_FUNCTION int ccdNext(CcdBox* box, CcdPath* path)
 {
     while (path->m_depth > 0)

@@ -31,7 +31,8 @@ DRAPE_FUNCTION float sineOf(float cosine)
     return drapeSqrt(drapeMax(1.0f - cosine * cosine, 0.0f));
 }
 
-// Cosine of the half-angle about `axis` (unit) of a cone that holds `cone`; -1 where that is a right angle or more.
+// Returns the cosine of the half-angle, about `axis` (unit), of a cone that contains `cone`; -1 for a right angle or
+// more.
 DRAPE_FUNCTION float cosineAround(Vec3 axis, NormalCone cone)
 {
     const float between = drapeMin(drapeAbs(vec3Dot(axis, cone.m_axis)), 1.0f);
@@ -40,8 +41,8 @@ DRAPE_FUNCTION float cosineAround(Vec3 axis, NormalCone cone)
     return cosine > 0.0f ? cosine : -1.0f;
 }
 
-// Cosine of the half-angle about `axis` of a cone that holds what a triangle's corners and edges admit; as
-// cosineAround(). cones: of its corners, then of its edges.
+// Returns cosineAround() for a cone that contains all directions that a triangle's corners and edges admit. cones: of
+// its corners, then of its edges.
 DRAPE_FUNCTION float cosineOfCones(Vec3 axis, const NormalCone* cones)
 {
     float cosine = 1.0f;

@@ -34,7 +34,7 @@ DRAPE_FUNCTION FeatureEdge triangleEdge(const FeatureTriangle* f, int i)
     return e;
 }
 
-// Boxes that do not meet, for points that can only meet at one instant. low/high hold the boxes' corners.
+// Returns whether boxes do not meet, for points that can only meet at one instant. low/high: the boxes' corners.
 DRAPE_FUNCTION int boxesApart(Vec3 lowA, Vec3 highA, Vec3 lowB, Vec3 highB, float slack)
 {
     return lowA.x - highB.x > slack || lowB.x - highA.x > slack || lowA.y - highB.y > slack ||

@@ -344,7 +344,7 @@ typedef struct CullCorners
     Vec3 m_p[6];         // m, at the step's start and end; without the sweep at the end twice
     int m_swept;         // see isSwept()
     DRAPE_UINT m_valid;  // features, see replaceInvalidCorners()
-    float m_noise;       // m, see DRAPE_CULL_NOISE: no more than the reach, which holds whatever the cones admit
+    float m_noise;       // m, see DRAPE_CULL_NOISE: at most the reach, whatever the cones admit
 } CullCorners;
 
 // The volume's interval along direction i.

@@ -88,7 +88,7 @@ DRAPE_FUNCTION int nodeFaceContact(Vec3 x0, Vec3 x1, const RestingFace* resting,
             return 1;
         }
         // The path went around the face, so the node belongs on the side where it ends. The plane of a thin face turns
-        // freely about the face's length: its sides tell nothing.
+        // freely about the face's length: its sides mean nothing.
         if (!thin)
         {
             if (drapeAbs(s1) > areaLength * bounds.m_reachSlack) return 0;

@@ -262,8 +262,8 @@ DRAPE_FUNCTION void loadPair(PairTriangles* pair, const ClothView* cloth, const 
 }
 
 // Proves that a pair of triangles is out of reach by the planes of the two, where the cloth's is taken at the step's
-// end. The slack is far above any rounding: what is dropped here gives no contact. A plane whose normal is too short
-// for a float to hold its length proves nothing.
+// end. The slack is far above any rounding: a pair dropped here gives no contact. A plane proves nothing if its normal
+// is too short for a float's full precision.
 DRAPE_FUNCTION int pairApart(const PairTriangles* pair, float reach)
 {
     const FeatureTriangle start = pair->m_start, end = pair->m_end, resting = pair->m_resting;

@@ -85,8 +85,8 @@ DRAPE_FUNCTION int mayComeNear(const Dop* dop, float radius, const DRAPE_GLOBAL 
     return near;
 }
 
-// The volume in which to look for what may be in contact with a cloth triangle over the step as the obstacle sees it,
-// see cornersVolume; mode: DRAPE_DISCRETE …. The volume holds the radius. Returns mayComeNear().
+// Computes the volume to search for contacts of a cloth triangle over the step, relative to the obstacle; see
+// cornersVolume. mode: DRAPE_DISCRETE …. The volume includes the radius. Returns mayComeNear().
 DRAPE_FUNCTION int volumeSeen(Dop* dop, const DRAPE_GLOBAL ObstacleMotion* motion,
                               const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
                               const DRAPE_GLOBAL float* end, float radius, DRAPE_UINT mode)

@@ -11,12 +11,12 @@ DRAPE_NAMESPACE_BEGIN
 #define DRAPE_NODE_FACE 0u
 #define DRAPE_FACE_VERTEX 1u
 #define DRAPE_EDGE_EDGE 2u
-// Contacts of a cloth with itself (lib/self_contact.h): the obstacle's part is played by another feature of the cloth.
+// Contacts of a cloth with itself (lib/self_contact.h): another feature of the cloth takes the obstacle's part.
 #define DRAPE_SELF_NODE_FACE 3u
 #define DRAPE_SELF_EDGE_EDGE 4u
 
-// The most contacts of a slot that a CPU's work-item puts in order alone in quadratic time, where none are left out; a cloth
-// feature at rest has a few dozen.
+// Maximum contacts of a slot that a CPU's work-item sorts alone in quadratic time, without reduction. A cloth feature
+// at rest has a few dozen.
 #define DRAPE_RANKED 64u
 
 // Canonical order of contacts: slot, then obstacle feature. A slot is a cloth feature: first all nodes, then all faces,

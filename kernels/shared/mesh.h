@@ -78,9 +78,9 @@ typedef struct Candidate
 typedef struct StepCounters
 {
     DRAPE_UINT m_candidates;
-    DRAPE_UINT m_listed;  // hits, before any is reduced
-    DRAPE_UINT m_crowded;  // slots with more of them than are counted (compaction.cl, compaction_few.cl)
-    DRAPE_UINT m_hits;    // without those that were reduced
+    DRAPE_UINT m_listed;  // contacts before reduction
+    DRAPE_UINT m_crowded;  // slots with too many contacts for counting (compaction.cl, compaction_few.cl)
+    DRAPE_UINT m_hits;    // contacts after reduction
     DRAPE_UINT m_invalidNodes;
     DRAPE_UINT m_intersections;
     DRAPE_UINT m_front;   // pairs of the front for the next step

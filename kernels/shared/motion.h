@@ -22,7 +22,7 @@ typedef struct ObstaclePlace
 typedef struct ObstacleMotion
 {
     float m_map[DRAPE_MAP_FLOATS];  // pose at the step's end after the inverse of the one at its start
-    float m_low[3], m_high[3];      // m, box that holds the obstacle at the step's end
+    float m_low[3], m_high[3];      // m, the obstacle's box at the step's end
     DRAPE_UINT m_mesh;              // slot
 } ObstacleMotion;
 

@@ -82,7 +82,7 @@ bool writeAll(int file, const std::string& bytes)
     return true;
 }
 
-// Creates a new file for the process beside the one that is to be written. `temporary` is set to its name.
+// Creates a new file for the process beside the target file. Sets `temporary` to its name.
 Descriptor createTemporary(int folder, const std::string& name, std::string& temporary)
 {
     constexpr int kMostLeftBehind = 10;  // by processes that were ended while they wrote

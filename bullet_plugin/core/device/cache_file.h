@@ -1,6 +1,6 @@
-// Files of Drape's cache folder. Every trouble (no folder, no space, no permission, no memory) reads as "not there";
-// nothing here fails. Files and folders that are not the user's own, or that others can write, are not used, and links
-// to files are not followed: the cache holds programs that are run.
+// Reads and writes files of Drape's cache folder. Every problem (no folder, no space, no permission, no memory) counts
+// as a missing file; nothing here fails. Files and folders that are not the user's own, or that others can write, are
+// not used, and links to files are not followed: the cache contains programs that are run.
 #pragma once
 
 #include <cstddef>

@@ -14,7 +14,7 @@ namespace drape
 struct DeviceChoice
 {
     bool m_onHost = true;
-    bool m_byCost = false;    // nobody asked for this device: scenes that are too small for it may run on the host
+    bool m_byCost = false;    // no setting names this device: scenes that are too small for it may run on the host
     std::size_t m_index = 0;  // into deviceInfos(), unless on the host
     DeviceInfo m_device;      // the selected device
     std::string m_reason;

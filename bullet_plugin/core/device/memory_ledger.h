@@ -17,7 +17,7 @@ public:
     // Notes an allocation until the last copy of what is returned is gone; that may outlive the ledger.
     std::shared_ptr<const void> enter(const std::string& name, std::size_t bytes);
 
-    // The bytes of each name, in alphabetical order; names that hold nothing are left out.
+    // Returns the bytes of each name, in alphabetical order, without names of size 0.
     std::vector<MemoryUse> list() const;
 
 private:

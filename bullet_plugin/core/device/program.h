@@ -37,9 +37,9 @@ struct ProgramBuild
 bool keepsItsOwn(const DeviceInfo& device);
 
 // Builds "kernels/<name>.cl" of all the names as one program, with contraction off and correctly rounded ÷ and √;
-// DRAPE_CPU is defined unless the device is a GPU. A failed build puts the files and the whole log into the device's
-// error. What was built is kept in cacheFolder, unless the platform keeps its own (empty: the user's cache; "none": no
-// cache); cache trouble means a build, never a failure. defines: lines of text put before the source.
+// DRAPE_CPU is defined unless the device is a GPU. A failed build stores the files and the whole log in the device's
+// error. Built programs are kept in cacheFolder, unless the platform keeps its own (empty: the user's cache; "none": no
+// cache). A problem with the cache causes a build, never a failure. defines: lines of text before the source.
 cl::Program buildJoinedProgram(Device& device, const std::vector<std::string>& names, const std::string& cacheFolder,
                                ProgramBuild& build, const std::string& defines = std::string());
 inline cl::Program buildProgram(Device& device, const std::string& name, const std::string& cacheFolder,

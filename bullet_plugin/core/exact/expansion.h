@@ -57,8 +57,8 @@ public:
     int sign() const { return m_terms.empty() ? 0 : m_terms.back() > 0 ? 1 : -1; }
 
 private:
-    // Adds one double: each sum goes on, each rounding error stays (grow-expansion). Zeros are left out, so the last
-    // term is the largest.
+    // Adds one double: each sum is carried on, each rounding error becomes a term (grow-expansion). Zeros are left out,
+    // so the last term is the largest.
     void add(double carry)
     {
         std::size_t kept = 0;

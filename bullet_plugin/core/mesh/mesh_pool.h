@@ -22,16 +22,16 @@ struct PooledMesh
     std::vector<float> m_positions;         // m, as last given: in its own frame if it has a pose, else the world's
     double m_area = 0;                      // m², of the triangles
     bool m_oneSided = false;                // obstacles only: see MeshDescription
-    float m_selfThickness = 0;              // m, cloths only, likewise
+    float m_selfThickness = 0;              // m, cloths only: see MeshDescription
     std::vector<float> m_rest;              // m, of cloths that collide with themselves
     float m_coordinateStep = 0;             // m, obstacles only: distance of floats where it reaches farthest out
     std::vector<NormalCone> m_vertexCones;  // obstacles only
     std::vector<NormalCone> m_edgeCones;
-    MeshBox m_box = {};         // m, of the positions, obstacles only
-    float m_longestEdge = 0;    // m, obstacles only
-    ObstaclePlacing m_placing;  // obstacles only
-    bool m_placedAnew = false;  // obstacles only: new, or with new positions or pose, since the last step
-    std::uint32_t m_given = 0;  // obstacles only: when its positions were given anew, by Scene::m_obstacleMotion
+    MeshBox m_box = {};                  // m, of the positions, obstacles only
+    float m_longestEdge = 0;             // m, obstacles only
+    ObstaclePlacing m_placing;           // obstacles only
+    bool m_placedAnew = false;           // obstacles only: new, or with new positions or pose, since the last step
+    std::uint32_t m_given = 0;           // obstacles only: Scene::m_obstacleMotion when its positions were last set
     std::vector<std::uint32_t> m_order;  // leaf order, local triangles
     std::uint32_t m_firstVertex = 0;
     std::uint32_t m_firstTriangle = 0;
@@ -62,7 +62,7 @@ public:
     std::size_t slot(MeshId id) const;
     // Returns whether the id has a slot, possibly a vacant one.
     bool holds(MeshId id) const;
-    // Slots of the meshes that hold a joined vertex or edge.
+    // Return the slot of the mesh that contains a joined vertex or edge.
     std::size_t slotOfVertex(std::uint32_t vertex) const;
     std::size_t slotOfEdge(std::uint32_t edge) const;
 

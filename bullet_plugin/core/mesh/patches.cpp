@@ -145,7 +145,7 @@ private:
     EdgeTriangles m_sides;
     std::vector<Vec3> m_middles;
     std::vector<bool> m_taken;
-    std::vector<std::uint32_t> m_beside;  // triangles that are not taken, beside the patch at hand, oldest first
+    std::vector<std::uint32_t> m_beside;  // free triangles beside the current patch, oldest first
     Vec3 m_sum = {0, 0, 0};               // sum of the patch's triangle centres
     std::uint32_t m_inPatch = 0;
     std::size_t m_leaf = 0;  // first of the leaf order that is not taken

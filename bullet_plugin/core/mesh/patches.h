@@ -1,7 +1,7 @@
 // Patches of the obstacles: triangles that are connected as far as possible, begun in leaf order, and the lists of
 // features that they own (see kernels/shared/patch.h).
 //
-// Input: meshes' triangles and leaf order. Output: per patch its blocks, per lane the feature. A patch never holds
+// Input: meshes' triangles and leaf order. Output: per patch its blocks, per lane the feature. A patch never contains
 // triangles of two meshes, and is full except the last one of a mesh. Every triangle, and every vertex and edge of
 // one, is in exactly one lane. O(n); appending meshes costs in proportion to the new meshes alone.
 #pragma once

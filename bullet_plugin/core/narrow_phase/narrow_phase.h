@@ -70,8 +70,8 @@ class NarrowPhaseStage
 public:
     struct Expected
     {
-        std::size_t m_tests;      // about as many; speed alone depends on it
-        std::size_t m_mostSwept;  // with more tests that need the continuous test than this, their hits are not listed
+        std::size_t m_tests;      // about this many; affects speed alone
+        std::size_t m_mostSwept;  // if more tests need the continuous test, their contacts are not listed
     };
 
     // features: builds the kernels for feature tests, else those for triangle pairs.

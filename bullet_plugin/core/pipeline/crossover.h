@@ -1,10 +1,10 @@
 // The work from which a device is faster than the host back end: measured once for a machine, a device, a driver and a
 // version of Drape, and kept beside the compiled kernels.
 //
-// The file is text, one line for each rung of the ladder of scenes that was measured. What does not name this very
-// device, driver, host, version and settings, or is damaged, reads as "not there", and is measured again and replaced;
-// whoever wants it measured anew deletes crossover-*.txt. One that was measured on a busy machine is kept for the time
-// being: later starts measure again.
+// The file is text, one line for each measured rung of the ladder of scenes. A file that is damaged, or names another
+// device, driver, host, version or settings, counts as missing; the crossover is measured again and the file replaced.
+// Delete crossover-*.txt to measure again. A crossover measured on a busy machine is provisional: later starts measure
+// again.
 #pragma once
 
 #include <cstddef>

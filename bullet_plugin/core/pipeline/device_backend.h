@@ -41,8 +41,8 @@ public:
     // Returns after enqueueing. The scene and the pairs must stay as they are until finish(). sent: of the cloths'
     // nodes, the first so many were.
     void submit(const Scene& scene, const StepPairs& pairs, std::size_t sent = 0);
-    // Waits. False when the device failed or cannot hold what the step needs (then limitReached()). The result says
-    // when the step is over the settings' limits.
+    // Waits. Returns false if the device failed or has no room for the step (then limitReached()). The result says
+    // whether the step exceeded the settings' limits.
     bool finish(const Scene& scene, const StepPairs& pairs, StepResult& result);
     bool limitReached() const { return m_limitReached; }
 
@@ -135,8 +135,9 @@ private:
     Buffer<StepCounters> m_refitCounters{"step counters"};  // counters of obstacle refits, never read
     std::size_t m_turn = 0;
     int m_stepsToOrder = 1;
-    std::size_t m_testsBefore = SIZE_MAX, m_hitsBefore = SIZE_MAX;  // feature tests and hits of the step before
-    std::unique_ptr<Staging<Contact>> m_contactsRead;               // behind a head as on the device
+    std::size_t m_testsBefore = SIZE_MAX,
+                m_hitsBefore = SIZE_MAX;               // feature tests and unsorted contacts of the step before
+    std::unique_ptr<Staging<Contact>> m_contactsRead;  // behind a head as on the device
     std::size_t m_contactsAsked = 0;
     std::vector<float> m_sentThickness, m_sentTube, m_sentRadius;
 };

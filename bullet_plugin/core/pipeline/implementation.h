@@ -107,9 +107,9 @@ struct Pipeline::Implementation
     bool walksHierarchies() const;
     // Builds both sides' hierarchies with the current methods.
     void buildHierarchies();
-    // Has both sides' layouts at hand for the host.
+    // Builds both sides' layouts for the host if necessary.
     void layOut();
-    // Uses a hierarchy of the cloths that was built anew.
+    // Uses a rebuilt hierarchy of the cloths.
     void takeRebuilt();
     // Has one built where the last step found the cloths' hierarchy decayed.
     void watchTree();
@@ -152,9 +152,9 @@ struct Pipeline::Implementation
     void complete();
     // Takes out contacts on the back of one-sided obstacles.
     void dropBackContacts();
-    // Takes a cloth out of the step; candidates: that it has, as far as they were counted.
+    // Removes a cloth from the step. candidates: the cloth's, as far as they were counted.
     void leaveOut(std::size_t slot, std::uint64_t candidates);
-    // Takes cloths out of the step until what is left is within the settings' limits.
+    // Removes cloths from the step until the rest is within the settings' limits.
     void leaveOutCloths();
     // Handles a step over the limits of StepPairs: removes cloths that need more than their allowance, and gives the
     // others theirs.

@@ -56,7 +56,7 @@ struct Scene
     std::vector<float> m_obstaclePositions;  // m, joined, as given
     std::vector<NormalCone> m_vertexCones;   // joined, as the positions
     std::vector<NormalCone> m_edgeCones;
-    std::uint32_t m_obstacleMotion = 0;   // counts up when positions are given anew
+    std::uint32_t m_obstacleMotion = 0;   // counts up when an obstacle gets new positions
     std::vector<ObstaclePlace> m_places;  // per obstacle slot
     std::uint32_t m_obstaclePlacing = 0;  // counts up when a place changes
     bool m_anyPosed = false;              // false: all positions are the world's; stays while there are obstacles

@@ -6,8 +6,7 @@ namespace
 {
 constexpr std::uint32_t kWidth = DRAPE_PATCH_WIDTH;
 constexpr std::size_t kFirstTests = 1 << 12;
-// Cloths' triangles, or tests of the step before, from which on threads are worth waking: they take a tenth of a
-// millisecond.
+// Minimum triangles of the cloths, or tests of the step before, for waking threads: they take a tenth of a millisecond.
 constexpr std::size_t kLeastTriangles = 1 << 8;
 constexpr std::size_t kLeastTests = 1 << 9;
 

@@ -19,7 +19,7 @@ namespace drape
 struct SelfReach
 {
     std::vector<float> m_thickness;  // negative: the cloth is not tested against itself in the step
-    std::vector<float> m_radius;     // half of how far contacts reach, rounded up; negative likewise
+    std::vector<float> m_radius;     // half of the contacts' reach, rounded up; negative: as above
 
     bool any() const;
     void leaveOut(std::size_t cloth);
