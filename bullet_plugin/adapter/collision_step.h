@@ -35,11 +35,11 @@ public:
 
     // Restores the state before the first begin().
     void clear();
-    // Gives back the memory of earlier steps' bodies. Before begin().
+    // Releases the memory of earlier steps' bodies. Call before begin().
     void giveBackRoom();
-    // Cloths with a pair in this step that no contact could move: all of their nodes are pinned.
+    // Returns the cloths with a pair in this step that no contact could move: all of their nodes are pinned.
     std::size_t pinnedCloths() const { return m_pinned.size(); }
-    // Null when the body has no pair in this step.
+    // Returns null if the body has no pair in this step.
     BodyContacts* contactsOf(const btSoftBody& body);
 
 private:
@@ -51,7 +51,7 @@ private:
         StartingPair m_start;
     };
 
-    // Nodes of a mesh in the pipeline that are to be written.
+    // Nodes of a pipeline mesh that must be written.
     struct Upload
     {
         MeshId m_mesh;

@@ -40,7 +40,7 @@ public:
     DeformedPairs(const DeformedPairs&) = delete;
     DeformedPairs& operator=(const DeformedPairs&) = delete;
 
-    // Removes the meshes of pairs that no vertices moved in for long. Before the step's first update().
+    // Removes the meshes of pairs without moving vertices for a long time. Call before the step's first update().
     void beginStep();
     // Returns the pair's own mesh and starts in this step, for an obstacle with a before(). reach: m, of contacts.
     // The result stays valid until the next beginStep().

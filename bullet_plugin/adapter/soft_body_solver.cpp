@@ -72,7 +72,7 @@ struct SoftBodySolver::Work
     }
     BodyContacts* contactsOf(const btSoftBody& body) { return m_step ? m_step->contactsOf(body) : nullptr; }
 
-    // Gives back memory that only earlier, larger steps needed. Before a step's begin().
+    // Releases memory that only earlier, larger steps needed. Call before a step's begin().
     void giveBackRoom(PluginState& state)
     {
         m_solver.reset(new BodySolver(state.threads()));
@@ -86,7 +86,7 @@ struct SoftBodySolver::Work
     UsageWatch m_usage;
     std::vector<BodyContacts*> m_touched;        // working memory of solveBodies()
     std::vector<unsigned char> m_solved;         // by body: solved by Bullet or by its contacts
-    std::vector<btSoftBody*> m_taken;            // bodies that Drape takes, in this step
+    std::vector<btSoftBody*> m_taken;            // bodies that Drape handles in this step
     std::vector<const btSoftBody*> m_predicted;  // in this step, sorted by address
     bool m_listed = false;                       // m_predicted is whole
     bool m_detected = false;                     // the paths of all bodies with a pair are recorded
@@ -224,7 +224,8 @@ double SoftBodySolver::solveBodies()
     for (int i = 0; i < m_softBodySet.size(); ++i)
     {
         btSoftBody* body = m_softBodySet[i];
-        // Bullet's links would move the nodes and its velocities are what they moved over the time: not numbers.
+        // Skips bodies without a predicted step. Without time Bullet's velocities, displacements over the time, would
+        // be NaN.
         if (!work.isPredicted(*body) || !(body->m_sst.sdt > 0)) continue;
         if (BodyContacts* contacts = work.contactsOf(*body))
         {
@@ -254,8 +255,8 @@ void SoftBodySolver::solveStep()
     statistics.m_finishMs = watch.lapMs() - bulletMs - (statistics.m_waitMs - waitMs);
 }
 
-// Ends a step in which an exception was caught: Bullet solves what Drape does not take, and cloth that it takes stands
-// still. Takes no memory.
+// Ends a step in which an exception was caught: Bullet solves the bodies that Drape does not handle, and Drape's cloths
+// stand still. Allocates no memory.
 void SoftBodySolver::endFailedStep()
 {
     Work& work = *m_work;

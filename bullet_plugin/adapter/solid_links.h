@@ -17,7 +17,7 @@ namespace drape
 {
 constexpr int kForeign = -1;
 
-// Returns the index of a node of the body; kForeign for one that is not the body's.
+// Returns the index of a node of the body; kForeign for a foreign node.
 int nodeIndex(const btSoftBody& body, const btSoftBody::Node* node);
 
 // Returns whether a body without faces and tetrahedra has a solid link.
@@ -26,9 +26,9 @@ bool hasSolidLink(const btSoftBody& body);
 class SolidLinks
 {
 public:
-    // faces: three nodes each; those with a node that is not the body's are no part of a surface.
+    // faces: three nodes each; faces with a foreign node are no part of a surface.
     void read(const btSoftBody& body, const std::vector<std::int32_t>& faces);
-    // Two nodes each, in the body's order. None joins a node to itself.
+    // Returns two nodes per link, in the body's order. None joins a node to itself.
     const std::vector<std::int32_t>& nodes() const { return m_nodes; }
     // Returns whether a link that would be solid names a node outside the body.
     bool hasForeign() const { return m_hasForeign; }
