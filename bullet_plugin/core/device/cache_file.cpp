@@ -38,8 +38,8 @@ bool isOwn(const struct stat& found)
     return found.st_uid == geteuid() && !(found.st_mode & (S_IWGRP | S_IWOTH));
 }
 
-// Opens the folder if it is the user's own. Takes away others' permission to write it, which a folder made under a lax
-// umask has; a folder with the sticky bit is meant to be shared and is not used.
+// Opens the folder if it is the user's own. Removes others' permission to write, which a folder made under a lax umask
+// has. A folder with the sticky bit is meant to be shared and is not used.
 Descriptor openFolder(const std::string& folder)
 {
     Descriptor opened(folder.empty() ? -1 : open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));

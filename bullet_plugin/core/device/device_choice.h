@@ -20,7 +20,7 @@ struct DeviceChoice
     std::string m_reason;
 };
 
-// The reason of a report where the host took over from a device that failed.
+// Returns the reason for the report after the host took over from a failed device.
 std::string hostSince(const DeviceInfo& device, const Error& error);
 
 // Fills error if the requested device is missing; its detail lists the devices found.

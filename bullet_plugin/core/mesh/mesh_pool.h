@@ -36,7 +36,7 @@ struct PooledMesh
     std::uint32_t m_firstVertex = 0;
     std::uint32_t m_firstTriangle = 0;
     std::uint32_t m_firstEdge = 0;
-    std::uint32_t m_joined = 0;  // the pool's revision when it took its place
+    std::uint32_t m_joined = 0;  // the pool's revision when its position changed last
     bool m_vacant = false;       // gone, but for its place
 };
 
@@ -51,14 +51,14 @@ class MeshPool
 public:
     // Adds a mesh; ids must rise. Slots of the other meshes stay until update().
     void add(PooledMesh mesh);
-    // Returns false when the id is not of this pool. So do they here.
+    // Returns false if `id` is not in this pool.
     bool remove(MeshId id);
 
     // Returns the number of slots, vacant ones included.
     std::size_t meshCount() const { return m_meshes.size(); }
     PooledMesh& mesh(std::size_t slot) { return m_meshes[slot]; }
     const PooledMesh& mesh(std::size_t slot) const { return m_meshes[slot]; }
-    // meshCount() when the id is not, or no longer, of this pool.
+    // Returns the mesh's slot; meshCount() if the id is not, or no longer, in this pool.
     std::size_t slot(MeshId id) const;
     // Returns whether the id has a slot, possibly a vacant one.
     bool holds(MeshId id) const;
@@ -66,14 +66,14 @@ public:
     std::size_t slotOfVertex(std::uint32_t vertex) const;
     std::size_t slotOfEdge(std::uint32_t edge) const;
 
-    // Joins what came since the last call; the joined arrays are valid after it. Free when nothing did.
+    // Joins the meshes added since the last call; the joined arrays are valid afterwards. Free without changes.
     void update();
     // Sets another leaf order of the meshes' triangles: local orders by slot, null where unchanged. Counts as an
     // update that changed something.
     void reorder(const std::vector<const std::vector<std::uint32_t>*>& orders);
-    // Gives back room that only earlier, larger pools needed. The joined arrays move.
+    // Releases memory that only earlier, larger pools needed. The joined arrays move.
     void giveBackRoom();
-    // Counts up with every update that changed something.
+    // Returns a number that rises with every update that changed something.
     std::uint32_t revision() const { return m_revision; }
     // Returns the first slot that changed after that revision; earlier ones are unchanged, except for vacancies.
     std::size_t firstSince(std::uint32_t revision) const;
@@ -110,7 +110,7 @@ private:
     std::size_t m_faceCount = 0;      // triangles of the meshes in use
     std::size_t m_vacantTriangles = 0;
     std::size_t m_vacantCount = 0;
-    std::size_t m_placed = 0;  // leading slots whose places in the joined arrays stand
+    std::size_t m_placed = 0;  // leading slots whose positions in the joined arrays are valid
     std::uint32_t m_revision = 0;
     bool m_changed = false;
 };

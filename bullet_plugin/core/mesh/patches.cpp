@@ -89,7 +89,7 @@ private:
         }
         return count;
     }
-    // Squared, of the triangle's middle from the patch's.
+    // Returns the squared distance between the centres of the triangle and the patch.
     float distance(std::uint32_t triangle) const
     {
         const Vec3 offset = vec3Sub(m_middles[triangle], vec3Scale(m_sum, 1.0f / float(m_inPatch)));

@@ -58,7 +58,7 @@ public:
         orderHits(m_hits.data(), count, m_slotCount, contacts, threads);
     }
 
-    // Gives back the memory of all that was found.
+    // Releases the memory of the results.
     void giveBackRoom()
     {
         m_hits = std::vector<Contact>();

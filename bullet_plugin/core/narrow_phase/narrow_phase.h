@@ -45,11 +45,11 @@ NarrowPhaseCounts narrowPhaseOnHost(const std::vector<Candidate>& candidates, co
                                     const ObstacleView& obstacle, const NarrowPhaseSettings& settings,
                                     std::vector<Contact>& contacts, std::size_t limit = SIZE_MAX);
 
-// Pairs whose triangles intersect at the step's start, in order of cloth and obstacle triangle.
+// Lists pairs whose triangles intersect at the step's start, in order of cloth and obstacle triangle.
 void intersectOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth, const ObstacleView& obstacle,
                      const MotionList& motions, std::vector<Candidate>& pairs);
 
-// Device buffers that hold both sides' geometry.
+// Device buffers of both sides' geometry.
 struct NarrowPhaseBuffers
 {
     Buffer<float>& m_clothStart;
@@ -91,7 +91,7 @@ public:
                          Buffer<StepCounters>& counters);
     // Returns whether the launch did nothing because there were `tests` tests and far fewer were expected.
     bool skipped(std::size_t tests) const { return tests > m_mostTests; }
-    // The candidates whose triangles intersect, in any order. Their counter must be zero before.
+    // Lists the candidates whose triangles intersect, in any order. Their counter must be zero before.
     void enqueueIntersect(Device& device, NarrowPhaseBuffers sides, Buffer<Candidate>& candidates,
                           Buffer<StepCounters>& counters);
 
