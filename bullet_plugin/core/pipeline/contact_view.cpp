@@ -1,4 +1,4 @@
-// Resolves contacts from indices over all meshes to meshes, nodes and triangles as the caller numbered them.
+// Resolves contacts from indices over all meshes to meshes, nodes and triangles in the caller's numbering.
 #include <algorithm>
 
 #include "implementation.h"

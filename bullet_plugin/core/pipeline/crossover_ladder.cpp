@@ -32,7 +32,7 @@ constexpr double kLongestStepMs = 5;  // on the host; after a longer one the lad
 // Maximum ratio of the median to the shortest time of a scene's steps, averaged over all scenes. Beyond it half of
 // the steps were disturbed, and possibly the shortest.
 constexpr double kMostSpread = 1.6;
-constexpr double kAhead = 2;  // times that the device is faster; so on two rungs, and the ladder ends
+constexpr double kAhead = 2;  // ratio of times; the ladder ends after two rungs with a higher one
 
 struct Sheet
 {
@@ -120,7 +120,7 @@ public:
         return ms;
     }
 
-    // spread: gets the logarithm of how many times as long the middle one of the steps took.
+    // spread: gets the logarithm of the ratio of the median to the shortest step.
     double leastMs(std::vector<double>& spread)
     {
         std::vector<Contact> contacts;

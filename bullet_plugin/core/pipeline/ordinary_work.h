@@ -13,7 +13,7 @@
 
 namespace drape
 {
-// The most tests of features that a step may make, and the most of them that may need the continuous test.
+// Maximum feature tests of a step, and maximum tests among them that may need the continuous test.
 struct TestLimits
 {
     std::size_t m_tests = SIZE_MAX;
