@@ -52,7 +52,7 @@ bool HostSelfPatches::isWorth(const SelfStep& step) const
     return m_testsBefore >= kLeastTests || step.m_view.m_cloth.m_triangleCount >= kLeastTriangles;
 }
 
-// Volumes of the patches, which is the tree's lowest level, and of the nodes above.
+// Computes the volumes of the patches, the tree's lowest level, and of the nodes above.
 void HostSelfPatches::pack(const SelfStep& step, ThreadTeam& threads)
 {
     const SelfRadii radii = radiiOf(step);

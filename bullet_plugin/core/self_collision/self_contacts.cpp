@@ -82,7 +82,7 @@ void SelfContactStage::setReach(Device& device, const SelfReach& reach)
     }
 }
 
-// Volumes of the patches, which is the tree's lowest level, and of the nodes above.
+// Computes the volumes of the patches, the tree's lowest level, and of the nodes above.
 void SelfContactStage::enqueuePack(Device& device, SelfBuffers step, Buffer<float>& start,
                                    Buffer<StepCounters>& counters)
 {

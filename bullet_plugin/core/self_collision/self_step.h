@@ -25,22 +25,22 @@ struct SelfReach
     void leaveOut(std::size_t cloth);
 };
 
-// radius: m, by which volumes of features are grown whose contacts reach to `reach`.
+// Returns the radius, m, that grows features' volumes for contacts that reach to `reach`.
 float selfGrowth(float reach);
 
-// A step of the cloths on the host.
+// Data of a step of the cloths on the host.
 struct SelfStep
 {
     const MeshPool& m_cloths;
     SelfView m_view;
     const SelfReach& m_reach;
-    const std::vector<float>& m_obstacleRadius;  // m, of the search for obstacles, which counts invalid nodes; or -1
+    const std::vector<float>& m_obstacleRadius;  // m, reach of the obstacle search, which counts invalid nodes; or -1
 
     // Positions where volumes over the step begin: those of the end in a discrete step.
     const float* start() const;
 };
 
-// The most that a step may list. Beyond them there are no contacts, and counts are too low.
+// Maximum lengths of a step's lists. Beyond them there are no contacts, and counts are too low.
 struct SelfStepLimits
 {
     std::uint64_t m_candidates = UINT64_MAX;

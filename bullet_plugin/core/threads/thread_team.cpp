@@ -17,10 +17,10 @@ namespace drape
 {
 namespace
 {
-// Looks between two that leave the core to another thread, should one wait for it.
+// Number of polls between two that yield the core to a waiting thread.
 constexpr int kLooksTogether = 64;
 
-// Tells the core that this is a loop that waits.
+// Marks a waiting loop for the core.
 inline void pause()
 {
 #if defined(__x86_64__) || defined(__i386__)
@@ -54,7 +54,7 @@ ThreadTeam::~ThreadTeam()
         thread.join();
 }
 
-// Fewer threads than wanted do the same, later.
+// Continues with fewer threads than wanted, which take longer.
 void ThreadTeam::start()
 {
     if (m_started) return;
