@@ -24,8 +24,8 @@ DRAPE_NAMESPACE_BEGIN
 // costs five times as much.
 #define DRAPE_CCD_AIM 6
 
-// Searches for the time may take this part of the boxes that the search for any hit may take: 256 of 4,096 by default.
-// One published hit in 27 takes more than that in all.
+// Divisor of the box limit for searches for the time, relative to the search for any hit: 256 of 4,096 by default. One
+// published hit in 27 takes more than that in all.
 #define DRAPE_CCD_PARTS 16u
 
 DRAPE_FUNCTION CcdSettings ccdSettings(float separation, float tolerance, float timeTolerance, DRAPE_UINT boxLimit)
@@ -63,7 +63,7 @@ DRAPE_FUNCTION int ccdHalvesInTime(const CcdBox* box)
     return middle - box->m_low[0] == width && 1.0f - (1.0f - middle) == middle;
 }
 
-// The direction in which F varies most over the box; -1 when it varies no more than the tolerance in any, or no
+// Returns the direction in which F varies most over the box; -1 if it varies at most the tolerance in each, or no
 // direction can be halved again.
 DRAPE_FUNCTION int ccdAxis(const CcdMotion* m, const CcdBox* box, float tolerance)
 {
@@ -120,7 +120,7 @@ DRAPE_FUNCTION void ccdStoreHit(CcdResult* result, const CcdBox* box)
     result->m_v = drapeMin(box->m_low[2] + 0.5f * box->m_width[2], 1.0f);
 }
 
-// A search of the part [low, low + width] of the step, for the time to the tolerance, or for any hit when that is 1.
+// A search of the part [low, low + width] of the step, for the time to the tolerance, or for any hit if that is 1.
 typedef struct CcdTask
 {
     float m_low;

@@ -57,8 +57,8 @@ DRAPE_FUNCTION float cosineOfCones(Vec3 axis, const NormalCone* cones)
 // Directions steeper than 1.4 radians beside a face are taken as unbounded: the tangent grows without limit.
 #define DRAPE_SPREAD_COSINE 0.17f
 
-// A face's spread (patch.h). face: its normal as a cone; cones: as in cosineOfCones(). All must be where the narrow
-// phase has them: corners that are rounded to where an obstacle is placed turn small faces, and do not turn the cones.
+// Returns a face's spread (patch.h). face: its normal as a cone; cones: see cosineOfCones(). All must use the narrow
+// phase's positions: corners that are rounded to an obstacle's pose turn small faces, and do not turn the cones.
 DRAPE_FUNCTION float faceSpread(NormalCone face, const NormalCone* cones)
 {
     if (!(face.m_cosine > 0.0f)) return DRAPE_ANY_SPREAD;
@@ -69,7 +69,7 @@ DRAPE_FUNCTION float faceSpread(NormalCone face, const NormalCone* cones)
     return cosine > DRAPE_SPREAD_COSINE ? sineOf(cosine) / cosine : DRAPE_ANY_SPREAD;
 }
 
-// Most that a unit vector in the cone or its opposite goes along direction i of the volumes, rounded up.
+// Returns the maximum extent along direction i of the volumes of a unit vector in the cone or its opposite, rounded up.
 DRAPE_FUNCTION float coneReach(NormalCone cone, int i)
 {
     const float norm = dopNorm(i);

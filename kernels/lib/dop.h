@@ -140,7 +140,7 @@ DRAPE_FUNCTION int opensFirst(const DRAPE_GLOBAL BvhNode* a, const DRAPE_GLOBAL 
     return b->m_count == 0 || nodeExtent(a) > nodeExtent(b);
 }
 
-// The interval of a triangle's volume along direction i, see cornersVolume().
+// Computes the interval of a triangle's volume along direction i, see cornersVolume().
 DRAPE_FUNCTION void cornersInterval(const Vec3* p, int i, int moves, float radius, float* low, float* high)
 {
     float least = dopProject(p[0], i);
@@ -190,8 +190,8 @@ DRAPE_FUNCTION int triangleVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangl
     return cornersVolume(dop, p, moves, radius);
 }
 
-// A leaf's volume for a step. A negative radius takes the triangle's mesh out of the step: the volume is empty. Returns
-// how many vertices are NaN or infinite, counted by the triangle that owns them.
+// Computes a leaf's volume for a step. A negative radius excludes the triangle's mesh from the step: the volume is
+// empty. Returns how many vertices are NaN or infinite, counted by the triangle that owns them.
 DRAPE_FUNCTION DRAPE_UINT leafVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
                                      const DRAPE_GLOBAL float* end, float radius)
 {

@@ -1,5 +1,5 @@
-// A cloth face, its edges included, against a vertex of the obstacle.
-// See feature_contact.h for what a contact is and for the frame.
+// Tests a cloth face, including its edges, against a vertex of the obstacle. feature_contact.h defines contacts and the
+// frame.
 #ifndef DRAPE_LIB_FACE_VERTEX_CONTACT_H
 #define DRAPE_LIB_FACE_VERTEX_CONTACT_H
 
@@ -7,7 +7,7 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// A face that met the vertex. side: where the vertex was at the start, +1 in front of the face.
+// Handles a face that met the vertex. side: the vertex's side at the start, +1 in front of the face.
 DRAPE_FUNCTION int faceVertexMet(FeatureTriangle f0, FeatureTriangle f1, Vec3 vertex, Meeting meeting, float side,
                                  PairBounds bounds, Contact* contact)
 {

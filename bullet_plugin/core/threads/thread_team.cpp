@@ -20,7 +20,7 @@ namespace
 // Number of polls between two that yield the core to a waiting thread.
 constexpr int kLooksTogether = 64;
 
-// Marks a waiting loop for the core.
+// Hints to the core that this is a waiting loop.
 inline void pause()
 {
 #if defined(__x86_64__) || defined(__i386__)
