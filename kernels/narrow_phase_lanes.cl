@@ -1,5 +1,5 @@
-// Narrow phase over pairs of features on a CPU: a work-item sorts a run of tests by kind, and does as many of one kind side by
-// side as a vector has lanes.
+// Narrow phase over pairs of features on a CPU. A work-item sorts a run of tests by kind, and runs as many of one kind
+// side by side as a vector has lanes.
 #include "lib/ask_for.h"
 #include "lib/feature_tests.h"
 #include "lib/lane_runs.h"
@@ -137,7 +137,7 @@ static void askForLane(__global const float* blocks, const uint floats, __global
     askFor(ids + lane);
 }
 
-// Has what a test reads brought nearer.
+// Prefetches a test's data.
 static void askForTest(const LaneWork* work, const FeatureTest feature)
 {
     const PackedFeatures* packed = &work->m_packed;

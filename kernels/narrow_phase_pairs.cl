@@ -1,5 +1,5 @@
-// Narrow phase over pairs of triangles, for the traversals that give those: contacts of the candidates' features, and the pairs
-// that intersect. Launches have a fixed width: the list's length is only on the device.
+// Narrow phase over pairs of triangles, for traversals that list such pairs: contacts of the candidates' features, and
+// the pairs that intersect. Launches have a fixed width: the list's length is only on the device.
 #include "lib/hit_list.h"
 #include "lib/item_runs.h"
 #include "lib/pair_contact.h"
@@ -46,7 +46,7 @@ __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, con
     if (searches > 0) atomic_add(&counters->m_swept, searches);
 }
 
-// A work-item goes through its part of the candidates and lists the pairs that intersect at the step's start.
+// Lists the pairs that intersect at the step's start; a work-item processes its part of the candidates.
 // counters->m_intersections must be zero before; it counts on when the list is full.
 __kernel void narrowPhaseIntersect(__global const Candidate* restrict candidates, const uint candidateCapacity,
                                    __global const float* restrict clothStart,

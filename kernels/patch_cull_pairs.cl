@@ -1,13 +1,13 @@
-// Second launch of the broad phase over patches on a GPU: the feature tests of the pairs that patchWalk listed. A patch
-// has some hundred features, and a cloth triangle is seldom near them all. So a group first finds, for each of its
-// pairs, the parts of the patch's blocks that are near, and then tests these alone, as many side by side as it has
-// lanes for.
+// Second launch of the broad phase over patches on a GPU: lists the feature tests of the pairs that patchWalk listed. A
+// patch has some hundred features, and a cloth triangle is seldom near them all. A group therefore first finds, for
+// each of its pairs, the near parts of the patch's blocks. It then tests these alone, as many side by side as it has
+// lanes.
 #include "lib/patch_pairs.h"
 
 // Pairs that a group takes at a time, each with a lane to prepare it.
 #define DRAPE_CULL_PAIRS 32
 
-// The groups launched (kPairGroupsPerUnit in patch_cull.cpp) are this many times as many as a GPU runs together.
+// Ratio of the launched groups (kPairGroupsPerUnit in patch_cull.cpp) to those that a GPU runs together.
 #define DRAPE_CULL_WAVES 4
 
 // Lanes of a part of a block, and parts of a block.
@@ -64,7 +64,7 @@ static int reachesAll(__local const CullTriangle* cull, const CullReach reach, c
     return cull->m_radius + reach.m_near > 0.5f * size;
 }
 
-// Takes the pairs from first up to last to hand, a lane each.
+// Loads the pairs from first up to last, one per lane.
 static void takePairs(__local Culler* culler, const StepCloths* cloths, const PatchFeatures* features,
                       __global const FeatureTest* pairs, const uint first, const uint last)
 {
@@ -204,7 +204,7 @@ static void cullEdge(__local Culler* culler, const PatchFeatures* features, cons
               block * DRAPE_PATCH_WIDTH + shift, list);
 }
 
-// Does all listed tests, each by as many lanes as a part has.
+// Runs all listed tests, each on as many lanes as a part has.
 static void cullTasks(__local Culler* culler, const PatchFeatures* features, const TestList* list)
 {
     const uint first = teamLane() / DRAPE_PART, stride = teamWidth() / DRAPE_PART;

@@ -11,8 +11,7 @@ constexpr std::uint32_t kWidthCpu = 16;  // a vector of 512 bits
 constexpr std::size_t kGroup = 64;
 // Number of triangles from which a GPU traverses for packets of them.
 constexpr std::size_t kManyTriangles = 1 << 15;
-// Nodes that a traversing group tests together, for a packet and for one triangle; pairs that a culling group tests
-// together.
+// Nodes that a traversing group tests together, for a packet and for one triangle, and pairs per culling group.
 constexpr std::size_t kWalkTurns = 4;
 constexpr std::size_t kWalkTurnsAlone = 2;
 constexpr std::size_t kCullTurns = 4;
