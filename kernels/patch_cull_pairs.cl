@@ -35,7 +35,7 @@ typedef struct CullPair
     CullReach m_reach;
     uint m_looker;
     uint m_own;    // the triangle's nodes and edges that it owns and that are valid, bits as in Triangle::m_owned
-    uint m_all;  // so large compared with the patch that it is near most of it
+    uint m_all;    // so large compared with the patch that it is near most of it
     uint m_parts;  // bit per part of the patch that the triangle is near
 } CullPair;
 
@@ -223,9 +223,9 @@ static uint pairsOfGroup(const uint count, const uint groups, const uint turns)
     return inWave <= DRAPE_CULL_PAIRS ? max(inWave, turns) : (count + groups * rounds - 1) / (groups * rounds);
 }
 
-// Lists the feature tests of the pairs that patchWalk listed, as many as fitted there: most pairs next to each other
-// are of one cloth triangle. A group takes up to DRAPE_CULL_PAIRS at a time; how many they are and when it ends is the
-// same for all its lanes, so that all reach its barriers. counters->m_candidates must be zero before.
+// Lists the feature tests of the pairs in patchWalk's list; most adjacent pairs are of one cloth triangle. A group
+// takes up to DRAPE_CULL_PAIRS at a time. Their number and the end of the loop are equal for all its lanes, so that all
+// reach its barriers. counters->m_candidates must be zero before.
 __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH, 1, 1))) void patchCullPairs(
     __global const FeatureTest* restrict pairs, const uint pairCapacity,
     __global const Triangle* restrict clothTriangles, __global const float* restrict start,

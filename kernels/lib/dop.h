@@ -163,7 +163,8 @@ DRAPE_FUNCTION void cornersInterval(const Vec3* p, int i, int moves, float radiu
 // Computes the volume of a triangle over a step of linear motion, grown by the radius. p: its corners at the step's
 // start, then at its end; without `moves` only the first three count. The volume excludes invalid corners
 // (positionIsValid): one bad node cannot make every ancestor overlap everything, and the other corners' features are
-// still found (see finite_corners.h). Without a valid corner the volume is empty. Returns whether all corners are valid.
+// still found (see finite_corners.h). Without a valid corner the volume is empty. Returns whether all corners are
+// valid.
 DRAPE_FUNCTION int cornersVolume(Dop* dop, Vec3* p, int moves, float radius)
 {
     const DRAPE_UINT valid = replaceInvalidCorners(p, p + 3);

@@ -39,8 +39,8 @@ DRAPE_FUNCTION int faceVertexPassed(const MovingFace* face, Vec3 vertex, float s
     if (!meeting.m_met || known != DRAPE_MAY_MEET) return DRAPE_ASK_THE_END;
     const float before = s0 < 0.0f ? -1.0f : 1.0f, after = s1 < 0.0f ? -1.0f : 1.0f;
     if (faceVertexMet(f0, face->m_end, vertex, meeting, before, bounds, contact)) return DRAPE_IS_CONTACT;
-    // The two met where the face has no direction. If they changed sides there, the side at the end is the wrong one. The
-    // plane of a thin face turns freely about the face's length: its sides mean nothing.
+    // The two met where the face has no direction. If they changed sides there, the side at the end is the wrong one.
+    // The plane of a thin face turns freely about the face's length: its sides mean nothing.
     const int sidesTell = !face->m_areaEnd.m_thin && !isThin(f0, vec3Length(face->m_areaStart));
     return after != before && sidesTell ? DRAPE_NO_CONTACT : DRAPE_ASK_THE_END;
 }

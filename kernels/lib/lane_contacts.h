@@ -222,7 +222,8 @@ static Lanes laneExtent(const LanesVec3* corners)
 
 // A moving face and a point that rests in the frame's origin. m_comesNear: faceNearness() is not DRAPE_STAY_APART. The
 // other members are those at the step's end. m_after: the origin's distance from the face's plane times the length of
-// the area vector. m_weights: of the face's closest point, m_point. m_low: the least product of that point and a corner.
+// the area vector. m_weights: of the face's closest point, m_point. m_low: the least product of that point and a
+// corner.
 typedef struct LaneFace
 {
     LaneMask m_comesNear;

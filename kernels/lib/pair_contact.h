@@ -23,7 +23,7 @@ typedef struct ClothView
     DRAPE_UINT m_nodeCount;
     DRAPE_UINT m_triangleCount;
     DRAPE_UINT m_mode;                            // DRAPE_DISCRETE …
-    DRAPE_UINT* m_searches;  // see PairBounds
+    DRAPE_UINT* m_searches;                       // see PairBounds
     const DRAPE_GLOBAL ObstacleMotion* m_motion;  // motion of the current obstacle; null if it rests
 } ClothView;
 

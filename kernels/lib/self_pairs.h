@@ -60,8 +60,8 @@ static int volumesOverlap(const Vec3 from[4], const Vec3 to[4], const int split,
 }
 #endif
 
-// Lists a pair of features that share no node, and whose boxes overlap, if their volumes do. kind: DRAPE_SELF_TEST_NODE …;
-// a, b: node and face, or edges.
+// Lists a pair of features that share no node, and whose boxes overlap, if their volumes do. kind: DRAPE_SELF_TEST_NODE
+// …; a, b: node and face, or edges.
 static void keepPair(DRAPE_TEAM Team* team, const SelfCloth* cloth, const uint a, const uint b, const uint kind,
                      const TestList* list)
 {

@@ -12,8 +12,8 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// Share of the reach by which ways of features that met may be apart, less than volumes hold beyond them in any direction
-// (DRAPE_CULL_MET of feature_cull.h).
+// Share of the reach by which ways of features that met may be apart, less than volumes hold beyond them in any
+// direction (DRAPE_CULL_MET of feature_cull.h).
 #define DRAPE_WAY_REACH 0.01f
 // Share of a pair's extent by which distances round.
 #define DRAPE_WAY_ROUNDING 3e-6f

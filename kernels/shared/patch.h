@@ -1,6 +1,6 @@
-// Patches: runs of obstacle triangles that lie near each other, with their features packed side by side, and the wide
-// tree over them. All lists come in blocks of DRAPE_PATCH_WIDTH lanes, component by component, so that a work-group's
-// lanes, or a vector's, read adjacent words.
+// Patches: runs of neighbouring obstacle triangles, with their features packed side by side, and the wide tree over the
+// patches. All lists come in blocks of DRAPE_PATCH_WIDTH lanes, component by component, so that a work-group's lanes,
+// or a vector's, read adjacent words.
 #ifndef DRAPE_SHARED_PATCH_H
 #define DRAPE_SHARED_PATCH_H
 
@@ -15,11 +15,11 @@ DRAPE_NAMESPACE_BEGIN
 
 typedef struct Patch
 {
-    DRAPE_UINT m_vertexBlock;  // first of m_vertexBlocks blocks of vertices that the patch's triangles own
+    DRAPE_UINT m_vertexBlock;  // first of m_vertexBlocks blocks of vertices owned by the patch's triangles
     DRAPE_UINT m_vertexBlocks;
     DRAPE_UINT m_edgeBlock;
     DRAPE_UINT m_edgeBlocks;
-    DRAPE_UINT m_mesh;  // slot of the obstacle: a patch never holds two
+    DRAPE_UINT m_mesh;  // slot of the obstacle: a patch belongs to one
 } Patch;
 
 // Floats per lane of a block.

@@ -12,7 +12,7 @@ DRAPE_NAMESPACE_BEGIN
 #define DRAPE_TEST_CERTIFIED 0u
 #define DRAPE_TEST_MOLLER 1u
 
-// A vertex and a face, or two edges, of a mesh against itself.
+// A vertex and a face, or two edges, of one mesh.
 typedef struct FeaturePair
 {
     DRAPE_UINT m_a;
@@ -35,7 +35,7 @@ typedef struct PairAnswer
     DRAPE_UINT m_bits;
 } PairAnswer;
 
-// Demands: they count on when a list is full, up to DRAPE_DEMAND_LIMIT, beyond which they only say "too many".
+// Demands count on when a list is full, up to DRAPE_DEMAND_LIMIT, beyond which they only say "too many".
 typedef struct SelfCounters
 {
     DRAPE_UINT m_pairs;
