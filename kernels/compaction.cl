@@ -9,7 +9,7 @@
 #include "lib/item_runs.h"
 #include "lib/slot_order.h"
 
-// Slots a work-group handles. Each work-item takes DRAPE_BLOCK / group size adjacent ones.
+// Slots per work-group. Each work-item takes DRAPE_BLOCK / group size adjacent ones.
 #define DRAPE_BLOCK 1024
 
 static uint countShare(__global const uint* slotCount, const uint slots, uint* first, uint* last)
@@ -83,8 +83,8 @@ __kernel void compactionGather(__global const Contact* restrict hits, const uint
     }
 }
 
-// A work-group sorts the members of those slots of its block (of at most DRAPE_BLOCK slots) that have more than `ranked`.
-// Their keys (see compactionGather) are of no use afterwards.
+// Sorts the members of slots with more than `ranked`, one work-group per block of at most DRAPE_BLOCK slots. Their keys
+// (see compactionGather) are invalid afterwards.
 __kernel void compactionOrder(const uint hitCapacity, __global const uint* restrict slotFirst, const uint slots,
                               const uint ranked, const uint block, __global uint* members, __global uint* keys,
                               __global const StepCounters* restrict counters)

@@ -1,4 +1,4 @@
-// Morton codes of the triangles' centroids: what leaves are sorted by.
+// Computes Morton codes of the triangles' centroids, by which leaves are sorted.
 #include "lib/triangle_order.h"
 
 #define DRAPE_BOUNDS_GROUP 64
@@ -11,8 +11,9 @@ static uint floatRank(const float value)
 }
 static float unrank(const uint rank) { return as_float((rank & 0x80000000u) ? rank & 0x7fffffffu : ~rank); }
 
-// A work-item takes every stride-th triangle. bounds holds the ranks (see floatRank) of the least and greatest centroid,
-// three each; all ones and zeros before. Minima and maxima do not depend on the order of the atomics.
+// Computes the bounds of the centroids; a work-item takes every stride-th triangle. bounds: the ranks (see floatRank)
+// of the least and greatest centroid, three each; all ones and zeros before. Minima and maxima do not depend on the
+// order of the atomics.
 __kernel __attribute__((reqd_work_group_size(DRAPE_BOUNDS_GROUP, 1, 1))) void mortonBounds(
     __global const Triangle* restrict triangles, __global const float* restrict positions, const uint triangleCount,
     __global volatile uint* bounds)
@@ -44,7 +45,7 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_BOUNDS_GROUP, 1, 1))) void mo
     if (item >= 3 && item < 6) atomic_max(bounds + item, group[item]);
 }
 
-// A work-item is a triangle: writes its number and its code. codeBits is 30, or 63 with the upper 31 in high and the rest
+// Writes a triangle's number and its code per work-item. codeBits is 30, or 63 with the upper 31 in high and the rest
 // in low.
 __kernel void mortonCodes(__global const Triangle* restrict triangles, __global const float* restrict positions,
                           const uint triangleCount, __global const uint* restrict bounds, const uint codeBits,

@@ -1,5 +1,5 @@
-// Narrow phase over pairs of features on a CPU: a work-item sorts a run of tests by kind, and does as many of one kind side by
-// side as a vector has lanes.
+// Narrow phase over pairs of features on a CPU. A work-item sorts a run of tests by kind, and runs as many of one kind
+// side by side as a vector has lanes.
 #include "lib/ask_for.h"
 #include "lib/feature_tests.h"
 #include "lib/lane_runs.h"
@@ -137,7 +137,7 @@ static void askForLane(__global const float* blocks, const uint floats, __global
     askFor(ids + lane);
 }
 
-// Has what a test reads brought nearer.
+// Prefetches a test's data.
 static void askForTest(const LaneWork* work, const FeatureTest feature)
 {
     const PackedFeatures* packed = &work->m_packed;
@@ -172,8 +172,8 @@ static void askForRun(const LaneWork* work, const uint first, const uint end)
 // Number of tests from which their data is seldom in the caches.
 #define DRAPE_FAR_TESTS (1u << 17)
 
-// Runs the feature tests that patchCull lists, each work-item its part, and lists the contacts. Tests that need the
-// continuous test go to `swept`, unsorted. counters->m_swept must be zero before.
+// A work-item goes through its part of the feature tests that patchCull lists and lists the hits; the tests that need
+// the continuous test it lists in swept, in no particular order. counters->m_swept must be zero before.
 __kernel void narrowPhaseFeature(DRAPE_FEATURE_ARGUMENTS, __global uint* restrict swept)
 {
     DRAPE_FEATURE_VIEWS;

@@ -1,11 +1,11 @@
-// Narrow phase over pairs of triangles, for the traversals that give those: contacts of the candidates' features, and the pairs
-// that intersect. Launches have a fixed width: the list's length is only on the device.
+// Narrow phase over pairs of triangles, for traversals that list such pairs: contacts of the candidates' features, and
+// the pairs that intersect. Launches have a fixed width: the list's length is only on the device.
 #include "lib/hit_list.h"
 #include "lib/item_runs.h"
 #include "lib/pair_contact.h"
 #include "lib/triangle_triangle.h"
 
-// Runs the feature tests of the candidates, each work-item its part, and lists the contacts. motions: of the
+// A work-item goes through its part of the candidates, runs their feature tests and lists the hits. motions: of the
 // obstacles that move in the step. counters->m_swept must be zero before.
 __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, const uint candidateCapacity,
                               __global const float* restrict clothStart, __global const float* restrict clothEnd,
@@ -46,7 +46,7 @@ __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, con
     if (searches > 0) atomic_add(&counters->m_swept, searches);
 }
 
-// A work-item goes through its part of the candidates and lists the pairs that intersect at the step's start.
+// Lists the pairs that intersect at the step's start; a work-item processes its part of the candidates.
 // counters->m_intersections must be zero before; it counts on when the list is full.
 __kernel void narrowPhaseIntersect(__global const Candidate* restrict candidates, const uint candidateCapacity,
                                    __global const float* restrict clothStart,

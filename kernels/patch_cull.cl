@@ -5,18 +5,18 @@
 #include "lib/cull_packet.h"
 #include "lib/patch_pairs.h"
 
-// Six corners of a triangle, see cornersSeen(), of a packet's: x y z of each, a row of lanes each.
+// Rows of the six corners of a packet's triangles, see cornersSeen(): one row of lanes for each x, y and z.
 #define DRAPE_CORNER_ROWS 18
 
-// A packet's walk over the obstacles that rest, or over one that moves.
+// A packet's traversal of the resting obstacles, or of one that moves.
 typedef struct Packet
 {
     uint m_cloth[DRAPE_LANES];    // triangles
-    float m_radius[DRAPE_LANES];  // m, negative for those that are not in the step
+    float m_radius[DRAPE_LANES];  // m, negative outside the step
     uint m_motion;
     CullVolumes m_volumes;
     CullVolume m_joined;
-    float m_corners[DRAPE_CORNER_ROWS * DRAPE_LANES];  // that the volumes are made of
+    float m_corners[DRAPE_CORNER_ROWS * DRAPE_LANES];  // corners from which the volumes are made
     Looker m_lookers[DRAPE_LANES];
     NodeIntervals m_nodes[DRAPE_LANES];
     uint m_looks;  // bit i: whether looker i and its nodes are ready
@@ -66,8 +66,8 @@ static uint featuresNear(const Packet* packet, const uint triangle, const uint o
     return near;
 }
 
-// Lists the feature tests of a pair of cloth triangle and patch: of the triangle's nodes and edges among `own` (bits as
-// in Triangle::m_owned), and of its face.
+// Lists the feature tests of a pair of cloth triangle and patch: tests of the triangle's nodes and edges among `own`
+// (bits as in Triangle::m_owned), and of its face.
 static void cullPatch(Team* team, const PatchFeatures* features, const FeatureTest pair, const Looker* looker,
                       const CullReach reach, const uint own, const TestList* list)
 {
@@ -209,7 +209,7 @@ static int takeVolumes(Packet* packet, const StepCloths* cloths, __global StepCo
     return laneBits(near) != 0;
 }
 
-// A work-item takes a packet: DRAPE_LANES cloth triangles in leaf order.
+// Processes a packet per work-item: DRAPE_LANES cloth triangles in leaf order.
 __kernel void patchCull(DRAPE_WALK_ARGUMENTS, __global const float* restrict patchSizes,
                         __global const float* restrict volumes, __global const float* restrict faces,
                         __global const float* restrict vertices, __global const float* restrict edges)

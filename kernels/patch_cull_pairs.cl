@@ -1,13 +1,13 @@
-// Second launch of the broad phase over patches on a GPU: the feature tests of the pairs that patchWalk listed. A patch
-// has some hundred features, and a cloth triangle is seldom near them all. So a group first finds, for each of its
-// pairs, the parts of the patch's blocks that are near, and then tests these alone, as many side by side as it has
-// lanes for.
+// Second launch of the broad phase over patches on a GPU: lists the feature tests of the pairs that patchWalk listed. A
+// patch has some hundred features, and a cloth triangle is seldom near them all. A group therefore first finds, for
+// each of its pairs, the near parts of the patch's blocks. It then tests these alone, as many side by side as it has
+// lanes.
 #include "lib/patch_pairs.h"
 
 // Pairs that a group takes at a time, each with a lane to prepare it.
 #define DRAPE_CULL_PAIRS 32
 
-// The groups launched (kPairGroupsPerUnit in patch_cull.cpp) are this many times as many as a GPU runs together.
+// Ratio of the launched groups (kPairGroupsPerUnit in patch_cull.cpp) to those that a GPU runs together.
 #define DRAPE_CULL_WAVES 4
 
 // Lanes of a part of a block, and parts of a block.
@@ -35,8 +35,8 @@ typedef struct CullPair
     CullReach m_reach;
     uint m_looker;
     uint m_own;    // the triangle's nodes and edges that it owns and that are valid, bits as in Triangle::m_owned
-    uint m_all;  // so large compared with the patch that it is near most of it
-    uint m_parts;  // of the patch that the triangle is near
+    uint m_all;    // so large compared with the patch that it is near most of it
+    uint m_parts;  // bit per part of the patch that the triangle is near
 } CullPair;
 
 // A current group of tests: of a pair, one of its triangle's nodes or edges or (0) its face, and a part of the
@@ -49,12 +49,12 @@ typedef struct CullPair
 typedef struct Culler
 {
     Team m_team;
-    Looker m_lookers[DRAPE_CULL_PAIRS];  // of each pair that has another cloth triangle than the pair before
+    Looker m_lookers[DRAPE_CULL_PAIRS];  // one per run of pairs with the same triangle and motion
     CullPair m_pairs[DRAPE_CULL_PAIRS];
     ushort m_nodes[DRAPE_CULL_PAIRS * 3 * DRAPE_PARTS];
     ushort m_faces[DRAPE_CULL_PAIRS * 3 * DRAPE_PARTS];
     ushort m_edges[DRAPE_CULL_PAIRS * 9 * DRAPE_PARTS];
-    uint m_counts[3];  // of m_nodes, m_faces and m_edges
+    uint m_counts[3];  // counts of m_nodes, m_faces and m_edges
 } Culler;
 
 // Returns whether a cloth triangle is so large compared with a patch of that size that most of the patch's features
@@ -64,7 +64,7 @@ static int reachesAll(__local const CullTriangle* cull, const CullReach reach, c
     return cull->m_radius + reach.m_near > 0.5f * size;
 }
 
-// Takes the pairs from first up to last to hand, a lane each.
+// Loads the pairs from first up to last, one per lane.
 static void takePairs(__local Culler* culler, const StepCloths* cloths, const PatchFeatures* features,
                       __global const FeatureTest* pairs, const uint first, const uint last)
 {
@@ -105,8 +105,8 @@ static void takePairs(__local Culler* culler, const StepCloths* cloths, const Pa
     teamSync();
 }
 
-// Marks the parts that hold the face of this lane and the features which it owns, where the pair's cloth triangle may
-// be near it.
+// Marks the parts that contain this lane's face and the features that it owns, if the pair's cloth triangle may be near
+// the face.
 static void markParts(__local CullPair* pair, __local const CullTriangle* cull, const PatchFeatures* features,
                       __global const uint* faceFeatures)
 {
@@ -204,7 +204,7 @@ static void cullEdge(__local Culler* culler, const PatchFeatures* features, cons
               block * DRAPE_PATCH_WIDTH + shift, list);
 }
 
-// Does all listed tests, each by as many lanes as a part has.
+// Runs all listed tests, each on as many lanes as a part has.
 static void cullTasks(__local Culler* culler, const PatchFeatures* features, const TestList* list)
 {
     const uint first = teamLane() / DRAPE_PART, stride = teamWidth() / DRAPE_PART;
@@ -223,9 +223,9 @@ static uint pairsOfGroup(const uint count, const uint groups, const uint turns)
     return inWave <= DRAPE_CULL_PAIRS ? max(inWave, turns) : (count + groups * rounds - 1) / (groups * rounds);
 }
 
-// Lists the feature tests of the pairs that patchWalk listed, as many as fitted there: most pairs next to each other
-// are of one cloth triangle. A group takes up to DRAPE_CULL_PAIRS at a time; how many they are and when it ends is the
-// same for all its lanes, so that all reach its barriers. counters->m_candidates must be zero before.
+// Lists the feature tests of the pairs in patchWalk's list; most adjacent pairs are of one cloth triangle. A group
+// takes up to DRAPE_CULL_PAIRS at a time. Their number and the end of the loop are equal for all its lanes, so that all
+// reach its barriers. counters->m_candidates must be zero before.
 __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH, 1, 1))) void patchCullPairs(
     __global const FeatureTest* restrict pairs, const uint pairCapacity,
     __global const Triangle* restrict clothTriangles, __global const float* restrict start,

@@ -1,5 +1,5 @@
-// Packs the obstacles' features for the culls (patch_cull.cl, patch_cull_pairs.cl), and the wide tree over their patches,
-// when an obstacle came or moved.
+// Packs the obstacles' features for the culls (patch_cull.cl, patch_cull_pairs.cl), and the wide tree over their
+// patches, after an obstacle was added or moved.
 #include "lib/cone_reach.h"
 #include "lib/feature_cull.h"
 #include "shared/patch.h"
@@ -29,7 +29,7 @@ typedef struct ObstacleFaces
     __global const NormalCone* m_edgeCones;
 } ObstacleFaces;
 
-// A triangle's normal (faceCone()) and the cones of its corners and edges.
+// Loads a triangle's normal (faceCone()) and the cones of its corners and edges.
 typedef struct FaceCones
 {
     NormalCone m_face, m_around[6];
@@ -50,7 +50,7 @@ static FaceCones conesOf(const ObstacleFaces* faces, const uint index)
     return cones;
 }
 
-// A work-item is a lane of a face block, of those from first up to last.
+// Packs a lane of a face block per work-item, from first up to last.
 __kernel void patchPackFaces(__global const uint* restrict owners, const uint first, const uint last,
                              __global const Triangle* restrict triangles, __global const float* restrict positions,
                              __global const NormalCone* restrict vertexCones,
@@ -67,7 +67,7 @@ __kernel void patchPackFaces(__global const uint* restrict owners, const uint fi
     out[9 * DRAPE_PATCH_WIDTH] = used ? faceSpread(cones.m_face, cones.m_around) : 0.0f;
 }
 
-// A work-item is a lane of a vertex block. ids: the vertex of each lane.
+// Packs a lane of a vertex block per work-item. ids: the vertex of each lane.
 __kernel void patchPackVertices(__global const uint* restrict owners, const uint first, const uint last,
                                 __global const Triangle* restrict triangles, __global const float* restrict positions,
                                 __global const NormalCone* restrict cones, __global float* restrict vertices,
@@ -86,7 +86,7 @@ __kernel void patchPackVertices(__global const uint* restrict owners, const uint
     out[6 * DRAPE_PATCH_WIDTH] = cones[vertex].m_cosine;
 }
 
-// A work-item is a lane of an edge block. ids: the edge of each lane.
+// Packs a lane of an edge block per work-item. ids: the edge of each lane.
 __kernel void patchPackEdges(__global const uint* restrict owners, const uint first, const uint last,
                              __global const Triangle* restrict triangles, __global const float* restrict positions,
                              __global const NormalCone* restrict cones, __global float* restrict edges,
@@ -106,8 +106,8 @@ __kernel void patchPackEdges(__global const uint* restrict owners, const uint fi
     out[9 * DRAPE_PATCH_WIDTH] = cones[edge].m_cosine;
 }
 
-// A child of a wide node: its volume and, along each direction, the reach of a contact of its features as a share of
-// the reach.
+// A child's place in a wide node: its volume, and how far along each direction a contact of its features can reach, as
+// a share of the reach.
 typedef struct WideChild
 {
     Dop m_volume;
@@ -134,7 +134,7 @@ typedef struct PatchFaces
     uint m_first, m_last;
 } PatchFaces;
 
-// A cone around what the patch's faces, edges and vertices admit.
+// Returns a cone around all directions that the patch's faces, edges and vertices admit.
 static NormalCone patchCone(const PatchFaces* faces)
 {
     Vec3 axis = vec3(0.0f, 0.0f, 0.0f);
@@ -214,7 +214,7 @@ __kernel void patchVolumes(__global const uint* restrict faceOwners, const uint 
 #endif
 }
 
-// Writes one number of a child position of one level per work-item, from first up to last: a node of the level below,
+// A work-item writes one number of a child place of one level, those from first up to last: a node of the level below,
 // or none from nodeCount on. below and level: that level's nodes and this one's.
 __kernel void patchWiden(__global float* restrict wideNodes, const uint below, const uint nodeCount, const uint level,
                          const uint first, const uint last)

@@ -4,7 +4,7 @@
 // group traverses for one triangle where there are few, otherwise for a packet of neighbouring triangles.
 #include "lib/patch_pairs.h"
 
-// Patches found before they are made into pairs.
+// Maximum patches found before they are turned into pairs.
 #define DRAPE_WALK_FOUND (2 * DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH)
 
 // Local memory of a group.
@@ -14,11 +14,11 @@ typedef struct Walkers
     uint m_stack[DRAPE_WALK_NODES * DRAPE_WALK_STACK];
     uint m_found[DRAPE_WALK_FOUND];
     uint m_foundCount;
-    CullVolume m_volumes[DRAPE_PATCH_WIDTH];  // of a packet's triangles, empty where one cannot come near the obstacle
-    CullVolume m_joined;  // of all the packet's triangles, or of the single triangle
+    CullVolume m_volumes[DRAPE_PATCH_WIDTH];  // volumes of a packet's triangles; empty if out of the obstacle's reach
+    CullVolume m_joined;                      // union of the volumes, or the single triangle's
 } Walkers;
 
-// A walk over the obstacles that rest, or over one that moves.
+// A traversal of the resting obstacles, or of one that moves.
 typedef struct Walk
 {
     uint m_motion;
@@ -26,8 +26,8 @@ typedef struct Walk
     uint m_cloth;   // this lane's triangle
 } Walk;
 
-// Lists the pairs of this lane's triangle and the patches found from first up to last, DRAPE_PATCH_WIDTH at most, side by
-// side: patchCullPairs gains by it.
+// Lists the pairs of this lane's triangle and the patches found from first up to last, at most DRAPE_PATCH_WIDTH. They
+// are adjacent in the list, which makes patchCullPairs faster.
 static void pairLane(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const PatchTree* tree,
                      const uint first, const uint last, const TestList* list)
 {
@@ -50,7 +50,7 @@ static void pairLane(__local Walkers* walkers, const Walk* walk, const StepCloth
     }
 }
 
-// Makes the patches found into pairs, where there are `least` of them. In a packet the lanes, which had a patch each, now
+// Turns the patches found into pairs if there are at least `least`. In a packet the lanes, which had a patch each, now
 // have a triangle each, and each DRAPE_PATCH_WIDTH lanes a share of the patches.
 static void settleFound(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const PatchTree* tree,
                         const TestList* list, const uint least)
@@ -112,10 +112,10 @@ static void walkTree(__local Walkers* walkers, const Walk* walk, const StepCloth
     settleFound(walkers, walk, cloths, tree, list, 1);
 }
 
-// Joins a packet's volumes. They lie in local memory, since in registers they would leave room for few groups.
+// Joins a packet's volumes. They are in local memory, since in registers they would leave room for few groups.
 static void joinVolumes(__local Walkers* walkers)
 {
-    // A lane joins them in one direction, one more their radii.
+    // Joins the volumes in one direction per lane; one more lane joins their radii.
     const uint lane = teamLane();
     if (lane > DRAPE_DOP_DIRECTIONS) return;
     __local CullVolume* joined = &walkers->m_joined;
@@ -140,8 +140,9 @@ static void storeInterval(__local CullVolume* volume, const CullCorners* corners
     volume->m_volume.m_high[direction] = high;
 }
 
-// Makes the volumes of the group's triangles over the obstacles that rest, or over one that moves. In a packet each of the
-// first lanes makes that of its triangle; of one triangle each makes what it is in one direction.
+// Makes the volumes of the group's triangles for the resting obstacles, or for one that moves. In a packet each of the
+// first lanes makes its triangle's volume; for a single triangle each lane makes the volume's interval in one
+// direction.
 static void makeVolumes(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const float clothRadius)
 {
     __global const ObstacleMotion* motion = motionOf(cloths, walk->m_motion);
@@ -175,8 +176,8 @@ static void makeVolumes(__local Walkers* walkers, const Walk* walk, const StepCl
     teamSync();
 }
 
-// A group lists the pairs of `packet` cloth triangles, in leaf order. packet: 1 or DRAPE_PATCH_WIDTH, with as many lanes as
-// that or up to DRAPE_WALK_NODES times as many.
+// Lists the pairs of `packet` cloth triangles, in leaf order, per group. packet: 1 or DRAPE_PATCH_WIDTH, with as many
+// lanes or up to DRAPE_WALK_NODES times as many.
 __kernel void patchWalk(DRAPE_WALK_ARGUMENTS, const uint packet)
 {
     __local Walkers walkers;
@@ -189,7 +190,7 @@ __kernel void patchWalk(DRAPE_WALK_ARGUMENTS, const uint packet)
     walk.m_packet = packet;
     walk.m_cloth = clothOrder[min(leaf, clothCount - 1)];
     const float clothRadius = leaf < clothCount ? radius[clothTriangles[walk.m_cloth].m_mesh] : -1.0f;
-    // The last lanes do this while the first make volumes.
+    // The last lanes run this while the first make volumes.
     if (clothRadius >= 0.0f && teamLane() >= teamWidth() - packet) countInvalid(&cloths, walk.m_cloth, counters);
     if (teamLane() == 0) walkers.m_foundCount = 0;
     teamStart(&walkers.m_team);

@@ -1,8 +1,8 @@
-// Brings obstacles from their own frames to the world.
+// Transforms obstacles from their own frames to the world's.
 #include "lib/rigid_motion.h"
 
-// A work-item is a vertex, then an edge, of those given. Reads a feature's position and cone in its own frame and writes
-// those in the world; each is written by one work-item alone.
+// Places a given vertex, then a given edge, per work-item. Reads a feature's position and cone in its own frame and
+// writes those in the world; exactly one work-item writes each.
 __kernel void placeObstacles(__global const ObstaclePlace* restrict places, const uint placeCount,
                              const uint firstVertex, const uint vertexCount, const uint firstEdge, const uint edgeCount,
                              __global const float* restrict ownPositions,

@@ -1,4 +1,5 @@
-// Questions of callers about single pairs: continuous collision of four moving vertices, intersection of two triangles.
+// Answers callers' queries about single pairs: continuous collision of four moving vertices, intersection of two
+// triangles.
 #include "lib/ccd.h"
 #include "lib/triangle_pair.h"
 
@@ -21,7 +22,7 @@ __kernel void queryMotion(__global const CcdQuery* restrict queries, const uint 
                            ccdSettings(separation, tolerance, timeTolerance, boxLimit));
 }
 
-// A work-item is a query; test: DRAPE_TEST_CERTIFIED or DRAPE_TEST_MOLLER.
+// Answers a query per work-item; test: DRAPE_TEST_CERTIFIED or DRAPE_TEST_MOLLER.
 __kernel void queryTriangles(__global const TriangleQuery* restrict queries, const uint count, const uint test,
                              __global uint* restrict results)
 {
@@ -33,8 +34,8 @@ __kernel void queryTriangles(__global const TriangleQuery* restrict queries, con
     results[i] = triangleQuery(a, b, test);
 }
 
-// A work-item takes every stride-th of the count pairs and lists those that meet or come within the radius (m; none when
-// negative). The list's demand must be zero before; it counts on when the list is full.
+// Lists the pairs that meet or come within the radius (m; none if negative). A work-item takes every stride-th of the
+// `count` pairs. The list's demand must be zero before; it counts on when the list is full.
 __kernel void queryPairs(__global const Candidate* restrict pairs, const uint count,
                          __global const float* restrict positionsA, __global const Triangle* restrict trianglesA,
                          __global const float* restrict positionsB, __global const Triangle* restrict trianglesB,

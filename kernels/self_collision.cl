@@ -1,13 +1,13 @@
-// Self collision: a moving mesh against itself. Volumes of its vertices, pairs of its triangles, pairs of features, and
-// which of these touch during the step. Lists are filled in no particular order; their demands must be zero before, and
-// count on when a list is full (see SelfCounters).
+// Self collision of a moving mesh: volumes of its vertices, pairs of its triangles, pairs of features, and the pairs
+// that touch during the step. Lists are filled in no particular order. Their demands must be zero before, and count on
+// when a list is full (see SelfCounters).
 #include "lib/item_runs.h"
 #include "lib/self_collision.h"
 
-// Pairs a work-item gathers before it reserves room for them with one atomic.
+// Pairs that a work-item gathers before it reserves room for them with one atomic.
 #define DRAPE_SELF_GATHER 16
 
-// Reserves room for count entries of a list. Returns false when the demand has reached `enough`, beyond which nothing is
+// Reserves room for count entries of a list. Returns false if the demand has reached `enough`, beyond which nothing is
 // counted.
 static int reserveEntries(__global volatile uint* demand, const uint count, const uint enough, uint* place)
 {
@@ -28,7 +28,7 @@ static int flushPairs(__global Candidate* restrict pairs, const uint capacity, c
     return 1;
 }
 
-// A work-item is a vertex: writes its volume over the step.
+// Writes the volume of a vertex over the step, one per work-item.
 __kernel void selfVolumes(__global const float* restrict start, __global const float* restrict end, const uint vertexCount,
                           const float radius, __global Dop* restrict volumes)
 {
@@ -48,9 +48,9 @@ static WalkSide walkSide(__global const BvhNode* nodes, __global const uint* ord
     return side;
 }
 
-// A work-item is one of leafCount leaves of side a from firstLeaf: lists the pairs of its triangle with those of the
-// leaves of tree b whose volumes overlap, as kind (DRAPE_WALK_…) says. For a mesh with itself, a and b are the same.
-// Work-items leave off once enough pairs (DRAPE_DEMAND_LIMIT at most) are counted.
+// Lists the pairs of a leaf's triangle with the leaves of tree b whose volumes overlap. A work-item takes one of
+// leafCount leaves of side a, from firstLeaf on. kind: DRAPE_WALK_…; a and b are equal for a mesh with itself.
+// Work-items stop once enough pairs (at most DRAPE_DEMAND_LIMIT) are counted.
 __kernel void leafTraverse(__global const BvhNode* nodesA, __global const uint* orderA,
                            __global const Triangle* trianglesA, const uint firstLeaf, const uint leafCount,
                            __global const BvhNode* nodesB, __global const uint* orderB,
@@ -85,8 +85,8 @@ static void storePairs(__global FeaturePair* restrict list, const uint capacity,
     }
 }
 
-// A work-item goes through its part of the pairs of triangles and lists the pairs of features that each owns and that
-// overlap.
+// Lists the overlapping pairs of features that the pairs of triangles own. A work-item processes its part of the pairs
+// of triangles.
 __kernel void selfFeatures(__global const Candidate* restrict pairs, const uint pairCapacity,
                            __global const Triangle* restrict triangles, __global const Dop* restrict volumes,
                            __global FeaturePair* restrict vertexFace, const uint vertexFaceCapacity,

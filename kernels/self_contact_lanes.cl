@@ -1,4 +1,4 @@
-// Narrow phase of cloths with themselves on a CPU: as narrow_phase_lanes.cl does the contacts with obstacles.
+// Narrow phase of cloths with themselves on a CPU, like narrow_phase_lanes.cl for contacts with obstacles.
 #include "lib/lane_runs.h"
 #include "lib/lane_self_contacts.h"
 #include "lib/self_tests.h"
@@ -25,7 +25,7 @@ static void testOne(LaneWork* work, const uint item)
     testSelf(work->m_tests, item, &work->m_view, work->m_firstSlot, &work->m_list, work->m_swept, work->m_counters);
 }
 
-// The positions of a test: the node and the face's corners, or the ends of both edges.
+// Loads the positions of a test: the node and the face's corners, or the ends of both edges.
 static void nodesOf(uint* nodes, const SelfView* view, const FeatureTest test)
 {
     if (test.m_motion == DRAPE_SELF_TEST_NODE)

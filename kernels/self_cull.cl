@@ -17,16 +17,16 @@ typedef struct SelfCloths
     __global const float* m_faceBoxes;
     __global const float* m_vertexBoxes;
     __global const float* m_edgeBoxes;
-    __global const float* m_nodes;  // of the wide tree
+    __global const float* m_nodes;  // nodes of the wide tree
     __global const uint* m_levels;
     uint m_levelCount;
 } SelfCloths;
 
-// Boxes of the corners of a patch's triangles, made when a triangle is first near another patch.
+// Boxes of the corners of a patch's triangles, computed when a triangle is first near another patch.
 typedef struct OwnCorners
 {
     FeatureBox m_boxes[3 * DRAPE_PATCH_WIDTH];
-    uint m_made;  // bit i: those of the patch's triangle i
+    uint m_made;  // bit i: boxes of the patch's triangle i are ready
 } OwnCorners;
 
 static const FeatureBox* cornersOf(OwnCorners* corners, const SelfCloth* cloth, const Triangle triangle, const uint place)
@@ -136,7 +136,7 @@ static void walkSelf(Team* team, const SelfCloths* cloths, const uint own, const
         forLanes(lane, near)
         {
             const uint next = index * DRAPE_PATCH_WIDTH + lane;
-            if ((next + 1) * below <= own) continue;  // patches before this one look for it
+            if ((next + 1) * below <= own) continue;  // earlier patches find this pair
             if (level > 1)
                 stack[depth++] = walkEntry(level - 1, next);
             else if (cloths->m_patches[next].m_mesh == cloths->m_patches[own].m_mesh &&
@@ -146,9 +146,9 @@ static void walkSelf(Team* team, const SelfCloths* cloths, const uint own, const
     }
 }
 
-// A work-item takes a patch: lists the self tests of its features and those of the patches from it on. The tree's volumes are
-// those that selfPack wrote and patchWiden joined. faceNodes, edgeNodes: of each block's features, a row of lanes for each of
-// their nodes. limit: see team.h; counters->m_selfTests must be zero before.
+// Lists the self tests of a patch's features with those of itself and of later patches, one patch per work-item. The
+// tree's volumes are those of selfPack, joined by patchWiden. faceNodes, edgeNodes: a row of lanes for each node of a
+// block's features. limit: see team.h. counters->m_selfTests must be zero before.
 __kernel void selfCull(__global const Patch* restrict patches, const uint patchCount, __global const uint* restrict faceIds,
                        __global const uint* restrict vertexIds, __global const uint* restrict edgeIds,
                        __global const uint* restrict faceNodes, __global const uint* restrict edgeNodes,

@@ -1,5 +1,5 @@
-// The cloths' own patches over a step, for cloths that collide with themselves: the patches' volumes and their nodes' boxes. A
-// CPU's are in self_pack_lanes.cl.
+// Packs the cloths' own patches over a step, for cloths that collide with themselves: the patches' volumes and their
+// nodes' boxes. self_pack_lanes.cl is the CPU's version.
 #include "lib/invalid_nodes.h"
 #include "lib/self_cull.h"
 

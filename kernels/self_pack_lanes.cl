@@ -14,7 +14,7 @@ typedef struct NodeLanes
     LaneMask m_valid;
 } NodeLanes;
 
-// A lane without a node gets what is not valid.
+// A lane without a node gets an invalid position.
 static void putNode(float* rows, const uint lane, __global const float* start, __global const float* end, const uint node)
 {
     if (node == DRAPE_NO_FEATURE)
@@ -45,7 +45,8 @@ static NodeLanes getNodes(const float* rows)
     return nodes;
 }
 
-// See dopGrowInterval(): features' intervals along a direction, of `count` nodes each; empty where none is valid.
+// Computes features' intervals along a direction, of `count` nodes each, like dopGrowInterval(); empty without a valid
+// node.
 static void growLanes(Lanes* low, Lanes* high, const NodeLanes* nodes, const int count, const float radius, const int direction)
 {
     Lanes least = lanesSplat(DRAPE_INFINITY), greatest = lanesSplat(-DRAPE_INFINITY), inner = lanesSplat(0.0f);

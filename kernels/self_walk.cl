@@ -1,6 +1,6 @@
-// Broad phase of cloths with themselves on a GPU, in two launches: every patch walks the wide tree and lists the patches from
-// itself on in order whose volumes overlap its own; then groups share these pairs of patches out. What is left are pairs of
-// features whose volumes over the step overlap, each once.
+// Broad phase of cloths with themselves on a GPU, in two launches. In the first, every patch traverses the wide tree
+// and lists itself and later patches whose volumes overlap its own. In the second, groups share these pairs of patches.
+// The output is pairs of features whose volumes over the step overlap, each once.
 #include "lib/self_pairs.h"
 #include "lib/wide_walk.h"
 
@@ -41,8 +41,8 @@ static int listPatches(__local SelfWalker* walker, const uint own, __global Cand
     return place <= limit;
 }
 
-// A work-group takes a patch. The tree's volumes are those that selfPack wrote and patchWiden joined. radius: as there. Past
-// the limit a group ends: see lib/team.h. counters->m_selfPairs must be zero before.
+// Lists the pairs of a patch, one patch per work-group. The tree's volumes are those of selfPack, joined by patchWiden.
+// radius: see selfPack. Past the limit a group ends: see lib/team.h. counters->m_selfPairs must be zero before.
 __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH, 1, 1))) void selfWalk(
     __global const Patch* restrict patches, __global const float* restrict radius, __global const float* restrict wideNodes,
     __global const uint* restrict levels, const uint levelCount, __global Candidate* restrict list, const uint capacity,
@@ -70,7 +70,7 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDT
         barrier(CLK_LOCAL_MEM_FENCE);
         const uint level = entryLevel(entry), index = entryIndex(entry);
         const uint next = index * DRAPE_PATCH_WIDTH + lane;
-        const int ahead = (next + 1) * patchesBelow(level) > own;  // patches before this one look for it
+        const int ahead = (next + 1) * patchesBelow(level) > own;  // otherwise an earlier patch finds the pair
         if (turn < nodes && ahead &&
             wideOverlaps(&volume, wideNodes + (levels[level - 1] + index) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH))
         {
@@ -93,13 +93,13 @@ typedef struct SelfFeatures
     __global const uint* m_faceIds;
     __global const uint* m_vertexIds;
     __global const uint* m_edgeIds;
-    __global const float* m_boxes;  // of the nodes
-    __global const float* m_nodes;  // of the wide tree
+    __global const float* m_boxes;  // boxes of the nodes
+    __global const float* m_nodes;  // nodes of the wide tree
 } SelfFeatures;
 
-// Features that a patch owns at most, of a kind.
+// Maximum features of one kind that a patch owns.
 #define DRAPE_OWNED_MOST (3 * DRAPE_PATCH_WIDTH)
-// Pairs of features whose boxes overlap, gathered before a lane each tries them.
+// Pairs of features whose boxes overlap, gathered before they are tested, one per lane.
 #define DRAPE_NEAR (8 * DRAPE_PATCH_WIDTH)
 #define DRAPE_KIND_SHIFT 31
 
@@ -115,7 +115,7 @@ typedef struct NearVertices
 {
     float m_boxes[DRAPE_BOX_FLOATS * DRAPE_OWNED_MOST];
     uint m_ids[DRAPE_OWNED_MOST];
-    uint m_count;  // places, those that are not used included
+    uint m_count;  // number of positions, unused ones included
 } NearVertices;
 typedef struct NearEdges
 {
@@ -135,7 +135,7 @@ typedef struct NearSide
 typedef struct SelfCuller
 {
     Team m_team;
-    NearSide m_sides[2];  // of the pair's first and second patch
+    NearSide m_sides[2];                            // first and second patch of the pair
     uint m_nearA[DRAPE_NEAR], m_nearB[DRAPE_NEAR];  // pairs of features, kind above the second
     uint m_nearCount;
 } SelfCuller;
@@ -215,8 +215,8 @@ static void gatherEdge(__local NearEdges* near, const SelfCloth* cloth, const Se
     near->m_ids[place] = edge;
 }
 
-// Gathers the faces of both patches, a lane each. boxes: the patches'. Returns whether either has one that is near the other
-// patch: the volumes of patches alone overlap far more often.
+// Gathers the faces of both patches, one per lane. boxes: the patches'. Returns whether either has a face near the
+// other patch: the volumes of patches alone overlap far more often.
 static int gatherFaces(__local NearSide* sides, const SelfCloth* cloth, const SelfFeatures* features, const Candidate pair,
                        const FeatureBox boxes[2])
 {
@@ -330,8 +330,8 @@ static void crossPatches(__local SelfCuller* culler, const SelfCloth* cloth, con
     crossEdges(culler, cloth, &sides->m_edges, &other->m_edges, same, list);
 }
 
-// Tries the pairs noted, where there are `least` of them, a lane each. By all lanes together; returns whether the list is
-// within its limit.
+// Tests the noted pairs, one per lane, if there are at least `least`. All lanes call it together. Returns whether the
+// list is within its limit.
 static int settleNear(__local SelfCuller* culler, const SelfCloth* cloth, const TestList* list, const uint least)
 {
     barrier(CLK_LOCAL_MEM_FENCE);
@@ -355,8 +355,8 @@ static int settleNear(__local SelfCuller* culler, const SelfCloth* cloth, const 
     return within;
 }
 
-// Lists the self tests of the pairs of patches that selfWalk listed, as many as fitted there. limit: see lib/team.h;
-// counters->m_selfTests must be zero before.
+// Lists the self tests of the pairs of patches in selfWalk's list. limit: see lib/team.h; counters->m_selfTests must be
+// zero before.
 __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH, 1, 1))) void selfCullPairs(
     __global const Candidate* restrict pairs, const uint pairCapacity, __global const Patch* restrict patches,
     __global const uint* restrict faceIds, __global const uint* restrict vertexIds, __global const uint* restrict edgeIds,

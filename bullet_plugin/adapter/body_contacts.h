@@ -25,7 +25,7 @@ struct FeatureContacts
 // Keeps links that were stretched meanwhile from throwing the node.
 constexpr btScalar kMostTangledSpeed = 3;
 
-// Marks the nodes of a pair that began its step intersecting. A contact that would keep a marked node on the wrong
+// The marked nodes of a pair that began its step intersecting. A contact that would keep a marked node on the wrong
 // side must not act.
 struct TangledPair
 {

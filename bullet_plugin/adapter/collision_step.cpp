@@ -58,7 +58,7 @@ BodyContacts* CollisionStep::contactsOf(const btSoftBody& body)
 
 void CollisionStep::addBody(ClothMirror& cloth, btSoftBody* body)
 {
-    // Room for all, so that clear() takes no memory.
+    // Reserves room for all, so that clear() allocates no memory.
     reserveRoom(m_spare, m_bodies.size() + m_spare.size() + 1);
     if (m_spare.empty()) m_spare.emplace_back();
     m_bodies.push_back(std::move(m_spare.back()));
@@ -127,7 +127,8 @@ void CollisionStep::addPair(const PairNote& note)
     m_pairs.push_back(makePair(note, cloth, obstacleId));
     btVector3 low, high;
     note.m_obstacle.m_shape->getAabb(note.m_motion.m_end, low, high);
-    // A negative margin makes Bullet's box smaller than the mesh, at a turn by the square root of three.
+    // Accounts for a negative margin: it makes Bullet's box smaller than the mesh, by up to √3 times the margin when
+    // turned.
     const btScalar lacks = btScalar(1.7321) * std::max(btScalar(0), -note.m_obstacle.m_shape->getMargin());
     low -= btVector3(lacks, lacks, lacks);
     high += btVector3(lacks, lacks, lacks);
@@ -297,7 +298,7 @@ void CollisionStep::receiveAll()
     receive(contacts);
 }
 
-// The body's contacts that are met on its nodes' paths.
+// Lists the body's contacts that its nodes' paths meet.
 std::vector<StepContact> CollisionStep::impactsOf(const BodyContacts& body) const
 {
     std::vector<StepContact> impacts;

@@ -35,23 +35,23 @@ public:
 
     // Restores the state before the first begin().
     void clear();
-    // Gives back the memory of earlier steps' bodies. Before begin().
+    // Releases the memory of earlier steps' bodies. Call before begin().
     void giveBackRoom();
-    // Cloths with a pair in this step that no contact could move: all of their nodes are pinned.
+    // Returns the cloths with a pair in this step that no contact could move: all of their nodes are pinned.
     std::size_t pinnedCloths() const { return m_pinned.size(); }
-    // Null when the body has no pair in this step.
+    // Returns null if the body has no pair in this step.
     BodyContacts* contactsOf(const btSoftBody& body);
 
 private:
     struct Pair
     {
-        MeshId m_cloth, m_obstacle;  // of a cloth's meshes the pair's own, where its obstacle deforms
+        MeshId m_cloth, m_obstacle;  // m_cloth: the pair's own mesh of the cloth if its obstacle deforms
         btScalar m_thickness;
-        const btVector3* m_carriedStarts;  // then, see StepContact; null else
+        const btVector3* m_carriedStarts;  // start positions in that case, see StepContact; else null
         StartingPair m_start;
     };
 
-    // Nodes of a mesh in the pipeline that are to be written.
+    // Nodes of a pipeline mesh that must be written.
     struct Upload
     {
         MeshId m_mesh;
@@ -71,7 +71,7 @@ private:
     float tubeOf(const Pair& pair);
     enum class Detection
     {
-        First,  // of the step
+        First,  // the step's first one
         Again
     };
 
@@ -101,8 +101,8 @@ private:
     bool m_heldTogether = false;  // any body, since the last detection
     DeformedPairs m_deformed;
     PairStarts m_starts;
-    std::vector<std::vector<int>> m_jumped;           // of checkStarts(), by body
+    std::vector<std::vector<int>> m_jumped;           // result of checkStarts(), by body
     std::unordered_set<const btSoftBody*> m_invalid;  // with nodes that were not finite; compared, not followed
-    std::unordered_set<const btSoftBody*> m_told;     // that they are left out; likewise
+    std::unordered_set<const btSoftBody*> m_told;     // bodies reported as left out; compared, not followed
 };
 }  // namespace drape

@@ -18,8 +18,8 @@ bool isFinite(const btVector3& v)
     return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
 }
 
-// Nodes are at most kMostTangledSpeed faster than the body as a whole; than what holds it, of a body that is left out:
-// what is pulled after pins that were put elsewhere does not shoot past them.
+// Limits movable nodes to kMostTangledSpeed relative to the body's median velocity. In a body that is left out and has
+// fixed nodes the limit is relative to rest: nodes that are pulled after displaced pins do not shoot past them.
 void limitSpeeds(btSoftBody& body, bool leftOut)
 {
     std::vector<btVector3> velocities;

@@ -85,7 +85,7 @@ private:
 
         Lanes m_normal[3];
         Lanes m_level;
-        Lanes m_weights[2];  // of the second and third node
+        Lanes m_weights[2];  // second and third node
         int m_moved[3];      // indices of moved nodes; the first one again where unused
         int m_count;         // number of nodes
         int m_lanes;         // lanes in use
@@ -108,7 +108,7 @@ private:
         int m_moved[3];
         int m_count;
         btScalar m_level;            // m, least n.(sum w x - start)
-        btScalar m_inverseMobility;  // of the weighted point per unit multiplier; 0: nothing moves
+        btScalar m_inverseMobility;  // weighted point's displacement per unit multiplier; 0: nothing moves
         btScalar m_mended;           // share of a violation that a push corrects: 1 where no node is fixed
         btScalar m_friction;
         btScalar m_multiplier;  // pushed in this stage
@@ -150,6 +150,6 @@ private:
     std::vector<Row> m_rows;
     std::vector<std::size_t> m_holding;  // blocks with rows that have pushed in this stage
     std::vector<Row*> m_settling;        // their rows whose planes were renewed; until the next sweep
-    unsigned m_stage = 0;                // of the last sweep
+    unsigned m_stage = 0;                // stage of the last sweep
 };
 }  // namespace drape

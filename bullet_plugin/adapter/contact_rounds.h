@@ -136,7 +136,7 @@ private:
     void pass(const Bodies& bodies, ContactRounds::Pass pass);
 
     ThreadTeam& m_threads;
-    std::vector<Leaf> m_leaves;  // of the current pass
-    Bodies m_settling;           // of runAndSettle()
+    std::vector<Leaf> m_leaves;  // current pass
+    Bodies m_settling;           // bodies of runAndSettle()
 };
 }  // namespace drape

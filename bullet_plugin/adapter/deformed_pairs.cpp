@@ -11,14 +11,14 @@ namespace drape
 {
 namespace
 {
-// Steps that the mesh of a pair without a moving vertex is kept: two seconds at 60 steps a second.
+// Number of steps for which a pair's mesh is kept without a moving vertex: two seconds at 60 steps a second.
 constexpr std::uint64_t kKeepSteps = 120;
 
 // Nodes that a thread processes per turn.
 constexpr std::size_t kNodesPerJob = 256;
 
-// A node's start in the frame of the obstacle's positions. Whole within `whole` of the surface, fading to nothing at
-// twice that distance.
+// Computes a node's start in the frame of the obstacle's positions. The motion counts fully within `whole` of the
+// surface, and fades to nothing at twice that distance.
 Vec3 deformed(const ObstacleMirror& obstacle, Vec3 start, float whole)
 {
     MeshProbe::Place place;

@@ -25,8 +25,8 @@ class PluginState;
 
 struct DeformedPair
 {
-    MeshId m_mesh = kNoMesh;           // of the cloth, for this obstacle alone
-    std::vector<btVector3> m_starts;   // by node, m: what the pipeline takes for the start
+    MeshId m_mesh = kNoMesh;           // the cloth's mesh for this obstacle alone
+    std::vector<btVector3> m_starts;   // by node, m: start positions for the pipeline
     std::vector<btVector3> m_carried;  // position to which the obstacle's whole motion carries it
     std::uint64_t m_lastStep = 0;
 };
@@ -39,7 +39,7 @@ public:
     DeformedPairs(const DeformedPairs&) = delete;
     DeformedPairs& operator=(const DeformedPairs&) = delete;
 
-    // Removes the meshes of pairs that no vertices moved in for long. Before the step's first update().
+    // Removes the meshes of pairs without moving vertices for a long time. Call before the step's first update().
     void beginStep();
     // Returns the pair's own mesh and starts in this step, for an obstacle with a before(). reach: m, of contacts.
     // The result stays valid until the next beginStep().

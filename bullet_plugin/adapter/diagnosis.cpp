@@ -21,7 +21,7 @@ namespace drape
 {
 namespace
 {
-// Mean edges of a cloth that a thickness may be, at most and at least.
+// Maximum and minimum thickness, in mean edge lengths of the cloth.
 constexpr double kMostEdges = 4;
 constexpr double kLeastEdges = 0.005;
 

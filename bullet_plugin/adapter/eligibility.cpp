@@ -10,7 +10,7 @@ namespace drape
 {
 namespace
 {
-// Why Drape does not handle cloth that a solver of the plugin steps; null where it does.
+// Returns why Drape does not handle cloth that a solver of the plugin steps; null if it does.
 const char* reasonFromSteppedCloth(const PluginState& state, const btSoftBody& cloth)
 {
     if (!state.isWired())

@@ -20,7 +20,7 @@ bool stockCanTake(const btCollisionObject& obstacle, const btTransform& pose);
 // Returns whether Drape handles the soft body beside an obstacle that it handles.
 bool handlesCloth(const PluginState& state, const btSoftBody& cloth);
 
-// Returns whether handlesCloth() and a solver of the plugin is known to step the body.
+// Returns whether handlesCloth() is true and a solver of the plugin is known to step the body.
 bool handlesSteppedCloth(const PluginState& state, const btSoftBody& cloth);
 
 // Returns whether Drape handles an obstacle with that shape beside cloth that it handles.

@@ -18,7 +18,7 @@ bool isSoft(const btBroadphaseProxy* proxy)
     return object && object->getInternalType() == btCollisionObject::CO_SOFT_BODY;
 }
 
-// Throws away the algorithms of pairs with soft bodies, so that the dispatcher makes them anew.
+// Destroys the algorithms of pairs with soft bodies, so that the dispatcher creates new ones.
 void cleanSoftPairs(btCollisionDispatcher& dispatcher, btBroadphaseInterface& broadphase)
 {
     btOverlappingPairCache& cache = *broadphase.getOverlappingPairCache();

@@ -12,19 +12,19 @@ namespace drape
 {
 namespace
 {
-// Most substeps of one stepSimulation() whose motion is shared out.
+// Maximum substeps of one stepSimulation() that share a motion.
 constexpr btScalar kMostSubsteps = 100;
 
-// Bullet's angles of small rotations are arc cosines in float: below this, radians, they may as well be zero.
+// Rounding of small angles, radians. Bullet computes them as arc cosines in float: below this they are noise.
 constexpr btScalar kAngleNoise = btScalar(2e-3);
 
-// Shares by which a velocity may miss the change of the pose, and a distance (m) that is rounding.
+// Shares by which a velocity may deviate from the change of pose, and a distance (m) that is rounding.
 constexpr btScalar kShiftSlack = btScalar(0.02);
 constexpr btScalar kTurnSlack = btScalar(0.1);
 constexpr btScalar kShiftNoise = btScalar(1e-4);
 
-// Most poses between two steps that count as one motion, of frames faster than steps, and the least cosine between it
-// and the velocity.
+// Maximum poses between two steps that count as one motion, for frames faster than steps, and the minimum cosine
+// between that motion and the velocity.
 constexpr btScalar kMostPoses = 16;
 constexpr btScalar kSameWay = btScalar(0.7);
 
@@ -53,7 +53,7 @@ btTransform moved(const btTransform& from, const btVector3& shift, const btVecto
     return to;
 }
 
-// Substeps that the velocity takes for the change of the pose, 0 when the two do not fit.
+// Returns the number of substeps in which the velocity makes the change of pose; 0 if the two do not fit.
 btScalar substepsBetween(const btTransform& from, const btTransform& to, const btVector3& velocity,
                          const btVector3& angularVelocity, btScalar dt)
 {
@@ -82,8 +82,8 @@ bool isNear(const btTransform& from, const btTransform& to, const btVector3& vel
     return shift.length() <= farthest + kShiftNoise && turnBetween(from, to).m_angle <= most + kMostPoses * kAngleNoise;
 }
 
-// Farther than this, m and radii of the shape, no step moves an object: it was put elsewhere. Bullet takes a soft body
-// out of its simulation whose box is 10^6 m across.
+// Distances, in m, in radii of the shape, and in m, beyond which an object was placed instead of moved. Bullet removes
+// a soft body from its simulation if its box is 10^6 m across.
 constexpr btScalar kMostShift = 100, kMostRadii = 100, kMostOfAll = btScalar(2.5e5);
 
 // Minimum motion of a body, in radii, for nodes that moved along to indicate a teleport.
@@ -106,7 +106,7 @@ btScalar mostShift(btScalar radius)
     return std::min(std::max(kMostShift, kMostRadii * radius), kMostOfAll);
 }
 
-// The pose at which Bullet took the velocity, where it does.
+// Returns the pose at which Bullet takes the velocity, if it does.
 const btTransform& noticedBy(const btCollisionObject& object)
 {
     return btRigidBody::upcast(&object) ? object.getInterpolationWorldTransform() : object.getWorldTransform();
@@ -142,7 +142,7 @@ void KinematicMotions::beginStep(btScalar dt, MovedAlong movedAlong)
     ++m_step;
 }
 
-// The motion from where the object was to the pose that Bullet has now.
+// Returns the motion from the object's last pose to Bullet's current pose.
 void KinematicMotions::advance(Tracked& tracked, const btCollisionObject& object) const
 {
     const btTransform& pose = object.getWorldTransform();

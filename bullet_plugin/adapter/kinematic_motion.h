@@ -28,8 +28,8 @@ struct BodyMotion
     btTransform map() const { return m_end * m_start.inverse(); }
 };
 
-// Motion over the step of `dt` (s) of an object that was at `from` and that Bullet has at `to`, with its velocities in
-// m/s and rad/s.
+// Returns the motion over a step of `dt` (s) of an object from its last pose `from` to Bullet's pose `to`. Velocities
+// are in m/s and rad/s.
 BodyMotion motionInStep(const btTransform& from, const btTransform& to, const btVector3& linearVelocity,
                         const btVector3& angularVelocity, btScalar dt);
 
@@ -40,23 +40,23 @@ public:
     // as the map does, to within `slack` (m).
     using MovedAlong = std::function<bool(const btCollisionObject& object, const btTransform& map, btScalar slack)>;
 
-    // Forgets objects that were not observed in the step before. movedAlong: for this step, asked of objects that moved
-    // far; null: no.
+    // Forgets objects that were not observed in the step before. movedAlong: called in this step for objects that moved
+    // far; null: always false.
     void beginStep(btScalar dt, MovedAlong movedAlong = nullptr);
-    // The object is where its pose says; how it came there is no motion.
+    // Declares the object's pose a placement: the change to it is no motion.
     void teleported(const btCollisionObject& object) { m_tracked.erase(&object); }
-    // The object's motion in this step; the same until the next begins.
+    // Returns the object's motion in this step; unchanged until the next step begins.
     BodyMotion observe(const btCollisionObject& object);
 
 private:
     struct Tracked
     {
         BodyMotion m_motion;
-        BodyMotion m_change;  // of the pose from the step before, swept or not
+        BodyMotion m_change;  // change of the pose since the step before, swept or not
         std::uint64_t m_step;
-        btTransform m_pose;     // that Bullet had; the motion's end is on the way there while substeps share it
-        btTransform m_noticed;  // the pose at which Bullet had taken the velocity
-        bool m_shares;          // motion that looks like one of several substeps is shared out among them
+        btTransform m_pose;     // Bullet's pose; m_motion ends before it while substeps share the motion
+        btTransform m_noticed;  // pose at which Bullet took the velocity
+        bool m_shares;          // several substeps share a motion that looks like theirs
     };
 
     void advance(Tracked& tracked, const btCollisionObject& object) const;

@@ -6,7 +6,7 @@ namespace drape
 {
 namespace
 {
-// Least thickness, m: both margins may be zero, the pipeline needs a positive one.
+// Minimum thickness, m: both margins may be zero, but the pipeline needs a positive thickness.
 constexpr btScalar kMinThickness = btScalar(1e-4);
 
 btScalar largestOf(const btVector3& extent)
@@ -25,7 +25,7 @@ btScalar sizeOf(const btSoftBody& cloth)
     return largestOf(high - low);
 }
 
-// Bullet's box holds the margin.
+// Bullet's box includes the margin.
 btScalar sizeOf(const btCollisionShape& shape)
 {
     btVector3 low, high;

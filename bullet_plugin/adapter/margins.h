@@ -1,4 +1,4 @@
-// The thickness of a pair from Bullet's margins, and what is wrong with them.
+// Computes the thickness of a pair from Bullet's margins, and describes problems with them.
 #pragma once
 
 #include <algorithm>
@@ -9,13 +9,13 @@
 
 namespace drape
 {
-// A negative margin counts as 0, m: Bullet takes any number.
+// Returns the margin, m; a negative one counts as 0, since Bullet accepts any number.
 inline btScalar marginOf(const btCollisionShape& shape)
 {
     return std::max(btScalar(0), shape.getMargin());
 }
 
-// Distance at which cloth comes to rest, m.
+// Returns the distance at which cloth comes to rest, m.
 btScalar thicknessOf(const btSoftBody& cloth, const btCollisionShape& obstacle);
 
 // Describes in one line a problem with the margins of a soft body and a mesh's shape: one is negative, or the

@@ -120,8 +120,8 @@ ScaledMesh resolve(const btCollisionShape& shape)
     return ScaledMesh{&bvh, bvh.getMeshInterface()->getScaling()};
 }
 
-// The vertices of a part that its triangles use, in their order: parts may share one array of vertices, and Bullet
-// never looks at how many of them a part says it has. Memory: linear in the triangles.
+// The vertices of a part that its triangles use, in their order. Parts may share one array of vertices, and Bullet
+// never reads the number that a part states. Memory: linear in the triangles.
 class UsedVertices
 {
 public:

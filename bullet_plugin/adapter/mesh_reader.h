@@ -1,10 +1,9 @@
-// Reading a Bullet triangle mesh shape: all parts, strides, float or double vertices, 8, 16 or 32 bit indices, scaling.
+// Reads a Bullet triangle mesh shape: all parts, strides, float or double vertices, 8, 16 or 32 bit indices, scaling.
 //
-// Input: a shape that isMeshShape() accepts and a pose. Output: triangles and world positions (m) as the core takes
-// them, transformed in btScalar before they are rounded to float; vertices that no triangle uses are left out, and so
-// are triangles with a negative index or a vertex that is not finite. As Bullet does, this trusts indices and not the
-// number of vertices that a part states. Cost: a few passes over the mesh; meshSignature() looks at a bounded number of
-// vertices only.
+// Input: a shape that isMeshShape() accepts and a pose. Output: triangles and world positions (m) for the core,
+// transformed in btScalar before they are rounded to float. Unused vertices are left out, and so are triangles with a
+// negative index or a vertex that is not finite. Like Bullet, this trusts indices and not the number of vertices that
+// a part states. Cost: a few passes over the mesh; meshSignature() reads a bounded number of vertices only.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +19,7 @@ struct WorldMesh
 {
     std::vector<std::int32_t> m_triangles;  // 3 per triangle
     std::vector<float> m_positions;         // x y z per vertex, m, world frame
-    std::uint64_t m_topologyHash = 0;       // of the triangles and the number of vertices
+    std::uint64_t m_topologyHash = 0;       // hash of the triangles and the number of vertices
     std::uint64_t m_positionHash = 0;
 };
 
@@ -30,8 +29,8 @@ bool isMeshShape(int shapeType);
 // The shape that owns the triangles: the child of a scaled shape, else the shape itself.
 const btCollisionShape* meshShapeOf(const btCollisionShape& shape);
 
-// Returns how much of its margin Bullet's bounds of the shape lack, m, at least 0: those of a scaled shape hold its
-// child's margin, and a negative margin makes them smaller than the mesh.
+// Returns the part of its margin that Bullet's bounds of the shape lack, m, at least 0. Bounds of a scaled shape
+// include its child's margin, and a negative margin makes them smaller than the mesh.
 btScalar marginBeyondBounds(const btCollisionShape& shape);
 
 void readMesh(const btCollisionShape& shape, const btTransform& pose, WorldMesh& mesh);

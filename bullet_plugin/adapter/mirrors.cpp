@@ -135,7 +135,7 @@ MeshId ClothMirror::addCopy(Pipeline& pipeline) const
     mesh.m_edgeCount = m_links.nodes().size() / 2;
     mesh.m_positions = positions.data();
     mesh.m_vertexCount = m_faces.nodeCount();
-    mesh.m_looseVertices = true;  // what hangs on it, or is left where faces were cut away
+    mesh.m_looseVertices = true;  // nodes of links, or left over from faces that were cut away
     return pipeline.addCloth(mesh);
 }
 

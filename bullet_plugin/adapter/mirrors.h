@@ -70,14 +70,14 @@ public:
     bool hasForeignFaces() const { return m_hasForeignFaces || m_links.hasForeign(); }
     // Parts cut by the nodes' positions when the topology was read or last revalidated.
     const ClothParts& parts() const { return m_parts; }
-    // Requests a full check by a first or returning user: the body may be another one at the same address.
+    // Requests a full check, before a first or renewed use: the body may be another one at the same address.
     void takeUp() { m_fullCheck = m_takenUp = true; }
-    // Says that the nodes are no longer where the last step left them: no pair of the cloth counts as free of
-    // intersections until it is checked.
+    // Declares that the nodes are no longer where the last step left them. Each pair of the cloth is then checked for
+    // intersections before it counts as free of them.
     void startAnew() { ++m_startRevision; }
     // Counts up with each startAnew().
     std::uint64_t startRevision() const { return m_startRevision; }
-    // Remembers where the nodes are at a step's end.
+    // Records the nodes' positions at a step's end.
     void rememberEnds(ThreadTeam& threads);
     // Lists the nodes whose step starts (m_q) away from the last recorded end; all nodes if no end was recorded.
     void listJumped(ThreadTeam& threads, std::vector<int>& nodes) const;
@@ -99,13 +99,13 @@ private:
     MeshId m_id = kNoMesh;
     ClothFaces m_faces;
     SolidLinks m_links;
-    int m_faceCount = 0;  // of m_faces, without links
+    int m_faceCount = 0;  // entries of m_faces without links
     ClothParts m_parts;
     const void* m_nodeArray = nullptr;
     const void* m_faceArray = nullptr;
     int m_cursor = 0;
     std::uint64_t m_startRevision = 0;
-    std::vector<btVector3> m_ends;  // of the last step, by node
+    std::vector<btVector3> m_ends;  // end positions of the last step, by node
     bool m_hasForeignFaces = false;
     bool m_takenUp = false;  // since the parts were cut
     bool m_fullCheck = true;
@@ -124,16 +124,16 @@ public:
     // True for the shape itself and for the mesh shape that a scaled shape shows, as they were last refreshed.
     bool uses(const btCollisionShape* shape) const { return shape == m_key.m_shape || shape == m_meshShape; }
     void requireReading() { m_read = false; }
-    // Says that the obstacle is no longer where the last step left it, see ClothMirror. refresh() does so itself where
-    // the pose or the mesh changed by anything but the motion over a step.
+    // Declares that the obstacle is no longer where the last step left it, see ClothMirror. refresh() does so itself if
+    // the pose or the mesh changed by anything except the motion over a step.
     void startAnew() { ++m_startRevision; }
     std::uint64_t startRevision() const { return m_startRevision; }
-    // Counts up where the pipeline's positions of the obstacle change.
+    // Counts up when the pipeline's positions of the obstacle change.
     std::uint64_t positionRevision() const { return m_positionRevision; }
     // Returns the mesh as it was in the step before if its vertices moved in place since, by no more than counts as
     // motion within this step; null otherwise. m_lastSeen is this step.
     MeshProbe* before() const { return m_deformedStep == m_lastSeen ? m_before.get() : nullptr; }
-    // The pipeline's positions then, and how far the vertex went that moved most, m.
+    // The pipeline's positions at that time, and the largest displacement of a vertex, m.
     const std::vector<float>& positions() const { return m_positions; }
     float mostMotion() const { return m_mostMotion; }
 
@@ -151,11 +151,11 @@ private:
     ObstacleKey m_key;
     const btCollisionShape* m_meshShape = nullptr;  // compared, never followed
     MeshId m_id = kNoMesh;
-    btTransform m_pose = btTransform::getIdentity();  // of the positions that the pipeline holds
-    btTransform m_end = btTransform::getIdentity();   // of the obstacle at the end of the last step
+    btTransform m_pose = btTransform::getIdentity();  // pose of the positions in the pipeline
+    btTransform m_end = btTransform::getIdentity();   // pose of the obstacle at the last step's end
     std::uint64_t m_startRevision = 0, m_positionRevision = 0;
-    std::unique_ptr<MeshProbe> m_before;  // of a mesh whose vertices moved
-    std::vector<float> m_positions;       // likewise, as the pipeline has them
+    std::unique_ptr<MeshProbe> m_before;  // probe of a mesh whose vertices moved
+    std::vector<float> m_positions;       // its positions in the pipeline
     float m_mostMotion = 0;               // m
     std::uint64_t m_deformedStep = 0;
     std::uint64_t m_signature = 0, m_topologyHash = 0, m_positionHash = 0;

@@ -41,7 +41,7 @@ struct Extent
     }
 };
 
-// Share of its size by which a mesh's box changes at least: less is rounding.
+// Minimum change of a mesh's box, as a share of its size: less is rounding.
 constexpr btScalar kLeastChange = btScalar(1e-5);
 
 bool finite(const btVector3& v)

@@ -25,7 +25,7 @@ struct StepObstacle
     const btCollisionObject* m_object;
     BodyMotion m_motion;      // from its pose to its pose where it rests
     btVector3 m_low, m_high;  // m, bounds at the pose that Bullet has of it
-    btScalar m_reach;         // m, its part of the reach of contacts, as far as the bounds do not hold it
+    btScalar m_reach;         // m, its part of the reach of contacts, as far as the bounds lack it
     btScalar m_change;        // m, of the side of a mesh's bounds that moved most since the step before because its
                               // vertices move; 0 where none does
 

@@ -7,7 +7,7 @@ namespace drape
 {
 namespace
 {
-// Share of the least distance allowed that needs no closer look; the rest is for rounding.
+// Share of the minimum allowed distance that needs no exact test; the rest is for rounding.
 constexpr btScalar kSureShare = btScalar(0.99);
 
 // Returns the parameter, 0 to 1, of the path's closest position to the point.

@@ -16,13 +16,16 @@
 
 namespace drape
 {
-// Share of the reach that a node without contacts may go; the rest is for rounding and the detection's own tolerances.
+// Share of the reach by which a node without contacts may leave its path; the rest is for rounding and the detection's
+// own tolerances.
 constexpr btScalar kFreeShare = btScalar(0.9);
 
-// Least distance that a node with contacts may go, as a share of the thickness, when the activation is set to less.
+// Minimum distance by which a node with contacts may leave its path, as a share of the thickness, if the activation is
+// set to less.
 constexpr btScalar kLeastShare = btScalar(0.1);
 
-// Most that a node may leave the path's start, as a share of the thickness, which is what is known to be free there.
+// Maximum distance by which a node may leave the path's start, as a share of the thickness, which is known to be free
+// there.
 constexpr btScalar kMostStartShare = btScalar(0.8);
 
 class MotionLimit
@@ -47,7 +50,7 @@ public:
     void recordEnds(const btSoftBody& body, std::size_t first, std::size_t count);
     // Calls startRecord() and records all nodes.
     void record(const btSoftBody& body, const ClothFaces& faces);
-    // Distance from its path that a node with contacts may go, m.
+    // Returns the distance by which a node with contacts may leave its path, m.
     static btScalar tube(btScalar thickness, btScalar activation);
     const NodePaths& paths() const { return m_paths; }
     // Returns whether there is a node that no contact may move. Call once all nodes are recorded.
@@ -58,7 +61,7 @@ public:
     // ended more than kFreeShare of the reach from its path's end, and the node or one of its faces came near an
     // obstacle on the way.
     bool strayed(const btSoftBody& body);
-    // Brings nodes that left their path too far back; the nearest point of the allowed region.
+    // Brings nodes that left their path too far back to the nearest point of the allowed region.
     void apply(btSoftBody& body);
     // Does the same as apply() for nodes without contacts alone.
     void applyToOthers(btSoftBody& body);
@@ -70,7 +73,7 @@ public:
     bool keepNear(std::size_t node, btVector3& place) const;
 
 private:
-    // Distances from the path's start and end that a node may go.
+    // Distances by which a node may leave the path's start and end.
     struct Allowance
     {
         btScalar m_start, m_end;
@@ -101,7 +104,7 @@ private:
     bool findRestless(const btSoftBody& body);
     void boxPassed(const btSoftBody& body, bool withContacts);
     void addPassed(const btSoftBody& body, int a, int b, int c);
-    // Marks nodes near the region; false, with no mark changed, where there are none.
+    // Marks nodes near the region. Returns false, with no mark changed, if there are none.
     bool markNear(const Region& region);
     Allowance allowance(const Region& region, std::size_t node) const;
     void applyResting(btSoftBody& body, btScalar velocityScale, bool withContacts);
@@ -112,13 +115,13 @@ private:
     bool m_anyMoves = false;
     btScalar m_leastReach = SIMD_INFINITY;
     btScalar m_leastTube = SIMD_INFINITY;
-    btScalar m_free = SIMD_INFINITY;  // m, from the end of its path; within it a node is where it may be
+    btScalar m_free = SIMD_INFINITY;  // m, from the end of its path; nodes within it need no test
     NodePaths m_paths;
     std::vector<unsigned char> m_hasContact;
     const ClothFaces* m_faces = nullptr;
     // Data of one apply(), kept for its memory.
     std::vector<Restless> m_restless;
-    std::vector<unsigned char> m_isBoxed, m_isNear;  // by node: what it passed; near the region looked at last
+    std::vector<unsigned char> m_isBoxed, m_isNear;  // by node: is in m_passed; is near the region tested last
     std::vector<Passed> m_passed;
     btVector3 m_allLow, m_allHigh;  // around all of them
 };

@@ -1,8 +1,8 @@
-// Bullet's collision algorithm for one (soft body, triangle mesh) pair: notes the pair for the coming solve, or passes
-// it on to Bullet's own algorithm, which is made only when needed.
+// Bullet's collision algorithm for one (soft body, triangle mesh) pair. Notes the pair for the coming solve, or passes
+// it to Bullet's own algorithm, which is created only when needed.
 //
-// Guarantee: no collision work of Drape's happens here. The object fits the dispatcher's pool, whose elements are as
-// large as Bullet's own concave algorithm and which only asserts.
+// Guarantee: Drape's collision work does not happen here. The object fits the dispatcher's pool, whose elements have
+// the size of Bullet's own concave algorithm and which only asserts.
 #pragma once
 
 #include "BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h"

@@ -18,7 +18,7 @@ namespace
 // is kept.
 constexpr std::uint64_t kKeepSteps = 120;
 
-// Passes over all of an obstacle's triangles for one pair, before its tree is made for the questions that follow.
+// Passes over all of an obstacle's triangles for one pair, before its tree is built for the queries that follow.
 constexpr int kMostPasses = 8;
 
 // Faces that a thread processes per turn.
@@ -29,7 +29,7 @@ Vec3 vec3Of(const btVector3& v)
     return vec3(static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()));
 }
 
-// Calls visit(i) for every face that has three nodes of the cloth, its index.
+// Calls visit(i) for the index of every face with three nodes of the cloth.
 template <class Visit>
 void forWholeFaces(const ClothFaces& faces, const Visit& visit)
 {
@@ -109,7 +109,7 @@ bool PairStarts::mayMeet(const StartingPair& pair, Guard& guard)
         }
     }
     if (!(low[0] <= high[0])) return false;
-    // A pair that is checked again and again, because an app moves nodes, has its obstacle's tree made.
+    // Builds the obstacle's tree for a pair that is checked repeatedly because an app moves nodes.
     if (pair.m_obstacle->before() || m_probes.count(pair.m_obstacle->id()) > 0 || guard.m_passes >= kMostPasses)
         return true;
     ++guard.m_passes;

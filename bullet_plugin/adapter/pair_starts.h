@@ -5,7 +5,7 @@
 // intersecting pairs are checked, and faces of displaced nodes. Nodes on the wrong side of a closed obstacle are
 // pushed to its nearest surface point at a bounded speed. Pairs with an open obstacle are only reported.
 //
-// Cost: a comparison per node of a guarded pair; for a new one a pass over the obstacle's triangles if the boxes
+// Cost: a comparison per node of a guarded pair. A new pair takes a pass over the obstacle's triangles if the boxes
 // meet, and O(log n) per cloth face if a triangle enters the cloth's box. Deterministic with any number of threads.
 // Details: docs/design_notes/tangled_starts.md.
 #pragma once
@@ -40,13 +40,13 @@ class PairStarts
 public:
     explicit PairStarts(PluginState& state) : m_state(state) {}
 
-    // Begins a step, before its first check(). Forgets pairs that were not seen for long.
+    // Begins a step, before its first check(). Forgets pairs that have been absent for long.
     void beginStep();
     // Checks the pair where necessary. jumped: nodes that are not where the last step left them. If the pair
     // intersects and can be separated, adds the necessary pushes to the body. Reads Bullet's nodes only.
     void check(const StartingPair& pair, const std::vector<int>& jumped, BodyContacts& body);
 
-    // Count, in the step so far, the pairs of a cloth and an obstacle that intersect, and the pairs of their triangles.
+    // Return the number of intersecting pairs of a cloth and an obstacle in the step so far, and of their triangles.
     std::size_t intersectingPairs() const { return m_intersectingPairs; }
     std::uint64_t intersections() const { return m_intersections; }
 
@@ -58,18 +58,18 @@ private:
         std::uint64_t m_lastStep = 0;
         std::uint64_t m_calmUntil = 0;  // step up to which the cloth counts as tangled shortly before
         int m_passes = 0;               // over all of the obstacle's triangles
-        int m_pushedSteps = 0;          // in which nodes were on the wrong side
-        int m_passingSteps = 0;         // in which faces met the obstacle although all nodes were on the right side
-        int m_keptNode = -1;            // of the part of the cloth that others are drawn back to; -1: none are
-        int m_backSteps = 0;            // in which they were
-        int m_outSteps = 0;             // in which the whole cloth was moved out
-        Vec3 m_out = {};                // the way that it takes, unit, in the frame of the obstacle's positions
+        int m_pushedSteps = 0;          // steps in which nodes were on the wrong side
+        int m_passingSteps = 0;         // steps in which faces met the obstacle, with all nodes on the right side
+        int m_keptNode = -1;            // a node of the part that the rest is drawn back to; -1: no such part
+        int m_backSteps = 0;            // steps in which the rest was drawn back
+        int m_outSteps = 0;             // steps in which the whole cloth was moved out
+        Vec3 m_out = {};                // direction out, unit, in the frame of the obstacle's positions
         bool m_checked = false, m_told = false;
     };
     struct Probe
     {
         std::unique_ptr<MeshProbe> m_probe;
-        std::uint64_t m_revision = 0;  // of the obstacle's positions
+        std::uint64_t m_revision = 0;  // revision of the obstacle's positions
         std::uint64_t m_lastStep = 0;
     };
     // A face of the cloth and the obstacle's triangles that it meets.
@@ -79,7 +79,7 @@ private:
         std::vector<std::uint32_t> m_triangles;
     };
 
-    using Row = std::map<int, btVector3>;  // by node, the way to go, of any length
+    using Row = std::map<int, btVector3>;  // by node, direction of the push, of any length
 
     void listFaces(const StartingPair& pair, const std::vector<int>* nodes);
     void findPlaces(const StartingPair& pair, bool all);

@@ -16,7 +16,7 @@ namespace drape
 {
 namespace
 {
-// First reason among the leaves of a shape at that pose; empty when every leaf is handled.
+// Returns the first reason among the leaves of a shape at that pose; empty if every leaf is handled.
 std::string reasonInShape(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
                           const btCollisionShape& shape, const btTransform& pose)
 {
@@ -72,7 +72,7 @@ std::string reportOf(const Plugin& plugin, const Error& error)
            (remark.empty() ? "" : " (" + remark + ")");
 }
 
-// A short text, so that it takes no memory.
+// A short text, so that the string allocates no memory.
 std::string outOfMemory()
 {
     return kOutOfMemory;

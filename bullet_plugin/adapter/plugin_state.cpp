@@ -15,7 +15,7 @@ namespace drape
 {
 namespace
 {
-// Steps that a mirror without a pair is kept: two seconds at 60 steps a second.
+// Number of steps for which a mirror without a pair is kept: two seconds at 60 steps a second.
 constexpr std::uint64_t kKeepSteps = 120;
 
 // Distinguishes a compound's children, through nested compounds.
@@ -57,7 +57,7 @@ private:
         }
     }
 
-    std::unordered_map<const btCollisionObject*, Shapes> m_children;  // of compounds, nested ones' too
+    std::unordered_map<const btCollisionObject*, Shapes> m_children;  // shapes inside compounds, nested ones included
 };
 
 // Counted among the mirror's owners.
@@ -75,7 +75,7 @@ bool isUnpaired(const Mirror& mirror)
     return mirror.m_owners == int(mirror.m_prepared);
 }
 
-// The motion of the object's shape, or of a compound's child.
+// Returns the motion of the object's shape, or of a compound's child.
 BodyMotion motionOfShape(const btCollisionObjectWrapper& wrap, KinematicMotions& motions)
 {
     const BodyMotion body = motions.observe(*wrap.getCollisionObject());
@@ -117,7 +117,7 @@ void PluginState::log(const char* line) const
     }
     catch (...)
     {
-        // The app's function failed; the step goes on.
+        // The app's function failed; the step continues.
     }
 }
 
@@ -239,7 +239,7 @@ void PluginState::note(const void* owner, btSoftBody& cloth, const btCollisionOb
     m_notes.push_back(note);
 }
 
-// Takes no memory: algorithms end, and with them their notes, whether there is any or not.
+// Allocates no memory: algorithms end, and with them their notes, even when memory is short.
 template <class Drops>
 void PluginState::dropNotesIf(const Drops& drops)
 {
@@ -346,7 +346,7 @@ void PluginState::obstacleChanged(const btCollisionShape* shape)
 {
     for (auto& entry : m_obstacles)
         if (entry.second.uses(shape)) entry.second.requireReading();
-    // Cloth that sleeps on it has to see it move; its algorithm is alive, and so is the body.
+    // Wakes cloth that sleeps on it, so that the cloth follows the motion; its algorithm is alive, and so is the body.
     for (const auto& owned : m_owned)
     {
         const ObstacleMirror* obstacle = findObstacle(owned.second.m_obstacle);

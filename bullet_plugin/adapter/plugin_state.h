@@ -37,7 +37,7 @@ struct PairNote
     btSoftBody* m_cloth;
     ObstacleKey m_obstacle;
     bool m_kinematic;     // else the obstacle rests at the motion's end
-    BodyMotion m_motion;  // of the shape, which may be a compound's child
+    BodyMotion m_motion;  // the shape's motion; the shape may be a compound's child
     btScalar m_thickness;
 };
 
@@ -92,7 +92,7 @@ public:
 
     void note(const void* owner, btSoftBody& cloth, const btCollisionObjectWrapper& obstacle);
     void forget(const void* owner);
-    // Makes the object's mirrors, those of a compound's children, and brings them to the device; they are owned as if
+    // Makes the object's mirrors, those of a compound's children, and uploads them to the device. They are owned as if
     // by an algorithm until release().
     void prepare(const btCollisionObject* const* objects, int count);
     void release(const btCollisionObject* object);
@@ -113,7 +113,7 @@ public:
     // Takes the notes of the given cloths, which are sorted by address. Omits obstacles whose noted shape is gone.
     std::vector<PairNote> takeNotes(const btSoftBodySolver* solver, const std::vector<const btSoftBody*>& cloths);
 
-    // The mirrors of a noted pair, made when there are none. Counts the step for dropOldMirrors().
+    // Returns the mirrors of a noted pair, and makes missing ones. Counts the step for dropOldMirrors().
     ClothMirror& clothMirror(const PairNote& note);
     ObstacleMirror& obstacleMirror(const PairNote& note);
     void dropOldMirrors();
@@ -128,7 +128,7 @@ private:
         ObstacleKey m_obstacle;
     };
 
-    // A body in a world, of which it has the proxy.
+    // A body in the world to which its proxy belongs.
     struct WorldBody
     {
         const btSoftBody* m_body;
@@ -145,7 +145,7 @@ private:
     template <class Drops>
     void dropNotesIf(const Drops& drops);
     void prepareAll(const btCollisionObject* const* objects, int count);
-    // Forgets all that is known of pairs and their meshes.
+    // Forgets all pairs and their meshes.
     void forgetScene() noexcept;
 
     const Settings m_settings;

@@ -13,8 +13,8 @@ namespace drape
 {
 namespace
 {
-// Speed at which a node is pushed out, m/s: the least, and what is added for each metre of depth. Cloth moves as fast
-// when it is let fall by a centimetre.
+// Speed at which a node is pushed out, m/s: the minimum, and the addition per metre of depth. Cloth moves as fast after
+// a fall of a centimetre.
 constexpr btScalar kLeastSpeed = btScalar(0.5);
 constexpr btScalar kSpeedPerMetre = 2;
 
@@ -34,7 +34,8 @@ constexpr int kOutStepsOfPinned = 90;
 // Steps after the last push in which links may still be stretched.
 constexpr int kCalmSteps = 30;
 
-// Rows of nodes that are drawn at a time, and the depth by which nodes that are drawn or moved out are as fast, m.
+// Rows of nodes that are drawn back at a time, and the depth, m, that determines the speed of nodes that are drawn back
+// or moved out.
 constexpr int kRowsDrawn = 3;
 constexpr btScalar kDrawnDepth = btScalar(0.1);
 
@@ -46,7 +47,7 @@ Vec3 vec3Of(const btVector3& v)
     return vec3(static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()));
 }
 
-// Marks every node that can be reached from the first over faces that do not meet the obstacle.
+// Marks every node that is connected with the first over faces that do not meet the obstacle.
 template <class Visit>
 void forRegionOf(const ClothFaces& faces, std::size_t first, const std::vector<unsigned char>& faceMeets,
                  std::vector<unsigned char>& seen, const Visit& visit)
@@ -119,7 +120,7 @@ void PairStarts::pushNode(const StartingPair& pair, int node, Vec3 way, BodyCont
     body.m_pushes.push_back(push);
 }
 
-// Faces that the obstacle's edges and corners go through between nodes that are all on the right side.
+// Finds faces that the obstacle's edges and corners pass through between nodes that are all on the right side.
 void PairStarts::pushFaces(const StartingPair& pair, const MeshProbe& probe, BodyContacts& body)
 {
     const std::vector<std::int32_t>& triangles = pair.m_cloth->faces().triangles();
@@ -153,7 +154,7 @@ void PairStarts::pushToSurface(const StartingPair& pair, const MeshProbe& probe,
     pushFaces(pair, probe, body);
 }
 
-// A node of the largest region on the right side that has faces which meet the obstacle, and the number of such
+// Returns a node of the largest region on the right side with faces that meet the obstacle, and the number of such
 // regions.
 int PairStarts::largestPart(const TangledPair& tangled, std::size_t& count) const
 {
@@ -207,7 +208,7 @@ PairStarts::Row PairStarts::nextRow(const ClothFaces& faces, const Row& row, con
     return next;
 }
 
-// Draws the nodes that are next to the kept part through the surface, towards where that part is.
+// Draws the nodes next to the kept part through the surface, towards that part.
 void PairStarts::drawBack(const StartingPair& pair, const MeshProbe& probe, int keptNode, BodyContacts& body)
 {
     const ClothFaces& faces = pair.m_cloth->faces();
@@ -289,7 +290,7 @@ void PairStarts::pushApart(const StartingPair& pair, const MeshProbe& probe, Gua
     body.m_tangled.push_back(std::move(tangled));
 }
 
-// Returns whether nodes are still on the wrong side of a cloth that is moved out and meets nothing any more.
+// Returns whether a cloth that is moved out, and meets nothing any more, still has nodes on the wrong side.
 bool PairStarts::isInsideOnItsWay(const StartingPair& pair, const MeshProbe& probe, const Guard& guard)
 {
     if (guard.m_outSteps == 0 || guard.m_outSteps >= kOutSteps) return false;

@@ -90,7 +90,7 @@ struct SoftBodySolver::Work
     }
     BodyContacts* contactsOf(const btSoftBody& body) { return m_step ? m_step->contactsOf(body) : nullptr; }
 
-    // Gives back memory that only earlier, larger steps needed. Before a step's begin().
+    // Releases memory that only earlier, larger steps needed. Call before a step's begin().
     void giveBackRoom(PluginState& state)
     {
         m_solver.reset(new BodySolver(state.threads()));
@@ -102,15 +102,15 @@ struct SoftBodySolver::Work
     std::unique_ptr<CollisionStep> m_step;  // null until it is needed
     std::unique_ptr<BodySolver> m_solver;
     UsageWatch m_usage;
-    std::vector<BodyContacts*> m_touched;        // of solveBodies()
-    std::vector<unsigned char> m_solved;         // likewise, by body: Bullet has solved it, or the contacts were
-    std::vector<btSoftBody*> m_taken;            // bodies that Drape takes, in this step
+    std::vector<BodyContacts*> m_touched;        // working memory of solveBodies()
+    std::vector<unsigned char> m_solved;         // by body: solved by Bullet or by its contacts
+    std::vector<btSoftBody*> m_taken;            // bodies that Drape handles in this step
     std::vector<const btSoftBody*> m_predicted;  // in this step, sorted by address
     bool m_listed = false;                       // m_predicted is whole
     bool m_detected = false;                     // the paths of all bodies with a pair are recorded
     std::size_t m_asleep = 0;                    // cloths that are not among them
-    double m_predictMs = 0;                      // of this class's share in predictMotion
-    std::uint64_t m_failures;                    // of the state's, those that a step of this solver has told of
+    double m_predictMs = 0;                      // time of this class in predictMotion
+    std::uint64_t m_failures;                    // failures of the state that a step of this solver has reported
 };
 
 SoftBodySolver::SoftBodySolver(Plugin& plugin) : m_state(plugin.state())
@@ -147,7 +147,7 @@ void SoftBodySolver::beginStep(btScalar dt, std::vector<StepObstacle>& obstacles
 {
     m_work->m_listed = false;
     m_work->m_taken.clear();
-    m_state->dropNotes(this);  // of a dispatch that no solve followed
+    m_state->dropNotes(this);  // notes of a dispatch that no solve followed
     m_state->setStepped(this, m_softBodySet);
     if (!m_state->ready()) return listPredicted();
     Stopwatch watch;
@@ -241,9 +241,11 @@ double SoftBodySolver::solveBodies()
     double bulletMs = 0;
     for (int i = 0; i < m_softBodySet.size();)
     {
-        btSoftBody& body = *m_softBodySet[i];
-        BodyContacts* const contacts = work.isSteppedBody(body) ? work.contactsOf(body) : nullptr;
-        if (contacts)
+        btSoftBody* body = m_softBodySet[i];
+        // Skips bodies without a predicted step. Without time Bullet's velocities, displacements over the time, would
+        // be NaN.
+        if (!work.isPredicted(*body) || !(body->m_sst.sdt > 0)) continue;
+        if (BodyContacts* contacts = work.contactsOf(*body))
         {
             work.m_touched.push_back(contacts);
             ++i;
@@ -271,8 +273,8 @@ void SoftBodySolver::solveStep()
     statistics.m_finishMs = watch.lapMs() - bulletMs - (statistics.m_waitMs - waitMs);
 }
 
-// Ends a step in which an exception was caught: Bullet solves what Drape does not take, and cloth that it takes stands
-// still. Takes no memory.
+// Ends a step in which an exception was caught: Bullet solves the bodies that Drape does not handle, and Drape's cloths
+// stand still. Allocates no memory.
 void SoftBodySolver::endFailedStep()
 {
     Work& work = *m_work;

@@ -35,7 +35,7 @@ int rootOf(std::vector<int>& parents, int node)
 std::uint64_t mixed(int a, int b)
 {
     std::uint64_t key = std::uint64_t(std::uint32_t(std::min(a, b))) << 32 | std::uint32_t(std::max(a, b));
-    key = (key ^ key >> 30) * 0xbf58476d1ce4e5b9ull;  // of SplitMix64
+    key = (key ^ key >> 30) * 0xbf58476d1ce4e5b9ull;  // SplitMix64's multiplier
     key = (key ^ key >> 27) * 0x94d049bb133111ebull;
     return (key ^ key >> 31) | 1;
 }

@@ -1,10 +1,10 @@
-// The links of a soft body that collide: those that are not part of a surface.
+// Finds the links of a soft body that collide: those that are not part of a surface.
 //
 // A link is solid unless it is one of Bullet's bending links (btSoftBody::generateBendingConstraints), or both of its
-// nodes lie on one surface: a connected set of faces and tetrahedra, which collides for them. So all links of a rope
-// are solid, the threads of a fringe, and what joins two pieces of cloth in one body, but no link across a cloth.
+// nodes lie on one surface: a connected set of faces and tetrahedra, which collides for them. All links of a rope are
+// solid, the threads of a fringe, and links that join two pieces of cloth in one body, but no link across a cloth.
 // Links that name another body's nodes are not solid. Input: the live body; faces as node indices. Cost: read() is
-// linear in the body, almost; changed() in the links that it looks at.
+// almost linear in the body, changed() linear in the links that it checks.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ namespace drape
 {
 constexpr int kForeign = -1;
 
-// Returns the index of a node of the body; kForeign for one that is not the body's.
+// Returns the index of a node of the body; kForeign for a foreign node.
 int nodeIndex(const btSoftBody& body, const btSoftBody::Node* node);
 
 // Returns whether a body without faces and tetrahedra has a solid link.
@@ -26,9 +26,9 @@ bool hasSolidLink(const btSoftBody& body);
 class SolidLinks
 {
 public:
-    // faces: three nodes each; those with a node that is not the body's are no part of a surface.
+    // faces: three nodes each; faces with a foreign node are no part of a surface.
     void read(const btSoftBody& body, const std::vector<std::int32_t>& faces);
-    // Two nodes each, in the body's order. None joins a node to itself.
+    // Returns two nodes per link, in the body's order. None joins a node to itself.
     const std::vector<std::int32_t>& nodes() const { return m_nodes; }
     // Returns whether a link that would be solid names a node outside the body.
     bool hasForeign() const { return m_hasForeign; }
@@ -50,7 +50,7 @@ private:
 
     std::vector<std::int32_t> m_nodes;
     std::vector<int> m_surface;  // by node: the representative node of its surface; kNoSurface
-    std::uint64_t m_sum = 0;     // of what sumOf() adds up, over all links
+    std::uint64_t m_sum = 0;     // sumOf() over all links
     std::uint64_t m_seen = 0;    // sum over the links up to m_cursor
     int m_cursor = 0;
     int m_linkCount = 0, m_tetraCount = 0;

@@ -13,14 +13,14 @@ struct StepContact
     btVector3 m_normal;     // unit, from the obstacle to the cloth
     btVector3 m_point;      // on the obstacle
     btScalar m_thickness;
-    btScalar m_time;                   // of impact, 0 to 1; 1 when nothing was passed
+    btScalar m_time;                   // time of impact, 0 to 1; 1 if nothing was passed
     btScalar m_startGap;               // at m_q, relative to the obstacle
     btScalar m_endGap;                 // at the predicted m_x
     btScalar m_targetGap;              // least gap at the step's end: 0, or less when the step began too close
     btScalar m_friction;               // the obstacle's friction times the body's kDF
     const btTransform* m_carry;        // motion of the obstacle's points in the step; null when it rests
-    const btVector3* m_carriedStarts;  // by node of the body: start positions carried along by an obstacle
-                                       // that deforms; null where m_carry applies
+    const btVector3* m_carriedStarts;  // by node of the body: start positions carried by a deforming obstacle;
+                                       // null if m_carry applies
 };
 
 // Returns where the obstacle's motion carries a point from the step's start.

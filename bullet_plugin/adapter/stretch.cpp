@@ -19,7 +19,8 @@ std::vector<btScalar> lengthsAtRest(const btSoftBody& body)
     return lengths;
 }
 
-// The largest multiple of its rest length that such a link is long. Links far shorter than the unit count by it.
+// Returns the largest ratio of a link's length to its rest length. A quarter of the unit replaces a shorter rest
+// length.
 template <class Place>
 btScalar longestLink(const btSoftBody& body, btScalar unit, const Place& place)
 {
@@ -37,7 +38,7 @@ btScalar longestLink(const btSoftBody& body, btScalar unit, const Place& place)
     return longest;
 }
 
-// place: of a node, by its index. NaN counts as infinitely far.
+// place: returns a node's position by its index. NaN counts as infinitely far.
 template <class Place>
 btScalar longestEdge(const ClothFaces& faces, const Place& place)
 {

@@ -14,23 +14,23 @@ class btSoftBody;
 
 namespace drape
 {
-// A link may be this many times as long as at rest in a step that makes as many tests as it needs. The links that a
-// scene stretches most, at a few of Bullet's iterations, are two to three times as long.
+// Maximum ratio of a link's length to its rest length in a step that may make all the tests that it needs. The most
+// stretched links of a scene, at a few of Bullet's iterations, are two to three times as long as at rest.
 constexpr btScalar kMostStretch = 4;
 
-// The length of the link that is stretched most, as a multiple of its rest length; infinity where a node is not finite.
-// For a body without links, the longest edge of a face as a multiple of the longest one at the start.
+// Length of the most stretched link, as a multiple of its rest length; infinity if a node is not finite. For a body
+// without links, the longest edge of a face as a multiple of the longest one at the start.
 struct Stretch
 {
     btScalar m_start;  // at the start of the nodes' paths
-    btScalar m_end;    // where they are now
+    btScalar m_end;    // at the nodes' current positions
 };
 
 // Returns the median of each component; zero for no vectors.
 btVector3 medianOf(std::vector<btVector3> vectors);
 
-// The median of the links' rest lengths, bending links left out; of a body without links the longest edge at the start,
-// m.
+// Returns the median of the links' rest lengths without bending links, m; for a body without links the longest edge at
+// the start.
 btScalar unitOf(const btSoftBody& body, const ClothFaces& faces, const NodePaths& paths);
 
 // O(n) in the links and faces.

@@ -1,5 +1,4 @@
-// Vectors of the machine for what is done to many contacts: Bullet's own as a whole, and numbers of contacts side by
-// side.
+// Machine vectors for work on many contacts: whole vectors of Bullet's, and numbers of adjacent contacts.
 #pragma once
 
 #include <LinearMath/btVector3.h>
@@ -26,7 +25,7 @@ inline void store(const Quad& quad, btVector3& vector)
     std::memcpy(vector.m_floats, &quad, sizeof(quad));
 }
 
-// Writes the position as the core has it, in float32, and moves `out` behind it.
+// Writes the position in the core's float32, and moves `out` behind it.
 inline void writePosition(const btVector3& position, float*& out)
 {
     for (int axis = 0; axis < 3; ++axis)

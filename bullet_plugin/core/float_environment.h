@@ -10,7 +10,7 @@
 
 namespace drape
 {
-// Has the calling thread compute in the default environment while this lives. One within another does nothing.
+// Makes the calling thread compute in the default environment while this lives. A nested one does nothing.
 class DefaultFloats
 {
 public:

@@ -1,11 +1,13 @@
-// The collision pipeline: mirrors cloths and obstacles, and once a step finds their contacts on the chosen back end.
+// The collision pipeline mirrors cloths and obstacles, and finds their contacts once a step on the chosen back end.
 //
-// Job: hold every cloth and obstacle; each step refit (of what the traversal walks), broad phase, narrow phase,
+// Job: keep every cloth and obstacle; each step refit (of the traversed hierarchies), broad phase, narrow phase,
 // reduction, compaction. Input: node positions at the step's start and end, obstacle positions when they change, and
 // the pairs to test. Output: contacts in canonical order in host memory. Guarantee: same input, same contacts, bit for
-// bit, on every back end; a buffer that is too small grows and the stage runs again. Cost: one submission, one wait a
-// step. Knows no Bullet. Lengths in metres, world frame. Not thread-safe: one pipeline belongs to one thread. Errors:
-// where memory runs out, calls throw, and nothing but restart() may follow.
+// bit, on every back end. A buffer that is too small grows and the stage runs again. Cost: one submission and one wait
+// per step.
+//
+// Knows no Bullet. Lengths in metres, world frame. Not thread-safe: one pipeline belongs to one thread. Errors: if
+// memory runs out, calls throw, and only restart() may follow.
 #pragma once
 
 #include <cstdint>
@@ -25,16 +27,16 @@ namespace drape
 {
 class MeshProbe;
 
-// A contact with its pool-wide indices resolved to meshes: what a solver needs.
+// A contact for a solver, with its pool-wide indices resolved to meshes.
 struct ContactView
 {
     MeshId m_cloth;
     MeshId m_obstacle;
-    std::uint32_t m_kind;     // DRAPE_NODE_FACE …; of an edge that is not a triangle's at a vertex DRAPE_FACE_VERTEX
+    std::uint32_t m_kind;     // DRAPE_NODE_FACE …; DRAPE_FACE_VERTEX for a free edge at a vertex
     std::int32_t m_nodes[3];  // nodes of the cloth feature, indices in that cloth; -1 where unused
-    std::int32_t m_triangle;  // a cloth triangle that holds the feature, index as given to addCloth; -1: none does
-    float m_weights[3];       // of m_nodes, sum 1
-    float m_normal[3];        // unit, from the obstacle to the side the cloth came from
+    std::int32_t m_triangle;  // a cloth triangle with the feature, index as given to addCloth; -1: none
+    float m_weights[3];       // by m_nodes, sum 1
+    float m_normal[3];        // unit, from the obstacle to the side from which the cloth came
     float m_point[3];         // m, on the obstacle
     float m_gap0, m_gap1;  // m, along the normal at the step's start and end as the obstacle sees them, thickness not
                            // subtracted
@@ -49,8 +51,8 @@ struct SelfContactView
     MeshId m_cloth;
     std::uint32_t m_kind;     // DRAPE_SELF_NODE_FACE or DRAPE_SELF_EDGE_EDGE
     std::int32_t m_nodes[4];  // node, face's three; or two of each edge; indices in the cloth
-    float m_weights[4];       // of m_nodes; those of either feature add up to 1
-    float m_normal[3];        // unit, from the second feature to the side the first came from
+    float m_weights[4];       // by m_nodes; each feature's add up to 1
+    float m_normal[3];        // unit, from the second feature to the side from which the first came
     float m_point[3];         // m, on the second feature at the step's end
     float m_gap0, m_gap1;     // m, along the normal at the step's start and end, thickness not subtracted
     float m_thickness;        // m, of the pair
@@ -67,9 +69,9 @@ struct ClothFeature
 // The plane of a face-vertex contact after the cloth's nodes moved, at the points where the two are nearest then.
 struct ContactPlane
 {
-    float m_normal[3];   // unit, on the side of the contact's
+    float m_normal[3];   // unit, on the side of the contact's normal
     float m_point[3];    // m, on the obstacle
-    float m_weights[3];  // of the face's nodes, sum 1
+    float m_weights[3];  // by node of the face, sum 1
 };
 
 // A range of adjacent nodes of a cloth, and the memory to write them to: x y z per node.
@@ -77,10 +79,10 @@ struct NodeStretch
 {
     std::size_t m_cloth;  // index in the caller's list
     std::size_t m_first, m_count;
-    float *m_start, *m_end;  // of the first of them at the step's start and end
+    float *m_start, *m_end;  // first node's positions at the step's start and end
 };
 
-// Contacts where the back end left them.
+// Contacts in the back end's memory.
 struct ContactList
 {
     const Contact* m_first = nullptr;
@@ -168,31 +170,31 @@ public:
     void addPair(MeshId cloth, MeshId obstacle, float thickness, float tube = -1.0f);
 
     // Names a cloth that collides with itself (MeshDescription::m_selfThickness > 0) in the coming step. Its features
-    // are swept over the step as obstacles' contacts are (Settings::m_mode); see kernels/lib/self_contact.h. None of
-    // these contacts is left out because others imply it.
+    // are swept over the step like contacts with obstacles (Settings::m_mode); see kernels/lib/self_contact.h. All of
+    // these contacts are kept, even if others imply them.
     void addSelf(MeshId cloth);
 
     // Enqueues the step for the pairs named since the last finish(); returns without waiting.
     void submit();
     // Waits, grows buffers and repeats where needed. Contacts are valid until the next submit().
-    // allowance: asked of the cloths of a step that needs more tests than ordinary motion does (ordinary_work.h): how
-    // many times as many the cloth may make. Infinity for cloth that keeps its size; little for one that came apart or
-    // whose pins were put elsewhere. Cloths that need more than that are left out. Null: infinity.
+    // allowance: returns a factor on the tests that a cloth's ordinary motion needs (ordinary_work.h), if a step needs
+    // more. Infinity for cloth that keeps its size; little for cloth that came apart or whose pins were displaced.
+    // Cloths that need more are left out. Null: infinity.
     using Allowance = std::function<float(MeshId)>;
     ContactList finish(const Allowance& allowance = nullptr);
-    // Waits for a hierarchy that is being built beside the steps (Methods::m_rebuildDecay): the next submit() uses it.
-    // Without it, time decides which step does, but no contact depends on it: for measurements and tests. Between
-    // finish() and submit().
+    // Waits for a hierarchy that is being built beside the steps (Methods::m_rebuildDecay), so that the next submit()
+    // uses it. Otherwise time decides which step does, but no contact depends on it. For measurements and tests,
+    // between finish() and submit().
     void waitForRebuild();
     // Returns contacts of cloths with themselves of the last finish(), in canonical order; valid as long as its other
     // contacts.
     ContactList selfContacts() const;
-    // The cloths that the last finish() left out (kStepClothsLeftOut).
+    // Returns the cloths that the last finish() left out (kStepClothsLeftOut).
     const std::vector<MeshId>& clothsLeftOut() const;
     // Returns statistics of that step (upload and wait times, counts, status; the adapter adds its own).
     const StepStatistics& statistics() const;
-    // The kernel launches since the last call, with Settings::m_profileKernels; empty on the host. Waits for the
-    // device.
+    // Returns the kernel launches since the last call, with Settings::m_profileKernels; empty on the host. Waits for
+    // the device.
     std::vector<KernelTime> takeKernelTimes();
     // Returns the sizes of the device's buffers by name; empty on the host.
     std::vector<MemoryUse> deviceMemory() const;
@@ -201,7 +203,7 @@ public:
     const std::shared_ptr<ThreadTeam>& threads() const;
     // Returns whether a device failed, so that the host runs every step from then on.
     bool deviceFailed() const;
-    // Message of the device's failure when the status says so, or of the mesh that was refused since.
+    // Returns the message of the device's failure if the status reports one, or of the mesh that was refused since.
     const Error& lastError() const;
 
     // Resolves a contact of the last finish().
@@ -212,7 +214,7 @@ public:
     static bool planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane);
     // Resolves one of selfContacts().
     SelfContactView viewSelf(const Contact& contact) const;
-    // The cloth's part of a contact of finish(), for less.
+    // Resolves only the cloth's part of a contact of finish(), at a lower cost.
     ClothFeature clothFeature(const Contact& contact) const;
 
 private:

@@ -24,7 +24,7 @@ struct CaughtException
     const char* m_text;  // valid within the handler
 };
 
-// Makes an error of it. `call` names the function.
+// Converts it to an error. `call` names the function.
 inline void setError(Error& error, const char* call, const CaughtException& caught) noexcept
 {
     try
@@ -39,7 +39,7 @@ inline void setError(Error& error, const char* call, const CaughtException& caug
     }
 }
 
-// Returns work(), or failed(const CaughtException&) where that throws. failed() must not throw.
+// Returns work(), or failed(const CaughtException&) if work() throws. failed() must not throw.
 template <class Work, class Failed>
 auto guarded(const Work& work, const Failed& failed) noexcept -> decltype(work())
 {

@@ -8,7 +8,7 @@ namespace drape
 class Stopwatch
 {
 public:
-    // Milliseconds since the last call or the start.
+    // Returns the milliseconds since the last call or the start.
     double lapMs()
     {
         const Clock::time_point now = Clock::now();

@@ -16,7 +16,7 @@ class UsageWatch
 public:
     static constexpr int kWindow = 600;  // steps
     static constexpr std::size_t kShare = 4;
-    static constexpr std::size_t kLeast = 1 << 12;  // elements that are kept in any case
+    static constexpr std::size_t kLeast = 1 << 12;  // elements that are always kept
 
     // Records the number of elements that a step used; call once a step. Returns whether the memory of earlier steps
     // should be released now.

@@ -2,14 +2,14 @@
 #ifndef DRAPE_LIB_ASK_FOR_H
 #define DRAPE_LIB_ASK_FOR_H
 
-// Does not wait for the word. Nothing on a GPU, which has other work-items meanwhile.
+// Prefetches a word without waiting for it. Does nothing on a GPU, which runs other work-items meanwhile.
 #ifdef DRAPE_CPU
 #define askFor(word) __builtin_prefetch((const void*)(ulong)(word))
 #else
 #define askFor(word) (void)(word)
 #endif
 
-// Items between asking for what one reads and its turn: some hundred nanoseconds' work.
+// Items between the prefetch of an item's data and its turn: some hundred nanoseconds of work.
 #define DRAPE_AHEAD 8
 
 #endif

@@ -6,7 +6,7 @@
 
 #ifdef __OPENCL_VERSION__
 
-// Counting costs an atomic a work-item: only the study pays for it.
+// Counting costs an atomic per work-item, so only measurements enable it.
 #ifdef DRAPE_COUNT_VISITS
 #define DRAPE_VISITS(counters, count) atomic_add(&(counters)->m_visits, (count))
 #else
@@ -25,11 +25,10 @@ static int meshesPaired(const Candidate candidate, __global const Triangle* clot
     return !(thickness[row + obstacleTriangles[candidate.m_obstacle].m_mesh] < 0.0f);
 }
 
-// Moves candidates that a work-item gathered to the list; one atomic reserves disjoint ranges, whose order does not
-// matter. The demand counts on past the capacity; what does not fit is not written, and the host repeats the step with
-// a larger list.
-// Returns 0 when more than limit were counted: then the traversal may end, since the step is over its limit whatever
-// follows, and a count that ran on could wrap around.
+// Moves candidates that a work-item gathered to the list. One atomic reserves disjoint ranges, whose order does not
+// matter. The demand counts on past the capacity. Candidates that do not fit are not written, and the host repeats the
+// step with a larger list. Returns 0 if more than the limit were counted. The traversal may end then: the step exceeds
+// its limit in any case, and a count that ran on could wrap around.
 static int flushCandidates(__global Candidate* restrict candidates, __global StepCounters* restrict counters,
                            const uint capacity, const uint limit, const Candidate* gathered, const uint count)
 {

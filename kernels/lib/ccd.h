@@ -20,12 +20,12 @@ DRAPE_NAMESPACE_BEGIN
 // path's 64 bits.
 #define DRAPE_CCD_LEVELS 21
 
-// Halvings after which the views are aimed anew. On the published queries 3 to 8 cost the same, and never doing it five
-// times as much.
+// Halvings after which the views are aimed again. On the published queries 3 to 8 cost the same, and never aiming again
+// costs five times as much.
 #define DRAPE_CCD_AIM 6
 
-// Searches for the time may take this part of the boxes that the search for any hit may take: 256 of 4,096 by default.
-// One published hit in 27 takes more than that in all.
+// Divisor of the box limit for searches for the time, relative to the search for any hit: 256 of 4,096 by default. One
+// published hit in 27 takes more than that in all.
 #define DRAPE_CCD_PARTS 16u
 
 DRAPE_FUNCTION CcdSettings ccdSettings(float separation, float tolerance, float timeTolerance, DRAPE_UINT boxLimit)
@@ -63,7 +63,7 @@ DRAPE_FUNCTION int ccdHalvesInTime(const CcdBox* box)
     return middle - box->m_low[0] == width && 1.0f - (1.0f - middle) == middle;
 }
 
-// The direction in which F varies most over the box; -1 when it varies no more than the tolerance in any, or no
+// Returns the direction in which F varies most over the box; -1 if it varies at most the tolerance in each, or no
 // direction can be halved again.
 DRAPE_FUNCTION int ccdAxis(const CcdMotion* m, const CcdBox* box, float tolerance)
 {
@@ -91,8 +91,8 @@ DRAPE_FUNCTION void ccdDescend(CcdBox* box, CcdPath* path, int axis)
     ccdWidenAlong(box, axis, 0.5f);
 }
 
-// Goes on to the next box that was put off: the upper half of the latest halving of which the lower half is done.
-// Returns whether there is one.
+// Continues with the next deferred box: the upper half of the latest halving whose lower half is done. Returns whether
+// there is one.
 DRAPE_FUNCTION int ccdNext(CcdBox* box, CcdPath* path)
 {
     while (path->m_depth > 0)
@@ -120,7 +120,7 @@ DRAPE_FUNCTION void ccdStoreHit(CcdResult* result, const CcdBox* box)
     result->m_v = drapeMin(box->m_low[2] + 0.5f * box->m_width[2], 1.0f);
 }
 
-// A search of the part [low, low + width] of the step, for the time to the tolerance, or for any hit when that is 1.
+// A search of the part [low, low + width] of the step, for the time to the tolerance, or for any hit if that is 1.
 typedef struct CcdTask
 {
     float m_low;

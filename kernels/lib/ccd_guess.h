@@ -13,14 +13,14 @@ DRAPE_NAMESPACE_BEGIN
 // The narrowest, 2^-20: nearer to a feature's end the search decides.
 #define DRAPE_CCD_GUESS_FINEST 9.5367432e-7f
 
-// Six times the signed volume of the features at time t.
+// Returns six times the signed volume of the features at time t.
 DRAPE_FUNCTION float volumeAt(const CcdVectors* v, float t)
 {
     return vec3Dot(vec3Mix(v->m_d0, v->m_d1, t), vec3Cross(vec3Mix(v->m_e0, v->m_e1, t), vec3Mix(v->m_g0, v->m_g1, t)));
 }
 
-// The time between two at which the features are in one plane, by a few steps of false position; `otherwise` where the
-// volume does not change sign.
+// Returns the time between two at which the features are in one plane, using a few steps of false position; `otherwise`
+// if the volume does not change sign.
 DRAPE_FUNCTION float coplanarTime(const CcdVectors* v, float low, float high, float otherwise)
 {
     float before = volumeAt(v, low), after = volumeAt(v, high);
@@ -45,22 +45,22 @@ DRAPE_FUNCTION float coplanarTime(const CcdVectors* v, float low, float high, fl
     return time;
 }
 
-// The largest power of two up to x, which is finite and not negative; 0 for denormals.
+// Returns the largest power of two up to x, which is finite and not negative; 0 for denormals.
 DRAPE_FUNCTION float powerOfTwoBelow(float x)
 {
     return drapeFromBits(drapeBits(x) & 0x7f800000u);
 }
 
-// The lower end of an interval of the given width, a power of two, of which a quarter or more lies on each side of x,
-// or that begins at 0. x: not negative. Exact.
+// Returns the lower end of an interval of the given width, a power of two. A quarter or more of it lies on each side of
+// x, or it begins at 0. x: not negative. Exact.
 DRAPE_FUNCTION float intervalAbout(float x, float width)
 {
     const float grain = 0.5f * width;
     return grain * (float)(int)drapeMax(x / grain - 0.5f, 0.0f);
 }
 
-// When and where the features are in one plane: aim's low ends, inside the features; its widths are 0. Returns whether
-// they cross there, and if so a box about it.
+// Finds when and where the features are in one plane: aim's low ends, inside the features; its widths are 0. Returns
+// whether they cross there, and if so a box about it.
 DRAPE_FUNCTION int ccdGuessBox(const CcdMotion* m, float timeTolerance, CcdBox* aim, CcdBox* box)
 {
     const CcdVectors* v = &m->m_vectors;

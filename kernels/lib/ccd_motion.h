@@ -15,13 +15,13 @@ typedef struct CcdVectors
     Vec3 m_d0, m_d1, m_e0, m_e1, m_g0, m_g1;
 } CcdVectors;
 
-// F seen along several directions, each taken as exact: along x, y and z; along the features' common normal, where F
-// does not vary with u and v; and along the two where it does not vary with t and v, or with t and u.
+// Views of F along several directions, each taken as exact. The first three are x, y and z. Along the features' common
+// normal F does not vary with u and v. Along the other two it does not vary with t and v, or with t and u.
 #define DRAPE_CCD_VIEWS 6
 #define DRAPE_CCD_NORMAL 3
 #define DRAPE_CCD_ALONG_U 4
 #define DRAPE_CCD_ALONG_V 5
-// One more for the side of a face on which u + v = 1.
+// An additional view for the side of a face on which u + v = 1.
 #define DRAPE_CCD_ALONG_SIDE 6
 #define DRAPE_CCD_ALL_VIEWS 7
 
@@ -37,7 +37,7 @@ typedef struct CcdMotion
     float m_slack[DRAPE_CCD_ALL_VIEWS];  // more than F's bounds err by rounding
     float m_reach[DRAPE_CCD_ALL_VIEWS];  // slack and separation: bounds beyond it prove F beyond the separation
     float m_separation;                  // in the frame
-    float m_rates[3];                    // most that F varies along the whole of t, u, v, on any axis
+    float m_rates[3];                    // maximum variation of F along the whole of t, u, v, on any axis
     int m_triangular;                    // u + v ≤ 1
     int m_independent;                   // the skew views' directions span space; see ccdAim
 } CcdMotion;
@@ -146,8 +146,8 @@ DRAPE_FUNCTION void ccdAim(CcdMotion* m, const CcdBox* box)
     m->m_independent = drapeAbs(vec3Dot(n3, vec3Cross(n4, n5))) > 1e-5f;
 }
 
-// Aims at a face's third side, on which u + v = 1, as ccdAim() does at the others: seen so, F varies with u + v alone.
-// In terms of u + v and v it is D - (u + v) E - v (G - E). G - E is up to 2 and made of two rounded vectors: twelve
+// Aims at a face's third side, on which u + v = 1, like ccdAim() at the others: in this view F varies with u + v alone.
+// In terms of u + v and v it is D - (u + v) E - v (G - E). G - E is up to 2 and made of two rounded vectors. The twelve
 // units of |n|₁ for the vectors become eighteen, which twice the twelve cover.
 DRAPE_FUNCTION void ccdAimAtSide(CcdMotion* m, const CcdBox* box)
 {
@@ -271,7 +271,7 @@ DRAPE_FUNCTION int ccdCrosses(float low0, float high0, float low1, float high1, 
     return (high0 < -slack && low1 > slack) || (low0 > slack && high1 < -slack);
 }
 
-// Ranges in view i at the lower end of u (or v) and at the upper, over all of t and of the other.
+// Computes the ranges in view i at the lower and the upper end of u (or v), over all of t and of the other coordinate.
 DRAPE_FUNCTION int ccdCrossesSide(const CcdMotion* m, const CcdBox* box, int i, int axis)
 {
     float low[2], high[2];
@@ -289,8 +289,8 @@ DRAPE_FUNCTION int ccdCrossesSide(const CcdMotion* m, const CcdBox* box, int i, 
     return ccdCrosses(low[0], high[0], low[1], high[1], m->m_slack[i]);
 }
 
-// Proof that F vanishes somewhere in the box: three views that span space, each of which changes sign between opposite
-// sides of the box (Poincaré and Miranda's theorem). Not finding it proves nothing.
+// Proves that F vanishes somewhere in the box. Three views that span space each change sign between opposite sides of
+// the box (Poincaré and Miranda's theorem). Failure proves nothing.
 DRAPE_FUNCTION int ccdHolds(const CcdMotion* m, const CcdBox* box)
 {
     const int n = DRAPE_CCD_NORMAL;

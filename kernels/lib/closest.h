@@ -14,7 +14,7 @@ DRAPE_FUNCTION float drapeRatio(float numerator, float denominator)
 }
 
 // Barycentric weights of the point of triangle abc that is closest to p. Each in [0, 1]; an unused corner weighs 0, so
-// the number of non-zero weights tells face, edge or vertex.
+// the number of non-zero weights distinguishes face, edge and vertex.
 DRAPE_FUNCTION Vec3 closestOnTriangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c)
 {
     const Vec3 ab = vec3Sub(b, a), ac = vec3Sub(c, a), ap = vec3Sub(p, a);

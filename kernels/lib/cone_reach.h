@@ -31,7 +31,8 @@ DRAPE_FUNCTION float sineOf(float cosine)
     return drapeSqrt(drapeMax(1.0f - cosine * cosine, 0.0f));
 }
 
-// Cosine of the half-angle about `axis` (unit) of a cone that holds `cone`; -1 where that is a right angle or more.
+// Returns the cosine of the half-angle, about `axis` (unit), of a cone that contains `cone`; -1 for a right angle or
+// more.
 DRAPE_FUNCTION float cosineAround(Vec3 axis, NormalCone cone)
 {
     const float between = drapeMin(drapeAbs(vec3Dot(axis, cone.m_axis)), 1.0f);
@@ -40,8 +41,8 @@ DRAPE_FUNCTION float cosineAround(Vec3 axis, NormalCone cone)
     return cosine > 0.0f ? cosine : -1.0f;
 }
 
-// Cosine of the half-angle about `axis` of a cone that holds what a triangle's corners and edges admit; as
-// cosineAround(). cones: of its corners, then of its edges.
+// Returns cosineAround() for a cone that contains all directions that a triangle's corners and edges admit. cones: of
+// its corners, then of its edges.
 DRAPE_FUNCTION float cosineOfCones(Vec3 axis, const NormalCone* cones)
 {
     float cosine = 1.0f;
@@ -56,8 +57,8 @@ DRAPE_FUNCTION float cosineOfCones(Vec3 axis, const NormalCone* cones)
 // Directions steeper than 1.4 radians beside a face are taken as unbounded: the tangent grows without limit.
 #define DRAPE_SPREAD_COSINE 0.17f
 
-// A face's spread (patch.h). face: its normal as a cone; cones: as in cosineOfCones(). All must be where the narrow
-// phase has them: corners that are rounded to where an obstacle is placed turn small faces, and do not turn the cones.
+// Returns a face's spread (patch.h). face: its normal as a cone; cones: see cosineOfCones(). All must use the narrow
+// phase's positions: corners that are rounded to an obstacle's pose turn small faces, and do not turn the cones.
 DRAPE_FUNCTION float faceSpread(NormalCone face, const NormalCone* cones)
 {
     if (!(face.m_cosine > 0.0f)) return DRAPE_ANY_SPREAD;
@@ -68,7 +69,7 @@ DRAPE_FUNCTION float faceSpread(NormalCone face, const NormalCone* cones)
     return cosine > DRAPE_SPREAD_COSINE ? sineOf(cosine) / cosine : DRAPE_ANY_SPREAD;
 }
 
-// Most that a unit vector in the cone or its opposite goes along direction i of the volumes, rounded up.
+// Returns the maximum extent along direction i of the volumes of a unit vector in the cone or its opposite, rounded up.
 DRAPE_FUNCTION float coneReach(NormalCone cone, int i)
 {
     const float norm = dopNorm(i);

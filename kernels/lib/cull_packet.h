@@ -1,5 +1,5 @@
-// Volumes of a packet of cloth triangles, a lane each: what a GPU's walk (patch_walk.cl) makes for one triangle, see
-// feature_cull.h. And those of one triangle's nodes and edges, a lane for each direction.
+// Volumes of a packet of cloth triangles, one per lane; a GPU's traversal (patch_walk.cl) makes the same for one
+// triangle, see feature_cull.h. Also the volumes of one triangle's nodes and edges, with one direction per lane.
 #ifndef DRAPE_LIB_CULL_PACKET_H
 #define DRAPE_LIB_CULL_PACKET_H
 
@@ -52,7 +52,8 @@ DRAPE_FUNCTION Lanes projectLanes(LanesVec3 p, int i)
     return lanesDotUniform(p, direction);
 }
 
-// The corners' intervals along every direction, without any padding. Returns the sum of those along the axes, m.
+// Computes the corners' intervals along every direction, without any padding. Returns the sum of those along the axes,
+// m.
 DRAPE_FUNCTION Lanes packetIntervals(CullVolumes* cull, const LanesVec3* p)
 {
     Lanes size = lanesSplat(0.0f);
@@ -121,7 +122,7 @@ DRAPE_FUNCTION LaneMask cullVolumes(CullVolumes* cull, LanesVec3* p, Lanes radiu
     return near;
 }
 
-// Triangles that are not proved out of reach of one child of a wide node.
+// Returns the triangles that are not proved out of reach of one child of a wide node.
 DRAPE_FUNCTION LaneMask cullPacketChild(const CullVolumes* cull, const DRAPE_GLOBAL float* child)
 {
     LaneMask near = lanesMaskSplat(1);
@@ -174,7 +175,7 @@ typedef struct NodeIntervals
     Lanes m_low[3], m_high[3];
 } NodeIntervals;
 
-// corners: of one triangle, as cullVolumes() leaves them; noise, rounding: its pads there.
+// corners: of one triangle, see cullVolumes(); noise, rounding: its pads there.
 DRAPE_FUNCTION void nodeIntervals(NodeIntervals* nodes, const Directions* directions, const Vec3* corners, float noise,
                                   float rounding)
 {
@@ -205,7 +206,7 @@ DRAPE_FUNCTION NearPatch nearPatch(const Directions* directions, Lanes low, Lane
     return near;
 }
 
-// Directions along which node k is out of reach of a patch. Lanes of NaN are none.
+// Returns the directions along which node k is out of reach of a patch. NaN lanes are not included.
 DRAPE_FUNCTION LaneMask nodeIsOut(const NodeIntervals* nodes, int k, NearPatch near)
 {
     return (near.m_low > nodes->m_high[k]) | (near.m_high < nodes->m_low[k]);

@@ -62,11 +62,12 @@ DRAPE_FUNCTION float dopInner(Vec3 p, int i)
     return i < 3 + DRAPE_DOP_EDGES ? 0.0f : drapeAbs(p.x) + drapeAbs(p.y);
 }
 
-// Grows an interval along a direction to hold the balls of radius r around points whose projections lie in [least,
-// greatest] and whose inner sums are at most `inner`; reach is r times the direction's length. With u = 2^-24 the
-// projection v of a point errs by at most u |v| for two terms, and by u·inner more for three; the shift s = v ∓ reach
-// by u |s|. The pad 2^-23
-// (|v| + |s|) covers these and its own rounding. It is enough to pad the outermost: v - u |v| rises with v.
+// Grows an interval along a direction to contain the balls of radius r around some points. The points' projections lie
+// in [least, greatest], and their inner sums are at most `inner`; reach is r times the direction's length.
+//
+// With u = 2^-24 the projection v of a point errs by at most u |v| for two terms, and by u·inner more for three; the
+// shift s = v ∓ reach errs by u |s|. The pad 2^-23 (|v| + |s|) covers these and its own rounding. It is enough to pad
+// the outermost projections: v - u |v| rises with v.
 DRAPE_FUNCTION void dopGrowInterval(float* low, float* high, float least, float greatest, float reach, float inner)
 {
     const float pad = DRAPE_DOP_PAD;
@@ -76,7 +77,7 @@ DRAPE_FUNCTION void dopGrowInterval(float* low, float* high, float least, float 
     *high = drapeMax(*high, to + (pad * (drapeAbs(greatest) + inner + drapeAbs(to)) + DRAPE_TINY));
 }
 
-// Grows the volume to hold the ball of the given radius (m, ≥ 0) around p.
+// Grows the volume to contain the ball of the given radius (m, ≥ 0) around p.
 DRAPE_FUNCTION void dopAddPoint(Dop* dop, Vec3 p, float radius)
 {
     DRAPE_UNROLL
@@ -139,7 +140,7 @@ DRAPE_FUNCTION int opensFirst(const DRAPE_GLOBAL BvhNode* a, const DRAPE_GLOBAL 
     return b->m_count == 0 || nodeExtent(a) > nodeExtent(b);
 }
 
-// The interval of a triangle's volume along direction i, see cornersVolume().
+// Computes the interval of a triangle's volume along direction i, see cornersVolume().
 DRAPE_FUNCTION void cornersInterval(const Vec3* p, int i, int moves, float radius, float* low, float* high)
 {
     float least = dopProject(p[0], i);
@@ -159,10 +160,11 @@ DRAPE_FUNCTION void cornersInterval(const Vec3* p, int i, int moves, float radiu
     dopGrowInterval(low, high, least, greatest, radius * dopNorm(i), inner);
 }
 
-// Volume of a triangle over a step of linear motion, grown by the radius. p: its corners at the step's start, then at
-// its end; without `moves` only the first three count. Invalid corners (positionIsValid) stay out of it, so that one
-// bad node cannot make every ancestor overlap everything and features of the others are still found (see
-// finite_corners.h); without a valid corner the volume is empty. Returns whether all corners are valid.
+// Computes the volume of a triangle over a step of linear motion, grown by the radius. p: its corners at the step's
+// start, then at its end; without `moves` only the first three count. The volume excludes invalid corners
+// (positionIsValid): one bad node cannot make every ancestor overlap everything, and the other corners' features are
+// still found (see finite_corners.h). Without a valid corner the volume is empty. Returns whether all corners are
+// valid.
 DRAPE_FUNCTION int cornersVolume(Dop* dop, Vec3* p, int moves, float radius)
 {
     const DRAPE_UINT valid = replaceInvalidCorners(p, p + 3);
@@ -189,8 +191,8 @@ DRAPE_FUNCTION int triangleVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangl
     return cornersVolume(dop, p, moves, radius);
 }
 
-// A leaf's volume for a step. A negative radius takes the triangle's mesh out of the step: the volume is empty. Returns
-// how many vertices are NaN or infinite, counted by the triangle that owns them.
+// Computes a leaf's volume for a step. A negative radius excludes the triangle's mesh from the step: the volume is
+// empty. Returns how many vertices are NaN or infinite, counted by the triangle that owns them.
 DRAPE_FUNCTION DRAPE_UINT leafVolume(Dop* dop, const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
                                      const DRAPE_GLOBAL float* end, float radius)
 {

@@ -1,5 +1,4 @@
-// A cloth edge against an edge of the obstacle.
-// See feature_contact.h for what a contact is and for the frame.
+// Tests a cloth edge against an edge of the obstacle. feature_contact.h defines contacts and the frame.
 #ifndef DRAPE_LIB_EDGE_EDGE_CONTACT_H
 #define DRAPE_LIB_EDGE_EDGE_CONTACT_H
 
@@ -15,13 +14,13 @@ DRAPE_FUNCTION FeatureEdge edgeMix(FeatureEdge from, FeatureEdge to, float t)
     return r;
 }
 
-// Six times the signed volume of two edges; zero when they are coplanar.
+// Returns six times the signed volume of two edges; zero if they are coplanar.
 DRAPE_FUNCTION float edgeEdgeVolume(FeatureEdge e, FeatureEdge o)
 {
     return vec3Dot(vec3Cross(vec3Sub(e.m_b, e.m_a), vec3Sub(o.m_b, o.m_a)), vec3Sub(o.m_a, e.m_a));
 }
 
-// An edge that met the obstacle's edge. v0: the volume at the step's start.
+// Handles an edge that met the obstacle's edge. v0: the volume at the step's start.
 DRAPE_FUNCTION int edgeEdgeMet(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, Meeting meeting, float v0,
                                PairBounds bounds, Contact* contact)
 {
@@ -47,10 +46,10 @@ DRAPE_FUNCTION int edgesChangedSides(float v0, float v1)
     return (v0 < 0.0f && v1 > 0.0f) || (v0 > 0.0f && v1 < 0.0f);
 }
 
-// Edge moving from e0 to e1 against a resting edge with the given normal cone; both closest points inside their edges.
-// That the cloth's own faces may come nearer beside the edge is no reason to drop it: where cloth bends over a sharp
-// edge of the obstacle, every crossing counts. The first comparisons drop most pairs and need neither division nor
-// root.
+// Tests an edge that moves from e0 to e1 against a resting edge with the given normal cone; both closest points must be
+// inside their edges. A cloth face that is nearer beside the edge is no reason to drop the contact: if cloth bends over
+// a sharp edge of the obstacle, every crossing counts. The first comparisons drop most pairs and need neither division
+// nor root.
 DRAPE_FUNCTION int edgeEdgeContact(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, NormalCone cone, PairBounds bounds,
                                    Contact* contact)
 {

@@ -39,8 +39,8 @@ DRAPE_FUNCTION float areaLengthOf(Vec3 area)
     return length > 1e-18f ? length : 0.0f;
 }
 
-// A face by its longest edge, from the end that is nearer to the third corner. Nothing is indexed by a variable: on a
-// GPU that would move the corners out of the registers.
+// A face by its longest edge, from the end that is nearer to the third corner. No variable indexes the corners: on a
+// GPU that would move them out of the registers.
 typedef struct LongFace
 {
     int m_turn;     // the corner at which the edge begins in the face's order
@@ -48,7 +48,7 @@ typedef struct LongFace
     Vec3 m_near;    // m, that end
     Vec3 m_along;   // from there to the edge's far end
     Vec3 m_side;    // from there to the third corner
-    float m_place;  // of the third corner along the edge, as a part of it
+    float m_place;  // the third corner's position along the edge, as a fraction of it
     Vec3 m_rise;    // the third corner's offset from the edge; 0 where it is noise
 } LongFace;
 
@@ -84,7 +84,7 @@ DRAPE_FUNCTION LongFace longFace(FeatureTriangle f)
     return face;
 }
 
-// Twice the area: the unit normal times m_length, m². m_length is 0 where the face has no side.
+// Area vector: the unit normal times m_length, m², which is twice the area. m_length is 0 if the face has no side.
 typedef struct FaceArea
 {
     Vec3 m_vector;
@@ -126,7 +126,7 @@ typedef struct NearPoint
     Vec3 m_weights;
 } NearPoint;
 
-// Tries the closest point on the edge from a to b, whose corners' weights are the unit vectors unitA and unitB.
+// Tests the closest point on the edge from a to b, whose corners' weights are the unit vectors unitA and unitB.
 DRAPE_FUNCTION void tryEdge(NearPoint* best, Vec3 p, Vec3 a, Vec3 b, Vec3 unitA, Vec3 unitB)
 {
     const Vec3 edge = vec3Sub(b, a), toPoint = vec3Sub(p, a);
@@ -163,7 +163,7 @@ DRAPE_COLD_FUNCTION Vec3 closestOnThin(Vec3 p, FeatureTriangle f)
     return vec3Choose(face.m_turn, vec3(begin, end, third), vec3(third, begin, end), vec3(end, third, begin));
 }
 
-// Weights as from closestOnTriangle(). thin: as faceArea() has it.
+// Returns weights as closestOnTriangle() does. thin: see faceArea().
 DRAPE_FUNCTION Vec3 closestOnFace(Vec3 p, FeatureTriangle f, int thin)
 {
     return thin ? closestOnThin(p, f) : closestOnTriangle(p, f.m_p[0], f.m_p[1], f.m_p[2]);

@@ -1,5 +1,5 @@
-// A cloth face, its edges included, against a vertex of the obstacle.
-// See feature_contact.h for what a contact is and for the frame.
+// Tests a cloth face, including its edges, against a vertex of the obstacle. feature_contact.h defines contacts and the
+// frame.
 #ifndef DRAPE_LIB_FACE_VERTEX_CONTACT_H
 #define DRAPE_LIB_FACE_VERTEX_CONTACT_H
 
@@ -7,7 +7,7 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// A face that met the vertex. side: where the vertex was at the start, +1 in front of the face.
+// Handles a face that met the vertex. side: the vertex's side at the start, +1 in front of the face.
 DRAPE_FUNCTION int faceVertexMet(FeatureTriangle f0, FeatureTriangle f1, Vec3 vertex, Meeting meeting, float side,
                                  PairBounds bounds, Contact* contact)
 {
@@ -39,8 +39,8 @@ DRAPE_FUNCTION int faceVertexPassed(const MovingFace* face, Vec3 vertex, float s
     if (!meeting.m_met || known != DRAPE_MAY_MEET) return DRAPE_ASK_THE_END;
     const float before = s0 < 0.0f ? -1.0f : 1.0f, after = s1 < 0.0f ? -1.0f : 1.0f;
     if (faceVertexMet(f0, face->m_end, vertex, meeting, before, bounds, contact)) return DRAPE_IS_CONTACT;
-    // The two met where the face has no direction. If they changed sides there, the side at the end is the wrong one. The
-    // plane of a thin face turns freely about the face's length: its sides tell nothing.
+    // The two met where the face has no direction. If they changed sides there, the side at the end is the wrong one.
+    // The plane of a thin face turns freely about the face's length: its sides mean nothing.
     const int sidesTell = !face->m_areaEnd.m_thin && !isThin(f0, vec3Length(face->m_areaStart));
     return after != before && sidesTell ? DRAPE_NO_CONTACT : DRAPE_ASK_THE_END;
 }
@@ -56,10 +56,11 @@ DRAPE_FUNCTION int neighbourIsNearer(Vec3 weights, const DRAPE_UINT* beyond, con
            positionIsValid(vec3Load(start, neighbour));
 }
 
-// Moving face against a resting vertex with the given normal cone. A vertex nearest to an edge of the face counts here
-// too (weights with one zero); one nearest to a node is the node's contact. beyond: the third vertices of the
-// neighbours over the face's three edges (m_a … m_c), into start and end, positions at the step's start and end; a
-// neighbour whose third vertex is invalid makes no contacts and counts as absent. origin: of the local frame.
+// Tests a moving face against a resting vertex with the given normal cone. A vertex nearest to an edge of the face
+// counts here too (weights with one zero); one nearest to a node is the node's contact. beyond: the third vertices of
+// the neighbours over the face's three edges (m_a … m_c), as indices into start and end. start, end: positions at the
+// step's start and end. A neighbour whose third vertex is invalid makes no contacts and counts as absent. origin: of
+// the local frame.
 DRAPE_FUNCTION int faceVertexContact(const MovingFace* face, const DRAPE_UINT* beyond, const DRAPE_GLOBAL float* start,
                                      const DRAPE_GLOBAL float* end, Vec3 origin, Vec3 vertex, NormalCone cone,
                                      PairBounds bounds, Contact* contact)

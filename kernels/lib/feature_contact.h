@@ -34,7 +34,7 @@ DRAPE_FUNCTION FeatureEdge triangleEdge(const FeatureTriangle* f, int i)
     return e;
 }
 
-// Boxes that do not meet, for points that can only meet at one instant. low/high hold the boxes' corners.
+// Returns whether boxes do not meet, for points that can only meet at one instant. low/high: the boxes' corners.
 DRAPE_FUNCTION int boxesApart(Vec3 lowA, Vec3 highA, Vec3 lowB, Vec3 highB, float slack)
 {
     return lowA.x - highB.x > slack || lowB.x - highA.x > slack || lowA.y - highB.y > slack ||
@@ -74,7 +74,7 @@ typedef struct RestingFace
 typedef struct MovingFace
 {
     FeatureTriangle m_start, m_end;
-    Vec3 m_areaStart;  // as triangleNormal() has it
+    Vec3 m_areaStart;  // computed by triangleNormal()
     FaceArea m_areaEnd;
 } MovingFace;
 
@@ -85,7 +85,7 @@ typedef struct PairBounds
     float m_reach;
     float m_reachSlack;  // reach grown by more than the rounding of a distance and its normal
     DRAPE_UINT m_mode;   // DRAPE_DISCRETE …
-    // Counts the pairs for which the continuous test was needed and run; null: it is not to be run.
+    // Counts the pairs for which the continuous test was needed and run; null: it must not run.
     DRAPE_UINT* m_searches;
 } PairBounds;
 
@@ -95,8 +95,9 @@ typedef struct PairBounds
 #define DRAPE_IS_CONTACT 1
 #define DRAPE_UNDECIDED 2
 
-// True when the support gap along n proves a distance above reach. lowA: least n·a over one set; highB: greatest n·b
-// over the other. With u = 2^-24: three products, two sums and the frame's shift err by at most 12 u |n|₁ extent.
+// Returns whether the support gap along n proves a distance above the reach. lowA: least n·a over one set; highB:
+// greatest n·b over the other. With u = 2^-24, three products, two sums and the frame's shift err by at most 12 u |n|₁
+// extent.
 DRAPE_FUNCTION int provenApart(Vec3 n, float lowA, float highB, PairBounds bounds)
 {
     const float twelveUnits = 7.1525574e-7f;

@@ -1,13 +1,13 @@
-// Drops feature tests of one cloth triangle against a block of obstacle features, a lane each: what is kept is a
-// superset of what gives a contact (pair_contact.h), and little more.
+// Drops feature tests of one cloth triangle against a block of obstacle features, one per lane. The kept tests are a
+// superset of those that give a contact (pair_contact.h), and little more.
 //
-// Every comparison is loosened by DRAPE_CULL_SLACK of the pair's size, some thousand roundings. A feature whose shape makes
-// a direction worse than that (thin triangles, edges that are nearly parallel) is kept by its distance alone. Lanes
-// with NaN positions are dropped: each result depends on a comparison of theirs that must hold.
+// Every comparison is loosened by DRAPE_CULL_SLACK of the pair's size, some thousand roundings. A feature whose shape
+// makes a direction worse than that (thin triangles, nearly parallel edges) is kept by its distance alone. Lanes with
+// NaN positions are dropped: each result depends on a comparison of theirs that must be true.
 //
-// Positions are relative to m_origin and err by a rounding of their size. Directions are made of differences before
-// that shift, since the shift would turn a short edge by as much over its length. The narrow phase has a frame of its
-// own, which does turn what is short against the pair: such features are kept by less.
+// Positions are relative to m_origin and err by a rounding of their size. Directions come from differences before that
+// shift, which would turn a short edge by as much over its length. The narrow phase has its own frame, which does turn
+// features that are short compared with the pair: such features are kept by weaker tests.
 #ifndef DRAPE_LIB_FEATURE_CULL_H
 #define DRAPE_LIB_FEATURE_CULL_H
 
@@ -28,12 +28,12 @@ DRAPE_NAMESPACE_BEGIN
 // Points on edges whose directions have a small sine s err by up to 3e-7 / s². The offset then errs by s times that.
 // The maximum, 5.5e-4, is reached where the point errs by the length of the edge.
 #define DRAPE_CULL_NOISE 1e-3f
-// Share of the reach that features may be apart that count as having met, see meetingSettings().
+// Distance of features that count as having met, as a share of the reach; see meetingSettings().
 #define DRAPE_CULL_MET 0.02f
 // A distance that excludes nothing, m.
 #define DRAPE_CULL_ANYWHERE 1e15f
 
-// A cloth triangle over the step as the obstacle sees it, relative to m_origin.
+// A cloth triangle over the step relative to the obstacle and to m_origin.
 typedef struct CullTriangle
 {
     Vec3 m_origin;
@@ -50,9 +50,10 @@ typedef struct CullTriangle
     int m_thinStart, m_thinEnd;
 } CullTriangle;
 
-// Reach of a cull, m. m_slack: loosens every comparison; m_near: distance at the end; m_met: distance at the start and
-// at the end of features that met in between, as far as the triangle moves; m_before: the same where it counts at the
-// start, anything where every meeting is to be looked for; m_farthest: the larger of m_near and m_met.
+// Reach of a cull, m. m_slack: loosens every comparison. m_near: distance at the end. m_met: distance at the step's
+// start and at its end of features that met in between, as far as the triangle moves. m_before: limit of the distance
+// at the start: m_met, or DRAPE_CULL_ANYWHERE if every meeting must be found. m_farthest: the larger of m_near and
+// m_met.
 typedef struct CullReach
 {
     float m_slack, m_near, m_met, m_before, m_farthest;
@@ -169,7 +170,7 @@ DRAPE_FUNCTION LaneMask cullFaces(const DRAPE_TEAM CullTriangle* cull, CullReach
     return lanesNot((away > far * far) | (beside & lanesMaskSplat(sure)));
 }
 
-// Vertices whose nearest point of the cloth triangle at the step's end is a corner, surely.
+// Returns the vertices whose nearest point of the cloth triangle at the step's end is certainly a corner.
 DRAPE_FUNCTION LaneMask cullAtNode(const DRAPE_TEAM CullTriangle* cull, LanesVec3 v, float slack)
 {
     const Lanes place0 = lanesDotUniform(v, cull->m_along[0]);
@@ -204,7 +205,7 @@ DRAPE_FUNCTION LaneMask cullFaceVertex(const DRAPE_TEAM CullTriangle* cull, Cull
     const Lanes depth = lanesAbs(height);
     const Lanes squared = distance * distance + depth * depth;
 
-    // The direction from the vertex to the nearest point, or close to it, against the vertex's cone.
+    // Tests the direction from the vertex to the nearest point, or close to it, against the vertex's cone.
     const LanesVec3 axis = lanesLoadVec3(block, 3);
     const Lanes cosine = lanesLoad(block, 6);
     const Lanes lean = lanesSelect(
@@ -212,7 +213,8 @@ DRAPE_FUNCTION LaneMask cullFaceVertex(const DRAPE_TEAM CullTriangle* cull, Cull
         lanesSelect(out1 >= out0, lanesDotUniform(axis, cull->m_inward[1]), lanesDotUniform(axis, cull->m_inward[0])));
     const Lanes facing = lanesAbs(height * lanesDotUniform(axis, cull->m_normal1) - distance * lean);
     const LaneMask admitted = facing + 4.0f * reach.m_slack >= cosine * lanesSqrt(squared);
-    // Nearest to a node: the node's contact. Outside of two edges else, at an obtuse angle: nearest to either.
+    // A vertex nearest to a node is the node's contact. Otherwise a vertex outside of two edges, at an obtuse angle, is
+    // nearest to either.
     const LaneMask atNode = cullAtNode(cull, v, reach.m_slack);
     const LaneMask direction = lanesNot(atNode) & (admitted | (second > lanesSplat(reach.m_slack)));
     const LaneMask near = direction & (squared <= lanesSplat(reach.m_near * reach.m_near));
@@ -221,8 +223,8 @@ DRAPE_FUNCTION LaneMask cullFaceVertex(const DRAPE_TEAM CullTriangle* cull, Cull
     return near | met;
 }
 
-// Cloth node i against faces. Compares squares of distances times the face's area or edge, so that no lane needs a
-// root.
+// Tests cloth node i against faces. Compares squares of distances times the face's area or edge, so that no lane needs
+// a root.
 DRAPE_FUNCTION LaneMask cullNodeFace(const DRAPE_TEAM CullTriangle* cull, int i, CullReach reach,
                                      const DRAPE_GLOBAL float* block)
 {
@@ -268,7 +270,7 @@ DRAPE_FUNCTION LaneMask cullNodeFace(const DRAPE_TEAM CullTriangle* cull, int i,
 typedef struct CullEdges
 {
     LanesVec3 m_a, m_along, m_axis;
-    Lanes m_cosine;  // of the cone, loosened, squared with its sign
+    Lanes m_cosine;  // cone's loosened cosine, squared with its sign
     Lanes m_length, m_square;
 } CullEdges;
 
@@ -307,9 +309,9 @@ DRAPE_FUNCTION LaneMask cullEdgeEdge(const DRAPE_TEAM CullTriangle* cull, int i,
     const Lanes facing = lanesDot(edges->m_axis, direction);
     const LaneMask admitted = facing * facing >= edges->m_cosine * square;
 
-    // Places of the closest points of the two lines, times the square; loosened by rounding, which also turns the
-    // cloth's edge, seen over the gap between the lines, and where the edges may have met by how far they can have
-    // moved since.
+    // Parameters of the two lines' closest points, times the square. They are loosened by rounding, which also turns
+    // the cloth's edge as seen over the gap between the lines. If the edges may have met, they are also loosened by
+    // the edges' possible motion since.
     const Lanes s = lanesDot(lanesCross(offset, along), direction);
     const Lanes t = lanesDot(lanesCrossUniform(across, offset), direction);
     const Lanes size = lanesNorm1(offset) + edges->m_length + cull->m_diameter;
@@ -340,10 +342,10 @@ typedef struct CullVolume
 // Positions from which a cloth triangle's volume is made.
 typedef struct CullCorners
 {
-    Vec3 m_p[6];         // m, at the step's start and end; without the sweep at the end twice
+    Vec3 m_p[6];         // m, at the step's start and end; without the sweep both are the end
     int m_swept;         // see isSwept()
     DRAPE_UINT m_valid;  // features, see replaceInvalidCorners()
-    float m_noise;       // m, see DRAPE_CULL_NOISE: no more than the reach, which holds whatever the cones admit
+    float m_noise;       // m, see DRAPE_CULL_NOISE: at most the reach, whatever the cones admit
 } CullCorners;
 
 // The volume's interval along direction i.

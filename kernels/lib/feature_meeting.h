@@ -13,7 +13,7 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// The coarsest search for the time of a meeting, as a part of the step.
+// Coarsest tolerance of the time of a meeting, as a fraction of the step.
 #define DRAPE_MEETING_TIME 0.03125f
 
 DRAPE_FUNCTION float distanceMoved(Vec3 from, Vec3 to)
@@ -32,8 +32,8 @@ DRAPE_FUNCTION float edgeMotion(FeatureEdge e0, FeatureEdge e1)
     return drapeMax(distanceMoved(e0.m_a, e1.m_a), distanceMoved(e0.m_b, e1.m_b));
 }
 
-// motion: m, of the fastest corner. Grown by far more than the search's tolerance and all rounding, a share of the
-// pair's extent.
+// motion: m, of the fastest corner. The result is grown by a share of the pair's extent, far more than the search's
+// tolerance and all rounding.
 DRAPE_FUNCTION float meetingDistance(float motion, PairBounds bounds)
 {
     return motion * (1.0f + DRAPE_SEAM) + DRAPE_SEAM * bounds.m_extent;
@@ -85,7 +85,7 @@ DRAPE_FUNCTION Vec3 meetingNormal(Vec3 direction, float length, Vec3 way, float 
     return vec3Scale(normal, side);
 }
 
-// A moving face and a resting vertex; see DRAPE_STAY_APART. s0, s1: the volumes at the step's start and end.
+// Classifies a moving face and a resting vertex; see DRAPE_STAY_APART. s0, s1: the volumes at the step's start and end.
 DRAPE_FUNCTION int faceNearness(const MovingFace* face, Vec3 vertex, float s0, float s1, PairBounds bounds)
 {
     const FeatureTriangle f0 = face->m_start, f1 = face->m_end;
@@ -109,8 +109,8 @@ DRAPE_FUNCTION int faceNearness(const MovingFace* face, Vec3 vertex, float s0, f
     return nearnessAcross(offset, drapeMin(low, before), high, bounds);
 }
 
-// An edge moving from e0 to e1 and another one from o0 to o1; see DRAPE_STAY_APART. motion: m, of the fastest ends,
-// added up. v0, v1: the volumes at the step's start and end.
+// Classifies an edge that moves from e0 to e1 and another one from o0 to o1; see DRAPE_STAY_APART. motion: m, of the
+// fastest ends, added up. v0, v1: the volumes at the step's start and end.
 DRAPE_FUNCTION int edgesNearness(FeatureEdge e0, FeatureEdge e1, FeatureEdge o0, FeatureEdge o1, float motion, float v0,
                                  float v1, PairBounds bounds)
 {
@@ -141,8 +141,8 @@ DRAPE_FUNCTION int edgeNearness(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, f
     return edgesNearness(e0, e1, o, o, edgeMotion(e0, e1), v0, v1, bounds);
 }
 
-// The search for a time costs three times that for a meeting at the defaults of ccd.h. A contact needs its place to a
-// hundredth of the reach, so what moves little needs the time to less.
+// Returns settings of the search for a time, which costs three times that for a meeting at the defaults of ccd.h. A
+// contact needs its position to a hundredth of the reach, so slow features need the time less exactly.
 DRAPE_FUNCTION CcdSettings meetingSettings(float motion, PairBounds bounds)
 {
     CcdSettings settings = ccdDefaults();
@@ -154,7 +154,7 @@ DRAPE_FUNCTION CcdSettings meetingSettings(float motion, PairBounds bounds)
 typedef struct Meeting
 {
     int m_met;
-    float m_time;   // of the step, never late
+    float m_time;   // time in the step, never late
     float m_place;  // time in the step at which to test the features: as near as a few iterations come
 } Meeting;
 

@@ -1,4 +1,4 @@
-// The feature tests that a cull lists: what they read, and how one is done. For kernels only.
+// Feature tests that a cull lists: their input data, and how to run one. For kernels only.
 #ifndef DRAPE_LIB_FEATURE_TESTS_H
 #define DRAPE_LIB_FEATURE_TESTS_H
 
@@ -6,7 +6,7 @@
 #include "hit_list.h"
 #include "pair_contact.h"
 
-// Position and cone of a lane of a vertex or edge block.
+// Loads the position and cone of a lane of a vertex or edge block.
 static Vec3 laneVec3(__global const float* restrict blocks, const uint floats, const uint lane, const uint first)
 {
     __global const float* p =
@@ -33,7 +33,7 @@ typedef struct PackedFeatures
     __global const uint* m_edgeIds;
 } PackedFeatures;
 
-// The motion of a test's obstacle; null where it rests.
+// Returns the motion of a test's obstacle; null if it rests.
 static __global const ObstacleMotion* motionOfTest(__global const ObstacleMotion* motions, const FeatureTest test)
 {
     return test.m_motion == 0 ? 0 : motions + (test.m_motion - 1);

@@ -24,7 +24,7 @@ DRAPE_FUNCTION float cornersSum(const Vec3* p)
 // Without a valid corner all stay unchanged.
 DRAPE_FUNCTION DRAPE_UINT replaceInvalidCorners(Vec3* start, Vec3* end)
 {
-    // Quick for the usual: a sum that has NaN or something too large in it fails the comparison.
+    // Decides the usual case quickly: a sum with NaN or too large a term fails the comparison.
     if (cornersSum(start) + cornersSum(end) <= DRAPE_FARTHEST) return DRAPE_ALL_FEATURES;
     DRAPE_UINT valid = 0;
     Vec3 startStand = start[0], endStand = end[0];

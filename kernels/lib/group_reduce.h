@@ -23,7 +23,7 @@ static ulong groupSum(__local ulong* scratch, const ulong value)
     return sum;
 }
 
-// The hull of every work-item's volume, in the first one's. scratch holds two floats a direction per work-item.
+// Computes the hull of every work-item's volume in the first one's. scratch: two floats per direction and work-item.
 static void groupHull(__local float* scratch, Dop* dop)
 {
     const uint id = get_local_id(0);

@@ -13,7 +13,7 @@ static uint groupPrefix(__local uint* scratch, const uint value, uint* total)
     const uint size = get_local_size(0);
     scratch[id] = value;
     barrier(CLK_LOCAL_MEM_FENCE);
-    // Loops with barriers run at least once: where they might not, some compilers copy all that follows, once per outcome.
+    // Loops with barriers run at least once: otherwise some compilers copy all code that follows, once per outcome.
     uint step = 1;
     do
     {
@@ -29,10 +29,10 @@ static uint groupPrefix(__local uint* scratch, const uint value, uint* total)
     return before;
 }
 
-// Loads of a work-item that do not wait for each other.
+// Number of a work-item's loads that do not wait for each other.
 #define DRAPE_TOGETHER 8
 
-// The sum of the first `count` numbers, by all of the group's work-items together.
+// Returns the sum of the first `count` numbers; all of the group's work-items call it together.
 static uint groupSumOf(__global const uint* restrict numbers, const uint count, __local uint* scratch)
 {
     uint sum = 0, total;

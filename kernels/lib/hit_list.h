@@ -33,7 +33,7 @@ typedef struct HitList
 #define DRAPE_CONTACT_QUARTERS 4
 typedef char ContactFits[sizeof(Contact) == DRAPE_CONTACT_QUARTERS * sizeof(uint4) ? 1 : -1];
 
-// `parts` neighbouring work-items copy a contact together, each some quarters of it.
+// Copies a contact; `parts` neighbouring work-items do so together, each some quarters of it.
 static void copyHit(__global Contact* to, __global const Contact* from, const uint parts)
 {
     for (uint k = get_global_id(0) % parts; k < DRAPE_CONTACT_QUARTERS; k += parts)
@@ -67,7 +67,8 @@ static void listHit(const HitList* list, const Contact* contact)
     addToSums(list->m_slotSums, contact->m_slot, 1);
 }
 
-// Several at once, on a CPU: its cores take turns at the list's length, and an atomic waits for the stores before it.
+// Lists several contacts at once, on a CPU: its cores take turns at the list's length, and an atomic waits for the
+// stores before it.
 static void listHits(const HitList* list, const Contact* contacts, const uint count)
 {
     const uint first = count > 0 ? atomic_add(list->m_count, count) : 0;

@@ -12,13 +12,13 @@
 #ifdef DRAPE_CPU
 typedef struct ItemRuns
 {
-    uint m_item, m_end;  // of the current run
+    uint m_item, m_end;  // current run
     uint m_run, m_runs;
-    uint m_takers;  // of runs, in turn
+    uint m_takers;  // work-items that take runs in turn
     uint m_count;
 } ItemRuns;
 
-// The list in runs that differ by one in length at most. Where takers are more than items, some have none.
+// Divides the list into runs that differ by at most one in length. If there are more takers than items, some have none.
 static void takeRun(ItemRuns* runs)
 {
     const ulong run = runs->m_run, count = runs->m_count;
@@ -33,7 +33,8 @@ typedef struct ItemRuns
 } ItemRuns;
 #endif
 
-// count: the same for all work-items. parts: neighbouring work-items that take the same items, a divisor of the width.
+// count: equal for all work-items. parts: number of neighbouring work-items that take the same items, a divisor of the
+// width.
 static ItemRuns itemRuns(const uint count, const uint parts)
 {
     const uint takers = get_global_size(0) / parts, taker = get_global_id(0) / parts;

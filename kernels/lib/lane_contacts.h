@@ -34,7 +34,7 @@ typedef struct LaneBounds
     Lanes m_extent, m_reach, m_reachSlack;
 } LaneBounds;
 
-// One lane's numbers, to and from rows of lanes.
+// Access one lane's numbers in rows of lanes.
 static void putNumber(float* rows, const uint row, const uint lane, const float number)
 {
     rows[row * DRAPE_LANES + lane] = number;
@@ -96,7 +96,7 @@ static LanesVec3 lanesChoose(const LaneMask mask, const LanesVec3 yes, const Lan
     return lanesVec3(lanesSelect(mask, yes.x, no.x), lanesSelect(mask, yes.y, no.y), lanesSelect(mask, yes.z, no.z));
 }
 
-// See closestOnTriangle(). Later choices come first there.
+// Computes closestOnTriangle() on lanes. Later choices come first there.
 static LanesVec3 laneClosest(const LanesVec3 p, const LanesVec3* corners)
 {
     const LanesVec3 a = corners[0], b = corners[1], c = corners[2];
@@ -196,7 +196,7 @@ static LaneMask laneBoxesApart(const LaneBox a, const LaneBox b, const LaneBound
            (b.m_low.y - a.m_high.y > slack) | (a.m_low.z - b.m_high.z > slack) | (b.m_low.z - a.m_high.z > slack);
 }
 
-// A resting face's area vector, its length, and whether it is thin; see faceArea().
+// Area vector of a resting face, its length, and whether the face is thin; see faceArea().
 typedef struct LaneArea
 {
     LanesVec3 m_vector;
@@ -220,9 +220,10 @@ static Lanes laneExtent(const LanesVec3* corners)
     return lanesMax(lanesMax(exactNormMax(corners[0]), exactNormMax(corners[1])), exactNormMax(corners[2]));
 }
 
-// A moving face and what rests in the frame's origin. m_comesNear: faceNearness() is not DRAPE_STAY_APART. At the step's
-// end: m_after, the origin's distance from the face's plane times the length of the area vector; m_weights of the face's
-// closest point, m_point; m_low, the least product of that point and a corner.
+// A moving face and a point that rests in the frame's origin. m_comesNear: faceNearness() is not DRAPE_STAY_APART. The
+// other members are those at the step's end. m_after: the origin's distance from the face's plane times the length of
+// the area vector. m_weights: of the face's closest point, m_point. m_low: the least product of that point and a
+// corner.
 typedef struct LaneFace
 {
     LaneMask m_comesNear;
@@ -262,7 +263,7 @@ static LaneFace laneFace(const LanesVec3* start, const LanesVec3* end, const Lan
     return face;
 }
 
-// The unit normal of the face's plane on the side where `sign` points.
+// Returns the unit normal of the face's plane on the side given by `sign`.
 static LanesVec3 lanePlane(const LaneArea* area, const Lanes sign)
 {
     return exactScale(area->m_vector, sign * exactRatio(lanesSplat(1.0f), area->m_length));
@@ -443,7 +444,7 @@ static LaneCrossing laneCrossing(const LaneEdges* start, const LaneEdges* end, c
     return crossing;
 }
 
-// Contacts of edges that are not parallel and whose closest points lie inside both. m_open must be set before.
+// Computes contacts of edges that are not parallel and whose closest points lie inside both. m_open must be set before.
 static void laneEdgesNear(LaneContacts* contacts, const LaneEdges* start, const LaneEdges* end,
                           const LaneCrossing* crossing, const LaneMask admitted)
 {

@@ -1,5 +1,5 @@
-// Runs of feature tests on a CPU, as many of one kind side by side as there are lanes. Who includes this defines the
-// functions that are only declared here, for tests of its own. For kernels only.
+// Runs feature tests on a CPU, as many of one kind side by side as there are lanes. The including file defines the
+// functions that are only declared here, for its own tests. For kernels only.
 #ifndef DRAPE_LIB_LANE_RUNS_H
 #define DRAPE_LIB_LANE_RUNS_H
 
@@ -8,10 +8,10 @@
 #include "lane_contacts.h"
 #include "team.h"
 
-// Most kinds of tests, and most rows of numbers of one.
+// Maximum kinds of tests, and maximum rows of numbers of one test.
 #define DRAPE_LANE_KINDS 3
 #define DRAPE_LANE_ROWS 37
-// Fewer tests of a kind than this are done one by one.
+// Minimum tests of a kind for lanes; fewer run one by one.
 #define DRAPE_FEWEST_LANES 3u
 
 // Data for a work-item's tests.
@@ -19,7 +19,7 @@ typedef struct LaneWork LaneWork;
 
 // Returns the kind of a test, below DRAPE_LANE_KINDS.
 static uint kindOf(const LaneWork* work, const uint item);
-// Puts the numbers of a test into its lane.
+// Stores the numbers of a test in its lane.
 static void putTest(float* rows, const uint lane, LaneWork* work, const uint item);
 // Computes the lanes' contacts of tests of one kind.
 static void askLanes(LaneContacts* contacts, const float* rows, const LaneWork* work, const uint kind);
@@ -29,7 +29,7 @@ static int takeContact(const LaneContacts* contacts, const float* rows, const ui
 // Does a test by itself.
 static void testOne(LaneWork* work, const uint item);
 
-// Tests items[0] … items[count - 1], all of one kind, at most one a lane.
+// Tests items[0] … items[count - 1], all of one kind, at most one per lane.
 static void testLanes(LaneWork* work, const uint kind, const uint* items, const uint count, const HitList* list)
 {
     float rows[DRAPE_LANE_ROWS * DRAPE_LANES];

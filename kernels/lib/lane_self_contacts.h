@@ -1,17 +1,17 @@
-// Contacts of a cloth with itself, as many tests of one kind as there are lanes, on a CPU: self_contact.h as
-// lane_contacts.h does the contacts with obstacles. Left open besides: nodes against faces that are thin at rest.
+// Computes the contacts of self_contact.h for as many tests of one kind as there are lanes, on a CPU, like
+// lane_contacts.h for obstacles. Lanes with a node against a face that is thin at rest also stay open.
 #ifndef DRAPE_LIB_LANE_SELF_CONTACTS_H
 #define DRAPE_LIB_LANE_SELF_CONTACTS_H
 
 #include "lane_contacts.h"
 #include "self_contact.h"
 
-// Numbers of a test, a row of lanes each: positions (x y z, m) of the node or the first edge at the step's start, then of
-// the face or the second edge; the same at the step's end; the same at rest; the cloth's thickness, m.
+// Input rows of a test, one lane each: positions (x y z, m) of the node or the first edge, then of the face or the
+// second edge. They stand at the step's start, then at its end, then at rest. The cloth's thickness, m, follows.
 #define DRAPE_SELF_POSITIONS 4
 #define DRAPE_SELF_ROWS (3 * 3 * DRAPE_SELF_POSITIONS + 1)
 
-// Positions of one instant relative to the k-th of them; its own is zero.
+// Computes the positions of one instant relative to the k-th position, which is zero itself.
 static void laneFrame(LanesVec3* frame, const float* rows, const int instant, const int k)
 {
     const LanesVec3 origin = laneRow(rows, 3 * (DRAPE_SELF_POSITIONS * instant + k));
@@ -25,7 +25,7 @@ static Lanes laneSelfThickness(const float* rows, const Lanes restDistance)
     return lanesMin(lanesLoad(rows, DRAPE_SELF_ROWS - 1), DRAPE_REST_SHARE * restDistance);
 }
 
-// See selfNodeFace(). m_asks: contacts on the face's boundary, of which a face beyond may be nearer.
+// Computes selfNodeFace() on lanes. m_asks: contacts on the face's boundary, to which a face beyond may be nearer.
 static void laneSelfNodeFace(LaneContacts* contacts, const float* rows, const uint mode, const float reachScale)
 {
     LanesVec3 start[4], end[4], rest[4];  // the node, which is the frame's origin, and the face
@@ -53,7 +53,7 @@ static void laneSelfNodeFace(LaneContacts* contacts, const float* rows, const ui
     contacts->m_weights = weights;
 }
 
-// See selfEdgeEdge(). Parallel edges are no contact here.
+// Computes selfEdgeEdge() on lanes. Parallel edges are no contact here.
 static void laneSelfEdgeEdge(LaneContacts* contacts, const float* rows, const uint mode, const float reachScale)
 {
     LanesVec3 p[4], rest[4];

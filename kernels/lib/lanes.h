@@ -13,8 +13,8 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// Most that lanesSqrt() may err by, as a share of the root. A cull's slack is more than 4e-4 of its reach and of the
-// motion, 2e-4 of a feature: a root of any of these errs by a twentieth of it.
+// Maximum error of lanesSqrt(), as a share of the root. A cull's slack is more than 4e-4 of its reach and of the
+// motion, 2e-4 of a feature; a root of any of these errs by a twentieth of the slack.
 #define DRAPE_ROOT_ERROR 1e-5f
 
 // A team's shared data (see team.h) lies in local memory if its lanes are a group's work-items: private memory would
@@ -79,8 +79,8 @@ DRAPE_FUNCTION Lanes lanesMin(Lanes a, Lanes b)
 
 #ifdef __OPENCL_VERSION__
 #define lanesAbs(a) fabs(a)
-// The device's own root, where it is known to be good (PatchCullStage::defines()): with one that is rounded correctly a
-// GPU's cull takes a tenth longer.
+// Uses the device's own root if its error is known (PatchCullStage::defines()): with a correctly rounded root a GPU's
+// cull takes a tenth longer.
 #ifdef DRAPE_NATIVE_ROOTS
 #define lanesSqrt(a) native_sqrt(a)
 #else
@@ -108,7 +108,7 @@ DRAPE_FUNCTION LanesVec3 lanesVec3(Lanes x, Lanes y, Lanes z)
     v.z = z;
     return v;
 }
-// Three components of a block, from component first on.
+// Loads three components of a block, from component `first` on.
 DRAPE_FUNCTION LanesVec3 lanesLoadVec3(const DRAPE_GLOBAL float* block, int first)
 {
     return lanesVec3(lanesLoad(block, first), lanesLoad(block, first + 1), lanesLoad(block, first + 2));

@@ -1,4 +1,4 @@
-// A scale that brings a pair of features to the size one, so that products neither overflow nor vanish.
+// Scales a pair of features to size one, so that products neither overflow nor vanish.
 #ifndef DRAPE_LIB_LOCAL_FRAME_H
 #define DRAPE_LIB_LOCAL_FRAME_H
 
@@ -13,8 +13,9 @@ DRAPE_NAMESPACE_BEGIN
 // Exponent field of the largest scale, 2^100: flushed denormals are still small (2^-26) after scaling.
 #define DRAPE_LARGEST_SCALE_FIELD 227u
 
-// The power of two that brings a prescaled extent into [1/2, 1), at most 2^100. Scaling by it is exact, so results do
-// not depend on the unit of length as long as units differ by powers of two. The extent is finite and not negative.
+// Returns the power of two that scales a prescaled extent into [1/2, 1), at most 2^100. Scaling by it is exact, so
+// results do not depend on the unit of length as long as units differ by powers of two. The extent is finite and not
+// negative.
 DRAPE_FUNCTION float localScale(float extent)
 {
     const DRAPE_UINT exponent = (drapeBits(extent) >> 23) & 0xffu;

@@ -15,7 +15,7 @@ DRAPE_FUNCTION DRAPE_UINT mortonSpread(DRAPE_UINT v)
     return (v | (v << 2)) & 0x09249249u;
 }
 
-// The cell of a value among `cells` in [low, high].
+// Returns the cell of a value among `cells` in [low, high].
 DRAPE_FUNCTION DRAPE_UINT mortonCell(float value, float low, float high, DRAPE_UINT cells)
 {
     const float extent = high - low;
@@ -30,14 +30,14 @@ DRAPE_FUNCTION DRAPE_UINT mortonInterleave(DRAPE_UINT x, DRAPE_UINT y, DRAPE_UIN
     return mortonSpread(x) | (mortonSpread(y) << 1) | (mortonSpread(z) << 2);
 }
 
-// 30-bit code of a point in the box [low, high].
+// Returns the 30-bit code of a point in the box [low, high].
 DRAPE_FUNCTION DRAPE_UINT mortonCode(Vec3 p, Vec3 low, Vec3 high)
 {
     return mortonInterleave(mortonCell(p.x, low.x, high.x, 1024u), mortonCell(p.y, low.y, high.y, 1024u),
                             mortonCell(p.z, low.z, high.z, 1024u));
 }
 
-// 63-bit code: the upper 31 bits and the lower 32. 21 bits an axis are fewer than a float's 24.
+// Computes the 63-bit code: the upper 31 bits and the lower 32. 21 bits per axis are fewer than a float's 24.
 DRAPE_FUNCTION void mortonCodeWide(Vec3 p, Vec3 low, Vec3 high, DRAPE_GLOBAL DRAPE_UINT* upper,
                                    DRAPE_GLOBAL DRAPE_UINT* lower)
 {

@@ -1,5 +1,5 @@
-// A cloth node against a face of the obstacle, its edges and vertices included.
-// See feature_contact.h for what a contact is and for the frame.
+// Tests a cloth node against a face of the obstacle, including its edges and vertices. feature_contact.h defines
+// contacts and the frame.
 #ifndef DRAPE_LIB_NODE_FACE_CONTACT_H
 #define DRAPE_LIB_NODE_FACE_CONTACT_H
 
@@ -8,8 +8,8 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// The cone of the obstacle feature on which the closest point with these weights lies; a face admits its own normal
-// only and needs none.
+// Returns the cone of the obstacle feature on which the closest point with these weights lies; a face admits its own
+// normal only and needs none.
 DRAPE_FUNCTION NormalCone closestFeatureCone(Vec3 weights, const DRAPE_GLOBAL Triangle* triangle,
                                              const DRAPE_GLOBAL NormalCone* vertexCones,
                                              const DRAPE_GLOBAL NormalCone* edgeCones)
@@ -56,7 +56,7 @@ DRAPE_FUNCTION int wentThrough(Vec3 x0, Vec3 x1, const FeatureTriangle* face, Ve
     return waysOverlap(start, end, 1, DRAPE_WAY_REACH * bounds.m_reach);
 }
 
-// Node moving from x0 to x1 against a resting face. Returns whether there is a contact.
+// Tests a node that moves from x0 to x1 against a resting face. Returns whether there is a contact.
 DRAPE_FUNCTION int nodeFaceContact(Vec3 x0, Vec3 x1, const RestingFace* resting, const DRAPE_GLOBAL Triangle* triangle,
                                    const DRAPE_GLOBAL NormalCone* vertexCones, const DRAPE_GLOBAL NormalCone* edgeCones,
                                    PairBounds bounds, Contact* contact)
@@ -88,7 +88,7 @@ DRAPE_FUNCTION int nodeFaceContact(Vec3 x0, Vec3 x1, const RestingFace* resting,
             return 1;
         }
         // The path went around the face, so the node belongs on the side where it ends. The plane of a thin face turns
-        // freely about the face's length: its sides tell nothing.
+        // freely about the face's length: its sides mean nothing.
         if (!thin)
         {
             if (drapeAbs(s1) > areaLength * bounds.m_reachSlack) return 0;

@@ -23,8 +23,8 @@ typedef struct ClothView
     DRAPE_UINT m_nodeCount;
     DRAPE_UINT m_triangleCount;
     DRAPE_UINT m_mode;                            // DRAPE_DISCRETE …
-    DRAPE_UINT* m_searches;  // see PairBounds
-    const DRAPE_GLOBAL ObstacleMotion* m_motion;  // of the current obstacle; null where it rests
+    DRAPE_UINT* m_searches;                       // see PairBounds
+    const DRAPE_GLOBAL ObstacleMotion* m_motion;  // motion of the current obstacle; null if it rests
 } ClothView;
 
 typedef struct ObstacleView
@@ -71,8 +71,8 @@ DRAPE_FUNCTION Vec3 nodeStart(const ClothView* cloth, DRAPE_UINT node)
     return startSeen(cloth->m_motion, vec3Load(cloth->m_start, node));
 }
 
-// Contacts are a function of the two features alone: whichever way a pair of features is found, its numbers are the
-// same. The frame's origin is the obstacle feature's first position.
+// Contacts depend on the two features alone: however a pair of features is found, its numbers are equal. The frame's
+// origin is the obstacle feature's first position.
 DRAPE_FUNCTION PairBounds pairBounds(const ClothView* cloth, float extent, float reach)
 {
     PairBounds bounds;
@@ -84,7 +84,7 @@ DRAPE_FUNCTION PairBounds pairBounds(const ClothView* cloth, float extent, float
     return bounds;
 }
 
-// Largest coordinate of a cloth feature, m, from those at the step's start and at its end.
+// Returns the largest coordinate of a cloth feature, m, at the step's start or at its end.
 DRAPE_FUNCTION float stepExtent(const ClothView* cloth, float start, float end)
 {
     return cloth->m_mode == DRAPE_DISCRETE ? end : drapeMax(start, end);
@@ -101,7 +101,7 @@ DRAPE_FUNCTION int finishContact(int found, Vec3 origin, Contact* contact)
     return DRAPE_IS_CONTACT;
 }
 
-// The features of a contact of the kind. cloth: node, triangle or edge.
+// Sets the features of a contact of the kind. cloth: node, triangle or edge.
 DRAPE_FUNCTION void nameFeatures(Contact* contact, const ClothView* view, DRAPE_UINT kind, DRAPE_UINT cloth,
                                  DRAPE_UINT obstacle)
 {
@@ -112,7 +112,7 @@ DRAPE_FUNCTION void nameFeatures(Contact* contact, const ClothView* view, DRAPE_
                       (kind == DRAPE_EDGE_EDGE ? view->m_triangleCount : 0u);
 }
 
-// Node i of the cloth triangle against the obstacle's triangle with corners a, b, c.
+// Tests node i of the cloth triangle against the obstacle's triangle with corners a, b, c.
 DRAPE_FUNCTION int pairNodeFace(int i, const ClothView* cloth, DRAPE_UINT clothTriangle, Vec3 a, Vec3 b, Vec3 c,
                                 const ObstacleView* obstacle, DRAPE_UINT obstacleTriangle, float reach,
                                 Contact* contact)
@@ -131,7 +131,7 @@ DRAPE_FUNCTION int pairNodeFace(int i, const ClothView* cloth, DRAPE_UINT clothT
     return finishContact(found, a, contact);
 }
 
-// Third vertex of the triangle on the other side of edge i; the triangle's own at a boundary.
+// Returns the third vertex of the triangle on the other side of edge i; the triangle's own at a boundary.
 DRAPE_FUNCTION DRAPE_UINT vertexBeyond(const ClothView* cloth, const DRAPE_GLOBAL Triangle* triangle, int i)
 {
     const DRAPE_UINT own = triangle->m_vertices[i == 0 ? 2 : i - 1];
@@ -139,7 +139,7 @@ DRAPE_FUNCTION DRAPE_UINT vertexBeyond(const ClothView* cloth, const DRAPE_GLOBA
     return edge->m_opposite[0] == own ? edge->m_opposite[1] : edge->m_opposite[0];
 }
 
-// The cloth triangle against the obstacle's vertex.
+// Tests the cloth triangle against the obstacle's vertex.
 DRAPE_FUNCTION int pairFaceVertex(const ClothView* cloth, DRAPE_UINT clothTriangle, Vec3 vertex, NormalCone cone,
                                   DRAPE_UINT obstacleVertex, float reach, Contact* contact)
 {
@@ -163,8 +163,8 @@ DRAPE_FUNCTION int pairFaceVertex(const ClothView* cloth, DRAPE_UINT clothTriang
     return finishContact(found, vertex, contact);
 }
 
-// Edge i of the cloth triangle against the obstacle's edge from a to b. The owner of an edge walks it in its own
-// direction, so the weights are in the order of its nodes.
+// Tests edge i of the cloth triangle against the obstacle's edge from a to b. The owner of an edge traverses it in its
+// own direction, so the weights are in the order of its nodes.
 DRAPE_FUNCTION int pairEdgeEdge(int i, const ClothView* cloth, DRAPE_UINT clothTriangle, Vec3 a, Vec3 b,
                                 NormalCone cone, DRAPE_UINT obstacleEdge, float reach, Contact* contact)
 {
@@ -184,8 +184,8 @@ DRAPE_FUNCTION int pairEdgeEdge(int i, const ClothView* cloth, DRAPE_UINT clothT
     return finishContact(edgeEdgeContact(e0, e1, o, cone, pairBounds(cloth, extent, reach), contact), a, contact);
 }
 
-// The tests that a pair of triangles owns, as bits: three nodes × face, face × three vertices, three edges × three
-// edges. Each feature pair is tested only in the pair of triangles that own both features.
+// Returns the tests that a pair of triangles owns, as bits: three nodes × face, face × three vertices, three edges ×
+// three edges. Each feature pair is tested only in the pair of triangles that own both features.
 DRAPE_FUNCTION DRAPE_UINT ownedTests(DRAPE_UINT clothOwned, DRAPE_UINT obstacleOwned)
 {
     const DRAPE_UINT obstacleEdges = obstacleOwned >> 3;
@@ -197,7 +197,7 @@ DRAPE_FUNCTION DRAPE_UINT ownedTests(DRAPE_UINT clothOwned, DRAPE_UINT obstacleO
     return tests;
 }
 
-// The tests without an invalid position, given the valid features of both triangles.
+// Returns the tests without an invalid position, given the valid features of both triangles.
 DRAPE_FUNCTION DRAPE_UINT validTests(DRAPE_UINT clothValid, DRAPE_UINT obstacleValid)
 {
     DRAPE_UINT tests = ownedTests(clothValid, obstacleValid);
@@ -262,8 +262,8 @@ DRAPE_FUNCTION void loadPair(PairTriangles* pair, const ClothView* cloth, const 
 }
 
 // Proves that a pair of triangles is out of reach by the planes of the two, where the cloth's is taken at the step's
-// end. The slack is far above any rounding: what is dropped here gives no contact. A plane whose normal is too short
-// for a float to hold its length proves nothing.
+// end. The slack is far above any rounding: a pair dropped here gives no contact. A plane proves nothing if its normal
+// is too short for a float's full precision.
 DRAPE_FUNCTION int pairApart(const PairTriangles* pair, float reach)
 {
     const FeatureTriangle start = pair->m_start, end = pair->m_end, resting = pair->m_resting;
@@ -289,7 +289,7 @@ DRAPE_FUNCTION int pairApart(const PairTriangles* pair, float reach)
     return 0;
 }
 
-// The tests of a pair of triangles that may give a contact, as bits: none where the triangles are surely apart.
+// Returns the tests of a pair of triangles that may give a contact, as bits: none if the triangles are certainly apart.
 DRAPE_FUNCTION DRAPE_UINT testsOfPair(const ClothView* cloth, const ObstacleView* obstacle, Candidate candidate,
                                       float reach)
 {

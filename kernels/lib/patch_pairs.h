@@ -8,8 +8,8 @@
 #include "team.h"
 #include "wide_walk.h"
 
-// The cloths of a step and what their triangles have pairs with. thickness: m, cloths × obstacles, negative where the
-// pair is not tested. mode: DRAPE_DISCRETE …. motions: of the obstacles that move in the step.
+// The cloths of a step and their pairs. thickness: m, cloths × obstacles, negative for untested pairs. mode:
+// DRAPE_DISCRETE …. motions: of the obstacles that move in the step.
 typedef struct StepCloths
 {
     __global const Triangle* m_triangles;
@@ -94,7 +94,7 @@ static void countInvalid(const StepCloths* cloths, const uint cloth, __global St
     }
 }
 
-// A cloth triangle as the features of one obstacle see it.
+// A cloth triangle relative to one obstacle, for tests against that obstacle's features.
 typedef struct Looker
 {
     CullTriangle m_cull;

@@ -1,6 +1,7 @@
-// Obstacles that move in the step. Their positions are those at the step's end, and the cloth's motion is taken as they
-// see it: a node that starts at x starts at m_map x for them. The path between is a straight line in their frame, exact
-// for motion without rotation; a point at distance r of a rotation by the angle a is off by r (1 - cos(a / 2)) at most.
+// Obstacles that move in the step. Their positions are those at the step's end, and the cloth's motion is relative to
+// the obstacle: a node that starts at x starts at m_map x. The path between is a straight line in the obstacle's frame.
+// This is exact for motion without rotation. Under a rotation by the angle a, a point at distance r of the axis is off
+// by at most r (1 - cos(a / 2)).
 #ifndef DRAPE_LIB_RIGID_MOTION_H
 #define DRAPE_LIB_RIGID_MOTION_H
 
@@ -19,13 +20,13 @@ DRAPE_FUNCTION Vec3 mapPoint(const DRAPE_GLOBAL float* m, Vec3 p)
     return vec3Add(mapDirection(m, p), vec3(m[3], m[7], m[11]));
 }
 
-// Start of a node as the obstacle sees it; motion is null for one that rests.
+// Returns a node's start relative to the obstacle; motion is null for a resting obstacle.
 DRAPE_FUNCTION Vec3 startSeen(const DRAPE_GLOBAL ObstacleMotion* motion, Vec3 start)
 {
     return motion ? mapPoint(motion->m_map, start) : start;
 }
 
-// The motion of a slot among count in the order of slots; null where it rests.
+// Returns the motion of a slot, among `count` motions in the order of slots; null if the obstacle rests.
 DRAPE_FUNCTION const DRAPE_GLOBAL ObstacleMotion* findMotion(const DRAPE_GLOBAL ObstacleMotion* motions,
                                                              DRAPE_UINT count, DRAPE_UINT mesh)
 {
@@ -58,8 +59,8 @@ DRAPE_FUNCTION int isSwept(const Vec3* p, float radius, DRAPE_UINT mode)
     return !(near > 0.0f);
 }
 
-// The corners of a cloth triangle at the step's start as the obstacle sees them, then at its end; motion is null for
-// one that rests.
+// Computes the corners of a cloth triangle at the step's start relative to the obstacle, then at its end; motion is
+// null for a resting obstacle.
 DRAPE_FUNCTION void cornersSeen(Vec3* p, const DRAPE_GLOBAL ObstacleMotion* motion,
                                 const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
                                 const DRAPE_GLOBAL float* end)
@@ -84,8 +85,8 @@ DRAPE_FUNCTION int mayComeNear(const Dop* dop, float radius, const DRAPE_GLOBAL 
     return near;
 }
 
-// The volume in which to look for what may be in contact with a cloth triangle over the step as the obstacle sees it,
-// see cornersVolume; mode: DRAPE_DISCRETE …. The volume holds the radius. Returns mayComeNear().
+// Computes the volume to search for contacts of a cloth triangle over the step, relative to the obstacle; see
+// cornersVolume. mode: DRAPE_DISCRETE …. The volume includes the radius. Returns mayComeNear().
 DRAPE_FUNCTION int volumeSeen(Dop* dop, const DRAPE_GLOBAL ObstacleMotion* motion,
                               const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
                               const DRAPE_GLOBAL float* end, float radius, DRAPE_UINT mode)
@@ -99,8 +100,8 @@ DRAPE_FUNCTION int volumeSeen(Dop* dop, const DRAPE_GLOBAL ObstacleMotion* motio
     return mayComeNear(dop, 0.0f, motion);
 }
 
-// Grows a leaf's volume to the triangle's paths as every moving obstacle sees them that it has a pair with. thickness:
-// m, per obstacle slot, negative without a pair.
+// Grows a leaf's volume to the triangle's paths relative to every moving obstacle of its pairs. thickness: m, per
+// obstacle slot, negative without a pair.
 DRAPE_FUNCTION void growByMotions(DRAPE_GLOBAL BvhNode* leaf, const DRAPE_GLOBAL ObstacleMotion* motions,
                                   DRAPE_UINT count, const DRAPE_GLOBAL float* thickness,
                                   const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
@@ -119,8 +120,8 @@ DRAPE_FUNCTION void growByMotions(DRAPE_GLOBAL BvhNode* leaf, const DRAPE_GLOBAL
     }
 }
 
-// Slot of a joined vertex or edge, by the slots' firsts (members of ObstaclePlace); slots without any may be among
-// them. kind: whose index it is.
+// Returns the slot of a joined vertex or edge, from the slots' firsts (members of ObstaclePlace). Slots may be empty.
+// kind: the kind of the index.
 #define DRAPE_OF_VERTEX 0
 #define DRAPE_OF_EDGE 1
 DRAPE_FUNCTION DRAPE_UINT placeOf(const DRAPE_GLOBAL ObstaclePlace* places, DRAPE_UINT count, int kind,

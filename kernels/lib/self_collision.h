@@ -1,8 +1,8 @@
-// A mesh against itself: pairs of its triangles by a walk of its hierarchy for every leaf, and the vertex-face and
-// edge-edge pairs of these whose own volumes overlap. The walk serves two meshes too.
+// Finds collisions of a mesh with itself: pairs of its triangles by a traversal of its hierarchy for every leaf, and
+// their vertex-face and edge-edge pairs whose own volumes overlap. The traversal also serves two meshes.
 //
 // Every unordered pair of a mesh's own triangles is found from the leaf that comes first. Every feature has one owner
-// among the triangles, so a pair of features is found once, in the pair of their owners; features that share a vertex
+// among the triangles, so a pair of features is found once, in the pair of their owners. Features that share a vertex
 // are left out.
 #ifndef DRAPE_LIB_SELF_COLLISION_H
 #define DRAPE_LIB_SELF_COLLISION_H
@@ -52,8 +52,8 @@ DRAPE_FUNCTION int trianglesShareVertex(const DRAPE_GLOBAL Triangle* a, const DR
     return shared;
 }
 
-// Goes on to the next pair of the leaf of side a with a leaf of tree b whose volume overlaps. lastLeaf: the last leaf
-// below each node of b; read for walks of a mesh with itself. Returns whether there is one.
+// Advances to the next pair of the leaf of side a with a leaf of tree b whose volume overlaps. lastLeaf: the last leaf
+// below each node of b; read for traversals of a mesh with itself. Returns whether there is one.
 DRAPE_FUNCTION int leafWalkNext(LeafWalk* walk, const WalkSide* a, const WalkSide* b, DRAPE_UINT kind,
                                 const DRAPE_GLOBAL DRAPE_UINT* lastLeaf, Candidate* pair)
 {
@@ -83,7 +83,7 @@ DRAPE_FUNCTION int leafWalkNext(LeafWalk* walk, const WalkSide* a, const WalkSid
     return 0;
 }
 
-// The volume of a vertex over the step, grown by the radius (m, ≥ 0). Empty when it is not valid.
+// Computes the volume of a vertex over the step, grown by the radius (m, ≥ 0). Empty for an invalid vertex.
 DRAPE_FUNCTION void vertexVolume(Dop* dop, const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end,
                                  DRAPE_UINT vertex, float radius)
 {
@@ -94,7 +94,7 @@ DRAPE_FUNCTION void vertexVolume(Dop* dop, const DRAPE_GLOBAL float* start, cons
     dopAddPoint(dop, p1, radius);
 }
 
-// Volumes of a vertex, edge or face: merged of its one to three vertices' volumes.
+// The one to three vertices of a vertex, edge or face; its volume merges theirs.
 typedef struct FeatureVertices
 {
     DRAPE_UINT m_vertices[3];
@@ -164,7 +164,7 @@ typedef struct FeaturePairs
     DRAPE_UINT m_edgesCount;
 } FeaturePairs;
 
-// Vertices that triangle `owner` owns against the face of triangle `other`.
+// Adds pairs of the vertices that triangle `owner` owns with the face of triangle `other`.
 DRAPE_FUNCTION void addVertexFacePairs(FeaturePairs* pairs, const DRAPE_GLOBAL Triangle* triangles, DRAPE_UINT owner,
                                        DRAPE_UINT other, const DRAPE_GLOBAL Dop* volumes)
 {
@@ -227,7 +227,7 @@ DRAPE_FUNCTION CcdResult ccdOfVertices(DRAPE_UINT kind, const DRAPE_UINT vertice
     return ccdOfKind(kind, p0, p1, settings);
 }
 
-// The four vertices of a pair of features, as a CcdQuery orders them.
+// Computes the four vertices of a pair of features, in the order of a CcdQuery.
 DRAPE_FUNCTION void featurePairVertices(DRAPE_UINT kind, FeaturePair pair, const DRAPE_GLOBAL Triangle* triangles,
                                         const DRAPE_GLOBAL Edge* edges, DRAPE_UINT vertices[4])
 {

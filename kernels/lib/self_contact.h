@@ -20,7 +20,7 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// The pair's part of its distance at rest that is its thickness at most.
+// Maximum thickness of a pair, as a share of its distance at rest.
 #define DRAPE_REST_SHARE 0.5f
 
 // A self test's kind in FeatureTest::m_motion; its features are in m_cloth and m_lane, the cloth's thickness (m) in
@@ -73,7 +73,7 @@ DRAPE_FUNCTION float restDistanceOfEdges(const DRAPE_GLOBAL float* rest, const D
     return vec3Length(vec3Sub(vec3Mix(a, b, s), vec3Mix(o, end, t)));
 }
 
-// The pair's thickness, m; 0 for features that touch at rest.
+// Returns the pair's thickness, m; 0 for features that touch at rest.
 DRAPE_FUNCTION float selfThickness(float thickness, float restDistance)
 {
     return drapeMin(thickness, DRAPE_REST_SHARE * restDistance);
@@ -102,8 +102,8 @@ DRAPE_FUNCTION int nearerBeyond(const ClothView* cloth, const DRAPE_GLOBAL Trian
     return 0;
 }
 
-// A node at rest in the frame's origin and a moving face at the step's end. side: where the node was at the start, +1
-// in front of the face.
+// Tests a node at rest in the frame's origin against a moving face at the step's end. side: the node's side at the
+// start, +1 in front of the face.
 DRAPE_FUNCTION int selfNodeNear(const ClothView* cloth, const DRAPE_GLOBAL Triangle* triangle, const MovingFace* face,
                                 Vec3 node, float side, PairBounds bounds, Contact* contact)
 {
@@ -138,7 +138,7 @@ DRAPE_FUNCTION int selfNodeNear(const ClothView* cloth, const DRAPE_GLOBAL Trian
     return DRAPE_IS_CONTACT;
 }
 
-// Node against face of the same cloth. thickness: m, of the cloth.
+// Tests a node against a face of the same cloth. thickness: m, of the cloth.
 DRAPE_FUNCTION int selfNodeFace(const SelfView* view, DRAPE_UINT node, DRAPE_UINT triangleIndex, float thickness,
                                 Contact* contact)
 {
@@ -275,7 +275,7 @@ DRAPE_FUNCTION float edgeExtent(FeatureEdge e)
     return drapeMax(vec3NormMax(e.m_a), vec3NormMax(e.m_b));
 }
 
-// Two edges of the same cloth, first < second. thickness: m, of the cloth.
+// Tests two edges of the same cloth, first < second. thickness: m, of the cloth.
 DRAPE_FUNCTION int selfEdgeEdge(const SelfView* view, DRAPE_UINT first, DRAPE_UINT second, float thickness,
                                 Contact* contact)
 {
@@ -298,7 +298,7 @@ DRAPE_FUNCTION int selfEdgeEdge(const SelfView* view, DRAPE_UINT first, DRAPE_UI
                          origin1, contact);
 }
 
-// The features of a self test's contact. firstSlot: firstSelfSlot().
+// Sets the features of a self test's contact. firstSlot: firstSelfSlot().
 DRAPE_FUNCTION void nameSelfFeatures(Contact* contact, const ClothView* cloth, FeatureTest test, DRAPE_UINT firstSlot)
 {
     const int edges = test.m_motion == DRAPE_SELF_TEST_EDGE;

@@ -62,7 +62,7 @@ DRAPE_FUNCTION int nodeIsValid(const DRAPE_GLOBAL float* start, const DRAPE_GLOB
     return positionIsValid(vec3Load(start, node)) && positionIsValid(vec3Load(end, node));
 }
 
-// Empty where the node is not valid.
+// Returns a node's box; empty for an invalid node.
 DRAPE_FUNCTION FeatureBox nodeBox(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end, DRAPE_UINT node,
                                   float radius)
 {
@@ -173,7 +173,7 @@ DRAPE_FUNCTION LaneMask boxesOverlap(const BoxLanes* boxes, const FeatureBox* bo
     return near;
 }
 
-// The volume of a patch, from the lowest level of the wide tree (patch.h).
+// Loads the volume of a patch, from the lowest level of the wide tree (patch.h).
 DRAPE_FUNCTION Dop childVolume(const DRAPE_GLOBAL float* nodes, DRAPE_UINT patch)
 {
     const DRAPE_GLOBAL float* child =
@@ -204,7 +204,7 @@ DRAPE_FUNCTION FeatureBox childBox(const DRAPE_GLOBAL float* nodes, DRAPE_UINT p
     return boxOfVolume(&volume);
 }
 
-// Patches under a child of a node of that level of the wide tree.
+// Returns the number of patches under a child of a node of that level of the wide tree.
 DRAPE_FUNCTION DRAPE_UINT patchesBelow(DRAPE_UINT level)
 {
     DRAPE_UINT below = 1;

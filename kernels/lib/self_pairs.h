@@ -34,7 +34,7 @@ static int volumesOverlap(const Vec3 from[4], const Vec3 to[4], const int split,
         high[k] = lanesMax(start, end);
         sum += lanesAbs(start) + lanesAbs(end);
 #if DRAPE_DOP_DIRECTIONS == 7 || DRAPE_DOP_DIRECTIONS == 13
-        inner = lanesMax(inner, lanesSplat(drapeMax(vec3Norm1(from[k]), vec3Norm1(to[k]))));  // of any two coordinates
+        inner = lanesMax(inner, lanesSplat(drapeMax(vec3Norm1(from[k]), vec3Norm1(to[k]))));  // any two coordinates
 #endif
     }
     const Lanes both = lanesMin(low[2], low[3]), bothHigh = lanesMax(high[2], high[3]);
@@ -60,8 +60,8 @@ static int volumesOverlap(const Vec3 from[4], const Vec3 to[4], const int split,
 }
 #endif
 
-// Lists a pair of features that share no node, and whose boxes overlap, if their volumes do. kind: DRAPE_SELF_TEST_NODE …;
-// a, b: node and face, or edges.
+// Lists a pair of features that share no node, and whose boxes overlap, if their volumes do. kind: DRAPE_SELF_TEST_NODE
+// …; a, b: node and face, or edges.
 static void keepPair(DRAPE_TEAM Team* team, const SelfCloth* cloth, const uint a, const uint b, const uint kind,
                      const TestList* list)
 {

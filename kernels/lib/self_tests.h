@@ -1,4 +1,4 @@
-// The tests of cloths with themselves that a cull lists: what they read, and how one is done. For kernels only.
+// Tests of cloths with themselves that a cull lists: their input data, and how to run one. For kernels only.
 #ifndef DRAPE_LIB_SELF_TESTS_H
 #define DRAPE_LIB_SELF_TESTS_H
 

@@ -1,4 +1,4 @@
-// The members of a slot in order of their keys, the obstacle features, by a work-group. For devices only: it needs barriers.
+// Sorts the members of a slot by their keys, the obstacle features, in a work-group. For devices only: needs barriers.
 #ifndef DRAPE_LIB_SLOT_ORDER_H
 #define DRAPE_LIB_SLOT_ORDER_H
 
@@ -62,7 +62,7 @@ static void countMembers(__global uint* members, __global const uint* keys, cons
     barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
 }
 
-// Either, by how many they are. The keys are of no use afterwards.
+// Sorts in either way, depending on the number of members. The keys are invalid afterwards.
 static void orderMembers(__global uint* members, __global uint* keys, const uint count, __local uint* own,
                          __local uint* ownKeys)
 {

@@ -13,7 +13,7 @@ static void addToSums(__global volatile uint* sums, const uint slot, const uint 
 }
 
 #ifndef DRAPE_HOST_KERNELS
-// The sum of the first `count` of DRAPE_SUMMED numbers. By masks: of choices by component PoCL 3.1 makes something else.
+// Returns the sum of the first `count` of DRAPE_SUMMED numbers. Uses masks: PoCL 3.1 miscompiles choices by component.
 static uint sumOfFirst(__global const uint* numbers, const uint count)
 {
     uint4 sums = 0;
@@ -23,7 +23,7 @@ static uint sumOfFirst(__global const uint* numbers, const uint count)
     return sums.x + sums.y + sums.z + sums.w;
 }
 
-// A group of DRAPE_WIDE_SUMS work-items, or more, sums rows by DRAPE_SUMMED: wide gets so many sums.
+// Sums rows by DRAPE_SUMMED, in a group of at least DRAPE_WIDE_SUMS work-items. wide: gets DRAPE_WIDE_SUMS sums.
 static void sumRows(__global const uint* sums, __local uint* wide)
 {
     const uint id = get_local_id(0);
@@ -46,7 +46,7 @@ static uint hitsBefore(__global const uint* counts, __global const uint* sums, _
            sumOfFirst(counts + row * DRAPE_SUMMED, slot % DRAPE_SUMMED);
 }
 
-// All work-items of the launch together. sums may be null: then all is left as it is.
+// Zeroes counts and sums; all work-items of the launch call it together. Does nothing if sums is null.
 static void clearSums(__global uint* counts, __global uint* sums, const uint slots)
 {
     if (!sums) return;

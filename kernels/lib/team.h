@@ -16,10 +16,10 @@
 
 typedef struct Team
 {
-    uint m_depth;  // of a walk's stack, where the lanes share it
+    uint m_depth;  // depth of the stack that a walk's lanes share
     FeatureTest m_kept[DRAPE_TEAM_KEPT];
     uint m_keptCount;
-    uint m_place;  // in the list, of what was moved last
+    uint m_place;  // position in the list of the records moved last
 } Team;
 
 typedef struct TestList
@@ -34,7 +34,8 @@ typedef struct TestList
 #define teamWidth() 1
 #define teamSync()
 
-// Bit i: byte i, of eight that are all ones or zero. The first is the lowest, as little-endian CPUs have it.
+// Returns a mask whose bit i is byte i of eight bytes, each all ones or zero. The first byte is the lowest, as on
+// little-endian CPUs.
 static uint byteBits(const ulong bytes)
 {
     return (uint)(((bytes & 0x8040201008040201UL) * 0x0101010101010101UL) >> 56);
@@ -131,7 +132,7 @@ static void teamKeep(DRAPE_TEAM Team* team, const TestList* list, const FeatureT
     teamPut(team, list, teamAdd(team->m_keptCount), test);
 }
 
-// Moves what the team kept to the list; by all lanes together. Returns whether the list is within its limit.
+// Moves the team's kept records to the list; all lanes call it together. Returns whether the list is within its limit.
 static int teamFlush(DRAPE_TEAM Team* team, const TestList* list)
 {
     teamSync();

@@ -22,7 +22,7 @@ DRAPE_NAMESPACE_BEGIN
 typedef struct TrianglePair
 {
     FeatureTriangle m_a, m_b;
-    float m_scale;  // of the frame, prescale included
+    float m_scale;  // scale of the frame, prescale included
     float m_extent;
 } TrianglePair;
 
@@ -49,7 +49,7 @@ DRAPE_FUNCTION int localPair(TrianglePair* pair, const Vec3 a[3], const Vec3 b[3
     return 1;
 }
 
-// p and the face come within the bounds' reach, unless proved not to.
+// Returns whether p and the face come within the bounds' reach, unless it is proved that they do not.
 DRAPE_FUNCTION int vertexFaceNear(Vec3 p, FeatureTriangle face, PairBounds bounds)
 {
     const Vec3 weights = closestOnTriangle(p, face.m_p[0], face.m_p[1], face.m_p[2]);
@@ -68,7 +68,8 @@ DRAPE_FUNCTION int edgeEdgeNear(FeatureEdge a, FeatureEdge b, PairBounds bounds)
     return !provenApart(n, low, high, bounds);
 }
 
-// Some vertex and face, or two edges, within reach. Triangles that do not intersect are nearest there.
+// Returns whether some vertex and face, or two edges, are within reach. Triangles that do not intersect are nearest
+// there.
 DRAPE_FUNCTION int featuresNear(const TrianglePair* pair, PairBounds bounds)
 {
     for (int i = 0; i < 3; ++i)
@@ -84,7 +85,8 @@ DRAPE_FUNCTION int featuresNear(const TrianglePair* pair, PairBounds bounds)
     return 0;
 }
 
-// DRAPE_PAIR_MEETS and DRAPE_PAIR_NEAR, for a radius in the corners' unit; without DRAPE_PAIR_NEAR for a negative one.
+// Returns DRAPE_PAIR_MEETS and DRAPE_PAIR_NEAR, for a radius in the corners' unit; without DRAPE_PAIR_NEAR for a
+// negative one.
 DRAPE_FUNCTION DRAPE_UINT trianglePairTest(const Vec3 a[3], const Vec3 b[3], float radius)
 {
     TrianglePair pair;

@@ -1,6 +1,6 @@
-// Do two triangles intersect? Separating axes: two normals, nine edge × edge, six normal × edge. A float axis is taken
-// as exact and a pair is called separate only when the gap along it exceeds the rounding of the projections, so no
-// intersecting pair is missed; touching and some nearly touching pairs are reported too.
+// Decides whether two triangles intersect. Separating axes: two normals, nine edge × edge, six normal × edge. A float
+// axis is taken as exact. A pair is called separate only if the gap along an axis exceeds the rounding of the
+// projections. No intersecting pair is missed; touching and some nearly touching pairs are reported, too.
 #ifndef DRAPE_LIB_TRIANGLE_TRIANGLE_H
 #define DRAPE_LIB_TRIANGLE_TRIANGLE_H
 

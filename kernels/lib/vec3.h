@@ -119,8 +119,7 @@ DRAPE_FUNCTION int vec3IsFinite(Vec3 a)
     return drapeIsFinite(a.x) && drapeIsFinite(a.y) && drapeIsFinite(a.z);
 }
 
-// Positions beyond this, m, are taken for bad input like NaN: up to it, the square of a triangle's area vector is
-// finite.
+// Positions beyond this, m, count as bad input like NaN. Up to it, the square of a triangle's area vector is finite.
 #define DRAPE_FARTHEST 1073741824.0f  // 2^30
 
 // Returns whether geometry can use the position: finite and not farther out than DRAPE_FARTHEST.

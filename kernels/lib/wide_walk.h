@@ -1,10 +1,10 @@
-// Walks of the wide tree over patches (shared/patch.h): what is on their stacks. For kernels only.
+// Stacks of traversals of the wide tree over patches (shared/patch.h). For kernels only.
 #ifndef DRAPE_LIB_WIDE_WALK_H
 #define DRAPE_LIB_WIDE_WALK_H
 
 #include "../shared/patch.h"
 
-// Entries of a walk's stack are nodes of the wide tree, with their level in the high bits.
+// Entries of a traversal's stack are nodes of the wide tree, with their level in the high bits.
 #define DRAPE_LEVEL_SHIFT 28
 // Levels of the wide tree over 2^28 triangles.
 #define DRAPE_LEVELS 7

@@ -1,5 +1,5 @@
-// One contact between a cloth feature and an obstacle feature: what the narrow phase finds and the adapter reads.
-// The same declaration serves C++ and OpenCL C: 32-bit scalars only, 64 bytes, no padding.
+// One contact between a cloth feature and an obstacle feature: the output of the narrow phase, read by the adapter. The
+// same declaration serves C++ and OpenCL C: 32-bit scalars only, 64 bytes, no padding.
 #ifndef DRAPE_SHARED_CONTACT_H
 #define DRAPE_SHARED_CONTACT_H
 
@@ -7,16 +7,16 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// Kinds, in canonical order. The cloth side is named first.
+// Kinds of contacts, in canonical order. The cloth's feature is named first.
 #define DRAPE_NODE_FACE 0u
 #define DRAPE_FACE_VERTEX 1u
 #define DRAPE_EDGE_EDGE 2u
-// Contacts of a cloth with itself (lib/self_contact.h): the obstacle's part is played by another feature of the cloth.
+// Contacts of a cloth with itself (lib/self_contact.h): another feature of the cloth takes the obstacle's part.
 #define DRAPE_SELF_NODE_FACE 3u
 #define DRAPE_SELF_EDGE_EDGE 4u
 
-// The most contacts of a slot that a CPU's work-item puts in order alone in quadratic time, where none are left out; a cloth
-// feature at rest has a few dozen.
+// Maximum contacts of a slot that a CPU's work-item sorts alone in quadratic time, without reduction. A cloth feature
+// at rest has a few dozen.
 #define DRAPE_RANKED 64u
 
 // Canonical order of contacts: slot, then obstacle feature. A slot is a cloth feature: first all nodes, then all faces,
@@ -28,10 +28,10 @@ typedef struct Contact
     DRAPE_UINT m_clothFeature;  // node, triangle or edge, index over all cloths
     DRAPE_UINT
         m_obstacleFeature;  // triangle, vertex or edge, index over all obstacles; of self contacts over all cloths
-    float m_normal[3];      // unit, from the obstacle to the side the cloth came from
+    float m_normal[3];      // unit, from the obstacle to the side from which the cloth came
     float m_gap1;           // m, signed distance along the normal at the step's end, thickness not subtracted
     float m_point[3];       // m, contact point on the obstacle, world frame
-    float m_gap0;           // m, the same at the step's start
+    float m_gap0;           // m, signed distance along the normal at the step's start
     // Weights of the cloth feature's nodes, sum 1; unused ones 0. Self contacts: weights of the face's nodes, or the
     // parameters along the first and the second edge, each from its first node (0) to its second (1).
     float m_weights[3];

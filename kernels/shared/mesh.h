@@ -36,11 +36,11 @@ typedef struct MeshFirsts
 
 // Directions in which a surface can face at a vertex or edge: all within the half-angle of the axis or of its opposite.
 // A cosine of -1 admits every direction (boundary, non-manifold or degenerate surroundings). The axis leans to the
-// front; zero where there is none.
+// front; zero if there is no front.
 typedef struct NormalCone
 {
     Vec3 m_axis;     // unit
-    float m_cosine;  // of the half-angle
+    float m_cosine;  // cosine of the half-angle
 } NormalCone;
 
 // Half the volumes' sides: 9 in the product; 3, 7 and 13 are for studies. An option of the host's build, passed on to
@@ -50,7 +50,7 @@ typedef struct NormalCone
 #endif
 
 // A node's volume is the interval [m_low, m_high] in each direction. Children are adjacent: m_first … m_first + m_count
-// - 1. A leaf has m_count 0 and m_first is its place in the order of primitives.
+// - 1. A leaf has m_count 0, and m_first is its position in the order of primitives.
 typedef struct BvhNode
 {
     float m_low[DRAPE_DOP_DIRECTIONS];
@@ -59,7 +59,7 @@ typedef struct BvhNode
     DRAPE_UINT m_count;
 } BvhNode;
 
-// Depth of the stack of a walk down one hierarchy. Each step opens one node and leaves at most one behind, and a
+// Depth of the stack of a traversal of one hierarchy. Each step opens one node and leaves at most one behind, and a
 // balanced hierarchy over fewer than 2^32 primitives is 32 high.
 #define DRAPE_STACK_DEPTH 72
 
@@ -78,19 +78,19 @@ typedef struct Candidate
 typedef struct StepCounters
 {
     DRAPE_UINT m_candidates;
-    DRAPE_UINT m_listed;  // hits, before any is reduced
-    DRAPE_UINT m_crowded;  // slots with more of them than are counted (compaction.cl, compaction_few.cl)
-    DRAPE_UINT m_hits;    // without those that were reduced
+    DRAPE_UINT m_listed;   // contacts before reduction
+    DRAPE_UINT m_crowded;  // slots with too many contacts for counting (compaction.cl, compaction_few.cl)
+    DRAPE_UINT m_hits;     // contacts after reduction
     DRAPE_UINT m_invalidNodes;
     DRAPE_UINT m_intersections;
-    DRAPE_UINT m_front;   // pairs of the front for the next step
-    DRAPE_UINT m_spill;   // most pairs that did not fit into a traversal's local queue
-    DRAPE_UINT m_swept;   // pairs of features that the continuous test decided
-    DRAPE_UINT m_patchPairs;  // of cloth triangles and patches, where they are listed
-    DRAPE_UINT m_selfPairs;   // of patches of cloths with themselves, where they are listed
+    DRAPE_UINT m_front;       // pairs of the front for the next step
+    DRAPE_UINT m_spill;       // maximum number of pairs that did not fit into a traversal's local queue
+    DRAPE_UINT m_swept;       // pairs of features that the continuous test decided
+    DRAPE_UINT m_patchPairs;  // listed pairs of cloth triangles and patches
+    DRAPE_UINT m_selfPairs;   // listed pairs of patches of cloths with themselves
     DRAPE_UINT m_selfTests;   // pairs of features of cloths with themselves
-    DRAPE_UINT m_selfSwept;  // of m_selfTests, those that the continuous test decided
-    DRAPE_UINT m_visits;  // volume tests of the broad phase; only in programs built with DRAPE_COUNT_VISITS
+    DRAPE_UINT m_selfSwept;   // pairs in m_selfTests that the continuous test decided
+    DRAPE_UINT m_visits;      // volume tests of the broad phase; only in programs built with DRAPE_COUNT_VISITS
 } StepCounters;
 
 DRAPE_NAMESPACE_END

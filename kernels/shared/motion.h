@@ -18,11 +18,11 @@ typedef struct ObstaclePlace
     DRAPE_UINT m_firstEdge;
 } ObstaclePlace;
 
-// An obstacle that moves in the step. Lists of them are in the order of slots.
+// An obstacle that moves in the step. Lists of such obstacles are in the order of slots.
 typedef struct ObstacleMotion
 {
     float m_map[DRAPE_MAP_FLOATS];  // pose at the step's end after the inverse of the one at its start
-    float m_low[3], m_high[3];      // m, box that holds the obstacle at the step's end
+    float m_low[3], m_high[3];      // m, the obstacle's box at the step's end
     DRAPE_UINT m_mesh;              // slot
 } ObstacleMotion;
 

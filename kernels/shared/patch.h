@@ -1,6 +1,6 @@
-// Patches: runs of obstacle triangles that lie near each other, with their features packed side by side, and the wide
-// tree over them. All lists come in blocks of DRAPE_PATCH_WIDTH lanes, component by component, so that a work-group's
-// lanes, or a vector's, read adjacent words.
+// Patches: runs of neighbouring obstacle triangles, with their features packed side by side, and the wide tree over the
+// patches. All lists come in blocks of DRAPE_PATCH_WIDTH lanes, component by component, so that a work-group's lanes,
+// or a vector's, read adjacent words.
 #ifndef DRAPE_SHARED_PATCH_H
 #define DRAPE_SHARED_PATCH_H
 
@@ -15,11 +15,11 @@ DRAPE_NAMESPACE_BEGIN
 
 typedef struct Patch
 {
-    DRAPE_UINT m_vertexBlock;  // first of m_vertexBlocks blocks of vertices that the patch's triangles own
+    DRAPE_UINT m_vertexBlock;  // first of m_vertexBlocks blocks of vertices owned by the patch's triangles
     DRAPE_UINT m_vertexBlocks;
     DRAPE_UINT m_edgeBlock;
     DRAPE_UINT m_edgeBlocks;
-    DRAPE_UINT m_mesh;  // slot of the obstacle: a patch never holds two
+    DRAPE_UINT m_mesh;  // slot of the obstacle: a patch belongs to one
 } Patch;
 
 // Floats per lane of a block.
@@ -28,8 +28,8 @@ typedef struct Patch
 #define DRAPE_FACE_FLOATS 10
 #define DRAPE_VERTEX_FLOATS 7
 #define DRAPE_EDGE_FLOATS 10
-// Spread: how far beside the face, over how far above it, a node can be that one of its edges' or corners' cones
-// admits; DRAPE_ANY_SPREAD where they admit as much as any, a direction in the face's own plane among them.
+// Spread of a face: largest ratio of a node's distance beside the face to its height above it that a cone of the
+// face's edges or corners admits. DRAPE_ANY_SPREAD: no bound; cones admit directions in or near the face's plane.
 #define DRAPE_ANY_SPREAD 1e18f
 // Size of a child of a wide node: for every direction low, high, and the reach of a contact as a share of the full
 // reach (lib/cone_reach.h).

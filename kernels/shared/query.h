@@ -12,7 +12,7 @@ DRAPE_NAMESPACE_BEGIN
 #define DRAPE_TEST_CERTIFIED 0u
 #define DRAPE_TEST_MOLLER 1u
 
-// A vertex and a face, or two edges, of a mesh against itself.
+// A vertex and a face, or two edges, of one mesh.
 typedef struct FeaturePair
 {
     DRAPE_UINT m_a;
@@ -24,7 +24,7 @@ typedef struct FeatureHit
     DRAPE_UINT m_kind;
     DRAPE_UINT m_a;
     DRAPE_UINT m_b;
-    float m_time;  // of impact, part of the step
+    float m_time;  // time of impact, fraction of the step
 } FeatureHit;
 
 // A pair of triangles that meets or is near, as bits of kernels/lib/triangle_pair.h.
@@ -35,7 +35,7 @@ typedef struct PairAnswer
     DRAPE_UINT m_bits;
 } PairAnswer;
 
-// Demands: they count on when a list is full, up to DRAPE_DEMAND_LIMIT, beyond which they only say "too many".
+// Demands count on when a list is full, up to DRAPE_DEMAND_LIMIT, beyond which they only say "too many".
 typedef struct SelfCounters
 {
     DRAPE_UINT m_pairs;

@@ -4,7 +4,8 @@
 
 #include "types.h"
 
-// Slots of a row, whose hits are summed, and rows of which a work-group sums again; all sums; the most slots that have any.
+// Slots per row, whose contacts are summed; rows that a work-group sums again; number of all sums; maximum slots that
+// have sums.
 #define DRAPE_SUMMED 16u
 #define DRAPE_WIDE_SUMS 64u
 #define DRAPE_SLOT_SUMS (DRAPE_WIDE_SUMS * DRAPE_SUMMED)

@@ -1,4 +1,4 @@
-// Spelling of the shared declarations in C++ and OpenCL C. In C++ they live in namespace drape.
+// Defines the shared declarations' keywords in C++ and OpenCL C. In C++ the declarations are in namespace drape.
 #ifndef DRAPE_SHARED_TYPES_H
 #define DRAPE_SHARED_TYPES_H
 
@@ -23,7 +23,7 @@
 #define DRAPE_ULONG std::uint64_t
 #define DRAPE_INT std::int32_t
 #define DRAPE_GLOBAL
-// Each instruction set that the host's kernels are compiled for has functions of its own: linkers join inline ones.
+// Gives each instruction set of the host's kernels its own functions: linkers merge inline ones.
 #ifdef DRAPE_HOST_KERNELS
 #define DRAPE_FUNCTION static inline
 #define DRAPE_RARE_FUNCTION static __attribute__((noinline))

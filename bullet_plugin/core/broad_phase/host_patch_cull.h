@@ -1,4 +1,4 @@
-// Broad phase over patches on the host: PatchCullStage's job, by the kernels of a CPU (host_kernels.h) on the threads
+// Broad phase over patches on the host. Does PatchCullStage's job with a CPU's kernels (host_kernels.h), on the threads
 // of a team.
 #pragma once
 
@@ -15,19 +15,19 @@ class HostPatchCull
 public:
     explicit HostPatchCull(const HostKernels& kernels = hostKernels()) : m_kernels(&kernels) {}
 
-    // New obstacles from that slot on, which must be packed next, even where none came.
+    // Sets new obstacles from that slot on, which must be packed next, even if there are none.
     void setTopology(const MeshPool& obstacles, std::size_t firstSlot);
     // Packs the features of those obstacles at the view's positions.
     void pack(SlotRange slots, const ObstacleView& obstacle);
 
-    // Lists the step's feature tests, and counts them and invalid nodes. limit: of tests; with more the list is not
-    // complete, and counters say only that there are more. Returns how often the list was too short and grew.
+    // Lists the step's feature tests, and counts them and invalid nodes. limit: of tests; beyond it the list is
+    // incomplete, and counters only say that there are more. Returns how often the list was too short and grew.
     std::size_t run(const ClothView& cloth, const HostCloths& cloths, std::size_t limit, ThreadTeam& threads,
                     StepCounters& counters);
     // Tests of the last run: the first ones up to its count; the rest is old.
     const std::vector<FeatureTest>& tests() const { return m_tests; }
 
-    // Gives back room that only earlier, larger scenes needed.
+    // Releases memory that only earlier, larger scenes needed.
     void giveBackRoom();
 
     PackedPatches packed() const;
@@ -42,6 +42,6 @@ private:
     std::vector<float> m_faces, m_vertices, m_edges, m_sizes, m_volumes, m_wideNodes;
     std::vector<std::uint32_t> m_vertexIds, m_edgeIds;  // a face's owner is the face itself
     std::vector<FeatureTest> m_tests;
-    std::size_t m_testsBefore = 0;  // of the last run
+    std::size_t m_testsBefore = 0;  // tests of the last run
 };
 }  // namespace drape

@@ -15,8 +15,8 @@ constexpr std::size_t kManyTriangles = 1 << 15;
 constexpr std::size_t kWalkTurns = 4;
 constexpr std::size_t kWalkTurnsAlone = 2;
 constexpr std::size_t kCullTurns = 4;
-// Groups that cull pairs, DRAPE_CULL_WAVES times the seven that an H200's compute unit holds by their registers, so
-// that uneven ones even out.
+// Groups that cull pairs, per compute unit. They are DRAPE_CULL_WAVES times the seven for which an H200's compute unit
+// has registers, so that uneven groups balance.
 constexpr std::size_t kPairGroupsPerUnit = 28;
 constexpr std::size_t kFirstPairs = 1 << 16;
 }  // namespace
@@ -28,7 +28,7 @@ std::uint32_t PatchCullStage::width(const Device& device)
 
 std::string PatchCullStage::defines(const Device& device)
 {
-    // OpenCL does not say how a native root errs; NVIDIA does (PTX: 2^-23 of it, over the whole range).
+    // OpenCL does not bound the error of a native root; NVIDIA does (PTX: 2^-23 of it, over the whole range).
     const bool roots = device.isGpu() && device.info().m_platform.rfind("NVIDIA", 0) == 0;
     return "#define DRAPE_PATCH_WIDTH " + std::to_string(width(device)) + "\n#define DRAPE_LANES " +
            (device.isGpu() ? "1\n" : std::to_string(kWidthCpu) + "\n") + (roots ? "#define DRAPE_NATIVE_ROOTS\n" : "");
@@ -146,7 +146,7 @@ void PatchCullStage::packFeatures(Device& device, ItemRange patches, Buffer<Tria
                        m_edgeIds.handle());
 }
 
-// Volumes of the patches and of the wide nodes above them.
+// Packs the volumes of the patches and of the wide nodes above them.
 void PatchCullStage::packVolumes(Device& device, ItemRange patches, Buffer<Triangle>& triangles,
                                  Buffer<float>& positions, Buffer<NormalCone>& vertexCones,
                                  Buffer<NormalCone>& edgeCones)

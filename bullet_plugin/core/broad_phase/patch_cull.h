@@ -1,9 +1,9 @@
 // Broad phase over patches: lists the feature tests of cloth triangles and obstacle features that may give a contact.
 //
-// Job: keep the obstacles' patches and the wide tree over them on the device; each step walk it with packets of cloth
-// triangles and drop what is surely apart, a block of features at a time or on a GPU parts of several
-// (kernels/patch_cull.cl; patch_walk.cl and patch_cull_pairs.cl). Output: feature tests in no particular order, each at
-// most once. Guarantee: no test that gives a contact is dropped. Cost: one launch a step, on a GPU two.
+// Job: keep the obstacles' patches and the wide tree over them on the device. Each step traverses the tree with packets
+// of cloth triangles and drops pairs that are certainly apart: a block of features at a time (kernels/patch_cull.cl),
+// on a GPU parts of several (patch_walk.cl and patch_cull_pairs.cl). Output: feature tests in no particular order, each
+// at most once. Guarantee: no test that gives a contact is dropped. Cost: one launch per step, two on a GPU.
 #pragma once
 
 #include "bullet_plugin/core/device/buffer.h"
@@ -16,15 +16,15 @@ namespace drape
 class PatchCullStage
 {
 public:
-    // Lanes in a block on this device.
+    // Returns the lanes in a block on this device.
     static std::uint32_t width(const Device& device);
-    // Definitions with which its kernels are built.
+    // Returns the definitions for building its kernels.
     static std::string defines(const Device& device);
 
     // The programs that it is made of.
     void create(Device& device, const ProgramLoader& load);
 
-    // New obstacles from that slot on, which must be packed next, even where none came. What the device is sent is kept
+    // Sets new obstacles from that slot on, which must be packed next, even if there are none. Keeps the uploaded data
     // until the next call.
     void setTopology(Device& device, const MeshPool& obstacles, std::size_t firstSlot);
     // Packs the features of those obstacles at new positions. The buffers are the joined obstacles'; returns after
@@ -47,22 +47,22 @@ public:
         std::size_t m_obstacleMeshes;
         float m_reachScale;
         std::uint32_t m_mode;               // DRAPE_DISCRETE …
-        Buffer<ObstacleMotion>& m_motions;  // of the obstacles that move in the step, in the order of slots
+        Buffer<ObstacleMotion>& m_motions;  // motions of the moving obstacles, in the order of slots
         std::size_t m_motionCount;
-        // Tests, and pairs of triangles and patches: counts are exact up to it, a greater one says only that there are
-        // more.
+        // Limits of tests, and of pairs of triangles and patches. Counts are exact up to them; a greater one only says
+        // that there are more.
         std::size_t m_limit, m_pairLimit;
     };
     // Returns after enqueueing. counters' candidates and invalid nodes must be zero before.
     void enqueue(Device& device, Cloths cloths, Buffer<StepCounters>& counters);
 
-    // The list of the last step, and room in it.
+    // Returns the list of the last step; reserves room in it.
     Buffer<FeatureTest>& tests() { return m_tests; }
     void reserveTests(Device& device, std::size_t count) { m_tests.reserve(device, count); }
     // The list of pairs of cloth triangles and patches on a GPU. If it was too short, other counts are too low.
     Buffer<FeatureTest>& pairs() { return m_pairs; }
     void reservePairs(Device& device, std::size_t count) { m_pairs.reserve(device, count); }
-    // Gives back the memory of both lists but for as much as a new stage has. Tests are to be reserved again.
+    // Releases the memory of both lists, except the room of a new stage. Reserve tests again before use.
     void giveBackRoom(Device& device);
 
     // The packed features; ids name a lane's triangle, vertex or edge.
@@ -91,9 +91,9 @@ private:
     Kernel m_walk, m_cull, m_packFaces, m_packVertices, m_packEdges, m_volumes, m_widen;
     Patches m_layout;
     bool m_levelsMoved = false;                                        // since the last pack()
-    ItemRange m_vertexOwnersHeld = {0, 0}, m_edgeOwnersHeld = {0, 0};  // by the buffers
+    ItemRange m_vertexOwnersHeld = {0, 0}, m_edgeOwnersHeld = {0, 0};  // uploaded owners
     Buffer<Patch> m_patches{"obstacle patches"};
-    Buffer<cl_uint> m_faceFeatures{"obstacle face features"};  // of a GPU
+    Buffer<cl_uint> m_faceFeatures{"obstacle face features"};  // only on a GPU
     Buffer<cl_uint> m_vertexOwners{"obstacle packing"}, m_edgeOwners{"obstacle packing"};
     // Owners by lane; a face's owner is the face itself.
     Buffer<cl_uint> m_faceOwners{"obstacle face numbers"}, m_vertexIds{"obstacle vertex numbers"};

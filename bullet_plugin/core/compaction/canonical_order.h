@@ -1,4 +1,4 @@
-// The orders in which lists leave the pipeline, whatever order they were found in.
+// Sorts lists into the order in which they leave the pipeline, whatever the order of the search.
 #pragma once
 
 #include <vector>

@@ -32,7 +32,7 @@ public:
     // reduces: whether steps may reduce their contacts; its kernels are not built otherwise.
     void create(Device& device, const ProgramLoader& load, bool reduces = false);
 
-    // Room for the slots of a cloth side: its nodes, faces and edges.
+    // Makes room for the slots of a cloth side: its nodes, faces and edges.
     void resizeSlots(Device& device, std::size_t slotCount);
     // Reserves memory for a list of unsorted contacts and as many sorted ones.
     void reserveHits(Device& device, std::size_t count);

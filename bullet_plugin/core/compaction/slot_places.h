@@ -12,7 +12,7 @@
 
 namespace drape
 {
-// Room for so many slots' numbers of which sums are read by whole rows.
+// Makes room for the numbers of that many slots. Sums of them are read in whole rows.
 inline std::size_t wholeRows(std::size_t slots)
 {
     return (slots + DRAPE_SUMMED - 1) / DRAPE_SUMMED * DRAPE_SUMMED;

@@ -53,7 +53,7 @@ public:
         copy(device, before, count, kept);
     }
 
-    // Makes room for count elements, of which the first `copied` become another buffer's.
+    // Makes room for count elements and copies the first `copied` from another buffer.
     void copy(Device& device, const Buffer& from, std::size_t count, std::size_t copied)
     {
         reserve(device, count);
@@ -62,8 +62,8 @@ public:
                      "clEnqueueCopyBuffer");
     }
 
-    // Becomes that part of another buffer, which must begin at a multiple of kPartBytes, until the other's memory is
-    // another.
+    // Makes this a sub-buffer of `whole`, which must begin at a multiple of kPartBytes. Invalidated when `whole`
+    // reallocates.
     void bePart(Device& device, Buffer& whole, std::size_t first, std::size_t count)
     {
         if (device.failed()) return;
@@ -75,10 +75,10 @@ public:
         m_capacity = device.failed() ? 0 : count;
     }
 
-    // Gives the memory back once what is enqueued has used it.
+    // Releases the memory once all enqueued work has used it.
     void release() { *this = Buffer(m_name); }
 
-    // Enqueue a copy; the source must stay unchanged until the device was waited for.
+    // Enqueue a copy; the source must stay unchanged until a wait for the device.
     void write(Device& device, const T* source, std::size_t count, std::size_t offset = 0)
     {
         if (device.failed() || count == 0) return;
@@ -121,7 +121,7 @@ private:
 // Alignment of sub-buffers: devices require 128 (PoCL), 512 (NVIDIA) and up to 4,096.
 constexpr std::size_t kPartBytes = 4096;
 
-// Host memory for transfers: pinned where a device is given, plain otherwise. Contents are lost when it grows.
+// Host memory for transfers: pinned if there is a device, plain otherwise. Contents are lost when it grows.
 template <typename T>
 class Staging
 {

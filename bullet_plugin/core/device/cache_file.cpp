@@ -38,8 +38,8 @@ bool isOwn(const struct stat& found)
     return found.st_uid == geteuid() && !(found.st_mode & (S_IWGRP | S_IWOTH));
 }
 
-// Opens the folder if it is the user's own. Takes away others' permission to write it, which a folder made under a lax
-// umask has; a folder with the sticky bit is meant to be shared and is not used.
+// Opens the folder if it is the user's own. Removes others' permission to write, which a folder made under a lax umask
+// has. A folder with the sticky bit is meant to be shared and is not used.
 Descriptor openFolder(const std::string& folder)
 {
     Descriptor opened(folder.empty() ? -1 : open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
@@ -82,7 +82,7 @@ bool writeAll(int file, const std::string& bytes)
     return true;
 }
 
-// Creates a new file for the process beside the one that is to be written. `temporary` is set to its name.
+// Creates a new file for the process beside the target file. Sets `temporary` to its name.
 Descriptor createTemporary(int folder, const std::string& name, std::string& temporary)
 {
     constexpr int kMostLeftBehind = 10;  // by processes that were ended while they wrote

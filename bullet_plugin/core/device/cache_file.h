@@ -1,6 +1,6 @@
-// Files of Drape's cache folder. Every trouble (no folder, no space, no permission, no memory) reads as "not there";
-// nothing here fails. Files and folders that are not the user's own, or that others can write, are not used, and links
-// to files are not followed: the cache holds programs that are run.
+// Reads and writes files of Drape's cache folder. Every problem (no folder, no space, no permission, no memory) counts
+// as a missing file; nothing here fails. Files and folders that are not the user's own, or that others can write, are
+// not used, and links to files are not followed: the cache contains programs that are run.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,8 @@ std::string cacheFolder(const std::string& setting);
 
 // Returns false if there is no folder or no such file, or the file is longer than mostBytes.
 bool readCacheFile(const std::string& folder, const std::string& name, std::size_t mostBytes, std::string& bytes);
-// Written to a new temporary file and renamed, so that no reader sees half of it. Only the user may read the file. The
-// folder is made where there is none.
+// Writes a new temporary file and renames it, so that no reader sees half of it. Only the user may read the file.
+// Creates a missing folder.
 void writeCacheFile(const std::string& folder, const std::string& name, const std::string& bytes);
 
 // FNV-1a, 64 bit.

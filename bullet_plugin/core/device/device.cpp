@@ -20,7 +20,7 @@ struct FoundDevice
 struct DeviceSearch
 {
     std::vector<FoundDevice> m_found;  // GPUs first, otherwise in the loader's order
-    std::string m_refused;             // platforms without a device and devices that will not do, with the reasons
+    std::string m_refused;             // platforms without a device and unusable devices, with the reasons
     bool m_poclWithoutDevice = false;
 };
 

@@ -25,8 +25,8 @@ std::vector<DeviceInfo> deviceInfos();
 class Device
 {
 public:
-    // Opens the index-th device of deviceInfos(). Null, with error filled, when the context or queue cannot be made.
-    // profiled: the queue takes every launch's time, see profiler.h.
+    // Opens the index-th device of deviceInfos(). Returns null, with error filled, if the context or queue cannot be
+    // created. profiled: the queue measures every launch's time, see profiler.h.
     static std::unique_ptr<Device> open(std::size_t index, Error& error, bool profiled = false);
     ~Device();
     Device(const Device&) = delete;
@@ -74,8 +74,8 @@ private:
     Error m_error;
 };
 
-// Waits for the device at its end: declared behind what a scope transfers from or to, so that this lives until then,
-// however the scope is left.
+// Waits for the device in its destructor. Declared after the memory that a scope transfers from or to, it keeps that
+// memory alive until then, however the scope ends.
 class WaitAtEnd
 {
 public:

@@ -34,7 +34,7 @@ std::string listing(const std::vector<DeviceInfo>& devices)
     return text;
 }
 
-// whyNone: why there is no device, where there is none.
+// whyNone: the reason if there is no device.
 DeviceChoice chooseByName(const std::vector<DeviceInfo>& devices, const std::string& wanted, const std::string& origin,
                           const std::string& whyNone, Error& error)
 {

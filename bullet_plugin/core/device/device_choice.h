@@ -14,13 +14,13 @@ namespace drape
 struct DeviceChoice
 {
     bool m_onHost = true;
-    bool m_byCost = false;    // nobody asked for this device: scenes that are too small for it may run on the host
+    bool m_byCost = false;    // no setting names this device: scenes that are too small for it may run on the host
     std::size_t m_index = 0;  // into deviceInfos(), unless on the host
-    DeviceInfo m_device;      // that one
+    DeviceInfo m_device;      // the selected device
     std::string m_reason;
 };
 
-// The reason of a report where the host took over from a device that failed.
+// Returns the reason for the report after the host took over from a failed device.
 std::string hostSince(const DeviceInfo& device, const Error& error);
 
 // Fills error if the requested device is missing; its detail lists the devices found.

@@ -1,7 +1,7 @@
 // The texts of kernels/, compiled into the library so that an installed Drape needs no data files.
 //
-// Job: hold every .cl file and every header that one may include, drape/query_records.h among them. Made at build time
-// by cmake/EmbedKernels.cmake, sorted by path. Includes are not resolved here. Guarantee: static storage,
+// Job: provide every .cl file and every header that one may include, drape/query_records.h among them. Made at build
+// time by cmake/EmbedKernels.cmake, sorted by path. Includes are not resolved here. Guarantee: static storage,
 // zero-terminated, the files' bytes unchanged.
 #pragma once
 

@@ -8,10 +8,11 @@
 
 namespace drape
 {
-// Work-items a compute unit: on a GPU enough to hide its latency, on a CPU to even out runs of dear and of cheap items.
+// Work-items per compute unit: on a GPU enough to hide its latency, on a CPU enough to balance runs of expensive and
+// cheap items.
 constexpr std::size_t kListItemsGpu = 1024, kListItemsCpu = 256;
 
-// Work-items a group. PoCL's threads take a share of the groups that are left at a time: small groups even out shares.
+// Work-items per group. PoCL's threads take a share of the remaining groups at a time: small groups balance the shares.
 constexpr std::size_t kListGroupGpu = 64, kListGroupCpu = 8;
 
 inline std::size_t listWidth(const Device& device)
@@ -42,7 +43,7 @@ inline std::size_t laneListWidth(const Device& device)
     return device.isGpu() ? listWidth(device) : device.computeUnits() * kLaneItemsCpu;
 }
 
-// Work-items that copy a contact together: on a GPU, whose neighbours' stores are joined, one for each of its vectors.
+// Work-items that copy a contact together: one per vector of it on a GPU, which joins neighbours' stores.
 inline cl_uint copyParts(const Device& device)
 {
     return device.isGpu() ? 4 : 1;

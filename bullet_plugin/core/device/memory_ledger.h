@@ -14,10 +14,10 @@ namespace drape
 class MemoryLedger
 {
 public:
-    // Notes an allocation until the last copy of what is returned is gone; that may outlive the ledger.
+    // Records an allocation until the last copy of the returned object is destroyed, which may outlive the ledger.
     std::shared_ptr<const void> enter(const std::string& name, std::size_t bytes);
 
-    // The bytes of each name, in alphabetical order; names that hold nothing are left out.
+    // Returns the bytes of each name, in alphabetical order, without names of size 0.
     std::vector<MemoryUse> list() const;
 
 private:

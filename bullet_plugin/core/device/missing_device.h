@@ -1,4 +1,4 @@
-// Why a machine shows no OpenCL device, as far as it can be known.
+// Finds out why a machine shows no OpenCL device, as far as possible.
 #pragma once
 
 #include <string>

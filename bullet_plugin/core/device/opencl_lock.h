@@ -1,9 +1,9 @@
 // One lock for the whole process around the OpenCL entry points that are not safe to call from several threads.
 //
-// The standard allows any thread to look for platforms and devices and to make contexts, programs and kernels. Drivers
-// do not live up to it: with PoCL 3.1 two threads that look for devices, or build programs, at once crash in most runs.
-// So every such call of Drape's is made while an OpenClLock lives. Launches and transfers need none: a queue belongs to
-// one pipeline, which belongs to one thread. Calls of the app's own, and of other libraries, are not covered.
+// The standard allows any thread to query platforms and devices and to create contexts, programs and kernels. Drivers
+// do not comply: with PoCL 3.1, two threads that query devices or build programs at once crash in most runs. Drape
+// therefore makes every such call while an OpenClLock lives. Launches and transfers need none: a queue belongs to one
+// pipeline, which belongs to one thread. Calls by the app and by other libraries are not covered.
 #pragma once
 
 #include <mutex>

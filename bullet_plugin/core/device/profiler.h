@@ -17,11 +17,11 @@ namespace drape
 class Profiler
 {
 public:
-    // The event that the coming launch of this kernel signals. Valid until take().
+    // Returns the event that the coming launch of this kernel signals. Valid until take().
     cl::Event* add(const std::string& kernel);
 
-    // The launches since the last call, in order of submission; launches that failed are left out. The device must have
-    // been waited for.
+    // Returns the launches since the last call, in order of submission, without failed ones. Requires a wait for the
+    // device before.
     std::vector<KernelTime> take();
 
 private:

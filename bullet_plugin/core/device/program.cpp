@@ -84,7 +84,7 @@ void append(const std::string& path, std::set<std::string>& seen, std::string& s
     }
 }
 
-// "kernels/refit.cl:26" for a line of an assembled source, counted from 1 with the directives.
+// Returns e.g. "kernels/refit.cl:26" for a line of an assembled source, counted from 1 with the directives.
 std::string originOfLine(const std::string& source, std::size_t wanted)
 {
     std::istringstream lines(source);
@@ -95,7 +95,7 @@ std::string originOfLine(const std::string& source, std::size_t wanted)
         const std::string keyword = "#line ";
         if (text.compare(0, keyword.size(), keyword) != 0) continue;
         const std::size_t quote = text.find('"');
-        line = std::stoul(text.substr(keyword.size())) - 1;  // of the directive: the next line has the number it names
+        line = std::stoul(text.substr(keyword.size())) - 1;  // the next line has the number that the directive names
         file = text.substr(quote + 1, text.rfind('"') - quote - 1);
     }
     return file + ":" + std::to_string(line - 1);

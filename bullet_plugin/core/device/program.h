@@ -13,8 +13,8 @@
 
 namespace drape
 {
-// The texts of kernels/<file>, one behind the other, with every include replaced by the included text once. Line
-// directives keep each line's own file and number, so a compiler's message names the .cl or .h file. Empty when a file
+// Returns the texts of kernels/<file>, one after the other, with every include replaced once by the included text. Line
+// directives keep each line's own file and number, so that compiler messages name the .cl or .h file. Empty if a file
 // is not embedded.
 std::string assembleSources(const std::vector<std::string>& paths);
 inline std::string assembleSource(const std::string& path)
@@ -22,8 +22,8 @@ inline std::string assembleSource(const std::string& path)
     return assembleSources({path});
 }
 
-// A compiler's log with every "<kernel>:line", as drivers write that ignore line directives, replaced by the file and
-// line of the kernels that this line of the assembled source came from.
+// Returns a compiler's log in which files and lines of the kernels replace every "<kernel>:line" of the assembled
+// source. Drivers write such lines if they ignore line directives.
 std::string translateLog(const std::string& log, const std::string& source);
 
 struct ProgramBuild
@@ -37,9 +37,9 @@ struct ProgramBuild
 bool keepsItsOwn(const DeviceInfo& device);
 
 // Builds "kernels/<name>.cl" of all the names as one program, with contraction off and correctly rounded ÷ and √;
-// DRAPE_CPU is defined unless the device is a GPU. A failed build puts the files and the whole log into the device's
-// error. What was built is kept in cacheFolder, unless the platform keeps its own (empty: the user's cache; "none": no
-// cache); cache trouble means a build, never a failure. defines: lines of text put before the source.
+// DRAPE_CPU is defined unless the device is a GPU. A failed build stores the files and the whole log in the device's
+// error. Built programs are kept in cacheFolder, unless the platform keeps its own (empty: the user's cache; "none": no
+// cache). A problem with the cache causes a build, never a failure. defines: lines of text before the source.
 cl::Program buildJoinedProgram(Device& device, const std::vector<std::string>& names, const std::string& cacheFolder,
                                ProgramBuild& build, const std::string& defines = std::string());
 inline cl::Program buildProgram(Device& device, const std::string& name, const std::string& cacheFolder,
@@ -48,10 +48,10 @@ inline cl::Program buildProgram(Device& device, const std::string& name, const s
     return buildJoinedProgram(device, {name}, cacheFolder, build, defines);
 }
 
-// Gives the program of "kernels/<name>.cl", alone or with others, to a stage that needs several.
+// Returns the program that contains "kernels/<name>.cl", alone or with other files; for stages that need several.
 using ProgramLoader = std::function<cl::Program(const char* name)>;
 
-// Builds a source text as given. what: names it in an error.
+// Builds a source text unchanged. what: its name in an error.
 cl::Program compileSource(Device& device, const std::string& what, const std::string& source);
 
 // A kernel with its name, for messages. Launches are enqueued; nothing waits.
@@ -60,8 +60,8 @@ class Kernel
 public:
     void create(Device& device, const cl::Program& program, const char* name);
 
-    // Sets all arguments in order and enqueues globalSize work-items, rounded up to groups of localSize. Nothing is
-    // launched for zero work-items.
+    // Sets all arguments in order and enqueues globalSize work-items, rounded up to groups of localSize. Launches
+    // nothing for zero work-items.
     template <typename... Arguments>
     void launch(Device& device, std::size_t globalSize, std::size_t localSize, Arguments&&... arguments)
     {
@@ -73,7 +73,7 @@ public:
     }
 
 private:
-    // Sets an argument unless it has the value already: a launch has a dozen, of which few change from step to step.
+    // Sets an argument unless it already has the value: a launch has a dozen, and few change from step to step.
     template <typename T>
     void set(Device& device, cl_uint index, const T& value)
     {
@@ -95,7 +95,7 @@ private:
     }
     // Returns whether the argument has the value; if not, records it as the current value.
     bool isSet(cl_uint index, Identity value);
-    // A new buffer may have the handle of one that is gone.
+    // A new buffer may get the handle of a released one.
     void forgetOldBuffers(const Device& device);
     void enqueue(Device& device, std::size_t globalSize, std::size_t localSize);
 

@@ -1,5 +1,5 @@
-// Compiled programs on disk, one file each. Every trouble (no folder, no space, a damaged or foreign file) reads as
-// "not there"; nothing here fails.
+// Stores compiled programs on disk, one file each. Every problem (no folder, no space, a damaged or foreign file)
+// counts as a missing file; nothing here fails.
 #pragma once
 
 #include <string>
@@ -19,7 +19,7 @@ public:
     std::string key(const std::string& source, const std::string& options, const DeviceInfo& device) const;
 
     bool load(const std::string& key, std::vector<unsigned char>& binary) const;
-    // Written to a temporary file and renamed, so that no reader sees half of it.
+    // Writes a temporary file and renames it, so that no reader sees half of it.
     void store(const std::string& key, const std::vector<unsigned char>& binary) const;
 
 private:

@@ -1,8 +1,9 @@
-// The programs of a backend, each built once.
+// The programs of a back end, each built once.
 //
-// A CPU's driver reads OpenCL's own declarations for every program, 30 ms with PoCL even where it has the kernels
-// already, and compiles for every program what several include. So files that are needed together are one program
-// there. On a GPU each file is one, which leaves every kernel's registers to its file alone.
+// A CPU's driver reads OpenCL's own declarations for every program, which takes 30 ms with PoCL even for cached
+// kernels. It also compiles code that several programs include once per program. Files that are needed together
+// therefore form one program on a CPU. On a GPU each file is a program, so that its kernels' registers depend on that
+// file alone.
 #pragma once
 
 #include <map>
@@ -16,14 +17,14 @@ namespace drape
 class ProgramSet
 {
 public:
-    using Names = std::vector<std::string>;  // of "kernels/<name>.cl"
+    using Names = std::vector<std::string>;  // names in "kernels/<name>.cl"
 
     // together: files that form one program on a CPU; if a file is in several, the first counts. cacheFolder,
     // defines: see buildJoinedProgram(). The device is kept.
     ProgramSet(Device& device, std::string cacheFolder, std::vector<Names> together,
                std::string defines = std::string());
 
-    // The program that has the file, built at the first call. Errors: in the device.
+    // Returns the program that contains the file, built at the first call. Errors: in the device.
     cl::Program load(const std::string& name);
     ProgramLoader loader()
     {

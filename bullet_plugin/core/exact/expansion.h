@@ -1,9 +1,9 @@
-// Numbers without rounding: sums of doubles that do not overlap, of which the last tells the sign.
+// Numbers without rounding: sums of doubles that do not overlap; the last one determines the sign.
 //
-// Sums, differences and products are exact as long as no term leaves the range of a double; terms down to the product
-// of three smallest floats (2^-447) and up to that of three largest (2^384) are far inside. Cost: quadratic in the
-// number of terms; for predicates whose double filter did not decide. Method: J. R. Shewchuk, Adaptive precision
-// floating-point arithmetic and fast robust geometric predicates, 1997.
+// Sums, differences and products are exact as long as no term leaves the range of a double. Products of three floats
+// stay far inside, from 2^-447 for the smallest to 2^384 for the largest. Cost: quadratic in the number of terms; for
+// predicates whose double filter did not decide. Method: J. R. Shewchuk, Adaptive precision floating-point arithmetic
+// and fast robust geometric predicates, 1997.
 #pragma once
 
 #include <cmath>
@@ -57,8 +57,8 @@ public:
     int sign() const { return m_terms.empty() ? 0 : m_terms.back() > 0 ? 1 : -1; }
 
 private:
-    // Adds one double: each sum goes on, each rounding error stays (grow-expansion). Zeros are left out, so the last
-    // term is the largest.
+    // Adds one double: each sum is carried on, each rounding error becomes a term (grow-expansion). Zeros are left out,
+    // so the last term is the largest.
     void add(double carry)
     {
         std::size_t kept = 0;

@@ -11,9 +11,9 @@ namespace drape
 // Coordinates are floats, widened.
 using ExactPoint = std::array<double, 3>;
 
-// Sign of the volume of (a, b, c, d): 0 when the four lie in one plane, negated when two points are swapped.
+// Returns the sign of the volume of (a, b, c, d): 0 if the four lie in one plane, negated if two points are swapped.
 int orientation3(const ExactPoint& a, const ExactPoint& b, const ExactPoint& c, const ExactPoint& d);
 
-// Sign of the area of (a, b, c) in the view along an axis: 0 when they are in line there.
+// Returns the sign of the area of (a, b, c) in the view along an axis: 0 if they are in line there.
 int orientation2(const ExactPoint& a, const ExactPoint& b, const ExactPoint& c, int along);
 }  // namespace drape

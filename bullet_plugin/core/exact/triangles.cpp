@@ -6,8 +6,8 @@ namespace drape
 {
 namespace
 {
-// An axis along which points that lie in one plane keep apart: where some three span an area or, when all are in line,
-// where some two differ.
+// Returns an axis along which points of one plane stay distinct: three of them span an area in that view or, if all are
+// in line, two of them differ.
 int viewOf(const ExactPoint* points, int count)
 {
     for (int along = 0; along < 3; ++along)
@@ -35,7 +35,7 @@ bool between(const ExactPoint& p, const ExactPoint& q, const ExactPoint& point, 
     return true;
 }
 
-// Closed segments p q and r s, seen along an axis.
+// Tests the closed segments p q and r s in the view along an axis.
 bool segmentsCross(const ExactPoint& p, const ExactPoint& q, const ExactPoint& r, const ExactPoint& s, int along)
 {
     const int a = orientation2(p, q, r, along), b = orientation2(p, q, s, along);
@@ -116,7 +116,7 @@ double segmentsSquared(const ExactPoint& w, const ExactPoint& u, const ExactPoin
     };
     const auto clamp = [](double numerator, double denominator)
     { return denominator > 0 ? std::clamp(numerator / denominator, 0.0, 1.0) : 0.0; };
-    // The least over the square's sides, and in its inside where the distance has its minimum there.
+    // Takes the least over the square's sides, and over its inside if the distance has its minimum there.
     double least = std::min(std::min(at(0, clamp(vw, vv)), at(1, clamp(uv + vw, vv))),
                             std::min(at(clamp(-uw, uu), 0), at(clamp(uv - uw, uu), 1)));
     const double determinant = uu * vv - uv * uv;

@@ -18,6 +18,6 @@ ExactTriangle exactTriangle(const float* corners);
 
 bool trianglesMeet(const ExactTriangle& a, const ExactTriangle& b);
 
-// Squared distance of two triangles that do not meet, to double rounding of their coordinates.
+// Returns the squared distance of two triangles that do not meet, to double rounding of their coordinates.
 double squaredDistance(const ExactTriangle& a, const ExactTriangle& b);
 }  // namespace drape

@@ -1,10 +1,10 @@
-// A CPU's kernels as functions of C++: the very text that an OpenCL device of that kind runs, compiled for several
-// instruction sets, of which the machine's best is used. Needs no OpenCL.
+// A CPU's kernels as C++ functions: the same text that an OpenCL CPU device runs, compiled for several instruction
+// sets. The machine's best set is used. Needs no OpenCL.
 //
-// Threads may run different items of a launch at once; results do not depend on it, but for the order of lists.
-// Arguments are those of the kernels: kernels/patch_pack.cl, patch_cull.cl, narrow_phase_lanes.cl and narrow_phase.cl,
-// for cloths with themselves self_pack_lanes.cl, self_cull.cl, self_contact_lanes.cl and self_contact.cl, say what they
-// are. All of one call are of DRAPE_PATCH_WIDTH lanes. The same bits whatever the instruction set.
+// Threads may run different items of a launch at once; results do not depend on it, except for the order of lists. The
+// kernels document their arguments: kernels/patch_pack.cl, patch_cull.cl, narrow_phase_lanes.cl and narrow_phase.cl;
+// for cloths with themselves self_pack_lanes.cl, self_cull.cl, self_contact_lanes.cl and self_contact.cl. All arguments
+// of one call have DRAPE_PATCH_WIDTH lanes. The same bits with every instruction set.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,7 @@
 
 namespace drape
 {
-// The cloths of a step and what their triangles have pairs with. thickness: m, cloths × obstacles; radius: m, per
-// cloth.
+// The cloths of a step and their pairs. thickness: m, cloths × obstacles; radius: m, per cloth.
 struct HostCloths
 {
     const std::uint32_t* m_order;
@@ -72,13 +71,13 @@ struct HostFeatures
     const ObstacleMotion* m_motions;
 };
 
-// Cloths that collide with themselves: their own patches with the features of each, and where those of the step are
-// packed.
+// Cloths that collide with themselves: their own patches with the features of each, and the memory for the step's
+// packed features.
 struct SelfPatches
 {
     const Patch* m_patches;
     std::uint32_t m_patchCount;
-    std::uint32_t m_places;  // of the wide tree's first level
+    std::uint32_t m_places;  // positions in the wide tree's first level
     const std::uint32_t* m_faceIds;
     const std::uint32_t* m_vertexIds;
     const std::uint32_t* m_edgeIds;
@@ -92,7 +91,7 @@ struct SelfPatches
     float* m_wideNodes;
 };
 
-// m, per cloth: half the reach, negative for those that are not in the step; thickness; the reach of the search for
+// m, per cloth: half the reach, negative for cloths outside the step; the thickness; the reach of the search for
 // obstacles.
 struct SelfRadii
 {
@@ -144,7 +143,7 @@ struct HostKernels
                           float* volumes);
     void (*m_widen)(float* wideNodes, std::uint32_t below, std::uint32_t nodeCount, std::uint32_t level,
                     std::uint32_t first, std::uint32_t last);
-    // Lists the feature tests of a packet, DRAPE_PATCH_WIDTH cloth triangles. Of the cloth its edges are not read.
+    // Lists the feature tests of a packet, DRAPE_PATCH_WIDTH cloth triangles. Does not read the cloth's edges.
     void (*m_cull)(std::uint32_t packet, const ClothView& cloth, const HostCloths& cloths, const PackedPatches& patches,
                    HostTests tests, StepCounters* counters);
     HitKernel<HostFeatures> m_findHits;

@@ -1,5 +1,5 @@
-// The host's kernels for one instruction set, that with which the file that includes this is compiled. It defines
-// DRAPE_KERNEL_SET, the table's name, DRAPE_SELF_KERNEL_SET, that of the table of cloths with themselves
+// The host's kernels for one instruction set: the one of the including file's compilation. That file defines
+// DRAPE_KERNEL_SET, the table's name, DRAPE_SELF_KERNEL_SET, the name of the table for cloths with themselves
 // (self_kernel_set.h), and DRAPE_INSTRUCTIONS.
 #include "build_options.h"
 
@@ -80,7 +80,7 @@ void cull(uint packet, const ClothView& cloth, const HostCloths& cloths, const P
             });
 }
 
-// more: what the kernel takes after the list of swept tests.
+// more: the kernel's arguments after the list of swept tests.
 template <class Kernel, class... More>
 void runFeatures(Kernel kernel, uint item, uint items, const HostFeatures& all, HostHits hits, uint* swept,
                  StepCounters* counters, More... more)

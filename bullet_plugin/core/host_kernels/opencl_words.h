@@ -56,7 +56,7 @@ inline void runItem(uint item, uint items, const Kernel& kernel)
     kernel();
 }
 
-// Runs all of so many, one after the other.
+// Runs all items, one after the other.
 template <class Kernel>
 inline void launch(uint items, const Kernel& kernel)
 {

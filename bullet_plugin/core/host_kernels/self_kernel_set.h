@@ -1,5 +1,5 @@
-// The host's kernels of cloths with themselves for one instruction set, as kernel_set.h has the others: both narrow
-// phases have functions of the same names. The file that includes this defines DRAPE_SELF_KERNEL_SET, the table's name.
+// The host's kernels of cloths with themselves for one instruction set, apart from kernel_set.h: both narrow phases
+// have functions of the same names. The including file defines DRAPE_SELF_KERNEL_SET, the table's name.
 #include "build_options.h"
 
 #include "host_kernels.h"

@@ -81,7 +81,7 @@ void MeshPool::dropLastVacant()
 
 std::size_t MeshPool::slot(MeshId id) const
 {
-    // Ids are handed out in rising order and meshes keep it: as long as none has gone they follow each other.
+    // Ids are given in rising order, and meshes keep that order: they are consecutive until a mesh is removed.
     std::size_t slot = m_ids.empty() ? 0 : std::size_t(id) - std::size_t(m_ids.front());
     if (slot >= m_ids.size() || m_ids[slot] != id)
         slot = std::size_t(std::lower_bound(m_ids.begin(), m_ids.end(), id) - m_ids.begin());

@@ -22,21 +22,21 @@ struct PooledMesh
     std::vector<float> m_positions;         // m, as last given: in its own frame if it has a pose, else the world's
     double m_area = 0;                      // m², of the triangles
     bool m_oneSided = false;                // obstacles only: see MeshDescription
-    float m_selfThickness = 0;              // m, cloths only, likewise
+    float m_selfThickness = 0;              // m, cloths only: see MeshDescription
     std::vector<float> m_rest;              // m, of cloths that collide with themselves
     float m_coordinateStep = 0;             // m, obstacles only: distance of floats where it reaches farthest out
     std::vector<NormalCone> m_vertexCones;  // obstacles only
     std::vector<NormalCone> m_edgeCones;
-    MeshBox m_box = {};         // m, of the positions, obstacles only
-    float m_longestEdge = 0;    // m, obstacles only
-    ObstaclePlacing m_placing;  // obstacles only
-    bool m_placedAnew = false;  // obstacles only: new, or with new positions or pose, since the last step
-    std::uint32_t m_given = 0;  // obstacles only: when its positions were given anew, by Scene::m_obstacleMotion
+    MeshBox m_box = {};                  // m, of the positions, obstacles only
+    float m_longestEdge = 0;             // m, obstacles only
+    ObstaclePlacing m_placing;           // obstacles only
+    bool m_placedAnew = false;           // obstacles only: new, or with new positions or pose, since the last step
+    std::uint32_t m_given = 0;           // obstacles only: Scene::m_obstacleMotion when its positions were last set
     std::vector<std::uint32_t> m_order;  // leaf order, local triangles
     std::uint32_t m_firstVertex = 0;
     std::uint32_t m_firstTriangle = 0;
     std::uint32_t m_firstEdge = 0;
-    std::uint32_t m_joined = 0;  // the pool's revision when it took its place
+    std::uint32_t m_joined = 0;  // the pool's revision when its position changed last
     bool m_vacant = false;       // gone, but for its place
 };
 
@@ -51,29 +51,29 @@ class MeshPool
 public:
     // Adds a mesh; ids must rise. Slots of the other meshes stay until update().
     void add(PooledMesh mesh);
-    // Returns false when the id is not of this pool. So do they here.
+    // Returns false if `id` is not in this pool.
     bool remove(MeshId id);
 
     // Returns the number of slots, vacant ones included.
     std::size_t meshCount() const { return m_meshes.size(); }
     PooledMesh& mesh(std::size_t slot) { return m_meshes[slot]; }
     const PooledMesh& mesh(std::size_t slot) const { return m_meshes[slot]; }
-    // meshCount() when the id is not, or no longer, of this pool.
+    // Returns the mesh's slot; meshCount() if the id is not, or no longer, in this pool.
     std::size_t slot(MeshId id) const;
     // Returns whether the id has a slot, possibly a vacant one.
     bool holds(MeshId id) const;
-    // Slots of the meshes that hold a joined vertex or edge.
+    // Return the slot of the mesh that contains a joined vertex or edge.
     std::size_t slotOfVertex(std::uint32_t vertex) const;
     std::size_t slotOfEdge(std::uint32_t edge) const;
 
-    // Joins what came since the last call; the joined arrays are valid after it. Free when nothing did.
+    // Joins the meshes added since the last call; the joined arrays are valid afterwards. Free without changes.
     void update();
     // Sets another leaf order of the meshes' triangles: local orders by slot, null where unchanged. Counts as an
     // update that changed something.
     void reorder(const std::vector<const std::vector<std::uint32_t>*>& orders);
-    // Gives back room that only earlier, larger pools needed. The joined arrays move.
+    // Releases memory that only earlier, larger pools needed. The joined arrays move.
     void giveBackRoom();
-    // Counts up with every update that changed something.
+    // Returns a number that rises with every update that changed something.
     std::uint32_t revision() const { return m_revision; }
     // Returns the first slot that changed after that revision; earlier ones are unchanged, except for vacancies.
     std::size_t firstSince(std::uint32_t revision) const;
@@ -100,17 +100,17 @@ private:
     void joinOrder(const PooledMesh& mesh);
 
     std::vector<PooledMesh> m_meshes;
-    std::vector<MeshId> m_ids;  // of the meshes, next to each other to be searched
+    std::vector<MeshId> m_ids;  // the meshes' ids, contiguous for the search
     std::vector<Triangle> m_triangles;
     std::vector<Edge> m_edges;
     std::vector<std::uint32_t> m_order;
     std::vector<MeshFirsts> m_firsts;
     std::size_t m_vertexCount = 0;
     std::size_t m_triangleCount = 0;  // in all slots
-    std::size_t m_faceCount = 0;      // of meshes that are there
+    std::size_t m_faceCount = 0;      // triangles of the meshes in use
     std::size_t m_vacantTriangles = 0;
     std::size_t m_vacantCount = 0;
-    std::size_t m_placed = 0;  // leading slots whose places in the joined arrays stand
+    std::size_t m_placed = 0;  // leading slots whose positions in the joined arrays are valid
     std::uint32_t m_revision = 0;
     bool m_changed = false;
 };

@@ -58,7 +58,7 @@ ObstacleMotion makeMotion(const ObstaclePlacing& placing, const MeshBox& own, st
     ObstacleMotion motion;
     double inverse[3][3];
     invert(placing.m_start, inverse);
-    double origin[3] = {0, 0, 0};  // of the world in the frame at the start
+    double origin[3] = {0, 0, 0};  // the world's origin in the frame at the start
     for (int i = 0; i < 3; ++i)
     {
         for (int k = 0; k < 3; ++k)

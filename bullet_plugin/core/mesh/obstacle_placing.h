@@ -25,10 +25,10 @@ struct ObstaclePlacing
     bool moves() const { return m_posed && m_start != m_end; }
 };
 
-// The box of a mesh at a pose; own: box in the mesh's frame.
+// Returns the box of a mesh at a pose; own: box in the mesh's frame.
 MeshBox placedBox(const Pose& pose, const MeshBox& own);
 
-// The record of an obstacle that moves. A start pose without an inverse gives a map that is not finite, and no
+// Returns the record of a moving obstacle. A start pose without an inverse gives a map that is not finite, and no
 // contacts.
 ObstacleMotion makeMotion(const ObstaclePlacing& placing, const MeshBox& own, std::uint32_t slot);
 }  // namespace drape

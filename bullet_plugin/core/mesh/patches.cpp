@@ -89,7 +89,7 @@ private:
         }
         return count;
     }
-    // Squared, of the triangle's middle from the patch's.
+    // Returns the squared distance between the centres of the triangle and the patch.
     float distance(std::uint32_t triangle) const
     {
         const Vec3 offset = vec3Sub(m_middles[triangle], vec3Scale(m_sum, 1.0f / float(m_inPatch)));
@@ -145,8 +145,8 @@ private:
     EdgeTriangles m_sides;
     std::vector<Vec3> m_middles;
     std::vector<bool> m_taken;
-    std::vector<std::uint32_t> m_beside;  // triangles that are not taken, beside the patch at hand, oldest first
-    Vec3 m_sum = {0, 0, 0};               // of the patch's middles
+    std::vector<std::uint32_t> m_beside;  // free triangles beside the current patch, oldest first
+    Vec3 m_sum = {0, 0, 0};               // sum of the patch's triangle centres
     std::uint32_t m_inPatch = 0;
     std::size_t m_leaf = 0;  // first of the leaf order that is not taken
 };

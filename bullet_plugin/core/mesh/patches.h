@@ -1,7 +1,7 @@
 // Patches of the obstacles: triangles that are connected as far as possible, begun in leaf order, and the lists of
 // features that they own (see kernels/shared/patch.h).
 //
-// Input: meshes' triangles and leaf order. Output: per patch its blocks, per lane the feature. A patch never holds
+// Input: meshes' triangles and leaf order. Output: per patch its blocks, per lane the feature. A patch never contains
 // triangles of two meshes, and is full except the last one of a mesh. Every triangle, and every vertex and edge of
 // one, is in exactly one lane. O(n); appending meshes costs in proportion to the new meshes alone.
 #pragma once
@@ -34,11 +34,11 @@ struct ItemRange
     std::uint32_t last() const { return std::uint32_t(m_last); }
 };
 
-// The mesh's own triangles, patch by patch. Runs of the leaf order alone, which follows a space-filling curve, are torn
-// where the curve jumps: their volumes then overlap far more others.
-// positions: m, x y z per vertex of the mesh, in any one frame; those that are no numbers only make patches larger.
+// Returns the mesh's own triangles, patch by patch. Runs of the leaf order alone, which follows a space-filling curve,
+// are torn where the curve jumps: their volumes then overlap far more others. positions: m, x y z per vertex of the
+// mesh, in any one frame; NaN only makes patches larger.
 std::vector<std::uint32_t> clusteredOrder(const PooledMesh& mesh, const float* positions, std::uint32_t width);
-// Joined triangles of all of the pool's meshes in that order; those before slot `first` are there.
+// Completes the joined triangles of the pool's meshes in that order; triangles before slot `first` exist already.
 void clusterMeshes(const MeshPool& pool, std::size_t first, std::uint32_t width, std::vector<std::uint32_t>& order);
 
 // Keeps the patches of the first `slots` meshes; does not update the levels.
@@ -50,7 +50,7 @@ void makeLevels(Patches& patches, std::uint32_t width);
 
 // The patches of those meshes.
 ItemRange patchesOf(const Patches& patches, SlotRange slots);
-// The lanes of those patches, which are there.
+// The lanes of those patches, which must exist.
 struct PatchLanes
 {
     ItemRange m_faces, m_vertices, m_edges;
@@ -67,16 +67,16 @@ struct LevelPlaces
 // levels have moved. A range that includes the last child includes the empty positions behind it.
 std::vector<LevelPlaces> changedPlaces(const Patches& patches, ItemRange range, bool levelsMoved, std::uint32_t width);
 
-// The vertices, or edges, over all meshes, that lanes' owners name; DRAPE_NO_FEATURE where there is none.
+// Returns the vertices, or edges, over all meshes, that the lanes' owners name; DRAPE_NO_FEATURE for unused lanes.
 std::vector<std::uint32_t> vertexIdsOf(const std::vector<std::uint32_t>& owners,
                                        const std::vector<Triangle>& triangles);
 std::vector<std::uint32_t> edgeIdsOf(const std::vector<std::uint32_t>& owners, const std::vector<Triangle>& triangles);
-// Their nodes, by the ids of faces or edges: of each block a row of lanes for each node that a feature has.
+// Returns the features' nodes, by the ids of faces or edges: per block one row of lanes for each node of a feature.
 std::vector<std::uint32_t> faceNodesOf(const std::vector<std::uint32_t>& ids, const std::vector<Triangle>& triangles,
                                        std::uint32_t width);
 std::vector<std::uint32_t> edgeNodesOf(const std::vector<std::uint32_t>& ids, const std::vector<Edge>& edges,
                                        std::uint32_t width);
 
-// All of them. width: lanes in a block. positions: m, x y z per joined vertex.
+// Makes all patches. width: lanes in a block. positions: m, x y z per joined vertex.
 Patches makePatches(const MeshPool& pool, const float* positions, std::uint32_t width);
 }  // namespace drape

@@ -30,8 +30,8 @@ void dropRoom(std::vector<T>& elements)
     if (elements.capacity() / 4 > elements.size()) elements.shrink_to_fit();
 }
 
-// Has fill() fill the list, which returns how many elements there are in all: again with a longer list where they did
-// not fit, unless they are more than the limit. The list must not be empty. Returns how often it grew.
+// Calls fill() to fill the list; fill() returns the number of all elements. Repeats with a longer list if they did not
+// fit, unless they exceed the limit. The list must not be empty. Returns how often it grew.
 template <typename T, typename Fill>
 std::size_t fillGrowing(std::vector<T>& list, std::size_t limit, const Fill& fill)
 {
@@ -39,7 +39,7 @@ std::size_t fillGrowing(std::vector<T>& list, std::size_t limit, const Fill& fil
     {
         const std::size_t wanted = fill();
         if (wanted <= list.size() || wanted > limit) return retries;
-        list = std::vector<T>();  // first, so that both are not there at once
+        list = std::vector<T>();  // frees the old memory first, so that only one exists at a time
         list.resize(std::min(wanted + wanted / 4, limit));
     }
 }

@@ -1,10 +1,12 @@
-// Edges, owners and opposite vertices of a triangle mesh.
+// Computes edges, owners and opposite vertices of a triangle mesh.
 //
 // Input: indices and a vertex count. Output: Triangle and Edge records with indices local to the mesh. Triangles that
-// repeat an index, or all three vertices of an earlier triangle, are left out. Every vertex and every edge that a
-// triangle uses is owned by exactly one triangle, the first. Edges are numbered by their first use, so the result
-// depends on the input alone. O(n) for surfaces, O(n^1.5) at worst. A vertex without a triangle has none unless it is
-// given a point, or an edge that is not a triangle's: both are triangles without area, behind the others.
+// repeat an index, or all three vertices of an earlier triangle, are left out. Exactly one triangle, the first, owns
+// every vertex and every edge that triangles use. Edges are numbered by their first use, so the result depends on the
+// input alone. O(n) for surfaces, O(n^1.5) at worst.
+//
+// A vertex without a triangle has none unless it is given a point, or an edge that is not a triangle's. Both are
+// triangles without area, behind the others.
 #pragma once
 
 #include <cstdint>
@@ -30,12 +32,13 @@ struct Topology
 // triangles: 3 indices each, in [0, vertexCount); check_indices.h checks a caller's.
 Topology buildTopology(const std::int32_t* triangles, std::size_t triangleCount, std::size_t vertexCount);
 
-// Adds edges that are not a triangle's, 2 indices each, in [0, vertexCount). Each becomes a triangle that has the
-// second vertex twice (kernels/lib/segment.h): it owns the edge between the two as its first, and those of the two that
-// nobody owned. Edges that repeat an index or one that is there are left out. Before addPoints(). O(n log n).
+// Adds edges that are not a triangle's, 2 indices each, in [0, vertexCount). Each becomes a triangle that repeats its
+// second vertex (kernels/lib/segment.h). It owns the edge between the two as its first edge, and those of the two
+// vertices without an owner. Edges that repeat an index or an existing edge are left out. Call before addPoints(). O(n
+// log n).
 void addEdges(Topology& topology, const std::int32_t* edges, std::size_t edgeCount);
 
-// Adds a point for each vertex that no triangle has: a triangle that is that vertex three times and owns it, with an
-// edge from it to itself that nobody owns.
+// Adds a point for each vertex without a triangle: a triangle that has the vertex three times and owns it, with an edge
+// from the vertex to itself that no triangle owns.
 void addPoints(Topology& topology);
 }  // namespace drape

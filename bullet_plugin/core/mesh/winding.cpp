@@ -32,8 +32,8 @@ WindingSigns::WindingSigns(const Topology& topology)
     }
 }
 
-// An edge runs in the direction of its first triangle; a second one that is wound alike runs along it the other way.
-// Returns whether there are triangles that do not.
+// Returns whether neighbours are wound differently. An edge runs in the direction of its first triangle; a second
+// triangle with the same winding runs along it the other way.
 bool WindingSigns::markTurnedEdges(const Topology& topology)
 {
     bool any = false;

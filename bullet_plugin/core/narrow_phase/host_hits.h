@@ -58,7 +58,7 @@ public:
         orderHits(m_hits.data(), count, m_slotCount, contacts, threads);
     }
 
-    // Gives back the memory of all that was found.
+    // Releases the memory of the results.
     void giveBackRoom()
     {
         m_hits = std::vector<Contact>();
@@ -75,7 +75,7 @@ private:
     static constexpr std::size_t kLeastSweptShared = 1 << 6;
 
     std::vector<Contact> m_hits;
-    std::vector<std::uint32_t> m_slotCount;  // of hits
+    std::vector<std::uint32_t> m_slotCount;  // number of contacts by slot
     std::vector<std::uint32_t> m_swept;      // tests that the continuous test decides
 };
 }  // namespace drape

@@ -45,11 +45,11 @@ NarrowPhaseCounts narrowPhaseOnHost(const std::vector<Candidate>& candidates, co
                                     const ObstacleView& obstacle, const NarrowPhaseSettings& settings,
                                     std::vector<Contact>& contacts, std::size_t limit = SIZE_MAX);
 
-// Pairs whose triangles intersect at the step's start, in order of cloth and obstacle triangle.
+// Lists pairs whose triangles intersect at the step's start, in order of cloth and obstacle triangle.
 void intersectOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth, const ObstacleView& obstacle,
                      const MotionList& motions, std::vector<Candidate>& pairs);
 
-// Device buffers that hold both sides' geometry.
+// Device buffers of both sides' geometry.
 struct NarrowPhaseBuffers
 {
     Buffer<float>& m_clothStart;
@@ -70,8 +70,8 @@ class NarrowPhaseStage
 public:
     struct Expected
     {
-        std::size_t m_tests;      // about as many; speed alone depends on it
-        std::size_t m_mostSwept;  // with more tests that need the continuous test than this, their hits are not listed
+        std::size_t m_tests;      // about this many; affects speed alone
+        std::size_t m_mostSwept;  // if more tests need the continuous test, their contacts are not listed
     };
 
     // features: builds the kernels for feature tests, else those for triangle pairs.
@@ -91,12 +91,12 @@ public:
                          Buffer<StepCounters>& counters);
     // Returns whether the launch did nothing because there were `tests` tests and far fewer were expected.
     bool skipped(std::size_t tests) const { return tests > m_mostTests; }
-    // The candidates whose triangles intersect, in any order. Their counter must be zero before.
+    // Lists the candidates whose triangles intersect, in any order. Their counter must be zero before.
     void enqueueIntersect(Device& device, NarrowPhaseBuffers sides, Buffer<Candidate>& candidates,
                           Buffer<StepCounters>& counters);
 
 private:
-    std::size_t m_mostTests = SIZE_MAX;  // of the last launches
+    std::size_t m_mostTests = SIZE_MAX;  // tests of the last launches
     Kernel m_test, m_feature, m_swept, m_few, m_intersect;
     Buffer<Candidate> m_intersections{"step intersections"};
     Buffer<cl_uint> m_sweptTests{"step candidates"};

@@ -20,7 +20,7 @@ bool isGroup(std::uint32_t size)
     return size >= 16 && size <= 256 && (size & (size - 1)) == 0;
 }
 
-// A value that was cast to an enumeration may be none of its own.
+// A value cast to an enumeration may be none of its enumerators.
 template <typename Choice>
 Field choice(const char* name, Choice value, Choice last)
 {

@@ -1,5 +1,5 @@
-// The back end of a scene where the settings leave it to cost: the crossover is found when the pipeline is made, and
-// held against the scene's work when its pairs change.
+// Chooses a scene's back end if the settings leave it to cost. The crossover is found when the pipeline is created, and
+// compared with the scene's work when its pairs change.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -29,7 +29,7 @@ Surface surfaceOf(const PooledMesh& mesh)
 
 bool Pipeline::Implementation::costDecides(const DeviceChoice& choice) const
 {
-    // Methods, reports and profiles are for comparing what runs on the device; the crossover is that of the defaults.
+    // Methods, reports and profiles serve comparisons on the device; the crossover applies to the defaults.
     return choice.m_byCost && goesOverPatches(m_settings) && !m_settings.m_profileKernels;
 }
 
@@ -49,7 +49,7 @@ double Pipeline::Implementation::findCrossover(Pipeline& pipeline)
     const char* const why = measureLadder(
         pipeline, m_settings.m_activation, [&](bool onHost) { m_report.m_onHost = onHost || device()->failed(); },
         crossover.m_rungs, busy);
-    // Nobody has seen these steps, whose meshes' ids are given again.
+    // Hides these steps from the caller: their meshes' ids are given again.
     m_nextId = 0;
     m_clothHierarchy = m_obstacleHierarchy = SideHierarchy();
     m_statistics = StepStatistics();

@@ -9,9 +9,9 @@ namespace
 // Computes the point of a face that is nearest to the vertex, which is the origin.
 struct Nearest
 {
-    Vec3 m_weights;  // of the cloth's nodes
+    Vec3 m_weights;  // by node of the cloth
     Vec3 m_offset;   // from the vertex
-    Vec3 m_across;   // the face's area vector where the offset is parallel to it; else 0
+    Vec3 m_across;   // the face's area vector if the offset is parallel to it; else 0
 };
 
 bool insideFace(Vec3 weights)
@@ -34,7 +34,7 @@ void store(Vec3 v, float target[3])
     target[2] = v.z;
 }
 
-// Unit, on the side of `before`; false where there is none.
+// Computes the unit normal on the side of `before`; returns false if there is none.
 bool directionOf(const Nearest& nearest, Vec3 before, Vec3& direction)
 {
     const float across = areaLengthOf(nearest.m_across);

@@ -1,4 +1,4 @@
-// Resolves contacts from indices over all meshes to meshes, nodes and triangles as the caller numbered them.
+// Resolves contacts from indices over all meshes to meshes, nodes and triangles in the caller's numbering.
 #include <algorithm>
 
 #include "implementation.h"
@@ -10,7 +10,7 @@ namespace
 {
 struct PooledFeature
 {
-    std::size_t m_slot = 0;                                  // of the mesh
+    std::size_t m_slot = 0;                                  // the mesh's slot
     std::uint32_t m_keptTriangle = 0;                        // in the mesh's topology
     std::uint32_t m_nodes[3] = {kNoMesh, kNoMesh, kNoMesh};  // over all meshes
 };

@@ -19,7 +19,7 @@ namespace
 {
 constexpr const char* kHead = "drape crossover 2\n";
 constexpr std::size_t kMostBytes = 1 << 20;
-constexpr int kHostRevision = 4;  // counts up with what changes how long the host's steps take
+constexpr int kHostRevision = 4;  // counts up with changes of the host's speed
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 // A value in one line.
@@ -81,7 +81,7 @@ std::vector<CrossoverRung> leastTimes(std::vector<CrossoverRung> rungs, const st
 {
     for (const CrossoverRung& other : others)
     {
-        // Scenes are the same at every start; their pairs were rounded as they were written.
+        // Scenes are the same at every start; the file stores their pairs rounded.
         const auto same = std::find_if(rungs.begin(), rungs.end(),
                                        [&](const CrossoverRung& rung)
                                        { return std::fabs(rung.m_pairs - other.m_pairs) <= 1e-6 * other.m_pairs; });

@@ -1,10 +1,10 @@
 // The work from which a device is faster than the host back end: measured once for a machine, a device, a driver and a
 // version of Drape, and kept beside the compiled kernels.
 //
-// The file is text, one line for each rung of the ladder of scenes that was measured. What does not name this very
-// device, driver, host, version and settings, or is damaged, reads as "not there", and is measured again and replaced;
-// whoever wants it measured anew deletes crossover-*.txt. One that was measured on a busy machine is kept for the time
-// being: later starts measure again.
+// The file is text, one line for each measured rung of the ladder of scenes. A file that is damaged, or names another
+// device, driver, host, version or settings, counts as missing; the crossover is measured again and the file replaced.
+// Delete crossover-*.txt to measure again. A crossover measured on a busy machine is provisional: later starts measure
+// again.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,7 @@ struct Crossover
     int m_busyStarts = 0;  // starts that measured it, all on a busy machine; 0: the machine was idle
 };
 
-// Starts at which a busy machine is measured. What is measured then is kept, for want of a better time.
+// Maximum starts that measure a busy machine. The last result is then kept, for want of a better one.
 constexpr int kMostBusyStarts = 4;
 
 // Returns whether a stored crossover must be measured again.
@@ -40,14 +40,14 @@ inline bool isProvisional(const Crossover& crossover)
     return crossover.m_busyStarts > 0 && crossover.m_busyStarts < kMostBusyStarts;
 }
 
-// The least times of both measurements, by rung; what disturbs them only adds to them.
+// Returns the least times of both measurements, by rung; disturbances only add to times.
 std::vector<CrossoverRung> leastTimes(std::vector<CrossoverRung> rungs, const std::vector<CrossoverRung>& others);
 
 // Returns the best division of the rungs: steps below run on the host, those above on the device. It minimises the
 // sum of the logarithms of the time ratios to the faster back end, over the ends and the middles between neighbours.
 double bestCrossover(std::vector<CrossoverRung> rungs);
 
-// The crossover of one device with these settings, on disk.
+// Stores the crossover of one device with these settings on disk.
 class CrossoverCache
 {
 public:
@@ -60,6 +60,6 @@ public:
 private:
     std::string m_folder;
     std::string m_machine;  // lines that name what is measured
-    std::string m_state;    // lines that may change, and make what is stored stale
+    std::string m_state;    // lines that may change; a change makes the stored crossover stale
 };
 }  // namespace drape

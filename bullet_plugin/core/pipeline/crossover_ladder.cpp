@@ -20,7 +20,7 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kCell = 0.075;
 constexpr float kThickness = 0.02f;
 constexpr double kGap = 0.75 * kThickness;  // vertical
-constexpr double kMargin = 0.1;             // of the sheet around the cloth
+constexpr double kMargin = 0.1;             // margin of the sheet around the cloth
 
 constexpr int kClothCells[] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96};  // along a side
 constexpr int kFineness[] = {1, 4};                                            // cells of the sheet in one of the cloth
@@ -28,11 +28,11 @@ constexpr int kFineness[] = {1, 4};                                            /
 constexpr int kWarmUpSteps = 2;  // build trees and grow buffers
 constexpr int kFewestSteps = 5, kMostSteps = 15;
 constexpr double kStepsMs = 10;       // for the steps of one rung on one back end, if more than the fewest
-constexpr double kLongestStepMs = 5;  // of the host; the next rung is not climbed
+constexpr double kLongestStepMs = 5;  // on the host; after a longer one the ladder ends
 // Maximum ratio of the median to the shortest time of a scene's steps, averaged over all scenes. Beyond it half of
 // the steps were disturbed, and possibly the shortest.
 constexpr double kMostSpread = 1.6;
-constexpr double kAhead = 2;  // times that the device is faster; so on two rungs, and the ladder ends
+constexpr double kAhead = 2;  // ratio of times; the ladder ends after two rungs with a higher one
 
 struct Sheet
 {
@@ -120,7 +120,7 @@ public:
         return ms;
     }
 
-    // spread: gets the logarithm of how many times as long the middle one of the steps took.
+    // spread: gets the logarithm of the ratio of the median to the shortest step.
     double leastMs(std::vector<double>& spread)
     {
         std::vector<Contact> contacts;

@@ -12,9 +12,10 @@
 
 namespace drape
 {
-// use: has the pipeline's coming steps run on the host, or the device. activation: the pipeline's.
+// use: selects the host or the device for the pipeline's coming steps. activation: the pipeline's.
 // busy: whether other processes kept the machine busy meanwhile, or the times of a scene varied widely.
-// Returns null, or why the device cannot be measured: it failed, cannot hold a step, or its steps are not the host's.
+// Returns null, or why the device cannot be measured: it failed, has no room for a step, or its
+// contacts differ from the host's.
 const char* measureLadder(Pipeline& pipeline, float activation, const std::function<void(bool onHost)>& use,
                           std::vector<CrossoverRung>& rungs, bool& busy);
 }  // namespace drape

@@ -8,11 +8,11 @@ namespace drape
 {
 namespace
 {
-// First guesses; they grow to what scenes need.
+// First guesses; they grow to the scenes' needs.
 constexpr std::size_t kFirstCandidates = 1 << 16;
 constexpr std::size_t kFirstContacts = 1 << 13;
 
-// Floats whose transfer takes less time than the begin of one.
+// Number of floats whose transfer takes less time than the start of a transfer.
 constexpr std::size_t kFloatsBetween = 1 << 16;
 
 // Files that a CPU builds as one program: those of every step over patches, or over trees except the traversal's own,
@@ -65,7 +65,7 @@ DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& set
 
 DeviceBackend::~DeviceBackend()
 {
-    // Transfers into host memory that is about to go must have ended.
+    // Waits for transfers into host memory that is about to be released.
     m_device->wait();
 }
 
@@ -149,7 +149,7 @@ void DeviceBackend::uploadSide(const MeshPool& pool, const BvhLayout& layout, Si
     }
 }
 
-// The cull over patches needs an order of the cloths alone: that of their own patches, since it walks for packets.
+// The cull over patches needs only the cloths' order: that of their own patches, since it traverses for packets.
 void DeviceBackend::clusterCloths(const MeshPool& cloths, std::size_t firstSlot)
 {
     clusterMeshes(cloths, firstSlot, PatchCullStage::width(*m_device), m_clustered);
@@ -328,7 +328,7 @@ ReductionBuffers DeviceBackend::reductionBuffers(const Scene& scene)
             m_tube};
 }
 
-// Pairs of features, or of triangles, that may touch.
+// Finds pairs of features, or of triangles, that may touch.
 void DeviceBackend::enqueueBroad(const Scene& scene, const StepPairs& pairs)
 {
     const std::size_t obstacleMeshes = scene.m_obstacles.meshCount();

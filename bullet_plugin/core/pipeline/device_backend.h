@@ -31,18 +31,18 @@ public:
     // Builds the kernels of cloths that collide with themselves, at the first call.
     void prepareSelf();
 
-    // Brings meshes that came, and obstacles that moved, to the device, and waits.
+    // Uploads added meshes and moved obstacles to the device, and waits.
     void prepare(const Scene& scene);
-    // Gives back memory of lists that only earlier steps with more contacts needed. Waits.
+    // Releases memory of lists that only earlier steps with more contacts needed. Waits.
     void giveBackRoom();
-    // Begins to bring nodes of the cloths, start and end, to the device before the step is submitted. False where the
-    // device does not know the cloths yet.
+    // Begins the upload of the cloths' nodes, start and end, before the step is submitted. Returns false if the device
+    // does not know the cloths yet.
     bool sendNodes(const Scene& scene, std::size_t first, std::size_t count);
-    // Returns after enqueueing. The scene and the pairs must stay as they are until finish(). sent: of the cloths'
-    // nodes, the first so many were.
+    // Returns after enqueueing. The scene and the pairs must stay unchanged until finish(). sent: number of the cloths'
+    // first nodes that are uploaded already.
     void submit(const Scene& scene, const StepPairs& pairs, std::size_t sent = 0);
-    // Waits. False when the device failed or cannot hold what the step needs (then limitReached()). The result says
-    // when the step is over the settings' limits.
+    // Waits. Returns false if the device failed or has no room for the step (then limitReached()). The result says
+    // whether the step exceeded the settings' limits.
     bool finish(const Scene& scene, const StepPairs& pairs, StepResult& result);
     bool limitReached() const { return m_limitReached; }
 
@@ -68,17 +68,17 @@ private:
         std::uint32_t m_revision = 0;
     };
 
-    // Makes room for as much as a first step may list.
+    // Makes room for the lists of a first step.
     void reserveFirst();
     void warmUp(float selfThickness = 0.0f);
-    // The next scene is brought here from its first mesh on.
+    // Uploads the next scene from its first mesh on.
     void forgetScene();
-    // The first slot that the device does not know as it is.
+    // Returns the first slot that changed since the last upload.
     std::size_t firstNew(const MeshPool& pool, const Side& side) const;
     void uploadSide(const MeshPool& pool, const BvhLayout& layout, Side& side);
     void updateTopology(const Scene& scene);
     void updateCloths(const Scene& scene);
-    // Floats of the cloths' nodes at a step's start, and as many at its end.
+    // Returns the number of floats of the cloths' nodes at a step's start; there are as many at its end.
     void reserveNodes(std::size_t room);
     void clusterCloths(const MeshPool& cloths, std::size_t firstSlot);
     void updateTraversal(const Scene& scene, bool newObstacles);
@@ -103,7 +103,7 @@ private:
     void takeCounts(const StepCounters& counters);
     // Returns whether the last run exceeded the settings' limits; the result says which.
     bool overLimit(const StepPairs& pairs, StepResult& result);
-    // Makes room for what the last run demanded. Returns whether the step must run again.
+    // Makes room for the last run's demand. Returns whether the step must run again.
     bool grow();
     void readAll(StepResult& result);
 
@@ -123,7 +123,7 @@ private:
 
     Side m_cloth{"cloth"}, m_obstacle{"obstacle"};
     Buffer<float> m_clothNodes{"cloth positions"};
-    Buffer<float> m_clothStart, m_clothEnd;  // parts of it, as ClothNodes has them
+    Buffer<float> m_clothStart, m_clothEnd;  // parts of it, laid out like ClothNodes
     Buffer<float> m_thickness{"pairs of meshes"}, m_tube{"pairs of meshes"};
     Buffer<Edge> m_clothEdges{"cloth edges"};
     Buffer<ObstacleMotion> m_motions{"obstacle places"};
@@ -132,11 +132,12 @@ private:
     Buffer<Candidate> m_candidates{"step candidates"};
     // Counters of a step and the next, alternating; see StepTally.
     Buffer<StepCounters> m_counters[2] = {Buffer<StepCounters>("step counters"), Buffer<StepCounters>("step counters")};
-    Buffer<StepCounters> m_refitCounters{"step counters"};  // of obstacles, which nobody reads
+    Buffer<StepCounters> m_refitCounters{"step counters"};  // counters of obstacle refits, never read
     std::size_t m_turn = 0;
     int m_stepsToOrder = 1;
-    std::size_t m_testsBefore = SIZE_MAX, m_hitsBefore = SIZE_MAX;  // feature tests and hits of the step before
-    std::unique_ptr<Staging<Contact>> m_contactsRead;               // behind a head as on the device
+    std::size_t m_testsBefore = SIZE_MAX,
+                m_hitsBefore = SIZE_MAX;               // feature tests and unsorted contacts of the step before
+    std::unique_ptr<Staging<Contact>> m_contactsRead;  // behind a head as on the device
     std::size_t m_contactsAsked = 0;
     std::vector<float> m_sentThickness, m_sentTube, m_sentRadius;
 };

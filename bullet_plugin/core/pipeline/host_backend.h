@@ -16,15 +16,16 @@ class HostBackend
 public:
     explicit HostBackend(const Settings& settings, std::shared_ptr<ThreadTeam> threads);
 
-    // Does what a step does after meshes came or obstacles moved.
+    // Updates the back end as a step does after meshes were added or obstacles moved.
     void prepare(const Scene& scene);
     // Runs the whole step.
     void run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
 
-    // Gives back room that only earlier, larger steps needed. Between steps.
+    // Releases memory that only earlier, larger steps needed. Call between steps.
     void giveBackRoom() { m_patches.giveBackRoom(); }
 
-    // The step's pairs of triangles per cloth slot: exact, however many; of cloths with themselves up to the limit.
+    // Counts the step's pairs of triangles per cloth slot: exact, however many; for cloths with themselves up to the
+    // limit.
     std::vector<std::uint64_t> countCandidates(const Scene& scene, const StepPairs& pairs, const Settings& settings);
 
 private:

@@ -14,16 +14,16 @@ namespace drape
 class HostPatches
 {
 public:
-    // Does what a step does after meshes came or obstacles moved.
+    // Updates the patches as a step does after meshes were added or obstacles moved.
     void update(const Scene& scene);
-    // Adds to the result what the pairs give, contacts in canonical order. False when the step is over a limit.
+    // Adds the pairs' contacts to the result, in canonical order. Returns false if the step exceeds a limit.
     bool run(const Scene& scene, const StepPairs& pairs, const Settings& settings, ThreadTeam& threads,
              StepResult& result);
     // Adds contacts of cloths with themselves in the same way; none if that exceeds a limit.
     SelfCounts runSelf(const Scene& scene, const SelfStep& step, SelfStepLimits limits, ThreadTeam& threads,
                        StepResult& result);
 
-    // Gives back room that only earlier, larger steps needed. Between steps.
+    // Releases memory that only earlier, larger steps needed. Call between steps.
     void giveBackRoom()
     {
         m_cull.giveBackRoom();
@@ -39,7 +39,7 @@ private:
     HostPatchCull m_cull;
     HostPlacedObstacles m_placed;
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
-    std::vector<std::uint32_t> m_clothOrder;  // that of the cloths' own patches, since it walks for packets
+    std::vector<std::uint32_t> m_clothOrder;  // order of the cloths' own patches, traversed in packets
     HostHitFinder m_hits;
     HostSelfPatches m_self;
 };

@@ -40,7 +40,7 @@ struct NamedPair
     }
 };
 
-// The id is of a mesh that is there.
+// Requires the id of an existing mesh.
 inline std::size_t slotOf(const MeshPool& pool, MeshId id)
 {
     const std::size_t slot = pool.slot(id);
@@ -77,10 +77,10 @@ struct Pipeline::Implementation
     std::string m_deviceReason;     // why this device and no other
     MeshId m_nextId = 0;
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
-    std::uint32_t m_stepRevision = 0;                 // of the obstacles, in the last step with a pair
-    std::size_t m_nodesWritten = 0, m_nodesSent = 0;  // the first so many nodes of all cloths, for the coming step
-    bool m_neededMore = false;                        // tests than ordinary motion does, the last step
-    bool m_limitsRaised = false;                      // above those of ordinary motion, in this step
+    std::uint32_t m_stepRevision = 0;                 // m_obstacleRevision in the last step with a pair
+    std::size_t m_nodesWritten = 0, m_nodesSent = 0;  // counts of the cloths' first nodes, for the coming step
+    bool m_neededMore = false;                        // the last step needed more tests than ordinary motion
+    bool m_limitsRaised = false;                      // in this step they exceed those of ordinary motion
     bool m_submitted = false;
     bool m_deviceLeft = false;  // it failed
 
@@ -96,7 +96,7 @@ struct Pipeline::Implementation
     void joinCloths(std::size_t first);
     void joinRest();
     std::vector<NodeStretch> stretchesOf(const std::vector<MeshId>& cloths);
-    // Counts nodes of cloths that are gone as written, up to node `last`.
+    // Counts nodes of removed cloths as written, up to node `last`.
     void passVacantNodes(std::size_t last);
     // Forgets nodes declared as written: they are not those of the coming step. Ends their transfers.
     void forgetNodes();
@@ -109,9 +109,9 @@ struct Pipeline::Implementation
     void buildHierarchies();
     // Builds both sides' layouts for the host if necessary.
     void layOut();
-    // Uses a hierarchy of the cloths that was built anew.
+    // Uses a rebuilt hierarchy of the cloths.
     void takeRebuilt();
-    // Has one built where the last step found the cloths' hierarchy decayed.
+    // Starts a rebuild if the last step found the cloths' hierarchy decayed.
     void watchTree();
     // Computes data that depends on an obstacle's pose.
     void placeMesh(std::size_t slot);
@@ -128,8 +128,8 @@ struct Pipeline::Implementation
     void collectTubes();
     // Makes a device ready for cloths that collide with themselves.
     void prepareSelf();
-    // False, with error filled, when the device that was chosen cannot be opened or its kernels made ready; nothing of
-    // it is kept.
+    // Returns false, with error filled, if the chosen device cannot be opened or its kernels cannot be built; keeps
+    // nothing of it then.
     bool openDevice(Error& error);
     // Continues on the host for good after the device's failure.
     void leaveDevice();
@@ -139,7 +139,7 @@ struct Pipeline::Implementation
     // Reads the crossover from the cache, or measures it.
     double findCrossover(Pipeline& pipeline);
     bool beginChoice(Pipeline& pipeline, Error& error);
-    // Has the coming steps run where the scene's work says, and the report say why.
+    // Selects the back end of the coming steps by the scene's work, and updates the report's reason.
     void useChosen();
     // Processes the pairs named for the coming step, if they differ from those of the last one.
     void chooseBackend();
@@ -147,14 +147,14 @@ struct Pipeline::Implementation
     // near zero, which make the least work.
     bool mayStayOnHost() const;
     void runOnHost();
-    // The step of the pairs that are left, on the back end in use.
+    // Runs the step of the remaining pairs on the current back end.
     void enqueue();
     void complete();
-    // Takes out contacts on the back of one-sided obstacles.
+    // Removes contacts on the back of one-sided obstacles.
     void dropBackContacts();
-    // Takes a cloth out of the step; candidates: that it has, as far as they were counted.
+    // Removes a cloth from the step. candidates: the cloth's, as far as they were counted.
     void leaveOut(std::size_t slot, std::uint64_t candidates);
-    // Takes cloths out of the step until what is left is within the settings' limits.
+    // Removes cloths from the step until the rest is within the settings' limits.
     void leaveOutCloths();
     // Handles a step over the limits of StepPairs: removes cloths that need more than their allowance, and gives the
     // others theirs.

@@ -6,7 +6,7 @@
 
 namespace drape
 {
-// Seconds of all cores together since the system started.
+// Seconds, summed over all cores, since the system started.
 struct CoreTimes
 {
     double m_busy = 0;  // including the time that a hypervisor gave to others

@@ -17,7 +17,7 @@ public:
     {
         return m_motion != scene.m_obstacleMotion || m_placing != scene.m_obstaclePlacing;
     }
-    // Compares, and remembers the scene. From slot `fresh` on everything is new.
+    // Compares with the recorded scene and records the current one. Everything from slot `fresh` on is new.
     void take(const Scene& scene, std::size_t fresh);
     void forget() { *this = ObstacleChanges(); }
 

@@ -1,4 +1,4 @@
-// Questions about single obstacles, on the host.
+// Answers queries about single obstacles, on the host.
 #include <algorithm>
 
 #include "bullet_plugin/core/queries/mesh_probe.h"

@@ -13,7 +13,7 @@
 
 namespace drape
 {
-// The most tests of features that a step may make, and the most of them that may need the continuous test.
+// Maximum feature tests of a step, and maximum tests among them that may need the continuous test.
 struct TestLimits
 {
     std::size_t m_tests = SIZE_MAX;
@@ -31,10 +31,10 @@ struct TestLimits
     }
 };
 
-// Measured on cloth of 2,048 to 32,768 triangles: at rest and at some metres a second 8 to 13 tests for each of its
-// triangles, of which one in ten needs the continuous test. At 200 m/s, where a step is longer than a triangle by far,
-// there are up to 500, and 3 to 6 continuous ones for each triangle of cloth and obstacle; 2,048 on the bunny stay
-// within these tests.
+// Measured on cloth of 2,048 to 32,768 triangles. At rest and at some metres a second there are 8 to 13 tests per
+// cloth triangle, of which one in ten needs the continuous test. At 200 m/s a step is far longer than a triangle. Then
+// there are up to 500 tests, and 3 to 6 continuous ones per triangle of cloth and obstacle. A cloth of 2,048 triangles
+// on the bunny stays within these limits.
 inline TestLimits ordinaryTests(std::size_t clothTriangles)
 {
     return {(std::size_t(1) << 17) + 64 * clothTriangles, (std::size_t(1) << 13) + 2 * clothTriangles};

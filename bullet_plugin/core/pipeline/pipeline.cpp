@@ -21,7 +21,7 @@ void Pipeline::Implementation::prepareSelf()
 void Pipeline::Implementation::leaveDevice()
 {
     if (!m_deviceLeft) goOnWithoutDevice(m_deviceBackend->device().error());
-    // The backend stays: the scene's pinned memory is its context's.
+    // Keeps the back end: the scene's pinned memory belongs to its context.
 }
 
 void Pipeline::Implementation::goOnWithoutDevice(const Error& error)

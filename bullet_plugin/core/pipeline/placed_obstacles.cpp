@@ -10,8 +10,8 @@ constexpr std::size_t kPlaceGroup = 64;
 constexpr std::size_t kTrianglesBetweenCpu = 1 << 8;
 constexpr std::size_t kTrianglesBetweenGpu = 1 << 14;
 
-// Runs of the obstacles that changed. Some that did not go along where they are between two that did, as many as cost
-// less than launches of their own.
+// Returns runs of changed obstacles. Unchanged ones between two changed ones are included if they cost less than
+// separate launches.
 template <typename Changed>
 std::vector<SlotRange> runsOf(const Device& device, const MeshPool& obstacles, const Changed& changed)
 {
@@ -54,7 +54,7 @@ void PlacedObstacles::reserve(Device& device, const Scene& scene, std::size_t fr
         if (!m_anyPosed)
             own.release();
         else if (begins)
-            own.copy(device, world, count, keptCount);  // the world was every obstacle's own frame
+            own.copy(device, world, count, keptCount);  // every obstacle's own frame was the world's
         else
             own.extend(device, count, keptCount);
     };

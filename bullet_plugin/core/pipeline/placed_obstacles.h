@@ -15,7 +15,7 @@ class PlacedObstacles
 {
 public:
     void create(Device& device, const cl::Program& program);
-    // The next scene is brought here from its first mesh on.
+    // Uploads the next scene from its first mesh on.
     void forget();
 
     // Returns whether positions or poses may have changed since update().

@@ -65,7 +65,7 @@ void Pipeline::Implementation::leaveOut(std::size_t slot, std::uint64_t candidat
     m_leftOut.push_back(m_scene.m_cloths.mesh(slot).m_id);
 }
 
-// Returns the tests that a slot's cloth may make: `share` times as many as in ordinary motion, at least as many.
+// Returns the tests that a slot's cloth may make: those of ordinary motion times `share`, at least times 1.
 TestLimits Pipeline::Implementation::allowed(std::size_t slot, float share) const
 {
     const TestLimits& ordinary = m_stepPairs.m_ordinary[slot];

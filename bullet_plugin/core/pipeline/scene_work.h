@@ -16,8 +16,8 @@
 
 namespace drape
 {
-// m², of the triangles with finite vertices; of one that stands for an edge, half of the square over it, as of a grid's
-// triangle with that side. positions: m, x y z per vertex.
+// Returns the area, m², of the triangles with finite vertices. A triangle that stands for an edge counts as half of the
+// square over it, like a grid's triangle with that side. positions: m, x y z per vertex.
 double surfaceArea(const std::vector<Triangle>& triangles, const float* positions);
 
 struct Surface

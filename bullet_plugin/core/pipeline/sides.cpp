@@ -1,4 +1,4 @@
-// Obstacles that are solid from one side only.
+// Handles obstacles that are solid from one side only.
 #include <algorithm>
 #include <iterator>
 

@@ -18,8 +18,8 @@
 
 namespace drape
 {
-// The joined cloth nodes, x y z each, m, at a step's start and at its end: side by side, so that one transfer can bring
-// both to a device. Contents are lost when there must be more room.
+// The joined cloth nodes, x y z each, m, at a step's start and at its end. They are adjacent, so that one transfer can
+// upload both. Contents are lost when they grow.
 class ClothNodes
 {
 public:
@@ -52,11 +52,11 @@ struct Scene
     BvhLayout m_obstacleLayout;
     ClothNodes m_clothNodes;
     bool m_anySelf = false;                  // true if a cloth collides with itself
-    std::vector<float> m_clothRest;          // m, joined, at rest; empty where none does
+    std::vector<float> m_clothRest;          // m, joined, at rest; empty without m_anySelf
     std::vector<float> m_obstaclePositions;  // m, joined, as given
     std::vector<NormalCone> m_vertexCones;   // joined, as the positions
     std::vector<NormalCone> m_edgeCones;
-    std::uint32_t m_obstacleMotion = 0;   // counts up when positions are given anew
+    std::uint32_t m_obstacleMotion = 0;   // counts up when an obstacle gets new positions
     std::vector<ObstaclePlace> m_places;  // per obstacle slot
     std::uint32_t m_obstaclePlacing = 0;  // counts up when a place changes
     bool m_anyPosed = false;              // false: all positions are the world's; stays while there are obstacles
@@ -78,7 +78,7 @@ inline ClothView clothView(const Scene& scene, const Settings& settings)
                      std::uint32_t(cloths.triangles().size()), std::uint32_t(settings.m_mode), nullptr);
 }
 
-// The most that a step may list.
+// Maximum lengths of a step's lists.
 struct StepLimits
 {
     explicit StepLimits(const Settings& settings)
@@ -93,18 +93,18 @@ struct StepLimits
 // The pairs of one step.
 struct StepPairs
 {
-    std::vector<float> m_thickness;  // m, cloth slots × obstacle slots, -1 where there is no pair
+    std::vector<float> m_thickness;  // m, cloth slots × obstacle slots, -1 without a pair
     std::vector<float> m_tube;       // m; -1 to keep every contact
     bool m_anyTube = false;
     std::vector<float> m_clothRadius;       // m, per cloth slot: the largest reach of its pairs, -1 without one
-    std::vector<ObstacleMotion> m_motions;  // of the obstacles that have a pair and move, in the order of slots
+    std::vector<ObstacleMotion> m_motions;  // motions of the moving obstacles with a pair, in the order of slots
     std::vector<TestLimits> m_ordinary;     // per cloth slot: what its pairs need in ordinary motion
-    TestLimits m_limits;                    // of the step, over patches
+    TestLimits m_limits;                    // the step's limits, over patches
     SelfReach m_self;
     bool m_anyPair = false;      // cloth and obstacle
     bool m_anySelf = false;      // cloth and itself
     bool m_any = false;          // either
-    bool m_measureTree = false;  // the result shall have the cost of the cloths' hierarchy
+    bool m_measureTree = false;  // the result must include the cost of the cloths' hierarchy
 
     // Returns the number of obstacle slots when the pairs were collected.
     std::size_t obstacleSlots() const { return m_thickness.size() / m_clothRadius.size(); }
@@ -112,7 +112,7 @@ struct StepPairs
     {
         return m_thickness[cloth * obstacleSlots() + obstacle];
     }
-    // Takes a cloth out of the step.
+    // Removes a cloth from the step.
     void leaveOut(std::size_t cloth)
     {
         const std::size_t obstacles = obstacleSlots();
@@ -129,10 +129,10 @@ struct StepPairs
 
 struct StepResult
 {
-    std::vector<Contact> m_contacts;  // of the host
+    std::vector<Contact> m_contacts;  // the host's contacts
     ContactList m_deviceContacts;     // the device back end's memory, until its next step
     std::vector<Candidate> m_intersections;
-    // More candidates or contacts than the limits allow: nothing else of the result counts then but m_contactDemand.
+    // More candidates or contacts than the limits allow; only m_contactDemand of the result is valid then.
     bool m_overLimit = false;
     bool m_overTests = false;           // these are the limits of StepPairs
     std::uint64_t m_contactDemand = 0;  // number of contacts if they exceeded the limit; 0 if candidates did

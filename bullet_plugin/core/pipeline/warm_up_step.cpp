@@ -7,7 +7,8 @@ namespace drape
 {
 namespace
 {
-// No vectors: a pipeline may be made while an app's objects at namespace scope are, and vectors there might not be yet.
+// Arrays instead of vectors: a pipeline may be created during the initialisation of an app's namespace-scope objects,
+// before vectors at namespace scope.
 constexpr float kAbove[] = {0, 0, 0.5f, 1, 0, 0.5f, 0, 1, 0.5f}, kBelow[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
 constexpr float kReach = 0.1f;
 

@@ -28,32 +28,32 @@ public:
     // The description's indices are in range.
     explicit MeshProbe(const MeshDescription& mesh);
 
-    // Takes other positions of as many vertices.
+    // Sets other positions of the same number of vertices.
     void move(const std::vector<float>& positions);
-    // Returns how far the vertex that moves most would go to other positions, m; and the largest extent of the box.
+    // Return the largest displacement of a vertex to other positions, m, and the largest extent of the box.
     float mostMotion(const std::vector<float>& positions) const;
     float size() const;
 
-    // Lists the triangles that have a point in common with the given one, in ascending order. None where a corner is
-    // not finite or beyond 2^30 m.
+    // Lists the triangles that have a point in common with the given one, in ascending order; none if a corner is not
+    // finite or beyond 2^30 m.
     void listMeeting(const Vec3 corners[3], std::vector<std::uint32_t>& triangles) const;
-    // The mean of the points at which the given triangle's edges pass through the listed ones and theirs through it.
-    // False where there are none: all lie in one plane.
+    // Computes the mean of the points at which the given triangle's edges pass through the listed triangles, and their
+    // edges through it. Returns false if there are none: all lie in one plane.
     bool middleOfMeeting(const Vec3 corners[3], const std::vector<std::uint32_t>& triangles, Vec3& middle) const;
 
-    // The sum of the listed triangles' unit normals, each on the side on which the point is.
+    // Returns the sum of the listed triangles' unit normals, each on the point's side.
     Vec3 sumOfNormals(const std::vector<std::uint32_t>& triangles, Vec3 point) const;
 
-    // The axis, or its opposite, along which points leave the mesh's box soonest; unit.
+    // Returns the axis, or its opposite, along which points leave the mesh's box soonest; unit.
     Vec3 wayOutOfBox(const std::vector<Vec3>& points) const;
 
-    // The first call finds out, O(n log n).
+    // Returns whether the mesh is closed. The first call determines it, O(n log n).
     bool isClosed();
-    // Volume that a closed mesh encloses, m³; negative where its triangles look inwards.
+    // Returns the volume that a closed mesh encloses, m³; negative if its triangles face inwards.
     double volume() const;
     // The mesh is closed.
     bool isInside(Vec3 point) const;
-    // The surface's nearest point. The mesh has triangles.
+    // Returns the surface's nearest point. The mesh must have triangles.
     Vec3 nearest(Vec3 point) const;
     // A point of the surface: the weights of a triangle's corners, and its distance, m.
     struct Place
@@ -62,7 +62,7 @@ public:
         Vec3 m_weights;
         float m_distance;
     };
-    // The nearest one within the distance; false where there is none.
+    // Finds the nearest point within the distance; returns false if there is none.
     bool nearestWithin(Vec3 point, float distance, Place& place) const;
     // Moves a point along with its surface point to the vertices' other positions, turned as the triangle turns.
     Vec3 carriedWith(const Place& place, Vec3 point, const std::vector<float>& positions) const;
@@ -81,7 +81,7 @@ private:
     // A node of the tree over the triangles, with an exact box and the links of BvhNode.
     struct Node
     {
-        float m_low[3], m_high[3];  // m; low above high where no vertex is valid
+        float m_low[3], m_high[3];  // m; low above high if no vertex is valid
         std::uint32_t m_first, m_count;
     };
 

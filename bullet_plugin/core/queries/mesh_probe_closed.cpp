@@ -15,7 +15,7 @@ namespace
 // returns to its seam or pole with rounding errors.
 constexpr double kSeam = 1e-6;
 
-// A direction along which the vertices of grids, boxes and flat parts do not lie one over the other.
+// A direction along which the vertices of grids, boxes and flat parts do not coincide.
 constexpr double kAlong[3] = {0.5257, 0.6821, 0.5083};
 
 // Returns, for each vertex, the first vertex at its position.
@@ -45,7 +45,7 @@ bool areNear(const float* p, const float* q, double distance)
            std::fabs(double(p[2]) - q[2]) <= distance;
 }
 
-// Equal for vertices that count as one. distance: m.
+// Returns an id per vertex, equal for vertices that count as one. distance: m.
 std::vector<std::uint32_t> joinedVertices(const std::vector<float>& positions, double distance)
 {
     std::vector<std::uint32_t> joined = firstsAtPositions(positions);
@@ -70,7 +70,7 @@ std::vector<std::uint32_t> joinedVertices(const std::vector<float>& positions, d
     for (std::size_t i = 0; i < placed.size(); ++i)
     {
         const float* const own = &positions[3 * std::size_t(placed[i].m_vertex)];
-        // The direction is a unit one: so far apart along it are vertices at most that are near along every axis.
+        // Maximum distance along the unit direction of vertices that are near along every axis.
         for (std::size_t j = i + 1; j < placed.size() && placed[j].m_along - placed[i].m_along <= 1.75 * distance; ++j)
             if (areNear(own, &positions[3 * std::size_t(placed[j].m_vertex)], distance))
                 joined[root(placed[j].m_vertex)] = root(placed[i].m_vertex);

@@ -16,7 +16,7 @@ struct TriangleFrame
     Vec3 m_along, m_across, m_normal;
 };
 
-// False where the triangle has no area.
+// Returns false if the triangle has no area.
 bool frameOf(const Vec3 corners[3], TriangleFrame& frame)
 {
     const Vec3 edge = vec3Sub(corners[1], corners[0]), normal = vec3Cross(edge, vec3Sub(corners[2], corners[0]));

@@ -1,4 +1,4 @@
-// The truth about the pairs of triangles that the certified tests could not deny, counted and listed up to a limit.
+// Decides the pairs of triangles that the certified tests could not reject; counts them and lists them up to a limit.
 #pragma once
 
 #include "drape/queries.h"
@@ -9,8 +9,8 @@ namespace drape
 class PairDecision
 {
 public:
-    // a and b the same mesh: with itself. radius: m. limit: the longest that a list may be. Writes into `found`, whose
-    // lists and counts are empty.
+    // a and b: the same mesh for a mesh with itself. radius: m. limit: maximum length of a list. Writes to `found`,
+    // whose lists and counts are empty.
     PairDecision(const QueryMesh& a, const QueryMesh& b, double radius, std::size_t limit, MeshPairs& found)
         : m_a(a), m_b(b), m_radius(radius), m_limit(limit), m_found(found)
     {

@@ -79,7 +79,7 @@ std::uint32_t testOnHost(const TriangleQuery& query, std::uint32_t test)
     return triangleQuery(a, b, test);
 }
 
-// False when there are more pairs than may be tested; then they are counted only.
+// Returns false if there are more pairs than may be tested; it only counts them then.
 bool pairsOnHost(QueryMesh& a, QueryMesh& b, float radius, std::uint64_t limit, std::uint64_t& candidates,
                  PairDecision& decision)
 {

@@ -97,8 +97,8 @@ bool QueryDevice::refuse(const std::string& why)
     return false;
 }
 
-// Runs enqueue(batch) over all leaves; take() reads what a batch found. Lists grow to their limit, as meet() says, then
-// batches shrink. Ends early when there are more pairs of triangles than the walk may have.
+// Runs enqueue(batch) over all leaves; take() reads a batch's results. meet() makes lists grow up to their limit; after
+// that, batches shrink. Ends early if there are more pairs of triangles than the walk may have.
 template <typename Enqueue, typename Meet, typename Take>
 bool QueryDevice::inBatches(PairWalk& walk, Enqueue enqueue, Meet meet, Take take)
 {
@@ -211,7 +211,7 @@ bool QueryDevice::meshMotion(QueryMesh& source, const CcdSettings& settings, con
         m_stage.enqueueFeatures(*m_device, motion);
         if (!found.m_untested) m_stage.enqueueTests(*m_device, motion, settings);
     };
-    // Features that are too many to test need no room in the lists.
+    // Lists need no room for features that are too many to test.
     const auto meet = [&]
     {
         const SelfCollisionStage::Demand pairs = m_stage.meetPairs(*m_device);

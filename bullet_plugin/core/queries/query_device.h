@@ -20,13 +20,13 @@ public:
     bool fromCache() const { return m_programs.fromCache(); }
     SelfCollisionStage& stage() { return m_stage; }
 
-    // Each returns false when the device failed, or when it has no room for it; error() says which.
+    // Each returns false if the device failed or has no room; error() says which.
     const Error& error() const { return m_device->failed() ? m_device->error() : m_noRoom; }
     bool motions(const CcdQuery* queries, std::size_t count, const CcdSettings& settings, CcdResult* results);
     bool triangles(const TriangleQuery* queries, std::size_t count, std::uint32_t test, std::uint32_t* results);
-    // Gives the pairs that meet or are near by the certified tests to the decision, in no order; a and b the same mesh:
-    // with itself. Where there are more candidates than the limit, leaves off with `within` false, and counts them on
-    // the host, after refitting the meshes there.
+    // Passes the pairs that meet or are near by the certified tests to the decision, in no particular order. a and b:
+    // the same mesh for a mesh with itself. If there are more candidates than the limit, stops with `within` false, and
+    // counts them on the host after refitting the meshes there.
     bool meshPairs(QueryMesh& a, QueryMesh& b, float radius, std::uint64_t limit, std::uint64_t& candidates,
                    PairDecision& decision, bool& within);
     // Finds collisions of a mesh's motion with itself, and stops at the limits in the same way.
@@ -43,7 +43,7 @@ private:
         RefitStage::Levels m_levels;
     };
 
-    // Pairs of triangles over all leaves of one side, and the most that may be tested.
+    // Pairs of triangles over all leaves of one side, and the maximum that may be tested.
     struct PairWalk
     {
         std::uint32_t m_leafCount;
@@ -63,7 +63,7 @@ private:
     bool takeHits(const SelfLimits& limits, SelfCollisions& found);
 
     std::unique_ptr<Device> m_device;
-    Error m_noRoom;  // of the last walk, which alone ends
+    Error m_noRoom;  // error of the last walk; the device stays usable
     ProgramSet m_programs;
     RefitStage m_refit;
     SelfCollisionStage m_stage;

@@ -1,4 +1,4 @@
-// A mesh as the queries' stages take it: topology, leaf order and hierarchy, on the host.
+// A mesh for the queries' stages: topology, leaf order and hierarchy, on the host.
 #pragma once
 
 #include <vector>
@@ -34,13 +34,13 @@ struct MeshRadii
     float m_a, m_b;
 };
 
-// Refits both on the host by these radii.
+// Refits both meshes on the host with these radii.
 void refitBoth(QueryMesh& a, QueryMesh& b, float radius);
 
 // Returns which triangle pairs are queried: DRAPE_WALK_…
 std::uint32_t walkOf(const QueryMesh& a, const QueryMesh& b);
 
-// Positions are not copied. The description's edges are left out.
+// Makes the mesh without the description's edges. Does not copy positions.
 QueryMesh makeQueryMesh(const MeshDescription& description, const float* end);
 
 // Makes the mesh with its edges, as triangles without area, numbered behind the triangles.

@@ -6,8 +6,7 @@ namespace
 {
 constexpr std::uint32_t kWidth = DRAPE_PATCH_WIDTH;
 constexpr std::size_t kFirstTests = 1 << 12;
-// Cloths' triangles, or tests of the step before, from which on threads are worth waking: they take a tenth of a
-// millisecond.
+// Minimum triangles of the cloths, or tests of the step before, for waking threads: they take a tenth of a millisecond.
 constexpr std::size_t kLeastTriangles = 1 << 8;
 constexpr std::size_t kLeastTests = 1 << 9;
 
@@ -53,7 +52,7 @@ bool HostSelfPatches::isWorth(const SelfStep& step) const
     return m_testsBefore >= kLeastTests || step.m_view.m_cloth.m_triangleCount >= kLeastTriangles;
 }
 
-// Volumes of the patches, which is the tree's lowest level, and of the nodes above.
+// Computes the volumes of the patches, the tree's lowest level, and of the nodes above.
 void HostSelfPatches::pack(const SelfStep& step, ThreadTeam& threads)
 {
     const SelfRadii radii = radiiOf(step);

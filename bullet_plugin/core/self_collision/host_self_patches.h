@@ -1,5 +1,5 @@
-// Contacts of cloths with themselves on the host, over patches of the cloths' own triangles: SelfContactStage's job, by
-// the kernels of a CPU (host_kernels.h) on the threads of a team.
+// Finds contacts of cloths with themselves on the host, over patches of the cloths' own triangles. Does
+// SelfContactStage's job with a CPU's kernels (host_kernels.h), on the threads of a team.
 #pragma once
 
 #include <vector>
@@ -19,15 +19,15 @@ public:
 
     // Rebuilds all patches, as a step does after cloths were added or removed. rest: m, x y z per joined node.
     void update(const MeshPool& cloths, const float* rest);
-    // Each step, in this order. Lists the pairs of features whose volumes overlap.
+    // Lists the pairs of features whose volumes overlap. Call cull(), then findContacts(), each step.
     void cull(const SelfStep& step, std::uint64_t limit, ThreadTeam& threads);
-    // Tests them, unless they were more than their limit. Appends the contacts in canonical order, unless they are more
-    // than theirs.
+    // Tests the listed pairs, unless they exceeded their limit. Appends the contacts in canonical order, unless they
+    // exceed theirs.
     void findContacts(const SelfStep& step, SelfStepLimits limits, ThreadTeam& threads, std::vector<Contact>& contacts);
 
     // Returns the step's counts.
     SelfCounts counts() const;
-    // Gives back the memory of all that was found.
+    // Releases the memory of the results.
     void giveBackRoom()
     {
         m_tests = std::vector<FeatureTest>();
@@ -49,6 +49,6 @@ private:
     HostHitFinder m_hits;
     StepCounters m_counters = {};
     std::size_t m_retries = 0;
-    std::size_t m_testsBefore = 0;  // of the last cull
+    std::size_t m_testsBefore = 0;  // tests of the last cull
 };
 }  // namespace drape

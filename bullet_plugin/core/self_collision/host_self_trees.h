@@ -14,18 +14,18 @@ namespace drape
 // Updates the volumes of the cloths' nodes over the step; cloths outside it are unchanged.
 void selfVolumes(const SelfStep& step, std::vector<Dop>& volumes);
 
-// Finds the contacts of pairs of triangles that are handed to it, in any order, each once.
+// Finds the contacts of given pairs of triangles, in any order, each once.
 class SelfFinder
 {
 public:
-    // volumes: by selfVolumes(). All must outlive it.
+    // volumes: from selfVolumes(). All arguments must outlive this.
     SelfFinder(const SelfStep& step, const std::vector<Dop>& volumes, SelfStepLimits limits = {});
 
     void visit(const Candidate& pair);
     // Returns whether the candidates are within their limit; nothing is tested beyond it.
     bool withinLimits() const { return m_counts.m_candidates <= m_limits.m_candidates; }
     const SelfCounts& counts() const { return m_counts; }
-    // Appends the contacts in canonical order, none where there are more than a limit.
+    // Appends the contacts in canonical order; none if they exceed a limit.
     void append(std::vector<Contact>& contacts);
 
 private:
@@ -43,10 +43,10 @@ private:
 class HostSelfTrees
 {
 public:
-    // Appends the contacts in canonical order, unless there are more candidates or contacts than the limits; it stops
-    // counting soon after those.
+    // Appends the contacts in canonical order, unless candidates or contacts exceed the limits. Counting stops soon
+    // after the limits.
     SelfCounts run(const SelfStep& step, SelfStepLimits limits, std::vector<Contact>& contacts);
-    // Pairs of triangles whose volumes overlap, per cloth slot; counting ends once a cloth has more than the limit.
+    // Counts pairs of triangles whose volumes overlap, per cloth slot; counting ends once a cloth exceeds the limit.
     std::vector<std::uint64_t> countPairs(const SelfStep& step, std::uint64_t limit);
 
 private:
@@ -54,7 +54,7 @@ private:
 
     BvhLayout m_layout;
     std::vector<BvhNode> m_nodes;
-    std::vector<Dop> m_volumes;  // of the nodes
+    std::vector<Dop> m_volumes;  // the nodes' volumes
     std::uint32_t m_revision = 0;
 };
 }  // namespace drape

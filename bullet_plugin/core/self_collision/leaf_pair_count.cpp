@@ -67,7 +67,7 @@ private:
         return sum;
     }
 
-    // The pairs that count at once; others are put on the stack.
+    // Returns the pairs that count at once; puts the others on the stack.
     std::uint64_t between(const NodePair& pair)
     {
         const BvhNode &a = m_a.m_nodes[pair.first], &b = m_b.m_nodes[pair.second];

@@ -1,10 +1,10 @@
-// Self collision: which features of a moving mesh touch one another during a step; and pairs of triangles, of a mesh
-// with itself or of two meshes.
+// Self collision: finds features of a moving mesh that touch one another during a step, and pairs of triangles of a
+// mesh with itself or of two meshes.
 //
-// Job: from hierarchies over the step's motion to pairs of triangles, to the vertex-face and edge-edge pairs whose own
-// volumes overlap, to those that touch (kernels/lib/ccd.h). Features that share a vertex are left out. Guarantee: no
-// touching pair is missed; host and device find the same sets, and times bit for bit. Cost: linear in the pairs; memory
-// is bounded, since long lists are made in batches of leaves.
+// Job: from hierarchies over the step's motion to pairs of triangles, then to the vertex-face and edge-edge pairs whose
+// own volumes overlap, then to those that touch (kernels/lib/ccd.h). Features that share a vertex are left out.
+// Guarantee: no touching pair is missed; host and device find the same sets, and times bit for bit. Cost: linear in the
+// pairs; memory is bounded, since long lists are made in batches of leaves.
 #pragma once
 
 #include <cstdint>
@@ -45,7 +45,7 @@ struct HostMotion
     std::size_t m_vertexCount;
 };
 
-// The most that a search may test and list.
+// Maximum pairs that a search may test and list.
 struct SelfLimits
 {
     std::uint64_t m_candidates = ~std::uint64_t(0);  // pairs of triangles, and pairs of features of both kinds
@@ -59,8 +59,8 @@ struct SelfCollisions
     std::uint64_t m_vertexFaceCandidates = 0;
     std::uint64_t m_edgeCandidates = 0;
     std::uint64_t m_hitCount[2] = {0, 0};  // by kind
-    std::vector<FeatureHit> m_hits;        // by kind, first and second feature; none where there are too many
-    bool m_untested = false;               // more candidates than may be tested: there are no hits
+    std::vector<FeatureHit> m_hits;        // by kind, first and second feature; none if there are too many
+    bool m_untested = false;               // there are more candidates than may be tested, and no hits
 
     std::uint64_t hits() const { return m_hitCount[0] + m_hitCount[1]; }
     // Records a search that finds more candidates than it may test.
@@ -69,7 +69,8 @@ struct SelfCollisions
     void add(const FeatureHit& hit, const SelfLimits& limits);
 };
 
-// Half the separation, rounded up: volumes grown by it overlap wherever two features come within the separation.
+// Returns half the separation, rounded up: volumes grown by it overlap wherever two features come within the
+// separation.
 float selfRadius(const CcdSettings& settings);
 
 void selfCollideOnHost(const HostMotion& motion, const CcdSettings& settings, const SelfLimits& limits,
@@ -110,13 +111,13 @@ public:
         std::uint32_t m_count = 0;
     };
 
-    // Each returns after enqueueing. Volumes of the vertices; once a step, before the tests.
+    // Computes the volumes of the vertices; once a step, before the tests. Each function returns after enqueueing.
     void enqueueVolumes(Device& device, DeviceMotion motion, const CcdSettings& settings);
-    // Zeroes the counters and lists the batch's pairs of triangles. The walk ends where their count exceeds `most`, and
-    // is exact up to it.
+    // Zeroes the counters and lists the batch's pairs of triangles. The traversal ends when their count exceeds `most`;
+    // the count is exact up to it.
     void enqueuePairs(Device& device, DeviceTreeView a, DeviceTreeView b, std::uint32_t kind, Batch batch,
                       std::uint64_t most = kMostCounted);
-    // Lists the features of the pairs, or counts those that the lists have no room for.
+    // Lists the features of the pairs; counts those without room in the lists.
     void enqueueFeatures(Device& device, DeviceMotion motion);
     // Lists the hits among them.
     void enqueueTests(Device& device, DeviceMotion motion, const CcdSettings& settings);
@@ -133,7 +134,7 @@ public:
     Demand meetDemand(Device& device);
     // Queries the triangle pairs alone.
     Demand meetPairs(Device& device);
-    // Bytes that one list may grow to. A batch of one leaf may exceed it.
+    // Maximum bytes of one list. A batch of one leaf may exceed it.
     void limitLists(std::size_t bytes) { m_listBytes = bytes; }
 
     Buffer<Candidate>& pairs() { return m_pairs; }

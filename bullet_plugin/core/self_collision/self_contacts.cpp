@@ -82,12 +82,12 @@ void SelfContactStage::setReach(Device& device, const SelfReach& reach)
     }
 }
 
-// Volumes of the patches, which is the tree's lowest level, and of the nodes above.
+// Computes the volumes of the patches, the tree's lowest level, and of the nodes above.
 void SelfContactStage::enqueuePack(Device& device, SelfBuffers step, Buffer<float>& start,
                                    Buffer<StepCounters>& counters)
 {
     const std::size_t width = PatchCullStage::width(device);
-    const std::size_t places = m_layout.m_levels[1] * width;  // of the first level's children
+    const std::size_t places = m_layout.m_levels[1] * width;  // positions among the first level's children
     const cl_uint patchCount = cl_uint(m_layout.m_patches.size());
     if (device.isGpu())
         m_pack.launch(device, places * width, width, m_patches.handle(), patchCount, m_faceIds.handle(),

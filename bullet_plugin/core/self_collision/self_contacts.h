@@ -1,7 +1,8 @@
 // Contacts of cloths with themselves in a step on a device (self_step.h).
 //
 // A list that is too small counts its true demand. Cost: four launches a step, on a GPU five, and one for each upper
-// level of the tree; without a cloth that asks for it, none, and its kernels are not built.
+// level of the tree; none without a cloth that collides with
+// itself, and its kernels are not built then.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +23,7 @@ struct SelfBuffers
     Buffer<Edge>& m_edges;
     Buffer<float>& m_start;
     Buffer<float>& m_end;
-    Buffer<float>& m_obstacleRadius;  // m, of the search for obstacles, per cloth slot
+    Buffer<float>& m_obstacleRadius;  // m, reach of the search for obstacles, per cloth slot
     std::size_t m_nodeCount;
     std::size_t m_triangleCount;
     std::size_t m_edgeCount;
@@ -37,7 +38,7 @@ public:
     void create(Device& device, const ProgramLoader& load);
     bool created() const { return m_created; }
 
-    // New cloths. rest: m, x y z per joined node. Waits for the upload.
+    // Sets new cloths. rest: m, x y z per joined node. Waits for the upload.
     void setTopology(Device& device, const MeshPool& cloths, const std::vector<float>& rest);
     // Enqueues changes of the reaches, which must stay unchanged until a wait for the device.
     void setReach(Device& device, const SelfReach& reach);

@@ -16,7 +16,7 @@ void SelfReach::leaveOut(std::size_t cloth)
 
 float selfGrowth(float reach)
 {
-    // Far above the roundings of the volumes' comparisons, which they are padded for themselves.
+    // Far above the rounding of the volumes' comparisons, for which volumes have their own padding.
     return 0.5f * reach * 1.001f;
 }
 

@@ -19,28 +19,28 @@ namespace drape
 struct SelfReach
 {
     std::vector<float> m_thickness;  // negative: the cloth is not tested against itself in the step
-    std::vector<float> m_radius;     // half of how far contacts reach, rounded up; negative likewise
+    std::vector<float> m_radius;     // half of the contacts' reach, rounded up; negative: as above
 
     bool any() const;
     void leaveOut(std::size_t cloth);
 };
 
-// radius: m, by which volumes of features are grown whose contacts reach to `reach`.
+// Returns the radius, m, that grows features' volumes for contacts that reach to `reach`.
 float selfGrowth(float reach);
 
-// A step of the cloths on the host.
+// Data of a step of the cloths on the host.
 struct SelfStep
 {
     const MeshPool& m_cloths;
     SelfView m_view;
     const SelfReach& m_reach;
-    const std::vector<float>& m_obstacleRadius;  // m, of the search for obstacles, which counts invalid nodes; or -1
+    const std::vector<float>& m_obstacleRadius;  // m, reach of the obstacle search, which counts invalid nodes; or -1
 
     // Positions where volumes over the step begin: those of the end in a discrete step.
     const float* start() const;
 };
 
-// The most that a step may list. Beyond them there are no contacts, and counts are too low.
+// Maximum lengths of a step's lists. Beyond them there are no contacts, and counts are too low.
 struct SelfStepLimits
 {
     std::uint64_t m_candidates = UINT64_MAX;
@@ -52,7 +52,7 @@ struct SelfCounts
     std::uint64_t m_candidates = 0;
     std::uint64_t m_contacts = 0;
     std::uint64_t m_swept = 0;         // candidates that the continuous test decided
-    std::uint64_t m_invalidNodes = 0;  // of cloths that the search for obstacles does not look at
+    std::uint64_t m_invalidNodes = 0;  // invalid nodes of cloths that the obstacle search skips
     std::size_t m_retries = 0;         // for lists that were too short
 };
 }  // namespace drape

@@ -1,5 +1,5 @@
-// Signals blocked for the calling thread while this lives, and so for threads that it starts meanwhile: handlers are
-// the application's, and run on its own threads.
+// Blocks signals for the calling thread while this lives, and for threads that it starts meanwhile: signal handlers
+// belong to the application and run on its own threads.
 #pragma once
 
 #include <csignal>

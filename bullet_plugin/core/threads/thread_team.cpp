@@ -17,7 +17,7 @@ namespace drape
 {
 namespace
 {
-// Looks between two that leave the core to another thread, should one wait for it.
+// Number of polls between two that yield the core to a waiting thread.
 constexpr int kLooksTogether = 64;
 
 // Hints to the core that this is a waiting loop.
@@ -54,7 +54,7 @@ ThreadTeam::~ThreadTeam()
         thread.join();
 }
 
-// Fewer threads than wanted do the same, later.
+// Continues with fewer threads than wanted, which take longer.
 void ThreadTeam::start()
 {
     if (m_started) return;

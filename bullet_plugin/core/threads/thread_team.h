@@ -27,12 +27,12 @@ namespace drape
 class ThreadTeam
 {
 public:
-    // Longer than a solver's iterations between two jobs of a cloth of some thousand triangles.
+    // Time awake: longer than a solver's iterations between two jobs of a cloth of some thousand triangles.
     static constexpr int kAwakeMicroseconds = 200;
     // Default maximum: the time saved by more threads is lost again where the caller reads their output.
     static constexpr unsigned kMostByDefault = 8;
 
-    // threads: the caller's among them. 0: as many as the process may use cores, kMostByDefault at most.
+    // threads: includes the caller. 0: one per core that the process may use, at most kMostByDefault.
     explicit ThreadTeam(unsigned threads);
     // Returns the team's size for the setting.
     static unsigned sizeFor(unsigned threads);
@@ -59,12 +59,12 @@ public:
 private:
     using Call = void (*)(const void* context, std::size_t item);
 
-    // A thread's own items, in a line of the cache of its own.
+    // A thread's own items, in its own cache line.
     struct alignas(64) Stretch
     {
-        // The job's number, and below it how many items nobody has claimed.
+        // The job's number, and in the bits below it the number of unclaimed items.
         std::atomic<std::uint64_t> m_claim{0};
-        std::size_t m_end = 0;  // behind the last item; written as m_call is
+        std::size_t m_end = 0;  // end of the items; written like m_call
     };
 
     void share(std::size_t count, Call call, const void* context);
@@ -82,7 +82,7 @@ private:
     bool m_started = false;
     int m_callersCore = -1;  // the threads keep off it
 
-    // Written before the items are offered, and not again before all of them are done.
+    // Written before the items are offered, and unchanged until all of them are done.
     Call m_call = nullptr;
     const void* m_context = nullptr;
     std::fenv_t m_environment;  // the caller's rounding mode and treatment of subnormals, for every helper
@@ -91,7 +91,7 @@ private:
     std::atomic<std::uint32_t> m_job{0};     // number of the last one offered
     std::atomic<std::size_t> m_unfinished{0};
     std::atomic<bool> m_failed{false};
-    std::exception_ptr m_failure;  // of the item that failed first
+    std::exception_ptr m_failure;  // exception of the item that failed first
 
     std::mutex m_mutex;
     std::condition_variable m_offered;
