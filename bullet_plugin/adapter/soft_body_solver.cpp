@@ -241,11 +241,9 @@ double SoftBodySolver::solveBodies()
     double bulletMs = 0;
     for (int i = 0; i < m_softBodySet.size();)
     {
-        btSoftBody* body = m_softBodySet[i];
-        // Skips bodies without a predicted step. Without time Bullet's velocities, displacements over the time, would
-        // be NaN.
-        if (!work.isPredicted(*body) || !(body->m_sst.sdt > 0)) continue;
-        if (BodyContacts* contacts = work.contactsOf(*body))
+        btSoftBody& body = *m_softBodySet[i];
+        BodyContacts* const contacts = work.isSteppedBody(body) ? work.contactsOf(body) : nullptr;
+        if (contacts)
         {
             work.m_touched.push_back(contacts);
             ++i;
