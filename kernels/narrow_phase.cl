@@ -27,9 +27,9 @@ static uint testByKind(__global const FeatureTest* tests, const uint first, cons
     return item < count ? first + order[lane] : count;
 }
 
-// A group goes through its part of the feature tests that the cull lists, as many at a time as it has work-items, and
-// lists the hits; the tests that need the continuous test it lists in swept, in no particular order. counters->m_swept
-// must be zero before. A CPU's narrowPhaseFeature is in narrow_phase_lanes.cl.
+// Runs the feature tests that the cull lists, each group its part, as many at a time as it has work-items, and lists
+// the contacts. Tests that need the continuous test go to `swept`, unsorted. counters->m_swept must be zero before. A
+// CPU's narrowPhaseFeature is in narrow_phase_lanes.cl.
 __kernel __attribute__((reqd_work_group_size(DRAPE_FEATURE_GROUP, 1, 1))) void narrowPhaseFeature(
     DRAPE_FEATURE_ARGUMENTS, __global uint* restrict swept)
 {

@@ -172,8 +172,8 @@ static void askForRun(const LaneWork* work, const uint first, const uint end)
 // Number of tests from which their data is seldom in the caches.
 #define DRAPE_FAR_TESTS (1u << 17)
 
-// A work-item goes through its part of the feature tests that patchCull lists and lists the hits; the tests that need
-// the continuous test it lists in swept, in no particular order. counters->m_swept must be zero before.
+// Runs the feature tests that patchCull lists, each work-item its part, and lists the contacts. Tests that need the
+// continuous test go to `swept`, unsorted. counters->m_swept must be zero before.
 __kernel void narrowPhaseFeature(DRAPE_FEATURE_ARGUMENTS, __global uint* restrict swept)
 {
     DRAPE_FEATURE_VIEWS;

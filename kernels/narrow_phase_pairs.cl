@@ -5,7 +5,7 @@
 #include "lib/pair_contact.h"
 #include "lib/triangle_triangle.h"
 
-// A work-item goes through its part of the candidates, runs their feature tests and lists the hits. motions: of the
+// Runs the feature tests of the candidates, each work-item its part, and lists the contacts. motions: of the
 // obstacles that move in the step. counters->m_swept must be zero before.
 __kernel void narrowPhaseTest(__global const Candidate* restrict candidates, const uint candidateCapacity,
                               __global const float* restrict clothStart, __global const float* restrict clothEnd,

@@ -29,7 +29,7 @@ typedef struct ObstacleFaces
     __global const NormalCone* m_edgeCones;
 } ObstacleFaces;
 
-// Loads a triangle's normal (faceCone()) and the cones of its corners and edges.
+// A triangle's normal (faceCone()) and the cones of its corners and edges.
 typedef struct FaceCones
 {
     NormalCone m_face, m_around[6];
@@ -106,8 +106,8 @@ __kernel void patchPackEdges(__global const uint* restrict owners, const uint fi
     out[9 * DRAPE_PATCH_WIDTH] = cones[edge].m_cosine;
 }
 
-// A child's place in a wide node: its volume, and how far along each direction a contact of its features can reach, as
-// a share of the reach.
+// A child of a wide node: its volume and, along each direction, the reach of a contact of its features as a share of
+// the reach.
 typedef struct WideChild
 {
     Dop m_volume;
@@ -214,7 +214,7 @@ __kernel void patchVolumes(__global const uint* restrict faceOwners, const uint 
 #endif
 }
 
-// A work-item writes one number of a child place of one level, those from first up to last: a node of the level below,
+// Writes one number of a child position of one level per work-item, from first up to last: a node of the level below,
 // or none from nodeCount on. below and level: that level's nodes and this one's.
 __kernel void patchWiden(__global float* restrict wideNodes, const uint below, const uint nodeCount, const uint level,
                          const uint first, const uint last)

@@ -3,9 +3,9 @@
 #include "lib/self_tests.h"
 
 #ifndef DRAPE_CPU
-// A work-item goes through its part of the tests that the cull lists and lists the hits; the tests that need the
-// continuous test it lists in swept, in no particular order. counters->m_selfSwept must be zero before. A CPU's
-// selfFeature is in self_contact_lanes.cl.
+// Runs the tests that the cull lists, each work-item its part, and lists the contacts. Tests that need the continuous
+// test go to `swept`, unsorted. counters->m_selfSwept must be zero before. A CPU's selfFeature is in
+// self_contact_lanes.cl.
 __kernel void selfFeature(DRAPE_SELF_ARGUMENTS, __global uint* restrict swept)
 {
     const HitList list = DRAPE_HIT_LIST;

@@ -12,7 +12,7 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// Share of the reach by which ways of features that met may be apart, less than volumes hold beyond them in any
+// Share of the reach by which paths of features that met may be apart. Volumes contain more than this in any
 // direction (DRAPE_CULL_MET of feature_cull.h).
 #define DRAPE_WAY_REACH 0.01f
 // Rounding error of distances, as a share of a pair's extent.

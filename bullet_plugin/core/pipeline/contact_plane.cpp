@@ -6,7 +6,7 @@ namespace drape
 {
 namespace
 {
-// Computes the point of a face that is nearest to the vertex, which is the origin.
+// The point of a face nearest to the vertex, which is the origin.
 struct Nearest
 {
     Vec3 m_weights;  // by node of the cloth
