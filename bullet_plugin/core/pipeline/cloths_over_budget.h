@@ -9,8 +9,8 @@
 namespace drape
 {
 // Of the cloth slots that take part those to take out so that the others have at most `budget` candidates together:
-// those with the most, of equals the last ones. At least one where any takes part, whatever the candidates are: a step
-// is too large by its pairs of features, these are of triangles. candidates: by slot.
+// those with the most, of equals the last ones. At least one where any takes part, whatever the candidates are: a GPU's
+// step may also list too many pairs of triangles and patches. candidates: by slot, of features.
 inline std::vector<std::size_t> clothsOverBudget(std::vector<std::size_t> slots,
                                                  const std::vector<std::uint64_t>& candidates, std::uint64_t budget)
 {

@@ -36,10 +36,9 @@ ReductionView HostBackend::reductionView(const Scene& scene, const StepPairs& pa
             pairs.m_tube.data()};
 }
 
-std::vector<std::uint64_t> HostBackend::countCandidates(const Scene& scene, const StepPairs& pairs,
-                                                        const Settings& settings)
+std::vector<std::uint64_t> HostBackend::countTests(const Scene& scene, const StepPairs& pairs, const Settings& settings)
 {
-    return m_trees.countCandidates(scene, pairs, selfStep(scene, pairs, settings), StepLimits(settings).m_candidates);
+    return m_patches.countTests(scene, pairs, selfStep(scene, pairs, settings), settings, *m_threads);
 }
 
 SelfStep HostBackend::selfStep(const Scene& scene, const StepPairs& pairs, const Settings& settings)

@@ -24,8 +24,8 @@ public:
     // Gives back room that only earlier, larger steps needed. Between steps.
     void giveBackRoom() { m_patches.giveBackRoom(); }
 
-    // The step's pairs of triangles per cloth slot: exact, however many; of cloths with themselves up to the limit.
-    std::vector<std::uint64_t> countCandidates(const Scene& scene, const StepPairs& pairs, const Settings& settings);
+    // Returns HostPatches::countTests() of the step.
+    std::vector<std::uint64_t> countTests(const Scene& scene, const StepPairs& pairs, const Settings& settings);
 
 private:
     static ReductionView reductionView(const Scene& scene, const StepPairs& pairs);
@@ -37,6 +37,6 @@ private:
     std::shared_ptr<ThreadTeam> m_threads;
     bool m_overPatches;
     HostPatches m_patches;
-    HostTrees m_trees;  // over patches it counts only
+    HostTrees m_trees;
 };
 }  // namespace drape

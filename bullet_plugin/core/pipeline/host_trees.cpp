@@ -1,6 +1,5 @@
 #include "host_trees.h"
 
-#include "bullet_plugin/core/broad_phase/candidate_count.h"
 #include "bullet_plugin/core/bvh/refit.h"
 #include "bullet_plugin/core/bvh/tree_cost.h"
 #include "bullet_plugin/core/stopwatch.h"
@@ -75,23 +74,6 @@ BroadPhaseSide HostTrees::clothSide(const Scene& scene) const
 BroadPhaseSide HostTrees::obstacleSide(const Scene& scene) const
 {
     return {m_obstacleNodes, scene.m_obstacleLayout, scene.m_obstacles.order(), scene.m_obstacles.triangles()};
-}
-
-std::vector<std::uint64_t> HostTrees::countCandidates(const Scene& scene, const StepPairs& pairs, const SelfStep& step,
-                                                      std::uint64_t selfLimit)
-{
-    std::vector<std::uint64_t> counts(scene.m_cloths.meshCount(), 0);
-    if (pairs.m_anyPair)
-    {
-        refitCloths(scene, pairs);
-        counts = drape::countCandidates(clothSide(scene), obstacleSide(scene), pairs.m_thickness, counts.size(),
-                                        scene.m_obstacles.meshCount());
-    }
-    if (!pairs.m_anySelf) return counts;
-    const std::vector<std::uint64_t> self = m_self.countPairs(step, selfLimit);
-    for (std::size_t slot = 0; slot < counts.size(); ++slot)
-        counts[slot] += self[slot];
-    return counts;
 }
 
 SelfCounts HostTrees::runSelf(const SelfStep& step, SelfStepLimits limits, StepResult& result)

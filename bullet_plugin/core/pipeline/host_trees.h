@@ -1,5 +1,5 @@
-// A step on the calling thread by hierarchies of triangles: what the traversals that a setting names find, contacts of
-// cloths with themselves, and how many pairs of triangles there are.
+// A step on the calling thread by hierarchies of triangles: what the traversals that a setting names find, and contacts
+// of cloths with themselves.
 #pragma once
 
 #include "bullet_plugin/core/broad_phase/host_traversal.h"
@@ -21,9 +21,6 @@ public:
     bool run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
     // Adds what cloths have with themselves, likewise; no contacts where it is over a limit.
     SelfCounts runSelf(const SelfStep& step, SelfStepLimits limits, StepResult& result);
-    // The step's pairs of triangles per cloth slot: exact, however many; of cloths with themselves up to the limit.
-    std::vector<std::uint64_t> countCandidates(const Scene& scene, const StepPairs& pairs, const SelfStep& step,
-                                               std::uint64_t selfLimit);
 
 private:
     // Those from slot `fresh` on, and of the others those whose positions or places changed.

@@ -38,8 +38,7 @@ void Pipeline::Implementation::complete()
 
 void Pipeline::Implementation::leaveOutCloths()
 {
-    layOut();
-    const std::vector<std::uint64_t> candidates = m_hostBackend->countCandidates(m_scene, m_stepPairs, m_settings);
+    const std::vector<std::uint64_t> candidates = m_hostBackend->countTests(m_scene, m_stepPairs, m_settings);
     const StepLimits limits(m_settings);
     std::uint64_t budget = limits.m_candidates;
     if (m_result.m_contactDemand > 0)

@@ -118,20 +118,4 @@ SelfCounts HostSelfTrees::run(const SelfStep& step, SelfStepLimits limits, std::
     counts.m_invalidNodes = invalidNodes(step);
     return counts;
 }
-
-std::vector<std::uint64_t> HostSelfTrees::countPairs(const SelfStep& step, std::uint64_t limit)
-{
-    update(step);
-    const std::vector<Triangle>& triangles = step.m_cloths.triangles();
-    std::vector<std::uint64_t> counts(step.m_cloths.meshCount(), 0);
-    bool within = true;
-    const auto visit = [&](const Candidate& pair)
-    {
-        const std::uint32_t mesh = triangles[pair.m_cloth].m_mesh;
-        if (mesh == triangles[pair.m_obstacle].m_mesh) within = within && ++counts[mesh] <= limit;
-    };
-    const HostTree tree = treeOf(step.m_cloths, m_nodes, m_layout);
-    leafPairsOnHost(tree, tree, DRAPE_WALK_SELF, visit, [&] { return within; });
-    return counts;
-}
 }  // namespace drape

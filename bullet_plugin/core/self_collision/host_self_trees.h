@@ -1,5 +1,5 @@
 // Contacts of cloths with themselves on the host by a walk over a hierarchy of their triangles, on the calling thread:
-// the tests of what the product does (host_self_patches.h), and how many pairs of triangles there are.
+// the tests of what the product does (host_self_patches.h).
 #pragma once
 
 #include <cstdint>
@@ -46,8 +46,6 @@ public:
     // Appends the contacts in canonical order, unless there are more candidates or contacts than the limits; it stops
     // counting soon after those.
     SelfCounts run(const SelfStep& step, SelfStepLimits limits, std::vector<Contact>& contacts);
-    // Pairs of triangles whose volumes overlap, per cloth slot; counting ends once a cloth has more than the limit.
-    std::vector<std::uint64_t> countPairs(const SelfStep& step, std::uint64_t limit);
 
 private:
     void update(const SelfStep& step);
