@@ -7,7 +7,7 @@
 #   --bin DIR        folder of drape_check (default: BIN, else build/release/bin)
 #   --commit TEXT    what is measured (default: git describe)
 #
-# Runs ccd, triangles (fast, exact and moller), pairs (of each frame with itself and of the two, intersecting at thickness 0)
+# Runs ccd, triangles (fast and exact), pairs (of each frame with itself and of the two, intersecting at thickness 0)
 # and step on the host and on the devices, and writes OUT_DIR/drape_check.json: what
 # drape_check says of each, with commit and machine. Needs drape_check, Bash and Python. Measure on an idle machine. Ends
 # with 1 when something could not be measured.
@@ -41,7 +41,6 @@ program, commit, truth, target, *wanted = sys.argv[1:]
 QUESTIONS = (("ccd", "", ["ccd"], ["ccd_queries.bin"]),
              ("triangles", "fast", ["triangles", "--mode", "fast"], ["triangle_pairs.bin"]),
              ("triangles", "exact", ["triangles", "--mode", "exact"], ["triangle_pairs.bin"]),
-             ("triangles", "moller", ["triangles", "--mode", "moller"], ["triangle_pairs.bin"]),
              ("pairs", "frame 92", ["pairs", "--thickness", "0"], ["cloth_ball92.ply"]),
              ("pairs", "frame 93", ["pairs", "--thickness", "0"], ["cloth_ball93.ply"]),
              ("pairs", "92 and 93", ["pairs", "--thickness", "0"], ["cloth_ball92.ply", "cloth_ball93.ply"]),

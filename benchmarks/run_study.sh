@@ -6,7 +6,7 @@
 #                    bunny); what is not there is named and left out
 #   --bin DIR        folder of study, study_dop6, study_dop14 and study_dop26 (default: build/release/bin); nothing is
 #                    built
-#   --parts A,B,…    only these: peers, construction, refit, quality, shape, degree, traversal, builder, rebuild,
+#   --parts A,B,…    only these: peers, construction, refit, quality, shape, degree, traversal, builder,
 #                    obstacles, triangle_tests
 #   --only A,B,…     only these models and scenes, by the names in the tables
 #   --minutes N      time to spend (default 30), shared out over the parts; what does not fit is named and left out
@@ -25,9 +25,9 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 bin=$here/../build/release/bin
 commit=$(git -C "$here" describe --always --dirty 2>/dev/null || echo unknown)
 # Shares of the time: what a part took of it, on a GPU and on two cores.
-declare -A shares=([peers]=2 [construction]=6 [refit]=1 [quality]=2 [shape]=3 [degree]=8 [traversal]=8 [builder]=3 [rebuild]=5
+declare -A shares=([peers]=2 [construction]=6 [refit]=1 [quality]=2 [shape]=3 [degree]=8 [traversal]=8 [builder]=3
   [obstacles]=1 [triangle_tests]=1)
-all=peers,construction,refit,quality,shape,degree,traversal,builder,rebuild,obstacles,triangle_tests
+all=peers,construction,refit,quality,shape,degree,traversal,builder,obstacles,triangle_tests
 parts=$all minutes=30 arguments=() only='' out=''
 while [[ $# -gt 0 ]]; do
   case $1 in

@@ -181,10 +181,6 @@ public:
     // whose pins were put elsewhere. Cloths that need more than that are left out. Null: infinity.
     using Allowance = std::function<float(MeshId)>;
     ContactList finish(const Allowance& allowance = nullptr);
-    // Waits for a hierarchy that is being built beside the steps (Methods::m_rebuildDecay): the next submit() uses it.
-    // Without it, time decides which step does, but no contact depends on it: for measurements and tests. Between
-    // finish() and submit().
-    void waitForRebuild();
     // Those of cloths with themselves of the last finish(), in canonical order; valid as long as its other contacts.
     ContactList selfContacts() const;
     // The cloths that the last finish() left out (kStepClothsLeftOut).

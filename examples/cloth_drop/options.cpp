@@ -101,12 +101,6 @@ void addBackendOptions(CLI::App& app, Options& options, std::string& mode)
     app.add_option("--threads", options.m_threads,
                    "that hold contacts, and of the host; 0: as many as there are cores, 8 at most")
         ->check(CLI::Range(0, 64));
-    std::vector<std::string> traversals;
-    for (const auto& traversal : traversalsByName())
-        traversals.push_back(traversal.first);
-    acceptOnly(
-        app.add_option("--traversal", options.m_traversal, "how Drape's broad phase goes; the contacts are the same"),
-        traversals);
     acceptOnly(
         app.add_option("--bullet-mode", mode, "distance field of --backend bullet, or the obstacle as a soft body"),
         {"stock", "tuned", "vfss"});
@@ -150,19 +144,6 @@ std::string conflict(const Options& options)
     return "";
 }
 }  // namespace
-
-const std::map<std::string, Traversal>& traversalsByName()
-{
-    static const std::map<std::string, Traversal> traversals = {{"auto", Traversal::Auto},
-                                                                {"pairs", Traversal::Pairs},
-                                                                {"single", Traversal::Single},
-                                                                {"groups", Traversal::Groups},
-                                                                {"front", Traversal::Front},
-                                                                {"leaves", Traversal::Leaves},
-                                                                {"wide-leaves", Traversal::WideLeaves},
-                                                                {"wide-groups", Traversal::WideGroups}};
-    return traversals;
-}
 
 bool parseOptions(int argc, const char* const* argv, Options& options, int& exitCode)
 {

@@ -99,26 +99,6 @@ DRAPE_FUNCTION int volumeSeen(Dop* dop, const DRAPE_GLOBAL ObstacleMotion* motio
     return mayComeNear(dop, 0.0f, motion);
 }
 
-// Grows a leaf's volume to the triangle's paths as every moving obstacle sees them that it has a pair with. thickness:
-// m, per obstacle slot, negative without a pair.
-DRAPE_FUNCTION void growByMotions(DRAPE_GLOBAL BvhNode* leaf, const DRAPE_GLOBAL ObstacleMotion* motions,
-                                  DRAPE_UINT count, const DRAPE_GLOBAL float* thickness,
-                                  const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
-                                  const DRAPE_GLOBAL float* end, float radius)
-{
-    for (DRAPE_UINT k = 0; k < count; ++k)
-    {
-        Dop dop;
-        if (thickness[motions[k].m_mesh] < 0.0f) continue;
-        if (!volumeSeen(&dop, motions + k, triangle, start, end, radius, DRAPE_CONTINUOUS)) continue;
-        for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
-        {
-            leaf->m_low[i] = drapeMin(leaf->m_low[i], dop.m_low[i]);
-            leaf->m_high[i] = drapeMax(leaf->m_high[i], dop.m_high[i]);
-        }
-    }
-}
-
 // Slot of a joined vertex or edge, by the slots' firsts (members of ObstaclePlace); slots without any may be among
 // them. kind: whose index it is.
 #define DRAPE_OF_VERTEX 0

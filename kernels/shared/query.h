@@ -1,4 +1,4 @@
-// Which tests answer questions about triangles, and what a mesh finds against itself. The questions that a caller may
+// What a mesh finds against itself and another mesh. The questions that a caller may
 // ask are declared in a public header. The same declarations serve C++ and OpenCL C: 32-bit scalars only, no padding.
 #ifndef DRAPE_SHARED_QUERY_H
 #define DRAPE_SHARED_QUERY_H
@@ -7,10 +7,6 @@
 #include "types.h"
 
 DRAPE_NAMESPACE_BEGIN
-
-// Which test answers a TriangleQuery on the device.
-#define DRAPE_TEST_CERTIFIED 0u
-#define DRAPE_TEST_MOLLER 1u
 
 // A vertex and a face, or two edges, of a mesh against itself.
 typedef struct FeaturePair

@@ -60,10 +60,8 @@ void addTriangles(CLI::App& app, Options& options, std::string& mode)
 {
     CLI::App& command = *app.add_subcommand("triangles", "do triangles intersect? Records with answers");
     addFile(command, "FILE", options.m_first, "records of 76 bytes: 18 floats, answer");
-    acceptOnly(command.add_option(
-                   "--mode", mode,
-                   "fast: never misses, reports a few that nearly touch; exact; moller: the thesis's, for comparison"),
-               {"fast", "exact", "moller"});
+    acceptOnly(command.add_option("--mode", mode, "fast: never misses, reports a few that nearly touch; exact"),
+               {"fast", "exact"});
     command.callback([&options] { options.m_command = Command::Triangles; });
 }
 
@@ -112,9 +110,7 @@ bool parseOptions(int argc, const char* const* argv, Options& options, int& exit
     const auto conflict = [&]() -> std::string
     { return options.m_listDevices || !app.get_subcommands().empty() ? "" : "a command is needed; see --help"; };
     if (!parseArguments(app, argc, argv, conflict, exitCode)) return false;
-    options.m_test = mode == "exact"    ? TriangleTest::Exact
-                     : mode == "moller" ? TriangleTest::Moller
-                                        : TriangleTest::Certified;
+    options.m_test = mode == "exact" ? TriangleTest::Exact : TriangleTest::Certified;
     return true;
 }
 }  // namespace drape

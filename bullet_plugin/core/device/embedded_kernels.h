@@ -1,8 +1,8 @@
 // The texts of kernels/, compiled into the library so that an installed Drape needs no data files.
 //
 // Job: hold every .cl file and every header that one may include, drape/query_records.h among them. Made at build time
-// by cmake/EmbedKernels.cmake, sorted by path. Includes are not resolved here. Guarantee: static storage,
-// zero-terminated, the files' bytes unchanged.
+// by drape_embed_kernels() of cmake/DrapeEmbed.cmake, sorted by path. Includes are not resolved here. Guarantee: static
+// storage, zero-terminated, the files' bytes unchanged.
 #pragma once
 
 #include <cstddef>

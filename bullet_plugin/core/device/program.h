@@ -10,13 +10,22 @@
 #include <vector>
 
 #include "device.h"
+#include "embedded_kernels.h"
 
 namespace drape
 {
+// Kernels of another folder than the library's: their texts, which may include the library's, and where they are.
+struct KernelTexts
+{
+    const char* m_folder = "kernels";
+    const EmbeddedFile* m_files = nullptr;
+    std::size_t m_count = 0;
+};
+
 // The texts of kernels/<file>, one behind the other, with every include replaced by the included text once. Line
 // directives keep each line's own file and number, so a compiler's message names the .cl or .h file. Empty when a file
 // is not embedded.
-std::string assembleSources(const std::vector<std::string>& paths);
+std::string assembleSources(const std::vector<std::string>& paths, const KernelTexts& others = {});
 inline std::string assembleSource(const std::string& path)
 {
     return assembleSources({path});
@@ -39,13 +48,16 @@ bool keepsItsOwn(const DeviceInfo& device);
 // Builds "kernels/<name>.cl" of all the names as one program, with contraction off and correctly rounded ÷ and √;
 // DRAPE_CPU is defined unless the device is a GPU. A failed build puts the files and the whole log into the device's
 // error. What was built is kept in cacheFolder, unless the platform keeps its own (empty: the user's cache; "none": no
-// cache); cache trouble means a build, never a failure. defines: lines of text put before the source.
+// cache); cache trouble means a build, never a failure. defines: lines of text put before the source. texts: names
+// are those of its folder's files.
 cl::Program buildJoinedProgram(Device& device, const std::vector<std::string>& names, const std::string& cacheFolder,
-                               ProgramBuild& build, const std::string& defines = std::string());
+                               ProgramBuild& build, const std::string& defines = std::string(),
+                               const KernelTexts& texts = {});
 inline cl::Program buildProgram(Device& device, const std::string& name, const std::string& cacheFolder,
-                                ProgramBuild& build, const std::string& defines = std::string())
+                                ProgramBuild& build, const std::string& defines = std::string(),
+                                const KernelTexts& texts = {})
 {
-    return buildJoinedProgram(device, {name}, cacheFolder, build, defines);
+    return buildJoinedProgram(device, {name}, cacheFolder, build, defines, texts);
 }
 
 // Gives the program of "kernels/<name>.cl", alone or with others, to a stage that needs several.

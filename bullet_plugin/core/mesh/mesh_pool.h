@@ -60,17 +60,12 @@ public:
     const PooledMesh& mesh(std::size_t slot) const { return m_meshes[slot]; }
     // meshCount() when the id is not, or no longer, of this pool.
     std::size_t slot(MeshId id) const;
-    // Whether the id has a slot, if only a vacant one.
-    bool holds(MeshId id) const;
     // Slots of the meshes that hold a joined vertex or edge.
     std::size_t slotOfVertex(std::uint32_t vertex) const;
     std::size_t slotOfEdge(std::uint32_t edge) const;
 
     // Joins what came since the last call; the joined arrays are valid after it. Free when nothing did.
     void update();
-    // Another leaf order of the meshes' triangles: local ones by slot, null where it stays. Counts as an update that
-    // changed something.
-    void reorder(const std::vector<const std::vector<std::uint32_t>*>& orders);
     // Gives back room that only earlier, larger pools needed. The joined arrays move.
     void giveBackRoom();
     // Counts up with every update that changed something.
@@ -87,7 +82,6 @@ public:
     std::size_t vertexCount() const { return m_vertexCount; }
     const std::vector<Triangle>& triangles() const { return m_triangles; }
     const std::vector<Edge>& edges() const { return m_edges; }
-    const std::vector<std::uint32_t>& order() const { return m_order; }
     const std::vector<MeshFirsts>& firsts() const { return m_firsts; }
 
 private:
@@ -97,13 +91,11 @@ private:
     void dropLastVacant();
     void forget(const PooledMesh& vacant);
     void join(std::size_t slot);
-    void joinOrder(const PooledMesh& mesh);
 
     std::vector<PooledMesh> m_meshes;
     std::vector<MeshId> m_ids;  // of the meshes, next to each other to be searched
     std::vector<Triangle> m_triangles;
     std::vector<Edge> m_edges;
-    std::vector<std::uint32_t> m_order;
     std::vector<MeshFirsts> m_firsts;
     std::size_t m_vertexCount = 0;
     std::size_t m_triangleCount = 0;  // of all slots

@@ -13,42 +13,6 @@
 
 namespace drape
 {
-// Motions of the obstacles that move in the step, in the order of slots.
-struct MotionList
-{
-    const ObstacleMotion* m_motions = nullptr;
-    std::uint32_t m_count = 0;
-
-    const ObstacleMotion* find(std::uint32_t mesh) const { return findMotion(m_motions, m_count, mesh); }
-};
-
-// Options and per-pair data of a step. mode: DRAPE_DISCRETE …. thickness: m, cloth slots × obstacle slots. Contacts
-// reach to thickness × reachScale.
-struct NarrowPhaseSettings
-{
-    const std::vector<float>& m_thickness;
-    std::size_t m_obstacleMeshes;
-    float m_reachScale;
-    std::uint32_t m_mode = DRAPE_AUTOMATIC;
-    MotionList m_motions = {};  // on the host
-};
-
-// What the narrow phase counted on the host: contacts, and pairs of features that the continuous test decided.
-struct NarrowPhaseCounts
-{
-    std::uint64_t m_contacts = 0;
-    std::uint64_t m_swept = 0;
-};
-
-// With more contacts than limit the list is left empty.
-NarrowPhaseCounts narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth,
-                                    const ObstacleView& obstacle, const NarrowPhaseSettings& settings,
-                                    std::vector<Contact>& contacts, std::size_t limit = SIZE_MAX);
-
-// Pairs whose triangles intersect at the step's start, in order of cloth and obstacle triangle.
-void intersectOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth, const ObstacleView& obstacle,
-                     const MotionList& motions, std::vector<Candidate>& pairs);
-
 // Device buffers that hold both sides' geometry.
 struct NarrowPhaseBuffers
 {
@@ -74,31 +38,19 @@ public:
         std::size_t m_mostSwept;  // with more tests that need the continuous test than this, their hits are not listed
     };
 
-    // features: for what a cull leaves, else for pairs of triangles. The kernels of what is not used are not built.
-    void create(Device& device, const ProgramLoader& load, bool features);
+    void create(Device& device, const ProgramLoader& load);
 
-    void reserveIntersections(Device& device, std::size_t count) { m_intersections.reserve(device, count); }
-    Buffer<Candidate>& intersections() { return m_intersections; }
-
-    // All return after enqueueing. The hits of pairs of triangles.
-    void enqueue(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
-                 const NarrowPhaseSettings& settings, Buffer<Candidate>& candidates, HitBuffers hits,
-                 Buffer<StepCounters>& counters);
-    // The hits of the feature tests that a cull left. mode: DRAPE_DISCRETE …; a discrete step is one launch less, and
-    // so is one with few tests.
+    // Returns after enqueueing. Lists the hits of the feature tests that a cull left. mode: DRAPE_DISCRETE …; a
+    // discrete step is one launch less, and so is one with few tests.
     void enqueueFeatures(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
                          std::uint32_t mode, PatchCullStage& cull, Expected expected, HitBuffers hits,
                          Buffer<StepCounters>& counters);
     // Whether that did nothing, because there were that many tests and far fewer were expected.
     bool skipped(std::size_t tests) const { return tests > m_mostTests; }
-    // The candidates whose triangles intersect, in any order. Their counter must be zero before.
-    void enqueueIntersect(Device& device, NarrowPhaseBuffers sides, Buffer<Candidate>& candidates,
-                          Buffer<StepCounters>& counters);
 
 private:
     std::size_t m_mostTests = SIZE_MAX;  // of the last launches
-    Kernel m_test, m_feature, m_swept, m_few, m_intersect;
-    Buffer<Candidate> m_intersections{"step intersections"};
+    Kernel m_feature, m_swept, m_few;
     Buffer<cl_uint> m_sweptTests{"step candidates"};
 };
 }  // namespace drape

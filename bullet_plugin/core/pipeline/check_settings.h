@@ -6,7 +6,7 @@
 
 namespace drape
 {
-// False for the first field that is out of its range (drape/settings.h, drape/methods.h): error then names it, its value
+// False for the first field that is out of its range (drape/settings.h): error then names it, its value
 // and the range.
 bool checkSettings(const Settings& settings, Error& error);
 }  // namespace drape

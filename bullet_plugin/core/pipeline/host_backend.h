@@ -2,11 +2,11 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 
 #include "bullet_plugin/core/compaction/contact_reduction.h"
 #include "drape/settings.h"
 #include "host_patches.h"
-#include "host_trees.h"
 #include "step.h"
 
 namespace drape
@@ -14,10 +14,10 @@ namespace drape
 class HostBackend
 {
 public:
-    explicit HostBackend(const Settings& settings, std::shared_ptr<ThreadTeam> threads);
+    explicit HostBackend(std::shared_ptr<ThreadTeam> threads) : m_threads(std::move(threads)) {}
 
     // Does what a step does after meshes came or obstacles moved.
-    void prepare(const Scene& scene);
+    void prepare(const Scene& scene) { m_patches.update(scene); }
     // Runs the whole step.
     void run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
 
@@ -35,8 +35,6 @@ private:
     void runSelf(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
 
     std::shared_ptr<ThreadTeam> m_threads;
-    bool m_overPatches;
     HostPatches m_patches;
-    HostTrees m_trees;
 };
 }  // namespace drape

@@ -13,8 +13,6 @@
 #include "bullet_plugin/core/pipeline.h"
 #include "device_backend.h"
 #include "host_backend.h"
-#include "side_hierarchy.h"
-#include "tree_watch.h"
 
 namespace drape
 {
@@ -67,8 +65,6 @@ struct Pipeline::Implementation
     StepResult m_result;
     std::vector<MeshId> m_leftOut;  // cloths, of the last step
     StepStatistics m_statistics;
-    SideHierarchy m_clothHierarchy, m_obstacleHierarchy;
-    TreeWatch m_treeWatch;
     BackendChoice m_choice;               // active where cost decides
     std::vector<NamedPair> m_notedPairs;  // those that m_choice has taken in last
     std::vector<MeshId> m_notedSelf;
@@ -77,7 +73,6 @@ struct Pipeline::Implementation
     std::string m_deviceReason;     // why this device and no other
     MeshId m_nextId = 0;
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
-    std::uint32_t m_stepRevision = 0;                 // of the obstacles, in the last step with a pair
     std::size_t m_nodesWritten = 0, m_nodesSent = 0;  // the first so many nodes of all cloths, for the coming step
     bool m_neededMore = false;                        // tests than ordinary motion does, the last step
     bool m_limitsRaised = false;                      // above those of ordinary motion, in this step
@@ -101,18 +96,6 @@ struct Pipeline::Implementation
     // Nodes that were told to be written are not those of the coming step. Transfers of them end.
     void forgetNodes();
     void joinObstacles(std::size_t first);
-    // Those of the settings, the builder as the back end in use has it.
-    TreeMethods treeMethods() const;
-    // Whether the coming step walks both sides' hierarchies of triangles.
-    bool walksHierarchies() const;
-    // Of both sides, by these methods.
-    void buildHierarchies();
-    // Has both sides' layouts at hand for the host.
-    void layOut();
-    // Uses a hierarchy of the cloths that was built anew.
-    void takeRebuilt();
-    // Has one built where the last step found the cloths' hierarchy decayed.
-    void watchTree();
     // What depends on where an obstacle is.
     void placeMesh(std::size_t slot);
     void findSlots();

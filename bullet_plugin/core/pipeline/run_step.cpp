@@ -10,7 +10,6 @@ namespace drape
 {
 void Pipeline::Implementation::runOnHost()
 {
-    if (!goesOverPatches(m_settings)) layOut();
     m_hostBackend->run(m_scene, m_stepPairs, m_settings, m_result);
     m_statistics.m_onHost = true;
 }

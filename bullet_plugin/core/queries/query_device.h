@@ -23,7 +23,7 @@ public:
     // Each returns false when the device failed, or when it has no room for it; error() says which.
     const Error& error() const { return m_device->failed() ? m_device->error() : m_noRoom; }
     bool motions(const CcdQuery* queries, std::size_t count, const CcdSettings& settings, CcdResult* results);
-    bool triangles(const TriangleQuery* queries, std::size_t count, std::uint32_t test, std::uint32_t* results);
+    bool triangles(const TriangleQuery* queries, std::size_t count, std::uint32_t* results);
     // Gives the pairs that meet or are near by the certified tests to the decision, in no order; a and b the same mesh:
     // with itself. Where there are more candidates than the limit, leaves off with `within` false, and counts them on
     // the host, after refitting the meshes there.

@@ -28,8 +28,7 @@ CcdSettings defaultCcdSettings();
 enum class TriangleTest
 {
     Certified,  // no pair that intersects is denied; a few that nearly touch are reported
-    Exact,      // the truth: what the certified test reports is decided on the host without rounding
-    Moller      // with an absolute tolerance, for comparison: misses pairs and reports others
+    Exact       // the truth: what the certified test reports is decided on the host without rounding
 };
 
 // Two triangles by their index as given: of the first mesh, and of the second or, with itself, the later one. Edges of

@@ -99,10 +99,9 @@ struct StepStatistics
     std::uint32_t m_status = kStepGood;
     std::size_t m_clothTriangles = 0;
     std::size_t m_obstacleTriangles = 0;
-    // What the broad phase left: pairs of features; of cloths left out, and with a traversal that is not the default,
-    // pairs of triangles.
+    // Pairs of features that the broad phase left. A cloth that is left out counts up to one more than
+    // Settings::m_candidateLimit.
     std::uint64_t m_candidates = 0;
-    std::size_t m_volumeTests = 0;       // over pairs of triangles; on a device see Methods::m_countTests
     std::size_t m_sweptTests = 0;        // pairs of features that needed the continuous test
     std::size_t m_clothsLeftOut = 0;     // with kStepClothsLeftOut
     std::size_t m_contacts = 0;          // contacts published
@@ -110,14 +109,12 @@ struct StepStatistics
     std::size_t m_selfSweptTests = 0;    // of these, that needed the continuous test
     std::size_t m_selfContacts = 0;      // contacts of cloths with themselves
     std::size_t m_reduced = 0;           // contacts left out because others imply them
-    std::size_t m_intersections = 0;     // only with Settings::m_reportIntersections
     std::size_t m_invalidNodes = 0;      // with kStepInvalidNodes
     // With kStepStartsIntersecting: pairs of a cloth and an obstacle that began the step with triangles that intersect,
     // and how many pairs of triangles these are. The adapter counts.
     std::size_t m_startsIntersecting = 0;
     std::uint64_t m_startIntersections = 0;
-    std::size_t m_retries = 0;   // stages run again because a buffer was too small
-    std::size_t m_rebuilds = 0;  // of the cloths' hierarchy, that this step was the first to use
+    std::size_t m_retries = 0;  // stages run again because a buffer was too small
     // What was there and not looked at, or used as it was left; contacts are the same without (tests/README.md).
     std::size_t m_clothsSkipped = 0;  // of the solver's: asleep as it began, pinned or without time; the adapter counts
     std::size_t m_obstaclesKept = 0;  // of the step's pairs: neither built, refitted nor placed anew

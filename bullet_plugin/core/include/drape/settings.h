@@ -7,8 +7,6 @@
 #include <functional>
 #include <string>
 
-#include "methods.h"
-
 namespace drape
 {
 // Writes "drape: ", the line and a line feed to standard error.
@@ -44,9 +42,8 @@ struct Settings
     // Negative: the environment variable DRAPE_CROSSOVER, and if that is empty, what is measured for the machine, the
     // device, m_mode, m_activation and m_reduceContacts: once, which takes a second or two while the first pipeline
     // with them is made, and kept in the cache folder (crossover-*.txt). Where other processes kept the machine busy
-    // meanwhile, or its times varied widely, it is measured again at the next starts, three at most. Cost decides over
-    // the default traversal alone (Methods::m_traversal), and not with m_reportIntersections or m_profileKernels: then
-    // the device runs every step.
+    // meanwhile, or its times varied widely, it is measured again at the next starts, three at most. With
+    // m_profileKernels the device runs every step.
     double m_crossover = -1;
 
     // Contacts are reported up to thickness + m_activation × thickness, so that the solver knows of a surface before
@@ -66,12 +63,6 @@ struct Settings
     // GPU, and that the host back end computes on; the caller's among them. They sleep else. 0: as many as the process
     // may use cores, 8 at most. 1: the caller's alone. 64 at most. No trajectory depends on it.
     unsigned m_threads = 0;
-
-    // Also count the pairs of cloth and obstacle triangles that intersect at the step's start
-    // (StepStatistics::m_intersections). Costs a kernel, and the usual search, which finds pairs of features over
-    // patches: pairs of triangles are found instead, by walking both sides' hierarchies after a refit.
-    // StepStatistics::m_candidates then counts those.
-    bool m_reportIntersections = false;
 
     // Most pairs that a step may list (of features, on a GPU also of triangles and patches; up to 20 bytes each) and
     // most contacts (140 bytes each on a device, 200 on the host); 2^28 at most, which stands for more. Steps of two
@@ -94,8 +85,5 @@ struct Settings
     // begins a step with intersecting triangles, cloth that is left out, a margin that is negative or as large as the
     // mesh. Once while it lasts, on the thread that steps the world. nullptr: no lines. What it throws is dropped.
     std::function<void(const char*)> m_log = logToStandardError;
-
-    // Which algorithms; for comparing them. The contacts do not depend on it.
-    Methods m_methods;
 };
 }  // namespace drape
