@@ -41,7 +41,6 @@ program, commit, truth, target, *wanted = sys.argv[1:]
 QUESTIONS = (("ccd", "", ["ccd"], ["ccd_queries.bin"]),
              ("triangles", "fast", ["triangles", "--mode", "fast"], ["triangle_pairs.bin"]),
              ("triangles", "exact", ["triangles", "--mode", "exact"], ["triangle_pairs.bin"]),
-             ("triangles", "moller", ["triangles", "--mode", "moller"], ["triangle_pairs.bin"]),
              ("pairs", "frame 92", ["pairs", "--thickness", "0"], ["cloth_ball92.ply"]),
              ("pairs", "frame 93", ["pairs", "--thickness", "0"], ["cloth_ball93.ply"]),
              ("pairs", "92 and 93", ["pairs", "--thickness", "0"], ["cloth_ball92.ply", "cloth_ball93.ply"]),

@@ -1,5 +1,5 @@
 # Finds what the chosen parts need and says what is missing by its Debian name. Sets DRAPE_WITH_BULLET,
-# DRAPE_WITH_BENCHMARKS and DRAPE_WITH_TESTS (ON or OFF).
+# DRAPE_WITH_BENCHMARKS, DRAPE_WITH_TESTS and DRAPE_WITH_STUDY (ON or OFF).
 set(THREADS_PREFER_PTHREAD_FLAG ON)
 find_package(Threads REQUIRED)
 find_package(OpenCL MODULE)
@@ -68,6 +68,16 @@ if(DRAPE_TESTS)
   else()
     message(FATAL_ERROR "Tests need libgtest-dev oclgrind")
   endif()
+endif()
+
+# The study's tests and programs come with the project's.
+set(DRAPE_WITH_STUDY OFF)
+if(DRAPE_STUDY STREQUAL "AUTO")
+  if(PROJECT_IS_TOP_LEVEL AND (DRAPE_WITH_TESTS OR DRAPE_WITH_BENCHMARKS))
+    set(DRAPE_WITH_STUDY ON)
+  endif()
+elseif(DRAPE_STUDY)
+  set(DRAPE_WITH_STUDY ON)
 endif()
 
 if(DRAPE_TOOLS OR DRAPE_WITH_TESTS OR DRAPE_WITH_BENCHMARKS OR DRAPE_BUILD_FUZZERS)

@@ -1,6 +1,7 @@
-# Writes files as a C++ source: cmake -D ROOT=dir -D LIST=file -D OUTPUT=file -P EmbedKernels.cmake
+# Writes files as a C++ source: cmake -D ROOT=dir -D LIST=file -D OUTPUT=file -D NAME=name -P EmbedKernels.cmake
 #
-# LIST names one file a line, relative to ROOT; OUTPUT defines what core/device/embedded_kernels.h declares. Texts are
+# LIST names one file a line, relative to ROOT; OUTPUT defines the
+# list <NAME>s of core/device/embedded_kernels.h and its length <NAME>Count. Texts are
 # written as character values, so any content and any size is safe; a zero byte is refused, because texts end with one.
 cmake_minimum_required(VERSION 3.25)
 file(STRINGS ${LIST} files)
@@ -26,7 +27,7 @@ if(index EQUAL 0)
 endif()
 
 file(WRITE ${OUTPUT}.part
-"// Made by cmake/EmbedKernels.cmake from the files of kernels/. Do not edit.
+"// Made by cmake/EmbedKernels.cmake. Do not edit.
 #include \"bullet_plugin/core/device/embedded_kernels.h\"
 
 namespace
@@ -35,9 +36,11 @@ ${texts}}  // namespace
 
 namespace drape
 {
-const EmbeddedFile kEmbeddedFiles[] = {
+extern const EmbeddedFile ${NAME}s[];
+extern const std::size_t ${NAME}Count;
+const EmbeddedFile ${NAME}s[] = {
 ${table}};
-const std::size_t kEmbeddedFileCount = ${index};
+const std::size_t ${NAME}Count = ${index};
 }  // namespace drape
 ")
 file(RENAME ${OUTPUT}.part ${OUTPUT})

@@ -22,8 +22,8 @@ __kernel void queryMotion(__global const CcdQuery* restrict queries, const uint 
                            ccdSettings(separation, tolerance, timeTolerance, boxLimit));
 }
 
-// Answers a query per work-item; test: DRAPE_TEST_CERTIFIED or DRAPE_TEST_MOLLER.
-__kernel void queryTriangles(__global const TriangleQuery* restrict queries, const uint count, const uint test,
+// A work-item is a query.
+__kernel void queryTriangles(__global const TriangleQuery* restrict queries, const uint count,
                              __global uint* restrict results)
 {
     const uint i = get_global_id(0);
@@ -31,7 +31,7 @@ __kernel void queryTriangles(__global const TriangleQuery* restrict queries, con
     FeatureTriangle a, b;
     loadPoints(a.m_p, queries[i].m_a, 3);
     loadPoints(b.m_p, queries[i].m_b, 3);
-    results[i] = triangleQuery(a, b, test);
+    results[i] = trianglePairTest(a.m_p, b.m_p, -1.0f) & DRAPE_PAIR_MEETS;
 }
 
 // Lists the pairs that meet or come within the radius (m; none if negative). A work-item takes every stride-th of the

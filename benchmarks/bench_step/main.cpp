@@ -30,7 +30,6 @@ bool contains(const std::vector<std::string>& list, const std::string& text)
 }
 
 const char* const kReference = "drape_host";
-const char* const kFront = "drape_host_front";
 const char* const kReducedReference = "drape_host_reduced";
 const char* const kReduced = "drape_reduced";
 const char* const kReducedKernels = "drape_reduced_kernels";
@@ -60,9 +59,6 @@ std::vector<MethodEntry> allMethods(const Options& options)
     add(kReference, drape(host));
     if (!onHost) add("drape", drape(device));
     if (!onHost) add("drape_kernels", drape(profiled));
-    Settings front = host;
-    front.m_methods.m_traversal = Traversal::Front;
-    add(kFront, drape(front));
     addReduced(kReducedReference, host);
     if (!onHost) addReduced(kReduced, device);
     if (!onHost) addReduced(kReducedKernels, profiled);
@@ -96,7 +92,7 @@ std::vector<MethodEntry> chosenMethods(const Options& options)
 }
 
 // Of the methods, those for a scene: without references whose hashes are known, unless they were asked for; sweeps,
-// whose scenes are many, without reduced ones and the front likewise; cloths that meet themselves without the front.
+// whose scenes are many, without reduced ones likewise.
 std::vector<MethodEntry> methodsFor(const SceneSpec& spec, std::vector<MethodEntry> methods, const Options& options,
                                     const MeasureSettings& settings)
 {
@@ -107,8 +103,7 @@ std::vector<MethodEntry> methodsFor(const SceneSpec& spec, std::vector<MethodEnt
         if (contains(options.m_methods, entry.m_name)) return false;
         const bool known = !(entry.m_reduced ? settings.m_expectedReduced : settings.m_expected).empty();
         if (!options.m_methods.empty()) return known;
-        if (entry.m_name == kFront && spec.m_self) return true;
-        return (entry.m_reduced || entry.m_name == kFront) && !spec.m_sweep.empty();
+        return entry.m_reduced && !spec.m_sweep.empty();
     };
     methods.erase(std::remove_if(methods.begin(), methods.end(), isLeftOut), methods.end());
     return methods;

@@ -69,8 +69,8 @@ std::vector<MotionVariant> motionVariants()
     return variants;
 }
 
-const std::pair<TriangleTest, const char*> kTriangleTests[] = {
-    {TriangleTest::Certified, "certified"}, {TriangleTest::Exact, "exact"}, {TriangleTest::Moller, "Möller"}};
+const std::pair<TriangleTest, const char*> kTriangleTests[] = {{TriangleTest::Certified, "certified"},
+                                                               {TriangleTest::Exact, "exact"}};
 
 // Holds one back end's answers. The host goes first: a device must have its hashes.
 class Asker

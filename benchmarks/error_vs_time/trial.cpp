@@ -1,7 +1,6 @@
 #include "benchmarks/error_vs_time/trial.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace drape::bench
 {
@@ -18,18 +17,7 @@ constexpr int kQuickSettleFrames = 30, kQuickRestFrames = 50;
 constexpr double kLateShare = 0.1;
 constexpr int kFallsOfDrape = 8, kFallsOfBullet = 4, kRestFallsOfDrape = 3;
 
-// Drape's traversals, in the order of their trials.
-const std::pair<Traversal, const char*> kTraversals[] = {
-    {Traversal::Front, "front"},
-    {Traversal::Groups, "groups"},
-    {Traversal::WideLeaves, "wide leaves"},
-    {Traversal::WideGroups, "wide groups"},
-    {Traversal::Leaves, "leaves"},
-    {Traversal::Pairs, "pairs"},
-    {Traversal::Single, "single"},
-};
-
-// The most significant values come first: each is a round of its own.
+// The values that say most first: each is a round of its own.
 template <typename T>
 void sweep(std::vector<Trial>& trials, Trial base, const char* knob, T Trial::*field, const std::vector<double>& values)
 {
@@ -57,20 +45,6 @@ void addModes(std::vector<Trial>& trials, Trial base)
     base.m_setting = "discrete";
     base.m_sameContacts = false;
     trials.push_back(base);
-}
-
-void addTraversals(std::vector<Trial>& trials, Trial base, bool quick)
-{
-    base.m_knob = "traversal";
-    base.m_round = 0;
-    for (const auto& [traversal, name] : kTraversals)
-    {
-        ++base.m_round;
-        base.m_traversal = traversal;
-        base.m_setting = name;
-        trials.push_back(base);
-        if (quick && base.m_round == 2) return;
-    }
 }
 
 void addFalls(std::vector<Trial>& trials, const Trial& base, int count)
@@ -146,7 +120,6 @@ std::vector<Trial> makeTrials(bool quick, bool withDevice, int frames)
     trials.push_back(reference);
     addModes(trials, drape);
     addContacts(trials, drape);
-    addTraversals(trials, drape, quick);
     if (quick)
     {
         sweep(trials, drape, "substeps", &Trial::m_substeps, {2});

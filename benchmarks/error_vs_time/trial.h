@@ -28,7 +28,6 @@ struct Trial
     double m_thickness = kThickness;  // m: both margins
     double m_activation = 0.5;        // Drape, see Settings
     ContactMode m_mode = ContactMode::Automatic;
-    Traversal m_traversal = Traversal::Auto;
     int m_substeps = 1;            // steps a frame
     int m_iterations = 5;          // iterations of Bullet's position solver
     double m_voxel = 0;            // m, of the distance field; 0: as Bullet sets it up

@@ -15,9 +15,8 @@ namespace
 // Kernels are called stageAction; those of the broad phase have many names.
 std::string stageOfKernel(const std::string& kernel)
 {
-    const std::pair<const char*, const char*> stages[] = {{"self", "self"},       {"refit", "refit"},
-                                                          {"treeCost", "refit"},  {"narrowPhase", "narrow"},
-                                                          {"reduction", "order"}, {"compaction", "order"}};
+    const std::pair<const char*, const char*> stages[] = {
+        {"self", "self"}, {"narrowPhase", "narrow"}, {"reduction", "order"}, {"compaction", "order"}};
     for (const auto& stage : stages)
     {
         if (kernel.rfind(stage.first, 0) == 0) return stage.second;
@@ -38,16 +37,6 @@ public:
         m_prepareMs = millisecondsSince(start);
     }
 
-    void restart() override
-    {
-        for (const MeshId cloth : m_cloths)
-            m_pipeline->remove(cloth);
-        addCloths();
-        m_pipeline->clothStart(m_cloths.front());  // builds the hierarchy, which no step shall pay for
-    }
-
-    void settle() override { m_pipeline->waitForRebuild(); }
-
     StepOutcome step(const float* start, const float* end) override
     {
         StepOutcome outcome;
@@ -66,8 +55,6 @@ public:
         const ContactList self = m_pipeline->selfContacts();
         outcome.m_candidates = statistics.m_candidates + statistics.m_selfCandidates;
         outcome.m_contacts = contacts.size() + self.size();
-        outcome.m_volumeTests = statistics.m_volumeTests;
-        outcome.m_rebuilds = statistics.m_rebuilds;
         std::uint64_t hash = hashOf(std::vector<Contact>(contacts.begin(), contacts.end()));
         if (collidesWithItself()) hash = hashOf(std::vector<Contact>(self.begin(), self.end()), hash);
         outcome.m_hash = hashText(hash);

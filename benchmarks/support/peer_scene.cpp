@@ -85,10 +85,10 @@ void PeerScene::narrowPhase(const std::vector<Candidate>& candidates, const floa
                   static_cast<std::uint32_t>(m_cloths.triangles().size()), DRAPE_AUTOMATIC, nullptr);
     const ObstacleView obstacle = {m_positions.data(), m_obstacles.triangles().data(), m_vertexCones.data(),
                                    m_edgeCones.data()};
-    const NarrowPhaseSettings settings = {m_thickness, 1, 1.0f + Settings().m_activation};
+    const PairSettings settings = {m_thickness, 1, 1.0f + Settings().m_activation};
     if (threads == 1)
     {
-        narrowPhaseOnHost(candidates, cloth, obstacle, settings, contacts);
+        contactsOfPairs(candidates, cloth, obstacle, settings, contacts);
         return;
     }
     const std::size_t shares = kSharesPerThread * static_cast<std::size_t>(threads);
@@ -104,7 +104,7 @@ void PeerScene::narrowPhase(const std::vector<Candidate>& candidates, const floa
                                   const std::size_t last = candidates.size() * (share + 1) / shares;
                                   const std::vector<Candidate> part(candidates.begin() + std::ptrdiff_t(first),
                                                                     candidates.begin() + std::ptrdiff_t(last));
-                                  narrowPhaseOnHost(part, cloth, obstacle, settings, parts[share]);
+                                  contactsOfPairs(part, cloth, obstacle, settings, parts[share]);
                               });
             contacts.clear();
             for (const std::vector<Contact>& part : parts)

@@ -6,8 +6,8 @@
 
 #include "benchmarks/support/step_scene.h"
 #include "bullet_plugin/core/mesh/mesh_pool.h"
-#include "bullet_plugin/core/narrow_phase/narrow_phase.h"
-#include "bullet_plugin/core/self_collision/host_self_trees.h"
+#include "reference/pair_contacts.h"
+#include "reference/self_pairs.h"
 
 namespace drape::bench
 {

@@ -24,8 +24,7 @@ struct StepOutcome
     std::size_t m_candidates = 0;
     std::size_t m_contacts = 0;
     std::size_t m_volumeTests = 0;  // 0: not counted
-    std::size_t m_rebuilds = 0;     // see StepStatistics
-    std::string m_hash;             // hash of the contacts; empty for a method that finds only candidates
+    std::string m_hash;             // of the contacts, or empty for a method that finds only candidates
 };
 
 class StepMethod
@@ -36,12 +35,6 @@ public:
     // Runs one step of all cloths: x y z per node at the step's start and end, in the scene's order. Only the work
     // itself is timed, not the hashing.
     virtual StepOutcome step(const float* start, const float* end) = 0;
-
-    // Has the cloths come anew, in the shape that they are at rest: what the method keeps from step to step is as at
-    // first, but for its memory.
-    virtual void restart() {}
-    // Waits for what the method does beside its steps.
-    virtual void settle() {}
 
     // Adds what says which method it is (backend, device, threads …), and one-time costs.
     virtual void describe(Row& row) const = 0;

@@ -282,7 +282,6 @@ void CollisionStep::receiveAll()
     all.m_clothsLeftOut = std::max(all.m_clothsLeftOut, before.m_clothsLeftOut);
     all.m_invalidNodes = std::max(all.m_invalidNodes, before.m_invalidNodes);
     all.m_retries += before.m_retries;
-    all.m_rebuilds += before.m_rebuilds;
     all.m_waitMs += before.m_waitMs;
     all.m_refitMs += before.m_refitMs;
     all.m_broadMs += before.m_broadMs;

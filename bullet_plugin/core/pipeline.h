@@ -182,12 +182,7 @@ public:
     // Cloths that need more are left out. Null: infinity.
     using Allowance = std::function<float(MeshId)>;
     ContactList finish(const Allowance& allowance = nullptr);
-    // Waits for a hierarchy that is being built beside the steps (Methods::m_rebuildDecay), so that the next submit()
-    // uses it. Otherwise time decides which step does, but no contact depends on it. For measurements and tests,
-    // between finish() and submit().
-    void waitForRebuild();
-    // Returns contacts of cloths with themselves of the last finish(), in canonical order; valid as long as its other
-    // contacts.
+    // Those of cloths with themselves of the last finish(), in canonical order; valid as long as its other contacts.
     ContactList selfContacts() const;
     // Returns the cloths that the last finish() left out (kStepClothsLeftOut).
     const std::vector<MeshId>& clothsLeftOut() const;

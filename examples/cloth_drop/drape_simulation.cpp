@@ -41,7 +41,6 @@ public:
         times.m_candidates = statistics.m_candidates;
         times.m_sweptTests = statistics.m_sweptTests;
         times.m_reduced = statistics.m_reduced;
-        times.m_rebuilds = statistics.m_rebuilds;
         times.m_clothsSkipped = statistics.m_clothsSkipped;
         times.m_obstaclesKept = statistics.m_obstaclesKept;
         times.m_skipped = statistics.m_skipped;
@@ -88,7 +87,6 @@ std::unique_ptr<Simulation> makeDrapeSimulation(const DropScene& scene, const Op
     settings.m_mode = options.m_contactMode == "discrete"     ? ContactMode::Discrete
                       : options.m_contactMode == "continuous" ? ContactMode::Continuous
                                                               : ContactMode::Automatic;
-    settings.m_methods.m_traversal = traversalsByName().at(options.m_traversal);
     auto simulation = std::make_unique<DrapeSimulation>(scene, settings);
     error = simulation->plugin().error();
     if (!simulation->plugin().ready())

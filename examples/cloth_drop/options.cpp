@@ -103,12 +103,6 @@ void addBackendOptions(CLI::App& app, Options& options, std::string& mode)
     app.add_option("--threads", options.m_threads,
                    "number of threads of the solver and of the host back end, 0 to 64; 0: one per core, 8 at most")
         ->check(CLI::Validator(wholeNumber(0, 64), ""));
-    std::vector<std::string> traversals;
-    for (const auto& traversal : traversalsByName())
-        traversals.push_back(traversal.first);
-    acceptOnly(
-        app.add_option("--traversal", options.m_traversal, "how Drape's broad phase goes; the contacts are the same"),
-        traversals);
     acceptOnly(app.add_option(
                    "--bullet-mode", mode,
                    "with --backend bullet: distance field with stock or tuned settings, or two soft bodies (VF_SS)"),
@@ -155,19 +149,6 @@ std::string conflict(const Options& options)
     return "";
 }
 }  // namespace
-
-const std::map<std::string, Traversal>& traversalsByName()
-{
-    static const std::map<std::string, Traversal> traversals = {{"auto", Traversal::Auto},
-                                                                {"pairs", Traversal::Pairs},
-                                                                {"single", Traversal::Single},
-                                                                {"groups", Traversal::Groups},
-                                                                {"front", Traversal::Front},
-                                                                {"leaves", Traversal::Leaves},
-                                                                {"wide-leaves", Traversal::WideLeaves},
-                                                                {"wide-groups", Traversal::WideGroups}};
-    return traversals;
-}
 
 bool parseOptions(int argc, const char* const* argv, Options& options, int& exitCode)
 {

@@ -2,10 +2,7 @@
 // Lengths in metres, times in seconds. parseOptions checks every value, so that the rest of the program may trust them.
 #pragma once
 
-#include <map>
 #include <string>
-
-#include <drape/methods.h>
 
 #include "tools/common/program.h"
 
@@ -33,7 +30,6 @@ struct Options
     double m_thickness = 0.02;
     std::string m_backend = "auto";
     std::string m_contactMode = "automatic";  // discrete, continuous or automatic: Settings::m_mode
-    std::string m_traversal = "auto";         // a name of traversalsByName()
     BulletMode m_bulletMode = BulletMode::Stock;
     std::string m_device;
     bool m_listDevices = false;
@@ -51,10 +47,6 @@ struct Options
     bool usesDrape() const { return m_backend != "bullet"; }
 };
 
-// Ways of Methods::m_traversal, as --traversal names them.
-const std::map<std::string, Traversal>& traversalsByName();
-
-// Returns true if the program goes on. Returns false if it must leave with `exitCode`, after printing the help or one
-// line on standard error.
+// True: go on. False: leave with `exitCode`; what there was to say has been printed (help, or one line on stderr).
 bool parseOptions(int argc, const char* const* argv, Options& options, int& exitCode);
 }  // namespace drape

@@ -37,14 +37,13 @@ Json ifInContact(const RunSummary& summary, const Json& value)
 Json workJson(const RunRecord& record)
 {
     std::uint64_t candidates = 0, swept = 0, contacts = 0, implied = 0;
-    std::size_t rebuilds = 0, cloths = 0, kept = 0, skipped = 0, onHost = 0;
+    std::size_t cloths = 0, kept = 0, skipped = 0, onHost = 0;
     for (const StepRecord& step : record.m_steps)
     {
         candidates += step.m_times.m_candidates;
         swept += step.m_times.m_sweptTests;
         contacts += step.m_times.m_contacts;
         implied += step.m_times.m_reduced;
-        rebuilds += step.m_times.m_rebuilds;
         cloths += step.m_times.m_clothsSkipped;
         kept += step.m_times.m_obstaclesKept;
         skipped += step.m_times.m_skipped;
@@ -55,7 +54,6 @@ Json workJson(const RunRecord& record)
     json["continuous_tests"] = swept;
     json["contacts"] = contacts;
     json["contacts_left_out"] = implied;
-    json["hierarchy_rebuilds"] = rebuilds;
     json["cloths_skipped"] = cloths;
     json["obstacles_kept"] = kept;
     json["steps_skipped"] = skipped;

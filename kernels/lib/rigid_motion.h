@@ -100,28 +100,8 @@ DRAPE_FUNCTION int volumeSeen(Dop* dop, const DRAPE_GLOBAL ObstacleMotion* motio
     return mayComeNear(dop, 0.0f, motion);
 }
 
-// Grows a leaf's volume to the triangle's paths relative to every moving obstacle of its pairs. thickness: m, per
-// obstacle slot, negative without a pair.
-DRAPE_FUNCTION void growByMotions(DRAPE_GLOBAL BvhNode* leaf, const DRAPE_GLOBAL ObstacleMotion* motions,
-                                  DRAPE_UINT count, const DRAPE_GLOBAL float* thickness,
-                                  const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
-                                  const DRAPE_GLOBAL float* end, float radius)
-{
-    for (DRAPE_UINT k = 0; k < count; ++k)
-    {
-        Dop dop;
-        if (thickness[motions[k].m_mesh] < 0.0f) continue;
-        if (!volumeSeen(&dop, motions + k, triangle, start, end, radius, DRAPE_CONTINUOUS)) continue;
-        for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
-        {
-            leaf->m_low[i] = drapeMin(leaf->m_low[i], dop.m_low[i]);
-            leaf->m_high[i] = drapeMax(leaf->m_high[i], dop.m_high[i]);
-        }
-    }
-}
-
-// Returns the slot of a joined vertex or edge, from the slots' firsts (members of ObstaclePlace). Slots may be empty.
-// kind: the kind of the index.
+// Slot of a joined vertex or edge, by the slots' firsts (members of ObstaclePlace); slots without any may be among
+// them. kind: whose index it is.
 #define DRAPE_OF_VERTEX 0
 #define DRAPE_OF_EDGE 1
 DRAPE_FUNCTION DRAPE_UINT placeOf(const DRAPE_GLOBAL ObstaclePlace* places, DRAPE_UINT count, int kind,

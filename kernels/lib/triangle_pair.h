@@ -10,7 +10,6 @@
 
 #include "../shared/query.h"
 #include "local_frame.h"
-#include "moller.h"
 #include "triangle_triangle.h"
 
 DRAPE_NAMESPACE_BEGIN
@@ -120,13 +119,6 @@ DRAPE_FUNCTION PairAnswer trianglePairAnswer(Candidate pair, const DRAPE_GLOBAL 
     answer.m_b = pair.m_obstacle;
     answer.m_bits = valid ? trianglePairTest(a, b, radius) : 0u;
     return answer;
-}
-
-// Returns whether the triangles of a query meet, by the given test.
-DRAPE_FUNCTION DRAPE_UINT triangleQuery(FeatureTriangle a, FeatureTriangle b, DRAPE_UINT test)
-{
-    if (test == DRAPE_TEST_MOLLER) return mollerIntersect(a, b) ? 1u : 0u;
-    return trianglePairTest(a.m_p, b.m_p, -1.0f) & DRAPE_PAIR_MEETS;
 }
 
 DRAPE_NAMESPACE_END

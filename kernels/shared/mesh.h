@@ -43,7 +43,7 @@ typedef struct NormalCone
     float m_cosine;  // cosine of the half-angle
 } NormalCone;
 
-// Half the volumes' sides: 9 in the product; 3, 7 and 13 are for studies. An option of the host's build, passed on to
+// Half the volumes' sides: 9 by default, 3, 7 or 13 by an option of the host's build, passed on to
 // the kernels' programs.
 #ifndef DRAPE_DOP_DIRECTIONS
 #define DRAPE_DOP_DIRECTIONS 9
@@ -82,15 +82,11 @@ typedef struct StepCounters
     DRAPE_UINT m_crowded;  // slots with too many contacts for counting (compaction.cl, compaction_few.cl)
     DRAPE_UINT m_hits;     // contacts after reduction
     DRAPE_UINT m_invalidNodes;
-    DRAPE_UINT m_intersections;
-    DRAPE_UINT m_front;       // pairs of the front for the next step
-    DRAPE_UINT m_spill;       // maximum number of pairs that did not fit into a traversal's local queue
-    DRAPE_UINT m_swept;       // pairs of features that the continuous test decided
-    DRAPE_UINT m_patchPairs;  // listed pairs of cloth triangles and patches
-    DRAPE_UINT m_selfPairs;   // listed pairs of patches of cloths with themselves
+    DRAPE_UINT m_swept;   // pairs of features that the continuous test decided
+    DRAPE_UINT m_patchPairs;  // of cloth triangles and patches, where they are listed
+    DRAPE_UINT m_selfPairs;   // of patches of cloths with themselves, where they are listed
     DRAPE_UINT m_selfTests;   // pairs of features of cloths with themselves
-    DRAPE_UINT m_selfSwept;   // pairs in m_selfTests that the continuous test decided
-    DRAPE_UINT m_visits;      // volume tests of the broad phase; only in programs built with DRAPE_COUNT_VISITS
+    DRAPE_UINT m_selfSwept;   // of these, that the continuous test decided
 } StepCounters;
 
 DRAPE_NAMESPACE_END

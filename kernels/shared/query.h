@@ -8,11 +8,7 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// Test that answers a TriangleQuery on the device.
-#define DRAPE_TEST_CERTIFIED 0u
-#define DRAPE_TEST_MOLLER 1u
-
-// A vertex and a face, or two edges, of one mesh.
+// A vertex and a face, or two edges, of a mesh against itself.
 typedef struct FeaturePair
 {
     DRAPE_UINT m_a;

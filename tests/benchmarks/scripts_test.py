@@ -158,7 +158,7 @@ hash=0000000000000001
         names = ["host"] + [device["device"] for device in content["machine"]["devices"]]
         self.assertEqual([row["device"] for row in self.answers(content, "ccd")], names)
         self.assertEqual([(row["mode"], row["device"]) for row in self.answers(content, "triangles")],
-                         [(mode, name) for mode in ("fast", "exact", "moller") for name in names])
+                         [(mode, name) for mode in ("fast", "exact") for name in names])
         self.assertEqual({(row["misses"], row["false_hits"]) for row in self.answers(content, "ccd")}, {(0, 0)})
         self.assertEqual({(row["misses"], row["false_hits"]) for row in self.answers(content, "triangles")}, {(1, 0)})
         self.assertEqual([(row["mode"], row["device"], row["intersecting_pairs"]) for row in self.answers(content, "pairs")],

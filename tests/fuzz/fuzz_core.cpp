@@ -183,16 +183,12 @@ Choices choicesFrom(Bytes& bytes)
     settings.m_backend = drape::Backend::Host;
     settings.m_mode = drape::ContactMode(bytes.below(3));
     settings.m_activation = float(bytes.below(17)) / 4.0f;
-    settings.m_reportIntersections = bytes.below(2) == 1;
     if (bytes.below(8) == 0) settings.m_candidateLimit = bytes.byte();
     if (bytes.below(8) == 0) settings.m_contactLimit = bytes.byte();
-    const std::uint8_t kinds = bytes.last(), methods = bytes.last();
+    const std::uint8_t kinds = bytes.last();
     choices.m_badIndices = kinds & 1;
     choices.m_self = kinds & 2;
     choices.m_tubes = kinds & 4;
-    settings.m_methods.m_traversal = drape::Traversal(methods % 8);
-    settings.m_methods.m_tree.m_builder = drape::TreeBuilder(methods / 8 % 5);
-    settings.m_methods.m_countTests = methods / 40 % 2 == 1;
     return choices;
 }
 
@@ -264,8 +260,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const drape::Settings unlimited;
     if (choices.m_settings.m_candidateLimit != unlimited.m_candidateLimit)
     {
-        // Candidates are of triangles or of features by the traversal, and more or fewer by the mode: a limit leaves
-        // out other cloths.
+        // Another mode has more or fewer candidates, so a limit leaves out other cloths.
         run(bytes, choices);
         choices.m_settings.m_candidateLimit = unlimited.m_candidateLimit;
     }
@@ -276,10 +271,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         other.m_settings.m_mode = drape::ContactMode::Continuous;
         requireSame(steps, run(bytes, other));
     }
-    other = choices;
-    other.m_settings.m_methods = drape::Methods();
-    requireSame(steps, run(bytes, other));
-    // The cloths over a limit depend on the omitted contacts.
+    // Which cloths are over a limit depends on what is left out.
     if (!choices.m_tubes || choices.m_settings.m_contactLimit != unlimited.m_contactLimit) return 0;
     other = choices;
     other.m_settings.m_reduceContacts = false;

@@ -87,8 +87,8 @@ public:
     std::vector<Contact> hostContacts() const
     {
         std::vector<Contact> contacts;
-        narrowPhaseOnHost(allPairs(m_cloth, m_obstacle), m_cloth.cloth(), m_obstacle.obstacle(),
-                          {m_thickness, 1, kReachScale, m_mode}, contacts);
+        contactsOfPairs(allPairs(m_cloth, m_obstacle), m_cloth.cloth(), m_obstacle.obstacle(),
+                        {m_thickness, 1, kReachScale, m_mode}, contacts);
         return contacts;
     }
 

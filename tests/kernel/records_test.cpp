@@ -7,7 +7,6 @@
 #include "kernels/shared/contact.h"
 #include "kernels/shared/motion.h"
 #include "kernels/shared/patch.h"
-#include "kernels/shared/traversal.h"
 #include "tests/support/backends.h"
 #include "tests/support/canary.h"
 
@@ -62,18 +61,8 @@ std::vector<Field> meshFields()
 
 std::vector<Field> treeFields()
 {
-    return {DRAPE_TEST_SIZE(BvhNode),
-            DRAPE_TEST_SIZE(NodePair),
-            DRAPE_TEST_SIZE(BvhLink),
-            DRAPE_TEST_SIZE(WideNode),
-            DRAPE_TEST_OFFSET(BvhNode, m_low),
-            DRAPE_TEST_OFFSET(BvhNode, m_high),
-            DRAPE_TEST_OFFSET(BvhNode, m_first),
-            DRAPE_TEST_OFFSET(BvhNode, m_count),
-            DRAPE_TEST_OFFSET(NodePair, m_obstacle),
-            DRAPE_TEST_OFFSET(BvhLink, m_depth),
-            DRAPE_TEST_OFFSET(WideNode, m_high),
-            DRAPE_TEST_OFFSET(WideNode, m_child)};
+    return {DRAPE_TEST_SIZE(BvhNode), DRAPE_TEST_OFFSET(BvhNode, m_low), DRAPE_TEST_OFFSET(BvhNode, m_high),
+            DRAPE_TEST_OFFSET(BvhNode, m_first), DRAPE_TEST_OFFSET(BvhNode, m_count)};
 }
 
 std::vector<Field> stepFields()
@@ -89,15 +78,11 @@ std::vector<Field> stepFields()
             DRAPE_TEST_OFFSET(StepCounters, m_crowded),
             DRAPE_TEST_OFFSET(StepCounters, m_hits),
             DRAPE_TEST_OFFSET(StepCounters, m_invalidNodes),
-            DRAPE_TEST_OFFSET(StepCounters, m_intersections),
-            DRAPE_TEST_OFFSET(StepCounters, m_front),
-            DRAPE_TEST_OFFSET(StepCounters, m_spill),
             DRAPE_TEST_OFFSET(StepCounters, m_swept),
             DRAPE_TEST_OFFSET(StepCounters, m_patchPairs),
             DRAPE_TEST_OFFSET(StepCounters, m_selfPairs),
             DRAPE_TEST_OFFSET(StepCounters, m_selfTests),
             DRAPE_TEST_OFFSET(StepCounters, m_selfSwept),
-            DRAPE_TEST_OFFSET(StepCounters, m_visits),
             DRAPE_TEST_OFFSET(Contact, m_slot),
             DRAPE_TEST_OFFSET(Contact, m_kind),
             DRAPE_TEST_OFFSET(Contact, m_clothFeature),
@@ -131,11 +116,10 @@ TEST_P(RecordsTest, DeviceAndHostAgree)
     const std::unique_ptr<Device> device = openDevice(GetParam());
     ASSERT_TRUE(device);
     // Embedded files bring the shared headers; the test's kernel follows them.
-    std::string source = assembleSource("kernels/narrow_phase.cl") + assembleSource("kernels/shared/traversal.h");
+    std::string source = assembleSource("kernels/narrow_phase.cl");
     source += "\n__kernel void reportRecords(__global uint* values)\n{\n";
-    for (const char* type :
-         {"Vec3", "Triangle", "Edge", "NormalCone", "BvhNode", "Candidate", "StepCounters", "Contact", "Patch",
-          "FeatureTest", "ObstaclePlace", "ObstacleMotion", "NodePair", "BvhLink", "WideNode"})
+    for (const char* type : {"Vec3", "Triangle", "Edge", "NormalCone", "BvhNode", "Candidate", "StepCounters",
+                             "Contact", "Patch", "FeatureTest", "ObstaclePlace", "ObstacleMotion"})
     {
         source += std::string("    ") + type + " a" + type + ";\n";
     }

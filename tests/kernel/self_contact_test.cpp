@@ -9,8 +9,8 @@
 
 #include "bullet_plugin/core/broad_phase/patch_cull.h"
 #include "bullet_plugin/core/compaction/canonical_order.h"
-#include "bullet_plugin/core/self_collision/host_self_trees.h"
 #include "bullet_plugin/core/self_collision/self_contacts.h"
+#include "reference/self_pairs.h"
 #include "tests/support/device_side.h"
 #include "tests/support/self_cases.h"
 #include "tests/support/slot_sums.h"

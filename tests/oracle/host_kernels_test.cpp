@@ -11,8 +11,8 @@
 #include "bullet_plugin/core/broad_phase/host_patch_cull.h"
 #include "bullet_plugin/core/compaction/canonical_order.h"
 #include "bullet_plugin/core/self_collision/host_self_patches.h"
-#include "bullet_plugin/core/self_collision/host_self_trees.h"
 #include "scenes/shapes.h"
+#include "reference/self_pairs.h"
 #include "tests/support/cases.h"
 #include "tests/support/self_cases.h"
 #include "tests/support/side.h"
@@ -76,8 +76,8 @@ public:
     std::vector<Contact> expected() const
     {
         std::vector<Contact> contacts;
-        narrowPhaseOnHost(allPairs(m_cloth, m_obstacle), m_view, m_obstacle.obstacle(),
-                          {{m_thickness}, 1, kReachScale, m_view.m_mode}, contacts);
+        contactsOfPairs(allPairs(m_cloth, m_obstacle), m_view, m_obstacle.obstacle(),
+                        {{m_thickness}, 1, kReachScale, m_view.m_mode}, contacts);
         return contacts;
     }
 

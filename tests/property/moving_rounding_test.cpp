@@ -1,4 +1,4 @@
-// Obstacles that move or are placed where rounding decides: every back end and traversal decides alike.
+// Obstacles that move or are placed where rounding decides: every back end decides alike.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +9,6 @@
 #include "scenes/shapes.h"
 #include "tests/property/moving_obstacle.h"
 #include "tests/support/side.h"
-#include "tests/support/traversals.h"
 
 namespace drape::test
 {
@@ -34,23 +33,6 @@ MovingCase plateCase()
                   -0.409705281f, 0.62371707f, 46.5019989f,   -0.403637558f};
     return {step, shiftOf(0, 45, 0), shiftOf(0, 45.5, 0)};
 }
-
-// Expects every traversal on this back end to give the host's contacts.
-void expectHostsContacts(const BackendCase& backend, const MovingCase& moving, const std::vector<Contact>& expected)
-{
-    std::vector<Traversal> traversals = allTraversals();
-    traversals.push_back(Traversal::Auto);
-    for (const Traversal traversal : traversals)
-    {
-        SCOPED_TRACE(traversalName(traversal));
-        Settings settings = backend.m_settings;
-        settings.m_methods.m_traversal = traversal;
-        const std::unique_ptr<Pipeline> pipeline = makePipeline(settings);
-        ASSERT_TRUE(pipeline);
-        const std::vector<Contact> contacts = runMoving(*pipeline, moving);
-        EXPECT_TRUE(sameBytes(contacts, expected)) << difference(contacts, expected);
-    }
-}
 }  // namespace
 
 TEST_P(MovingObstacleTest, NodeThatEndsLevelWithAPlatesFaceBesideIt)
@@ -62,7 +44,10 @@ TEST_P(MovingObstacleTest, NodeThatEndsLevelWithAPlatesFaceBesideIt)
     const auto beside = [](const Contact& contact)
     { return contact.m_kind == DRAPE_NODE_FACE && contact.m_clothFeature == 2 && contact.m_normal[0] > 0.999f; };
     EXPECT_TRUE(std::any_of(expected.begin(), expected.end(), beside));
-    expectHostsContacts(GetParam(), moving, expected);
+    const std::unique_ptr<Pipeline> pipeline = make();
+    ASSERT_TRUE(pipeline);
+    const std::vector<Contact> contacts = runMoving(*pipeline, moving);
+    EXPECT_TRUE(sameBytes(contacts, expected)) << difference(contacts, expected);
 }
 
 // The faces have 3 mm and their corners are rounded to 0.1 mm at their pose, so that they turn, and their cones do not.

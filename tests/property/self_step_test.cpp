@@ -1,4 +1,4 @@
-// Cloths that collide with themselves in a step: every back end, mode and traversal gives the same contacts, and what a
+// Cloths that collide with themselves in a step: every back end and mode gives the contacts of all pairs, and what a
 // scene does not ask for changes nothing.
 #include <gtest/gtest.h>
 
@@ -6,11 +6,11 @@
 
 #include "scenes/describe_mesh.h"
 #include "scenes/shapes.h"
+#include "reference/self_pairs.h"
 #include "tests/support/backends.h"
 #include "tests/support/pipeline_driver.h"
 #include "tests/support/self_cases.h"
 #include "tests/support/side.h"
-#include "tests/support/traversals.h"
 
 namespace drape::test
 {
@@ -49,13 +49,26 @@ SelfResult runOverSphere(const Settings& settings, const SelfStepCase& step, boo
     return result;
 }
 
-// Returns settings of the host with trees, which share no cull with the tested code.
-Settings treeSettings()
+// What a walk over a tree of the cloth's triangles finds, which shares no cull with what is tested.
+struct Expected
 {
-    Settings settings;
-    settings.m_backend = Backend::Host;
-    settings.m_methods.m_traversal = Traversal::Pairs;
-    return settings;
+    std::vector<Contact> m_contacts;
+    SelfCounts m_counts;
+};
+
+Expected expectedOf(const SelfStepCase& step, const Settings& settings)
+{
+    Side side = makeSide({step.m_motion.m_mesh});
+    side.m_end = step.m_motion.m_end;
+    ClothView cloth = side.cloth();
+    cloth.m_mode = std::uint32_t(settings.m_mode);
+    const float reachScale = 1.0f + settings.m_activation;
+    const SelfReach reach = {{step.m_thickness}, {selfGrowth(step.m_thickness * reachScale)}};
+    const std::vector<float> noObstacle = {-1.0f};
+    Expected expected;
+    expected.m_counts = HostSelfTrees().run(
+        {side.m_pool, selfView(cloth, step.m_rest.data(), reachScale), reach, noObstacle}, {}, expected.m_contacts);
+    return expected;
 }
 }  // namespace
 
@@ -71,19 +84,22 @@ TEST_P(SelfStepTest, EveryBackEndFindsTheSame)
         for (const SelfStepCase& step : selfStepCases())
         {
             SCOPED_TRACE(step.m_motion.m_name + ", mode " + std::to_string(int(mode)));
-            Settings settings = GetParam().m_settings, reference = treeSettings();
-            settings.m_mode = reference.m_mode = mode;
-            const std::unique_ptr<Pipeline> pipeline = makePipeline(settings), host = makePipeline(reference);
-            ASSERT_TRUE(pipeline && host);
-            const std::vector<Contact> found = runSelfCase(*pipeline, step), expected = runSelfCase(*host, step);
-            EXPECT_TRUE(sameBytes(found, expected)) << difference(found, expected);
-            EXPECT_EQ(pipeline->statistics().m_selfCandidates, host->statistics().m_selfCandidates);
-            EXPECT_EQ(pipeline->statistics().m_selfSweptTests, host->statistics().m_selfSweptTests);
-            EXPECT_EQ(pipeline->statistics().m_invalidNodes, host->statistics().m_invalidNodes);
-            EXPECT_EQ(pipeline->statistics().m_status, host->statistics().m_status);
+            Settings settings = GetParam().m_settings;
+            settings.m_mode = mode;
+            const std::unique_ptr<Pipeline> pipeline = makePipeline(settings);
+            ASSERT_TRUE(pipeline);
+            const std::vector<Contact> found = runSelfCase(*pipeline, step);
+            const Expected expected = expectedOf(step, settings);
+            const StepStatistics& statistics = pipeline->statistics();
+            EXPECT_TRUE(sameBytes(found, expected.m_contacts)) << difference(found, expected.m_contacts);
+            EXPECT_EQ(statistics.m_selfCandidates, expected.m_counts.m_candidates);
+            EXPECT_EQ(statistics.m_selfSweptTests, expected.m_counts.m_swept);
+            EXPECT_EQ(statistics.m_invalidNodes, expected.m_counts.m_invalidNodes);
+            EXPECT_EQ(statistics.m_status,
+                      std::uint32_t(statistics.m_invalidNodes > 0 ? kStepInvalidNodes : kStepGood));
             EXPECT_EQ(pipeline->statistics().m_contacts, 0u);
             contacts += found.size();
-            swept += host->statistics().m_selfSweptTests;
+            swept += expected.m_counts.m_swept;
             for (std::size_t i = 1; i < found.size(); ++i)
             {
                 EXPECT_TRUE(found[i - 1].m_slot < found[i].m_slot ||
@@ -115,34 +131,31 @@ TEST_P(SelfStepTest, AutomaticGivesTheContactsOfContinuous)
 TEST_P(SelfStepTest, ContactsWithObstaclesStayWhatTheyAre)
 {
     const SelfStepCase step = foldedCase(25, 4, 0.003f, 120);
-    for (const Traversal traversal : {Traversal::Auto, Traversal::Pairs, Traversal::Front, Traversal::WideLeaves})
-    {
-        SCOPED_TRACE(traversalName(traversal));
-        Settings settings = GetParam().m_settings;
-        settings.m_methods.m_traversal = traversal;
-        const SelfResult host = runOverSphere(treeSettings(), step, true);
-        const SelfResult with = runOverSphere(settings, step, true), without = runOverSphere(settings, step, false);
-        EXPECT_TRUE(sameBytes(with.m_contacts, without.m_contacts)) << difference(with.m_contacts, without.m_contacts);
-        EXPECT_TRUE(sameBytes(with.m_contacts, host.m_contacts)) << difference(with.m_contacts, host.m_contacts);
-        EXPECT_TRUE(sameBytes(with.m_self, host.m_self)) << difference(with.m_self, host.m_self);
-        EXPECT_GT(with.m_contacts.size(), 50u);
-        EXPECT_GT(with.m_self.size(), 500u);
-        EXPECT_GT(with.m_statistics.m_reduced, 0u);
-        EXPECT_EQ(with.m_statistics.m_reduced, without.m_statistics.m_reduced);
-        EXPECT_EQ(with.m_statistics.m_contacts, with.m_contacts.size());
-        EXPECT_EQ(with.m_statistics.m_selfContacts, with.m_self.size());
-        EXPECT_TRUE(without.m_self.empty());
-        EXPECT_EQ(without.m_statistics.m_selfCandidates, 0u);
-    }
+    const SelfResult host = runOverSphere(allBackends()[0].m_settings, step, true);
+    const Settings& settings = GetParam().m_settings;
+    const Expected self = expectedOf(step, settings);
+    const SelfResult with = runOverSphere(settings, step, true), without = runOverSphere(settings, step, false);
+    EXPECT_TRUE(sameBytes(with.m_contacts, without.m_contacts)) << difference(with.m_contacts, without.m_contacts);
+    EXPECT_TRUE(sameBytes(with.m_contacts, host.m_contacts)) << difference(with.m_contacts, host.m_contacts);
+    EXPECT_TRUE(sameBytes(with.m_self, self.m_contacts)) << difference(with.m_self, self.m_contacts);
+    EXPECT_GT(with.m_contacts.size(), 50u);
+    EXPECT_GT(with.m_self.size(), 500u);
+    EXPECT_GT(with.m_statistics.m_reduced, 0u);
+    EXPECT_EQ(with.m_statistics.m_reduced, without.m_statistics.m_reduced);
+    EXPECT_EQ(with.m_statistics.m_contacts, with.m_contacts.size());
+    EXPECT_EQ(with.m_statistics.m_selfContacts, with.m_self.size());
+    EXPECT_TRUE(without.m_self.empty());
+    EXPECT_EQ(without.m_statistics.m_selfCandidates, 0u);
 }
 
 // The lists start smaller than this cloth needs.
 TEST_P(SelfStepTest, ListsGrowToWhatIsThere)
 {
     const SelfStepCase step = {crumpledCase(70, 121), crumpledCase(70, 121).m_mesh.m_positions, 0.01f};
-    const std::unique_ptr<Pipeline> pipeline = makePipeline(GetParam().m_settings), host = makePipeline(treeSettings());
-    ASSERT_TRUE(pipeline && host);
-    const std::vector<Contact> found = runSelfCase(*pipeline, step), expected = runSelfCase(*host, step);
+    const std::unique_ptr<Pipeline> pipeline = makePipeline(GetParam().m_settings);
+    ASSERT_TRUE(pipeline);
+    const std::vector<Contact> found = runSelfCase(*pipeline, step),
+                               expected = expectedOf(step, GetParam().m_settings).m_contacts;
     EXPECT_TRUE(sameBytes(found, expected)) << difference(found, expected);
     EXPECT_GT(pipeline->statistics().m_selfCandidates, std::size_t(1) << 16);
     EXPECT_GT(pipeline->statistics().m_retries, 0u);

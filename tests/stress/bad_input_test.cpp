@@ -6,8 +6,6 @@
 #include <limits>
 #include <set>
 
-#include "bullet_plugin/core/bvh/tree_builder.h"
-#include "bullet_plugin/core/bvh/tree_quality.h"
 #include "scenes/cloth_grid.h"
 #include "scenes/shapes.h"
 #include "tests/support/backends.h"
@@ -74,16 +72,6 @@ protected:
         expectFinite(contacts);
         EXPECT_FALSE(m_pipeline->statistics().m_status & kStepDeviceFailed) << m_pipeline->lastError().text();
         return contacts;
-    }
-
-    // With traversals of triangle pairs, their tests counted.
-    std::vector<Contact> runCounted(const StepCase& step, Traversal traversal)
-    {
-        Settings settings = GetParam().m_settings;
-        settings.m_methods.m_traversal = traversal;
-        settings.m_methods.m_countTests = true;
-        m_pipeline = makePipeline(settings);
-        return m_pipeline ? runCase(*m_pipeline, step) : std::vector<Contact>();
     }
 
     std::unique_ptr<Pipeline> m_pipeline;
@@ -180,29 +168,6 @@ TEST_P(BadInputTest, HugeAndDenormalNodesStayFinite)
     }
 }
 
-namespace
-{
-// Trees of every builder hold the triangles in a height near the least there can be.
-void expectShallowTrees(const TriangleMesh& mesh)
-{
-    const Side side = makeSide({mesh});
-    const std::size_t leaves = side.m_pool.triangles().size();
-    const std::uint32_t least = std::uint32_t(std::ceil(std::log2(double(leaves))));
-    for (const TreeBuilder builder :
-         {TreeBuilder::Balanced, TreeBuilder::Radix, TreeBuilder::TopDown, TreeBuilder::Ploc})
-    {
-        TreeMethods methods;
-        methods.m_builder = builder;
-        const Tree tree = buildTreeOnHost(methods, side.m_pool.triangles(), side.m_start.data(), 1);
-        ASSERT_EQ(tree.leafCount(), leaves);
-        const std::uint32_t height = measureTree(tree.m_nodes, 0).m_height;
-        EXPECT_GE(height, least);
-        EXPECT_LE(height, 2 * least) << "builder " << int(builder);
-        EXPECT_EQ(whyInvalid(tree.m_nodes, 0, tree.m_order, side.m_pool.triangles(), side.m_start.data(), {0.0f}), "");
-    }
-}
-}  // namespace
-
 TEST_P(BadInputTest, ClothCollapsedToAPointOrALine)
 {
     for (bool line : {false, true})
@@ -222,7 +187,6 @@ TEST_P(BadInputTest, ClothCollapsedToAPointOrALine)
                     p[2] = 0.0f;
                 }
             }
-            expectShallowTrees(step.m_cloth);
             // Every node is near the pole or below it.
             std::set<std::uint32_t> nodes;
             for (const Contact& contact : run(step))
@@ -265,7 +229,7 @@ TEST_P(BadInputTest, EmptyAndTinyMeshes)
     }
 }
 
-// Vertices of no triangle all about, on both sides: as many candidates and as many tests as without them.
+// Vertices of no triangle all about, on both sides: as many candidates as without them.
 TEST_P(BadInputTest, UnusedVerticesWidenNoVolume)
 {
     const StepCase step = fallingCase("sphere", 16, 0.03f, 905);
@@ -275,19 +239,13 @@ TEST_P(BadInputTest, UnusedVerticesWidenNoVolume)
     for (std::vector<float>* positions : {&strewn.m_obstacle.m_positions, &strewn.m_cloth.m_positions, &strewn.m_end})
         for (int i = 0; i < 3 * 50; ++i)
             positions->push_back(random.uniform(-5, 5));
-    for (const Traversal traversal : {Traversal::Auto, Traversal::Pairs, Traversal::Leaves, Traversal::WideLeaves})
-    {
-        SCOPED_TRACE("traversal " + std::to_string(int(traversal)));
-        const std::size_t contacts = runCounted(step, traversal).size();
-        ASSERT_TRUE(m_pipeline);
-        const StepStatistics alone = m_pipeline->statistics();
-        EXPECT_GT(contacts, 100u);
-        EXPECT_EQ(runCounted(strewn, traversal).size(), contacts);
-        ASSERT_TRUE(m_pipeline);
-        EXPECT_EQ(m_pipeline->statistics().m_candidates, alone.m_candidates);
-        EXPECT_EQ(m_pipeline->statistics().m_volumeTests, alone.m_volumeTests);
-        EXPECT_TRUE(traversal == Traversal::Auto || alone.m_volumeTests > 1000u);
-    }
+    const std::size_t contacts = run(step).size();
+    ASSERT_TRUE(m_pipeline);
+    const std::size_t candidates = m_pipeline->statistics().m_candidates;
+    EXPECT_GT(contacts, 100u);
+    EXPECT_EQ(run(strewn).size(), contacts);
+    ASSERT_TRUE(m_pipeline);
+    EXPECT_EQ(m_pipeline->statistics().m_candidates, candidates);
 }
 
 // A triangle with a corner outside of the valid range is in no pair, wherever its other corners are.
@@ -315,8 +273,7 @@ TEST_P(BadInputTest, TwoIdenticalMeshes)
 {
     const TriangleMesh mesh = makeSphere(0.5f, 2);
     StepCase step = {"identical meshes", 0, mesh, mesh, mesh.m_positions, 0.01f};
-    Settings settings = GetParam().m_settings;
-    settings.m_reportIntersections = true;
+    const Settings settings = GetParam().m_settings;
     const std::unique_ptr<Pipeline> pipeline = makePipeline(settings);
     ASSERT_TRUE(pipeline);
     const std::vector<Contact> contacts = runCase(*pipeline, step);
@@ -324,7 +281,6 @@ TEST_P(BadInputTest, TwoIdenticalMeshes)
     // Each triangle meets itself and those around its corners, and no others.
     const std::vector<NearTriangles> meeting = meetingPairs(mesh, mesh);
     ASSERT_GT(meeting.size(), 10 * mesh.triangleCount());
-    EXPECT_EQ(pipeline->statistics().m_intersections, meeting.size());
     EXPECT_TRUE(sameBytes(meshPairsOn(settings, mesh, mesh, 0.0f).m_intersecting, meeting));
     std::set<std::uint32_t> nodes;
     for (const Contact& contact : contacts)

@@ -193,7 +193,6 @@ protected:
     Run run(const StepCase& step)
     {
         Settings settings = GetParam().m_settings;
-        settings.m_reportIntersections = true;
         settings.m_activation = 0;  // contacts within the thickness
         const std::unique_ptr<Pipeline> pipeline = makePipeline(settings);
         if (!pipeline) return {};
@@ -303,10 +302,9 @@ TEST_P(MeshRows, Row13FlippedWindingAndInvertedElements)
         original.m_end[3 * node] += node % 2 ? 0.16f : -0.16f;
     StepCase ended = original;
     ended.m_cloth.m_positions = original.m_end;
-    const Run reference = run(original);
-    EXPECT_GT(reference.m_statistics.m_intersections, 20u);
     const std::vector<Keyed> contacts = keyedContacts(original);
     const MeshPairs start = pairsOf(original), end = pairsOf(ended);
+    EXPECT_GT(start.m_intersecting.size(), 20u);
     EXPECT_TRUE(sameBytes(start.m_intersecting, meetingPairs(original.m_cloth, original.m_obstacle)));
     EXPECT_TRUE(sameBytes(end.m_intersecting, meetingPairs(ended.m_cloth, ended.m_obstacle)));
     const Rename same = [](const NearTriangles& pair) { return pair; };
@@ -317,9 +315,6 @@ TEST_P(MeshRows, Row13FlippedWindingAndInvertedElements)
         flipWinding(flipCloth ? stepEnded.m_cloth : stepEnded.m_obstacle);
         expectSamePairs(pairsOf(step), start, same);
         expectSamePairs(pairsOf(stepEnded), end, same);
-        const Run flipped = run(step);
-        EXPECT_EQ(flipped.m_statistics.m_candidates, reference.m_statistics.m_candidates);
-        EXPECT_EQ(flipped.m_statistics.m_intersections, reference.m_statistics.m_intersections);
         EXPECT_TRUE(expectSameKeys(keyedContacts(step), contacts));
     }
 }

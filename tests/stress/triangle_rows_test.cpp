@@ -10,6 +10,7 @@
 #include "scenes/exact_predicates.h"
 #include "scenes/shapes.h"
 #include "tests/support/backends.h"
+#include "tests/support/mesh_pairs.h"
 #include "tests/support/pair_batch.h"
 #include "tests/support/self_cases.h"
 #include "tests/support/side.h"
@@ -275,8 +276,7 @@ TEST_P(StressRows, Row06GapOfOneUlp)
 // Five layers of 1 cm edges, 1 mm apart, each shifted and turned a little: nothing intersects, everything is near.
 TEST_P(StressRows, Row07LayersOneMillimetreApart)
 {
-    Settings settings = GetParam().m_settings;
-    settings.m_reportIntersections = true;
+    const Settings settings = GetParam().m_settings;
     for (const float offset : {0.0f, 100.0f})
     {
         const std::unique_ptr<Pipeline> pipeline = makePipeline(settings);
@@ -289,7 +289,8 @@ TEST_P(StressRows, Row07LayersOneMillimetreApart)
             translate(mesh.m_positions, offset + random.uniform(-0.01f, 0.01f), 0, random.uniform(-0.01f, 0.01f));
             return mesh;
         };
-        const MeshId obstacle = addObstacle(*pipeline, layer(0));
+        const TriangleMesh lowest = layer(0);
+        const MeshId obstacle = addObstacle(*pipeline, lowest);
         std::vector<TriangleMesh> layers;
         std::vector<MeshId> cloths;
         for (int i = 1; i < 5; ++i)
@@ -301,9 +302,9 @@ TEST_P(StressRows, Row07LayersOneMillimetreApart)
         {
             setMotion(*pipeline, cloths[i], layers[i].m_positions, layers[i].m_positions);
             pipeline->addPair(cloths[i], obstacle, 0.01f);
+            EXPECT_TRUE(meshPairsOn(settings, layers[i], lowest, 0.0f).m_intersecting.empty());
         }
         expectFinite(runStep(*pipeline));
-        EXPECT_EQ(pipeline->statistics().m_intersections, 0u);
         EXPECT_GT(pipeline->statistics().m_contacts, 4u * 21 * 21 / 2);
         EXPECT_GT(pipeline->statistics().m_candidates, 4u * 800);
     }

@@ -6,7 +6,6 @@
 
 #include "bullet_plugin/core/bvh/morton_order.h"
 #include "bullet_plugin/core/bvh/refit.h"
-#include "bullet_plugin/core/bvh/tree_builder.h"
 #include "bullet_plugin/core/compaction/canonical_order.h"
 #include "bullet_plugin/core/mesh/normal_cones.h"
 #include "kernels/lib/dop.h"
@@ -46,18 +45,10 @@ Side makeSide(const std::vector<TriangleMesh>& meshes, const std::vector<std::in
     }
     side.m_pool.update();
     side.m_end = side.m_start;
-    side.m_order = side.m_pool.order();
+    side.m_order = joinedOrder(side.m_pool);
     side.m_layout = makeBvhLayout(std::uint32_t(side.m_order.size()));
     side.m_nodes = makeBvhNodes(side.m_layout);
     return side;
-}
-
-void useTree(Side& side, const TreeMethods& methods)
-{
-    const Tree tree = buildTreeOnHost(methods, side.m_pool.triangles(), side.m_start.data(), side.m_pool.meshCount());
-    side.m_order = tree.m_order;
-    side.m_layout = makeBvhLayout(linksOf(tree.m_nodes), 0);
-    side.m_nodes = makeBvhNodes(side.m_layout);
 }
 
 std::size_t refitSide(Side& side, const std::vector<float>& radius)
@@ -75,12 +66,12 @@ std::vector<Candidate> bruteForceCandidates(const Side& cloth, const Side& obsta
     const std::vector<std::uint32_t>&clothOrder = cloth.m_order, &obstacleOrder = obstacle.m_order;
     for (std::uint32_t i = 0; i < clothOrder.size(); ++i)
     {
-        const BvhNode& clothLeaf = cloth.m_nodes[cloth.m_layout.leafNode(i)];
+        const BvhNode& clothLeaf = cloth.m_nodes[i];
         const std::size_t row = cloth.m_pool.triangles()[clothOrder[i]].m_mesh * obstacle.m_pool.meshCount();
         for (std::uint32_t j = 0; j < obstacleOrder.size(); ++j)
         {
             if (thickness[row + obstacle.m_pool.triangles()[obstacleOrder[j]].m_mesh] < 0.0f) continue;
-            if (nodesOverlap(&clothLeaf, &obstacle.m_nodes[obstacle.m_layout.leafNode(j)]))
+            if (nodesOverlap(&clothLeaf, &obstacle.m_nodes[j]))
                 candidates.push_back(Candidate{clothOrder[i], obstacleOrder[j]});
         }
     }
@@ -99,12 +90,12 @@ std::vector<Candidate> allPairs(const Side& cloth, const Side& obstacle)
     return pairs;
 }
 
-std::vector<Contact> contactsOfAllPairs(const Side& cloth, const Side& obstacle, float reach)
+std::vector<Contact> contactsOfAllPairs(const Side& cloth, const Side& obstacle, float reach, std::uint32_t mode)
 {
     const std::vector<float> thickness(cloth.m_pool.meshCount() * obstacle.m_pool.meshCount(), reach);
-    const NarrowPhaseSettings settings = {thickness, obstacle.m_pool.meshCount(), 1.0f};
+    const PairSettings settings = {thickness, obstacle.m_pool.meshCount(), 1.0f, mode};
     std::vector<Contact> contacts;
-    narrowPhaseOnHost(allPairs(cloth, obstacle), cloth.cloth(), obstacle.obstacle(), settings, contacts);
+    contactsOfPairs(allPairs(cloth, obstacle), cloth.cloth(), obstacle.obstacle(), settings, contacts);
     return contacts;
 }
 

@@ -8,10 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "bullet_plugin/core/broad_phase/broad_phase.h"
 #include "bullet_plugin/core/bvh/bvh_layout.h"
 #include "bullet_plugin/core/mesh/mesh_pool.h"
-#include "bullet_plugin/core/narrow_phase/narrow_phase.h"
+#include "reference/pair_contacts.h"
 #include "scenes/mesh.h"
 
 namespace drape::test
@@ -25,7 +24,6 @@ struct Side
     std::vector<float> m_start, m_end;
     std::vector<NormalCone> m_vertexCones, m_edgeCones;
 
-    BroadPhaseSide broadPhase() const { return {m_nodes, m_layout, m_order, m_pool.triangles()}; }
     ClothView cloth() const;
     ObstacleView obstacle() const;
 };
@@ -33,14 +31,11 @@ struct Side
 // Ids are 0, 1, …; edges: of the first mesh, besides those of triangles (see MeshDescription).
 Side makeSide(const std::vector<TriangleMesh>& meshes, const std::vector<std::int32_t>& edges = {});
 
-// Another hierarchy over the same triangles, built on the host from the positions at the step's start. Volumes are
-// empty.
-void useTree(Side& side, const TreeMethods& methods);
-
 // Recomputes the hierarchy's volumes; radius in m per mesh, negative to leave a mesh out. Returns the invalid vertices.
 std::size_t refitSide(Side& side, const std::vector<float>& radius);
 
-// The pairs whose leaf volumes overlap, by testing every one. thickness as in HostTraversal::run. Sorted.
+// The pairs whose leaf volumes overlap, by testing every one. thickness: m, cloth slots × obstacle slots,
+// negative where the pair is not tested. Sorted.
 std::vector<Candidate> bruteForceCandidates(const Side& cloth, const Side& obstacle,
                                             const std::vector<float>& thickness);
 
@@ -48,7 +43,8 @@ std::vector<Candidate> bruteForceCandidates(const Side& cloth, const Side& obsta
 std::vector<Candidate> allPairs(const Side& cloth, const Side& obstacle);
 
 // Contacts of every pair of triangles with the reach (m), in canonical order.
-std::vector<Contact> contactsOfAllPairs(const Side& cloth, const Side& obstacle, float reach);
+std::vector<Contact> contactsOfAllPairs(const Side& cloth, const Side& obstacle, float reach,
+                                        std::uint32_t mode = DRAPE_AUTOMATIC);
 
 bool contains(const std::vector<Candidate>& sorted, std::uint32_t cloth, std::uint32_t obstacle);
 

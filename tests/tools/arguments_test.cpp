@@ -178,7 +178,7 @@ TEST_F(CheckArguments, CommandsAndTheirOptionsAreKnownApart)
     expectRefused(run({"--thickness", "1", "pairs", "a.obj"}), {"--thickness", "command pairs", "after it"});
     expectRefused(run({"ccd", "a.bin", "--thickness", "1"}), {"--thickness", "command pairs", "not of ccd"});
     expectRefused(run({"ccd", "a.bin", "triangles", "b.bin"}), {"command triangles follows ccd"});
-    expectRefused(run({"triangles", "a.bin", "--mode", "exakt"}), {"--mode", "did you mean exact?", "moller"});
+    expectRefused(run({"triangles", "a.bin", "--mode", "exakt"}), {"--mode", "did you mean exact?", "fast"});
     expectRefused(run({"pairs", "a.obj", "b.obj", "c.obj"}), {"'c.obj'", "belongs to no option"});
     expectRefused(run({"pairs"}), {"A is missing"});
 }

@@ -111,7 +111,7 @@ TEST_F(Check, CcdCountsMissesAndFalseHits)
 TEST_F(Check, TrianglesAreCountedInEveryMode)
 {
     const std::string file = write("pairs.bin", triangleRecord(-0.5f, 1) + triangleRecord(0.001f, 0));
-    for (const char* mode : {"fast", "exact", "moller"})
+    for (const char* mode : {"fast", "exact"})
     {
         SCOPED_TRACE(mode);
         const Json json = answer({"triangles", file, "--mode", mode});

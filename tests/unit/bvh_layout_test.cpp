@@ -6,9 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bullet_plugin/core/bvh/refit.h"
-#include "bullet_plugin/core/bvh/tree_builder.h"
-#include "bullet_plugin/core/bvh/tree_quality.h"
 #include "scenes/shapes.h"
 #include "tests/support/side.h"
 
@@ -66,36 +63,6 @@ TEST_P(BvhLayoutSizes, EveryLeafIsReachedOnce)
 INSTANTIATE_TEST_SUITE_P(Sizes, BvhLayoutSizes,
                          testing::Values(1, 2, 3, 4, 5, 7, 8, 9, 63, 64, 65, 1023, 1025, 3001, 100003));
 
-// Any tree, root first as builders make them: the same parents above the same leaves, children before parents.
-TEST_P(BvhLayoutSizes, TreesOfAnyShapeKeepTheirShape)
-{
-    const Side side = makeSide({makeSoup(1.0f, 0.1f, int(GetParam()), GetParam())});
-    for (TreeBuilder builder : {TreeBuilder::Radix, TreeBuilder::TopDown})
-    {
-        TreeMethods methods;
-        methods.m_builder = builder;
-        const Tree tree = buildTreeOnHost(methods, side.m_pool.triangles(), side.m_start.data(), 1);
-        const BvhLayout layout = makeBvhLayout(linksOf(tree.m_nodes), 0);
-        std::vector<BvhNode> nodes = makeBvhNodes(layout);
-        ASSERT_EQ(layout.leafCount(), GetParam());
-        ASSERT_EQ(nodes.size(), tree.m_nodes.size());
-        for (const BvhHeight& height : layout.m_heights)
-        {
-            for (std::uint32_t i = height.m_first; i < height.m_first + height.m_count; ++i)
-                ASSERT_TRUE(nodes[i].m_count == 0 || nodes[i].m_first + nodes[i].m_count <= height.m_first);
-        }
-        std::size_t invalid = 0;
-        refitOnHost(nodes, layout, tree.m_order, side.m_pool.triangles(), side.m_start.data(), side.m_start.data(),
-                    {0.0f}, invalid);
-        EXPECT_EQ(whyInvalid(nodes, layout.root(), tree.m_order, side.m_pool.triangles(), side.m_start.data(), {0.0f}),
-                  "");
-        const TreeQuality before = measureTree(tree.m_nodes, 0), after = measureTree(nodes, layout.root());
-        EXPECT_EQ(after.m_height, before.m_height);
-        EXPECT_EQ(after.m_nodes, before.m_nodes);
-        EXPECT_NEAR(after.m_cost, before.m_cost, 1e-9 * before.m_cost);
-    }
-}
-
 TEST(BvhLayout, UnusedVerticesWidenNoVolume)
 {
     const TriangleMesh soup = makeSoup(1.0f, 0.1f, 100, 12);
@@ -115,7 +82,6 @@ TEST(BvhLayout, NoLeavesNoNodes)
     EXPECT_EQ(layout.nodeCount(), 0u);
     EXPECT_EQ(layout.leafCount(), 0u);
     EXPECT_TRUE(makeBvhNodes(layout).empty());
-    EXPECT_EQ(makeBvhLayout({}, 0).nodeCount(), 0u);
 }
 
 TEST(BvhLayout, VolumesBeginEmpty)

@@ -38,7 +38,6 @@ void expectJoined(const MeshPool& pool)
             const Triangle &joined = pool.triangles()[triangle + t], &local = mesh.m_topology.m_triangles[t];
             EXPECT_EQ(joined.m_mesh, slot);
             EXPECT_EQ(joined.m_owned, local.m_owned);
-            EXPECT_EQ(pool.order()[triangle + t], mesh.m_order[t] + triangle);
             for (int i = 0; i < 3; ++i)
             {
                 EXPECT_EQ(joined.m_vertices[i], local.m_vertices[i] + vertex);
@@ -58,7 +57,6 @@ void expectJoined(const MeshPool& pool)
     EXPECT_EQ(pool.vertexCount(), vertex);
     EXPECT_EQ(pool.triangles().size(), triangle);
     EXPECT_EQ(pool.edges().size(), edge);
-    EXPECT_EQ(pool.order().size(), triangle);
 }
 }  // namespace
 
@@ -88,7 +86,7 @@ TEST(MeshPool, KeepsIdsWhenOthersGo)
     EXPECT_EQ(pool.slot(4), 2u) << "its slot, too";
     EXPECT_EQ(pool.slot(7), 3u);
     EXPECT_EQ(pool.slot(2), pool.meshCount()) << "gone";
-    EXPECT_TRUE(pool.mesh(1).m_vacant && pool.holds(2));
+    EXPECT_TRUE(pool.mesh(1).m_vacant);
     EXPECT_EQ(pool.slot(100), pool.meshCount());
     EXPECT_EQ(pool.presentTriangles(), 36u);
     expectJoined(pool);
@@ -100,7 +98,6 @@ TEST(MeshPool, KeepsIdsWhenOthersGo)
     EXPECT_EQ(pool.meshCount(), 5u) << "until places are taken anew";
     pool.update();
     EXPECT_EQ(pool.meshCount(), 3u) << "more was vacant than there";
-    EXPECT_FALSE(pool.holds(2));
     EXPECT_EQ(pool.slot(4), 1u);
     expectJoined(pool);
 }
@@ -126,14 +123,7 @@ TEST(MeshPool, TellsFromWhichSlotOnPlacesAreNew)
     EXPECT_EQ(pool.firstSince(four), 3u);
     EXPECT_EQ(pool.begin(3).m_triangle, 36u);
     const std::uint32_t sphere = pool.revision();
-
-    const std::vector<std::uint32_t> kept = pool.mesh(0).m_order;
-    const std::vector<std::uint32_t> turned(pool.mesh(1).m_order.rbegin(), pool.mesh(1).m_order.rend());
-    pool.reorder({nullptr, &turned, nullptr, nullptr});
-    EXPECT_GT(pool.revision(), sphere);
-    EXPECT_TRUE(pool.mesh(0).m_order == kept && pool.mesh(1).m_order == turned);
     expectJoined(pool);
-    EXPECT_EQ(pool.firstSince(sphere), 4u) << "places are as they were";
     pool.add(pooled(5, shapeNamed("box")));
     pool.update();
     EXPECT_EQ(pool.firstSince(sphere), 4u);

@@ -26,16 +26,15 @@ TEST_P(ProgramSetTest, FilesThatBelongTogetherAreOneProgramOnACpu)
 {
     const std::unique_ptr<Device> device = openDevice(GetParam());
     ASSERT_TRUE(device);
-    ProgramSet programs(*device, "none", {{"refit", "place_obstacles"}, {"tree_cost", "refit"}},
-                        "// a caller's line\n");
+    ProgramSet programs(*device, "none", {{"refit", "place_obstacles"}, {"queries", "refit"}}, "// a caller's line\n");
     const cl::Program refit = programs.load("refit"), place = programs.load("place_obstacles"),
-                      cost = programs.load("tree_cost");
+                      queries = programs.load("queries");
     ASSERT_FALSE(device->failed()) << device->error().text();
     EXPECT_EQ(refit() == place(), !device->isGpu());
-    EXPECT_NE(refit(), cost());
+    EXPECT_NE(refit(), queries());
     EXPECT_TRUE(hasKernel(refit, "refitLeaves"));
     EXPECT_TRUE(hasKernel(place, "placeObstacles"));
-    EXPECT_TRUE(hasKernel(cost, "treeCostSums"));
+    EXPECT_TRUE(hasKernel(queries, "queryPairs"));
 
     const std::string source = refit.getInfo<CL_PROGRAM_SOURCE>(), included = "#line 1 \"kernels/shared/types.h\"";
     const std::size_t first = source.find(included);
@@ -50,7 +49,7 @@ TEST_P(ProgramSetTest, AProgramIsBuiltOnce)
     ASSERT_TRUE(device);
     ProgramSet programs(*device, "none", {{"refit", "place_obstacles"}});
     EXPECT_EQ(programs.load("place_obstacles")(), programs.loader()("place_obstacles")());
-    EXPECT_EQ(programs.load("tree_cost")(), programs.load("tree_cost")());
+    EXPECT_EQ(programs.load("queries")(), programs.load("queries")());
 }
 
 TEST_P(ProgramSetTest, TellsWhetherAllCameFromTheCache)
@@ -66,7 +65,7 @@ TEST_P(ProgramSetTest, TellsWhetherAllCameFromTheCache)
     ProgramSet second(*device, folder.path(), {{"refit", "place_obstacles"}});
     second.load("refit");
     EXPECT_EQ(second.fromCache(), !keepsItsOwn(device->info()));
-    second.load("tree_cost");
+    second.load("queries");
     second.load("refit");
     EXPECT_FALSE(second.fromCache());
 }

@@ -65,11 +65,8 @@ void addTriangles(CLI::App& app, Options& options, std::string& mode)
 {
     CLI::App& command = *app.add_subcommand("triangles", "do triangles intersect? Reads records with answers");
     addFile(command, "FILE", options.m_first, "records of 76 bytes: 18 floats, answer");
-    acceptOnly(
-        command.add_option(
-            "--mode", mode,
-            "fast: misses none and also reports a few that nearly touch; exact; moller: Möller's test, for comparison"),
-        {"fast", "exact", "moller"});
+    acceptOnly(command.add_option("--mode", mode, "fast: misses none and also reports a few that nearly touch; exact"),
+               {"fast", "exact"});
     command.callback([&options] { options.m_command = Command::Triangles; });
 }
 
@@ -121,9 +118,7 @@ bool parseOptions(int argc, const char* const* argv, Options& options, int& exit
     const auto conflict = [&]() -> std::string
     { return options.m_listDevices || !app.get_subcommands().empty() ? "" : "a command is needed; see --help"; };
     if (!parseArguments(app, argc, argv, conflict, exitCode)) return false;
-    options.m_test = mode == "exact"    ? TriangleTest::Exact
-                     : mode == "moller" ? TriangleTest::Moller
-                                        : TriangleTest::Certified;
+    options.m_test = mode == "exact" ? TriangleTest::Exact : TriangleTest::Certified;
     return true;
 }
 }  // namespace drape

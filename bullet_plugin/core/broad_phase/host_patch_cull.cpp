@@ -91,22 +91,37 @@ PackedPatches HostPatchCull::packed() const
             m_edgeIds.data()};
 }
 
+std::size_t HostPatchCull::cull(const ClothView& cloth, const HostCloths& cloths, HostTests list, ThreadTeam& threads,
+                                StepCounters& counters) const
+{
+    const PackedPatches patches = packed();
+    const bool worth = m_testsBefore >= kLeastTests || cloths.m_count >= kLeastTriangles;
+    runShared(threads, worth, (cloths.m_count + kWidth - 1) / kWidth,
+              [&](std::size_t packet)
+              { m_kernels->m_cull(std::uint32_t(packet), cloth, cloths, patches, list, &counters); });
+    return counters.m_candidates;
+}
+
+std::uint64_t HostPatchCull::count(const ClothView& cloth, const HostCloths& cloths, std::size_t limit,
+                                   ThreadTeam& threads)
+{
+    if (m_layout.m_patches.empty()) return 0;
+    StepCounters counters = {};
+    const HostTests nowhere = {m_tests.data(), 0, std::uint32_t(limit)};
+    return std::min(cull(cloth, cloths, nowhere, threads, counters), limit + 1);
+}
+
 std::size_t HostPatchCull::run(const ClothView& cloth, const HostCloths& cloths, std::size_t limit, ThreadTeam& threads,
                                StepCounters& counters)
 {
     if (m_tests.empty()) m_tests.resize(kFirstTests);
     if (m_layout.m_patches.empty()) return 0;
     const StepCounters before = counters;
-    const PackedPatches patches = packed();
     const auto fill = [&]
     {
         counters = before;
         const HostTests list = {m_tests.data(), std::uint32_t(m_tests.size()), std::uint32_t(limit)};
-        const bool worth = m_testsBefore >= kLeastTests || cloths.m_count >= kLeastTriangles;
-        runShared(threads, worth, (cloths.m_count + kWidth - 1) / kWidth,
-                  [&](std::size_t packet)
-                  { m_kernels->m_cull(std::uint32_t(packet), cloth, cloths, patches, list, &counters); });
-        return m_testsBefore = counters.m_candidates;
+        return m_testsBefore = cull(cloth, cloths, list, threads, counters);
     };
     return fillGrowing(m_tests, limit, fill);
 }

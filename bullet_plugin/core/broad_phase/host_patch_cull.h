@@ -24,7 +24,10 @@ public:
     // incomplete, and counters only say that there are more. Returns how often the list was too short and grew.
     std::size_t run(const ClothView& cloth, const HostCloths& cloths, std::size_t limit, ThreadTeam& threads,
                     StepCounters& counters);
-    // Tests of the last run: the first ones up to its count; the rest is old.
+    // Returns how many feature tests the cloths have, without listing them: exact up to the limit, and one more than
+    // the limit where there are more.
+    std::uint64_t count(const ClothView& cloth, const HostCloths& cloths, std::size_t limit, ThreadTeam& threads);
+    // Of the last run: as many as counted, and what is behind them is old.
     const std::vector<FeatureTest>& tests() const { return m_tests; }
 
     // Releases memory that only earlier, larger scenes needed.
@@ -35,6 +38,9 @@ public:
 
 private:
     void packFeatures(ItemRange patches, const ObstacleView& obstacle);
+    // Culls every packet once, with room for as many tests as the list has. Returns how many tests there are.
+    std::size_t cull(const ClothView& cloth, const HostCloths& cloths, HostTests list, ThreadTeam& threads,
+                     StepCounters& counters) const;
 
     const HostKernels* m_kernels;
     Patches m_layout;

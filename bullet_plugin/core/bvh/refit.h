@@ -7,7 +7,7 @@
 #include "bullet_plugin/core/device/buffer.h"
 #include "bullet_plugin/core/device/program.h"
 #include "bvh_layout.h"
-#include "kernels/shared/motion.h"
+#include "kernels/shared/mesh.h"
 
 namespace drape
 {
@@ -17,19 +17,6 @@ void refitOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const std
                  const std::vector<Triangle>& triangles, const float* start, const float* end,
                  const std::vector<float>& meshRadius, std::size_t& invalidNodes);
 
-// A joined layout's mesh, at rest: its nodes up to its root, then those above the meshes.
-void refitMeshOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, std::size_t slot,
-                     const std::vector<std::uint32_t>& order, const std::vector<Triangle>& triangles,
-                     const float* positions);
-void refitTopOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout);
-
-// Grows the leaves of such a hierarchy to what the obstacles that move see of the cloths' motion, and the nodes above
-// them. thickness: m, mesh slots × obstacleMeshes, negative where there is no pair.
-void growByMotionsOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const std::vector<std::uint32_t>& order,
-                         const std::vector<Triangle>& triangles, const float* start, const float* end,
-                         const std::vector<float>& meshRadius, const std::vector<ObstacleMotion>& motions,
-                         const std::vector<float>& thickness, std::size_t obstacleMeshes);
-
 class RefitStage
 {
 public:
@@ -38,29 +25,18 @@ public:
     // A layout as the device reads it, and where the one-group climb begins.
     struct Levels
     {
-        Buffer<cl_uint> m_table, m_leafNodes;
+        Buffer<cl_uint> m_table;
         std::size_t m_launched = 0;  // heights 1 … m_launched get a launch each
         std::size_t m_climbed = 0;   // the rest, in one group
     };
     void makeLevels(Device& device, const BvhLayout& layout, Levels& levels) const;
 
-    // Obstacles that move in the step, as for growByMotionsOnHost().
-    struct Motions
-    {
-        Buffer<ObstacleMotion>& m_motions;
-        std::size_t m_count;
-        Buffer<float>& m_thickness;
-        std::size_t m_obstacleMeshes;
-    };
-    // Returns after enqueueing. Adds to counters' invalid nodes. motions: null where none moves.
+    // Returns after enqueueing. Adds to counters' invalid nodes.
     void enqueue(Device& device, const BvhLayout& layout, Levels& levels, Buffer<BvhNode>& nodes,
                  Buffer<cl_uint>& order, Buffer<Triangle>& triangles, Buffer<float>& start, Buffer<float>& end,
-                 Buffer<float>& meshRadius, Buffer<StepCounters>& counters, Motions* motions = nullptr);
-
-    // Runs the kernels that a small hierarchy does not need, on no nodes.
-    void warmUp(Device& device, Buffer<BvhNode>& nodes);
+                 Buffer<float>& meshRadius, Buffer<StepCounters>& counters);
 
 private:
-    Kernel m_leaves, m_movingLeaves, m_level, m_top;
+    Kernel m_leaves, m_level, m_top;
 };
 }  // namespace drape

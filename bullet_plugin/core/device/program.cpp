@@ -5,7 +5,6 @@
 #include <set>
 #include <sstream>
 
-#include "embedded_kernels.h"
 #include "kernels/shared/mesh.h"
 #include "missing_device.h"
 #include "opencl_lock.h"
@@ -25,11 +24,13 @@ static_assert(DRAPE_DOP_DIRECTIONS == 3 || DRAPE_DOP_DIRECTIONS == 7 || DRAPE_DO
                   DRAPE_DOP_DIRECTIONS == 13,
               "volumes have 6, 14, 18 or 26 sides");
 
-const char* findText(const std::string& path)
+const char* findText(const std::string& path, const KernelTexts& others)
 {
-    for (std::size_t i = 0; i < kEmbeddedFileCount; ++i)
+    const KernelTexts own = {"kernels", kEmbeddedFiles, kEmbeddedFileCount};
+    for (const KernelTexts* texts : {&own, &others})
     {
-        if (path == kEmbeddedFiles[i].m_path) return kEmbeddedFiles[i].m_text;
+        for (std::size_t i = 0; i < texts->m_count; ++i)
+            if (path == texts->m_files[i].m_path) return texts->m_files[i].m_text;
     }
     return nullptr;
 }
@@ -51,9 +52,9 @@ std::string lineDirective(std::size_t line, const std::string& path)
     return "#line " + std::to_string(line) + " \"" + path + "\"\n";
 }
 
-void append(const std::string& path, std::set<std::string>& seen, std::string& source)
+void append(const std::string& path, const KernelTexts& others, std::set<std::string>& seen, std::string& source)
 {
-    const char* text = findText(path);
+    const char* text = findText(path, others);
     if (!text)
     {
         source += "#error cannot find " + path + "\n";
@@ -73,7 +74,7 @@ void append(const std::string& path, std::set<std::string>& seen, std::string& s
         {
             const std::string file = content.substr(keyword.size(), content.rfind('"') - keyword.size());
             const std::string included = joinPath(folder, file);
-            if (seen.insert(included).second) append(included, seen, source);
+            if (seen.insert(included).second) append(included, others, seen, source);
             source += lineDirective(line + 1, path);
         }
         else
@@ -117,14 +118,14 @@ bool keepsItsOwn(const DeviceInfo& device)
     return device.m_platform == kPoclPlatform;
 }
 
-std::string assembleSources(const std::vector<std::string>& paths)
+std::string assembleSources(const std::vector<std::string>& paths, const KernelTexts& others)
 {
     std::set<std::string> seen;
     std::string source = kPreamble;
     for (const std::string& path : paths)
     {
-        if (!findText(path)) return std::string();
-        append(path, seen, source);
+        if (!findText(path, others)) return std::string();
+        append(path, others, seen, source);
     }
     return source;
 }
@@ -157,7 +158,7 @@ cl::Program compileSource(Device& device, const std::string& what, const std::st
 }
 
 cl::Program buildJoinedProgram(Device& device, const std::vector<std::string>& names, const std::string& cacheFolder,
-                               ProgramBuild& result, const std::string& defines)
+                               ProgramBuild& result, const std::string& defines, const KernelTexts& texts)
 {
     result.m_fromCache = false;
     if (device.failed()) return cl::Program();
@@ -165,11 +166,11 @@ cl::Program buildJoinedProgram(Device& device, const std::vector<std::string>& n
     std::string what;
     for (const std::string& name : names)
     {
-        paths.push_back("kernels/" + name + ".cl");
+        paths.push_back(std::string(texts.m_folder) + "/" + name + ".cl");
         what += (what.empty() ? "" : ", ") + paths.back();
     }
     const std::string kind = device.isGpu() ? "" : "#define DRAPE_CPU\n";
-    const std::string source = kind + defines + assembleSources(paths);
+    const std::string source = kind + defines + assembleSources(paths, texts);
     const ProgramCache cache(cacheFolder);
     const std::string key = cache.key(source, kOptions, device.info());
     std::vector<unsigned char> binary;

@@ -10,13 +10,22 @@
 #include <vector>
 
 #include "device.h"
+#include "embedded_kernels.h"
 
 namespace drape
 {
-// Returns the texts of kernels/<file>, one after the other, with every include replaced once by the included text. Line
-// directives keep each line's own file and number, so that compiler messages name the .cl or .h file. Empty if a file
+// Kernels of another folder than the library's: their texts, which may include the library's, and where they are.
+struct KernelTexts
+{
+    const char* m_folder = "kernels";
+    const EmbeddedFile* m_files = nullptr;
+    std::size_t m_count = 0;
+};
+
+// The texts of kernels/<file>, one behind the other, with every include replaced by the included text once. Line
+// directives keep each line's own file and number, so a compiler's message names the .cl or .h file. Empty when a file
 // is not embedded.
-std::string assembleSources(const std::vector<std::string>& paths);
+std::string assembleSources(const std::vector<std::string>& paths, const KernelTexts& others = {});
 inline std::string assembleSource(const std::string& path)
 {
     return assembleSources({path});
@@ -41,11 +50,13 @@ bool keepsItsOwn(const DeviceInfo& device);
 // error. Built programs are kept in cacheFolder, unless the platform keeps its own (empty: the user's cache; "none": no
 // cache). A problem with the cache causes a build, never a failure. defines: lines of text before the source.
 cl::Program buildJoinedProgram(Device& device, const std::vector<std::string>& names, const std::string& cacheFolder,
-                               ProgramBuild& build, const std::string& defines = std::string());
+                               ProgramBuild& build, const std::string& defines = std::string(),
+                               const KernelTexts& texts = {});
 inline cl::Program buildProgram(Device& device, const std::string& name, const std::string& cacheFolder,
-                                ProgramBuild& build, const std::string& defines = std::string())
+                                ProgramBuild& build, const std::string& defines = std::string(),
+                                const KernelTexts& texts = {})
 {
-    return buildJoinedProgram(device, {name}, cacheFolder, build, defines);
+    return buildJoinedProgram(device, {name}, cacheFolder, build, defines, texts);
 }
 
 // Returns the program that contains "kernels/<name>.cl", alone or with other files; for stages that need several.

@@ -88,11 +88,6 @@ std::size_t MeshPool::slot(MeshId id) const
     return slot < m_ids.size() && m_ids[slot] == id && !m_meshes[slot].m_vacant ? slot : m_ids.size();
 }
 
-bool MeshPool::holds(MeshId id) const
-{
-    return std::binary_search(m_ids.begin(), m_ids.end(), id);
-}
-
 std::size_t MeshPool::slotOfVertex(std::uint32_t vertex) const
 {
     if (m_placed == 1) return 0;
@@ -164,12 +159,8 @@ void MeshPool::update()
     m_edges.resize(end.m_edge);
     m_firsts.resize(m_placed);
     reserveRoom(m_triangles, m_triangleCount);
-    reserveRoom(m_order, m_triangleCount);
     for (std::size_t slot = m_placed; slot < m_meshes.size(); ++slot)
         join(slot);
-    m_order.resize(m_triangles.size());
-    for (std::size_t slot = m_placed; slot < m_meshes.size(); ++slot)
-        joinOrder(m_meshes[slot]);
     m_placed = m_meshes.size();
 }
 
@@ -179,24 +170,6 @@ void MeshPool::giveBackRoom()
     dropRoom(m_ids);
     dropRoom(m_triangles);
     dropRoom(m_edges);
-    dropRoom(m_order);
     dropRoom(m_firsts);
-}
-
-void MeshPool::joinOrder(const PooledMesh& mesh)
-{
-    for (std::size_t leaf = 0; leaf < mesh.m_order.size(); ++leaf)
-        m_order[mesh.m_firstTriangle + leaf] = mesh.m_order[leaf] + mesh.m_firstTriangle;
-}
-
-void MeshPool::reorder(const std::vector<const std::vector<std::uint32_t>*>& orders)
-{
-    for (std::size_t slot = 0; slot < orders.size(); ++slot)
-    {
-        if (!orders[slot]) continue;
-        m_meshes[slot].m_order = *orders[slot];
-        joinOrder(m_meshes[slot]);
-    }
-    ++m_revision;
 }
 }  // namespace drape

@@ -60,18 +60,13 @@ public:
     const PooledMesh& mesh(std::size_t slot) const { return m_meshes[slot]; }
     // Returns the mesh's slot; meshCount() if the id is not, or no longer, in this pool.
     std::size_t slot(MeshId id) const;
-    // Returns whether the id has a slot, possibly a vacant one.
-    bool holds(MeshId id) const;
-    // Return the slot of the mesh that contains a joined vertex or edge.
+    // Slots of the meshes that hold a joined vertex or edge.
     std::size_t slotOfVertex(std::uint32_t vertex) const;
     std::size_t slotOfEdge(std::uint32_t edge) const;
 
     // Joins the meshes added since the last call; the joined arrays are valid afterwards. Free without changes.
     void update();
-    // Sets another leaf order of the meshes' triangles: local orders by slot, null where unchanged. Counts as an
-    // update that changed something.
-    void reorder(const std::vector<const std::vector<std::uint32_t>*>& orders);
-    // Releases memory that only earlier, larger pools needed. The joined arrays move.
+    // Gives back room that only earlier, larger pools needed. The joined arrays move.
     void giveBackRoom();
     // Returns a number that rises with every update that changed something.
     std::uint32_t revision() const { return m_revision; }
@@ -87,7 +82,6 @@ public:
     std::size_t vertexCount() const { return m_vertexCount; }
     const std::vector<Triangle>& triangles() const { return m_triangles; }
     const std::vector<Edge>& edges() const { return m_edges; }
-    const std::vector<std::uint32_t>& order() const { return m_order; }
     const std::vector<MeshFirsts>& firsts() const { return m_firsts; }
 
 private:
@@ -97,13 +91,11 @@ private:
     void dropLastVacant();
     void forget(const PooledMesh& vacant);
     void join(std::size_t slot);
-    void joinOrder(const PooledMesh& mesh);
 
     std::vector<PooledMesh> m_meshes;
     std::vector<MeshId> m_ids;  // the meshes' ids, contiguous for the search
     std::vector<Triangle> m_triangles;
     std::vector<Edge> m_edges;
-    std::vector<std::uint32_t> m_order;
     std::vector<MeshFirsts> m_firsts;
     std::size_t m_vertexCount = 0;
     std::size_t m_triangleCount = 0;  // in all slots

@@ -21,35 +21,12 @@ constexpr std::size_t kFeatureGroupGpu = 256;
 constexpr std::size_t kSweptItemsGpu = 256, kSweptGroupGpu = 32;
 }  // namespace
 
-void NarrowPhaseStage::create(Device& device, const ProgramLoader& load, bool features)
+void NarrowPhaseStage::create(Device& device, const ProgramLoader& load)
 {
-    if (features)
-    {
-        const cl::Program narrowPhase = load("narrow_phase");
-        m_feature.create(device, device.isGpu() ? narrowPhase : load("narrow_phase_lanes"), "narrowPhaseFeature");
-        m_swept.create(device, narrowPhase, "narrowPhaseSwept");
-        m_few.create(device, narrowPhase, "narrowPhaseFew");
-    }
-    else
-    {
-        const cl::Program narrowPhase = load("narrow_phase_pairs");
-        m_test.create(device, narrowPhase, "narrowPhaseTest");
-        m_intersect.create(device, narrowPhase, "narrowPhaseIntersect");
-    }
-}
-
-void NarrowPhaseStage::enqueue(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount,
-                               std::size_t triangleCount, const NarrowPhaseSettings& settings,
-                               Buffer<Candidate>& candidates, HitBuffers hits, Buffer<StepCounters>& counters)
-{
-    m_test.launch(device, listWidth(device), listGroup(device), candidates.handle(), cl_uint(candidates.capacity()),
-                  sides.m_clothStart.handle(), sides.m_clothEnd.handle(), sides.m_clothTriangles.handle(),
-                  sides.m_clothEdges.handle(), cl_uint(nodeCount), cl_uint(triangleCount),
-                  sides.m_obstaclePositions.handle(), sides.m_obstacleTriangles.handle(), sides.m_vertexCones.handle(),
-                  sides.m_edgeCones.handle(), sides.m_thickness.handle(), cl_uint(settings.m_obstacleMeshes),
-                  settings.m_reachScale, cl_uint(settings.m_mode), sides.m_motions.handle(),
-                  cl_uint(sides.m_motionCount), hits.m_hits.handle(), cl_uint(hits.m_hits.capacity()),
-                  hits.m_hitPlaces.handle(), hits.m_slotCount.handle(), hits.m_slotSums.handle(), counters.handle());
+    const cl::Program narrowPhase = load("narrow_phase");
+    m_feature.create(device, device.isGpu() ? narrowPhase : load("narrow_phase_lanes"), "narrowPhaseFeature");
+    m_swept.create(device, narrowPhase, "narrowPhaseSwept");
+    m_few.create(device, narrowPhase, "narrowPhaseFew");
 }
 
 void NarrowPhaseStage::enqueueFeatures(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount,
@@ -81,15 +58,5 @@ void NarrowPhaseStage::enqueueFeatures(Device& device, NarrowPhaseBuffers sides,
     if (!one) launch(m_feature, laneListWidth(device), featureGroup, m_sweptTests.handle());
     if (mode != DRAPE_DISCRETE && !few) launch(m_swept, sweptWidth, sweptGroup, m_sweptTests.handle(), mostSwept);
     if (one) launch(m_few, sweptWidth, sweptGroup, cl_uint(m_mostTests));
-}
-
-void NarrowPhaseStage::enqueueIntersect(Device& device, NarrowPhaseBuffers sides, Buffer<Candidate>& candidates,
-                                        Buffer<StepCounters>& counters)
-{
-    m_intersect.launch(device, listWidth(device), listGroup(device), candidates.handle(),
-                       cl_uint(candidates.capacity()), sides.m_clothStart.handle(), sides.m_clothTriangles.handle(),
-                       sides.m_obstaclePositions.handle(), sides.m_obstacleTriangles.handle(), sides.m_motions.handle(),
-                       cl_uint(sides.m_motionCount), m_intersections.handle(), cl_uint(m_intersections.capacity()),
-                       counters.handle());
 }
 }  // namespace drape

@@ -13,43 +13,7 @@
 
 namespace drape
 {
-// Motions of the obstacles that move in the step, in the order of slots.
-struct MotionList
-{
-    const ObstacleMotion* m_motions = nullptr;
-    std::uint32_t m_count = 0;
-
-    const ObstacleMotion* find(std::uint32_t mesh) const { return findMotion(m_motions, m_count, mesh); }
-};
-
-// Options and per-pair data of a step. mode: DRAPE_DISCRETE …. thickness: m, cloth slots × obstacle slots. Contacts
-// reach to thickness × reachScale.
-struct NarrowPhaseSettings
-{
-    const std::vector<float>& m_thickness;
-    std::size_t m_obstacleMeshes;
-    float m_reachScale;
-    std::uint32_t m_mode = DRAPE_AUTOMATIC;
-    MotionList m_motions = {};  // on the host
-};
-
-// Counts of the host's narrow phase: contacts, and feature pairs that the continuous test decided.
-struct NarrowPhaseCounts
-{
-    std::uint64_t m_contacts = 0;
-    std::uint64_t m_swept = 0;
-};
-
-// Leaves the list empty if there are more contacts than the limit.
-NarrowPhaseCounts narrowPhaseOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth,
-                                    const ObstacleView& obstacle, const NarrowPhaseSettings& settings,
-                                    std::vector<Contact>& contacts, std::size_t limit = SIZE_MAX);
-
-// Lists pairs whose triangles intersect at the step's start, in order of cloth and obstacle triangle.
-void intersectOnHost(const std::vector<Candidate>& candidates, const ClothView& cloth, const ObstacleView& obstacle,
-                     const MotionList& motions, std::vector<Candidate>& pairs);
-
-// Device buffers of both sides' geometry.
+// Device buffers that hold both sides' geometry.
 struct NarrowPhaseBuffers
 {
     Buffer<float>& m_clothStart;
@@ -74,31 +38,19 @@ public:
         std::size_t m_mostSwept;  // if more tests need the continuous test, their contacts are not listed
     };
 
-    // features: builds the kernels for feature tests, else those for triangle pairs.
-    void create(Device& device, const ProgramLoader& load, bool features);
+    void create(Device& device, const ProgramLoader& load);
 
-    void reserveIntersections(Device& device, std::size_t count) { m_intersections.reserve(device, count); }
-    Buffer<Candidate>& intersections() { return m_intersections; }
-
-    // Lists the contacts of triangle pairs. All functions return after enqueueing.
-    void enqueue(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
-                 const NarrowPhaseSettings& settings, Buffer<Candidate>& candidates, HitBuffers hits,
-                 Buffer<StepCounters>& counters);
-    // Lists the contacts of the feature tests that remain after a cull. mode: DRAPE_DISCRETE …; a discrete step takes
-    // one launch less, and so does one with few tests.
+    // Returns after enqueueing. Lists the hits of the feature tests that a cull left. mode: DRAPE_DISCRETE …; a
+    // discrete step is one launch less, and so is one with few tests.
     void enqueueFeatures(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
                          std::uint32_t mode, PatchCullStage& cull, Expected expected, HitBuffers hits,
                          Buffer<StepCounters>& counters);
     // Returns whether the launch did nothing because there were `tests` tests and far fewer were expected.
     bool skipped(std::size_t tests) const { return tests > m_mostTests; }
-    // Lists the candidates whose triangles intersect, in any order. Their counter must be zero before.
-    void enqueueIntersect(Device& device, NarrowPhaseBuffers sides, Buffer<Candidate>& candidates,
-                          Buffer<StepCounters>& counters);
 
 private:
-    std::size_t m_mostTests = SIZE_MAX;  // tests of the last launches
-    Kernel m_test, m_feature, m_swept, m_few, m_intersect;
-    Buffer<Candidate> m_intersections{"step intersections"};
+    std::size_t m_mostTests = SIZE_MAX;  // of the last launches
+    Kernel m_feature, m_swept, m_few;
     Buffer<cl_uint> m_sweptTests{"step candidates"};
 };
 }  // namespace drape

@@ -29,8 +29,8 @@ Surface surfaceOf(const PooledMesh& mesh)
 
 bool Pipeline::Implementation::costDecides(const DeviceChoice& choice) const
 {
-    // Methods, reports and profiles serve comparisons on the device; the crossover applies to the defaults.
-    return choice.m_byCost && goesOverPatches(m_settings) && !m_settings.m_profileKernels;
+    // A profile is of what runs on the device.
+    return choice.m_byCost && !m_settings.m_profileKernels;
 }
 
 double Pipeline::Implementation::findCrossover(Pipeline& pipeline)
@@ -51,7 +51,6 @@ double Pipeline::Implementation::findCrossover(Pipeline& pipeline)
         crossover.m_rungs, busy);
     // Hides these steps from the caller: their meshes' ids are given again.
     m_nextId = 0;
-    m_clothHierarchy = m_obstacleHierarchy = SideHierarchy();
     m_statistics = StepStatistics();
     m_result = StepResult();
     if (!why && !device()->failed())

@@ -15,15 +15,12 @@ constexpr std::size_t kFirstContacts = 1 << 13;
 // Number of floats whose transfer takes less time than the start of a transfer.
 constexpr std::size_t kFloatsBetween = 1 << 16;
 
-// Files that a CPU builds as one program: those of every step over patches, or over trees except the traversal's own,
-// and those for cloths that collide with themselves.
-std::vector<ProgramSet::Names> filesTogether(bool patches, bool reduces)
+// Returns the files that are one program on a CPU: those of every step, and those that cloths need beside them that
+// collide with themselves.
+std::vector<ProgramSet::Names> filesTogether(bool reduces)
 {
-    ProgramSet::Names step = {"compaction", "place_obstacles"};
-    if (patches)
-        step.insert(step.end(), {"patch_cull", "patch_pack", "narrow_phase", "narrow_phase_lanes"});
-    else
-        step.insert(step.end(), {"refit", "narrow_phase_pairs"});
+    ProgramSet::Names step = {"compaction", "place_obstacles", "patch_cull",
+                              "patch_pack", "narrow_phase",    "narrow_phase_lanes"};
     if (reduces) step.insert(step.end(), {"contact_reduction", "contact_reduction_slots"});
     return {step, {"self_cull", "self_pack_lanes", "self_contact", "self_contact_lanes"}};
 }
@@ -32,34 +29,21 @@ std::vector<ProgramSet::Names> filesTogether(bool patches, bool reduces)
 DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& settings)
     : m_device(std::move(device)),
       m_settings(settings),
-      m_programs(
-          *m_device, settings.m_cacheFolder, filesTogether(patches(), settings.m_reduceContacts),
-          PatchCullStage::defines(*m_device) + (settings.m_methods.m_countTests ? "#define DRAPE_COUNT_VISITS\n" : ""))
+      m_programs(*m_device, settings.m_cacheFolder, filesTogether(settings.m_reduceContacts),
+                 PatchCullStage::defines(*m_device))
 {
     const ProgramLoader load = m_programs.loader();
-    if (patches())
-    {
-        m_patchCull.create(*m_device, load);
-    }
-    else
-    {
-        m_refit.create(*m_device, load("refit"));
-        m_broadPhase.create(*m_device, m_settings.m_methods.m_traversal, load);
-        if (watchesClothTree(m_settings, false)) m_treeCost.create(*m_device, load);
-    }
-    m_narrowPhase.create(*m_device, load, patches());
+    m_patchCull.create(*m_device, load);
+    m_narrowPhase.create(*m_device, load);
     m_compaction.create(*m_device, load, m_settings.m_reduceContacts);
     m_placed.create(*m_device, load("place_obstacles"));
     m_motions.reserve(*m_device, 1);
-    m_candidates.reserve(*m_device, 1);
     reserveFirst();
-    m_narrowPhase.reserveIntersections(*m_device, 1);
     for (Buffer<StepCounters>& counters : m_counters)
     {
         counters.reserve(*m_device, 1);
         counters.fill(*m_device, 0, 1);
     }
-    m_refitCounters.reserve(*m_device, 1);
     warmUp();
 }
 
@@ -81,7 +65,7 @@ void DeviceBackend::reserveFirst()
 void DeviceBackend::giveBackRoom()
 {
     m_device->wait();
-    if (patches()) m_patchCull.giveBackRoom(*m_device);
+    m_patchCull.giveBackRoom(*m_device);
     m_compaction.giveBackRoom();
     reserveFirst();
 }
@@ -93,7 +77,6 @@ void DeviceBackend::warmUp(float selfThickness)
     Scene scene;
     StepPairs pairs;
     makeWarmUpStep(scene, pairs, selfThickness);
-    pairs.m_measureTree = watchesClothTree(m_settings, false);
     StepResult result;
     submit(scene, pairs);
     finish(scene, pairs, result);
@@ -104,7 +87,6 @@ void DeviceBackend::warmUp(float selfThickness)
         submit(scene, pairs);
         finish(scene, pairs, result);
     }
-    if (!patches()) m_refit.warmUp(*m_device, m_cloth.m_nodes);
     m_device->wait();
     forgetScene();
     m_sentThickness.clear();
@@ -126,27 +108,12 @@ void DeviceBackend::prepareSelf()
     warmUp(0.1f);
 }
 
-std::size_t DeviceBackend::firstNew(const MeshPool& pool, const Side& side) const
+void DeviceBackend::uploadSide(const MeshPool& pool, Side& side)
 {
-    return patches() ? pool.firstSince(side.m_revision) : 0;
-}
-
-void DeviceBackend::uploadSide(const MeshPool& pool, const BvhLayout& layout, Side& side)
-{
-    const std::size_t first = firstNew(pool, side);
+    const std::size_t first = pool.firstSince(side.m_revision);
     side.m_revision = pool.revision();
     side.m_triangles.append(*m_device, pool.triangles(), pool.begin(first).m_triangle);
     if (m_settings.m_reduceContacts) side.m_firsts.assign(*m_device, pool.firsts());
-    // The cull over patches needs no hierarchy of triangles.
-    if (!patches())
-    {
-        side.m_order.assign(*m_device, pool.order());
-        side.m_layout = layoutByHeights(layout);
-        const std::vector<BvhNode> nodes = makeBvhNodes(side.m_layout);
-        const WaitAtEnd wait(*m_device);
-        side.m_nodes.assign(*m_device, nodes);
-        m_refit.makeLevels(*m_device, side.m_layout, side.m_levels);
-    }
 }
 
 // The cull over patches needs only the cloths' order: that of their own patches, since it traverses for packets.
@@ -170,10 +137,10 @@ void DeviceBackend::reserveNodes(std::size_t room)
 
 void DeviceBackend::updateCloths(const Scene& scene)
 {
-    const std::size_t first = firstNew(scene.m_cloths, m_cloth);
-    if (patches()) clusterCloths(scene.m_cloths, first);
+    const std::size_t first = scene.m_cloths.firstSince(m_cloth.m_revision);
+    clusterCloths(scene.m_cloths, first);
     m_clothEdges.append(*m_device, scene.m_cloths.edges(), scene.m_cloths.begin(first).m_edge);
-    uploadSide(scene.m_cloths, scene.m_clothLayout, m_cloth);
+    uploadSide(scene.m_cloths, m_cloth);
     reserveNodes(scene.m_clothNodes.room());
     m_compaction.resizeSlots(*m_device, scene.allSlotCount());
     if (scene.m_anySelf) m_self.setTopology(*m_device, scene.m_cloths, scene.m_clothRest);
@@ -183,38 +150,23 @@ void DeviceBackend::updateTopology(const Scene& scene)
 {
     const bool newCloths = m_cloth.m_revision != scene.m_cloths.revision();
     const bool newObstacles = m_obstacle.m_revision != scene.m_obstacles.revision();
-    const std::size_t fresh = newObstacles ? firstNew(scene.m_obstacles, m_obstacle) : scene.m_obstacles.meshCount();
+    const std::size_t fresh =
+        newObstacles ? scene.m_obstacles.firstSince(m_obstacle.m_revision) : scene.m_obstacles.meshCount();
     if (newCloths) updateCloths(scene);
     if (newObstacles)
     {
-        uploadSide(scene.m_obstacles, scene.m_obstacleLayout, m_obstacle);
-        if (patches()) m_patchCull.setTopology(*m_device, scene.m_obstacles, fresh);
+        uploadSide(scene.m_obstacles, m_obstacle);
+        m_patchCull.setTopology(*m_device, scene.m_obstacles, fresh);
     }
-    if (!patches() && (newCloths || newObstacles)) updateTraversal(scene, newObstacles);
     if (newObstacles || m_placed.changed(scene)) updateObstacles(scene, fresh);
     // Releases data that only packing reads, once resting obstacles are packed. Obstacles whose positions change
     // later keep it from then on.
     if (newObstacles && !scene.m_anyPosed) m_patchCull.releasePacking();
 }
 
-void DeviceBackend::updateTraversal(const Scene& scene, bool newObstacles)
-{
-    const std::vector<BvhNode> clothNodes = makeBvhNodes(m_cloth.m_layout);
-    const std::vector<BvhNode> obstacleNodes = makeBvhNodes(m_obstacle.m_layout);
-    const Hierarchy cloth = {clothNodes, m_cloth.m_layout.root(), scene.m_cloths.order()};
-    const Hierarchy obstacle = {obstacleNodes, m_obstacle.m_layout.root(), scene.m_obstacles.order()};
-    if (newObstacles) m_broadPhase.setObstacles(*m_device, obstacle);
-    m_broadPhase.setTopology(*m_device, cloth, obstacle);
-}
-
 void DeviceBackend::updateObstacles(const Scene& scene, std::size_t fresh)
 {
     const std::vector<SlotRange> runs = m_placed.update(*m_device, scene, fresh);
-    if (!patches())
-    {
-        refitObstacles(scene);
-        return;
-    }
     const auto pack = [&](SlotRange slots)
     {
         m_patchCull.pack(*m_device, slots, m_obstacle.m_triangles, m_placed.positions(), m_placed.vertexCones(),
@@ -223,17 +175,6 @@ void DeviceBackend::updateObstacles(const Scene& scene, std::size_t fresh)
     pack({fresh, scene.m_obstacles.meshCount()});
     for (const SlotRange& run : runs)
         pack({run.m_first, std::min(run.m_last, fresh)});
-}
-
-void DeviceBackend::refitObstacles(const Scene& scene)
-{
-    const std::vector<float> noRadius(scene.m_obstacles.meshCount(), 0.0f);
-    const WaitAtEnd wait(*m_device);
-    m_obstacle.m_radius.assign(*m_device, noRadius);
-    m_refit.enqueue(*m_device, m_obstacle.m_layout, m_obstacle.m_levels, m_obstacle.m_nodes, m_obstacle.m_order,
-                    m_obstacle.m_triangles, m_placed.positions(), m_placed.positions(), m_obstacle.m_radius,
-                    m_refitCounters);
-    m_broadPhase.obstaclesRefitted(*m_device, m_obstacle.m_nodes);
 }
 
 void DeviceBackend::writeNodes(const Scene& scene, std::size_t first, std::size_t count)
@@ -331,56 +272,25 @@ ReductionBuffers DeviceBackend::reductionBuffers(const Scene& scene)
 // Finds pairs of features, or of triangles, that may touch.
 void DeviceBackend::enqueueBroad(const Scene& scene, const StepPairs& pairs)
 {
-    const std::size_t obstacleMeshes = scene.m_obstacles.meshCount();
     if (pairs.m_anySelf) m_self.enqueueCull(*m_device, selfBuffers(scene), counters());
     if (!pairs.m_anyPair) return;
-    if (patches())
-    {
-        m_patchCull.enqueue(
-            *m_device,
-            {m_cloth.m_order, m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, m_thickness,
-             scene.m_cloths.triangles().size(), obstacleMeshes, 1.0f + m_settings.m_activation,
-             std::uint32_t(m_settings.m_mode), m_motions, pairs.m_motions.size(),
-             std::min(StepLimits(m_settings).m_candidates, pairs.m_limits.m_tests),
-             StepLimits(m_settings).m_candidates},
-            counters());
-        return;
-    }
-    RefitStage::Motions motions = {m_motions, pairs.m_motions.size(), m_thickness, obstacleMeshes};
-    m_refit.enqueue(*m_device, m_cloth.m_layout, m_cloth.m_levels, m_cloth.m_nodes, m_cloth.m_order,
-                    m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, counters(),
-                    pairs.m_motions.empty() ? nullptr : &motions);
-    if (pairs.m_measureTree)
-        m_treeCost.enqueue(*m_device, m_cloth.m_nodes, m_cloth.m_layout.nodeCount(), m_cloth.m_layout.root());
-    m_broadPhase.enqueue(*m_device, {{m_cloth.m_nodes, m_cloth.m_order, m_cloth.m_triangles},
-                                     {m_obstacle.m_nodes, m_obstacle.m_order, m_obstacle.m_triangles},
-                                     m_thickness,
-                                     obstacleMeshes,
-                                     m_candidates,
-                                     counters(),
-                                     StepLimits(m_settings).m_candidates});
+    const std::size_t limit = StepLimits(m_settings).m_candidates;
+    m_patchCull.enqueue(*m_device,
+                        {m_cloth.m_order, m_cloth.m_triangles, m_clothStart, m_clothEnd, m_cloth.m_radius, m_thickness,
+                         scene.m_cloths.triangles().size(), scene.m_obstacles.meshCount(),
+                         1.0f + m_settings.m_activation, std::uint32_t(m_settings.m_mode), m_motions,
+                         pairs.m_motions.size(), std::min(limit, pairs.m_limits.m_tests), limit},
+                        counters());
 }
 
 // Tests the candidates for contact.
 void DeviceBackend::enqueueNarrow(const Scene& scene, const StepPairs& pairs)
 {
-    const std::size_t nodes = scene.m_cloths.vertexCount(), triangles = scene.m_cloths.triangles().size();
-    const std::uint32_t mode = std::uint32_t(m_settings.m_mode);
     const HitBuffers hits = m_compaction.hits();
-    if (pairs.m_anyPair && patches())
-    {
-        m_narrowPhase.enqueueFeatures(*m_device, narrowPhaseBuffers(pairs), nodes, triangles, mode, m_patchCull,
+    if (pairs.m_anyPair)
+        m_narrowPhase.enqueueFeatures(*m_device, narrowPhaseBuffers(pairs), scene.m_cloths.vertexCount(),
+                                      scene.m_cloths.triangles().size(), std::uint32_t(m_settings.m_mode), m_patchCull,
                                       {m_testsBefore, pairs.m_limits.m_swept}, hits, counters());
-    }
-    else if (pairs.m_anyPair)
-    {
-        const NarrowPhaseSettings narrow = {
-            pairs.m_thickness, scene.m_obstacles.meshCount(), 1.0f + m_settings.m_activation, mode, {}};
-        if (m_settings.m_reportIntersections)
-            m_narrowPhase.enqueueIntersect(*m_device, narrowPhaseBuffers(pairs), m_candidates, counters());
-        m_narrowPhase.enqueue(*m_device, narrowPhaseBuffers(pairs), nodes, triangles, narrow, m_candidates, hits,
-                              counters());
-    }
     if (pairs.m_anySelf) m_self.enqueueContacts(*m_device, selfBuffers(scene), hits, counters());
 }
 

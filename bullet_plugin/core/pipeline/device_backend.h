@@ -4,17 +4,13 @@
 
 #include <memory>
 
-#include "bullet_plugin/core/broad_phase/broad_phase.h"
 #include "bullet_plugin/core/broad_phase/patch_cull.h"
-#include "bullet_plugin/core/bvh/refit.h"
-#include "bullet_plugin/core/bvh/tree_cost.h"
 #include "bullet_plugin/core/compaction/compaction.h"
 #include "bullet_plugin/core/device/program_set.h"
 #include "bullet_plugin/core/self_collision/self_contacts.h"
 #include "drape/settings.h"
 #include "placed_obstacles.h"
 #include "step.h"
-#include "tree_watch.h"
 
 namespace drape
 {
@@ -51,20 +47,16 @@ private:
     struct Side
     {
         explicit Side(const std::string& side)
-            : m_nodes(side + " nodes"),
-              m_order(side + " order"),
+            : m_order(side + " order"),
               m_triangles(side + " triangles"),
               m_radius(side + " meshes"),
               m_firsts(side + " meshes")
         {
         }
-        Buffer<BvhNode> m_nodes;
         Buffer<cl_uint> m_order;
         Buffer<Triangle> m_triangles;
         Buffer<float> m_radius;
         Buffer<MeshFirsts> m_firsts;
-        BvhLayout m_layout;  // by heights; empty over patches
-        RefitStage::Levels m_levels;
         std::uint32_t m_revision = 0;
     };
 
@@ -73,23 +65,18 @@ private:
     void warmUp(float selfThickness = 0.0f);
     // Uploads the next scene from its first mesh on.
     void forgetScene();
-    // Returns the first slot that changed since the last upload.
-    std::size_t firstNew(const MeshPool& pool, const Side& side) const;
-    void uploadSide(const MeshPool& pool, const BvhLayout& layout, Side& side);
+    void uploadSide(const MeshPool& pool, Side& side);
     void updateTopology(const Scene& scene);
     void updateCloths(const Scene& scene);
     // Returns the number of floats of the cloths' nodes at a step's start; there are as many at its end.
     void reserveNodes(std::size_t room);
     void clusterCloths(const MeshPool& cloths, std::size_t firstSlot);
-    void updateTraversal(const Scene& scene, bool newObstacles);
-    // Uploads and places the obstacles from slot `fresh` on, and earlier ones whose positions or poses changed, and
-    // renews dependent data.
+    // Brings the obstacles from slot `fresh` on, and of the others those that were given other positions or another
+    // place, to the device and to the world, and renews what depends on it.
     void updateObstacles(const Scene& scene, std::size_t fresh);
-    void refitObstacles(const Scene& scene);
     void writeNodes(const Scene& scene, std::size_t first, std::size_t count);
     void uploadStep(const Scene& scene, const StepPairs& pairs, std::size_t sent);
     void enqueueStep(const Scene& scene, const StepPairs& pairs);
-    bool patches() const { return goesOverPatches(m_settings); }
     Buffer<StepCounters>& counters() { return m_counters[m_turn]; }
     void enqueueBroad(const Scene& scene, const StepPairs& pairs);
     void enqueueNarrow(const Scene& scene, const StepPairs& pairs);
@@ -112,9 +99,6 @@ private:
     ProgramSet m_programs;
     bool m_limitReached = false;
 
-    RefitStage m_refit;
-    TreeCostStage m_treeCost;
-    BroadPhaseStage m_broadPhase;
     PatchCullStage m_patchCull;
     NarrowPhaseStage m_narrowPhase;
     SelfContactStage m_self;
@@ -129,10 +113,8 @@ private:
     Buffer<ObstacleMotion> m_motions{"obstacle places"};
     std::vector<cl_uint> m_clustered;  // order, like m_cloth.m_order
     std::vector<ObstacleMotion> m_sentMotions;
-    Buffer<Candidate> m_candidates{"step candidates"};
-    // Counters of a step and the next, alternating; see StepTally.
+    // Of a step and the next by turns, see StepTally.
     Buffer<StepCounters> m_counters[2] = {Buffer<StepCounters>("step counters"), Buffer<StepCounters>("step counters")};
-    Buffer<StepCounters> m_refitCounters{"step counters"};  // counters of obstacle refits, never read
     std::size_t m_turn = 0;
     int m_stepsToOrder = 1;
     std::size_t m_testsBefore = SIZE_MAX,

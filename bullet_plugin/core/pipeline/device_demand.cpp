@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "bullet_plugin/core/compaction/canonical_order.h"
 #include "device_backend.h"
 
 namespace drape
@@ -44,13 +43,12 @@ bool DeviceBackend::overLimit(const StepPairs& pairs, StepResult& result)
     const StepCounters counters = countersRead();
     const StepLimits limits(m_settings);
     const std::size_t mostTests = std::min(limits.m_candidates, pairs.m_limits.m_tests);
-    // The count of contacts is complete only if every candidate was tested.
-    const bool ofObstacles = patches() ? counters.m_patchPairs <= m_patchCull.pairs().capacity() &&
-                                             counters.m_candidates <= m_patchCull.tests().capacity()
-                                       : counters.m_candidates <= m_candidates.capacity();
+    // Hits are all of them only where every candidate was there to be tested.
+    const bool ofObstacles = counters.m_patchPairs <= m_patchCull.pairs().capacity() &&
+                             counters.m_candidates <= m_patchCull.tests().capacity();
     const bool ofSelf =
         counters.m_selfPairs <= m_self.pairs().capacity() && counters.m_selfTests <= m_self.tests().capacity();
-    if (patches() && counters.m_candidates > mostTests && mostTests < limits.m_candidates)
+    if (counters.m_candidates > mostTests && mostTests < limits.m_candidates)
     {
         result.m_overLimit = result.m_overTests = true;
     }
@@ -59,7 +57,7 @@ bool DeviceBackend::overLimit(const StepPairs& pairs, StepResult& result)
     {
         result.m_overLimit = true;
     }
-    else if (patches() && ofObstacles && counters.m_swept > pairs.m_limits.m_swept)
+    else if (ofObstacles && counters.m_swept > pairs.m_limits.m_swept)
     {
         result.m_overLimit = result.m_overTests = true;
     }
@@ -85,19 +83,10 @@ bool DeviceBackend::grow()
         if (!m_limitReached) reserve(std::min(withHeadroom(wanted), most));
     };
     Device& device = *m_device;
-    if (patches())
-    {
-        demand(counters.m_patchPairs, m_patchCull.pairs().capacity(), sizeof(FeatureTest),
-               [&](std::size_t count) { m_patchCull.reservePairs(device, count); });
-        demand(counters.m_candidates, m_patchCull.tests().capacity(), sizeof(FeatureTest),
-               [&](std::size_t count) { m_patchCull.reserveTests(device, count); });
-    }
-    else
-    {
-        again = m_broadPhase.grow(device, counters, m_limitReached);
-        demand(counters.m_candidates, m_candidates.capacity(), sizeof(Candidate),
-               [&](std::size_t count) { m_candidates.reserve(device, count); });
-    }
+    demand(counters.m_patchPairs, m_patchCull.pairs().capacity(), sizeof(FeatureTest),
+           [&](std::size_t count) { m_patchCull.reservePairs(device, count); });
+    demand(counters.m_candidates, m_patchCull.tests().capacity(), sizeof(FeatureTest),
+           [&](std::size_t count) { m_patchCull.reserveTests(device, count); });
     demand(counters.m_selfPairs, m_self.pairs().capacity(), sizeof(Candidate),
            [&](std::size_t count) { m_self.reservePairs(device, count); });
     demand(counters.m_selfTests, m_self.tests().capacity(), sizeof(FeatureTest),
@@ -111,8 +100,6 @@ bool DeviceBackend::grow()
     }
     else if (m_stepsToOrder > 0)
         --m_stepsToOrder;
-    demand(counters.m_intersections, m_narrowPhase.intersections().capacity(), sizeof(Candidate),
-           [&](std::size_t count) { m_narrowPhase.reserveIntersections(device, count); });
     return again;
 }
 
@@ -123,8 +110,8 @@ bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResul
     while (!m_device->failed())
     {
         if (overLimit(pairs, result)) return true;
-        // A skipped launch did nothing, so no list was too small: the step runs again with the other kind of launch.
-        const bool skipped = patches() && m_narrowPhase.skipped(countersRead().m_candidates);
+        // Not done, for another kind of launch: no list was too small.
+        const bool skipped = m_narrowPhase.skipped(countersRead().m_candidates);
         const bool grown = grow();
         if (!grown && !skipped) break;
         if (m_limitReached) return false;
@@ -134,9 +121,7 @@ bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResul
         m_device->wait();
     }
     if (m_device->failed()) return false;
-    if (!patches()) m_broadPhase.accept(*m_device, countersRead());
     readAll(result);
-    if (pairs.m_measureTree) result.m_treeCost = m_treeCost.cost();
     return !m_device->failed();
 }
 
@@ -145,29 +130,20 @@ void DeviceBackend::readAll(StepResult& result)
     const StepCounters counters = countersRead();
     takeCounts(counters);
     result.m_candidates = counters.m_candidates;
-    result.m_volumeTests = counters.m_visits;
     result.m_sweptTests = counters.m_swept;
     result.m_selfCandidates = counters.m_selfTests;
     result.m_selfSweptTests = counters.m_selfSwept;
     result.m_reduced = counters.m_listed - counters.m_hits;
     result.m_invalidNodes = counters.m_invalidNodes;
-    result.m_intersectionCount = counters.m_intersections;
-    if (m_settings.m_reportIntersections)
-    {
-        result.m_intersections.resize(counters.m_intersections);
-        m_narrowPhase.intersections().read(*m_device, result.m_intersections.data(), counters.m_intersections);
-    }
     const std::size_t count = counters.m_hits;
-    const bool inHand = count <= m_contactsAsked;
-    if (!inHand)
+    if (count > m_contactsAsked)
     {
         m_contactsRead->reserve(m_device.get(), DRAPE_CONTACT_HEAD + withHeadroom(count));
         readContacts(count);
+        m_device->wait();
     }
-    if (!inHand || m_settings.m_reportIntersections) m_device->wait();
     result.m_deviceContacts = ContactList{m_contactsRead->data() + DRAPE_CONTACT_HEAD, count};
     m_contactsAsked = std::min(
         {count + count / 16 + 256, m_contactsRead->capacity() - DRAPE_CONTACT_HEAD, m_compaction.hitCapacity()});
-    sortCandidates(result.m_intersections);
 }
 }  // namespace drape

@@ -5,23 +5,9 @@
 
 #include "bullet_plugin/core/compaction/contact_reduction.h"
 #include "bullet_plugin/core/stopwatch.h"
-#include "tree_watch.h"
 
 namespace drape
 {
-HostBackend::HostBackend(const Settings& settings, std::shared_ptr<ThreadTeam> threads)
-    : m_threads(std::move(threads)), m_overPatches(goesOverPatches(settings)), m_trees(settings.m_methods.m_traversal)
-{
-}
-
-void HostBackend::prepare(const Scene& scene)
-{
-    if (m_overPatches)
-        m_patches.update(scene);
-    else
-        m_trees.update(scene);
-}
-
 ReductionView HostBackend::reductionView(const Scene& scene, const StepPairs& pairs)
 {
     return {scene.m_clothNodes.start(),
@@ -36,10 +22,9 @@ ReductionView HostBackend::reductionView(const Scene& scene, const StepPairs& pa
             pairs.m_tube.data()};
 }
 
-std::vector<std::uint64_t> HostBackend::countCandidates(const Scene& scene, const StepPairs& pairs,
-                                                        const Settings& settings)
+std::vector<std::uint64_t> HostBackend::countTests(const Scene& scene, const StepPairs& pairs, const Settings& settings)
 {
-    return m_trees.countCandidates(scene, pairs, selfStep(scene, pairs, settings), StepLimits(settings).m_candidates);
+    return m_patches.countTests(scene, pairs, selfStep(scene, pairs, settings), settings, *m_threads);
 }
 
 SelfStep HostBackend::selfStep(const Scene& scene, const StepPairs& pairs, const Settings& settings)
@@ -54,8 +39,7 @@ void HostBackend::runSelf(const Scene& scene, const StepPairs& pairs, const Sett
     const std::size_t others = result.m_contacts.size();
     const SelfStepLimits left = {limits.m_candidates, limits.m_contacts - std::min(limits.m_contacts, others)};
     const SelfStep step = selfStep(scene, pairs, settings);
-    const SelfCounts counts =
-        m_overPatches ? m_patches.runSelf(scene, step, left, *m_threads, result) : m_trees.runSelf(step, left, result);
+    const SelfCounts counts = m_patches.runSelf(scene, step, left, *m_threads, result);
     result.m_invalidNodes += counts.m_invalidNodes;
     result.m_retries += counts.m_retries;
     result.m_selfCandidates = counts.m_candidates;
@@ -74,8 +58,7 @@ void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings
 
 bool HostBackend::runPairs(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result)
 {
-    const bool whole = m_overPatches ? m_patches.run(scene, pairs, settings, *m_threads, result)
-                                     : m_trees.run(scene, pairs, settings, result);
+    const bool whole = m_patches.run(scene, pairs, settings, *m_threads, result);
     if (!whole || !pairs.m_anyTube) return whole;
     Stopwatch watch;
     const std::size_t found = result.m_contacts.size();

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 
 #include "bullet_plugin/core/compaction/contact_reduction.h"
 #include "drape/settings.h"
 #include "host_patches.h"
-#include "host_trees.h"
 #include "step.h"
 
 namespace drape
@@ -14,19 +14,18 @@ namespace drape
 class HostBackend
 {
 public:
-    explicit HostBackend(const Settings& settings, std::shared_ptr<ThreadTeam> threads);
+    explicit HostBackend(std::shared_ptr<ThreadTeam> threads) : m_threads(std::move(threads)) {}
 
-    // Updates the back end as a step does after meshes were added or obstacles moved.
-    void prepare(const Scene& scene);
+    // Does what a step does after meshes came or obstacles moved.
+    void prepare(const Scene& scene) { m_patches.update(scene); }
     // Runs the whole step.
     void run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
 
     // Releases memory that only earlier, larger steps needed. Call between steps.
     void giveBackRoom() { m_patches.giveBackRoom(); }
 
-    // Counts the step's pairs of triangles per cloth slot: exact, however many; for cloths with themselves up to the
-    // limit.
-    std::vector<std::uint64_t> countCandidates(const Scene& scene, const StepPairs& pairs, const Settings& settings);
+    // Returns HostPatches::countTests() of the step.
+    std::vector<std::uint64_t> countTests(const Scene& scene, const StepPairs& pairs, const Settings& settings);
 
 private:
     static ReductionView reductionView(const Scene& scene, const StepPairs& pairs);
@@ -36,8 +35,6 @@ private:
     void runSelf(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
 
     std::shared_ptr<ThreadTeam> m_threads;
-    bool m_overPatches;
     HostPatches m_patches;
-    HostTrees m_trees;  // over patches it counts only
 };
 }  // namespace drape

@@ -42,6 +42,37 @@ void HostPatches::updateObstacles(const Scene& scene, std::size_t fresh)
     }
 }
 
+HostCloths HostPatches::clothsOf(const Scene& scene, const StepPairs& pairs, const Settings& settings,
+                                 ItemRange triangles) const
+{
+    return {m_clothOrder.data() + triangles.m_first,
+            std::uint32_t(triangles.count()),
+            pairs.m_clothRadius.data(),
+            pairs.m_thickness.data(),
+            std::uint32_t(scene.m_obstacles.meshCount()),
+            1.0f + settings.m_activation,
+            pairs.m_motions.data(),
+            std::uint32_t(pairs.m_motions.size())};
+}
+
+std::vector<std::uint64_t> HostPatches::countTests(const Scene& scene, const StepPairs& pairs, const SelfStep& step,
+                                                   const Settings& settings, ThreadTeam& threads)
+{
+    update(scene);
+    const MeshPool& cloths = scene.m_cloths;
+    const std::size_t limit = StepLimits(settings).m_candidates;
+    std::vector<std::uint64_t> counts(cloths.meshCount(), 0);
+    if (pairs.m_anySelf) counts = m_self.countTests(step, limit, threads);
+    for (std::size_t slot = 0; slot < counts.size(); ++slot)
+    {
+        if (pairs.m_clothRadius[slot] < 0.0f) continue;
+        const ItemRange triangles = {cloths.begin(slot).m_triangle, cloths.begin(slot + 1).m_triangle};
+        counts[slot] +=
+            m_cull.count(clothView(scene, settings), clothsOf(scene, pairs, settings, triangles), limit, threads);
+    }
+    return counts;
+}
+
 bool HostPatches::run(const Scene& scene, const StepPairs& pairs, const Settings& settings, ThreadTeam& threads,
                       StepResult& result)
 {
@@ -51,10 +82,7 @@ bool HostPatches::run(const Scene& scene, const StepPairs& pairs, const Settings
     const StepLimits limits(settings);
     const std::size_t mostTests = std::min(limits.m_candidates, pairs.m_limits.m_tests);
     StepCounters counters = {};
-    const HostCloths cloths = {
-        m_clothOrder.data(),      std::uint32_t(m_clothOrder.size()),           pairs.m_clothRadius.data(),
-        pairs.m_thickness.data(), std::uint32_t(scene.m_obstacles.meshCount()), 1.0f + settings.m_activation,
-        pairs.m_motions.data(),   std::uint32_t(pairs.m_motions.size())};
+    const HostCloths cloths = clothsOf(scene, pairs, settings, {0, m_clothOrder.size()});
     result.m_retries = m_cull.run(clothView(scene, settings), cloths, mostTests, threads, counters);
     result.m_invalidNodes = counters.m_invalidNodes;
     result.m_broadMs = watch.lapMs();

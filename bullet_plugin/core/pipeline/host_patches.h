@@ -23,7 +23,12 @@ public:
     SelfCounts runSelf(const Scene& scene, const SelfStep& step, SelfStepLimits limits, ThreadTeam& threads,
                        StepResult& result);
 
-    // Releases memory that only earlier, larger steps needed. Call between steps.
+    // Returns how many feature tests each cloth slot has in the step, with obstacles and with itself: each of the two
+    // is exact up to the step's limit of candidates, and one more than the limit where there are more.
+    std::vector<std::uint64_t> countTests(const Scene& scene, const StepPairs& pairs, const SelfStep& step,
+                                          const Settings& settings, ThreadTeam& threads);
+
+    // Gives back room that only earlier, larger steps needed. Between steps.
     void giveBackRoom()
     {
         m_cull.giveBackRoom();
@@ -35,6 +40,9 @@ public:
 
 private:
     void updateObstacles(const Scene& scene, std::size_t fresh);
+    // The cloths' triangles in these places of their order.
+    HostCloths clothsOf(const Scene& scene, const StepPairs& pairs, const Settings& settings,
+                        ItemRange triangles) const;
 
     HostPatchCull m_cull;
     HostPlacedObstacles m_placed;

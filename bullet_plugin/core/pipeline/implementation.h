@@ -13,8 +13,6 @@
 #include "bullet_plugin/core/pipeline.h"
 #include "device_backend.h"
 #include "host_backend.h"
-#include "side_hierarchy.h"
-#include "tree_watch.h"
 
 namespace drape
 {
@@ -67,8 +65,6 @@ struct Pipeline::Implementation
     StepResult m_result;
     std::vector<MeshId> m_leftOut;  // cloths, of the last step
     StepStatistics m_statistics;
-    SideHierarchy m_clothHierarchy, m_obstacleHierarchy;
-    TreeWatch m_treeWatch;
     BackendChoice m_choice;               // active where cost decides
     std::vector<NamedPair> m_notedPairs;  // pairs that m_choice knows
     std::vector<MeshId> m_notedSelf;
@@ -77,10 +73,9 @@ struct Pipeline::Implementation
     std::string m_deviceReason;     // why this device and no other
     MeshId m_nextId = 0;
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
-    std::uint32_t m_stepRevision = 0;                 // m_obstacleRevision in the last step with a pair
-    std::size_t m_nodesWritten = 0, m_nodesSent = 0;  // counts of the cloths' first nodes, for the coming step
-    bool m_neededMore = false;                        // the last step needed more tests than ordinary motion
-    bool m_limitsRaised = false;                      // in this step they exceed those of ordinary motion
+    std::size_t m_nodesWritten = 0, m_nodesSent = 0;  // the first so many nodes of all cloths, for the coming step
+    bool m_neededMore = false;                        // tests than ordinary motion does, the last step
+    bool m_limitsRaised = false;                      // above those of ordinary motion, in this step
     bool m_submitted = false;
     bool m_deviceLeft = false;  // it failed
 
@@ -101,19 +96,7 @@ struct Pipeline::Implementation
     // Forgets nodes declared as written: they are not those of the coming step. Ends their transfers.
     void forgetNodes();
     void joinObstacles(std::size_t first);
-    // Returns the settings' methods, with the builder of the back end in use.
-    TreeMethods treeMethods() const;
-    // Returns whether the coming step traverses both sides' hierarchies of triangles.
-    bool walksHierarchies() const;
-    // Builds both sides' hierarchies with the current methods.
-    void buildHierarchies();
-    // Builds both sides' layouts for the host if necessary.
-    void layOut();
-    // Uses a rebuilt hierarchy of the cloths.
-    void takeRebuilt();
-    // Starts a rebuild if the last step found the cloths' hierarchy decayed.
-    void watchTree();
-    // Computes data that depends on an obstacle's pose.
+    // What depends on where an obstacle is.
     void placeMesh(std::size_t slot);
     void findSlots();
     void collectPairs();

@@ -69,7 +69,7 @@ std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& erro
     Implementation& self = *pipeline->m_implementation;
     self.m_settings = settings;
     self.m_threads = std::make_shared<ThreadTeam>(settings.m_threads);
-    self.m_hostBackend = std::make_unique<HostBackend>(settings, self.m_threads);
+    self.m_hostBackend = std::make_unique<HostBackend>(self.m_threads);
     self.m_report.m_reason = self.m_deviceReason = choice.m_reason;
     self.m_report.m_device.m_name = "host";
     if (choice.m_onHost) return pipeline;
@@ -99,7 +99,7 @@ void Pipeline::restart()
     fresh->m_nextId = old.m_nextId;
     fresh->m_deviceLeft = old.m_deviceLeft;
     fresh->m_threads = old.m_threads;
-    fresh->m_hostBackend = std::make_unique<HostBackend>(fresh->m_settings, fresh->m_threads);
+    fresh->m_hostBackend = std::make_unique<HostBackend>(fresh->m_threads);
     const bool hasDevice = old.m_deviceBackend && !old.m_deviceLeft;
     Error error;
     if (hasDevice && !fresh->openDevice(error))
@@ -154,10 +154,7 @@ void Pipeline::remove(MeshId id)
     assert(!m_implementation->m_submitted);
     Scene& scene = m_implementation->m_scene;
     if (scene.m_cloths.remove(id))
-    {
         m_implementation->forgetNodes();
-        m_implementation->m_treeWatch.begin();
-    }
     else
         scene.m_obstacles.remove(id);
     m_implementation->m_choice.forget(id);
@@ -171,7 +168,6 @@ void Pipeline::prepare()
     self.joinScene();
     const bool onDevice = self.m_deviceBackend && !self.m_deviceLeft;
     const bool onHost = self.mayStayOnHost();
-    if (!goesOverPatches(self.m_settings)) self.buildHierarchies();
     self.takeObstacles();
     if (onHost) self.m_hostBackend->prepare(self.m_scene);
     if (!onDevice) return;
@@ -259,11 +255,6 @@ void Pipeline::submit()
     if (self.m_deviceLeft) self.m_statistics.m_status |= kStepDeviceFailed;
     self.joinScene();
     self.chooseBackend();
-    if (self.walksHierarchies())
-        self.buildHierarchies();
-    else if (!self.m_report.m_onHost && !goesOverPatches(self.m_settings))
-        self.layOut();
-    self.takeRebuilt();
     self.collectPairs();
     self.m_submitted = true;
     self.enqueue();
@@ -302,16 +293,13 @@ ContactList Pipeline::finish(const Allowance& allowance)
     }
     self.m_submitted = false;
     self.dropBackContacts();
-    self.watchTree();
     statistics.m_candidates += self.m_result.m_candidates;
-    statistics.m_volumeTests = self.m_result.m_volumeTests;
     statistics.m_sweptTests = self.m_result.m_sweptTests;
     statistics.m_selfCandidates = self.m_result.m_selfCandidates;
     statistics.m_selfSweptTests = self.m_result.m_selfSweptTests;
     statistics.m_selfContacts = self.m_result.selfContacts().size();
     statistics.m_reduced = self.m_result.m_reduced;
     statistics.m_contacts = self.m_result.contacts().size();
-    statistics.m_intersections = self.m_result.m_intersectionCount;
     statistics.m_invalidNodes = self.m_result.m_invalidNodes;
     statistics.m_retries = self.m_result.m_retries;
     statistics.m_refitMs = self.m_result.m_refitMs;
@@ -320,12 +308,6 @@ ContactList Pipeline::finish(const Allowance& allowance)
     if (statistics.m_invalidNodes > 0) statistics.m_status |= kStepInvalidNodes;
     statistics.m_waitMs = watch.lapMs();
     return self.m_result.contacts();
-}
-
-void Pipeline::waitForRebuild()
-{
-    assert(!m_implementation->m_submitted);
-    m_implementation->m_treeWatch.wait();
 }
 
 ContactList Pipeline::selfContacts() const

@@ -10,7 +10,6 @@ namespace drape
 {
 void Pipeline::Implementation::runOnHost()
 {
-    if (!goesOverPatches(m_settings)) layOut();
     m_hostBackend->run(m_scene, m_stepPairs, m_settings, m_result);
     m_statistics.m_onHost = true;
 }
@@ -38,8 +37,7 @@ void Pipeline::Implementation::complete()
 
 void Pipeline::Implementation::leaveOutCloths()
 {
-    layOut();
-    const std::vector<std::uint64_t> candidates = m_hostBackend->countCandidates(m_scene, m_stepPairs, m_settings);
+    const std::vector<std::uint64_t> candidates = m_hostBackend->countTests(m_scene, m_stepPairs, m_settings);
     const StepLimits limits(m_settings);
     std::uint64_t budget = limits.m_candidates;
     if (m_result.m_contactDemand > 0)

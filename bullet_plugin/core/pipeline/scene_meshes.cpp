@@ -137,14 +137,11 @@ void Pipeline::Implementation::joinScene()
     if (m_clothRevision != cloths.revision())
     {
         joinCloths(cloths.firstSince(m_clothRevision));
-        m_clothHierarchy.begin(cloths);
         m_clothRevision = cloths.revision();
-        m_treeWatch.begin();
     }
     if (m_obstacleRevision != obstacles.revision())
     {
         joinObstacles(obstacles.firstSince(m_obstacleRevision));
-        m_obstacleHierarchy.begin(obstacles);
         m_obstacleRevision = obstacles.revision();
     }
 }

@@ -6,8 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "bullet_plugin/core/broad_phase/broad_phase.h"
-#include "bullet_plugin/core/bvh/bvh_layout.h"
 #include "bullet_plugin/core/device/buffer.h"
 #include "bullet_plugin/core/mesh/mesh_pool.h"
 #include "bullet_plugin/core/narrow_phase/narrow_phase.h"
@@ -48,8 +46,6 @@ struct Scene
 {
     MeshPool m_cloths;
     MeshPool m_obstacles;
-    BvhLayout m_clothLayout;
-    BvhLayout m_obstacleLayout;
     ClothNodes m_clothNodes;
     bool m_anySelf = false;                  // true if a cloth collides with itself
     std::vector<float> m_clothRest;          // m, joined, at rest; empty without m_anySelf
@@ -78,7 +74,10 @@ inline ClothView clothView(const Scene& scene, const Settings& settings)
                      std::uint32_t(cloths.triangles().size()), std::uint32_t(settings.m_mode), nullptr);
 }
 
-// Maximum lengths of a step's lists.
+// Most candidates and contacts that a step can have: their numbers stay countable in 32 bits.
+constexpr std::size_t kMostCandidates = std::size_t(1) << 28;
+
+// The most that a step may list.
 struct StepLimits
 {
     explicit StepLimits(const Settings& settings)
@@ -101,10 +100,9 @@ struct StepPairs
     std::vector<TestLimits> m_ordinary;     // per cloth slot: what its pairs need in ordinary motion
     TestLimits m_limits;                    // the step's limits, over patches
     SelfReach m_self;
-    bool m_anyPair = false;      // cloth and obstacle
-    bool m_anySelf = false;      // cloth and itself
-    bool m_any = false;          // either
-    bool m_measureTree = false;  // the result must include the cost of the cloths' hierarchy
+    bool m_anyPair = false;  // cloth and obstacle
+    bool m_anySelf = false;  // cloth and itself
+    bool m_any = false;      // either
 
     // Returns the number of obstacle slots when the pairs were collected.
     std::size_t obstacleSlots() const { return m_thickness.size() / m_clothRadius.size(); }
@@ -131,21 +129,17 @@ struct StepResult
 {
     std::vector<Contact> m_contacts;  // the host's contacts
     ContactList m_deviceContacts;     // the device back end's memory, until its next step
-    std::vector<Candidate> m_intersections;
-    // More candidates or contacts than the limits allow; only m_contactDemand of the result is valid then.
+    // More candidates or contacts than the limits allow: nothing else of the result counts then but m_contactDemand.
     bool m_overLimit = false;
     bool m_overTests = false;           // these are the limits of StepPairs
     std::uint64_t m_contactDemand = 0;  // number of contacts if they exceeded the limit; 0 if candidates did
     std::size_t m_candidates = 0;
-    std::size_t m_volumeTests = 0;
     std::size_t m_sweptTests = 0;
     std::size_t m_selfCandidates = 0;
     std::size_t m_selfSweptTests = 0;
     std::size_t m_reduced = 0;
     std::size_t m_invalidNodes = 0;
     std::size_t m_retries = 0;
-    std::size_t m_intersectionCount = 0;
-    double m_treeCost = 0;                                // on request, see tree_cost.h
     double m_refitMs = 0, m_broadMs = 0, m_narrowMs = 0;  // on the host back end
 
     // Resets the result; the memory of the host's contacts is kept.

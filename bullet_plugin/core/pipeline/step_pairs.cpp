@@ -61,8 +61,6 @@ void Pipeline::Implementation::collectPairs()
                                       kEdgePad * m_scene.m_obstacles.mesh(obstacle).m_longestEdge);
         m_stepPairs.m_anyPair = true;
     }
-    m_stepPairs.m_measureTree =
-        m_stepPairs.m_anyPair && watchesClothTree(m_settings, m_report.m_onHost) && m_treeWatch.isDue();
     collectMotions();
     if (m_stepPairs.m_anyPair) m_statistics.m_obstaclesKept = countKept();
     collectTubes();
@@ -109,24 +107,18 @@ void Pipeline::Implementation::collectMotions()
 std::size_t Pipeline::Implementation::countKept()
 {
     const MeshPool& obstacles = m_scene.m_obstacles;
-    // Builds or refits the obstacles' hierarchy with new and moving obstacles, on a device that traverses it, and on
-    // the host unless it is joined from the obstacles' own. Patches belong to one obstacle.
-    const bool asOne = !goesOverPatches(m_settings) && !(m_report.m_onHost && m_scene.m_obstacleLayout.joined());
-    bool allAnew = asOne && m_stepRevision != m_obstacleRevision;
     std::size_t kept = 0;
     for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
     {
         const PooledMesh& mesh = obstacles.mesh(slot);
-        allAnew = allAnew || (asOne && mesh.m_placedAnew);
         if (m_paired[slot] && !mesh.m_placedAnew) ++kept;
     }
     takeObstacles();
-    return allAnew ? 0 : kept;
+    return kept;
 }
 
 void Pipeline::Implementation::takeObstacles()
 {
-    m_stepRevision = m_obstacleRevision;
     for (std::size_t slot = 0; slot < m_scene.m_obstacles.meshCount(); ++slot)
         m_scene.m_obstacles.mesh(slot).m_placedAnew = false;
 }

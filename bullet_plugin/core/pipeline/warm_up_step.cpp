@@ -29,8 +29,6 @@ void makeWarmUpStep(Scene& scene, StepPairs& pairs, float selfThickness)
 {
     addTriangle(scene.m_cloths);
     addTriangle(scene.m_obstacles);
-    scene.m_clothLayout = makeBvhLayout(1);
-    scene.m_obstacleLayout = makeBvhLayout(1);
     scene.m_clothNodes.reserve(nullptr, std::size(kAbove));
     std::copy(std::begin(kAbove), std::end(kAbove), scene.m_clothNodes.start());
     std::copy(std::begin(kBelow), std::end(kBelow), scene.m_clothNodes.end());

@@ -68,7 +68,7 @@ struct Queries::Implementation
 
 namespace
 {
-std::uint32_t testOnHost(const TriangleQuery& query, std::uint32_t test)
+std::uint32_t testOnHost(const TriangleQuery& query)
 {
     FeatureTriangle a, b;
     for (std::uint32_t i = 0; i < 3; ++i)
@@ -76,7 +76,7 @@ std::uint32_t testOnHost(const TriangleQuery& query, std::uint32_t test)
         a.m_p[i] = vec3Load(query.m_a, i);
         b.m_p[i] = vec3Load(query.m_b, i);
     }
-    return triangleQuery(a, b, test);
+    return trianglePairTest(a.m_p, b.m_p, -1.0f) & DRAPE_PAIR_MEETS;
 }
 
 // Returns false if there are more pairs than may be tested; it only counts them then.
@@ -220,13 +220,12 @@ bool Queries::Implementation::triangles(const TriangleQuery* queries, std::size_
                                         std::uint32_t* results)
 {
     if (!require(count == 0 || (queries && results), "triangles", "an array is missing") ||
-        !require(test >= TriangleTest::Certified && test <= TriangleTest::Moller, "triangles", "an unknown test"))
+        !require(test >= TriangleTest::Certified && test <= TriangleTest::Exact, "triangles", "an unknown test"))
         return false;
-    const std::uint32_t fast = test == TriangleTest::Moller ? DRAPE_TEST_MOLLER : DRAPE_TEST_CERTIFIED;
-    if (m_device && !check(m_device->triangles(queries, count, fast, results))) return false;
+    if (m_device && !check(m_device->triangles(queries, count, results))) return false;
     for (std::size_t i = 0; i < count; ++i)
     {
-        if (!m_device) results[i] = testOnHost(queries[i], fast);
+        if (!m_device) results[i] = testOnHost(queries[i]);
         if (test == TriangleTest::Exact && results[i] != 0)
             results[i] = trianglesMeet(exactTriangle(queries[i].m_a), exactTriangle(queries[i].m_b));
     }

@@ -45,7 +45,7 @@ bool QueryDevice::motions(const CcdQuery* queries, std::size_t count, const CcdS
     return !device.failed();
 }
 
-bool QueryDevice::triangles(const TriangleQuery* queries, std::size_t count, std::uint32_t test, std::uint32_t* results)
+bool QueryDevice::triangles(const TriangleQuery* queries, std::size_t count, std::uint32_t* results)
 {
     Device& device = *m_device;
     for (std::size_t first = 0; first < count; first += kBatch)
@@ -54,8 +54,7 @@ bool QueryDevice::triangles(const TriangleQuery* queries, std::size_t count, std
         m_triangleQueries.reserve(device, some);
         m_triangleResults.reserve(device, some);
         m_triangleQueries.write(device, queries + first, some);
-        m_triangles.launch(device, some, kGroup, m_triangleQueries.handle(), cl_uint(some), cl_uint(test),
-                           m_triangleResults.handle());
+        m_triangles.launch(device, some, kGroup, m_triangleQueries.handle(), cl_uint(some), m_triangleResults.handle());
         m_triangleResults.read(device, results + first, some);
         device.wait();
     }

@@ -1,5 +1,7 @@
 #include "host_self_patches.h"
 
+#include <algorithm>
+
 namespace drape
 {
 namespace
@@ -72,19 +74,39 @@ void HostSelfPatches::cull(const SelfStep& step, std::uint64_t limit, ThreadTeam
     if (m_patches.m_patchCount == 0) return;
     pack(step, threads);
     if (m_tests.empty()) m_tests.resize(kFirstTests);
-    const SelfRadii radii = radiiOf(step);
-    const auto fill = [&]() -> std::size_t
+    const auto fill = [&]
     {
-        m_counters.m_selfTests = 0;
         const HostTests list = {m_tests.data(), std::uint32_t(m_tests.size()), std::uint32_t(limit)};
-        runShared(threads, isWorth(step), m_patches.m_patchCount,
-                  [&](std::size_t patch) {
-                      m_kernels->m_self->m_cull(std::uint32_t(patch), step.m_view.m_cloth, radii, m_patches, list,
-                                                &m_counters);
-                  });
-        return m_testsBefore = m_counters.m_selfTests;
+        return m_testsBefore = cullPatches(step, {0, m_patches.m_patchCount}, list, threads);
     };
     m_retries = fillGrowing(m_tests, limit, fill);
+}
+
+std::size_t HostSelfPatches::cullPatches(const SelfStep& step, ItemRange patches, HostTests list, ThreadTeam& threads)
+{
+    const SelfRadii radii = radiiOf(step);
+    m_counters.m_selfTests = 0;
+    runShared(threads, isWorth(step), patches.count(),
+              [&](std::size_t patch)
+              {
+                  m_kernels->m_self->m_cull(patches.first() + std::uint32_t(patch), step.m_view.m_cloth, radii,
+                                            m_patches, list, &m_counters);
+              });
+    return m_counters.m_selfTests;
+}
+
+std::vector<std::uint64_t> HostSelfPatches::countTests(const SelfStep& step, std::uint64_t limit, ThreadTeam& threads)
+{
+    std::vector<std::uint64_t> counts(step.m_cloths.meshCount(), 0);
+    m_counters = {};
+    if (m_patches.m_patchCount == 0) return counts;
+    pack(step, threads);
+    const HostTests nowhere = {m_tests.data(), 0, std::uint32_t(limit)};
+    for (std::size_t slot = 0; slot < counts.size(); ++slot)
+        if (step.m_reach.m_radius[slot] >= 0.0f)
+            counts[slot] = std::min<std::uint64_t>(
+                cullPatches(step, patchesOf(m_layout, {slot, slot + 1}), nowhere, threads), limit + 1);
+    return counts;
 }
 
 void HostSelfPatches::findContacts(const SelfStep& step, SelfStepLimits limits, ThreadTeam& threads,

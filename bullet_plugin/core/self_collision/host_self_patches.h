@@ -25,7 +25,11 @@ public:
     // exceed theirs.
     void findContacts(const SelfStep& step, SelfStepLimits limits, ThreadTeam& threads, std::vector<Contact>& contacts);
 
-    // Returns the step's counts.
+    // Returns how many pairs of features each cloth slot has, without listing them: exact up to the limit, and
+    // one more than the limit where there are more. After update().
+    std::vector<std::uint64_t> countTests(const SelfStep& step, std::uint64_t limit, ThreadTeam& threads);
+
+    // Of the step.
     SelfCounts counts() const;
     // Releases the memory of the results.
     void giveBackRoom()
@@ -37,6 +41,8 @@ public:
 private:
     bool isWorth(const SelfStep& step) const;  // to wake threads
     void pack(const SelfStep& step, ThreadTeam& threads);
+    // Culls these patches against all, with room for as many tests as the list has. Returns how many tests there are.
+    std::size_t cullPatches(const SelfStep& step, ItemRange patches, HostTests list, ThreadTeam& threads);
 
     const HostKernels* m_kernels;
     std::uint32_t m_revision = 0;

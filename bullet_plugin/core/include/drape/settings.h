@@ -9,8 +9,6 @@
 #include <functional>
 #include <string>
 
-#include "methods.h"
-
 namespace drape
 {
 // Writes "drape: ", `line` and a line feed to standard error.
@@ -70,12 +68,12 @@ struct Settings
     // thread alone. Results do not depend on it.
     unsigned m_threads = 0;
 
-    // Counts the triangle pairs that intersect at the step's start (StepStatistics::m_intersections). Slower: this uses
-    // another search.
-    bool m_reportIntersections = false;
-
-    // Largest number of candidates in a step, up to 20 bytes each; 2^28 at most. A step that exceeds it leaves out the
-    // cloths with the most candidates and reports kStepClothsLeftOut. Queries of meshes test as many pairs.
+    // Most pairs that a step may list (of features, on a GPU also of triangles and patches; up to 20 bytes each) and
+    // most contacts (140 bytes each on a device, 200 on the host); 2^28 at most, which stands for more. Steps of two
+    // million cloth triangles need a third of either. A step with more leaves out the cloths that have most of them,
+    // until the rest fits, and says so in its status: those cloths collide with nothing in that step. Cloth that came
+    // apart may make fewer, see kStepMotionHeldBack. Queries of whole meshes (drape/queries.h) test as many pairs and
+    // list as many answers (8 to 24 bytes each); of more they give the number.
     std::size_t m_candidateLimit = std::size_t(1) << 27;
     // Largest number of contacts in a step, 140 bytes each on a device and 200 on the host; 2^28 at most. Otherwise
     // like m_candidateLimit. Queries of meshes list as many answers.
@@ -93,8 +91,5 @@ struct Settings
     // mesh. Called once while the problem lasts, on the thread that steps the world. nullptr means no lines. Exceptions
     // from it are dropped.
     std::function<void(const char*)> m_log = logToStandardError;
-
-    // Selects algorithms, for comparing them. Contacts do not depend on it.
-    Methods m_methods;
 };
 }  // namespace drape

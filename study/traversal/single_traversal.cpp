@@ -1,0 +1,42 @@
+#include "study/traversal/single_traversal.h"
+
+namespace drape
+{
+namespace
+{
+// The largest group that may be assumed: there is only one.
+constexpr std::size_t kGroup = 256;
+}  // namespace
+
+SingleTraversal::SingleTraversal(Device& device, const cl::Program& program, std::size_t spill)
+{
+    m_traverse.create(device, program, "broadPhaseSingle");
+    m_spill.reserve(device, spill);
+}
+
+void SingleTraversal::setTopology(Device&, const Hierarchy& cloth, const Hierarchy& obstacle)
+{
+    m_clothRoot = cloth.m_root;
+    m_obstacleRoot = obstacle.m_root;
+}
+
+void SingleTraversal::enqueue(Device& device, const TraversalStep& step)
+{
+    const BroadPhaseBuffers &cloth = step.m_cloth, &obstacle = step.m_obstacle;
+    m_traverse.launch(device, kGroup, kGroup, cloth.m_nodes.handle(), cloth.m_order.handle(),
+                      cloth.m_triangles.handle(), m_clothRoot, obstacle.m_nodes.handle(), obstacle.m_order.handle(),
+                      obstacle.m_triangles.handle(), m_obstacleRoot, step.m_thickness.handle(), step.meshes(),
+                      step.m_candidates.handle(), step.m_counters.handle(), step.capacity(), step.limit(),
+                      m_spill.handle(), cl_uint(m_spill.capacity()));
+}
+
+bool SingleTraversal::grow(Device& device, const TraversalCounters& counters, bool& limitReached)
+{
+    if (counters.m_spill <= m_spill.capacity()) return false;
+    // What was lost would have opened further: twice the demand seen, so that few runs are needed.
+    const std::size_t most = device.maxAllocationBytes() / sizeof(NodePair);
+    limitReached = counters.m_spill > most;
+    if (!limitReached) m_spill.reserve(device, std::min(2 * std::size_t(counters.m_spill), most));
+    return true;
+}
+}  // namespace drape
