@@ -1,5 +1,8 @@
 #!/usr/bin/env bash
-# Builds and runs the slow tier, what takes too long for every run of the tests: run_slow.sh [options]
+# Builds and runs the slow tier: run_slow.sh [options]
+#
+# Runs the slow tests and the tests of the study, thousands of random worlds, the fast and full tiers with the sanitizers, and each fuzzer for five
+# minutes.
 #
 #   --jobs N              processes at a time (as many as there are cores)
 #   --plain-failing N     the most worlds that may fail of 4,000 without modifiers (0)
@@ -9,7 +12,7 @@
 #   --skirts-left N       skirts of the two grids that may still intersect their body in the last step (0)
 #
 # Runs all parts, also after one that fails; the exit code is 1 then. Failing worlds are printed with the options that
-# repeat them. Takes some 15 minutes on two idle cores.
+# repeat them. Takes some 90 minutes on two idle cores.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -34,9 +37,11 @@ while [[ $# -gt 0 ]]; do
 done
 
 bash cmake/install_packages.sh
-bash cmake/build_preset.sh release drape_worlds
+bash cmake/build_preset.sh release all study drape_test_study
 
 failed=0
+source tests/reference_data.sh
+ctest --test-dir build/release --output-on-failure --no-tests=error --label-regex '^slow$' --parallel "$(nproc)" || failed=1
 worlds() {
   echo "== drape_worlds $*"
   build/release/bin/drape_worlds --jobs "$jobs" "$@" || failed=1
@@ -46,4 +51,6 @@ worlds --kind all --count 4000 --modifiers random --most-failing "$modified"
 worlds --kind tiny --count 300000 --most-failing "$tiny"
 worlds --kind ropes --count 2000 --most-failing "$ropes"
 worlds --kind skirts --most-failing 354 --most-failing-at-end "$skirts"
+bash tests/run_sanitized.sh --full || failed=1
+bash tests/run_fuzzers.sh 300 || failed=1
 exit $failed

@@ -1,0 +1,19 @@
+# Tiers of tests by cost. CONTRIBUTING.md says when to run which.
+#
+#   fast   all suites that are not named here
+#   full   suites that take seconds
+#   slow   worlds of thousands of steps and cases of a hundred thousand triangles, which run_slow.sh runs
+#
+# The gate runs fast and full. Patterns are those of --gtest_filter for slow and timed tests, joined by colons, and a
+# regular expression for the names of full suites.
+set(slow_tests "*/SettledBunny.*:*/SettledPile.*:*/SettledCloth.*sphere_108*:*/SettledCloth.*sphere_115*:*/BunnyDrop.*/10:*/BunnyDrop.*/50:*/Soak.TenThousand*:*/QueryLimitsTest.Row11HundredThousand*:*/WorldRows.Row25*")
+
+# Tests that measure time run alone.
+set(timed_tests "*AWorldAtRestCostsFiveMicroseconds*:*GrowsLittleMoreThanTheHitsOfASlot*:*PrepareLeavesTheHostNothingToBuild*:*DropsWhatIsSuperseded*:*ABusyMachineIsMeasuredAgain*")
+
+set(full_suites "BroadPhaseTest|TreeTest|BunnyDrop|SettledCloth|Outputs|HostKernelsTest|RopesDropped|SelfStepOracle"
+  "MovingObstacleTest|TraversalTest|PipelineNodesTest|LoadTest|QueryLimitsTest|StretchedCloth|Kinematic|Worlds"
+  "ContactModesTest|Needles|SelfStepTest|SelfOracle|LooseEdges|Truth|Check|AnimatedMeshes|StressRows|SkipsTest"
+  "BackendMove|FeatureCull|ContactsOracle|HostDeviceTest|Starts|IterationsOfBullet|Memory|BadInputTest"
+  "DiscretePlate|PatchCullTest|KinematicPlate|ThreadsTest|OutOfMemory|Soak|Sheets|FastDropping|Prepared")
+string(JOIN "|" full_suites ${full_suites})
