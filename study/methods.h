@@ -65,7 +65,7 @@ enum class Traversal
     Single,  // one work-group with a queue, both nodes open (the thesis's simple traversal)
     Full,    // work-groups with a shared stack walk both trees, from fixed pairs of nodes
     Front,   // as Full, from the pairs where the last step stopped (the thesis's front)
-    Grid     // no trees: a uniform grid of cells, hashed (Green 2008; Teschner et al. 2003)
+    Grid     // a uniform grid with sorted cells (Green 2008; Teschner et al. 2003)
 };
 
 struct Methods

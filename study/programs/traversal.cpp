@@ -24,9 +24,11 @@ std::vector<StepVariant> variants(const StudyOptions& options)
         all.push_back({"default", device});
         add("thesis: front", device, Traversal::Front);
         add("as front, from fixed pairs", device, Traversal::Full);
+        add("grid", device, Traversal::Grid);
         add("thesis: simple", device, Traversal::Single);
     }
     add("host, as front, from the roots", host, Traversal::Full);
+    add("host, grid", host, Traversal::Grid);
     add("host, thesis: simple", host, Traversal::Single);
     return all;
 }

@@ -4,6 +4,7 @@
 #include "study/kernel_programs.h"
 #include "study/step/tree_step.h"
 #include "study/traversal/front_traversal.h"
+#include "study/traversal/grid_traversal.h"
 #include "study/traversal/single_traversal.h"
 
 namespace drape
@@ -23,6 +24,7 @@ std::size_t withHeadroom(std::size_t count)
 std::unique_ptr<DeviceTraversal> makeTraversal(Device& device, Traversal traversal, const ProgramLoader& load)
 {
     if (traversal == Traversal::Single) return std::make_unique<SingleTraversal>(device, load("broad_phase_single"));
+    if (traversal == Traversal::Grid) return std::make_unique<GridTraversal>(device, load);
     return std::make_unique<FrontTraversal>(device, load("broad_phase_front"), traversal == Traversal::Front);
 }
 

@@ -93,6 +93,6 @@ private:
     std::vector<Contact> m_read;  // behind the head that has the step's counters
 };
 
-// Makes the traversal that walks trees on a device.
+// Makes a traversal on a device.
 std::unique_ptr<DeviceTraversal> makeTraversal(Device& device, Traversal traversal, const ProgramLoader& load);
 }  // namespace drape

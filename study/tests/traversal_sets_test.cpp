@@ -278,7 +278,7 @@ TEST_P(TraversalSets, CountsTests)
 {
     Sides sides = makeSides(fallingCase("torus", 33, 0.02f, 73));
     SCOPED_TRACE("seed 73");
-    for (Traversal traversal : {Traversal::Single})
+    for (Traversal traversal : {Traversal::Single, Traversal::Grid})
     {
         SCOPED_TRACE(traversalName(traversal));
         HostRun host(traversal);

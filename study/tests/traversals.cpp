@@ -20,7 +20,7 @@ Hierarchy treeOf(const Tree& tree)
 
 const std::vector<Traversal>& allTraversals()
 {
-    static const std::vector<Traversal> all = {Traversal::Single, Traversal::Full, Traversal::Front};
+    static const std::vector<Traversal> all = {Traversal::Single, Traversal::Full, Traversal::Front, Traversal::Grid};
     return all;
 }
 

@@ -4,6 +4,7 @@
 #include <deque>
 
 #include "study/kernels/lib/traversal.h"
+#include "study/traversal/grid_traversal.h"
 
 namespace drape
 {
@@ -14,6 +15,17 @@ constexpr std::uint32_t kRaiseInterval = 8;
 // A front of more pairs is not kept, so that a crowd of triangles does not take memory twice: the next step begins at
 // the roots.
 constexpr std::size_t kMostFront = 1 << 22;
+
+template <typename Visit>
+void forEachCell(const BvhNode& node, GridFrame frame, Visit visit)
+{
+    GridRange range;
+    if (node.m_count > 0 || !gridRange(&range, &node, frame)) return;
+    for (std::uint32_t z = range.m_first[2]; z <= range.m_last[2]; ++z)
+        for (std::uint32_t y = range.m_first[1]; y <= range.m_last[1]; ++y)
+            for (std::uint32_t x = range.m_first[0]; x <= range.m_last[0]; ++x)
+                visit(gridKey(x, y, z));
+}
 }  // namespace
 
 struct HostTraversal::Step
@@ -63,6 +75,7 @@ void HostTraversal::setTopology(const Hierarchy& cloth, const Hierarchy& obstacl
     m_front.clear();
     m_clothLinks = makeLinks(cloth);
     m_obstacleLinks = makeLinks(obstacle);
+    if (m_traversal == Traversal::Grid) m_frame = gridFrame(cloth, obstacle);
 }
 
 bool HostTraversal::run(const TreeSide& cloth, const TreeSide& obstacle, const std::vector<float>& thickness,
@@ -77,6 +90,8 @@ bool HostTraversal::run(const TreeSide& cloth, const TreeSide& obstacle, const s
         runBothOpen(step);
     else if (m_traversal == Traversal::Front)
         runFront(step);
+    else if (m_traversal == Traversal::Grid)
+        runGrid(step);
     else
         openFrom(step, step.roots(), false);
     if (step.overLimit()) m_front.clear();
@@ -168,5 +183,34 @@ void HostTraversal::runFront(const Step& step)
     }
     m_front.swap(m_nextFront);
     if (m_front.size() > kMostFront) m_front.clear();
+}
+
+// As study/kernels/grid.cl.
+void HostTraversal::runGrid(const Step& step)
+{
+    const std::vector<BvhNode>&cloths = step.m_cloth.m_tree.m_nodes, &obstacles = step.m_obstacle.m_tree.m_nodes;
+    m_entries.clear();
+    for (std::uint32_t place = 0; place < obstacles.size(); ++place)
+        forEachCell(obstacles[place], m_frame, [&](std::uint32_t key) { m_entries.emplace_back(key, place); });
+    std::sort(m_entries.begin(), m_entries.end());
+    std::vector<std::uint32_t> starts(DRAPE_GRID_CELLS + 1, 0);
+    for (const auto& entry : m_entries)
+        ++starts[entry.first + 1];
+    for (std::size_t cell = 0; cell < DRAPE_GRID_CELLS; ++cell)
+        starts[cell + 1] += starts[cell];
+    for (std::uint32_t own = 0; own < cloths.size() && !step.overLimit(); ++own)
+    {
+        const auto look = [&](std::uint32_t key)
+        {
+            for (std::uint32_t entry = starts[key]; entry < starts[key + 1]; ++entry)
+            {
+                const NodePair pair = {own, m_entries[entry].second};
+                ++m_tests;
+                if (step.overlap(pair) && gridPairKey(&cloths[own], &obstacles[pair.m_obstacle], m_frame) == key)
+                    step.addLeaves(pair);
+            }
+        };
+        forEachCell(cloths[own], m_frame, look);
+    }
 }
 }  // namespace drape

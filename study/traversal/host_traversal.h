@@ -1,9 +1,11 @@
 // The traversals on the calling thread.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "study/methods.h"
+#include "study/kernels/lib/grid.h"
 #include "study/traversal/hierarchy.h"
 
 namespace drape
@@ -35,12 +37,15 @@ private:
     struct Step;
     void runBothOpen(const Step& step);
     void runFront(const Step& step);
+    void runGrid(const Step& step);
     void openFrom(const Step& step, NodePair pair, bool keep);
     void keepPair(NodePair pair);
     bool raise(const Step& step, NodePair& pair);
 
     Traversal m_traversal;
     std::vector<BvhLink> m_clothLinks, m_obstacleLinks;
+    GridFrame m_frame = {};
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> m_entries;  // cell and obstacle node, sorted
     std::vector<NodePair> m_front, m_nextFront, m_stack;
     std::uint32_t m_step = 0;
     std::size_t m_tests = 0;

@@ -29,6 +29,7 @@ typedef struct TraversalCounters
     DRAPE_UINT m_candidates;
     DRAPE_UINT m_front;   // pairs of the front for the next step
     DRAPE_UINT m_spill;   // most pairs that did not fit into a local queue
+    DRAPE_UINT m_entries;  // of a grid's cells
     DRAPE_UINT m_visits;  // volume tests; only in programs built with DRAPE_COUNT_VISITS
 } TraversalCounters;
 
