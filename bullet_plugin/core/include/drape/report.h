@@ -113,7 +113,7 @@ struct StepStatistics
     std::size_t m_clothTriangles = 0;
     // Number of obstacle triangles.
     std::size_t m_obstacleTriangles = 0;
-    // Pairs of features that the broad phase found; pairs of triangles for cloths that were left out.
+    // Pairs of features that the broad phase found. A cloth that was left out counts with one more than the limit at most.
     std::uint64_t m_candidates = 0;
     std::size_t m_sweptTests = 0;        // pairs of features that needed the continuous test
     std::size_t m_clothsLeftOut = 0;     // with kStepClothsLeftOut
