@@ -56,11 +56,11 @@ public:
         Buffer<StepCounters> counterBuffer;
         clearCounters(m_device, counterBuffer);
         guard(m_device, m_stage.tests(), capacity);
-        m_stage.enqueue(
-            m_device,
-            {m_clothBuffers.m_order, m_clothBuffers.m_triangles, m_clothBuffers.m_start, m_clothBuffers.m_end, m_radius,
-             m_thicknessBuffer, m_cloth.m_pool.triangles().size(), 1, kReachScale, m_mode, m_motions, 0, 1u << 30},
-            counterBuffer);
+        m_stage.enqueue(m_device,
+                        {m_clothBuffers.m_order, m_clothBuffers.m_triangles, m_clothBuffers.m_start,
+                         m_clothBuffers.m_end, m_radius, m_thicknessBuffer, m_cloth.m_pool.triangles().size(), 1,
+                         kReachScale, m_mode, m_motions, 0, 1u << 30, 1u << 30},
+                        counterBuffer);
         counters = readCounters(m_device, counterBuffer);
         const std::size_t count = std::min<std::size_t>(counters.m_candidates, m_stage.tests().capacity());
         std::vector<FeatureTest> tests = contents(m_device, m_stage.tests(), count);
