@@ -1,5 +1,5 @@
 # Run by ctest for each test program: asks it for its tests and adds them suite by suite. DrapeTestSuites.cmake says how.
-# Input: program, prefix, each, guest, environment, and the variables of tests/tiers.cmake.
+# Input: cmake (its path), program, prefix, each, guest, environment, and the variables of tests/tiers.cmake.
 if(NOT EXISTS "${program}")
   if(guest)
     return()
@@ -11,7 +11,7 @@ endif()
 
 # Sets `result` to the tests that match the filter, one "suite.test" an element.
 function(drape_list_tests result filter)
-  execute_process(COMMAND ${CMAKE_COMMAND} -E env ${environment} "${program}" --gtest_list_tests "--gtest_filter=${filter}"
+  execute_process(COMMAND "${cmake}" -E env ${environment} "${program}" --gtest_list_tests "--gtest_filter=${filter}"
     OUTPUT_VARIABLE lines COMMAND_ERROR_IS_FATAL ANY)
   string(REGEX REPLACE " *#[^\n]*" "" lines "${lines}")
   string(REGEX MATCHALL "[^\n]+" lines "${lines}")

@@ -53,7 +53,7 @@ TEST_F(QueriesInput, BadMotionsAreRefused)
     expectRefused(m_queries->motions(nullptr, 1, settings, &result), "motions: an array");
     expectRefused(m_queries->motions(&query, 1, settings, nullptr), "motions: an array");
     query.m_kind = 7;
-    expectRefused(m_queries->motions(&query, 1, settings, &result), "motions: a query with a kind");
+    expectRefused(m_queries->motions(&query, 1, settings, &result), "motions: a query with an unknown kind");
     query.m_kind = DRAPE_EDGES;
     for (const float bad : {-1.0f, kNaN, kInfinity})
     {

@@ -201,7 +201,7 @@ bool Queries::Implementation::motions(const CcdQuery* queries, std::size_t count
         return false;
     const CcdQuery* const unknown =
         std::find_if(queries, queries + count, [](const CcdQuery& query) { return query.m_kind > DRAPE_EDGES; });
-    if (!require(unknown == queries + count, "motions", "a query of unknown kind")) return false;
+    if (!require(unknown == queries + count, "motions", "a query with an unknown kind")) return false;
     if (m_device) return check(m_device->motions(queries, count, settings, results));
     for (std::size_t i = 0; i < count; ++i)
     {

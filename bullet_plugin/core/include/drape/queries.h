@@ -27,8 +27,8 @@ CcdSettings defaultCcdSettings();
 // Selects the test of two triangles.
 enum class TriangleTest
 {
-    Certified,  // no pair that intersects is denied; a few that nearly touch are reported
-    Exact       // the truth: what the certified test reports is decided on the host without rounding
+    Certified,  // denies no pair that intersects; reports a few pairs that nearly touch
+    Exact       // gives the exact answer: the host decides reported pairs without rounding
 };
 
 // Two triangles by index: one of each mesh, or two of the same mesh with the lower index first. Edges of

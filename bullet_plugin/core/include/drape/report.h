@@ -113,35 +113,53 @@ struct StepStatistics
     std::size_t m_clothTriangles = 0;
     // Number of obstacle triangles.
     std::size_t m_obstacleTriangles = 0;
-    // Pairs of features that the broad phase found. A cloth that was left out counts with one more than the limit at most.
+    // Pairs of features that the broad phase found. A cloth that was left out adds one more than the limit at most.
     std::uint64_t m_candidates = 0;
-    std::size_t m_sweptTests = 0;        // pairs of features that needed the continuous test
-    std::size_t m_clothsLeftOut = 0;     // with kStepClothsLeftOut
-    std::size_t m_contacts = 0;          // contacts published
-    std::uint64_t m_selfCandidates = 0;  // pairs of features of cloths that collide with themselves
-    std::size_t m_selfSweptTests = 0;    // of these, that needed the continuous test
-    std::size_t m_selfContacts = 0;      // contacts of cloths with themselves
-    std::size_t m_reduced = 0;           // contacts left out because others imply them
-    std::size_t m_invalidNodes = 0;      // with kStepInvalidNodes
-    // With kStepStartsIntersecting: pairs of a cloth and an obstacle that began the step with triangles that intersect,
-    // and how many pairs of triangles these are. The adapter counts.
+    // Pairs of features that needed the continuous test.
+    std::size_t m_sweptTests = 0;
+    // Number of cloths left out, with kStepClothsLeftOut.
+    std::size_t m_clothsLeftOut = 0;
+    // Number of contacts.
+    std::size_t m_contacts = 0;
+    // Pairs of features of cloths that collide with themselves.
+    std::uint64_t m_selfCandidates = 0;
+    // Pairs among m_selfCandidates that needed the continuous test.
+    std::size_t m_selfSweptTests = 0;
+    // Contacts of cloths with themselves.
+    std::size_t m_selfContacts = 0;
+    // Redundant contacts that were left out.
+    std::size_t m_reduced = 0;
+    // Number of nodes left out, with kStepInvalidNodes.
+    std::size_t m_invalidNodes = 0;
+    // Pairs of a cloth and an obstacle that started the step intersecting, with kStepStartsIntersecting.
     std::size_t m_startsIntersecting = 0;
     // Pairs of triangles that intersected at the step's start, with kStepStartsIntersecting.
     std::uint64_t m_startIntersections = 0;
-    std::size_t m_retries = 0;  // stages run again because a buffer was too small
-    // What was there and not looked at, or used as it was left; contacts are the same without (tests/README.md).
-    std::size_t m_clothsSkipped = 0;  // of the solver's: asleep as it began, pinned or without time; the adapter counts
-    std::size_t m_obstaclesKept = 0;  // of the step's pairs: neither built, refitted nor placed anew
-    bool m_skipped = false;           // nothing to do: no pair, or nothing that could touch
-    bool m_onHost = false;            // the host back end ran the step, by choice or in place of the device
-    // Together they are all of Drape's time in a solver's predictMotion and solveConstraints, and none of Bullet's.
-    double m_uploadMs = 0;  // bounds, mirroring nodes and enqueueing
-    double m_waitMs = 0;    // waiting for the device (all the work, on the host back end)
-    double m_refitMs = 0;   // of the wait, on the host back end; a device's kernels are timed one by one
-    double m_broadMs = 0;   // likewise
-    double m_narrowMs = 0;  // likewise, with the canonical order
-    double m_writeMs = 0;   // sorting contacts by body; cutting paths and what comes of it but the wait
-    double m_finishMs = 0;  // contact rounds between and after Bullet's iterations, and the look at strayed nodes
+    // Stages that ran again because a buffer was too small.
+    std::size_t m_retries = 0;
+    // Cloths without work: asleep at the step's start, pinned, or without a time step.
+    std::size_t m_clothsSkipped = 0;
+    // Obstacles of the step's pairs that were not built, refitted or moved.
+    std::size_t m_obstaclesKept = 0;
+    // True if there was nothing to do: no pair, or nothing that could touch.
+    bool m_skipped = false;
+    // True if the host back end ran the step, by choice or in place of the device.
+    bool m_onHost = false;
+    // Time for bounds, reading nodes and enqueueing.
+    double m_uploadMs = 0;
+    // Time spent waiting for the device; all of the work on the host back end.
+    double m_waitMs = 0;
+    // Part of m_waitMs for refitting; host back end only.
+    double m_refitMs = 0;
+    // Part of m_waitMs for the broad phase; host back end only.
+    double m_broadMs = 0;
+    // Part of m_waitMs for the narrow phase and the canonical order; host back end only.
+    double m_narrowMs = 0;
+    // Time for sorting contacts by body and for ending paths at the first impact, without waits.
+    double m_writeMs = 0;
+    // Time for contact rounds between and after Bullet's iterations, and for checking displaced nodes.
+    double m_finishMs = 0;
+    // Returns all of Drape's time in the solver's predictMotion and solveConstraints, without Bullet's.
     double collisionMs() const { return m_uploadMs + m_waitMs + m_writeMs + m_finishMs; }
 };
 }  // namespace drape

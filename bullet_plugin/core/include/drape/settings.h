@@ -52,7 +52,7 @@ struct Settings
     double m_crossover = -1;
 
     // Distance beyond the thickness up to which contacts are reported, as a fraction of the thickness. Range 0 to 4.
-    // Larger values are safer under stiff links and cost more contacts.
+    // Larger values cost more contacts and were not safer in random worlds.
     float m_activation = 0.5f;
 
     // Leaves out contacts that others already enforce, up to 2 % of the thickness.
@@ -68,12 +68,8 @@ struct Settings
     // thread alone. Results do not depend on it.
     unsigned m_threads = 0;
 
-    // Most pairs that a step may list (of features, on a GPU also of triangles and patches; up to 20 bytes each) and
-    // most contacts (140 bytes each on a device, 200 on the host); 2^28 at most, which stands for more. Steps of two
-    // million cloth triangles need a third of either. A step with more leaves out the cloths that have most of them,
-    // until the rest fits, and says so in its status: those cloths collide with nothing in that step. Cloth that came
-    // apart may make fewer, see kStepMotionHeldBack. Queries of whole meshes (drape/queries.h) test as many pairs and
-    // list as many answers (8 to 24 bytes each); of more they give the number.
+    // Largest number of candidates in a step, up to 20 bytes each; 2^28 at most. A step that exceeds it leaves out the
+    // cloths with the most candidates and reports kStepClothsLeftOut. Queries of meshes test as many pairs.
     std::size_t m_candidateLimit = std::size_t(1) << 27;
     // Largest number of contacts in a step, 140 bytes each on a device and 200 on the host; 2^28 at most. Otherwise
     // like m_candidateLimit. Queries of meshes list as many answers.
