@@ -1,4 +1,4 @@
-"""What a script's figures were measured on, as the benchmark programs write it."""
+"""Describes the machine that figures were measured on, as the benchmark programs do."""
 import datetime
 import hashlib
 import os
@@ -25,7 +25,7 @@ def describe(program, commit):
 
 
 def scene(obstacle, options):
-    """What cloth_drop drops on, by its bytes where it is a file, and the options that every run got."""
+    """Returns the obstacle, a file's by its hash, and the options of every run."""
     digest = obstacle
     if os.path.isfile(obstacle):
         with open(obstacle, "rb") as file:

@@ -91,8 +91,8 @@ std::vector<MethodEntry> chosenMethods(const Options& options)
     return entries;
 }
 
-// Of the methods, those for a scene: without references whose hashes are known, unless they were asked for; sweeps,
-// whose scenes are many, without reduced ones likewise.
+// Returns the methods for a scene. References whose hashes are known are left out unless they were asked for; sweeps,
+// which have many scenes, leave out the reduced ones in the same way.
 std::vector<MethodEntry> methodsFor(const SceneSpec& spec, std::vector<MethodEntry> methods, const Options& options,
                                     const MeasureSettings& settings)
 {

@@ -17,7 +17,7 @@ constexpr int kQuickSettleFrames = 30, kQuickRestFrames = 50;
 constexpr double kLateShare = 0.1;
 constexpr int kFallsOfDrape = 8, kFallsOfBullet = 4, kRestFallsOfDrape = 3;
 
-// The values that say most first: each is a round of its own.
+// The most significant values come first: each is a round of its own.
 template <typename T>
 void sweep(std::vector<Trial>& trials, Trial base, const char* knob, T Trial::*field, const std::vector<double>& values)
 {

@@ -24,7 +24,7 @@ struct StepOutcome
     std::size_t m_candidates = 0;
     std::size_t m_contacts = 0;
     std::size_t m_volumeTests = 0;  // 0: not counted
-    std::string m_hash;             // of the contacts, or empty for a method that finds only candidates
+    std::string m_hash;             // hash of the contacts; empty for a method that finds only candidates
 };
 
 class StepMethod
@@ -45,7 +45,7 @@ public:
 // Makes the pipeline's method, host to host. With the host back end its contacts' hash is the reference. The scene must
 // outlive the method.
 std::unique_ptr<StepMethod> makeDrapeMethod(const StepScene& scene, const Settings& settings, std::string& error);
-// The same, with redundant contacts left out, as the plugin has it.
+// Makes the pipeline's method with redundant contacts left out, as in the plugin.
 std::unique_ptr<StepMethod> makeReducedMethod(const StepScene& scene, const Settings& settings, std::string& error);
 
 // Returns the distance within which Drape finds contacts with default settings: thickness and activation.

@@ -182,7 +182,8 @@ public:
     // Cloths that need more are left out. Null: infinity.
     using Allowance = std::function<float(MeshId)>;
     ContactList finish(const Allowance& allowance = nullptr);
-    // Those of cloths with themselves of the last finish(), in canonical order; valid as long as its other contacts.
+    // Returns contacts of cloths with themselves of the last finish(), in canonical order; valid as long as its other
+    // contacts.
     ContactList selfContacts() const;
     // Returns the cloths that the last finish() left out (kStepClothsLeftOut).
     const std::vector<MeshId>& clothsLeftOut() const;

@@ -33,7 +33,7 @@ struct Options
     BulletMode m_bulletMode = BulletMode::Stock;
     std::string m_device;
     bool m_listDevices = false;
-    bool m_allContacts = false;  // those that others imply, too
+    bool m_allContacts = false;  // solve contacts that others imply, too
     unsigned m_threads = 0;      // see Settings
     bool m_compare = false;
     bool m_compareSoftPair = false;
@@ -47,6 +47,7 @@ struct Options
     bool usesDrape() const { return m_backend != "bullet"; }
 };
 
-// True: go on. False: leave with `exitCode`; what there was to say has been printed (help, or one line on stderr).
+// Returns true if the program goes on. Returns false if it must leave with `exitCode`, after printing the help or one
+// line on standard error.
 bool parseOptions(int argc, const char* const* argv, Options& options, int& exitCode);
 }  // namespace drape

@@ -100,8 +100,8 @@ DRAPE_FUNCTION int volumeSeen(Dop* dop, const DRAPE_GLOBAL ObstacleMotion* motio
     return mayComeNear(dop, 0.0f, motion);
 }
 
-// Slot of a joined vertex or edge, by the slots' firsts (members of ObstaclePlace); slots without any may be among
-// them. kind: whose index it is.
+// Returns the slot of a joined vertex or edge, from the slots' firsts (members of ObstaclePlace). Slots may be empty.
+// kind: the kind of the index.
 #define DRAPE_OF_VERTEX 0
 #define DRAPE_OF_EDGE 1
 DRAPE_FUNCTION DRAPE_UINT placeOf(const DRAPE_GLOBAL ObstaclePlace* places, DRAPE_UINT count, int kind,

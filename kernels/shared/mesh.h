@@ -82,11 +82,11 @@ typedef struct StepCounters
     DRAPE_UINT m_crowded;  // slots with too many contacts for counting (compaction.cl, compaction_few.cl)
     DRAPE_UINT m_hits;     // contacts after reduction
     DRAPE_UINT m_invalidNodes;
-    DRAPE_UINT m_swept;   // pairs of features that the continuous test decided
-    DRAPE_UINT m_patchPairs;  // of cloth triangles and patches, where they are listed
-    DRAPE_UINT m_selfPairs;   // of patches of cloths with themselves, where they are listed
+    DRAPE_UINT m_swept;       // pairs of features that the continuous test decided
+    DRAPE_UINT m_patchPairs;  // listed pairs of cloth triangles and patches
+    DRAPE_UINT m_selfPairs;   // listed pairs of patches of cloths with themselves
     DRAPE_UINT m_selfTests;   // pairs of features of cloths with themselves
-    DRAPE_UINT m_selfSwept;   // of these, that the continuous test decided
+    DRAPE_UINT m_selfSwept;   // pairs in m_selfTests that the continuous test decided
 } StepCounters;
 
 DRAPE_NAMESPACE_END

@@ -8,7 +8,7 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// A vertex and a face, or two edges, of a mesh against itself.
+// A vertex and a face, or two edges, of one mesh.
 typedef struct FeaturePair
 {
     DRAPE_UINT m_a;

@@ -94,7 +94,7 @@ class ErrorVsTimeTest(unittest.TestCase):
                 self.assertEqual(int(float(row["late_times"])), 0, row)
             if row["distance_error_max"] and row["method"] == "drape_host":
                 self.assertLess(float(row["distance_error_max"]), 1e-6)
-        # What is beside Drape is wrong where it must be, so that the sets can tell.
+        # The other methods must be wrong in places, or the sets would distinguish nothing.
         wrong = {row["scene"]: int(float(row["misses"])) for row in rows if row["setting"] == "float"}
         self.assertGreater(wrong["pairs at 10 km"], 0)
         # A finer search of the time gives a better time.

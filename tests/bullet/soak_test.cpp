@@ -16,7 +16,7 @@ namespace drape::test
 namespace
 {
 constexpr std::uint32_t kSeed = 1300;
-constexpr std::size_t kMostBodies = 5;    // of each type
+constexpr std::size_t kMostBodies = 5;    // bodies of each type
 constexpr std::uint32_t kStepsApart = 8;  // steps between two changes, on average
 
 // A world and what lives in it, driven by one row of random numbers.

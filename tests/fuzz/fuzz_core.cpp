@@ -271,7 +271,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         other.m_settings.m_mode = drape::ContactMode::Continuous;
         requireSame(steps, run(bytes, other));
     }
-    // Which cloths are over a limit depends on what is left out.
+    // The cloths over a limit depend on the omitted contacts.
     if (!choices.m_tubes || choices.m_settings.m_contactLimit != unlimited.m_contactLimit) return 0;
     other = choices;
     other.m_settings.m_reduceContacts = false;

@@ -49,7 +49,7 @@ SelfResult runOverSphere(const Settings& settings, const SelfStepCase& step, boo
     return result;
 }
 
-// What a walk over a tree of the cloth's triangles finds, which shares no cull with what is tested.
+// Results of a comparison of all pairs, which shares no cull with the tested code.
 struct Expected
 {
     std::vector<Contact> m_contacts;

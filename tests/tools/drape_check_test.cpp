@@ -162,7 +162,7 @@ TEST_F(Check, StepNeedsTheFacesInTheirOrder)
     const std::string others =
         write("others.obj", vertices + "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\nusemtl c\n" + faces);
     EXPECT_EQ(answer({"step", sorted, others}).at("vf_hits"), 0);
-    // The same mesh with other names.
+    // This mesh differs in names only.
     const std::string renamed = "mtllib end.mtl\n" + vertices + "# end\nusemtl b\nf 1//1 -3 -2\nf 1 3/1 4\nvn 0 0 1\n";
     EXPECT_EQ(answer({"step", start, write("renamed.obj", renamed)}).at("vf_hits"), 0);
 }

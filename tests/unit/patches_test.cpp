@@ -110,7 +110,7 @@ TEST(PatchesTest, PatchesOfASurfaceAreFarSmallerThanRunsOfTheLeafOrder)
     const Side side = makeSide({makeSphere(1.0f, 5)});
     const std::vector<std::uint32_t> order = clustered(side);
     EXPECT_LT(meanDiagonal(side, order), 0.8 * meanDiagonal(side, side.m_order));
-    // A disc of 32 triangles' area.
+    // The bound is a disc of 32 triangles' area.
     const double area = 4 * 3.14159265 / double(side.m_pool.triangles().size()) * kWidth;
     EXPECT_LT(meanDiagonal(side, order), 2.0 * std::sqrt(area)) << "twice a square's side";
 }

@@ -13,7 +13,7 @@ namespace
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// Of making a pipeline on the host with changed settings; empty where it was made.
+// Returns the error of making a pipeline on the host with changed settings; empty on success.
 std::string errorOfSettings(const std::function<void(Settings&)>& change)
 {
     Settings settings;

@@ -27,7 +27,7 @@ public:
     // Returns how many feature tests the cloths have, without listing them: exact up to the limit, and one more than
     // the limit where there are more.
     std::uint64_t count(const ClothView& cloth, const HostCloths& cloths, std::size_t limit, ThreadTeam& threads);
-    // Of the last run: as many as counted, and what is behind them is old.
+    // Tests of the last run: the first ones up to its count; the rest is old.
     const std::vector<FeatureTest>& tests() const { return m_tests; }
 
     // Releases memory that only earlier, larger scenes needed.

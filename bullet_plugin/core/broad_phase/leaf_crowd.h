@@ -1,5 +1,5 @@
-// What all leaves below a node of a hierarchy have in common, so that pairs of whole subtrees count at once: where the
-// leaves of two subtrees all overlap each other, as many pairs do as the product of their numbers. Host only.
+// Properties that all leaves below a node of a hierarchy share, so that pairs of whole subtrees are counted at once. If
+// all leaves of two subtrees overlap each other, their pairs are the product of their numbers. Host only.
 #pragma once
 
 #include <cstdint>

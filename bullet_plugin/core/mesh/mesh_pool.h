@@ -60,13 +60,13 @@ public:
     const PooledMesh& mesh(std::size_t slot) const { return m_meshes[slot]; }
     // Returns the mesh's slot; meshCount() if the id is not, or no longer, in this pool.
     std::size_t slot(MeshId id) const;
-    // Slots of the meshes that hold a joined vertex or edge.
+    // Return the slot of the mesh that contains a joined vertex or edge.
     std::size_t slotOfVertex(std::uint32_t vertex) const;
     std::size_t slotOfEdge(std::uint32_t edge) const;
 
     // Joins the meshes added since the last call; the joined arrays are valid afterwards. Free without changes.
     void update();
-    // Gives back room that only earlier, larger pools needed. The joined arrays move.
+    // Releases memory that only earlier, larger pools needed. The joined arrays move.
     void giveBackRoom();
     // Returns a number that rises with every update that changed something.
     std::uint32_t revision() const { return m_revision; }

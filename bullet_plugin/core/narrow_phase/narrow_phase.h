@@ -13,7 +13,7 @@
 
 namespace drape
 {
-// Device buffers that hold both sides' geometry.
+// Device buffers of both sides' geometry.
 struct NarrowPhaseBuffers
 {
     Buffer<float>& m_clothStart;
@@ -49,7 +49,7 @@ public:
     bool skipped(std::size_t tests) const { return tests > m_mostTests; }
 
 private:
-    std::size_t m_mostTests = SIZE_MAX;  // of the last launches
+    std::size_t m_mostTests = SIZE_MAX;  // tests of the last launches
     Kernel m_feature, m_swept, m_few;
     Buffer<cl_uint> m_sweptTests{"step candidates"};
 };

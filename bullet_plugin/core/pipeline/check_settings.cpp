@@ -15,7 +15,7 @@ struct Field
     const char* m_range;
 };
 
-// A value that was cast to an enumeration may be none of its own.
+// A value cast to an enumeration may be none of its enumerators.
 template <typename Choice>
 Field choice(const char* name, Choice value, Choice last)
 {
@@ -25,7 +25,7 @@ Field choice(const char* name, Choice value, Choice last)
 
 bool checkSettings(const Settings& settings, Error& error)
 {
-    // What is not a number is in no range.
+    // NaN is in no range.
     const Field fields[] = {
         choice("Settings::m_backend", settings.m_backend, Backend::Host),
         choice("Settings::m_mode", settings.m_mode, ContactMode::Automatic),

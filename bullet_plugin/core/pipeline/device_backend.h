@@ -71,8 +71,8 @@ private:
     // Returns the number of floats of the cloths' nodes at a step's start; there are as many at its end.
     void reserveNodes(std::size_t room);
     void clusterCloths(const MeshPool& cloths, std::size_t firstSlot);
-    // Brings the obstacles from slot `fresh` on, and of the others those that were given other positions or another
-    // place, to the device and to the world, and renews what depends on it.
+    // Uploads and places the obstacles from slot `fresh` on, and earlier ones whose positions or poses changed, and
+    // renews dependent data.
     void updateObstacles(const Scene& scene, std::size_t fresh);
     void writeNodes(const Scene& scene, std::size_t first, std::size_t count);
     void uploadStep(const Scene& scene, const StepPairs& pairs, std::size_t sent);
@@ -113,7 +113,7 @@ private:
     Buffer<ObstacleMotion> m_motions{"obstacle places"};
     std::vector<cl_uint> m_clustered;  // order, like m_cloth.m_order
     std::vector<ObstacleMotion> m_sentMotions;
-    // Of a step and the next by turns, see StepTally.
+    // Counters of a step and the next, alternating; see StepTally.
     Buffer<StepCounters> m_counters[2] = {Buffer<StepCounters>("step counters"), Buffer<StepCounters>("step counters")};
     std::size_t m_turn = 0;
     int m_stepsToOrder = 1;

@@ -23,12 +23,12 @@ public:
     SelfCounts runSelf(const Scene& scene, const SelfStep& step, SelfStepLimits limits, ThreadTeam& threads,
                        StepResult& result);
 
-    // Returns how many feature tests each cloth slot has in the step, with obstacles and with itself: each of the two
-    // is exact up to the step's limit of candidates, and one more than the limit where there are more.
+    // Returns the number of feature tests of each cloth slot in the step, with obstacles plus with itself. Either
+    // number is exact up to the step's limit of candidates; a larger one counts as the limit plus one.
     std::vector<std::uint64_t> countTests(const Scene& scene, const StepPairs& pairs, const SelfStep& step,
                                           const Settings& settings, ThreadTeam& threads);
 
-    // Gives back room that only earlier, larger steps needed. Between steps.
+    // Releases memory that only earlier, larger steps needed. Call between steps.
     void giveBackRoom()
     {
         m_cull.giveBackRoom();

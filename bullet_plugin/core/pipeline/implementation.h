@@ -73,9 +73,9 @@ struct Pipeline::Implementation
     std::string m_deviceReason;     // why this device and no other
     MeshId m_nextId = 0;
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
-    std::size_t m_nodesWritten = 0, m_nodesSent = 0;  // the first so many nodes of all cloths, for the coming step
-    bool m_neededMore = false;                        // tests than ordinary motion does, the last step
-    bool m_limitsRaised = false;                      // above those of ordinary motion, in this step
+    std::size_t m_nodesWritten = 0, m_nodesSent = 0;  // counts of the cloths' first nodes, for the coming step
+    bool m_neededMore = false;                        // the last step needed more tests than ordinary motion
+    bool m_limitsRaised = false;                      // in this step they exceed those of ordinary motion
     bool m_submitted = false;
     bool m_deviceLeft = false;  // it failed
 
@@ -96,7 +96,7 @@ struct Pipeline::Implementation
     // Forgets nodes declared as written: they are not those of the coming step. Ends their transfers.
     void forgetNodes();
     void joinObstacles(std::size_t first);
-    // What depends on where an obstacle is.
+    // Computes data that depends on an obstacle's pose.
     void placeMesh(std::size_t slot);
     void findSlots();
     void collectPairs();

@@ -77,7 +77,7 @@ inline ClothView clothView(const Scene& scene, const Settings& settings)
 // Most candidates and contacts that a step can have: their numbers stay countable in 32 bits.
 constexpr std::size_t kMostCandidates = std::size_t(1) << 28;
 
-// The most that a step may list.
+// Maximum lengths of a step's lists.
 struct StepLimits
 {
     explicit StepLimits(const Settings& settings)
@@ -129,7 +129,7 @@ struct StepResult
 {
     std::vector<Contact> m_contacts;  // the host's contacts
     ContactList m_deviceContacts;     // the device back end's memory, until its next step
-    // More candidates or contacts than the limits allow: nothing else of the result counts then but m_contactDemand.
+    // More candidates or contacts than the limits allow; only m_contactDemand of the result is valid then.
     bool m_overLimit = false;
     bool m_overTests = false;           // these are the limits of StepPairs
     std::uint64_t m_contactDemand = 0;  // number of contacts if they exceeded the limit; 0 if candidates did

@@ -24,9 +24,9 @@ public:
     const Error& error() const { return m_device->failed() ? m_device->error() : m_noRoom; }
     bool motions(const CcdQuery* queries, std::size_t count, const CcdSettings& settings, CcdResult* results);
     bool triangles(const TriangleQuery* queries, std::size_t count, std::uint32_t* results);
-    // Gives the pairs that meet or are near by the certified tests to the decision, in no order; a and b the same mesh:
-    // with itself. Where there are more candidates than the limit, leaves off with `within` false, and counts them on
-    // the host, after refitting the meshes there.
+    // Passes the pairs that meet or are near by the certified tests to the decision, in no particular order. a and b:
+    // the same mesh for a mesh with itself. If there are more candidates than the limit, stops with `within` false, and
+    // counts them on the host after refitting the meshes there.
     bool meshPairs(QueryMesh& a, QueryMesh& b, float radius, std::uint64_t limit, std::uint64_t& candidates,
                    PairDecision& decision, bool& within);
     // Finds collisions of a mesh's motion with itself, and stops at the limits in the same way.

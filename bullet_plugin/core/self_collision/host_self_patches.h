@@ -29,7 +29,7 @@ public:
     // one more than the limit where there are more. After update().
     std::vector<std::uint64_t> countTests(const SelfStep& step, std::uint64_t limit, ThreadTeam& threads);
 
-    // Of the step.
+    // Returns the step's counts.
     SelfCounts counts() const;
     // Releases the memory of the results.
     void giveBackRoom()
