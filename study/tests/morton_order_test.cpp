@@ -3,13 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "bullet_plugin/core/bvh/morton_order.h"
 #include "scenes/shapes.h"
 #include "study/kernel_programs.h"
 #include "tests/support/cases.h"
 #include "tests/support/device_side.h"
+#include "tests/support/moving_soup.h"
 
 namespace drape::test
 {
@@ -17,24 +16,6 @@ namespace
 {
 // Around the work-groups and the sort's stretch of 512, and odd thousands.
 const int kSizes[] = {1, 2, 3, 63, 64, 65, 127, 128, 129, 255, 257, 511, 512, 513, 1023, 3001, 20011};
-
-Side movingSoup(int count, std::uint32_t seed)
-{
-    Random random(seed);
-    Side side = makeSide({makeSoup(1.0f, 0.1f, count, seed)});
-    disturb(side.m_end, 0.1f, random);
-    return side;
-}
-
-void spoil(std::vector<float>& positions, Random& random)
-{
-    const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e38f,
-                         1e-40f};
-    for (std::size_t i = 0; i < positions.size() / 50 + 1; ++i)
-    {
-        positions[random.below(std::uint32_t(positions.size()))] = bad[random.below(4)];
-    }
-}
 
 std::vector<std::uint32_t> orderOnDevice(Device& device, MortonOrderStage& stage, const Side& side)
 {
@@ -66,7 +47,7 @@ TEST_P(MortonOrderTest, LeafOrderSameAsTheHost)
         {
             SCOPED_TRACE("soup of " + std::to_string(size) + ", seed " + std::to_string(size));
             Random random{std::uint32_t(size)};
-            Side side = movingSoup(size, std::uint32_t(size));
+            Side side = makeMovingSoup(size, std::uint32_t(size));
             if (spoiled) spoil(side.m_start, random);
             const std::vector<Triangle>& triangles = side.m_pool.triangles();
             EXPECT_EQ(orderOnDevice(*device, stage, side), mortonOrderOnHost(triangles, side.m_start.data()));

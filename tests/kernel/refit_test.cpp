@@ -3,11 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "scenes/shapes.h"
 #include "tests/support/cases.h"
 #include "tests/support/device_side.h"
+#include "tests/support/moving_soup.h"
 
 namespace drape::test
 {
@@ -15,24 +14,6 @@ namespace
 {
 // Around the work-groups of 64 and 128, and odd thousands.
 const int kSizes[] = {1, 2, 3, 63, 64, 65, 127, 128, 129, 255, 257, 511, 512, 513, 1023, 3001, 20011};
-
-Side movingSoup(int count, std::uint32_t seed)
-{
-    Random random(seed);
-    Side side = makeSide({makeSoup(1.0f, 0.1f, count, seed)});
-    disturb(side.m_end, 0.1f, random);
-    return side;
-}
-
-void spoil(std::vector<float>& positions, Random& random)
-{
-    const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e38f,
-                         1e-40f};
-    for (std::size_t i = 0; i < positions.size() / 50 + 1; ++i)
-    {
-        positions[random.below(std::uint32_t(positions.size()))] = bad[random.below(4)];
-    }
-}
 }  // namespace
 
 class RefitTest : public BackendTest
@@ -67,7 +48,7 @@ TEST_P(RefitTest, SameBitsAsTheHostAtEverySize)
     for (int size : kSizes)
     {
         SCOPED_TRACE("soup of " + std::to_string(size) + ", seed " + std::to_string(size));
-        Side side = movingSoup(size, std::uint32_t(size));
+        Side side = makeMovingSoup(size, std::uint32_t(size));
         expectSameAsHost(side, {0.013f});
     }
 }

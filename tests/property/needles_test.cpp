@@ -36,7 +36,7 @@ StepCase flatCase(bool swapped, std::uint32_t seed)
 class NeedlesOnBackends : public BackendTest
 {
 protected:
-    // Expects every traversal to give the host's contacts by the default traversal.
+    // Expects the contacts of all pairs of triangles.
     void expectSame(const StepCase& step, ContactMode mode)
     {
         SCOPED_TRACE(step.trace() + ", mode " + std::to_string(int(mode)));

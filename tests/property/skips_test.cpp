@@ -1,5 +1,5 @@
-// The state that a pipeline keeps from step to step only saves time: hierarchies of resting obstacles, the front of the
-// last step, trees and patches, buffers on the device. One traversal represents each kind of state.
+// The state that a pipeline keeps from step to step only saves time: patches and hierarchies of resting obstacles,
+// buffers on the device.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -135,7 +135,7 @@ TEST_P(LoadTest, LimitsLeaveOutTheLargestCloths)
     ASSERT_TRUE(unlimited);
     const std::vector<Contact> alone = runCase(*unlimited, step);
     const std::uint64_t candidates = unlimited->statistics().m_candidates;
-    // The host counts the pairs of triangles of omitted cloths.
+    // The host counts the feature pairs of omitted cloths.
     Settings onHost;
     onHost.m_backend = Backend::Host;
     const std::unique_ptr<Pipeline> host = makePipeline(onHost);
