@@ -50,7 +50,7 @@ std::string nameProblem(const ErrorOptions& options)
 
 int runChild(const ErrorOptions& options)
 {
-    const std::vector<Trial> trials = options.trials(hasDevice(options));
+    const std::vector<Trial> trials = options.trials(options.m_childHasDevice);
     ErrorScene scene;
     std::string error;
     if (std::size_t(options.m_childTrial) >= trials.size())
@@ -98,6 +98,7 @@ int main(int argc, char** argv)
         ->check(CLI::ExistingDirectory);
     app.add_option("--child-scene", options.m_childScene)->group("");
     app.add_option("--child-trial", options.m_childTrial)->group("");
+    app.add_flag("--child-device", options.m_childHasDevice)->group("");
     int exitCode = kExitGood;
     if (!parseArguments(
             app, argc, argv, [&options] { return nameProblem(options); }, exitCode))

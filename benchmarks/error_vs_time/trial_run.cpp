@@ -27,6 +27,7 @@ std::vector<std::string> childArguments(const ErrorOptions& options, const std::
     if (!options.m_device.empty()) arguments.push_back("--device=" + options.m_device);
     if (!options.m_models.empty()) arguments.push_back("--models=" + options.m_models);
     if (options.m_quick) arguments.push_back("--quick");
+    if (hasDevice(options)) arguments.push_back("--child-device");
     return arguments;
 }
 

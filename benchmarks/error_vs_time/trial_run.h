@@ -29,6 +29,7 @@ struct ErrorOptions : CommonOptions
     int m_frames = 0;                  // 0: as many as the kind of run has
     std::string m_childScene;          // in a child: what to run
     int m_childTrial = -1;
+    bool m_childHasDevice = false;  // in a child: the parent's hasDevice(), so that both number the same list of trials
 
     int frames() const { return m_frames > 0 ? m_frames : m_quick ? 40 : 120; }
     std::vector<Trial> trials(bool withDevice) const { return makeTrials(m_quick, withDevice, frames()); }

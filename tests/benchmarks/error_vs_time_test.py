@@ -144,6 +144,14 @@ class ErrorVsTimeTest(unittest.TestCase):
             self.assertEqual(row["ended"], "no time")
             self.assertFalse(row.get("frame_median_ms"))
 
+    def test_a_child_that_finds_no_device_runs_no_other_trial(self):
+        # Trial 1 of the parent with a device is Drape on it. Without the device the child must refuse it.
+        environment = {**os.environ, "OCL_ICD_VENDORS": "/nonexistent"}
+        result = subprocess.run([PROGRAM, "--quick", "--backend", "opencl", "--child-scene", "stairs", "--child-trial", "1",
+                                 "--child-device"], capture_output=True, text=True, timeout=100, env=environment)
+        self.assertNotEqual(result.returncode, 0)
+        self.assertIn("OpenCL", result.stderr)
+
     def test_what_does_not_exist_is_refused(self):
         for arguments, words in ((["--scene", "moon"], ("moon", "bunny")), (["--knob", "nosuch"], ("nosuch", "substeps")),
                                  (["--truth", self.path("none")], ("--truth", "none"))):
