@@ -37,7 +37,7 @@ while [[ $# -gt 0 ]]; do
 done
 
 bash cmake/install_packages.sh
-bash cmake/build_preset.sh release all study drape_test_study
+bash cmake/build_preset.sh release all study study_dop6 drape_test_study
 
 failed=0
 source tests/reference_data.sh

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/support/cases.h"
+#include "tests/support/side.h"
 
 namespace drape::test
 {
