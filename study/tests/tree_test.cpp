@@ -199,7 +199,7 @@ TEST_P(TreeTest, EveryRefitMakesTheHostsVolumesOfMovedTriangles)
     TreeRefitStage stage, crowded;
     stage.create(*device, studyPrograms(*device));
     // Its groups have more splits than they merge in order.
-    crowded.create(*device, [&](const char* name) { return programOf(*device, name, "#define DRAPE_MERGED 4\n"); });
+    crowded.create(*device, studyPrograms(*device, "", "#define DRAPE_MERGED 4\n"));
     const std::vector<NamedMesh> cases = meshes();
     for (const TreeBuilder builder : kBuilders)
     {
