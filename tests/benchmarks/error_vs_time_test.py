@@ -147,8 +147,8 @@ class ErrorVsTimeTest(unittest.TestCase):
     def test_a_child_that_finds_no_device_runs_no_other_trial(self):
         # Trial 1 of the parent with a device is Drape on it. Without the device the child must refuse it.
         environment = {**os.environ, "OCL_ICD_VENDORS": "/nonexistent"}
-        result = subprocess.run([PROGRAM, "--quick", "--backend", "opencl", "--child-scene", "stairs", "--child-trial", "1",
-                                 "--child-device"], capture_output=True, text=True, timeout=100, env=environment)
+        command = [PROGRAM, "--quick", "--backend", "opencl", "--child-scene", "stairs", "--child-trial", "1", "--child-device"]
+        result = subprocess.run(command, capture_output=True, text=True, timeout=100, env=environment)
         self.assertNotEqual(result.returncode, 0)
         self.assertIn("OpenCL", result.stderr)
 
