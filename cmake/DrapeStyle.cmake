@@ -1,4 +1,4 @@
-# Adds the tests of the house style: `style` reads every tracked file, `style.checker` tests the reader, and `style.tiers`
+# Adds the tests of the house style. `style` reads every tracked file, `style.checker` tests the reader, and `style.tiers`
 # checks the names in tests/tiers.cmake.
 find_package(Python3 3.7 COMPONENTS Interpreter)
 find_program(DRAPE_GIT git)
@@ -11,6 +11,7 @@ if(Python3_Interpreter_FOUND AND DRAPE_GIT)
   add_test(NAME style.checker
     COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/tests/style/check_style_test.py ${PROJECT_SOURCE_DIR}/tools)
   set_tests_properties(style.checker PROPERTIES TIMEOUT 60 LABELS fast)
-  add_test(NAME style.tiers COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/tests/style/tiers_test.py ${PROJECT_SOURCE_DIR})
+  add_test(NAME style.tiers
+    COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/tests/style/tiers_test.py ${PROJECT_SOURCE_DIR})
   set_tests_properties(style.tiers PROPERTIES TIMEOUT 60 LABELS fast)
 endif()

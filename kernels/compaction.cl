@@ -48,7 +48,7 @@ static uint placeBlock(__global const uint* restrict slotCount, const uint slots
 }
 
 // Processes a block of slots per work-group, and sums the contacts of all earlier slots. The last group stores
-// counters->m_hits. sums: of blocks, by compactionCount, and perBlock 1; for few slots sums is slotCount, and
+// counters->m_contactsStored. sums: of blocks, by compactionCount, and perBlock 1; for few slots sums is slotCount, and
 // perBlock DRAPE_BLOCK. ranked: maximum contacts of a slot that the next launch sorts itself; slots with more are
 // counted.
 __kernel void compactionPlace(__global const uint* restrict slotCount, const uint slots, const uint ranked,
@@ -58,21 +58,20 @@ __kernel void compactionPlace(__global const uint* restrict slotCount, const uin
 {
     const uint before = groupSumOf(sums, get_group_id(0) * perBlock, scratch);
     const uint hits = placeBlock(slotCount, slots, ranked, before, slotFirst, counters, scratch);
-    if (get_group_id(0) == get_num_groups(0) - 1 && get_local_id(0) == 0) counters->m_hits = hits;
+    if (get_group_id(0) == get_num_groups(0) - 1 && get_local_id(0) == 0) counters->m_contactsStored = hits;
 }
 
 // Lists each contact among its slot's members. A work-item goes through its part of the contacts' list; the atomic
 // gives each contact its own position, filled from last to first. keys: the obstacle features of members. Leaves
-// slotCount and the next step's counters zero; also slotKept, if it is not null, for the reduction's kernel.
+// slotCount and the next step's counters zero.
 __kernel void compactionGather(__global const Contact* restrict hits, const uint hitCapacity,
                                __global volatile uint* slotCount, __global const uint* restrict slotFirst,
-                               const uint slots, __global uint* restrict members, __global uint* restrict keys,
-                               __global uint* restrict slotKept, __global const StepCounters* restrict counters,
+                               __global uint* restrict members, __global uint* restrict keys,
+                               __global const StepCounters* restrict counters,
                                __global StepCounters* restrict next)
 {
-    const uint count = min(counters->m_listed, hitCapacity);
+    const uint count = min(counters->m_contactsFound, hitCapacity);
     if (get_global_id(0) < sizeof(StepCounters) / sizeof(uint)) ((__global uint*)next)[get_global_id(0)] = 0;
-    for (uint slot = get_global_id(0); slot < slots && slotKept; slot += get_global_size(0)) slotKept[slot] = 0;
     for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextItem(&runs))
     {
         const uint i = runs.m_item;
@@ -91,7 +90,7 @@ __kernel void compactionOrder(const uint hitCapacity, __global const uint* restr
 {
     __local uint crowded[DRAPE_BLOCK], own[DRAPE_COUNTED], ownKeys[DRAPE_COUNTED];
     __local uint crowdedCount;
-    const uint count = min(counters->m_hits, hitCapacity);
+    const uint count = min(counters->m_contactsStored, hitCapacity);
     const uint begin = get_group_id(0) * block;
     const uint end = min(slots, begin + block);
     if (get_local_id(0) == 0) crowdedCount = 0;
@@ -124,7 +123,7 @@ __kernel void compactionWrite(__global const Contact* restrict hits, const uint 
                               __global const StepCounters* restrict counters, __global uint* restrict slotCount,
                               __global uint* restrict slotSums)
 {
-    const uint count = min(counters->m_hits, hitCapacity);
+    const uint count = min(counters->m_contactsStored, hitCapacity);
     clearSums(slotCount, slotSums, slots);
     if (get_global_id(0) == 0) *(__global StepCounters*)contacts = *counters;
     for (ItemRuns runs = itemRuns(count, parts); runs.m_item < count; nextItem(&runs))

@@ -169,7 +169,6 @@ std::unique_ptr<TrialSimulation> makeTrialSimulation(const ErrorScene& scene, co
     if (!trial.isDrape()) return std::make_unique<WorldSimulation>(scene, trial, nullptr);
     settings.m_activation = float(trial.m_activation);
     settings.m_mode = trial.m_mode;
-    settings.m_reduceContacts = trial.m_reduceContacts;
     if (trial.m_method == Method::DrapeHost)
     {
         settings.m_backend = Backend::Host;

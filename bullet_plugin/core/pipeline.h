@@ -162,16 +162,11 @@ public:
     // Returns the obstacle for queries about nearby points and triangles, in the same frame.
     std::unique_ptr<MeshProbe> makeProbe(MeshId obstacle);
 
-    // Names a pair for the coming step; thickness in m > 0. A cloth without a pair costs nothing. tube: path
-    // tolerance, m, of a caller that lets no node of the cloth go farther than this from its straight path while it
-    // solves. Contacts that the others then enforce up to 2 % of the thickness are left out
-    // (kernels/lib/contact_reduction.h). With a negative value no contact of that cloth is left out, nor of one that
-    // has a pair with a one-sided obstacle or one that moves in the step.
-    void addPair(MeshId cloth, MeshId obstacle, float thickness, float tube = -1.0f);
+    // Names a pair for the coming step; thickness in m > 0. A cloth without a pair costs nothing.
+    void addPair(MeshId cloth, MeshId obstacle, float thickness);
 
     // Names a cloth that collides with itself (MeshDescription::m_selfThickness > 0) in the coming step. Its features
-    // are swept over the step like contacts with obstacles (Settings::m_mode); see kernels/lib/self_contact.h. All of
-    // these contacts are kept, even if others imply them.
+    // are swept over the step like contacts with obstacles (Settings::m_mode); see kernels/lib/self_contact.h.
     void addSelf(MeshId cloth);
 
     // Enqueues the step for the pairs named since the last finish(); returns without waiting.

@@ -33,7 +33,6 @@ struct Options
     BulletMode m_bulletMode = BulletMode::Stock;
     std::string m_device;
     bool m_listDevices = false;
-    bool m_allContacts = false;  // solve contacts that others imply, too
     unsigned m_threads = 0;      // see Settings
     bool m_compare = false;
     bool m_compareSoftPair = false;

@@ -31,19 +31,17 @@ Json ifInContact(const RunSummary& summary, const Json& value)
     return summary.m_stepsInContact > 0 ? value : Json();
 }
 
-// Returns sums over the run. Counts the candidates of the broad phase, the continuous tests, the solved and the omitted
-// contacts, and rebuilt hierarchies of the cloth. Also counts skipped cloths, obstacles reused without change, idle
-// steps, and steps that the host back end ran.
+// Returns sums over the run. Counts the candidates of the broad phase, the continuous tests, and the contacts. Also
+// counts skipped cloths, obstacles reused without change, idle steps, and steps that the host back end ran.
 Json workJson(const RunRecord& record)
 {
-    std::uint64_t candidates = 0, swept = 0, contacts = 0, implied = 0;
+    std::uint64_t candidates = 0, swept = 0, contacts = 0;
     std::size_t cloths = 0, kept = 0, skipped = 0, onHost = 0;
     for (const StepRecord& step : record.m_steps)
     {
         candidates += step.m_times.m_candidates;
         swept += step.m_times.m_sweptTests;
         contacts += step.m_times.m_contacts;
-        implied += step.m_times.m_reduced;
         cloths += step.m_times.m_clothsSkipped;
         kept += step.m_times.m_obstaclesKept;
         skipped += step.m_times.m_skipped;
@@ -53,7 +51,6 @@ Json workJson(const RunRecord& record)
     json["candidates"] = candidates;
     json["continuous_tests"] = swept;
     json["contacts"] = contacts;
-    json["contacts_left_out"] = implied;
     json["cloths_skipped"] = cloths;
     json["obstacles_kept"] = kept;
     json["steps_skipped"] = skipped;

@@ -33,7 +33,6 @@ struct StepTimes
     // Work counts as in StepStatistics; 0 for the built-in collision.
     std::uint64_t m_candidates = 0;
     std::size_t m_sweptTests = 0;
-    std::size_t m_reduced = 0;
     std::size_t m_clothsSkipped = 0;
     std::size_t m_obstaclesKept = 0;
     bool m_skipped = false;

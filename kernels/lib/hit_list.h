@@ -8,14 +8,14 @@
 
 // Outputs of a kernel that finds contacts. slotCount: number of listed contacts per slot. slotSums: sums of
 // slotCount. hitPlaces: per contact, the number of its slot's contacts before it. The last two exist where slots are
-// few on a GPU; elsewhere both are null. slotCount, slotSums and counters->m_listed must be zero before the step's
-// first such kernel. m_listed counts on when the list is full.
+// few on a GPU; elsewhere both are null. slotCount, slotSums and counters->m_contactsFound must be zero before the step's
+// first such kernel. m_contactsFound counts on when the list is full.
 #define DRAPE_HIT_ARGUMENTS                                                                                           \
     __global Contact *restrict hits, const uint hitCapacity, __global uint *restrict hitPlaces,                       \
         __global volatile uint *slotCount, __global volatile uint *slotSums, __global StepCounters *counters
 #define DRAPE_HIT_LIST                                                         \
     {                                                                          \
-        hits, hitCapacity, hitPlaces, slotCount, slotSums, &counters->m_listed \
+        hits, hitCapacity, hitPlaces, slotCount, slotSums, &counters->m_contactsFound \
     }
 
 typedef struct HitList

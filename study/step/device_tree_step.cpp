@@ -110,10 +110,10 @@ bool DeviceTreeStep::grow(const StepCounters& counters, bool& limitReached)
         again = true;
         m_candidates.reserve(m_device, withHeadroom(m_foundRead.m_candidates));
     }
-    if (counters.m_listed > m_compaction.hitCapacity())
+    if (counters.m_contactsFound > m_compaction.hitCapacity())
     {
         again = true;
-        m_compaction.reserveHits(m_device, withHeadroom(counters.m_listed));
+        m_compaction.reserveHits(m_device, withHeadroom(counters.m_contactsFound));
     }
     return again;
 }
@@ -135,14 +135,14 @@ bool DeviceTreeStep::run(const float* start, const float* end, TreeStepResult& r
     }
     if (m_device.failed()) return false;
     m_traversal->accept(m_device, m_foundRead);
-    if (counters.m_hits > m_asked)
+    if (counters.m_contactsStored > m_asked)
     {
-        read(counters.m_hits);
+        read(counters.m_contactsStored);
         m_device.wait();
     }
     const auto first = m_read.begin() + DRAPE_CONTACT_HEAD;
-    result.m_contacts.assign(first, first + std::ptrdiff_t(counters.m_hits));
-    m_asked = std::min<std::size_t>(counters.m_hits + counters.m_hits / 16 + 256, m_compaction.hitCapacity());
+    result.m_contacts.assign(first, first + std::ptrdiff_t(counters.m_contactsStored));
+    m_asked = std::min<std::size_t>(counters.m_contactsStored + counters.m_contactsStored / 16 + 256, m_compaction.hitCapacity());
     result.m_candidates = m_foundRead.m_candidates;
     result.m_volumeTests = m_foundRead.m_visits;
     return !m_device.failed();

@@ -50,7 +50,7 @@ public:
         m_stage.enqueue(m_device, sides(), m_candidates, foundBuffer, m_compaction.hits(), counterBuffer);
         m_compaction.enqueue(m_device, {counterBuffer, next});
         counters = readCounters(m_device, counterBuffer);
-        const std::size_t fitting = std::min<std::size_t>(counters.m_hits, m_compaction.hitCapacity());
+        const std::size_t fitting = std::min<std::size_t>(counters.m_contactsStored, m_compaction.hitCapacity());
         std::vector<Contact> contacts = contents(m_device, m_compaction.contacts(), DRAPE_CONTACT_HEAD + fitting);
         EXPECT_EQ(std::memcmp(contacts.data(), &counters, sizeof(counters)), 0) << "the head";
         contacts.erase(contacts.begin(), contacts.begin() + DRAPE_CONTACT_HEAD);
@@ -116,7 +116,7 @@ TEST_P(PairStageTest, ContactsAreTheHostsAtEverySize)
         SCOPED_TRACE("seed 80, candidates " + std::to_string(count));
         StepCounters counters;
         const std::vector<Contact> host = stage.host(count), device = stage.run(count, counters);
-        EXPECT_EQ(counters.m_hits, host.size());
+        EXPECT_EQ(counters.m_contactsStored, host.size());
         EXPECT_TRUE(sameBytes(device, host)) << difference(device, host);
     }
     EXPECT_GT(stage.host(all).size(), 100u);
@@ -150,14 +150,14 @@ TEST_P(PairStageTest, FullListsCountOnAndTheNextStepIsClean)
         stage.m_compaction.reserveHits(*m_device, capacity);
         StepCounters counters;
         stage.run(all, counters);
-        EXPECT_EQ(counters.m_listed, host.size());
+        EXPECT_EQ(counters.m_contactsFound, host.size());
     }
     stage.m_compaction.reserveHits(*m_device, host.size());
     for (int step = 0; step < 3; ++step)
     {
         StepCounters counters;
         stage.run(0, counters);
-        EXPECT_EQ(counters.m_hits, 0u);
+        EXPECT_EQ(counters.m_contactsStored, 0u);
         const std::vector<Contact> device = stage.run(all, counters);
         EXPECT_TRUE(sameBytes(device, host)) << difference(device, host);
     }

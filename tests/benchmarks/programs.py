@@ -1,4 +1,7 @@
-"""Functions shared by the tests of the benchmark programs. The first argument of a test is the folder of the programs."""
+"""Functions shared by the tests of the benchmark programs.
+
+The first argument of a test is the folder of the programs.
+"""
 import csv
 import json
 import os

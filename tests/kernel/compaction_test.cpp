@@ -51,7 +51,6 @@ public:
         m_order.create(device, program, "compactionOrder");
         m_write.create(device, program, "compactionWrite");
         m_gatherFew.create(device, programOf(device, "compaction_few"), "compactionGatherFew");
-        m_writeKeptFew.create(device, programOf(device, "contact_reduction"), "reductionWriteFew");
     }
 
     std::vector<Contact> run(const std::vector<Contact>& hits, std::uint32_t slots)
@@ -70,20 +69,17 @@ public:
         EXPECT_EQ(contents(m_device, m_counters, 1)[0].m_crowded,
                   cl_uint(std::count_if(slotCount.begin(), slotCount.end(), isCrowded)));
         expectPlacesWithoutSums(slots);
-        guardCopy(m_device, m_slotKept, std::vector<cl_uint>(slots, 7));
         m_gather.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotCount.handle(),
-                        m_slotFirst.handle(), slots, m_members.handle(), m_keys.handle(), m_slotKept.handle(),
-                        m_counters.handle(), m_next.handle());
+                        m_slotFirst.handle(), m_members.handle(), m_keys.handle(), m_counters.handle(), m_next.handle());
         enqueueOrderAndWrite(slots, capacity, nullptr);
         expectClean(m_slotCount, slots);
-        expectClean(m_slotKept, slots);
         EXPECT_TRUE(intact(m_device, m_hits) && intact(m_device, m_slotCount) && intact(m_device, m_slotFirst) &&
                     intact(m_device, m_blockCount) && intact(m_device, m_members) && intact(m_device, m_keys) &&
                     intact(m_device, m_contacts));
         EXPECT_TRUE(sameBytes(contents(m_device, m_next, 1), std::vector<StepCounters>(1)))
             << "counters are clean after";
         EXPECT_TRUE(intact(m_device, m_next));
-        const std::size_t count = contents(m_device, m_counters, 1)[0].m_hits;
+        const std::size_t count = contents(m_device, m_counters, 1)[0].m_contactsStored;
         std::vector<Contact> found = contents(m_device, m_contacts, DRAPE_CONTACT_HEAD + std::min(count, hits.size()));
         found.erase(found.begin(), found.begin() + DRAPE_CONTACT_HEAD);
         return found;
@@ -98,43 +94,6 @@ public:
         expectClean(m_slotSums, DRAPE_SLOT_SUMS);
         expectIntact();
         return written(hits.size());
-    }
-
-    // Drops every third hit of those that are listed, and writes the others.
-    std::vector<Contact> runKept(const std::vector<Contact>& hits, std::uint32_t slots)
-    {
-        const cl_uint capacity = enqueueFew(hits, slots);
-        EXPECT_EQ(contents(m_device, m_counters, 1)[0].m_hits, cl_uint(hits.size()));
-        expectClean(m_slotKept, slots);
-        expectClean(m_keptSums, DRAPE_SLOT_SUMS);
-        const std::vector<cl_uint> first = contents(m_device, m_slotFirst, slots);
-        std::vector<cl_uint> kept = contents(m_device, m_members, hits.size()), slotKept(slots, 0);
-        std::vector<Contact> expected;
-        for (std::uint32_t slot = 0; slot < slots; ++slot)
-        {
-            const std::size_t end = slot + 1 < slots ? first[slot + 1] : hits.size();
-            const auto from = kept.begin() + first[slot], to = kept.begin() + std::ptrdiff_t(end);
-            EXPECT_TRUE(std::all_of(from, to, [&](cl_uint member) { return hits[member].m_slot == slot; }));
-            std::sort(from, to, [&](cl_uint a, cl_uint b) { return inOrder(hits[a], hits[b]); });
-            const auto stay = std::remove_if(from, to, [](cl_uint member) { return member % 3 == 0; });
-            slotKept[slot] = cl_uint(stay - from);
-            std::fill(stay, to, DRAPE_NO_FEATURE);
-            for (auto member = from; member != stay; ++member)
-                expected.push_back(hits[*member]);
-        }
-        kept.resize(capacity);
-        guardCopy(m_device, m_kept, kept);
-        guardCopy(m_device, m_keptSums, slotSumsOf(slotKept));
-        guardCopy(m_device, m_slotKept, slotKept);
-        m_writeKeptFew.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotFirst.handle(), slots,
-                              m_parts, m_kept.handle(), m_slotKept.handle(), m_keptSums.handle(), m_contacts.handle(),
-                              m_counters.handle(), m_slotCount.handle(), m_slotSums.handle());
-        expectClean(m_slotCount, slots);
-        expectClean(m_slotSums, DRAPE_SLOT_SUMS);
-        expectIntact();
-        const std::vector<Contact> found = written(expected.size());
-        EXPECT_TRUE(sameBytes(found, expected)) << difference(found, expected);
-        return found;
     }
 
     // Slots that one group sorts; hits of a slot from which on it does; work-items that copy a hit.
@@ -156,7 +115,6 @@ public:
             if (slots > DRAPE_MOST_SUMMED) continue;
             const std::vector<Contact> few = runFew(hits, slots);
             ASSERT_TRUE(sameBytes(few, ordered)) << parts << " parts, few slots: " << difference(few, ordered);
-            runKept(hits, slots);
         }
     }
 
@@ -175,7 +133,7 @@ private:
     {
         const cl_uint capacity = cl_uint(std::max<std::size_t>(1, hits.size()));
         std::vector<StepCounters> start(1);
-        start[0].m_listed = cl_uint(hits.size()) + unlisted;
+        start[0].m_contactsFound = cl_uint(hits.size()) + unlisted;
         guardCopy(m_device, m_hits, hits);
         guardCopy(m_device, m_slotCount, slotCount);
         guardCopy(m_device, m_counters, start);
@@ -197,12 +155,9 @@ private:
         places.resize(capacity);
         guardCopy(m_device, m_hitPlaces, places);
         guardCopy(m_device, m_slotSums, slotSumsOf(slotCount));
-        guardCopy(m_device, m_slotKept, std::vector<cl_uint>(slots, 7));
-        guardCopy(m_device, m_keptSums, std::vector<cl_uint>(DRAPE_SLOT_SUMS, 7));
         m_gatherFew.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_hitPlaces.handle(),
                            m_slotCount.handle(), m_slotSums.handle(), slots, m_ranked, m_slotFirst.handle(),
-                           m_members.handle(), m_keys.handle(), m_slotKept.handle(), m_keptSums.handle(),
-                           m_counters.handle(), m_next.handle());
+                           m_members.handle(), m_keys.handle(), m_counters.handle(), m_next.handle());
         const auto isCrowded = [&](cl_uint count) { return count > m_ranked; };
         EXPECT_EQ(contents(m_device, m_counters, 1)[0].m_crowded,
                   cl_uint(std::count_if(slotCount.begin(), slotCount.end(), isCrowded)));
@@ -230,7 +185,7 @@ private:
     void expectIntact()
     {
         for (Buffer<cl_uint>* numbers :
-             {&m_members, &m_keys, &m_slotFirst, &m_slotCount, &m_slotSums, &m_hitPlaces, &m_slotKept, &m_keptSums})
+             {&m_members, &m_keys, &m_slotFirst, &m_slotCount, &m_slotSums, &m_hitPlaces})
             EXPECT_TRUE(intact(m_device, *numbers));
         EXPECT_TRUE(intact(m_device, m_contacts) && intact(m_device, m_next));
     }
@@ -241,7 +196,7 @@ private:
         std::vector<Contact> found = contents(m_device, m_contacts, DRAPE_CONTACT_HEAD + count);
         StepCounters head;
         std::memcpy(&head, found.data(), sizeof(head));
-        EXPECT_EQ(head.m_hits, cl_uint(count));
+        EXPECT_EQ(head.m_contactsStored, cl_uint(count));
         found.erase(found.begin(), found.begin() + DRAPE_CONTACT_HEAD);
         return found;
     }
@@ -249,21 +204,21 @@ private:
     // Expects equal positions from sums over the slots and from sums over blocks.
     void expectPlacesWithoutSums(std::uint32_t slots)
     {
-        const cl_uint hits = contents(m_device, m_counters, 1)[0].m_hits;
+        const cl_uint hits = contents(m_device, m_counters, 1)[0].m_contactsStored;
         guard(m_device, m_places, slots);
         const std::size_t blocks = (slots + kBlock - 1) / kBlock;
         m_place.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_ranked, m_slotCount.handle(),
                        cl_uint(kBlock), m_places.handle(), m_counters.handle(), cl::Local(kGroup * sizeof(cl_uint)));
         EXPECT_EQ(contents(m_device, m_places, slots), contents(m_device, m_slotFirst, slots));
-        EXPECT_EQ(contents(m_device, m_counters, 1)[0].m_hits, hits);
+        EXPECT_EQ(contents(m_device, m_counters, 1)[0].m_contactsStored, hits);
         EXPECT_TRUE(intact(m_device, m_places) && intact(m_device, m_counters));
     }
 
     Device& m_device;
-    Kernel m_count, m_place, m_gather, m_gatherFew, m_order, m_write, m_writeKeptFew;
+    Kernel m_count, m_place, m_gather, m_gatherFew, m_order, m_write;
     Buffer<Contact> m_hits, m_contacts;
     Buffer<cl_uint> m_slotCount, m_slotFirst, m_blockCount, m_members, m_keys, m_places, m_hitPlaces;
-    Buffer<cl_uint> m_slotSums, m_kept, m_slotKept, m_keptSums;
+    Buffer<cl_uint> m_slotSums;
     Buffer<StepCounters> m_counters, m_next;
 };
 }  // namespace

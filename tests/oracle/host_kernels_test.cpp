@@ -69,7 +69,7 @@ public:
         };
         run(m_kernels.m_findHits, 1 + m_counters.m_candidates / 100);
         run(m_kernels.m_findSwept, 6);
-        orderHits(hits.data(), m_counters.m_listed, slots, contacts, threads);
+        orderHits(hits.data(), m_counters.m_contactsFound, slots, contacts, threads);
         return contacts;
     }
 

@@ -1,15 +1,13 @@
-// Compaction sorts a step's unsorted contacts into canonical order (kernels/shared/contact.h), and optionally leaves
-// out contacts that others imply.
+// Compaction sorts a step's unsorted contacts into canonical order (kernels/shared/contact.h).
 //
 // Input: hits() filled, each slot's number of contacts, and the total in the step's counters. Output: contacts(), and
 // their number in the counters; the slots' numbers and the next step's counters are left zero. Guarantee: the host's
 // contacts, bit for bit. A full list still counts its demand, and the step must run again with a larger one. Cost:
-// two or three launches on a GPU with few slots, else three to five; the reduction's cost is documented there.
+// two or three launches on a GPU with few slots, else three to five.
 #pragma once
 
 #include <cstdint>
 
-#include "contact_reduction.h"
 #include "hit_buffers.h"
 #include "slot_places.h"
 
@@ -29,8 +27,7 @@ struct StepTally
 class CompactionStage
 {
 public:
-    // reduces: whether steps may reduce their contacts; its kernels are not built otherwise.
-    void create(Device& device, const ProgramLoader& load, bool reduces = false);
+    void create(Device& device, const ProgramLoader& load);
 
     // Makes room for the slots of a cloth side: its nodes, faces and edges.
     void resizeSlots(Device& device, std::size_t slotCount);
@@ -45,24 +42,21 @@ public:
     // Contacts, behind a head of DRAPE_CONTACT_HEAD elements that holds the step's counters.
     Buffer<Contact>& contacts() { return m_contacts; }
 
-    // Returns after enqueueing. reduction: null to keep every contact.
-    void enqueue(Device& device, StepTally tally, const ReductionBuffers* reduction = nullptr);
+    // Returns after enqueueing.
+    void enqueue(Device& device, StepTally tally);
 
 private:
     // Returns whether slots are few on a GPU, so that every work-item sums for itself.
     bool hasSums() { return m_slotSums.capacity() > 0; }
-    void enqueueGather(Device& device, StepTally tally, cl_uint ranked, const ReductionBuffers* reduction);
-    void enqueueOrder(Device& device, cl_uint ranked, StepTally tally);
+    void enqueueGather(Device& device, StepTally tally, cl_uint ranked);
+    void enqueueOrder(Device& device, StepTally tally, cl_uint ranked);
     void reserveHitPlaces(Device& device);
-    SlotHits slotHits() { return {m_hits, m_slotFirst, m_members, m_slotCount, m_slotSums}; }
 
     SlotPlaces m_places;
-    ContactReductionStage m_reduction;
     Kernel m_gather, m_gatherFew, m_order, m_write;
     Buffer<Contact> m_hits{"step hits"}, m_contacts{"step contacts"};
     Buffer<cl_uint> m_hitPlaces{"step hits"}, m_slotSums{"cloth slots"};  // on a GPU, where slots are few
     Buffer<cl_uint> m_slotCount{"cloth slots"}, m_slotFirst{"cloth slots"};
     Buffer<cl_uint> m_members{"step hits"}, m_keys{"step hits"};
-    bool m_reduces = false;
 };
 }  // namespace drape

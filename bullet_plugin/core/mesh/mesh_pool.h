@@ -82,7 +82,6 @@ public:
     std::size_t vertexCount() const { return m_vertexCount; }
     const std::vector<Triangle>& triangles() const { return m_triangles; }
     const std::vector<Edge>& edges() const { return m_edges; }
-    const std::vector<MeshFirsts>& firsts() const { return m_firsts; }
 
 private:
     // Releases vacant slots: all of them, or the last ones.

@@ -103,7 +103,7 @@ CrossoverCache::CrossoverCache(const Settings& settings, const DeviceInfo& devic
     machine << "device " << oneLine(device.m_name) << "\nplatform " << oneLine(device.m_platform) << "\nunits "
             << computeUnits << threadsOf(device) << "\nhost " << oneLine(processorName()) << " threads "
             << ThreadTeam::sizeFor(settings.m_threads) << "\nsettings mode " << int(settings.m_mode) << " activation "
-            << settings.m_activation << " reduce " << settings.m_reduceContacts << "\n";
+            << settings.m_activation << "\n";
     state << "driver " << oneLine(device.m_driver) << "\ndrape " << DRAPE_VERSION_STRING << " kernels " << kernelsHash()
           << " host " << kHostRevision << "\n";
     m_machine = machine.str();

@@ -17,25 +17,22 @@ constexpr std::size_t kFloatsBetween = 1 << 16;
 
 // Returns the files that are one program on a CPU: those of every step, and those that cloths need beside them that
 // collide with themselves.
-std::vector<ProgramSet::Names> filesTogether(bool reduces)
+std::vector<ProgramSet::Names> filesTogether()
 {
-    ProgramSet::Names step = {"compaction", "place_obstacles", "patch_cull",
-                              "patch_pack", "narrow_phase",    "narrow_phase_lanes"};
-    if (reduces) step.insert(step.end(), {"contact_reduction", "contact_reduction_slots"});
-    return {step, {"self_cull", "self_pack_lanes", "self_contact", "self_contact_lanes"}};
+    return {{"compaction", "place_obstacles", "patch_cull", "patch_pack", "narrow_phase", "narrow_phase_lanes"},
+            {"self_cull", "self_pack_lanes", "self_contact", "self_contact_lanes"}};
 }
 }  // namespace
 
 DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& settings)
     : m_device(std::move(device)),
       m_settings(settings),
-      m_programs(*m_device, settings.m_cacheFolder, filesTogether(settings.m_reduceContacts),
-                 PatchCullStage::defines(*m_device))
+      m_programs(*m_device, settings.m_cacheFolder, filesTogether(), PatchCullStage::defines(*m_device))
 {
     const ProgramLoader load = m_programs.loader();
     m_patchCull.create(*m_device, load);
     m_narrowPhase.create(*m_device, load);
-    m_compaction.create(*m_device, load, m_settings.m_reduceContacts);
+    m_compaction.create(*m_device, load);
     m_placed.create(*m_device, load("place_obstacles"));
     m_motions.reserve(*m_device, 1);
     reserveFirst();
@@ -80,17 +77,9 @@ void DeviceBackend::warmUp(float selfThickness)
     StepResult result;
     submit(scene, pairs);
     finish(scene, pairs, result);
-    if (m_settings.m_reduceContacts)
-    {
-        pairs.m_tube = {0.1f};
-        pairs.m_anyTube = true;
-        submit(scene, pairs);
-        finish(scene, pairs, result);
-    }
     m_device->wait();
     forgetScene();
     m_sentThickness.clear();
-    m_sentTube.clear();
     m_sentRadius.clear();
     m_testsBefore = m_hitsBefore = SIZE_MAX;
 }
@@ -113,7 +102,6 @@ void DeviceBackend::uploadSide(const MeshPool& pool, Side& side)
     const std::size_t first = pool.firstSince(side.m_revision);
     side.m_revision = pool.revision();
     side.m_triangles.append(*m_device, pool.triangles(), pool.begin(first).m_triangle);
-    if (m_settings.m_reduceContacts) side.m_firsts.assign(*m_device, pool.firsts());
 }
 
 // The cull over patches needs only the cloths' order: that of their own patches, since it traverses for packets.
@@ -206,11 +194,6 @@ void DeviceBackend::uploadStep(const Scene& scene, const StepPairs& pairs, std::
         m_sentThickness = pairs.m_thickness;
         m_thickness.assign(*m_device, m_sentThickness);
     }
-    if (pairs.m_anyTube && m_sentTube != pairs.m_tube)
-    {
-        m_sentTube = pairs.m_tube;
-        m_tube.assign(*m_device, m_sentTube);
-    }
     if (pairs.m_anySelf) m_self.setReach(*m_device, pairs.m_self);
     if (!pairs.m_motions.empty())
     {
@@ -255,20 +238,6 @@ SelfBuffers DeviceBackend::selfBuffers(const Scene& scene)
             StepLimits(m_settings).m_candidates};
 }
 
-ReductionBuffers DeviceBackend::reductionBuffers(const Scene& scene)
-{
-    return {m_clothStart,
-            m_clothEnd,
-            m_cloth.m_triangles,
-            m_clothEdges,
-            m_cloth.m_firsts,
-            m_obstacle.m_firsts,
-            scene.m_cloths.meshCount(),
-            scene.m_obstacles.meshCount(),
-            m_thickness,
-            m_tube};
-}
-
 // Finds pairs of features, or of triangles, that may touch.
 void DeviceBackend::enqueueBroad(const Scene& scene, const StepPairs& pairs)
 {
@@ -294,12 +263,10 @@ void DeviceBackend::enqueueNarrow(const Scene& scene, const StepPairs& pairs)
     if (pairs.m_anySelf) m_self.enqueueContacts(*m_device, selfBuffers(scene), hits, counters());
 }
 
-// Their contacts in canonical order.
-void DeviceBackend::enqueueCompaction(const Scene& scene, const StepPairs& pairs)
+// Puts the contacts into canonical order.
+void DeviceBackend::enqueueCompaction()
 {
-    const StepTally tally = {counters(), m_counters[1 - m_turn], m_stepsToOrder > 0, m_hitsBefore};
-    const ReductionBuffers reduction = reductionBuffers(scene);
-    m_compaction.enqueue(*m_device, tally, pairs.m_anyPair && pairs.m_anyTube ? &reduction : nullptr);
+    m_compaction.enqueue(*m_device, {counters(), m_counters[1 - m_turn], m_stepsToOrder > 0, m_hitsBefore});
 }
 
 void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
@@ -307,7 +274,7 @@ void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
     m_turn = 1 - m_turn;
     enqueueBroad(scene, pairs);
     enqueueNarrow(scene, pairs);
-    enqueueCompaction(scene, pairs);
+    enqueueCompaction();
     readContacts(m_contactsAsked);
     m_device->flush();
 }

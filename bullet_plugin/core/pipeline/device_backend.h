@@ -49,14 +49,12 @@ private:
         explicit Side(const std::string& side)
             : m_order(side + " order"),
               m_triangles(side + " triangles"),
-              m_radius(side + " meshes"),
-              m_firsts(side + " meshes")
+              m_radius(side + " meshes")
         {
         }
         Buffer<cl_uint> m_order;
         Buffer<Triangle> m_triangles;
         Buffer<float> m_radius;
-        Buffer<MeshFirsts> m_firsts;
         std::uint32_t m_revision = 0;
     };
 
@@ -80,10 +78,9 @@ private:
     Buffer<StepCounters>& counters() { return m_counters[m_turn]; }
     void enqueueBroad(const Scene& scene, const StepPairs& pairs);
     void enqueueNarrow(const Scene& scene, const StepPairs& pairs);
-    void enqueueCompaction(const Scene& scene, const StepPairs& pairs);
+    void enqueueCompaction();
     NarrowPhaseBuffers narrowPhaseBuffers(const StepPairs& pairs);
     SelfBuffers selfBuffers(const Scene& scene);
-    ReductionBuffers reductionBuffers(const Scene& scene);
     // Enqueues the transfer of the step's counters and first contacts.
     void readContacts(std::size_t count);
     StepCounters countersRead() const;
@@ -108,7 +105,7 @@ private:
     Side m_cloth{"cloth"}, m_obstacle{"obstacle"};
     Buffer<float> m_clothNodes{"cloth positions"};
     Buffer<float> m_clothStart, m_clothEnd;  // parts of it, laid out like ClothNodes
-    Buffer<float> m_thickness{"pairs of meshes"}, m_tube{"pairs of meshes"};
+    Buffer<float> m_thickness{"pairs of meshes"};
     Buffer<Edge> m_clothEdges{"cloth edges"};
     Buffer<ObstacleMotion> m_motions{"obstacle places"};
     std::vector<cl_uint> m_clustered;  // order, like m_cloth.m_order
@@ -121,6 +118,6 @@ private:
                 m_hitsBefore = SIZE_MAX;               // feature tests and unsorted contacts of the step before
     std::unique_ptr<Staging<Contact>> m_contactsRead;  // behind a head as on the device
     std::size_t m_contactsAsked = 0;
-    std::vector<float> m_sentThickness, m_sentTube, m_sentRadius;
+    std::vector<float> m_sentThickness, m_sentRadius;
 };
 }  // namespace drape

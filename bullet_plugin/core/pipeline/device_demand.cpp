@@ -35,7 +35,7 @@ StepCounters DeviceBackend::countersRead() const
 void DeviceBackend::takeCounts(const StepCounters& counters)
 {
     m_testsBefore = counters.m_candidates;
-    m_hitsBefore = counters.m_listed;
+    m_hitsBefore = counters.m_contactsFound;
 }
 
 bool DeviceBackend::overLimit(const StepPairs& pairs, StepResult& result)
@@ -61,10 +61,10 @@ bool DeviceBackend::overLimit(const StepPairs& pairs, StepResult& result)
     {
         result.m_overLimit = result.m_overTests = true;
     }
-    else if (ofObstacles && ofSelf && counters.m_listed > limits.m_contacts)
+    else if (ofObstacles && ofSelf && counters.m_contactsFound > limits.m_contacts)
     {
         result.m_overLimit = true;
-        result.m_contactDemand = counters.m_listed;
+        result.m_contactDemand = counters.m_contactsFound;
     }
     return result.m_overLimit;
 }
@@ -91,7 +91,7 @@ bool DeviceBackend::grow()
            [&](std::size_t count) { m_self.reservePairs(device, count); });
     demand(counters.m_selfTests, m_self.tests().capacity(), sizeof(FeatureTest),
            [&](std::size_t count) { m_self.reserveTests(device, count); });
-    demand(std::min(std::size_t(counters.m_listed), StepLimits(m_settings).m_contacts), m_compaction.hitCapacity(),
+    demand(std::min(std::size_t(counters.m_contactsFound), StepLimits(m_settings).m_contacts), m_compaction.hitCapacity(),
            sizeof(Contact), [&](std::size_t count) { m_compaction.reserveHits(device, count); });
     if (counters.m_crowded > 0)
     {
@@ -133,9 +133,8 @@ void DeviceBackend::readAll(StepResult& result)
     result.m_sweptTests = counters.m_swept;
     result.m_selfCandidates = counters.m_selfTests;
     result.m_selfSweptTests = counters.m_selfSwept;
-    result.m_reduced = counters.m_listed - counters.m_hits;
     result.m_invalidNodes = counters.m_invalidNodes;
-    const std::size_t count = counters.m_hits;
+    const std::size_t count = counters.m_contactsStored;
     if (count > m_contactsAsked)
     {
         m_contactsRead->reserve(m_device.get(), DRAPE_CONTACT_HEAD + withHeadroom(count));

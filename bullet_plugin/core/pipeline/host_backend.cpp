@@ -1,27 +1,9 @@
 #include "host_backend.h"
 
 #include <algorithm>
-#include <utility>
-
-#include "bullet_plugin/core/compaction/contact_reduction.h"
-#include "bullet_plugin/core/stopwatch.h"
 
 namespace drape
 {
-ReductionView HostBackend::reductionView(const Scene& scene, const StepPairs& pairs)
-{
-    return {scene.m_clothNodes.start(),
-            scene.m_clothNodes.end(),
-            scene.m_cloths.triangles().data(),
-            scene.m_cloths.edges().data(),
-            scene.m_cloths.firsts().data(),
-            scene.m_obstacles.firsts().data(),
-            std::uint32_t(scene.m_cloths.meshCount()),
-            std::uint32_t(scene.m_obstacles.meshCount()),
-            pairs.m_thickness.data(),
-            pairs.m_tube.data()};
-}
-
 std::vector<std::uint64_t> HostBackend::countTests(const Scene& scene, const StepPairs& pairs, const Settings& settings)
 {
     return m_patches.countTests(scene, pairs, selfStep(scene, pairs, settings), settings, *m_threads);
@@ -52,19 +34,7 @@ void HostBackend::runSelf(const Scene& scene, const StepPairs& pairs, const Sett
 void HostBackend::run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result)
 {
     result.clear();
-    if (pairs.m_anyPair && !runPairs(scene, pairs, settings, result)) return;
+    if (pairs.m_anyPair && !m_patches.run(scene, pairs, settings, *m_threads, result)) return;
     if (pairs.m_anySelf) runSelf(scene, pairs, settings, result);
-}
-
-bool HostBackend::runPairs(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result)
-{
-    const bool whole = m_patches.run(scene, pairs, settings, *m_threads, result);
-    if (!whole || !pairs.m_anyTube) return whole;
-    Stopwatch watch;
-    const std::size_t found = result.m_contacts.size();
-    reduceOnHost(result.m_contacts, reductionView(scene, pairs), scene.slotCount(), *m_threads);
-    result.m_reduced = found - result.m_contacts.size();
-    result.m_narrowMs += watch.lapMs();
-    return true;
 }
 }  // namespace drape

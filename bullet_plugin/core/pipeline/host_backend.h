@@ -4,7 +4,6 @@
 #include <memory>
 #include <utility>
 
-#include "bullet_plugin/core/compaction/contact_reduction.h"
 #include "drape/settings.h"
 #include "host_patches.h"
 #include "step.h"
@@ -28,10 +27,7 @@ public:
     std::vector<std::uint64_t> countTests(const Scene& scene, const StepPairs& pairs, const Settings& settings);
 
 private:
-    static ReductionView reductionView(const Scene& scene, const StepPairs& pairs);
     static SelfStep selfStep(const Scene& scene, const StepPairs& pairs, const Settings& settings);
-    // Finds contacts of cloth-obstacle pairs, in canonical order. Returns false if the step exceeds a limit.
-    bool runPairs(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
     void runSelf(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
 
     std::shared_ptr<ThreadTeam> m_threads;

@@ -99,11 +99,11 @@ bool HostPatches::run(const Scene& scene, const StepPairs& pairs, const Settings
     result.m_sweptTests = counters.m_swept;
     result.m_overLimit = result.m_overTests = counters.m_swept > pairs.m_limits.m_swept;
     if (result.m_overLimit) return false;
-    result.m_overLimit = counters.m_listed > limits.m_contacts;
+    result.m_overLimit = counters.m_contactsFound > limits.m_contacts;
     if (result.m_overLimit)
-        result.m_contactDemand = counters.m_listed;
+        result.m_contactDemand = counters.m_contactsFound;
     else
-        m_hits.order(counters.m_listed, result.m_contacts, threads);
+        m_hits.order(counters.m_contactsFound, result.m_contacts, threads);
     result.m_narrowMs = watch.lapMs();
     return !result.m_overLimit;
 }

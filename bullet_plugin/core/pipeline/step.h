@@ -93,8 +93,6 @@ struct StepLimits
 struct StepPairs
 {
     std::vector<float> m_thickness;  // m, cloth slots × obstacle slots, -1 without a pair
-    std::vector<float> m_tube;       // m; -1 to keep every contact
-    bool m_anyTube = false;
     std::vector<float> m_clothRadius;       // m, per cloth slot: the largest reach of its pairs, -1 without one
     std::vector<ObstacleMotion> m_motions;  // motions of the moving obstacles with a pair, in the order of slots
     std::vector<TestLimits> m_ordinary;     // per cloth slot: what its pairs need in ordinary motion
@@ -115,7 +113,6 @@ struct StepPairs
     {
         const std::size_t obstacles = obstacleSlots();
         std::fill_n(m_thickness.begin() + std::ptrdiff_t(cloth * obstacles), obstacles, -1.0f);
-        std::fill_n(m_tube.begin() + std::ptrdiff_t(cloth * obstacles), obstacles, -1.0f);
         m_clothRadius[cloth] = -1.0f;
         m_anyPair =
             std::any_of(m_clothRadius.begin(), m_clothRadius.end(), [](float radius) { return radius >= 0.0f; });
@@ -137,7 +134,6 @@ struct StepResult
     std::size_t m_sweptTests = 0;
     std::size_t m_selfCandidates = 0;
     std::size_t m_selfSweptTests = 0;
-    std::size_t m_reduced = 0;
     std::size_t m_invalidNodes = 0;
     std::size_t m_retries = 0;
     double m_refitMs = 0, m_broadMs = 0, m_narrowMs = 0;  // on the host back end

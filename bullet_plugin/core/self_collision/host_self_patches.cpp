@@ -120,11 +120,11 @@ void HostSelfPatches::findContacts(const SelfStep& step, SelfStepLimits limits, 
     const HostSelfKernels& kernels = *m_kernels->m_self;
     m_retries += m_hits.find(kernels.m_findHits, kernels.m_findSwept, &StepCounters::m_selfSwept, features,
                              2 * std::size_t(firstSlot), {limits.m_contacts, SIZE_MAX}, threads, m_counters);
-    if (m_counters.m_listed <= limits.m_contacts) m_hits.order(m_counters.m_listed, contacts, threads);
+    if (m_counters.m_contactsFound <= limits.m_contacts) m_hits.order(m_counters.m_contactsFound, contacts, threads);
 }
 
 SelfCounts HostSelfPatches::counts() const
 {
-    return {m_counters.m_selfTests, m_counters.m_listed, m_counters.m_selfSwept, m_counters.m_invalidNodes, m_retries};
+    return {m_counters.m_selfTests, m_counters.m_contactsFound, m_counters.m_selfSwept, m_counters.m_invalidNodes, m_retries};
 }
 }  // namespace drape

@@ -127,8 +127,6 @@ struct StepStatistics
     std::size_t m_selfSweptTests = 0;
     // Contacts of cloths with themselves.
     std::size_t m_selfContacts = 0;
-    // Redundant contacts that were left out.
-    std::size_t m_reduced = 0;
     // Number of nodes left out, with kStepInvalidNodes.
     std::size_t m_invalidNodes = 0;
     // Pairs of a cloth and an obstacle that started the step intersecting, with kStepStartsIntersecting.

@@ -55,9 +55,6 @@ struct Settings
     // Larger values cost more contacts and were not safer in random worlds.
     float m_activation = 0.5f;
 
-    // Leaves out contacts that others already enforce, up to 2 % of the thickness.
-    bool m_reduceContacts = true;
-
     // Selects how motion within a step is treated. Continuous and Automatic find every face and edge that meets a
     // feature of the obstacle on its straight path, at the earliest time. Discrete may miss faster motion than a
     // thickness per step.
