@@ -4,9 +4,9 @@
 
 #include <drape/drape.h>
 
-#include "examples/cloth_drop/drop_world.h"
-#include "examples/cloth_drop/node_positions.h"
-#include "scenes/crossings.h"
+#include "tools/cloth_drop/drop_world.h"
+#include "tools/cloth_drop/node_positions.h"
+#include "oracle/crossings.h"
 
 namespace drape::bench
 {

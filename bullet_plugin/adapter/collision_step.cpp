@@ -6,7 +6,7 @@
 
 #include "bullet_plugin/adapter/stretch.h"
 #include "bullet_plugin/adapter/vectors.h"
-#include "bullet_plugin/core/mesh/reserve_room.h"
+#include "bullet_plugin/core/scene/reserve_room.h"
 
 namespace drape
 {

@@ -1,4 +1,4 @@
-// A step's list of unsorted contacts; compaction sorts it into canonical order. For kernels only.
+// A step's list of unsorted contacts; ordering sorts it into canonical order. For kernels only.
 #ifndef DRAPE_LIB_HIT_LIST_H
 #define DRAPE_LIB_HIT_LIST_H
 
@@ -28,7 +28,7 @@ typedef struct HitList
     __global volatile uint* m_count;
 } HitList;
 
-#ifndef DRAPE_HOST_KERNELS
+#ifndef DRAPE_CPU_KERNELS
 // Vectors per contact. A listed contact is aligned to one; a narrower store costs a GPU's memory more.
 #define DRAPE_CONTACT_QUARTERS 4
 typedef char ContactFits[sizeof(Contact) == DRAPE_CONTACT_QUARTERS * sizeof(uint4) ? 1 : -1];

@@ -11,7 +11,7 @@
 #include <tuple>
 #include <vector>
 
-#include "bullet_plugin/core/pipeline.h"
+#include "bullet_plugin/core/pipeline/pipeline.h"
 #include "scenes/describe_mesh.h"
 #include "tests/fuzz/bytes.h"
 

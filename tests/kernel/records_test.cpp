@@ -116,7 +116,7 @@ TEST_P(RecordsTest, DeviceAndHostAgree)
     const std::unique_ptr<Device> device = openDevice(GetParam());
     ASSERT_TRUE(device);
     // Embedded files bring the shared headers; the test's kernel follows them.
-    std::string source = assembleSource("kernels/narrow_phase.cl");
+    std::string source = assembleSource("kernels/narrow_phase/narrow_phase.cl");
     source += "\n__kernel void reportRecords(__global uint* values)\n{\n";
     for (const char* type : {"Vec3", "Triangle", "Edge", "NormalCone", "BvhNode", "Candidate", "StepCounters",
                              "Contact", "Patch", "FeatureTest", "ObstaclePlace", "ObstacleMotion"})

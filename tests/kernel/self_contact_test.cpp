@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "bullet_plugin/core/broad_phase/patch_cull.h"
-#include "bullet_plugin/core/compaction/canonical_order.h"
-#include "bullet_plugin/core/self_collision/self_contacts.h"
+#include "bullet_plugin/core/ordering/canonical_order.h"
+#include "bullet_plugin/core/cloth_cloth/self_contacts.h"
 #include "reference/self_pairs.h"
 #include "tests/support/device_side.h"
 #include "tests/support/self_cases.h"

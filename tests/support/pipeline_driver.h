@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "bullet_plugin/core/pipeline.h"
+#include "bullet_plugin/core/pipeline/pipeline.h"
 #include "scenes/mesh.h"
 #include "tests/support/cases.h"
 

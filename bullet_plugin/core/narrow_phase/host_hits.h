@@ -1,13 +1,13 @@
-// Narrow phase on the host with a CPU's kernels (host_kernels.h), on a team's threads: turns a list of tests into
+// Narrow phase on the host with a CPU's kernels (cpu_kernels.h), on a team's threads: turns a list of tests into
 // unsorted contacts, and these into contacts in canonical order.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "bullet_plugin/core/compaction/canonical_order.h"
-#include "bullet_plugin/core/host_kernels/host_kernels.h"
-#include "bullet_plugin/core/mesh/reserve_room.h"
+#include "bullet_plugin/core/ordering/canonical_order.h"
+#include "bullet_plugin/core/cpu/cpu_kernels.h"
+#include "bullet_plugin/core/scene/reserve_room.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 
 namespace drape

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "backend_choice.h"
+#include "bullet_plugin/core/backend_choice/backend_choice.h"
 #include "bullet_plugin/core/device/device_choice.h"
-#include "bullet_plugin/core/pipeline.h"
-#include "device_backend.h"
-#include "host_backend.h"
+#include "bullet_plugin/core/pipeline/pipeline.h"
+#include "bullet_plugin/core/backends/device_backend.h"
+#include "bullet_plugin/core/backends/host_backend.h"
 
 namespace drape
 {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cassert>
 
-#include "bullet_plugin/core/mesh/check_indices.h"
-#include "bullet_plugin/core/mesh/reserve_room.h"
+#include "bullet_plugin/core/scene/check_indices.h"
+#include "bullet_plugin/core/scene/reserve_room.h"
 #include "bullet_plugin/core/stopwatch.h"
 #include "check_settings.h"
-#include "scene_work.h"
+#include "bullet_plugin/core/backend_choice/scene_work.h"
 
 namespace drape
 {
