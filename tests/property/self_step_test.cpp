@@ -40,7 +40,7 @@ SelfResult runOverSphere(const Settings& settings, const SelfStepCase& step, boo
     description.m_restPositions = step.m_rest.data();
     const MeshId cloth = pipeline->addCloth(description), obstacle = addObstacle(*pipeline, sphere);
     setMotion(*pipeline, cloth, step.m_motion.m_mesh.m_positions, step.m_motion.m_end);
-    pipeline->addPair(cloth, obstacle, 0.03f, 0.01f);
+    pipeline->addPair(cloth, obstacle, 0.03f);
     if (self) pipeline->addSelf(cloth);
     pipeline->submit();
     result.m_contacts = listed(pipeline->finish());

@@ -111,7 +111,7 @@ public:
     {
         placeCloth(m_clothSheet, step, m_pipeline.clothStart(m_cloth));
         placeCloth(m_clothSheet, step + 1, m_pipeline.clothEnd(m_cloth));
-        m_pipeline.addPair(m_cloth, m_obstacle, kThickness, 0.25f * kThickness);
+        m_pipeline.addPair(m_cloth, m_obstacle, kThickness);
         Stopwatch watch;
         m_pipeline.submit();
         const ContactList found = m_pipeline.finish();
