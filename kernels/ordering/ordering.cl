@@ -136,8 +136,10 @@ __kernel void orderingWrite(__global const Contact* restrict hits, const uint hi
         const int sorted = last - first > ranked;
         const uint key = keys[i];
         uint before = 0;
+#ifndef DRAPE_CPU
         // Loads several keys together; on a GPU the loads would otherwise wait for each other.
         __attribute__((opencl_unroll_hint(DRAPE_TOGETHER)))
+#endif
         for (uint j = first; j < last && !sorted; ++j) before += keys[j] < key;
         copyHit(contacts + DRAPE_CONTACT_HEAD + (sorted ? i : first + before), hit, parts);
     }
