@@ -4,9 +4,9 @@
 
 // Prefetches a word without waiting for it. Does nothing on a GPU, which runs other work-items meanwhile.
 #ifdef DRAPE_CPU
-#define prefetch(word) __builtin_prefetch((const void*)(ulong)(word))
+#define prefetchWord(word) __builtin_prefetch((const void*)(ulong)(word))
 #else
-#define prefetch(word) (void)(word)
+#define prefetchWord(word) (void)(word)
 #endif
 
 // Items between the prefetch of an item's data and its turn: some hundred nanoseconds of work.

@@ -133,8 +133,8 @@ static int takeContact(const LaneContacts* contacts, const float* rows, const ui
 static void askForLane(__global const float* blocks, const uint floats, __global const uint* ids, const uint lane)
 {
     __global const float* block = blocks + lane / DRAPE_PATCH_WIDTH * floats * DRAPE_PATCH_WIDTH;
-    for (uint row = 0; row < floats; ++row) prefetch(block + row * DRAPE_PATCH_WIDTH);
-    prefetch(ids + lane);
+    for (uint row = 0; row < floats; ++row) prefetchWord(block + row * DRAPE_PATCH_WIDTH);
+    prefetchWord(ids + lane);
 }
 
 // Prefetches a test's data.
@@ -142,7 +142,7 @@ static void askForTest(const LaneWork* work, const FeatureTest feature)
 {
     const PackedFeatures* packed = &work->m_packed;
     const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT, lane = feature.m_lane;
-    prefetch(work->m_cloth.m_triangles + (feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u)));
+    prefetchWord(work->m_cloth.m_triangles + (feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u)));
     if (test < DRAPE_TEST_FACE) askForLane(packed->m_faces, DRAPE_FACE_FLOATS, packed->m_faceIds, lane);
     else if (test == DRAPE_TEST_FACE) askForLane(packed->m_vertices, DRAPE_VERTEX_FLOATS, packed->m_vertexIds, lane);
     else askForLane(packed->m_edges, DRAPE_EDGE_FLOATS, packed->m_edgeIds, lane);
@@ -157,10 +157,10 @@ static void askForNodes(const LaneWork* work, const FeatureTest feature)
     for (uint k = 0; k < 3; ++k)
     {
         if (test < DRAPE_TEST_FACE && k != test) continue;
-        prefetch(cloth->m_start + 3 * triangle->m_vertices[k]);
-        prefetch(cloth->m_end + 3 * triangle->m_vertices[k]);
+        prefetchWord(cloth->m_start + 3 * triangle->m_vertices[k]);
+        prefetchWord(cloth->m_end + 3 * triangle->m_vertices[k]);
     }
-    if (test < DRAPE_TEST_FACE) prefetch(work->m_obstacle.m_triangles + work->m_packed.m_faceIds[feature.m_lane]);
+    if (test < DRAPE_TEST_FACE) prefetchWord(work->m_obstacle.m_triangles + work->m_packed.m_faceIds[feature.m_lane]);
 }
 
 static void askForRun(const LaneWork* work, const uint first, const uint end)

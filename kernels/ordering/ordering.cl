@@ -129,7 +129,7 @@ __kernel void orderingWrite(__global const Contact* restrict hits, const uint hi
     for (ItemRuns runs = itemRuns(count, parts); runs.m_item < count; nextItem(&runs))
     {
         const uint i = runs.m_item;
-        prefetch(hits + members[min(i + DRAPE_AHEAD, count - 1)]);
+        prefetchWord(hits + members[min(i + DRAPE_AHEAD, count - 1)]);
         __global const Contact* hit = hits + members[i];
         const uint slot = hit->m_slot, first = slotFirst[slot];
         const uint last = slot + 1 < slots ? min(slotFirst[slot + 1], count) : count;
