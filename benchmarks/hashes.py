@@ -20,7 +20,7 @@ def answer_of(row):
     """Returns the name of the answer that a method gives; None where methods may differ."""
     method = row["method"]
     if row["program"] == "bench_step" and method.startswith(("drape", "embree_contacts")):
-        return "reduced" if "reduced" in method else "all"
+        return "contacts"
     if row["program"] in ("cloth_drop", "drop_speeds"):
         return "drape" if method.startswith("drape") else method
     return None

@@ -66,8 +66,7 @@ def worlds(rows):
         capped = "capped_at_step" in row or row.get("ended", "whole") != "whole"
         depth = row["penetration_max_m"]
         common = {**row, "scene": f"{scene['obstacle']} {scene['obstacle_digest']}",
-                  "setting": " ".join(filter(None, (speed, "all contacts" if row.get("all_contacts") else "",
-                                                    *hashes.settings_of(scene["options"])))),
+                  "setting": " ".join(filter(None, (speed, *hashes.settings_of(scene["options"])))),
                   "method": row["run"] if row["run"] != "drape" else "drape_host" if row["device"] == "host" else "drape",
                   "contacts": row["contacts_max"], "ended": "capped" if capped else "whole",
                   "penetration_mm": None if depth is None else 1000 * depth,

@@ -19,8 +19,7 @@ SCENES = {
     "self_131k": "131,072 on the bunny and itself", "folded_131k": "131,072, folded, on the bunny and itself",
 }
 METHODS = {
-    "drape": "Drape, OpenCL", "drape_reduced": "Drape, OpenCL, redundant contacts left out",
-    "drape_host": "Drape, host", "drape_host_reduced": "Drape, host, redundant contacts left out",
+    "drape": "Drape, OpenCL", "drape_host": "Drape, host",
     "embree_contacts_2": "Embree + narrow phase, 2 threads", "embree_contacts_1": "Embree + narrow phase, 1 thread",
     "embree_pairs_2": "Embree, pairs only, 2 threads", "embree_pairs_1": "Embree, pairs only, 1 thread",
     "fcl_pairs": "FCL, pairs only", "fcl_collide": "FCL, thickness 0",
@@ -58,8 +57,7 @@ def step_table(rows):
              for method, label in METHODS.items() if select(rows, method=method)]
     # Contacts are the same on every back end; candidates are not.
     for label, column, methods in (("candidates of the host", "candidates", ("drape_host",)),
-                                   ("contacts", "contacts", ("drape_host", "drape")),
-                                   ("contacts less redundant ones", "contacts", ("drape_host_reduced", "drape_reduced"))):
+                                   ("contacts", "contacts", ("drape_host", "drape"))):
         counts = [[row[column] for method in methods for row in select(rows, scene=scene, method=method)] for scene in scenes]
         lines.append([label] + [count(found[0] if found else None) for found in counts])
     lines.append(["device memory, MiB"] + [figure(first(rows, scene=scene, method="drape").get("bytes", 0) / 2 ** 20)

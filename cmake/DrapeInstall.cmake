@@ -6,7 +6,7 @@ install(TARGETS drape EXPORT DrapeTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
   INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(DIRECTORY bullet_plugin/core/include/drape bullet_plugin/adapter/include/drape
+install(DIRECTORY bullet_plugin/include/drape
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 install(EXPORT DrapeTargets NAMESPACE Drape:: DESTINATION ${DRAPE_CMAKE_DIR})
 

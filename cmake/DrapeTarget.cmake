@@ -4,7 +4,7 @@
 function(drape_target target)
   target_compile_features(${target} PRIVATE cxx_std_17)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
-  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/bullet_plugin/core/include)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/bullet_plugin/include)
   target_compile_options(${target} PRIVATE -Wall -Wextra -ffp-contract=off)
   if(NOT DRAPE_DOP EQUAL 18)
     math(EXPR directions "${DRAPE_DOP} / 2")

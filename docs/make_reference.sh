@@ -8,7 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 command -v doxygen >/dev/null || { echo "make_reference.sh: needs doxygen (apt-get install doxygen)" >&2; exit 2; }
 
 export DRAPE_REFERENCE=${1:-build/reference}
-DRAPE_VERSION=$(sed -n 's/^#define DRAPE_VERSION_STRING "\(.*\)"$/\1/p' bullet_plugin/core/include/drape/version.h)
+DRAPE_VERSION=$(sed -n 's/^#define DRAPE_VERSION_STRING "\(.*\)"$/\1/p' bullet_plugin/include/drape/version.h)
 export DRAPE_VERSION
 mkdir -p "$DRAPE_REFERENCE"
 doxygen docs/Doxyfile

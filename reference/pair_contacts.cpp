@@ -1,6 +1,6 @@
 #include "reference/pair_contacts.h"
 
-#include "bullet_plugin/core/compaction/canonical_order.h"
+#include "bullet_plugin/core/ordering/canonical_order.h"
 #include "kernels/lib/triangle_triangle.h"
 
 namespace drape

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "bullet_plugin/core/mesh/mesh_pool.h"
+#include "bullet_plugin/core/scene/mesh_pool.h"
 #include "kernels/lib/pair_contact.h"
 
 namespace drape

@@ -1,8 +1,8 @@
 #include "reference/self_pairs.h"
 
-#include "bullet_plugin/core/bvh/refit.h"
-#include "bullet_plugin/core/compaction/canonical_order.h"
-#include "bullet_plugin/core/self_collision/self_collision.h"
+#include "bullet_plugin/core/queries/refit.h"
+#include "bullet_plugin/core/ordering/canonical_order.h"
+#include "bullet_plugin/core/queries/self_collision.h"
 #include "reference/pair_contacts.h"
 
 namespace drape

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "bullet_plugin/core/bvh/bvh_layout.h"
+#include "bullet_plugin/core/queries/bvh_layout.h"
 #include "kernels/shared/contact.h"
-#include "bullet_plugin/core/self_collision/self_step.h"
+#include "bullet_plugin/core/cloth_cloth/self_step.h"
 
 namespace drape
 {

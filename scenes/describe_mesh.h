@@ -1,7 +1,7 @@
 // Describes a mesh for the collision pipeline. The mesh must outlive the description.
 #pragma once
 
-#include "bullet_plugin/core/pipeline.h"
+#include "bullet_plugin/core/pipeline/pipeline.h"
 #include "scenes/mesh.h"
 
 namespace drape

@@ -11,7 +11,7 @@ set(slow_tests "*/SettledBunny.*:*/SettledPile.*:*/SettledCloth.*sphere_108*:*/S
 # Tests that measure time run alone.
 set(timed_tests "*AWorldAtRestCostsFiveMicroseconds*:*GrowsLittleMoreThanTheHitsOfASlot*:*PrepareLeavesTheHostNothingToBuild*:*ABusyMachineIsMeasuredAgain*")
 
-set(full_suites "BunnyDrop|SettledCloth|Outputs|HostKernelsTest|RopesDropped|SelfStepOracle"
+set(full_suites "BunnyDrop|SettledCloth|Outputs|CpuKernelsTest|RopesDropped|SelfStepOracle"
   "MovingObstacleTest|PipelineNodesTest|LoadTest|QueryLimitsTest|StretchedCloth|Kinematic|Worlds"
   "ContactModesTest|Needles|SelfStepTest|SelfOracle|LooseEdges|Truth|Check|AnimatedMeshes|StressRows|SkipsTest"
   "BackendMove|FeatureCull|ContactsOracle|HostDeviceTest|Starts|IterationsOfBullet|Memory|BadInputTest"

@@ -1,7 +1,7 @@
 // bench_step: whole collision steps, host to host, of Drape and its peers over scenes of many sizes.
 //
-// Every scene is run by Drape's host back end first: the hash of its contacts is what all others must have, and
-// likewise where redundant contacts are left out. A row whose hash differs is void, and the program ends with 3.
+// Every scene is run by Drape's host back end first: the hash of its contacts is the reference of all other methods. A
+// row whose hash differs is void, and the program ends with 3.
 #include <algorithm>
 #include <iostream>
 #include <map>
@@ -30,9 +30,6 @@ bool contains(const std::vector<std::string>& list, const std::string& text)
 }
 
 const char* const kReference = "drape_host";
-const char* const kReducedReference = "drape_host_reduced";
-const char* const kReduced = "drape_reduced";
-const char* const kReducedKernels = "drape_reduced_kernels";
 
 // The host comes first, since it is the reference.
 std::vector<MethodEntry> allMethods(const Options& options)
@@ -42,13 +39,6 @@ std::vector<MethodEntry> allMethods(const Options& options)
     const Settings device = options.settings();
     std::vector<MethodEntry> entries;
     const auto add = [&entries](const std::string& name, auto make) { entries.push_back({name, make}); };
-    const auto addReduced = [&entries](const std::string& name, const Settings& settings)
-    {
-        entries.push_back({name,
-                           [settings](const StepScene& scene, std::string& error)
-                           { return makeReducedMethod(scene, settings, error); },
-                           true});
-    };
     const auto drape = [](Settings settings) {
         return [settings](const StepScene& scene, std::string& error)
         { return makeDrapeMethod(scene, settings, error); };
@@ -59,9 +49,6 @@ std::vector<MethodEntry> allMethods(const Options& options)
     add(kReference, drape(host));
     if (!onHost) add("drape", drape(device));
     if (!onHost) add("drape_kernels", drape(profiled));
-    addReduced(kReducedReference, host);
-    if (!onHost) addReduced(kReduced, device);
-    if (!onHost) addReduced(kReducedKernels, profiled);
     for (const int threads : {2, 1})
     {
         const std::string suffix = "_" + std::to_string(threads);
@@ -75,24 +62,18 @@ std::vector<MethodEntry> allMethods(const Options& options)
     return entries;
 }
 
-// References stay even where they were not asked for: without them nothing is checked but against --reference.
+// Keeps the reference even where it was not asked for: without it nothing is checked but against --reference.
 std::vector<MethodEntry> chosenMethods(const Options& options)
 {
     std::vector<MethodEntry> entries = allMethods(options);
     if (options.m_methods.empty()) return entries;
-    const bool reduces = contains(options.m_methods, kReduced) || contains(options.m_methods, kReducedKernels);
-    const auto isNeeded = [&](const MethodEntry& entry)
-    {
-        return contains(options.m_methods, entry.m_name) || entry.m_name == kReference ||
-               (entry.m_name == kReducedReference && reduces);
-    };
-    entries.erase(std::remove_if(entries.begin(), entries.end(), [&](const auto& entry) { return !isNeeded(entry); }),
-                  entries.end());
+    const auto isUnneeded = [&](const MethodEntry& entry)
+    { return entry.m_name != kReference && !contains(options.m_methods, entry.m_name); };
+    entries.erase(std::remove_if(entries.begin(), entries.end(), isUnneeded), entries.end());
     return entries;
 }
 
-// Returns the methods for a scene. References whose hashes are known are left out unless they were asked for; sweeps,
-// which have many scenes, leave out the reduced ones in the same way.
+// Returns the methods for a scene. If the reference's hash is known, the reference is left out unless it was asked for.
 std::vector<MethodEntry> methodsFor(const SceneSpec& spec, std::vector<MethodEntry> methods, const Options& options,
                                     const MeasureSettings& settings)
 {
@@ -100,10 +81,7 @@ std::vector<MethodEntry> methodsFor(const SceneSpec& spec, std::vector<MethodEnt
     {
         // FCL has no collision of a model with itself.
         if (spec.m_self && entry.m_name.rfind("fcl", 0) == 0) return true;
-        if (contains(options.m_methods, entry.m_name)) return false;
-        const bool known = !(entry.m_reduced ? settings.m_expectedReduced : settings.m_expected).empty();
-        if (!options.m_methods.empty()) return known;
-        return entry.m_reduced && !spec.m_sweep.empty();
+        return !options.m_methods.empty() && !contains(options.m_methods, entry.m_name) && !settings.m_expected.empty();
     };
     methods.erase(std::remove_if(methods.begin(), methods.end(), isLeftOut), methods.end());
     return methods;
@@ -123,17 +101,15 @@ std::vector<SceneSpec> chosenScenes(const Options& options)
     return chosen;
 }
 
-// By scene, and whether redundant contacts are left out.
-using Hashes = std::map<std::pair<std::string, bool>, std::string>;
+// Hashes by scene.
+using Hashes = std::map<std::string, std::string>;
 
 // Reads the hashes of an earlier run; reads none for an empty path.
 bool readReference(const std::string& path, Hashes& hashes, std::string& error)
 {
     const auto take = [&hashes](const Row& row)
     {
-        const std::string method = row.value("method", "");
-        const bool reduced = method == kReducedReference || method == kReduced;
-        if (row.value("valid", "") == "yes") hashes[{row.at("scene"), reduced}] = row.at("hash");
+        if (row.value("valid", "") == "yes") hashes[row.at("scene")] = row.at("hash");
     };
     return path.empty() || readRows(path, take, error);
 }
@@ -185,8 +161,7 @@ int measure(const Options& options)
             continue;
         }
         std::cerr << "bench_step: " << spec.m_name << std::endl;
-        const MeasureSettings settings = {options.m_repeats, options.m_seconds, reference[{spec.m_name, false}],
-                                          reference[{spec.m_name, true}]};
+        const MeasureSettings settings = {options.m_repeats, options.m_seconds, reference[spec.m_name]};
         const std::vector<MethodEntry> chosen = methodsFor(spec, methods, options, settings);
         good = measureScene(makeStepScene(spec, obstacle), chosen, settings, table) && good;
     }

@@ -87,7 +87,7 @@ MethodRun runMethod(StepMethod& method, const StepScene& scene, const MeasureSet
 bool measureScene(const StepScene& scene, const std::vector<MethodEntry>& methods, const MeasureSettings& settings,
                   Table& table)
 {
-    std::string references[2] = {settings.m_expected, settings.m_expectedReduced};
+    std::string reference = settings.m_expected;
     bool good = true;
     for (const MethodEntry& entry : methods)
     {
@@ -100,7 +100,6 @@ bool measureScene(const StepScene& scene, const std::vector<MethodEntry>& method
             continue;
         }
         const MethodRun run = runMethod(*method, scene, settings);
-        std::string& reference = references[entry.m_reduced];
         if (reference.empty()) reference = run.m_hash;
         for (const auto& stage : run.m_stages)
         {

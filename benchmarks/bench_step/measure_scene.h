@@ -13,8 +13,7 @@ struct MeasureSettings
 {
     int m_repeats = 3;      // periods that are timed, at most
     double m_seconds = 10;  // for a method's timed steps; one period is timed in any case
-    // Hashes that the reference itself, and the reduced one, must have; empty: any.
-    std::string m_expected, m_expectedReduced;
+    std::string m_expected;  // hash that the reference itself must have; empty: any
 };
 
 // The results of a method over an untimed period and some timed ones. `hash` belongs to the first period. If a later
@@ -30,8 +29,8 @@ struct MethodRun
 
 MethodRun runMethod(StepMethod& method, const StepScene& scene, const MeasureSettings& settings);
 
-// Measures the methods. The first one gives the reference hash, and the first reduced one the reference of the reduced
-// methods. A method that cannot run is reported on standard error and leaves no row; the function then returns false.
+// Measures the methods. The first one gives the reference hash. A method that cannot run is reported on standard error
+// and leaves no row; the function then returns false.
 bool measureScene(const StepScene& scene, const std::vector<MethodEntry>& methods, const MeasureSettings& settings,
                   Table& table);
 }  // namespace drape::bench

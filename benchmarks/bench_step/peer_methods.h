@@ -14,7 +14,6 @@ struct MethodEntry
 {
     std::string m_name;
     std::function<std::unique_ptr<StepMethod>(const StepScene& scene, std::string& error)> m_make;
-    bool m_reduced = false;  // leaves redundant contacts out: its hash is that of the reference that does
 };
 
 // Makes Embree's method: user geometry with a box per triangle over the step's motion, grown by `reach` m, refitted and

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "examples/cloth_drop/drop_scene.h"
+#include "tools/cloth_drop/drop_scene.h"
 
 namespace drape::bench
 {

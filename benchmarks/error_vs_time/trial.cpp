@@ -55,22 +55,7 @@ void addFalls(std::vector<Trial>& trials, const Trial& base, int count)
     sweep(trials, base, "fall", &Trial::m_seed, seeds);
 }
 
-Trial withAllContacts(Trial trial)
-{
-    trial.m_reduceContacts = false;
-    trial.m_setting = "all";
-    trial.m_sameContacts = false;
-    return trial;
-}
-
-void addContacts(std::vector<Trial>& trials, Trial base)
-{
-    base.m_knob = "contacts";
-    base.m_round = 1;
-    trials.push_back(withAllContacts(base));
-}
-
-// Adds the usual fall first. Drape's trials then repeat it with all contacts and with other falls.
+// Adds the usual fall first. Drape's trials then repeat it with other falls.
 void addRest(std::vector<Trial>& trials, Trial base, bool quick)
 {
     base.m_knob = "rest";
@@ -80,8 +65,6 @@ void addRest(std::vector<Trial>& trials, Trial base, bool quick)
     base.m_frames = base.m_speedFrames + (quick ? kQuickSettleFrames : kSettleFrames);
     trials.push_back(base);
     if (!base.isDrape()) return;
-    ++base.m_round;
-    trials.push_back(withAllContacts(base));
     for (int seed = 1; seed <= (quick ? 1 : kRestFallsOfDrape); ++seed)
     {
         ++base.m_round;
@@ -119,7 +102,6 @@ std::vector<Trial> makeTrials(bool quick, bool withDevice, int frames)
     trials.push_back(stock);
     trials.push_back(reference);
     addModes(trials, drape);
-    addContacts(trials, drape);
     if (quick)
     {
         sweep(trials, drape, "substeps", &Trial::m_substeps, {2});

@@ -34,7 +34,6 @@ struct Trial
     std::uint32_t m_seed = 0;      // random seed of the fall; 0: flat and from rest
     int m_frames = 0;              // number of frames of 1/60 s
     int m_speedFrames = 0;         // the last ones, over which the cloth's RMS speed is taken
-    bool m_reduceContacts = true;  // Settings::m_reduceContacts
 
     std::string method() const;
     bool isDrape() const { return m_method != Method::BuiltIn; }

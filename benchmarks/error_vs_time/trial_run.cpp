@@ -6,8 +6,8 @@
 #include "benchmarks/error_vs_time/trial_simulation.h"
 #include "benchmarks/support/samples.h"
 #include "drape/report.h"
-#include "examples/cloth_drop/capped_child.h"
-#include "examples/cloth_drop/step_stream.h"
+#include "tools/cloth_drop/capped_child.h"
+#include "tools/cloth_drop/step_stream.h"
 
 namespace drape::bench
 {

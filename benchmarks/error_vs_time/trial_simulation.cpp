@@ -4,9 +4,9 @@
 
 #include <drape/drape.h>
 
-#include "examples/cloth_drop/drop_world.h"
-#include "examples/cloth_drop/node_positions.h"
-#include "scenes/crossings.h"
+#include "tools/cloth_drop/drop_world.h"
+#include "tools/cloth_drop/node_positions.h"
+#include "oracle/crossings.h"
 
 namespace drape::bench
 {
@@ -169,7 +169,6 @@ std::unique_ptr<TrialSimulation> makeTrialSimulation(const ErrorScene& scene, co
     if (!trial.isDrape()) return std::make_unique<WorldSimulation>(scene, trial, nullptr);
     settings.m_activation = float(trial.m_activation);
     settings.m_mode = trial.m_mode;
-    settings.m_reduceContacts = trial.m_reduceContacts;
     if (trial.m_method == Method::DrapeHost)
     {
         settings.m_backend = Backend::Host;

@@ -10,7 +10,7 @@
 
 #include "benchmarks/error_vs_time/trial.h"
 #include "drape/settings.h"
-#include "examples/cloth_drop/simulation.h"
+#include "tools/cloth_drop/simulation.h"
 
 namespace drape::bench
 {

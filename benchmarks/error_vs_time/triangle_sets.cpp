@@ -1,7 +1,7 @@
 #include "benchmarks/error_vs_time/triangle_sets.h"
 
 #include "benchmarks/error_vs_time/round_to_float.h"
-#include "scenes/exact_predicates.h"
+#include "oracle/exact_predicates.h"
 #include "scenes/random.h"
 
 namespace drape::bench

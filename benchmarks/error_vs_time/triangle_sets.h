@@ -1,5 +1,5 @@
 // Pairs of triangles of which it is known whether they meet, by exact arithmetic that shares no code with Drape's
-// (scenes/exact_predicates.h). The same seed gives the same set. Metres.
+// (oracle/exact_predicates.h). The same seed gives the same set. Metres.
 #pragma once
 
 #include <string>

@@ -16,7 +16,7 @@ namespace
 std::string stageOfKernel(const std::string& kernel)
 {
     const std::pair<const char*, const char*> stages[] = {
-        {"self", "self"}, {"narrowPhase", "narrow"}, {"reduction", "order"}, {"compaction", "order"}};
+        {"self", "self"}, {"narrowPhase", "narrow"}, {"ordering", "order"}};
     for (const auto& stage : stages)
     {
         if (kernel.rfind(stage.first, 0) == 0) return stage.second;
@@ -27,9 +27,8 @@ std::string stageOfKernel(const std::string& kernel)
 class DrapeMethod : public StepMethod
 {
 public:
-    // `tube`: see Pipeline::addPair; negative if all contacts are kept.
-    DrapeMethod(std::unique_ptr<Pipeline> pipeline, const StepScene& scene, float tube, bool profiled)
-        : m_pipeline(std::move(pipeline)), m_scene(scene), m_tube(tube), m_profiled(profiled)
+    DrapeMethod(std::unique_ptr<Pipeline> pipeline, const StepScene& scene, bool profiled)
+        : m_pipeline(std::move(pipeline)), m_scene(scene), m_profiled(profiled)
     {
         const Clock::time_point start = Clock::now();
         m_obstacle = m_pipeline->addObstacle(describeMesh(scene.m_obstacle));
@@ -44,7 +43,7 @@ public:
         m_pipeline->copyNodes(m_cloths, start, end);
         for (const MeshId cloth : m_cloths)
         {
-            m_pipeline->addPair(cloth, m_obstacle, m_scene.m_thickness, m_tube);
+            m_pipeline->addPair(cloth, m_obstacle, m_scene.m_thickness);
             if (collidesWithItself()) m_pipeline->addSelf(cloth);
         }
         m_pipeline->submit();
@@ -124,11 +123,11 @@ private:
     MeshId m_obstacle = kNoMesh;
     std::vector<MeshId> m_cloths;
     double m_prepareMs = 0;
-    float m_tube;
     bool m_profiled;
 };
+}  // namespace
 
-std::unique_ptr<StepMethod> makeMethod(const StepScene& scene, const Settings& settings, float tube, std::string& error)
+std::unique_ptr<StepMethod> makeDrapeMethod(const StepScene& scene, const Settings& settings, std::string& error)
 {
     Error problem;
     std::unique_ptr<Pipeline> pipeline = Pipeline::create(settings, problem);
@@ -137,18 +136,7 @@ std::unique_ptr<StepMethod> makeMethod(const StepScene& scene, const Settings& s
         error = problem.text();
         return nullptr;
     }
-    return std::make_unique<DrapeMethod>(std::move(pipeline), scene, tube, settings.m_profileKernels);
-}
-}  // namespace
-
-std::unique_ptr<StepMethod> makeDrapeMethod(const StepScene& scene, const Settings& settings, std::string& error)
-{
-    return makeMethod(scene, settings, -1.0f, error);
-}
-
-std::unique_ptr<StepMethod> makeReducedMethod(const StepScene& scene, const Settings& settings, std::string& error)
-{
-    return makeMethod(scene, settings, scene.m_thickness * settings.m_activation, error);
+    return std::make_unique<DrapeMethod>(std::move(pipeline), scene, settings.m_profileKernels);
 }
 
 float contactReach(const StepScene& scene)

@@ -7,8 +7,8 @@
 #include <tbb/parallel_sort.h>
 #include <tbb/task_arena.h>
 
-#include "bullet_plugin/core/compaction/canonical_order.h"
-#include "bullet_plugin/core/mesh/normal_cones.h"
+#include "bullet_plugin/core/ordering/canonical_order.h"
+#include "bullet_plugin/core/scene/normal_cones.h"
 #include "drape/settings.h"
 
 namespace drape::bench

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "benchmarks/support/step_scene.h"
-#include "bullet_plugin/core/mesh/mesh_pool.h"
+#include "bullet_plugin/core/scene/mesh_pool.h"
 #include "reference/pair_contacts.h"
 #include "reference/self_pairs.h"
 

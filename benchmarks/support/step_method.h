@@ -46,7 +46,6 @@ public:
 // outlive the method.
 std::unique_ptr<StepMethod> makeDrapeMethod(const StepScene& scene, const Settings& settings, std::string& error);
 // Makes the pipeline's method with redundant contacts left out, as in the plugin.
-std::unique_ptr<StepMethod> makeReducedMethod(const StepScene& scene, const Settings& settings, std::string& error);
 
 // Returns the distance within which Drape finds contacts with default settings: thickness and activation.
 float contactReach(const StepScene& scene);

@@ -8,7 +8,7 @@
 #include "BulletSoftBody/btSoftBody.h"
 #include "bullet_plugin/adapter/cloth_parts.h"
 #include "bullet_plugin/adapter/motion_limit.h"
-#include "bullet_plugin/core/pipeline.h"
+#include "bullet_plugin/core/pipeline/pipeline.h"
 
 namespace drape
 {

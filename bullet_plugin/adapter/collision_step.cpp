@@ -6,7 +6,7 @@
 
 #include "bullet_plugin/adapter/stretch.h"
 #include "bullet_plugin/adapter/vectors.h"
-#include "bullet_plugin/core/mesh/reserve_room.h"
+#include "bullet_plugin/core/scene/reserve_room.h"
 
 namespace drape
 {
@@ -182,25 +182,13 @@ void CollisionStep::begin(const std::vector<PairNote>& notes)
     if (!m_pairs.empty()) submit(Detection::First);
 }
 
-// Returns how far a node of the pair's cloth may be from its path, m; negative where detection must keep every
-// contact. Contacts of pinned nodes alone are not enforced, so they can replace no other. Some contacts of a cloth
-// that is pushed out of an obstacle are not enforced either.
-float CollisionStep::tubeOf(const Pair& pair)
-{
-    const BodyContacts& body = *bodyOf(pair.m_cloth);
-    if (!m_state.settings().m_reduceContacts || body.m_limit.hasPinnedNode() || !body.m_limit.obstaclesRest() ||
-        !body.m_tangled.empty())
-        return -1;
-    return static_cast<float>(MotionLimit::tube(pair.m_thickness, btScalar(m_state.settings().m_activation)));
-}
-
 void CollisionStep::submit(Detection detection)
 {
     uploadNodes(detection);
     for (const Pair& pair : m_pairs)
     {
         if (bodyOf(pair.m_cloth)->m_leftOut) continue;
-        m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_thickness), tubeOf(pair));
+        m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_thickness));
     }
     m_state.pipeline().submit();
 }
@@ -393,7 +381,6 @@ void CollisionStep::checkStrayed()
         if (!cutStrayed(strayed, detections < kMostDetections ? Cut::EachNode : Cut::WholeBody)) break;
     }
     m_state.m_statistics.m_contacts = before.m_contacts;
-    m_state.m_statistics.m_reduced = before.m_reduced;
     m_state.m_statistics.m_candidates = before.m_candidates;
     m_state.m_statistics.m_obstaclesKept = before.m_obstaclesKept;
 }

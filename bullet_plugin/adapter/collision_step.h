@@ -68,7 +68,6 @@ private:
     void addPushes(BodyContacts& body);
     void markUnguarded();
     void leaveOut(std::size_t index);
-    float tubeOf(const Pair& pair);
     enum class Detection
     {
         First,  // the step's first one

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "bullet_plugin/adapter/kinematic_motion.h"
-#include "bullet_plugin/core/mesh/mesh_id.h"
+#include "bullet_plugin/core/scene/mesh_id.h"
 
 namespace drape
 {

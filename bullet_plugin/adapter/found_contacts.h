@@ -11,7 +11,7 @@
 #include "bullet_plugin/adapter/kinematic_motion.h"
 #include "bullet_plugin/adapter/node_paths.h"
 #include "bullet_plugin/adapter/step_contact.h"
-#include "bullet_plugin/core/pipeline.h"
+#include "bullet_plugin/core/pipeline/pipeline.h"
 #include "drape/plugin.h"
 
 namespace drape

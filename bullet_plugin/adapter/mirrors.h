@@ -23,7 +23,7 @@
 #include "bullet_plugin/adapter/cloth_parts.h"
 #include "bullet_plugin/adapter/kinematic_motion.h"
 #include "bullet_plugin/adapter/solid_links.h"
-#include "bullet_plugin/core/pipeline.h"
+#include "bullet_plugin/core/pipeline/pipeline.h"
 #include "bullet_plugin/core/queries/mesh_probe.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 

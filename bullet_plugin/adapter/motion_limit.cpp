@@ -56,10 +56,10 @@ void MotionLimit::clear()
 {
     m_regions.clear();
     m_anyMoves = false;
-    m_leastReach = m_leastTube = m_free = SIMD_INFINITY;
+    m_leastReach = m_leastTolerance = m_free = SIMD_INFINITY;
 }
 
-btScalar MotionLimit::tube(btScalar thickness, btScalar activation)
+btScalar MotionLimit::pathTolerance(btScalar thickness, btScalar activation)
 {
     return thickness * std::max(kLeastShare, std::min(activation, kMostStartShare));
 }
@@ -70,8 +70,8 @@ void MotionLimit::addObstacle(const btVector3& low, const btVector3& high, btSca
     const btScalar reach = thickness * (1 + activation);
     m_leastReach = std::min(m_leastReach, reach);
     const btVector3 margin(reach, reach, reach);
-    const btScalar least = tube(thickness, activation);
-    m_leastTube = std::min(m_leastTube, least);
+    const btScalar least = pathTolerance(thickness, activation);
+    m_leastTolerance = std::min(m_leastTolerance, least);
     const bool moves = carry || carriedStarts;
     m_anyMoves = m_anyMoves || moves;
     m_free = std::min(m_free, kSureShare * std::min(least, kFreeShare * reach));
@@ -105,12 +105,6 @@ void MotionLimit::record(const btSoftBody& body, const ClothFaces& faces)
     recordNodes(body, 0, m_paths.m_end.size());
 }
 
-bool MotionLimit::hasPinnedNode() const
-{
-    const std::vector<btScalar>& masses = m_paths.m_inverseMass;
-    return std::any_of(masses.begin(), masses.end(), [](btScalar inverseMass) { return !(inverseMass > 0); });
-}
-
 MotionLimit::Allowance MotionLimit::allowance(const Region& region, std::size_t node) const
 {
     const Allowance& own = region.m_allowance;
@@ -140,7 +134,7 @@ bool MotionLimit::isRestless(std::size_t node, const btVector3& place) const
 bool MotionLimit::keepNear(std::size_t node, btVector3& place) const
 {
     if (!isRestless(node, place)) return false;
-    const btVector3 shift = shiftToPath(m_paths.m_start[node], m_paths.m_end[node], m_leastTube, m_leastTube, place);
+    const btVector3 shift = shiftToPath(m_paths.m_start[node], m_paths.m_end[node], m_leastTolerance, m_leastTolerance, place);
     place += shift;
     return !(shift == btVector3(0, 0, 0));
 }

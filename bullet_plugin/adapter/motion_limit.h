@@ -36,8 +36,7 @@ public:
     // Adds the box of an obstacle of one of the body's pairs, the pair's thickness, and the activation as a share of
     // it. Nodes are free if everything that their faces can pass between the predicted and the solved positions
     // misses every box. carry, carriedStarts: see StepContact; the caller owns the second. While all obstacles of a
-    // body rest, a node with contacts ends at most tube() of the thinnest pair from its path. Detection may leave out
-    // contacts that others imply there.
+    // body rest, a node with contacts ends at most pathTolerance() of the thinnest pair from its path.
     void addObstacle(const btVector3& low, const btVector3& high, btScalar thickness, btScalar activation,
                      const btTransform* carry = nullptr, const btVector3* carriedStarts = nullptr);
     // Starts recording the prediction, before Bullet solves; recordNodes() then records all nodes. No node has
@@ -51,10 +50,8 @@ public:
     // Calls startRecord() and records all nodes.
     void record(const btSoftBody& body, const ClothFaces& faces);
     // Returns the distance by which a node with contacts may leave its path, m.
-    static btScalar tube(btScalar thickness, btScalar activation);
+    static btScalar pathTolerance(btScalar thickness, btScalar activation);
     const NodePaths& paths() const { return m_paths; }
-    // Returns whether there is a node that no contact may move. Call once all nodes are recorded.
-    bool hasPinnedNode() const;
     // A node of a contact; after startRecord().
     void addContactNode(int node) { m_hasContact[static_cast<std::size_t>(node)] = 1; }
     // Returns whether the body may have passed a surface without a contact. This is so if a node, limited or not,
@@ -114,7 +111,7 @@ private:
     std::vector<Region> m_regions;
     bool m_anyMoves = false;
     btScalar m_leastReach = SIMD_INFINITY;
-    btScalar m_leastTube = SIMD_INFINITY;
+    btScalar m_leastTolerance = SIMD_INFINITY;
     btScalar m_free = SIMD_INFINITY;  // m, from the end of its path; nodes within it need no test
     NodePaths m_paths;
     std::vector<unsigned char> m_hasContact;

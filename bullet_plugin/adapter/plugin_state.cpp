@@ -8,7 +8,7 @@
 #include "bullet_plugin/adapter/eligibility.h"
 #include "bullet_plugin/adapter/margins.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
-#include "bullet_plugin/core/mesh/reserve_room.h"
+#include "bullet_plugin/core/scene/reserve_room.h"
 #include "bullet_plugin/core/public_call.h"
 
 namespace drape

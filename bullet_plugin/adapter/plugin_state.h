@@ -21,7 +21,7 @@
 #include "bullet_plugin/adapter/kinematic_motion.h"
 #include "bullet_plugin/adapter/mirrors.h"
 #include "bullet_plugin/adapter/pair_algorithm.h"
-#include "bullet_plugin/core/pipeline.h"
+#include "bullet_plugin/core/pipeline/pipeline.h"
 #include "bullet_plugin/core/public_call.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 

@@ -1,4 +1,4 @@
-// A step's list of unsorted contacts; compaction sorts it into canonical order. For kernels only.
+// A step's list of unsorted contacts; ordering sorts it into canonical order. For kernels only.
 #ifndef DRAPE_LIB_HIT_LIST_H
 #define DRAPE_LIB_HIT_LIST_H
 
@@ -8,14 +8,14 @@
 
 // Outputs of a kernel that finds contacts. slotCount: number of listed contacts per slot. slotSums: sums of
 // slotCount. hitPlaces: per contact, the number of its slot's contacts before it. The last two exist where slots are
-// few on a GPU; elsewhere both are null. slotCount, slotSums and counters->m_listed must be zero before the step's
-// first such kernel. m_listed counts on when the list is full.
+// few on a GPU; elsewhere both are null. slotCount, slotSums and counters->m_contactsFound must be zero before the step's
+// first such kernel. m_contactsFound counts on when the list is full.
 #define DRAPE_HIT_ARGUMENTS                                                                                           \
     __global Contact *restrict hits, const uint hitCapacity, __global uint *restrict hitPlaces,                       \
         __global volatile uint *slotCount, __global volatile uint *slotSums, __global StepCounters *counters
 #define DRAPE_HIT_LIST                                                         \
     {                                                                          \
-        hits, hitCapacity, hitPlaces, slotCount, slotSums, &counters->m_listed \
+        hits, hitCapacity, hitPlaces, slotCount, slotSums, &counters->m_contactsFound \
     }
 
 typedef struct HitList
@@ -28,7 +28,7 @@ typedef struct HitList
     __global volatile uint* m_count;
 } HitList;
 
-#ifndef DRAPE_HOST_KERNELS
+#ifndef DRAPE_CPU_KERNELS
 // Vectors per contact. A listed contact is aligned to one; a narrower store costs a GPU's memory more.
 #define DRAPE_CONTACT_QUARTERS 4
 typedef char ContactFits[sizeof(Contact) == DRAPE_CONTACT_QUARTERS * sizeof(uint4) ? 1 : -1];

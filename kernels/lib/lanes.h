@@ -25,7 +25,7 @@ DRAPE_NAMESPACE_BEGIN
 #define DRAPE_TEAM
 #endif
 
-#ifdef DRAPE_HOST_KERNELS
+#ifdef DRAPE_CPU_KERNELS
 #include "host_lanes.h"
 #elif defined(__OPENCL_VERSION__) && DRAPE_LANES > 1
 #define DRAPE_PASTE(a, b) a##b
@@ -88,7 +88,7 @@ DRAPE_FUNCTION Lanes lanesMin(Lanes a, Lanes b)
 #endif
 #define lanesFma(a, b, c) fma(a, b, c)
 #else
-#ifndef DRAPE_HOST_KERNELS
+#ifndef DRAPE_CPU_KERNELS
 #define lanesAbs(a) drapeAbs(a)
 #define lanesSqrt(a) drapeSqrt(a)
 #endif

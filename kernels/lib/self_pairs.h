@@ -1,4 +1,4 @@
-// Pairs of features of one cloth that a broad phase lists (kernels/self_cull.cl, self_walk.cl). For kernels only.
+// Pairs of features of one cloth that a broad phase lists (kernels/cloth_cloth/self_cull.cl, self_traversal_gpu.cl). For kernels only.
 #ifndef DRAPE_LIB_SELF_PAIRS_H
 #define DRAPE_LIB_SELF_PAIRS_H
 

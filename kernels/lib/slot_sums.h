@@ -12,7 +12,7 @@ static void addToSums(__global volatile uint* sums, const uint slot, const uint 
     atomic_add(sums + slot / DRAPE_SUMMED, hits);
 }
 
-#ifndef DRAPE_HOST_KERNELS
+#ifndef DRAPE_CPU_KERNELS
 // Returns the sum of the first `count` of DRAPE_SUMMED numbers. Uses masks: PoCL 3.1 miscompiles choices by component.
 static uint sumOfFirst(__global const uint* numbers, const uint count)
 {

@@ -41,7 +41,7 @@ static uint byteBits(const ulong bytes)
     return (uint)(((bytes & 0x8040201008040201UL) * 0x0101010101010101UL) >> 56);
 }
 
-#ifndef DRAPE_HOST_KERNELS
+#ifndef DRAPE_CPU_KERNELS
 // Stores one byte per lane of the mask.
 static void laneBytes(const LaneMask mask, ulong* bytes)
 {
@@ -81,7 +81,7 @@ static int anyLane(const LaneMask mask)
 // The least of all lanes.
 static float leastLane(const Lanes all)
 {
-#ifdef DRAPE_HOST_KERNELS
+#ifdef DRAPE_CPU_KERNELS
     float least = all[0];
     for (int i = 1; i < DRAPE_LANES; ++i) least = drapeMin(least, all[i]);
     return least;

@@ -15,8 +15,8 @@ DRAPE_NAMESPACE_BEGIN
 #define DRAPE_SELF_NODE_FACE 3u
 #define DRAPE_SELF_EDGE_EDGE 4u
 
-// Maximum contacts of a slot that a CPU's work-item sorts alone in quadratic time, without reduction. A cloth feature
-// at rest has a few dozen.
+// Maximum contacts of a slot that a CPU's work-item sorts alone in quadratic time. A cloth feature at rest has a
+// few dozen.
 #define DRAPE_RANKED 64u
 
 // Canonical order of contacts: slot, then obstacle feature. A slot is a cloth feature: first all nodes, then all faces,

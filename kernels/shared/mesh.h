@@ -78,9 +78,9 @@ typedef struct Candidate
 typedef struct StepCounters
 {
     DRAPE_UINT m_candidates;
-    DRAPE_UINT m_listed;   // contacts before reduction
-    DRAPE_UINT m_crowded;  // slots with too many contacts for counting (compaction.cl, compaction_few.cl)
-    DRAPE_UINT m_hits;     // contacts after reduction
+    DRAPE_UINT m_contactsFound;  // counts on when the list is full
+    DRAPE_UINT m_crowded;  // slots with too many contacts for counting (ordering.cl, ordering_small.cl)
+    DRAPE_UINT m_contactsStored;  // contacts in the list
     DRAPE_UINT m_invalidNodes;
     DRAPE_UINT m_swept;       // pairs of features that the continuous test decided
     DRAPE_UINT m_patchPairs;  // listed pairs of cloth triangles and patches

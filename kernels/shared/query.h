@@ -3,7 +3,7 @@
 #ifndef DRAPE_SHARED_QUERY_H
 #define DRAPE_SHARED_QUERY_H
 
-#include "../../bullet_plugin/core/include/drape/query_records.h"
+#include "../../bullet_plugin/include/drape/query_records.h"
 #include "types.h"
 
 DRAPE_NAMESPACE_BEGIN

@@ -24,7 +24,7 @@
 #define DRAPE_INT std::int32_t
 #define DRAPE_GLOBAL
 // Gives each instruction set of the host's kernels its own functions: linkers merge inline ones.
-#ifdef DRAPE_HOST_KERNELS
+#ifdef DRAPE_CPU_KERNELS
 #define DRAPE_FUNCTION static inline
 #define DRAPE_RARE_FUNCTION static __attribute__((noinline))
 #else
@@ -50,7 +50,7 @@ DRAPE_NAMESPACE_END
 
 // Marks small functions that are seldom called. On a GPU a call costs a kernel a stack frame wherever it may happen;
 // inlining costs less.
-#if defined(DRAPE_HOST_KERNELS) || defined(DRAPE_CPU)
+#if defined(DRAPE_CPU_KERNELS) || defined(DRAPE_CPU)
 #define DRAPE_COLD_FUNCTION DRAPE_RARE_FUNCTION
 #else
 #define DRAPE_COLD_FUNCTION DRAPE_FUNCTION

@@ -2,7 +2,7 @@
 #include "study/programs/study.h"
 #include "benchmarks/support/machine.h"
 #include "benchmarks/support/result_hash.h"
-#include "bullet_plugin/core/pipeline.h"
+#include "bullet_plugin/core/pipeline/pipeline.h"
 #include "scenes/cloth_grid.h"
 #include "scenes/describe_mesh.h"
 #include "scenes/shapes.h"

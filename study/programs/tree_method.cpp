@@ -16,7 +16,7 @@ namespace
 std::string stageOfKernel(const std::string& kernel)
 {
     const std::pair<const char*, const char*> stages[] = {
-        {"refit", "refit"}, {"narrowPhase", "narrow"}, {"compaction", "order"}};
+        {"refit", "refit"}, {"narrowPhase", "narrow"}, {"ordering", "order"}};
     for (const auto& stage : stages)
     {
         if (kernel.rfind(stage.first, 0) == 0) return stage.second;

@@ -101,7 +101,8 @@ class DeviceTriangles
 public:
     DeviceTriangles(Device& device, const Test& test) : m_device(device)
     {
-        m_kernel.create(device, studyPrograms(device)(test.m_moller ? "moller" : "queries"), test.m_kernel.c_str());
+        m_kernel.create(device, studyPrograms(device)(test.m_moller ? "moller" : "queries/queries"),
+                        test.m_kernel.c_str());
     }
 
     // Pairs to the device, answers back. Host-to-host ms; kernelMs: of the launch.

@@ -46,9 +46,9 @@ DeviceTreeStep::DeviceTreeStep(Device& device, const TreeScene& scene, const Met
     m_refit.create(device, load);
     m_traversal = makeTraversal(device, methods.m_traversal, load);
     m_pairs.create(device, load);
-    m_compaction.create(device, load);
+    m_ordering.create(device, load);
     m_candidates.reserve(device, kFirstCandidates);
-    m_compaction.reserveHits(device, kFirstContacts);
+    m_ordering.reserveHits(device, kFirstContacts);
     m_found.reserve(device, 1);
     m_ignored.reserve(device, 1);
     for (Buffer<StepCounters>& counters : m_counters)
@@ -70,7 +70,7 @@ void DeviceTreeStep::upload()
     m_edges.assign(m_device, m_scene.m_cloths.edges());
     m_vertexCones.assign(m_device, m_scene.m_vertexCones);
     m_edgeCones.assign(m_device, m_scene.m_edgeCones);
-    m_compaction.resizeSlots(m_device, m_scene.slotCount());
+    m_ordering.resizeSlots(m_device, m_scene.slotCount());
     m_refit.prepare(m_device, m_cloth.m_tree, m_methods.m_tree);
     const Tree &cloth = m_scene.m_clothTree, &obstacle = m_scene.m_obstacleTree;
     m_traversal->setTopology(m_device, {cloth.m_nodes, 0, cloth.m_order}, {obstacle.m_nodes, 0, obstacle.m_order});
@@ -90,8 +90,8 @@ void DeviceTreeStep::enqueue()
                     {m_start, m_end, m_cloth.m_triangles, m_edges, m_positions, m_obstacle.m_triangles, m_vertexCones,
                      m_edgeCones, m_thickness, m_scene.m_cloths.vertexCount(), m_scene.m_cloths.triangles().size(), 1,
                      m_scene.m_reachScale, DRAPE_AUTOMATIC},
-                    m_candidates, m_found, m_compaction.hits(), counters);
-    m_compaction.enqueue(m_device, {counters, m_counters[1 - m_turn]});
+                    m_candidates, m_found, m_ordering.hits(), counters);
+    m_ordering.enqueue(m_device, {counters, m_counters[1 - m_turn]});
     read(m_asked);
     m_found.read(m_device, &m_foundRead, 1);
 }
@@ -99,7 +99,7 @@ void DeviceTreeStep::enqueue()
 void DeviceTreeStep::read(std::size_t contacts)
 {
     m_read.resize(std::max(m_read.size(), DRAPE_CONTACT_HEAD + contacts));
-    m_compaction.contacts().read(m_device, m_read.data(), DRAPE_CONTACT_HEAD + contacts);
+    m_ordering.contacts().read(m_device, m_read.data(), DRAPE_CONTACT_HEAD + contacts);
 }
 
 bool DeviceTreeStep::grow(const StepCounters& counters, bool& limitReached)
@@ -110,10 +110,10 @@ bool DeviceTreeStep::grow(const StepCounters& counters, bool& limitReached)
         again = true;
         m_candidates.reserve(m_device, withHeadroom(m_foundRead.m_candidates));
     }
-    if (counters.m_listed > m_compaction.hitCapacity())
+    if (counters.m_contactsFound > m_ordering.hitCapacity())
     {
         again = true;
-        m_compaction.reserveHits(m_device, withHeadroom(counters.m_listed));
+        m_ordering.reserveHits(m_device, withHeadroom(counters.m_contactsFound));
     }
     return again;
 }
@@ -135,14 +135,15 @@ bool DeviceTreeStep::run(const float* start, const float* end, TreeStepResult& r
     }
     if (m_device.failed()) return false;
     m_traversal->accept(m_device, m_foundRead);
-    if (counters.m_hits > m_asked)
+    if (counters.m_contactsStored > m_asked)
     {
-        read(counters.m_hits);
+        read(counters.m_contactsStored);
         m_device.wait();
     }
     const auto first = m_read.begin() + DRAPE_CONTACT_HEAD;
-    result.m_contacts.assign(first, first + std::ptrdiff_t(counters.m_hits));
-    m_asked = std::min<std::size_t>(counters.m_hits + counters.m_hits / 16 + 256, m_compaction.hitCapacity());
+    result.m_contacts.assign(first, first + std::ptrdiff_t(counters.m_contactsStored));
+    m_asked = std::min<std::size_t>(counters.m_contactsStored + counters.m_contactsStored / 16 + 256,
+                                    m_ordering.hitCapacity());
     result.m_candidates = m_foundRead.m_candidates;
     result.m_volumeTests = m_foundRead.m_visits;
     return !m_device.failed();

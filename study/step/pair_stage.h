@@ -1,8 +1,8 @@
 // Contacts of the pairs of triangles that a traversal listed, on a device: those of contactsOfPairs(), bit for bit, as
-// unsorted hits that a compaction puts in order. Cost: linear in the pairs.
+// unsorted hits that a ordering puts in order. Cost: linear in the pairs.
 #pragma once
 
-#include "bullet_plugin/core/compaction/hit_buffers.h"
+#include "bullet_plugin/core/ordering/hit_buffers.h"
 #include "bullet_plugin/core/device/program.h"
 #include "study/kernels/shared/traversal.h"
 

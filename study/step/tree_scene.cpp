@@ -1,6 +1,6 @@
 #include "study/step/tree_scene.h"
 
-#include "bullet_plugin/core/mesh/normal_cones.h"
+#include "bullet_plugin/core/scene/normal_cones.h"
 #include "study/trees/tree_builder.h"
 
 namespace drape

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "bullet_plugin/core/mesh/mesh_pool.h"
+#include "bullet_plugin/core/scene/mesh_pool.h"
 #include "kernels/lib/pair_contact.h"
 #include "scenes/mesh.h"
 #include "study/trees/tree.h"

@@ -8,7 +8,7 @@
 
 #include <memory>
 
-#include "bullet_plugin/core/compaction/compaction.h"
+#include "bullet_plugin/core/ordering/ordering.h"
 #include "study/step/pair_stage.h"
 #include "study/step/tree_scene.h"
 #include "study/traversal/device_traversal.h"

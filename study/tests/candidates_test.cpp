@@ -2,7 +2,7 @@
 // candidate.
 #include <gtest/gtest.h>
 
-#include "bullet_plugin/core/compaction/canonical_order.h"
+#include "bullet_plugin/core/ordering/canonical_order.h"
 #include "study/traversal/host_traversal.h"
 #include "tests/support/cases.h"
 #include "tests/support/oracle.h"

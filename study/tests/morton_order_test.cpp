@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bullet_plugin/core/bvh/morton_order.h"
+#include "bullet_plugin/core/scene/morton_order.h"
 #include "scenes/shapes.h"
 #include "study/kernel_programs.h"
 #include "tests/support/cases.h"

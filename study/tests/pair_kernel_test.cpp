@@ -1,10 +1,10 @@
-// Contacts of pairs of triangles and compaction on a device: the host's contacts bit for bit, demands counted, cloth
+// Contacts of pairs of triangles and ordering on a device: the host's contacts bit for bit, demands counted, cloth
 // features' counts left clean for the next step.
 #include "study/step/pair_stage.h"
 
 #include <gtest/gtest.h>
 
-#include "bullet_plugin/core/compaction/compaction.h"
+#include "bullet_plugin/core/ordering/ordering.h"
 #include "reference/pair_contacts.h"
 #include "study/kernel_programs.h"
 #include "tests/support/cases.h"
@@ -24,10 +24,10 @@ public:
         m_cloth.m_end = step.m_end;
         const ProgramLoader load = studyPrograms(device);
         m_stage.create(device, load);
-        m_compaction.create(device, load);
+        m_ordering.create(device, load);
         m_thickness = {step.m_thickness};
         m_pairs = allPairs(m_cloth, m_obstacle);
-        m_compaction.resizeSlots(
+        m_ordering.resizeSlots(
             device, m_cloth.m_pool.vertexCount() + m_cloth.m_pool.triangles().size() + m_cloth.m_pool.edges().size());
         m_clothBuffers.upload(device, m_cloth);
         m_obstacleBuffers.upload(device, m_obstacle);
@@ -46,15 +46,15 @@ public:
         Buffer<StepCounters> counterBuffer, next;
         guardCopy(m_device, counterBuffer, start);
         guardCopy(m_device, next, start);
-        guard(m_device, m_compaction.contacts(), DRAPE_CONTACT_HEAD + m_compaction.hitCapacity());
-        m_stage.enqueue(m_device, sides(), m_candidates, foundBuffer, m_compaction.hits(), counterBuffer);
-        m_compaction.enqueue(m_device, {counterBuffer, next});
+        guard(m_device, m_ordering.contacts(), DRAPE_CONTACT_HEAD + m_ordering.hitCapacity());
+        m_stage.enqueue(m_device, sides(), m_candidates, foundBuffer, m_ordering.hits(), counterBuffer);
+        m_ordering.enqueue(m_device, {counterBuffer, next});
         counters = readCounters(m_device, counterBuffer);
-        const std::size_t fitting = std::min<std::size_t>(counters.m_hits, m_compaction.hitCapacity());
-        std::vector<Contact> contacts = contents(m_device, m_compaction.contacts(), DRAPE_CONTACT_HEAD + fitting);
+        const std::size_t fitting = std::min<std::size_t>(counters.m_contactsStored, m_ordering.hitCapacity());
+        std::vector<Contact> contacts = contents(m_device, m_ordering.contacts(), DRAPE_CONTACT_HEAD + fitting);
         EXPECT_EQ(std::memcmp(contacts.data(), &counters, sizeof(counters)), 0) << "the head";
         contacts.erase(contacts.begin(), contacts.begin() + DRAPE_CONTACT_HEAD);
-        EXPECT_TRUE(intact(m_device, m_compaction.contacts()) && intact(m_device, counterBuffer) &&
+        EXPECT_TRUE(intact(m_device, m_ordering.contacts()) && intact(m_device, counterBuffer) &&
                     intact(m_device, m_candidates));
         EXPECT_TRUE(intact(m_device, next) && sameBytes(contents(m_device, next, 1), std::vector<StepCounters>(1)));
         EXPECT_TRUE(m_clothBuffers.allIntact(m_device) && m_obstacleBuffers.allIntact(m_device));
@@ -92,7 +92,7 @@ public:
     Device& m_device;
     Side m_cloth, m_obstacle;
     PairStage m_stage;
-    CompactionStage m_compaction;
+    OrderingStage m_ordering;
     DeviceSide m_clothBuffers, m_obstacleBuffers;
     std::vector<float> m_thickness;
     std::vector<Candidate> m_pairs;
@@ -109,14 +109,14 @@ TEST_P(PairStageTest, ContactsAreTheHostsAtEverySize)
 {
     DevicePairs stage(*m_device, soupCase(161, 183, true, 80));
     const std::size_t all = stage.m_pairs.size();
-    stage.m_compaction.reserveHits(*m_device, stage.host(all).size() + 1);
+    stage.m_ordering.reserveHits(*m_device, stage.host(all).size() + 1);
     for (std::size_t count :
          {std::size_t(0), std::size_t(1), std::size_t(63), std::size_t(64), std::size_t(65), std::size_t(1023), all})
     {
         SCOPED_TRACE("seed 80, candidates " + std::to_string(count));
         StepCounters counters;
         const std::vector<Contact> host = stage.host(count), device = stage.run(count, counters);
-        EXPECT_EQ(counters.m_hits, host.size());
+        EXPECT_EQ(counters.m_contactsStored, host.size());
         EXPECT_TRUE(sameBytes(device, host)) << difference(device, host);
     }
     EXPECT_GT(stage.host(all).size(), 100u);
@@ -130,7 +130,7 @@ TEST_P(PairStageTest, ContactsAreTheHostsOnShapes)
         SCOPED_TRACE(step.trace());
         DevicePairs stage(*m_device, step);
         const std::vector<Contact> host = stage.host(stage.m_pairs.size());
-        stage.m_compaction.reserveHits(*m_device, host.size());
+        stage.m_ordering.reserveHits(*m_device, host.size());
         StepCounters counters;
         const std::vector<Contact> device = stage.run(stage.m_pairs.size(), counters);
         EXPECT_TRUE(sameBytes(device, host)) << difference(device, host);
@@ -147,17 +147,17 @@ TEST_P(PairStageTest, FullListsCountOnAndTheNextStepIsClean)
     for (std::size_t capacity : {std::size_t(1), std::size_t(13), host.size() / 2, host.size() - 1})
     {
         SCOPED_TRACE("seed 82, capacity " + std::to_string(capacity));
-        stage.m_compaction.reserveHits(*m_device, capacity);
+        stage.m_ordering.reserveHits(*m_device, capacity);
         StepCounters counters;
         stage.run(all, counters);
-        EXPECT_EQ(counters.m_listed, host.size());
+        EXPECT_EQ(counters.m_contactsFound, host.size());
     }
-    stage.m_compaction.reserveHits(*m_device, host.size());
+    stage.m_ordering.reserveHits(*m_device, host.size());
     for (int step = 0; step < 3; ++step)
     {
         StepCounters counters;
         stage.run(0, counters);
-        EXPECT_EQ(counters.m_hits, 0u);
+        EXPECT_EQ(counters.m_contactsStored, 0u);
         const std::vector<Contact> device = stage.run(all, counters);
         EXPECT_TRUE(sameBytes(device, host)) << difference(device, host);
     }

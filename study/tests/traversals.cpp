@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "bullet_plugin/core/compaction/canonical_order.h"
+#include "bullet_plugin/core/ordering/canonical_order.h"
 #include "study/kernel_programs.h"
 #include "study/trees/tree_builder.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "bullet_plugin/core/bvh/morton_order.h"
+#include "bullet_plugin/core/scene/morton_order.h"
 #include "kernels/lib/triangle_order.h"
 #include "study/kernels/lib/morton_wide.h"
 

@@ -90,7 +90,7 @@ void refitWideOnHost(std::vector<BvhNode>& nodes, const std::vector<std::uint32_
 void WideRefitStage::create(Device& device, const ProgramLoader& load)
 {
     m_leaves.create(device, load("wide_refit"), "refitWideLeaves");
-    m_level.create(device, load("refit"), "refitLevel");
+    m_level.create(device, load("queries/refit"), "refitLevel");
 }
 
 void WideRefitStage::enqueue(Device& device, const std::vector<BvhHeight>& depths, Buffer<BvhNode>& nodes,

@@ -27,14 +27,6 @@ class BenchStep(ProgramTest):
                 self.assertGreater(float(row["candidates"]), 0)
             reference = methods["drape_host"]
             self.assertGreater(float(reference["contacts"]), 100)
-            reduced = methods.pop("drape_host_reduced")
-            fewer = float(reduced["contacts"]) < float(reference["contacts"])
-            self.assertEqual(fewer, scene != "quick_many", "where cloths are too coarse none is redundant")
-            self.assertEqual(fewer, reduced["hash"] != reference["hash"])
-            for row in (reduced, methods.pop("drape_reduced", reduced), methods.pop("drape_reduced_kernels", reduced)):
-                self.assertEqual(row["valid"], "yes")
-                self.assertEqual(row["hash"], reduced["hash"])
-                self.assertEqual(row["contacts"], reduced["contacts"])
             for row in methods.values():
                 self.assertNotEqual(row["valid"], "no")
                 if row["valid"] == "yes":
@@ -44,16 +36,13 @@ class BenchStep(ProgramTest):
                 self.assertEqual(methods["embree_contacts_1"]["valid"], "yes")
 
     def test_an_opencl_device_gives_the_hosts_hash(self):
-        rows = self.quick("bench_step", "--backend", "opencl", "--method", "drape", "--method", "drape_kernels", "--method",
-                          "drape_reduced", "--method", "drape_reduced_kernels")
-        for name in ("drape", "drape_kernels", "drape_reduced", "drape_reduced_kernels"):
+        rows = self.quick("bench_step", "--backend", "opencl", "--method", "drape", "--method", "drape_kernels")
+        for name in ("drape", "drape_kernels"):
             mine = [row for row in rows if row["method"] == name]
             self.assertTrue(mine, "no rows of " + name)
             self.assertTrue(all(row["valid"] in ("yes", "") for row in mine))
             self.assertTrue(any(row["valid"] == "yes" for row in mine))
         self.assertTrue(any(row["stage"].startswith("kernel: narrowPhase") for row in rows))
-        self.assertEqual({row["method"] for row in rows if row["stage"].startswith("kernel: reduction")},
-                         {"drape_reduced_kernels"})
         self.assertEqual({row["scene"] for row in rows if row["stage"] == "kernel: selfCull"}, {"quick_self"})
         self.assertTrue(any(row["stage"] == "memory: cloth triangles" and int(row["bytes"]) > 0 for row in rows))
 

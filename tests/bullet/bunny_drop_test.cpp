@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string>
 
-#include "scenes/crossings.h"
+#include "oracle/crossings.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
 #include "tests/support/backends.h"

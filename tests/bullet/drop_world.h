@@ -14,7 +14,7 @@
 #include "btBulletDynamicsCommon.h"
 #include <drape/drape.h>
 
-#include "scenes/measure.h"
+#include "oracle/measure.h"
 #include "scenes/mesh.h"
 
 namespace drape::test

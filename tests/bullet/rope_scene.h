@@ -9,7 +9,7 @@
 
 #include "BulletSoftBody/btSoftBodyHelpers.h"
 #include "bullet_plugin/adapter/solid_links.h"
-#include "scenes/crossings.h"
+#include "oracle/crossings.h"
 #include "tests/bullet/drop_world.h"
 #include "tests/support/backends.h"
 

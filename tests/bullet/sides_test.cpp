@@ -6,7 +6,7 @@
 #include <string>
 #include <tuple>
 
-#include "scenes/crossings.h"
+#include "oracle/crossings.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
 #include "tests/support/backends.h"

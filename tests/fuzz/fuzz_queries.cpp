@@ -15,7 +15,7 @@
 
 #include "drape/queries.h"
 #include "scenes/describe_mesh.h"
-#include "scenes/exact_predicates.h"
+#include "oracle/exact_predicates.h"
 #include "tests/fuzz/bytes.h"
 
 namespace

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "bullet_plugin/core/compaction/canonical_order.h"
+#include "bullet_plugin/core/ordering/canonical_order.h"
 #include "bullet_plugin/core/queries/query_device.h"
 #include "scenes/shapes.h"
 #include "tests/support/cases.h"
@@ -162,7 +162,7 @@ TEST_P(SelfCollisionTest, FullListsCountOnAndKeepToThemselves)
     sortCandidates(host);
 
     SelfCollisionStage stage;
-    stage.create(*m_device, programOf(*m_device, "self_collision"));
+    stage.create(*m_device, programOf(*m_device, "queries/self_collision"));
     Buffer<BvhNode> nodes;
     Buffer<cl_uint> order, lastLeaf;
     Buffer<Triangle> triangles;
@@ -203,7 +203,7 @@ TEST_P(SelfCollisionTest, SmallBatchesFindTheSame)
     {
         SCOPED_TRACE("seed 113, bytes a list " + std::to_string(bytes));
         device.stage() = SelfCollisionStage();
-        device.stage().create(device.device(), programOf(device.device(), "self_collision"));
+        device.stage().create(device.device(), programOf(device.device(), "queries/self_collision"));
         device.stage().limitLists(bytes);
         // Lists of one entry, so that growing and halving both take place.
         device.stage().pairs() = Buffer<Candidate>();

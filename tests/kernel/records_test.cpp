@@ -74,9 +74,9 @@ std::vector<Field> stepFields()
             DRAPE_TEST_OFFSET(Candidate, m_cloth),
             DRAPE_TEST_OFFSET(Candidate, m_obstacle),
             DRAPE_TEST_OFFSET(StepCounters, m_candidates),
-            DRAPE_TEST_OFFSET(StepCounters, m_listed),
+            DRAPE_TEST_OFFSET(StepCounters, m_contactsFound),
             DRAPE_TEST_OFFSET(StepCounters, m_crowded),
-            DRAPE_TEST_OFFSET(StepCounters, m_hits),
+            DRAPE_TEST_OFFSET(StepCounters, m_contactsStored),
             DRAPE_TEST_OFFSET(StepCounters, m_invalidNodes),
             DRAPE_TEST_OFFSET(StepCounters, m_swept),
             DRAPE_TEST_OFFSET(StepCounters, m_patchPairs),
@@ -116,7 +116,7 @@ TEST_P(RecordsTest, DeviceAndHostAgree)
     const std::unique_ptr<Device> device = openDevice(GetParam());
     ASSERT_TRUE(device);
     // Embedded files bring the shared headers; the test's kernel follows them.
-    std::string source = assembleSource("kernels/narrow_phase.cl");
+    std::string source = assembleSource("kernels/narrow_phase/narrow_phase.cl");
     source += "\n__kernel void reportRecords(__global uint* values)\n{\n";
     for (const char* type : {"Vec3", "Triangle", "Edge", "NormalCone", "BvhNode", "Candidate", "StepCounters",
                              "Contact", "Patch", "FeatureTest", "ObstaclePlace", "ObstacleMotion"})

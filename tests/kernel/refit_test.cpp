@@ -1,5 +1,5 @@
 // Refit on a device: the host's bits, nothing written past the end, at sizes around the groups'.
-#include "bullet_plugin/core/bvh/refit.h"
+#include "bullet_plugin/core/queries/refit.h"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ protected:
         const std::unique_ptr<Device> device = openDevice(GetParam());
         ASSERT_TRUE(device);
         RefitStage stage;
-        stage.create(*device, programOf(*device, "refit"));
+        stage.create(*device, programOf(*device, "queries/refit"));
         DeviceSide buffers;
         buffers.upload(*device, side);
         RefitStage::Levels levels;
@@ -69,7 +69,7 @@ TEST_P(RefitTest, NoLeavesLaunchNothing)
     const std::unique_ptr<Device> device = openDevice(GetParam());
     ASSERT_TRUE(device);
     RefitStage stage;
-    stage.create(*device, programOf(*device, "refit"));
+    stage.create(*device, programOf(*device, "queries/refit"));
     Side side = makeSide({});
     DeviceSide buffers;
     buffers.upload(*device, side);

@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "bullet_plugin/core/broad_phase/patch_cull.h"
-#include "bullet_plugin/core/compaction/canonical_order.h"
-#include "bullet_plugin/core/self_collision/self_contacts.h"
+#include "bullet_plugin/core/ordering/canonical_order.h"
+#include "bullet_plugin/core/cloth_cloth/self_contacts.h"
 #include "reference/self_pairs.h"
 #include "tests/support/device_side.h"
 #include "tests/support/self_cases.h"
@@ -80,7 +80,7 @@ public:
         Buffer<Contact> hits;
         EXPECT_LE(slots, DRAPE_MOST_SUMMED);
         Buffer<cl_uint> hitPlaces, slotCount, slotSums;
-        m_read.m_listed = cl_uint(behind);
+        m_read.m_contactsFound = cl_uint(behind);
         guardCopy(m_device, m_counters, std::vector<StepCounters>{m_read});
         guard(m_device, hits, behind + std::min(tests, room));
         if (m_device.isGpu()) guard(m_device, hitPlaces, behind + std::min(tests, room));
@@ -89,7 +89,7 @@ public:
         m_stage.enqueueContacts(m_device, buffers(), {hits, hitPlaces, slotCount, slotSums}, m_counters);
         m_read = readCounters(m_device, m_counters);
         EXPECT_TRUE(intact(m_device, hits) && intact(m_device, slotCount) && intact(m_device, m_counters));
-        const std::size_t listed = std::min<std::size_t>(m_read.m_listed, behind + std::min(tests, room));
+        const std::size_t listed = std::min<std::size_t>(m_read.m_contactsFound, behind + std::min(tests, room));
         std::vector<Contact> all = contents(m_device, hits, listed);
         all.erase(all.begin(), all.begin() + std::ptrdiff_t(behind));
         std::vector<cl_uint> expected(slots, 0);
@@ -191,7 +191,7 @@ TEST_P(SelfContactTest, FullListsOfHitsCountOn)
         self.cull(self.m_candidates);
         const std::vector<Contact> some = self.contacts(2, room);
         EXPECT_EQ(some.size(), room);
-        EXPECT_EQ(self.m_read.m_listed, 2 + expected.size());
+        EXPECT_EQ(self.m_read.m_contactsFound, 2 + expected.size());
     }
 }
 

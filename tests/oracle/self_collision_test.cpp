@@ -6,7 +6,7 @@
 #include <set>
 
 #include "kernels/lib/ccd.h"
-#include "scenes/exact_predicates.h"
+#include "oracle/exact_predicates.h"
 #include "tests/support/backends.h"
 #include "tests/support/oracle.h"
 #include "scenes/describe_mesh.h"

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <iostream>
 
-#include "scenes/exact_predicates.h"
+#include "oracle/exact_predicates.h"
 #include "tests/support/cases.h"
 #include "tests/support/published_data.h"
 

@@ -84,7 +84,7 @@ TEST_P(HostDeviceTest, FewTriangles)
             for (int i = 0; i < 2; ++i)
             {
                 pipeline.copyNodes({cloth}, step.m_cloth.m_positions.data(), step.m_end.data());
-                pipeline.addPair(cloth, obstacle, step.m_thickness, 0.1f * step.m_thickness);
+                pipeline.addPair(cloth, obstacle, step.m_thickness);
                 steps.push_back(runStep(pipeline));
             }
             return steps;

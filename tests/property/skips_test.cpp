@@ -39,7 +39,7 @@ std::vector<ContactView> viewsOf(const Pipeline& pipeline, const std::vector<Con
 // One pipeline lives through the steps; the other gets every mesh again in each of them.
 TEST_P(SkipsTest, KeptStateGivesTheContactsOfNewState)
 {
-    std::size_t contacts = 0, reduced = 0;
+    std::size_t contacts = 0;
     for (std::uint32_t seed = 980; seed < 983; ++seed)
     {
         const std::unique_ptr<Pipeline> kept = make(), anew = make();
@@ -56,11 +56,9 @@ TEST_P(SkipsTest, KeptStateGivesTheContactsOfNewState)
                 << difference(first, other);
             EXPECT_EQ(kept->statistics().m_status, anew->statistics().m_status);
             contacts += first.size();
-            reduced += kept->statistics().m_reduced;
         }
     }
     EXPECT_GT(contacts, 10000u);
-    EXPECT_GT(reduced, 100u);
 }
 
 TEST_P(SkipsTest, ObstaclesAreCountedAsKeptThatAre)

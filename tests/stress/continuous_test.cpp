@@ -6,7 +6,7 @@
 
 #include "kernels/lib/ccd.h"
 #include "scenes/cloth_grid.h"
-#include "scenes/exact_predicates.h"
+#include "oracle/exact_predicates.h"
 #include "scenes/shapes.h"
 #include "tests/support/backends.h"
 #include "tests/support/cases.h"

@@ -6,7 +6,7 @@
 #include <array>
 #include <set>
 
-#include "scenes/exact_predicates.h"
+#include "oracle/exact_predicates.h"
 #include "tests/support/cases.h"
 #include "tests/support/contact_oracle.h"
 

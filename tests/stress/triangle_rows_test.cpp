@@ -7,7 +7,7 @@
 
 #include "scenes/cloth_grid.h"
 #include "scenes/describe_mesh.h"
-#include "scenes/exact_predicates.h"
+#include "oracle/exact_predicates.h"
 #include "scenes/shapes.h"
 #include "tests/support/backends.h"
 #include "tests/support/mesh_pairs.h"

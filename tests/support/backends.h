@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "bullet_plugin/core/device/device.h"
-#include "bullet_plugin/core/pipeline.h"
+#include "bullet_plugin/core/pipeline/pipeline.h"
 
 namespace drape::test
 {

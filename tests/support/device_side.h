@@ -1,7 +1,7 @@
 // A side's arrays in guarded device buffers, and the stages' programs built once per test.
 #pragma once
 
-#include "bullet_plugin/core/bvh/refit.h"
+#include "bullet_plugin/core/queries/refit.h"
 #include "bullet_plugin/core/device/program.h"
 #include "tests/support/backends.h"
 #include "tests/support/canary.h"

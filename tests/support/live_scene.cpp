@@ -90,9 +90,9 @@ void LiveScene::namePairs()
         {
             if (m_random.below(4) == 0) continue;
             const float thickness = m_random.uniform(0.01f, 0.05f);
-            m_pairs.push_back({i, j, thickness, m_cloths[i].m_id % 2 == 0 ? 0.5f * thickness : -1.0f});
+            m_pairs.push_back({i, j, thickness});
             for (Pipeline* pipeline : m_pipelines)
-                pipeline->addPair(m_cloths[i].m_id, m_obstacles[j].m_id, thickness, m_pairs.back().m_tube);
+                pipeline->addPair(m_cloths[i].m_id, m_obstacles[j].m_id, thickness);
         }
     }
 }
@@ -113,7 +113,7 @@ void LiveScene::giveAnew(Pipeline& pipeline, std::vector<MeshId>& added) const
     for (std::size_t i = 0; i < m_cloths.size(); ++i)
         setMotion(pipeline, added[i], m_cloths[i].m_start, m_cloths[i].m_mesh.m_positions);
     for (const LivePair& pair : m_pairs)
-        pipeline.addPair(added[pair.m_cloth], added[m_cloths.size() + pair.m_obstacle], pair.m_thickness, pair.m_tube);
+        pipeline.addPair(added[pair.m_cloth], added[m_cloths.size() + pair.m_obstacle], pair.m_thickness);
 }
 
 std::vector<MeshId> LiveScene::ids() const

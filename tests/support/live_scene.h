@@ -39,7 +39,7 @@ private:
     struct LivePair
     {
         std::size_t m_cloth, m_obstacle;
-        float m_thickness, m_tube;
+        float m_thickness;
     };
 
     void changeMeshes();

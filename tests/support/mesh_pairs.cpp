@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "scenes/describe_mesh.h"
-#include "scenes/exact_predicates.h"
+#include "oracle/exact_predicates.h"
 #include "tests/support/oracle.h"
 #include "tests/support/self_cases.h"
 

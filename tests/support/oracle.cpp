@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scenes/exact_predicates.h"
+#include "oracle/exact_predicates.h"
 
 namespace drape::test
 {

@@ -28,11 +28,11 @@ std::vector<Contact> runStep(Pipeline& pipeline)
     return {contacts.begin(), contacts.end()};
 }
 
-std::vector<Contact> runCase(Pipeline& pipeline, const StepCase& step, float tube)
+std::vector<Contact> runCase(Pipeline& pipeline, const StepCase& step)
 {
     const MeshId cloth = addCloth(pipeline, step.m_cloth), obstacle = addObstacle(pipeline, step.m_obstacle);
     setMotion(pipeline, cloth, step.m_cloth.m_positions, step.m_end);
-    pipeline.addPair(cloth, obstacle, step.m_thickness, tube);
+    pipeline.addPair(cloth, obstacle, step.m_thickness);
     return runStep(pipeline);
 }
 }  // namespace drape::test

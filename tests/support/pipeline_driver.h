@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "bullet_plugin/core/pipeline.h"
+#include "bullet_plugin/core/pipeline/pipeline.h"
 #include "scenes/mesh.h"
 #include "tests/support/cases.h"
 
@@ -18,6 +18,6 @@ void setMotion(Pipeline& pipeline, MeshId cloth, const std::vector<float>& start
 // Calls submit() and finish().
 std::vector<Contact> runStep(Pipeline& pipeline);
 
-// Returns a pipeline's contacts of one case. `tube`: see Pipeline::addPair.
-std::vector<Contact> runCase(Pipeline& pipeline, const StepCase& step, float tube = -1.0f);
+// Returns a pipeline's contacts of one case.
+std::vector<Contact> runCase(Pipeline& pipeline, const StepCase& step);
 }  // namespace drape::test

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <drape/queries.h>
-#include "bullet_plugin/core/pipeline.h"
+#include "bullet_plugin/core/pipeline/pipeline.h"
 #include "scenes/mesh.h"
 
 namespace drape::test

@@ -4,10 +4,10 @@
 #include <sstream>
 #include <tuple>
 
-#include "bullet_plugin/core/bvh/morton_order.h"
-#include "bullet_plugin/core/bvh/refit.h"
-#include "bullet_plugin/core/compaction/canonical_order.h"
-#include "bullet_plugin/core/mesh/normal_cones.h"
+#include "bullet_plugin/core/scene/morton_order.h"
+#include "bullet_plugin/core/queries/refit.h"
+#include "bullet_plugin/core/ordering/canonical_order.h"
+#include "bullet_plugin/core/scene/normal_cones.h"
 #include "kernels/lib/dop.h"
 
 namespace drape::test

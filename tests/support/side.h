@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "bullet_plugin/core/bvh/bvh_layout.h"
-#include "bullet_plugin/core/mesh/mesh_pool.h"
+#include "bullet_plugin/core/queries/bvh_layout.h"
+#include "bullet_plugin/core/scene/mesh_pool.h"
 #include "reference/pair_contacts.h"
 #include "scenes/mesh.h"
 

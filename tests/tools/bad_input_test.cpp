@@ -6,7 +6,7 @@
 
 #include <sys/stat.h>
 
-#include "bullet_plugin/core/pipeline.h"
+#include "bullet_plugin/core/pipeline/pipeline.h"
 #include "tests/support/environment.h"
 #include "tests/tools/tool.h"
 

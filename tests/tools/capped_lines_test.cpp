@@ -1,5 +1,5 @@
 // The steps of a child that are kept when its time limit ends it, however the text is cut.
-#include "examples/cloth_drop/capped_lines.h"
+#include "tools/cloth_drop/capped_lines.h"
 
 #include <gtest/gtest.h>
 

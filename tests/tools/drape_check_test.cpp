@@ -10,7 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bullet_plugin/core/pipeline.h"
+#include "bullet_plugin/core/pipeline/pipeline.h"
 #include "tests/tools/tool.h"
 
 namespace drape::test

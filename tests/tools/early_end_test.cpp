@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "bullet_plugin/core/pipeline.h"
-#include "examples/cloth_drop/interruption.h"
+#include "bullet_plugin/core/pipeline/pipeline.h"
+#include "tools/cloth_drop/interruption.h"
 #include "tests/tools/tool.h"
 
 namespace drape::test

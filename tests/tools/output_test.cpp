@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <png.h>
 
-#include "bullet_plugin/core/pipeline.h"
+#include "bullet_plugin/core/pipeline/pipeline.h"
 #include "scenes/mesh_loader.h"
 #include "scenes/mesh_writer.h"
 #include "tests/tools/tool.h"

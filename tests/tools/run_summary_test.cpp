@@ -2,8 +2,8 @@
 // were none.
 #include <gtest/gtest.h>
 
-#include "examples/cloth_drop/report.h"
-#include "examples/cloth_drop/step_stream.h"
+#include "tools/cloth_drop/report.h"
+#include "tools/cloth_drop/step_stream.h"
 
 namespace drape::test
 {

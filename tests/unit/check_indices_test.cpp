@@ -1,5 +1,5 @@
 // Meshes with indices out of range are refused wherever a caller hands one over, and change nothing.
-#include "bullet_plugin/core/mesh/check_indices.h"
+#include "bullet_plugin/core/scene/check_indices.h"
 
 #include <gtest/gtest.h>
 

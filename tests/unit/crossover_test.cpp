@@ -1,6 +1,6 @@
 // The automatic choice of scenes that run on the host: the expected work of meshes, the crossover of measured times,
 // its file, and the rule by which a scene changes its back end.
-#include "bullet_plugin/core/pipeline/crossover.h"
+#include "bullet_plugin/core/backend_choice/crossover.h"
 
 #include <gtest/gtest.h>
 
@@ -12,10 +12,10 @@
 #include <sstream>
 
 #include "bullet_plugin/core/device/cache_file.h"
-#include "bullet_plugin/core/mesh/topology.h"
-#include "bullet_plugin/core/pipeline/backend_choice.h"
-#include "bullet_plugin/core/pipeline/machine_load.h"
-#include "bullet_plugin/core/pipeline/scene_work.h"
+#include "bullet_plugin/core/scene/topology.h"
+#include "bullet_plugin/core/backend_choice/backend_choice.h"
+#include "bullet_plugin/core/backend_choice/machine_load.h"
+#include "bullet_plugin/core/backend_choice/scene_work.h"
 #include "scenes/cloth_grid.h"
 #include "scenes/shapes.h"
 #include "tests/support/environment.h"

@@ -20,7 +20,8 @@ struct Counts
     int m_tried = 0, m_out = 0;  // nodes against patches beside the opposite edge
 };
 
-// Volumes of one triangle as kernels/patch_walk.cl makes them. Returns whether it may come near the obstacle.
+// Volumes of one triangle as kernels/broad_phase/patch_traversal_gpu.cl makes them. Returns whether it may come near
+// the obstacle.
 int cullVolume(CullVolume* cull, const ObstacleMotion* motion, const Triangle* triangle, const float* start,
                const float* end, std::uint32_t mode)
 {

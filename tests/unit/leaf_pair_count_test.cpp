@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "bullet_plugin/core/queries/query_mesh.h"
-#include "bullet_plugin/core/self_collision/leaf_pair_count.h"
+#include "bullet_plugin/core/queries/leaf_pair_count.h"
 #include "scenes/cloth_grid.h"
 #include "scenes/describe_mesh.h"
 #include "tests/support/cases.h"

@@ -1,5 +1,5 @@
 // The mesh pool: ids, joined arrays, removal.
-#include "bullet_plugin/core/mesh/mesh_pool.h"
+#include "bullet_plugin/core/scene/mesh_pool.h"
 
 #include <gtest/gtest.h>
 

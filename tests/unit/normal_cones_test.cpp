@@ -1,5 +1,5 @@
 // Normal cones hold the normals around their feature and no more than two degrees besides; open surroundings admit all.
-#include "bullet_plugin/core/mesh/normal_cones.h"
+#include "bullet_plugin/core/scene/normal_cones.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Patches: every triangle in one lane, full patches of one mesh each, and near each other on surfaces.
-#include "bullet_plugin/core/mesh/patches.h"
+#include "bullet_plugin/core/scene/patches.h"
 
 #include <gtest/gtest.h>
 

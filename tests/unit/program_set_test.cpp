@@ -26,9 +26,11 @@ TEST_P(ProgramSetTest, FilesThatBelongTogetherAreOneProgramOnACpu)
 {
     const std::unique_ptr<Device> device = openDevice(GetParam());
     ASSERT_TRUE(device);
-    ProgramSet programs(*device, "none", {{"refit", "place_obstacles"}, {"queries", "refit"}}, "// a caller's line\n");
-    const cl::Program refit = programs.load("refit"), place = programs.load("place_obstacles"),
-                      queries = programs.load("queries");
+    ProgramSet programs(*device, "none",
+                        {{"queries/refit", "scene/place_obstacles"}, {"queries/queries", "queries/refit"}},
+                        "// a caller's line\n");
+    const cl::Program refit = programs.load("queries/refit"), place = programs.load("scene/place_obstacles"),
+                      queries = programs.load("queries/queries");
     ASSERT_FALSE(device->failed()) << device->error().text();
     EXPECT_EQ(refit() == place(), !device->isGpu());
     EXPECT_NE(refit(), queries());
@@ -47,9 +49,9 @@ TEST_P(ProgramSetTest, AProgramIsBuiltOnce)
 {
     const std::unique_ptr<Device> device = openDevice(GetParam());
     ASSERT_TRUE(device);
-    ProgramSet programs(*device, "none", {{"refit", "place_obstacles"}});
-    EXPECT_EQ(programs.load("place_obstacles")(), programs.loader()("place_obstacles")());
-    EXPECT_EQ(programs.load("queries")(), programs.load("queries")());
+    ProgramSet programs(*device, "none", {{"queries/refit", "scene/place_obstacles"}});
+    EXPECT_EQ(programs.load("scene/place_obstacles")(), programs.loader()("scene/place_obstacles")());
+    EXPECT_EQ(programs.load("queries/queries")(), programs.load("queries/queries")());
 }
 
 TEST_P(ProgramSetTest, TellsWhetherAllCameFromTheCache)
@@ -57,16 +59,16 @@ TEST_P(ProgramSetTest, TellsWhetherAllCameFromTheCache)
     const TemporaryFolder folder;
     const std::unique_ptr<Device> device = openDevice(GetParam());
     ASSERT_TRUE(device);
-    ProgramSet first(*device, folder.path(), {{"refit", "place_obstacles"}});
+    ProgramSet first(*device, folder.path(), {{"queries/refit", "scene/place_obstacles"}});
     EXPECT_TRUE(first.fromCache()) << "of no program";
-    first.load("refit");
+    first.load("queries/refit");
     EXPECT_FALSE(first.fromCache());
 
-    ProgramSet second(*device, folder.path(), {{"refit", "place_obstacles"}});
-    second.load("refit");
+    ProgramSet second(*device, folder.path(), {{"queries/refit", "scene/place_obstacles"}});
+    second.load("queries/refit");
     EXPECT_EQ(second.fromCache(), !keepsItsOwn(device->info()));
-    second.load("queries");
-    second.load("refit");
+    second.load("queries/queries");
+    second.load("queries/refit");
     EXPECT_FALSE(second.fromCache());
 }
 
@@ -74,11 +76,12 @@ TEST_P(ProgramSetTest, ABrokenFileIsNamedWithThoseItIsBuiltWith)
 {
     const std::unique_ptr<Device> device = openDevice(GetParam());
     ASSERT_TRUE(device);
-    ProgramSet programs(*device, "none", {{"refit", "place_obstacles"}}, "this is no kernel\n");
-    programs.load("place_obstacles");
+    ProgramSet programs(*device, "none", {{"queries/refit", "scene/place_obstacles"}}, "this is no kernel\n");
+    programs.load("scene/place_obstacles");
     ASSERT_TRUE(device->failed());
-    EXPECT_NE(device->error().m_call.find("kernels/place_obstacles.cl"), std::string::npos) << device->error().text();
-    EXPECT_EQ(device->error().m_call.find("kernels/refit.cl") != std::string::npos, !device->isGpu());
+    EXPECT_NE(device->error().m_call.find("kernels/scene/place_obstacles.cl"), std::string::npos)
+        << device->error().text();
+    EXPECT_EQ(device->error().m_call.find("kernels/queries/refit.cl") != std::string::npos, !device->isGpu());
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, ProgramSetTest, testing::ValuesIn(openClBackends()), backendName);

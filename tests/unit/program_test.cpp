@@ -76,7 +76,7 @@ TEST(AssembleSource, LineDirectivesAreRight)
 
 TEST(AssembleSource, TurnsContractionOffFirst)
 {
-    EXPECT_EQ(assembleSource("kernels/refit.cl").find("#pragma OPENCL FP_CONTRACT OFF"), 0u);
+    EXPECT_EQ(assembleSource("kernels/queries/refit.cl").find("#pragma OPENCL FP_CONTRACT OFF"), 0u);
 }
 
 TEST(AssembleSource, UnknownFileIsEmpty)
@@ -86,18 +86,18 @@ TEST(AssembleSource, UnknownFileIsEmpty)
 
 TEST(AssembleSource, SeveralFilesIncludeAFileOnce)
 {
-    const std::string source = assembleSources({"kernels/refit.cl", "kernels/place_obstacles.cl"});
+    const std::string source = assembleSources({"kernels/queries/refit.cl", "kernels/scene/place_obstacles.cl"});
     expectLinesAreWhereTheySay(source);
     EXPECT_EQ(countOf(source, "#line 1 \"kernels/shared/types.h\""), 1u);
     EXPECT_NE(source.find("__kernel void refitLeaves"), std::string::npos);
     EXPECT_NE(source.find("__kernel void placeObstacles"), std::string::npos);
-    EXPECT_TRUE(assembleSources({"kernels/refit.cl", "kernels/no_such.cl"}).empty());
+    EXPECT_TRUE(assembleSources({"kernels/queries/refit.cl", "kernels/no_such.cl"}).empty());
 }
 
 // Some drivers ignore line directives. A marker in the assembled source, named by its own line, is found in its file.
 TEST(TranslateLog, NamesFileAndLineOfEveryKernelLine)
 {
-    const std::string source = assembleSource("kernels/refit.cl");
+    const std::string source = assembleSource("kernels/queries/refit.cl");
     for (const char* text : {"__kernel void refitLeaves", "DRAPE_FUNCTION void dopClear", "__kernel void refitTop"})
     {
         SCOPED_TRACE(text);
@@ -112,7 +112,7 @@ TEST(TranslateLog, NamesFileAndLineOfEveryKernelLine)
         EXPECT_EQ(translateLog("<kernel>:" + std::to_string(physical) + ":5: error: x", source),
                   file + ":" + std::to_string(line) + ":5: error: x");
     }
-    EXPECT_EQ(translateLog("kernels/refit.cl:3: error", source), "kernels/refit.cl:3: error");
+    EXPECT_EQ(translateLog("kernels/queries/refit.cl:3: error", source), "kernels/queries/refit.cl:3: error");
     EXPECT_EQ(translateLog("<kernel>: no number", source), "<kernel>: no number");
 }
 
@@ -124,7 +124,7 @@ TEST_P(ProgramTest, BrokenKernelNamesFileLineAndLog)
 {
     const std::unique_ptr<Device> device = openDevice(GetParam());
     ASSERT_TRUE(device);
-    std::string source = assembleSource("kernels/refit.cl");
+    std::string source = assembleSource("kernels/queries/refit.cl");
     const std::size_t at = source.find("dopStore(nodes + leaf");
     ASSERT_NE(at, std::string::npos);
     // A variable breaks the source; a missing function could pass for one to be linked.
@@ -133,10 +133,10 @@ TEST_P(ProgramTest, BrokenKernelNamesFileLineAndLog)
     const std::string before = source.substr(source.rfind("#line", at), at - source.rfind("#line", at));
     const std::size_t line = std::stoul(before.substr(6)) + countOf(before, "\n") - 1;
 
-    compileSource(*device, "kernels/refit.cl", source);
+    compileSource(*device, "kernels/queries/refit.cl", source);
     ASSERT_TRUE(device->failed());
     const Error& error = device->error();
-    EXPECT_NE(error.m_call.find("kernels/refit.cl"), std::string::npos) << error.text();
+    EXPECT_NE(error.m_call.find("kernels/queries/refit.cl"), std::string::npos) << error.text();
     EXPECT_NE(error.m_call.find(std::to_string(CL_BUILD_PROGRAM_FAILURE)), std::string::npos) << error.text();
     EXPECT_NE(error.m_detail.find("thisIsNoVariable"), std::string::npos) << error.text();
     EXPECT_NE(error.m_detail.find("refit.cl:" + std::to_string(line)), std::string::npos) << error.text();
@@ -171,7 +171,8 @@ TEST_P(ProgramTest, KernelsAreToldOfACpu)
     const std::unique_ptr<Device> device = openDevice(GetParam());
     ASSERT_TRUE(device);
     ProgramBuild build;
-    const cl::Program program = buildProgram(*device, "compaction", "none", build, "// a line of the caller's\n");
+    const cl::Program program =
+        buildProgram(*device, "ordering/ordering", "none", build, "// a line of the caller's\n");
     ASSERT_FALSE(device->failed()) << device->error().text();
     const std::string source = program.getInfo<CL_PROGRAM_SOURCE>();
     EXPECT_EQ(source.find("#define DRAPE_CPU\n") == std::string::npos, device->isGpu());

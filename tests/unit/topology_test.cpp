@@ -1,5 +1,5 @@
 // Edges, owners and opposite vertices: closed, open, non-manifold and degenerate meshes.
-#include "bullet_plugin/core/mesh/topology.h"
+#include "bullet_plugin/core/scene/topology.h"
 
 #include <gtest/gtest.h>
 

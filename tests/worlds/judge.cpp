@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "scenes/exact_predicates.h"
+#include "oracle/exact_predicates.h"
 
 namespace drape::test
 {

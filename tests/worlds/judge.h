@@ -2,7 +2,7 @@
 // the nodes that are on another side of a surface than they started on.
 //
 // It shares no code with the product. Obstacles are read from the world's own arrays. Cloth is transformed into each
-// obstacle's frame in double precision, and intersections are decided exactly there (scenes/exact_predicates.h).
+// obstacle's frame in double precision, and intersections are decided exactly there (oracle/exact_predicates.h).
 // A node is through if its paths from step to step have passed an obstacle's triangles more often from the front than
 // from the back, or vice versa. A path that passes in and out again changes nothing. Paths that end the step exactly on
 // a surface have no side. A fixed offset of up to 0.1 µm, another one for each node, keeps nodes from such positions.
@@ -14,7 +14,7 @@
 #include <memory>
 #include <vector>
 
-#include "scenes/triangle_tree.h"
+#include "oracle/triangle_tree.h"
 #include "tests/worlds/world.h"
 
 namespace drape::test

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bullet_plugin/core/mesh/reserve_room.h"
+#include "bullet_plugin/core/scene/reserve_room.h"
 
 namespace drape
 {

@@ -1,11 +1,11 @@
-// Broad phase over patches on the host. Does PatchCullStage's job with a CPU's kernels (host_kernels.h), on the threads
+// Broad phase over patches on the host. Does PatchCullStage's job with a CPU's kernels (cpu_kernels.h), on the threads
 // of a team.
 #pragma once
 
 #include <vector>
 
-#include "bullet_plugin/core/host_kernels/host_kernels.h"
-#include "bullet_plugin/core/mesh/patches.h"
+#include "bullet_plugin/core/cpu/cpu_kernels.h"
+#include "bullet_plugin/core/scene/patches.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 
 namespace drape
@@ -13,7 +13,7 @@ namespace drape
 class HostPatchCull
 {
 public:
-    explicit HostPatchCull(const HostKernels& kernels = hostKernels()) : m_kernels(&kernels) {}
+    explicit HostPatchCull(const CpuKernels& kernels = cpuKernels()) : m_kernels(&kernels) {}
 
     // Sets new obstacles from that slot on, which must be packed next, even if there are none.
     void setTopology(const MeshPool& obstacles, std::size_t firstSlot);
@@ -34,7 +34,7 @@ public:
     void giveBackRoom();
 
     PackedPatches packed() const;
-    const HostKernels& kernels() const { return *m_kernels; }
+    const CpuKernels& kernels() const { return *m_kernels; }
 
 private:
     void packFeatures(ItemRange patches, const ObstacleView& obstacle);
@@ -42,7 +42,7 @@ private:
     std::size_t cull(const ClothView& cloth, const HostCloths& cloths, HostTests list, ThreadTeam& threads,
                      StepCounters& counters) const;
 
-    const HostKernels* m_kernels;
+    const CpuKernels* m_kernels;
     Patches m_layout;
     bool m_levelsMoved = false;  // since the last pack()
     std::vector<float> m_faces, m_vertices, m_edges, m_sizes, m_volumes, m_wideNodes;

@@ -36,8 +36,9 @@ std::string PatchCullStage::defines(const Device& device)
 
 void PatchCullStage::create(Device& device, const ProgramLoader& load)
 {
-    const cl::Program cull = load(device.isGpu() ? "patch_cull_pairs" : "patch_cull"), pack = load("patch_pack");
-    if (device.isGpu()) m_walk.create(device, load("patch_walk"), "patchWalk");
+    const cl::Program cull = load(device.isGpu() ? "broad_phase/patch_cull_pairs" : "broad_phase/patch_cull"),
+                      pack = load("scene/patch_pack");
+    if (device.isGpu()) m_walk.create(device, load("broad_phase/patch_traversal_gpu"), "patchWalk");
     m_cull.create(device, cull, device.isGpu() ? "patchCullPairs" : "patchCull");
     reserveFirstPairs(device);
     m_packFaces.create(device, pack, "patchPackFaces");

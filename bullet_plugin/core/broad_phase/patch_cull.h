@@ -1,14 +1,15 @@
 // Broad phase over patches: lists the feature tests of cloth triangles and obstacle features that may give a contact.
 //
 // Job: keep the obstacles' patches and the wide tree over them on the device. Each step traverses the tree with packets
-// of cloth triangles and drops pairs that are certainly apart: a block of features at a time (kernels/patch_cull.cl),
-// on a GPU parts of several (patch_walk.cl and patch_cull_pairs.cl). Output: feature tests in no particular order, each
-// at most once. Guarantee: no test that gives a contact is dropped. Cost: one launch per step, two on a GPU.
+// of cloth triangles and drops pairs that are certainly apart: a block of features at a time
+// (kernels/broad_phase/patch_cull.cl), on a GPU parts of several (patch_traversal_gpu.cl and patch_cull_pairs.cl).
+// Output: feature tests in no particular order, each at most once. Guarantee: no test that gives a contact is dropped.
+// Cost: one launch per step, two on a GPU.
 #pragma once
 
 #include "bullet_plugin/core/device/buffer.h"
 #include "bullet_plugin/core/device/program.h"
-#include "bullet_plugin/core/mesh/patches.h"
+#include "bullet_plugin/core/scene/patches.h"
 #include "kernels/shared/motion.h"
 
 namespace drape

@@ -11,7 +11,7 @@ namespace drape
 {
 struct EmbeddedFile
 {
-    const char* m_path;  // relative to the repository's root, e.g. "kernels/refit.cl"
+    const char* m_path;  // relative to the repository's root, e.g. "kernels/queries/refit.cl"
     const char* m_text;
 };
 

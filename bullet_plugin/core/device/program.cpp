@@ -85,7 +85,7 @@ void append(const std::string& path, const KernelTexts& others, std::set<std::st
     }
 }
 
-// Returns e.g. "kernels/refit.cl:26" for a line of an assembled source, counted from 1 with the directives.
+// Returns e.g. "kernels/queries/refit.cl:26" for a line of an assembled source, counted from 1 with the directives.
 std::string originOfLine(const std::string& source, std::size_t wanted)
 {
     std::istringstream lines(source);

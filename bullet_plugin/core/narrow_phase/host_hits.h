@@ -1,13 +1,13 @@
-// Narrow phase on the host with a CPU's kernels (host_kernels.h), on a team's threads: turns a list of tests into
+// Narrow phase on the host with a CPU's kernels (cpu_kernels.h), on a team's threads: turns a list of tests into
 // unsorted contacts, and these into contacts in canonical order.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "bullet_plugin/core/compaction/canonical_order.h"
-#include "bullet_plugin/core/host_kernels/host_kernels.h"
-#include "bullet_plugin/core/mesh/reserve_room.h"
+#include "bullet_plugin/core/ordering/canonical_order.h"
+#include "bullet_plugin/core/cpu/cpu_kernels.h"
+#include "bullet_plugin/core/scene/reserve_room.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 
 namespace drape
@@ -34,7 +34,7 @@ public:
         const auto fill = [&]() -> std::size_t
         {
             m_slotCount.assign(slots, 0);
-            counters.m_listed = counters.*swept = 0;
+            counters.m_contactsFound = counters.*swept = 0;
             const HostHits list = {m_hits.data(), std::uint32_t(m_hits.size()), m_slotCount.data()};
             const auto run = [&](HitKernel<Features> kernel, std::size_t items, bool worth)
             {
@@ -47,7 +47,7 @@ public:
             const std::uint32_t left = counters.*swept;
             if (left > limits.m_swept) return 0;
             if (left > 0) run(findSwept, kSweptItems, left >= kLeastSweptShared);
-            return counters.m_listed;
+            return counters.m_contactsFound;
         };
         return fillGrowing(m_hits, limits.m_hits, fill);
     }

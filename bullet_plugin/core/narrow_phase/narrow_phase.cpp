@@ -14,7 +14,8 @@ constexpr std::size_t kFewTestsPerUnit = 128;
 // Maximum tests that a single launch processes, as a multiple of that number. If a step is suddenly larger, it is worth
 // running again with two launches.
 constexpr std::size_t kMostOfFew = 16;
-// Group size of a GPU's launch over the feature tests, as in kernels/narrow_phase.cl: a group divides them by kind.
+// Group size of a GPU's launch over the feature tests, as in kernels/narrow_phase/narrow_phase.cl: a group divides them
+// by kind.
 constexpr std::size_t kFeatureGroupGpu = 256;
 // Work-items per compute unit, and group size, of a GPU's launches of the continuous test. The test's 250 registers
 // leave room for that many on the H200, in groups of a warp.
@@ -23,8 +24,9 @@ constexpr std::size_t kSweptItemsGpu = 256, kSweptGroupGpu = 32;
 
 void NarrowPhaseStage::create(Device& device, const ProgramLoader& load)
 {
-    const cl::Program narrowPhase = load("narrow_phase");
-    m_feature.create(device, device.isGpu() ? narrowPhase : load("narrow_phase_lanes"), "narrowPhaseFeature");
+    const cl::Program narrowPhase = load("narrow_phase/narrow_phase");
+    m_feature.create(device, device.isGpu() ? narrowPhase : load("narrow_phase/narrow_phase_simd"),
+                     "narrowPhaseFeature");
     m_swept.create(device, narrowPhase, "narrowPhaseSwept");
     m_few.create(device, narrowPhase, "narrowPhaseFew");
 }

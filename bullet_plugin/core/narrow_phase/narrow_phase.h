@@ -1,4 +1,4 @@
-// Narrow phase: determines which candidates touch. A device lists unsorted contacts, which compaction sorts; the host
+// Narrow phase: determines which candidates touch. A device lists unsorted contacts, which ordering sorts; the host
 // lists contacts in canonical order at once. Both give the same contacts, bit for bit.
 #pragma once
 
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bullet_plugin/core/broad_phase/patch_cull.h"
-#include "bullet_plugin/core/compaction/hit_buffers.h"
+#include "bullet_plugin/core/ordering/hit_buffers.h"
 #include "bullet_plugin/core/device/buffer.h"
 #include "bullet_plugin/core/device/program.h"
 #include "kernels/lib/pair_contact.h"

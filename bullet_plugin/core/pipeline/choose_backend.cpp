@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "bullet_plugin/core/stopwatch.h"
-#include "crossover_ladder.h"
+#include "bullet_plugin/core/backend_choice/crossover_ladder.h"
 #include "implementation.h"
-#include "scene_work.h"
+#include "bullet_plugin/core/backend_choice/scene_work.h"
 
 namespace drape
 {

@@ -1,5 +1,5 @@
 // Computes where a face is nearest to its contact's vertex once the cloth's nodes have moved.
-#include "bullet_plugin/core/pipeline.h"
+#include "bullet_plugin/core/pipeline/pipeline.h"
 #include "kernels/lib/feature_contact.h"
 
 namespace drape

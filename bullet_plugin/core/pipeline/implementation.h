@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "backend_choice.h"
+#include "bullet_plugin/core/backend_choice/backend_choice.h"
 #include "bullet_plugin/core/device/device_choice.h"
-#include "bullet_plugin/core/pipeline.h"
-#include "device_backend.h"
-#include "host_backend.h"
+#include "bullet_plugin/core/pipeline/pipeline.h"
+#include "bullet_plugin/core/backends/device_backend.h"
+#include "bullet_plugin/core/backends/host_backend.h"
 
 namespace drape
 {
@@ -29,12 +29,10 @@ struct NamedPair
     MeshId m_cloth;
     MeshId m_obstacle;
     float m_thickness;
-    float m_tube;
 
     bool operator==(const NamedPair& other) const
     {
-        return m_cloth == other.m_cloth && m_obstacle == other.m_obstacle && m_thickness == other.m_thickness &&
-               m_tube == other.m_tube;
+        return m_cloth == other.m_cloth && m_obstacle == other.m_obstacle && m_thickness == other.m_thickness;
     }
 };
 
@@ -107,8 +105,6 @@ struct Pipeline::Implementation
     std::size_t countKept();
     // Records the obstacles' current state as used by a step.
     void takeObstacles();
-    // Determines which pairs' contacts may be reduced, and the path tolerance of their cloths' nodes.
-    void collectTubes();
     // Makes a device ready for cloths that collide with themselves.
     void prepareSelf();
     // Returns false, with error filled, if the chosen device cannot be opened or its kernels cannot be built; keeps

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "step.h"
+#include "bullet_plugin/core/backends/step.h"
 
 namespace drape
 {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cassert>
 
-#include "bullet_plugin/core/mesh/check_indices.h"
-#include "bullet_plugin/core/mesh/reserve_room.h"
+#include "bullet_plugin/core/scene/check_indices.h"
+#include "bullet_plugin/core/scene/reserve_room.h"
 #include "bullet_plugin/core/stopwatch.h"
 #include "check_settings.h"
-#include "scene_work.h"
+#include "bullet_plugin/core/backend_choice/scene_work.h"
 
 namespace drape
 {
@@ -237,9 +237,9 @@ const std::shared_ptr<ThreadTeam>& Pipeline::threads() const
     return m_implementation->m_threads;
 }
 
-void Pipeline::addPair(MeshId cloth, MeshId obstacle, float thickness, float tube)
+void Pipeline::addPair(MeshId cloth, MeshId obstacle, float thickness)
 {
-    m_implementation->m_pairs.push_back(NamedPair{cloth, obstacle, thickness, tube});
+    m_implementation->m_pairs.push_back(NamedPair{cloth, obstacle, thickness});
 }
 
 void Pipeline::addSelf(MeshId cloth)
@@ -298,7 +298,6 @@ ContactList Pipeline::finish(const Allowance& allowance)
     statistics.m_selfCandidates = self.m_result.m_selfCandidates;
     statistics.m_selfSweptTests = self.m_result.m_selfSweptTests;
     statistics.m_selfContacts = self.m_result.selfContacts().size();
-    statistics.m_reduced = self.m_result.m_reduced;
     statistics.m_contacts = self.m_result.contacts().size();
     statistics.m_invalidNodes = self.m_result.m_invalidNodes;
     statistics.m_retries = self.m_result.m_retries;

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <limits>
 
-#include "bullet_plugin/core/bvh/morton_order.h"
-#include "bullet_plugin/core/mesh/normal_cones.h"
-#include "bullet_plugin/core/mesh/reserve_room.h"
+#include "bullet_plugin/core/scene/morton_order.h"
+#include "bullet_plugin/core/scene/normal_cones.h"
+#include "bullet_plugin/core/scene/reserve_room.h"
 #include "implementation.h"
-#include "scene_work.h"
+#include "bullet_plugin/core/backend_choice/scene_work.h"
 
 namespace drape
 {

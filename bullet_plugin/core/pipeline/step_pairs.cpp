@@ -1,5 +1,5 @@
-// Collects the work of the coming step: pairs of cloth and obstacle, cloths that collide with themselves, moving
-// obstacles, and pairs whose contacts may be reduced.
+// Collects the work of the coming step: pairs of cloth and obstacle, cloths that collide with themselves, and moving
+// obstacles.
 #include <algorithm>
 #include <cassert>
 
@@ -63,7 +63,6 @@ void Pipeline::Implementation::collectPairs()
     }
     collectMotions();
     if (m_stepPairs.m_anyPair) m_statistics.m_obstaclesKept = countKept();
-    collectTubes();
     m_pairs.clear();
     const std::size_t clothTriangles = m_scene.m_cloths.triangles().size();
     const std::size_t obstacleTriangles = m_scene.m_obstacles.triangles().size();
@@ -121,29 +120,5 @@ void Pipeline::Implementation::takeObstacles()
 {
     for (std::size_t slot = 0; slot < m_scene.m_obstacles.meshCount(); ++slot)
         m_scene.m_obstacles.mesh(slot).m_placedAnew = false;
-}
-
-// Reduces a cloth's contacts if all its obstacles rest and are two-sided. The solver keeps a node near its path
-// relative to each moving obstacle, and does not enforce contacts on the back of a one-sided one.
-void Pipeline::Implementation::collectTubes()
-{
-    const MeshPool& obstacles = m_scene.m_obstacles;
-    m_stepPairs.m_tube.assign(m_stepPairs.m_thickness.size(), -1.0f);
-    m_stepPairs.m_anyTube = false;
-    if (!m_settings.m_reduceContacts) return;
-    std::vector<bool> exempt(m_scene.m_cloths.meshCount(), false);
-    for (std::size_t i = 0; i < m_pairs.size(); ++i)
-    {
-        const PooledMesh& obstacle = obstacles.mesh(m_pairSlots[i].m_obstacle);
-        if (obstacle.m_placing.moves() || obstacle.m_oneSided || !(m_pairs[i].m_tube >= 0.0f))
-            exempt[m_pairSlots[i].m_cloth] = true;
-    }
-    for (std::size_t i = 0; i < m_pairs.size(); ++i)
-    {
-        if (exempt[m_pairSlots[i].m_cloth]) continue;
-        m_stepPairs.m_tube[m_pairSlots[i].m_cloth * obstacles.meshCount() + m_pairSlots[i].m_obstacle] =
-            m_pairs[i].m_tube;
-        m_stepPairs.m_anyTube = true;
-    }
 }
 }  // namespace drape

@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
-#include "bullet_plugin/core/bvh/bvh_layout.h"
-#include "bullet_plugin/core/bvh/morton_order.h"
-#include "bullet_plugin/core/exact/triangles.h"
+#include "bullet_plugin/core/queries/bvh_layout.h"
+#include "bullet_plugin/core/scene/morton_order.h"
+#include "bullet_plugin/core/queries/exact/triangles.h"
 #include "axis.h"
 #include "kernels/lib/triangle_pair.h"
 

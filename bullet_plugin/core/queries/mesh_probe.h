@@ -15,7 +15,7 @@
 #include <memory>
 #include <vector>
 
-#include "bullet_plugin/core/mesh/topology.h"
+#include "bullet_plugin/core/scene/topology.h"
 #include "drape/mesh_description.h"
 #include "kernels/shared/types.h"
 

@@ -4,7 +4,7 @@
 #include <tuple>
 #include <utility>
 
-#include "bullet_plugin/core/exact/triangles.h"
+#include "bullet_plugin/core/queries/exact/triangles.h"
 #include "kernels/lib/triangle_pair.h"
 
 namespace drape

@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "bullet_plugin/core/device/device_choice.h"
-#include "bullet_plugin/core/exact/triangles.h"
-#include "bullet_plugin/core/mesh/check_indices.h"
+#include "bullet_plugin/core/queries/exact/triangles.h"
+#include "bullet_plugin/core/scene/check_indices.h"
 #include "bullet_plugin/core/pipeline/check_settings.h"
-#include "bullet_plugin/core/pipeline/step.h"
+#include "bullet_plugin/core/backends/step.h"
 #include "bullet_plugin/core/public_call.h"
-#include "bullet_plugin/core/self_collision/leaf_pair_count.h"
+#include "bullet_plugin/core/queries/leaf_pair_count.h"
 #include "bullet_plugin/core/stopwatch.h"
 #include "kernels/lib/triangle_pair.h"
 #include "query_device.h"

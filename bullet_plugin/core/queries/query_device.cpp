@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bullet_plugin/core/self_collision/leaf_pair_count.h"
+#include "bullet_plugin/core/queries/leaf_pair_count.h"
 
 namespace drape
 {
@@ -15,14 +15,14 @@ constexpr std::size_t kBatch = std::size_t(1) << 18;
 
 QueryDevice::QueryDevice(std::unique_ptr<Device> device, const Settings& settings)
     : m_device(std::move(device)),
-      m_programs(*m_device, settings.m_cacheFolder, {{"queries", "refit", "self_collision"}})
+      m_programs(*m_device, settings.m_cacheFolder, {{"queries/queries", "queries/refit", "queries/self_collision"}})
 {
-    const cl::Program queries = m_programs.load("queries");
+    const cl::Program queries = m_programs.load("queries/queries");
     m_motion.create(*m_device, queries, "queryMotion");
     m_triangles.create(*m_device, queries, "queryTriangles");
     m_pairs.create(*m_device, queries, "queryPairs");
-    m_refit.create(*m_device, m_programs.load("refit"));
-    m_stage.create(*m_device, m_programs.load("self_collision"));
+    m_refit.create(*m_device, m_programs.load("queries/refit"));
+    m_stage.create(*m_device, m_programs.load("queries/self_collision"));
     m_refitCounters.reserve(*m_device, 1);
     m_answerDemand.reserve(*m_device, 1);
 }

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "bullet_plugin/core/bvh/refit.h"
+#include "bullet_plugin/core/queries/refit.h"
 #include "bullet_plugin/core/device/program_set.h"
 #include "drape/queries.h"
 #include "pair_decision.h"

@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "bullet_plugin/core/bvh/morton_order.h"
-#include "bullet_plugin/core/bvh/refit.h"
+#include "bullet_plugin/core/scene/morton_order.h"
+#include "bullet_plugin/core/queries/refit.h"
 
 namespace drape
 {

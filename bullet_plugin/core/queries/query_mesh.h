@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "bullet_plugin/core/mesh/topology.h"
-#include "bullet_plugin/core/pipeline.h"
-#include "bullet_plugin/core/self_collision/self_collision.h"
+#include "bullet_plugin/core/scene/topology.h"
+#include "bullet_plugin/core/pipeline/pipeline.h"
+#include "bullet_plugin/core/queries/self_collision.h"
 
 namespace drape
 {

@@ -7,7 +7,7 @@
 #include "benchmarks/support/step_method.h"
 #include "study/trees/tree_quality.h"
 #include "bullet_plugin/core/device/device_choice.h"
-#include "bullet_plugin/core/mesh/topology.h"
+#include "bullet_plugin/core/scene/topology.h"
 #include "kernels/lib/dop.h"
 
 namespace drape::bench

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "benchmarks/support/result_hash.h"
-#include "bullet_plugin/core/compaction/canonical_order.h"
+#include "bullet_plugin/core/ordering/canonical_order.h"
 #include "kernels/lib/dop.h"
 
 namespace drape::bench

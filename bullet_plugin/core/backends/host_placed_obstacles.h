@@ -1,0 +1,37 @@
+// A scene's obstacles in world coordinates, on the host: the scene's own arrays if no obstacle has a pose.
+#pragma once
+
+#include <vector>
+
+#include "bullet_plugin/core/scene/reserve_room.h"
+#include "bullet_plugin/core/pipeline/obstacle_changes.h"
+
+namespace drape
+{
+class HostPlacedObstacles
+{
+public:
+    // Returns whether positions or poses may have changed since update().
+    bool changed(const Scene& scene) const { return m_changes.any(scene); }
+    // Updates obstacles from slot `fresh` on, and earlier ones whose positions or poses changed.
+    void update(const Scene& scene, std::size_t fresh);
+    // Returns whether the last update() moved the obstacle.
+    bool moved(std::size_t slot) const { return m_changes.moved(slot); }
+
+    void giveBackRoom()
+    {
+        dropRoom(m_positions);
+        dropRoom(m_vertexCones);
+        dropRoom(m_edgeCones);
+    }
+
+    ObstacleView view(const Scene& scene) const;
+
+private:
+    void place(const Scene& scene);
+
+    ObstacleChanges m_changes;
+    std::vector<float> m_positions;
+    std::vector<NormalCone> m_vertexCones, m_edgeCones;
+};
+}  // namespace drape

@@ -1,0 +1,131 @@
+#include "host_self_patches.h"
+
+#include <algorithm>
+
+namespace drape
+{
+namespace
+{
+constexpr std::uint32_t kWidth = DRAPE_PATCH_WIDTH;
+constexpr std::size_t kFirstTests = 1 << 12;
+// Minimum triangles of the cloths, or tests of the step before, for waking threads: they take a tenth of a millisecond.
+constexpr std::size_t kLeastTriangles = 1 << 8;
+constexpr std::size_t kLeastTests = 1 << 9;
+
+SelfRadii radiiOf(const SelfStep& step)
+{
+    return {step.m_reach.m_radius.data(), step.m_reach.m_thickness.data(), step.m_obstacleRadius.data()};
+}
+}  // namespace
+
+void HostSelfPatches::update(const MeshPool& cloths, const float* rest)
+{
+    if (m_revision == cloths.revision()) return;
+    m_revision = cloths.revision();
+    m_layout = makePatches(cloths, rest, kWidth);
+    m_patches = {};
+    if (m_layout.m_patches.empty()) return;
+    m_vertexIds = vertexIdsOf(m_layout.m_vertexOwners, cloths.triangles());
+    m_edgeIds = edgeIdsOf(m_layout.m_edgeOwners, cloths.triangles());
+    m_faceNodes = faceNodesOf(m_layout.m_faceOwners, cloths.triangles(), kWidth);
+    m_edgeNodes = edgeNodesOf(m_edgeIds, cloths.edges(), kWidth);
+    m_faceBoxes.resize(m_layout.m_faceOwners.size() * DRAPE_BOX_FLOATS);
+    m_vertexBoxes.resize(m_vertexIds.size() * DRAPE_BOX_FLOATS);
+    m_edgeBoxes.resize(m_edgeIds.size() * DRAPE_BOX_FLOATS);
+    m_wideNodes.resize(std::size_t(m_layout.m_levels.back()) * DRAPE_WIDE_NODE_FLOATS * kWidth);
+    m_patches = {m_layout.m_patches.data(),
+                 std::uint32_t(m_layout.m_patches.size()),
+                 m_layout.m_levels[1] * kWidth,
+                 m_layout.m_faceOwners.data(),
+                 m_vertexIds.data(),
+                 m_edgeIds.data(),
+                 m_faceNodes.data(),
+                 m_edgeNodes.data(),
+                 m_layout.m_levels.data(),
+                 std::uint32_t(m_layout.m_levels.size() - 1),
+                 m_faceBoxes.data(),
+                 m_vertexBoxes.data(),
+                 m_edgeBoxes.data(),
+                 m_wideNodes.data()};
+}
+
+bool HostSelfPatches::isWorth(const SelfStep& step) const
+{
+    return m_testsBefore >= kLeastTests || step.m_view.m_cloth.m_triangleCount >= kLeastTriangles;
+}
+
+// Computes the volumes of the patches, the tree's lowest level, and of the nodes above.
+void HostSelfPatches::pack(const SelfStep& step, ThreadTeam& threads)
+{
+    const SelfRadii radii = radiiOf(step);
+    runShared(threads, isWorth(step), m_patches.m_places,
+              [&](std::size_t place)
+              { m_kernels->m_self->m_pack(std::uint32_t(place), step.m_view.m_cloth, radii, m_patches, &m_counters); });
+    const std::vector<std::uint32_t>& levels = m_layout.m_levels;
+    for (std::size_t level = 1; level + 1 < levels.size(); ++level)
+        m_kernels->m_widen(m_wideNodes.data(), levels[level - 1], levels[level] - levels[level - 1], levels[level], 0,
+                           (levels[level + 1] - levels[level]) * kWidth);
+}
+
+void HostSelfPatches::cull(const SelfStep& step, std::uint64_t limit, ThreadTeam& threads)
+{
+    m_counters = {};
+    m_retries = 0;
+    if (m_patches.m_patchCount == 0) return;
+    pack(step, threads);
+    if (m_tests.empty()) m_tests.resize(kFirstTests);
+    const auto fill = [&]
+    {
+        const HostTests list = {m_tests.data(), std::uint32_t(m_tests.size()), std::uint32_t(limit)};
+        return m_testsBefore = cullPatches(step, {0, m_patches.m_patchCount}, list, threads);
+    };
+    m_retries = fillGrowing(m_tests, limit, fill);
+}
+
+std::size_t HostSelfPatches::cullPatches(const SelfStep& step, ItemRange patches, HostTests list, ThreadTeam& threads)
+{
+    const SelfRadii radii = radiiOf(step);
+    m_counters.m_selfTests = 0;
+    runShared(threads, isWorth(step), patches.count(),
+              [&](std::size_t patch)
+              {
+                  m_kernels->m_self->m_cull(patches.first() + std::uint32_t(patch), step.m_view.m_cloth, radii,
+                                            m_patches, list, &m_counters);
+              });
+    return m_counters.m_selfTests;
+}
+
+std::vector<std::uint64_t> HostSelfPatches::countTests(const SelfStep& step, std::uint64_t limit, ThreadTeam& threads)
+{
+    std::vector<std::uint64_t> counts(step.m_cloths.meshCount(), 0);
+    m_counters = {};
+    if (m_patches.m_patchCount == 0) return counts;
+    pack(step, threads);
+    const HostTests nowhere = {m_tests.data(), 0, std::uint32_t(limit)};
+    for (std::size_t slot = 0; slot < counts.size(); ++slot)
+        if (step.m_reach.m_radius[slot] >= 0.0f)
+            counts[slot] = std::min<std::uint64_t>(
+                cullPatches(step, patchesOf(m_layout, {slot, slot + 1}), nowhere, threads), limit + 1);
+    return counts;
+}
+
+void HostSelfPatches::findContacts(const SelfStep& step, SelfStepLimits limits, ThreadTeam& threads,
+                                   std::vector<Contact>& contacts)
+{
+    if (m_counters.m_selfTests > limits.m_candidates) return;
+    const ClothView& cloth = step.m_view.m_cloth;
+    const std::uint32_t firstSlot =
+        firstSelfSlot(cloth.m_nodeCount, cloth.m_triangleCount, std::uint32_t(step.m_cloths.edges().size()));
+    const HostSelfFeatures features = {m_tests.data(), m_counters.m_selfTests, step.m_view, firstSlot};
+    const CpuSelfKernels& kernels = *m_kernels->m_self;
+    m_retries += m_hits.find(kernels.m_findHits, kernels.m_findSwept, &StepCounters::m_selfSwept, features,
+                             2 * std::size_t(firstSlot), {limits.m_contacts, SIZE_MAX}, threads, m_counters);
+    if (m_counters.m_contactsFound <= limits.m_contacts) m_hits.order(m_counters.m_contactsFound, contacts, threads);
+}
+
+SelfCounts HostSelfPatches::counts() const
+{
+    return {m_counters.m_selfTests, m_counters.m_contactsFound, m_counters.m_selfSwept, m_counters.m_invalidNodes,
+            m_retries};
+}
+}  // namespace drape

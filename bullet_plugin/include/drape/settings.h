@@ -1,0 +1,88 @@
+// Settings of a plugin or of queries: where Drape computes, how it looks at motion, and its limits.
+//
+// Every field has a working default. A value out of range makes the constructor or create() fail with an Error that
+// names the field. Lengths are metres. C++11, no OpenCL header.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace drape
+{
+// Writes "drape: ", `line` and a line feed to standard error.
+void logToStandardError(const char* line);
+
+// Selects where Drape computes.
+enum class Backend
+{
+    // A GPU, else any OpenCL device. The host if there is no device, if it fails (error() then says why), or if the
+    // scene is too small for it.
+    Auto,
+    // An OpenCL device; a failure if there is none.
+    OpenCl,
+    // The host: the same functions compiled as C++, on m_threads threads and without OpenCL.
+    Host
+};
+
+// Selects how a step looks at the cloth's motion between its start and its end.
+enum class ContactMode : std::uint32_t
+{
+    Discrete,    // looks at the end only; the fastest, for cloth that moves less than its thickness in a step
+    Continuous,  // runs the certified continuous test on every candidate
+    Automatic    // finds the contacts of Continuous, but runs the test only if motion is large enough
+};
+
+// Holds the choices of an app before Drape starts.
+struct Settings
+{
+    // Selects the back end. Default: Auto.
+    Backend m_backend = Backend::Auto;
+
+    // Part of an OpenCL device's or platform's name, case-insensitive; "host" selects the host back end. Empty means
+    // the environment variable DRAPE_DEVICE, and if that is empty the order of Backend::Auto.
+    std::string m_device;
+
+    // The scene size from which the device is used, in expected triangle pairs; applies to Backend::Auto without a
+    // named device. 0 means always the device, infinite always the host. A scene that shrinks returns to the host below
+    // half of it. Negative (the default) means the environment variable DRAPE_CROSSOVER and, if that is empty, a
+    // measurement. The measurement takes a second or two at the first start and is kept in the cache folder. It is
+    // repeated at the next starts, three at most, if the machine was busy. Contacts do not depend on this.
+    double m_crossover = -1;
+
+    // Distance beyond the thickness up to which contacts are reported, as a fraction of the thickness. Range 0 to 4.
+    // Larger values cost more contacts and were not safer in random worlds.
+    float m_activation = 0.5f;
+
+    // Selects how motion within a step is treated. Continuous and Automatic find every face and edge that meets a
+    // feature of the obstacle on its straight path, at the earliest time. Discrete may miss faster motion than a
+    // thickness per step.
+    ContactMode m_mode = ContactMode::Automatic;
+
+    // Number of threads, the caller's included: they solve contacts of large or many cloths, write nodes for a GPU, and
+    // run the host back end. Range 0 to 64. 0 means the number of available cores, 8 at most; 1 means the caller's
+    // thread alone. Results do not depend on it.
+    unsigned m_threads = 0;
+
+    // Largest number of candidates in a step, up to 20 bytes each; 2^28 at most. A step that exceeds it leaves out the
+    // cloths with the most candidates and reports kStepClothsLeftOut. Queries of meshes test as many pairs.
+    std::size_t m_candidateLimit = std::size_t(1) << 27;
+    // Largest number of contacts in a step, 140 bytes each on a device and 200 on the host; 2^28 at most. Otherwise
+    // like m_candidateLimit. Queries of meshes list as many answers.
+    std::size_t m_contactLimit = std::size_t(1) << 24;
+
+    // Makes the device time every kernel launch, for Drape's own benchmarks: every step runs on the device then.
+    bool m_profileKernels = false;
+
+    // Folder for compiled kernels and measurements. Empty means $XDG_CACHE_HOME/drape or ~/.cache/drape; "none" turns
+    // the cache off. PoCL always keeps its kernels itself, in $XDG_CACHE_HOME/pocl or ~/.cache/pocl.
+    std::string m_cacheFolder;
+
+    // Receives one line without a line feed about a problem of the world that no return value reports. Problems are a
+    // pair that starts a step intersecting, cloth that is left out, and a margin that is negative or as large as the
+    // mesh. Called once while the problem lasts, on the thread that steps the world. nullptr means no lines. Exceptions
+    // from it are dropped.
+    std::function<void(const char*)> m_log = logToStandardError;
+};
+}  // namespace drape

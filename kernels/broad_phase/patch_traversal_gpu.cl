@@ -1,0 +1,203 @@
+// Broad phase over patches on a GPU, in two launches. If one group did all of the work for a cloth triangle, its
+// steps would run one after the other with most of the machine idle. The traversal therefore only lists pairs of a
+// triangle and a patch that it may touch, and the groups of the second launch share them (patch_cull_pairs.cl). A
+// group traverses for one triangle where there are few, otherwise for a packet of neighbouring triangles.
+#include "../lib/patch_pairs.h"
+
+// Maximum patches found before they are turned into pairs.
+#define DRAPE_WALK_FOUND (2 * DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH)
+
+// Local memory of a group.
+typedef struct Walkers
+{
+    Team m_team;
+    uint m_stack[DRAPE_WALK_NODES * DRAPE_WALK_STACK];
+    uint m_found[DRAPE_WALK_FOUND];
+    uint m_foundCount;
+    CullVolume m_volumes[DRAPE_PATCH_WIDTH];  // volumes of a packet's triangles; empty if out of the obstacle's reach
+    CullVolume m_joined;                      // union of the volumes, or the single triangle's
+} Walkers;
+
+// A traversal of the resting obstacles, or of one that moves.
+typedef struct Walk
+{
+    uint m_motion;
+    uint m_packet;  // triangles: 1 or DRAPE_PATCH_WIDTH
+    uint m_cloth;   // this lane's triangle
+} Walk;
+
+// Lists the pairs of this lane's triangle and the patches found from first up to last, at most DRAPE_PATCH_WIDTH. They
+// are adjacent in the list, which makes patchCullPairs faster.
+static void pairLane(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const PatchTree* tree,
+                     const uint first, const uint last, const TestList* list)
+{
+    __local const CullVolume* own = walkers->m_volumes + teamLane() % DRAPE_PATCH_WIDTH;
+    uint touched = 0;
+    FeatureTest pair;
+    for (uint i = first; i < last; ++i)
+    {
+        const uint patch = walkers->m_found[i];
+        __global const float* node = tree->m_nodes + (patch / DRAPE_PATCH_WIDTH) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH;
+        if (cullWideChild(own, node + patch % DRAPE_PATCH_WIDTH) &&
+            pairWith(&pair, cloths, tree, walk->m_cloth, walk->m_motion, patch))
+            touched |= 1u << (i - first);
+    }
+    uint slot = touched == 0 ? 0 : atomic_add(&walkers->m_team.m_keptCount, popcount(touched));
+    for (; touched != 0; touched &= touched - 1)
+    {
+        pairWith(&pair, cloths, tree, walk->m_cloth, walk->m_motion, walkers->m_found[first + 31 - clz(touched & -touched)]);
+        teamPut(&walkers->m_team, list, slot++, pair);
+    }
+}
+
+// Turns the patches found into pairs if there are at least `least`. In a packet the lanes, which had a patch each, now
+// have a triangle each, and each DRAPE_PATCH_WIDTH lanes a share of the patches.
+static void settleFound(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const PatchTree* tree,
+                        const TestList* list, const uint least)
+{
+    teamSync();
+    const uint count = walkers->m_foundCount;
+    teamSync();
+    if (count < least) return;
+    for (uint i = teamLane(); i < count && walk->m_packet == 1; i += teamWidth())
+    {
+        FeatureTest pair;
+        if (pairWith(&pair, cloths, tree, walk->m_cloth, walk->m_motion, walkers->m_found[i]))
+            teamKeep(&walkers->m_team, list, pair);
+    }
+    const uint turns = teamWidth() / DRAPE_PATCH_WIDTH, turn = teamLane() / DRAPE_PATCH_WIDTH;
+    for (uint first = 0; first < count && walk->m_packet > 1; first += teamWidth())
+    {
+        const uint part = min(count - first, (uint)teamWidth()), share = (part + turns - 1) / turns;
+        pairLane(walkers, walk, cloths, tree, first + min(part, turn * share), first + min(part, (turn + 1) * share), list);
+        if (!teamMakeRoom(&walkers->m_team, list)) break;
+    }
+    teamSync();
+    if (teamLane() == 0) walkers->m_foundCount = 0;
+    teamSync();
+}
+
+static void walkTree(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const PatchTree* tree,
+                     const TestList* list)
+{
+    __local Team* team = &walkers->m_team;
+    __local uint* stack = walkers->m_stack;
+    const uint most = teamWidth() / DRAPE_PATCH_WIDTH;
+    const uint turn = teamLane() / DRAPE_PATCH_WIDTH, lane = teamLane() % DRAPE_PATCH_WIDTH;
+    teamSync();
+    if (teamLane() == 0) team->m_depth = beginWalk(stack, tree->m_levels, tree->m_levelCount);
+    teamSync();
+    while (team->m_depth > 0)
+    {
+        const uint depth = team->m_depth;
+        const uint nodes = nodesInTurn(stack, depth, most);
+        const uint entry = stack[depth - 1 - min(turn, nodes - 1)];
+        teamSync();
+        if (teamLane() == 0) team->m_depth = depth - nodes;
+        teamSync();
+        const uint level = entryLevel(entry), index = entryIndex(entry);
+        __global const float* node =
+            tree->m_nodes + (tree->m_levels[level - 1] + index) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH;
+        const uint child = index * DRAPE_PATCH_WIDTH + lane;
+        if (turn < nodes && cullWideChild(&walkers->m_joined, node + lane))
+        {
+            if (level > 1)
+                stack[atomic_inc(&team->m_depth)] = walkEntry(level - 1, child);
+            else
+                walkers->m_found[atomic_inc(&walkers->m_foundCount)] = child;
+        }
+        settleFound(walkers, walk, cloths, tree, list, DRAPE_WALK_FOUND - DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH + 1);
+        if (!teamMakeRoom(team, list)) return;
+    }
+    settleFound(walkers, walk, cloths, tree, list, 1);
+}
+
+// Joins a packet's volumes. They are in local memory, since in registers they would leave room for few groups.
+static void joinVolumes(__local Walkers* walkers)
+{
+    // Joins the volumes in one direction per lane; one more lane joins their radii.
+    const uint lane = teamLane();
+    if (lane > DRAPE_DOP_DIRECTIONS) return;
+    __local CullVolume* joined = &walkers->m_joined;
+    const int ofRadii = lane == DRAPE_DOP_DIRECTIONS;
+    float least = INFINITY, most = -INFINITY;
+    for (uint i = 0; i < DRAPE_PATCH_WIDTH; ++i)
+    {
+        __local const CullVolume* volume = walkers->m_volumes + i;
+        least = ofRadii ? drapeMin(least, -volume->m_least) : drapeMin(least, volume->m_volume.m_low[lane]);
+        most = ofRadii ? drapeMax(most, volume->m_radius) : drapeMax(most, volume->m_volume.m_high[lane]);
+    }
+    *(ofRadii ? &joined->m_least : joined->m_volume.m_low + lane) = ofRadii ? -least : least;
+    *(ofRadii ? &joined->m_radius : joined->m_volume.m_high + lane) = most;
+}
+
+// Stores a volume's interval in one direction, empty if the triangle cannot come near the obstacle.
+static void storeInterval(__local CullVolume* volume, const CullCorners* corners, const int near, const uint direction)
+{
+    float low = INFINITY, high = -INFINITY;
+    if (near) cullInterval(corners, direction, &low, &high);
+    volume->m_volume.m_low[direction] = low;
+    volume->m_volume.m_high[direction] = high;
+}
+
+// Makes the volumes of the group's triangles for the resting obstacles, or for one that moves. In a packet each of the
+// first lanes makes its triangle's volume; for a single triangle each lane makes the volume's interval in one
+// direction.
+static void makeVolumes(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const float clothRadius)
+{
+    __global const ObstacleMotion* motion = motionOf(cloths, walk->m_motion);
+    const uint lane = teamLane();
+    const int alone = walk->m_packet == 1;
+    teamSync();
+    if (lane < DRAPE_PATCH_WIDTH)
+    {
+        __local CullVolume* volume = alone ? &walkers->m_joined : walkers->m_volumes + lane;
+        CullCorners corners;
+        float least = 0.0f;
+        const int near = clothRadius >= 0.0f && !(motion && thicknessWith(cloths, walk->m_cloth, motion->m_mesh) < 0.0f) &&
+                         cullCorners(&corners, &least, motion, cloths->m_triangles + walk->m_cloth, cloths->m_start,
+                                     cloths->m_end, clothRadius, cloths->m_mode) &&
+                         cullMeets(&corners, clothRadius, motion);
+        if (!alone)
+        {
+            DRAPE_UNROLL
+            for (uint i = 0; i < DRAPE_DOP_DIRECTIONS; ++i) storeInterval(volume, &corners, near, i);
+        }
+        else if (lane < DRAPE_DOP_DIRECTIONS)
+            storeInterval(volume, &corners, near, lane);
+        if (!alone || lane == 0)
+        {
+            volume->m_radius = near ? clothRadius : 0.0f;
+            volume->m_least = near ? least : 0.0f;
+        }
+    }
+    teamSync();
+    if (!alone) joinVolumes(walkers);
+    teamSync();
+}
+
+// Lists the pairs of `packet` cloth triangles, in leaf order, per group. packet: 1 or DRAPE_PATCH_WIDTH, with as many
+// lanes or up to DRAPE_WALK_NODES times as many.
+__kernel void patchWalk(DRAPE_WALK_ARGUMENTS, const uint packet)
+{
+    __local Walkers walkers;
+    const StepCloths cloths = DRAPE_STEP_CLOTHS;
+    const PatchTree tree = DRAPE_PATCH_TREE;
+    const TestList pairs = {list, capacity, limit, &counters->m_patchPairs};
+    const uint group = get_group_id(0), lane = teamLane() % DRAPE_PATCH_WIDTH;
+    const uint leaf = packet == 1 ? group : group * packet + lane;
+    Walk walk;
+    walk.m_packet = packet;
+    walk.m_cloth = clothOrder[min(leaf, clothCount - 1)];
+    const float clothRadius = leaf < clothCount ? radius[clothTriangles[walk.m_cloth].m_mesh] : -1.0f;
+    // The last lanes run this while the first make volumes.
+    if (clothRadius >= 0.0f && teamLane() >= teamWidth() - packet) countInvalid(&cloths, walk.m_cloth, counters);
+    if (teamLane() == 0) walkers.m_foundCount = 0;
+    teamStart(&walkers.m_team);
+    for (walk.m_motion = 0; walk.m_motion <= motionCount && walkers.m_team.m_place <= limit; ++walk.m_motion)
+    {
+        makeVolumes(&walkers, &walk, &cloths, clothRadius);
+        walkTree(&walkers, &walk, &cloths, &tree, &pairs);
+    }
+    teamFlush(&walkers.m_team, &pairs);
+}

@@ -1,0 +1,187 @@
+// Narrow phase over pairs of features on a CPU. A work-item sorts a run of tests by kind, and runs as many of one kind
+// side by side as a vector has lanes.
+#include "../lib/prefetch.h"
+#include "../lib/feature_tests.h"
+#include "../lib/lane_runs.h"
+
+struct LaneWork
+{
+    __global const FeatureTest* m_tests;
+    ClothView m_cloth;
+    ObstacleView m_obstacle;
+    PackedFeatures m_packed;
+    __global const ObstacleMotion* m_motions;
+    HitList m_list;
+    __global uint* m_swept;
+    __global StepCounters* m_counters;
+};
+
+static uint kindOf(const LaneWork* work, const uint item)
+{
+    return kindOfTest(work->m_tests[item]);
+}
+
+static void testOne(LaneWork* work, const uint item)
+{
+    testFeature(work->m_tests, item, &work->m_cloth, &work->m_obstacle, &work->m_packed, work->m_motions, &work->m_list,
+                work->m_swept, work->m_counters);
+}
+
+// Stores the cone in the rows from `row` on.
+static void putCone(float* rows, const uint row, const uint lane, const NormalCone cone)
+{
+    putVec3(rows, row, lane, cone.m_axis);
+    putNumber(rows, row + 3, lane, cone.m_cosine);
+}
+
+// See lane_contacts.h for the rows.
+static void putTest(float* rows, const uint lane, LaneWork* work, const uint item)
+{
+    const FeatureTest feature = work->m_tests[item];
+    ClothView* cloth = &work->m_cloth;
+    const PackedFeatures* packed = &work->m_packed;
+    cloth->m_motion = motionOfTest(work->m_motions, feature);
+    const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT, packedLane = feature.m_lane;
+    __global const Triangle* triangle = cloth->m_triangles + (feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u));
+    if (test < DRAPE_TEST_FACE)
+    {
+        const uint node = triangle->m_vertices[test];
+        putVec3(rows, 0, lane, nodeStart(cloth, node));
+        putVec3(rows, 3, lane, vec3Load(cloth->m_end, node));
+        for (uint k = 0; k < 3; ++k)
+            putVec3(rows, 6 + 3 * k, lane, laneVec3(packed->m_faces, DRAPE_FACE_FLOATS, packedLane, 3 * k));
+        putNumber(rows, DRAPE_NODE_FACE_ROWS - 1, lane, feature.m_reach);
+        return;
+    }
+    if (test == DRAPE_TEST_FACE)
+    {
+        for (uint k = 0; k < 3; ++k)
+        {
+            putVec3(rows, 3 * k, lane, nodeStart(cloth, triangle->m_vertices[k]));
+            putVec3(rows, 9 + 3 * k, lane, vec3Load(cloth->m_end, triangle->m_vertices[k]));
+        }
+        putVec3(rows, 18, lane, laneVec3(packed->m_vertices, DRAPE_VERTEX_FLOATS, packedLane, 0));
+        putCone(rows, 21, lane, laneCone(packed->m_vertices, DRAPE_VERTEX_FLOATS, packedLane));
+        putNumber(rows, DRAPE_FACE_VERTEX_ROWS - 1, lane, feature.m_reach);
+        return;
+    }
+    const uint edge = test - DRAPE_TEST_EDGE;
+    for (uint k = 0; k < 2; ++k)
+    {
+        const uint node = triangle->m_vertices[(edge + k) % 3];
+        putVec3(rows, 3 * k, lane, nodeStart(cloth, node));
+        putVec3(rows, 6 + 3 * k, lane, vec3Load(cloth->m_end, node));
+        putVec3(rows, 12 + 3 * k, lane, laneVec3(packed->m_edges, DRAPE_EDGE_FLOATS, packedLane, 3 * k));
+    }
+    putCone(rows, 18, lane, laneCone(packed->m_edges, DRAPE_EDGE_FLOATS, packedLane));
+    putNumber(rows, DRAPE_EDGE_EDGE_ROWS - 1, lane, feature.m_reach);
+}
+
+static void askLanes(LaneContacts* contacts, const float* rows, const LaneWork* work, const uint kind)
+{
+    if (kind == 0) laneNodeFace(contacts, rows, work->m_cloth.m_mode);
+    if (kind == 1) laneFaceVertex(contacts, rows, work->m_cloth.m_mode);
+    if (kind == 2) laneEdgeEdge(contacts, rows, work->m_cloth.m_mode);
+}
+
+static int takeContact(const LaneContacts* contacts, const float* rows, const uint lane, const LaneWork* work,
+                       const uint item, const int asks, Contact* contact)
+{
+    const FeatureTest feature = work->m_tests[item];
+    const ClothView* cloth = &work->m_cloth;
+    const ObstacleView* obstacle = &work->m_obstacle;
+    const PackedFeatures* packed = &work->m_packed;
+    const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT, index = feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u);
+    __global const Triangle* triangle = cloth->m_triangles + index;
+    const Vec3 normal = vec3Of(&contacts->m_normal, lane), weights = vec3Of(&contacts->m_weights, lane);
+    const Vec3 point = vec3Of(&contacts->m_point, lane);
+    const float gap0 = laneOf(&contacts->m_gap0, lane), gap1 = laneOf(&contacts->m_gap1, lane);
+    const uint row = test < DRAPE_TEST_FACE ? 6 : test == DRAPE_TEST_FACE ? 18 : 12;
+    const Vec3 origin = rowOf(rows, row, lane);
+    if (test < DRAPE_TEST_FACE)
+    {
+        const uint face = packed->m_faceIds[feature.m_lane];
+        if (asks && !coneAdmits(closestFeatureCone(weights, obstacle->m_triangles + face, obstacle->m_vertexCones,
+                                                   obstacle->m_edgeCones),
+                                normal))
+            return DRAPE_NO_CONTACT;
+        nameFeatures(contact, cloth, DRAPE_NODE_FACE, triangle->m_vertices[test], face);
+        storeContact(contact, normal, point, vec3(1.0f, 0.0f, 0.0f), gap0, gap1, 1.0f);
+    }
+    else if (test == DRAPE_TEST_FACE)
+    {
+        if (asks)
+        {
+            uint beyond[3];
+            for (int edge = 0; edge < 3; ++edge) beyond[edge] = vertexBeyond(cloth, triangle, edge);
+            if (neighbourIsNearer(weights, beyond, cloth->m_start, cloth->m_end, origin, point,
+                                  vec3Of(&contacts->m_offset, lane), DRAPE_SEAM * laneOf(&contacts->m_distance, lane)))
+                return DRAPE_NO_CONTACT;
+        }
+        nameFeatures(contact, cloth, DRAPE_FACE_VERTEX, index, packed->m_vertexIds[feature.m_lane]);
+        storeContact(contact, normal, vec3(0.0f, 0.0f, 0.0f), weights, gap0, gap1, 1.0f);
+    }
+    else
+    {
+        nameFeatures(contact, cloth, DRAPE_EDGE_EDGE, triangle->m_edges[test - DRAPE_TEST_EDGE],
+                     packed->m_edgeIds[feature.m_lane]);
+        storeContact(contact, normal, point, weights, gap0, gap1, 1.0f);
+    }
+    return finishContact(DRAPE_IS_CONTACT, origin, contact);
+}
+
+static void askForLane(__global const float* blocks, const uint floats, __global const uint* ids, const uint lane)
+{
+    __global const float* block = blocks + lane / DRAPE_PATCH_WIDTH * floats * DRAPE_PATCH_WIDTH;
+    for (uint row = 0; row < floats; ++row) prefetchWord(block + row * DRAPE_PATCH_WIDTH);
+    prefetchWord(ids + lane);
+}
+
+// Prefetches a test's data.
+static void askForTest(const LaneWork* work, const FeatureTest feature)
+{
+    const PackedFeatures* packed = &work->m_packed;
+    const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT, lane = feature.m_lane;
+    prefetchWord(work->m_cloth.m_triangles + (feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u)));
+    if (test < DRAPE_TEST_FACE) askForLane(packed->m_faces, DRAPE_FACE_FLOATS, packed->m_faceIds, lane);
+    else if (test == DRAPE_TEST_FACE) askForLane(packed->m_vertices, DRAPE_VERTEX_FLOATS, packed->m_vertexIds, lane);
+    else askForLane(packed->m_edges, DRAPE_EDGE_FLOATS, packed->m_edgeIds, lane);
+}
+
+// Prefetches, once askForTest() has loaded the test's data, the data that it refers to.
+static void askForNodes(const LaneWork* work, const FeatureTest feature)
+{
+    const ClothView* cloth = &work->m_cloth;
+    const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT;
+    __global const Triangle* triangle = cloth->m_triangles + (feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u));
+    for (uint k = 0; k < 3; ++k)
+    {
+        if (test < DRAPE_TEST_FACE && k != test) continue;
+        prefetchWord(cloth->m_start + 3 * triangle->m_vertices[k]);
+        prefetchWord(cloth->m_end + 3 * triangle->m_vertices[k]);
+    }
+    if (test < DRAPE_TEST_FACE) prefetchWord(work->m_obstacle.m_triangles + work->m_packed.m_faceIds[feature.m_lane]);
+}
+
+static void askForRun(const LaneWork* work, const uint first, const uint end)
+{
+    for (uint item = first; item < end; ++item) askForTest(work, work->m_tests[item]);
+    for (uint item = first; item < end; ++item) askForNodes(work, work->m_tests[item]);
+}
+
+// Number of tests from which their data is seldom in the caches.
+#define DRAPE_FAR_TESTS (1u << 17)
+
+// Runs the feature tests that patchCull lists, each work-item its part, and lists the contacts. Tests that need the
+// continuous test go to `swept`, unsorted. counters->m_swept must be zero before.
+__kernel void narrowPhaseFeature(DRAPE_FEATURE_ARGUMENTS, __global uint* restrict swept)
+{
+    DRAPE_FEATURE_VIEWS;
+    LaneWork work = {tests, DRAPE_CLOTH_VIEW(0), obstacle, packed, motions, list, swept, counters};
+    const uint count = min(counters->m_candidates, testCapacity);
+    for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextRun(&runs))
+    {
+        if (count >= DRAPE_FAR_TESTS) askForRun(&work, runs.m_item, runs.m_end);
+        testRun(&work, runs.m_item, runs.m_end, mode, &list);
+    }
+}

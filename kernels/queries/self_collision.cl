@@ -1,0 +1,126 @@
+// Self collision of a moving mesh: volumes of its vertices, pairs of its triangles, pairs of features, and the pairs
+// that touch during the step. Lists are filled in no particular order. Their demands must be zero before, and count on
+// when a list is full (see SelfCounters).
+#include "../lib/item_runs.h"
+#include "../lib/self_collision.h"
+
+// Pairs that a work-item gathers before it reserves room for them with one atomic.
+#define DRAPE_SELF_GATHER 16
+
+// Reserves room for count entries of a list. Returns false if the demand has reached `enough`, beyond which nothing is
+// counted.
+static int reserveEntries(__global volatile uint* demand, const uint count, const uint enough, uint* place)
+{
+    if (*demand >= enough) return 0;
+    *place = atomic_add(demand, count);
+    return 1;
+}
+
+static int flushPairs(__global Candidate* restrict pairs, const uint capacity, const uint enough,
+                      __global SelfCounters* restrict counters, const Candidate* gathered, const uint count)
+{
+    uint place;
+    if (!reserveEntries(&counters->m_pairs, count, enough, &place)) return 0;
+    for (uint i = 0; i < count; ++i)
+    {
+        if (place + i < capacity) pairs[place + i] = gathered[i];
+    }
+    return 1;
+}
+
+// Writes the volume of a vertex over the step, one per work-item.
+__kernel void selfVolumes(__global const float* restrict start, __global const float* restrict end, const uint vertexCount,
+                          const float radius, __global Dop* restrict volumes)
+{
+    const uint i = get_global_id(0);
+    if (i >= vertexCount) return;
+    Dop dop;
+    vertexVolume(&dop, start, end, i, radius);
+    volumes[i] = dop;
+}
+
+static WalkSide walkSide(__global const BvhNode* nodes, __global const uint* order, __global const Triangle* triangles)
+{
+    WalkSide side;
+    side.m_nodes = nodes;
+    side.m_order = order;
+    side.m_triangles = triangles;
+    return side;
+}
+
+// Lists the pairs of a leaf's triangle with the leaves of tree b whose volumes overlap. A work-item takes one of
+// leafCount leaves of side a, from firstLeaf on. kind: DRAPE_WALK_…; a and b are equal for a mesh with itself.
+// Work-items stop once enough pairs (at most DRAPE_DEMAND_LIMIT) are counted.
+__kernel void leafTraverse(__global const BvhNode* nodesA, __global const uint* orderA,
+                           __global const Triangle* trianglesA, const uint firstLeaf, const uint leafCount,
+                           __global const BvhNode* nodesB, __global const uint* orderB,
+                           __global const Triangle* trianglesB, const uint root, __global const uint* lastLeaf,
+                           const uint kind, __global Candidate* restrict pairs, const uint capacity,
+                           const uint enough, __global SelfCounters* restrict counters)
+{
+    if (get_global_id(0) >= leafCount) return;
+    const WalkSide a = walkSide(nodesA, orderA, trianglesA), b = walkSide(nodesB, orderB, trianglesB);
+    Candidate gathered[DRAPE_SELF_GATHER];
+    uint count = 0;
+    LeafWalk walk;
+    leafWalkStart(&walk, firstLeaf + get_global_id(0), root);
+    while (leafWalkNext(&walk, &a, &b, kind, lastLeaf, gathered + count))
+    {
+        if (++count < DRAPE_SELF_GATHER) continue;
+        if (!flushPairs(pairs, capacity, enough, counters, gathered, count)) return;
+        count = 0;
+    }
+    if (count > 0) flushPairs(pairs, capacity, enough, counters, gathered, count);
+    if (walk.m_tooDeep) atomic_inc(&counters->m_tooDeep);
+}
+
+static void storePairs(__global FeaturePair* restrict list, const uint capacity, __global volatile uint* demand,
+                       const FeaturePair* pairs, const uint count)
+{
+    uint place;
+    if (count == 0 || !reserveEntries(demand, count, DRAPE_DEMAND_LIMIT, &place)) return;
+    for (uint i = 0; i < count; ++i)
+    {
+        if (place + i < capacity) list[place + i] = pairs[i];
+    }
+}
+
+// Lists the overlapping pairs of features that the pairs of triangles own. A work-item processes its part of the pairs
+// of triangles.
+__kernel void selfFeatures(__global const Candidate* restrict pairs, const uint pairCapacity,
+                           __global const Triangle* restrict triangles, __global const Dop* restrict volumes,
+                           __global FeaturePair* restrict vertexFace, const uint vertexFaceCapacity,
+                           __global FeaturePair* restrict edges, const uint edgesCapacity,
+                           __global SelfCounters* restrict counters)
+{
+    const uint count = min(counters->m_pairs, pairCapacity);
+    for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextItem(&runs))
+    {
+        const uint i = runs.m_item;
+        FeaturePairs found;
+        collectFeaturePairs(&found, triangles, pairs[i], volumes);
+        storePairs(vertexFace, vertexFaceCapacity, &counters->m_vertexFace, found.m_vertexFace, found.m_vertexFaceCount);
+        storePairs(edges, edgesCapacity, &counters->m_edgeEdge, found.m_edges, found.m_edgesCount);
+    }
+}
+
+// Tests the pairs of one kind, each work-item its part, and lists those that touch during the step.
+__kernel void selfTest(const uint kind, __global const FeaturePair* restrict pairs, const uint pairCapacity,
+                       __global const Triangle* restrict triangles, __global const Edge* restrict edges,
+                       __global const float* restrict start, __global const float* restrict end, const float separation,
+                       const float tolerance, const float timeTolerance, const uint boxLimit,
+                       __global FeatureHit* restrict hits, const uint hitCapacity,
+                       __global SelfCounters* restrict counters)
+{
+    const CcdSettings settings = ccdSettings(separation, tolerance, timeTolerance, boxLimit);
+    const uint demand = kind == DRAPE_VERTEX_FACE ? counters->m_vertexFace : counters->m_edgeEdge;
+    const uint count = min(demand, pairCapacity);
+    for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextItem(&runs))
+    {
+        const uint i = runs.m_item;
+        FeatureHit hit;
+        if (!featurePairHit(kind, pairs[i], triangles, edges, start, end, settings, &hit)) continue;
+        const uint place = atomic_inc(&counters->m_hits);
+        if (place < hitCapacity) hits[place] = hit;
+    }
+}

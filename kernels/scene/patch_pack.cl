@@ -1,0 +1,231 @@
+// Packs the obstacles' features for the culls (patch_cull.cl, patch_cull_pairs.cl), and the wide tree over their
+// patches, after an obstacle was added or moved.
+#include "../lib/cone_reach.h"
+#include "../lib/feature_cull.h"
+#include "../shared/patch.h"
+
+// Positions that are invalid become NaN.
+static Vec3 packedPosition(__global const float* restrict positions, const uint vertex, const int used)
+{
+    const Vec3 none = vec3(NAN, NAN, NAN);
+    if (!used) return none;
+    const Vec3 p = vec3Load(positions, vertex);
+    return positionIsValid(p) ? p : none;
+}
+
+static void packVec3(__global float* restrict out, const uint first, const Vec3 v)
+{
+    out[first * DRAPE_PATCH_WIDTH] = v.x;
+    out[(first + 1) * DRAPE_PATCH_WIDTH] = v.y;
+    out[(first + 2) * DRAPE_PATCH_WIDTH] = v.z;
+}
+
+// The obstacles' triangles at their positions.
+typedef struct ObstacleFaces
+{
+    __global const Triangle* m_triangles;
+    __global const float* m_positions;
+    __global const NormalCone* m_vertexCones;
+    __global const NormalCone* m_edgeCones;
+} ObstacleFaces;
+
+// A triangle's normal (faceCone()) and the cones of its corners and edges.
+typedef struct FaceCones
+{
+    NormalCone m_face, m_around[6];
+} FaceCones;
+
+static FaceCones conesOf(const ObstacleFaces* faces, const uint index)
+{
+    __global const Triangle* triangle = faces->m_triangles + index;
+    FaceCones cones;
+    Vec3 p[3];
+    for (int k = 0; k < 3; ++k)
+    {
+        p[k] = vec3Load(faces->m_positions, triangle->m_vertices[k]);
+        cones.m_around[k] = faces->m_vertexCones[triangle->m_vertices[k]];
+        cones.m_around[3 + k] = faces->m_edgeCones[triangle->m_edges[k]];
+    }
+    cones.m_face = faceCone(p);
+    return cones;
+}
+
+// Packs a lane of a face block per work-item, from first up to last.
+__kernel void patchPackFaces(__global const uint* restrict owners, const uint first, const uint last,
+                             __global const Triangle* restrict triangles, __global const float* restrict positions,
+                             __global const NormalCone* restrict vertexCones,
+                             __global const NormalCone* restrict edgeCones, __global float* restrict faces)
+{
+    const uint i = first + get_global_id(0);
+    if (i >= last) return;
+    const int used = owners[i] != DRAPE_NO_FEATURE;
+    const uint owner = used ? owners[i] : 0;
+    __global float* out = faces + (i / DRAPE_PATCH_WIDTH) * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
+    for (int k = 0; k < 3; ++k) packVec3(out, 3 * k, packedPosition(positions, triangles[owner].m_vertices[k], used));
+    const ObstacleFaces all = {triangles, positions, vertexCones, edgeCones};
+    const FaceCones cones = conesOf(&all, owner);
+    out[9 * DRAPE_PATCH_WIDTH] = used ? faceSpread(cones.m_face, cones.m_around) : 0.0f;
+}
+
+// Packs a lane of a vertex block per work-item. ids: the vertex of each lane.
+__kernel void patchPackVertices(__global const uint* restrict owners, const uint first, const uint last,
+                                __global const Triangle* restrict triangles, __global const float* restrict positions,
+                                __global const NormalCone* restrict cones, __global float* restrict vertices,
+                                __global uint* restrict ids)
+{
+    const uint i = first + get_global_id(0);
+    if (i >= last) return;
+    __global float* out =
+        vertices + (i / DRAPE_PATCH_WIDTH) * DRAPE_VERTEX_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
+    const uint owner = owners[i] & ((1u << DRAPE_PLACE_SHIFT) - 1u), place = owners[i] >> DRAPE_PLACE_SHIFT;
+    const int used = owners[i] != DRAPE_NO_FEATURE;
+    const uint vertex = used ? triangles[owner].m_vertices[place] : 0;
+    ids[i] = vertex;
+    packVec3(out, 0, packedPosition(positions, vertex, used));
+    packVec3(out, 3, cones[vertex].m_axis);
+    out[6 * DRAPE_PATCH_WIDTH] = cones[vertex].m_cosine;
+}
+
+// Packs a lane of an edge block per work-item. ids: the edge of each lane.
+__kernel void patchPackEdges(__global const uint* restrict owners, const uint first, const uint last,
+                             __global const Triangle* restrict triangles, __global const float* restrict positions,
+                             __global const NormalCone* restrict cones, __global float* restrict edges,
+                             __global uint* restrict ids)
+{
+    const uint i = first + get_global_id(0);
+    if (i >= last) return;
+    __global float* out = edges + (i / DRAPE_PATCH_WIDTH) * DRAPE_EDGE_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
+    const int used = owners[i] != DRAPE_NO_FEATURE;
+    const uint owner = used ? owners[i] & ((1u << DRAPE_PLACE_SHIFT) - 1u) : 0;
+    const uint place = used ? owners[i] >> DRAPE_PLACE_SHIFT : 0;
+    const uint edge = triangles[owner].m_edges[place];
+    ids[i] = edge;
+    packVec3(out, 0, packedPosition(positions, triangles[owner].m_vertices[place], used));
+    packVec3(out, 3, packedPosition(positions, triangles[owner].m_vertices[place == 2 ? 0 : place + 1], used));
+    packVec3(out, 6, cones[edge].m_axis);
+    out[9 * DRAPE_PATCH_WIDTH] = cones[edge].m_cosine;
+}
+
+// A child of a wide node: its volume and, along each direction, the reach of a contact of its features as a share of
+// the reach.
+typedef struct WideChild
+{
+    Dop m_volume;
+    float m_reach[DRAPE_DOP_DIRECTIONS];
+} WideChild;
+
+static void wideStore(__global float* restrict wideNodes, const uint child, const WideChild* value)
+{
+    __global float* out = wideNodes + (child / DRAPE_PATCH_WIDTH) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH +
+                          child % DRAPE_PATCH_WIDTH;
+    for (int k = 0; k < DRAPE_DOP_DIRECTIONS; ++k)
+    {
+        out[k * DRAPE_PATCH_WIDTH] = value->m_volume.m_low[k];
+        out[(DRAPE_DOP_DIRECTIONS + k) * DRAPE_PATCH_WIDTH] = value->m_volume.m_high[k];
+        out[(2 * DRAPE_DOP_DIRECTIONS + k) * DRAPE_PATCH_WIDTH] = value->m_reach[k];
+    }
+}
+
+// The triangles of a patch, without empty lanes.
+typedef struct PatchFaces
+{
+    __global const uint* m_owners;
+    ObstacleFaces m_faces;
+    uint m_first, m_last;
+} PatchFaces;
+
+// Returns a cone around all directions that the patch's faces, edges and vertices admit.
+static NormalCone patchCone(const PatchFaces* faces)
+{
+    Vec3 axis = vec3(0.0f, 0.0f, 0.0f);
+    for (uint i = faces->m_first; i < faces->m_last; ++i)
+    {
+        const FaceCones cones = conesOf(&faces->m_faces, faces->m_owners[i]);
+        if (!(cones.m_face.m_cosine > 0.0f)) return cones.m_face;
+        axis = vec3Add(axis, cones.m_face.m_axis);
+    }
+    const float length = vec3Length(axis);
+    if (!(length > 0.5f)) return normalCone(axis, -1.0f);
+    axis = vec3Scale(axis, 1.0f / length);
+    float cosine = 1.0f;
+    for (uint i = faces->m_first; i < faces->m_last && cosine > 0.0f; ++i)
+    {
+        const FaceCones cones = conesOf(&faces->m_faces, faces->m_owners[i]);
+        cosine = drapeMin(cosine, cosineAround(axis, cones.m_face));
+        cosine = drapeMin(cosine, cosineOfCones(axis, cones.m_around));
+    }
+    return normalCone(axis, cosine - DRAPE_CONE_PAD);
+}
+
+static void growVolume(Dop* dop, const Dop* other)
+{
+    for (int k = 0; k < DRAPE_DOP_DIRECTIONS; ++k)
+    {
+        dop->m_low[k] = drapeMin(dop->m_low[k], other->m_low[k]);
+        dop->m_high[k] = drapeMax(dop->m_high[k], other->m_high[k]);
+    }
+}
+
+// Packs a child position of the wide tree's lowest level, from first up to last, per work-item: a patch, or none from
+// patchCount on. Writes the tree's data of the patch, on a CPU also as adjacent volumes, and its size, m. The volume
+// is grown by a share of the size, which covers the directions of contacts that are rounding noise (see
+// feature_cull.h).
+__kernel void patchVolumes(__global const uint* restrict faceOwners, const uint patchCount, const uint first, const uint last,
+                           __global const Triangle* restrict triangles, __global const float* restrict positions,
+                           __global const NormalCone* restrict vertexCones, __global const NormalCone* restrict edgeCones,
+                           __global float* restrict wideNodes, __global float* restrict patchSizes,
+                           __global float* restrict volumes)
+{
+    const uint patch = first + get_global_id(0);
+    if (patch >= last) return;
+    WideChild child;
+    dopClear(&child.m_volume);
+    PatchFaces faces = {faceOwners,
+                        {triangles, positions, vertexCones, edgeCones},
+                        patch * DRAPE_PATCH_WIDTH,
+                        patch * DRAPE_PATCH_WIDTH};
+    while (patch < patchCount && faces.m_last < (patch + 1) * DRAPE_PATCH_WIDTH &&
+           faceOwners[faces.m_last] != DRAPE_NO_FEATURE)
+    {
+        Dop one;
+        triangleVolume(&one, triangles + faceOwners[faces.m_last++], positions, positions, 0.0f);
+        growVolume(&child.m_volume, &one);
+    }
+    float size = 0.0f;
+    for (int k = 0; k < 3; ++k) size += drapeMax(child.m_volume.m_high[k] - child.m_volume.m_low[k], 0.0f);
+    const NormalCone cone = patchCone(&faces);
+    for (int k = 0; k < DRAPE_DOP_DIRECTIONS; ++k)
+    {
+        child.m_volume.m_low[k] -= DRAPE_CULL_NOISE * size * dopNorm(k);
+        child.m_volume.m_high[k] += DRAPE_CULL_NOISE * size * dopNorm(k);
+        child.m_reach[k] = coneReach(cone, k);
+    }
+    wideStore(wideNodes, patch, &child);
+    if (patch >= patchCount) return;
+    patchSizes[patch] = size;
+#if DRAPE_LANES > 1
+    __global float* out = volumes + patch * DRAPE_WIDE_NODE_FLOATS;
+    for (int k = 0; k < DRAPE_DOP_DIRECTIONS; ++k)
+    {
+        out[k] = child.m_volume.m_low[k];
+        out[DRAPE_DOP_DIRECTIONS + k] = child.m_volume.m_high[k];
+        out[2 * DRAPE_DOP_DIRECTIONS + k] = child.m_reach[k];
+    }
+#endif
+}
+
+// Writes one number of a child position of one level per work-item, from first up to last: a node of the level below,
+// or none from nodeCount on. below and level: that level's nodes and this one's.
+__kernel void patchWiden(__global float* restrict wideNodes, const uint below, const uint nodeCount, const uint level,
+                         const uint first, const uint last)
+{
+    const uint node = first + get_global_id(0) / DRAPE_WIDE_NODE_FLOATS, row = get_global_id(0) % DRAPE_WIDE_NODE_FLOATS;
+    if (node >= last) return;
+    const int isLow = row < DRAPE_DOP_DIRECTIONS, isHigh = !isLow && row < 2 * DRAPE_DOP_DIRECTIONS;
+    float joined = isLow ? DRAPE_INFINITY : isHigh ? -DRAPE_INFINITY : 0.0f;
+    __global const float* lanes = wideNodes + ((below + node) * DRAPE_WIDE_NODE_FLOATS + row) * DRAPE_PATCH_WIDTH;
+    for (uint lane = 0; lane < DRAPE_PATCH_WIDTH && node < nodeCount; ++lane)
+        joined = isLow ? drapeMin(joined, lanes[lane]) : drapeMax(joined, lanes[lane]);
+    wideNodes[((level + node / DRAPE_PATCH_WIDTH) * DRAPE_WIDE_NODE_FLOATS + row) * DRAPE_PATCH_WIDTH +
+              node % DRAPE_PATCH_WIDTH] = joined;
+}

@@ -1,0 +1,316 @@
+// Ordering by itself: hits in any order come out by slot and obstacle feature, whatever the sizes and the crowding.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <tuple>
+
+#include "bullet_plugin/core/device/program.h"
+#include "kernels/shared/patch.h"
+#include "tests/support/cases.h"
+#include "tests/support/device_side.h"
+#include "tests/support/slot_sums.h"
+
+namespace drape::test
+{
+namespace
+{
+constexpr std::size_t kGroup = 64;
+constexpr std::size_t kBlock = 1024;  // equals the value in kernels/ordering/ordering.cl
+constexpr cl_uint kRankedGpu = 512;   // equals the value in ordering.cpp
+
+// Hits with distinct features per slot, in random order. crowded: most of them in one slot.
+std::vector<Contact> randomHits(std::size_t count, std::uint32_t slots, bool crowded, Random& random)
+{
+    std::vector<Contact> hits(count);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        hits[i].m_slot = crowded && i % 8 ? slots / 2 : random.below(slots);
+        hits[i].m_obstacleFeature = std::uint32_t(i) * 2654435761u;
+        hits[i].m_gap1 = float(i);
+    }
+    for (std::size_t i = count; i > 1; --i)
+        std::swap(hits[i - 1], hits[random.below(std::uint32_t(i))]);
+    return hits;
+}
+
+bool inOrder(const Contact& a, const Contact& b)
+{
+    return std::tie(a.m_slot, a.m_obstacleFeature) < std::tie(b.m_slot, b.m_obstacleFeature);
+}
+
+class Ordering
+{
+public:
+    explicit Ordering(Device& device) : m_device(device)
+    {
+        const cl::Program program = programOf(device, "ordering/ordering");
+        m_count.create(device, program, "orderingCount");
+        m_place.create(device, program, "orderingPlace");
+        m_gather.create(device, program, "orderingGather");
+        m_order.create(device, program, "orderingOrder");
+        m_write.create(device, program, "orderingWrite");
+        m_gatherFew.create(device, programOf(device, "ordering/ordering_small"), "orderingGatherFew");
+    }
+
+    std::vector<Contact> run(const std::vector<Contact>& hits, std::uint32_t slots)
+    {
+        std::vector<cl_uint> slotCount(slots, 0);
+        for (const Contact& hit : hits)
+            ++slotCount[hit.m_slot];
+        const std::size_t blocks = (slots + kBlock - 1) / kBlock;
+        const cl_uint capacity = prepare(hits, slotCount, 0);
+        guard(m_device, m_blockCount, blocks);
+        const cl::LocalSpaceArg scratch = cl::Local(kGroup * sizeof(cl_uint));
+        m_count.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_blockCount.handle(), scratch);
+        m_place.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_ranked, m_blockCount.handle(),
+                       1u, m_slotFirst.handle(), m_counters.handle(), scratch);
+        const auto isCrowded = [&](cl_uint count) { return count > m_ranked; };
+        EXPECT_EQ(contents(m_device, m_counters, 1)[0].m_crowded,
+                  cl_uint(std::count_if(slotCount.begin(), slotCount.end(), isCrowded)));
+        expectPlacesWithoutSums(slots);
+        m_gather.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotCount.handle(),
+                        m_slotFirst.handle(), m_members.handle(), m_keys.handle(), m_counters.handle(),
+                        m_next.handle());
+        enqueueOrderAndWrite(slots, capacity, nullptr);
+        expectClean(m_slotCount, slots);
+        EXPECT_TRUE(intact(m_device, m_hits) && intact(m_device, m_slotCount) && intact(m_device, m_slotFirst) &&
+                    intact(m_device, m_blockCount) && intact(m_device, m_members) && intact(m_device, m_keys) &&
+                    intact(m_device, m_contacts));
+        EXPECT_TRUE(sameBytes(contents(m_device, m_next, 1), std::vector<StepCounters>(1)))
+            << "counters are clean after";
+        EXPECT_TRUE(intact(m_device, m_next));
+        const std::size_t count = contents(m_device, m_counters, 1)[0].m_contactsStored;
+        std::vector<Contact> found = contents(m_device, m_contacts, DRAPE_CONTACT_HEAD + std::min(count, hits.size()));
+        found.erase(found.begin(), found.begin() + DRAPE_CONTACT_HEAD);
+        return found;
+    }
+
+    // Runs the variant in which every work-item sums for itself.
+    std::vector<Contact> runFew(const std::vector<Contact>& hits, std::uint32_t slots)
+    {
+        const cl_uint capacity = enqueueFew(hits, slots);
+        enqueueOrderAndWrite(slots, capacity, &m_slotSums);
+        expectClean(m_slotCount, slots);
+        expectClean(m_slotSums, DRAPE_SLOT_SUMS);
+        expectIntact();
+        return written(hits.size());
+    }
+
+    // Slots that one group sorts; hits of a slot from which on it does; work-items that copy a hit.
+    cl_uint m_sortBlock = kBlock, m_ranked = DRAPE_RANKED, m_parts = 1;
+    // Hits that a list had no room for, where work-items sum for themselves.
+    cl_uint m_unlisted = 0;
+
+    // Expects run() to order the hits on a CPU and on a GPU, and with work-items in pairs.
+    void expectOrdered(const std::vector<Contact>& hits, std::uint32_t slots)
+    {
+        std::vector<Contact> ordered = hits;
+        std::sort(ordered.begin(), ordered.end(), inOrder);
+        for (const cl_uint parts : {1u, 2u, 4u})
+        {
+            m_parts = parts;
+            m_ranked = parts == 1 ? DRAPE_RANKED : kRankedGpu;
+            const std::vector<Contact> found = run(hits, slots);
+            ASSERT_TRUE(sameBytes(found, ordered)) << parts << " parts: " << difference(found, ordered);
+            if (slots > DRAPE_MOST_SUMMED) continue;
+            const std::vector<Contact> few = runFew(hits, slots);
+            ASSERT_TRUE(sameBytes(few, ordered)) << parts << " parts, few slots: " << difference(few, ordered);
+        }
+    }
+
+    // Returns the time of the kernels for hits of one slot. The device must be opened with profiling.
+    double orderMs(const std::vector<Contact>& hits)
+    {
+        m_device.profiler()->take();
+        run(hits, 1);
+        return totalMs(m_device.profiler()->take());
+    }
+
+private:
+    // Makes the buffers of a step whose list has these hits and had no room for `unlisted` others. Returns the list's
+    // room.
+    cl_uint prepare(const std::vector<Contact>& hits, const std::vector<cl_uint>& slotCount, cl_uint unlisted)
+    {
+        const cl_uint capacity = cl_uint(std::max<std::size_t>(1, hits.size()));
+        std::vector<StepCounters> start(1);
+        start[0].m_contactsFound = cl_uint(hits.size()) + unlisted;
+        guardCopy(m_device, m_hits, hits);
+        guardCopy(m_device, m_slotCount, slotCount);
+        guardCopy(m_device, m_counters, start);
+        guardCopy(m_device, m_next, start);
+        guard(m_device, m_slotFirst, slotCount.size());
+        guard(m_device, m_members, capacity);
+        guard(m_device, m_keys, capacity);
+        guard(m_device, m_contacts, DRAPE_CONTACT_HEAD + capacity);
+        return capacity;
+    }
+
+    // Runs the stage up to the members' list. Returns the room of the hits' list.
+    cl_uint enqueueFew(const std::vector<Contact>& hits, std::uint32_t slots)
+    {
+        std::vector<cl_uint> slotCount(slots, 0), places;
+        for (const Contact& hit : hits)
+            places.push_back(slotCount[hit.m_slot]++);
+        const cl_uint capacity = prepare(hits, slotCount, m_unlisted);
+        places.resize(capacity);
+        guardCopy(m_device, m_hitPlaces, places);
+        guardCopy(m_device, m_slotSums, slotSumsOf(slotCount));
+        m_gatherFew.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_hitPlaces.handle(),
+                           m_slotCount.handle(), m_slotSums.handle(), slots, m_ranked, m_slotFirst.handle(),
+                           m_members.handle(), m_keys.handle(), m_counters.handle(), m_next.handle());
+        const auto isCrowded = [&](cl_uint count) { return count > m_ranked; };
+        EXPECT_EQ(contents(m_device, m_counters, 1)[0].m_crowded,
+                  cl_uint(std::count_if(slotCount.begin(), slotCount.end(), isCrowded)));
+        EXPECT_TRUE(sameBytes(contents(m_device, m_next, 1), std::vector<StepCounters>(1)))
+            << "counters are clean after";
+        return capacity;
+    }
+
+    void enqueueOrderAndWrite(std::uint32_t slots, cl_uint capacity, Buffer<cl_uint>* sums)
+    {
+        m_order.launch(m_device, (slots + m_sortBlock - 1) / m_sortBlock * kGroup, kGroup, capacity,
+                       m_slotFirst.handle(), slots, m_ranked, m_sortBlock, m_members.handle(), m_keys.handle(),
+                       m_counters.handle());
+        m_write.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotFirst.handle(), slots, m_ranked,
+                       m_parts, m_members.handle(), m_keys.handle(), m_contacts.handle(), m_counters.handle(),
+                       m_slotCount.handle(), sums ? sums->handle() : cl::Buffer());
+    }
+
+    void expectClean(Buffer<cl_uint>& numbers, std::size_t count)
+    {
+        const std::vector<cl_uint> left = contents(m_device, numbers, count);
+        EXPECT_EQ(std::count(left.begin(), left.end(), 0u), std::ptrdiff_t(count)) << "clean after";
+    }
+
+    void expectIntact()
+    {
+        for (Buffer<cl_uint>* numbers : {&m_members, &m_keys, &m_slotFirst, &m_slotCount, &m_slotSums, &m_hitPlaces})
+            EXPECT_TRUE(intact(m_device, *numbers));
+        EXPECT_TRUE(intact(m_device, m_contacts) && intact(m_device, m_next));
+    }
+
+    // Returns the contacts; their head must contain `count`.
+    std::vector<Contact> written(std::size_t count)
+    {
+        std::vector<Contact> found = contents(m_device, m_contacts, DRAPE_CONTACT_HEAD + count);
+        StepCounters head;
+        std::memcpy(&head, found.data(), sizeof(head));
+        EXPECT_EQ(head.m_contactsStored, cl_uint(count));
+        found.erase(found.begin(), found.begin() + DRAPE_CONTACT_HEAD);
+        return found;
+    }
+
+    // Expects equal positions from sums over the slots and from sums over blocks.
+    void expectPlacesWithoutSums(std::uint32_t slots)
+    {
+        const cl_uint hits = contents(m_device, m_counters, 1)[0].m_contactsStored;
+        guard(m_device, m_places, slots);
+        const std::size_t blocks = (slots + kBlock - 1) / kBlock;
+        m_place.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_ranked, m_slotCount.handle(),
+                       cl_uint(kBlock), m_places.handle(), m_counters.handle(), cl::Local(kGroup * sizeof(cl_uint)));
+        EXPECT_EQ(contents(m_device, m_places, slots), contents(m_device, m_slotFirst, slots));
+        EXPECT_EQ(contents(m_device, m_counters, 1)[0].m_contactsStored, hits);
+        EXPECT_TRUE(intact(m_device, m_places) && intact(m_device, m_counters));
+    }
+
+    Device& m_device;
+    Kernel m_count, m_place, m_gather, m_gatherFew, m_order, m_write;
+    Buffer<Contact> m_hits, m_contacts;
+    Buffer<cl_uint> m_slotCount, m_slotFirst, m_blockCount, m_members, m_keys, m_places, m_hitPlaces;
+    Buffer<cl_uint> m_slotSums;
+    Buffer<StepCounters> m_counters, m_next;
+};
+}  // namespace
+
+class OrderingTest : public BackendTest
+{
+};
+
+TEST_P(OrderingTest, OrdersBySlotAndFeature)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    Ordering ordering(*device);
+    Random random(90);
+    for (std::uint32_t slots : {1u, 63u, 64u, 65u, 1023u, 1024u, 1025u, 3001u, 70001u})
+    {
+        for (std::size_t count : {0u, 1u, 63u, 65u, 2999u})
+        {
+            for (bool crowded : {false, true})
+            {
+                SCOPED_TRACE("seed 90, " + std::to_string(slots) + " slots, " + std::to_string(count) + " hits");
+                const std::vector<Contact> hits = randomHits(count, slots, crowded, random);
+                ASSERT_NO_FATAL_FAILURE(ordering.expectOrdered(hits, slots));
+            }
+        }
+    }
+    EXPECT_FALSE(device->failed()) << device->error().text();
+}
+
+// Simulates thousands of coincident obstacle triangles over one cloth triangle. The lengths are those around the
+// counted limit and around powers of two, where the sorting network is cut off.
+TEST_P(OrderingTest, OrdersCrowdedSlots)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    Ordering ordering(*device);
+    Random random(92);
+    for (std::uint32_t each : {63u, 64u, 65u, 66u, 127u, 128u, 129u, 511u, 512u, 513u, 1000u, 4097u})
+    {
+        constexpr std::uint32_t kSlots = 1027;  // the last block has three
+        SCOPED_TRACE("seed 92, " + std::to_string(each) + " hits a crowded slot");
+        std::vector<Contact> hits = randomHits(700, kSlots, false, random);
+        for (const std::uint32_t slot : {0u, 1u, 500u, 1023u, 1024u, 1026u})
+        {
+            for (std::uint32_t i = 0; i < each; ++i)
+            {
+                hits.emplace_back(hits.front());
+                hits.back().m_slot = slot;
+                hits.back().m_obstacleFeature = (700 + i) * 2654435761u;
+            }
+        }
+        for (std::size_t i = hits.size(); i > 1; --i)
+            std::swap(hits[i - 1], hits[random.below(std::uint32_t(i))]);
+        ordering.m_sortBlock = each % 2 == 0 ? 32 : kBlock;
+        ASSERT_NO_FATAL_FAILURE(ordering.expectOrdered(hits, kSlots));
+    }
+    EXPECT_FALSE(device->failed()) << device->error().text();
+}
+
+// Simulates a step that must run again with more room: the listed part comes out in order.
+TEST_P(OrderingTest, TakesWhatAFullListHas)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam());
+    ASSERT_TRUE(device);
+    Ordering ordering(*device);
+    Random random(94);
+    SCOPED_TRACE("seed 94");
+    const std::vector<Contact> hits = randomHits(500, 300, false, random);
+    ordering.m_unlisted = 77;
+    ASSERT_NO_FATAL_FAILURE(ordering.expectOrdered(hits, 300));
+    EXPECT_FALSE(device->failed()) << device->error().text();
+}
+
+// Eight times the hits in one slot would take 64 times as long by counting; the sort takes 12 times as long.
+TEST_P(OrderingTest, GrowsLittleMoreThanTheHitsOfASlot)
+{
+    const std::unique_ptr<Device> device = openDevice(GetParam(), true);
+    ASSERT_TRUE(device);
+    Ordering ordering(*device);
+    Random random(93);
+    SCOPED_TRACE("seed 93");
+    const std::vector<Contact> few = randomHits(16384, 1, true, random), many = randomHits(131072, 1, true, random);
+    ordering.run(few, 1);  // compiles the kernels
+    double fewMs = 1e9, manyMs = 1e9;
+    for (int run = 0; run < 3; ++run)  // the least of three: what else runs on the machine only adds
+    {
+        fewMs = std::min(fewMs, ordering.orderMs(few));
+        manyMs = std::min(manyMs, ordering.orderMs(many));
+    }
+    EXPECT_LT(manyMs, 20 * fewMs) << fewMs << " ms for 16384 hits, " << manyMs << " for 131072";
+    EXPECT_FALSE(device->failed()) << device->error().text();
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, OrderingTest, testing::ValuesIn(openClBackends()), backendName);
+}  // namespace drape::test

@@ -1,0 +1,71 @@
+#include "tools/cloth_drop/drop_world.h"
+#include "tools/cloth_drop/node_positions.h"
+#include "tools/cloth_drop/simulation.h"
+
+namespace drape
+{
+namespace
+{
+// The tuned field has enough cells, so that none is thrown away, and voxels smaller than the bunny's ears' width.
+constexpr int kTunedHashSize = 1048573;
+constexpr int kTunedCells = 16000000;
+constexpr btScalar kTunedVoxel = 0.05f;  // m
+
+class BulletSimulation : public Simulation
+{
+public:
+    BulletSimulation(const DropScene& scene, BulletMode mode)
+        : m_world(std::make_unique<btSoftBodyRigidBodyCollisionConfiguration>(), nullptr),
+          m_mode(mode),
+          m_dt(scene.m_dt)
+    {
+        if (mode == BulletMode::Tuned)
+        {
+            auto& field = m_world.world().getWorldInfo().m_sparsesdf;
+            field.Initialize(kTunedHashSize, kTunedCells);
+            field.setDefaultVoxelsz(kTunedVoxel);
+            field.Reset();  // only now the voxel size counts
+        }
+        if (mode == BulletMode::SoftPair)
+            m_world.addSoftObstacle(scene);
+        else
+            m_world.addMeshObstacle(scene);
+        m_world.addCloth(scene, mode == BulletMode::SoftPair);
+    }
+
+    StepTimes step() override
+    {
+        StepTimes times;
+        times.m_stepMs = m_world.step(m_dt);
+        times.m_collisionMs = m_world.world().collisionMs();
+        const btSoftBody& cloth = m_world.cloth();
+        times.m_contacts =
+            static_cast<std::size_t>(cloth.m_rcontacts.size()) + static_cast<std::size_t>(cloth.m_scontacts.size());
+        return times;
+    }
+
+    const std::vector<float>& positions() override { return copyPositions(m_world.cloth(), m_positions); }
+    std::string backend() const override
+    {
+        return m_mode == BulletMode::Stock   ? "bullet (stock)"
+               : m_mode == BulletMode::Tuned ? "bullet (tuned)"
+                                             : "bullet (vfss)";
+    }
+    std::string device() const override { return "host"; }
+    std::string deviceReason() const override { return "Bullet's built-in collision runs on the host"; }
+    double prepareMs() const override { return 0; }
+    std::string trouble() const override { return ""; }
+
+private:
+    DropWorld m_world;
+    BulletMode m_mode;
+    double m_dt;
+    std::vector<float> m_positions;
+};
+}  // namespace
+
+std::unique_ptr<Simulation> makeBulletSimulation(const DropScene& scene, BulletMode mode)
+{
+    return std::make_unique<BulletSimulation>(scene, mode);
+}
+}  // namespace drape

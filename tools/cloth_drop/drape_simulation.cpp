@@ -1,0 +1,99 @@
+#include <drape/drape.h>
+
+#include <chrono>
+#include <iostream>
+
+#include "tools/cloth_drop/drop_world.h"
+#include "tools/cloth_drop/node_positions.h"
+#include "tools/cloth_drop/simulation.h"
+#include "tools/common/device_option.h"
+
+namespace drape
+{
+namespace
+{
+class DrapeSimulation : public Simulation
+{
+public:
+    DrapeSimulation(const DropScene& scene, const Settings& settings)
+        : m_plugin(std::make_unique<Plugin>(settings)),
+          m_world(std::make_unique<CollisionConfiguration>(*m_plugin), std::make_unique<SoftBodySolver>(*m_plugin)),
+          m_dt(scene.m_dt)
+    {
+        m_world.addMeshObstacle(scene);
+        m_world.addCloth(scene, false);
+        const Clock::time_point begin = Clock::now();
+        m_plugin->prepare(m_world.world());
+        m_meshesMs = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+    }
+
+    const Plugin& plugin() const { return *m_plugin; }
+
+    StepTimes step() override
+    {
+        StepTimes times;
+        times.m_stepMs = m_world.step(m_dt);
+        const StepStatistics& statistics = m_plugin->statistics();
+        times.m_parts = {m_world.world().collisionMs(), statistics.m_uploadMs, statistics.m_waitMs,
+                         statistics.m_writeMs, statistics.m_finishMs};
+        times.m_collisionMs = times.m_parts.sum();
+        times.m_contacts = statistics.m_contacts;
+        times.m_candidates = statistics.m_candidates;
+        times.m_sweptTests = statistics.m_sweptTests;
+        times.m_clothsSkipped = statistics.m_clothsSkipped;
+        times.m_obstaclesKept = statistics.m_obstaclesKept;
+        times.m_skipped = statistics.m_skipped;
+        times.m_onHost = statistics.m_onHost;
+        m_status |= statistics.m_status;
+        return times;
+    }
+
+    const std::vector<float>& positions() override { return copyPositions(m_world.cloth(), m_positions); }
+    std::string backend() const override { return m_plugin->device().m_onHost ? "host" : "opencl"; }
+    std::string device() const override { return m_plugin->device().m_device.m_name; }
+    std::string deviceReason() const override { return m_plugin->device().m_reason; }
+    double prepareMs() const override
+    {
+        return m_plugin->device().m_buildMs + m_plugin->device().m_measureMs + m_meshesMs;
+    }
+    std::string trouble() const override
+    {
+        const std::string status = statusText(m_status);
+        if (m_plugin->error().empty()) return status;
+        return status + (status.empty() ? "" : "; ") + m_plugin->device().m_reason;
+    }
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    std::unique_ptr<Plugin> m_plugin;  // before the world, which uses it
+    DropWorld m_world;
+    double m_dt;
+    double m_meshesMs = 0;  // time to prepare cloth and obstacle
+    std::uint32_t m_status = 0;
+    std::vector<float> m_positions;
+};
+}  // namespace
+
+std::unique_ptr<Simulation> makeDrapeSimulation(const DropScene& scene, const Options& options, std::string& error,
+                                                int& exitCode)
+{
+    Settings settings;
+    exitCode = kExitBadInput;
+    if (!deviceSettings(options.m_backend, options.m_device, settings, error)) return nullptr;
+    settings.m_threads = options.m_threads;
+    settings.m_mode = options.m_contactMode == "discrete"     ? ContactMode::Discrete
+                      : options.m_contactMode == "continuous" ? ContactMode::Continuous
+                                                              : ContactMode::Automatic;
+    auto simulation = std::make_unique<DrapeSimulation>(scene, settings);
+    error = simulation->plugin().error();
+    if (!simulation->plugin().ready())
+    {
+        exitCode = kExitFailed;
+        return nullptr;
+    }
+    if (!error.empty()) std::cerr << "cloth_drop: " << error << "\n";  // a device that failed; the host goes on
+    error.clear();
+    return simulation;
+}
+}  // namespace drape

@@ -1,0 +1,80 @@
+#include "tools/cloth_drop/drop_scene.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+
+#include "scenes/mesh_loader.h"
+#include "scenes/shapes.h"
+#include "tools/common/suggestion.h"
+
+namespace drape
+{
+namespace
+{
+// A thickness above a quarter of the smaller size is most likely meant in another unit.
+constexpr double kMostThickness = 0.25;
+// A thickness below this many float32 steps at the scene's size is mostly rounding.
+constexpr double kLeastRoundings = 8;
+
+// Suggests a shape where the name is neither a file nor a shape.
+bool makeObstacle(const std::string& name, TriangleMesh& mesh, LoadReport& report, std::string& error)
+{
+    if (makeShape(name, mesh) || loadMesh(name, Joining::ByPosition, mesh, report, error)) return true;
+    std::error_code code;
+    if (std::filesystem::exists(name, code) || code) return false;
+    const std::string nearest = didYouMean(name, shapeNames());
+    if (!nearest.empty())
+        error += nearest;
+    else if (name.find_first_of("./") == std::string::npos)
+        error += "; shapes are " + joinedWords(shapeNames());
+    return false;
+}
+}  // namespace
+
+bool makeDropScene(const Options& options, DropScene& scene, std::string& error)
+{
+    LoadReport report;
+    if (!makeObstacle(options.m_obstacle, scene.m_obstacle, report, error)) return false;
+    scene.m_notes = report.m_notes;
+    if (!(boundsOf(scene.m_obstacle).largestExtent() > 0))
+    {
+        error = options.m_obstacle + ": all vertices: the mesh has no extent";
+        return false;
+    }
+    placeOnFloor(scene.m_obstacle, static_cast<float>(options.m_obstacleSize));
+    const double top = boundsOf(scene.m_obstacle).m_high[1];
+    scene.m_cloth = makeClothGrid(options.m_clothColumns, options.m_clothRows, static_cast<float>(options.m_clothSize),
+                                  static_cast<float>(top + options.m_thickness + options.m_dropHeight));
+    scene.m_dropSpeed = options.m_dropSpeed;
+    scene.m_dt = options.m_dt;
+    scene.m_thickness = options.m_thickness;
+    return true;
+}
+
+std::string thicknessRemark(const Options& options)
+{
+    const double thickness = options.m_thickness;
+    const double smaller = std::min(options.m_obstacleSize, options.m_clothSize);
+    const double larger = std::max(options.m_obstacleSize, options.m_clothSize);
+    char text[256];
+    if (thickness > kMostThickness * smaller)
+    {
+        std::snprintf(
+            text, sizeof text,
+            "--thickness is %g m, where the obstacle is %g m and the cloth %g m across: the cloth comes to rest "
+            "%g m away from the surface (20 mm are 0.02)",
+            thickness, options.m_obstacleSize, options.m_clothSize, thickness);
+        return text;
+    }
+    const double finest = larger * std::numeric_limits<float>::epsilon();
+    if (thickness >= kLeastRoundings * finest) return "";
+    std::snprintf(
+        text, sizeof text,
+        "--thickness is %g m, but in a scene %g m across positions (float32) are up to %g m apart: the gap at "
+        "rest is lost in rounding",
+        thickness, larger, finest);
+    return text;
+}
+}  // namespace drape

@@ -1,0 +1,33 @@
+// The scene that every back end is given: an obstacle standing on y = 0 and a flat cloth above it. Knows no Bullet.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/cloth_drop/options.h"
+#include "scenes/cloth_grid.h"
+#include "scenes/mesh.h"
+
+namespace drape
+{
+constexpr double kGravity = 9.81;  // m/s² downwards
+
+struct DropScene
+{
+    TriangleMesh m_obstacle;
+    ClothGrid m_cloth;
+    double m_dropSpeed = 0;            // m/s downwards, of the whole cloth at the start
+    double m_dt = 0;                   // s
+    double m_thickness = 0;            // m; each side's margin is half of it
+    double m_mass = 1.0;               // kg, of the cloth
+    std::vector<std::string> m_notes;  // parts of the obstacle's file that were left out or lost, one line each
+};
+
+// Returns false, with one line in `error`, if the obstacle cannot be made.
+bool makeDropScene(const Options& options, DropScene& scene, std::string& error);
+
+// Returns one line if the thickness is out of proportion to the scene, which is probably a mistake, else "". The
+// thickness is too large above a quarter of the obstacle's or the cloth's size. It is too small below the resolution of
+// float32 there.
+std::string thicknessRemark(const Options& options);
+}  // namespace drape

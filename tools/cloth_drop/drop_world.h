@@ -1,0 +1,69 @@
+// The Bullet side of the drop scene: world, cloth and obstacle, owned and torn down in the order Bullet demands.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
+#include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
+#include <BulletSoftBody/btSoftBody.h>
+#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
+#include <BulletSoftBody/btSoftBodySolvers.h>
+#include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
+#include <btBulletCollisionCommon.h>
+
+#include "tools/cloth_drop/drop_scene.h"
+
+namespace drape
+{
+// Measures how long Bullet's collision detection takes in a step.
+class TimedWorld : public btSoftRigidDynamicsWorld
+{
+public:
+    using btSoftRigidDynamicsWorld::btSoftRigidDynamicsWorld;
+    void performDiscreteCollisionDetection() override;
+    double collisionMs() const { return m_collisionMs; }
+
+private:
+    double m_collisionMs = 0;
+};
+
+class DropWorld
+{
+public:
+    // `solver` may be null for Bullet's default. Bodies are not in the world yet.
+    DropWorld(std::unique_ptr<btCollisionConfiguration> configuration, std::unique_ptr<btSoftBodySolver> solver);
+    ~DropWorld();
+
+    void addMeshObstacle(const DropScene& scene);  // a static btBvhTriangleMeshShape
+    // Adds the obstacle as a kinematic body at the origin. Call setWorldTransform() before a step to set its pose at
+    // the end of the step.
+    btRigidBody& addMovingObstacle(const DropScene& scene);
+    void addSoftObstacle(const DropScene& scene);  // a soft body of massless nodes, for VF_SS
+    void addCloth(const DropScene& scene, bool softPairs);
+
+    TimedWorld& world() { return m_world; }
+    btSoftBody& cloth() { return *m_cloth; }
+
+    // Runs one step and returns its wall time in ms.
+    double step(double dt);
+
+private:
+    void makeShape(const DropScene& scene);
+
+    std::unique_ptr<btCollisionConfiguration> m_configuration;
+    std::unique_ptr<btSoftBodySolver> m_solver;
+    btCollisionDispatcher m_dispatcher;
+    btDbvtBroadphase m_broadphase;
+    btSequentialImpulseConstraintSolver m_rigidSolver;
+    TimedWorld m_world;
+    std::vector<float> m_obstaclePositions;
+    std::vector<int> m_obstacleIndices;
+    std::unique_ptr<btTriangleIndexVertexArray> m_meshInterface;
+    std::unique_ptr<btBvhTriangleMeshShape> m_shape;
+    std::unique_ptr<btCollisionObject> m_object;
+    std::unique_ptr<btSoftBody> m_softObstacle;
+    std::unique_ptr<btSoftBody> m_cloth;
+};
+}  // namespace drape

@@ -1,0 +1,52 @@
+// The command line of cloth_drop: what to drop, on what, on which back end, and what to write.
+// Lengths in metres, times in seconds. parseOptions checks every value, so that the rest of the program may trust them.
+#pragma once
+
+#include <string>
+
+#include "tools/common/program.h"
+
+namespace drape
+{
+enum class BulletMode
+{
+    Stock,    // the sparse distance field as Bullet sets it up
+    Tuned,    // more and smaller voxels
+    SoftPair  // the obstacle as a second soft body, vertices against faces
+};
+
+struct Options
+{
+    std::string m_obstacle = "sphere";  // a shape's name or a file
+    double m_obstacleSize = 2.0;
+    int m_clothColumns = 33;
+    int m_clothRows = 33;
+    double m_clothSize = 2.4;
+    double m_dropHeight = 0.3;
+    double m_dropSpeed = 0;
+    int m_steps = 240;
+    double m_timeLimit = 0;  // s; 0: none
+    double m_dt = 1.0 / 60.0;
+    double m_thickness = 0.02;
+    std::string m_backend = "auto";
+    std::string m_contactMode = "automatic";  // discrete, continuous or automatic: Settings::m_mode
+    BulletMode m_bulletMode = BulletMode::Stock;
+    std::string m_device;
+    bool m_listDevices = false;
+    unsigned m_threads = 0;  // see Settings
+    bool m_compare = false;
+    bool m_compareSoftPair = false;
+    double m_compareCap = 60.0;
+    std::string m_csv, m_json, m_frames, m_picture;
+    std::string m_validateHash;  // 16 lower-case hex digits or empty
+    bool m_quiet = false;
+    bool m_streamSteps = false;      // for a child of --compare: a line a step on standard output, nothing else
+    bool m_streamPositions = false;  // each line with the nodes' positions
+
+    bool usesDrape() const { return m_backend != "bullet"; }
+};
+
+// Returns true if the program goes on. Returns false if it must leave with `exitCode`, after printing the help or one
+// line on standard error.
+bool parseOptions(int argc, const char* const* argv, Options& options, int& exitCode);
+}  // namespace drape

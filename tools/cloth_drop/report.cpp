@@ -1,0 +1,272 @@
+#include "tools/cloth_drop/report.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+#include <optional>
+
+namespace drape
+{
+namespace
+{
+using Json = nlohmann::ordered_json;
+
+Json asJson(const TimeSummary& times)
+{
+    return {{"first", times.m_first}, {"median", times.m_median}, {"p95", times.m_p95}, {"max", times.m_max}};
+}
+
+Json asJson(const CollisionParts& parts)
+{
+    return {{"dispatch", parts.m_dispatch},
+            {"upload", parts.m_upload},
+            {"wait", parts.m_wait},
+            {"write", parts.m_write},
+            {"rounds", parts.m_rounds}};
+}
+
+// Returns a statistic of the steps in contact, or null when the run had none.
+Json ifInContact(const RunSummary& summary, const Json& value)
+{
+    return summary.m_stepsInContact > 0 ? value : Json();
+}
+
+// Returns sums over the run. Counts the candidates of the broad phase, the continuous tests, and the contacts. Also
+// counts skipped cloths, obstacles reused without change, idle steps, and steps that the host back end ran.
+Json workJson(const RunRecord& record)
+{
+    std::uint64_t candidates = 0, swept = 0, contacts = 0;
+    std::size_t cloths = 0, kept = 0, skipped = 0, onHost = 0;
+    for (const StepRecord& step : record.m_steps)
+    {
+        candidates += step.m_times.m_candidates;
+        swept += step.m_times.m_sweptTests;
+        contacts += step.m_times.m_contacts;
+        cloths += step.m_times.m_clothsSkipped;
+        kept += step.m_times.m_obstaclesKept;
+        skipped += step.m_times.m_skipped;
+        onHost += step.m_times.m_onHost;
+    }
+    Json json;
+    json["candidates"] = candidates;
+    json["continuous_tests"] = swept;
+    json["contacts"] = contacts;
+    json["cloths_skipped"] = cloths;
+    json["obstacles_kept"] = kept;
+    json["steps_skipped"] = skipped;
+    json["steps_on_host"] = onHost;
+    return json;
+}
+
+Json asJson(const RunRecord& record)
+{
+    const RunSummary summary = summarise(record);
+    Json json;
+    json["backend"] = record.m_backend;
+    json["device"] = record.m_device;
+    json["device_reason"] = record.m_deviceReason;
+    json["prepare_ms"] = record.m_prepareMs;
+    json["steps"] = record.m_steps.size();
+    json["steps_in_contact"] = summary.m_stepsInContact;
+    json["cloth_triangles"] = record.m_clothTriangles;
+    json["obstacle_triangles"] = record.m_obstacleTriangles;
+    json["thickness_m"] = record.m_thickness;
+    json["step_ms"] = ifInContact(summary, asJson(summary.m_step));
+    json["collision_ms"] = ifInContact(summary, asJson(summary.m_collision));
+    json["finding_ms"] = ifInContact(summary, asJson(summary.m_finding));
+    if (!record.m_backend.empty() && record.m_backend.rfind("bullet", 0) != 0)
+    {
+        json["collision_parts_ms"] = ifInContact(summary, asJson(summary.m_parts));
+        json["work"] = workJson(record);
+    }
+    json["contacts_max"] = summary.m_contactsMax;
+    json["penetration_max_m"] = summary.m_penetrationMax;
+    json["penetration_p99_m"] = ifInContact(summary, summary.m_penetrationP99);
+    json["gap_min_m"] = summary.m_gapMin;
+    json["nodes_below_surface"] = summary.m_nodesBelow;
+    json["nodes_through"] = summary.m_nodesThrough;
+    json["intersecting_pairs_end"] = summary.m_intersectingPairsEnd;
+    json["intersecting_pairs_max"] = summary.m_intersectingPairsMax;
+    json["intersecting_pairs_max_step"] = summary.m_intersectingPairsMaxStep;
+    json["nan_nodes"] = summary.m_invalidNodes;
+    json["hash"] = hashText(summary.m_hash);
+    if (record.m_capped) json["capped_at_step"] = record.m_steps.size();
+    if (!record.m_trouble.empty()) json["trouble"] = record.m_trouble;
+    return json;
+}
+
+// Returns the ratio of the medians, or nothing when one of the runs was never in contact or took no measurable time.
+std::optional<double> ratio(const RunSummary& other, const RunSummary& own, const TimeSummary RunSummary::*times)
+{
+    const bool bothInContact = other.m_stepsInContact > 0 && own.m_stepsInContact > 0;
+    if (!bothInContact || !((own.*times).m_median > 0)) return {};
+    return (other.*times).m_median / (own.*times).m_median;
+}
+
+Json asJson(const std::optional<double>& value)
+{
+    return value ? Json(*value) : Json();
+}
+
+std::string text(const char* format, double value)
+{
+    char buffer[64];
+    std::snprintf(buffer, sizeof buffer, format, value);
+    return buffer;
+}
+
+std::string count(std::size_t value)
+{
+    return std::to_string(value);
+}
+
+std::string row(const std::string& label, const std::vector<std::string>& cells)
+{
+    const auto pad = [](const std::string& cell, std::size_t width)
+    { return cell.size() < width ? std::string(width - cell.size(), ' ') : std::string(); };
+    std::string line = label + pad(label, 34);
+    for (const std::string& cell : cells)
+        line += "  " + pad(cell, 14) + cell;
+    return line + "\n";
+}
+
+constexpr const char* kNone = "-";  // stands in the table for a missing value
+
+// Returns a statistic of the steps in contact as text.
+std::string textOfContacts(const RunSummary& summary, double value)
+{
+    return summary.m_stepsInContact > 0 ? text("%.3f", value) : kNone;
+}
+
+void addTimes(std::string& table, const std::string& label, const std::vector<RunSummary>& summaries,
+              const TimeSummary RunSummary::*times)
+{
+    const std::pair<const char*, double TimeSummary::*> parts[4] = {{"first", &TimeSummary::m_first},
+                                                                    {"median", &TimeSummary::m_median},
+                                                                    {"p95", &TimeSummary::m_p95},
+                                                                    {"max", &TimeSummary::m_max}};
+    for (const auto& part : parts)
+    {
+        std::vector<std::string> cells;
+        for (const RunSummary& summary : summaries)
+            cells.push_back(textOfContacts(summary, summary.*times.*part.second));
+        table += row(label + ", " + part.first, cells);
+    }
+}
+
+std::string heading(const std::vector<NamedRun>& runs)
+{
+    const RunRecord& first = runs.front().m_record;
+    std::string head = "cloth " + count(first.m_clothTriangles) + " triangles on obstacle of " +
+                       count(first.m_obstacleTriangles) + ", thickness " + text("%g", 1000 * first.m_thickness) +
+                       " mm\n";
+    for (const NamedRun& run : runs)
+    {
+        const RunRecord& record = run.m_record;
+        head += run.m_name + ": " + record.m_backend + " on " + record.m_device + " (" + record.m_deviceReason + ")";
+        if (record.m_prepareMs > 0) head += ", prepared in " + text("%.0f", record.m_prepareMs) + " ms";
+        if (record.m_capped) head += "; ended after step " + count(record.m_steps.size());
+        if (!record.m_trouble.empty()) head += "; " + record.m_trouble;
+        head += "\n";
+    }
+    return head;
+}
+}  // namespace
+
+Json asJson(const std::vector<NamedRun>& runs, bool byName)
+{
+    if (!byName) return asJson(runs.front().m_record);
+    Json json;
+    const RunSummary first = summarise(runs.front().m_record);
+    for (const NamedRun& run : runs)
+        json[run.m_name] = asJson(run.m_record);
+    for (std::size_t i = 1; i < runs.size(); ++i)
+    {
+        const std::string name = runs[i].m_name.substr(runs[i].m_name.find('_') + 1);
+        const RunSummary other = summarise(runs[i].m_record);
+        json["ratio_" + name] = asJson(ratio(other, first, &RunSummary::m_collision));
+        json["ratio_" + name + "_finding"] = asJson(ratio(other, first, &RunSummary::m_finding));
+    }
+    return json;
+}
+
+std::string asCsv(const RunRecord& record, double dt)
+{
+    std::string csv =
+        "step,time_s,step_ms,collision_ms,contacts,penetration_max_m,gap_min_m,nodes_below_surface,"
+        "intersecting_pairs,nan_nodes,speed_rms_m_s,nodes_through\n";
+    char line[256];
+    for (std::size_t i = 0; i < record.m_steps.size(); ++i)
+    {
+        const StepRecord& step = record.m_steps[i];
+        std::snprintf(line, sizeof line, "%zu,%.9g,%.6f,%.6f,%zu,%.9g,%.9g,%zu,%zu,%zu,%.9g,%zu\n", i + 1,
+                      static_cast<double>(i + 1) * dt, step.m_times.m_stepMs, step.m_times.m_collisionMs,
+                      step.m_times.m_contacts, step.m_measure.m_penetrationMax, step.m_measure.m_gapMin,
+                      step.m_measure.nodesBelow(), step.m_measure.m_intersectingPairs, step.m_measure.m_invalidNodes,
+                      step.m_speed, step.m_nodesThrough);
+        csv += line;
+    }
+    return csv;
+}
+
+std::string asTable(const std::vector<NamedRun>& runs)
+{
+    std::vector<RunSummary> summaries;
+    std::vector<std::string> names;
+    for (const NamedRun& run : runs)
+    {
+        summaries.push_back(summarise(run.m_record));
+        names.push_back(run.m_name);
+    }
+    std::string table = heading(runs) + row("", names);
+    const auto add = [&](const std::string& label, const std::function<std::string(std::size_t)>& cell)
+    {
+        std::vector<std::string> cells;
+        for (std::size_t i = 0; i < runs.size(); ++i)
+            cells.push_back(cell(i));
+        table += row(label, cells);
+    };
+    add("steps (in contact)", [&](std::size_t i)
+        { return count(runs[i].m_record.m_steps.size()) + " (" + count(summaries[i].m_stepsInContact) + ")"; });
+    const bool anyContact = std::any_of(summaries.begin(), summaries.end(),
+                                        [](const RunSummary& summary) { return summary.m_stepsInContact > 0; });
+    if (anyContact)
+    {
+        addTimes(table, "step, ms", summaries, &RunSummary::m_step);
+        addTimes(table, "collision, ms", summaries, &RunSummary::m_collision);
+        add("finding contacts, ms, median",
+            [&](std::size_t i) { return textOfContacts(summaries[i], summaries[i].m_finding.m_median); });
+    }
+    add("contacts, maximum", [&](std::size_t i) { return count(summaries[i].m_contactsMax); });
+    add("penetration, maximum, mm", [&](std::size_t i) { return text("%.3f", 1000 * summaries[i].m_penetrationMax); });
+    if (anyContact)
+        add("penetration, p99, mm",
+            [&](std::size_t i) { return textOfContacts(summaries[i], 1000 * summaries[i].m_penetrationP99); });
+    add("gap, minimum, mm", [&](std::size_t i) { return text("%.3f", 1000 * summaries[i].m_gapMin); });
+    add("nodes below surface, end", [&](std::size_t i) { return count(summaries[i].m_nodesBelow); });
+    add("nodes that went through", [&](std::size_t i) { return count(summaries[i].m_nodesThrough); });
+    add("intersecting pairs, end", [&](std::size_t i) { return count(summaries[i].m_intersectingPairsEnd); });
+    add("intersecting pairs, maximum (step)",
+        [&](std::size_t i)
+        {
+            const RunSummary& summary = summaries[i];
+            return count(summary.m_intersectingPairsMax) +
+                   (summary.m_intersectingPairsMax > 0 ? " (" + count(summary.m_intersectingPairsMaxStep) + ")" : "");
+        });
+    add("NaN nodes", [&](std::size_t i) { return count(summaries[i].m_invalidNodes); });
+    add("hash", [&](std::size_t i) { return hashText(summaries[i].m_hash); });
+    if (runs.size() == 1) return table;
+    const auto addRatio = [&](const char* label, const TimeSummary RunSummary::*times)
+    {
+        add(label,
+            [&, times](std::size_t i)
+            {
+                const std::optional<double> value = ratio(summaries[i], summaries[0], times);
+                return value ? text("%.1f", *value) : kNone;
+            });
+    };
+    addRatio("collision median, ratio", &RunSummary::m_collision);
+    addRatio("finding median, ratio", &RunSummary::m_finding);
+    return table;
+}
+}  // namespace drape

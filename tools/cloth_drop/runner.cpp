@@ -1,0 +1,64 @@
+#include "tools/cloth_drop/runner.h"
+
+#include <utility>
+
+#include "oracle/crossings.h"
+#include "scenes/mesh_writer.h"
+
+namespace drape
+{
+namespace
+{
+RunRecord startRecord(const Simulation& simulation, const DropScene& scene)
+{
+    RunRecord record;
+    record.m_prepareMs = simulation.prepareMs();
+    record.m_clothTriangles = scene.m_cloth.m_mesh.triangleCount();
+    record.m_clothNodes = scene.m_cloth.m_mesh.vertexCount();
+    record.m_obstacleTriangles = scene.m_obstacle.triangleCount();
+    record.m_thickness = scene.m_thickness;
+    return record;
+}
+}  // namespace
+
+bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, const std::string& framesFolder,
+                   const RunHooks& hooks, RunRecord& record, std::string& error)
+{
+    record = startRecord(simulation, scene);
+    TriangleMesh lastFrame = scene.m_cloth.m_mesh;
+    PenetrationMeter meter(scene.m_obstacle, scene.m_cloth.m_mesh);
+    Crossings crossings(scene.m_obstacle, scene.m_cloth.m_mesh.m_positions);
+    std::uint64_t hash = kHashStart;
+    const bool frames = !framesFolder.empty();
+    if (frames && !(writeMesh(framesFolder + "/obstacle.ply", scene.m_obstacle, error) &&
+                    writeMesh(frameName(framesFolder, "cloth", 0), lastFrame, error)))
+        return false;
+    for (int number = 1; number <= steps; ++number)
+    {
+        if (hooks.m_beforeStep) hooks.m_beforeStep(number);
+        StepRecord step;
+        step.m_times = simulation.step();
+        if (hooks.m_stepped) hooks.m_stepped(number);
+        const std::vector<float>& positions = simulation.positions();
+        step.m_speed = rmsSpeed(lastFrame.m_positions, positions, scene.m_dt);
+        lastFrame.m_positions = positions;
+        step.m_measure = meter.measure(lastFrame.m_positions.data());
+        crossings.follow(positions);
+        step.m_nodesThrough = crossings.nodes();
+        step.m_hash = hash = hashFloats(hash, lastFrame.m_positions);
+        if (hooks.m_afterStep) hooks.m_afterStep(number, step);
+        record.m_steps.push_back(std::move(step));
+        const bool written = !frames || writeMesh(frameName(framesFolder, "cloth", number), lastFrame, error);
+        if (written && (number == steps || !hooks.m_goesOn || hooks.m_goesOn())) continue;
+        record.m_capped = true;
+        break;
+    }
+    // With the automatic choice only the steps show which back end ran.
+    record.m_backend = simulation.backend();
+    record.m_device = simulation.device();
+    record.m_deviceReason = simulation.deviceReason();
+    record.m_trouble = simulation.trouble();
+    record.m_lastPositions = std::move(lastFrame.m_positions);
+    return error.empty();
+}
+}  // namespace drape

@@ -1,0 +1,71 @@
+// A Bullet world with the drop scene in it, on one back end. Every back end gets the same bodies, springs and settings;
+// they differ in the collision configuration and the soft body solver only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tools/cloth_drop/drop_scene.h"
+#include "tools/cloth_drop/options.h"
+
+namespace drape
+{
+// Parts of StepTimes::m_collisionMs, ms; see StepStatistics.
+struct CollisionParts
+{
+    double m_dispatch = 0;  // Bullet's collision detection, and Drape's part in it
+    double m_upload = 0;
+    double m_wait = 0;
+    double m_write = 0;
+    double m_rounds = 0;  // and the look at strayed nodes
+    double sum() const { return m_dispatch + m_upload + m_wait + m_write + m_rounds; }
+};
+
+struct StepTimes
+{
+    double m_stepMs = 0;       // wall time of stepSimulation
+    double m_collisionMs = 0;  // part of the step: Bullet's collision detection and all work of Drape
+    CollisionParts m_parts;    // parts of m_collisionMs; 0 for the built-in collision
+    std::size_t m_contacts = 0;
+    // Work counts as in StepStatistics; 0 for the built-in collision.
+    std::uint64_t m_candidates = 0;
+    std::size_t m_sweptTests = 0;
+    std::size_t m_clothsSkipped = 0;
+    std::size_t m_obstaclesKept = 0;
+    bool m_skipped = false;
+    bool m_onHost = false;
+};
+
+class Simulation
+{
+public:
+    virtual ~Simulation() = default;
+
+    // Runs one step of the scene's dt.
+    virtual StepTimes step() = 0;
+
+    // Returns x y z per cloth node, m; valid until the next step.
+    virtual const std::vector<float>& positions() = 0;
+
+    // Returns text for the report, as of the last step; an empty string if there is no device.
+    virtual std::string backend() const = 0;
+    virtual std::string device() const = 0;
+    virtual std::string deviceReason() const = 0;
+    virtual double prepareMs() const = 0;  // making the kernels and meshes ready, not part of any step
+
+    // Returns one line if a device failed during the run and the back end changed, else "".
+    virtual std::string trouble() const = 0;
+};
+
+// Makes the simulation with Bullet's built-in collision. Destroying it can take minutes (Bullet's distance field looks
+// for each triangle).
+std::unique_ptr<Simulation> makeBulletSimulation(const DropScene& scene, BulletMode mode);
+
+// Makes the simulation with Drape on the chosen back end. Returns null with the reason in `error` and the exit code if
+// it cannot start.
+std::unique_ptr<Simulation> makeDrapeSimulation(const DropScene& scene, const Options& options, std::string& error,
+                                                int& exitCode);
+}  // namespace drape

@@ -1,0 +1,96 @@
+#include "tools/cloth_drop/step_stream.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include "tools/cloth_drop/capped_lines.h"
+#include "tools/cloth_drop/options.h"
+#include "tools/cloth_drop/runner.h"
+
+namespace drape
+{
+namespace
+{
+using Json = nlohmann::json;
+
+Json asLine(const StepRecord& step)
+{
+    return {{"times", {step.m_times.m_stepMs, step.m_times.m_collisionMs}},
+            {"contacts", step.m_times.m_contacts},
+            {"penetration", step.m_measure.m_penetrationMax},
+            {"gap", step.m_measure.m_gapMin},
+            {"depths", step.m_measure.m_nodeDepths},
+            {"through", step.m_nodesThrough},
+            {"pairs", step.m_measure.m_intersectingPairs},
+            {"invalid", step.m_measure.m_invalidNodes},
+            {"speed", step.m_speed},
+            {"hash", step.m_hash}};
+}
+
+// JSON has null for numbers that are not finite.
+double numberOf(const Json& value)
+{
+    return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+}
+}  // namespace
+
+StepRecord stepFromLine(const std::string& text)
+{
+    std::vector<float> positions;
+    return stepFromLine(text, positions);
+}
+
+StepRecord stepFromLine(const std::string& text, std::vector<float>& positions)
+{
+    const Json line = Json::parse(text);
+    const auto given = line.find("positions");
+    if (given != line.end())
+    {
+        positions.clear();
+        for (const Json& coordinate : *given)
+            positions.push_back(static_cast<float>(numberOf(coordinate)));
+    }
+    StepRecord step;
+    step.m_times.m_stepMs = line.at("times").at(0);
+    step.m_times.m_collisionMs = line.at("times").at(1);
+    step.m_times.m_contacts = line.at("contacts");
+    step.m_measure.m_penetrationMax = line.at("penetration");
+    step.m_measure.m_gapMin = line.at("gap").is_null() ? 0.0 : line.at("gap").get<double>();
+    step.m_measure.m_nodeDepths = line.at("depths").get<std::vector<float>>();
+    step.m_nodesThrough = line.at("through");
+    step.m_measure.m_intersectingPairs = line.at("pairs");
+    step.m_measure.m_invalidNodes = line.at("invalid");
+    step.m_speed = line.at("speed").is_null() ? 0.0 : line.at("speed").get<double>();
+    step.m_hash = line.at("hash");
+    return step;
+}
+
+void streamRun(Simulation& simulation, const DropScene& scene, int steps, const std::function<std::string()>& lastLine,
+               bool positions)
+{
+    RunHooks hooks;
+    bool good = true;
+    const auto send = [&good](const std::string& line)
+    {
+        good = good && std::fputs((line + "\n").c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+        if (!good) std::_Exit(kExitFailed);  // the parent is gone
+    };
+    hooks.m_beforeStep = [&](int) { send(stepLine()); };
+    hooks.m_stepped = [&](int) { send(steppedLine()); };
+    hooks.m_afterStep = [&](int, const StepRecord& step)
+    {
+        send(measuredLine());
+        Json line = asLine(step);
+        if (positions) line["positions"] = simulation.positions();
+        send(line.dump());
+    };
+    RunRecord record;
+    std::string error;
+    const bool ran = runSimulation(simulation, scene, steps, "", hooks, record, error);
+    if (ran && lastLine) send(lastLine());
+    std::_Exit(ran ? kExitGood : kExitFailed);
+}
+}  // namespace drape
