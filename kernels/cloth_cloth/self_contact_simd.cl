@@ -66,21 +66,20 @@ static void askLanes(LaneContacts* contacts, const float* rows, const LaneWork* 
         laneSelfEdgeEdge(contacts, rows, mode, work->m_view.m_reachScale);
 }
 
-static int takeContact(const LaneContacts* contacts, const float* rows, const uint lane, const LaneWork* work,
-                       const uint item, const int asks, Contact* contact)
+static int takeContact(const NearContact* near, const float* rows, const uint lane, const LaneWork* work,
+                       const uint item, Contact* contact)
 {
     const FeatureTest test = work->m_tests[item];
     const ClothView* cloth = &work->m_view.m_cloth;
     const int edges = test.m_motion == DRAPE_SELF_TEST_EDGE;
-    const Vec3 point = vec3Of(&contacts->m_point, lane), weights = vec3Of(&contacts->m_weights, lane);
     const Vec3 origin = rowOf(rows, 3 * (DRAPE_SELF_POSITIONS + (edges ? 2 : 0)), lane);
-    if (asks && nearerBeyond(cloth, cloth->m_triangles + test.m_lane, origin, point, weights,
-                             DRAPE_SEAM * laneOf(&contacts->m_distance, lane)))
-        return DRAPE_NO_CONTACT;
+    int found = DRAPE_IS_CONTACT;
     nameSelfFeatures(contact, cloth, test, work->m_firstSlot);
-    storeContact(contact, vec3Of(&contacts->m_normal, lane), point, weights, laneOf(&contacts->m_gap0, lane),
-                 laneOf(&contacts->m_gap1, lane), 1.0f);
-    return finishContact(DRAPE_IS_CONTACT, origin, contact);
+    if (edges)
+        storeNear(near, near->m_point, near->m_weights, contact);
+    else
+        found = acceptSelfNode(near, cloth, cloth->m_triangles + test.m_lane, origin, contact);
+    return finishContact(found, origin, contact);
 }
 
 // CPU version of selfFeature in self_contact.cl.

@@ -2,40 +2,30 @@
 #ifndef DRAPE_LIB_EDGE_EDGE_CONTACT_H
 #define DRAPE_LIB_EDGE_EDGE_CONTACT_H
 
-#include "feature_meeting.h"
+#include "face_vertex_contact.h"
 
 DRAPE_NAMESPACE_BEGIN
 
-DRAPE_FUNCTION FeatureEdge edgeMix(FeatureEdge from, FeatureEdge to, float t)
+// Handles edges that met. rests: whether the second one rests. The contact's weights are the parameters along both.
+DRAPE_FUNCTION int edgesMet(const EdgePair* pair, int rests, Meeting meeting, Contact* contact)
 {
-    FeatureEdge r;
-    r.m_a = vec3Mix(from.m_a, to.m_a, t);
-    r.m_b = vec3Mix(from.m_b, to.m_b, t);
-    return r;
-}
-
-// Returns six times the signed volume of two edges; zero if they are coplanar.
-DRAPE_FUNCTION float edgeEdgeVolume(FeatureEdge e, FeatureEdge o)
-{
-    return vec3Dot(vec3Cross(vec3Sub(e.m_b, e.m_a), vec3Sub(o.m_b, o.m_a)), vec3Sub(o.m_a, e.m_a));
-}
-
-// Handles an edge that met the obstacle's edge. v0: the volume at the step's start.
-DRAPE_FUNCTION int edgeEdgeMet(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, Meeting meeting, float v0,
-                               PairBounds bounds, Contact* contact)
-{
-    const FeatureEdge e = edgeMix(e0, e1, meeting.m_place);
+    const TwoEdges e0 = pair->m_start, e1 = pair->m_end;
+    TwoEdges edges;
+    edges.m_a = vec3Mix(e0.m_a, e1.m_a, meeting.m_place);
+    edges.m_b = vec3Mix(e0.m_b, e1.m_b, meeting.m_place);
+    edges.m_far = vec3Mix(e0.m_far, e1.m_far, meeting.m_place);
     float s, t;
-    closestOnSegments(e.m_a, e.m_b, o.m_a, o.m_b, &s, &t);
-    const Vec3 across = vec3Sub(e.m_b, e.m_a), along = vec3Sub(o.m_b, o.m_a);
-    const Vec3 direction = vec3Cross(across, along);
+    edgesClosest(edges, &s, &t);
+    const Vec3 direction = edgesDirection(edges);
     const float length = vec3Length(direction);
-    if (length <= DRAPE_SEAM * vec3Length(across) * vec3Length(along)) return DRAPE_NO_CONTACT;
-    const Vec3 point = vec3Mix(o.m_a, o.m_b, t);
-    const Vec3 start = vec3Mix(e0.m_a, e0.m_b, s), end = vec3Mix(e1.m_a, e1.m_b, s);
-    const Vec3 normal = meetingNormal(direction, length, vec3Sub(end, start), v0 < 0.0f ? 1.0f : -1.0f, bounds);
-    storeContact(contact, normal, point, vec3(1.0f - s, s, 0.0f), vec3Dot(normal, vec3Sub(start, point)),
-                 vec3Dot(normal, vec3Sub(end, point)), meeting.m_time);
+    if (length <= DRAPE_SEAM * vec3Length(vec3Sub(edges.m_b, edges.m_a)) * vec3Length(edges.m_far))
+        return DRAPE_NO_CONTACT;
+    const Vec3 before = edgesOffset(e0, s, t), after = edgesOffset(e1, s, t);
+    // The relative displacement, with the fewest roundings.
+    const Vec3 way = rests ? vec3Sub(vec3Mix(e1.m_a, e1.m_b, s), vec3Mix(e0.m_a, e0.m_b, s)) : vec3Sub(after, before);
+    const Vec3 normal = meetingNormal(direction, length, way, -signOf(pair->m_before), pair->m_bounds);
+    storeContact(contact, normal, secondPoint(e1, t), vec3(s, t, 0.0f), vec3Dot(normal, before), vec3Dot(normal, after),
+                 meeting.m_time);
     return DRAPE_IS_CONTACT;
 }
 
@@ -46,68 +36,37 @@ DRAPE_FUNCTION int edgesChangedSides(float v0, float v1)
     return (v0 < 0.0f && v1 > 0.0f) || (v0 > 0.0f && v1 < 0.0f);
 }
 
-// Tests an edge that moves from e0 to e1 against a resting edge with the given normal cone; both closest points must be
-// inside their edges. A cloth face that is nearer beside the edge is no reason to drop the contact: if cloth bends over
-// a sharp edge of the obstacle, every crossing counts. The first comparisons drop most pairs and need neither division
-// nor root.
-DRAPE_FUNCTION int edgeEdgeContact(FeatureEdge e0, FeatureEdge e1, FeatureEdge o, NormalCone cone, PairBounds bounds,
-                                   Contact* contact)
+// Classifies two edges by their motion alone; see faceVertexPassed() and edgesMet().
+DRAPE_FUNCTION int edgesPassed(const EdgePair* pair, int rests, Contact* contact)
 {
-    const Vec3 along = vec3Sub(o.m_b, o.m_a);
-    const Vec3 across = vec3Sub(e1.m_b, e1.m_a);
-    const Vec3 direction = vec3Cross(across, along);
-    const float v0 = edgeEdgeVolume(e0, o);
-    const float v1 = vec3Dot(direction, vec3Sub(o.m_a, e1.m_a));
-    if (bounds.m_mode != DRAPE_DISCRETE)
+    const PairBounds bounds = pair->m_bounds;
+    if (bounds.m_mode == DRAPE_DISCRETE) return DRAPE_ASK_THE_END;
+    const int known = edgesNearness(pair);
+    if (!asksForMeeting(known, bounds)) return DRAPE_ASK_THE_END;
+    if (!bounds.m_searches) return DRAPE_UNDECIDED;
+    ++*bounds.m_searches;
+    const Meeting meeting = meetEdges(pair);
+    if (!meeting.m_met || known != DRAPE_MAY_MEET) return DRAPE_ASK_THE_END;
+    if (edgesMet(pair, rests, meeting, contact)) return DRAPE_IS_CONTACT;
+    return edgesChangedSides(pair->m_before, pair->m_after) ? DRAPE_NO_CONTACT : DRAPE_ASK_THE_END;
+}
+
+// Tests a moving edge against a resting edge with the given normal cone.
+DRAPE_FUNCTION int edgeEdgeContact(const EdgePair* pair, NormalCone cone, Contact* contact)
+{
+    const int passed = edgesPassed(pair, 1, contact);
+    if (passed == DRAPE_IS_CONTACT)
     {
-        const int known = edgeNearness(e0, e1, o, v0, v1, bounds);
-        if (asksForMeeting(known, bounds))
-        {
-            if (!bounds.m_searches) return DRAPE_UNDECIDED;
-            ++*bounds.m_searches;
-            const Meeting meeting = meetEdge(e0, e1, o, bounds);
-            if (meeting.m_met && known == DRAPE_MAY_MEET)
-            {
-                if (edgeEdgeMet(e0, e1, o, meeting, v0, bounds, contact)) return DRAPE_IS_CONTACT;
-                if (edgesChangedSides(v0, v1)) return DRAPE_NO_CONTACT;
-            }
-        }
+        const float s = contact->m_weights[0];
+        contact->m_weights[0] = 1.0f - s;
+        contact->m_weights[1] = s;
     }
-    const float squared = vec3Dot(direction, direction);
-    // Inside both edges the offset is parallel to the direction (or the edges are parallel, and it may be any).
-    const int parallel = squared <= DRAPE_SEAM * DRAPE_SEAM * vec3Dot(across, across) * vec3Dot(along, along);
-    if (!parallel)
-    {
-        const float facing = vec3Dot(cone.m_axis, direction);
-        if (cone.m_cosine > 0.0f && facing * facing < cone.m_cosine * cone.m_cosine * squared) return 0;
-        if (v1 * v1 > squared * (bounds.m_reachSlack * bounds.m_reachSlack)) return 0;
-    }
-    float s, t;
-    closestOnSegments(e1.m_a, e1.m_b, o.m_a, o.m_b, &s, &t);
-    if (!(s > 0.0f && s < 1.0f && t > 0.0f && t < 1.0f)) return 0;
-    const Vec3 point = vec3Mix(o.m_a, o.m_b, t);
-    const Vec3 x1 = vec3Mix(e1.m_a, e1.m_b, s);
-    const Vec3 offset = vec3Sub(x1, point);
-    const float lowCloth = drapeMin(vec3Dot(offset, e1.m_a), vec3Dot(offset, e1.m_b));
-    const float highObstacle = drapeMax(vec3Dot(offset, o.m_a), vec3Dot(offset, o.m_b));
-    if (provenApart(offset, lowCloth, highObstacle, bounds)) return 0;
-    const float distance = vec3Length(offset);
-    if (edgesAreOutOfReach(distance, e1, o, bounds)) return 0;
-    Vec3 normal;
-    if (distance > DRAPE_SEAM * bounds.m_extent)
-    {
-        normal = vec3Direction(offset, distance);
-        if (parallel && !coneAdmits(cone, normal)) return 0;
-    }
-    else
-    {
-        if (parallel) return 0;  // touching along a line: the ends report it
-        const float before = bounds.m_mode == DRAPE_DISCRETE ? v1 : v0;
-        normal = vec3Scale(vec3Direction(direction, drapeSqrt(squared)), before < 0.0f ? 1.0f : -1.0f);
-    }
-    storeContact(contact, normal, point, vec3(1.0f - s, s, 0.0f),
-                 vec3Dot(normal, vec3Sub(vec3Mix(e0.m_a, e0.m_b, s), point)), vec3Dot(normal, offset), 1.0f);
-    return 1;
+    if (passed != DRAPE_ASK_THE_END) return passed;
+    NearContact near;
+    if (!edgesNearWithin(pair, cone, &near)) return DRAPE_NO_CONTACT;
+    if (near.m_asks && !coneAdmits(cone, near.m_normal)) return DRAPE_NO_CONTACT;
+    storeNear(&near, near.m_point, near.m_weights, contact);
+    return DRAPE_IS_CONTACT;
 }
 
 DRAPE_NAMESPACE_END

@@ -17,27 +17,9 @@ DRAPE_NAMESPACE_BEGIN
 // Height of a thin face, as a share of its largest coordinate, that is noise: 8 u. Each corner errs by u.
 #define DRAPE_THIN_NOISE 4.8e-7f
 
-typedef struct FeatureTriangle
-{
-    Vec3 m_p[3];
-} FeatureTriangle;
-
-DRAPE_FUNCTION Vec3 triangleNormal(FeatureTriangle f)
-{
-    return vec3Cross(vec3Sub(f.m_p[1], f.m_p[0]), vec3Sub(f.m_p[2], f.m_p[0]));
-}
-
-DRAPE_FUNCTION float triangleExtent(FeatureTriangle f)
-{
-    return drapeMax(drapeMax(vec3NormMax(f.m_p[0]), vec3NormMax(f.m_p[1])), vec3NormMax(f.m_p[2]));
-}
-
-// Returns the length of an area vector, m²; 0 if its square is too small for a float's full precision.
-DRAPE_FUNCTION float areaLengthOf(Vec3 area)
-{
-    const float length = vec3Length(area);
-    return length > 1e-18f ? length : 0.0f;
-}
+#include "any_width/one.h"
+#include "any_width/face.h"
+#include "any_width/end.h"
 
 // A face by its longest edge, from the end that is nearer to the third corner. No variable indexes the corners: on a
 // GPU that would move them out of the registers.
@@ -84,21 +66,6 @@ DRAPE_FUNCTION LongFace longFace(FeatureTriangle f)
     return face;
 }
 
-// Area vector: the unit normal times m_length, m², which is twice the area. m_length is 0 if the face has no side.
-typedef struct FaceArea
-{
-    Vec3 m_vector;
-    float m_length;
-    int m_thin;
-} FaceArea;
-
-// length: of the cross product of the two edges.
-DRAPE_FUNCTION int isThin(FeatureTriangle f, float length)
-{
-    const Vec3 ab = vec3Sub(f.m_p[1], f.m_p[0]), ac = vec3Sub(f.m_p[2], f.m_p[0]);
-    return !(length > DRAPE_THIN * (vec3Dot(ab, ab) + vec3Dot(ac, ac)));
-}
-
 DRAPE_COLD_FUNCTION Vec3 thinArea(FeatureTriangle f)
 {
     const LongFace face = longFace(f);
@@ -107,10 +74,7 @@ DRAPE_COLD_FUNCTION Vec3 thinArea(FeatureTriangle f)
 
 DRAPE_FUNCTION FaceArea faceArea(FeatureTriangle f)
 {
-    FaceArea area;
-    area.m_vector = triangleNormal(f);
-    area.m_length = areaLengthOf(area.m_vector);
-    area.m_thin = isThin(f, area.m_length);
+    FaceArea area = plainArea(f);
     if (area.m_thin)
     {
         area.m_vector = thinArea(f);

@@ -20,6 +20,10 @@ DRAPE_NAMESPACE_BEGIN
 // neighbouring features in which a path that hits both, or by rounding neither, counts as a hit.
 #define DRAPE_SEAM 1e-5f
 
+#include "any_width/one.h"
+#include "any_width/bounds.h"
+#include "any_width/end.h"
+
 typedef struct FeatureEdge
 {
     Vec3 m_a, m_b;
@@ -34,22 +38,6 @@ DRAPE_FUNCTION FeatureEdge triangleEdge(const FeatureTriangle* f, int i)
     return e;
 }
 
-// Returns whether boxes do not meet, for points that can only meet at one instant. low/high: the boxes' corners.
-DRAPE_FUNCTION int boxesApart(Vec3 lowA, Vec3 highA, Vec3 lowB, Vec3 highB, float slack)
-{
-    return lowA.x - highB.x > slack || lowB.x - highA.x > slack || lowA.y - highB.y > slack ||
-           lowB.y - highA.y > slack || lowA.z - highB.z > slack || lowB.z - highA.z > slack;
-}
-
-DRAPE_FUNCTION Vec3 vec3Least(Vec3 a, Vec3 b)
-{
-    return vec3(drapeMin(a.x, b.x), drapeMin(a.y, b.y), drapeMin(a.z, b.z));
-}
-DRAPE_FUNCTION Vec3 vec3Most(Vec3 a, Vec3 b)
-{
-    return vec3(drapeMax(a.x, b.x), drapeMax(a.y, b.y), drapeMax(a.z, b.z));
-}
-
 DRAPE_FUNCTION FeatureTriangle triangleMix(FeatureTriangle f, FeatureTriangle g, float t)
 {
     FeatureTriangle r;
@@ -59,56 +47,11 @@ DRAPE_FUNCTION FeatureTriangle triangleMix(FeatureTriangle f, FeatureTriangle g,
     return r;
 }
 
-DRAPE_FUNCTION Vec3 featurePoint(FeatureTriangle f, Vec3 weights)
-{
-    return trianglePoint(f.m_p[0], f.m_p[1], f.m_p[2], weights);
-}
-
-typedef struct RestingFace
-{
-    FeatureTriangle m_corners;
-    FaceArea m_area;
-} RestingFace;
-
-// A moving face at the step's start and end.
-typedef struct MovingFace
-{
-    FeatureTriangle m_start, m_end;
-    Vec3 m_areaStart;  // computed by triangleNormal()
-    FaceArea m_areaEnd;
-} MovingFace;
-
-// Bounds common to a pair of triangles. extent: largest coordinate of all their positions, m. reach: m.
-typedef struct PairBounds
-{
-    float m_extent;
-    float m_reach;
-    float m_reachSlack;  // reach grown by more than the rounding of a distance and its normal
-    DRAPE_UINT m_mode;   // DRAPE_DISCRETE …
-    // Counts the pairs for which the continuous test was needed and run; null: it must not run.
-    DRAPE_UINT* m_searches;
-} PairBounds;
-
 // Results of a feature test: no contact, a contact, or undecided because only the continuous test can decide and must
 // not run.
 #define DRAPE_NO_CONTACT 0
 #define DRAPE_IS_CONTACT 1
 #define DRAPE_UNDECIDED 2
-
-// Returns whether the support gap along n proves a distance above the reach. lowA: least n·a over one set; highB:
-// greatest n·b over the other. With u = 2^-24, three products, two sums and the frame's shift err by at most 12 u |n|₁
-// extent.
-DRAPE_FUNCTION int provenApart(Vec3 n, float lowA, float highB, PairBounds bounds)
-{
-    const float twelveUnits = 7.1525574e-7f;
-    const float gap = lowA - highB - twelveUnits * vec3Norm1(n) * bounds.m_extent - 1e-36f;
-    return gap > bounds.m_reach * vec3Length(n) * (1.0f + twelveUnits);
-}
-
-DRAPE_FUNCTION int coneAdmits(NormalCone cone, Vec3 direction)
-{
-    return drapeAbs(vec3Dot(cone.m_axis, direction)) >= cone.m_cosine;
-}
 
 DRAPE_FUNCTION void storeContact(Contact* contact, Vec3 normal, Vec3 point, Vec3 weights, float gap0, float gap1,
                                  float time)
@@ -125,6 +68,12 @@ DRAPE_FUNCTION void storeContact(Contact* contact, Vec3 normal, Vec3 point, Vec3
     contact->m_gap0 = gap0;
     contact->m_gap1 = gap1;
     contact->m_time = time;
+}
+
+// Stores a contact of features that are near. point: m, of the contact.
+DRAPE_FUNCTION void storeNear(const NearContact* near, Vec3 point, Vec3 weights, Contact* contact)
+{
+    storeContact(contact, near->m_normal, point, weights, near->m_gap0, near->m_gap1, 1.0f);
 }
 
 // Returns whether q, a point of the edge, is nearer to the point than the face beyond the edge. Their offset must not

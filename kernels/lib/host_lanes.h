@@ -54,7 +54,7 @@ DRAPE_FUNCTION Lanes lanesAbs(Lanes a)
 {
     return (Lanes)((LaneMask)a & 0x7fffffff);
 }
-DRAPE_FUNCTION Lanes sqrt(Lanes a)
+DRAPE_FUNCTION Lanes drapeSqrt(Lanes a)
 {
     Lanes root;
     for (int i = 0; i < DRAPE_LANES; ++i)
@@ -63,7 +63,7 @@ DRAPE_FUNCTION Lanes sqrt(Lanes a)
 }
 DRAPE_FUNCTION Lanes lanesSqrt(Lanes a)
 {
-    return sqrt(a);
+    return drapeSqrt(a);
 }
 
 // Stores one byte per lane of the mask.

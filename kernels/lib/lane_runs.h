@@ -23,9 +23,10 @@ static uint kindOf(const LaneWork* work, const uint item);
 static void putTest(float* rows, const uint lane, LaneWork* work, const uint item);
 // Computes the lanes' contacts of tests of one kind.
 static void askLanes(LaneContacts* contacts, const float* rows, const LaneWork* work, const uint kind);
-// Stores the contact of a lane, with the further checks if it `asks`. Returns DRAPE_NO_CONTACT, ….
-static int takeContact(const LaneContacts* contacts, const float* rows, const uint lane, const LaneWork* work,
-                       const uint item, const int asks, Contact* contact);
+// Stores the contact of a test's features, which are near, unless their neighbours forbid it. rows: of the test's lane.
+// Returns DRAPE_NO_CONTACT, ….
+static int takeContact(const NearContact* near, const float* rows, const uint lane, const LaneWork* work,
+                       const uint item, Contact* contact);
 // Does a test by itself.
 static void testOne(LaneWork* work, const uint item);
 
@@ -38,12 +39,12 @@ static void testLanes(LaneWork* work, const uint kind, const uint* items, const 
     uint hitCount = 0;
     for (uint lane = 0; lane < DRAPE_LANES; ++lane) putTest(rows, lane, work, items[min(lane, count - 1)]);
     askLanes(&contacts, rows, work, kind);
-    const uint used = (1u << count) - 1u, asking = laneBits(contacts.m_asks);
+    const uint used = (1u << count) - 1u, asking = laneBits(contacts.m_near.m_asks);
     for (uint left = laneBits(contacts.m_found) & used; left; left &= left - 1)
     {
         const uint lane = 31 - clz(left & -left);
-        hitCount += takeContact(&contacts, rows, lane, work, items[lane], asking >> lane & 1u, hits + hitCount) ==
-                    DRAPE_IS_CONTACT;
+        const NearContact near = nearOfLane(&contacts.m_near, lane, asking >> lane & 1u);
+        hitCount += takeContact(&near, rows, lane, work, items[lane], hits + hitCount) == DRAPE_IS_CONTACT;
     }
     listHits(list, hits, hitCount);
     for (uint left = laneBits(contacts.m_open) & used; left; left &= left - 1) testOne(work, items[31 - clz(left & -left)]);

@@ -4,6 +4,7 @@
 #define DRAPE_LIB_NODE_FACE_CONTACT_H
 
 #include "feature_contact.h"
+#include "views.h"
 #include "ways.h"
 
 DRAPE_NAMESPACE_BEGIN
@@ -42,81 +43,66 @@ DRAPE_FUNCTION int isWithinEdges(Vec3 point, const FeatureTriangle* face, Vec3 a
     return within;
 }
 
+#include "any_width/one.h"
+#include "any_width/node_face.h"
+#include "any_width/end.h"
+
 // Returns whether a path through the face's plane went through the face. hit: the point of the path in the plane,
 // which was found `distance` (m) from the face.
-DRAPE_FUNCTION int wentThrough(Vec3 x0, Vec3 x1, const FeatureTriangle* face, Vec3 area, Vec3 hit, float distance,
-                               PairBounds bounds)
+DRAPE_FUNCTION int wentThrough(const NodeFace* pair, Vec3 hit, float distance)
 {
+    const FeatureTriangle face = pair->m_face;
+    const PairBounds bounds = pair->m_bounds;
     const float seam = DRAPE_SEAM * bounds.m_extent;
-    if (distance > seam && !(distance <= DRAPE_SLIDE * bounds.m_extent && isWithinEdges(hit, face, area, seam)))
+    if (distance > seam &&
+        !(distance <= DRAPE_SLIDE * bounds.m_extent && isWithinEdges(hit, &face, pair->m_area.m_vector, seam)))
         return 0;
     if (distance <= DRAPE_WAY_REACH * bounds.m_reach) return 1;
-    const Vec3 start[4] = {x0, face->m_p[0], face->m_p[1], face->m_p[2]};
-    const Vec3 end[4] = {x1, face->m_p[0], face->m_p[1], face->m_p[2]};
+    const Vec3 start[4] = {pair->m_x0, face.m_p[0], face.m_p[1], face.m_p[2]};
+    const Vec3 end[4] = {pair->m_x1, face.m_p[0], face.m_p[1], face.m_p[2]};
     return waysOverlap(start, end, 1, DRAPE_WAY_REACH * bounds.m_reach);
 }
 
-// Tests a node that moves from x0 to x1 against a resting face. Returns whether there is a contact.
-DRAPE_FUNCTION int nodeFaceContact(Vec3 x0, Vec3 x1, const RestingFace* resting, const DRAPE_GLOBAL Triangle* triangle,
-                                   const DRAPE_GLOBAL NormalCone* vertexCones, const DRAPE_GLOBAL NormalCone* edgeCones,
-                                   PairBounds bounds, Contact* contact)
+// Stores the contact of a node near to a face, unless the node leans away from the face's edge or corner nearest to it.
+// Returns whether there is a contact.
+DRAPE_FUNCTION int acceptNodeFace(const NearContact* near, const ObstacleView* obstacle, DRAPE_UINT face,
+                                  Contact* contact)
 {
-    const FeatureTriangle face = resting->m_corners;
-    const Vec3 area = resting->m_area.m_vector;
-    const float areaLength = resting->m_area.m_length;
-    const int thin = resting->m_area.m_thin;
-    const float s0 = vec3Dot(area, vec3Sub(x0, face.m_p[0]));
-    const float s1 = vec3Dot(area, vec3Sub(x1, face.m_p[0]));
-    const float before = bounds.m_mode == DRAPE_DISCRETE ? s1 : s0;
-    const float side = before < 0.0f ? -1.0f : 1.0f;
-    // A face whose area is too small for a length has no side; the tests below find what is near.
-    const int passed = areaLength > 0.0f && side * s1 < 0.0f;
-    // |s1| / |area| is a lower bound of the distance.
-    if (!passed && drapeAbs(s1) > areaLength * bounds.m_reachSlack) return 0;
-    Vec3 normal = vec3Scale(area, side * drapeRatio(1.0f, areaLength));
+    if (near->m_asks && !coneAdmits(closestFeatureCone(near->m_weights, obstacle->m_triangles + face,
+                                                       obstacle->m_vertexCones, obstacle->m_edgeCones),
+                                    near->m_normal))
+        return DRAPE_NO_CONTACT;
+    storeNear(near, near->m_point, vec3(1.0f, 0.0f, 0.0f), contact);
+    return DRAPE_IS_CONTACT;
+}
 
-    if (passed)  // the path went through the face's plane
+// Tests a moving node against a resting face. face: its index. Returns whether there is a contact.
+DRAPE_FUNCTION int nodeFaceContact(const NodeFace* pair, const ObstacleView* obstacle, DRAPE_UINT face,
+                                   Contact* contact)
+{
+    const int far = nodeIsFarFromPlane(pair), thin = pair->m_area.m_thin;
+    float side = pair->m_side;
+    if (!pair->m_passed && far) return DRAPE_NO_CONTACT;
+    if (pair->m_passed)  // the path went through the face's plane
     {
-        const float time = s0 / (s0 - s1);
-        const Vec3 hit = vec3Mix(x0, x1, time);
-        const Vec3 weights = closestOnFace(hit, face, thin);
-        const Vec3 point = featurePoint(face, weights);
-        if (wentThrough(x0, x1, &face, area, hit, vec3Length(vec3Sub(hit, point)), bounds))
+        const float time = pair->m_before / (pair->m_before - pair->m_after);
+        const Vec3 hit = vec3Mix(pair->m_x0, pair->m_x1, time);
+        const Vec3 weights = closestOnFace(hit, pair->m_face, thin), point = featurePoint(pair->m_face, weights);
+        if (wentThrough(pair, hit, vec3Length(vec3Sub(hit, point))))
         {
-            storeContact(contact, normal, point, vec3(1.0f, 0.0f, 0.0f), vec3Dot(normal, vec3Sub(x0, point)),
-                         vec3Dot(normal, vec3Sub(x1, point)), time);
-            return 1;
+            const Vec3 normal = planeNormal(pair->m_area, side);
+            storeContact(contact, normal, point, vec3(1.0f, 0.0f, 0.0f), vec3Dot(normal, vec3Sub(pair->m_x0, point)),
+                         vec3Dot(normal, vec3Sub(pair->m_x1, point)), time);
+            return DRAPE_IS_CONTACT;
         }
         // The path went around the face, so the node belongs on the side where it ends. The plane of a thin face turns
         // freely about the face's length: its sides mean nothing.
-        if (!thin)
-        {
-            if (drapeAbs(s1) > areaLength * bounds.m_reachSlack) return 0;
-            normal = vec3Scale(normal, -1.0f);
-        }
+        if (!thin && far) return DRAPE_NO_CONTACT;
+        if (!thin) side = -side;
     }
-
-    const Vec3 weights = closestOnFace(x1, face, thin);
-    const Vec3 point = featurePoint(face, weights);
-    const Vec3 offset = vec3Sub(x1, point);
-    const float highFace =
-        drapeMax(drapeMax(vec3Dot(offset, face.m_p[0]), vec3Dot(offset, face.m_p[1])), vec3Dot(offset, face.m_p[2]));
-    if (provenApart(offset, vec3Dot(offset, x1), highFace, bounds)) return 0;
-    const float distance = vec3Length(offset);
-    if (pointIsOutOfReach(distance, x1, &face, bounds)) return 0;
-    const int onFace = weights.x > 0.0f && weights.y > 0.0f && weights.z > 0.0f;
-    if (distance > DRAPE_SEAM * bounds.m_extent && (!onFace || thin))
-    {
-        normal = vec3Direction(offset, distance);
-        if (!onFace && !coneAdmits(closestFeatureCone(weights, triangle, vertexCones, edgeCones), normal)) return 0;
-    }
-    else if (areaLength == 0.0f)
-    {
-        return 0;  // touching a face without a direction: its neighbours report it
-    }
-    storeContact(contact, normal, point, vec3(1.0f, 0.0f, 0.0f), vec3Dot(normal, vec3Sub(x0, point)),
-                 vec3Dot(normal, offset), 1.0f);
-    return 1;
+    NearContact near;
+    if (!nodeNearFace(pair, side, &near)) return DRAPE_NO_CONTACT;
+    return acceptNodeFace(&near, obstacle, face, contact);
 }
 
 DRAPE_NAMESPACE_END

@@ -1,94 +1,20 @@
 // Contacts of feature pairs, from their positions in memory; feature_contact.h defines a contact.
+//
+// Contacts depend on the two features alone: however a pair of features is found, its numbers are equal. The frame's
+// origin is the obstacle feature's first position.
 #ifndef DRAPE_LIB_PAIR_CONTACT_H
 #define DRAPE_LIB_PAIR_CONTACT_H
 
-#include "dop.h"
 #include "edge_edge_contact.h"
 #include "face_vertex_contact.h"
 #include "finite_corners.h"
 #include "node_face_contact.h"
-#include "rigid_motion.h"
 #include "segment.h"
+#include "views.h"
 
 DRAPE_NAMESPACE_BEGIN
 
 #define DRAPE_FEATURE_TESTS 15
-
-typedef struct ClothView
-{
-    const DRAPE_GLOBAL float* m_start;  // m, x y z per node
-    const DRAPE_GLOBAL float* m_end;
-    const DRAPE_GLOBAL Triangle* m_triangles;
-    const DRAPE_GLOBAL Edge* m_edges;
-    DRAPE_UINT m_nodeCount;
-    DRAPE_UINT m_triangleCount;
-    DRAPE_UINT m_mode;                            // DRAPE_DISCRETE …
-    DRAPE_UINT* m_searches;                       // see PairBounds
-    const DRAPE_GLOBAL ObstacleMotion* m_motion;  // motion of the current obstacle; null if it rests
-} ClothView;
-
-typedef struct ObstacleView
-{
-    const DRAPE_GLOBAL float* m_positions;  // m, x y z per vertex
-    const DRAPE_GLOBAL Triangle* m_triangles;
-    const DRAPE_GLOBAL NormalCone* m_vertexCones;
-    const DRAPE_GLOBAL NormalCone* m_edgeCones;
-} ObstacleView;
-
-DRAPE_FUNCTION ClothView clothView(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end,
-                                   const DRAPE_GLOBAL Triangle* triangles, const DRAPE_GLOBAL Edge* edges,
-                                   DRAPE_UINT nodeCount, DRAPE_UINT triangleCount, DRAPE_UINT mode,
-                                   DRAPE_UINT* searches)
-{
-    ClothView view;
-    view.m_start = start;
-    view.m_end = end;
-    view.m_triangles = triangles;
-    view.m_edges = edges;
-    view.m_nodeCount = nodeCount;
-    view.m_triangleCount = triangleCount;
-    view.m_mode = mode;
-    view.m_searches = searches;
-    view.m_motion = 0;
-    return view;
-}
-
-DRAPE_FUNCTION ObstacleView obstacleView(const DRAPE_GLOBAL float* positions, const DRAPE_GLOBAL Triangle* triangles,
-                                         const DRAPE_GLOBAL NormalCone* vertexCones,
-                                         const DRAPE_GLOBAL NormalCone* edgeCones)
-{
-    ObstacleView view;
-    view.m_positions = positions;
-    view.m_triangles = triangles;
-    view.m_vertexCones = vertexCones;
-    view.m_edgeCones = edgeCones;
-    return view;
-}
-
-// A node at the step's start, relative to the current obstacle.
-DRAPE_FUNCTION Vec3 nodeStart(const ClothView* cloth, DRAPE_UINT node)
-{
-    return startSeen(cloth->m_motion, vec3Load(cloth->m_start, node));
-}
-
-// Contacts depend on the two features alone: however a pair of features is found, its numbers are equal. The frame's
-// origin is the obstacle feature's first position.
-DRAPE_FUNCTION PairBounds pairBounds(const ClothView* cloth, float extent, float reach)
-{
-    PairBounds bounds;
-    bounds.m_extent = extent;
-    bounds.m_reach = reach;
-    bounds.m_reachSlack = reach * 1.001f + DRAPE_SEAM * extent;
-    bounds.m_mode = cloth->m_mode;
-    bounds.m_searches = cloth->m_searches;
-    return bounds;
-}
-
-// Returns the largest coordinate of a cloth feature, m, at the step's start or at its end.
-DRAPE_FUNCTION float stepExtent(const ClothView* cloth, float start, float end)
-{
-    return cloth->m_mode == DRAPE_DISCRETE ? end : drapeMax(start, end);
-}
 
 // A position that is NaN or infinite, at the step's start or end, gives a gap that is not finite: no contact.
 DRAPE_FUNCTION int finishContact(int found, Vec3 origin, Contact* contact)
@@ -118,25 +44,10 @@ DRAPE_FUNCTION int pairNodeFace(int i, const ClothView* cloth, DRAPE_UINT clothT
                                 Contact* contact)
 {
     const DRAPE_UINT node = cloth->m_triangles[clothTriangle].m_vertices[i];
-    const Vec3 x0 = vec3Sub(nodeStart(cloth, node), a), x1 = vec3Sub(vec3Load(cloth->m_end, node), a);
-    RestingFace face;
-    face.m_corners.m_p[0] = vec3(0.0f, 0.0f, 0.0f);
-    face.m_corners.m_p[1] = vec3Sub(b, a);
-    face.m_corners.m_p[2] = vec3Sub(c, a);
-    face.m_area = faceArea(face.m_corners);
-    const float extent = drapeMax(stepExtent(cloth, vec3NormMax(x0), vec3NormMax(x1)), triangleExtent(face.m_corners));
+    const NodeFace pair = nodeFace(nodeStart(cloth, node), vec3Load(cloth->m_end, node), a, b, c, reach, cloth->m_mode,
+                                   cloth->m_searches);
     nameFeatures(contact, cloth, DRAPE_NODE_FACE, node, obstacleTriangle);
-    const int found = nodeFaceContact(x0, x1, &face, obstacle->m_triangles + obstacleTriangle, obstacle->m_vertexCones,
-                                      obstacle->m_edgeCones, pairBounds(cloth, extent, reach), contact);
-    return finishContact(found, a, contact);
-}
-
-// Returns the third vertex of the triangle on the other side of edge i; the triangle's own at a boundary.
-DRAPE_FUNCTION DRAPE_UINT vertexBeyond(const ClothView* cloth, const DRAPE_GLOBAL Triangle* triangle, int i)
-{
-    const DRAPE_UINT own = triangle->m_vertices[i == 0 ? 2 : i - 1];
-    const DRAPE_GLOBAL Edge* edge = cloth->m_edges + triangle->m_edges[i];
-    return edge->m_opposite[0] == own ? edge->m_opposite[1] : edge->m_opposite[0];
+    return finishContact(nodeFaceContact(&pair, obstacle, obstacleTriangle, contact), a, contact);
 }
 
 // Tests the cloth triangle against the obstacle's vertex.
@@ -144,21 +55,15 @@ DRAPE_FUNCTION int pairFaceVertex(const ClothView* cloth, DRAPE_UINT clothTriang
                                   DRAPE_UINT obstacleVertex, float reach, Contact* contact)
 {
     const DRAPE_GLOBAL Triangle* triangle = cloth->m_triangles + clothTriangle;
-    MovingFace face;
+    Vec3 start[3], end[3];
     for (int i = 0; i < 3; ++i)
     {
-        face.m_start.m_p[i] = vec3Sub(nodeStart(cloth, triangle->m_vertices[i]), vertex);
-        face.m_end.m_p[i] = vec3Sub(vec3Load(cloth->m_end, triangle->m_vertices[i]), vertex);
+        start[i] = nodeStart(cloth, triangle->m_vertices[i]);
+        end[i] = vec3Load(cloth->m_end, triangle->m_vertices[i]);
     }
-    face.m_areaStart = triangleNormal(face.m_start);
-    face.m_areaEnd = faceArea(face.m_end);
-    const float extent = stepExtent(cloth, triangleExtent(face.m_start), triangleExtent(face.m_end));
-    DRAPE_UINT beyond[3];
-    for (int edge = 0; edge < 3; ++edge)
-        beyond[edge] = vertexBeyond(cloth, triangle, edge);
+    const MovingFace face = movingFace(start, end, vertex, vertex, reach, cloth->m_mode, cloth->m_searches);
     nameFeatures(contact, cloth, DRAPE_FACE_VERTEX, clothTriangle, obstacleVertex);
-    const int found = faceVertexContact(&face, beyond, cloth->m_start, cloth->m_end, vertex, vec3(0.0f, 0.0f, 0.0f),
-                                        cone, pairBounds(cloth, extent, reach), contact);
+    const int found = faceVertexContact(&face, cone, cloth, triangle, vertex, contact);
     if (found == DRAPE_IS_CONTACT && isSegment(triangle)) joinCorners(contact->m_weights);
     return finishContact(found, vertex, contact);
 }
@@ -170,18 +75,11 @@ DRAPE_FUNCTION int pairEdgeEdge(int i, const ClothView* cloth, DRAPE_UINT clothT
 {
     const DRAPE_GLOBAL Triangle* triangle = cloth->m_triangles + clothTriangle;
     const DRAPE_UINT first = triangle->m_vertices[i], second = triangle->m_vertices[i == 2 ? 0 : i + 1];
-    FeatureEdge e0, e1, o;
-    e0.m_a = vec3Sub(nodeStart(cloth, first), a);
-    e0.m_b = vec3Sub(nodeStart(cloth, second), a);
-    e1.m_a = vec3Sub(vec3Load(cloth->m_end, first), a);
-    e1.m_b = vec3Sub(vec3Load(cloth->m_end, second), a);
-    o.m_a = vec3(0.0f, 0.0f, 0.0f);
-    o.m_b = vec3Sub(b, a);
-    const float extent = drapeMax(stepExtent(cloth, drapeMax(vec3NormMax(e0.m_a), vec3NormMax(e0.m_b)),
-                                             drapeMax(vec3NormMax(e1.m_a), vec3NormMax(e1.m_b))),
-                                  vec3NormMax(o.m_b));
+    const Vec3 start[4] = {nodeStart(cloth, first), nodeStart(cloth, second), a, b};
+    const Vec3 end[4] = {vec3Load(cloth->m_end, first), vec3Load(cloth->m_end, second), a, b};
+    const EdgePair pair = edgePair(start, end, reach, cloth->m_mode, cloth->m_searches);
     nameFeatures(contact, cloth, DRAPE_EDGE_EDGE, triangle->m_edges[i], obstacleEdge);
-    return finishContact(edgeEdgeContact(e0, e1, o, cone, pairBounds(cloth, extent, reach), contact), a, contact);
+    return finishContact(edgeEdgeContact(&pair, cone, contact), a, contact);
 }
 
 // Returns the tests that a pair of triangles owns, as bits: three nodes × face, face × three vertices, three edges ×

@@ -45,15 +45,16 @@ DRAPE_FUNCTION int outOfReach(float distance, const Vec3 points[4], int count, P
            !waysOverlap(points, points, count, bounds.m_reach);
 }
 
-DRAPE_FUNCTION int pointIsOutOfReach(float distance, Vec3 point, const FeatureTriangle* face, PairBounds bounds)
+DRAPE_FUNCTION int pointIsOutOfReach(float distance, Vec3 point, FeatureTriangle face, PairBounds bounds)
 {
-    const Vec3 points[4] = {point, face->m_p[0], face->m_p[1], face->m_p[2]};
+    const Vec3 points[4] = {point, face.m_p[0], face.m_p[1], face.m_p[2]};
     return outOfReach(distance, points, 1, bounds);
 }
 
-DRAPE_FUNCTION int edgesAreOutOfReach(float distance, FeatureEdge e, FeatureEdge o, PairBounds bounds)
+// The first edge runs from a to b, the second from the frame's origin to `far`.
+DRAPE_FUNCTION int edgesAreOutOfReach(float distance, Vec3 a, Vec3 b, Vec3 far, PairBounds bounds)
 {
-    const Vec3 points[4] = {e.m_a, e.m_b, o.m_a, o.m_b};
+    const Vec3 points[4] = {a, b, vec3(0.0f, 0.0f, 0.0f), far};
     return outOfReach(distance, points, 2, bounds);
 }
 

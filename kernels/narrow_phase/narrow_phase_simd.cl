@@ -84,50 +84,35 @@ static void askLanes(LaneContacts* contacts, const float* rows, const LaneWork* 
     if (kind == 2) laneEdgeEdge(contacts, rows, work->m_cloth.m_mode);
 }
 
-static int takeContact(const LaneContacts* contacts, const float* rows, const uint lane, const LaneWork* work,
-                       const uint item, const int asks, Contact* contact)
+static int takeContact(const NearContact* near, const float* rows, const uint lane, const LaneWork* work,
+                       const uint item, Contact* contact)
 {
     const FeatureTest feature = work->m_tests[item];
     const ClothView* cloth = &work->m_cloth;
-    const ObstacleView* obstacle = &work->m_obstacle;
     const PackedFeatures* packed = &work->m_packed;
     const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT, index = feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u);
-    __global const Triangle* triangle = cloth->m_triangles + index;
-    const Vec3 normal = vec3Of(&contacts->m_normal, lane), weights = vec3Of(&contacts->m_weights, lane);
-    const Vec3 point = vec3Of(&contacts->m_point, lane);
-    const float gap0 = laneOf(&contacts->m_gap0, lane), gap1 = laneOf(&contacts->m_gap1, lane);
     const uint row = test < DRAPE_TEST_FACE ? 6 : test == DRAPE_TEST_FACE ? 18 : 12;
+    __global const Triangle* triangle = cloth->m_triangles + index;
     const Vec3 origin = rowOf(rows, row, lane);
+    int found = DRAPE_IS_CONTACT;
     if (test < DRAPE_TEST_FACE)
     {
         const uint face = packed->m_faceIds[feature.m_lane];
-        if (asks && !coneAdmits(closestFeatureCone(weights, obstacle->m_triangles + face, obstacle->m_vertexCones,
-                                                   obstacle->m_edgeCones),
-                                normal))
-            return DRAPE_NO_CONTACT;
         nameFeatures(contact, cloth, DRAPE_NODE_FACE, triangle->m_vertices[test], face);
-        storeContact(contact, normal, point, vec3(1.0f, 0.0f, 0.0f), gap0, gap1, 1.0f);
+        found = acceptNodeFace(near, &work->m_obstacle, face, contact);
     }
     else if (test == DRAPE_TEST_FACE)
     {
-        if (asks)
-        {
-            uint beyond[3];
-            for (int edge = 0; edge < 3; ++edge) beyond[edge] = vertexBeyond(cloth, triangle, edge);
-            if (neighbourIsNearer(weights, beyond, cloth->m_start, cloth->m_end, origin, point,
-                                  vec3Of(&contacts->m_offset, lane), DRAPE_SEAM * laneOf(&contacts->m_distance, lane)))
-                return DRAPE_NO_CONTACT;
-        }
         nameFeatures(contact, cloth, DRAPE_FACE_VERTEX, index, packed->m_vertexIds[feature.m_lane]);
-        storeContact(contact, normal, vec3(0.0f, 0.0f, 0.0f), weights, gap0, gap1, 1.0f);
+        found = acceptFaceVertex(near, cloth, triangle, origin, contact);
     }
     else
     {
         nameFeatures(contact, cloth, DRAPE_EDGE_EDGE, triangle->m_edges[test - DRAPE_TEST_EDGE],
                      packed->m_edgeIds[feature.m_lane]);
-        storeContact(contact, normal, point, weights, gap0, gap1, 1.0f);
+        storeNear(near, near->m_point, near->m_weights, contact);
     }
-    return finishContact(DRAPE_IS_CONTACT, origin, contact);
+    return finishContact(found, origin, contact);
 }
 
 static void askForLane(__global const float* blocks, const uint floats, __global const uint* ids, const uint lane)

@@ -7,7 +7,13 @@
 #define DRAPE_ULONG ulong
 #define DRAPE_INT int
 #define DRAPE_GLOBAL __global
+// On a CPU the functions of lib/any_width exist for two widths, as overloads. Its compilers derive from Clang, which has
+// them in C.
+#ifdef DRAPE_CPU
+#define DRAPE_FUNCTION static inline __attribute__((overloadable))
+#else
 #define DRAPE_FUNCTION static inline
+#endif
 // Marks large functions that are seldom called: inlined they would cost their callers registers.
 #define DRAPE_RARE_FUNCTION static __attribute__((noinline))
 #define DRAPE_NAMESPACE_BEGIN

@@ -16,36 +16,19 @@ Vec3 place(Random& random, float size)
     return vec3(random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size));
 }
 
-PairBounds boundsOf(const Vec3* start, const Vec3* end)
-{
-    float extent = 0.0f;
-    for (int i = 0; i < 4; ++i)
-        extent = drapeMax(extent, drapeMax(vec3NormMax(start[i]), vec3NormMax(end[i])));
-    return {extent, kReach, kReach * 1.001f, DRAPE_AUTOMATIC, nullptr};
-}
-
 // Passes edges in the order of ccd.h: the ends of the one, then of the other.
 int knownOfEdges(const Vec3* start, const Vec3* end)
 {
-    const FeatureEdge e0 = {start[0], start[1]}, e1 = {end[0], end[1]}, o0 = {start[2], start[3]},
-                      o1 = {end[2], end[3]};
-    const auto volume = [](FeatureEdge e, FeatureEdge o)
-    { return vec3Dot(vec3Cross(vec3Sub(e.m_b, e.m_a), vec3Sub(o.m_b, o.m_a)), vec3Sub(o.m_a, e.m_a)); };
-    const float motion = edgeMotion(e0, e1) + edgeMotion(o0, o1);
-    return edgesNearness(e0, e1, o0, o1, motion, volume(e0, o0), volume(e1, o1), boundsOf(start, end));
+    const EdgePair pair = edgePair(start, end, kReach, DRAPE_AUTOMATIC, nullptr);
+    return edgesNearness(&pair);
 }
 
 // Tests a resting vertex and a face.
 int knownOfFace(const Vec3* start, const Vec3* end)
 {
-    MovingFace face;
-    face.m_start = {{start[1], start[2], start[3]}};
-    face.m_end = {{end[1], end[2], end[3]}};
-    face.m_areaStart = vec3Cross(vec3Sub(start[2], start[1]), vec3Sub(start[3], start[1]));
-    face.m_areaEnd = faceArea(face.m_end);
-    const float s0 = vec3Dot(face.m_areaStart, vec3Sub(start[0], start[1]));
-    const float s1 = vec3Dot(face.m_areaEnd.m_vector, vec3Sub(start[0], end[1]));
-    return faceNearness(&face, start[0], s0, s1, boundsOf(start, end));
+    const MovingFace face = movingFace(start + 1, end + 1, start[0], end[0], kReach, DRAPE_AUTOMATIC, nullptr);
+    const NearestOfFace nearest = nearestOfFace(&face);
+    return faceNearness(&face, &nearest);
 }
 
 // Rotates the point so that no axis is an edge's or a normal's.

@@ -74,6 +74,13 @@ TEST(AssembleSource, LineDirectivesAreRight)
     EXPECT_GE(kernels, 5u);
 }
 
+TEST(AssembleSource, IncludesTextsForAnyWidthOncePerWidth)
+{
+    const std::string line = "#line 1 \"kernels/lib/any_width/closest.h\"\n";
+    EXPECT_EQ(countOf(assembleSource("kernels/narrow_phase/narrow_phase.cl"), line), 1u);
+    EXPECT_EQ(countOf(assembleSource("kernels/narrow_phase/narrow_phase_simd.cl"), line), 2u);
+}
+
 TEST(AssembleSource, TurnsContractionOffFirst)
 {
     EXPECT_EQ(assembleSource("kernels/queries/refit.cl").find("#pragma OPENCL FP_CONTRACT OFF"), 0u);

@@ -5,7 +5,7 @@
 
 #include "cpu_kernels.h"
 #include "kernels/lib/cull_packet.h"
-#include "kernels/lib/feature_meeting.h"
+#include "kernels/lib/lane_contacts.h"
 #include "opencl_words.h"
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "team.h takes a mask's bytes for such a CPU's");

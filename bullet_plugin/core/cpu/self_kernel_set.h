@@ -4,6 +4,7 @@
 
 #include "cpu_kernels.h"
 #include "kernels/lib/cull_packet.h"
+#include "kernels/lib/lane_self_contacts.h"
 #include "kernels/lib/self_cull.h"
 #include "opencl_words.h"
 

@@ -52,6 +52,12 @@ std::string lineDirective(std::size_t line, const std::string& path)
     return "#line " + std::to_string(line) + " \"" + path + "\"\n";
 }
 
+// Returns whether a file is a text that compiles once per SIMD width, so that it is included more than once.
+bool isForAnyWidth(const std::string& path)
+{
+    return path.find("/any_width/") != std::string::npos;
+}
+
 void append(const std::string& path, const KernelTexts& others, std::set<std::string>& seen, std::string& source)
 {
     const char* text = findText(path, others);
@@ -74,7 +80,7 @@ void append(const std::string& path, const KernelTexts& others, std::set<std::st
         {
             const std::string file = content.substr(keyword.size(), content.rfind('"') - keyword.size());
             const std::string included = joinPath(folder, file);
-            if (seen.insert(included).second) append(included, others, seen, source);
+            if (seen.insert(included).second || isForAnyWidth(included)) append(included, others, seen, source);
             source += lineDirective(line + 1, path);
         }
         else

@@ -22,9 +22,9 @@ struct KernelTexts
     std::size_t m_count = 0;
 };
 
-// The texts of kernels/<file>, one behind the other, with every include replaced by the included text once. Line
-// directives keep each line's own file and number, so a compiler's message names the .cl or .h file. Empty when a file
-// is not embedded.
+// The texts of kernels/<file>, one behind the other, with every include replaced by the included text once. Texts of
+// kernels/lib/any_width are included as often as they are named. Line directives keep each line's own file and number, so
+// a compiler's message names the .cl or .h file. Empty when a file is not embedded.
 std::string assembleSources(const std::vector<std::string>& paths, const KernelTexts& others = {});
 inline std::string assembleSource(const std::string& path)
 {

@@ -1,0 +1,21 @@
+// Ends a block of this folder's texts; see one.h.
+#undef Real
+#undef Truth
+#undef RealVec3
+#undef RealCone
+#undef RealTriangle
+#undef RealArea
+#undef RealBounds
+#undef RealNear
+#undef RealNodeFace
+#undef RealMovingFace
+#undef RealNearest
+#undef RealEdges
+#undef RealEdgePair
+#undef splat
+#undef zeroVec3
+#undef isNot
+#undef choose
+#undef chooseVec3
+#undef anyOf
+#undef isRare
