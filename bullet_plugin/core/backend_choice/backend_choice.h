@@ -1,7 +1,7 @@
 // Chooses the back end of a scene's steps if the settings leave the choice to cost.
 //
-// Input: the crossover, in expected triangle pairs (scene_work.h), and which cloth has a pair with which obstacle. A
-// cloth counts with the obstacle that makes most work for it among its pairs so far: it cannot lie on two with all
+// Input: the crossover, in expected triangle pairs (expected_pairs.h), and which cloth has a pair with which obstacle.
+// A cloth counts with the obstacle that makes most work for it among its pairs so far: it cannot lie on two with all
 // its area.
 //
 // The scene begins on the host, and moves to the device when its work passes the crossover. It returns only below
@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <map>
 
-#include "bullet_plugin/core/pipeline/pipeline.h"
+#include "bullet_plugin/core/scene/mesh_id.h"
 
 namespace drape
 {

@@ -6,7 +6,6 @@
 
 #include "drape/settings.h"
 #include "host_patches.h"
-#include "step.h"
 
 namespace drape
 {
@@ -17,8 +16,10 @@ public:
 
     // Does what a step does after meshes came or obstacles moved.
     void prepare(const Scene& scene) { m_patches.update(scene); }
-    // Runs the whole step.
-    void run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
+    // Runs the whole step. The result says whether the step exceeded a limit; if not, its counts are written to the
+    // statistics. Retries and times are added.
+    void run(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result,
+             StepStatistics& statistics);
 
     // Releases memory that only earlier, larger steps needed. Call between steps.
     void giveBackRoom() { m_patches.giveBackRoom(); }
@@ -28,7 +29,8 @@ public:
 
 private:
     static SelfStep selfStep(const Scene& scene, const StepPairs& pairs, const Settings& settings);
-    void runSelf(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepResult& result);
+    void runSelf(const Scene& scene, const StepPairs& pairs, const Settings& settings, StepCounters& counters,
+                 StepResult& result, StepStatistics& statistics);
 
     std::shared_ptr<ThreadTeam> m_threads;
     HostPatches m_patches;

@@ -3,9 +3,18 @@
 #include <algorithm>
 
 #include "bullet_plugin/core/stopwatch.h"
+#include "step_limits.h"
 
 namespace drape
 {
+ClothView clothView(const Scene& scene, const Settings& settings)
+{
+    const MeshPool& cloths = scene.m_cloths;
+    return clothView(scene.m_clothNodes.start(), scene.m_clothNodes.end(), cloths.triangles().data(),
+                     cloths.edges().data(), std::uint32_t(cloths.vertexCount()),
+                     std::uint32_t(cloths.triangles().size()), std::uint32_t(settings.m_mode), nullptr);
+}
+
 void HostPatches::update(const Scene& scene)
 {
     const MeshPool &cloths = scene.m_cloths, &obstacles = scene.m_obstacles;
@@ -73,50 +82,46 @@ std::vector<std::uint64_t> HostPatches::countTests(const Scene& scene, const Ste
     return counts;
 }
 
-bool HostPatches::run(const Scene& scene, const StepPairs& pairs, const Settings& settings, ThreadTeam& threads,
-                      StepResult& result)
+void HostPatches::run(const Scene& scene, const StepPairs& pairs, const Settings& settings, ThreadTeam& threads,
+                      StepCounters& counters, StepResult& result, StepStatistics& statistics)
 {
     Stopwatch watch;
     update(scene);
-    result.m_refitMs = watch.lapMs();
+    statistics.m_refitMs += watch.lapMs();
     const StepLimits limits(settings);
     const std::size_t mostTests = std::min(limits.m_candidates, pairs.m_limits.m_tests);
-    StepCounters counters = {};
     const HostCloths cloths = clothsOf(scene, pairs, settings, {0, m_clothOrder.size()});
-    result.m_retries = m_cull.run(clothView(scene, settings), cloths, mostTests, threads, counters);
-    result.m_invalidNodes = counters.m_invalidNodes;
-    result.m_broadMs = watch.lapMs();
+    statistics.m_retries += m_cull.run(clothView(scene, settings), cloths, mostTests, threads, counters);
+    statistics.m_broadMs += watch.lapMs();
     result.m_overLimit = counters.m_candidates > mostTests;
     result.m_overTests = result.m_overLimit && mostTests < limits.m_candidates;
-    if (result.m_overLimit) return false;
-    result.m_candidates = counters.m_candidates;
+    if (result.m_overLimit) return;
 
     const CpuKernels& kernels = m_cull.kernels();
     const HostFeatures features = {m_cull.tests().data(), counters.m_candidates, clothView(scene, settings),
                                    m_placed.view(scene),  m_cull.packed(),       pairs.m_motions.data()};
-    result.m_retries += m_hits.find(kernels.m_findHits, kernels.m_findSwept, &StepCounters::m_swept, features,
-                                    scene.slotCount(), {limits.m_contacts, pairs.m_limits.m_swept}, threads, counters);
-    result.m_sweptTests = counters.m_swept;
+    statistics.m_retries +=
+        m_hits.find(kernels.m_findHits, kernels.m_findSwept, &StepCounters::m_swept, features, scene.slotCount(),
+                    {limits.m_contacts, pairs.m_limits.m_swept}, threads, counters);
     result.m_overLimit = result.m_overTests = counters.m_swept > pairs.m_limits.m_swept;
-    if (result.m_overLimit) return false;
+    if (result.m_overLimit) return;
     result.m_overLimit = counters.m_contactsFound > limits.m_contacts;
     if (result.m_overLimit)
         result.m_contactDemand = counters.m_contactsFound;
     else
         m_hits.order(counters.m_contactsFound, result.m_contacts, threads);
-    result.m_narrowMs = watch.lapMs();
-    return !result.m_overLimit;
+    statistics.m_narrowMs += watch.lapMs();
 }
 
 SelfCounts HostPatches::runSelf(const Scene& scene, const SelfStep& step, SelfStepLimits limits, ThreadTeam& threads,
-                                StepResult& result)
+                                StepResult& result, StepStatistics& statistics)
 {
     Stopwatch watch;
     m_self.update(scene.m_cloths, scene.m_clothRest.data());
     m_self.cull(step, limits.m_candidates, threads);
-    result.m_broadMs += watch.lapMs();
+    statistics.m_broadMs += watch.lapMs();
     m_self.findContacts(step, limits, threads, result.m_contacts);
-    result.m_narrowMs += watch.lapMs();
+    statistics.m_narrowMs += watch.lapMs();
     return m_self.counts();
 }
 }  // namespace drape

@@ -5,23 +5,29 @@
 #include "bullet_plugin/core/broad_phase/host_patch_cull.h"
 #include "bullet_plugin/core/narrow_phase/host_hits.h"
 #include "bullet_plugin/core/cloth_cloth/host_self_patches.h"
+#include "drape/report.h"
 #include "drape/settings.h"
 #include "host_placed_obstacles.h"
-#include "step.h"
+#include "step_pairs.h"
+#include "step_result.h"
 
 namespace drape
 {
+// Returns the cloths as kernels see them.
+ClothView clothView(const Scene& scene, const Settings& settings);
+
 class HostPatches
 {
 public:
     // Updates the patches as a step does after meshes were added or obstacles moved.
     void update(const Scene& scene);
-    // Adds the pairs' contacts to the result, in canonical order. Returns false if the step exceeds a limit.
-    bool run(const Scene& scene, const StepPairs& pairs, const Settings& settings, ThreadTeam& threads,
-             StepResult& result);
-    // Adds contacts of cloths with themselves in the same way; none if that exceeds a limit.
+    // Adds the pairs' contacts to the result, in canonical order, unless the step exceeds a limit. Counts the step, and
+    // adds its retries and times to the statistics.
+    void run(const Scene& scene, const StepPairs& pairs, const Settings& settings, ThreadTeam& threads,
+             StepCounters& counters, StepResult& result, StepStatistics& statistics);
+    // Does the same for contacts of cloths with themselves; they are added unless they exceed a limit.
     SelfCounts runSelf(const Scene& scene, const SelfStep& step, SelfStepLimits limits, ThreadTeam& threads,
-                       StepResult& result);
+                       StepResult& result, StepStatistics& statistics);
 
     // Returns the number of feature tests of each cloth slot in the step, with obstacles plus with itself. Either
     // number is exact up to the step's limit of candidates; a larger one counts as the limit plus one.

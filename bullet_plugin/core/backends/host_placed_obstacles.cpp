@@ -14,7 +14,7 @@ void HostPlacedObstacles::update(const Scene& scene, std::size_t fresh)
         m_vertexCones = m_edgeCones = std::vector<NormalCone>();
     }
     const bool placesBegin = scene.m_anyPosed && m_positions.empty();
-    m_changes.take(scene, placesBegin ? 0 : fresh);
+    m_changes.update(scene, placesBegin ? 0 : fresh);
     if (scene.m_anyPosed) place(scene);
 }
 

@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "bullet_plugin/core/scene/reserve_room.h"
-#include "bullet_plugin/core/pipeline/obstacle_changes.h"
+#include "bullet_plugin/core/scene/obstacle_changes.h"
+#include "kernels/lib/pair_contact.h"
 
 namespace drape
 {

@@ -88,9 +88,9 @@ void PlacedObstacles::enqueuePlacing(Device& device, const Scene& scene, SlotRan
 std::vector<SlotRange> PlacedObstacles::update(Device& device, const Scene& scene, std::size_t fresh)
 {
     const MeshPool& obstacles = scene.m_obstacles;
-    m_changes.take(scene, fresh);
+    m_changes.update(scene, fresh);
     reserve(device, scene, fresh);
-    for (const SlotRange& run : runsOf(device, obstacles, [&](std::size_t slot) { return m_changes.given(slot); }))
+    for (const SlotRange& run : runsOf(device, obstacles, [&](std::size_t slot) { return m_changes.reshaped(slot); }))
         upload(device, scene, run);
     const std::vector<SlotRange> runs =
         runsOf(device, obstacles, [&](std::size_t slot) { return m_changes.moved(slot); });

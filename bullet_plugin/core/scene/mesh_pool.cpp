@@ -1,6 +1,7 @@
 #include "mesh_pool.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "reserve_room.h"
@@ -86,6 +87,13 @@ std::size_t MeshPool::slot(MeshId id) const
     if (slot >= m_ids.size() || m_ids[slot] != id)
         slot = std::size_t(std::lower_bound(m_ids.begin(), m_ids.end(), id) - m_ids.begin());
     return slot < m_ids.size() && m_ids[slot] == id && !m_meshes[slot].m_vacant ? slot : m_ids.size();
+}
+
+std::size_t MeshPool::existingSlot(MeshId id) const
+{
+    const std::size_t found = slot(id);
+    assert(found < meshCount());
+    return found;
 }
 
 std::size_t MeshPool::slotOfVertex(std::uint32_t vertex) const

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "mesh_id.h"
-#include "obstacle_placing.h"
+#include "obstacle_poses.h"
 #include "topology.h"
 
 namespace drape
@@ -27,12 +27,12 @@ struct PooledMesh
     float m_coordinateStep = 0;             // m, obstacles only: distance of floats where it reaches farthest out
     std::vector<NormalCone> m_vertexCones;  // obstacles only
     std::vector<NormalCone> m_edgeCones;
-    MeshBox m_box = {};                  // m, of the positions, obstacles only
-    float m_longestEdge = 0;             // m, obstacles only
-    ObstaclePlacing m_placing;           // obstacles only
-    bool m_placedAnew = false;           // obstacles only: new, or with new positions or pose, since the last step
-    std::uint32_t m_given = 0;           // obstacles only: Scene::m_obstacleMotion when its positions were last set
-    std::vector<std::uint32_t> m_order;  // leaf order, local triangles
+    MeshBox m_box = {};                     // m, of the positions, obstacles only
+    float m_longestEdge = 0;                // m, obstacles only
+    ObstaclePoses m_poses;                  // obstacles only
+    bool m_changed = false;                 // obstacles only: new, or with new positions or pose, since the last step
+    std::uint32_t m_positionsRevision = 0;  // obstacles only: the scene's when its positions were last set
+    std::vector<std::uint32_t> m_order;     // leaf order, local triangles
     std::uint32_t m_firstVertex = 0;
     std::uint32_t m_firstTriangle = 0;
     std::uint32_t m_firstEdge = 0;
@@ -60,12 +60,17 @@ public:
     const PooledMesh& mesh(std::size_t slot) const { return m_meshes[slot]; }
     // Returns the mesh's slot; meshCount() if the id is not, or no longer, in this pool.
     std::size_t slot(MeshId id) const;
+    // Returns the slot of a mesh that must exist.
+    std::size_t existingSlot(MeshId id) const;
+    const PooledMesh& existing(MeshId id) const { return m_meshes[existingSlot(id)]; }
     // Return the slot of the mesh that contains a joined vertex or edge.
     std::size_t slotOfVertex(std::uint32_t vertex) const;
     std::size_t slotOfEdge(std::uint32_t edge) const;
 
     // Joins the meshes added since the last call; the joined arrays are valid afterwards. Free without changes.
     void update();
+    // Returns whether update() would change nothing.
+    bool isJoined() const { return !m_changed && !hasWideGaps(); }
     // Releases memory that only earlier, larger pools needed. The joined arrays move.
     void giveBackRoom();
     // Returns a number that rises with every update that changed something.
@@ -84,8 +89,8 @@ public:
     const std::vector<Edge>& edges() const { return m_edges; }
 
 private:
-    // Releases vacant slots: all of them, or the last ones.
     bool hasWideGaps() const;
+    // Releases vacant slots: all of them, or the last ones.
     void closeGaps();
     void dropLastVacant();
     void forget(const PooledMesh& vacant);
