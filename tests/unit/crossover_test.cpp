@@ -16,7 +16,7 @@
 #include "bullet_plugin/core/backend_choice/backend_choice.h"
 #include "bullet_plugin/core/backend_choice/machine_load.h"
 #include "bullet_plugin/core/backend_choice/expected_pairs.h"
-#include "bullet_plugin/core/scene/surface_area.h"
+#include "bullet_plugin/core/scene/topology.h"
 #include "scenes/cloth_grid.h"
 #include "scenes/shapes.h"
 #include "tests/support/environment.h"

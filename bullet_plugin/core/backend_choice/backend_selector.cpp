@@ -38,7 +38,7 @@ DeviceInfo hostInfo()
 }  // namespace
 
 BackendSelector::BackendSelector(const Settings& settings, std::shared_ptr<ThreadTeam> threads)
-    : m_settings(settings), m_threads(std::move(threads)), m_host(std::make_unique<HostBackend>(m_threads))
+    : m_settings(settings), m_threads(std::move(threads)), m_host(std::make_unique<HostBackend>(m_settings, m_threads))
 {
     m_report.m_device = hostInfo();
 }
@@ -163,7 +163,7 @@ const char* BackendSelector::measureCrossover(Crossover& crossover, bool& busy, 
 {
     const std::unique_ptr<DeviceBackend> device = makeDeviceBackend(error);
     if (!device) return "it failed";
-    HostBackend host(m_threads);
+    HostBackend host(m_settings, m_threads);
     const char* const why = measureLadder({host, *device, m_settings, m_threads->size()}, crossover.m_rungs, busy);
     error = device->device().error();
     return why;

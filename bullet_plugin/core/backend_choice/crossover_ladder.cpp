@@ -136,7 +136,7 @@ private:
         m_input.collect(m_scene, m_backends.m_settings.m_activation, m_pairs, statistics);
         if (onHost)
         {
-            m_backends.m_host.run(m_scene, m_pairs, m_backends.m_settings, m_result, statistics);
+            m_backends.m_host.run(m_scene, m_pairs, m_result, statistics);
         }
         else
         {

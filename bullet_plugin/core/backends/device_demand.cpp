@@ -3,7 +3,6 @@
 #include <cstring>
 
 #include "device_backend.h"
-#include "step_counts.h"
 #include "step_limits.h"
 
 namespace drape

@@ -1,4 +1,4 @@
-// The result of a step on a back end: its contacts, or the limit that it exceeded.
+// The result of a step on a back end: its contacts and counts, or the limit that it exceeded.
 #pragma once
 
 #include <algorithm>
@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "bullet_plugin/core/ordering/contact_list.h"
+#include "drape/report.h"
+#include "kernels/shared/mesh.h"
 
 namespace drape
 {
@@ -52,4 +54,14 @@ private:
                                     [](const Contact& contact) { return contact.m_kind < DRAPE_SELF_NODE_FACE; });
     }
 };
+
+// Replaces the counts of pairs of features and of invalid nodes by those of a back end's run.
+inline void writeCounts(const StepCounters& counters, StepStatistics& statistics)
+{
+    statistics.m_candidates = counters.m_candidates;
+    statistics.m_sweptTests = counters.m_swept;
+    statistics.m_selfCandidates = counters.m_selfTests;
+    statistics.m_selfSweptTests = counters.m_selfSwept;
+    statistics.m_invalidNodes = counters.m_invalidNodes;
+}
 }  // namespace drape

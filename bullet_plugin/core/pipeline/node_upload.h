@@ -4,12 +4,8 @@
 // threads share the writing.
 #pragma once
 
-#include <functional>
-#include <vector>
-
 #include "bullet_plugin/core/scene/scene.h"
-#include "bullet_plugin/core/threads/thread_team.h"
-#include "node_stretch.h"
+#include "pipeline.h"
 
 namespace drape
 {

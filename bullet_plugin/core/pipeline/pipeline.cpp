@@ -6,7 +6,6 @@
 #include "back_contacts.h"
 #include "bullet_plugin/core/queries/mesh_probe.h"
 #include "bullet_plugin/core/scene/check_indices.h"
-#include "bullet_plugin/core/scene/triangles_in_box.h"
 #include "bullet_plugin/core/stopwatch.h"
 #include "check_settings.h"
 #include "node_upload.h"

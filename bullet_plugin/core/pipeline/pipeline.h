@@ -22,11 +22,18 @@
 #include "drape/mesh_description.h"
 #include "drape/report.h"
 #include "drape/settings.h"
-#include "node_stretch.h"
 
 namespace drape
 {
 class MeshProbe;
+
+// A range of adjacent nodes of a cloth, and the memory to write them to: x y z per node.
+struct NodeStretch
+{
+    std::size_t m_cloth;  // index in the caller's list
+    std::size_t m_first, m_count;
+    float *m_start, *m_end;  // first node's positions at the step's start and end
+};
 
 class Pipeline
 {

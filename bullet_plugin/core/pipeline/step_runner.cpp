@@ -5,8 +5,6 @@
 
 #include "bullet_plugin/core/backends/device_backend.h"
 #include "bullet_plugin/core/backends/host_backend.h"
-#include "bullet_plugin/core/backends/step_counts.h"
-#include "bullet_plugin/core/backends/step_limits.h"
 #include "cloths_over_budget.h"
 
 namespace drape
@@ -48,20 +46,19 @@ void StepRunner::complete(StepResult& result, StepStatistics& statistics)
         if (device->limitReached()) statistics.m_status |= kStepDeviceFull;
         if (device->device().failed()) m_backends.leaveDevice();
     }
-    m_backends.host().run(m_scene, m_pairs, m_settings, result, statistics);
+    m_backends.host().run(m_scene, m_pairs, result, statistics);
     statistics.m_onHost = true;
 }
 
 void StepRunner::leaveOutCloths(std::uint64_t contactDemand)
 {
-    const std::vector<std::uint64_t> candidates = m_backends.host().countTests(m_scene, m_pairs, m_settings);
-    const StepLimits limits(m_settings);
-    std::uint64_t budget = limits.m_candidates;
+    const std::vector<std::uint64_t> candidates = m_backends.host().countTests(m_scene, m_pairs);
+    std::uint64_t budget = m_limits.m_candidates;
     if (contactDemand > 0)
     {
         // Allows as many candidates as should give contacts within their limit, at this step's rate.
         const std::uint64_t all = std::accumulate(candidates.begin(), candidates.end(), std::uint64_t(0));
-        budget = std::uint64_t(double(all) * double(limits.m_contacts) / double(contactDemand));
+        budget = std::uint64_t(double(all) * double(m_limits.m_contacts) / double(contactDemand));
     }
     std::vector<std::size_t> active;
     for (std::size_t slot = 0; slot < candidates.size(); ++slot)
@@ -139,7 +136,7 @@ bool StepRunner::exceeds(std::size_t slot, const std::vector<std::size_t>& activ
     alone.m_anySelf = false;
     StepResult result;
     StepStatistics statistics;
-    m_backends.host().run(m_scene, alone, m_settings, result, statistics);
+    m_backends.host().run(m_scene, alone, result, statistics);
     return result.m_overLimit;
 }
 }  // namespace drape

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bullet_plugin/core/backend_choice/backend_selector.h"
+#include "bullet_plugin/core/backends/step_limits.h"
 #include "bullet_plugin/core/backends/step_result.h"
 
 namespace drape
@@ -21,7 +22,7 @@ class StepRunner
 {
 public:
     StepRunner(BackendSelector& backends, const Settings& settings, const Scene& scene, StepPairs& pairs)
-        : m_backends(backends), m_settings(settings), m_scene(scene), m_pairs(pairs)
+        : m_backends(backends), m_limits(settings), m_scene(scene), m_pairs(pairs)
     {
     }
 
@@ -59,7 +60,7 @@ private:
     bool exceeds(std::size_t slot, const std::vector<std::size_t>& active, TestLimits limits);
 
     BackendSelector& m_backends;
-    const Settings& m_settings;
+    const StepLimits m_limits;
     const Scene& m_scene;
     StepPairs& m_pairs;
     std::vector<MeshId> m_leftOut;

@@ -40,6 +40,10 @@ struct PooledMesh
     bool m_vacant = false;       // gone, but for its place
 };
 
+// Returns whether the box of any of an obstacle's triangles meets the box (m, in the frame of its positions as given).
+// O(n).
+bool anyTriangleIn(const PooledMesh& mesh, const float low[3], const float high[3]);
+
 // Slots from m_first up to m_last.
 struct SlotRange
 {

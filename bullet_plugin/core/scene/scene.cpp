@@ -9,7 +9,6 @@
 #include "morton_order.h"
 #include "normal_cones.h"
 #include "reserve_room.h"
-#include "surface_area.h"
 
 namespace drape
 {
