@@ -6,7 +6,7 @@
 
 #include "bullet_plugin/adapter/stretch.h"
 #include "bullet_plugin/adapter/vectors.h"
-#include "bullet_plugin/core/scene/reserve_room.h"
+#include "bullet_plugin/core/scene/growing_arrays.h"
 
 namespace drape
 {
@@ -59,7 +59,7 @@ BodyContacts* CollisionStep::contactsOf(const btSoftBody& body)
 void CollisionStep::addBody(ClothMirror& cloth, btSoftBody* body)
 {
     // Reserves room for all, so that clear() allocates no memory.
-    reserveRoom(m_spare, m_bodies.size() + m_spare.size() + 1);
+    reserveGrowing(m_spare, m_bodies.size() + m_spare.size() + 1);
     if (m_spare.empty()) m_spare.emplace_back();
     m_bodies.push_back(std::move(m_spare.back()));
     m_spare.pop_back();

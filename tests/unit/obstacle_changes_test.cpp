@@ -49,7 +49,7 @@ protected:
 };
 }  // namespace
 
-TEST_F(ObstacleChangesTest, TellsWhatCameAndWhatMoved)
+TEST_F(ObstacleChangesTest, NewReshapedAndMovedObstaclesAreFound)
 {
     EXPECT_EQ(changed(0), "rrrr");
     EXPECT_FALSE(m_changes.any(m_scene));
@@ -60,14 +60,14 @@ TEST_F(ObstacleChangesTest, TellsWhatCameAndWhatMoved)
     EXPECT_EQ(changed(4), "-p-r");
     EXPECT_FALSE(m_changes.any(m_scene));
     place(1, 0.5f);
-    EXPECT_TRUE(m_changes.any(m_scene)) << "it may have";
-    EXPECT_EQ(changed(4), "----") << "it has not";
+    EXPECT_TRUE(m_changes.any(m_scene)) << "it may have moved";
+    EXPECT_EQ(changed(4), "----") << "it has not moved";
     reshape(0);
     reshape(2);
     EXPECT_EQ(changed(3), "r-rr");
 }
 
-TEST_F(ObstacleChangesTest, KnowsWhatItHasForgottenAsNew)
+TEST_F(ObstacleChangesTest, ForgottenObstaclesAreNew)
 {
     place(2, 1.0f);
     EXPECT_EQ(changed(0), "rrrr");

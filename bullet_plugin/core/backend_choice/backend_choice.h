@@ -24,17 +24,18 @@ public:
     void end() { m_active = false; }
     bool active() const { return m_active; }
 
-    void note(MeshId cloth, MeshId obstacle, double pairs);
+    // Sets the work of a cloth with an obstacle, in expected triangle pairs.
+    void setWork(MeshId cloth, MeshId obstacle, double pairs);
     void forget(MeshId mesh);
 
     double crossover() const { return m_crossover; }
-    // The scene's work.
-    double pairs() const;
-    // Decides by the work as it is now.
-    bool isOnHost();
+    // Returns the scene's work.
+    double work() const;
+    // Decides by the work as it is now; returns whether the host runs the next step.
+    bool chooseHost();
 
 private:
-    std::map<MeshId, std::map<MeshId, double>> m_pairs;  // by cloth, by obstacle
+    std::map<MeshId, std::map<MeshId, double>> m_work;  // by cloth, by obstacle
     double m_crossover = 0;
     bool m_active = false;
     bool m_onHost = true;

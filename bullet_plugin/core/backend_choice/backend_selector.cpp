@@ -206,8 +206,8 @@ double BackendSelector::findCrossover()
 
 void BackendSelector::selectByWork()
 {
-    m_report.m_onHost = m_choice.isOnHost();
-    m_report.m_expectedPairs = m_choice.pairs();
+    m_report.m_onHost = m_choice.chooseHost();
+    m_report.m_expectedPairs = m_choice.work();
     m_report.m_device = m_report.m_onHost ? hostInfo() : m_wanted.m_device;
     const std::string& name = m_wanted.m_device.m_name;
     const std::string source = " (" + m_report.m_crossoverSource + ")";
@@ -229,16 +229,16 @@ void BackendSelector::choose(const Scene& scene, const StepInput& input)
     m_countedSelf = input.selfCloths();
     const double reachOfThickness = 1 + double(m_settings.m_activation);
     for (const NamedPair& pair : m_countedPairs)
-        m_choice.note(pair.m_cloth, pair.m_obstacle,
-                      expectedPairs(surfaceOf(scene.m_cloths.existing(pair.m_cloth)),
-                                    surfaceOf(scene.m_obstacles.existing(pair.m_obstacle)),
-                                    double(pair.m_thickness) * reachOfThickness));
+        m_choice.setWork(pair.m_cloth, pair.m_obstacle,
+                         expectedPairs(surfaceOf(scene.m_cloths.existing(pair.m_cloth)),
+                                       surfaceOf(scene.m_obstacles.existing(pair.m_obstacle)),
+                                       double(pair.m_thickness) * reachOfThickness));
     for (const MeshId id : m_countedSelf)
     {
         const PooledMesh& cloth = scene.m_cloths.existing(id);
         const Surface own = surfaceOf(cloth);
-        m_choice.note(id, id,
-                      kSelfPairWeight * expectedPairs(own, own, double(cloth.m_selfThickness) * reachOfThickness));
+        m_choice.setWork(id, id,
+                         kSelfPairWeight * expectedPairs(own, own, double(cloth.m_selfThickness) * reachOfThickness));
     }
     selectByWork();
 }

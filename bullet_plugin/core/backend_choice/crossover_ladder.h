@@ -17,7 +17,7 @@ struct LadderBackends
     HostBackend& m_host;
     DeviceBackend& m_device;
     const Settings& m_settings;
-    unsigned m_threads;  // of the host
+    unsigned m_threads;  // number of the host's threads
 };
 
 // busy: whether other processes kept the machine busy meanwhile, or the times of a scene varied widely.

@@ -150,7 +150,7 @@ void HostBackend::giveBackRoom()
 {
     m_cull.giveBackRoom();
     m_placed.giveBackRoom();
-    dropRoom(m_clothOrder);
+    shrinkSparse(m_clothOrder);
     m_hits.giveBackRoom();
     m_self.giveBackRoom();
 }

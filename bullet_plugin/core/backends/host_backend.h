@@ -52,7 +52,7 @@ private:
 
     const StepLimits m_limits;
     const std::uint32_t m_mode;
-    const float m_reachScale;  // of a thickness
+    const float m_reachScale;  // reach per thickness
     std::shared_ptr<ThreadTeam> m_threads;
 
     HostPatchCull m_cull;

@@ -34,7 +34,7 @@ private:
     // Counts nodes of removed cloths as written, up to node `last`.
     void skipVacantNodes(const MeshPool& cloths, std::size_t last);
 
-    Device* m_device = nullptr;             // that transfers nodes
+    Device* m_device = nullptr;             // the device that transfers nodes; null for none
     std::size_t m_written = 0, m_sent = 0;  // counts of the cloths' first nodes, for the coming step
 };
 }  // namespace drape

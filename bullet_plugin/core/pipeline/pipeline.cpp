@@ -4,10 +4,10 @@
 #include <cassert>
 
 #include "back_contacts.h"
+#include "bullet_plugin/core/check_settings.h"
 #include "bullet_plugin/core/queries/mesh_probe.h"
 #include "bullet_plugin/core/scene/check_indices.h"
 #include "bullet_plugin/core/stopwatch.h"
-#include "check_settings.h"
 #include "node_upload.h"
 #include "step_runner.h"
 

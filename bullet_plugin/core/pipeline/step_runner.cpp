@@ -15,7 +15,7 @@ void StepRunner::submit(std::size_t sent)
     if (DeviceBackend* const device = m_backends.chosenDevice()) device->submit(m_scene, m_pairs, sent);
 }
 
-void StepRunner::finish(const TestAllowance& allowance, StepResult& result, StepStatistics& statistics)
+void StepRunner::finish(const Pipeline::Allowance& allowance, StepResult& result, StepStatistics& statistics)
 {
     m_leftOut.clear();
     m_leftOutTests = 0;
@@ -82,7 +82,7 @@ std::vector<std::size_t> StepRunner::pairedCloths() const
     return slots;
 }
 
-float StepRunner::shareOf(std::size_t slot, const TestAllowance& allowance) const
+float StepRunner::shareOf(std::size_t slot, const Pipeline::Allowance& allowance) const
 {
     return allowance ? allowance(m_scene.m_cloths.mesh(slot).m_id) : HUGE_VALF;
 }
@@ -94,7 +94,7 @@ TestLimits StepRunner::limitsOf(std::size_t slot, float share) const
     return std::isfinite(share) ? ordinary.times(share) : TestLimits();
 }
 
-void StepRunner::expectMore(const TestAllowance& allowance)
+void StepRunner::expectMore(const Pipeline::Allowance& allowance)
 {
     m_limitsRaised = false;
     if (!m_neededMore || m_backends.chosenDevice()) return;
@@ -109,7 +109,7 @@ void StepRunner::expectMore(const TestAllowance& allowance)
     m_limitsRaised = true;
 }
 
-void StepRunner::leaveOutStretched(const TestAllowance& allowance)
+void StepRunner::leaveOutStretched(const Pipeline::Allowance& allowance)
 {
     const std::vector<std::size_t> active = pairedCloths();
     TestLimits all = {0, 0};

@@ -6,18 +6,15 @@
 // runs the step if the device fails or has no room. Cost: a repetition per cause, which ordinary motion does not have.
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "bullet_plugin/core/backend_choice/backend_selector.h"
 #include "bullet_plugin/core/backends/step_limits.h"
 #include "bullet_plugin/core/backends/step_result.h"
+#include "pipeline.h"
 
 namespace drape
 {
-// Returns a factor on the tests that a cloth's ordinary motion needs, see Pipeline::finish(). Null: infinity.
-using TestAllowance = std::function<float(MeshId)>;
-
 class StepRunner
 {
 public:
@@ -29,7 +26,7 @@ public:
     // Enqueues the step if the device runs it. sent: number of the cloths' first nodes that are uploaded already.
     void submit(std::size_t sent = 0);
     // Waits for the step, and repeats it where needed.
-    void finish(const TestAllowance& allowance, StepResult& result, StepStatistics& statistics);
+    void finish(const Pipeline::Allowance& allowance, StepResult& result, StepStatistics& statistics);
     // Returns the cloths that the last finish() left out.
     const std::vector<MeshId>& clothsLeftOut() const { return m_leftOut; }
     // Ends a step in which there is nothing to do.
@@ -47,13 +44,13 @@ private:
     // Removes cloths until the rest is within the settings' limits. contactDemand: see StepResult.
     void leaveOutCloths(std::uint64_t contactDemand);
     // Removes cloths that need more tests than their allowance, and gives the others theirs.
-    void leaveOutStretched(const TestAllowance& allowance);
+    void leaveOutStretched(const Pipeline::Allowance& allowance);
     // Raises every cloth's limits to its allowance, where that is more, before a step on the host that is likely to
     // exceed ordinary motion, like the one before.
-    void expectMore(const TestAllowance& allowance);
+    void expectMore(const Pipeline::Allowance& allowance);
     // Returns the slots of the cloths that have a pair with an obstacle.
     std::vector<std::size_t> pairedCloths() const;
-    float shareOf(std::size_t slot, const TestAllowance& allowance) const;
+    float shareOf(std::size_t slot, const Pipeline::Allowance& allowance) const;
     // Returns the tests that a cloth may make: those of ordinary motion times `share`, at least times 1.
     TestLimits limitsOf(std::size_t slot, float share) const;
     // Returns whether one of the active cloths exceeds the limits in a step of its own.
@@ -64,7 +61,7 @@ private:
     const Scene& m_scene;
     StepPairs& m_pairs;
     std::vector<MeshId> m_leftOut;
-    std::uint64_t m_leftOutTests = 0;  // of the cloths left out
+    std::uint64_t m_leftOutTests = 0;  // candidates of the cloths left out
     bool m_neededMore = false;         // the last step needed more tests than ordinary motion
     bool m_limitsRaised = false;       // in this step they exceed those of ordinary motion
 };

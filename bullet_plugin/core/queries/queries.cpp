@@ -6,7 +6,7 @@
 #include "bullet_plugin/core/device/device_choice.h"
 #include "bullet_plugin/core/queries/exact/triangles.h"
 #include "bullet_plugin/core/scene/check_indices.h"
-#include "bullet_plugin/core/pipeline/check_settings.h"
+#include "bullet_plugin/core/check_settings.h"
 #include "bullet_plugin/core/backends/step_limits.h"
 #include "bullet_plugin/core/public_call.h"
 #include "bullet_plugin/core/queries/leaf_pair_count.h"

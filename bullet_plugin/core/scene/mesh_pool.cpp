@@ -4,7 +4,7 @@
 #include <cassert>
 #include <utility>
 
-#include "reserve_room.h"
+#include "growing_arrays.h"
 
 namespace drape
 {
@@ -138,10 +138,10 @@ std::size_t MeshPool::firstSince(std::uint32_t revision) const
     return std::size_t(std::upper_bound(m_meshes.begin(), m_meshes.end(), revision, later) - m_meshes.begin());
 }
 
-MeshFirsts MeshPool::begin(std::size_t slot) const
+MeshOffsets MeshPool::begin(std::size_t slot) const
 {
     if (slot < m_firsts.size()) return m_firsts[slot];
-    return MeshFirsts{std::uint32_t(m_vertexCount), std::uint32_t(m_triangles.size()), std::uint32_t(m_edges.size())};
+    return MeshOffsets{std::uint32_t(m_vertexCount), std::uint32_t(m_triangles.size()), std::uint32_t(m_edges.size())};
 }
 
 void MeshPool::join(std::size_t slot)
@@ -151,7 +151,7 @@ void MeshPool::join(std::size_t slot)
     mesh.m_firstVertex = std::uint32_t(m_vertexCount);
     mesh.m_firstTriangle = std::uint32_t(m_triangles.size());
     mesh.m_firstEdge = std::uint32_t(m_edges.size());
-    m_firsts.push_back(MeshFirsts{mesh.m_firstVertex, mesh.m_firstTriangle, mesh.m_firstEdge});
+    m_firsts.push_back(MeshOffsets{mesh.m_firstVertex, mesh.m_firstTriangle, mesh.m_firstEdge});
     for (Triangle triangle : mesh.m_topology.m_triangles)
     {
         for (std::uint32_t& vertex : triangle.m_vertices)
@@ -161,7 +161,7 @@ void MeshPool::join(std::size_t slot)
         triangle.m_mesh = std::uint32_t(slot);
         m_triangles.push_back(triangle);
     }
-    reserveRoom(m_edges, m_edges.size() + mesh.m_topology.m_edges.size());
+    reserveGrowing(m_edges, m_edges.size() + mesh.m_topology.m_edges.size());
     for (Edge edge : mesh.m_topology.m_edges)
     {
         for (std::uint32_t& vertex : edge.m_vertices)
@@ -180,12 +180,12 @@ void MeshPool::update()
     m_changed = false;
     ++m_revision;
     dropLastVacant();
-    const MeshFirsts end = begin(m_placed);
+    const MeshOffsets end = begin(m_placed);
     m_vertexCount = end.m_vertex;
     m_triangles.resize(end.m_triangle);
     m_edges.resize(end.m_edge);
     m_firsts.resize(m_placed);
-    reserveRoom(m_triangles, m_triangleCount);
+    reserveGrowing(m_triangles, m_triangleCount);
     for (std::size_t slot = m_placed; slot < m_meshes.size(); ++slot)
         join(slot);
     m_placed = m_meshes.size();
@@ -193,10 +193,10 @@ void MeshPool::update()
 
 void MeshPool::giveBackRoom()
 {
-    dropRoom(m_meshes);
-    dropRoom(m_ids);
-    dropRoom(m_triangles);
-    dropRoom(m_edges);
-    dropRoom(m_firsts);
+    shrinkSparse(m_meshes);
+    shrinkSparse(m_ids);
+    shrinkSparse(m_triangles);
+    shrinkSparse(m_edges);
+    shrinkSparse(m_firsts);
 }
 }  // namespace drape

@@ -37,7 +37,7 @@ struct PooledMesh
     std::uint32_t m_firstTriangle = 0;
     std::uint32_t m_firstEdge = 0;
     std::uint32_t m_joined = 0;  // the pool's revision when its position changed last
-    bool m_vacant = false;       // gone, but for its place
+    bool m_vacant = false;       // removed; its slot remains
 };
 
 // Returns whether the box of any of an obstacle's triangles meets the box (m, in the frame of its positions as given).
@@ -82,7 +82,7 @@ public:
     // Returns the first slot that changed after that revision; earlier ones are unchanged, except for vacancies.
     std::size_t firstSince(std::uint32_t revision) const;
     // Returns the offsets of a slot's vertices, triangles and edges; for meshCount() their ends.
-    MeshFirsts begin(std::size_t slot) const;
+    MeshOffsets begin(std::size_t slot) const;
     // Counts triangles of meshes that are not removed.
     std::size_t presentTriangles() const { return m_triangleCount - m_vacantTriangles; }
     // Counts the same triangles, without those that stand for edges and points.
@@ -104,7 +104,7 @@ private:
     std::vector<MeshId> m_ids;  // the meshes' ids, contiguous for the search
     std::vector<Triangle> m_triangles;
     std::vector<Edge> m_edges;
-    std::vector<MeshFirsts> m_firsts;
+    std::vector<MeshOffsets> m_firsts;
     std::size_t m_vertexCount = 0;
     std::size_t m_triangleCount = 0;  // in all slots
     std::size_t m_faceCount = 0;      // triangles of the meshes in use

@@ -8,7 +8,7 @@
 #include "kernels/lib/vec3.h"
 #include "morton_order.h"
 #include "normal_cones.h"
-#include "reserve_room.h"
+#include "growing_arrays.h"
 
 namespace drape
 {
@@ -173,16 +173,16 @@ void Scene::joinRest()
 
 void Scene::joinObstacles(std::size_t first)
 {
-    const MeshFirsts kept = m_obstacles.begin(first);
+    const MeshOffsets kept = m_obstacles.begin(first);
     m_obstaclePositions.resize(3 * std::size_t(kept.m_vertex));
     m_vertexCones.resize(kept.m_vertex);
     m_edgeCones.resize(kept.m_edge);
     m_places.resize(m_obstacles.meshCount());
     if (m_obstacles.meshCount() == 0) m_anyPosed = false;
-    const MeshFirsts end = m_obstacles.begin(m_obstacles.meshCount());
-    reserveRoom(m_obstaclePositions, 3 * std::size_t(end.m_vertex));
-    reserveRoom(m_vertexCones, end.m_vertex);
-    reserveRoom(m_edgeCones, end.m_edge);
+    const MeshOffsets end = m_obstacles.begin(m_obstacles.meshCount());
+    reserveGrowing(m_obstaclePositions, 3 * std::size_t(end.m_vertex));
+    reserveGrowing(m_vertexCones, end.m_vertex);
+    reserveGrowing(m_edgeCones, end.m_edge);
     const auto append = [](auto& all, const auto& own) { all.insert(all.end(), own.begin(), own.end()); };
     for (std::size_t slot = first; slot < m_obstacles.meshCount(); ++slot)
     {
@@ -215,10 +215,10 @@ void Scene::giveBackRoom()
 {
     m_cloths.giveBackRoom();
     m_obstacles.giveBackRoom();
-    dropRoom(m_clothRest);
-    dropRoom(m_obstaclePositions);
-    dropRoom(m_vertexCones);
-    dropRoom(m_edgeCones);
-    dropRoom(m_places);
+    shrinkSparse(m_clothRest);
+    shrinkSparse(m_obstaclePositions);
+    shrinkSparse(m_vertexCones);
+    shrinkSparse(m_edgeCones);
+    shrinkSparse(m_places);
 }
 }  // namespace drape

@@ -2,7 +2,7 @@
 //
 // Job: add, remove, deform and place meshes; join them. Output: the joined arrays, valid after join(), and revisions
 // that report their changes. Guarantee: a mesh keeps its id, and ids are not reused. Cost: in proportion to the meshes
-// that changed. Only this class writes its members; tests and warm-up steps fill them, too.
+// that changed. Only this class and its tests write the members.
 #pragma once
 
 #include <cstdint>
