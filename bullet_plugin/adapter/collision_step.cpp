@@ -6,7 +6,7 @@
 
 #include "bullet_plugin/adapter/stretch.h"
 #include "bullet_plugin/adapter/vectors.h"
-#include "bullet_plugin/core/scene/reserve_room.h"
+#include "bullet_plugin/core/scene/growing_arrays.h"
 
 namespace drape
 {
@@ -59,7 +59,7 @@ BodyContacts* CollisionStep::contactsOf(const btSoftBody& body)
 void CollisionStep::addBody(ClothMirror& cloth, btSoftBody* body)
 {
     // Reserves room for all, so that clear() allocates no memory.
-    reserveRoom(m_spare, m_bodies.size() + m_spare.size() + 1);
+    reserveGrowing(m_spare, m_bodies.size() + m_spare.size() + 1);
     if (m_spare.empty()) m_spare.emplace_back();
     m_bodies.push_back(std::move(m_spare.back()));
     m_spare.pop_back();
@@ -195,9 +195,9 @@ void CollisionStep::submit(Detection detection)
 
 // Takes the contacts of the current detection. If that holds bodies together, detects again and takes the new
 // contacts.
-void CollisionStep::receiveHeld()
+void CollisionStep::receiveHeld(Detection detection)
 {
-    receiveAll();
+    receiveAll(detection);
     if (!m_heldTogether) return;
     // Bodies that are examined again are not left out yet.
     StepStatistics& statistics = m_state.m_statistics;
@@ -205,8 +205,9 @@ void CollisionStep::receiveHeld()
     statistics.m_clothsLeftOut = std::size_t(std::count_if(m_bodies.begin(), m_bodies.end(), isLeftOut));
     if (statistics.m_clothsLeftOut == 0) statistics.m_status &= ~std::uint32_t(kStepClothsLeftOut);
     statistics.m_status |= kStepMotionHeldBack;
-    submit(Detection::Again);
-    receiveAll();
+    if (detection == Detection::First) detection = Detection::Again;
+    submit(detection);
+    receiveAll(detection);
     for (BodyContacts& body : m_bodies)
         body.m_heldTogether = false;
     m_heldTogether = false;
@@ -258,28 +259,12 @@ float CollisionStep::allowanceOf(MeshId cloth) const
 }
 
 // Waits for the current detection. Its contacts replace any earlier ones of this step.
-void CollisionStep::receiveAll()
+void CollisionStep::receiveAll(Detection detection)
 {
     for (BodyContacts& body : m_bodies)
         body.m_features.clear();
     const ContactList contacts = m_state.pipeline().finish([this](MeshId cloth) { return allowanceOf(cloth); });
-    const StepStatistics before = m_state.m_statistics;
-    StepStatistics& all = m_state.m_statistics;
-    all = m_state.pipeline().statistics();
-    all.m_status |= before.m_status;
-    all.m_clothsLeftOut = std::max(all.m_clothsLeftOut, before.m_clothsLeftOut);
-    all.m_invalidNodes = std::max(all.m_invalidNodes, before.m_invalidNodes);
-    all.m_retries += before.m_retries;
-    all.m_waitMs += before.m_waitMs;
-    all.m_refitMs += before.m_refitMs;
-    all.m_broadMs += before.m_broadMs;
-    all.m_narrowMs += before.m_narrowMs;
-    all.m_uploadMs = before.m_uploadMs;  // the solver's to measure, as these are
-    all.m_writeMs = before.m_writeMs;
-    all.m_finishMs = before.m_finishMs;
-    all.m_clothsSkipped = before.m_clothsSkipped;
-    all.m_startsIntersecting = before.m_startsIntersecting;
-    all.m_startIntersections = before.m_startIntersections;
+    addDetection(m_state.m_statistics, m_state.pipeline().statistics(), detection);
     markUnguarded();
     m_state.m_found.set(m_state.pipeline(), contacts);
     receive(contacts);
@@ -320,14 +305,12 @@ void CollisionStep::finish()
     m_state.m_statistics.m_startsIntersecting = m_starts.intersectingPairs();
     m_state.m_statistics.m_startIntersections = m_starts.intersections();
     if (m_starts.intersectingPairs() > 0) m_state.m_statistics.m_status |= kStepStartsIntersecting;
-    receiveHeld();
-    const std::size_t kept = m_state.m_statistics.m_obstaclesKept;
+    receiveHeld(Detection::First);
     for (int detections = 1; detections < kMostDetections && cutPaths(); ++detections)
     {
         submit(Detection::Again);
-        receiveHeld();
+        receiveHeld(Detection::Again);
     }
-    m_state.m_statistics.m_obstaclesKept = kept;  // not those that the step itself brought up to date
 }
 
 bool CollisionStep::cutStrayed(const std::vector<bool>& strayed, Cut cut)
@@ -368,11 +351,10 @@ void CollisionStep::checkStrayed()
     if (std::find(strayed.begin(), strayed.end(), true) == strayed.end()) return;
     // Keeps the reported contacts as the solver received them.
     m_state.m_found.keepList();
-    const StepStatistics before = m_state.m_statistics;
     for (int detections = 1;; ++detections)
     {
-        submit(Detection::Again);
-        receiveHeld();
+        submit(Detection::Check);
+        receiveHeld(Detection::Check);
         if (detections > kMostDetections)
         {
             reportPassed(strayed);
@@ -380,9 +362,5 @@ void CollisionStep::checkStrayed()
         }
         if (!cutStrayed(strayed, detections < kMostDetections ? Cut::EachNode : Cut::WholeBody)) break;
     }
-    m_state.m_statistics.m_contacts = before.m_contacts;
-    m_state.m_statistics.m_candidates = before.m_candidates;
-    m_state.m_statistics.m_obstaclesKept = before.m_obstaclesKept;
 }
-
 }  // namespace drape

@@ -14,6 +14,7 @@
 #include "bullet_plugin/adapter/impact_cut.h"
 #include "bullet_plugin/adapter/pair_starts.h"
 #include "bullet_plugin/adapter/plugin_state.h"
+#include "bullet_plugin/core/pipeline/add_detection.h"
 
 namespace drape
 {
@@ -68,16 +69,10 @@ private:
     void addPushes(BodyContacts& body);
     void markUnguarded();
     void leaveOut(std::size_t index);
-    enum class Detection
-    {
-        First,  // the step's first one
-        Again
-    };
-
     void uploadNodes(Detection detection);
     void submit(Detection detection);
-    void receiveAll();
-    void receiveHeld();
+    void receiveAll(Detection detection);
+    void receiveHeld(Detection detection);
     float allowanceOf(MeshId cloth) const;
     void receive(const ContactList& contacts);
     std::vector<StepContact> impactsOf(const BodyContacts& body) const;

@@ -99,7 +99,7 @@ StepContact FoundContacts::resolve(const btSoftBody& body, const NodePaths& path
 
 bool FoundContacts::planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane)
 {
-    return contact.m_kind == DRAPE_FACE_VERTEX && !(contact.m_time < 1) && Pipeline::planeAt(contact, nodes, plane);
+    return contact.m_kind == DRAPE_FACE_VERTEX && !(contact.m_time < 1) && drape::planeAt(contact, nodes, plane);
 }
 
 ContactInfo FoundContacts::infoOf(const Contact& contact) const

@@ -11,6 +11,7 @@
 #include "bullet_plugin/adapter/kinematic_motion.h"
 #include "bullet_plugin/adapter/node_paths.h"
 #include "bullet_plugin/adapter/step_contact.h"
+#include "bullet_plugin/core/pipeline/contact_plane.h"
 #include "bullet_plugin/core/pipeline/pipeline.h"
 #include "drape/plugin.h"
 

@@ -8,7 +8,7 @@
 #include "bullet_plugin/adapter/eligibility.h"
 #include "bullet_plugin/adapter/margins.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
-#include "bullet_plugin/core/scene/reserve_room.h"
+#include "bullet_plugin/core/scene/growing_arrays.h"
 #include "bullet_plugin/core/public_call.h"
 
 namespace drape
@@ -234,7 +234,7 @@ void PluginState::note(const void* owner, btSoftBody& cloth, const btCollisionOb
         m_notes[noted->second] = note;
         return;
     }
-    reserveRoom(m_notes, m_notes.size() + 1);
+    reserveGrowing(m_notes, m_notes.size() + 1);
     m_noteOf.emplace(owner, m_notes.size());
     m_notes.push_back(note);
 }

@@ -27,12 +27,12 @@ typedef struct Edge
 } Edge;
 
 // Offsets of a mesh's vertices, triangles and edges among those of its side, per slot.
-typedef struct MeshFirsts
+typedef struct MeshOffsets
 {
     DRAPE_UINT m_vertex;
     DRAPE_UINT m_triangle;
     DRAPE_UINT m_edge;
-} MeshFirsts;
+} MeshOffsets;
 
 // Directions in which a surface can face at a vertex or edge: all within the half-angle of the axis or of its opposite.
 // A cosine of -1 admits every direction (boundary, non-manifold or degenerate surroundings). The axis leans to the

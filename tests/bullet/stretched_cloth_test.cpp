@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bullet_plugin/adapter/stretch.h"
-#include "bullet_plugin/core/backends/ordinary_work.h"
+#include "bullet_plugin/core/backends/ordinary_tests.h"
 #include "scenes/random.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"

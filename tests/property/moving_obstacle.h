@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "bullet_plugin/core/scene/obstacle_placing.h"
+#include "bullet_plugin/core/scene/obstacle_poses.h"
 #include "tests/support/backends.h"
 #include "tests/support/cases.h"
 #include "tests/support/pipeline_driver.h"

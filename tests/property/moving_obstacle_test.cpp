@@ -115,7 +115,7 @@ TEST_P(MovingObstacleTest, ClothThatIsCarriedAlongPassesNothing)
     }
 }
 
-// Pipeline::planeAt() takes the contact's point for its vertex.
+// planeAt() takes the contact's point for its vertex.
 TEST_P(MovingObstacleTest, PointOfAVertexIsItsPlaceAtTheEnd)
 {
     Random random(915);

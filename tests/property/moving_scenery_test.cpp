@@ -70,11 +70,11 @@ std::vector<Contact> contactsOfAllPairs(const Scenery& scenery, float reachScale
     std::vector<ObstacleMotion> motions;
     for (std::uint32_t i = 0; i < 4; ++i)
     {
-        ObstaclePlacing placing;
-        placing.m_posed = true;
-        placing.m_start = scenery.m_cases[i].m_start.pose();
-        placing.m_end = scenery.m_cases[i].m_end.pose();
-        if (placing.moves()) motions.push_back(makeMotion(placing, MeshBox{{0, 0, 0}, {0, 0, 0}}, i));
+        ObstaclePoses poses;
+        poses.m_posed = true;
+        poses.m_start = scenery.m_cases[i].m_start.pose();
+        poses.m_end = scenery.m_cases[i].m_end.pose();
+        if (poses.moves()) motions.push_back(makeMotion(poses, MeshBox{{0, 0, 0}, {0, 0, 0}}, i));
     }
     std::vector<Candidate> pairs = allPairs(cloth, obstacle);
     pairs.erase(std::remove_if(pairs.begin(), pairs.end(),

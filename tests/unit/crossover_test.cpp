@@ -15,7 +15,8 @@
 #include "bullet_plugin/core/scene/topology.h"
 #include "bullet_plugin/core/backend_choice/backend_choice.h"
 #include "bullet_plugin/core/backend_choice/machine_load.h"
-#include "bullet_plugin/core/backend_choice/scene_work.h"
+#include "bullet_plugin/core/backend_choice/expected_pairs.h"
+#include "bullet_plugin/core/scene/topology.h"
 #include "scenes/cloth_grid.h"
 #include "scenes/shapes.h"
 #include "tests/support/environment.h"
@@ -142,22 +143,22 @@ TEST(BackendChoice, AGrowingSceneMovesOnceAndComesBackBelowHalf)
     EXPECT_FALSE(choice.active());
     choice.begin(1000);
     EXPECT_TRUE(choice.active());
-    EXPECT_TRUE(choice.isOnHost());
-    choice.note(1, 7, 600);
-    choice.note(1, 8, 900);  // the worst of one cloth's obstacles counts
-    EXPECT_EQ(choice.pairs(), 900);
-    EXPECT_TRUE(choice.isOnHost());
-    choice.note(2, 7, 200);
-    EXPECT_EQ(choice.pairs(), 1100);
-    EXPECT_FALSE(choice.isOnHost());
+    EXPECT_TRUE(choice.chooseHost());
+    choice.setWork(1, 7, 600);
+    choice.setWork(1, 8, 900);  // the worst of one cloth's obstacles counts
+    EXPECT_EQ(choice.work(), 900);
+    EXPECT_TRUE(choice.chooseHost());
+    choice.setWork(2, 7, 200);
+    EXPECT_EQ(choice.work(), 1100);
+    EXPECT_FALSE(choice.chooseHost());
     choice.forget(2);
-    EXPECT_FALSE(choice.isOnHost()) << "900 is below the crossover, but above its half";
+    EXPECT_FALSE(choice.chooseHost()) << "900 is below the crossover, but above its half";
     choice.forget(8);
-    EXPECT_FALSE(choice.isOnHost());
-    choice.note(1, 7, 499);
-    EXPECT_TRUE(choice.isOnHost());
-    choice.note(1, 7, 600);
-    EXPECT_TRUE(choice.isOnHost());
+    EXPECT_FALSE(choice.chooseHost());
+    choice.setWork(1, 7, 499);
+    EXPECT_TRUE(choice.chooseHost());
+    choice.setWork(1, 7, 600);
+    EXPECT_TRUE(choice.chooseHost());
     choice.end();
     EXPECT_FALSE(choice.active());
 }
@@ -166,13 +167,13 @@ TEST(BackendChoice, ZeroIsTheDeviceAndInfinityTheHost)
 {
     BackendChoice choice;
     choice.begin(0);
-    EXPECT_FALSE(choice.isOnHost());
-    choice.note(1, 2, 1);
+    EXPECT_FALSE(choice.chooseHost());
+    choice.setWork(1, 2, 1);
     choice.forget(1);
-    EXPECT_FALSE(choice.isOnHost());
+    EXPECT_FALSE(choice.chooseHost());
     choice.begin(kInfinity);
-    choice.note(1, 2, 1e30);
-    EXPECT_TRUE(choice.isOnHost());
+    choice.setWork(1, 2, 1e30);
+    EXPECT_TRUE(choice.chooseHost());
 }
 
 class CrossoverCacheTest : public testing::Test

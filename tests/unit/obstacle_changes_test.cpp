@@ -1,5 +1,5 @@
 // Finds the obstacles that a back end must update: new ones, and ones with other positions or another pose.
-#include "bullet_plugin/core/pipeline/obstacle_changes.h"
+#include "bullet_plugin/core/scene/obstacle_changes.h"
 
 #include <gtest/gtest.h>
 
@@ -27,17 +27,20 @@ protected:
     {
         m_scene.m_places[slot].m_posed = 1;
         m_scene.m_places[slot].m_pose[3] = shift;
-        ++m_scene.m_obstaclePlacing;
+        ++m_scene.m_posesRevision;
     }
-    void give(std::size_t slot) { m_scene.m_obstacles.mesh(slot).m_given = ++m_scene.m_obstacleMotion; }
-
-    // Returns a letter for each slot: given, placed, or nothing.
-    std::string taken(std::size_t fresh)
+    void reshape(std::size_t slot)
     {
-        m_changes.take(m_scene, fresh);
+        m_scene.m_obstacles.mesh(slot).m_positionsRevision = ++m_scene.m_positionsRevision;
+    }
+
+    // Returns a letter for each slot: reshaped, placed, or nothing.
+    std::string changed(std::size_t fresh)
+    {
+        m_changes.update(m_scene, fresh);
         std::string all;
         for (std::size_t slot = 0; slot < m_scene.m_places.size(); ++slot)
-            all += m_changes.given(slot) ? 'g' : m_changes.moved(slot) ? 'p' : '-';
+            all += m_changes.reshaped(slot) ? 'r' : m_changes.moved(slot) ? 'p' : '-';
         return all;
     }
 
@@ -46,31 +49,31 @@ protected:
 };
 }  // namespace
 
-TEST_F(ObstacleChangesTest, TellsWhatCameAndWhatMoved)
+TEST_F(ObstacleChangesTest, NewReshapedAndMovedObstaclesAreFound)
 {
-    EXPECT_EQ(taken(0), "gggg");
+    EXPECT_EQ(changed(0), "rrrr");
     EXPECT_FALSE(m_changes.any(m_scene));
-    EXPECT_EQ(taken(4), "----");
+    EXPECT_EQ(changed(4), "----");
     place(1, 0.5f);
-    give(3);
+    reshape(3);
     EXPECT_TRUE(m_changes.any(m_scene));
-    EXPECT_EQ(taken(4), "-p-g");
+    EXPECT_EQ(changed(4), "-p-r");
     EXPECT_FALSE(m_changes.any(m_scene));
     place(1, 0.5f);
-    EXPECT_TRUE(m_changes.any(m_scene)) << "it may have";
-    EXPECT_EQ(taken(4), "----") << "it has not";
-    give(0);
-    give(2);
-    EXPECT_EQ(taken(3), "g-gg");
+    EXPECT_TRUE(m_changes.any(m_scene)) << "it may have moved";
+    EXPECT_EQ(changed(4), "----") << "it has not moved";
+    reshape(0);
+    reshape(2);
+    EXPECT_EQ(changed(3), "r-rr");
 }
 
-TEST_F(ObstacleChangesTest, KnowsWhatItHasForgottenAsNew)
+TEST_F(ObstacleChangesTest, ForgottenObstaclesAreNew)
 {
     place(2, 1.0f);
-    EXPECT_EQ(taken(0), "gggg");
+    EXPECT_EQ(changed(0), "rrrr");
     m_changes.forget();
     EXPECT_TRUE(m_changes.any(m_scene));
-    EXPECT_EQ(taken(0), "gggg");
+    EXPECT_EQ(changed(0), "rrrr");
     EXPECT_EQ(m_changes.places()[2].m_pose[3], 1.0f);
 }
 }  // namespace drape::test

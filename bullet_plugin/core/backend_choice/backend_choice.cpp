@@ -13,28 +13,28 @@ constexpr double kReturnShare = 0.5;
 
 void BackendChoice::begin(double crossover)
 {
-    m_pairs.clear();
+    m_work.clear();
     m_crossover = crossover;
     m_active = true;
     m_onHost = crossover > 0;
 }
 
-void BackendChoice::note(MeshId cloth, MeshId obstacle, double pairs)
+void BackendChoice::setWork(MeshId cloth, MeshId obstacle, double pairs)
 {
-    m_pairs[cloth][obstacle] = pairs;
+    m_work[cloth][obstacle] = pairs;
 }
 
 void BackendChoice::forget(MeshId mesh)
 {
-    m_pairs.erase(mesh);
-    for (auto& cloth : m_pairs)
+    m_work.erase(mesh);
+    for (auto& cloth : m_work)
         cloth.second.erase(mesh);
 }
 
-double BackendChoice::pairs() const
+double BackendChoice::work() const
 {
     double sum = 0;
-    for (const auto& cloth : m_pairs)
+    for (const auto& cloth : m_work)
     {
         double most = 0;
         for (const auto& obstacle : cloth.second)
@@ -44,13 +44,13 @@ double BackendChoice::pairs() const
     return sum;
 }
 
-bool BackendChoice::isOnHost()
+bool BackendChoice::chooseHost()
 {
-    const double work = pairs();
+    const double now = work();
     if (m_onHost)
-        m_onHost = work <= m_crossover;
+        m_onHost = now <= m_crossover;
     else
-        m_onHost = work < kReturnShare * m_crossover;
+        m_onHost = now < kReturnShare * m_crossover;
     return m_onHost;
 }
 }  // namespace drape

@@ -19,7 +19,7 @@ namespace drape
 // One scene, timed on both: the least of some steps, host to host.
 struct CrossoverRung
 {
-    double m_pairs = 0;  // expected, see scene_work.h
+    double m_pairs = 0;  // expected, see expected_pairs.h
     double m_hostMs = 0;
     double m_deviceMs = 0;
 };

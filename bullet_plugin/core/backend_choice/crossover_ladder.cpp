@@ -5,10 +5,12 @@
 #include <cstring>
 #include <numeric>
 
-#include "bullet_plugin/core/scene/topology.h"
+#include "bullet_plugin/core/backends/device_backend.h"
+#include "bullet_plugin/core/backends/host_backend.h"
+#include "bullet_plugin/core/backends/step_input.h"
 #include "bullet_plugin/core/stopwatch.h"
+#include "expected_pairs.h"
 #include "machine_load.h"
-#include "scene_work.h"
 
 namespace drape
 {
@@ -83,118 +85,122 @@ void placeCloth(const Sheet& cloth, int step, float* out)
     }
 }
 
-class Rung
+constexpr const char* kFailed = "it failed";
+constexpr const char* kFull = "it cannot hold the lists of a step";
+constexpr const char* kDiffers = "its contacts differ from the host's";
+
+// The scene of one rung at a time, in memory that the device can copy fast.
+class Ladder
 {
 public:
-    Rung(Pipeline& pipeline, int cells, int fineness, float activation)
-        : m_pipeline(pipeline),
-          m_clothSheet(makeSheet(cells, cells * kCell, kGap)),
-          m_obstacleSheet(makeSheet(sheetCells(cells, fineness), sheetCells(cells, fineness) * kCell / fineness, 0)),
-          m_cloth(pipeline.addCloth(m_clothSheet.describe())),
-          m_obstacle(pipeline.addObstacle(m_obstacleSheet.describe())),
-          m_expectedPairs(expectedPairs(surfaceOf(m_clothSheet), surfaceOf(m_obstacleSheet),
-                                        double(kThickness) * (1 + double(activation))))
-    {
-    }
-    ~Rung()
-    {
-        m_pipeline.remove(m_cloth);
-        m_pipeline.remove(m_obstacle);
-    }
-    Rung(const Rung&) = delete;
-    Rung& operator=(const Rung&) = delete;
+    explicit Ladder(const LadderBackends& backends) : m_backends(backends) {}
 
-    double expected() const { return m_expectedPairs; }
-
-    // ms, host to host.
-    double run(int step, std::vector<Contact>& contacts)
+    // Returns null, or why the device cannot be measured. spread: gets two values, see leastMs().
+    const char* measure(int cells, int fineness, CrossoverRung& rung, std::vector<double>& spread)
     {
-        placeCloth(m_clothSheet, step, m_pipeline.clothStart(m_cloth));
-        placeCloth(m_clothSheet, step + 1, m_pipeline.clothEnd(m_cloth));
-        m_pipeline.addPair(m_cloth, m_obstacle, kThickness);
+        const int sheetCells = (cells + int(std::ceil(2 * kMargin / kCell))) * fineness;
+        m_sheet = makeSheet(cells, cells * kCell, kGap);
+        m_cloth = m_scene.addCloth(m_sheet.describe());
+        m_obstacle = m_scene.addObstacle(makeSheet(sheetCells, sheetCells * kCell / fineness, 0).describe());
+        rung.m_pairs = expectedPairs(surfaceOf(m_scene.m_cloths.existing(m_cloth)),
+                                     surfaceOf(m_scene.m_obstacles.existing(m_obstacle)),
+                                     double(kThickness) * (1 + double(m_backends.m_settings.m_activation)));
+        m_scene.join(&m_backends.m_device.device());
+        rung.m_hostMs = leastMs(true, spread);
+        runStep(true, 0);
+        const std::vector<Contact> onHost = contacts();
+        rung.m_deviceMs = leastMs(false, spread);
+        runStep(false, 0);
+        const std::vector<Contact> onDevice = contacts();
+        m_scene.remove(m_cloth);
+        m_scene.remove(m_obstacle);
+        if (m_why) return m_why;
+        const bool same =
+            onHost.size() == onDevice.size() &&
+            (onHost.empty() || std::memcmp(onHost.data(), onDevice.data(), onHost.size() * sizeof(Contact)) == 0);
+        return same ? nullptr : kDiffers;
+    }
+
+private:
+    static Surface surfaceOf(const PooledMesh& mesh) { return {mesh.m_topology.m_triangles.size(), mesh.m_area}; }
+
+    // Returns the step's time, host to host, ms.
+    double runStep(bool onHost, int step)
+    {
+        const std::size_t first = 3 * std::size_t(m_scene.m_cloths.existing(m_cloth).m_firstVertex);
+        placeCloth(m_sheet, step, m_scene.m_clothNodes.start() + first);
+        placeCloth(m_sheet, step + 1, m_scene.m_clothNodes.end() + first);
+        m_input.addPair({m_cloth, m_obstacle, kThickness});
+        StepStatistics statistics;
         Stopwatch watch;
-        m_pipeline.submit();
-        const ContactList found = m_pipeline.finish();
-        const double ms = watch.lapMs();
-        contacts.assign(found.begin(), found.end());
-        return ms;
+        m_input.collect(m_scene, m_backends.m_settings.m_activation, m_pairs, statistics);
+        if (onHost)
+        {
+            m_backends.m_host.run(m_scene, m_pairs, m_result, statistics);
+        }
+        else
+        {
+            m_backends.m_device.submit(m_scene, m_pairs);
+            if (!m_backends.m_device.finish(m_scene, m_pairs, m_result, statistics))
+                m_why = m_backends.m_device.device().failed() ? kFailed : kFull;
+        }
+        return watch.lapMs();
     }
 
     // spread: gets the logarithm of the ratio of the median to the shortest step.
-    double leastMs(std::vector<double>& spread)
+    double leastMs(bool onHost, std::vector<double>& spread)
     {
-        std::vector<Contact> contacts;
         std::vector<double> times;
         double sum = 0;
         for (int step = 0; step < kWarmUpSteps; ++step)
-            run(step, contacts);
+            runStep(onHost, step);
         for (int i = 0; i < kMostSteps && (i < kFewestSteps || sum < kStepsMs); ++i)
         {
-            const double ms = run(kWarmUpSteps + i, contacts);
-            times.push_back(ms);
-            sum += ms;
+            times.push_back(runStep(onHost, kWarmUpSteps + i));
+            sum += times.back();
         }
         std::sort(times.begin(), times.end());
         spread.push_back(std::log(times[times.size() / 2] / times[0]));
         return times[0];
     }
 
-private:
-    static int sheetCells(int cells, int fineness) { return (cells + int(std::ceil(2 * kMargin / kCell))) * fineness; }
-    static Surface surfaceOf(const Sheet& sheet)
+    std::vector<Contact> contacts() const
     {
-        const Topology topology =
-            buildTopology(sheet.m_triangles.data(), sheet.m_triangles.size() / 3, sheet.m_positions.size() / 3);
-        return {topology.m_triangles.size(), surfaceArea(topology.m_triangles, sheet.m_positions.data())};
+        const ContactList found = m_result.contacts();
+        return {found.begin(), found.end()};
     }
 
-    Pipeline& m_pipeline;
-    Sheet m_clothSheet, m_obstacleSheet;
-    MeshId m_cloth, m_obstacle;
-    double m_expectedPairs;
+    const LadderBackends m_backends;
+    Scene m_scene;
+    StepInput m_input;
+    StepPairs m_pairs;
+    StepResult m_result;
+    Sheet m_sheet;
+    MeshId m_cloth = kNoMesh, m_obstacle = kNoMesh;
+    const char* m_why = nullptr;  // the device failed a step
 };
-
-// Returns null, or why the device cannot be measured.
-const char* measureRung(Pipeline& pipeline, Rung& scene, const std::function<void(bool)>& use, CrossoverRung& rung,
-                        std::vector<double>& spread)
-{
-    std::vector<Contact> host, device;
-    rung.m_pairs = scene.expected();
-    use(true);
-    rung.m_hostMs = scene.leastMs(spread);
-    scene.run(0, host);
-    use(false);
-    rung.m_deviceMs = scene.leastMs(spread);
-    scene.run(0, device);
-    const std::uint32_t status = pipeline.statistics().m_status;
-    if (status & kStepDeviceFailed) return "it failed";
-    if (status & kStepDeviceFull) return "it cannot hold the lists of a step";
-    const bool same = host.size() == device.size() &&
-                      (host.empty() || std::memcmp(host.data(), device.data(), host.size() * sizeof(Contact)) == 0);
-    return same ? nullptr : "its contacts differ from the host's";
-}
 }  // namespace
 
-const char* measureLadder(Pipeline& pipeline, float activation, const std::function<void(bool onHost)>& use,
-                          std::vector<CrossoverRung>& rungs, bool& busy)
+const char* measureLadder(const LadderBackends& backends, std::vector<CrossoverRung>& rungs, bool& busy)
 {
     const MachineLoad load;
+    Ladder ladder(backends);
+    const WaitAtEnd wait(backends.m_device.device());  // it reads the ladder's memory
     std::vector<double> spread;
     for (const int fineness : kFineness)
     {
         int ahead = 0;
         for (const int cells : kClothCells)
         {
-            Rung scene(pipeline, cells, fineness, activation);
             CrossoverRung rung;
-            if (const char* const why = measureRung(pipeline, scene, use, rung, spread)) return why;
+            if (const char* const why = ladder.measure(cells, fineness, rung, spread)) return why;
             rungs.push_back(rung);
             ahead = rung.m_hostMs > kAhead * rung.m_deviceMs ? ahead + 1 : 0;
             if (ahead == 2 || rung.m_hostMs > kLongestStepMs) break;
         }
     }
     const double sum = std::accumulate(spread.begin(), spread.end(), 0.0);
-    busy = sum > std::log(kMostSpread) * double(spread.size()) || load.isBusy(pipeline.threads()->size());
+    busy = sum > std::log(kMostSpread) * double(spread.size()) || load.isBusy(backends.m_threads);
     return nullptr;
 }
 }  // namespace drape

@@ -24,7 +24,7 @@ bool isBusyBetween(const CoreTimes& first, const CoreTimes& last, double ownSeco
 class MachineLoad
 {
 public:
-    // Looks from now on.
+    // Starts the measurement.
     MachineLoad();
 
     // Returns whether the machine was busy since then; see isBusyBetween().

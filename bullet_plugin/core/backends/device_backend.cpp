@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "warm_up_step.h"
+#include "step_limits.h"
+#include "warm_up_scene.h"
 
 namespace drape
 {
@@ -75,10 +76,11 @@ void DeviceBackend::warmUp(float selfThickness)
     forgetScene();
     Scene scene;
     StepPairs pairs;
-    makeWarmUpStep(scene, pairs, selfThickness);
+    makeWarmUpScene(scene, pairs, selfThickness);
     StepResult result;
+    StepStatistics statistics;
     submit(scene, pairs);
-    finish(scene, pairs, result);
+    finish(scene, pairs, result, statistics);
     m_device->wait();
     forgetScene();
     m_sentThickness.clear();

@@ -9,8 +9,10 @@
 #include "bullet_plugin/core/device/program_set.h"
 #include "bullet_plugin/core/cloth_cloth/self_contacts.h"
 #include "drape/settings.h"
+#include "bullet_plugin/core/narrow_phase/narrow_phase.h"
 #include "placed_obstacles.h"
-#include "step.h"
+#include "step_pairs.h"
+#include "step_result.h"
 
 namespace drape
 {
@@ -38,8 +40,9 @@ public:
     // first nodes that are uploaded already.
     void submit(const Scene& scene, const StepPairs& pairs, std::size_t sent = 0);
     // Waits. Returns false if the device failed or has no room for the step (then limitReached()). The result says
-    // whether the step exceeded the settings' limits.
-    bool finish(const Scene& scene, const StepPairs& pairs, StepResult& result);
+    // whether the step exceeded the settings' limits; if not, its counts are written to the statistics. Retries are
+    // added.
+    bool finish(const Scene& scene, const StepPairs& pairs, StepResult& result, StepStatistics& statistics);
     bool limitReached() const { return m_limitReached; }
 
 private:

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "device_backend.h"
+#include "step_limits.h"
 
 namespace drape
 {
@@ -103,7 +104,7 @@ bool DeviceBackend::grow()
     return again;
 }
 
-bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResult& result)
+bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResult& result, StepStatistics& statistics)
 {
     result = StepResult();
     m_device->wait();
@@ -115,26 +116,21 @@ bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResul
         const bool grown = grow();
         if (!grown && !skipped) break;
         if (m_limitReached) return false;
-        if (grown) ++result.m_retries;
+        if (grown) ++statistics.m_retries;
         takeCounts(countersRead());
         enqueueStep(scene, pairs);
         m_device->wait();
     }
     if (m_device->failed()) return false;
+    takeCounts(countersRead());
+    writeCounts(countersRead(), statistics);
     readAll(result);
     return !m_device->failed();
 }
 
 void DeviceBackend::readAll(StepResult& result)
 {
-    const StepCounters counters = countersRead();
-    takeCounts(counters);
-    result.m_candidates = counters.m_candidates;
-    result.m_sweptTests = counters.m_swept;
-    result.m_selfCandidates = counters.m_selfTests;
-    result.m_selfSweptTests = counters.m_selfSwept;
-    result.m_invalidNodes = counters.m_invalidNodes;
-    const std::size_t count = counters.m_contactsStored;
+    const std::size_t count = countersRead().m_contactsStored;
     if (count > m_contactsAsked)
     {
         m_contactsRead->reserve(m_device.get(), DRAPE_CONTACT_HEAD + withHeadroom(count));

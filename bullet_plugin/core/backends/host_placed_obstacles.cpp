@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bullet_plugin/core/scene/reserve_room.h"
+#include "bullet_plugin/core/scene/growing_arrays.h"
 
 namespace drape
 {
@@ -14,21 +14,21 @@ void HostPlacedObstacles::update(const Scene& scene, std::size_t fresh)
         m_vertexCones = m_edgeCones = std::vector<NormalCone>();
     }
     const bool placesBegin = scene.m_anyPosed && m_positions.empty();
-    m_changes.take(scene, placesBegin ? 0 : fresh);
+    m_changes.update(scene, placesBegin ? 0 : fresh);
     if (scene.m_anyPosed) place(scene);
 }
 
 // Places obstacles exactly as kernels/scene/place_obstacles.cl does.
 void HostPlacedObstacles::place(const Scene& scene)
 {
-    resizeWithRoom(m_positions, scene.m_obstaclePositions.size());
-    resizeWithRoom(m_vertexCones, scene.m_vertexCones.size());
-    resizeWithRoom(m_edgeCones, scene.m_edgeCones.size());
+    resizeGrowing(m_positions, scene.m_obstaclePositions.size());
+    resizeGrowing(m_vertexCones, scene.m_vertexCones.size());
+    resizeGrowing(m_edgeCones, scene.m_edgeCones.size());
     for (std::size_t slot = 0; slot < scene.m_places.size(); ++slot)
     {
         if (!moved(slot)) continue;
         const ObstaclePlace* at = &scene.m_places[slot];
-        const MeshFirsts first = scene.m_obstacles.begin(slot), last = scene.m_obstacles.begin(slot + 1);
+        const MeshOffsets first = scene.m_obstacles.begin(slot), last = scene.m_obstacles.begin(slot + 1);
         for (std::uint32_t vertex = first.m_vertex; vertex < last.m_vertex; ++vertex)
         {
             const Vec3 p = placedPosition(at, vec3Load(scene.m_obstaclePositions.data(), vertex));

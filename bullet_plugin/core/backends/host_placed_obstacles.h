@@ -3,8 +3,9 @@
 
 #include <vector>
 
-#include "bullet_plugin/core/scene/reserve_room.h"
-#include "bullet_plugin/core/pipeline/obstacle_changes.h"
+#include "bullet_plugin/core/scene/growing_arrays.h"
+#include "bullet_plugin/core/scene/obstacle_changes.h"
+#include "kernels/lib/pair_contact.h"
 
 namespace drape
 {
@@ -20,9 +21,9 @@ public:
 
     void giveBackRoom()
     {
-        dropRoom(m_positions);
-        dropRoom(m_vertexCones);
-        dropRoom(m_edgeCones);
+        shrinkSparse(m_positions);
+        shrinkSparse(m_vertexCones);
+        shrinkSparse(m_edgeCones);
     }
 
     ObstacleView view(const Scene& scene) const;

@@ -44,8 +44,8 @@ void PlacedObstacles::forget()
 
 void PlacedObstacles::reserve(Device& device, const Scene& scene, std::size_t fresh)
 {
-    const MeshFirsts end = scene.m_obstacles.begin(scene.m_obstacles.meshCount());
-    const MeshFirsts kept = scene.m_obstacles.begin(fresh);
+    const MeshOffsets end = scene.m_obstacles.begin(scene.m_obstacles.meshCount());
+    const MeshOffsets kept = scene.m_obstacles.begin(fresh);
     const bool begins = scene.m_anyPosed && !m_anyPosed;
     m_anyPosed = scene.m_anyPosed;
     const auto extend = [&](auto& world, auto& own, std::size_t count, std::size_t keptCount)
@@ -66,7 +66,7 @@ void PlacedObstacles::reserve(Device& device, const Scene& scene, std::size_t fr
 void PlacedObstacles::upload(Device& device, const Scene& scene, SlotRange slots)
 {
     const bool own = scene.m_anyPosed;
-    const MeshFirsts first = scene.m_obstacles.begin(slots.m_first), last = scene.m_obstacles.begin(slots.m_last);
+    const MeshOffsets first = scene.m_obstacles.begin(slots.m_first), last = scene.m_obstacles.begin(slots.m_last);
     (own ? m_ownPositions : m_positions)
         .write(device, scene.m_obstaclePositions.data() + 3 * std::size_t(first.m_vertex),
                3 * std::size_t(last.m_vertex - first.m_vertex), 3 * std::size_t(first.m_vertex));
@@ -78,7 +78,7 @@ void PlacedObstacles::upload(Device& device, const Scene& scene, SlotRange slots
 
 void PlacedObstacles::enqueuePlacing(Device& device, const Scene& scene, SlotRange slots)
 {
-    const MeshFirsts first = scene.m_obstacles.begin(slots.m_first), last = scene.m_obstacles.begin(slots.m_last);
+    const MeshOffsets first = scene.m_obstacles.begin(slots.m_first), last = scene.m_obstacles.begin(slots.m_last);
     m_place.launch(device, last.m_vertex - first.m_vertex + last.m_edge - first.m_edge, kPlaceGroup, m_places.handle(),
                    cl_uint(scene.m_places.size()), first.m_vertex, last.m_vertex - first.m_vertex, first.m_edge,
                    last.m_edge - first.m_edge, m_ownPositions.handle(), m_ownVertexCones.handle(),
@@ -88,9 +88,9 @@ void PlacedObstacles::enqueuePlacing(Device& device, const Scene& scene, SlotRan
 std::vector<SlotRange> PlacedObstacles::update(Device& device, const Scene& scene, std::size_t fresh)
 {
     const MeshPool& obstacles = scene.m_obstacles;
-    m_changes.take(scene, fresh);
+    m_changes.update(scene, fresh);
     reserve(device, scene, fresh);
-    for (const SlotRange& run : runsOf(device, obstacles, [&](std::size_t slot) { return m_changes.given(slot); }))
+    for (const SlotRange& run : runsOf(device, obstacles, [&](std::size_t slot) { return m_changes.reshaped(slot); }))
         upload(device, scene, run);
     const std::vector<SlotRange> runs =
         runsOf(device, obstacles, [&](std::size_t slot) { return m_changes.moved(slot); });

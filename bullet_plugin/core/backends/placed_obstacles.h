@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bullet_plugin/core/device/program.h"
-#include "bullet_plugin/core/pipeline/obstacle_changes.h"
+#include "bullet_plugin/core/scene/obstacle_changes.h"
 
 namespace drape
 {

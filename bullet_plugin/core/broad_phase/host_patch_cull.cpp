@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bullet_plugin/core/scene/reserve_room.h"
+#include "bullet_plugin/core/scene/growing_arrays.h"
 
 namespace drape
 {
@@ -23,15 +23,15 @@ void HostPatchCull::setTopology(const MeshPool& obstacles, std::size_t firstSlot
         appendPatches(m_layout, obstacles, slot, obstacles.mesh(slot).m_positions.data(), kWidth);
     makeLevels(m_layout, kWidth);
     m_levelsMoved = true;
-    resizeWithRoom(m_faces, m_layout.m_faceOwners.size() * DRAPE_FACE_FLOATS);
-    resizeWithRoom(m_vertices, m_layout.m_vertexOwners.size() * DRAPE_VERTEX_FLOATS);
-    resizeWithRoom(m_edges, m_layout.m_edgeOwners.size() * DRAPE_EDGE_FLOATS);
-    resizeWithRoom(m_vertexIds, m_layout.m_vertexOwners.size());
-    resizeWithRoom(m_edgeIds, m_layout.m_edgeOwners.size());
-    resizeWithRoom(m_sizes, m_layout.m_patches.size());
+    resizeGrowing(m_faces, m_layout.m_faceOwners.size() * DRAPE_FACE_FLOATS);
+    resizeGrowing(m_vertices, m_layout.m_vertexOwners.size() * DRAPE_VERTEX_FLOATS);
+    resizeGrowing(m_edges, m_layout.m_edgeOwners.size() * DRAPE_EDGE_FLOATS);
+    resizeGrowing(m_vertexIds, m_layout.m_vertexOwners.size());
+    resizeGrowing(m_edgeIds, m_layout.m_edgeOwners.size());
+    resizeGrowing(m_sizes, m_layout.m_patches.size());
     // A vector of lanes is loaded from it; some of them lie behind the last patch's.
-    resizeWithRoom(m_volumes, m_layout.m_patches.size() * DRAPE_WIDE_NODE_FLOATS + kWidth);
-    resizeWithRoom(m_wideNodes, std::size_t(m_layout.m_levels.back()) * DRAPE_WIDE_NODE_FLOATS * kWidth);
+    resizeGrowing(m_volumes, m_layout.m_patches.size() * DRAPE_WIDE_NODE_FLOATS + kWidth);
+    resizeGrowing(m_wideNodes, std::size_t(m_layout.m_levels.back()) * DRAPE_WIDE_NODE_FLOATS * kWidth);
 }
 
 void HostPatchCull::pack(SlotRange slots, const ObstacleView& obstacle)
@@ -67,11 +67,11 @@ void HostPatchCull::packFeatures(ItemRange patches, const ObstacleView& obstacle
 void HostPatchCull::giveBackRoom()
 {
     for (std::vector<float>* floats : {&m_faces, &m_vertices, &m_edges, &m_sizes, &m_volumes, &m_wideNodes})
-        dropRoom(*floats);
+        shrinkSparse(*floats);
     for (std::vector<std::uint32_t>* ids : {&m_vertexIds, &m_edgeIds, &m_layout.m_faceOwners, &m_layout.m_faceFeatures,
                                             &m_layout.m_vertexOwners, &m_layout.m_edgeOwners})
-        dropRoom(*ids);
-    dropRoom(m_layout.m_patches);
+        shrinkSparse(*ids);
+    shrinkSparse(m_layout.m_patches);
     m_tests = std::vector<FeatureTest>();
 }
 

@@ -7,7 +7,7 @@
 
 #include "bullet_plugin/core/ordering/canonical_order.h"
 #include "bullet_plugin/core/cpu/cpu_kernels.h"
-#include "bullet_plugin/core/scene/reserve_room.h"
+#include "bullet_plugin/core/scene/growing_arrays.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 
 namespace drape
@@ -30,7 +30,7 @@ public:
                      StepCounters& counters)
     {
         if (m_hits.empty()) m_hits.resize(kFirstHits);
-        if (m_swept.size() < features.m_count) resizeWithRoom(m_swept, features.m_count);
+        if (m_swept.size() < features.m_count) resizeGrowing(m_swept, features.m_count);
         const auto fill = [&]() -> std::size_t
         {
             m_slotCount.assign(slots, 0);

@@ -1,5 +1,5 @@
-// Computes where a face is nearest to its contact's vertex once the cloth's nodes have moved.
-#include "bullet_plugin/core/pipeline/pipeline.h"
+#include "contact_plane.h"
+
 #include "kernels/lib/feature_contact.h"
 
 namespace drape
@@ -50,7 +50,7 @@ bool directionOf(const Nearest& nearest, Vec3 before, Vec3& direction)
 }
 }  // namespace
 
-bool Pipeline::planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane)
+bool planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane)
 {
     const Vec3 origin = vec3Load(contact.m_point, 0);  // the vertex, at the step's end
     const auto node = [&](int k) { return vec3Sub(vec3(nodes[k][0], nodes[k][1], nodes[k][2]), origin); };

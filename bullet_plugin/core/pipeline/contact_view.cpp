@@ -1,7 +1,9 @@
-// Resolves contacts from indices over all meshes to meshes, nodes and triangles in the caller's numbering.
+#include "contact_view.h"
+
 #include <algorithm>
 
-#include "implementation.h"
+#include "bullet_plugin/core/backends/step_pairs.h"
+#include "bullet_plugin/core/scene/scene.h"
 #include "kernels/lib/segment.h"
 
 namespace drape
@@ -59,19 +61,16 @@ std::size_t obstacleSlot(const MeshPool& obstacles, const Contact& contact)
     return obstacles.slotOfEdge(contact.m_obstacleFeature);
 }
 
-ClothFeature Pipeline::clothFeature(const Contact& contact) const
+ClothFeature clothFeatureOf(const MeshPool& cloths, const Contact& contact)
 {
-    const MeshPool& cloths = m_implementation->m_scene.m_cloths;
     const PooledFeature feature = pooledFeature(cloths, contact);
     const PooledMesh& cloth = cloths.mesh(feature.m_slot);
     return ClothFeature{cloth.m_id, {nodeOf(feature, cloth, 0), nodeOf(feature, cloth, 1), nodeOf(feature, cloth, 2)}};
 }
 
-ContactView Pipeline::view(const Contact& contact) const
+ContactView viewContact(const Scene& scene, const StepPairs& pairs, const Contact& contact)
 {
-    const Implementation& self = *m_implementation;
-    const MeshPool& cloths = self.m_scene.m_cloths;
-    const MeshPool& obstacles = self.m_scene.m_obstacles;
+    const MeshPool &cloths = scene.m_cloths, &obstacles = scene.m_obstacles;
     const PooledFeature feature = pooledFeature(cloths, contact);
     const std::size_t obstacle = obstacleSlot(obstacles, contact);
     const PooledMesh& cloth = cloths.mesh(feature.m_slot);
@@ -90,15 +89,14 @@ ContactView Pipeline::view(const Contact& contact) const
     view.m_gap0 = contact.m_gap0;
     view.m_gap1 = contact.m_gap1;
     view.m_time = contact.m_time;
-    view.m_thickness = self.m_stepPairs.thickness(feature.m_slot, obstacle);
+    view.m_thickness = pairs.thickness(feature.m_slot, obstacle);
     return view;
 }
 
-SelfContactView Pipeline::viewSelf(const Contact& contact) const
+SelfContactView viewSelfContact(const Scene& scene, const Contact& contact)
 {
-    const Implementation& self = *m_implementation;
-    const MeshPool& cloths = self.m_scene.m_cloths;
-    const float* rest = self.m_scene.m_clothRest.data();
+    const MeshPool& cloths = scene.m_cloths;
+    const float* rest = scene.m_clothRest.data();
     const bool edges = contact.m_kind == DRAPE_SELF_EDGE_EDGE;
     const std::size_t slot =
         edges ? cloths.slotOfEdge(contact.m_clothFeature) : cloths.slotOfVertex(contact.m_clothFeature);

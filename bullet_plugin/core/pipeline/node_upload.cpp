@@ -1,8 +1,9 @@
-// Nodes of the coming step: the memory that callers write, and the transfer to a device while others are written.
+#include "node_upload.h"
+
 #include <algorithm>
 #include <cassert>
 
-#include "implementation.h"
+#include "bullet_plugin/core/backends/device_backend.h"
 
 namespace drape
 {
@@ -14,107 +15,76 @@ constexpr std::size_t kNodesTogether = 1 << 17;
 // Nodes that one thread writes per turn, and the minimum number of nodes for waking threads.
 constexpr std::size_t kNodesAlone = 1 << 11;
 constexpr std::size_t kLeastShared = 1 << 14;
-}  // namespace
 
-void Pipeline::Implementation::forgetNodes()
-{
-    if (m_nodesSent > 0) m_deviceBackend->device().wait();
-    m_nodesWritten = m_nodesSent = 0;
-}
-
-// Nobody writes those.
-void Pipeline::Implementation::passVacantNodes(std::size_t last)
-{
-    const MeshPool& cloths = m_scene.m_cloths;
-    while (m_nodesWritten < last)
-    {
-        const std::size_t slot = cloths.slotOfVertex(std::uint32_t(m_nodesWritten));
-        if (!cloths.mesh(slot).m_vacant) return;
-        m_nodesWritten = cloths.begin(slot + 1).m_vertex;
-    }
-}
-
-std::vector<NodeStretch> Pipeline::Implementation::stretchesOf(const std::vector<MeshId>& ids)
+std::vector<NodeStretch> stretchesOf(Scene& scene, const std::vector<MeshId>& ids)
 {
     std::vector<NodeStretch> stretches;
     for (std::size_t i = 0; i < ids.size(); ++i)
     {
-        const PooledMesh& mesh = m_scene.m_cloths.mesh(slotOf(m_scene.m_cloths, ids[i]));
+        const PooledMesh& mesh = scene.m_cloths.existing(ids[i]);
         const std::size_t nodes = mesh.m_positions.size() / 3;
         for (std::size_t first = 0; first < nodes; first += kNodesAlone)
         {
             const std::size_t at = 3 * (mesh.m_firstVertex + first);
             stretches.push_back(NodeStretch{i, first, std::min(kNodesAlone, nodes - first),
-                                            m_scene.m_clothNodes.start() + at, m_scene.m_clothNodes.end() + at});
+                                            scene.m_clothNodes.start() + at, scene.m_clothNodes.end() + at});
         }
     }
     return stretches;
 }
+}  // namespace
 
-float* Pipeline::clothStart(MeshId id)
+void NodeUpload::forget()
 {
-    m_implementation->joinScene();
-    Scene& scene = m_implementation->m_scene;
-    return scene.m_clothNodes.start() + 3 * std::size_t(scene.m_cloths.mesh(slotOf(scene.m_cloths, id)).m_firstVertex);
+    if (m_device) m_device->wait();
+    passToStep();
 }
 
-float* Pipeline::clothEnd(MeshId id)
+void NodeUpload::passToStep()
 {
-    m_implementation->joinScene();
-    Scene& scene = m_implementation->m_scene;
-    return scene.m_clothNodes.end() + 3 * std::size_t(scene.m_cloths.mesh(slotOf(scene.m_cloths, id)).m_firstVertex);
+    m_device = nullptr;
+    m_written = m_sent = 0;
 }
 
-void Pipeline::nodesWritten(MeshId id, std::size_t count)
+void NodeUpload::skipVacantNodes(const MeshPool& cloths, std::size_t last)
 {
-    Implementation& self = *m_implementation;
-    if (self.m_report.m_onHost) return;
-    self.joinScene();
-    const MeshPool& cloths = self.m_scene.m_cloths;
-    const std::size_t first = cloths.mesh(slotOf(cloths, id)).m_firstVertex;
+    while (m_written < last)
+    {
+        const std::size_t slot = cloths.slotOfVertex(std::uint32_t(m_written));
+        if (!cloths.mesh(slot).m_vacant) return;
+        m_written = cloths.begin(slot + 1).m_vertex;
+    }
+}
+
+void NodeUpload::declare(const Scene& scene, MeshId cloth, std::size_t count, DeviceBackend* device)
+{
+    if (!device) return;
+    const MeshPool& cloths = scene.m_cloths;
+    const std::size_t first = cloths.existing(cloth).m_firstVertex;
     assert(first + count <= cloths.vertexCount());
-    self.passVacantNodes(first);
-    if (first > self.m_nodesWritten) return;
-    self.m_nodesWritten = std::max(self.m_nodesWritten, first + count);
-    const std::size_t unsent = self.m_nodesWritten - self.m_nodesSent;
-    if (unsent >= kNodesTogether && self.m_deviceBackend->sendNodes(self.m_scene, self.m_nodesSent, unsent))
-        self.m_nodesSent = self.m_nodesWritten;
+    skipVacantNodes(cloths, first);
+    if (first > m_written) return;
+    m_written = std::max(m_written, first + count);
+    const std::size_t unsent = m_written - m_sent;
+    if (unsent < kNodesTogether || !device->sendNodes(scene, m_sent, unsent)) return;
+    m_device = &device->device();
+    m_sent = m_written;
 }
 
-void Pipeline::writeNodes(const std::vector<MeshId>& ids, const std::function<void(const NodeStretch&)>& write)
+void NodeUpload::write(Scene& scene, const std::vector<MeshId>& cloths, const Write& write, DeviceBackend* device,
+                       ThreadTeam& threads)
 {
-    Implementation& self = *m_implementation;
-    self.joinScene();
-    const std::vector<NodeStretch> stretches = self.stretchesOf(ids);
+    const bool onGpu = device && device->device().isGpu();
+    const std::vector<NodeStretch> stretches = stretchesOf(scene, cloths);
     for (std::size_t first = 0, last; first < stretches.size(); first = last)
     {
         std::size_t nodes = 0;
         for (last = first; last < stretches.size() && nodes < kNodesTogether; ++last)
             nodes += stretches[last].m_count;
-        const auto writeOne = [&](std::size_t i) { write(stretches[first + i]); };
-        if (nodes >= kLeastShared && self.runsOnGpu())
-            self.m_threads->run(last - first, writeOne);
-        else
-            for (std::size_t i = 0; i < last - first; ++i)
-                writeOne(i);
+        runShared(threads, onGpu && nodes >= kLeastShared, last - first,
+                  [&](std::size_t i) { write(stretches[first + i]); });
         for (std::size_t i = first; i < last; ++i)
-            nodesWritten(ids[stretches[i].m_cloth], stretches[i].m_first + stretches[i].m_count);
+            declare(scene, cloths[stretches[i].m_cloth], stretches[i].m_first + stretches[i].m_count, device);
     }
-}
-
-void Pipeline::copyNodes(const std::vector<MeshId>& ids, const float* start, const float* end)
-{
-    const MeshPool& cloths = m_implementation->m_scene.m_cloths;
-    m_implementation->joinScene();
-    std::vector<std::size_t> firsts(1, 0);
-    for (const MeshId id : ids)
-        firsts.push_back(firsts.back() + cloths.mesh(slotOf(cloths, id)).m_positions.size());
-    writeNodes(ids,
-               [&](const NodeStretch& stretch)
-               {
-                   const std::size_t from = firsts[stretch.m_cloth] + 3 * stretch.m_first;
-                   std::copy_n(start + from, 3 * stretch.m_count, stretch.m_start);
-                   std::copy_n(end + from, 3 * stretch.m_count, stretch.m_end);
-               });
 }
 }  // namespace drape

@@ -1,10 +1,10 @@
 // The collision pipeline mirrors cloths and obstacles, and finds their contacts once a step on the chosen back end.
 //
-// Job: keep every cloth and obstacle; each step refit (of the traversed hierarchies), broad phase, narrow phase,
-// reduction, ordering. Input: node positions at the step's start and end, obstacle positions when they change, and
-// the pairs to test. Output: contacts in canonical order in host memory. Guarantee: same input, same contacts, bit for
-// bit, on every back end. A buffer that is too small grows and the stage runs again. Cost: one submission and one wait
-// per step.
+// Job: keep every cloth and obstacle (core/scene); each step collect the pairs, upload the nodes, run the stages on one
+// of the back ends (core/backends), and resolve contacts. Input: node positions at the step's start and end, obstacle
+// positions when they change, and the pairs to test. Output: contacts in canonical order in host memory. Guarantee:
+// same input, same contacts, bit for bit, on every back end. A buffer that is too small grows and the stage runs again.
+// Cost: one submission and one wait per step.
 //
 // Knows no Bullet. Lengths in metres, world frame. Not thread-safe: one pipeline belongs to one thread. Errors: if
 // memory runs out, calls throw, and only restart() may follow.
@@ -15,64 +15,17 @@
 #include <memory>
 #include <vector>
 
-#include "bullet_plugin/core/scene/mesh_id.h"
+#include "bullet_plugin/core/ordering/contact_list.h"
 #include "bullet_plugin/core/threads/thread_team.h"
+#include "contact_view.h"
 #include "drape/error.h"
 #include "drape/mesh_description.h"
 #include "drape/report.h"
 #include "drape/settings.h"
-#include "kernels/shared/contact.h"
 
 namespace drape
 {
 class MeshProbe;
-
-// A contact for a solver, with its pool-wide indices resolved to meshes.
-struct ContactView
-{
-    MeshId m_cloth;
-    MeshId m_obstacle;
-    std::uint32_t m_kind;     // DRAPE_NODE_FACE …; DRAPE_FACE_VERTEX for a free edge at a vertex
-    std::int32_t m_nodes[3];  // nodes of the cloth feature, indices in that cloth; -1 where unused
-    std::int32_t m_triangle;  // a cloth triangle with the feature, index as given to addCloth; -1: none
-    float m_weights[3];       // by m_nodes, sum 1
-    float m_normal[3];        // unit, from the obstacle to the side from which the cloth came
-    float m_point[3];         // m, on the obstacle
-    float m_gap0, m_gap1;  // m, along the normal at the step's start and end as the obstacle sees them, thickness not
-                           // subtracted
-    float m_thickness;     // m, of the pair
-    float m_time;          // time of impact in [0, 1]
-};
-
-// A contact of a cloth with itself: a node against a face, or two edges. The first feature's nodes come first, then the
-// second's.
-struct SelfContactView
-{
-    MeshId m_cloth;
-    std::uint32_t m_kind;     // DRAPE_SELF_NODE_FACE or DRAPE_SELF_EDGE_EDGE
-    std::int32_t m_nodes[4];  // node, face's three; or two of each edge; indices in the cloth
-    float m_weights[4];       // by m_nodes; each feature's add up to 1
-    float m_normal[3];        // unit, from the second feature to the side from which the first came
-    float m_point[3];         // m, on the second feature at the step's end
-    float m_gap0, m_gap1;     // m, along the normal at the step's start and end, thickness not subtracted
-    float m_thickness;        // m, of the pair
-    float m_time;             // time of impact in [0, 1]
-};
-
-// The cloth feature of a contact, which all contacts of one slot share.
-struct ClothFeature
-{
-    MeshId m_cloth;
-    std::int32_t m_nodes[3];  // indices in that cloth; -1 where unused
-};
-
-// The plane of a face-vertex contact after the cloth's nodes moved, at the points where the two are nearest then.
-struct ContactPlane
-{
-    float m_normal[3];   // unit, on the side of the contact's normal
-    float m_point[3];    // m, on the obstacle
-    float m_weights[3];  // by node of the face, sum 1
-};
 
 // A range of adjacent nodes of a cloth, and the memory to write them to: x y z per node.
 struct NodeStretch
@@ -82,23 +35,11 @@ struct NodeStretch
     float *m_start, *m_end;  // first node's positions at the step's start and end
 };
 
-// Contacts in the back end's memory.
-struct ContactList
-{
-    const Contact* m_first = nullptr;
-    std::size_t m_count = 0;
-
-    const Contact* begin() const { return m_first; }
-    const Contact* end() const { return m_first + m_count; }
-    std::size_t size() const { return m_count; }
-    const Contact& operator[](std::size_t i) const { return m_first[i]; }
-};
-
 class Pipeline
 {
 public:
     // Chooses the device and builds its kernels. Returns null and fills error if the settings request an unavailable
-    // or failing device, or methods out of their ranges. If a device that was not requested fails, the host remains:
+    // or failing device, or are out of their ranges. If a device that was not requested fails, the host remains:
     // see deviceReport() and lastError().
     static std::unique_ptr<Pipeline> create(const Settings& settings, Error& error);
     ~Pipeline();
@@ -113,9 +54,9 @@ public:
 
     // Add a mesh; both copy their input. Topology is fixed until remove(). They return kNoMesh, with nothing added,
     // for a mesh with an index out of range; lastError() names it. The next step costs more in proportion to the
-    // mesh, and occasionally, where memory grows or gaps close, in proportion to all meshes. It costs in proportion
-    // to all meshes of the same side with a traversal that is not the default, and for a cloth beside one that
-    // collides with itself. remove() costs next to nothing; gaps close once more is vacant than in use.
+    // mesh, and occasionally, where memory grows or gaps close, in proportion to all meshes. For a cloth beside one
+    // that collides with itself it costs in proportion to all cloths. remove() costs next to nothing; gaps close once
+    // more is vacant than in use.
     MeshId addCloth(const MeshDescription& mesh);
     MeshId addObstacle(const MeshDescription& mesh);
     void remove(MeshId mesh);
@@ -172,7 +113,7 @@ public:
     // Enqueues the step for the pairs named since the last finish(); returns without waiting.
     void submit();
     // Waits, grows buffers and repeats where needed. Contacts are valid until the next submit().
-    // allowance: returns a factor on the tests that a cloth's ordinary motion needs (ordinary_work.h), if a step needs
+    // allowance: returns a factor on the tests that a cloth's ordinary motion needs (ordinary_tests.h), if a step needs
     // more. Infinity for cloth that keeps its size; little for cloth that came apart or whose pins were displaced.
     // Cloths that need more are left out. Null: infinity.
     using Allowance = std::function<float(MeshId)>;
@@ -199,18 +140,14 @@ public:
 
     // Resolves a contact of the last finish().
     ContactView view(const Contact& contact) const;
-    // Turns a DRAPE_FACE_VERTEX contact to other positions of the face's nodes (m, x y z each, in the view's order;
-    // an edge repeats its second node). Returns false if the direction is undefined: the face touches the vertex, or
-    // came past it. O(1).
-    static bool planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane);
     // Resolves one of selfContacts().
     SelfContactView viewSelf(const Contact& contact) const;
     // Resolves only the cloth's part of a contact of finish(), at a lower cost.
     ClothFeature clothFeature(const Contact& contact) const;
 
 private:
-    Pipeline();
     struct Implementation;
+    explicit Pipeline(std::unique_ptr<Implementation> implementation);
     std::unique_ptr<Implementation> m_implementation;
 };
 }  // namespace drape

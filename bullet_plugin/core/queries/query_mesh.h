@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "bullet_plugin/core/scene/topology.h"
-#include "bullet_plugin/core/pipeline/pipeline.h"
 #include "bullet_plugin/core/queries/self_collision.h"
+#include "drape/mesh_description.h"
 
 namespace drape
 {

@@ -1,9 +1,10 @@
 #include "mesh_pool.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
-#include "reserve_room.h"
+#include "growing_arrays.h"
 
 namespace drape
 {
@@ -12,6 +13,25 @@ namespace
 // Vacant slots that are always kept, whatever their size: each costs an entry in every table of meshes.
 constexpr std::size_t kVacantKept = 64;
 }  // namespace
+
+bool anyTriangleIn(const PooledMesh& mesh, const float low[3], const float high[3])
+{
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(mesh.m_box.m_low[axis] <= high[axis] && mesh.m_box.m_high[axis] >= low[axis])) return false;
+    const float* const positions = mesh.m_positions.data();
+    const auto reachesIn = [&](const Triangle& triangle)
+    {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            const float a = positions[3 * std::size_t(triangle.m_vertices[0]) + axis];
+            const float b = positions[3 * std::size_t(triangle.m_vertices[1]) + axis];
+            const float c = positions[3 * std::size_t(triangle.m_vertices[2]) + axis];
+            if (std::min(std::min(a, b), c) > high[axis] || std::max(std::max(a, b), c) < low[axis]) return false;
+        }
+        return true;
+    };
+    return std::any_of(mesh.m_topology.m_triangles.begin(), mesh.m_topology.m_triangles.end(), reachesIn);
+}
 
 void MeshPool::add(PooledMesh mesh)
 {
@@ -88,6 +108,13 @@ std::size_t MeshPool::slot(MeshId id) const
     return slot < m_ids.size() && m_ids[slot] == id && !m_meshes[slot].m_vacant ? slot : m_ids.size();
 }
 
+std::size_t MeshPool::existingSlot(MeshId id) const
+{
+    const std::size_t found = slot(id);
+    assert(found < meshCount());
+    return found;
+}
+
 std::size_t MeshPool::slotOfVertex(std::uint32_t vertex) const
 {
     if (m_placed == 1) return 0;
@@ -111,10 +138,10 @@ std::size_t MeshPool::firstSince(std::uint32_t revision) const
     return std::size_t(std::upper_bound(m_meshes.begin(), m_meshes.end(), revision, later) - m_meshes.begin());
 }
 
-MeshFirsts MeshPool::begin(std::size_t slot) const
+MeshOffsets MeshPool::begin(std::size_t slot) const
 {
     if (slot < m_firsts.size()) return m_firsts[slot];
-    return MeshFirsts{std::uint32_t(m_vertexCount), std::uint32_t(m_triangles.size()), std::uint32_t(m_edges.size())};
+    return MeshOffsets{std::uint32_t(m_vertexCount), std::uint32_t(m_triangles.size()), std::uint32_t(m_edges.size())};
 }
 
 void MeshPool::join(std::size_t slot)
@@ -124,7 +151,7 @@ void MeshPool::join(std::size_t slot)
     mesh.m_firstVertex = std::uint32_t(m_vertexCount);
     mesh.m_firstTriangle = std::uint32_t(m_triangles.size());
     mesh.m_firstEdge = std::uint32_t(m_edges.size());
-    m_firsts.push_back(MeshFirsts{mesh.m_firstVertex, mesh.m_firstTriangle, mesh.m_firstEdge});
+    m_firsts.push_back(MeshOffsets{mesh.m_firstVertex, mesh.m_firstTriangle, mesh.m_firstEdge});
     for (Triangle triangle : mesh.m_topology.m_triangles)
     {
         for (std::uint32_t& vertex : triangle.m_vertices)
@@ -134,7 +161,7 @@ void MeshPool::join(std::size_t slot)
         triangle.m_mesh = std::uint32_t(slot);
         m_triangles.push_back(triangle);
     }
-    reserveRoom(m_edges, m_edges.size() + mesh.m_topology.m_edges.size());
+    reserveGrowing(m_edges, m_edges.size() + mesh.m_topology.m_edges.size());
     for (Edge edge : mesh.m_topology.m_edges)
     {
         for (std::uint32_t& vertex : edge.m_vertices)
@@ -153,12 +180,12 @@ void MeshPool::update()
     m_changed = false;
     ++m_revision;
     dropLastVacant();
-    const MeshFirsts end = begin(m_placed);
+    const MeshOffsets end = begin(m_placed);
     m_vertexCount = end.m_vertex;
     m_triangles.resize(end.m_triangle);
     m_edges.resize(end.m_edge);
     m_firsts.resize(m_placed);
-    reserveRoom(m_triangles, m_triangleCount);
+    reserveGrowing(m_triangles, m_triangleCount);
     for (std::size_t slot = m_placed; slot < m_meshes.size(); ++slot)
         join(slot);
     m_placed = m_meshes.size();
@@ -166,10 +193,10 @@ void MeshPool::update()
 
 void MeshPool::giveBackRoom()
 {
-    dropRoom(m_meshes);
-    dropRoom(m_ids);
-    dropRoom(m_triangles);
-    dropRoom(m_edges);
-    dropRoom(m_firsts);
+    shrinkSparse(m_meshes);
+    shrinkSparse(m_ids);
+    shrinkSparse(m_triangles);
+    shrinkSparse(m_edges);
+    shrinkSparse(m_firsts);
 }
 }  // namespace drape

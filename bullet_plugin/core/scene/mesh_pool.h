@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "mesh_id.h"
-#include "obstacle_placing.h"
+#include "obstacle_poses.h"
 #include "topology.h"
 
 namespace drape
@@ -27,18 +27,22 @@ struct PooledMesh
     float m_coordinateStep = 0;             // m, obstacles only: distance of floats where it reaches farthest out
     std::vector<NormalCone> m_vertexCones;  // obstacles only
     std::vector<NormalCone> m_edgeCones;
-    MeshBox m_box = {};                  // m, of the positions, obstacles only
-    float m_longestEdge = 0;             // m, obstacles only
-    ObstaclePlacing m_placing;           // obstacles only
-    bool m_placedAnew = false;           // obstacles only: new, or with new positions or pose, since the last step
-    std::uint32_t m_given = 0;           // obstacles only: Scene::m_obstacleMotion when its positions were last set
-    std::vector<std::uint32_t> m_order;  // leaf order, local triangles
+    MeshBox m_box = {};                     // m, of the positions, obstacles only
+    float m_longestEdge = 0;                // m, obstacles only
+    ObstaclePoses m_poses;                  // obstacles only
+    bool m_changed = false;                 // obstacles only: new, or with new positions or pose, since the last step
+    std::uint32_t m_positionsRevision = 0;  // obstacles only: the scene's when its positions were last set
+    std::vector<std::uint32_t> m_order;     // leaf order, local triangles
     std::uint32_t m_firstVertex = 0;
     std::uint32_t m_firstTriangle = 0;
     std::uint32_t m_firstEdge = 0;
     std::uint32_t m_joined = 0;  // the pool's revision when its position changed last
-    bool m_vacant = false;       // gone, but for its place
+    bool m_vacant = false;       // removed; its slot remains
 };
+
+// Returns whether the box of any of an obstacle's triangles meets the box (m, in the frame of its positions as given).
+// O(n).
+bool anyTriangleIn(const PooledMesh& mesh, const float low[3], const float high[3]);
 
 // Slots from m_first up to m_last.
 struct SlotRange
@@ -60,12 +64,17 @@ public:
     const PooledMesh& mesh(std::size_t slot) const { return m_meshes[slot]; }
     // Returns the mesh's slot; meshCount() if the id is not, or no longer, in this pool.
     std::size_t slot(MeshId id) const;
+    // Returns the slot of a mesh that must exist.
+    std::size_t existingSlot(MeshId id) const;
+    const PooledMesh& existing(MeshId id) const { return m_meshes[existingSlot(id)]; }
     // Return the slot of the mesh that contains a joined vertex or edge.
     std::size_t slotOfVertex(std::uint32_t vertex) const;
     std::size_t slotOfEdge(std::uint32_t edge) const;
 
     // Joins the meshes added since the last call; the joined arrays are valid afterwards. Free without changes.
     void update();
+    // Returns whether update() would change nothing.
+    bool isJoined() const { return !m_changed && !hasWideGaps(); }
     // Releases memory that only earlier, larger pools needed. The joined arrays move.
     void giveBackRoom();
     // Returns a number that rises with every update that changed something.
@@ -73,7 +82,7 @@ public:
     // Returns the first slot that changed after that revision; earlier ones are unchanged, except for vacancies.
     std::size_t firstSince(std::uint32_t revision) const;
     // Returns the offsets of a slot's vertices, triangles and edges; for meshCount() their ends.
-    MeshFirsts begin(std::size_t slot) const;
+    MeshOffsets begin(std::size_t slot) const;
     // Counts triangles of meshes that are not removed.
     std::size_t presentTriangles() const { return m_triangleCount - m_vacantTriangles; }
     // Counts the same triangles, without those that stand for edges and points.
@@ -84,8 +93,8 @@ public:
     const std::vector<Edge>& edges() const { return m_edges; }
 
 private:
-    // Releases vacant slots: all of them, or the last ones.
     bool hasWideGaps() const;
+    // Releases vacant slots: all of them, or the last ones.
     void closeGaps();
     void dropLastVacant();
     void forget(const PooledMesh& vacant);
@@ -95,7 +104,7 @@ private:
     std::vector<MeshId> m_ids;  // the meshes' ids, contiguous for the search
     std::vector<Triangle> m_triangles;
     std::vector<Edge> m_edges;
-    std::vector<MeshFirsts> m_firsts;
+    std::vector<MeshOffsets> m_firsts;
     std::size_t m_vertexCount = 0;
     std::size_t m_triangleCount = 0;  // in all slots
     std::size_t m_faceCount = 0;      // triangles of the meshes in use

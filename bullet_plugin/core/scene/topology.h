@@ -41,4 +41,8 @@ void addEdges(Topology& topology, const std::int32_t* edges, std::size_t edgeCou
 // Adds a point for each vertex without a triangle: a triangle that has the vertex three times and owns it, with an edge
 // from the vertex to itself that no triangle owns.
 void addPoints(Topology& topology);
+
+// Returns the area, m², of the triangles with finite vertices. A triangle that stands for an edge counts as half of the
+// square over it, like a grid's triangle with that side. positions: m, x y z per vertex. O(n).
+double surfaceArea(const std::vector<Triangle>& triangles, const float* positions);
 }  // namespace drape

@@ -1,8 +1,11 @@
-// Handles obstacles that are solid from one side only.
+#include "back_contacts.h"
+
 #include <algorithm>
+#include <array>
 #include <iterator>
 
-#include "implementation.h"
+#include "contact_view.h"
+#include "kernels/lib/vec3.h"
 
 namespace drape
 {
@@ -28,8 +31,8 @@ std::array<float, 3> frontOf(const PooledMesh& mesh, std::uint32_t kind, std::ui
                                                            : mesh.m_edgeCones[feature - mesh.m_firstEdge];
         front = {cone.m_axis.x, cone.m_axis.y, cone.m_axis.z};
     }
-    if (!mesh.m_placing.m_posed) return front;
-    const Pose& pose = mesh.m_placing.m_end;
+    if (!mesh.m_poses.m_posed) return front;
+    const Pose& pose = mesh.m_poses.m_end;
     std::array<float, 3> turned;
     for (std::size_t row = 0; row < 3; ++row)
         turned[row] = pose[4 * row] * front[0] + pose[4 * row + 1] * front[1] + pose[4 * row + 2] * front[2];
@@ -37,9 +40,8 @@ std::array<float, 3> frontOf(const PooledMesh& mesh, std::uint32_t kind, std::ui
 }
 }  // namespace
 
-void Pipeline::Implementation::dropBackContacts()
+void removeBackContacts(const MeshPool& obstacles, StepResult& result)
 {
-    const MeshPool& obstacles = m_scene.m_obstacles;
     bool any = false;
     for (std::size_t slot = 0; slot < obstacles.meshCount(); ++slot)
         any = any || (obstacles.mesh(slot).m_oneSided && !obstacles.mesh(slot).m_vacant);
@@ -53,9 +55,9 @@ void Pipeline::Implementation::dropBackContacts()
         return front[0] * contact.m_normal[0] + front[1] * contact.m_normal[1] + front[2] * contact.m_normal[2] < 0.0f;
     };
     std::vector<Contact> kept;
-    const ContactList all = m_result.allContacts();
+    const ContactList all = result.allContacts();
     std::remove_copy_if(all.begin(), all.end(), std::back_inserter(kept), onBack);
-    m_result.m_contacts.swap(kept);
-    m_result.m_deviceContacts = ContactList();
+    result.m_contacts.swap(kept);
+    result.m_deviceContacts = ContactList();
 }
 }  // namespace drape

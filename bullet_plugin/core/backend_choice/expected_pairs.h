@@ -10,16 +10,10 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
-
-#include "kernels/shared/mesh.h"
 
 namespace drape
 {
-// Returns the area, m², of the triangles with finite vertices. A triangle that stands for an edge counts as half of the
-// square over it, like a grid's triangle with that side. positions: m, x y z per vertex.
-double surfaceArea(const std::vector<Triangle>& triangles, const float* positions);
-
+// A mesh's surface: surfaceArea() gives the area.
 struct Surface
 {
     std::size_t m_triangles = 0;

@@ -1,4 +1,4 @@
-// Room in arrays that grow.
+// Helps arrays that grow and shrink from step to step to keep a suitable capacity.
 #pragma once
 
 #include <algorithm>
@@ -7,25 +7,25 @@
 
 namespace drape
 {
-// Reserves room for that many elements and, if it has to grow, a quarter more, so that elements are seldom copied. On
-// a system that allocates pages on first write, unused room takes no memory.
+// Reserves capacity for that many elements and, if it has to grow, a quarter more, so that elements are seldom copied.
+// On a system that allocates pages on first write, unused capacity takes no memory.
 template <typename T>
-void reserveRoom(std::vector<T>& elements, std::size_t count)
+void reserveGrowing(std::vector<T>& elements, std::size_t count)
 {
     if (count > elements.capacity()) elements.reserve(count + count / 4);
 }
 
-// Resizes to that many elements, with spare room.
+// Resizes to that many elements, with spare capacity.
 template <typename T>
-void resizeWithRoom(std::vector<T>& elements, std::size_t count)
+void resizeGrowing(std::vector<T>& elements, std::size_t count)
 {
-    reserveRoom(elements, count);
+    reserveGrowing(elements, count);
     elements.resize(count);
 }
 
-// Releases unused room if it is more than three quarters.
+// Releases unused capacity if it is more than three quarters.
 template <typename T>
-void dropRoom(std::vector<T>& elements)
+void shrinkSparse(std::vector<T>& elements)
 {
     if (elements.capacity() / 4 > elements.size()) elements.shrink_to_fit();
 }

@@ -5,20 +5,20 @@
 
 namespace drape
 {
-void ObstacleChanges::take(const Scene& scene, std::size_t fresh)
+void ObstacleChanges::update(const Scene& scene, std::size_t fresh)
 {
     const std::size_t count = scene.m_places.size();
     m_changes.assign(count, Change::None);
     fresh = std::min(fresh, m_places.size());
     for (std::size_t slot = 0; slot < count; ++slot)
     {
-        if (slot >= fresh || scene.m_obstacles.mesh(slot).m_given > m_motion)
-            m_changes[slot] = Change::Given;
+        if (slot >= fresh || scene.m_obstacles.mesh(slot).m_positionsRevision > m_positions)
+            m_changes[slot] = Change::Positions;
         else if (std::memcmp(&scene.m_places[slot], &m_places[slot], sizeof(ObstaclePlace)) != 0)
-            m_changes[slot] = Change::Place;
+            m_changes[slot] = Change::Pose;
     }
     m_places = scene.m_places;
-    m_motion = scene.m_obstacleMotion;
-    m_placing = scene.m_obstaclePlacing;
+    m_positions = scene.m_positionsRevision;
+    m_poses = scene.m_posesRevision;
 }
 }  // namespace drape

@@ -6,7 +6,7 @@
 
 namespace drape
 {
-// Returns false for the first field outside its range (drape/settings.h, drape/methods.h); error then names the field,
+// Returns false for the first field outside its range (drape/settings.h); error then names the field,
 // its value and the range.
 bool checkSettings(const Settings& settings, Error& error);
 }  // namespace drape

@@ -17,7 +17,7 @@ struct MeshBox
     float m_low[3], m_high[3];  // m; low above high when empty
 };
 
-struct ObstaclePlacing
+struct ObstaclePoses
 {
     bool m_posed = false;  // false: positions are the world's
     Pose m_start = {}, m_end = {};
@@ -30,5 +30,5 @@ MeshBox placedBox(const Pose& pose, const MeshBox& own);
 
 // Returns the record of a moving obstacle. A start pose without an inverse gives a map that is not finite, and no
 // contacts.
-ObstacleMotion makeMotion(const ObstaclePlacing& placing, const MeshBox& own, std::uint32_t slot);
+ObstacleMotion makeMotion(const ObstaclePoses& poses, const MeshBox& own, std::uint32_t slot);
 }  // namespace drape

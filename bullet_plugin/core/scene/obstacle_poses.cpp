@@ -1,4 +1,4 @@
-#include "obstacle_placing.h"
+#include "obstacle_poses.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,16 +53,16 @@ MeshBox placedBox(const Pose& pose, const MeshBox& own)
     return box;
 }
 
-ObstacleMotion makeMotion(const ObstaclePlacing& placing, const MeshBox& own, std::uint32_t slot)
+ObstacleMotion makeMotion(const ObstaclePoses& poses, const MeshBox& own, std::uint32_t slot)
 {
     ObstacleMotion motion;
     double inverse[3][3];
-    invert(placing.m_start, inverse);
+    invert(poses.m_start, inverse);
     double origin[3] = {0, 0, 0};  // the world's origin in the frame at the start
     for (int i = 0; i < 3; ++i)
     {
         for (int k = 0; k < 3; ++k)
-            origin[i] -= inverse[i][k] * double(placing.m_start[std::size_t(4 * k + 3)]);
+            origin[i] -= inverse[i][k] * double(poses.m_start[std::size_t(4 * k + 3)]);
     }
     for (int row = 0; row < 3; ++row)
     {
@@ -70,11 +70,11 @@ ObstacleMotion makeMotion(const ObstaclePlacing& placing, const MeshBox& own, st
         for (int column = 0; column < 3; ++column)
         {
             const double direction[3] = {inverse[0][column], inverse[1][column], inverse[2][column]};
-            out[column] = float(turned(placing.m_end, row, direction));
+            out[column] = float(turned(poses.m_end, row, direction));
         }
-        out[3] = float(turned(placing.m_end, row, origin) + double(placing.m_end[std::size_t(4 * row + 3)]));
+        out[3] = float(turned(poses.m_end, row, origin) + double(poses.m_end[std::size_t(4 * row + 3)]));
     }
-    const MeshBox box = placedBox(placing.m_end, own);
+    const MeshBox box = placedBox(poses.m_end, own);
     std::copy(box.m_low, box.m_low + 3, motion.m_low);
     std::copy(box.m_high, box.m_high + 3, motion.m_high);
     motion.m_mesh = slot;

@@ -1,0 +1,67 @@
+// The result of a step on a back end: its contacts and counts, or the limit that it exceeded.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "bullet_plugin/core/ordering/contact_list.h"
+#include "drape/report.h"
+#include "kernels/shared/mesh.h"
+
+namespace drape
+{
+struct StepResult
+{
+    std::vector<Contact> m_contacts;  // the host's contacts
+    ContactList m_deviceContacts;     // the device back end's memory, until its next step
+    // More candidates or contacts than the limits allow; only m_contactDemand of the result is valid then.
+    bool m_overLimit = false;
+    bool m_overTests = false;           // these are the limits of StepPairs
+    std::uint64_t m_contactDemand = 0;  // number of contacts if they exceeded the limit; 0 if candidates did
+
+    // Resets the result; the memory of the host's contacts is kept.
+    void clear()
+    {
+        std::vector<Contact> contacts = std::move(m_contacts);
+        contacts.clear();
+        *this = StepResult();
+        m_contacts = std::move(contacts);
+    }
+
+    // Returns contacts with obstacles, then those of cloths with themselves.
+    ContactList allContacts() const
+    {
+        return m_contacts.empty() ? m_deviceContacts : ContactList{m_contacts.data(), m_contacts.size()};
+    }
+    ContactList contacts() const
+    {
+        const ContactList all = allContacts();
+        return {all.m_first, std::size_t(firstSelf(all) - all.begin())};
+    }
+    ContactList selfContacts() const
+    {
+        const ContactList all = allContacts();
+        const Contact* first = firstSelf(all);
+        return {first, std::size_t(all.end() - first)};
+    }
+
+private:
+    static const Contact* firstSelf(ContactList all)
+    {
+        return std::partition_point(all.begin(), all.end(),
+                                    [](const Contact& contact) { return contact.m_kind < DRAPE_SELF_NODE_FACE; });
+    }
+};
+
+// Replaces the counts of pairs of features and of invalid nodes by those of a back end's run.
+inline void writeCounts(const StepCounters& counters, StepStatistics& statistics)
+{
+    statistics.m_candidates = counters.m_candidates;
+    statistics.m_sweptTests = counters.m_swept;
+    statistics.m_selfCandidates = counters.m_selfTests;
+    statistics.m_selfSweptTests = counters.m_selfSwept;
+    statistics.m_invalidNodes = counters.m_invalidNodes;
+}
+}  // namespace drape
