@@ -176,7 +176,7 @@ double BodySolver::solveLinks(int iteration)
 {
     double bulletMs = 0;
     forSubsteps([](btSoftBody& body, SubstepBody& substeps, ThreadTeam* threads)
-                { substeps.solveLinks(body, threads); });
+                { substeps.endSubstep(body, threads); });
     for (const ContactRounds* rounds : m_iterating)
         if (!substepsOf(rounds)) bulletMs += callBullet(rounds, iteration);
     return bulletMs;

@@ -34,10 +34,16 @@ btScalar shiftOf(const btSoftBody& body)
     return (share - 1) * body.m_sst.sdt * body.m_sst.sdt;
 }
 
+// The same operations as in btVector3, in the core's float32.
 void toFloat(const btVector3& vector, float out[3])
 {
     for (int axis = 0; axis < 3; ++axis)
         out[axis] = static_cast<float>(vector[axis]);
+}
+// Returns the way from the node's start to its current position.
+btVector3 wayOf(const btSoftBody::Node& node, const SubstepBody::Prediction& prediction)
+{
+    return node.m_x == prediction.m_end ? prediction.m_way : node.m_x - node.m_q;
 }
 }  // namespace
 
@@ -85,11 +91,13 @@ void SubstepBody::afterPrediction(btSoftBody& body)
     if (!m_isPredicted) return;
     const btScalar shift = shiftOf(body), perSecond = body.m_sst.isdt;
     m_accelerations.resize(m_velocities.size());
+    m_predictions.resize(m_velocities.size());
     for (std::size_t i = 0; i < m_accelerations.size(); ++i)
     {
         btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
         m_accelerations[i] = (node.m_v - m_velocities[i]) * perSecond;
         node.m_x += m_accelerations[i] * shift;
+        m_predictions[i] = {node.m_x, node.m_v * body.m_sst.sdt + m_accelerations[i] * shift};
     }
 }
 
@@ -122,7 +130,8 @@ void SubstepBody::buildLinks(const btSoftBody& body)
     m_sweep.build(nodeCount(body), parts.leafCount(), m_links);
 }
 
-void SubstepBody::readLinks(const btSoftBody& body)
+// Reads which nodes the links join; sorts them again if that changed.
+void SubstepBody::readTopology(const btSoftBody& body)
 {
     const std::size_t count = static_cast<std::size_t>(body.m_links.size());
     bool isNew = m_links.size() != count || m_nodes.count() != nodeCount(body);
@@ -140,10 +149,15 @@ void SubstepBody::readLinks(const btSoftBody& body)
     }
     m_nodes.resize(nodeCount(body));
     if (isNew) buildLinks(body);
+}
+
+// Reads lengths and strengths of the links, whose nodes have their starts.
+void SubstepBody::readLinks(const btSoftBody& body)
+{
     // Neighbouring links mostly have one material.
     btScalar stiffness = -1;
     double factor = 0;
-    for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t i = 0; i < m_links.size(); ++i)
     {
         const btSoftBody::Link& link = body.m_links[static_cast<int>(i)];
         if (link.m_material->m_kLST != stiffness)
@@ -155,25 +169,31 @@ void SubstepBody::readLinks(const btSoftBody& body)
         }
         // Bullet's m_c0 is the sum of the inverse masses divided by the stiffness.
         const bool acts = link.m_c0 > 0;
-        m_sweep.set(i, static_cast<float>(link.m_c1), acts ? static_cast<float>(factor / double(link.m_c0)) : 0.0f);
+        float apart[3];
+        toFloat(link.m_n[1]->m_q - link.m_n[0]->m_q, apart);
+        m_sweep.set(i, apart, static_cast<float>(link.m_c1),
+                    acts ? static_cast<float>(factor / double(link.m_c0)) : 0.0f);
     }
 }
 
 void SubstepBody::begin(btSoftBody& body, ThreadTeam* threads)
 {
+    readTopology(body);
     readLinks(body);
     m_nodes.begin(static_cast<float>(body.m_sst.sdt), substepsOf(body));
+    const double damping = std::min(1.0, std::max(0.0, double(body.m_cfg.kDP)));
+    m_kept = static_cast<float>(std::pow(1 - damping, 1.0 / substepsOf(body)));
     forRanges(m_nodes.count(), threads,
               [&](std::size_t from, std::size_t to)
               {
                   for (std::size_t i = from; i < to; ++i)
                   {
                       btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
-                      float start[3], end[3], acceleration[3];
+                      float start[3], way[3], acceleration[3];
                       toFloat(node.m_q, start);
-                      toFloat(node.m_x, end);
+                      toFloat(wayOf(node, m_predictions[i]), way);
                       toFloat(m_accelerations[i], acceleration);
-                      m_nodes.setPath(i, start, end, acceleration, static_cast<float>(node.m_im));
+                      m_nodes.setPath(i, start, way, acceleration, static_cast<float>(node.m_im));
                   }
               });
 }
@@ -186,11 +206,10 @@ void SubstepBody::writeNodes(btSoftBody& body, ThreadTeam* threads) const
                   for (std::size_t i = from; i < to; ++i)
                   {
                       btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
-                      const float* const position = m_nodes.nodes()[i].m_position;
                       const float* const velocity = m_nodes.velocity(i);
                       for (int axis = 0; axis < 3; ++axis)
                       {
-                          node.m_x[axis] = position[axis];
+                          node.m_x[axis] = m_nodes.position(i, axis);
                           node.m_v[axis] = velocity[axis];
                       }
                       node.m_f.setZero();
@@ -198,30 +217,37 @@ void SubstepBody::writeNodes(btSoftBody& body, ThreadTeam* threads) const
               });
 }
 
-void SubstepBody::advance(btSoftBody& body, ThreadTeam* threads)
+// Takes the position of a node that contacts moved. The displacement of others is more precise than their position.
+void SubstepBody::readPosition(std::size_t node, const btVector3& position)
+{
+    for (int axis = 0; axis < 3; ++axis)
+        if (static_cast<float>(position[axis]) != m_nodes.position(node, axis))
+            m_nodes.nodes()[node].m_displacement[axis] = static_cast<float>(position[axis]) - m_nodes.start(node)[axis];
+}
+
+// Moves the nodes by a substep and sweeps over the links.
+void SubstepBody::moveNodes(ThreadTeam* threads)
 {
     forRanges(m_nodes.count(), threads, [&](std::size_t from, std::size_t to) { m_nodes.advance(from, to); });
+    for (int i = 0; i < kLinkSweeps; ++i)
+        m_sweep.sweep(m_nodes.nodes(), threads);
+}
+
+void SubstepBody::advance(btSoftBody& body, ThreadTeam* threads)
+{
+    moveNodes(threads);
     writeNodes(body, threads);
 }
 
-void SubstepBody::sweepLinks(const btSoftBody& body, ThreadTeam* threads)
-{
-    for (int i = 0; i < kLinkSweeps; ++i)
-        m_sweep.sweep(m_nodes.nodes(), threads);
-    const double damping = std::min(1.0, std::max(0.0, double(body.m_cfg.kDP)));
-    const float kept = static_cast<float>(std::pow(1 - damping, 1.0 / substepsOf(body)));
-    forRanges(m_nodes.count(), threads, [&](std::size_t from, std::size_t to) { m_nodes.endSubstep(from, to, kept); });
-}
-
-void SubstepBody::solveLinks(btSoftBody& body, ThreadTeam* threads)
+void SubstepBody::endSubstep(btSoftBody& body, ThreadTeam* threads)
 {
     forRanges(m_nodes.count(), threads,
               [&](std::size_t from, std::size_t to)
               {
                   for (std::size_t i = from; i < to; ++i)
-                      toFloat(body.m_nodes[static_cast<int>(i)].m_x, m_nodes.nodes()[i].m_position);
+                      readPosition(i, body.m_nodes[static_cast<int>(i)].m_x);
+                  m_nodes.endSubstep(from, to, m_kept);
               });
-    sweepLinks(body, threads);
     writeNodes(body, threads);
 }
 
@@ -230,8 +256,9 @@ void SubstepBody::solveAlone(btSoftBody& body, ThreadTeam* threads)
     begin(body, threads);
     for (int i = 0; i < substepsOf(body); ++i)
     {
-        forRanges(m_nodes.count(), threads, [&](std::size_t from, std::size_t to) { m_nodes.advance(from, to); });
-        sweepLinks(body, threads);
+        moveNodes(threads);
+        forRanges(m_nodes.count(), threads,
+                  [&](std::size_t from, std::size_t to) { m_nodes.endSubstep(from, to, m_kept); });
     }
     writeNodes(body, threads);
 }

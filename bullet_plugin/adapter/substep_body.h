@@ -20,6 +20,12 @@ namespace drape
 class SubstepBody
 {
 public:
+    // The predicted end of a node, m, and the way to it without the rounding of positions.
+    struct Prediction
+    {
+        btVector3 m_end, m_way;
+    };
+
     // Returns why Bullet's own solver must solve the body; null if this class can.
     static const char* reasonForBullet(const btSoftBody& body);
     // Returns the same for the step that has been predicted: contacts of Bullet's own algorithms count, too.
@@ -43,10 +49,10 @@ public:
     // Begins the step: the nodes return to their starts. Their paths lead to their current positions. threads: null
     // for the caller alone, as in the functions below.
     void begin(btSoftBody& body, ThreadTeam* threads);
-    // Begins a substep: moves the nodes.
+    // Begins a substep: moves the nodes and sweeps over the links.
     void advance(btSoftBody& body, ThreadTeam* threads);
-    // Ends a substep: sweeps over the links, then sets the nodes' velocities.
-    void solveLinks(btSoftBody& body, ThreadTeam* threads);
+    // Ends a substep: derives the nodes' velocities from their positions.
+    void endSubstep(btSoftBody& body, ThreadTeam* threads);
     // Runs the whole step of a body without contacts.
     void solveAlone(btSoftBody& body, ThreadTeam* threads);
 
@@ -55,15 +61,19 @@ private:
     // Sweeps over the links in each substep. A sweep costs little beside one over the contacts.
     static constexpr int kLinkSweeps = 3;
 
+    void readTopology(const btSoftBody& body);
     void readLinks(const btSoftBody& body);
+    void readPosition(std::size_t node, const btVector3& position);
     void buildLinks(const btSoftBody& body);
-    void sweepLinks(const btSoftBody& body, ThreadTeam* threads);
+    void moveNodes(ThreadTeam* threads);
     void writeNodes(btSoftBody& body, ThreadTeam* threads) const;
 
     bool m_isPredicted = false;
+    float m_kept = 1;                        // the share of a velocity that damping leaves in a substep
     std::vector<btVector3> m_velocities;     // before the prediction
     std::vector<btVector3> m_accelerations;  // of the step
-    std::vector<LinkNodes> m_links;          // as sorted into m_sweep
+    std::vector<Prediction> m_predictions;
+    std::vector<LinkNodes> m_links;  // as sorted into m_sweep
     SolverNodes m_nodes;
     LinkSweep m_sweep;
 };

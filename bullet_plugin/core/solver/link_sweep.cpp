@@ -127,7 +127,9 @@ void LinkSweep::visitGroup(std::size_t group, SolverNode* nodes) const
         Lanes a[4], b[4];
         loadNodes(nodes, block.m_first, a);
         loadNodes(nodes, block.m_second, b);
-        const Lanes apart[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+        Lanes apart[3];
+        for (int axis = 0; axis < 3; ++axis)
+            apart[axis] = load(block.m_apart[axis]) + (b[axis] - a[axis]);
         const Lanes length2 = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
         const Lanes rest2 = load(block.m_restSquared), sum = rest2 + length2;
         // Bullet's approximation of the distance's correction without a root; it leaves out links without length.

@@ -31,13 +31,17 @@ public:
     void build(std::size_t nodeCount, std::size_t leafCount, const std::vector<LinkNodes>& links);
 
     std::size_t linkCount() const { return m_laneOf.size(); }
-    // Sets a link, in the order of build(), for the coming sweeps. restSquared: m². strength: kg, the share of a
-    // violation that a visit corrects, divided by the sum of the nodes' inverse masses; 0 for a link without effect.
-    void set(std::size_t link, float restSquared, float strength)
+    // Sets a link, in the order of build(), for the sweeps of a step. apart: m, from the first node to the second at
+    // the step's start. restSquared: m². strength: kg, the share of a violation that a visit corrects, divided by the
+    // sum of the nodes' inverse masses; 0 for a link without effect.
+    void set(std::size_t link, const float apart[3], float restSquared, float strength)
     {
         Block& block = m_blocks[m_laneOf[link] / kWidth];
-        block.m_restSquared[m_laneOf[link] % kWidth] = restSquared;
-        block.m_strength[m_laneOf[link] % kWidth] = strength;
+        const std::size_t lane = m_laneOf[link] % kWidth;
+        for (int axis = 0; axis < 3; ++axis)
+            block.m_apart[axis][lane] = apart[axis];
+        block.m_restSquared[lane] = restSquared;
+        block.m_strength[lane] = strength;
     }
 
     // Visits every link once. threads: null for the caller alone.
@@ -50,7 +54,7 @@ private:
     struct Block
     {
         std::uint32_t m_first[kWidth], m_second[kWidth];
-        float m_restSquared[kWidth], m_strength[kWidth];
+        float m_apart[3][kWidth], m_restSquared[kWidth], m_strength[kWidth];
     };
 
     void addBlock(const LinkNodes& link);
