@@ -113,15 +113,15 @@ struct SoftBodySolver::Work
     UsageWatch m_usage;
     std::unordered_map<const btSoftBody*, std::unique_ptr<SubstepBody>> m_substeps;  // bodies whose links Drape solves
     std::vector<BodyContacts*> m_touched;                                            // working memory of solveBodies()
-    std::vector<std::pair<btSoftBody*, SubstepBody*>> m_free;                        // the same: without contacts
-    std::vector<unsigned char> m_solved;         // by body: solved by Bullet or by its contacts
-    std::vector<btSoftBody*> m_taken;            // bodies that Drape handles in this step
-    std::vector<const btSoftBody*> m_predicted;  // in this step, sorted by address
-    bool m_listed = false;                       // m_predicted is whole
-    bool m_detected = false;                     // the paths of all bodies with a pair are recorded
-    std::size_t m_asleep = 0;                    // cloths that are not among them
-    double m_predictMs = 0;                      // time of this class in predictMotion
-    std::uint64_t m_failures;                    // failures of the state that a step of this solver has reported
+    std::vector<std::pair<btSoftBody*, SubstepBody*>> m_free;  // working memory: bodies without contacts
+    std::vector<unsigned char> m_solved;                       // by body: solved by Bullet or by its contacts
+    std::vector<btSoftBody*> m_taken;                          // bodies that Drape handles in this step
+    std::vector<const btSoftBody*> m_predicted;                // in this step, sorted by address
+    bool m_listed = false;                                     // m_predicted is whole
+    bool m_detected = false;                                   // the paths of all bodies with a pair are recorded
+    std::size_t m_asleep = 0;                                  // cloths that are not among them
+    double m_predictMs = 0;                                    // time of this class in predictMotion
+    std::uint64_t m_failures;  // failures of the state that a step of this solver has reported
 };
 
 SoftBodySolver::SoftBodySolver(Plugin& plugin) : m_state(plugin.state())

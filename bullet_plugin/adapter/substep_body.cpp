@@ -34,7 +34,7 @@ btScalar shiftOf(const btSoftBody& body)
     return (share - 1) * body.m_sst.sdt * body.m_sst.sdt;
 }
 
-// The same operations as in btVector3, in the core's float32.
+// Converts to the core's float32.
 void toFloat(const btVector3& vector, float out[3])
 {
     for (int axis = 0; axis < 3; ++axis)

@@ -70,10 +70,10 @@ private:
 
     bool m_isPredicted = false;
     float m_kept = 1;                        // the share of a velocity that damping leaves in a substep
-    std::vector<btVector3> m_velocities;     // before the prediction
-    std::vector<btVector3> m_accelerations;  // of the step
+    std::vector<btVector3> m_velocities;     // velocities before the prediction, m/s
+    std::vector<btVector3> m_accelerations;  // accelerations of the step, m/s²
     std::vector<Prediction> m_predictions;
-    std::vector<LinkNodes> m_links;  // as sorted into m_sweep
+    std::vector<LinkNodes> m_links;  // links as sorted into m_sweep
     SolverNodes m_nodes;
     LinkSweep m_sweep;
 };

@@ -24,7 +24,7 @@ struct StepRecord
 struct RunRecord
 {
     std::string m_backend, m_device, m_deviceReason;
-    std::string m_solver;  // of the links: drape or bullet
+    std::string m_solver;  // the solver of the links: drape or bullet
     double m_prepareMs = 0;
     std::size_t m_clothTriangles = 0, m_clothNodes = 0, m_obstacleTriangles = 0;
     double m_thickness = 0;
