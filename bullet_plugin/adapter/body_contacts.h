@@ -8,6 +8,7 @@
 #include "BulletSoftBody/btSoftBody.h"
 #include "bullet_plugin/adapter/cloth_parts.h"
 #include "bullet_plugin/adapter/motion_limit.h"
+#include "bullet_plugin/adapter/substep_body.h"
 #include "bullet_plugin/core/pipeline/pipeline.h"
 
 namespace drape
@@ -64,6 +65,7 @@ struct BodyContacts
     btScalar m_leastThickness = SIMD_INFINITY, m_mostThickness = 0;  // over the body's pairs
     std::vector<FeatureContacts> m_features;                         // in canonical order
     MotionLimit m_limit;
+    SubstepBody* m_substeps = nullptr;   // solves the body's links; null where Bullet does
     bool m_leftOut = false;              // the body collides with nothing in this step
     bool m_heldTogether = false;         // since the last detection, see stretch.h
     bool m_obstacleJumps = false;        // an obstacle moves farther in the step than its size, or turns far
@@ -83,6 +85,7 @@ struct BodyContacts
         m_mostThickness = 0;
         m_features.clear();
         m_limit.clear();
+        m_substeps = nullptr;
         m_leftOut = m_heldTogether = m_obstacleJumps = false;
         m_mayHavePassed = false;
         m_tangled.clear();

@@ -10,6 +10,9 @@ namespace drape
 {
 namespace
 {
+// Minimum nodes for sharing bodies among threads; a substep takes 50 ns a node.
+constexpr std::size_t kLeastNodesShared = 2048;
+
 // Bullet's iterations may be run part by part: those on velocities first, those on positions one by one, those
 // against drift last. Each call on positions derives the velocities anew from the step's start, and nothing else in a
 // call accumulates. Clusters and joints do accumulate.
@@ -35,10 +38,16 @@ int positionIterations(const ContactRounds* rounds)
     return iterations > 0 && hasContacts(rounds) ? std::max(kLeastIterations, iterations) : iterations;
 }
 
-// Returns the number of calls of Bullet's solver, at least one.
+SubstepBody* substepsOf(const ContactRounds* rounds)
+{
+    return rounds->contacts().m_substeps;
+}
+
+// Returns the number of substeps, or of calls of Bullet's solver, at least one.
 int callsFor(const ContactRounds* rounds)
 {
     const btSoftBody& body = bodyOf(rounds);
+    if (substepsOf(rounds)) return SubstepBody::substepsOf(body);
     if (!iterationsCanBeSplit(body)) return 1;
     return std::max(1, (body.m_cfg.viterations > 0) + positionIterations(rounds) + (body.m_cfg.diterations > 0));
 }
@@ -84,6 +93,20 @@ bool isOpen(const ContactRounds* rounds, int done)
 {
     if (done < kClosingRounds) return isViolated(rounds, kClosingTolerance);
     return done < mostClosingRounds(rounds) && isViolated(rounds, kMostViolation);
+}
+
+// Returns whether threads take bodies side by side: several bodies, none of which has most of many nodes.
+template <class NodesOf>
+bool sharesBodies(std::size_t count, const NodesOf& nodesOf)
+{
+    std::size_t all = 0, most = 0;
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        const std::size_t nodes = static_cast<std::size_t>(nodesOf(i));
+        all += nodes;
+        most = std::max(most, nodes);
+    }
+    return all >= kLeastNodesShared && 2 * most <= all;
 }
 
 bool obstaclesRest(const ContactRounds* rounds)
@@ -134,12 +157,50 @@ void BodySolver::applyLimits(const Bodies& bodies)
     m_team.forBodies(bodies, [](ContactRounds& rounds) { rounds.contacts().m_limit.apply(bodyOf(&rounds)); });
 }
 
+// Calls job(body, substeps, threads) for each body of the turn whose links Drape solves: side by side where there are
+// several and they are large, else one after the other with all threads.
+template <class Job>
+void BodySolver::forSubsteps(const Job& job)
+{
+    m_own.clear();
+    std::copy_if(m_iterating.begin(), m_iterating.end(), std::back_inserter(m_own), substepsOf);
+    const auto one = [&](std::size_t i, ThreadTeam* threads) { job(bodyOf(m_own[i]), *substepsOf(m_own[i]), threads); };
+    if (sharesBodies(m_own.size(), [&](std::size_t i) { return bodyOf(m_own[i]).m_nodes.size(); }))
+        return m_threads.run(m_own.size(), [&](std::size_t i) { one(i, nullptr); });
+    for (std::size_t i = 0; i < m_own.size(); ++i)
+        one(i, &m_threads);
+}
+
+// Ends an iteration. Returns the time of Bullet's part, ms.
+double BodySolver::solveLinks(int iteration)
+{
+    double bulletMs = 0;
+    forSubsteps([](btSoftBody& body, SubstepBody& substeps, ThreadTeam* threads)
+                { substeps.endSubstep(body, threads); });
+    for (const ContactRounds* rounds : m_iterating)
+        if (!substepsOf(rounds)) bulletMs += callBullet(rounds, iteration);
+    return bulletMs;
+}
+
+void BodySolver::solveFree(const std::vector<std::pair<btSoftBody*, SubstepBody*>>& bodies)
+{
+    const auto one = [&](std::size_t i, ThreadTeam* threads)
+    { bodies[i].second->solveAlone(*bodies[i].first, threads); };
+    if (sharesBodies(bodies.size(), [&](std::size_t i) { return bodies[i].first->m_nodes.size(); }))
+        return m_threads.run(bodies.size(), [&](std::size_t i) { one(i, nullptr); });
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        one(i, &m_threads);
+}
+
 double BodySolver::iterate()
 {
     double bulletMs = 0;
     m_iterating = m_all;
+    forSubsteps([](btSoftBody& body, SubstepBody& substeps, ThreadTeam* threads) { substeps.begin(body, threads); });
     for (int i = 0; !m_iterating.empty(); ++i)
     {
+        forSubsteps([](btSoftBody& body, SubstepBody& substeps, ThreadTeam* threads)
+                    { substeps.advance(body, threads); });
         if (i > 0) applyLimits(m_iterating);
         select(m_iterating, m_turn, hasContacts);
         for (ContactRounds* rounds : m_turn)
@@ -147,8 +208,7 @@ double BodySolver::iterate()
         m_team.gather(m_turn);
         m_team.runAndSettle(m_turn);
         m_team.scatter(m_turn);
-        for (const ContactRounds* rounds : m_iterating)
-            bulletMs += callBullet(rounds, i);
+        bulletMs += solveLinks(i);
         keep(m_iterating, [i](const ContactRounds* rounds) { return i + 1 < callsFor(rounds); });
     }
     return bulletMs;

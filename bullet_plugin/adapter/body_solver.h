@@ -13,6 +13,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "bullet_plugin/adapter/body_contacts.h"
@@ -47,11 +48,13 @@ void solveByBullet(btSoftBody& body);
 class BodySolver
 {
 public:
-    explicit BodySolver(ThreadTeam& threads) : m_team(threads) {}
+    explicit BodySolver(ThreadTeam& threads) : m_team(threads), m_threads(threads) {}
 
     // Runs the bodies' solveConstraints() with their contacts; their steps have a time above 0. Returns the time of
     // Bullet's part, ms.
     double solve(const std::vector<BodyContacts*>& bodies, const FoundContacts& found);
+    // Solves bodies without contacts, whose links Drape solves.
+    void solveFree(const std::vector<std::pair<btSoftBody*, SubstepBody*>>& bodies);
 
 private:
     using Bodies = RoundsTeam::Bodies;
@@ -59,13 +62,17 @@ private:
     void begin(const std::vector<BodyContacts*>& bodies, const FoundContacts& found);
     void applyLimits(const Bodies& bodies);
     double iterate();
+    double solveLinks(int iteration);
+    template <class Job>
+    void forSubsteps(const Job& job);
     void runAgain(const Bodies& bodies);
     void holdOthers();
     void close();
 
     RoundsTeam m_team;
+    ThreadTeam& m_threads;
     std::vector<std::unique_ptr<ContactRounds>> m_rounds;  // kept for their memory
     // Bodies of the step, bodies with contacts, and subsets of one iteration or sweep.
-    Bodies m_all, m_touching, m_iterating, m_turn, m_open, m_resting, m_others;
+    Bodies m_all, m_touching, m_iterating, m_turn, m_open, m_resting, m_others, m_own;
 };
 }  // namespace drape

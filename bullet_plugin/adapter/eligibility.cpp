@@ -5,6 +5,7 @@
 #include "bullet_plugin/adapter/mesh_reader.h"
 #include "bullet_plugin/adapter/plugin_state.h"
 #include "bullet_plugin/adapter/solid_links.h"
+#include "bullet_plugin/adapter/substep_body.h"
 
 namespace drape
 {
@@ -56,6 +57,14 @@ const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, co
 {
     if (const char* reason = reasonFromCloth(state, cloth)) return reason;
     return reasonFromObstacle(obstacle, shape);
+}
+
+const char* reasonForBulletsLinks(const PluginState& state, const btSoftBody& body)
+{
+    if (!state.ready()) return "Drape could not start; see Plugin::error()";
+    if (state.settings().m_solver != Solver::Drape) return "Settings::m_solver leaves links to Bullet";
+    if (!state.steps(body)) return "the world's soft body solver is not a drape::SoftBodySolver of this plugin";
+    return SubstepBody::reasonForBullet(body);
 }
 
 bool handlesCloth(const PluginState& state, const btSoftBody& cloth)

@@ -32,4 +32,7 @@ bool handlesAny(const PluginState& state, const btSoftBody& cloth, const btColli
 
 // Returns whether the two respond to contact: neither ignores the other, and both have contact response.
 bool respond(const btSoftBody& cloth, const btCollisionObject& obstacle);
+
+// Returns why Bullet solves the body's links, null if Drape does. Contacts that Bullet finds in a step come on top.
+const char* reasonForBulletsLinks(const PluginState& state, const btSoftBody& body);
 }  // namespace drape

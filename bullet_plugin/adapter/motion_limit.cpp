@@ -134,7 +134,8 @@ bool MotionLimit::isRestless(std::size_t node, const btVector3& place) const
 bool MotionLimit::keepNear(std::size_t node, btVector3& place) const
 {
     if (!isRestless(node, place)) return false;
-    const btVector3 shift = shiftToPath(m_paths.m_start[node], m_paths.m_end[node], m_leastTolerance, m_leastTolerance, place);
+    const btVector3 shift =
+        shiftToPath(m_paths.m_start[node], m_paths.m_end[node], m_leastTolerance, m_leastTolerance, place);
     place += shift;
     return !(shift == btVector3(0, 0, 0));
 }

@@ -145,6 +145,14 @@ std::string Plugin::whyStock(const btCollisionObject* objectA, const btCollision
     return textOf([&] { return reasonOf(*m_state, objectA, objectB); });
 }
 
+std::string Plugin::whyBulletSolves(const btSoftBody& body) const
+{
+    if (!m_state) return outOfMemory();
+    return textOf(
+        [&]
+        { return std::string(reasonForBulletsLinks(*m_state, body) ? reasonForBulletsLinks(*m_state, body) : ""); });
+}
+
 std::string Plugin::diagnose(const btCollisionWorld& world) const
 {
     if (!m_state) return outOfMemory();

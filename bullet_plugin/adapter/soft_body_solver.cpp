@@ -1,6 +1,8 @@
 #include "drape/soft_body_solver.h"
 
 #include <algorithm>
+#include <unordered_map>
+#include <utility>
 
 #include "BulletSoftBody/btSoftBody.h"
 #include "bullet_plugin/adapter/body_solver.h"
@@ -8,6 +10,7 @@
 #include "bullet_plugin/adapter/eligibility.h"
 #include "bullet_plugin/adapter/motion_bounds.h"
 #include "bullet_plugin/adapter/plugin_state.h"
+#include "bullet_plugin/adapter/substep_body.h"
 #include "bullet_plugin/core/float_environment.h"
 #include "bullet_plugin/core/public_call.h"
 #include "bullet_plugin/core/stopwatch.h"
@@ -73,6 +76,12 @@ struct SoftBodySolver::Work
     }
     // Bullet's links would move the nodes of a body without time, and divide by that time: the result is NaN.
     bool isSteppedBody(const btSoftBody& body) const { return isPredicted(body) && body.m_sst.sdt > 0; }
+    // Returns the object that solves the body's links in this step, null if Bullet does.
+    SubstepBody* substepsOf(const btSoftBody& body) const
+    {
+        const auto found = m_substeps.find(&body);
+        return found != m_substeps.end() && found->second->isPredicted() ? found->second.get() : nullptr;
+    }
     // Runs Bullet's solver for the bodies without contacts from index `first` on, up to the next one with contacts,
     // whose index is returned. Scenes may have thousands of small bodies: the environment changes once for all of them.
     int solveByBullet(const btAlignedObjectArray<btSoftBody*>& bodies, int first)
@@ -82,7 +91,7 @@ struct SoftBodySolver::Work
         for (; i < bodies.size(); ++i)
         {
             if (!isSteppedBody(*bodies[i])) continue;
-            if (contactsOf(*bodies[i])) break;
+            if (contactsOf(*bodies[i]) || substepsOf(*bodies[i])) break;
             m_solved[static_cast<std::size_t>(i)] = 1;
             bodies[i]->solveConstraints();
         }
@@ -102,15 +111,17 @@ struct SoftBodySolver::Work
     std::unique_ptr<CollisionStep> m_step;  // null until it is needed
     std::unique_ptr<BodySolver> m_solver;
     UsageWatch m_usage;
-    std::vector<BodyContacts*> m_touched;        // working memory of solveBodies()
-    std::vector<unsigned char> m_solved;         // by body: solved by Bullet or by its contacts
-    std::vector<btSoftBody*> m_taken;            // bodies that Drape handles in this step
-    std::vector<const btSoftBody*> m_predicted;  // in this step, sorted by address
-    bool m_listed = false;                       // m_predicted is whole
-    bool m_detected = false;                     // the paths of all bodies with a pair are recorded
-    std::size_t m_asleep = 0;                    // cloths that are not among them
-    double m_predictMs = 0;                      // time of this class in predictMotion
-    std::uint64_t m_failures;                    // failures of the state that a step of this solver has reported
+    std::unordered_map<const btSoftBody*, std::unique_ptr<SubstepBody>> m_substeps;  // bodies whose links Drape solves
+    std::vector<BodyContacts*> m_touched;                                            // working memory of solveBodies()
+    std::vector<std::pair<btSoftBody*, SubstepBody*>> m_free;  // working memory: bodies without contacts
+    std::vector<unsigned char> m_solved;                       // by body: solved by Bullet or by its contacts
+    std::vector<btSoftBody*> m_taken;                          // bodies that Drape handles in this step
+    std::vector<const btSoftBody*> m_predicted;                // in this step, sorted by address
+    bool m_listed = false;                                     // m_predicted is whole
+    bool m_detected = false;                                   // the paths of all bodies with a pair are recorded
+    std::size_t m_asleep = 0;                                  // cloths that are not among them
+    double m_predictMs = 0;                                    // time of this class in predictMotion
+    std::uint64_t m_failures;  // failures of the state that a step of this solver has reported
 };
 
 SoftBodySolver::SoftBodySolver(Plugin& plugin) : m_state(plugin.state())
@@ -157,6 +168,7 @@ void SoftBodySolver::beginStep(btScalar dt, std::vector<StepObstacle>& obstacles
                       { return m_state->movedAlong(m_work->m_taken, object, map, slack); });
     obstacles = wakeReached(motions);
     listPredicted();
+    recordVelocities();
     m_work->m_predictMs = watch.lapMs();
 }
 
@@ -164,9 +176,43 @@ void SoftBodySolver::beginStep(btScalar dt, std::vector<StepObstacle>& obstacles
 void SoftBodySolver::coverMotions(const std::vector<StepObstacle>& obstacles)
 {
     Stopwatch watch;
+    for (int i = 0; i < m_softBodySet.size(); ++i)
+    {
+        const auto found = m_work->m_substeps.find(m_softBodySet[i]);
+        if (found != m_work->m_substeps.end() && m_softBodySet[i]->isActive())
+            found->second->afterPrediction(*m_softBodySet[i]);
+    }
     for (btSoftBody* body : m_work->m_taken)
         if (body->isActive()) coverMotion(*m_state, *body, obstacles);
     m_work->m_predictMs += watch.lapMs();
+}
+
+// Prepares the bodies whose links Drape solves in the coming step, and forgets all others.
+void SoftBodySolver::recordVelocities()
+{
+    std::unordered_map<const btSoftBody*, std::unique_ptr<SubstepBody>> kept;
+    for (int i = 0; i < m_softBodySet.size(); ++i)
+    {
+        const btSoftBody& body = *m_softBodySet[i];
+        if (reasonForBulletsLinks(*m_state, body)) continue;
+        std::unique_ptr<SubstepBody>& substeps = kept[&body];
+        substeps = std::move(m_work->m_substeps[&body]);
+        if (!substeps) substeps = std::make_unique<SubstepBody>();
+        substeps->beforePrediction(body);
+    }
+    m_work->m_substeps.swap(kept);
+}
+
+// Leaves bodies to Bullet for this step that changed since the prediction, or that touch what Bullet's own algorithms
+// handle.
+void SoftBodySolver::leaveToBullet()
+{
+    for (int i = 0; i < m_softBodySet.size(); ++i)
+    {
+        btSoftBody& body = *m_softBodySet[i];
+        SubstepBody* const substeps = m_work->substepsOf(body);
+        if (substeps && (!substeps->fits(body) || SubstepBody::reasonForBulletNow(body))) substeps->leave(body);
+    }
 }
 
 // Lists the bodies that Drape takes.
@@ -238,14 +284,24 @@ double SoftBodySolver::solveBodies()
     work.m_touched.clear();
     work.m_touched.reserve(static_cast<std::size_t>(m_softBodySet.size()));
     work.m_solved.assign(static_cast<std::size_t>(m_softBodySet.size()), 0);
+    work.m_free.clear();
     double bulletMs = 0;
     for (int i = 0; i < m_softBodySet.size();)
     {
         btSoftBody& body = *m_softBodySet[i];
         BodyContacts* const contacts = work.isSteppedBody(body) ? work.contactsOf(body) : nullptr;
+        SubstepBody* const substeps = work.isSteppedBody(body) ? work.substepsOf(body) : nullptr;
         if (contacts)
         {
+            contacts->m_substeps = substeps;
             work.m_touched.push_back(contacts);
+        }
+        else if (substeps)
+        {
+            work.m_free.emplace_back(&body, substeps);
+        }
+        if (contacts || substeps)
+        {
             ++i;
             continue;
         }
@@ -253,11 +309,13 @@ double SoftBodySolver::solveBodies()
         i = work.solveByBullet(m_softBodySet, i);
         bulletMs += watch.lapMs();
     }
+    work.m_solver->solveFree(work.m_free);
     return bulletMs + work.m_solver->solve(work.m_touched, m_state->m_found);
 }
 
 void SoftBodySolver::solveStep()
 {
+    leaveToBullet();
     detect();
     StepStatistics& statistics = m_state->m_statistics;
     const double waitMs = statistics.m_waitMs;

@@ -30,13 +30,14 @@ bool isHash(const std::string& text)
 // Expects every key of a run, each with its type.
 void expectRun(const Json& run, int steps)
 {
-    for (const char* key : {"backend", "device", "device_reason", "hash"})
+    for (const char* key : {"backend", "device", "device_reason", "solver", "hash"})
         EXPECT_TRUE(run.at(key).is_string()) << key;
     for (const char* key :
          {"steps", "cloth_triangles", "obstacle_triangles", "contacts_max", "nodes_below_surface", "nodes_through",
           "intersecting_pairs_end", "intersecting_pairs_max", "intersecting_pairs_max_step", "nan_nodes"})
         EXPECT_TRUE(run.at(key).is_number_unsigned()) << key;
-    for (const char* key : {"thickness_m", "penetration_max_m", "penetration_p99_m", "gap_min_m"})
+    for (const char* key : {"thickness_m", "penetration_max_m", "penetration_p99_m", "gap_min_m", "stretch_mean", "stretch_max",
+                            "rest_speed_mm_s"})
         EXPECT_TRUE(run.at(key).is_number()) << key;
     for (const char* key : {"step_ms", "collision_ms"})
         for (const char* part : {"first", "median", "p95", "max"})

@@ -15,7 +15,8 @@ constexpr int kMostUnevenSubsteps = 20;
 Settings settingsFor(WorldBackend backend)
 {
     Settings settings;
-    settings.m_backend = backend == WorldBackend::Host ? Backend::Host : Backend::OpenCl;
+    settings.m_backend = backend == WorldBackend::OpenCl ? Backend::OpenCl : Backend::Host;
+    settings.m_solver = backend == WorldBackend::Substeps ? Solver::Drape : Solver::Bullet;
     settings.m_log = nullptr;
     settings.m_threads = 1;  // worlds run side by side; the number of threads changes no bit
     return settings;

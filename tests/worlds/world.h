@@ -24,7 +24,8 @@ enum class WorldBackend
 {
     Host,
     OpenCl,
-    Stock  // Bullet's own collision
+    Stock,    // Bullet's own collision
+    Substeps  // the host, with Drape's solver of links
 };
 
 struct WorldObstacle

@@ -57,6 +57,7 @@ void describe(RunRecord& record, BulletMode mode, const DropScene& scene)
 {
     record.m_backend = std::string("bullet (") + modeName(mode) + ")";
     record.m_device = "host";
+    record.m_solver = "bullet";
     record.m_deviceReason = "Bullet's built-in collision runs on the host";
     record.m_clothTriangles = scene.m_cloth.m_mesh.triangleCount();
     record.m_clothNodes = scene.m_cloth.m_mesh.vertexCount();

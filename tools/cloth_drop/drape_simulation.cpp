@@ -52,6 +52,10 @@ public:
     std::string backend() const override { return m_plugin->device().m_onHost ? "host" : "opencl"; }
     std::string device() const override { return m_plugin->device().m_device.m_name; }
     std::string deviceReason() const override { return m_plugin->device().m_reason; }
+    std::string solver() const override
+    {
+        return m_plugin->whyBulletSolves(m_world.cloth()).empty() ? "drape" : "bullet";
+    }
     double prepareMs() const override
     {
         return m_plugin->device().m_buildMs + m_plugin->device().m_measureMs + m_meshesMs;
@@ -85,6 +89,9 @@ std::unique_ptr<Simulation> makeDrapeSimulation(const DropScene& scene, const Op
     settings.m_mode = options.m_contactMode == "discrete"     ? ContactMode::Discrete
                       : options.m_contactMode == "continuous" ? ContactMode::Continuous
                                                               : ContactMode::Automatic;
+    settings.m_solver = options.m_solver == "drape"    ? Solver::Drape
+                        : options.m_solver == "bullet" ? Solver::Bullet
+                                                       : Solver::Auto;
     auto simulation = std::make_unique<DrapeSimulation>(scene, settings);
     error = simulation->plugin().error();
     if (!simulation->plugin().ready())

@@ -45,6 +45,7 @@ public:
 
     TimedWorld& world() { return m_world; }
     btSoftBody& cloth() { return *m_cloth; }
+    const btSoftBody& cloth() const { return *m_cloth; }
 
     // Runs one step and returns its wall time in ms.
     double step(double dt);

@@ -65,6 +65,7 @@ Json asJson(const RunRecord& record)
     json["backend"] = record.m_backend;
     json["device"] = record.m_device;
     json["device_reason"] = record.m_deviceReason;
+    json["solver"] = record.m_solver;
     json["prepare_ms"] = record.m_prepareMs;
     json["steps"] = record.m_steps.size();
     json["steps_in_contact"] = summary.m_stepsInContact;
@@ -88,6 +89,9 @@ Json asJson(const RunRecord& record)
     json["intersecting_pairs_end"] = summary.m_intersectingPairsEnd;
     json["intersecting_pairs_max"] = summary.m_intersectingPairsMax;
     json["intersecting_pairs_max_step"] = summary.m_intersectingPairsMaxStep;
+    json["stretch_mean"] = summary.m_stretch.m_mean;
+    json["stretch_max"] = summary.m_stretch.m_max;
+    json["rest_speed_mm_s"] = 1000 * summary.m_restSpeed;
     json["nan_nodes"] = summary.m_invalidNodes;
     json["hash"] = hashText(summary.m_hash);
     if (record.m_capped) json["capped_at_step"] = record.m_steps.size();

@@ -48,6 +48,14 @@ double depthPercentile(std::vector<double> depths, std::size_t samples, double s
                      std::greater<>());
     return depths[above];
 }
+double restSpeedOf(const std::vector<StepRecord>& steps)
+{
+    const std::size_t count = (steps.size() + 3) / 4;
+    double sum = 0;
+    for (std::size_t i = steps.size() - count; i < steps.size(); ++i)
+        sum += steps[i].m_speed * steps[i].m_speed;
+    return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0;
+}
 }  // namespace
 
 RunSummary summarise(const RunRecord& record)
@@ -86,6 +94,8 @@ RunSummary summarise(const RunRecord& record)
     summary.m_nodesBelow = last.m_measure.nodesBelow();
     summary.m_nodesThrough = last.m_nodesThrough;
     summary.m_intersectingPairsEnd = last.m_measure.m_intersectingPairs;
+    summary.m_stretch = last.m_stretch;
+    summary.m_restSpeed = restSpeedOf(record.m_steps);
     summary.m_hash = last.m_hash;
     return summary;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tools/cloth_drop/simulation.h"
+#include "tools/cloth_drop/stretch_meter.h"
 #include "oracle/measure.h"
 
 namespace drape
@@ -16,12 +17,14 @@ struct StepRecord
     StepMeasure m_measure;
     std::size_t m_nodesThrough = 0;  // whose way met the obstacle's surface, in this step or before (Crossings)
     double m_speed = 0;              // m/s, root mean square of the nodes' speeds over the step
+    MeshStretch m_stretch;           // against the cloth at the start
     std::uint64_t m_hash = 0;        // hash of all positions up to and including this step
 };
 
 struct RunRecord
 {
     std::string m_backend, m_device, m_deviceReason;
+    std::string m_solver;  // the solver of the links: drape or bullet
     double m_prepareMs = 0;
     std::size_t m_clothTriangles = 0, m_clothNodes = 0, m_obstacleTriangles = 0;
     double m_thickness = 0;
@@ -53,6 +56,8 @@ struct RunSummary
     std::size_t m_intersectingPairsMax = 0;      // after any step
     std::size_t m_intersectingPairsMaxStep = 0;  // the first step that had so many, from 1; 0: no step had any
     std::size_t m_invalidNodes = 0;              // most in any step
+    MeshStretch m_stretch;                       // after the last step
+    double m_restSpeed = 0;                      // m/s, root mean square over the last quarter of the steps
     std::uint64_t m_hash = 0;
 };
 

@@ -28,6 +28,7 @@ bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, co
     TriangleMesh lastFrame = scene.m_cloth.m_mesh;
     PenetrationMeter meter(scene.m_obstacle, scene.m_cloth.m_mesh);
     Crossings crossings(scene.m_obstacle, scene.m_cloth.m_mesh.m_positions);
+    const StretchMeter stretch(scene.m_cloth.m_mesh);
     std::uint64_t hash = kHashStart;
     const bool frames = !framesFolder.empty();
     if (frames && !(writeMesh(framesFolder + "/obstacle.ply", scene.m_obstacle, error) &&
@@ -43,6 +44,7 @@ bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, co
         step.m_speed = rmsSpeed(lastFrame.m_positions, positions, scene.m_dt);
         lastFrame.m_positions = positions;
         step.m_measure = meter.measure(lastFrame.m_positions.data());
+        step.m_stretch = stretch.measure(positions);
         crossings.follow(positions);
         step.m_nodesThrough = crossings.nodes();
         step.m_hash = hash = hashFloats(hash, lastFrame.m_positions);
@@ -55,6 +57,7 @@ bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, co
     }
     // With the automatic choice only the steps show which back end ran.
     record.m_backend = simulation.backend();
+    record.m_solver = simulation.solver();
     record.m_device = simulation.device();
     record.m_deviceReason = simulation.deviceReason();
     record.m_trouble = simulation.trouble();

@@ -54,6 +54,8 @@ public:
     virtual std::string backend() const = 0;
     virtual std::string device() const = 0;
     virtual std::string deviceReason() const = 0;
+    // Returns who solves the cloth's links: drape or bullet.
+    virtual std::string solver() const { return "bullet"; }
     virtual double prepareMs() const = 0;  // making the kernels and meshes ready, not part of any step
 
     // Returns one line if a device failed during the run and the back end changed, else "".

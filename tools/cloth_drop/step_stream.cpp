@@ -27,6 +27,7 @@ Json asLine(const StepRecord& step)
             {"pairs", step.m_measure.m_intersectingPairs},
             {"invalid", step.m_measure.m_invalidNodes},
             {"speed", step.m_speed},
+            {"stretch", {step.m_stretch.m_mean, step.m_stretch.m_max}},
             {"hash", step.m_hash}};
 }
 
@@ -64,6 +65,7 @@ StepRecord stepFromLine(const std::string& text, std::vector<float>& positions)
     step.m_measure.m_intersectingPairs = line.at("pairs");
     step.m_measure.m_invalidNodes = line.at("invalid");
     step.m_speed = line.at("speed").is_null() ? 0.0 : line.at("speed").get<double>();
+    step.m_stretch = {numberOf(line.at("stretch").at(0)), numberOf(line.at("stretch").at(1))};
     step.m_hash = line.at("hash");
     return step;
 }

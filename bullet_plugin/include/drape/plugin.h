@@ -86,6 +86,11 @@ public:
     // if memory runs out.
     std::string whyStock(const btCollisionObject* objectA, const btCollisionObject* objectB) const;
 
+    // Returns an empty string if Drape solves the soft body's links (Settings::m_solver), otherwise the reason why
+    // Bullet does. The answer is about the coming step, as far as the body's own numbers tell: contacts that Bullet's
+    // own algorithm finds in a step leave that step to Bullet. "out of memory" if memory runs out.
+    std::string whyBulletSolves(const btSoftBody& body) const;
+
     // Lists problems of a world, one line each; empty if there are none. Checks the world's solver and dispatcher,
     // pairs left to Bullet, cloth that intersects a mesh or lies inside one, nodes that are not finite, margins out of
     // proportion, and the last step's status. For development: takes milliseconds to seconds. Call between steps. "out

@@ -2,7 +2,8 @@
 //
 // Pass it to btSoftRigidDynamicsWorld's constructor. solveConstraints() finds the contacts of the pairs noted during
 // dispatch and waits for the device once, or again if fast paths are cut short. Bullet then iterates, with a contact
-// round before each iteration and closing rounds after the last. A body with contacts gets at least two iterations,
+// round before each iteration and closing rounds after the last. With Solver::Drape, substeps of Drape's take the place
+// of Bullet's iterations. A body with contacts gets at least two iterations,
 // unless its piterations is 0. Bodies without a time step stay unchanged, and bodies of another solver are left to
 // Bullet. A kinematic mesh that comes near a sleeping body wakes it.
 //
@@ -46,6 +47,8 @@ private:
     void listTaken();
     std::vector<StepObstacle> wakeReached(KinematicMotions& motions);
     void listPredicted();
+    void recordVelocities();
+    void leaveToBullet();
     void coverMotions(const std::vector<StepObstacle>& obstacles);
     void detect();
     double solveBodies();

@@ -1,0 +1,328 @@
+// Drape's solver in Bullet worlds: the same bits everywhere, Bullet's meaning of materials and masses, momentum, and
+// bodies that Bullet solves for a step.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "BulletSoftBody/btSoftBodyHelpers.h"
+#include "scenes/shapes.h"
+#include "tests/bullet/drop_world.h"
+#include "tests/support/backends.h"
+
+namespace drape::test
+{
+namespace
+{
+Settings withSolver(Solver solver)
+{
+    Settings settings = hostSettings();
+    settings.m_solver = solver;
+    return settings;
+}
+
+// A cloth dropped on a sphere.
+Course dropOnSphere(const Settings& settings, int nodes, int steps)
+{
+    Plugin plugin(settings);
+    const TriangleMesh sphere = makeSphere(0.4f, 3);
+    MeshShape shape(sphere);
+    DropWorld world(&plugin);
+    world.addObstacle(shape.shape());
+    ClothSpec spec;
+    spec.m_nodes = nodes;
+    spec.m_centre = btVector3(0, btScalar(0.5), 0);
+    btSoftBody& cloth = world.addCloth(spec);
+    EXPECT_EQ(plugin.whyBulletSolves(cloth).empty(), settings.m_solver == Solver::Drape);
+    return runMeasured(world, cloth, sphere, steps);
+}
+
+// Mean stretch of the links against their rest lengths.
+double meanStretch(const btSoftBody& body)
+{
+    double sum = 0;
+    for (int i = 0; i < body.m_links.size(); ++i)
+    {
+        const btSoftBody::Link& link = body.m_links[i];
+        sum += double((link.m_n[0]->m_x - link.m_n[1]->m_x).length() / link.m_rl) - 1;
+    }
+    return sum / body.m_links.size();
+}
+
+// Returns the linear momentum, the angular momentum about the centre of mass, and the sums of the nodes' shares in them
+// by length.
+std::vector<double> momentumOf(const btSoftBody& cloth)
+{
+    std::vector<double> sums(8, 0.0);
+    btVector3 centre(0, 0, 0);
+    for (int i = 0; i < cloth.m_nodes.size(); ++i)
+        centre += cloth.m_nodes[i].m_x / btScalar(cloth.m_nodes.size());
+    for (int i = 0; i < cloth.m_nodes.size(); ++i)
+    {
+        const btSoftBody::Node& node = cloth.m_nodes[i];
+        const double mass = 1 / double(node.m_im);
+        const btVector3 turn = (node.m_x - centre).cross(node.m_v);
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            sums[std::size_t(axis)] += mass * double(node.m_v[axis]);
+            sums[std::size_t(3 + axis)] += mass * double(turn[axis]);
+        }
+        sums[6] += mass * double(node.m_v.length());
+        sums[7] += mass * double((node.m_x - centre).length() * node.m_v.length());
+    }
+    return sums;
+}
+
+// A rope that hangs from its first node.
+std::unique_ptr<btSoftBody> makeHangingRope(btSoftBodyWorldInfo& info, int links, btScalar stiffness)
+{
+    std::unique_ptr<btSoftBody> rope(
+        btSoftBodyHelpers::CreateRope(info, btVector3(0, 0, 0), btVector3(0, -1, 0), links - 1, 1));
+    rope->m_materials[0]->m_kLST = stiffness;
+    rope->updateConstants();
+    rope->m_cfg.piterations = 4;
+    rope->m_cfg.kDP = btScalar(0.05);
+    return rope;
+}
+
+// Returns the rope's length, m, after it has come to rest.
+double hungLength(Solver solver, int links, btScalar stiffness)
+{
+    Plugin plugin(withSolver(solver));
+    DropWorld world(&plugin);
+    const std::unique_ptr<btSoftBody> rope = makeHangingRope(world.world().getWorldInfo(), links, stiffness);
+    world.world().addSoftBody(rope.get());
+    world.step(600);
+    world.world().removeSoftBody(rope.get());
+    return -double(rope->m_nodes[rope->m_nodes.size() - 1].m_x.y());
+}
+}  // namespace
+
+TEST(Substeps, GiveTheSameBitsOnAnyNumberOfThreads)
+{
+    Course first;
+    for (const unsigned threads : {1u, 2u, 7u})
+    {
+        Settings settings = withSolver(Solver::Drape);
+        settings.m_threads = threads;
+        const Course course = dropOnSphere(settings, 41, 50);
+        expectClean(course);
+        if (threads == 1) first = course;
+        EXPECT_EQ(course.m_hash, first.m_hash) << threads << " threads";
+    }
+}
+
+class SubstepsOn : public BackendTest
+{
+};
+
+TEST_P(SubstepsOn, GiveTheSameBitsOnEveryBackend)
+{
+    Settings settings = GetParam().m_settings;
+    settings.m_solver = Solver::Drape;
+    const Course course = dropOnSphere(settings, 25, 60), host = dropOnSphere(withSolver(Solver::Drape), 25, 60);
+    expectClean(course);
+    EXPECT_EQ(course.m_hash, host.m_hash);
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, SubstepsOn, testing::ValuesIn(allBackends()), backendName);
+
+TEST(Substeps, ClothOnASphereStretchesSeveralTimesLess)
+{
+    const auto stretchWith = [](Solver solver)
+    {
+        Plugin plugin(withSolver(solver));
+        MeshShape shape(makeSphere(0.4f, 3));
+        DropWorld world(&plugin);
+        world.addObstacle(shape.shape());
+        ClothSpec spec;
+        spec.m_nodes = 33;
+        spec.m_centre = btVector3(0, btScalar(0.5), 0);
+        btSoftBody& cloth = world.addCloth(spec);
+        world.step(200);
+        return meanStretch(cloth);
+    };
+    const double drape = stretchWith(Solver::Drape), bullet = stretchWith(Solver::Bullet);
+    EXPECT_LT(drape, 0.4 * bullet);
+    EXPECT_GT(drape, -0.01) << "links are not pressed together";
+}
+
+// One link has Bullet's equilibrium whatever its stiffness; a rope of stiff links is nearer to its rest length.
+TEST(Substeps, SoftLinksKeepTheirStiffness)
+{
+    for (const btScalar stiffness : {btScalar(0.003), btScalar(0.02), btScalar(0.2)})
+    {
+        const double bullet = hungLength(Solver::Bullet, 1, stiffness), drape = hungLength(Solver::Drape, 1, stiffness);
+        EXPECT_GT(bullet, 1.001);
+        EXPECT_NEAR(drape - 1, bullet - 1, 0.03 * (bullet - 1)) << "kLST " << stiffness;
+    }
+    const double bullet = hungLength(Solver::Bullet, 20, 1), drape = hungLength(Solver::Drape, 20, 1);
+    EXPECT_GT(bullet, 1.001);
+    EXPECT_LT(drape - 1, 0.5 * (bullet - 1));
+    EXPECT_GT(drape, 0.999);
+}
+
+TEST(Substeps, FreeClothKeepsItsMomentum)
+{
+    Plugin plugin(withSolver(Solver::Drape));
+    DropWorld world(&plugin);
+    world.world().getWorldInfo().m_gravity.setZero();
+    ClothSpec spec;
+    spec.m_damping = 0;
+    btSoftBody& cloth = world.addCloth(spec);
+    for (int i = 0; i < cloth.m_nodes.size(); ++i)
+        cloth.m_nodes[i].m_v =
+            btVector3(btScalar(0.3), btScalar(0.01) * btScalar(i % 17), btScalar(0.02) * btScalar(i / 17));
+    const std::vector<double> before = momentumOf(cloth);
+    world.step(300);
+    const std::vector<double> after = momentumOf(cloth);
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        EXPECT_NEAR(after[i], before[i], 1e-5 * before[6]) << "linear " << i;
+        EXPECT_NEAR(after[3 + i], before[3 + i], 1e-4 * before[7]) << "angular " << i;
+    }
+}
+
+TEST(Substeps, FreeFallIsAParabola)
+{
+    Plugin plugin(withSolver(Solver::Drape));
+    DropWorld world(&plugin);
+    ClothSpec spec;
+    spec.m_damping = 0;
+    btSoftBody& cloth = world.addCloth(spec);
+    const double gravity = double(world.world().getWorldInfo().m_gravity.y());
+    world.step(60);
+    // Substeps of 1/60 s / n end half a substep's velocity below the parabola.
+    EXPECT_NEAR(double(cloth.m_nodes[0].m_x.y()), 0.5 * gravity, 0.02 * std::fabs(gravity));
+    EXPECT_NEAR(double(cloth.m_nodes[0].m_v.y()), gravity, 1e-3 * std::fabs(gravity));
+}
+
+TEST(Substeps, PinnedAndMovedNodesStayWhereTheAppPutsThem)
+{
+    Plugin plugin(withSolver(Solver::Drape));
+    DropWorld world(&plugin);
+    btSoftBody& cloth = world.addCloth(ClothSpec());
+    cloth.setMass(0, 0);
+    cloth.setMass(16, 0);
+    const btVector3 held = cloth.m_nodes[0].m_x;
+    for (int step = 0; step < 120; ++step)
+    {
+        cloth.m_nodes[16].m_x += btVector3(0, 0, btScalar(0.002));
+        world.step();
+    }
+    EXPECT_EQ(cloth.m_nodes[0].m_x, held);
+    EXPECT_NEAR(double(cloth.m_nodes[16].m_x.z() - held.z()), 0.24, 1e-5);
+    EXPECT_LT(double(lowestOf(cloth)), -0.3);
+    EXPECT_LT(meanStretch(cloth), 0.05);
+}
+
+TEST(Substeps, ChangesBetweenStepsCount)
+{
+    Plugin plugin(withSolver(Solver::Drape));
+    DropWorld world(&plugin);
+    btSoftBodyWorldInfo& info = world.world().getWorldInfo();
+    const std::unique_ptr<btSoftBody> rope = makeHangingRope(info, 8, 1);
+    world.world().addSoftBody(rope.get());
+    world.step(60);
+    btSoftBody::Node& last = rope->m_nodes[8];
+    EXPECT_NEAR(double(last.m_x.y()), -1, 0.02);
+    rope->m_links[7].m_rl *= 2;
+    rope->m_links[7].m_c1 *= 4;
+    world.step(200);
+    EXPECT_NEAR(double(last.m_x.y()), -1.125, 0.02) << "a longer link";
+    rope->m_materials[0]->m_kLST = btScalar(0.001);
+    rope->updateLinkConstants();
+    world.step(60);
+    EXPECT_LT(double(last.m_x.y()), -1.2) << "a softer material";
+    rope->m_links.removeAtIndex(7);
+    const double before = double(rope->m_nodes[8].m_x.y());
+    world.step(30);
+    EXPECT_LT(double(rope->m_nodes[8].m_x.y()), before - 0.5) << "a link less";
+    world.world().removeSoftBody(rope.get());
+}
+
+TEST(Substeps, WhyBulletSolvesNamesTheReason)
+{
+    Plugin plugin(withSolver(Solver::Drape)), stock(withSolver(Solver::Bullet)), automatic(withSolver(Solver::Auto));
+    DropWorld world(&plugin);
+    btSoftBody& cloth = world.addCloth(ClothSpec());
+    world.step();
+    const auto reason = [&] { return plugin.whyBulletSolves(cloth); };
+    EXPECT_EQ(reason(), "");
+    EXPECT_NE(stock.whyBulletSolves(cloth).find("m_solver"), std::string::npos);
+    EXPECT_NE(automatic.whyBulletSolves(cloth).find("m_solver"), std::string::npos);
+    cloth.m_cfg.viterations = 1;
+    EXPECT_NE(reason().find("viterations"), std::string::npos);
+    cloth.m_cfg.viterations = 0;
+    cloth.m_cfg.diterations = 1;
+    EXPECT_NE(reason().find("diterations"), std::string::npos);
+    cloth.m_cfg.diterations = 0;
+    cloth.m_cfg.piterations = 0;
+    EXPECT_NE(reason().find("piterations"), std::string::npos);
+    cloth.m_cfg.piterations = 4;
+    cloth.setPose(false, true);
+    cloth.m_cfg.kMT = btScalar(0.1);
+    EXPECT_NE(reason().find("pose"), std::string::npos);
+    cloth.m_cfg.kMT = 0;
+    btBoxShape box(btVector3(1, 1, 1));
+    btRigidBody body(btScalar(1), nullptr, &box);
+    cloth.appendAnchor(0, &body);
+    EXPECT_NE(reason().find("anchors"), std::string::npos);
+    cloth.m_anchors.clear();
+    EXPECT_EQ(reason(), "");
+}
+
+// Bullet's own algorithm finds the contacts with a box, so Bullet solves those steps.
+TEST(Substeps, AClothThatLandsOnABoxChangesOverWithoutAJump)
+{
+    const auto restOn = [](Solver solver)
+    {
+        Plugin plugin(withSolver(solver));
+        btBoxShape box(btVector3(2, btScalar(0.5), 2));
+        DropWorld world(&plugin);
+        world.addObstacle(box);
+        ClothSpec spec;
+        spec.m_centre = btVector3(0, 1, 0);
+        btSoftBody& cloth = world.addCloth(spec);
+        double fastest = 0;
+        for (int step = 0; step < 240; ++step)
+        {
+            world.step();
+            fastest = std::max(fastest, rmsSpeed(cloth));
+        }
+        EXPECT_LT(fastest, 4) << "no node is thrown";
+        EXPECT_LT(rmsSpeed(cloth), 0.02);
+        return double(lowestOf(cloth));
+    };
+    EXPECT_NEAR(restOn(Solver::Drape), restOn(Solver::Bullet), 0.005);
+}
+
+TEST(Substeps, ManySmallClothsGiveTheSameBitsAsOneAtATime)
+{
+    const auto hashWith = [](unsigned threads)
+    {
+        Settings settings = withSolver(Solver::Drape);
+        settings.m_threads = threads;
+        Plugin plugin(settings);
+        MeshShape shape(makeSphere(0.4f, 3));
+        DropWorld world(&plugin);
+        world.addObstacle(shape.shape());
+        std::vector<btSoftBody*> cloths;
+        for (int i = 0; i < 20; ++i)
+        {
+            ClothSpec spec;
+            spec.m_nodes = 13;
+            spec.m_centre =
+                btVector3(btScalar(0.3) * btScalar(i % 5) - btScalar(0.6), btScalar(0.5 + 0.1 * (i / 5)), 0);
+            cloths.push_back(&world.addCloth(spec));
+        }
+        world.step(40);
+        std::uint64_t hash = kHashStart;
+        for (const btSoftBody* cloth : cloths)
+            hash = hashOf(*cloth, hash);
+        return hash;
+    };
+    EXPECT_EQ(hashWith(1), hashWith(3));
+}
+}  // namespace drape::test
