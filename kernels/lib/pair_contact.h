@@ -9,61 +9,11 @@
 #include "node_face_contact.h"
 #include "rigid_motion.h"
 #include "segment.h"
+#include "step_views.h"
 
 DRAPE_NAMESPACE_BEGIN
 
 #define DRAPE_FEATURE_TESTS 15
-
-typedef struct ClothView
-{
-    const DRAPE_GLOBAL float* m_start;  // m, x y z per node
-    const DRAPE_GLOBAL float* m_end;
-    const DRAPE_GLOBAL Triangle* m_triangles;
-    const DRAPE_GLOBAL Edge* m_edges;
-    DRAPE_UINT m_nodeCount;
-    DRAPE_UINT m_triangleCount;
-    DRAPE_UINT m_mode;                            // DRAPE_DISCRETE …
-    DRAPE_UINT* m_searches;                       // see PairBounds
-    const DRAPE_GLOBAL ObstacleMotion* m_motion;  // motion of the current obstacle; null if it rests
-} ClothView;
-
-typedef struct ObstacleView
-{
-    const DRAPE_GLOBAL float* m_positions;  // m, x y z per vertex
-    const DRAPE_GLOBAL Triangle* m_triangles;
-    const DRAPE_GLOBAL NormalCone* m_vertexCones;
-    const DRAPE_GLOBAL NormalCone* m_edgeCones;
-} ObstacleView;
-
-DRAPE_FUNCTION ClothView clothView(const DRAPE_GLOBAL float* start, const DRAPE_GLOBAL float* end,
-                                   const DRAPE_GLOBAL Triangle* triangles, const DRAPE_GLOBAL Edge* edges,
-                                   DRAPE_UINT nodeCount, DRAPE_UINT triangleCount, DRAPE_UINT mode,
-                                   DRAPE_UINT* searches)
-{
-    ClothView view;
-    view.m_start = start;
-    view.m_end = end;
-    view.m_triangles = triangles;
-    view.m_edges = edges;
-    view.m_nodeCount = nodeCount;
-    view.m_triangleCount = triangleCount;
-    view.m_mode = mode;
-    view.m_searches = searches;
-    view.m_motion = 0;
-    return view;
-}
-
-DRAPE_FUNCTION ObstacleView obstacleView(const DRAPE_GLOBAL float* positions, const DRAPE_GLOBAL Triangle* triangles,
-                                         const DRAPE_GLOBAL NormalCone* vertexCones,
-                                         const DRAPE_GLOBAL NormalCone* edgeCones)
-{
-    ObstacleView view;
-    view.m_positions = positions;
-    view.m_triangles = triangles;
-    view.m_vertexCones = vertexCones;
-    view.m_edgeCones = edgeCones;
-    return view;
-}
 
 // A node at the step's start, relative to the current obstacle.
 DRAPE_FUNCTION Vec3 nodeStart(const ClothView* cloth, DRAPE_UINT node)

@@ -42,10 +42,11 @@ void HostPatches::updateObstacles(const Scene& scene, std::size_t fresh)
     }
 }
 
-HostCloths HostPatches::clothsOf(const Scene& scene, const StepPairs& pairs, const Settings& settings,
+StepCloths HostPatches::clothsOf(const Scene& scene, const StepPairs& pairs, const Settings& settings,
                                  ItemRange triangles) const
 {
-    return {m_clothOrder.data() + triangles.m_first,
+    return {clothView(scene, settings),
+            m_clothOrder.data() + triangles.m_first,
             std::uint32_t(triangles.count()),
             pairs.m_clothRadius.data(),
             pairs.m_thickness.data(),
@@ -67,8 +68,7 @@ std::vector<std::uint64_t> HostPatches::countTests(const Scene& scene, const Ste
     {
         if (pairs.m_clothRadius[slot] < 0.0f) continue;
         const ItemRange triangles = {cloths.begin(slot).m_triangle, cloths.begin(slot + 1).m_triangle};
-        counts[slot] +=
-            m_cull.count(clothView(scene, settings), clothsOf(scene, pairs, settings, triangles), limit, threads);
+        counts[slot] += m_cull.count(clothsOf(scene, pairs, settings, triangles), limit, threads);
     }
     return counts;
 }
@@ -82,8 +82,8 @@ bool HostPatches::run(const Scene& scene, const StepPairs& pairs, const Settings
     const StepLimits limits(settings);
     const std::size_t mostTests = std::min(limits.m_candidates, pairs.m_limits.m_tests);
     StepCounters counters = {};
-    const HostCloths cloths = clothsOf(scene, pairs, settings, {0, m_clothOrder.size()});
-    result.m_retries = m_cull.run(clothView(scene, settings), cloths, mostTests, threads, counters);
+    const StepCloths cloths = clothsOf(scene, pairs, settings, {0, m_clothOrder.size()});
+    result.m_retries = m_cull.run(cloths, mostTests, threads, counters);
     result.m_invalidNodes = counters.m_invalidNodes;
     result.m_broadMs = watch.lapMs();
     result.m_overLimit = counters.m_candidates > mostTests;
@@ -92,10 +92,11 @@ bool HostPatches::run(const Scene& scene, const StepPairs& pairs, const Settings
     result.m_candidates = counters.m_candidates;
 
     const CpuKernels& kernels = m_cull.kernels();
-    const HostFeatures features = {m_cull.tests().data(), counters.m_candidates, clothView(scene, settings),
-                                   m_placed.view(scene),  m_cull.packed(),       pairs.m_motions.data()};
-    result.m_retries += m_hits.find(kernels.m_findHits, kernels.m_findSwept, &StepCounters::m_swept, features,
-                                    scene.slotCount(), {limits.m_contacts, pairs.m_limits.m_swept}, threads, counters);
+    const FeatureInput input = {m_cull.tests().data(), counters.m_candidates, cloths.m_cloth,
+                                m_placed.view(scene),  m_cull.packed(),       pairs.m_motions.data()};
+    result.m_retries +=
+        m_contacts.find(kernels.m_findContacts, kernels.m_findSwept, &StepCounters::m_swept, input, scene.slotCount(),
+                        {limits.m_contacts, pairs.m_limits.m_swept}, threads, counters);
     result.m_sweptTests = counters.m_swept;
     result.m_overLimit = result.m_overTests = counters.m_swept > pairs.m_limits.m_swept;
     if (result.m_overLimit) return false;
@@ -103,7 +104,7 @@ bool HostPatches::run(const Scene& scene, const StepPairs& pairs, const Settings
     if (result.m_overLimit)
         result.m_contactDemand = counters.m_contactsFound;
     else
-        m_hits.order(counters.m_contactsFound, result.m_contacts, threads);
+        m_contacts.order(counters.m_contactsFound, result.m_contacts, threads);
     result.m_narrowMs = watch.lapMs();
     return !result.m_overLimit;
 }

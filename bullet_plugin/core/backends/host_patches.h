@@ -3,7 +3,7 @@
 #pragma once
 
 #include "bullet_plugin/core/broad_phase/host_patch_cull.h"
-#include "bullet_plugin/core/narrow_phase/host_hits.h"
+#include "bullet_plugin/core/narrow_phase/host_contacts.h"
 #include "bullet_plugin/core/cloth_cloth/host_self_patches.h"
 #include "drape/settings.h"
 #include "host_placed_obstacles.h"
@@ -34,21 +34,21 @@ public:
         m_cull.giveBackRoom();
         m_placed.giveBackRoom();
         dropRoom(m_clothOrder);
-        m_hits.giveBackRoom();
+        m_contacts.giveBackRoom();
         m_self.giveBackRoom();
     }
 
 private:
     void updateObstacles(const Scene& scene, std::size_t fresh);
     // The cloths' triangles in these places of their order.
-    HostCloths clothsOf(const Scene& scene, const StepPairs& pairs, const Settings& settings,
+    StepCloths clothsOf(const Scene& scene, const StepPairs& pairs, const Settings& settings,
                         ItemRange triangles) const;
 
     HostPatchCull m_cull;
     HostPlacedObstacles m_placed;
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
     std::vector<std::uint32_t> m_clothOrder;  // order of the cloths' own patches, traversed in packets
-    HostHitFinder m_hits;
+    HostContactFinder m_contacts;
     HostSelfPatches m_self;
 };
 }  // namespace drape

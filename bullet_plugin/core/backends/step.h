@@ -8,7 +8,7 @@
 
 #include "bullet_plugin/core/device/buffer.h"
 #include "bullet_plugin/core/scene/mesh_pool.h"
-#include "bullet_plugin/core/narrow_phase/narrow_phase.h"
+#include "kernels/lib/pair_contact.h"
 #include "bullet_plugin/core/pipeline/pipeline.h"
 #include "bullet_plugin/core/cloth_cloth/self_step.h"
 #include "ordinary_work.h"

@@ -22,6 +22,7 @@ public:
 
     std::size_t capacity() const { return m_capacity; }
     cl::Buffer& handle() { return m_buffer; }
+    const cl::Buffer& handle() const { return m_buffer; }
 
     // Makes room for count elements (at least one). Contents are lost when it grows; returns whether it did.
     bool reserve(Device& device, std::size_t count)
