@@ -65,12 +65,12 @@ typedef struct StepCloths
 {
     ClothView m_cloth;
     const DRAPE_GLOBAL DRAPE_UINT* m_order;  // triangles, patch by patch
-    DRAPE_UINT m_count;                      // of them in the step
+    DRAPE_UINT m_count;                      // number of them in the step
     const DRAPE_GLOBAL float* m_radius;      // m, per cloth, negative for cloths outside the step
     const DRAPE_GLOBAL float* m_thickness;   // m, cloths × obstacles, negative for untested pairs
     DRAPE_UINT m_obstacleMeshes;
     float m_reachScale;
-    const DRAPE_GLOBAL ObstacleMotion* m_motions;  // of the obstacles that move in the step
+    const DRAPE_GLOBAL ObstacleMotion* m_motions;  // motions of the moving obstacles
     DRAPE_UINT m_motionCount;
 } StepCloths;
 

@@ -27,8 +27,8 @@ typedef struct PairQueryValues
 
 typedef struct TraverseValues
 {
-    DRAPE_UINT m_firstLeaf, m_leafCount;  // of side a
-    DRAPE_UINT m_root;                    // of side b
+    DRAPE_UINT m_firstLeaf, m_leafCount;  // leaves of side a
+    DRAPE_UINT m_root;                    // root of side b
     DRAPE_UINT m_kind;                    // DRAPE_WALK_…
     DRAPE_UINT m_capacity;
     DRAPE_UINT m_enough;  // pairs at which the traversal ends, at most DRAPE_DEMAND_LIMIT

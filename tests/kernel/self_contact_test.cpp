@@ -97,7 +97,8 @@ public:
         if (sums > 0)
         {
             expectPlaces(all, contents(m_device, list.m_places, behind + all.size()), behind);
-            EXPECT_EQ(std::vector<cl_uint>(counts.begin() + std::ptrdiff_t(sums), counts.end()), featureSumsOf(expected));
+            EXPECT_EQ(std::vector<cl_uint>(counts.begin() + std::ptrdiff_t(sums), counts.end()),
+                      featureSumsOf(expected));
             EXPECT_TRUE(intact(m_device, list.m_places));
         }
         counts.resize(slots);

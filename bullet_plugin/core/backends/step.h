@@ -8,9 +8,9 @@
 
 #include "bullet_plugin/core/device/buffer.h"
 #include "bullet_plugin/core/scene/mesh_pool.h"
-#include "kernels/lib/pair_contact.h"
 #include "bullet_plugin/core/pipeline/pipeline.h"
 #include "bullet_plugin/core/cloth_cloth/self_step.h"
+#include "kernels/lib/pair_contact.h"
 #include "ordinary_work.h"
 #include "drape/settings.h"
 
@@ -31,7 +31,7 @@ public:
     void reserve(Device* device, std::size_t floats)
     {
         if (m_room >= floats && m_room > 0) return;
-        constexpr std::size_t kStep = kPartBytes / sizeof(float);
+        constexpr std::size_t kStep = 1024;  // few distinct sizes, so that small additions need no new memory
         m_room = std::max((floats + kStep - 1) / kStep, std::size_t(1)) * kStep;
         m_floats.reserve(device, 2 * m_room);
     }
