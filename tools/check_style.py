@@ -232,7 +232,7 @@ def check(files):
                     add("functions", line, f"{length} lines")
             if name.endswith(".cl"):
                 kernels.append((name, code))
-            if name.startswith("kernels/"):
+            if name.startswith(("kernels/", "study/kernels/")):
                 for macro, definitions in macro_bodies(code).items():
                     macros.setdefault(macro, []).extend(definitions)
         for rows in comment_blocks(text, comments):

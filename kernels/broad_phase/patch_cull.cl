@@ -68,30 +68,30 @@ static uint featuresNear(const Packet* packet, const uint triangle, const uint o
 
 // Lists the feature tests of a pair of cloth triangle and patch: tests of the triangle's nodes and edges among `own`
 // (bits as in Triangle::m_owned), and of its face.
-static void cullPatch(Team* team, const PatchFeatures* features, const FeatureTest pair, const Looker* looker,
+static void cullPatch(Team* team, const PackedPatches* patches, const FeatureTest pair, const Looker* looker,
                       const CullReach reach, const uint own, const TestList* list)
 {
     const uint index = pair.m_lane;
-    __global const Patch* patch = features->m_patches + index;
+    __global const Patch* patch = patches->m_patches + index;
     const CullTriangle* cull = &looker->m_cull;
     for (int i = 0; i < 3; ++i)
     {
         if (!(own & DRAPE_OWNS_VERTEX(i))) continue;
         const LaneMask mask =
-            cullNodeFace(cull, i, reach, features->m_faces + index * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH);
+            cullNodeFace(cull, i, reach, patches->m_faces + index * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH);
         keepLanes(team, mask, pair, DRAPE_TEST_NODE + i, index * DRAPE_PATCH_WIDTH, list);
     }
     for (uint block = patch->m_vertexBlock;
          looker->m_valid == DRAPE_ALL_FEATURES && block < patch->m_vertexBlock + patch->m_vertexBlocks; ++block)
     {
         const LaneMask mask =
-            cullFaceVertex(cull, reach, features->m_vertices + block * DRAPE_VERTEX_FLOATS * DRAPE_PATCH_WIDTH);
+            cullFaceVertex(cull, reach, patches->m_vertices + block * DRAPE_VERTEX_FLOATS * DRAPE_PATCH_WIDTH);
         keepLanes(team, mask, pair, DRAPE_TEST_FACE, block * DRAPE_PATCH_WIDTH, list);
     }
     if (!(own & (DRAPE_OWNS_EDGE(0) | DRAPE_OWNS_EDGE(1) | DRAPE_OWNS_EDGE(2)))) return;
     for (uint block = patch->m_edgeBlock; block < patch->m_edgeBlock + patch->m_edgeBlocks; ++block)
     {
-        const CullEdges edges = loadCullEdges(cull, features->m_edges + block * DRAPE_EDGE_FLOATS * DRAPE_PATCH_WIDTH);
+        const CullEdges edges = loadCullEdges(cull, patches->m_edges + block * DRAPE_EDGE_FLOATS * DRAPE_PATCH_WIDTH);
         for (int i = 0; i < 3; ++i)
         {
             if (!(own & DRAPE_OWNS_EDGE(i))) continue;
@@ -101,31 +101,30 @@ static void cullPatch(Team* team, const PatchFeatures* features, const FeatureTe
     }
 }
 
-static void visitPatch(Team* team, Packet* packet, const StepCloths* cloths, const PatchTree* tree,
-                       const PatchFeatures* features, __global const float* volumes, const uint triangle,
-                       const uint patch, const TestList* list)
+static void visitPatch(Team* team, Packet* packet, const StepCloths* cloths, const PackedPatches* patches,
+                       const uint triangle, const uint patch, const TestList* list)
 {
     FeatureTest pair;
-    if (!pairWith(&pair, cloths, tree, packet->m_cloth[triangle], packet->m_motion, patch)) return;
+    if (!pairWith(&pair, cloths, patches, packet->m_cloth[triangle], packet->m_motion, patch)) return;
     const Looker* looker = lookerOf(packet, cloths, triangle);
-    const CullReach reach = cullReach(&looker->m_cull, pair.m_reach, features->m_sizes[patch], cloths->m_mode);
-    const uint own =
-        featuresNear(packet, triangle, looker->m_owned & looker->m_valid, volumes + patch * DRAPE_WIDE_NODE_FLOATS);
-    if (teamMakeRoom(team, list)) cullPatch(team, features, pair, looker, reach, own, list);
+    const CullReach reach = cullReach(&looker->m_cull, pair.m_reach, patches->m_sizes[patch], cloths->m_cloth.m_mode);
+    const uint own = featuresNear(packet, triangle, looker->m_owned & looker->m_valid,
+                                  patches->m_volumes + patch * DRAPE_WIDE_NODE_FLOATS);
+    if (teamMakeRoom(team, list)) cullPatch(team, patches, pair, looker, reach, own, list);
 }
 
-static void walkTree(Team* team, Packet* packet, const StepCloths* cloths, const PatchTree* tree,
-                     const PatchFeatures* features, __global const float* volumes, const TestList* list)
+static void walkTree(Team* team, Packet* packet, const StepCloths* cloths, const PackedPatches* patches,
+                     const TestList* list)
 {
     uint stack[DRAPE_WALK_STACK];
     uint depth = 1;
-    stack[0] = walkEntry(tree->m_levelCount, 0);
+    stack[0] = walkEntry(patches->m_levelCount, 0);
     while (depth > 0 && team->m_place <= list->m_limit)
     {
         const uint entry = stack[--depth];
         const uint level = entryLevel(entry), index = entryIndex(entry);
         __global const float* node =
-            tree->m_nodes + (tree->m_levels[level - 1] + index) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH;
+            patches->m_wideNodes + (patches->m_levels[level - 1] + index) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH;
         const LaneMask near = cullWideNode(&packet->m_joined, node);
         forLanes(lane, near)
         {
@@ -136,8 +135,7 @@ static void walkTree(Team* team, Packet* packet, const StepCloths* cloths, const
                 continue;
             }
             const LaneMask touching = cullPacketChild(&packet->m_volumes, node + lane);
-            forLanes(triangle, touching)
-                visitPatch(team, packet, cloths, tree, features, volumes, triangle, child, list);
+            forLanes(triangle, touching) visitPatch(team, packet, cloths, patches, triangle, child, list);
         }
     }
 }
@@ -168,13 +166,14 @@ static LaneMask getCorners(LanesVec3* p, const float* rows)
 // Counts the invalid nodes along with the resting obstacles, which happens once.
 static int takeVolumes(Packet* packet, const StepCloths* cloths, __global StepCounters* counters)
 {
+    const ClothView* view = &cloths->m_cloth;
     __global const ObstacleMotion* motion = motionOf(cloths, packet->m_motion);
     float rows[DRAPE_CORNER_ROWS * DRAPE_LANES], radius[DRAPE_LANES];
     Vec3 own[6];
     for (uint lane = 0; lane < DRAPE_LANES; ++lane)
     {
         const uint cloth = packet->m_cloth[lane];
-        cornersSeen(own, motion, cloths->m_triangles + cloth, cloths->m_start, cloths->m_end);
+        cornersSeen(own, motion, view->m_triangles + cloth, view->m_start, view->m_end);
         putCorners(rows, lane, own);
         const int paired = !motion || thicknessWith(cloths, cloth, motion->m_mesh) >= 0.0f;
         radius[lane] = paired ? packet->m_radius[lane] : -1.0f;
@@ -185,14 +184,14 @@ static int takeVolumes(Packet* packet, const StepCloths* cloths, __global StepCo
     forLanes(lane, torn)
     {
         const uint cloth = packet->m_cloth[lane];
-        cornersSeen(own, motion, cloths->m_triangles + cloth, cloths->m_start, cloths->m_end);
+        cornersSeen(own, motion, view->m_triangles + cloth, view->m_start, view->m_end);
         if (replaceInvalidCorners(own, own + 3) == 0u) radius[lane] = -1.0f;
         putCorners(rows, lane, own);
         if (!motion) countInvalid(cloths, cloth, counters);
     }
     getCorners(p, rows);
     CullVolumes* volumes = &packet->m_volumes;
-    const LaneMask near = cullVolumes(volumes, p, lanesLoad(radius, 0), whole, cloths->m_mode, motion);
+    const LaneMask near = cullVolumes(volumes, p, lanesLoad(radius, 0), whole, view->m_mode, motion);
     for (int k = 0; k < 6; ++k)
     {
         lanesStore(p[k].x, packet->m_corners, 3 * k);
@@ -209,30 +208,41 @@ static int takeVolumes(Packet* packet, const StepCloths* cloths, __global StepCo
     return laneBits(near) != 0;
 }
 
-// Processes a packet per work-item: DRAPE_LANES cloth triangles in leaf order.
-__kernel void patchCull(DRAPE_WALK_ARGUMENTS, __global const float* restrict patchSizes,
-                        __global const float* restrict volumes, __global const float* restrict faces,
-                        __global const float* restrict vertices, __global const float* restrict edges)
+// Lists the feature tests of a packet: DRAPE_LANES cloth triangles in leaf order. The list's number of tests and
+// counters->m_invalidNodes must be zero before.
+static void cullPacket(const StepCloths* cloths, const PackedPatches* patches, const uint index, const TestList* list,
+                       __global StepCounters* counters)
 {
-    const uint first = get_global_id(0) * DRAPE_LANES;
-    if (first >= clothCount) return;
-    const StepCloths cloths = DRAPE_STEP_CLOTHS;
-    const PatchTree tree = DRAPE_PATCH_TREE;
-    const PatchFeatures features = {patches, patchSizes, faces, vertices, edges};
-    const TestList tests = {list, capacity, limit, &counters->m_candidates};
+    const uint first = index * DRAPE_LANES;
+    if (first >= cloths->m_count) return;
     Packet packet;
     for (uint lane = 0; lane < DRAPE_LANES; ++lane)
     {
-        packet.m_cloth[lane] = clothOrder[min(first + lane, clothCount - 1)];
-        packet.m_radius[lane] = first + lane < clothCount ? radius[clothTriangles[packet.m_cloth[lane]].m_mesh] : -1.0f;
+        const uint cloth = cloths->m_order[min(first + lane, cloths->m_count - 1)];
+        packet.m_cloth[lane] = cloth;
+        packet.m_radius[lane] =
+            first + lane < cloths->m_count ? cloths->m_radius[cloths->m_cloth.m_triangles[cloth].m_mesh] : -1.0f;
     }
     Team team;
     teamStart(&team);
-    for (packet.m_motion = 0; packet.m_motion <= motionCount && team.m_place <= limit; ++packet.m_motion)
+    for (packet.m_motion = 0; packet.m_motion <= cloths->m_motionCount && team.m_place <= list->m_limit;
+         ++packet.m_motion)
     {
         packet.m_looks = 0;
-        if (takeVolumes(&packet, &cloths, counters))
-            walkTree(&team, &packet, &cloths, &tree, &features, volumes, &tests);
+        if (takeVolumes(&packet, cloths, counters)) walkTree(&team, &packet, cloths, patches, list);
     }
-    teamFlush(&team, &tests);
+    teamFlush(&team, list);
 }
+
+#ifdef __OPENCL_VERSION__
+#include "broad_phase_views.h"
+
+// Culls a packet per work-item.
+__kernel void patchCull(DRAPE_PATCH_CULL)
+{
+    const StepCloths step = stepCloths(&values, nodes, cloths, radius, thickness, motions);
+    const PackedPatches packed = patchesAt(patches, &values.m_patches);
+    const TestList tests = {list, values.m_capacity, values.m_limit, &counters->m_candidates};
+    cullPacket(&step, &packed, get_global_id(0), &tests, counters);
+}
+#endif

@@ -16,7 +16,7 @@
 
 // Parts of a patch's features, a bit each: of its faces, its vertices and its edges, of which there are up to three
 // blocks.
-#define DRAPE_PART_BITS(blocks) ((1u << (blocks) * DRAPE_PARTS) - 1u)
+#define DRAPE_PART_BITS(blocks) ((1u << (blocks)*DRAPE_PARTS) - 1u)
 #define DRAPE_FACE_PARTS 0u
 #define DRAPE_VERTEX_PARTS (DRAPE_FACE_PARTS + DRAPE_PARTS)
 #define DRAPE_EDGE_PARTS (DRAPE_VERTEX_PARTS + 3u * DRAPE_PARTS)
@@ -42,7 +42,7 @@ typedef struct CullPair
 // A current group of tests: of a pair, one of its triangle's nodes or edges or (0) its face, and a part of the
 // patch's features.
 #define DRAPE_TASK(pair, feature, part) ((ushort)((pair) | (feature) << 5 | (part) << 7))
-#define DRAPE_TASK_PAIR(task) ((task) & 31u)
+#define DRAPE_TASK_PAIR(task) ((task)&31u)
 #define DRAPE_TASK_FEATURE(task) ((task) >> 5 & 3u)
 #define DRAPE_TASK_PART(task) ((task) >> 7)
 
@@ -65,7 +65,7 @@ static int reachesAll(__local const CullTriangle* cull, const CullReach reach, c
 }
 
 // Loads the pairs from first up to last, one per lane.
-static void takePairs(__local Culler* culler, const StepCloths* cloths, const PatchFeatures* features,
+static void takePairs(__local Culler* culler, const StepCloths* cloths, const PackedPatches* patches,
                       __global const FeatureTest* pairs, const uint first, const uint last)
 {
     const uint lane = teamLane();
@@ -88,17 +88,18 @@ static void takePairs(__local Culler* culler, const StepCloths* cloths, const Pa
     if (lane < 3) culler->m_counts[lane] = 0;
     teamSync();
     uint looker = lane;
-    while (takes && culler->m_pairs[looker].m_looker == DRAPE_CULL_PAIRS) --looker;
+    while (takes && culler->m_pairs[looker].m_looker == DRAPE_CULL_PAIRS)
+        --looker;
     teamSync();
     if (takes)
     {
         __local const Looker* own = culler->m_lookers + looker;
         CullPair taken;
         taken.m_pair = pair;
-        taken.m_reach = cullReach(&own->m_cull, pair.m_reach, features->m_sizes[pair.m_lane], cloths->m_mode);
+        taken.m_reach = cullReach(&own->m_cull, pair.m_reach, patches->m_sizes[pair.m_lane], cloths->m_cloth.m_mode);
         taken.m_looker = looker;
         taken.m_own = own->m_owned & own->m_valid;
-        taken.m_all = reachesAll(&own->m_cull, taken.m_reach, features->m_sizes[pair.m_lane]);
+        taken.m_all = reachesAll(&own->m_cull, taken.m_reach, patches->m_sizes[pair.m_lane]);
         taken.m_parts = 0;
         culler->m_pairs[lane] = taken;
     }
@@ -107,12 +108,11 @@ static void takePairs(__local Culler* culler, const StepCloths* cloths, const Pa
 
 // Marks the parts that contain this lane's face and the features that it owns, if the pair's cloth triangle may be near
 // the face.
-static void markParts(__local CullPair* pair, __local const CullTriangle* cull, const PatchFeatures* features,
-                      __global const uint* faceFeatures)
+static void markParts(__local CullPair* pair, __local const CullTriangle* cull, const PackedPatches* patches)
 {
     const uint patch = pair->m_pair.m_lane;
-    const uint face = faceFeatures[patch * DRAPE_PATCH_WIDTH + teamLane() % DRAPE_PATCH_WIDTH];
-    __global const float* faces = features->m_faces + patch * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH;
+    const uint face = patches->m_faceFeatures[patch * DRAPE_PATCH_WIDTH + teamLane() % DRAPE_PATCH_WIDTH];
+    __global const float* faces = patches->m_faces + patch * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH;
     if (!pair->m_all && !cullFaces(cull, pair->m_reach, faces)) return;
     uint parts = 1u << (DRAPE_FACE_PARTS + DRAPE_OWN_PART);
     const uint vertices = popcount(DRAPE_FEATURES_OWNED(face) & 7u), edges = popcount(DRAPE_FEATURES_OWNED(face) >> 3);
@@ -166,51 +166,53 @@ static int partShift(const uint part)
 }
 
 // Tests a listed node against a part of faces.
-static void cullNode(__local Culler* culler, const PatchFeatures* features, const uint task, const TestList* list)
+static void cullNode(__local Culler* culler, const PackedPatches* patches, const uint task, const TestList* list)
 {
     const uint node = DRAPE_TASK_FEATURE(task), part = DRAPE_TASK_PART(task);
     __local const CullPair* pair = culler->m_pairs + DRAPE_TASK_PAIR(task);
     const uint block = pair->m_pair.m_lane;
     const int shift = partShift(part);
     const LaneMask mask = cullNodeFace(&culler->m_lookers[pair->m_looker].m_cull, node, pair->m_reach,
-                                       features->m_faces + block * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH + shift);
+                                       patches->m_faces + block * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH + shift);
     keepLanes(&culler->m_team, mask, pair->m_pair, DRAPE_TEST_NODE + node, block * DRAPE_PATCH_WIDTH + shift, list);
 }
 
 // Tests a listed cloth face against a part of vertices.
-static void cullFace(__local Culler* culler, const PatchFeatures* features, const uint task, const TestList* list)
+static void cullFace(__local Culler* culler, const PackedPatches* patches, const uint task, const TestList* list)
 {
     const uint part = DRAPE_TASK_PART(task);
     __local const CullPair* pair = culler->m_pairs + DRAPE_TASK_PAIR(task);
-    const uint block = features->m_patches[pair->m_pair.m_lane].m_vertexBlock + part / DRAPE_PARTS;
+    const uint block = patches->m_patches[pair->m_pair.m_lane].m_vertexBlock + part / DRAPE_PARTS;
     const int shift = partShift(part);
-    const LaneMask mask =
-        cullFaceVertex(&culler->m_lookers[pair->m_looker].m_cull, pair->m_reach,
-                       features->m_vertices + block * DRAPE_VERTEX_FLOATS * DRAPE_PATCH_WIDTH + shift);
+    const LaneMask mask = cullFaceVertex(&culler->m_lookers[pair->m_looker].m_cull, pair->m_reach,
+                                         patches->m_vertices + block * DRAPE_VERTEX_FLOATS * DRAPE_PATCH_WIDTH + shift);
     keepLanes(&culler->m_team, mask, pair->m_pair, DRAPE_TEST_FACE, block * DRAPE_PATCH_WIDTH + shift, list);
 }
 
 // Tests a listed edge against a part of edges.
-static void cullEdge(__local Culler* culler, const PatchFeatures* features, const uint task, const TestList* list)
+static void cullEdge(__local Culler* culler, const PackedPatches* patches, const uint task, const TestList* list)
 {
     const uint edge = DRAPE_TASK_FEATURE(task), part = DRAPE_TASK_PART(task);
     __local const CullPair* pair = culler->m_pairs + DRAPE_TASK_PAIR(task);
     __local const CullTriangle* cull = &culler->m_lookers[pair->m_looker].m_cull;
-    const uint block = features->m_patches[pair->m_pair.m_lane].m_edgeBlock + part / DRAPE_PARTS;
+    const uint block = patches->m_patches[pair->m_pair.m_lane].m_edgeBlock + part / DRAPE_PARTS;
     const int shift = partShift(part);
     const CullEdges edges =
-        loadCullEdges(cull, features->m_edges + block * DRAPE_EDGE_FLOATS * DRAPE_PATCH_WIDTH + shift);
+        loadCullEdges(cull, patches->m_edges + block * DRAPE_EDGE_FLOATS * DRAPE_PATCH_WIDTH + shift);
     keepLanes(&culler->m_team, cullEdgeEdge(cull, edge, pair->m_reach, &edges), pair->m_pair, DRAPE_TEST_EDGE + edge,
               block * DRAPE_PATCH_WIDTH + shift, list);
 }
 
 // Runs all listed tests, each on as many lanes as a part has.
-static void cullTasks(__local Culler* culler, const PatchFeatures* features, const TestList* list)
+static void cullTasks(__local Culler* culler, const PackedPatches* patches, const TestList* list)
 {
     const uint first = teamLane() / DRAPE_PART, stride = teamWidth() / DRAPE_PART;
-    for (uint i = first; i < culler->m_counts[0]; i += stride) cullNode(culler, features, culler->m_nodes[i], list);
-    for (uint i = first; i < culler->m_counts[1]; i += stride) cullFace(culler, features, culler->m_faces[i], list);
-    for (uint i = first; i < culler->m_counts[2]; i += stride) cullEdge(culler, features, culler->m_edges[i], list);
+    for (uint i = first; i < culler->m_counts[0]; i += stride)
+        cullNode(culler, patches, culler->m_nodes[i], list);
+    for (uint i = first; i < culler->m_counts[1]; i += stride)
+        cullFace(culler, patches, culler->m_faces[i], list);
+    for (uint i = first; i < culler->m_counts[2]; i += stride)
+        cullEdge(culler, patches, culler->m_edges[i], list);
 }
 
 // Returns the number of pairs that a group takes at a time. If one wave, the groups that the device runs together,
@@ -226,35 +228,30 @@ static uint pairsOfGroup(const uint count, const uint groups, const uint turns)
 // Lists the feature tests of the pairs in patchWalk's list; most adjacent pairs are of one cloth triangle. A group
 // takes up to DRAPE_CULL_PAIRS at a time. Their number and the end of the loop are equal for all its lanes, so that all
 // reach its barriers. counters->m_candidates must be zero before.
+#include "broad_phase_views.h"
+
 __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH, 1, 1))) void patchCullPairs(
-    __global const FeatureTest* restrict pairs, const uint pairCapacity,
-    __global const Triangle* restrict clothTriangles, __global const float* restrict start,
-    __global const float* restrict end, const uint mode, __global const ObstacleMotion* restrict motions,
-    __global const Patch* restrict patches, __global const float* restrict patchSizes,
-    __global const uint* restrict faceFeatures, __global const float* restrict faces,
-    __global const float* restrict vertices, __global const float* restrict edges, __global FeatureTest* restrict list,
-    const uint capacity, const uint limit, __global StepCounters* restrict counters)
+    DRAPE_PATCH_CULL_PAIRS)
 {
-    const uint count = min(counters->m_patchPairs, pairCapacity);
+    const uint count = min(counters->m_patchPairs, values.m_pairCapacity);
     const uint groups = get_num_groups(0);
     const uint turn = teamLane() / DRAPE_PATCH_WIDTH, turns = teamWidth() / DRAPE_PATCH_WIDTH;
     const uint share = pairsOfGroup(count, groups, turns);
-    const StepCloths cloths = {clothTriangles, start, end, 0, 0, 0.0f, mode, motions, 0};
-    const PatchFeatures features = {patches, patchSizes, faces, vertices, edges};
-    const TestList tests = {list, capacity, limit, &counters->m_candidates};
+    const StepCloths step = stepCloths(&values, nodes, cloths, 0, 0, motions);
+    const PackedPatches packed = patchesAt(patches, &values.m_patches);
+    const TestList tests = {list, values.m_capacity, values.m_limit, &counters->m_candidates};
     __local Culler culler;
     teamStart(&culler.m_team);
     for (uint first = get_group_id(0) * share; first < count; first += groups * share)
     {
         const uint taken = min(first + share, count) - first;
-        takePairs(&culler, &cloths, &features, pairs, first, first + taken);
+        takePairs(&culler, &step, &packed, pairs, first, first + taken);
         for (uint i = turn; i < taken; i += turns)
-            markParts(culler.m_pairs + i, &culler.m_lookers[culler.m_pairs[i].m_looker].m_cull, &features,
-                      faceFeatures);
+            markParts(culler.m_pairs + i, &culler.m_lookers[culler.m_pairs[i].m_looker].m_cull, &packed);
         teamSync();
         listAllTasks(&culler, taken);
         teamSync();
-        cullTasks(&culler, &features, &tests);
+        cullTasks(&culler, &packed, &tests);
         if (!teamFlush(&culler.m_team, &tests)) break;
     }
 }

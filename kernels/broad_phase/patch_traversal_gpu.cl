@@ -28,7 +28,7 @@ typedef struct Walk
 
 // Lists the pairs of this lane's triangle and the patches found from first up to last, at most DRAPE_PATCH_WIDTH. They
 // are adjacent in the list, which makes patchCullPairs faster.
-static void pairLane(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const PatchTree* tree,
+static void pairLane(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const PackedPatches* patches,
                      const uint first, const uint last, const TestList* list)
 {
     __local const CullVolume* own = walkers->m_volumes + teamLane() % DRAPE_PATCH_WIDTH;
@@ -37,23 +37,25 @@ static void pairLane(__local Walkers* walkers, const Walk* walk, const StepCloth
     for (uint i = first; i < last; ++i)
     {
         const uint patch = walkers->m_found[i];
-        __global const float* node = tree->m_nodes + (patch / DRAPE_PATCH_WIDTH) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH;
+        __global const float* node =
+            patches->m_wideNodes + (patch / DRAPE_PATCH_WIDTH) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH;
         if (cullWideChild(own, node + patch % DRAPE_PATCH_WIDTH) &&
-            pairWith(&pair, cloths, tree, walk->m_cloth, walk->m_motion, patch))
+            pairWith(&pair, cloths, patches, walk->m_cloth, walk->m_motion, patch))
             touched |= 1u << (i - first);
     }
     uint slot = touched == 0 ? 0 : atomic_add(&walkers->m_team.m_keptCount, popcount(touched));
     for (; touched != 0; touched &= touched - 1)
     {
-        pairWith(&pair, cloths, tree, walk->m_cloth, walk->m_motion, walkers->m_found[first + 31 - clz(touched & -touched)]);
+        pairWith(&pair, cloths, patches, walk->m_cloth, walk->m_motion,
+                 walkers->m_found[first + 31 - clz(touched & -touched)]);
         teamPut(&walkers->m_team, list, slot++, pair);
     }
 }
 
 // Turns the patches found into pairs if there are at least `least`. In a packet the lanes, which had a patch each, now
 // have a triangle each, and each DRAPE_PATCH_WIDTH lanes a share of the patches.
-static void settleFound(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const PatchTree* tree,
-                        const TestList* list, const uint least)
+static void settleFound(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths,
+                        const PackedPatches* patches, const TestList* list, const uint least)
 {
     teamSync();
     const uint count = walkers->m_foundCount;
@@ -62,14 +64,15 @@ static void settleFound(__local Walkers* walkers, const Walk* walk, const StepCl
     for (uint i = teamLane(); i < count && walk->m_packet == 1; i += teamWidth())
     {
         FeatureTest pair;
-        if (pairWith(&pair, cloths, tree, walk->m_cloth, walk->m_motion, walkers->m_found[i]))
+        if (pairWith(&pair, cloths, patches, walk->m_cloth, walk->m_motion, walkers->m_found[i]))
             teamKeep(&walkers->m_team, list, pair);
     }
     const uint turns = teamWidth() / DRAPE_PATCH_WIDTH, turn = teamLane() / DRAPE_PATCH_WIDTH;
     for (uint first = 0; first < count && walk->m_packet > 1; first += teamWidth())
     {
         const uint part = min(count - first, (uint)teamWidth()), share = (part + turns - 1) / turns;
-        pairLane(walkers, walk, cloths, tree, first + min(part, turn * share), first + min(part, (turn + 1) * share), list);
+        pairLane(walkers, walk, cloths, patches, first + min(part, turn * share), first + min(part, (turn + 1) * share),
+                 list);
         if (!teamMakeRoom(&walkers->m_team, list)) break;
     }
     teamSync();
@@ -77,7 +80,7 @@ static void settleFound(__local Walkers* walkers, const Walk* walk, const StepCl
     teamSync();
 }
 
-static void walkTree(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const PatchTree* tree,
+static void walkTree(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const PackedPatches* patches,
                      const TestList* list)
 {
     __local Team* team = &walkers->m_team;
@@ -85,7 +88,7 @@ static void walkTree(__local Walkers* walkers, const Walk* walk, const StepCloth
     const uint most = teamWidth() / DRAPE_PATCH_WIDTH;
     const uint turn = teamLane() / DRAPE_PATCH_WIDTH, lane = teamLane() % DRAPE_PATCH_WIDTH;
     teamSync();
-    if (teamLane() == 0) team->m_depth = beginWalk(stack, tree->m_levels, tree->m_levelCount);
+    if (teamLane() == 0) team->m_depth = beginWalk(stack, patches->m_levels, patches->m_levelCount);
     teamSync();
     while (team->m_depth > 0)
     {
@@ -97,7 +100,7 @@ static void walkTree(__local Walkers* walkers, const Walk* walk, const StepCloth
         teamSync();
         const uint level = entryLevel(entry), index = entryIndex(entry);
         __global const float* node =
-            tree->m_nodes + (tree->m_levels[level - 1] + index) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH;
+            patches->m_wideNodes + (patches->m_levels[level - 1] + index) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH;
         const uint child = index * DRAPE_PATCH_WIDTH + lane;
         if (turn < nodes && cullWideChild(&walkers->m_joined, node + lane))
         {
@@ -106,10 +109,10 @@ static void walkTree(__local Walkers* walkers, const Walk* walk, const StepCloth
             else
                 walkers->m_found[atomic_inc(&walkers->m_foundCount)] = child;
         }
-        settleFound(walkers, walk, cloths, tree, list, DRAPE_WALK_FOUND - DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH + 1);
+        settleFound(walkers, walk, cloths, patches, list, DRAPE_WALK_FOUND - DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH + 1);
         if (!teamMakeRoom(team, list)) return;
     }
-    settleFound(walkers, walk, cloths, tree, list, 1);
+    settleFound(walkers, walk, cloths, patches, list, 1);
 }
 
 // Joins a packet's volumes. They are in local memory, since in registers they would leave room for few groups.
@@ -145,6 +148,7 @@ static void storeInterval(__local CullVolume* volume, const CullCorners* corners
 // direction.
 static void makeVolumes(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const float clothRadius)
 {
+    const ClothView* view = &cloths->m_cloth;
     __global const ObstacleMotion* motion = motionOf(cloths, walk->m_motion);
     const uint lane = teamLane();
     const int alone = walk->m_packet == 1;
@@ -154,14 +158,16 @@ static void makeVolumes(__local Walkers* walkers, const Walk* walk, const StepCl
         __local CullVolume* volume = alone ? &walkers->m_joined : walkers->m_volumes + lane;
         CullCorners corners;
         float least = 0.0f;
-        const int near = clothRadius >= 0.0f && !(motion && thicknessWith(cloths, walk->m_cloth, motion->m_mesh) < 0.0f) &&
-                         cullCorners(&corners, &least, motion, cloths->m_triangles + walk->m_cloth, cloths->m_start,
-                                     cloths->m_end, clothRadius, cloths->m_mode) &&
+        const int near = clothRadius >= 0.0f &&
+                         !(motion && thicknessWith(cloths, walk->m_cloth, motion->m_mesh) < 0.0f) &&
+                         cullCorners(&corners, &least, motion, view->m_triangles + walk->m_cloth, view->m_start,
+                                     view->m_end, clothRadius, view->m_mode) &&
                          cullMeets(&corners, clothRadius, motion);
         if (!alone)
         {
             DRAPE_UNROLL
-            for (uint i = 0; i < DRAPE_DOP_DIRECTIONS; ++i) storeInterval(volume, &corners, near, i);
+            for (uint i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
+                storeInterval(volume, &corners, near, i);
         }
         else if (lane < DRAPE_DOP_DIRECTIONS)
             storeInterval(volume, &corners, near, lane);
@@ -176,28 +182,32 @@ static void makeVolumes(__local Walkers* walkers, const Walk* walk, const StepCl
     teamSync();
 }
 
-// Lists the pairs of `packet` cloth triangles, in leaf order, per group. packet: 1 or DRAPE_PATCH_WIDTH, with as many
-// lanes or up to DRAPE_WALK_NODES times as many.
-__kernel void patchWalk(DRAPE_WALK_ARGUMENTS, const uint packet)
+#include "broad_phase_views.h"
+
+// Lists the pairs of values.m_packet cloth triangles, in leaf order, per group: 1 or DRAPE_PATCH_WIDTH, with as many
+// lanes or up to DRAPE_WALK_NODES times as many. The list has no particular order. counters->m_patchPairs and
+// m_invalidNodes must be zero before.
+__kernel void patchWalk(DRAPE_PATCH_WALK)
 {
     __local Walkers walkers;
-    const StepCloths cloths = DRAPE_STEP_CLOTHS;
-    const PatchTree tree = DRAPE_PATCH_TREE;
-    const TestList pairs = {list, capacity, limit, &counters->m_patchPairs};
-    const uint group = get_group_id(0), lane = teamLane() % DRAPE_PATCH_WIDTH;
-    const uint leaf = packet == 1 ? group : group * packet + lane;
+    const StepCloths step = stepCloths(&values, nodes, cloths, radius, thickness, motions);
+    const PackedPatches packed = patchesAt(patches, &values.m_patches);
+    const TestList pairs = {list, values.m_pairCapacity, values.m_pairLimit, &counters->m_patchPairs};
+    const uint group = get_group_id(0), lane = teamLane() % DRAPE_PATCH_WIDTH, count = step.m_count;
+    const uint leaf = values.m_packet == 1 ? group : group * values.m_packet + lane;
     Walk walk;
-    walk.m_packet = packet;
-    walk.m_cloth = clothOrder[min(leaf, clothCount - 1)];
-    const float clothRadius = leaf < clothCount ? radius[clothTriangles[walk.m_cloth].m_mesh] : -1.0f;
+    walk.m_packet = values.m_packet;
+    walk.m_cloth = step.m_order[min(leaf, count - 1)];
+    const float clothRadius = leaf < count ? radius[step.m_cloth.m_triangles[walk.m_cloth].m_mesh] : -1.0f;
     // The last lanes run this while the first make volumes.
-    if (clothRadius >= 0.0f && teamLane() >= teamWidth() - packet) countInvalid(&cloths, walk.m_cloth, counters);
+    if (clothRadius >= 0.0f && teamLane() >= teamWidth() - walk.m_packet) countInvalid(&step, walk.m_cloth, counters);
     if (teamLane() == 0) walkers.m_foundCount = 0;
     teamStart(&walkers.m_team);
-    for (walk.m_motion = 0; walk.m_motion <= motionCount && walkers.m_team.m_place <= limit; ++walk.m_motion)
+    for (walk.m_motion = 0; walk.m_motion <= step.m_motionCount && walkers.m_team.m_place <= pairs.m_limit;
+         ++walk.m_motion)
     {
-        makeVolumes(&walkers, &walk, &cloths, clothRadius);
-        walkTree(&walkers, &walk, &cloths, &tree, &pairs);
+        makeVolumes(&walkers, &walk, &step, clothRadius);
+        walkTree(&walkers, &walk, &step, &packed, &pairs);
     }
     teamFlush(&walkers.m_team, &pairs);
 }

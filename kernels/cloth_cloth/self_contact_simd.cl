@@ -10,7 +10,7 @@ struct LaneWork
     __global const FeatureTest* m_tests;
     SelfView m_view;
     uint m_firstSlot;
-    HitList m_list;
+    ContactSink m_sink;
     __global uint* m_swept;
     __global StepCounters* m_counters;
 };
@@ -22,7 +22,7 @@ static uint kindOf(const LaneWork* work, const uint item)
 
 static void testOne(LaneWork* work, const uint item)
 {
-    testSelf(work->m_tests, item, &work->m_view, work->m_firstSlot, &work->m_list, work->m_swept, work->m_counters);
+    testSelf(work->m_tests, item, &work->m_view, work->m_firstSlot, &work->m_sink, work->m_swept, work->m_counters);
 }
 
 // Loads the positions of a test: the node and the face's corners, or the ends of both edges.
@@ -82,12 +82,26 @@ static int takeContact(const NearContact* near, const float* rows, const uint la
     return finishContact(found, origin, contact);
 }
 
-// CPU version of selfFeature in self_contact.cl.
-__kernel void selfFeature(DRAPE_SELF_ARGUMENTS, __global uint* restrict swept)
+// Runs a work-item's part of the tests, and lists their contacts. Tests that need the continuous test go to `swept`,
+// unsorted. counters->m_selfSwept must be zero before.
+static void runSelfTests(const SelfInput* input, const ContactSink* sink, __global uint* swept,
+                         __global StepCounters* counters)
 {
-    const HitList list = DRAPE_HIT_LIST;
-    LaneWork work = {tests, DRAPE_SELF_VIEW(0), firstSlot, list, swept, counters};
-    const uint count = min(counters->m_selfTests, testCapacity);
+    LaneWork work = {input->m_tests, input->m_view, input->m_firstSlot, *sink, swept, counters};
+    const uint count = input->m_count;
     for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextRun(&runs))
-        testRun(&work, runs.m_item, runs.m_end, mode, &list);
+        testRun(&work, runs.m_item, runs.m_end, input->m_view.m_cloth.m_mode, sink);
 }
+
+#ifdef __OPENCL_VERSION__
+#include "self_arena_views.h"
+
+// CPU version of selfFeature in self_contact.cl.
+__kernel void selfFeature(DRAPE_SELF_FEATURE)
+{
+    const SelfInput input = selfInput(&values, tests, counters, nodes, rest, cloths, 0);
+    const ContactSink sink =
+        contactSink(contacts, values.m_contactCapacity, places, featureCounts, values.m_sums, counters);
+    runSelfTests(&input, &sink, swept, counters);
+}
+#endif

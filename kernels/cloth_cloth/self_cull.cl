@@ -2,24 +2,14 @@
 // the wide tree and tests its features against those of itself and of later patches, a vector of lanes at a time. The
 // output is pairs of features whose volumes over the step overlap, each once.
 #include "../lib/self_pairs.h"
+#include "../lib/self_views.h"
 #include "../lib/wide_walk.h"
 
 // The current cloth, and the step's packed features.
 typedef struct SelfCloths
 {
     SelfCloth m_cloth;
-    __global const Patch* m_patches;
-    __global const uint* m_faceIds;
-    __global const uint* m_vertexIds;
-    __global const uint* m_edgeIds;
-    __global const uint* m_faceNodes;
-    __global const uint* m_edgeNodes;
-    __global const float* m_faceBoxes;
-    __global const float* m_vertexBoxes;
-    __global const float* m_edgeBoxes;
-    __global const float* m_nodes;  // nodes of the wide tree
-    __global const uint* m_levels;
-    uint m_levelCount;
+    SelfPatches m_patches;
 } SelfCloths;
 
 // Boxes of the corners of a patch's triangles, computed when a triangle is first near another patch.
@@ -29,12 +19,14 @@ typedef struct OwnCorners
     uint m_made;  // bit i: boxes of the patch's triangle i are ready
 } OwnCorners;
 
-static const FeatureBox* cornersOf(OwnCorners* corners, const SelfCloth* cloth, const Triangle triangle, const uint place)
+static const FeatureBox* cornersOf(OwnCorners* corners, const SelfCloth* cloth, const Triangle triangle,
+                                   const uint place)
 {
     FeatureBox* own = corners->m_boxes + 3 * place;
     if (corners->m_made >> place & 1u) return own;
     corners->m_made |= 1u << place;
-    for (int k = 0; k < 3; ++k) own[k] = nodeBox(cloth->m_start, cloth->m_end, triangle.m_vertices[k], cloth->m_radius);
+    for (int k = 0; k < 3; ++k)
+        own[k] = nodeBox(cloth->m_start, cloth->m_end, triangle.m_vertices[k], cloth->m_radius);
     return own;
 }
 
@@ -43,7 +35,8 @@ static const FeatureBox* cornersOf(OwnCorners* corners, const SelfCloth* cloth, 
 static LaneMask lanesWithout(__global const uint* rows, const uint block, const uint count, const uint node)
 {
     LaneMask without = lanesMaskSplat(1);
-    for (uint i = 0; i < count; ++i) without &= lanesLoadIds(rows, block * count + i) != (int)node;
+    for (uint i = 0; i < count; ++i)
+        without &= lanesLoadIds(rows, block * count + i) != (int)node;
     return without;
 }
 
@@ -54,27 +47,30 @@ static void pairTriangle(Team* team, const SelfCloths* cloths, OwnCorners* corne
                          const uint other, const FeatureBox* box, const TestList* list)
 {
     const SelfCloth* cloth = &cloths->m_cloth;
-    const uint face = cloths->m_faceIds[own * DRAPE_PATCH_WIDTH + place];
+    const uint face = cloths->m_patches.m_faceIds[own * DRAPE_PATCH_WIDTH + place];
     const Triangle triangle = cloth->m_triangles[face];
-    const Patch patch = cloths->m_patches[other];
+    const Patch patch = cloths->m_patches.m_patches[other];
     const FeatureBox* corner = cornersOf(corners, cloth, triangle, place);
-    const BoxLanes faces = loadBoxes(cloths->m_faceBoxes + other * DRAPE_BOX_FLOATS * DRAPE_PATCH_WIDTH);
+    const BoxLanes faces = loadBoxes(cloths->m_patches.m_faceBoxes + other * DRAPE_BOX_FLOATS * DRAPE_PATCH_WIDTH);
     for (int k = 0; k < 3; ++k)
     {
         if (!(triangle.m_owned & DRAPE_OWNS_VERTEX(k)) || !boxesMeet(&corner[k], box)) continue;
-        const LaneMask mask =
-            boxesOverlap(&faces, &corner[k]) & lanesWithout(cloths->m_faceNodes, other, 3, triangle.m_vertices[k]);
-        forLanes(lane, mask) keepPair(team, cloth, triangle.m_vertices[k], cloths->m_faceIds[other * DRAPE_PATCH_WIDTH + lane],
-                                      DRAPE_SELF_TEST_NODE, list);
+        const LaneMask mask = boxesOverlap(&faces, &corner[k]) &
+                              lanesWithout(cloths->m_patches.m_faceNodes, other, 3, triangle.m_vertices[k]);
+        forLanes(lane, mask)
+            keepPair(team, cloth, triangle.m_vertices[k], cloths->m_patches.m_faceIds[other * DRAPE_PATCH_WIDTH + lane],
+                     DRAPE_SELF_TEST_NODE, list);
     }
     const FeatureBox whole = joinBoxes(joinBoxes(corner[0], corner[1]), corner[2]);
     for (uint block = patch.m_vertexBlock; own != other && block < patch.m_vertexBlock + patch.m_vertexBlocks; ++block)
     {
-        const BoxLanes vertices = loadBoxes(cloths->m_vertexBoxes + block * DRAPE_BOX_FLOATS * DRAPE_PATCH_WIDTH);
+        const BoxLanes vertices =
+            loadBoxes(cloths->m_patches.m_vertexBoxes + block * DRAPE_BOX_FLOATS * DRAPE_PATCH_WIDTH);
         LaneMask mask = boxesOverlap(&vertices, &whole);
-        for (int k = 0; k < 3; ++k) mask &= lanesWithout(cloths->m_vertexIds, block, 1, triangle.m_vertices[k]);
-        forLanes(lane, mask) keepPair(team, cloth, cloths->m_vertexIds[block * DRAPE_PATCH_WIDTH + lane], face,
-                                      DRAPE_SELF_TEST_NODE, list);
+        for (int k = 0; k < 3; ++k)
+            mask &= lanesWithout(cloths->m_patches.m_vertexIds, block, 1, triangle.m_vertices[k]);
+        forLanes(lane, mask) keepPair(team, cloth, cloths->m_patches.m_vertexIds[block * DRAPE_PATCH_WIDTH + lane],
+                                      face, DRAPE_SELF_TEST_NODE, list);
     }
     FeatureBox edgeBox[3];
     int near[3];  // edges that may come near the patch
@@ -86,16 +82,18 @@ static void pairTriangle(Team* team, const SelfCloths* cloths, OwnCorners* corne
     if (!near[0] && !near[1] && !near[2]) return;
     for (uint block = patch.m_edgeBlock; block < patch.m_edgeBlock + patch.m_edgeBlocks; ++block)
     {
-        const BoxLanes edges = loadBoxes(cloths->m_edgeBoxes + block * DRAPE_BOX_FLOATS * DRAPE_PATCH_WIDTH);
+        const BoxLanes edges = loadBoxes(cloths->m_patches.m_edgeBoxes + block * DRAPE_BOX_FLOATS * DRAPE_PATCH_WIDTH);
         for (int k = 0; k < 3; ++k)
         {
             if (!near[k]) continue;
-            const LaneMask mask = boxesOverlap(&edges, &edgeBox[k]) &
-                                  lanesWithout(cloths->m_edgeNodes, block, 2, triangle.m_vertices[k]) &
-                                  lanesWithout(cloths->m_edgeNodes, block, 2, triangle.m_vertices[k == 2 ? 0 : k + 1]);
+            const LaneMask mask =
+                boxesOverlap(&edges, &edgeBox[k]) &
+                lanesWithout(cloths->m_patches.m_edgeNodes, block, 2, triangle.m_vertices[k]) &
+                lanesWithout(cloths->m_patches.m_edgeNodes, block, 2, triangle.m_vertices[k == 2 ? 0 : k + 1]);
             forLanes(lane, mask)
             {
-                const uint edge = cloths->m_edgeIds[block * DRAPE_PATCH_WIDTH + lane], mine = triangle.m_edges[k];
+                const uint edge = cloths->m_patches.m_edgeIds[block * DRAPE_PATCH_WIDTH + lane],
+                           mine = triangle.m_edges[k];
                 if (own != other || mine < edge)
                     keepPair(team, cloth, min(mine, edge), max(mine, edge), DRAPE_SELF_TEST_EDGE, list);
             }
@@ -107,8 +105,8 @@ static void pairTriangle(Team* team, const SelfCloths* cloths, OwnCorners* corne
 static int pairPatches(Team* team, const SelfCloths* cloths, OwnCorners* corners, const uint own, const uint other,
                        const TestList* list)
 {
-    const FeatureBox box = childBox(cloths->m_nodes, other);
-    const BoxLanes faces = loadBoxes(cloths->m_faceBoxes + own * DRAPE_BOX_FLOATS * DRAPE_PATCH_WIDTH);
+    const FeatureBox box = childBox(cloths->m_patches.m_wideNodes, other);
+    const BoxLanes faces = loadBoxes(cloths->m_patches.m_faceBoxes + own * DRAPE_BOX_FLOATS * DRAPE_PATCH_WIDTH);
     const LaneMask near = boxesOverlap(&faces, &box);
     forLanes(place, near)
     {
@@ -122,54 +120,60 @@ static void walkSelf(Team* team, const SelfCloths* cloths, const uint own, const
 {
     uint stack[DRAPE_WALK_STACK];
     uint depth = 1;
-    const Dop volume = childVolume(cloths->m_nodes, own);
+    const Dop volume = childVolume(cloths->m_patches.m_wideNodes, own);
     OwnCorners corners;
     corners.m_made = 0;
-    stack[0] = walkEntry(cloths->m_levelCount, 0);
+    stack[0] = walkEntry(cloths->m_patches.m_levelCount, 0);
     while (depth > 0)
     {
         const uint entry = stack[--depth];
         const uint level = entryLevel(entry), index = entryIndex(entry);
         const uint below = patchesBelow(level);
-        const LaneMask near = wideOverlaps(
-            &volume, cloths->m_nodes + (cloths->m_levels[level - 1] + index) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH);
+        const LaneMask near =
+            wideOverlaps(&volume, cloths->m_patches.m_wideNodes + (cloths->m_patches.m_levels[level - 1] + index) *
+                                                                      DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH);
         forLanes(lane, near)
         {
             const uint next = index * DRAPE_PATCH_WIDTH + lane;
             if ((next + 1) * below <= own) continue;  // earlier patches find this pair
             if (level > 1)
                 stack[depth++] = walkEntry(level - 1, next);
-            else if (cloths->m_patches[next].m_mesh == cloths->m_patches[own].m_mesh &&
+            else if (cloths->m_patches.m_patches[next].m_mesh == cloths->m_patches.m_patches[own].m_mesh &&
                      !pairPatches(team, cloths, &corners, own, next, list))
                 return;
         }
     }
 }
 
-// Lists the self tests of a patch's features with those of itself and of later patches, one patch per work-item. The
-// tree's volumes are those of selfPack, joined by patchWiden. faceNodes, edgeNodes: a row of lanes for each node of a
-// block's features. limit: see team.h. counters->m_selfTests must be zero before.
-__kernel void selfCull(__global const Patch* restrict patches, const uint patchCount, __global const uint* restrict faceIds,
-                       __global const uint* restrict vertexIds, __global const uint* restrict edgeIds,
-                       __global const uint* restrict faceNodes, __global const uint* restrict edgeNodes,
-                       __global const Triangle* restrict triangles, __global const Edge* restrict edges,
-                       __global const float* start, __global const float* end, __global const float* restrict radius,
-                       __global const float* restrict thickness, __global const float* restrict faceBoxes,
-                       __global const float* restrict vertexBoxes, __global const float* restrict edgeBoxes,
-                       __global const float* restrict wideNodes, __global const uint* restrict levels,
-                       const uint levelCount, __global FeatureTest* restrict list, const uint capacity, const uint limit,
-                       __global StepCounters* restrict counters)
+// Lists the self tests of the features of patch `own` with those of itself and of later patches. The tree's volumes are
+// those of packSelf(), joined by widenChild(). The list's number of tests must be zero before.
+static void cullSelf(const ClothView* cloth, const SelfRadii* radii, const SelfPatches* patches, const uint own,
+                     const TestList* list)
 {
-    const uint own = get_global_id(0);
-    if (own >= patchCount) return;
-    const uint mesh = patches[own].m_mesh;
-    if (radius[mesh] < 0.0f) return;
-    const SelfCloths cloths = {{triangles, edges, start, end, radius[mesh], thickness[mesh]},
-                               patches,   faceIds,   vertexIds,   edgeIds,   faceNodes, edgeNodes,
-                               faceBoxes, vertexBoxes, edgeBoxes, wideNodes, levels,    levelCount};
-    const TestList tests = {list, capacity, limit, &counters->m_selfTests};
+    const uint mesh = patches->m_patches[own].m_mesh;
+    const float radius = radii->m_radius[mesh];
+    if (radius < 0.0f) return;
+    const SelfCloths cloths = {
+        {cloth->m_triangles, cloth->m_edges, volumeStart(cloth), cloth->m_end, radius, radii->m_thickness[mesh]},
+        *patches};
     Team team;
     teamStart(&team);
-    walkSelf(&team, &cloths, own, &tests);
-    teamFlush(&team, &tests);
+    walkSelf(&team, &cloths, own, list);
+    teamFlush(&team, list);
 }
+
+#ifdef __OPENCL_VERSION__
+#include "self_arena_views.h"
+
+// Culls a patch per work-item.
+__kernel void selfCull(DRAPE_SELF_CULL)
+{
+    const uint own = get_global_id(0);
+    if (own >= values.m_patches.m_patchCount) return;
+    const ClothView cloth = clothAt(nodes, cloths, &values.m_cloth, values.m_mode, 0);
+    const SelfRadii radii = {radius, thickness, 0};
+    const SelfPatches packed = selfPatchesAt(patches, &values.m_patches);
+    const TestList tests = {list, values.m_capacity, values.m_limit, &counters->m_selfTests};
+    cullSelf(&cloth, &radii, &packed, own, &tests);
+}
+#endif

@@ -2,9 +2,10 @@
 // nodes' boxes. self_pack_simd.cl is the CPU's version.
 #include "../lib/invalid_nodes.h"
 #include "../lib/self_cull.h"
+#include "self_arena_views.h"
 
 // Stores the box by node: groups join the boxes of the features that they meet.
-static void storeNode(__global float* restrict boxes, const uint node, const FeatureBox box)
+static void storeNode(__global float* boxes, const uint node, const FeatureBox box)
 {
     for (int i = 0; i < 3; ++i)
     {
@@ -14,28 +15,27 @@ static void storeNode(__global float* restrict boxes, const uint node, const Fea
 }
 
 // Packs a patch per work-group of DRAPE_PATCH_WIDTH, or one of the empty positions behind patchCount. Writes the
-// patch's volume, in the first level of the wide tree, and its nodes' boxes, by node. Ids are those of the lanes'
-// features, DRAPE_NO_FEATURE where there is none. start: the end's positions in a discrete step. radius: m, per
-// cloth, half the reach, negative for cloths that do not collide with themselves; obstacleRadius: of the search for
-// obstacles.
-__kernel __attribute__((reqd_work_group_size(DRAPE_PATCH_WIDTH, 1, 1))) void selfPack(
-    __global const Patch* restrict patches, const uint patchCount, __global const uint* restrict faceIds,
-    __global const uint* restrict vertexIds, __global const Triangle* restrict triangles, __global const float* start,
-    __global const float* end, __global const float* restrict radius, __global const float* restrict obstacleRadius,
-    __global float* restrict nodeBoxes, __global float* restrict wideNodes, __global StepCounters* restrict counters)
+// patch's volume, in the first level of the wide tree, and its nodes' boxes, by node. radius, obstacleRadius:
+// see SelfRadii.
+__kernel __attribute__((reqd_work_group_size(DRAPE_PATCH_WIDTH, 1, 1))) void selfPack(DRAPE_SELF_PACK)
 {
     __local float bounds[2 * DRAPE_DOP_DIRECTIONS * DRAPE_PATCH_WIDTH];
     const uint index = get_group_id(0), lane = get_local_id(0);
-    const uint face = index < patchCount ? faceIds[index * DRAPE_PATCH_WIDTH + lane] : DRAPE_NO_FEATURE;
+    const ClothView cloth = clothAt(nodes, cloths, &values.m_cloth, values.m_mode, 0);
+    const SelfPatches packed = selfPatchesAt(patches, &values.m_patches);
+    __global const float* start = volumeStart(&cloth);
+    const int exists = index < packed.m_patchCount;
+    const uint face = exists ? packed.m_faceIds[index * DRAPE_PATCH_WIDTH + lane] : DRAPE_NO_FEATURE;
     Patch patch = {0, 0, 0, 0, 0};
-    if (index < patchCount) patch = patches[index];
-    const float grown = index < patchCount ? radius[patch.m_mesh] : -1.0f;
+    if (exists) patch = packed.m_patches[index];
+    const float grown = exists ? radius[patch.m_mesh] : -1.0f;
     Dop dop;
     dopClear(&dop);
     if (face != DRAPE_NO_FEATURE && grown >= 0.0f)
     {
-        triangleVolume(&dop, triangles + face, start, end, grown);
-        if (obstacleRadius[patch.m_mesh] < 0.0f) countInvalidNodes(triangles + face, start, end, counters);
+        __global const Triangle* triangle = cloth.m_triangles + face;
+        triangleVolume(&dop, triangle, start, cloth.m_end, grown);
+        if (obstacleRadius[patch.m_mesh] < 0.0f) countInvalidNodes(triangle, start, cloth.m_end, counters);
     }
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
     {
@@ -44,12 +44,14 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_PATCH_WIDTH, 1, 1))) void sel
     }
     for (uint block = patch.m_vertexBlock; block < patch.m_vertexBlock + patch.m_vertexBlocks; ++block)
     {
-        const uint vertex = vertexIds[block * DRAPE_PATCH_WIDTH + lane];
-        if (vertex != DRAPE_NO_FEATURE && grown >= 0.0f) storeNode(nodeBoxes, vertex, nodeBox(start, end, vertex, grown));
+        const uint vertex = packed.m_vertexIds[block * DRAPE_PATCH_WIDTH + lane];
+        if (vertex != DRAPE_NO_FEATURE && grown >= 0.0f)
+            storeNode(packed.m_vertexBoxes, vertex, nodeBox(start, cloth.m_end, vertex, grown));
     }
     barrier(CLK_LOCAL_MEM_FENCE);
-    __global float* out =
-        wideNodes + (index / DRAPE_PATCH_WIDTH) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH + index % DRAPE_PATCH_WIDTH;
+    __global float* out = packed.m_wideNodes +
+                          (index / DRAPE_PATCH_WIDTH) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH +
+                          index % DRAPE_PATCH_WIDTH;
     for (uint row = lane; row < DRAPE_WIDE_NODE_FLOATS; row += DRAPE_PATCH_WIDTH)
     {
         const int isLow = row < DRAPE_DOP_DIRECTIONS, isHigh = !isLow && row < 2 * DRAPE_DOP_DIRECTIONS;

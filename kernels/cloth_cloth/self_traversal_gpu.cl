@@ -2,7 +2,9 @@
 // and lists itself and later patches whose volumes overlap its own. In the second, groups share these pairs of patches.
 // The output is pairs of features whose volumes over the step overlap, each once.
 #include "../lib/self_pairs.h"
+#include "../lib/self_views.h"
 #include "../lib/wide_walk.h"
+#include "self_arena_views.h"
 
 // Pairs of patches that a group gathers before it reserves room for them.
 #define DRAPE_WALK_KEPT (2 * DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH)
@@ -18,8 +20,8 @@ typedef struct SelfWalker
 
 // Lists the kept patches if there are at least `least`; all lanes together. Returns whether the list is within its
 // limit.
-static int listPatches(__local SelfWalker* walker, const uint own, __global Candidate* restrict list, const uint capacity,
-                       const uint limit, __global volatile uint* demand, const uint least)
+static int listPatches(__local SelfWalker* walker, const uint own, __global Candidate* restrict list,
+                       const uint capacity, const uint limit, __global volatile uint* demand, const uint least)
 {
     barrier(CLK_LOCAL_MEM_FENCE);
     const uint count = walker->m_keptCount;
@@ -44,19 +46,18 @@ static int listPatches(__local SelfWalker* walker, const uint own, __global Cand
 // Lists the pairs of a patch, one patch per work-group. The tree's volumes are those of selfPack, joined by patchWiden.
 // radius: see selfPack. Past the limit a group ends: see lib/team.h. counters->m_selfPairs must be zero before.
 __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH, 1, 1))) void selfWalk(
-    __global const Patch* restrict patches, __global const float* restrict radius, __global const float* restrict wideNodes,
-    __global const uint* restrict levels, const uint levelCount, __global Candidate* restrict list, const uint capacity,
-    const uint limit, __global StepCounters* restrict counters)
+    DRAPE_SELF_WALK)
 {
     __local SelfWalker walker;
-    const uint own = get_group_id(0), mesh = patches[own].m_mesh;
+    const SelfPatches packed = selfPatchesIn(patches, &values.m_patches);
+    const uint own = get_group_id(0), mesh = packed.m_patches[own].m_mesh;
     const uint most = get_local_size(0) / DRAPE_PATCH_WIDTH;
     const uint turn = get_local_id(0) / DRAPE_PATCH_WIDTH, lane = get_local_id(0) % DRAPE_PATCH_WIDTH;
     if (radius[mesh] < 0.0f) return;
-    const Dop volume = childVolume(wideNodes, own);
+    const Dop volume = childVolume(packed.m_wideNodes, own);
     if (get_local_id(0) == 0)
     {
-        walker.m_depth = beginWalk(walker.m_stack, levels, levelCount);
+        walker.m_depth = beginWalk(walker.m_stack, packed.m_levels, packed.m_levelCount);
         walker.m_keptCount = 0;
     }
     barrier(CLK_LOCAL_MEM_FENCE);
@@ -72,30 +73,20 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDT
         const uint next = index * DRAPE_PATCH_WIDTH + lane;
         const int ahead = (next + 1) * patchesBelow(level) > own;  // otherwise an earlier patch finds the pair
         if (turn < nodes && ahead &&
-            wideOverlaps(&volume, wideNodes + (levels[level - 1] + index) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH))
+            wideOverlaps(&volume, packed.m_wideNodes + (packed.m_levels[level - 1] + index) * DRAPE_WIDE_NODE_FLOATS *
+                                                           DRAPE_PATCH_WIDTH))
         {
             if (level > 1)
                 walker.m_stack[atomic_inc(&walker.m_depth)] = walkEntry(level - 1, next);
-            else if (patches[next].m_mesh == mesh)
+            else if (packed.m_patches[next].m_mesh == mesh)
                 walker.m_kept[atomic_inc(&walker.m_keptCount)] = next;
         }
-        if (!listPatches(&walker, own, list, capacity, limit, &counters->m_selfPairs,
+        if (!listPatches(&walker, own, list, values.m_pairCapacity, values.m_limit, &counters->m_selfPairs,
                          DRAPE_WALK_KEPT - DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH + 1))
             return;
     }
-    listPatches(&walker, own, list, capacity, limit, &counters->m_selfPairs, 1);
+    listPatches(&walker, own, list, values.m_pairCapacity, values.m_limit, &counters->m_selfPairs, 1);
 }
-
-// The step's packed features.
-typedef struct SelfFeatures
-{
-    __global const Patch* m_patches;
-    __global const uint* m_faceIds;
-    __global const uint* m_vertexIds;
-    __global const uint* m_edgeIds;
-    __global const float* m_boxes;  // boxes of the nodes
-    __global const float* m_nodes;  // nodes of the wide tree
-} SelfFeatures;
 
 // Maximum features of one kind that a patch owns.
 #define DRAPE_OWNED_MOST (3 * DRAPE_PATCH_WIDTH)
@@ -167,18 +158,18 @@ static int isNear(__local const float* boxes, const uint place)
     return boxes[place] < DRAPE_INFINITY;
 }
 
-static FeatureBox loadNode(const SelfFeatures* features, const uint node)
+static FeatureBox loadNode(const SelfPatches* features, const uint node)
 {
     FeatureBox box;
     for (int i = 0; i < 3; ++i)
     {
-        box.m_low[i] = features->m_boxes[node * DRAPE_BOX_FLOATS + i];
-        box.m_high[i] = features->m_boxes[node * DRAPE_BOX_FLOATS + 3 + i];
+        box.m_low[i] = features->m_vertexBoxes[node * DRAPE_BOX_FLOATS + i];
+        box.m_high[i] = features->m_vertexBoxes[node * DRAPE_BOX_FLOATS + 3 + i];
     }
     return box;
 }
 
-static void gatherFace(__local NearFaces* near, const SelfCloth* cloth, const SelfFeatures* features, const uint place,
+static void gatherFace(__local NearFaces* near, const SelfCloth* cloth, const SelfPatches* features, const uint place,
                        const uint face, const FeatureBox* other)
 {
     FeatureBox box = emptyBox();
@@ -192,7 +183,7 @@ static void gatherFace(__local NearFaces* near, const SelfCloth* cloth, const Se
     near->m_ids[place] = face;
 }
 
-static void gatherVertex(__local NearVertices* near, const SelfFeatures* features, const uint place, const uint vertex,
+static void gatherVertex(__local NearVertices* near, const SelfPatches* features, const uint place, const uint vertex,
                          const FeatureBox* other)
 {
     FeatureBox box = emptyBox();
@@ -201,7 +192,7 @@ static void gatherVertex(__local NearVertices* near, const SelfFeatures* feature
     near->m_ids[place] = vertex;
 }
 
-static void gatherEdge(__local NearEdges* near, const SelfCloth* cloth, const SelfFeatures* features, const uint place,
+static void gatherEdge(__local NearEdges* near, const SelfCloth* cloth, const SelfPatches* features, const uint place,
                        const uint edge, const FeatureBox* other)
 {
     FeatureBox box = emptyBox();
@@ -217,8 +208,8 @@ static void gatherEdge(__local NearEdges* near, const SelfCloth* cloth, const Se
 
 // Gathers the faces of both patches, one per lane. boxes: the patches'. Returns whether either has a face near the
 // other patch: the volumes of patches alone overlap far more often.
-static int gatherFaces(__local NearSide* sides, const SelfCloth* cloth, const SelfFeatures* features, const Candidate pair,
-                       const FeatureBox boxes[2])
+static int gatherFaces(__local NearSide* sides, const SelfCloth* cloth, const SelfPatches* features,
+                       const Candidate pair, const FeatureBox boxes[2])
 {
     const uint turn = get_local_id(0) / DRAPE_PATCH_WIDTH, lane = get_local_id(0) % DRAPE_PATCH_WIDTH;
     __local NearSide* side = sides + min(turn, 1u);
@@ -236,7 +227,7 @@ static int gatherFaces(__local NearSide* sides, const SelfCloth* cloth, const Se
 }
 
 // Gathers the other features of a patch, one per lane. other: the other patch's box.
-static void gatherSide(__local NearSide* side, const SelfCloth* cloth, const SelfFeatures* features, const uint patch,
+static void gatherSide(__local NearSide* side, const SelfCloth* cloth, const SelfPatches* features, const uint patch,
                        const FeatureBox* other)
 {
     const Patch owned = features->m_patches[patch];
@@ -250,8 +241,8 @@ static void gatherSide(__local NearSide* side, const SelfCloth* cloth, const Sel
     {
         const uint edge = i - vertices;
         if (i < vertices)
-            gatherVertex(&side->m_vertices, features, i, features->m_vertexIds[owned.m_vertexBlock * DRAPE_PATCH_WIDTH + i],
-                         other);
+            gatherVertex(&side->m_vertices, features, i,
+                         features->m_vertexIds[owned.m_vertexBlock * DRAPE_PATCH_WIDTH + i], other);
         else
             gatherEdge(&side->m_edges, cloth, features, edge,
                        features->m_edgeIds[owned.m_edgeBlock * DRAPE_PATCH_WIDTH + edge], other);
@@ -314,12 +305,13 @@ static void crossEdges(__local SelfCuller* culler, const SelfCloth* cloth, __loc
 }
 
 // Notes the feature pairs of two patches, or of one with itself, whose boxes overlap.
-static void crossPatches(__local SelfCuller* culler, const SelfCloth* cloth, const SelfFeatures* features,
+static void crossPatches(__local SelfCuller* culler, const SelfCloth* cloth, const SelfPatches* features,
                          const Candidate pair, const TestList* list)
 {
     __local NearSide* sides = culler->m_sides;
     const int same = pair.m_cloth == pair.m_obstacle;
-    const FeatureBox boxes[2] = {childBox(features->m_nodes, pair.m_cloth), childBox(features->m_nodes, pair.m_obstacle)};
+    const FeatureBox boxes[2] = {childBox(features->m_wideNodes, pair.m_cloth),
+                                 childBox(features->m_wideNodes, pair.m_obstacle)};
     if (!gatherFaces(sides, cloth, features, pair, boxes)) return;
     gatherSide(sides, cloth, features, pair.m_cloth, boxes + 1);
     if (!same) gatherSide(sides + 1, cloth, features, pair.m_obstacle, boxes);
@@ -345,8 +337,8 @@ static int settleNear(__local SelfCuller* culler, const SelfCloth* cloth, const 
         if (i < count)
         {
             const uint b = culler->m_nearB[i];
-            keepPair(&culler->m_team, cloth, culler->m_nearA[i], b & ((1u << DRAPE_KIND_SHIFT) - 1u), b >> DRAPE_KIND_SHIFT,
-                     list);
+            keepPair(&culler->m_team, cloth, culler->m_nearA[i], b & ((1u << DRAPE_KIND_SHIFT) - 1u),
+                     b >> DRAPE_KIND_SHIFT, list);
         }
         within = teamMakeRoom(&culler->m_team, list);
     }
@@ -358,31 +350,27 @@ static int settleNear(__local SelfCuller* culler, const SelfCloth* cloth, const 
 // Lists the self tests of the pairs of patches in selfWalk's list. limit: see lib/team.h; counters->m_selfTests must be
 // zero before.
 __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH, 1, 1))) void selfCullPairs(
-    __global const Candidate* restrict pairs, const uint pairCapacity, __global const Patch* restrict patches,
-    __global const uint* restrict faceIds, __global const uint* restrict vertexIds, __global const uint* restrict edgeIds,
-    __global const Triangle* restrict triangles, __global const Edge* restrict edges, __global const float* start,
-    __global const float* end, __global const float* restrict radius, __global const float* restrict thickness,
-    __global const float* restrict nodeBoxes, __global const float* restrict wideNodes, __global FeatureTest* restrict list,
-    const uint capacity, const uint limit, __global StepCounters* restrict counters)
+    DRAPE_SELF_CULL_PAIRS)
 {
     __local SelfCuller culler;
-    const uint count = min(counters->m_selfPairs, pairCapacity);
-    const SelfFeatures features = {patches, faceIds, vertexIds, edgeIds, nodeBoxes, wideNodes};
-    const TestList tests = {list, capacity, limit, &counters->m_selfTests};
-    SelfCloth cloth = {triangles, edges, start, end, 0.0f, 0.0f};
+    const uint count = min(counters->m_selfPairs, values.m_pairCapacity);
+    const SelfPatches packed = selfPatchesIn(patches, &values.m_patches);
+    const TestList tests = {list, values.m_capacity, values.m_limit, &counters->m_selfTests};
+    const ClothView view = clothAt(nodes, cloths, &values.m_cloth, values.m_mode, 0);
+    SelfCloth cloth = {view.m_triangles, view.m_edges, volumeStart(&view), view.m_end, 0.0f, 0.0f};
     uint mesh = DRAPE_NO_FEATURE;
     if (get_local_id(0) == 0) culler.m_nearCount = 0;
     teamStart(&culler.m_team);
     for (uint i = get_group_id(0); i < count; i += get_num_groups(0))
     {
         const Candidate pair = pairs[i];
-        const uint next = patches[pair.m_cloth].m_mesh;
+        const uint next = packed.m_patches[pair.m_cloth].m_mesh;
         // Tests the noted pairs with their own cloth's radius before it changes.
         if (next != mesh && !settleNear(&culler, &cloth, &tests, 1)) return;
         mesh = next;
         cloth.m_radius = radius[mesh];
         cloth.m_thickness = thickness[mesh];
-        crossPatches(&culler, &cloth, &features, pair, &tests);
+        crossPatches(&culler, &cloth, &packed, pair, &tests);
         if (!settleNear(&culler, &cloth, &tests, get_local_size(0))) return;
     }
     settleNear(&culler, &cloth, &tests, 1);

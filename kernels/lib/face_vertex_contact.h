@@ -4,7 +4,7 @@
 #define DRAPE_LIB_FACE_VERTEX_CONTACT_H
 
 #include "feature_meeting.h"
-#include "views.h"
+#include "cloth_reads.h"
 
 DRAPE_NAMESPACE_BEGIN
 

@@ -2,8 +2,7 @@
 #ifndef DRAPE_LIB_FEATURE_TESTS_H
 #define DRAPE_LIB_FEATURE_TESTS_H
 
-#include "../shared/patch.h"
-#include "hit_list.h"
+#include "list_contacts.h"
 #include "pair_contact.h"
 
 // Loads the position and cone of a lane of a vertex or edge block.
@@ -22,17 +21,6 @@ static NormalCone laneCone(__global const float* restrict blocks, const uint flo
     return cone;
 }
 
-// The packed features of the obstacles (see shared/patch.h); ids: the triangle, vertex or edge of each lane.
-typedef struct PackedFeatures
-{
-    __global const float* m_faces;
-    __global const float* m_vertices;
-    __global const float* m_edges;
-    __global const uint* m_faceIds;
-    __global const uint* m_vertexIds;
-    __global const uint* m_edgeIds;
-} PackedFeatures;
-
 // Returns the motion of a test's obstacle; null if it rests.
 static __global const ObstacleMotion* motionOfTest(__global const ObstacleMotion* motions, const FeatureTest test)
 {
@@ -40,7 +28,7 @@ static __global const ObstacleMotion* motionOfTest(__global const ObstacleMotion
 }
 
 static int featureContact(const FeatureTest feature, const ClothView* cloth, const ObstacleView* obstacle,
-                          const PackedFeatures* packed, Contact* contact)
+                          const PackedPatches* packed, Contact* contact)
 {
     const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT, lane = feature.m_lane;
     const uint triangle = feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u);
@@ -64,23 +52,6 @@ static int featureContact(const FeatureTest feature, const ClothView* cloth, con
                         packed->m_edgeIds[lane], feature.m_reach, contact);
 }
 
-// The step's cloths and obstacles as the kernels below read them, and the contacts that they list.
-#define DRAPE_FEATURE_ARGUMENTS                                                                                            \
-    __global const FeatureTest *restrict tests, const uint testCapacity, __global const float *restrict clothStart,        \
-        __global const float *restrict clothEnd, __global const Triangle *restrict clothTriangles,                         \
-        __global const Edge *restrict clothEdges, const uint nodeCount, const uint triangleCount, const uint mode,         \
-        __global const Triangle *restrict obstacleTriangles, __global const NormalCone *restrict vertexCones,              \
-        __global const NormalCone *restrict edgeCones, __global const float *restrict faces,                               \
-        __global const float *restrict vertices, __global const float *restrict edges, __global const uint *restrict faceIds, \
-        __global const uint *restrict vertexIds, __global const uint *restrict edgeIds,                                    \
-        __global const ObstacleMotion *restrict motions, DRAPE_HIT_ARGUMENTS
-#define DRAPE_CLOTH_VIEW(searches) \
-    clothView(clothStart, clothEnd, clothTriangles, clothEdges, nodeCount, triangleCount, mode, searches)
-#define DRAPE_FEATURE_VIEWS                                                                     \
-    const HitList list = DRAPE_HIT_LIST;                                                        \
-    const ObstacleView obstacle = obstacleView(0, obstacleTriangles, vertexCones, edgeCones);   \
-    const PackedFeatures packed = {faces, vertices, edges, faceIds, vertexIds, edgeIds}
-
 #define DRAPE_TEST_KINDS 3
 static uint kindOfTest(const FeatureTest feature)
 {
@@ -90,8 +61,8 @@ static uint kindOfTest(const FeatureTest feature)
 
 // Tests the item-th feature pair. Lists its contact, or the test in `swept` if only the continuous test can decide.
 static void testFeature(__global const FeatureTest* tests, const uint item, ClothView* cloth,
-                        const ObstacleView* obstacle, const PackedFeatures* packed,
-                        __global const ObstacleMotion* motions, const HitList* list, __global uint* swept,
+                        const ObstacleView* obstacle, const PackedPatches* packed,
+                        __global const ObstacleMotion* motions, const ContactSink* sink, __global uint* swept,
                         __global StepCounters* counters)
 {
     const FeatureTest test = tests[item];
@@ -99,7 +70,7 @@ static void testFeature(__global const FeatureTest* tests, const uint item, Clot
     Contact contact;
     const int found = featureContact(test, cloth, obstacle, packed, &contact);
     if (found == DRAPE_IS_CONTACT)
-        listHit(list, &contact);
+        listContact(sink, &contact);
     else if (found == DRAPE_UNDECIDED)
         swept[atomic_inc(&counters->m_swept)] = item;
 }

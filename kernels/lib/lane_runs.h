@@ -3,9 +3,9 @@
 #ifndef DRAPE_LIB_LANE_RUNS_H
 #define DRAPE_LIB_LANE_RUNS_H
 
-#include "hit_list.h"
 #include "item_runs.h"
 #include "lane_contacts.h"
+#include "list_contacts.h"
 #include "team.h"
 
 // Maximum kinds of tests, and maximum rows of numbers of one test.
@@ -31,12 +31,12 @@ static int takeContact(const NearContact* near, const float* rows, const uint la
 static void testOne(LaneWork* work, const uint item);
 
 // Tests items[0] … items[count - 1], all of one kind, at most one per lane.
-static void testLanes(LaneWork* work, const uint kind, const uint* items, const uint count, const HitList* list)
+static void testLanes(LaneWork* work, const uint kind, const uint* items, const uint count, const ContactSink* sink)
 {
     float rows[DRAPE_LANE_ROWS * DRAPE_LANES];
     LaneContacts contacts;
-    Contact hits[DRAPE_LANES];
-    uint hitCount = 0;
+    Contact listed[DRAPE_LANES];
+    uint listedCount = 0;
     for (uint lane = 0; lane < DRAPE_LANES; ++lane) putTest(rows, lane, work, items[min(lane, count - 1)]);
     askLanes(&contacts, rows, work, kind);
     const uint used = (1u << count) - 1u, asking = laneBits(contacts.m_near.m_asks);
@@ -44,14 +44,14 @@ static void testLanes(LaneWork* work, const uint kind, const uint* items, const 
     {
         const uint lane = 31 - clz(left & -left);
         const NearContact near = nearOfLane(&contacts.m_near, lane, asking >> lane & 1u);
-        hitCount += takeContact(&near, rows, lane, work, items[lane], hits + hitCount) == DRAPE_IS_CONTACT;
+        listedCount += takeContact(&near, rows, lane, work, items[lane], listed + listedCount) == DRAPE_IS_CONTACT;
     }
-    listHits(list, hits, hitCount);
+    listContacts(sink, listed, listedCount);
     for (uint left = laneBits(contacts.m_open) & used; left; left &= left - 1) testOne(work, items[31 - clz(left & -left)]);
 }
 
 // Tests a run of items, at most DRAPE_MOST_RUN. A continuous step searches every pair for a meeting: one by one.
-static void testRun(LaneWork* work, const uint first, const uint end, const uint mode, const HitList* list)
+static void testRun(LaneWork* work, const uint first, const uint end, const uint mode, const ContactSink* sink)
 {
     uint items[DRAPE_LANE_KINDS][DRAPE_MOST_RUN], counts[DRAPE_LANE_KINDS] = {0, 0, 0};
     for (uint item = first; item < end; ++item)
@@ -65,7 +65,7 @@ static void testRun(LaneWork* work, const uint first, const uint end, const uint
         {
             const uint count = min(counts[kind] - i, (uint)DRAPE_LANES);
             if (count >= DRAPE_FEWEST_LANES && mode != DRAPE_CONTINUOUS)
-                testLanes(work, kind, items[kind] + i, count, list);
+                testLanes(work, kind, items[kind] + i, count, sink);
             else
                 for (uint k = 0; k < count; ++k) testOne(work, items[kind][i + k]);
         }

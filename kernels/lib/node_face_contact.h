@@ -4,7 +4,7 @@
 #define DRAPE_LIB_NODE_FACE_CONTACT_H
 
 #include "feature_contact.h"
-#include "views.h"
+#include "cloth_reads.h"
 #include "ways.h"
 
 DRAPE_NAMESPACE_BEGIN

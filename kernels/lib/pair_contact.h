@@ -10,7 +10,7 @@
 #include "finite_corners.h"
 #include "node_face_contact.h"
 #include "segment.h"
-#include "views.h"
+#include "cloth_reads.h"
 
 DRAPE_NAMESPACE_BEGIN
 

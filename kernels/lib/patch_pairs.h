@@ -5,51 +5,9 @@
 
 #include "feature_cull.h"
 #include "rigid_motion.h"
+#include "step_views.h"
 #include "team.h"
 #include "wide_walk.h"
-
-// The cloths of a step and their pairs. thickness: m, cloths × obstacles, negative for untested pairs. mode:
-// DRAPE_DISCRETE …. motions: of the obstacles that move in the step.
-typedef struct StepCloths
-{
-    __global const Triangle* m_triangles;
-    __global const float* m_start;
-    __global const float* m_end;
-    __global const float* m_thickness;
-    uint m_obstacleMeshes;
-    float m_reachScale;
-    uint m_mode;
-    __global const ObstacleMotion* m_motions;
-    uint m_motionCount;
-} StepCloths;
-
-// The wide tree over the patches.
-typedef struct PatchTree
-{
-    __global const float* m_nodes;
-    __global const uint* m_levels;  // first node of each of m_levelCount levels, lowest first
-    uint m_levelCount;
-    __global const Patch* m_patches;
-} PatchTree;
-
-// Inputs and output list of traversal kernels. radius: m, per cloth, negative for cloths outside the step. limit: see
-// team.h. Counters must be zero before. The list has no particular order.
-#define DRAPE_WALK_ARGUMENTS                                                                                           \
-    __global const uint *restrict clothOrder, __global const Triangle *restrict clothTriangles, const uint clothCount, \
-        __global const float *restrict start, __global const float *restrict end,                                      \
-        __global const float *restrict radius, __global const float *restrict thickness, const uint obstacleMeshes,    \
-        const float reachScale, const uint mode, __global const ObstacleMotion *restrict motions,                      \
-        const uint motionCount, __global const float *restrict wideNodes, __global const uint *restrict levels,        \
-        const uint levelCount, __global const Patch *restrict patches, __global FeatureTest *restrict list,            \
-        const uint capacity, const uint limit, __global StepCounters *restrict counters
-#define DRAPE_STEP_CLOTHS                                                                             \
-    {                                                                                                 \
-        clothTriangles, start, end, thickness, obstacleMeshes, reachScale, mode, motions, motionCount \
-    }
-#define DRAPE_PATCH_TREE                       \
-    {                                          \
-        wideNodes, levels, levelCount, patches \
-    }
 
 // motion: 0 for none, else 1 + its index.
 static __global const ObstacleMotion* motionOf(const StepCloths* cloths, const uint motion)
@@ -60,15 +18,15 @@ static __global const ObstacleMotion* motionOf(const StepCloths* cloths, const u
 // Returns the pair's thickness, m; negative for an untested pair.
 static float thicknessWith(const StepCloths* cloths, const uint cloth, const uint mesh)
 {
-    return cloths->m_thickness[cloths->m_triangles[cloth].m_mesh * cloths->m_obstacleMeshes + mesh];
+    return cloths->m_thickness[cloths->m_cloth.m_triangles[cloth].m_mesh * cloths->m_obstacleMeshes + mesh];
 }
 
 // Returns whether a cloth triangle must be tested against a patch of the obstacles with this motion (all resting
 // ones, or one that moves); *pair then holds the test.
-static int pairWith(FeatureTest* pair, const StepCloths* cloths, const PatchTree* tree, const uint cloth,
+static int pairWith(FeatureTest* pair, const StepCloths* cloths, const PackedPatches* patches, const uint cloth,
                     const uint motion, const uint patch)
 {
-    const uint mesh = tree->m_patches[patch].m_mesh;
+    const uint mesh = patches->m_patches[patch].m_mesh;
     const float thickness = thicknessWith(cloths, cloth, mesh);
     if (thickness < 0.0f) return 0;
     if (findMotion(cloths->m_motions, cloths->m_motionCount, mesh) != motionOf(cloths, motion)) return 0;
@@ -82,12 +40,13 @@ static int pairWith(FeatureTest* pair, const StepCloths* cloths, const PatchTree
 // Counts the invalid nodes that the triangle owns.
 static void countInvalid(const StepCloths* cloths, const uint cloth, __global StepCounters* counters)
 {
-    __global const Triangle* triangle = cloths->m_triangles + cloth;
+    const ClothView* view = &cloths->m_cloth;
+    __global const Triangle* triangle = view->m_triangles + cloth;
     for (int i = 0; i < 3; ++i)
     {
         const uint vertex = triangle->m_vertices[i];
         if ((triangle->m_owned & DRAPE_OWNS_VERTEX(i)) &&
-            !(positionIsValid(vec3Load(cloths->m_start, vertex)) && positionIsValid(vec3Load(cloths->m_end, vertex))))
+            !(positionIsValid(vec3Load(view->m_start, vertex)) && positionIsValid(vec3Load(view->m_end, vertex))))
         {
             atomic_inc(&counters->m_invalidNodes);
         }
@@ -103,20 +62,11 @@ typedef struct Looker
 
 static void look(Looker* looker, const StepCloths* cloths, const uint cloth, const uint motion)
 {
-    looker->m_valid = prepareCull(&looker->m_cull, cloths->m_start, cloths->m_end, cloths->m_triangles + cloth,
-                                  cloths->m_mode, motionOf(cloths, motion));
-    looker->m_owned = cloths->m_triangles[cloth].m_owned;
+    const ClothView* view = &cloths->m_cloth;
+    looker->m_valid = prepareCull(&looker->m_cull, view->m_start, view->m_end, view->m_triangles + cloth, view->m_mode,
+                                  motionOf(cloths, motion));
+    looker->m_owned = view->m_triangles[cloth].m_owned;
 }
-
-// The obstacles' features in blocks.
-typedef struct PatchFeatures
-{
-    __global const Patch* m_patches;
-    __global const float* m_sizes;
-    __global const float* m_faces;
-    __global const float* m_vertices;
-    __global const float* m_edges;
-} PatchFeatures;
 
 // Lists the tests of a block's lanes in the mask. kind: DRAPE_TEST_NODE …; first: the block's first lane.
 static void keepLanes(DRAPE_TEAM Team* team, const LaneMask mask, FeatureTest test, const uint kind, const uint first,

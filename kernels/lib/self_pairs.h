@@ -1,4 +1,5 @@
-// Pairs of features of one cloth that a broad phase lists (kernels/cloth_cloth/self_cull.cl, self_traversal_gpu.cl). For kernels only.
+// Pairs of features of one cloth that a broad phase lists (kernels/cloth_cloth/self_cull.cl, self_traversal_gpu.cl).
+// For kernels only.
 #ifndef DRAPE_LIB_SELF_PAIRS_H
 #define DRAPE_LIB_SELF_PAIRS_H
 
@@ -78,7 +79,8 @@ static void keepPair(DRAPE_TEAM Team* team, const SelfCloth* cloth, const uint a
     else
     {
         nodes[0] = a;
-        for (int i = 0; i < 3; ++i) nodes[1 + i] = cloth->m_triangles[b].m_vertices[i];
+        for (int i = 0; i < 3; ++i)
+            nodes[1 + i] = cloth->m_triangles[b].m_vertices[i];
     }
     Vec3 from[4], to[4];
     for (int k = 0; k < 4; ++k)

@@ -10,6 +10,7 @@
 
 #include "../shared/mesh.h"
 #include "lanes.h"
+#include "step_views.h"
 
 // Records gathered before room is reserved for them; a surplus goes to the list one by one.
 #define DRAPE_TEAM_KEPT (4 * DRAPE_PATCH_WIDTH)
@@ -21,13 +22,6 @@ typedef struct Team
     uint m_keptCount;
     uint m_place;  // position in the list of the records moved last
 } Team;
-
-typedef struct TestList
-{
-    __global FeatureTest* m_tests;
-    uint m_capacity, m_limit;
-    volatile __global uint* m_count;
-} TestList;
 
 #if DRAPE_LANES > 1
 #define teamLane() 0
@@ -83,7 +77,8 @@ static float leastLane(const Lanes all)
 {
 #ifdef DRAPE_CPU_KERNELS
     float least = all[0];
-    for (int i = 1; i < DRAPE_LANES; ++i) least = drapeMin(least, all[i]);
+    for (int i = 1; i < DRAPE_LANES; ++i)
+        least = drapeMin(least, all[i]);
     return least;
 #else
 #if DRAPE_LANES == 16

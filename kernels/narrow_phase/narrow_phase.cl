@@ -27,23 +27,6 @@ static uint testByKind(__global const FeatureTest* tests, const uint first, cons
     return item < count ? first + order[lane] : count;
 }
 
-// Runs the feature tests that the cull lists, each group its part, as many at a time as it has work-items, and lists
-// the contacts. Tests that need the continuous test go to `swept`, unsorted. counters->m_swept must be zero before. A
-// CPU's narrowPhaseFeature is in narrow_phase_simd.cl.
-__kernel __attribute__((reqd_work_group_size(DRAPE_FEATURE_GROUP, 1, 1))) void narrowPhaseFeature(
-    DRAPE_FEATURE_ARGUMENTS, __global uint* restrict swept)
-{
-    DRAPE_FEATURE_VIEWS;
-    __local uint kinds[DRAPE_TEST_KINDS];
-    __local ushort order[DRAPE_FEATURE_GROUP];
-    ClothView cloth = DRAPE_CLOTH_VIEW(0);
-    const uint count = min(counters->m_candidates, testCapacity);
-    for (uint first = get_group_id(0) * get_local_size(0); first < count; first += get_global_size(0))
-    {
-        const uint item = testByKind(tests, first, count, kinds, order);
-        if (item < count) testFeature(tests, item, &cloth, &obstacle, &packed, motions, &list, swept, counters);
-    }
-}
 #endif
 
 // Divides the tests among groups by kind: groups alternate between the kinds. Lanes of different kinds in one group
@@ -67,42 +50,100 @@ static KindShare kindShare(const uint kind)
     return share;
 }
 
-// Runs every stride-th of the tests that narrowPhaseFeature left to the continuous test, per work-item, and lists
-// their contacts, unless there are more than mostSwept. None of these is a node's test: a node's path crosses a
-// resting face in closed form.
-__kernel void narrowPhaseSwept(DRAPE_FEATURE_ARGUMENTS, __global const uint* restrict swept, const uint mostSwept)
+// Runs every stride-th of the tests that were left to the continuous test, and lists their contacts, unless there are
+// more than mostSwept. None of these is a node's test: a node's path crosses a resting face in closed form. The
+// input's cloth counts the searches.
+static void runSweptTests(const FeatureInput* input, const ContactSink* sink, __global const uint* swept,
+                          const uint mostSwept, __global const StepCounters* counters)
 {
-    DRAPE_FEATURE_VIEWS;
-    uint searches = 0;
-    ClothView cloth = DRAPE_CLOTH_VIEW(&searches);
+    ClothView cloth = input->m_cloth;
     const KindShare share = kindShare(1);
     const uint count = counters->m_swept <= mostSwept ? counters->m_swept : 0;
     for (uint i = share.m_first; i < count; i += share.m_stride)
     {
-        const FeatureTest test = tests[swept[i]];
+        const FeatureTest test = input->m_tests[swept[i]];
         Contact contact;
         if (kindOfTest(test) != share.m_kind) continue;
-        cloth.m_motion = motionOfTest(motions, test);
-        if (featureContact(test, &cloth, &obstacle, &packed, &contact) == DRAPE_IS_CONTACT) listHit(&list, &contact);
+        cloth.m_motion = motionOfTest(input->m_motions, test);
+        if (featureContact(test, &cloth, &input->m_obstacle, &input->m_patches, &contact) == DRAPE_IS_CONTACT)
+            listContact(sink, &contact);
     }
 }
 
-// Runs both phases in one launch, for few tests: each runs the continuous test where it needs it. Does nothing if
-// there are more than mostTests.
-__kernel void narrowPhaseFew(DRAPE_FEATURE_ARGUMENTS, const uint mostTests)
+#ifdef __OPENCL_VERSION__
+#include "../lib/arena_views.h"
+#include "narrow_phase_bindings.h"
+
+static FeatureInput featureInput(const FeatureValues* values, __global const FeatureTest* tests, const uint count,
+                                 const ClothView cloth, __global const ObstacleWord* obstacles,
+                                 __global const PatchWord* patches, __global const ObstacleMotion* motions)
 {
-    DRAPE_FEATURE_VIEWS;
+    FeatureInput input;
+    input.m_tests = tests;
+    input.m_count = count;
+    input.m_cloth = cloth;
+    input.m_obstacle = obstacleAt(obstacles, &values->m_obstacle);
+    input.m_patches = patchesAt(patches, &values->m_patches);
+    input.m_motions = motions;
+    return input;
+}
+
+#ifndef DRAPE_CPU
+// Runs the feature tests that the cull lists, each group its part, as many at a time as it has work-items, and lists
+// the contacts. Tests that need the continuous test go to `swept`, unsorted. counters->m_swept must be zero before. A
+// CPU's narrowPhaseFeature is in narrow_phase_simd.cl.
+__kernel __attribute__((reqd_work_group_size(DRAPE_FEATURE_GROUP, 1, 1))) void narrowPhaseFeature(
+    DRAPE_NARROW_PHASE_FEATURE)
+{
+    __local uint kinds[DRAPE_TEST_KINDS];
+    __local ushort order[DRAPE_FEATURE_GROUP];
+    const uint count = min(counters->m_candidates, values.m_testCapacity);
+    ClothView cloth = clothAt(nodes, cloths, &values.m_cloth, values.m_mode, 0);
+    const FeatureInput input = featureInput(&values, tests, count, cloth, obstacles, patches, motions);
+    const ContactSink sink =
+        contactSink(contacts, values.m_contactCapacity, places, featureCounts, values.m_sums, counters);
+    for (uint first = get_group_id(0) * get_local_size(0); first < count; first += get_global_size(0))
+    {
+        const uint item = testByKind(tests, first, count, kinds, order);
+        if (item < count)
+            testFeature(tests, item, &cloth, &input.m_obstacle, &input.m_patches, motions, &sink, swept, counters);
+    }
+}
+#endif
+
+// Runs the tests that narrowPhaseFeature left to the continuous test.
+__kernel void narrowPhaseSwept(DRAPE_NARROW_PHASE_SWEPT)
+{
     uint searches = 0;
-    ClothView cloth = DRAPE_CLOTH_VIEW(&searches);
+    const FeatureInput input =
+        featureInput(&values, tests, 0, clothAt(nodes, cloths, &values.m_cloth, values.m_mode, &searches), obstacles,
+                     patches, motions);
+    const ContactSink sink =
+        contactSink(contacts, values.m_contactCapacity, places, featureCounts, values.m_sums, counters);
+    runSweptTests(&input, &sink, swept, values.m_most, counters);
+}
+
+// Runs both phases in one launch, for few tests: each runs the continuous test where it needs it. Does nothing if
+// there are more than values.m_most.
+__kernel void narrowPhaseSmall(DRAPE_NARROW_PHASE_SMALL)
+{
+    uint searches = 0;
+    const uint count =
+        counters->m_candidates <= values.m_most ? min(counters->m_candidates, values.m_testCapacity) : 0;
+    ClothView cloth = clothAt(nodes, cloths, &values.m_cloth, values.m_mode, &searches);
+    const FeatureInput input = featureInput(&values, tests, count, cloth, obstacles, patches, motions);
+    const ContactSink sink =
+        contactSink(contacts, values.m_contactCapacity, places, featureCounts, values.m_sums, counters);
     const KindShare share = kindShare(0);
-    const uint count = counters->m_candidates <= mostTests ? min(counters->m_candidates, testCapacity) : 0;
     for (uint i = share.m_first; i < count; i += share.m_stride)
     {
         const FeatureTest test = tests[i];
         Contact contact;
         if (kindOfTest(test) != share.m_kind) continue;
         cloth.m_motion = motionOfTest(motions, test);
-        if (featureContact(test, &cloth, &obstacle, &packed, &contact) == DRAPE_IS_CONTACT) listHit(&list, &contact);
+        if (featureContact(test, &cloth, &input.m_obstacle, &input.m_patches, &contact) == DRAPE_IS_CONTACT)
+            listContact(&sink, &contact);
     }
     if (searches > 0) atomic_add(&counters->m_swept, searches);
 }
+#endif

@@ -9,9 +9,9 @@ struct LaneWork
     __global const FeatureTest* m_tests;
     ClothView m_cloth;
     ObstacleView m_obstacle;
-    PackedFeatures m_packed;
+    PackedPatches m_packed;
     __global const ObstacleMotion* m_motions;
-    HitList m_list;
+    ContactSink m_sink;
     __global uint* m_swept;
     __global StepCounters* m_counters;
 };
@@ -23,7 +23,7 @@ static uint kindOf(const LaneWork* work, const uint item)
 
 static void testOne(LaneWork* work, const uint item)
 {
-    testFeature(work->m_tests, item, &work->m_cloth, &work->m_obstacle, &work->m_packed, work->m_motions, &work->m_list,
+    testFeature(work->m_tests, item, &work->m_cloth, &work->m_obstacle, &work->m_packed, work->m_motions, &work->m_sink,
                 work->m_swept, work->m_counters);
 }
 
@@ -39,7 +39,7 @@ static void putTest(float* rows, const uint lane, LaneWork* work, const uint ite
 {
     const FeatureTest feature = work->m_tests[item];
     ClothView* cloth = &work->m_cloth;
-    const PackedFeatures* packed = &work->m_packed;
+    const PackedPatches* packed = &work->m_packed;
     cloth->m_motion = motionOfTest(work->m_motions, feature);
     const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT, packedLane = feature.m_lane;
     __global const Triangle* triangle = cloth->m_triangles + (feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u));
@@ -89,7 +89,7 @@ static int takeContact(const NearContact* near, const float* rows, const uint la
 {
     const FeatureTest feature = work->m_tests[item];
     const ClothView* cloth = &work->m_cloth;
-    const PackedFeatures* packed = &work->m_packed;
+    const PackedPatches* packed = &work->m_packed;
     const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT, index = feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u);
     const uint row = test < DRAPE_TEST_FACE ? 6 : test == DRAPE_TEST_FACE ? 18 : 12;
     __global const Triangle* triangle = cloth->m_triangles + index;
@@ -125,7 +125,7 @@ static void askForLane(__global const float* blocks, const uint floats, __global
 // Prefetches a test's data.
 static void askForTest(const LaneWork* work, const FeatureTest feature)
 {
-    const PackedFeatures* packed = &work->m_packed;
+    const PackedPatches* packed = &work->m_packed;
     const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT, lane = feature.m_lane;
     prefetchWord(work->m_cloth.m_triangles + (feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u)));
     if (test < DRAPE_TEST_FACE) askForLane(packed->m_faces, DRAPE_FACE_FLOATS, packed->m_faceIds, lane);
@@ -157,16 +157,36 @@ static void askForRun(const LaneWork* work, const uint first, const uint end)
 // Number of tests from which their data is seldom in the caches.
 #define DRAPE_FAR_TESTS (1u << 17)
 
-// Runs the feature tests that patchCull lists, each work-item its part, and lists the contacts. Tests that need the
-// continuous test go to `swept`, unsorted. counters->m_swept must be zero before.
-__kernel void narrowPhaseFeature(DRAPE_FEATURE_ARGUMENTS, __global uint* restrict swept)
+// Runs a work-item's part of the feature tests, and lists their contacts. Tests that need the continuous test go to
+// `swept`, unsorted. counters->m_swept must be zero before.
+static void runFeatureTests(const FeatureInput* input, const ContactSink* sink, __global uint* swept,
+                            __global StepCounters* counters)
 {
-    DRAPE_FEATURE_VIEWS;
-    LaneWork work = {tests, DRAPE_CLOTH_VIEW(0), obstacle, packed, motions, list, swept, counters};
-    const uint count = min(counters->m_candidates, testCapacity);
+    LaneWork work = {input->m_tests,   input->m_cloth, input->m_obstacle, input->m_patches,
+                     input->m_motions, *sink,          swept,             counters};
+    const uint count = input->m_count;
     for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextRun(&runs))
     {
         if (count >= DRAPE_FAR_TESTS) askForRun(&work, runs.m_item, runs.m_end);
-        testRun(&work, runs.m_item, runs.m_end, mode, &list);
+        testRun(&work, runs.m_item, runs.m_end, work.m_cloth.m_mode, sink);
     }
 }
+
+#ifdef __OPENCL_VERSION__
+#include "../lib/arena_views.h"
+#include "narrow_phase_bindings.h"
+
+// Runs the feature tests that patchCull lists.
+__kernel void narrowPhaseFeature(DRAPE_NARROW_PHASE_FEATURE)
+{
+    const FeatureInput input = {tests,
+                                min(counters->m_candidates, values.m_testCapacity),
+                                clothAt(nodes, cloths, &values.m_cloth, values.m_mode, 0),
+                                obstacleAt(obstacles, &values.m_obstacle),
+                                patchesAt(patches, &values.m_patches),
+                                motions};
+    const ContactSink sink =
+        contactSink(contacts, values.m_contactCapacity, places, featureCounts, values.m_sums, counters);
+    runFeatureTests(&input, &sink, swept, counters);
+}
+#endif

@@ -1,39 +1,37 @@
-// Does the work of two or three launches of ordering.cl in one, for few slots on a GPU: every work-item sums the
-// slots before its own.
-#include "../lib/hit_list.h"
+// Does the work of two or three launches of ordering.cl in one, for few features on a GPU: every work-item sums the
+// features before its own.
+#include "../lib/list_contacts.h"
+#include "ordering_bindings.h"
 
-// Stores where a slot's contacts begin, and records whether they exceed `ranked`.
-static void placeSlot(__global const uint* restrict slotCount, __global const uint* restrict slotSums,
-                      __local const uint* wide, const uint slot, const uint ranked, __global uint* restrict slotFirst,
-                      __global StepCounters* restrict counters)
+// Stores where a feature's contacts begin, and records whether they exceed `ranked`.
+static void placeFeature(__global const uint* featureCounts, __global const uint* sums, __local const uint* wide,
+                         const uint feature, const uint ranked, __global uint* restrict firsts,
+                         __global StepCounters* restrict counters)
 {
-    slotFirst[slot] = hitsBefore(slotCount, slotSums, wide, slot);
-    if (slotCount[slot] > ranked) atomic_inc(&counters->m_crowded);
+    firsts[feature] = contactsBefore(featureCounts, sums, wide, feature);
+    if (featureCounts[feature] > ranked) atomic_inc(&counters->m_crowded);
 }
 
-// Processes slots, and contacts, which a work-item lists among their slots' members. hitPlaces, slotCount, slotSums:
-// see listHit(). slotFirst: first position of each slot's members. keys, members: see orderingGather. Leaves the
-// next step's counters zero.
-__kernel void orderingGatherFew(__global const Contact* restrict hits, const uint hitCapacity,
-                                  __global const uint* restrict hitPlaces, __global const uint* restrict slotCount,
-                                  __global const uint* restrict slotSums, const uint slots, const uint ranked,
-                                  __global uint* restrict slotFirst, __global uint* restrict members,
-                                  __global uint* restrict keys, __global StepCounters* restrict counters,
-                                  __global StepCounters* restrict next)
+// Processes features, and contacts, which a work-item lists among their features' members. places, featureCounts: see
+// ContactSink. firsts: first position of each feature's members. keys, members: see orderingGather. Leaves the next
+// step's counters zero.
+__kernel void orderingGatherSmall(DRAPE_ORDERING_GATHER_SMALL)
 {
     __local uint wide[DRAPE_WIDE_SUMS];
-    const uint count = min(counters->m_contactsFound, hitCapacity), id = get_global_id(0), size = get_global_size(0);
-    sumRows(slotSums, wide);
+    __global const uint* sums = featureCounts + values.m_sums;
+    const uint count = min(counters->m_contactsFound, values.m_capacity), features = values.m_features;
+    const uint id = get_global_id(0), size = get_global_size(0);
+    sumRows(sums, wide);
     if (id < sizeof(StepCounters) / sizeof(uint)) ((__global uint*)next)[id] = 0;
     if (id == 0) counters->m_contactsStored = count;
-    for (uint slot = id; slot < slots; slot += size)
-        placeSlot(slotCount, slotSums, wide, slot, ranked, slotFirst, counters);
-    // Starts with the work-items that have processed one slot less.
-    for (uint hit = (id + size - slots % size) % size; hit < count; hit += size)
+    for (uint feature = id; feature < features; feature += size)
+        placeFeature(featureCounts, sums, wide, feature, values.m_ranked, firsts, counters);
+    // Starts with the work-items that have processed one feature less.
+    for (uint i = (id + size - features % size) % size; i < count; i += size)
     {
-        const uint slot = hits[hit].m_slot;
-        const uint place = hitsBefore(slotCount, slotSums, wide, slot) + hitPlaces[hit];
-        members[place] = hit;
-        keys[place] = hits[hit].m_obstacleFeature;
+        const uint feature = unsorted[i].m_slot;
+        const uint place = contactsBefore(featureCounts, sums, wide, feature) + places[i];
+        members[place] = i;
+        keys[place] = unsorted[i].m_obstacleFeature;
     }
 }

@@ -2,29 +2,27 @@
 // triangles.
 #include "../lib/ccd.h"
 #include "../lib/triangle_pair.h"
+#include "queries_bindings.h"
 
 static void loadPoints(Vec3* points, __global const float* coordinates, const uint count)
 {
-    for (uint i = 0; i < count; ++i) points[i] = vec3Load(coordinates, i);
+    for (uint i = 0; i < count; ++i)
+        points[i] = vec3Load(coordinates, i);
 }
 
 // A work-item is a query.
-__kernel void queryMotion(__global const CcdQuery* restrict queries, const uint count, const float separation,
-                          const float tolerance, const float timeTolerance, const uint boxLimit,
-                          __global CcdResult* restrict results)
+__kernel void queryMotion(DRAPE_QUERY_MOTION)
 {
     const uint i = get_global_id(0);
-    if (i >= count) return;
+    if (i >= values.m_count) return;
     Vec3 start[4], end[4];
     loadPoints(start, queries[i].m_start, 4);
     loadPoints(end, queries[i].m_end, 4);
-    results[i] = ccdOfKind(queries[i].m_kind, start, end,
-                           ccdSettings(separation, tolerance, timeTolerance, boxLimit));
+    results[i] = ccdOfKind(queries[i].m_kind, start, end, values.m_settings);
 }
 
 // A work-item is a query.
-__kernel void queryTriangles(__global const TriangleQuery* restrict queries, const uint count,
-                             __global uint* restrict results)
+__kernel void queryTriangles(DRAPE_QUERY_TRIANGLES)
 {
     const uint i = get_global_id(0);
     if (i >= count) return;
@@ -34,20 +32,16 @@ __kernel void queryTriangles(__global const TriangleQuery* restrict queries, con
     results[i] = trianglePairTest(a.m_p, b.m_p, -1.0f) & DRAPE_PAIR_MEETS;
 }
 
-// Lists the pairs that meet or come within the radius (m; none if negative). A work-item takes every stride-th of the
-// `count` pairs. The list's demand must be zero before; it counts on when the list is full.
-__kernel void queryPairs(__global const Candidate* restrict pairs, const uint count,
-                         __global const float* restrict positionsA, __global const Triangle* restrict trianglesA,
-                         __global const float* restrict positionsB, __global const Triangle* restrict trianglesB,
-                         const float radius, __global PairAnswer* restrict answers, const uint capacity,
-                         __global volatile uint* demand)
+// Lists the pairs that meet or come within the radius. A work-item takes every stride-th of the pairs. The list's
+// demand must be zero before; it counts on when the list is full.
+__kernel void queryPairs(DRAPE_QUERY_PAIRS)
 {
-    for (uint i = get_global_id(0); i < count; i += get_global_size(0))
+    for (uint i = get_global_id(0); i < values.m_count; i += get_global_size(0))
     {
         const PairAnswer answer =
-            trianglePairAnswer(pairs[i], positionsA, trianglesA, positionsB, trianglesB, radius);
+            trianglePairAnswer(pairs[i], positionsA, trianglesA, positionsB, trianglesB, values.m_radius);
         if (answer.m_bits == 0u) continue;
         const uint place = atomic_inc(demand);
-        if (place < capacity) answers[place] = answer;
+        if (place < values.m_capacity) answers[place] = answer;
     }
 }

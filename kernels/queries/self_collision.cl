@@ -3,6 +3,7 @@
 // when a list is full (see SelfCounters).
 #include "../lib/item_runs.h"
 #include "../lib/self_collision.h"
+#include "queries_bindings.h"
 
 // Pairs that a work-item gathers before it reserves room for them with one atomic.
 #define DRAPE_SELF_GATHER 16
@@ -29,13 +30,12 @@ static int flushPairs(__global Candidate* restrict pairs, const uint capacity, c
 }
 
 // Writes the volume of a vertex over the step, one per work-item.
-__kernel void selfVolumes(__global const float* restrict start, __global const float* restrict end, const uint vertexCount,
-                          const float radius, __global Dop* restrict volumes)
+__kernel void selfVolumes(DRAPE_SELF_VOLUMES)
 {
     const uint i = get_global_id(0);
-    if (i >= vertexCount) return;
+    if (i >= values.m_vertexCount) return;
     Dop dop;
-    vertexVolume(&dop, start, end, i, radius);
+    vertexVolume(&dop, start, end, i, values.m_radius);
     volumes[i] = dop;
 }
 
@@ -48,23 +48,18 @@ static WalkSide walkSide(__global const BvhNode* nodes, __global const uint* ord
     return side;
 }
 
-// Lists the pairs of a leaf's triangle with the leaves of tree b whose volumes overlap. A work-item takes one of
-// leafCount leaves of side a, from firstLeaf on. kind: DRAPE_WALK_…; a and b are equal for a mesh with itself.
-// Work-items stop once enough pairs (at most DRAPE_DEMAND_LIMIT) are counted.
-__kernel void leafTraverse(__global const BvhNode* nodesA, __global const uint* orderA,
-                           __global const Triangle* trianglesA, const uint firstLeaf, const uint leafCount,
-                           __global const BvhNode* nodesB, __global const uint* orderB,
-                           __global const Triangle* trianglesB, const uint root, __global const uint* lastLeaf,
-                           const uint kind, __global Candidate* restrict pairs, const uint capacity,
-                           const uint enough, __global SelfCounters* restrict counters)
+// Lists the pairs of a leaf's triangle with the leaves of tree b whose volumes overlap. A work-item takes one of the
+// leaves of side a. a and b are equal for a mesh with itself. Work-items stop once enough pairs are counted.
+__kernel void leafTraverse(DRAPE_LEAF_TRAVERSE)
 {
-    if (get_global_id(0) >= leafCount) return;
+    if (get_global_id(0) >= values.m_leafCount) return;
     const WalkSide a = walkSide(nodesA, orderA, trianglesA), b = walkSide(nodesB, orderB, trianglesB);
+    const uint capacity = values.m_capacity, enough = values.m_enough;
     Candidate gathered[DRAPE_SELF_GATHER];
     uint count = 0;
     LeafWalk walk;
-    leafWalkStart(&walk, firstLeaf + get_global_id(0), root);
-    while (leafWalkNext(&walk, &a, &b, kind, lastLeaf, gathered + count))
+    leafWalkStart(&walk, values.m_firstLeaf + get_global_id(0), values.m_root);
+    while (leafWalkNext(&walk, &a, &b, values.m_kind, lastLeaf, gathered + count))
     {
         if (++count < DRAPE_SELF_GATHER) continue;
         if (!flushPairs(pairs, capacity, enough, counters, gathered, count)) return;
@@ -87,40 +82,30 @@ static void storePairs(__global FeaturePair* restrict list, const uint capacity,
 
 // Lists the overlapping pairs of features that the pairs of triangles own. A work-item processes its part of the pairs
 // of triangles.
-__kernel void selfFeatures(__global const Candidate* restrict pairs, const uint pairCapacity,
-                           __global const Triangle* restrict triangles, __global const Dop* restrict volumes,
-                           __global FeaturePair* restrict vertexFace, const uint vertexFaceCapacity,
-                           __global FeaturePair* restrict edges, const uint edgesCapacity,
-                           __global SelfCounters* restrict counters)
+__kernel void selfFeatures(DRAPE_SELF_FEATURES)
 {
-    const uint count = min(counters->m_pairs, pairCapacity);
+    const uint count = min(counters->m_pairs, values.m_pairCapacity);
     for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextItem(&runs))
     {
-        const uint i = runs.m_item;
         FeaturePairs found;
-        collectFeaturePairs(&found, triangles, pairs[i], volumes);
-        storePairs(vertexFace, vertexFaceCapacity, &counters->m_vertexFace, found.m_vertexFace, found.m_vertexFaceCount);
-        storePairs(edges, edgesCapacity, &counters->m_edgeEdge, found.m_edges, found.m_edgesCount);
+        collectFeaturePairs(&found, triangles, pairs[runs.m_item], volumes);
+        storePairs(vertexFace, values.m_vertexFaceCapacity, &counters->m_vertexFace, found.m_vertexFace,
+                   found.m_vertexFaceCount);
+        storePairs(edges, values.m_edgeCapacity, &counters->m_edgeEdge, found.m_edges, found.m_edgesCount);
     }
 }
 
 // Tests the pairs of one kind, each work-item its part, and lists those that touch during the step.
-__kernel void selfTest(const uint kind, __global const FeaturePair* restrict pairs, const uint pairCapacity,
-                       __global const Triangle* restrict triangles, __global const Edge* restrict edges,
-                       __global const float* restrict start, __global const float* restrict end, const float separation,
-                       const float tolerance, const float timeTolerance, const uint boxLimit,
-                       __global FeatureHit* restrict hits, const uint hitCapacity,
-                       __global SelfCounters* restrict counters)
+__kernel void selfTest(DRAPE_SELF_TEST)
 {
-    const CcdSettings settings = ccdSettings(separation, tolerance, timeTolerance, boxLimit);
-    const uint demand = kind == DRAPE_VERTEX_FACE ? counters->m_vertexFace : counters->m_edgeEdge;
-    const uint count = min(demand, pairCapacity);
+    const uint demand = values.m_kind == DRAPE_VERTEX_FACE ? counters->m_vertexFace : counters->m_edgeEdge;
+    const uint count = min(demand, values.m_pairCapacity);
     for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextItem(&runs))
     {
         const uint i = runs.m_item;
         FeatureHit hit;
-        if (!featurePairHit(kind, pairs[i], triangles, edges, start, end, settings, &hit)) continue;
+        if (!featurePairHit(values.m_kind, pairs[i], triangles, edges, start, end, values.m_settings, &hit)) continue;
         const uint place = atomic_inc(&counters->m_hits);
-        if (place < hitCapacity) hits[place] = hit;
+        if (place < values.m_hitCapacity) hits[place] = hit;
     }
 }

@@ -2,10 +2,10 @@
 // patches, after an obstacle was added or moved.
 #include "../lib/cone_reach.h"
 #include "../lib/feature_cull.h"
-#include "../shared/patch.h"
+#include "../lib/step_views.h"
 
 // Positions that are invalid become NaN.
-static Vec3 packedPosition(__global const float* restrict positions, const uint vertex, const int used)
+static Vec3 packedPosition(__global const float* positions, const uint vertex, const int used)
 {
     const Vec3 none = vec3(NAN, NAN, NAN);
     if (!used) return none;
@@ -13,21 +13,12 @@ static Vec3 packedPosition(__global const float* restrict positions, const uint 
     return positionIsValid(p) ? p : none;
 }
 
-static void packVec3(__global float* restrict out, const uint first, const Vec3 v)
+static void packVec3(__global float* out, const uint first, const Vec3 v)
 {
     out[first * DRAPE_PATCH_WIDTH] = v.x;
     out[(first + 1) * DRAPE_PATCH_WIDTH] = v.y;
     out[(first + 2) * DRAPE_PATCH_WIDTH] = v.z;
 }
-
-// The obstacles' triangles at their positions.
-typedef struct ObstacleFaces
-{
-    __global const Triangle* m_triangles;
-    __global const float* m_positions;
-    __global const NormalCone* m_vertexCones;
-    __global const NormalCone* m_edgeCones;
-} ObstacleFaces;
 
 // A triangle's normal (faceCone()) and the cones of its corners and edges.
 typedef struct FaceCones
@@ -35,75 +26,68 @@ typedef struct FaceCones
     NormalCone m_face, m_around[6];
 } FaceCones;
 
-static FaceCones conesOf(const ObstacleFaces* faces, const uint index)
+static FaceCones conesOf(const ObstacleView* obstacle, const uint index)
 {
-    __global const Triangle* triangle = faces->m_triangles + index;
+    __global const Triangle* triangle = obstacle->m_triangles + index;
     FaceCones cones;
     Vec3 p[3];
     for (int k = 0; k < 3; ++k)
     {
-        p[k] = vec3Load(faces->m_positions, triangle->m_vertices[k]);
-        cones.m_around[k] = faces->m_vertexCones[triangle->m_vertices[k]];
-        cones.m_around[3 + k] = faces->m_edgeCones[triangle->m_edges[k]];
+        p[k] = vec3Load(obstacle->m_positions, triangle->m_vertices[k]);
+        cones.m_around[k] = obstacle->m_vertexCones[triangle->m_vertices[k]];
+        cones.m_around[3 + k] = obstacle->m_edgeCones[triangle->m_edges[k]];
     }
     cones.m_face = faceCone(p);
     return cones;
 }
 
-// Packs a lane of a face block per work-item, from first up to last.
-__kernel void patchPackFaces(__global const uint* restrict owners, const uint first, const uint last,
-                             __global const Triangle* restrict triangles, __global const float* restrict positions,
-                             __global const NormalCone* restrict vertexCones,
-                             __global const NormalCone* restrict edgeCones, __global float* restrict faces)
+// Packs lane i of the face blocks.
+static void packFace(const ObstacleView* obstacle, __global const uint* owners, const uint i, __global float* faces)
 {
-    const uint i = first + get_global_id(0);
-    if (i >= last) return;
     const int used = owners[i] != DRAPE_NO_FEATURE;
     const uint owner = used ? owners[i] : 0;
-    __global float* out = faces + (i / DRAPE_PATCH_WIDTH) * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
-    for (int k = 0; k < 3; ++k) packVec3(out, 3 * k, packedPosition(positions, triangles[owner].m_vertices[k], used));
-    const ObstacleFaces all = {triangles, positions, vertexCones, edgeCones};
-    const FaceCones cones = conesOf(&all, owner);
+    __global float* out =
+        faces + (i / DRAPE_PATCH_WIDTH) * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
+    __global const Triangle* triangle = obstacle->m_triangles + owner;
+    for (int k = 0; k < 3; ++k)
+        packVec3(out, 3 * k, packedPosition(obstacle->m_positions, triangle->m_vertices[k], used));
+    const FaceCones cones = conesOf(obstacle, owner);
     out[9 * DRAPE_PATCH_WIDTH] = used ? faceSpread(cones.m_face, cones.m_around) : 0.0f;
 }
 
-// Packs a lane of a vertex block per work-item. ids: the vertex of each lane.
-__kernel void patchPackVertices(__global const uint* restrict owners, const uint first, const uint last,
-                                __global const Triangle* restrict triangles, __global const float* restrict positions,
-                                __global const NormalCone* restrict cones, __global float* restrict vertices,
-                                __global uint* restrict ids)
+// Packs lane i of the vertex blocks. ids: the vertex of each lane.
+static void packVertex(const ObstacleView* obstacle, __global const uint* owners, const uint i,
+                       __global float* vertices, __global uint* ids)
 {
-    const uint i = first + get_global_id(0);
-    if (i >= last) return;
     __global float* out =
         vertices + (i / DRAPE_PATCH_WIDTH) * DRAPE_VERTEX_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
     const uint owner = owners[i] & ((1u << DRAPE_PLACE_SHIFT) - 1u), place = owners[i] >> DRAPE_PLACE_SHIFT;
     const int used = owners[i] != DRAPE_NO_FEATURE;
-    const uint vertex = used ? triangles[owner].m_vertices[place] : 0;
+    const uint vertex = used ? obstacle->m_triangles[owner].m_vertices[place] : 0;
+    const NormalCone cone = obstacle->m_vertexCones[vertex];
     ids[i] = vertex;
-    packVec3(out, 0, packedPosition(positions, vertex, used));
-    packVec3(out, 3, cones[vertex].m_axis);
-    out[6 * DRAPE_PATCH_WIDTH] = cones[vertex].m_cosine;
+    packVec3(out, 0, packedPosition(obstacle->m_positions, vertex, used));
+    packVec3(out, 3, cone.m_axis);
+    out[6 * DRAPE_PATCH_WIDTH] = cone.m_cosine;
 }
 
-// Packs a lane of an edge block per work-item. ids: the edge of each lane.
-__kernel void patchPackEdges(__global const uint* restrict owners, const uint first, const uint last,
-                             __global const Triangle* restrict triangles, __global const float* restrict positions,
-                             __global const NormalCone* restrict cones, __global float* restrict edges,
-                             __global uint* restrict ids)
+// Packs lane i of the edge blocks. ids: the edge of each lane.
+static void packEdge(const ObstacleView* obstacle, __global const uint* owners, const uint i, __global float* edges,
+                     __global uint* ids)
 {
-    const uint i = first + get_global_id(0);
-    if (i >= last) return;
-    __global float* out = edges + (i / DRAPE_PATCH_WIDTH) * DRAPE_EDGE_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
+    __global float* out =
+        edges + (i / DRAPE_PATCH_WIDTH) * DRAPE_EDGE_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
     const int used = owners[i] != DRAPE_NO_FEATURE;
     const uint owner = used ? owners[i] & ((1u << DRAPE_PLACE_SHIFT) - 1u) : 0;
     const uint place = used ? owners[i] >> DRAPE_PLACE_SHIFT : 0;
-    const uint edge = triangles[owner].m_edges[place];
+    __global const Triangle* triangle = obstacle->m_triangles + owner;
+    const uint edge = triangle->m_edges[place], next = place == 2 ? 0 : place + 1;
+    const NormalCone cone = obstacle->m_edgeCones[edge];
     ids[i] = edge;
-    packVec3(out, 0, packedPosition(positions, triangles[owner].m_vertices[place], used));
-    packVec3(out, 3, packedPosition(positions, triangles[owner].m_vertices[place == 2 ? 0 : place + 1], used));
-    packVec3(out, 6, cones[edge].m_axis);
-    out[9 * DRAPE_PATCH_WIDTH] = cones[edge].m_cosine;
+    packVec3(out, 0, packedPosition(obstacle->m_positions, triangle->m_vertices[place], used));
+    packVec3(out, 3, packedPosition(obstacle->m_positions, triangle->m_vertices[next], used));
+    packVec3(out, 6, cone.m_axis);
+    out[9 * DRAPE_PATCH_WIDTH] = cone.m_cosine;
 }
 
 // A child of a wide node: its volume and, along each direction, the reach of a contact of its features as a share of
@@ -130,17 +114,16 @@ static void wideStore(__global float* restrict wideNodes, const uint child, cons
 typedef struct PatchFaces
 {
     __global const uint* m_owners;
-    ObstacleFaces m_faces;
     uint m_first, m_last;
 } PatchFaces;
 
 // Returns a cone around all directions that the patch's faces, edges and vertices admit.
-static NormalCone patchCone(const PatchFaces* faces)
+static NormalCone patchCone(const ObstacleView* obstacle, const PatchFaces* faces)
 {
     Vec3 axis = vec3(0.0f, 0.0f, 0.0f);
     for (uint i = faces->m_first; i < faces->m_last; ++i)
     {
-        const FaceCones cones = conesOf(&faces->m_faces, faces->m_owners[i]);
+        const FaceCones cones = conesOf(obstacle, faces->m_owners[i]);
         if (!(cones.m_face.m_cosine > 0.0f)) return cones.m_face;
         axis = vec3Add(axis, cones.m_face.m_axis);
     }
@@ -150,7 +133,7 @@ static NormalCone patchCone(const PatchFaces* faces)
     float cosine = 1.0f;
     for (uint i = faces->m_first; i < faces->m_last && cosine > 0.0f; ++i)
     {
-        const FaceCones cones = conesOf(&faces->m_faces, faces->m_owners[i]);
+        const FaceCones cones = conesOf(obstacle, faces->m_owners[i]);
         cosine = drapeMin(cosine, cosineAround(axis, cones.m_face));
         cosine = drapeMin(cosine, cosineOfCones(axis, cones.m_around));
     }
@@ -166,34 +149,27 @@ static void growVolume(Dop* dop, const Dop* other)
     }
 }
 
-// Packs a child position of the wide tree's lowest level, from first up to last, per work-item: a patch, or none from
-// patchCount on. Writes the tree's data of the patch, on a CPU also as adjacent volumes, and its size, m. The volume
-// is grown by a share of the size, which covers the directions of contacts that are rounding noise (see
-// feature_cull.h).
-__kernel void patchVolumes(__global const uint* restrict faceOwners, const uint patchCount, const uint first, const uint last,
-                           __global const Triangle* restrict triangles, __global const float* restrict positions,
-                           __global const NormalCone* restrict vertexCones, __global const NormalCone* restrict edgeCones,
-                           __global float* restrict wideNodes, __global float* restrict patchSizes,
-                           __global float* restrict volumes)
+// Packs a child position of the wide tree's lowest level: a patch, or none from patchCount on. Writes the tree's data
+// of the patch, on a CPU also as adjacent volumes, and its size, m. The volume is grown by a share of the size, which
+// covers the directions of contacts that are rounding noise (see feature_cull.h).
+static void packVolume(const ObstacleView* obstacle, __global const uint* faceOwners, const uint patchCount,
+                       const uint patch, __global float* wideNodes, __global float* sizes, __global float* volumes)
 {
-    const uint patch = first + get_global_id(0);
-    if (patch >= last) return;
     WideChild child;
     dopClear(&child.m_volume);
-    PatchFaces faces = {faceOwners,
-                        {triangles, positions, vertexCones, edgeCones},
-                        patch * DRAPE_PATCH_WIDTH,
-                        patch * DRAPE_PATCH_WIDTH};
+    PatchFaces faces = {faceOwners, patch * DRAPE_PATCH_WIDTH, patch * DRAPE_PATCH_WIDTH};
     while (patch < patchCount && faces.m_last < (patch + 1) * DRAPE_PATCH_WIDTH &&
            faceOwners[faces.m_last] != DRAPE_NO_FEATURE)
     {
         Dop one;
-        triangleVolume(&one, triangles + faceOwners[faces.m_last++], positions, positions, 0.0f);
+        triangleVolume(&one, obstacle->m_triangles + faceOwners[faces.m_last++], obstacle->m_positions,
+                       obstacle->m_positions, 0.0f);
         growVolume(&child.m_volume, &one);
     }
     float size = 0.0f;
-    for (int k = 0; k < 3; ++k) size += drapeMax(child.m_volume.m_high[k] - child.m_volume.m_low[k], 0.0f);
-    const NormalCone cone = patchCone(&faces);
+    for (int k = 0; k < 3; ++k)
+        size += drapeMax(child.m_volume.m_high[k] - child.m_volume.m_low[k], 0.0f);
+    const NormalCone cone = patchCone(obstacle, &faces);
     for (int k = 0; k < DRAPE_DOP_DIRECTIONS; ++k)
     {
         child.m_volume.m_low[k] -= DRAPE_CULL_NOISE * size * dopNorm(k);
@@ -202,7 +178,7 @@ __kernel void patchVolumes(__global const uint* restrict faceOwners, const uint 
     }
     wideStore(wideNodes, patch, &child);
     if (patch >= patchCount) return;
-    patchSizes[patch] = size;
+    sizes[patch] = size;
 #if DRAPE_LANES > 1
     __global float* out = volumes + patch * DRAPE_WIDE_NODE_FLOATS;
     for (int k = 0; k < DRAPE_DOP_DIRECTIONS; ++k)
@@ -214,13 +190,11 @@ __kernel void patchVolumes(__global const uint* restrict faceOwners, const uint 
 #endif
 }
 
-// Writes one number of a child position of one level per work-item, from first up to last: a node of the level below,
-// or none from nodeCount on. below and level: that level's nodes and this one's.
-__kernel void patchWiden(__global float* restrict wideNodes, const uint below, const uint nodeCount, const uint level,
-                         const uint first, const uint last)
+// Writes number `row` of a child position of one level: `node` of the level below, or none from nodeCount on. below
+// and level: that level's nodes and this one's.
+static void widenChild(__global float* wideNodes, const uint below, const uint nodeCount, const uint level,
+                       const uint node, const uint row)
 {
-    const uint node = first + get_global_id(0) / DRAPE_WIDE_NODE_FLOATS, row = get_global_id(0) % DRAPE_WIDE_NODE_FLOATS;
-    if (node >= last) return;
     const int isLow = row < DRAPE_DOP_DIRECTIONS, isHigh = !isLow && row < 2 * DRAPE_DOP_DIRECTIONS;
     float joined = isLow ? DRAPE_INFINITY : isHigh ? -DRAPE_INFINITY : 0.0f;
     __global const float* lanes = wideNodes + ((below + node) * DRAPE_WIDE_NODE_FLOATS + row) * DRAPE_PATCH_WIDTH;
@@ -229,3 +203,57 @@ __kernel void patchWiden(__global float* restrict wideNodes, const uint below, c
     wideNodes[((level + node / DRAPE_PATCH_WIDTH) * DRAPE_WIDE_NODE_FLOATS + row) * DRAPE_PATCH_WIDTH +
               node % DRAPE_PATCH_WIDTH] = joined;
 }
+
+#ifdef __OPENCL_VERSION__
+#include "../lib/arena_views.h"
+#include "scene_bindings.h"
+
+// Packs a lane per work-item, from values.m_first up to m_last.
+__kernel void patchPackFaces(DRAPE_PATCH_PACK_FACES)
+{
+    const uint i = values.m_first + get_global_id(0);
+    if (i >= values.m_last) return;
+    const ObstacleView obstacle = obstacleAt(obstacles, &values.m_obstacle);
+    packFace(&obstacle, (__global const uint*)(patches + values.m_patches.m_faceIds), i,
+             (__global float*)(patches + values.m_patches.m_faces));
+}
+
+__kernel void patchPackVertices(DRAPE_PATCH_PACK_OWNED)
+{
+    const uint i = values.m_first + get_global_id(0);
+    if (i >= values.m_last) return;
+    const ObstacleView obstacle = obstacleAt(obstacles, &values.m_obstacle);
+    packVertex(&obstacle, owners, i, (__global float*)(patches + values.m_patches.m_vertices),
+               (__global uint*)(patches + values.m_patches.m_vertexIds));
+}
+
+__kernel void patchPackEdges(DRAPE_PATCH_PACK_OWNED)
+{
+    const uint i = values.m_first + get_global_id(0);
+    if (i >= values.m_last) return;
+    const ObstacleView obstacle = obstacleAt(obstacles, &values.m_obstacle);
+    packEdge(&obstacle, owners, i, (__global float*)(patches + values.m_patches.m_edges),
+             (__global uint*)(patches + values.m_patches.m_edgeIds));
+}
+
+// Packs a child position per work-item, from values.m_first up to m_last.
+__kernel void patchVolumes(DRAPE_PATCH_PACK_FACES)
+{
+    const uint patch = values.m_first + get_global_id(0);
+    if (patch >= values.m_last) return;
+    const ObstacleView obstacle = obstacleAt(obstacles, &values.m_obstacle);
+    packVolume(&obstacle, (__global const uint*)(patches + values.m_patches.m_faceIds), values.m_count, patch,
+               (__global float*)(patches + values.m_patches.m_wideNodes),
+               (__global float*)(patches + values.m_patches.m_sizes),
+               (__global float*)(patches + values.m_patches.m_volumes));
+}
+
+// Writes one number of a child position per work-item, from values.m_first up to m_last.
+__kernel void patchWiden(DRAPE_PATCH_WIDEN)
+{
+    const uint node = values.m_first + get_global_id(0) / DRAPE_WIDE_NODE_FLOATS;
+    if (node >= values.m_last) return;
+    widenChild((__global float*)(patches + values.m_wideNodes), values.m_below, values.m_count, values.m_level, node,
+               get_global_id(0) % DRAPE_WIDE_NODE_FLOATS);
+}
+#endif

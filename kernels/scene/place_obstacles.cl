@@ -1,28 +1,29 @@
 // Transforms obstacles from their own frames to the world's.
 #include "../lib/rigid_motion.h"
+#include "scene_bindings.h"
 
 // Places a given vertex, then a given edge, per work-item. Reads a feature's position and cone in its own frame and
 // writes those in the world; exactly one work-item writes each.
-__kernel void placeObstacles(__global const ObstaclePlace* restrict places, const uint placeCount,
-                             const uint firstVertex, const uint vertexCount, const uint firstEdge, const uint edgeCount,
-                             __global const float* restrict ownPositions,
-                             __global const NormalCone* restrict ownVertexCones,
-                             __global const NormalCone* restrict ownEdgeCones, __global float* restrict positions,
-                             __global NormalCone* restrict vertexCones, __global NormalCone* restrict edgeCones)
+__kernel void placeObstacles(DRAPE_PLACE_OBSTACLES)
 {
     const uint i = get_global_id(0);
-    if (i >= vertexCount + edgeCount) return;
-    if (i >= vertexCount)
+    if (i >= values.m_vertexCount + values.m_edgeCount) return;
+    if (i >= values.m_vertexCount)
     {
-        const uint edge = firstEdge + i - vertexCount;
-        edgeCones[edge] = placedCone(places + placeOf(places, placeCount, DRAPE_OF_EDGE, edge), ownEdgeCones[edge]);
+        const uint edge = values.m_firstEdge + i - values.m_vertexCount;
+        __global const NormalCone* from = (__global const NormalCone*)(own + values.m_own.m_edgeCones);
+        __global NormalCone* to = (__global NormalCone*)(world + values.m_world.m_edgeCones);
+        to[edge] = placedCone(places + placeOf(places, values.m_placeCount, DRAPE_OF_EDGE, edge), from[edge]);
         return;
     }
-    const uint vertex = firstVertex + i;
-    __global const ObstaclePlace* place = places + placeOf(places, placeCount, DRAPE_OF_VERTEX, vertex);
-    const Vec3 p = placedPosition(place, vec3Load(ownPositions, vertex));
+    const uint vertex = values.m_firstVertex + i;
+    __global const ObstaclePlace* place = places + placeOf(places, values.m_placeCount, DRAPE_OF_VERTEX, vertex);
+    __global const NormalCone* from = (__global const NormalCone*)(own + values.m_own.m_vertexCones);
+    __global NormalCone* to = (__global NormalCone*)(world + values.m_world.m_vertexCones);
+    __global float* positions = (__global float*)(world + values.m_world.m_positions);
+    const Vec3 p = placedPosition(place, vec3Load((__global const float*)(own + values.m_own.m_positions), vertex));
     positions[3 * vertex] = p.x;
     positions[3 * vertex + 1] = p.y;
     positions[3 * vertex + 2] = p.z;
-    vertexCones[vertex] = placedCone(place, ownVertexCones[vertex]);
+    to[vertex] = placedCone(place, from[vertex]);
 }

@@ -3,6 +3,7 @@
 // moved. The fixed rule of clothOpens() gives every pair one parent.
 #include "lib/candidate_list.h"
 #include "lib/traversal.h"
+#include "traversal_bindings.h"
 
 // Pairs that wait in a group's local memory: 8 KiB.
 #define DRAPE_GROUP_STACK 1024u
@@ -114,24 +115,19 @@ static void testPair(NodePair pair, const int ofFront, const FrontTask* task, co
 // takes as many pairs as there is room for what they can leave behind, and at least one: nothing is ever lost. Without keep
 // this is a plain traversal from the given pairs. The counters of candidates and front must be zero before; both count on
 // past the capacities, and a front that did not fit is of no use.
-__kernel void broadPhaseFront(__global const BvhNode* restrict clothNodes, __global const BvhLink* restrict clothLinks,
-                              __global const uint* restrict clothOrder, __global const Triangle* restrict clothTriangles,
-                              __global const BvhNode* restrict obstacleNodes,
-                              __global const BvhLink* restrict obstacleLinks, __global const uint* restrict obstacleOrder,
-                              __global const Triangle* restrict obstacleTriangles, __global const float* restrict thickness,
-                              const uint obstacleMeshes, __global const uint2* restrict oldFront, const uint oldCount,
-                              const uint floorDepth, const uint keep, const uint raise, __global uint2* restrict newFront,
-                              const uint frontCapacity, __global uint2* restrict candidates,
-                              __global TraversalCounters* restrict counters, const uint capacity, const uint limit)
+__kernel void broadPhaseFront(DRAPE_BROAD_PHASE_FRONT)
 {
     __local uint2 stack[DRAPE_GROUP_STACK];
     __local uint2 foundPairs[DRAPE_GROUP_GATHER];
     __local uint2 keptPairs[DRAPE_GROUP_GATHER];
     __local uint pushed[3];
     __local uint foundCount, keptCount, place;
-    const FrontSide cloth = {clothNodes, clothLinks, clothOrder, clothTriangles};
-    const FrontSide obstacle = {obstacleNodes, obstacleLinks, obstacleOrder, obstacleTriangles};
-    const FrontTask task = {keep, raise, floorDepth};
+    const FrontSide cloth = {clothNodes, links, orders, clothTriangles};
+    const FrontSide obstacle = {obstacleNodes, links + values.m_obstacleLinks, orders + values.m_obstacleOrder,
+                                obstacleTriangles};
+    const FrontTask task = {values.m_keep, values.m_raise, values.m_floorDepth};
+    const uint oldCount = values.m_oldCount;
+    __global const uint2* starts = (__global const uint2*)oldFront;
     const uint id = get_local_id(0);
     const uint width = get_local_size(0);
     const uint share = (oldCount + (uint)get_num_groups(0) - 1) / (uint)get_num_groups(0);
@@ -151,7 +147,7 @@ __kernel void broadPhaseFront(__global const BvhNode* restrict clothNodes, __glo
         size -= fromStack;
         uint2 entry = (uint2)(0, 0);
         if (id < fromStack) entry = stack[size + id];
-        if (id >= fromStack && id < taken) entry = oldFront[next + id - fromStack];
+        if (id >= fromStack && id < taken) entry = starts[next + id - fromStack];
         next += taken - fromStack;
         // The three counts take turns: one is pushed to, one may still be read by the round before, one is cleared.
         if (id == 0) pushed[(round + 1) % 3] = 0;
@@ -162,7 +158,8 @@ __kernel void broadPhaseFront(__global const BvhNode* restrict clothNodes, __glo
         {
             const FrontLists lists = {stack, foundPairs, keptPairs, &pushed[round % 3], &foundCount, &keptCount};
             const NodePair pair = {entry.x, entry.y};
-            testPair(pair, id >= fromStack, &task, &cloth, &obstacle, thickness, obstacleMeshes, &lists, size, &visits);
+            testPair(pair, id >= fromStack, &task, &cloth, &obstacle, thickness, values.m_list.m_obstacleMeshes, &lists,
+                     size, &visits);
         }
         barrier(CLK_LOCAL_MEM_FENCE);
         size += pushed[round % 3];
@@ -170,12 +167,15 @@ __kernel void broadPhaseFront(__global const BvhNode* restrict clothNodes, __glo
         const int done = size == 0 && next >= last;
         if (found > DRAPE_GROUP_GATHER - width || done)
         {
-            if (!groupFlush(candidates, &counters->m_candidates, capacity, limit, foundPairs, found, &place)) return;
+            if (!groupFlush((__global uint2*)candidates, &counters->m_candidates, values.m_list.m_capacity,
+                            values.m_list.m_limit, foundPairs, found, &place))
+                return;
             if (id == 0) foundCount = 0;
         }
         if (kept > DRAPE_GROUP_GATHER - width || done)
         {
-            groupFlush(newFront, &counters->m_front, frontCapacity, UINT_MAX, keptPairs, kept, &place);
+            groupFlush((__global uint2*)newFront, &counters->m_front, values.m_frontCapacity, UINT_MAX, keptPairs, kept,
+                       &place);
             if (id == 0) keptCount = 0;
         }
     }

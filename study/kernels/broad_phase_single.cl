@@ -2,6 +2,7 @@
 // opens both nodes of a pair that overlaps. What the queue cannot hold waits in global memory, so nothing is lost.
 #include "lib/candidate_list.h"
 #include "lib/traversal.h"
+#include "traversal_bindings.h"
 
 // Pairs in local memory: 8 KiB, about what the thesis had.
 #define DRAPE_QUEUE 1024u
@@ -106,14 +107,7 @@ static void bringBack(PairQueue* queue)
 
 // One work-group. The counters of candidates and spill must be zero before. m_spill becomes the most pairs that had to
 // wait in spill; more than fits says that the result is not complete.
-__kernel void broadPhaseSingle(__global const BvhNode* restrict clothNodes, __global const uint* restrict clothOrder,
-                               __global const Triangle* restrict clothTriangles, const uint clothRoot,
-                               __global const BvhNode* restrict obstacleNodes,
-                               __global const uint* restrict obstacleOrder,
-                               __global const Triangle* restrict obstacleTriangles, const uint obstacleRoot,
-                               __global const float* restrict thickness, const uint obstacleMeshes,
-                               __global uint2* restrict candidates, __global TraversalCounters* restrict counters,
-                               const uint capacity, const uint limit, __global uint2* spill, const uint spillCapacity)
+__kernel void broadPhaseSingle(DRAPE_BROAD_PHASE_SINGLE)
 {
     __local uint2 ring[DRAPE_QUEUE];
     __local uint2 gathered[DRAPE_GROUP_GATHER];
@@ -122,9 +116,9 @@ __kernel void broadPhaseSingle(__global const BvhNode* restrict clothNodes, __gl
     const QueueSide cloth = {clothNodes, clothOrder, clothTriangles};
     const QueueSide obstacle = {obstacleNodes, obstacleOrder, obstacleTriangles};
     const uint id = get_local_id(0);
-    PairQueue queue = {ring, pushed, spill, spillCapacity, 0, 1, 0, 0};
+    PairQueue queue = {ring, pushed, (__global uint2*)spill, values.m_spillCapacity, 0, 1, 0, 0};
     uint visits = 0;
-    if (id == 0) ring[0] = (uint2)(clothRoot, obstacleRoot);
+    if (id == 0) ring[0] = (uint2)(values.m_clothRoot, values.m_obstacleRoot);
     if (id < 3) pushed[id] = 0;
     if (id == 0) gatheredCount = 0;
     barrier(CLK_LOCAL_MEM_FENCE);
@@ -141,7 +135,8 @@ __kernel void broadPhaseSingle(__global const BvhNode* restrict clothNodes, __gl
         visits += id < taken;
         if (id < taken)
         {
-            testPair(pair, &queue, &cloth, &obstacle, thickness, obstacleMeshes, gathered, &gatheredCount);
+            testPair(pair, &queue, &cloth, &obstacle, thickness, values.m_list.m_obstacleMeshes, gathered,
+                     &gatheredCount);
         }
         // Orders the pushes, to either memory, against the reads of a later round.
         barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
@@ -154,7 +149,9 @@ __kernel void broadPhaseSingle(__global const BvhNode* restrict clothNodes, __gl
         const uint found = gatheredCount;
         if (found > DRAPE_GROUP_GATHER - get_local_size(0) || queue.m_head == queue.m_tail)
         {
-            if (!groupFlush(candidates, &counters->m_candidates, capacity, limit, gathered, found, &place)) return;
+            if (!groupFlush((__global uint2*)candidates, &counters->m_candidates, values.m_list.m_capacity,
+                            values.m_list.m_limit, gathered, found, &place))
+                return;
             if (id == 0) gatheredCount = 0;
         }
     }

@@ -3,23 +3,20 @@
 #include "lib/candidate_list.h"
 #include "lib/grid.h"
 #include "lib/tree_layout.h"
+#include "traversal_bindings.h"
 
 // Candidates a work-item gathers before it reserves room for them with one atomic.
 #define DRAPE_GATHER 16
 
 // A work-item is an obstacle leaf; it lists itself in its cells. counters->m_entries must be zero before, keys must hold
 // DRAPE_GRID_CELLS; the demand counts on past the capacity. The order of a cell's entries does not matter.
-__kernel void gridEntries(__global const BvhNode* restrict nodes, const uint leafCount, const float x, const float y,
-                          const float z, const float perMetre, __global uint* restrict keys,
-                          __global uint* restrict places, const uint capacity,
-                          __global TraversalCounters* restrict counters)
+__kernel void gridEntries(DRAPE_GRID_ENTRIES)
 {
     const uint leaf = get_global_id(0);
-    if (leaf >= leafCount) return;
-    const GridFrame frame = {{x, y, z}, perMetre};
-    const uint place = leafPlace(nodes, leaf, leafCount);
+    if (leaf >= values.m_leafCount) return;
+    const uint place = leafPlace(nodes, leaf, values.m_leafCount);
     GridRange range;
-    if (!gridRange(&range, nodes + place, frame)) return;
+    if (!gridRange(&range, nodes + place, values.m_frame)) return;
     uint count = 1;
     for (int axis = 0; axis < 3; ++axis) count *= range.m_last[axis] - range.m_first[axis] + 1;
     uint entry = atomic_add(&counters->m_entries, count);
@@ -27,7 +24,7 @@ __kernel void gridEntries(__global const BvhNode* restrict nodes, const uint lea
         for (uint j = range.m_first[1]; j <= range.m_last[1]; ++j)
             for (uint i = range.m_first[0]; i <= range.m_last[0]; ++i, ++entry)
             {
-                if (entry >= capacity) return;
+                if (entry >= values.m_entryCapacity) return;
                 keys[entry] = gridKey(i, j, k);
                 places[entry] = place;
             }
@@ -35,7 +32,7 @@ __kernel void gridEntries(__global const BvhNode* restrict nodes, const uint lea
 
 // A work-item is a sorted entry, or the end behind the last. It writes where the cells after the entry before, up to its own,
 // begin. Each cell's begin is written by one work-item.
-__kernel void gridStarts(__global const uint* restrict keys, const uint count, __global uint* restrict starts)
+__kernel void gridStarts(DRAPE_GRID_STARTS)
 {
     const uint i = get_global_id(0);
     if (i > count) return;
@@ -46,19 +43,13 @@ __kernel void gridStarts(__global const uint* restrict keys, const uint count, _
 
 // A work-item is a cloth leaf. A pair counts in one of the cells that both cover, see gridPairKey(). counters->m_candidates
 // must be zero before.
-__kernel void gridPairs(__global const BvhNode* restrict clothNodes, __global const uint* restrict clothOrder,
-                        __global const Triangle* restrict clothTriangles, const uint leafCount,
-                        __global const BvhNode* restrict obstacleNodes, __global const uint* restrict obstacleOrder,
-                        __global const Triangle* restrict obstacleTriangles, const float x, const float y, const float z,
-                        const float perMetre, __global const uint* restrict starts, __global const uint* restrict places,
-                        __global const float* restrict thickness, const uint obstacleMeshes,
-                        __global Candidate* restrict candidates, __global TraversalCounters* restrict counters,
-                        const uint capacity, const uint limit)
+__kernel void gridPairs(DRAPE_GRID_PAIRS)
 {
     const uint leaf = get_global_id(0);
-    if (leaf >= leafCount) return;
-    const GridFrame frame = {{x, y, z}, perMetre};
-    __global const BvhNode* own = clothNodes + leafPlace(clothNodes, leaf, leafCount);
+    if (leaf >= values.m_leafCount) return;
+    const GridFrame frame = values.m_frame;
+    const ListValues list = values.m_list;
+    __global const BvhNode* own = clothNodes + leafPlace(clothNodes, leaf, values.m_leafCount);
     GridRange range;
     if (!gridRange(&range, own, frame)) return;
     Candidate gathered[DRAPE_GATHER];
@@ -77,13 +68,14 @@ __kernel void gridPairs(__global const BvhNode* restrict clothNodes, __global co
             Candidate candidate;
             candidate.m_cloth = clothOrder[own->m_first];
             candidate.m_obstacle = obstacleOrder[other->m_first];
-            if (!meshesPaired(candidate, clothTriangles, obstacleTriangles, thickness, obstacleMeshes)) continue;
+            if (!meshesPaired(candidate, clothTriangles, obstacleTriangles, thickness, list.m_obstacleMeshes))
+                continue;
             gathered[gatheredCount++] = candidate;
             if (gatheredCount < DRAPE_GATHER) continue;
-            if (!flushCandidates(candidates, counters, capacity, limit, gathered, gatheredCount)) return;
+            if (!flushCandidates(candidates, counters, list.m_capacity, list.m_limit, gathered, gatheredCount)) return;
             gatheredCount = 0;
         }
     }
-    flushCandidates(candidates, counters, capacity, limit, gathered, gatheredCount);
+    flushCandidates(candidates, counters, list.m_capacity, list.m_limit, gathered, gatheredCount);
     DRAPE_VISITS(counters, visits);
 }

@@ -2,6 +2,7 @@
 // how many clusters round k starts with, rounds[2 k + 1] how many were made before it.
 #include "../../kernels/lib/group_scan.h"
 #include "lib/ploc.h"
+#include "ploc_bindings.h"
 
 // A work-item is a leaf in Morton order.
 __kernel void plocLeaves(__global const Triangle* restrict triangles, __global const float* restrict positions,
@@ -62,12 +63,9 @@ __kernel void plocCount(__global const uint* restrict nearest, __global const ui
 }
 
 // Writes the next round's clusters: those that stay, in order, pairs merged. The work-group of the same block as above.
-__kernel void plocMerge(__global const Box* restrict boxes, __global const uint* restrict numbers,
-                        __global const uint* restrict nearest, __global uint* restrict rounds, const uint round,
-                        const uint share, __global const uint* restrict blockCounts, const uint leafCount,
-                        __global Box* restrict boxesOut, __global uint* restrict numbersOut,
-                        __global Cluster* restrict clusters, __global uint* restrict sizes, __local uint* scratch)
+__kernel void plocMerge(DRAPE_PLOC_MERGE)
 {
+    const uint round = values.m_round, share = values.m_share, leafCount = values.m_leafCount;
     const uint count = rounds[2 * round];
     const uint made = rounds[2 * round + 1];
     uint kept = 0;

@@ -3,6 +3,7 @@
 #include "lib/group_reduce.h"
 #include "../../kernels/lib/group_scan.h"
 #include "lib/top_down.h"
+#include "top_down_bindings.h"
 
 // A work-item is a triangle: its centroid, its volume, and its place in the order before anything moves.
 __kernel void topDownSummaries(__global const Triangle* restrict triangles, __global const float* restrict positions,
@@ -109,35 +110,29 @@ static void groupSplit(__global BvhNode* nodes, __global uint* splits, __global 
     barrier(CLK_GLOBAL_MEM_FENCE);
 }
 
-// What the kernels of a level have in common; the queue has `count` nodes, and node i opens children 2 i and 2 i + 1.
-#define DRAPE_LEVEL_ARGUMENTS                                                                                             \
-    __global BvhNode *nodes, __global uint *splits, __global uint *order, __global uint *other,                           \
-        __global const Vec3 *centroids, __global const Dop *volumes, __global const OpenNode *queue, const uint count,    \
-        __global OpenNode *children, const uint depth, const uint leafSize, const uint median
-
 // A work-group takes nodesPerGroup nodes of the queue. Its first work-item parts them: those of at most smallSize triangles
 // go to one end of a list, the others to the other end; nodes of largeSize or more are another kernel's. The group splits the
 // others one after the other, and then every work-item splits some of the small ones alone.
-__kernel void topDownSplitGroups(DRAPE_LEVEL_ARGUMENTS, const uint nodesPerGroup, const uint smallSize,
-                                 const uint largeSize, __local ulong* sums, __local uint* scan, __local float* hulls,
-                                 __local uint* list)
+__kernel void topDownSplitGroups(DRAPE_TOP_DOWN_SPLIT_GROUPS)
 {
     __local uint smallCount, otherCount;
     const TriangleSummary summary = {centroids, volumes};
-    const SplitRule rule = {depth, leafSize, median};
+    const SplitRule rule = values.m_rule;
+    const uint nodesPerGroup = values.m_nodesPerGroup;
+    __local uint* list = scratch + get_local_size(0);
     if (get_local_id(0) == 0)
     {
         smallCount = 0;
         otherCount = 0;
         const uint first = get_group_id(0) * nodesPerGroup;
-        for (uint i = first; i < min(count, first + nodesPerGroup); ++i)
+        for (uint i = first; i < min(values.m_count, first + nodesPerGroup); ++i)
         {
             const uint size = queue[i].m_end - queue[i].m_first;
-            if (size <= smallSize)
+            if (size <= values.m_smallSize)
             {
                 list[nodesPerGroup - 1 - smallCount++] = i;
             }
-            else if (size < largeSize)
+            else if (size < values.m_largeSize)
             {
                 list[otherCount++] = i;
             }
@@ -147,7 +142,8 @@ __kernel void topDownSplitGroups(DRAPE_LEVEL_ARGUMENTS, const uint nodesPerGroup
     for (uint k = 0; k < otherCount; ++k)
     {
         const OpenNode node = queue[list[k]];
-        groupSplit(nodes, splits, order, other, &summary, &rule, &node, children + 2 * list[k], sums, scan, hulls);
+        groupSplit(nodes, splits, order, other, &summary, &rule, &node, children + 2 * list[k], sums, scratch,
+                   hulls);
     }
     for (uint k = get_local_id(0); k < smallCount; k += get_local_size(0))
     {
@@ -158,14 +154,14 @@ __kernel void topDownSplitGroups(DRAPE_LEVEL_ARGUMENTS, const uint nodesPerGroup
 }
 
 // A work-item splits a node alone.
-__kernel void topDownSplitItems(DRAPE_LEVEL_ARGUMENTS, const uint largeSize)
+__kernel void topDownSplitItems(DRAPE_TOP_DOWN_SPLIT_ITEMS)
 {
     const uint i = get_global_id(0);
-    if (i >= count) return;
+    if (i >= values.m_count) return;
     const TriangleSummary summary = {centroids, volumes};
-    const SplitRule rule = {depth, leafSize, median};
+    const SplitRule rule = values.m_rule;
     const OpenNode node = queue[i];
-    if (node.m_end - node.m_first >= largeSize) return;
+    if (node.m_end - node.m_first >= values.m_largeSize) return;
     splitSerial(nodes, splits, order, other, &summary, &rule, &node, children + 2 * i);
 }
 

@@ -48,7 +48,7 @@ DeviceTreeStep::DeviceTreeStep(Device& device, const TreeScene& scene, const Met
     m_pairs.create(device, load);
     m_ordering.create(device, load);
     m_candidates.reserve(device, kFirstCandidates);
-    m_ordering.reserveHits(device, kFirstContacts);
+    reserveContacts(kFirstContacts);
     m_found.reserve(device, 1);
     m_ignored.reserve(device, 1);
     for (Buffer<StepCounters>& counters : m_counters)
@@ -65,16 +65,54 @@ void DeviceTreeStep::upload()
     m_obstacle.upload(m_device, m_scene.m_obstacleTree, m_scene.m_obstacles.triangles(), {0.0f});
     m_start.reserve(m_device, 3 * m_scene.m_cloths.vertexCount());
     m_end.reserve(m_device, 3 * m_scene.m_cloths.vertexCount());
-    m_positions.assign(m_device, m_scene.m_obstaclePositions);
     m_thickness.assign(m_device, m_scene.m_thickness);
-    m_edges.assign(m_device, m_scene.m_cloths.edges());
-    m_vertexCones.assign(m_device, m_scene.m_vertexCones);
-    m_edgeCones.assign(m_device, m_scene.m_edgeCones);
-    m_ordering.resizeSlots(m_device, m_scene.slotCount());
+    uploadGeometry();
+    m_unsorted.resizeFeatures(m_device, m_scene.slotCount());
+    m_ordering.resizeFeatures(m_device, m_scene.slotCount());
     m_refit.prepare(m_device, m_cloth.m_tree, m_methods.m_tree);
     const Tree &cloth = m_scene.m_clothTree, &obstacle = m_scene.m_obstacleTree;
     m_traversal->setTopology(m_device, {cloth.m_nodes, 0, cloth.m_order}, {obstacle.m_nodes, 0, obstacle.m_order});
     m_device.wait();
+}
+
+void DeviceTreeStep::uploadGeometry()
+{
+    const MeshPool &cloths = m_scene.m_cloths, &obstacles = m_scene.m_obstacles;
+    m_clothTriangles.demand(cloths.triangles().size());
+    m_edges.demand(cloths.edges().size());
+    m_clothArena.make(m_device);
+    m_clothTriangles.append(m_device, cloths.triangles());
+    m_edges.append(m_device, cloths.edges());
+    m_positions.demand(m_scene.m_obstaclePositions.size());
+    m_vertexCones.demand(m_scene.m_vertexCones.size());
+    m_edgeCones.demand(m_scene.m_edgeCones.size());
+    m_obstacleTriangles.demand(obstacles.triangles().size());
+    m_obstacleArena.make(m_device);
+    m_positions.append(m_device, m_scene.m_obstaclePositions);
+    m_vertexCones.append(m_device, m_scene.m_vertexCones);
+    m_edgeCones.append(m_device, m_scene.m_edgeCones);
+    m_obstacleTriangles.append(m_device, obstacles.triangles());
+}
+
+PairSides DeviceTreeStep::pairSides() const
+{
+    const MeshPool& cloths = m_scene.m_cloths;
+    const ClothLayout layout = {m_clothTriangles.word(),
+                                m_edges.word(),
+                                0,
+                                0,
+                                cl_uint(cloths.vertexCount()),
+                                cl_uint(cloths.triangles().size()),
+                                cl_uint(cloths.edges().size())};
+    const ObstacleBuffers obstacles = {
+        m_obstacleArena, {m_positions.word(), m_vertexCones.word(), m_edgeCones.word(), m_obstacleTriangles.word()}};
+    return {m_start, m_end, m_clothArena, layout, obstacles, m_thickness, 1, m_scene.m_reachScale, DRAPE_AUTOMATIC};
+}
+
+void DeviceTreeStep::reserveContacts(std::size_t count)
+{
+    m_unsorted.reserve(m_device, count);
+    m_ordering.reserve(m_device, count);
 }
 
 void DeviceTreeStep::enqueue()
@@ -86,12 +124,8 @@ void DeviceTreeStep::enqueue()
                     m_methods.m_tree);
     m_traversal->enqueue(m_device,
                          {m_cloth.traversed(), m_obstacle.traversed(), m_thickness, 1, m_candidates, m_found});
-    m_pairs.enqueue(m_device,
-                    {m_start, m_end, m_cloth.m_triangles, m_edges, m_positions, m_obstacle.m_triangles, m_vertexCones,
-                     m_edgeCones, m_thickness, m_scene.m_cloths.vertexCount(), m_scene.m_cloths.triangles().size(), 1,
-                     m_scene.m_reachScale, DRAPE_AUTOMATIC},
-                    m_candidates, m_found, m_ordering.hits(), counters);
-    m_ordering.enqueue(m_device, {counters, m_counters[1 - m_turn]});
+    m_pairs.enqueue(m_device, pairSides(), m_candidates, m_found, m_unsorted, counters);
+    m_ordering.enqueue(m_device, m_unsorted, {counters, m_counters[1 - m_turn]});
     read(m_asked);
     m_found.read(m_device, &m_foundRead, 1);
 }
@@ -110,10 +144,10 @@ bool DeviceTreeStep::grow(const StepCounters& counters, bool& limitReached)
         again = true;
         m_candidates.reserve(m_device, withHeadroom(m_foundRead.m_candidates));
     }
-    if (counters.m_contactsFound > m_ordering.hitCapacity())
+    if (counters.m_contactsFound > m_unsorted.capacity())
     {
         again = true;
-        m_ordering.reserveHits(m_device, withHeadroom(counters.m_contactsFound));
+        reserveContacts(withHeadroom(counters.m_contactsFound));
     }
     return again;
 }
@@ -142,8 +176,8 @@ bool DeviceTreeStep::run(const float* start, const float* end, TreeStepResult& r
     }
     const auto first = m_read.begin() + DRAPE_CONTACT_HEAD;
     result.m_contacts.assign(first, first + std::ptrdiff_t(counters.m_contactsStored));
-    m_asked = std::min<std::size_t>(counters.m_contactsStored + counters.m_contactsStored / 16 + 256,
-                                    m_ordering.hitCapacity());
+    m_asked =
+        std::min<std::size_t>(counters.m_contactsStored + counters.m_contactsStored / 16 + 256, m_unsorted.capacity());
     result.m_candidates = m_foundRead.m_candidates;
     result.m_volumeTests = m_foundRead.m_visits;
     return !m_device.failed();

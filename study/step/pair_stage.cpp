@@ -6,19 +6,22 @@ namespace drape
 {
 void PairStage::create(Device& device, const ProgramLoader& load)
 {
-    m_test.create(device, load("narrow_phase_pairs"), "narrowPhaseTest");
+    m_test.create(device, load("narrow_phase_pairs"));
 }
 
-void PairStage::enqueue(Device& device, PairSides sides, Buffer<Candidate>& candidates,
-                        Buffer<TraversalCounters>& found, HitBuffers hits, Buffer<StepCounters>& counters)
+void PairStage::enqueue(Device& device, const PairSides& sides, Buffer<Candidate>& candidates,
+                        Buffer<TraversalCounters>& found, UnsortedContacts& contacts, Buffer<StepCounters>& counters)
 {
-    m_test.launch(device, listWidth(device), listGroup(device), candidates.handle(), cl_uint(candidates.capacity()),
-                  found.handle(), sides.m_clothStart.handle(), sides.m_clothEnd.handle(),
-                  sides.m_clothTriangles.handle(), sides.m_clothEdges.handle(), cl_uint(sides.m_clothNodes),
-                  cl_uint(sides.m_triangleCount), sides.m_obstaclePositions.handle(),
-                  sides.m_obstacleTriangles.handle(), sides.m_vertexCones.handle(), sides.m_edgeCones.handle(),
-                  sides.m_thickness.handle(), cl_uint(sides.m_obstacleMeshes), sides.m_reachScale,
-                  cl_uint(sides.m_mode), hits.m_hits.handle(), cl_uint(hits.m_hits.capacity()),
-                  hits.m_hitPlaces.handle(), hits.m_slotCount.handle(), hits.m_slotSums.handle(), counters.handle());
+    const PairValues values = {sides.m_layout,
+                               sides.m_obstacles.m_layout,
+                               cl_uint(candidates.capacity()),
+                               cl_uint(sides.m_obstacleMeshes),
+                               sides.m_reachScale,
+                               sides.m_mode,
+                               cl_uint(contacts.capacity()),
+                               contacts.sums()};
+    m_test.launch(device, listWidth(device), listGroup(device), values, candidates, found, sides.m_start, sides.m_end,
+                  sides.m_cloths, sides.m_obstacles.m_geometry, sides.m_thickness, contacts.m_contacts,
+                  contacts.m_places, contacts.m_featureCounts, counters);
 }
 }  // namespace drape

@@ -69,6 +69,9 @@ private:
     };
 
     void upload();
+    void uploadGeometry();
+    PairSides pairSides() const;
+    void reserveContacts(std::size_t count);
     void enqueue();
     // Makes room for what the last run demanded. Returns whether the step must run again.
     bool grow(const StepCounters& counters, bool& limitReached);
@@ -80,11 +83,19 @@ private:
     TreeRefitStage m_refit;
     std::unique_ptr<DeviceTraversal> m_traversal;
     PairStage m_pairs;
-    CompactionStage m_compaction;
+    OrderingStage m_ordering;
+    UnsortedContacts m_unsorted;
     Side m_cloth, m_obstacle;
-    Buffer<float> m_start, m_end, m_positions, m_thickness;
-    Buffer<Edge> m_edges;
-    Buffer<NormalCone> m_vertexCones, m_edgeCones;
+    Buffer<float> m_start, m_end, m_thickness;
+    // Geometry of both sides for the narrow phase.
+    Arena<ClothWord> m_clothArena;
+    ArenaArray<Triangle> m_clothTriangles{m_clothArena, "cloth triangles"};
+    ArenaArray<Edge> m_edges{m_clothArena, "cloth edges"};
+    Arena<ObstacleWord> m_obstacleArena;
+    ArenaArray<float> m_positions{m_obstacleArena, "obstacle positions"};
+    ArenaArray<NormalCone> m_vertexCones{m_obstacleArena, "obstacle cones"};
+    ArenaArray<NormalCone> m_edgeCones{m_obstacleArena, "obstacle cones"};
+    ArenaArray<Triangle> m_obstacleTriangles{m_obstacleArena, "obstacle triangles"};
     Buffer<Candidate> m_candidates;
     Buffer<TraversalCounters> m_found;
     Buffer<StepCounters> m_counters[2], m_ignored;

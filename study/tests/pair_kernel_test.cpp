@@ -27,11 +27,20 @@ public:
         m_ordering.create(device, load);
         m_thickness = {step.m_thickness};
         m_pairs = allPairs(m_cloth, m_obstacle);
-        m_ordering.resizeSlots(
-            device, m_cloth.m_pool.vertexCount() + m_cloth.m_pool.triangles().size() + m_cloth.m_pool.edges().size());
+        const MeshPool& pool = m_cloth.m_pool;
+        const std::size_t features = pool.vertexCount() + pool.triangles().size() + pool.edges().size();
+        m_unsorted.resizeFeatures(device, features);
+        m_ordering.resizeFeatures(device, features);
+        m_clothNodes.upload(device, m_cloth);
         m_clothBuffers.upload(device, m_cloth);
         m_obstacleBuffers.upload(device, m_obstacle);
         guardCopy(device, m_thicknessBuffer, m_thickness);
+    }
+
+    void reserve(std::size_t contacts)
+    {
+        m_unsorted.reserve(m_device, contacts);
+        m_ordering.reserve(m_device, contacts);
     }
 
     // Runs with the first `count` candidates. Contacts that fit are read back.
@@ -46,18 +55,19 @@ public:
         Buffer<StepCounters> counterBuffer, next;
         guardCopy(m_device, counterBuffer, start);
         guardCopy(m_device, next, start);
-        guard(m_device, m_ordering.contacts(), DRAPE_CONTACT_HEAD + m_ordering.hitCapacity());
-        m_stage.enqueue(m_device, sides(), m_candidates, foundBuffer, m_ordering.hits(), counterBuffer);
-        m_ordering.enqueue(m_device, {counterBuffer, next});
+        guard(m_device, m_ordering.contacts(), DRAPE_CONTACT_HEAD + m_unsorted.capacity());
+        m_stage.enqueue(m_device, sides(), m_candidates, foundBuffer, m_unsorted, counterBuffer);
+        m_ordering.enqueue(m_device, m_unsorted, {counterBuffer, next});
         counters = readCounters(m_device, counterBuffer);
-        const std::size_t fitting = std::min<std::size_t>(counters.m_contactsStored, m_ordering.hitCapacity());
+        const std::size_t fitting = std::min<std::size_t>(counters.m_contactsStored, m_unsorted.capacity());
         std::vector<Contact> contacts = contents(m_device, m_ordering.contacts(), DRAPE_CONTACT_HEAD + fitting);
         EXPECT_EQ(std::memcmp(contacts.data(), &counters, sizeof(counters)), 0) << "the head";
         contacts.erase(contacts.begin(), contacts.begin() + DRAPE_CONTACT_HEAD);
         EXPECT_TRUE(intact(m_device, m_ordering.contacts()) && intact(m_device, counterBuffer) &&
                     intact(m_device, m_candidates));
         EXPECT_TRUE(intact(m_device, next) && sameBytes(contents(m_device, next, 1), std::vector<StepCounters>(1)));
-        EXPECT_TRUE(m_clothBuffers.allIntact(m_device) && m_obstacleBuffers.allIntact(m_device));
+        EXPECT_TRUE(m_clothNodes.allIntact(m_device) && m_clothBuffers.allIntact(m_device) &&
+                    m_obstacleBuffers.allIntact(m_device));
         EXPECT_FALSE(m_device.failed()) << m_device.error().text();
         return contacts;
     }
@@ -73,17 +83,13 @@ public:
     PairSettings settings() const { return {m_thickness, 1, 1.5f}; }
     PairSides sides()
     {
-        return {m_clothBuffers.m_start,
-                m_clothBuffers.m_end,
-                m_clothBuffers.m_triangles,
-                m_clothBuffers.m_edges,
-                m_obstacleBuffers.m_start,
-                m_obstacleBuffers.m_triangles,
-                m_obstacleBuffers.m_vertexCones,
-                m_obstacleBuffers.m_edgeCones,
+        const ClothBuffers cloths = m_clothBuffers.buffers();
+        return {m_clothNodes.m_start,
+                m_clothNodes.m_end,
+                cloths.m_topology,
+                cloths.m_layout,
+                m_obstacleBuffers.buffers(),
                 m_thicknessBuffer,
-                m_cloth.m_pool.vertexCount(),
-                m_cloth.m_pool.triangles().size(),
                 1,
                 settings().m_reachScale,
                 settings().m_mode};
@@ -93,7 +99,10 @@ public:
     Side m_cloth, m_obstacle;
     PairStage m_stage;
     OrderingStage m_ordering;
-    DeviceSide m_clothBuffers, m_obstacleBuffers;
+    UnsortedContacts m_unsorted;
+    DeviceSide m_clothNodes;
+    DeviceCloths m_clothBuffers;
+    DeviceObstacles m_obstacleBuffers;
     std::vector<float> m_thickness;
     std::vector<Candidate> m_pairs;
     Buffer<float> m_thicknessBuffer;
@@ -109,7 +118,7 @@ TEST_P(PairStageTest, ContactsAreTheHostsAtEverySize)
 {
     DevicePairs stage(*m_device, soupCase(161, 183, true, 80));
     const std::size_t all = stage.m_pairs.size();
-    stage.m_ordering.reserveHits(*m_device, stage.host(all).size() + 1);
+    stage.reserve(stage.host(all).size() + 1);
     for (std::size_t count :
          {std::size_t(0), std::size_t(1), std::size_t(63), std::size_t(64), std::size_t(65), std::size_t(1023), all})
     {
@@ -130,7 +139,7 @@ TEST_P(PairStageTest, ContactsAreTheHostsOnShapes)
         SCOPED_TRACE(step.trace());
         DevicePairs stage(*m_device, step);
         const std::vector<Contact> host = stage.host(stage.m_pairs.size());
-        stage.m_ordering.reserveHits(*m_device, host.size());
+        stage.reserve(host.size());
         StepCounters counters;
         const std::vector<Contact> device = stage.run(stage.m_pairs.size(), counters);
         EXPECT_TRUE(sameBytes(device, host)) << difference(device, host);
@@ -147,12 +156,12 @@ TEST_P(PairStageTest, FullListsCountOnAndTheNextStepIsClean)
     for (std::size_t capacity : {std::size_t(1), std::size_t(13), host.size() / 2, host.size() - 1})
     {
         SCOPED_TRACE("seed 82, capacity " + std::to_string(capacity));
-        stage.m_ordering.reserveHits(*m_device, capacity);
+        stage.reserve(capacity);
         StepCounters counters;
         stage.run(all, counters);
         EXPECT_EQ(counters.m_contactsFound, host.size());
     }
-    stage.m_ordering.reserveHits(*m_device, host.size());
+    stage.reserve(host.size());
     for (int step = 0; step < 3; ++step)
     {
         StepCounters counters;

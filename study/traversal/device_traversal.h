@@ -4,8 +4,8 @@
 // capacity. Functions return after enqueueing unless they say that they wait.
 #pragma once
 
-#include "bullet_plugin/core/device/buffer.h"
-#include "bullet_plugin/core/device/program.h"
+#include "bullet_plugin/core/device/bound_kernel.h"
+#include "study/kernels/traversal_bindings.h"
 #include "study/traversal/hierarchy.h"
 
 namespace drape
@@ -28,9 +28,7 @@ struct TraversalStep
     Buffer<TraversalCounters>& m_counters;
     std::size_t m_limit = kMostPairs;  // the count is exact up to it; a greater one says only that there are more
 
-    cl_uint capacity() const { return cl_uint(m_candidates.capacity()); }
-    cl_uint limit() const { return cl_uint(m_limit); }
-    cl_uint meshes() const { return cl_uint(m_obstacleMeshes); }
+    ListValues list() const { return {cl_uint(m_obstacleMeshes), cl_uint(m_candidates.capacity()), cl_uint(m_limit)}; }
 };
 
 class DeviceTraversal

@@ -22,7 +22,7 @@ constexpr std::uint32_t kRaiseInterval = 8;
 FrontTraversal::FrontTraversal(Device& device, const cl::Program& program, bool keepFront, std::size_t frontPairs)
     : m_keepFront(keepFront)
 {
-    m_traverse.create(device, program, "broadPhaseFront");
+    m_traverse.create(device, program);
     reserveFront(device, keepFront ? frontPairs : 1);
 }
 
@@ -38,12 +38,18 @@ void FrontTraversal::reserveFront(Device& device, std::size_t pairs)
 void FrontTraversal::setTopology(Device& device, const Hierarchy& cloth, const Hierarchy& obstacle)
 {
     m_hasFront = false;
-    const std::vector<BvhLink> clothLinks = makeLinks(cloth), obstacleLinks = makeLinks(obstacle);
+    const std::vector<BvhLink> obstacleLinks = makeLinks(obstacle);
+    std::vector<BvhLink> links = makeLinks(cloth);
+    std::vector<cl_uint> orders = cloth.m_order;
+    m_obstacleLinks = cl_uint(links.size());
+    m_obstacleOrder = cl_uint(orders.size());
+    links.insert(links.end(), obstacleLinks.begin(), obstacleLinks.end());
+    orders.insert(orders.end(), obstacle.m_order.begin(), obstacle.m_order.end());
     const std::size_t perUnit = device.isGpu() ? kStartPerUnitGpu : kStartPerUnitCpu;
     const StartPairs start = makeStartPairs(cloth, obstacle, device.computeUnits() * perUnit);
     const WaitAtEnd wait(device);
-    m_clothLinks.assign(device, clothLinks);
-    m_obstacleLinks.assign(device, obstacleLinks);
+    m_links.assign(device, links);
+    m_orders.assign(device, orders);
     m_start.assign(device, start.m_pairs);
     m_startCount = start.m_pairs.size();
     m_floorDepth = start.m_depth;
@@ -55,13 +61,12 @@ void FrontTraversal::enqueue(Device& device, const TraversalStep& step)
     const std::size_t most = device.computeUnits() * (device.isGpu() ? kGroupsPerUnitGpu : kGroupsPerUnitCpu);
     const std::size_t groups = std::min(most, (startCount() + kGroup - 1) / kGroup);
     const cl_uint raise = m_hasFront && m_step % kRaiseInterval == 0;
-    m_traverse.launch(device, groups * kGroup, kGroup, cloth.m_nodes.handle(), m_clothLinks.handle(),
-                      cloth.m_order.handle(), cloth.m_triangles.handle(), obstacle.m_nodes.handle(),
-                      m_obstacleLinks.handle(), obstacle.m_order.handle(), obstacle.m_triangles.handle(),
-                      step.m_thickness.handle(), step.meshes(), (m_hasFront ? m_front : m_start).handle(),
-                      cl_uint(startCount()), m_floorDepth, cl_uint(m_keepFront), raise, m_nextFront.handle(),
-                      cl_uint(m_nextFront.capacity()), step.m_candidates.handle(), step.m_counters.handle(),
-                      step.capacity(), step.limit());
+    const FrontValues values = {
+        step.list(),          m_obstacleLinks, m_obstacleOrder, cl_uint(startCount()),
+        cl_uint(m_keepFront), raise,           m_floorDepth,    cl_uint(m_nextFront.capacity())};
+    m_traverse.launch(device, groups * kGroup, kGroup, values, cloth.m_nodes, obstacle.m_nodes, m_links, m_orders,
+                      cloth.m_triangles, obstacle.m_triangles, step.m_thickness, m_hasFront ? m_front : m_start,
+                      m_nextFront, step.m_candidates, step.m_counters);
 }
 
 void FrontTraversal::accept(Device& device, const TraversalCounters& counters)

@@ -29,9 +29,12 @@ private:
     // Pairs at which the next step starts.
     std::size_t startCount() const { return m_hasFront ? m_frontCount : m_startCount; }
 
-    Kernel m_traverse;
+    BoundKernel<kernels::broadPhaseFront> m_traverse;
     bool m_keepFront = false;
-    Buffer<BvhLink> m_clothLinks, m_obstacleLinks;
+    // The cloths' links and order, then the obstacles'.
+    Buffer<BvhLink> m_links;
+    Buffer<cl_uint> m_orders;
+    cl_uint m_obstacleLinks = 0, m_obstacleOrder = 0;  // where the obstacles' begin
     Buffer<NodePair> m_start, m_front, m_nextFront;
     std::size_t m_startCount = 0, m_frontCount = 0;
     cl_uint m_floorDepth = 0;

@@ -51,9 +51,9 @@ GridFrame gridFrame(const Hierarchy& cloth, const Hierarchy& obstacle)
 GridTraversal::GridTraversal(Device& device, const ProgramLoader& load)
 {
     const cl::Program program = load("grid");
-    m_entries.create(device, program, "gridEntries");
-    m_starts.create(device, program, "gridStarts");
-    m_pairs.create(device, program, "gridPairs");
+    m_entries.create(device, program);
+    m_starts.create(device, program);
+    m_pairs.create(device, program);
     m_sort.create(device, load);
     m_cells.reserve(device, DRAPE_GRID_CELLS + 1);
 }
@@ -76,18 +76,15 @@ void GridTraversal::setTopology(Device& device, const Hierarchy& cloth, const Hi
 void GridTraversal::enqueue(Device& device, const TraversalStep& step)
 {
     const BroadPhaseBuffers &cloth = step.m_cloth, &obstacle = step.m_obstacle;
-    const Vec3 origin = m_frame.m_origin;
+    GridValues values = {step.list(), m_frame, m_obstacleLeaves, m_capacity};
     m_keys.fill(device, DRAPE_GRID_CELLS, m_capacity);
-    m_entries.launch(device, m_obstacleLeaves, kGroup, obstacle.m_nodes.handle(), m_obstacleLeaves, origin.x, origin.y,
-                     origin.z, m_frame.m_perMetre, m_keys.handle(), m_places.handle(), m_capacity,
-                     step.m_counters.handle());
+    m_entries.launch(device, m_obstacleLeaves, kGroup, values, obstacle.m_nodes, m_keys, m_places, step.m_counters);
     m_sort.enqueue(device, m_keys, m_places, m_capacity, 3 * DRAPE_GRID_BITS + 1, WorkShape::Device);
-    m_starts.launch(device, std::size_t(m_capacity) + 1, kGroup, m_keys.handle(), m_capacity, m_cells.handle());
-    m_pairs.launch(device, m_clothLeaves, kGroup, cloth.m_nodes.handle(), cloth.m_order.handle(),
-                   cloth.m_triangles.handle(), m_clothLeaves, obstacle.m_nodes.handle(), obstacle.m_order.handle(),
-                   obstacle.m_triangles.handle(), origin.x, origin.y, origin.z, m_frame.m_perMetre, m_cells.handle(),
-                   m_places.handle(), step.m_thickness.handle(), step.meshes(), step.m_candidates.handle(),
-                   step.m_counters.handle(), step.capacity(), step.limit());
+    m_starts.launch(device, std::size_t(m_capacity) + 1, kGroup, m_capacity, m_keys, m_cells);
+    values.m_leafCount = m_clothLeaves;
+    m_pairs.launch(device, m_clothLeaves, kGroup, values, cloth.m_nodes, cloth.m_order, cloth.m_triangles,
+                   obstacle.m_nodes, obstacle.m_order, obstacle.m_triangles, m_cells, m_places, step.m_thickness,
+                   step.m_candidates, step.m_counters);
 }
 
 bool GridTraversal::grow(Device& device, const TraversalCounters& counters, bool& limitReached)

@@ -24,7 +24,9 @@ public:
 private:
     void reserve(Device& device, std::size_t entries);
 
-    Kernel m_entries, m_starts, m_pairs;
+    BoundKernel<kernels::gridEntries> m_entries;
+    BoundKernel<kernels::gridStarts> m_starts;
+    BoundKernel<kernels::gridPairs> m_pairs;
     RadixSortStage m_sort;
     Buffer<cl_uint> m_keys, m_places, m_cells;
     GridFrame m_frame = {};

@@ -10,7 +10,7 @@ constexpr std::size_t kGroup = 256;
 
 SingleTraversal::SingleTraversal(Device& device, const cl::Program& program, std::size_t spill)
 {
-    m_traverse.create(device, program, "broadPhaseSingle");
+    m_traverse.create(device, program);
     m_spill.reserve(device, spill);
 }
 
@@ -23,11 +23,10 @@ void SingleTraversal::setTopology(Device&, const Hierarchy& cloth, const Hierarc
 void SingleTraversal::enqueue(Device& device, const TraversalStep& step)
 {
     const BroadPhaseBuffers &cloth = step.m_cloth, &obstacle = step.m_obstacle;
-    m_traverse.launch(device, kGroup, kGroup, cloth.m_nodes.handle(), cloth.m_order.handle(),
-                      cloth.m_triangles.handle(), m_clothRoot, obstacle.m_nodes.handle(), obstacle.m_order.handle(),
-                      obstacle.m_triangles.handle(), m_obstacleRoot, step.m_thickness.handle(), step.meshes(),
-                      step.m_candidates.handle(), step.m_counters.handle(), step.capacity(), step.limit(),
-                      m_spill.handle(), cl_uint(m_spill.capacity()));
+    const SingleValues values = {step.list(), m_clothRoot, m_obstacleRoot, cl_uint(m_spill.capacity())};
+    m_traverse.launch(device, kGroup, kGroup, values, cloth.m_nodes, cloth.m_order, cloth.m_triangles, obstacle.m_nodes,
+                      obstacle.m_order, obstacle.m_triangles, step.m_thickness, step.m_candidates, step.m_counters,
+                      m_spill);
 }
 
 bool SingleTraversal::grow(Device& device, const TraversalCounters& counters, bool& limitReached)

@@ -16,7 +16,7 @@ public:
     bool grow(Device& device, const TraversalCounters& counters, bool& limitReached) override;
 
 private:
-    Kernel m_traverse;
+    BoundKernel<kernels::broadPhaseSingle> m_traverse;
     Buffer<NodePair> m_spill;
     cl_uint m_clothRoot = 0, m_obstacleRoot = 0;
 };

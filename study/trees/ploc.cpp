@@ -90,7 +90,7 @@ void PlocStage::create(Device& device, const ProgramLoader& load)
     m_leaves.create(device, program, "plocLeaves");
     m_nearest.create(device, program, "plocFindNearest");
     m_count.create(device, program, "plocCount");
-    m_merge.create(device, program, "plocMerge");
+    m_merge.create(device, program);
     m_place.create(device, program, "plocPlace");
 }
 
@@ -117,9 +117,8 @@ void PlocStage::enqueueRound(Device& device, cl_uint round, cl_uint most, cl_uin
     m_nearest.launch(device, most, kGroup, m_boxes.handle(), m_rounds.handle(), round, radius, m_nearestOf.handle());
     m_count.launch(device, items, group, m_nearestOf.handle(), m_rounds.handle(), round, share, m_blockCounts.handle(),
                    cl::Local(group * sizeof(cl_uint)));
-    m_merge.launch(device, items, group, m_boxes.handle(), m_numbers.handle(), m_nearestOf.handle(), m_rounds.handle(),
-                   round, share, m_blockCounts.handle(), leafCount, m_boxesOut.handle(), m_numbersOut.handle(),
-                   m_clusters.handle(), m_sizes.handle(), cl::Local(group * sizeof(cl_uint)));
+    m_merge.launch(device, items, group, {round, share, leafCount}, m_boxes, m_numbers, m_nearestOf, m_rounds,
+                   m_blockCounts, m_boxesOut, m_numbersOut, m_clusters, m_sizes, group);
     std::swap(m_boxes, m_boxesOut);
     std::swap(m_numbers, m_numbersOut);
 }

@@ -4,8 +4,9 @@
 
 #include <vector>
 
-#include "bullet_plugin/core/device/program.h"
+#include "bullet_plugin/core/device/bound_kernel.h"
 #include "study/kernels/lib/ploc.h"
+#include "study/kernels/ploc_bindings.h"
 #include "study/trees/morton_codes.h"
 #include "study/trees/tree.h"
 
@@ -29,7 +30,8 @@ private:
     void enqueueRound(Device& device, cl_uint round, cl_uint most, cl_uint radius, bool groups, cl_uint leafCount);
 
     MortonOrderStage m_order;
-    Kernel m_leaves, m_nearest, m_count, m_merge, m_place;
+    Kernel m_leaves, m_nearest, m_count, m_place;
+    BoundKernel<kernels::plocMerge> m_merge;
     Buffer<cl_uint> m_mortonOrder, m_high, m_low;
     Buffer<Box> m_boxes, m_boxesOut;
     Buffer<cl_uint> m_numbers, m_numbersOut, m_nearestOf, m_blockCounts, m_sizes, m_rounds;

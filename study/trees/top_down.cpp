@@ -56,8 +56,8 @@ void TopDownStage::create(Device& device, const ProgramLoader& load)
     const cl::Program program = load("top_down");
     m_summaries.create(device, program, "topDownSummaries");
     m_root.create(device, program, "topDownRoot");
-    m_splitGroups.create(device, program, "topDownSplitGroups");
-    m_splitItems.create(device, program, "topDownSplitItems");
+    m_splitGroups.create(device, program);
+    m_splitItems.create(device, program);
     m_compactSmall.create(device, program, "topDownCompactSmall");
     m_compactBlocks.create(device, program, "topDownCompactBlocks");
     m_compactScan.create(device, program, "topDownCompactScan");
@@ -192,25 +192,23 @@ void TopDownStage::splitLevel(Device& device, cl_uint depth, const TopDownSettin
     const cl_uint largeSize = settings.m_largeNodes ? settings.m_largeSize : ~0u;
     if (settings.m_largeNodes && !m_open.empty()) splitLarge(device, depth, settings, tree);
     if (level.m_largeNodes == nodes) return;
-    const cl_uint median = settings.m_medianSplit ? 1 : 0, leafSize = settings.m_leafSize;
+    SplitValues values = {{depth, settings.m_leafSize, settings.m_medianSplit ? 1u : 0u}, nodes, 0, 0, largeSize};
     const bool direct = settings.m_smallSplits && float(level.m_smallNodes) >= settings.m_smallShare * float(nodes);
     if (direct)
     {
-        launch(device, m_splitItems, nodes, kItemGroup, tree.m_nodes.handle(), tree.m_splits.handle(),
-               tree.m_order.handle(), m_other.handle(), m_centroids.handle(), m_volumes.handle(), m_queue.handle(),
-               nodes, m_children.handle(), depth, leafSize, median, largeSize);
+        launch(device, m_splitItems, nodes, kItemGroup, values, tree.m_nodes, tree.m_splits, tree.m_order, m_other,
+               m_centroids, m_volumes, m_queue, m_children);
         return;
     }
     const std::size_t group = groupSizeFor(settings, tree.m_leafCount, depth);
     level.m_groupSize = std::uint32_t(group);
     const std::size_t wanted = std::max(kGroupsPerUnit * device.computeUnits(), nodes / kNodesPerGroup + 1);
-    const cl_uint nodesPerGroup = cl_uint((nodes + wanted - 1) / wanted);
-    const std::size_t groups = (nodes + nodesPerGroup - 1) / nodesPerGroup;
-    const cl_uint smallSize = settings.m_smallSplits ? settings.m_smallSize : 0;
-    launch(device, m_splitGroups, groups * group, group, tree.m_nodes.handle(), tree.m_splits.handle(),
-           tree.m_order.handle(), m_other.handle(), m_centroids.handle(), m_volumes.handle(), m_queue.handle(), nodes,
-           m_children.handle(), depth, leafSize, median, nodesPerGroup, smallSize, largeSize, sums(group), words(group),
-           floatsOfHulls(group), words(nodesPerGroup));
+    values.m_nodesPerGroup = cl_uint((nodes + wanted - 1) / wanted);
+    values.m_smallSize = settings.m_smallSplits ? settings.m_smallSize : 0;
+    const std::size_t groups = (nodes + values.m_nodesPerGroup - 1) / values.m_nodesPerGroup;
+    launch(device, m_splitGroups, groups * group, group, values, tree.m_nodes, tree.m_splits, tree.m_order, m_other,
+           m_centroids, m_volumes, m_queue, m_children, group, group + values.m_nodesPerGroup,
+           2 * DRAPE_DOP_DIRECTIONS * group);
 }
 
 void TopDownStage::compact(Device& device, const TopDownSettings& settings)

@@ -6,10 +6,11 @@
 
 #include <vector>
 
-#include "bullet_plugin/core/device/program.h"
+#include "bullet_plugin/core/device/bound_kernel.h"
 #include "study/methods.h"
-#include "study/trees/tree.h"
 #include "study/kernels/lib/top_down.h"
+#include "study/kernels/top_down_bindings.h"
+#include "study/trees/tree.h"
 
 namespace drape
 {
@@ -57,14 +58,16 @@ private:
     void findMeans(Device& device, cl_uint depth, const TopDownSettings& settings, DeviceTree& tree);
     void findMedians(Device& device, cl_uint depth, const TopDownSettings& settings, DeviceTree& tree);
     void compact(Device& device, const TopDownSettings& settings);
-    template <typename... Arguments>
-    void launch(Device& device, Kernel& kernel, std::size_t items, std::size_t group, Arguments&&... arguments)
+    template <typename AnyKernel, typename... Arguments>
+    void launch(Device& device, AnyKernel& kernel, std::size_t items, std::size_t group, Arguments&&... arguments)
     {
         ++m_levels.back().m_launches;
         kernel.launch(device, items, group, arguments...);
     }
 
-    Kernel m_summaries, m_root, m_splitGroups, m_splitItems;
+    Kernel m_summaries, m_root;
+    BoundKernel<kernels::topDownSplitGroups> m_splitGroups;
+    BoundKernel<kernels::topDownSplitItems> m_splitItems;
     Kernel m_compactSmall, m_compactBlocks, m_compactScan, m_compactMove;
     Kernel m_largeSums, m_largePivots, m_largeHistograms, m_largeMedianDigits, m_largeCounts, m_largeReorder,
         m_largeVolumes, m_largeLinks, m_rootBlocks;

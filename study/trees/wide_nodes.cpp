@@ -90,7 +90,7 @@ void refitWideOnHost(std::vector<BvhNode>& nodes, const std::vector<std::uint32_
 void WideRefitStage::create(Device& device, const ProgramLoader& load)
 {
     m_leaves.create(device, load("wide_refit"), "refitWideLeaves");
-    m_level.create(device, load("queries/refit"), "refitLevel");
+    m_level.create(device, load("queries/refit"));
 }
 
 void WideRefitStage::enqueue(Device& device, const std::vector<BvhHeight>& depths, Buffer<BvhNode>& nodes,
@@ -102,7 +102,6 @@ void WideRefitStage::enqueue(Device& device, const std::vector<BvhHeight>& depth
     m_leaves.launch(device, count, kGroup, nodes.handle(), order.handle(), triangles.handle(), positions.handle(),
                     cl_uint(count));
     for (std::size_t i = 1; i < depths.size(); ++i)
-        m_level.launch(device, depths[i].m_count, kGroup, nodes.handle(), cl_uint(depths[i].m_first),
-                       cl_uint(depths[i].m_count));
+        m_level.launch(device, depths[i].m_count, kGroup, {depths[i].m_first, depths[i].m_count}, nodes);
 }
 }  // namespace drape

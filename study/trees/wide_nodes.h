@@ -6,7 +6,8 @@
 
 #include <vector>
 
-#include "bullet_plugin/core/device/program.h"
+#include "bullet_plugin/core/device/bound_kernel.h"
+#include "kernels/queries/queries_bindings.h"
 #include "study/trees/tree.h"
 
 namespace drape
@@ -32,6 +33,7 @@ public:
                  Buffer<Triangle>& triangles, Buffer<float>& positions);
 
 private:
-    Kernel m_leaves, m_level;
+    Kernel m_leaves;
+    BoundKernel<kernels::refitLevel> m_level;
 };
 }  // namespace drape

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bullet_plugin/core/broad_phase/patch_cull.h"
+#include "bullet_plugin/core/scene/patch_width.h"
 #include "kernels/lib/lanes.h"
 #include "tests/support/device_side.h"
 
@@ -42,8 +42,7 @@ class LanesTest : public DeviceTest
 
 TEST_P(LanesTest, RootsErrByLessThanTheCullsAllow)
 {
-    const std::string source =
-        PatchCullStage::defines(*m_device) + assembleSource("kernels/lib/lanes.h") + rootsOf(*m_device);
+    const std::string source = patchDefines(*m_device) + assembleSource("kernels/lib/lanes.h") + rootsOf(*m_device);
     const cl::Program program = compileSource(*m_device, "lanes", source);
     ASSERT_FALSE(m_device->failed()) << m_device->error().text();
     Kernel kernel;
@@ -52,7 +51,7 @@ TEST_P(LanesTest, RootsErrByLessThanTheCullsAllow)
     Buffer<float> in, out;
     guardCopy(*m_device, in, values);
     guard(*m_device, out, values.size());
-    const std::size_t lanes = m_device->isGpu() ? 1 : PatchCullStage::width(*m_device);
+    const std::size_t lanes = m_device->isGpu() ? 1 : patchWidth(*m_device);
     kernel.launch(*m_device, values.size() / lanes, 1, in.handle(), out.handle());
     const std::vector<float> roots = contents(*m_device, out, values.size());
     ASSERT_TRUE(intact(*m_device, out)) << m_device->error().text();

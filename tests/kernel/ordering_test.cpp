@@ -5,11 +5,11 @@
 #include <cstring>
 #include <tuple>
 
-#include "bullet_plugin/core/device/program.h"
-#include "kernels/shared/patch.h"
+#include "bullet_plugin/core/device/bound_kernel.h"
+#include "kernels/ordering/ordering_bindings.h"
 #include "tests/support/cases.h"
 #include "tests/support/device_side.h"
-#include "tests/support/slot_sums.h"
+#include "tests/support/feature_sums.h"
 
 namespace drape::test
 {
@@ -45,12 +45,12 @@ public:
     explicit Ordering(Device& device) : m_device(device)
     {
         const cl::Program program = programOf(device, "ordering/ordering");
-        m_count.create(device, program, "orderingCount");
-        m_place.create(device, program, "orderingPlace");
-        m_gather.create(device, program, "orderingGather");
-        m_order.create(device, program, "orderingOrder");
-        m_write.create(device, program, "orderingWrite");
-        m_gatherFew.create(device, programOf(device, "ordering/ordering_small"), "orderingGatherFew");
+        m_count.create(device, program);
+        m_place.create(device, program);
+        m_gather.create(device, program);
+        m_sort.create(device, program);
+        m_write.create(device, program);
+        m_gatherSmall.create(device, programOf(device, "ordering/ordering_small"));
     }
 
     std::vector<Contact> run(const std::vector<Contact>& hits, std::uint32_t slots)
@@ -61,18 +61,17 @@ public:
         const std::size_t blocks = (slots + kBlock - 1) / kBlock;
         const cl_uint capacity = prepare(hits, slotCount, 0);
         guard(m_device, m_blockCount, blocks);
-        const cl::LocalSpaceArg scratch = cl::Local(kGroup * sizeof(cl_uint));
-        m_count.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_blockCount.handle(), scratch);
-        m_place.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_ranked, m_blockCount.handle(),
-                       1u, m_slotFirst.handle(), m_counters.handle(), scratch);
+        const OrderingValues values = {capacity, slots, m_ranked, 0, 1, m_parts};
+        m_count.launch(m_device, blocks * kGroup, kGroup, values, m_slotCount, m_blockCount, kGroup);
+        m_place.launch(m_device, blocks * kGroup, kGroup, values, m_slotCount, m_blockCount, m_slotFirst, m_counters,
+                       kGroup);
         const auto isCrowded = [&](cl_uint count) { return count > m_ranked; };
         EXPECT_EQ(contents(m_device, m_counters, 1)[0].m_crowded,
                   cl_uint(std::count_if(slotCount.begin(), slotCount.end(), isCrowded)));
         expectPlacesWithoutSums(slots);
-        m_gather.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotCount.handle(),
-                        m_slotFirst.handle(), m_members.handle(), m_keys.handle(), m_counters.handle(),
-                        m_next.handle());
-        enqueueOrderAndWrite(slots, capacity, nullptr);
+        m_gather.launch(m_device, 4 * kGroup, kGroup, values, m_hits, m_slotCount, m_slotFirst, m_members, m_keys,
+                        m_counters, m_next);
+        enqueueOrderAndWrite(slots, capacity, 0);
         expectClean(m_slotCount, slots);
         EXPECT_TRUE(intact(m_device, m_hits) && intact(m_device, m_slotCount) && intact(m_device, m_slotFirst) &&
                     intact(m_device, m_blockCount) && intact(m_device, m_members) && intact(m_device, m_keys) &&
@@ -90,9 +89,11 @@ public:
     std::vector<Contact> runFew(const std::vector<Contact>& hits, std::uint32_t slots)
     {
         const cl_uint capacity = enqueueFew(hits, slots);
-        enqueueOrderAndWrite(slots, capacity, &m_slotSums);
-        expectClean(m_slotCount, slots);
-        expectClean(m_slotSums, DRAPE_SLOT_SUMS);
+        enqueueOrderAndWrite(slots, capacity, sumsBehind(slots));
+        const cl_uint sums = sumsBehind(slots);
+        std::vector<cl_uint> left = contents(m_device, m_slotCount, sums + DRAPE_FEATURE_SUMS);
+        left.erase(left.begin() + std::ptrdiff_t(slots), left.begin() + std::ptrdiff_t(sums));  // not in use
+        EXPECT_EQ(std::count(left.begin(), left.end(), 0u), std::ptrdiff_t(left.size())) << "clean after";
         expectIntact();
         return written(hits.size());
     }
@@ -155,10 +156,14 @@ private:
         const cl_uint capacity = prepare(hits, slotCount, m_unlisted);
         places.resize(capacity);
         guardCopy(m_device, m_hitPlaces, places);
-        guardCopy(m_device, m_slotSums, slotSumsOf(slotCount));
-        m_gatherFew.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_hitPlaces.handle(),
-                           m_slotCount.handle(), m_slotSums.handle(), slots, m_ranked, m_slotFirst.handle(),
-                           m_members.handle(), m_keys.handle(), m_counters.handle(), m_next.handle());
+        const std::vector<cl_uint> sums = featureSumsOf(slotCount);
+        std::vector<cl_uint> numbers = slotCount;
+        numbers.resize(sumsBehind(slots), 0);
+        numbers.insert(numbers.end(), sums.begin(), sums.end());
+        guardCopy(m_device, m_slotCount, numbers);
+        const OrderingValues values = {capacity, slots, m_ranked, sumsBehind(slots), 0, m_parts};
+        m_gatherSmall.launch(m_device, 4 * kGroup, kGroup, values, m_hits, m_hitPlaces, m_slotCount, m_slotFirst,
+                           m_members, m_keys, m_counters, m_next);
         const auto isCrowded = [&](cl_uint count) { return count > m_ranked; };
         EXPECT_EQ(contents(m_device, m_counters, 1)[0].m_crowded,
                   cl_uint(std::count_if(slotCount.begin(), slotCount.end(), isCrowded)));
@@ -167,14 +172,16 @@ private:
         return capacity;
     }
 
-    void enqueueOrderAndWrite(std::uint32_t slots, cl_uint capacity, Buffer<cl_uint>* sums)
+    // Returns the position of the sums behind the numbers of so many slots, in whole rows.
+    static cl_uint sumsBehind(std::uint32_t slots) { return (slots + DRAPE_SUMMED - 1) / DRAPE_SUMMED * DRAPE_SUMMED; }
+
+    void enqueueOrderAndWrite(std::uint32_t slots, cl_uint capacity, cl_uint sums)
     {
-        m_order.launch(m_device, (slots + m_sortBlock - 1) / m_sortBlock * kGroup, kGroup, capacity,
-                       m_slotFirst.handle(), slots, m_ranked, m_sortBlock, m_members.handle(), m_keys.handle(),
-                       m_counters.handle());
-        m_write.launch(m_device, 4 * kGroup, kGroup, m_hits.handle(), capacity, m_slotFirst.handle(), slots, m_ranked,
-                       m_parts, m_members.handle(), m_keys.handle(), m_contacts.handle(), m_counters.handle(),
-                       m_slotCount.handle(), sums ? sums->handle() : cl::Buffer());
+        const OrderingValues values = {capacity, slots, m_ranked, sums, m_sortBlock, m_parts};
+        m_sort.launch(m_device, (slots + m_sortBlock - 1) / m_sortBlock * kGroup, kGroup, values, m_slotFirst,
+                       m_members, m_keys, m_counters);
+        m_write.launch(m_device, 4 * kGroup, kGroup, values, m_hits, m_slotFirst, m_members, m_keys, m_contacts,
+                       m_counters, m_slotCount);
     }
 
     void expectClean(Buffer<cl_uint>& numbers, std::size_t count)
@@ -185,7 +192,7 @@ private:
 
     void expectIntact()
     {
-        for (Buffer<cl_uint>* numbers : {&m_members, &m_keys, &m_slotFirst, &m_slotCount, &m_slotSums, &m_hitPlaces})
+        for (Buffer<cl_uint>* numbers : {&m_members, &m_keys, &m_slotFirst, &m_slotCount, &m_hitPlaces})
             EXPECT_TRUE(intact(m_device, *numbers));
         EXPECT_TRUE(intact(m_device, m_contacts) && intact(m_device, m_next));
     }
@@ -207,18 +214,23 @@ private:
         const cl_uint hits = contents(m_device, m_counters, 1)[0].m_contactsStored;
         guard(m_device, m_places, slots);
         const std::size_t blocks = (slots + kBlock - 1) / kBlock;
-        m_place.launch(m_device, blocks * kGroup, kGroup, m_slotCount.handle(), slots, m_ranked, m_slotCount.handle(),
-                       cl_uint(kBlock), m_places.handle(), m_counters.handle(), cl::Local(kGroup * sizeof(cl_uint)));
+        const OrderingValues values = {0, slots, m_ranked, 0, cl_uint(kBlock), m_parts};
+        m_place.launch(m_device, blocks * kGroup, kGroup, values, m_slotCount, m_slotCount, m_places, m_counters,
+                       kGroup);
         EXPECT_EQ(contents(m_device, m_places, slots), contents(m_device, m_slotFirst, slots));
         EXPECT_EQ(contents(m_device, m_counters, 1)[0].m_contactsStored, hits);
         EXPECT_TRUE(intact(m_device, m_places) && intact(m_device, m_counters));
     }
 
     Device& m_device;
-    Kernel m_count, m_place, m_gather, m_gatherFew, m_order, m_write;
+    BoundKernel<kernels::orderingCount> m_count;
+    BoundKernel<kernels::orderingPlace> m_place;
+    BoundKernel<kernels::orderingGather> m_gather;
+    BoundKernel<kernels::orderingGatherSmall> m_gatherSmall;
+    BoundKernel<kernels::orderingSort> m_sort;
+    BoundKernel<kernels::orderingWrite> m_write;
     Buffer<Contact> m_hits, m_contacts;
     Buffer<cl_uint> m_slotCount, m_slotFirst, m_blockCount, m_members, m_keys, m_places, m_hitPlaces;
-    Buffer<cl_uint> m_slotSums;
     Buffer<StepCounters> m_counters, m_next;
 };
 }  // namespace

@@ -10,7 +10,8 @@
 #include <map>
 #include <tuple>
 
-#include "bullet_plugin/core/narrow_phase/narrow_phase.h"
+#include "bullet_plugin/core/scene/patch_packing.h"
+#include "bullet_plugin/core/scene/patch_width.h"
 #include "scenes/shapes.h"
 #include "tests/support/cases.h"
 #include "tests/support/device_side.h"
@@ -39,15 +40,16 @@ public:
                   m_cloth.m_end.begin() + std::ptrdiff_t(skipped.m_positions.size()));
         m_thickness = {-1.0f, step.m_thickness, -1.0f};
         const float radius = step.m_thickness * kReachScale * 1.001f;
-        m_stage.create(device,
-                       [&](const char* name) { return programOf(device, name, PatchCullStage::defines(device)); });
+        const ProgramLoader load = [&](const char* name) { return programOf(device, name, patchDefines(device)); };
+        m_stage.create(device, load);
+        m_packing.create(device, load("scene/patch_pack"));
         m_clothBuffers.upload(device, m_cloth);
         m_obstacleBuffers.upload(device, m_obstacle);
         guardCopy(device, m_thicknessBuffer, m_thickness);
         guardCopy(device, m_radius, std::vector<float>{-1.0f, radius, -1.0f});
-        m_stage.setTopology(device, m_obstacle.m_pool, 0);
-        m_stage.pack(device, {0, 1}, m_obstacleBuffers.m_triangles, m_obstacleBuffers.m_start,
-                     m_obstacleBuffers.m_vertexCones, m_obstacleBuffers.m_edgeCones);
+        m_packing.setTopology(device, m_obstacle.m_pool, 0);
+        guard(device, m_packing.arena());
+        m_packing.pack(device, {0, 1}, m_obstacleBuffers.buffers());
     }
 
     // Returns the part of the list that fits.
@@ -55,17 +57,15 @@ public:
     {
         Buffer<StepCounters> counterBuffer;
         clearCounters(m_device, counterBuffer);
-        guard(m_device, m_stage.tests(), capacity);
-        m_stage.enqueue(m_device,
-                        {m_clothBuffers.m_order, m_clothBuffers.m_triangles, m_clothBuffers.m_start,
-                         m_clothBuffers.m_end, m_radius, m_thicknessBuffer, m_cloth.m_pool.triangles().size(), 1,
-                         kReachScale, m_mode, m_motions, 0, 1u << 30, 1u << 30},
-                        counterBuffer);
+        guard(m_device, m_tests.m_tests, capacity);
+        m_stage.enqueue(m_device, m_clothBuffers.buffers(), {m_radius, m_thicknessBuffer, m_motions, 0, 1},
+                        m_packing.patches(), {kReachScale, m_mode, 1u << 30, 1u << 30}, m_tests, counterBuffer);
         counters = readCounters(m_device, counterBuffer);
-        const std::size_t count = std::min<std::size_t>(counters.m_candidates, m_stage.tests().capacity());
-        std::vector<FeatureTest> tests = contents(m_device, m_stage.tests(), count);
-        EXPECT_TRUE(intact(m_device, m_stage.tests()) && intact(m_device, counterBuffer));
+        const std::size_t count = std::min<std::size_t>(counters.m_candidates, m_tests.capacity());
+        std::vector<FeatureTest> tests = contents(m_device, m_tests.m_tests, count);
+        EXPECT_TRUE(intact(m_device, m_tests.m_tests) && intact(m_device, counterBuffer));
         EXPECT_TRUE(m_clothBuffers.allIntact(m_device) && m_obstacleBuffers.allIntact(m_device));
+        EXPECT_TRUE(intact(m_device, m_packing.arena()));
         EXPECT_FALSE(m_device.failed()) << m_device.error().text();
         return tests;
     }
@@ -74,14 +74,13 @@ public:
     {
         const std::uint32_t kind = test.m_cloth >> DRAPE_TEST_SHIFT;
         const Triangle& cloth = m_cloth.m_pool.triangles()[test.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u)];
-        if (kind < DRAPE_TEST_FACE)
-            return {DRAPE_NODE_FACE, cloth.m_vertices[kind], id(m_stage.features().m_faceIds, test)};
+        if (kind < DRAPE_TEST_FACE) return {DRAPE_NODE_FACE, cloth.m_vertices[kind], id(m_packing.faceIds(), test)};
         if (kind == DRAPE_TEST_FACE)
         {
             return {DRAPE_FACE_VERTEX, std::uint32_t(&cloth - m_cloth.m_pool.triangles().data()),
-                    id(m_stage.features().m_vertexIds, test)};
+                    id(m_packing.vertexIds(), test)};
         }
-        return {DRAPE_EDGE_EDGE, cloth.m_edges[kind - DRAPE_TEST_EDGE], id(m_stage.features().m_edgeIds, test)};
+        return {DRAPE_EDGE_EDGE, cloth.m_edges[kind - DRAPE_TEST_EDGE], id(m_packing.edgeIds(), test)};
     }
 
     std::vector<Contact> hostContacts() const
@@ -100,7 +99,7 @@ public:
     }
 
 private:
-    std::uint32_t id(Buffer<cl_uint>& ids, const FeatureTest& test)
+    std::uint32_t id(const ArenaArray<cl_uint>& ids, const FeatureTest& test)
     {
         std::vector<cl_uint>& copy = m_ids[&ids];
         if (copy.empty()) copy = contents(m_device, ids, ids.capacity());
@@ -111,11 +110,14 @@ private:
     std::uint32_t m_mode;
     Side m_cloth, m_obstacle;
     PatchCullStage m_stage;
-    DeviceSide m_clothBuffers, m_obstacleBuffers;
+    PatchPacking m_packing;
+    FeatureTestList m_tests{"test"};
+    DeviceCloths m_clothBuffers;
+    DeviceObstacles m_obstacleBuffers;
     std::vector<float> m_thickness;
     Buffer<float> m_thicknessBuffer, m_radius;
     Buffer<ObstacleMotion> m_motions;  // none
-    std::map<Buffer<cl_uint>*, std::vector<cl_uint>> m_ids;
+    std::map<const ArenaArray<cl_uint>*, std::vector<cl_uint>> m_ids;
 };
 
 // Expects that every contact's test is listed once, and that less than `share` of all feature pairs is listed.
@@ -266,49 +268,46 @@ class PackedObstacles
 public:
     explicit PackedObstacles(Device& device) : m_device(device)
     {
-        m_stage.create(device,
-                       [&](const char* name) { return programOf(device, name, PatchCullStage::defines(device)); });
+        m_packing.create(device, programOf(device, "scene/patch_pack", patchDefines(device)));
     }
 
     // Packs from that slot on; earlier slots remain unchanged.
     void pack(const std::vector<TriangleMesh>& meshes, std::size_t firstSlot)
     {
         const Side side = makeSide(meshes);
-        DeviceSide buffers;
+        DeviceObstacles buffers;
         buffers.upload(m_device, side);
-        m_stage.setTopology(m_device, side.m_pool, firstSlot);
-        m_stage.pack(m_device, {firstSlot, meshes.size()}, buffers.m_triangles, buffers.m_start, buffers.m_vertexCones,
-                     buffers.m_edgeCones);
+        m_packing.setTopology(m_device, side.m_pool, firstSlot);
+        m_packing.pack(m_device, {firstSlot, meshes.size()}, buffers.buffers());
         m_device.wait();
         EXPECT_TRUE(buffers.allIntact(m_device));
-        m_layout = makePatches(side.m_pool, side.m_start.data(), PatchCullStage::width(m_device));
+        m_layout = makePatches(side.m_pool, side.m_start.data(), patchWidth(m_device));
     }
 
     std::vector<std::uint32_t> bytes()
     {
-        const PatchCullStage::Features features = m_stage.features();
         std::vector<std::uint32_t> all;
-        append(all, features.m_faces, m_layout.m_faceOwners.size() * DRAPE_FACE_FLOATS);
-        append(all, features.m_vertices, m_layout.m_vertexOwners.size() * DRAPE_VERTEX_FLOATS);
-        append(all, features.m_edges, m_layout.m_edgeOwners.size() * DRAPE_EDGE_FLOATS);
-        append(all, features.m_faceIds, m_layout.m_faceOwners.size());
-        append(all, features.m_vertexIds, m_layout.m_vertexOwners.size());
-        append(all, features.m_edgeIds, m_layout.m_edgeOwners.size());
+        append(all, m_packing.faces(), m_layout.m_faceOwners.size() * DRAPE_FACE_FLOATS);
+        append(all, m_packing.vertices(), m_layout.m_vertexOwners.size() * DRAPE_VERTEX_FLOATS);
+        append(all, m_packing.edges(), m_layout.m_edgeOwners.size() * DRAPE_EDGE_FLOATS);
+        append(all, m_packing.faceIds(), m_layout.m_faceOwners.size());
+        append(all, m_packing.vertexIds(), m_layout.m_vertexOwners.size());
+        append(all, m_packing.edgeIds(), m_layout.m_edgeOwners.size());
         return all;
     }
 
 private:
     template <typename T>
-    void append(std::vector<std::uint32_t>& all, Buffer<T>& buffer, std::size_t count)
+    void append(std::vector<std::uint32_t>& all, const ArenaArray<T>& array, std::size_t count)
     {
-        const std::vector<T> values = contents(m_device, buffer, count);
+        const std::vector<T> values = contents(m_device, array, count);
         const std::size_t before = all.size();
         all.resize(before + count);
         std::memcpy(all.data() + before, values.data(), count * sizeof(T));
     }
 
     Device& m_device;
-    PatchCullStage m_stage;
+    PatchPacking m_packing;
     Patches m_layout;
 };
 

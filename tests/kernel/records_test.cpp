@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "bullet_plugin/core/device/program.h"
+#include "kernels/narrow_phase/narrow_phase_bindings.h"
 #include "kernels/shared/contact.h"
 #include "kernels/shared/motion.h"
 #include "kernels/shared/patch.h"
@@ -98,10 +99,23 @@ std::vector<Field> stepFields()
             DRAPE_TEST_OFFSET(FeatureTest, m_motion)};
 }
 
+// Records that kernels take by value.
+std::vector<Field> valueFields()
+{
+    return {DRAPE_TEST_SIZE(ClothLayout),
+            DRAPE_TEST_SIZE(ObstacleLayout),
+            DRAPE_TEST_SIZE(PatchLayout),
+            DRAPE_TEST_SIZE(SelfPatchLayout),
+            DRAPE_TEST_SIZE(FeatureValues),
+            DRAPE_TEST_OFFSET(FeatureValues, m_obstacle),
+            DRAPE_TEST_OFFSET(FeatureValues, m_patches),
+            DRAPE_TEST_OFFSET(FeatureValues, m_sums)};
+}
+
 std::vector<Field> fields()
 {
     std::vector<Field> all = meshFields();
-    for (const std::vector<Field>& more : {treeFields(), stepFields()})
+    for (const std::vector<Field>& more : {treeFields(), stepFields(), valueFields()})
         all.insert(all.end(), more.begin(), more.end());
     return all;
 }
@@ -119,7 +133,7 @@ TEST_P(RecordsTest, DeviceAndHostAgree)
     std::string source = assembleSource("kernels/narrow_phase/narrow_phase.cl");
     source += "\n__kernel void reportRecords(__global uint* values)\n{\n";
     for (const char* type : {"Vec3", "Triangle", "Edge", "NormalCone", "BvhNode", "Candidate", "StepCounters",
-                             "Contact", "Patch", "FeatureTest", "ObstaclePlace", "ObstacleMotion"})
+                             "Contact", "Patch", "FeatureTest", "ObstaclePlace", "ObstacleMotion", "FeatureValues"})
     {
         source += std::string("    ") + type + " a" + type + ";\n";
     }

@@ -7,13 +7,13 @@
 #include <set>
 #include <tuple>
 
-#include "bullet_plugin/core/broad_phase/patch_cull.h"
 #include "bullet_plugin/core/ordering/canonical_order.h"
 #include "bullet_plugin/core/cloth_cloth/self_contacts.h"
+#include "bullet_plugin/core/scene/patch_width.h"
 #include "reference/self_pairs.h"
 #include "tests/support/device_side.h"
 #include "tests/support/self_cases.h"
-#include "tests/support/slot_sums.h"
+#include "tests/support/feature_sums.h"
 
 namespace drape::test
 {
@@ -40,8 +40,7 @@ public:
     {
         m_side.m_end = step.m_motion.m_end;
         m_reach = {{step.m_thickness}, {selfGrowth(step.m_thickness * kReachScale)}};
-        m_stage.create(device,
-                       [&](const char* name) { return programOf(device, name, PatchCullStage::defines(device)); });
+        m_stage.create(device, [&](const char* name) { return programOf(device, name, patchDefines(device)); });
         m_buffers.upload(device, m_side);
         guardCopy(device, m_obstacleRadius, std::vector<float>{-1.0f});
         m_stage.setTopology(device, m_side.m_pool, m_rest);
@@ -49,25 +48,22 @@ public:
         device.wait();
     }
 
-    SelfBuffers buffers()
+    SelfContactStage::Input input() const
     {
-        const MeshPool& pool = m_side.m_pool;
-        return {m_buffers.m_triangles, m_buffers.m_edges,  m_buffers.m_start,       m_buffers.m_end,
-                m_obstacleRadius,      pool.vertexCount(), pool.triangles().size(), pool.edges().size(),
-                DRAPE_AUTOMATIC,       kReachScale,        std::size_t(1) << 30};
+        return {m_buffers.buffers(), m_obstacleRadius, DRAPE_AUTOMATIC, kReachScale, std::size_t(1) << 30};
     }
 
     std::vector<FeatureTest> cull(std::size_t capacity)
     {
         clearCounters(m_device, m_counters);
-        guard(m_device, m_stage.tests(), capacity);
+        guard(m_device, m_stage.tests().m_tests, capacity);
         if (m_pairCapacity > 0) guard(m_device, m_stage.pairs(), m_pairCapacity);
-        m_stage.enqueueCull(m_device, buffers(), m_counters);
+        m_stage.enqueueCull(m_device, input(), m_counters);
         m_read = readCounters(m_device, m_counters);
-        EXPECT_TRUE(intact(m_device, m_stage.tests()) && intact(m_device, m_counters));
+        EXPECT_TRUE(intact(m_device, m_stage.tests().m_tests) && intact(m_device, m_counters));
         EXPECT_TRUE(m_pairCapacity == 0 || intact(m_device, m_stage.pairs()));
         EXPECT_TRUE(m_buffers.allIntact(m_device) && intact(m_device, m_obstacleRadius));
-        return contents(m_device, m_stage.tests(),
+        return contents(m_device, m_stage.tests().m_tests,
                         std::min<std::size_t>(m_read.m_selfTests, m_stage.tests().capacity()));
     }
 
@@ -77,31 +73,36 @@ public:
         const MeshPool& pool = m_side.m_pool;
         const std::size_t tests = std::min<std::size_t>(m_read.m_selfTests, m_stage.tests().capacity());
         const std::size_t slots = 2 * (pool.vertexCount() + pool.triangles().size() + pool.edges().size());
-        Buffer<Contact> hits;
+        UnsortedContacts list;
         EXPECT_LE(slots, DRAPE_MOST_SUMMED);
-        Buffer<cl_uint> hitPlaces, slotCount, slotSums;
         m_read.m_contactsFound = cl_uint(behind);
         guardCopy(m_device, m_counters, std::vector<StepCounters>{m_read});
-        guard(m_device, hits, behind + std::min(tests, room));
-        if (m_device.isGpu()) guard(m_device, hitPlaces, behind + std::min(tests, room));
-        if (m_device.isGpu()) guardCopy(m_device, slotSums, std::vector<cl_uint>(DRAPE_SLOT_SUMS, 0));
-        guardCopy(m_device, slotCount, std::vector<cl_uint>(slots, 0));
-        m_stage.enqueueContacts(m_device, buffers(), {hits, hitPlaces, slotCount, slotSums}, m_counters);
+        list.resizeFeatures(m_device, slots);
+        guard(m_device, list.m_contacts, behind + std::min(tests, room));
+        const std::size_t sums = list.sums();
+        if (sums > 0) guard(m_device, list.m_places, behind + std::min(tests, room));
+        guardCopy(m_device, list.m_featureCounts, std::vector<cl_uint>(list.m_featureCounts.capacity(), 0));
+        m_stage.enqueueContacts(m_device, input(), list, m_counters);
         m_read = readCounters(m_device, m_counters);
-        EXPECT_TRUE(intact(m_device, hits) && intact(m_device, slotCount) && intact(m_device, m_counters));
+        EXPECT_TRUE(intact(m_device, list.m_contacts) && intact(m_device, list.m_featureCounts) &&
+                    intact(m_device, m_counters));
         const std::size_t listed = std::min<std::size_t>(m_read.m_contactsFound, behind + std::min(tests, room));
-        std::vector<Contact> all = contents(m_device, hits, listed);
+        std::vector<Contact> all = contents(m_device, list.m_contacts, listed);
         all.erase(all.begin(), all.begin() + std::ptrdiff_t(behind));
         std::vector<cl_uint> expected(slots, 0);
-        for (const Contact& hit : all)
-            ++expected[hit.m_slot];
-        if (m_device.isGpu())  // elsewhere nobody asks for them
+        for (const Contact& contact : all)
+            ++expected[contact.m_slot];
+        EXPECT_EQ(sums > 0, m_device.isGpu());  // elsewhere nobody asks for them
+        std::vector<cl_uint> counts = contents(m_device, list.m_featureCounts, list.m_featureCounts.capacity());
+        if (sums > 0)
         {
-            expectPlaces(all, contents(m_device, hitPlaces, behind + all.size()), behind);
-            EXPECT_EQ(contents(m_device, slotSums, DRAPE_SLOT_SUMS), slotSumsOf(expected));
-            EXPECT_TRUE(intact(m_device, hitPlaces) && intact(m_device, slotSums));
+            expectPlaces(all, contents(m_device, list.m_places, behind + all.size()), behind);
+            EXPECT_EQ(std::vector<cl_uint>(counts.begin() + std::ptrdiff_t(sums), counts.end()),
+                      featureSumsOf(expected));
+            EXPECT_TRUE(intact(m_device, list.m_places));
         }
-        EXPECT_EQ(contents(m_device, slotCount, slots), expected);
+        counts.resize(slots);
+        EXPECT_EQ(counts, expected);
         return all;
     }
 
@@ -138,7 +139,7 @@ private:
     std::vector<float> m_rest;
     SelfReach m_reach;
     SelfContactStage m_stage;
-    DeviceSide m_buffers;
+    DeviceCloths m_buffers;
     Buffer<float> m_obstacleRadius;
     Buffer<StepCounters> m_counters;
 };

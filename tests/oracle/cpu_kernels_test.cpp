@@ -46,30 +46,30 @@ public:
     std::size_t cull(ThreadTeam& threads, std::size_t limit = 1u << 28)
     {
         m_counters = {};
-        const HostCloths cloths = {
-            m_order.data(), std::uint32_t(m_order.size()), &m_radius, &m_thickness, 1, kReachScale, nullptr, 0};
-        return m_cull.run(m_view, cloths, limit, threads, m_counters);
+        const StepCloths cloths = {
+            m_view, m_order.data(), std::uint32_t(m_order.size()), &m_radius, &m_thickness, 1, kReachScale, nullptr, 0};
+        return m_cull.run(cloths, limit, threads, m_counters);
     }
 
     // Returns the contacts of the last cull.
     std::vector<Contact> contacts(ThreadTeam& threads)
     {
         const MeshPool& pool = m_cloth.m_pool;
-        std::vector<Contact> hits(m_counters.m_candidates), contacts;
+        std::vector<Contact> unsorted(m_counters.m_candidates), contacts;
         std::vector<std::uint32_t> slots(pool.vertexCount() + pool.triangles().size() + pool.edges().size(), 0);
         std::vector<std::uint32_t> swept(m_counters.m_candidates);
-        const HostFeatures features = {m_cull.tests().data(), m_counters.m_candidates, m_view,
-                                       m_obstacle.obstacle(), m_cull.packed(),         nullptr};
-        const HostHits list = {hits.data(), std::uint32_t(hits.size()), slots.data()};
+        const FeatureInput input = {m_cull.tests().data(), m_counters.m_candidates, m_view,
+                                    m_obstacle.obstacle(), m_cull.packed(),         nullptr};
+        const ContactSink sink = {unsorted.data(), std::uint32_t(unsorted.size()), nullptr, slots.data(),
+                                  nullptr,         &m_counters.m_contactsFound};
         const auto run = [&](auto kernel, std::size_t items)
         {
-            threads.run(
-                items, [&](std::size_t item)
-                { kernel(std::uint32_t(item), std::uint32_t(items), features, list, swept.data(), &m_counters); });
+            threads.run(items, [&](std::size_t item)
+                        { kernel(std::uint32_t(item), std::uint32_t(items), input, sink, swept.data(), &m_counters); });
         };
-        run(m_kernels.m_findHits, 1 + m_counters.m_candidates / 100);
+        run(m_kernels.m_findContacts, 1 + m_counters.m_candidates / 100);
         run(m_kernels.m_findSwept, 6);
-        orderHits(hits.data(), m_counters.m_contactsFound, slots, contacts, threads);
+        orderContacts(unsorted.data(), m_counters.m_contactsFound, slots, contacts, threads);
         return contacts;
     }
 

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "bullet_plugin/core/device/arena.h"
 #include "bullet_plugin/core/device/buffer.h"
 
 namespace drape::test
@@ -38,14 +39,11 @@ void guardCopy(Device& device, Buffer<T>& buffer, const std::vector<T>& source)
     device.wait();
 }
 
-template <typename T>
-bool intact(Device& device, Buffer<T>& buffer)
+inline bool patternFollows(Device& device, cl::Buffer& buffer, std::size_t bytes)
 {
     std::vector<cl_uint> words(kCanaryWords, 0);
-    const std::size_t bytes = buffer.capacity() * sizeof(T);
-    device.check(
-        device.queue().enqueueReadBuffer(buffer.handle(), CL_TRUE, bytes, kCanaryWords * sizeof(cl_uint), words.data()),
-        "clEnqueueReadBuffer");
+    device.check(device.queue().enqueueReadBuffer(buffer, CL_TRUE, bytes, kCanaryWords * sizeof(cl_uint), words.data()),
+                 "clEnqueueReadBuffer");
     for (cl_uint word : words)
     {
         if (word != kCanaryPattern) return false;
@@ -54,10 +52,44 @@ bool intact(Device& device, Buffer<T>& buffer)
 }
 
 template <typename T>
+bool intact(Device& device, Buffer<T>& buffer)
+{
+    return patternFollows(device, buffer.handle(), buffer.capacity() * sizeof(T));
+}
+
+// Puts the pattern behind an arena, whose contents stay. The arena must not grow afterwards.
+inline void guard(Device& device, ArenaMemory& arena)
+{
+    const std::size_t bytes = arena.bytes();
+    cl_int code = CL_SUCCESS;
+    cl::Buffer guarded(device.context(), CL_MEM_READ_WRITE, bytes + kCanaryWords * sizeof(cl_uint), nullptr, &code);
+    device.countBuffer();
+    device.check(code, "clCreateBuffer", "with canary");
+    device.check(device.queue().enqueueCopyBuffer(arena.handle(), guarded, 0, 0, bytes), "clEnqueueCopyBuffer");
+    device.check(device.queue().enqueueFillBuffer(guarded, kCanaryPattern, bytes, kCanaryWords * sizeof(cl_uint)),
+                 "clEnqueueFillBuffer");
+    arena.handle() = guarded;
+}
+
+inline bool intact(Device& device, ArenaMemory& arena)
+{
+    return patternFollows(device, arena.handle(), arena.bytes());
+}
+
+template <typename T>
 std::vector<T> contents(Device& device, Buffer<T>& buffer, std::size_t count)
 {
     std::vector<T> values(count);
     buffer.read(device, values.data(), count);
+    device.wait();
+    return values;
+}
+
+template <typename T>
+std::vector<T> contents(Device& device, const ArenaArray<T>& array, std::size_t count)
+{
+    std::vector<T> values(count);
+    array.read(device, values.data(), count);
     device.wait();
     return values;
 }

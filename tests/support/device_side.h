@@ -3,6 +3,7 @@
 
 #include "bullet_plugin/core/queries/refit.h"
 #include "bullet_plugin/core/device/program.h"
+#include "bullet_plugin/core/scene/device_views.h"
 #include "tests/support/backends.h"
 #include "tests/support/canary.h"
 #include "tests/support/side.h"
@@ -21,6 +22,40 @@ struct DeviceSide
 
     void upload(Device& device, const Side& side);
     bool allIntact(Device& device);
+};
+
+// A side as cloths or as obstacles, in arenas with canaries behind them.
+class DeviceCloths
+{
+public:
+    void upload(Device& device, const Side& side);
+    bool allIntact(Device& device) { return intact(device, m_nodes) && intact(device, m_topology); }
+    ClothBuffers buffers() const { return {m_nodes, m_topology, m_layout}; }
+
+private:
+    Buffer<float> m_nodes;
+    Arena<ClothWord> m_topology;
+    ArenaArray<Triangle> m_triangles{m_topology, "test"};
+    ArenaArray<Edge> m_edges{m_topology, "test"};
+    ArenaArray<cl_uint> m_order{m_topology, "test"};
+    ClothLayout m_layout = {};
+};
+
+class DeviceObstacles
+{
+public:
+    void upload(Device& device, const Side& side);
+    bool allIntact(Device& device) { return intact(device, m_geometry); }
+    ObstacleBuffers buffers() const
+    {
+        return {m_geometry, {m_positions.word(), m_vertexCones.word(), m_edgeCones.word(), m_triangles.word()}};
+    }
+
+private:
+    Arena<ObstacleWord> m_geometry;
+    ArenaArray<float> m_positions{m_geometry, "test"};
+    ArenaArray<NormalCone> m_vertexCones{m_geometry, "test"}, m_edgeCones{m_geometry, "test"};
+    ArenaArray<Triangle> m_triangles{m_geometry, "test"};
 };
 
 // Returns the program of kernels/<name>.cl from the tests' cache.

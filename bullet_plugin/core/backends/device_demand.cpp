@@ -36,7 +36,7 @@ StepCounters DeviceBackend::countersRead() const
 void DeviceBackend::takeCounts(const StepCounters& counters)
 {
     m_testsBefore = counters.m_candidates;
-    m_hitsBefore = counters.m_contactsFound;
+    m_contactsBefore = counters.m_contactsFound;
 }
 
 bool DeviceBackend::overLimit(const StepPairs& pairs, StepResult& result)
@@ -44,9 +44,9 @@ bool DeviceBackend::overLimit(const StepPairs& pairs, StepResult& result)
     const StepCounters counters = countersRead();
     const StepLimits limits(m_settings);
     const std::size_t mostTests = std::min(limits.m_candidates, pairs.m_limits.m_tests);
-    // Hits are all of them only where every candidate was there to be tested.
-    const bool ofObstacles = counters.m_patchPairs <= m_patchCull.pairs().capacity() &&
-                             counters.m_candidates <= m_patchCull.tests().capacity();
+    // All contacts are found only if every candidate was in the list.
+    const bool ofObstacles =
+        counters.m_patchPairs <= m_patchCull.pairs().capacity() && counters.m_candidates <= m_tests.capacity();
     const bool ofSelf =
         counters.m_selfPairs <= m_self.pairs().capacity() && counters.m_selfTests <= m_self.tests().capacity();
     if (counters.m_candidates > mostTests && mostTests < limits.m_candidates)
@@ -86,14 +86,14 @@ bool DeviceBackend::grow()
     Device& device = *m_device;
     demand(counters.m_patchPairs, m_patchCull.pairs().capacity(), sizeof(FeatureTest),
            [&](std::size_t count) { m_patchCull.reservePairs(device, count); });
-    demand(counters.m_candidates, m_patchCull.tests().capacity(), sizeof(FeatureTest),
-           [&](std::size_t count) { m_patchCull.reserveTests(device, count); });
+    demand(counters.m_candidates, m_tests.capacity(), sizeof(FeatureTest),
+           [&](std::size_t count) { m_tests.reserve(device, count); });
     demand(counters.m_selfPairs, m_self.pairs().capacity(), sizeof(Candidate),
            [&](std::size_t count) { m_self.reservePairs(device, count); });
     demand(counters.m_selfTests, m_self.tests().capacity(), sizeof(FeatureTest),
-           [&](std::size_t count) { m_self.reserveTests(device, count); });
-    demand(std::min(std::size_t(counters.m_contactsFound), StepLimits(m_settings).m_contacts), m_ordering.hitCapacity(),
-           sizeof(Contact), [&](std::size_t count) { m_ordering.reserveHits(device, count); });
+           [&](std::size_t count) { m_self.tests().reserve(device, count); });
+    demand(std::min(std::size_t(counters.m_contactsFound), StepLimits(m_settings).m_contacts), m_unsorted.capacity(),
+           sizeof(Contact), [&](std::size_t count) { reserveContacts(count); });
     if (counters.m_crowded > 0)
     {
         again |= m_stepsToOrder == 0;
@@ -139,6 +139,6 @@ void DeviceBackend::readAll(StepResult& result)
     }
     result.m_deviceContacts = ContactList{m_contactsRead->data() + DRAPE_CONTACT_HEAD, count};
     m_contactsAsked =
-        std::min({count + count / 16 + 256, m_contactsRead->capacity() - DRAPE_CONTACT_HEAD, m_ordering.hitCapacity()});
+        std::min({count + count / 16 + 256, m_contactsRead->capacity() - DRAPE_CONTACT_HEAD, m_unsorted.capacity()});
 }
 }  // namespace drape

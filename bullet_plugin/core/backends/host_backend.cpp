@@ -50,9 +50,10 @@ ClothView HostBackend::clothView(const Scene& scene) const
                             std::uint32_t(cloths.triangles().size()), m_mode, nullptr);
 }
 
-HostCloths HostBackend::clothsOf(const Scene& scene, const StepPairs& pairs, ItemRange triangles) const
+StepCloths HostBackend::clothsOf(const Scene& scene, const StepPairs& pairs, ItemRange triangles) const
 {
-    return {m_clothOrder.data() + triangles.m_first,
+    return {clothView(scene),
+            m_clothOrder.data() + triangles.m_first,
             std::uint32_t(triangles.count()),
             pairs.m_clothRadius.data(),
             pairs.m_thickness.data(),
@@ -79,7 +80,7 @@ std::vector<std::uint64_t> HostBackend::countTests(const Scene& scene, const Ste
     {
         if (!pairs.hasPair(slot)) continue;
         const ItemRange triangles = {cloths.begin(slot).m_triangle, cloths.begin(slot + 1).m_triangle};
-        counts[slot] += m_cull.count(clothView(scene), clothsOf(scene, pairs, triangles), limit, *m_threads);
+        counts[slot] += m_cull.count(clothsOf(scene, pairs, triangles), limit, *m_threads);
     }
     return counts;
 }
@@ -91,19 +92,18 @@ void HostBackend::runPairs(const Scene& scene, const StepPairs& pairs, StepCount
     prepare(scene);
     statistics.m_refitMs += watch.lapMs();
     const std::size_t mostTests = std::min(m_limits.m_candidates, pairs.m_limits.m_tests);
-    const ClothView cloth = clothView(scene);
-    statistics.m_retries +=
-        m_cull.run(cloth, clothsOf(scene, pairs, {0, m_clothOrder.size()}), mostTests, *m_threads, counters);
+    const StepCloths cloths = clothsOf(scene, pairs, {0, m_clothOrder.size()});
+    statistics.m_retries += m_cull.run(cloths, mostTests, *m_threads, counters);
     statistics.m_broadMs += watch.lapMs();
     result.m_overLimit = counters.m_candidates > mostTests;
     result.m_overTests = result.m_overLimit && mostTests < m_limits.m_candidates;
     if (result.m_overLimit) return;
 
     const CpuKernels& kernels = m_cull.kernels();
-    const HostFeatures features = {m_cull.tests().data(), counters.m_candidates, cloth,
-                                   m_placed.view(scene),  m_cull.packed(),       pairs.m_motions.data()};
+    const FeatureInput input = {m_cull.tests().data(), counters.m_candidates, cloths.m_cloth,
+                                m_placed.view(scene),  m_cull.packed(),       pairs.m_motions.data()};
     statistics.m_retries +=
-        m_hits.find(kernels.m_findHits, kernels.m_findSwept, &StepCounters::m_swept, features, scene.slotCount(),
+        m_contacts.find(kernels.m_findContacts, kernels.m_findSwept, &StepCounters::m_swept, input, scene.slotCount(),
                     {m_limits.m_contacts, pairs.m_limits.m_swept}, *m_threads, counters);
     result.m_overLimit = result.m_overTests = counters.m_swept > pairs.m_limits.m_swept;
     if (result.m_overLimit) return;
@@ -111,7 +111,7 @@ void HostBackend::runPairs(const Scene& scene, const StepPairs& pairs, StepCount
     if (result.m_overLimit)
         result.m_contactDemand = counters.m_contactsFound;
     else
-        m_hits.order(counters.m_contactsFound, result.m_contacts, *m_threads);
+        m_contacts.order(counters.m_contactsFound, result.m_contacts, *m_threads);
     statistics.m_narrowMs += watch.lapMs();
 }
 
@@ -151,7 +151,7 @@ void HostBackend::giveBackRoom()
     m_cull.giveBackRoom();
     m_placed.giveBackRoom();
     shrinkSparse(m_clothOrder);
-    m_hits.giveBackRoom();
+    m_contacts.giveBackRoom();
     m_self.giveBackRoom();
 }
 }  // namespace drape

@@ -7,7 +7,7 @@
 
 #include "bullet_plugin/core/broad_phase/host_patch_cull.h"
 #include "bullet_plugin/core/cloth_cloth/host_self_patches.h"
-#include "bullet_plugin/core/narrow_phase/host_hits.h"
+#include "bullet_plugin/core/narrow_phase/host_contacts.h"
 #include "drape/settings.h"
 #include "host_placed_obstacles.h"
 #include "step_limits.h"
@@ -47,7 +47,7 @@ private:
                  StepStatistics& statistics);
     ClothView clothView(const Scene& scene) const;
     // Returns the cloths' triangles in these positions of their order.
-    HostCloths clothsOf(const Scene& scene, const StepPairs& pairs, ItemRange triangles) const;
+    StepCloths clothsOf(const Scene& scene, const StepPairs& pairs, ItemRange triangles) const;
     SelfStep selfStep(const Scene& scene, const StepPairs& pairs) const;
 
     const StepLimits m_limits;
@@ -59,7 +59,7 @@ private:
     HostPlacedObstacles m_placed;
     std::uint32_t m_clothRevision = 0, m_obstacleRevision = 0;
     std::vector<std::uint32_t> m_clothOrder;  // order of the cloths' own patches, traversed in packets
-    HostHitFinder m_hits;
+    HostContactFinder m_contacts;
     HostSelfPatches m_self;
 };
 }  // namespace drape

@@ -88,31 +88,29 @@ PackedPatches HostPatchCull::packed() const
             m_edges.data(),
             m_layout.m_faceOwners.data(),
             m_vertexIds.data(),
-            m_edgeIds.data()};
+            m_edgeIds.data(),
+            nullptr};
 }
 
-std::size_t HostPatchCull::cull(const ClothView& cloth, const HostCloths& cloths, HostTests list, ThreadTeam& threads,
+std::size_t HostPatchCull::cull(const StepCloths& cloths, TestList list, ThreadTeam& threads,
                                 StepCounters& counters) const
 {
     const PackedPatches patches = packed();
     const bool worth = m_testsBefore >= kLeastTests || cloths.m_count >= kLeastTriangles;
     runShared(threads, worth, (cloths.m_count + kWidth - 1) / kWidth,
-              [&](std::size_t packet)
-              { m_kernels->m_cull(std::uint32_t(packet), cloth, cloths, patches, list, &counters); });
+              [&](std::size_t packet) { m_kernels->m_cull(std::uint32_t(packet), cloths, patches, list, &counters); });
     return counters.m_candidates;
 }
 
-std::uint64_t HostPatchCull::count(const ClothView& cloth, const HostCloths& cloths, std::size_t limit,
-                                   ThreadTeam& threads)
+std::uint64_t HostPatchCull::count(const StepCloths& cloths, std::size_t limit, ThreadTeam& threads)
 {
     if (m_layout.m_patches.empty()) return 0;
     StepCounters counters = {};
-    const HostTests nowhere = {m_tests.data(), 0, std::uint32_t(limit)};
-    return std::min(cull(cloth, cloths, nowhere, threads, counters), limit + 1);
+    const TestList nowhere = {m_tests.data(), 0, std::uint32_t(limit), &counters.m_candidates};
+    return std::min(cull(cloths, nowhere, threads, counters), limit + 1);
 }
 
-std::size_t HostPatchCull::run(const ClothView& cloth, const HostCloths& cloths, std::size_t limit, ThreadTeam& threads,
-                               StepCounters& counters)
+std::size_t HostPatchCull::run(const StepCloths& cloths, std::size_t limit, ThreadTeam& threads, StepCounters& counters)
 {
     if (m_tests.empty()) m_tests.resize(kFirstTests);
     if (m_layout.m_patches.empty()) return 0;
@@ -120,8 +118,9 @@ std::size_t HostPatchCull::run(const ClothView& cloth, const HostCloths& cloths,
     const auto fill = [&]
     {
         counters = before;
-        const HostTests list = {m_tests.data(), std::uint32_t(m_tests.size()), std::uint32_t(limit)};
-        return m_testsBefore = cull(cloth, cloths, list, threads, counters);
+        const TestList list = {m_tests.data(), std::uint32_t(m_tests.size()), std::uint32_t(limit),
+                               &counters.m_candidates};
+        return m_testsBefore = cull(cloths, list, threads, counters);
     };
     return fillGrowing(m_tests, limit, fill);
 }

@@ -22,11 +22,10 @@ public:
 
     // Lists the step's feature tests, and counts them and invalid nodes. limit: of tests; beyond it the list is
     // incomplete, and counters only say that there are more. Returns how often the list was too short and grew.
-    std::size_t run(const ClothView& cloth, const HostCloths& cloths, std::size_t limit, ThreadTeam& threads,
-                    StepCounters& counters);
+    std::size_t run(const StepCloths& cloths, std::size_t limit, ThreadTeam& threads, StepCounters& counters);
     // Returns how many feature tests the cloths have, without listing them: exact up to the limit, and one more than
     // the limit where there are more.
-    std::uint64_t count(const ClothView& cloth, const HostCloths& cloths, std::size_t limit, ThreadTeam& threads);
+    std::uint64_t count(const StepCloths& cloths, std::size_t limit, ThreadTeam& threads);
     // Tests of the last run: the first ones up to its count; the rest is old.
     const std::vector<FeatureTest>& tests() const { return m_tests; }
 
@@ -39,8 +38,7 @@ public:
 private:
     void packFeatures(ItemRange patches, const ObstacleView& obstacle);
     // Culls every packet once, with room for as many tests as the list has. Returns how many tests there are.
-    std::size_t cull(const ClothView& cloth, const HostCloths& cloths, HostTests list, ThreadTeam& threads,
-                     StepCounters& counters) const;
+    std::size_t cull(const StepCloths& cloths, TestList list, ThreadTeam& threads, StepCounters& counters) const;
 
     const CpuKernels* m_kernels;
     Patches m_layout;

@@ -76,21 +76,22 @@ void HostSelfPatches::cull(const SelfStep& step, std::uint64_t limit, ThreadTeam
     if (m_tests.empty()) m_tests.resize(kFirstTests);
     const auto fill = [&]
     {
-        const HostTests list = {m_tests.data(), std::uint32_t(m_tests.size()), std::uint32_t(limit)};
+        const TestList list = {m_tests.data(), std::uint32_t(m_tests.size()), std::uint32_t(limit),
+                               &m_counters.m_selfTests};
         return m_testsBefore = cullPatches(step, {0, m_patches.m_patchCount}, list, threads);
     };
     m_retries = fillGrowing(m_tests, limit, fill);
 }
 
-std::size_t HostSelfPatches::cullPatches(const SelfStep& step, ItemRange patches, HostTests list, ThreadTeam& threads)
+std::size_t HostSelfPatches::cullPatches(const SelfStep& step, ItemRange patches, const TestList& list,
+                                         ThreadTeam& threads)
 {
     const SelfRadii radii = radiiOf(step);
     m_counters.m_selfTests = 0;
     runShared(threads, isWorth(step), patches.count(),
-              [&](std::size_t patch)
-              {
+              [&](std::size_t patch) {
                   m_kernels->m_self->m_cull(patches.first() + std::uint32_t(patch), step.m_view.m_cloth, radii,
-                                            m_patches, list, &m_counters);
+                                            m_patches, list);
               });
     return m_counters.m_selfTests;
 }
@@ -101,7 +102,7 @@ std::vector<std::uint64_t> HostSelfPatches::countTests(const SelfStep& step, std
     m_counters = {};
     if (m_patches.m_patchCount == 0) return counts;
     pack(step, threads);
-    const HostTests nowhere = {m_tests.data(), 0, std::uint32_t(limit)};
+    const TestList nowhere = {m_tests.data(), 0, std::uint32_t(limit), &m_counters.m_selfTests};
     for (std::size_t slot = 0; slot < counts.size(); ++slot)
         if (step.m_reach.m_radius[slot] >= 0.0f)
             counts[slot] = std::min<std::uint64_t>(
@@ -116,11 +117,12 @@ void HostSelfPatches::findContacts(const SelfStep& step, SelfStepLimits limits, 
     const ClothView& cloth = step.m_view.m_cloth;
     const std::uint32_t firstSlot =
         firstSelfSlot(cloth.m_nodeCount, cloth.m_triangleCount, std::uint32_t(step.m_cloths.edges().size()));
-    const HostSelfFeatures features = {m_tests.data(), m_counters.m_selfTests, step.m_view, firstSlot};
+    const SelfInput input = {m_tests.data(), m_counters.m_selfTests, step.m_view, firstSlot};
     const CpuSelfKernels& kernels = *m_kernels->m_self;
-    m_retries += m_hits.find(kernels.m_findHits, kernels.m_findSwept, &StepCounters::m_selfSwept, features,
-                             2 * std::size_t(firstSlot), {limits.m_contacts, SIZE_MAX}, threads, m_counters);
-    if (m_counters.m_contactsFound <= limits.m_contacts) m_hits.order(m_counters.m_contactsFound, contacts, threads);
+    m_retries += m_contacts.find(kernels.m_findContacts, kernels.m_findSwept, &StepCounters::m_selfSwept, input,
+                                 2 * std::size_t(firstSlot), {limits.m_contacts, SIZE_MAX}, threads, m_counters);
+    if (m_counters.m_contactsFound <= limits.m_contacts)
+        m_contacts.order(m_counters.m_contactsFound, contacts, threads);
 }
 
 SelfCounts HostSelfPatches::counts() const

@@ -6,7 +6,7 @@
 
 #include "bullet_plugin/core/cpu/cpu_kernels.h"
 #include "bullet_plugin/core/scene/patches.h"
-#include "bullet_plugin/core/narrow_phase/host_hits.h"
+#include "bullet_plugin/core/narrow_phase/host_contacts.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 #include "self_step.h"
 
@@ -35,14 +35,14 @@ public:
     void giveBackRoom()
     {
         m_tests = std::vector<FeatureTest>();
-        m_hits.giveBackRoom();
+        m_contacts.giveBackRoom();
     }
 
 private:
     bool isWorth(const SelfStep& step) const;  // to wake threads
     void pack(const SelfStep& step, ThreadTeam& threads);
     // Culls these patches against all, with room for as many tests as the list has. Returns how many tests there are.
-    std::size_t cullPatches(const SelfStep& step, ItemRange patches, HostTests list, ThreadTeam& threads);
+    std::size_t cullPatches(const SelfStep& step, ItemRange patches, const TestList& list, ThreadTeam& threads);
 
     const CpuKernels* m_kernels;
     std::uint32_t m_revision = 0;
@@ -52,7 +52,7 @@ private:
     std::vector<float> m_faceBoxes, m_vertexBoxes, m_edgeBoxes, m_wideNodes;
     SelfPatches m_patches = {};  // all of that, for kernels
     std::vector<FeatureTest> m_tests;
-    HostHitFinder m_hits;
+    HostContactFinder m_contacts;
     StepCounters m_counters = {};
     std::size_t m_retries = 0;
     std::size_t m_testsBefore = 0;  // tests of the last cull

@@ -8,33 +8,30 @@
 #include <cstdint>
 #include <vector>
 
-#include "bullet_plugin/core/ordering/hit_buffers.h"
-#include "bullet_plugin/core/device/buffer.h"
-#include "bullet_plugin/core/device/program.h"
+#include "bullet_plugin/core/device/bound_kernel.h"
+#include "bullet_plugin/core/lists/feature_test_list.h"
+#include "bullet_plugin/core/lists/unsorted_contacts.h"
+#include "bullet_plugin/core/scene/device_views.h"
 #include "bullet_plugin/core/scene/patches.h"
+#include "kernels/cloth_cloth/cloth_cloth_bindings.h"
+#include "kernels/scene/scene_bindings.h"
 #include "self_step.h"
 
 namespace drape
 {
-// Step data that the device's stage reads. start: the end's positions in a discrete step.
-struct SelfBuffers
-{
-    Buffer<Triangle>& m_triangles;
-    Buffer<Edge>& m_edges;
-    Buffer<float>& m_start;
-    Buffer<float>& m_end;
-    Buffer<float>& m_obstacleRadius;  // m, reach of the search for obstacles, per cloth slot
-    std::size_t m_nodeCount;
-    std::size_t m_triangleCount;
-    std::size_t m_edgeCount;
-    std::uint32_t m_mode;
-    float m_reachScale;
-    std::size_t m_limit;  // tests; the count is exact up to it
-};
-
 class SelfContactStage
 {
 public:
+    // Step data that the stage reads.
+    struct Input
+    {
+        ClothBuffers m_cloths;
+        BufferView<float> m_obstacleRadius;  // m, reach of the search for obstacles, per cloth slot
+        std::uint32_t m_mode;
+        float m_reachScale;
+        std::size_t m_limit;  // tests; the count is exact up to it
+    };
+
     void create(Device& device, const ProgramLoader& load);
     bool created() const { return m_created; }
 
@@ -44,35 +41,41 @@ public:
     void setReach(Device& device, const SelfReach& reach);
 
     // Lists the tests; their counters must be zero before. Both functions return after enqueueing.
-    void enqueueCull(Device& device, SelfBuffers step, Buffer<StepCounters>& counters);
+    void enqueueCull(Device& device, const Input& input, Buffer<StepCounters>& counters);
     // Lists the contacts of the tests.
-    void enqueueContacts(Device& device, SelfBuffers step, HitBuffers hits, Buffer<StepCounters>& counters);
+    void enqueueContacts(Device& device, const Input& input, UnsortedContacts& contacts,
+                         Buffer<StepCounters>& counters);
 
-    Buffer<FeatureTest>& tests() { return m_tests; }
-    void reserveTests(Device& device, std::size_t count);
+    FeatureTestList& tests() { return m_tests; }
     // The list of pairs of patches on a GPU. If it was too short, other counts are too low.
     Buffer<Candidate>& pairs() { return m_pairs; }
     void reservePairs(Device& device, std::size_t count) { m_pairs.reserve(device, count); }
 
 private:
-    void enqueuePack(Device& device, SelfBuffers step, Buffer<float>& start, Buffer<StepCounters>& counters);
-    void enqueueWalk(Device& device, SelfBuffers step, Buffer<StepCounters>& counters);
-    void enqueuePairs(Device& device, SelfBuffers step, Buffer<float>& start, Buffer<StepCounters>& counters);
+    SelfPatchLayout layout() const;
+    void enqueuePack(Device& device, const SelfCullValues& values, const Input& input, Buffer<StepCounters>& counters);
 
-    Kernel m_pack, m_widen, m_walk, m_cull, m_feature, m_sweptKernel;
+    BoundKernel<kernels::selfPack> m_pack;
+    BoundKernel<kernels::patchWiden> m_widen;
+    BoundKernel<kernels::selfCull> m_cull;  // on a CPU
+    BoundKernel<kernels::selfWalk> m_walk;  // on a GPU
+    BoundKernel<kernels::selfCullPairs> m_cullPairs;
+    BoundKernel<kernels::selfFeature> m_feature;
+    BoundKernel<kernels::selfSwept> m_swept;
     Patches m_layout;
+    std::uint32_t m_places = 0;  // positions in the wide tree's lowest level
     bool m_created = false;
-    Buffer<Patch> m_patches{"self patches"};
-    Buffer<cl_uint> m_faceIds{"self patches"}, m_vertexIds{"self patches"}, m_edgeIds{"self patches"};
-    Buffer<cl_uint> m_faceNodes{"self patches"}, m_edgeNodes{"self patches"};  // on a CPU
-    Buffer<cl_uint> m_levels{"self patches"};
+    Arena<PatchWord> m_arena;
+    ArenaArray<Patch> m_patches{m_arena, "self patches"};
+    ArenaArray<cl_uint> m_faceIds{m_arena, "self patches"}, m_vertexIds{m_arena, "self patches"};
+    ArenaArray<cl_uint> m_edgeIds{m_arena, "self patches"}, m_levels{m_arena, "self patches"};
+    ArenaArray<cl_uint> m_faceNodes{m_arena, "self patches"}, m_edgeNodes{m_arena, "self patches"};  // on a CPU
     // Boxes of features; on a GPU those of nodes alone, by node.
-    Buffer<float> m_faceBoxes{"self boxes"}, m_vertexBoxes{"self boxes"}, m_edgeBoxes{"self boxes"};
-    Buffer<float> m_wideNodes{"self wide nodes"};
+    ArenaArray<float> m_faceBoxes{m_arena, "self boxes"}, m_vertexBoxes{m_arena, "self boxes"};
+    ArenaArray<float> m_edgeBoxes{m_arena, "self boxes"}, m_wideNodes{m_arena, "self wide nodes"};
     Buffer<float> m_rest{"cloth positions"}, m_radius{"self patches"}, m_thickness{"self patches"};
-    Buffer<FeatureTest> m_tests{"self candidates"};
+    FeatureTestList m_tests{"self candidates"};
     Buffer<Candidate> m_pairs{"self candidates"};
-    Buffer<cl_uint> m_swept{"self candidates"};
     std::vector<float> m_sentRadius, m_sentThickness;
 };
 }  // namespace drape

@@ -21,92 +21,55 @@ namespace
 
 void packFaces(const uint* owners, uint first, uint last, const ObstacleView& obstacle, float* faces)
 {
-    launch(last - first,
-           [&]
-           {
-               patchPackFaces(owners, first, last, obstacle.m_triangles, obstacle.m_positions, obstacle.m_vertexCones,
-                              obstacle.m_edgeCones, faces);
-           });
+    for (uint i = first; i < last; ++i)
+        packFace(&obstacle, owners, i, faces);
 }
 
 void packVertices(const uint* owners, uint first, uint last, const ObstacleView& obstacle, float* vertices, uint* ids)
 {
-    launch(last - first,
-           [&]
-           {
-               patchPackVertices(owners, first, last, obstacle.m_triangles, obstacle.m_positions,
-                                 obstacle.m_vertexCones, vertices, ids);
-           });
+    for (uint i = first; i < last; ++i)
+        packVertex(&obstacle, owners, i, vertices, ids);
 }
 
 void packEdges(const uint* owners, uint first, uint last, const ObstacleView& obstacle, float* edges, uint* ids)
 {
-    launch(last - first,
-           [&] {
-               patchPackEdges(owners, first, last, obstacle.m_triangles, obstacle.m_positions, obstacle.m_edgeCones,
-                              edges, ids);
-           });
+    for (uint i = first; i < last; ++i)
+        packEdge(&obstacle, owners, i, edges, ids);
 }
 
 void packVolumes(const uint* faceOwners, uint patchCount, uint first, uint last, const ObstacleView& obstacle,
                  float* wideNodes, float* sizes, float* volumes)
 {
-    launch(last - first,
-           [&]
-           {
-               patchVolumes(faceOwners, patchCount, first, last, obstacle.m_triangles, obstacle.m_positions,
-                            obstacle.m_vertexCones, obstacle.m_edgeCones, wideNodes, sizes, volumes);
-           });
+    for (uint patch = first; patch < last; ++patch)
+        packVolume(&obstacle, faceOwners, patchCount, patch, wideNodes, sizes, volumes);
 }
 
 void widen(float* wideNodes, uint below, uint nodeCount, uint level, uint first, uint last)
 {
-    launch((last - first) * DRAPE_WIDE_NODE_FLOATS,
-           [&] { patchWiden(wideNodes, below, nodeCount, level, first, last); });
+    for (uint node = first; node < last; ++node)
+        for (uint row = 0; row < DRAPE_WIDE_NODE_FLOATS; ++row)
+            widenChild(wideNodes, below, nodeCount, level, node, row);
 }
 
-void cull(uint packet, const ClothView& cloth, const HostCloths& cloths, const PackedPatches& patches, HostTests tests,
+void cull(uint packet, const StepCloths& cloths, const PackedPatches& patches, const TestList& tests,
           StepCounters* counters)
 {
-    runItem(packet, (cloths.m_count + DRAPE_LANES - 1) / DRAPE_LANES,
-            [&]
-            {
-                patchCull(cloths.m_order, cloth.m_triangles, cloths.m_count, cloth.m_start, cloth.m_end,
-                          cloths.m_radius, cloths.m_thickness, cloths.m_obstacleMeshes, cloths.m_reachScale,
-                          cloth.m_mode, cloths.m_motions, cloths.m_motionCount, patches.m_wideNodes, patches.m_levels,
-                          patches.m_levelCount, patches.m_patches, tests.m_tests, tests.m_capacity, tests.m_limit,
-                          counters, patches.m_sizes, patches.m_volumes, patches.m_faces, patches.m_vertices,
-                          patches.m_edges);
-            });
+    cullPacket(&cloths, &patches, packet, &tests, counters);
 }
 
-// more: the kernel's arguments after the list of swept tests.
-template <class Kernel, class... More>
-void runFeatures(Kernel kernel, uint item, uint items, const HostFeatures& all, HostHits hits, uint* swept,
-                 StepCounters* counters, More... more)
+void findContacts(uint item, uint items, const FeatureInput& input, const ContactSink& sink, uint* swept,
+                  StepCounters* counters)
 {
-    const ClothView& cloth = all.m_cloth;
-    const ObstacleView& obstacle = all.m_obstacle;
-    const PackedPatches& patches = all.m_patches;
-    runItem(item, items,
-            [&]
-            {
-                kernel(all.m_tests, all.m_count, cloth.m_start, cloth.m_end, cloth.m_triangles, cloth.m_edges,
-                       cloth.m_nodeCount, cloth.m_triangleCount, cloth.m_mode, obstacle.m_triangles,
-                       obstacle.m_vertexCones, obstacle.m_edgeCones, patches.m_faces, patches.m_vertices,
-                       patches.m_edges, patches.m_faceIds, patches.m_vertexIds, patches.m_edgeIds, all.m_motions,
-                       hits.m_hits, hits.m_capacity, nullptr, hits.m_slotCount, nullptr, counters, swept, more...);
-            });
+    runItem(item, items, [&] { runFeatureTests(&input, &sink, swept, counters); });
 }
 
-void findHits(uint item, uint items, const HostFeatures& features, HostHits hits, uint* swept, StepCounters* counters)
+void findSwept(uint item, uint items, const FeatureInput& input, const ContactSink& sink, uint* swept,
+               StepCounters* counters)
 {
-    runFeatures(narrowPhaseFeature, item, items, features, hits, swept, counters);
-}
-
-void findSwept(uint item, uint items, const HostFeatures& features, HostHits hits, uint* swept, StepCounters* counters)
-{
-    runFeatures(narrowPhaseSwept, item, items, features, hits, swept, counters, UINT_MAX);
+    uint searches = 0;
+    FeatureInput counting = input;
+    counting.m_cloth.m_searches = &searches;
+    runItem(item, items, [&] { runSweptTests(&counting, &sink, swept, UINT_MAX, counters); });
 }
 }  // namespace
 
@@ -114,5 +77,5 @@ extern const CpuSelfKernels DRAPE_SELF_KERNEL_SET;
 extern const CpuKernels DRAPE_KERNEL_SET;
 const CpuKernels DRAPE_KERNEL_SET = {
     DRAPE_INSTRUCTIONS, packFaces, packVertices,          packEdges, packVolumes, widen, cull,
-    findHits,           findSwept, &DRAPE_SELF_KERNEL_SET};
+    findContacts,       findSwept, &DRAPE_SELF_KERNEL_SET};
 }  // namespace drape

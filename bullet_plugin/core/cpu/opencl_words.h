@@ -56,14 +56,6 @@ inline void runItem(uint item, uint items, const Kernel& kernel)
     kernel();
 }
 
-// Runs all items, one after the other.
-template <class Kernel>
-inline void launch(uint items, const Kernel& kernel)
-{
-    for (uint item = 0; item < items; ++item)
-        runItem(item, items, kernel);
-}
-
 inline uint min(uint a, uint b)
 {
     return b < a ? b : a;

@@ -22,6 +22,7 @@ public:
 
     std::size_t capacity() const { return m_capacity; }
     cl::Buffer& handle() { return m_buffer; }
+    const cl::Buffer& handle() const { return m_buffer; }
 
     // Makes room for count elements (at least one). Contents are lost when it grows; returns whether it did.
     bool reserve(Device& device, std::size_t count)
@@ -60,19 +61,6 @@ public:
         if (device.failed() || copied == 0) return;
         device.check(device.queue().enqueueCopyBuffer(from.m_buffer, m_buffer, 0, 0, copied * sizeof(T)),
                      "clEnqueueCopyBuffer");
-    }
-
-    // Makes this a sub-buffer of `whole`, which must begin at a multiple of kPartBytes. Invalidated when `whole`
-    // reallocates.
-    void bePart(Device& device, Buffer& whole, std::size_t first, std::size_t count)
-    {
-        if (device.failed()) return;
-        const cl_buffer_region region = {first * sizeof(T), count * sizeof(T)};
-        cl_int code = CL_SUCCESS;
-        m_buffer = whole.m_buffer.createSubBuffer(CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region, &code);
-        device.countBuffer();
-        device.check(code, "clCreateSubBuffer", std::to_string(region.size) + " bytes");
-        m_capacity = device.failed() ? 0 : count;
     }
 
     // Releases the memory once all enqueued work has used it.
@@ -117,9 +105,6 @@ private:
     std::shared_ptr<const void> m_entry;
     std::size_t m_capacity = 0;
 };
-
-// Alignment of sub-buffers: devices require 128 (PoCL), 512 (NVIDIA) and up to 4,096.
-constexpr std::size_t kPartBytes = 4096;
 
 // Host memory for transfers: pinned if there is a device, plain otherwise. Contents are lost when it grows.
 template <typename T>

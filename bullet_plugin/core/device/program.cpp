@@ -214,7 +214,7 @@ void Kernel::create(Device& device, const cl::Program& program, const char* name
     device.check(code, "clCreateKernel", name);
 }
 
-bool Kernel::isSet(cl_uint index, Identity value)
+bool Kernel::isSet(cl_uint index, const Identity& value)
 {
     if (index >= m_arguments.size()) m_arguments.resize(index + 1);
     const std::pair<bool, Identity> argument(true, value);

@@ -92,20 +92,23 @@ private:
         const cl_int code = m_kernel.setArg(index, value);
         if (code != CL_SUCCESS) device.check(code, "clSetKernelArg " + std::to_string(index), m_name);
     }
-    // Identifies an argument's value, as far as this class sets it.
-    using Identity = std::uint64_t;
-    static Identity identity(const cl::Buffer& value) { return reinterpret_cast<Identity>(value()); }
-    static Identity identity(const cl::LocalSpaceArg& value) { return value.size_; }
+    // Identifies an argument's value: its bytes, or those of a buffer's handle or of a local size.
+    using Identity = std::string;
+    static Identity identity(const cl::Buffer& value) { return bytesOf(value()); }
+    static Identity identity(const cl::LocalSpaceArg& value) { return bytesOf(value.size_); }
     template <typename T>
     static Identity identity(const T& value)
     {
-        static_assert(std::is_trivially_copyable<T>::value && sizeof(T) <= sizeof(Identity));
-        Identity result = 0;
-        std::memcpy(&result, &value, sizeof(T));
-        return result;
+        return bytesOf(value);
+    }
+    template <typename T>
+    static Identity bytesOf(const T& value)
+    {
+        static_assert(std::is_trivially_copyable<T>::value);
+        return Identity(reinterpret_cast<const char*>(&value), sizeof(T));
     }
     // Returns whether the argument has the value; if not, records it as the current value.
-    bool isSet(cl_uint index, Identity value);
+    bool isSet(cl_uint index, const Identity& value);
     // A new buffer may get the handle of a released one.
     void forgetOldBuffers(const Device& device);
     void enqueue(Device& device, std::size_t globalSize, std::size_t localSize);

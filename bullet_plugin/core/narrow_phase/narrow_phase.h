@@ -3,35 +3,27 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
-#include "bullet_plugin/core/broad_phase/patch_cull.h"
-#include "bullet_plugin/core/ordering/hit_buffers.h"
-#include "bullet_plugin/core/device/buffer.h"
-#include "bullet_plugin/core/device/program.h"
-#include "kernels/lib/pair_contact.h"
+#include "bullet_plugin/core/device/bound_kernel.h"
+#include "bullet_plugin/core/lists/feature_test_list.h"
+#include "bullet_plugin/core/lists/unsorted_contacts.h"
+#include "bullet_plugin/core/scene/device_views.h"
+#include "kernels/narrow_phase/narrow_phase_bindings.h"
 
 namespace drape
 {
-// Device buffers of both sides' geometry.
-struct NarrowPhaseBuffers
-{
-    Buffer<float>& m_clothStart;
-    Buffer<float>& m_clothEnd;
-    Buffer<Triangle>& m_clothTriangles;
-    Buffer<Edge>& m_clothEdges;
-    Buffer<float>& m_obstaclePositions;
-    Buffer<Triangle>& m_obstacleTriangles;
-    Buffer<NormalCone>& m_vertexCones;
-    Buffer<NormalCone>& m_edgeCones;
-    Buffer<float>& m_thickness;
-    Buffer<ObstacleMotion>& m_motions;
-    std::size_t m_motionCount = 0;
-};
-
 class NarrowPhaseStage
 {
 public:
+    // The data that the feature tests refer to.
+    struct Input
+    {
+        ClothBuffers m_cloths;
+        ObstacleBuffers m_obstacles;
+        PatchBuffers m_patches;
+        BufferView<ObstacleMotion> m_motions;
+        std::uint32_t m_mode;  // DRAPE_DISCRETE …
+    };
     struct Expected
     {
         std::size_t m_tests;      // about this many; affects speed alone
@@ -40,17 +32,17 @@ public:
 
     void create(Device& device, const ProgramLoader& load);
 
-    // Returns after enqueueing. Lists the hits of the feature tests that a cull left. mode: DRAPE_DISCRETE …; a
-    // discrete step is one launch less, and so is one with few tests.
-    void enqueueFeatures(Device& device, NarrowPhaseBuffers sides, std::size_t nodeCount, std::size_t triangleCount,
-                         std::uint32_t mode, PatchCullStage& cull, Expected expected, HitBuffers hits,
-                         Buffer<StepCounters>& counters);
+    // Lists the contacts of the tests. Returns after enqueueing. A discrete step is one launch less, and so is one with
+    // few tests.
+    void enqueue(Device& device, const Input& input, FeatureTestList& tests, Expected expected,
+                 UnsortedContacts& contacts, Buffer<StepCounters>& counters);
     // Returns whether the launch did nothing because there were `tests` tests and far fewer were expected.
     bool skipped(std::size_t tests) const { return tests > m_mostTests; }
 
 private:
     std::size_t m_mostTests = SIZE_MAX;  // tests of the last launches
-    Kernel m_feature, m_swept, m_few;
-    Buffer<cl_uint> m_sweptTests{"step candidates"};
+    BoundKernel<kernels::narrowPhaseFeature> m_feature;
+    BoundKernel<kernels::narrowPhaseSwept> m_swept;
+    BoundKernel<kernels::narrowPhaseSmall> m_small;
 };
 }  // namespace drape

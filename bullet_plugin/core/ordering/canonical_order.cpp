@@ -30,21 +30,21 @@ void sortContacts(std::vector<Contact>& contacts)
     std::sort(contacts.begin(), contacts.end(), comesBefore);
 }
 
-void orderHits(const Contact* hits, std::size_t count, std::vector<std::uint32_t>& slotCount,
-               std::vector<Contact>& contacts, ThreadTeam& threads)
+void orderContacts(const Contact* unsorted, std::size_t count, std::vector<std::uint32_t>& featureCounts,
+                   std::vector<Contact>& contacts, ThreadTeam& threads)
 {
     std::uint32_t first = std::uint32_t(contacts.size());
-    for (std::uint32_t& number : slotCount)
+    for (std::uint32_t& number : featureCounts)
         first += std::exchange(number, first);
     contacts.resize(contacts.size() + count);
     // Fills each slot's positions in any order; the sort of the slot follows.
-    std::vector<std::uint32_t> last = slotCount;
-    const auto place = [&](std::size_t hit)
-    { contacts[__atomic_fetch_add(&last[hits[hit].m_slot], 1u, __ATOMIC_RELAXED)] = hits[hit]; };
+    std::vector<std::uint32_t> last = featureCounts;
+    const auto place = [&](std::size_t i)
+    { contacts[__atomic_fetch_add(&last[unsorted[i].m_slot], 1u, __ATOMIC_RELAXED)] = unsorted[i]; };
     const auto sort = [&](std::size_t slot)
     {
-        if (last[slot] - slotCount[slot] > 1)
-            std::sort(contacts.begin() + slotCount[slot], contacts.begin() + last[slot], comesBefore);
+        if (last[slot] - featureCounts[slot] > 1)
+            std::sort(contacts.begin() + featureCounts[slot], contacts.begin() + last[slot], comesBefore);
     };
     const auto forPieces = [&](std::size_t items, const auto& one)
     {
@@ -56,6 +56,6 @@ void orderHits(const Contact* hits, std::size_t count, std::vector<std::uint32_t
                   });
     };
     forPieces(count, place);
-    forPieces(slotCount.size(), sort);
+    forPieces(featureCounts.size(), sort);
 }
 }  // namespace drape

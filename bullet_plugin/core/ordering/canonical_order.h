@@ -14,8 +14,8 @@ void sortCandidates(std::vector<Candidate>& candidates);
 
 // Sorts by cloth feature index (slot), then by obstacle feature.
 void sortContacts(std::vector<Contact>& contacts);
-// Appends unsorted contacts to the existing ones, in the same order. slotCount: contacts of each slot; used as
+// Appends unsorted contacts to the existing ones, in the same order. featureCounts: contacts of each slot; used as
 // working memory.
-void orderHits(const Contact* hits, std::size_t count, std::vector<std::uint32_t>& slotCount,
-               std::vector<Contact>& contacts, ThreadTeam& threads);
+void orderContacts(const Contact* unsorted, std::size_t count, std::vector<std::uint32_t>& featureCounts,
+                   std::vector<Contact>& contacts, ThreadTeam& threads);
 }  // namespace drape

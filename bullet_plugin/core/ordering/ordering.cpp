@@ -1,108 +1,111 @@
 #include "ordering.h"
 
+#include <algorithm>
+
 #include "bullet_plugin/core/device/list_launch.h"
 
 namespace drape
 {
 namespace
 {
-constexpr std::size_t kSortGroup = 256;    // one group sorts a slot, however large
-constexpr std::size_t kSortBlockGpu = 32;  // slots that a group sorts one after the other
-// Maximum contacts of a slot that a GPU sorts by counting lesser ones. orderingOrder would count the same in local
+constexpr std::size_t kBlock = 1024;  // features of a group that sums, as in kernels/ordering/ordering.cl
+constexpr std::size_t kSumGroupGpu = 256, kSumGroupCpu = 64;
+constexpr std::size_t kSortGroup = 256;    // one group sorts a feature's contacts, however many
+constexpr std::size_t kSortBlockGpu = 32;  // features that a group sorts one after the other
+// Maximum contacts of a feature that a GPU sorts by counting lesser ones. orderingSort would count the same in local
 // memory, with one launch more.
 constexpr cl_uint kRankedGpu = 512;
+
+std::size_t blocksOf(std::size_t features)
+{
+    return (features + kBlock - 1) / kBlock;
+}
 }  // namespace
 
 void OrderingStage::create(Device& device, const ProgramLoader& load)
 {
     const cl::Program ordering = load("ordering/ordering");
-    m_places.create(device, ordering);
-    m_gather.create(device, ordering, "orderingGather");
-    m_order.create(device, ordering, "orderingOrder");
-    m_write.create(device, ordering, "orderingWrite");
-    if (device.isGpu()) m_gatherFew.create(device, load("ordering/ordering_small"), "orderingGatherFew");
+    m_count.create(device, ordering);
+    m_place.create(device, ordering);
+    m_gather.create(device, ordering);
+    m_sort.create(device, ordering);
+    m_write.create(device, ordering);
+    if (device.isGpu()) m_gatherSmall.create(device, load("ordering/ordering_small"));
 }
 
-void OrderingStage::resizeSlots(Device& device, std::size_t slotCount)
+void OrderingStage::resizeFeatures(Device& device, std::size_t features)
 {
-    m_places.resize(device, slotCount);
-    const bool sums = device.isGpu() && m_places.few();
-    m_slotCount.reserve(device, wholeRows(slotCount));
-    m_slotFirst.reserve(device, slotCount);
-    m_slotCount.fill(device, 0, slotCount);  // every step leaves it so
-    if (sums)
-    {
-        m_slotSums.reserve(device, DRAPE_SLOT_SUMS);
-        m_slotSums.fill(device, 0, DRAPE_SLOT_SUMS);
-    }
-    else
-        m_slotSums.release();
-    reserveHitPlaces(device);
+    m_firsts.reserve(device, features);
+    m_blockCounts.reserve(device, blocksOf(features));
 }
 
-void OrderingStage::reserveHitPlaces(Device& device)
+void OrderingStage::reserve(Device& device, std::size_t count)
 {
-    if (hasSums())
-        m_hitPlaces.reserve(device, m_hits.capacity());
-    else
-        m_hitPlaces.release();
-}
-
-void OrderingStage::reserveHits(Device& device, std::size_t count)
-{
-    m_hits.reserve(device, count);
     m_contacts.reserve(device, DRAPE_CONTACT_HEAD + count);
     m_members.reserve(device, count);
     m_keys.reserve(device, count);
-    reserveHitPlaces(device);
 }
 
-void OrderingStage::giveBackRoom()
+void OrderingStage::release()
 {
-    m_hits.release();
     m_contacts.release();
     m_members.release();
     m_keys.release();
-    m_hitPlaces.release();
 }
 
-// Sorts the slots with more contacts than `ranked`.
-void OrderingStage::enqueueOrder(Device& device, StepTally tally, cl_uint ranked)
+// Computes the first position of each feature's contacts. A group sums the numbers of all features before its own,
+// or of all blocks where they are many.
+void OrderingStage::enqueuePositions(Device& device, const OrderingValues& step, UnsortedContacts& unsorted,
+                                     StepTally tally)
 {
-    const std::size_t slots = m_places.slotCount();
-    const std::size_t block = device.isGpu() ? kSortBlockGpu : SlotPlaces::kBlock;
-    m_order.launch(device, (slots + block - 1) / block * kSortGroup, kSortGroup, cl_uint(m_hits.capacity()),
-                   m_slotFirst.handle(), cl_uint(slots), ranked, cl_uint(block), m_members.handle(), m_keys.handle(),
-                   tally.m_now.handle());
+    const std::size_t group = device.isGpu() ? kSumGroupGpu : kSumGroupCpu;
+    const std::size_t width = blocksOf(step.m_features) * group;
+    const bool few = unsorted.few();
+    OrderingValues values = step;
+    values.m_block = few ? cl_uint(kBlock) : 1;
+    if (!few) m_count.launch(device, width, group, values, unsorted.m_featureCounts, m_blockCounts, group);
+    m_place.launch(device, width, group, values, unsorted.m_featureCounts,
+                   few ? unsorted.m_featureCounts : m_blockCounts, m_firsts, tally.m_now, group);
 }
 
-// Computes the first position of each slot, and lists its members.
-void OrderingStage::enqueueGather(Device& device, StepTally tally, cl_uint ranked)
+// Computes the positions, and lists the members of each feature.
+void OrderingStage::enqueueGather(Device& device, const OrderingValues& step, UnsortedContacts& unsorted,
+                                  StepTally tally)
 {
-    const cl_uint hitCapacity = cl_uint(m_hits.capacity()), slots = cl_uint(m_places.slotCount());
-    if (hasSums())
+    if (step.m_sums > 0)
     {
-        m_gatherFew.launch(device, listWidth(device, slots + tally.m_hits), listGroup(device), m_hits.handle(),
-                           hitCapacity, m_hitPlaces.handle(), m_slotCount.handle(), m_slotSums.handle(), slots, ranked,
-                           m_slotFirst.handle(), m_members.handle(), m_keys.handle(), tally.m_now.handle(),
-                           tally.m_next.handle());
+        m_gatherSmall.launch(device, listWidth(device, step.m_features + tally.m_contacts), listGroup(device), step,
+                           unsorted.m_contacts, unsorted.m_places, unsorted.m_featureCounts, m_firsts, m_members,
+                           m_keys, tally.m_now, tally.m_next);
         return;
     }
-    m_places.enqueue(device, m_slotCount, m_slotFirst, ranked, tally.m_now);
-    m_gather.launch(device, listWidth(device), listGroup(device), m_hits.handle(), hitCapacity, m_slotCount.handle(),
-                    m_slotFirst.handle(), m_members.handle(), m_keys.handle(), tally.m_now.handle(),
-                    tally.m_next.handle());
+    enqueuePositions(device, step, unsorted, tally);
+    m_gather.launch(device, listWidth(device), listGroup(device), step, unsorted.m_contacts, unsorted.m_featureCounts,
+                    m_firsts, m_members, m_keys, tally.m_now, tally.m_next);
 }
 
-void OrderingStage::enqueue(Device& device, StepTally tally)
+// Sorts the members of features with more than step.m_ranked contacts.
+void OrderingStage::enqueueSort(Device& device, const OrderingValues& step, StepTally tally)
+{
+    OrderingValues values = step;
+    values.m_block = cl_uint(device.isGpu() ? kSortBlockGpu : kBlock);
+    m_sort.launch(device, (step.m_features + values.m_block - 1) / values.m_block * kSortGroup, kSortGroup, values,
+                   m_firsts, m_members, m_keys, tally.m_now);
+}
+
+void OrderingStage::enqueue(Device& device, UnsortedContacts& unsorted, StepTally tally)
 {
     const cl_uint ranked = device.isGpu() ? kRankedGpu : DRAPE_RANKED;
-    tally.m_hits = std::min(tally.m_hits, m_hits.capacity());
-    enqueueGather(device, tally, ranked);
-    if (tally.m_ordered) enqueueOrder(device, tally, ranked);
-    m_write.launch(device, listWidth(device, tally.m_hits * copyParts(device)), listGroup(device), m_hits.handle(),
-                   cl_uint(m_hits.capacity()), m_slotFirst.handle(), cl_uint(m_places.slotCount()), ranked,
-                   copyParts(device), m_members.handle(), m_keys.handle(), m_contacts.handle(), tally.m_now.handle(),
-                   m_slotCount.handle(), m_slotSums.handle());
+    const OrderingValues values = {cl_uint(unsorted.capacity()),
+                                   cl_uint(unsorted.features()),
+                                   ranked,
+                                   unsorted.sums(),
+                                   cl_uint(kBlock),
+                                   copyParts(device)};
+    tally.m_contacts = std::min(tally.m_contacts, unsorted.capacity());
+    enqueueGather(device, values, unsorted, tally);
+    if (tally.m_ordered) enqueueSort(device, values, tally);
+    m_write.launch(device, listWidth(device, tally.m_contacts * values.m_parts), listGroup(device), values,
+                   unsorted.m_contacts, m_firsts, m_members, m_keys, m_contacts, tally.m_now, unsorted.m_featureCounts);
 }
 }  // namespace drape

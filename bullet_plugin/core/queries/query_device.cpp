@@ -18,9 +18,9 @@ QueryDevice::QueryDevice(std::unique_ptr<Device> device, const Settings& setting
       m_programs(*m_device, settings.m_cacheFolder, {{"queries/queries", "queries/refit", "queries/self_collision"}})
 {
     const cl::Program queries = m_programs.load("queries/queries");
-    m_motion.create(*m_device, queries, "queryMotion");
-    m_triangles.create(*m_device, queries, "queryTriangles");
-    m_pairs.create(*m_device, queries, "queryPairs");
+    m_motion.create(*m_device, queries);
+    m_triangles.create(*m_device, queries);
+    m_pairs.create(*m_device, queries);
     m_refit.create(*m_device, m_programs.load("queries/refit"));
     m_stage.create(*m_device, m_programs.load("queries/self_collision"));
     m_refitCounters.reserve(*m_device, 1);
@@ -36,9 +36,7 @@ bool QueryDevice::motions(const CcdQuery* queries, std::size_t count, const CcdS
         m_motionQueries.reserve(device, some);
         m_motionResults.reserve(device, some);
         m_motionQueries.write(device, queries + first, some);
-        m_motion.launch(device, some, kGroup, m_motionQueries.handle(), cl_uint(some), settings.m_separation,
-                        settings.m_tolerance, settings.m_timeTolerance, cl_uint(settings.m_boxLimit),
-                        m_motionResults.handle());
+        m_motion.launch(device, some, kGroup, {settings, cl_uint(some)}, m_motionQueries, m_motionResults);
         m_motionResults.read(device, results + first, some);
         device.wait();
     }
@@ -54,7 +52,7 @@ bool QueryDevice::triangles(const TriangleQuery* queries, std::size_t count, std
         m_triangleQueries.reserve(device, some);
         m_triangleResults.reserve(device, some);
         m_triangleQueries.write(device, queries + first, some);
-        m_triangles.launch(device, some, kGroup, m_triangleQueries.handle(), cl_uint(some), m_triangleResults.handle());
+        m_triangles.launch(device, some, kGroup, cl_uint(some), m_triangleQueries, m_triangleResults);
         m_triangleResults.read(device, results + first, some);
         device.wait();
     }
@@ -143,9 +141,8 @@ bool QueryDevice::answerPairs(Mesh& a, Mesh& b, float radius, PairDecision& deci
     {
         m_answers.reserve(device, std::size_t(demand) + demand / 4 + 1024);
         m_answerDemand.fill(device, 0, 1);
-        m_pairs.launch(device, count, kGroup, m_stage.pairs().handle(), count, a.m_start.handle(),
-                       a.m_triangles.handle(), b.m_start.handle(), b.m_triangles.handle(), radius, m_answers.handle(),
-                       cl_uint(m_answers.capacity()), m_answerDemand.handle());
+        m_pairs.launch(device, count, kGroup, {count, radius, cl_uint(m_answers.capacity())}, m_stage.pairs(),
+                       a.m_start, a.m_triangles, b.m_start, b.m_triangles, m_answers, m_answerDemand);
         m_answerDemand.read(device, &demand, 1);
         device.wait();
     } while (!device.failed() && demand > m_answers.capacity());

@@ -67,7 +67,9 @@ private:
     ProgramSet m_programs;
     RefitStage m_refit;
     SelfCollisionStage m_stage;
-    Kernel m_motion, m_triangles, m_pairs;
+    BoundKernel<kernels::queryMotion> m_motion;
+    BoundKernel<kernels::queryTriangles> m_triangles;
+    BoundKernel<kernels::queryPairs> m_pairs;
     Buffer<CcdQuery> m_motionQueries;
     Buffer<CcdResult> m_motionResults;
     Buffer<TriangleQuery> m_triangleQueries;

@@ -30,9 +30,9 @@ void refitOnHost(std::vector<BvhNode>& nodes, const BvhLayout& layout, const std
 
 void RefitStage::create(Device& device, const cl::Program& program)
 {
-    m_leaves.create(device, program, "refitLeaves");
-    m_level.create(device, program, "refitLevel");
-    m_top.create(device, program, "refitTop");
+    m_leaves.create(device, program);
+    m_level.create(device, program);
+    m_top.create(device, program);
 }
 
 void RefitStage::makeLevels(Device& device, const BvhLayout& layout, Levels& levels) const
@@ -42,13 +42,10 @@ void RefitStage::makeLevels(Device& device, const BvhLayout& layout, Levels& lev
     {
         if (layout.m_heights[height].m_count > 2 * kClimbGroup) levels.m_launched = height;
     }
-    std::vector<cl_uint> table;
+    std::vector<NodeRange> table;
     for (std::size_t height = levels.m_launched + 1; height < layout.m_heights.size(); ++height)
-    {
-        table.push_back(layout.m_heights[height].m_first);
-        table.push_back(layout.m_heights[height].m_count);
-    }
-    levels.m_climbed = table.size() / 2;
+        table.push_back({layout.m_heights[height].m_first, layout.m_heights[height].m_count});
+    levels.m_climbed = table.size();
     const WaitAtEnd wait(device);
     levels.m_table.assign(device, table);
 }
@@ -58,17 +55,16 @@ void RefitStage::enqueue(Device& device, const BvhLayout& layout, Levels& levels
                          Buffer<float>& meshRadius, Buffer<StepCounters>& counters)
 {
     const cl_uint leafCount = layout.leafCount();
-    m_leaves.launch(device, leafCount, kGroup, nodes.handle(), order.handle(), triangles.handle(), start.handle(),
-                    end.handle(), meshRadius.handle(), counters.handle(), leafCount);
+    m_leaves.launch(device, leafCount, kGroup, {0, leafCount}, nodes, order, triangles, start, end, meshRadius,
+                    counters);
     for (std::size_t height = 1; height <= levels.m_launched; ++height)
     {
         const BvhHeight& level = layout.m_heights[height];
-        m_level.launch(device, level.m_count, kGroup, nodes.handle(), cl_uint(level.m_first), cl_uint(level.m_count));
+        m_level.launch(device, level.m_count, kGroup, {level.m_first, level.m_count}, nodes);
     }
     if (levels.m_climbed > 0)
     {
-        m_top.launch(device, kClimbGroup, kClimbGroup, nodes.handle(), levels.m_table.handle(),
-                     cl_uint(levels.m_climbed));
+        m_top.launch(device, kClimbGroup, kClimbGroup, cl_uint(levels.m_climbed), nodes, levels.m_table);
     }
 }
 }  // namespace drape

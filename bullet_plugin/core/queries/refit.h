@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "bullet_plugin/core/device/buffer.h"
-#include "bullet_plugin/core/device/program.h"
+#include "bullet_plugin/core/device/bound_kernel.h"
 #include "bvh_layout.h"
+#include "kernels/queries/queries_bindings.h"
 #include "kernels/shared/mesh.h"
 
 namespace drape
@@ -25,7 +25,7 @@ public:
     // A layout as the device reads it, and where the one-group climb begins.
     struct Levels
     {
-        Buffer<cl_uint> m_table;
+        Buffer<NodeRange> m_table;
         std::size_t m_launched = 0;  // heights 1 … m_launched get a launch each
         std::size_t m_climbed = 0;   // the rest, in one group
     };
@@ -37,6 +37,8 @@ public:
                  Buffer<float>& meshRadius, Buffer<StepCounters>& counters);
 
 private:
-    Kernel m_leaves, m_level, m_top;
+    BoundKernel<kernels::refitLeaves> m_leaves;
+    BoundKernel<kernels::refitLevel> m_level;
+    BoundKernel<kernels::refitTop> m_top;
 };
 }  // namespace drape

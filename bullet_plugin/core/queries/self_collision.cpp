@@ -19,10 +19,10 @@ float selfRadius(const CcdSettings& settings)
 
 void SelfCollisionStage::create(Device& device, const cl::Program& program)
 {
-    m_volumesKernel.create(device, program, "selfVolumes");
-    m_traverse.create(device, program, "leafTraverse");
-    m_features.create(device, program, "selfFeatures");
-    m_test.create(device, program, "selfTest");
+    m_volumesKernel.create(device, program);
+    m_traverse.create(device, program);
+    m_features.create(device, program);
+    m_test.create(device, program);
     m_counters.reserve(device, 1);
     m_pairs.reserve(device, kFirstEntries);
     m_vertexFace.reserve(device, kFirstEntries);
@@ -33,8 +33,8 @@ void SelfCollisionStage::create(Device& device, const cl::Program& program)
 void SelfCollisionStage::enqueueVolumes(Device& device, DeviceMotion motion, const CcdSettings& settings)
 {
     m_volumes.reserve(device, motion.m_vertexCount);
-    m_volumesKernel.launch(device, motion.m_vertexCount, kGroup, motion.m_start.handle(), motion.m_end.handle(),
-                           cl_uint(motion.m_vertexCount), selfRadius(settings), m_volumes.handle());
+    m_volumesKernel.launch(device, motion.m_vertexCount, kGroup, {cl_uint(motion.m_vertexCount), selfRadius(settings)},
+                           motion.m_start, motion.m_end, m_volumes);
 }
 
 void SelfCollisionStage::enqueuePairs(Device& device, DeviceTreeView a, DeviceTreeView b, std::uint32_t kind,
@@ -42,19 +42,22 @@ void SelfCollisionStage::enqueuePairs(Device& device, DeviceTreeView a, DeviceTr
 {
     m_counters.fill(device, 0, 1);
     if (b.m_layout.leafCount() == 0) return;
-    m_traverse.launch(device, batch.m_count, kGroup, a.m_nodes.handle(), a.m_order.handle(), a.m_triangles.handle(),
-                      cl_uint(batch.m_first), cl_uint(batch.m_count), b.m_nodes.handle(), b.m_order.handle(),
-                      b.m_triangles.handle(), cl_uint(b.m_layout.root()), b.m_lastLeaf.handle(), cl_uint(kind),
-                      m_pairs.handle(), cl_uint(m_pairs.capacity()), cl_uint(std::min(most, kMostCounted) + 1),
-                      m_counters.handle());
+    const TraverseValues values = {batch.m_first,
+                                   batch.m_count,
+                                   b.m_layout.root(),
+                                   kind,
+                                   cl_uint(m_pairs.capacity()),
+                                   cl_uint(std::min(most, kMostCounted) + 1)};
+    m_traverse.launch(device, batch.m_count, kGroup, values, a.m_nodes, a.m_order, a.m_triangles, b.m_nodes, b.m_order,
+                      b.m_triangles, b.m_lastLeaf, m_pairs, m_counters);
 }
 
 void SelfCollisionStage::enqueueFeatures(Device& device, DeviceMotion motion)
 {
-    m_features.launch(device, listWidth(device), listGroup(device), m_pairs.handle(), cl_uint(m_pairs.capacity()),
-                      motion.m_tree.m_triangles.handle(), m_volumes.handle(), m_vertexFace.handle(),
-                      cl_uint(m_vertexFace.capacity()), m_edgePairs.handle(), cl_uint(m_edgePairs.capacity()),
-                      m_counters.handle());
+    const SelfFeaturesValues values = {cl_uint(m_pairs.capacity()), cl_uint(m_vertexFace.capacity()),
+                                       cl_uint(m_edgePairs.capacity())};
+    m_features.launch(device, listWidth(device), listGroup(device), values, m_pairs, motion.m_tree.m_triangles,
+                      m_volumes, m_vertexFace, m_edgePairs, m_counters);
 }
 
 void SelfCollisionStage::enqueueTests(Device& device, DeviceMotion motion, const CcdSettings& settings)
@@ -62,10 +65,9 @@ void SelfCollisionStage::enqueueTests(Device& device, DeviceMotion motion, const
     for (cl_uint kind : {DRAPE_VERTEX_FACE, DRAPE_EDGES})
     {
         Buffer<FeaturePair>& list = kind == DRAPE_VERTEX_FACE ? m_vertexFace : m_edgePairs;
-        m_test.launch(device, listWidth(device), listGroup(device), kind, list.handle(), cl_uint(list.capacity()),
-                      motion.m_tree.m_triangles.handle(), motion.m_edges.handle(), motion.m_start.handle(),
-                      motion.m_end.handle(), settings.m_separation, settings.m_tolerance, settings.m_timeTolerance,
-                      cl_uint(settings.m_boxLimit), m_hits.handle(), cl_uint(m_hits.capacity()), m_counters.handle());
+        const SelfTestValues values = {settings, kind, cl_uint(list.capacity()), cl_uint(m_hits.capacity())};
+        m_test.launch(device, listWidth(device), listGroup(device), values, list, motion.m_tree.m_triangles,
+                      motion.m_edges, motion.m_start, motion.m_end, m_hits, m_counters);
     }
 }
 

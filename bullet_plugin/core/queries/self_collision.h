@@ -11,10 +11,10 @@
 #include <functional>
 #include <vector>
 
+#include "bullet_plugin/core/device/bound_kernel.h"
 #include "bullet_plugin/core/queries/bvh_layout.h"
-#include "bullet_plugin/core/device/buffer.h"
-#include "bullet_plugin/core/device/program.h"
 #include "kernels/lib/self_collision.h"
+#include "kernels/queries/queries_bindings.h"
 
 namespace drape
 {
@@ -144,7 +144,10 @@ private:
     template <typename T>
     Demand meet(Device& device, std::size_t wanted, Buffer<T>& list) const;
 
-    Kernel m_volumesKernel, m_traverse, m_features, m_test;
+    BoundKernel<kernels::selfVolumes> m_volumesKernel;
+    BoundKernel<kernels::leafTraverse> m_traverse;
+    BoundKernel<kernels::selfFeatures> m_features;
+    BoundKernel<kernels::selfTest> m_test;
     Buffer<Dop> m_volumes;
     Buffer<Candidate> m_pairs;
     Buffer<FeaturePair> m_vertexFace, m_edgePairs;

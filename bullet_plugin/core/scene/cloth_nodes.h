@@ -22,7 +22,7 @@ public:
     void reserve(Device* device, std::size_t floats)
     {
         if (m_room >= floats && m_room > 0) return;
-        constexpr std::size_t kStep = kPartBytes / sizeof(float);
+        constexpr std::size_t kStep = 1024;  // few distinct sizes, so that small additions need no new memory
         m_room = std::max((floats + kStep - 1) / kStep, std::size_t(1)) * kStep;
         m_floats.reserve(device, 2 * m_room);
     }

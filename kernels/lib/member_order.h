@@ -1,10 +1,11 @@
-// Sorts the members of a slot by their keys, the obstacle features, in a work-group. For devices only: needs barriers.
-#ifndef DRAPE_LIB_SLOT_ORDER_H
-#define DRAPE_LIB_SLOT_ORDER_H
+// Sorts the members of a feature by their keys, the obstacle features, in a work-group. For devices only: needs
+// barriers.
+#ifndef DRAPE_LIB_MEMBER_ORDER_H
+#define DRAPE_LIB_MEMBER_ORDER_H
 
 #include "../shared/contact.h"
 
-// Maximum members of a slot that a work-group sorts by counting, in local memory; more are sorted in place.
+// Maximum members of a feature that a work-group sorts by counting, in local memory; more are sorted in place.
 #define DRAPE_COUNTED 512
 
 // Sorts one pair of positions.
@@ -56,7 +57,8 @@ static void countMembers(__global uint* members, __global const uint* keys, cons
     {
         const uint key = ownKeys[i];
         uint before = 0;
-        for (uint j = 0; j < count; ++j) before += ownKeys[j] < key;
+        for (uint j = 0; j < count; ++j)
+            before += ownKeys[j] < key;
         members[before] = own[i];
     }
     barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);

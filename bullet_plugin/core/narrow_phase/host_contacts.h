@@ -12,70 +12,72 @@
 
 namespace drape
 {
-class HostHitFinder
+class HostContactFinder
 {
 public:
     struct Limits
     {
-        std::size_t m_hits;
+        std::size_t m_contacts;
         std::size_t m_swept;  // tests that the continuous test decides
     };
 
-    // Lists the contacts of features.m_tests, unsorted, and counts them; beyond a limit the list is not complete.
+    // Lists the contacts of input.m_tests, unsorted, and counts them; beyond a limit the list is not complete.
     // find, findSwept: kernels of either kind of contacts; swept: their counter. Returns how often the list was too
     // short and grew.
-    template <class Features>
-    std::size_t find(HitKernel<Features> find, HitKernel<Features> findSwept, std::uint32_t StepCounters::*swept,
-                     const Features& features, std::size_t slots, Limits limits, ThreadTeam& threads,
+    template <class Input>
+    std::size_t find(FeatureKernel<Input> find, FeatureKernel<Input> findSwept, std::uint32_t StepCounters::*swept,
+                     const Input& input, std::size_t features, Limits limits, ThreadTeam& threads,
                      StepCounters& counters)
     {
-        if (m_hits.empty()) m_hits.resize(kFirstHits);
-        if (m_swept.size() < features.m_count) resizeGrowing(m_swept, features.m_count);
+        if (m_contacts.empty()) m_contacts.resize(kFirstContacts);
+        if (m_swept.size() < input.m_count) resizeGrowing(m_swept, input.m_count);
         const auto fill = [&]() -> std::size_t
         {
-            m_slotCount.assign(slots, 0);
+            m_featureCounts.assign(features, 0);
             counters.m_contactsFound = counters.*swept = 0;
-            const HostHits list = {m_hits.data(), std::uint32_t(m_hits.size()), m_slotCount.data()};
-            const auto run = [&](HitKernel<Features> kernel, std::size_t items, bool worth)
+            const ContactSink sink = {m_contacts.data(), std::uint32_t(m_contacts.size()),
+                                      nullptr,           m_featureCounts.data(),
+                                      nullptr,           &counters.m_contactsFound};
+            const auto run = [&](FeatureKernel<Input> kernel, std::size_t items, bool worth)
             {
-                runShared(
-                    threads, worth, items,
-                    [&](std::size_t item)
-                    { kernel(std::uint32_t(item), std::uint32_t(items), features, list, m_swept.data(), &counters); });
+                runShared(threads, worth, items,
+                          [&](std::size_t item) {
+                              kernel(std::uint32_t(item), std::uint32_t(items), input, sink, m_swept.data(), &counters);
+                          });
             };
-            run(find, (features.m_count + kTestsOfItem - 1) / kTestsOfItem, features.m_count >= kLeastShared);
+            run(find, (input.m_count + kTestsOfItem - 1) / kTestsOfItem, input.m_count >= kLeastShared);
             const std::uint32_t left = counters.*swept;
             if (left > limits.m_swept) return 0;
             if (left > 0) run(findSwept, kSweptItems, left >= kLeastSweptShared);
             return counters.m_contactsFound;
         };
-        return fillGrowing(m_hits, limits.m_hits, fill);
+        return fillGrowing(m_contacts, limits.m_contacts, fill);
     }
 
     // Appends the `count` unsorted contacts, which are all that were found, to the existing ones.
     void order(std::size_t count, std::vector<Contact>& contacts, ThreadTeam& threads)
     {
-        orderHits(m_hits.data(), count, m_slotCount, contacts, threads);
+        orderContacts(m_contacts.data(), count, m_featureCounts, contacts, threads);
     }
 
     // Releases the memory of the results.
     void giveBackRoom()
     {
-        m_hits = std::vector<Contact>();
-        m_slotCount = std::vector<std::uint32_t>();
+        m_contacts = std::vector<Contact>();
+        m_featureCounts = std::vector<std::uint32_t>();
         m_swept = std::vector<std::uint32_t>();
     }
 
 private:
-    static constexpr std::size_t kFirstHits = 1 << 10;
+    static constexpr std::size_t kFirstContacts = 1 << 10;
     static constexpr std::size_t kTestsOfItem = 128;  // a run of them (item_runs.h)
     static constexpr std::size_t kSweptItems = 32;
     // Minimum tests for waking threads; that many take a fifth of a millisecond.
     static constexpr std::size_t kLeastShared = 1 << 10;
     static constexpr std::size_t kLeastSweptShared = 1 << 6;
 
-    std::vector<Contact> m_hits;
-    std::vector<std::uint32_t> m_slotCount;  // number of contacts by slot
-    std::vector<std::uint32_t> m_swept;      // tests that the continuous test decides
+    std::vector<Contact> m_contacts;
+    std::vector<std::uint32_t> m_featureCounts;  // number of contacts by slot
+    std::vector<std::uint32_t> m_swept;          // tests that the continuous test decides
 };
 }  // namespace drape

@@ -1,0 +1,55 @@
+// Data of cloths that collide with themselves as the kernels' functions take it.
+#ifndef DRAPE_LIB_SELF_VIEWS_H
+#define DRAPE_LIB_SELF_VIEWS_H
+
+#include "self_contact.h"
+
+DRAPE_NAMESPACE_BEGIN
+
+// The cloths' own patches, and their features' boxes over the step. Ids are those of the lanes' features,
+// DRAPE_NO_FEATURE where there is none.
+typedef struct SelfPatches
+{
+    const DRAPE_GLOBAL Patch* m_patches;
+    DRAPE_UINT m_patchCount;
+    DRAPE_UINT m_places;  // positions in the wide tree's lowest level
+    const DRAPE_GLOBAL DRAPE_UINT* m_faceIds;
+    const DRAPE_GLOBAL DRAPE_UINT* m_vertexIds;
+    const DRAPE_GLOBAL DRAPE_UINT* m_edgeIds;
+    const DRAPE_GLOBAL DRAPE_UINT* m_faceNodes;  // on a CPU: a row of lanes for each node of a block's features
+    const DRAPE_GLOBAL DRAPE_UINT* m_edgeNodes;
+    const DRAPE_GLOBAL DRAPE_UINT* m_levels;  // first node of each level of the wide tree, lowest first
+    DRAPE_UINT m_levelCount;
+    DRAPE_GLOBAL float* m_faceBoxes;    // on a CPU
+    DRAPE_GLOBAL float* m_vertexBoxes;  // on a GPU by node
+    DRAPE_GLOBAL float* m_edgeBoxes;    // on a CPU
+    DRAPE_GLOBAL float* m_wideNodes;
+} SelfPatches;
+
+// m, per cloth: half the reach, negative for cloths that do not collide with themselves in the step; the thickness;
+// the reach of the search for obstacles.
+typedef struct SelfRadii
+{
+    const DRAPE_GLOBAL float* m_radius;
+    const DRAPE_GLOBAL float* m_thickness;
+    const DRAPE_GLOBAL float* m_obstacleRadius;
+} SelfRadii;
+
+// Input of the narrow phase: the first m_count of m_tests.
+typedef struct SelfInput
+{
+    const DRAPE_GLOBAL FeatureTest* m_tests;
+    DRAPE_UINT m_count;
+    SelfView m_view;
+    DRAPE_UINT m_firstSlot;  // firstSelfSlot()
+} SelfInput;
+
+// Returns the positions at which volumes over the step begin: those of the end in a discrete step.
+DRAPE_FUNCTION const DRAPE_GLOBAL float* volumeStart(const ClothView* cloth)
+{
+    return cloth->m_mode == DRAPE_DISCRETE ? cloth->m_end : cloth->m_start;
+}
+
+DRAPE_NAMESPACE_END
+
+#endif
