@@ -69,7 +69,8 @@ private:
     bool decideByCost(Error& error);
     // Reads the crossover from the cache, or measures it. Leaves a device that fails meanwhile.
     double findCrossover();
-    // Measures on back ends of its own. Returns null, or why the device cannot be used.
+    // Measures on back ends of its own, which are closed afterwards; the cache has the kernels by then. Returns null,
+    // or why the device cannot be used.
     const char* measureCrossover(Crossover& crossover, bool& busy, Error& error) const;
     // Selects the back end of the coming steps by the scene's work, and updates the report.
     void selectByWork();

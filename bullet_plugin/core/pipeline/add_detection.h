@@ -30,14 +30,7 @@ inline void addDetection(StepStatistics& step, const StepStatistics& detection, 
     step.m_narrowMs += detection.m_narrowMs;
     if (kind == Detection::First) step.m_obstaclesKept = detection.m_obstaclesKept;
     if (kind == Detection::Check) return;
-    step.m_clothTriangles = detection.m_clothTriangles;
-    step.m_obstacleTriangles = detection.m_obstacleTriangles;
-    step.m_candidates = detection.m_candidates;
-    step.m_sweptTests = detection.m_sweptTests;
-    step.m_contacts = detection.m_contacts;
-    step.m_selfCandidates = detection.m_selfCandidates;
-    step.m_selfSweptTests = detection.m_selfSweptTests;
-    step.m_selfContacts = detection.m_selfContacts;
+    static_cast<StepCounts&>(step) = detection;
     step.m_skipped = detection.m_skipped;
 }
 }  // namespace drape

@@ -104,11 +104,10 @@ struct MemoryUse
     std::size_t m_bytes = 0;  // bytes allocated
 };
 
-// The work and cost of one step. Counts are of the whole step, over all cloths and obstacles.
-struct StepStatistics
+// Counts of one step's meshes, pairs of features and contacts, over all cloths and obstacles. A step may search for
+// contacts several times; these are the counts of the contacts that the solver received.
+struct StepCounts
 {
-    // StepStatusBits.
-    std::uint32_t m_status = kStepGood;
     // Number of cloth triangles.
     std::size_t m_clothTriangles = 0;
     // Number of obstacle triangles.
@@ -117,8 +116,6 @@ struct StepStatistics
     std::uint64_t m_candidates = 0;
     // Pairs of features that needed the continuous test.
     std::size_t m_sweptTests = 0;
-    // Number of cloths left out, with kStepClothsLeftOut.
-    std::size_t m_clothsLeftOut = 0;
     // Number of contacts.
     std::size_t m_contacts = 0;
     // Pairs of features of cloths that collide with themselves.
@@ -127,6 +124,15 @@ struct StepStatistics
     std::size_t m_selfSweptTests = 0;
     // Contacts of cloths with themselves.
     std::size_t m_selfContacts = 0;
+};
+
+// The work and cost of one step.
+struct StepStatistics : StepCounts
+{
+    // StepStatusBits.
+    std::uint32_t m_status = kStepGood;
+    // Number of cloths left out, with kStepClothsLeftOut.
+    std::size_t m_clothsLeftOut = 0;
     // Number of nodes left out, with kStepInvalidNodes.
     std::size_t m_invalidNodes = 0;
     // Pairs of a cloth and an obstacle that started the step intersecting, with kStepStartsIntersecting.
