@@ -4,7 +4,7 @@
 //
 // Products (lanesFma(), lanesDot…, lanesCross…) and lanesSqrt() are only for values that are compared with a slack:
 // fma and the built-in functions round differently between platforms. The other functions round as written;
-// lane_contacts.h relies on it.
+// the texts of any_width rely on it.
 #ifndef DRAPE_LIB_LANES_H
 #define DRAPE_LIB_LANES_H
 

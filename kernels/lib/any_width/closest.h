@@ -6,6 +6,24 @@ DRAPE_FUNCTION Real drapeRatio(Real numerator, Real denominator)
     return choose(denominator > 0.0f, numerator / denominator, splat(0.0f));
 }
 
+// Barycentric weights of a point of triangle abc on an edge, given the second corner's, or inside, given b's and c's.
+DRAPE_FUNCTION RealVec3 weightsOnAB(Real b)
+{
+    return vec3(1.0f - b, b, splat(0.0f));
+}
+DRAPE_FUNCTION RealVec3 weightsOnAC(Real c)
+{
+    return vec3(1.0f - c, splat(0.0f), c);
+}
+DRAPE_FUNCTION RealVec3 weightsOnBC(Real c)
+{
+    return vec3(splat(0.0f), 1.0f - c, c);
+}
+DRAPE_FUNCTION RealVec3 weightsInside(Real b, Real c)
+{
+    return vec3(drapeMax(1.0f - b - c, splat(0.0f)), b, c);
+}
+
 // Barycentric weights of the point of triangle abc that is closest to p. Each in [0, 1]; an unused corner weighs 0, so
 // the number of non-zero weights distinguishes face, edge and vertex.
 DRAPE_FUNCTION RealVec3 closestOnTriangle(RealVec3 p, RealVec3 a, RealVec3 b, RealVec3 c)
@@ -16,24 +34,19 @@ DRAPE_FUNCTION RealVec3 closestOnTriangle(RealVec3 p, RealVec3 a, RealVec3 b, Re
     const Real d5 = vec3Dot(ab, cp), d6 = vec3Dot(ac, cp);
     const Real vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
     const Real zero = splat(0.0f), one = splat(1.0f);
-    // The regions in order: an earlier one counts where several seem to contain the point.
     const Truth atA = (d1 <= 0.0f) & (d2 <= 0.0f), atB = (d3 >= 0.0f) & (d4 <= d3), atC = (d6 >= 0.0f) & (d5 <= d6);
-    const Truth onAB = (vc <= 0.0f) & (d1 >= 0.0f) & (d3 <= 0.0f);
-    const Truth onAC = isNot(onAB) & (vb <= 0.0f) & (d2 >= 0.0f) & (d6 <= 0.0f);
-    const Truth onBC = isNot(onAB | onAC) & (va <= 0.0f) & (d4 - d3 >= 0.0f) & (d5 - d6 >= 0.0f);
-    const Truth inside = isNot(onAB | onAC | onBC);
-
-    // On an edge the share is that of its second corner, else that of b. All regions share one quotient: quotients
-    // are the dearest part.
-    const Real above = choose(onAB, d1, choose(onAC, d2, choose(onBC, d4 - d3, vb)));
-    const Real below = choose(onAB, d1 - d3, choose(onAC, d2 - d6, choose(onBC, (d4 - d3) + (d5 - d6), va + vb + vc)));
-    const Real share = drapeRatio(above, below), shareC = choose(inside, drapeRatio(vc, below), zero);
-    const Real rest = drapeMax(1.0f - share - shareC, zero);
-    RealVec3 weights = vec3(choose(onBC, zero, rest), choose(onAC, zero, choose(onBC, rest, share)),
-                            choose(onAC | onBC, share, shareC));
-    weights = chooseVec3(atC, vec3(zero, zero, one), weights);
-    weights = chooseVec3(atB, vec3(zero, one, zero), weights);
-    return chooseVec3(atA, vec3(one, zero, zero), weights);
+    const Truth onAB = (vc <= 0.0f) & (d1 >= 0.0f) & (d3 <= 0.0f), onAC = (vb <= 0.0f) & (d2 >= 0.0f) & (d6 <= 0.0f);
+    const Truth onBC = (va <= 0.0f) & (d4 - d3 >= 0.0f) & (d5 - d6 >= 0.0f);
+    // An earlier region counts where several seem to contain the point. Lanes compute the quotients of all regions side
+    // by side: waiting for a common quotient takes longer.
+    const Real sum = va + vb + vc;
+    const RealVec3 elsewhere =
+        chooseVec3(onAB, weightsOnAB(drapeRatio(d1, d1 - d3)),
+                   chooseVec3(onAC, weightsOnAC(drapeRatio(d2, d2 - d6)),
+                              chooseVec3(onBC, weightsOnBC(drapeRatio(d4 - d3, (d4 - d3) + (d5 - d6))),
+                                         weightsInside(drapeRatio(vb, sum), drapeRatio(vc, sum)))));
+    const RealVec3 allA = vec3(one, zero, zero), allB = vec3(zero, one, zero), allC = vec3(zero, zero, one);
+    return chooseVec3(atA, allA, chooseVec3(atB, allB, chooseVec3(atC, allC, elsewhere)));
 }
 
 // Parameters (s along ab, t along cd, both in [0, 1]) of a closest pair of points of two segments.
@@ -43,8 +56,7 @@ DRAPE_FUNCTION void closestOnSegments(RealVec3 a, RealVec3 b, RealVec3 c, RealVe
     const Real uu = vec3Dot(u, u), vv = vec3Dot(v, v), uv = vec3Dot(u, v), uw = vec3Dot(u, w), vw = vec3Dot(v, w);
     // If the second segment is a point, the first must still be projected on it; for parallel segments any start is
     // valid.
-    const Truth long2 = vv > 0.0f;
-    Real first = drapeClamp01(drapeRatio(choose(long2, uv * vw - uw * vv, -uw), choose(long2, uu * vv - uv * uv, uu)));
+    Real first = drapeClamp01(choose(vv > 0.0f, drapeRatio(uv * vw - uw * vv, uu * vv - uv * uv), drapeRatio(-uw, uu)));
     Real second = drapeRatio(uv * first + vw, vv);
     const Truth beyond = (second < 0.0f) | (second > 1.0f);
     if (anyOf(beyond))

@@ -9,7 +9,7 @@ typedef struct RealNodeFace
     // The node's distance from the face's plane, times the length of the area vector; both at the end if discrete.
     Real m_before, m_after;
     Real m_side;     // the node's side at the start: +1 in front of the face
-    Truth m_passed;  // whether the node went through the plane
+    Truth m_passed;  // true if the node went through the plane
     RealBounds m_bounds;
 } RealNodeFace;
 
