@@ -163,7 +163,7 @@ private:
         guardCopy(m_device, m_slotCount, numbers);
         const OrderingValues values = {capacity, slots, m_ranked, sumsBehind(slots), 0, m_parts};
         m_gatherSmall.launch(m_device, 4 * kGroup, kGroup, values, m_hits, m_hitPlaces, m_slotCount, m_slotFirst,
-                           m_members, m_keys, m_counters, m_next);
+                             m_members, m_keys, m_counters, m_next);
         const auto isCrowded = [&](cl_uint count) { return count > m_ranked; };
         EXPECT_EQ(contents(m_device, m_counters, 1)[0].m_crowded,
                   cl_uint(std::count_if(slotCount.begin(), slotCount.end(), isCrowded)));
@@ -179,7 +179,7 @@ private:
     {
         const OrderingValues values = {capacity, slots, m_ranked, sums, m_sortBlock, m_parts};
         m_sort.launch(m_device, (slots + m_sortBlock - 1) / m_sortBlock * kGroup, kGroup, values, m_slotFirst,
-                       m_members, m_keys, m_counters);
+                      m_members, m_keys, m_counters);
         m_write.launch(m_device, 4 * kGroup, kGroup, values, m_hits, m_slotFirst, m_members, m_keys, m_contacts,
                        m_counters, m_slotCount);
     }

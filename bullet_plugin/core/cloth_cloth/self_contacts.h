@@ -1,8 +1,7 @@
 // Contacts of cloths with themselves in a step on a device (self_step.h).
 //
 // A list that is too small counts its true demand. Cost: four launches a step, on a GPU five, and one for each upper
-// level of the tree; none without a cloth that collides with
-// itself, and its kernels are not built then.
+// level of the tree; none without a cloth that collides with itself, and its kernels are not built then.
 #pragma once
 
 #include <cstdint>

@@ -75,8 +75,8 @@ void OrderingStage::enqueueGather(Device& device, const OrderingValues& step, Un
     if (step.m_sums > 0)
     {
         m_gatherSmall.launch(device, listWidth(device, step.m_features + tally.m_contacts), listGroup(device), step,
-                           unsorted.m_contacts, unsorted.m_places, unsorted.m_featureCounts, m_firsts, m_members,
-                           m_keys, tally.m_now, tally.m_next);
+                             unsorted.m_contacts, unsorted.m_places, unsorted.m_featureCounts, m_firsts, m_members,
+                             m_keys, tally.m_now, tally.m_next);
         return;
     }
     enqueuePositions(device, step, unsorted, tally);
@@ -90,7 +90,7 @@ void OrderingStage::enqueueSort(Device& device, const OrderingValues& step, Step
     OrderingValues values = step;
     values.m_block = cl_uint(device.isGpu() ? kSortBlockGpu : kBlock);
     m_sort.launch(device, (step.m_features + values.m_block - 1) / values.m_block * kSortGroup, kSortGroup, values,
-                   m_firsts, m_members, m_keys, tally.m_now);
+                  m_firsts, m_members, m_keys, tally.m_now);
 }
 
 void OrderingStage::enqueue(Device& device, UnsortedContacts& unsorted, StepTally tally)
