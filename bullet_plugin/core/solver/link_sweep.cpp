@@ -17,18 +17,17 @@ constexpr std::size_t kLeastShared = 4096;
 constexpr std::uint32_t kColours = 64, kLastColour = kColours - 1;
 
 using Lanes = float __attribute__((vector_size(16)));
-using Index = int __attribute__((vector_size(16)));
 
 void transpose(Lanes rows[4])
 {
-    const Lanes a = __builtin_shuffle(rows[0], rows[1], Index{0, 4, 1, 5});
-    const Lanes b = __builtin_shuffle(rows[2], rows[3], Index{0, 4, 1, 5});
-    const Lanes c = __builtin_shuffle(rows[0], rows[1], Index{2, 6, 3, 7});
-    const Lanes d = __builtin_shuffle(rows[2], rows[3], Index{2, 6, 3, 7});
-    rows[0] = __builtin_shuffle(a, b, Index{0, 1, 4, 5});
-    rows[1] = __builtin_shuffle(a, b, Index{2, 3, 6, 7});
-    rows[2] = __builtin_shuffle(c, d, Index{0, 1, 4, 5});
-    rows[3] = __builtin_shuffle(c, d, Index{2, 3, 6, 7});
+    const Lanes a = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5);
+    const Lanes b = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5);
+    const Lanes c = __builtin_shufflevector(rows[0], rows[1], 2, 6, 3, 7);
+    const Lanes d = __builtin_shufflevector(rows[2], rows[3], 2, 6, 3, 7);
+    rows[0] = __builtin_shufflevector(a, b, 0, 1, 4, 5);
+    rows[1] = __builtin_shufflevector(a, b, 2, 3, 6, 7);
+    rows[2] = __builtin_shufflevector(c, d, 0, 1, 4, 5);
+    rows[3] = __builtin_shufflevector(c, d, 2, 3, 6, 7);
 }
 
 Lanes load(const void* address)
