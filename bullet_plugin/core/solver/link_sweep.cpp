@@ -18,16 +18,28 @@ constexpr std::uint32_t kColours = 64, kLastColour = kColours - 1;
 
 using Lanes = float __attribute__((vector_size(16)));
 
+// Returns four numbers of two vectors: those of the first are counted from 0, of the second from 4.
+template <int i, int j, int k, int l>
+Lanes shuffled(const Lanes& first, const Lanes& second)
+{
+#ifdef __clang__
+    return __builtin_shufflevector(first, second, i, j, k, l);
+#else
+    using Index = int __attribute__((vector_size(16)));
+    return __builtin_shuffle(first, second, Index{i, j, k, l});
+#endif
+}
+
 void transpose(Lanes rows[4])
 {
-    const Lanes a = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5);
-    const Lanes b = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5);
-    const Lanes c = __builtin_shufflevector(rows[0], rows[1], 2, 6, 3, 7);
-    const Lanes d = __builtin_shufflevector(rows[2], rows[3], 2, 6, 3, 7);
-    rows[0] = __builtin_shufflevector(a, b, 0, 1, 4, 5);
-    rows[1] = __builtin_shufflevector(a, b, 2, 3, 6, 7);
-    rows[2] = __builtin_shufflevector(c, d, 0, 1, 4, 5);
-    rows[3] = __builtin_shufflevector(c, d, 2, 3, 6, 7);
+    const Lanes a = shuffled<0, 4, 1, 5>(rows[0], rows[1]);
+    const Lanes b = shuffled<0, 4, 1, 5>(rows[2], rows[3]);
+    const Lanes c = shuffled<2, 6, 3, 7>(rows[0], rows[1]);
+    const Lanes d = shuffled<2, 6, 3, 7>(rows[2], rows[3]);
+    rows[0] = shuffled<0, 1, 4, 5>(a, b);
+    rows[1] = shuffled<2, 3, 6, 7>(a, b);
+    rows[2] = shuffled<0, 1, 4, 5>(c, d);
+    rows[3] = shuffled<2, 3, 6, 7>(c, d);
 }
 
 Lanes load(const void* address)
