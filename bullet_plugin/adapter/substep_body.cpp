@@ -80,6 +80,8 @@ int SubstepBody::substepsOf(const btSoftBody& body)
 void SubstepBody::beforePrediction(const btSoftBody& body)
 {
     m_isPredicted = false;
+    m_velocities.clear();
+    if (!body.isActive()) return;
     m_velocities.resize(nodeCount(body));
     for (std::size_t i = 0; i < m_velocities.size(); ++i)
         m_velocities[i] = body.m_nodes[static_cast<int>(i)].m_v;
@@ -87,7 +89,7 @@ void SubstepBody::beforePrediction(const btSoftBody& body)
 
 void SubstepBody::afterPrediction(btSoftBody& body)
 {
-    m_isPredicted = body.m_sst.sdt > 0;
+    m_isPredicted = body.m_sst.sdt > 0 && m_velocities.size() == nodeCount(body);
     if (!m_isPredicted) return;
     const btScalar shift = shiftOf(body), perSecond = body.m_sst.isdt;
     m_accelerations.resize(m_velocities.size());

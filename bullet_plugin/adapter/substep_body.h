@@ -28,10 +28,10 @@ public:
 
     // Returns why Bullet's own solver must solve the body; null if this class can.
     static const char* reasonForBullet(const btSoftBody& body);
-    // Returns the same for the step that has been predicted: contacts of Bullet's own algorithms count, too.
+    // Returns why Bullet must solve the step that has been predicted: contacts of its own algorithms count, too.
     static const char* reasonForBulletNow(const btSoftBody& body);
 
-    // Records the velocities before the body's predictMotion().
+    // Records the velocities before the body's predictMotion(). Does nothing for a body that sleeps.
     void beforePrediction(const btSoftBody& body);
     // Brings the predicted positions to where substeps take free nodes. Call after predictMotion(), with the same
     // nodes.

@@ -36,8 +36,8 @@ void expectRun(const Json& run, int steps)
          {"steps", "cloth_triangles", "obstacle_triangles", "contacts_max", "nodes_below_surface", "nodes_through",
           "intersecting_pairs_end", "intersecting_pairs_max", "intersecting_pairs_max_step", "nan_nodes"})
         EXPECT_TRUE(run.at(key).is_number_unsigned()) << key;
-    for (const char* key : {"thickness_m", "penetration_max_m", "penetration_p99_m", "gap_min_m", "stretch_mean", "stretch_max",
-                            "rest_speed_mm_s"})
+    for (const char* key : {"thickness_m", "penetration_max_m", "penetration_p99_m", "gap_min_m", "stretch_mean",
+                            "stretch_max", "rest_speed_mm_s"})
         EXPECT_TRUE(run.at(key).is_number()) << key;
     for (const char* key : {"step_ms", "collision_ms"})
         for (const char* part : {"first", "median", "p95", "max"})
@@ -84,6 +84,18 @@ TEST_F(Outputs, JsonHasEveryKey)
     EXPECT_EQ(run.at("work").at("cloths_skipped"), 0);
     EXPECT_EQ(run.at("work").at("steps_skipped"), 0);
     EXPECT_NEAR(run.at("thickness_m"), 0.02, 1e-9);
+}
+
+TEST_F(Outputs, TheSolverOfTheLinksIsChosenAndReported)
+{
+    const Json usual = Json::parse(summaryOf({})), bullet = Json::parse(summaryOf({"--solver", "bullet"}));
+    const Json drape = Json::parse(summaryOf({"--solver", "drape"}));
+    EXPECT_EQ(usual.at("solver"), "bullet");
+    EXPECT_EQ(bullet.at("hash"), usual.at("hash"));
+    EXPECT_EQ(drape.at("solver"), "drape");
+    EXPECT_NE(drape.at("hash"), usual.at("hash"));
+    EXPECT_LE(drape.at("stretch_mean"), drape.at("stretch_max"));
+    EXPECT_GT(drape.at("rest_speed_mm_s"), 0);
 }
 
 TEST_F(Outputs, HostAndOpenClGiveTheSameHash)

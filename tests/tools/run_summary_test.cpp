@@ -2,6 +2,8 @@
 // were none.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tools/cloth_drop/report.h"
 #include "tools/cloth_drop/step_stream.h"
 
@@ -44,6 +46,32 @@ TEST(RunSummary, HasTheMostIntersectingPairsAndTheFirstStepThatHadThem)
     EXPECT_EQ(most({0, 0}), Most(0, 0));
     EXPECT_EQ(most({}), Most(0, 0));
     EXPECT_NE(asTable({runOf("drape", {0, 3, 5, 1}, 7)}).find("5 (3)"), std::string::npos);
+}
+
+TEST(RunSummary, StretchIsAgainstTheLengthsAtTheStart)
+{
+    TriangleMesh cloth;
+    cloth.m_positions = {0, 0, 0, 1, 0, 0, 0, 0, 2};
+    cloth.m_triangles = {0, 1, 2};
+    const StretchMeter meter(cloth);
+    EXPECT_DOUBLE_EQ(meter.measure(cloth.m_positions).m_mean, 0);
+    EXPECT_DOUBLE_EQ(meter.measure(cloth.m_positions).m_max, 0);
+    // Twice as large: every edge is longer by its own length.
+    const MeshStretch twice = meter.measure({0, 0, 0, 2, 0, 0, 0, 0, 4});
+    EXPECT_NEAR(twice.m_mean, 1, 1e-12);
+    EXPECT_NEAR(twice.m_max, 1, 1e-12);
+    // The first edge half as long, the second one unchanged.
+    const MeshStretch narrow = meter.measure({0, 0, 0, 0.5f, 0, 0, 0, 0, 2});
+    EXPECT_DOUBLE_EQ(narrow.m_max, 0);
+    EXPECT_NEAR(narrow.m_mean, (-0.5 + std::sqrt(4.25 / 5) - 1) / 3, 1e-7);
+}
+
+TEST(RunSummary, SpeedAtRestIsThatOfTheLastQuarter)
+{
+    NamedRun run = runOf("drape", {0, 0, 0, 0, 0, 0, 0, 0}, 1);
+    for (std::size_t i = 0; i < 8; ++i)
+        run.m_record.m_steps[i].m_speed = i < 6 ? 9 : double(i) - 3;
+    EXPECT_NEAR(double(asJson({run}, false).at("rest_speed_mm_s")), 1000 * std::sqrt((9.0 + 16.0) / 2), 1e-6);
 }
 
 TEST(RunSummary, SaysNothingOfStepsInContactWhereThereWereNone)

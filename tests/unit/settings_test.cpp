@@ -37,6 +37,7 @@ TEST(SettingsRanges, ValuesOutOfRangeAreRefused)
     for (const float activation : {0.0f, 4.0f})
         EXPECT_EQ(errorOfSettings([&](Settings& s) { s.m_activation = activation; }), "");
     EXPECT_NE(errorOfSettings([](Settings& s) { s.m_mode = ContactMode(3); }), "");
+    EXPECT_NE(errorOfSettings([](Settings& s) { s.m_solver = Solver(3); }), "");
     EXPECT_NE(errorOfSettings([](Settings& s) { s.m_crossover = double(kNaN); }), "");
     EXPECT_EQ(errorOfSettings([](Settings& s) { s.m_crossover = double(kInfinity); }), "");
 }
