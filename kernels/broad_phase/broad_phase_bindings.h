@@ -30,12 +30,12 @@ DRAPE_NAMESPACE_END
 #define DRAPE_PATCH_CULL                                                                                 \
     DRAPE_VALUE(CullValues, values), DRAPE_READS(float, nodes), DRAPE_READS(ClothWord, cloths),          \
         DRAPE_READS(float, radius), DRAPE_READS(float, thickness), DRAPE_READS(ObstacleMotion, motions), \
-        DRAPE_READS(PatchWord, patches), DRAPE_WRITES(FeatureTest, list), DRAPE_UPDATES(StepCounters, counters)
+        DRAPE_READS(PatchWord, patches), DRAPE_WRITES(FeatureTest, list), DRAPE_WRITES(StepCounters, counters)
 #define DRAPE_PATCH_WALK DRAPE_PATCH_CULL
 #define DRAPE_PATCH_CULL_PAIRS                                                                                 \
     DRAPE_VALUE(CullValues, values), DRAPE_READS(FeatureTest, pairs), DRAPE_READS(float, nodes),               \
         DRAPE_READS(ClothWord, cloths), DRAPE_READS(ObstacleMotion, motions), DRAPE_READS(PatchWord, patches), \
-        DRAPE_WRITES(FeatureTest, list), DRAPE_UPDATES(StepCounters, counters)
+        DRAPE_WRITES(FeatureTest, list), DRAPE_WRITES(StepCounters, counters)
 
 #ifndef __OPENCL_VERSION__
 namespace drape::kernels

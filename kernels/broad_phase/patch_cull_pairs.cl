@@ -25,7 +25,8 @@
 #define DRAPE_OWN_PART (teamLane() % DRAPE_PATCH_WIDTH / DRAPE_PART)
 
 // Five bits of a task hold a pair's index, its parts are bits of a word, and each pair has a lane.
-typedef char PairsFit[DRAPE_CULL_PAIRS <= 32 && DRAPE_CULL_PAIRS <= DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH ? 1 : -1];
+typedef char PairsFitTask[DRAPE_CULL_PAIRS <= 32 ? 1 : -1];
+typedef char PairsFitLanes[DRAPE_CULL_PAIRS <= DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH ? 1 : -1];
 typedef char PartsFit[DRAPE_EDGE_PARTS + 3u * DRAPE_PARTS <= 32u ? 1 : -1];
 
 // The current pair. m_looker: index of its cloth triangle's cull query.

@@ -23,8 +23,8 @@ struct KernelTexts
 };
 
 // The texts of kernels/<file>, one behind the other, with every include replaced by the included text once. Texts of
-// kernels/lib/any_width are included as often as they are named. Line directives keep each line's own file and number, so
-// a compiler's message names the .cl or .h file. Empty when a file is not embedded.
+// kernels/lib/any_width are included as often as they are named. Line directives keep each line's own file and number,
+// so a compiler's message names the .cl or .h file. Empty when a file is not embedded.
 std::string assembleSources(const std::vector<std::string>& paths, const KernelTexts& others = {});
 inline std::string assembleSource(const std::string& path)
 {
@@ -62,8 +62,9 @@ inline cl::Program buildProgram(Device& device, const std::string& name, const s
 // Returns the program that contains "kernels/<name>.cl", alone or with other files; for stages that need several.
 using ProgramLoader = std::function<cl::Program(const char* name)>;
 
-// Builds a source text unchanged. what: its name in an error.
-cl::Program compileSource(Device& device, const std::string& what, const std::string& source);
+// Builds a source text unchanged. what: its name in an error. options: null for those of all kernels.
+cl::Program compileSource(Device& device, const std::string& what, const std::string& source,
+                          const char* options = nullptr);
 
 // A kernel with its name, for messages. Launches are enqueued; nothing waits.
 class Kernel
