@@ -1,27 +1,14 @@
-// One body's contacts of a step, by cloth feature, as detection gave them. Most never act in a step, so a contact is
-// resolved only when it is needed (found_contacts.h). Metres, world frame.
+// One body of a step with pairs: what the solver takes of it, and what Bullet's side needs beside that. Metres, world
+// frame.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "BulletSoftBody/btSoftBody.h"
-#include "bullet_plugin/adapter/cloth_parts.h"
-#include "bullet_plugin/adapter/motion_limit.h"
-#include "bullet_plugin/adapter/substep_body.h"
-#include "bullet_plugin/core/pipeline/pipeline.h"
+#include "bullet_plugin/core/solver/cloth_contacts.h"
 
 namespace drape
 {
-// The contacts of one node, face or edge of a cloth.
-struct FeatureContacts
-{
-    const Contact* m_contacts;  // the pipeline's, until its next submit
-    std::uint32_t m_count;
-    int m_nodes[3];     // indices of the body's nodes; -1 where unused
-    float m_leastTime;  // earliest time of impact; 1 when nothing was passed
-};
-
 // Largest speed after a step, m/s relative to the cloth as a whole, of a node whose cloth was tangled shortly before.
 // Keeps links that were stretched meanwhile from throwing the node.
 constexpr btScalar kMostTangledSpeed = 3;
@@ -50,10 +37,9 @@ struct TangledPair
 struct NodePush
 {
     int m_node;
-    btVector3 m_normal;          // unit, direction of the push
-    btScalar m_distance;         // m, to move along the normal in this step
-    const btTransform* m_carry;  // see StepContact
-    const btVector3* m_carriedStarts;
+    btVector3 m_normal;   // unit, direction of the push
+    btScalar m_distance;  // m, to move along the normal in this step
+    Carry m_carry;
     btScalar m_speedLimit;  // m/s along the normal after the push
 };
 
@@ -61,33 +47,31 @@ struct BodyContacts
 {
     MeshId m_cloth = kNoMesh;
     btSoftBody* m_body = nullptr;
-    const ClothParts* m_parts = nullptr;                             // owned by the cloth's mirror
-    btScalar m_leastThickness = SIMD_INFINITY, m_mostThickness = 0;  // over the body's pairs
-    std::vector<FeatureContacts> m_features;                         // in canonical order
-    MotionLimit m_limit;
-    SubstepBody* m_substeps = nullptr;   // solves the body's links; null where Bullet does
+    ClothContacts m_contacts;
     bool m_leftOut = false;              // the body collides with nothing in this step
     bool m_heldTogether = false;         // since the last detection, see stretch.h
     bool m_obstacleJumps = false;        // an obstacle moves farther in the step than its size, or turns far
-    bool m_mayHavePassed = false;        // a contact is left so near that a surface may have been passed
     std::vector<TangledPair> m_tangled;  // the body's pairs that are pushed apart
     bool m_wasTangled = false;           // in this step or one shortly before
     std::vector<NodePush> m_pushes;
     std::vector<Contact> m_pushContacts;  // one per push
+
+    SolverNodes& nodes() { return m_contacts.m_nodes; }
+    const SolverNodes& nodes() const { return m_contacts.m_nodes; }
+    // Speed that a node loses per metre of its path that is taken away, 1/s, as in Bullet's own update.
+    float perSecond() const { return m_contacts.m_perSecond * m_contacts.m_kept; }
 
     // Resets the record for a body of another step. Memory is kept.
     void start(MeshId cloth, btSoftBody* body, const ClothParts& parts)
     {
         m_cloth = cloth;
         m_body = body;
-        m_parts = &parts;
-        m_leastThickness = SIMD_INFINITY;
-        m_mostThickness = 0;
-        m_features.clear();
-        m_limit.clear();
-        m_substeps = nullptr;
+        m_contacts.start(parts);
+        m_contacts.m_friction = float(body->m_cfg.kDF);
+        m_contacts.m_hardness = float(body->m_cfg.kKHR);
+        m_contacts.m_perSecond = float(body->m_sst.isdt);
+        m_contacts.m_kept = float(1 - body->m_cfg.kDP);
         m_leftOut = m_heldTogether = m_obstacleJumps = false;
-        m_mayHavePassed = false;
         m_tangled.clear();
         m_wasTangled = false;
         m_pushes.clear();

@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "bullet_plugin/adapter/stretch.h"
-#include "bullet_plugin/adapter/vectors.h"
+#include "bullet_plugin/adapter/body_nodes.h"
 #include "bullet_plugin/core/scene/growing_arrays.h"
 
 namespace drape
@@ -32,13 +32,14 @@ bool anyMoves(const btSoftBody& body)
     return false;
 }
 
-// starts: by node, m.
-void writeNodes(const btSoftBody& body, const btVector3* starts, const NodeStretch& stretch)
+// startOf: returns a node's start by its index, m.
+template <class StartOf>
+void writeNodes(const btSoftBody& body, const StartOf& startOf, const NodeStretch& stretch)
 {
     float *start = stretch.m_start, *end = stretch.m_end;
     for (std::size_t i = stretch.m_first; i < stretch.m_first + stretch.m_count; ++i)
     {
-        writePosition(starts[i], start);
+        writePosition(startOf(i), start);
         writePosition(body.m_nodes[static_cast<int>(i)].m_x, end);
     }
 }
@@ -104,7 +105,7 @@ CollisionStep::Pair CollisionStep::makePair(const PairNote& note, const ClothMir
     m_byCloth[deformed.m_mesh] = body;
     m_uploads.push_back(Upload{deformed.m_mesh, body, deformed.m_starts.data()});
     m_state.m_found.nameCloth(deformed.m_mesh, note.m_cloth);
-    m_state.m_found.nameStarts(deformed.m_mesh, deformed.m_carried.data());
+    m_state.m_found.source().nameStarts(deformed.m_mesh, deformed.m_carried.data());
     pair.m_cloth = deformed.m_mesh;
     pair.m_carriedStarts = deformed.m_carried.data();
     return pair;
@@ -134,10 +135,12 @@ void CollisionStep::addPair(const PairNote& note)
     high += btVector3(lacks, lacks, lacks);
     BodyContacts& body = *bodyOf(clothId);
     body.m_obstacleJumps = body.m_obstacleJumps || jumps(note.m_motion, (high - low).length());
-    body.m_limit.addObstacle(low, high, note.m_thickness, btScalar(m_state.settings().m_activation),
-                             m_state.m_found.carryOf(obstacleId), m_pairs.back().m_carriedStarts);
-    body.m_leastThickness = std::min(body.m_leastThickness, note.m_thickness);
-    body.m_mostThickness = std::max(body.m_mostThickness, note.m_thickness);
+    ClothContacts& contacts = body.m_contacts;
+    const float thickness = float(note.m_thickness);
+    contacts.m_limit.addObstacle(vec3Of(low), vec3Of(high), thickness, m_state.settings().m_activation,
+                                 {m_state.m_found.source().mapOf(obstacleId), m_pairs.back().m_carriedStarts});
+    contacts.m_leastThickness = std::min(contacts.m_leastThickness, thickness);
+    contacts.m_mostThickness = std::max(contacts.m_mostThickness, thickness);
 }
 
 // Records the paths of the nodes and writes them for the device, so that a large cloth's nodes are read once. Later
@@ -148,18 +151,28 @@ void CollisionStep::uploadNodes(Detection detection)
     for (const Upload& upload : m_uploads)
     {
         cloths.push_back(upload.m_mesh);
-        if (!upload.m_starts) m_bodies[upload.m_body].m_limit.startRecord(m_mirrors[upload.m_body]->faces());
+        if (upload.m_starts) continue;
+        ClothContacts& contacts = m_bodies[upload.m_body].m_contacts;
+        contacts.m_limit.startStep(m_mirrors[upload.m_body]->faces());
+        contacts.m_nodes.resize(m_mirrors[upload.m_body]->faces().nodeCount());
     }
     const auto write = [&](const NodeStretch& stretch)
     {
         const Upload& upload = m_uploads[stretch.m_cloth];
         BodyContacts& body = m_bodies[upload.m_body];
-        if (upload.m_starts) return writeNodes(*body.m_body, upload.m_starts, stretch);
-        if (detection == Detection::First)
-            body.m_limit.recordNodes(*body.m_body, stretch.m_first, stretch.m_count);
-        else
-            body.m_limit.recordEnds(*body.m_body, stretch.m_first, stretch.m_count);
-        writeNodes(*body.m_body, body.m_limit.paths().m_start.data(), stretch);
+        if (upload.m_starts)
+            return writeNodes(
+                *body.m_body, [&](std::size_t node) { return upload.m_starts[node]; }, stretch);
+        for (std::size_t i = stretch.m_first; i < stretch.m_first + stretch.m_count; ++i)
+        {
+            const btSoftBody::Node& node = body.m_body->m_nodes[int(i)];
+            if (detection == Detection::First)
+                recordPath(node, i, body.nodes());
+            else
+                recordEnd(node, i, body.nodes());
+        }
+        writeNodes(
+            *body.m_body, [&](std::size_t node) { return vectorOf(body.nodes().start(node)); }, stretch);
     };
     m_state.pipeline().writeNodes(cloths, write);
 }
@@ -243,8 +256,8 @@ void CollisionStep::addContacts(BodyContacts& body, const Contact* first, std::u
     for (std::uint32_t i = 0; i < count; ++i)
         feature.m_leastTime = std::min(feature.m_leastTime, first[i].m_time);
     for (int k = 0; k < 3 && feature.m_nodes[k] >= 0; ++k)
-        body.m_limit.addContactNode(feature.m_nodes[k]);
-    body.m_features.push_back(feature);
+        body.m_contacts.m_limit.addContactNode(feature.m_nodes[k]);
+    body.m_contacts.m_features.push_back(feature);
 }
 
 // Returns how many times as many tests as in ordinary motion the cloth may make.
@@ -252,7 +265,7 @@ float CollisionStep::allowanceOf(MeshId cloth) const
 {
     const std::size_t index = m_byCloth.at(cloth);
     const BodyContacts& body = m_bodies[index];
-    const Stretch stretch = stretchOf(*body.m_body, m_mirrors[index]->faces(), body.m_limit.paths());
+    const Stretch stretch = stretchOf(*body.m_body, m_mirrors[index]->faces(), body.nodes());
     const bool isApart = stretch.m_start > kMostStretch;
     if (!body.m_heldTogether && (isApart || stretch.m_end > kMostStretch)) return 1;
     return isApart || body.m_heldTogether || body.m_obstacleJumps ? kMostAllowance : HUGE_VALF;
@@ -262,7 +275,7 @@ float CollisionStep::allowanceOf(MeshId cloth) const
 void CollisionStep::receiveAll(Detection detection)
 {
     for (BodyContacts& body : m_bodies)
-        body.m_features.clear();
+        body.m_contacts.m_features.clear();
     const ContactList contacts = m_state.pipeline().finish([this](MeshId cloth) { return allowanceOf(cloth); });
     addDetection(m_state.m_statistics, m_state.pipeline().statistics(), detection);
     markUnguarded();
@@ -271,19 +284,21 @@ void CollisionStep::receiveAll(Detection detection)
 }
 
 // Lists the body's contacts that its nodes' paths meet.
-std::vector<StepContact> CollisionStep::impactsOf(const BodyContacts& body) const
+std::vector<SolverContact> CollisionStep::impactsOf(const BodyContacts& body) const
 {
-    std::vector<StepContact> impacts;
-    for (const FeatureContacts& feature : body.m_features)
+    std::vector<SolverContact> impacts;
+    for (const FeatureContacts& feature : body.m_contacts.m_features)
         for (std::uint32_t i = 0; feature.m_leastTime < 1 && i < feature.m_count; ++i)
             if (feature.m_contacts[i].m_time < 1)
-                impacts.push_back(m_state.m_found.resolve(*body.m_body, body.m_limit.paths(), feature.m_contacts[i]));
+                impacts.push_back(body.m_contacts.resolve(m_state.m_found.source(), feature.m_contacts[i]));
     return impacts;
 }
 
 bool CollisionStep::cutAtImpactsOf(BodyContacts& body, Cut cut)
 {
-    return cutAtImpacts(*body.m_body, body.m_limit.paths(), impactsOf(body), cut);
+    if (!cutAtImpacts(body.nodes(), impactsOf(body), cut, body.perSecond())) return false;
+    writeShifted(body.nodes(), *body.m_body);
+    return true;
 }
 
 bool CollisionStep::cutPaths()
@@ -328,13 +343,12 @@ void CollisionStep::reportPassed(const std::vector<bool>& strayed)
     for (std::size_t i = 0; i < m_bodies.size(); ++i)
     {
         if (!strayed[i]) continue;
-        std::vector<StepContact> impacts = impactsOf(m_bodies[i]);
-        const std::vector<btScalar>& inverseMass = m_bodies[i].m_limit.paths().m_inverseMass;
-        const auto isHeld = [&](const StepContact& impact)
+        std::vector<SolverContact> impacts = impactsOf(m_bodies[i]);
+        const SolverNodes& nodes = m_bodies[i].nodes();
+        const auto isHeld = [&](const SolverContact& impact)
         {
             return std::any_of(impact.m_nodes, impact.m_nodes + 3,
-                               [&](int node)
-                               { return node >= 0 && !(inverseMass[static_cast<std::size_t>(node)] > 0); });
+                               [&](int node) { return node >= 0 && !(nodes.inverseMass(std::size_t(node)) > 0); });
         };
         impacts.erase(std::remove_if(impacts.begin(), impacts.end(), isHeld), impacts.end());
         if (!anyCuts(impacts)) continue;
@@ -347,7 +361,8 @@ void CollisionStep::checkStrayed()
 {
     std::vector<bool> strayed;
     for (BodyContacts& body : m_bodies)
-        strayed.push_back((body.m_mayHavePassed && !body.m_wasTangled) || body.m_limit.strayed(*body.m_body));
+        strayed.push_back((body.m_contacts.m_mayHavePassed && !body.m_wasTangled) ||
+                          body.m_contacts.m_limit.strayed(body.nodes()));
     if (std::find(strayed.begin(), strayed.end(), true) == strayed.end()) return;
     // Keeps the reported contacts as the solver received them.
     m_state.m_found.keepList();

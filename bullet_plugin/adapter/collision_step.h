@@ -11,7 +11,7 @@
 
 #include "bullet_plugin/adapter/body_contacts.h"
 #include "bullet_plugin/adapter/deformed_pairs.h"
-#include "bullet_plugin/adapter/impact_cut.h"
+#include "bullet_plugin/core/solver/impact_cut.h"
 #include "bullet_plugin/adapter/pair_starts.h"
 #include "bullet_plugin/adapter/plugin_state.h"
 #include "bullet_plugin/core/pipeline/add_detection.h"
@@ -48,7 +48,7 @@ private:
     {
         MeshId m_cloth, m_obstacle;  // m_cloth: the pair's own mesh of the cloth if its obstacle deforms
         btScalar m_thickness;
-        const btVector3* m_carriedStarts;  // start positions in that case, see StepContact; else null
+        const Vec3* m_carriedStarts;  // carried starts in that case, see Carry; else null
         StartingPair m_start;
     };
 
@@ -75,7 +75,7 @@ private:
     void receiveHeld(Detection detection);
     float allowanceOf(MeshId cloth) const;
     void receive(const ContactList& contacts);
-    std::vector<StepContact> impactsOf(const BodyContacts& body) const;
+    std::vector<SolverContact> impactsOf(const BodyContacts& body) const;
     void reportPassed(const std::vector<bool>& strayed);
     bool cutAtImpactsOf(BodyContacts& body, Cut cut);
     bool cutPaths();

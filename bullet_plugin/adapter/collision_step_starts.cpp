@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "bullet_plugin/adapter/body_nodes.h"
 #include "bullet_plugin/adapter/collision_step.h"
 #include "bullet_plugin/adapter/stretch.h"
 
@@ -63,7 +64,7 @@ void CollisionStep::checkStarts()
         const std::size_t pushes = m_bodies[body].m_pushes.size();
         m_starts.check(pair.m_start, m_jumped[body], m_bodies[body]);
         for (std::size_t i = pushes; i < m_bodies[body].m_pushes.size(); ++i)
-            m_bodies[body].m_pushes[i].m_carriedStarts = pair.m_carriedStarts;
+            m_bodies[body].m_pushes[i].m_carry.m_starts = pair.m_carriedStarts;
     }
     for (BodyContacts& body : m_bodies)
         preparePushes(body);
@@ -76,23 +77,23 @@ void CollisionStep::preparePushes(BodyContacts& body)
     for (NodePush& push : body.m_pushes)
     {
         btSoftBody::Node& node = body.m_body->m_nodes[push.m_node];
-        const btVector3 start = carriedStart(push.m_carry, push.m_carriedStarts, push.m_node, node.m_q);
-        StepContact contact = {};
+        const btVector3 start = vectorOf(push.m_carry.start(std::size_t(push.m_node), vec3Of(node.m_q)));
+        const btVector3 point = start + push.m_normal * push.m_distance;
+        const btScalar endGap = push.m_normal.dot(node.m_x - point);
+        SolverContact contact = {};
         contact.m_nodes[0] = push.m_node;
         contact.m_nodes[1] = contact.m_nodes[2] = -1;
         contact.m_weights[0] = 1;
-        contact.m_normal = push.m_normal;
-        contact.m_point = start + push.m_normal * push.m_distance;
+        contact.m_normal = vec3Of(push.m_normal);
+        contact.m_point = vec3Of(point);
         contact.m_time = 1;
-        contact.m_startGap = -push.m_distance;
-        contact.m_endGap = push.m_normal.dot(node.m_x - contact.m_point);
+        contact.m_startGap = float(-push.m_distance);
+        contact.m_endGap = float(endGap);
         contact.m_carry = push.m_carry;
-        contact.m_carriedStarts = push.m_carriedStarts;
-        body.m_pushContacts.push_back(m_state.m_found.addOwn(contact));
-        push.m_speedLimit =
-            (std::max(btScalar(0), contact.m_endGap - contact.m_startGap) + push.m_normal.dot(start - node.m_q)) *
-            body.m_body->m_sst.isdt;
-        if (contact.m_endGap < 0) node.m_x -= push.m_normal * contact.m_endGap;
+        body.m_pushContacts.push_back(m_state.m_found.source().addOwn(contact));
+        push.m_speedLimit = (std::max(btScalar(0), endGap + push.m_distance) + push.m_normal.dot(start - node.m_q)) *
+                            body.m_body->m_sst.isdt;
+        if (endGap < 0) node.m_x -= push.m_normal * endGap;
     }
 }
 
@@ -121,9 +122,10 @@ void CollisionStep::addPushes(BodyContacts& body)
     for (std::size_t i = 0; i < body.m_pushes.size(); ++i)
     {
         pushes.push_back(FeatureContacts{&body.m_pushContacts[i], 1, {body.m_pushes[i].m_node, -1, -1}, 1});
-        body.m_limit.addContactNode(body.m_pushes[i].m_node);
+        body.m_contacts.m_limit.addContactNode(body.m_pushes[i].m_node);
     }
-    body.m_features.insert(body.m_features.begin(), pushes.begin(), pushes.end());  // nodes are first
+    std::vector<FeatureContacts>& features = body.m_contacts.m_features;
+    features.insert(features.begin(), pushes.begin(), pushes.end());  // nodes are first
 }
 
 // Handles a body that needs too many tests. A body that has changed its size is held together and detected again. If
@@ -132,17 +134,17 @@ void CollisionStep::leaveOut(std::size_t index)
 {
     BodyContacts& body = m_bodies[index];
     const ClothFaces& faces = m_mirrors[index]->faces();
-    const Stretch stretch = stretchOf(*body.m_body, faces, body.m_limit.paths());
+    const Stretch stretch = stretchOf(*body.m_body, faces, body.nodes());
     const bool isStretched = stretch.m_start > kMostStretch || stretch.m_end > kMostStretch;
     if (isStretched && !body.m_heldTogether)
     {
-        holdTogether(*body.m_body, faces, body.m_limit.paths());
+        holdTogether(*body.m_body, faces, body.nodes());
         body.m_heldTogether = m_heldTogether = true;
         return;
     }
     m_mirrors[index]->startAnew();
     body.m_leftOut = body.m_wasTangled = true;
-    body.m_limit.clear();
+    body.m_contacts.m_limit.clear();
     if (!m_told.insert(body.m_body).second) return;
     char line[256];
     std::snprintf(

@@ -5,7 +5,7 @@
 
 #include "bullet_plugin/adapter/mirrors.h"
 #include "bullet_plugin/adapter/plugin_state.h"
-#include "kernels/lib/vec3.h"
+#include "bullet_plugin/adapter/vectors.h"
 
 namespace drape
 {
@@ -65,10 +65,10 @@ const DeformedPair& DeformedPairs::update(const ClothMirror& cloth, const Obstac
         {
             const btVector3& start = body.m_nodes[static_cast<int>(i)].m_q;
             const btVector3 own = kinematic ? toObstacle * start : start;
-            const Vec3 place = deformed(obstacle, vec3(float(own.x()), float(own.y()), float(own.z())), whole);
-            const btVector3 moved(place.x, place.y, place.z);
+            const Vec3 place = deformed(obstacle, vec3Of(own), whole);
+            const btVector3 moved = vectorOf(place);
             pair.m_starts[i] = kinematic ? motion.m_start * moved : moved;
-            pair.m_carried[i] = kinematic ? motion.m_end * moved : moved;
+            pair.m_carried[i] = vec3Of(kinematic ? motion.m_end * moved : moved);
         }
     };
     const std::size_t jobs = (count + kNodesPerJob - 1) / kNodesPerJob;

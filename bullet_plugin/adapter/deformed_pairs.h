@@ -16,6 +16,7 @@
 
 #include "bullet_plugin/adapter/kinematic_motion.h"
 #include "bullet_plugin/core/scene/mesh_id.h"
+#include "kernels/shared/types.h"
 
 namespace drape
 {
@@ -25,9 +26,9 @@ class PluginState;
 
 struct DeformedPair
 {
-    MeshId m_mesh = kNoMesh;           // the cloth's mesh for this obstacle alone
-    std::vector<btVector3> m_starts;   // by node, m: start positions for the pipeline
-    std::vector<btVector3> m_carried;  // position to which the obstacle's whole motion carries it
+    MeshId m_mesh = kNoMesh;          // the cloth's mesh for this obstacle alone
+    std::vector<btVector3> m_starts;  // by node, m: start positions for the pipeline
+    std::vector<Vec3> m_carried;      // position to which the obstacle's whole motion carries it
     std::uint64_t m_lastStep = 0;
 };
 

@@ -30,15 +30,6 @@ void ignoreForeign(std::vector<std::int32_t>& triangles)
         if (std::count(&triangles[i], &triangles[i] + 3, kForeign) > 0) std::fill(&triangles[i], &triangles[i] + 3, 0);
 }
 
-// Three rows of the rotation and the shift.
-void writePose(const btTransform& pose, float* out)
-{
-    for (int row = 0; row < 3; ++row)
-    {
-        writePosition(pose.getBasis().getRow(row), out);
-        *out++ = static_cast<float>(pose.getOrigin()[row]);
-    }
-}
 }  // namespace
 
 bool ClothMirror::sameFaces(int begin, int end) const
@@ -92,9 +83,9 @@ void ClothMirror::readTopology()
 // it.
 void ClothMirror::cutParts()
 {
-    std::vector<btVector3> places;
+    std::vector<Vec3> places;
     for (int i = 0; i < m_body->m_nodes.size(); ++i)
-        places.push_back(m_body->m_nodes[i].m_x);
+        places.push_back(vec3Of(m_body->m_nodes[i].m_x));
     m_parts.cut(std::move(places));
     m_takenUp = false;
 }

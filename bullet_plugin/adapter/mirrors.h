@@ -19,8 +19,8 @@
 
 #include "BulletSoftBody/btSoftBody.h"
 #include "LinearMath/btTransform.h"
-#include "bullet_plugin/adapter/cloth_faces.h"
-#include "bullet_plugin/adapter/cloth_parts.h"
+#include "bullet_plugin/core/solver/cloth_faces.h"
+#include "bullet_plugin/core/solver/cloth_parts.h"
 #include "bullet_plugin/adapter/kinematic_motion.h"
 #include "bullet_plugin/adapter/solid_links.h"
 #include "bullet_plugin/core/pipeline/pipeline.h"

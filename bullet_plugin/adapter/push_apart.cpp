@@ -6,8 +6,7 @@
 #include "bullet_plugin/adapter/mirrors.h"
 #include "bullet_plugin/adapter/pair_starts.h"
 #include "bullet_plugin/adapter/plugin_state.h"
-#include "bullet_plugin/adapter/step_contact.h"
-#include "kernels/lib/vec3.h"
+#include "bullet_plugin/adapter/body_nodes.h"
 
 namespace drape
 {
@@ -41,11 +40,6 @@ constexpr btScalar kDrawnDepth = btScalar(0.1);
 
 // Minimum nodes for waking threads to find their nearest surface points.
 constexpr std::size_t kLeastShared = 64;
-
-Vec3 vec3Of(const btVector3& v)
-{
-    return vec3(static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()));
-}
 
 // Marks every node that is connected with the first over faces that do not meet the obstacle.
 template <class Visit>
@@ -106,17 +100,16 @@ void PairStarts::findRegions(const ClothFaces& faces, const MeshProbe& probe)
 // way: displacement to the surface point where the node comes out, in the frame of the obstacle's positions.
 void PairStarts::pushNode(const StartingPair& pair, int node, Vec3 way, BodyContacts& body) const
 {
-    const btVector3 there(way.x, way.y, way.z);
+    const btVector3 there = vectorOf(way);
     const btScalar depth = there.length();
     if (!(depth > 0) || !(movableInverseMass(body.m_body->m_nodes[node]) > 0)) return;
     NodePush push;
     push.m_node = node;
     push.m_normal = (pair.m_kinematic ? pair.m_motion.m_end.getBasis() * there : there).normalized();
-    push.m_distance = std::min(depth + kRecoveredShare * body.m_leastThickness,
+    push.m_distance = std::min(depth + kRecoveredShare * body.m_contacts.m_leastThickness,
                                (kLeastSpeed + kSpeedPerMetre * depth) * body.m_body->m_sst.sdt);
     push.m_speedLimit = SIMD_INFINITY;
-    push.m_carriedStarts = nullptr;
-    push.m_carry = m_state.m_found.carryOf(pair.m_obstacle->id());
+    push.m_carry.m_map = m_state.m_found.source().mapOf(pair.m_obstacle->id());
     body.m_pushes.push_back(push);
 }
 

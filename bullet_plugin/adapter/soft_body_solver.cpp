@@ -5,7 +5,8 @@
 #include <utility>
 
 #include "BulletSoftBody/btSoftBody.h"
-#include "bullet_plugin/adapter/body_solver.h"
+#include "bullet_plugin/adapter/body_nodes.h"
+#include "bullet_plugin/adapter/bullet_links.h"
 #include "bullet_plugin/adapter/collision_step.h"
 #include "bullet_plugin/adapter/eligibility.h"
 #include "bullet_plugin/adapter/motion_bounds.h"
@@ -13,6 +14,7 @@
 #include "bullet_plugin/adapter/substep_body.h"
 #include "bullet_plugin/core/float_environment.h"
 #include "bullet_plugin/core/public_call.h"
+#include "bullet_plugin/core/solver/step_solver.h"
 #include "bullet_plugin/core/stopwatch.h"
 #include "bullet_plugin/core/usage_watch.h"
 
@@ -44,15 +46,15 @@ std::size_t elementsOf(const StepStatistics& step)
 void holdStill(btSoftBody& body, const BodyContacts* contacts)
 {
     const std::size_t count = static_cast<std::size_t>(body.m_nodes.size());
-    const NodePaths* const paths = contacts ? &contacts->m_limit.paths() : nullptr;
+    const SolverNodes* const nodes = contacts ? &contacts->nodes() : nullptr;
     const btVector3 fall = body.m_worldInfo->m_gravity * body.m_sst.sdt;
     for (std::size_t i = 0; i < count; ++i)
     {
         btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
-        if (paths)
+        if (nodes)
         {
-            node.m_v = (paths->m_end[i] - paths->m_start[i]) * body.m_sst.isdt;
-            node.m_q = paths->m_start[i];
+            node.m_v = vectorOf(nodes->way(i)) * body.m_sst.isdt;
+            node.m_q = vectorOf(nodes->start(i));
         }
         if (node.m_im > 0) node.m_v -= fall;
         node.m_x = node.m_q;
@@ -63,7 +65,7 @@ void holdStill(btSoftBody& body, const BodyContacts* contacts)
 // Working data kept from step to step.
 struct SoftBodySolver::Work
 {
-    explicit Work(PluginState& state) : m_solver(new BodySolver(state.threads())), m_failures(state.failures()) {}
+    explicit Work(PluginState& state) : m_solver(new StepSolver(state.threads())), m_failures(state.failures()) {}
 
     bool isPredicted(const btSoftBody& body) const
     {
@@ -97,30 +99,35 @@ struct SoftBodySolver::Work
         }
         return i;
     }
+    bool take(btSoftBody& body);
     BodyContacts* contactsOf(const btSoftBody& body) { return m_step ? m_step->contactsOf(body) : nullptr; }
 
     // Releases memory that only earlier, larger steps needed. Call before a step's begin().
     void giveBackRoom(PluginState& state)
     {
-        m_solver.reset(new BodySolver(state.threads()));
+        m_solver.reset(new StepSolver(state.threads()));
         m_step->giveBackRoom();
         state.m_found.clear();
         state.pipeline().giveBackRoom();
     }
 
     std::unique_ptr<CollisionStep> m_step;  // null until it is needed
-    std::unique_ptr<BodySolver> m_solver;
+    std::unique_ptr<StepSolver> m_solver;
     UsageWatch m_usage;
     std::unordered_map<const btSoftBody*, std::unique_ptr<SubstepBody>> m_substeps;  // bodies whose links Drape solves
-    std::vector<BodyContacts*> m_touched;                                            // working memory of solveBodies()
-    std::vector<std::pair<btSoftBody*, SubstepBody*>> m_free;  // working memory: bodies without contacts
-    std::vector<unsigned char> m_solved;                       // by body: solved by Bullet or by its contacts
-    std::vector<btSoftBody*> m_taken;                          // bodies that Drape handles in this step
-    std::vector<const btSoftBody*> m_predicted;                // in this step, sorted by address
-    bool m_listed = false;                                     // m_predicted is whole
-    bool m_detected = false;                                   // the paths of all bodies with a pair are recorded
-    std::size_t m_asleep = 0;                                  // cloths that are not among them
-    double m_predictMs = 0;                                    // time of this class in predictMotion
+    // Working memory of solveBodies(): bodies with pairs, those among them whose links Bullet solves, and others whose
+    // links the core solves.
+    std::vector<SolverCloth> m_touched;
+    std::vector<std::unique_ptr<BulletLinks>> m_bulletLinks;
+    std::vector<FreeCloth> m_free;
+    std::vector<std::pair<btSoftBody*, const SolverNodes*>> m_ends;  // results to be written to the bodies
+    std::vector<unsigned char> m_solved;                             // by body: solved by Bullet or by its contacts
+    std::vector<btSoftBody*> m_taken;                                // bodies that Drape handles in this step
+    std::vector<const btSoftBody*> m_predicted;                      // in this step, sorted by address
+    bool m_listed = false;                                           // m_predicted is whole
+    bool m_detected = false;                                         // the paths of all bodies with a pair are recorded
+    std::size_t m_asleep = 0;                                        // cloths that are not among them
+    double m_predictMs = 0;                                          // time of this class in predictMotion
     std::uint64_t m_failures;  // failures of the state that a step of this solver has reported
 };
 
@@ -277,30 +284,39 @@ void SoftBodySolver::detect()
     statistics.m_writeMs = watch.lapMs() - statistics.m_waitMs;
 }
 
+// Hands a body with a pair, or whose links the core solves, to the solver. Returns whether it is one.
+bool SoftBodySolver::Work::take(btSoftBody& body)
+{
+    if (!isSteppedBody(body)) return false;
+    BodyContacts* const contacts = contactsOf(body);
+    SubstepBody* const substeps = substepsOf(body);
+    if (!contacts && !substeps) return false;
+    if (substeps)
+    {
+        substeps->begin(body, contacts ? &contacts->nodes() : nullptr);
+        m_ends.emplace_back(&body, contacts ? &contacts->nodes() : &substeps->nodes());
+        if (!contacts) m_free.push_back({&substeps->nodes(), &substeps->substeps()});
+        if (contacts) m_touched.push_back({&contacts->m_contacts, &substeps->substeps(), nullptr});
+        return true;
+    }
+    m_bulletLinks.emplace_back(new BulletLinks(body, !contacts->m_contacts.m_features.empty()));
+    m_touched.push_back({&contacts->m_contacts, nullptr, m_bulletLinks.back().get()});
+    return true;
+}
+
 // Returns the time of Bullet's part, ms.
 double SoftBodySolver::solveBodies()
 {
     Work& work = *m_work;
     work.m_touched.clear();
-    work.m_touched.reserve(static_cast<std::size_t>(m_softBodySet.size()));
-    work.m_solved.assign(static_cast<std::size_t>(m_softBodySet.size()), 0);
+    work.m_bulletLinks.clear();
     work.m_free.clear();
+    work.m_ends.clear();
+    work.m_solved.assign(static_cast<std::size_t>(m_softBodySet.size()), 0);
     double bulletMs = 0;
     for (int i = 0; i < m_softBodySet.size();)
     {
-        btSoftBody& body = *m_softBodySet[i];
-        BodyContacts* const contacts = work.isSteppedBody(body) ? work.contactsOf(body) : nullptr;
-        SubstepBody* const substeps = work.isSteppedBody(body) ? work.substepsOf(body) : nullptr;
-        if (contacts)
-        {
-            contacts->m_substeps = substeps;
-            work.m_touched.push_back(contacts);
-        }
-        else if (substeps)
-        {
-            work.m_free.emplace_back(&body, substeps);
-        }
-        if (contacts || substeps)
+        if (work.take(*m_softBodySet[i]))
         {
             ++i;
             continue;
@@ -310,7 +326,12 @@ double SoftBodySolver::solveBodies()
         bulletMs += watch.lapMs();
     }
     work.m_solver->solveFree(work.m_free);
-    return bulletMs + work.m_solver->solve(work.m_touched, m_state->m_found);
+    work.m_solver->solve(work.m_touched, m_state->m_found.source());
+    for (const auto& end : work.m_ends)
+        SubstepBody::end(*end.second, *end.first, &m_state->threads());
+    for (const std::unique_ptr<BulletLinks>& links : work.m_bulletLinks)
+        bulletMs += links->ms();
+    return bulletMs;
 }
 
 void SoftBodySolver::solveStep()

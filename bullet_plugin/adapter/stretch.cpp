@@ -59,13 +59,13 @@ btScalar longestEdge(const ClothFaces& faces, const Place& place)
 }
 
 // Takes the movable nodes whose motion is finite.
-btVector3 medianMotion(const btSoftBody& body, const NodePaths& paths)
+btVector3 medianMotion(const btSoftBody& body, const SolverNodes& nodes)
 {
     std::vector<btVector3> motions;
-    for (std::size_t i = 0; i < paths.m_start.size(); ++i)
+    for (std::size_t i = 0; i < nodes.count(); ++i)
     {
-        const btVector3 motion = body.m_nodes[static_cast<int>(i)].m_x - paths.m_start[i];
-        if (paths.m_inverseMass[i] > 0 && motion.length2() < SIMD_INFINITY) motions.push_back(motion);
+        const btVector3 motion = body.m_nodes[static_cast<int>(i)].m_x - vectorOf(nodes.start(i));
+        if (nodes.inverseMass(i) > 0 && motion.length2() < SIMD_INFINITY) motions.push_back(motion);
     }
     return medianOf(std::move(motions));
 }
@@ -84,36 +84,36 @@ btVector3 medianOf(std::vector<btVector3> vectors)
     return median;
 }
 
-btScalar unitOf(const btSoftBody& body, const ClothFaces& faces, const NodePaths& paths)
+btScalar unitOf(const btSoftBody& body, const ClothFaces& faces, const SolverNodes& nodes)
 {
     std::vector<btScalar> rest = lengthsAtRest(body);
-    if (rest.empty()) return longestEdge(faces, [&](std::size_t node) { return paths.m_start[node]; });
+    if (rest.empty()) return longestEdge(faces, [&](std::size_t node) { return vectorOf(nodes.start(node)); });
     const auto middle = rest.begin() + std::ptrdiff_t(rest.size() / 2);
     std::nth_element(rest.begin(), middle, rest.end());
     return *middle;
 }
 
-Stretch stretchOf(const btSoftBody& body, const ClothFaces& faces, const NodePaths& paths)
+Stretch stretchOf(const btSoftBody& body, const ClothFaces& faces, const SolverNodes& nodes)
 {
-    const btScalar unit = unitOf(body, faces, paths);
-    const auto start = [&](std::size_t node) { return paths.m_start[node]; };
+    const btScalar unit = unitOf(body, faces, nodes);
+    const auto start = [&](std::size_t node) { return vectorOf(nodes.start(node)); };
     const auto end = [&](std::size_t node) { return body.m_nodes[static_cast<int>(node)].m_x; };
     if (!(unit > 0)) return {1, 1};
     if (!lengthsAtRest(body).empty()) return {longestLink(body, unit, start), longestLink(body, unit, end)};
     return {longestEdge(faces, start) / unit, longestEdge(faces, end) / unit};
 }
 
-void holdTogether(btSoftBody& body, const ClothFaces& faces, const NodePaths& paths)
+void holdTogether(btSoftBody& body, const ClothFaces& faces, const SolverNodes& nodes)
 {
-    const btScalar most = unitOf(body, faces, paths) / 2;
-    const btVector3 common = medianMotion(body, paths);
+    const btScalar most = unitOf(body, faces, nodes) / 2;
+    const btVector3 common = medianMotion(body, nodes);
     const btScalar velocityScale = body.m_sst.isdt * (1 - body.m_cfg.kDP);
-    for (std::size_t i = 0; i < paths.m_start.size(); ++i)
+    for (std::size_t i = 0; i < nodes.count(); ++i)
     {
         btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
-        const btVector3 own = node.m_x - paths.m_start[i] - common;
+        const btVector3 own = node.m_x - vectorOf(nodes.start(i)) - common;
         const btScalar length = own.length();
-        if (!(paths.m_inverseMass[i] > 0) || !(length > most) || !(length < SIMD_INFINITY)) continue;
+        if (!(nodes.inverseMass(i) > 0) || !(length > most) || !(length < SIMD_INFINITY)) continue;
         const btVector3 shift = own * (most / length - 1);
         node.m_x += shift;
         node.m_v += shift * velocityScale;

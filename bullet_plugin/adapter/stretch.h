@@ -7,8 +7,8 @@
 
 #include <vector>
 
-#include "bullet_plugin/adapter/cloth_faces.h"
-#include "bullet_plugin/adapter/node_paths.h"
+#include "bullet_plugin/core/solver/cloth_faces.h"
+#include "bullet_plugin/adapter/body_nodes.h"
 
 class btSoftBody;
 
@@ -31,12 +31,12 @@ btVector3 medianOf(std::vector<btVector3> vectors);
 
 // Returns the median of the links' rest lengths without bending links, m; for a body without links the longest edge at
 // the start.
-btScalar unitOf(const btSoftBody& body, const ClothFaces& faces, const NodePaths& paths);
+btScalar unitOf(const btSoftBody& body, const ClothFaces& faces, const SolverNodes& nodes);
 
 // O(n) in the links and faces.
-Stretch stretchOf(const btSoftBody& body, const ClothFaces& faces, const NodePaths& paths);
+Stretch stretchOf(const btSoftBody& body, const ClothFaces& faces, const SolverNodes& nodes);
 
 // Shortens each movable node's motion relative to the body's common motion, the median, to at most half a unit.
 // Velocities follow, so that nodes which fly apart lose their speed. O(n).
-void holdTogether(btSoftBody& body, const ClothFaces& faces, const NodePaths& paths);
+void holdTogether(btSoftBody& body, const ClothFaces& faces, const SolverNodes& nodes);
 }  // namespace drape

@@ -1,8 +1,7 @@
-// One soft body whose motion and links Drape solves itself, in substeps of the step. Bullet predicts; this class
-// replaces btSoftBody::solveConstraints().
+// One soft body whose motion and links the core solves, in substeps of the step (core/solver/substeps.h). Bullet
+// predicts; the core replaces btSoftBody::solveConstraints().
 //
-// Forces and velocities are Bullet's: what predictMotion() adds to a velocity is the acceleration of the step. Every
-// substep moves the nodes, lets the caller solve contacts, sweeps over the links and derives the velocities anew. Links
+// Forces and velocities are Bullet's: what predictMotion() adds to a velocity is the acceleration of the step. Links
 // keep the stiffness that Bullet's iterations give them (core/solver/link_strength.h). The body's own numbers are read
 // in every step, so changes between steps count in the next one. Cost: linear in nodes and links.
 #pragma once
@@ -11,8 +10,8 @@
 #include <vector>
 
 #include "BulletSoftBody/btSoftBody.h"
-#include "bullet_plugin/core/solver/link_sweep.h"
 #include "bullet_plugin/core/solver/solver_nodes.h"
+#include "bullet_plugin/core/solver/substeps.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 
 namespace drape
@@ -20,12 +19,6 @@ namespace drape
 class SubstepBody
 {
 public:
-    // The predicted end of a node, m, and the way to it without the rounding of positions.
-    struct Prediction
-    {
-        btVector3 m_end, m_way;
-    };
-
     // Returns why Bullet's own solver must solve the body; null if this class can.
     static const char* reasonForBullet(const btSoftBody& body);
     // Returns why Bullet must solve the step that has been predicted: contacts of its own algorithms count, too.
@@ -46,35 +39,34 @@ public:
     // Returns the number of substeps: piterations, but at least kLeastSubsteps.
     static int substepsOf(const btSoftBody& body);
 
-    // Begins the step: the nodes return to their starts. Their paths lead to their current positions. threads: null
-    // for the caller alone, as in the functions below.
-    void begin(btSoftBody& body, ThreadTeam* threads);
-    // Begins a substep: moves the nodes and sweeps over the links.
-    void advance(btSoftBody& body, ThreadTeam* threads);
-    // Ends a substep: derives the nodes' velocities from their positions.
-    void endSubstep(btSoftBody& body, ThreadTeam* threads);
-    // Runs the whole step of a body without contacts.
-    void solveAlone(btSoftBody& body, ThreadTeam* threads);
+    // Prepares the solver's step. nodes: with the paths that were recorded; null: those of nodes(), which are recorded
+    // now.
+    void begin(const btSoftBody& body, SolverNodes* nodes);
+    SolverNodes& nodes() { return m_nodes; }
+    Substeps& substeps() { return m_substeps; }
+    // Gives the body the solver's result. threads: null for the caller alone.
+    static void end(const SolverNodes& nodes, btSoftBody& body, ThreadTeam* threads);
 
 private:
     static constexpr int kLeastSubsteps = 2;
-    // Sweeps over the links in each substep. A sweep costs little beside one over the contacts.
-    static constexpr int kLinkSweeps = 3;
+
+    // The predicted end of a node, m, and the way to it without the rounding of positions.
+    struct Prediction
+    {
+        btVector3 m_end, m_way;
+    };
 
     void readTopology(const btSoftBody& body);
     void readLinks(const btSoftBody& body);
-    void readPosition(std::size_t node, const btVector3& position);
     void buildLinks(const btSoftBody& body);
-    void moveNodes(ThreadTeam* threads);
-    void writeNodes(btSoftBody& body, ThreadTeam* threads) const;
 
     bool m_isPredicted = false;
-    float m_kept = 1;                        // the share of a velocity that damping leaves in a substep
-    std::vector<btVector3> m_velocities;     // velocities before the prediction, m/s
-    std::vector<btVector3> m_accelerations;  // accelerations of the step, m/s²
+    std::vector<btVector3> m_velocities;  // before the prediction, m/s
+    std::vector<Vec3> m_accelerations;    // of the step, m/s²
     std::vector<Prediction> m_predictions;
-    std::vector<LinkNodes> m_links;  // links as sorted into m_sweep
-    SolverNodes m_nodes;
-    LinkSweep m_sweep;
+    std::vector<LinkNodes> m_links;  // links as sorted for sweeps
+    std::size_t m_nodeCount = 0;     // when they were sorted
+    SolverNodes m_nodes;             // for steps without contacts
+    Substeps m_substeps;
 };
 }  // namespace drape

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "bullet_plugin/core/threads/thread_team.h"
-#include "solver_nodes.h"
+#include "kernels/shared/solver.h"
 
 namespace drape
 {
@@ -34,12 +34,13 @@ public:
     // Sets a link, in the order of build(), for the sweeps of a step. apart: m, from the first node to the second at
     // the step's start. restSquared: m². strength: kg, the share of a violation that a visit corrects, divided by the
     // sum of the nodes' inverse masses; 0 for a link without effect.
-    void set(std::size_t link, const float apart[3], float restSquared, float strength)
+    void set(std::size_t link, Vec3 apart, float restSquared, float strength)
     {
         Block& block = m_blocks[m_laneOf[link] / kWidth];
         const std::size_t lane = m_laneOf[link] % kWidth;
-        for (int axis = 0; axis < 3; ++axis)
-            block.m_apart[axis][lane] = apart[axis];
+        block.m_apart[0][lane] = apart.x;
+        block.m_apart[1][lane] = apart.y;
+        block.m_apart[2][lane] = apart.z;
         block.m_restSquared[lane] = restSquared;
         block.m_strength[lane] = strength;
     }

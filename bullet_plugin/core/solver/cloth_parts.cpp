@@ -1,25 +1,32 @@
-#include "bullet_plugin/adapter/cloth_parts.h"
+#include "cloth_parts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "kernels/lib/vec3.h"
+
 namespace drape
 {
 namespace
 {
+float along(const Vec3& place, int axis)
+{
+    return axis == 0 ? place.x : axis == 1 ? place.y : place.z;
+}
+
 // Bisects ranges of a node order along their longest axis.
 class Bisection
 {
 public:
-    Bisection(const std::vector<btVector3>& places, std::vector<int>& order) : m_places(places), m_order(order) {}
+    Bisection(const std::vector<Vec3>& places, std::vector<int>& order) : m_places(places), m_order(order) {}
 
     void halve(std::size_t first, std::size_t last)
     {
         const int axis = longestAxis(first, last);
         const auto before = [&](int a, int b)
         {
-            const btScalar x = place(a)[axis], y = place(b)[axis];
+            const float x = along(place(a), axis), y = along(place(b), axis);
             return x < y || (x == y && a < b);  // a total order, whichever library sorts
         };
         const auto at = [&](std::size_t i) { return m_order.begin() + static_cast<std::ptrdiff_t>(i); };
@@ -29,30 +36,32 @@ public:
     static std::size_t middle(std::size_t first, std::size_t last) { return first + (last - first) / 2; }
 
 private:
-    const btVector3& place(int node) const { return m_places[static_cast<std::size_t>(node)]; }
+    const Vec3& place(int node) const { return m_places[static_cast<std::size_t>(node)]; }
 
     int longestAxis(std::size_t first, std::size_t last) const
     {
         if (first == last) return 0;
-        btVector3 low = place(m_order[first]), high = low;
+        Vec3 low = place(m_order[first]), high = low;
         for (std::size_t i = first; i < last; ++i)
         {
-            low.setMin(place(m_order[i]));
-            high.setMax(place(m_order[i]));
+            low = vec3Least(low, place(m_order[i]));
+            high = vec3Most(high, place(m_order[i]));
         }
-        return (high - low).maxAxis();
+        const Vec3 size = vec3Sub(high, low);
+        if (size.x < size.y) return size.y < size.z ? 2 : 1;
+        return size.x < size.z ? 2 : 0;
     }
 
-    const std::vector<btVector3>& m_places;
+    const std::vector<Vec3>& m_places;
     std::vector<int>& m_order;
 };
 }  // namespace
 
-void ClothParts::cut(std::vector<btVector3> places)
+void ClothParts::cut(std::vector<Vec3> places)
 {
-    for (btVector3& place : places)
-        for (int axis = 0; axis < 3; ++axis)
-            if (!std::isfinite(place[axis])) place[axis] = 0;
+    for (Vec3& place : places)
+        for (float* coordinate : {&place.x, &place.y, &place.z})
+            if (!std::isfinite(*coordinate)) *coordinate = 0;
     m_order.resize(places.size());
     std::iota(m_order.begin(), m_order.end(), 0);
     m_firsts = {0, places.size()};

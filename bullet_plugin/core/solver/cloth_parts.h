@@ -12,7 +12,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "LinearMath/btVector3.h"
+#include "kernels/shared/types.h"
 
 namespace drape
 {
@@ -26,7 +26,7 @@ public:
 
     // places: positions of all nodes, m, at rest or at any other time. They determine how well the parts are cut and
     // the order of work. A position that is not a number counts as 0.
-    void cut(std::vector<btVector3> places);
+    void cut(std::vector<Vec3> places);
 
     std::size_t nodeCount() const { return m_leafOf.size(); }
     std::size_t leafCount() const { return m_firsts.size() - 1; }

@@ -2,15 +2,16 @@
 // Contacts behind that surface belong to positions that the node cannot reach, and may push it to either side.
 // Detection runs again after a cut.
 //
-// Input: a body between predictMotion and the end of solveConstraints, the starts of its paths and its contacts along
-// the current paths. Before a moving obstacle, a path ends where the obstacle carries it. The rest of the path is
-// lost for the step, as if the node had stopped there. Cloth that would pass no surface within the step (it rests,
-// slides, or falls by less than the thickness) is not changed. Cost: linear in the contacts.
+// Input: nodes at the ends of the paths along which the contacts were found. Before a moving obstacle, a path ends
+// where the obstacle carries it. The rest of the path is lost for the step, as if the node had stopped there. Cloth
+// that would pass no surface within the step (it rests, slides, or falls by less than the thickness) is not changed.
+// Cost: linear in the contacts.
 #pragma once
 
 #include <vector>
 
-#include "bullet_plugin/adapter/node_paths.h"
+#include "solver_contact.h"
+#include "solver_nodes.h"
 
 namespace drape
 {
@@ -26,8 +27,9 @@ enum class Cut
 };
 
 // Returns whether a path would be cut at any of the contacts.
-bool anyCuts(const std::vector<StepContact>& contacts);
+bool anyCuts(const std::vector<SolverContact>& contacts);
 
-// Returns whether any path was cut. Updates velocities too, for a body that Bullet has solved.
-bool cutAtImpacts(btSoftBody& body, const NodePaths& paths, const std::vector<StepContact>& contacts, Cut cut);
+// Cuts the paths of nodes that constraints move. Shifts the nodes to the new ends; their velocities lose perSecond
+// (1/s) times the rest of the path. Returns whether any path was cut.
+bool cutAtImpacts(SolverNodes& nodes, const std::vector<SolverContact>& contacts, Cut cut, float perSecond);
 }  // namespace drape

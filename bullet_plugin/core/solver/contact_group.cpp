@@ -1,0 +1,354 @@
+#include "contact_group.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+#include "kernels/lib/contact_row.h"
+#include "kernels/lib/segment.h"
+
+namespace drape
+{
+namespace
+{
+template <class Lanes>
+std::uint64_t bothHalves(const Lanes& bits)
+{
+    std::uint64_t halves[2];
+    std::memcpy(halves, &bits, sizeof(bits));
+    return halves[0] | halves[1];
+}
+
+template <class Lanes>
+bool anyAbove0(const Lanes& values)
+{
+    return bothHalves(values > 0) != 0;
+}
+
+// Returns a bit for each lane that is above 0.
+template <class Lanes>
+unsigned bitsAbove0(const Lanes& values)
+{
+    using Bits = int __attribute__((vector_size(16)));
+    const std::uint64_t both = bothHalves((values > 0) & Bits{1, 2, 4, 8});
+    return unsigned(both | both >> 32);
+}
+
+// Returns the position of a weighted point of the cloth at the step's start, m.
+Vec3 startOf(const SolverNodes& nodes, const ContactRow& row)
+{
+    Vec3 start = vec3Scale(nodes.start(row.m_nodes[0]), row.m_weights[0]);
+    for (std::uint32_t k = 1; k < row.m_count; ++k)
+        start = vec3AddScaled(start, nodes.start(row.m_nodes[k]), row.m_weights[k]);
+    return start;
+}
+
+// Returns how far the obstacle's motion in the step moves that point, m.
+Vec3 carriedFrom(const SolverNodes& nodes, const ContactRow& row, const Carry& carry, Vec3 start)
+{
+    if (!carry.moves()) return vec3(0, 0, 0);
+    Vec3 carried = vec3Scale(start, -1);
+    for (std::uint32_t k = 0; k < row.m_count; ++k)
+        carried = vec3AddScaled(carried, carry.start(row.m_nodes[k], nodes.start(row.m_nodes[k])), row.m_weights[k]);
+    return carried;
+}
+}  // namespace
+
+void ContactGroup::clear()
+{
+    m_features.clear();
+    m_blocks.clear();
+    m_nodeBlocks = m_faceBlocks = 0;
+    m_rows.clear();
+    m_pushingBlocks.clear();
+    m_settling.clear();
+}
+
+void ContactGroup::makeBlocks(const SweptCloth& cloth)
+{
+    for (const FeatureContacts* feature : m_features)
+    {
+        addFeature(cloth, *feature);
+        if (feature->m_nodes[1] < 0) m_nodeBlocks = m_faceBlocks = m_blocks.size();
+        if (feature->m_nodes[2] >= 0) m_faceBlocks = m_blocks.size();
+    }
+    m_rowsOf.assign(m_blocks.size(), BlockRows());
+    m_pushing.assign(m_blocks.size(), 0);
+}
+
+void ContactGroup::addFeature(const SweptCloth& cloth, const FeatureContacts& feature)
+{
+    for (std::uint32_t first = 0; first < feature.m_count; first += kLanes)
+    {
+        m_blocks.emplace_back();
+        Block& block = m_blocks.back();
+        block.m_contacts = feature.m_contacts + first;
+        block.m_lanes = int(std::min(feature.m_count - first, std::uint32_t(kLanes)));
+        block.m_count = 0;
+        for (int k = 0; k < 3; ++k)
+        {
+            block.m_nodes[k] = feature.m_nodes[k] >= 0 ? feature.m_nodes[k] : feature.m_nodes[0];
+            block.m_count += feature.m_nodes[k] >= 0 ? 1 : 0;
+        }
+        for (int lane = 0; lane < kLanes; ++lane)
+        {
+            fillLane(cloth, block, lane, block.m_contacts[std::min(lane, block.m_lanes - 1)]);
+            if (lane >= block.m_lanes) block.m_level[lane] = -std::numeric_limits<float>::infinity();
+        }
+    }
+}
+
+void ContactGroup::fillLane(const SweptCloth& cloth, Block& block, int lane, const Contact& contact)
+{
+    const SolverNodes& nodes = cloth.nodes();
+    block.m_weights[0][lane] = contact.m_weights[1];
+    block.m_weights[1][lane] = contact.m_weights[2];
+    const Vec3 first = nodes.start(std::size_t(block.m_nodes[0]));
+    Vec3 start = first;
+    for (int k = 1; k < block.m_count; ++k)
+        start = vec3AddScaled(start, vec3Sub(nodes.start(std::size_t(block.m_nodes[k])), first), contact.m_weights[k]);
+    const float apart[3] = {contact.m_point[0] - start.x, contact.m_point[1] - start.y, contact.m_point[2] - start.z};
+    float level = cloth.m_contacts->m_mostThickness;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        block.m_normal[axis][lane] = contact.m_normal[axis];
+        level += contact.m_normal[axis] * apart[axis];
+    }
+    block.m_level[lane] = level + cloth.m_margin;
+}
+
+ContactGroup::Row ContactGroup::makeRow(const SweptCloth& cloth, const Block& block, int lane)
+{
+    const SolverContact contact = cloth.m_contacts->resolve(*cloth.m_source, block.m_contacts[lane]);
+    Row row = Row();
+    row.m_row.m_count = std::uint32_t(block.m_count);
+    std::copy(block.m_nodes, block.m_nodes + 3, row.m_row.m_nodes);
+    row.m_row.m_friction = contact.m_friction;
+    row.m_distance = contact.m_thickness + contact.m_targetGap;
+    row.m_carry = contact.m_carry;
+    setPlane(cloth, row, contact.m_weights, contact.m_normal, contact.m_point);
+    row.m_speedLimit = std::numeric_limits<float>::infinity();
+    if (contact.m_startGap < 0)
+    {
+        const float recovered = std::max(0.0f, contact.m_endGap - contact.m_startGap);
+        row.m_speedLimit = (recovered + row.m_row.m_advance) * cloth.m_contacts->m_perSecond;
+    }
+    return row;
+}
+
+void ContactGroup::setPlane(const SweptCloth& cloth, Row& out, const float weights[3], Vec3 normal, Vec3 point)
+{
+    const SolverNodes& nodes = cloth.nodes();
+    ContactRow& row = out.m_row;
+    float mobility = 0, held = 0, most = 0;
+    for (std::uint32_t k = 0; k < row.m_count; ++k)
+    {
+        const float inverseMass = nodes.inverseMass(row.m_nodes[k]);
+        row.m_weights[k] = weights[k];
+        row.m_shares[k] = weights[k] * inverseMass;
+        mobility += weights[k] * weights[k] * inverseMass;
+        most = std::max(most, inverseMass);
+        if (!(inverseMass > 0)) held += weights[k];
+    }
+    const float softened = mobility + kHeldSoftness * held * most;
+    row.m_inverseMobility = mobility > 0 ? 1 / softened : 0.0f;
+    row.m_mended = held > 0 ? mobility * row.m_inverseMobility : 1.0f;
+    row.m_normal = normal;
+    const Vec3 start = startOf(nodes, row), carried = carriedFrom(nodes, row, out.m_carry, start);
+    row.m_advance = vec3Dot(normal, carried);
+    row.m_carried = vec3AddScaled(carried, normal, -row.m_advance);
+    row.m_level = vec3Dot(normal, vec3Sub(point, start)) + out.m_distance;
+}
+
+// Renews the contact's plane where its features are nearest now; the block gets the same plane. The obstacle counts as
+// standing at the step's end: the nodes move along with the rest of its motion.
+void ContactGroup::renewPlane(const SweptCloth& cloth, Row& row, Block& block, int lane)
+{
+    const SolverNodes& nodes = cloth.nodes();
+    float places[3][3];
+    for (int k = 0; k < 3; ++k)
+    {
+        // A link repeats its second node.
+        const std::size_t node = std::size_t(block.m_nodes[std::min(k, block.m_count - 1)]);
+        const Vec3 carried = vec3Sub(row.m_carry.start(node, nodes.start(node)), nodes.start(node));
+        const Vec3 place = vec3AddScaled(nodes.position(node), carried, 1 - cloth.m_passed);
+        places[k][0] = place.x;
+        places[k][1] = place.y;
+        places[k][2] = place.z;
+    }
+    ContactPlane plane;
+    if (!ContactSource::planeAt(block.m_contacts[lane], places, plane)) return;
+    row.m_renewed = true;
+    if (block.m_count == 2) joinCorners(plane.m_weights);
+    setPlane(cloth, row, plane.m_weights, vec3(plane.m_normal[0], plane.m_normal[1], plane.m_normal[2]),
+             vec3(plane.m_point[0], plane.m_point[1], plane.m_point[2]));
+    for (int axis = 0; axis < 3; ++axis)
+        block.m_normal[axis][lane] = plane.m_normal[axis];
+    block.m_weights[0][lane] = plane.m_weights[1];
+    block.m_weights[1][lane] = plane.m_weights[2];
+    block.m_level[lane] = row.m_row.m_level + cloth.m_margin;
+}
+
+// Returns whether the contact had anything to do; `worst` grows to its violation.
+bool ContactGroup::project(const SweptCloth& cloth, Row& row, float& worst)
+{
+    SolverNodes& nodes = cloth.nodes();
+    if (!projectRow(&row.m_row, nodes.nodes(), cloth.m_passed, &worst)) return false;
+    for (std::uint32_t k = 0; k < row.m_row.m_count; ++k)
+        nodes.markShifted(row.m_row.m_nodes[k]);
+    row.m_pushed = true;
+    return true;
+}
+
+// Returns an upper bound of each lane's violation, m.
+inline ContactGroup::Lanes ContactGroup::excessOf(const Block& block, const SolverNode* nodes, float slack)
+{
+    if (block.m_count == 1) return excessOfNodes<1>(block, nodes, slack);
+    return block.m_count == 2 ? excessOfNodes<2>(block, nodes, slack) : excessOfNodes<3>(block, nodes, slack);
+}
+
+template <int count>
+inline ContactGroup::Lanes ContactGroup::excessOfNodes(const Block& block, const SolverNode* nodes, float slack)
+{
+    const Vec3 a = nodes[block.m_nodes[0]].m_displacement;
+    Lanes at[3] = {Lanes{a.x, a.x, a.x, a.x}, Lanes{a.y, a.y, a.y, a.y}, Lanes{a.z, a.z, a.z, a.z}};
+    for (int k = 1; k < count; ++k)
+    {
+        const Vec3 way = vec3Sub(nodes[block.m_nodes[k]].m_displacement, a);
+        at[0] += block.m_weights[k - 1] * way.x;
+        at[1] += block.m_weights[k - 1] * way.y;
+        at[2] += block.m_weights[k - 1] * way.z;
+    }
+    return block.m_level + slack - (block.m_normal[0] * at[0] + block.m_normal[1] * at[1] + block.m_normal[2] * at[2]);
+}
+
+// Projects the due contacts of a block in order: those that push and those that may be violated. Returns the worst
+// violation, or 0.
+float ContactGroup::projectBlock(const SweptCloth& cloth, std::size_t index, unsigned due)
+{
+    const SolverNode* const nodes = cloth.nodes().nodes();
+    Block& block = m_blocks[index];
+    const unsigned before = m_pushing[index];
+    const float slack = cloth.slack();
+    unsigned pushing = before;
+    float worst = 0;
+    for (int lane = 0; lane < kLanes; ++lane)
+    {
+        if (!(due >> lane & 1u)) continue;
+        int& at = m_rowsOf[index].m_row[lane];
+        if (at < 0)
+        {
+            at = int(m_rows.size());
+            m_rows.push_back(makeRow(cloth, block, lane));
+        }
+        Row& row = m_rows[std::size_t(at)];
+        if (!(row.m_row.m_inverseMobility > 0)) continue;
+        if (row.m_stage != m_stage && rowViolation(&row.m_row, nodes, cloth.m_passed) > 0)
+        {
+            renewPlane(cloth, row, block, lane);
+            row.m_stage = m_stage;
+        }
+        if (!(row.m_row.m_inverseMobility > 0) || !project(cloth, row, worst)) continue;
+        pushing |= 1u << lane;
+        if (lane + 1 < block.m_lanes) due |= bitsAbove0(excessOf(block, nodes, slack));  // its nodes moved
+    }
+    m_pushing[index] = static_cast<unsigned char>(pushing);
+    if (before == 0 && pushing != 0) m_pushingBlocks.push_back(index);
+    return worst;
+}
+
+void ContactGroup::beginStage(unsigned stage)
+{
+    if (m_stage == stage) return;
+    m_stage = stage;
+    for (const std::size_t index : m_pushingBlocks)
+    {
+        for (int lane = 0; lane < kLanes; ++lane)
+        {
+            if (!(m_pushing[index] >> lane & 1)) continue;
+            ContactRow& row = m_rows[std::size_t(m_rowsOf[index].m_row[lane])].m_row;
+            row.m_multiplier = 0;
+            row.m_held = vec3(0, 0, 0);
+        }
+        m_pushing[index] = 0;
+    }
+    m_pushingBlocks.clear();
+}
+
+float ContactGroup::sweep(const SweptCloth& cloth, Kinds kinds)
+{
+    beginStage(cloth.m_stage);
+    const std::size_t first = kinds == Kinds::Edges ? m_faceBlocks : 0;
+    const std::size_t last = kinds == Kinds::Nodes           ? m_nodeBlocks
+                             : kinds == Kinds::NodesAndFaces ? m_faceBlocks
+                                                             : m_blocks.size();
+    const Block* const blocks = m_blocks.data();
+    const SolverNode* const nodes = cloth.nodes().nodes();
+    const unsigned char* const pushing = m_pushing.data();
+    const float slack = cloth.slack();
+    float worst = 0;
+    for (std::size_t i = first; i < last; ++i)
+    {
+        const Lanes excess = excessOf(blocks[i], nodes, slack);
+        if (pushing[i] != 0 || anyAbove0(excess))
+            worst = std::max(worst, projectBlock(cloth, i, bitsAbove0(excess) | pushing[i]));
+    }
+    return worst;
+}
+
+bool ContactGroup::listSettling()
+{
+    std::sort(m_pushingBlocks.begin(), m_pushingBlocks.end());  // in canonical order
+    m_settling.clear();
+    for (const std::size_t index : m_pushingBlocks)
+    {
+        for (int lane = 0; lane < kLanes; ++lane)
+        {
+            if (!(m_pushing[index] >> lane & 1)) continue;
+            Row& row = m_rows[std::size_t(m_rowsOf[index].m_row[lane])];
+            if (row.m_renewed) m_settling.push_back(&row);
+        }
+    }
+    return !m_settling.empty();
+}
+
+void ContactGroup::settle(const SweptCloth& cloth)
+{
+    float worst = 0;
+    for (Row* row : m_settling)
+        project(cloth, *row, worst);
+}
+
+void ContactGroup::limitSpeed(const SweptCloth& cloth, const Row& limited)
+{
+    const ContactRow& row = limited.m_row;
+    SolverNodes& nodes = cloth.nodes();
+    float speed = 0;
+    for (std::uint32_t k = 0; k < row.m_count; ++k)
+        speed += vec3Dot(nodes.velocity(row.m_nodes[k]), row.m_normal) * row.m_weights[k];
+    const float excess = speed - limited.m_speedLimit;
+    if (!(excess > 0) || !(row.m_inverseMobility > 0)) return;  // a renewed plane may rest on pinned nodes alone
+    for (std::uint32_t k = 0; k < row.m_count; ++k)
+    {
+        const Vec3 loss = vec3Scale(row.m_normal, -(row.m_shares[k] * excess * row.m_inverseMobility));
+        nodes.addVelocity(row.m_nodes[k], loss);
+        nodes.markShifted(row.m_nodes[k]);
+    }
+}
+
+void ContactGroup::limitSpeeds(const SweptCloth& cloth) const
+{
+    for (const BlockRows& rows : m_rowsOf)
+        for (const int row : rows.m_row)
+            if (row >= 0 && m_rows[std::size_t(row)].m_pushed) limitSpeed(cloth, m_rows[std::size_t(row)]);
+}
+
+bool ContactGroup::mayHavePassed(const SweptCloth& cloth) const
+{
+    const SolverNode* const nodes = cloth.nodes().nodes();
+    const float least = kNearShare * cloth.m_contacts->m_leastThickness;
+    return std::any_of(m_rows.begin(), m_rows.end(),
+                       [&](const Row& row)
+                       { return row.m_pushed && row.m_distance - rowViolation(&row.m_row, nodes, 1) < least; });
+}
+}  // namespace drape

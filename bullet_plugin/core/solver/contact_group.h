@@ -1,0 +1,132 @@
+// Runs Gauss-Seidel sweeps on positions over the contacts of one group of a cloth (cloth_parts.h), in canonical
+// order.
+//
+// contact_sweep.h explains what a contact does and why. Most contacts never act in a step. A sweep tests them in
+// blocks of one cloth feature, with a margin for rounding. A contact gets a row when it is first found violated or
+// pushing. The results equal those of projecting every contact. Groups that share no node may run side by side: each
+// moves only its own nodes.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "cloth_contacts.h"
+
+namespace drape
+{
+// Share of a movable node's inverse mass that is added to a contact's mobility where the rest of its point is fixed;
+// proportionally less where less of it is fixed. It keeps a node with little weight in the point from being thrown
+// far. The node moves at most 2.8 times the violation in a sweep, at a weight of a fifth, and less the smaller its
+// weight.
+constexpr float kHeldSoftness = 0.04f;
+
+// Distance between the points of a contact, as a share of the thickness, below which its features may have passed each
+// other.
+constexpr float kNearShare = 0.25f;
+
+// The cloth of the groups, and what they share in a step.
+struct SweptCloth
+{
+    ClothContacts* m_contacts = nullptr;
+    const ContactSource* m_source = nullptr;
+    float m_margin = 0;    // m, rounding margin of the blocks' levels
+    float m_retreat = 0;   // m, bound on the displacement of a node by an obstacle's motion
+    float m_passed = 1;    // share of the step that has passed
+    unsigned m_stage = 0;  // see ContactSweep::restart()
+
+    SolverNodes& nodes() const { return m_contacts->m_nodes; }
+    // Bound on how far levels lie above those at the step's end, m.
+    float slack() const { return (1 - m_passed) * m_retreat; }
+};
+
+class ContactGroup
+{
+public:
+    // Resets the group for a cloth of another step; memory is kept.
+    void clear();
+    // Adds a feature; features come in canonical order, nodes first. They must stay in place until the last sweep.
+    void add(const FeatureContacts& feature) { m_features.push_back(&feature); }
+    // Builds the blocks. Call once, after the last feature, when the cloth's margin is known.
+    void makeBlocks(const SweptCloth& cloth);
+
+    bool empty() const { return m_features.empty(); }
+    enum class Kinds
+    {
+        Nodes,
+        NodesAndFaces,
+        Edges
+    };
+    // Tests every contact of these features once and projects those that are due. Returns the worst violation met, m,
+    // as far as the contact's nodes can correct it. A new stage begins with no pushes.
+    float sweep(const SweptCloth& cloth, Kinds kinds);
+    // Lists, for settle(), the contacts that have pushed in this stage and whose planes were renewed. Returns whether
+    // there are any.
+    bool listSettling();
+    // Projects the listed contacts once more.
+    void settle(const SweptCloth& cloth);
+    // Removes from the nodes' velocities what a contact gained by recovering a depth that the step began with.
+    void limitSpeeds(const SweptCloth& cloth) const;
+    // Returns whether a contact that has pushed ends with less than kNearShare of the thickness between its features'
+    // points, so that the features may have passed each other.
+    bool mayHavePassed(const SweptCloth& cloth) const;
+
+private:
+    static constexpr int kLanes = 4;  // contacts side by side
+    using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
+
+    // Contacts of one cloth feature side by side; lanes beyond the last one are never violated. The gap is n.(d0 + w1
+    // (d1 - d0) + w2 (d2 - d0)) - level. The level is raised by a margin for rounding.
+    struct Block
+    {
+        Block() {}  // uninitialised: the code that adds the block fills it
+
+        Lanes m_normal[3];
+        Lanes m_level;
+        Lanes m_weights[2];  // second and third node
+        int m_nodes[3];      // the first one again where unused
+        int m_count;         // number of nodes
+        int m_lanes;         // lanes in use
+        const Contact* m_contacts;
+    };
+    // Indices in m_rows by a block's lanes, -1 for none.
+    struct BlockRows
+    {
+        int m_row[kLanes] = {-1, -1, -1, -1};
+    };
+    // A contact that acts, and what the row's projection does not need.
+    struct Row
+    {
+        ContactRow m_row;
+        Carry m_carry;
+        float m_distance;    // m, distance to keep from the contact's point: thickness plus target
+        float m_speedLimit;  // m/s outwards when the contact pushed
+        unsigned m_stage;    // in which the plane was renewed
+        bool m_renewed;      // in any stage
+        bool m_pushed;       // in any stage
+    };
+
+    void addFeature(const SweptCloth& cloth, const FeatureContacts& feature);
+    static void fillLane(const SweptCloth& cloth, Block& block, int lane, const Contact& contact);
+    static Row makeRow(const SweptCloth& cloth, const Block& block, int lane);
+    static void setPlane(const SweptCloth& cloth, Row& row, const float weights[3], Vec3 normal, Vec3 point);
+    static void renewPlane(const SweptCloth& cloth, Row& row, Block& block, int lane);
+    static Lanes excessOf(const Block& block, const SolverNode* nodes, float slack);
+    template <int count>
+    static Lanes excessOfNodes(const Block& block, const SolverNode* nodes, float slack);
+    static bool project(const SweptCloth& cloth, Row& row, float& worst);
+    static void limitSpeed(const SweptCloth& cloth, const Row& row);
+    void beginStage(unsigned stage);
+    float projectBlock(const SweptCloth& cloth, std::size_t index, unsigned due);
+
+    std::vector<const FeatureContacts*> m_features;
+    std::vector<Block> m_blocks;           // in canonical order
+    std::size_t m_nodeBlocks = 0;          // blocks of node features
+    std::size_t m_faceBlocks = 0;          // blocks of node and face features
+    std::vector<BlockRows> m_rowsOf;       // by block
+    std::vector<unsigned char> m_pushing;  // by block: a bit for each lane whose row has pushed in this stage
+    std::vector<Row> m_rows;
+    std::vector<std::size_t> m_pushingBlocks;  // blocks with rows that have pushed in this stage
+    std::vector<Row*> m_settling;              // their rows whose planes were renewed; until the next sweep
+    unsigned m_stage = 0;                      // stage of the last sweep
+};
+}  // namespace drape

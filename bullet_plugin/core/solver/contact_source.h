@@ -1,0 +1,53 @@
+// Resolves the contacts of the last detection for the solver, each on demand: most never act in a step.
+//
+// Input: the pipeline's list, which the pipeline owns and which is valid until its next submit; the motion and friction
+// of each obstacle. Cost: proportional to the contacts resolved.
+#pragma once
+
+#include <unordered_map>
+#include <vector>
+
+#include "bullet_plugin/core/pipeline/contact_plane.h"
+#include "bullet_plugin/core/pipeline/pipeline.h"
+#include "solver_contact.h"
+#include "solver_nodes.h"
+
+namespace drape
+{
+// The motion and the surface of an obstacle in the step.
+struct ObstacleSurface
+{
+    bool m_moves = false;
+    float m_map[12] = {};  // see Carry
+    float m_friction = 0;
+};
+
+class ContactSource
+{
+public:
+    // Sets the pipeline whose contacts are resolved.
+    void setPipeline(const Pipeline& pipeline) { m_pipeline = &pipeline; }
+    void nameObstacle(MeshId obstacle, const ObstacleSurface& surface) { m_surfaces[obstacle] = surface; }
+    // Returns the motion of the obstacle's points in the step; null if it rests. It stays in place until the source
+    // ends.
+    const float* mapOf(MeshId obstacle) const;
+    // Sets the starts to which an obstacle carries the nodes (see Carry), for a mesh of a cloth that has this one
+    // obstacle alone. The caller owns the array.
+    void nameStarts(MeshId cloth, const Vec3* carriedStarts) { m_carriedStarts[cloth] = carriedStarts; }
+    // Adds a contact of the caller's own for one node of a cloth, which resolve() gives back as it is.
+    Contact addOwn(const SolverContact& contact);
+
+    // Resolves the contact's points and gaps along the paths of the nodes. friction: of the cloth. hardness: see
+    // targetGap().
+    SolverContact resolve(const SolverNodes& nodes, float friction, float hardness, const Contact& contact) const;
+    // Resolves a contact with its nodes at other positions, see planeAt() of contact_plane.h. Only faces at a vertex
+    // turn their contacts, and a contact that was met keeps its plane; returns false for all others.
+    static bool planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane);
+
+private:
+    const Pipeline* m_pipeline = nullptr;
+    std::unordered_map<MeshId, ObstacleSurface> m_surfaces;
+    std::unordered_map<MeshId, const Vec3*> m_carriedStarts;  // by cloth
+    std::vector<SolverContact> m_own;
+};
+}  // namespace drape

@@ -1,0 +1,70 @@
+#include "impact_cut.h"
+
+#include <algorithm>
+
+namespace drape
+{
+namespace
+{
+// Distance before the surface at which a path ends, as a share of the thickness. It is near enough for every contact
+// there and far enough from the other side.
+constexpr float kStandOff = 0.5f;
+
+// Returns the share of the path to keep: 1 when nothing was met or the cloth's point moves away.
+float shareLeft(const SolverContact& contact)
+{
+    if (!(contact.m_time < 1) || contact.m_endGap >= contact.m_startGap) return 1;
+    const float distance = contact.m_startGap + contact.m_thickness;  // at the step's start
+    const float standOff = kStandOff * contact.m_thickness;
+    return distance > standOff ? contact.m_time * (1 - standOff / distance) : 0.0f;
+}
+
+// The kept share of a node's path, relative to the obstacle of its first impact.
+struct Left
+{
+    float m_share = 1;
+    Carry m_carry;
+
+    void take(const Left& other)
+    {
+        if (other.m_share < m_share) *this = other;
+    }
+};
+
+void shorten(SolverNodes& nodes, std::size_t node, const Left& left, float perSecond)
+{
+    const Vec3 start = nodes.start(node);
+    const Vec3 carried = vec3Sub(left.m_carry.start(node, start), start);
+    const Vec3 shift = vec3Scale(vec3Sub(nodes.displacement(node), carried), left.m_share - 1);
+    nodes.shift(node, shift);
+    nodes.addVelocity(node, vec3Scale(shift, perSecond));
+}
+}  // namespace
+
+bool anyCuts(const std::vector<SolverContact>& contacts)
+{
+    return std::any_of(contacts.begin(), contacts.end(),
+                       [](const SolverContact& contact) { return shareLeft(contact) < 1; });
+}
+
+bool cutAtImpacts(SolverNodes& nodes, const std::vector<SolverContact>& contacts, Cut cut, float perSecond)
+{
+    if (contacts.empty()) return false;
+    std::vector<Left> left(nodes.count());
+    Left least;
+    for (const SolverContact& contact : contacts)
+    {
+        const Left own{shareLeft(contact), contact.m_carry};
+        least.take(own);
+        for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+            left[std::size_t(contact.m_nodes[k])].take(own);
+    }
+    if (!(least.m_share < 1)) return false;
+    for (std::size_t i = 0; i < nodes.count(); ++i)
+    {
+        const Left& own = cut == Cut::WholeBody ? least : left[i];
+        if (own.m_share < 1 && nodes.inverseMass(i) > 0) shorten(nodes, i, own, perSecond);
+    }
+    return true;
+}
+}  // namespace drape

@@ -1,0 +1,32 @@
+// A cloth of a step and whatever solves its links.
+#pragma once
+
+#include "cloth_contacts.h"
+
+namespace drape
+{
+class Substeps;
+
+// Links that the caller solves, one iteration at a time. Calls come from the thread of StepSolver::solve(), except
+// read() and write(), which may come from any thread for several cloths at once.
+class ForeignLinks
+{
+public:
+    virtual ~ForeignLinks() = default;
+    // Returns the number of iterations, at least 1.
+    virtual int iterations() const = 0;
+    virtual void solve(int iteration) = 0;
+    // Sets the nodes' displacements and velocities to those after the last iteration.
+    virtual void read(SolverNodes& nodes) = 0;
+    // Takes over displacements and velocities of shifted nodes.
+    virtual void write(const SolverNodes& nodes) = 0;
+};
+
+// A cloth and whatever solves its links: one of the two.
+struct SolverCloth
+{
+    ClothContacts* m_contacts = nullptr;
+    Substeps* m_substeps = nullptr;
+    ForeignLinks* m_links = nullptr;
+};
+}  // namespace drape

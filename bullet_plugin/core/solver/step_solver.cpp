@@ -1,0 +1,257 @@
+#include "step_solver.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace drape
+{
+namespace
+{
+// Minimum nodes for sharing cloths among threads; a substep takes 50 ns a node.
+constexpr std::size_t kLeastNodesShared = 2048;
+
+bool hasContacts(const ContactSweep* sweep)
+{
+    return !sweep->contacts().m_features.empty();
+}
+
+int iterationsOf(const SolverCloth& cloth)
+{
+    return cloth.m_substeps ? cloth.m_substeps->count() : cloth.m_links->iterations();
+}
+
+// Returns whether the last sweep met a violation worse than `share` of the thickness.
+bool isViolated(const ContactSweep* sweep, float share)
+{
+    return SweepTeam::worst(*sweep) > share * sweep->contacts().m_leastThickness;
+}
+
+int mostClosingRounds(const ContactSweep* sweep)
+{
+    const std::size_t affordable = kFurtherBlocks / std::max<std::size_t>(1, SweepTeam::blockCount(*sweep));
+    return kClosingRounds + int(std::min(kMostFurther, std::max(kLeastFurther, affordable)));
+}
+
+// Returns whether the cloth needs another closing sweep after `done` sweeps.
+bool isOpen(const ContactSweep* sweep, int done)
+{
+    if (done < kClosingRounds) return isViolated(sweep, kClosingTolerance);
+    return done < mostClosingRounds(sweep) && isViolated(sweep, kMostViolation);
+}
+
+// Returns whether threads take cloths side by side: several cloths, none of which has most of many nodes.
+template <class NodesOf>
+bool sharesCloths(std::size_t count, const NodesOf& nodesOf)
+{
+    std::size_t all = 0, most = 0;
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        all += nodesOf(i);
+        most = std::max(most, nodesOf(i));
+    }
+    return all >= kLeastNodesShared && 2 * most <= all;
+}
+
+bool obstaclesRest(const ContactSweep* sweep)
+{
+    return sweep->contacts().m_limit.obstaclesRest();
+}
+
+// Copies the cloths of `from` for which holds(cloth) is true to `to`, another list.
+template <class Holds>
+void select(const SweepTeam::Cloths& from, SweepTeam::Cloths& to, const Holds& holds)
+{
+    to.clear();
+    std::copy_if(from.begin(), from.end(), std::back_inserter(to), holds);
+}
+
+// Keeps the cloths for which holds(cloth) is true.
+template <class Holds>
+void keep(SweepTeam::Cloths& cloths, const Holds& holds)
+{
+    const auto drops = [&](const ContactSweep* sweep) { return !holds(sweep); };
+    cloths.erase(std::remove_if(cloths.begin(), cloths.end(), drops), cloths.end());
+}
+
+void rememberAll(SolverNodes& nodes)
+{
+    for (std::size_t i = 0; i < nodes.count(); ++i)
+        nodes.remember(i);
+}
+
+void addShifts(ClothContacts& contacts)
+{
+    const float perSecond = contacts.m_perSecond * contacts.m_kept;
+    for (std::size_t i = 0; i < contacts.m_nodes.count(); ++i)
+        contacts.m_nodes.addShift(i, perSecond);
+}
+}  // namespace
+
+void StepSolver::begin(const ContactSource& source)
+{
+    while (m_sweeps.size() < m_cloths.size())
+        m_sweeps.emplace_back(new ContactSweep);
+    m_all.clear();
+    for (std::size_t i = 0; i < m_cloths.size(); ++i)
+    {
+        m_sweeps[i]->assign(m_cloths[i], source);
+        m_all.push_back(m_sweeps[i].get());
+    }
+    m_team.forCloths(m_all, [](ContactSweep& sweep) { sweep.begin(); });
+    select(m_all, m_touching, hasContacts);
+    m_team.start(m_touching);
+}
+
+void StepSolver::applyLimits(const Cloths& cloths)
+{
+    m_team.forCloths(cloths, [](ContactSweep& sweep) { sweep.contacts().m_limit.apply(sweep.nodes()); });
+}
+
+// Calls job(nodes, substeps, threads) for each cloth of the turn whose links are the core's: side by side where there
+// are several and they are large, else one after the other with all threads.
+template <class Job>
+void StepSolver::forSubsteps(const Job& job)
+{
+    m_own.clear();
+    for (const ContactSweep* sweep : m_iterating)
+        if (sweep->cloth().m_substeps) m_own.push_back(&sweep->cloth());
+    const auto one = [&](std::size_t i, ThreadTeam* threads)
+    { job(m_own[i]->m_contacts->m_nodes, *m_own[i]->m_substeps, threads); };
+    if (sharesCloths(m_own.size(), [&](std::size_t i) { return m_own[i]->m_contacts->m_nodes.count(); }))
+        return m_threads.run(m_own.size(), [&](std::size_t i) { one(i, nullptr); });
+    for (std::size_t i = 0; i < m_own.size(); ++i)
+        one(i, &m_threads);
+}
+
+void StepSolver::solveFree(const std::vector<FreeCloth>& cloths)
+{
+    const auto one = [&](std::size_t i, ThreadTeam* threads)
+    { cloths[i].m_substeps->run(*cloths[i].m_nodes, threads); };
+    if (sharesCloths(cloths.size(), [&](std::size_t i) { return cloths[i].m_nodes->count(); }))
+        return m_threads.run(cloths.size(), [&](std::size_t i) { one(i, nullptr); });
+    for (std::size_t i = 0; i < cloths.size(); ++i)
+        one(i, &m_threads);
+}
+
+// Runs an iteration's limits and contact sweep.
+void StepSolver::sweepContacts(int iteration)
+{
+    const auto isForeign = [](const ContactSweep* sweep) { return sweep->cloth().m_links != nullptr; };
+    select(m_iterating, m_turn, isForeign);
+    const auto read = [](ContactSweep& sweep)
+    {
+        sweep.cloth().m_links->read(sweep.nodes());
+        rememberAll(sweep.nodes());
+    };
+    m_team.forCloths(m_turn, read);
+    if (iteration > 0) applyLimits(m_iterating);
+    select(m_iterating, m_turn, hasContacts);
+    for (ContactSweep* sweep : m_turn)
+    {
+        const SolverCloth& cloth = sweep->cloth();
+        // The links' last pull takes over what contacts pushed before it.
+        sweep->restart(cloth.m_substeps ? float(iteration + 1) / float(cloth.m_substeps->count()) : 1.0f);
+    }
+    m_team.runAndSettle(m_turn);
+    select(m_iterating, m_turn, isForeign);
+    const auto write = [](ContactSweep& sweep)
+    {
+        addShifts(sweep.contacts());
+        sweep.cloth().m_links->write(sweep.nodes());
+    };
+    m_team.forCloths(m_turn, write);
+}
+
+void StepSolver::endIteration(int iteration)
+{
+    forSubsteps([](SolverNodes& nodes, Substeps& substeps, ThreadTeam* threads) { substeps.end(nodes, threads); });
+    for (const ContactSweep* sweep : m_iterating)
+        if (ForeignLinks* links = sweep->cloth().m_links) links->solve(iteration);
+}
+
+void StepSolver::iterate()
+{
+    m_iterating = m_all;
+    forSubsteps([](SolverNodes& nodes, Substeps& substeps, ThreadTeam* threads) { substeps.begin(nodes, threads); });
+    for (int i = 0; !m_iterating.empty(); ++i)
+    {
+        forSubsteps([](SolverNodes& nodes, Substeps& substeps, ThreadTeam* threads)
+                    { substeps.advance(nodes, threads); });
+        sweepContacts(i);
+        endIteration(i);
+        keep(m_iterating, [&](const ContactSweep* sweep) { return i + 1 < iterationsOf(sweep->cloth()); });
+    }
+}
+
+// Runs a sweep after the first. Nodes whose obstacles all rest stay with the threads. For the other cloths the motion
+// limit reads every node's position.
+void StepSolver::runAgain(const Cloths& cloths)
+{
+    select(cloths, m_resting, obstaclesRest);
+    select(cloths, m_others, [](const ContactSweep* sweep) { return !obstaclesRest(sweep); });
+    m_team.limitAndRun(m_resting);
+    applyLimits(m_others);
+    m_team.run(m_others);
+}
+
+// Limits nodes without contacts. A sweep does not move them, but it moves their faces, which may have come near an
+// obstacle. No contact depends on these nodes' positions.
+void StepSolver::holdOthers()
+{
+    m_team.forCloths(m_touching,
+                     [](ContactSweep& sweep)
+                     {
+                         MotionLimit& limit = sweep.contacts().m_limit;
+                         if (limit.obstaclesRest()) limit.applyToOthers(sweep.nodes());
+                     });
+}
+
+void StepSolver::beginClosing()
+{
+    const auto begin = [](ContactSweep& sweep)
+    {
+        if (ForeignLinks* links = sweep.cloth().m_links) links->read(sweep.nodes());
+        rememberAll(sweep.nodes());
+    };
+    m_team.forCloths(m_all, begin);
+}
+
+void StepSolver::close()
+{
+    beginClosing();
+    applyLimits(m_all);
+    for (ContactSweep* sweep : m_touching)
+        sweep->restart(1);
+    m_team.run(m_touching);
+    m_open = m_touching;
+    for (int done = 1;; ++done)
+    {
+        keep(m_open, [done](const ContactSweep* sweep) { return isOpen(sweep, done); });
+        if (m_open.empty()) break;
+        runAgain(m_open);
+    }
+    select(m_touching, m_open, [](const ContactSweep* sweep) { return isViolated(sweep, kClosingTolerance); });
+    // Nodes go last: contacts that do not converge leave their violation with faces and edges. A node outside the
+    // obstacle keeps its faces and edges from passing it in a later step.
+    m_team.runNodes(m_open);
+    holdOthers();
+    m_team.forCloths(m_all, [](ContactSweep& sweep) { addShifts(sweep.contacts()); });
+    m_team.limitSpeeds(m_touching);
+    for (ContactSweep* sweep : m_touching)
+        sweep->contacts().m_mayHavePassed = SweepTeam::mayHavePassed(*sweep);
+    const auto end = [](ContactSweep& sweep)
+    {
+        if (ForeignLinks* links = sweep.cloth().m_links) links->write(sweep.nodes());
+    };
+    m_team.forCloths(m_all, end);
+}
+
+void StepSolver::solve(const std::vector<SolverCloth>& cloths, const ContactSource& source)
+{
+    if (cloths.empty()) return;
+    m_cloths = cloths;
+    begin(source);
+    iterate();
+    close();
+}
+}  // namespace drape

@@ -1,0 +1,77 @@
+// Solves one step of some cloths: their links, and Gauss-Seidel sweeps over their contacts between the links'
+// iterations and after them.
+//
+// A cloth's links are the core's own, in substeps (substeps.h), or the caller's. Input: nodes at the ends of their
+// paths, and contacts along these. Output: displacements and velocities at the step's end.
+//
+// Guarantee: no contact ends violated by more than kClosingTolerance if kClosingRounds sweeps suffice. Sweeps continue
+// while a violation exceeds what the next step would recover. Results are the same bits with any number of threads.
+//
+// Cost: linear in the contacts; usually a sweep per iteration or substep and kClosingRounds more, at most
+// mostClosingRounds(), and the settling passes. Reasons: docs/design_notes/contact_sweeps.md.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "contact_sweep.h"
+#include "solver_cloth.h"
+#include "substeps.h"
+
+namespace drape
+{
+constexpr int kClosingRounds = 8;
+
+// Budget of further sweeps, in contact blocks examined: a millisecond or two. A cloth with few contacts may take more
+// sweeps, between the minimum and the maximum below.
+constexpr std::size_t kFurtherBlocks = std::size_t(1) << 16;
+constexpr std::size_t kLeastFurther = 24, kMostFurther = 120;
+
+// Worst violation that may remain, as a share of the thickness: before kClosingRounds sweeps are done, and after. The
+// second is less than what the next step recovers, since later contacts of a sweep may increase a violation that was
+// measured earlier in it.
+constexpr float kClosingTolerance = 0.01f;
+constexpr float kMostViolation = 0.0625f;
+static_assert(kMostViolation < kRecoveredShare, "else cloth comes nearer from step to step");
+
+// A cloth without contacts, whose links are the core's.
+struct FreeCloth
+{
+    SolverNodes* m_nodes;
+    Substeps* m_substeps;
+};
+
+class StepSolver
+{
+public:
+    explicit StepSolver(ThreadTeam& threads) : m_team(threads), m_threads(threads) {}
+
+    // Cloths with ForeignLinks are written back; nodes of others stay where the solver leaves them.
+    void solve(const std::vector<SolverCloth>& cloths, const ContactSource& source);
+    void solveFree(const std::vector<FreeCloth>& cloths);
+
+private:
+    using Cloths = SweepTeam::Cloths;
+
+    void begin(const ContactSource& source);
+    template <class Job>
+    void forSubsteps(const Job& job);
+    void applyLimits(const Cloths& cloths);
+    void sweepContacts(int iteration);
+    void endIteration(int iteration);
+    void iterate();
+    void runAgain(const Cloths& cloths);
+    void holdOthers();
+    void beginClosing();
+    void close();
+
+    SweepTeam m_team;
+    ThreadTeam& m_threads;
+    std::vector<SolverCloth> m_cloths;
+    std::vector<std::unique_ptr<ContactSweep>> m_sweeps;  // of m_cloths; kept for their memory
+    // Cloths of the step, cloths with contacts, and subsets of one iteration or sweep.
+    Cloths m_all, m_touching, m_iterating, m_turn, m_open, m_resting, m_others;
+    std::vector<const SolverCloth*> m_own;
+};
+}  // namespace drape

@@ -1,0 +1,51 @@
+// Moves the nodes of a cloth through a step in substeps of equal length, with its links.
+//
+// A node's path through the step is the parabola from its start to its end under constant acceleration. A substep
+// moves every node along its velocity; then constraints correct the positions, and the velocities follow (Macklin et
+// al. 2019, Small Steps in Physics Simulation). Links keep the stiffness that Bullet's iterations give them
+// (link_strength.h). The same bits with any number of threads. Cost: linear in nodes and links.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "bullet_plugin/core/threads/thread_team.h"
+#include "link_sweep.h"
+#include "solver_nodes.h"
+
+namespace drape
+{
+class Substeps
+{
+public:
+    // Sweeps over the links in each substep. A sweep costs little beside one over the contacts.
+    static constexpr int kLinkSweeps = 3;
+
+    LinkSweep& links() { return m_links; }
+    int count() const { return m_count; }
+
+    // Prepares a step of `time` seconds (> 0) in `count` parts. damping: the share of a velocity that is lost in the
+    // step, 0 to 1. accelerations: of the nodes, m/s²; they must stay in place until the last substep.
+    void prepare(float time, int count, float damping, const std::vector<Vec3>& accelerations);
+    // Returns the share s in the motion of a free node in a step: time · velocity + s · time² · acceleration.
+    static float pathShare(int count) { return 0.5f * (1.0f + 1.0f / float(count)); }
+
+    // Puts the nodes at the starts of their paths, with the velocities that lead to their ends. threads: null for the
+    // caller alone, as in the functions below.
+    void begin(SolverNodes& nodes, ThreadTeam* threads) const;
+    // Begins a substep: moves the nodes and sweeps over the links.
+    void advance(SolverNodes& nodes, ThreadTeam* threads);
+    // Ends a substep: adds the constraints' corrections to the velocities. A node without any keeps its velocity
+    // exactly.
+    void end(SolverNodes& nodes, ThreadTeam* threads) const;
+    // Runs a whole step without contacts.
+    void run(SolverNodes& nodes, ThreadTeam* threads);
+
+private:
+    LinkSweep m_links;
+    const std::vector<Vec3>* m_accelerations = nullptr;
+    float m_time = 1;
+    float m_kept = 1;  // the share of a velocity that damping leaves in a substep
+    int m_count = 1;
+};
+}  // namespace drape

@@ -1,0 +1,56 @@
+// Projection of contacts on positions: C = n.(sum w_i d_i) - level >= 0 for displacements d_i, weighted by inverse mass
+// (Müller et al. 2007, Position Based Dynamics, section 3.3), with Coulomb's friction (Macklin et al. 2014, Unified
+// Particle Physics, section 6.1).
+#ifndef DRAPE_LIB_CONTACT_ROW_H
+#define DRAPE_LIB_CONTACT_ROW_H
+
+#include "../shared/solver.h"
+#include "vec3.h"
+
+DRAPE_NAMESPACE_BEGIN
+
+// Returns the displacement of the row's point of the cloth, m.
+DRAPE_FUNCTION Vec3 rowDisplacement(const ContactRow* row, const SolverNode* nodes)
+{
+    Vec3 way = vec3Scale(nodes[row->m_nodes[0]].m_displacement, row->m_weights[0]);
+    for (DRAPE_UINT k = 1; k < row->m_count; ++k)
+        way = vec3AddScaled(way, nodes[row->m_nodes[k]].m_displacement, row->m_weights[k]);
+    return way;
+}
+
+// Returns how far the row's point is below its level, m. passed: the share of the step that has passed, up to 1.
+DRAPE_FUNCTION float rowViolation(const ContactRow* row, const SolverNode* nodes, float passed)
+{
+    return row->m_level - (1.0f - passed) * row->m_advance - vec3Dot(row->m_normal, rowDisplacement(row, nodes));
+}
+
+// Pushes the row's nodes so far that the row holds, and takes back an earlier push that is not needed any more. Friction
+// removes the point's motion since the step's start along the surface, relative to the obstacle, up to Coulomb's bound.
+// Returns whether there was anything to do; `worst` grows to the violation that a push can correct. A row with NaN does
+// nothing.
+DRAPE_FUNCTION int projectRow(ContactRow* row, SolverNode* nodes, float passed, float* worst)
+{
+    const Vec3 way = rowDisplacement(row, nodes), normal = row->m_normal;
+    const float along = vec3Dot(normal, way);
+    const float violation = row->m_level - (1.0f - passed) * row->m_advance - along;
+    if (!(violation > 0.0f) && !(row->m_multiplier > 0.0f)) return 0;
+    *worst = drapeMax(*worst, violation * row->m_mended);
+    const float pushed = drapeMax(0.0f, row->m_multiplier + violation * row->m_inverseMobility);
+    const Vec3 slid = vec3Sub(vec3AddScaled(way, normal, -along), vec3Scale(row->m_carried, passed));
+    Vec3 held = vec3AddScaled(row->m_held, slid, -row->m_inverseMobility);
+    const float most = row->m_friction * pushed, wanted2 = vec3Dot(held, held);
+    if (wanted2 > most * most) held = vec3Scale(held, most / drapeSqrt(wanted2));
+    const Vec3 shift = vec3AddScaled(vec3Sub(held, row->m_held), normal, pushed - row->m_multiplier);
+    for (DRAPE_UINT k = 0; k < row->m_count; ++k)
+    {
+        SolverNode* node = nodes + row->m_nodes[k];
+        node->m_displacement = vec3AddScaled(node->m_displacement, shift, row->m_shares[k]);
+    }
+    row->m_multiplier = pushed;
+    row->m_held = held;
+    return 1;
+}
+
+DRAPE_NAMESPACE_END
+
+#endif

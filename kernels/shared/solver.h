@@ -1,0 +1,36 @@
+// Records of the cloth solver (core/solver). SI units.
+#ifndef DRAPE_SHARED_SOLVER_H
+#define DRAPE_SHARED_SOLVER_H
+
+#include "types.h"
+
+DRAPE_NAMESPACE_BEGIN
+
+// A node's displacement from the step's start and its inverse mass, read and written as one vector of four numbers.
+typedef struct SolverNode
+{
+    Vec3 m_displacement;  // m
+    float m_inverseMass;  // 1/kg; 0 for a node that constraints do not move
+} SolverNode;
+
+// A contact that acts: the least displacement, along a normal, of a weighted point of the cloth.
+typedef struct ContactRow
+{
+    Vec3 m_normal;  // unit, from the obstacle to the cloth
+    float m_level;  // m, least displacement along the normal at the step's end
+    Vec3 m_carried;  // m, displacement along the surface by the obstacle's motion in the step
+    float m_advance;  // m, the same along the normal
+    Vec3 m_held;      // friction applied in this stage, in units of the multiplier
+    float m_multiplier;  // pushed in this stage, kg m
+    float m_weights[3];  // by node, sum 1
+    float m_friction;
+    float m_shares[3];        // by node, displacement per unit of the multiplier, 1/kg
+    float m_inverseMobility;  // kg, of the weighted point; 0: nothing moves
+    DRAPE_UINT m_nodes[3];
+    DRAPE_UINT m_count;  // nodes, 1 to 3
+    float m_mended;      // share of a violation that a push corrects: 1 where no node is fixed
+} ContactRow;
+
+DRAPE_NAMESPACE_END
+
+#endif
