@@ -61,7 +61,6 @@ void ContactGroup::clear()
     m_nodeBlocks = m_faceBlocks = 0;
     m_rows.clear();
     m_pushingBlocks.clear();
-    m_settling.clear();
 }
 
 void ContactGroup::makeBlocks(const SweptCloth& cloth)
@@ -178,7 +177,6 @@ void ContactGroup::renewPlane(const SweptCloth& cloth, Row& row, Block& block, i
     }
     ContactPlane plane;
     if (!ContactSource::planeAt(block.m_contacts[lane], places, plane)) return;
-    row.m_renewed = true;
     if (block.m_count == 2) joinCorners(plane.m_weights);
     setPlane(cloth, row, plane.m_weights, vec3(plane.m_normal[0], plane.m_normal[1], plane.m_normal[2]),
              vec3(plane.m_point[0], plane.m_point[1], plane.m_point[2]));
@@ -294,29 +292,6 @@ float ContactGroup::sweep(const SweptCloth& cloth, Kinds kinds)
             worst = std::max(worst, projectBlock(cloth, i, bitsAbove0(excess) | pushing[i]));
     }
     return worst;
-}
-
-bool ContactGroup::listSettling()
-{
-    std::sort(m_pushingBlocks.begin(), m_pushingBlocks.end());  // in canonical order
-    m_settling.clear();
-    for (const std::size_t index : m_pushingBlocks)
-    {
-        for (int lane = 0; lane < kLanes; ++lane)
-        {
-            if (!(m_pushing[index] >> lane & 1)) continue;
-            Row& row = m_rows[std::size_t(m_rowsOf[index].m_row[lane])];
-            if (row.m_renewed) m_settling.push_back(&row);
-        }
-    }
-    return !m_settling.empty();
-}
-
-void ContactGroup::settle(const SweptCloth& cloth)
-{
-    float worst = 0;
-    for (Row* row : m_settling)
-        project(cloth, *row, worst);
 }
 
 void ContactGroup::limitSpeed(const SweptCloth& cloth, const Row& limited)

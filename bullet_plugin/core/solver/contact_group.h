@@ -59,11 +59,6 @@ public:
     // Tests every contact of these features once and projects those that are due. Returns the worst violation met, m,
     // as far as the contact's nodes can correct it. A new stage begins with no pushes.
     float sweep(const SweptCloth& cloth, Kinds kinds);
-    // Lists, for settle(), the contacts that have pushed in this stage and whose planes were renewed. Returns whether
-    // there are any.
-    bool listSettling();
-    // Projects the listed contacts once more.
-    void settle(const SweptCloth& cloth);
     // Removes from the nodes' velocities what a contact gained by recovering a depth that the step began with.
     void limitSpeeds(const SweptCloth& cloth) const;
     // Returns whether a contact that has pushed ends with less than kNearShare of the thickness between its features'
@@ -101,7 +96,6 @@ private:
         float m_distance;    // m, distance to keep from the contact's point: thickness plus target
         float m_speedLimit;  // m/s outwards when the contact pushed
         unsigned m_stage;    // in which the plane was renewed
-        bool m_renewed;      // in any stage
         bool m_pushed;       // in any stage
     };
 
@@ -126,7 +120,6 @@ private:
     std::vector<unsigned char> m_pushing;  // by block: a bit for each lane whose row has pushed in this stage
     std::vector<Row> m_rows;
     std::vector<std::size_t> m_pushingBlocks;  // blocks with rows that have pushed in this stage
-    std::vector<Row*> m_settling;              // their rows whose planes were renewed; until the next sweep
     unsigned m_stage = 0;                      // stage of the last sweep
 };
 }  // namespace drape

@@ -39,7 +39,6 @@ void ContactSweep::begin()
         m_halfDone[group] = false;
     }
     m_worst.assign(groups, 0);
-    m_settles.assign(groups, 0);
     m_near.assign(groups, 0);
     m_blocks = 0;
     for (const FeatureContacts& feature : contacts().m_features)
@@ -85,12 +84,8 @@ void ContactSweep::work(std::size_t index, Pass pass)
             m_worst[index] = group.sweep(m_cloth, ContactGroup::Kinds::NodesAndFaces);
             return;
         case Pass::Edges:
-        case Pass::EdgesAndList:
             m_worst[index] = std::max(m_worst[index], group.sweep(m_cloth, ContactGroup::Kinds::Edges));
-            m_settles[index] = pass == Pass::EdgesAndList && group.listSettling();
             return;
-        case Pass::Settle:
-            return group.settle(m_cloth);
         case Pass::LimitSpeeds:
             group.limitSpeeds(m_cloth);
             m_near[index] = group.mayHavePassed(m_cloth);
@@ -118,11 +113,6 @@ float ContactSweep::worst() const
 bool ContactSweep::mayHavePassed() const
 {
     return std::find(m_near.begin(), m_near.end(), 1) != m_near.end();
-}
-
-bool ContactSweep::anySettles() const
-{
-    return std::find(m_settles.begin(), m_settles.end(), 1) != m_settles.end();
 }
 
 void SweepTeam::pass(const Cloths& cloths, ContactSweep::Pass pass)
@@ -169,17 +159,6 @@ void SweepTeam::limitAndRun(const Cloths& cloths)
 void SweepTeam::runNodes(const Cloths& cloths)
 {
     pass(cloths, ContactSweep::Pass::Nodes);
-}
-
-void SweepTeam::runAndSettle(const Cloths& cloths)
-{
-    pass(cloths, ContactSweep::Pass::NodesAndFaces);
-    pass(cloths, ContactSweep::Pass::EdgesAndList);
-    m_settling.clear();
-    for (ContactSweep* cloth : cloths)
-        if (cloth->anySettles()) m_settling.push_back(cloth);
-    for (int i = 0; i < kSettlingPasses; ++i)
-        pass(m_settling, ContactSweep::Pass::Settle);
 }
 
 void SweepTeam::limitSpeeds(const Cloths& cloths)

@@ -51,8 +51,6 @@ private:
         NodesAndFaces,
         LimitNodesAndFaces,  // NodesAndFaces after nodes are brought back to their paths
         Edges,
-        EdgesAndList,  // Edges, then lists the rows to settle
-        Settle,
         LimitSpeeds
     };
 
@@ -62,7 +60,6 @@ private:
     void boundNodes();
     void keepNear(std::size_t leaf);
     float worst() const;
-    bool anySettles() const;
     bool mayHavePassed() const;
 
     const SolverCloth* m_owner = nullptr;
@@ -70,7 +67,6 @@ private:
     const ClothParts* m_parts = nullptr;
     std::vector<ContactGroup> m_groups;               // groups of m_parts; more from earlier cloths
     std::vector<float> m_worst;                       // by group: worst violation in this sweep, m
-    std::vector<unsigned char> m_settles;             // by group
     std::vector<unsigned char> m_near;                // by group: whether a contact ends near, see ContactGroup
     std::unique_ptr<std::atomic<bool>[]> m_halfDone;  // by group: whether one of its halves is done in this pass
     std::size_t m_blocks = 0;                         // in all groups
@@ -80,9 +76,6 @@ private:
 class SweepTeam
 {
 public:
-    // Passes of runAndSettle(). Without any, cloth on thin boards keeps moving at 2.5 mm/s (RMS).
-    static constexpr int kSettlingPasses = 2;
-
     explicit SweepTeam(ThreadTeam& threads) : m_threads(threads) {}
 
     using Cloths = std::vector<ContactSweep*>;
@@ -110,9 +103,6 @@ public:
     // Runs a sweep over the contacts of nodes alone. They are satisfied exactly afterwards, except at nodes with
     // several.
     void runNodes(const Cloths& cloths);
-    // Runs a sweep over all contacts, then kSettlingPasses over those that have pushed in this stage and whose planes
-    // were renewed.
-    void runAndSettle(const Cloths& cloths);
     // Limits the speeds that contacts gave. Call once, after the last sweep.
     void limitSpeeds(const Cloths& cloths);
     // Returns whether a contact ends so near that a surface may have been passed. Call after limitSpeeds().
@@ -130,6 +120,5 @@ private:
 
     ThreadTeam& m_threads;
     std::vector<Leaf> m_leaves;  // current pass
-    Cloths m_settling;           // cloths of runAndSettle()
 };
 }  // namespace drape

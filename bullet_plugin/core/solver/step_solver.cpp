@@ -133,7 +133,7 @@ void StepSolver::solveFree(const std::vector<FreeCloth>& cloths)
         one(i, &m_threads);
 }
 
-// Runs an iteration's limits and contact sweep.
+// Runs an iteration's limits and contact sweeps.
 void StepSolver::sweepContacts(int iteration)
 {
     const auto isForeign = [](const ContactSweep* sweep) { return sweep->cloth().m_links != nullptr; };
@@ -152,7 +152,11 @@ void StepSolver::sweepContacts(int iteration)
         // The links' last pull takes over what contacts pushed before it.
         sweep->restart(cloth.m_substeps ? float(iteration + 1) / float(cloth.m_substeps->count()) : 1.0f);
     }
-    m_team.runAndSettle(m_turn);
+    for (int sweeps = 0; sweeps < kMostSweeps && !m_turn.empty(); ++sweeps)
+    {
+        m_team.run(m_turn);
+        keep(m_turn, [](const ContactSweep* sweep) { return isViolated(sweep, kSweepTolerance); });
+    }
     select(m_iterating, m_turn, isForeign);
     const auto write = [](ContactSweep& sweep)
     {
