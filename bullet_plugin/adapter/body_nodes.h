@@ -25,7 +25,7 @@ inline Vec3 displacementOf(const btSoftBody::Node& node, const SolverNodes& node
 inline void recordPath(const btSoftBody::Node& node, std::size_t index, SolverNodes& nodes)
 {
     const Vec3 start = vec3Of(node.m_q);
-    nodes.setPath(index, start, vec3Of(node.m_x - vectorOf(start)), vec3Of(node.m_v), float(movableInverseMass(node)));
+    nodes.setPath(index, start, vec3Of(node.m_x - vectorOf(start)), vec3Of(node.m_v), float(node.m_im), node.m_battach);
 }
 
 // Records that the path ends at the node's current position.

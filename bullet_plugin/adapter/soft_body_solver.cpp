@@ -120,6 +120,7 @@ struct SoftBodySolver::Work
     std::vector<SolverCloth> m_touched;
     std::vector<std::unique_ptr<BulletLinks>> m_bulletLinks;
     std::vector<FreeCloth> m_free;
+    RigidBodies m_rigidBodies;
     std::vector<std::pair<btSoftBody*, const SolverNodes*>> m_ends;  // results to be written to the bodies
     std::vector<unsigned char> m_solved;                             // by body: solved by Bullet or by its contacts
     std::vector<btSoftBody*> m_taken;                                // bodies that Drape handles in this step
@@ -293,14 +294,17 @@ bool SoftBodySolver::Work::take(btSoftBody& body)
     if (!contacts && !substeps) return false;
     if (substeps)
     {
-        substeps->begin(body, contacts ? &contacts->nodes() : nullptr);
-        m_ends.emplace_back(&body, contacts ? &contacts->nodes() : &substeps->nodes());
-        if (!contacts) m_free.push_back({&substeps->nodes(), &substeps->substeps()});
-        if (contacts) m_touched.push_back({&contacts->m_contacts, &substeps->substeps(), nullptr});
+        substeps->begin(body, contacts ? &contacts->nodes() : nullptr, m_rigidBodies);
+        ClothContacts& cloth = contacts ? contacts->m_contacts : substeps->alone();
+        m_ends.emplace_back(&body, &cloth.m_nodes);
+        if (contacts || substeps->rigidRows())
+            m_touched.push_back({&cloth, &substeps->substeps(), nullptr, substeps->rigidRows()});
+        else
+            m_free.push_back({&cloth.m_nodes, &substeps->substeps()});
         return true;
     }
     m_bulletLinks.emplace_back(new BulletLinks(body, !contacts->m_contacts.m_features.empty()));
-    m_touched.push_back({&contacts->m_contacts, nullptr, m_bulletLinks.back().get()});
+    m_touched.push_back({&contacts->m_contacts, nullptr, m_bulletLinks.back().get(), nullptr});
     return true;
 }
 
@@ -312,6 +316,7 @@ double SoftBodySolver::solveBodies()
     work.m_bulletLinks.clear();
     work.m_free.clear();
     work.m_ends.clear();
+    work.m_rigidBodies.clear();
     work.m_solved.assign(static_cast<std::size_t>(m_softBodySet.size()), 0);
     double bulletMs = 0;
     for (int i = 0; i < m_softBodySet.size();)
@@ -329,6 +334,7 @@ double SoftBodySolver::solveBodies()
     work.m_solver->solve(work.m_touched, m_state->m_found.source());
     for (const auto& end : work.m_ends)
         SubstepBody::end(*end.second, *end.first, &m_state->threads());
+    work.m_rigidBodies.applyImpulses();
     for (const std::unique_ptr<BulletLinks>& links : work.m_bulletLinks)
         bulletMs += links->ms();
     return bulletMs;

@@ -32,7 +32,6 @@ const char* SubstepBody::reasonForBullet(const btSoftBody& body)
     if (sizeof(btScalar) != sizeof(float)) return "Bullet computes in double precision";
     if (body.m_reducedModel) return "the soft body is a reduced deformable model";
     if (body.m_clusters.size() > 0 || body.m_joints.size() > 0) return "the soft body has clusters or joints";
-    if (body.m_anchors.size() > 0) return "the soft body has anchors";
     if (body.m_pose.m_bframe && config.kMT > 0) return "the soft body matches a pose (kMT)";
     if (config.viterations > 0) return "the soft body has velocity iterations (viterations)";
     if (config.diterations > 0) return "the soft body has drift iterations (diterations)";
@@ -46,9 +45,8 @@ const char* SubstepBody::reasonForBullet(const btSoftBody& body)
 const char* SubstepBody::reasonForBulletNow(const btSoftBody& body)
 {
     if (const char* reason = reasonForBullet(body)) return reason;
-    if (body.m_rcontacts.size() > 0 || body.m_scontacts.size() > 0)
-        return "the soft body touches an object whose contacts Bullet's own algorithm found";
-    return nullptr;
+    if (body.m_scontacts.size() > 0) return "the soft body touches a soft body, or itself, by Bullet's own algorithm";
+    return RigidBodies::reasonForBullet(body);
 }
 
 int SubstepBody::substepsOf(const btSoftBody& body)
@@ -102,22 +100,21 @@ void SubstepBody::buildLinks(const btSoftBody& body)
     std::vector<Vec3> positions(nodeCount(body));
     for (std::size_t i = 0; i < positions.size(); ++i)
         positions[i] = vec3Of(body.m_nodes[static_cast<int>(i)].m_q);
-    ClothParts parts;
-    parts.cut(std::move(positions));
+    m_parts.cut(std::move(positions));
     for (LinkNodes& link : m_links)
     {
         const int nodes[3] = {static_cast<int>(link.m_nodes[0]), static_cast<int>(link.m_nodes[1]), -1};
-        link.m_group = static_cast<std::uint32_t>(parts.groupOf(nodes));
+        link.m_group = static_cast<std::uint32_t>(m_parts.groupOf(nodes));
     }
-    m_substeps.links().build(nodeCount(body), parts.leafCount(), m_links);
-    m_nodeCount = nodeCount(body);
+    m_substeps.links().build(nodeCount(body), m_parts.leafCount(), m_links);
+    m_noFaces = ClothFaces({}, nodeCount(body));
 }
 
 // Reads which nodes the links join; sorts them again if that changed.
 void SubstepBody::readTopology(const btSoftBody& body)
 {
     const std::size_t count = static_cast<std::size_t>(body.m_links.size());
-    bool isNew = m_links.size() != count || m_nodeCount != nodeCount(body);
+    bool isNew = m_links.size() != count || m_parts.nodeCount() != nodeCount(body);
     m_links.resize(count);
     const btSoftBody::Node* const first = count > 0 ? &body.m_nodes[0] : nullptr;
     for (std::size_t i = 0; i < count; ++i)
@@ -155,12 +152,18 @@ void SubstepBody::readLinks(const btSoftBody& body)
     }
 }
 
-void SubstepBody::begin(const btSoftBody& body, SolverNodes* recorded)
+void SubstepBody::begin(const btSoftBody& body, SolverNodes* recorded, RigidBodies& bodies)
 {
     readTopology(body);
     readLinks(body);
-    SolverNodes& nodes = recorded ? *recorded : m_nodes;
-    if (!recorded) nodes.resize(nodeCount(body));
+    SolverNodes& nodes = recorded ? *recorded : m_alone.m_nodes;
+    if (!recorded)
+    {
+        nodes.resize(nodeCount(body));
+        m_alone.start(m_parts);
+        m_alone.m_limit.startStep(m_noFaces);
+        m_alone.m_perSecond = static_cast<float>(body.m_sst.isdt);
+    }
     for (std::size_t i = 0; i < nodes.count(); ++i)
     {
         const btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
@@ -170,6 +173,8 @@ void SubstepBody::begin(const btSoftBody& body, SolverNodes* recorded)
     }
     m_substeps.prepare(static_cast<float>(body.m_sst.sdt), substepsOf(body), static_cast<float>(body.m_cfg.kDP),
                        m_accelerations);
+    m_rigidRows.clear();
+    bodies.addRows(body, nodes, m_rigidRows);
 }
 
 void SubstepBody::end(const SolverNodes& nodes, btSoftBody& body, ThreadTeam* threads)

@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "BulletSoftBody/btSoftBody.h"
-#include "bullet_plugin/core/solver/solver_nodes.h"
+#include "bullet_plugin/adapter/rigid_bodies.h"
+#include "bullet_plugin/core/solver/cloth_contacts.h"
 #include "bullet_plugin/core/solver/substeps.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 
@@ -39,11 +40,14 @@ public:
     // Returns the number of substeps: piterations, but at least kLeastSubsteps.
     static int substepsOf(const btSoftBody& body);
 
-    // Prepares the solver's step. nodes: with the paths that were recorded; null: those of nodes(), which are recorded
-    // now.
-    void begin(const btSoftBody& body, SolverNodes* nodes);
-    SolverNodes& nodes() { return m_nodes; }
+    // Prepares the solver's step. recorded: nodes with the paths that were recorded; null: those of alone(), which are
+    // recorded now. bodies: gets the rigid bodies that the body touches or hangs on.
+    void begin(const btSoftBody& body, SolverNodes* recorded, RigidBodies& bodies);
+    // The cloth of a body without pairs.
+    ClothContacts& alone() { return m_alone; }
     Substeps& substeps() { return m_substeps; }
+    // Returns the rows of the last begin(); null if there are none.
+    RigidRows* rigidRows() { return m_rigidRows.empty() ? nullptr : &m_rigidRows; }
     // Gives the body the solver's result. threads: null for the caller alone.
     static void end(const SolverNodes& nodes, btSoftBody& body, ThreadTeam* threads);
 
@@ -65,8 +69,10 @@ private:
     std::vector<Vec3> m_accelerations;    // of the step, m/s²
     std::vector<Prediction> m_predictions;
     std::vector<LinkNodes> m_links;  // links as sorted for sweeps
-    std::size_t m_nodeCount = 0;     // when they were sorted
-    SolverNodes m_nodes;             // for steps without contacts
+    ClothParts m_parts;              // when they were sorted
+    ClothContacts m_alone;           // for steps without pairs
+    ClothFaces m_noFaces;
     Substeps m_substeps;
+    RigidRows m_rigidRows;
 };
 }  // namespace drape

@@ -5,6 +5,7 @@
 
 namespace drape
 {
+class RigidRows;
 class Substeps;
 
 // Links that the caller solves, one iteration at a time. Calls come from the thread of StepSolver::solve(), except
@@ -28,5 +29,6 @@ struct SolverCloth
     ClothContacts* m_contacts = nullptr;
     Substeps* m_substeps = nullptr;
     ForeignLinks* m_links = nullptr;
+    RigidRows* m_rigid = nullptr;  // with m_substeps alone; null if there are none
 };
 }  // namespace drape

@@ -26,14 +26,16 @@ public:
         m_velocities.resize(count);
         m_before.resize(count);
         m_shifted.resize(count);
+        m_anchored.resize(count);
     }
 
     // Records the node's path and puts the node at its end. start, way: m. velocity: m/s. inverseMass: 1/kg, 0 for a
-    // node that constraints do not move.
-    void setPath(std::size_t node, Vec3 start, Vec3 way, Vec3 velocity, float inverseMass)
+    // node that constraints do not move. anchored: links and anchors alone move the node, contacts do not.
+    void setPath(std::size_t node, Vec3 start, Vec3 way, Vec3 velocity, float inverseMass, bool anchored = false)
     {
         m_starts[node] = start;
         m_nodes[node].m_inverseMass = inverseMass;
+        m_anchored[node] = anchored;
         setEnd(node, way, velocity);
     }
     // Records another end of the path.
@@ -59,7 +61,8 @@ public:
     Vec3 displacement(std::size_t node) const { return m_nodes[node].m_displacement; }
     Vec3 position(std::size_t node) const { return vec3Add(m_starts[node], displacement(node)); }
     Vec3 velocity(std::size_t node) const { return m_velocities[node]; }
-    float inverseMass(std::size_t node) const { return m_nodes[node].m_inverseMass; }
+    // Returns the inverse mass as contacts see it, 1/kg: 0 for a node that they do not move.
+    float inverseMass(std::size_t node) const { return m_anchored[node] ? 0.0f : m_nodes[node].m_inverseMass; }
 
     // Moves the node and marks it as shifted.
     void shift(std::size_t node, Vec3 by)
@@ -89,6 +92,6 @@ private:
     std::vector<SolverNode> m_nodes;
     std::vector<Vec3> m_starts, m_ways, m_velocities;
     std::vector<Vec3> m_before;  // displacements, see remember()
-    std::vector<unsigned char> m_shifted;
+    std::vector<unsigned char> m_shifted, m_anchored;
 };
 }  // namespace drape

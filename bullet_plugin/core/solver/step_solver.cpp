@@ -3,12 +3,17 @@
 #include <algorithm>
 #include <iterator>
 
+#include "rigid_rows.h"
+
 namespace drape
 {
 namespace
 {
 // Minimum nodes for sharing cloths among threads; a substep takes 50 ns a node.
 constexpr std::size_t kLeastNodesShared = 2048;
+
+// Violation of a contact with a rigid body that needs no other sweep, m.
+constexpr float kRigidTolerance = 2e-5f;
 
 bool hasContacts(const ContactSweep* sweep)
 {
@@ -133,6 +138,35 @@ void StepSolver::solveFree(const std::vector<FreeCloth>& cloths)
         one(i, &m_threads);
 }
 
+// Begins an iteration's rows. The links' last pull takes over what contacts pushed before it.
+void StepSolver::restart(int iteration)
+{
+    for (ContactSweep* sweep : m_turn)
+    {
+        const SolverCloth& cloth = sweep->cloth();
+        const float passed = cloth.m_substeps ? float(iteration + 1) / float(cloth.m_substeps->count()) : 1.0f;
+        sweep->restart(passed);
+        if (cloth.m_rigid) cloth.m_rigid->begin(cloth.m_substeps->substepTime(), passed);
+    }
+}
+
+// Runs sweeps over the contacts of the turn's cloths until little moves.
+void StepSolver::sweep()
+{
+    for (int sweeps = 0; sweeps < kMostSweeps && !m_turn.empty(); ++sweeps)
+    {
+        select(m_turn, m_meeting, hasContacts);
+        m_team.run(m_meeting);
+        const auto goesOn = [](const ContactSweep* sweep)
+        {
+            RigidRows* const rigid = sweep->cloth().m_rigid;
+            const bool rigidMoves = rigid && rigid->project(sweep->nodes()) > kRigidTolerance;
+            return rigidMoves || (hasContacts(sweep) && isViolated(sweep, kSweepTolerance));
+        };
+        keep(m_turn, goesOn);
+    }
+}
+
 // Runs an iteration's limits and contact sweeps.
 void StepSolver::sweepContacts(int iteration)
 {
@@ -145,18 +179,11 @@ void StepSolver::sweepContacts(int iteration)
     };
     m_team.forCloths(m_turn, read);
     if (iteration > 0) applyLimits(m_iterating);
-    select(m_iterating, m_turn, hasContacts);
-    for (ContactSweep* sweep : m_turn)
-    {
-        const SolverCloth& cloth = sweep->cloth();
-        // The links' last pull takes over what contacts pushed before it.
-        sweep->restart(cloth.m_substeps ? float(iteration + 1) / float(cloth.m_substeps->count()) : 1.0f);
-    }
-    for (int sweeps = 0; sweeps < kMostSweeps && !m_turn.empty(); ++sweeps)
-    {
-        m_team.run(m_turn);
-        keep(m_turn, [](const ContactSweep* sweep) { return isViolated(sweep, kSweepTolerance); });
-    }
+    select(m_iterating, m_turn, [](const ContactSweep* sweep) { return hasContacts(sweep) || sweep->cloth().m_rigid; });
+    restart(iteration);
+    sweep();
+    for (const ContactSweep* sweep : m_iterating)
+        if (RigidRows* rigid = sweep->cloth().m_rigid) rigid->end();
     select(m_iterating, m_turn, isForeign);
     const auto write = [](ContactSweep& sweep)
     {

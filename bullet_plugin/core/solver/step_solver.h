@@ -66,6 +66,8 @@ private:
     void forSubsteps(const Job& job);
     void applyLimits(const Cloths& cloths);
     void sweepContacts(int iteration);
+    void restart(int iteration);
+    void sweep();
     void endIteration(int iteration);
     void iterate();
     void runAgain(const Cloths& cloths);
@@ -78,7 +80,7 @@ private:
     std::vector<SolverCloth> m_cloths;
     std::vector<std::unique_ptr<ContactSweep>> m_sweeps;  // of m_cloths; kept for their memory
     // Cloths of the step, cloths with contacts, and subsets of one iteration or sweep.
-    Cloths m_all, m_touching, m_iterating, m_turn, m_open, m_resting, m_others;
+    Cloths m_all, m_touching, m_iterating, m_turn, m_meeting, m_open, m_resting, m_others;
     std::vector<const SolverCloth*> m_own;
 };
 }  // namespace drape

@@ -46,7 +46,7 @@ void Substeps::begin(SolverNodes& nodes, ThreadTeam* threads) const
 
 void Substeps::advance(SolverNodes& nodes, ThreadTeam* threads)
 {
-    const float h = m_time / float(m_count);
+    const float h = substepTime();
     forNodes(nodes.count(), threads,
              [&](std::size_t i)
              {

@@ -23,6 +23,8 @@ public:
 
     LinkSweep& links() { return m_links; }
     int count() const { return m_count; }
+    // Returns the time of a substep, s.
+    float substepTime() const { return m_time / float(m_count); }
 
     // Prepares a step of `time` seconds (> 0) in `count` parts. damping: the share of a velocity that is lost in the
     // step, 0 to 1. accelerations: of the nodes, m/s²; they must stay in place until the last substep.

@@ -1,0 +1,35 @@
+// The rigid bodies that cloth touches or hangs on in a step: contacts that Bullet's own algorithms found
+// (btSoftBody::m_rcontacts) and anchors, as rows of the core's solver.
+//
+// Contacts and anchors act as those of btSoftBody::solveConstraints() do: friction is the product of both coefficients,
+// what a depth recovers follows kKHR, kSHR or kCHR, and anchors follow kAHR and their influence. Cost: linear in both.
+#pragma once
+
+#include <unordered_map>
+#include <vector>
+
+#include "BulletSoftBody/btSoftBody.h"
+#include "bullet_plugin/core/solver/rigid_rows.h"
+
+namespace drape
+{
+class RigidBodies
+{
+public:
+    // Returns why rows cannot stand for the body's contacts; null if they can.
+    static const char* reasonForBullet(const btSoftBody& body);
+
+    void clear();
+    // Adds the body's contacts and anchors. nodes: with recorded paths.
+    void addRows(const btSoftBody& body, const SolverNodes& nodes, RigidRows& rows);
+    // Gives the rigid bodies what the cloth pushed.
+    void applyImpulses() const;
+
+private:
+    std::uint32_t indexOf(const btCollisionObject& object);
+
+    std::unordered_map<const btCollisionObject*, std::uint32_t> m_indices;
+    std::vector<btRigidBody*> m_rigid;  // by index; null for an object that is none
+    std::vector<RigidBody> m_bodies;
+};
+}  // namespace drape

@@ -1,0 +1,123 @@
+#include "rigid_rows.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace drape
+{
+namespace
+{
+Vec3 product(const Vec3 rows[3], Vec3 v)
+{
+    return vec3(vec3Dot(rows[0], v), vec3Dot(rows[1], v), vec3Dot(rows[2], v));
+}
+
+Vec3 byAxis(Vec3 a, Vec3 b)
+{
+    return vec3(a.x * b.x, a.y * b.y, a.z * b.z);
+}
+}  // namespace
+
+void RigidRows::clear()
+{
+    m_contacts.clear();
+    m_anchors.clear();
+}
+
+Vec3 RigidRows::velocityAt(std::uint32_t index, Vec3 arm) const
+{
+    const RigidBody& body = (*m_bodies)[index];
+    return vec3Add(body.m_velocity, vec3Cross(body.m_spin, arm));
+}
+
+// Returns the velocity along a direction that a unit impulse along it gives to a body's point, 1/kg.
+float RigidRows::mobility(std::uint32_t index, Vec3 arm, Vec3 direction) const
+{
+    const RigidBody& body = (*m_bodies)[index];
+    const Vec3 spin = product(body.m_inverseInertia, vec3Cross(arm, direction));
+    return vec3Dot(direction, vec3Add(byAxis(body.m_inverseMass, direction), vec3Cross(spin, arm)));
+}
+
+// Pushes the node, and the body the other way. by: direction times multiplier, kg m.
+void RigidRows::push(SolverNodes& nodes, std::uint32_t node, std::uint32_t index, Vec3 arm, Vec3 by)
+{
+    RigidBody& body = (*m_bodies)[index];
+    nodes.shift(node, vec3Scale(by, nodes.nodes()[node].m_inverseMass));
+    const Vec3 impulse = vec3Scale(by, -1 / m_time), turning = vec3Cross(arm, impulse);
+    body.m_velocity = vec3Add(body.m_velocity, byAxis(body.m_inverseMass, impulse));
+    body.m_spin = vec3Add(body.m_spin, product(body.m_inverseInertia, turning));
+    body.m_impulse = vec3Add(body.m_impulse, impulse);
+    body.m_turning = vec3Add(body.m_turning, turning);
+}
+
+void RigidRows::begin(float time, float passed)
+{
+    m_time = time;
+    m_passed = passed;
+    for (ContactState& state : m_contacts)
+    {
+        state.m_multiplier = 0;
+        state.m_held = vec3(0, 0, 0);
+    }
+}
+
+void RigidRows::end()
+{
+    for (ContactState& state : m_contacts)
+        state.m_carried =
+            vec3AddScaled(state.m_carried, velocityAt(state.m_contact.m_body, state.m_contact.m_arm), m_time);
+    for (AnchorState& state : m_anchors)
+        state.m_carried =
+            vec3AddScaled(state.m_carried, velocityAt(state.m_anchor.m_body, state.m_anchor.m_arm), m_time);
+}
+
+float RigidRows::project(SolverNodes& nodes, ContactState& state)
+{
+    const RigidContact& contact = state.m_contact;
+    const Vec3 normal = contact.m_normal;
+    const float inverseMass = nodes.inverseMass(contact.m_node);
+    const float inverseMobility = 1 / std::max(inverseMass + mobility(contact.m_body, contact.m_arm, normal), 1e-30f);
+    if (!(inverseMass > 0)) return 0;
+    const Vec3 carried = vec3AddScaled(state.m_carried, velocityAt(contact.m_body, contact.m_arm), m_time);
+    const Vec3 way = vec3Sub(nodes.displacement(contact.m_node), carried);
+    const float along = vec3Dot(normal, way);
+    const float level = contact.m_gap < 0 ? contact.m_recover * m_passed : -contact.m_gap;
+    const float violation = level - along;
+    if (!(violation > 0) && !(state.m_multiplier > 0)) return 0;
+    const float pushed = std::max(0.0f, state.m_multiplier + violation * inverseMobility);
+    Vec3 held = vec3AddScaled(state.m_held, vec3AddScaled(way, normal, -along), -inverseMobility);
+    const float most = contact.m_friction * pushed, wanted = vec3Length(held);
+    if (wanted > most) held = vec3Scale(held, most / wanted);
+    const Vec3 by = vec3AddScaled(vec3Sub(held, state.m_held), normal, pushed - state.m_multiplier);
+    push(nodes, contact.m_node, contact.m_body, contact.m_arm, by);
+    state.m_multiplier = pushed;
+    state.m_held = held;
+    return std::max(0.0f, violation);
+}
+
+void RigidRows::project(SolverNodes& nodes, AnchorState& state)
+{
+    const RigidAnchor& anchor = state.m_anchor;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const Vec3 direction = vec3(float(axis == 0), float(axis == 1), float(axis == 2));
+        const Vec3 carried = vec3AddScaled(state.m_carried, velocityAt(anchor.m_body, anchor.m_arm), m_time);
+        const Vec3 wanted = vec3Add(anchor.m_apart, carried);
+        const float error = vec3Dot(direction, vec3Sub(wanted, nodes.displacement(anchor.m_node)));
+        const float both =
+            nodes.nodes()[anchor.m_node].m_inverseMass + mobility(anchor.m_body, anchor.m_arm, direction);
+        if (!(both > 0)) continue;
+        push(nodes, anchor.m_node, anchor.m_body, anchor.m_arm, vec3Scale(direction, anchor.m_share * error / both));
+    }
+}
+
+float RigidRows::project(SolverNodes& nodes)
+{
+    for (AnchorState& state : m_anchors)
+        project(nodes, state);
+    float worst = 0;
+    for (ContactState& state : m_contacts)
+        worst = std::max(worst, project(nodes, state));
+    return worst;
+}
+}  // namespace drape

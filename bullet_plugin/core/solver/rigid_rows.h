@@ -1,0 +1,87 @@
+// Contacts of a cloth's nodes with rigid bodies that the caller found, and anchors to rigid bodies: two-way, since the
+// bodies may yield.
+//
+// Within a step a body stands where the step ends, and its velocity tells where it came from. What the cloth pushes
+// changes the body's velocity, and with it how far the body's points come in the rest of the step. Rows are projected
+// in their order, on one thread. World frame, SI units.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "solver_nodes.h"
+
+namespace drape
+{
+struct RigidBody
+{
+    Vec3 m_velocity, m_spin;    // m/s at the centre of mass, rad/s
+    Vec3 m_inverseMass;         // 1/kg by axis; 0 for a body that does not yield
+    Vec3 m_inverseInertia[3];   // rows, 1/(kg m²)
+    Vec3 m_impulse, m_turning;  // given by the cloth in this step, N s, and about the centre of mass, N m s
+};
+
+// A node beside a plane of a body.
+struct RigidContact
+{
+    std::uint32_t m_node, m_body;
+    Vec3 m_normal;    // unit, from the body to the cloth
+    Vec3 m_arm;       // m, from the body's centre of mass to the contact
+    float m_gap;      // m, between node and plane at the step's start; negative is too close
+    float m_recover;  // m, of a negative gap, what the step mends
+    float m_friction;
+};
+
+// A node that follows a point of a body.
+struct RigidAnchor
+{
+    std::uint32_t m_node, m_body;
+    Vec3 m_arm;     // m, from the body's centre of mass to the point
+    Vec3 m_apart;   // m, from the node to the point at the step's start
+    float m_share;  // share of an error that a projection corrects, up to 1
+};
+
+class RigidRows
+{
+public:
+    bool empty() const { return m_contacts.empty() && m_anchors.empty(); }
+    void clear();
+    // bodies: of all rows; they must stay in place until the last substep.
+    void setBodies(std::vector<RigidBody>& bodies) { m_bodies = &bodies; }
+    void add(const RigidContact& contact) { m_contacts.push_back({contact, vec3(0, 0, 0), vec3(0, 0, 0), 0}); }
+    void add(const RigidAnchor& anchor) { m_anchors.push_back({anchor, vec3(0, 0, 0)}); }
+
+    // Begins a substep of `time` seconds that ends when the share `passed` of the step has passed.
+    void begin(float time, float passed);
+    // Projects every row once. Returns the worst violation of a contact that it met, m.
+    float project(SolverNodes& nodes);
+    // Ends a substep: the bodies' points have gone on with the bodies' velocities.
+    void end();
+
+private:
+    struct ContactState
+    {
+        RigidContact m_contact;
+        Vec3 m_carried;      // m, displacement of the body's point from the step's start to that of the substep
+        Vec3 m_held;         // friction in this substep, in units of the multiplier
+        float m_multiplier;  // in this substep
+    };
+    struct AnchorState
+    {
+        RigidAnchor m_anchor;
+        Vec3 m_carried;
+    };
+
+    Vec3 velocityAt(std::uint32_t body, Vec3 arm) const;
+    float mobility(std::uint32_t body, Vec3 arm, Vec3 direction) const;
+    void push(SolverNodes& nodes, std::uint32_t node, std::uint32_t body, Vec3 arm, Vec3 by);
+    float project(SolverNodes& nodes, ContactState& state);
+    void project(SolverNodes& nodes, AnchorState& state);
+
+    std::vector<RigidBody>* m_bodies = nullptr;
+    std::vector<ContactState> m_contacts;
+    std::vector<AnchorState> m_anchors;
+    float m_time = 1, m_passed = 1;
+};
+}  // namespace drape
