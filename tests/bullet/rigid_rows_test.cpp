@@ -76,7 +76,7 @@ btVector3 turningOf(const btRigidBody& body)
            body.getInvInertiaTensorWorld().inverse() * body.getAngularVelocity();
 }
 
-btScalar lowestOf(const btSoftBody& cloth)
+btScalar lowestNodeOf(const btSoftBody& cloth)
 {
     btScalar lowest = SIMD_INFINITY;
     for (int i = 0; i < cloth.m_nodes.size(); ++i)
@@ -106,8 +106,8 @@ TEST(RigidRows, ClothOnABoxRests)
     world.step(60);
     EXPECT_GT(cloth.m_rcontacts.size(), 100);
     world.step(240);
-    EXPECT_GT(lowestOf(cloth), 0);
-    EXPECT_LT(lowestOf(cloth), 2 * kMargin);
+    EXPECT_GT(lowestNodeOf(cloth), 0);
+    EXPECT_LT(lowestNodeOf(cloth), 2 * kMargin);
     EXPECT_LT(fastestOf(cloth), 1e-3);
 }
 

@@ -23,7 +23,7 @@ void list()
 
 WorldBackend backendOf(const std::string& name)
 {
-    if (name == "substeps") return WorldBackend::Substeps;
+    if (name == "bullet_links") return WorldBackend::BulletLinks;
     return name == "stock" ? WorldBackend::Stock : name == "opencl" ? WorldBackend::OpenCl : WorldBackend::Host;
 }
 

@@ -37,7 +37,7 @@ enum class ContactMode : std::uint32_t
 // Selects who moves cloth under its links and forces.
 enum class Solver
 {
-    Auto,   // Bullet, until Drape's own solver handles everything that Bullet's does
+    Auto,   // the same as Drape
     Drape,  // Drape for each soft body that it can solve (Plugin::whyBulletSolves()), Bullet for the others
     Bullet  // Bullet, with Drape's contacts between its iterations
 };
@@ -69,8 +69,8 @@ struct Settings
     ContactMode m_mode = ContactMode::Automatic;
 
     // Selects the solver of links. Drape's divides a step into substeps, as many as the soft body has position
-    // iterations (two at least), with a pass over the contacts in each. Cloth stretches several times less than with
-    // Bullet's, and the threads share the links. Soft links (kLST below 1) keep their stiffness.
+    // iterations (two at least), with passes over links, anchors and contacts in each. Cloth stretches several times
+    // less than with Bullet's, and the threads share the links. Soft links (kLST below 1) keep their stiffness.
     Solver m_solver = Solver::Auto;
 
     // Number of threads, the caller's included: they solve contacts of large or many cloths, write nodes for a GPU, and
