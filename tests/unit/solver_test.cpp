@@ -1,4 +1,4 @@
-// The solver's parts by themselves: sweeps over links, motion in substeps, and the strength of links.
+// Links by themselves: sweeps over them, and their strength.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 #include "bullet_plugin/core/solver/link_strength.h"
 #include "bullet_plugin/core/solver/link_sweep.h"
-#include "bullet_plugin/core/solver/solver_nodes.h"
+#include "kernels/lib/vec3.h"
 #include "tests/support/cases.h"
 
 namespace drape::test
@@ -19,7 +19,7 @@ namespace
 using Nodes = std::vector<SolverNode>;
 
 // The nodes start at one position, so displacements are positions.
-constexpr float kTogether[3] = {0, 0, 0};
+const Vec3 kTogether = vec3(0, 0, 0);
 
 bool sameBits(const Nodes& a, const Nodes& b)
 {
@@ -31,8 +31,8 @@ Nodes randomNodes(std::size_t count, Random& random)
     Nodes nodes(count);
     for (SolverNode& node : nodes)
     {
-        for (float& coordinate : node.m_displacement)
-            coordinate = random.uniform(-1, 1);
+        for (float* coordinate : {&node.m_displacement.x, &node.m_displacement.y, &node.m_displacement.z})
+            *coordinate = random.uniform(-1, 1);
         node.m_inverseMass = random.below(10) == 0 ? 0.0f : random.uniform(0.5f, 2);
     }
     return nodes;
@@ -65,17 +65,12 @@ std::vector<LinkNodes> randomLinks(std::size_t count, std::size_t nodeCount, std
 void visitAlone(SolverNode& a, SolverNode& b, float restSquared)
 {
     const float c0 = a.m_inverseMass + b.m_inverseMass;
-    float apart[3], length2 = 0;
-    for (int axis = 0; axis < 3; ++axis)
-        apart[axis] = 0.0f + (b.m_displacement[axis] - a.m_displacement[axis]);
-    length2 = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
+    const Vec3 apart = vec3Add(kTogether, vec3Sub(b.m_displacement, a.m_displacement));
+    const float length2 = vec3Dot(apart, apart);
     if (!(c0 > 0) || !(restSquared + length2 > 1.2e-7f)) return;
     const float k = 1 / c0 * (restSquared - length2) / (restSquared + length2);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        a.m_displacement[axis] -= apart[axis] * (k * a.m_inverseMass);
-        b.m_displacement[axis] += apart[axis] * (k * b.m_inverseMass);
-    }
+    a.m_displacement = vec3Sub(a.m_displacement, vec3Scale(apart, k * a.m_inverseMass));
+    b.m_displacement = vec3Add(b.m_displacement, vec3Scale(apart, k * b.m_inverseMass));
 }
 
 float strengthOf(const SolverNode& a, const SolverNode& b)
@@ -86,10 +81,8 @@ float strengthOf(const SolverNode& a, const SolverNode& b)
 
 double distance(const SolverNode& a, const SolverNode& b)
 {
-    double square = 0;
-    for (int axis = 0; axis < 3; ++axis)
-        square += std::pow(double(a.m_displacement[axis]) - double(b.m_displacement[axis]), 2);
-    return std::sqrt(square);
+    const Vec3 &p = a.m_displacement, &q = b.m_displacement;
+    return std::hypot(double(p.x) - double(q.x), double(p.y) - double(q.y), double(p.z) - double(q.z));
 }
 }  // namespace
 
@@ -158,8 +151,11 @@ TEST(LinkSweep, KeepsTheCentreOfMass)
     {
         std::vector<double> all(3, 0.0);
         for (const SolverNode& node : nodes)
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                all[axis] += double(node.m_displacement[axis]);
+        {
+            all[0] += double(node.m_displacement.x);
+            all[1] += double(node.m_displacement.y);
+            all[2] += double(node.m_displacement.z);
+        }
         return all;
     };
     const std::vector<double> before = sums();
@@ -199,58 +195,13 @@ TEST(LinkSweep, HandlesANodeWithAHundredLinks)
 TEST(LinkSweep, LeavesLinksWithoutStrengthOrLengthAlone)
 {
     Nodes nodes(4, SolverNode{{1, 2, 3}, 1});
-    nodes[2].m_displacement[0] = 5;
+    nodes[2].m_displacement.x = 5;
     const Nodes before = nodes;
     LinkSweep sweep;
     sweep.build(4, 1, {{{0, 1}, 1}, {{2, 3}, 1}});
     sweep.set(0, kTogether, 0, 0.5f);  // both nodes at one position, and no length at rest
     sweep.sweep(nodes.data(), nullptr);
     EXPECT_TRUE(sameBits(nodes, before));
-}
-
-TEST(SolverNodes, AFreeNodeEndsAtTheEndOfItsPath)
-{
-    Random random(703);
-    SCOPED_TRACE("seed 703");
-    for (const int substeps : {1, 2, 5, 16})
-    {
-        SolverNodes nodes;
-        nodes.resize(1);
-        nodes.begin(1.0f / 60, substeps);
-        float start[3], way[3], acceleration[3];
-        for (int axis = 0; axis < 3; ++axis)
-        {
-            start[axis] = random.uniform(-100, 100);
-            way[axis] = random.uniform(-0.05f, 0.05f);
-            acceleration[axis] = random.uniform(-10, 10);
-        }
-        nodes.setPath(0, start, way, acceleration, 1);
-        for (int i = 0; i < substeps; ++i)
-        {
-            nodes.advance(0, 1);
-            nodes.endSubstep(0, 1, 1);
-        }
-        for (int axis = 0; axis < 3; ++axis)
-        {
-            EXPECT_NEAR(nodes.nodes()[0].m_displacement[axis], way[axis], 1e-7f) << substeps << " substeps";
-            EXPECT_EQ(nodes.position(0, axis), start[axis] + nodes.nodes()[0].m_displacement[axis]);
-            // The mean velocity, and half of what the step adds; less by the share of a substep.
-            const float share = 1 - SolverNodes::pathShare(substeps);
-            EXPECT_NEAR(nodes.velocity(0)[axis], way[axis] * 60 + share * acceleration[axis] / 60, 1e-5f);
-        }
-    }
-}
-
-TEST(SolverNodes, DampingKeepsItsShareOfTheVelocity)
-{
-    SolverNodes nodes;
-    nodes.resize(1);
-    nodes.begin(0.5f, 1);
-    const float none[3] = {0, 0, 0}, way[3] = {1, 0, 0};
-    nodes.setPath(0, none, way, none, 1);
-    nodes.advance(0, 1);
-    nodes.endSubstep(0, 1, 0.75f);
-    EXPECT_FLOAT_EQ(nodes.velocity(0)[0], 1.5f);
 }
 
 // A mass that hangs on one link, once by iterations of whole steps as in Bullet and once in substeps.

@@ -5,7 +5,8 @@
 #include <set>
 #include <vector>
 
-#include "bullet_plugin/adapter/cloth_parts.h"
+#include "bullet_plugin/core/solver/cloth_parts.h"
+#include "kernels/lib/vec3.h"
 #include "scenes/cloth_grid.h"
 #include "tests/support/cases.h"
 
@@ -13,11 +14,11 @@ namespace drape::test
 {
 namespace
 {
-std::vector<btVector3> placesOf(const TriangleMesh& mesh)
+std::vector<Vec3> placesOf(const TriangleMesh& mesh)
 {
-    std::vector<btVector3> places;
+    std::vector<Vec3> places;
     for (std::size_t i = 0; i < mesh.vertexCount(); ++i)
-        places.emplace_back(mesh.m_positions[3 * i], mesh.m_positions[3 * i + 1], mesh.m_positions[3 * i + 2]);
+        places.push_back(vec3Load(mesh.m_positions.data(), std::uint32_t(i)));
     return places;
 }
 
@@ -68,7 +69,7 @@ TEST(ClothParts, ContainEachNodeOnce)
 {
     for (const int columns : {1, 2, 16, 17, 33, 90})
     {
-        const std::vector<btVector3> places = placesOf(makeClothGrid(columns + 1, columns, 1.0f, 0.0f).m_mesh);
+        const std::vector<Vec3> places = placesOf(makeClothGrid(columns + 1, columns, 1.0f, 0.0f).m_mesh);
         ClothParts parts;
         parts.cut(places);
         expectLeaves(parts, places.size());
@@ -96,8 +97,8 @@ TEST(ClothParts, AFaceBelongsToTheSmallestGroup)
 
 TEST(ClothParts, AcceptAnyPositions)
 {
-    const btScalar nan = std::numeric_limits<btScalar>::quiet_NaN(), infinity = SIMD_INFINITY;
-    std::vector<btVector3> places(9000, btVector3(1, 2, 3));
+    const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+    std::vector<Vec3> places(9000, vec3(1, 2, 3));
     ClothParts parts;
     parts.cut(places);
     expectLeaves(parts, places.size());
@@ -105,7 +106,7 @@ TEST(ClothParts, AcceptAnyPositions)
     for (std::size_t i = 0; i < places.size(); i += 3)
     {
         const float x = random.uniform(-1.0f, 1.0f);
-        places[i].setValue(i % 2 == 0 ? nan : x, i % 5 == 0 ? infinity : x, i % 7 == 0 ? -infinity : x);
+        places[i] = vec3(i % 2 == 0 ? nan : x, i % 5 == 0 ? infinity : x, i % 7 == 0 ? -infinity : x);
     }
     parts.cut(places);
     expectLeaves(parts, places.size());

@@ -1,0 +1,261 @@
+#include "tests/unit/plain_sweep.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bullet_plugin/core/solver/contact_sweep.h"
+
+namespace drape::test
+{
+namespace
+{
+std::size_t nodeOf(const SolverContact& contact, int k)
+{
+    return std::size_t(contact.m_nodes[k]);
+}
+}  // namespace
+
+PlainSweep::PlainSweep(const ClothContacts& cloth, const ContactSource& source, const std::vector<Contact>& contacts)
+    : m_paths(cloth.m_nodes), m_perSecond(cloth.m_perSecond), m_leastThickness(cloth.m_leastThickness)
+{
+    for (std::size_t i = 0; i < m_paths.count(); ++i)
+    {
+        m_starts.push_back(m_paths.start(i));
+        m_places.push_back(m_paths.displacement(i));
+        m_velocities.push_back(m_paths.velocity(i));
+    }
+    for (const Contact& contact : contacts)
+    {
+        Row row;
+        row.m_detected = contact;
+        row.m_contact = cloth.resolve(source, contact);
+        row.m_speedLimit = speedLimitOf(row.m_contact);
+        m_rows.push_back(row);
+    }
+    const auto groupOf = [&](const Row& row) { return cloth.m_parts->groupOf(row.m_contact.m_nodes); };
+    std::stable_sort(m_rows.begin(), m_rows.end(), [&](const Row& a, const Row& b) { return groupOf(a) > groupOf(b); });
+}
+
+PlainSweep::Kind PlainSweep::kindOf(const SolverContact& contact)
+{
+    if (contact.m_nodes[1] < 0) return Kind::Node;
+    return contact.m_nodes[2] < 0 ? Kind::Edge : Kind::Face;
+}
+
+void PlainSweep::restart(float passed)
+{
+    m_passed = passed;
+    for (Row& row : m_rows)
+    {
+        row.m_multiplier = 0;
+        row.m_held = vec3(0, 0, 0);
+        row.m_renewed = row.m_acted = false;
+    }
+}
+
+float PlainSweep::sweep(std::initializer_list<Kind> kinds)
+{
+    float worst = 0;
+    for (Row& row : m_rows)
+    {
+        if (std::find(kinds.begin(), kinds.end(), kindOf(row.m_contact)) == kinds.end()) continue;
+        renewPlane(row);
+        worst = std::max(worst, project(row));
+    }
+    return worst;
+}
+
+void PlainSweep::addVelocities(const std::vector<Vec3>& before)
+{
+    for (std::size_t i = 0; i < m_places.size(); ++i)
+        m_velocities[i] = vec3Add(m_velocities[i], vec3Scale(vec3Sub(m_places[i], before[i]), m_perSecond));
+}
+
+float PlainSweep::run()
+{
+    const std::vector<Vec3> before = m_places;
+    const float first = sweep({Kind::Node, Kind::Face}), second = sweep({Kind::Edge});
+    addVelocities(before);
+    return std::max(first, second);
+}
+
+float PlainSweep::runNodes()
+{
+    const std::vector<Vec3> before = m_places;
+    const float worst = sweep({Kind::Node});
+    addVelocities(before);
+    return worst;
+}
+
+void PlainSweep::runAndSettle()
+{
+    const std::vector<Vec3> before = m_places;
+    sweep({Kind::Node, Kind::Face});
+    sweep({Kind::Edge});
+    for (int pass = 0; pass < SweepTeam::kSettlingPasses; ++pass)
+        for (Row& row : m_rows)
+            if (row.m_acted && row.m_settles) project(row);
+    addVelocities(before);
+}
+
+void PlainSweep::limitSpeeds()
+{
+    for (const Row& row : m_rows)
+    {
+        const SolverContact& contact = row.m_contact;
+        float speed = 0;
+        for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+            speed += vec3Dot(m_velocities[nodeOf(contact, k)], contact.m_normal) * contact.m_weights[k];
+        const float excess = speed - row.m_speedLimit, mobility = softenedOf(contact);
+        if (!row.m_everActed || !(excess > 0) || !(mobility > 0)) continue;
+        ++m_slowed;
+        for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+        {
+            Vec3& velocity = m_velocities[nodeOf(contact, k)];
+            const float lost = shareOf(contact, k) * excess * (1 / mobility);
+            velocity = vec3Sub(velocity, vec3Scale(contact.m_normal, lost));
+        }
+    }
+}
+
+bool PlainSweep::mayHavePassed() const
+{
+    const auto isNear = [this](const Row& row)
+    {
+        const float distance = row.m_contact.m_thickness + row.m_contact.m_targetGap;
+        return row.m_everActed && distance - violationOf(row.m_contact, 1) < kNearShare * m_leastThickness;
+    };
+    return std::any_of(m_rows.begin(), m_rows.end(), isNear);
+}
+
+std::size_t PlainSweep::pushed() const
+{
+    return std::size_t(
+        std::count_if(m_rows.begin(), m_rows.end(), [](const Row& row) { return row.m_multiplier > 0; }));
+}
+
+Vec3 PlainSweep::pointOf(const SolverContact& contact, const std::vector<Vec3>& places) const
+{
+    Vec3 point = vec3(0, 0, 0);
+    for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+        point = vec3Add(point, vec3Scale(places[nodeOf(contact, k)], contact.m_weights[k]));
+    return point;
+}
+
+// Returns the displacement that the obstacle's motion in the step gives to the contact's point of the cloth.
+Vec3 PlainSweep::carriedFrom(const SolverContact& contact) const
+{
+    Vec3 carried = vec3(0, 0, 0);
+    if (!contact.m_carry.moves()) return carried;
+    carried = vec3Sub(carried, pointOf(contact, m_starts));
+    for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+    {
+        const Vec3 end = contact.m_carry.start(nodeOf(contact, k), m_starts[nodeOf(contact, k)]);
+        carried = vec3Add(carried, vec3Scale(end, contact.m_weights[k]));
+    }
+    return carried;
+}
+
+// Returns the outward speed that recovering a depth from before the step takes, beside the obstacle's own.
+float PlainSweep::speedLimitOf(const SolverContact& contact) const
+{
+    if (!(contact.m_startGap < 0)) return std::numeric_limits<float>::infinity();
+    const float recovered = std::max(0.0f, contact.m_endGap - contact.m_startGap);
+    return (recovered + vec3Dot(contact.m_normal, carriedFrom(contact))) * m_perSecond;
+}
+
+// The obstacle has moved by the share that has passed; the contact's plane is that at the step's end.
+float PlainSweep::violationOf(const SolverContact& contact, float passed) const
+{
+    const Vec3 apart = vec3Sub(contact.m_point, pointOf(contact, m_starts));
+    const float level = vec3Dot(contact.m_normal, apart) + (contact.m_thickness + contact.m_targetGap);
+    const float ahead = (1 - passed) * vec3Dot(contact.m_normal, carriedFrom(contact));
+    return level - ahead - vec3Dot(contact.m_normal, pointOf(contact, m_places));
+}
+
+float PlainSweep::shareOf(const SolverContact& contact, int k) const
+{
+    return contact.m_weights[k] * m_paths.inverseMass(nodeOf(contact, k));
+}
+
+float PlainSweep::mobilityOf(const SolverContact& contact) const
+{
+    float mobility = 0;
+    for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+        mobility += contact.m_weights[k] * contact.m_weights[k] * m_paths.inverseMass(nodeOf(contact, k));
+    return mobility;
+}
+
+// Returns the share of the contact's point that belongs to fixed nodes.
+float PlainSweep::heldShareOf(const SolverContact& contact) const
+{
+    float held = 0;
+    for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+        if (m_paths.inverseMass(nodeOf(contact, k)) == 0) held += contact.m_weights[k];
+    return held;
+}
+
+// Returns the mobility that pushes use. It exceeds its proportional value if a part of the point is held.
+float PlainSweep::softenedOf(const SolverContact& contact) const
+{
+    float most = 0;
+    for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+        most = std::max(most, m_paths.inverseMass(nodeOf(contact, k)));
+    const float mobility = mobilityOf(contact);
+    return mobility > 0 ? mobility + kHeldSoftness * heldShareOf(contact) * most : 0.0f;
+}
+
+void PlainSweep::renewPlane(Row& row)
+{
+    SolverContact& contact = row.m_contact;
+    if (row.m_renewed || !(mobilityOf(contact) > 0) || !(violationOf(contact, m_passed) > 0)) return;
+    row.m_renewed = true;
+    float nodes[3][3] = {};
+    for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+    {
+        // The obstacle counts as standing at the step's end, so the nodes take part in the rest of its motion.
+        const std::size_t node = nodeOf(contact, k);
+        const Vec3 ahead = vec3Sub(contact.m_carry.start(node, m_starts[node]), m_starts[node]);
+        const Vec3 place = vec3Add(vec3Add(m_starts[node], m_places[node]), vec3Scale(ahead, 1 - m_passed));
+        nodes[k][0] = place.x;
+        nodes[k][1] = place.y;
+        nodes[k][2] = place.z;
+    }
+    ContactPlane plane;
+    if (!ContactSource::planeAt(row.m_detected, nodes, plane)) return;
+    ++m_renewals;
+    row.m_settles = true;
+    contact.m_normal = vec3Load(plane.m_normal, 0);
+    contact.m_point = vec3Load(plane.m_point, 0);
+    std::copy(plane.m_weights, plane.m_weights + 3, contact.m_weights);
+}
+
+// Returns the part of the violation that the push corrects.
+float PlainSweep::project(Row& row)
+{
+    const SolverContact& contact = row.m_contact;
+    const Vec3 normal = contact.m_normal;
+    const float mobility = softenedOf(contact), violation = violationOf(contact, m_passed);
+    if (!(mobility > 0) || (!(violation > 0) && !(row.m_multiplier > 0))) return 0;
+    if (!row.m_acted && !(violationOf(contact, 1) > 0)) ++m_early;
+    row.m_acted = row.m_everActed = true;
+    const float inverse = 1 / mobility;
+    const float pushed = std::max(0.0f, row.m_multiplier + violation * inverse);
+
+    const Vec3 way = pointOf(contact, m_places), carried = carriedFrom(contact);
+    const Vec3 slid = vec3Sub(way, vec3Scale(normal, vec3Dot(normal, way)));
+    const Vec3 slidObstacle = vec3Sub(carried, vec3Scale(normal, vec3Dot(normal, carried)));
+    const Vec3 relative = vec3Sub(slid, vec3Scale(slidObstacle, m_passed));
+    Vec3 held = vec3Sub(row.m_held, vec3Scale(relative, inverse));
+    const float most = contact.m_friction * pushed, wanted2 = vec3Dot(held, held);
+    if (wanted2 > most * most) held = vec3Scale(held, most / std::sqrt(wanted2));
+
+    const Vec3 impulse = vec3Add(vec3Scale(normal, pushed - row.m_multiplier), vec3Sub(held, row.m_held));
+    for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+        move(nodeOf(contact, k), vec3Scale(impulse, shareOf(contact, k)));
+    row.m_multiplier = pushed;
+    row.m_held = held;
+    return heldShareOf(contact) > 0 ? violation * (mobilityOf(contact) * inverse) : violation;
+}
+}  // namespace drape::test
