@@ -26,6 +26,16 @@ btScalar shiftOf(const btSoftBody& body)
 }
 }  // namespace
 
+bool SubstepBody::joinsOtherBodies(const btSoftBody& body)
+{
+    const btSoftBody::Node* const first = body.m_nodes.size() > 0 ? &body.m_nodes[0] : nullptr;
+    const auto isOwn = [&](const btSoftBody::Node* node)
+    { return node >= first && node < first + body.m_nodes.size(); };
+    for (int i = 0; i < body.m_links.size(); ++i)
+        if (!isOwn(body.m_links[i].m_n[0]) || !isOwn(body.m_links[i].m_n[1])) return true;
+    return false;
+}
+
 const char* SubstepBody::reasonForBullet(const btSoftBody& body)
 {
     const btSoftBody::Config& config = body.m_cfg;
@@ -39,6 +49,7 @@ const char* SubstepBody::reasonForBullet(const btSoftBody& body)
     const btSoftBody::tPSolverArray& sequence = config.m_psequence;
     if (sequence.findLinearSearch(btSoftBody::ePSolver::Linear) == sequence.size())
         return "the soft body's solver sequence has no links (m_psequence)";
+    if (joinsOtherBodies(body)) return "links join the soft body to another one";
     return nullptr;
 }
 

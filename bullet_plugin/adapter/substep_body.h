@@ -60,6 +60,7 @@ private:
         btVector3 m_end, m_way;
     };
 
+    static bool joinsOtherBodies(const btSoftBody& body);
     void readTopology(const btSoftBody& body);
     void readLinks(const btSoftBody& body);
     void buildLinks(const btSoftBody& body);

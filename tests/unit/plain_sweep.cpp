@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "bullet_plugin/core/solver/contact_sweep.h"
+#include "bullet_plugin/core/solver/contact_group.h"
 
 namespace drape::test
 {
@@ -86,17 +86,6 @@ float PlainSweep::runNodes()
     const float worst = sweep({Kind::Node});
     addVelocities(before);
     return worst;
-}
-
-void PlainSweep::runAndSettle()
-{
-    const std::vector<Vec3> before = m_places;
-    sweep({Kind::Node, Kind::Face});
-    sweep({Kind::Edge});
-    for (int pass = 0; pass < SweepTeam::kSettlingPasses; ++pass)
-        for (Row& row : m_rows)
-            if (row.m_acted && row.m_settles) project(row);
-    addVelocities(before);
 }
 
 void PlainSweep::limitSpeeds()
@@ -225,7 +214,6 @@ void PlainSweep::renewPlane(Row& row)
     ContactPlane plane;
     if (!ContactSource::planeAt(row.m_detected, nodes, plane)) return;
     ++m_renewals;
-    row.m_settles = true;
     contact.m_normal = vec3Load(plane.m_normal, 0);
     contact.m_point = vec3Load(plane.m_point, 0);
     std::copy(plane.m_weights, plane.m_weights + 3, contact.m_weights);

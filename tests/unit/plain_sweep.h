@@ -25,8 +25,6 @@ public:
     // Sweep once, and return the worst violation that a push can correct, m.
     float run();
     float runNodes();
-    // Sweeps once over all contacts, then over those that act and have turned.
-    void runAndSettle();
     void limitSpeeds();
     bool mayHavePassed() const;
 
@@ -50,7 +48,6 @@ private:
         bool m_renewed = false;    // or tried to, in this stage
         bool m_acted = false;      // violated or pushing when it was last visited in this stage
         bool m_everActed = false;  // in any stage
-        bool m_settles = false;    // its plane was renewed in any stage
         float m_speedLimit = 0;
     };
     enum class Kind

@@ -71,19 +71,19 @@ void RigidRows::end()
             vec3AddScaled(state.m_carried, velocityAt(state.m_anchor.m_body, state.m_anchor.m_arm), m_time);
 }
 
-float RigidRows::project(SolverNodes& nodes, ContactState& state)
+void RigidRows::project(SolverNodes& nodes, ContactState& state)
 {
     const RigidContact& contact = state.m_contact;
     const Vec3 normal = contact.m_normal;
     const float inverseMass = nodes.inverseMass(contact.m_node);
     const float inverseMobility = 1 / std::max(inverseMass + mobility(contact.m_body, contact.m_arm, normal), 1e-30f);
-    if (!(inverseMass > 0)) return 0;
+    if (!(inverseMass > 0)) return;
     const Vec3 carried = vec3AddScaled(state.m_carried, velocityAt(contact.m_body, contact.m_arm), m_time);
     const Vec3 way = vec3Sub(nodes.displacement(contact.m_node), carried);
     const float along = vec3Dot(normal, way);
     const float level = contact.m_gap < 0 ? contact.m_recover * m_passed : -contact.m_gap;
     const float violation = level - along;
-    if (!(violation > 0) && !(state.m_multiplier > 0)) return 0;
+    if (!(violation > 0) && !(state.m_multiplier > 0)) return;
     const float pushed = std::max(0.0f, state.m_multiplier + violation * inverseMobility);
     Vec3 held = vec3AddScaled(state.m_held, vec3AddScaled(way, normal, -along), -inverseMobility);
     const float most = contact.m_friction * pushed, wanted = vec3Length(held);
@@ -92,7 +92,6 @@ float RigidRows::project(SolverNodes& nodes, ContactState& state)
     push(nodes, contact.m_node, contact.m_body, contact.m_arm, by);
     state.m_multiplier = pushed;
     state.m_held = held;
-    return std::max(0.0f, violation);
 }
 
 void RigidRows::project(SolverNodes& nodes, AnchorState& state)
@@ -111,13 +110,11 @@ void RigidRows::project(SolverNodes& nodes, AnchorState& state)
     }
 }
 
-float RigidRows::project(SolverNodes& nodes)
+void RigidRows::project(SolverNodes& nodes)
 {
     for (AnchorState& state : m_anchors)
         project(nodes, state);
-    float worst = 0;
     for (ContactState& state : m_contacts)
-        worst = std::max(worst, project(nodes, state));
-    return worst;
+        project(nodes, state);
 }
 }  // namespace drape

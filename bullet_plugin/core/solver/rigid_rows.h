@@ -54,8 +54,8 @@ public:
 
     // Begins a substep of `time` seconds that ends when the share `passed` of the step has passed.
     void begin(float time, float passed);
-    // Projects every row once. Returns the worst violation of a contact that it met, m.
-    float project(SolverNodes& nodes);
+    // Projects every row once.
+    void project(SolverNodes& nodes);
     // Ends a substep: the bodies' points have gone on with the bodies' velocities.
     void end();
 
@@ -76,7 +76,7 @@ private:
     Vec3 velocityAt(std::uint32_t body, Vec3 arm) const;
     float mobility(std::uint32_t body, Vec3 arm, Vec3 direction) const;
     void push(SolverNodes& nodes, std::uint32_t node, std::uint32_t body, Vec3 arm, Vec3 by);
-    float project(SolverNodes& nodes, ContactState& state);
+    void project(SolverNodes& nodes, ContactState& state);
     void project(SolverNodes& nodes, AnchorState& state);
 
     std::vector<RigidBody>* m_bodies = nullptr;

@@ -12,9 +12,6 @@ namespace
 // Minimum nodes for sharing cloths among threads; a substep takes 50 ns a node.
 constexpr std::size_t kLeastNodesShared = 2048;
 
-// Violation of a contact with a rigid body that needs no other sweep, m.
-constexpr float kRigidTolerance = 2e-5f;
-
 bool hasContacts(const ContactSweep* sweep)
 {
     return !sweep->contacts().m_features.empty();
@@ -150,20 +147,17 @@ void StepSolver::restart(int iteration)
     }
 }
 
-// Runs sweeps over the contacts of the turn's cloths until little moves.
-void StepSolver::sweep()
+// Sweeps over links and contacts in turns.
+void StepSolver::sweepInTurns()
 {
-    for (int sweeps = 0; sweeps < kMostSweeps && !m_turn.empty(); ++sweeps)
+    select(m_turn, m_meeting, hasContacts);
+    for (int i = 0; i < kContactSweeps; ++i)
     {
-        select(m_turn, m_meeting, hasContacts);
+        forSubsteps([](SolverNodes& nodes, Substeps& substeps, ThreadTeam* threads)
+                    { substeps.sweepLinks(nodes, threads); });
         m_team.run(m_meeting);
-        const auto goesOn = [](const ContactSweep* sweep)
-        {
-            RigidRows* const rigid = sweep->cloth().m_rigid;
-            const bool rigidMoves = rigid && rigid->project(sweep->nodes()) > kRigidTolerance;
-            return rigidMoves || (hasContacts(sweep) && isViolated(sweep, kSweepTolerance));
-        };
-        keep(m_turn, goesOn);
+        for (const ContactSweep* sweep : m_turn)
+            if (RigidRows* rigid = sweep->cloth().m_rigid) rigid->project(sweep->nodes());
     }
 }
 
@@ -181,7 +175,7 @@ void StepSolver::sweepContacts(int iteration)
     if (iteration > 0) applyLimits(m_iterating);
     select(m_iterating, m_turn, [](const ContactSweep* sweep) { return hasContacts(sweep) || sweep->cloth().m_rigid; });
     restart(iteration);
-    sweep();
+    sweepInTurns();
     for (const ContactSweep* sweep : m_iterating)
         if (RigidRows* rigid = sweep->cloth().m_rigid) rigid->end();
     select(m_iterating, m_turn, isForeign);

@@ -21,12 +21,10 @@
 
 namespace drape
 {
-// Maximum sweeps over the contacts after each substep, or before each iteration of the caller's links, and the worst
-// violation met by a sweep, as a share of the thickness, that needs no other. What sweeps leave becomes motion: on the
-// bunny a cloth of 33 x 33 nodes at rest moves at 1.8 mm/s (RMS) with one sweep, at 0.2 with three and at 0.03 with
-// these.
-constexpr int kMostSweeps = 4;
-constexpr float kSweepTolerance = 0.002f;
+// Sweeps over the contacts in each substep, one after each sweep over the links, or before each iteration of the
+// caller's links. What links and contacts leave each other becomes motion: on the bunny nodes of a cloth of 33 x 33
+// nodes at rest end their steps at 8.7 mm/s (RMS) where all sweeps over the links come first, and at 0.2 mm/s in turns.
+constexpr int kContactSweeps = Substeps::kLinkSweeps;
 
 constexpr int kClosingRounds = 8;
 
@@ -67,7 +65,7 @@ private:
     void applyLimits(const Cloths& cloths);
     void sweepContacts(int iteration);
     void restart(int iteration);
-    void sweep();
+    void sweepInTurns();
     void endIteration(int iteration);
     void iterate();
     void runAgain(const Cloths& cloths);

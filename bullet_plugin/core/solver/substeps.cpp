@@ -54,8 +54,6 @@ void Substeps::advance(SolverNodes& nodes, ThreadTeam* threads)
                  nodes.setCurrent(i, vec3AddScaled(nodes.displacement(i), velocity, h), velocity);
                  nodes.remember(i);
              });
-    for (int i = 0; i < kLinkSweeps; ++i)
-        m_links.sweep(nodes.nodes(), threads);
 }
 
 void Substeps::end(SolverNodes& nodes, ThreadTeam* threads) const
@@ -75,6 +73,8 @@ void Substeps::run(SolverNodes& nodes, ThreadTeam* threads)
     for (int i = 0; i < m_count; ++i)
     {
         advance(nodes, threads);
+        for (int k = 0; k < kLinkSweeps; ++k)
+            sweepLinks(nodes, threads);
         end(nodes, threads);
     }
 }

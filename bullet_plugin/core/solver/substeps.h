@@ -18,7 +18,7 @@ namespace drape
 class Substeps
 {
 public:
-    // Sweeps over the links in each substep. A sweep costs little beside one over the contacts.
+    // Sweeps over the links in each substep.
     static constexpr int kLinkSweeps = 3;
 
     LinkSweep& links() { return m_links; }
@@ -35,8 +35,9 @@ public:
     // Puts the nodes at the starts of their paths, with the velocities that lead to their ends. threads: null for the
     // caller alone, as in the functions below.
     void begin(SolverNodes& nodes, ThreadTeam* threads) const;
-    // Begins a substep: moves the nodes and sweeps over the links.
+    // Begins a substep: moves the nodes.
     void advance(SolverNodes& nodes, ThreadTeam* threads);
+    void sweepLinks(SolverNodes& nodes, ThreadTeam* threads) { m_links.sweep(nodes.nodes(), threads); }
     // Ends a substep: adds the constraints' corrections to the velocities. A node without any keeps its velocity
     // exactly.
     void end(SolverNodes& nodes, ThreadTeam* threads) const;
