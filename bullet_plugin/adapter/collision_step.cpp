@@ -357,13 +357,13 @@ void CollisionStep::reportPassed(const std::vector<bool>& strayed)
     }
 }
 
-void CollisionStep::checkStrayed()
+std::vector<BodyContacts*> CollisionStep::checkStrayed()
 {
     std::vector<bool> strayed;
     for (BodyContacts& body : m_bodies)
         strayed.push_back((body.m_contacts.m_mayHavePassed && !body.m_wasTangled) ||
                           body.m_contacts.m_limit.strayed(body.nodes()));
-    if (std::find(strayed.begin(), strayed.end(), true) == strayed.end()) return;
+    if (std::find(strayed.begin(), strayed.end(), true) == strayed.end()) return {};
     // Keeps the reported contacts as the solver received them.
     m_state.m_found.keepList();
     for (int detections = 1;; ++detections)
@@ -373,9 +373,13 @@ void CollisionStep::checkStrayed()
         if (detections > kMostDetections)
         {
             reportPassed(strayed);
-            break;
+            return {};
         }
         if (!cutStrayed(strayed, detections < kMostDetections ? Cut::EachNode : Cut::WholeBody)) break;
     }
+    std::vector<BodyContacts*> bodies;
+    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+        if (strayed[i] && !m_bodies[i].m_leftOut) bodies.push_back(&m_bodies[i]);
+    return bodies;
 }
 }  // namespace drape

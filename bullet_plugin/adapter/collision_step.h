@@ -26,8 +26,9 @@ public:
     void begin(const std::vector<PairNote>& notes);
     void finish();
     // Detects again, once the bodies are solved, along the real paths of bodies whose links pulled nodes far off
-    // their predicted paths. Ends those paths before anything that they would have passed.
-    void checkStrayed();
+    // their predicted paths. Ends those paths before anything that they would have passed. Returns these bodies, with
+    // their contacts along the paths.
+    std::vector<BodyContacts*> checkStrayed();
     // Reports, after finish(), a body without a pair in this step whose nodes are still not finite, as they were when
     // it had one.
     void reportInvalid(const btSoftBody& body);

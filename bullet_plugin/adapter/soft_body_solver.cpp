@@ -340,6 +340,17 @@ double SoftBodySolver::solveBodies()
     return bulletMs;
 }
 
+// Keeps bodies that strayed from their predicted paths at their distance from what is near their real ones.
+void SoftBodySolver::closeStrayed(const std::vector<BodyContacts*>& bodies)
+{
+    std::vector<SolverCloth> cloths;
+    for (BodyContacts* body : bodies)
+        cloths.push_back({&body->m_contacts, nullptr, nullptr, nullptr});
+    m_work->m_solver->close(cloths, m_state->m_found.source());
+    for (BodyContacts* body : bodies)
+        writeShifted(body->nodes(), *body->m_body);
+}
+
 void SoftBodySolver::solveStep()
 {
     leaveToBullet();
@@ -350,7 +361,7 @@ void SoftBodySolver::solveStep()
     const double bulletMs = solveBodies();
     if (m_work->m_step)
     {
-        m_work->m_step->checkStrayed();
+        closeStrayed(m_work->m_step->checkStrayed());
         m_work->m_step->end();
     }
     statistics.m_finishMs = watch.lapMs() - bulletMs - (statistics.m_waitMs - waitMs);

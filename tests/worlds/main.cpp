@@ -23,7 +23,7 @@ void list()
 
 WorldBackend backendOf(const std::string& name)
 {
-    if (name == "bullet_links") return WorldBackend::BulletLinks;
+    if (name == "substeps") return WorldBackend::Substeps;
     return name == "stock" ? WorldBackend::Stock : name == "opencl" ? WorldBackend::OpenCl : WorldBackend::Host;
 }
 

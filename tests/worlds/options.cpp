@@ -50,7 +50,7 @@ void addRunning(CLI::App& app, WorldsOptions& options)
 {
     acceptOnly(app.add_option("--backend", options.m_backend,
                               "where Drape runs; stock: Bullet's own collision, for comparison"),
-               {"host", "opencl", "stock", "bullet_links"});
+               {"host", "opencl", "stock", "substeps"});
     app.add_option("--jobs", options.m_jobs, "number of parallel processes, 1 to 1024")
         ->check(CLI::Validator(wholeNumber(1, 1024), ""));
     app.add_option("--timeout", options.m_timeout, "time limit of one world, s")

@@ -16,7 +16,7 @@ Settings settingsFor(WorldBackend backend)
 {
     Settings settings;
     settings.m_backend = backend == WorldBackend::OpenCl ? Backend::OpenCl : Backend::Host;
-    settings.m_solver = backend == WorldBackend::BulletLinks ? Solver::Bullet : Solver::Drape;
+    settings.m_solver = backend == WorldBackend::Substeps ? Solver::Drape : Solver::Bullet;
     settings.m_log = nullptr;
     settings.m_threads = 1;  // worlds run side by side; the number of threads changes no bit
     return settings;

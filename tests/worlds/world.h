@@ -25,7 +25,7 @@ enum class WorldBackend
     Host,
     OpenCl,
     Stock,    // Bullet's own collision
-    BulletLinks  // the host, with Bullet's solver of links
+    Substeps  // the host, with Drape's solver of links
 };
 
 struct WorldObstacle

@@ -279,4 +279,12 @@ void StepSolver::solve(const std::vector<SolverCloth>& cloths, const ContactSour
     iterate();
     close();
 }
+
+void StepSolver::close(const std::vector<SolverCloth>& cloths, const ContactSource& source)
+{
+    if (cloths.empty()) return;
+    m_cloths = cloths;
+    begin(source);
+    close();
+}
 }  // namespace drape

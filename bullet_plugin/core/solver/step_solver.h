@@ -54,6 +54,9 @@ public:
 
     // Cloths with ForeignLinks are written back; nodes of others stay where the solver leaves them.
     void solve(const std::vector<SolverCloth>& cloths, const ContactSource& source);
+    // Runs the closing sweeps alone, for cloths whose nodes are at the ends of the paths along which their contacts were
+    // found.
+    void close(const std::vector<SolverCloth>& cloths, const ContactSource& source);
     void solveFree(const std::vector<FreeCloth>& cloths);
 
 private:

@@ -21,6 +21,7 @@ namespace drape
 {
 class KinematicMotions;
 class Plugin;
+struct BodyContacts;
 class PluginState;
 struct StepObstacle;
 
@@ -52,6 +53,7 @@ private:
     void coverMotions(const std::vector<StepObstacle>& obstacles);
     void detect();
     double solveBodies();
+    void closeStrayed(const std::vector<BodyContacts*>& bodies);
     void solveStep();
     void endFailedStep();
 
