@@ -15,5 +15,6 @@ set(full_suites "BunnyDrop|SettledCloth|Outputs|CpuKernelsTest|RopesDropped|Self
   "MovingObstacleTest|PipelineNodesTest|LoadTest|QueryLimitsTest|StretchedCloth|Kinematic|Worlds"
   "ContactModesTest|Needles|SelfStepTest|SelfOracle|LooseEdges|Truth|Check|AnimatedMeshes|StressRows|SkipsTest"
   "BackendMove|FeatureCull|ContactsOracle|HostDeviceTest|Starts|IterationsOfBullet|Memory|BadInputTest"
-  "DiscretePlate|PatchCullTest|KinematicPlate|ThreadsTest|OutOfMemory|Soak|Sheets|FastDropping|Prepared")
+  "DiscretePlate|PatchCullTest|KinematicPlate|ThreadsTest|OutOfMemory|Soak|Sheets|FastDropping|Prepared"
+  "BuildLogTest")
 string(JOIN "|" full_suites ${full_suites})
