@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 
 from results import in_order, select
 
-# The same file for the same data; text stays text.
+# Equal data gives an equal file; text stays text.
 plt.rcParams.update({"svg.hashsalt": "drape", "svg.fonttype": "none", "font.size": 8})
 
 

@@ -4,7 +4,8 @@
 
 static void loadCorners(FeatureTriangle* triangle, __global const float* coordinates)
 {
-    for (uint i = 0; i < 3; ++i) triangle->m_p[i] = vec3Load(coordinates, i);
+    for (uint i = 0; i < 3; ++i)
+        triangle->m_p[i] = vec3Load(coordinates, i);
 }
 
 // A work-item is a query.
