@@ -6,6 +6,7 @@
 # with build/fuzz/bin/fuzz_core FILE. It belongs into tests/fuzz/corpus once it is mended.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+export DRAPE_WARNINGS_AS_ERRORS=${DRAPE_WARNINGS_AS_ERRORS-ON}
 seconds=${1:-60}
 seed=${2:-0}  # 0: libFuzzer chooses, and prints it
 

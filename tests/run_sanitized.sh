@@ -7,6 +7,7 @@
 # Published data is used where reference_data.sh finds it.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+export DRAPE_WARNINGS_AS_ERRORS=${DRAPE_WARNINGS_AS_ERRORS-ON}
 
 tier='^fast$'
 if [[ ${1-} == --full ]]; then

@@ -15,6 +15,7 @@
 # repeat them. Takes some 90 minutes on two idle cores.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+export DRAPE_WARNINGS_AS_ERRORS=${DRAPE_WARNINGS_AS_ERRORS-ON}
 
 jobs=$(nproc)
 plain=0

@@ -5,6 +5,7 @@
 # test fails or none is found. Published data is used where reference_data.sh finds it.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+export DRAPE_WARNINGS_AS_ERRORS=${DRAPE_WARNINGS_AS_ERRORS-ON}
 
 tier='^(fast|full)$'
 if [[ ${1-} == --fast ]]; then

@@ -31,9 +31,9 @@ struct Strayed
 
     static bool hasContact(int node) { return node % 3 == 0; }
 
-    Strayed(btSoftBodyWorldInfo& info, std::uint32_t seed)
+    Strayed(btSoftBodyWorldInfo& info, std::uint32_t number)
     {
-        Random random(seed);
+        Random random(number);
         const auto vector = [&random](float most)
         { return btVector3(random.uniform(-most, most), random.uniform(-most, most), random.uniform(-most, most)); };
         std::vector<btVector3> starts;
