@@ -7,8 +7,8 @@
 #
 # Runs 240 steps on each device and on the host back end, and Bullet's own collision beside the first. Writes
 # OUT_DIR/cloth_drop.json: the summary of each run with commit, machine, scene and options. Prints a table: times of the
-# collision and of finding contacts, deepest penetration, intersecting pairs at the end, nodes that went through, and the
-# trajectory's hash. Needs cloth_drop, Bash and Python. Measure on an idle machine. Ends with 1 if a run failed or
+# collision and of finding contacts, deepest penetration, intersecting pairs at the end, nodes that went through, and
+# the trajectory's hash. Needs cloth_drop, Bash and Python. Measure on an idle machine. Ends with 1 if a run failed or
 # Drape's back ends differ. Environment: BIN (build/release/bin), BUNNY, COMMIT (git describe), and STEPS.
 set -euo pipefail
 
@@ -40,13 +40,16 @@ program, commit, bunny, steps, compare, target, wanted, *options = sys.argv[1:]
 
 def drop(arguments):
     """What cloth_drop says of a run, None where that is nothing, and whether it went well."""
-    result = subprocess.run([program, "--obstacle", bunny, "--steps", steps, "--quiet", "--json", "-", *options, *arguments],
+    result = subprocess.run([program, "--obstacle", bunny, "--steps", steps, "--quiet", "--json", "-",
+                             *options, *arguments],
                             stdout=subprocess.PIPE, text=True)
     return json.loads(result.stdout) if result.stdout else None, result.returncode == 0
 
 
 description = machine.describe(program, commit)
-names = list(filter(None, wanted.splitlines())) or list(dict.fromkeys(device["device"] for device in description["devices"]))
+names = list(filter(None, wanted.splitlines()))
+if not names:
+    names = list(dict.fromkeys(device["device"] for device in description["devices"]))
 backends = [["--backend", "opencl", "--device", name] for name in names] + [["--backend", "host"]]
 content = {"machine": description, "scene": machine.scene(bunny, options), "steps": int(steps), "rows": []}
 failed = False
@@ -61,10 +64,11 @@ for index, backend in enumerate(backends):
 with open(target, "w") as file:
     json.dump(content, file, indent=2)
     file.write("\n")
-reduced = [{"program": "cloth_drop", "commit": commit, **row} for row in reduce.worlds([(row, content) for row in content["rows"]])]
+worlds = reduce.worlds([(row, content) for row in content["rows"]])
+reduced = [{"program": "cloth_drop", "commit": commit, **row} for row in worlds]
 for row in reduced:
-    print(*(row.get(name, "") for name in ("method", "device", "setting", "stage", "median_ms", "p95_ms", "penetration_mm",
-                                           "intersecting_pairs", "nodes_through", "ended", "hash")))
+    print(*(row.get(name, "") for name in ("method", "device", "setting", "stage", "median_ms", "p95_ms",
+                                           "penetration_mm", "intersecting_pairs", "nodes_through", "ended", "hash")))
 differences = hashes.differences([(target, reduced)])
 for line in differences:
     print("cloth_drop.sh: " + line, file=sys.stderr)

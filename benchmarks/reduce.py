@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
 """Reduces a folder of raw results to a machine's small CSV: reduce.py RAW_DIR CSV
 
-RAW_DIR holds JSON files of bench_step, error_vs_time, cloth_drop, drop_speeds and drape_check; a file's name starts with
-its program's. The CSV keeps the rows that report.py uses. New rows replace old rows of the same program, scene, setting
-and method; other old rows stay, so that a machine can be measured in parts. Void rows are named and left out. Ends with
-3 when a row is void, with 2 when the CSV is of another machine.
+RAW_DIR holds JSON files of bench_step, error_vs_time, cloth_drop, drop_speeds and drape_check; a file's name starts
+with its program's. The CSV keeps the rows that report.py uses. New rows replace old rows of the same program, scene,
+setting and method; other old rows stay, so that a machine can be measured in parts. Void rows are named and left out.
+Ends with 3 when a row is void, with 2 when the CSV is of another machine.
 """
 import sys
 
 import hashes
 from results import raw_rows, update_csv
 
-COLUMNS = ("machine", "commit", "program", "scene", "setting", "method", "stage", "device", "threads", "cloth_triangles",
-           "obstacle_triangles", "steps", "min_ms", "median_ms", "p95_ms", "candidates", "contacts", "bytes", "penetration_mm",
-           "intersecting_pairs", "nodes_through", "speed_mm_s", "energy_gain", "shape_error", "queries", "misses", "false_hits",
-           "ended", "hash")
+COLUMNS = ("machine", "commit", "program", "scene", "setting", "method", "stage", "device", "threads",
+           "cloth_triangles", "obstacle_triangles", "steps", "min_ms", "median_ms", "p95_ms", "candidates", "contacts",
+           "bytes", "penetration_mm", "intersecting_pairs", "nodes_through", "speed_mm_s", "energy_gain", "shape_error",
+           "queries", "misses", "false_hits", "ended", "hash")
 GROUP = ("program", "scene", "setting", "method")
 # The stages of a step that a profiled queue tells apart; "kernels" is their sum.
 STAGES = ("refit", "broad", "self", "narrow", "order", "kernels")
@@ -22,12 +22,13 @@ SWEEP_METHODS = ("drape", "drape_host", "embree_contacts_2", "embree_pairs_2", "
 
 
 def times(row, form, factor=1):
-    found = {column: row.get(form.format(name)) for column, name in (("min_ms", "min"), ("median_ms", "median"), ("p95_ms", "p95"))}
+    found = {column: row.get(form.format(name))
+             for column, name in (("min_ms", "min"), ("median_ms", "median"), ("p95_ms", "p95"))}
     return {column: value * factor for column, value in found.items() if value is not None}
 
 
 def steps(rows):
-    """Yields whole steps of every scene, of sweeps by the main methods alone, and kernel times by stage outside of sweeps."""
+    """Yields whole steps, of sweeps by the main methods alone, and outside of sweeps kernel times by stage."""
     memory = {}
     for row, _ in rows:
         if row["stage"].startswith("memory: "):
@@ -35,7 +36,9 @@ def steps(rows):
             memory[key] = memory.get(key, 0) + row["bytes"]
     for row, _ in rows:
         profiled = row["method"].endswith("_kernels")
-        if row["stage"] not in (STAGES if profiled else ("step",)) or (row["sweep"] and row["method"] not in SWEEP_METHODS):
+        if row["stage"] not in (STAGES if profiled else ("step",)):
+            continue
+        if row["sweep"] and row["method"] not in SWEEP_METHODS:
             continue
         yield {**row, "setting": row["sweep"], "bytes": None if profiled else memory.get((row["scene"], row["method"]))}
 
@@ -67,7 +70,7 @@ def worlds(rows):
         depth = row["penetration_max_m"]
         common = {**row, "scene": f"{scene['obstacle']} {scene['obstacle_digest']}",
                   "setting": " ".join(filter(None, (speed, *hashes.settings_of(scene["options"])))),
-                  "method": row["run"] if row["run"] != "drape" else "drape_host" if row["device"] == "host" else "drape",
+                  "method": "drape_host" if row["run"] == "drape" and row["device"] == "host" else row["run"],
                   "contacts": row["contacts_max"], "ended": "capped" if capped else "whole",
                   "penetration_mm": None if depth is None else 1000 * depth,
                   "intersecting_pairs": row.get("intersecting_pairs_max", row.get("intersecting_pairs_end"))}
@@ -86,7 +89,8 @@ def checks(rows):
                "contacts": row.get("intersecting_pairs", row.get("ee_hits")), "intersecting_pairs": None}
 
 
-PROGRAMS = {"bench_step": steps, "error_vs_time": errors, "cloth_drop": worlds, "drop_speeds": worlds, "drape_check": checks}
+PROGRAMS = {"bench_step": steps, "error_vs_time": errors, "cloth_drop": worlds, "drop_speeds": worlds,
+            "drape_check": checks}
 
 
 def main():

@@ -24,9 +24,9 @@ METHODS = {
     "embree_pairs_2": "Embree, pairs only, 2 threads", "embree_pairs_1": "Embree, pairs only, 1 thread",
     "fcl_pairs": "FCL, pairs only", "fcl_collide": "FCL, thickness 0",
 }
-RUNS = {"drape": "Drape, OpenCL", "drape_host": "Drape, host", "automatic": "Drape, automatic", "continuous": "Drape, continuous",
-        "discrete": "Drape, discrete", "bullet_stock": "Bullet built in, stock", "bullet_tuned": "Bullet built in, tuned",
-        "stock": "Bullet built in, stock", "tuned": "Bullet built in, tuned"}
+RUNS = {"drape": "Drape, OpenCL", "drape_host": "Drape, host", "automatic": "Drape, automatic",
+        "continuous": "Drape, continuous", "discrete": "Drape, discrete", "bullet_stock": "Bullet built in, stock",
+        "bullet_tuned": "Bullet built in, tuned", "stock": "Bullet built in, stock", "tuned": "Bullet built in, tuned"}
 # The size that a sweep of bench_step varies, and its label.
 SWEEPS = {
     "cloth": (lambda row: row["cloth_triangles"], "cloth triangles, on the bunny"),
@@ -58,7 +58,8 @@ def step_table(rows):
     # Contacts are the same on every back end; candidates are not.
     for label, column, methods in (("candidates of the host", "candidates", ("drape_host",)),
                                    ("contacts", "contacts", ("drape_host", "drape"))):
-        counts = [[row[column] for method in methods for row in select(rows, scene=scene, method=method)] for scene in scenes]
+        counts = [[row[column] for method in methods for row in select(rows, scene=scene, method=method)]
+                  for scene in scenes]
         lines.append([label] + [count(found[0] if found else None) for found in counts])
     lines.append(["device memory, MiB"] + [figure(first(rows, scene=scene, method="drape").get("bytes", 0) / 2 ** 20)
                                            for scene in scenes])
@@ -74,7 +75,8 @@ def stage_table(rows):
             lines.append([label] + [figure(first(mine, stage=stage).get("median_ms"))
                                     for stage in ("broad", "self", "narrow", "order", "kernels")])
     return ("Kernel time of a step on the device, ms, medians with a profiled queue:\n\n"
-            + table(["scene", "broad phase", "cloth with itself", "narrow phase", "order", "sum"], lines)) if lines else ""
+            + table(["scene", "broad phase", "cloth with itself", "narrow phase", "order", "sum"],
+                    lines)) if lines else ""
 
 
 def growth_table(rows):
@@ -85,7 +87,8 @@ def growth_table(rows):
             points = [(size(row), row["median_ms"]) for row in select(mine, method=method) if "median_ms" in row]
             grows = fit_exponent(points)
             if len(points) > 2 and grows is not None:
-                lines.append([label, METHODS[method], f"{figure(points[0][1])} to {figure(points[-1][1])}", f"{grows:.2f}"])
+                lines.append([label, METHODS[method], f"{figure(points[0][1])} to {figure(points[-1][1])}",
+                              f"{grows:.2f}"])
     return ("Growth of a step's time over the sweeps, ms from the smallest to the largest size, and the exponent p of the fit "
             "time ~ sizeᵖ:\n\n" + table(["size", "method", "ms", "p"], lines)) if lines else ""
 
@@ -100,12 +103,14 @@ def drop_table(rows):
                         if other.get("setting", "") == setting), {})
         capped = f", ended after {row['steps']:.0f} steps" * (row["ended"] == "capped")
         lines.append([RUNS[row["method"]] + f", {setting}" * bool(setting), row["device"] + capped, time_text(row),
-                      figure(finding.get("median_ms")), figure(row["penetration_mm"]), count(row.get("intersecting_pairs")),
+                      figure(finding.get("median_ms")), figure(row["penetration_mm"]),
+                      count(row.get("intersecting_pairs")),
                       count(row.get("nodes_through")), f"`{row['hash']}`"])
     return ("## A cloth dropped on the bunny\n\n2,048 triangles of cloth, 240 steps (`cloth_drop.sh`). Times are medians "
             "(95th percentiles) of the steps in contact. Bullet's times include finding contacts alone; its "
             "solver takes them afterwards.\n\n"
-            + table(["", "on", "collision, ms", "finding contacts, ms", "deepest penetration, mm", "intersecting pairs, end",
+            + table(["", "on", "collision, ms", "finding contacts, ms", "deepest penetration, mm",
+                     "intersecting pairs, end",
                      "nodes through", "hash"], lines))
 
 
@@ -121,19 +126,22 @@ def speed_table(rows):
         return (f"{count(row.get('intersecting_pairs'))} / {count(row.get('nodes_through'))} / {count(row['penetration_mm'])}"
                 + ", no contact" * (not row["contacts"]) + capped)
 
-    lines = [[RUNS[run]] + [text(first(rows, method=run, setting=speed)) for speed in speeds] for run in in_order(rows, "method")]
+    lines = [[RUNS[run]] + [text(first(rows, method=run, setting=speed)) for speed in speeds]
+             for run in in_order(rows, "method")]
     return ("## A cloth thrown at the bunny\n\n100 steps (`drop_speeds.sh`): most intersecting pairs after any step / "
             "nodes through the surface / deepest penetration in mm. Runs with fewer steps met the time limit.\n\n"
             + table([""] + speeds, lines))
 
 
 def check_table(rows):
-    lines = [[f"{row['scene']} {row.get('setting', '')}".strip(), row["device"], count(row.get("queries", row.get("candidates"))),
+    lines = [[f"{row['scene']} {row.get('setting', '')}".strip(), row["device"],
+              count(row.get("queries", row.get("candidates"))),
               count(row.get("misses")), count(row.get("false_hits")), count(row.get("contacts")),
               figure(row["median_ms"]) if row["median_ms"] >= 1 else f"{row['median_ms']:.3g}"] for row in rows]
     return ("## Published queries with exact answers\n\n`drape_check.sh`. Of `ccd` and `triangles` the time is that of one query. "
             "`pairs` counts intersecting triangles of the cloth-ball scene, `step` its edge-edge pairs.\n\n"
-            + table(["question", "on", "queries or candidates", "misses", "false hits", "found", "ms"], lines)) if lines else ""
+            + table(["question", "on", "queries or candidates", "misses", "false hits", "found", "ms"],
+                    lines)) if lines else ""
 
 
 def summary(name, rows):
@@ -142,7 +150,8 @@ def summary(name, rows):
     devices = ", ".join(device for device in in_order(rows, "device") if device != "host") or "none"
     text = (f"# {name}\n\n{rows[0]['machine']}; OpenCL device: {devices}. Commits: {commits}.\n\n"
             f"`report.py` makes this page from [{name}.csv]({name}.csv).\n\n")
-    of = {program: select(rows, program=program) for program in ("bench_step", "cloth_drop", "drop_speeds", "drape_check",
+    of = {program: select(rows, program=program)
+          for program in ("bench_step", "cloth_drop", "drop_speeds", "drape_check",
                                                                  "error_vs_time", "queries")}
     text += step_table(of["bench_step"]) + stage_table(of["bench_step"]) + growth_table(of["bench_step"])
     text += drop_table(of["cloth_drop"]) + speed_table(of["drop_speeds"]) + report_errors.text(of["error_vs_time"])

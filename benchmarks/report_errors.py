@@ -4,7 +4,8 @@ from results import count, figure, in_order, select, table
 NAMES = {"drape": "Drape, device", "drape_host": "Drape, host", "bullet": "Bullet built in",
          "plain": "closest points in floats or doubles"}
 # Column, heading, form.
-ERRORS = (("penetration_mm", "deepest penetration, mm", figure), ("intersecting_pairs", "intersecting pairs, most", count),
+ERRORS = (("penetration_mm", "deepest penetration, mm", figure),
+          ("intersecting_pairs", "intersecting pairs, most", count),
           ("nodes_through", "nodes through", count), ("speed_mm_s", "RMS speed, mm/s", figure),
           ("energy_gain", "energy gained", figure), ("shape_error", "shape error", figure))
 
@@ -18,11 +19,13 @@ def is_clean(row):
 
 
 def scene_lines(rows):
-    """Yields every method's defaults and Bullet's best run with another knob: the fewest nodes through, then the shallowest."""
+    """Yields every method's defaults and Bullet's best run with another knob: fewest nodes through, then shallowest."""
     for scene in in_order(rows, "scene"):
         mine = select(rows, scene=scene)
-        turned = [row for row in select(mine, method="bullet", ended="whole") if knob(row) not in ("defaults", "fall", "rest")]
-        best = [min(turned, key=lambda row: (row["nodes_through"], row["penetration_mm"], row["median_ms"]))] if turned else []
+        turned = [row for row in select(mine, method="bullet", ended="whole")
+                  if knob(row) not in ("defaults", "fall", "rest")]
+        best = [min(turned,
+                    key=lambda row: (row["nodes_through"], row["penetration_mm"], row["median_ms"]))] if turned else []
         for row in select(mine, setting="defaults") + best:
             line = [scene, NAMES[row["method"]], row["setting"]]
             if row["ended"] == "whole":
@@ -36,7 +39,8 @@ def knob_cell(row):
     if row["ended"] != "whole":
         return row["ended"]
     wrong = [f"{form(row[column])} {letter}" for column, letter, form in (
-        ("penetration_mm", "mm", figure), ("intersecting_pairs", "p", count), ("nodes_through", "n", count)) if row.get(column)]
+        ("penetration_mm", "mm", figure), ("intersecting_pairs", "p", count), ("nodes_through", "n", count))
+             if row.get(column)]
     return figure(row["median_ms"]) + (f" ({', '.join(wrong)})" if wrong else "")
 
 
@@ -72,12 +76,14 @@ def text(rows):
         return ""
     return ("## Error against run time\n\nFive scenes of 2 s (`error_vs_time`). A frame lasts 1/60 s; its time is the median "
             "(95th percentile).\n\n"
-            + table(["scene", "method", "setting", "frame, ms"] + [title for _, title, _ in ERRORS], list(scene_lines(rows)))
+            + table(["scene", "method", "setting", "frame, ms"] + [title for _, title, _ in ERRORS],
+                    list(scene_lines(rows)))
             + knob_table(rows) + fall_table(rows))
 
 
 def query_table(rows):
-    lines = [[row["scene"], NAMES[row["method"]], row["setting"], f"{1000 * row['median_ms']:.3g}", count(row.get("misses")),
+    lines = [[row["scene"], NAMES[row["method"]], row["setting"], f"{1000 * row['median_ms']:.3g}",
+              count(row.get("misses")),
               count(row.get("false_hits"))] for row in rows]
     head = ["queries", "method", "setting", "µs a query", "misses", "false hits"]
     return ("## Single queries\n\n" + table(head, lines)) if lines else ""

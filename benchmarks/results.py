@@ -1,4 +1,4 @@
-"""Results of the benchmarks: raw JSON files as the programs write them, and the small CSV that a machine's are reduced to."""
+"""Results of the benchmarks: raw JSON files as programs write them, and the small CSV of a machine."""
 import csv
 import json
 import math
@@ -6,7 +6,7 @@ import os
 
 
 def raw_rows(folder, program):
-    """Returns (row, content of its file) for every row of the files PROGRAM*.json. Each row has its commit and machine."""
+    """Returns (row, content of its file) for every row of files PROGRAM*.json. Rows have their commit and machine."""
     found = []
     for name in sorted(os.listdir(folder)):
         if name.startswith(program) and name.endswith(".json"):
@@ -58,7 +58,8 @@ def update_csv(path, columns, group, rows):
         return 2
 
     def key(row):
-        return tuple(str(cell(float(value)) if isinstance(value, (int, float)) else value or "") for value in map(row.get, group))
+        return tuple(str(cell(float(value)) if isinstance(value, (int, float)) else value or "")
+                     for value in map(row.get, group))
 
     anew = {key(row) for row in rows}
     with open(path + ".part", "w", newline="") as file:

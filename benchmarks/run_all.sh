@@ -11,8 +11,8 @@
 #   --reference DIR  OUT_DIR of an earlier run: contacts must have its hashes, and host and peers are not measured again
 #   --quick          small inputs only
 #
-# Writes raw JSON to OUT_DIR, and results.csv, results.md and plots made from it. Measure on an idle machine. Ends with 3
-# when a row is void, with 1 when something could not be measured.
+# Writes raw JSON to OUT_DIR, and results.csv, results.md and plots made from it. Measure on an idle machine. Ends with
+# 3 when a row is void, with 1 when something could not be measured.
 set -uo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)

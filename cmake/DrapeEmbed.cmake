@@ -1,5 +1,6 @@
-# drape_embed_kernels(<target> <name> <output variable> <files>...): the files' texts, relative to the project, as a C++ source
-# that defines the list <name>s and its length <name>Count. The source is made again when a file changes, and <target> makes it.
+# drape_embed_kernels(<target> <name> <output variable> <files>...): the files' texts, relative to the project, as a C++
+# source that defines the list <name>s and its length <name>Count. The source is made again when a file changes, and
+# <target> makes it.
 function(drape_embed_kernels target name output)
   set(files ${ARGN})
   list(SORT files)
@@ -12,7 +13,8 @@ function(drape_embed_kernels target name output)
   list(TRANSFORM files PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE paths)
   add_custom_command(
     OUTPUT ${source}
-    COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR} -D LIST=${list_file} -D OUTPUT=${source} -D NAME=${name} -P ${script}
+    COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR} -D LIST=${list_file} -D OUTPUT=${source} -D NAME=${name}
+      -P ${script}
     DEPENDS ${paths} ${list_file} ${script}
     COMMENT "Embedding kernels"
     VERBATIM)

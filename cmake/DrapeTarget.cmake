@@ -5,7 +5,16 @@ function(drape_target target)
   target_compile_features(${target} PRIVATE cxx_std_17)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/bullet_plugin/include)
-  target_compile_options(${target} PRIVATE -Wall -Wextra -ffp-contract=off)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wconversion -ffp-contract=off)
+  if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    # GCC's -Wconversion leaves these two out.
+    target_compile_options(${target} PRIVATE -Wno-sign-conversion -Wno-implicit-int-float-conversion)
+  endif()
+  # Other versions may have warnings that nobody has looked at.
+  if(DRAPE_WARNINGS_AS_ERRORS AND "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}" MATCHES
+      "^(GNU 12|Clang 14)\\.")
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
   if(NOT DRAPE_DOP EQUAL 18)
     math(EXPR directions "${DRAPE_DOP} / 2")
     target_compile_definitions(${target} PRIVATE DRAPE_DOP_DIRECTIONS=${directions})

@@ -1,5 +1,5 @@
-# Run by ctest for each test program: asks it for its tests and adds them suite by suite. DrapeTestSuites.cmake says how.
-# Input: cmake (its path), program, prefix, each, guest, environment, and the variables of tests/tiers.cmake.
+# Run by ctest for each test program: asks it for its tests and adds them suite by suite. DrapeTestSuites.cmake says
+# how. Input: cmake (its path), program, prefix, each, guest, environment, and the variables of tests/tiers.cmake.
 if(NOT EXISTS "${program}")
   if(guest)
     return()

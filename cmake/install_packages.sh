@@ -21,8 +21,8 @@ packages=(
 further=(
   # benchmarks: peers, plots
   libfcl-dev libtbb-dev python3-matplotlib
-  # tests; a simulated GPU; fuzzing
-  libgtest-dev oclgrind clang libclang-rt-dev
+  # tests; a simulated GPU; fuzzing; the format of C++ and OpenCL C
+  libgtest-dev oclgrind clang libclang-rt-dev clang-format
   # published data: unpacking
   xz-utils
 )

@@ -145,13 +145,13 @@ int SignedSurface::sideOf(const Vector3& point, const ClosestPoint& closest) con
     const auto triangle = static_cast<std::size_t>(closest.m_triangle);
     const Vector3 away = point - closest.m_point;
     Vector3 normal = m_faceNormals[triangle];
-    if (closest.m_feature == Feature::Edge)
+    if (closest.m_feature == Feature::OnEdge)
     {
         const EdgeSum& edge = m_edges[triangle][static_cast<std::size_t>(closest.m_featureIndex)];
         if (edge.m_balance != 0) return 0;
         normal = edge.m_normal;
     }
-    if (closest.m_feature == Feature::Vertex)
+    if (closest.m_feature == Feature::OnVertex)
     {
         const auto vertex = static_cast<std::size_t>(m_tree.indices(closest.m_triangle)[closest.m_featureIndex]);
         if (m_boundaryVertex[vertex]) return 0;
@@ -164,8 +164,8 @@ bool SignedSurface::simple(const ClosestPoint& closest) const
 {
     const auto triangle = static_cast<std::size_t>(closest.m_triangle);
     const auto feature = static_cast<std::size_t>(closest.m_featureIndex);
-    if (closest.m_feature == Feature::Edge) return m_edges[triangle][feature].m_faces == 2;
-    if (closest.m_feature == Feature::Face) return true;
+    if (closest.m_feature == Feature::OnEdge) return m_edges[triangle][feature].m_faces == 2;
+    if (closest.m_feature == Feature::OnFace) return true;
     return !m_tangledVertex[static_cast<std::size_t>(m_tree.indices(closest.m_triangle)[feature])];
 }
 

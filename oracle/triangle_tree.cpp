@@ -48,21 +48,21 @@ ClosestPoint closestOnTriangle(const Vector3& p, const Vector3 t[3])
     };
     const Vector3 ab = t[1] - t[0], ac = t[2] - t[0];
     const double d1 = dot(ab, p - t[0]), d2 = dot(ac, p - t[0]);
-    if (d1 <= 0 && d2 <= 0) return result(t[0], Feature::Vertex, 0);
+    if (d1 <= 0 && d2 <= 0) return result(t[0], Feature::OnVertex, 0);
     const double d3 = dot(ab, p - t[1]), d4 = dot(ac, p - t[1]);
-    if (d3 >= 0 && d4 <= d3) return result(t[1], Feature::Vertex, 1);
+    if (d3 >= 0 && d4 <= d3) return result(t[1], Feature::OnVertex, 1);
     const double vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 > d3) return result(t[0] + (d1 / (d1 - d3)) * ab, Feature::Edge, 0);
+    if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 > d3) return result(t[0] + (d1 / (d1 - d3)) * ab, Feature::OnEdge, 0);
     const double d5 = dot(ab, p - t[2]), d6 = dot(ac, p - t[2]);
-    if (d6 >= 0 && d5 <= d6) return result(t[2], Feature::Vertex, 2);
+    if (d6 >= 0 && d5 <= d6) return result(t[2], Feature::OnVertex, 2);
     const double vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 > d6) return result(t[0] + (d2 / (d2 - d6)) * ac, Feature::Edge, 2);
+    if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 > d6) return result(t[0] + (d2 / (d2 - d6)) * ac, Feature::OnEdge, 2);
     const double va = d3 * d6 - d5 * d4;
     const double along = d4 - d3, back = d5 - d6;
     if (va <= 0 && along >= 0 && back >= 0 && along + back > 0)
-        return result(t[1] + (along / (along + back)) * (t[2] - t[1]), Feature::Edge, 1);
+        return result(t[1] + (along / (along + back)) * (t[2] - t[1]), Feature::OnEdge, 1);
     const double sum = va + vb + vc;
-    return result(t[0] + (vb / sum) * ab + (vc / sum) * ac, Feature::Face, 0);
+    return result(t[0] + (vb / sum) * ab + (vc / sum) * ac, Feature::OnFace, 0);
 }
 }  // namespace
 

@@ -16,9 +16,9 @@ namespace drape
 {
 enum class Feature : std::uint8_t
 {
-    Face,
-    Edge,   // m_featureIndex: corner it starts from, 0 to 2
-    Vertex  // m_featureIndex: corner, 0 to 2
+    OnFace,
+    OnEdge,   // m_featureIndex: corner it starts from, 0 to 2
+    OnVertex  // m_featureIndex: corner, 0 to 2
 };
 
 struct ClosestPoint
@@ -26,7 +26,7 @@ struct ClosestPoint
     double m_squaredDistance = 0;
     Vector3 m_point;
     std::int32_t m_triangle = -1;  // -1: nothing within the search radius
-    Feature m_feature = Feature::Face;
+    Feature m_feature = Feature::OnFace;
     int m_featureIndex = 0;
 };
 

@@ -40,11 +40,11 @@ HeightField::HeightField(const TriangleMesh& mesh) : m_mesh(mesh), m_bounds(boun
             for (std::size_t corner = 0; corner < 3; ++corner)
             {
                 const float* p = &m_mesh.m_positions[3 * static_cast<std::size_t>(m_mesh.m_triangles[3 * t + corner])];
-                for (int side = 0; side < 2; ++side)
+                for (int axis = 0; axis < 2; ++axis)
                 {
-                    const std::size_t cell = cellOf(p[2 * side], 2 * side);
-                    low[side] = std::min(low[side], cell);
-                    high[side] = std::max(high[side], cell);
+                    const std::size_t cell = cellOf(p[2 * axis], 2 * axis);
+                    low[axis] = std::min(low[axis], cell);
+                    high[axis] = std::max(high[axis], cell);
                 }
             }
             for (std::size_t j = low[1]; j <= high[1]; ++j)

@@ -9,7 +9,7 @@ namespace drape
 class Random
 {
 public:
-    explicit Random(std::uint32_t seed) : m_state((seed * 2654435761u) ^ 0x5bd1e995u) { m_state += m_state == 0; }
+    explicit Random(std::uint32_t number) : m_state((number * 2654435761u) ^ 0x5bd1e995u) { m_state += m_state == 0; }
     double unit()
     {
         m_state ^= m_state << 13;

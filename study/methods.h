@@ -1,5 +1,5 @@
-// What the study compares: who builds a tree of triangles, how it is refitted, and how two trees are traversed. All
-// methods of a kind give the same result, bit for bit; they differ in time and memory.
+// The methods that the study compares: who builds a tree of triangles, how it is refitted, and how two trees are
+// traversed. All methods of a kind give the same result, bit for bit; they differ in time and memory.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ enum class RefitMethod
     Subtrees  // whole subtrees per work-group: three launches, two up to 2,048 triangles
 };
 
-// How kernels spread their work; results do not depend on it.
+// The shape in which kernels spread their work; results do not depend on it.
 enum class WorkShape
 {
     Device,  // groups on a GPU, serial elsewhere
@@ -47,7 +47,7 @@ struct TopDownSettings
     std::uint32_t m_compactionGroup = 256;  // work-items of the compaction's groups, a power of two, 16 to 256
 };
 
-// How trees of triangles are built and refitted.
+// Methods that build and refit trees of triangles.
 struct TreeMethods
 {
     TreeBuilder m_builder = TreeBuilder::Radix;
@@ -59,19 +59,19 @@ struct TreeMethods
     TopDownSettings m_topDown;
 };
 
-// How the pairs of triangles whose volumes overlap are found.
+// Methods that find the pairs of triangles whose volumes overlap.
 enum class Traversal
 {
     Single,  // one work-group with a queue, both nodes open (the thesis's simple traversal)
     Full,    // work-groups with a shared stack walk both trees, from fixed pairs of nodes
-    Front,   // as Full, from the pairs where the last step stopped (the thesis's front)
+    Front,   // like Full, from the pairs where the last step stopped (the thesis's front)
     Grid     // a uniform grid with sorted cells (Green 2008; Teschner et al. 2003)
 };
 
 struct Methods
 {
     Traversal m_traversal = Traversal::Front;
-    TreeMethods m_tree;         // of both sides, built once, from the positions at rest
+    TreeMethods m_tree;         // for both sides, built once, from the positions at rest
     bool m_countTests = false;  // count volume tests on a device, which costs an atomic a work-item
 };
 }  // namespace drape

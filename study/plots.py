@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 
 from results import in_order, select
 
-# The same file for the same data; text stays text.
+# Equal data gives an equal file; text stays text.
 plt.rcParams.update({"svg.hashsalt": "drape", "svg.fonttype": "none", "font.size": 8})
 
 
@@ -15,7 +15,8 @@ def lines(axes, rows, x, y, title, xlabel, logarithmic_x=True):
     styles = {"opencl": "-", "host": "--"}
     for variant in in_order(rows, "variant"):
         for backend in in_order(select(rows, variant=variant), "backend"):
-            for threads in dict.fromkeys(row.get("threads", 0) for row in select(rows, variant=variant, backend=backend)):
+            for threads in dict.fromkeys(row.get("threads", 0)
+                                         for row in select(rows, variant=variant, backend=backend)):
                 points = sorted((row[x], y(row)) for row in select(rows, variant=variant, backend=backend)
                                 if row.get("threads", 0) == threads and y(row) is not None)
                 if points:
@@ -46,7 +47,10 @@ def draw(prefix, rows):
         (select(rows, part="construction"), "triangles", time_of, "construction (tables 4.2 and 4.3)", "triangles"),
         (select(rows, part="refit"), "triangles", time_of, "refit (table 4.4)", "triangles")])
     figure_of(prefix + "_levels.svg", [
-        (select(rows, part="levels"), "level", time_of, "construction by level (figures 4.2 to 4.4)", "level, root 0", False),
-        (select(rows, part="refit_levels"), "level", time_of, "refit by height (figure 4.10)", "height, leaves 0", False)])
+        (select(rows, part="levels"), "level", time_of, "construction by level (figures 4.2 to 4.4)", "level, root 0",
+         False),
+        (select(rows, part="refit_levels"), "level", time_of, "refit by height (figure 4.10)", "height, leaves 0",
+         False)])
     figure_of(prefix + "_tests.svg", [
-        (select(rows, part="triangle_tests"), "pairs", time_of, "tests of triangle pairs (figure 4.9)", "pairs of triangles")])
+        (select(rows, part="triangle_tests"), "pairs", time_of, "tests of triangle pairs (figure 4.9)",
+         "pairs of triangles")])

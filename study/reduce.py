@@ -11,9 +11,9 @@ import sys
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "benchmarks"))
 from results import raw_rows, update_csv
 
-COLUMNS = ("machine", "commit", "part", "model", "variant", "phase", "level", "stage", "backend", "device", "threads", "triangles",
-           "dop", "min_ms", "median_ms", "p95_ms", "kernel_ms", "refit_ms", "broad_ms", "narrow_ms", "order_ms", "volume_tests",
-           "candidates", "contacts", "bytes", "pairs", "share", "hash")
+COLUMNS = ("machine", "commit", "part", "model", "variant", "phase", "level", "stage", "backend", "device", "threads",
+           "triangles", "dop", "min_ms", "median_ms", "p95_ms", "kernel_ms", "refit_ms", "broad_ms", "narrow_ms",
+           "order_ms", "volume_tests", "candidates", "contacts", "bytes", "pairs", "share", "hash")
 GROUP = ("part", "model", "backend", "dop")
 # Parts that vary the trees are reported on these alone.
 FEW_MODELS = ("bunny", "bunny_1m", "thesis", "fine", "sphere_1k", "quick_one")
@@ -33,7 +33,8 @@ def steps(rows):
         if row["step"] > 0 and "broad_ms" in row:
             groups.setdefault((row["model"], row["variant"], row.get("phase", "descent")), []).append(row)
     for (_, _, phase), mine in groups.items():
-        yield {**mine[-1], "phase": phase, "median_ms": mean(mine, "step_ms"), **{column: mean(mine, column) for column in MEANS}}
+        yield {**mine[-1], "phase": phase, "median_ms": mean(mine, "step_ms"),
+               **{column: mean(mine, column) for column in MEANS}}
 
 
 def sides(rows):

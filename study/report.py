@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Makes the thesis's tables with today's figures beside them: report.py CSV… [--tables FILE] [--plots DIR]
 
-Replaces the tables between their markers in FINDINGS.md here; its text is written by hand. With --tables, writes the tables
-alone to FILE instead. With --plots, draws the thesis's figures into DIR, which needs python3-matplotlib.
+Replaces the tables between their markers in FINDINGS.md here; its text is written by hand. With --tables, writes the
+tables alone to FILE instead. With --plots, draws the thesis's figures into DIR, which needs python3-matplotlib.
 """
 import argparse
 import csv
@@ -15,14 +15,15 @@ sys.path.insert(0, os.path.join(HERE, "..", "benchmarks"))
 from results import count, figure, in_order, read_csv, select, table
 
 # The thesis's models, and the models that stand in for them.
-THESIS_MODELS = {"terrain_6272": "Biplane", "torus_16301": "Small Bunny", "bunny": "Large Bunny", "torus_345944": "Armadillo",
-                 "dragon": "Dragon", "bunny_1m": "Happy Buddha"}
+THESIS_MODELS = {"terrain_6272": "Biplane", "torus_16301": "Small Bunny", "bunny": "Large Bunny",
+                 "torus_345944": "Armadillo", "dragon": "Dragon", "bunny_1m": "Happy Buddha"}
 PHASES = {"descent": "coming down", "rest": "at rest"}
 
 
 def thesis(number, what):
     with open(os.path.join(HERE, "thesis.csv"), newline="") as file:
-        return {row["model"]: float(row["ms"]) for row in csv.DictReader(file) if row["table"] == number and row["what"] == what}
+        return {row["model"]: float(row["ms"]) for row in csv.DictReader(file)
+                if row["table"] == number and row["what"] == what}
 
 
 def time_of(row):
@@ -33,15 +34,18 @@ def time_of(row):
 def by_model(machines, part, published):
     lines = []
     for label, number, what in published:
-        lines.append(["*thesis*", f"*{label}*"] + [f"*{count(thesis(number, what).get(name))}*" for name in THESIS_MODELS.values()])
+        lines.append(["*thesis*", f"*{label}*"] + [f"*{count(thesis(number, what).get(name))}*"
+                                                   for name in THESIS_MODELS.values()])
     for machine, rows in machines:
         mine = select(rows, part=part)
         for variant in in_order(mine, "variant"):
             for threads in dict.fromkeys(row.get("threads", 0) for row in select(mine, variant=variant)):
-                times = {row["model"]: time_of(row) for row in select(mine, variant=variant) if row.get("threads", 0) == threads}
+                times = {row["model"]: time_of(row) for row in select(mine, variant=variant)
+                         if row.get("threads", 0) == threads}
                 name = variant.replace("_", " ") + (f", {threads:.0f} thread" + "s" * (threads > 1) if threads else "")
                 lines.append([machine, name] + [figure(times.get(model)) for model in THESIS_MODELS])
-    return table(["machine", "method"] + [f"{name} ({model.replace('_', ' ')})" for model, name in THESIS_MODELS.items()], lines)
+    return table(["machine", "method"] + [f"{name} ({model.replace('_', ' ')})"
+                                          for model, name in THESIS_MODELS.items()], lines)
 
 
 def construction(machines):
@@ -71,7 +75,8 @@ def ratios_of(rows, part, slow, fast):
 def traversals(rows, slow, fast):
     found = []
     for row in select(rows, part="traversal", variant=fast):
-        found += [other["broad_ms"] / row["broad_ms"] for other in select(rows, part="traversal", variant=slow, model=row["model"],
+        found += [other["broad_ms"] / row["broad_ms"]
+                  for other in select(rows, part="traversal", variant=slow, model=row["model"],
                                                                           phase=row["phase"])]
     return found
 
@@ -91,7 +96,8 @@ NORMAL, ADAPTIVE, SMALL, ALL, LEVELS = ("thesis: normal", "thesis: adaptive grou
                                         "thesis: all optimisations", "thesis: launch per level")
 BUILD = ("construction",)
 SPEEDUPS = (
-    ("adaptive group sizes over the plain builder", "1.67 (Happy Buddha)", lambda rows: ratios_of(rows, BUILD, NORMAL, ADAPTIVE)),
+    ("adaptive group sizes over the plain builder", "1.67 (Happy Buddha)",
+     lambda rows: ratios_of(rows, BUILD, NORMAL, ADAPTIVE)),
     ("small splits, added to it", "1.5 to 2", lambda rows: ratios_of(rows, BUILD, ADAPTIVE, SMALL)),
     ("large nodes, added to it", "1.7 (Happy Buddha)", lambda rows: ratios_of(rows, BUILD, SMALL, ALL)),
     ("all optimisations over the plain builder", published(("4.2", "quadro_normal"), ("4.2", "quadro_optimised")),
@@ -101,7 +107,8 @@ SPEEDUPS = (
     ("refit, a launch per level, over one CPU thread", published(("4.4", "cpu"), ("4.4", "quadro")),
      lambda rows: ratios_of(rows, ("refit",), "host", LEVELS)),
     ("refit over optimised construction", "10", lambda rows: ratios_of(rows, ("construction", "refit"), ALL, LEVELS)),
-    ("simple traversal over one CPU thread", "25", lambda rows: traversals(rows, "host, thesis: simple", "thesis: simple")),
+    ("simple traversal over one CPU thread", "25",
+     lambda rows: traversals(rows, "host, thesis: simple", "thesis: simple")),
     ("front over simple traversal", "more than 1", lambda rows: traversals(rows, "thesis: simple", "thesis: front")),
     ("Möller's test over one CPU thread, 1 M pairs", "grows with the pairs", tests),
 )
@@ -129,7 +136,8 @@ def steps_table(machines, part):
                 for phase in PHASES:
                     row = next(iter(select(mine, variant=variant, model=scene, phase=phase)), {})
                     stages = sum(row.get(stage, 0) for stage in ("refit_ms", "broad_ms", "narrow_ms", "order_ms"))
-                    line.append(f"{count(row.get('volume_tests'))} / {figure(row['broad_ms'])} / {figure(stages)}" if row else "–")
+                    line.append(f"{count(row.get('volume_tests'))} / {figure(row['broad_ms'])} / {figure(stages)}"
+                                if row else "–")
             lines.append(line)
     phases = [f"{scene}, {phase}" for scene in ("thesis", "fine") for phase in PHASES.values()]
     return table(["machine", part] + phases, lines)
@@ -148,7 +156,8 @@ def obstacles(machines):
     lines, variants = [], ("nothing happens", "one comes", "one goes", "two move")
     for name, rows in machines:
         for backend in ("host", "opencl"):
-            times = {row["variant"]: row.get("median_ms") for row in select(rows, part="obstacles", model="bunny_1m", backend=backend)}
+            times = {row["variant"]: row.get("median_ms")
+                     for row in select(rows, part="obstacles", model="bunny_1m", backend=backend)}
             if times:
                 lines.append([name, backend] + [figure(times.get(variant)) for variant in variants])
     return table(["machine", "on", "nothing changes", "one obstacle is added", "one is removed", "two move"], lines)
@@ -161,7 +170,8 @@ def triangle_tests(machines):
         for backend in in_order(mine, "backend"):
             for variant in in_order(mine, "variant"):
                 points = sorted((row["pairs"], time_of(row)) for row in select(mine, backend=backend, variant=variant))
-                lines.append([name, backend, variant, "; ".join(f"{count(pairs)}: {figure(time)}" for pairs, time in points)])
+                lines.append([name, backend, variant,
+                              "; ".join(f"{count(pairs)}: {figure(time)}" for pairs, time in points)])
     return table(["machine", "on", "test", "pairs: ms"], lines)
 
 
@@ -200,15 +210,18 @@ def degree(machines):
                 whole = [next((row for row in select(mine, model=scene, stage="step")
                                if row["variant"].endswith(("host", "default"))), {}) for scene in ("thesis", "fine")]
                 if trees:
-                    lines.append([name, backend, str(sides)] + [figure(time_of(trees[stage])) for stage in ("build", "refit", "walk")]
-                                 + [count(trees["walk"]["candidates"])] + [figure(row.get("median_ms")) for row in whole])
-    return table(["machine", "on", "sides", "construction, ms", "refit, ms", "traversal, ms", "candidates", "step, thesis, ms",
+                    lines.append([name, backend, str(sides)] + [figure(time_of(trees[stage]))
+                                                                for stage in ("build", "refit", "walk")]
+                                 + [count(trees["walk"]["candidates"])] + [figure(row.get("median_ms"))
+                                                                           for row in whole])
+    return table(["machine", "on", "sides", "construction, ms", "refit, ms", "traversal, ms", "candidates",
+                  "step, thesis, ms",
                   "step, fine, ms"], lines)
 
 
-TABLES = {"speedups": speedups, "construction": construction, "compaction": compaction, "refit": refit, "traversal": traversal,
-          "builder": builder, "triangle_tests": triangle_tests, "quality": quality, "shape": shape, "degree": degree,
-          "obstacles": obstacles}
+TABLES = {"speedups": speedups, "construction": construction, "compaction": compaction, "refit": refit,
+          "traversal": traversal, "builder": builder, "triangle_tests": triangle_tests, "quality": quality,
+          "shape": shape, "degree": degree, "obstacles": obstacles}
 
 
 def update_findings(path, machines):

@@ -22,8 +22,8 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 bin=$here/../build/release/bin
 commit=$(git -C "$here" describe --always --dirty 2>/dev/null || echo unknown)
 # Shares of the time, from runs on a GPU and on two cores.
-declare -A shares=([peers]=2 [construction]=6 [refit]=1 [quality]=2 [shape]=3 [degree]=8 [traversal]=8 [builder]=3 [obstacles]=1
-  [triangle_tests]=1)
+declare -A shares=([peers]=2 [construction]=6 [refit]=1 [quality]=2 [shape]=3 [degree]=8 [traversal]=8 [builder]=3
+  [obstacles]=1 [triangle_tests]=1)
 parts=peers,construction,refit,quality,shape,degree,traversal,builder,obstacles,triangle_tests
 minutes=30 arguments=() out=''
 while [[ $# -gt 0 ]]; do

@@ -46,7 +46,8 @@ foreach(stage "is built for Bullet in" "drapeIsBuiltForBulletIn(Double|Single)Pr
   list(APPEND other -UDRAPE_BULLET_DOUBLE)
 endforeach()
 
-# Every block of C++ in the documents must be a program that compiles as it stands, with nothing around it, and runs well.
+# Every block of C++ in the documents must be a program that compiles as it stands, with nothing around it, and runs
+# well.
 set(opening "\n```[ ]*(cpp|c\\+\\+|C\\+\\+|cc|cxx)[^\n]*\n")
 set(count 0)
 file(GLOB documents ${DOCUMENTS}/docs/*.md)

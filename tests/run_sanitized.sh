@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
-# Runs the host's tests with the address and undefined-behaviour sanitizers: run_sanitized.sh [--full] [arguments of ctest]
+# Runs the host's tests with the address and undefined-behaviour sanitizers: run_sanitized.sh [--full] [arguments of
+# ctest]
 #
-# Builds the asan preset and runs the fast tier, with --full also the full tier without its longest worlds. Uses no OpenCL
-# driver (DRAPE_TEST_NO_DEVICE), since Drape cannot answer for a driver's memory. tests/README.md says more. Published data
-# is used where reference_data.sh finds it.
+# Builds the asan preset and runs the fast tier, with --full also the full tier without its longest worlds. Uses no
+# OpenCL driver (DRAPE_TEST_NO_DEVICE), since Drape cannot answer for a driver's memory. tests/README.md says more.
+# Published data is used where reference_data.sh finds it.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+export DRAPE_WARNINGS_AS_ERRORS=${DRAPE_WARNINGS_AS_ERRORS-ON}
 
 tier='^fast$'
 if [[ ${1-} == --full ]]; then

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Builds and runs the slow tier: run_slow.sh [options]
 #
-# Runs the slow tests and the tests of the study, thousands of random worlds, the fast and full tiers with the sanitizers, and each fuzzer for five
-# minutes.
+# Runs the slow tests and the tests of the study, thousands of random worlds, the fast and full tiers with the
+# sanitizers, and each fuzzer for five minutes.
 #
 #   --jobs N              processes at a time (as many as there are cores)
 #   --plain-failing N     the most worlds that may fail of 4,000 without modifiers (0)
@@ -15,6 +15,7 @@
 # repeat them. Takes some 90 minutes on two idle cores.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+export DRAPE_WARNINGS_AS_ERRORS=${DRAPE_WARNINGS_AS_ERRORS-ON}
 
 jobs=$(nproc)
 plain=0
@@ -41,7 +42,8 @@ bash cmake/build_preset.sh release all study study_dop6 drape_test_study
 
 failed=0
 source tests/reference_data.sh
-ctest --test-dir build/release --output-on-failure --no-tests=error --label-regex '^slow$' --parallel "$(nproc)" || failed=1
+ctest --test-dir build/release --output-on-failure --no-tests=error --label-regex '^slow$' \
+  --parallel "$(nproc)" || failed=1
 worlds() {
   echo "== drape_worlds $*"
   build/release/bin/drape_worlds --jobs "$jobs" "$@" || failed=1

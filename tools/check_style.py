@@ -3,8 +3,8 @@
 
 Usage: check_style.py [--root FOLDER] [--limits FILE] [--quiet] [--update]
 
-Reads the files that git tracks and prints file:line for each finding. Exit code 1 means that a count is above its limit in
-tools/style_limits.json. --update lowers the limits to the counts and never raises them.
+Reads the files that git tracks and prints file:line for each finding. Exit code 1 means that a count is above its
+limit in tools/style_limits.json. --update lowers the limits to the counts and never raises them.
 """
 import argparse
 import io

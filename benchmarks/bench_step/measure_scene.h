@@ -11,8 +11,8 @@ namespace drape::bench
 {
 struct MeasureSettings
 {
-    int m_repeats = 3;      // periods that are timed, at most
-    double m_seconds = 10;  // for a method's timed steps; one period is timed in any case
+    int m_repeats = 3;       // periods that are timed, at most
+    double m_seconds = 10;   // for a method's timed steps; one period is timed in any case
     std::string m_expected;  // hash that the reference itself must have; empty: any
 };
 

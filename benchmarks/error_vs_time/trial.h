@@ -28,12 +28,12 @@ struct Trial
     double m_thickness = kThickness;  // m: both margins
     double m_activation = 0.5;        // Drape, see Settings
     ContactMode m_mode = ContactMode::Automatic;
-    int m_substeps = 1;            // steps a frame
-    int m_iterations = 5;          // iterations of Bullet's position solver
-    double m_voxel = 0;            // m, of the distance field; 0: as Bullet sets it up
-    std::uint32_t m_seed = 0;      // random seed of the fall; 0: flat and from rest
-    int m_frames = 0;              // number of frames of 1/60 s
-    int m_speedFrames = 0;         // the last ones, over which the cloth's RMS speed is taken
+    int m_substeps = 1;        // steps a frame
+    int m_iterations = 5;      // iterations of Bullet's position solver
+    double m_voxel = 0;        // m, of the distance field; 0: as Bullet sets it up
+    std::uint32_t m_seed = 0;  // random seed of the fall; 0: flat and from rest
+    int m_frames = 0;          // number of frames of 1/60 s
+    int m_speedFrames = 0;     // the last ones, over which the cloth's RMS speed is taken
 
     std::string method() const;
     bool isDrape() const { return m_method != Method::BuiltIn; }

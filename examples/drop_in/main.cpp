@@ -17,7 +17,7 @@ void addFloor(btTriangleMesh& mesh)
     const int cells = 40;
     const auto corner = [](int i, int j)
     {
-        const btScalar x = btScalar(0.1) * (i - 20), z = btScalar(0.1) * (j - 20);
+        const btScalar x = btScalar(0.1) * btScalar(i - 20), z = btScalar(0.1) * btScalar(j - 20);
         return btVector3(x, btScalar(0.1) * std::sin(3 * x) * std::cos(3 * z), z);
     };
     for (int i = 0; i < cells; ++i)

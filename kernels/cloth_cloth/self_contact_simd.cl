@@ -31,7 +31,8 @@ static void nodesOf(uint* nodes, const SelfView* view, const FeatureTest test)
     if (test.m_motion == DRAPE_SELF_TEST_NODE)
     {
         nodes[0] = test.m_cloth;
-        for (int k = 0; k < 3; ++k) nodes[1 + k] = view->m_cloth.m_triangles[test.m_lane].m_vertices[k];
+        for (int k = 0; k < 3; ++k)
+            nodes[1 + k] = view->m_cloth.m_triangles[test.m_lane].m_vertices[k];
         return;
     }
     for (int k = 0; k < 2; ++k)

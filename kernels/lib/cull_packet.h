@@ -1,5 +1,5 @@
-// Volumes of a packet of cloth triangles, one per lane; a GPU's traversal (patch_traversal_gpu.cl) makes the same for one
-// triangle, see feature_cull.h. Also the volumes of one triangle's nodes and edges, with one direction per lane.
+// Volumes of a packet of cloth triangles, one per lane; a GPU's traversal (patch_traversal_gpu.cl) makes the same for
+// one triangle, see feature_cull.h. Also the volumes of one triangle's nodes and edges, with one direction per lane.
 #ifndef DRAPE_LIB_CULL_PACKET_H
 #define DRAPE_LIB_CULL_PACKET_H
 

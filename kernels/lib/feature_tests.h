@@ -17,7 +17,8 @@ static NormalCone laneCone(__global const float* restrict blocks, const uint flo
 {
     NormalCone cone;
     cone.m_axis = laneVec3(blocks, floats, lane, floats - 4);
-    cone.m_cosine = blocks[((lane / DRAPE_PATCH_WIDTH) * floats + floats - 1) * DRAPE_PATCH_WIDTH + lane % DRAPE_PATCH_WIDTH];
+    cone.m_cosine =
+        blocks[((lane / DRAPE_PATCH_WIDTH) * floats + floats - 1) * DRAPE_PATCH_WIDTH + lane % DRAPE_PATCH_WIDTH];
     return cone;
 }
 

@@ -37,7 +37,8 @@ static void testLanes(LaneWork* work, const uint kind, const uint* items, const 
     LaneContacts contacts;
     Contact listed[DRAPE_LANES];
     uint listedCount = 0;
-    for (uint lane = 0; lane < DRAPE_LANES; ++lane) putTest(rows, lane, work, items[min(lane, count - 1)]);
+    for (uint lane = 0; lane < DRAPE_LANES; ++lane)
+        putTest(rows, lane, work, items[min(lane, count - 1)]);
     askLanes(&contacts, rows, work, kind);
     const uint used = (1u << count) - 1u, asking = laneBits(contacts.m_near.m_asks);
     for (uint left = laneBits(contacts.m_found) & used; left; left &= left - 1)
@@ -47,7 +48,8 @@ static void testLanes(LaneWork* work, const uint kind, const uint* items, const 
         listedCount += takeContact(&near, rows, lane, work, items[lane], listed + listedCount) == DRAPE_IS_CONTACT;
     }
     listContacts(sink, listed, listedCount);
-    for (uint left = laneBits(contacts.m_open) & used; left; left &= left - 1) testOne(work, items[31 - clz(left & -left)]);
+    for (uint left = laneBits(contacts.m_open) & used; left; left &= left - 1)
+        testOne(work, items[31 - clz(left & -left)]);
 }
 
 // Tests a run of items, at most DRAPE_MOST_RUN. A continuous step searches every pair for a meeting: one by one.
@@ -67,7 +69,8 @@ static void testRun(LaneWork* work, const uint first, const uint end, const uint
             if (count >= DRAPE_FEWEST_LANES && mode != DRAPE_CONTINUOUS)
                 testLanes(work, kind, items[kind] + i, count, sink);
             else
-                for (uint k = 0; k < count; ++k) testOne(work, items[kind][i + k]);
+                for (uint k = 0; k < count; ++k)
+                    testOne(work, items[kind][i + k]);
         }
     }
 }

@@ -92,9 +92,10 @@ static float leastLane(const Lanes all)
 #endif
 }
 
-#define forLanes(lane, mask)                                              \
-    for (uint bits = laneBits(mask), lane = 31 - clz(bits & -bits); bits; \
-         bits &= bits - 1, lane = 31 - clz(bits & -bits))
+// The counter has the lane's name in its own, so that loops nest.
+#define forLanes(lane, mask)                                                                                  \
+    for (uint bitsOf_##lane = laneBits(mask), lane = 31 - clz(bitsOf_##lane & -bitsOf_##lane); bitsOf_##lane; \
+         bitsOf_##lane &= bitsOf_##lane - 1, lane = 31 - clz(bitsOf_##lane & -bitsOf_##lane))
 #define teamAdd(counter) ((counter)++)
 #else
 #define teamLane() get_local_id(0)

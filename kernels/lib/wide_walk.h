@@ -39,7 +39,8 @@ static uint beginWalk(__local uint* stack, __global const uint* levels, const ui
     const uint children = top > 1 ? levels[top - 1] - levels[top - 2] : 0;
     const int skips = children > 0 && children <= DRAPE_WALK_BEGIN;
     const uint nodes = skips ? children : 1, level = skips ? top - 1 : top;
-    for (uint i = 0; i < nodes; ++i) stack[i] = walkEntry(level, i);
+    for (uint i = 0; i < nodes; ++i)
+        stack[i] = walkEntry(level, i);
     return nodes;
 }
 

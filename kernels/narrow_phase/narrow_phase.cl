@@ -20,7 +20,8 @@ static uint testByKind(__global const FeatureTest* tests, const uint first, cons
     barrier(CLK_LOCAL_MEM_FENCE);
     if (item < count)
     {
-        for (uint k = 0; k < kind; ++k) place += kinds[k];
+        for (uint k = 0; k < kind; ++k)
+            place += kinds[k];
         order[place] = (ushort)lane;
     }
     barrier(CLK_LOCAL_MEM_FENCE);
@@ -128,8 +129,7 @@ __kernel void narrowPhaseSwept(DRAPE_NARROW_PHASE_SWEPT)
 __kernel void narrowPhaseSmall(DRAPE_NARROW_PHASE_SMALL)
 {
     uint searches = 0;
-    const uint count =
-        counters->m_candidates <= values.m_most ? min(counters->m_candidates, values.m_testCapacity) : 0;
+    const uint count = counters->m_candidates <= values.m_most ? min(counters->m_candidates, values.m_testCapacity) : 0;
     ClothView cloth = clothAt(nodes, cloths, &values.m_cloth, values.m_mode, &searches);
     const FeatureInput input = featureInput(&values, tests, count, cloth, obstacles, patches, motions);
     const ContactSink sink =

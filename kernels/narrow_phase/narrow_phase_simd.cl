@@ -118,7 +118,8 @@ static int takeContact(const NearContact* near, const float* rows, const uint la
 static void askForLane(__global const float* blocks, const uint floats, __global const uint* ids, const uint lane)
 {
     __global const float* block = blocks + lane / DRAPE_PATCH_WIDTH * floats * DRAPE_PATCH_WIDTH;
-    for (uint row = 0; row < floats; ++row) prefetchWord(block + row * DRAPE_PATCH_WIDTH);
+    for (uint row = 0; row < floats; ++row)
+        prefetchWord(block + row * DRAPE_PATCH_WIDTH);
     prefetchWord(ids + lane);
 }
 
@@ -128,9 +129,12 @@ static void askForTest(const LaneWork* work, const FeatureTest feature)
     const PackedPatches* packed = &work->m_packed;
     const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT, lane = feature.m_lane;
     prefetchWord(work->m_cloth.m_triangles + (feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u)));
-    if (test < DRAPE_TEST_FACE) askForLane(packed->m_faces, DRAPE_FACE_FLOATS, packed->m_faceIds, lane);
-    else if (test == DRAPE_TEST_FACE) askForLane(packed->m_vertices, DRAPE_VERTEX_FLOATS, packed->m_vertexIds, lane);
-    else askForLane(packed->m_edges, DRAPE_EDGE_FLOATS, packed->m_edgeIds, lane);
+    if (test < DRAPE_TEST_FACE)
+        askForLane(packed->m_faces, DRAPE_FACE_FLOATS, packed->m_faceIds, lane);
+    else if (test == DRAPE_TEST_FACE)
+        askForLane(packed->m_vertices, DRAPE_VERTEX_FLOATS, packed->m_vertexIds, lane);
+    else
+        askForLane(packed->m_edges, DRAPE_EDGE_FLOATS, packed->m_edgeIds, lane);
 }
 
 // Prefetches, once askForTest() has loaded the test's data, the data that it refers to.
@@ -150,8 +154,10 @@ static void askForNodes(const LaneWork* work, const FeatureTest feature)
 
 static void askForRun(const LaneWork* work, const uint first, const uint end)
 {
-    for (uint item = first; item < end; ++item) askForTest(work, work->m_tests[item]);
-    for (uint item = first; item < end; ++item) askForNodes(work, work->m_tests[item]);
+    for (uint item = first; item < end; ++item)
+        askForTest(work, work->m_tests[item]);
+    for (uint item = first; item < end; ++item)
+        askForNodes(work, work->m_tests[item]);
 }
 
 // Number of tests from which their data is seldom in the caches.
@@ -162,8 +168,8 @@ static void askForRun(const LaneWork* work, const uint first, const uint end)
 static void runFeatureTests(const FeatureInput* input, const ContactSink* sink, __global uint* swept,
                             __global StepCounters* counters)
 {
-    LaneWork work = {input->m_tests,   input->m_cloth, input->m_obstacle, input->m_patches,
-                     input->m_motions, *sink,          swept,             counters};
+    LaneWork work = {input->m_tests, input->m_cloth, input->m_obstacle, input->m_patches, input->m_motions,
+                     *sink,          swept,          counters};
     const uint count = input->m_count;
     for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextRun(&runs))
     {

@@ -26,12 +26,12 @@ typedef struct Contact
     DRAPE_UINT m_slot;          // cloth feature of any kind, over all cloths
     DRAPE_UINT m_kind;          // DRAPE_NODE_FACE, ...
     DRAPE_UINT m_clothFeature;  // node, triangle or edge, index over all cloths
-    DRAPE_UINT
-        m_obstacleFeature;  // triangle, vertex or edge, index over all obstacles; of self contacts over all cloths
-    float m_normal[3];      // unit, from the obstacle to the side from which the cloth came
-    float m_gap1;           // m, signed distance along the normal at the step's end, thickness not subtracted
-    float m_point[3];       // m, contact point on the obstacle, world frame
-    float m_gap0;           // m, signed distance along the normal at the step's start
+    // Triangle, vertex or edge, an index over all obstacles; for self contacts over all cloths.
+    DRAPE_UINT m_obstacleFeature;
+    float m_normal[3];  // unit, from the obstacle to the side from which the cloth came
+    float m_gap1;       // m, signed distance along the normal at the step's end, thickness not subtracted
+    float m_point[3];   // m, contact point on the obstacle, world frame
+    float m_gap0;       // m, signed distance along the normal at the step's start
     // Weights of the cloth feature's nodes, sum 1; unused ones 0. Self contacts: weights of the face's nodes, or the
     // parameters along the first and the second edge, each from its first node (0) to its second (1).
     float m_weights[3];

@@ -7,8 +7,8 @@
 #define DRAPE_ULONG ulong
 #define DRAPE_INT int
 #define DRAPE_GLOBAL __global
-// On a CPU the functions of lib/any_width exist for two widths, as overloads. Its compilers derive from Clang, which has
-// them in C.
+// On a CPU the functions of lib/any_width exist for two widths, as overloads. Its compilers derive from Clang, which
+// has them in C.
 #ifdef DRAPE_CPU
 #define DRAPE_FUNCTION static inline __attribute__((overloadable))
 #else

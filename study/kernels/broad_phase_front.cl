@@ -1,14 +1,14 @@
 // Broad phase with a front: the traversal starts at the pairs where the last one stopped, and leaves the pairs where it
-// stops itself. A front covers every pair of leaves exactly once, so the candidates are those of a full traversal, whatever
-// moved. The fixed rule of clothOpens() gives every pair one parent.
+// stops itself. A front covers every pair of leaves exactly once, so the candidates are those of a full traversal,
+// whatever moved. The fixed rule of clothOpens() gives every pair one parent.
 #include "lib/candidate_list.h"
 #include "lib/traversal.h"
 #include "traversal_bindings.h"
 
 // Pairs that wait in a group's local memory: 8 KiB.
 #define DRAPE_GROUP_STACK 1024u
-// Used when the rest is full: room for one pair's whole way down, which leaves three more a step in two 4-wide hierarchies
-// of 24 heights, or one more in two binary ones of 48, more than builders make.
+// Used when the rest is full: room for one pair's whole way down. A step leaves three more pairs in two 4-wide
+// hierarchies of 24 heights, or one more in two binary ones of 48. Builders make lower ones.
 #define DRAPE_GROUP_RESERVE 160u
 // Candidates, and pairs of the new front, gathered in local memory: a round adds at most one of each a work-item.
 #define DRAPE_GROUP_GATHER 256u
@@ -34,9 +34,10 @@ typedef struct FrontLists
 } FrontLists;
 
 // Climbs from a pair that is proved separate to the highest ancestor that is, but not above floorDepth (the sum of the
-// depths). Below that ancestor all pairs of the front are separate, and one of them is reached by first children only: it
-// takes the ancestor's place. Returns whether this is the one, or already stands as high as it can.
-static int raisePair(NodePair* pair, const FrontSide* cloth, const FrontSide* obstacle, const uint floorDepth, uint* visits)
+// depths). Below that ancestor all pairs of the front are separate, and one of them is reached by first children only:
+// it takes the ancestor's place. Returns whether this is the one, or already stands as high as it can.
+static int raisePair(NodePair* pair, const FrontSide* cloth, const FrontSide* obstacle, const uint floorDepth,
+                     uint* visits)
 {
     while (cloth->m_links[pair->m_cloth].m_depth + obstacle->m_links[pair->m_obstacle].m_depth > floorDepth)
     {
@@ -66,12 +67,11 @@ static void openPair(const NodePair pair, const FrontSide* cloth, const FrontSid
     const uint place = size + atomic_add(lists->m_pushed, count);
     for (uint i = 0; i < count; ++i)
     {
-        lists->m_stack[place + i] =
-            openCloth ? (uint2)(first + i, pair.m_obstacle) : (uint2)(pair.m_cloth, first + i);
+        lists->m_stack[place + i] = openCloth ? (uint2)(first + i, pair.m_obstacle) : (uint2)(pair.m_cloth, first + i);
     }
 }
 
-// What a traversal does besides collecting candidates.
+// Names the work of a traversal besides collecting candidates.
 typedef struct FrontTask
 {
     uint m_keep;   // write the new front
@@ -111,10 +111,10 @@ static void testPair(NodePair pair, const int ofFront, const FrontTask* task, co
     if (task->m_keep) keepPair(pair, lists);
 }
 
-// A work-group takes an equal share of the old front, and opens its pairs with a stack that its work-items share. A round
-// takes as many pairs as there is room for what they can leave behind, and at least one: nothing is ever lost. Without keep
-// this is a plain traversal from the given pairs. The counters of candidates and front must be zero before; both count on
-// past the capacities, and a front that did not fit is of no use.
+// A work-group takes an equal share of the old front, and opens its pairs with a stack that its work-items share. A
+// round takes as many pairs as there is room for what they can leave behind, and at least one: nothing is ever lost.
+// Without keep this is a plain traversal from the given pairs. The counters of candidates and front must be zero
+// before; both count on past the capacities, and a front that did not fit is of no use.
 __kernel void broadPhaseFront(DRAPE_BROAD_PHASE_FRONT)
 {
     __local uint2 stack[DRAPE_GROUP_STACK];

@@ -4,8 +4,8 @@
 
 // Candidates a work-item gathers before it reserves room for them with one atomic.
 #define DRAPE_GATHER 16
-// A step takes one node and leaves at most four: enough for a 4-wide tree of 24 heights, or a binary one of 48, more than
-// builders make, and for a bundle of 16 leaves.
+// A step takes one node and leaves at most four: enough for a 4-wide tree of 24 heights, or a binary one of 48, more
+// than builders make, and for a bundle of 16 leaves.
 #define DRAPE_LEAF_STACK 96
 
 // A work-item is a cloth triangle, whose volume has its number. counters->m_candidates must be zero before.
@@ -27,7 +27,8 @@ __kernel void leafWalk(__global const BvhNode* restrict volumes, const uint coun
         if (!nodesOverlap(volumes + triangle, node)) continue;
         if (node->m_count > 0)
         {
-            for (uint i = 0; i < node->m_count; ++i) stack[depth++] = node->m_first + i;
+            for (uint i = 0; i < node->m_count; ++i)
+                stack[depth++] = node->m_first + i;
             continue;
         }
         gathered[gatheredCount].m_cloth = triangle;

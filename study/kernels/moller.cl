@@ -1,15 +1,15 @@
 // Möller's test of pairs of triangles, as the thesis's narrow phase has it.
-#include "../../kernels/shared/query.h"
+#include "../../kernels/queries/queries_bindings.h"
 #include "lib/moller.h"
 
 static void loadCorners(FeatureTriangle* triangle, __global const float* coordinates)
 {
-    for (uint i = 0; i < 3; ++i) triangle->m_p[i] = vec3Load(coordinates, i);
+    for (uint i = 0; i < 3; ++i)
+        triangle->m_p[i] = vec3Load(coordinates, i);
 }
 
-// A work-item is a query.
-__kernel void mollerTriangles(__global const TriangleQuery* restrict queries, const uint count,
-                              __global uint* restrict results)
+// A work-item is a query. The arguments are those of queryTriangles.
+__kernel void mollerTriangles(DRAPE_QUERY_TRIANGLES)
 {
     const uint i = get_global_id(0);
     if (i >= count) return;

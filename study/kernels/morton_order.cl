@@ -10,7 +10,10 @@ static uint floatRank(const float value)
     const uint bits = as_uint(value);
     return (bits & 0x80000000u) ? ~bits : bits | 0x80000000u;
 }
-static float unrank(const uint rank) { return as_float((rank & 0x80000000u) ? rank & 0x7fffffffu : ~rank); }
+static float unrank(const uint rank)
+{
+    return as_float((rank & 0x80000000u) ? rank & 0x7fffffffu : ~rank);
+}
 
 // Computes the bounds of the centroids; a work-item takes every stride-th triangle. bounds: the ranks (see floatRank)
 // of the least and greatest centroid, three each; all ones and zeros before. Minima and maxima do not depend on the

@@ -22,8 +22,8 @@ __kernel void narrowPhaseTest(DRAPE_NARROW_PHASE_TEST)
         const Candidate candidate = candidates[runs.m_item];
         __global const Triangle* clothTriangle = cloth.m_triangles + candidate.m_cloth;
         __global const Triangle* obstacleTriangle = obstacle.m_triangles + candidate.m_obstacle;
-        const float reach = thickness[clothTriangle->m_mesh * values.m_obstacleMeshes + obstacleTriangle->m_mesh] *
-                            values.m_reachScale;
+        const float reach =
+            thickness[clothTriangle->m_mesh * values.m_obstacleMeshes + obstacleTriangle->m_mesh] * values.m_reachScale;
         const uint tests = testsOfPair(&cloth, &obstacle, candidate, reach);
         for (int test = 0; test < DRAPE_FEATURE_TESTS; ++test)
         {

@@ -1,5 +1,5 @@
-// Clustering of triangles in Morton order to a tree. Rounds are launched in batches without asking the device: rounds[2 k] is
-// how many clusters round k starts with, rounds[2 k + 1] how many were made before it.
+// Clustering of triangles in Morton order to a tree. Rounds are launched in batches without asking the device: rounds[2
+// k] is how many clusters round k starts with, rounds[2 k + 1] how many were made before it.
 #include "../../kernels/lib/group_scan.h"
 #include "lib/ploc.h"
 #include "ploc_bindings.h"
@@ -22,8 +22,8 @@ __kernel void plocLeaves(__global const Triangle* restrict triangles, __global c
 }
 
 // A work-item is a cluster.
-__kernel void plocFindNearest(__global const Box* restrict boxes, __global const uint* restrict rounds, const uint round,
-                              const uint radius, __global uint* restrict nearest)
+__kernel void plocFindNearest(__global const Box* restrict boxes, __global const uint* restrict rounds,
+                              const uint round, const uint radius, __global uint* restrict nearest)
 {
     const uint i = get_global_id(0);
     const uint count = rounds[2 * round];
@@ -36,7 +36,8 @@ static int merges(__global const uint* nearest, const uint count, const uint i)
     return count >= 2 && nearest[i] != i && nearest[nearest[i]] == i;
 }
 
-// How many clusters of a work-item's share stay (the left of two that merge does), in the low half, and merge, in the high.
+// Counts the clusters of a work-item's share that stay (the left of two that merge does), in the low half, and that
+// merge, in the high.
 static uint countShare(__global const uint* nearest, const uint count, const uint first, const uint end)
 {
     uint kept = 0;
@@ -113,8 +114,8 @@ __kernel void plocMerge(DRAPE_PLOC_MERGE)
 // A work-item is a cluster of one round; the rounds go backwards, so that a cluster has its place before its children.
 __kernel void plocPlace(__global BvhNode* restrict nodes, __global uint* restrict splits, __global uint* restrict order,
                         __global const uint* restrict mortonOrder, __global const Cluster* restrict clusters,
-                        __global const uint* restrict sizes, __global ClusterPlace* restrict places, const uint leafCount,
-                        const uint first, const uint count)
+                        __global const uint* restrict sizes, __global ClusterPlace* restrict places,
+                        const uint leafCount, const uint first, const uint count)
 {
     const uint i = get_global_id(0);
     if (leafCount == 1 && i == 0)

@@ -1,7 +1,7 @@
 // A stable sort of numbers by 32-bit keys, least digit first: eight bits a pass, three launches each.
 //
-// Two shapes with the same result: for GPUs a work-group sorts a tile in local memory before it scatters, so that writes
-// come in runs; for CPUs a work-item counts and moves a long stretch alone.
+// Two shapes with the same result: for GPUs a work-group sorts a tile in local memory before it scatters, so that
+// writes come in runs; for CPUs a work-item counts and moves a long stretch alone.
 #include "../../kernels/lib/group_scan.h"
 #include "../../kernels/shared/types.h"
 
@@ -10,7 +10,10 @@
 #define DRAPE_RADIX_SHARE 8  // adjacent keys of a work-item
 #define DRAPE_RADIX_TILE (DRAPE_RADIX_GROUP * DRAPE_RADIX_SHARE)
 
-static uint digitOf(const uint key, const uint shift) { return (key >> shift) & (DRAPE_RADIX_DIGITS - 1u); }
+static uint digitOf(const uint key, const uint shift)
+{
+    return (key >> shift) & (DRAPE_RADIX_DIGITS - 1u);
+}
 
 // A work-group counts a tile's digits: counts[digit × tiles + tile].
 __kernel __attribute__((reqd_work_group_size(DRAPE_RADIX_GROUP, 1, 1))) void radixCountTiles(
@@ -22,7 +25,8 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_RADIX_GROUP, 1, 1))) void rad
     barrier(CLK_LOCAL_MEM_FENCE);
     const uint first = get_group_id(0) * DRAPE_RADIX_TILE;
     const uint end = min(count, first + DRAPE_RADIX_TILE);
-    for (uint i = first + item; i < end; i += DRAPE_RADIX_GROUP) atomic_inc(histogram + digitOf(keys[i], shift));
+    for (uint i = first + item; i < end; i += DRAPE_RADIX_GROUP)
+        atomic_inc(histogram + digitOf(keys[i], shift));
     barrier(CLK_LOCAL_MEM_FENCE);
     counts[item * get_num_groups(0) + get_group_id(0)] = histogram[item];
 }
@@ -34,10 +38,13 @@ __kernel void radixCountStretches(__global const uint* restrict keys, const uint
     const uint stretch = get_global_id(0);
     if (stretch >= stretches) return;
     uint histogram[DRAPE_RADIX_DIGITS];
-    for (uint digit = 0; digit < DRAPE_RADIX_DIGITS; ++digit) histogram[digit] = 0;
+    for (uint digit = 0; digit < DRAPE_RADIX_DIGITS; ++digit)
+        histogram[digit] = 0;
     const uint end = min(count, (stretch + 1) * length);
-    for (uint i = stretch * length; i < end; ++i) ++histogram[digitOf(keys[i], shift)];
-    for (uint digit = 0; digit < DRAPE_RADIX_DIGITS; ++digit) counts[digit * stretches + stretch] = histogram[digit];
+    for (uint i = stretch * length; i < end; ++i)
+        ++histogram[digitOf(keys[i], shift)];
+    for (uint digit = 0; digit < DRAPE_RADIX_DIGITS; ++digit)
+        counts[digit * stretches + stretch] = histogram[digit];
 }
 
 // A work-group is a digit: its counts become the sums before them, and their total goes to totals.
@@ -58,7 +65,7 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_RADIX_GROUP, 1, 1))) void rad
     if (get_local_id(0) == 0) totals[get_group_id(0)] = base;
 }
 
-// The same by a work-item per digit, for few tiles.
+// Does the work of radixScanDigits with a work-item per digit, for few tiles.
 __kernel void radixScanDigitsSerial(__global uint* restrict counts, const uint tiles, __global uint* restrict totals)
 {
     const uint digit = get_global_id(0);
@@ -79,13 +86,15 @@ static void placesByNibble(const uint* nibbles, const uint own, __local ushort* 
                            uint* places)
 {
     const uint item = get_local_id(0);
-    for (uint k = 0; k < 16; ++k) counters[k * DRAPE_RADIX_GROUP + item] = 0;
+    for (uint k = 0; k < 16; ++k)
+        counters[k * DRAPE_RADIX_GROUP + item] = 0;
     DRAPE_UNROLL
     for (uint k = 0; k < DRAPE_RADIX_SHARE; ++k)
         if (k < own) ++counters[nibbles[k] * DRAPE_RADIX_GROUP + item];
     barrier(CLK_LOCAL_MEM_FENCE);
     uint sum = 0;
-    for (uint k = 0; k < 16; ++k) sum += counters[item * 16 + k];
+    for (uint k = 0; k < 16; ++k)
+        sum += counters[item * 16 + k];
     uint total;
     uint before = groupPrefix(scratch, sum, &total);
     for (uint k = 0; k < 16; ++k)
@@ -123,7 +132,8 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_RADIX_GROUP, 1, 1))) void rad
     uint total;
     const uint digitBase = groupPrefix(scratch, totals[item], &total);  // its barriers order the loads above
 
-    const uint own = item * DRAPE_RADIX_SHARE < size ? min((uint)DRAPE_RADIX_SHARE, size - item * DRAPE_RADIX_SHARE) : 0;
+    const uint own =
+        item * DRAPE_RADIX_SHARE < size ? min((uint)DRAPE_RADIX_SHARE, size - item * DRAPE_RADIX_SHARE) : 0;
     for (uint nibble = 0; nibble < 2; ++nibble)
     {
         uint ownKeys[DRAPE_RADIX_SHARE], ownNumbers[DRAPE_RADIX_SHARE], nibbles[DRAPE_RADIX_SHARE];
@@ -145,7 +155,7 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_RADIX_GROUP, 1, 1))) void rad
         }
         barrier(CLK_LOCAL_MEM_FENCE);
     }
-    // Where the digit's first key of the tile goes, less where it lies in the tile.
+    // The new position of the digit's first key of the tile, less its position in the tile.
     for (uint i = item; i < size; i += DRAPE_RADIX_GROUP)
     {
         const uint digit = digitOf(tileKeys[i], shift);

@@ -1,5 +1,5 @@
-// Construction from the root down, a level at a time: the root, a work-group or a work-item per node, and the compaction of
-// the queue. Large nodes are in top_down_large.cl. See lib/top_down.h for how a node is split.
+// Construction from the root down, a level at a time: the root, a work-group or a work-item per node, and the
+// compaction of the queue. Large nodes are in top_down_large.cl. See lib/top_down.h for how a node is split.
 #include "lib/group_reduce.h"
 #include "../../kernels/lib/group_scan.h"
 #include "lib/top_down.h"
@@ -7,8 +7,8 @@
 
 // A work-item is a triangle: its centroid, its volume, and its place in the order before anything moves.
 __kernel void topDownSummaries(__global const Triangle* restrict triangles, __global const float* restrict positions,
-                               const uint triangleCount, __global Vec3* restrict centroids, __global Dop* restrict volumes,
-                               __global uint* restrict order)
+                               const uint triangleCount, __global Vec3* restrict centroids,
+                               __global Dop* restrict volumes, __global uint* restrict order)
 {
     const uint i = get_global_id(0);
     if (i >= triangleCount) return;
@@ -20,12 +20,14 @@ __kernel void topDownSummaries(__global const Triangle* restrict triangles, __gl
 }
 
 // One work-group gives the root its volume, the hull of volumeCount volumes, and opens it.
-__kernel void topDownRoot(__global BvhNode* restrict nodes, __global const Dop* restrict volumes, const uint volumeCount,
-                          const uint triangleCount, __global OpenNode* restrict queue, __local float* scratch)
+__kernel void topDownRoot(__global BvhNode* restrict nodes, __global const Dop* restrict volumes,
+                          const uint volumeCount, const uint triangleCount, __global OpenNode* restrict queue,
+                          __local float* scratch)
 {
     Dop dop;
     dopClear(&dop);
-    for (uint i = get_local_id(0); i < volumeCount; i += get_local_size(0)) dopAddDop(&dop, volumes + i);
+    for (uint i = get_local_id(0); i < volumeCount; i += get_local_size(0))
+        dopAddDop(&dop, volumes + i);
     groupHull(scratch, &dop);
     if (get_local_id(0) > 0) return;
     dopStore(nodes, &dop);
@@ -35,7 +37,7 @@ __kernel void topDownRoot(__global BvhNode* restrict nodes, __global const Dop* 
     queue->m_end = triangleCount == 1 ? 0 : triangleCount;
 }
 
-// As pivotOfNode(), by a work-group: one round for the mean, one a bit for the median.
+// Computes pivotOfNode() with a work-group: one round for the mean, one a bit for the median.
 static uint groupPivot(const TriangleSummary* summary, __global const uint* order, const OpenNode* node,
                        const SplitAxis* axis, const SplitRule* rule, __local ulong* sums)
 {
@@ -64,7 +66,7 @@ static uint groupPivot(const TriangleSummary* summary, __global const uint* orde
     return rule->m_median ? medianPivot(pivot, belowPivot) : pivotOfSum(sum, size);
 }
 
-// As splitSerial(), by a work-group. scan holds a uint per work-item.
+// Does the work of splitSerial() with a work-group. scan holds a uint per work-item.
 static void groupSplit(__global BvhNode* nodes, __global uint* splits, __global uint* order, __global uint* other,
                        const TriangleSummary* summary, const SplitRule* rule, const OpenNode* node,
                        __global OpenNode* children, __local ulong* sums, __local uint* scan, __local float* hulls)
@@ -89,7 +91,8 @@ static void groupSplit(__global BvhNode* nodes, __global uint* splits, __global 
     } while (block < size);
     barrier(CLK_GLOBAL_MEM_FENCE);
     const uint taken = below != 0 && below != size ? size : 0;
-    for (uint i = id; i < taken; i += group) order[node->m_first + i] = other[node->m_first + i];
+    for (uint i = id; i < taken; i += group)
+        order[node->m_first + i] = other[node->m_first + i];
     barrier(CLK_GLOBAL_MEM_FENCE);
     const uint left = leftSize(below, size);
     const uint middle = node->m_first + left;
@@ -110,9 +113,9 @@ static void groupSplit(__global BvhNode* nodes, __global uint* splits, __global 
     barrier(CLK_GLOBAL_MEM_FENCE);
 }
 
-// A work-group takes nodesPerGroup nodes of the queue. Its first work-item parts them: those of at most smallSize triangles
-// go to one end of a list, the others to the other end; nodes of largeSize or more are another kernel's. The group splits the
-// others one after the other, and then every work-item splits some of the small ones alone.
+// A work-group takes nodesPerGroup nodes of the queue. Its first work-item parts them: those of at most smallSize
+// triangles go to one end of a list, the others to the other end; nodes of largeSize or more are another kernel's. The
+// group splits the others one after the other, and then every work-item splits some of the small ones alone.
 __kernel void topDownSplitGroups(DRAPE_TOP_DOWN_SPLIT_GROUPS)
 {
     __local uint smallCount, otherCount;
@@ -142,8 +145,7 @@ __kernel void topDownSplitGroups(DRAPE_TOP_DOWN_SPLIT_GROUPS)
     for (uint k = 0; k < otherCount; ++k)
     {
         const OpenNode node = queue[list[k]];
-        groupSplit(nodes, splits, order, other, &summary, &rule, &node, children + 2 * list[k], sums, scratch,
-                   hulls);
+        groupSplit(nodes, splits, order, other, &summary, &rule, &node, children + 2 * list[k], sums, scratch, hulls);
     }
     for (uint k = get_local_id(0); k < smallCount; k += get_local_size(0))
     {
@@ -165,16 +167,19 @@ __kernel void topDownSplitItems(DRAPE_TOP_DOWN_SPLIT_ITEMS)
     splitSerial(nodes, splits, order, other, &summary, &rule, &node, children + 2 * i);
 }
 
-static uint isOpen(__global const OpenNode* node) { return node->m_end > node->m_first ? 1u : 0u; }
+static uint isOpen(__global const OpenNode* node)
+{
+    return node->m_end > node->m_first ? 1u : 0u;
+}
 
-// What the host reads after a level: how many nodes are open, and how many of them are small.
+// Counts for the host, which reads after a level how many nodes are open, and how many of them are small.
 static void countOpen(__global uint* level, __global const OpenNode* node, const uint smallSize)
 {
     if (node->m_end - node->m_first <= smallSize) atomic_inc(level + 1);
 }
 
-// Compaction of a small queue: one work-group moves its open nodes to the front, each work-item two of them. level[0] gets
-// how many there are; level[1] must be zero before and counts the small ones.
+// Compaction of a small queue: one work-group moves its open nodes to the front, each work-item two of them. level[0]
+// gets how many there are; level[1] must be zero before and counts the small ones.
 __kernel void topDownCompactSmall(__global const OpenNode* restrict children, const uint count, const uint smallSize,
                                   __global OpenNode* restrict queue, __global uint* restrict level, __local uint* scan)
 {
@@ -192,7 +197,8 @@ __kernel void topDownCompactSmall(__global const OpenNode* restrict children, co
 
 // Compaction of a large queue. First every work-group scans a block …
 __kernel void topDownCompactBlocks(__global const OpenNode* restrict children, const uint count,
-                                   __global uint* restrict places, __global uint* restrict blockCounts, __local uint* scan)
+                                   __global uint* restrict places, __global uint* restrict blockCounts,
+                                   __local uint* scan)
 {
     const uint i = get_global_id(0);
     uint total;

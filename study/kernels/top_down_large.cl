@@ -1,11 +1,11 @@
-// Construction from the root down: nodes so large that many work-groups split one, in pairs of kernels. The first of a pair
-// works on blocks of a node's triangles, the second puts the blocks' results together.
+// Construction from the root down: nodes so large that many work-groups split one, in pairs of kernels. The first of a
+// pair works on blocks of a node's triangles, the second puts the blocks' results together.
 #include "lib/group_reduce.h"
 #include "../../kernels/lib/group_scan.h"
 #include "lib/top_down.h"
 
-// A work-group's share of a large node: triangles m_first … m_end - 1 of the order, of the m_node-th large node, whose blocks
-// begin with m_firstBlock.
+// A work-group's share of a large node: triangles m_first … m_end - 1 of the order, of the m_node-th large node, whose
+// blocks begin with m_firstBlock.
 typedef struct LargeBlock
 {
     uint m_node;
@@ -46,7 +46,8 @@ __kernel void largePivots(__global const OpenNode* restrict queue, __global cons
 {
     const LargeNode node = large[get_group_id(0)];
     ulong sum = 0;
-    for (uint i = get_local_id(0); i < node.m_blockCount; i += get_local_size(0)) sum += sums[node.m_firstBlock + i];
+    for (uint i = get_local_id(0); i < node.m_blockCount; i += get_local_size(0))
+        sum += sums[node.m_firstBlock + i];
     sum = groupSum(scratch, sum);
     if (get_local_id(0) > 0) return;
     const OpenNode open = queue[node.m_queued];
@@ -55,28 +56,30 @@ __kernel void largePivots(__global const OpenNode* restrict queue, __global cons
     pivots[get_group_id(0)] = halvesBlindly(&rule, size) ? 0 : pivotOfSum(sum, size);
 }
 
-// The median's pivot is found a digit a round, from a histogram of the cells that agree with it so far: 256 bins fit into any
-// local memory.
+// The median's pivot is found a digit a round, from a histogram of the cells that agree with it so far: 256 bins fit
+// into any local memory.
 #define DRAPE_MEDIAN_BITS 8
 #define DRAPE_MEDIAN_BINS (1u << DRAPE_MEDIAN_BITS)
 
-// Adds a block's cells to its node's histogram of the digit at `shift`, which must be zero before the round's first block.
-// pivots: the digits above, and zeros. bins: one for each value of a digit.
+// Adds a block's cells to its node's histogram of the digit at `shift`, which must be zero before the round's first
+// block. pivots: the digits above, and zeros. bins: one for each value of a digit.
 __kernel void largeHistograms(__global const BvhNode* restrict nodes, __global const uint* restrict order,
                               __global const Vec3* restrict centroids, __global const OpenNode* restrict queue,
                               __global const LargeNode* restrict large, __global const LargeBlock* restrict blocks,
-                              __global const uint* restrict pivots, const uint shift, __global uint* restrict histograms,
-                              __local uint* bins)
+                              __global const uint* restrict pivots, const uint shift,
+                              __global uint* restrict histograms, __local uint* bins)
 {
     const LargeBlock block = blocks[get_group_id(0)];
     const SplitAxis axis = splitAxisOf(nodes + queue[large[block.m_node].m_queued].m_place);
     const uint above = pivots[block.m_node] >> (shift + DRAPE_MEDIAN_BITS);
-    for (uint bin = get_local_id(0); bin < DRAPE_MEDIAN_BINS; bin += get_local_size(0)) bins[bin] = 0;
+    for (uint bin = get_local_id(0); bin < DRAPE_MEDIAN_BINS; bin += get_local_size(0))
+        bins[bin] = 0;
     barrier(CLK_LOCAL_MEM_FENCE);
     for (uint i = block.m_first + get_local_id(0); i < block.m_end; i += get_local_size(0))
     {
         const uint cell = centroidCell(&axis, centroids[order[i]]);
-        if (cell >> (shift + DRAPE_MEDIAN_BITS) == above) atomic_inc(bins + ((cell >> shift) & (DRAPE_MEDIAN_BINS - 1)));
+        if (cell >> (shift + DRAPE_MEDIAN_BITS) == above)
+            atomic_inc(bins + ((cell >> shift) & (DRAPE_MEDIAN_BINS - 1)));
     }
     barrier(CLK_LOCAL_MEM_FENCE);
     for (uint bin = get_local_id(0); bin < DRAPE_MEDIAN_BINS; bin += get_local_size(0))
@@ -85,9 +88,10 @@ __kernel void largeHistograms(__global const BvhNode* restrict nodes, __global c
     }
 }
 
-// A work-group is a large node, of a power of two of work-items: the digit at `shift` of its pivot, the largest with which no
-// more than half of its cells are below, as pivotOfNode() finds it; after the last digit the pivot itself. below: how many
-// cells are below the pivot so far. Both must be zero before the first round. Leaves the histogram zero.
+// A work-group of a power of two of work-items is a large node. It finds the digit at `shift` of the node's pivot: the
+// largest with which no more than half of the cells are below, as pivotOfNode() finds it. After the last digit it has
+// the pivot itself. below: number of cells below the pivot so far. Both must be zero before the first round. Leaves the
+// histogram zero.
 __kernel void largeMedianDigits(__global const OpenNode* restrict queue, __global const LargeNode* restrict large,
                                 __global uint* restrict histograms, __global uint* restrict pivots,
                                 __global uint* restrict below, const uint shift, const uint depth, const uint leafSize,
@@ -102,7 +106,8 @@ __kernel void largeMedianDigits(__global const OpenNode* restrict queue, __globa
     const uint belowDigits = below[number];
     barrier(CLK_GLOBAL_MEM_FENCE);  // one work-item writes it below
     uint sum = 0;
-    for (uint bin = first; bin < first + each; ++bin) sum += histogram[bin];
+    for (uint bin = first; bin < first + each; ++bin)
+        sum += histogram[bin];
     uint total;
     uint before = belowDigits + groupPrefix(scan, sum, &total);
     for (uint bin = first; bin < first + each; ++bin)
@@ -121,7 +126,7 @@ __kernel void largeMedianDigits(__global const OpenNode* restrict queue, __globa
     }
 }
 
-// How many of a block's triangles go left.
+// Counts the triangles of a block that go left.
 __kernel void largeCounts(__global const BvhNode* restrict nodes, __global const uint* restrict order,
                           __global const Vec3* restrict centroids, __global const OpenNode* restrict queue,
                           __global const LargeNode* restrict large, __global const LargeBlock* restrict blocks,
@@ -143,7 +148,8 @@ __kernel void largeCounts(__global const BvhNode* restrict nodes, __global const
 static uint countsBefore(__global const uint* counts, const uint first, const uint end, __local ulong* scratch)
 {
     ulong sum = 0;
-    for (uint i = first + get_local_id(0); i < end; i += get_local_size(0)) sum += counts[i];
+    for (uint i = first + get_local_id(0); i < end; i += get_local_size(0))
+        sum += counts[i];
     return (uint)groupSum(scratch, sum);
 }
 
@@ -241,7 +247,8 @@ __kernel void largeRootBlocks(__global const Dop* restrict volumes, const uint t
     const uint end = min(triangleCount, first + blockSize);
     Dop dop;
     dopClear(&dop);
-    for (uint i = first + get_local_id(0); i < end; i += get_local_size(0)) dopAddDop(&dop, volumes + i);
+    for (uint i = first + get_local_id(0); i < end; i += get_local_size(0))
+        dopAddDop(&dop, volumes + i);
     groupHull(scratchHull, &dop);
     if (get_local_id(0) == 0) hulls[get_group_id(0)] = dop;
 }

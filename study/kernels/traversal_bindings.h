@@ -22,7 +22,7 @@ typedef struct FrontValues
 {
     ListValues m_list;
     DRAPE_UINT m_obstacleLinks;  // position of the obstacles' links behind the cloths'
-    DRAPE_UINT m_obstacleOrder;  // the same for the orders
+    DRAPE_UINT m_obstacleOrder;  // position of the obstacles' order behind the cloths'
     DRAPE_UINT m_oldCount;       // pairs of the old front
     DRAPE_UINT m_keep;           // write the new front
     DRAPE_UINT m_raise;          // pairs of the old front that came apart climb
@@ -41,8 +41,8 @@ typedef struct GridValues
 {
     ListValues m_list;
     GridFrame m_frame;
-    DRAPE_UINT m_leafCount;      // of the side whose leaves are work-items
-    DRAPE_UINT m_entryCapacity;  // of keys and places
+    DRAPE_UINT m_leafCount;      // leaves of the side whose leaves are work-items
+    DRAPE_UINT m_entryCapacity;  // capacity of keys and places
 } GridValues;
 
 DRAPE_NAMESPACE_END

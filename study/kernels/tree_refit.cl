@@ -2,8 +2,8 @@
 // Each launch reads what the one before wrote; nothing is passed between work-groups inside a launch.
 #include "lib/tree_refit.h"
 
-// Leaves in a window: of a work-item, and of a group. A group has an item for each leaf of the whole subtrees that begin in
-// its window, the last of which ends less than DRAPE_SUBTREE_LEAVES behind it.
+// Leaves in a window: of a work-item, and of a group. A group has an item for each leaf of the whole subtrees that
+// begin in its window, the last of which ends less than DRAPE_SUBTREE_LEAVES behind it.
 #define DRAPE_SERIAL_WINDOW 64
 #define DRAPE_SUBTREE_GROUP 128
 #define DRAPE_SUBTREE_WINDOW (DRAPE_SUBTREE_GROUP - DRAPE_SUBTREE_LEAVES)
@@ -76,8 +76,8 @@ static void stretchOfWindow(__global const uint* restrict splits, const uint fro
     barrier(CLK_LOCAL_MEM_FENCE);
 }
 
-// A group's volumes while they are made: leaves first, then the nodes by their split. A volume's words lie side by side; their
-// number is made odd, so that work-items that each write a volume of their own do not fall on one bank.
+// A group's volumes while they are made: leaves first, then the nodes by their split. A volume's words lie side by
+// side; their number is made odd, so that work-items that each write a volume of their own do not fall on one bank.
 #define DRAPE_SUBTREE_PLACES (2 * DRAPE_SUBTREE_GROUP)
 #define DRAPE_DOP_WORDS (2 * DRAPE_DOP_DIRECTIONS)
 #define DRAPE_VOLUME_STRIDE (DRAPE_DOP_WORDS + 1)
@@ -87,13 +87,13 @@ static void stretchOfWindow(__global const uint* restrict splits, const uint fro
 #define DRAPE_NODES_AT_ONCE (DRAPE_SUBTREE_GROUP / DRAPE_NODE_WORDS)
 #define DRAPE_NO_PLACE 0xffffu
 
-// What a group shares. Leaves and splits are numbered from its window's first leaf on.
+// Data that a group shares. Leaves and splits are numbered from its window's first leaf on.
 typedef struct Subtrees
 {
     float m_volumes[DRAPE_SUBTREE_PLACES * DRAPE_VOLUME_STRIDE];
     ushort m_children[DRAPE_SUBTREE_PLACES];      // volumes of each split's pair
     ushort m_indexOfPlace[DRAPE_SUBTREE_PLACES];  // volume of each node of the stretch
-    uchar m_done[DRAPE_SUBTREE_PLACES];           // of the volumes
+    uchar m_done[DRAPE_SUBTREE_PLACES];           // which volumes are done
     ushort m_merges[DRAPE_SUBTREE_GROUP];         // splits, in the order in which their pairs are merged
     uint m_mergeCount, m_mergesBegun;
     uint m_stretch[2];
@@ -126,8 +126,8 @@ static void mergeWord(__local Subtrees* subtrees, const uint split, const uint w
         word < DRAPE_DOP_DIRECTIONS ? drapeMin(left, right) : drapeMax(left, right);
 }
 
-// Merges pairs whose volumes are both there, until all are. waits: whether the work-item's split has a pair to merge. All
-// work-items share the words of the merges of a turn, since the higher ones are few.
+// Merges pairs whose volumes are both there, until all are. waits: whether the work-item's split has a pair to merge.
+// All work-items share the words of the merges of a turn, since the higher ones are few.
 static void mergeSubtrees(__local Subtrees* subtrees, int waits)
 {
     const uint item = get_local_id(0), turn = item / DRAPE_DOP_WORDS, word = item % DRAPE_DOP_WORDS;
@@ -152,8 +152,8 @@ static void mergeSubtrees(__local Subtrees* subtrees, int waits)
     }
 }
 
-// A word of the node at a place: of its volume, or of what treeSetLeaf() and treeSetSplit() wrote, which a memory that is
-// written whole need not be read for.
+// A word of the node at a place: of its volume, or of what treeSetLeaf() and treeSetSplit() wrote, which a memory that
+// is written whole need not be read for.
 static uint nodeWord(__local const Subtrees* subtrees, const uint window, const uint index, const uint word)
 {
     if (word < DRAPE_DOP_WORDS) return as_uint(subtrees->m_volumes[index * DRAPE_VOLUME_STRIDE + word]);
@@ -163,8 +163,8 @@ static uint nodeWord(__local const Subtrees* subtrees, const uint window, const 
     return isLeaf ? 0u : 2u;
 }
 
-// Writes nodes word by word, so that neighbouring work-items write neighbouring words: the nodes of a stretch of leaves lie
-// side by side, `places` of them from `base` on.
+// Writes nodes word by word, so that neighbouring work-items write neighbouring words: the nodes of a stretch of leaves
+// lie side by side, `places` of them from `base` on.
 static void storeStretch(__global BvhNode* nodes, const uint base, const uint places, __local const Subtrees* subtrees,
                          const uint window)
 {
@@ -177,12 +177,14 @@ static void storeStretch(__global BvhNode* nodes, const uint base, const uint pl
     }
 }
 
-// A work-group is a window of leaves; it refits the subtrees that begin in it. A work-item has one leaf and the split behind
-// it. Volumes stay in local memory until all are there; they are minima and maxima, so the order of merging does not show.
+// A work-group is a window of leaves; it refits the subtrees that begin in it. A work-item has one leaf and the split
+// behind it. Volumes stay in local memory until all are there; they are minima and maxima, so the order of merging does
+// not show.
 __kernel __attribute__((reqd_work_group_size(DRAPE_SUBTREE_GROUP, 1, 1))) void refitSubtreesGroups(
     __global BvhNode* restrict nodes, __global const uint* restrict splits, __global const uint* restrict order,
-    __global const Triangle* restrict triangles, __global const float* restrict start, __global const float* restrict end,
-    __global const float* restrict meshRadius, __global StepCounters* restrict counters, const uint leafCount)
+    __global const Triangle* restrict triangles, __global const float* restrict start,
+    __global const float* restrict end, __global const float* restrict meshRadius,
+    __global StepCounters* restrict counters, const uint leafCount)
 {
     __local Subtrees subtrees;
     const uint item = get_local_id(0), window = get_group_id(0) * DRAPE_SUBTREE_WINDOW, leaf = window + item;
@@ -230,10 +232,10 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_SUBTREE_GROUP, 1, 1))) void r
 typedef struct Merges
 {
     uint m_splits[DRAPE_MERGED];
-    uint m_places[DRAPE_MERGED];     // of their nodes
+    uint m_places[DRAPE_MERGED];     // positions of their nodes
     uint m_waits[DRAPE_MERGED];      // children of each that are to be merged before it
-    ushort m_parents[DRAPE_MERGED];  // of them, here, or DRAPE_NO_PLACE
-    ushort m_queue[DRAPE_MERGED];    // those whose children are complete, in the order in which they became so
+    ushort m_parents[DRAPE_MERGED];  // their parents, here, or DRAPE_NO_PLACE
+    ushort m_queue[DRAPE_MERGED];    // splits whose children are complete, in the order in which they became so
     uint m_queued;
 } Merges;
 
@@ -268,8 +270,8 @@ static void mergeQueued(__global BvhNode* nodes, __local const Merges* merges, c
     }
 }
 
-// The whole group merges the pairs of count splits, those of m_splits, each when its children are complete. Splits of lower
-// tiers are.
+// The whole group merges the pairs of count splits, those of m_splits, each when its children are complete. Splits of
+// lower tiers are.
 static void mergeInOrder(__global BvhNode* nodes, __global const uint* splits, __local Merges* merges, const uint count)
 {
     const uint item = get_local_id(0);
@@ -312,9 +314,12 @@ static void mergeInOrder(__global BvhNode* nodes, __global const uint* splits, _
 
 // Volumes never hold NaN, so a NaN low end marks a node that is not complete yet.
 #define DRAPE_INCOMPLETE 0x7fc00000u
-static int isComplete(__global const BvhNode* node) { return as_uint(node->m_low[0]) != DRAPE_INCOMPLETE; }
+static int isComplete(__global const BvhNode* node)
+{
+    return as_uint(node->m_low[0]) != DRAPE_INCOMPLETE;
+}
 
-// The same for splits of any number, which are far or lie near a base.
+// Merges any number of splits, which are far or lie near a base.
 static void mergeMarked(__global BvhNode* nodes, __global const uint* splits, const uint count, const uint base,
                         __local const ushort* near, __global const uint* far, __local uint* pending)
 {
@@ -396,8 +401,9 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_GROVE_GROUP, 1, 1))) void ref
 }
 
 // One work-group refits what spans groves.
-__kernel __attribute__((reqd_work_group_size(DRAPE_GROVE_GROUP, 1, 1))) void refitTopsGroup(
-    __global BvhNode* nodes, __global const uint* splits, __global const uint* tops)
+__kernel __attribute__((reqd_work_group_size(DRAPE_GROVE_GROUP, 1, 1))) void refitTopsGroup(__global BvhNode* nodes,
+                                                                                            __global const uint* splits,
+                                                                                            __global const uint* tops)
 {
     __local Merges merges;
     __local uint pending;
@@ -407,7 +413,8 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_GROVE_GROUP, 1, 1))) void ref
         mergeMarked(nodes, splits, count, 0, 0, tops + 1, &pending);
         return;
     }
-    for (uint i = get_local_id(0); i < count; i += get_local_size(0)) merges.m_splits[i] = tops[1 + i];
+    for (uint i = get_local_id(0); i < count; i += get_local_size(0))
+        merges.m_splits[i] = tops[1 + i];
     barrier(CLK_LOCAL_MEM_FENCE);
     mergeInOrder(nodes, splits, &merges, count);
 }
@@ -436,7 +443,8 @@ __kernel void treeListTopsSerial(__global const uint* restrict splits, const uin
     const uint item = get_global_id(0);
     if (item >= windows) return;
     uint place = 1;
-    for (uint i = 0; i < item; ++i) place += counts[i];
+    for (uint i = 0; i < item; ++i)
+        place += counts[i];
     if (item + 1 == windows) tops[0] = place - 1 + counts[item];
     if (counts[item] == 0) return;
     const uint end = min(leafCount - 1, (item + 1) * DRAPE_GROVE_LEAVES);
@@ -446,8 +454,9 @@ __kernel void treeListTopsSerial(__global const uint* restrict splits, const uin
     }
 }
 
-// The same in any order, which refitTopsGroup does not mind: a work-item is a split. tops[0] must be zero before.
-__kernel void treeListTopsGroups(__global const uint* restrict splits, const uint leafCount, __global volatile uint* tops)
+// Lists the tops in any order, which refitTopsGroup does not mind. A work-item is a split. tops[0] must be zero before.
+__kernel void treeListTopsGroups(__global const uint* restrict splits, const uint leafCount,
+                                 __global volatile uint* tops)
 {
     const uint split = get_global_id(0);
     if (split + 1 < leafCount && splitTier(splits[split]) == 2u) tops[1 + atomic_inc(tops)] = split;

@@ -1,4 +1,5 @@
-// Leaves of a tree of nodes with two to four children, or with bundles of leaves; kernels/queries/refit.cl has the nodes above.
+// Leaves of a tree of nodes with two to four children, or with bundles of leaves; kernels/queries/refit.cl has the
+// nodes above.
 #include "../../kernels/lib/dop.h"
 
 // A work-item is a node; the leaves' volumes are made from their triangles, without a radius.

@@ -17,7 +17,7 @@ struct StepVariant
 {
     std::string m_name;
     Settings m_settings;
-    std::optional<Methods> m_methods = {};  // of a step over trees; none: the pipeline's own
+    std::optional<Methods> m_methods = {};  // for a step over trees; none: the pipeline's own
 };
 
 // Throws where the variant cannot be made. scene outlives the method.
@@ -56,7 +56,7 @@ private:
     StepVariant m_variant;
     std::unique_ptr<StepMethod> m_method;
     std::vector<std::map<std::string, Samples>> m_times;  // by step and stage
-    std::vector<StepOutcome> m_outcomes;                  // of the last pass
+    std::vector<StepOutcome> m_outcomes;                  // results of the last pass
     bool m_repeatable = true;                             // every pass found the same
 };
 }  // namespace drape::bench

@@ -42,7 +42,7 @@ public:
         rtcCommitScene(m_scene);
         return millisecondsSince(start);
     }
-    // Where the next refit finds the vertices.
+    // Sets the vertices that the next refit finds.
     void move(const TriangleMesh& moved)
     {
         std::copy(moved.m_positions.begin(), moved.m_positions.end(), m_positions.begin());

@@ -1,4 +1,4 @@
-// What it costs that obstacles come, go and move beside a large one that rests: the step in which they do.
+// Measures the step in which obstacles are added, removed and moved beside a large one that rests.
 #include "study/programs/study.h"
 #include "benchmarks/support/machine.h"
 #include "benchmarks/support/result_hash.h"

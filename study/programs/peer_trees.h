@@ -19,9 +19,9 @@ struct PeerTree
     Samples m_refit;                       // from new positions in memory
 };
 
-// Of a box: least and largest x, y and z.
+// Hashes a box: least and largest x, y and z.
 std::string boundsHash(const float* low, const float* high);
-// Of the mesh, which every tree over it must say.
+// Hashes the mesh's box, which every tree over the mesh must have.
 std::string boundsHash(const TriangleMesh& mesh);
 
 // Embree's triangle geometry by its Morton and its SAH builder, on one and on two threads, each warmed up by a build

@@ -11,8 +11,8 @@
 
 namespace drape::bench
 {
-// Whether two runs found the same in every step: contacts, bit for bit, and as many candidates where bothListTriangles.
-// A line on standard error says which step of `name` did not.
+// Returns whether two runs found the same in every step: contacts, bit for bit, and as many candidates where
+// bothListTriangles. A line on standard error says which step of `name` did not.
 bool agree(const std::string& name, const std::vector<StepOutcome>& run, const std::vector<StepOutcome>& reference,
            bool bothListTriangles);
 

@@ -18,7 +18,7 @@ struct StudyOptions : CommonOptions
     std::vector<std::string> m_parts, m_only;  // empty: all; only: models and scenes
     std::string m_reference;                   // JSON of another run
     Clock::time_point m_begin = Clock::now();
-    std::map<std::string, std::string> m_hashes;  // of the reference's good rows, see expectedHash()
+    std::map<std::string, std::string> m_hashes;  // hashes of the reference's good rows, see expectedHash()
 
     // Reads m_reference. False, with one line in `error`, when it is not what a study wrote.
     bool readReference(std::string& error);
@@ -26,7 +26,7 @@ struct StudyOptions : CommonOptions
     std::string expectedHash(const std::string& part, const std::string& model) const;
 
     bool wants(const std::string& model) const;
-    // Whether the time is used up; says so on standard error, naming what is left out.
+    // Returns whether the time is used up; says so on standard error, naming what is left out.
     bool tooLate(const std::string& what) const;
 };
 
@@ -71,7 +71,7 @@ void studyObstacles(const StudyOptions& options, Table& table);
 // Models in the order of their size; quick: two small ones.
 std::vector<std::string> studyModels(bool quick);
 
-// Where the vertices of a model are when its tree is refitted: sheared by a quarter, so that every volume of it
+// Returns the vertices of a model when its tree is refitted: sheared by a quarter, so that every volume of it
 // changes, and one that a refit did not make does not go unseen. The same bits everywhere.
 std::vector<float> refitPositions(const std::vector<float>& positions);
 

@@ -6,9 +6,16 @@
 #include "study/programs/trees/tree_input.h"
 #include "benchmarks/support/machine.h"
 #include "benchmarks/support/result_hash.h"
+#include "bullet_plugin/core/device/bound_kernel.h"
 #include "kernels/lib/triangle_pair.h"
+#include "kernels/queries/queries_bindings.h"
 #include "study/kernels/lib/moller.h"
 #include "scenes/random.h"
+
+namespace drape::kernels
+{
+DRAPE_BIND(mollerTriangles, DRAPE_QUERY_TRIANGLES)
+}  // namespace drape::kernels
 
 namespace drape::bench
 {
@@ -44,10 +51,10 @@ std::vector<TriangleQuery> pairsOf(const TriangleMesh& mesh, std::size_t count)
 
 struct Test
 {
-    std::string m_name, m_kernel;
+    std::string m_name;
     bool m_moller;
 };
-const Test kTests[] = {{"Möller", "mollerTriangles", true}, {"certified", "queryTriangles", false}};
+const Test kTests[] = {{"Möller", true}, {"certified", false}};
 
 void addRow(const Test& test, std::size_t pairs, const std::vector<cl_uint>& answers, const Samples& times,
             const Samples& kernels, const DeviceInfo* device, const std::string& expected, Table& table)
@@ -99,10 +106,13 @@ std::vector<cl_uint> onHost(const StudyOptions& options, const std::vector<Trian
 class DeviceTriangles
 {
 public:
-    DeviceTriangles(Device& device, const Test& test) : m_device(device)
+    DeviceTriangles(Device& device, const Test& test) : m_device(device), m_usesMoller(test.m_moller)
     {
-        m_kernel.create(device, studyPrograms(device)(test.m_moller ? "moller" : "queries/queries"),
-                        test.m_kernel.c_str());
+        const ProgramLoader load = studyPrograms(device);
+        if (m_usesMoller)
+            m_moller.create(device, load("moller"));
+        else
+            m_certified.create(device, load("queries/queries"));
     }
 
     // Pairs to the device, answers back. Host-to-host ms; kernelMs: of the launch.
@@ -115,7 +125,11 @@ public:
         m_device.profiler()->take();
         const Clock::time_point start = Clock::now();
         m_queries.write(m_device, pairs.data(), pairs.size());
-        m_kernel.launch(m_device, pairs.size(), kGroup, m_queries.handle(), cl_uint(pairs.size()), m_answers.handle());
+        const cl_uint count = cl_uint(pairs.size());
+        if (m_usesMoller)
+            m_moller.launch(m_device, count, kGroup, count, m_queries, m_answers);
+        else
+            m_certified.launch(m_device, count, kGroup, count, m_queries, m_answers);
         m_answers.read(m_device, answers.data(), answers.size());
         m_device.wait();
         const double ms = millisecondsSince(start);
@@ -126,7 +140,9 @@ public:
 
 private:
     Device& m_device;
-    Kernel m_kernel;
+    bool m_usesMoller;
+    BoundKernel<kernels::mollerTriangles> m_moller;
+    BoundKernel<kernels::queryTriangles> m_certified;
     Buffer<TriangleQuery> m_queries;
     Buffer<cl_uint> m_answers;
 };

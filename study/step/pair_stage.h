@@ -12,7 +12,7 @@ namespace drape
 // The geometry of both sides, and the step's settings.
 struct PairSides
 {
-    BufferView<float> m_start, m_end;  // of the cloths
+    BufferView<float> m_start, m_end;  // positions of the cloths
     BufferView<ClothWord> m_cloths;
     ClothLayout m_layout;
     ObstacleBuffers m_obstacles;

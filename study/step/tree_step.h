@@ -23,7 +23,7 @@ struct TreeStepResult
     std::size_t m_candidates = 0;   // pairs of triangles whose volumes overlap
     std::size_t m_volumeTests = 0;  // on a device only where they are counted
     std::size_t m_retries = 0;
-    double m_refitMs = 0, m_broadMs = 0, m_narrowMs = 0;  // of the host
+    double m_refitMs = 0, m_broadMs = 0, m_narrowMs = 0;  // times of the host
 };
 
 class TreeStep

@@ -1,4 +1,4 @@
-// What traversals prepare from a hierarchy's links: start pairs and links; for trees of any shape.
+// Traversals prepare start pairs and links from a hierarchy's links, for trees of any shape.
 #include "study/traversal/hierarchy.h"
 
 #include <gtest/gtest.h>

@@ -17,8 +17,8 @@ STUDY = os.path.join(ROOT, "study")
 
 class Run(ProgramTest):
     def run_study(self, *arguments):
-        return subprocess.run(["bash", os.path.join(STUDY, "run.sh"), "--bin", PROGRAMS, "--quick", "--repeats", "2", *arguments,
-                               self.path("out")], capture_output=True, text=True, timeout=600)
+        return subprocess.run(["bash", os.path.join(STUDY, "run.sh"), "--bin", PROGRAMS, "--quick", "--repeats", "2",
+                               *arguments, self.path("out")], capture_output=True, text=True, timeout=600)
 
     def test_parts_can_be_measured_one_after_the_other(self):
         result = self.run_study("--parts", "refit,peers", "--only", "sphere_1k")
@@ -37,8 +37,9 @@ class Run(ProgramTest):
 class Reduced(ProgramTest):
     @staticmethod
     def step(step, time, **cells):
-        return {"part": "traversal", "model": "thesis", "variant": "v", "backend": "host", "device": "host", "threads": 1,
-                "triangles": 5, "step": step, "phase": "rest", "broad_ms": time, "step_ms": 2 * time, "hash": "h", "valid": "yes", **cells}
+        return {"part": "traversal", "model": "thesis", "variant": "v", "backend": "host", "device": "host",
+                "threads": 1, "triangles": 5, "step": step, "phase": "rest", "broad_ms": time, "step_ms": 2 * time,
+                "hash": "h", "valid": "yes", **cells}
 
     def reduce(self, *rows):
         self.write_results("raw/study_x.json", rows)
@@ -50,7 +51,8 @@ class Reduced(ProgramTest):
         self.assertEqual((code, [(row["broad_ms"], row["median_ms"]) for row in rows]), (0, [("1.5", "3")]))
 
     def test_rows_measured_anew_replace_old_ones_and_void_rows_are_left_out(self):
-        refit = {"part": "refit", "model": "m", "variant": "v", "backend": "host", "median_ms": 1.0, "hash": "h", "dop": 18}
+        refit = {"part": "refit", "model": "m", "variant": "v", "backend": "host", "median_ms": 1.0, "hash": "h",
+                 "dop": 18}
         self.reduce(refit, {**refit, "model": "n"})
         code, rows = self.reduce({**refit, "median_ms": 2.0}, {**refit, "model": "n", "valid": "no"})
         self.assertEqual(code, 3)
@@ -68,7 +70,8 @@ class Committed(ProgramTest):
             for row in read_csv(path):
                 self.assertRegex(row["hash"], "^[0-9a-f]{16}$", row)
                 self.assertRegex(row["commit"], "^[0-9a-f]{7}$", row)
-                identity = tuple(row[name] for name in ("part", "model", "variant", "phase", "level", "stage", "backend", "threads",
+                identity = tuple(row[name] for name in ("part", "model", "variant", "phase", "level", "stage",
+                                                        "backend", "threads",
                                                         "dop", "pairs"))
                 self.assertNotIn(identity, seen, "twice")
                 seen.add(identity)
@@ -77,7 +80,8 @@ class Committed(ProgramTest):
         """A peer's tree after its refit is of the sheared mesh, everywhere, and not the tree that was built."""
         for path in CSVS:
             peers = [row for row in read_csv(path) if row["backend"] in ("embree", "fcl")]
-            built = {(row["model"], row["variant"], row["threads"]): row["hash"] for row in peers if row["part"] == "construction"}
+            built = {(row["model"], row["variant"], row["threads"]): row["hash"] for row in peers
+                     if row["part"] == "construction"}
             self.assertTrue(built)
             for row in peers:
                 if row["part"] == "refit":

@@ -45,9 +45,9 @@ public:
     // New volumes.
     void upload(Sides& sides);
 
-    // What fits of the candidates. Grows what the traversal itself needs.
+    // Returns the candidates that fit. Grows the buffers that the traversal itself needs.
     std::vector<Candidate> run(std::size_t capacity, std::size_t limit = kMostPairs);
-    // Of the last run. m_candidates is the demand.
+    // Returns the counters of the last run. m_candidates is the demand.
     const TraversalCounters& counters() const { return m_counters; }
     // Runs again because the traversal had to grow, since the start.
     std::size_t retries() const { return m_retries; }
@@ -73,7 +73,7 @@ public:
     void setTopology(const Sides& sides);
     void upload(const Sides&) {}
     std::vector<Candidate> run(const Sides& sides);
-    // Whether the candidates are no more than the limit.
+    // Returns whether the candidates are no more than the limit.
     bool isWithin(const Sides& sides, std::size_t limit);
     std::size_t volumeTests() const { return m_traversal.volumeTests(); }
 

@@ -242,8 +242,8 @@ TEST_P(TreeTest, EveryBuilderMakesTheHostsValidTree)
     }
 }
 
-// What the study's models show beside the builders' defaults: the thesis's construction without any optimisation, its
-// split at the median, and codes of 63 bits, which tell triangles apart that are one to 30.
+// Returns the methods that the study's models show beside the builders' defaults: the thesis's construction without any
+// optimisation, its split at the median, and codes of 63 bits, which tell triangles apart that are one to 30.
 std::vector<NamedMethods> otherMethodsOfModels()
 {
     std::vector<NamedMethods> all(4, {"top-down, normal", methodsOf(TreeBuilder::TopDown, WorkShape::Device)});
@@ -257,7 +257,7 @@ std::vector<NamedMethods> otherMethodsOfModels()
     return all;
 }
 
-// Of the models only those up to the bunny, for time's sake.
+// Takes only models up to the bunny, to save time.
 TEST_P(TreeTest, OtherMethodsMakeTheHostsValidTreeOfModels)
 {
     const std::unique_ptr<Device> device = openDevice(GetParam());

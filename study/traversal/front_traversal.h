@@ -34,7 +34,7 @@ private:
     // The cloths' links and order, then the obstacles'.
     Buffer<BvhLink> m_links;
     Buffer<cl_uint> m_orders;
-    cl_uint m_obstacleLinks = 0, m_obstacleOrder = 0;  // where the obstacles' begin
+    cl_uint m_obstacleLinks = 0, m_obstacleOrder = 0;  // first of the obstacles' entries
     Buffer<NodePair> m_start, m_front, m_nextFront;
     std::size_t m_startCount = 0, m_frontCount = 0;
     cl_uint m_floorDepth = 0;

@@ -28,7 +28,8 @@ std::vector<BvhLink> makeLinks(const Hierarchy& hierarchy);
 struct StartPairs
 {
     std::vector<NodePair> m_pairs;
-    std::uint32_t m_depth;  // of the pairs that can open: the sum of their nodes' depths. Pairs of leaves may be higher
+    std::uint32_t
+        m_depth;  // depth of the pairs that can open: the sum of their nodes' depths. Pairs of leaves may be higher
 };
 
 // Follows the rule of clothOpens() down from the roots until there are at least `wanted` pairs, or no more to open.

@@ -10,7 +10,7 @@ namespace drape
 {
 namespace
 {
-// As on the device, see front_traversal.cpp.
+// Equals the device's, see front_traversal.cpp.
 constexpr std::uint32_t kRaiseInterval = 8;
 // A front of more pairs is not kept, so that a crowd of triangles does not take memory twice: the next step begins at
 // the roots.
@@ -151,7 +151,7 @@ void HostTraversal::keepPair(NodePair pair)
     if (m_nextFront.size() <= kMostFront) m_nextFront.push_back(pair);
 }
 
-// As raisePair() in study/kernels/broad_phase_front.cl, up to the roots.
+// Does the work of raisePair() in study/kernels/broad_phase_front.cl, up to the roots.
 bool HostTraversal::raise(const Step& step, NodePair& pair)
 {
     while (m_clothLinks[pair.m_cloth].m_depth + m_obstacleLinks[pair.m_obstacle].m_depth > 0)
@@ -185,7 +185,7 @@ void HostTraversal::runFront(const Step& step)
     if (m_front.size() > kMostFront) m_front.clear();
 }
 
-// As study/kernels/grid.cl.
+// Does the work of study/kernels/grid.cl.
 void HostTraversal::runGrid(const Step& step)
 {
     const std::vector<BvhNode>&cloths = step.m_cloth.m_tree.m_nodes, &obstacles = step.m_obstacle.m_tree.m_nodes;

@@ -32,7 +32,7 @@ void SingleTraversal::enqueue(Device& device, const TraversalStep& step)
 bool SingleTraversal::grow(Device& device, const TraversalCounters& counters, bool& limitReached)
 {
     if (counters.m_spill <= m_spill.capacity()) return false;
-    // What was lost would have opened further: twice the demand seen, so that few runs are needed.
+    // Takes twice the demand seen, so that few runs are needed: pairs that were lost would have opened further.
     const std::size_t most = device.maxAllocationBytes() / sizeof(NodePair);
     limitReached = counters.m_spill > most;
     if (!limitReached) m_spill.reserve(device, std::min(2 * std::size_t(counters.m_spill), most));

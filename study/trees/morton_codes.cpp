@@ -11,12 +11,12 @@ namespace drape
 {
 namespace
 {
-constexpr std::size_t kGroup = 64;  // as in kernels/morton_order.cl
+constexpr std::size_t kGroup = 64;  // see study/kernels/morton_order.cl
 // Groups per compute unit that look for the bounds: enough to hide latency, few enough to merge.
 constexpr std::size_t kBoundsGroupsPerUnit = 4, kBoundsGroupsPerUnitGpu = 16;
 constexpr cl_uint kShortCodeBits = 30;
 constexpr cl_uint kLowBits = 32, kHighBits = 31;  // the words of a 63-bit code
-// Least and greatest values before any centroid was seen, see kernels/morton_order.cl.
+// Least and greatest values before any centroid was seen, see study/kernels/morton_order.cl.
 const cl_uint kNoBounds[6] = {~0u, ~0u, ~0u, 0u, 0u, 0u};
 }  // namespace
 

@@ -6,7 +6,7 @@ namespace drape
 {
 namespace
 {
-// As in kernels/radix_sort.cl.
+// These constants equal those of study/kernels/radix_sort.cl.
 constexpr cl_uint kDigits = 256;
 constexpr cl_uint kDigitBits = 8;
 constexpr std::size_t kGroup = 256;

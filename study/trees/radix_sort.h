@@ -7,7 +7,7 @@
 
 namespace drape
 {
-// Whether a stage runs its kernels for groups, not its serial ones, on this device.
+// Returns whether a stage runs its kernels for groups, not its serial ones, on this device.
 bool runsGroups(const Device& device, WorkShape shape);
 
 class RadixSortStage

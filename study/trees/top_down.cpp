@@ -9,7 +9,7 @@ namespace drape
 {
 namespace
 {
-constexpr std::size_t kItemGroup = 64;  // where a work-item works alone
+constexpr std::size_t kItemGroup = 64;  // for kernels in which a work-item works alone
 // Triangles of a large node that a work-group goes through: some rounds of the largest group, so that the second kernel
 // of a pair has few blocks to put together.
 constexpr cl_uint kLargeBlock = 2048;
@@ -17,7 +17,7 @@ constexpr cl_uint kLargeBlock = 2048;
 constexpr std::size_t kGroupsPerUnit = 32;
 // Nodes a work-group takes at most: the list of those it puts aside must fit into local memory beside the rest.
 constexpr std::size_t kNodesPerGroup = 512;
-// Of the median's pivot, a histogram a digit, as in kernels/top_down_large.cl.
+// The median's pivot has a histogram for each digit, like study/kernels/top_down_large.cl.
 constexpr cl_uint kMedianBits = 8;
 constexpr std::size_t kMedianBins = 1 << kMedianBits;
 constexpr cl_uint kCellBits = 24;

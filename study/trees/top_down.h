@@ -17,7 +17,7 @@ namespace drape
 Tree buildTopDownOnHost(const std::vector<Triangle>& triangles, const float* positions,
                         const TopDownSettings& settings);
 
-// What a level's construction was, for the study.
+// Figures of a level's construction, for the study.
 struct TopDownLevel
 {
     std::uint32_t m_nodes = 0;
@@ -36,11 +36,11 @@ public:
     void build(Device& device, Buffer<Triangle>& triangles, Buffer<float>& positions, cl_uint count,
                const TopDownSettings& settings, DeviceTree& tree);
 
-    // Of the last build; the first is the root's.
+    // Returns the levels of the last build; the first is the root's.
     const std::vector<TopDownLevel>& levels() const { return m_levels; }
 
 private:
-    // As in kernels/top_down_large.cl.
+    // Equals the struct in study/kernels/top_down_large.cl.
     struct LargeBlock
     {
         cl_uint m_node, m_first, m_end, m_firstBlock;

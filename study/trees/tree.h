@@ -55,8 +55,8 @@ struct DeviceTree
     Buffer<BvhNode> m_nodes;
     Buffer<cl_uint> m_splits;
     Buffer<cl_uint> m_order;
-    Buffer<cl_uint> m_tops;  // see refitTopsSerial in kernels/tree_refit.cl
-    // As TreeHeights; only where it is refitted by levels.
+    Buffer<cl_uint> m_tops;  // see refitTopsSerial in study/kernels/tree_refit.cl
+    // Splits by height, see TreeHeights; only if the tree is refitted by levels.
     Buffer<cl_uint> m_heightSplits;
     std::vector<BvhHeight> m_heights;
     cl_uint m_leafCount = 0;

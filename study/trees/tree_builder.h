@@ -13,7 +13,7 @@ namespace drape
 // positions: m, x y z per vertex. Order and links; of all but TopDown no volumes.
 Tree linkTreeOnHost(const TreeMethods& methods, const std::vector<Triangle>& triangles, const float* positions);
 
-// The same with volumes, without a radius. meshCount: slots that triangles refer to.
+// Builds with volumes, without a radius. meshCount: slots that triangles refer to.
 Tree buildTreeOnHost(const TreeMethods& methods, const std::vector<Triangle>& triangles, const float* positions,
                      std::size_t meshCount);
 
@@ -29,7 +29,7 @@ public:
     void enqueue(Device& device, Buffer<Triangle>& triangles, Buffer<float>& positions, cl_uint count,
                  std::size_t meshCount, DeviceTree& tree);
 
-    // Of the last build; empty unless the builder is TopDown.
+    // Returns the levels of the last build; empty unless the builder is TopDown.
     const std::vector<TopDownLevel>& topDownLevels() const { return m_topDown.levels(); }
 
 private:

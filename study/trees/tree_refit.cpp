@@ -7,7 +7,7 @@ namespace drape
 {
 namespace
 {
-// As in kernels/tree_refit.cl.
+// These constants equal those of study/kernels/tree_refit.cl.
 constexpr std::size_t kSubtreeGroup = 128;
 constexpr cl_uint kSubtreeWindow = kSubtreeGroup - DRAPE_SUBTREE_LEAVES;
 constexpr cl_uint kSerialWindow = 64;

@@ -15,7 +15,7 @@ namespace drape
 void refitTreeOnHost(Tree& tree, const std::vector<Triangle>& triangles, const float* start, const float* end,
                      const std::vector<float>& meshRadius, std::size_t& invalidNodes);
 
-// What the leaves' volumes are made from, on the device.
+// The input of the leaves' volumes, on the device.
 struct LeafBuffers
 {
     Buffer<Triangle>& m_triangles;
@@ -33,7 +33,7 @@ public:
     // Lists the splits that enqueue() goes through by the method and the shape that methods name. Once per topology.
     // Returns after enqueueing with Subtrees; waits with Levels, whose heights the host finds.
     void prepare(Device& device, DeviceTree& tree, const TreeMethods& methods);
-    // The same methods as those that the tree was prepared for. Subtrees: two launches up to 2,048 leaves, else three;
+    // Takes the methods that the tree was prepared for. Subtrees: two launches up to 2,048 leaves, else three;
     // one where subtrees suffice. Levels: one for the leaves and one per height. Returns after enqueueing.
     void enqueue(Device& device, DeviceTree& tree, LeafBuffers leaves, const TreeMethods& methods);
 

@@ -23,7 +23,7 @@ std::vector<BvhHeight> depthsOf(const std::vector<BvhNode>& nodes);
 void refitWideOnHost(std::vector<BvhNode>& nodes, const std::vector<std::uint32_t>& order,
                      const std::vector<Triangle>& triangles, const float* positions);
 
-// The same on a device: a launch for the leaves and one per depth.
+// Refits on a device: a launch for the leaves and one per depth.
 class WideRefitStage
 {
 public:

@@ -28,7 +28,8 @@ class ErrorVsTimeTest(unittest.TestCase):
 
     def rows(self, *arguments, code=0, quick=True):
         path = self.path("error_vs_time")
-        result = self.run_script(PROGRAM, *["--quick"] * quick, "--csv", path + ".csv", "--json", path + ".json", *arguments)
+        result = self.run_script(PROGRAM, *["--quick"] * quick, "--csv", path + ".csv", "--json", path + ".json",
+                                 *arguments)
         self.assertEqual(result.returncode, code, result.stderr)
         with open(path + ".json") as file:
             self.assertIn("machine", json.load(file))
@@ -94,7 +95,8 @@ class ErrorVsTimeTest(unittest.TestCase):
         self.assertGreater(wrong["pairs at 10 km"], 0)
         # A finer search of the time gives a better time.
         times = {row["value"]: float(row["time_error_p50"]) for row in rows
-                 if row["scene"] == "motions at 1 m" and row["method"] == "drape_host" and row["knob"] == "time tolerance"}
+                 if row["scene"] == "motions at 1 m" and row["method"] == "drape_host"
+                 and row["knob"] == "time tolerance"}
         self.assertLess(times["1e-06"], times["0.001"])
         self.assertLess(times["0.001"], times["0.1"])
 
@@ -112,7 +114,8 @@ class ErrorVsTimeTest(unittest.TestCase):
         self.assertGreater(float(rest["rest_speed_mm_s"]), 1.2 * float(usual["late_speed_mm_s"]))
 
     def test_capped_runs_have_no_errors_to_show(self):
-        rows = self.rows("--part", "simulation", "--scene", "stairs", "--knob", "defaults", "--backend", "host", "--cap",
+        rows = self.rows("--part", "simulation", "--scene", "stairs", "--knob", "defaults", "--backend", "host",
+                         "--cap",
                          "0.000001", "--frames", "2000")
         self.assertTrue(rows)
         for row in rows:
@@ -142,13 +145,15 @@ class ErrorVsTimeTest(unittest.TestCase):
     def test_a_child_that_finds_no_device_runs_no_other_trial(self):
         # Trial 1 of the parent with a device is Drape on it. Without the device the child must refuse it.
         environment = {**os.environ, "OCL_ICD_VENDORS": "/nonexistent"}
-        command = [PROGRAM, "--quick", "--backend", "opencl", "--child-scene", "stairs", "--child-trial", "1", "--child-device"]
+        command = [PROGRAM, "--quick", "--backend", "opencl", "--child-scene", "stairs", "--child-trial", "1",
+                   "--child-device"]
         result = subprocess.run(command, capture_output=True, text=True, timeout=100, env=environment)
         self.assertNotEqual(result.returncode, 0)
         self.assertIn("OpenCL", result.stderr)
 
     def test_what_does_not_exist_is_refused(self):
-        for arguments, words in ((["--scene", "moon"], ("moon", "bunny")), (["--knob", "nosuch"], ("nosuch", "substeps")),
+        for arguments, words in ((["--scene", "moon"], ("moon", "bunny")),
+                                 (["--knob", "nosuch"], ("nosuch", "substeps")),
                                  (["--truth", self.path("none")], ("--truth", "none"))):
             result = self.run_script(PROGRAM, "--quick", "--scene", "stairs", *arguments)
             self.assertEqual((result.returncode, result.stdout, result.stderr.count("\n")), (2, "", 1), result.stderr)

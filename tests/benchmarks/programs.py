@@ -31,7 +31,8 @@ class ProgramTest(unittest.TestCase):
 
     @staticmethod
     def script(name, *arguments):
-        return subprocess.run([sys.executable, os.path.join(ROOT, name), *arguments], capture_output=True, text=True, timeout=600)
+        return subprocess.run([sys.executable, os.path.join(ROOT, name), *arguments], capture_output=True, text=True,
+                              timeout=600)
 
     def read(self, name):
         with open(self.path(name)) as file:

@@ -74,7 +74,8 @@ class BenchStep(ProgramTest):
 
     def test_unknown_names_are_refused_with_those_there_are(self):
         self.refused("bench_step", ["--quick", "--scene", "quick_one", "--scene", "nosuch"], "nosuch", "quick_one")
-        self.refused("bench_step", ["--quick", "--method", "drape_host", "--method", "nosuch"], "nosuch", "embree_pairs_1")
+        self.refused("bench_step", ["--quick", "--method", "drape_host", "--method", "nosuch"], "nosuch",
+                     "embree_pairs_1")
 
     def test_a_reference_that_is_none_is_refused(self):
         for text in ("", "[]", '{"rows": [7]}', '{"rows": [{"valid": "yes"}]}'):

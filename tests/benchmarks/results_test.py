@@ -14,9 +14,9 @@ class Reduced(ProgramTest):
 
     @staticmethod
     def row(**cells):
-        return {"scene": "thesis", "sweep": "", "method": "drape_host", "stage": "step", "device": "host", "cloth_triangles": 2,
-                "obstacle_triangles": 3, "min_ms": 1.0, "median_ms": 2.0, "p95_ms": 3.0, "hash": "0123456789abcdef",
-                "valid": "yes", **cells}
+        return {"scene": "thesis", "sweep": "", "method": "drape_host", "stage": "step", "device": "host",
+                "cloth_triangles": 2, "obstacle_triangles": 3, "min_ms": 1.0, "median_ms": 2.0, "p95_ms": 3.0,
+                "hash": "0123456789abcdef", "valid": "yes", **cells}
 
     def reduce(self, *rows, **machine):
         self.write_results("raw/bench_step.json", rows, **machine)
@@ -39,7 +39,8 @@ class Reduced(ProgramTest):
         self.assertEqual(self.cells("stage"), ["step"])
 
     def test_memory_is_summed(self):
-        self.reduce(self.row(), self.row(stage="memory: cloth edges", bytes=3), self.row(stage="memory: step hits", bytes=4))
+        self.reduce(self.row(), self.row(stage="memory: cloth edges", bytes=3),
+                    self.row(stage="memory: step hits", bytes=4))
         self.assertEqual(self.cells("bytes"), ["7"])
 
     def test_void_rows_are_named_and_left_out(self):
@@ -84,12 +85,14 @@ class Hashes(ProgramTest):
         names = []
         for index, cells in enumerate(machines):
             names.append(self.path(f"{index}.csv"))
-            row = {"machine": "m", "commit": "abc1234", "program": "cloth_drop", "scene": "o 1", "setting": "", "method": "drape",
-                   "stage": "collision", "device": "gpu", "steps": "240", "penetration_mm": "0", "ended": "whole", "hash": "1", **cells}
+            row = {"machine": "m", "commit": "abc1234", "program": "cloth_drop", "scene": "o 1", "setting": "",
+                   "method": "drape", "stage": "collision", "device": "gpu", "steps": "240", "penetration_mm": "0",
+                   "ended": "whole", "hash": "1", **cells}
             with open(names[-1], "w") as file:
                 file.write(",".join(row) + "\n" + ",".join(row.values()) + "\n")
         result = self.script("benchmarks/report.py", *names)
-        self.assertEqual(os.path.exists(self.path("0.md")), result.returncode == 0, "no table of results that are refused")
+        self.assertEqual(os.path.exists(self.path("0.md")), result.returncode == 0,
+                         "no table of results that are refused")
         return result.returncode, result.stderr
 
     def test_one_trajectory_with_two_hashes_is_refused(self):

@@ -52,7 +52,8 @@ class Scripts(ProgramTest):
         result = self.cloth_drop("--cloth", "9x9")
         self.assertEqual(result.returncode, 0, result.stderr)
         content = self.content("cloth_drop")
-        self.assertEqual(content["scene"], {"obstacle": "stairs", "obstacle_digest": "stairs", "options": ["--cloth", "9x9"]})
+        self.assertEqual(content["scene"],
+                         {"obstacle": "stairs", "obstacle_digest": "stairs", "options": ["--cloth", "9x9"]})
         names = [device["device"] for device in content["machine"]["devices"]] + ["host"]
         drape = [row for row in content["rows"] if row["run"] == "drape"]
         self.assertEqual([row["device"] for row in drape], names)
@@ -114,7 +115,8 @@ hash=0000000000000001
             elif row["run"] == "stock" and row["speed_m_s"] == 50:
                 self.assertGreater(row["nodes_through"], 0, "a child's")
             elif row["run"] == "discrete" and row["speed_m_s"] == 50:
-                self.assertGreater(row["nodes_below_surface_max"], row["nodes_below_surface"], "not the last step alone")
+                self.assertGreater(row["nodes_below_surface_max"], row["nodes_below_surface"],
+                                   "not the last step alone")
                 self.assertGreater(row["nodes_through"], row["nodes_below_surface_max"])
                 through = f" / {row['nodes_through']} / "
         text = self.tables()
@@ -151,7 +153,8 @@ hash=0000000000000001
         return folder
 
     def test_published_queries_on_every_back_end(self):
-        result = self.bash("drape_check.sh", self.path("results/machine"), "--truth", self.truth(), "--commit", "abc1234")
+        result = self.bash("drape_check.sh", self.path("results/machine"), "--truth", self.truth(), "--commit",
+                           "abc1234")
         self.assertEqual(result.returncode, 0, result.stderr)
         content = self.content("drape_check")
         names = ["host"] + [device["device"] for device in content["machine"]["devices"]]
@@ -160,10 +163,12 @@ hash=0000000000000001
                          [(mode, name) for mode in ("fast", "exact") for name in names])
         self.assertEqual({(row["misses"], row["false_hits"]) for row in self.answers(content, "ccd")}, {(0, 0)})
         self.assertEqual({(row["misses"], row["false_hits"]) for row in self.answers(content, "triangles")}, {(1, 0)})
-        self.assertEqual([(row["mode"], row["device"], row["intersecting_pairs"]) for row in self.answers(content, "pairs")],
+        self.assertEqual([(row["mode"], row["device"], row["intersecting_pairs"])
+                          for row in self.answers(content, "pairs")],
                          [(mode, name, count) for mode, count in (("frame 92", 0), ("frame 93", 0), ("92 and 93", 1))
                           for name in names])
-        self.assertEqual({(row["device"], row["vf_hits"]) for row in self.answers(content, "step")}, {(name, 3) for name in names})
+        self.assertEqual({(row["device"], row["vf_hits"]) for row in self.answers(content, "step")},
+                         {(name, 3) for name in names})
         text = self.tables()
         self.assertIn("| triangles exact | host | 2 | 1 | 0 |", text)
         self.assertIn("| ccd | host | 1 | 0 | 0 |", text)

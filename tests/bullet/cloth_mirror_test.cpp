@@ -160,7 +160,8 @@ TEST_P(FacesInPlace, NodesWithoutFacesCollideToo)
     btSoftBody& tassel = world.addCloth(spec);
     for (int i = 0; i < 6; ++i)
     {
-        tassel.appendNode(btVector3(btScalar(0.56) + btScalar(0.06) * i, btScalar(0.6), btScalar(0.5)), btScalar(0.01));
+        tassel.appendNode(btVector3(btScalar(0.56) + btScalar(0.06) * btScalar(i), btScalar(0.6), btScalar(0.5)),
+                          btScalar(0.01));
         const int last = tassel.m_nodes.size() - 1;
         tassel.appendLink(i == 0 ? 80 : last - 1, last);
     }

@@ -64,9 +64,9 @@ INSTANTIATE_TEST_SUITE_P(
                                      FastDrop{"stairs", 50, btScalar(1.5)}, FastDrop{"box", 200, btScalar(0.8)},
                                      FastDrop{"torus", 50, btScalar(0.6)}, FastDrop{"bowl", 3, btScalar(0.1)}),
                      testing::ValuesIn(allBackends())),
-    [](const testing::TestParamInfo<std::tuple<FastDrop, BackendCase>>& info)
+    [](const testing::TestParamInfo<std::tuple<FastDrop, BackendCase>>& test)
     {
-        const FastDrop& drop = std::get<0>(info.param);
-        return drop.m_shape + std::to_string(static_cast<int>(drop.m_speed)) + "_" + std::get<1>(info.param).m_name;
+        const FastDrop& drop = std::get<0>(test.param);
+        return drop.m_shape + std::to_string(static_cast<int>(drop.m_speed)) + "_" + std::get<1>(test.param).m_name;
     });
 }  // namespace drape::test

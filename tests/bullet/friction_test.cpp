@@ -150,5 +150,5 @@ TEST_P(Energy, NeverGrowsByContacts)
 INSTANTIATE_TEST_SUITE_P(Falls, Energy,
                          testing::Values(Fall{"sphere", btScalar(1.1)}, Fall{"box", btScalar(0.6)},
                                          Fall{"stairs", btScalar(1.2)}, Fall{"torus", btScalar(0.5)}),
-                         [](const testing::TestParamInfo<Fall>& info) { return std::string(info.param.m_shape); });
+                         [](const testing::TestParamInfo<Fall>& test) { return std::string(test.param.m_shape); });
 }  // namespace drape::test

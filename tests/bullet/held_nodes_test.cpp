@@ -95,13 +95,13 @@ TEST_P(HeldNodes, ANodeIsDraggedOverWaves)
         btSoftBody& cloth = world.addCloth(clothAt(btScalar(0.15)));
         const int pinned = cloth.m_nodes.size() / 2;
         cloth.setMass(pinned, 0);
-        const btScalar z = btScalar(-0.347) + btScalar(0.05) * row;
+        const btScalar z = btScalar(-0.347) + btScalar(0.05) * btScalar(row);
         for (int step = 0; step < 180 && !HasFailure(); ++step)
         {
-            const btScalar along = btScalar(0.003) * std::max(0, step - 30);
-            const btScalar height = std::max(btScalar(0.09), btScalar(0.15) - btScalar(0.005) * step);
+            const btScalar along = btScalar(0.003) * btScalar(std::max(0, step - 30));
+            const btScalar height = std::max(btScalar(0.09), btScalar(0.15) - btScalar(0.005) * btScalar(step));
             btSoftBody::Node& node = cloth.m_nodes[pinned];
-            node.m_x = node.m_q = btVector3(along, height, z * std::min(btScalar(1), step / btScalar(30)));
+            node.m_x = node.m_q = btVector3(along, height, z * std::min(btScalar(1), btScalar(step) / btScalar(30)));
             world.step();
             EXPECT_LT(fastestOf(cloth), kFast) << "step " << step;
         }

@@ -84,9 +84,9 @@ TEST_P(KinematicPlate, ALargerClothWrapsIt)
 }
 
 INSTANTIATE_TEST_SUITE_P(Plates, KinematicPlate, testing::ValuesIn(plateCases()),
-                         [](const testing::TestParamInfo<PlateCase>& info)
+                         [](const testing::TestParamInfo<PlateCase>& test)
                          {
-                             const PlateCase& plate = info.param;
+                             const PlateCase& plate = test.param;
                              const bool automatic = plate.m_mode == ContactMode::Automatic;
                              return std::to_string(plate.m_speed) + (automatic ? "automatic_" : "continuous_") +
                                     plate.m_backend.m_name;
@@ -100,8 +100,9 @@ TEST_P(Kinematic, AThinPlateIsWrappedByClothThatLiesAskew)
     {
         SCOPED_TRACE("seed " + std::to_string(seed));
         Random random(seed);
-        const btQuaternion turn(btVector3(0, 1, 0), random.within(0, 2 * SIMD_PI));
-        const btVector3 shift(random.within(-kMostShift, kMostShift), 0, random.within(-kMostShift, kMostShift));
+        const btQuaternion turn(btVector3(0, 1, 0), btScalar(random.within(0, 2 * SIMD_PI)));
+        const auto shiftAlong = [&]() { return btScalar(random.within(-kMostShift, kMostShift)); };
+        const btVector3 shift(shiftAlong(), 0, shiftAlong());
         const auto poseAt = [&](btScalar height) { return btTransform(turn, shift + btVector3(0, height, 0)); };
         btScalar height = -1;
         KinematicScene scene(makeBox(0.7f, 0.004f, 0.7f), poseAt(height), 1.0f, btVector3(0, 0, 0),

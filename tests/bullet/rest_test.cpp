@@ -242,11 +242,11 @@ INSTANTIATE_TEST_SUITE_P(
                                      Bed{"box", 2.4f, btScalar(0.6)}, Bed{"bowl", 1.2f, btScalar(0.1)},
                                      Bed{"torus", 1.6f, btScalar(0.4)}),
                      testing::ValuesIn(allBackends())),
-    [](const testing::TestParamInfo<std::tuple<Bed, BackendCase>>& info)
+    [](const testing::TestParamInfo<std::tuple<Bed, BackendCase>>& test)
     {
-        const Bed& bed = std::get<0>(info.param);
+        const Bed& bed = std::get<0>(test.param);
         const int height = static_cast<int>(std::lround(100 * bed.m_height));  // cm
-        return bed.m_shape + std::string("_") + std::to_string(height) + "_" + std::get<1>(info.param).m_name;
+        return bed.m_shape + std::string("_") + std::to_string(height) + "_" + std::get<1>(test.param).m_name;
     });
 
 INSTANTIATE_TEST_SUITE_P(Backend, SettledBunny, testing::ValuesIn(openClBackends()), backendName);

@@ -139,8 +139,8 @@ INSTANTIATE_TEST_SUITE_P(Drops, RopesDropped,
                                          RopeDrop{"needle", 0}, RopeDrop{"needle", 10}, RopeDrop{"needle", 100},
                                          RopeDrop{"rod", 0}, RopeDrop{"rod", 20}, RopeDrop{"rod", 100},
                                          RopeDrop{"bunny", 0}, RopeDrop{"bunny", 10}, RopeDrop{"bunny", 50}),
-                         [](const testing::TestParamInfo<RopeDrop>& info)
-                         { return info.param.m_obstacle + std::to_string(info.param.m_speed); });
+                         [](const testing::TestParamInfo<RopeDrop>& test)
+                         { return test.param.m_obstacle + std::to_string(test.param.m_speed); });
 
 class Ropes : public BackendTest
 {

@@ -165,9 +165,9 @@ TEST_P(Sheets, OneSidedSheetsLetClothThroughFromBehind)
 INSTANTIATE_TEST_SUITE_P(Thrown, Sheets,
                          testing::Combine(testing::ValuesIn(allBackends()), testing::Values(0.0f, 0.15f),
                                           testing::Values(5, 50)),
-                         [](const testing::TestParamInfo<Sheets::ParamType>& info)
+                         [](const testing::TestParamInfo<Sheets::ParamType>& test)
                          {
-                             return std::string(std::get<1>(info.param) > 0 ? "wavy" : "flat") +
-                                    std::to_string(std::get<2>(info.param)) + "_" + std::get<0>(info.param).m_name;
+                             return std::string(std::get<1>(test.param) > 0 ? "wavy" : "flat") +
+                                    std::to_string(std::get<2>(test.param)) + "_" + std::get<0>(test.param).m_name;
                          });
 }  // namespace drape::test

@@ -77,7 +77,7 @@ TEST_P(Slender, NeedlesHoldCloth)
 TEST_P(Slender, PostsHoldClothThatIsThrown)
 {
     const btTransform down(btQuaternion::getIdentity(), btVector3(0, btScalar(-kHeight / 2), 0));
-    for (const btScalar speed : {10, 50})
+    for (const btScalar speed : {btScalar(10), btScalar(50)})
     {
         SCOPED_TRACE(speed);
         drop(placed(makeBox(0.06f, float(kHeight), 0.06f), down), speed);

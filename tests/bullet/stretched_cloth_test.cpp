@@ -68,7 +68,7 @@ void blowApart(btSoftBody& cloth, btScalar speed)
     Random random(1);
     for (int i = 0; i < cloth.m_nodes.size(); ++i)
     {
-        btVector3 way(random.within(-1, 1), random.within(-1, 0), random.within(-1, 1));
+        btVector3 way(btScalar(random.within(-1, 1)), btScalar(random.within(-1, 0)), btScalar(random.within(-1, 1)));
         cloth.m_nodes[i].m_v = way.normalized() * speed;
     }
 }
@@ -134,8 +134,8 @@ TEST_P(StretchedCloth, ClothInPiecesMakesABoundedNumberOfTests)
     for (int step = 0; step < 3; ++step)
     {
         for (int i = 0; i < cloth.m_nodes.size(); ++i)
-            cloth.m_nodes[i].m_x = cloth.m_nodes[i].m_q =
-                btVector3(random.within(-2, 2), random.within(-0.1, 0.1), random.within(-2, 2));
+            cloth.m_nodes[i].m_x = cloth.m_nodes[i].m_q = btVector3(
+                btScalar(random.within(-2, 2)), btScalar(random.within(-0.1, 0.1)), btScalar(random.within(-2, 2)));
         blowApart(cloth, 20);
         hills.step();
         EXPECT_NE(hills.statistics().m_status & (kStepClothsLeftOut | kStepMotionHeldBack), 0u);

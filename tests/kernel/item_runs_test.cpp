@@ -16,7 +16,8 @@ namespace
 constexpr cl_uint kLongestRun = 128;
 
 const char* const kTake = R"(
-__kernel void takeItems(const uint count, const uint parts, __global uint* takenBy, __global uint* taken, __global uint* taker)
+__kernel void takeItems(const uint count, const uint parts, __global uint* takenBy, __global uint* taken,
+                        __global uint* taker)
 {
     for (ItemRuns runs = itemRuns(count, parts); runs.m_item < count; nextItem(&runs))
     {

@@ -98,7 +98,7 @@ TEST_F(MeshLoader, ReadsBuffersBesideTheFile)
         R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}]})";
     expectRefused(write("triangle.gltf", gltf), {"triangle.gltf", "some data.bin", "no such file"});
     std::string data;
-    for (const float value : {0, 0, 0, 1, 0, 0, 0, 1, 0})
+    for (const float value : {0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f})
         data += bytesOf(value);
     write("some data.bin", data);
     LoadReport report;

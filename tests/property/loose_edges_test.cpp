@@ -72,6 +72,24 @@ std::vector<StepCase> netCases()
     cases.push_back(needleCase(Thin::Obstacle, 100, 0.1f, true, 863));
     return cases;
 }
+
+// Returns the exact distance between a segment, given by its two ends, and a mesh. Returns zero if they meet.
+double distanceTo(const TriangleMesh& mesh, const float* ends)
+{
+    const float corners[9] = {ends[0], ends[1], ends[2], ends[3], ends[4], ends[5], ends[3], ends[4], ends[5]};
+    const ExactTriangle segment = exactTriangle(corners);
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t t = 0; t < mesh.triangleCount(); ++t)
+    {
+        float other[9];
+        for (std::size_t k = 0; k < 9; ++k)
+            other[k] = mesh.m_positions[3 * std::size_t(mesh.m_triangles[3 * t + k / 3]) + k % 3];
+        const ExactTriangle triangle = exactTriangle(other);
+        if (trianglesMeet(segment, triangle)) return 0;
+        least = std::min(least, std::sqrt(squaredDistance(segment, triangle)));
+    }
+    return least;
+}
 }  // namespace
 
 class LooseEdges : public BackendTest
@@ -172,22 +190,8 @@ TEST_P(LooseEdges, EachHasAContactAtItsNearestPoint)
         }
         for (std::size_t i = 0; i < kSegments; ++i)
         {
-            const float* const p = &step.m_cloth.m_positions[6 * i];
-            const float corners[9] = {p[0], p[1], p[2], p[3], p[4], p[5], p[3], p[4], p[5]};
-            const ExactTriangle segment = exactTriangle(corners);
-            double least = std::numeric_limits<double>::infinity();
-            bool meets = false;
-            for (std::size_t t = 0; t < step.m_obstacle.triangleCount(); ++t)
-            {
-                float other[9];
-                for (std::size_t k = 0; k < 9; ++k)
-                    other[k] = step.m_obstacle
-                                   .m_positions[3 * std::size_t(step.m_obstacle.m_triangles[3 * t + k / 3]) + k % 3];
-                const ExactTriangle triangle = exactTriangle(other);
-                meets = meets || trianglesMeet(segment, triangle);
-                least = std::min(least, std::sqrt(squaredDistance(segment, triangle)));
-            }
-            if (meets || least < 1e-3 || least > double(kReach)) continue;
+            const double least = distanceTo(step.m_obstacle, &step.m_cloth.m_positions[6 * i]);
+            if (least < 1e-3 || least > double(kReach)) continue;
             ++near;
             EXPECT_NEAR(nearest[i], least, 1e-5) << "segment " << i;
         }

@@ -40,8 +40,8 @@ StepCase aroundSphere(float radius)
     {
         const Vector3 p =
             middle + double(1 + radius / size) * (position(step.m_cloth.m_positions, std::uint32_t(v)) - middle);
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            step.m_cloth.m_positions[3 * v + axis] = float(p[axis]);
+        for (int axis = 0; axis < 3; ++axis)
+            step.m_cloth.m_positions[3 * v + std::size_t(axis)] = float(p[axis]);
     }
     step.m_end = step.m_cloth.m_positions;
     return step;

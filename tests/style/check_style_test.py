@@ -29,7 +29,8 @@ class Findings(unittest.TestCase):
                          [("openings", 2), ("openings", 4)])
 
     def test_the_second_line_of_a_block_may_start_with_any_word(self):
-        self.assertEqual(found(a_cpp="// Returns the pairs\n// of a and b.\nconst char* s = \"// What is this\";\n"), [])
+        self.assertEqual(found(a_cpp="// Returns the pairs\n// of a and b.\nconst char* s = \"// What is this\";\n"),
+                         [])
 
     def test_openings_of_scripts_and_docstrings_count(self):
         self.assertEqual(found(a_sh="#!/bin/sh\necho \"# What\" ${#x}  # Where it is\n", b_cmake="# Those of CMake.\n",

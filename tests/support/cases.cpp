@@ -110,7 +110,7 @@ TriangleMesh evenLine(int count)
 {
     std::vector<float> corners;
     for (int i = 0; i < count; ++i)
-        corners.insert(corners.end(), {float(i), 0, 0, i + 1.0f, 0, 0, i + 0.5f, 1, 0});
+        corners.insert(corners.end(), {float(i), 0, 0, float(i) + 1.0f, 0, 0, float(i) + 0.5f, 1, 0});
     return looseTriangles(corners);
 }
 

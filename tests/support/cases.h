@@ -17,7 +17,7 @@ namespace drape::test
 class Random
 {
 public:
-    explicit Random(std::uint32_t seed) : m_engine(seed) {}
+    explicit Random(std::uint32_t number) : m_engine(number) {}
 
     float uniform(float low, float high) { return low + (high - low) * (float(m_engine() >> 8) / 16777216.0f); }
     std::uint32_t below(std::uint32_t count) { return std::uint32_t(m_engine()) % count; }

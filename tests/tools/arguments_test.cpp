@@ -80,7 +80,7 @@ TEST_P(Arguments, AnOptionThatIsTakenForAValueIsTheMistakeThatIsTold)
 }
 
 INSTANTIATE_TEST_SUITE_P(Programs, Arguments, testing::Values("DRAPE_CLOTH_DROP", "DRAPE_CHECK", "DRAPE_WORLDS"),
-                         [](const testing::TestParamInfo<const char*>& info) { return std::string(info.param); });
+                         [](const testing::TestParamInfo<const char*>& test) { return std::string(test.param); });
 
 using ClothDropArguments = ToolTest;
 

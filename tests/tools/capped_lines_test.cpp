@@ -42,7 +42,7 @@ struct Kept
 Kept keep(const ChildCap& cap, const std::string& text, std::size_t chunk)
 {
     Kept kept;
-    CappedLines lines(cap, [&](int, const std::string& text) { kept.m_lines.push_back(text); });
+    CappedLines lines(cap, [&](int, const std::string& line) { kept.m_lines.push_back(line); });
     for (std::size_t from = 0; from < text.size() && !kept.m_capped; from += chunk)
         kept.m_capped = !lines.take(text.data() + from, std::min(chunk, text.size() - from));
     kept.m_step = lines.step();

@@ -21,7 +21,7 @@ struct Range
 class WorldRandom
 {
 public:
-    explicit WorldRandom(std::uint64_t seed) : m_state(seed * kStep + 0x1234567)
+    explicit WorldRandom(std::uint64_t number) : m_state(number * kStep + 0x1234567)
     {
         for (int i = 0; i < 8; ++i)
             next();

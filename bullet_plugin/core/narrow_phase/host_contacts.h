@@ -22,12 +22,12 @@ public:
     };
 
     // Lists the contacts of input.m_tests, unsorted, and counts them; beyond a limit the list is not complete.
-    // find, findSwept: kernels of either kind of contacts; swept: their counter. Returns how often the list was too
-    // short and grew.
+    // findContacts, findSwept: kernels of either kind of contacts; swept: their counter. Returns how often the list was
+    // too short and grew.
     template <class Input>
-    std::size_t find(FeatureKernel<Input> find, FeatureKernel<Input> findSwept, std::uint32_t StepCounters::*swept,
-                     const Input& input, std::size_t features, Limits limits, ThreadTeam& threads,
-                     StepCounters& counters)
+    std::size_t find(FeatureKernel<Input> findContacts, FeatureKernel<Input> findSwept,
+                     std::uint32_t StepCounters::*swept, const Input& input, std::size_t features, Limits limits,
+                     ThreadTeam& threads, StepCounters& counters)
     {
         if (m_contacts.empty()) m_contacts.resize(kFirstContacts);
         if (m_swept.size() < input.m_count) resizeGrowing(m_swept, input.m_count);
@@ -45,7 +45,7 @@ public:
                               kernel(std::uint32_t(item), std::uint32_t(items), input, sink, m_swept.data(), &counters);
                           });
             };
-            run(find, (input.m_count + kTestsOfItem - 1) / kTestsOfItem, input.m_count >= kLeastShared);
+            run(findContacts, (input.m_count + kTestsOfItem - 1) / kTestsOfItem, input.m_count >= kLeastShared);
             const std::uint32_t left = counters.*swept;
             if (left > limits.m_swept) return 0;
             if (left > 0) run(findSwept, kSweptItems, left >= kLeastSweptShared);

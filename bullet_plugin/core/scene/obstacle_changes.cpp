@@ -13,9 +13,9 @@ void ObstacleChanges::update(const Scene& scene, std::size_t fresh)
     for (std::size_t slot = 0; slot < count; ++slot)
     {
         if (slot >= fresh || scene.m_obstacles.mesh(slot).m_positionsRevision > m_positions)
-            m_changes[slot] = Change::Positions;
+            m_changes[slot] = Change::Reshaped;
         else if (std::memcmp(&scene.m_places[slot], &m_places[slot], sizeof(ObstaclePlace)) != 0)
-            m_changes[slot] = Change::Pose;
+            m_changes[slot] = Change::Moved;
     }
     m_places = scene.m_places;
     m_positions = scene.m_positionsRevision;

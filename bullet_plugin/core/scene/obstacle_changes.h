@@ -22,7 +22,7 @@ public:
     void forget() { *this = ObstacleChanges(); }
 
     // Return changes that the last update() found: new positions in the obstacle's own frame, or also a new pose.
-    bool reshaped(std::size_t slot) const { return m_changes[slot] == Change::Positions; }
+    bool reshaped(std::size_t slot) const { return m_changes[slot] == Change::Reshaped; }
     bool moved(std::size_t slot) const { return m_changes[slot] != Change::None; }
     // Returns the poses as recorded; they stay in place until the next update().
     const std::vector<ObstaclePlace>& places() const { return m_places; }
@@ -31,8 +31,8 @@ private:
     enum class Change : std::uint8_t
     {
         None,
-        Pose,
-        Positions
+        Moved,
+        Reshaped
     };
 
     std::uint32_t m_positions = 0, m_poses = 0;  // revisions

@@ -1,8 +1,8 @@
 // A uniform grid over an obstacle: which cells a volume's box covers.
 //
-// Method: S. Green, CUDA Particles, 2008 (entries sorted by cell); M. Teschner et al., Optimized Spatial Hashing for Collision
-// Detection of Deformable Objects, 2003 (objects in every cell that their box covers). The grid is bounded, so a cell's index is
-// its key and nothing collides. What lies outside belongs to the cells at the border.
+// Method: S. Green, CUDA Particles, 2008 (entries sorted by cell); M. Teschner et al., Optimized Spatial Hashing for
+// Collision Detection of Deformable Objects, 2003 (objects in every cell that their box covers). The grid is bounded,
+// so a cell's index is its key and nothing collides. What lies outside belongs to the cells at the border.
 #ifndef DRAPE_STUDY_GRID_H
 #define DRAPE_STUDY_GRID_H
 

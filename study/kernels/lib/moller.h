@@ -28,7 +28,8 @@ DRAPE_FUNCTION int mollerSides(FeatureTriangle f, Vec3 n, float offset, float di
     return distances[0] * distances[1] > 0.0f && distances[0] * distances[2] > 0.0f;
 }
 
-// Where f crosses the other's plane, along one axis of the line in which the planes meet. distances are not all zero.
+// Computes where f crosses the other's plane, along one axis of the line in which the planes meet. Not all distances
+// may be zero.
 DRAPE_FUNCTION void mollerInterval(FeatureTriangle f, const float distances[3], int axis, float* low, float* high)
 {
     // The corner that is alone on its side, or off the plane alone.

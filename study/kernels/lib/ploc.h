@@ -1,9 +1,9 @@
 // Parallel locally-ordered clustering: clusters in Morton order look at their neighbours, and two that are each other's
 // nearest become one, round by round.
 //
-// Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction", 2018. Distances
-// are compared in one total order of pairs, so that the least pair always merges and every round makes progress; of equal
-// distances even-odd neighbours come first, so that equal clusters halve in number.
+// Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction", 2018.
+// Distances are compared in one total order of pairs, so that the least pair always merges and every round makes
+// progress; of equal distances even-odd neighbours come first, so that equal clusters halve in number.
 #ifndef DRAPE_LIB_PLOC_H
 #define DRAPE_LIB_PLOC_H
 
@@ -20,14 +20,14 @@ typedef struct Box
 DRAPE_FUNCTION Box boxUnion(const Box* a, const Box* b)
 {
     Box both;
-    both.m_low = vec3(drapeMin(a->m_low.x, b->m_low.x), drapeMin(a->m_low.y, b->m_low.y),
-                      drapeMin(a->m_low.z, b->m_low.z));
+    both.m_low =
+        vec3(drapeMin(a->m_low.x, b->m_low.x), drapeMin(a->m_low.y, b->m_low.y), drapeMin(a->m_low.z, b->m_low.z));
     both.m_high = vec3(drapeMax(a->m_high.x, b->m_high.x), drapeMax(a->m_high.y, b->m_high.y),
                        drapeMax(a->m_high.z, b->m_high.z));
     return both;
 }
 
-// Of a triangle; one with a NaN or infinite corner has an empty box and merges as anything does.
+// Returns a triangle's box. A triangle with a NaN or infinite corner has an empty box and merges like any other.
 DRAPE_FUNCTION Box boxOfTriangle(const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* positions)
 {
     const Vec3 a = vec3Load(positions, triangle->m_vertices[0]);
@@ -37,10 +37,10 @@ DRAPE_FUNCTION Box boxOfTriangle(const DRAPE_GLOBAL Triangle* triangle, const DR
     box.m_low = vec3(DRAPE_INFINITY, DRAPE_INFINITY, DRAPE_INFINITY);
     box.m_high = vec3(-DRAPE_INFINITY, -DRAPE_INFINITY, -DRAPE_INFINITY);
     if (!vec3IsFinite(a) || !vec3IsFinite(b) || !vec3IsFinite(c)) return box;
-    box.m_low = vec3(drapeMin(a.x, drapeMin(b.x, c.x)), drapeMin(a.y, drapeMin(b.y, c.y)),
-                     drapeMin(a.z, drapeMin(b.z, c.z)));
-    box.m_high = vec3(drapeMax(a.x, drapeMax(b.x, c.x)), drapeMax(a.y, drapeMax(b.y, c.y)),
-                      drapeMax(a.z, drapeMax(b.z, c.z)));
+    box.m_low =
+        vec3(drapeMin(a.x, drapeMin(b.x, c.x)), drapeMin(a.y, drapeMin(b.y, c.y)), drapeMin(a.z, drapeMin(b.z, c.z)));
+    box.m_high =
+        vec3(drapeMax(a.x, drapeMax(b.x, c.x)), drapeMax(a.y, drapeMax(b.y, c.y)), drapeMax(a.z, drapeMax(b.z, c.z)));
     return box;
 }
 
@@ -54,8 +54,8 @@ DRAPE_FUNCTION float unionArea(const Box* a, const Box* b)
     return x * y + y * z + z * x;
 }
 
-// Whether the rounds left below DRAPE_TREE_HEIGHT are just enough to halve the clusters until one is left: then even and odd
-// neighbours merge whatever their distance.
+// Returns whether the rounds left below DRAPE_TREE_HEIGHT are just enough to halve the clusters until one is left: then
+// even and odd neighbours merge whatever their distance.
 DRAPE_FUNCTION int plocIsForced(DRAPE_UINT round, DRAPE_UINT count)
 {
     return round + ceilLog2(count) >= DRAPE_TREE_HEIGHT;
@@ -97,23 +97,23 @@ DRAPE_FUNCTION DRAPE_UINT plocNearest(const DRAPE_GLOBAL Box* boxes, DRAPE_UINT 
     return nearest;
 }
 
-// A cluster of two: numbers below the triangles' count are leaves, in Morton order; the others are clusters in the order in
-// which they were made.
+// A cluster of two: numbers below the triangles' count are leaves, in Morton order; the others are clusters in the
+// order in which they were made.
 typedef struct Cluster
 {
     DRAPE_UINT m_left;
     DRAPE_UINT m_right;
 } Cluster;
 
-// Where a cluster's node goes: its place in the tree and its first leaf.
+// The position of a cluster's node in the tree, and its first leaf.
 typedef struct ClusterPlace
 {
     DRAPE_UINT m_place;
     DRAPE_UINT m_firstLeaf;
 } ClusterPlace;
 
-// Links one cluster's node and gives its children their places; a leaf's triangle goes into the order. sizes: leaves below
-// each number.
+// Links one cluster's node and gives its children their places; a leaf's triangle goes into the order. sizes: leaves
+// below each number.
 DRAPE_FUNCTION void plocLink(DRAPE_GLOBAL BvhNode* nodes, DRAPE_GLOBAL DRAPE_UINT* splits,
                              DRAPE_GLOBAL DRAPE_UINT* order, const DRAPE_GLOBAL DRAPE_UINT* mortonOrder,
                              const DRAPE_GLOBAL Cluster* clusters, const DRAPE_GLOBAL DRAPE_UINT* sizes,

@@ -1,8 +1,9 @@
-// The binary radix tree over sorted Morton codes: a node splits where the highest bit that differs among its leaves does.
+// The binary radix tree over sorted Morton codes: a node splits where the highest bit that differs among its leaves
+// does.
 //
-// Karras, "Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees", 2012; here a work-item has the split
-// instead of the node, so that every link is known where it is written. Codes have two words; equal codes, and codes equal
-// in the bits that count, are told apart by their place.
+// Karras, "Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees", 2012; here a work-item has the
+// split instead of the node, so that every link is known where it is written. Codes have two words; equal codes, and
+// codes equal in the bits that count, are told apart by their place.
 #ifndef DRAPE_LIB_RADIX_TREE_H
 #define DRAPE_LIB_RADIX_TREE_H
 
@@ -13,12 +14,13 @@ DRAPE_NAMESPACE_BEGIN
 typedef struct SortedCodes
 {
     const DRAPE_GLOBAL DRAPE_UINT* m_high;
-    const DRAPE_GLOBAL DRAPE_UINT* m_low;  // the same as m_high where codes have one word
+    const DRAPE_GLOBAL DRAPE_UINT* m_low;  // equals m_high where codes have one word
     DRAPE_UINT m_bits;                     // from the top of m_high, that may decide a split
     DRAPE_UINT m_count;
 } SortedCodes;
 
-// As many bits as leave room for ⌈log2 n⌉ heights below DRAPE_TREE_HEIGHT; unused is how many leading bits are never set.
+// Returns as many bits as leave room for ⌈log2 n⌉ heights below DRAPE_TREE_HEIGHT; unused is how many leading bits are
+// never set.
 DRAPE_FUNCTION DRAPE_UINT decidingBits(DRAPE_UINT leafCount, DRAPE_UINT codeBits, DRAPE_UINT unused)
 {
     const DRAPE_UINT room = DRAPE_TREE_HEIGHT - ceilLog2(leafCount);
@@ -34,7 +36,7 @@ DRAPE_FUNCTION DRAPE_UINT leadingZeros(DRAPE_UINT x)
 #endif
 }
 
-// How many leading bits two leaves have in common, place included.
+// Returns the number of leading bits that two leaves have in common, position included.
 DRAPE_FUNCTION DRAPE_UINT commonBits(const SortedCodes* codes, DRAPE_UINT i, DRAPE_UINT j)
 {
     const DRAPE_UINT high = codes->m_high[i] ^ codes->m_high[j];
@@ -49,7 +51,8 @@ DRAPE_FUNCTION DRAPE_UINT reachOf(const SortedCodes* codes, DRAPE_UINT from, DRA
                                   DRAPE_UINT common)
 {
     DRAPE_UINT bound = 1;
-    while (bound <= room && commonBits(codes, from, from + bound * step) > common) bound *= 2u;
+    while (bound <= room && commonBits(codes, from, from + bound * step) > common)
+        bound *= 2u;
     DRAPE_UINT reach = bound / 2u;  // reached; less than bound is
     for (DRAPE_UINT add = bound / 2u; add > 1u;)
     {

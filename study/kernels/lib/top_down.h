@@ -1,8 +1,9 @@
-// Construction from the root down: a node's triangles part at the mean or the median of their centroids along the volume's
-// longest direction. Sums are of whole numbers, so they do not depend on who adds what, and every back end parts alike.
+// Construction from the root down: a node's triangles part at the mean or the median of their centroids along the
+// volume's longest direction. Sums are of whole numbers, so they do not depend on who adds what, and every back end
+// parts alike.
 //
-// A part goes to the left end of the node's range in order, and the rest to the right end in reverse order, as blocks come.
-// Where the rule parts nothing off, or would build too high, the range is halved as it lies.
+// A part goes to the left end of the node's range in order, and the rest to the right end in reverse order, as blocks
+// come. Where the rule parts nothing off, or would build too high, the range is halved as it lies.
 #ifndef DRAPE_LIB_TOP_DOWN_H
 #define DRAPE_LIB_TOP_DOWN_H
 
@@ -29,7 +30,7 @@ typedef struct OpenNode
     DRAPE_UINT m_end;
 } OpenNode;
 
-// What a level's splits follow.
+// The rule that a level's splits follow.
 typedef struct SplitRule
 {
     DRAPE_UINT m_depth;     // links from the root
@@ -85,7 +86,7 @@ DRAPE_FUNCTION DRAPE_UINT leftSize(DRAPE_UINT below, DRAPE_UINT size)
     return below == 0u || below == size ? (size + 1u) / 2u : below;
 }
 
-// Where a triangle goes that is the index-th of its node's range, with `before` left ones before it.
+// Returns the new position of the index-th triangle of its node's range, with `before` left ones before it.
 DRAPE_FUNCTION DRAPE_UINT partedPlace(const OpenNode* node, DRAPE_UINT index, DRAPE_UINT before, int isLeft)
 {
     return isLeft ? node->m_first + before : node->m_end - 1u - (index - before);
@@ -141,10 +142,16 @@ DRAPE_FUNCTION DRAPE_UINT countBelow(const TriangleSummary* summary, const DRAPE
 }
 
 // The median's pivot is found bit by bit; this says whether a bit stays when so many cells are below the pivot with it.
-DRAPE_FUNCTION int keepsMedianBit(DRAPE_UINT below, DRAPE_UINT size) { return below <= size / 2u; }
+DRAPE_FUNCTION int keepsMedianBit(DRAPE_UINT below, DRAPE_UINT size)
+{
+    return below <= size / 2u;
+}
 
-// Where the lowest cell holds more than half, it is parted from the rest.
-DRAPE_FUNCTION DRAPE_UINT medianPivot(DRAPE_UINT pivot, DRAPE_UINT below) { return below == 0u ? pivot + 1u : pivot; }
+// Parts the lowest cell from the rest if it contains more than half.
+DRAPE_FUNCTION DRAPE_UINT medianPivot(DRAPE_UINT pivot, DRAPE_UINT below)
+{
+    return below == 0u ? pivot + 1u : pivot;
+}
 
 DRAPE_FUNCTION DRAPE_UINT pivotOfNode(const TriangleSummary* summary, const DRAPE_GLOBAL DRAPE_UINT* order,
                                       const OpenNode* node, const SplitAxis* axis, const SplitRule* rule)
@@ -172,7 +179,8 @@ DRAPE_FUNCTION DRAPE_UINT pivotOfNode(const TriangleSummary* summary, const DRAP
     return medianPivot(pivot, belowPivot);
 }
 
-// Splits one node alone: reorders its range (other has room for it), links it, gives its children volumes and opens them.
+// Splits one node alone: reorders its range (other has room for it), links it, gives its children volumes and opens
+// them.
 DRAPE_FUNCTION void splitSerial(DRAPE_GLOBAL BvhNode* nodes, DRAPE_GLOBAL DRAPE_UINT* splits,
                                 DRAPE_GLOBAL DRAPE_UINT* order, DRAPE_GLOBAL DRAPE_UINT* other,
                                 const TriangleSummary* summary, const SplitRule* rule, const OpenNode* node,
@@ -193,7 +201,8 @@ DRAPE_FUNCTION void splitSerial(DRAPE_GLOBAL BvhNode* nodes, DRAPE_GLOBAL DRAPE_
             other[partedPlace(node, index, before, isLeft)] = triangle;
             before += isLeft ? 1u : 0u;
         }
-        for (DRAPE_UINT i = node->m_first; i < node->m_end; ++i) order[i] = other[i];
+        for (DRAPE_UINT i = node->m_first; i < node->m_end; ++i)
+            order[i] = other[i];
     }
     Dop dops[2];
     dopClear(&dops[0]);

@@ -1,4 +1,4 @@
-// What the traversals of two hierarchies share: which node of a pair opens, and the tests of volumes.
+// Functions that the traversals of two hierarchies share: which node of a pair opens, and the tests of volumes.
 #ifndef DRAPE_LIB_TRAVERSAL_H
 #define DRAPE_LIB_TRAVERSAL_H
 
@@ -7,9 +7,9 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// Whether the cloth's node of an overlapping pair that is not two leaves opens: the one nearer to its root, so that
-// both sides shrink together. Unlike opensFirst() it does not look at volumes: so every pair has one parent, whatever
-// moves.
+// Returns whether the cloth's node of an overlapping pair that is not two leaves opens: the one nearer to its root, so
+// that both sides shrink together. Unlike opensFirst() it does not look at volumes: so every pair has one parent,
+// whatever moves.
 DRAPE_FUNCTION int clothOpens(const DRAPE_GLOBAL BvhNode* cloth, const DRAPE_GLOBAL BvhNode* obstacle,
                               DRAPE_UINT clothDepth, DRAPE_UINT obstacleDepth)
 {
@@ -17,9 +17,9 @@ DRAPE_FUNCTION int clothOpens(const DRAPE_GLOBAL BvhNode* cloth, const DRAPE_GLO
     return obstacle->m_count == 0 || clothDepth <= obstacleDepth;
 }
 
-// The pair from which clothOpens() led to this one. Opening the shallower side keeps the cloth's depth at the
-// obstacle's or one more, except below a leaf, where the other side is the deeper one; so the deeper side opened last,
-// and at equal depth the obstacle.
+// Returns the pair from which clothOpens() led to this one. Opening the shallower side keeps the cloth's depth at the
+// obstacle's or one more. Below a leaf the other side is the deeper one. So the deeper side opened last, and at equal
+// depth the obstacle.
 DRAPE_FUNCTION NodePair parentPair(NodePair pair, const DRAPE_GLOBAL BvhLink* clothLinks,
                                    const DRAPE_GLOBAL BvhLink* obstacleLinks)
 {
@@ -37,7 +37,8 @@ DRAPE_FUNCTION NodePair parentPair(NodePair pair, const DRAPE_GLOBAL BvhLink* cl
     return parent;
 }
 
-// Whether a pair is its parent's first child: of the pairs below a pair, exactly one is reached by first children only.
+// Returns whether a pair is its parent's first child: of the pairs below a pair, exactly one is reached by first
+// children only.
 DRAPE_FUNCTION int isFirstChild(NodePair pair, NodePair parent, const DRAPE_GLOBAL BvhNode* cloths,
                                 const DRAPE_GLOBAL BvhNode* obstacles)
 {

@@ -1,4 +1,4 @@
-// Where the nodes of a binary hierarchy over ordered leaves lie.
+// The layout of the nodes of a binary hierarchy over ordered leaves.
 //
 // Every inner node splits its leaves behind one leaf s, and no two nodes behind the same; its children are the pair of
 // nodes 2s + 1 and 2s + 2. The root is node 0. So n leaves have 2n - 1 nodes, a builder knows where a node goes without
@@ -25,8 +25,14 @@ DRAPE_NAMESPACE_BEGIN
 #define DRAPE_SPLIT_PLACE 0x3fffffffu
 #define DRAPE_SPLIT_TIER_SHIFT 30
 
-DRAPE_FUNCTION DRAPE_UINT splitPlace(DRAPE_UINT word) { return word & DRAPE_SPLIT_PLACE; }
-DRAPE_FUNCTION DRAPE_UINT splitTier(DRAPE_UINT word) { return word >> DRAPE_SPLIT_TIER_SHIFT; }
+DRAPE_FUNCTION DRAPE_UINT splitPlace(DRAPE_UINT word)
+{
+    return word & DRAPE_SPLIT_PLACE;
+}
+DRAPE_FUNCTION DRAPE_UINT splitTier(DRAPE_UINT word)
+{
+    return word >> DRAPE_SPLIT_TIER_SHIFT;
+}
 
 DRAPE_FUNCTION DRAPE_UINT tierOfSize(DRAPE_UINT leaves)
 {
@@ -34,7 +40,10 @@ DRAPE_FUNCTION DRAPE_UINT tierOfSize(DRAPE_UINT leaves)
 }
 
 // The split whose pair of children begins at an inner node's m_first.
-DRAPE_FUNCTION DRAPE_UINT splitOfPair(DRAPE_UINT first) { return first >> 1; }
+DRAPE_FUNCTION DRAPE_UINT splitOfPair(DRAPE_UINT first)
+{
+    return first >> 1;
+}
 
 DRAPE_FUNCTION void treeSetLeaf(DRAPE_GLOBAL BvhNode* nodes, DRAPE_UINT place, DRAPE_UINT leaf)
 {
@@ -51,7 +60,7 @@ DRAPE_FUNCTION void treeSetSplit(DRAPE_GLOBAL BvhNode* nodes, DRAPE_GLOBAL DRAPE
     splits[split] = place | (tierOfSize(leaves) << DRAPE_SPLIT_TIER_SHIFT);
 }
 
-// Where a leaf lies: it is the left child of the split behind it or the right child of the one before.
+// Returns a leaf's position: it is the left child of the split behind it or the right child of the one before.
 DRAPE_FUNCTION DRAPE_UINT leafPlace(const DRAPE_GLOBAL BvhNode* nodes, DRAPE_UINT leaf, DRAPE_UINT leafCount)
 {
     const DRAPE_UINT left = 2u * leaf + 1u;
@@ -62,7 +71,8 @@ DRAPE_FUNCTION DRAPE_UINT leafPlace(const DRAPE_GLOBAL BvhNode* nodes, DRAPE_UIN
 DRAPE_FUNCTION DRAPE_UINT ceilLog2(DRAPE_UINT n)
 {
     DRAPE_UINT bits = 0;
-    while (bits < 32u && ((n - 1u) >> bits) != 0u) ++bits;
+    while (bits < 32u && ((n - 1u) >> bits) != 0u)
+        ++bits;
     return bits;
 }
 

@@ -1,7 +1,7 @@
 // Volumes of a hierarchy from its leaves up, run through from left to right by one work-item.
 //
-// A node is complete when its right child is: whoever finishes a right child merges the pair into the parent and goes on
-// from there; a left child's parent waits for its sibling, whose leaves come later.
+// A node is complete when its right child is: whoever finishes a right child merges the pair into the parent and goes
+// on from there. A left child's parent waits for the sibling, whose leaves come later.
 #ifndef DRAPE_LIB_TREE_REFIT_H
 #define DRAPE_LIB_TREE_REFIT_H
 
@@ -35,8 +35,8 @@ DRAPE_FUNCTION void climbTier(DRAPE_GLOBAL BvhNode* nodes, const DRAPE_GLOBAL DR
     }
 }
 
-// Whether a stretch that one work-item or group refits may begin with this leaf: no node of the tier or below spans it and
-// the leaf before.
+// Returns whether a stretch that one work-item or group refits may begin with this leaf: no node of the tier or below
+// spans it and the leaf before.
 DRAPE_FUNCTION int beginsTier(const DRAPE_GLOBAL DRAPE_UINT* splits, DRAPE_UINT leaf, DRAPE_UINT tier)
 {
     return leaf == 0u || splitTier(splits[leaf - 1u]) > tier;
@@ -46,12 +46,13 @@ DRAPE_FUNCTION int beginsTier(const DRAPE_GLOBAL DRAPE_UINT* splits, DRAPE_UINT 
 DRAPE_FUNCTION DRAPE_UINT nextBegin(const DRAPE_GLOBAL DRAPE_UINT* splits, DRAPE_UINT leaf, DRAPE_UINT leafCount,
                                     DRAPE_UINT tier)
 {
-    while (leaf < leafCount && !beginsTier(splits, leaf, tier)) ++leaf;
+    while (leaf < leafCount && !beginsTier(splits, leaf, tier))
+        ++leaf;
     return leaf < leafCount ? leaf : leafCount;
 }
 
-// The largest node of a tier below `tier` whose last leaf is `last`, given the first leaf behind the split before it that
-// is of the tier or above.
+// The largest node of a tier below `tier` whose last leaf is `last`, given the first leaf behind the split before it
+// that is of the tier or above.
 DRAPE_FUNCTION DRAPE_UINT elementPlace(const DRAPE_GLOBAL BvhNode* nodes, const DRAPE_GLOBAL DRAPE_UINT* splits,
                                        DRAPE_UINT first, DRAPE_UINT last, DRAPE_UINT leafCount, DRAPE_UINT tier)
 {

@@ -144,7 +144,7 @@ std::map<std::string, Row> buildOnHost(const std::string& model, const TreeInput
 bool addBuilds(const Builds& builds, const TreeVariant& variant, Row row, const Row& host, Table& table)
 {
     row["hash"] = builds.m_hash;
-    row["valid"] = "yes";  // where the next one is
+    row["valid"] = "yes";  // if the next one is
     Row times = row;
     builds.m_host.fill(times);
     builds.m_kernels.fill(times, "kernel_");

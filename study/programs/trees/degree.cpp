@@ -70,7 +70,7 @@ struct HostTree
     Tree m_tree;
     Found m_found;
     std::string m_refitHash;
-    bool m_valid = false;  // as built, and refitted
+    bool m_valid = false;  // both when built and when refitted
 };
 
 Row treeOnHost(HostTree& host, const Row& described, const TreeInput& input, const TreeMethods& methods,
@@ -98,7 +98,7 @@ Row treeOnHost(HostTree& host, const Row& described, const TreeInput& input, con
     return row;
 }
 
-// Of a tree on the device: what a step reads, that is nodes and order.
+// Returns the bytes of a tree on the device that a step reads: nodes and order.
 std::size_t bytesOf(const Tree& tree)
 {
     return tree.m_nodes.size() * sizeof(BvhNode) + tree.m_order.size() * sizeof(std::uint32_t);
@@ -126,7 +126,7 @@ Found walkOnDevice(Device& device, const Tree& tree, const ClothQueries& cloth, 
     return walk.found();
 }
 
-// The same on the device. Its row is void, too, where one of its trees is not the host's.
+// Adds the row of the device. It is also void if one of its trees is not the host's.
 void addDeviceRow(Device& device, Row row, TreeInput& input, const TreeMethods& methods, const HostTree& host,
                   const ClothQueries& cloth, const PeerScene& scene, Judge& judge, const StudyOptions& options,
                   Table& table)
@@ -193,7 +193,7 @@ struct StepRun
 {
     std::map<std::string, Samples> m_stages;
     std::size_t m_candidates = 0, m_contacts = 0, m_tests = 0, m_bytes = 0;
-    std::string m_hash;  // of all steps' contacts
+    std::string m_hash;  // hash of all steps' contacts
     Row m_device;
 };
 

@@ -133,7 +133,7 @@ void addDeviceRows(Device& device, TreeInput& input, const Tree& tree, const std
     fillDevice(row, device.info());
     row["threads"] = 0;
     row["hash"] = refits.m_hash;
-    row["valid"] = "yes";  // where the next one is
+    row["valid"] = "yes";  // if the next one is
     const Row described = row;
     refits.m_host.fill(row);
     refits.m_kernels.fill(row, "kernel_");

@@ -73,7 +73,7 @@ public:
     }
 
     std::string hash() { return m_walk.found().hash(); }
-    // As the last refit left them.
+    // Returns the nodes that the last refit left.
     std::vector<BvhNode> nodes()
     {
         std::vector<BvhNode> nodes(m_shape.m_nodes.size());

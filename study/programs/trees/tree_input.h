@@ -41,7 +41,7 @@ struct TreeInput
 
     std::vector<Triangle> m_triangles;
     std::vector<float> m_positions;  // m, x y z per vertex
-    std::vector<float> m_moved;      // where refits find them: refitPositions()
+    std::vector<float> m_moved;      // positions for refits: refitPositions()
     Buffer<Triangle> m_triangleBuffer;
     Buffer<float> m_positionBuffer;
 };
@@ -56,12 +56,12 @@ struct ClothQueries
 };
 ClothQueries clothQueries(const TriangleMesh& obstacle);
 
-// Of order and nodes: links and volumes, bit for bit.
+// Hashes order and nodes: links and volumes, bit for bit.
 std::string treeHash(const Tree& tree);
-// Whether every triangle is in one leaf and every volume is exactly that of its triangles: whyInvalid(), which a line
-// on standard error then says. moved: of the triangles where refits find them.
+// Returns whether every triangle is in one leaf and every volume is exactly that of its triangles: whyInvalid(), which
+// a line on standard error then says. moved: of the triangles where refits find them.
 bool isValid(const Tree& tree, const TreeInput& input, bool moved = false);
-// What the hash of a wrong tree is held against.
+// The expected hash beside that of a wrong tree.
 constexpr const char* kNoValidTree = "that of a valid tree";
 
 // A row's input columns.

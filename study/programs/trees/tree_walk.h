@@ -1,4 +1,4 @@
-// What a cloth's step meets in a tree: every cloth triangle looks for its candidates from the root.
+// Counts the work of a cloth's step in a tree: every cloth triangle looks for its candidates from the root.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace drape::bench
 {
 struct Found
 {
-    std::size_t m_tests = 0;  // of volumes
+    std::size_t m_tests = 0;  // tests of volumes
     std::vector<Candidate> m_candidates;
 
     // Sorts the candidates: their order is not defined.
@@ -20,7 +20,7 @@ struct Found
 
 void walkOnHost(const Hierarchy& obstacle, const ClothQueries& cloth, Found& found);
 
-// The same walk on a device, a work-item per cloth triangle.
+// Walks on a device, with a work-item per cloth triangle.
 class DeviceWalk
 {
 public:
@@ -30,14 +30,14 @@ public:
     // Enqueues a walk over the hierarchy's nodes and order on the device, and waits. Host-to-host ms; kernelMs: of its
     // kernels.
     double run(Buffer<BvhNode>& nodes, Buffer<cl_uint>& order, double& kernelMs);
-    // Of the last walk; m_tests is not counted.
+    // Returns the result of the last walk; m_tests is not counted.
     Found found();
 
 private:
     Device& m_device;
     Kernel m_walk;
     cl_uint m_root, m_count;
-    Buffer<BvhNode> m_volumes;  // of the cloth's triangles
+    Buffer<BvhNode> m_volumes;  // volumes of the cloth's triangles
     Buffer<Candidate> m_candidates;
     Buffer<TraversalCounters> m_counters;
 };
