@@ -67,7 +67,7 @@ private:
 
     bool m_isPredicted = false;
     std::vector<btVector3> m_velocities;  // before the prediction, m/s
-    std::vector<Vec3> m_accelerations;    // of the step, m/s²
+    std::vector<Vec3> m_accelerations;    // m/s², constant in the step
     std::vector<Prediction> m_predictions;
     std::vector<LinkNodes> m_links;  // links as sorted for sweeps
     ClothParts m_parts;              // when they were sorted

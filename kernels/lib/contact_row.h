@@ -1,6 +1,6 @@
-// Projection of contacts on positions: C = n.(sum w_i d_i) - level >= 0 for displacements d_i, weighted by inverse mass
-// (Müller et al. 2007, Position Based Dynamics, section 3.3), with Coulomb's friction (Macklin et al. 2014, Unified
-// Particle Physics, section 6.1).
+// Projection of contacts on positions: C = n.(sum w_i d_i) - level >= 0 for displacements d_i. Pushes are weighted by
+// inverse mass (Müller et al. 2007, Position Based Dynamics, section 3.3). Friction is Coulomb's (Macklin et al. 2014,
+// Unified Particle Physics, section 6.1).
 #ifndef DRAPE_LIB_CONTACT_ROW_H
 #define DRAPE_LIB_CONTACT_ROW_H
 
@@ -24,10 +24,10 @@ DRAPE_FUNCTION float rowViolation(const ContactRow* row, const SolverNode* nodes
     return row->m_level - (1.0f - passed) * row->m_advance - vec3Dot(row->m_normal, rowDisplacement(row, nodes));
 }
 
-// Pushes the row's nodes so far that the row holds, and takes back an earlier push that is not needed any more. Friction
-// removes the point's motion since the step's start along the surface, relative to the obstacle, up to Coulomb's bound.
-// Returns whether there was anything to do; `worst` grows to the violation that a push can correct. A row with NaN does
-// nothing.
+// Pushes the row's nodes so far that the row holds, and takes back an earlier push that is not needed any more.
+// Friction removes the point's motion since the step's start along the surface, relative to the obstacle, up to
+// Coulomb's bound. Returns whether there was anything to do; `worst` grows to the violation that a push can correct. A
+// row with NaN does nothing.
 DRAPE_FUNCTION int projectRow(ContactRow* row, SolverNode* nodes, float passed, float* worst)
 {
     const Vec3 way = rowDisplacement(row, nodes), normal = row->m_normal;

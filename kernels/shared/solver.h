@@ -16,11 +16,11 @@ typedef struct SolverNode
 // A contact that acts: the least displacement, along a normal, of a weighted point of the cloth.
 typedef struct ContactRow
 {
-    Vec3 m_normal;  // unit, from the obstacle to the cloth
-    float m_level;  // m, least displacement along the normal at the step's end
-    Vec3 m_carried;  // m, displacement along the surface by the obstacle's motion in the step
-    float m_advance;  // m, the same along the normal
-    Vec3 m_held;      // friction applied in this stage, in units of the multiplier
+    Vec3 m_normal;       // unit, from the obstacle to the cloth
+    float m_level;       // m, least displacement along the normal at the step's end
+    Vec3 m_carried;      // m, displacement along the surface by the obstacle's motion in the step
+    float m_advance;     // m, the same along the normal
+    Vec3 m_held;         // friction applied in this stage, in units of the multiplier
     float m_multiplier;  // pushed in this stage, kg m
     float m_weights[3];  // by node, sum 1
     float m_friction;

@@ -59,7 +59,7 @@ TEST(BodyNodes, PathsLeadFromTheStepsStartToTheCurrentPosition)
 TEST(BodyNodes, ContactsMayNotMoveAnchoredNodes)
 {
     MovingPair pair;
-    pair.m_body.m_nodes[0].m_battach = 1;
+    pair.m_body.m_nodes[0].m_battach = -1;  // a bit with a sign
     recordPath(pair.m_body.m_nodes[0], 0, pair.m_nodes);
     EXPECT_EQ(pair.m_nodes.inverseMass(0), 0);
     EXPECT_EQ(pair.m_nodes.nodes()[0].m_inverseMass, 2) << "links do";

@@ -160,7 +160,7 @@ TEST(ImpactCut, APathEndsWhereAMovingObstacleCarriesIt)
     for (const Carry& carry : {Carry{up, nullptr}, Carry{nullptr, starts.data()}})
     {
         SolverNodes nodes = fallingNodes(2);
-        SolverContact contact = planeContact({0}, 0);  // where the plane is at the end
+        SolverContact contact = planeContact({0}, 0);  // at the end of its motion
         contact.m_carry = carry;
         contact.m_startGap = 1 + kRise - kThickness;
         contact.m_time = (1 + kRise) / (2 + kRise);  // on the way from the carried start to the end

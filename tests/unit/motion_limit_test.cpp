@@ -168,7 +168,7 @@ TEST(MotionLimit, HonoursEveryFaceOfANode)
 
 namespace
 {
-// How an obstacle went up by 1 m: not at all, as a body or by its vertices.
+// An obstacle went up by 1 m: not at all, as a body or by its vertices.
 enum class Rise
 {
     None,

@@ -28,7 +28,7 @@ struct ClothContacts
     std::vector<FeatureContacts> m_features;  // in canonical order
     MotionLimit m_limit;
     float m_leastThickness = std::numeric_limits<float>::infinity(), m_mostThickness = 0;  // m, over the cloth's pairs
-    float m_friction = 0;          // of the cloth; a contact has its product with the obstacle's
+    float m_friction = 0;          // the cloth's factor of a contact's coefficient
     float m_hardness = 0;          // see targetGap()
     float m_perSecond = 0;         // 1/s, steps per second
     float m_kept = 1;              // share of a velocity that damping leaves in a step

@@ -10,7 +10,7 @@
 
 namespace drape
 {
-// How an obstacle's motion in the step carries points near it.
+// An obstacle's motion in the step, as it carries points near it.
 struct Carry
 {
     const float* m_map = nullptr;    // rigid motion, three rows of rotation and shift; null if the obstacle rests

@@ -7,8 +7,8 @@
 // Guarantee: no contact ends violated by more than kClosingTolerance if kClosingRounds sweeps suffice. Sweeps continue
 // while a violation exceeds what the next step would recover. Results are the same bits with any number of threads.
 //
-// Cost: linear in the contacts; a few sweeps per iteration or substep and up to kClosingRounds after them, at most
-// mostClosingRounds(). Reasons: docs/design_notes/contact_sweeps.md.
+// Cost: linear in the contacts; kContactSweeps per iteration or substep and up to kClosingRounds after them, at most
+// kMostFurther more. Reasons: docs/design_notes/contact_sweeps.md.
 #pragma once
 
 #include <cstddef>
@@ -22,8 +22,8 @@
 namespace drape
 {
 // Sweeps over the contacts in each substep, one after each sweep over the links, or before each iteration of the
-// caller's links. What links and contacts leave each other becomes motion: on the bunny nodes of a cloth of 33 x 33
-// nodes at rest end their steps at 8.7 mm/s (RMS) where all sweeps over the links come first, and at 0.2 mm/s in turns.
+// caller's links. What links and contacts leave each other becomes motion. On the bunny nodes of a cloth of 33 x 33
+// nodes at rest end their steps at 8.7 mm/s (RMS) if all sweeps over the links come first. In turns it is 0.2 mm/s.
 constexpr int kContactSweeps = Substeps::kLinkSweeps;
 
 constexpr int kClosingRounds = 8;
@@ -54,8 +54,8 @@ public:
 
     // Cloths with ForeignLinks are written back; nodes of others stay where the solver leaves them.
     void solve(const std::vector<SolverCloth>& cloths, const ContactSource& source);
-    // Runs the closing sweeps alone, for cloths whose nodes are at the ends of the paths along which their contacts were
-    // found.
+    // Runs the closing sweeps alone, for cloths whose nodes are at the ends of the paths along which their contacts
+    // were found.
     void close(const std::vector<SolverCloth>& cloths, const ContactSource& source);
     void solveFree(const std::vector<FreeCloth>& cloths);
 
@@ -79,7 +79,7 @@ private:
     SweepTeam m_team;
     ThreadTeam& m_threads;
     std::vector<SolverCloth> m_cloths;
-    std::vector<std::unique_ptr<ContactSweep>> m_sweeps;  // of m_cloths; kept for their memory
+    std::vector<std::unique_ptr<ContactSweep>> m_sweeps;  // one for each of m_cloths; kept for their memory
     // Cloths of the step, cloths with contacts, and subsets of one iteration or sweep.
     Cloths m_all, m_touching, m_iterating, m_turn, m_meeting, m_open, m_resting, m_others;
     std::vector<const SolverCloth*> m_own;
