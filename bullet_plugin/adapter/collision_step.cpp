@@ -357,6 +357,12 @@ void CollisionStep::reportPassed(const std::vector<bool>& strayed)
     }
 }
 
+void CollisionStep::detectRealPaths()
+{
+    submit(Detection::Check);
+    receiveHeld(Detection::Check);
+}
+
 std::vector<BodyContacts*> CollisionStep::checkStrayed()
 {
     std::vector<bool> strayed;
@@ -368,8 +374,7 @@ std::vector<BodyContacts*> CollisionStep::checkStrayed()
     m_state.m_found.keepList();
     for (int detections = 1;; ++detections)
     {
-        submit(Detection::Check);
-        receiveHeld(Detection::Check);
+        detectRealPaths();
         if (detections > kMostDetections)
         {
             reportPassed(strayed);

@@ -29,6 +29,10 @@ public:
     // their predicted paths. Ends those paths before anything that they would have passed. Returns these bodies, with
     // their contacts along the paths.
     std::vector<BodyContacts*> checkStrayed();
+    // Detects along the bodies' real paths, which end at their current positions.
+    void detectRealPaths();
+    // Returns whether a path of the last detection passes a surface.
+    bool passesSurface(const BodyContacts& body) const { return anyCuts(impactsOf(body)); }
     // Reports, after finish(), a body without a pair in this step whose nodes are still not finite, as they were when
     // it had one.
     void reportInvalid(const btSoftBody& body);

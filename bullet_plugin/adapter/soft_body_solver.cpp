@@ -340,15 +340,28 @@ double SoftBodySolver::solveBodies()
     return bulletMs;
 }
 
-// Keeps bodies that strayed from their predicted paths at their distance from what is near their real ones.
+// Keeps bodies that strayed from their predicted paths at their distance from what is near their real ones. A body that
+// would pass a surface on the way goes back to where it was checked.
 void SoftBodySolver::closeStrayed(const std::vector<BodyContacts*>& bodies)
 {
+    if (bodies.empty()) return;
     std::vector<SolverCloth> cloths;
+    std::vector<SolverNodes> checked;
     for (BodyContacts* body : bodies)
+    {
         cloths.push_back({&body->m_contacts, nullptr, nullptr, nullptr});
+        checked.push_back(body->nodes());
+    }
     m_work->m_solver->close(cloths, m_state->m_found.source());
     for (BodyContacts* body : bodies)
         writeShifted(body->nodes(), *body->m_body);
+    m_work->m_step->detectRealPaths();
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+    {
+        if (!m_work->m_step->passesSurface(*bodies[i])) continue;
+        for (std::size_t node = 0; node < checked[i].count(); ++node)
+            writeNode(checked[i], node, bodies[i]->m_body->m_nodes[int(node)]);
+    }
 }
 
 void SoftBodySolver::solveStep()

@@ -172,7 +172,14 @@ void StepSolver::sweepContacts(int iteration)
         rememberAll(sweep.nodes());
     };
     m_team.forCloths(m_turn, read);
-    if (iteration > 0) applyLimits(m_iterating);
+    // Limits beside a moving obstacle hold at the step's end alone.
+    const auto isLimited = [iteration](const ContactSweep* sweep)
+    {
+        const Substeps* const substeps = sweep->cloth().m_substeps;
+        return iteration > 0 && (!substeps || obstaclesRest(sweep) || iteration + 1 == substeps->count());
+    };
+    select(m_iterating, m_turn, isLimited);
+    applyLimits(m_turn);
     select(m_iterating, m_turn, [](const ContactSweep* sweep) { return hasContacts(sweep) || sweep->cloth().m_rigid; });
     restart(iteration);
     sweepInTurns();

@@ -161,7 +161,7 @@ struct StepStatistics : StepCounts
     double m_narrowMs = 0;
     // Time for sorting contacts by body and for ending paths at the first impact, without waits.
     double m_writeMs = 0;
-    // Time for contact rounds between and after Bullet's iterations, and for checking displaced nodes.
+    // Time for contact sweeps between and after Bullet's iterations, and for checking displaced nodes.
     double m_finishMs = 0;
     // Returns all of Drape's time in the solver's predictMotion and solveConstraints, without Bullet's.
     double collisionMs() const { return m_uploadMs + m_waitMs + m_writeMs + m_finishMs; }
