@@ -3,6 +3,7 @@
 
 #include <cctype>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -47,12 +48,19 @@ std::string buildLog(Device& device, const cl::Program& program)
     return log;
 }
 
-// Returns whether a log names a warning. Drivers also log remarks and figures of kernels, which are none.
-bool namesWarning(std::string log)
+// Returns whether a log names a warning. Drivers also log remarks and figures of kernels, which are none. NVIDIA's
+// compiler says of every kernel with a fixed group size that it may be inlined.
+bool namesWarning(const std::string& log)
 {
-    for (char& letter : log)
-        letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-    return log.find("warning") != std::string::npos;
+    std::istringstream lines(log);
+    for (std::string line; std::getline(lines, line);)
+    {
+        if (line.find("is a kernel, so overriding noinline attribute") != std::string::npos) continue;
+        for (char& letter : line)
+            letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+        if (line.find("warning") != std::string::npos) return true;
+    }
+    return false;
 }
 
 class BuildLogTest : public DeviceTest
