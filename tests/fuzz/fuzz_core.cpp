@@ -189,7 +189,7 @@ Choices choicesFrom(Bytes& bytes)
     return choices;
 }
 
-void namePairs(drape::Pipeline& pipeline, Bytes& bytes, const Choices& choices, const std::vector<Mesh>& cloths,
+void namePairs(drape::Pipeline& pipeline, Bytes& bytes, const std::vector<Mesh>& cloths,
                const std::vector<Mesh>& obstacles)
 {
     for (const Mesh& cloth : cloths)
@@ -219,7 +219,7 @@ Steps run(Bytes bytes, const Choices& choices)
         change(*pipeline, bytes, choices, cloths, true);
         change(*pipeline, bytes, choices, obstacles, false);
         writeNodes(*pipeline, bytes, cloths);
-        namePairs(*pipeline, bytes, choices, cloths, obstacles);
+        namePairs(*pipeline, bytes, cloths, obstacles);
         pipeline->submit();
         const drape::ContactList contacts = pipeline->finish();
         steps.push_back(checked(*pipeline, choices.m_settings, contacts));
