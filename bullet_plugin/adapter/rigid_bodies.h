@@ -2,7 +2,7 @@
 // (btSoftBody::m_rcontacts) and anchors, as rows of the core's solver.
 //
 // Contacts and anchors act as those of btSoftBody::solveConstraints() do: friction is the product of both coefficients,
-// what a depth recovers follows kKHR, kSHR or kCHR, and anchors follow kAHR and their influence. Cost: linear in both.
+// what a depth recovers follows kKHR or kCHR, and anchors follow kAHR and their influence. Cost: linear in both.
 #pragma once
 
 #include <unordered_map>

@@ -119,7 +119,7 @@ struct SoftBodySolver::Work
     // links the core solves.
     std::vector<SolverCloth> m_touched;
     std::vector<std::unique_ptr<BulletLinks>> m_bulletLinks;
-    std::vector<FreeCloth> m_free;
+    std::vector<LinkedNodes> m_free;
     RigidBodies m_rigidBodies;
     std::vector<std::pair<btSoftBody*, const SolverNodes*>> m_ends;  // results to be written to the bodies
     std::vector<unsigned char> m_solved;                             // by body: solved by Bullet or by its contacts

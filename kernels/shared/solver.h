@@ -19,7 +19,7 @@ typedef struct ContactRow
     Vec3 m_normal;       // unit, from the obstacle to the cloth
     float m_level;       // m, least displacement along the normal at the step's end
     Vec3 m_carried;      // m, displacement along the surface by the obstacle's motion in the step
-    float m_advance;     // m, the same along the normal
+    float m_advance;     // m, that displacement along the normal
     Vec3 m_held;         // friction applied in this stage, in units of the multiplier
     float m_multiplier;  // pushed in this stage, kg m
     float m_weights[3];  // by node, sum 1

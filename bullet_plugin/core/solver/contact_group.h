@@ -42,6 +42,8 @@ struct SweptCloth
 class ContactGroup
 {
 public:
+    // Returns the number of blocks of a feature with so many contacts.
+    static std::size_t blocksOf(std::uint32_t contacts) { return (contacts + kLanes - 1) / kLanes; }
     // Resets the group for a cloth of another step; memory is kept.
     void clear();
     // Adds a feature; features come in canonical order, nodes first. They must stay in place until the last sweep.

@@ -44,7 +44,7 @@ void ContactSweep::begin()
     for (const FeatureContacts& feature : contacts().m_features)
     {
         m_groups[m_parts->groupOf(feature.m_nodes)].add(feature);
-        m_blocks += (feature.m_count + 3) / 4;
+        m_blocks += ContactGroup::blocksOf(feature.m_count);
     }
     boundNodes();
 }

@@ -28,30 +28,17 @@ bool isViolated(const ContactSweep* sweep, float share)
     return SweepTeam::worst(*sweep) > share * sweep->contacts().m_leastThickness;
 }
 
-int mostClosingRounds(const ContactSweep* sweep)
+int mostClosingSweeps(const ContactSweep* sweep)
 {
     const std::size_t affordable = kFurtherBlocks / std::max<std::size_t>(1, SweepTeam::blockCount(*sweep));
-    return kClosingRounds + int(std::min(kMostFurther, std::max(kLeastFurther, affordable)));
+    return kClosingSweeps + int(std::min(kMostFurther, std::max(kLeastFurther, affordable)));
 }
 
 // Returns whether the cloth needs another closing sweep after `done` sweeps.
 bool isOpen(const ContactSweep* sweep, int done)
 {
-    if (done < kClosingRounds) return isViolated(sweep, kClosingTolerance);
-    return done < mostClosingRounds(sweep) && isViolated(sweep, kMostViolation);
-}
-
-// Returns whether threads take cloths side by side: several cloths, none of which has most of many nodes.
-template <class NodesOf>
-bool sharesCloths(std::size_t count, const NodesOf& nodesOf)
-{
-    std::size_t all = 0, most = 0;
-    for (std::size_t i = 0; i < count; ++i)
-    {
-        all += nodesOf(i);
-        most = std::max(most, nodesOf(i));
-    }
-    return all >= kLeastNodesShared && 2 * most <= all;
+    if (done < kClosingSweeps) return isViolated(sweep, kClosingTolerance);
+    return done < mostClosingSweeps(sweep) && isViolated(sweep, kMostViolation);
 }
 
 bool obstaclesRest(const ContactSweep* sweep)
@@ -109,30 +96,38 @@ void StepSolver::applyLimits(const Cloths& cloths)
     m_team.forCloths(cloths, [](ContactSweep& sweep) { sweep.contacts().m_limit.apply(sweep.nodes()); });
 }
 
-// Calls job(nodes, substeps, threads) for each cloth of the turn whose links are the core's: side by side where there
-// are several and they are large, else one after the other with all threads.
+// Calls job(cloth, threads) for each cloth: side by side if there are several, none of which has most of many nodes,
+// else one after the other with all threads.
+template <class Job>
+void StepSolver::forEach(const std::vector<LinkedNodes>& cloths, const Job& job)
+{
+    std::size_t all = 0, most = 0;
+    for (const LinkedNodes& cloth : cloths)
+    {
+        all += cloth.m_nodes->count();
+        most = std::max(most, cloth.m_nodes->count());
+    }
+    if (all >= kLeastNodesShared && 2 * most <= all)
+        return m_threads.run(cloths.size(), [&](std::size_t i) { job(cloths[i], nullptr); });
+    for (const LinkedNodes& cloth : cloths)
+        job(cloth, &m_threads);
+}
+
+// Calls job(nodes, substeps, threads) for each cloth of the iteration whose links are the core's.
 template <class Job>
 void StepSolver::forSubsteps(const Job& job)
 {
     m_own.clear();
     for (const ContactSweep* sweep : m_iterating)
-        if (sweep->cloth().m_substeps) m_own.push_back(&sweep->cloth());
-    const auto one = [&](std::size_t i, ThreadTeam* threads)
-    { job(m_own[i]->m_contacts->m_nodes, *m_own[i]->m_substeps, threads); };
-    if (sharesCloths(m_own.size(), [&](std::size_t i) { return m_own[i]->m_contacts->m_nodes.count(); }))
-        return m_threads.run(m_own.size(), [&](std::size_t i) { one(i, nullptr); });
-    for (std::size_t i = 0; i < m_own.size(); ++i)
-        one(i, &m_threads);
+        if (Substeps* substeps = sweep->cloth().m_substeps) m_own.push_back({&sweep->nodes(), substeps});
+    forEach(m_own,
+            [&](const LinkedNodes& cloth, ThreadTeam* threads) { job(*cloth.m_nodes, *cloth.m_substeps, threads); });
 }
 
-void StepSolver::solveFree(const std::vector<FreeCloth>& cloths)
+void StepSolver::solveFree(const std::vector<LinkedNodes>& cloths)
 {
-    const auto one = [&](std::size_t i, ThreadTeam* threads)
-    { cloths[i].m_substeps->run(*cloths[i].m_nodes, threads); };
-    if (sharesCloths(cloths.size(), [&](std::size_t i) { return cloths[i].m_nodes->count(); }))
-        return m_threads.run(cloths.size(), [&](std::size_t i) { one(i, nullptr); });
-    for (std::size_t i = 0; i < cloths.size(); ++i)
-        one(i, &m_threads);
+    forEach(cloths,
+            [](const LinkedNodes& cloth, ThreadTeam* threads) { cloth.m_substeps->run(*cloth.m_nodes, threads); });
 }
 
 // Begins an iteration's rows. The links' last pull takes over what contacts pushed before it.

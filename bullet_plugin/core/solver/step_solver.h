@@ -4,10 +4,10 @@
 // A cloth's links are the core's own, in substeps (substeps.h), or the caller's. Input: nodes at the ends of their
 // paths, and contacts along these. Output: displacements and velocities at the step's end.
 //
-// Guarantee: no contact ends violated by more than kClosingTolerance if kClosingRounds sweeps suffice. Sweeps continue
+// Guarantee: no contact ends violated by more than kClosingTolerance if kClosingSweeps sweeps suffice. Sweeps continue
 // while a violation exceeds what the next step would recover. Results are the same bits with any number of threads.
 //
-// Cost: linear in the contacts; kContactSweeps per iteration or substep and up to kClosingRounds after them, at most
+// Cost: linear in the contacts; kContactSweeps per iteration or substep and up to kClosingSweeps after them, at most
 // kMostFurther more. Reasons: docs/design_notes/contact_sweeps.md.
 #pragma once
 
@@ -26,22 +26,22 @@ namespace drape
 // nodes at rest end their steps at 8.7 mm/s (RMS) if all sweeps over the links come first. In turns it is 0.2 mm/s.
 constexpr int kContactSweeps = Substeps::kLinkSweeps;
 
-constexpr int kClosingRounds = 8;
+constexpr int kClosingSweeps = 8;
 
 // Budget of further sweeps, in contact blocks examined: a millisecond or two. A cloth with few contacts may take more
 // sweeps, between the minimum and the maximum below.
 constexpr std::size_t kFurtherBlocks = std::size_t(1) << 16;
 constexpr std::size_t kLeastFurther = 24, kMostFurther = 120;
 
-// Worst violation that may remain, as a share of the thickness: before kClosingRounds sweeps are done, and after. The
+// Worst violation that may remain, as a share of the thickness: before kClosingSweeps sweeps are done, and after. The
 // second is less than what the next step recovers, since later contacts of a sweep may increase a violation that was
 // measured earlier in it.
 constexpr float kClosingTolerance = 0.01f;
 constexpr float kMostViolation = 0.0625f;
 static_assert(kMostViolation < kRecoveredShare, "else cloth comes nearer from step to step");
 
-// A cloth without contacts, whose links are the core's.
-struct FreeCloth
+// The nodes of a cloth, and its links, which are the core's.
+struct LinkedNodes
 {
     SolverNodes* m_nodes;
     Substeps* m_substeps;
@@ -57,12 +57,14 @@ public:
     // Runs the closing sweeps alone, for cloths whose nodes are at the ends of the paths along which their contacts
     // were found.
     void close(const std::vector<SolverCloth>& cloths, const ContactSource& source);
-    void solveFree(const std::vector<FreeCloth>& cloths);
+    void solveFree(const std::vector<LinkedNodes>& cloths);
 
 private:
     using Cloths = SweepTeam::Cloths;
 
     void begin(const ContactSource& source);
+    template <class Job>
+    void forEach(const std::vector<LinkedNodes>& cloths, const Job& job);
     template <class Job>
     void forSubsteps(const Job& job);
     void applyLimits(const Cloths& cloths);
@@ -82,6 +84,6 @@ private:
     std::vector<std::unique_ptr<ContactSweep>> m_sweeps;  // one for each of m_cloths; kept for their memory
     // Cloths of the step, cloths with contacts, and subsets of one iteration or sweep.
     Cloths m_all, m_touching, m_iterating, m_turn, m_meeting, m_open, m_resting, m_others;
-    std::vector<const SolverCloth*> m_own;
+    std::vector<LinkedNodes> m_own;  // working memory of forSubsteps()
 };
 }  // namespace drape
