@@ -5,6 +5,7 @@
 #include "bullet_plugin/core/backends/step_pairs.h"
 #include "bullet_plugin/core/scene/scene.h"
 #include "kernels/lib/segment.h"
+#include "kernels/lib/vec3.h"
 
 namespace drape
 {
@@ -66,6 +67,15 @@ ClothFeature clothFeatureOf(const MeshPool& cloths, const Contact& contact)
     const PooledFeature feature = pooledFeature(cloths, contact);
     const PooledMesh& cloth = cloths.mesh(feature.m_slot);
     return ClothFeature{cloth.m_id, {nodeOf(feature, cloth, 0), nodeOf(feature, cloth, 1), nodeOf(feature, cloth, 2)}};
+}
+
+Vec3 clothPoint(const MeshPool& cloths, const float* positions, const Contact& contact)
+{
+    const PooledFeature feature = pooledFeature(cloths, contact);
+    Vec3 point = vec3(0, 0, 0);
+    for (int k = 0; k < 3 && feature.m_nodes[k] != kNoMesh; ++k)
+        point = vec3AddScaled(point, vec3Load(positions, feature.m_nodes[k]), contact.m_weights[k]);
+    return point;
 }
 
 ContactView viewContact(const Scene& scene, const StepPairs& pairs, const Contact& contact)

@@ -7,6 +7,7 @@
 
 #include "bullet_plugin/core/scene/mesh_id.h"
 #include "kernels/shared/contact.h"
+#include "kernels/shared/types.h"
 
 namespace drape
 {
@@ -57,6 +58,8 @@ struct ClothFeature
 ContactView viewContact(const Scene& scene, const StepPairs& pairs, const Contact& contact);
 SelfContactView viewSelfContact(const Scene& scene, const Contact& contact);
 ClothFeature clothFeatureOf(const MeshPool& cloths, const Contact& contact);
+// Returns where the contact's point of the cloth is with the nodes at these positions, m, joined over all cloths.
+Vec3 clothPoint(const MeshPool& cloths, const float* positions, const Contact& contact);
 // Returns the slot of a contact's obstacle.
 std::size_t obstacleSlot(const MeshPool& obstacles, const Contact& contact);
 }  // namespace drape

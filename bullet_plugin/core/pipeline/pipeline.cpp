@@ -219,7 +219,7 @@ ContactList Pipeline::finish(const Allowance& allowance)
     else
         self.m_runner.finish(allowance, self.m_result, statistics);
     self.m_submitted = false;
-    removeBackContacts(self.m_scene.m_obstacles, self.m_result);
+    removeBackContacts(self.m_scene, self.m_result);
     statistics.m_selfContacts = self.m_result.selfContacts().size();
     statistics.m_contacts = self.m_result.contacts().size();
     if (statistics.m_invalidNodes > 0) statistics.m_status |= kStepInvalidNodes;
