@@ -1,6 +1,7 @@
 #include "drape/soft_body_solver.h"
 
 #include <algorithm>
+#include <iterator>
 #include <unordered_map>
 #include <utility>
 
@@ -198,17 +199,36 @@ void SoftBodySolver::coverMotions(const std::vector<StepObstacle>& obstacles)
 // Prepares the bodies whose links Drape solves in the coming step, and forgets all others.
 void SoftBodySolver::recordVelocities()
 {
-    std::unordered_map<const btSoftBody*, std::unique_ptr<SubstepBody>> kept;
+    auto& all = m_work->m_substeps;
+    std::size_t solved = 0;
     for (int i = 0; i < m_softBodySet.size(); ++i)
     {
         const btSoftBody& body = *m_softBodySet[i];
-        if (reasonForBulletsLinks(*m_state, body)) continue;
-        std::unique_ptr<SubstepBody>& substeps = kept[&body];
-        substeps = std::move(m_work->m_substeps[&body]);
-        if (!substeps) substeps = std::make_unique<SubstepBody>();
-        substeps->beforePrediction(body);
+        auto at = all.find(&body);
+        // Sleeping bodies are not examined: a world at rest may have thousands.
+        const bool isSolved = body.isActive() ? !reasonForBulletsLinks(*m_state, body) : at != all.end();
+        if (isSolved && at == all.end()) at = all.emplace(&body, std::make_unique<SubstepBody>()).first;
+        if (isSolved)
+        {
+            at->second->beforePrediction(body);
+            ++solved;
+        }
+        else if (at != all.end())
+            all.erase(at);
     }
-    m_work->m_substeps.swap(kept);
+    if (solved < all.size()) forgetRemoved();
+}
+
+// Forgets bodies that are not in the world any more.
+void SoftBodySolver::forgetRemoved()
+{
+    std::vector<const btSoftBody*> bodies;
+    for (int i = 0; i < m_softBodySet.size(); ++i)
+        bodies.push_back(m_softBodySet[i]);
+    std::sort(bodies.begin(), bodies.end());
+    auto& all = m_work->m_substeps;
+    for (auto at = all.begin(); at != all.end();)
+        at = std::binary_search(bodies.begin(), bodies.end(), at->first) ? std::next(at) : all.erase(at);
 }
 
 // Leaves bodies to Bullet for this step that changed since the prediction, or that touch what Bullet's own algorithms

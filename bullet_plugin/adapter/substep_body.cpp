@@ -77,11 +77,11 @@ void SubstepBody::beforePrediction(const btSoftBody& body)
 
 void SubstepBody::afterPrediction(btSoftBody& body)
 {
-    m_isPredicted = body.m_sst.sdt > 0 && m_velocities.size() == nodeCount(body);
-    if (!m_isPredicted) return;
+    if (!(body.m_sst.sdt > 0) || m_velocities.size() != nodeCount(body)) return;
     const btScalar shift = shiftOf(body), perSecond = body.m_sst.isdt;
     m_accelerations.resize(m_velocities.size());
     m_predictions.resize(m_velocities.size());
+    m_isPredicted = true;
     for (std::size_t i = 0; i < m_accelerations.size(); ++i)
     {
         btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
@@ -119,13 +119,14 @@ void SubstepBody::buildLinks(const btSoftBody& body)
     }
     m_substeps.links().build(nodeCount(body), m_parts.leafCount(), m_links);
     m_noFaces = ClothFaces({}, nodeCount(body));
+    m_isSorted = true;
 }
 
 // Reads which nodes the links join; sorts them again if that changed.
 void SubstepBody::readTopology(const btSoftBody& body)
 {
     const std::size_t count = static_cast<std::size_t>(body.m_links.size());
-    bool isNew = m_links.size() != count || m_parts.nodeCount() != nodeCount(body);
+    bool isNew = !m_isSorted || m_links.size() != count || m_parts.nodeCount() != nodeCount(body);
     m_links.resize(count);
     const btSoftBody::Node* const first = count > 0 ? &body.m_nodes[0] : nullptr;
     for (std::size_t i = 0; i < count; ++i)
@@ -138,6 +139,7 @@ void SubstepBody::readTopology(const btSoftBody& body)
             m_links[i].m_nodes[k] = node;
         }
     }
+    m_isSorted = !isNew;
     if (isNew) buildLinks(body);
 }
 

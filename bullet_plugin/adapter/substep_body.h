@@ -70,6 +70,7 @@ private:
     std::vector<Vec3> m_accelerations;    // m/s², constant in the step
     std::vector<Prediction> m_predictions;
     std::vector<LinkNodes> m_links;  // links as sorted for sweeps
+    bool m_isSorted = false;         // false if memory ran out while the links were sorted
     ClothParts m_parts;              // when they were sorted
     ClothContacts m_alone;           // for steps without pairs
     ClothFaces m_noFaces;

@@ -27,8 +27,8 @@ constexpr long kMostAllocations = 100000;
 // Cloth lies on a floor and on a rotating box.
 struct Scene
 {
-    explicit Scene(Backend backend = Backend::Host)
-        : m_plugin(settingsOf(backend)),
+    explicit Scene(Backend backend = Backend::Host, Solver solver = Solver::Auto)
+        : m_plugin(settingsOf(backend, solver)),
           m_floor(makeBox(4, 0.2f, 4)),
           m_box(makeBox(0.3f, 0.3f, 0.3f)),
           m_world(&m_plugin)
@@ -60,10 +60,11 @@ struct Scene
         EXPECT_GT(lowestOf(*m_cloth), 0.1f);  // the floor's top
     }
 
-    static Settings settingsOf(Backend backend)
+    static Settings settingsOf(Backend backend, Solver solver = Solver::Auto)
     {
         Settings settings;
         settings.m_backend = backend;
+        settings.m_solver = solver;
         settings.m_threads = 2;
         return settings;
     }
@@ -116,13 +117,14 @@ bool withFailing(long number, Which which, const Call& call)
 }
 
 // Lets an allocation fail in a world after this many steps.
-void expectStepsGoOn(int stepsBefore, Which which, long every, Backend backend = Backend::Host)
+void expectStepsGoOn(int stepsBefore, Which which, long every, Backend backend = Backend::Host,
+                     Solver solver = Solver::Auto)
 {
     long told = 0;
     forEachAllocation(every,
                       [&](long number)
                       {
-                          Scene scene(backend);
+                          Scene scene(backend, solver);
                           scene.step(stepsBefore);
                           std::uint32_t status = 0;
                           const bool failed = withFailing(number, which,
@@ -147,6 +149,11 @@ void expectStepsGoOn(int stepsBefore, Which which, long every, Backend backend =
 TEST(OutOfMemory, FirstStepsGoOn)
 {
     inOwnProcess([] { expectStepsGoOn(0, Which::One, 1); });
+}
+
+TEST(OutOfMemory, FirstStepsWithSubstepsGoOn)
+{
+    inOwnProcess([] { expectStepsGoOn(0, Which::One, 1, Backend::Host, Solver::Drape); });
 }
 
 TEST(OutOfMemory, StepsInContactGoOn)

@@ -49,6 +49,7 @@ private:
     std::vector<StepObstacle> wakeReached(KinematicMotions& motions);
     void listPredicted();
     void recordVelocities();
+    void forgetRemoved();
     void leaveToBullet();
     void coverMotions(const std::vector<StepObstacle>& obstacles);
     void detect();
