@@ -30,12 +30,13 @@ Vec3 RigidRows::velocityAt(std::uint32_t index, Vec3 arm) const
     return vec3Add(body.m_velocity, vec3Cross(body.m_spin, arm));
 }
 
-// Returns the velocity along a direction that a unit impulse along it gives to a body's point, 1/kg.
+// Returns how far along a direction a unit push along it moves a body's point in the substep, 1/kg.
 float RigidRows::mobility(std::uint32_t index, Vec3 arm, Vec3 direction) const
 {
     const RigidBody& body = (*m_bodies)[index];
     const Vec3 spin = product(body.m_inverseInertia, vec3Cross(arm, direction));
-    return vec3Dot(direction, vec3Add(byAxis(body.m_inverseMass, direction), vec3Cross(spin, arm)));
+    const Vec3 velocity = vec3Add(byAxis(body.m_inverseMass, direction), vec3Cross(spin, arm));
+    return vec3Dot(direction, velocity) * (m_time / m_correctionTime);
 }
 
 // Pushes the node, and the body the other way. by: direction times multiplier, kg m.
@@ -43,16 +44,17 @@ void RigidRows::push(SolverNodes& nodes, std::uint32_t node, std::uint32_t index
 {
     RigidBody& body = (*m_bodies)[index];
     nodes.shift(node, vec3Scale(by, nodes.nodes()[node].m_inverseMass));
-    const Vec3 impulse = vec3Scale(by, -1 / m_time), turning = vec3Cross(arm, impulse);
+    const Vec3 impulse = vec3Scale(by, -1 / m_correctionTime), turning = vec3Cross(arm, impulse);
     body.m_velocity = vec3Add(body.m_velocity, byAxis(body.m_inverseMass, impulse));
     body.m_spin = vec3Add(body.m_spin, product(body.m_inverseInertia, turning));
     body.m_impulse = vec3Add(body.m_impulse, impulse);
     body.m_turning = vec3Add(body.m_turning, turning);
 }
 
-void RigidRows::begin(float time, float passed)
+void RigidRows::begin(float time, float correctionTime, float passed)
 {
     m_time = time;
+    m_correctionTime = correctionTime;
     m_passed = passed;
     for (ContactState& state : m_contacts)
     {
@@ -101,7 +103,7 @@ void RigidRows::project(SolverNodes& nodes, AnchorState& state)
     {
         const Vec3 direction = vec3(float(axis == 0), float(axis == 1), float(axis == 2));
         const Vec3 carried = vec3AddScaled(state.m_carried, velocityAt(anchor.m_body, anchor.m_arm), m_time);
-        const Vec3 wanted = vec3Add(anchor.m_apart, carried);
+        const Vec3 wanted = vec3AddScaled(carried, anchor.m_apart, m_passed);
         const float error = vec3Dot(direction, vec3Sub(wanted, nodes.displacement(anchor.m_node)));
         const float both =
             nodes.nodes()[anchor.m_node].m_inverseMass + mobility(anchor.m_body, anchor.m_arm, direction);

@@ -52,8 +52,9 @@ public:
     void add(const RigidContact& contact) { m_contacts.push_back({contact, vec3(0, 0, 0), vec3(0, 0, 0), 0}); }
     void add(const RigidAnchor& anchor) { m_anchors.push_back({anchor, vec3(0, 0, 0)}); }
 
-    // Begins a substep of `time` seconds that ends when the share `passed` of the step has passed.
-    void begin(float time, float passed);
+    // Begins a substep of `time` seconds that ends when the share `passed` of the step has passed. correctionTime: s,
+    // see Substeps.
+    void begin(float time, float correctionTime, float passed);
     // Projects every row once.
     void project(SolverNodes& nodes);
     // Ends a substep: the bodies' points have gone on with the bodies' velocities.
@@ -82,6 +83,6 @@ private:
     std::vector<RigidBody>* m_bodies = nullptr;
     std::vector<ContactState> m_contacts;
     std::vector<AnchorState> m_anchors;
-    float m_time = 1, m_passed = 1;
+    float m_time = 1, m_correctionTime = 1, m_passed = 1;
 };
 }  // namespace drape

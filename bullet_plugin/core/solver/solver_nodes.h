@@ -87,6 +87,19 @@ public:
     {
         if (m_shifted[node]) addVelocity(node, vec3Scale(vec3Sub(displacement(node), m_before[node]), perSecond));
     }
+    // Bounds the velocity that a shift since remember() gives the node. A shift may stop the motion against it, however
+    // long that took; it adds no more than the velocity of the same shift in a whole step. perSecond: 1/s, of a shift
+    // in a substep. stepsPerSecond: 1/s.
+    void limitShift(std::size_t node, float perSecond, float stepsPerSecond)
+    {
+        if (!m_shifted[node]) return;
+        const Vec3 shift = vec3Sub(displacement(node), m_before[node]);
+        const float length = vec3Length(shift);
+        if (!(length > 0)) return;
+        const float against = -vec3Dot(velocity(node), shift) / length;
+        const float most = drapeMax(length * stepsPerSecond, against) / perSecond;
+        if (most < length) m_before[node] = vec3AddScaled(m_before[node], shift, 1 - most / length);
+    }
 
 private:
     std::vector<SolverNode> m_nodes;

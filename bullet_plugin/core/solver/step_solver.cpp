@@ -74,6 +74,14 @@ void addShifts(ClothContacts& contacts)
     for (std::size_t i = 0; i < contacts.m_nodes.count(); ++i)
         contacts.m_nodes.addShift(i, perSecond);
 }
+// Bounds the velocities that the motion limit gave in a substep.
+void boundShifts(ContactSweep& sweep)
+{
+    const Substeps* const substeps = sweep.cloth().m_substeps;
+    if (!substeps) return;
+    for (std::size_t i = 0; i < sweep.nodes().count(); ++i)
+        sweep.nodes().limitShift(i, 1 / substeps->correctionTime(), sweep.contacts().m_perSecond);
+}
 }  // namespace
 
 void StepSolver::begin(const ContactSource& source)
@@ -138,7 +146,8 @@ void StepSolver::restart(int iteration)
         const SolverCloth& cloth = sweep->cloth();
         const float passed = cloth.m_substeps ? float(iteration + 1) / float(cloth.m_substeps->count()) : 1.0f;
         sweep->restart(passed);
-        if (cloth.m_rigid) cloth.m_rigid->begin(cloth.m_substeps->substepTime(), passed);
+        if (!cloth.m_rigid) continue;
+        cloth.m_rigid->begin(cloth.m_substeps->substepTime(), cloth.m_substeps->correctionTime(), passed);
     }
 }
 
@@ -175,6 +184,7 @@ void StepSolver::sweepContacts(int iteration)
     };
     select(m_iterating, m_turn, isLimited);
     applyLimits(m_turn);
+    m_team.forCloths(m_turn, boundShifts);
     select(m_iterating, m_turn, [](const ContactSweep* sweep) { return hasContacts(sweep) || sweep->cloth().m_rigid; });
     restart(iteration);
     sweepInTurns();

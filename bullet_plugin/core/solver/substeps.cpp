@@ -10,6 +10,9 @@ namespace
 // Minimum nodes for sharing a pass over them, and the nodes of a range: a pass takes 3 ns a node.
 constexpr std::size_t kLeastShared = 8192, kRange = 2048;
 
+// Ratio of correctionTime() to that of the step before, at least. Links correct an error within some ten steps.
+constexpr float kRemembered = 0.8f;
+
 // Calls work(node) for all nodes.
 template <class Work>
 void forNodes(std::size_t count, ThreadTeam* threads, const Work& work)
@@ -29,6 +32,7 @@ void Substeps::prepare(float time, int count, float damping, const std::vector<V
 {
     m_time = time;
     m_count = count;
+    m_correctionTime = std::max(substepTime(), kRemembered * m_correctionTime);
     m_accelerations = &accelerations;
     m_kept = float(std::pow(1 - std::min(1.0, std::max(0.0, double(damping))), 1.0 / count));
 }
@@ -58,7 +62,7 @@ void Substeps::advance(SolverNodes& nodes, ThreadTeam* threads)
 
 void Substeps::end(SolverNodes& nodes, ThreadTeam* threads) const
 {
-    const float perSecond = float(m_count) / m_time;
+    const float perSecond = 1 / m_correctionTime;
     forNodes(nodes.count(), threads,
              [&](std::size_t i)
              {

@@ -25,6 +25,9 @@ public:
     int count() const { return m_count; }
     // Returns the time of a substep, s.
     float substepTime() const { return m_time / float(m_count); }
+    // Returns the time in which a correction of a position counts as motion, s: that of a substep, or longer in the
+    // steps after a much longer one. What that one left to be corrected would else be fast motion.
+    float correctionTime() const { return m_correctionTime; }
 
     // Prepares a step of `time` seconds (> 0) in `count` parts. damping: the share of a velocity that is lost in the
     // step, 0 to 1. accelerations: of the nodes, m/s²; they must stay in place until the last substep.
@@ -48,6 +51,7 @@ private:
     LinkSweep m_links;
     const std::vector<Vec3>* m_accelerations = nullptr;
     float m_time = 1;
+    float m_correctionTime = 0;
     float m_kept = 1;  // the share of a velocity that damping leaves in a substep
     int m_count = 1;
 };
