@@ -27,11 +27,11 @@ NormalCone coneOf(const PooledMesh& mesh, std::uint32_t kind, std::uint32_t feat
     return NormalCone{vec3Scale(normal, 1 / vec3Length(normal)), 1};
 }
 
-// Tells which contacts are on the back of one-sided obstacles.
-class Backs
+// The one-sided obstacles of a step, and which contacts are on their backs.
+class OneSidedObstacles
 {
 public:
-    explicit Backs(const Scene& scene) : m_scene(scene), m_maps(scene.m_obstacles.meshCount())
+    explicit OneSidedObstacles(const Scene& scene) : m_scene(scene), m_maps(scene.m_obstacles.meshCount())
     {
         for (std::size_t slot = 0; slot < m_maps.size(); ++slot)
         {
@@ -44,7 +44,7 @@ public:
 
     bool any() const { return m_any; }
 
-    bool has(const Contact& contact) const
+    bool haveOnBack(const Contact& contact) const
     {
         if (contact.m_kind >= DRAPE_SELF_NODE_FACE) return false;
         const std::size_t slot = obstacleSlot(m_scene.m_obstacles, contact);
@@ -83,12 +83,12 @@ private:
 
 void removeBackContacts(const Scene& scene, StepResult& result)
 {
-    const Backs backs(scene);
-    if (!backs.any()) return;
+    const OneSidedObstacles obstacles(scene);
+    if (!obstacles.any()) return;
     std::vector<Contact> kept;
     const ContactList all = result.allContacts();
     std::remove_copy_if(all.begin(), all.end(), std::back_inserter(kept),
-                        [&](const Contact& contact) { return backs.has(contact); });
+                        [&](const Contact& contact) { return obstacles.haveOnBack(contact); });
     result.m_contacts.swap(kept);
     result.m_deviceContacts = ContactList();
 }

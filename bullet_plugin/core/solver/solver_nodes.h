@@ -87,9 +87,9 @@ public:
     {
         if (m_shifted[node]) addVelocity(node, vec3Scale(vec3Sub(displacement(node), m_before[node]), perSecond));
     }
-    // Bounds the velocity that a shift since remember() gives the node. A shift may stop the motion against it, however
-    // long that took; it adds no more than the velocity of the same shift in a whole step. perSecond: 1/s, of a shift
-    // in a substep. stepsPerSecond: 1/s.
+    // Bounds the velocity that the shift since remember() gives the node. The shift may stop the node's motion against
+    // it. Beyond that it gives at most the velocity of the same shift in a whole step. perSecond: 1/s, the velocity per
+    // metre of shift that is bounded. stepsPerSecond: 1/s.
     void limitShift(std::size_t node, float perSecond, float stepsPerSecond)
     {
         if (!m_shifted[node]) return;

@@ -74,6 +74,7 @@ void addShifts(ClothContacts& contacts)
     for (std::size_t i = 0; i < contacts.m_nodes.count(); ++i)
         contacts.m_nodes.addShift(i, perSecond);
 }
+
 // Bounds the velocities that the motion limit gave in a substep.
 void boundShifts(ContactSweep& sweep)
 {

@@ -10,8 +10,8 @@ namespace
 // Minimum nodes for sharing a pass over them, and the nodes of a range: a pass takes 3 ns a node.
 constexpr std::size_t kLeastShared = 8192, kRange = 2048;
 
-// Ratio of correctionTime() to that of the step before, at least. Links correct an error within some ten steps.
-constexpr float kRemembered = 0.8f;
+// Minimum ratio of correctionTime() to that of the step before. Links correct an error within some ten steps.
+constexpr float kLeastRatio = 0.8f;
 
 // Calls work(node) for all nodes.
 template <class Work>
@@ -32,7 +32,7 @@ void Substeps::prepare(float time, int count, float damping, const std::vector<V
 {
     m_time = time;
     m_count = count;
-    m_correctionTime = std::max(substepTime(), kRemembered * m_correctionTime);
+    m_correctionTime = std::max(substepTime(), kLeastRatio * m_correctionTime);
     m_accelerations = &accelerations;
     m_kept = float(std::pow(1 - std::min(1.0, std::max(0.0, double(damping))), 1.0 / count));
 }

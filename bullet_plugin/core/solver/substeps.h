@@ -25,8 +25,8 @@ public:
     int count() const { return m_count; }
     // Returns the time of a substep, s.
     float substepTime() const { return m_time / float(m_count); }
-    // Returns the time in which a correction of a position counts as motion, s: that of a substep, or longer in the
-    // steps after a much longer one. What that one left to be corrected would else be fast motion.
+    // Returns the time by which a correction of a position is divided to give a velocity, s. It is that of a substep,
+    // or longer for some steps after a longer one, whose errors would otherwise be corrected at great speed.
     float correctionTime() const { return m_correctionTime; }
 
     // Prepares a step of `time` seconds (> 0) in `count` parts. damping: the share of a velocity that is lost in the
