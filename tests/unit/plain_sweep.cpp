@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
+#include <tuple>
+#include <utility>
 
 #include "bullet_plugin/core/solver/contact_group.h"
 
@@ -33,8 +37,34 @@ PlainSweep::PlainSweep(const ClothContacts& cloth, const ContactSource& source, 
         row.m_speedLimit = speedLimitOf(row.m_contact);
         m_rows.push_back(row);
     }
-    const auto groupOf = [&](const Row& row) { return cloth.m_parts->groupOf(row.m_contact.m_nodes); };
-    std::stable_sort(m_rows.begin(), m_rows.end(), [&](const Row& a, const Row& b) { return groupOf(a) > groupOf(b); });
+    sortRows(*cloth.m_parts);
+}
+
+// Sorts the contacts by group, children first, then by kind and colour. Each feature gets the least colour that no
+// earlier feature of the same group and kind has at one of its nodes.
+void PlainSweep::sortRows(const ClothParts& parts)
+{
+    std::map<std::pair<std::size_t, Kind>, std::map<int, std::set<int>>> taken;
+    int colour = 0;
+    for (std::size_t i = 0; i < m_rows.size(); ++i)
+    {
+        Row& row = m_rows[i];
+        row.m_group = parts.groupOf(row.m_contact.m_nodes);
+        if (i == 0 || row.m_detected.m_slot != m_rows[i - 1].m_detected.m_slot)
+        {
+            auto& nodes = taken[{row.m_group, kindOf(row.m_contact)}];
+            const auto isTaken = [&](int node) { return node >= 0 && nodes[node].count(colour) > 0; };
+            colour = 0;
+            while (std::any_of(row.m_contact.m_nodes, row.m_contact.m_nodes + 3, isTaken))
+                ++colour;
+            for (const int node : row.m_contact.m_nodes)
+                nodes[node].insert(colour);
+        }
+        row.m_colour = colour;
+    }
+    const auto keyOf = [](const Row& row)
+    { return std::make_tuple(-std::ptrdiff_t(row.m_group), kindOf(row.m_contact), row.m_colour); };
+    std::stable_sort(m_rows.begin(), m_rows.end(), [&](const Row& a, const Row& b) { return keyOf(a) < keyOf(b); });
 }
 
 PlainSweep::Kind PlainSweep::kindOf(const SolverContact& contact)

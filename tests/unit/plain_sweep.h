@@ -1,7 +1,7 @@
 // Sweeps over contacts that project every contact in turn, without any short cut: the oracle of ContactSweep.
 //
-// The order is group by group of the cloth, children first, each in canonical order. Edges come after all other
-// contacts in a sweep. Results equal those of ContactSweep bit for bit.
+// The order is group by group of the cloth, children first, each colour by colour. Edges come after all other contacts
+// in a sweep. Results equal those of ContactSweep bit for bit.
 #pragma once
 
 #include <cstddef>
@@ -45,6 +45,8 @@ private:
         SolverContact m_contact;
         float m_multiplier = 0;
         Vec3 m_held = {};
+        std::size_t m_group = 0;
+        int m_colour = 0;
         bool m_renewed = false;    // or tried to, in this stage
         bool m_acted = false;      // violated or pushing when it was last visited in this stage
         bool m_everActed = false;  // in any stage
@@ -58,6 +60,7 @@ private:
     };
 
     static Kind kindOf(const SolverContact& contact);
+    void sortRows(const ClothParts& parts);
     float sweep(std::initializer_list<Kind> kinds);
     void addVelocities(const std::vector<Vec3>& before);
     Vec3 pointOf(const SolverContact& contact, const std::vector<Vec3>& places) const;

@@ -19,6 +19,10 @@ struct FeatureContacts
     std::uint32_t m_count;
     int m_nodes[3];     // indices of the cloth's nodes; -1 where unused
     float m_leastTime;  // earliest time of impact; 1 when nothing was passed
+
+    std::size_t nodeCount() const { return m_nodes[1] < 0 ? 1 : m_nodes[2] < 0 ? 2 : 3; }
+    // Returns 0 for a node, 1 for a face, 2 for an edge.
+    std::uint32_t kind() const { return m_nodes[1] < 0 ? 0 : m_nodes[2] < 0 ? 2 : 1; }
 };
 
 struct ClothContacts

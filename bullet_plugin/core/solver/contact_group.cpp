@@ -63,8 +63,41 @@ void ContactGroup::clear()
     m_pushingBlocks.clear();
 }
 
-void ContactGroup::makeBlocks(const SweptCloth& cloth)
+// Sorts the features of each kind by their colours.
+void ContactGroup::sortByColour(Colouring& colouring)
 {
+    struct Coloured
+    {
+        std::uint32_t m_kind, m_colour;
+        const FeatureContacts* m_feature;
+    };
+    std::vector<Coloured> coloured;
+    coloured.reserve(m_features.size());
+    std::uint32_t kind = 0;
+    std::size_t first = 0;
+    const auto release = [&](std::size_t last)
+    {
+        for (; first < last; ++first)
+            colouring.release(m_features[first]->m_nodes, m_features[first]->nodeCount());
+    };
+    for (std::size_t i = 0; i < m_features.size(); ++i)
+    {
+        if (m_features[i]->kind() != kind) release(i);
+        kind = m_features[i]->kind();
+        const std::uint32_t colour = colouring.take(m_features[i]->m_nodes, m_features[i]->nodeCount());
+        coloured.push_back({kind, colour, m_features[i]});
+    }
+    release(m_features.size());
+    const auto keyOf = [](const Coloured& one) { return one.m_kind * kColours + one.m_colour; };
+    std::stable_sort(coloured.begin(), coloured.end(),
+                     [&](const Coloured& a, const Coloured& b) { return keyOf(a) < keyOf(b); });
+    std::transform(coloured.begin(), coloured.end(), m_features.begin(),
+                   [](const Coloured& one) { return one.m_feature; });
+}
+
+void ContactGroup::makeBlocks(const SweptCloth& cloth, Colouring& colouring)
+{
+    sortByColour(colouring);
     for (const FeatureContacts* feature : m_features)
     {
         addFeature(cloth, *feature);

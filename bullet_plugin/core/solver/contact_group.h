@@ -1,5 +1,5 @@
-// Runs Gauss-Seidel sweeps on positions over the contacts of one group of a cloth (cloth_parts.h), in canonical
-// order.
+// Runs Gauss-Seidel sweeps on positions over the contacts of one group of a cloth (cloth_parts.h): nodes first, then
+// faces, then edges, each colour by colour (colouring.h).
 //
 // contact_sweep.h explains what a contact does and why. Most contacts never act in a step. A sweep tests them in
 // blocks of one cloth feature, with a margin for rounding. A contact gets a row when it is first found violated or
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cloth_contacts.h"
+#include "colouring.h"
 
 namespace drape
 {
@@ -46,10 +47,12 @@ public:
     static std::size_t blocksOf(std::uint32_t contacts) { return (contacts + kLanes - 1) / kLanes; }
     // Resets the group for a cloth of another step; memory is kept.
     void clear();
-    // Adds a feature; features come in canonical order, nodes first. They must stay in place until the last sweep.
+    // Adds a feature; features come in canonical order, nodes first, then faces. They must stay in place until the last
+    // sweep.
     void add(const FeatureContacts& feature) { m_features.push_back(&feature); }
-    // Builds the blocks. Call once, after the last feature, when the cloth's margin is known.
-    void makeBlocks(const SweptCloth& cloth);
+    // Colours the features and builds the blocks. Call once, after the last feature, when the cloth's margin is known.
+    // colouring: of the cloth's nodes, none of which has a colour; the same holds afterwards.
+    void makeBlocks(const SweptCloth& cloth, Colouring& colouring);
 
     bool empty() const { return m_features.empty(); }
     enum class Kinds
@@ -101,6 +104,7 @@ private:
         bool m_pushed;       // in any stage
     };
 
+    void sortByColour(Colouring& colouring);
     void addFeature(const SweptCloth& cloth, const FeatureContacts& feature);
     static void fillLane(const SweptCloth& cloth, Block& block, int lane, const Contact& contact);
     static Row makeRow(const SweptCloth& cloth, const Block& block, int lane);
@@ -115,7 +119,7 @@ private:
     float projectBlock(const SweptCloth& cloth, std::size_t index, unsigned due);
 
     std::vector<const FeatureContacts*> m_features;
-    std::vector<Block> m_blocks;           // in canonical order
+    std::vector<Block> m_blocks;           // in the order of the features
     std::size_t m_nodeBlocks = 0;          // blocks of node features
     std::size_t m_faceBlocks = 0;          // blocks of node and face features
     std::vector<BlockRows> m_rowsOf;       // by block

@@ -41,6 +41,7 @@ void ContactSweep::begin()
     m_worst.assign(groups, 0);
     m_near.assign(groups, 0);
     m_blocks = 0;
+    m_colouring.resize(nodes().count());
     for (const FeatureContacts& feature : contacts().m_features)
     {
         m_groups[m_parts->groupOf(feature.m_nodes)].add(feature);
@@ -75,7 +76,7 @@ void ContactSweep::work(std::size_t index, Pass pass)
     switch (pass)
     {
         case Pass::MakeBlocks:
-            return group.makeBlocks(m_cloth);
+            return group.makeBlocks(m_cloth, m_colouring);
         case Pass::Nodes:
             m_worst[index] = group.sweep(m_cloth, ContactGroup::Kinds::Nodes);
             return;

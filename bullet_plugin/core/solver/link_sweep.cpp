@@ -6,15 +6,14 @@
 #include <numeric>
 #include <tuple>
 
+#include "colouring.h"
+
 namespace drape
 {
 namespace
 {
 // Minimum links for sharing a sweep among threads: it takes 10 µs alone.
 constexpr std::size_t kLeastShared = 4096;
-
-// Colours of a group's links. Links that find no colour free get the last one, a block each.
-constexpr std::uint32_t kColours = 64, kLastColour = kColours - 1;
 
 using Lanes = float __attribute__((vector_size(16)));
 
@@ -58,30 +57,19 @@ void loadNodes(const SolverNode* nodes, const std::uint32_t indices[4], Lanes co
     transpose(columns);
 }
 
-// Colours the links of `order`, which lists group after group, first fit.
+// Colours the links of `order`, which lists group after group.
 std::vector<std::uint32_t> coloursOf(const std::vector<LinkNodes>& links, const std::vector<std::uint32_t>& order,
                                      std::size_t nodeCount)
 {
     std::vector<std::uint32_t> colours(links.size());
-    std::vector<std::uint64_t> taken(nodeCount, 0);  // by node, a bit for each colour of its links in the group
-    std::vector<std::uint32_t> touched;
-    for (std::size_t i = 0; i < order.size(); ++i)
+    Colouring colouring;
+    colouring.resize(nodeCount);
+    for (std::size_t first = 0, i = 0; i < order.size(); ++i)
     {
-        const LinkNodes& link = links[order[i]];
-        if (i > 0 && link.m_group != links[order[i - 1]].m_group)
-        {
-            for (const std::uint32_t node : touched)
-                taken[node] = 0;
-            touched.clear();
-        }
-        const std::uint64_t both = taken[link.m_nodes[0]] | taken[link.m_nodes[1]];
-        const std::uint32_t colour = ~both == 0 ? kLastColour : std::uint32_t(__builtin_ctzll(~both));
-        for (const std::uint32_t node : link.m_nodes)
-        {
-            taken[node] |= std::uint64_t(1) << colour;
-            touched.push_back(node);
-        }
-        colours[order[i]] = colour;
+        if (links[order[i]].m_group != links[order[first]].m_group)
+            for (; first < i; ++first)
+                colouring.release(links[order[first]].m_nodes, 2);
+        colours[order[i]] = colouring.take(links[order[i]].m_nodes, 2);
     }
     return colours;
 }
