@@ -83,12 +83,12 @@ void CollisionStep::preparePushes(BodyContacts& body)
         SolverContact contact = {};
         contact.m_nodes[0] = push.m_node;
         contact.m_nodes[1] = contact.m_nodes[2] = -1;
-        contact.m_weights[0] = 1;
-        contact.m_normal = vec3Of(push.m_normal);
-        contact.m_point = vec3Of(point);
+        contact.m_plane.m_weights[0] = 1;
+        contact.m_plane.m_normal = vec3Of(push.m_normal);
+        contact.m_plane.m_point = vec3Of(point);
         contact.m_time = 1;
-        contact.m_startGap = float(-push.m_distance);
-        contact.m_endGap = float(endGap);
+        contact.m_gaps.m_start = float(-push.m_distance);
+        contact.m_gaps.m_end = float(endGap);
         contact.m_carry = push.m_carry;
         body.m_pushContacts.push_back(m_state.m_found.source().addOwn(contact));
         push.m_speedLimit = (std::max(btScalar(0), endGap + push.m_distance) + push.m_normal.dot(start - node.m_q)) *

@@ -106,7 +106,7 @@ void PairStarts::pushNode(const StartingPair& pair, int node, Vec3 way, BodyCont
     NodePush push;
     push.m_node = node;
     push.m_normal = (pair.m_kinematic ? pair.m_motion.m_end.getBasis() * there : there).normalized();
-    push.m_distance = std::min(depth + kRecoveredShare * body.m_contacts.m_leastThickness,
+    push.m_distance = std::min(depth + DRAPE_RECOVERED_SHARE * body.m_contacts.m_leastThickness,
                                (kLeastSpeed + kSpeedPerMetre * depth) * body.m_body->m_sst.sdt);
     push.m_speedLimit = SIMD_INFINITY;
     push.m_carry.m_map = m_state.m_found.source().mapOf(pair.m_obstacle->id());

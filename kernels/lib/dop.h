@@ -17,7 +17,6 @@ DRAPE_NAMESPACE_BEGIN
 #define DRAPE_TINY 1.17549435e-38f
 // 2^-23, see dopGrowInterval().
 #define DRAPE_DOP_PAD 1.1920929e-7f
-#define DRAPE_INFINITY (1.0f / 0.0f)
 
 typedef struct Dop
 {

@@ -6,6 +6,8 @@
 
 DRAPE_NAMESPACE_BEGIN
 
+#define DRAPE_INFINITY (1.0f / 0.0f)
+
 #ifdef __OPENCL_VERSION__
 #define drapeSqrt(a) sqrt(a)
 #define drapeBits(a) as_uint(a)

@@ -13,6 +13,24 @@ typedef struct SolverNode
     float m_inverseMass;  // 1/kg; 0 for a node that constraints do not move
 } SolverNode;
 
+// A node's path through the step: straight, from its start to its predicted end.
+typedef struct NodePath
+{
+    Vec3 m_start;         // m
+    float m_inverseMass;  // 1/kg, as contacts see it: 0 for a node that they do not move
+    Vec3 m_way;           // m, from the start to the end
+    float m_unused;
+} NodePath;
+
+// What a node has beside its displacement.
+typedef struct NodeState
+{
+    Vec3 m_velocity;       // m/s
+    DRAPE_UINT m_shifted;  // whether it was moved since its displacement was remembered
+    Vec3 m_before;         // m, the displacement that was remembered
+    DRAPE_UINT m_isFar;    // working memory of the motion limit
+} NodeState;
+
 // A contact that acts: the least displacement, along a normal, of a weighted point of the cloth.
 typedef struct ContactRow
 {
@@ -30,6 +48,16 @@ typedef struct ContactRow
     DRAPE_UINT m_count;  // nodes, 1 to 3
     float m_mended;      // share of a violation that a push corrects: 1 where no node is fixed
 } ContactRow;
+
+// A contact with a row, and what the row's projection does not need.
+typedef struct ActingContact
+{
+    ContactRow m_row;
+    float m_distance;     // m, distance to keep from the contact's point: thickness plus target
+    float m_speedLimit;   // m/s outwards when the contact pushed
+    DRAPE_UINT m_stage;   // in which the plane was renewed
+    DRAPE_UINT m_pushed;  // whether it pushed in any stage
+} ActingContact;
 
 DRAPE_NAMESPACE_END
 

@@ -32,13 +32,13 @@ SolverContact planeContact(const std::vector<int>& nodes, float height)
     for (std::size_t k = 0; k < 3; ++k)
     {
         contact.m_nodes[k] = k < nodes.size() ? nodes[k] : -1;
-        contact.m_weights[k] = k < nodes.size() ? 1 / float(nodes.size()) : 0.0f;
+        contact.m_plane.m_weights[k] = k < nodes.size() ? 1 / float(nodes.size()) : 0.0f;
     }
-    contact.m_normal = vec3(0, 1, 0);
-    contact.m_point = vec3(0, height, 0);
+    contact.m_plane.m_normal = vec3(0, 1, 0);
+    contact.m_plane.m_point = vec3(0, height, 0);
     contact.m_thickness = kThickness;
-    contact.m_startGap = 1 - height - kThickness;
-    contact.m_endGap = -1 - height - kThickness;
+    contact.m_gaps.m_start = 1 - height - kThickness;
+    contact.m_gaps.m_end = -1 - height - kThickness;
     contact.m_time = (1 - height) / 2;
     return contact;
 }
@@ -129,8 +129,8 @@ TEST(ImpactCut, PinnedNodesStay)
 TEST(ImpactCut, LeavesPathsWithoutImpactAlone)
 {
     SolverContact met = planeContact({0}, 0), leaving = met, resting = met;
-    met.m_time = 1;                         // near at the end; nothing was passed
-    leaving.m_endGap = leaving.m_startGap;  // passed in the other direction
+    met.m_time = 1;                                 // near at the end; nothing was passed
+    leaving.m_gaps.m_end = leaving.m_gaps.m_start;  // passed in the other direction
     resting.m_time = std::numeric_limits<float>::quiet_NaN();
     const std::vector<SolverContact> contacts{met, leaving, resting};
     for (const Cut cut : {Cut::EachNode, Cut::WholeBody})
@@ -162,7 +162,7 @@ TEST(ImpactCut, APathEndsWhereAMovingObstacleCarriesIt)
         SolverNodes nodes = fallingNodes(2);
         SolverContact contact = planeContact({0}, 0);  // at the end of its motion
         contact.m_carry = carry;
-        contact.m_startGap = 1 + kRise - kThickness;
+        contact.m_gaps.m_start = 1 + kRise - kThickness;
         contact.m_time = (1 + kRise) / (2 + kRise);  // on the way from the carried start to the end
         EXPECT_TRUE(cutAtImpacts(nodes, {contact}, Cut::EachNode, kPerSecond));
         expectCut(nodes, 0, kStandOff);
@@ -178,9 +178,9 @@ TEST(ImpactCut, ANodeAtRestIsTakenAlongByAnObstacle)
     nodes.resize(1);
     nodes.setPath(0, vec3(0, 0, 0), vec3(0, 0, 0), vec3(0, 0, 0), 1);
     SolverContact contact = planeContact({0}, -1);  // the plane fell from 1 m to -1 m
-    contact.m_normal = vec3(0, -1, 0);
-    contact.m_startGap = 1 - kThickness;
-    contact.m_endGap = -1 - kThickness;
+    contact.m_plane.m_normal = vec3(0, -1, 0);
+    contact.m_gaps.m_start = 1 - kThickness;
+    contact.m_gaps.m_end = -1 - kThickness;
     contact.m_time = 0.5f;
     contact.m_carry = {down, nullptr};
     EXPECT_TRUE(cutAtImpacts(nodes, {contact}, Cut::EachNode, kPerSecond));

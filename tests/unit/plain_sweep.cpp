@@ -125,7 +125,7 @@ void PlainSweep::limitSpeeds()
         const SolverContact& contact = row.m_contact;
         float speed = 0;
         for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
-            speed += vec3Dot(m_velocities[nodeOf(contact, k)], contact.m_normal) * contact.m_weights[k];
+            speed += vec3Dot(m_velocities[nodeOf(contact, k)], contact.m_plane.m_normal) * contact.m_plane.m_weights[k];
         const float excess = speed - row.m_speedLimit, mobility = softenedOf(contact);
         if (!row.m_everActed || !(excess > 0) || !(mobility > 0)) continue;
         ++m_slowed;
@@ -133,7 +133,7 @@ void PlainSweep::limitSpeeds()
         {
             Vec3& velocity = m_velocities[nodeOf(contact, k)];
             const float lost = shareOf(contact, k) * excess * (1 / mobility);
-            velocity = vec3Sub(velocity, vec3Scale(contact.m_normal, lost));
+            velocity = vec3Sub(velocity, vec3Scale(contact.m_plane.m_normal, lost));
         }
     }
 }
@@ -142,7 +142,7 @@ bool PlainSweep::mayHavePassed() const
 {
     const auto isNear = [this](const Row& row)
     {
-        const float distance = row.m_contact.m_thickness + row.m_contact.m_targetGap;
+        const float distance = row.m_contact.m_thickness + row.m_contact.m_gaps.m_target;
         return row.m_everActed && distance - violationOf(row.m_contact, 1) < kNearShare * m_leastThickness;
     };
     return std::any_of(m_rows.begin(), m_rows.end(), isNear);
@@ -158,7 +158,7 @@ Vec3 PlainSweep::pointOf(const SolverContact& contact, const std::vector<Vec3>& 
 {
     Vec3 point = vec3(0, 0, 0);
     for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
-        point = vec3Add(point, vec3Scale(places[nodeOf(contact, k)], contact.m_weights[k]));
+        point = vec3Add(point, vec3Scale(places[nodeOf(contact, k)], contact.m_plane.m_weights[k]));
     return point;
 }
 
@@ -171,7 +171,7 @@ Vec3 PlainSweep::carriedFrom(const SolverContact& contact) const
     for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
     {
         const Vec3 end = contact.m_carry.start(nodeOf(contact, k), m_starts[nodeOf(contact, k)]);
-        carried = vec3Add(carried, vec3Scale(end, contact.m_weights[k]));
+        carried = vec3Add(carried, vec3Scale(end, contact.m_plane.m_weights[k]));
     }
     return carried;
 }
@@ -179,30 +179,31 @@ Vec3 PlainSweep::carriedFrom(const SolverContact& contact) const
 // Returns the outward speed that recovering a depth from before the step takes, beside the obstacle's own.
 float PlainSweep::speedLimitOf(const SolverContact& contact) const
 {
-    if (!(contact.m_startGap < 0)) return std::numeric_limits<float>::infinity();
-    const float recovered = std::max(0.0f, contact.m_endGap - contact.m_startGap);
-    return (recovered + vec3Dot(contact.m_normal, carriedFrom(contact))) * m_perSecond;
+    if (!(contact.m_gaps.m_start < 0)) return std::numeric_limits<float>::infinity();
+    const float recovered = std::max(0.0f, contact.m_gaps.m_end - contact.m_gaps.m_start);
+    return (recovered + vec3Dot(contact.m_plane.m_normal, carriedFrom(contact))) * m_perSecond;
 }
 
 // The obstacle has moved by the share that has passed; the contact's plane is that at the step's end.
 float PlainSweep::violationOf(const SolverContact& contact, float passed) const
 {
-    const Vec3 apart = vec3Sub(contact.m_point, pointOf(contact, m_starts));
-    const float level = vec3Dot(contact.m_normal, apart) + (contact.m_thickness + contact.m_targetGap);
-    const float ahead = (1 - passed) * vec3Dot(contact.m_normal, carriedFrom(contact));
-    return level - ahead - vec3Dot(contact.m_normal, pointOf(contact, m_places));
+    const Vec3 apart = vec3Sub(contact.m_plane.m_point, pointOf(contact, m_starts));
+    const float level = vec3Dot(contact.m_plane.m_normal, apart) + (contact.m_thickness + contact.m_gaps.m_target);
+    const float ahead = (1 - passed) * vec3Dot(contact.m_plane.m_normal, carriedFrom(contact));
+    return level - ahead - vec3Dot(contact.m_plane.m_normal, pointOf(contact, m_places));
 }
 
 float PlainSweep::shareOf(const SolverContact& contact, int k) const
 {
-    return contact.m_weights[k] * m_paths.inverseMass(nodeOf(contact, k));
+    return contact.m_plane.m_weights[k] * m_paths.inverseMass(nodeOf(contact, k));
 }
 
 float PlainSweep::mobilityOf(const SolverContact& contact) const
 {
     float mobility = 0;
     for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
-        mobility += contact.m_weights[k] * contact.m_weights[k] * m_paths.inverseMass(nodeOf(contact, k));
+        mobility +=
+            contact.m_plane.m_weights[k] * contact.m_plane.m_weights[k] * m_paths.inverseMass(nodeOf(contact, k));
     return mobility;
 }
 
@@ -211,7 +212,7 @@ float PlainSweep::heldShareOf(const SolverContact& contact) const
 {
     float held = 0;
     for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
-        if (m_paths.inverseMass(nodeOf(contact, k)) == 0) held += contact.m_weights[k];
+        if (m_paths.inverseMass(nodeOf(contact, k)) == 0) held += contact.m_plane.m_weights[k];
     return held;
 }
 
@@ -222,7 +223,7 @@ float PlainSweep::softenedOf(const SolverContact& contact) const
     for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
         most = std::max(most, m_paths.inverseMass(nodeOf(contact, k)));
     const float mobility = mobilityOf(contact);
-    return mobility > 0 ? mobility + kHeldSoftness * heldShareOf(contact) * most : 0.0f;
+    return mobility > 0 ? mobility + DRAPE_HELD_SOFTNESS * heldShareOf(contact) * most : 0.0f;
 }
 
 void PlainSweep::renewPlane(Row& row)
@@ -230,30 +231,29 @@ void PlainSweep::renewPlane(Row& row)
     SolverContact& contact = row.m_contact;
     if (row.m_renewed || !(mobilityOf(contact) > 0) || !(violationOf(contact, m_passed) > 0)) return;
     row.m_renewed = true;
-    float nodes[3][3] = {};
-    for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+    if (row.m_detected.m_kind != DRAPE_FACE_VERTEX || row.m_detected.m_time < 1) return;
+    Vec3 nodes[3];
+    for (int k = 0; k < 3; ++k)
     {
-        // The obstacle counts as standing at the step's end, so the nodes take part in the rest of its motion.
-        const std::size_t node = nodeOf(contact, k);
+        // The obstacle counts as standing at the step's end, so the nodes take part in the rest of its motion. A link
+        // repeats its second node.
+        const std::size_t node = nodeOf(contact, contact.m_nodes[k] >= 0 ? k : k - 1);
         const Vec3 ahead = vec3Sub(contact.m_carry.start(node, m_starts[node]), m_starts[node]);
-        const Vec3 place = vec3Add(vec3Add(m_starts[node], m_places[node]), vec3Scale(ahead, 1 - m_passed));
-        nodes[k][0] = place.x;
-        nodes[k][1] = place.y;
-        nodes[k][2] = place.z;
+        nodes[k] = vec3Add(vec3Add(m_starts[node], m_places[node]), vec3Scale(ahead, 1 - m_passed));
     }
     ContactPlane plane;
-    if (!ContactSource::planeAt(row.m_detected, nodes, plane)) return;
+    const Vec3 point = vec3Load(row.m_detected.m_point, 0), before = vec3Load(row.m_detected.m_normal, 0);
+    if (!planeOfFace(nodes, point, before, &plane)) return;
     ++m_renewals;
-    contact.m_normal = vec3Load(plane.m_normal, 0);
-    contact.m_point = vec3Load(plane.m_point, 0);
-    std::copy(plane.m_weights, plane.m_weights + 3, contact.m_weights);
+    if (contact.m_nodes[2] < 0) joinCorners(plane.m_weights);
+    contact.m_plane = plane;
 }
 
 // Returns the part of the violation that the push corrects.
 float PlainSweep::project(Row& row)
 {
     const SolverContact& contact = row.m_contact;
-    const Vec3 normal = contact.m_normal;
+    const Vec3 normal = contact.m_plane.m_normal;
     const float mobility = softenedOf(contact), violation = violationOf(contact, m_passed);
     if (!(mobility > 0) || (!(violation > 0) && !(row.m_multiplier > 0))) return 0;
     if (!row.m_acted && !(violationOf(contact, 1) > 0)) ++m_early;

@@ -4,8 +4,7 @@
 #include <cstring>
 #include <limits>
 
-#include "kernels/lib/contact_row.h"
-#include "kernels/lib/segment.h"
+#include "kernels/lib/acting_contact.h"
 
 namespace drape
 {
@@ -32,25 +31,6 @@ unsigned bitsAbove0(const Lanes& values)
     using Bits = int __attribute__((vector_size(16)));
     const std::uint64_t both = bothHalves((values > 0) & Bits{1, 2, 4, 8});
     return unsigned(both | both >> 32);
-}
-
-// Returns the position of a weighted point of the cloth at the step's start, m.
-Vec3 startOf(const SolverNodes& nodes, const ContactRow& row)
-{
-    Vec3 start = vec3Scale(nodes.start(row.m_nodes[0]), row.m_weights[0]);
-    for (std::uint32_t k = 1; k < row.m_count; ++k)
-        start = vec3AddScaled(start, nodes.start(row.m_nodes[k]), row.m_weights[k]);
-    return start;
-}
-
-// Returns how far the obstacle's motion in the step moves that point, m.
-Vec3 carriedFrom(const SolverNodes& nodes, const ContactRow& row, const Carry& carry, Vec3 start)
-{
-    if (!carry.moves()) return vec3(0, 0, 0);
-    Vec3 carried = vec3Scale(start, -1);
-    for (std::uint32_t k = 0; k < row.m_count; ++k)
-        carried = vec3AddScaled(carried, carry.start(row.m_nodes[k], nodes.start(row.m_nodes[k])), row.m_weights[k]);
-    return carried;
 }
 }  // namespace
 
@@ -151,83 +131,45 @@ void ContactGroup::fillLane(const SweptCloth& cloth, Block& block, int lane, con
 
 ContactGroup::Row ContactGroup::makeRow(const SweptCloth& cloth, const Block& block, int lane)
 {
-    const SolverContact contact = cloth.m_contacts->resolve(*cloth.m_source, block.m_contacts[lane]);
-    Row row = Row();
-    row.m_row.m_count = std::uint32_t(block.m_count);
-    std::copy(block.m_nodes, block.m_nodes + 3, row.m_row.m_nodes);
-    row.m_row.m_friction = contact.m_friction;
-    row.m_distance = contact.m_thickness + contact.m_targetGap;
-    row.m_carry = contact.m_carry;
-    setPlane(cloth, row, contact.m_weights, contact.m_normal, contact.m_point);
-    row.m_speedLimit = std::numeric_limits<float>::infinity();
-    if (contact.m_startGap < 0)
-    {
-        const float recovered = std::max(0.0f, contact.m_endGap - contact.m_startGap);
-        row.m_speedLimit = (recovered + row.m_row.m_advance) * cloth.m_contacts->m_perSecond;
-    }
-    return row;
+    const ClothContacts& contacts = *cloth.m_contacts;
+    const SolverContact contact = contacts.resolve(*cloth.m_source, block.m_contacts[lane]);
+    const FeatureNodes nodes = featureNodes(cloth.nodes(), contact.m_nodes, contact.m_carry);
+    const ContactSettings settings = {contact.m_thickness, contact.m_friction, contacts.m_hardness,
+                                      contacts.m_perSecond};
+    return {actingContact(&nodes, &contact.m_plane, &settings, contact.m_gaps), contact.m_carry};
 }
 
-void ContactGroup::setPlane(const SweptCloth& cloth, Row& out, const float weights[3], Vec3 normal, Vec3 point)
-{
-    const SolverNodes& nodes = cloth.nodes();
-    ContactRow& row = out.m_row;
-    float mobility = 0, held = 0, most = 0;
-    for (std::uint32_t k = 0; k < row.m_count; ++k)
-    {
-        const float inverseMass = nodes.inverseMass(row.m_nodes[k]);
-        row.m_weights[k] = weights[k];
-        row.m_shares[k] = weights[k] * inverseMass;
-        mobility += weights[k] * weights[k] * inverseMass;
-        most = std::max(most, inverseMass);
-        if (!(inverseMass > 0)) held += weights[k];
-    }
-    const float softened = mobility + kHeldSoftness * held * most;
-    row.m_inverseMobility = mobility > 0 ? 1 / softened : 0.0f;
-    row.m_mended = held > 0 ? mobility * row.m_inverseMobility : 1.0f;
-    row.m_normal = normal;
-    const Vec3 start = startOf(nodes, row), carried = carriedFrom(nodes, row, out.m_carry, start);
-    row.m_advance = vec3Dot(normal, carried);
-    row.m_carried = vec3AddScaled(carried, normal, -row.m_advance);
-    row.m_level = vec3Dot(normal, vec3Sub(point, start)) + out.m_distance;
-}
-
-// Renews the contact's plane where its features are nearest now; the block gets the same plane. The obstacle counts as
-// standing at the step's end: the nodes move along with the rest of its motion.
+// Renews the contact's plane where its features are nearest now; the block gets the same plane. Only faces at a vertex
+// turn their contacts, and a contact that was met keeps its plane.
 void ContactGroup::renewPlane(const SweptCloth& cloth, Row& row, Block& block, int lane)
 {
-    const SolverNodes& nodes = cloth.nodes();
-    float places[3][3];
-    for (int k = 0; k < 3; ++k)
-    {
-        // A link repeats its second node.
-        const std::size_t node = std::size_t(block.m_nodes[std::min(k, block.m_count - 1)]);
-        const Vec3 carried = vec3Sub(row.m_carry.start(node, nodes.start(node)), nodes.start(node));
-        const Vec3 place = vec3AddScaled(nodes.position(node), carried, 1 - cloth.m_passed);
-        places[k][0] = place.x;
-        places[k][1] = place.y;
-        places[k][2] = place.z;
-    }
+    const Contact& found = block.m_contacts[lane];
+    if (found.m_kind != DRAPE_FACE_VERTEX || found.m_time < 1) return;
+    const int indices[3] = {block.m_nodes[0], block.m_nodes[1], block.m_count < 3 ? -1 : block.m_nodes[2]};
+    const FeatureNodes nodes = featureNodes(cloth.nodes(), indices, row.m_carry);
+    Vec3 displacements[3] = {};
+    for (std::uint32_t k = 0; k < nodes.m_count; ++k)
+        displacements[k] = cloth.nodes().displacement(nodes.m_nodes[k]);
+    const ContactPlane before = {vec3Load(found.m_normal, 0), vec3Load(found.m_point, 0), {}};
     ContactPlane plane;
-    if (!ContactSource::planeAt(block.m_contacts[lane], places, plane)) return;
-    if (block.m_count == 2) joinCorners(plane.m_weights);
-    setPlane(cloth, row, plane.m_weights, vec3(plane.m_normal[0], plane.m_normal[1], plane.m_normal[2]),
-             vec3(plane.m_point[0], plane.m_point[1], plane.m_point[2]));
-    for (int axis = 0; axis < 3; ++axis)
-        block.m_normal[axis][lane] = plane.m_normal[axis];
+    if (!drape::renewPlane(&row.m_acting, &nodes, displacements, cloth.m_passed, &before, &plane)) return;
+    block.m_normal[0][lane] = plane.m_normal.x;
+    block.m_normal[1][lane] = plane.m_normal.y;
+    block.m_normal[2][lane] = plane.m_normal.z;
     block.m_weights[0][lane] = plane.m_weights[1];
     block.m_weights[1][lane] = plane.m_weights[2];
-    block.m_level[lane] = row.m_row.m_level + cloth.m_margin;
+    block.m_level[lane] = row.m_acting.m_row.m_level + cloth.m_margin;
 }
 
 // Returns whether the contact had anything to do; `worst` grows to its violation.
-bool ContactGroup::project(const SweptCloth& cloth, Row& row, float& worst)
+bool ContactGroup::project(const SweptCloth& cloth, ActingContact& acting, float& worst)
 {
     SolverNodes& nodes = cloth.nodes();
-    if (!projectRow(&row.m_row, nodes.nodes(), cloth.m_passed, &worst)) return false;
-    for (std::uint32_t k = 0; k < row.m_row.m_count; ++k)
-        nodes.markShifted(row.m_row.m_nodes[k]);
-    row.m_pushed = true;
+    ContactRow& row = acting.m_row;
+    if (!projectRow(&row, nodes.nodes(), cloth.m_passed, &worst)) return false;
+    for (std::uint32_t k = 0; k < row.m_count; ++k)
+        nodes.markShifted(row.m_nodes[k]);
+    acting.m_pushed = 1;
     return true;
 }
 
@@ -272,14 +214,14 @@ float ContactGroup::projectBlock(const SweptCloth& cloth, std::size_t index, uns
             at = int(m_rows.size());
             m_rows.push_back(makeRow(cloth, block, lane));
         }
-        Row& row = m_rows[std::size_t(at)];
-        if (!(row.m_row.m_inverseMobility > 0)) continue;
-        if (row.m_stage != m_stage && rowViolation(&row.m_row, nodes, cloth.m_passed) > 0)
+        ActingContact& acting = m_rows[std::size_t(at)].m_acting;
+        if (!(acting.m_row.m_inverseMobility > 0)) continue;
+        if (acting.m_stage != m_stage && rowViolation(&acting.m_row, nodes, cloth.m_passed) > 0)
         {
-            renewPlane(cloth, row, block, lane);
-            row.m_stage = m_stage;
+            renewPlane(cloth, m_rows[std::size_t(at)], block, lane);
+            acting.m_stage = m_stage;
         }
-        if (!(row.m_row.m_inverseMobility > 0) || !project(cloth, row, worst)) continue;
+        if (!(acting.m_row.m_inverseMobility > 0) || !project(cloth, acting, worst)) continue;
         pushing |= 1u << lane;
         if (lane + 1 < block.m_lanes) due |= bitsAbove0(excessOf(block, nodes, slack));  // its nodes moved
     }
@@ -297,7 +239,7 @@ void ContactGroup::beginStage(unsigned stage)
         for (int lane = 0; lane < kLanes; ++lane)
         {
             if (!(m_pushing[index] >> lane & 1)) continue;
-            ContactRow& row = m_rows[std::size_t(m_rowsOf[index].m_row[lane])].m_row;
+            ContactRow& row = m_rows[std::size_t(m_rowsOf[index].m_row[lane])].m_acting.m_row;
             row.m_multiplier = 0;
             row.m_held = vec3(0, 0, 0);
         }
@@ -327,28 +269,12 @@ float ContactGroup::sweep(const SweptCloth& cloth, Kinds kinds)
     return worst;
 }
 
-void ContactGroup::limitSpeed(const SweptCloth& cloth, const Row& limited)
-{
-    const ContactRow& row = limited.m_row;
-    SolverNodes& nodes = cloth.nodes();
-    float speed = 0;
-    for (std::uint32_t k = 0; k < row.m_count; ++k)
-        speed += vec3Dot(nodes.velocity(row.m_nodes[k]), row.m_normal) * row.m_weights[k];
-    const float excess = speed - limited.m_speedLimit;
-    if (!(excess > 0) || !(row.m_inverseMobility > 0)) return;  // a renewed plane may rest on pinned nodes alone
-    for (std::uint32_t k = 0; k < row.m_count; ++k)
-    {
-        const Vec3 loss = vec3Scale(row.m_normal, -(row.m_shares[k] * excess * row.m_inverseMobility));
-        nodes.addVelocity(row.m_nodes[k], loss);
-        nodes.markShifted(row.m_nodes[k]);
-    }
-}
-
 void ContactGroup::limitSpeeds(const SweptCloth& cloth) const
 {
     for (const BlockRows& rows : m_rowsOf)
         for (const int row : rows.m_row)
-            if (row >= 0 && m_rows[std::size_t(row)].m_pushed) limitSpeed(cloth, m_rows[std::size_t(row)]);
+            if (row >= 0 && m_rows[std::size_t(row)].m_acting.m_pushed)
+                limitSpeed(&m_rows[std::size_t(row)].m_acting, cloth.nodes().states());
 }
 
 bool ContactGroup::mayHavePassed(const SweptCloth& cloth) const
@@ -357,6 +283,9 @@ bool ContactGroup::mayHavePassed(const SweptCloth& cloth) const
     const float least = kNearShare * cloth.m_contacts->m_leastThickness;
     return std::any_of(m_rows.begin(), m_rows.end(),
                        [&](const Row& row)
-                       { return row.m_pushed && row.m_distance - rowViolation(&row.m_row, nodes, 1) < least; });
+                       {
+                           const ActingContact& acting = row.m_acting;
+                           return acting.m_pushed && acting.m_distance - rowViolation(&acting.m_row, nodes, 1) < least;
+                       });
 }
 }  // namespace drape

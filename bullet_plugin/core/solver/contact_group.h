@@ -15,12 +15,6 @@
 
 namespace drape
 {
-// Share of a movable node's inverse mass that is added to a contact's mobility where the rest of its point is fixed;
-// proportionally less where less of it is fixed. It keeps a node with little weight in the point from being thrown
-// far. The node moves at most 2.8 times the violation in a sweep, at a weight of a fifth, and less the smaller its
-// weight.
-constexpr float kHeldSoftness = 0.04f;
-
 // Distance between the points of a contact, as a share of the thickness, below which its features may have passed each
 // other.
 constexpr float kNearShare = 0.25f;
@@ -93,28 +87,21 @@ private:
     {
         int m_row[kLanes] = {-1, -1, -1, -1};
     };
-    // A contact that acts, and what the row's projection does not need.
     struct Row
     {
-        ContactRow m_row;
+        ActingContact m_acting;
         Carry m_carry;
-        float m_distance;    // m, distance to keep from the contact's point: thickness plus target
-        float m_speedLimit;  // m/s outwards when the contact pushed
-        unsigned m_stage;    // in which the plane was renewed
-        bool m_pushed;       // in any stage
     };
 
     void sortByColour(Colouring& colouring);
     void addFeature(const SweptCloth& cloth, const FeatureContacts& feature);
     static void fillLane(const SweptCloth& cloth, Block& block, int lane, const Contact& contact);
     static Row makeRow(const SweptCloth& cloth, const Block& block, int lane);
-    static void setPlane(const SweptCloth& cloth, Row& row, const float weights[3], Vec3 normal, Vec3 point);
     static void renewPlane(const SweptCloth& cloth, Row& row, Block& block, int lane);
     static Lanes excessOf(const Block& block, const SolverNode* nodes, float slack);
     template <int count>
     static Lanes excessOfNodes(const Block& block, const SolverNode* nodes, float slack);
-    static bool project(const SweptCloth& cloth, Row& row, float& worst);
-    static void limitSpeed(const SweptCloth& cloth, const Row& row);
+    static bool project(const SweptCloth& cloth, ActingContact& acting, float& worst);
     void beginStage(unsigned stage);
     float projectBlock(const SweptCloth& cloth, std::size_t index, unsigned due);
 

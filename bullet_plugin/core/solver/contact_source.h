@@ -7,7 +7,6 @@
 #include <unordered_map>
 #include <vector>
 
-#include "bullet_plugin/core/pipeline/contact_plane.h"
 #include "bullet_plugin/core/pipeline/pipeline.h"
 #include "solver_contact.h"
 #include "solver_nodes.h"
@@ -40,9 +39,6 @@ public:
     // Resolves the contact's points and gaps along the paths of the nodes. friction: of the cloth. hardness: see
     // targetGap().
     SolverContact resolve(const SolverNodes& nodes, float friction, float hardness, const Contact& contact) const;
-    // Resolves a contact with its nodes at other positions, see planeAt() of contact_plane.h. Only faces at a vertex
-    // turn their contacts, and a contact that was met keeps its plane; returns false for all others.
-    static bool planeAt(const Contact& contact, const float nodes[][3], ContactPlane& plane);
 
 private:
     const Pipeline* m_pipeline = nullptr;

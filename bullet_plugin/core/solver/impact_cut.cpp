@@ -13,8 +13,8 @@ constexpr float kStandOff = 0.5f;
 // Returns the share of the path to keep: 1 when nothing was met or the cloth's point moves away.
 float shareLeft(const SolverContact& contact)
 {
-    if (!(contact.m_time < 1) || contact.m_endGap >= contact.m_startGap) return 1;
-    const float distance = contact.m_startGap + contact.m_thickness;  // at the step's start
+    if (!(contact.m_time < 1) || contact.m_gaps.m_end >= contact.m_gaps.m_start) return 1;
+    const float distance = contact.m_gaps.m_start + contact.m_thickness;  // at the step's start
     const float standOff = kStandOff * contact.m_thickness;
     return distance > standOff ? contact.m_time * (1 - standOff / distance) : 0.0f;
 }

@@ -11,33 +11,9 @@ namespace
 // Share of the minimum allowed distance that needs no exact test; the rest is for rounding.
 constexpr float kSureShare = 0.99f;
 
-// Returns the parameter, 0 to 1, of the closest position on the way from `start` to `end`.
-float closestOnPath(Vec3 start, Vec3 end, Vec3 point)
-{
-    const Vec3 way = vec3Sub(end, start);
-    const float length2 = vec3Dot(way, way);
-    if (!(length2 > 0)) return 1;
-    return std::min(1.0f, std::max(0.0f, vec3Dot(vec3Sub(point, start), way) / length2));
-}
-
-bool meet(Vec3 low, Vec3 high, Vec3 otherLow, Vec3 otherHigh)
-{
-    return low.x <= otherHigh.x && high.x >= otherLow.x && low.y <= otherHigh.y && high.y >= otherLow.y &&
-           low.z <= otherHigh.z && high.z >= otherLow.z;
-}
-
-// Moves a node back to the path between the displacements `start` and `end` if it is farther off than the radius, which
-// varies linearly between them. Returns whether it was moved.
 bool bringBack(SolverNodes& nodes, std::size_t node, Vec3 start, Vec3 end, float startRadius, float endRadius)
 {
-    const Vec3 place = nodes.displacement(node);
-    const float t = closestOnPath(start, end, place);
-    const Vec3 off = vec3Sub(place, vec3Mix(start, end, t));
-    const float radius = startRadius + (endRadius - startRadius) * t;
-    const float distance = vec3Length(off);
-    if (!(distance > radius)) return false;
-    nodes.shift(node, vec3Scale(off, radius / distance - 1));
-    return true;
+    return drape::bringBack(nodes.nodes() + node, nodes.states() + node, start, end, startRadius, endRadius) != 0;
 }
 }  // namespace
 
@@ -63,7 +39,7 @@ void MotionLimit::addObstacle(Vec3 low, Vec3 high, float thickness, float activa
     m_anyMoves = m_anyMoves || carry.moves();
     m_sure = std::min(m_sure, kSureShare * std::min(least, kFreeShare * reach));
     m_regions.push_back(
-        Region{vec3Sub(low, margin), vec3Add(high, margin), Allowance{least, kFreeShare * reach}, carry});
+        Region{Box{vec3Sub(low, margin), vec3Add(high, margin)}, Allowance{least, kFreeShare * reach}, carry});
 }
 
 void MotionLimit::startStep(const ClothFaces& faces)
@@ -94,8 +70,7 @@ bool MotionLimit::strayed(const SolverNodes& nodes)
 
 bool MotionLimit::isFar(const SolverNodes& nodes, std::size_t node) const
 {
-    const Vec3 off = vec3Sub(nodes.displacement(node), nodes.way(node));
-    return !(vec3Dot(off, off) <= m_sure * m_sure) && nodes.inverseMass(node) > 0;
+    return isFarFromEnd(nodes.nodes() + node, nodes.paths() + node, m_sure) != 0;
 }
 
 // Limits the node alone: every resting obstacle enforces the same region along its path.
@@ -131,18 +106,11 @@ bool MotionLimit::findFarNodes(const SolverNodes& nodes)
 
 void MotionLimit::addPassed(const SolverNodes& nodes, int a, int b, int c)
 {
-    const Vec3 first = nodes.end(std::size_t(a));
-    Passed passed{first, first, {a, b, c}};
+    Passed passed{pointBox(nodes.end(std::size_t(a))), {a, b, c}};
     for (const int node : passed.m_nodes)
-    {
-        for (const Vec3 place : {nodes.end(std::size_t(node)), nodes.position(std::size_t(node))})
-        {
-            passed.m_low = vec3Least(passed.m_low, place);
-            passed.m_high = vec3Most(passed.m_high, place);
-        }
-    }
-    m_allLow = vec3Least(m_allLow, passed.m_low);
-    m_allHigh = vec3Most(m_allHigh, passed.m_high);
+        growByPassed(&passed.m_box, nodes.nodes() + node, nodes.paths() + node);
+    m_all.m_low = vec3Least(m_all.m_low, passed.m_box.m_low);
+    m_all.m_high = vec3Most(m_all.m_high, passed.m_box.m_high);
     m_passed.push_back(passed);
 }
 
@@ -151,8 +119,8 @@ void MotionLimit::addPassed(const SolverNodes& nodes, int a, int b, int c)
 void MotionLimit::boxPassed(const SolverNodes& nodes, bool withContacts)
 {
     m_passed.clear();
-    m_allLow = vec3(kInfinity, kInfinity, kInfinity);
-    m_allHigh = vec3Scale(m_allLow, -1);
+    m_all.m_low = vec3(kInfinity, kInfinity, kInfinity);
+    m_all.m_high = vec3Scale(m_all.m_low, -1);
     m_isBoxed.assign(nodes.count(), 0);
     for (const FarNode& far : m_farNodes)
     {
@@ -176,12 +144,12 @@ void MotionLimit::boxPassed(const SolverNodes& nodes, bool withContacts)
 
 bool MotionLimit::markNear(const Region& region)
 {
-    if (!meet(m_allLow, m_allHigh, region.m_low, region.m_high)) return false;
+    if (!boxesMeet(&m_all, &region.m_box)) return false;
     m_isNear.assign(m_isBoxed.size(), 0);
     bool any = false;
     for (const Passed& passed : m_passed)
     {
-        if (!meet(passed.m_low, passed.m_high, region.m_low, region.m_high)) continue;
+        if (!boxesMeet(&passed.m_box, &region.m_box)) continue;
         any = true;
         for (const int node : passed.m_nodes)
             m_isNear[std::size_t(node)] = 1;

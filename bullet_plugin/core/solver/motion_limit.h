@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cloth_faces.h"
+#include "kernels/lib/motion_limit.h"
 #include "solver_contact.h"
 #include "solver_nodes.h"
 
@@ -73,7 +74,7 @@ private:
     };
     struct Region
     {
-        Vec3 m_low, m_high;
+        Box m_box;
         Allowance m_allowance;
         Carry m_carry;
     };
@@ -87,7 +88,7 @@ private:
     // The volume that a node or a triangle may pass between the end of its path and its current position.
     struct Passed
     {
-        Vec3 m_low, m_high;
+        Box m_box;
         int m_nodes[3];
     };
 
@@ -113,6 +114,6 @@ private:
     std::vector<FarNode> m_farNodes;
     std::vector<unsigned char> m_isBoxed, m_isNear;  // by node: is in m_passed; is near the region tested last
     std::vector<Passed> m_passed;
-    Vec3 m_allLow, m_allHigh;  // around all of them
+    Box m_all;  // around all of them
 };
 }  // namespace drape

@@ -1,12 +1,12 @@
-// One resolved contact, the input of contact sweeps and cuts. Lengths in metres, world frame. Gaps have the thickness
-// subtracted: 0 is the resting distance, negative is too close.
+// One resolved contact, the input of contact sweeps and cuts. Lengths in metres, world frame.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
 
+#include "kernels/lib/acting_contact.h"
 #include "kernels/lib/rigid_motion.h"
-#include "kernels/lib/vec3.h"
+#include "solver_nodes.h"
 
 namespace drape
 {
@@ -26,29 +26,30 @@ struct Carry
 
 struct SolverContact
 {
-    int m_nodes[3];      // -1 where unused
-    float m_weights[3];  // sum 1
-    Vec3 m_normal;       // unit, from the obstacle to the cloth
-    Vec3 m_point;        // on the obstacle
+    int m_nodes[3];  // -1 where unused
+    ContactPlane m_plane;
     float m_thickness;
-    float m_time;       // time of impact, 0 to 1; 1 if nothing was passed
-    float m_startGap;   // at the step's start, relative to the obstacle
-    float m_endGap;     // at the path's end
-    float m_targetGap;  // least gap at the step's end: 0, or less when the step began too close
+    float m_time;  // time of impact, 0 to 1; 1 if nothing was passed
+    ContactGaps m_gaps;
     float m_friction;
     Carry m_carry;
 };
 
-// Minimum share of the thickness that a step recovers of an initial depth. Only positions recover; no speed remains.
-// A tenth quickly corrects cloth that came a little too near while it moved along a curved obstacle.
-constexpr float kRecoveredShare = 0.1f;
-
-// Returns the least gap at the step's end. A step that began too close recovers the share `hardness` of its depth
-// (Bullet's kinetic contact hardness, kKHR), or kRecoveredShare of the thickness if that is more. Cloth that starts
-// inside is therefore not thrown out.
-inline float targetGap(float startGap, float hardness, float thickness)
+// Returns what a contact's row needs of its feature's nodes. nodes: indices, -1 where unused.
+inline FeatureNodes featureNodes(const SolverNodes& all, const int nodes[3], const Carry& carry)
 {
-    const float recovered = std::max(startGap + kRecoveredShare * thickness, startGap * (1 - hardness));
-    return std::min(0.0f, recovered);
+    FeatureNodes feature = {};
+    feature.m_moves = carry.moves();
+    for (int k = 0; k < 3 && nodes[k] >= 0; ++k)
+    {
+        const std::size_t node = std::size_t(nodes[k]);
+        feature.m_nodes[k] = std::uint32_t(node);
+        feature.m_starts[k] = all.start(node);
+        feature.m_carried[k] = carry.start(node, all.start(node));
+        feature.m_ends[k] = all.end(node);
+        feature.m_inverseMasses[k] = all.inverseMass(node);
+        ++feature.m_count;
+    }
+    return feature;
 }
 }  // namespace drape

@@ -38,7 +38,7 @@ constexpr std::size_t kLeastFurther = 24, kMostFurther = 120;
 // measured earlier in it.
 constexpr float kClosingTolerance = 0.01f;
 constexpr float kMostViolation = 0.0625f;
-static_assert(kMostViolation < kRecoveredShare, "else cloth comes nearer from step to step");
+static_assert(kMostViolation < DRAPE_RECOVERED_SHARE, "else cloth comes nearer from step to step");
 
 // The nodes of a cloth, and its links, which are the core's.
 struct LinkedNodes

@@ -39,36 +39,25 @@ void Substeps::prepare(float time, int count, float damping, const std::vector<V
 
 void Substeps::begin(SolverNodes& nodes, ThreadTeam* threads) const
 {
-    const float share = pathShare(m_count) * m_time;
     forNodes(nodes.count(), threads,
              [&](std::size_t i)
              {
-                 const Vec3 mean = vec3Scale(nodes.way(i), 1 / m_time);
-                 nodes.setCurrent(i, vec3(0, 0, 0), vec3AddScaled(mean, (*m_accelerations)[i], -share));
+                 nodeBegin(nodes.nodes() + i, nodes.states() + i, nodes.way(i), acceleration(i), perStep(),
+                           pathShare(m_count) * m_time);
              });
 }
 
 void Substeps::advance(SolverNodes& nodes, ThreadTeam* threads)
 {
-    const float h = substepTime();
     forNodes(nodes.count(), threads,
              [&](std::size_t i)
-             {
-                 const Vec3 velocity = vec3AddScaled(nodes.velocity(i), (*m_accelerations)[i], h);
-                 nodes.setCurrent(i, vec3AddScaled(nodes.displacement(i), velocity, h), velocity);
-                 nodes.remember(i);
-             });
+             { nodeAdvance(nodes.nodes() + i, nodes.states() + i, acceleration(i), substepTime()); });
 }
 
 void Substeps::end(SolverNodes& nodes, ThreadTeam* threads) const
 {
-    const float perSecond = 1 / m_correctionTime;
     forNodes(nodes.count(), threads,
-             [&](std::size_t i)
-             {
-                 const Vec3 correction = vec3Sub(nodes.displacement(i), nodes.remembered(i));
-                 nodes.setVelocity(i, vec3Scale(vec3AddScaled(nodes.velocity(i), correction, perSecond), m_kept));
-             });
+             [&](std::size_t i) { nodeEnd(nodes.nodes() + i, nodes.states() + i, 1 / m_correctionTime, m_kept); });
 }
 
 void Substeps::run(SolverNodes& nodes, ThreadTeam* threads)

@@ -28,6 +28,11 @@ public:
     // Returns the time by which a correction of a position is divided to give a velocity, s. It is that of a substep,
     // or longer for some steps after a longer one, whose errors would otherwise be corrected at great speed.
     float correctionTime() const { return m_correctionTime; }
+    // Returns the inverse of the step's time, 1/s.
+    float perStep() const { return 1 / m_time; }
+    // Returns the share of a velocity that damping leaves in a substep.
+    float kept() const { return m_kept; }
+    Vec3 acceleration(std::size_t node) const { return (*m_accelerations)[node]; }
 
     // Prepares a step of `time` seconds (> 0) in `count` parts. damping: the share of a velocity that is lost in the
     // step, 0 to 1. accelerations: of the nodes, m/s²; they must stay in place until the last substep.
@@ -52,7 +57,7 @@ private:
     const std::vector<Vec3>* m_accelerations = nullptr;
     float m_time = 1;
     float m_correctionTime = 0;
-    float m_kept = 1;  // the share of a velocity that damping leaves in a substep
+    float m_kept = 1;
     int m_count = 1;
 };
 }  // namespace drape
