@@ -18,7 +18,7 @@ void FoundContacts::nameObstacle(MeshId obstacle, const btCollisionObject* objec
 void FoundContacts::set(const Pipeline& pipeline, const ContactList& contacts)
 {
     m_pipeline = &pipeline;
-    m_source.setPipeline(pipeline);
+    m_source.setPipeline(pipeline, contacts);
     m_contacts = contacts;
 }
 

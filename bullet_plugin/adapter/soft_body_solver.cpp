@@ -120,7 +120,7 @@ struct SoftBodySolver::Work
     // links the core solves.
     std::vector<SolverCloth> m_touched;
     std::vector<std::unique_ptr<BulletLinks>> m_bulletLinks;
-    std::vector<LinkedNodes> m_free;
+    std::vector<SolverCloth> m_free;
     RigidBodies m_rigidBodies;
     std::vector<std::pair<btSoftBody*, const SolverNodes*>> m_ends;  // results to be written to the bodies
     std::vector<unsigned char> m_solved;                             // by body: solved by Bullet or by its contacts
@@ -320,7 +320,7 @@ bool SoftBodySolver::Work::take(btSoftBody& body)
         if (contacts || substeps->rigidRows())
             m_touched.push_back({&cloth, &substeps->substeps(), nullptr, substeps->rigidRows()});
         else
-            m_free.push_back({&cloth.m_nodes, &substeps->substeps()});
+            m_free.push_back({&cloth, &substeps->substeps(), nullptr, nullptr});
         return true;
     }
     m_bulletLinks.emplace_back(new BulletLinks(body, !contacts->m_contacts.m_features.empty()));
@@ -350,8 +350,11 @@ double SoftBodySolver::solveBodies()
         i = work.solveByBullet(m_softBodySet, i);
         bulletMs += watch.lapMs();
     }
-    work.m_solver->solveFree(work.m_free);
-    work.m_solver->solve(work.m_touched, m_state->m_found.source());
+    std::size_t nodes = 0;
+    for (const auto& end : work.m_ends)
+        nodes += end.second->count();
+    SolveStage* const stage = m_state->pipeline().solveStage(nodes);
+    work.m_solver->solve(work.m_touched, work.m_free, m_state->m_found.source(), stage);
     for (const auto& end : work.m_ends)
         SubstepBody::end(*end.second, *end.first, &m_state->threads());
     work.m_rigidBodies.applyImpulses();

@@ -10,7 +10,7 @@
 DRAPE_NAMESPACE_BEGIN
 
 // Returns the displacement of the row's point of the cloth, m.
-DRAPE_FUNCTION Vec3 rowDisplacement(const ContactRow* row, const SolverNode* nodes)
+DRAPE_FUNCTION Vec3 rowDisplacement(const ContactRow* row, const DRAPE_GLOBAL SolverNode* nodes)
 {
     Vec3 way = vec3Scale(nodes[row->m_nodes[0]].m_displacement, row->m_weights[0]);
     for (DRAPE_UINT k = 1; k < row->m_count; ++k)
@@ -19,7 +19,7 @@ DRAPE_FUNCTION Vec3 rowDisplacement(const ContactRow* row, const SolverNode* nod
 }
 
 // Returns how far the row's point is below its level, m. passed: the share of the step that has passed, up to 1.
-DRAPE_FUNCTION float rowViolation(const ContactRow* row, const SolverNode* nodes, float passed)
+DRAPE_FUNCTION float rowViolation(const ContactRow* row, const DRAPE_GLOBAL SolverNode* nodes, float passed)
 {
     return row->m_level - (1.0f - passed) * row->m_advance - vec3Dot(row->m_normal, rowDisplacement(row, nodes));
 }
@@ -28,7 +28,7 @@ DRAPE_FUNCTION float rowViolation(const ContactRow* row, const SolverNode* nodes
 // Friction removes the point's motion since the step's start along the surface, relative to the obstacle, up to
 // Coulomb's bound. Returns whether there was anything to do; `worst` grows to the violation that a push can correct. A
 // row with NaN does nothing.
-DRAPE_FUNCTION int projectRow(ContactRow* row, SolverNode* nodes, float passed, float* worst)
+DRAPE_FUNCTION int projectRow(ContactRow* row, DRAPE_GLOBAL SolverNode* nodes, float passed, float* worst)
 {
     const Vec3 way = rowDisplacement(row, nodes), normal = row->m_normal;
     const float along = vec3Dot(normal, way);
@@ -43,7 +43,7 @@ DRAPE_FUNCTION int projectRow(ContactRow* row, SolverNode* nodes, float passed, 
     const Vec3 shift = vec3AddScaled(vec3Sub(held, row->m_held), normal, pushed - row->m_multiplier);
     for (DRAPE_UINT k = 0; k < row->m_count; ++k)
     {
-        SolverNode* node = nodes + row->m_nodes[k];
+        DRAPE_GLOBAL SolverNode* node = nodes + row->m_nodes[k];
         node->m_displacement = vec3AddScaled(node->m_displacement, shift, row->m_shares[k]);
     }
     row->m_multiplier = pushed;

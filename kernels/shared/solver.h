@@ -19,7 +19,7 @@ typedef struct NodePath
     Vec3 m_start;         // m
     float m_inverseMass;  // 1/kg, as contacts see it: 0 for a node that they do not move
     Vec3 m_way;           // m, from the start to the end
-    float m_unused;
+    float m_freeMass;     // 1/kg, the inverse mass as links see it
 } NodePath;
 
 // What a node has beside its displacement.

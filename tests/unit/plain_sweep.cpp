@@ -120,21 +120,25 @@ float PlainSweep::runNodes()
 
 void PlainSweep::limitSpeeds()
 {
-    for (const Row& row : m_rows)
+    for (const bool edges : {false, true})
+        for (const Row& row : m_rows)
+            if ((kindOf(row.m_contact) == Kind::Edge) == edges) limitSpeed(row);
+}
+
+void PlainSweep::limitSpeed(const Row& row)
+{
+    const SolverContact& contact = row.m_contact;
+    float speed = 0;
+    for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+        speed += vec3Dot(m_velocities[nodeOf(contact, k)], contact.m_plane.m_normal) * contact.m_plane.m_weights[k];
+    const float excess = speed - row.m_speedLimit, mobility = softenedOf(contact);
+    if (!row.m_everActed || !(excess > 0) || !(mobility > 0)) return;
+    ++m_slowed;
+    for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
     {
-        const SolverContact& contact = row.m_contact;
-        float speed = 0;
-        for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
-            speed += vec3Dot(m_velocities[nodeOf(contact, k)], contact.m_plane.m_normal) * contact.m_plane.m_weights[k];
-        const float excess = speed - row.m_speedLimit, mobility = softenedOf(contact);
-        if (!row.m_everActed || !(excess > 0) || !(mobility > 0)) continue;
-        ++m_slowed;
-        for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
-        {
-            Vec3& velocity = m_velocities[nodeOf(contact, k)];
-            const float lost = shareOf(contact, k) * excess * (1 / mobility);
-            velocity = vec3Sub(velocity, vec3Scale(contact.m_plane.m_normal, lost));
-        }
+        Vec3& velocity = m_velocities[nodeOf(contact, k)];
+        const float lost = shareOf(contact, k) * excess * (1 / mobility);
+        velocity = vec3Sub(velocity, vec3Scale(contact.m_plane.m_normal, lost));
     }
 }
 

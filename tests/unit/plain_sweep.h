@@ -62,6 +62,7 @@ private:
     static Kind kindOf(const SolverContact& contact);
     void sortRows(const ClothParts& parts);
     float sweep(std::initializer_list<Kind> kinds);
+    void limitSpeed(const Row& row);
     void addVelocities(const std::vector<Vec3>& before);
     Vec3 pointOf(const SolverContact& contact, const std::vector<Vec3>& places) const;
     Vec3 carriedFrom(const SolverContact& contact) const;

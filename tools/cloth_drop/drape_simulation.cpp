@@ -89,6 +89,9 @@ std::unique_ptr<Simulation> makeDrapeSimulation(const DropScene& scene, const Op
     settings.m_mode = options.m_contactMode == "discrete"     ? ContactMode::Discrete
                       : options.m_contactMode == "continuous" ? ContactMode::Continuous
                                                               : ContactMode::Automatic;
+    settings.m_solverPlace = options.m_solverPlace == "host"     ? SolverPlace::Host
+                             : options.m_solverPlace == "device" ? SolverPlace::Device
+                                                                 : SolverPlace::Auto;
     settings.m_solver = options.m_solver == "drape"    ? Solver::Drape
                         : options.m_solver == "bullet" ? Solver::Bullet
                                                        : Solver::Auto;

@@ -102,6 +102,9 @@ void addBackendOptions(CLI::App& app, Options& options, std::string& mode)
     acceptOnly(app.add_option("--solver", options.m_solver,
                               "who solves the cloth's links; drape: in substeps, with less stretch; auto: bullet"),
                {"auto", "drape", "bullet"});
+    acceptOnly(app.add_option("--solver-place", options.m_solverPlace,
+                              "where Drape's solver computes; auto: a GPU for large cloth, else the host"),
+               {"auto", "host", "device"});
     app.add_option("--threads", options.m_threads,
                    "number of threads of the solver and of the host back end, 0 to 64; 0: one per core, 8 at most")
         ->check(CLI::Validator(wholeNumber(0, 64), ""));

@@ -30,6 +30,7 @@ struct Options
     double m_thickness = 0.02;
     std::string m_backend = "auto";
     std::string m_contactMode = "automatic";  // discrete, continuous or automatic: Settings::m_mode
+    std::string m_solverPlace = "auto";       // auto, host or device: Settings::m_solverPlace
     std::string m_solver = "auto";            // auto, drape or bullet: Settings::m_solver
     BulletMode m_bulletMode = BulletMode::Stock;
     std::string m_device;

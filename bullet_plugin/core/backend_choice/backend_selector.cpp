@@ -17,6 +17,9 @@ namespace
 {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+// Minimum nodes for solving cloths on a GPU.
+constexpr std::size_t kLeastDeviceNodes = 1024;
+
 std::string rounded(double value)
 {
     char text[32];
@@ -83,6 +86,13 @@ void BackendSelector::reopen(const BackendSelector& other)
 Device* BackendSelector::device()
 {
     return m_device ? &m_device->device() : nullptr;
+}
+
+SolveStage* BackendSelector::solveStage(std::size_t nodes)
+{
+    if (!m_device || m_device->device().failed() || !m_device->solveStage().created()) return nullptr;
+    const bool pays = nodes >= kLeastDeviceNodes || m_settings.m_solverPlace == SolverPlace::Device;
+    return pays ? &m_device->solveStage() : nullptr;
 }
 
 std::unique_ptr<DeviceBackend> BackendSelector::makeDeviceBackend(Error& error) const

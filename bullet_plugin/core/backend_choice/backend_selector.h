@@ -17,6 +17,7 @@ namespace drape
 {
 class DeviceBackend;
 class HostBackend;
+class SolveStage;
 class ThreadTeam;
 struct Crossover;
 
@@ -43,6 +44,9 @@ public:
     DeviceBackend* chosenDevice() { return m_report.m_onHost ? nullptr : m_device.get(); }
     // Returns the open device, also while the host runs the steps and after its failure; null without one.
     Device* device();
+
+    // Returns the stage that solves cloths with so many nodes on the device; null if the host should.
+    SolveStage* solveStage(std::size_t nodes);
 
     // Chooses the back end for the named pairs.
     void choose(const Scene& scene, const StepInput& input);

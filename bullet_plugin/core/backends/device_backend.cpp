@@ -23,6 +23,12 @@ std::vector<ProgramSet::Names> filesTogether()
             {"cloth_cloth/self_cull", "cloth_cloth/self_pack_simd", "cloth_cloth/self_contact",
              "cloth_cloth/self_contact_simd"}};
 }
+// Returns whether cloths may be solved on the device.
+bool solvesOn(const Device& device, const Settings& settings)
+{
+    if (settings.m_solver == Solver::Bullet || settings.m_solverPlace == SolverPlace::Host) return false;
+    return device.isGpu() || settings.m_solverPlace == SolverPlace::Device;
+}
 }  // namespace
 
 DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& settings)
@@ -35,6 +41,7 @@ DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& set
     m_narrowPhase.create(*m_device, load);
     m_ordering.create(*m_device, load);
     m_obstacles.create(*m_device, load);
+    if (solvesOn(*m_device, settings)) m_solve.create(*m_device, load);
     reserveFirst();
     for (Buffer<StepCounters>& counters : m_counters)
     {
@@ -72,6 +79,7 @@ void DeviceBackend::giveBackRoom()
     m_patchCull.giveBackRoom(*m_device);
     m_unsorted.release();
     m_ordering.release();
+    m_solve.giveBackRoom();
     reserveFirst();
 }
 

@@ -9,6 +9,7 @@
 #include "bullet_plugin/core/device/program_set.h"
 #include "bullet_plugin/core/narrow_phase/narrow_phase.h"
 #include "bullet_plugin/core/ordering/ordering.h"
+#include "bullet_plugin/core/solver/solve_stage.h"
 #include "cloth_store.h"
 #include "drape/settings.h"
 #include "obstacle_store.h"
@@ -26,6 +27,9 @@ public:
 
     Device& device() { return *m_device; }
     bool fromCache() const { return m_programs.fromCache(); }
+
+    // Solves cloths; created if the settings may have them solved on this device.
+    SolveStage& solveStage() { return m_solve; }
 
     // Builds the kernels of cloths that collide with themselves, at the first call.
     void prepareSelf();
@@ -81,6 +85,7 @@ private:
     NarrowPhaseStage m_narrowPhase;
     SelfContactStage m_self;
     OrderingStage m_ordering;
+    SolveStage m_solve;
 
     ClothStore m_cloths;
     ObstacleStore m_obstacles;

@@ -262,6 +262,11 @@ const std::shared_ptr<ThreadTeam>& Pipeline::threads() const
     return m_implementation->m_threads;
 }
 
+SolveStage* Pipeline::solveStage(std::size_t nodes)
+{
+    return m_implementation->m_backends.solveStage(nodes);
+}
+
 bool Pipeline::deviceFailed() const
 {
     return m_implementation->m_backends.deviceFailed();
@@ -285,5 +290,10 @@ SelfContactView Pipeline::viewSelf(const Contact& contact) const
 ClothFeature Pipeline::clothFeature(const Contact& contact) const
 {
     return clothFeatureOf(m_implementation->m_scene.m_cloths, contact);
+}
+
+std::size_t Pipeline::obstacleSlot(const Contact& contact) const
+{
+    return drape::obstacleSlot(m_implementation->m_scene.m_obstacles, contact);
 }
 }  // namespace drape

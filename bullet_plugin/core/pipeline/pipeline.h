@@ -26,6 +26,7 @@
 namespace drape
 {
 class MeshProbe;
+class SolveStage;
 
 // A range of adjacent nodes of a cloth, and the memory to write them to: x y z per node.
 struct NodeStretch
@@ -133,6 +134,9 @@ public:
     // Returns the threads set by Settings::m_threads; never null. The pipeline's caller may use them, too, between
     // its calls.
     const std::shared_ptr<ThreadTeam>& threads() const;
+    // Returns the stage that solves cloths with so many nodes on a device; null if the host should
+    // (Settings::m_solverPlace).
+    SolveStage* solveStage(std::size_t nodes);
     // Returns whether a device failed, so that the host runs every step from then on.
     bool deviceFailed() const;
     // Returns the message of the device's failure if the status reports one, or of the mesh that was refused since.
@@ -144,6 +148,8 @@ public:
     SelfContactView viewSelf(const Contact& contact) const;
     // Resolves only the cloth's part of a contact of finish(), at a lower cost.
     ClothFeature clothFeature(const Contact& contact) const;
+    // Returns the slot of the obstacle of a contact of finish().
+    std::size_t obstacleSlot(const Contact& contact) const;
 
 private:
     struct Implementation;

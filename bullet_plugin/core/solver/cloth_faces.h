@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "revision.h"
+
 namespace drape
 {
 class ClothFaces
@@ -16,7 +18,7 @@ public:
     ClothFaces() = default;
     // triangles: three nodes each. A triangle with a node outside [0, nodeCount) is no face of any node.
     ClothFaces(std::vector<std::int32_t> triangles, std::size_t nodeCount)
-        : m_triangles(std::move(triangles)), m_firsts(nodeCount + 2, 0)
+        : m_revision(newRevision()), m_triangles(std::move(triangles)), m_firsts(nodeCount + 2, 0)
     {
         forValid([this](std::size_t node, std::size_t) { ++m_firsts[node + 2]; });
         for (std::size_t i = 2; i < m_firsts.size(); ++i)
@@ -29,6 +31,11 @@ public:
     }
 
     std::size_t nodeCount() const { return m_firsts.empty() ? 0 : m_firsts.size() - 2; }
+    // Differs from that of all other lists, except for copies.
+    std::uint64_t revision() const { return m_revision; }
+    // By node, the position of its first face in facesOfNodes(); then the last one's end.
+    const std::size_t* firsts() const { return m_firsts.data(); }
+    const std::vector<std::uint32_t>& facesOfNodes() const { return m_facesOfNode; }
     // Three nodes each.
     const std::vector<std::int32_t>& triangles() const { return m_triangles; }
 
@@ -55,6 +62,7 @@ private:
         }
     }
 
+    std::uint64_t m_revision = 0;
     std::vector<std::int32_t> m_triangles;
     std::vector<std::size_t> m_firsts;  // by node, index in m_facesOfNode; then the last one's end, twice
     std::vector<std::uint32_t> m_facesOfNode;

@@ -248,13 +248,16 @@ void ContactGroup::beginStage(unsigned stage)
     m_pushingBlocks.clear();
 }
 
+std::pair<std::size_t, std::size_t> ContactGroup::rangeOf(Kinds kinds) const
+{
+    if (kinds == Kinds::Edges) return {m_faceBlocks, m_blocks.size()};
+    return {0, kinds == Kinds::Nodes ? m_nodeBlocks : m_faceBlocks};
+}
+
 float ContactGroup::sweep(const SweptCloth& cloth, Kinds kinds)
 {
     beginStage(cloth.m_stage);
-    const std::size_t first = kinds == Kinds::Edges ? m_faceBlocks : 0;
-    const std::size_t last = kinds == Kinds::Nodes           ? m_nodeBlocks
-                             : kinds == Kinds::NodesAndFaces ? m_faceBlocks
-                                                             : m_blocks.size();
+    const auto [first, last] = rangeOf(kinds);
     const Block* const blocks = m_blocks.data();
     const SolverNode* const nodes = cloth.nodes().nodes();
     const unsigned char* const pushing = m_pushing.data();
@@ -269,10 +272,11 @@ float ContactGroup::sweep(const SweptCloth& cloth, Kinds kinds)
     return worst;
 }
 
-void ContactGroup::limitSpeeds(const SweptCloth& cloth) const
+void ContactGroup::limitSpeeds(const SweptCloth& cloth, Kinds kinds) const
 {
-    for (const BlockRows& rows : m_rowsOf)
-        for (const int row : rows.m_row)
+    const auto [first, last] = rangeOf(kinds);
+    for (std::size_t i = first; i < last; ++i)
+        for (const int row : m_rowsOf[i].m_row)
             if (row >= 0 && m_rows[std::size_t(row)].m_acting.m_pushed)
                 limitSpeed(&m_rows[std::size_t(row)].m_acting, cloth.nodes().states());
 }

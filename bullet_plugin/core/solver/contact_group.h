@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "cloth_contacts.h"
@@ -59,7 +60,7 @@ public:
     // as far as the contact's nodes can correct it. A new stage begins with no pushes.
     float sweep(const SweptCloth& cloth, Kinds kinds);
     // Removes from the nodes' velocities what a contact gained by recovering a depth that the step began with.
-    void limitSpeeds(const SweptCloth& cloth) const;
+    void limitSpeeds(const SweptCloth& cloth, Kinds kinds) const;
     // Returns whether a contact that has pushed ends with less than kNearShare of the thickness between its features'
     // points, so that the features may have passed each other.
     bool mayHavePassed(const SweptCloth& cloth) const;
@@ -94,6 +95,8 @@ private:
     };
 
     void sortByColour(Colouring& colouring);
+    // Returns the first block of these kinds, and the end of the last one.
+    std::pair<std::size_t, std::size_t> rangeOf(Kinds kinds) const;
     void addFeature(const SweptCloth& cloth, const FeatureContacts& feature);
     static void fillLane(const SweptCloth& cloth, Block& block, int lane, const Contact& contact);
     static Row makeRow(const SweptCloth& cloth, const Block& block, int lane);

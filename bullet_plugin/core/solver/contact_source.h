@@ -24,8 +24,19 @@ struct ObstacleSurface
 class ContactSource
 {
 public:
-    // Sets the pipeline whose contacts are resolved.
-    void setPipeline(const Pipeline& pipeline) { m_pipeline = &pipeline; }
+    // Sets the pipeline whose contacts are resolved, and its list of them.
+    void setPipeline(const Pipeline& pipeline, ContactList list)
+    {
+        m_pipeline = &pipeline;
+        m_list = list;
+    }
+    // All contacts of the detection, those of addOwn() excepted.
+    ContactList list() const { return m_list; }
+    // Returns what contacts with an obstacle have in common; resolve() returns it for each.
+    const ObstacleSurface& surfaceOf(MeshId obstacle) const { return m_surfaces.at(obstacle); }
+    // Returns the slot of a listed contact's obstacle: contacts of one slot have one obstacle.
+    std::size_t obstacleSlot(const Contact& contact) const { return m_pipeline->obstacleSlot(contact); }
+    ContactView view(const Contact& contact) const { return m_pipeline->view(contact); }
     void nameObstacle(MeshId obstacle, const ObstacleSurface& surface) { m_surfaces[obstacle] = surface; }
     // Returns the motion of the obstacle's points in the step; null if it rests. It stays in place until the source
     // ends.
@@ -42,6 +53,7 @@ public:
 
 private:
     const Pipeline* m_pipeline = nullptr;
+    ContactList m_list;
     std::unordered_map<MeshId, ObstacleSurface> m_surfaces;
     std::unordered_map<MeshId, const Vec3*> m_carriedStarts;  // by cloth
     std::vector<SolverContact> m_own;

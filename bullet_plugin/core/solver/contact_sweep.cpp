@@ -47,20 +47,20 @@ void ContactSweep::begin()
         m_groups[m_parts->groupOf(feature.m_nodes)].add(feature);
         m_blocks += ContactGroup::blocksOf(feature.m_count);
     }
-    boundNodes();
+    m_cloth.m_margin = levelMargin(contacts());
+    m_cloth.m_retreat = contacts().m_limit.mostCarried(nodes());
 }
 
-// Sets the bounds that the nodes' paths and the obstacles' motion give.
-void ContactSweep::boundNodes()
+float levelMargin(const ClothContacts& contacts)
 {
+    const SolverNodes& nodes = contacts.m_nodes;
     float farthest = 0;
-    for (std::size_t i = 0; i < nodes().count(); ++i)
+    for (std::size_t i = 0; i < nodes.count(); ++i)
     {
-        const float far = drapeMax(vec3NormMax(nodes().start(i)), vec3NormMax(nodes().end(i)));
+        const float far = drapeMax(vec3NormMax(nodes.start(i)), vec3NormMax(nodes.end(i)));
         if (far <= DRAPE_FARTHEST) farthest = std::max(farthest, far);  // other nodes have no contacts
     }
-    m_cloth.m_margin = kRounding * (farthest + contacts().m_mostThickness);
-    m_cloth.m_retreat = contacts().m_limit.mostCarried(nodes());
+    return kRounding * (farthest + contacts.m_mostThickness);
 }
 
 // Limits the motion of a leaf's nodes. Only for cloths whose limit needs no other nodes.
@@ -88,7 +88,9 @@ void ContactSweep::work(std::size_t index, Pass pass)
             m_worst[index] = std::max(m_worst[index], group.sweep(m_cloth, ContactGroup::Kinds::Edges));
             return;
         case Pass::LimitSpeeds:
-            group.limitSpeeds(m_cloth);
+            return group.limitSpeeds(m_cloth, ContactGroup::Kinds::NodesAndFaces);
+        case Pass::LimitEdgeSpeeds:
+            group.limitSpeeds(m_cloth, ContactGroup::Kinds::Edges);
             m_near[index] = group.mayHavePassed(m_cloth);
             return;
     }
@@ -165,5 +167,6 @@ void SweepTeam::runNodes(const Cloths& cloths)
 void SweepTeam::limitSpeeds(const Cloths& cloths)
 {
     pass(cloths, ContactSweep::Pass::LimitSpeeds);
+    pass(cloths, ContactSweep::Pass::LimitEdgeSpeeds);
 }
 }  // namespace drape

@@ -21,6 +21,9 @@
 
 namespace drape
 {
+// Returns a bound on the rounding difference between the two computations of a violation, m.
+float levelMargin(const ClothContacts& contacts);
+
 // Contacts of one cloth, as SweepTeam processes them.
 class ContactSweep
 {
@@ -51,13 +54,13 @@ private:
         NodesAndFaces,
         LimitNodesAndFaces,  // NodesAndFaces after nodes are brought back to their paths
         Edges,
-        LimitSpeeds
+        LimitSpeeds,  // of nodes and faces
+        LimitEdgeSpeeds
     };
 
     void work(std::size_t group, Pass pass);
     // Processes a leaf, then each ancestor group whose other half is done already.
     void climb(std::size_t leaf, Pass pass);
-    void boundNodes();
     void keepNear(std::size_t leaf);
     float worst() const;
     bool mayHavePassed() const;

@@ -14,6 +14,7 @@
 
 #include "bullet_plugin/core/threads/thread_team.h"
 #include "kernels/shared/solver.h"
+#include "revision.h"
 
 namespace drape
 {
@@ -30,6 +31,7 @@ public:
     // Sorts the links; leafCount: a power of two, the groups are less than twice as many. Strengths are 0 until set.
     void build(std::size_t nodeCount, std::size_t leafCount, const std::vector<LinkNodes>& links);
 
+    std::size_t leafCount() const { return m_leafCount; }
     std::size_t linkCount() const { return m_laneOf.size(); }
     // Sets a link, in the order of build(), for the sweeps of a step. apart: m, from the first node to the second at
     // the step's start. restSquared: m². strength: kg, the share of a violation that a visit corrects, divided by the
@@ -38,11 +40,33 @@ public:
     {
         Block& block = m_blocks[m_laneOf[link] / kWidth];
         const std::size_t lane = m_laneOf[link] % kWidth;
+        m_isNew = m_isNew || block.m_restSquared[lane] != restSquared || block.m_strength[lane] != strength;
         block.m_apart[0][lane] = apart.x;
         block.m_apart[1][lane] = apart.y;
         block.m_apart[2][lane] = apart.z;
         block.m_restSquared[lane] = restSquared;
         block.m_strength[lane] = strength;
+    }
+
+    // Differs after build(), and after a set() that changes a length or a strength, from that of any other state.
+    std::uint64_t revision()
+    {
+        if (m_isNew) m_revision = newRevision();
+        m_isNew = false;
+        return m_revision;
+    }
+    // Calls visit(group, colour, nodes, restSquared, strength) for each link, in the order of build().
+    template <class Visit>
+    void forLinks(const Visit& visit) const
+    {
+        for (std::size_t link = 0; link < linkCount(); ++link)
+        {
+            const Block& block = m_blocks[m_laneOf[link] / kWidth];
+            const std::size_t lane = m_laneOf[link] % kWidth;
+            const std::uint32_t nodes[2] = {block.m_first[lane], block.m_second[lane]};
+            visit(m_places[link].m_group, m_places[link].m_colour, nodes, block.m_restSquared[lane],
+                  block.m_strength[lane]);
+        }
     }
 
     // Visits every link once. threads: null for the caller alone.
@@ -58,6 +82,11 @@ private:
         float m_apart[3][kWidth], m_restSquared[kWidth], m_strength[kWidth];
     };
 
+    struct Place
+    {
+        std::uint32_t m_group, m_colour;
+    };
+
     void addBlock(const LinkNodes& link);
     void visitGroup(std::size_t group, SolverNode* nodes) const;
     void climb(std::size_t leaf, SolverNode* nodes);
@@ -65,6 +94,9 @@ private:
     std::vector<Block> m_blocks;
     std::vector<std::size_t> m_firsts;    // by group, the first of its blocks; then the end
     std::vector<std::uint32_t> m_laneOf;  // by link, its lane over all blocks
+    std::vector<Place> m_places;          // by link
+    std::uint64_t m_revision = 0;
+    bool m_isNew = true;
     std::size_t m_leafCount = 1;
     std::unique_ptr<std::atomic<bool>[]> m_halfDone;  // by group: whether one of its halves is done in this sweep
 };

@@ -55,6 +55,24 @@ public:
     void apply(SolverNodes& nodes);
     // Does the same as apply() for nodes without contacts alone.
     void applyToOthers(SolverNodes& nodes);
+    // Distances by which a node may leave the path's start and end.
+    struct Allowance
+    {
+        float m_start, m_end;
+    };
+    // An obstacle and where it limits nodes.
+    struct Region
+    {
+        Box m_box;
+        Allowance m_allowance;
+        Carry m_carry;
+    };
+    const std::vector<Region>& regions() const { return m_regions; }
+    const ClothFaces* faces() const { return m_faces; }
+    // Returns the distance from the ends of their paths within which nodes are free, m; infinity without obstacles.
+    float sureDistance() const { return m_sure; }
+    // Returns pathTolerance() of the thinnest pair, m.
+    float leastTolerance() const { return m_leastTolerance; }
     // Returns whether all obstacles rest. keepNear() then replaces apply() for a node with contacts, wherever the
     // other nodes are.
     bool obstaclesRest() const { return !m_anyMoves; }
@@ -66,18 +84,6 @@ public:
 
 private:
     static constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-    // Distances by which a node may leave the path's start and end.
-    struct Allowance
-    {
-        float m_start, m_end;
-    };
-    struct Region
-    {
-        Box m_box;
-        Allowance m_allowance;
-        Carry m_carry;
-    };
 
     // A node farther from its path's end than is always free.
     struct FarNode

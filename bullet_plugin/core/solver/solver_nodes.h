@@ -30,6 +30,7 @@ public:
     {
         m_nodes[node].m_inverseMass = inverseMass;
         m_paths[node].m_start = start;
+        m_paths[node].m_freeMass = inverseMass;
         m_paths[node].m_inverseMass = anchored ? 0.0f : inverseMass;
         setEnd(node, way, velocity);
     }

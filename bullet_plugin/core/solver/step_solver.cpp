@@ -28,17 +28,11 @@ bool isViolated(const ContactSweep* sweep, float share)
     return SweepTeam::worst(*sweep) > share * sweep->contacts().m_leastThickness;
 }
 
-int mostClosingSweeps(const ContactSweep* sweep)
-{
-    const std::size_t affordable = kFurtherBlocks / std::max<std::size_t>(1, SweepTeam::blockCount(*sweep));
-    return kClosingSweeps + int(std::min(kMostFurther, std::max(kLeastFurther, affordable)));
-}
-
 // Returns whether the cloth needs another closing sweep after `done` sweeps.
 bool isOpen(const ContactSweep* sweep, int done)
 {
     if (done < kClosingSweeps) return isViolated(sweep, kClosingTolerance);
-    return done < mostClosingSweeps(sweep) && isViolated(sweep, kMostViolation);
+    return done < mostClosingSweeps(SweepTeam::blockCount(*sweep)) && isViolated(sweep, kMostViolation);
 }
 
 bool obstaclesRest(const ContactSweep* sweep)
@@ -131,12 +125,6 @@ void StepSolver::forSubsteps(const Job& job)
         if (Substeps* substeps = sweep->cloth().m_substeps) m_own.push_back({&sweep->nodes(), substeps});
     forEach(m_own,
             [&](const LinkedNodes& cloth, ThreadTeam* threads) { job(*cloth.m_nodes, *cloth.m_substeps, threads); });
-}
-
-void StepSolver::solveFree(const std::vector<LinkedNodes>& cloths)
-{
-    forEach(cloths,
-            [](const LinkedNodes& cloth, ThreadTeam* threads) { cloth.m_substeps->run(*cloth.m_nodes, threads); });
 }
 
 // Begins an iteration's rows. The links' last pull takes over what contacts pushed before it.
@@ -284,13 +272,36 @@ void StepSolver::close()
     m_team.forCloths(m_all, end);
 }
 
-void StepSolver::solve(const std::vector<SolverCloth>& cloths, const ContactSource& source)
+void StepSolver::solveOnHost(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
+                             const ContactSource& source)
 {
+    m_own.clear();
+    for (const SolverCloth& cloth : free)
+        m_own.push_back({&cloth.m_contacts->m_nodes, cloth.m_substeps});
+    forEach(m_own,
+            [](const LinkedNodes& cloth, ThreadTeam* threads) { cloth.m_substeps->run(*cloth.m_nodes, threads); });
     if (cloths.empty()) return;
     m_cloths = cloths;
     begin(source);
     iterate();
     close();
+}
+
+void StepSolver::solve(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
+                       const ContactSource& source, SolveStage* stage)
+{
+    if (!stage) return solveOnHost(cloths, free, source);
+    m_onDevice = m_onHost = m_freeOnHost = {};
+    for (const SolverCloth& cloth : cloths)
+        (PackedStep::fits(cloth, source) ? m_onDevice : m_onHost).push_back(cloth);
+    for (const SolverCloth& cloth : free)
+        (PackedStep::fits(cloth, source) ? m_onDevice : m_freeOnHost).push_back(cloth);
+    if (m_onDevice.empty()) return solveOnHost(cloths, free, source);
+    m_packed.pack(m_onDevice, source, *stage);
+    stage->submit(m_packed.step());
+    solveOnHost(m_onHost, m_freeOnHost, source);
+    if (const SolveWorkWord* const result = stage->finish()) return m_packed.unpack(result);
+    solveOnHost(m_onDevice, {}, source);
 }
 
 void StepSolver::close(const std::vector<SolverCloth>& cloths, const ContactSource& source)

@@ -11,11 +11,13 @@
 // kMostFurther more. Reasons: docs/design_notes/contact_sweeps.md.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <vector>
 
 #include "contact_sweep.h"
+#include "packed_step.h"
 #include "solver_cloth.h"
 #include "substeps.h"
 
@@ -33,6 +35,13 @@ constexpr int kClosingSweeps = 8;
 constexpr std::size_t kFurtherBlocks = std::size_t(1) << 16;
 constexpr std::size_t kLeastFurther = 24, kMostFurther = 120;
 
+// Returns the maximum number of closing sweeps over so many contact blocks.
+inline int mostClosingSweeps(std::size_t blocks)
+{
+    const std::size_t affordable = kFurtherBlocks / std::max<std::size_t>(1, blocks);
+    return kClosingSweeps + int(std::min(kMostFurther, std::max(kLeastFurther, affordable)));
+}
+
 // Worst violation that may remain, as a share of the thickness: before kClosingSweeps sweeps are done, and after. The
 // second is less than what the next step recovers, since later contacts of a sweep may increase a violation that was
 // measured earlier in it.
@@ -40,28 +49,32 @@ constexpr float kClosingTolerance = 0.01f;
 constexpr float kMostViolation = 0.0625f;
 static_assert(kMostViolation < DRAPE_RECOVERED_SHARE, "else cloth comes nearer from step to step");
 
-// The nodes of a cloth, and its links, which are the core's.
-struct LinkedNodes
-{
-    SolverNodes* m_nodes;
-    Substeps* m_substeps;
-};
-
 class StepSolver
 {
 public:
     explicit StepSolver(ThreadTeam& threads) : m_team(threads), m_threads(threads) {}
 
-    // Cloths with ForeignLinks are written back; nodes of others stay where the solver leaves them.
-    void solve(const std::vector<SolverCloth>& cloths, const ContactSource& source);
+    // Cloths with ForeignLinks are written back; nodes of others stay where the solver leaves them. free: cloths
+    // without contacts, limits or rigid rows. stage: solves the cloths that fit (PackedStep); null if there is none.
+    // If the device fails, the host solves them all.
+    void solve(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free, const ContactSource& source,
+               SolveStage* stage = nullptr);
     // Runs the closing sweeps alone, for cloths whose nodes are at the ends of the paths along which their contacts
     // were found.
     void close(const std::vector<SolverCloth>& cloths, const ContactSource& source);
-    void solveFree(const std::vector<LinkedNodes>& cloths);
 
 private:
+    // The nodes of a cloth, and its links, which are the core's.
+    struct LinkedNodes
+    {
+        SolverNodes* m_nodes;
+        Substeps* m_substeps;
+    };
+
     using Cloths = SweepTeam::Cloths;
 
+    void solveOnHost(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
+                     const ContactSource& source);
     void begin(const ContactSource& source);
     template <class Job>
     void forEach(const std::vector<LinkedNodes>& cloths, const Job& job);
@@ -85,5 +98,7 @@ private:
     // Cloths of the step, cloths with contacts, and subsets of one iteration or sweep.
     Cloths m_all, m_touching, m_iterating, m_turn, m_meeting, m_open, m_resting, m_others;
     std::vector<LinkedNodes> m_own;  // working memory of forSubsteps()
+    PackedStep m_packed;
+    std::vector<SolverCloth> m_onDevice, m_onHost, m_freeOnHost;  // working memory of solve()
 };
 }  // namespace drape

@@ -42,8 +42,8 @@ void Substeps::begin(SolverNodes& nodes, ThreadTeam* threads) const
     forNodes(nodes.count(), threads,
              [&](std::size_t i)
              {
-                 nodeBegin(nodes.nodes() + i, nodes.states() + i, nodes.way(i), acceleration(i), perStep(),
-                           pathShare(m_count) * m_time);
+                 nodeBegin(nodes.nodes() + i, nodes.states() + i, nodes.way(i), accelerations()[i], perStep(),
+                           pathTime());
              });
 }
 
@@ -51,7 +51,7 @@ void Substeps::advance(SolverNodes& nodes, ThreadTeam* threads)
 {
     forNodes(nodes.count(), threads,
              [&](std::size_t i)
-             { nodeAdvance(nodes.nodes() + i, nodes.states() + i, acceleration(i), substepTime()); });
+             { nodeAdvance(nodes.nodes() + i, nodes.states() + i, accelerations()[i], substepTime()); });
 }
 
 void Substeps::end(SolverNodes& nodes, ThreadTeam* threads) const

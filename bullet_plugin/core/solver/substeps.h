@@ -32,7 +32,9 @@ public:
     float perStep() const { return 1 / m_time; }
     // Returns the share of a velocity that damping leaves in a substep.
     float kept() const { return m_kept; }
-    Vec3 acceleration(std::size_t node) const { return (*m_accelerations)[node]; }
+    // Returns the share of the acceleration in a node's mean velocity, s.
+    float pathTime() const { return pathShare(m_count) * m_time; }
+    const Vec3* accelerations() const { return m_accelerations->data(); }
 
     // Prepares a step of `time` seconds (> 0) in `count` parts. damping: the share of a velocity that is lost in the
     // step, 0 to 1. accelerations: of the nodes, m/s²; they must stay in place until the last substep.

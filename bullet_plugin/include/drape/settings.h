@@ -42,6 +42,14 @@ enum class Solver
     Bullet  // Bullet, with Drape's contacts between its iterations
 };
 
+// Selects where Drape's own solver computes.
+enum class SolverPlace
+{
+    Auto,   // a GPU, if the plugin has one and the cloths are large enough for it; else the host
+    Host,   // the host
+    Device  // the plugin's OpenCL device, if it has one
+};
+
 // Holds the choices of an app before Drape starts.
 struct Settings
 {
@@ -72,6 +80,9 @@ struct Settings
     // iterations (two at least), with passes over links, anchors and contacts in each. Cloth stretches several times
     // less than with Bullet's, and the threads share the links. Soft links (kLST below 1) keep their stiffness.
     Solver m_solver = Solver::Auto;
+
+    // Selects where Drape's solver computes. The results do not depend on it.
+    SolverPlace m_solverPlace = SolverPlace::Auto;
 
     // Number of threads, the caller's included: they solve contacts of large or many cloths, write nodes for a GPU, and
     // run the host back end. Range 0 to 64. 0 means the number of available cores, 8 at most; 1 means the caller's
