@@ -10,7 +10,7 @@
 DRAPE_NAMESPACE_BEGIN
 
 // Returns the displacement of the row's point of the cloth, m.
-DRAPE_FUNCTION Vec3 rowDisplacement(const ContactRow* row, const DRAPE_GLOBAL SolverNode* nodes)
+DRAPE_FUNCTION Vec3 rowDisplacement(const ContactRow* row, const DRAPE_NODE_SPACE SolverNode* nodes)
 {
     Vec3 way = vec3Scale(nodes[row->m_nodes[0]].m_displacement, row->m_weights[0]);
     for (DRAPE_UINT k = 1; k < row->m_count; ++k)
@@ -19,18 +19,18 @@ DRAPE_FUNCTION Vec3 rowDisplacement(const ContactRow* row, const DRAPE_GLOBAL So
 }
 
 // Returns how far the row's point is below its level, m. passed: the share of the step that has passed, up to 1.
-DRAPE_FUNCTION float rowViolation(const ContactRow* row, const DRAPE_GLOBAL SolverNode* nodes, float passed)
+DRAPE_FUNCTION float rowViolation(const ContactRow* row, const DRAPE_NODE_SPACE SolverNode* nodes, float passed)
 {
     return row->m_level - (1.0f - passed) * row->m_advance - vec3Dot(row->m_normal, rowDisplacement(row, nodes));
 }
 
-// Pushes the row's nodes so far that the row holds, and takes back an earlier push that is not needed any more.
-// Friction removes the point's motion since the step's start along the surface, relative to the obstacle, up to
-// Coulomb's bound. Returns whether there was anything to do; `worst` grows to the violation that a push can correct. A
-// row with NaN does nothing.
-DRAPE_FUNCTION int projectRow(ContactRow* row, DRAPE_GLOBAL SolverNode* nodes, float passed, float* worst)
+// Computes the push that makes the row hold, or takes back an earlier push that is not needed any more. Friction removes
+// the point's motion since the step's start along the surface, relative to the obstacle, up to Coulomb's bound. way: m,
+// of the row's point. Returns whether there is anything to do; `worst` grows to the violation that a push can correct.
+// shift: kg m; a node moves by its share of it. A row with NaN does nothing.
+DRAPE_FUNCTION int pushRow(ContactRow* row, Vec3 way, float passed, float* worst, Vec3* shift)
 {
-    const Vec3 way = rowDisplacement(row, nodes), normal = row->m_normal;
+    const Vec3 normal = row->m_normal;
     const float along = vec3Dot(normal, way);
     const float violation = row->m_level - (1.0f - passed) * row->m_advance - along;
     if (!(violation > 0.0f) && !(row->m_multiplier > 0.0f)) return 0;
@@ -40,14 +40,22 @@ DRAPE_FUNCTION int projectRow(ContactRow* row, DRAPE_GLOBAL SolverNode* nodes, f
     Vec3 held = vec3AddScaled(row->m_held, slid, -row->m_inverseMobility);
     const float most = row->m_friction * pushed, wanted2 = vec3Dot(held, held);
     if (wanted2 > most * most) held = vec3Scale(held, most / drapeSqrt(wanted2));
-    const Vec3 shift = vec3AddScaled(vec3Sub(held, row->m_held), normal, pushed - row->m_multiplier);
-    for (DRAPE_UINT k = 0; k < row->m_count; ++k)
-    {
-        DRAPE_GLOBAL SolverNode* node = nodes + row->m_nodes[k];
-        node->m_displacement = vec3AddScaled(node->m_displacement, shift, row->m_shares[k]);
-    }
+    *shift = vec3AddScaled(vec3Sub(held, row->m_held), normal, pushed - row->m_multiplier);
     row->m_multiplier = pushed;
     row->m_held = held;
+    return 1;
+}
+
+// Pushes the row's nodes; see pushRow().
+DRAPE_FUNCTION int projectRow(ContactRow* row, DRAPE_NODE_SPACE SolverNode* nodes, float passed, float* worst)
+{
+    Vec3 shift;
+    if (!pushRow(row, rowDisplacement(row, nodes), passed, worst, &shift)) return 0;
+    for (DRAPE_UINT k = 0; k < row->m_count; ++k)
+    {
+        DRAPE_NODE_SPACE SolverNode* node = nodes + row->m_nodes[k];
+        node->m_displacement = vec3AddScaled(node->m_displacement, shift, row->m_shares[k]);
+    }
     return 1;
 }
 

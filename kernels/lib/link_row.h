@@ -12,8 +12,7 @@ DRAPE_NAMESPACE_BEGIN
 
 // Moves both nodes by their shares of the correction, which is Bullet's approximation without a root. apart: m, from
 // the first node to the second at the step's start. restSquared, strength: see LinkSweep::set().
-DRAPE_FUNCTION void visitLink(DRAPE_GLOBAL SolverNode* a, DRAPE_GLOBAL SolverNode* b, Vec3 apart, float restSquared,
-                              float strength)
+DRAPE_FUNCTION void visitLink(SolverNode* a, SolverNode* b, Vec3 apart, float restSquared, float strength)
 {
     const Vec3 way = vec3Add(apart, vec3Sub(b->m_displacement, a->m_displacement));
     const float length2 = vec3Dot(way, way), sum = restSquared + length2;

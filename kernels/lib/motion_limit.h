@@ -12,7 +12,7 @@ typedef struct Box
 } Box;
 
 // Returns whether the node is farther from its path's end than `sure`, and contacts may move it. NaN counts as far.
-DRAPE_FUNCTION int isFarFromEnd(const DRAPE_GLOBAL SolverNode* node, const DRAPE_GLOBAL NodePath* path, float sure)
+DRAPE_FUNCTION int isFarFromEnd(const DRAPE_NODE_SPACE SolverNode* node, const DRAPE_GLOBAL NodePath* path, float sure)
 {
     const Vec3 off = vec3Sub(node->m_displacement, path->m_way);
     return !(vec3Dot(off, off) <= sure * sure) && path->m_inverseMass > 0.0f;
@@ -29,7 +29,7 @@ DRAPE_FUNCTION float closestOnPath(Vec3 start, Vec3 end, Vec3 point)
 
 // Moves a node back to the path between the displacements `start` and `end` if it is farther off than the radius, which
 // varies linearly between them. Returns whether it was moved.
-DRAPE_FUNCTION int bringBack(DRAPE_GLOBAL SolverNode* node, DRAPE_GLOBAL NodeState* state, Vec3 start, Vec3 end,
+DRAPE_FUNCTION int bringBack(DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state, Vec3 start, Vec3 end,
                              float startRadius, float endRadius)
 {
     const Vec3 place = node->m_displacement;
@@ -50,7 +50,7 @@ DRAPE_FUNCTION Box pointBox(Vec3 point)
 }
 
 // Grows the box by what a node may pass between the end of its path and its current position.
-DRAPE_FUNCTION void growByPassed(Box* box, const DRAPE_GLOBAL SolverNode* node, const DRAPE_GLOBAL NodePath* path)
+DRAPE_FUNCTION void growByPassed(Box* box, const DRAPE_NODE_SPACE SolverNode* node, const DRAPE_GLOBAL NodePath* path)
 {
     const Vec3 end = vec3Add(path->m_start, path->m_way);
     const Vec3 place = vec3Add(path->m_start, node->m_displacement);

@@ -7,13 +7,13 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-DRAPE_FUNCTION void nodeRemember(const DRAPE_GLOBAL SolverNode* node, DRAPE_GLOBAL NodeState* state)
+DRAPE_FUNCTION void nodeRemember(const DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state)
 {
     state->m_before = node->m_displacement;
     state->m_shifted = 0;
 }
 
-DRAPE_FUNCTION void nodeShift(DRAPE_GLOBAL SolverNode* node, DRAPE_GLOBAL NodeState* state, Vec3 by)
+DRAPE_FUNCTION void nodeShift(DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state, Vec3 by)
 {
     node->m_displacement = vec3Add(node->m_displacement, by);
     state->m_shifted = 1;
@@ -21,7 +21,7 @@ DRAPE_FUNCTION void nodeShift(DRAPE_GLOBAL SolverNode* node, DRAPE_GLOBAL NodeSt
 
 // Puts the node at its path's start, with the velocity that leads to the end under constant acceleration. perStep: 1/s,
 // the inverse of the step's time. share: s, of the acceleration in the mean velocity (Substeps::pathShare()).
-DRAPE_FUNCTION void nodeBegin(DRAPE_GLOBAL SolverNode* node, DRAPE_GLOBAL NodeState* state, Vec3 way, Vec3 acceleration,
+DRAPE_FUNCTION void nodeBegin(DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state, Vec3 way, Vec3 acceleration,
                               float perStep, float share)
 {
     node->m_displacement = vec3(0.0f, 0.0f, 0.0f);
@@ -29,7 +29,7 @@ DRAPE_FUNCTION void nodeBegin(DRAPE_GLOBAL SolverNode* node, DRAPE_GLOBAL NodeSt
 }
 
 // Moves the node through a substep of `time` seconds.
-DRAPE_FUNCTION void nodeAdvance(DRAPE_GLOBAL SolverNode* node, DRAPE_GLOBAL NodeState* state, Vec3 acceleration,
+DRAPE_FUNCTION void nodeAdvance(DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state, Vec3 acceleration,
                                 float time)
 {
     state->m_velocity = vec3AddScaled(state->m_velocity, acceleration, time);
@@ -38,7 +38,7 @@ DRAPE_FUNCTION void nodeAdvance(DRAPE_GLOBAL SolverNode* node, DRAPE_GLOBAL Node
 }
 
 // Adds the correction since nodeAdvance() to the velocity, of which damping leaves the share `kept`.
-DRAPE_FUNCTION void nodeEnd(const DRAPE_GLOBAL SolverNode* node, DRAPE_GLOBAL NodeState* state, float perSecond,
+DRAPE_FUNCTION void nodeEnd(const DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state, float perSecond,
                             float kept)
 {
     const Vec3 correction = vec3Sub(node->m_displacement, state->m_before);
@@ -46,7 +46,7 @@ DRAPE_FUNCTION void nodeEnd(const DRAPE_GLOBAL SolverNode* node, DRAPE_GLOBAL No
 }
 
 // Gives a shifted node the velocity of its displacement since nodeRemember(): perSecond times as much.
-DRAPE_FUNCTION void nodeAddShift(const DRAPE_GLOBAL SolverNode* node, DRAPE_GLOBAL NodeState* state, float perSecond)
+DRAPE_FUNCTION void nodeAddShift(const DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state, float perSecond)
 {
     if (!state->m_shifted) return;
     const Vec3 shift = vec3Sub(node->m_displacement, state->m_before);
@@ -56,7 +56,7 @@ DRAPE_FUNCTION void nodeAddShift(const DRAPE_GLOBAL SolverNode* node, DRAPE_GLOB
 // Bounds the velocity that the shift since nodeRemember() gives the node. The shift may stop the node's motion against
 // it. Beyond that it gives at most the velocity of the same shift in a whole step. perSecond: 1/s, the velocity per
 // metre of shift that is bounded. stepsPerSecond: 1/s.
-DRAPE_FUNCTION void nodeLimitShift(const DRAPE_GLOBAL SolverNode* node, DRAPE_GLOBAL NodeState* state, float perSecond,
+DRAPE_FUNCTION void nodeLimitShift(const DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state, float perSecond,
                                    float stepsPerSecond)
 {
     if (!state->m_shifted) return;

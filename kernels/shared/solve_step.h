@@ -34,6 +34,7 @@ typedef struct SolveCloth
 {
     SolveRange m_nodes;
     SolveRange m_features;       // with contacts
+    SolveRange m_links;
     SolveRange m_linkBatches;
     SolveRange m_nodeBatches;    // contacts of nodes
     SolveRange m_faceBatches;    // contacts of nodes and faces
@@ -83,6 +84,7 @@ typedef struct SolveFeature
     DRAPE_UINT m_nodes[3];
     DRAPE_UINT m_nodeCount;
     DRAPE_UINT m_firstContact, m_contactCount;
+    DRAPE_UINT m_unused[2];
 } SolveFeature;
 
 // What contacts of a cloth with one obstacle have in common. m_map: the motion, three rows of rotation and shift.
@@ -95,15 +97,36 @@ typedef struct SolveSurface
     DRAPE_UINT m_unused;
 } SolveSurface;
 
+// A link's nodes apart from each other at the step's start, and its length.
+typedef struct SolveSpan
+{
+    Vec3 m_apart;
+    float m_restSquared;  // m²
+} SolveSpan;
+
+// Flags of a bounding plane: there is a row; the plane turns with its face.
+#define DRAPE_PLANE_MADE 1u
+#define DRAPE_PLANE_TURNS 2u
+
 // A bounding plane of a contact: it is not violated while n.(d0 + w1 (d1 - d0) + w2 (d2 - d0)) reaches the level.
 typedef struct SolvePlane
 {
     Vec3 m_normal;
     float m_level;          // m, with the margin for rounding
     float m_weights[2];     // second and third node
-    DRAPE_UINT m_made;      // whether there is a row
+    DRAPE_UINT m_flags;     // DRAPE_PLANE_MADE …
     DRAPE_UINT m_pushing;   // the stage in which the row pushed last
 } SolvePlane;
+
+// Working memory of a feature. Contacts beyond the list are not violated while no node is farther than the clearance
+// from its reference.
+typedef struct SolveFeatureState
+{
+    Vec3 m_references[3];     // m, displacements of the nodes when the contacts were listed
+    float m_clearance;        // m
+    DRAPE_UINT m_listCount;   // contacts in the list
+    DRAPE_UINT m_unused;
+} SolveFeatureState;
 
 // An obstacle that limits the motion near it.
 typedef struct SolveRegion
@@ -136,6 +159,7 @@ typedef struct SolveLayout
     DRAPE_UINT m_cloths, m_paths, m_accelerations, m_batches, m_features, m_surfaceOf, m_surfaces, m_regions;
     // In the working memory.
     DRAPE_UINT m_nodes, m_states, m_planes, m_acting, m_allowances, m_results;
+    DRAPE_UINT m_spans, m_featureStates, m_lists;
     // In the topology: the links; by node, the position of its faces, then the last one's end; the faces of the nodes;
     // three nodes for each face.
     DRAPE_UINT m_links, m_faceLists, m_facesOfNode, m_faces;

@@ -6,12 +6,24 @@
 
 DRAPE_NAMESPACE_BEGIN
 
+// The address space of a cloth's nodes. Kernels may define another one.
+#ifndef DRAPE_NODE_SPACE
+#define DRAPE_NODE_SPACE DRAPE_GLOBAL
+#endif
+
+// Lets a kernel read a record as a vector of four numbers wherever the record is.
+#ifdef __OPENCL_VERSION__
+#define DRAPE_VECTOR_ALIGNED __attribute__((aligned(16)))
+#else
+#define DRAPE_VECTOR_ALIGNED
+#endif
+
 // A node's displacement from the step's start and its inverse mass, read and written as one vector of four numbers.
 typedef struct SolverNode
 {
     Vec3 m_displacement;  // m
     float m_inverseMass;  // 1/kg; 0 for a node that constraints do not move
-} SolverNode;
+} DRAPE_VECTOR_ALIGNED SolverNode;
 
 // A node's path through the step: straight, from its start to its predicted end.
 typedef struct NodePath
@@ -31,7 +43,8 @@ typedef struct NodeState
     DRAPE_UINT m_isFar;    // working memory of the motion limit
 } NodeState;
 
-// A contact that acts: the least displacement, along a normal, of a weighted point of the cloth.
+// A contact that acts: the least displacement, along a normal, of a weighted point of the cloth. Devices read it as
+// vectors of four numbers.
 typedef struct ContactRow
 {
     Vec3 m_normal;       // unit, from the obstacle to the cloth
@@ -57,6 +70,7 @@ typedef struct ActingContact
     float m_speedLimit;   // m/s outwards when the contact pushed
     DRAPE_UINT m_stage;   // in which the plane was renewed
     DRAPE_UINT m_pushed;  // whether it pushed in any stage
+    DRAPE_UINT m_unused[3];
 } ActingContact;
 
 DRAPE_NAMESPACE_END

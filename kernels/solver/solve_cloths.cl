@@ -3,6 +3,7 @@
 // Each work-group solves one cloth. Links and contacts of one colour share no node, so its work-items visit them side
 // by side; colours and passes are separated by barriers. The result is the host's, bit for bit. docs/decisions/ tells
 // why a work-group has a whole cloth.
+#define DRAPE_NODE_SPACE __local
 #include "../lib/acting_contact.h"
 #include "../lib/link_row.h"
 #include "../lib/motion_limit.h"
@@ -25,11 +26,14 @@ typedef struct Solve
     __global const uint* m_facesOfNode;
     __global const int* m_faces;
     __global const Contact* m_contacts;
-    __global SolverNode* m_nodes;
+    __local SolverNode* m_nodes;
     __global NodeState* m_states;
     __global SolvePlane* m_planes;
     __global ActingContact* m_acting;
     __global SolveAllowance* m_allowances;
+    __global SolveSpan* m_spans;
+    __global SolveFeatureState* m_featureStates;
+    __global uint* m_lists;  // by feature, contacts that may act, in the place of the feature's contacts
 } Solve;
 
 // A sweep over contacts: its stage, counted from 1, and where obstacles stand.
@@ -40,10 +44,25 @@ typedef struct Sweep
     float m_slack;   // m, bound on how far levels lie above those at the step's end
 } Sweep;
 
+// Least clearance of contacts that are not listed, as a share of the greatest thickness, and as a multiple of the nodes'
+// motion since contacts were listed before.
+#define DRAPE_LISTED_SHARE 0.01f
+#define DRAPE_LISTED_MOTION 2.0f
+
 #define forAll(i, count) for (uint i = get_local_id(0); i < (count); i += get_local_size(0))
 
-// A CPU's group has one work-item: compilers for CPUs copy the code behind each barrier that is not always reached.
-static void syncGroup(void)
+// Waits until the group's work-items have written what others read: nodes, in local memory. A CPU's group has one
+// work-item, since compilers for CPUs copy the code behind each barrier that is not always reached.
+static void syncNodes(void)
+{
+#ifndef DRAPE_CPU
+    barrier(CLK_LOCAL_MEM_FENCE);
+#endif
+}
+
+// Waits for global memory, too. Data of a feature in global memory needs no wait between sweeps: the same work-item
+// visits the feature in all of them.
+static void syncAll(void)
 {
 #ifndef DRAPE_CPU
     barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
@@ -54,11 +73,11 @@ static void syncGroup(void)
 static int anyInGroup(const int flag, __local uint* shared)
 {
     if (get_local_id(0) == 0) *shared = 0;
-    syncGroup();
+    syncNodes();
     if (flag) atomic_or(shared, 1u);
-    syncGroup();
+    syncNodes();
     const int any = *shared != 0;
-    syncGroup();
+    syncNodes();
     return any;
 }
 
@@ -66,20 +85,75 @@ static int anyInGroup(const int flag, __local uint* shared)
 static float mostInGroup(const float value, __local uint* shared)
 {
     if (get_local_id(0) == 0) *shared = 0;
-    syncGroup();
+    syncNodes();
     atomic_max(shared, as_uint(value));
-    syncGroup();
+    syncNodes();
     const float most = as_float(*shared);
-    syncGroup();
+    syncNodes();
     return most;
+}
+
+static Vec3 xyz(const float4 v)
+{
+    return vec3(v.x, v.y, v.z);
+}
+
+static SolverNode loadNode(const Solve* solve, const uint node)
+{
+    const float4 v = ((__local const float4*)solve->m_nodes)[node];
+    SolverNode loaded;
+    loaded.m_displacement = xyz(v);
+    loaded.m_inverseMass = v.w;
+    return loaded;
+}
+
+static void storeNode(const Solve* solve, const uint node, const SolverNode* value)
+{
+    const Vec3 d = value->m_displacement;
+    ((__local float4*)solve->m_nodes)[node] = (float4)(d.x, d.y, d.z, value->m_inverseMass);
+}
+
+static Vec3 displacementOf(const Solve* solve, const uint node)
+{
+    return xyz(((__local const float4*)solve->m_nodes)[node]);
+}
+
+static SolvePlane loadPlane(const Solve* solve, const uint index)
+{
+    __global const float4* words = (__global const float4*)(solve->m_planes + index);
+    const float4 first = words[0], second = words[1];
+    SolvePlane plane;
+    plane.m_normal = xyz(first);
+    plane.m_level = first.w;
+    plane.m_weights[0] = second.x;
+    plane.m_weights[1] = second.y;
+    plane.m_flags = as_uint(second.z);
+    plane.m_pushing = as_uint(second.w);
+    return plane;
+}
+
+static SolveFeature loadFeature(const Solve* solve, const uint index)
+{
+    __global const uint4* words = (__global const uint4*)(solve->m_features + index);
+    const uint4 first = words[0], second = words[1];
+    SolveFeature feature;
+    feature.m_nodes[0] = first.x;
+    feature.m_nodes[1] = first.y;
+    feature.m_nodes[2] = first.z;
+    feature.m_nodeCount = first.w;
+    feature.m_firstContact = second.x;
+    feature.m_contactCount = second.y;
+    return feature;
 }
 
 static void visitBatchLink(const Solve* solve, const uint index)
 {
-    const SolveLink link = solve->m_links[index];
-    const uint a = link.m_nodes[0], b = link.m_nodes[1];
-    const Vec3 apart = vec3Sub(solve->m_paths[b].m_start, solve->m_paths[a].m_start);
-    visitLink(solve->m_nodes + a, solve->m_nodes + b, apart, link.m_restSquared, link.m_strength);
+    const uint4 link = ((__global const uint4*)solve->m_links)[index];
+    const float4 span = ((__global const float4*)solve->m_spans)[index];
+    SolverNode a = loadNode(solve, link.x), b = loadNode(solve, link.y);
+    visitLink(&a, &b, xyz(span), span.w, as_float(link.w));
+    storeNode(solve, link.x, &a);
+    storeNode(solve, link.y, &b);
 }
 
 static void sweepLinks(const Solve* solve)
@@ -94,7 +168,7 @@ static void sweepLinks(const Solve* solve)
         else if (get_local_id(0) == 0)
             for (uint k = batch.m_first; k < batch.m_last; ++k)
                 visitBatchLink(solve, k);
-        syncGroup();
+        syncNodes();
     }
 }
 
@@ -132,20 +206,31 @@ static FeatureNodes featureNodes(const Solve* solve, const SolveFeature* feature
     return nodes;
 }
 
-// Returns an upper bound of a contact's violation, m.
-static float excessOf(const Solve* solve, const SolveFeature* feature, const SolvePlane* plane, const float slack)
+// The nodes' displacements of a feature; entries beyond the last node repeat the first.
+typedef struct Displacements
 {
-    const Vec3 first = solve->m_nodes[feature->m_nodes[0]].m_displacement;
-    Vec3 at = first;
-    for (uint k = 1; k < feature->m_nodeCount; ++k)
-    {
-        const Vec3 way = vec3Sub(solve->m_nodes[feature->m_nodes[k]].m_displacement, first);
-        at = vec3AddScaled(at, way, plane->m_weights[k - 1]);
-    }
-    return plane->m_level + slack - vec3Dot(plane->m_normal, at);
+    Vec3 m_nodes[3];
+} Displacements;
+
+static Displacements displacementsOf(const Solve* solve, const SolveFeature* feature)
+{
+    Displacements at;
+    at.m_nodes[0] = displacementOf(solve, feature->m_nodes[0]);
+    at.m_nodes[1] = feature->m_nodeCount > 1 ? displacementOf(solve, feature->m_nodes[1]) : at.m_nodes[0];
+    at.m_nodes[2] = feature->m_nodeCount > 2 ? displacementOf(solve, feature->m_nodes[2]) : at.m_nodes[0];
+    return at;
 }
 
-static void makeActing(const Solve* solve, const SolveFeature* feature, const uint index)
+// Returns an upper bound of a contact's violation once the obstacle stands at the step's end, m.
+static float excessOf(const SolvePlane* plane, const Displacements* at)
+{
+    const Vec3 first = at->m_nodes[0];
+    const Vec3 second = vec3Scale(vec3Sub(at->m_nodes[1], first), plane->m_weights[0]);
+    const Vec3 third = vec3Scale(vec3Sub(at->m_nodes[2], first), plane->m_weights[1]);
+    return plane->m_level - vec3Dot(plane->m_normal, vec3Add(first, vec3Add(second, third)));
+}
+
+DRAPE_RARE_FUNCTION void makeActing(const Solve* solve, const SolveFeature* feature, const uint index)
 {
     __global const SolveSurface* surface = solve->m_surfaces + solve->m_surfaceOf[index];
     const FeatureNodes nodes = featureNodes(solve, feature, surface);
@@ -158,68 +243,202 @@ static void makeActing(const Solve* solve, const SolveFeature* feature, const ui
     solve->m_acting[index] = actingContact(&nodes, &plane, &settings, contactGaps(&nodes, &plane, &settings));
 }
 
-// Renews the plane of a face's contact with a vertex that was not met. Others keep theirs.
-static void renew(const Solve* solve, const SolveFeature* feature, const uint index, const float passed,
-                  ActingContact* acting)
+// Renews the plane of a contact that turns.
+DRAPE_RARE_FUNCTION void renew(const Solve* solve, const SolveFeature* feature, const uint index, const Sweep* sweep)
 {
-    __global const Contact* found = solve->m_contacts + index;
-    if (found->m_kind != DRAPE_FACE_VERTEX || found->m_time < 1.0f) return;
+    ActingContact acting = solve->m_acting[index];
     const FeatureNodes nodes = featureNodes(solve, feature, solve->m_surfaces + solve->m_surfaceOf[index]);
     Vec3 displacements[3];
     for (uint k = 0; k < 3; ++k)
         displacements[k] = solve->m_nodes[nodes.m_nodes[k]].m_displacement;
-    const ContactPlane before = foundPlane(found);
+    const ContactPlane before = foundPlane(solve->m_contacts + index);
     ContactPlane plane;
-    if (!renewPlane(acting, &nodes, displacements, passed, &before, &plane)) return;
+    acting.m_stage = sweep->m_stage;
+    const int turned = renewPlane(&acting, &nodes, displacements, sweep->m_passed, &before, &plane);
+    solve->m_acting[index] = acting;
+    if (!turned) return;
     __global SolvePlane* bound = solve->m_planes + index;
     bound->m_normal = plane.m_normal;
-    bound->m_level = acting->m_row.m_level + solve->m_cloth->m_margin;
+    bound->m_level = acting.m_row.m_level + solve->m_cloth->m_margin;
     bound->m_weights[0] = plane.m_weights[1];
     bound->m_weights[1] = plane.m_weights[2];
 }
 
-// Projects a contact that is violated or pushes. `worst` grows to its violation.
-static void projectContact(const Solve* solve, const SolveFeature* feature, const uint index, const Sweep* sweep,
-                           float* worst)
+// Loads what pushes need of a contact, as vectors: all but the nodes.
+static ActingContact loadActing(const Solve* solve, const uint index)
 {
-    __global SolvePlane* plane = solve->m_planes + index;
-    if (!plane->m_made) makeActing(solve, feature, index);
-    plane->m_made = 1;
-    ActingContact acting = solve->m_acting[index];
+    __global const float4* words = (__global const float4*)(solve->m_acting + index);
+    const float4 normal = words[0], carried = words[1], held = words[2], weights = words[3], shares = words[4];
+    const float4 rest = words[6];
+    ActingContact acting;
+    acting.m_row.m_normal = xyz(normal);
+    acting.m_row.m_level = normal.w;
+    acting.m_row.m_carried = xyz(carried);
+    acting.m_row.m_advance = carried.w;
+    acting.m_row.m_held = xyz(held);
+    acting.m_row.m_multiplier = held.w;
+    acting.m_row.m_weights[0] = weights.x;
+    acting.m_row.m_weights[1] = weights.y;
+    acting.m_row.m_weights[2] = weights.z;
+    acting.m_row.m_friction = weights.w;
+    acting.m_row.m_shares[0] = shares.x;
+    acting.m_row.m_shares[1] = shares.y;
+    acting.m_row.m_shares[2] = shares.z;
+    acting.m_row.m_inverseMobility = shares.w;
+    acting.m_row.m_mended = rest.x;
+    acting.m_stage = as_uint(rest.w);
+    return acting;
+}
+
+static Vec3 rowWay(const ActingContact* acting, const uint count, const Displacements* at)
+{
+    Vec3 way = vec3Scale(at->m_nodes[0], acting->m_row.m_weights[0]);
+    if (count > 1) way = vec3AddScaled(way, at->m_nodes[1], acting->m_row.m_weights[1]);
+    if (count > 2) way = vec3AddScaled(way, at->m_nodes[2], acting->m_row.m_weights[2]);
+    return way;
+}
+
+static void storeShift(const Solve* solve, const uint node, const Vec3 displacement)
+{
+    // The inverse mass beside it stays.
+    solve->m_nodes[node].m_displacement = displacement;
+    solve->m_states[node].m_shifted = 1;
+}
+
+// Projects a contact that is violated or pushes. `worst` grows to its violation. Returns whether it moved its nodes,
+// whose displacements are in *at.
+static int projectContact(const Solve* solve, const SolveFeature* feature, const uint index, const SolvePlane* plane,
+                          const Sweep* sweep, Displacements* at, float* worst)
+{
+    const uint count = feature->m_nodeCount;
+    __global uint* flags = &solve->m_planes[index].m_flags;
+    if (!(plane->m_flags & DRAPE_PLANE_MADE))
+    {
+        makeActing(solve, feature, index);
+        *flags = plane->m_flags | DRAPE_PLANE_MADE;
+    }
+    ActingContact acting = loadActing(solve, index);
+    if (!(acting.m_row.m_inverseMobility > 0.0f)) return 0;
+    Vec3 way = rowWay(&acting, count, at);
+    if ((plane->m_flags & DRAPE_PLANE_TURNS) && acting.m_stage != sweep->m_stage &&
+        acting.m_row.m_level - (1.0f - sweep->m_passed) * acting.m_row.m_advance - vec3Dot(acting.m_row.m_normal, way) >
+            0.0f)
+    {
+        renew(solve, feature, index, sweep);
+        acting = loadActing(solve, index);
+        way = rowWay(&acting, count, at);
+        if (!(acting.m_row.m_inverseMobility > 0.0f)) return 0;
+    }
     if (plane->m_pushing != sweep->m_stage)
     {
         acting.m_row.m_multiplier = 0.0f;
         acting.m_row.m_held = vec3(0.0f, 0.0f, 0.0f);
     }
-    if (!(acting.m_row.m_inverseMobility > 0.0f)) return;
-    if (acting.m_stage != sweep->m_stage && rowViolation(&acting.m_row, solve->m_nodes, sweep->m_passed) > 0.0f)
+    Vec3 shift;
+    if (!pushRow(&acting.m_row, way, sweep->m_passed, worst, &shift)) return 0;
+    const Vec3 held = acting.m_row.m_held;
+    ((__global float4*)(solve->m_acting + index))[2] = (float4)(held.x, held.y, held.z, acting.m_row.m_multiplier);
+    solve->m_acting[index].m_pushed = 1;
+    solve->m_planes[index].m_pushing = sweep->m_stage;
+    at->m_nodes[0] = vec3AddScaled(at->m_nodes[0], shift, acting.m_row.m_shares[0]);
+    storeShift(solve, feature->m_nodes[0], at->m_nodes[0]);
+    if (count > 1)
     {
-        renew(solve, feature, index, sweep->m_passed, &acting);
-        acting.m_stage = sweep->m_stage;
+        at->m_nodes[1] = vec3AddScaled(at->m_nodes[1], shift, acting.m_row.m_shares[1]);
+        storeShift(solve, feature->m_nodes[1], at->m_nodes[1]);
     }
-    if (acting.m_row.m_inverseMobility > 0.0f && projectRow(&acting.m_row, solve->m_nodes, sweep->m_passed, worst))
+    if (count > 2)
     {
-        for (uint k = 0; k < feature->m_nodeCount; ++k)
-            solve->m_states[feature->m_nodes[k]].m_shifted = 1;
-        acting.m_pushed = 1;
-        plane->m_pushing = sweep->m_stage;
+        at->m_nodes[2] = vec3AddScaled(at->m_nodes[2], shift, acting.m_row.m_shares[2]);
+        storeShift(solve, feature->m_nodes[2], at->m_nodes[2]);
     }
-    solve->m_acting[index] = acting;
+    if (count < 2) at->m_nodes[1] = at->m_nodes[0];
+    if (count < 3) at->m_nodes[2] = at->m_nodes[0];
+    return 1;
 }
 
+// Lists the contacts of a feature that may act while its nodes move little.
+DRAPE_RARE_FUNCTION SolveFeatureState listContacts(const Solve* solve, const SolveFeature* feature, const Displacements* at,
+                                      const Sweep* sweep, const float moved)
+{
+    const float near =
+        drapeMax(DRAPE_LISTED_SHARE * solve->m_cloth->m_mostThickness, DRAPE_LISTED_MOTION * moved) + sweep->m_slack;
+    SolveFeatureState state;
+    for (int k = 0; k < 3; ++k)
+        state.m_references[k] = at->m_nodes[k];
+    state.m_clearance = DRAPE_INFINITY;
+    state.m_listCount = state.m_unused = 0;
+    for (uint i = feature->m_firstContact; i < feature->m_firstContact + feature->m_contactCount; ++i)
+    {
+        const SolvePlane plane = loadPlane(solve, i);
+        const float clearance = -excessOf(&plane, at);
+        if (clearance >= near && plane.m_pushing != sweep->m_stage)
+            state.m_clearance = drapeMin(state.m_clearance, clearance);
+        else
+            solve->m_lists[feature->m_firstContact + state.m_listCount++] = i;
+    }
+    return state;
+}
+
+// Returns whether contacts beyond the list may be violated. moved2: m², square of the greatest motion of a node since.
+static int isListOld(const Solve* solve, const SolveFeatureState* state, const Displacements* at, const Sweep* sweep,
+                     float* moved2)
+{
+    *moved2 = 0.0f;
+    for (int k = 0; k < 3; ++k)
+    {
+        const Vec3 way = vec3Sub(at->m_nodes[k], state->m_references[k]);
+        *moved2 = drapeMax(*moved2, vec3Dot(way, way));
+    }
+    const float free = state->m_clearance - sweep->m_slack - solve->m_cloth->m_margin;
+    return !(free > 0.0f) || !(*moved2 < free * free);
+}
+
+static SolveFeatureState loadState(const Solve* solve, const uint index)
+{
+    __global const float4* words = (__global const float4*)(solve->m_featureStates + index);
+    const float4 first = words[0], second = words[1], third = words[2];
+    SolveFeatureState state;
+    state.m_references[0] = xyz(first);
+    state.m_references[1] = vec3(first.w, second.x, second.y);
+    state.m_references[2] = vec3(second.z, second.w, third.x);
+    state.m_clearance = third.y;
+    state.m_listCount = as_uint(third.z);
+    return state;
+}
+
+// Visits the contacts of a feature in order: those that push and those that may be violated.
 static void visitFeature(const Solve* solve, const uint index, const Sweep* sweep, float* worst)
 {
-    const SolveFeature feature = solve->m_features[index];
-    for (uint i = feature.m_firstContact; i < feature.m_firstContact + feature.m_contactCount; ++i)
+    const SolveFeature feature = loadFeature(solve, index);
+    SolveFeatureState state = loadState(solve, index);
+    Displacements at = displacementsOf(solve, &feature);
+    float moved2;
+    int old = isListOld(solve, &state, &at, sweep, &moved2);
+    if (state.m_listCount == 0 && !old) return;
+    uint done = feature.m_firstContact;  // contacts before it are
+    for (uint i = 0; i < state.m_listCount || old;)
     {
-        const SolvePlane plane = solve->m_planes[i];
-        if (plane.m_pushing == sweep->m_stage || excessOf(solve, &feature, &plane, sweep->m_slack) > 0.0f)
-            projectContact(solve, &feature, i, sweep, worst);
+        if (old)
+        {
+            state = listContacts(solve, &feature, &at, sweep, drapeSqrt(moved2));
+            solve->m_featureStates[index] = state;
+            old = 0;
+            i = 0;
+            continue;
+        }
+        const uint contact = solve->m_lists[feature.m_firstContact + i++];
+        if (contact < done) continue;
+        done = contact + 1;
+        const SolvePlane plane = loadPlane(solve, contact);
+        if (plane.m_pushing != sweep->m_stage && !(excessOf(&plane, &at) + sweep->m_slack > 0.0f)) continue;
+        if (projectContact(solve, &feature, contact, &plane, sweep, &at, worst))
+            old = isListOld(solve, &state, &at, sweep, &moved2);
     }
 }
 
 // Visits the features of some batches. Returns the worst violation that the work-item met, m.
-static float sweepBatches(const Solve* solve, const SolveRange range, const Sweep* sweep)
+DRAPE_RARE_FUNCTION float sweepBatches(const Solve* solve, const SolveRange range, const Sweep* sweep)
 {
     float worst = 0.0f;
     for (uint i = 0; i < range.m_count; ++i)
@@ -231,7 +450,7 @@ static float sweepBatches(const Solve* solve, const SolveRange range, const Swee
         else if (get_local_id(0) == 0)
             for (uint k = batch.m_first; k < batch.m_last; ++k)
                 visitFeature(solve, k, sweep, &worst);
-        syncGroup();
+        syncNodes();
     }
     return worst;
 }
@@ -245,7 +464,7 @@ static float sweepContacts(const Solve* solve, const Sweep* sweep)
 // Sets the bounding planes of a feature's contacts, and marks its nodes.
 static void beginFeature(const Solve* solve, const uint index)
 {
-    const SolveFeature feature = solve->m_features[index];
+    const SolveFeature feature = loadFeature(solve, index);
     const Vec3 first = solve->m_paths[feature.m_nodes[0]].m_start;
     for (uint i = feature.m_firstContact; i < feature.m_firstContact + feature.m_contactCount; ++i)
     {
@@ -260,11 +479,18 @@ static void beginFeature(const Solve* solve, const uint index)
                         solve->m_cloth->m_margin;
         plane.m_weights[0] = found.m_weights[1];
         plane.m_weights[1] = found.m_weights[2];
-        plane.m_made = plane.m_pushing = 0;
+        __global const Contact* contact = solve->m_contacts + i;
+        const int turns = contact->m_kind == DRAPE_FACE_VERTEX && !(contact->m_time < 1.0f);
+        plane.m_flags = turns ? DRAPE_PLANE_TURNS : 0;
+        plane.m_pushing = 0;
         solve->m_planes[i] = plane;
     }
     for (uint k = 0; k < feature.m_nodeCount; ++k)
         solve->m_allowances[feature.m_nodes[k]].m_hasContact = 1;
+    for (int k = 0; k < 3; ++k)
+        solve->m_featureStates[index].m_references[k] = vec3(0.0f, 0.0f, 0.0f);
+    solve->m_featureStates[index].m_clearance = -1.0f;  // the first visit lists the contacts
+    solve->m_featureStates[index].m_listCount = 0;
 }
 
 static void beginStep(const Solve* solve)
@@ -279,15 +505,23 @@ static void beginStep(const Solve* solve)
         solve->m_states[i].m_shifted = 0;
         solve->m_allowances[i].m_hasContact = 0;
     }
-    syncGroup();
+    syncAll();
     forAll (i, cloth->m_features.m_count)
         beginFeature(solve, cloth->m_features.m_first + i);
-    syncGroup();
+    forAll (i, cloth->m_links.m_count)
+    {
+        const uint link = cloth->m_links.m_first + i;
+        const SolveLink joined = solve->m_links[link];
+        solve->m_spans[link].m_apart =
+            vec3Sub(solve->m_paths[joined.m_nodes[1]].m_start, solve->m_paths[joined.m_nodes[0]].m_start);
+        solve->m_spans[link].m_restSquared = joined.m_restSquared;
+    }
+    syncAll();
 }
 
 // Returns whether what the node or its faces may pass between the ends of their paths and their positions meets the
 // region.
-static int isNearRegion(const Solve* solve, const uint node, __global const SolveRegion* region)
+DRAPE_RARE_FUNCTION int isNearRegion(const Solve* solve, const uint node, __global const SolveRegion* region)
 {
     Box box, own = pointBox(vec3Add(solve->m_paths[node].m_start, solve->m_paths[node].m_way));
     box.m_low = region->m_low;
@@ -307,7 +541,7 @@ static int isNearRegion(const Solve* solve, const uint node, __global const Solv
 }
 
 // Limits far nodes by the obstacles that rest. withContacts: whether nodes with contacts are among them.
-static void limitByResting(const Solve* solve, const int withContacts)
+DRAPE_RARE_FUNCTION void limitByResting(const Solve* solve, const int withContacts)
 {
     const SolveRange regions = solve->m_cloth->m_regions;
     forAll (node, solve->m_cloth->m_nodes.m_count)
@@ -327,7 +561,7 @@ static void limitByResting(const Solve* solve, const int withContacts)
         allowance->m_start = start;
         allowance->m_end = end;
     }
-    syncGroup();
+    syncNodes();
     forAll (node, solve->m_cloth->m_nodes.m_count)
     {
         const SolveAllowance allowance = solve->m_allowances[node];
@@ -335,15 +569,15 @@ static void limitByResting(const Solve* solve, const int withContacts)
         bringBack(solve->m_nodes + node, solve->m_states + node, vec3(0.0f, 0.0f, 0.0f), solve->m_paths[node].m_way,
                   allowance.m_start, allowance.m_end);
     }
-    syncGroup();
+    syncNodes();
 }
 
-static void limitByMoving(const Solve* solve, __global const SolveRegion* region)
+DRAPE_RARE_FUNCTION void limitByMoving(const Solve* solve, __global const SolveRegion* region)
 {
     forAll (node, solve->m_cloth->m_nodes.m_count)
         solve->m_allowances[node].m_isNear =
             solve->m_states[node].m_isFar ? isNearRegion(solve, node, region) : 0;
-    syncGroup();
+    syncNodes();
     forAll (node, solve->m_cloth->m_nodes.m_count)
     {
         if (!solve->m_allowances[node].m_isNear) continue;
@@ -353,11 +587,11 @@ static void limitByMoving(const Solve* solve, __global const SolveRegion* region
         bringBack(solve->m_nodes + node, solve->m_states + node, start, solve->m_paths[node].m_way, region->m_start,
                   end);
     }
-    syncGroup();
+    syncNodes();
 }
 
 // Marks the nodes that the limit may bring back. Returns whether there are any.
-static int findFarNodes(const Solve* solve, __local uint* shared)
+DRAPE_RARE_FUNCTION int findFarNodes(const Solve* solve, __local uint* shared)
 {
     int any = 0;
     forAll (node, solve->m_cloth->m_nodes.m_count)
@@ -390,7 +624,7 @@ static void keepNear(const Solve* solve)
         bringBack(solve->m_nodes + node, solve->m_states + node, vec3(0.0f, 0.0f, 0.0f), solve->m_paths[node].m_way,
                   cloth->m_leastTolerance, cloth->m_leastTolerance);
     }
-    syncGroup();
+    syncNodes();
 }
 
 static void runSubstep(const Solve* solve, const uint substep, __local uint* shared)
@@ -398,14 +632,14 @@ static void runSubstep(const Solve* solve, const uint substep, __local uint* sha
     __global const SolveCloth* cloth = solve->m_cloth;
     forAll (i, cloth->m_nodes.m_count)
         nodeAdvance(solve->m_nodes + i, solve->m_states + i, solve->m_accelerations[i], cloth->m_substepTime);
-    syncGroup();
+    syncNodes();
     // Limits beside a moving obstacle hold at the step's end alone.
     if (substep > 0 && (cloth->m_rests || substep + 1 == cloth->m_substeps))
     {
         applyLimits(solve, shared);
         forAll (i, cloth->m_nodes.m_count)
             nodeLimitShift(solve->m_nodes + i, solve->m_states + i, cloth->m_perCorrection, cloth->m_perSecond);
-        syncGroup();
+        syncNodes();
     }
     Sweep sweep;
     sweep.m_stage = substep + 1;
@@ -418,7 +652,7 @@ static void runSubstep(const Solve* solve, const uint substep, __local uint* sha
     }
     forAll (i, cloth->m_nodes.m_count)
         nodeEnd(solve->m_nodes + i, solve->m_states + i, cloth->m_perCorrection, cloth->m_kept);
-    syncGroup();
+    syncNodes();
 }
 
 // Returns whether the cloth needs another closing sweep after `done` sweeps.
@@ -454,7 +688,7 @@ static uint closeContacts(const Solve* solve, __local uint* shared)
 
 // Limits the speeds that a batch's contacts gave. Returns whether one of them ends so near that a surface may have been
 // passed.
-static int limitSpeeds(const Solve* solve, const SolveRange range)
+DRAPE_RARE_FUNCTION int limitSpeeds(const Solve* solve, const SolveRange range)
 {
     int near = 0;
     for (uint b = 0; b < range.m_count; ++b)
@@ -465,10 +699,10 @@ static int limitSpeeds(const Solve* solve, const SolveRange range)
                                                                    : batch.m_first + (batch.m_serial ? 0 : get_local_id(0));
         for (uint k = first; k < batch.m_last; k += step)
         {
-            const SolveFeature feature = solve->m_features[k];
+            const SolveFeature feature = loadFeature(solve, k);
             for (uint i = feature.m_firstContact; i < feature.m_firstContact + feature.m_contactCount; ++i)
             {
-                if (!solve->m_planes[i].m_made) continue;
+                if (!(solve->m_planes[i].m_flags & DRAPE_PLANE_MADE)) continue;
                 const ActingContact acting = solve->m_acting[i];
                 if (!acting.m_pushed) continue;
                 limitSpeed(&acting, solve->m_states);
@@ -476,13 +710,18 @@ static int limitSpeeds(const Solve* solve, const SolveRange range)
                         solve->m_cloth->m_nearDistance;
             }
         }
-        syncGroup();
+        syncAll();
     }
     return near;
 }
 
 // A work-group solves the cloth of its number, whatever its size.
-__kernel void solveCloths(DRAPE_SOLVE_CLOTHS)
+#ifdef DRAPE_CPU
+#define DRAPE_SOLVE_GROUP 1
+#else
+#define DRAPE_SOLVE_GROUP 512
+#endif
+__kernel __attribute__((reqd_work_group_size(DRAPE_SOLVE_GROUP, 1, 1))) void solveCloths(DRAPE_SOLVE_CLOTHS)
 {
     __local uint shared;
     Solve solve;
@@ -501,23 +740,30 @@ __kernel void solveCloths(DRAPE_SOLVE_CLOTHS)
     solve.m_facesOfNode = (__global const uint*)(topology + layout.m_facesOfNode);
     solve.m_faces = (__global const int*)(topology + layout.m_faces);
     solve.m_contacts = contacts;
-    solve.m_nodes = (__global SolverNode*)(work + layout.m_nodes) + firstNode;
+    solve.m_nodes = nodes;
     solve.m_states = (__global NodeState*)(work + layout.m_states) + firstNode;
     solve.m_planes = (__global SolvePlane*)(work + layout.m_planes);
     solve.m_acting = (__global ActingContact*)(work + layout.m_acting);
     solve.m_allowances = (__global SolveAllowance*)(work + layout.m_allowances) + firstNode;
+    solve.m_spans = (__global SolveSpan*)(work + layout.m_spans);
+    solve.m_featureStates = (__global SolveFeatureState*)(work + layout.m_featureStates);
+    solve.m_lists = (__global uint*)(work + layout.m_lists);
 
     beginStep(&solve);
     for (uint i = 0; i < cloth->m_substeps; ++i)
         runSubstep(&solve, i, &shared);
     forAll (i, cloth->m_nodes.m_count)
         nodeRemember(solve.m_nodes + i, solve.m_states + i);
-    syncGroup();
+    syncNodes();
     applyLimits(&solve, &shared);
     const uint sweeps = cloth->m_features.m_count > 0 ? closeContacts(&solve, &shared) : 0;
+    syncAll();
     forAll (i, cloth->m_nodes.m_count)
         nodeAddShift(solve.m_nodes + i, solve.m_states + i, cloth->m_perShift);
-    syncGroup();
+    syncAll();
+    __global SolverNode* ends = (__global SolverNode*)(work + layout.m_nodes) + firstNode;
+    forAll (i, cloth->m_nodes.m_count)
+        ends[i] = nodes[i];
     int near = limitSpeeds(&solve, cloth->m_faceBatches);
     near |= limitSpeeds(&solve, cloth->m_edgeBatches);
     near = anyInGroup(near, &shared);

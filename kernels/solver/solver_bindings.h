@@ -1,5 +1,5 @@
 // Arguments of the kernel that solves cloths (shared/bindings.h). input, work, topology: see SolveLayout. contacts: of
-// the step, in canonical order.
+// the step, in canonical order. nodes: of the work-group's cloth.
 #ifndef DRAPE_SOLVER_BINDINGS_H
 #define DRAPE_SOLVER_BINDINGS_H
 
@@ -9,7 +9,7 @@
 
 #define DRAPE_SOLVE_CLOTHS                                                                                       \
     DRAPE_VALUE(SolveLayout, layout), DRAPE_READS(SolveInputWord, input), DRAPE_READS(SolveTopologyWord, topology), \
-        DRAPE_READS(Contact, contacts), DRAPE_UPDATES(SolveWorkWord, work)
+        DRAPE_READS(Contact, contacts), DRAPE_UPDATES(SolveWorkWord, work), DRAPE_LOCAL(SolverNode, nodes)
 
 #ifndef __OPENCL_VERSION__
 namespace drape::kernels

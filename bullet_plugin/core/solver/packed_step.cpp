@@ -60,6 +60,7 @@ bool PackedStep::fits(const SolverCloth& cloth, const ContactSource& source)
 {
     const ClothContacts& contacts = *cloth.m_contacts;
     if (!cloth.m_substeps || cloth.m_rigid || !contacts.m_limit.faces()) return false;
+    if (contacts.m_nodes.count() > SolveStage::kMostNodes) return false;
     for (const MotionLimit::Region& region : contacts.m_limit.regions())
         if (region.m_carry.m_starts) return false;
     if (contacts.m_features.empty()) return true;
@@ -77,6 +78,7 @@ void PackedStep::packLinks(const LinkSweep& links, std::uint32_t leafCount, Clot
     links.forLinks([&](std::uint32_t group, std::uint32_t colour, const std::uint32_t*, float, float)
                    { ++firsts[keyOf(group, colour) + 1]; });
     firsts[0] = std::uint32_t(m_links.size());
+    cloth.m_links = {firsts[0], std::uint32_t(links.linkCount())};
     for (std::size_t key = 1; key < firsts.size(); ++key)
         firsts[key] += firsts[key - 1];
     cloth.m_linkBatches.m_first = std::uint32_t(m_linkBatches.size());
@@ -253,6 +255,8 @@ void PackedStep::packCloth(std::size_t index, const ContactSource& source)
     SolveCloth cloth = {};
     cloth.m_nodes = {std::uint32_t(m_step.m_nodeCount), std::uint32_t(contacts.m_nodes.count())};
     m_step.m_nodeCount += contacts.m_nodes.count();
+    m_step.m_mostNodes = std::max(m_step.m_mostNodes, contacts.m_nodes.count());
+    cloth.m_links = m_packed[index].m_links;
     cloth.m_linkBatches = m_packed[index].m_linkBatches;
     cloth.m_faceLists = m_packed[index].m_faceLists;
     cloth.m_substeps = std::uint32_t(substeps.count());
@@ -303,6 +307,9 @@ void PackedStep::layOut(const ContactSource& source, SolveStage& stage)
     layout.m_allowances = work.add<SolveAllowance>(m_step.m_nodeCount);
     layout.m_planes = work.add<SolvePlane>(source.list().size());
     layout.m_acting = work.add<ActingContact>(source.list().size());
+    layout.m_spans = work.add<SolveSpan>(m_links.size());
+    layout.m_featureStates = work.add<SolveFeatureState>(m_features.size());
+    layout.m_lists = work.add<std::uint32_t>(source.list().size());
     m_step.m_workWords = work.words();
     m_step.m_inputWords = input.words();
     SolveInputWord* const words = stage.input(m_step.m_inputWords);
@@ -337,7 +344,7 @@ void PackedStep::pack(const std::vector<SolverCloth>& cloths, const ContactSourc
     m_surfaces.clear();
     m_regions.clear();
     m_step.m_clothCount = cloths.size();
-    m_step.m_nodeCount = 0;
+    m_step.m_nodeCount = m_step.m_mostNodes = 0;
     for (std::size_t i = 0; i < m_cloths.size(); ++i)
         packCloth(i, source);
     layOut(source, stage);

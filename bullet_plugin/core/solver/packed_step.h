@@ -40,7 +40,7 @@ private:
     // Results of packing for one cloth.
     struct Cloth
     {
-        SolveRange m_linkBatches = {};
+        SolveRange m_links = {}, m_linkBatches = {};
         std::uint32_t m_faceLists = 0;
     };
 

@@ -36,7 +36,8 @@ void SolveStage::submit(const SolveStep& step)
     if (m_resultRead->capacity() < step.m_resultWords)
         m_resultRead->reserve(m_device, step.m_resultWords + step.m_resultWords / 4);
     const std::size_t group = device.isGpu() ? kGroupGpu : kGroupCpu;
-    m_solve.launch(device, step.m_clothCount * group, group, step.m_layout, m_input, m_topology, m_contacts, m_work);
+    m_solve.launch(device, step.m_clothCount * group, group, step.m_layout, m_input, m_topology, m_contacts, m_work,
+                   step.m_mostNodes);
     m_work.read(device, m_resultRead->data(), step.m_resultWords);
     device.flush();
 }

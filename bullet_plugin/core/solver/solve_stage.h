@@ -15,6 +15,7 @@ struct SolveStep
 {
     SolveLayout m_layout = {};
     std::size_t m_clothCount = 0, m_nodeCount = 0;
+    std::size_t m_mostNodes = 0;  // of a cloth
     const SolveInputWord* m_input = nullptr;
     std::size_t m_inputWords = 0;
     // null: as in the last step
@@ -29,6 +30,9 @@ struct SolveStep
 class SolveStage
 {
 public:
+    // Maximum nodes of a cloth: they take 16 bytes each of a work-group's local memory, mostly 48 KiB.
+    static constexpr std::size_t kMostNodes = 3000;
+
     void create(Device& device, const ProgramLoader& load);
     // Returns whether create() was called.
     bool created() const { return m_device != nullptr; }
