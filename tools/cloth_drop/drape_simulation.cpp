@@ -12,19 +12,64 @@ namespace drape
 {
 namespace
 {
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point start)
+{
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// Measures how long Bullet's step spends in the solver.
+class TimedSolver : public SoftBodySolver
+{
+public:
+    using SoftBodySolver::SoftBodySolver;
+    void predictMotion(btScalar dt) override
+    {
+        m_ms = 0;
+        const Timer timer(m_ms);
+        SoftBodySolver::predictMotion(dt);
+    }
+    void solveConstraints(btScalar dt) override
+    {
+        const Timer timer(m_ms);
+        SoftBodySolver::solveConstraints(dt);
+    }
+    void updateSoftBodies() override
+    {
+        const Timer timer(m_ms);
+        SoftBodySolver::updateSoftBodies();
+    }
+    // Returns the time of the last step's calls, ms.
+    double ms() const { return m_ms; }
+
+private:
+    // Adds the time of its life.
+    struct Timer
+    {
+        explicit Timer(double& sum) : m_sum(sum) {}
+        ~Timer() { m_sum += since(m_start); }
+        double& m_sum;
+        const Clock::time_point m_start = Clock::now();
+    };
+
+    double m_ms = 0;
+};
+
 class DrapeSimulation : public Simulation
 {
 public:
     DrapeSimulation(const DropScene& scene, const Settings& settings)
         : m_plugin(std::make_unique<Plugin>(settings)),
-          m_world(std::make_unique<CollisionConfiguration>(*m_plugin), std::make_unique<SoftBodySolver>(*m_plugin)),
+          m_solver(new TimedSolver(*m_plugin)),
+          m_world(std::make_unique<CollisionConfiguration>(*m_plugin), std::unique_ptr<btSoftBodySolver>(m_solver)),
           m_dt(scene.m_dt)
     {
         m_world.addMeshObstacle(scene);
         m_world.addCloth(scene, false);
         const Clock::time_point begin = Clock::now();
         m_plugin->prepare(m_world.world());
-        m_meshesMs = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+        m_meshesMs = since(begin);
     }
 
     const Plugin& plugin() const { return *m_plugin; }
@@ -34,9 +79,10 @@ public:
         StepTimes times;
         times.m_stepMs = m_world.step(m_dt);
         const StepStatistics& statistics = m_plugin->statistics();
-        times.m_parts = {m_world.world().collisionMs(), statistics.m_uploadMs, statistics.m_waitMs,
-                         statistics.m_writeMs, statistics.m_finishMs};
-        times.m_collisionMs = times.m_parts.sum();
+        static_cast<StepParts&>(times.m_parts) = statistics;
+        times.m_parts.m_dispatchMs = m_world.world().collisionMs();
+        times.m_parts.m_rigidMs = times.m_stepMs - times.m_parts.m_dispatchMs - m_solver->ms();
+        times.m_collisionMs = times.m_parts.m_dispatchMs + statistics.collisionMs();
         times.m_contacts = statistics.m_contacts;
         times.m_candidates = statistics.m_candidates;
         times.m_sweptTests = statistics.m_sweptTests;
@@ -68,9 +114,8 @@ public:
     }
 
 private:
-    using Clock = std::chrono::steady_clock;
-
     std::unique_ptr<Plugin> m_plugin;  // before the world, which uses it
+    TimedSolver* m_solver;             // the world's
     DropWorld m_world;
     double m_dt;
     double m_meshesMs = 0;  // time to prepare cloth and obstacle
