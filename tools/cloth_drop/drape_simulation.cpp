@@ -1,61 +1,17 @@
 #include <drape/drape.h>
 
-#include <chrono>
 #include <iostream>
 
 #include "tools/cloth_drop/drop_world.h"
 #include "tools/cloth_drop/node_positions.h"
 #include "tools/cloth_drop/simulation.h"
+#include "tools/cloth_drop/timed_solver.h"
 #include "tools/common/device_option.h"
 
 namespace drape
 {
 namespace
 {
-using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point start)
-{
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-// Measures how long Bullet's step spends in the solver.
-class TimedSolver : public SoftBodySolver
-{
-public:
-    using SoftBodySolver::SoftBodySolver;
-    void predictMotion(btScalar dt) override
-    {
-        m_ms = 0;
-        const Timer timer(m_ms);
-        SoftBodySolver::predictMotion(dt);
-    }
-    void solveConstraints(btScalar dt) override
-    {
-        const Timer timer(m_ms);
-        SoftBodySolver::solveConstraints(dt);
-    }
-    void updateSoftBodies() override
-    {
-        const Timer timer(m_ms);
-        SoftBodySolver::updateSoftBodies();
-    }
-    // Returns the time of the last step's calls, ms.
-    double ms() const { return m_ms; }
-
-private:
-    // Adds the time of its life.
-    struct Timer
-    {
-        explicit Timer(double& sum) : m_sum(sum) {}
-        ~Timer() { m_sum += since(m_start); }
-        double& m_sum;
-        const Clock::time_point m_start = Clock::now();
-    };
-
-    double m_ms = 0;
-};
-
 class DrapeSimulation : public Simulation
 {
 public:
@@ -67,9 +23,8 @@ public:
     {
         m_world.addMeshObstacle(scene);
         m_world.addCloth(scene, false);
-        const Clock::time_point begin = Clock::now();
+        const TimedSolver::Timer timer(m_meshesMs);
         m_plugin->prepare(m_world.world());
-        m_meshesMs = since(begin);
     }
 
     const Plugin& plugin() const { return *m_plugin; }
@@ -79,9 +34,7 @@ public:
         StepTimes times;
         times.m_stepMs = m_world.step(m_dt);
         const StepStatistics& statistics = m_plugin->statistics();
-        static_cast<StepParts&>(times.m_parts) = statistics;
-        times.m_parts.m_dispatchMs = m_world.world().collisionMs();
-        times.m_parts.m_rigidMs = times.m_stepMs - times.m_parts.m_dispatchMs - m_solver->ms();
+        times.m_parts = partsOf(statistics, times.m_stepMs, m_world.world().collisionMs(), m_solver->ms());
         times.m_collisionMs = times.m_parts.m_dispatchMs + statistics.collisionMs();
         times.m_contacts = statistics.m_contacts;
         times.m_candidates = statistics.m_candidates;

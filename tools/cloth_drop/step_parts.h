@@ -13,6 +13,17 @@ struct WholeStepParts : StepParts
     double m_rigidMs = 0;     // the rest of Bullet's step outside of the solver's calls
 };
 
+// Returns the parts of a step of stepMs, of which Bullet's collision detection took dispatchMs and the solver's calls
+// callsMs.
+inline WholeStepParts partsOf(const StepParts& parts, double stepMs, double dispatchMs, double callsMs)
+{
+    WholeStepParts whole;
+    static_cast<StepParts&>(whole) = parts;
+    whole.m_dispatchMs = dispatchMs;
+    whole.m_rigidMs = stepMs - dispatchMs - callsMs;
+    return whole;
+}
+
 struct NamedPart
 {
     const char* m_name;
