@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "benchmarks/bench_step/measure_scene.h"
+#include "benchmarks/bench_step/world_method.h"
 #include "benchmarks/support/arguments.h"
 #include "scenes/models.h"
 #include "benchmarks/support/samples.h"
@@ -49,6 +50,14 @@ std::vector<MethodEntry> allMethods(const Options& options)
     add(kReference, drape(host));
     if (!onHost) add("drape", drape(device));
     if (!onHost) add("drape_kernels", drape(profiled));
+#ifdef DRAPE_BENCH_WORLDS
+    const auto world = [](Settings settings) {
+        return [settings](const StepScene& scene, std::string& error)
+        { return makeWorldMethod(scene, settings, error); };
+    };
+    add("drape_world_host", world(host));
+    if (!onHost) add("drape_world", world(device));
+#endif
     for (const int threads : {2, 1})
     {
         const std::string suffix = "_" + std::to_string(threads);
@@ -79,8 +88,9 @@ std::vector<MethodEntry> methodsFor(const SceneSpec& spec, std::vector<MethodEnt
 {
     const auto isLeftOut = [&](const MethodEntry& entry)
     {
-        // FCL has no collision of a model with itself.
-        if (spec.m_self && entry.m_name.rfind("fcl", 0) == 0) return true;
+        // FCL has no collision of a model with itself, the plugin none of cloth with itself.
+        if (spec.m_self && (entry.m_name.rfind("fcl", 0) == 0 || entry.m_name.rfind("drape_world", 0) == 0))
+            return true;
         return !options.m_methods.empty() && !contains(options.m_methods, entry.m_name) && !settings.m_expected.empty();
     };
     methods.erase(std::remove_if(methods.begin(), methods.end(), isLeftOut), methods.end());

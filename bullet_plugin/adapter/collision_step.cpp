@@ -7,6 +7,7 @@
 #include "bullet_plugin/adapter/stretch.h"
 #include "bullet_plugin/adapter/body_nodes.h"
 #include "bullet_plugin/core/scene/growing_arrays.h"
+#include "bullet_plugin/core/stopwatch.h"
 
 namespace drape
 {
@@ -180,6 +181,7 @@ void CollisionStep::uploadNodes(Detection detection)
 void CollisionStep::begin(const std::vector<PairNote>& notes)
 {
     clear();
+    m_uploadMs = 0;
     m_state.m_found.clear();
     // Adding and removing meshes moves the memory that nodes are written to: mirrors first, nodes after.
     m_state.dropOldMirrors();
@@ -197,6 +199,7 @@ void CollisionStep::begin(const std::vector<PairNote>& notes)
 
 void CollisionStep::submit(Detection detection)
 {
+    Stopwatch watch;
     uploadNodes(detection);
     for (const Pair& pair : m_pairs)
     {
@@ -204,6 +207,7 @@ void CollisionStep::submit(Detection detection)
         m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_thickness));
     }
     m_state.pipeline().submit();
+    m_uploadMs += watch.lapMs();
 }
 
 // Takes the contacts of the current detection. If that holds bodies together, detects again and takes the new

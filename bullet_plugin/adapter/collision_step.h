@@ -43,6 +43,8 @@ public:
     void clear();
     // Releases the memory of earlier steps' bodies. Call before begin().
     void giveBackRoom();
+    // Returns the time since begin() for copying nodes and enqueueing, ms.
+    double uploadMs() const { return m_uploadMs; }
     // Returns the cloths with a pair in this step that no contact could move: all of their nodes are pinned.
     std::size_t pinnedCloths() const { return m_pinned.size(); }
     // Returns null if the body has no pair in this step.
@@ -98,6 +100,7 @@ private:
     std::vector<ClothMirror*> m_mirrors;  // one for each of m_bodies
     std::vector<Upload> m_uploads;
     bool m_heldTogether = false;  // any body, since the last detection
+    double m_uploadMs = 0;        // see uploadMs()
     DeformedPairs m_deformed;
     PairStarts m_starts;
     std::vector<std::vector<int>> m_jumped;           // result of checkStarts(), by body

@@ -129,7 +129,7 @@ struct SoftBodySolver::Work
     bool m_listed = false;                                           // m_predicted is whole
     bool m_detected = false;                                         // the paths of all bodies with a pair are recorded
     std::size_t m_asleep = 0;                                        // cloths that are not among them
-    double m_predictMs = 0;                                          // time of this class in predictMotion
+    StepParts m_parts;                                               // parts of the running step, without its waits
     std::uint64_t m_failures;  // failures of the state that a step of this solver has reported
 };
 
@@ -155,10 +155,13 @@ void SoftBodySolver::predictMotion(btScalar dt)
     const auto failed = [&](const CaughtException& caught)
     { m_state->fail("drape::SoftBodySolver::predictMotion", caught); };
     std::vector<StepObstacle> obstacles;
+    m_work->m_parts = StepParts();
     guarded([&] { beginStep(dt, obstacles); }, failed);
     if (!m_state->ready()) return btDefaultSoftBodySolver::predictMotion(dt);
+    Stopwatch watch;
     for (int i = 0; i < m_softBodySet.size(); ++i)
         if (m_softBodySet[i]->isActive()) predict(*m_softBodySet[i], dt);
+    m_work->m_parts.m_predictMs = watch.lapMs();
     guarded([&] { coverMotions(obstacles); }, failed);
 }
 
@@ -177,8 +180,9 @@ void SoftBodySolver::beginStep(btScalar dt, std::vector<StepObstacle>& obstacles
                       { return m_state->movedAlong(m_work->m_taken, object, map, slack); });
     obstacles = wakeReached(motions);
     listPredicted();
+    m_work->m_parts.m_mirrorMs = watch.lapMs();
     recordVelocities();
-    m_work->m_predictMs = watch.lapMs();
+    m_work->m_parts.m_readMs = watch.lapMs();
 }
 
 // Runs the part of predictMotion() after Bullet's.
@@ -191,9 +195,10 @@ void SoftBodySolver::coverMotions(const std::vector<StepObstacle>& obstacles)
         if (found != m_work->m_substeps.end() && m_softBodySet[i]->isActive())
             found->second->afterPrediction(*m_softBodySet[i]);
     }
+    m_work->m_parts.m_readMs += watch.lapMs();
     for (btSoftBody* body : m_work->m_taken)
         if (body->isActive()) coverMotion(*m_state, *body, obstacles);
-    m_work->m_predictMs += watch.lapMs();
+    m_work->m_parts.m_mirrorMs += watch.lapMs();
 }
 
 // Prepares the bodies whose links Drape solves in the coming step, and forgets all others.
@@ -295,14 +300,14 @@ void SoftBodySolver::detect()
     if (work.m_usage.hasFallen(elementsOf(statistics))) work.giveBackRoom(*m_state);
     Stopwatch watch;
     step.begin(m_state->takeNotes(this, work.m_predicted));
-    const double beginMs = watch.lapMs();
+    const double uploadMs = step.uploadMs();
+    work.m_parts.m_mirrorMs += watch.lapMs() - uploadMs;
     step.finish();
     for (int i = 0; i < m_softBodySet.size(); ++i)
         step.reportInvalid(*m_softBodySet[i]);
     work.m_detected = true;
     statistics.m_clothsSkipped = work.m_asleep + step.pinnedCloths();
-    statistics.m_uploadMs = work.m_predictMs + beginMs;
-    statistics.m_writeMs = watch.lapMs() - statistics.m_waitMs;
+    work.m_parts.m_writeMs = watch.lapMs() - statistics.m_waitMs - (step.uploadMs() - uploadMs);
 }
 
 // Hands a body with a pair, or whose links the core solves, to the solver. Returns whether it is one.
@@ -328,8 +333,7 @@ bool SoftBodySolver::Work::take(btSoftBody& body)
     return true;
 }
 
-// Returns the time of Bullet's part, ms.
-double SoftBodySolver::solveBodies()
+void SoftBodySolver::solveBodies(StepParts& parts)
 {
     Work& work = *m_work;
     work.m_touched.clear();
@@ -338,7 +342,7 @@ double SoftBodySolver::solveBodies()
     work.m_ends.clear();
     work.m_rigidBodies.clear();
     work.m_solved.assign(static_cast<std::size_t>(m_softBodySet.size()), 0);
-    double bulletMs = 0;
+    Stopwatch watch;
     for (int i = 0; i < m_softBodySet.size();)
     {
         if (work.take(*m_softBodySet[i]))
@@ -346,21 +350,25 @@ double SoftBodySolver::solveBodies()
             ++i;
             continue;
         }
-        Stopwatch watch;
+        parts.m_readMs += watch.lapMs();
         i = work.solveByBullet(m_softBodySet, i);
-        bulletMs += watch.lapMs();
+        parts.m_bulletMs += watch.lapMs();
     }
+    parts.m_readMs += watch.lapMs();
     std::size_t nodes = 0;
     for (const auto& end : work.m_ends)
         nodes += end.second->count();
     SolveStage* const stage = m_state->pipeline().solveStage(nodes);
     work.m_solver->solve(work.m_touched, work.m_free, m_state->m_found.source(), stage);
+    double linksMs = 0;
+    for (const std::unique_ptr<BulletLinks>& links : work.m_bulletLinks)
+        linksMs += links->ms();
+    parts.m_solveMs = watch.lapMs() - linksMs;
+    parts.m_bulletMs += linksMs;
     for (const auto& end : work.m_ends)
         SubstepBody::end(*end.second, *end.first, &m_state->threads());
     work.m_rigidBodies.applyImpulses();
-    for (const std::unique_ptr<BulletLinks>& links : work.m_bulletLinks)
-        bulletMs += links->ms();
-    return bulletMs;
+    parts.m_writeBackMs = watch.lapMs();
 }
 
 // Keeps bodies that strayed from their predicted paths at their distance from what is near their real ones. A body that
@@ -389,18 +397,26 @@ void SoftBodySolver::closeStrayed(const std::vector<BodyContacts*>& bodies)
 
 void SoftBodySolver::solveStep()
 {
-    leaveToBullet();
-    detect();
-    StepStatistics& statistics = m_state->m_statistics;
-    const double waitMs = statistics.m_waitMs;
+    StepParts& parts = m_work->m_parts;
     Stopwatch watch;
-    const double bulletMs = solveBodies();
-    if (m_work->m_step)
-    {
-        closeStrayed(m_work->m_step->checkStrayed());
-        m_work->m_step->end();
-    }
-    statistics.m_finishMs = watch.lapMs() - bulletMs - (statistics.m_waitMs - waitMs);
+    leaveToBullet();
+    parts.m_readMs += watch.lapMs();
+    detect();
+    solveBodies(parts);
+    CollisionStep* const step = m_work->m_step.get();
+    if (!step) return;
+    StepStatistics& statistics = m_state->m_statistics;
+    const double waitMs = statistics.m_waitMs, uploadMs = step->uploadMs();
+    watch.lapMs();
+    closeStrayed(step->checkStrayed());
+    step->end();
+    parts.m_uploadMs = step->uploadMs();
+    parts.m_checkMs = watch.lapMs() - (statistics.m_waitMs - waitMs) - (parts.m_uploadMs - uploadMs);
+    parts.m_waitMs = statistics.m_waitMs;
+    parts.m_refitMs = statistics.m_refitMs;
+    parts.m_broadMs = statistics.m_broadMs;
+    parts.m_narrowMs = statistics.m_narrowMs;
+    static_cast<StepParts&>(statistics) = parts;
 }
 
 // Ends a step in which an exception was caught: Bullet solves the bodies that Drape does not handle, and Drape's cloths
@@ -435,5 +451,12 @@ void SoftBodySolver::solveConstraints(btScalar dt)
     m_work->m_detected = false;
     if (m_work->m_failures == m_state->failures()) guarded([&] { solveStep(); }, failed);
     if (m_work->m_failures != m_state->failures()) endFailedStep();
+}
+
+void SoftBodySolver::updateSoftBodies()
+{
+    Stopwatch watch;
+    btDefaultSoftBodySolver::updateSoftBodies();
+    if (m_work) m_state->m_statistics.m_normalsMs = watch.lapMs();
 }
 }  // namespace drape

@@ -1,7 +1,7 @@
 """error_vs_time runs, its table parses, what may change time only changes nothing else, answers that must be right are,
 and stalled runs are capped.
 
-Usage: error_vs_time_test.py PROGRAM
+Usage: error_vs_time_test.py FOLDER_OF_PROGRAMS
 """
 import csv
 import json
@@ -11,7 +11,7 @@ import sys
 import tempfile
 import unittest
 
-PROGRAM = os.path.abspath(sys.argv.pop(1))
+PROGRAM = os.path.join(os.path.abspath(sys.argv.pop(1)), "error_vs_time")
 
 
 class ErrorVsTimeTest(unittest.TestCase):

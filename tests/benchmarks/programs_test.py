@@ -35,6 +35,15 @@ class BenchStep(ProgramTest):
             if not peers:
                 self.assertEqual(methods["embree_contacts_1"]["valid"], "yes")
 
+    def test_the_parts_of_a_whole_step_add_up(self):
+        rows = self.quick("bench_step", "--backend", "host", "--method", "drape_world_host")
+        for scene in ("quick_one", "quick_many"):
+            mine = {row["stage"]: row for row in rows if (row["scene"], row["method"]) == (scene, "drape_world_host")}
+            parts = [row for stage, row in mine.items() if stage.startswith("part: ")]
+            self.assertGreater(float(mine["step"]["contacts"]), 100)
+            self.assertGreater(sum(float(part["median_ms"]) for part in parts), 0.5 * float(mine["step"]["median_ms"]))
+            self.assertLessEqual(sum(float(part["min_ms"]) for part in parts), float(mine["step"]["min_ms"]) + 1e-4)
+
     def test_an_opencl_device_gives_the_hosts_hash(self):
         rows = self.quick("bench_step", "--backend", "opencl", "--method", "drape", "--method", "drape_kernels")
         for name in ("drape", "drape_kernels"):

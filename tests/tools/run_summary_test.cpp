@@ -78,7 +78,7 @@ TEST(RunSummary, SaysNothingOfStepsInContactWhereThereWereNone)
 {
     const auto json = asJson({runOf("drape", {0, 0}, 0)}, false);
     EXPECT_EQ(json.at("steps_in_contact"), 0);
-    for (const char* key : {"step_ms", "collision_ms", "finding_ms", "collision_parts_ms", "penetration_p99_m"})
+    for (const char* key : {"step_ms", "collision_ms", "finding_ms", "step_parts_ms", "penetration_p99_m"})
         EXPECT_TRUE(json.at(key).is_null()) << key;
     const std::string table = asTable({runOf("drape", {0, 0}, 0)});
     for (const char* label : {"step, ms", "collision, ms", "finding", "p99"})

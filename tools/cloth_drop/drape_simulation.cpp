@@ -1,11 +1,11 @@
 #include <drape/drape.h>
 
-#include <chrono>
 #include <iostream>
 
 #include "tools/cloth_drop/drop_world.h"
 #include "tools/cloth_drop/node_positions.h"
 #include "tools/cloth_drop/simulation.h"
+#include "tools/cloth_drop/timed_solver.h"
 #include "tools/common/device_option.h"
 
 namespace drape
@@ -17,14 +17,14 @@ class DrapeSimulation : public Simulation
 public:
     DrapeSimulation(const DropScene& scene, const Settings& settings)
         : m_plugin(std::make_unique<Plugin>(settings)),
-          m_world(std::make_unique<CollisionConfiguration>(*m_plugin), std::make_unique<SoftBodySolver>(*m_plugin)),
+          m_solver(new TimedSolver(*m_plugin)),
+          m_world(std::make_unique<CollisionConfiguration>(*m_plugin), std::unique_ptr<btSoftBodySolver>(m_solver)),
           m_dt(scene.m_dt)
     {
         m_world.addMeshObstacle(scene);
         m_world.addCloth(scene, false);
-        const Clock::time_point begin = Clock::now();
+        const TimedSolver::Timer timer(m_meshesMs);
         m_plugin->prepare(m_world.world());
-        m_meshesMs = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
     }
 
     const Plugin& plugin() const { return *m_plugin; }
@@ -34,9 +34,8 @@ public:
         StepTimes times;
         times.m_stepMs = m_world.step(m_dt);
         const StepStatistics& statistics = m_plugin->statistics();
-        times.m_parts = {m_world.world().collisionMs(), statistics.m_uploadMs, statistics.m_waitMs,
-                         statistics.m_writeMs, statistics.m_finishMs};
-        times.m_collisionMs = times.m_parts.sum();
+        times.m_parts = partsOf(statistics, times.m_stepMs, m_world.world().collisionMs(), m_solver->ms());
+        times.m_collisionMs = times.m_parts.m_dispatchMs + statistics.collisionMs();
         times.m_contacts = statistics.m_contacts;
         times.m_candidates = statistics.m_candidates;
         times.m_sweptTests = statistics.m_sweptTests;
@@ -68,9 +67,8 @@ public:
     }
 
 private:
-    using Clock = std::chrono::steady_clock;
-
     std::unique_ptr<Plugin> m_plugin;  // before the world, which uses it
+    TimedSolver* m_solver;             // the world's
     DropWorld m_world;
     double m_dt;
     double m_meshesMs = 0;  // time to prepare cloth and obstacle

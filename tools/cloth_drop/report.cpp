@@ -16,13 +16,12 @@ Json asJson(const TimeSummary& times)
     return {{"first", times.m_first}, {"median", times.m_median}, {"p95", times.m_p95}, {"max", times.m_max}};
 }
 
-Json asJson(const CollisionParts& parts)
+Json asJson(const WholeStepParts& parts)
 {
-    return {{"dispatch", parts.m_dispatch},
-            {"upload", parts.m_upload},
-            {"wait", parts.m_wait},
-            {"write", parts.m_write},
-            {"rounds", parts.m_rounds}};
+    Json json;
+    for (const NamedPart& part : stepParts())
+        json[part.m_name] = parts.*part.m_ms;
+    return json;
 }
 
 // Returns a statistic of the steps in contact, or null when the run had none.
@@ -58,6 +57,12 @@ Json workJson(const RunRecord& record)
     return json;
 }
 
+// Returns whether Drape ran the steps.
+bool hasParts(const RunRecord& record)
+{
+    return !record.m_backend.empty() && record.m_backend.rfind("bullet", 0) != 0;
+}
+
 Json asJson(const RunRecord& record)
 {
     const RunSummary summary = summarise(record);
@@ -75,9 +80,9 @@ Json asJson(const RunRecord& record)
     json["step_ms"] = ifInContact(summary, asJson(summary.m_step));
     json["collision_ms"] = ifInContact(summary, asJson(summary.m_collision));
     json["finding_ms"] = ifInContact(summary, asJson(summary.m_finding));
-    if (!record.m_backend.empty() && record.m_backend.rfind("bullet", 0) != 0)
+    if (hasParts(record))
     {
-        json["collision_parts_ms"] = ifInContact(summary, asJson(summary.m_parts));
+        json["step_parts_ms"] = ifInContact(summary, asJson(summary.m_parts));
         json["work"] = workJson(record);
     }
     json["contacts_max"] = summary.m_contactsMax;
@@ -158,6 +163,20 @@ void addTimes(std::string& table, const std::string& label, const std::vector<Ru
     }
 }
 
+// Adds the times of the whole step and the medians of its parts.
+void addStepTimes(std::string& table, const std::vector<NamedRun>& runs, const std::vector<RunSummary>& summaries)
+{
+    addTimes(table, "step, ms", summaries, &RunSummary::m_step);
+    for (const NamedPart& part : stepParts())
+    {
+        std::vector<std::string> cells;
+        for (std::size_t i = 0; i < runs.size(); ++i)
+            cells.push_back(hasParts(runs[i].m_record) ? textOfContacts(summaries[i], summaries[i].m_parts.*part.m_ms)
+                                                       : kNone);
+        table += row(std::string("part: ") + part.m_name + ", ms, median", cells);
+    }
+}
+
 std::string heading(const std::vector<NamedRun>& runs)
 {
     const RunRecord& first = runs.front().m_record;
@@ -198,17 +217,23 @@ std::string asCsv(const RunRecord& record, double dt)
 {
     std::string csv =
         "step,time_s,step_ms,collision_ms,contacts,penetration_max_m,gap_min_m,nodes_below_surface,"
-        "intersecting_pairs,nan_nodes,speed_rms_m_s,nodes_through\n";
+        "intersecting_pairs,nan_nodes,speed_rms_m_s,nodes_through";
+    for (const NamedPart& part : stepParts())
+        csv += std::string(",") + part.m_name + "_ms";
+    csv += "\n";
     char line[256];
     for (std::size_t i = 0; i < record.m_steps.size(); ++i)
     {
         const StepRecord& step = record.m_steps[i];
-        std::snprintf(line, sizeof line, "%zu,%.9g,%.6f,%.6f,%zu,%.9g,%.9g,%zu,%zu,%zu,%.9g,%zu\n", i + 1,
+        std::snprintf(line, sizeof line, "%zu,%.9g,%.6f,%.6f,%zu,%.9g,%.9g,%zu,%zu,%zu,%.9g,%zu", i + 1,
                       static_cast<double>(i + 1) * dt, step.m_times.m_stepMs, step.m_times.m_collisionMs,
                       step.m_times.m_contacts, step.m_measure.m_penetrationMax, step.m_measure.m_gapMin,
                       step.m_measure.nodesBelow(), step.m_measure.m_intersectingPairs, step.m_measure.m_invalidNodes,
                       step.m_speed, step.m_nodesThrough);
         csv += line;
+        for (const NamedPart& part : stepParts())
+            csv += "," + (hasParts(record) ? text("%.6f", step.m_times.m_parts.*part.m_ms) : std::string());
+        csv += "\n";
     }
     return csv;
 }
@@ -236,7 +261,7 @@ std::string asTable(const std::vector<NamedRun>& runs)
                                         [](const RunSummary& summary) { return summary.m_stepsInContact > 0; });
     if (anyContact)
     {
-        addTimes(table, "step, ms", summaries, &RunSummary::m_step);
+        addStepTimes(table, runs, summaries);
         addTimes(table, "collision, ms", summaries, &RunSummary::m_collision);
         add("finding contacts, ms, median",
             [&](std::size_t i) { return textOfContacts(summaries[i], summaries[i].m_finding.m_median); });

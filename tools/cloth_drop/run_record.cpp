@@ -31,7 +31,7 @@ TimeSummary summariseTimes(std::vector<double> times)
 }
 
 // Returns the median over the steps that had contacts.
-double medianOf(const RunRecord& record, double CollisionParts::*part)
+double medianOf(const RunRecord& record, double WholeStepParts::*part)
 {
     std::vector<double> times;
     for (const StepRecord& step : record.m_steps)
@@ -80,14 +80,13 @@ RunSummary summarise(const RunRecord& record)
         ++summary.m_stepsInContact;
         steps.push_back(step.m_times.m_stepMs);
         collisions.push_back(step.m_times.m_collisionMs);
-        finding.push_back(step.m_times.m_collisionMs - step.m_times.m_parts.m_rounds);
+        finding.push_back(step.m_times.m_collisionMs - step.m_times.m_parts.solverMs());
     }
     summary.m_step = summariseTimes(std::move(steps));
     summary.m_collision = summariseTimes(std::move(collisions));
     summary.m_finding = summariseTimes(std::move(finding));
-    for (const auto part : {&CollisionParts::m_dispatch, &CollisionParts::m_upload, &CollisionParts::m_wait,
-                            &CollisionParts::m_write, &CollisionParts::m_rounds})
-        summary.m_parts.*part = medianOf(record, part);
+    for (const NamedPart& part : stepParts())
+        summary.m_parts.*part.m_ms = medianOf(record, part.m_ms);
     summary.m_penetrationP99 = depthPercentile(std::move(depths), summary.m_stepsInContact * record.m_clothNodes, 0.99);
     if (record.m_steps.empty()) return summary;
     const StepRecord& last = record.m_steps.back();

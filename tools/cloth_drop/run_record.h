@@ -45,7 +45,7 @@ struct RunSummary
     std::size_t m_stepsInContact = 0;
     TimeSummary m_step, m_collision;
     TimeSummary m_finding;   // the collision without solving; Bullet solves contacts in another part of the step
-    CollisionParts m_parts;  // medians of each, over the same steps
+    WholeStepParts m_parts;  // medians of each, over the same steps
     std::size_t m_contactsMax = 0;
     double m_penetrationMax = 0;
     double m_penetrationP99 = 0;  // over every cloth node in every step in contact; nodes that are not below count as 0

@@ -10,25 +10,15 @@
 
 #include "tools/cloth_drop/drop_scene.h"
 #include "tools/cloth_drop/options.h"
+#include "tools/cloth_drop/step_parts.h"
 
 namespace drape
 {
-// Parts of StepTimes::m_collisionMs, ms; see StepStatistics.
-struct CollisionParts
-{
-    double m_dispatch = 0;  // Bullet's collision detection, and Drape's part in it
-    double m_upload = 0;
-    double m_wait = 0;
-    double m_write = 0;
-    double m_rounds = 0;  // and the look at strayed nodes
-    double sum() const { return m_dispatch + m_upload + m_wait + m_write + m_rounds; }
-};
-
 struct StepTimes
 {
     double m_stepMs = 0;       // wall time of stepSimulation
     double m_collisionMs = 0;  // part of the step: Bullet's collision detection and all work of Drape
-    CollisionParts m_parts;    // parts of m_collisionMs; 0 for the built-in collision
+    WholeStepParts m_parts;    // parts of m_stepMs; 0 for the built-in collision
     std::size_t m_contacts = 0;
     // Work counts as in StepStatistics; 0 for the built-in collision.
     std::uint64_t m_candidates = 0;

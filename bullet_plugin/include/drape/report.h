@@ -126,8 +126,49 @@ struct StepCounts
     std::size_t m_selfContacts = 0;
 };
 
+// Parts of a step's time in the calls of SoftBodySolver, all of its bodies together. They do not overlap, apart from
+// the parts of m_waitMs.
+struct StepParts
+{
+    // Time for pairs, mirrors of bodies and meshes, motions of obstacles, and bounds beside moving obstacles.
+    double m_mirrorMs = 0;
+    // Time of Bullet's prediction: forces, predicted positions, bounds and node trees.
+    double m_predictMs = 0;
+    // Time for copying nodes for the detection and for enqueueing.
+    double m_uploadMs = 0;
+    // Time spent waiting for the device and for its contacts; all of the detection on the host back end.
+    double m_waitMs = 0;
+    // Part of m_waitMs for refitting; host back end only.
+    double m_refitMs = 0;
+    // Part of m_waitMs for the broad phase; host back end only.
+    double m_broadMs = 0;
+    // Part of m_waitMs for the narrow phase and the canonical order; host back end only.
+    double m_narrowMs = 0;
+    // Time for sorting contacts by body and for ending paths at the first impact, without waits and uploads.
+    double m_writeMs = 0;
+    // Time for reading velocities, forces, links and nodes of bodies whose links Drape solves.
+    double m_readMs = 0;
+    // Time for links in substeps, contact sweeps and motion limits. The sweeps between Bullet's iterations count, too.
+    double m_solveMs = 0;
+    // Time of Bullet's link solver.
+    double m_bulletMs = 0;
+    // Time for writing positions and velocities of bodies whose links Drape solves, and impulses of rigid bodies.
+    double m_writeBackMs = 0;
+    // Time for checking displaced nodes, without waits and uploads.
+    double m_checkMs = 0;
+    // Time of Bullet's normals of faces and nodes.
+    double m_normalsMs = 0;
+
+    // Returns all of Drape's time in the solver's predictMotion and solveConstraints, without Bullet's.
+    double collisionMs() const { return m_mirrorMs + m_uploadMs + m_waitMs + m_writeMs + solverMs(); }
+    // Returns the part of collisionMs() that follows the detection.
+    double solverMs() const { return m_readMs + m_solveMs + m_writeBackMs + m_checkMs; }
+    // Returns the time of the solver's calls, with Bullet's part.
+    double callsMs() const { return collisionMs() + m_predictMs + m_bulletMs + m_normalsMs; }
+};
+
 // The work and cost of one step.
-struct StepStatistics : StepCounts
+struct StepStatistics : StepCounts, StepParts
 {
     // StepStatusBits.
     std::uint32_t m_status = kStepGood;
@@ -149,21 +190,5 @@ struct StepStatistics : StepCounts
     bool m_skipped = false;
     // True if the host back end ran the step, by choice or in place of the device.
     bool m_onHost = false;
-    // Time for bounds, reading nodes and enqueueing.
-    double m_uploadMs = 0;
-    // Time spent waiting for the device; all of the work on the host back end.
-    double m_waitMs = 0;
-    // Part of m_waitMs for refitting; host back end only.
-    double m_refitMs = 0;
-    // Part of m_waitMs for the broad phase; host back end only.
-    double m_broadMs = 0;
-    // Part of m_waitMs for the narrow phase and the canonical order; host back end only.
-    double m_narrowMs = 0;
-    // Time for sorting contacts by body and for ending paths at the first impact, without waits.
-    double m_writeMs = 0;
-    // Time for contact sweeps between and after Bullet's iterations, and for checking displaced nodes.
-    double m_finishMs = 0;
-    // Returns all of Drape's time in the solver's predictMotion and solveConstraints, without Bullet's.
-    double collisionMs() const { return m_uploadMs + m_waitMs + m_writeMs + m_finishMs; }
 };
 }  // namespace drape

@@ -24,6 +24,7 @@ class Plugin;
 struct BodyContacts;
 class PluginState;
 struct StepObstacle;
+struct StepParts;
 
 // Solves the soft bodies of one world. Bullet's m_rcontacts and m_scontacts hold the contacts of Bullet's own pairs
 // only; Plugin::contacts() returns Drape's.
@@ -40,6 +41,8 @@ public:
     void predictMotion(btScalar dt) override;
     // Finds the contacts and solves the soft bodies over `dt` (s). Called by Bullet.
     void solveConstraints(btScalar dt) override;
+    // Updates the normals of the soft bodies. Called by Bullet.
+    void updateSoftBodies() override;
 
 private:
     struct Work;
@@ -53,7 +56,7 @@ private:
     void leaveToBullet();
     void coverMotions(const std::vector<StepObstacle>& obstacles);
     void detect();
-    double solveBodies();
+    void solveBodies(StepParts& times);
     void closeStrayed(const std::vector<BodyContacts*>& bodies);
     void solveStep();
     void endFailedStep();
