@@ -9,6 +9,12 @@
 
 DRAPE_NAMESPACE_BEGIN
 
+// Contacts in turns with links: the share of a violation that a projection corrects, and the sweeps over the acting
+// contacts of a group after each sweep over all its contacts. Contacts then share a load however they are ordered
+// (docs/design_notes/contact_sweeps.md, "Shared loads").
+#define DRAPE_TURN_RELAXATION 0.5f
+#define DRAPE_ACTING_SWEEPS 3
+
 // Returns the displacement of the row's point of the cloth, m.
 DRAPE_FUNCTION Vec3 rowDisplacement(const ContactRow* row, const SolverNode* nodes)
 {
@@ -26,16 +32,16 @@ DRAPE_FUNCTION float rowViolation(const ContactRow* row, const SolverNode* nodes
 
 // Pushes the row's nodes so far that the row holds, and takes back an earlier push that is not needed any more.
 // Friction removes the point's motion since the step's start along the surface, relative to the obstacle, up to
-// Coulomb's bound. Returns whether there was anything to do; `worst` grows to the violation that a push can correct. A
-// row with NaN does nothing.
-DRAPE_FUNCTION int projectRow(ContactRow* row, SolverNode* nodes, float passed, float* worst)
+// Coulomb's bound. relaxation: share of the violation that is corrected. Returns whether there was anything to do;
+// `worst` grows to the violation that a push can correct. A row with NaN does nothing.
+DRAPE_FUNCTION int projectRow(ContactRow* row, SolverNode* nodes, float passed, float relaxation, float* worst)
 {
     const Vec3 way = rowDisplacement(row, nodes), normal = row->m_normal;
     const float along = vec3Dot(normal, way);
     const float violation = row->m_level - (1.0f - passed) * row->m_advance - along;
     if (!(violation > 0.0f) && !(row->m_multiplier > 0.0f)) return 0;
     *worst = drapeMax(*worst, violation * row->m_mended);
-    const float pushed = drapeMax(0.0f, row->m_multiplier + violation * row->m_inverseMobility);
+    const float pushed = drapeMax(0.0f, row->m_multiplier + relaxation * violation * row->m_inverseMobility);
     const Vec3 slid = vec3Sub(vec3AddScaled(way, normal, -along), vec3Scale(row->m_carried, passed));
     Vec3 held = vec3AddScaled(row->m_held, slid, -row->m_inverseMobility);
     const float most = row->m_friction * pushed, wanted2 = vec3Dot(held, held);

@@ -32,7 +32,7 @@ struct SweepCase
     std::string m_name;
     Motion m_motion;
     unsigned m_threads;
-    bool m_inParts;  // each stage runs later in the step; else at the step's end
+    bool m_inParts;  // each stage runs later in the step, in turns with links; else at the step's end
 };
 
 // Writes a rotation by 0.02 about (1, 2, 3) and a shift.
@@ -180,8 +180,8 @@ void runBoth(SweepTeam& team, ContactSweep& sweep, PlainSweep& plain, std::size_
     if (at % kStage == 0)
     {
         const float passed = inParts ? float(at / kStage + 1) / float(kSweeps / kStage) : 1;
-        sweep.restart(passed);
-        plain.restart(passed);
+        sweep.restart(passed, inParts);
+        plain.restart(passed, inParts);
     }
     if (at % kStage == 2)
     {

@@ -31,8 +31,10 @@ public:
     // Prepares the cloth once after assign(). SweepTeam::start() does the rest.
     void begin();
     // Begins a stage, with no pushes. passed: the share of the step that has passed, up to 1; obstacles stand there.
-    void restart(float passed)
+    // inTurns: links are swept in turns with the contacts, which share their loads (kernels/lib/contact_row.h).
+    void restart(float passed, bool inTurns = false)
     {
+        m_cloth.m_inTurns = inTurns;
         ++m_cloth.m_stage;
         m_cloth.m_passed = passed;
     }
