@@ -100,7 +100,7 @@ void addBackendOptions(CLI::App& app, Options& options, std::string& mode)
     acceptOnly(app.add_option("--mode", options.m_contactMode, "how Drape treats motion within a step"),
                {"discrete", "continuous", "automatic"});
     acceptOnly(app.add_option("--solver", options.m_solver,
-                              "who solves the cloth's links; drape: in substeps, with less stretch; auto: bullet"),
+                              "who solves the cloth's links; drape: in substeps, with less stretch; auto: drape"),
                {"auto", "drape", "bullet"});
     app.add_option("--threads", options.m_threads,
                    "number of threads of the solver and of the host back end, 0 to 64; 0: one per core, 8 at most")
