@@ -9,11 +9,14 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// Contacts in turns with links: the share of a violation that a projection corrects, and the sweeps over the acting
-// contacts of a group after each sweep over all its contacts. Contacts then share a load however they are ordered
-// (docs/design_notes/contact_sweeps.md, "Shared loads").
+// Contacts in turns with links: the share of a violation that a projection corrects, and the minimum number of sweeps
+// over the acting contacts of a group after each sweep over all its contacts. Contacts then share a load however they
+// are ordered (docs/design_notes/contact_sweeps.md, "Shared loads").
 #define DRAPE_TURN_RELAXATION 0.5f
 #define DRAPE_ACTING_SWEEPS 3
+
+// Minimum number of such sweeps, times the substeps of a step. Links pull farther in a longer substep.
+#define DRAPE_ACTING_IN_STEP 12
 
 // Returns the displacement of the row's point of the cloth, m.
 DRAPE_FUNCTION Vec3 rowDisplacement(const ContactRow* row, const SolverNode* nodes)

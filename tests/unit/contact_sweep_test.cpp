@@ -180,7 +180,7 @@ void runBoth(SweepTeam& team, ContactSweep& sweep, PlainSweep& plain, std::size_
     if (at % kStage == 0)
     {
         const float passed = inParts ? float(at / kStage + 1) / float(kSweeps / kStage) : 1;
-        sweep.restart(passed, inParts);
+        sweep.restart(passed, inParts ? DRAPE_ACTING_SWEEPS : 0);
         plain.restart(passed, inParts);
     }
     if (at % kStage == 2)

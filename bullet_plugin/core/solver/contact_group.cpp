@@ -166,7 +166,7 @@ bool ContactGroup::project(const SweptCloth& cloth, ActingContact& acting, float
 {
     SolverNodes& nodes = cloth.nodes();
     ContactRow& row = acting.m_row;
-    const float relaxation = cloth.m_inTurns ? DRAPE_TURN_RELAXATION : 1.0f;
+    const float relaxation = cloth.m_actingSweeps > 0 ? DRAPE_TURN_RELAXATION : 1.0f;
     if (!projectRow(&row, nodes.nodes(), cloth.m_passed, relaxation, &worst)) return false;
     for (std::uint32_t k = 0; k < row.m_count; ++k)
         nodes.markShifted(row.m_nodes[k]);
@@ -274,7 +274,7 @@ void ContactGroup::sweepActing(const SweptCloth& cloth)
 {
     if (m_pushingBlocks.empty()) return;
     float worst = 0;
-    for (int i = 0; i < DRAPE_ACTING_SWEEPS; ++i)
+    for (int i = 0; i < cloth.m_actingSweeps; ++i)
         for (std::size_t index = 0; index < m_blocks.size(); ++index)
             for (unsigned lane = 0, pushing = m_pushing[index]; pushing != 0; ++lane, pushing >>= 1)
                 if (pushing & 1u) project(cloth, m_rows[std::size_t(m_rowsOf[index].m_row[lane])].m_acting, worst);

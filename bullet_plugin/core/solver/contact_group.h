@@ -27,7 +27,7 @@ struct SweptCloth
     float m_margin = 0;      // m, rounding margin of the blocks' levels
     float m_retreat = 0;     // m, bound on the displacement of a node by an obstacle's motion
     float m_passed = 1;      // share of the step that has passed
-    bool m_inTurns = false;  // see ContactSweep::restart()
+    int m_actingSweeps = 0;  // see ContactSweep::restart()
     unsigned m_stage = 0;    // see ContactSweep::restart()
 
     SolverNodes& nodes() const { return m_contacts->m_nodes; }
@@ -59,7 +59,7 @@ public:
     // Tests every contact of these features once and projects those that are due. Returns the worst violation met, m,
     // as far as the contact's nodes can correct it. A new stage begins with no pushes.
     float sweep(const SweptCloth& cloth, Kinds kinds);
-    // Projects the contacts that act in this stage DRAPE_ACTING_SWEEPS times, in the order of sweeps.
+    // Projects the contacts that act in this stage m_actingSweeps times, in the order of sweeps.
     void sweepActing(const SweptCloth& cloth);
     // Removes from the nodes' velocities what a contact gained by recovering a depth that the step began with.
     void limitSpeeds(const SweptCloth& cloth) const;

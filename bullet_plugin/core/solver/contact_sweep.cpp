@@ -86,7 +86,7 @@ void ContactSweep::work(std::size_t index, Pass pass)
             return;
         case Pass::Edges:
             m_worst[index] = std::max(m_worst[index], group.sweep(m_cloth, ContactGroup::Kinds::Edges));
-            if (m_cloth.m_inTurns) group.sweepActing(m_cloth);
+            if (m_cloth.m_actingSweeps > 0) group.sweepActing(m_cloth);
             return;
         case Pass::LimitSpeeds:
             group.limitSpeeds(m_cloth);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "kernels/lib/contact_row.h"
 #include "rigid_rows.h"
 
 namespace drape
@@ -20,6 +21,11 @@ bool hasContacts(const ContactSweep* sweep)
 int iterationsOf(const SolverCloth& cloth)
 {
     return cloth.m_substeps ? cloth.m_substeps->count() : cloth.m_links->iterations();
+}
+
+int actingSweepsOf(const SolverCloth& cloth)
+{
+    return cloth.m_substeps ? std::max(DRAPE_ACTING_SWEEPS, DRAPE_ACTING_IN_STEP / cloth.m_substeps->count()) : 0;
 }
 
 // Returns whether the last sweep met a violation worse than `share` of the thickness.
@@ -146,7 +152,7 @@ void StepSolver::restart(int iteration)
     {
         const SolverCloth& cloth = sweep->cloth();
         const float passed = cloth.m_substeps ? float(iteration + 1) / float(cloth.m_substeps->count()) : 1.0f;
-        sweep->restart(passed, cloth.m_substeps != nullptr);
+        sweep->restart(passed, actingSweepsOf(cloth));
         if (!cloth.m_rigid) continue;
         cloth.m_rigid->begin(cloth.m_substeps->substepTime(), cloth.m_substeps->correctionTime(), passed);
     }
